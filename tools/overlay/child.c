@@ -17,7 +17,7 @@
 
 enum { MAX_CHILDREN = 4, NOT_FOUND = 127 };
 
-/* Processes to kill when dying; async-signal-safe. */
+/* processes to kill at death; atomic, 0: free */
 static pid_t running[MAX_CHILDREN];
 
 static void kill_all(void)
@@ -63,9 +63,8 @@ bool child_exists(const char *name)
 
 /* ----------------------------------------------------------------- starting */
 
-/* Becomes another program, in the child: IN and OUT become its streams; the
- * reason why one cannot be run is sent through FAILED. Nothing but system
- * calls. */
+/* Runs ARGV in the child, with IN and OUT as its streams. If it cannot be run,
+ * sends errno through FAILED. Makes system calls only. */
 static void become(const char *const *argv, int in, int out, int failed)
 {
     sigset_t none;
@@ -84,7 +83,7 @@ static void become(const char *const *argv, int in, int out, int failed)
     _exit(NOT_FOUND);
 }
 
-/* Returns what kept the child from running, or 0. */
+/* Returns the errno that kept the child from running, or 0. */
 static int read_failure(int fd)
 {
     int number = 0;
@@ -96,7 +95,7 @@ static int read_failure(int fd)
     return n == (ssize_t)sizeof number ? number : 0;
 }
 
-/* Two pipes, both ends of which are closed by exec: data, and failure. */
+/* Opens two pipes, DATA and FAILED, whose ends are closed by exec. */
 static bool open_pipes(int data[2], int failed[2])
 {
     if (pipe2(data, O_CLOEXEC) < 0)

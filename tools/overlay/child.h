@@ -6,9 +6,9 @@
  *     ...
  *     child_end(&child);                                   its exit status
  *
- * No shell takes part, so names need no quotes. What the program says on
- * standard error goes where ours goes. It is killed when glint dies or gives
- * it up, and its status is always taken.
+ * No shell takes part, so names need no quotes. The program shares glint's
+ * standard error. It is killed when glint dies or gives it up, and its status
+ * is always taken.
  */
 #ifndef GLINT_TOOLS_OVERLAY_CHILD_H
 #define GLINT_TOOLS_OVERLAY_CHILD_H
@@ -19,30 +19,28 @@
 #include "glint/status.h"
 
 enum child_pipe {
-    CHILD_WRITES, /* the child's standard output is our FD, its input is empty
-                   */
-    CHILD_READS /* the child's standard input is our FD, its output goes nowhere
-                 */
+    CHILD_WRITES, /* The child's standard output is FD, its input is empty. */
+    CHILD_READS /* The child's standard input is FD, its output goes nowhere. */
 };
 
 struct child {
     pid_t pid; /* 0: none */
-    int fd;    /* our end of the pipe; -1: closed */
+    int fd;    /* glint's end of the pipe; -1: closed */
 };
 
 /* Returns whether NAME is a program of $PATH. */
 bool child_exists(const char *name);
 
 /* Starts ARGV[0] of $PATH with ARGV, which ends with NULL. GLINT_E_UNSUPPORTED:
- * it is not there. GLINT_E_IO: no processes or descriptors to be had. */
+ * it is not there. GLINT_E_IO: the system gives no process or descriptor. */
 enum glint_status child_start(struct child *child, const char *const *argv,
                               enum child_pipe kind, struct glint_error *error);
 
-/* Closes the pipe and waits for the end. Returns the exit status, or 128 and
- * the signal that killed it; 0 of none. */
+/* Closes the pipe and waits until the child has ended. Returns its exit status,
+ * or 128 plus the signal that killed it, or 0 if there is no child. */
 int child_end(struct child *child);
 
-/* Kills it, if there is one, and takes its status. */
+/* Kills the child, if there is one, and takes its status. */
 void child_kill(struct child *child);
 
 #endif

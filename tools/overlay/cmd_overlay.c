@@ -279,7 +279,8 @@ int overlay_check_apart(const struct tool *tool, const char *from,
                       strcmp(to, "-") ? to : "standard output");
 }
 
-/* Refuses an output that does not go with the input before there is work. */
+/* Refuses, before there is work, an output that does not go with the input or
+ * cannot be written. */
 static int check_output(struct tool *tool, struct overlay *o)
 {
     struct glint_error error = {""};

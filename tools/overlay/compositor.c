@@ -12,7 +12,8 @@
 
 /* ------------------------------------------------------------------- making */
 
-/* Rows of a file, those on their way, and those by pixel. */
+/* Makes the list of lamps: the rows of the file, linked if lamps move between
+ * them, and the lamps by pixel. */
 static enum glint_status open_list(struct compositor *compositor,
                                    struct glint_error *error)
 {
@@ -55,7 +56,8 @@ int compositor_open(const struct tool *tool, struct compositor *compositor)
                : tool_fail(tool, GLINT_E_MEMORY, NULL);
 }
 
-/* Lamps to look for: a picture has many that hardly show. */
+/* Returns how many lamps to look for, 16 by default: most pictures have many
+ * that hardly show. */
 static int finder_max(const struct compositor *compositor)
 {
     const int asked =
@@ -88,8 +90,8 @@ static enum glint_status open_finder(struct compositor *compositor, int width,
     return glint_lamp_detector_open(&compositor->finder, &cfg);
 }
 
-/* Takes room for lamps that fade together with those that rise: while they
- * change places both are drawn. */
+/* Takes memory for lamps that fade beside those that rise: while lamps change
+ * places both are drawn. */
 static enum glint_status reserve(struct compositor *compositor)
 {
     const int n_by_hand = compositor->n_hand + compositor->list.n;
@@ -135,7 +137,7 @@ void compositor_replace(struct compositor *compositor,
     const struct lamp_save save = compositor->save;
     const int n_frames = compositor->n_frames;
 
-    compositor->save.is_open = false; /* goes on */
+    compositor->save.is_open = false; /* The file stays open. */
     compositor_close(compositor);
     *compositor = *fresh;
     if (save.is_open) {
@@ -143,7 +145,7 @@ void compositor_replace(struct compositor *compositor,
         compositor->save = save;
         compositor->n_frames = n_frames;
     }
-    /* a setup from a table is made by size, and so is made anew */
+    /* A setup from a table points to the lens, which has moved. */
     if (compositor->settings.setup.lens)
         compositor->settings.setup.lens = &compositor->settings.lens;
 }
@@ -176,8 +178,8 @@ void compositor_close(struct compositor *compositor)
 
 /* ------------------------------------------------------------------ drawing */
 
-/* Returns the row of lamp I at the place where it was found, as the file is
- * read again. */
+/* Returns the row that lamp I is saved as: where it was found, or where a list
+ * or option puts it. */
 static struct lamp_row row_of(const struct compositor *compositor, int i)
 {
     const bool found = !compositor->is_listed && compositor->n_hand == 0;
@@ -265,7 +267,7 @@ static bool is_luma(enum glint_pixel_format format)
            format != GLINT_XRGB8888 && format != GLINT_RGB565;
 }
 
-/* The codes of black that bytes of plane PLANE have in turn. */
+/* Sets CODE to the codes of black that even and odd bytes of PLANE have. */
 static void black_of(const struct glint_image *image, int plane,
                      uint8_t code[2])
 {
@@ -279,7 +281,7 @@ static void black_of(const struct glint_image *image, int plane,
         code[0] = 128;
 }
 
-/* Black, in the codes of IMAGE. */
+/* Sets IMAGE to black. */
 static void blacken(const struct glint_image *image)
 {
     for (int p = 0; p < glint_image_planes(image->format); p++) {
@@ -299,7 +301,8 @@ static void blacken(const struct glint_image *image)
     }
 }
 
-/* Draws the lights over IMAGE: as found, else where they are, by number. */
+/* Marks the lights on IMAGE: found lamps as they are tracked, all others at
+ * their places by number. */
 void compositor_mark(const struct compositor *compositor,
                      const struct glint_image *image)
 {
@@ -326,7 +329,8 @@ double compositor_scale(const struct compositor *compositor)
     return compositor->strength.scale;
 }
 
-/* There is time for a picture by itself. */
+/* Corrects the exposure of a picture by itself by drawing its flare, for which
+ * there is time. */
 static void expose_as_drawn(struct compositor *compositor)
 {
     struct glint_response_light drawn;
@@ -348,7 +352,7 @@ static void expose_as_drawn(struct compositor *compositor)
                            compositor->ground ? &seen : NULL);
 }
 
-/* How large lamps that were found are in the picture. */
+/* Sets the extent in the picture of lamps that were found. */
 static void set_seen(struct compositor *compositor)
 {
     const bool found = !compositor->is_listed && compositor->n_hand == 0;
@@ -385,8 +389,8 @@ void compositor_expose(struct compositor *compositor, int32_t elapsed_us)
         &compositor->strength, compositor->settings.starburst);
 }
 
-/* What the flare of a picture by itself will be seen on; without memory for
- * that, it is exposed as on any. */
+/* Keeps what a picture by itself shows, which its flare will be seen on.
+ * Without memory for that it is exposed as on any picture. */
 static void keep_ground(struct compositor *compositor,
                         const struct glint_image *image)
 {

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * What overlay and live put on a picture: the flare of a lens, for lamps that
- * are found in it, listed, or given by hand.
+ * The flare that overlay and live put on a picture, for lamps that are found in
+ * it, listed, or given by hand.
  *
- *     compositor_defaults(&compositor);               then compositor_option()
- * for each compositor_open(&tool, &compositor);            lens and lists; no
- * picture yet compositor_size(&tool, &compositor, w, h);      once, and when
- * the size changes compositor_draw(&compositor, &image, us);       each frame
- *     compositor_close(&compositor);
+ *     compositor_defaults(&c);
+ *     compositor_option(&tool, &c, option, optarg);   each option
+ *     compositor_open(&tool, &c);                     lens and lists of lamps
+ *     compositor_size(&tool, &c, width, height);      when the size changes
+ *     compositor_draw(&c, &image, elapsed_us);        each frame
+ *     compositor_close(&c);
  */
 #ifndef GLINT_TOOLS_OVERLAY_COMPOSITOR_H
 #define GLINT_TOOLS_OVERLAY_COMPOSITOR_H
@@ -20,32 +21,35 @@
 struct compositor {
     struct settings settings;
     const char *lens, *lights_file; /* NULL: lamps are found */
-    const char *save_file;          /* file for lamps, or NULL */
-    bool interpolate;               /* lamps of a file */
+    const char *save_file;          /* file to save lamps to, or NULL */
+    bool interpolate;               /* Lamps of a file move between its rows. */
     struct lamp_list at;            /* lamps given by hand, by pixel */
-    double threshold_ev[2]; /* thresholds that seed a lamp, and that it extends
-                               to */
+    double threshold_ev[2]; /* stops from white: that a lamp needs, and down to
+                               which it extends */
     double headroom_ev;
     bool flare_only, no_tracking, show_lights;
     bool flare_alpha; /* alpha in files of the flare alone */
-    /* Bytes reserved beforehand, which frames must do with; 0: as they need. */
+    /* Bytes reserved for frames, which take no more; 0: as many as they
+     * need. */
     size_t reserve_bytes;
     int n_hand;
     struct glint_lamp hand[SETTINGS_MAX_LAMPS];
-    /* How bright, and the scale of each frame. */
+    /* How bright flares come out, and the scale of each frame. */
     struct glint_strength strength;
-    struct glint_ground *ground; /* what a picture by itself shows, from when
-                                    lamps are found until it is exposed */
+    /* contents of a picture by itself, from when lamps are found until it is
+     * exposed; else NULL */
+    struct glint_ground *ground;
     int dial; /* option that said so, OPT_STRENGTH or OPT_EXPOSURE; 0: none */
 
     /* Made by open and size. */
-    bool is_listed; /* lights come from a file; its name is not needed more */
-    struct lamp_list list; /* lamps to draw, with those by pixel */
+    bool is_listed;        /* Lamps come from a list, by file or by pixel. */
+    struct lamp_list list; /* lamps of the file and those by pixel */
     struct lamp_save save;
     struct glint_lamp_detector finder;
     struct glint_lamp *lamp; /* room for those by hand and all found or read */
     double *level; /* share of each lamp in its power: struct strength_lamps */
-    double seen_px[GLINT_LAMP_DETECTOR_MAX]; /* extent of what was found */
+    /* extent of lamps that were found */
+    double seen_px[GLINT_LAMP_DETECTOR_MAX];
     uint32_t *id; /* number that each lamp is saved under */
     struct glint_response response;
     double white; /* light of the picture's white, 1 by default */
@@ -53,8 +57,8 @@ struct compositor {
     struct glint_frame frame;
     bool sized;
 
-    /* The rest is of the last frame. */
-    bool is_followed; /* it is of a video whose lamps are tracked */
+    /* These are of the last frame. */
+    bool is_followed; /* The frame is of a video whose lamps are tracked. */
     int n_frames, n_lamps;
     double find_ms, flare_ms;
     struct glint_frame_report report;
@@ -140,36 +144,39 @@ enum compositor_option_code {
 
 void compositor_defaults(struct compositor *compositor);
 
-/* Takes an option of COMPOSITOR_OPTIONS. -1: taken; -2: not one of these; else
- * an exit code, said. VALUE is kept. */
+/* Takes OPTION if it is one of COMPOSITOR_OPTIONS. Returns -1, or -2 if it is
+ * none of these, or an exit code after printing what is wrong. VALUE must
+ * outlive COMPOSITOR. */
 int compositor_option(const struct tool *tool, struct compositor *compositor,
                       int option, const char *value);
 
-/* Reads the lens, baking it if need be, and the list. Returns an exit code. */
+/* Opens the lens, which is baked if need be, the list of lamps and the file to
+ * save lamps to. Returns an exit code. */
 int compositor_open(const struct tool *tool, struct compositor *compositor);
 
-/* Makes ready for pictures of WIDTH x HEIGHT. Returns an exit code. */
+/* Prepares COMPOSITOR for pictures of WIDTH x HEIGHT. Returns an exit code. */
 int compositor_size(const struct tool *tool, struct compositor *compositor,
                     int width, int height);
 
-/* The options so far came from a file: those to come may say otherwise. */
+/* Ends the options of a file: those of the command line may choose again
+ * between --strength and --exposure. */
 void compositor_options_end(struct compositor *compositor);
 
-/* Sets the lamps of IMAGE, as compositor_draw does; returns how many there are.
- */
+/* Sets the lamps of IMAGE, as compositor_draw() does, and saves them. Returns
+ * how many there are. */
 int compositor_lamps(struct compositor *compositor,
                      const struct glint_image *image, int32_t elapsed_us);
 
-/* Adds the flare to IMAGE, of that size and ELAPSED_US after the one before; 0:
- * a picture by itself. GLINT_E_MEMORY. */
+/* Adds the flare to IMAGE, which has the size of compositor_size() and comes
+ * ELAPSED_US after the frame before; 0: a picture by itself. GLINT_E_MEMORY. */
 enum glint_status compositor_draw(struct compositor *compositor,
                                   const struct glint_image *image,
                                   int32_t elapsed_us);
 
-/* The parts of compositor_draw, for tools/overlay/compositor_layer.h: sets the
- * lamps of IMAGE and their number; saves them, which may have been measured in
- * between, and sets what their light is multiplied by; and draws over IMAGE
- * where they are. */
+/* The parts of compositor_draw(), for compositor_layer.h: _find sets the lamps
+ * of IMAGE; _expose saves them, which may have been measured since, and sets
+ * the exposure; _scale returns the factor on their light; _mark marks them on
+ * IMAGE. */
 void compositor_find(struct compositor *compositor,
                      const struct glint_image *image, int32_t elapsed_us);
 void compositor_expose(struct compositor *compositor, int32_t elapsed_us);
@@ -181,7 +188,7 @@ void compositor_mark(const struct compositor *compositor,
 void compositor_replace(struct compositor *compositor,
                         const struct compositor *fresh);
 
-/* After a run that went well: what was to be kept is put in place. Returns an
+/* Puts the file of saved lamps in place, after a run that went well. Returns an
  * exit code. */
 int compositor_finish(const struct tool *tool, struct compositor *compositor);
 

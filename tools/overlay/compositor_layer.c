@@ -7,7 +7,7 @@
 
 /* --------------------------------------------------------------- measuring */
 
-/* Pixels about a lamp whose light beyond white is its own. */
+/* The pixels around a lamp whose light above white is counted as its own. */
 struct reach {
     double x, y, radius;
     int left, top, right, bottom;
@@ -36,7 +36,8 @@ static double distance(const struct reach *r, int x, int y)
     return hypot(x + 0.5 - r->x, y + 0.5 - r->y);
 }
 
-/* Returns whether no other of the N lamps reaches the pixel and is nearer. */
+/* Checks whether lamp OWN reaches the pixel, and none of the N lamps that reach
+ * it is nearer. */
 static bool is_nearest(const struct reach *all, int n, int own, int x, int y)
 {
     const double d = distance(&all[own], x, y);
@@ -68,7 +69,7 @@ static void add_light(struct sum *sum, const double rgb[3], double x, double y)
     sum->y += l * y;
 }
 
-/* Adds what pixels of reach OWN have above WHITE. */
+/* Adds to SUM the light above WHITE of the pixels of lamp OWN. */
 static void add_excess(struct sum *sum, const struct glint_samples *samples,
                        const struct reach *all, int n, int own, double white)
 {
@@ -88,7 +89,8 @@ static void add_excess(struct sum *sum, const struct glint_samples *samples,
         }
 }
 
-/* Returns what the finder saw of TRACK, in the picture's light. */
+/* Returns the light of TRACK that the finder saw in the proxy, whose WHITE is
+ * that of the picture. */
 static struct sum seen_of(const struct glint_lamp_track *track, double white)
 {
     const double flux = (double)track->flux_q16 / 65536 * white;

@@ -9,14 +9,14 @@
 #include "overlay/compositor.h"
 #include "formats/samples.h"
 
-/* Sets power, place and colour of the lamps that COMPOSITOR found in a proxy of
- * SAMPLES, WHITE being the light of its code 255: what the proxy clips is
- * measured. */
+/* Sets power, place and colour of the lamps that COMPOSITOR has found in a
+ * proxy of SAMPLES, with the light that the proxy clips. WHITE is the light of
+ * its code 255. */
 void compositor_measure(struct compositor *compositor,
                         const struct glint_samples *samples, double white);
 
 /* Draws the flare of COMPOSITOR's lamps into RGB, upright [height][width][3],
- * linear light. IS_DEEP: to the last float; else planned as for codes of 8
+ * linear light. IS_DEEP: as accurate as floats; else planned as for codes of 8
  * bits, which costs half. GLINT_E_MEMORY. */
 enum glint_status compositor_draw_layer(struct compositor *compositor,
                                         bool is_deep, float *rgb);

@@ -19,11 +19,11 @@ void compositor_defaults(struct compositor *compositor)
     glint_strength_defaults(&compositor->strength);
 }
 
-/* Stops by which a region extends below what makes it a lamp, if not given. */
+/* Stops by which a lamp's region extends below its threshold, by default. */
 #define EXTENDS_EV 0.05
 
-/* The default of a lamp by hand, over a white pixel: a street lamp in a night
- * picture. */
+/* Default power of a lamp by hand, stops over a white pixel: a street lamp in a
+ * night picture. */
 #define DEFAULT_EV 16
 
 static bool take_threshold(const char *text, double threshold_ev[2])
@@ -51,7 +51,8 @@ static bool take_light(struct compositor *compositor, const char *text)
     return true;
 }
 
-/* "X,Y[,EV]" */
+/* Adds the lamp TEXT, "X,Y[,EV]". Returns false if it is malformed, out of
+ * range, or one too many. */
 static bool take_light_at(struct compositor *compositor, const char *text)
 {
     double v[3] = {0, 0, DEFAULT_EV};
@@ -115,7 +116,8 @@ static bool take(struct compositor *compositor, int option, const char *value)
     }
 }
 
-/* False: OPTION is the other dial for the same. */
+/* Notes OPTION if it sets the brightness. Returns false if another option that
+ * does was given before. */
 static bool take_dial(struct compositor *compositor, int option)
 {
     if (option != OPT_STRENGTH && option != OPT_EXPOSURE)

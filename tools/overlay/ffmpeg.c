@@ -37,7 +37,8 @@ bool ffmpeg_is_video(const char *name)
     return is_one_of(extension(name), extensions);
 }
 
-/* A name is a file's, whatever it looks like to ffmpeg. False: too long. */
+/* Sets URL to "file:NAME", which ffmpeg takes as a file, whatever NAME looks
+ * like. Returns false if it is too long. */
 static bool file_url(char url[FILE_NAME], const char *name)
 {
     return (size_t)snprintf(url, FILE_NAME, "file:%s", name) < FILE_NAME;
@@ -95,7 +96,8 @@ int ffmpeg_gif_frames(const char *name)
 
 /* -------------------------------------------------------------------- probe */
 
-/* Takes the value of a line "name=value", unless it says nothing. */
+/* Sets WORD by LINE, "NAME=value", unless WORD is set already or the value is
+ * unknown. */
 static void take_word(const char *line, const char *name, char *word)
 {
     const size_t n = strlen(name);
@@ -125,7 +127,7 @@ static void take_line(struct ffmpeg_video *v, const char *line)
         tool_integer(height, 1, GLINT_MAX_SIDE, &v->height);
 }
 
-/* All that CHILD prints, up to a limit, as a string. */
+/* Reads what CHILD prints into TEXT, as a string, up to PROBE_BYTES. */
 static void read_all(struct child *child, char text[PROBE_BYTES])
 {
     size_t used = 0;
@@ -138,7 +140,8 @@ static void read_all(struct child *child, char text[PROBE_BYTES])
     text[used] = '\0';
 }
 
-/* Lines of what ffprobe says of the streams KIND of URL. */
+/* Sets TEXT to the lines that ffprobe prints on ENTRIES of the streams KIND of
+ * URL, or to "" if it cannot be run. */
 static void ask(const char *url, const char *kind, const char *entries,
                 char text[PROBE_BYTES])
 {
@@ -195,7 +198,7 @@ bool ffmpeg_matrix(const struct ffmpeg_video *video, enum glint_matrix *matrix)
 
 /* ------------------------------------------------------------------- words */
 
-/* A command line as it grows; what does not fit is seen at the end. */
+/* A command line as it grows. N also counts words that do not fit. */
 struct words {
     const char *word[MAX_WORDS + 1];
     int n;
@@ -250,8 +253,8 @@ static bool has_one_of(const char *text, const char *const *words)
     return false;
 }
 
-/* The bits of a sample of PIXELS, ffmpeg's word: 8, 10, 12 or 16. In some words
- * a number is that of the layout, or of all samples of a pixel. */
+/* Returns the bits of a sample of PIXELS, ffmpeg's word: 8, 10, 12 or 16. In
+ * some words a number is that of the layout, or of all samples of a pixel. */
 static int bits_of(const char *pixels)
 {
     static const char *const of_8[] = {"nv12", "nv16", "yuv410p", NULL};
@@ -265,7 +268,7 @@ static int bits_of(const char *pixels)
                                        : 8;
 }
 
-/* Words for chroma of CHROMA and BITS. */
+/* Returns ffmpeg's word for planes with CHROMA of BITS. */
 static const char *planes_of(const char *chroma, int bits)
 {
     static const char *const table[][5] = {
@@ -288,7 +291,7 @@ static bool is_rgb(const struct ffmpeg_video *v)
            strncmp(v->pixels, "nv", 2) != 0 && strncmp(v->pixels, "p0", 2) != 0;
 }
 
-/* The format of y4m that takes all of what V has. */
+/* Returns ffmpeg's word for the y4m format that keeps all samples of V. */
 static const char *planes_for(const struct ffmpeg_video *v)
 {
     static const char *const of_422[] = {"422", "nv16", "nv20", NULL};
@@ -297,7 +300,7 @@ static const char *planes_for(const struct ffmpeg_video *v)
                                                                : "420";
 
     if (strncmp(v->pixels, "yuvj", 4) ==
-        0) /* the name of these says full range */
+        0) /* These names also mean full range. */
         return chroma[2] == '4'   ? "yuvj444p"
                : chroma[2] == '2' ? "yuvj422p"
                                   : "yuvj420p";
@@ -373,8 +376,8 @@ static void add_sound(struct words *w, const struct ffmpeg_target *t,
                 t->name, extension(t->name), codec);
 }
 
-/* Says what codes mean, both of what comes in and of what is written, so that
- * nothing is turned into anything else. */
+/* Adds what the codes mean, of the input and of the output, so that ffmpeg
+ * converts nothing. */
 static void add_tags(struct words *w, const struct ffmpeg_target *t,
                      const struct ffmpeg_video *v)
 {
@@ -388,8 +391,8 @@ static void add_tags(struct words *w, const struct ffmpeg_target *t,
         add_two(w, "-color_primaries", v->primaries);
 }
 
-/* Files whose pictures are H.264 unless somebody says otherwise: where two
- * pixels share their colour, odd sides grow by one. */
+/* Adds the options of files whose pictures are H.264 by default. Odd sides grow
+ * by one where pixels share their chroma. */
 static void add_h264(struct words *w, const struct ffmpeg_target *t,
                      const struct ffmpeg_video *v)
 {
@@ -432,7 +435,7 @@ static void add_pictures(struct words *w, const struct ffmpeg_target *t,
         add_two(w, "-q:v", "2");
 }
 
-/* The words of OPTIONS, which is cut at its blanks. */
+/* Adds the words of OPTIONS, which it cuts at its blanks. */
 static void add_options(struct words *w, char *options)
 {
     char *word, *rest = options;

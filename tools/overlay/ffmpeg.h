@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ffmpeg.h - videos that only ffmpeg can read or write, by the user's own one.
+ * ffmpeg.h - videos that only ffmpeg can read or write, by the installed one.
  *
  *     ffmpeg_is_video("in.mp4");
  *     ffmpeg_probe(&video, "in.mp4");                     what is known of it
@@ -8,9 +8,9 @@
  *     ffmpeg_write(&child, "out.mp4", &out, "in.mp4", ...);    y4m goes in
  *
  * ffmpeg runs beside glint, at the other end of a pipe of y4m frames. Sound is
- * copied from the input as it is where the kind of file takes it, else encoded
- * anew, and said. Frame rate, range, matrix, primaries and transfer are kept,
- * titles and chapters, too; subtitles and further pictures are not.
+ * copied from the input as it is if the type of the output takes it, else it is
+ * encoded anew, with a message. Frame rate, range, matrix, primaries, transfer,
+ * titles and chapters are kept; subtitles and further pictures are not.
  */
 #ifndef GLINT_TOOLS_OVERLAY_FFMPEG_H
 #define GLINT_TOOLS_OVERLAY_FFMPEG_H
@@ -22,12 +22,12 @@
 
 enum { FFMPEG_WORD = 32 };
 
-/* Words of ffmpeg's, "" where it does not say. */
+/* A video in words of ffmpeg's, "" if unknown. */
 struct ffmpeg_video {
     char pixels[FFMPEG_WORD]; /* yuv420p ... */
     char range[FFMPEG_WORD], space[FFMPEG_WORD], transfer[FFMPEG_WORD],
         primaries[FFMPEG_WORD];
-    char sound[FFMPEG_WORD]; /* codec of the first sound; "": none */
+    char sound[FFMPEG_WORD]; /* codec of the first audio stream; "": none */
     int width, height;       /* 0: not known */
 };
 
@@ -35,41 +35,46 @@ struct ffmpeg_video {
  * and their like. */
 bool ffmpeg_is_video(const char *name);
 
-/* A GIF of more than one frame, which is looked into: how many; else 0 or 1. */
+/* Returns the number of frames of the GIF NAME, which it reads; 0 if NAME is no
+ * GIF. */
 int ffmpeg_gif_frames(const char *name);
 
-/* Fills VIDEO with what ffprobe says of NAME; all empty where it says nothing.
- */
+/* Sets VIDEO to what ffprobe knows of NAME; all is empty if it knows
+ * nothing. */
 void ffmpeg_probe(struct ffmpeg_video *video, const char *name);
 
-/* The matrix of its codes. False: not stated. */
+/* Sets MATRIX to that of VIDEO's codes. Returns false if it is not stated. */
 bool ffmpeg_matrix(const struct ffmpeg_video *video, enum glint_matrix *matrix);
 
-/* The names are used up to 4000 bytes. GLINT_E_UNSUPPORTED: no ffmpeg. */
+/* Starts ffmpeg as CHILD, which writes NAME as y4m to child->fd.
+ * GLINT_E_UNSUPPORTED: there is no ffmpeg, or NAME has more than some 4000
+ * bytes. */
 enum glint_status ffmpeg_read(struct child *child, const char *name,
                               const struct ffmpeg_video *video,
                               struct glint_error *error);
 
 /* The file to write, and what goes with the pictures. */
 struct ffmpeg_target {
-    const char *name;  /* the file that will be there */
-    const char *file;  /* file that is written for now, of the same extension */
+    const char *name;  /* name of the output */
+    const char *file;  /* temporary file to write, of the same extension */
     const char *sound; /* file to take sound and titles from, or NULL */
     /* Options for the encoder, words with blanks, or NULL. */
     const char *options;
     int width, height;
-    bool is_444; /* each pixel has its colour */
+    bool is_444; /* each pixel has chroma of its own */
     enum glint_range range;
     bool quiet;
 };
 
-/* VIDEO: of the input, or of all empty words. */
+/* Starts ffmpeg as CHILD, which reads y4m from child->fd and writes TARGET.
+ * VIDEO is that of the input, or all empty. Errors are those of
+ * ffmpeg_read(). */
 enum glint_status ffmpeg_write(struct child *child,
                                const struct ffmpeg_target *target,
                                const struct ffmpeg_video *video,
                                struct glint_error *error);
 
-/* Prints the pipe that does by hand what glint IN -o OUT would. */
+/* Prints the pipe that does by hand what glint overlay IN -o OUT would. */
 void ffmpeg_by_hand(const struct tool *tool, const char *in, const char *out);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The parts of glint overlay: its options and result (cmd_overlay.c), and how
- * pictures, sequences of them and videos go through it.
+ * The parts of glint overlay: its options and result (cmd_overlay.c), and the
+ * ways of pictures, numbered pictures and videos through it.
  */
 #ifndef GLINT_TOOLS_OVERLAY_OVERLAY_H
 #define GLINT_TOOLS_OVERLAY_OVERLAY_H
@@ -23,22 +23,26 @@ struct overlay {
     bool is_video;
     const char *encode; /* options for ffmpeg, or NULL */
 
-    /* Lights of the frame with most too many, and of the one with most beyond
-     * the model. */
+    /* Figures for warnings: those of the frame of which most lights were
+     * merged, but with the most lights, lights beyond the model, and dropped
+     * bundles and cells of all frames. */
     struct glint_frame_report worst;
     int most_lights;
-    double find_ms, flare_ms, started, reported; /* seconds; of progress */
+    /* find_ms, flare_ms: ms in all frames; started, reported: times of the
+     * start and the last progress, seconds */
+    double find_ms, flare_ms, started, reported;
     double peak, mean_sum; /* light of the flare, 1 = white: the brightest of
                               all frames; the sum of their means */
     size_t peak_bytes;
 };
 
-/* Puts the flare on IMAGE, which is the next frame, and counts what it took.
- * Returns an exit code, as all of these do. */
+/* Puts the flare on IMAGE, the next frame, and adds up its figures. Returns an
+ * exit code, as all functions here that return int. */
 int overlay_draw(struct tool *tool, struct overlay *o,
                  const struct glint_image *image);
 
-/* The same where frames are not drawn in place: DRAW does it with CTX. */
+/* Does as overlay_draw() for frames that are not drawn in place: DRAW draws
+ * them with CTX. */
 typedef enum glint_status overlay_draw_fn(void *ctx,
                                           struct compositor *compositor,
                                           const struct glint_image *image,
@@ -47,32 +51,32 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
                     const struct glint_image *image, overlay_draw_fn *draw,
                     void *ctx);
 
-/* Tells a terminal how far it has come, else a line every few seconds. */
+/* Prints progress: over a line of a terminal, else a line every few seconds. */
 void overlay_progress(const struct tool *tool, struct overlay *o);
 
-/* Refuses an output TO that is the file FROM: what was photographed would be
- * gone. */
+/* Refuses an output TO that is the file FROM, as the photograph would be
+ * lost. */
 int overlay_check_apart(const struct tool *tool, const char *from,
                         const char *to);
 
-/* One picture from file FROM to file TO. */
+/* Draws one picture from file FROM to file TO. */
 int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
                     const char *to);
 
-/* The picture o->input to o->output, which may have a %d: then the first. */
+/* Draws one picture, o->input, to o->output; of a pattern the first name. */
 int overlay_numbered(struct tool *tool, struct overlay *o);
 
-/* Numbered pictures, as o->input and o->output have them. */
+/* Draws the numbered pictures of the patterns o->input and o->output. */
 int overlay_sequence(struct tool *tool, struct overlay *o);
 
 /* Returns whether NAME is a video, by its extension. */
 bool overlay_is_video(const char *name);
 
-/* Decides on animated GIF: sets VIDEO where it goes in or out as frames, and
- * says where one frame of many is taken. */
+/* Sets VIDEO if an animated GIF is to be read or written as frames. Warns if
+ * one frame of many is taken. */
 int overlay_check_gif(struct tool *tool, const struct overlay *o, bool *video);
 
-/* A video from o->input to o->output. */
+/* Draws a video from o->input to o->output. */
 int overlay_video(struct tool *tool, struct overlay *o);
 
 #endif

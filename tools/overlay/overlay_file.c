@@ -30,7 +30,8 @@ static int fail(const struct tool *tool, const struct overlay_file *f,
 
 /* ------------------------------------------------------------------ opening */
 
-/* Floats to draw on, where the output takes what the input has no room for. */
+/* Makes f->work, a copy of the input in floats to draw on, for an output that
+ * has floats where the input has not. */
 static enum glint_status deepen(struct overlay_file *f)
 {
     struct glint_samples *const from = &f->kept.samples;
@@ -107,7 +108,7 @@ static bool adds_nothing(const struct compositor *compositor)
     return compositor->n_lamps == 0 || !(compositor_scale(compositor) > 0);
 }
 
-/* Marks of lights, which are drawn over the proxy, over the samples, too. */
+/* Marks the lights on the proxy, and copies the marks to the samples. */
 static enum glint_status mark(struct overlay_file *f,
                               struct compositor *compositor)
 {
@@ -159,7 +160,8 @@ enum glint_status overlay_file_draw(struct overlay_file *file,
 
 /* ------------------------------------------------------------------- saving */
 
-/* The flare by itself, with the input's depth or more. */
+/* Makes ALONE, a picture of the flare by itself, with the input's depth or
+ * more. */
 static enum glint_status make_layer(const struct overlay_file *f,
                                     const struct compositor *compositor,
                                     struct glint_samples *alone)

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * A picture file on its way through overlay: what is looked at, what is lit,
- * what is written.
+ * A picture file on its way through overlay: opened, lit, and written.
  *
  *     overlay_file_open(&tool, &file, &compositor, "in.exr", "out.exr");
- *     overlay_file_draw(&file, &compositor);          in place of
- * compositor_draw() overlay_file_save(&tool, &file, &compositor, quality);
+ *     overlay_file_draw(&file, &compositor, elapsed_us);
+ *     overlay_file_save(&tool, &file, &compositor, quality);
  *     overlay_file_close(&file);
  *
- * Opaque sRGB of 8 bits is drawn on as it is, in integers. Of everything else
- * the finder sees a proxy of 8 bits, floats are measured where it found lamps,
- * and the flare is added in linear light to the samples that it reaches. Where
- * nothing is drawn and the types are the same the file is copied.
+ * Opaque sRGB of 8 bits is drawn on as it is, in integers. Of all other
+ * pictures the finder sees a proxy of 8 bits, the light of lamps is measured in
+ * floats where the file has them, and the flare is added in linear light to the
+ * samples that it reaches. A file on which nothing is drawn is copied if the
+ * output has the same type.
  */
 #ifndef GLINT_TOOLS_OVERLAY_OVERLAY_FILE_H
 #define GLINT_TOOLS_OVERLAY_OVERLAY_FILE_H
@@ -27,26 +27,30 @@ struct overlay_file {
     const char *from, *to;
     struct glint_kept kept;
     struct glint_samples work; /* a deeper copy of the input, for floats out */
-    bool is_direct, is_copied; /* drawn on the samples; through work */
-    double white;              /* light of the proxy's white */
+    /* drawn on the file's own samples; drawn on work */
+    bool is_direct, is_copied;
+    double white; /* light of the proxy's white */
     float *layer;
 };
 
-/* Opens FROM, of which TO will be made; both are kept. Returns an exit code. */
+/* Opens FROM, which is to be written to TO. Both strings must outlive FILE.
+ * Returns an exit code. */
 int overlay_file_open(const struct tool *tool, struct overlay_file *file,
                       const struct compositor *compositor, const char *from,
                       const char *to);
 
-/* Adds the flare, ELAPSED_US after the picture before. GLINT_E_MEMORY. */
+/* Adds the flare to a picture that comes ELAPSED_US after the one before.
+ * GLINT_E_MEMORY. */
 enum glint_status overlay_file_draw(struct overlay_file *file,
                                     struct compositor *compositor,
                                     int32_t elapsed_us);
 
-/* Writes it; QUALITY as of glint_kept_options. Returns an exit code. */
+/* Writes the picture to its output, with QUALITY as in glint_kept_options.
+ * Returns an exit code. */
 int overlay_file_save(const struct tool *tool, struct overlay_file *file,
                       const struct compositor *compositor, int quality);
 
-/* Does nothing when closed. */
+/* Closes FILE, unless it is closed already. */
 void overlay_file_close(struct overlay_file *file);
 
 #endif

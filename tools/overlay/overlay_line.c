@@ -4,10 +4,10 @@
 #include <math.h>
 
 /* Linear light, 1 = white, of code 2 of 255 in sRGB, whose slope near black is
- * 12.92: a darker flare cannot be seen. */
+ * 12.92. A darker flare cannot be seen. */
 static const double least_seen = 2 / 255.0 / 12.92;
-/* Linear light, 1 = white, that a flare peaks at with the option suggested
- * where it cannot be seen. */
+/* Linear light, 1 = white, at which a flare peaks with the option that is
+ * suggested for one that cannot be seen. */
 static const double well_seen = 0.25;
 
 /* --------------------------------------------------------------- the light */
@@ -32,7 +32,7 @@ struct overlay_light overlay_light(const struct overlay *o)
     return light;
 }
 
-/* Stops over one white pixel. */
+/* Returns the power of LAMP in stops over a white pixel. */
 static double stops_of(const struct glint_lamp *lamp)
 {
     return log2(fmax(lamp->power, 1e-30));
@@ -85,7 +85,7 @@ static void say_dial(const struct compositor *compositor, FILE *to)
         fprintf(to, ", gain %g", compositor->settings.gain);
 }
 
-/* Says what would show a flare that comes to LIGHT only. */
+/* Prints which option would show a flare that is as faint as LIGHT. */
 static void say_faint(const struct overlay *o,
                       const struct overlay_light *light, FILE *to)
 {
@@ -117,7 +117,8 @@ static void say_faint(const struct overlay *o,
                 compositor->strength.asked * sqrt(well_seen / light->peak));
 }
 
-/* Nothing was found in all frames; of a picture by itself, what came next. */
+/* Prints that no frame has a lamp; of a picture by itself also the brightest
+ * candidate. */
 static void say_none(const struct compositor *compositor, FILE *to)
 {
     const bool is_found = !compositor->is_listed && compositor->n_hand == 0;

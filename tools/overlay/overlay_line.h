@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What glint overlay says of its result: what was found, what was assumed, how
- * bright the flare came out, and what to do where that cannot be seen.
+ * The line that glint overlay prints on its result: lamps found, settings,
+ * brightness of the flare, and options that help if it cannot be seen.
  */
 #ifndef GLINT_TOOLS_OVERLAY_OVERLAY_LINE_H
 #define GLINT_TOOLS_OVERLAY_OVERLAY_LINE_H
@@ -10,21 +10,22 @@
 
 /* The light of the flare alone, 1 = white, largest channel. */
 struct overlay_light {
-    double peak; /* mean of the brightest thousandth of the pixels: of all
-                    frames, the brightest */
+    double peak; /* mean of the brightest thousandth of the pixels; of several
+                    frames, that of the brightest one */
     /* Mean over all pixels; of several frames, the mean of these. */
     double mean;
 };
 
-/* Returns the light of the flare. A single picture's is drawn once more, small,
- * and looked at; that of several is what the lens's response says. */
+/* Returns the light of the flare. That of a single picture is measured, by
+ * drawing it once more, small; that of several follows from the lens's
+ * response. */
 struct overlay_light overlay_light(const struct overlay *o);
 
-/* One line, or two where nothing can be seen. */
+/* Prints one line, or two if nothing can be seen. */
 void overlay_say(const struct overlay *o, const struct overlay_light *light,
                  FILE *to);
 
-/* Members of a JSON object, without braces. */
+/* Prints members of a JSON object, without braces. */
 void overlay_json(const struct overlay *o, const struct overlay_light *light,
                   FILE *to);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Numbered pictures that are the frames of a video, those that are there: a
- * number that is missing is said, and time goes on without it.
+ * Numbered pictures as frames of a video. Missing numbers are reported, and
+ * time passes for them.
  */
 #include "overlay/overlay.h"
 
@@ -14,13 +14,13 @@
 
 enum { NAME_BYTES = 4096, FRAME_US = 1000000 / 25, RUNS_SAID = 8 };
 
-/* The numbers that there are, in order. */
+/* the numbers of all pictures, rising */
 struct numbers {
     int *at;
     int n, room;
 };
 
-/* Exactly one printf conversion of an int, "%d" or "%0Nd". */
+/* Checks whether TEXT has exactly one conversion, "%d" or "%0Nd". */
 static bool is_pattern(const char *text)
 {
     const char *at = strchr(text, '%');
@@ -32,7 +32,8 @@ static bool is_pattern(const char *text)
     return *at == 'd' && !strchr(at, '%');
 }
 
-/* NAME of NAME_BYTES becomes that of picture NUMBER. False: it is too long. */
+/* Sets NAME, NAME_BYTES long, to that of picture NUMBER by PATTERN. Returns
+ * false if it is too long. */
 static bool name_of(char *name, const char *pattern, int number)
 {
     const char *at = strchr(pattern, '%'); /* there is one: is_pattern() */
@@ -66,7 +67,8 @@ static bool add(struct numbers *l, int number)
     return true;
 }
 
-/* The number that makes FILE, a name in its folder, of PATTERN; -1: none. */
+/* Returns the number for which PATTERN gives FILE, a name in its folder, or -1
+ * if none does. NAME is work memory. */
 static int number_of(const char *file, const char *pattern, char *name)
 {
     const char *percent = strchr(pattern, '%');
@@ -92,7 +94,8 @@ static int by_number(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Fills L with the numbers from FIRST on of the files of PATTERN. */
+/* Lists in L the numbers, from FIRST on, of the files of PATTERN, rising.
+ * Returns false without memory. */
 static bool compositor_for(struct numbers *l, const char *pattern, int first)
 {
     const char *slash = strrchr(pattern, '/');
@@ -118,8 +121,8 @@ static bool compositor_for(struct numbers *l, const char *pattern, int first)
     return ok;
 }
 
-/* Walks through patterns whose folder has the number, too: up to the first that
- * is missing. */
+/* Lists numbers from FIRST on (-1: 0 or 1) up to the first missing one, for a
+ * PATTERN whose folder has the number, too. Returns false without memory. */
 static bool walk(struct numbers *l, const char *pattern, int first)
 {
     char name[NAME_BYTES];
@@ -162,7 +165,8 @@ static void say_missing(const struct tool *tool, const struct overlay *o,
 
 /* ------------------------------------------------------------------ frames */
 
-/* Number L->AT[I], as long after the one before as numbers say. */
+/* Draws picture number l->at[i], which comes as long after the one before as
+ * their numbers say. Returns an exit code. */
 static int one(struct tool *tool, struct overlay *o, const struct numbers *l,
                int i)
 {
@@ -179,7 +183,7 @@ static int one(struct tool *tool, struct overlay *o, const struct numbers *l,
                     : gap > 1000000000 / FRAME_US ? 1000000000
                                                   : (int32_t)(gap * FRAME_US);
     o->compositor.n_frames +=
-        (int)(gap - 1); /* lights of a list are by number */
+        (int)(gap - 1); /* lists of lamps count all numbers */
     code = overlay_check_apart(tool, from, to);
     if (code == EXIT_OK)
         code = overlay_picture(tool, o, from, to);
@@ -205,7 +209,7 @@ static int all(struct tool *tool, struct overlay *o, const struct numbers *l)
     for (int i = 0; i < l->n && code == EXIT_OK; i++)
         code = one(tool, o, l, i);
     if (code == EXIT_OK)
-        o->compositor.n_frames = l->n; /* without those that are missing */
+        o->compositor.n_frames = l->n; /* without the missing ones */
     return code;
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The frames of a video, one after the other: y4m files and pipes by
- * ourselves, all others through ffmpeg (ffmpeg.h).
+ * The frames of a video, one after the other: glint itself reads and writes y4m
+ * files and pipes, ffmpeg all others (ffmpeg.h).
  */
 #include "overlay/overlay.h"
 #include "overlay/overlay_y4m.h"
@@ -19,7 +19,7 @@ struct video {
     struct tool *tool;
     struct overlay *o;
     struct glint_error error;
-    bool reads, writes; /* through ffmpeg */
+    bool reads, writes; /* The input, the output go through ffmpeg. */
     struct ffmpeg_video about;
     struct child reader, writer;
     struct glint_output file; /* file that ffmpeg writes, until it is whole */
@@ -84,7 +84,8 @@ static ptrdiff_t read_child(void *ctx, void *dst, size_t bytes)
     return n;
 }
 
-/* ffmpeg says itself what it cannot read. */
+/* Opens the input through ffmpeg, which itself prints what it cannot read.
+ * Returns an exit code. */
 static int open_coded(struct video *v)
 {
     enum glint_status status;
@@ -130,7 +131,8 @@ static int open_input(struct video *v)
     return code;
 }
 
-/* A y4m stream into the pipe of ffmpeg, which writes beside the target. */
+/* Opens a y4m stream into the pipe of ffmpeg, which writes a file beside the
+ * target. */
 static enum glint_status open_encoder(struct video *v)
 {
     const struct overlay *o = v->o;
@@ -206,7 +208,7 @@ static int frames(struct video *v)
     return code;
 }
 
-/* The time from frame to frame; 25 a second where that is not known. */
+/* Returns the us from frame to frame; at 25 a second if the rate is unknown. */
 static int32_t frame_us(const struct glint_y4m_header *header)
 {
     const double us = header->fps_num > 0
@@ -218,8 +220,8 @@ static int32_t frame_us(const struct glint_y4m_header *header)
 
 /* ------------------------------------------------------------------ ending */
 
-/* Checks that the decoder came to its end, too, unless the reader of a pipe has
- * had enough. */
+/* Waits for the end of the decoder. Returns an exit code: it must have read all
+ * of the input. */
 static int end_reader(struct video *v)
 {
     const int code = child_end(&v->reader);
@@ -240,7 +242,7 @@ static int end_writer(struct video *v)
                 v->o->output);
         return EXIT_OUTPUT;
     }
-    /* an encoder that has had enough, as with -frames:v, has made a file */
+    /* An encoder that stops early, as with -frames:v, has made a file. */
     if (v->writes && (status == GLINT_OK || status == GLINT_E_CLOSED))
         status = glint_output_commit(&v->file, &v->error);
     return status == GLINT_OK ? EXIT_OK : fail(v, status);
@@ -263,7 +265,7 @@ static int run(struct video *v)
     return code == EXIT_OK ? end_writer(v) : code;
 }
 
-/* Whatever is still open is given up. */
+/* Closes all that is still open and removes unfinished files. */
 static void close_all(struct video *v)
 {
     child_kill(&v->reader);

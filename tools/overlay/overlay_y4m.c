@@ -7,7 +7,7 @@
 #include "overlay/compositor_layer.h"
 #include "video/y4m_light.h"
 
-/* The parts that all frames of a stream share. */
+/* Memory that all frames of a stream share. */
 struct overlay_y4m {
     struct glint_y4m_light light;
     uint8_t *planes; /* planes of the frame */

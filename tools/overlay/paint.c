@@ -42,7 +42,7 @@ static void put_565(uint8_t *px, const uint8_t rgb[3])
     px[1] = (uint8_t)(bits >> 8);
 }
 
-/* Chroma of I420, I422, I444, NV12, NV21. */
+/* Sets the chroma of a pixel of I420, I422, I444, NV12 or NV21. */
 static void put_chroma(const struct paint *p, int x, int y)
 {
     const struct glint_image *image = p->image;
@@ -61,7 +61,7 @@ static void put_chroma(const struct paint *p, int x, int y)
     }
 }
 
-/* Two pixels of YUYV or UYVY share their chroma. */
+/* Sets a pixel of YUYV or UYVY, whose chroma its neighbour shares. */
 static void put_packed(const struct paint *p, int x, int y)
 {
     const int luma = p->image->format == GLINT_YUYV ? 0 : 1;
@@ -133,7 +133,8 @@ void paint_box(const struct paint *p, int x, int y, int half)
 
 /* --------------------------------------------------------------------- text */
 
-/* Five rows of three pixels, the top left one highest. */
+/* Returns the glyph of C: five rows of three pixels, the top left one in the
+ * highest of 15 bits. */
 static uint16_t glyph_of(char c)
 {
     static const uint16_t digits[10] = {075557, 026227, 071747, 071717, 055711,

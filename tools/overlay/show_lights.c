@@ -32,7 +32,7 @@ static void draw_cross(const struct paint *p, int x, int y)
     paint_fill(p, x, y - 2 * d, x + d, y + 3 * d);
 }
 
-/* The lines of letters that can be read at this size. */
+/* Returns the thickness of lines at which letters can be read on IMAGE. */
 static int line_of(const struct glint_image *image)
 {
     const int side =
@@ -41,8 +41,8 @@ static int line_of(const struct glint_image *image)
     return 1 + side / 540;
 }
 
-/* NUMBER and, unless "", STOPS beside the box; on the other side where that
- * lies beyond the picture. */
+/* Draws NUMBER, and STOPS below it, at the right of the box, or at its left if
+ * the picture ends before. */
 static void draw_words(const struct paint *p, int x, int y, int half,
                        const char *number, const char *stops)
 {
@@ -68,7 +68,7 @@ static void draw_all(const struct paint *p, int x, int y, int half, uint32_t id,
     draw_words(p, x, y, half, number, stops);
 }
 
-/* A shadow first, as lamps are as bright as any line. */
+/* Draws a mark and before it its shadow, as lamps are as bright as any line. */
 static void draw(const struct glint_image *image,
                  const struct glint_lamp_track *track, const char *stops)
 {

@@ -10,18 +10,18 @@
 #include "glint/image.h"
 #include "glint/lamp_tracker.h"
 
-/* Draws over IMAGE, of 8 bits and any format, what of TRACK lies in it: green
- * when steady, yellow rising, red fading, blue where it left. */
+/* Draws the mark of TRACK on IMAGE, of 8 bits and any format: green when
+ * steady, yellow rising, red fading, blue after it left the picture. */
 void show_light(const struct glint_image *image,
                 const struct glint_lamp_track *track);
 
-/* The same, and its POWER under the number, in stops over that of a white
- * pixel. */
+/* Draws the mark of TRACK as show_light() does, and POWER under its number, in
+ * stops over that of a white pixel. */
 void show_light_of(const struct glint_image *image,
                    const struct glint_lamp_track *track, double power);
 
-/* Says in the lower left corner what numbers and, of lamps that are FOLLOWED,
- * colours are; not in pictures with no room for it. */
+/* Writes into the lower left corner what numbers and, of lamps that are
+ * FOLLOWED, colours mean, if the picture has room for that. */
 void show_legend(const struct glint_image *image, bool followed);
 
 #endif

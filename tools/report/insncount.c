@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: MIT
  *
- * insncount.so - instructions that a program executes, by function, for QEMU's
- * emulators of other machines: the same count on every run.
+ * insncount.so - counts the instructions that a program executes, by function,
+ * in QEMU's emulators of other machines: the same counts on every run.
  *
  *     qemu-aarch64 -plugin ./insncount.so,top=20 -d plugin PROGRAM ...
  *
  * A block of instructions counts for the function that it begins in.
  *
- * By stages, with what a stage calls:  frame=F,idle=G,skip=N,at=H:NAME,at=...
- * From when G first runs, each time that F is entered after G is a frame; a
- * function H of it begins the stage NAME, and F itself is stage 0, "rest".
- * Functions without a name of their own here belong to the stage that calls
- * them, so that who calls a stage must have one. The first N frames are left
- * out; what is printed is the mean of the others. Of one thread.
+ * By stages of a frame:  frame=F,idle=G,skip=N,at=H:NAME,at=...
+ * A frame begins when function F is entered after G has run. Within it, each
+ * function H begins the stage NAME, and F begins stage 0, "rest". Functions not
+ * listed belong to the stage that calls them; so a function that goes on after
+ * calling a stage must be listed, too. The first N frames are left out, and the
+ * mean of the others is printed. Only one thread may run.
  *
- * QEMU ships no header for plug-ins; what is used of its interface is declared
- * here.
+ * QEMU ships no header for plug-ins; the part of its interface that is used is
+ * declared here.
  */
 #include <stddef.h>
 #include <stdint.h>
@@ -56,7 +56,8 @@ struct function {
 };
 
 static struct function function[MAX_FUNCTIONS];
-static uint16_t slot[SLOTS]; /* 1 + index, by hash of the name; 0: free */
+/* index in function[] plus 1, by hash of the name; 0: free */
+static uint16_t slot[SLOTS];
 static int n_functions, n_top = 30;
 
 /* ------------------------------------------------------------------ stages */
@@ -64,13 +65,14 @@ static int n_functions, n_top = 30;
 enum { MAX_MARKS = 32, ASLEEP = -2, IDLE = -1, REST = 0, INHERIT = -3 };
 
 struct block {
-    int n, stage; /* ASLEEP: the idle function; else as STAGE, or INHERIT */
+    int n, stage; /* n: instructions; stage: ASLEEP in the idle function, else a
+                     stage, or INHERIT: the caller's */
 };
 
 static struct {
     const char *function, *name;
 } mark[MAX_MARKS];
-static int n_marks = 1; /* 0: that of the frame */
+static int n_marks = 1; /* mark[0] is that of the frame. */
 static const char *idle;
 static int stage = ASLEEP, n_frames, n_skipped;
 static uint64_t spent[MAX_MARKS];
@@ -101,7 +103,8 @@ static void enter(unsigned cpu, void *ctx)
         spent[stage] += (uint64_t)b->n;
 }
 
-/* The same name may stand for several functions. */
+/* Prints the mean instructions of each stage. Several functions may have the
+ * same stage name. */
 static void report_stages(void)
 {
     const int n = n_frames > n_skipped ? n_frames - n_skipped : 1;
@@ -161,7 +164,7 @@ static void count(uint64_t id, struct qemu_plugin_tb *tb)
 
     (void)id;
     if (idle) {
-        struct block *b = malloc(sizeof *b); /* kept, as code is */
+        struct block *b = malloc(sizeof *b); /* never freed, as code is not */
 
         if (!b)
             abort();
@@ -212,7 +215,7 @@ EXPORTED int qemu_plugin_install(uint64_t id, const struct qemu_info *info,
     (void)info;
     mark[0].name = "rest";
     for (int i = 0; i < argc; i++) {
-        char *text = strdup(argv[i]); /* kept */
+        char *text = strdup(argv[i]); /* never freed */
         char *value = text ? strchr(text, '=') : NULL;
 
         if (!value)
