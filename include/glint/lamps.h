@@ -7,26 +7,26 @@
  *     n = glint_lamp_finder_find(finder, &image, spots, 64);    each picture
  *
  * Bright regions become lamps: pixels above the upper threshold seed a region,
- * pixels above the lower one belong to it. Pixels are judged by their largest
- * channel, so that a red lamp is as bright as a white one, in stops from white:
- * that is where codes clip (250 and above count as clipped). In a picture that
- * does not reach it regions are also sought from its own white, the code that
- * one of 2048 of its pixels reaches, though no darker than code 64, or noise
- * would be lamps.
+ * pixels above the lower one belong to it. A pixel is as bright as its largest
+ * channel, so that a red lamp is as bright as a white one. Thresholds are in
+ * stops from white, which is where codes clip (250 and above count as clipped).
+ * In a picture that does not reach that, regions are also sought from its own
+ * white: the code that one of 2048 of its pixels reaches, but at least code 64,
+ * or noise would be lamps.
  *
- * Skies, clouds, snow, paper and flowers are as bright as lamps. A region is a
- * lamp by what a score says of it and of what is around it: contrast, light
- * that falls off around it and in all directions alike, a compact shape, how
- * much else is as bright, colour; see lamps/score.h. A region that is none is
- * looked at again where it clips in one channel, in nearly all, and in all: a
- * sun in a bright sky is a lamp by itself. At least an eighth of a region must
- * be at the upper threshold.
+ * Skies, clouds, snow, paper and flowers are as bright as lamps. So regions are
+ * scored by themselves and by their surroundings: contrast, light that falls
+ * off around them and in all directions alike, a compact shape, colour, how
+ * much of the picture is as bright; see lamps/score.h. A region that is no lamp
+ * may have one in it, and so is searched where it clips in one channel, in
+ * nearly all, and in all: the sun in a bright sky is a lamp by itself. At least
+ * an eighth of a region must be at the upper threshold.
  *
- * Everything is weighted by flux in linear light, never by the single brightest
- * pixel, so that noise does not move a lamp. Sizes follow the picture's, so
- * that it has the same lamps at any resolution. Integers only; nothing is kept
- * from picture to picture but white, and that where the caller says so.
- */
+ * All results are weighted by flux in linear light, never by the single
+ * brightest pixel, so that noise does not move a lamp. Sizes follow the
+ * picture's, so that it has the same lamps at any resolution. Integers only;
+ * nothing is kept from picture to picture but white, and that only if the
+ * caller asks for it. */
 #ifndef GLINT_LAMPS_H
 #define GLINT_LAMPS_H
 
@@ -45,17 +45,17 @@ struct glint_spot {
     int32_t x_q8, y_q8; /* flux-weighted centroid; pixels from the top left
                            corner of the picture, pixel centres at n + 1/2 */
     int32_t size_q8;    /* RMS radius, pixels */
-    int32_t area;       /* pixels that belong to it */
-    int32_t n_clipped;  /* pixels of these whose largest channel is clipped, or
-                           at the picture's own white */
-    int64_t flux_q16;   /* sum of linear luminance over its pixels, 1 = white */
+    int32_t area;       /* number of its pixels */
+    int32_t n_clipped; /* number of its pixels whose largest channel is clipped,
+                          or at the picture's own white */
+    int64_t flux_q16;  /* sum of linear luminance over its pixels, 1 = white */
     int32_t rgb_q15[3]; /* mean linear colour, luminance 1 (BT.709 weights) */
-    int32_t faint;      /* 1: no lamp yet; see keep_faint */
+    int32_t faint;      /* 1: not a lamp yet; see keep_faint */
 
-    /* glint_profile_measure (glint/profile.h) sets these, and refines rgb;
-     * until then they are the flux and the radius. */
-    int64_t power_q16;  /* flux over the background as it would be without
-                           clipping, white pixels */
+    /* glint_profile_measure (glint/profile.h) sets these members and refines
+     * rgb; before, they are the flux and the radius. */
+    int64_t power_q16;  /* flux over the background, as it would be without
+                           clipping, in white pixels */
     int32_t axis_q8[2]; /* RMS semi-axes of its core, pixels, the major one
                            first */
     /* Direction of the major axis, y down; cos >= 0. */
@@ -64,57 +64,62 @@ struct glint_spot {
 
 struct glint_lamp_finder_config {
     int width, height;         /* size of the pictures, 1 .. GLINT_MAX_SIDE */
-    int32_t threshold_high_q8; /* stops from white, -20 .. 0: a region needs
-                                  pixels there */
-    int32_t threshold_low_q8; /* -20 .. threshold_high_q8: it extends to here */
-    int white_code;           /* 8-bit full-range code of white, 1 .. 255; 0:
-                                 the picture's own, see above */
-    int min_area;             /* pixels; smaller regions are noise, >= 1 */
-    int32_t max_share_q15;    /* share of the picture; larger regions are sky or
-                                 wall */
-    int32_t merge_q15;  /* share of the picture's width; lamps that are closer
-                           become one */
-    int32_t judge;      /* 1: by what is around them; 0: all bright
-                           regions are lamps */
-    int32_t keep_faint; /* 1: after the lamps come regions that have too
-                           few pixels at the upper threshold, half of
-                           min_area, or a score a little too low, marked
-                           faint; for glint/lamp_tracker.h */
+    int32_t threshold_high_q8; /* upper threshold, stops from white, -20 .. 0: a
+                                  region must have pixels there */
+    int32_t threshold_low_q8;  /* lower threshold, stops from white, -20 ..
+                                  threshold_high_q8: a region extends to here */
+    int white_code; /* 8-bit full-range code of white, 1 .. 255; 0: where codes
+                       clip, and the picture's own white if that is darker */
+    int min_area; /* least area in pixels, 1 or more; smaller regions are noise
+                   */
+    int32_t max_share_q15; /* largest area as a share of the picture; larger
+                              regions are sky or wall */
+    int32_t merge_q15; /* share of the picture's width; lamps that are nearer to
+                          each other become one */
+    int32_t judge; /* 1: regions are scored by their looks and surroundings; 0:
+                      all bright regions are lamps */
+    int32_t keep_faint; /* 1: lamps are followed by regions marked faint, for
+                           glint/lamp_tracker.h: those with too few pixels at
+                           the upper threshold, with half of min_area, or with a
+                           score a little too low */
 };
 
 struct glint_lamp_finder; /* opaque, in the caller's memory */
 
-/* Sets CFG to what a newcomer should start from, for WIDTH x HEIGHT. */
+/* Sets CFG to suitable values for pictures of WIDTH x HEIGHT. */
 void glint_lamp_finder_defaults(struct glint_lamp_finder_config *cfg, int width,
                                 int height);
 
-/* Bytes that init takes for CFG, exactly; 0 if CFG is out of range. */
+/* Returns the exact number of bytes that init takes for CFG, or 0 if CFG is out
+ * of range. */
 size_t glint_lamp_finder_bytes(const struct glint_lamp_finder_config *cfg);
 
-/* Places a finder in MEM[BYTES], aligned to 64. GLINT_E_MEMORY: too small.
- * GLINT_E_ARGUMENT: CFG or the alignment is wrong. */
+/* Places a finder in MEM[BYTES], aligned to 64. GLINT_E_MEMORY: BYTES is too
+ * small. GLINT_E_ARGUMENT: CFG or the alignment is wrong. */
 enum glint_status
 glint_lamp_finder_init(struct glint_lamp_finder **finder,
                        const struct glint_lamp_finder_config *cfg, void *mem,
                        size_t bytes);
 
 /* Writes the lamps of IMAGE (of cfg's size, any format but LINEAR_Q20), by
- * falling flux, at most MAX (1 .. 1024). What exceeds MAX joins the nearest
- * lamp kept where one is near, else it is dropped. Returns how many it wrote.
- */
+ * falling flux, at most MAX (1 .. 1024). A lamp in excess of MAX joins the
+ * nearest that is kept, if one is near, else it is dropped. Returns how many it
+ * wrote. */
 int glint_lamp_finder_find(struct glint_lamp_finder *finder,
                            const struct glint_image *image,
                            struct glint_spot *spots, int max);
 
-/* The white of the next picture is taken to be no darker than PART (0 .. 2^15)
- * of the last one's: for a video, in which the glow of a lamp that is hidden
- * for a moment would be white otherwise, and a lamp. Of a video, too, the best
- * region of a picture with no lamp has to be a little better to be one: there
- * are other pictures that it may be found in. Holds for one find. */
+/* Prepares the next find, and only that, for a picture of a video. White is
+ * taken to be at least PART (0 .. 2^15) of the white of the last picture: when
+ * a lamp is hidden for a moment, its glow would be white otherwise, and a lamp.
+ * And where no region is a lamp, the best one has to be a little better to
+ * count as one than in a picture by itself, as other pictures may show it, too.
+ */
 void glint_lamp_finder_keep_white(struct glint_lamp_finder *finder,
                                   int32_t part_q15);
 
-/* Lights of the last find that were dropped because MAX was too small. */
+/* Returns how many lamps of the last find were dropped because MAX was too
+ * small. */
 int glint_lamp_finder_dropped(const struct glint_lamp_finder *finder);
 
 #ifdef __cplusplus

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/profile.h - what a lamp is behind the white that a picture clips it to.
+ * glint/profile.h - measures lamps that a picture clips to white.
  *
  *     bytes = glint_profile_bytes();                           once
  *     glint_profile_init(&profile, mem, bytes);
@@ -8,14 +8,13 @@
  *     glint_profile_measure(profile, &image, spots, n);
  *
  * Looks once at the pixels around each spot. Where channels are clipped, their
- * power is taken from how large the clipped core is and how the light falls
- * off around it, and the colour from the fringe where no channel is clipped.
- * Where nothing is, the power is the flux over the background.
+ * power is estimated from how large the clipped core is and how light falls off
+ * around it, and the colour from the fringe where no channel is clipped. Where
+ * none is clipped, the power is the flux over the background.
  *
  * Integers only; nothing is kept from picture to picture. All results are
- * continuous in the pixels. A spot costs at most some 10000 looked-at pixels,
- * whatever its size, a small one some 300.
- */
+ * continuous in the pixels. At most some 10000 pixels are read for a spot of
+ * any size, some 300 for a small one. */
 #ifndef GLINT_PROFILE_H
 #define GLINT_PROFILE_H
 
@@ -31,16 +30,16 @@ extern "C" {
 
 struct glint_profile; /* opaque, in the caller's memory */
 
-/* Bytes that init takes. */
+/* Returns the number of bytes that init takes. */
 size_t glint_profile_bytes(void);
 
-/* Places a profile in MEM[BYTES], aligned to 64. GLINT_E_MEMORY: too small.
- * GLINT_E_ARGUMENT: the alignment is wrong. */
+/* Places a profile in MEM[BYTES], aligned to 64. GLINT_E_MEMORY: BYTES is too
+ * small. GLINT_E_ARGUMENT: the alignment is wrong. */
 enum glint_status glint_profile_init(struct glint_profile **profile, void *mem,
                                      size_t bytes);
 
-/* Sets power, extent and colour of the N SPOTS of IMAGE, in which they were
- * found. */
+/* Sets power, extent and colour of the first N SPOTS of IMAGE, at most 1024,
+ * which must have been found in it. */
 void glint_profile_measure(struct glint_profile *profile,
                            const struct glint_image *image,
                            struct glint_spot *spots, int n);

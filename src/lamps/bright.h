@@ -1,25 +1,26 @@
 /* SPDX-License-Identifier: MIT
  *
- * What is bright in a picture, row by row, and the light there.
+ * Finds bright pixels of a picture, row by row, and reads the light there.
  *
- *   in   a picture of 8 bits in any format; a brightness
- *   out  brightness of the pixels of rows where it may reach that; linear light
+ *   in   a picture in any format but GLINT_LINEAR_Q20; a brightness
+ *   out  brightness of the pixels of rows that may reach it; linear light
  *
  *     glint_bright_begin(b, image);
  *     glint_bright_set_low(b, low);
  *     for each row y: if (glint_bright_scan(b, y))
  *             ... b->value where b->block says so, glint_bright_read(b, x) ...
  *
- * Brightness is the largest channel, so that a lamp of any colour counts: its
- * full-range code below BRIGHT_CLIPPED, where it says how bright a pixel is.
- * Above, the five values that are left say how much of the other channels is
- * clipped, too, by luma: a sun is more than the red sky around it.
+ * Brightness is the largest channel, so that a lamp of any colour counts. Below
+ * BRIGHT_CLIPPED it is that channel's full-range code. From there on the
+ * largest channel is clipped, and brightness rises with luma, which tells how
+ * far the other channels are clipped, too: a sun is more than the red sky
+ * around it.
  *
- * Most of a picture by night is dark, and that is seen without colour: eight
- * bytes at a time are compared with codes that a bright pixel must exceed, and
- * blocks of BRIGHT_BLOCK pixels without one are left out. Of Y, Cb, Cr the
- * largest luma of a block and the ends of its chroma bound its channels.
- */
+ * Most of a picture by night is dark, which shows without colour: eight bytes
+ * at a time are compared with the codes that a bright pixel must exceed, and
+ * blocks of BRIGHT_BLOCK pixels without such a byte are left out. In Y, Cb, Cr
+ * the largest luma of a block and the extremes of its chroma bound its
+ * channels. */
 #ifndef GLINT_LAMPS_BRIGHT_H
 #define GLINT_LAMPS_BRIGHT_H
 
@@ -30,25 +31,26 @@ struct glint_arena;
 
 enum {
     BRIGHT_BLOCK = 32,    /* pixels */
-    BRIGHT_CLIPPED = 250, /* a channel here or above says nothing of colour */
-    /* brightness that clipped pixels of luma 237 or more have, too */
+    BRIGHT_CLIPPED = 250, /* a channel that is this or more is clipped and says
+                             nothing of colour */
+    /* brightness of clipped pixels whose luma is 237 .. 251 */
     BRIGHT_WHITE = 254,
-    BRIGHT_HOT = 255 /* the same for luma 252 or more */
+    BRIGHT_HOT = 255 /* brightness of clipped pixels of luma 252 or more */
 };
 
-/* Where a code of a row's pixels lies. */
+/* Where one code of the pixels of a row lies. */
 struct glint_bright_code {
     const uint8_t *first;
-    int step, shift; /* pixel x has that at first + (x >> shift) * step */
+    int step, shift; /* the code of pixel x is at first + (x >> shift) * step */
 };
 
 struct glint_bright {
     int width;
-    uint8_t *value;  /* brightness of a row, where its block is marked, and room
-                        for the rest of the last block */
-    uint8_t *block;  /* [width / BRIGHT_BLOCK, rounded up]: the greatest
-                        brightness in it, or 0: all is below low */
-    int32_t *marked; /* the blocks that are not 0, from the left */
+    uint8_t *value; /* brightness of the row's pixels in marked blocks; has room
+                       for the whole of the last block */
+    uint8_t *block; /* [width / BRIGHT_BLOCK, rounded up]: the greatest
+                       brightness in a block, or 0 if all of it is below low */
+    int32_t *marked; /* indices of the blocks that are not 0, from the left */
     int n_marked;
 
     /* Private. */
@@ -56,54 +58,58 @@ struct glint_bright {
     const struct glint_layout *layout;
     /* codes of the row: Y Cb Cr, R G B, or two bytes */
     struct glint_bright_code code[3];
-    int n_codes;         /* number of codes in use; the rest repeat the first */
-    int low;             /* least brightness of a bright pixel, 1 .. 255 */
-    int low_code;        /* the least byte, of grey or of R, G or B, of a bright
-                            pixel; 256: no code is enough */
-    int32_t low_sum_q16; /* the least largest channel of Y, Cb, Cr that a bright
-                            pixel has, less a code for rounding */
+    int n_codes;  /* number of codes in use; the others repeat the first */
+    int low;      /* least brightness of a bright pixel, 1 .. 255 */
+    int low_code; /* the least byte, of grey or of R, G or B, of a bright pixel;
+                     256 if no code is bright */
+    int32_t low_sum_q16; /* the least largest channel, from Y, Cb, Cr, of a
+                            bright pixel, less one code for rounding */
     struct glint_curve *curve;
-    int curve_tone; /* transfer function of curve; -1: there is none yet */
+    int curve_tone; /* transfer function of curve; -1: curve is not set yet */
     struct glint_ycc ycc;
     uint8_t *full_luma; /* full-range luma of each Y code */
     uint8_t *beyond;    /* brightness of a clipped pixel, by luma */
 };
 
-/* Takes what rows of WIDTH pixels need from ARENA, which may only measure. */
+/* Takes the tables for rows of WIDTH pixels from ARENA, which may only measure.
+ */
 void glint_bright_carve(struct glint_bright *b, struct glint_arena *arena,
                         int width);
 void glint_bright_init(struct glint_bright *b, int width);
 
-/* Prepares for IMAGE, which is kept until the next one. */
+/* Prepares for reading IMAGE, which is kept until the next call. */
 void glint_bright_begin(struct glint_bright *b,
                         const struct glint_image *image);
 
-/* LOW is 1 .. 255; before the first scan. */
+/* Sets the least brightness of bright pixels, LOW, 1 .. 255; to be called
+ * before the first scan. */
 void glint_bright_set_low(struct glint_bright *b, int low);
 
-/* Sets block and value for row Y. Returns 0 if all of it is below low. */
+/* Sets block and value for row Y. Returns the greatest brightness, or 0 if all
+ * of it is below low. */
 int glint_bright_scan(struct glint_bright *b, int y);
 
-/* Sets each block to whether it may have a pixel of low or above, but for one
- * that the width cuts off. Returns 0 if none may. Part of the scan. */
+/* Sets block[i] to whether block i may have a pixel of low or above, except for
+ * a last block that is not whole. Returns 0 if none may. Part of the scan. */
 int glint_bright_mark(struct glint_bright *b);
 
-/* The linear light of pixel X of the row scanned last, 0 .. white. */
+/* Sets RGB to the linear light, 0 .. white, of pixel X of the row scanned last.
+ */
 void glint_bright_read(const struct glint_bright *b, int x, int32_t rgb_q20[3]);
 
-/* How much more than LIGHT the next code of channel C is, 0 .. white, where
- * codes have fewer than 8 bits; else 0. */
+/* Returns the step in linear light from the code of LIGHT to the next code of
+ * channel C where codes have fewer than 8 bits; else 0. */
 int32_t glint_bright_step_q20(const struct glint_bright *b, int c,
                               int32_t light_q20);
 
-/* The first of pixels X + 1 .. END - 1 that is not as X is, or END: lamps and
- * skies are white in many pixels on end. */
+/* Returns the first of pixels X + 1 .. END - 1 whose codes differ from those of
+ * X, or END: lamps and skies are white over many pixels on end. */
 int glint_bright_same(const struct glint_bright *b, int x, int end);
 
-/* Makes row Y the one that read and value_at are of, without a scan. */
+/* Goes to row Y without a scan, for read and value_at. */
 void glint_bright_go(struct glint_bright *b, int y);
 
-/* Brightness of pixel X of that row. */
+/* Returns the brightness of pixel X of the row gone to. */
 int glint_bright_value_at(const struct glint_bright *b, int x);
 
 #endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Codes of single pixels, for what is inlined where rows are gone through.
- */
+ * Codes of single pixels, for loops over rows to inline. */
 #ifndef GLINT_LAMPS_BRIGHT_CODE_H
 #define GLINT_LAMPS_BRIGHT_CODE_H
 
@@ -22,7 +21,7 @@ static inline int bright_is_rgb(const struct glint_bright *b)
            b->layout->kind == GLINT_LAYOUT_565;
 }
 
-/* R, G, B of pixel X of a picture of RGB. */
+/* Sets RGB to the codes of pixel X of a picture in RGB. */
 static WHOLLY_INLINE void bright_read_rgb(const struct glint_bright *b, int x,
                                           int rgb[3])
 {
@@ -51,7 +50,7 @@ static WHOLLY_INLINE void bright_decode_ycc(const struct glint_bright *b, int x,
             curve_decode(b->curve, q_clamp_sat(rgb_q7[i], 0, CODE_WHITE_Q7));
 }
 
-/* The linear light of pixel X, 0 .. white. */
+/* Sets RGB to the linear light of pixel X, 0 .. white. */
 static WHOLLY_INLINE void bright_read(const struct glint_bright *b, int x,
                                       int32_t rgb_q20[3])
 {
@@ -69,7 +68,7 @@ static WHOLLY_INLINE void bright_read(const struct glint_bright *b, int x,
         rgb_q20[i] = b->curve->decode_q20[rgb[i]];
 }
 
-/* Luma of RGB has the weights of BT.709, in 256ths, whose sum is 256. */
+/* Returns the luma of RGB, by the weights of BT.709 in 256ths. */
 static WHOLLY_INLINE int bright_luma(const int rgb[3])
 {
     return (54 * rgb[0] + 183 * rgb[1] + 19 * rgb[2] + 128) >> 8;
@@ -90,8 +89,8 @@ static WHOLLY_INLINE int bright_value_of_rgb(const struct glint_bright *b,
     return largest < BRIGHT_CLIPPED ? largest : b->beyond[bright_luma(rgb)];
 }
 
-/* What the chroma of pixel X adds to the largest channel, of full-range codes.
- */
+/* Returns what the chroma of pixel X adds to its largest channel, in full-range
+ * codes. */
 static WHOLLY_INLINE int32_t bright_chroma_q16(const struct glint_bright *b,
                                                int x)
 {
@@ -115,7 +114,7 @@ static WHOLLY_INLINE int bright_value_of_luma(const struct glint_bright *b,
     return b->beyond[b->full_luma[code]];
 }
 
-/* Brightness of pixel X of the row that B is at. */
+/* Returns the brightness of pixel X of the row that B is at. */
 static WHOLLY_INLINE int bright_value_at(const struct glint_bright *b, int x)
 {
     if (bright_is_rgb(b))

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Which blocks of a row may have a bright pixel.
- */
+ * Marks the blocks of a row that may have a bright pixel. */
 #include "base/bytes.h"
 #include "base/compiler.h"
 #include "lamps/bright.h"
@@ -9,7 +8,7 @@
 
 /* ------------------------------------------------------------ one threshold */
 
-/* High bits of the bytes of N words at P that are CODE or more. */
+/* Returns the high bits of bytes, of N words at P, that are CODE or more. */
 static WHOLLY_INLINE uint64_t high_codes(const uint8_t *p, int n, int code,
                                          int is_above_128)
 {
@@ -20,8 +19,8 @@ static WHOLLY_INLINE uint64_t high_codes(const uint8_t *p, int n, int code,
     return found;
 }
 
-/* The least of N_BITS bits that becomes CODE or more when its highest bits are
- * repeated below it. */
+/* Returns the least number of N_BITS bits that becomes CODE or more when its
+ * highest bits are repeated below it. */
 static int least_of_565(int code, int n_bits)
 {
     int v = 0;
@@ -32,7 +31,8 @@ static int least_of_565(int code, int n_bits)
     return v;
 }
 
-/* Bits for the pixels, four a word, of which some sample is CODE or more. */
+/* Returns a bit for each pixel, of N words of four at P, that has a sample of
+ * CODE or more. */
 static uint64_t high_565(const uint8_t *p, int n, int code)
 {
     const uint64_t each = UINT64_C(0x0001000100010001);
@@ -50,7 +50,7 @@ static uint64_t high_565(const uint8_t *p, int n, int code)
     return found;
 }
 
-/* Which bytes of a word are a sample of a colour. */
+/* Returns a mask of the bytes of a word that are samples of a colour. */
 static uint64_t bytes_of_light(const struct glint_layout *layout)
 {
     const struct glint_layout_sample *s = &layout->sample[0];
@@ -65,8 +65,8 @@ static WHOLLY_INLINE uint64_t high_of(const uint8_t *p, int n, int code)
     return code > 128 ? high_codes(p, n, code, 1) : high_codes(p, n, code, 0);
 }
 
-/* The bits, in each byte, of which one that is CODE or more has one at least.
- */
+/* Returns a mask of bits of each byte of which at least one is set where the
+ * byte is CODE or more. */
 static uint64_t bits_of_code(int code)
 {
     const int highest = (1 << bit_length((uint64_t)code)) >> 1;
@@ -74,8 +74,8 @@ static uint64_t bits_of_code(int code)
     return (uint64_t)(256 - (highest < 128 ? highest : 128)) * BYTES_EACH;
 }
 
-/* All bits that the bytes of N words at P have. Of one expression with the ORs
- * of a load gcc makes single bytes. */
+/* Returns the OR of N words at P. Where the load and the OR are one expression,
+ * gcc makes single bytes of it. */
 static WHOLLY_INLINE uint64_t bits_of(const uint8_t *p, int n)
 {
     uint64_t bits = 0;
@@ -89,8 +89,8 @@ static WHOLLY_INLINE uint64_t bits_of(const uint8_t *p, int n)
     return bits;
 }
 
-/* Marks the whole blocks of a row at PX without chroma. STEP: bytes of a pixel.
- * Most are dark, which their bits together show. */
+/* Marks the whole blocks of a row at PX without chroma, STEP bytes a pixel.
+ * Most blocks are dark, which the OR of their bytes shows. */
 static WHOLLY_INLINE int mark_blocks(struct glint_bright *b, const uint8_t *px,
                                      int step)
 {
@@ -109,7 +109,8 @@ static WHOLLY_INLINE int mark_blocks(struct glint_bright *b, const uint8_t *px,
     return any;
 }
 
-/* The same for each step apart, so that the loops inside have constant ends. */
+/* Marks whole blocks as mark_blocks() does, with constant steps so that its
+ * inner loops have constant ends. */
 static int mark_row(struct glint_bright *b, const uint8_t *px)
 {
     switch (b->layout->sample[0].step) {
@@ -136,7 +137,7 @@ static int mark_row_565(struct glint_bright *b, const uint8_t *px)
 
 /* ------------------------------------------------------------- Y, Cb and Cr */
 
-/* The greatest and the least of the bytes at every fourth place. */
+/* The greatest and the least of bytes, by their index modulo 4. */
 struct extremes {
     uint8_t most[4], least[4];
 };
@@ -151,10 +152,10 @@ static WHOLLY_INLINE uint8_t smaller(uint8_t a, uint8_t b)
     return a < b ? a : b;
 }
 
-/* Those of every eighth place: the greatest, and the greatest of 255 - v. Of N
- * times 16 bytes at P, N 1, 2 or 4: what is short is taken twice. Written so
- * that compilers make vectors of it, which they do of loops that are in no
- * other one. */
+/* Sets HALF[0 .. 7] to the greatest byte v, by its index modulo 8, of 16 N
+ * bytes at P, and HALF[8 .. 15] to the greatest 255 - v. N is 1, 2 or 4; with
+ * less than 4 some bytes are read twice. Compilers vectorize these loops as
+ * long as no other loop is around them. */
 static NEVER_INLINE void find_halves(uint8_t half[16], const uint8_t *p, int n)
 {
     const uint8_t *q = n > 1 ? p + 16 : p;
@@ -190,7 +191,7 @@ static WHOLLY_INLINE void find_extremes(struct extremes *e, const uint8_t *p,
     unite_halves(e, half);
 }
 
-/* All four places as one. */
+/* Returns the greatest byte at all four places. */
 static WHOLLY_INLINE int most_of(const struct extremes *e)
 {
     return bright_larger(bright_larger(e->most[0], e->most[1]),
@@ -203,7 +204,7 @@ static WHOLLY_INLINE int least_of(const struct extremes *e)
                    smaller(e->least[2], e->least[3]));
 }
 
-/* What chroma in LEAST .. MOST adds to the largest channel at most. */
+/* Returns the most that chroma in LEAST .. MOST adds to the largest channel. */
 static WHOLLY_INLINE int32_t most_added_q16(const struct glint_bright *b,
                                             const int most[2],
                                             const int least[2])
@@ -217,9 +218,9 @@ static WHOLLY_INLINE int32_t most_added_q16(const struct glint_bright *b,
     return bright_larger(red_q16, bright_larger(green_q16, blue_q16));
 }
 
-/* Whether a pixel may be bright whose luma is LUMA at most and whose chroma is
- * in LEAST .. MOST: no channel of the block can exceed that of these. A code is
- * left for what rounding does. */
+/* Returns whether a pixel may be bright whose luma is at most LUMA and whose
+ * chroma is in LEAST .. MOST: no channel in the block can exceed those of this
+ * extreme. One code is left for rounding. */
 static WHOLLY_INLINE int may_be_bright(const struct glint_bright *b, int luma,
                                        const int most[2], const int least[2])
 {
@@ -228,7 +229,8 @@ static WHOLLY_INLINE int may_be_bright(const struct glint_bright *b, int luma,
            b->low_sum_q16;
 }
 
-/* Of YUYV and UYVY, by all extremes of a block. */
+/* Returns whether a block of YUYV or UYVY may be bright, by all its extremes.
+ */
 static int may_be_bright_packed(const struct glint_bright *b,
                                 const uint8_t half[16])
 {
@@ -243,10 +245,11 @@ static int may_be_bright_packed(const struct glint_bright *b,
                          (const int[]){e.least[cb], e.least[cr]});
 }
 
-/* distance from grey, in codes, that most blocks keep within */
+/* distance of chroma from grey, in codes, that most blocks stay within */
 enum { QUIET_CHROMA = 24 };
 
-/* From here on a pixel may be bright whose chroma is quiet; 0 .. 256. */
+/* Returns the least luma code from which a pixel of quiet chroma may be bright,
+ * 0 .. 256. */
 static int loud_luma(const struct glint_bright *b)
 {
     const int most[2] = {128 + QUIET_CHROMA, 128 + QUIET_CHROMA};
@@ -257,14 +260,15 @@ static int loud_luma(const struct glint_bright *b)
     return q_clamp_sat(left_q16 > 0 ? luma : 0, 0, 256);
 }
 
-/* What carries into the ninth bit of each 16 that is CODE or more. */
+/* Returns the number that carries into the ninth bit of each 16 bits when it is
+ * added to a byte of CODE or more. */
 static uint64_t carry_from(int code)
 {
     return (uint64_t)(256 - code) * UINT64_C(0x0001000100010001);
 }
 
-/* Whether some luma, in the low bytes of pairs of MOST if Y is 0, else the
- * high ones, is loud, or chroma there or in INVERSE. */
+/* Returns whether some luma is loud, or some chroma in MOST or INVERSE. Luma is
+ * in the low bytes of pairs if Y is 0, else in the high ones. */
 static WHOLLY_INLINE int is_loud(uint64_t most, uint64_t inverse, int y,
                                  uint64_t luma_carry, uint64_t chroma_carry)
 {
@@ -278,11 +282,11 @@ static WHOLLY_INLINE int is_loud(uint64_t most, uint64_t inverse, int y,
     return (sum & ~low) != 0;
 }
 
-/* Blocks of YUYV or UYVY that are first looked at together. */
+/* Number of blocks of YUYV or UYVY that are checked together at first. */
 enum { TOGETHER = 4 };
 
-/* By places of every sixteenth byte: the greatest, and the greatest of 255 - v,
- * that pixels have of quiet chroma and below loud luma. */
+/* By index modulo 16: the greatest byte v, and the greatest 255 - v, of pixels
+ * of quiet chroma that are below loud luma. */
 struct quiet {
     uint8_t most[16], inverse[16];
 };
@@ -309,8 +313,9 @@ static WHOLLY_INLINE uint8_t least_of_8(const uint8_t *p)
                    smaller(smaller(p[64], p[80]), smaller(p[96], p[112])));
 }
 
-/* Sets what is not 0 where some of TOGETHER blocks at P is above QUIET. For
- * compilers to make vectors of, as find_halves. */
+/* Sets ABOVE to nonzero at places, by index modulo 16, where some byte of
+ * TOGETHER blocks at P exceeds QUIET. Compilers vectorize it as find_halves().
+ */
 static NEVER_INLINE void find_above(uint8_t above[restrict 16],
                                     const uint8_t *restrict p,
                                     const struct quiet *restrict quiet)
@@ -337,10 +342,11 @@ static WHOLLY_INLINE int are_quiet(const uint8_t *p, const struct quiet *quiet)
     return bits_of(above, 2) == 0;
 }
 
-/* Y: the place of the first luma. Most blocks are neither bright nor of strong
- * colours, which is seen of several together, and of one without a look at
- * each extreme. Where one is not, the next ones are not either for the most
- * part. Of loud luma 0 nothing is quiet. */
+/* Marks the whole blocks of a row of YUYV or UYVY at PX; Y is the place of the
+ * first luma. Most blocks are neither bright nor strongly coloured, which a
+ * look at several together shows, or at one without each of its extremes. After
+ * a loud block the next ones are mostly loud, too, and so are looked at one by
+ * one. If loud_luma() is 0, nothing is quiet. */
 static WHOLLY_INLINE int mark_pairs(struct glint_bright *b, const uint8_t *px,
                                     int y)
 {
@@ -382,7 +388,8 @@ static int mark_row_packed(struct glint_bright *b, const uint8_t *px)
                                        : mark_pairs(b, px, 0);
 }
 
-/* Of a block of planes: Y at PX, N times 16 bytes of chroma at each of C. */
+/* Returns whether a block of planes may be bright: Y at PX, 16 N bytes of
+ * chroma at each of C. */
 static WHOLLY_INLINE int may_be_bright_in_planes(const struct glint_bright *b,
                                                  const uint8_t *px,
                                                  const uint8_t *const c[2],
@@ -398,7 +405,8 @@ static WHOLLY_INLINE int may_be_bright_in_planes(const struct glint_bright *b,
                          (const int[]){least_of(&cb), least_of(&cr)});
 }
 
-/* The same of a plane that chroma shares, CB its first place, 0 or 1. */
+/* Returns whether a block may be bright whose chroma shares a plane, at C; CB
+ * is the place of the first Cb, 0 or 1. */
 static WHOLLY_INLINE int may_be_bright_shared(const struct glint_bright *b,
                                               const uint8_t *px,
                                               const uint8_t *c, int cb)

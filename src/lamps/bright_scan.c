@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * Brightness of the blocks of a row.
- */
+ * Reads the brightness of the blocks of a row. */
 #include "base/compiler.h"
 #include "lamps/bright.h"
 #include "lamps/bright_code.h"
 
 /* --------------------------------------------------------------- R, G and B */
 
-/* Of pixel X, which is clipped. */
+/* Returns the brightness of pixel X, which is clipped. */
 static WHOLLY_INLINE uint8_t beyond_of_rgb(const struct glint_bright *b, int x)
 {
     int rgb[3];
@@ -17,7 +16,7 @@ static WHOLLY_INLINE uint8_t beyond_of_rgb(const struct glint_bright *b, int x)
     return b->beyond[bright_luma(rgb)];
 }
 
-/* Value of pixels X .. END - 1; returns the greatest. */
+/* Sets the values of pixels X .. END - 1; returns the greatest. */
 static int read_values_rgb(struct glint_bright *b, int x, int end)
 {
     int greatest = 0;
@@ -37,8 +36,9 @@ static int read_values_rgb(struct glint_bright *b, int x, int end)
 
 enum { RGB_BYTES = 3 * BRIGHT_BLOCK };
 
-/* The greatest of bytes P[I .. I + 2] for each I where these lie in a block.
- * Returns the greatest of all. The last vector overlaps. */
+/* Sets LARGEST[I] to the largest of bytes P[I .. I + 2], for each I up to
+ * RGB_BYTES - 3; returns the greatest of all. The last vector overlaps the one
+ * before. */
 static NEVER_INLINE int find_largest(const uint8_t *p,
                                      uint8_t largest[RGB_BYTES])
 {
@@ -61,7 +61,7 @@ static NEVER_INLINE int find_largest(const uint8_t *p,
     return greatest;
 }
 
-/* The same as read_values_rgb of a whole block from X of three bytes a pixel.
+/* Does as read_values_rgb() for a whole block from X with three bytes a pixel.
  */
 static int read_block_rgb24(struct glint_bright *b, int x)
 {
@@ -84,16 +84,16 @@ static int read_block_rgb24(struct glint_bright *b, int x)
 
 /* ------------------------------------------------------------- Y, Cb and Cr */
 
-/* A * B / 2^16, rounded down. */
+/* Returns A * B / 2^16, rounded down. */
 static WHOLLY_INLINE int16_t high_product(int16_t a, int16_t b)
 {
     return (int16_t)((int32_t)a * b >> 16);
 }
 
-/* Largest channels from codes of luma and of chroma over each, held to 0 ..
- * 255 and within a fifth of a code before that is rounded; written so that
- * compilers make vectors of 16 bits of it. Codes have 7 fraction bits,
- * coefficients 13 and products 4: at most 2.12 * 255 * 16 < 2^14. */
+/* Sets VALUE to the largest channels of pixels with LUMA, CB and CR, clamped to
+ * 0 .. 255, within a fifth of a code before rounding. Written for compilers to
+ * vectorize in 16 bits: codes have 7 fraction bits, coefficients 13 and
+ * products 4, at most 2.12 * 255 * 16 < 2^14. */
 static WHOLLY_INLINE void mix_block(const struct glint_bright *b,
                                     uint8_t value[BRIGHT_BLOCK],
                                     const uint8_t luma[BRIGHT_BLOCK],
@@ -124,7 +124,7 @@ static WHOLLY_INLINE void mix_block(const struct glint_bright *b,
     }
 }
 
-/* Codes that are STEP bytes apart. */
+/* Copies the codes of a block that are STEP bytes apart. */
 static WHOLLY_INLINE void take(uint8_t code[BRIGHT_BLOCK], const uint8_t *px,
                                int step)
 {
@@ -132,7 +132,8 @@ static WHOLLY_INLINE void take(uint8_t code[BRIGHT_BLOCK], const uint8_t *px,
         code[k] = px[k * step];
 }
 
-/* The same, of which each is of two pixels. */
+/* Copies the codes of a block that are STEP bytes apart, each for two pixels.
+ */
 static WHOLLY_INLINE void take_twice(uint8_t code[BRIGHT_BLOCK],
                                      const uint8_t *px, int step)
 {
@@ -140,8 +141,9 @@ static WHOLLY_INLINE void take_twice(uint8_t code[BRIGHT_BLOCK],
         code[2 * k] = code[2 * k + 1] = px[k * step];
 }
 
-/* The codes of a block from X; past the end of the row, of its last pixel. With
- * constant steps and ends compilers make vectors of the usual ones. */
+/* Copies code I of the pixels of a block from X; past the end of the row it
+ * repeats that of the last pixel. With constant steps and ends compilers
+ * vectorize the usual cases. */
 static void gather(const struct glint_bright *b, int i, int x,
                    uint8_t code[BRIGHT_BLOCK])
 {
@@ -167,8 +169,9 @@ static void gather(const struct glint_bright *b, int i, int x,
     }
 }
 
-/* Value of the block from pixel X, of luma and chroma or of luma alone;
- * returns the greatest, or 0 below low. */
+/* Sets the values of the block from pixel X, from luma and chroma or from luma
+ * alone. Returns the greatest, or 0, without setting any, if all are below low
+ * and none is clipped. */
 static NEVER_INLINE int read_values_ycc(struct glint_bright *b, int x)
 {
     uint8_t luma[BRIGHT_BLOCK], cb[BRIGHT_BLOCK], cr[BRIGHT_BLOCK];
@@ -198,7 +201,8 @@ static NEVER_INLINE int read_values_ycc(struct glint_bright *b, int x)
     return greatest;
 }
 
-/* Reads block I, which may have pixels of low or above. */
+/* Sets the values of block I, which may have pixels of low or above. Returns
+ * the greatest, or 0 if it is below low. */
 static int read_block(struct glint_bright *b, int i)
 {
     const int x = i * BRIGHT_BLOCK;
@@ -224,7 +228,8 @@ int glint_bright_scan(struct glint_bright *b, int y)
     b->n_marked = 0;
     glint_bright_go(b, y);
     any = glint_bright_mark(b);
-    if (n_blocks * BRIGHT_BLOCK > b->width) /* the rest is looked at as it is */
+    /* a last block that is not whole is always read. */
+    if (n_blocks * BRIGHT_BLOCK > b->width)
         any = b->block[n_blocks - 1] = 1;
     for (int i = 0; any && i < n_blocks; i++)
         if (b->block[i]) {

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * From the regions of a picture to its lamps.
+ * Makes lamps of the regions of a picture.
  *
- * A region that qualifies becomes a candidate; of these the brightest
- * LIGHT_CANDIDATES are held, and only when all are found is anything merged.
- */
+ * A region that qualifies becomes a candidate. The brightest LIGHT_CANDIDATES
+ * are kept, and none are merged before all have been found. */
 #include "glint/lamps.h"
 
 #include "base/arena.h"
@@ -28,7 +27,8 @@ static int is_valid(const struct glint_lamp_finder_config *c)
            c->merge_q15 <= 1 << 15 && c->keep_faint >= 0 && c->keep_faint <= 1;
 }
 
-/* Runs twice: to measure, and to place. NULL if measuring or full. */
+/* Takes a finder and its tables from A, once to measure and once to place it.
+ * Returns NULL if A measures or is full. */
 static struct glint_lamp_finder *carve(struct glint_arena *a,
                                        const struct glint_lamp_finder_config *c)
 {
@@ -102,7 +102,8 @@ glint_lamp_finder_init(struct glint_lamp_finder **finder,
 
 /* -------------------------------------------------------------------- score */
 
-/* Leaves what looks like a lamp, and what may still be one as faint. */
+/* Keeps candidates that score as lamps, and with keep_faint, marked faint,
+ * those that score a little less. */
 static void judge(struct glint_lamp_finder *f)
 {
     const struct glint_score score = {&f->bright,    f->white, f->cfg.width,
@@ -127,7 +128,8 @@ static void judge(struct glint_lamp_finder *f)
 
 /* ------------------------------------------------------------------- result */
 
-/* A spot's origin is the corner of the first pixel, a region's its centre. */
+/* Returns the spot of CANDIDATE. Coordinates of spots count from the corner of
+ * the first pixel, those of regions from its centre. */
 static struct glint_spot spot_of(const struct glint_candidate *candidate)
 {
     const struct glint_region *sum = &candidate->sum;

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What the parts of the finder of lamps share: light_rows.c makes candidates
- * of a picture, lamp_list.c holds, sorts and merges them.
- */
+ * Shared by the parts of the finder of lamps: light_rows.c makes candidates
+ * from a picture; lamp_list.c keeps, sorts and merges them. */
 #ifndef GLINT_LAMPS_LAMP_FINDER_H
 #define GLINT_LAMPS_LAMP_FINDER_H
 
@@ -14,7 +13,7 @@
 #include "glint/lamps.h"
 
 enum {
-    LIGHT_CANDIDATES = 2048, /* number of candidates, more than the 1024 lamps
+    LIGHT_CANDIDATES = 2048, /* most candidates kept, more than the 1024 lamps
                                 that find may be asked for */
     LIGHT_LEVELS = 6
 };
@@ -22,40 +21,42 @@ enum {
 struct glint_lamp_finder {
     struct glint_lamp_finder_config cfg;
     int64_t max_area;
-    int64_t merge2_q16; /* squared merge distance */
+    int64_t merge2_q16; /* squared merge distance, pixels^2 */
     struct glint_bright bright;
     struct glint_white *white;
-    int32_t least_white_q20; /* white of the next picture is no less; linear
-                                light */
-    int32_t alone_q8;        /* of the next picture, as struct glint_score has
-                                it */
+    int32_t least_white_q20; /* least white of the next picture, linear light */
+    int32_t alone_q8; /* alone_q8 of struct glint_score for the next picture */
     struct glint_row_light row;
     struct glint_regions regions[LIGHT_LEVELS];
     struct glint_level level[LIGHT_LEVELS]; /* levels, by rising brightness */
     int n_levels;
-    int at; /* level whose regions are being offered */
-    /* the candidates, and room for one on its way out */
+    int at; /* index of the level that is worked on */
+    /* [LIGHT_CANDIDATES + 1]: candidates; the last place takes one that may
+     * replace the faintest */
     struct glint_candidate *candidate;
-    int32_t *order; /* indices of candidates: a heap, then by falling flux */
+    int32_t *order; /* indices of candidates: a heap while they are collected,
+                       then sorted by falling flux */
     int n;          /* number of candidates in order, the faint ones last */
     int dropped;
 };
 
-/* Holds the candidates that IMAGE has, and no others. */
+/* Replaces the candidates by those of IMAGE. */
 void glint_lamps_collect(struct glint_lamp_finder *f,
                          const struct glint_image *image);
 
-/* Holds CANDIDATE, at the expense of the last if need be. */
+/* Adds CANDIDATE; if there are LIGHT_CANDIDATES already, drops the faintest. */
 void glint_lamps_hold(struct glint_lamp_finder *f,
                       const struct glint_candidate *candidate);
 
-/* Takes those out of the order that are gone. */
+/* Removes candidates that are gone from the order. */
 void glint_lamps_compact(struct glint_lamp_finder *f);
 
-/* Sorts by falling flux and unites what is nearer than the merge distance. */
+/* Sorts the candidates by falling flux and merges lamps that are nearer than
+ * the merge distance, until none are. Faint ones are not merged. */
 void glint_lamps_merge(struct glint_lamp_finder *f);
 
-/* Leaves MAX: what exceeds it joins the nearest that is kept, or is dropped. */
+/* Leaves at most MAX candidates: each lamp in excess joins the nearest that is
+ * kept, if that is within reach, or is dropped. */
 void glint_lamps_cap(struct glint_lamp_finder *f, int max);
 
 #endif

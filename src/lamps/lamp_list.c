@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * Candidates for lamps: held by flux, merged where they are near, capped.
- */
+ * The list of candidates for lamps: the brightest are kept, near ones merged,
+ * and their number is limited. */
 #include "base/q.h"
 #include "base/sort.h"
 #include "lamps/lamp_finder.h"
 
-/* merge radii within which lamps in excess of MAX join another */
+/* merge distances within which a lamp in excess of MAX joins one that is kept
+ */
 #define JOIN_REACH 4
 
 static int is_brighter(const struct glint_lamp_finder *f, int32_t a, int32_t b)
@@ -35,7 +36,7 @@ static void swap(void *finder, int a, int b)
     f->order[b] = old;
 }
 
-/* The faintest first. */
+/* Returns a heap of the candidates, the faintest first. */
 static struct glint_heap heap_of(struct glint_lamp_finder *f)
 {
     return (struct glint_heap){is_before, swap, f};
@@ -95,7 +96,7 @@ static void locate(struct glint_lamp_finder *f)
     }
 }
 
-/* Returns how many of the sorted candidates, the first, are lamps. */
+/* Returns the number of lamps, which come first among the sorted candidates. */
 static int count_lights(const struct glint_lamp_finder *f)
 {
     int n = f->n;
@@ -113,7 +114,7 @@ static int64_t distance2_q16(const struct glint_candidate *a,
     return dx_q8 * dx_q8 + dy_q8 * dy_q8;
 }
 
-/* Gives CANDIDATE to INTO; positions stay until the next locate. */
+/* Adds CANDIDATE to INTO, whose place stays until the next locate(). */
 static void give(struct glint_candidate *candidate,
                  struct glint_candidate *into)
 {
@@ -121,8 +122,8 @@ static void give(struct glint_candidate *candidate,
     candidate->gone = 1;
 }
 
-/* Each, the brightest first, takes what lies within the merge distance of where
- * it was. Returns whether anything merged. */
+/* Merges once: each lamp, the brightest first, absorbs the lamps within the
+ * merge distance of its place. Returns whether any were merged. */
 static int merge_once(struct glint_lamp_finder *f)
 {
     const int n_before = f->n;
@@ -151,7 +152,8 @@ void glint_lamps_merge(struct glint_lamp_finder *f)
         ;
 }
 
-/* The nearest of the first MAX to candidate C, or NULL if none is in reach. */
+/* Returns that of the first MAX candidates which is nearest to C, or NULL if
+ * none is in reach. */
 static struct glint_candidate *nearest_kept(const struct glint_lamp_finder *f,
                                             const struct glint_candidate *c,
                                             int max)

@@ -1,21 +1,23 @@
 /* SPDX-License-Identifier: MIT
  *
- * From the rows of a picture to candidates for lights.
+ * Makes candidates for lamps from the rows of a picture.
  *
- * Regions of all levels are linked first, by brightness alone; then the light
- * of a row is summed where one needs it that may still be a light.
- */
+ * Regions of all levels are linked first, by brightness alone. Then the light
+ * of a row is summed, only where it belongs to a region that may still be a
+ * lamp. */
 #include "base/bytes.h"
 #include "base/q.h"
 #include "lamps/lamp_finder.h"
 
-/* Regions of which less than 1 / 2^SEED_LOG2 reaches the upper threshold are
- * lit surfaces, not lights. */
+/* Regions are lit surfaces, not lamps, if less than 1 / 2^SEED_LOG2 of their
+ * pixels reach the upper threshold. */
 #define SEED_LOG2 3
 
-/* A lamp is meant as wide as it is at the thresholds, unless its core by itself
- * is clearly more of a lamp; in the dark of a picture it is one if nothing in
- * it is. */
+/* Costs of levels, subtracted from scores where regions lie within each other.
+ * A lamp is taken to be as wide as it is at the thresholds, unless its clipped
+ * core looks clearly more like a lamp. A region of a white that is darker than
+ * codes clip counts only if nothing in it is a lamp. DARK_SHARE: share of the
+ * picture above which such regions are not sought. */
 #define COST_CLIPPED_Q8 64
 #define COST_WHITE_Q8   32
 #define COST_DARK_Q8    1024
@@ -23,7 +25,7 @@
 
 /* ------------------------------------------------------------------- levels */
 
-/* Regions at LIGHT times the thresholds. */
+/* Adds the level of regions at the thresholds, counted from LIGHT as white. */
 static void add_level(struct glint_lamp_finder *f, int32_t light_q20)
 {
     const struct glint_bright *b = &f->bright;
@@ -35,8 +37,9 @@ static void add_level(struct glint_lamp_finder *f, int32_t light_q20)
     level->cost_q8 = 0;
 }
 
-/* The same of a picture that is darker than white, unless much of it is as
- * bright. */
+/* Adds two levels for a picture that is darker than white: regions at both
+ * thresholds, and at the upper one alone. Adds none if more than DARK_SHARE of
+ * the picture reaches the lower threshold. */
 static void add_dark_level(struct glint_lamp_finder *f)
 {
     if (!f->cfg.judge || f->white->light_q20 >= LINEAR_WHITE_Q20)
@@ -51,15 +54,16 @@ static void add_dark_level(struct glint_lamp_finder *f)
         f->n_levels = 0;
 }
 
-/* Regions of what is clipped, in one channel or in all, LOW and above. */
+/* Adds the level of regions of brightness LOW and above, which are clipped in
+ * one channel or in all. */
 static void add_core(struct glint_lamp_finder *f, int low, int32_t cost_q8)
 {
     f->level[f->n_levels++] =
         (struct glint_level){low, BRIGHT_CLIPPED, BRIGHT_CLIPPED, cost_q8};
 }
 
-/* A picture that is darker than white has lamps that are, and may have others
- * that are not. */
+/* Measures white and sets the levels. A picture that is darker than where codes
+ * clip has lamps that are, too, and may have lamps that are not. */
 static void set_levels(struct glint_lamp_finder *f)
 {
     const int white_code = f->cfg.white_code;
@@ -93,14 +97,14 @@ static int is_light(const struct glint_lamp_finder *f,
            sum->n_seeds >= sum->area >> SEED_LOG2;
 }
 
-/* Large enough to be what is left of a light. */
+/* Returns whether SUM is large enough to be the remains of a lamp. */
 static int is_faint(const struct glint_lamp_finder *f,
                     const struct glint_region *sum)
 {
     return f->cfg.keep_faint && sum->area >= (f->cfg.min_area + 1) / 2;
 }
 
-/* Holds SUM if it qualifies. */
+/* Keeps SUM as a candidate if it qualifies. */
 static void offer(void *finder, const struct glint_region *sum)
 {
     struct glint_lamp_finder *f = finder;
@@ -129,7 +133,7 @@ static WHOLLY_INLINE int count_from(const uint8_t *value, int n, int code,
     return (int)found;
 }
 
-/* Returns how many pixels of a run, all of which are LEAST or more, are CODE or
+/* Returns how many pixels of RUN, all of which are LEAST or more, are CODE or
  * more. */
 static int count_of_run(const uint8_t *value, const struct glint_run *run,
                         int least, int code)
@@ -142,7 +146,8 @@ static int count_of_run(const uint8_t *value, const struct glint_run *run,
                       : count_from(value + run->x0, all, code, 0);
 }
 
-/* Adds RUN of row Y to what is known of SUM without its light. */
+/* Adds RUN of row Y to the area, the box and the counts of SUM, without its
+ * light. */
 static void count_run(struct glint_region *sum,
                       const struct glint_lamp_finder *f,
                       const struct glint_run *run, int y)
@@ -155,8 +160,8 @@ static void count_run(struct glint_region *sum,
     sum->n_clipped += count_of_run(value, run, level->low, level->clipped);
 }
 
-/* Lets the run of the first level, *OUTER or a later one, that RUN is in know
- * that the light of RUN is needed. */
+/* Notes that the light of RUN is needed, in the run of the first level that
+ * contains it: *OUTER or a later one. */
 static void want(struct glint_run **outer, const struct glint_run *run)
 {
     while ((*outer)->x1 <= run->x0)
@@ -167,8 +172,8 @@ static void want(struct glint_run **outer, const struct glint_run *run)
         (*outer)->want1 = run->x1;
 }
 
-/* Returns whether the region may be a light; a larger one is none, whatever
- * else it is. */
+/* Returns whether the region may be a lamp, which is not larger than max_area.
+ */
 static int may_be_light(const struct glint_lamp_finder *f,
                         const struct glint_region *sum)
 {
@@ -193,7 +198,7 @@ static void link_level(struct glint_lamp_finder *f, int greatest, int y)
     }
 }
 
-/* Sums light where a region of any level needs it. */
+/* Sums the light of the row where a region of any level needs it. */
 static void sum_row(struct glint_lamp_finder *f)
 {
     const struct glint_run_row *row = &f->regions[0].here;

@@ -4,8 +4,9 @@
 #include "base/arena.h"
 #include "lamps/unclip.h"
 
-/* Runs twice: to measure, and to place. NULL if measuring or full. No row is
- * scanned, so that one pixel of it is enough. */
+/* Takes a profile from A, once to measure and once to place it. Returns NULL if
+ * A measures or is full. No row is scanned, so that tables for one pixel are
+ * enough. */
 static struct glint_profile *carve(struct glint_arena *a)
 {
     struct glint_profile *placed = glint_arena_take(a, 1, sizeof *placed);
@@ -39,7 +40,8 @@ enum glint_status glint_profile_init(struct glint_profile **profile, void *mem,
     return GLINT_OK;
 }
 
-/* Spots change as they are measured, but not in where they are. */
+/* Measures the spots in place: a measured one keeps its position and its
+ * size_q8, which are all that the others depend on. */
 void glint_profile_measure(struct glint_profile *profile,
                            const struct glint_image *image,
                            struct glint_spot *spots, int n)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What glint/profile.h keeps: the light around the spots of one picture.
+ * The struct behind glint/profile.h: the light around the spots of one picture.
  */
 #ifndef GLINT_LAMPS_PROFILE_H
 #define GLINT_LAMPS_PROFILE_H

@@ -55,8 +55,8 @@ void glint_region_absorb(struct glint_region *sum,
     }
 }
 
-/* A / B * 2^FRAC, rounded; 0 <= A / B < 2^(62 - FRAC), 0 < B < 2^(62 - FRAC).
- */
+/* Returns A / B * 2^FRAC, rounded; 0 <= A / B < 2^(62 - FRAC), 0 < B < 2^(62 -
+ * FRAC). */
 static int64_t quotient(uint64_t a, int64_t b, int frac)
 {
     const uint64_t d = (uint64_t)b;
@@ -76,14 +76,15 @@ void glint_region_centroid(const struct glint_region *sum, int32_t *x_q8,
     *y_q8 = mean_q8(sum->wy_q14, sum->w_q14);
 }
 
-/* Returns the radius as if the box were all of one light. */
+/* Returns the RMS radius of a box of even light; DIAGONAL2: its squared
+ * diagonal. */
 static int32_t box_radius_q8(uint64_t diagonal2)
 {
     return (int32_t)q_root((diagonal2 << 16) / 12);
 }
 
-/* The sums are moved to the pixel nearest to the centroid first, exactly,
- * modulo 2^64. */
+/* Moves the sums to the pixel nearest to the centroid first, exactly, modulo
+ * 2^64. */
 int32_t glint_region_radius_q8(const struct glint_region *sum)
 {
     const int64_t across = sum->x1 - sum->x0, down = sum->y1 - sum->y0;
@@ -105,9 +106,9 @@ int32_t glint_region_radius_q8(const struct glint_region *sum)
     return (int32_t)q_root(mean_q16 > 0 ? (uint64_t)mean_q16 : 0);
 }
 
-/* A clipped pixel tells little, so it counts 1/64: the rim decides where there
- * is one worth the name, and white comes out where everything is clipped to
- * white, without a step in between. */
+/* A clipped pixel tells little of colour, so it counts 1/64 of one of the rim.
+ * So the rim decides where there is much of it, a region that is all clipped to
+ * white comes out white, and there is no jump in between. */
 void glint_region_colour(const struct glint_region *sum, int32_t rgb_q15[3])
 {
     int64_t c[3], y;
@@ -174,7 +175,8 @@ static int32_t new_label(struct glint_regions *r, int32_t first)
     return label;
 }
 
-/* Bits of the pixels of a block, the first lowest, that are LOW or more. */
+/* Returns the bits of the pixels of a block, the first lowest, that are LOW or
+ * more. */
 static WHOLLY_INLINE uint32_t reach_of(const uint8_t value[BRIGHT_BLOCK],
                                        int low, int is_above_128)
 {
@@ -187,7 +189,7 @@ static WHOLLY_INLINE uint32_t reach_of(const uint8_t value[BRIGHT_BLOCK],
     return bits;
 }
 
-/* Ends the run that begins at BEGIN, if that is not -1. */
+/* Adds the run BEGIN .. END - 1 to ROW, unless BEGIN is -1. */
 static WHOLLY_INLINE void end_run(struct glint_run_row *row, int begin, int end)
 {
     if (begin >= 0)
@@ -195,10 +197,9 @@ static WHOLLY_INLINE void end_run(struct glint_run_row *row, int begin, int end)
             (struct glint_run){.x0 = begin, .x1 = end, .label = -1};
 }
 
-/* Goes on with the runs of a block from X, whose pixels of BITS are in. BEGIN
- * is where the one begins that X may continue, or -1; returns the next of
- * these.
- */
+/* Adds the runs of a block from X to ROW: pixels whose bits of BITS are set.
+ * BEGIN is where a run that is still open begins, or -1; returns the begin of
+ * the run that is open after the block, or -1. */
 static int find_runs(struct glint_run_row *row, uint32_t bits, int x, int begin)
 {
     uint32_t edges = bits ^ (bits << 1 | (begin >= 0));
@@ -217,7 +218,7 @@ static void find_all_runs(struct glint_run_row *row,
 {
     const int last = (b->width - 1) / BRIGHT_BLOCK;
     const int past = (last + 1) * BRIGHT_BLOCK - b->width;
-    int begin = -1, next = 0; /* block */
+    int begin = -1, next = 0; /* next: the block after the one read last */
 
     row->n_runs = 0;
     for (int k = 0; k < b->n_marked; k++) {
@@ -241,12 +242,12 @@ static void find_all_runs(struct glint_run_row *row,
     end_run(row, begin, next < b->width ? next : b->width);
 }
 
-/* Gives the runs of row Y the labels of what they touch. */
+/* Gives each run of row Y the label of the runs above that it touches, which
+ * become one region, or a new label. */
 static void link_runs(struct glint_regions *r, int y)
 {
     const struct glint_run_row *above = &r->above;
-    int first =
-        0; /* first of the runs above that may touch this one or a later */
+    int first = 0; /* first run above that may touch run i or a later one */
 
     for (int i = 0; i < r->here.n_runs; i++) {
         struct glint_run *run = &r->here.run[i];

@@ -1,30 +1,29 @@
 /* SPDX-License-Identifier: MIT
  *
- * Regions of a picture: bright pixels that touch, corners included.
+ * Finds regions of a picture: bright pixels that touch, also by corners.
  *
- *   in   what is bright in one row after the other, and the light of the pixels
- *   out  each region once, when the rows have passed it: area, moments, colour
+ *   in   brightness of one row after the other, and the light of its pixels
+ *   out  each region once, after the rows have passed it: area, moments, colour
  *
  *     glint_regions_begin(r);
  *     for each row y:
- *         glint_regions_link_row(r, bright, y);
+ *         glint_regions_link_row(r, bright, low, y);
  *         for each i below r->here.n_runs: add the pixels of r->here.run[i]
  *                 to *glint_regions_of_run(r, i);
  *         glint_regions_end_row(r, done, ctx, y);
  *     glint_regions_end_row(r, done, ctx, height);
  *
- * One pass. The runs of a row that reach the threshold join the runs they touch
- * in the row above (union-find); a component that a row does not continue is
- * finished and its label is used again. So no more labels live than a row has
- * runs, twice, and no shape can exceed them.
+ * One pass. The runs of a row that reach the threshold join the runs that they
+ * touch in the row above (union-find). A component that a row does not continue
+ * is finished, and its label is free again. So labels for twice the runs of a
+ * row are enough for any shape.
  *
  * Limits: weights w are linear luminance, _q14, 1 .. 2^14. With at most 2^30
  * pixels of coordinates below 2^15, the sums of w and of w x reach 2^44 and
  * 2^59 at most. The sum of w (x^2 + y^2) may wrap, in unsigned; its value about
- * the centroid, which is what we want, is at most the sum of w times a quarter
- * of the box's squared diagonal. Where that might be 2^63 or more, which takes
- * a region brighter than all of 4096 x 4096 white, the box stands for it.
- */
+ * the centroid, which is the one needed, is at most the sum of w times a
+ * quarter of the box's squared diagonal. Where that might be 2^63 or more, as
+ * for a square of 5800 x 5800 white pixels, the radius is that of the box. */
 #ifndef GLINT_LAMPS_REGIONS_H
 #define GLINT_LAMPS_REGIONS_H
 
@@ -37,14 +36,18 @@ struct glint_bright;
 
 /* The sums over the pixels of a region. */
 struct glint_region {
-    int32_t first; /* y * width + x of its first pixel: no two have the same */
-    int32_t area, n_seeds, n_clipped; /* the caller counts these */
-    int32_t x0, y0, x1, y1; /* pixels of it are in x0 .. x1 - 1, y0 .. y1 - 1 */
+    int32_t first; /* y * width + x of its first pixel, which no two regions
+                      share */
+    /* Numbers of pixels: all, at the upper threshold, clipped; the caller
+     * counts the last two. */
+    int32_t area, n_seeds, n_clipped;
+    /* Box: its pixels are in x0 .. x1 - 1, y0 .. y1 - 1. */
+    int32_t x0, y0, x1, y1;
     int64_t w_q14, wx_q14, wy_q14;
     uint64_t wr2_q14;
-    int64_t rgb_q14[3];     /* sum over all pixels */
-    int64_t rim_rgb_q14[3]; /* sum over those with no channel clipped, and their
-                               neighbours within the row */
+    int64_t rgb_q14[3];     /* sums of linear colour over all pixels */
+    int64_t rim_rgb_q14[3]; /* sums over pixels with no channel clipped, of the
+                               region and up to ROW_LIGHT_RIM beside its runs */
 };
 
 /* The light that a pixel adds. */
@@ -53,7 +56,8 @@ struct glint_region_light {
     int32_t rgb_q14[3];
 };
 
-/* Linear luminance, BT.709; and with 15 bits more. */
+/* Returns the linear luminance, BT.709, of R, G, B times 2^15;
+ * region_luminance() returns it without that factor. */
 static inline int64_t region_wide_luminance(int64_t r, int64_t g, int64_t b)
 {
     return r * Q_CONST(0.2126, 15) + g * Q_CONST(0.7152, 15) +
@@ -65,7 +69,7 @@ static inline int64_t region_luminance(int64_t r, int64_t g, int64_t b)
     return q_shift(region_wide_luminance(r, g, b), 15);
 }
 
-/* Makes it from linear light RGB, 0 .. white. */
+/* Returns the light of a pixel from linear light RGB, 0 .. white. */
 static inline struct glint_region_light
 region_light_of(const int32_t rgb_q20[3])
 {
@@ -82,7 +86,7 @@ region_light_of(const int32_t rgb_q20[3])
     return light;
 }
 
-/* 0 + 1 + 4 + ... + (n - 1)^2 */
+/* Returns 0 + 1 + 4 + ... + (n - 1)^2. */
 static inline int64_t region_squares_below(int64_t n)
 {
     return (n - 1) * n * (2 * n - 1) / 6;
@@ -100,27 +104,28 @@ void glint_region_add_run(struct glint_region *sum, int x0, int x1, int y);
 void glint_region_absorb(struct glint_region *sum,
                          const struct glint_region *other);
 
-/* Flux-weighted, in pixel indices: the centre of the first pixel is 0. */
+/* Sets X and Y to the flux-weighted centroid in pixel indices: the centre of
+ * the first pixel is 0. */
 void glint_region_centroid(const struct glint_region *sum, int32_t *x_q8,
                            int32_t *y_q8);
 
-/* RMS distance from the centroid: 0 for a pixel. */
+/* Returns the RMS distance from the centroid, pixels; 0 for a single pixel. */
 int32_t glint_region_radius_q8(const struct glint_region *sum);
 
-/* Mean colour at luminance 1. */
+/* Sets RGB to the mean colour at luminance 1. */
 void glint_region_colour(const struct glint_region *sum, int32_t rgb_q15[3]);
 
 struct glint_component {
     struct glint_region sum;
-    int32_t parent; /* label; its own for a root */
+    int32_t parent; /* label of the parent; a root has its own */
     int32_t last_row;
 };
 
 struct glint_run {
     int32_t x0, x1; /* first pixel, and one past the last */
     int32_t label;
-    int32_t want0, want1; /* pixels in it whose light the caller needs; 0, 0:
-                             none */
+    int32_t want0, want1; /* the caller needs the light of pixels want0 .. want1
+                             - 1; 0, 0: of none */
 };
 
 struct glint_run_row {
@@ -132,29 +137,31 @@ struct glint_regions {
     int width;
     struct glint_run_row above, here;
     struct glint_component *component;
-    int32_t *active, *idle; /* labels */
+    int32_t *active, *idle; /* labels in use, and free ones */
     int n_active, n_idle;
 };
 
-/* Takes what rows of WIDTH pixels need from ARENA, which may only measure. */
+/* Takes the tables for rows of WIDTH pixels from ARENA, which may only measure.
+ */
 void glint_regions_carve(struct glint_regions *r, struct glint_arena *arena,
                          int width);
 
 void glint_regions_begin(struct glint_regions *r);
 
-/* Fills r->here with the runs of row Y whose value is LOW or above, which is
- * BRIGHT's low or more, and labels them by what they touch. */
+/* Fills r->here with the runs of pixels of row Y that are LOW or above, where
+ * LOW is at least the low of BRIGHT, and labels each by the runs above that it
+ * touches. */
 void glint_regions_link_row(struct glint_regions *r,
                             const struct glint_bright *bright, int low, int y);
 
-/* The region that run I of r->here belongs to, so far. */
+/* Returns the sums of the region that run I of r->here belongs to so far. */
 struct glint_region *glint_regions_of_run(struct glint_regions *r, int i);
 
-/* Takes a finished REGION, which is gone after the call. */
+/* Takes a finished REGION, valid during the call. */
 typedef void glint_region_fn(void *ctx, const struct glint_region *region);
 
-/* Gives DONE what row Y did not continue, and takes the labels of that and of
- * what was united back. */
+/* Gives DONE each region that row Y does not continue, and frees its label and
+ * those of regions that were united. */
 void glint_regions_end_row(struct glint_regions *r, glint_region_fn *done,
                            void *ctx, int y);
 

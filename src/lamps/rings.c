@@ -22,24 +22,28 @@ enum {
 
 /* ------------------------------------------------------------------- window */
 
-/* A spot nearby: what lies behind the line between is its own. */
+/* The line between a spot and its neighbour: pixels beyond it are the
+ * neighbour's. */
 struct border {
-    int x, y;      /* vector to the spot, pixels */
-    int64_t limit; /* A sample whose product with x, y is larger lies behind. */
+    int x, y;      /* vector to the neighbour, pixels */
+    int64_t limit; /* pixels whose dot product with (x, y) is larger are beyond
+                      the line */
     int32_t at_q8; /* pixels from the middle to the line */
 };
 
 struct window {
     struct glint_bright *bright;
-    struct border border[BORDERS]; /* the nearest */
+    struct border border[BORDERS]; /* the nearest lines */
     int n_borders;
     int width, height;
     int x, y;   /* pixel in the middle */
     int radius; /* radius of the inner disc; ring i ends at radius << i */
-    int step;   /* step of samples there; it is step << i in ring i */
+    int step; /* distance of samples in the inner disc, pixels; it is step << i
+                 in ring i */
 };
 
-/* A pixel of the window, of which there are SHARE like it. */
+/* A pixel that is read, which stands for SHARE pixels. DX, DY: its offset from
+ * the middle of the window, pixels. */
 struct sample {
     int32_t rgb_q20[3];
     int dx, dy, share, ring;
@@ -47,8 +51,9 @@ struct sample {
 
 typedef void sample_fn(void *ctx, const struct sample *sample);
 
-/* As far as the spot reaches if it is a disc, a tube, or a few pixels, and the
- * rim that a lens blurs it by. */
+/* Returns the window of SPOT, without borders. The inner disc has twice the RMS
+ * radius, which covers a disc or a tube, and 3 pixels for the blur of the lens.
+ */
 static struct window window_of(const struct glint_image *image,
                                const struct glint_spot *spot)
 {
@@ -76,7 +81,8 @@ static int is_in(const struct window *w, int dx, int dy)
     return 1;
 }
 
-/* Gives SEE samples X0, X0 + STEP ... X1 of the row. */
+/* Calls SEE for the samples X0, X0 + STEP ... X1 of the row that are in the
+ * picture and within the borders. */
 static void see_run(const struct window *w, int x0, int x1, struct sample *at,
                     int step, sample_fn *see, void *ctx)
 {
@@ -91,7 +97,8 @@ static void see_run(const struct window *w, int x0, int x1, struct sample *at,
     }
 }
 
-/* The last sample of a row DY off in a disc of RADIUS, or -1. */
+/* Returns the offset of the last sample of a row that is DY off the middle of a
+ * disc of RADIUS, or -1 if the row is outside. */
 static int last_in(int radius, int dy, int step)
 {
     const int64_t left = (int64_t)radius * radius - (int64_t)dy * dy;
@@ -99,7 +106,7 @@ static int last_in(int radius, int dy, int step)
     return left < 0 ? -1 : (int)q_root((uint64_t)left) / step * step;
 }
 
-/* The samples of ring RING, 0 for the disc in the middle. */
+/* Calls SEE for the samples of ring RING; ring 0 is the disc in the middle. */
 static void see_ring(const struct window *w, int ring, sample_fn *see,
                      void *ctx)
 {
@@ -131,7 +138,7 @@ static int32_t reach_of_q8(const struct glint_spot *spot)
     return q_clamp_sat(spot->size_q8, 0, GLINT_MAX_SIDE << 8) * 3 / 2 + 256;
 }
 
-/* Keeps BORDER if it is among the nearest. */
+/* Adds BORDER to W if it is among the nearest. */
 static void add_border(struct window *w, struct border border)
 {
     int at = w->n_borders;
@@ -144,7 +151,8 @@ static void add_border(struct window *w, struct border border)
     w->n_borders += w->n_borders < BORDERS;
 }
 
-/* The line is half way between where the two spots end. */
+/* Adds the border between SPOT and OTHER, half way between their rims, if it is
+ * in the window. */
 static void look_at(struct window *w, const struct glint_spot *spot,
                     const struct glint_spot *other)
 {
@@ -171,7 +179,7 @@ static int is_left(const void *ctx, int32_t a, int32_t b)
                                           : a < b;
 }
 
-/* Looks at the spots around the I-th from the left. */
+/* Adds the borders to the spots around the I-th from the left. */
 static void find_borders(struct window *w, const struct glint_rings *rings,
                          const struct glint_spot *spots, int n, int i)
 {
@@ -212,7 +220,7 @@ static void see_background(void *ctx, const struct sample *s)
     sectors->n[i]++;
 }
 
-/* A sector's light of a channel, and how much of the ring it is. */
+/* Mean light of one channel in a sector, and its number of samples. */
 struct part {
     int32_t mean_q20;
     int64_t n;
@@ -229,8 +237,8 @@ static void sort(struct part *part, int n)
         }
 }
 
-/* The mean of what lies between FROM and TO eighths of the ring when its PARTs
- * are in order. */
+/* Returns the mean light between FROM and TO eighths of the ring, its PARTs in
+ * order of light. */
 static int32_t mean_between(const struct part *part, int n, int64_t all,
                             int from, int to)
 {
@@ -248,8 +256,9 @@ static int32_t mean_between(const struct part *part, int n, int64_t all,
     return all ? (int32_t)q_divide(sum, (to - from) * all) : 0;
 }
 
-/* The middle half is the background, and what the middle quarter differs by is
- * its spread. */
+/* Sets the background: the mean of the middle half of the ring, its sectors in
+ * order of light. The spread is by how much the last quarter of that half is
+ * brighter than the first. */
 static void set_background(struct glint_profile_channel *of,
                            const struct sectors *sectors, int c)
 {
@@ -286,7 +295,9 @@ static int32_t clipped_q8(int32_t light_q20)
                                         ((CLIP_LAST - CLIP_FIRST) >> 4);
 }
 
-/* Counts U to its own level by its part, and to those below wholly. */
+/* Adds SHARE pixels of light U to the number of their level, and in part to its
+ * area. add_up() adds them to the areas of the later levels, which they have
+ * wholly. */
 static void add_levels(struct glint_profile_channel *of, int32_t u_q16,
                        int share, int ring)
 {
@@ -300,7 +311,8 @@ static void add_levels(struct glint_profile_channel *of, int32_t u_q16,
             ((((int64_t)u_q16 << level) - ONE_Q16) >> 8) * share;
 }
 
-/* In steps: only the samples of the inner disc are taken, which are alike. */
+/* Adds S to the moments of the core, in steps: all samples of the inner disc
+ * are one step apart. */
 static void add_moments(struct glint_profile_sums *sums, int32_t u_q16,
                         const struct sample *s)
 {
@@ -347,7 +359,7 @@ static void see_light(void *ctx, const struct sample *s)
         add_moments(sums, most_q16, s);
 }
 
-/* Adds what is brighter to each level. */
+/* Adds to the area of each level the pixels that are brighter. */
 static void add_up(struct glint_profile_channel *of)
 {
     int64_t n = 0;

@@ -30,21 +30,25 @@
 enum {
     GLINT_PROFILE_RINGS = 3,
     GLINT_PROFILE_LEVELS = 7,
-    GLINT_PROFILE_NEAR = 3, /* levels that the outer rings do not have */
+    /* Levels up to this are not counted in the second ring and beyond. */
+    GLINT_PROFILE_NEAR = 3,
     GLINT_PROFILE_SPOTS = 1024
 };
 
 struct glint_profile_channel {
-    int32_t black_q20, scale_q16; /* background; 1 / (1 - that), to 16 */
+    int32_t black_q20, scale_q16; /* background, linear light; 1 / (1 -
+                                     background), at most 16 */
     int32_t spread_q16;           /* spread of the background, in u */
     int32_t step_q16; /* distance in u from the background to the next code if
                          codes have fewer than 8 bits; else 0 */
-    /* [k]: pixels with u of 2^-k or more, in part below 2^(1 - k); [0]: clipped
-     * pixels */
+    /* [k]: number of pixels with u of 2^-k or more, those below 2^(1 - k) in
+     * part; [0]: number of clipped pixels */
     int64_t area_q8[GLINT_PROFILE_LEVELS + 1];
-    int64_t n[GLINT_PROFILE_LEVELS + 1]; /* [k]: pixels with u from 2^-k to
-                                            below 2^(1 - k); [0]: from 1 on */
-    int64_t fringe_q16; /* light of the fringe, and of what is clipped */
+    /* [k]: number of pixels with u from 2^-k to below 2^(1 - k); [0]: with u of
+     * 1 or more. */
+    int64_t n[GLINT_PROFILE_LEVELS + 1];
+    int64_t fringe_q16; /* light of pixels that are not clipped, and of clipped
+                           ones, each weighted by its largest u */
     int64_t white_q16;
 };
 
@@ -57,16 +61,17 @@ struct glint_profile_sums {
 
 struct glint_rings {
     struct glint_bright bright;        /* reads the picture */
-    int32_t by_x[GLINT_PROFILE_SPOTS]; /* spots from left to right */
+    int32_t by_x[GLINT_PROFILE_SPOTS]; /* indices of the spots, from left to
+                                          right */
 };
 
-/* What is summed next is of IMAGE and its N SPOTS, GLINT_PROFILE_SPOTS at most:
- * rings->bright is to be there. */
+/* Begins with IMAGE and its N SPOTS, at most GLINT_PROFILE_SPOTS; rings->bright
+ * must be initialized. */
 void glint_rings_begin(struct glint_rings *rings,
                        const struct glint_image *image,
                        const struct glint_spot *spots, int n);
 
-/* Sums the light around the I-th of these spots from the left. */
+/* Sums the light around the I-th spot from the left. */
 void glint_rings_sum(struct glint_profile_sums *sums, struct glint_rings *rings,
                      const struct glint_spot *spots, int n, int i);
 

@@ -17,8 +17,8 @@ void glint_row_light_begin(struct glint_row_light *row)
     row->end = -1;
 }
 
-/* What a pixel of linear light RGB adds. A colour is known only where no
- * channel is clipped. */
+/* Sets OF to the sums of one pixel of linear light RGB. It counts to the rim
+ * only if no channel is CLIPPED or more. */
 static WHOLLY_INLINE void set_sums(int32_t of[ROW_LIGHT_SUMS],
                                    const int32_t rgb_q20[3],
                                    int32_t clipped_q20)
@@ -35,7 +35,7 @@ static WHOLLY_INLINE void set_sums(int32_t of[ROW_LIGHT_SUMS],
     }
 }
 
-/* SUM and a pixel of column X, in *NEXT. */
+/* Sets *NEXT to SUM and a pixel of column X, whose sums are OF. */
 static WHOLLY_INLINE void add_pixel(struct glint_row_sum *restrict next,
                                     const struct glint_row_sum *restrict sum,
                                     const int32_t of[ROW_LIGHT_SUMS], int x)
@@ -48,13 +48,14 @@ static WHOLLY_INLINE void add_pixel(struct glint_row_sum *restrict next,
     next->wx2_q14 = sum->wx2_q14 + wx_q14 * x;
 }
 
-/* 0 + 1 + .. + (n - 1) */
+/* Returns 0 + 1 + .. + (n - 1). */
 static int64_t sum_below(int64_t n)
 {
     return n * (n - 1) / 2;
 }
 
-/* SUM, which is of the pixels left of X, and N more that are as pixel X is. */
+/* Sets *AT to SUM, which is of the pixels left of X, and N pixels that are like
+ * pixel X; SUM[1] includes pixel X. */
 static void add_alike(struct glint_row_sum *at,
                       const struct glint_row_sum *restrict sum, int x, int n)
 {
@@ -68,8 +69,8 @@ static void add_alike(struct glint_row_sum *at,
                                           region_squares_below(x));
 }
 
-/* What chroma adds to each channel, of full-range codes, and a half of what is
- * rounded off. */
+/* Sets CHROMA to what the chroma of CODES adds to each channel, in full-range
+ * codes, and half of the step that decode_ycc() rounds to. */
 static WHOLLY_INLINE void set_chroma(const struct glint_ycc *ycc, int32_t codes,
                                      int32_t chroma_q16[3])
 {
@@ -80,8 +81,8 @@ static WHOLLY_INLINE void set_chroma(const struct glint_ycc *ycc, int32_t codes,
         chroma_q16[i] = cb * m_q16[i][1] + cr * m_q16[i][2] + (1 << 8);
 }
 
-/* Linear light of luma Y and CHROMA: what ycc_to_rgb and curve_decode make of
- * them, the first column being the same in each row. */
+/* Sets RGB to the linear light of luma Y and CHROMA, as ycc_to_rgb and
+ * curve_decode do; the first column of the matrix has one value in all rows. */
 static WHOLLY_INLINE void decode_ycc(const struct glint_bright *b, int y,
                                      const int32_t chroma_q16[3],
                                      int32_t rgb_q20[3])
@@ -97,8 +98,8 @@ static WHOLLY_INLINE void decode_ycc(const struct glint_bright *b, int y,
     }
 }
 
-/* How the codes of a row lie: STEP and STEP_C bytes apart; those of the second
- * and the third are each of 1 << SHIFT pixels. */
+/* How the codes of a row lie: first codes STEP bytes apart, second and third
+ * codes STEP_C, each of 1 << SHIFT pixels. */
 struct packing {
     enum glint_layout_kind kind;
     int step, step_c, shift;
@@ -114,8 +115,8 @@ static WHOLLY_INLINE int32_t codes_at(const struct glint_bright *b,
            b->code[2].first[at_c] << 16;
 }
 
-/* Sums pixels X0 .. X1 - 1. Where many are alike, only the first and the last
- * of these sums are kept. */
+/* Sets the sums of pixels X0 .. X1 - 1. Of equal pixels on end only the sums
+ * after the first and the last are kept. */
 static WHOLLY_INLINE void sum_pixels(struct glint_row_light *row,
                                      const struct glint_bright *b, int x0,
                                      int x1, struct packing p)
@@ -157,7 +158,7 @@ static WHOLLY_INLINE void sum_pixels(struct glint_row_light *row,
     }
 }
 
-/* The same with constant steps where they are the usual ones. */
+/* Calls sum_pixels() with constant steps if they are usual ones. */
 static void sum_stretch(struct glint_row_light *row,
                         const struct glint_bright *b, int x0, int x1)
 {
@@ -187,7 +188,7 @@ void glint_row_light_extend(struct glint_row_light *row,
         row->end = x1;
 }
 
-/* The sum left of X, in *ROOM if it is not kept. */
+/* Returns the sum of the pixels left of X, made in *ROOM if it is not kept. */
 static const struct glint_row_sum *sum_at(const struct glint_row_light *row,
                                           int x, struct glint_row_sum *room)
 {

@@ -6,44 +6,44 @@
  *   in   a row of a picture, and which of its pixels lie in regions
  *   out  the light of any of its runs
  *
- * Regions of the levels lie within each other. So running sums over a stretch
- * of pixels are made once, and the light of a run is a difference of two.
+ * Regions of the levels lie within each other. So running sums are made once
+ * for each stretch of pixels, and the light of a run is the difference of two.
  *
  *     glint_row_light_begin(row);
  *     for each stretch from the left:
  *         glint_row_light_extend(row, bright, x0, x1);
  *     glint_row_light_add(row, &region, x0, x1, width, y);
  *
- * Limits: w is at most 2^14 and x below 2^15, so that the sums of w, w x and
- * w x^2 over a row stay below 2^30, 2^44 and 2^59.
- */
+ * Limits: w is at most 2^14 and x below 2^15, so that the sums of w, w x and w
+ * x^2 over a row stay below 2^30, 2^44 and 2^59. */
 #ifndef GLINT_LAMPS_ROW_LIGHT_H
 #define GLINT_LAMPS_ROW_LIGHT_H
 
 #include "lamps/bright.h"
 #include "lamps/regions.h"
 
-enum { ROW_LIGHT_RIM = 2 }; /* pixels beside a run that show its colour, too */
+/* Pixels on either side of a run that count to its rim. */
+enum { ROW_LIGHT_RIM = 2 };
 
-/* Places of what is summed in 32 bits. */
+/* Indices of the sums in 32 bits. */
 enum {
     ROW_LIGHT_W,   /* linear luminance, _q14 */
-    ROW_LIGHT_RGB, /* _q14, and the same of those with no channel clipped */
+    ROW_LIGHT_RGB, /* linear R, G, B, _q14; below, those of pixels with no
+                      channel clipped */
     ROW_LIGHT_RIM_RGB = ROW_LIGHT_RGB + 3,
     ROW_LIGHT_SUMS = 8 /* a power of two: for vectors */
 };
 
-/* Of the pixels left of one, from wherever its stretch began. */
+/* Sums over the pixels left of a column, from the beginning of its stretch. */
 struct glint_row_sum {
     int32_t of[ROW_LIGHT_SUMS];
     int64_t wx_q14, wx2_q14;
 };
 
 struct glint_row_light {
-    struct glint_row_sum *sum; /* [width + 1], where from says so */
-    uint16_t *from; /* [width + 1]: the column itself where its sum is
-                       kept, else the first of the like pixels that it
-                       is among, and so is the one before */
+    struct glint_row_sum *sum; /* [width + 1]: sums, kept where from[x] is x */
+    uint16_t *from; /* [width + 1]: the column itself if its sum is kept, else
+                       the first of the equal pixels on both sides of it */
     int end;        /* end of the last stretch; -1: there is none */
 };
 
@@ -52,14 +52,14 @@ void glint_row_light_carve(struct glint_row_light *row,
 
 void glint_row_light_begin(struct glint_row_light *row);
 
-/* Sums pixels X0 .. X1 - 1 of the row that BRIGHT is at. X0 does not fall from
+/* Sums pixels X0 .. X1 - 1 of the row that BRIGHT is at. X0 must not fall from
  * call to call. */
 void glint_row_light_extend(struct glint_row_light *row,
                             const struct glint_bright *bright, int x0, int x1);
 
-/* Adds the light of pixels X0 .. X1 - 1 of row Y to REGION, and what is up to
- * RIM beside them to its rim: all within a stretch, or past the picture's edge
- * at WIDTH. */
+/* Adds the light of pixels X0 .. X1 - 1 of row Y to REGION, and that of pixels
+ * up to ROW_LIGHT_RIM beside them to its rim. All must be within a stretch, or
+ * past the picture's edge at WIDTH. */
 void glint_row_light_add(const struct glint_row_light *row,
                          struct glint_region *region, int x0, int x1, int width,
                          int y);

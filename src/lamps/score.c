@@ -5,28 +5,28 @@
 #include "base/sort.h"
 
 enum {
-    FLOOR_Q20 = 1 << 12, /* added to light: noise of the dark is no contrast */
-    LEAST_Q8 = -256,     /* least contrast that counts, 1/256 stops */
+    FLOOR_Q20 = 1 << 12, /* added to light, or noise in the dark is contrast */
+    LEAST_Q8 = -256,     /* contrasts are clamped to -1 .. 6 stops */
     MOST_Q8 = 6 * 256,
-    SMALL_Q8 = -2424, /* log2 of 1/700 of the picture, at which size a colour
-                         speaks for a lamp */
-    LARGE_Q8 = -1400, /* log2 of 1/44 of the picture, from which on it speaks
-                         against one */
+    SMALL_Q8 = -2424, /* log2 of 1/709 of the picture: up to this size colour
+                         counts wholly */
+    LARGE_Q8 = -1400, /* log2 of 1/44 of the picture: from this size on colour
+                         does not count */
     HALO_MOST_Q8 = 512,
-    WIDE_Q8 = 1400, /* log2 span: regions begin to be large at 1/1960 of the
-                       picture and are so wholly at 1/44 */
-    SURE_Q8 = 384,  /* scores beyond are all the same */
+    WIDE_Q8 = 1400, /* log2 span over which a region becomes large: from 1/1960
+                       of the picture to 1/44 */
+    SURE_Q8 = 384,  /* higher scores count as this one */
     SCORE_PARTS = EVIDENCE_DARK_32 - EVIDENCE_DARK_2 + 1
 };
 
-/* Adds WEIGHT of MEASURE, held to LEAST .. MOST, over LEAST. */
+/* Adds WEIGHT times MEASURE, which is clamped to LEAST .. MOST, less LEAST. */
 struct term {
     int8_t measure;
     int16_t least_q8, most_q8, weight_q8;
 };
 
-/* By logistic regression, weights held to the sign that their reason gives
- * them: tests/corpus/fit prints them; 64 are a natural logarithm of odds. */
+/* Weights from a logistic regression, each limited to the sign that its measure
+ * should have: tests/corpus/fit prints them. 64 are a factor e of the odds. */
 enum { BIAS_Q8 = -1438 };
 
 static const struct term terms[] = {
@@ -50,7 +50,7 @@ static int64_t largest(const int64_t v[3])
     return most > v[2] ? most : v[2];
 }
 
-/* Stops of the largest channel and of luminance. */
+/* Sets STOPS to log2 of the largest channel and of the luminance of RGB. */
 static void stops_of(const int64_t rgb_q20[3], int32_t stops_q8[2])
 {
     const int64_t y_q20 =
@@ -60,8 +60,8 @@ static void stops_of(const int64_t rgb_q20[3], int32_t stops_q8[2])
     stops_q8[1] = glint_stops_q8(y_q20 + FLOOR_Q20);
 }
 
-/* Of what is IN over pixel X of the row: by the largest channel or luminance,
- * whichever shows more. */
+/* Returns by how many stops IN exceeds pixel X of the row, in the largest
+ * channel or in luminance, whichever is more. */
 static int32_t contrast_at(const struct glint_score *s, const int32_t in_q8[2],
                            int x)
 {
@@ -78,7 +78,8 @@ static int32_t contrast_at(const struct glint_score *s, const int32_t in_q8[2],
                        MOST_Q8);
 }
 
-/* Point I of the ellipse in SUM's box that is D pixels larger on each side. */
+/* Sets X, Y to point I of an ellipse in SUM's box enlarged by D on all sides.
+ */
 static void point_of(const struct glint_region *sum, int32_t d, int i,
                      int32_t *x, int32_t *y)
 {
@@ -94,7 +95,8 @@ static void point_of(const struct glint_region *sum, int32_t d, int i,
     *y = q_narrow(sum->y0 - d + q_shift(h * (16384 + sine_q14[i]), 15));
 }
 
-/* Contrasts at the points that are in the picture; returns how many. */
+/* Sets FOUND to contrasts at points within the picture; returns their number.
+ */
 static int look_around(const struct glint_score *s,
                        const struct glint_region *sum, int32_t d,
                        const int32_t in_q8[2], int32_t found_q8[SCORE_POINTS])
@@ -133,8 +135,8 @@ static void sort(int32_t *v, int n)
         }
 }
 
-/* Distance of ring I from the box of SUM: in 1/800 of the picture's side, and
- * in half of the box's. */
+/* Returns the distance of ring I from the box of SUM, pixels: one part grows
+ * with the picture's side, one with the box's. */
 static int32_t distance_of(const struct glint_score *s,
                            const struct glint_region *sum, int i)
 {
@@ -150,10 +152,10 @@ static int32_t distance_of(const struct glint_score *s,
 
 /* Contrast around a region at one distance. */
 struct ring {
-    int32_t mean_q8, lower_q8, upper_q8; /* quartiles */
+    int32_t mean_q8, lower_q8, upper_q8; /* mean and quartiles, 1/256 stops */
 };
 
-/* RING stays where no point is in the picture. */
+/* Sets RING at distance D; leaves it if no point is in the picture. */
 static void look_at_ring(struct ring *ring, const struct glint_score *s,
                          const struct glint_region *sum, int32_t d,
                          const int32_t in_q8[2])
@@ -178,7 +180,7 @@ static void mean_stops(const struct glint_region *sum, int32_t stops_q8[2])
     stops_of(mean_q20, stops_q8);
 }
 
-/* VALUE as far as C is large. */
+/* Returns VALUE times how large C is, 0 .. 1. */
 static int32_t wide_q8(const struct glint_candidate *c, int32_t value_q8)
 {
     const int64_t size_q8 = (int64_t)c->evidence_q8[EVIDENCE_SIZE];
@@ -188,7 +190,7 @@ static int32_t wide_q8(const struct glint_candidate *c, int32_t value_q8)
 
 /* -------------------------------------------------------------------- shape */
 
-/* Over 2 pi r^2; a pixel by itself has 1 / 6 of a squared pixel. */
+/* Returns SUM's area over 2 pi r^2, r^2 plus 1/6 as of a pixel; a disc: 256. */
 static int32_t fill_q8(const struct glint_region *sum)
 {
     const int64_t r_q8 = glint_region_radius_q8(sum);
@@ -209,14 +211,15 @@ static int32_t colour_q8(const struct glint_region *sum)
     return 256 - (int32_t)(least / (largest(rim) / 256 + 1));
 }
 
-/* Of the picture: 2^20 is all of it. */
+/* Returns PIXELS as a share of the picture, 2^20 for all of it. */
 static int64_t share_q20(const struct glint_score *s, int64_t pixels)
 {
     return (pixels << 20) / ((int64_t)s->width * s->height);
 }
 
-/* A picture by night that is underexposed has lamps that do not clip; a grey
- * one has grey things. */
+/* Returns by how much less than 5 stops the picture's median is below the white
+ * of LEVEL, 0 .. 5 stops; 0 if that white is where codes clip. An underexposed
+ * picture by night has lamps that do not clip; a grey one has grey things. */
 static int32_t dim_q8(const struct glint_score *s,
                       const struct glint_level *level)
 {
@@ -231,7 +234,7 @@ static int32_t dim_q8(const struct glint_score *s,
                        0, 5 * 256);
 }
 
-/* Stops below white of what 1 / 2^PART_LOG2 of the picture exceeds. */
+/* Returns how far below white 1 / 2^PART_LOG2 of the picture reaches, stops. */
 static int32_t below_white_q8(const struct glint_score *s, int part_log2)
 {
     const int32_t *light_q20 = s->bright->curve->decode_q20;
@@ -241,7 +244,7 @@ static int32_t below_white_q8(const struct glint_score *s, int part_log2)
         light_q20[code < BRIGHT_CLIPPED ? code : BRIGHT_CLIPPED] + FLOOR_Q20);
 }
 
-/* How dark parts of the picture are. */
+/* How far parts of the picture are below white. */
 struct dark {
     int32_t part_q8[SCORE_PARTS];
 };
@@ -297,7 +300,7 @@ static int32_t score_of(const int32_t evidence_q8[EVIDENCES])
     return sum_q16 >> 8;
 }
 
-/* The first ring that says something of MEASURE; SCORE_RINGS: none does. */
+/* Returns the first ring that MEASURE depends on, or SCORE_RINGS if none. */
 static int ring_of(int measure)
 {
     switch (measure) {
@@ -313,7 +316,7 @@ static int ring_of(int measure)
     }
 }
 
-/* What rings FIRST and later can add to a score at most. */
+/* Returns the most that rings FIRST and later can add to a score. */
 static int32_t most_of_rings(int first)
 {
     int32_t sum_q16 = 0;
@@ -328,17 +331,17 @@ static int32_t most_of_rings(int first)
     return (sum_q16 >> 8) + 1;
 }
 
-/* Makes the rings say as much for C as they can, but for what most_of_rings
- * adds. */
+/* Sets measures of the rings to add nothing, as most_of_rings() adds the most
+ * they can, but EVIDENCE_WIDE_HALO, which it leaves out, to its most. */
 static void hope_for_rings(struct glint_candidate *c)
 {
     for (int i = 0; i < EVIDENCES; i++)
         if (ring_of(i) < SCORE_RINGS)
-            c->evidence_q8[i] = INT16_MIN; /* the least of each term: 0 */
+            c->evidence_q8[i] = INT16_MIN; /* below all terms: adds 0 */
     c->evidence_q8[EVIDENCE_WIDE_HALO] = wide_q8(c, HALO_MOST_Q8);
 }
 
-/* What is known once RING I has been looked at. */
+/* Sets the measures of C that ring I completes. */
 static void learn_of_ring(struct glint_candidate *c, const struct ring *ring,
                           int i)
 {
@@ -360,8 +363,8 @@ static void learn_of_ring(struct glint_candidate *c, const struct ring *ring,
     }
 }
 
-/* The score of C, ring by ring as long as those that are left may lift it.
- * MOST_Q8: what rings 0 .., 1 .. and 2 can add. */
+/* Returns the score of C, by its rings as long as they may lift it to
+ * -SCORE_DOUBT. MOST[I]: the most that ring I and later ones can add. */
 static int32_t score_by_rings(struct glint_candidate *c,
                               const struct glint_score *s,
                               const int32_t most_q8[SCORE_RINGS])
@@ -434,7 +437,7 @@ static int by_rank(const void *ctx, int32_t a, int32_t b)
     return p->sum.first < q->sum.first;
 }
 
-/* Whether INNER, of a higher level, lies in the box of OUTER. */
+/* Returns whether INNER, of a higher level, lies in the box of OUTER. */
 static int is_within(const struct glint_candidate *inner,
                      const struct glint_candidate *outer)
 {

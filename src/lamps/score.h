@@ -1,29 +1,30 @@
 /* SPDX-License-Identifier: MIT
  *
- * How much a bright region looks like a lamp.
+ * Scores how much a bright region looks like a lamp.
  *
  *   in   the bright regions of a picture, at each of the levels of brightness
  *        that they were sought at, and the picture around them
- *   out  a score of each: 0 and more speak for a lamp, 64 are a factor e of
- *        its odds; below -SCORE_DOUBT it is none even if it was one before.
- *        Lamps are seldom alone: where a picture has SCORE_SEVERAL, what is
- *        above -SCORE_COMPANY is one, too; where it has none, the best
- *        one is from a little below 0 on: who asks for a flare mostly has a
- *        lamp. A picture by itself has one chance of that, a lamp of a video
- *        one in each frame, and so has what is none
+ *   out  a score of each: from 0 on a region is a lamp; 64 are a factor e of
+ *        its odds; below -SCORE_DOUBT it is none, even if it was one before
  *
- * The score is a sum of terms, each a measure held to a range and weighed; so
- * it moves little where the picture does. Regions of the levels lie within each
- * other, a lamp in its glow in the sky, and of those the one with the highest
- * score is meant.
+ * Lamps are seldom alone: in a picture with SCORE_SEVERAL lamps, a region is
+ * one from -SCORE_COMPANY on. In a picture without any, the best region is one
+ * if its score is not far below 0, as whoever asks for a flare mostly has a
+ * lamp: from -SCORE_ALONE on in a picture by itself. A region of a video has
+ * another chance in each frame, whether it is a lamp or not, and so must reach
+ * -SCORE_ALONE_VIDEO.
  *
- * Around a region SCORE_POINTS pixels are read on each of SCORE_RINGS ellipses:
- * distances grow with the region and with the picture, so that the same scene
- * in more pixels has the same score.
+ * The score is a sum of terms, each a measure clamped to a range and weighted,
+ * so that it moves little where the picture does. Regions of the levels lie
+ * within each other, as a lamp does in its glow in the sky; of these the one
+ * with the highest score is taken.
+ *
+ * Around a region SCORE_POINTS pixels are read on each of SCORE_RINGS ellipses.
+ * Their distances grow with the region and with the picture, so that the same
+ * scene in more pixels has the same score.
  *
  * Limits: each term is below 2^13 * 2^10, so that the sum of some 20 fits 32
- * bits with ease; what areas and boxes need is in 64.
- */
+ * bits; areas and boxes are reckoned in 64. */
 #ifndef GLINT_LAMPS_SCORE_H
 #define GLINT_LAMPS_SCORE_H
 
@@ -37,34 +38,43 @@ enum {
     SCORE_DOUBT = 256,
     SCORE_SEVERAL = 2,
     SCORE_COMPANY = 96,
-    SCORE_ALONE = 48, /* of a picture by itself: tests/figures/finder.md */
+    SCORE_ALONE = 48, /* in a picture by itself; see tests/figures/finder.md */
     SCORE_ALONE_VIDEO = 32,
     SCORE_LEVELS = 8
 };
 
 /* Measures, _q8. */
 enum glint_evidence {
-    EVIDENCE_AROUND, /* stops over the lower quartile of what is around */
-    EVIDENCE_HALO,   /* stops by which that contrast is more further out: light
-                        falls off */
-    EVIDENCE_SPREAD, /* stops between the quartiles close around: light does not
-                        fall off alike in all directions */
-    EVIDENCE_FILL,   /* area over that of a disc that is as wide: 256 for one */
-    EVIDENCE_BOX,    /* area over that of its box */
-    EVIDENCE_SIZE,   /* log2 of its share of the picture: 0 and less */
-    EVIDENCE_COLOUR, /* saturation, 256: one channel alone; of a small region */
-    EVIDENCE_DIM,    /* stops by which half of the picture is less than five
-                        below a white that is none */
-    EVIDENCE_CLOSE, /* stops over what is close to the edge, which is steep at a
-                       lamp */
+    EVIDENCE_AROUND, /* lower quartile of the contrast at the middle distance,
+                        stops */
+    EVIDENCE_HALO, /* stops by which contrast is larger at the farthest ellipse
+                      than at the nearest: light falls off */
+    EVIDENCE_SPREAD, /* stops between the quartiles of the contrast close
+                        around: large where light does not fall off alike in all
+                        directions */
+    EVIDENCE_FILL, /* area over that of a disc of the same RMS radius: 256 for a
+                      disc */
+    EVIDENCE_BOX,  /* area over that of its box: 256 if it fills the box */
+    EVIDENCE_SIZE, /* log2 of its share of the picture, 0 or less */
+    EVIDENCE_COLOUR, /* saturation, 256 if it is one channel alone; less in a
+                        large region */
+    EVIDENCE_DIM, /* stops by which the picture's median is less than five below
+                     the level's white, if that white is darker than codes clip;
+                     else 0 */
+    EVIDENCE_CLOSE, /* lower quartile of the contrast close to the edge, stops:
+                       lamps have steep edges */
     EVIDENCE_WHITE, /* stops of its mean luminance over its level's white */
-    EVIDENCE_CROWD, /* log2 of the regions of its level: lamps are few */
+    EVIDENCE_CROWD, /* log2 of the number of regions of its level: lamps are few
+                     */
     EVIDENCE_HIGH,  /* height above the picture's lower edge: 256 is the top */
-    /* Of a large region, which is the sun or a shade; 0 of a small one. */
+    /* EVIDENCE_HALO of a large region, which is the sun or a lampshade; 0 for a
+     * small one. */
     EVIDENCE_WIDE_HALO,
-    EVIDENCE_WIDE_HOT, /* 256: as bright as its level's white, and more */
-    /* Stops below white that one pixel in 2, 4, 32 of the picture reaches:
-       where nearly all is dark, what is bright is lit from within. */
+    EVIDENCE_WIDE_HOT, /* 256 for a large region as bright as its level's white;
+                          0 for a small or a darker one */
+    /* Stops below white of the brightness that one pixel in 2, 4, 32 of the
+     * picture reaches: where nearly all is dark, bright things are lit from
+     * within. */
     EVIDENCE_DARK_2,
     EVIDENCE_DARK_4,
     EVIDENCE_DARK_32,
@@ -76,20 +86,21 @@ struct glint_candidate {
     struct glint_region sum;
     int32_t x_q8, y_q8;
     int32_t score_q8;
-    int16_t level; /* counts from 0, the darkest */
+    int16_t level; /* index of its level; 0 is the darkest */
     int32_t rank_q8;
     uint8_t faint;
-    uint8_t gone; /* merged into another, or another stands for it */
+    uint8_t gone; /* 1: merged into another region, or one of higher rank stands
+                     for it */
     int32_t evidence_q8[EVIDENCES];
 };
 
-/* Brightness that regions are made of. */
+/* A level of brightness at which regions are sought. */
 struct glint_level {
-    int low;           /* least brightness of the regions' pixels */
+    int low;           /* least brightness of the pixels of its regions */
     int seed, clipped; /* brightness from which pixels count as seeds, or as
                           clipped */
-    int32_t cost_q8;   /* taken off the score where regions of several levels
-                          lie within each other */
+    int32_t cost_q8; /* subtracted from the score when regions within each other
+                        are compared */
 };
 
 struct glint_score {
@@ -97,26 +108,28 @@ struct glint_score {
     const struct glint_white *white;
     int width, height;
     const struct glint_level *level;
-    int is_brief; /* 1: of what must fall below -SCORE_DOUBT the surroundings
-                     are not read; its score is some number below that, and no
-                     less than it would be */
-    int32_t alone_q8; /* how far below 0 the best one may be where it is alone
-                       */
+    int is_brief; /* 1: the rings of a region are not read once its score must
+                     be below -SCORE_DOUBT; the score is then below that, but
+                     may be too high */
+    int32_t alone_q8; /* how far below 0 the best score may be for a lamp if
+                         none reaches 0 */
 };
 
-/* Sets the score of the N candidates of ORDER. */
+/* Sets the scores of the N candidates that ORDER lists. */
 void glint_score_all(const struct glint_score *score,
                      struct glint_candidate *candidate, const int32_t *order,
                      int n);
 
-/* The score from which a candidate is a lamp: 0, or less in company, or that of
- * the best one where it is alone. ORDER comes out in another order. */
+/* Returns the least score of a lamp: 0, or -SCORE_COMPANY in a picture of
+ * SCORE_SEVERAL lamps, or the best score if none reaches 0 and that is not
+ * below -alone_q8. Changes the order of ORDER. */
 int32_t glint_score_least(const struct glint_score *score,
                           struct glint_candidate *candidate, int32_t *order,
                           int n);
 
-/* Marks those gone that lie within or around one with a higher score. ORDER
- * comes out by falling score. */
+/* Sorts ORDER by falling rank, which is the score less the cost of its level,
+ * and marks each candidate gone that lies within or around one of higher rank.
+ */
 void glint_score_choose(const struct glint_score *score,
                         struct glint_candidate *candidate, int32_t *order,
                         int n);

@@ -12,7 +12,7 @@ enum {
     LEVELS = GLINT_PROFILE_LEVELS,
     FEATURES = GLINT_UNCLIP_FEATURES,
     UNITS = GLINT_UNCLIP_UNITS,
-    SHOWN = 5 /* the last level whose light counts to what is seen */
+    SHOWN = 5 /* last level whose light counts as seen */
 };
 
 /* ------------------------------------------------------------------- colour */
@@ -24,9 +24,9 @@ static int64_t luminance(const int64_t v[3])
            15;
 }
 
-/* What is clipped counts 1/64: the fringe decides where there is one worth the
- * name, and white comes out where everything is clipped to white, without a
- * step in between. */
+/* Sets the colour. Clipped light counts 1/63 of that of the fringe: the fringe
+ * decides where there is much of it, a spot that is all clipped to white comes
+ * out white, and there is no jump in between. */
 static void set_colour(struct glint_spot *spot,
                        const struct glint_profile_sums *sums)
 {
@@ -55,8 +55,9 @@ static int32_t log_of_q8(int64_t area_q8)
            8 * ONE_Q16;
 }
 
-/* How much of level K counts: all of it where the background is more even than
- * that, none where it has as much itself. */
+/* Returns how much of level K counts: all of levels 1 and 2; of others, all if
+ * the background's spread is half of the level's least light or less, none if
+ * it is as much. */
 static int32_t weight_q16(const struct glint_profile_channel *of, int k)
 {
     const int32_t spread_q16 =
@@ -66,8 +67,9 @@ static int32_t weight_q16(const struct glint_profile_channel *of, int k)
                   : q_clamp_sat(-k * ONE_Q16 - spread_q16, 0, ONE_Q16);
 }
 
-/* A step of level k goes from 2^-k to twice that, so that what is above 2^-5 is
- * the sum of the areas times the steps. */
+/* Returns the sum of u over the pixels of levels up to SHOWN. A step of level k
+ * goes from 2^-k to twice that, so that areas times steps sum up to u -
+ * 2^-SHOWN; the last area adds the missing 2^-SHOWN. */
 static int64_t flux_q16(const struct glint_profile_channel *of)
 {
     int64_t sum_q16 = 0;
@@ -80,7 +82,7 @@ static int64_t flux_q16(const struct glint_profile_channel *of)
                              8);
 }
 
-/* The area of LEVEL in the channel that has most of it. */
+/* Returns the area of LEVEL in the channel where it is largest. */
 static int64_t widest_q8(const struct glint_profile_sums *sums, int level)
 {
     int64_t area_q8 = sums->of[0].area_q8[level];
@@ -91,7 +93,7 @@ static int64_t widest_q8(const struct glint_profile_sums *sums, int level)
     return area_q8;
 }
 
-/* The clipped area of the channel that has least of it. */
+/* Returns the clipped area of the channel where it is smallest. */
 static int64_t narrowest_q8(const struct glint_profile_sums *sums)
 {
     int64_t area_q8 = sums->of[0].area_q8[0];
@@ -102,7 +104,8 @@ static int64_t narrowest_q8(const struct glint_profile_sums *sums)
     return area_q8;
 }
 
-/* At luminance 1; of a colour that is none, white. */
+/* Returns the brightest channel of the spot's colour at luminance 1, or 0.5 if
+ * it has no colour. */
 static int32_t brightest_q15(const struct glint_spot *spot)
 {
     int32_t most = Q_CONST(0.5, 15);
@@ -112,8 +115,8 @@ static int32_t brightest_q15(const struct glint_spot *spot)
     return most;
 }
 
-/* How much of LEVEL the codes of the picture show: all of it where its least
- * light is two steps of a code over the background, none where it is one. */
+/* Returns how much of LEVEL the codes of the picture show: all of it if its
+ * least light is two steps of a code over the background, none if it is one. */
 static int32_t shown_q16(const struct glint_profile_sums *sums, int level)
 {
     int32_t step_q16 = 1;
@@ -125,10 +128,11 @@ static int32_t shown_q16(const struct glint_profile_sums *sums, int level)
                        0, ONE_Q16);
 }
 
-/* How many octaves more area than the core each level has. Below the codes of
- * RGB565 what is counted is the border between two of them, anywhere: such a
- * level grows as the one before it did. An octave lies between levels, so one
- * at most is shown in part; sums are below 2^26. */
+/* Sets GROWTH to how many octaves larger than the core the area of each level
+ * is. Where codes are as coarse as in RGB565, the area of a low level only
+ * shows where the border between two codes is; such a level is taken to grow as
+ * the one before it did. Levels are an octave apart, so at most one is shown in
+ * part. Sums are below 2^26. */
 static void list_growth(int32_t growth_q16[LEVELS],
                         const struct glint_profile_sums *sums, int32_t core_q16)
 {
@@ -160,7 +164,7 @@ void glint_unclip_features(int32_t feature_q16[GLINT_UNCLIP_FEATURES],
     feature_q16[0] = core_q16;
     feature_q16[1] = core_q16 - log_of_q8(narrowest_q8(sums));
     list_growth(feature_q16 + 2, sums, core_q16);
-    /* means of the channels, of a thousandth and a five-hundredth at least */
+    /* means of the channels, plus 0.001 and 0.002 */
     feature_q16[2 + LEVELS] =
         q_log2_q16((uint64_t)spread_q16 + 197) - Q_CONST(17.585, 16);
     feature_q16[3 + LEVELS] =
@@ -184,12 +188,12 @@ static int64_t weighed_q26(const int16_t weight_q10[FEATURES + 1],
     return sum_q26;
 }
 
-/* How many stops over white the core is: a perceptron with one layer of
- * rectified units beside a linear term. A halo means another thing beside a
- * core of three pixels than beside one of a hundred, on an even background than
- * among windows: products of features, which units stand for at no cost but
- * sums. A unit is below 2^32 in _q16, times a weight 2^47, and there are six.
- */
+/* Returns how many stops over white the core is, -6 .. 14: a perceptron with
+ * one layer of rectified units beside a linear term. A halo means one thing
+ * beside a core of three pixels and another beside one of a hundred, and so on
+ * an even background and among windows: products of features, for which units
+ * stand by sums alone. A unit is below 2^32 in _q16, times a weight 2^47, and
+ * there are six. */
 static int32_t stops_q16(const int32_t feature_q16[FEATURES])
 {
     int64_t sum_q26 = weighed_q26(linear_q10, feature_q16);
@@ -215,8 +219,9 @@ void glint_unclip_light(int64_t *seen_q16, int64_t *core_q16,
     *core_q16 = q_divide(widest_q8(sums, 0) << 23, brightest_q15(spot));
 }
 
-/* What is seen, and behind the core what its features say. The core is below
- * 2^47, so that the logarithm's clamp is the first to bound it. */
+/* Sets the power: light that is seen, and light that the clipped core hides,
+ * estimated from its features. The core is below 2^47, so that the clamp of the
+ * logarithm is the first limit. */
 static void set_power(struct glint_spot *spot,
                       const struct glint_profile_sums *sums)
 {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * From the sums of a profile to what a lamp is without clipping.
- */
+ * Estimates from the sums of a profile how a lamp would be without clipping. */
 #ifndef GLINT_LAMPS_UNCLIP_H
 #define GLINT_LAMPS_UNCLIP_H
 
@@ -19,8 +18,9 @@ void glint_unclip_features(int32_t feature_q16[GLINT_UNCLIP_FEATURES],
                            const struct glint_spot *spot,
                            const struct glint_profile_sums *sums);
 
-/* White pixels: what the picture shows, over the background, and the clipped
- * core if it is white in its brightest channel alone. */
+/* Sets SEEN to the light that the picture shows, over the background, and CORE
+ * to the light of the clipped core if its brightest channel were just white.
+ * Unit: white pixels. */
 void glint_unclip_light(int64_t *seen_q16, int64_t *core_q16,
                         const struct glint_spot *spot,
                         const struct glint_profile_sums *sums);

@@ -20,7 +20,8 @@ int32_t glint_stops_q8(int64_t light_q20)
            (int32_t)q_shift(f_q12 + q_mul(bent_q12, by_q12, 12), 4);
 }
 
-/* Linear, 2^(EV / 256) of white, EV -20 .. 0: by the codes' own stops. */
+/* Returns the least code, at most BRIGHT_CLIPPED, whose linear light is STOPS
+ * or more. */
 static int code_of_stops(const struct glint_bright *b, int32_t stops_q8)
 {
     int code = 1;
@@ -31,8 +32,8 @@ static int code_of_stops(const struct glint_bright *b, int32_t stops_q8)
     return code;
 }
 
-/* Where the N columns or rows of a grid lie in SIDE pixels: (2 i + 1) SIDE /
- * (2 n), rounded down, one after the other. */
+/* Steps through the columns or rows of a grid, N in SIDE pixels: number i is at
+ * (2 i + 1) SIDE / (2 N), rounded down. */
 struct grid {
     int at, past, step, step_past, whole;
 };

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a star holds, and what its lights are to the pass that draws them.
- */
+ * State of a star, and its lights as the pass draws them. */
 #ifndef GLINT_STAR_PARTS_H
 #define GLINT_STAR_PARTS_H
 
@@ -11,41 +10,44 @@
 enum {
     /* zones of distance, each four times as far as the one before */
     GLINT_STAR_ZONES = 8,
-    GLINT_STAR_INVERSES = 128 /* steps of a table of 1 / x, x 1 .. 2 */
+    GLINT_STAR_INVERSES = 128 /* steps of the table of 1 / x over x = 1 .. 2 */
 };
 
-/* A light, times what its tables are counted in. */
+/* A light with its power multiplied by the units of the tables. */
 struct glint_star_lamp {
     int32_t x_q8, y_q8;
     uint64_t inner_q16; /* least value that r^2 is taken for, pixels^2 */
     int is_bare;        /* 1: the lamp's core is drawn as well */
-    /* Light of a profile's step, and of one of the core, over 2^exponent: 15
-     * bits. And the light of the halo's. */
+    /* Light of one step of a profile, and of one step of the core: 15 bits,
+     * times 2^exponent. And log2 of the light in units of the halo's table. */
     int32_t line[3], line_exponent, core[3], core_exponent, halo_log2_q16[3];
-    /* As of tables, of this lamp's extent: steps of a profile in a pixel, and
-     * pixels in a step. */
+    /* Scale of the profiles for this lamp's extent: steps per pixel, and pixels
+     * per step. */
     int32_t per_pixel_q16, pixels_q16;
-    int reach, halo_reach; /* pixels: beyond, no part is to be seen */
+    int reach, halo_reach; /* distances in pixels beyond which no line, and no
+                              halo, can be seen */
     int n_zones;
-    /* Zone i begins at the distance start[i], along x or y, whichever is
-     * more; within, steps of a profile up to seen[i] can be seen. */
+    /* Zone i is from start[i] to start[i + 1], pixels along x or y, whichever
+     * is more. Within it, steps of a profile below seen[i] can be seen. */
     int start[GLINT_STAR_ZONES + 1];
     int seen[GLINT_STAR_ZONES];
 };
 
-/* Light of a stretch of a row of pixels. */
+/* Light of a stretch of a row. */
 struct glint_star_stretch {
-    int y, x0, x1; /* x0 .. x1 - 1 */
-    int lo, hi;    /* columns lo .. hi - 1 have got light; the rest is 0 */
-    int64_t (*light_q20)[GLINT_CODES_WIDTH]; /* [3], from x0 on */
+    int y, x0, x1; /* row; pixels x0 .. x1 - 1 of it */
+    int lo, hi;    /* columns lo .. hi - 1 have light; all others are 0 */
+    int64_t (*light_q20)[GLINT_CODES_WIDTH]; /* [3]: linear light of pixels from
+                                                x0 on */
 };
 
-/* What a worker keeps of a row of tiles. */
+/* A worker's state in a row of tiles. */
 struct glint_star_row {
     const struct glint_star *star;
     struct glint_box tile;
-    int n_near, n_here;    /* lights that reach this row of tiles; the tile */
-    uint16_t *near, *here; /* [max_lights] */
+    int n_near, n_here; /* numbers of lights that reach this row of tiles, and
+                           this tile */
+    uint16_t *near, *here; /* [max_lights] each: indices of these lights */
     int64_t (*light_q20)[GLINT_CODES_WIDTH]; /* [3]; 0 between rows */
 };
 
@@ -62,18 +64,18 @@ struct glint_star {
 
 struct glint_pass glint_star_pass(const struct glint_star *star);
 
-/* Adds what LAMP gives to ROW. */
+/* Adds the light of LAMP to ROW. */
 typedef void glint_star_part_fn(const struct glint_star *star,
                                 const struct glint_star_lamp *lamp,
                                 struct glint_star_stretch *row);
 glint_star_part_fn glint_star_lines, glint_star_halo, glint_star_core;
 
-/* Whether lines may give any to pixels of BOX. */
+/* Returns whether lines of LAMP may reach pixels of BOX. */
 int glint_star_lines_reach(const struct glint_star *star,
                            const struct glint_star_lamp *lamp,
                            struct glint_box box);
 
-/* Pixels X0 .. X1 - 1 get light. */
+/* Notes that pixels X0 .. X1 - 1 of ROW get light. */
 static inline void glint_star_note(struct glint_star_stretch *row, int x0,
                                    int x1)
 {

@@ -16,7 +16,8 @@ static int config_ok(const struct glint_star_config *c)
            c->max_lights <= GLINT_STAR_MAX_LIGHTS;
 }
 
-/* Runs twice: to measure, which gives NULL, and to place. */
+/* Takes a star and its tables from A, once to measure, which returns NULL, and
+ * once to place them. */
 static struct glint_star *carve(struct glint_arena *a,
                                 const struct glint_star_config *c)
 {
@@ -80,7 +81,8 @@ enum glint_status glint_star_init(struct glint_star **star,
 
 /* ------------------------------------------------------------------ lights */
 
-/* Three products of a colour and X, 15 bits each; returns their exponent. */
+/* Sets PART to the products of each channel of RGB and X, 15 bits each; returns
+ * their exponent. */
 static int share(const int32_t rgb_q14[3], struct glint_real x, int32_t part[3])
 {
     for (int c = 0; c < 3; c++)
@@ -97,7 +99,8 @@ static int32_t log2_q16(struct glint_real x)
                : INT32_MIN / 2;
 }
 
-/* 2^X for a distance, pixels, held to 2^20. */
+/* Returns 2^LOG2_OF as a distance, in whole pixels above it, 2^20 + 1 at most.
+ */
 static int distance(int32_t log2_of_q16)
 {
     const int64_t far_q16 = q_exp2_q16(q_smaller(log2_of_q16, 20 * 65536));
@@ -105,7 +108,7 @@ static int distance(int32_t log2_of_q16)
     return (int)(far_q16 >> 16) + 1;
 }
 
-/* The first step of a profile from which on no line has 2^LEAST or more. */
+/* Returns the first step of profiles from which on none exceeds 2^LEAST. */
 static int seen_to(const struct glint_star_tables *t, int32_t least_log2_q16)
 {
     const int64_t least =
@@ -118,8 +121,9 @@ static int seen_to(const struct glint_star_tables *t, int32_t least_log2_q16)
     return i;
 }
 
-/* Zones of distances out to the lamp's reach. OVER: light of a step of a
- * profile, at 1 pixel, over what is seen. */
+/* Sets zones of distance up to the lamp's reach, and how much of a profile is
+ * seen in each. OVER: log2 of the light of one step of a profile, at 1 pixel,
+ * over the least light that is seen. */
 static void set_zones(struct glint_star_lamp *lamp,
                       const struct glint_star_tables *t, int32_t over_log2_q16)
 {
@@ -140,7 +144,8 @@ static void set_zones(struct glint_star_lamp *lamp,
     }
 }
 
-/* How far out the halo of a light of that POWER is above LEAST. */
+/* Returns up to how many pixels from a light of POWER its halo is above LEAST,
+ * both as log2; 0 if nowhere. */
 static int halo_reach(const struct glint_star_tables *t, int32_t power_log2_q16,
                       int32_t least_log2_q16)
 {
@@ -151,7 +156,8 @@ static int halo_reach(const struct glint_star_tables *t, int32_t power_log2_q16,
             t->halo_log2_q16 + t->halo_most[row] * 32 + power_log2_q16;
         const int32_t r2_log2_q16 = light_log2_q16 - least_log2_q16;
 
-        /* rows are half octaves of r^2 from 2^4 on; the last goes on */
+        /* rows are half octaves of r^2 from 2^4 on; the last row holds for all
+         * larger r^2 */
         if (row == GLINT_STAR_HALO_ROWS - 1 && r2_log2_q16 > (26 << 16))
             return distance(r2_log2_q16 / 2);
         if (r2_log2_q16 >= (4 << 16) + row * 32768)
@@ -167,8 +173,8 @@ static struct glint_real held(struct glint_real power)
     return real_less(most, power) ? most : power;
 }
 
-/* By how much a lamp of that RADIUS makes lines wider, and fainter: a disc is
- * half as bright where it is 1.73 radii wide. At most 2^10. */
+/* Returns by how much a lamp of RADIUS makes lines wider, and fainter: the
+ * light of a disc is 1.73 radii wide at half its brightness. At most 2^10. */
 static int64_t wider_q8(const struct glint_star_tables *t, int32_t radius_q8)
 {
     const int64_t disc_q8 = q_divide(
@@ -178,7 +184,7 @@ static int64_t wider_q8(const struct glint_star_tables *t, int32_t radius_q8)
     return q_root((uint64_t)(65536 + held_q8 * held_q8));
 }
 
-/* 0: nothing of it is to be seen. */
+/* Sets LAMP for light L; returns 0 if nothing of it can be seen. */
 static int set_lamp(struct glint_star_lamp *lamp,
                     const struct glint_star_tables *t,
                     const struct glint_star_light *l,

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * What the exact pattern has near a light beside lines and halo: a lattice,
- * finer than pixels, between whose nodes light is interpolated, so that what a
- * light gives all pixels together does not change as it moves.
- */
+ * The core of a star: the exact pattern near a light less lines and halo. It is
+ * a lattice finer than pixels, and light is interpolated between its nodes, so
+ * that the sum over all pixels does not change as the light moves. */
 #include "base/q.h"
 #include "star/parts.h"
 
-/* Node (I, J) counted from the middle, _q40. */
+/* Returns node (I, J) of channel C, counted from the middle, _q40. */
 static int64_t node_q40(const struct glint_star_tables *t, int i, int j, int c)
 {
     const int turn = j < 0 ? -1 : 1;
@@ -18,7 +17,7 @@ static int64_t node_q40(const struct glint_star_tables *t, int i, int j, int c)
     return code >> 15 ? -size : size;
 }
 
-/* X 2^-SHIFT, |X| below 2^57; held to 2^50. */
+/* Returns X 2^-SHIFT, |X| below 2^57, clamped to +-2^50. */
 static int64_t scaled(int64_t x, int shift)
 {
     const uint64_t size = q_magnitude(x);

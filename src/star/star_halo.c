@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * The smooth part of the far field: a table by distance and by how far the
- * nearest line is, in logarithms.
- */
+ * The halo of a star, the smooth part of the far field: a table of logarithms
+ * by distance from the light and by distance from the nearest line. */
 #include "base/log2.h"
 #include "star/parts.h"
 
-/* A row of a halo. */
+/* The halo of one lamp in one row. */
 struct span {
     const struct glint_star *star;
     const struct glint_star_lamp *lamp;
@@ -19,7 +18,7 @@ struct place {
     int at, part_q15;
 };
 
-/* X entries, held to LAST. */
+/* Returns the place X entries from the first of a table, clamped to LAST. */
 static struct place place_of(int32_t x_q16, int last)
 {
     const int32_t held_q16 = q_clamp_sat(x_q16, 0, (last << 16) - 1);
@@ -41,7 +40,7 @@ static void add_pixel(const struct span *s, int x, int64_t dx_q8, int64_t v_q8)
 
     r2_q16 = r2_q16 > s->lamp->inner_q16 ? r2_q16 : s->lamp->inner_q16;
     r2_log2_q16 = q_log2_q16(r2_q16) - 16 * 65536;
-    /* 1 + 4 v / reach, in 1 / 2^8 of 4 v */
+    /* log2 of 1 + 4 v / reach, both times 2^8 */
     column_q16 =
         q_log2_q16((uint64_t)(v_q8 * 4 + t->reach_q8)) - t->reach_log2_q16;
     row = place_of((r2_log2_q16 - 4 * 65536) * 2, GLINT_STAR_HALO_ROWS - 1);

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Light that edges of the stop throw across them: strips through each lamp.
+ * The lines of a star: light that edges of the stop throw at right angles to
+ * themselves, in strips through each lamp.
  *
- * Strips are as long and as wide as is to be seen: the light falls with the
- * square of the distance, so that in a zone four times as far less of the
- * profile counts.
- */
+ * A strip is as long and as wide as it can be seen. Light falls with the square
+ * of the distance, so that less of the profile counts in each zone than in the
+ * zone before, which is four times nearer. */
 #include "base/q.h"
 #include "star/parts.h"
 
-/* X 2^-SHIFT, X below 2^48; held to 2^50. */
+/* Returns X 2^-SHIFT, X below 2^48, at most 2^50. */
 static int64_t scaled(uint64_t x, int shift)
 {
     const uint64_t most = UINT64_C(1) << 50;
@@ -29,7 +29,7 @@ static struct stretch cut(struct stretch a, struct stretch b)
     return (struct stretch){q_larger(a.x0, b.x0), q_smaller(a.x1, b.x1)};
 }
 
-/* What a strip has in one row. */
+/* A strip in one row. */
 struct strip {
     const struct glint_star *star;
     const struct glint_star_lamp *lamp;
@@ -38,13 +38,14 @@ struct strip {
     struct glint_star_stretch *row;
 };
 
-/* Where 1 / r^2 = inverse 2^(1 - bits), px^-2. */
+/* Returns the inverse for which 1 / r^2 = inverse 2^(1 - bits), px^-2. */
 static uint32_t inverse_of(const struct glint_star *star, uint64_t r2_q16,
                            int *bits)
 {
     const int n = bit_length(r2_q16);
-    const uint32_t m = (uint32_t)(n > 16 ? r2_q16 >> (n - 16)
-                                         : r2_q16 << (16 - n)); /* 2^15 on */
+    const uint32_t m =
+        (uint32_t)(n > 16 ? r2_q16 >> (n - 16)
+                          : r2_q16 << (16 - n)); /* 2^15 .. 2^16 - 1 */
     const uint32_t at = (m - 32768) >> 8, part = m & 255;
     const uint32_t *v = star->inverse_q31 + at;
 
@@ -65,7 +66,7 @@ static void add_pixel(const struct strip *s, int x, int64_t v_q16)
 
     r2_q16 = r2_q16 > s->lamp->inner_q16 ? r2_q16 : s->lamp->inner_q16;
     inverse = inverse_of(s->star, r2_q16, &bits);
-    /* (v / r)^2 */
+    /* (v / r)^2, _q16 */
     less_q16 = (uint32_t)((v_q8 * v_q8 * inverse) >> (bits - 1));
     less_q16 = less_q16 < 65536 ? less_q16 : 65536;
     inverse = (uint32_t)((uint64_t)inverse * (65536 - less_q16) >> 16);
@@ -78,7 +79,8 @@ static void add_pixel(const struct strip *s, int x, int64_t v_q16)
     }
 }
 
-/* Adds pixels of HERE up to SEEN steps off the strip's middle. */
+/* Adds light to pixels of HERE that are less than SEEN steps off the strip's
+ * middle. */
 static void add_stretch(const struct strip *s, struct stretch here, int seen)
 {
     const int64_t step_q16 = s->lamp->per_pixel_q16;
@@ -100,8 +102,8 @@ static void add_stretch(const struct strip *s, struct stretch here, int seen)
     }
 }
 
-/* Pixels of the row in which the strip's middle is no farther than SEEN steps.
- */
+/* Returns the pixels of the row that are at most SEEN steps off the strip's
+ * middle. */
 static struct stretch across(const struct strip *s, int seen)
 {
     const int64_t middle_q8 = (int64_t)s->dy_q8 * s->line->cot_q16 >> 16;
@@ -158,7 +160,8 @@ void glint_star_lines(const struct glint_star *star,
     }
 }
 
-/* How far BOX is from pixel (X, Y), the larger of both ways. */
+/* Returns the distance from pixel (X, Y) to BOX, along x or y, whichever is
+ * more; 0 if it is inside. */
 static int off(struct glint_box b, int x, int y)
 {
     const int dx = q_larger(b.x0 - x, x - (b.x1 - 1));

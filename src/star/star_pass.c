@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Stars as a pass: which lights reach a row of tiles and a tile, and what they
- * give to its rows.
- */
+ * Draws stars as a pass: finds the lights that reach a row of tiles and then a
+ * tile, and adds their light to its rows. */
 #include "base/q.h"
 #include "flare/draw_over.h"
 #include "flare/state.h"
 #include "star/parts.h"
 
-/* Pixels from a light to where neither halo nor core reaches. */
+/* Returns a distance from the light, in pixels, beyond which neither halo nor
+ * core reaches. */
 static int round_reach(const struct glint_star *star,
                        const struct glint_star_lamp *lamp)
 {
@@ -74,8 +74,8 @@ static void light_row(const struct glint_star_row *r,
     }
 }
 
-/* Moves what ROW has got of channel C to where rows of codes take it; returns
- * whether there is any. */
+/* Moves the light of channel C in ROW to LIGHT, clamped to 16 bits, and clears
+ * it; returns whether there was any. */
 static int give_codes(const struct glint_star_stretch *row, int c,
                       uint16_t *light_q16)
 {
@@ -150,7 +150,8 @@ static void row_job(void *ctx, int job, int worker)
                     &d->flare->worker[worker].tile);
 }
 
-/* All pixels, also where the flare has half of them. */
+/* Draws the star to all pixels, also where the flare is drawn at half the size.
+ */
 static void draw_alone(struct glint_star *star, struct glint_flare *flare,
                        const struct glint_image *image)
 {

@@ -9,20 +9,20 @@
  *     glint_star_draw(star, flare, &image);      rather than glint_flare_draw()
  *
  * The picture of a point behind a stop is its Fraunhofer pattern, summed over
- * the spectrum and over each pixel. It is drawn as the sum of three parts,
- * which tables hold:
+ * the spectrum and over each pixel. It is drawn as the sum of three parts from
+ * tables:
  *
  *   lines   light that a pair of parallel edges throws to both sides, across
  *           them: a profile across the line, over the square of the distance
- *   halo    what is left of the far field, which is smooth: tails of the
- *           profiles and light from the corners; of a circle all of it
- *   core    exact pattern less these two, near the light, on a lattice finer
- *           than pixels; lamps whose own core a picture shows go without
+ *   halo    the far field less the lines, which is smooth: tails of the
+ *           profiles and light from the corners; for a circle, all of it
+ *   core    the exact pattern less lines and halo, near the light, on a lattice
+ *           finer than pixels; not drawn for lamps whose own core the picture
+ *           shows
  *
- * What a pixel costs is paid where a fraction of a code is to be seen, and
- * nowhere else. All memory is the caller's; drawing cannot fail, and gives the
- * same bits for any number of workers and any tile size.
- */
+ * Time is spent only where a fraction of a code can be seen. All memory is the
+ * caller's; drawing cannot fail, and gives the same bits for any number of
+ * workers and any tile size. */
 #ifndef GLINT_STAR_STARBURST_H
 #define GLINT_STAR_STARBURST_H
 
@@ -35,29 +35,30 @@
 #include "glint/workers.h"
 
 enum {
-    GLINT_STAR_PROFILE = 128,  /* steps of a profile */
-    GLINT_STAR_CORE = 48,      /* steps from the core's middle to its rim */
-    GLINT_STAR_HALO_ROWS = 45, /* two for each octave of r^2, from 2^4 px^2 */
+    GLINT_STAR_PROFILE = 128, /* steps of a profile */
+    GLINT_STAR_CORE = 48,     /* steps from the core's middle to its rim */
+    /* Two for each octave of r^2, from 2^4 px^2 on. */
+    GLINT_STAR_HALO_ROWS = 45,
     GLINT_STAR_HALO_COLUMNS = 49, /* four for each octave of
                                      1 + 4 v / reach */
     GLINT_STAR_MAX_LIGHTS = 4096
 };
 
-/* A pair of parallel edges, or one edge. U is measured along the line in which
- * it throws light, V across: u = x cos + y sin, v = y cos - x sin, pixels, y
+/* A line: light of a pair of parallel edges, or of one edge. U is measured
+ * along the line, V across: u = x cos + y sin, v = y cos - x sin, pixels, y
  * down. */
 struct glint_star_line {
     /* direction of the line, from 0 to below 180 degrees */
     int32_t cos_q30, sin_q30;
-    int32_t cot_q16;    /* cos / sin of that angle, held to +-2^12 */
-    int32_t across_q16; /* 1 / sin of that angle, held to 2^12 */
+    int32_t cot_q16;    /* cos / sin of that angle, clamped to +-2^12 */
+    int32_t across_q16; /* 1 / sin of that angle, at most 2^12 */
     int32_t border_q16; /* cot of the angle half-way to the next line */
-    /* In the tables' steps: light at v = reach i / 128, times
-     * r^2 / (1 - (v / r)^2). From 128 on 0. */
+    /* [i]: light at v = reach i / 128, times r^2 / (1 - (v / r)^2), in the
+     * tables' steps. From 128 on 0. */
     uint16_t profile[GLINT_STAR_PROFILE + 2][3];
 };
 
-/* Of one stop, f-number and size of pixels. */
+/* Tables of a star for one stop, f-number and size of pixels. */
 struct glint_star_tables {
     int n_lines; /* 1 .. GLINT_MAX_BLADES, angles rising */
     const struct glint_star_line *line;
@@ -70,16 +71,18 @@ struct glint_star_tables {
     int32_t per_pixel_q16;      /* steps of a profile per pixel, at most 128 */
     int32_t pixels_q16;         /* pixels per step of a profile */
     int32_t core_per_pixel_q16; /* steps of the core per pixel, 1 .. 4 */
-    int32_t width_q8; /* pixels across profiles where they are half as bright */
-    int32_t inner_q8; /* radius in pixels within which 1 / r^2 grows no more */
-    /* log2 of the light times r^2, _q11, from halo_log2_q16 on; and the
+    /* Width of the profiles at half their brightness, pixels. */
+    int32_t width_q8;
+    int32_t inner_q8; /* radius in pixels within which 1 / r^2 does not grow any
+                         more */
+    /* log2 of the light times r^2, _q11, counted from halo_log2_q16; and the
      * largest of each row. */
     int32_t halo_log2_q16;
     uint16_t halo[GLINT_STAR_HALO_ROWS][GLINT_STAR_HALO_COLUMNS][3];
     uint16_t halo_most[GLINT_STAR_HALO_ROWS];
-    /* The core's half with y from 0 on; the other is its mirror in the middle.
-     * Numbers m 2^(e - 1), _q40: a sign, five bits of e, ten of m - 1024; m for
-     * e = 0. */
+    /* The half of the core with y from 0 on; the other half is its mirror image
+     * about the middle. Each is a number of 16 bits, _q40: a sign, five bits e,
+     * ten bits m. It is (m + 1024) 2^(e - 1), or m if e is 0. */
     uint16_t core[GLINT_STAR_CORE + 1][2 * GLINT_STAR_CORE + 1][3];
 };
 
@@ -89,13 +92,13 @@ struct glint_star_light {
     int32_t radius_q8;  /* radius of the lamp's disc, 0 .. 2^14 pixels, by which
                            lines are wider; below 0: no picture shows the lamp,
                            and its core is drawn as well */
-    /* light, in white times pixels; 2^30 at most count */
+    /* light, in white times pixels; more than 2^30 counts as 2^30 */
     struct glint_real power;
     int32_t rgb_q14[3]; /* colour, 0 .. 2^14 */
 };
 
 struct glint_star_config {
-    int n_workers;     /* workers of the flares to come, 1 .. 64 */
+    int n_workers;     /* number of workers of the flares to come, 1 .. 64 */
     int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
     int max_lights;    /* 1 .. GLINT_STAR_MAX_LIGHTS */
 };
@@ -103,29 +106,31 @@ struct glint_star_config {
 struct glint_star; /* opaque, in the caller's memory */
 struct glint_flare;
 
-/* Bytes that init takes for CFG, exactly; 0 if CFG is out of range. */
+/* Returns the exact number of bytes that init takes for CFG, or 0 if CFG is out
+ * of range. */
 size_t glint_star_bytes(const struct glint_star_config *cfg);
 
-/* Places a star in MEM[BYTES], aligned to 64; there is no finish.
+/* Places a star in MEM[BYTES], aligned to 64, which needs no finish.
  * GLINT_E_MEMORY: BYTES is too small. */
 enum glint_status glint_star_init(struct glint_star **star,
                                   const struct glint_star_config *cfg,
                                   void *mem, size_t bytes);
 
-/* What to draw of N lights; TABLES are kept, LIGHTS are not. Those beyond
- * max_lights are left out, and so is what stays below FAINTEST, display white,
- * 0 or 2^-21 and more. */
+/* Sets the N lights to draw; TABLES are kept, LIGHTS are not. Lights beyond
+ * max_lights are left out, and so is light below FAINTEST, in display white: 0,
+ * or 2^-21 and more. */
 void glint_star_set(struct glint_star *star,
                     const struct glint_star_tables *tables,
                     const struct glint_star_light *lights, int n,
                     struct glint_real faintest);
 
-/* Adds the star and, over it, what FLARE has binned, as glint_flare_draw()
- * does; where that has half the pixels, the star keeps all of them. */
+/* Adds the star and, over it, the flare that FLARE has binned, as
+ * glint_flare_draw() does; if that is drawn at half the size, the star is still
+ * drawn to all pixels. */
 void glint_star_draw(struct glint_star *star, struct glint_flare *flare,
                      const struct glint_image *image);
 
-/* The same without what FLARE has binned. */
+/* Adds the star without the flare that FLARE has binned. */
 void glint_star_draw_alone(struct glint_star *star, struct glint_flare *flare,
                            const struct glint_image *image);
 
