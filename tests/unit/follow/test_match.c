@@ -173,11 +173,97 @@ static void test_crowd(void **state)
     assert_in_range(n, MAX / 2, MAX);
 }
 
+/* A spot as far away as a seeker reaches is taken, and none beyond. */
+static void test_reach(void **state)
+{
+    static const int32_t way[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+
+    (void)state;
+    for (int k = 0; k < 4; k++)
+        for (int more = 0; more < 2; more++) {
+            match.n_seekers = 1;
+            match.seeker[0] = (struct glint_seeker){
+                .id = 1, .x_q8 = 50000, .y_q8 = 40000, .reach_q8 = 3000};
+            spot[0] =
+                (struct glint_spot){.x_q8 = 50000 + way[k][0] * (3000 + more),
+                                    .y_q8 = 40000 + way[k][1] * (3000 + more)};
+            glint_match_find(&match, spot, 1);
+            assert_int_equal(match.seeker[0].spot, more ? -1 : 0);
+        }
+}
+
+/* Seekers and spots at few places, so that most costs are equal. All spots of a
+ * place differ in one number. */
+static void scatter_alike(int n)
+{
+    match.n_seekers = n;
+    for (int i = 0; i < n; i++) {
+        match.seeker[i] =
+            (struct glint_seeker){.id = (uint32_t)(i * 7919 % 1021) + 1,
+                                  .x_q8 = rng_below(&seed, 4) << 8,
+                                  .y_q8 = rng_below(&seed, 4) << 8,
+                                  .reach_q8 = 2 << 8};
+        spot[i] = (struct glint_spot){.x_q8 = rng_below(&seed, 4) << 8,
+                                      .y_q8 = rng_below(&seed, 4) << 8,
+                                      .power_q16 = i};
+    }
+}
+
+/* Mixes the first N of THINGS, BYTES each. */
+static void mix(void *things, int n, size_t bytes)
+{
+    uint8_t *const at = things, kept[sizeof(struct glint_spot)];
+
+    assert_true(bytes <= sizeof kept);
+    for (int i = n - 1; i > 0; i--) {
+        const int j = rng_below(&seed, i + 1);
+
+        memcpy(kept, at + (size_t)i * bytes, bytes);
+        memcpy(at + (size_t)i * bytes, at + (size_t)j * bytes, bytes);
+        memcpy(at + (size_t)j * bytes, kept, bytes);
+    }
+}
+
+/* Sets POWER, by id, to that of each seeker's spot; -1: it has none. */
+static void take_powers(int64_t power[MAX + 1])
+{
+    for (int i = 0; i < match.n_seekers; i++) {
+        const int32_t at = match.seeker[i].spot;
+
+        power[match.seeker[i].id] = at < 0 ? -1 : spot[at].power_q16;
+    }
+}
+
+/* Of pairs that cost the same, ids and what is in the spots decide, and not the
+ * order in which either comes. */
+static void test_order_is_no_matter(void **state)
+{
+    static int64_t power[MAX + 1], again[MAX + 1];
+
+    (void)state;
+    for (int round = 0; round < 100; round++) {
+        const int n = 1 + rng_below(&seed, 60);
+
+        scatter_alike(n);
+        glint_match_find(&match, spot, n);
+        memset(power, 0, sizeof power);
+        memset(again, 0, sizeof again);
+        take_powers(power);
+        mix(match.seeker, n, sizeof *match.seeker);
+        mix(spot, n, sizeof *spot);
+        glint_match_find(&match, spot, n);
+        take_powers(again);
+        assert_memory_equal(power, again, sizeof power);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_against_all_pairs),
         cmocka_unit_test(test_crowd),
+        cmocka_unit_test(test_reach),
+        cmocka_unit_test(test_order_is_no_matter),
     };
 
     return cmocka_run_group_tests_name("match", tests, set_up, tear_down);

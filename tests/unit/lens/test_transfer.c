@@ -1,0 +1,491 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Rays through models, and the vertices they become: integers that are worked
+ * out by hand.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/flare.h"
+#include "glint/transfer.h"
+#include "support/model_builder.h"
+#include "support/rng.h"
+#include "support/shuffle.h"
+
+static struct glint_lens open_image(const struct model_image *m)
+{
+    struct glint_lens lens;
+    const char *reason = NULL;
+
+    if (glint_lens_open(&lens, m->data, m->bytes, &reason) != GLINT_OK)
+        fail_msg("%s", reason);
+    return lens;
+}
+
+/* --------------------------------------------------------------------- rays */
+
+enum { ONE = MODEL_ONE_Q30 };
+
+static struct glint_outputs ray(const struct glint_transfer *t, int32_t u,
+                                int32_t v)
+{
+    struct glint_outputs out;
+
+    glint_transfer_ray(t, u, v, &out);
+    return out;
+}
+
+/* Rays of the first range of angles: s is -1 .. 1 over sines of 0 .. 1/4. */
+static void test_rays(void **state)
+{
+    struct model_image m = model_auto();
+    const struct glint_lens lens = open_image(&m);
+    static struct glint_transfer t;
+    struct glint_outputs out;
+
+    (void)state;
+    /* s = -1, w = -1: sensor x is 0.25 + 0.5 u + 0.125 v^2 */
+    assert_int_equal(glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24),
+                     1);
+    out = ray(&t, 0, 0);
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 1 << 26);
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 0);
+    assert_int_equal(out.at[GLINT_OUT_ENERGY], 1 << 27); /* 0.5 - 0.25 */
+    assert_int_equal(out.at[GLINT_OUT_BARREL_0], 1 << 27);
+    assert_int_equal(out.at[GLINT_OUT_BARREL_1], 0);
+    assert_int_equal(out.at[GLINT_OUT_RADIUS], 0);
+    out = ray(&t, ONE, ONE);
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 234881024); /* 0.875 mm */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 201326592); /* 0.75 mm */
+    assert_int_equal(out.at[GLINT_OUT_STOP_X], 268435456);   /* 0.5 */
+    assert_int_equal(out.at[GLINT_OUT_STOP_Y], 201326592);   /* 0.375 */
+    assert_int_equal(out.at[GLINT_OUT_BARREL_0], 268435456); /* 1: at the rim */
+    out = ray(&t, -ONE, ONE / 2);
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], -58720256); /* -0.21875 mm */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 33554432);  /* 0.125 mm */
+    assert_int_equal(out.at[GLINT_OUT_STOP_X], -268435456);
+    assert_int_equal(out.at[GLINT_OUT_STOP_Y], 125829120); /* 0.234375 */
+    /* s = 0, w = 1 */
+    glint_transfer_init(&t, &lens, 0, ONE / 8, MODEL_WAVE_HI_Q24);
+    out = ray(&t, ONE, -ONE);
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 201326592);  /* 0.75 mm */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], -201326592); /* -0.75 mm */
+    assert_int_equal(out.at[GLINT_OUT_ENERGY], 3 << 27);
+    free(m.data);
+}
+
+/* An energy is its polynomial, the square of it or the square of the square,
+ * and counts 2^head times: half of the most must give a half, a quarter or a
+ * sixteenth, and what is below 0 must give 0. */
+static void test_roots(void **state)
+{
+    const int32_t half = (1 << 28) / 2; /* half of 2^(29 - head), head 1 */
+    /* The polynomial is 2^-8, so that energies are 2^-8, 2^-16 and 2^-32. */
+    static const int scale[3] = {-8 - 28, -16 - 27, -32 - 25};
+
+    (void)state;
+    for (int roots = 0; roots <= 2; roots++)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            struct model_image m = model_auto();
+            const struct glint_model_system *s =
+                (const void *)(m.data + model_header(&m)->system_at);
+            struct glint_model_output *o =
+                (void *)(m.data + s->output_at + 4 * sizeof *o);
+            int32_t *coef = (void *)(m.data + o->coef_at);
+            static struct glint_transfer t;
+            struct glint_lens lens;
+
+            assert_int_equal(o->kind, GLINT_OUT_ENERGY);
+            o->head = 1;
+            o->roots = (uint8_t)roots;
+            coef[0] = sign * half;
+            coef[1] = 0;
+            model_seal(&m);
+            lens = open_image(&m);
+            assert_int_equal(
+                glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24), 1);
+            assert_int_equal(ray(&t, 0, 0).at[GLINT_OUT_ENERGY],
+                             sign < 0 ? 0 : (1 << 29) >> (1 << roots));
+            assert_int_equal(t.exponent[GLINT_OUT_ENERGY], scale[roots]);
+            free(m.data);
+        }
+}
+
+/* Stores the last coefficients of output O as int16, in the same place. */
+static void narrow(struct model_image *m, struct glint_model_output *o, int n,
+                   int shift)
+{
+    int32_t *const coef = (void *)(m->data + o->coef_at);
+    int32_t last[2];
+
+    memcpy(last, coef + o->n_terms - n, (size_t)n * sizeof *last);
+    for (int k = 0; k < n; k++) {
+        const int16_t code = (int16_t)(last[k] >> shift);
+
+        assert_int_equal(code * (1 << shift), last[k]);
+        memcpy((int16_t *)(void *)(coef + o->n_terms - n) + k, &code,
+               sizeof code);
+    }
+    o->n_narrow = (uint8_t)n;
+    o->narrow_shift = (uint8_t)shift;
+}
+
+/* Coefficients of 16 bits must give the rays of the same ones of 32. */
+static void test_narrow(void **state)
+{
+    struct model_image wide = model_auto(), m = model_auto();
+    const struct glint_lens lens = open_image(&wide);
+    struct glint_lens narrowed;
+    static struct glint_transfer t[2];
+
+    (void)state;
+    for (uint32_t k = 0; k < lens.system->n_outputs; k++) {
+        struct glint_model_output *const o =
+            (struct glint_model_output *)(void *)(m.data +
+                                                  lens.system->output_at) +
+            k;
+
+        narrow(&m, o, o->n_terms > 1 ? 2 : 1, o->n_terms > 2 ? 13 : 14);
+    }
+    model_seal(&m);
+    narrowed = open_image(&m);
+    glint_transfer_init(&t[0], &lens, 0, ONE / 7, MODEL_WAVE_LO_Q24 + 12345);
+    glint_transfer_init(&t[1], &narrowed, 0, ONE / 7,
+                        MODEL_WAVE_LO_Q24 + 12345);
+    for (int k = -3; k <= 3; k++) {
+        const struct glint_outputs a = ray(&t[0], ONE / 3 * k, ONE / 5 * k);
+        const struct glint_outputs b = ray(&t[1], ONE / 3 * k, ONE / 5 * k);
+
+        for (int i = 0; i < GLINT_OUT_KINDS; i++)
+            if (t[0].outputs >> i & 1)
+                assert_int_equal(a.at[i], b.at[i]);
+    }
+    free(wide.data);
+    free(m.data);
+}
+
+/* A transfer must take system and box by the ranges of angles and bands. */
+static void test_init(void **state)
+{
+    struct model_image m = model_auto();
+    const struct glint_lens lens = open_image(&m);
+    static struct glint_transfer t;
+    const int32_t middle = (MODEL_WAVE_LO_Q24 + MODEL_WAVE_HI_Q24) / 2;
+
+    (void)state;
+    assert_int_equal(
+        glint_transfer_init(&t, &lens, 0, ONE / 2 + 1, MODEL_WAVE_LO_Q24), 0);
+    assert_int_equal(glint_transfer_init(&t, &lens, 0, ONE, middle), 0);
+    assert_int_equal(glint_transfer_init(&t, &lens, 1, 0, middle), 0);
+    assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8 - 1, middle), 0);
+    assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8, middle + 1), 1);
+    assert_ptr_equal(t.system, &lens.system[3]);
+    assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8, middle), 1);
+    assert_ptr_equal(t.system, &lens.system[3]);
+    assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8, middle - 1), 1);
+    assert_ptr_equal(t.system, &lens.system[2]);
+    assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8, INT32_MIN), 1);
+    assert_ptr_equal(t.system, &lens.system[2]);
+    assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8, INT32_MAX), 1);
+    assert_ptr_equal(t.system, &lens.system[3]);
+    ((struct glint_model_system *)(uintptr_t)&lens.system[3])->wave_lo_q24++;
+    assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8, middle), 0);
+    assert_int_equal(glint_transfer_init(&t, &lens, 0, ONE / 2, middle), 1);
+    assert_ptr_equal(t.system, &lens.system[1]);
+    /* s = 1, w = 0, coefficients halved */
+    assert_int_equal(ray(&t, ONE, ONE).at[GLINT_OUT_SENSOR_X], 5 << 24);
+    assert_int_equal(ray(&t, 0, 0).at[GLINT_OUT_ENERGY], 1 << 27);
+    assert_int_equal(t.box[0], 3 << 19); /* 1.5 mm */
+    assert_int_equal(t.box[1], 3 << 20);
+    assert_int_equal(t.box[2], 3 << 20);
+    assert_int_equal(t.box_exponent, -20);
+    free(m.data);
+}
+
+static void test_sparse_rays(void **state)
+{
+    struct model_image m = model_sparse();
+    const struct glint_lens lens = open_image(&m);
+    static struct glint_transfer t;
+    struct glint_outputs out;
+
+    (void)state;
+    assert_int_equal(glint_transfer_init(&t, &lens, 0, 0, 1), 1);
+    out = ray(&t, ONE, ONE);                                 /* x = y = r = 1 */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 201326592); /* 0.75 mm */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 134217728);
+    assert_int_equal(out.at[GLINT_OUT_STOP_X], 0);
+    out = ray(&t, ONE / 2, 0);                               /* r = 1/2 */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 100663296); /* 0.375 mm */
+    assert_int_equal(out.at[GLINT_OUT_STOP_X], 134217728);   /* 0.25 */
+    assert_int_equal(out.at[GLINT_OUT_STOP_Y], 0);
+    assert_int_equal(out.at[GLINT_OUT_RADIUS], 134217728);
+    /* Halfway between the knots of 1/4 and 1/2 the box has its middle at 0.375
+     * and halves of 0.5 and 0.75. */
+    assert_int_equal(glint_transfer_init(&t, &lens, 0, 3 * (ONE / 8), 1), 1);
+    assert_int_equal(t.box[0], 3 * (ONE / 8));
+    assert_int_equal(t.box[1], ONE / 2);
+    assert_int_equal(t.box[2], 3 * (ONE / 4));
+    out = ray(&t, -3 * (ONE / 4), 0); /* x = y = 0 */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 0);
+    assert_int_equal(out.at[GLINT_OUT_ENERGY], 3 << 26);
+    out = ray(&t, -3 * (ONE / 4), -ONE);
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], -100663296); /* -0.375 mm */
+    free(m.data);
+}
+
+/* Sets coefficients and box to the largest values allowed, signs by SEED. */
+static void fill_up(struct model_image *m, uint32_t *seed)
+{
+    const struct glint_model_header *h = model_header(m);
+    const struct glint_model_system *s = (const void *)(m->data + h->system_at);
+    const struct glint_model_output *o = (const void *)(m->data + s->output_at);
+    int32_t *box = (void *)(m->data + s->box_at);
+    uint32_t n_sets = s->n_knots ? s->n_knots : 1;
+
+    for (uint32_t k = 0; k < s->n_outputs; k++) {
+        int32_t *coef = (void *)(m->data + o[k].coef_at);
+        int32_t left = ONE - 1;
+
+        for (uint32_t c = 0; c < n_sets * o[k].n_terms; c++) {
+            const int last = (c + 1) % o[k].n_terms == 0;
+            const int32_t size =
+                last ? left : (int32_t)(rng_xorshift(seed) % (uint32_t)left);
+
+            coef[c] = rng_xorshift(seed) % 2 ? size : -size;
+            left = last ? ONE - 1 : left - size;
+        }
+    }
+    for (uint32_t k = 0; k < s->n_knots; k++) {
+        box[3 * k + 1] = (int32_t)(rng_xorshift(seed) % ONE);
+        box[3 * k] = rng_xorshift(seed) % 2 ? ONE - box[3 * k + 1]
+                                            : box[3 * k + 1] - ONE;
+        box[3 * k + 2] = ONE;
+    }
+    model_seal(m);
+}
+
+/* No output may leave its range; CONFIG=qcheck looks at every step. */
+static void test_extremes(void **state)
+{
+    struct model_image m[2] = {model_auto(), model_sparse()};
+    static struct glint_transfer t;
+    uint32_t seed = 1;
+
+    (void)state;
+    for (int k = 0; k < 20000; k++) {
+        const int32_t sine_q30 = (int32_t)(rng_xorshift(&seed) % (ONE / 4));
+        const int32_t wave_q24 = (int32_t)(rng_xorshift(&seed) >> 4);
+        const int32_t u_q30 = k % 3 ? ONE * (k % 3 * 2 - 3) : sine_q30;
+        const int32_t v_q30 = k % 5 ? -ONE : sine_q30 * 2;
+        struct glint_outputs out;
+        struct glint_lens lens;
+
+        if (k % 20 < 2)
+            fill_up(&m[k % 2], &seed);
+        lens = open_image(&m[k % 2]);
+        assert_int_equal(glint_transfer_init(&t, &lens, 0, sine_q30, wave_q24),
+                         1);
+        out = ray(&t, u_q30, v_q30);
+        for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+            assert_in_range((int64_t)out.at[kind] + 2 * (int64_t)ONE,
+                            (uint64_t)ONE - 8, 3 * (uint64_t)ONE + 8);
+    }
+    free(m[0].data);
+    free(m[1].data);
+}
+
+/* ----------------------------------------------------------------- vertices */
+
+/* Returns a place of 64 pixels a millimetre about (1000, 500). */
+static struct glint_place upright(void)
+{
+    const struct glint_place place = {.cos_q30 = ONE,
+                                      .pixels_per_mm = {1 << 30, -24},
+                                      .middle_x_q8 = 1000 << 8,
+                                      .middle_y_q8 = 500 << 8};
+
+    return place;
+}
+
+static void test_grid(void **state)
+{
+    struct model_image m = model_auto();
+    const struct glint_lens lens = open_image(&m);
+    struct glint_place place = upright();
+    static struct glint_transfer t;
+    struct glint_vertex v[9], turned[9];
+
+    (void)state;
+    glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_HI_Q24);
+    glint_transfer_grid(&t, &place, 2, v);
+    /* u = v = 1: sensor (0.875, 0.75) mm, stop (0.5, 0.375) */
+    assert_int_equal(v[8].x_q8, (1000 + 56) << 8);
+    assert_int_equal(v[8].y_q8, (500 - 48) << 8);
+    assert_int_equal(v[8].stop_x_q16, 32768);
+    assert_int_equal(v[8].stop_y_q16, 24576);
+    assert_int_equal(v[8].barrel_q16[0], 65536);
+    assert_int_equal(v[8].barrel_q16[1], 0);
+    assert_int_equal(v[8].energy_q16, 49152);
+    /* u = -1, v = 1: sensor (-0.125, 0.25) mm; v rises from row to row */
+    assert_int_equal(v[6].x_q8, (1000 - 8) << 8);
+    assert_int_equal(v[6].y_q8, (500 - 16) << 8);
+    /* The first row is the last one mirrored in the plane of the light. */
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(v[i].x_q8, v[6 + i].x_q8);
+        assert_int_equal(v[i].y_q8 - (500 << 8), (500 << 8) - v[6 + i].y_q8);
+        assert_int_equal(v[i].stop_x_q16, v[6 + i].stop_x_q16);
+        assert_int_equal(v[i].stop_y_q16, -v[6 + i].stop_y_q16);
+        assert_int_equal(v[3 + i].y_q8, 500 << 8);
+    }
+    place.cos_q30 = 0;
+    place.sin_q30 = ONE; /* light above: x becomes up, y left */
+    glint_transfer_grid(&t, &place, 2, turned);
+    for (int k = 0; k < 9; k++) {
+        assert_int_equal(turned[k].x_q8 - (1000 << 8), v[k].y_q8 - (500 << 8));
+        assert_int_equal(turned[k].y_q8 - (500 << 8), (1000 << 8) - v[k].x_q8);
+        assert_int_equal(turned[k].stop_x_q16, -v[k].stop_y_q16);
+        assert_int_equal(turned[k].stop_y_q16, v[k].stop_x_q16);
+        assert_int_equal(turned[k].energy_q16, v[k].energy_q16);
+    }
+    free(m.data);
+}
+
+/* Rows of an annular grid lie between its rim and that of the box, on both
+ * sides. They must have the vertices of a finer grid of the whole box. */
+static void test_hollow_grid(void **state)
+{
+    enum { N = 16, NODES = N + 1, ANNULUS = 3, SHELL = 6 };
+    struct model_image m = model_auto();
+    const struct glint_lens lens = open_image(&m);
+    const struct glint_place place = upright();
+    static struct glint_transfer t;
+    static struct glint_vertex whole[NODES][NODES], shell[SHELL + 1][SHELL + 1];
+
+    (void)state;
+    glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_HI_Q24);
+    glint_transfer_grid(&t, &place, N, whole[0]);
+    t.annulus = ANNULUS;
+    glint_transfer_grid(&t, &place, SHELL, shell[0]);
+    for (int j = 0; j <= SHELL; j++)
+        for (int i = 0; i <= SHELL; i += SHELL / 2) {
+            const struct glint_vertex *v = &shell[j][i];
+            const struct glint_vertex *same =
+                &whole[2 * j < SHELL ? j : N - (SHELL - j)][i * N / SHELL];
+
+            assert_int_equal(v->energy_q16,
+                             2 * j == SHELL ? -1 : same->energy_q16);
+            if (2 * j != SHELL) {
+                assert_true(v->energy_q16 > 0);
+                assert_int_equal(v->x_q8, same->x_q8);
+                assert_int_equal(v->y_q8, same->y_q8);
+                assert_int_equal(v->stop_y_q16, same->stop_y_q16);
+            }
+        }
+    free(m.data);
+}
+
+/* A grid of the sparse basis is not mirrored, and squares its radius. */
+static void test_sparse_grid(void **state)
+{
+    struct model_image m = model_sparse();
+    const struct glint_lens lens = open_image(&m);
+    const struct glint_place place = upright();
+    static struct glint_transfer t;
+    struct glint_vertex v[4];
+
+    (void)state;
+    glint_transfer_init(&t, &lens, 0, 0, 1);
+    glint_transfer_grid(&t, &place, 1, v);
+    for (int k = 0; k < 4; k++) {
+        assert_int_equal(v[k].barrel_q16[0], 65536);
+        assert_int_equal(v[k].energy_q16, 65536);
+        assert_int_equal(v[k].y_q8, (500 + (k < 2 ? 32 : -32)) << 8);
+        assert_int_equal(v[k].x_q8, (1000 + (k % 2 ? 48 : -16)) << 8);
+    }
+    free(m.data);
+}
+
+static void test_lost(void **state)
+{
+    struct model_image m = model_auto();
+    const struct glint_lens lens = open_image(&m);
+    struct glint_place place = upright();
+    static struct glint_transfer t;
+    struct glint_vertex v[4];
+
+    (void)state;
+    glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_HI_Q24);
+    place.pixels_per_mm.exponent = -10; /* 2^20 pixels a millimetre */
+    glint_transfer_grid(&t, &place, 1, v);
+    assert_true(v[1].energy_q16 < 0 && v[3].energy_q16 < 0);
+    assert_true(v[0].energy_q16 > 0 && v[2].energy_q16 > 0); /* 0.25 mm off */
+    for (int e = -200; e <= 200; e++) {
+        place.pixels_per_mm.exponent = e;
+        glint_transfer_grid(&t, &place, 1, v);
+        assert_true((v[3].energy_q16 < 0) == (e >= -10));
+    }
+    free(m.data);
+}
+
+/* Between two knots with sums of 2^30 - 1 the sum is 2^30, as two coefficients
+ * are rounded up: shifted by 31 it must round to 1/65536. */
+static void test_strays_between_knots(void **state)
+{
+    static const int32_t sum[2][2] = {{1, ONE - 2}, {2, ONE - 3}};
+    struct model_image m = model_sparse();
+    struct glint_model_system *s =
+        (void *)(m.data + model_header(&m)->system_at);
+    struct glint_model_output *o = (void *)(m.data + s->output_at);
+    const uint16_t one_and_x[2] = {0, MODEL_POWER(1, 0, 0, 0)};
+    int32_t coef[MODEL_KNOTS][2];
+    static struct glint_transfer t;
+    struct glint_vertex v[4];
+    struct glint_lens lens;
+
+    (void)state;
+    for (int knot = 0; knot < MODEL_KNOTS; knot++)
+        memcpy(coef[knot], sum[knot % 2], sizeof sum[0]);
+    o[5].kind = GLINT_OUT_BARREL_0; /* in place of the radius */
+    o[5].n_terms = 2;
+    o[5].exponent = -47;
+    o[5].term_at = model_put(&m, one_and_x, sizeof one_and_x);
+    o[5].coef_at = model_put(&m, coef, sizeof coef);
+    model_seal(&m);
+    lens = open_image(&m);
+    assert_int_equal(glint_transfer_init(&t, &lens, 0, ONE / 8, 1), 1);
+    assert_int_equal(ray(&t, ONE, 0).at[GLINT_OUT_BARREL_0], ONE);
+    glint_transfer_grid(
+        &t, &(struct glint_place){.cos_q30 = ONE, .pixels_per_mm = {ONE, -40}},
+        1, v);
+    for (int k = 1; k < 4; k += 2) { /* vertices at x = 1 */
+        assert_true(v[k].energy_q16 >= 0);
+        assert_int_equal(v[k].barrel_q16[0], 1);
+    }
+    free(m.data);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rays),
+        cmocka_unit_test(test_roots),
+        cmocka_unit_test(test_narrow),
+        cmocka_unit_test(test_init),
+        cmocka_unit_test(test_sparse_rays),
+        cmocka_unit_test(test_extremes),
+        cmocka_unit_test(test_grid),
+        cmocka_unit_test(test_hollow_grid),
+        cmocka_unit_test(test_sparse_grid),
+        cmocka_unit_test(test_lost),
+        cmocka_unit_test(test_strays_between_knots),
+    };
+
+    return cmocka_run_group_tests_name("transfer", tests, NULL, NULL);
+}
