@@ -23,6 +23,7 @@ endif
 # Calls that tests answer themselves, or let fail.
 $(OUT)/tests/unit/test_fbdev: LDFLAGS += -Wl,--wrap=open64,--wrap=ioctl \
         -Wl,--wrap=mmap64,--wrap=munmap,--wrap=malloc
+$(OUT)/tests/unit/test_output: LDFLAGS += -Wl,--wrap=close
 $(OUT)/tests/unit/test_workers: LDFLAGS += -Wl,--wrap=pthread_create
 $(OUT)/tests/unit/test_sinks: LDFLAGS += -Wl,--wrap=ioctl,--wrap=write
 FAKE_CAMERA := ioctl open64 stat64 close read mmap64 munmap malloc calloc \
@@ -77,7 +78,7 @@ mutants: $(test_bins)
 	@tests/mutants/run $(OUT) $(MUTANTS)
 # What valgrind says of memory that was never written, which no sanitizer of
 # gcc's does: the run-time half, what reads files, and the fuzzers' corpora.
-VALGRIND := $(filter arena kernels model curve resolve lamp_finder flare flare_light flare_room plan lights pnm y4m \
+VALGRIND := $(filter arena kernels model transfer curve resolve lamp_finder flare flare_light flare_room plan lights pnm y4m \
         picture bright match lamps mjpeg config prescription trace,$(UNIT))
 check-valgrind:
 	@tools/make/deps "memory checks" gcc libc6-dev valgrind libcmocka-dev \

@@ -575,8 +575,6 @@ static int stream(bool on)
     return 0;
 }
 
-int __real_close(int fd);
-
 static int export(struct v4l2_exportbuffer *e)
 {
     e->fd = __real_open64("/dev/null", O_RDWR);
@@ -691,7 +689,6 @@ int __wrap_stat64(const char *path, struct stat *st)
 }
 
 /* Closes as the kernel does: the stream stops, buffers that are mapped stay. */
-int __wrap_close(int fd);
 int __wrap_close(int fd)
 {
     if (fd == camera.fd && fd >= 0) {

@@ -16,6 +16,8 @@ int __real_ioctl(int fd, unsigned long request, ...);
 int __wrap_ioctl(int fd, unsigned long request, ...);
 int __real_open64(const char *path, int flags, ...);
 int __wrap_open64(const char *path, int flags, ...);
+int __real_close(int fd);
+int __wrap_close(int fd);
 
 void *__real_mmap64(void *at, size_t bytes, int how, int flags, int fd,
                     off_t offset);

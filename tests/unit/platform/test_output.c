@@ -2,17 +2,21 @@
  *
  * Output files must be whole or not be there, whatever goes wrong.
  */
+/* NOLINTNEXTLINE(bugprone-reserved-identifier): flock */
+#define _DEFAULT_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
 
+#include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -20,9 +24,20 @@
 
 #include "posix/input.h"
 #include "posix/output.h"
+#include "support/fakes/wrapped.h"
 #include "support/scratch.h"
 
 static char path[64];
+static int close_errno; /* the next close() fails with this; 0: it does not */
+
+int __wrap_close(int fd)
+{
+    const int number = close_errno, result = __real_close(fd);
+
+    close_errno = 0;
+    errno = number ? number : errno;
+    return number ? -1 : result;
+}
 
 static int enter(void **state)
 {
@@ -110,7 +125,7 @@ static void test_replaces_at_commit(void **state)
 
     (void)state;
     put_file("old");
-    chmod(path, 0600);
+    chmod(path, 0604);
     open_text(&out, "new");
     expect_file("old");
     glint_output_abort(&out);
@@ -118,8 +133,88 @@ static void test_replaces_at_commit(void **state)
     open_text(&out, "new");
     assert_int_equal(glint_output_commit(&out, &error), GLINT_OK);
     expect_file("new");
-    assert_int_equal(mode_of(path), 0600);
+    assert_int_equal(mode_of(path), 0604);
     assert_int_equal(scratch_count(scratch_dir), 1);
+    unlink(path);
+}
+
+/* A temporary file is locked, so that no other process takes it for one that
+ * was left behind. */
+static void test_locked(void **state)
+{
+    struct glint_output out;
+    int fd;
+
+    (void)state;
+    open_text(&out, "one");
+    fd = open(out.tmp, O_RDONLY);
+    assert_true(fd >= 0);
+    assert_int_equal(flock(fd, LOCK_EX | LOCK_NB), -1);
+    glint_output_abort(&out);
+    assert_int_equal(flock(fd, LOCK_EX | LOCK_NB), 0);
+    close(fd);
+}
+
+/* A temporary name that somebody else has taken is left alone. */
+static void test_taken_name(void **state)
+{
+    struct glint_error error;
+    struct glint_output out;
+    char taken[80];
+    unsigned n;
+
+    (void)state;
+    open_text(&out, "one");
+    assert_int_equal(sscanf(strrchr(out.tmp, '-'), "-%u", &n), 1);
+    glint_output_abort(&out);
+    put_file("theirs");
+    snprintf(taken, sizeof taken, "%s/.glint-%ld-%u.ppm", scratch_dir,
+             (long)getpid(), n + 1);
+    assert_int_equal(rename(path, taken), 0);
+    open_text(&out, "ours");
+    assert_string_not_equal(out.tmp, taken);
+    assert_int_equal(glint_output_commit(&out, &error), GLINT_OK);
+    expect_file("ours");
+    assert_int_equal(rename(taken, path), 0);
+    expect_file("theirs");
+    unlink(path);
+}
+
+/* What was flushed is there before the end, and once. */
+static void test_flush(void **state)
+{
+    struct glint_error error;
+    struct glint_output out;
+    struct stat st;
+
+    (void)state;
+    open_text(&out, "one");
+    assert_int_equal(glint_output_flush(&out, &error), GLINT_OK);
+    assert_int_equal(stat(out.tmp, &st), 0);
+    assert_int_equal(st.st_size, 3);
+    assert_int_equal(glint_output_write(&out, "two", 3, &error), GLINT_OK);
+    assert_int_equal(glint_output_commit(&out, &error), GLINT_OK);
+    expect_file("onetwo");
+    unlink(path);
+}
+
+/* Some file systems say only at close() that data has been lost. */
+static void test_close_fails(void **state)
+{
+    struct glint_error error;
+    struct glint_output out;
+
+    (void)state;
+    put_file("old");
+    open_text(&out, "new");
+    close_errno = EIO;
+    assert_int_equal(glint_output_commit(&out, &error), GLINT_E_OUTPUT);
+    expect_file("old");
+    assert_int_equal(scratch_count(scratch_dir), 1);
+    open_text(&out, "new");
+    close_errno = EINTR;
+    assert_int_equal(glint_output_commit(&out, &error), GLINT_OK);
+    expect_file("new");
     unlink(path);
 }
 
@@ -432,6 +527,10 @@ int main(void)
         cmocka_unit_test(test_commit),
         cmocka_unit_test(test_abort),
         cmocka_unit_test(test_replaces_at_commit),
+        cmocka_unit_test(test_locked),
+        cmocka_unit_test(test_taken_name),
+        cmocka_unit_test(test_flush),
+        cmocka_unit_test(test_close_fails),
         cmocka_unit_test(test_follows_links),
         cmocka_unit_test(test_sizes),
         cmocka_unit_test(test_full_device),
