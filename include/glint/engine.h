@@ -65,8 +65,8 @@ struct glint_engine_config {
     int by_hand;
 
     /* The star around each lamp, of light that the stop's edges diffract: times
-     * as much as physics has, where strength is 0.5 or the exposure 0; 0:
-     * none. */
+     * as much as physics has, where strength is 0.5 or the exposure 0; 1 by
+     * default, 0: none. */
     double starburst;
 
     struct glint_dials dials;

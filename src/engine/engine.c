@@ -40,6 +40,7 @@ void glint_engine_defaults(struct glint_engine_config *cfg, int width,
                                         .max_found = 16,
                                         .strength = 0.5,
                                         .gain = 1,
+                                        .starburst = 1,
                                         .dials = glint_dials_at(1 << 14)};
 }
 
@@ -154,6 +155,9 @@ static enum glint_status make(struct glint_engine *e,
     if (status == GLINT_OK && c->arena_bytes)
         status = glint_frame_reserve(&e->frame, c->arena, c->arena_bytes,
                                      GLINT_ENGINE_MAX_LAMPS, 2 * c->max_found);
+    e->frame.star.share = e->starburst;
+    if (status == GLINT_OK)
+        status = glint_frame_star_hold(&e->frame, 2 * c->max_found);
     if (status != GLINT_OK)
         snprintf(error->text, sizeof error->text, "%s",
                  glint_status_text(status));
@@ -339,7 +343,9 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
     f->star.share = glint_strength_star(&e->strength, e->starburst);
     for (int i = 0; i < n && is_found; i++)
         e->seen_px[i] = e->detector.track[i].size_q8 / 256.0;
-    f->star.seen_px = is_found ? e->seen_px : NULL;
+    f->star.seen_px =
+        is_found && e->detector.headroom_ev < 0 ? e->seen_px : NULL;
+    f->star.level = is_found ? e->level : NULL;
     if (f->budget.ms <= 0) { /* there is time for a picture by itself */
         const bool is_still = !is_found || !e->elapsed_us;
 

@@ -37,7 +37,8 @@ static void check_lamps(const struct lamp_list *list, int frame)
 {
     const struct glint_view view = {640, 360, 36};
     struct glint_lamp lamp[ROWS];
-    const int n = lamp_list_frame(list, frame, &view, 50, lamp, NULL, ROWS);
+    const int n =
+        lamp_list_frame(list, frame, &view, 50, lamp, NULL, NULL, ROWS);
 
     require(n >= 0 && n <= list->n && n <= ROWS);
     for (int i = 0; i < n; i++) {

@@ -319,7 +319,7 @@ static int read_lamps(struct tool *tool, struct render *r)
         r->lamp = all;
         r->n_lamps +=
             lamp_list_frame(&list, 0, &view, r->settings.setup.optics.focal_mm,
-                            all + r->n_lamps, NULL, list.n);
+                            all + r->n_lamps, NULL, NULL, list.n);
     }
     lamp_list_free(&list);
     return all ? EXIT_OK : tool_fail(tool, GLINT_E_MEMORY, NULL);

@@ -35,8 +35,8 @@ static char *next_field(char **rest)
 const char *lamp_columns_read(struct lamp_columns *c, const char *heading)
 {
     static const char *const names[] = {
-        "frame", "x",  "y",     "power", "r",     "g", "b",
-        "size",  "id", "shape", "turn",  "level", NULL};
+        "frame", "x",  "y",     "power", "r",     "g",    "b",
+        "size",  "id", "shape", "turn",  "level", "seen", NULL};
     char copy[256], *rest = copy, *name;
     unsigned seen = 0;
 
@@ -56,7 +56,7 @@ const char *lamp_columns_read(struct lamp_columns *c, const char *heading)
     for (int i = 0; i < c->n; i++)
         if (c->field[i] < 0)
             return "a column is none of frame x y power r g b size id shape "
-                   "turn level";
+                   "turn level seen";
     return (seen & 0xf) == 0xf && !name
                ? NULL
                : "columns frame, x, y and power are needed, each once";
@@ -179,6 +179,7 @@ bool lamp_keys_at(const struct lamp_list *list, int i, int frame,
     row->shape = between(a->shape, b->shape, t);
     row->turn = a->turn + t * remainder(b->turn - a->turn, 180);
     row->level = between(a->level, b->level, t);
+    row->seen = between(a->seen, b->seen, t);
     row->power = a->power > 0 && b->power > 0
                      ? exp2(between(log2(a->power), log2(b->power), t))
                      : between(a->power, b->power, t);

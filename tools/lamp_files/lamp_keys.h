@@ -20,9 +20,16 @@
 
 #include "lamp_files/lamp_list.h"
 
-/* Numbers of the fields after the 8 of a plain list: "id", and "shape", "turn"
- * and "level", which need a heading. */
-enum { LAMP_ID = 8, LAMP_SHAPE, LAMP_TURN, LAMP_LEVEL, LAMP_COLUMNS };
+/* Numbers of the fields after the 8 of a plain list: "id", and "shape", "turn",
+ * "level" and "seen", which need a heading. */
+enum {
+    LAMP_ID = 8,
+    LAMP_SHAPE,
+    LAMP_TURN,
+    LAMP_LEVEL,
+    LAMP_SEEN,
+    LAMP_COLUMNS
+};
 
 /* The number of the field in each of N columns; N is 0 without a heading that
  * has an id. */

@@ -29,6 +29,7 @@ static struct lamp_row row_of(const double *v)
                              .shape = v[LAMP_SHAPE],
                              .turn = v[LAMP_TURN],
                              .level = v[LAMP_LEVEL],
+                             .seen = v[LAMP_SEEN],
                              .id = (uint32_t)v[LAMP_ID],
                              .next = -1};
 }
@@ -60,6 +61,8 @@ static const char *check_row(const double *v)
         return "power, also times r, g or b, must be 0 to 1e30";
     if (!(v[LAMP_LEVEL] > 0 && v[LAMP_LEVEL] <= 1))
         return "level must be above 0 and up to 1";
+    if (!(v[LAMP_SEEN] >= 0 && v[LAMP_SEEN] <= 1e6))
+        return "seen must be 0 to a million pixels";
     if (!(v[LAMP_SHAPE] >= 0 && v[LAMP_SHAPE] <= 1))
         return "shape must be 0 to 1";
     return v[7] >= 0 && v[7] <= 1e6 ? NULL
@@ -281,7 +284,8 @@ static void set_shape(struct glint_lamp *lamp, const struct lamp_row *r,
 
 int lamp_list_frame(const struct lamp_list *list, int frame,
                     const struct glint_view *view, double focal_mm,
-                    struct glint_lamp *lamps, double *level, int max)
+                    struct glint_lamp *lamps, double *level, double *seen_px,
+                    int max)
 {
     int n = 0;
 
@@ -296,6 +300,8 @@ int lamp_list_frame(const struct lamp_list *list, int frame,
         set_shape(&lamps[n], &r, glint_view_pixel_tangent(view, focal_mm));
         if (level)
             level[n] = r.level;
+        if (seen_px)
+            seen_px[n] = r.seen;
         n++;
     }
     return n;

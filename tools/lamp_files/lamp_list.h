@@ -26,8 +26,10 @@ struct lamp_row {
     double shape; /* minor axis of the lamp over its major one, 0 .. 1 */
     double turn;  /* degrees of the major axis from +x; 90 is up */
     double level; /* share of the power that a lamp coming or going has */
-    uint32_t id;  /* 0: none */
-    int next;     /* index of the lamp's next row, by lamp_keys_link(), or -1 */
+    double seen; /* RMS radius of the lamp with all that its light spreads to in
+                    a picture that clips it, pixels; 0: power is what it is */
+    uint32_t id; /* 0: none */
+    int next;    /* index of the lamp's next row, by lamp_keys_link(), or -1 */
 };
 
 struct lamp_list {
@@ -53,10 +55,11 @@ enum glint_status lamp_list_add(struct lamp_list *list,
                                 const struct lamp_row *row);
 
 /* Sets LAMPS to the lamps of FRAME, at most MAX, among them in a linked list
- * those on their way to a later row. Returns how many. LEVEL gets the level of
- * each lamp, unless it is NULL. */
+ * those on their way to a later row. Returns how many. LEVEL and SEEN_PX get
+ * those of each lamp, unless they are NULL. */
 int lamp_list_frame(const struct lamp_list *list, int frame,
                     const struct glint_view *view, double focal_mm,
-                    struct glint_lamp *lamps, double *level, int max);
+                    struct glint_lamp *lamps, double *level, double *seen_px,
+                    int max);
 
 #endif

@@ -14,7 +14,7 @@ enum glint_status lamp_save_open(struct lamp_save *save, const char *path,
                                  struct glint_error *error)
 {
     static const char heading[] =
-        "frame,x,y,power,r,g,b,size,id,shape,turn,level\n";
+        "frame,x,y,power,r,g,b,size,id,shape,turn,level,seen\n";
     enum glint_status status;
 
     *save = (struct lamp_save){.status = GLINT_OK};
@@ -34,10 +34,10 @@ void lamp_save_row(struct lamp_save *save, const struct lamp_row *r)
     write_text(save, line,
                snprintf(line, sizeof line,
                         "%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%lu,%."
-                        "17g,%.17g,%.17g\n",
+                        "17g,%.17g,%.17g,%.17g\n",
                         r->frame, r->x, r->y, r->power, r->rgb[0], r->rgb[1],
                         r->rgb[2], r->size, (unsigned long)r->id, r->shape,
-                        r->turn, r->level));
+                        r->turn, r->level, r->seen));
 }
 
 enum glint_status lamp_save_finish(struct lamp_save *save,

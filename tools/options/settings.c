@@ -243,9 +243,18 @@ int settings_frame(const struct tool *tool, const struct settings *settings,
         if (glint_frame_calibrate(frame) != GLINT_OK)
             return tool_fail(tool, GLINT_E_MEMORY, NULL);
     }
-    frame->star.share = settings->starburst;
+    frame->star.share = settings_starburst(settings);
     frame->star.is_alone = settings->starburst_only;
     return EXIT_OK;
+}
+
+double settings_starburst(const struct settings *s)
+{
+    if (s->starburst_asked)
+        return s->ghosts_only ? 0 : s->starburst;
+    if (s->starburst_only)
+        return 1;
+    return s->ghosts_only || s->only_ghost >= 0 ? 0 : s->starburst;
 }
 
 double settings_scale(const struct settings *settings)

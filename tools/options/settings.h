@@ -41,7 +41,7 @@ struct settings {
     double sensor_mm[2]; /* 0: the table's film */
     double exposure_ev, gain;
     double starburst; /* factor on the physical starburst; 0: none */
-    bool starburst_asked, starburst_only;
+    bool starburst_asked, starburst_only, ghosts_only;
     int only_ghost;
     struct glint_dials dials; /* dials, but for max_lights */
     double quantum;           /* dials.irradiance_steps, in percent */
@@ -170,9 +170,12 @@ enum settings_option {
     "Brightness\n"                                                             \
     "  --starburst S       light that the stop's edges diffract, S times as "  \
     "much\n"                                                                   \
-    "                      as the lamp, f-number and stop give, 0 to 1000; "   \
-    "off\n"                                                                    \
-    "                      (default)\n"                                        \
+    "                      as the lamp, f-number and stop give, 0 to 1000; 1 " \
+    "is\n"                                                                     \
+    "                      the default of overlay, live and explain, but "     \
+    "with "                                                                    \
+    "\n"                                                                       \
+    "                      --ghost; off that of others\n"                      \
     "  --exposure EV       stops; all light times 2^EV (default 0)\n"          \
     "  --gain G            and times G (default 1)\n"                          \
     "  --balance           measure each wavelength by its own direct image, "  \
@@ -315,6 +318,9 @@ bool settings_memory(const char *text, size_t *bytes);
     "                      (default: what it needs); what does not fit is "  \
     "left\n"                                                                 \
     "                      out, with a word\n"
+
+/* Returns the factor on the physical starburst that is drawn; 0: none. */
+double settings_starburst(const struct settings *settings);
 
 /* Returns the factor on all light, gain * 2^EV. */
 double settings_scale(const struct settings *settings);

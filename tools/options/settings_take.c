@@ -170,11 +170,8 @@ static bool take_only(const char *value, struct settings *s)
     static const char *const parts[] = {"ghosts", "starburst", "all", NULL};
     const int part = tool_word(value, parts);
 
+    s->ghosts_only = part == 0;
     s->starburst_only = part == 1;
-    if (part == 0)
-        s->starburst = 0;
-    if (part == 1 && !s->starburst_asked)
-        s->starburst = 1;
     return part >= 0;
 }
 

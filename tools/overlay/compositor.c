@@ -50,8 +50,10 @@ int compositor_open(const struct tool *tool, struct compositor *compositor)
         GLINT_LAMP_DETECTOR_MAX;
     compositor->lamp = malloc(n * sizeof *compositor->lamp);
     compositor->level = malloc(n * sizeof *compositor->level);
+    compositor->seen_px = malloc(n * sizeof *compositor->seen_px);
     compositor->id = malloc(n * sizeof *compositor->id);
-    return compositor->lamp && compositor->level && compositor->id
+    return compositor->lamp && compositor->level && compositor->seen_px &&
+                   compositor->id
                ? EXIT_OK
                : tool_fail(tool, GLINT_E_MEMORY, NULL);
 }
@@ -90,16 +92,23 @@ static enum glint_status open_finder(struct compositor *compositor, int width,
     return glint_lamp_detector_open(&compositor->finder, &cfg);
 }
 
-/* Takes memory for lamps that fade beside those that rise: while lamps change
- * places both are drawn. */
+static int by_hand(const struct compositor *compositor)
+{
+    return compositor->n_hand + compositor->list.n;
+}
+
+/* Returns how many lamps are drawn at most: while lamps change places, those
+ * that fade are drawn beside those that rise. */
+static int most_lamps(const struct compositor *compositor)
+{
+    return by_hand(compositor) + 2 * compositor->finder.max;
+}
+
 static enum glint_status reserve(struct compositor *compositor)
 {
-    const int n_by_hand = compositor->n_hand + compositor->list.n;
-
-    return glint_frame_reserve(&compositor->frame, NULL,
-                               compositor->reserve_bytes,
-                               n_by_hand + GLINT_LAMP_DETECTOR_MAX,
-                               n_by_hand + 2 * compositor->finder.max);
+    return glint_frame_reserve(
+        &compositor->frame, NULL, compositor->reserve_bytes,
+        by_hand(compositor) + GLINT_LAMP_DETECTOR_MAX, most_lamps(compositor));
 }
 
 int compositor_size(const struct tool *tool, struct compositor *compositor,
@@ -128,6 +137,9 @@ int compositor_size(const struct tool *tool, struct compositor *compositor,
                 compositor->threshold_ev[1]);
     if (status == GLINT_OK && compositor->reserve_bytes)
         status = reserve(compositor);
+    if (status == GLINT_OK && compositor->reserve_bytes)
+        status =
+            glint_frame_star_hold(&compositor->frame, most_lamps(compositor));
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
 
@@ -169,6 +181,8 @@ void compositor_close(struct compositor *compositor)
     compositor->lamp = NULL;
     free(compositor->level);
     compositor->level = NULL;
+    free(compositor->seen_px);
+    compositor->seen_px = NULL;
     free(compositor->id);
     compositor->id = NULL;
     free(compositor->ground);
@@ -194,6 +208,7 @@ static struct lamp_row row_of(const struct compositor *compositor, int i)
                            .shape = axis[0] > 0 ? axis[1] / axis[0] : 1,
                            .turn = lamp->turn_deg,
                            .level = compositor->level[i],
+                           .seen = compositor->seen_px[i],
                            .id = compositor->id[i],
                            .next = -1};
 
@@ -223,12 +238,14 @@ static int set_lamps(struct compositor *compositor,
                      const struct glint_image *image, int32_t elapsed_us)
 {
     const double focal = compositor->settings.setup.optics.focal_mm;
+    const bool clips = compositor->headroom_ev < 0 && !compositor->is_measured;
     int n = compositor->n_hand;
 
     memcpy(compositor->lamp, compositor->hand,
            (size_t)n * sizeof *compositor->lamp);
     for (int i = 0; i < n; i++) {
         compositor->level[i] = 1;
+        compositor->seen_px[i] = 0;
         compositor->id[i] =
             (compositor->is_listed ? LAMP_ID_TEXT : 1) + (uint32_t)i;
     }
@@ -237,7 +254,8 @@ static int set_lamps(struct compositor *compositor,
                       compositor->id + n);
         n += lamp_list_frame(&compositor->list, compositor->n_frames,
                              &compositor->view, focal, compositor->lamp + n,
-                             compositor->level + n, compositor->list.n);
+                             compositor->level + n, compositor->seen_px + n,
+                             compositor->list.n);
     }
     compositor->is_followed = elapsed_us > 0 && !compositor->no_tracking;
     if (compositor->is_listed || n > 0)
@@ -246,6 +264,8 @@ static int set_lamps(struct compositor *compositor,
                                   compositor->no_tracking ? 0 : elapsed_us,
                                   &compositor->view, focal, compositor->lamp);
     for (int i = 0; i < n; i++) {
+        compositor->seen_px[i] =
+            clips ? compositor->finder.track[i].size_q8 / 256.0 : 0;
         compositor->level[i] = compositor->finder.track[i].level_q15 / 32768.0;
         compositor->id[i] = compositor->finder.track[i].id;
     }
@@ -352,16 +372,6 @@ static void expose_as_drawn(struct compositor *compositor)
                            compositor->ground ? &seen : NULL);
 }
 
-/* Sets the extent in the picture of lamps that were found. */
-static void set_seen(struct compositor *compositor)
-{
-    const bool found = !compositor->is_listed && compositor->n_hand == 0;
-
-    for (int i = 0; i < compositor->n_lamps && found; i++)
-        compositor->seen_px[i] = compositor->finder.track[i].size_q8 / 256.0;
-    compositor->frame.star.seen_px = found ? compositor->seen_px : NULL;
-}
-
 void compositor_expose(struct compositor *compositor, int32_t elapsed_us)
 {
     const bool is_new =
@@ -384,9 +394,10 @@ void compositor_expose(struct compositor *compositor, int32_t elapsed_us)
         expose_as_drawn(compositor);
     free(compositor->ground);
     compositor->ground = NULL;
-    set_seen(compositor);
+    compositor->frame.star.seen_px = compositor->seen_px;
+    compositor->frame.star.level = compositor->level;
     compositor->frame.star.share = glint_strength_star(
-        &compositor->strength, compositor->settings.starburst);
+        &compositor->strength, settings_starburst(&compositor->settings));
 }
 
 /* Keeps what a picture by itself shows, which its flare will be seen on.

@@ -48,11 +48,11 @@ struct compositor {
     struct glint_lamp_detector finder;
     struct glint_lamp *lamp; /* room for those by hand and all found or read */
     double *level; /* share of each lamp in its power: struct strength_lamps */
-    /* extent of lamps that were found */
-    double seen_px[GLINT_LAMP_DETECTOR_MAX];
-    uint32_t *id; /* number that each lamp is saved under */
+    double *seen_px; /* extent of each lamp that the picture clips, or 0 */
+    uint32_t *id;    /* number that each lamp is saved under */
     struct glint_response response;
-    double white; /* light of the picture's white, 1 by default */
+    double white;     /* light of the picture's white, 1 by default */
+    bool is_measured; /* the picture has the light of lamps beyond white */
     struct glint_view view;
     struct glint_frame frame;
     bool sized;

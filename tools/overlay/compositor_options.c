@@ -14,6 +14,7 @@ void compositor_defaults(struct compositor *compositor)
                                       .threshold_ev = {-0.1, -0.15},
                                       .white = 1};
     settings_defaults(&compositor->settings);
+    compositor->settings.starburst = 1;
     compositor->settings.coating.kind = COATING_MIXED;
     compositor->settings.waves = SETTINGS_WAVES_AUTO;
     glint_strength_defaults(&compositor->strength);

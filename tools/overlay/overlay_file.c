@@ -132,6 +132,7 @@ enum glint_status overlay_file_draw(struct overlay_file *file,
     const size_t n = 3 * (size_t)file->image.width * (size_t)file->image.height;
     enum glint_status status;
 
+    compositor->is_measured = file->kept.is_float;
     if (file->is_direct)
         return compositor_draw(compositor, &file->image, elapsed_us);
     compositor_find(compositor, &file->image, elapsed_us);

@@ -16,10 +16,13 @@ struct glint_frame_star {
     /* Light of the star over that of the lens: lamps' powers are multiplied by
      * the frame's scale and this. 0: none. */
     double share;
-    /* Pixels of each lamp, the root of the mean square of their distances from
-     * its middle, as a picture shows it with all that its light has spread
-     * to; or NULL: lamps have the extent that they say. */
+    /* Pixels of each lamp that the picture clips, the root of the mean square
+     * of their distances from its middle, with all that its light has spread
+     * to: its power is an estimate. 0, and NULL for all: the lamp is what it
+     * says.
+     */
     const double *seen_px;
+    const double *level; /* share of each of these in its power; NULL: 1 */
     bool is_bare;  /* true: no picture shows the lamps, so their cores are drawn
                     */
     bool is_alone; /* true: the star is drawn without ghosts */
@@ -27,8 +30,10 @@ struct glint_frame_star {
     /* Private. */
     struct glint_star_optics optics; /* optics for which the tables were made */
     struct glint_star_tables *tables;
-    struct glint_star *star;        /* the star is drawn once set; NULL: none */
-    struct glint_star_light *light; /* [max_lights] */
+    struct glint_star *star; /* the star is drawn once set; NULL: none */
+    /* [max_lights]; of more than GLINT_STAR_MAX_LIGHTS the brightest are drawn
+     */
+    struct glint_star_light *light;
     void *mem;
     int max_lights;
     bool is_set; /* true: the star is set for this frame */
@@ -42,7 +47,8 @@ enum glint_status glint_frame_star_set(struct glint_frame *frame,
                                        double scale,
                                        const struct glint_image *image);
 
-/* Room for N lamps. GLINT_E_MEMORY. */
+/* Takes room for the stars of N lamps and makes their tables, so that frames
+ * take no memory. Without a share nothing is done. GLINT_E_MEMORY. */
 enum glint_status glint_frame_star_hold(struct glint_frame *frame, int n);
 
 /* Draws what the flare has binned and the star that was set. */

@@ -194,14 +194,14 @@ static void test_lists(void **state)
 
         read_text(&list, texts[k]);
         assert_int_equal(list.n, 3);
-        assert_int_equal(lamp_list_frame(&list, 1, &view, 50, lamp, NULL, 4),
-                         1);
+        assert_int_equal(
+            lamp_list_frame(&list, 1, &view, 50, lamp, NULL, NULL, 4), 1);
         glint_view_to_pixel(&view, 50, &lamp[0], &x, &y);
         assert_near(x, -30, 1e-9);
         assert_near(y, 40, 1e-9);
         assert_true(lamp[0].power == 6 && lamp[0].rgb[1] == 0.5);
-        assert_int_equal(lamp_list_frame(&list, 2, &view, 50, lamp, NULL, 4),
-                         2);
+        assert_int_equal(
+            lamp_list_frame(&list, 2, &view, 50, lamp, NULL, NULL, 4), 2);
         assert_true(lamp[1].power == 3 && list.row[2].size == 4);
         assert_true(lamp[1].axis[0] > 0 && lamp[1].axis[0] == lamp[1].axis[1]);
         assert_true(lamp[0].axis[0] == 0);

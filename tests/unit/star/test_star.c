@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "engine/setup/spectrum.h"
+#include "engine/star/core_table.h"
 #include "engine/star/psf.h"
 #include "engine/star/star_tables.h"
 #include "glint/flare.h"
@@ -398,6 +399,38 @@ static void test_extent(void **state)
     glint_star_tables_free(t);
 }
 
+/* Far from the light a row's pixels are not computed one by one. */
+static void test_far(void **state)
+{
+    static const double place[][2] = {
+        {-60, 41}, {-250.3, 20}, {48, -180}, {300, 400}, {-2000, 900}};
+    double most = 0;
+
+    (void)state;
+    for (int i = 0; i < 20; i++) {
+        struct glint_star_tables *t = tables_of(i % 4 * 2 + 3, 13 * i, 0.4);
+        const struct glint_star_light light =
+            light_at(place[i / 4][0], place[i / 4][1], 25);
+
+        draw_linear(t, &light, 1, linear_q20);
+        for (int k = 0; k < N / 3; k++) {
+            double rgb[3];
+
+            glint_star_tabled(t, k % WIDTH + 0.5 - place[i / 4][0],
+                              k / WIDTH + 0.5 - place[i / 4][1], rgb);
+            for (int c = 0; c < 3; c++) {
+                const double want = fmin(rgb[c] * 0x1p45, 0x1p31);
+
+                most = fmax(most,
+                            fabs(linear_q20[3 * k + c] - want) / (want + 256));
+            }
+        }
+        glint_star_tables_free(t);
+    }
+    print_message("light far out is off by %.4f at most\n", most);
+    assert_true(most < 0.03);
+}
+
 /* ------------------------------------------------------------------ motion */
 
 /* While a light moves by 0.05 pixels a frame, neither the sum of light nor any
@@ -558,8 +591,9 @@ int main(void)
         cmocka_unit_test(test_spikes),     cmocka_unit_test(test_ring),
         cmocka_unit_test(test_drawn_ring), cmocka_unit_test(test_energy),
         cmocka_unit_test(test_direct),     cmocka_unit_test(test_extent),
-        cmocka_unit_test(test_motion),     cmocka_unit_test(test_rotation),
-        cmocka_unit_test(test_same_bits),  cmocka_unit_test(test_powers),
+        cmocka_unit_test(test_far),        cmocka_unit_test(test_motion),
+        cmocka_unit_test(test_rotation),   cmocka_unit_test(test_same_bits),
+        cmocka_unit_test(test_powers),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

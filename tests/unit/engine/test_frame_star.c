@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The starburst of a frame: what power its lamps are taken to have.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/frame/frame.h"
+#include "options/settings.h"
+#include "options/tool.h"
+
+enum { WIDTH = 160, HEIGHT = 120 }; /* 200 pixels of diagonal */
+
+static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
+static struct settings settings;
+static struct glint_frame frame;
+static uint8_t rgb[3 * WIDTH * HEIGHT];
+static struct glint_image image = {.format = GLINT_RGB24,
+                                   .width = WIDTH,
+                                   .height = HEIGHT,
+                                   .range = GLINT_RANGE_FULL};
+
+static int open_frame(void **state)
+{
+    (void)state;
+    settings_defaults(&settings);
+    settings.starburst = 1;
+    assert_int_equal(
+        settings_open(&tool, &settings, "lenses/heliar-tronnier.lens"),
+        EXIT_OK);
+    assert_int_equal(settings_frame(&tool, &settings,
+                                    settings_view(&settings, WIDTH, HEIGHT),
+                                    &frame),
+                     EXIT_OK);
+    glint_image_place(&image, rgb);
+    return 0;
+}
+
+static int close_frame(void **state)
+{
+    (void)state;
+    glint_frame_finish(&frame);
+    settings_close(&settings);
+    return 0;
+}
+
+/* The power of the star of a lamp of POWER, in its brightest channel, that the
+ * picture shows SEEN_PX wide. */
+static double power_of(double power, double seen_px, double level)
+{
+    const struct glint_lamp lamp = {5, 30, power, {1, .5, 0}, {0, 0}, 0};
+
+    frame.star.seen_px = seen_px > 0 ? &seen_px : NULL;
+    frame.star.level = &level;
+    assert_int_equal(glint_frame_star_set(&frame, &lamp, 1, 1, &image),
+                     GLINT_OK);
+    frame.star.seen_px = frame.star.level = NULL;
+    return glint_real_value(frame.star.light[0].power);
+}
+
+static bool is_near(double a, double b)
+{
+    return fabs(a / b - 1) < 1e-3;
+}
+
+/* A star of a point of the power W is white out to cbrt(W a) / pi. */
+static double white_of(double seen_px)
+{
+    const double airy_px = 0.55e-3 * 22 / hypot(36, 24) * 200;
+
+    return pow(GLINT_PI * sqrt(2) * seen_px, 3) / airy_px / 2;
+}
+
+static void test_power(void **state)
+{
+    (void)state;
+    /* what is known is left as it is */
+    assert_true(is_near(power_of(1000, 0, 1), 1000));
+    /* what clips had more, and not more than its own star would show */
+    assert_true(is_near(power_of(1000, 50, 1), 32000));
+    assert_true(is_near(power_of(1000, 2, 1), white_of(2)));
+    assert_true(is_near(power_of(1000, 0.5, 1), 1000));
+    /* a lamp that fades takes its star along */
+    assert_true(is_near(power_of(500, 2, 0.5), 0.5 * white_of(2)));
+}
+
+static double radius_of(double power, double seen_px)
+{
+    power_of(power, seen_px, 1);
+    return frame.star.light[0].radius_q8 / 256.0;
+}
+
+/* A point lamp has needles, one that fills what is seen has wide ones. */
+static void test_extent(void **state)
+{
+    (void)state;
+    assert_true(radius_of(100, 0) == 0);
+    assert_true(radius_of(1e7, 2) == 0);
+    assert_true(radius_of(1e9, 6) < 0.6 * sqrt(2) * 6);
+    assert_true(radius_of(10, 6) > 0.8 * sqrt(2) * 6);
+}
+
+/* Of too many lamps the brightest are drawn, whatever their order. */
+static void test_most(void **state)
+{
+    enum { N = GLINT_STAR_MAX_LIGHTS + 100 };
+    static struct glint_lamp lamps[N];
+
+    (void)state;
+    for (int i = 0; i < N; i++)
+        lamps[i] =
+            (struct glint_lamp){5, i * 0.05, i + 1, {1, 1, 1}, {0, 0}, 0};
+    assert_int_equal(glint_frame_star_set(&frame, lamps, N, 1, &image),
+                     GLINT_OK);
+    assert_true(is_near(glint_real_value(frame.star.light[0].power), N));
+    assert_true(is_near(
+        glint_real_value(frame.star.light[GLINT_STAR_MAX_LIGHTS - 1].power),
+        101));
+}
+
+/* Room that was taken before is enough: no frame takes more. */
+static void test_hold(void **state)
+{
+    const struct glint_star *star;
+    const struct glint_star_tables *tables;
+
+    (void)state;
+    assert_int_equal(glint_frame_star_hold(&frame, 5000), GLINT_OK);
+    star = frame.star.star;
+    tables = frame.star.tables;
+    power_of(1000, 0, 1);
+    assert_ptr_equal(star, frame.star.star);
+    assert_ptr_equal(tables, frame.star.tables);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_power), cmocka_unit_test(test_extent),
+        cmocka_unit_test(test_most), cmocka_unit_test(test_hold)};
+
+    return cmocka_run_group_tests(tests, open_frame, close_frame);
+}
