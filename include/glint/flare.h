@@ -271,7 +271,7 @@ int glint_flare_planned(const struct glint_flare *flare, int i,
 void glint_flare_light(const struct glint_flare *flare,
                        struct glint_real *brightest, struct glint_real *flux);
 
-/* Rays that the last plan looked at. */
+/* Returns the number of rays that the last plan looked at. */
 int64_t glint_flare_looked(const struct glint_flare *flare);
 
 /* Turns the grids of all bundles into primitives and sorts these into tiles.

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/glint.h - the whole API, and what holds everywhere in it.
+ * glint/glint.h - the whole API, and the conventions of all its headers.
  *
  * glint computes the ghosts that a real lens throws across a picture when a
  * lamp shines into it. Programs that draw them take glint/engine.h, all in one,
@@ -17,9 +17,8 @@
  * from distinct threads, one object from one thread at a time. A broken
  * contract is a bug of the caller and may be asserted.
  *
- * Numbers: a name that ends in _qN is an integer with N fraction bits. One
- * rounding: to nearest, ties up. Light saturates, geometry never does.
- */
+ * Numbers: a name that ends in _qN is an integer with N fraction bits. Rounding
+ * is to nearest, ties up. Light saturates, geometry never does. */
 #ifndef GLINT_GLINT_H
 #define GLINT_GLINT_H
 

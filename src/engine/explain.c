@@ -7,7 +7,7 @@
 
 #include "engine/frame/frame_parts.h"
 
-/* Instructions of N of a kind. */
+/* Returns the instructions that N items of a kind take. */
 static double work_in(enum glint_cost_kind kind, double n)
 {
     return 1e3 * glint_cost_weight[kind].counted * n;

@@ -215,7 +215,8 @@ static void take_logs(struct glint_response_light *light)
     }
 }
 
-/* Lamps as LAMP, of up to an eighth of the picture's diagonal. */
+/* Measures lamps like LAMP with extents up to an eighth of the picture's
+ * diagonal. */
 static enum glint_status measure_extents(struct proxy *p,
                                          struct glint_response *r,
                                          struct glint_lamp lamp)

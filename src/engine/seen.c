@@ -4,7 +4,8 @@
 #include <math.h>
 #include <stddef.h>
 
-/* Bins of light over what is seen, by eighths of a stop about 1. */
+/* Bins of light over the least that can be seen, an eighth of a stop each,
+ * around 1. */
 enum { STEPS = 8, OCTAVES = 40, BINS = 2 * OCTAVES * STEPS };
 
 void glint_ground_take(struct glint_ground *ground,
@@ -21,7 +22,8 @@ static double decode(int code)
     return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
 }
 
-/* [code]: 1 / what has to be added to be seen; 0 where nothing can be. */
+/* Sets SLOPE[code] to 1 / the light that must be added to be seen; 0 if no
+ * light can be seen. */
 static void list_slopes(double slope[256])
 {
     for (int code = 0; code < 256; code++)
@@ -31,7 +33,7 @@ static void list_slopes(double slope[256])
                 : 1 / (decode(code + GLINT_SEEN_CODES) - decode(code));
 }
 
-/* The bin of a pixel, or -1 where there is no light. */
+/* Returns the bin of a pixel, or -1 if it gets no light that can be seen. */
 static int bin_of(const float light[3], const uint8_t code[3],
                   const double slope[256])
 {
@@ -44,7 +46,7 @@ static int bin_of(const float light[3], const uint8_t code[3],
     return (int)fmin(fmax((log2(most) + OCTAVES) * STEPS, 0), BINS - 1);
 }
 
-/* The light that N pixels of those counted reach. */
+/* Returns the light that N of the counted pixels reach, or 0. */
 static double reached_by(const int count[BINS], int n)
 {
     for (int bin = BINS - 1, sum = 0; bin >= 0; bin--) {

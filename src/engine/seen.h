@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * How much of a flare the picture under it lets see.
+ * How much of a flare can be seen on the picture under it.
  *
  *   in   a picture of codes; the flare on it, small, in linear light
- *   out  the light, at scale 1, over what it would take to be seen
+ *   out  the light, at scale 1, over the least light that can be seen
  *
- * The same light shows on a night sky and not on a lit wall: added to light b
- * it is seen where it lifts a code of 8 bits by GLINT_SEEN_CODES, which takes
- * the more the brighter b is, and all that a clipped lamp covers shows nothing
- * of it. A flare of which few pixels are seen is taken for none, one of which
- * a quarter is for a veil.
- */
+ * A flare shows on a night sky but not on a lit wall: light that is added to a
+ * pixel of light b can be seen if it lifts its code of 8 bits by
+ * GLINT_SEEN_CODES. That takes more light the brighter b is, and is impossible
+ * on what a clipped lamp covers. A flare of which few pixels can be seen counts
+ * as invisible, one of which a quarter can as a veil. */
 #ifndef GLINT_ENGINE_SEEN_H
 #define GLINT_ENGINE_SEEN_H
 
@@ -20,18 +19,18 @@ enum {
     GLINT_GROUND_COLUMNS = 320,
     GLINT_GROUND_ROWS = 180,
     GLINT_SEEN_CODES = 32,
-    GLINT_SEEN_FEW = 50, /* one of so many pixels */
+    GLINT_SEEN_FEW = 50, /* one pixel in so many is few, or many */
     GLINT_SEEN_MANY = 4
 };
 
-/* What is behind the flare: full-range codes. */
+/* The picture under the flare: full-range codes. */
 struct glint_ground {
     uint8_t rgb[GLINT_GROUND_ROWS][GLINT_GROUND_COLUMNS][3];
 };
 
-/* Light over what is seen, that one pixel in GLINT_SEEN_FEW and in
- * GLINT_SEEN_MANY reaches, to an eighth of a stop: times 1 / few, few are seen.
- * 0: fewer get any. */
+/* The light, over the least that can be seen, that one pixel in GLINT_SEEN_FEW,
+ * or GLINT_SEEN_MANY, reaches, to an eighth of a stop; 0 if fewer have any. A
+ * flare scaled by 1 / few is seen in few pixels. */
 struct glint_seen {
     double few, many;
 };
@@ -39,7 +38,7 @@ struct glint_seen {
 void glint_ground_take(struct glint_ground *ground,
                        const struct glint_image *image);
 
-/* RGB: the flare on all of the picture, at any size. */
+/* Sets SEEN for the flare RGB, [height][width][3], on the whole of GROUND. */
 void glint_seen_on(struct glint_seen *seen, const struct glint_ground *ground,
                    const float *rgb, int width, int height);
 

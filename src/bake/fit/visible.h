@@ -79,7 +79,7 @@ void glint_visible_profile_find(const struct glint_visible *visible,
 bool glint_visible_passes(const struct glint_visible *visible,
                           const struct glint_ray *ray);
 
-/* Widens A until it holds B, too. */
+/* Widens A to contain B. */
 void glint_visible_join(struct glint_pupil *a, const struct glint_pupil *b);
 
 #endif

@@ -4,7 +4,7 @@
 
 #include "engine/frame/frame.h"
 
-/* Draws a few frames of FRAME, and gives what the quickest took in LEAST_MS. */
+/* Draws a few frames; lowers *LEAST_MS to the time of the quickest. */
 static enum glint_status draw_some(struct glint_frame *frame,
                                    const struct glint_image *image,
                                    struct glint_frame_report *report,
@@ -16,7 +16,7 @@ static enum glint_status draw_some(struct glint_frame *frame,
 
     for (int i = 0; i < 4 && status == GLINT_OK; i++) {
         status = glint_frame_draw(frame, &lamp, 1, 1, image, report);
-        if (i > 0) /* the first one takes memory */
+        if (i > 0) /* the first frame takes memory */
             *least_ms = fmin(*least_ms, report->plan_ms + report->bin_ms +
                                             report->draw_ms);
     }

@@ -137,7 +137,7 @@ bool glint_frame_is_beyond(const struct glint_frame *frame,
     return glint_light_is_beyond(frame->lens, &b);
 }
 
-/* Without asin(), which is 25 KB of glint-live. */
+/* Does not use asin(), which adds 25 KB to glint-live. */
 double glint_frame_end_deg(const struct glint_frame *frame)
 {
     const double degree = GLINT_PI / 180;
@@ -149,9 +149,9 @@ double glint_frame_end_deg(const struct glint_frame *frame)
     return atan2(sine, sqrt(1 - sine * sine)) / degree * (1 - 1e-6);
 }
 
-/* Beams that give nothing must not be merged with others into one that does.
- * Appends the lights of LAMP's points that the model reaches; WITHIN are there
- * already. Returns how many there are then. */
+/* Appends the lights of those points of LAMP that the model reaches, and
+ * returns how many lights there are then; WITHIN were there before. Others are
+ * left out here, as they must not merge with lights that are drawn. */
 static int add_lights(struct glint_frame *f, const struct glint_lamp *lamp,
                       const struct glint_area_rule *rule, double scale,
                       int within)
@@ -202,7 +202,8 @@ static enum glint_status set_lights(struct glint_frame *f,
     f->n_lights =
         glint_lights_merge(f->light, within, near_q30(f),
                            larger(room, f->dials.max_lights), &f->n_apart);
-    if (!f->is_held) /* else those that are left may take what all may */
+    if (!f->is_held) /* after a limit was met, fewer lights keep the share of
+                        all */
         f->share =
             1 + larger(f->n_lights - 1, 0) / (double)GLINT_FRAME_PER_LIGHT;
     if (f->star.is_alone)
@@ -444,7 +445,7 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
     enum glint_status status;
 
     *report = (struct glint_frame_report){.lights = n_lamps, .quality = -1};
-    if (n_lamps == 0) { /* the picture is not even read */
+    if (n_lamps == 0) { /* the picture need not even be read */
         report->arena_bytes = frame->bytes;
         return GLINT_OK;
     }
@@ -466,7 +467,7 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
         report->predicted_ms = frame->budget.predicted_ms;
         report->calibrated_minsn = frame->budget.calibrated_minsn;
         report->quality = glint_budget_quality(&frame->budget);
-        /* a frame that took memory says nothing of others. */
+        /* a frame that took memory tells nothing about other frames */
         if (frame->bytes == bytes)
             glint_budget_note(&frame->budget, 1e3 * (times[4] - times[0]));
     }

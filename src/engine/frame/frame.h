@@ -94,15 +94,16 @@ struct glint_frame {
                       no mask */
     struct glint_frame_star star;
     struct glint_budget budget; /* turns the dials; only for models */
-    bool reserved;              /* memory is what it is */
-    size_t most_bytes; /* bound of the block for one light, where it is not
-                          reserved; 0: any */
-    double share;      /* what the lights may take, over what one may */
-    bool is_full;      /* the block has as many as it may */
-    double most_minsn; /* bound of a plan for one light; 0: any */
-    bool is_held;      /* the last frame was coarser for it */
-    /* Plans of the last frame, of these that were binned, and rays that all
-     * looked at. */
+    bool reserved;              /* true: memory must not grow */
+    size_t most_bytes; /* limit of the block for one light, if it is not
+                          reserved; 0: there is none */
+    double share;      /* factor on the limits of one light for all lights */
+    bool is_full;      /* true: the block has reached its limit */
+    double most_minsn; /* limit of a plan for one light; 0: there is none */
+    bool is_held;      /* true: the last frame was drawn coarser because of that
+                          limit */
+    /* Numbers of plans of the last frame and of those that were binned, and of
+     * the rays that all plans looked at. */
     int n_plans, n_binned;
     long long n_looked;
 
@@ -137,17 +138,18 @@ struct glint_frame_report {
     int ghosts, tiles;
     int held_samples;   /* samples of a linear picture that saturated */
     size_t arena_bytes; /* bytes that the run-time half was given */
-    size_t peak_bytes;  /* bytes that this frame took of these */
-    size_t need_bytes;  /* bytes that would have drawn all of it, exactly */
-    bool coarsened;     /* its plan passed the bound of work */
-    int plans, binned;  /* plans until one was within the bounds and had room,
-                           and how many of these were binned */
-    long long looked;   /* rays that the plans looked at */
+    size_t peak_bytes;  /* bytes of these that this frame used */
+    size_t need_bytes;  /* bytes that would have drawn everything, exactly */
+    bool coarsened;     /* true: the plan passed the limit of work and was made
+                           coarser */
+    int plans, binned;  /* number of plans until one was within the limits and
+                           had room, and of those that were binned */
+    long long looked;   /* number of rays that the plans looked at */
     double plan_ms, trace_ms, bin_ms, draw_ms;
     /* Prediction and quality with a budget; else 0 and -1. */
     double predicted_ms, quality;
-    double calibrated_minsn; /* million instructions that predictions rest on,
-                                or 0 */
+    double calibrated_minsn; /* millions of instructions of the frame that
+                                predictions are based on, or 0 */
 };
 
 void glint_frame_init(struct glint_frame *frame,
@@ -195,13 +197,14 @@ bool glint_frame_is_beyond(const struct glint_frame *frame,
  * exact. */
 double glint_frame_end_deg(const struct glint_frame *frame);
 
-/* Takes over what changed in cfg since memory was taken; no more of it is. */
+/* Applies changes of cfg since memory was taken; takes no more memory. */
 void glint_frame_retune(struct glint_frame *frame);
 
 /* Draws the flare of LAMPS alone, times GAIN, into RGB, [height][width][3],
- * linear light. The scale within is a power of two that leaves the faint as
- * many steps as the brightest pixel allows: where that is fainter than the plan
- * could predict, the frame is drawn twice. GLINT_E_MEMORY. */
+ * linear light. Inside, the scale is a power of two that leaves faint light as
+ * many steps as the brightest pixel allows; if that pixel is fainter than the
+ * plan predicted, the frame is drawn again, four times at most. GLINT_E_MEMORY.
+ */
 enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
                                          const struct glint_lamp *lamps,
                                          int n_lamps, double gain, float *rgb,

@@ -19,7 +19,8 @@ int glint_frame_number(const struct glint_setup *s, int ghost)
     return number;
 }
 
-/* Returns whether it is the first of its ghost in the frame. */
+/* Notes that GHOST is in the frame; returns whether it is the first part of its
+ * ghost there. */
 static bool note_ghost(struct glint_frame *frame, int ghost)
 {
     const int number = glint_frame_number(frame->setup, ghost);

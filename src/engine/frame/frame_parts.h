@@ -75,14 +75,14 @@ bool glint_frame_is_ghost(const struct glint_setup *setup, int ghost,
 /* Returns the number of the ghost that GHOST of SETUP is, or is a part of. */
 int glint_frame_number(const struct glint_setup *setup, int ghost);
 
-/* Makes lights fewer where looking at all bundles of all of them could take
- * half of what the frame may. Returns whether it did, so that they have to be
- * merged anew. */
+/* Takes lights away until looking at all bundles of all lights cannot take more
+ * than half of the frame's limit. Returns whether it did, so that lights have
+ * to be merged again. */
 bool glint_frame_hold_looking(struct glint_frame *f);
 
-/* Turns the dials down where the plan would take more than what is left of what
- * the frame may: grids first, then wavelengths, then lights. Returns whether it
- * did, so that the frame has to be planned anew; at most a dozen times. */
+/* Turns the dials down if the plan would take more than is left of the frame's
+ * limit: grids first, then wavelengths, then lights. Returns whether it did, so
+ * that the frame has to be planned again, at most a dozen times. */
 bool glint_frame_hold_work(struct glint_frame *f);
 
 #endif

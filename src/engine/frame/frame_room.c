@@ -175,7 +175,8 @@ size_t glint_frame_bytes_needed(const struct glint_frame *f,
     return glint_flare_bytes(&needed);
 }
 
-/* Millions of instructions that N rays take a plan. */
+/* Returns the millions of instructions that a plan takes for looking at N rays.
+ */
 static double looking_minsn(double n)
 {
     return 1e-3 * glint_cost_weight[GLINT_COST_LOOKED_AT].counted * n;
@@ -188,7 +189,7 @@ static double bound_of(const struct glint_frame *f)
 
 bool glint_frame_hold_looking(struct glint_frame *f)
 {
-    enum { RAYS = 200 }; /* a coarse probe, a fine one */
+    enum { RAYS = 200 }; /* rays of a coarse probe and a fine one */
     const int waves = glint_frame_has_sets(f) ? f->setup->set_size[0]
                                               : f->setup->n_wavelengths;
     const double light =
@@ -205,8 +206,8 @@ bool glint_frame_hold_looking(struct glint_frame *f)
     return f->is_held = true;
 }
 
-/* Grids as fine as leave PLAN within MINSN, or the coarsest there may be.
- * Returns what they take. */
+/* Makes grids as fine as PLAN allows within MINSN, or else the coarsest.
+ * Returns the millions of instructions that they take. */
 static double hold_grids(struct glint_frame *f,
                          const struct glint_cost_plan *plan, double minsn)
 {
@@ -223,8 +224,8 @@ static double hold_grids(struct glint_frame *f,
     return glint_cost_minsn(&cost);
 }
 
-/* Returns what is left of MINSN, as all grids are as coarse as can be, where
- * ghosts take three wavelengths. */
+/* Limits ghosts to three wavelengths each. Returns what is then left of MINSN,
+ * the work of the plan with the coarsest grids. */
 static double hold_waves(struct glint_frame *f, double minsn)
 {
     enum { WAVES = 3 };
