@@ -217,7 +217,7 @@ enum settings_option {
     "  --work N            what a frame of one light may take by its plan,\n"  \
     "                      thousand million instructions, and each further\n"  \
     "                      light a 16th of it (default 30, or any with\n"      \
-    "                      --grid and --quality; 0: any); beyond, grids,\n"    \
+    "                      --grid or --quality; 0: any); beyond, grids,\n"     \
     "                      wavelengths and lights are fewer, with a word\n"    \
     "  --dispersion PX     with --wavelengths auto: outlines of "              \
     "neighbouring\n"                                                           \
