@@ -9,12 +9,17 @@
 #define ONE_Q16       (1 << 16)
 #define CLIP_FIRST    Q_CONST(0.80, 20) /* about code 231 */
 #define CLIP_LAST     Q_CONST(0.98, 20) /* 253 */
+#define RIM_LIGHT     Q_CONST(0.95, 20)
 #define MAX_BLACK_Q20 Q_CONST(15.0 / 16, 20)
 
 enum {
     SECTORS = 8,
     BORDERS = 4,
     SAMPLES = 32, /* most samples along the core's radius */
+    RAYS = 16,
+    RAY_SAMPLES = 64, /* along the core's radius */
+    RIM_RADIUS = 32,  /* of a core whose rim is seen, pixels: an eighth of it is
+                         more than a lens blurs */
     RINGS = GLINT_PROFILE_RINGS,
     LEVELS = GLINT_PROFILE_LEVELS,
     NEAR = GLINT_PROFILE_NEAR
@@ -327,6 +332,84 @@ static void add_moments(struct glint_profile_sums *sums, int32_t u_q16,
     sums->square_q16[2] += w_q16 * dx * dy;
 }
 
+/* ---------------------------------------------------------------------- rim */
+
+/* The largest channel of the pixel that is X_Q8, Y_Q8 off; -1 if it is another
+ * spot's, or none of the picture. */
+static int32_t light_at(const struct window *w, int32_t x_q8, int32_t y_q8)
+{
+    const int dx = (x_q8 + 128) >> 8, dy = (y_q8 + 128) >> 8;
+    int32_t rgb_q20[3];
+
+    if (w->x + dx < 0 || w->x + dx >= w->width || w->y + dy < 0 ||
+        w->y + dy >= w->height || !is_in(w, dx, dy))
+        return -1;
+    glint_bright_go(w->bright, w->y + dy);
+    glint_bright_read(w->bright, w->x + dx, rgb_q20);
+    return q_larger(q_larger(rgb_q20[0], rgb_q20[1]), rgb_q20[2]);
+}
+
+/* What is lost of white at the rim of a core of RADIUS along ray I; -1 if that
+ * is not to be seen. Near the middle there is no rim: the core is a ring. */
+static int32_t lost_along(const struct window *w, int i, int32_t radius_q8)
+{
+    static const int16_t sine_q14[RAYS + RAYS / 4] = {
+        0,      6270,  11585, 15137,  16384,  15137,  11585,
+        6270,   0,     -6270, -11585, -15137, -16384, -15137,
+        -11585, -6270, 0,     6270,   11585,  15137};
+    const int32_t x_q14 = sine_q14[i + RAYS / 4], y_q14 = sine_q14[i];
+    int32_t at_q8 = 0, light_q20;
+
+    do {
+        at_q8 += radius_q8 / RAY_SAMPLES;
+        light_q20 =
+            light_at(w, q_mul(at_q8, x_q14, 14), q_mul(at_q8, y_q14, 14));
+    } while (light_q20 >= RIM_LIGHT && at_q8 < 3 * radius_q8);
+    if (light_q20 < 0 || light_q20 >= RIM_LIGHT)
+        return -1;
+    if (at_q8 < radius_q8 / 4)
+        return 0;
+    at_q8 += q_larger(at_q8, radius_q8 / 2) / 8;
+    light_q20 = light_at(w, q_mul(at_q8, x_q14, 14), q_mul(at_q8, y_q14, 14));
+    return light_q20 < 0 ? -1
+                         : q_clamp_sat(WHITE_Q20 - light_q20, 0, WHITE_Q20);
+}
+
+/* The radius of a disc of the largest clipped area. */
+static int32_t core_radius_q8(const struct glint_profile_sums *sums)
+{
+    int64_t area_q8 = 0;
+
+    for (int c = 0; c < 3; c++)
+        if (sums->of[c].area_q8[0] > area_q8)
+            area_q8 = sums->of[c].area_q8[0];
+    return (int32_t)q_root((uint64_t)(area_q8 * Q_CONST(0.31831, 8)));
+}
+
+static int32_t rim_q15(const struct window *w,
+                       const struct glint_profile_sums *sums)
+{
+    const int32_t radius_q8 = core_radius_q8(sums);
+    int32_t lost_q20[RAYS];
+    int n = 0;
+
+    if (radius_q8 < RIM_RADIUS << 8)
+        return 0;
+    for (int i = 0; i < RAYS; i++) {
+        const int32_t lost = lost_along(w, i, radius_q8);
+        int at = n;
+
+        if (lost < 0)
+            continue;
+        for (n++; at > 0 && lost_q20[at - 1] > lost; at--)
+            lost_q20[at] = lost_q20[at - 1];
+        lost_q20[at] = lost;
+    }
+    return n < RAYS / 2 ? 0 : lost_q20[n / 2] >> 5;
+}
+
+/* -------------------------------------------------------------------- light */
+
 static void see_light(void *ctx, const struct sample *s)
 {
     struct glint_profile_sums *sums = ctx;
@@ -401,6 +484,7 @@ void glint_rings_sum(struct glint_profile_sums *sums, struct glint_rings *rings,
     }
     for (int ring = 0; ring <= RINGS; ring++)
         see_ring(&w, ring, see_light, sums);
+    sums->rim_q15 = rim_q15(&w, sums);
     for (int c = 0; c < 3; c++)
         add_up(&sums->of[c]);
 }

@@ -18,6 +18,11 @@
  * as u goes from 2^-k to 2^(1-k), to the clipped area by as much as its light
  * goes from CLIP_FIRST to CLIP_LAST. So no sum jumps.
  *
+ * Of a large core, what its rim is like is also seen along rays from the
+ * middle: how much of white is lost where the core ends and an eighth of its
+ * radius further. A glare that falls off as 1 / r^3 loses three tenths there;
+ * the face of a lamp ends at once, however bright what is around it.
+ *
  * Limits: weights of samples sum to 2^30 at most, the pixels of the largest
  * picture; u_q16 is 2^16 at most; offsets from the centre are below 2^15.
  */
@@ -57,6 +62,9 @@ struct glint_profile_sums {
     /* Of the core, about the pixel in the middle of the window; in steps. */
     int64_t w_q16, moment_q16[2], square_q16[3]; /* xx, yy, xy */
     int step;                                    /* pixels */
+    int32_t rim_q15; /* share of white that is lost at the rim, along the ray in
+                        the middle of all; 0 of a small core, or if too few rays
+                        end in the picture */
 };
 
 struct glint_rings {

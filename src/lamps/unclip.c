@@ -7,6 +7,8 @@
 
 #define ONE_Q16       (1 << 16)
 #define MAX_POWER_Q16 (INT64_C(1) << 42)
+#define RIM_GLARE     Q_CONST(0.30, 15)
+#define RIM_FACE      Q_CONST(0.45, 15)
 
 enum {
     LEVELS = GLINT_PROFILE_LEVELS,
@@ -45,6 +47,99 @@ static void set_colour(struct glint_spot *spot,
     y = luminance(v);
     for (int c = 0; c < 3 && y > 0; c++)
         spot->rgb_q15[c] = q_clamp_sat(q_divide(v[c] << 15, y), 0, 1 << 20);
+}
+
+/* ------------------------------------------------------------------- extent */
+
+static int32_t root_q8(int64_t square_q16, int step)
+{
+    return square_q16 > 0 ? (int32_t)q_root((uint64_t)square_q16) * step : 0;
+}
+
+/* The second moments about the centroid, in steps: xx, yy, xy. */
+static void list_moments(const struct glint_profile_sums *sums,
+                         int64_t m_q16[3])
+{
+    const int64_t w = sums->w_q16 > 0 ? sums->w_q16 : 1;
+    int64_t mean_q16[2];
+
+    for (int i = 0; i < 2; i++)
+        mean_q16[i] = q_divide(sums->moment_q16[i] * ONE_Q16, w);
+    for (int i = 0; i < 3; i++) {
+        const int64_t mean2 = mean_q16[i == 1] * mean_q16[i > 0];
+
+        m_q16[i] = q_divide(sums->square_q16[i] * ONE_Q16, w) - (mean2 >> 16);
+    }
+}
+
+/* What of the clipped core is the lamp, 0 .. 1: the glare of a small lamp that
+ * is far over white is clipped, too, and falls off over as much as its radius;
+ * a large lamp has a sharp rim, of a pixel. */
+static int32_t lamp_share_q15(const struct glint_profile_sums *sums)
+{
+    const struct glint_profile_channel *of = &sums->of[0];
+    int64_t inner_q8, outer_q8, rim_q8;
+
+    for (int c = 1; c < 3; c++)
+        if (sums->of[c].area_q8[0] > of->area_q8[0])
+            of = &sums->of[c];
+    /* radii of circles, but for the root of pi */
+    inner_q8 = q_root((uint64_t)of->area_q8[0] << 8);
+    outer_q8 = q_root((uint64_t)of->area_q8[2] << 8);
+    rim_q8 = outer_q8 - inner_q8 - Q_CONST(1.7725, 8);
+    if (inner_q8 <= 0 || rim_q8 <= 0)
+        return 1 << 15;
+    return (1 << 15) -
+           q_clamp_sat(q_divide(rim_q8 << 16, inner_q8), 0, 1 << 15);
+}
+
+/* The same of a large core by its rim: all of it is the lamp's face where more
+ * is lost there than a glare could lose, in whatever light it stands. */
+static int32_t face_share_q15(const struct glint_profile_sums *sums)
+{
+    const int32_t over_q15 = sums->rim_q15 - RIM_GLARE;
+
+    return q_clamp_sat(over_q15 * 32768 / (RIM_FACE - RIM_GLARE), 0, 1 << 15);
+}
+
+/* Of the semi-axes, by the second moments of what is seen. */
+struct axes {
+    int32_t major_q8, minor_q8;
+    int64_t half, apart; /* of the moments: how far they are from round */
+    int is_down;
+};
+
+/* The semi-axes are the roots of the eigenvalues of the second moments. */
+static struct axes axes_of(const struct glint_profile_sums *sums)
+{
+    int64_t m_q16[3], half, mid, apart;
+
+    list_moments(sums, m_q16);
+    half = (m_q16[0] - m_q16[1]) / 2;
+    mid = (m_q16[0] + m_q16[1]) / 2;
+    apart = (int64_t)q_root((uint64_t)(half * half + m_q16[2] * m_q16[2]));
+    return (struct axes){root_q8(mid + apart, sums->step),
+                         root_q8(mid - apart, sums->step), half, apart,
+                         m_q16[2] < 0};
+}
+
+static void set_extent(struct glint_spot *spot,
+                       const struct glint_profile_sums *sums)
+{
+    const struct axes axes = axes_of(sums);
+    const int32_t share_q15 =
+        q_larger(lamp_share_q15(sums), face_share_q15(sums));
+    int64_t cos2_q15 = 32768;
+
+    spot->axis_q8[0] = q_mul(axes.major_q8, share_q15, 15);
+    spot->axis_q8[1] = q_mul(axes.minor_q8, share_q15, 15);
+    if (axes.apart > 0)
+        cos2_q15 =
+            q_clamp_sat(q_divide(axes.half * 32768, axes.apart), -32768, 32768);
+    spot->cos_q15 = (int32_t)q_root((uint64_t)(32768 + cos2_q15) << 14);
+    spot->sin_q15 = (int32_t)q_root((uint64_t)(32768 - cos2_q15) << 14);
+    if (axes.is_down)
+        spot->sin_q15 = -spot->sin_q15;
 }
 
 /* -------------------------------------------------------------------- power */
@@ -171,7 +266,8 @@ void glint_unclip_features(int32_t feature_q16[GLINT_UNCLIP_FEATURES],
         q_log2_q16((uint64_t)black_q20 + 6291) - Q_CONST(21.585, 16);
     feature_q16[4 + LEVELS] =
         q_log2_q16((uint64_t)brightest_q15(spot)) - 15 * ONE_Q16;
-    feature_q16[5 + LEVELS] = log_of_q8(spot->axis_q8[1]);
+    feature_q16[5 + LEVELS] =
+        log_of_q8(q_mul(axes_of(sums).minor_q8, lamp_share_q15(sums), 15));
 }
 
 /* A feature is below 2^23 and a weight below 2^15, so that the sum of 14
@@ -238,72 +334,6 @@ static void set_power(struct glint_spot *spot,
     spot->power_q16 = seen_q16 + hidden_q16 < MAX_POWER_Q16
                           ? seen_q16 + hidden_q16
                           : MAX_POWER_Q16;
-}
-
-/* ------------------------------------------------------------------- extent */
-
-static int32_t root_q8(int64_t square_q16, int step)
-{
-    return square_q16 > 0 ? (int32_t)q_root((uint64_t)square_q16) * step : 0;
-}
-
-/* The second moments about the centroid, in steps: xx, yy, xy. */
-static void list_moments(const struct glint_profile_sums *sums,
-                         int64_t m_q16[3])
-{
-    const int64_t w = sums->w_q16 > 0 ? sums->w_q16 : 1;
-    int64_t mean_q16[2];
-
-    for (int i = 0; i < 2; i++)
-        mean_q16[i] = q_divide(sums->moment_q16[i] * ONE_Q16, w);
-    for (int i = 0; i < 3; i++) {
-        const int64_t mean2 = mean_q16[i == 1] * mean_q16[i > 0];
-
-        m_q16[i] = q_divide(sums->square_q16[i] * ONE_Q16, w) - (mean2 >> 16);
-    }
-}
-
-/* What of the clipped core is the lamp, 0 .. 1: the glare of a small lamp that
- * is far over white is clipped, too, and falls off over as much as its radius;
- * a large lamp has a sharp rim, of a pixel. */
-static int32_t lamp_share_q15(const struct glint_profile_sums *sums)
-{
-    const struct glint_profile_channel *of = &sums->of[0];
-    int64_t inner_q8, outer_q8, rim_q8;
-
-    for (int c = 1; c < 3; c++)
-        if (sums->of[c].area_q8[0] > of->area_q8[0])
-            of = &sums->of[c];
-    /* radii of circles, but for the root of pi */
-    inner_q8 = q_root((uint64_t)of->area_q8[0] << 8);
-    outer_q8 = q_root((uint64_t)of->area_q8[2] << 8);
-    rim_q8 = outer_q8 - inner_q8 - Q_CONST(1.7725, 8);
-    if (inner_q8 <= 0 || rim_q8 <= 0)
-        return 1 << 15;
-    return (1 << 15) -
-           q_clamp_sat(q_divide(rim_q8 << 16, inner_q8), 0, 1 << 15);
-}
-
-/* The semi-axes are the roots of the eigenvalues of the second moments. */
-static void set_extent(struct glint_spot *spot,
-                       const struct glint_profile_sums *sums)
-{
-    const int32_t share_q15 = lamp_share_q15(sums);
-    int64_t m_q16[3], half, mid, apart, cos2_q15;
-
-    list_moments(sums, m_q16);
-    half = (m_q16[0] - m_q16[1]) / 2;
-    mid = (m_q16[0] + m_q16[1]) / 2;
-    apart = (int64_t)q_root((uint64_t)(half * half + m_q16[2] * m_q16[2]));
-    spot->axis_q8[0] = q_mul(root_q8(mid + apart, sums->step), share_q15, 15);
-    spot->axis_q8[1] = q_mul(root_q8(mid - apart, sums->step), share_q15, 15);
-    cos2_q15 = apart > 0
-                   ? q_clamp_sat(q_divide(half * 32768, apart), -32768, 32768)
-                   : 32768;
-    spot->cos_q15 = (int32_t)q_root((uint64_t)(32768 + cos2_q15) << 14);
-    spot->sin_q15 = (int32_t)q_root((uint64_t)(32768 - cos2_q15) << 14);
-    if (m_q16[2] < 0)
-        spot->sin_q15 = -spot->sin_q15;
 }
 
 void glint_unclip(struct glint_spot *spot,

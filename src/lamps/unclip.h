@@ -9,11 +9,12 @@
 /* What tells the power of a clipped core, as logarithms: its area; how much
  * less the channel has that clips least; how much more area there is at each
  * level; spread and light of the background; the brightest channel at luminance
- * 1; the minor semi-axis, which is that of the lamp in its glare. The major one
- * is left out: of two lamps that become one spot it is their distance. */
+ * 1; the minor semi-axis, which is that of the lamp in its glare, by the areas
+ * alone. The major one is left out: of two lamps that become one spot it is
+ * their distance. */
 enum { GLINT_UNCLIP_FEATURES = 6 + GLINT_PROFILE_LEVELS };
 
-/* Of SPOT, whose colour and extent are set. */
+/* Of SPOT, whose colour is set. */
 void glint_unclip_features(int32_t feature_q16[GLINT_UNCLIP_FEATURES],
                            const struct glint_spot *spot,
                            const struct glint_profile_sums *sums);

@@ -190,6 +190,39 @@ static void test_glare_is_no_extent(void **state)
     assert_true(spot[0].axis_q8[0] < spot[0].size_q8 / 3);
 }
 
+/* Light that is 4 up to RADIUS and beyond it begins at RIM and falls as 1 / r^
+ * FALL. */
+static void draw_core(double radius, double rim, double fall)
+{
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            const double r = hypot(x + 0.5 - W / 2.0, y + 0.5 - H / 2.0);
+
+            light[y * W + x] = r < radius ? 4 : rim * pow(r / radius, -fall);
+        }
+}
+
+/* The face of a large lamp that lights what is around it to half of white must
+ * be as wide as it is, 18 pixels, or up to twice as wide with that light; the
+ * glare of a point that clips as far must not. */
+static void test_face_in_its_own_light(void **state)
+{
+    const struct power_lamp lamp = lamp_of(POWER_DISC, 36);
+
+    (void)state;
+    for (double rim = 0.05; rim < 0.57; rim += 0.05) {
+        draw_core(36, rim, 0.5);
+        assert_int_equal(expose(&lamp, 1, 0, 0), 1);
+        for (int k = 0; k < 2; k++)
+            assert_in_range(spot[0].axis_q8[k], 17 * 256, 36 * 256);
+    }
+    for (double fall = 1; fall < 2.6; fall += 0.25) {
+        draw_core(36, 1, fall);
+        assert_int_equal(expose(&lamp, 1, 0, 0), 1);
+        assert_in_range(spot[0].axis_q8[0], 0, 6 * 256);
+    }
+}
+
 /* Sodium light, clipped to yellow and white, must have the colour of its
  * fringe: 1.99, 0.79, 0.04 at luminance 1. */
 static void test_colour_is_that_of_the_fringe(void **state)
@@ -496,6 +529,7 @@ int main(void)
         cmocka_unit_test(test_white_pictures),
         cmocka_unit_test(test_a_lamp_of_one_pixel),
         cmocka_unit_test(test_any_spots),
+        cmocka_unit_test(test_face_in_its_own_light),
     };
 
     return cmocka_run_group_tests_name("profile", tests, NULL, NULL);
