@@ -27,8 +27,8 @@ struct glint_dials {
                      what lies between rays is off by 0.01 pixel */
     int irradiance_steps; /* steps an octave, 1 .. 4096; 0: irradiance is not
                              rounded */
-    int snap_codes_q8;  /* codes: edges weaker than this lie on whole pixels; 0:
-                           none do */
+    int snap_codes_q8;  /* edges weaker than so many codes lie on whole pixels;
+                           0: none do */
     int dispersion_q8;  /* pixels that outlines of neighbouring wavelengths
                            may be apart; 0: three wavelengths for all */
     int max_lights;     /* largest number of lights; more are merged, faint ones

@@ -64,14 +64,14 @@ struct glint_engine_config {
     double strength, exposure_ev, gain;
     int by_hand;
 
-    /* The star around each lamp, of light that the stop's edges diffract: times
-     * as much as physics has, where strength is 0.5 or the exposure 0; 1 by
-     * default, 0: none. */
+    /* Factor on the star around each lamp, of light that the stop's edges
+     * diffract: 1, the default, is its physical brightness at strength 0.5 or
+     * exposure 0; 0: there is no star. */
     double starburst;
 
     struct glint_dials dials;
-    double budget_ms; /* milliseconds a frame, which the dials are turned to
-                         keep; 0: no budget */
+    double budget_ms; /* milliseconds a frame, which the engine keeps to by
+                         turning the dials; 0: there is no budget */
 
     /* Memory for drawing. If arena_bytes is 0 the engine takes exactly what a
      * frame needs, and more when a frame needs more. Else it keeps to
@@ -115,7 +115,7 @@ void glint_engine_defaults(struct glint_engine_config *cfg, int width,
 enum glint_status glint_engine_create(struct glint_engine **engine,
                                       const struct glint_engine_config *cfg,
                                       struct glint_error *error);
-/* ENGINE may be NULL. */
+/* Frees ENGINE, which may be NULL. */
 void glint_engine_destroy(struct glint_engine *engine);
 
 /* Changes the dials for the frames to come. */
@@ -129,10 +129,10 @@ enum glint_status glint_engine_stop(struct glint_engine *engine,
 
 /* Finds the lamps of IMAGE, in any format but GLINT_LINEAR_Q20, which comes
  * ELAPSED_US after the last picture: lamps are followed from picture to
- * picture, and rise and fade. 0: a picture by itself; glint_engine_draw() then
- * draws its flare small first, to see how bright it is, unless there is an
- * arena or a budget. Writes at most MAX lamps, the strongest first; returns how
- * many. */
+ * picture, and rise and fade. If ELAPSED_US is 0, IMAGE is a picture by itself;
+ * glint_engine_draw() then draws its flare small first, to see how bright it
+ * is, unless there is an arena or a budget. Writes at most MAX lamps, the
+ * strongest first; returns how many. */
 int glint_engine_find(struct glint_engine *engine,
                       const struct glint_image *image, int32_t elapsed_us,
                       struct glint_lamp *lamps, int max);

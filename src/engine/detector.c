@@ -91,8 +91,9 @@ static int32_t larger(int32_t a, int32_t b)
     return a > b ? a : b;
 }
 
-/* Sets the power of a spot as if each clipped pixel were 2^headroom. Above 2^8
- * it is kept in units of 2^(headroom - 8), as tracks hold at most 2^42. */
+/* Returns the least semi-axis of a spot in a picture by itself. The rim of a
+ * core in its glare may hide a lamp of any smaller size; a lamp that is taken
+ * for a point has ghosts as if cut out of paper, as no real lamp has. */
 static int32_t least_axis_q8(const struct glint_spot *spot)
 {
     return spot->size_q8 / 6;
@@ -119,9 +120,8 @@ static struct glint_lamp_track still(const struct glint_spot *spot, uint32_t id)
         .rgb_q15 = {spot->rgb_q15[0], spot->rgb_q15[1], spot->rgb_q15[2]}};
 }
 
-/* Finds spots, and measures profiles of as many of the strongest as can be
- * followed: for a thousand, as in a city at night, that would cost several
- * times as much as finding them. */
+/* Sets the power of a spot as if each clipped pixel were 2^headroom. Above 2^8
+ * it is kept in units of 2^(headroom - 8), as tracks hold at most 2^42. */
 static void set_power(struct glint_lamp_detector *f, struct glint_spot *spot)
 {
     const double each = 65536 * (exp2(f->headroom_ev) - 1);
@@ -131,7 +131,9 @@ static void set_power(struct glint_lamp_detector *f, struct glint_spot *spot)
         ((double)spot->flux_q16 + spot->n_clipped * each) / f->scale, 0x1p42);
 }
 
-/* Finds the lamps of IMAGE by itself; returns how many. */
+/* Finds spots, and measures profiles of as many of the strongest as can be
+ * followed: for a thousand, as in a city at night, that would cost several
+ * times as much as finding them. */
 static int find(struct glint_lamp_detector *f, const struct glint_image *image,
                 int max)
 {
@@ -146,8 +148,7 @@ static int find(struct glint_lamp_detector *f, const struct glint_image *image,
     return n;
 }
 
-/* Returns whether a spot is about as compact as a disc, whose area is 2 pi
- * times its squared RMS radius. */
+/* Finds the lamps of IMAGE by itself; returns how many. */
 static int find_still(struct glint_lamp_detector *f,
                       const struct glint_image *image)
 {
@@ -205,7 +206,8 @@ int glint_lamp_detector_frame(struct glint_lamp_detector *detector,
     return f->n_tracks;
 }
 
-/* A disc of one light has an area of 2 pi times its RMS radius squared. */
+/* Returns whether a spot is about as compact as a disc, whose area is 2 pi
+ * times its squared RMS radius. */
 static int is_disc(const struct glint_spot *spot)
 {
     const double r = spot->size_q8 / 256.0;

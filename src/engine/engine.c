@@ -44,7 +44,7 @@ void glint_engine_defaults(struct glint_engine_config *cfg, int width,
                                         .dials = glint_dials_at(1 << 14)};
 }
 
-/* NULL, or what is out of range. */
+/* Returns what of C is out of range, or NULL. */
 static const char *check(const struct glint_engine_config *c)
 {
     if (c->width < 1 || c->width > GLINT_MAX_SIDE || c->height < 1 ||
@@ -252,8 +252,8 @@ int glint_engine_find(struct glint_engine *engine,
     return e->n_found;
 }
 
-/* Returns whether LAMPS lie where those found last do; their powers may differ.
- */
+/* Returns whether LAMPS are at the places of the lamps found last; their powers
+ * may differ. */
 static bool are_found(const struct glint_engine *e,
                       const struct glint_lamp *lamps, int n)
 {
@@ -346,7 +346,8 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
     f->star.seen_px =
         is_found && e->detector.headroom_ev < 0 ? e->seen_px : NULL;
     f->star.level = is_found ? e->level : NULL;
-    if (f->budget.ms <= 0) { /* there is time for a picture by itself */
+    /* A picture by itself leaves time for more points. */
+    if (f->budget.ms <= 0) {
         const bool is_still = !is_found || !e->elapsed_us;
 
         f->dials.area_points =

@@ -55,8 +55,9 @@ void glint_response_around(const float *rgb, size_t n,
 
 /* Sets LIGHT to that of N lamps behind the lens of LIKE, drawn in a small
  * picture of about PIXELS. Powers are those in the view of LIKE. The peak is
- * the value that 1/10000 of the pixels reach: smaller specks do not count.
- * GLINT_E_MEMORY. */
+ * the value that 1/10000 of the pixels reach: smaller specks do not count. Sets
+ * SEEN to how much can be seen on GROUND, unless both are NULL. GLINT_E_MEMORY.
+ */
 enum glint_status glint_response_draw(const struct glint_frame *like,
                                       const struct glint_lamp *lamps, int n,
                                       int pixels,

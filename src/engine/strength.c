@@ -15,18 +15,22 @@ static const double common_log2 = -5;
 /* Stops of change for a stop of light. */
 static const double compression = 0.15;
 
-/* How the factor follows: stops a second, most stops a frame, and the time
- * constant. */
+/* Display light at strength 0.5: limits of the brightest part and of the mean
+ * up to which a hidden flare is lifted, and the least of the brightest part to
+ * which a veil is lowered. */
 static const double seen_peak = 0.7, seen_mean = 0.04, veil_peak = 0.08;
 
-/* The part of what is seen that a quarter of the picture may get. */
+/* Light that a veil leaves on a quarter of the picture, over the least that can
+ * be seen. */
 static const double veil_light = 0.5;
 
-/* --------------------------------------------------------------- one frame */
+/* How the factor follows: stops a second, most stops a frame, and the time
+ * constant. */
 static const double fall_per_s = 3, rise_per_s = 2, most_per_frame = 0.125;
 static const double settle_s = 0.3;
 
-/* Sets LIGHT to that of lamp I at full level, by channel. */
+/* A lamp is at most this much brighter than it would be by itself, as a share.
+ */
 static const double overshoot = 0.5;
 
 void glint_strength_defaults(struct glint_strength *strength)
@@ -39,9 +43,9 @@ double glint_strength_largest(const double rgb[3])
     return fmax(rgb[0], fmax(rgb[1], rgb[2]));
 }
 
-/* Returns the factor that LIGHT asks for, in stops. */
+/* --------------------------------------------------------------- one frame */
 
-/* Light by channel of lamp I, of all its power. */
+/* Sets LIGHT to that of lamp I at full level, by channel. */
 static void light_of(const struct glint_response *response,
                      const struct glint_strength_lamps *lamps, int i,
                      struct glint_response_light *light)
@@ -92,8 +96,7 @@ static double together(double a, double b)
     return pow(pow(a, norm) + pow(b, norm), 1 / norm);
 }
 
-/* Returns the factor that lowers TIMES: 1 up to TIMES 1, then such that the
- * product rises ever more slowly to 1 + overshoot. */
+/* Returns the factor that LIGHT asks for, in stops. */
 static double target_log2(const struct glint_strength *s,
                           const struct glint_response_light *light)
 {
@@ -105,8 +108,7 @@ static double target_log2(const struct glint_strength *s,
     return 2 * log2(s->asked) - log2(together(peak * exp2(-tanh(more)), mean));
 }
 
-/* Lowers lamp I towards the exposure that it would get by itself; LIGHT is its
- * own light. */
+/* --------------------------------------------------------------- over time */
 
 static double step(double towards, double elapsed_s)
 {
@@ -117,14 +119,16 @@ static double step(double towards, double elapsed_s)
     return fmin(fmax(part * towards, -most), most);
 }
 
-/* Returns the factor, in stops, for all lamps at full level. */
+/* Returns the factor that lowers TIMES: 1 up to TIMES 1, then such that the
+ * product rises ever more slowly to 1 + overshoot. */
 static double held(double times)
 {
     return times <= 1 ? 1
                       : (1 + overshoot * tanh((times - 1) / overshoot)) / times;
 }
 
-/* Holds lamp I to what it would come to by itself; LIGHT is its own. */
+/* Lowers lamp I towards the exposure that it would get by itself; LIGHT is its
+ * own light. */
 static void hold(const struct glint_strength *s,
                  const struct glint_strength_lamps *lamps, int i,
                  struct glint_response_light *light)
@@ -148,7 +152,7 @@ static void follow(struct glint_strength *s, double target, int32_t elapsed_us)
     s->follows = true;
 }
 
-/* As many lamps as there are, each with all its power. */
+/* Returns the factor, in stops, for all lamps at full level. */
 static double target_of(const struct glint_strength *s,
                         const struct glint_response *response,
                         const struct glint_strength_lamps *lamps)
@@ -213,9 +217,9 @@ void glint_strength_expose(struct glint_strength *strength,
     scale_light(s);
 }
 
-/* The stops that the flare DRAWN, exposed to BASE for the strength of 0.5, is
- * lifted so that it is seen, or lowered so that it is no veil, within what its
- * brightest part and its mean may come to. */
+/* Returns the stops by which the flare DRAWN is lifted so that it can be seen,
+ * or lowered so that it is no veil, within the limits of its brightest part and
+ * its mean. BASE: log2 of its factor at strength 0.5. */
 static double lift_log2(double base, const struct glint_response_light *drawn,
                         const struct glint_seen *seen)
 {

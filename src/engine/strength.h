@@ -3,8 +3,7 @@
  * Chooses the factor on the light of lamps, so that a flare is visible and
  * plausible: the automatic exposure behind --strength.
  *
- *     glint_strength_expose(&strength, &response, &lit, elapsed_us);  each
- * frame
+ *     glint_strength_expose(&strength, &response, &lit, elapsed_us);
  *
  * From scene to code. A lamp of power P (white times pixels: as the picture
  * shows it, and as it would show it beyond white) gives a flare of P *
@@ -32,15 +31,21 @@
  * picture by itself there is time to draw the flare small and to take p and m
  * from that: p is then the value that 1/10000 of the pixels reach. So the few
  * small ghosts of a point, the wide ones of a candle, and lamps at which the
- * response off that line differs become as bright as others.
+ * response off that line differs become as bright as others. Then the exposure
+ * is corrected by how much of the flare can be seen on the picture
+ * (engine/seen.h). A flare that is hidden is lifted until 1/50 of the picture
+ * shows it: at strength 0.5 up to 0.7 in its brightest part and 0.04 in the
+ * mean. A flare that veils a quarter of the picture is lowered until the light
+ * there is half of the least that can be seen, but not below 0.08 in its
+ * brightest part.
  *
  * In a video the factor follows, in stops in proportion to the time: it falls
  * by up to 3 stops a second and rises by up to 2, by no more than an eighth of
  * a stop a frame, so that no step exceeds 10 %. It starts anew after a cut, and
  * if there was no lamp before. Lamps rise and fade with their tracks (powers
  * without these levels decide on the factor). A new lamp that is too bright for
- * the factor, until that has followed, is held to 1.5 times the exposure that
- * it would get by itself. */
+ * the factor, until that has followed, is limited to 1.5 times the exposure
+ * that it would get by itself. */
 #ifndef GLINT_ENGINE_STRENGTH_H
 #define GLINT_ENGINE_STRENGTH_H
 
@@ -93,8 +98,9 @@ void glint_strength_expose(struct glint_strength *strength,
 
 /* Corrects the exposure of a picture by itself: sets the scale and the light by
  * DRAWN, the light of its flare when it was drawn small at scale 1, instead of
- * by the response. Changes nothing if the factor is set by hand or there is no
- * light. */
+ * by the response; and by how much of that flare can be SEEN on the picture,
+ * unless SEEN is NULL. Changes nothing if the factor is set by hand or there is
+ * no light. */
 void glint_strength_correct(struct glint_strength *strength,
                             const struct glint_response_light *drawn,
                             const struct glint_seen *seen);

@@ -74,8 +74,8 @@ static uint64_t bits_of_code(int code)
     return (uint64_t)(256 - (highest < 128 ? highest : 128)) * BYTES_EACH;
 }
 
-/* Returns the OR of N words at P. Where the load and the OR are one expression,
- * gcc makes single bytes of it. */
+/* Returns the OR of N words at P. If load and OR were one expression, gcc would
+ * make single bytes of it. */
 static WHOLLY_INLINE uint64_t bits_of(const uint8_t *p, int n)
 {
     uint64_t bits = 0;

@@ -61,8 +61,8 @@ static NEVER_INLINE int find_largest(const uint8_t *p,
     return greatest;
 }
 
-/* Does as read_values_rgb() for a whole block from X with three bytes a pixel.
- */
+/* Does what read_values_rgb() does, for a whole block from X with three bytes a
+ * pixel. */
 static int read_block_rgb24(struct glint_bright *b, int x)
 {
     const ptrdiff_t at = (ptrdiff_t)3 * x - b->layout->sample[0].offset;

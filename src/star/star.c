@@ -108,7 +108,8 @@ static int distance(int32_t log2_of_q16)
     return (int)(far_q16 >> 16) + 1;
 }
 
-/* Returns the first step of profiles from which on none exceeds 2^LEAST. */
+/* Returns the number of steps of profiles up to the last that exceeds 2^LEAST.
+ */
 static int seen_to(const struct glint_star_tables *t, int32_t least_log2_q16)
 {
     const int64_t least =

@@ -31,7 +31,7 @@ static int32_t between(int32_t a, int32_t b, int part_q15)
     return a + ((b - a) * part_q15 >> 15);
 }
 
-/* A pixel as it lies about the lamp, and its light. */
+/* A pixel, its place as seen from the lamp, and its light. */
 struct node {
     int x;
     int64_t dx_q8, v_q8;
@@ -57,7 +57,7 @@ static void light(const struct span *s, struct node *n)
 
     r2_q16 = r2_q16 > s->lamp->inner_q16 ? r2_q16 : s->lamp->inner_q16;
     r2_log2_q16 = q_log2_q16(r2_q16) - 16 * 65536;
-    /* log2 of 1 + 4 v / reach, both times 2^8 */
+    /* log2 of 1 + 4 v / reach */
     column_q16 =
         q_log2_q16((uint64_t)(v_q8 * 4 + t->reach_q8)) - t->reach_log2_q16;
     row = place_of((r2_log2_q16 - 4 * 65536) * 2, GLINT_STAR_HALO_ROWS - 1);
@@ -76,7 +76,8 @@ static void light(const struct span *s, struct node *n)
     }
 }
 
-/* Light between A and B, pixels of a row STEP apart, is a straight line. */
+/* Adds the light of the STEP pixels from A on, interpolated linearly from A to
+ * B, which are STEP apart. */
 static void add_between(const struct span *s, const struct node *a,
                         const struct node *b, int step)
 {
@@ -98,9 +99,9 @@ static int64_t least_size(int64_t a, int64_t b)
     return (a < 0) != (b < 0) ? 0 : p < q ? p : q;
 }
 
-/* Whether light between A and B, N pixels apart, is as good as straight: it
- * falls with r^-3 and v^-2, where a chord is 1.5 n^2 / r^2 and 0.75 n^2 / v^2
- * of it too high at most, here 0.02. */
+/* Returns whether light may be interpolated linearly between A and B, n pixels
+ * apart. It falls with r^-3 and v^-2, so that it is too high by at most 1.5 n^2
+ * / r^2 and 0.75 n^2 / v^2 of it, here 0.01 and 0.02. */
 static int is_straight(const struct span *s, const struct node *a,
                        const struct node *b)
 {
@@ -111,8 +112,9 @@ static int is_straight(const struct span *s, const struct node *a,
            dx_q8 * dx_q8 + s->dy_q8 * s->dy_q8 >= 144 * far_q8 * far_q8;
 }
 
-/* Pixels from X on to which light is straight, up to X1: runs begin at
- * multiples of their length, so that tiles do not show. */
+/* Returns how many pixels from FROM on, up to X1, are interpolated linearly: 8,
+ * 4 or 1. Runs begin at multiples of their length, so that tiles do not show.
+ */
 static int run_of(const struct span *s, const struct glint_star_line *line,
                   const struct node *from, int x1)
 {
@@ -128,7 +130,7 @@ static int run_of(const struct span *s, const struct glint_star_line *line,
     return 1;
 }
 
-/* Pixels X0 .. X1 - 1, of the sector of LINE. */
+/* Adds light to pixels X0 .. X1 - 1, which are in the sector of LINE. */
 static void add_sector(const struct span *s, const struct glint_star_line *line,
                        int x0, int x1)
 {
@@ -148,8 +150,9 @@ static void add_sector(const struct span *s, const struct glint_star_line *line,
     }
 }
 
-/* Borders between sectors lie in the order of lines from right to left below
- * the lamp, and from left to right above it. */
+/* Adds light to pixels X0 .. X1 - 1 sector by sector. In the order of the
+ * lines, borders between sectors come from right to left below the lamp and
+ * from left to right above it. */
 static void add_sectors(const struct span *s, int x0, int x1)
 {
     const struct glint_star_tables *t = s->star->tables;

@@ -35,7 +35,7 @@ struct glint_pass_rows {
     struct glint_cover_rows *cover; /* NULL: passes must not give cover */
 };
 
-/* What a pass gave for its rows. */
+/* The output of a pass for its rows. */
 enum glint_given {
     GLINT_GIVES_NOTHING,
     GLINT_GIVES_LIGHT, /* light in all three channels */

@@ -196,8 +196,8 @@ static void deposit_piece(const struct picture *p, const struct band *band,
         deposit_point(p, band, polygon[0], light);
         return;
     }
-    /* An edge adds its height to all on its right: sides that run down the
-     * picture count one way, sides that run up the other. */
+    /* Each side of the polygon adds its height to all pixels on its right: with
+     * one sign if it runs down the picture, with the other if it runs up. */
     for (int c = 0; c < 3; c++)
         light[c] /= -area;
     if (low[1] < band->y0)

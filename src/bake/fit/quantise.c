@@ -285,9 +285,10 @@ static int output_exponent(const struct glint_fitted_system *s, int k)
     return exponent_for(hull_sum(o->coef, sets_of(s), o->n_terms), o->n_terms);
 }
 
-/* Returns how many bits a polynomial could rise above its values where light
- * gets through: above twice the largest, or, for a fourth root, above that of
- * twice the energy. Each bit more would take four bits of the energy. */
+/* Returns by how many bits a polynomial can be scaled up so that, where light
+ * gets through, it stays below half of the largest integer that it may have;
+ * for a fourth root, so that its energy does. Each bit more would take four
+ * bits of the energy. */
 static int head_of(const struct glint_fitted_output *o, int exponent)
 {
     const double most = o->roots ? 0x1.ap28 : 0x1p28;

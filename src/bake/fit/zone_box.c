@@ -5,8 +5,9 @@
 #include "bake/fit/regress.h"
 #include "engine/setup/degrees.h"
 
-/* Share of a box that is seen which is enough: a fuller box needs higher powers
- * of s, and polynomials of what is seen through it would have to undo them. */
+/* Share of a box which is enough to be seen: a fuller box would need higher
+ * powers of s, and polynomials of what is seen through it would have to undo
+ * them. */
 #define ENOUGH_FILL 0.6
 /* Least factor by which a power more must raise the fill. */
 #define FULLER 1.6

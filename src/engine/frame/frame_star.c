@@ -12,16 +12,17 @@
  * across or down, are not drawn. */
 static const double most_px = 1 << 16;
 
-/* Radius of a point in a picture that is sharp. */
+/* Radius, in pixels, of a point in a sharp picture. */
 static const double least_px = 1.5;
 
-/* Stars in real photographs say what their lamps had: light at the distance r
- * falls with r^-2, and times r^2 comes to power times wavelength times f-number
- * by 0.22, whatever the blades. Of 10 lamps in two pictures by night, behind
- * f/22, that is 7 to 166 times the power estimated of what clips, and 0.37 to
- * 3.4 times, 0.5 in the median, that with which the star's mean is white as far
- * as the lamp is (tests/figures/stars.md). The lesser of both is meant by a
- * starburst of 1. */
+/* Limits of the power of a lamp that a picture clips, by the stars in real
+ * photographs. Far from a lamp, light times the square of the distance is 0.22
+ * times power, wavelength and f-number, whatever the blades. For 10 lamps in
+ * two pictures by night, at f/22, this power is 7 to 166 times that estimated
+ * from clipped pixels, and 0.37 to 3.4 times, 0.5 in the median, that with
+ * which the star's mean is white as far out as the lamp
+ * (tests/figures/stars.md). With a starburst of 1 the smaller of both limits
+ * counts. */
 static const double clipped_times = 32, white_share = 0.5;
 
 /* A star ends smoothly and faintly, and ghosts do not. */
@@ -104,9 +105,9 @@ enum glint_status glint_frame_star_hold(struct glint_frame *f, int n)
     return status == GLINT_OK ? take_room(f, n) : status;
 }
 
-/* How lamp I lies in the picture, as the finder has it. */
+/* A lamp as the picture shows it, if it is known from there. */
 struct seen {
-    double radius_px; /* of a disc of that extent; 0: it is not known */
+    double radius_px; /* radius of a disc of its extent; 0 if unknown */
     double level;
 };
 
@@ -116,8 +117,8 @@ static struct seen seen_of(const struct glint_frame_star *s, int i)
                          s->seen_px && s->level ? s->level[i] : 1};
 }
 
-/* POWER of a lamp, white in pixels of its brightest channel, or what it must
- * have been if the picture clips it. */
+/* Returns the POWER of a lamp, in white pixels of its brightest channel; if the
+ * picture clips it, an estimate of its true power. */
 static double unclipped(const struct glint_frame *f, const struct seen *seen,
                         double power)
 {
@@ -128,9 +129,9 @@ static double unclipped(const struct glint_frame *f, const struct seen *seen,
                                : power;
 }
 
-/* The radius of the disc that a lamp is where a picture shows one of SEEN: of a
- * point, too, it is white as far as its own star is, whose mean far out is that
- * of a circle. */
+/* Returns the radius, pixels, of the disc of a lamp that the picture shows as
+ * SEEN. A point, too, is white as far out as its own star is, which far out has
+ * the mean of a circle's. */
 static double disc_of(const struct glint_frame *f, const struct seen *seen,
                       double power)
 {
@@ -142,7 +143,8 @@ static double disc_of(const struct glint_frame *f, const struct seen *seen,
         fmax(seen->radius_px * seen->radius_px - point_px * point_px, 0));
 }
 
-/* False: too far away. */
+/* Sets LIGHT for LAMP times SCALE. Returns false if it is too far from the
+ * picture or has no light. */
 static bool set_light(const struct glint_frame *f,
                       const struct glint_lamp *lamp, double scale,
                       const struct seen *seen, struct glint_star_light *light)

@@ -13,26 +13,26 @@
 struct glint_frame;
 
 struct glint_frame_star {
-    /* Light of the star over that of the lens: lamps' powers are multiplied by
-     * the frame's scale and this. 0: none. */
+    /* Factor on the star: lamps' powers are multiplied by the frame's scale and
+     * by this. 0: there is no star. */
     double share;
-    /* Pixels of each lamp that the picture clips, the root of the mean square
-     * of their distances from its middle, with all that its light has spread
-     * to: its power is an estimate. 0, and NULL for all: the lamp is what it
-     * says.
-     */
+    /* [n]: RMS radius in pixels of each lamp that the picture clips, with all
+     * that its light has spread to; its power is then taken for an estimate. 0,
+     * or NULL for all: the lamp has the extent and the power of its own
+     * members. */
     const double *seen_px;
-    const double *level; /* share of each of these in its power; NULL: 1 */
-    bool is_bare;  /* true: no picture shows the lamps, so their cores are drawn
-                    */
+    /* [n]: level of each lamp, which its power includes; NULL: 1. */
+    const double *level;
+    bool is_bare; /* true: no picture shows the lamps, so their cores are drawn,
+                     too */
     bool is_alone; /* true: the star is drawn without ghosts */
 
     /* Private. */
     struct glint_star_optics optics; /* optics for which the tables were made */
     struct glint_star_tables *tables;
-    struct glint_star *star; /* the star is drawn once set; NULL: none */
-    /* [max_lights]; of more than GLINT_STAR_MAX_LIGHTS the brightest are drawn
-     */
+    struct glint_star *star; /* NULL: there is none yet */
+    /* [max_lights]; if there are more than GLINT_STAR_MAX_LIGHTS, the brightest
+     * are drawn */
     struct glint_star_light *light;
     void *mem;
     int max_lights;
@@ -47,11 +47,11 @@ enum glint_status glint_frame_star_set(struct glint_frame *frame,
                                        double scale,
                                        const struct glint_image *image);
 
-/* Takes room for the stars of N lamps and makes their tables, so that frames
- * take no memory. Without a share nothing is done. GLINT_E_MEMORY. */
+/* Takes memory for the stars of N lamps and makes their tables, so that frames
+ * take none. Does nothing if the share is 0. GLINT_E_MEMORY. */
 enum glint_status glint_frame_star_hold(struct glint_frame *frame, int n);
 
-/* Draws what the flare has binned and the star that was set. */
+/* Draws the bins of the flare, and the star if it is set, onto IMAGE. */
 void glint_frame_paint(struct glint_frame *frame,
                        const struct glint_image *image);
 

@@ -23,7 +23,7 @@ static inline double glint_star_airy_px(const struct glint_star_optics *o)
  * GLINT_E_MEMORY. */
 enum glint_status glint_star_tables_make(struct glint_star_tables **tables,
                                          const struct glint_star_optics *o);
-/* TABLES may be NULL. */
+/* Frees TABLES, which may be NULL. */
 void glint_star_tables_free(struct glint_star_tables *tables);
 size_t glint_star_tables_bytes(const struct glint_star_tables *tables);
 
