@@ -37,7 +37,8 @@ struct glint_kept {
     const struct glint_oiio *oiio; /* NULL: PNM or PFM */
     struct glint_oiio_file *file;
     bool has_icc;
-    uint8_t *native; /* the whole of a PNM or PFM */
+    /* all bytes of a PNM or PFM; of other files the first 12 */
+    uint8_t *native;
     size_t native_bytes, header_bytes;
     bool is_pfm, is_little;
     uint8_t *own; /* the file's samples in this machine's order */

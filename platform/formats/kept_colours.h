@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * formats/kept_colours.h - what the colours of a picture file mean, by its
- * cICP, profile, gamma or name. Part of formats/kept.h.
+ * formats/kept_colours.h - sets the meaning of a picture file's colours by its
+ * cICP, profile, gamma or colour space. Part of formats/kept.h.
  */
 #ifndef GLINT_PLATFORM_FORMATS_KEPT_COLOURS_H
 #define GLINT_PLATFORM_FORMATS_KEPT_COLOURS_H

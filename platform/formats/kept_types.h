@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * formats/kept_types.h - what picture file types can hold.
+ * formats/kept_types.h - the types of picture files, and what each can hold.
  */
 #ifndef GLINT_PLATFORM_FORMATS_KEPT_TYPES_H
 #define GLINT_PLATFORM_FORMATS_KEPT_TYPES_H

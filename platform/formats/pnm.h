@@ -8,8 +8,8 @@
  *
  * The binary kinds only: P6 (colour) and P5 (grey), maximum value 1 .. 65535,
  * comments anywhere in the header. Samples are scaled to 8 bits, to nearest;
- * those above the stated maximum count as the maximum. What follows the first
- * picture is ignored, since PNM files may hold several.
+ * those above the stated maximum count as the maximum. Bytes after the first
+ * picture are ignored, as PNM files may hold several.
  */
 #ifndef GLINT_PLATFORM_FORMATS_PNM_H
 #define GLINT_PLATFORM_FORMATS_PNM_H

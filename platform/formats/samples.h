@@ -41,10 +41,11 @@ struct glint_sample_place {
 struct glint_samples {
     int width, height; /* size of the file's pixels */
     int x, y;          /* place of the first pixel in the window */
-    int window_width, window_height; /* size of what is seen, as stored */
-    int orientation;                 /* 1 .. 8, as of EXIF */
-    size_t pixel_bytes;              /* bytes of all channels of a pixel */
-    int n_colours;                   /* 3, or 1: grey */
+    /* size of the display window, not turned */
+    int window_width, window_height;
+    int orientation;    /* 1 .. 8, as of EXIF */
+    size_t pixel_bytes; /* bytes of all channels of a pixel */
+    int n_colours;      /* 3, or 1: grey */
     /* is_premultiplied has no effect without alpha. */
     bool has_alpha, is_premultiplied;
     struct glint_sample_place colour[3], alpha; /* grey: all colours alike */

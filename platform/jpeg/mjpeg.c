@@ -36,7 +36,7 @@ struct glint_mjpeg {
     bool in_scan; /* The header has been read. */
     bool ended;   /* libjpeg asked for more bytes than the frame has. */
     jmp_buf escape;
-    enum glint_status status; /* the failure that a jump to escape reports */
+    enum glint_status status; /* failure that a jump to escape reports */
     struct glint_error *error;
 };
 

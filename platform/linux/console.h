@@ -34,8 +34,10 @@ struct glint_console {
 bool glint_console_take(struct glint_console *console,
                         struct glint_error *note);
 
-/* Puts itself on the list of posix/at_death.h, as take does: for those who must
- * be put right before the console is, and so come after it on that list. */
+/* Adds the return of the console's mode to the functions of
+ * posix/at_death.h, as glint_console_take() does. They run from the newest
+ * to the oldest: a function that must run before the console returns is
+ * added after this call. */
 void glint_console_watch(void);
 
 /* Puts the console back into its mode, if it was taken. */

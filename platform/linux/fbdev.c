@@ -34,9 +34,9 @@ static enum glint_status lost(const struct glint_fbdev *fb, const char *what,
 /* The console draws at the offset it had before, so the panel must show that
  * again when glint ends; and before the console returns, which takes over the
  * panel's offset: Linux 6.1 then draws in a wrong place. */
-static int panned_fd = -1; /* atomic */
+static int panned_fd = -1; /* framebuffer to pan back, or -1; atomic */
 static struct fb_var_screeninfo panned_home;
-static pid_t panner; /* atomic */
+static pid_t panner; /* process that panned it; atomic */
 
 /* Pans the panel back to the offset it had before. Async-signal-safe. */
 static void pan_home(void)

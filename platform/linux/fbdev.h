@@ -44,8 +44,8 @@ struct glint_fbdev {
     char id[17];       /* name that the driver gives itself */
     int width, height; /* size of the panel */
     struct glint_pixel_layout layout;
-    int n_pages;             /* 2: frames are drawn unseen */
-    bool has_note;           /* the console could not be taken */
+    int n_pages;   /* 2: each frame is drawn to the screen not shown */
+    bool has_note; /* the console could not be taken */
     struct glint_error note; /* reason for that */
 
     /* Private. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * linux/fourcc.h - what V4L2 calls the formats and colours of glint.
+ * linux/fourcc.h - V4L2's codes for the formats and colours of glint.
  *
  * A FOURCC is four characters in a word, the first lowest. Formats of several
  * planes exist twice in V4L2: NV12 in one block of memory, NM12 in one block

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * linux/request.h - requests to devices, and what their failure means.
+ * linux/request.h - requests to devices, and messages for their failures.
  */
 #ifndef GLINT_PLATFORM_LINUX_REQUEST_H
 #define GLINT_PLATFORM_LINUX_REQUEST_H

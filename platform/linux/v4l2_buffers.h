@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * linux/v4l2_buffers.h - the memory that frames come in, and its way to the
- * driver and back. Part of linux/v4l2.h; failures leave errno set.
+ * linux/v4l2_buffers.h - the buffers of frames, and their exchange with the
+ * driver. Part of linux/v4l2.h; failures leave errno set.
  */
 #ifndef GLINT_PLATFORM_LINUX_V4L2_BUFFERS_H
 #define GLINT_PLATFORM_LINUX_V4L2_BUFFERS_H
 
 #include "linux/v4l2.h"
 
-/* The outcome of asking for a frame. */
+/* outcome of glint_v4l2_take() */
 enum glint_v4l2_outcome {
     GLINT_V4L2_TAKEN,
     GLINT_V4L2_NOTHING,

@@ -181,7 +181,7 @@ static void write_pix(struct v4l2_format *f, bool multiplanar, uint32_t fourcc,
 static bool lay_out(struct glint_v4l2_format *f, const struct pix *pix)
 {
     const int n = glint_image_planes(f->pixels);
-    uint64_t offset = 0; /* 64 bits, as a driver may say what it likes */
+    uint64_t offset = 0; /* 64 bits, as a driver may state any size */
 
     if (f->n_blocks != 1 && f->n_blocks != n)
         return false;

@@ -79,7 +79,7 @@ static enum glint_status set_format(struct glint_v4l2_sink *out,
     px->ycbcr_enc = colour.ycbcr_enc;
     px->quantization = colour.quantization;
     px->xfer_func = colour.xfer_func;
-    px->priv = V4L2_PIX_FMT_PRIV_MAGIC; /* has the driver read the last three */
+    px->priv = V4L2_PIX_FMT_PRIV_MAGIC; /* makes the last three count */
     if (glint_ioctl(out->fd, VIDIOC_S_FMT, f) < 0)
         return failed(out, "VIDIOC_S_FMT", error);
     if (glint_fourcc_to_format(px->pixelformat, &format) &&

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The plug-in behind oiio/oiio.h. Nothing is thrown across the seam: whatever
- * OpenImageIO throws or returns becomes a status and one line of text. */
+ * The plug-in behind oiio/oiio.h. No exception leaves it: all that OpenImageIO
+ * throws or returns becomes a status and one line of text. */
 #include "oiio/oiio.h"
 
 #include <cstdio>

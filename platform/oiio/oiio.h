@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * oiio/oiio.h - PNG, JPEG, EXR and the rest, through OpenImageIO.
+ * oiio/oiio.h - PNG, JPEG, EXR and other pictures, through OpenImageIO.
  *
  *     const struct glint_oiio *oiio;
  *     if (!glint_oiio_load(&oiio, &error))
@@ -8,7 +8,7 @@
  *
  * OpenImageIO brings some 260 shared libraries with it, so it lives in a
  * plug-in, glint-oiio.so, which is loaded when a picture first needs it and
- * then stays. glint works without; oiio.cc is its only file in C++.
+ * then stays. glint works without it; only its files (*.cc) are in C++.
  */
 #ifndef GLINT_PLATFORM_OIIO_OIIO_H
 #define GLINT_PLATFORM_OIIO_OIIO_H
@@ -39,7 +39,7 @@ struct glint_oiio_file;
 struct glint_oiio_facts {
     const unsigned char *icc; /* ICC profile; NULL: none */
     size_t icc_bytes;
-    char colour_space[32]; /* OpenImageIO's name for it, or "" */
+    char colour_space[32]; /* OpenImageIO's name of it, or "" */
     double gamma;          /* gamma that the file states by itself, or 0 */
     double primaries[4][2];
     int has_primaries;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * oiio/webp.h - WebP pictures with straight alpha, as they are.
+ * oiio/webp.h - WebP pictures, whose alpha stays straight.
  */
 #ifndef GLINT_PLATFORM_OIIO_WEBP_H
 #define GLINT_PLATFORM_OIIO_WEBP_H

@@ -7,10 +7,10 @@
  *     glint_panel_draw(&panel, &image, mem, stride);  each frame
  *     glint_panel_close(&panel);
  *
- * A picture of another size than the panel is fitted in, its shape kept, each
- * pixel of the panel showing the nearest one of the picture; or it is centred
- * as it is, and what does not fit is cut off. What the picture does not cover
- * is left alone by draw.
+ * A picture of another size than the panel is scaled to fit, in its shape, by
+ * taking for each pixel of the panel the nearest one of the picture; or it is
+ * centred as it is, and its sides are cut off where they do not fit. Draw does
+ * not touch the parts of the panel beside the picture.
  *
  * Each row is made in cached memory (panel/row_rgb.h, panel/row_pack.h) and
  * then copied, so the panel's own memory is only written, and in order: it may

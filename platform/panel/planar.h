@@ -2,7 +2,7 @@
  *
  * panel/planar.h - any 8-bit picture as planes of Y', Cb, Cr, for files.
  *
- * Packed and half-packed formats have their samples moved, none is computed.
+ * Samples of packed and half-packed formats are moved, not computed.
  * RGB becomes GLINT_I444 by the matrix and range of the result, rounded to the
  * nearest code.
  */

@@ -8,7 +8,7 @@
  *
  * A channel of n bits gets code c as (c (2^n - 1) + 127) / 255: the nearest,
  * and for 16 bits the inverse of what panel/row_rgb.h reads. Transparency is
- * written opaque; bits that belong to nobody are zero.
+ * written opaque; unused bits are zero.
  *
  * With dithering the 127 becomes one of 64 thresholds by the place of the pixel
  * (8 x 8, the same in all channels): bands of smooth gradients turn to grain.

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * posix/error.h - one line for a person about a file that was refused.
+ * posix/error.h - error messages of one line about a file.
  */
 #ifndef GLINT_PLATFORM_POSIX_ERROR_H
 #define GLINT_PLATFORM_POSIX_ERROR_H

@@ -21,7 +21,7 @@
 #include "posix/target.h"
 
 #define BUFFER_BYTES 65536
-#define MAX_TMP      16   /* temporary files at a time */
+#define MAX_TMP      16   /* most temporary files at a time */
 #define MAX_TRIES    1000 /* names to try, as others may have taken some */
 
 /* ---------------------------------------------- files to remove when dying */
@@ -80,9 +80,9 @@ static enum glint_status refuse(const struct glint_output *out,
                               strerror(number));
 }
 
-/* Creates the file NAME and puts it on the list, with signals blocked, which
- * could otherwise find it created and not listed yet. Returns its descriptor,
- * or -1 with errno set. */
+/* Creates the file NAME and puts it on the list. Signals are blocked meanwhile,
+ * as death in between would leave the file. Returns its descriptor, or -1 with
+ * errno set. */
 static int create_doomed(char *name, mode_t mode)
 {
     sigset_t held, old;

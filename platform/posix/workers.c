@@ -26,7 +26,7 @@ struct pool {
     bool quit;
     int busy; /* helpers inside the round */
 
-    /* Constant while a round is open or a helper is busy. */
+    /* These are constant while a round is open or a helper is busy. */
     glint_job_fn *fn;
     void *ctx;
     unsigned n_jobs;

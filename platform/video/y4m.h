@@ -59,7 +59,7 @@ struct glint_y4m_header {
     int fps_num, fps_den;       /* frames a second; 0, 0: not known */
     char interlace;             /* p t b m or ?; 0: not stated */
     char aspect[24];            /* shape of a pixel, "1:1"; "": not stated */
-    char colour[16];            /* the tag stated, "420mpeg2"; "": not stated */
+    char colour[16];            /* the tag C, "420mpeg2"; "": not stated */
     bool range_stated;          /* XCOLORRANGE states it */
     char extra[GLINT_Y4M_LINE]; /* the other tags, each after a space */
     char line[GLINT_Y4M_LINE];  /* the line that was read, or ""; it is printed

@@ -21,7 +21,7 @@
 enum {
     GLINT_Y4M_STEPS = 4096,   /* steps of R'G'B' from black to white */
     GLINT_Y4M_OCTAVES = 25,   /* octaves of light, from 2^-24 to white */
-    GLINT_Y4M_IN_OCTAVE = 128 /* entries of each */
+    GLINT_Y4M_IN_OCTAVE = 128 /* entries of an octave */
 };
 
 struct glint_y4m_light {
@@ -34,7 +34,8 @@ struct glint_y4m_light {
     int64_t cb_factor, cr_factor,
         /* factors of 1 - kb, 1 - kr and kg */
         g_factor;
-    int32_t decode_q24[GLINT_Y4M_STEPS + 1]; /* light of R'G'B' */
+    int32_t decode_q24[GLINT_Y4M_STEPS + 1]; /* light of each step */
+    /* R'G'B' of light, by octave and entry */
     int32_t encode_q20[GLINT_Y4M_OCTAVES][GLINT_Y4M_IN_OCTAVE + 1];
 };
 

@@ -118,7 +118,7 @@ static int report(const struct tool *tool, const void *model, size_t bytes,
     return EXIT_OK;
 }
 
-/* Bakes LENS into OUT, which is finished or aborted. */
+/* Bakes LENS into OUT and finishes it, or aborts it. Returns an exit code. */
 static int bake_into(struct glint_output *out, struct tool *tool,
                      struct bake *b, const struct glint_prescription *lens)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint compare: how far two pictures are apart.
+ * glint compare: measures how far two pictures are apart.
  */
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint render: the flare alone, in linear light.
+ * glint render: draws the flare alone, in linear light.
  */
 #include <inttypes.h>
 #include <limits.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint trace: rays as a table, exact or by a model.
+ * glint trace: prints rays as a table, exact or by a model.
  */
 #include <stdlib.h>
 #include <string.h>

@@ -30,7 +30,7 @@ struct test {
     struct glint_lamp *lamp;
     int n_lamps, threads;
     const char *kernels;
-    double scale, psnr_db; /* NAN: not measured */
+    double scale, psnr_db; /* psnr_db: NAN if not measured */
     const char *series;    /* growth: name of the series, or NULL */
     /* growth: a lens with some of the ghosts only, and the memory of these;
      * NULL: the whole lens is used. */
@@ -53,7 +53,7 @@ struct bench {
     const char *format_word;
     int width, height;
     bool all, sizes, growth, psnr;
-    bool moving; /* the lights move from round to round */
+    bool moving; /* The first light moves from round to round. */
     int n_budgets;
     double budget_ms[MAX_BUDGETS];
 };

@@ -31,7 +31,7 @@ static struct bench_canvas *canvas_of(struct bench *b, int width, int height)
 struct variation {
     int width, height; /* 0: as asked */
     int lights;
-    int two_threads, by_cells; /* set whatever was asked for */
+    int two_threads, by_cells; /* for this case, whatever was asked for */
     const char *kernels;       /* NULL: as asked */
     unsigned sets;             /* instruction sets that the kernels may use */
     double angle;
@@ -211,8 +211,7 @@ enum glint_status bench_run(struct test *t, int round)
     double t0, cpu_ms;
 
     canvas_fresh(c);
-    if (t->series) /* elsewhere not, as a system call would cool the caches of
-                      small frames */
+    if (t->series) /* only there, as it cools the caches of small frames */
         cpu0 = clock();
     t0 = tool_seconds();
     status = glint_frame_draw(&t->frame, t->lamp, t->n_lamps, t->scale,

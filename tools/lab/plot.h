@@ -21,7 +21,7 @@ struct plot {
     FILE *file;
     const char *title;
     struct plot_axis x, y;
-    int left, top; /* corner of the panel, pixels */
+    int left, top; /* top left corner of the panel, pixels */
     int n_keys;
 };
 

@@ -14,7 +14,8 @@
 
 enum { SWEEP_LENSES = 16, SWEEP_CASES = 128, SWEEP_ROUNDS = 100 };
 
-#define MAX_FLUX_ERROR 0.02 /* brightness must not depend on a dial */
+/* largest flux error on a front: brightness must not depend on dials */
+#define MAX_FLUX_ERROR 0.02
 
 /* kind of setting that a point measures */
 enum sweep_kind {
@@ -91,7 +92,7 @@ enum glint_status sweep_plan(struct sweep *s);
 /* Measures case C. Returns an exit code. */
 int sweep_measure(struct sweep *s, int c, struct tool_progress *progress);
 
-/* glint_frame_draw(), in a function of its own that
+/* Calls glint_frame_draw(), as a function of its own, whose instructions
  * tools/report/sweep-insn counts. */
 enum glint_status sweep_frame(struct glint_frame *frame,
                               const struct glint_lamp *lamp, int n,

@@ -44,8 +44,9 @@ static bool is_same(const struct settings *a, const struct settings *b)
     return a->tolerance == b->tolerance && a->n_wavelengths == b->n_wavelengths;
 }
 
-/* Returns settings that are opened with those dials of SET that opening needs,
- * or NULL after reporting a failure, with its exit code in *CODE. */
+/* Returns settings that are opened for SET, and shared by all sets that need
+ * the same to be opened. Returns NULL after reporting a failure, with its exit
+ * code in *CODE. */
 static const struct settings *
 settings_for(struct bay *b, const struct sweep_setting *set, int *code)
 {

@@ -45,7 +45,8 @@ struct live_options {
 typedef int live_reread_fn(void *ctx, struct tool *tool,
                            struct live_options *options);
 
-/* Runs until told to stop. Returns an exit code. */
+/* Runs until a signal, --count, the end of the input or an error. Returns an
+ * exit code. */
 int live_run(struct tool *tool, struct live_options *options,
              live_reread_fn *reread, void *ctx);
 

@@ -20,8 +20,8 @@
 struct live_adapt {
     int step;       /* 0 .. LIVE_MAX_STEP; 0: as asked for */
     double busy_ms; /* smoothed time of a frame; -1: none since the last step */
-    /* Seconds for which there has been time to spare; seconds of that which a
-     * step up needs. */
+    /* below_s: seconds for which there has been time to spare; hold_s: seconds
+     * of that which a step up needs. */
     double below_s, hold_s;
     double since_s; /* seconds since the last step */
     bool rose;      /* The last step went up. */

@@ -14,7 +14,7 @@
 
 struct live_wish {
     struct glint_v4l2_config camera; /* device, size and rate of any source */
-    enum glint_v4l2_io io;           /* a camera is read in this way */
+    enum glint_v4l2_io io;           /* way to read a camera */
     int n_buffers;                   /* buffers of a camera */
 };
 

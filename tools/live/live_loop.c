@@ -21,9 +21,9 @@ struct live {
     void *ctx;
 
     struct live_input in;
-    /* Format of the input when it was looked at last. */
+    /* Format of the input when it was opened or began anew. */
     struct glint_source_format format;
-    int n_restarts; /* restarts of the input until then */
+    int n_restarts; /* restarts of the input before that */
     struct live_output output;
     struct live_copy copy; /* copy of frames that lie in slow memory */
 

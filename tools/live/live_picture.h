@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Copies of live frames: for drawing, where their own memory is slow or shared,
- * and as files.
+ * live_picture.h - copies of live frames: in memory, to draw on where their own
+ * memory is slow or shared, and as files.
  */
 #ifndef GLINT_TOOLS_LIVE_LIVE_PICTURE_H
 #define GLINT_TOOLS_LIVE_LIVE_PICTURE_H

@@ -10,7 +10,7 @@
 #include <stdint.h>
 
 enum live_signal {
-    LIVE_STOP,       /* SIGINT, SIGTERM; the second kills */
+    LIVE_STOP,       /* SIGINT, SIGTERM; the second one kills */
     LIVE_RELOAD,     /* SIGHUP */
     LIVE_REPORT_NOW, /* SIGUSR1 */
     LIVE_SNAPSHOT,   /* SIGUSR2 */

@@ -36,7 +36,7 @@ enum live_stage {
 
 enum {
     LIVE_BINS = 10000,    /* bins of latency */
-    LIVE_BIN_US = 100,    /* the width of one */
+    LIVE_BIN_US = 100,    /* width of a bin */
     LIVE_STATS_TEXT = 640 /* room for any line, bytes */
 };
 

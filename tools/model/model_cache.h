@@ -12,9 +12,9 @@
 
 #include "model/model_file.h"
 
-/* Opens MODEL, that of LENS by OPTIONS, whose workers and progress it sets: as
- * installed, as kept, or baked and then kept. Returns an exit code, after
- * printing the reason on failure. */
+/* Opens as MODEL the model of LENS by OPTIONS: the installed one, the kept one,
+ * or a new one, which it bakes and keeps. It sets workers and progress of
+ * OPTIONS. Returns an exit code, after printing the reason on failure. */
 int model_cached(const struct tool *tool, const struct glint_prescription *lens,
                  struct glint_bake_options options, struct model_file *model);
 

@@ -18,7 +18,7 @@ extern const double model_output_targets[GLINT_OUT_KINDS];
 const char *model_basis_name(const struct glint_lens *lens);
 double model_degrees(int32_t sine_q30);
 double model_nanometres(
-    int32_t wave_q24); /* Turns 1 / square micrometres into nanometres. */
+    int32_t wave_q24); /* converts 1 / square micrometres to nanometres */
 
 /* Systems first .. first + n - 1. */
 struct model_span {
@@ -33,8 +33,8 @@ const struct glint_model_output *
 model_outputs_of(const struct glint_lens *lens,
                  const struct glint_model_system *system);
 
-/* Returns the bytes that a span takes in the file, without regard to sharing.
- */
+/* Returns the bytes that a span takes in the file, as if systems shared
+ * none. */
 size_t model_span_bytes(const struct glint_lens *lens, struct model_span span);
 
 /* Sets RANGE_DEG to the least and largest angle that a span covers. */

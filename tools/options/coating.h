@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * --coating: what is on the surfaces of a lens table between air and glass.
+ * --coating: the films on the surfaces of a lens table between air and glass.
  */
 #ifndef GLINT_TOOLS_OPTIONS_COATING_H
 #define GLINT_TOOLS_OPTIONS_COATING_H

@@ -32,7 +32,7 @@ enum dial_id {
 struct dial {
     const char *name, *what; /* words for tables, and for plots */
     enum dial_id id;
-    double standard;  /* default of the settings */
+    double standard;  /* value by default */
     bool opens;       /* Settings have to be opened anew for it. */
     bool many_lights; /* has no effect on a single light */
     int n_values, n_together;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The options that say what is drawn and how, for render and overlay alike.
+ * The options that set what is drawn and how, for all commands that draw.
  */
 #ifndef GLINT_TOOLS_OPTIONS_SETTINGS_H
 #define GLINT_TOOLS_OPTIONS_SETTINGS_H
@@ -29,10 +29,10 @@ struct settings {
     struct model_file model; /* closed for exact rays */
     enum settings_rays rays;
     double max_deg;   /* largest angle of the lamps that a model is baked for */
-    double tolerance; /* tolerance that it is baked with */
+    double tolerance; /* tolerance that a model is baked with */
     struct glint_setup setup;
     struct coating coating;
-    double f_number; /* 0: as the table says */
+    double f_number; /* 0: the table's */
     int n_blades;
     double blade_rotation_deg;
     double wavelength_nm[GLINT_MAX_WAVELENGTHS];
@@ -46,7 +46,7 @@ struct settings {
     struct glint_dials dials; /* dials, but for max_lights */
     double quantum;           /* dials.irradiance_steps, in percent */
     int max_lights;           /* 0: not given */
-    int area_samples_asked;   /* 0: as the quality has it */
+    int area_samples_asked;   /* 0: as many as the quality takes */
     double apart_px; /* pixels; lights whose images are nearer are one */
 
     int merge_steps, tile_log2, coarse_log2, mask_nodes;

@@ -21,8 +21,9 @@ struct suggest {
     int distance; /* distance of the best word */
 };
 
-/* Returns how many letters to insert, leave out, change or swap with the next
- * one lead from A to B; SUGGEST_CHARS if one of them has so many characters. */
+/* Returns how many letters have to be inserted, left out, changed or swapped
+ * with the next one to get from A to B, or SUGGEST_CHARS if A or B has that
+ * many characters. */
 int suggest_distance(const char *a, const char *b);
 
 void suggest_begin(struct suggest *suggest, const char *word);

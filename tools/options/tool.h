@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What all commands share: common options, exit codes, errors, progress, and
- * the reading of numbers and lens files.
+ * The parts that all commands share: common options, exit codes, errors,
+ * progress, and the reading of numbers.
  */
 #ifndef GLINT_TOOLS_OPTIONS_TOOL_H
 #define GLINT_TOOLS_OPTIONS_TOOL_H

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint overlay: the flare of the lamps in a picture or video, on top of it.
+ * glint overlay: adds the flare of the lamps in a picture or video to it.
  */
 #include <errno.h>
 #include <math.h>

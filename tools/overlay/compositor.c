@@ -200,8 +200,9 @@ static struct lamp_row row_of(const struct compositor *compositor, int i)
     const struct glint_lamp *lamp = &compositor->lamp[i];
     const double *axis = lamp->axis;
     const double focal = compositor->settings.setup.optics.focal_mm;
-    const double pixels = compositor->view.width * fabs(focal) /
-                          compositor->view.sensor_width_mm; /* per tangent */
+    const double pixels =
+        compositor->view.width * fabs(focal) /
+        compositor->view.sensor_width_mm; /* pixels per tangent */
     struct lamp_row row = {.frame = compositor->n_frames,
                            .power = lamp->power,
                            .size = pixels * hypot(axis[0], axis[1]),
@@ -418,7 +419,8 @@ void compositor_find(struct compositor *compositor,
     const double start = tool_seconds();
 
     compositor->n_lamps = set_lamps(compositor, image, elapsed_us);
-    /* there is time for a picture by itself */
+    /* There is time to draw a picture by itself with more points of wide
+     * lamps. */
     if (elapsed_us == 0 && settings->budget_ms == 0) {
         if (!settings->area_samples_asked)
             compositor->frame.dials.area_points =

@@ -39,15 +39,18 @@ struct compositor {
     /* contents of a picture by itself, from when lamps are found until it is
      * exposed; else NULL */
     struct glint_ground *ground;
-    int dial; /* option that said so, OPT_STRENGTH or OPT_EXPOSURE; 0: none */
+    int dial; /* option that set the brightness, OPT_STRENGTH or OPT_EXPOSURE;
+                 0: none */
 
-    /* Made by open and size. */
+    /* Set by compositor_open() and compositor_size(). */
     bool is_listed;        /* Lamps come from a list, by file or by pixel. */
     struct lamp_list list; /* lamps of the file and those by pixel */
     struct lamp_save save;
     struct glint_lamp_detector finder;
-    struct glint_lamp *lamp; /* room for those by hand and all found or read */
-    double *level; /* share of each lamp in its power: struct strength_lamps */
+    struct glint_lamp *lamp; /* lamps of the frame, with room for all by hand
+                                and all found or read */
+    double *level;   /* share of its power that each lamp has, as in struct
+                        glint_strength_lamps */
     double *seen_px; /* extent of each lamp that the picture clips, or 0 */
     uint32_t *id;    /* number that each lamp is saved under */
     struct glint_response response;

@@ -89,8 +89,8 @@ static void add_excess(struct sum *sum, const struct glint_samples *samples,
         }
 }
 
-/* Returns the light of TRACK that the finder saw in the proxy, whose WHITE is
- * that of the picture. */
+/* Returns the light of TRACK that the finder saw in the proxy, times WHITE, the
+ * light of the proxy's white. */
 static struct sum seen_of(const struct glint_lamp_track *track, double white)
 {
     const double flux = (double)track->flux_q16 / 65536 * white;
@@ -156,7 +156,8 @@ static enum glint_status draw_as_for_codes(struct compositor *compositor,
     enum glint_status status;
 
     memset(rgb, 0, n * sizeof *rgb);
-    glint_image_place(&layer, rgb); /* becomes floats in place */
+    /* RGB holds integers until they are converted. */
+    glint_image_place(&layer, rgb);
     compositor->frame.for_codes = true;
     status = glint_frame_draw(&compositor->frame, compositor->lamp,
                               compositor->n_lamps, compositor_scale(compositor),

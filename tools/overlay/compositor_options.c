@@ -117,8 +117,8 @@ static bool take(struct compositor *compositor, int option, const char *value)
     }
 }
 
-/* Notes OPTION if it sets the brightness. Returns false if another option that
- * does was given before. */
+/* Notes OPTION if it is --strength or --exposure. Returns false if the other of
+ * the two was given before. */
 static bool take_dial(struct compositor *compositor, int option)
 {
     if (option != OPT_STRENGTH && option != OPT_EXPOSURE)

@@ -53,7 +53,7 @@ enum glint_status ffmpeg_read(struct child *child, const char *name,
                               const struct ffmpeg_video *video,
                               struct glint_error *error);
 
-/* The file to write, and what goes with the pictures. */
+/* The output, and the facts that its encoder needs. */
 struct ffmpeg_target {
     const char *name;  /* name of the output */
     const char *file;  /* temporary file to write, of the same extension */

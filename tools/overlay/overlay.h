@@ -12,7 +12,7 @@ struct overlay_y4m;
 
 struct overlay {
     struct compositor compositor;
-    /* Reader and writer of a video that is not of 8 bits. */
+    /* Memory for a video that is not plain 8 bits; NULL: none. */
     struct overlay_y4m *y4m;
     const char *input, *output;
     int start_number;

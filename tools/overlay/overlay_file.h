@@ -20,7 +20,7 @@
 #include "formats/kept.h"
 
 struct overlay_file {
-    /* Picture of the size that compositor_size wants. */
+    /* Picture in which lamps are found; its size is for compositor_size(). */
     struct glint_image image;
 
     /* Private. */

@@ -36,7 +36,7 @@ static bool is_pattern(const char *text)
  * false if it is too long. */
 static bool name_of(char *name, const char *pattern, int number)
 {
-    const char *at = strchr(pattern, '%'); /* there is one: is_pattern() */
+    const char *at = strchr(pattern, '%'); /* is_pattern() found one */
     const char *end = at ? strchr(at, 'd') : NULL;
     long stated;
     int digits, n;
@@ -165,8 +165,8 @@ static void say_missing(const struct tool *tool, const struct overlay *o,
 
 /* ------------------------------------------------------------------ frames */
 
-/* Draws picture number l->at[i], which comes as long after the one before as
- * their numbers say. Returns an exit code. */
+/* Draws picture number l->at[i]; the time since the one before follows from
+ * their numbers. Returns an exit code. */
 static int one(struct tool *tool, struct overlay *o, const struct numbers *l,
                int i)
 {

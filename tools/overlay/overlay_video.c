@@ -23,7 +23,7 @@ struct video {
     struct ffmpeg_video about;
     struct child reader, writer;
     struct glint_output file; /* file that ffmpeg writes, until it is whole */
-    char pipe[32];            /* name of the pipe, which OUT keeps */
+    char pipe[32];            /* name of the pipe, for OUT */
     struct glint_y4m_reader in;
     struct glint_y4m_writer out;
 };

@@ -20,8 +20,9 @@ void show_light(const struct glint_image *image,
 void show_light_of(const struct glint_image *image,
                    const struct glint_lamp_track *track, double power);
 
-/* Writes into the lower left corner what numbers and, of lamps that are
- * FOLLOWED, colours mean, if the picture has room for that. */
+/* Writes a legend into the lower left corner: the meaning of numbers and, if
+ * lamps are FOLLOWED, of colours. Leaves it out where the picture has no
+ * room. */
 void show_legend(const struct glint_image *image, bool followed);
 
 #endif
