@@ -49,6 +49,10 @@ struct glint_image {
 /* Returns the number of planes of FORMAT, 1 .. 3. */
 int glint_image_planes(enum glint_pixel_format format);
 
+/* Returns whether codes are of R', G' and B', in one plane; else they are luma
+ * and chroma, grey or linear light. */
+int glint_image_is_rgb(enum glint_pixel_format format);
+
 /* Return the bytes of a row of plane PLANE without padding, and its number of
  * rows. */
 size_t glint_image_row_bytes(enum glint_pixel_format format, int plane,

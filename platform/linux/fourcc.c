@@ -133,16 +133,10 @@ bool glint_fourcc_parse(const char *text, uint32_t *fourcc)
 
 /* ------------------------------------------------------------------ colours */
 
-static bool is_rgb(enum glint_pixel_format format)
-{
-    return format == GLINT_RGB24 || format == GLINT_BGR24 ||
-           format == GLINT_XRGB8888 || format == GLINT_RGB565;
-}
-
 bool glint_v4l2_colour_read(const struct glint_v4l2_colour *colour,
                             struct glint_image *image)
 {
-    const bool rgb = is_rgb(image->format);
+    const bool rgb = glint_image_is_rgb(image->format);
     /* By default grey is full range: sensors without colour use all codes. */
     const bool is_grey = image->format == GLINT_GREY;
     const uint32_t space = colour->colorspace;
@@ -182,7 +176,7 @@ void glint_v4l2_colour_write(struct glint_v4l2_colour *colour,
                             ? V4L2_YCBCR_ENC_601
                             : V4L2_YCBCR_ENC_709;
     colour->quantization =
-        is_rgb(image->format) || image->range == GLINT_RANGE_FULL
+        glint_image_is_rgb(image->format) || image->range == GLINT_RANGE_FULL
             ? V4L2_QUANTIZATION_FULL_RANGE
             : V4L2_QUANTIZATION_LIM_RANGE;
     colour->xfer_func = srgb ? V4L2_XFER_FUNC_SRGB : V4L2_XFER_FUNC_709;

@@ -7,12 +7,6 @@
 
 #include "posix/error.h"
 
-static bool is_rgb(enum glint_pixel_format format)
-{
-    return format == GLINT_RGB24 || format == GLINT_BGR24 ||
-           format == GLINT_XRGB8888 || format == GLINT_RGB565;
-}
-
 /* Prepares the frames to write, with memory for them where Y4M does not know
  * the format of the images. */
 static enum glint_status take_planes(struct glint_y4m_sink *y,
@@ -49,7 +43,7 @@ static enum glint_status begin(struct glint_y4m_sink *y,
     glint_y4m_header_init(&header, image->width, image->height,
                           glint_planar_format(image->format), y->fps_num,
                           y->fps_den);
-    if (!is_rgb(image->format))
+    if (!glint_image_is_rgb(image->format))
         header.range = image->range;
     header.range_stated = true;
     status = take_planes(y, &header, error);

@@ -36,6 +36,13 @@ const struct glint_layout *glint_layout_of(enum glint_pixel_format format)
     return &layouts[format];
 }
 
+int glint_image_is_rgb(enum glint_pixel_format format)
+{
+    const enum glint_layout_kind kind = layouts[format].kind;
+
+    return kind == GLINT_LAYOUT_RGB || kind == GLINT_LAYOUT_565;
+}
+
 int glint_image_planes(enum glint_pixel_format format)
 {
     return layouts[format].planes;

@@ -281,19 +281,12 @@ int compositor_lamps(struct compositor *compositor,
     return compositor->n_lamps;
 }
 
-/* Returns whether codes are luma and chroma, or grey: then black may be 16. */
-static bool is_luma(enum glint_pixel_format format)
-{
-    return format != GLINT_RGB24 && format != GLINT_BGR24 &&
-           format != GLINT_XRGB8888 && format != GLINT_RGB565;
-}
-
 /* Sets CODE to the codes of black that even and odd bytes of PLANE have. */
 static void black_of(const struct glint_image *image, int plane,
                      uint8_t code[2])
 {
-    const bool limited =
-        is_luma(image->format) && image->range == GLINT_RANGE_LIMITED;
+    const bool limited = !glint_image_is_rgb(image->format) &&
+                         image->range == GLINT_RANGE_LIMITED;
 
     code[0] = code[1] = plane > 0 ? 128 : limited ? 16 : 0;
     if (image->format == GLINT_YUYV)
