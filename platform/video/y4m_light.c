@@ -229,8 +229,8 @@ static int32_t held(int64_t v, int32_t most)
     return v < 0 ? 0 : v > most ? most : (int32_t)v;
 }
 
-/* Sets RGB to R', G', B', clamped to 0 .. 1, of the code Y' and of Cb and Cr
- * less their middle. */
+/* Sets RGB to R', G', B', clamped to 0 .. 1, of YCC: the code of Y', and the
+ * codes of Cb and Cr less their middle. */
 static void to_rgb(const struct glint_y4m_light *l, const int32_t ycc[3],
                    int32_t rgb_q20[3])
 {

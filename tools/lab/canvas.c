@@ -7,8 +7,7 @@
 
 /* ------------------------------------------------------------------ canvas */
 
-/* Fills the fresh picture with dim codes, 16 .. 87, that change from byte to
- * byte. */
+/* Fills the fresh picture with a pattern of dim codes, 16 .. 87. */
 static void paint(struct canvas *c)
 {
     for (size_t i = 0; i < c->bytes; i++)

@@ -6,7 +6,8 @@
  * order: frame,id,x,y,power. An id is any text without commas. Without ids,
  * lamps are told apart by their order within a frame. Columns "shape" (minor
  * over major axis), "turn" (degrees of the major axis) and "level" (share of
- * the power that a lamp coming or going has) are 1, 0 and 1 if missing.
+ * the power that a lamp coming or going has) are 1, 0 and 1 if missing; "seen"
+ * (pixels, see struct lamp_row) is 0.
  *
  * With interpolation a lamp exists from its first frame to its last: x, y, size
  * and colour change evenly from each row to the next, power by equal stops, or

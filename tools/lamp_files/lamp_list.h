@@ -26,10 +26,10 @@ struct lamp_row {
     double shape; /* minor axis of the lamp over its major one, 0 .. 1 */
     double turn;  /* degrees of the major axis from +x; 90 is up */
     double level; /* share of the power that a lamp coming or going has */
-    double seen; /* RMS radius of the lamp with all that its light spreads to in
-                    a picture that clips it, pixels; 0: power is what it is */
-    uint32_t id; /* 0: none */
-    int next;    /* index of the lamp's next row, by lamp_keys_link(), or -1 */
+    double seen;  /* pixels: RMS radius of the lamp and of the light around it,
+                     in a picture that clips it; 0: not clipped */
+    uint32_t id;  /* 0: none */
+    int next;     /* index of the lamp's next row, by lamp_keys_link(), or -1 */
 };
 
 struct lamp_list {

@@ -269,8 +269,8 @@ static void retry_camera(struct live *l)
     live_signals_wait(-1, RETRY_MS);
 }
 
-/* Returns the us since the frame before, at least 1, at most 10^9; 40000 for
- * the first frame. */
+/* Returns the us since the frame before, at most 10^9; 40000 for the first
+ * frame, or if none have passed. */
 static int32_t elapsed_us(struct live *l, int64_t time_us)
 {
     const int64_t before_us = l->time_us;

@@ -64,7 +64,7 @@ void dial_set(struct settings *s, const struct dial *dial, double value)
     case DIAL_TOLERANCE:
         s->tolerance = value;
         break;
-    case DIAL_WAVELENGTHS: /* one is the middle wavelength, and grey */
+    case DIAL_WAVELENGTHS: /* 1: the middle wavelength alone, in grey */
         s->n_wavelengths = whole;
         s->wavelength_nm[0] = whole == 1 ? 532 : 650;
         break;

@@ -343,8 +343,8 @@ double compositor_scale(const struct compositor *compositor)
     return compositor->strength.scale;
 }
 
-/* Corrects the exposure of a picture by itself by drawing its flare, for which
- * there is time. */
+/* Corrects the exposure of a picture by itself: draws its flare to see how
+ * bright it comes out, for which there is time. */
 static void expose_as_drawn(struct compositor *compositor)
 {
     struct glint_response_light drawn;

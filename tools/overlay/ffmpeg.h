@@ -3,9 +3,9 @@
  * ffmpeg.h - videos that only ffmpeg can read or write, by the installed one.
  *
  *     ffmpeg_is_video("in.mp4");
- *     ffmpeg_probe(&video, "in.mp4");                     what is known of it
- *     ffmpeg_read(&child, "in.mp4", &video, &error);           y4m comes out
- *     ffmpeg_write(&child, "out.mp4", &out, "in.mp4", ...);    y4m goes in
+ *     ffmpeg_probe(&video, "in.mp4");                  size, colours, sound
+ *     ffmpeg_read(&reader, "in.mp4", &video, &error);  y4m comes out
+ *     ffmpeg_write(&writer, &target, &video, &error);  y4m goes in
  *
  * ffmpeg runs beside glint, at the other end of a pipe of y4m frames. Sound is
  * copied from the input as it is if the type of the output takes it, else it is
