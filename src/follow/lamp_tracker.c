@@ -25,9 +25,8 @@ enum {
 /* Time after which a lost lamp may be found one reach farther away. */
 #define REACH_US    1000000
 #define MAX_REACHES 3
-#define WHITE_US                                                          \
-    1442695 /* microseconds in which white darkens to 1/e; a stop takes a \
-               second */
+/* microseconds in which white darkens to 1/e; a stop takes a second */
+#define WHITE_US 1442695
 
 struct glint_lamp_tracker {
     struct glint_lamp_tracker_config cfg;

@@ -4,9 +4,9 @@
 #include "base/q.h"
 
 #define VELOCITY_US 100000 /* microseconds over which velocity is averaged */
-#define COAST_US                                                               \
-    1000000 /* microseconds in which a lamp whose motion is not seen loses 1 - \
-               1/e of its velocity */
+/* microseconds in which a lamp whose motion is not seen loses 1 - 1/e of its
+ * velocity */
+#define COAST_US     1000000
 #define MAX_FLUX_Q16 (INT64_C(1) << 42)
 #define FULL_Q30     (INT32_C(1) << 30)
 #define ONE_Q15      (1 << 15)

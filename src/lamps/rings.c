@@ -5,21 +5,23 @@
 #include "base/q.h"
 #include "base/sort.h"
 
-#define WHITE_Q20     LINEAR_WHITE_Q20
-#define ONE_Q16       (1 << 16)
-#define CLIP_FIRST    Q_CONST(0.80, 20) /* about code 231 */
-#define CLIP_LAST     Q_CONST(0.98, 20) /* 253 */
+#define WHITE_Q20 LINEAR_WHITE_Q20
+#define ONE_Q16   (1 << 16)
+/* About code 231: brighter pixels are clipped in part. */
+#define CLIP_FIRST Q_CONST(0.80, 20)
+/* About code 253: brighter pixels are clipped. */
+#define CLIP_LAST     Q_CONST(0.98, 20)
 #define RIM_LIGHT     Q_CONST(0.95, 20)
 #define MAX_BLACK_Q20 Q_CONST(15.0 / 16, 20)
 
 enum {
     SECTORS = 8,
     BORDERS = 4,
-    SAMPLES = 32, /* most samples along the core's radius */
+    SAMPLES = 32, /* most samples along the radius of the inner disc */
     RAYS = 16,
-    RAY_SAMPLES = 64, /* along the core's radius */
-    RIM_RADIUS = 32,  /* of a core whose rim is seen, pixels: an eighth of it is
-                         more than a lens blurs */
+    RAY_SAMPLES = 64, /* steps of a ray along the core's radius */
+    RIM_RADIUS = 32,  /* least radius of a core whose rim is looked at, pixels:
+                         an eighth of it is more than a lens blurs */
     RINGS = GLINT_PROFILE_RINGS,
     LEVELS = GLINT_PROFILE_LEVELS,
     NEAR = GLINT_PROFILE_NEAR
@@ -334,8 +336,8 @@ static void add_moments(struct glint_profile_sums *sums, int32_t u_q16,
 
 /* ---------------------------------------------------------------------- rim */
 
-/* The largest channel of the pixel that is X_Q8, Y_Q8 off; -1 if it is another
- * spot's, or none of the picture. */
+/* Returns the largest channel of the pixel that is X, Y from the middle; -1 if
+ * it belongs to another spot or is outside of the picture. */
 static int32_t light_at(const struct window *w, int32_t x_q8, int32_t y_q8)
 {
     const int dx = (x_q8 + 128) >> 8, dy = (y_q8 + 128) >> 8;
@@ -349,8 +351,9 @@ static int32_t light_at(const struct window *w, int32_t x_q8, int32_t y_q8)
     return q_larger(q_larger(rgb_q20[0], rgb_q20[1]), rgb_q20[2]);
 }
 
-/* What is lost of white at the rim of a core of RADIUS along ray I; -1 if that
- * is not to be seen. Near the middle there is no rim: the core is a ring. */
+/* Returns how much of white is lost along ray I at the rim of a core of RADIUS;
+ * -1 if that cannot be seen. A rim near the middle counts as 0: such a core is
+ * a ring. */
 static int32_t lost_along(const struct window *w, int i, int32_t radius_q8)
 {
     static const int16_t sine_q14[RAYS + RAYS / 4] = {
@@ -375,7 +378,7 @@ static int32_t lost_along(const struct window *w, int i, int32_t radius_q8)
                          : q_clamp_sat(WHITE_Q20 - light_q20, 0, WHITE_Q20);
 }
 
-/* The radius of a disc of the largest clipped area. */
+/* Returns the radius of a disc of the largest clipped area. */
 static int32_t core_radius_q8(const struct glint_profile_sums *sums)
 {
     int64_t area_q8 = 0;

@@ -1,31 +1,31 @@
 /* SPDX-License-Identifier: MIT
  *
- * The light around a spot, summed.
+ * Sums the light around a spot.
  *
  *   in   a picture, a spot in it
  *   out  per channel: areas by brightness, flux, clipped area; the colour of
- *        the fringe; second moments of the core
+ *        the fringe; second moments of the core; how sharp its rim is
  *
- * Method: a disc about the spot, GLINT_PROFILE_RINGS times wider than its core,
- * is sampled: all pixels of the core and its rim where it is small, else every
- * s-th of every s-th row, and in each ring around, which is twice as wide, half
- * as densely. The background is that of the outermost ring: of its eight
- * sectors those in the middle, so that what is bright or dark beside the lamp
- * does not count. Light is counted over the background, as part of what is left
- * between that and white, u.
+ * Method: the window around the spot is a disc and GLINT_PROFILE_RINGS rings,
+ * each twice as wide as the one before. Of the disc, which covers the core and
+ * its rim, all pixels are read if it is small, else every s-th of every s-th
+ * row; each ring is sampled half as densely as the one inside. The background
+ * is the light of the outermost ring: the middle of its eight sectors in order
+ * of light, so that bright or dark things beside the lamp do not count. Light u
+ * is counted over the background, as a share of the difference between white
+ * and background.
  *
- * A pixel counts to the areas by soft steps: to the area of level k by as much
- * as u goes from 2^-k to 2^(1-k), to the clipped area by as much as its light
- * goes from CLIP_FIRST to CLIP_LAST. So no sum jumps.
+ * A pixel counts to the areas by soft steps: to the area of level k by how far
+ * u is from 2^-k to 2^(1-k), to the clipped area by how far its light is from
+ * CLIP_FIRST to CLIP_LAST. So no sum jumps.
  *
- * Of a large core, what its rim is like is also seen along rays from the
- * middle: how much of white is lost where the core ends and an eighth of its
- * radius further. A glare that falls off as 1 / r^3 loses three tenths there;
- * the face of a lamp ends at once, however bright what is around it.
+ * The rim of a large core is also looked at along rays from the middle: how
+ * much of white is lost from where the core ends to an eighth of its radius
+ * further out. A glare that falls off as 1 / r^3 loses three tenths there; the
+ * face of a lamp ends at once, however bright its surroundings are.
  *
  * Limits: weights of samples sum to 2^30 at most, the pixels of the largest
- * picture; u_q16 is 2^16 at most; offsets from the centre are below 2^15.
- */
+ * picture; u_q16 is 2^16 at most; offsets from the centre are below 2^15. */
 #ifndef GLINT_LAMPS_RINGS_H
 #define GLINT_LAMPS_RINGS_H
 
@@ -59,12 +59,13 @@ struct glint_profile_channel {
 
 struct glint_profile_sums {
     struct glint_profile_channel of[3];
-    /* Of the core, about the pixel in the middle of the window; in steps. */
+    /* Weight and moments of the core about the middle pixel of the window, in
+     * steps. */
     int64_t w_q16, moment_q16[2], square_q16[3]; /* xx, yy, xy */
-    int step;                                    /* pixels */
-    int32_t rim_q15; /* share of white that is lost at the rim, along the ray in
-                        the middle of all; 0 of a small core, or if too few rays
-                        end in the picture */
+    int step;        /* pixels between samples of the core */
+    int32_t rim_q15; /* share of white that is lost at the rim, the median over
+                        all rays; 0 for a small core, or if too few rays end in
+                        the picture */
 };
 
 struct glint_rings {

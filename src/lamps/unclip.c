@@ -56,7 +56,8 @@ static int32_t root_q8(int64_t square_q16, int step)
     return square_q16 > 0 ? (int32_t)q_root((uint64_t)square_q16) * step : 0;
 }
 
-/* The second moments about the centroid, in steps: xx, yy, xy. */
+/* Sets M to the second moments about the centroid, in squared steps: xx, yy,
+ * xy. */
 static void list_moments(const struct glint_profile_sums *sums,
                          int64_t m_q16[3])
 {
@@ -72,9 +73,9 @@ static void list_moments(const struct glint_profile_sums *sums,
     }
 }
 
-/* What of the clipped core is the lamp, 0 .. 1: the glare of a small lamp that
- * is far over white is clipped, too, and falls off over as much as its radius;
- * a large lamp has a sharp rim, of a pixel. */
+/* Returns the radius of the lamp as a share of its clipped core's, 0 .. 1. The
+ * glare of a small lamp far over white is clipped, too, and falls off over half
+ * of the core's radius or more; a large lamp has a sharp rim, of a pixel. */
 static int32_t lamp_share_q15(const struct glint_profile_sums *sums)
 {
     const struct glint_profile_channel *of = &sums->of[0];
@@ -83,7 +84,7 @@ static int32_t lamp_share_q15(const struct glint_profile_sums *sums)
     for (int c = 1; c < 3; c++)
         if (sums->of[c].area_q8[0] > of->area_q8[0])
             of = &sums->of[c];
-    /* radii of circles, but for the root of pi */
+    /* radii of circles, times the root of pi */
     inner_q8 = q_root((uint64_t)of->area_q8[0] << 8);
     outer_q8 = q_root((uint64_t)of->area_q8[2] << 8);
     rim_q8 = outer_q8 - inner_q8 - Q_CONST(1.7725, 8);
@@ -93,8 +94,9 @@ static int32_t lamp_share_q15(const struct glint_profile_sums *sums)
            q_clamp_sat(q_divide(rim_q8 << 16, inner_q8), 0, 1 << 15);
 }
 
-/* The same of a large core by its rim: all of it is the lamp's face where more
- * is lost there than a glare could lose, in whatever light it stands. */
+/* Returns that share for a large core, by its rim: all of the core is the
+ * lamp's face if more light is lost at the rim than a glare could lose,
+ * whatever light is around it. */
 static int32_t face_share_q15(const struct glint_profile_sums *sums)
 {
     const int32_t over_q15 = sums->rim_q15 - RIM_GLARE;
@@ -102,14 +104,16 @@ static int32_t face_share_q15(const struct glint_profile_sums *sums)
     return q_clamp_sat(over_q15 * 32768 / (RIM_FACE - RIM_GLARE), 0, 1 << 15);
 }
 
-/* Of the semi-axes, by the second moments of what is seen. */
+/* Semi-axes by the second moments of the pixels, the lamp's glare included. */
 struct axes {
     int32_t major_q8, minor_q8;
-    int64_t half, apart; /* of the moments: how far they are from round */
+    int64_t half, apart; /* of the moments: half of xx - yy, and half of the
+                            difference between their eigenvalues */
     int is_down;
 };
 
-/* The semi-axes are the roots of the eigenvalues of the second moments. */
+/* Returns the semi-axes, which are the roots of the eigenvalues of the second
+ * moments. */
 static struct axes axes_of(const struct glint_profile_sums *sums)
 {
     int64_t m_q16[3], half, mid, apart;
@@ -270,7 +274,8 @@ void glint_unclip_features(int32_t feature_q16[GLINT_UNCLIP_FEATURES],
         log_of_q8(q_mul(axes_of(sums).minor_q8, lamp_share_q15(sums), 15));
 }
 
-/* A feature is below 2^23 and a weight below 2^15, so that the sum of 14
+/* Returns the weighted sum of features, each clamped to its range, plus the
+ * bias. A feature is below 2^23 and a weight below 2^15, so that the sum of 14
  * products is below 2^42. */
 static int64_t weighed_q26(const int16_t weight_q10[FEATURES + 1],
                            const int32_t feature_q16[FEATURES])

@@ -6,15 +6,15 @@
 
 #include "lamps/rings.h"
 
-/* What tells the power of a clipped core, as logarithms: its area; how much
- * less the channel has that clips least; how much more area there is at each
- * level; spread and light of the background; the brightest channel at luminance
- * 1; the minor semi-axis, which is that of the lamp in its glare, by the areas
- * alone. The major one is left out: of two lamps that become one spot it is
+/* The features that tell the power of a clipped core, as logarithms: its area;
+ * how much smaller the area is in the channel that clips least; how much larger
+ * the area of each level is; spread and light of the background; the brightest
+ * channel at luminance 1; the minor semi-axis of the lamp in its glare, by the
+ * areas alone. The major one is left out: where two lamps become one spot it is
  * their distance. */
 enum { GLINT_UNCLIP_FEATURES = 6 + GLINT_PROFILE_LEVELS };
 
-/* Of SPOT, whose colour is set. */
+/* Sets FEATURE to the features of SPOT, whose colour must be set. */
 void glint_unclip_features(int32_t feature_q16[GLINT_UNCLIP_FEATURES],
                            const struct glint_spot *spot,
                            const struct glint_profile_sums *sums);

@@ -11,19 +11,18 @@
 /* Least share of a box that a ghost must fill: less would waste cells of the
  * grids. */
 #define LEAST_FILL 0.33
-#define CROWD_DEG                                                           \
-    1.5 /* degrees: a wider zone with more than two barrels is halved, as a \
-           vertex has room for two */
+/* Degrees: a wider zone with more than two barrels is halved, as a vertex
+ * has room for two */
+#define CROWD_DEG 1.5
 /* Degrees: narrower zones may fill their boxes less. */
 #define FILL_DEG 0.6
 /* Degrees: narrower zones are not halved. */
 #define LEAST_DEG 0.7
-#define BRIGHT_EASE                                                          \
-    1.5 /* zones of ghosts with less ease are bright and may be half as wide \
-         */
-#define STUCK                                                                  \
-    0.75 /* share of the error of the whole zone: a half whose error is larger \
-            gained nothing from halving */
+/* Zones of ghosts with less ease are bright and may be half as wide */
+#define BRIGHT_EASE 1.5
+/* Share of the error of the whole zone: a half whose error is larger gained
+ * nothing from halving */
+#define STUCK 0.75
 /* Degrees: a narrower zone which gained nothing is not halved again. */
 #define STUCK_DEG 1.2
 /* Tolerances: zones with a larger error are divided into parts. If the ghost is
@@ -36,9 +35,9 @@
 #define HOPELESS 20.0
 /* Tolerances: a wide zone with a larger error will be halved anyway. */
 #define HALVES_ANYWAY 10.0
-#define WANDERS                                                                \
-    0.5 /* half widths: if a box moves or grows by more over the band, halving \
-           the band is worth it */
+/* Half widths: if a box moves or grows by more over the band, halving the
+ * band is worth it */
+#define WANDERS 0.5
 /* Width of a band in w, 0 .. 2: narrower ones are not halved. */
 #define LEAST_BAND 0.6
 /* Share of a part: cropping goes on while it leaves less. */

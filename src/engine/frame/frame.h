@@ -20,11 +20,11 @@
 #include "glint/engine.h"
 #include "glint/flare.h"
 
-#define GLINT_FRAME_APART_PX                           \
-    0.125 /* a model is less exact than lights so near \
-           */
-#define GLINT_FRAME_STEP_CODES \
-    2.0 /* steps between wavelengths that do not show */
+/* Lights are merged whose images are nearer than this, pixels: a model is less
+ * exact. */
+#define GLINT_FRAME_APART_PX 0.125
+/* steps between wavelengths, in codes, that do not show */
+#define GLINT_FRAME_STEP_CODES 2.0
 
 /* Limits of a frame of a model, unless others are set: bytes, and millions of
  * instructions as of glint_cost_minsn(), some ten seconds of one processor.
