@@ -69,9 +69,9 @@ struct glint_lamp_tracker_config {
     int32_t match_q15; /* farthest distance of a spot from where its track
                           should be, as a share of the picture's width */
     int32_t cut_q15; /* share of the flux; above 32768: there are no cuts. A cut
-                        is where at least this share of the flux vanishes and of
-                        what is seen is new, or where three lamps or more appear
-                        or vanish at once */
+                        is where at least this share of the flux vanishes and at
+                        least this share of the flux seen now is new, or where
+                        three lamps or more appear or vanish at once */
     /* Milliseconds from 0 to full level, or to a greater flux. */
     int32_t attack_ms;
     int32_t release_ms; /* milliseconds from full level to 0, or to less flux */

@@ -15,8 +15,9 @@ typedef int glint_sort_fn(const void *ctx, int32_t a, int32_t b);
 
 void glint_sort(int32_t *order, int n, glint_sort_fn *before, const void *ctx);
 
-/* Things at places 0, 1 and so on. In a heap no thing comes after the one at
- * place (i - 1) / 2, i its own place, so the last of all is at place 0. */
+/* Things at places 0, 1 and so on. In a heap the thing at place i does not come
+ * after the thing at place (i - 1) / 2, so that the last of all is at place 0.
+ */
 struct glint_heap {
     int (*before)(const void *things, int a,
                   int b); /* returns whether the thing at place A comes before

@@ -44,7 +44,7 @@ void glint_engine_defaults(struct glint_engine_config *cfg, int width,
                                         .dials = glint_dials_at(1 << 14)};
 }
 
-/* Returns what of C is out of range, or NULL. */
+/* Returns a text that says what is out of range in C, or NULL. */
 static const char *check(const struct glint_engine_config *c)
 {
     if (c->width < 1 || c->width > GLINT_MAX_SIDE || c->height < 1 ||

@@ -158,7 +158,7 @@ static enum glint_status draw_once(struct proxy *p,
 }
 
 /* Draws until the brightest pixels lie in the range aimed at. *PEAK_LOG2 is
- * what they are expected to be, and then what they were. */
+ * log2 of their light, first as it is expected, then as it was drawn. */
 static enum glint_status draw(struct proxy *p, const struct glint_lamp *lamps,
                               int n, double *peak_log2,
                               struct glint_response_light *light)

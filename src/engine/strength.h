@@ -88,9 +88,9 @@ void glint_strength_defaults(struct glint_strength *strength);
 double glint_strength_star(const struct glint_strength *strength,
                            double starburst);
 
-/* Sets the scale and the light for LAMPS, ELAPSED_US after the last frame; 0:
- * that has nothing to do with this frame. Lowers the powers of lamps that are
- * still too bright. */
+/* Sets the scale and the light for LAMPS, ELAPSED_US after the last frame, or 0
+ * if this frame has nothing to do with that one. Lowers the powers of lamps
+ * that are still too bright. */
 void glint_strength_expose(struct glint_strength *strength,
                            const struct glint_response *response,
                            const struct glint_strength_lamps *lamps,

@@ -131,8 +131,8 @@ static int is_brighter(const struct glint_light *a, const struct glint_light *b)
     return 0;
 }
 
-/* Returns how far V lies along a side of the plane from its beginning, which is
- * ZERO below -1. */
+/* Returns how far V, -1 .. 1, lies from the beginning of a side of the plane,
+ * which is at -1 - ZERO; _q30. */
 static uint32_t along(int32_t v_q30, uint32_t zero)
 {
     return (uint32_t)v_q30 + (uint32_t)ONE_Q30 + zero;

@@ -176,7 +176,8 @@ static const char *check_ghosts(const struct glint_model_check *c)
 
 /* ------------------------------------------------------------------ opening */
 
-/* Returns what is wrong with the header and all that it points to, or NULL. */
+/* Returns a text that says what is wrong with the header or with anything that
+ * it points to, or NULL. */
 static const char *check_contents(struct glint_model_check *c)
 {
     const char *reason = check_header(c);

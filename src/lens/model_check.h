@@ -21,7 +21,7 @@ struct glint_model_check {
 
 extern const char glint_model_outside[]; /* "a table lies outside ..." */
 
-/* Returns what is wrong with system S, or NULL. */
+/* Returns a text that says what is wrong with system S, or NULL. */
 const char *glint_model_check_system(struct glint_model_check *check,
                                      const struct glint_model_system *s);
 

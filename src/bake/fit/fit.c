@@ -11,17 +11,17 @@
 /* Least share of a box that a ghost must fill: less would waste cells of the
  * grids. */
 #define LEAST_FILL 0.33
-/* Degrees: a wider zone with more than two barrels is halved, as a vertex
- * has room for two */
+/* Degrees: a wider zone with more than two barrels is halved, as a vertex has
+ * room for two. */
 #define CROWD_DEG 1.5
 /* Degrees: narrower zones may fill their boxes less. */
 #define FILL_DEG 0.6
 /* Degrees: narrower zones are not halved. */
 #define LEAST_DEG 0.7
-/* Zones of ghosts with less ease are bright and may be half as wide */
+/* Zones of ghosts with less ease are bright and may be half as wide. */
 #define BRIGHT_EASE 1.5
 /* Share of the error of the whole zone: a half whose error is larger gained
- * nothing from halving */
+ * nothing from halving. */
 #define STUCK 0.75
 /* Degrees: a narrower zone which gained nothing is not halved again. */
 #define STUCK_DEG 1.2
@@ -35,8 +35,8 @@
 #define HOPELESS 20.0
 /* Tolerances: a wide zone with a larger error will be halved anyway. */
 #define HALVES_ANYWAY 10.0
-/* Half widths: if a box moves or grows by more over the band, halving the
- * band is worth it */
+/* Half widths: if a box moves or grows by more over the band, the band is
+ * halved. */
 #define WANDERS 0.5
 /* Width of a band in w, 0 .. 2: narrower ones are not halved. */
 #define LEAST_BAND 0.6
@@ -158,8 +158,8 @@ cut_out(struct fitter *f, const struct pending *p, struct glint_zone *zone)
 }
 
 /* Cuts the part of P out of ZONE. A thorough fit also crops the part to what is
- * seen: of a ghost that comes through here in red and there in blue much is
- * not. Returns the visibility of the ghost in the part's band. */
+ * seen: much of the box of a ghost is dark that comes through here in red and
+ * there in blue. Returns the visibility of the ghost in the part's band. */
 static const struct glint_visible *set_part(struct fitter *f, struct pending *p,
                                             struct glint_zone *zone)
 {

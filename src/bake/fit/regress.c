@@ -213,8 +213,7 @@ static bool is_hopeless(const struct search *s, double left)
     return d->hopeless > 0 && left > d->hopeless && s->n_chosen >= d->patience;
 }
 
-/* Returns the residual in units of what it may be: the larger of RMS and peak.
- */
+/* Returns the residual over its limit: the larger ratio of RMS and of peak. */
 static double excess(const struct search *s, double rms, double peak)
 {
     const double sum2 = dot(s->residual, s->residual, s->s->n);

@@ -37,8 +37,8 @@ void glint_budget_init(struct glint_budget *budget, double ms);
 /* Begins a frame. */
 void glint_budget_begin(struct glint_budget *budget);
 
-/* Called after PLAN was made with DIALS: returns whether it turned these, so
- * that a new plan is needed. */
+/* Turns DIALS, with which PLAN was made, if that misses the budget or leaves
+ * much of it; returns whether it did, so that a new plan is needed. */
 bool glint_budget_choose(struct glint_budget *budget,
                          const struct glint_cost_plan *plan,
                          struct glint_dials *dials);

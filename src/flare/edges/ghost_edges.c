@@ -123,8 +123,8 @@ static void set_steps(struct glint_ghost_edges *g)
     }
 }
 
-/* Sets, for each octave, the light of snap_codes: the light of one code shrinks
- * by 2/3, about 2^(7/12), with each octave below white, down to where codes are
+/* Sets, for each octave, the light of snap_codes: with each octave below white
+ * the light of one code falls to 2/3, about 2^(-7/12), down to where codes are
  * linear. */
 static void set_weak(struct glint_ghost_edges *g)
 {
