@@ -221,7 +221,10 @@ enum glint_status glint_explain_open(struct glint_explain *e,
     take_accounts(e);
     measure_parts(e);
     e->stage[GLINT_COST_LIT] = work_in(GLINT_COST_LIT, e->all.lit);
-    e->all.work = work_of(&e->all, e->stage) + e->stage[GLINT_COST_LIT];
+    e->stage[GLINT_COST_STAR] =
+        work_in(GLINT_COST_STAR, frame->star.is_set ? frame->star.pixels : 0);
+    e->all.work = work_of(&e->all, e->stage) + e->stage[GLINT_COST_LIT] +
+                  e->stage[GLINT_COST_STAR];
     e->all.share = e->all.flux > 0;
     e->all.cost = 1;
     set_shares(e, e->ghost, e->n_ghosts);

@@ -75,6 +75,14 @@ int glint_star_lines_reach(const struct glint_star *star,
                            const struct glint_star_lamp *lamp,
                            struct glint_box box);
 
+/* Returns the pixels from a light to where its core ends. */
+static inline int glint_star_core_reach(const struct glint_star *star)
+{
+    const int steps = star->tables->core_per_pixel_q16 >> 16;
+
+    return GLINT_STAR_CORE >> (steps == 4 ? 2 : steps == 2 ? 1 : 0);
+}
+
 /* Notes that pixels X0 .. X1 - 1 of ROW get light. */
 static inline void glint_star_note(struct glint_star_stretch *row, int x0,
                                    int x1)

@@ -12,12 +12,9 @@
 static int round_reach(const struct glint_star *star,
                        const struct glint_star_lamp *lamp)
 {
-    const int steps = star->tables->core_per_pixel_q16 >> 16;
-    const int core = steps == 4   ? GLINT_STAR_CORE / 4
-                     : steps == 2 ? GLINT_STAR_CORE / 2
-                                  : GLINT_STAR_CORE;
-
-    return q_larger(lamp->is_bare ? core : 0, lamp->halo_reach) + 2;
+    return q_larger(lamp->is_bare ? glint_star_core_reach(star) : 0,
+                    lamp->halo_reach) +
+           2;
 }
 
 static int is_within(const struct glint_star_lamp *lamp, struct glint_box box,

@@ -124,6 +124,10 @@ void glint_star_set(struct glint_star *star,
                     const struct glint_star_light *lights, int n,
                     struct glint_real faintest);
 
+/* Returns how many pixels the parts of what was set give light to, about: what
+ * drawing takes goes with it. */
+int64_t glint_star_pixels(const struct glint_star *star);
+
 /* Adds the star and, over it, the flare that FLARE has binned, as
  * glint_flare_draw() does; if that is drawn at half the size, the star is still
  * drawn to all pixels. */

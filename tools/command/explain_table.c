@@ -99,9 +99,10 @@ static void print_title(const struct glint_explain *e,
             printf("%s%d in %d bundles", some++ ? ", " : "", k, e->barrels[k]);
     printf("\nterms of a ray: %.1f in the mean\n",
            all->vertices ? (double)all->all_terms / (double)all->vertices : 0);
-    printf("work: about %.1f M instructions\n     ", 1e-6 * all->work);
+    printf("work: about %.1f M instructions, of these %%\n     ",
+           1e-6 * all->work);
     for (int i = 0; i < GLINT_COST_KINDS && all->work > 0; i++)
-        printf("%s %s %.1f %%", i ? "," : "", glint_cost_weight[i].name,
+        printf("%s %s %.1f", i ? "," : "", glint_cost_weight[i].name,
                100 * e->stage[i] / all->work);
     printf("\n");
 }

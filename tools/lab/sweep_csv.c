@@ -45,7 +45,7 @@ void sweep_csv(const struct sweep *s, FILE *file)
             fputc(',', file), number(file, quality[k], "");
         fprintf(file, ",%d,%d,%d,%d", p->report.ghosts, p->report.stats.bundles,
                 p->report.stats.primitives, p->report.tiles);
-        for (int k = GLINT_COST_VERTICES; k < GLINT_COST_KINDS; k++)
+        for (int k = GLINT_COST_VERTICES; k < GLINT_COST_STAR; k++)
             fprintf(file, ",%.0f", p->cost.count[k]);
         fprintf(file, ",%.4g,%d\n", glint_cost_minsn(&p->cost), p->front);
     }

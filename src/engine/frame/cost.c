@@ -28,7 +28,8 @@
 const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS] = {
     {"looking", 0.6, 1.35},  {"bundles", 75, 43},
     {"vertices", 0.6, 0.25}, {"edges", 0.03, 1.08},
-    {"rows", 0.0275, 0.027}, {"lit pixels", 0.02, 0.069}};
+    {"rows", 0.0275, 0.027}, {"lit pixels", 0.02, 0.069},
+    {"star", 0.32, 0.32}};
 
 double glint_cost_minsn(const struct glint_cost *cost)
 {
@@ -91,5 +92,6 @@ struct glint_cost glint_cost_of(const struct glint_cost_plan *p,
     }
     cost.count[GLINT_COST_LIT] =
         width * height * (1 - exp(-covered)) * (half ? QUAD : 1);
+    cost.count[GLINT_COST_STAR] = p->n_star;
     return cost;
 }

@@ -21,6 +21,7 @@ enum glint_cost_kind {
     GLINT_COST_EDGES,    /* edges across which light changes */
     GLINT_COST_ROWS,     /* rows of pixels that edges cross */
     GLINT_COST_LIT,      /* pixels with any light */
+    GLINT_COST_STAR,     /* pixels that parts of stars give light to */
     GLINT_COST_KINDS
 };
 
@@ -43,6 +44,7 @@ struct glint_cost_plan {
     int width, height;  /* size of the picture */
     double n_looked_at; /* number of bundles */
     bool can_half;      /* true: the picture is in codes and drawn by edges */
+    double n_star;      /* pixels that parts of stars give light to */
     struct glint_dials dials; /* dials that the frame was planned with */
 };
 

@@ -289,14 +289,15 @@ static enum glint_status plan(struct glint_frame *f,
  */
 struct glint_cost_plan glint_frame_plan(const struct glint_frame *f)
 {
-    return (struct glint_cost_plan){.flare = f->flare,
-                                    .width = f->cfg.width,
-                                    .height = f->cfg.height,
-                                    .n_looked_at = (double)f->n_lights *
-                                                   f->setup->n_ghosts *
-                                                   f->setup->n_wavelengths,
-                                    .can_half = f->can_half,
-                                    .dials = f->dials};
+    return (struct glint_cost_plan){
+        .flare = f->flare,
+        .width = f->cfg.width,
+        .height = f->cfg.height,
+        .n_star = f->star.is_set ? f->star.pixels : 0,
+        .n_looked_at =
+            (double)f->n_lights * f->setup->n_ghosts * f->setup->n_wavelengths,
+        .can_half = f->can_half,
+        .dials = f->dials};
 }
 
 /* Returns whether dials were turned, so that the frame has to be planned anew.

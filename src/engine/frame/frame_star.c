@@ -28,6 +28,11 @@ static const double clipped_times = 32, white_share = 0.5;
 /* A star ends smoothly and faintly, and ghosts do not. */
 static const double cull_share = 2;
 
+/* What a star may take of a budget: beyond, what is fainter is not drawn, up to
+ * 2^BUDGET_STEPS times as bright, and then none. */
+static const double budget_share = 0.25;
+enum { BUDGET_STEPS = 8 };
+
 /* Wavelength times f-number, over the diagonal of the picture, of f/22 behind
  * a frame of 36 x 24 mm: a lamp's picture has been taken through some stop. */
 static const double photo_airy = 0.55e-3 * 22 / 43.27;
@@ -186,6 +191,28 @@ static int by_power(const void *a, const void *b)
     return p->y_q8 < q->y_q8 ? -1 : p->y_q8 > q->y_q8;
 }
 
+/* Sets the star down to FAINTEST, or down to what leaves ghosts the most of a
+ * budget. */
+static void set_within(struct glint_frame *f, int n_lights, double faintest)
+{
+    struct glint_frame_star *s = &f->star;
+    const double most_minsn =
+        budget_share * f->budget.ms / fmax(f->budget.ms_per_minsn, 1e-9);
+
+    for (int i = 0; i <= BUDGET_STEPS; i++) {
+        glint_star_set(s->star, s->tables, s->light, n_lights,
+                       glint_real_of(faintest));
+        s->pixels = (double)glint_star_pixels(s->star);
+        if (f->budget.ms <= 0 ||
+            1e-3 * glint_cost_weight[GLINT_COST_STAR].planned * s->pixels <=
+                most_minsn)
+            return;
+        faintest *= 2;
+    }
+    glint_star_set(s->star, s->tables, s->light, 0, glint_real_of(faintest));
+    s->pixels = 0;
+}
+
 enum glint_status glint_frame_star_set(struct glint_frame *f,
                                        const struct glint_lamp *lamps, int n,
                                        double scale,
@@ -209,9 +236,9 @@ enum glint_status glint_frame_star_set(struct glint_frame *f,
     }
     if (n_lights > GLINT_STAR_MAX_LIGHTS)
         qsort(s->light, (size_t)n_lights, sizeof *s->light, by_power);
-    glint_star_set(s->star, s->tables, s->light, n_lights,
-                   glint_real_of(glint_frame_codes_light(
-                       f, image, cull_share * f->dials.cull_codes)));
+    set_within(f, n_lights,
+               cull_share *
+                   glint_frame_codes_light(f, image, f->dials.cull_codes));
     s->is_set = true;
     return GLINT_OK;
 }

@@ -36,7 +36,8 @@ struct glint_frame_star {
     struct glint_star_light *light;
     void *mem;
     int max_lights;
-    bool is_set; /* true: the star is set for this frame */
+    double pixels; /* pixels that its parts give light to */
+    bool is_set;   /* true: the star is set for this frame */
 };
 
 /* Sets the star of LAMPS times SCALE for pictures like IMAGE, and makes tables

@@ -237,6 +237,7 @@ static void test_counts(void **state)
     machine = (struct machine){NULL, 0, 0, 0, 0, 0, 0};
     make(&frame);
     glint_image_place(&image, px);
+    frame.star.share = 1;
     frame.dials.fineness = 64;
     glint_frame_draw(&frame, lamps, 1, 1, &image, &report);
     plan = glint_frame_plan(&frame);

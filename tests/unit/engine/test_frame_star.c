@@ -139,11 +139,34 @@ static void test_hold(void **state)
     assert_ptr_equal(tables, frame.star.tables);
 }
 
+/* With a budget stars keep to a share of it, however many and bright. */
+static void test_budget(void **state)
+{
+    const struct glint_budget none = frame.budget;
+    double pixels;
+
+    (void)state;
+    power_of(1e7, 0, 1);
+    pixels = frame.star.pixels;
+    frame.budget.ms_per_minsn = 0.1;
+    frame.budget.ms = 1;
+    power_of(1e7, 0, 1);
+    print_message("%.0f pixels, %.0f within 1 ms\n", pixels, frame.star.pixels);
+    assert_true(frame.star.pixels > 1000);
+    assert_true(frame.star.pixels < 0.5 * pixels);
+    assert_true(frame.star.pixels * 0.32e-3 * 0.1 <= 0.25);
+    frame.budget.ms = 1e-6;
+    power_of(1e7, 0, 1);
+    assert_true(frame.star.pixels == 0);
+    frame.budget = none;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_power), cmocka_unit_test(test_extent),
-        cmocka_unit_test(test_most), cmocka_unit_test(test_hold)};
+        cmocka_unit_test(test_most), cmocka_unit_test(test_budget),
+        cmocka_unit_test(test_hold)};
 
     return cmocka_run_group_tests(tests, open_frame, close_frame);
 }

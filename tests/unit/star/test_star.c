@@ -97,12 +97,13 @@ static struct glint_star_light light_at(double x, double y, double power_log2)
                                      .rgb_q14 = {16384, 16384, 16384}};
 }
 
-/* Draws N lights into LINEAR_Q20, linear light. */
-static void draw_linear(const struct glint_star_tables *t,
-                        const struct glint_star_light *lights, int n,
-                        int32_t *linear_q20)
+/* Draws N lights into LINEAR_Q20, linear light, down to FAINTEST. Returns how
+ * many pixels were said to get some. */
+static double draw_down_to(const struct glint_star_tables *t,
+                           const struct glint_star_light *lights, int n,
+                           struct glint_real faintest, int32_t *linear_q20)
 {
-    const struct glint_real all = {0, 0};
+    double pixels;
     struct glint_image image = {
         .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
     struct canvas c;
@@ -110,9 +111,20 @@ static void draw_linear(const struct glint_star_tables *t,
     open_canvas(&c, 5, 1, 1);
     memset(linear_q20, 0, N * sizeof *linear_q20);
     glint_image_place(&image, linear_q20);
-    glint_star_set(c.star, t, lights, n, all);
+    glint_star_set(c.star, t, lights, n, faintest);
+    pixels = (double)glint_star_pixels(c.star);
     glint_star_draw(c.star, c.flare, &image);
     close_canvas(&c);
+    return pixels;
+}
+
+static void draw_linear(const struct glint_star_tables *t,
+                        const struct glint_star_light *lights, int n,
+                        int32_t *linear_q20)
+{
+    const struct glint_real all = {0, 0};
+
+    draw_down_to(t, lights, n, all, linear_q20);
 }
 
 static int32_t linear_q20[N];
@@ -431,6 +443,40 @@ static void test_far(void **state)
     assert_true(most < 0.03);
 }
 
+static int count_lit(void)
+{
+    int n = 0;
+
+    for (int i = 1; i < N; i += 3)
+        n += linear_q20[i] > 0;
+    return n;
+}
+
+/* What a star will take is known before: a circle's halo by its pixels, lines
+ * on top of it. */
+static void test_pixels(void **state)
+{
+    static const double place[][2] = {{48, 41}, {0, 0}, {-20, 60}};
+    const struct glint_real least = {1 << 30, -30 - 12};
+
+    (void)state;
+    for (int i = 0; i < 6; i++) {
+        struct glint_star_tables *t = tables_of(i % 2 * 6, 11, 0.3);
+        struct glint_star_light light =
+            light_at(place[i / 2][0], place[i / 2][1], 8);
+        double times;
+
+        light.radius_q8 = 0;
+        times = draw_down_to(t, &light, 1, least, linear_q20);
+        times /= count_lit();
+        print_message("%d blades: %.2f times the pixels that are lit\n",
+                      i % 2 * 6, times);
+        assert_true(i % 2 ? times > 1 && times < 2
+                          : times > 0.75 && times < 1.2);
+        glint_star_tables_free(t);
+    }
+}
+
 /* ------------------------------------------------------------------ motion */
 
 /* While a light moves by 0.05 pixels a frame, neither the sum of light nor any
@@ -591,9 +637,9 @@ int main(void)
         cmocka_unit_test(test_spikes),     cmocka_unit_test(test_ring),
         cmocka_unit_test(test_drawn_ring), cmocka_unit_test(test_energy),
         cmocka_unit_test(test_direct),     cmocka_unit_test(test_extent),
-        cmocka_unit_test(test_far),        cmocka_unit_test(test_motion),
-        cmocka_unit_test(test_rotation),   cmocka_unit_test(test_same_bits),
-        cmocka_unit_test(test_powers),
+        cmocka_unit_test(test_far),        cmocka_unit_test(test_pixels),
+        cmocka_unit_test(test_motion),     cmocka_unit_test(test_rotation),
+        cmocka_unit_test(test_same_bits),  cmocka_unit_test(test_powers),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

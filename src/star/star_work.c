@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a star will take: pixels that its parts give light to.
+ */
+#include "base/divide.h"
+#include "base/q.h"
+#include "star/parts.h"
+
+/* Pixels from A to B - 1 that are within HALF of X. */
+static int64_t common(int a, int b, int x, int half)
+{
+    const int from = q_larger(a, x - half), to = q_smaller(b, x + half);
+
+    return to > from ? to - from : 0;
+}
+
+/* Pixels of the picture no farther than HALF from LAMP, along x and y. */
+static int64_t square(const struct glint_star *star,
+                      const struct glint_star_lamp *lamp, int half)
+{
+    return common(0, star->cfg.width, lamp->x_q8 >> 8, half) *
+           common(0, star->cfg.height, lamp->y_q8 >> 8, half);
+}
+
+/* In a zone lines are twice as long as it is wide, and as wide as is seen; of
+ * these as much as of the zone's area lies in the picture. */
+static int64_t lines(const struct glint_star *star,
+                     const struct glint_star_lamp *lamp)
+{
+    int64_t sum = 0;
+
+    for (int i = 0; i < lamp->n_zones; i++) {
+        const int near = lamp->start[i], far = lamp->start[i + 1];
+        const int64_t wide_q16 =
+            2 * (int64_t)lamp->seen[i] * lamp->pixels_q16 + 65536;
+        const int64_t area = square(star, lamp, far) - square(star, lamp, near);
+
+        if (lamp->seen[i] > 0 && far > near)
+            sum += q_divide((wide_q16 >> 8) * area, 2 * (far + near)) >> 8;
+    }
+    return sum * star->tables->n_lines;
+}
+
+int64_t glint_star_pixels(const struct glint_star *star)
+{
+    int64_t sum = 0;
+
+    for (int i = 0; i < star->n_lamps; i++) {
+        const struct glint_star_lamp *lamp = &star->lamp[i];
+
+        sum += lines(star, lamp);
+        /* of a square a circle has 201 / 256 */
+        sum += square(star, lamp, lamp->halo_reach) * 201 >> 8;
+        if (lamp->is_bare)
+            sum += square(star, lamp, glint_star_core_reach(star));
+    }
+    return sum;
+}
