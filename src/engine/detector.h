@@ -10,7 +10,7 @@
 #include "glint/profile.h"
 #include "glint/lamp_tracker.h"
 
-enum { GLINT_LAMP_DETECTOR_MAX = 1024 }; /* GLINT_ENGINE_MAX_LAMPS */
+enum { GLINT_LAMP_DETECTOR_MAX = 1024 }; /* as many as GLINT_ENGINE_MAX_LAMPS */
 
 struct glint_lamp_detector {
     double headroom_ev; /* stops by which clipped pixels really exceed white;

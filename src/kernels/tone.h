@@ -44,8 +44,8 @@ struct glint_factors {
 
 enum {
     GLINT_TONE_TOE,  /* light per code below the toe's end */
-    GLINT_TONE_RISE, /* r2 */
-    GLINT_TONE_TURN, /* turn1 */
+    GLINT_TONE_RISE, /* r2 of decode */
+    GLINT_TONE_TURN, /* turn1 of encode */
     GLINT_TONE_Q7,   /* factor from units of R'G'B', 1 / 128.5 code, to _q7 */
     GLINT_TONE_ENTRY /* 2: from the index of a table's entry to the place of its
                         bytes; a variable, or compilers would turn the product
@@ -67,7 +67,7 @@ enum { /* Entries of from_ycc. */
        GLINT_MIX_RED_CR,
        GLINT_MIX_GREEN_CB,
        GLINT_MIX_GREEN_CR,
-       GLINT_MIX_BLUE_CB, /* half of the factor */
+       GLINT_MIX_BLUE_CB, /* half of the factor, to fit 16 bits */
        /* Entries of to_ycc. */
        GLINT_MIX_LUMA = 0, /* first of three: shares of R', G', B' in Y' */
        GLINT_MIX_CB_BLUE = 3,

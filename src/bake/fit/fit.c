@@ -131,8 +131,7 @@ static const struct glint_visible_profile *profile_of(struct fitter *f,
 
     if (is_whole_band(p->w0, p->w1))
         return &f->profile;
-    /* NOLINTNEXTLINE: numbers that are equal in other bits only cost a profile
-     */
+    /* NOLINTNEXTLINE: 0 and -0 may differ: a profile is then found again. */
     if (memcmp(key, f->profiled, sizeof key) != 0) {
         glint_visible_narrow(&f->in_band, f->visible, p->w0, p->w1);
         glint_visible_profile_find(&f->in_band, range, &f->band_profile);

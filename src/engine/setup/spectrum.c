@@ -23,7 +23,7 @@ enum {
     FIRST_NM = 400,
     LAST_NM = 700,
     STEP_NM = 10,
-    /* Nm by which cubics go on beyond the outermost wavelengths. */
+    /* Nanometres by which cubics go on beyond the outermost wavelengths. */
     BEYOND_NM = 15,
     POINTS = 4
 };
