@@ -2,6 +2,7 @@
 #include "support/model_builder.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -247,4 +248,16 @@ struct model_image model_sparse(void)
     model_outputs(&m, &s, outputs, sizeof outputs / sizeof *outputs, 0);
     model_end(&m, &ghost, 1, &s, 1);
     return m;
+}
+
+struct glint_lens model_open(const struct model_image *m)
+{
+    struct glint_lens lens;
+    const char *reason = "";
+
+    if (glint_lens_open(&lens, m->data, m->bytes, &reason) != GLINT_OK) {
+        fprintf(stderr, "model_open: %s\n", reason);
+        abort();
+    }
+    return lens;
 }

@@ -46,6 +46,10 @@ struct glint_model_header *model_header(const struct model_image *m);
 
 void model_seal(struct model_image *m);
 
+/* Returns the model of M, whose data it points to; aborts where it is refused.
+ */
+struct glint_lens model_open(const struct model_image *m);
+
 struct glint_real model_real(double x);
 
 /* Wavelengths of 800 and 400 nm as 1 / wavelength^2, um^-2 _q24; 1 as _q30. */

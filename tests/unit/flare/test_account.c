@@ -45,11 +45,8 @@ static const int32_t square[4][2] = {
  * different directions. */
 static void open_fixture(struct fixture *f, int n_lights)
 {
-    const char *reason;
-
     *f = (struct fixture){.m = model_auto(), .n_lights = n_lights};
-    assert_int_equal(glint_lens_open(&f->lens, f->m.data, f->m.bytes, &reason),
-                     GLINT_OK);
+    f->lens = model_open(&f->m);
     for (int i = 0; i < WAVES; i++)
         f->wave[i] =
             (struct glint_wave){i ? MODEL_WAVE_HI_Q24 : MODEL_WAVE_LO_Q24,

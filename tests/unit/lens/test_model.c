@@ -32,16 +32,6 @@ static const char *reason_of(const void *data, size_t bytes)
     return reason;
 }
 
-static struct glint_lens open_image(const struct model_image *m)
-{
-    struct glint_lens lens;
-    const char *reason = NULL;
-
-    if (glint_lens_open(&lens, m->data, m->bytes, &reason) != GLINT_OK)
-        fail_msg("%s", reason);
-    return lens;
-}
-
 static void test_crc(void **state)
 {
     (void)state;
@@ -52,13 +42,13 @@ static void test_crc(void **state)
 static void test_accepted(void **state)
 {
     struct model_image a = model_auto(), s = model_sparse();
-    struct glint_lens lens = open_image(&a);
+    struct glint_lens lens = model_open(&a);
 
     (void)state;
     assert_int_equal(lens.header->n_ghosts, 3);
     assert_int_equal(lens.ghost[2].j, 3);
     assert_int_equal(lens.system[1].sine_lo_q30, 1 << 28);
-    lens = open_image(&s);
+    lens = model_open(&s);
     assert_int_equal(lens.system[0].n_knots, 3);
     free(a.data);
     free(s.data);

@@ -18,16 +18,6 @@
 #include "support/rng.h"
 #include "support/shuffle.h"
 
-static struct glint_lens open_image(const struct model_image *m)
-{
-    struct glint_lens lens;
-    const char *reason = NULL;
-
-    if (glint_lens_open(&lens, m->data, m->bytes, &reason) != GLINT_OK)
-        fail_msg("%s", reason);
-    return lens;
-}
-
 /* --------------------------------------------------------------------- rays */
 
 enum { ONE = MODEL_ONE_Q30 };
@@ -45,7 +35,7 @@ static struct glint_outputs ray(const struct glint_transfer *t, int32_t u,
 static void test_rays(void **state)
 {
     struct model_image m = model_auto();
-    const struct glint_lens lens = open_image(&m);
+    const struct glint_lens lens = model_open(&m);
     static struct glint_transfer t;
     struct glint_outputs out;
 
@@ -107,7 +97,7 @@ static void test_roots(void **state)
             coef[0] = sign * half;
             coef[1] = 0;
             model_seal(&m);
-            lens = open_image(&m);
+            lens = model_open(&m);
             assert_int_equal(
                 glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24), 1);
             assert_int_equal(ray(&t, 0, 0).at[GLINT_OUT_ENERGY],
@@ -140,7 +130,7 @@ static void narrow(struct model_image *m, struct glint_model_output *o, int n,
 static void test_narrow(void **state)
 {
     struct model_image wide = model_auto(), m = model_auto();
-    const struct glint_lens lens = open_image(&wide);
+    const struct glint_lens lens = model_open(&wide);
     struct glint_lens narrowed;
     static struct glint_transfer t[2];
 
@@ -154,7 +144,7 @@ static void test_narrow(void **state)
         narrow(&m, o, o->n_terms > 1 ? 2 : 1, o->n_terms > 2 ? 13 : 14);
     }
     model_seal(&m);
-    narrowed = open_image(&m);
+    narrowed = model_open(&m);
     glint_transfer_init(&t[0], &lens, 0, ONE / 7, MODEL_WAVE_LO_Q24 + 12345);
     glint_transfer_init(&t[1], &narrowed, 0, ONE / 7,
                         MODEL_WAVE_LO_Q24 + 12345);
@@ -174,7 +164,7 @@ static void test_narrow(void **state)
 static void test_init(void **state)
 {
     struct model_image m = model_auto();
-    const struct glint_lens lens = open_image(&m);
+    const struct glint_lens lens = model_open(&m);
     static struct glint_transfer t;
     const int32_t middle = (MODEL_WAVE_LO_Q24 + MODEL_WAVE_HI_Q24) / 2;
 
@@ -211,7 +201,7 @@ static void test_init(void **state)
 static void test_sparse_rays(void **state)
 {
     struct model_image m = model_sparse();
-    const struct glint_lens lens = open_image(&m);
+    const struct glint_lens lens = model_open(&m);
     static struct glint_transfer t;
     struct glint_outputs out;
 
@@ -289,7 +279,7 @@ static void test_extremes(void **state)
 
         if (k % 20 < 2)
             fill_up(&m[k % 2], &seed);
-        lens = open_image(&m[k % 2]);
+        lens = model_open(&m[k % 2]);
         assert_int_equal(glint_transfer_init(&t, &lens, 0, sine_q30, wave_q24),
                          1);
         out = ray(&t, u_q30, v_q30);
@@ -317,7 +307,7 @@ static struct glint_place upright(void)
 static void test_grid(void **state)
 {
     struct model_image m = model_auto();
-    const struct glint_lens lens = open_image(&m);
+    const struct glint_lens lens = model_open(&m);
     struct glint_place place = upright();
     static struct glint_transfer t;
     struct glint_vertex v[9], turned[9];
@@ -363,7 +353,7 @@ static void test_hollow_grid(void **state)
 {
     enum { N = 16, NODES = N + 1, ANNULUS = 3, SHELL = 6 };
     struct model_image m = model_auto();
-    const struct glint_lens lens = open_image(&m);
+    const struct glint_lens lens = model_open(&m);
     const struct glint_place place = upright();
     static struct glint_transfer t;
     static struct glint_vertex whole[NODES][NODES], shell[SHELL + 1][SHELL + 1];
@@ -395,7 +385,7 @@ static void test_hollow_grid(void **state)
 static void test_sparse_grid(void **state)
 {
     struct model_image m = model_sparse();
-    const struct glint_lens lens = open_image(&m);
+    const struct glint_lens lens = model_open(&m);
     const struct glint_place place = upright();
     static struct glint_transfer t;
     struct glint_vertex v[4];
@@ -415,7 +405,7 @@ static void test_sparse_grid(void **state)
 static void test_lost(void **state)
 {
     struct model_image m = model_auto();
-    const struct glint_lens lens = open_image(&m);
+    const struct glint_lens lens = model_open(&m);
     struct glint_place place = upright();
     static struct glint_transfer t;
     struct glint_vertex v[4];
@@ -458,7 +448,7 @@ static void test_strays_between_knots(void **state)
     o[5].term_at = model_put(&m, one_and_x, sizeof one_and_x);
     o[5].coef_at = model_put(&m, coef, sizeof coef);
     model_seal(&m);
-    lens = open_image(&m);
+    lens = model_open(&m);
     assert_int_equal(glint_transfer_init(&t, &lens, 0, ONE / 8, 1), 1);
     assert_int_equal(ray(&t, ONE, 0).at[GLINT_OUT_BARREL_0], ONE);
     glint_transfer_grid(

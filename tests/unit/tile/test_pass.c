@@ -179,7 +179,6 @@ static void draw(struct glint_frame f, uint8_t *px)
     struct glint_flare_stats stats;
     struct glint_flare *flare;
     struct shuffle shuffle;
-    const char *reason;
     void *mem;
 
     for (int i = 0; i < BYTES; i++) /* every fourth 0: light below white */
@@ -187,8 +186,7 @@ static void draw(struct glint_frame f, uint8_t *px)
             f.image.format == GLINT_LINEAR_Q20 && i % 4 == 3 ? 0 : ground_of(i);
     glint_image_place(&f.image, px);
     shuffle_init(&shuffle, f.n_workers, f.order);
-    assert_int_equal(glint_lens_open(&lens, m.data, m.bytes, &reason),
-                     GLINT_OK);
+    lens = model_open(&m);
     f.cfg.workers = &shuffle.workers;
     assert_int_equal(posix_memalign(&mem, 64, glint_flare_bytes(&f.cfg)), 0);
     assert_int_equal(
