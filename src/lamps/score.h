@@ -78,6 +78,8 @@ enum glint_evidence {
     EVIDENCE_DARK_2,
     EVIDENCE_DARK_4,
     EVIDENCE_DARK_32,
+    EVIDENCE_DRAWN, /* it fills its upright box to the last pixels, 256: all but
+                       two of 256: a bar, a cursor, a window of a screen */
     EVIDENCES
 };
 

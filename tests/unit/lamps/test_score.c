@@ -293,6 +293,48 @@ static void test_paper_and_text(void **state)
     assert_none(&desk);
 }
 
+/* Bars of three quarters of each colour, white first. */
+static void draw_bars(const struct settings *s, int rows)
+{
+    for (int y = 0; y < rows; y++)
+        for (int x = 0; x < s->width; x++) {
+            const int bar = 8 * x / s->width;
+
+            for (int c = 0; c < 3; c++)
+                s->light[3 * (y * s->width + x) + c] =
+                    bar == 0                   ? 1
+                    : (7 - bar) >> (2 - c) & 1 ? 0.52
+                                               : 0;
+        }
+}
+
+/* The white bar of a test pattern, and a white box below the bars; a round lamp
+ * in its place is one. */
+static void test_test_patterns(void **state)
+{
+    static const double white[3] = {1, 1, 1};
+
+    (void)state;
+    for (int width = 320; width <= 1280; width += 320) {
+        struct settings bars = new_settings(width, width * 9 / 16, 0);
+        struct settings box = new_settings(width, width * 9 / 16, 0.005);
+        struct settings lamp = new_settings(width, width * 9 / 16, 0.005);
+
+        draw_bars(&bars, bars.height);
+        draw_bars(&box, box.height / 2);
+        draw_bars(&lamp, lamp.height / 2);
+        fill_box(&box, 0.8, 0.375, 0.85, 0.425, 1);
+        add_lamp(&lamp, 0.825, 0.4, 0.025, 0.003, white);
+        assert_int_equal(find(&bars, GLINT_RGB24, 0), 0);
+        assert_int_equal(find(&box, GLINT_RGB24, 0), 0);
+        assert_int_equal(find(&lamp, GLINT_RGB24, 0), 1);
+        assert_at(&lamp, 0.825, 0.4);
+        free(bars.light);
+        free(box.light);
+        free(lamp.light);
+    }
+}
+
 /* Grains of every brightness, many of them white, must give no lamp. */
 static void test_snow(void **state)
 {
@@ -434,6 +476,7 @@ int main(void)
         cmocka_unit_test(test_sun_in_haze),
         cmocka_unit_test(test_every_resolution),
         cmocka_unit_test(test_paper_and_text),
+        cmocka_unit_test(test_test_patterns),
         cmocka_unit_test(test_snow),
         cmocka_unit_test(test_skies),
         cmocka_unit_test(test_noise_in_the_dark),
