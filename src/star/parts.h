@@ -75,7 +75,7 @@ int glint_star_lines_reach(const struct glint_star *star,
                            const struct glint_star_lamp *lamp,
                            struct glint_box box);
 
-/* Returns the pixels from a light to where its core ends. */
+/* Returns the distance in pixels from a light to the end of its core. */
 static inline int glint_star_core_reach(const struct glint_star *star)
 {
     const int steps = star->tables->core_per_pixel_q16 >> 16;

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a star will take: pixels that its parts give light to.
- */
+ * Predicts the work of a star: the pixels that its parts give light to. */
 #include "base/divide.h"
 #include "base/q.h"
 #include "star/parts.h"
 
-/* Pixels from A to B - 1 that are within HALF of X. */
+/* Returns how many pixels from A to B - 1 are within HALF of X. */
 static int64_t common(int a, int b, int x, int half)
 {
     const int from = q_larger(a, x - half), to = q_smaller(b, x + half);
@@ -14,7 +13,8 @@ static int64_t common(int a, int b, int x, int half)
     return to > from ? to - from : 0;
 }
 
-/* Pixels of the picture no farther than HALF from LAMP, along x and y. */
+/* Returns how many pixels of the picture are no farther than HALF from LAMP,
+ * along x and y. */
 static int64_t square(const struct glint_star *star,
                       const struct glint_star_lamp *lamp, int half)
 {
@@ -22,8 +22,9 @@ static int64_t square(const struct glint_star *star,
            common(0, star->cfg.height, lamp->y_q8 >> 8, half);
 }
 
-/* In a zone lines are twice as long as it is wide, and as wide as is seen; of
- * these as much as of the zone's area lies in the picture. */
+/* Returns the pixels of all lines of LAMP. In a zone a line is twice as long as
+ * the zone is wide, and as wide as is seen; the same share of it as of the
+ * zone's area is in the picture. */
 static int64_t lines(const struct glint_star *star,
                      const struct glint_star_lamp *lamp)
 {
@@ -49,7 +50,7 @@ int64_t glint_star_pixels(const struct glint_star *star)
         const struct glint_star_lamp *lamp = &star->lamp[i];
 
         sum += lines(star, lamp);
-        /* of a square a circle has 201 / 256 */
+        /* A circle has 201 / 256 of the area of its square. */
         sum += square(star, lamp, lamp->halo_reach) * 201 >> 8;
         if (lamp->is_bare)
             sum += square(star, lamp, glint_star_core_reach(star));

@@ -124,8 +124,8 @@ void glint_star_set(struct glint_star *star,
                     const struct glint_star_light *lights, int n,
                     struct glint_real faintest);
 
-/* Returns how many pixels the parts of what was set give light to, about: what
- * drawing takes goes with it. */
+/* Returns about how many pixels the parts of the star that was set give light
+ * to, counted once for each part: the time to draw it goes with that. */
 int64_t glint_star_pixels(const struct glint_star *star);
 
 /* Adds the star and, over it, the flare that FLARE has binned, as

@@ -285,7 +285,7 @@ static enum glint_status plan(struct glint_frame *f,
     return GLINT_OK;
 }
 
-/* The plan is handed out before it is drawn, so that its cost can be predicted.
+/* Returns the plan, also before it is drawn, so that its cost can be predicted.
  */
 struct glint_cost_plan glint_frame_plan(const struct glint_frame *f)
 {

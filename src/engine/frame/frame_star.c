@@ -25,16 +25,18 @@ static const double least_px = 1.5;
  * counts. */
 static const double clipped_times = 32, white_share = 0.5;
 
-/* A star ends smoothly and faintly, and ghosts do not. */
+/* Factor on the dial cull_codes: stars end smoothly and faintly, unlike ghosts.
+ */
 static const double cull_share = 2;
 
-/* What a star may take of a budget: beyond, what is fainter is not drawn, up to
- * 2^BUDGET_STEPS times as bright, and then none. */
+/* Share of a budget that stars may take. If they would take more, their
+ * faintest light is left out, up to 2^BUDGET_STEPS times what cull_codes asks
+ * for, and then all of it. */
 static const double budget_share = 0.25;
 enum { BUDGET_STEPS = 8 };
 
-/* Wavelength times f-number, over the diagonal of the picture, of f/22 behind
- * a frame of 36 x 24 mm: a lamp's picture has been taken through some stop. */
+/* Wavelength times f-number over the picture's diagonal, at f/22 on a frame of
+ * 36 x 24 mm: a lamp's picture has been taken through some stop. */
 static const double photo_airy = 0.55e-3 * 22 / 43.27;
 
 static struct glint_star_optics optics_of(const struct glint_frame *f)
@@ -191,8 +193,8 @@ static int by_power(const void *a, const void *b)
     return p->y_q8 < q->y_q8 ? -1 : p->y_q8 > q->y_q8;
 }
 
-/* Sets the star down to FAINTEST, or down to what leaves ghosts the most of a
- * budget. */
+/* Sets the star of N_LIGHTS down to light FAINTEST, or to the least light with
+ * which it keeps to its share of the budget. */
 static void set_within(struct glint_frame *f, int n_lights, double faintest)
 {
     struct glint_frame_star *s = &f->star;
