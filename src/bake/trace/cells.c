@@ -278,8 +278,7 @@ static bool pick_corners(const struct glint_cells *c, int i, int j, int half,
 
     for (int k = 0; k < 3; k++) {
         corner[k] = q[pick[k]];
-        /* NOLINTNEXTLINE: every node was traced, by itself or as a mirror image
-         */
+        /* NOLINTNEXTLINE: each node was traced, or is a mirror image */
         if (corner[k][NODE_STATE] == 0)
             return false;
     }
