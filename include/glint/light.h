@@ -45,6 +45,10 @@ struct glint_light {
      * one pixel; 1 = display white. */
     struct glint_real power;
     int32_t rgb_q14[3]; /* colour, linear BT.709, largest channel 1 */
+    /* Tangent of the angle between this and its neighbours where it is one of
+     * many points that stand for a lamp; ghosts too small to meet theirs are
+     * drawn larger. 0: it is a light of its own. */
+    int32_t apart_q30;
 };
 
 /* A wavelength that is drawn. */

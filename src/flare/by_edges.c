@@ -179,7 +179,7 @@ static void emit_bundle(struct glint_flare *f, int bundle, int worker,
         ghost.transfer = &plan->transfer;
         ghost.coded = f->plan.frame->faintest.mantissa != 0;
         ghost.snap_codes_q8 = ghost.coded ? f->plan.frame->snap_codes_q8 : 0;
-        ghost.place = glint_plan_place(&f->plan, f->planned[bundle].light);
+        ghost.place = glint_plan_place(&f->plan, &f->planned[bundle]);
         ghost.sag_q16 = f->planned[bundle].sag_q16;
     }
     glint_ghost_edges_emit(&ghost);

@@ -34,7 +34,7 @@ enum {
     PART = 4,  /* a round merges 1 / PART of the lights that have to go */
     BINS = 64, /* bins of the histogram of costs */
     HELD = 14,
-    WORDS = 9 /* 32-bit words that a light consists of */
+    WORDS = 10 /* 32-bit words that a light consists of */
 };
 
 #define ONE_Q30 (INT32_C(1) << 30)
@@ -116,6 +116,7 @@ static void words_of(const struct glint_light *b, int32_t *word)
     word[6] = b->cosine_q30;
     word[7] = b->cos_q30;
     word[8] = b->sin_q30;
+    word[9] = b->apart_q30;
 }
 
 /* Returns whether A comes before B: compares all members, power first. */
@@ -210,6 +211,8 @@ static void merge(struct glint_light *a, const struct glint_light *b)
     for (int c = 0; c < 3; c++)
         a->rgb_q14[c] = most ? q_narrow(rgb[c] * (1 << (14 + HELD)) / most) : 0;
     a->power = real_times(power, real_of(most, -14 - HELD));
+    if (b->apart_q30 > a->apart_q30)
+        a->apart_q30 = b->apart_q30;
     set_direction(a, &mean);
 }
 

@@ -11,7 +11,10 @@ enum {
      * computed at once */
     FEW_ACROSS = GLINT_RAYS - 1,
     FEW_DOWN = 4,
-    FEW_INSIDE = 6
+    FEW_INSIDE = 6,
+    ONE_Q16 = 1 << 16,
+    WIDEST_Q16 = 64 << 16, /* times that a ghost is drawn larger, at most */
+    FARTHEST_Q8 = 1 << 20  /* pixels from the middle that its centre may lie */
 };
 
 /* Returns X, in units of the sensor outputs, in pixels, within +-2^31. */
@@ -23,17 +26,28 @@ static int64_t pixels_q8(const struct glint_plan *p,
                         8, INT64_C(1) << 31);
 }
 
+/* Returns X pixels of a ghost as they are where it is drawn larger. */
+static int64_t widened(const struct glint_bundle_plan *s, int64_t x_q8)
+{
+    return s->wider_q16 ? x_q8 * s->wider_q16 >> 16 : x_q8;
+}
+
 /* Returns whether the range E of the probe's rays, grown by a tenth and turned
  * by the light's azimuth, meets the picture. */
-static int is_in_view(const struct glint_plan *p, const struct glint_light *b,
+static int is_in_view(const struct glint_plan *p,
+                      const struct glint_bundle_plan *planned,
+                      const struct glint_light *b,
                       const struct glint_transfer *t,
                       const struct glint_probe_extent *e)
 {
     const int64_t middle_q8 = pixels_q8(p, t, (e->low + e->high) / 2);
     const int64_t wide_q8 =
-        pixels_q8(p, t, q_divide((e->high - e->low) * 11, 20)) + 256;
+        widened(planned,
+                pixels_q8(p, t, q_divide((e->high - e->low) * 11, 20))) +
+        256;
     const int64_t high_q8 =
-        pixels_q8(p, t, e->wide + q_divide(e->wide, 10)) + 256;
+        widened(planned, pixels_q8(p, t, e->wide + q_divide(e->wide, 10))) +
+        256;
     const int64_t c = b->cos_q30 < 0 ? -b->cos_q30 : b->cos_q30;
     const int64_t s = b->sin_q30 < 0 ? -b->sin_q30 : b->sin_q30;
     const int64_t m = middle_q8 < 0 ? -middle_q8 : middle_q8;
@@ -97,7 +111,9 @@ static struct glint_real flux_of(const struct glint_plan *p,
  * light that shows: twice the flux of a cell of the probe over the least area
  * of one on the sensor, as cells between may be brighter. Returns the largest
  * value for folded ghosts, whose areas say little. */
-static int64_t peak_q20(const struct glint_plan *p, const struct glint_probe *s,
+static int64_t peak_q20(const struct glint_plan *p,
+                        const struct glint_bundle_plan *planned,
+                        const struct glint_probe *s,
                         const struct glint_transfer *t, struct glint_real flux)
 {
     const int64_t most = INT64_C(1) << 40;
@@ -109,6 +125,10 @@ static int64_t peak_q20(const struct glint_plan *p, const struct glint_probe *s,
     area = real_times(real_of((int64_t)(s->least_area >> 1),
                               2 * t->exponent[GLINT_OUT_SENSOR_X] + 2),
                       real_times(plan_pixels_per_mm(p), plan_pixels_per_mm(p)));
+    if (planned->wider_q16)
+        area = real_times(
+            area,
+            real_of((int64_t)planned->wider_q16 * planned->wider_q16, -32));
     flux.exponent += 1;
     /* Number of cells over the whole box. */
     area = real_times(area, real_of(s->across * 2 * s->down, 0));
@@ -130,16 +150,29 @@ void glint_plan_transfer(const struct glint_plan *plan,
     transfer->window = planned->window;
 }
 
-struct glint_place glint_plan_place(const struct glint_plan *plan, int light)
+struct glint_place glint_plan_place(const struct glint_plan *plan,
+                                    const struct glint_bundle_plan *planned)
 {
-    return (struct glint_place){
-        .cos_q30 = plan->light[light].cos_q30,
-        .sin_q30 = plan->light[light].sin_q30,
+    const struct glint_light *b = &plan->light[planned->light];
+    struct glint_place place = {
+        .cos_q30 = b->cos_q30,
+        .sin_q30 = b->sin_q30,
         .pixels_per_mm = plan_pixels_per_mm(plan),
         .middle_x_q8 = plan->width * 128 >> plan->half,
         .middle_y_q8 = plan->height * 128 >> plan->half,
         .stop_scale =
             real_over(real_of(1, 0), real_of(plan->opening_q30, -30))};
+
+    if (planned->wider_q16) {
+        const int64_t back_q8 = q_shift(
+            ((int64_t)planned->wider_q16 - ONE_Q16) * planned->centre_q8, 16);
+
+        place.pixels_per_mm =
+            real_times(place.pixels_per_mm, real_of(planned->wider_q16, -16));
+        place.middle_x_q8 -= (int32_t)q_shift(back_q8 * b->cos_q30, 30);
+        place.middle_y_q8 += (int32_t)q_shift(back_q8 * b->sin_q30, 30);
+    }
+    return place;
 }
 
 /* Returns the power of two by which energies can be raised without overflow,
@@ -178,6 +211,36 @@ static int is_wanted(const struct glint_flare_frame *r, int ghost)
         &r->lens->ghost[r->only_ghost < 0 ? ghost : r->only_ghost];
 
     return g->i == only->i && g->j == only->j;
+}
+
+/* Sets how much larger the ghost has to be drawn to be two and a half times as
+ * wide as it lies from those of the lamp's next points: else the lamp's ghost
+ * would be a pattern of dots. A ghost is as many times as far from the middle
+ * as the light as it moves when the light does; those of a point on the axis
+ * stay as they are. */
+static void set_wider(const struct glint_plan *p,
+                      struct glint_bundle_plan *planned,
+                      const struct glint_transfer *t,
+                      const struct glint_probe_extent *e)
+{
+    const struct glint_light *b = &p->light[planned->light];
+    const int64_t middle = (e->low + e->high) / 2;
+    const struct glint_real wide = real_of((e->high - e->low) / 2 + e->wide, 0);
+    struct glint_real wanted;
+
+    planned->wider_q16 = planned->centre_q8 = 0;
+    if (b->apart_q30 <= 0 || b->sine_q30 <= 0 || wide.mantissa <= 0)
+        return;
+    wanted = real_times(
+        real_of(middle < 0 ? -middle : middle, 0),
+        real_over(real_of(b->cosine_q30, -30), real_of(b->sine_q30, -30)));
+    wanted = real_times(wanted, real_of(5 * (int64_t)b->apart_q30, -31));
+    if (!real_less(wide, wanted))
+        return;
+    planned->wider_q16 =
+        (int32_t)real_integer(real_over(wanted, wide), 16, WIDEST_Q16);
+    planned->centre_q8 = (int32_t)q_clamp_sat(pixels_q8(p, t, middle),
+                                              -FARTHEST_Q8, FARTHEST_Q8);
 }
 
 /* Narrows the window of T to what the stop lets through, if that is narrower
@@ -230,18 +293,22 @@ static enum glint_outcome plan_bundle(const struct glint_plan *plan,
                         GLINT_PROBE_DOWN);
     if (s->n_inside == 0)
         return GLINT_OUTCOME_BLOCKED;
-    if (!is_in_view(plan, b, transfer, &s->reach))
+    set_wider(plan, planned, transfer, &s->seen);
+    if (!is_in_view(plan, planned, b, transfer, &s->reach))
         return GLINT_OUTCOME_OUTSIDE;
-    wide_q8 = pixels_q8(plan, transfer,
-                        q_divide((s->seen.high - s->seen.low) * 3, 5)) +
-              256;
+    wide_q8 =
+        widened(planned,
+                pixels_q8(plan, transfer,
+                          q_divide((s->seen.high - s->seen.low) * 3, 5))) +
+        256;
     high_q8 =
-        pixels_q8(plan, transfer, s->seen.wide + q_divide(s->seen.wide, 10)) +
+        widened(planned, pixels_q8(plan, transfer,
+                                   s->seen.wide + q_divide(s->seen.wide, 10))) +
         256;
     planned->energy_up = (uint8_t)energy_up(s->energy);
     exponent = transfer->exponent[GLINT_OUT_ENERGY] + 29 - planned->energy_up;
     planned->flux = flux_of(plan, planned, transfer, colour, exponent);
-    planned->peak_q20 = peak_q20(plan, s, transfer, planned->flux);
+    planned->peak_q20 = peak_q20(plan, planned, s, transfer, planned->flux);
     if (plan->n_lights == 1 && !r->sets && planned->peak_q20 < 1 << 20)
         return GLINT_OUTCOME_FAINT;
     planned->irradiance = real_over(

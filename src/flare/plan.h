@@ -31,6 +31,10 @@ struct glint_bundle_plan {
     /* Light of the whole pupil if all rays had the highest energy seen, display
      * white times pixels. */
     struct glint_real flux;
+    /* How many times as large as it is the ghost is drawn, about a point so
+     * many pixels from the picture's middle along the light's azimuth; 0: as it
+     * is. */
+    int32_t wider_q16, centre_q8;
     /* Flux over the pixels that it falls on, display white. */
     struct glint_real irradiance;
     int64_t peak_q20; /* most light that a pixel gets, clamped to 2^20; 1 is the
@@ -76,7 +80,9 @@ void glint_plan_transfer(const struct glint_plan *plan,
                          const struct glint_bundle_plan *planned,
                          struct glint_transfer *transfer);
 
-/* Returns the place in the picture of the ghosts of light LIGHT. */
-struct glint_place glint_plan_place(const struct glint_plan *plan, int light);
+/* Returns the place in the picture of the ghost of a bundle that was planned.
+ */
+struct glint_place glint_plan_place(const struct glint_plan *plan,
+                                    const struct glint_bundle_plan *planned);
 
 #endif

@@ -53,7 +53,7 @@ static void trace(const struct glint_plan *plan,
 {
     const int32_t one_q30 = INT32_C(1) << 30;
     const struct glint_real scale =
-        glint_plan_place(plan, planned->light).pixels_per_mm;
+        glint_plan_place(plan, planned).pixels_per_mm;
 
     glint_plan_transfer(plan, planned, t);
     for (int row = 0; row < ROWS; row++) {

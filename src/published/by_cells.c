@@ -72,7 +72,7 @@ static void transfer_job(void *ctx, int job, int worker)
     struct glint_flare *f = ctx;
     struct glint_transfer *t = &f->worker[worker].plan->transfer;
     const struct glint_place place =
-        glint_plan_place(&f->plan, f->planned[job].light);
+        glint_plan_place(&f->plan, &f->planned[job]);
 
     glint_plan_transfer(&f->plan, &f->planned[job], t);
     glint_transfer_grid(t, &place, f->bundle[job].n_cells,

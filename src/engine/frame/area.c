@@ -106,6 +106,20 @@ int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
     return n;
 }
 
+/* Each point has an even part of the ellipse, as long as that in proportion; of
+ * a tube's, which are much longer, twice what a circle's is: seven points of a
+ * tube shall not be as wide as it is. So that nothing steps, it grows with what
+ * spreads two to four points. */
+double glint_area_apart(const struct glint_area *area)
+{
+    const double major = hypot(area->major[0], area->major[1]);
+    const double minor = hypot(area->minor[0], area->minor[1]);
+    const double part = fmin((area->points - 1) / 3, 1);
+
+    return part * fmin(major, 2 * sqrt(major * minor)) *
+           sqrt(GLINT_PI / area->points);
+}
+
 struct glint_lamp glint_area_point(const struct glint_area *area, int i)
 {
     struct glint_lamp point = area->lamp;

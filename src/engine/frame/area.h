@@ -56,6 +56,10 @@ struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
 int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
                     const struct glint_area_rule *rule);
 
+/* Returns how far the points of AREA are apart, as a tangent; 0 if there is
+ * only one. */
+double glint_area_apart(const struct glint_area *area);
+
 /* Returns point I of AREA, with its share of the power, as a lamp without
  * extent. */
 struct glint_lamp glint_area_point(const struct glint_area *area, int i);

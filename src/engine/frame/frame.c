@@ -158,11 +158,13 @@ static int add_lights(struct glint_frame *f, const struct glint_lamp *lamp,
 {
     struct glint_area area;
     const int n = glint_area_plan(&area, lamp, rule);
+    const double apart = n > 1 ? fmin(glint_area_apart(&area), 1) : 0;
 
     for (int i = 0; i < n; i++) {
         const struct glint_lamp point = glint_area_point(&area, i);
 
         f->light[within] = glint_light_of(&point, scale);
+        f->light[within].apart_q30 = (int32_t)lrint(apart * 0x1p30);
         within += !glint_light_is_beyond(f->lens, &f->light[within]);
     }
     return within;

@@ -35,6 +35,7 @@ struct glint_light glint_light_of(const struct glint_lamp *l, double scale)
     b.cosine_q30 = (int32_t)lrint(cos(l->theta_deg * degree) * 0x1p30);
     b.cos_q30 = (int32_t)lrint(cos(l->phi_deg * degree) * 0x1p30);
     b.sin_q30 = (int32_t)lrint(sin(l->phi_deg * degree) * 0x1p30);
+    b.apart_q30 = 0;
     b.power = glint_real_of(isfinite(power) && power > 0 ? power : 0);
     return b;
 }

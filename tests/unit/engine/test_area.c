@@ -163,6 +163,38 @@ static void test_faint_lamps_get_fewer(void **state)
     assert_true(total >= MOST + 1 + (MOST - 1) / 4);
 }
 
+/* Points of a disc are apart as if each had a square of it, so that seven of
+ * 121 are on a line across; a lamp that becomes one of many does so without a
+ * step.
+ */
+static void test_how_far_they_are_apart(void **state)
+{
+    struct glint_area area;
+    double last = 0;
+    int total;
+
+    (void)state;
+    for (int step = 0; step <= 4000; step++) {
+        const double radius = step * 0.01; /* pixels, RMS of each axis */
+        const struct glint_lamp lamp = lamp_of(radius, radius);
+        const struct glint_area_rule rule =
+            glint_area_rule_of(&lamp, 1, PIXELS, MOST, 1000, &total);
+        double apart;
+
+        glint_area_plan(&area, &lamp, &rule);
+        apart = glint_area_apart(&area) * PIXELS;
+        assert_true(step > 0 || apart == 0);
+        assert_true(apart >= last - 1e-9 && apart < last + 0.05);
+        last = apart;
+    }
+    assert_true(fabs(last / (2 * 40 * sqrt(GLINT_PI / MOST)) - 1) < 1e-6);
+    area.points = 121;
+    assert_true(fabs(glint_area_apart(&area) * PIXELS - 80 / 6.2) < 0.1);
+    area.minor[0] /= 100;
+    area.minor[1] /= 100;
+    assert_true(fabs(glint_area_apart(&area) * PIXELS - 80 / 6.2 / 5) < 0.1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -171,6 +203,7 @@ int main(void)
         cmocka_unit_test(test_it_grows_without_jumps),
         cmocka_unit_test(test_all_have_room),
         cmocka_unit_test(test_faint_lamps_get_fewer),
+        cmocka_unit_test(test_how_far_they_are_apart),
     };
 
     return cmocka_run_group_tests_name("area", tests, NULL, NULL);

@@ -58,7 +58,8 @@ static void open_fixture(struct fixture *f, int n_lights)
                                            (int32_t)lrint(cos(i) * 0x1p30),
                                            (int32_t)lrint(sin(i) * 0x1p30),
                                            real_of(1000 + i, 0),
-                                           {16384, 16384, 16384}};
+                                           {16384, 16384, 16384},
+                                           0};
     f->rays = (struct glint_flare_frame){.lens = &f->lens,
                                          .wave = f->wave,
                                          .n_waves = WAVES,

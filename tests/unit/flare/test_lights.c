@@ -136,6 +136,21 @@ static void test_none_and_one(void **state)
     assert_int_equal(glint_lights_merge(&b, 1, NEAR_Q30, 1, &apart), 0);
 }
 
+/* A merged light must be as far from its neighbours as the wider of the two,
+ * in any order. */
+static void test_how_far_they_are_apart(void **state)
+{
+    (void)state;
+    for (int order = 0; order < 2; order++) {
+        struct glint_light b[2] = {beam_at(0.1, 0, 3), beam_at(0.1, 0, 3)};
+        int apart;
+
+        b[order].apart_q30 = 77;
+        assert_int_equal(glint_lights_merge(b, 2, NEAR_Q30, 2, &apart), 1);
+        assert_int_equal(b[0].apart_q30, 77);
+    }
+}
+
 /* Lights that are too few and too far apart to merge must keep every bit. */
 static void test_untouched(void **state)
 {
@@ -370,6 +385,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_none_and_one),
+        cmocka_unit_test(test_how_far_they_are_apart),
         cmocka_unit_test(test_untouched),
         cmocka_unit_test(test_identical),
         cmocka_unit_test(test_near),

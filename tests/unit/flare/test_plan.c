@@ -98,8 +98,8 @@ static void open_fixture(struct fixture *f)
             (struct glint_wave){i ? MODEL_WAVE_HI_Q24 : MODEL_WAVE_LO_Q24,
                                 {i ? 0 : 16384, i ? 16384 : 0, 0},
                                 real_of(1, 0)};
-    f->light = (struct glint_light){0, 1 << 30,          1 << 30,
-                                    0, real_of(1000, 0), {16384, 16384, 16384}};
+    f->light = (struct glint_light){
+        0, 1 << 30, 1 << 30, 0, real_of(1000, 0), {16384, 16384, 16384}, 0};
     f->rays = (struct glint_flare_frame){.lens = &f->lens,
                                          .wave = f->wave,
                                          .n_waves = 2,
@@ -292,6 +292,62 @@ static void test_steps_follow_codes(void **state)
         assert_true(sum / (3 * WIDTH * HEIGHT) < (e > 4 ? 0.65 : 0.1));
     }
     assert_true(n_fewer > 15);
+    close_fixture(&f);
+}
+
+/* Sums over a picture: light, where it is and its mean square distance from
+ * there, pixels. */
+struct extent {
+    double light, x, y, square;
+};
+
+static struct extent extent_of(const int32_t *px_q20)
+{
+    struct extent e = {0, 0, 0, 0};
+
+    for (int pass = 0; pass < 2; pass++)
+        for (int i = 0; i < WIDTH * HEIGHT; i++) {
+            const double l = (double)px_q20[3 * i] + px_q20[3 * i + 1];
+            const double x = i % WIDTH, y = i / WIDTH; /* NOLINT: rows */
+
+            if (pass)
+                e.square += l * (pow(x - e.x, 2) + pow(y - e.y, 2)) / e.light;
+            else
+                e.light += l, e.x += l * x, e.y += l * y;
+            if (!pass && i == WIDTH * HEIGHT - 1)
+                e.x /= e.light, e.y /= e.light;
+        }
+    return e;
+}
+
+/* The ghost of one of many points must become wider with what they are apart,
+ * where it lies and with the light it has, and not before that is needed. */
+static void test_points_of_a_lamp(void **state)
+{
+    static int32_t px_q20[3 * WIDTH * HEIGHT];
+    struct glint_flare_stats s;
+    struct extent alone, near, far;
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f);
+    f.cfg.stop.apothem_q16 /= 3;
+    f.light.sine_q30 = 1 << 27;
+    f.light.cosine_q30 = (int32_t)(sqrt(63 / 64.0) * (1 << 30));
+    f.light.cos_q30 = (int32_t)(0.6 * (1 << 30));
+    f.light.sin_q30 = (int32_t)(0.8 * (1 << 30));
+    draw(&f, px_q20, &s);
+    alone = extent_of(px_q20);
+    f.light.apart_q30 = 1 << 10;
+    draw(&f, px_q20, &s);
+    near = extent_of(px_q20);
+    f.light.apart_q30 = 1 << 28;
+    draw(&f, px_q20, &s);
+    far = extent_of(px_q20);
+    assert_true(near.square == alone.square);
+    assert_true(far.square > 1.15 * alone.square);
+    assert_true(fabs(far.light / alone.light - 1) < 1e-3);
+    assert_true(hypot(far.x - alone.x, far.y - alone.y) < 0.3);
     close_fixture(&f);
 }
 
@@ -595,7 +651,7 @@ static void check_rows_and_grids(int32_t opening_q30)
     for (int ghost = 0; ghost < (int)f.lens.header->n_ghosts; ghost++)
         for (int wave = 0; wave < 2; wave++) {
             struct glint_bundle_plan planned = {.ghost = ghost, .wave = wave};
-            const struct glint_place place = glint_plan_place(&plan, 0);
+            const struct glint_place place = glint_plan_place(&plan, &planned);
             struct glint_bundle bundle;
             struct glint_vertex *v;
 
@@ -821,6 +877,7 @@ int main(void)
         cmocka_unit_test(test_a_hole_loses_no_cells),
         cmocka_unit_test(test_faint),
         cmocka_unit_test(test_steps_follow_codes),
+        cmocka_unit_test(test_points_of_a_lamp),
         cmocka_unit_test(test_whole_edges),
         cmocka_unit_test(test_half),
         cmocka_unit_test(test_half_of_linear),

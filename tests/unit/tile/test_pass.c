@@ -109,8 +109,8 @@ static struct glint_light light_of(const struct triangle *t)
     const int(*p)[2] = t->corner;
     const int area2 = (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]) -
                       (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]);
-    struct glint_light light = {0,  1 << 30, 1 << 30, 0, real_of(area2, -4),
-                                {0}};
+    struct glint_light light = {0,   1 << 30, 1 << 30, 0, real_of(area2, -4),
+                                {0}, 0};
 
     for (int c = 0; c < 3; c++)
         light.rgb_q14[c] = t->light_q16[c] / 4;
