@@ -223,6 +223,22 @@ static void test_face_in_its_own_light(void **state)
     }
 }
 
+/* What is lost in the dark middle of a ring that lights what is around it is
+ * not at a rim, and says nothing of how wide the lamp is. */
+static void test_ring_is_no_face(void **state)
+{
+    const struct power_lamp lamp = lamp_of(POWER_DISC, 50);
+
+    (void)state;
+    draw_core(50, 0.49, 0.1);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++)
+            if (hypot(x + 0.5 - W / 2.0, y + 0.5 - H / 2.0) < 30)
+                light[y * W + x] = 0.49;
+    assert_int_equal(expose(&lamp, 1, 0, 0), 1);
+    assert_in_range(spot[0].axis_q8[0], 0, 6 * 256);
+}
+
 /* Sodium light, clipped to yellow and white, must have the colour of its
  * fringe: 1.99, 0.79, 0.04 at luminance 1. */
 static void test_colour_is_that_of_the_fringe(void **state)
@@ -530,6 +546,7 @@ int main(void)
         cmocka_unit_test(test_a_lamp_of_one_pixel),
         cmocka_unit_test(test_any_spots),
         cmocka_unit_test(test_face_in_its_own_light),
+        cmocka_unit_test(test_ring_is_no_face),
     };
 
     return cmocka_run_group_tests_name("profile", tests, NULL, NULL);
