@@ -78,7 +78,7 @@ mutants: $(test_bins)
 	@tests/mutants/run $(OUT) $(MUTANTS)
 # What valgrind says of memory that was never written, which no sanitizer of
 # gcc's does: the run-time half, what reads files, and the fuzzers' corpora.
-VALGRIND := $(filter arena kernels model transfer curve resolve lamp_finder flare flare_light flare_room plan lights pnm y4m \
+VALGRIND := $(filter arena kernels model transfer curve resolve lamp_finder flare flare_light flare_room window plan lights pnm y4m \
         picture bright match lamps mjpeg config prescription trace,$(UNIT))
 check-valgrind:
 	@tools/make/deps "memory checks" gcc libc6-dev valgrind libcmocka-dev \
