@@ -49,7 +49,7 @@ static const char *check(const struct glint_engine_config *c)
 {
     if (c->width < 1 || c->width > GLINT_MAX_SIDE || c->height < 1 ||
         c->height > GLINT_MAX_SIDE)
-        return "pictures have 1 to 8192 pixels a side";
+        return "pictures have 1 to 32768 pixels a side";
     if (!c->model)
         return "there is no model";
     if (c->max_found < 1 || c->max_found > GLINT_ENGINE_MAX_LAMPS / 2)
