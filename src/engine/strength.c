@@ -18,7 +18,7 @@ static const double compression = 0.15;
 /* Display light at strength 0.5: limits of the brightest part and of the mean
  * up to which a hidden flare is lifted, and the least of the brightest part to
  * which a veil is lowered. */
-static const double seen_peak = 0.7, seen_mean = 0.04, veil_peak = 0.08;
+static const double seen_peak = 0.6, seen_mean = 0.04, veil_peak = 0.1;
 
 /* Light that a veil leaves on a quarter of the picture, over the least that can
  * be seen. */

@@ -34,9 +34,9 @@
  * response off that line differs become as bright as others. Then the exposure
  * is corrected by how much of the flare can be seen on the picture
  * (engine/seen.h). A flare that is hidden is lifted until 1/50 of the picture
- * shows it: at strength 0.5 up to 0.7 in its brightest part and 0.04 in the
+ * shows it: at strength 0.5 up to 0.6 in its brightest part and 0.04 in the
  * mean. A flare that veils a quarter of the picture is lowered until the light
- * there is half of the least that can be seen, but not below 0.08 in its
+ * there is half of the least that can be seen, but not below 0.1 in its
  * brightest part.
  *
  * In a video the factor follows, in stops in proportion to the time: it falls
