@@ -64,8 +64,6 @@ $(call of,$(addprefix src/image/,codes quads) $(addprefix src/flare/,edges/sums 
 $(call of,$(addprefix platform/panel/,split row_rgb row_pack planar),-O3)
 # The floor that frames are measured by is as fast as can be.
 $(call of,tools/lab/canvas,-O3)
-# Sums in fours: the same bits.
-$(call of,src/bake/fit/regress,-O3)
 # Rays in eights: errno and traps are all that these give away.
 $(call of,src/bake/trace/trace,-O3 -fno-math-errno -fno-trapping-math)
 
