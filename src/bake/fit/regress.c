@@ -29,6 +29,15 @@ struct column {
     double *at;  /* [n] */
 };
 
+enum {
+    LANES = 4,   /* sums of a dot product */
+    AT_ONCE = 4, /* columns that are multiplied by a direction at once */
+    NEIGHBOURS = GLINT_VARIABLES,
+    BLOCK = 512 /* rays whose values stay in the nearest cache */
+};
+
+STATIC_ASSERT((int)NEIGHBOURS <= (int)AT_ONCE);
+
 struct search {
     const struct glint_regress_samples *s;
     const struct glint_degrees *degrees;
@@ -47,21 +56,114 @@ size_t glint_regress_doubles(int n)
  * dependent additions. */
 WIDE_VECTORS static double dot(const double *a, const double *b, int n)
 {
-    double s[4] = {0, 0, 0, 0};
+    double s[LANES] = {0, 0, 0, 0};
     int i = 0;
 
-    for (; i + 4 <= n; i += 4)
-        for (int k = 0; k < 4; k++)
+    for (; i + LANES <= n; i += LANES)
+        for (int k = 0; k < LANES; k++)
             s[k] += a[i + k] * b[i + k];
     for (; i < n; i++)
         s[0] += a[i] * b[i];
     return (s[0] + s[1]) + (s[2] + s[3]);
 }
 
-WIDE_VECTORS static void subtract(double *a, double k, const double *b, int n)
+/* Sets SUM to the dot products of A and four columns, each with the bits of
+ * dot(). A is read once for all of them, and their sums do not wait for each
+ * other. */
+WIDE_VECTORS static void dots(const double *a, const double *const b[AT_ONCE],
+                              int n, double sum[AT_ONCE])
 {
-    for (int i = 0; i < n; i++)
+    const double *const b0 = b[0], *const b1 = b[1], *const b2 = b[2],
+                        *const b3 = b[3];
+    double s0[LANES] = {0, 0, 0, 0}, s1[LANES] = {0, 0, 0, 0};
+    double s2[LANES] = {0, 0, 0, 0}, s3[LANES] = {0, 0, 0, 0};
+    int i = 0;
+
+    for (; i + LANES <= n; i += LANES) {
+        for (int k = 0; k < LANES; k++) {
+            s0[k] += a[i + k] * b0[i + k];
+            s1[k] += a[i + k] * b1[i + k];
+            s2[k] += a[i + k] * b2[i + k];
+            s3[k] += a[i + k] * b3[i + k];
+        }
+    }
+    for (; i < n; i++) {
+        s0[0] += a[i] * b0[i];
+        s1[0] += a[i] * b1[i];
+        s2[0] += a[i] * b2[i];
+        s3[0] += a[i] * b3[i];
+    }
+    sum[0] = (s0[0] + s0[1]) + (s0[2] + s0[3]);
+    sum[1] = (s1[0] + s1[1]) + (s1[2] + s1[3]);
+    sum[2] = (s2[0] + s2[1]) + (s2[2] + s2[3]);
+    sum[3] = (s3[0] + s3[1]) + (s3[2] + s3[3]);
+}
+
+WIDE_VECTORS static void subtract(double *restrict a, double k,
+                                  const double *restrict b, int n)
+{
+    int i = 0;
+
+    for (; i + LANES <= n; i += LANES)
+        for (int m = 0; m < LANES; m++)
+            a[i + m] -= k * b[i + m];
+    for (; i < n; i++)
         a[i] -= k * b[i];
+}
+
+/* Subtracts K times B from A and returns the dot product of NEXT and what is
+ * left of it, with the bits of subtract() and dot(). */
+WIDE_VECTORS static double subtract_dot(double *restrict a, double k,
+                                        const double *restrict b,
+                                        const double *restrict next, int n)
+{
+    double s[LANES] = {0, 0, 0, 0};
+    int i = 0;
+
+    for (; i + LANES <= n; i += LANES) {
+        double left[LANES];
+
+        for (int m = 0; m < LANES; m++)
+            left[m] = a[i + m] - k * b[i + m];
+        for (int m = 0; m < LANES; m++)
+            a[i + m] = left[m];
+        for (int m = 0; m < LANES; m++)
+            s[m] += next[i + m] * left[m];
+    }
+    for (; i < n; i++) {
+        a[i] -= k * b[i];
+        s[0] += next[i] * a[i];
+    }
+    return (s[0] + s[1]) + (s[2] + s[3]);
+}
+
+/* Multiplies A by X, POWER times. */
+WIDE_VECTORS static void multiply(double *restrict a, const double *restrict x,
+                                  int power, int n)
+{
+    for (int p = 0; p < power; p++) {
+        int i = 0;
+
+        for (; i + LANES <= n; i += LANES)
+            for (int k = 0; k < LANES; k++)
+                a[i + k] *= x[i + k];
+        for (; i < n; i++)
+            a[i] *= x[i];
+    }
+}
+
+/* Returns the largest magnitude of A. */
+WIDE_VECTORS static double largest(const double *a, int n)
+{
+    double most[LANES] = {0, 0, 0, 0};
+    int i = 0;
+
+    for (; i + LANES <= n; i += LANES)
+        for (int k = 0; k < LANES; k++)
+            most[k] = fabs(a[i + k]) > most[k] ? fabs(a[i + k]) : most[k];
+    for (; i < n; i++)
+        most[0] = fmax(most[0], fabs(a[i]));
+    return fmax(fmax(most[0], most[1]), fmax(most[2], most[3]));
 }
 
 static bool allowed(const struct glint_degrees *d, const uint8_t *power)
@@ -76,29 +178,42 @@ static bool allowed(const struct glint_degrees *d, const uint8_t *power)
     return total <= d->total && (d->parity < 0 || power[1] % 2 == d->parity);
 }
 
-/* Notes the share of COLUMN along the chosen direction of rank RANK. */
-static void note_share(const struct search *s, struct column *column, int rank)
+/* Notes the shares of N columns, at most AT_ONCE, along the chosen direction of
+ * rank RANK. */
+static void note_shares(const struct search *s, struct column *const column[],
+                        int n, int rank)
 {
-    const double share =
-        dot(s->column[s->chosen[rank]].at, column->at, s->s->n);
+    const double *at[AT_ONCE];
+    double share[AT_ONCE];
 
-    column->on[rank] = share;
-    column->left2 -= share * share;
+    for (int k = 0; k < AT_ONCE; k++)
+        at[k] = column[k < n ? k : 0]->at;
+    dots(s->column[s->chosen[rank]].at, at, s->s->n, share);
+    for (int k = 0; k < n; k++) {
+        column[k]->on[rank] = share[k];
+        column[k]->left2 -= share[k] * share[k];
+    }
 }
 
 /* Makes COLUMN orthogonal to all chosen directions, twice against rounding. */
 static void make_orthogonal(const struct search *s, struct column *column)
 {
     const int n = s->s->n;
+    double share = 0;
 
     for (int k = column->clean; k < s->n_chosen; k++)
         subtract(column->at, column->on[k], s->column[s->chosen[k]].at, n);
+    if (s->n_chosen > 0)
+        share = dot(s->column[s->chosen[0]].at, column->at, n);
     for (int k = 0; k < s->n_chosen; k++) {
         const double *q = s->column[s->chosen[k]].at;
-        const double share = dot(q, column->at, n);
 
-        subtract(column->at, share, q, n);
         column->on[k] += share;
+        if (k + 1 < s->n_chosen)
+            share = subtract_dot(column->at, share, q,
+                                 s->column[s->chosen[k + 1]].at, n);
+        else
+            subtract(column->at, share, q, n);
     }
     column->clean = s->n_chosen;
     column->was2 = column->left2 = dot(column->at, column->at, n);
@@ -109,46 +224,55 @@ static void fill(const struct search *s, struct column *column)
 {
     const struct glint_regress_samples *v = s->s;
 
-    memcpy(column->at, v->weight, (size_t)v->n * sizeof *column->at);
-    for (int k = 0; k < GLINT_VARIABLES; k++)
-        for (int p = 0; p < column->power[k]; p++)
-            for (int i = 0; i < v->n; i++)
-                column->at[i] *= v->x[k][i];
+    for (int i = 0; i < v->n; i += BLOCK) {
+        const int n = v->n - i < BLOCK ? v->n - i : BLOCK;
+
+        memcpy(column->at + i, v->weight + i, (size_t)n * sizeof *column->at);
+        for (int k = 0; k < GLINT_VARIABLES; k++)
+            multiply(column->at + i, v->x[k] + i, column->power[k], n);
+    }
     column->was2 = column->left2 = dot(column->at, column->at, v->n);
     column->length = sqrt(column->left2);
     column->pull = dot(column->at, s->residual, v->n);
 }
 
-static void add_candidate(struct search *s, const uint8_t *power)
+/* Adds the term POWER as a candidate; returns it, or NULL if there is nothing
+ * to add. Its shares are not noted yet. */
+static struct column *add_candidate(struct search *s, const uint8_t *power)
 {
     struct column *column = &s->column[s->n_columns];
 
     if (s->n_columns == GLINT_MAX_CANDIDATES || !allowed(s->degrees, power))
-        return;
+        return NULL;
     for (int i = 0; i < s->n_columns; i++)
         if (memcmp(s->column[i].power, power, GLINT_VARIABLES) == 0)
-            return;
+            return NULL;
     *column = (struct column){.at = s->memory +
                                     (size_t)s->n_columns * (size_t)s->s->n};
     memcpy(column->power, power, GLINT_VARIABLES);
     fill(s, column);
-    for (int rank = 0; rank < s->n_chosen; rank++)
-        note_share(s, column, rank);
     s->n_columns++;
+    return column;
 }
 
 /* Adds all terms with one power more in one variable as candidates; two more in
  * a variable with parity. */
 static void add_neighbours(struct search *s, const struct column *column)
 {
+    struct column *added[NEIGHBOURS];
+    int n = 0;
+
     for (int k = 0; k < GLINT_VARIABLES; k++) {
         uint8_t power[GLINT_VARIABLES];
 
         memcpy(power, column->power, sizeof power);
         power[k] =
             (uint8_t)(power[k] + (k == 1 && s->degrees->parity >= 0 ? 2 : 1));
-        add_candidate(s, power);
+        added[n] = add_candidate(s, power);
+        n += added[n] != NULL;
     }
+    for (int rank = 0; n > 0 && rank < s->n_chosen; rank++)
+        note_shares(s, added, n, rank);
 }
 
 static bool is_chosen(const struct search *s, int column)
@@ -186,6 +310,8 @@ static void choose(struct search *s, int index)
 {
     struct column *c = &s->column[index];
     const int n = s->s->n, rank = s->n_chosen;
+    struct column *group[AT_ONCE];
+    int grouped = 0;
     double share;
 
     make_orthogonal(s, c);
@@ -196,12 +322,14 @@ static void choose(struct search *s, int index)
     share = c->pull / c->on[rank];
     subtract(s->residual, share, c->at, n);
     for (int i = 0; i < s->n_columns; i++) {
-        struct column *other = &s->column[i];
-
-        if (other->dead || is_chosen(s, i))
-            continue;
-        note_share(s, other, rank);
-        other->pull -= share * other->on[rank];
+        if (!s->column[i].dead && !is_chosen(s, i))
+            group[grouped++] = &s->column[i];
+        if (grouped == AT_ONCE || (grouped > 0 && i + 1 == s->n_columns)) {
+            note_shares(s, group, grouped, rank);
+            for (int k = 0; k < grouped; k++)
+                group[k]->pull -= share * group[k]->on[rank];
+            grouped = 0;
+        }
     }
     add_neighbours(s, c);
 }
@@ -217,11 +345,9 @@ static bool is_hopeless(const struct search *s, double left)
 static double excess(const struct search *s, double rms, double peak)
 {
     const double sum2 = dot(s->residual, s->residual, s->s->n);
-    double most = 0;
 
-    for (int i = 0; i < s->s->n; i++)
-        most = fmax(most, fabs(s->residual[i]));
-    return fmax(sqrt(sum2 / s->s->n) / rms, most / peak);
+    return fmax(sqrt(sum2 / s->s->n) / rms,
+                largest(s->residual, s->s->n) / peak);
 }
 
 /* Works out the coefficients of the terms from the shares of orthogonal
