@@ -197,6 +197,37 @@ static double hopeless(const struct fitter *f, const struct pending *p,
     return degrees_between(p->lo, p->hi) > 2 * STUCK_DEG ? HALVES_ANYWAY : 0;
 }
 
+/* Returns the width of P in degrees for halving, where zones of bright ghosts
+ * count twice. */
+static double width_of(const struct pending *p,
+                       const struct glint_zone_aim *aim)
+{
+    return degrees_between(p->lo, p->hi) * (aim->ease < BRIGHT_EASE ? 2 : 1);
+}
+
+/* Returns the factor on widths that are not halved any more. */
+static double least_of(const struct fitter *f, const struct pending *p)
+{
+    return p->lo <= 0 ? f->tolerance->axis : 1;
+}
+
+/* Returns the error, in tolerances, beyond which next_step() of P and of its
+ * halves does not depend on how large it is; 0: it always does. */
+static double settled(const struct fitter *f, const struct pending *p,
+                      const struct glint_zone_aim *aim)
+{
+    const double least = least_of(f, p), width = width_of(p, aim);
+
+    if (p->thorough)
+        return p->depth < most_depth(f, p) ? bearable(aim) : 0;
+    /* The lower half is the narrower one. If even that is too wide to be stuck,
+     * nobody asks what halving gained. */
+    if (degrees_between(p->lo, 0.5 * (p->lo + p->hi)) >= STUCK_DEG ||
+        width < least * LEAST_DEG)
+        return 1;
+    return width < least * STUCK_DEG ? fmax(1, STUCK * p->before) : 0;
+}
+
 /* The outcome of an attempt at a zone. */
 struct attempt {
     struct glint_zone_aim aim;
@@ -229,6 +260,7 @@ static enum glint_status fit_zone(struct fitter *f, const struct pending *p,
     status = set_box(system, zone);
     a->aim = glint_zone_aim_of(f->tolerance, zone, &buffers->rays);
     task.hopeless = hopeless(f, p, &a->aim);
+    task.settled = settled(f, p, &a->aim);
     if (status == GLINT_OK)
         status = glint_zone_fit(&task, &a->aim, buffers, system, &a->errors);
     system->met = a->errors.worst <= 1;
@@ -280,9 +312,7 @@ static enum next next_step(const struct fitter *f, const struct pending *p,
 {
     const double left = a->errors.worst;
     const bool helped = left <= STUCK * p->before;
-    const double width =
-        degrees_between(p->lo, p->hi) * (a->aim.ease < BRIGHT_EASE ? 2 : 1);
-    const double least = p->lo <= 0 ? f->tolerance->axis : 1;
+    const double width = width_of(p, &a->aim), least = least_of(f, p);
     const bool stuck =
         width < least * LEAST_DEG || (!helped && width < least * STUCK_DEG);
 

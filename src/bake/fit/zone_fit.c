@@ -291,9 +291,16 @@ static void drop_outputs(struct glint_fitted_system *system)
         free(system->output[--system->n_outputs].coef);
 }
 
-static bool is_hopeless(const struct fit *f)
+/* Returns whether what happens to the zone does not depend on outputs that are
+ * still to be fitted. */
+static bool is_decided(const struct fit *f)
 {
-    return f->task->hopeless > 0 && f->errors->places > f->task->hopeless;
+    const struct glint_zone_task *t = f->task;
+    const double left = t->thorough ? f->errors->places
+                                    : fmax(f->errors->places, f->errors->worst);
+
+    return (t->hopeless > 0 && f->errors->places > t->hopeless) ||
+           (t->settled > 0 && left > t->settled);
 }
 
 static enum glint_status fit_outputs(struct fit *f,
@@ -308,12 +315,14 @@ static enum glint_status fit_outputs(struct fit *f,
             f, c, c <= RAY_SENSOR_Y ? f->aim->sensor_mm : f->aim->stop, system,
             worst);
         f->errors->places = *worst;
-        if (is_hopeless(f))
+        if (is_decided(f))
             return status;
     }
     if (status == GLINT_OK)
         status = fit_energy(f, system, worst);
-    for (int b = 0; b < f->buffers->rays.n_barrels && status == GLINT_OK; b++)
+    for (int b = 0;
+         b < f->buffers->rays.n_barrels && status == GLINT_OK && !is_decided(f);
+         b++)
         status = fit_barrel(f, b, system, &f->errors->places);
     *worst = fmax(*worst, f->errors->places);
     return status;
@@ -381,7 +390,7 @@ enum glint_status glint_zone_fit(const struct glint_zone_task *task,
 
     set_weights(&f);
     status = fit_outputs(&f, system);
-    if (status != GLINT_OK || is_hopeless(&f))
+    if (status != GLINT_OK || is_decided(&f))
         return status;
     if ((task->thorough || errors->worst <= 1) && stop_leaks(&f, system)) {
         drop_outputs(system);

@@ -25,6 +25,10 @@ struct glint_zone_task {
     bool thorough;   /* true allows a root of the energy, and more terms */
     double hopeless; /* tolerances: the fit of a zone with a larger error is
                         given up; 0: none is */
+    /* Tolerances: where an output that is done has a larger error, of a place
+     * or a barrel in a thorough fit, the others are left out, as the zone will
+     * be fitted anew however they come out; 0: none is left out. */
+    double settled;
 };
 
 /* Memory for fits of zones, one after the other. */
@@ -42,8 +46,8 @@ struct glint_zone_errors {
     double worst;  /* largest error of a place, a barrel or the energy */
 };
 
-/* Fits the outputs of SYSTEM, which has none yet. If the error of places passes
- * TASK->hopeless some outputs are missing. GLINT_E_MEMORY. */
+/* Fits the outputs of SYSTEM, which has none yet. If errors pass TASK->hopeless
+ * or TASK->settled some outputs are missing. GLINT_E_MEMORY. */
 enum glint_status glint_zone_fit(const struct glint_zone_task *task,
                                  const struct glint_zone_aim *aim,
                                  struct glint_zone_buffers *buffers,
