@@ -17,6 +17,10 @@ table: all
 	@tools/report/raster-table | tools/report/write-figures raster
 bake-table: all $(OUT)/ray_errors
 	@tools/report/bake-table | tools/report/write-figures bake
+# LENSES="A.lens ...": these; EVERY=N: each Nth angle; OPEN=N, STOPS="...".
+wide-table: all
+	@tools/report/wide-table $(LENSES) | tools/report/write-figures wide
+wide-table: export EVERY := $(EVERY)
 accuracy-table: all
 	@tools/report/accuracy-table | tools/report/write-figures accuracy
 colour-table: all $(OUT)/hue_steps
@@ -89,7 +93,7 @@ budget: all
 	        build/$$t/glint >&2 || exit 1; done
 	@tools/report/budget | tools/report/write-figures arm
 
-.PHONY: video-report demo inputs table bake-table accuracy-table colour-table ray-table power-table \
+.PHONY: video-report demo inputs table bake-table wide-table accuracy-table colour-table ray-table power-table \
         power-fit \
         corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet \
         bench bench-insn growth size trade hostile-table memory-table budget
