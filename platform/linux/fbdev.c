@@ -31,9 +31,10 @@ static enum glint_status lost(const struct glint_fbdev *fb, const char *what,
 
 /* -------------------------------------------------------------- when dying */
 
-/* The console draws at the offset it had before, so the panel must show that
- * again when glint ends; and before the console returns, which takes over the
- * panel's offset: Linux 6.1 then draws in a wrong place. */
+/* The console goes on drawing at the offset that the panel had before glint
+ * panned it, so the panel is panned back when glint ends. That happens before
+ * the console returns: it takes over the offset that it finds, and with another
+ * one Linux 6.1 draws in a wrong place. */
 static int panned_fd = -1; /* framebuffer to pan back, or -1; atomic */
 static struct fb_var_screeninfo panned_home;
 static pid_t panner; /* process that panned it; atomic */

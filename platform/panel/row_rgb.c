@@ -51,7 +51,8 @@ static struct bias bias_of(const struct mix *m)
 }
 
 /* Returns SUM as a code, clamped to 0 .. 255. |SUM| < 2^23, so that the code
- * fits 16 bits before that: half the work of 32 in vectors. */
+ * fits 16 bits even before it is clamped: in vectors half the work of 32
+ * bits. */
 static inline uint8_t code_of(int32_t sum_q13)
 {
     const int16_t code = (int16_t)(sum_q13 >> 13);

@@ -145,8 +145,8 @@ static int save_model(const struct tool *tool, const char *path,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-/* Puts the model of E into the folder, unless it is there already: the one that
- * is kept, or a new one. */
+/* Puts the model of E into the folder, unless it is there already. It is copied
+ * from where models are kept, or baked. */
 static int put_model(const struct lenses *l, const struct entry *e)
 {
     const uint64_t key = glint_bake_key(&e->settings.lens, &e->options);
@@ -180,7 +180,7 @@ static bool is_wanted(const struct lenses *l, const char *name)
 }
 
 /* Lists the lens NAME, or puts its models into the folder. Returns whether to
- * go on, as after a mistake in a table, which is reported. */
+ * go on: a mistake in a table is reported and does not end the list. */
 static bool one(void *ctx, const char *name)
 {
     struct lenses *l = ctx;

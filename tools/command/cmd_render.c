@@ -140,8 +140,9 @@ static int parse(struct tool *tool, int argc, char **argv, struct render *r)
 
 /* ------------------------------------------------------------------ engines */
 
-/* Returns the points of all lamps, malloc'ed, and sets *N to their number.
- * Returns NULL without memory. */
+/* Returns the points that the lamps are drawn as, several for a lamp of visible
+ * extent, malloc'ed, and sets *N to their number. Returns NULL without
+ * memory. */
 static struct glint_lamp *points_of(const struct render *r, int *n)
 {
     const struct glint_view view =

@@ -169,7 +169,7 @@ static enum glint_ray_status trace_model(const struct tracer *t, double px_mm,
     return GLINT_RAY_OK;
 }
 
-/* Checks whether A, which a model holds with 31 bits, is B. */
+/* Checks whether A, a number of a model with 31 bits, equals B to 1e-8 of B. */
 static bool agrees(struct glint_real a, double b)
 {
     return fabs(model_real_of(a) - b) <= 1e-8 * fabs(b);

@@ -7,14 +7,14 @@
 #include "glint/kernels.h"
 #include "ppm.h"
 
-/* Returns the square of X, 0 .. 1, cut. */
+/* Returns the square of X, 0 .. 1, rounded down. */
 static uint16_t squared_q16(uint16_t x_q16)
 {
     return (uint16_t)((uint32_t)x_q16 * x_q16 >> 16);
 }
 
-/* Sets RGB to a glow about X0, Y0: white in the middle, redder farther out,
- * where red falls to a quarter at RADIUS pixels. */
+/* Sets RGB to a glow about X0, Y0: white in the middle and redder farther out.
+ * Red falls to a quarter at RADIUS pixels. */
 static void glow(uint16_t *const rgb[3], int width, int height, int x0, int y0,
                  int radius)
 {

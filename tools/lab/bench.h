@@ -14,8 +14,9 @@ enum {
     MAX_BUDGETS = 16
 };
 
-/* DRAW is ACCUMULATE, the light of all pixels, which is timed by itself, and
- * COMPOSITE, the rest: light onto the picture. */
+/* DRAW has two parts: ACCUMULATE, which sums up the light of all pixels and is
+ * timed by itself, and COMPOSITE, which adds that light to the picture and is
+ * the difference. */
 enum stage { PLAN, TRANSFER, BIN, DRAW, ACCUMULATE, COMPOSITE, WHOLE, STAGES };
 
 struct bench_canvas {

@@ -211,7 +211,8 @@ enum glint_status bench_run(struct test *t, int round)
     double t0, cpu_ms;
 
     canvas_fresh(c);
-    if (t->series) /* only there, as it cools the caches of small frames */
+    if (t->series) /* only for a series: the system call cools the caches of
+                      small frames */
         cpu0 = clock();
     t0 = tool_seconds();
     status = glint_frame_draw(&t->frame, t->lamp, t->n_lamps, t->scale,

@@ -48,8 +48,8 @@ void canvas_finish(struct canvas *c)
     c->fresh = c->mem = NULL;
 }
 
-/* Adds LAYER[256], which stays in the cache, to PX over and over, saturating,
- * in a loop that compilers vectorise. */
+/* Adds LAYER[256], which stays in the cache, to every 256 bytes of PX,
+ * saturating, in a loop that compilers vectorise. */
 static void add_layer(uint8_t *restrict px, const uint8_t *restrict layer,
                       size_t bytes)
 {

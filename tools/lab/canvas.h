@@ -28,8 +28,8 @@ void canvas_finish(struct canvas *canvas);
 double canvas_floor_ms(struct canvas *canvas);
 
 /* Sets LAMP to N lamps, the first ANGLE degrees off the axis, the others on a
- * spiral around the axis. Up to 64 share a power of 1 equally; of more the kth
- * has 1 / k. */
+ * spiral around the axis. Up to 64 lamps share a power of 1 equally; of more
+ * lamps the kth, counted from 1, has 1 / k. */
 void canvas_lamps(struct glint_lamp *lamp, int n, double angle);
 
 /* Draws the flare of LAMP by exact rays in double, GRID cells a side, with the

@@ -422,7 +422,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct sweep *s,
     return -1;
 }
 
-/* Sets what no option has set. */
+/* Sets the lenses, sizes, numbers of lights, angles, rounds and grid that no
+ * option has set. */
 static void fill_in(struct sweep *s, struct asked *a)
 {
     const int n =

@@ -28,7 +28,7 @@ enum sweep_kind {
 
 struct sweep_setting {
     enum sweep_kind kind;
-    int dial;       /* number of the dial that alone is turned; -1: several */
+    int dial; /* number of the dial that alone is turned; -1: none or several */
     double quality; /* --quality, 0 .. 1; -1: not set by it */
     double value[MAX_DIALS];
 };
@@ -124,9 +124,10 @@ struct sweep_mean {
  * how many. */
 int sweep_means(const struct sweep *s, struct sweep_mean *mean, int max);
 
-/* Returns the dB by which MEAN[I] lies above the best that --quality reaches at
- * that cost (or 2 percent more, which is noise): at its means among these N,
- * the cheapest first, and between two neighbours that draw as many pixels. */
+/* Returns by how many dB MEAN[I] lies above the best PSNR that --quality
+ * reaches for at most 1.02 times its cost; 2 percent are noise. MEAN[N] is
+ * sorted by cost. Between two neighbouring settings of --quality that draw as
+ * many pixels the PSNR is interpolated. */
 double sweep_above(const struct sweep_mean *mean, int n, int i);
 
 /* Writes SET as words: --quality and the dials that differ from the standard,

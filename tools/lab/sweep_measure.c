@@ -83,7 +83,7 @@ static int make_run(struct bay *b, struct run *r)
     code =
         settings_frame(b->s->tool, &asked,
                        settings_view(&asked, c->width, c->height), &r->frame);
-    /* ASKED ends with this function. */
+    /* The frame outlives ASKED. */
     r->frame.setup = &r->settings->setup;
     r->frame.lens = &r->settings->model.lens;
     r->frame.cfg.workers =
@@ -263,9 +263,9 @@ static void shrink(const uint8_t *codes, int stride, int by, uint8_t *to,
         }
 }
 
-/* Keeps CODES, the picture of R or for R NULL the exact one, shrunk for the
- * page, with 16 times its difference to EXACT_CODES. Returns false without
- * memory. */
+/* Keeps for the page CODES, the picture of R, shrunk, and 16 times its
+ * difference from EXACT_CODES. If R is NULL, CODES is the exact picture and has
+ * no difference. Returns false without memory. */
 static bool keep_picture(struct bay *b, struct run *r, const uint8_t *codes,
                          const uint8_t *exact_codes)
 {

@@ -6,8 +6,8 @@
 
 enum { QUALITY_STEPS = 8 };
 
-/* Values of --quality between those steps: half as many pixels with finer
- * grids, and the default with a finer model. */
+/* Values of --quality between its QUALITY_STEPS steps: half as many pixels with
+ * finer grids, and the default with a finer model. */
 static const double between_steps[] = {0.0625, 0.505};
 
 static struct sweep_setting standard(enum sweep_kind kind)

@@ -101,7 +101,8 @@ const char *lamp_columns_row(const struct lamp_columns *c, char *row, double *v)
 
 struct key {
     int row, frame;
-    uint64_t lamp; /* the lamp's id, plus 2^32, or its place within the frame */
+    uint64_t lamp; /* the lamp's id, plus 2^32, or its place among the lamps of
+                      the frame that have no id */
 };
 
 static int by_frame(const void *a, const void *b)

@@ -9,9 +9,9 @@
  * the power that a lamp coming or going has) are 1, 0 and 1 if missing; "seen"
  * (pixels, see struct lamp_row) is 0.
  *
- * With interpolation a lamp exists from its first frame to its last: x, y, size
- * and colour change evenly from each row to the next, power by equal stops, or
- * evenly if one of the two is 0.
+ * With interpolation a lamp exists from its first frame to its last. Power
+ * changes by equal stops from each row to the next, or evenly if one of the two
+ * is 0; all other values change evenly.
  */
 #ifndef GLINT_TOOLS_LAMP_FILES_LAMP_KEYS_H
 #define GLINT_TOOLS_LAMP_FILES_LAMP_KEYS_H
@@ -58,13 +58,15 @@ uint32_t lamp_id_of(const char *text);
  * GLINT_E_MEMORY. */
 enum glint_status lamp_keys_link(struct lamp_list *list);
 
-/* Sets ROW to row I as it is at FRAME, on its way to the next row of its lamp.
- * Returns false if FRAME is not from row I to before the next one. */
+/* Sets ROW to the lamp of row I as it is at FRAME. Returns whether row I counts
+ * there: it is of that frame or of every frame, or FRAME lies between it and
+ * the next row of its lamp. */
 bool lamp_keys_at(const struct lamp_list *list, int i, int frame,
                   struct lamp_row *row);
 
 /* Sets ID to the ids of the lamps at FRAME, in the order of lamp_list_frame().
- * Lamps without an id get numbers above those of the list, by their places. */
+ * Lamps without an id get numbers above all ids of the list that are below
+ * LAMP_ID_TEXT, by their places. */
 void lamp_keys_ids(const struct lamp_list *list, int frame, uint32_t *id);
 
 /* Returns whether FRAME and the frame before it both have lamps with ids and

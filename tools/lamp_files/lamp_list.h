@@ -14,7 +14,8 @@ enum { LAMP_LIST_MAX_ROWS = 1 << 20 };
 
 #define LAMP_MAX_POWER 1e30 /* Such a lamp is finite in all outputs. */
 
-/* Returns whether POWER and each of POWER * RGB are 0 .. LAMP_MAX_POWER. */
+/* Returns whether POWER is 0 .. LAMP_MAX_POWER, and RGB and POWER * RGB are at
+ * most that. */
 bool lamp_power_ok(double power, const double rgb[3]);
 
 /* One line of a list. X and Y are pixels from the top left corner, also outside
@@ -54,9 +55,10 @@ void lamp_list_free(struct lamp_list *list);
 enum glint_status lamp_list_add(struct lamp_list *list,
                                 const struct lamp_row *row);
 
-/* Sets LAMPS to the lamps of FRAME, at most MAX, among them in a linked list
- * those on their way to a later row. Returns how many. LEVEL and SEEN_PX get
- * those of each lamp, unless they are NULL. */
+/* Sets LAMPS to the lamps of FRAME, at most MAX; if the list is linked, also to
+ * those that move from an earlier row to a later one. Returns how many. LEVEL
+ * and SEEN_PX, unless NULL, get the members level and seen of each lamp's
+ * row. */
 int lamp_list_frame(const struct lamp_list *list, int frame,
                     const struct glint_view *view, double focal_mm,
                     struct glint_lamp *lamps, double *level, double *seen_px,

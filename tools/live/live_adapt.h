@@ -24,7 +24,8 @@ struct live_adapt {
      * of that which a step up needs. */
     double below_s, hold_s;
     double since_s; /* seconds since the last step */
-    bool rose;      /* The last step went up. */
+    /* true: the last change was a step up, to better quality (STEP fell) */
+    bool rose;
 };
 
 void live_adapt_init(struct live_adapt *adapt);

@@ -23,7 +23,7 @@ struct live {
     struct live_input in;
     /* Format of the input when it was opened or began anew. */
     struct glint_source_format format;
-    int n_restarts; /* restarts of the input before that */
+    int n_restarts; /* restarts of the input when FORMAT was read */
     struct live_output output;
     struct live_copy copy; /* copy of frames that lie in slow memory */
 

@@ -85,7 +85,8 @@ uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes)
 }
 
 /* Refuses to write through a link, into a FIFO and the like. Removes a file
- * that others may write to, and with it its permission bits. */
+ * that another user owns or that all may write to, and with it its permission
+ * bits. */
 static enum glint_status clear_way(const char *path, struct glint_error *error)
 {
     struct stat st;

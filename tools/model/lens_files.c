@@ -36,7 +36,6 @@ static bool folder_above(int up, char *path, size_t bytes)
     return stat(path, &st) == 0 && !(st.st_mode & S_IWOTH);
 }
 
-/* PATH becomes "" where there is no such folder. */
 bool lens_folder(int i, const char *kind, char *path, size_t bytes)
 {
     const char *given = strcmp(kind, "lenses") == 0

@@ -13,8 +13,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Sets PATH to folder number I (0 ...) that may hold KIND, "lenses" or
- * "models", or to "" if it is not there. Returns false if there are no more. */
+/* Sets PATH to the Ith place, from 0, to look for KIND, "lenses" or "models",
+ * or to "" if that place is not known. The folder need not exist. Returns false
+ * if there are no more places. */
 bool lens_folder(int i, const char *kind, char *path, size_t bytes);
 
 /* Sets PATH to the table of lens NAME, which comes without .lens. Returns false

@@ -8,8 +8,8 @@
 #include "model/cache_file.h"
 
 /* Revision of the figures. It is to be raised when glint_response_measure()
- * gives other figures for the same scene: when it draws or looks otherwise, or
- * light is drawn brighter or darker. */
+ * gives other figures for the same scene, because frames are drawn or measured
+ * in another way. */
 enum { REVISION = 1 };
 
 enum {

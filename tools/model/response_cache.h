@@ -14,9 +14,9 @@
 #include "engine/response.h"
 #include "options/tool.h"
 
-/* Sets RESPONSE to that of glint_response_measure() for LIKE: read where it is
- * kept, else measured and kept. LENS is its name. If TOOL is verbose, prints
- * which it was. GLINT_E_MEMORY. */
+/* Sets RESPONSE to that of glint_response_measure() for LIKE with BYTES of
+ * memory: read where it is kept, else measured and kept. LENS is the name of
+ * the lens. If TOOL is verbose, prints which it was. GLINT_E_MEMORY. */
 enum glint_status response_cached(const struct tool *tool, const char *lens,
                                   const struct glint_frame *like, size_t bytes,
                                   struct glint_response *response);

@@ -10,9 +10,10 @@
  *     config_free(&config);
  *
  * A file has lines "name = value", name being that of a long option; "name:
- * value" is the same. Options without a value are "name = yes" or "no". Options
- * that may be given several times may be here. Sections [camera], [lens],
- * [light], [flare] and [output] have no effect; any other gives a warning.
+ * value" is the same. Options without a value are "name = yes" or "no". An
+ * option that may be repeated on the line may be repeated here. Sections
+ * [camera], [lens], [light], [flare] and [output] have no effect; any other
+ * gives a warning.
  * Lines that begin with ; or # are comments, and so is the end of a line from a
  * ; after a blank. There are no quotes and no continued lines; a line has up to
  * CONFIG_LINE characters.
@@ -26,7 +27,8 @@
 
 #include "options/tool.h"
 
-#define CONFIG_LINE 190 /* most bytes of a line, as any build of inih has */
+/* most bytes of a line, for which any build of inih has room */
+#define CONFIG_LINE 190
 
 /* Takes OPTION as from the command line; VALUE is NULL where it has none.
  * Returns -1 to go on, else an exit code, after printing why by tool_usage(),

@@ -4,9 +4,9 @@
 #include <math.h>
 
 /* Values go from the finest on. The last list of each dial has the values that
- * are combined with those of other dials. Not worth combining are raster, apart
- * and max_lights, which lose more than they save, wavelengths, which lose
- * colour, and tile, which changes no picture. */
+ * are combined with those of other dials. Some dials are not combined: raster,
+ * apart and max_lights lose more than they save, wavelengths loses colour, each
+ * tolerance takes a bake, and tile changes no picture. */
 /* clang-format off */
 const struct dial dials[] = {
     {"grid", "fineness of grids", DIAL_GRID, 64, false, false,

@@ -332,8 +332,9 @@ void settings_json(const struct glint_frame_report *report);
 void settings_lights_text(const struct glint_frame_report *report,
                           char text[64]);
 
-/* Warns on standard error if lights were merged because they were too many,
- * and, even with -q, if a part of the flare is missing or coarser. */
+/* Warns on standard error of lights that lie beyond the model or were merged
+ * because they were too many; even with -q, if bundles are missing or the frame
+ * is drawn coarser; with -v, of cells that give no light. */
 void settings_warn_lights(const struct tool *tool,
                           const struct glint_frame_report *report);
 

@@ -51,8 +51,9 @@ static bool parse_merge(const char *text, struct settings *settings)
     return true;
 }
 
-/* Sets LOG2 by TEXT, a power of two from 2^LOW to 2^HIGH, or if LOW is above 3
- * also 0. Returns false for other texts. */
+/* Sets LOG2 to the logarithm of TEXT, a power of two from 2^LOW to 2^HIGH; if
+ * LOW is above 3, TEXT may be 0, for which LOG2 is 0. Returns false for other
+ * texts. */
 static bool parse_side(const char *text, int low, int high, int *log2)
 {
     int side;

@@ -15,8 +15,9 @@ bool settings_take_waves(struct settings *settings, const char *text);
  * is opened. */
 void settings_choose_waves(struct settings *settings);
 
-/* Sets the colours of the setup, once it is made, and the sets of wavelengths
- * that ghosts choose from. */
+/* Sets the colours of the setup, once it is made: weighs the wavelengths if
+ * only their number was given; for "auto" with a model, makes the sets of
+ * wavelengths that ghosts choose from. A list stays as it is. */
 void settings_weigh(struct settings *settings);
 
 #endif

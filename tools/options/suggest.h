@@ -28,11 +28,12 @@ int suggest_distance(const char *a, const char *b);
 
 void suggest_begin(struct suggest *suggest, const char *word);
 
-/* Offers CANDIDATE[N]. If it contains the word, it counts as one letter off. */
+/* Offers CANDIDATE[N]. If it contains the word, of 3 letters or more, it counts
+ * as at most one letter off. */
 void suggest_try(struct suggest *suggest, const char *candidate, size_t n);
 
-/* Returns the nearest candidate if no more than a third of its letters (or one)
- * are wrong, else NULL. */
+/* Returns the nearest candidate if no more of its letters are wrong than a
+ * third of them, or than one if that is more; else NULL. */
 const char *suggest_best(const struct suggest *suggest);
 
 #endif

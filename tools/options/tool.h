@@ -80,7 +80,8 @@ const char *tool_value_of(int argc, char **argv, const char *shorts,
                           const struct option *options, int option);
 
 /* Print "glint COMMAND: ..." and return an exit code: tool_usage() EXIT_USAGE,
- * or EXIT_INPUT if the option comes from a file; tool_fail() that of STATUS. */
+ * or EXIT_INPUT if the option comes from a file; tool_fail() that of STATUS,
+ * but for GLINT_E_CLOSED, a reader that went away, it prints nothing. */
 int tool_usage(const struct tool *tool, const char *format, ...);
 int tool_fail(const struct tool *tool, enum glint_status status,
               const char *text);

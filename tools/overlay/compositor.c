@@ -149,7 +149,9 @@ void compositor_replace(struct compositor *compositor,
     const struct lamp_save save = compositor->save;
     const int n_frames = compositor->n_frames;
 
-    compositor->save.is_open = false; /* The file stays open. */
+    /* so that compositor_close() leaves the file of saved lamps open; SAVE
+     * still has it */
+    compositor->save.is_open = false;
     compositor_close(compositor);
     *compositor = *fresh;
     if (save.is_open) {
@@ -394,8 +396,8 @@ void compositor_expose(struct compositor *compositor, int32_t elapsed_us)
         &compositor->strength, settings_starburst(&compositor->settings));
 }
 
-/* Keeps what a picture by itself shows, which its flare will be seen on.
- * Without memory for that it is exposed as on any picture. */
+/* Notes what IMAGE, a picture by itself, shows under its flare, by which it is
+ * exposed. Without memory for that it is exposed as on any picture. */
 static void keep_ground(struct compositor *compositor,
                         const struct glint_image *image)
 {

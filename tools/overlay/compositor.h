@@ -36,8 +36,8 @@ struct compositor {
     struct glint_lamp hand[SETTINGS_MAX_LAMPS];
     /* How bright flares come out, and the scale of each frame. */
     struct glint_strength strength;
-    /* contents of a picture by itself, from when lamps are found until it is
-     * exposed; else NULL */
+    /* what a picture by itself shows under its flare, from when its lamps are
+     * found until it is exposed; else NULL */
     struct glint_ground *ground;
     int dial; /* option that set the brightness, OPT_STRENGTH or OPT_EXPOSURE;
                  0: none */
@@ -54,7 +54,8 @@ struct compositor {
     double *seen_px; /* extent of each lamp that the picture clips, or 0 */
     uint32_t *id;    /* number that each lamp is saved under */
     struct glint_response response;
-    double white;     /* light of the picture's white, 1 by default */
+    double white; /* light of the picture's white; 1, or as overlay_file.c sets
+                     it */
     bool is_measured; /* the picture has the light of lamps beyond white */
     struct glint_view view;
     struct glint_frame frame;
@@ -165,8 +166,8 @@ int compositor_size(const struct tool *tool, struct compositor *compositor,
  * between --strength and --exposure. */
 void compositor_options_end(struct compositor *compositor);
 
-/* Sets the lamps of IMAGE, as compositor_draw() does, and saves them. Returns
- * how many there are. */
+/* Sets COMPOSITOR's lamps to those of IMAGE, in the way of compositor_draw(),
+ * and saves them, but draws nothing. Returns how many there are. */
 int compositor_lamps(struct compositor *compositor,
                      const struct glint_image *image, int32_t elapsed_us);
 

@@ -376,8 +376,9 @@ static void add_sound(struct words *w, const struct ffmpeg_target *t,
                 t->name, extension(t->name), codec);
 }
 
-/* Adds what the codes mean, of the input and of the output, so that ffmpeg
- * converts nothing. */
+/* Adds the meaning of V's codes: range, matrix, transfer and primaries. It is
+ * stated of the input and again of the output, so that ffmpeg converts
+ * nothing. */
 static void add_tags(struct words *w, const struct ffmpeg_target *t,
                      const struct ffmpeg_video *v)
 {

@@ -48,7 +48,7 @@ bool ffmpeg_matrix(const struct ffmpeg_video *video, enum glint_matrix *matrix);
 
 /* Starts ffmpeg as CHILD, which writes NAME as y4m to child->fd.
  * GLINT_E_UNSUPPORTED: there is no ffmpeg, or NAME has more than some 4000
- * bytes. */
+ * bytes. GLINT_E_IO: the system gives no process or descriptor. */
 enum glint_status ffmpeg_read(struct child *child, const char *name,
                               const struct ffmpeg_video *video,
                               struct glint_error *error);
@@ -67,8 +67,8 @@ struct ffmpeg_target {
 };
 
 /* Starts ffmpeg as CHILD, which reads y4m from child->fd and writes TARGET.
- * VIDEO is that of the input, or all empty. Errors are those of
- * ffmpeg_read(). */
+ * VIDEO is that of the input, or all empty. Errors are those of ffmpeg_read(),
+ * and GLINT_E_ARGUMENT: more than 96 words. */
 enum glint_status ffmpeg_write(struct child *child,
                                const struct ffmpeg_target *target,
                                const struct ffmpeg_video *video,

@@ -63,7 +63,8 @@ int overlay_check_apart(const struct tool *tool, const char *from,
 int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
                     const char *to);
 
-/* Draws one picture, o->input, to o->output; of a pattern the first name. */
+/* Draws one picture, o->input, to o->output, or if that is a pattern to its
+ * first name. */
 int overlay_numbered(struct tool *tool, struct overlay *o);
 
 /* Draws the numbered pictures of the patterns o->input and o->output. */
@@ -72,8 +73,9 @@ int overlay_sequence(struct tool *tool, struct overlay *o);
 /* Returns whether NAME is a video, by its extension. */
 bool overlay_is_video(const char *name);
 
-/* Sets VIDEO if an animated GIF is to be read or written as frames. Warns if
- * one frame of many is taken. */
+/* Sets VIDEO to whether an animated GIF is to be read or written as frames.
+ * Warns if one frame of many is taken, and refuses a GIF of one frame as a
+ * video. */
 int overlay_check_gif(struct tool *tool, const struct overlay *o, bool *video);
 
 /* Draws a video from o->input to o->output. */

@@ -27,7 +27,8 @@ struct overlay_file {
     const char *from, *to;
     struct glint_kept kept;
     struct glint_samples work; /* a deeper copy of the input, for floats out */
-    /* drawn on the file's own samples; drawn on work */
+    /* is_direct: IMAGE is the file's own samples and is drawn on; is_copied:
+     * light is added to WORK, not to the file's samples */
     bool is_direct, is_copied;
     double white; /* light of the proxy's white */
     float *layer;

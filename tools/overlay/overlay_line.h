@@ -10,15 +10,17 @@
 
 /* The light of the flare alone, 1 = white, largest channel. */
 struct overlay_light {
-    double peak; /* mean of the brightest thousandth of the pixels; of several
-                    frames, that of the brightest one */
+    /* of a single picture, the light that 1/10000 of the pixels reach; of
+     * several frames, the mean of the brightest 1/1000 of the brightest frame's
+     * pixels */
+    double peak;
     /* Mean over all pixels; of several frames, the mean of these. */
     double mean;
 };
 
-/* Returns the light of the flare. That of a single picture is measured, by
- * drawing it once more, small; that of several follows from the lens's
- * response. */
+/* Returns the light of the flare. That of a single picture is measured by
+ * drawing it once more, small, unless its exposure has done so; that of several
+ * follows from the lens's response. */
 struct overlay_light overlay_light(const struct overlay *o);
 
 /* Prints one line, or two if nothing can be seen. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Shows where lights are: a cross, a box of twice their size and their number.
+ * Shows where lights are: a cross, a box that reaches twice their RMS radius
+ * and four lines' thickness from the middle, and their number.
  */
 #ifndef GLINT_TOOLS_OVERLAY_SHOW_LIGHTS_H
 #define GLINT_TOOLS_OVERLAY_SHOW_LIGHTS_H
