@@ -95,7 +95,7 @@ static int is_bright(const struct camera *c, int i)
 
 /* Returns the luminance of SETTINGS, times GAIN, in the bright pixels that
  * touch (CX, CY), and sets SPOT to what an ideal finder would make of them. */
-static double region_at(struct camera *c, const struct power_picture *settings,
+static double region_at(struct camera *c, const struct power_picture *scene,
                         double gain, int cx, int cy, struct glint_spot *spot)
 {
     static const double weight[3] = {0.2126, 0.7152, 0.0722};
@@ -123,7 +123,7 @@ static double region_at(struct camera *c, const struct power_picture *settings,
         s2 += (double)(i % width) * (i % width) +
               (double)(i / width) * (i / width);
         for (int k = 0; k < 3; k++)
-            light += weight[k] * gain * (double)settings->rgb[3 * i + k];
+            light += weight[k] * gain * (double)scene->rgb[3 * i + k];
         for (int k = 0; k < 9; k++) {
             const int x = i % width + k % 3 - 1, y = i / width + k / 3 - 1;
 
@@ -176,17 +176,17 @@ static void print_features(struct camera *c, int id, double power,
 
 /* Takes exposure K of SETTINGS times GAIN with noise of SIGMA codes. For the
  * fit, every fourth picture is RGB565. */
-static void expose(struct camera *c, const struct power_picture *settings,
+static void expose(struct camera *c, const struct power_picture *scene,
                    double gain, double sigma, int k, uint32_t *seed)
 {
     uint8_t *px = c->image.plane[0], *to = c->coarse.plane[0];
 
-    power_expose(px, settings, gain, sigma, seed);
+    power_expose(px, scene, gain, sigma, seed);
     c->seen = &c->image;
     if (!coarse && !(features && k % 4 == 3))
         return;
     c->seen = &c->coarse;
-    for (int i = 0; i < settings->width * settings->height; i++) {
+    for (int i = 0; i < scene->width * scene->height; i++) {
         const int bits =
             px[3 * i] >> 3 << 11 | px[3 * i + 1] >> 2 << 5 | px[3 * i + 2] >> 3;
 
@@ -258,7 +258,7 @@ static void rendered(int i)
 {
     static const char *const names[POWER_SHAPES] = {"disc", "square", "tube"};
     enum { W = 288, H = 224 };
-    struct power_picture settings = {W, H, malloc(sizeof(double) * 3 * W * H)};
+    struct power_picture scene = {W, H, malloc(sizeof(double) * 3 * W * H)};
     double *light = malloc(sizeof *light * W * H);
     uint32_t seed = (uint32_t)i * 7919 + 17;
     struct camera c;
@@ -282,11 +282,11 @@ static void rendered(int i)
          * night. */
         for (int p = 0; p < W * H; p++)
             for (int j = 0; j < 3; j++)
-                settings.rgb[3 * p + j] =
+                scene.rgb[3 * p + j] =
                     ((double)light[p] * power * lamp.rgb[j] * gain +
                      black * (1 + slope * (p % W - W / 2) / W));
-        expose(&c, &settings, 1, noise, k, &seed);
-        if (region_at(&c, &settings, 1, (int)lamp.x, (int)lamp.y, c.spot) > 0 &&
+        expose(&c, &scene, 1, noise, k, &seed);
+        if (region_at(&c, &scene, 1, (int)lamp.x, (int)lamp.y, c.spot) > 0 &&
             c.spot->area >= 2 && c.spot->area < W * H / 5) {
             c.n = 1;
             glint_profile_measure(c.profile, c.seen, c.spot, c.n);
@@ -295,7 +295,7 @@ static void rendered(int i)
     }
     close_camera(&c);
     free(light);
-    free(settings.rgb);
+    free(scene.rgb);
 }
 
 /* ---------------------------------------------------------------- panoramas */
@@ -332,8 +332,8 @@ static int read_pfm(struct panorama *p, const char *path)
     return 1;
 }
 
-static void compositor_at(struct power_picture *s, const struct panorama *p,
-                          double yaw, double pitch)
+static void cut_view(struct power_picture *s, const struct panorama *p,
+                     double yaw, double pitch)
 {
     const double half = tan(30 * 3.14159265 / 180), pi = 3.14159265358979;
 
@@ -396,21 +396,21 @@ static void view(const struct panorama *p, const char *kind, int held, int id,
 {
     const int width = p->width * 2 / 9, height = width * 9 / 16;
     const size_t bytes = sizeof(double) * 3 * (size_t)(width * height);
-    struct power_picture settings = {width, height, malloc(bytes)};
+    struct power_picture scene = {width, height, malloc(bytes)};
     struct power_picture truth = {width, height, malloc(bytes)};
     uint32_t seed = 99u + (uint32_t)id * 31;
     struct camera c;
     double base;
 
-    compositor_at(&settings, p, yaw, pitch);
-    memcpy(truth.rgb, settings.rgb, bytes);
-    base = 0.7 / fmax(mean_of(&settings), 1e-4);
-    see_view(&settings, 8 / base, &seed);
+    cut_view(&scene, p, yaw, pitch);
+    memcpy(truth.rgb, scene.rgb, bytes);
+    base = 0.7 / fmax(mean_of(&scene), 1e-4);
+    see_view(&scene, 8 / base, &seed);
     open_camera(&c, width, height);
     for (int k = 0; k < EXPOSURES; k++) {
         const double gain = base * exp2(-k);
 
-        expose(&c, &settings, gain, features ? between(0, 3, &seed) : 1.5, k,
+        expose(&c, &scene, gain, features ? between(0, 3, &seed) : 1.5, k,
                &seed);
         c.n = glint_lamp_finder_find(c.finder, c.seen, c.spot, MAX_SPOTS);
         glint_profile_measure(c.profile, c.seen, c.spot, c.n);
@@ -425,7 +425,7 @@ static void view(const struct panorama *p, const char *kind, int held, int id,
         }
     }
     close_camera(&c);
-    free(settings.rgb);
+    free(scene.rgb);
     free(truth.rgb);
 }
 

@@ -182,13 +182,13 @@ static void make_tables(void)
         noise[i] = bell(&seed);
 }
 
-void power_expose(uint8_t *rgb, const struct power_picture *settings,
-                  double gain, double sigma, uint32_t *seed)
+void power_expose(uint8_t *rgb, const struct power_picture *scene, double gain,
+                  double sigma, uint32_t *seed)
 {
     if (code[CODES] < 1)
         make_tables();
-    for (int i = 0; i < 3 * settings->width * settings->height; i++) {
-        const double light = gain * settings->rgb[i];
+    for (int i = 0; i < 3 * scene->width * scene->height; i++) {
+        const double light = gain * scene->rgb[i];
         const double v = code[light < 1 ? (int)(light * CODES) : CODES];
 
         rng_bits(seed);

@@ -40,9 +40,9 @@ void power_draw(double *light, int width, int height,
 void power_see(double *light, int width, int height,
                const struct power_lamp *lens, double over);
 
-/* Writes RGB, 8-bit codes of sRGB, from GAIN times the light SETTINGS with
+/* Writes RGB, 8-bit codes of sRGB, from GAIN times the light SCENE with
  * noise of SIGMA codes. */
-void power_expose(uint8_t *rgb, const struct power_picture *settings,
-                  double gain, double sigma, uint32_t *seed);
+void power_expose(uint8_t *rgb, const struct power_picture *scene, double gain,
+                  double sigma, uint32_t *seed);
 
 #endif

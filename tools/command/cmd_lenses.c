@@ -70,8 +70,8 @@ static int set_settings(struct settings *settings, bool plain)
     return EXIT_OK;
 }
 
-static int compositor_at(const struct tool *tool, const char *name,
-                         struct entry *e, bool plain)
+static int set_entry(const struct tool *tool, const char *name, struct entry *e,
+                     bool plain)
 {
     int code = set_settings(&e->settings, plain);
 
@@ -194,11 +194,11 @@ static bool one(void *ctx, const char *name)
         l->code = tool_fail(l->tool, GLINT_E_MEMORY, NULL);
         return true;
     }
-    code = compositor_at(l->tool, name, e, false);
+    code = set_entry(l->tool, name, e, false);
     if (code == EXIT_OK && l->folder) {
         code = put_model(l, e);
         if (code == EXIT_OK)
-            code = compositor_at(l->tool, name, e, true);
+            code = set_entry(l->tool, name, e, true);
         if (code == EXIT_OK)
             code = put_model(l, e);
         l->n++;

@@ -96,7 +96,7 @@ static int by_number(const void *a, const void *b)
 
 /* Lists in L the numbers, from FIRST on, of the files of PATTERN, rising.
  * Returns false without memory. */
-static bool compositor_for(struct numbers *l, const char *pattern, int first)
+static bool list_numbers(struct numbers *l, const char *pattern, int first)
 {
     const char *slash = strrchr(pattern, '/');
     char folder[NAME_BYTES] = ".", name[NAME_BYTES];
@@ -227,7 +227,7 @@ int overlay_sequence(struct tool *tool, struct overlay *o)
         return tool_usage(tool, "names of pictures have at most %d bytes",
                           NAME_BYTES - 1);
     if (strchr(percent, '/') ? walk(&l, o->input, o->start_number)
-                             : compositor_for(&l, o->input, o->start_number))
+                             : list_numbers(&l, o->input, o->start_number))
         code = all(tool, o, &l);
     else
         code = tool_fail(tool, GLINT_E_MEMORY, NULL);

@@ -97,7 +97,7 @@ static void add_ghost(struct offsets *o)
             }
 }
 
-static void compositor_at(double theta_deg, struct offsets *o)
+static void add_angle(double theta_deg, struct offsets *o)
 {
     const struct glint_lamp lamp = stage_lamp(theta_deg, 33, 1);
     struct glint_frame *f = &stage.frame;
@@ -133,8 +133,8 @@ static void outlines(const char *lens)
     assert_true(stage_load(&stage, lens));
     assert_true(stage_prepare(&stage, 8) && stage_model(&stage, 1, 60));
     stage_view(&stage, W, H, 0);
-    compositor_at(5, o);
-    compositor_at(12, o);
+    add_angle(5, o);
+    add_angle(12, o);
     for (int k = 0; k < ERRORS; k++) {
         char name[100];
 
