@@ -28,7 +28,7 @@
 #   make growth   how that grows, as plots;  memory-table: what it takes
 #   make video-report  how steady the flare of a video is; VIDEOS="A.y4m ..."
 #   make trade    what accuracy costs: plots, pictures and a page (glint sweep)
-#   also: oiio window table hostile-table bake-table wide-table accuracy-table colour-table ray-table inputs format
+#   also: oiio window table lights-table hostile-table bake-table wide-table accuracy-table colour-table ray-table inputs format
 #         golden-update fuzz-keep clean
 
 MAKEFLAGS += -r

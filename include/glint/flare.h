@@ -58,6 +58,17 @@ struct glint_wave_sets {
                                apart; 0: every step counts as seen */
 };
 
+/* How bright each ghost of a lens is in each of three waves, by the angle of
+ * its light. A program keeps one for all frames of a lens, a stop, three waves
+ * and a size; plans fill it as lights need it, and no picture depends on what
+ * was filled before. */
+enum { GLINT_DIM_NODES = 33, GLINT_DIM_VALUES = 4 };
+struct glint_dim {
+    /* [GLINT_DIM_NODES][ghosts of the lens][GLINT_DIM_VALUES] */
+    int16_t *log2_q8;
+    uint8_t done[GLINT_DIM_NODES]; /* nodes that are filled; 0: begin anew */
+};
+
 /* Everything that a frame is planned from, except its lights. */
 struct glint_flare_frame {
     const struct glint_lens *lens;
@@ -74,6 +85,12 @@ struct glint_flare_frame {
      * Ghosts below it may be left out, and a fainter ghost gets a coarser grid
      * and coarser steps of irradiance. 0: the picture is in linear light. */
     struct glint_real faintest;
+    /* Ghosts of a light that shine less than DIMMEST in the mean, display
+     * white, an eighth of it where they fold, are drawn by the rays of one wave
+     * in the colours of all three; up to twice as much, in part. {0, 0}, NULL,
+     * sets, or not three waves: none is. */
+    struct glint_dim *dim;
+    struct glint_real dimmest;
     /* Codes, 0 .. 2^15 in _q8: in a picture in codes, edges across which light
      * changes by fewer codes than this are moved to whole pixels, which takes a
      * fraction of the time. 0: no edge is moved. */

@@ -2,6 +2,7 @@
 #include "glint/flare.h"
 
 #include "base/real.h"
+#include "flare/dim.h"
 #include "flare/state.h"
 #include "flare/wave_sets.h"
 
@@ -324,6 +325,11 @@ void glint_flare_plan(struct glint_flare *flare,
         .round = flare->cfg.stop.n_blades == 0,
         .opening_q30 = flare->cfg.stop.opening_q30 ? flare->cfg.stop.opening_q30
                                                    : WHOLE_OPENING_Q30};
+    if (frame->dim && frame->dimmest.mantissa && !frame->sets &&
+        frame->n_waves == GLINT_DIM_WAVES) {
+        glint_dim_fill(flare, n_within(frame->lens, lights, n_lights));
+        flare->plan.dims = 1;
+    }
     flare->flux = flare->brightest = (struct glint_real){0, 0};
     keep_seen(flare, frame->sets ? frame->sets->planner->plan(flare, n_jobs)
                                  : plan_all(flare, n_jobs));

@@ -4,6 +4,7 @@
 #include "base/divide.h"
 #include "base/q.h"
 #include "base/real.h"
+#include "flare/dim.h"
 #include "flare/plan_cells.h"
 
 enum {
@@ -63,18 +64,43 @@ static struct glint_real box_side(const struct glint_transfer *t, int k)
     return real_of(t->box[k], t->box_exponent);
 }
 
-/* Sets the colour of the bundle, its largest channel 1; returns what the
- * largest channel was. */
-static struct glint_real colour_of(const struct glint_wave *w,
-                                   const struct glint_light *b,
-                                   int32_t *rgb_q14)
+/* Returns the light that wave WAVE gives to the bundle of PLANNED, as a part of
+ * that one's own: all of itself, and of others what they do not keep. */
+static int64_t part_q16(const struct glint_plan *p,
+                        const struct glint_bundle_plan *planned, int wave,
+                        int share_q8)
 {
-    int64_t rgb_q28[3], most = 0;
+    if (wave == planned->wave)
+        return 1 << 16;
+    return q_shift(glint_dim_ratio_q16(p->frame, &p->light[planned->light],
+                                       planned->ghost, wave) *
+                       (GLINT_DIM_WHOLE_Q8 - share_q8),
+                   8);
+}
 
+/* The colour of the bundle, its largest channel 1; returns what that was. */
+static struct glint_real colour_of(const struct glint_plan *p,
+                                   const struct glint_bundle_plan *planned,
+                                   int share_q8, int32_t *rgb_q14)
+{
+    const struct glint_wave *w = p->frame->wave;
+    const struct glint_light *b = &p->light[planned->light];
+    const int mixes =
+        share_q8 < GLINT_DIM_WHOLE_Q8 && planned->wave == GLINT_DIM_WAVE;
+    const int first = mixes ? 0 : planned->wave;
+    const int last = mixes ? GLINT_DIM_WAVES - 1 : planned->wave;
+    int64_t rgb_q28[3] = {0, 0, 0}, most = 0;
+
+    for (int wave = first; wave <= last; wave++) {
+        const int64_t part = part_q16(p, planned, wave, share_q8);
+
+        for (int c = 0; c < 3; c++)
+            rgb_q28[c] +=
+                q_shift((int64_t)w[wave].rgb_q14[c] * b->rgb_q14[c] * part, 16);
+    }
     for (int c = 0; c < 3; c++) {
-        const int64_t x = (int64_t)w->rgb_q14[c] * b->rgb_q14[c];
+        const int64_t x = rgb_q28[c];
 
-        rgb_q28[c] = x;
         most = x > most ? x : -x > most ? -x : most;
     }
     for (int c = 0; c < 3; c++)
@@ -260,6 +286,18 @@ static int set_window(const struct glint_plan *plan,
     return any;
 }
 
+/* Sends few rays, and more where hardly any gets through. Returns whether any
+ * does. */
+static int probe(const struct glint_plan *plan, struct glint_transfer *transfer,
+                 struct glint_probe *s)
+{
+    glint_probe_run(s, transfer, plan->opening_q30, FEW_ACROSS, FEW_DOWN);
+    if (s->n_inside < FEW_INSIDE)
+        glint_probe_run(s, transfer, plan->opening_q30, GLINT_PROBE_ACROSS,
+                        GLINT_PROBE_DOWN);
+    return s->n_inside > 0;
+}
+
 static enum glint_outcome plan_bundle(const struct glint_plan *plan,
                                       struct glint_bundle_plan *planned,
                                       struct glint_bundle *bundle,
@@ -271,7 +309,7 @@ static enum glint_outcome plan_bundle(const struct glint_plan *plan,
     struct glint_probe *s = &scratch->probe;
     struct glint_real colour;
     int64_t wide_q8, high_q8;
-    int exponent;
+    int exponent, share_q8;
 
     bundle->n_cells = s->n_rays = 0;
     if (!is_wanted(r, planned->ghost))
@@ -282,16 +320,16 @@ static enum glint_outcome plan_bundle(const struct glint_plan *plan,
                              r->wave[planned->wave].wave_q24))
         return GLINT_OUTCOME_CLOSED;
     transfer->sets = plan->sets;
-    colour = colour_of(&r->wave[planned->wave], b, bundle->rgb_q14);
+    share_q8 = plan->dims ? glint_dim_share_q8(r, b, planned->ghost)
+                          : GLINT_DIM_WHOLE_Q8;
+    if (share_q8 == 0 && planned->wave != GLINT_DIM_WAVE)
+        return GLINT_OUTCOME_OTHER_SET;
+    colour = colour_of(plan, planned, share_q8, bundle->rgb_q14);
     if (colour.mantissa == 0 || b->power.mantissa == 0)
         return GLINT_OUTCOME_DARK;
     if (!set_window(plan, planned, scratch))
         return GLINT_OUTCOME_BLOCKED;
-    glint_probe_run(s, transfer, plan->opening_q30, FEW_ACROSS, FEW_DOWN);
-    if (s->n_inside < FEW_INSIDE)
-        glint_probe_run(s, transfer, plan->opening_q30, GLINT_PROBE_ACROSS,
-                        GLINT_PROBE_DOWN);
-    if (s->n_inside == 0)
+    if (!probe(plan, transfer, s))
         return GLINT_OUTCOME_BLOCKED;
     set_wider(plan, planned, transfer, &s->seen);
     if (!is_in_view(plan, planned, b, transfer, &s->reach))
@@ -308,6 +346,8 @@ static enum glint_outcome plan_bundle(const struct glint_plan *plan,
     planned->energy_up = (uint8_t)energy_up(s->energy);
     exponent = transfer->exponent[GLINT_OUT_ENERGY] + 29 - planned->energy_up;
     planned->flux = flux_of(plan, planned, transfer, colour, exponent);
+    if (share_q8 < GLINT_DIM_WHOLE_Q8 && planned->wave != GLINT_DIM_WAVE)
+        planned->flux = real_times(planned->flux, real_of(share_q8, -8));
     planned->peak_q20 = peak_q20(plan, planned, s, transfer, planned->flux);
     if (plan->n_lights == 1 && !r->sets && planned->peak_q20 < 1 << 20)
         return GLINT_OUTCOME_FAINT;

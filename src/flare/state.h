@@ -76,6 +76,9 @@ struct glint_raster {
                  struct glint_pass *pass, int n_below);
 };
 
+/* Fills the nodes of flare/dim.h about the first N_LIGHTS of the plan. */
+void glint_dim_fill(struct glint_flare *flare, int n_lights);
+
 /* Forgets the counts of the last draw, and the passes that were under it. */
 void glint_flare_forget(struct glint_flare *flare);
 

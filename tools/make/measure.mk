@@ -81,6 +81,8 @@ size: $(OUT)/libglint.a $(example_bins)
 trade: all
 	@build/glint sweep -o build/trade $(TRADE)
 	@echo build/trade/index.html
+lights-table: $(OUT)/lights
+	@$(OUT)/lights 0 $(MODELS) | tools/report/write-figures lights
 hostile-table: $(OUT)/hostile_models
 	@$(OUT)/hostile_models | tools/report/write-figures hostile
 memory-table: all
@@ -96,4 +98,4 @@ budget: all
 .PHONY: video-report demo inputs table bake-table wide-table accuracy-table colour-table ray-table power-table \
         power-fit \
         corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet \
-        bench bench-insn growth size trade hostile-table memory-table budget
+        bench bench-insn growth size trade lights-table hostile-table memory-table budget

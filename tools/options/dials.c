@@ -15,6 +15,8 @@ const struct dial dials[] = {
      8, 4, {0, 0.25, 0.5, 1, 2, 4, 8, 16}, {0.25, 1, 3, 8}},
     {"cull", "what is left out, codes", DIAL_CULL, 0.125, false, false,
      7, 2, {0, 0.0625, 0.125, 0.25, 0.5, 1, 2}, {0.125, 0.5}},
+    {"dim", "ghosts of one wave's rays, codes", DIAL_DIM, 0, false, true,
+     7, 0, {0, 0.5, 1, 2, 4, 8, 16}, {0}},
     {"whole", "edges on whole pixels, codes", DIAL_WHOLE, 4, false, false,
      6, 2, {0, 1, 2, 4, 8, 16}, {1, 4}},
     {"half", "half as many pixels each way", DIAL_HALF, 0, false, false,
@@ -54,6 +56,9 @@ void dial_set(struct settings *s, const struct dial *dial, double value)
     case DIAL_CULL:
         s->dials.cull_codes = value;
         break;
+    case DIAL_DIM:
+        s->dials.dim_codes = value;
+        break;
     case DIAL_WHOLE:
         s->dials.snap_codes_q8 = (int)lrint(value * 256);
         break;
@@ -92,6 +97,8 @@ double dial_get(const struct settings *s, const struct dial *dial)
         return s->quantum;
     case DIAL_CULL:
         return s->dials.cull_codes;
+    case DIAL_DIM:
+        return s->dials.dim_codes;
     case DIAL_WHOLE:
         return s->dials.snap_codes_q8 / 256.0;
     case DIAL_HALF:

@@ -19,6 +19,7 @@ enum dial_id {
     DIAL_GRID,
     DIAL_QUANTUM,
     DIAL_CULL,
+    DIAL_DIM,
     DIAL_WHOLE,
     DIAL_HALF,
     DIAL_TOLERANCE,

@@ -94,6 +94,7 @@ enum settings_option {
     OPT_RAYS,
     OPT_LANES,
     OPT_CULL,
+    OPT_DIM,
     OPT_BALANCE,
     OPT_ONLY,
     OPT_STARBURST,
@@ -133,6 +134,7 @@ enum settings_option {
         {"rays", required_argument, NULL, OPT_RAYS},                 \
         {"lanes", required_argument, NULL, OPT_LANES},               \
         {"cull", required_argument, NULL, OPT_CULL},                 \
+        {"dim", required_argument, NULL, OPT_DIM},                   \
         {"balance", no_argument, NULL, OPT_BALANCE},                 \
         {"only", required_argument, NULL, OPT_ONLY},                 \
         {"starburst", required_argument, NULL, OPT_STARBURST},       \
@@ -228,6 +230,8 @@ enum settings_option {
     "                      650,532,450 for all, as of --quality draft and "    \
     "with\n"                                                                   \
     "                      --budget\n"                                         \
+    "  --dim CODES         fainter ghosts of a light share one "               \
+    "wavelength's rays\n"                                                      \
     "  --rays R            model: the lens's baked polynomials (default);\n"   \
     "                      exact: traced for every frame\n"                    \
     "  --cull CODES        in 8 bits: what stays so many codes near black, 0 " \

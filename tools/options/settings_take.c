@@ -201,6 +201,9 @@ static enum taken take_light(struct settings *s, int option, const char *value)
     case OPT_CULL:
         return tool_number(value, &s->dials.cull_codes) &&
                s->dials.cull_codes >= 0 && s->dials.cull_codes <= 16;
+    case OPT_DIM:
+        return tool_number(value, &s->dials.dim_codes) &&
+               s->dials.dim_codes >= 0 && s->dials.dim_codes <= 256;
     default:
         return OTHER;
     }

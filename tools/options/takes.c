@@ -40,6 +40,7 @@ static const struct {
     {NULL, "coarse", "0, 64, 128 or 256 pixels"},
     {NULL, "cost", "time or instructions"},
     {NULL, "cull", "codes, 0 to 16"},
+    {NULL, "dim", "codes, 0 to 256"},
     {NULL, "dispersion", "0, or 0.1 to 100 pixels"},
     {NULL, "engine", "model or exact"},
     {NULL, "error", "pixels, above 0"},

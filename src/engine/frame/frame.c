@@ -83,6 +83,7 @@ void glint_frame_finish(struct glint_frame *frame)
     free(frame->light);
     free(frame->merged);
     free(frame->seen);
+    free(frame->dim.log2_q8);
     free(frame->mem);
 }
 
@@ -233,6 +234,9 @@ static struct glint_flare_frame rays_of(struct glint_frame *f,
                                         const struct glint_image *image)
 {
     set_waves(f);
+    if (f->dim_opening != f->setup->opening)
+        memset(f->dim.done, 0, sizeof f->dim.done);
+    f->dim_opening = f->setup->opening;
     f->sets.step = glint_real_of(
         glint_frame_codes_light(f, image, GLINT_FRAME_STEP_CODES));
     return (struct glint_flare_frame){
@@ -247,6 +251,9 @@ static struct glint_flare_frame rays_of(struct glint_frame *f,
         .only_ghost = f->only_ghost,
         .faintest = glint_real_of(
             glint_frame_codes_light(f, image, f->dials.cull_codes)),
+        .dim = f->dim.log2_q8 ? &f->dim : NULL,
+        .dimmest = glint_real_of(
+            glint_frame_codes_light(f, image, f->dials.dim_codes)),
         .snap_codes_q8 = f->dials.snap_codes_q8,
         .half =
             glint_dials_half(&f->dials) && f->can_half ? &glint_half : NULL};
@@ -452,9 +459,7 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
         report->arena_bytes = frame->bytes;
         return GLINT_OK;
     }
-    if (!frame->seen)
-        frame->seen = calloc(GLINT_MAX_GHOSTS, sizeof *frame->seen);
-    if (!frame->seen)
+    if (glint_frame_hold_ghosts(frame) != GLINT_OK)
         return GLINT_E_MEMORY;
     status = glint_frame_star_set(frame, lamps, n_lamps, scale, image);
     if (status == GLINT_OK)

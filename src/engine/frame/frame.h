@@ -117,8 +117,10 @@ struct glint_frame {
     int n_more;   /* lights that are further points of a lamp */
     /* Frame that was planned last from a model. */
     struct glint_flare_frame rays;
-    double scale; /* factor on the lights of the last frame */
-    bool *seen;   /* [GLINT_MAX_GHOSTS]: true for ghosts in the last frame */
+    double scale;         /* factor on the lights of the last frame */
+    struct glint_dim dim; /* how bright ghosts are, for dim_opening */
+    double dim_opening;
+    bool *seen; /* [GLINT_MAX_GHOSTS]: true for ghosts in the last frame */
 
     /* [n_lights]: lamps to be traced, if some merged. */
     struct glint_lamp *merged;

@@ -33,6 +33,9 @@ bool glint_frame_has_sets(const struct glint_frame *frame);
 /* Makes room for N lights. GLINT_E_MEMORY. */
 enum glint_status glint_frame_hold_lights(struct glint_frame *frame, int n);
 
+/* Makes room for what is kept of each ghost. GLINT_E_MEMORY. */
+enum glint_status glint_frame_hold_ghosts(struct glint_frame *frame);
+
 /* Replaces the block by one for the present capacities, in which the flare
  * begins anew. */
 enum glint_status glint_frame_regrow(struct glint_frame *frame);

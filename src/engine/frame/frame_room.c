@@ -29,6 +29,17 @@ enum glint_status glint_frame_hold_lights(struct glint_frame *f, int n)
     return GLINT_OK;
 }
 
+enum glint_status glint_frame_hold_ghosts(struct glint_frame *f)
+{
+    if (!f->seen)
+        f->seen = calloc(GLINT_MAX_GHOSTS, sizeof *f->seen);
+    if (!f->dim.log2_q8 && f->lens)
+        f->dim.log2_q8 = calloc((size_t)GLINT_DIM_NODES * GLINT_DIM_VALUES *
+                                    ((size_t)f->setup->n_ghosts + 1),
+                                sizeof *f->dim.log2_q8);
+    return f->seen && (f->dim.log2_q8 || !f->lens) ? GLINT_OK : GLINT_E_MEMORY;
+}
+
 static bool is_by_edges(const struct glint_frame *f)
 {
     return !f->cfg.raster || f->cfg.raster == &glint_raster_edges;
@@ -137,9 +148,8 @@ enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
                               glint_frame_bundles(f, f->dials.max_lights));
     if (!fit(f, bytes))
         return GLINT_E_MEMORY;
-    if (!f->seen)
-        f->seen = calloc(GLINT_MAX_GHOSTS, sizeof *f->seen);
-    if (!f->seen || glint_frame_hold_lights(f, n_lamps) != GLINT_OK)
+    if (glint_frame_hold_ghosts(f) != GLINT_OK ||
+        glint_frame_hold_lights(f, n_lamps) != GLINT_OK)
         return GLINT_E_MEMORY;
     f->reserved = true;
     if (!mem)

@@ -16,19 +16,19 @@ enum { MAX_LIGHTS = 128 };
  * of ghosts below it still hide nothing that would be seen together. */
 /* clang-format off */
 static const struct level {
-    double quality, grid, quantum, snap, cull, tolerance, dispersion, points;
+    double quality, grid, quantum, snap, cull, dim, tolerance, dispersion, points;
     bool half;
 } level[] = {
-    {0,      16, 8,      32,  1,     1,    0,    1,  true},
-    {0.0625, 64, 1,      4,   1,     1,    0,    1,  true},
-    {0.125,  20, 3,      8,   0.5,   1,    0,    1,  false},
-    {0.25,   32, 1,      4,   0.5,   1,    0,    1,  false},
-    {0.375,  40, 1,      4,   0.5,   1,    2,    4,  false},
-    {0.5,    64, 1,      4,   0.125, 1,    1,    7,  false},
-    {0.625,  96, 0.5,    2,   0.125, 0.25, 1,    12, false},
-    {0.75,  160, 0.25,   1,   0.125, 0.25, 0.5,  19, false},
-    {0.875, 192, 0.125,  0.5, 0.125, 0.25, 0.5,  37, false},
-    {1,     256, 0.0625, 0,   0.125, 0.25, 0.25, 61, false},
+    {0,      16, 8,      32,  1,  0,     1,    0,    1,  true},
+    {0.0625, 64, 1,      4,   1,  0,     1,    0,    1,  true},
+    {0.125,  20, 3,      8,   0.5,  0,   1,    0,    1,  false},
+    {0.25,   32, 1,      4,   0.5,  0,   1,    0,    1,  false},
+    {0.375,  40, 1,      4,   0.5,  0,   1,    2,    4,  false},
+    {0.5,    64, 1,      4,   0.125,  0, 1,    1,    7,  false},
+    {0.625,  96, 0.5,    2,   0.125,  0, 0.25, 1,    12, false},
+    {0.75,  160, 0.25,   1,   0.125,  0, 0.25, 0.5,  19, false},
+    {0.875, 192, 0.125,  0.5, 0.125,  0, 0.25, 0.5,  37, false},
+    {1,     256, 0.0625, 0,   0.125,  0, 0.25, 0.25, 61, false},
 };
 /* clang-format on */
 
@@ -78,6 +78,7 @@ static struct level level_at(double quality)
     l.quantum = between(a->quantum, b->quantum, at - below);
     l.snap = between(a->snap, b->snap, at - below);
     l.cull = between(a->cull, b->cull, at - below);
+    l.dim = between(a->dim, b->dim, at - below);
     l.points = between(a->points, b->points, at - below);
     if (a->dispersion > 0 && b->dispersion > 0)
         l.dispersion = between(a->dispersion, b->dispersion, at - below);
@@ -103,6 +104,7 @@ struct glint_quality glint_quality_at(double quality)
                   .max_lights = MAX_LIGHTS,
                   .flags = l.half ? GLINT_DIAL_HALF : 0,
                   .cull_codes = l.cull,
+                  .dim_codes = l.dim,
                   .area_points = l.points},
         .quantum = l.quantum,
         .tolerance = l.tolerance};
@@ -149,5 +151,6 @@ struct glint_dials glint_dials_coarser(struct glint_dials a,
         .max_lights = smaller(a.max_lights, b.max_lights),
         .flags = a.flags | b.flags,
         .cull_codes = fmax(a.cull_codes, b.cull_codes),
+        .dim_codes = fmax(a.dim_codes, b.dim_codes),
         .area_points = fmin(a.area_points, b.area_points)};
 }

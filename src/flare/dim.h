@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * How bright the ghosts of a lens are, by wave and by the angle of the light:
+ * where one is too dim for its colours to be seen apart, the rays of one wave
+ * stand for those of all three. nodes.c fills the table. */
+#ifndef GLINT_FLARE_DIM_H
+#define GLINT_FLARE_DIM_H
+
+#include "base/divide.h"
+#include "base/q.h"
+#include "base/real.h"
+#include "glint/flare.h"
+
+enum {
+    GLINT_DIM_WAVE = 1,  /* the wave whose rays stand for all */
+    GLINT_DIM_WAVES = 3, /* frames of other numbers have no dim ghosts */
+    GLINT_DIM_WHOLE_Q8 = 256,
+    GLINT_DIM_LAST = GLINT_DIM_NODES - 1,
+    GLINT_DIM_DARK = INT16_MIN /* value where a wave does not get through */
+};
+
+/* Returns the share of its light that each wave of ghost GHOST of LIGHT keeps
+ * for itself, 0 to GLINT_DIM_WHOLE_Q8. */
+int glint_dim_share_q8(const struct glint_flare_frame *frame,
+                       const struct glint_light *light, int ghost);
+
+/* Returns the light of wave WAVE of that ghost over that of GLINT_DIM_WAVE,
+ * each in its own colour; 2^28 at most. */
+int64_t glint_dim_ratio_q16(const struct glint_flare_frame *frame,
+                            const struct glint_light *light, int ghost,
+                            int wave);
+
+/* Returns the logarithm of X, above 0: straight between powers of two. */
+static inline int32_t glint_dim_log2_q8(struct glint_real x)
+{
+    return q_clamp_sat(x.exponent, -120, 120) * 256 + 30 * 256 +
+           ((x.mantissa >> 22) - 256);
+}
+
+/* Returns how far LIGHT is along the nodes. */
+static inline int32_t glint_dim_node_q16(const struct glint_flare_frame *frame,
+                                         const struct glint_light *light)
+{
+    const int64_t sine = light->sine_q30;
+    const int64_t most = frame->lens->header->sine_hi_q30;
+
+    return q_clamp_sat(q_divide(sine * GLINT_DIM_LAST * (1 << 16), most), 0,
+                       GLINT_DIM_LAST * (1 << 16) - 1);
+}
+
+/* Returns the values of ghost GHOST at node NODE: its light by which it counts
+ * as dim, and that of each wave. */
+static inline int16_t *glint_dim_values(const struct glint_flare_frame *frame,
+                                        int node, int ghost)
+{
+    const int64_t at = (int64_t)node * frame->lens->header->n_ghosts + ghost;
+
+    return frame->dim->log2_q8 + GLINT_DIM_VALUES * at;
+}
+
+#endif

@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Dim ghosts, drawn by the rays of one wave: light stays, nothing appears at
+ * once, and a picture depends on neither the frames before nor the workers.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support/shuffle.h"
+#include "support/stage.h"
+
+enum { W = 240, H = 160, BYTES = 3 * W * H, LIGHTS = 16 };
+
+static struct stage stage;
+static struct glint_lamp lamps[LIGHTS];
+static uint8_t plain[BYTES], dim[BYTES], last[2][BYTES];
+
+/* A bright lamp and ever fainter ones, seven octaves in all, moved by TIME. */
+static void set_lamps(double time)
+{
+    for (int i = 0; i < LIGHTS; i++)
+        lamps[i] = stage_lamp(3 + 1.1 * i + time, 50 * i + 3 * time,
+                              3e5 * exp2(-0.45 * i));
+}
+
+static void draw(double codes, uint8_t *picture)
+{
+    stage.frame.dials = glint_dials_at(1 << 13);
+    stage.frame.dials.dim_codes = codes;
+    memset(picture, 0, BYTES);
+    assert_true(stage_codes(&stage, lamps, LIGHTS, picture));
+}
+
+static int open_stage(void **state)
+{
+    (void)state;
+    return stage_open(&stage, "double-gauss-angenieux", W, H) ? 0 : -1;
+}
+
+static int close_stage(void **state)
+{
+    (void)state;
+    stage_close(&stage);
+    return 0;
+}
+
+static double sum_of(const uint8_t *picture)
+{
+    double sum = 0;
+
+    for (int i = 0; i < BYTES; i++)
+        sum += picture[i];
+    return sum;
+}
+
+static double psnr(const uint8_t *a, const uint8_t *b)
+{
+    double sum = 0;
+
+    for (int i = 0; i < BYTES; i++)
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return 10 * log10(255. * 255 * BYTES / fmax(sum, 1));
+}
+
+/* The more is dim the fewer bundles there are and the farther from what all
+ * waves' rays draw, but the light stays. */
+static void test_light_stays(void **state)
+{
+    int bundles;
+    double before = 99;
+
+    (void)state;
+    set_lamps(0);
+    draw(0, plain);
+    bundles = stage.drawn.stats.bundles;
+    for (double codes = 0.5; codes <= 8; codes *= 4) {
+        draw(codes, dim);
+        assert_true(stage.drawn.stats.bundles < bundles);
+        assert_true(fabs(sum_of(dim) / sum_of(plain) - 1) < 0.01);
+        assert_true(psnr(plain, dim) > 40);
+        assert_true(psnr(plain, dim) <= before);
+        bundles = stage.drawn.stats.bundles;
+        before = psnr(plain, dim);
+    }
+}
+
+/* Three hundred frames of moving lights: with dim ghosts no block of 8 x 8
+ * jumps by more than a fraction of a code beyond what it does without. */
+static void test_no_pops(void **state)
+{
+    double worst[2] = {0, 0};
+
+    (void)state;
+    for (int frame = 0; frame < 300; frame++) {
+        set_lamps(0.01 * frame);
+        for (int k = 0; k < 2; k++) {
+            uint8_t *now = k ? dim : plain;
+
+            draw(k ? 4 : 0, now);
+            if (frame) {
+                const double jump = stage_block_jump(&stage, last[k], now);
+
+                worst[k] = fmax(worst[k], jump);
+            }
+            memcpy(last[k], now, BYTES);
+        }
+    }
+    print_message("block jumps: %.2f codes, with dim ghosts %.2f\n", worst[0],
+                  worst[1]);
+    assert_true(worst[1] < worst[0] + 0.5);
+}
+
+/* The table that other frames filled, by other workers, is the same. */
+static void test_same_bits(void **state)
+{
+    struct shuffle shuffle;
+
+    (void)state;
+    set_lamps(1.5);
+    draw(4, plain);
+    for (int n = 1; n <= 5; n += 2) {
+        stage_view(&stage, W, H, 0);
+        shuffle_init(&shuffle, n, 7);
+        stage.frame.cfg.workers = &shuffle.workers;
+        if (n > 1) {
+            set_lamps(0.7);
+            draw(4, dim);
+        }
+        set_lamps(1.5);
+        draw(4, dim);
+        assert_memory_equal(plain, dim, BYTES);
+        stage.frame.cfg.workers = NULL;
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_light_stays),
+                                       cmocka_unit_test(test_no_pops),
+                                       cmocka_unit_test(test_same_bits)};
+
+    return cmocka_run_group_tests_name("dim", tests, open_stage, close_stage);
+}
