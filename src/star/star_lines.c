@@ -85,16 +85,17 @@ static void add_stretch(const struct strip *s, struct stretch here, int seen)
 {
     const int64_t step_q16 = s->lamp->per_pixel_q16;
     const int64_t dx_q8 = (int64_t)here.x0 * 256 + 128 - s->lamp->x_q8;
-    int64_t v_q24 =
-        (s->dy_q8 * (int64_t)s->line->cos_q30 - dx_q8 * s->line->sin_q30) >> 14;
+    /* exact, so that it does not matter where a tile begins */
+    int64_t v_q38 =
+        s->dy_q8 * (int64_t)s->line->cos_q30 - dx_q8 * s->line->sin_q30;
     const int64_t end_q16 = (int64_t)seen << 16;
-    const int32_t along_q24 = s->line->sin_q30 >> 6;
+    const int64_t along_q38 = (int64_t)s->line->sin_q30 * 256;
 
     if (here.x0 >= here.x1)
         return;
     glint_star_note(s->row, here.x0, here.x1);
-    for (int x = here.x0; x < here.x1; x++, v_q24 -= along_q24) {
-        const int64_t v_q16 = (v_q24 >> 8) * step_q16 >> 16;
+    for (int x = here.x0; x < here.x1; x++, v_q38 -= along_q38) {
+        const int64_t v_q16 = (v_q38 >> 22) * step_q16 >> 16;
         const int64_t size_q16 = v_q16 < 0 ? -v_q16 : v_q16;
 
         if (size_q16 < end_q16)

@@ -615,6 +615,50 @@ static void test_same_bits(void **state)
     }
 }
 
+/* Draws LIGHT with tiles of TILE_LOG2 into LINEAR_Q20. */
+static void draw_in_tiles(const struct glint_star_tables *t,
+                          const struct glint_star_light *light, int tile_log2,
+                          int32_t *q20)
+{
+    const struct glint_real all = {0, 0};
+    struct glint_image image = {
+        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+    struct canvas c;
+
+    open_canvas(&c, tile_log2, 1, 1);
+    memset(q20, 0, N * sizeof *q20);
+    glint_image_place(&image, q20);
+    glint_star_set(c.star, t, light, 1, all);
+    glint_star_draw(c.star, c.flare, &image);
+    close_canvas(&c);
+}
+
+/* Nor may tiles change a bit of light before it becomes codes. */
+static void test_same_light(void **state)
+{
+    static const int blades[] = {0, 5, 9};
+    static int32_t other_q20[N];
+    uint32_t seed = 99;
+
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        struct glint_star_tables *t = tables_of(blades[i], 17 * i, 0.5);
+
+        for (int k = 0; k < 8; k++) {
+            struct glint_star_light light = any_light(&seed);
+
+            light.x_q8 = (int32_t)(rng_xorshift(&seed) % 60000) - 20000;
+            light.y_q8 = (int32_t)(rng_xorshift(&seed) % 60000) - 20000;
+            draw_in_tiles(t, &light, 6, linear_q20);
+            for (int tile_log2 = 3; tile_log2 < 6; tile_log2++) {
+                draw_in_tiles(t, &light, tile_log2, other_q20);
+                assert_memory_equal(linear_q20, other_q20, sizeof other_q20);
+            }
+        }
+        glint_star_tables_free(t);
+    }
+}
+
 /* Twice the power must nowhere give less light, from what cannot be seen to
  * what saturates, with the light in the picture and on every side of it. */
 static void test_powers(void **state)
@@ -655,7 +699,8 @@ int main(void)
         cmocka_unit_test(test_direct),     cmocka_unit_test(test_extent),
         cmocka_unit_test(test_far),        cmocka_unit_test(test_pixels),
         cmocka_unit_test(test_motion),     cmocka_unit_test(test_rotation),
-        cmocka_unit_test(test_same_bits),  cmocka_unit_test(test_powers),
+        cmocka_unit_test(test_same_bits),  cmocka_unit_test(test_same_light),
+        cmocka_unit_test(test_powers),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
