@@ -29,10 +29,11 @@ struct glint_bake_options {
     double max_deg;    /* largest angle of a light, above 0, up to 89 */
     double field_mm;   /* radius about the sensor's centre within which light
                           counts; 0: a tenth more than to the film's corners */
-    /* Scale of all tolerances, 0.1 .. 100. At 1, the root mean squares aimed at
-     * for ghosts as bright as an exposure goes by are 0.04 pixels of a film
-     * 1920 wide, for places and outlines, and 0.12 % of the energy; for faint
-     * ghosts up to 0.07 pixels for places, 0.4 for outlines, and 1.2 %. */
+    /* Scale of all tolerances, 0.1 .. 100. At 1, ghosts as bright as those that
+     * set an exposure are fitted to root mean square errors of 0.04 pixels of a
+     * film 1920 wide for places and outlines, and of 0.12 % for the energy;
+     * faint ghosts to at most 0.07 pixels for places, 0.4 for outlines, and 1.2
+     * %. */
     double tolerance;
     struct glint_workers *workers; /* does not change the model */
     glint_progress_fn *progress;   /* NULL: silent */
@@ -48,10 +49,12 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
 
 /* Figures of a bake that are not in its model. */
 struct glint_bake_report {
-    int rays;      /* number of rays measured */
-    int intruders; /* measured rays that pass the model though the real lens
-                      cuts them, by more than 3 % of a radius */
-    int unmet;     /* number of systems that miss the tolerance */
+    int rays; /* number of rays measured: those that get through the lens */
+    /* besides these, rays that the model lets through although the real lens
+     * does not: they fail, or lie more than 3 % outside a surface's
+     * semi-diameter or the stop's radius */
+    int intruders;
+    int unmet; /* number of systems that miss the tolerance */
 };
 
 /* Bakes LENS into *MODEL[*BYTES], a file as in glint/model.h, to be freed by

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/dials.h - what trades accuracy for time, of one frame.
+ * glint/dials.h - the settings of a frame that trade accuracy for time.
  *
  *     cfg.dials = glint_dials_at(1 << 14);                  the default
  *     cfg.dials = glint_dials_coarser(cfg.dials, glint_dials_at(1 << 12));
@@ -23,8 +23,10 @@ enum glint_dial_flag {
 };
 
 struct glint_dials {
-    int fineness; /* cells a side of ray grids, 4 .. GLINT_MAX_CELLS; with 64
-                     what lies between rays is off by 0.01 pixel */
+    /* fineness of ray grids, 4 .. GLINT_MAX_CELLS, as in struct
+     * glint_flare_frame; with 64, straight lines between rays are 0.01 pixels
+     * off in the mean */
+    int fineness;
     int irradiance_steps; /* steps an octave, 1 .. 4096; 0: irradiance is not
                              rounded */
     int snap_codes_q8;  /* edges weaker than so many codes lie on whole pixels;

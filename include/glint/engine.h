@@ -59,8 +59,9 @@ struct glint_engine_config {
     int max_found; /* 1 .. GLINT_ENGINE_MAX_LAMPS / 2 */
 
     /* How bright the flare is. strength, 0 .. 100: at 0.5 its brightest part is
-     * a quarter of white, whatever the lamps and the lens. If by_hand is not 0,
-     * exposure_ev stops are used instead. Both are multiplied by gain. */
+     * about a quarter of white, whatever the lamps and the lens;
+     * engine/strength.h has the rule. If by_hand is not 0, exposure_ev stops
+     * are used instead. Both are multiplied by gain. */
     double strength, exposure_ev, gain;
     int by_hand;
 

@@ -76,9 +76,13 @@ struct glint_flare_frame {
     int n_waves; /* number of waves of all sets together, 1 or more */
     const struct glint_wave_sets *sets; /* NULL: all waves for every ghost */
     struct glint_real pixels_per_mm;
-    int fineness; /* fineness of the grids, 4 .. GLINT_MAX_CELLS; with 64, what
-                     lies between rays is off by 0.01 px, outlines by 0.1 */
-    int uniform;  /* 1: all grids have FINENESS cells a side */
+    /* 4 .. GLINT_MAX_CELLS. The cells a side of a grid are in proportion to it
+     * and to the root of how much the ghost bends: at least GLINT_LEAST_CELLS,
+     * at most twice FINENESS, or four times where light folds. With 64,
+     * straight lines between rays are 0.01 pixels off in the mean, outlines
+     * 0.1. */
+    int fineness;
+    int uniform;    /* 1: all grids have FINENESS cells a side */
     int only_ghost; /* number of the one ghost of the lens to draw, with its
                        parts; -1: all */
     /* Largest light that no pixel of a picture in codes shows, display white.
@@ -221,9 +225,10 @@ void glint_flare_waves(struct glint_wave wave[GLINT_FLARE_WAVES],
 
 /* Returns a white light of power 1 whose image through LENS lies at (X, Y):
  * pixels from the top left corner, y down, of a picture of WIDTH x HEIGHT that
- * is as large as fits the film of LENS. Distances from the centre beyond 2^22
- * pixels count as 2^22. Does in integers what glint_view_to_angles() does in
- * doubles: no sine or cosine is off by more than 2^-28. */
+ * is as large as fits the film of LENS. Distances from the centre, across and
+ * down, beyond 2^22 pixels count as 2^22. Does in integers what
+ * glint_view_to_angles() does in doubles: no sine or cosine is off by more than
+ * 2^-28. */
 struct glint_light glint_light_from_pixel(const struct glint_lens *lens,
                                           int width, int height, int32_t x_q8,
                                           int32_t y_q8);

@@ -68,9 +68,10 @@ size_t glint_image_bytes(enum glint_pixel_format format, int width, int height);
  * without padding; format, width and height of IMAGE must be set. */
 void glint_image_place(struct glint_image *image, void *mem);
 
-/* Writes the full-range R', G', B' codes, of 8 bits, of the pixels in the
- * middle of COLUMNS x ROWS even parts of IMAGE, 1 .. 1024 each; 0 of linear
- * pictures, which have none. */
+/* Divides IMAGE evenly into COLUMNS x ROWS parts, 1 .. 1024 each way, and
+ * writes to RGB the full-range 8-bit codes R', G', B' of the pixel in the
+ * middle of each part, row by row; zeros for a linear picture, which has no
+ * codes. */
 void glint_image_sample(const struct glint_image *image, int columns, int rows,
                         uint8_t *rgb);
 

@@ -75,7 +75,8 @@ struct glint_lamp_tracker_config {
     /* Milliseconds from 0 to full level, or to a greater flux. */
     int32_t attack_ms;
     int32_t release_ms; /* milliseconds from full level to 0, or to less flux */
-    int32_t leave_ms; /* milliseconds of that for lamps that left the picture */
+    int32_t leave_ms;   /* milliseconds from full level to 0 for lamps that left
+                           the picture */
     int32_t memory_ms; /* milliseconds for which a lamp without a spot keeps its
                           number */
     int32_t smooth_ms; /* milliseconds over which scatter is averaged */

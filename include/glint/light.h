@@ -45,9 +45,9 @@ struct glint_light {
      * one pixel; 1 = display white. */
     struct glint_real power;
     int32_t rgb_q14[3]; /* colour, linear BT.709, largest channel 1 */
-    /* Tangent of the angle between this and its neighbours where it is one of
-     * many points that stand for a lamp; ghosts too small to meet theirs are
-     * drawn larger. 0: it is a light of its own. */
+    /* Tangent of the angle to its neighbours if it is one of many points that
+     * stand for a lamp: a ghost that is too small to meet those of the
+     * neighbours is drawn larger. 0: the light stands by itself. */
     int32_t apart_q30;
 };
 
@@ -55,8 +55,9 @@ struct glint_light {
 struct glint_wave {
     int32_t wave_q24;   /* 1 / wavelength^2, um^-2 */
     int32_t rgb_q14[3]; /* colour, linear BT.709, largest channel 1 */
-    /* Factor on the colour, 1 / mm^2: its size over the flux, in mm^2, that
-     * light is measured by: that of the direct image at angle 0. */
+    /* Factor on rgb_q14, 1 / mm^2: the largest channel that the colour really
+     * has, over the flux, mm^2, of the direct image at angle 0 by which light
+     * is measured. */
     struct glint_real weight;
 };
 

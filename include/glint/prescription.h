@@ -109,8 +109,8 @@ struct glint_optics {
     double entrance_z_mm;      /* distance of the entrance pupil from the front
                                   vertex */
     double stop_radius_mm;     /* radius of the aperture stop at the f-number */
-    double length_mm; /* from the front vertex, or a stop before it, to the
-                         sensor */
+    double length_mm; /* from the front vertex to the sensor, even if the stop
+                         lies before it */
 };
 
 void glint_optics_of(const struct glint_prescription *lens,

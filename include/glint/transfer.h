@@ -94,8 +94,8 @@ struct glint_place {
                                      frame's, 1 or more; 0: both are equal */
 };
 
-/* Return u at X_Q30 of the window's width, -1 .. 1, and v after J of N equal
- * steps up its upper half. */
+/* Return u at X_Q30, where -1 .. 1 is the width of the window, and v after J of
+ * N equal steps from the lower to the upper end of its upper half. */
 int32_t glint_transfer_u(const struct glint_transfer *transfer, int32_t x_q30);
 int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n);
 

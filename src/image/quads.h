@@ -24,9 +24,11 @@ struct glint_quads_rows {
 };
 
 /* Adds LIGHT to N_X x N_Y pixels of IMAGE from (X, Y) on. X is a multiple of 8,
- * Y is even; N_X is at most GLINT_CODES_WIDTH, and even except at the right
- * side; N_Y is 2 except at the lower side. LIGHT has R, G, B of (N_X + 1) / 2
- * quads, at 32-byte boundaries, with room for a multiple of GLINT_LANES. */
+ * Y is even. N_X is at most GLINT_CODES_WIDTH, and odd only at the right side
+ * of the picture; N_Y is 2, or 1 at its lower side. A quad is 2 x 2 pixels:
+ * LIGHT[c] holds channel c of the (N_X + 1) / 2 quads of the row. It begins at
+ * a 32-byte boundary and has room for that number rounded up to a multiple of
+ * GLINT_LANES. */
 typedef void glint_resolve_quads_fn(const struct glint_resolve *resolve,
                                     const struct glint_image *image, int x,
                                     int y, int n_x, int n_y,

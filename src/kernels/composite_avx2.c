@@ -21,7 +21,7 @@ static inline __m128i b_of_chroma(const V c[2]);
 
 #include "kernels/composite_x86.inc"
 
-/* Loads eight values into each half. */
+/* Loads eight values and repeats them in both halves. */
 static inline V v_repeat(const int16_t *p)
 {
     return _mm256_broadcastsi128_si256(b_load(p));

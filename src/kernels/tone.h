@@ -11,7 +11,7 @@
  *   encode: a cubic in each octave of light: with z = -1 .. 0 from its lower to
  *   its upper end, level + z (slope + z curve (turn0 + z turn1)). Level, slope
  *   and curve are looked up by the number of leading zeros. Where the curve is
- * a power, the cubics of all octaves are alike, so that turn0 and turn1 serve
+ *   a power, the cubics of all octaves are alike, so that turn0 and turn1 serve
  *   all of them; in the toe curve is 0, and beyond white slope is 0, too.
  *
  * The factors make the greatest error against sRGB and BT.709 least. In codes

@@ -210,8 +210,8 @@ static int32_t row_q30(const struct glint_transfer *t, int n_cells, int j)
                      : glint_transfer_v(t, last - (n_cells - j), last);
 }
 
-/* Fills ROW with row J of the lower half, and MIRRORED with its mirror image,
- * unless they are NULL. */
+/* Fills ROW with row J and MIRRORED with the mirror image of that row, which is
+ * row N_CELLS - J; either may be NULL. MIRRORED is NULL in the sparse basis. */
 static void set_row_pair(struct glint_transfer *t,
                          const struct glint_place *place, int n_cells, int j,
                          struct glint_vertex *row,
