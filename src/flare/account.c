@@ -61,8 +61,11 @@ static int set_of(const struct glint_flare *f, int ghost, int light)
                : 0;
 }
 
-/* Returns the index of the last place that the plan needs to look at the
- * bundle; with sets, of the last wave of the first set. */
+/* Returns which of the flare's max_bundles places, counted from 0, must exist
+ * for the plan to look at the bundle at all. Without sets that is the place
+ * numbered as the bundle. With sets the plan first looks at all waves of the
+ * first set, for each ghost and light, and then chooses: it is the place of the
+ * last of these waves. */
 static int64_t place_of(const struct glint_flare *f, int ghost, int light,
                         int wave)
 {

@@ -258,8 +258,8 @@ static int merge_neighbours(struct glint_light *b, int n, const struct rule *r)
     return left;
 }
 
-/* Returns the least cost at which enough of the neighbours merge: 1 / PART of
- * the N - MOST lights that have to go. */
+/* Returns the least cost, up to 1 / BINS of the range of costs, at which enough
+ * of the neighbours merge: 1 / PART of the N - MOST lights that have to go. */
 static int next_cost(const struct glint_light *b, int n, int most)
 {
     int count[BINS] = {0}, low = INT32_MAX, high = INT32_MIN, width, bin = 0;

@@ -27,7 +27,8 @@ static int64_t pixels_q8(const struct glint_plan *p,
                         8, INT64_C(1) << 31);
 }
 
-/* Returns X pixels of a ghost as they are where it is drawn larger. */
+/* Returns the length that X, a length of a ghost in pixels, has in the picture,
+ * where the ghost may be drawn larger. */
 static int64_t widened(const struct glint_bundle_plan *s, int64_t x_q8)
 {
     return s->wider_q16 ? x_q8 * s->wider_q16 >> 16 : x_q8;
@@ -135,8 +136,8 @@ static struct glint_real flux_of(const struct glint_plan *p,
 
 /* Returns the most light that a cell can give a pixel, in units of the faintest
  * light that shows: twice the flux of a cell of the probe over the least area
- * of one on the sensor, as cells between may be brighter. Returns the largest
- * value for folded ghosts, whose areas say little. */
+ * of one on the sensor, as cells between may be brighter. Returns 2^20 for
+ * folded ghosts, whose areas say little, and for linear pictures. */
 static int64_t peak_q20(const struct glint_plan *p,
                         const struct glint_bundle_plan *planned,
                         const struct glint_probe *s,
@@ -201,7 +202,7 @@ struct glint_place glint_plan_place(const struct glint_plan *plan,
     return place;
 }
 
-/* Returns the power of two by which energies can be raised without overflow,
+/* Returns log2 of the factor by which energies can be raised without overflow,
  * with a quarter to spare over what the probe saw. */
 static int energy_up(int64_t energy)
 {
@@ -239,11 +240,11 @@ static int is_wanted(const struct glint_flare_frame *r, int ghost)
     return g->i == only->i && g->j == only->j;
 }
 
-/* Sets how much larger the ghost has to be drawn to be two and a half times as
- * wide as it lies from those of the lamp's next points: else the lamp's ghost
- * would be a pattern of dots. A ghost is as many times as far from the middle
- * as the light as it moves when the light does; those of a point on the axis
- * stay as they are. */
+/* Sets by how much the ghost is drawn larger, WIDEST_Q16 at most. A small ghost
+ * of a point would lie apart from those of the lamp's neighbouring points, and
+ * the lamp's ghost would be a pattern of dots; so it is made two and a half
+ * times as wide as they are apart. The ghost moves with the light in proportion
+ * to its distance from the middle. For a light on the axis nothing is set. */
 static void set_wider(const struct glint_plan *p,
                       struct glint_bundle_plan *planned,
                       const struct glint_transfer *t,

@@ -31,9 +31,9 @@ struct glint_bundle_plan {
     /* Light of the whole pupil if all rays had the highest energy seen, display
      * white times pixels. */
     struct glint_real flux;
-    /* How many times as large as it is the ghost is drawn, about a point so
-     * many pixels from the picture's middle along the light's azimuth; 0: as it
-     * is. */
+    /* wider: factor by which the ghost is drawn larger, above 1; 0: it is drawn
+     * in its own size. centre: the point about which it grows, pixels from the
+     * picture's middle along the light's azimuth. */
     int32_t wider_q16, centre_q8;
     /* Flux over the pixels that it falls on, display white. */
     struct glint_real irradiance;

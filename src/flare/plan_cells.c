@@ -169,8 +169,9 @@ static int64_t bowl_of(const struct glint_probe *s, int k)
     return sum;
 }
 
-/* Returns the same for a round stop: r^2 / 2 bends by the square of the change
- * of the stop position. */
+/* Returns how much (1 + r^2) / 2 bends over the box for a round stop, across
+ * and down together: each way by the square of the distance that the stop
+ * position moves, in stop radii. */
 static int64_t round_bowl_q16(const struct glint_probe *s)
 {
     const struct glint_real change =

@@ -106,7 +106,8 @@ static int64_t span_of(const struct glint_flare_frame *r, int set)
 }
 
 /* Returns whether no step between waves of set SET shows in a ghost with the
- * sum of light LIGHT. APART is the distance of the first set's outermost
+ * sum of light LIGHT, which is taken to change by LIGHT / (2 n) from one of n
+ * waves to the next. APART is the distance of the first set's outermost
  * outlines, pixels _q8. */
 static int serves(const struct glint_flare_frame *r, int set, int64_t apart,
                   struct glint_real light)
@@ -114,7 +115,7 @@ static int serves(const struct glint_flare_frame *r, int set, int64_t apart,
     const struct glint_wave_sets *s = r->sets;
     const int64_t gaps = s->size[set] - 1;
     const struct glint_real step =
-        real_over(light, real_of(s->size[set], 1)); /* light / (2 n) */
+        real_over(light, real_of(s->size[set], 1)); /* LIGHT / (2 n) */
 
     return real_less(step, s->step) ||
            apart * span_of(r, set) <= s->apart_q8 * gaps * span_of(r, 0);

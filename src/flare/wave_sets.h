@@ -10,8 +10,9 @@
  * through the same places of the pupil's box. The box follows the outline from
  * wave to wave, so the distance at which two such rays land is that of the
  * outlines. Ghosts that need more waves are planned anew with a larger set.
- * Light between two of n waves changes by about 5 / n of the ghost's light, in
- * the channel where the change is largest. */
+ * From one of n waves to the next, light changes by about 5 / n of the ghost's
+ * light in the channel where the change is largest; a tenth of that is compared
+ * with the step that may show. */
 #ifndef GLINT_FLARE_WAVE_SETS_H
 #define GLINT_FLARE_WAVE_SETS_H
 

@@ -60,8 +60,8 @@ static void send(struct glint_window_nodes *n, struct glint_transfer *t)
 }
 
 /* Returns how much output K bends about node (I, J): twice the distance that it
- * may lie from a straight line between rays. At most 2^32, as values are below
- * 2^30. */
+ * may lie from a straight line between rays. About 2^31 at most, as values are
+ * below 2^30. */
 static int64_t bend_of(const struct glint_window_nodes *n, int k, int i, int j)
 {
     const int32_t(*at)[ACROSS] = n->at[k];
@@ -226,9 +226,9 @@ static struct extent look(struct glint_window_nodes *n,
 
 /* ------------------------------------------------------------------- window */
 
-/* Widens E by 1/PART of its size to either side, within 0 .. STEPS: between the
- * lines of the grid a circle that spans six cells or more bulges by a hundredth
- * of itself. */
+/* Widens E along K, 0 across or 1 down, by 1 / PART of its size on either side,
+ * within 0 .. STEPS: between the lines of the grid a circle that spans six
+ * cells or more bulges by a hundredth of itself. */
 static void loosen(struct extent *e, int k, int steps, int part)
 {
     const int32_t most_q16 = steps * ONE_NODE_Q16;

@@ -356,8 +356,8 @@ void glint_record_see(struct glint_record *r,
     r->lost_us = 0;
 }
 
-/* Returns whether the lamp is so far out that it never comes back, nor into any
- * picture's flare. */
+/* Returns whether the lamp is so far outside of the picture that it neither
+ * comes back nor throws a flare into it. */
 static int is_far(const struct glint_record *r)
 {
     const int64_t limit_q16 = (int64_t)4 * GLINT_MAX_SIDE << 16;

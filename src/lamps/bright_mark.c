@@ -8,7 +8,8 @@
 
 /* ------------------------------------------------------------ one threshold */
 
-/* Returns the high bits of bytes, of N words at P, that are CODE or more. */
+/* Returns the OR, over N words at P, of the high bits of those bytes that are
+ * CODE or more. */
 static WHOLLY_INLINE uint64_t high_codes(const uint8_t *p, int n, int code,
                                          int is_above_128)
 {
@@ -31,8 +32,8 @@ static int least_of_565(int code, int n_bits)
     return v;
 }
 
-/* Returns a bit for each pixel, of N words of four at P, that has a sample of
- * CODE or more. */
+/* Returns the OR, over N words of four pixels at P, of a bit for each pixel
+ * that has a sample of CODE or more. */
 static uint64_t high_565(const uint8_t *p, int n, int code)
 {
     const uint64_t each = UINT64_C(0x0001000100010001);
@@ -343,10 +344,11 @@ static WHOLLY_INLINE int are_quiet(const uint8_t *p, const struct quiet *quiet)
 }
 
 /* Marks the whole blocks of a row of YUYV or UYVY at PX; Y is the place of the
- * first luma. Most blocks are neither bright nor strongly coloured, which a
- * look at several together shows, or at one without each of its extremes. After
- * a loud block the next ones are mostly loud, too, and so are looked at one by
- * one. If loud_luma() is 0, nothing is quiet. */
+ * first luma. Most blocks are quiet: neither bright nor strongly coloured. This
+ * is tested for TOGETHER blocks at once, else for one block, by the greatest
+ * luma and the extremes of all chroma; only a loud block is then tested by its
+ * extremes of Cb and of Cr. After a loud block the next ones are mostly loud,
+ * too, and so are tested one by one. If loud_luma() is 0, no block is quiet. */
 static WHOLLY_INLINE int mark_pairs(struct glint_bright *b, const uint8_t *px,
                                     int y)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Which of the regions are lamps, by their scores, and which of those that lie
- * within each other is meant.
+ * Chooses which regions are lamps, by their scores, and which one of regions
+ * that lie within each other stands for the lamp.
  */
 #include "base/sort.h"
 #include "lamps/score.h"

@@ -104,8 +104,9 @@ static void see_run(const struct window *w, int x0, int x1, struct sample *at,
     }
 }
 
-/* Returns the offset of the last sample of a row that is DY off the middle of a
- * disc of RADIUS, or -1 if the row is outside. */
+/* In the row DY off the middle of a disc of RADIUS, samples lie at multiples of
+ * STEP from the middle. Returns how far off the last one inside the disc is, or
+ * -1 if the row misses the disc. */
 static int last_in(int radius, int dy, int step)
 {
     const int64_t left = (int64_t)radius * radius - (int64_t)dy * dy;

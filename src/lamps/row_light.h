@@ -42,9 +42,10 @@ struct glint_row_sum {
 
 struct glint_row_light {
     struct glint_row_sum *sum; /* [width + 1]: sums, kept where from[x] is x */
-    uint16_t *from; /* [width + 1]: the column itself if its sum is kept, else
-                       the first of the equal pixels on both sides of it */
-    int end;        /* end of the last stretch; -1: there is none */
+    /* [width + 1]: the column itself if its sum is kept; else the first column
+     * of the run of equal pixels that it is inside of */
+    uint16_t *from;
+    int end; /* end of the last stretch; -1: there is none */
 };
 
 void glint_row_light_carve(struct glint_row_light *row,

@@ -193,7 +193,8 @@ static int32_t wide_q8(const struct glint_candidate *c, int32_t value_q8)
 
 /* -------------------------------------------------------------------- shape */
 
-/* Returns SUM's area over 2 pi r^2, r^2 plus 1/6 as of a pixel; a disc: 256. */
+/* Returns the area of SUM over 2 pi r^2, at most 2: 256 for a disc. r is the
+ * RMS radius; 1/6, that of a single pixel, is added to r^2. */
 static int32_t fill_q8(const struct glint_region *sum)
 {
     const int64_t r_q8 = glint_region_radius_q8(sum);
@@ -203,7 +204,7 @@ static int32_t fill_q8(const struct glint_region *sum)
     return q_clamp_sat(((int64_t)sum->area << 24) / disc_q16, 0, 512);
 }
 
-/* Of a region of DRAWN_AREA pixels and more. */
+/* Returns EVIDENCE_DRAWN of a region that fills BOX_Q8 of its box. */
 static int32_t drawn_q8(const struct glint_region *sum, int32_t box_q8)
 {
     return sum->area < DRAWN_AREA
@@ -245,7 +246,8 @@ static int32_t dim_q8(const struct glint_score *s,
                        0, 5 * 256);
 }
 
-/* Returns how far below white 1 / 2^PART_LOG2 of the picture reaches, stops. */
+/* Returns how many stops below white the brightness is that 1 / 2^PART_LOG2 of
+ * the picture reaches. */
 static int32_t below_white_q8(const struct glint_score *s, int part_log2)
 {
     const int32_t *light_q20 = s->bright->curve->decode_q20;
@@ -343,8 +345,9 @@ static int32_t most_of_rings(int first)
     return (sum_q16 >> 8) + 1;
 }
 
-/* Sets measures of the rings to add nothing, as most_of_rings() adds the most
- * they can, but EVIDENCE_WIDE_HALO, which it leaves out, to its most. */
+/* Sets the measures of the rings so low that they add nothing, as
+ * most_of_rings() adds the most that they can; but EVIDENCE_WIDE_HALO, which
+ * that function leaves out, to its largest value. */
 static void hope_for_rings(struct glint_candidate *c)
 {
     for (int i = 0; i < EVIDENCES; i++)
@@ -375,8 +378,9 @@ static void learn_of_ring(struct glint_candidate *c, const struct ring *ring,
     }
 }
 
-/* Returns the score of C, by its rings as long as they may lift it to
- * -SCORE_DOUBT. MOST[I]: the most that ring I and later ones can add. */
+/* Returns the score of C. If is_brief is set, its rings are looked at only as
+ * long as they may lift it to -SCORE_DOUBT. MOST[I]: the most that ring I and
+ * later ones can add. */
 static int32_t score_by_rings(struct glint_candidate *c,
                               const struct glint_score *s,
                               const int32_t most_q8[SCORE_RINGS])

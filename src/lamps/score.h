@@ -78,8 +78,10 @@ enum glint_evidence {
     EVIDENCE_DARK_2,
     EVIDENCE_DARK_4,
     EVIDENCE_DARK_32,
-    EVIDENCE_DRAWN, /* it fills its upright box to the last pixels, 256: all but
-                       two of 256: a bar, a cursor, a window of a screen */
+    /* how far a region of 36 pixels or more fills its upright box: 0 up to
+     * 250/256 of the box, 256 from 254/256 on, as of a bar, a cursor, a window
+     * of a screen */
+    EVIDENCE_DRAWN,
     EVIDENCES
 };
 

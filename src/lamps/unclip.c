@@ -94,9 +94,10 @@ static int32_t lamp_share_q15(const struct glint_profile_sums *sums)
            q_clamp_sat(q_divide(rim_q8 << 16, inner_q8), 0, 1 << 15);
 }
 
-/* Returns that share for a large core, by its rim: all of the core is the
- * lamp's face if more light is lost at the rim than a glare could lose,
- * whatever light is around it. */
+/* Returns the radius of the lamp as a share of its core's, 0 .. 1, by the rim
+ * of a large core: all of the core is the lamp's face if more light is lost at
+ * the rim than a glare could lose, whatever light is around it. 0 for a small
+ * core. */
 static int32_t face_share_q15(const struct glint_profile_sums *sums)
 {
     const int32_t over_q15 = sums->rim_q15 - RIM_GLARE;
@@ -290,11 +291,11 @@ static int64_t weighed_q26(const int16_t weight_q10[FEATURES + 1],
 }
 
 /* Returns how many stops over white the core is, -6 .. 14: a perceptron with
- * one layer of rectified units beside a linear term. A halo means one thing
- * beside a core of three pixels and another beside one of a hundred, and so on
- * an even background and among windows: products of features, for which units
- * stand by sums alone. A unit is below 2^32 in _q16, times a weight 2^47, and
- * there are six. */
+ * one layer of rectified units beside a linear term. The units stand for
+ * products of features: a halo tells one thing beside a core of three pixels
+ * and another beside one of a hundred, or on an even background and among
+ * windows. A unit is below 2^32 in _q16, times a weight 2^47, and there are
+ * six. */
 static int32_t stops_q16(const int32_t feature_q16[FEATURES])
 {
     int64_t sum_q26 = weighed_q26(linear_q10, feature_q16);
@@ -321,8 +322,8 @@ void glint_unclip_light(int64_t *seen_q16, int64_t *core_q16,
 }
 
 /* Sets the power: light that is seen, and light that the clipped core hides,
- * estimated from its features. The core is below 2^47, so that the clamp of the
- * logarithm is the first limit. */
+ * estimated from its features. Hidden light is clamped to 2^27 white pixels,
+ * seen and hidden light together to MAX_POWER. */
 static void set_power(struct glint_spot *spot,
                       const struct glint_profile_sums *sums)
 {

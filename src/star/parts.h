@@ -18,8 +18,8 @@ struct glint_star_lamp {
     int32_t x_q8, y_q8;
     uint64_t inner_q16; /* least value that r^2 is taken for, pixels^2 */
     int is_bare;        /* 1: the lamp's core is drawn as well */
-    /* Light of one step of a profile, and of one step of the core: 15 bits,
-     * times 2^exponent. And log2 of the light in units of the halo's table. */
+    /* line: light of one step of a profile, core: power of the lamp, both by
+     * channel, 15 bits times 2^exponent. halo: log2 of the power by channel. */
     int32_t line[3], line_exponent, core[3], core_exponent, halo_log2_q16[3];
     /* Scale of the profiles for this lamp's extent: steps per pixel, and pixels
      * per step. */

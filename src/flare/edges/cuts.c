@@ -38,10 +38,10 @@ static int64_t disc_q16(const struct glint_vertex *v)
     return value_q16 > -(1 << 30) ? value_q16 : -(1 << 30);
 }
 
-/* Returns the sides that V lies on or beyond: those along whose normal it lies
- * at least LEAST from the middle, which agrees with the rounding of
- * glint_side_q16(). If HALF is not 0, only the first HALF sides are looked at,
- * each together with its opposite. */
+/* Returns a bit for each side that V lies on or beyond, which is where
+ * glint_side_q16() is 0 or less. LEAST is the apothem less half a unit of _q16,
+ * as that function rounds. HALF is the number of pairs of parallel sides, whose
+ * two sides are tested together; 0: sides are tested one by one. */
 static inline uint64_t sides_of(const struct glint_stop *stop, int half,
                                 const struct glint_vertex *v, int64_t least_q46)
 {

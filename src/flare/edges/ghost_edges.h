@@ -39,8 +39,8 @@ enum {
 struct glint_ghost_rows {
     struct glint_outline outline;
     struct glint_vertex vertex[2][GLINT_MAX_CELLS + 1];
-    /* The rows after the middle one, by the number of their mirror image before
-     * it. They are computed together with those, if the grid is small. */
+    /* [j]: the mirror image of row j, which is one of the rows after the middle
+     * one. In small grids it is computed together with row j. */
     struct glint_vertex held[GLINT_HELD_CELLS / 2][GLINT_HELD_CELLS + 1];
     uint64_t sides[2][GLINT_MAX_CELLS + 1]; /* sides of the stop that each node
                                                lies outside of, a bit each */
