@@ -14,9 +14,11 @@ struct glint_errors {
 };
 
 struct glint_measured {
-    int rays;      /* number of rays that got through */
-    int intruders; /* rays that are cut, well outside of every edge, but pass
-                      the model */
+    int rays; /* number of rays that got through */
+    /* besides RAYS, rays that the model lets through although the real lens
+     * does not: they fail, or lie more than 3 % outside a surface's
+     * semi-diameter or the stop's radius */
+    int intruders;
     struct glint_errors of[GLINT_OUT_KINDS]; /* errors of each output, in the
                                                 model file's units */
 };

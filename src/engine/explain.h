@@ -21,7 +21,9 @@
 struct glint_explain_part {
     int of[GLINT_OUTCOMES]; /* number of bundles of each outcome */
     int cells;              /* cells a side of its largest grid */
-    /* Most terms and barrels that a bundle of the part has. */
+    /* Of the part's bundles, the largest number of terms that a bundle's
+     * polynomials have together, and the largest number of barrels that can cut
+     * one. */
     int terms, barrels;
     long long probed; /* rays that the plan looked at */
     /* all_terms is the sum over vertices of the terms of each. */
@@ -62,8 +64,8 @@ void glint_explain_close(struct glint_explain *explain);
 /* Draws ghost GHOST alone, or all ghosts for -1, into linear_q20. */
 void glint_explain_draw(struct glint_explain *explain, int ghost);
 
-/* Return the number of bundles of PART that were looked for, and that are
- * drawn. */
+/* Return the number of bundles of PART, whatever became of them, and the number
+ * of those that were drawn, even if they change no pixel. */
 int glint_explain_bundles(const struct glint_explain_part *part);
 int glint_explain_drawn(const struct glint_explain_part *part);
 

@@ -32,7 +32,8 @@ enum {
 
 /* Light of a layer that has only the flare, as linear R, G, B. */
 struct glint_response_light {
-    double peak[3]; /* mean of the brightest 1/1000 of the pixels */
+    double peak[3]; /* mean of the brightest 1/1000 of the pixels, of 46 pixels
+                       at most */
     double mean[3]; /* mean of all pixels */
 };
 
@@ -40,7 +41,7 @@ struct glint_response {
     int n; /* number of angles, 1 .. GLINT_RESPONSE_ANGLES; 0: nothing was
               measured */
     double theta_deg[GLINT_RESPONSE_ANGLES]; /* rising, from 0 */
-    /* -100: no light. */
+    /* log2 of the light at each angle; -100: there is none. */
     struct glint_response_light log2_of[GLINT_RESPONSE_ANGLES];
     /* Lamps of visible extent: their RMS radii, tangents, rising from 0, and
      * log2 of the brightest part of their flare over that of a point. */
@@ -65,8 +66,9 @@ enum glint_status glint_response_draw(const struct glint_frame *like,
                                       struct glint_response_light *light,
                                       struct glint_seen *seen);
 
-/* Measures frames with the options that LIKE was asked to draw with. Takes at
- * most BYTES for drawing, unless that is 0. GLINT_E_MEMORY. */
+/* Measures RESPONSE for the lens and view of LIKE, with the options that LIKE
+ * was asked to draw with. Takes at most BYTES for drawing, unless that is 0.
+ * GLINT_E_MEMORY. */
 enum glint_status glint_response_measure(const struct glint_frame *like,
                                          size_t bytes,
                                          struct glint_response *response);

@@ -19,7 +19,7 @@ enum {
     GLINT_GROUND_COLUMNS = 320,
     GLINT_GROUND_ROWS = 180,
     GLINT_SEEN_CODES = 32,
-    GLINT_SEEN_FEW = 50, /* one pixel in so many is few, or many */
+    GLINT_SEEN_FEW = 50, /* one pixel in 50 is few, one in 4 is many */
     GLINT_SEEN_MANY = 4
 };
 

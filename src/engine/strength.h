@@ -53,9 +53,11 @@
 
 /* The lamps of a frame. */
 struct glint_strength_lamps {
-    struct glint_lamp *lamp; /* [n]; their powers are those to be drawn */
-    const double *level;     /* [n], above 0, at most 1: how far each lamp has
-                                risen, which its power includes. NULL: all 1 */
+    /* [n]; power includes level but not scale; powers of new lamps that are too
+     * bright are lowered in place */
+    struct glint_lamp *lamp;
+    const double *level; /* [n], above 0, at most 1: how far each lamp has
+                            risen, which its power includes. NULL: all 1 */
     int n;
     double pixels; /* number of pixels of the picture, times the light of its
                       white */

@@ -9,7 +9,8 @@
 
 /* The memory of a flare that is drawn by cells, beyond that of any flare. */
 struct by_cells {
-    uint8_t *level; /* for each vertex, the marks that merging leaves */
+    uint8_t *level; /* [max_vertices]: marks of cells that merging leaves; those
+                       of a bundle begin at its first vertex */
     struct glint_primitive *primitive;
 };
 

@@ -148,7 +148,7 @@ static enum side side_of(const struct glint_corners *c,
 
     if (near == 0)
         return CUT;
-    /* values| < 2^34; REACH is below 2^29 or not used */
+    /* Values are below 2^34 in magnitude; REACH is below 2^29 or not used. */
     if (reach >= INT64_C(1) << 29 || near * 256 < (high - low) * reach) {
         to_pixels(c, value_q16, at_q8);
         for (int i = 0; i < 4; i++)

@@ -219,7 +219,9 @@ add_bundles(struct glint_frame *f, const struct glint_traced_bundle_config *cfg)
         const int n = t->bundle[i].n_cells + 1;
 
         if (i == MAX_BUNDLES || n * n > MAX_VERTICES - vertices) {
-            t->n_dropped = t->n_bundles - i; /* The faintest lamps come last. */
+            /* These are of the faintest lamps, if lamps come as they were found
+             * or merged. */
+            t->n_dropped = t->n_bundles - i;
             t->n_bundles = i;
             break;
         }

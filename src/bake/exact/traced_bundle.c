@@ -55,9 +55,9 @@ static void add_rim(const struct glint_traced_bundle_config *cfg,
 }
 
 /* Returns the cells a side by the rule of lens/grid.h, but not so few that they
- * could step over the stop: where a rim next to total reflection comes through
- * as well, the pupil is the whole front, of which the opening may be a
- * hundredth. */
+ * could step over the stop. If a rim next to total reflection comes through,
+ * too, the pupil is the whole front, of which the opening may be a hundredth.
+ */
 static int cells_of(const struct glint_traced_bundle_config *cfg,
                     const struct glint_sampling *s)
 {

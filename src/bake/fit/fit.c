@@ -30,8 +30,8 @@
  * large. */
 #define PART_LEFT   5.0
 #define MOST_HIDDEN 3.0
-/* Times that error: zones with a larger one are divided at once, as more terms
- * would not help. */
+/* Times PART_LEFT as it is eased for faint ghosts, bearable(): zones with a
+ * larger error are divided at once, as more terms would not help. */
 #define HOPELESS 20.0
 /* Tolerances: a wide zone with a larger error will be halved anyway. */
 #define HALVES_ANYWAY 10.0
@@ -205,7 +205,7 @@ static double width_of(const struct pending *p,
     return degrees_between(p->lo, p->hi) * (aim->ease < BRIGHT_EASE ? 2 : 1);
 }
 
-/* Returns the factor on widths that are not halved any more. */
+/* Returns the factor on LEAST_DEG and STUCK_DEG for P. */
 static double least_of(const struct fitter *f, const struct pending *p)
 {
     return p->lo <= 0 ? f->tolerance->axis : 1;
@@ -220,8 +220,8 @@ static double settled(const struct fitter *f, const struct pending *p,
 
     if (p->thorough)
         return p->depth < most_depth(f, p) ? bearable(aim) : 0;
-    /* The lower half is the narrower one. If even that is too wide to be stuck,
-     * nobody asks what halving gained. */
+    /* The lower half is the narrower one in degrees. If even that is too wide
+     * to be stuck, next_step() does not ask what halving gained. */
     if (degrees_between(p->lo, 0.5 * (p->lo + p->hi)) >= STUCK_DEG ||
         width < least * LEAST_DEG)
         return 1;
@@ -356,8 +356,8 @@ static int push_halves(struct pending *stack, int n, struct pending p,
  * stack. */
 static enum glint_status fit_range(struct fitter *f, const double range[2])
 {
-    /* 20 halvings take a sine down to half of LEAST_DEG, or to a tenth of that
-     */
+    /* Fewer than 20 halvings take a zone down to half of LEAST_DEG, or at the
+     * axis to a tenth of that. */
     enum { DEEP = 24 + BAND_DEPTH + GLINT_MAX_AXIS_DEPTH };
     struct pending stack[DEEP] = {
         {range[0], range[1], HUGE_VAL, -1, 1, false, whole, 0}};

@@ -287,7 +287,7 @@ static int output_exponent(const struct glint_fitted_system *s, int k)
 
 /* Returns by how many bits a polynomial can be scaled up so that, where light
  * gets through, it stays below half of the largest integer that it may have;
- * for a fourth root, so that its energy does. Each bit more would take four
+ * for a fourth root, so that its energy does, as one bit of the root is four
  * bits of the energy. */
 static int head_of(const struct glint_fitted_output *o, int exponent)
 {

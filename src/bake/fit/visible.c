@@ -350,8 +350,7 @@ void glint_visible_join(struct glint_pupil *a, const struct glint_pupil *b)
     a->y1_mm = fmax(a->y1_mm, b->y1_mm);
 }
 
-/* Returns BOX moved on from BEFORE by RATIO times the way from BEFORE to BOX.
- */
+/* Returns BOX moved on by RATIO times the way from BEFORE to BOX. */
 static struct glint_pupil predict(const struct glint_pupil *before,
                                   const struct glint_pupil *box, double ratio)
 {

@@ -25,12 +25,12 @@ struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
                                         const struct glint_zone *zone,
                                         const struct glint_zone_rays *rays);
 
-/* Returns the tolerance of an outline in a unit of which one is worth
- * STRETCH_MM on the sensor: at most MOST, and at least a sixteenth of that. */
+/* Returns the tolerance of an outline in a unit that stands for STRETCH_MM on
+ * the sensor: at most MOST, and at least a sixteenth of that. */
 double glint_zone_aim_outline(const struct glint_zone_aim *aim, double most,
                               double stretch_mm);
 
-/* Returns how many mm on the sensor a unit of the place (A, B) is worth (of A
+/* Returns for how many mm on the sensor a unit of the place (A, B) stands (of A
  * alone if B is NULL), root mean square over neighbouring rays. Rays with A
  * below NEAR do not count: barrels matter only where they cut. */
 double glint_zone_aim_stretch(const struct glint_zone_rays *rays,

@@ -330,7 +330,8 @@ static enum glint_status fit_outputs(struct fit *f,
 
 /* ------------------------------------------------------------------ checks */
 
-/* Largest error, in tolerances, of rays that were not fitted. */
+/* Largest root mean square error, in tolerances, of rays that were not fitted.
+ */
 #define CHECK_RMS 1.6
 
 /* Returns the root mean square error of one output over the rays that get
@@ -357,8 +358,10 @@ static double check_output(const struct fit *f,
     return n ? sqrt(sum2 / n) / rms : 0;
 }
 
-/* Returns how far the zone exceeds its tolerance at rays between those that
- * were fitted: a fit can be good at every node and nowhere else. */
+/* Returns the largest error of the places on sensor and stop, at rays between
+ * those that were fitted, over what is allowed there (CHECK_RMS tolerances);
+ * above 1 the zone is not good enough. A fit can be good at every node and
+ * nowhere else. */
 static double check_zone(struct fit *f,
                          const struct glint_fitted_system *system)
 {

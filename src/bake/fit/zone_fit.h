@@ -25,9 +25,10 @@ struct glint_zone_task {
     bool thorough;   /* true allows a root of the energy, and more terms */
     double hopeless; /* tolerances: the fit of a zone with a larger error is
                         given up; 0: none is */
-    /* Tolerances: where an output that is done has a larger error, of a place
-     * or a barrel in a thorough fit, the others are left out, as the zone will
-     * be fitted anew however they come out; 0: none is left out. */
+    /* Tolerances: if an output that was fitted has a larger error, the outputs
+     * after it are left out, as the zone will be fitted anew however they come
+     * out. In a thorough fit only errors of places and barrels count. 0: none
+     * is left out. */
     double settled;
 };
 

@@ -7,7 +7,7 @@
 #include "bake/trace/sampling.h"
 #include "engine/setup/degrees.h"
 
-/* Rays a side of the sampling that decides which barrels matter. */
+/* Cells a side of the sampling that decides which barrels matter. */
 enum { SAMPLING = 96 };
 
 static void find_cuts(struct glint_cells *c)

@@ -17,7 +17,7 @@
 
 enum { ACROSS = 64, DOWN = 32, ROUNDS = 8 };
 
-/* times ACROSS: cells of the line on which spots are sought */
+/* stretches, of ACROSS cells each, of the line on which spots are sought */
 enum { LINES = 4 };
 
 /* Cells of later rounds, which cover less and get by with a coarser grid. */

@@ -27,8 +27,8 @@ struct glint_sampling {
     double outline_mm; /* the largest such bend of the stop position or of a
                           barrel that cuts, converted to mm on the sensor */
     double round_mm;   /* such a bend of a round stop's outline */
-    int n_inside; /* number of rays that pass and whose neighbours are not lost
-                   */
+    int n_inside; /* number of rays that pass and have both neighbours along a
+                     line of the grid, across and down counted apart */
     /* Stop radii by which rays move over the pupil's box: harmonic mean over
      * neighbouring rays that the opening may lie between. */
     double step;

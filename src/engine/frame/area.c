@@ -106,10 +106,11 @@ int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
     return n;
 }
 
-/* Each point has an even part of the ellipse, as long as that in proportion; of
- * a tube's, which are much longer, twice what a circle's is: seven points of a
- * tube shall not be as wide as it is. So that nothing steps, it grows with what
- * spreads two to four points. */
+/* Each point stands for an equal part of the ellipse, and part and ellipse have
+ * one shape: the distance is the length of such a part. For a tube it is at
+ * most twice that of a circle of the tube's area: ghosts of seven points shall
+ * not be as wide as the tube is long. From one to four points the distance sets
+ * in gradually, as the spread does, so that nothing steps. */
 double glint_area_apart(const struct glint_area *area)
 {
     const double major = hypot(area->major[0], area->major[1]);

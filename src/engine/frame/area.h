@@ -15,7 +15,8 @@
 enum {
     GLINT_AREA_SAMPLES = 7, /* points of the brightest lamp, unless another
                                number is asked for */
-    /* Factor on the further points of a lamp in a single picture. */
+    /* Factor on the points beyond the first that a lamp gets in a single
+     * picture. */
     GLINT_AREA_STILL = 20,
     GLINT_AREA_STILL_ROOM = 4, /* factor on max_lights for points of wide lamps
                                   in a single picture */

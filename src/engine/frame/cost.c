@@ -44,7 +44,8 @@ double glint_cost_minsn(const struct glint_cost *cost)
     return 1e-3 * sum;
 }
 
-/* cells a side with which a grid might have done that got GLINT_LEAST_CELLS */
+/* cells a side that are taken to be enough for a grid that got
+ * GLINT_LEAST_CELLS */
 enum { LESS_CELLS = 6 };
 
 /* Returns the cells a side that the plan would have chosen for grids FINER

@@ -29,8 +29,9 @@ enum glint_cost_kind {
  * 32 bits. */
 struct glint_cost_weight {
     const char *name;
-    double planned; /* for counts that glint_cost_of() expects */
-    double counted; /* for counts of a frame that was drawn */
+    double planned; /* weight for counts that glint_cost_of() predicts from a
+                       plan */
+    double counted; /* weight for counts of a frame that was drawn */
 };
 extern const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS];
 

@@ -204,9 +204,9 @@ void glint_frame_retune(struct glint_frame *frame);
 
 /* Draws the flare of LAMPS alone, times GAIN, into RGB, [height][width][3],
  * linear light. Inside, the scale is a power of two that leaves faint light as
- * many steps as the brightest pixel allows; if that pixel is fainter than the
- * plan predicted, the frame is drawn again, four times at most. GLINT_E_MEMORY.
- */
+ * many steps as the brightest pixel allows. If that pixel turns out two octaves
+ * fainter than it may be, or is clamped, the frame is drawn again with another
+ * scale, up to four times in all. GLINT_E_MEMORY. */
 enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
                                          const struct glint_lamp *lamps,
                                          int n_lamps, double gain, float *rgb,

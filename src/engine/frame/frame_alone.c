@@ -27,9 +27,9 @@ static uint32_t peak_of(const int32_t *linear_q20, size_t n)
     return peak;
 }
 
-/* Returns the octaves by which a picture with PEAK should have been drawn
- * brighter; one octave is not worth it. If light was clamped its peak is
- * unknown, and the picture should be fainter. */
+/* Returns by how many octaves a picture with PEAK should be drawn brighter; 0
+ * instead of 1, as a single octave gains too little. Below 0 if light was
+ * clamped, as its peak is then unknown. */
 static int octaves_up(uint32_t peak, struct glint_frame_scale scale)
 {
     const int room = scale.most - scale.likely;

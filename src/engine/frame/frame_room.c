@@ -234,8 +234,9 @@ static double hold_grids(struct glint_frame *f,
     return glint_cost_minsn(&cost);
 }
 
-/* Limits ghosts to three wavelengths each. Returns what is then left of MINSN,
- * the work of the plan with the coarsest grids. */
+/* Limits ghosts to three wavelengths each. Returns the work that this leaves of
+ * MINSN, the work of the plan with the coarsest grids, in millions of
+ * instructions. */
 static double hold_waves(struct glint_frame *f, double minsn)
 {
     enum { WAVES = 3 };

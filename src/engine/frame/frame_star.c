@@ -16,13 +16,13 @@ static const double most_px = 1 << 16;
 static const double least_px = 1.5;
 
 /* Limits of the power of a lamp that a picture clips, by the stars in real
- * photographs. Far from a lamp, light times the square of the distance is 0.22
- * times power, wavelength and f-number, whatever the blades. For 10 lamps in
- * two pictures by night, at f/22, this power is 7 to 166 times that estimated
- * from clipped pixels, and 0.37 to 3.4 times, 0.5 in the median, that with
- * which the star's mean is white as far out as the lamp
- * (tests/figures/stars.md). With a starburst of 1 the smaller of both limits
- * counts. */
+ * photographs. Far from a lamp, the light of its star on a whole circle about
+ * it, times the square of the radius, is 0.22 times power, wavelength and
+ * f-number, whatever the blades. For 10 lamps in two pictures by night, at
+ * f/22, this power is 7 to 166 times that estimated from clipped pixels, and
+ * 0.37 to 3.4 times, 0.5 in the median, that with which the star's mean is
+ * white as far out as the lamp (tests/figures/stars.md). With a starburst of 1
+ * the smaller of both limits counts. */
 static const double clipped_times = 32, white_share = 0.5;
 
 /* Factor on the dial cull_codes: stars end smoothly and faintly, unlike ghosts.
@@ -137,8 +137,8 @@ static double unclipped(const struct glint_frame *f, const struct seen *seen,
 }
 
 /* Returns the radius, pixels, of the disc of a lamp that the picture shows as
- * SEEN. A point, too, is white as far out as its own star is, which far out has
- * the mean of a circle's. */
+ * SEEN. From that the radius is taken within which even a point is white: where
+ * its own star is, which so far out has the mean of a circle's. */
 static double disc_of(const struct glint_frame *f, const struct seen *seen,
                       double power)
 {

@@ -16,9 +16,9 @@ struct glint_frame_star {
     /* Factor on the star: lamps' powers are multiplied by the frame's scale and
      * by this. 0: there is no star. */
     double share;
-    /* [n]: RMS radius in pixels of each lamp that the picture clips, with all
-     * that its light has spread to; its power is then taken for an estimate. 0,
-     * or NULL for all: the lamp has the extent and the power of its own
+    /* [n]: RMS radius, pixels, of the white spot of each lamp that the picture
+     * clips, glare included; its power is then an estimate, which the star may
+     * raise. 0, or NULL for all lamps: extent and power are the lamp's own
      * members. */
     const double *seen_px;
     /* [n]: level of each lamp, which its power includes; NULL: 1. */

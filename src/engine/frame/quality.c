@@ -115,8 +115,8 @@ struct glint_dials glint_dials_at(int quality_q15)
     return glint_quality_at(quality_q15 * 0x1p-15).dials;
 }
 
-/* Outlines are off by 0.1 pixel at fineness 64, and by its inverse square
- * otherwise. */
+/* Outlines are off by 0.1 pixels at fineness 64, and otherwise in proportion to
+ * the inverse square of the fineness. */
 double glint_quality_for_error(double px)
 {
     const double grid = 64 * sqrt(0.1 / px);

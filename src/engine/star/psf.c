@@ -182,8 +182,8 @@ void glint_psf_profile(const struct glint_psf *p, double v, double rgb[3])
 
 /* -------------------------------------------------------------------- near */
 
-/* Returns a table of the transform: rows of 1 / GLINT_PSF_STEPS order of 400
- * nm, and columns of angles; NULL if memory is short. */
+/* Returns a table of the transform: a row for each 1 / GLINT_PSF_STEPS of an
+ * order of diffraction, and columns of angles; NULL if memory is short. */
 static double *transforms(const struct glint_psf *p, int n_rows)
 {
     double *table =
