@@ -89,10 +89,12 @@ struct glint_flare_frame {
      * Ghosts below it may be left out, and a fainter ghost gets a coarser grid
      * and coarser steps of irradiance. 0: the picture is in linear light. */
     struct glint_real faintest;
-    /* Ghosts of a light that shine less than DIMMEST in the mean, display
-     * white, an eighth of it where they fold, are drawn by the rays of one wave
-     * in the colours of all three; up to twice as much, in part. {0, 0}, NULL,
-     * sets, or not three waves: none is. */
+    /* For three waves without sets: a ghost whose mean light in wave 1, from
+     * one light, is below DIMMEST (display white), or below an eighth of that
+     * if it folds, is drawn by the rays of wave 1 alone, in the colours of all
+     * three. Up to twice as bright, waves 0 and 2 draw a part of their light by
+     * their own rays. DIM NULL or DIMMEST {0, 0}: every wave draws all of its
+     * light. */
     struct glint_dim *dim;
     struct glint_real dimmest;
     /* Codes, 0 .. 2^15 in _q8: in a picture in codes, edges across which light
@@ -303,8 +305,8 @@ void glint_flare_bin(struct glint_flare *flare,
 
 /* Adds the flare to IMAGE, which has the size of the configuration. Tiles that
  * no light touches are neither read nor written. May be called again. If IMAGE
- * is NULL, the light of every pixel is worked out and dropped, which measures
- * its share of the time of drawing to 8 bits. */
+ * is NULL, the light of every pixel is worked out and dropped: so a program can
+ * measure how much of the time of drawing to 8 bits that takes. */
 void glint_flare_draw(struct glint_flare *flare,
                       const struct glint_image *image);
 

@@ -78,10 +78,10 @@ struct glint_lamp_finder_config {
                           each other become one */
     int32_t judge; /* 1: regions are scored by their looks and surroundings; 0:
                       all bright regions are lamps */
-    int32_t keep_faint; /* 1: lamps are followed by regions marked faint, for
-                           glint/lamp_tracker.h: those with too few pixels at
-                           the upper threshold, with half of min_area, or with a
-                           score a little too low */
+    int32_t keep_faint; /* 1: the lamps of the list are followed by regions
+                           marked faint, for glint/lamp_tracker.h: those with
+                           too few pixels at the upper threshold, with half of
+                           min_area, or with a score a little too low */
 };
 
 struct glint_lamp_finder; /* opaque, in the caller's memory */
@@ -111,7 +111,7 @@ int glint_lamp_finder_find(struct glint_lamp_finder *finder,
 
 /* Prepares the next find, and only that, for a picture of a video. White is
  * taken to be at least PART (0 .. 2^15) of the white of the last picture: when
- * a lamp is hidden for a moment, its glow would be white otherwise, and a lamp.
+ * a lamp is hidden for a moment, its glow would else be white and so a lamp.
  * And where no region is a lamp, the best one has to be a little better to
  * count as one than in a picture by itself, as other pictures may show it, too.
  */

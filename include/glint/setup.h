@@ -24,11 +24,12 @@ extern "C" {
  * .. 700 nm. WAVELENGTH_NM rises. The sum of RGB[i] times the light at
  * wavelength i is nearly the linear BT.709 that the CIE 1931 observer [Wyman13]
  * sees of the whole spectrum, exactly if that is a polynomial of a degree below
- * 4 and N. Each channel of RGB sums to 1, so that a flat spectrum is white;
- * single colours lie outside of BT.709 and are negative in part. SHARE[i] is
- * the part of wavelength i in the mean over all, and sums to 1. Outlines of
- * ghosts move in proportion to 1 / wavelength^2; the wavelengths make the steps
- * between them smallest in the mean of squares over the channels. */
+ * both 4 and N. Each channel of RGB sums to 1, so that a flat spectrum is
+ * white; single colours lie outside of BT.709 and are negative in part.
+ * SHARE[i] is the part of wavelength i in the mean over all, and sums to 1.
+ * Outlines of ghosts move in proportion to 1 / wavelength^2; the wavelengths
+ * make the steps between them smallest in the mean of squares over the
+ * channels. */
 void glint_spectrum(int n, double *wavelength_nm, double (*rgb)[3],
                     double *share);
 
@@ -70,7 +71,7 @@ struct glint_setup {
 
 /* Prepares LENS with a stop of N_BLADES (0 or 3 .. 64; corners on the circle of
  * the f-number) for N wavelengths (1 .. GLINT_MAX_WAVELENGTHS, 300 .. 1100 nm).
- * Three wavelengths become R, G and B as they stand; any other number is
+ * Three wavelengths become R, G and B in the order given; any other number is
  * weighted by the CIE 1931 observer [Wyman13]. GLINT_E_ARGUMENT: out of range.
  * GLINT_E_LENS: no light gets through. */
 enum glint_status glint_setup_init(struct glint_setup *setup,

@@ -45,11 +45,11 @@ struct glint_traced_bundle {
 
 /* Finds the pupil and the barrels of TRACED, whose lamp, ghost and wavelength
  * are set, and chooses its grid by how much the light bends in pixels. With
- * max_cells 64 light is off by 0.01 px (RMS), outlines by 0.1 px, with more by
- * the square less. The grid has 8 .. 2 max_cells cells a side, a multiple of 4,
- * or up to 4 max_cells if light folds; it covers the pupil and a pixel more on
- * each side. NEAR, unless NULL, is the same bundle at another wavelength, which
- * makes the search faster. */
+ * max_cells 64 light is off by 0.01 px (RMS), outlines by 0.1 px; with n times
+ * as many cells, by n^2 times less. The grid has 8 .. 2 max_cells cells a side,
+ * a multiple of 4, or up to 4 max_cells if light folds; it covers the pupil and
+ * a pixel more on each side. NEAR, unless NULL, is the same bundle at another
+ * wavelength, which makes the search faster. */
 void glint_traced_bundle_plan(const struct glint_traced_bundle_config *cfg,
                               struct glint_traced_bundle *traced,
                               const struct glint_traced_bundle *near);

@@ -45,8 +45,7 @@ static inline uint32_t q_upper(uint64_t x, int up)
 #endif
 }
 
-/* Returns the number of bits, negative if too many, by which X is shorter than
- * 32. */
+/* Returns by how many bits X is shorter than 32; negative if it is longer. */
 static inline int q_up(uint64_t x)
 {
     return 32 - bit_length(x | 1);

@@ -16,7 +16,7 @@ static const double none_log2 = -100;
  * they take fifty times as long as a model. */
 enum { EXACT_ANGLES = 4, EXACT_GRID = 6, GRID = 12 };
 
-/* Display white: the brightest pixels are brought to 2^AIM_LOG2, within a
+/* The brightest pixels are brought to 2^AIM_LOG2 times display white, within a
  * factor of 2^AIM_SPAN: far from where samples saturate, and with as much room
  * for faint light. */
 enum { AIM_LOG2 = 4, AIM_SPAN = 6 };

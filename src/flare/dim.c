@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Between two nodes logarithms are interpolated, so that what a ghost counts
- * for is steady as its light moves or fades. A ghost that some wave does not
- * get through at a node counts as bright beside it. */
+ * Between two nodes logarithms are interpolated, so that a ghost's share is
+ * steady as its light moves or fades. From a node at which some wave does not
+ * get through to both neighbouring nodes, the ghost counts as bright. */
 #include "flare/dim.h"
 
-/* Returns value K of the ghost of PLANNED at its light, or GLINT_DIM_DARK. */
+/* Returns value K of ghost GHOST at the angle of LIGHT, or GLINT_DIM_DARK. */
 static int32_t value_at(const struct glint_flare_frame *frame,
                         const struct glint_light *light, int ghost, int k)
 {
@@ -33,8 +33,9 @@ static int is_known(const struct glint_flare_frame *frame, int ghost, int node)
     return 1;
 }
 
-/* Where the next range of angles is not known, all of the light is kept from
- * there on, and ever less of it towards the middle of this one. */
+/* If the ghost counts as bright between the two nodes before or after these
+ * two, the share falls from all at the node they have in common to what it
+ * would be without that, halfway to the other node at the latest. */
 int glint_dim_share_q8(const struct glint_flare_frame *frame,
                        const struct glint_light *light, int ghost)
 {

@@ -13,31 +13,33 @@
 
 enum {
     GLINT_DIM_WAVE = 1,  /* the wave whose rays stand for all */
-    GLINT_DIM_WAVES = 3, /* frames of other numbers have no dim ghosts */
+    GLINT_DIM_WAVES = 3, /* with any other number no ghost is dim */
     GLINT_DIM_WHOLE_Q8 = 256,
     GLINT_DIM_LAST = GLINT_DIM_NODES - 1,
     GLINT_DIM_DARK = INT16_MIN /* value where a wave does not get through */
 };
 
-/* Returns the share of its light that each wave of ghost GHOST of LIGHT keeps
- * for itself, 0 to GLINT_DIM_WHOLE_Q8. */
+/* Returns the share of its light that each wave of ghost GHOST of LIGHT draws
+ * by its own rays, 0 to GLINT_DIM_WHOLE_Q8; the rays of GLINT_DIM_WAVE draw the
+ * rest. */
 int glint_dim_share_q8(const struct glint_flare_frame *frame,
                        const struct glint_light *light, int ghost);
 
 /* Returns the light of wave WAVE of that ghost over that of GLINT_DIM_WAVE,
- * each in its own colour; 2^28 at most. */
+ * both before they are given the colours of the waves; 2^27 at most. */
 int64_t glint_dim_ratio_q16(const struct glint_flare_frame *frame,
                             const struct glint_light *light, int ghost,
                             int wave);
 
-/* Returns the logarithm of X, above 0: straight between powers of two. */
+/* Returns log2 of X, which is above 0; between powers of two it is
+ * interpolated. */
 static inline int32_t glint_dim_log2_q8(struct glint_real x)
 {
     return q_clamp_sat(x.exponent, -120, 120) * 256 + 30 * 256 +
            ((x.mantissa >> 22) - 256);
 }
 
-/* Returns how far LIGHT is along the nodes. */
+/* Returns the place of the angle of LIGHT among the nodes, counted from 0. */
 static inline int32_t glint_dim_node_q16(const struct glint_flare_frame *frame,
                                          const struct glint_light *light)
 {
@@ -48,8 +50,9 @@ static inline int32_t glint_dim_node_q16(const struct glint_flare_frame *frame,
                        GLINT_DIM_LAST * (1 << 16) - 1);
 }
 
-/* Returns the values of ghost GHOST at node NODE: its light by which it counts
- * as dim, and that of each wave. */
+/* Returns the GLINT_DIM_VALUES logarithms of ghost GHOST at node NODE, for a
+ * white light of power 1: of its mean light by GLINT_DIM_WAVE in display white,
+ * eight times that if it folds; then of all the light of each wave. */
 static inline int16_t *glint_dim_values(const struct glint_flare_frame *frame,
                                         int node, int ghost)
 {

@@ -65,8 +65,9 @@ static struct glint_real box_side(const struct glint_transfer *t, int k)
     return real_of(t->box[k], t->box_exponent);
 }
 
-/* Returns the light that wave WAVE gives to the bundle of PLANNED, as a part of
- * that one's own: all of itself, and of others what they do not keep. */
+/* Returns the light of wave WAVE that the rays of PLANNED draw, over that of
+ * the wave of PLANNED: 1 for that wave itself, for others what their own rays
+ * do not draw. */
 static int64_t part_q16(const struct glint_plan *p,
                         const struct glint_bundle_plan *planned, int wave,
                         int share_q8)

@@ -49,7 +49,7 @@ struct glint_plan {
     unsigned sets;
     int half;  /* 1: the flare's pixels are twice as wide and high as the
                   picture's */
-    int dims;  /* 1: faint ghosts of each light are left out */
+    int dims;  /* 1: the frame's DIM is filled for all lights */
     int round; /* 1: the stop is round */
     /* opening of the stop over the model's, 2^20 .. 2^30 */
     int32_t opening_q30;

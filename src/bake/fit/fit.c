@@ -30,8 +30,8 @@
  * large. */
 #define PART_LEFT   5.0
 #define MOST_HIDDEN 3.0
-/* Times PART_LEFT as it is eased for faint ghosts, bearable(): zones with a
- * larger error are divided at once, as more terms would not help. */
+/* Multiples of bearable(), which is PART_LEFT and more for faint ghosts: zones
+ * with a larger error are divided at once, as more terms would not help. */
 #define HOPELESS 20.0
 /* Tolerances: a wide zone with a larger error will be halved anyway. */
 #define HALVES_ANYWAY 10.0
@@ -106,8 +106,8 @@ static double degrees_between(double lo, double hi)
 }
 
 /* A zone, or a part of one, that waits to be fitted. BEFORE is the error of the
- * last attempt at the zone it is from. THOROUGH: it is fitted with a box that
- * follows the colours, a root of the energy, and more terms. */
+ * last attempt at the wider zone that it is a piece of. THOROUGH: it is fitted
+ * with a box that follows the colours, a root of the energy, and more terms. */
 struct pending {
     double lo, hi, before;
     double w0, w1; /* the part of the band, -1 .. 1 */
@@ -157,8 +157,9 @@ cut_out(struct fitter *f, const struct pending *p, struct glint_zone *zone)
 }
 
 /* Cuts the part of P out of ZONE. A thorough fit also crops the part to what is
- * seen: much of the box of a ghost is dark that comes through here in red and
- * there in blue. Returns the visibility of the ghost in the part's band. */
+ * seen: if a ghost comes through in red at one place and in blue at another,
+ * much of its box is dark. Returns the visibility of the ghost in the part's
+ * band. */
 static const struct glint_visible *set_part(struct fitter *f, struct pending *p,
                                             struct glint_zone *zone)
 {
@@ -211,8 +212,9 @@ static double least_of(const struct fitter *f, const struct pending *p)
     return p->lo <= 0 ? f->tolerance->axis : 1;
 }
 
-/* Returns the error, in tolerances, beyond which next_step() of P and of its
- * halves does not depend on how large it is; 0: it always does. */
+/* Returns the error, in tolerances, above which next_step() decides the same
+ * for P, and later for its halves, however large the error is; 0: there is
+ * none. */
 static double settled(const struct fitter *f, const struct pending *p,
                       const struct glint_zone_aim *aim)
 {

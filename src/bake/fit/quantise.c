@@ -136,8 +136,8 @@ static struct range power_of(struct range x, int n)
 
 static const struct range both_ways = {-1, 1, 0};
 
-/* Ranges of x, y, r and 1 - r of the sparse basis, rounded from the box and u,
- * v. */
+/* Ranges of x, y, r and 1 - r of the sparse basis, with the errors of rounding
+ * them and the box and u, v that they are worked out from. */
 static const struct range place[4] = {
     {-1, 1, 1.5}, {-1, 1, 1.5}, {0, 1, 4}, {0, 1, 4}};
 
@@ -269,8 +269,9 @@ static void narrow(const struct glint_fitted_output *o,
 
 /* ------------------------------------------------------------------ systems */
 
-/* Returns the distance to the output with the other coordinate, or 0: x and y
- * share an exponent, so that they can be turned. */
+/* Returns 1 or -1, the distance in the list of outputs from one of KIND to that
+ * of the other coordinate, with which it shares an exponent so that both can be
+ * turned; 0: KIND is no coordinate of a pair. */
 static int paired(enum glint_channel kind)
 {
     return kind == GLINT_OUT_SENSOR_X || kind == GLINT_OUT_STOP_X   ? 1

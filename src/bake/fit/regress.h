@@ -34,8 +34,8 @@ struct glint_degrees {
     int total;                       /* largest weighted sum of powers */
     int parity; /* parity of variable 1: 0 even, 1 odd, -1 any */
     int terms;  /* largest number of terms, 1 .. GLINT_MAX_TERMS */
-    /* The fit stops early if its error is HOPELESS times what it may be after
-     * PATIENCE terms; 0: it never does. */
+    /* After PATIENCE terms the fit stops as soon as its error is more than
+     * HOPELESS times what it may be; 0: it never does. */
     double hopeless;
     int patience;
 };

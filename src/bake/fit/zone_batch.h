@@ -41,8 +41,9 @@ static inline double (*glint_zone_batch_hits(struct glint_zone_batch *batch,
 }
 
 /* Sets X to place number K of a low-discrepancy sequence, -1 .. 1 in each
- * variable: multiples of powers of the root of x^5 = x + 1, which fill four
- * dimensions evenly. */
+ * variable, which fills four dimensions evenly: the fractional parts of 1/2 +
+ * (K + 1) / g, / g^2 .. / g^4, g being the root of x^5 = x + 1, spread over -1
+ * .. 1. */
 void glint_zone_batch_scatter(int k, double x[GLINT_VARIABLES]);
 
 #endif

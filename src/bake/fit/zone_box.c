@@ -5,11 +5,11 @@
 #include "bake/fit/regress.h"
 #include "engine/setup/degrees.h"
 
-/* Share of a box which is enough to be seen: a fuller box would need higher
- * powers of s, and polynomials of what is seen through it would have to undo
- * them. */
+/* Share of a box: if as much of it is seen, that is enough. A fuller box would
+ * need higher powers of s, and polynomials of what is seen through it would
+ * have to undo them. */
 #define ENOUGH_FILL 0.6
-/* Least factor by which a power more must raise the fill. */
+/* A higher degree in s is taken only if it fills the box so many times more. */
 #define FULLER 1.6
 
 double glint_zone_node(int k, int n)

@@ -9,8 +9,8 @@
  * of 32 bits resolve 1e-5. */
 #define LARGE 100.0
 
-/* Share of its length: a term that is shorter than that without its shares of
- * other terms is a combination of them. */
+/* A term counts as a combination of others if less than this share of its
+ * length is left when they are subtracted. */
 #define DEPENDENT 1e-7
 
 /* Weights of a ray that is cut but needed between knots, and of one farther

@@ -137,8 +137,9 @@ static double unclipped(const struct glint_frame *f, const struct seen *seen,
 }
 
 /* Returns the radius, pixels, of the disc of a lamp that the picture shows as
- * SEEN. From that the radius is taken within which even a point is white: where
- * its own star is, which so far out has the mean of a circle's. */
+ * SEEN. Even a point is white as far out as least_px more than the radius at
+ * which the mean of its star over a circle is white; the square of that is
+ * subtracted from the square of what is SEEN. */
 static double disc_of(const struct glint_frame *f, const struct seen *seen,
                       double power)
 {

@@ -12,8 +12,8 @@ enum { MAX_LIGHTS = 128 };
  * they save nothing and cost 6 dB. Finer models cost next to nothing but bytes
  * and time to bake, so all levels above the default have them. Dispersion has a
  * front of its own (make colour-table): levels for small boards draw three
- * wavelengths. An eighth of a code is the most that may be left out: hundreds
- * of ghosts below it still hide nothing that would be seen together. */
+ * wavelengths. Levels from the default up leave out ghosts below an eighth of a
+ * code: hundreds of them together are still not seen. */
 /* clang-format off */
 static const struct level {
     double quality, grid, quantum, snap, cull, dim, tolerance, dispersion, points;

@@ -97,7 +97,8 @@ static int64_t turn_q16(const struct glint_corners *c, int i)
 }
 
 /* Returns the sign of the turn at each corner if it is the same at all four,
- * else 0. The turns at opposite corners add up to the area of the cell. */
+ * else 0. The turns at opposite corners add up to twice the area of the cell.
+ */
 static int convexity(const struct glint_corners *c)
 {
     const int64_t one = turn_q16(c, 0), other = c->area2_q16 - one;
