@@ -39,8 +39,9 @@ struct glint_dials {
     double cull_codes;  /* codes near black below which light may be left out */
     double area_points; /* points, at most, that a lamp with an extent is drawn
                            as */
-    double dim_codes;   /* codes near black: ghosts of a light that shine less
-                           are drawn by the rays of one of three wavelengths */
+    double dim_codes;   /* codes near black; a ghost of a light that gives fewer
+                           is drawn by the rays of one of three wavelengths, see
+                           dimmest of struct glint_flare_frame */
 };
 
 /* Returns the dials at QUALITY_Q15, 0 .. 2^15, along the measured front of

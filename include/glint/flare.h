@@ -66,7 +66,9 @@ enum { GLINT_DIM_NODES = 33, GLINT_DIM_VALUES = 4 };
 struct glint_dim {
     /* [GLINT_DIM_NODES][ghosts of the lens][GLINT_DIM_VALUES] */
     int16_t *log2_q8;
-    uint8_t done[GLINT_DIM_NODES]; /* nodes that are filled; 0: begin anew */
+    /* 1: the node is filled. Before the first plan, and when the lens, stop,
+     * waves or size change, the caller sets all to 0. */
+    uint8_t done[GLINT_DIM_NODES];
 };
 
 /* Everything that a frame is planned from, except its lights. */

@@ -13,11 +13,12 @@
  * pixels reach the upper threshold. */
 #define SEED_LOG2 3
 
-/* Costs of levels, subtracted from scores where regions lie within each other.
- * A lamp is taken to be as wide as it is at the thresholds, unless its clipped
- * core looks clearly more like a lamp. A region of a white that is darker than
- * codes clip counts only if nothing in it is a lamp. DARK_SHARE: share of the
- * picture above which such regions are not sought. */
+/* Costs of levels, subtracted from the scores of their regions to choose among
+ * regions that lie within each other. A lamp is taken to be as wide as it is at
+ * the thresholds, unless its clipped core looks clearly more like a lamp. A
+ * region of a white that is darker than codes clip counts only if nothing in it
+ * is a lamp. DARK_SHARE: share of the picture above which such regions are not
+ * sought. */
 #define COST_CLIPPED_Q8 64
 #define COST_WHITE_Q8   32
 #define COST_DARK_Q8    1024
@@ -62,8 +63,9 @@ static void add_core(struct glint_lamp_finder *f, int low, int32_t cost_q8)
         (struct glint_level){low, BRIGHT_CLIPPED, BRIGHT_CLIPPED, cost_q8};
 }
 
-/* Measures white and sets the levels. A picture that is darker than where codes
- * clip has lamps that are, too, and may have lamps that are not. */
+/* Measures white and sets the levels. In a picture that is darker than where
+ * codes clip, lamps may be darker than that or clipped: regions of both kinds
+ * are sought. */
 static void set_levels(struct glint_lamp_finder *f)
 {
     const int white_code = f->cfg.white_code;

@@ -11,14 +11,13 @@ enum { GLINT_PART_DEPTH = 4, GLINT_MAX_AXIS_DEPTH = 8 };
 
 /* Root mean squares that are aimed at; single rays may be off by five times as
  * much. Positions in the stop and at barrels draw the outline: EDGE_MM is how
- * far they may shift it on the sensor. From that follow their own tolerances,
- * within STOP_LEAST .. STOP (stop radii) and within a sixteenth of BARREL ..
- * BARREL (of the barrel's radius). The lower limits are needed as the outline
- * of a ghost that is larger than the picture may lie beyond it, but comes in
- * when the stop closes.
+ * far they may shift it on the sensor. From that follow their own tolerances:
+ * STOP_LEAST to STOP, in stop radii, and 0.06 BARREL to BARREL, in radii of the
+ * barrel. The lower limits are needed as the outline of a ghost that is larger
+ * than the picture may lie outside of it, but moves in when the stop closes.
  *
- * The values are for ghosts of the brightness that counts. sRGB shows an error
- * in a ghost of v times that brightness by v^0.42 as much, so edges and energy
+ * The values are for ghosts of the level of brightness.h. sRGB shows an error
+ * in a ghost of v times that level by v^0.42 as much, so edges and energy
  * of fainter ghosts may be off by more, up to EASE times. */
 struct glint_tolerance {
     double sensor_mm, edge_mm, stop, stop_least, barrel, energy;

@@ -11,8 +11,9 @@ enum {
     BISECTIONS = 8,
     AFRESH = 4, /* number of angles after which boxes are looked for everywhere
                    again */
-    FARTHER = 4 /* steps of the scan by which the ends of the band may be seen
-                   for longer than its middle */
+    /* steps of the scan by which a range of angles is widened at most, on each
+     * side, where only the ends of the band get through */
+    FARTHER = 4
 };
 
 static double wave_of(const struct glint_visible *visible, double w)

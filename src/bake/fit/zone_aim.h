@@ -26,7 +26,7 @@ struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
                                         const struct glint_zone_rays *rays);
 
 /* Returns the tolerance of an outline in a unit that stands for STRETCH_MM on
- * the sensor: at most MOST, and at least a sixteenth of that. */
+ * the sensor: 0.06 MOST to MOST. */
 double glint_zone_aim_outline(const struct glint_zone_aim *aim, double most,
                               double stretch_mm);
 
