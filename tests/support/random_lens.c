@@ -60,7 +60,7 @@ static double sag(double radius, double height)
 }
 
 /* Chooses glasses, semi-diameters from 0.1 .. 0.5 on, and radii that are the
- * weaker the more surfaces there are. */
+ * larger the more surfaces there are. */
 static void set_shapes(uint64_t *r, struct glint_prescription *l)
 {
     const double weak = sqrt(l->n_surfaces / 4.0);

@@ -25,12 +25,13 @@ const char *const hostile_name[HOSTILE_FAMILIES] = {
 
 /* ------------------------------------------------------------- polynomials */
 
-/* A polynomial: of u alone or of v alone, and of w to the first. */
+/* A polynomial: the sum of one of u, one of v and a multiple of w. */
 struct polynomial {
     double u[POWERS], v[POWERS], w;
 };
 
-/* N of those whose values swing between -1 and 1, SIZE of it [Chebyshev]. */
+/* Adds to POWER the Chebyshev polynomial of degree N, which swings between -1
+ * and 1, times SIZE. */
 static void add_swings(double *power, int n, double size)
 {
     double last[POWERS] = {1}, here[POWERS] = {0, 1};
@@ -46,7 +47,7 @@ static void add_swings(double *power, int n, double size)
         power[i] += size * (n ? here[i] : i == 0);
 }
 
-/* Writes P as output KIND; steps are as fine as its sum allows. */
+/* Writes P as output KIND, with coefficients in units of 2^EXPONENT. */
 static struct glint_model_output put_output(struct model_image *m, int kind,
                                             const struct polynomial *p,
                                             int exponent)
@@ -74,6 +75,8 @@ static struct glint_model_output put_output(struct model_image *m, int kind,
     return o;
 }
 
+/* Returns the exponent with which the magnitudes of P's coefficients add up to
+ * less than 2^29 units, and to half of that or more; 0 if P is 0. */
 static int exponent_of(const struct polynomial *p)
 {
     double sum = fabs(p->w);
@@ -85,14 +88,14 @@ static int exponent_of(const struct polynomial *p)
     return sum > 0 ? exponent - 29 : 0;
 }
 
-/* Writes polynomials of the first N kinds. Returns where the outputs are. */
+/* Writes P[N] as outputs of the first N kinds. Returns their offset in M. */
 static uint32_t put_outputs(struct model_image *m, const struct polynomial *p,
                             int n)
 {
     struct glint_model_output o[GLINT_OUT_KINDS];
 
     for (int k = 0; k < n; k++) {
-        /* x and y have one exponent */
+        /* x and y share the larger exponent of the two */
         const int pair = k < GLINT_OUT_ENERGY ? k ^ 1 : k;
         const int a = exponent_of(&p[k]), b = exponent_of(&p[pair]);
 
@@ -103,7 +106,8 @@ static uint32_t put_outputs(struct model_image *m, const struct polynomial *p,
 
 /* ------------------------------------------------------------------- ghosts */
 
-/* A ghost as large as the frame, seen whole. */
+/* Sets P to a ghost as large as the frame, with the stop as large as its
+ * box. */
 static void set_whole(struct polynomial p[GLINT_OUT_KINDS], uint32_t *seed)
 {
     memset(p, 0, GLINT_OUT_KINDS * sizeof *p);
@@ -117,7 +121,8 @@ static void set_whole(struct polynomial p[GLINT_OUT_KINDS], uint32_t *seed)
     p[GLINT_OUT_ENERGY].u[0] = 0.5;
 }
 
-/* Folded up to nine times each way. */
+/* Sets P to a ghost that goes across the frame up to nine times each way and is
+ * cut by barrels. */
 static void set_folds(struct polynomial p[GLINT_OUT_KINDS], uint32_t *seed)
 {
     set_whole(p, seed);
@@ -148,7 +153,8 @@ static struct glint_model_system system_of(const struct model_image *m,
                                        .box_terms = 1};
 }
 
-/* As many ghosts as a lens can have, of VARIANTS shapes. */
+/* Writes a ghost for each pair of SURFACES, the most that a lens can have, with
+ * VARIANTS shapes among them. */
 static void put_pairs(struct model_image *m, enum hostile_family family,
                       uint32_t *seed)
 {
@@ -183,7 +189,9 @@ static void put_pairs(struct model_image *m, enum hostile_family family,
     model_end(m, ghost, PAIRS, of, PAIRS);
 }
 
-/* Rays without energy: all, all that land nowhere, or stripes. */
+/* Writes ghosts whose rays are lost, by NUMBER modulo 3: 0: all of them, as
+ * their energy is negative; 1: stripes of them, for that reason; 2: those that
+ * land far outside of the picture. */
 static void put_lost(struct model_image *m, int number, uint32_t *seed)
 {
     enum { N = 300 };
@@ -209,7 +217,9 @@ static void put_lost(struct model_image *m, int number, uint32_t *seed)
     model_end(m, ghost, N, of, N);
 }
 
-/* Bands and angles in their thousands; shared, so that the file is small. */
+/* Writes one ghost, or two from NUMBER 5 on, with 10000 systems, each for a
+ * narrow band and a small range of angles. All systems share outputs and box,
+ * so that the file is small. */
 static void put_systems(struct model_image *m, int number, uint32_t *seed)
 {
     enum { ANGLES = 100, BANDS = 100, N = ANGLES * BANDS };
@@ -237,7 +247,7 @@ static void put_systems(struct model_image *m, int number, uint32_t *seed)
     model_end(m, ghost, 2, of, N);
 }
 
-/* The sparse basis: one system of thousands of knots. */
+/* Writes a model of the sparse basis with one system of 8000 knots. */
 static void put_knots(struct model_image *m, uint32_t *seed)
 {
     enum { KNOTS = 8000, KINDS = GLINT_OUT_RADIUS + 1 };
@@ -273,13 +283,14 @@ static void put_knots(struct model_image *m, uint32_t *seed)
 
 /* ------------------------------------------------------------------ editing */
 
-/* Where OFFSET of M lies; what is baked is edited where it is. */
+/* Returns the address of OFFSET in M. Baked models are edited in place. */
 static void *at(const struct model_image *m, uint32_t offset)
 {
     return m->data + offset;
 }
 
-/* Coefficients of output O anew: their sum is just below 2^30. */
+/* Sets the coefficients of output O at random; their magnitudes add up to just
+ * below 2^30. */
 static void edit_coefficients(const struct model_image *m,
                               struct glint_model_output *o, uint32_t *seed)
 {
@@ -340,8 +351,10 @@ static void edit_box(const struct model_image *m, struct glint_model_system *s,
         huge && rng_below(seed, 2) ? 40 - rng_below(seed, 40) : s->box_exponent;
 }
 
-/* A stop that all rays miss, all meet in one place, or that they cross in the
- * breadth of a hair. */
+/* Changes the stop positions of S, by NUMBER modulo 3. 0: all rays meet in the
+ * middle of the stop. 1: only the first coefficient is left, larger the larger
+ * NUMBER is, so that rays may all miss the stop. 2: positions get the exponent
+ * 2 NUMBER - 20, so that hardly any ray meets the stop. */
 static void edit_stop(const struct model_image *m, struct glint_model_system *s,
                       int number)
 {
@@ -410,7 +423,8 @@ static void edit(struct model_image *m, const struct glint_lens *baked,
 
 /* ------------------------------------------------------------------ drawing */
 
-/* Rows of pixels that the edges of FLARE cross. */
+/* Returns how many rows of pixels the edges of FLARE cross, summed over
+ * edges. */
 static double rows_of(const struct glint_flare *flare)
 {
     double rows = 0;
@@ -427,7 +441,9 @@ static double rows_of(const struct glint_flare *flare)
     return rows;
 }
 
-/* All plans, all that was binned, and what was drawn, by what each takes. */
+/* Returns the millions of instructions that the frame took: all that its plans
+ * looked at, vertices and edges of each binning, and the rows and pixels drawn
+ * once, times their weights. */
 static double work_of(const struct glint_frame *f,
                       const struct glint_frame_report *r)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Models that mean no good, with right checksums: each is drawn at random from
- * its family, and what glint_lens_open() lets through is to take bounded work
- * and memory.
+ * Models with valid checksums whose contents would take too much work or
+ * memory, or overflow. Each is drawn at random from its family; those that
+ * glint_lens_open() accepts must be drawn within bounds of work and memory.
  *
  *     hostile_make(&scene, HOSTILE_FOLDS, 3, &baked);
  *     glint_lens_open(&lens, scene.model.data, scene.model.bytes, &reason);
@@ -15,8 +15,10 @@
 #include "support/model_builder.h"
 
 enum hostile_family {
-    HOSTILE_WHOLE,   /* 2016 ghosts, each as large as the frame */
-    HOSTILE_FOLDS,   /* the same, folded nine times each way, cut by barrels */
+    HOSTILE_WHOLE, /* 2016 ghosts, each as large as the frame */
+    /* as many ghosts that go across the frame up to nine times each way, cut by
+     * barrels */
+    HOSTILE_FOLDS,
     HOSTILE_LOST,    /* rays that are lost: all, or stripes of them */
     HOSTILE_SYSTEMS, /* thousands of systems, or of knots, of one ghost */
     HOSTILE_NUMBERS, /* coefficients at the largest sums, any exponents */
@@ -39,37 +41,39 @@ extern const char *const hostile_name[HOSTILE_FAMILIES];
 
 struct hostile_scene {
     struct model_image model;
-    double opening; /* radius of the stop, in those of the model's */
+    double opening; /* radius of the stop over that of the model's */
     struct glint_lamp lamp[HOSTILE_LAMPS];
     int n_lamps;
     bool linear; /* the picture is in linear light */
 };
 
-/* What became of a scene's frame. */
+/* What became of the frame of a scene. */
 enum hostile_outcome {
-    HOSTILE_REFUSED, /* by the check of models, or by a setup: no frame */
-    HOSTILE_EMPTY,   /* nothing is to be seen */
+    HOSTILE_REFUSED, /* The check of models or the setup refuses the model;
+                        there is no frame. */
+    HOSTILE_EMPTY,   /* The frame shows nothing. */
     HOSTILE_DRAWN,
-    HOSTILE_COARSER, /* held to the bound of work */
-    HOSTILE_LESS,    /* held to the bound of memory */
+    HOSTILE_COARSER, /* drawn coarser, to keep within the bound of work */
+    HOSTILE_LESS,    /* drawn without some bundles, for the bound of memory */
     HOSTILE_OUTCOMES
 };
 
 struct hostile_result {
     enum hostile_outcome outcome;
-    double minsn, most_minsn; /* work, counted, and its bound: millions of
+    double minsn, most_minsn; /* work by counts, and its bound: millions of
                                  instructions */
     double bytes, most_bytes; /* memory that drawing took, and its bound */
     int plans;
-    const char *reason; /* why it was refused */
+    const char *reason; /* why the model was refused */
 };
 
-/* Draws SCENE, 640x360, with the bounds that frames have unless others are set.
- * False: it failed, which no model may cause. */
+/* Draws SCENE in 640x360 with the default bounds and sets RESULT. Returns false
+ * if drawing failed, which no model may cause. */
 bool hostile_draw(const struct hostile_scene *scene,
                   struct hostile_result *result);
 
-/* Model NUMBER, 0 to HOSTILE_EACH - 1, of FAMILY: some edit BAKED. */
+/* Makes SCENE with model NUMBER, 0 to HOSTILE_EACH - 1, of FAMILY. Some
+ * families are edited copies of BAKED. The caller frees scene->model.data. */
 void hostile_make(struct hostile_scene *scene, enum hostile_family family,
                   int number, const struct glint_lens *baked);
 

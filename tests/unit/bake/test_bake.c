@@ -520,8 +520,9 @@ static void try_ray(struct tally *tally, const struct glint_transfer *t,
     }
 }
 
-/* Measures the root mean square errors of SYSTEM of GHOST in the file's units,
- * without functions of the bake. */
+/* Sets RMS to the root mean square errors of SYSTEM of GHOST in the file's
+ * units, measured without functions of the bake. Returns how many rays were
+ * measured. */
 static long measure(const struct glint_lens *lens, int ghost, int system,
                     double rms[TRIED])
 {

@@ -211,8 +211,9 @@ static void test_doubling_the_grid(void **state)
     assert_true(db > 60);
 }
 
-/* The light of all ghosts must be less than 13 pairs of surfaces, which reflect
- * at most 5 % twice, leave of the light that enters the front. */
+/* 13 pairs of surfaces reflect at most 5 % each time, so that all ghosts
+ * together must have less than 13 * 0.05^2 of the light that enters the
+ * front. */
 static void test_flux_is_bounded(void **state)
 {
     const struct glint_view view = {200, 200, 2000};

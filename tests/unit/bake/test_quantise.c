@@ -361,7 +361,7 @@ static struct used check_proofs(enum glint_basis basis, int systems)
 }
 
 /* Some value must come near its bound, and some rounding error must be at least
- * 2 % of its own. */
+ * 2 % of its bound. */
 static void test_proof_auto(void **state)
 {
     const struct used used = check_proofs(GLINT_BASIS_AUTO, 240);

@@ -33,8 +33,8 @@ static void place_of(const struct glint_lamp *lamp, double *u, double *v)
     *v = PIXELS * tan(lamp->theta_deg * degree) * sin(lamp->phi_deg * degree);
 }
 
-/* Sums over the points of LAMP: power, place about the lamp, squares along its
- * axes. Returns how many points there are. */
+/* Sets SUM to sums over the points of LAMP: power, place about the lamp (2),
+ * squares along its axes (2). Returns how many points there are. */
 static int sums_of(const struct glint_lamp *lamp, double thinning,
                    double sum[5])
 {
@@ -163,10 +163,9 @@ static void test_faint_lamps_get_fewer(void **state)
     assert_true(total >= MOST + 1 + (MOST - 1) / 4);
 }
 
-/* Points of a disc are apart as if each had a square of it, so that seven of
- * 121 are on a line across; a lamp that becomes one of many does so without a
- * step.
- */
+/* The points of a disc must be as far apart as if each had an equal square of
+ * it, and the distance must not jump as the disc grows and one point becomes
+ * many. An ellipse a hundredth as wide must have a fifth of that distance. */
 static void test_how_far_they_are_apart(void **state)
 {
     struct glint_area area;

@@ -119,7 +119,8 @@ static void test_keeps_to_it(void **state)
 /* Draws SETTLED frames under 2.2 ms; then N frames under MS, with levels from
  * FROM on believed to take OCTAVES, factors of two, more than the cost model
  * says. The cheapest level at full resolution takes 4.2 ms. Returns how many of
- * the N frames have full resolution, and sets *LAST if the last one does. */
+ * the N frames have full resolution, and sets *LAST to whether the last one
+ * has. */
 static int draw_whole(double ms, int from, double octaves, int n, bool *last)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];

@@ -161,8 +161,8 @@ static void test_light(void **state)
     glint_frame_finish(&frame);
 }
 
-/* Each reason but beyond and no room must occur in a frame of its own; then
- * come a frame for which there is no room, and one without light. */
+/* Each of these outcomes must occur in a frame of its own. A frame whose only
+ * lamp lies beyond the model must have no bundles. */
 static void test_reasons(void **state)
 {
     static const struct {

@@ -50,8 +50,9 @@ static int close_frame(void **state)
     return 0;
 }
 
-/* The power of the star of a lamp of POWER, in its brightest channel, that the
- * picture shows SEEN_PX wide. */
+/* Returns the power, in the brightest channel, of the star of a lamp of POWER
+ * at LEVEL. SEEN_PX is the RMS radius with which the picture shows the lamp
+ * clipped; 0: it is not clipped. */
 static double power_of(double power, double seen_px, double level)
 {
     const struct glint_lamp lamp = {5, 30, power, {1, .5, 0}, {0, 0}, 0};
@@ -69,7 +70,9 @@ static bool is_near(double a, double b)
     return fabs(a / b - 1) < 1e-3;
 }
 
-/* A star of a point of the power W is white out to cbrt(W a) / pi. */
+/* Returns half of the power at which the star of a point is white as far out as
+ * SEEN_PX says: a power W is white out to cbrt(W a) / pi pixels, where a is
+ * wavelength times f-number in pixels. */
 static double white_of(double seen_px)
 {
     const double airy_px = 0.55e-3 * 22 / hypot(36, 24) * 200;
@@ -80,13 +83,14 @@ static double white_of(double seen_px)
 static void test_power(void **state)
 {
     (void)state;
-    /* what is known is left as it is */
+    /* The power of a lamp that does not clip must stay. */
     assert_true(is_near(power_of(1000, 0, 1), 1000));
-    /* what clips had more, and not more than its own star would show */
+    /* A lamp that clips must get more power, 32 times at most, and no more than
+     * makes its star as wide as is seen. */
     assert_true(is_near(power_of(1000, 50, 1), 32000));
     assert_true(is_near(power_of(1000, 2, 1), white_of(2)));
     assert_true(is_near(power_of(1000, 0.5, 1), 1000));
-    /* a lamp that fades takes its star along */
+    /* The star of a lamp that fades must fade, too. */
     assert_true(is_near(power_of(500, 2, 0.5), 0.5 * white_of(2)));
 }
 
@@ -96,7 +100,8 @@ static double radius_of(double power, double seen_px)
     return frame.star.light[0].radius_q8 / 256.0;
 }
 
-/* A point lamp has needles, one that fills what is seen has wide ones. */
+/* A lamp that the picture shows no wider than its own star must be a point; one
+ * that fills what is seen must be a disc. */
 static void test_extent(void **state)
 {
     (void)state;
@@ -106,7 +111,8 @@ static void test_extent(void **state)
     assert_true(radius_of(10, 6) > 0.8 * sqrt(2) * 6);
 }
 
-/* Of too many lamps the brightest are drawn, whatever their order. */
+/* Of too many lamps the brightest must be drawn, the brightest first, whatever
+ * order they have. */
 static void test_most(void **state)
 {
     enum { N = GLINT_STAR_MAX_LIGHTS + 100 };
@@ -124,7 +130,7 @@ static void test_most(void **state)
         101));
 }
 
-/* Room that was taken before is enough: no frame takes more. */
+/* After room was taken for many lamps, a frame must take no more memory. */
 static void test_hold(void **state)
 {
     const struct glint_star *star;
@@ -139,7 +145,8 @@ static void test_hold(void **state)
     assert_ptr_equal(tables, frame.star.tables);
 }
 
-/* With a budget stars keep to a share of it, however many and bright. */
+/* With a budget stars must keep to a quarter of it, however many and bright
+ * they are. */
 static void test_budget(void **state)
 {
     const struct glint_budget none = frame.budget;

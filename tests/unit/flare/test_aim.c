@@ -87,8 +87,8 @@ static void test_pixels(void **state)
     }
 }
 
-/* By hand: a pixel 45 degrees to the left; and pixels at the upper right that
- * are farther than counts must all have one direction. */
+/* By hand: a pixel 45 degrees to the left. Pixels so far to the upper right
+ * that their distance is clamped must all have one direction. */
 static void test_by_hand(void **state)
 {
     const int32_t half_q30 = 759250125; /* sqrt(2) / 2 */

@@ -164,7 +164,9 @@ static void test_truncated_pnm(void **state)
 
 /* --------------------------------------------------------------------- PFM */
 
-/* The bottom row comes first: 0, 3, 4, then 1, -2, 0.5. */
+/* A PFM file has the bottom row first: two_pixels, as 1 x 2 pixels, are stored
+ * as 0, 3, 4, then 1, -2, 0.5. The macros are the bytes, least first; TWO is
+ * -2. */
 #define ONE   "\x00\x00\x80\x3f"
 #define TWO   "\x00\x00\x00\xc0"
 #define HALF  "\x00\x00\x00\x3f"

@@ -102,8 +102,8 @@ static enum glint_given set_rows(void *state, const struct glint_pass_rows *out)
     return any ? GLINT_GIVES_COVER : GLINT_GIVES_NOTHING;
 }
 
-/* Returns the light that the triangle hands to the flare: its own, times its
- * pixels. */
+/* Returns the triangle as the light that the flare is drawn for: its colour,
+ * and as power an eighth of its area in pixels. */
 static struct glint_light light_of(const struct triangle *t)
 {
     const int(*p)[2] = t->corner;

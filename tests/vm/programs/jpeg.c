@@ -15,8 +15,9 @@
 #include "jpeg/mjpeg.h"
 #include "video/y4m.h"
 
-#define MAX_SIDE  2048
-#define MAX_BYTES (1 << 20) /* bytes; frames are smaller */
+#define MAX_SIDE 2048
+/* a JPEG file to be decoded must be shorter, bytes */
+#define MAX_BYTES (1 << 20)
 
 static void die(const char *why)
 {
