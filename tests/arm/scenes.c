@@ -5,11 +5,12 @@
  * compiled for and whatever kernels were used. SET is c, sse41, avx2, neon or
  * best.
  *
- *     heliar.glint ...: 240 scenes, 236 with light, 1b3f...
+ *     240 scenes, 236 with light, 1b3f...
  *
  * Models, directions, powers, formats, sizes, tiles and rasterisers are random,
  * by integers alone: no libm has a say. Lamps are then found in each picture
- * and added to the hash. Exit code 3: a model is refused.
+ * and added to the hash. With GLINT_EACH set, the hash after each scene is
+ * printed, too. Exit code 3: a model is refused.
  */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Reads any bytes as a PPM, PGM or PFM. A picture that is accepted must be in
- * memory to its last sample, must be larger as a file, and can be written.
+ * memory to its last sample, must have a file larger than its samples, and can
+ * be written.
  *
  *     make fuzz FUZZ=pnm SECONDS=60
  */

@@ -14,14 +14,17 @@
 #include "support/models/hostile.h"
 #include "support/stage.h"
 
-/* What is known before drawing is off by so much, and a plan that is over the
- * bound has cost something, too. */
+/* Work may exceed its bound by this factor: plans tell it only roughly, and a
+ * plan that must be made again, coarser or with more memory, has cost work,
+ * too. */
 #define SLACK 1.5
 
 struct row {
-    double bytes;               /* of the largest file */
-    struct hostile_result most; /* most of each */
-    double work, memory;        /* most of its bound */
+    double bytes; /* of the largest file */
+    /* the largest of each member, over frames that were drawn */
+    struct hostile_result most;
+    /* largest shares of the bounds */
+    double work, memory;
     int of[HOSTILE_OUTCOMES];
 };
 

@@ -2,9 +2,9 @@
  *
  * power_table [--features] [--coarse] [PANORAMA.pfm ...] - prints how well the
  * power of clipped lamps is known. Lamps that are rendered or in HDR panoramas
- * are exposed ten times, each half as bright, to codes of 8 bits, and measured
- * as those of any picture. The table has errors in stops by kind, for the half
- * of the lamps to which constants were fitted and for the other half.
+ * are exposed ten times, each time half as bright, to codes of 8 bits, and
+ * measured as those of any picture. The table has errors in stops by kind, for
+ * the half of the lamps to which constants were fitted and for the other half.
  * --features prints what tests/power-fit fits to instead, of more lamps and
  * views of the first half: group, power, light seen and of the core, features.
  * --coarse makes all pictures RGB565.
@@ -93,8 +93,9 @@ static int is_bright(const struct camera *c, int i)
     return px[0] >= 240 || px[1] >= 240 || px[2] >= 240;
 }
 
-/* Returns the luminance of SETTINGS, times GAIN, in the bright pixels that
- * touch (CX, CY), and sets SPOT to what an ideal finder would make of them. */
+/* Returns the sum of luminance of SCENE, times GAIN, over the bright pixels
+ * that touch (CX, CY), and sets SPOT to what an ideal finder would make of
+ * them. */
 static double region_at(struct camera *c, const struct power_picture *scene,
                         double gain, int cx, int cy, struct glint_spot *spot)
 {
@@ -174,8 +175,8 @@ static void print_features(struct camera *c, int id, double power,
     printf("\n");
 }
 
-/* Takes exposure K of SETTINGS times GAIN with noise of SIGMA codes. For the
- * fit, every fourth picture is RGB565. */
+/* Takes a picture of SCENE times GAIN with noise of SIGMA codes. For the fit,
+ * every fourth picture, by its number K, is RGB565. */
 static void expose(struct camera *c, const struct power_picture *scene,
                    double gain, double sigma, int k, uint32_t *seed)
 {
@@ -372,7 +373,8 @@ static double mean_of(const struct power_picture *s)
     return sum / (3 * s->width * s->height);
 }
 
-/* Changes SETTINGS into what a camera with a random lens sees. */
+/* Changes the picture into what a camera with a random lens sees, with the
+ * glare of all that is above OVER. */
 static void see_view(struct power_picture *s, double over, uint32_t *seed)
 {
     const int n = s->width * s->height;

@@ -10,7 +10,7 @@
  * worst lenses and a contact sheet of them: from left to right the exact
  * picture, the model's, and their difference times eight. After SIGINT no lens
  * is begun, and the finished ones are reported.
- * Exit code 1: a trap, or a figure out of bounds.
+ * Exit code 1: a trap, no lens that was drawn, or one below 20 dB.
  */
 #define _GNU_SOURCE
 #include <errno.h>

@@ -10,9 +10,9 @@
  * is due to the lamps; what goes beyond is glint's own. Frames after a cut are
  * not counted. In drawn scenes the lamps are known, too: there a step is due to
  * them as far as their true light, through the lens, spans as much within the
- * last WINDOW frames, as a tracked lamp rises and fades in six. Exit code 1: a
- * step of glint's own is larger than SHARE (default 0.1). --log prints every
- * frame to stderr.
+ * last WINDOW frames, as a tracked lamp rises and fades in six. Exit code 1: by
+ * either measure a step of glint's own is larger than SHARE (default 0.1).
+ * --log prints every frame to stderr.
  */
 #include <getopt.h>
 #include <math.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The starburst of a frame: what power its lamps are taken to have.
+ * The starburst of a frame: power and extent that its lamps are taken to have,
+ * how many are drawn, and limits of memory and time.
  */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -17,7 +17,8 @@
 #include "support/shuffle.h"
 #include "support/rng.h"
 
-enum { MANY = 3000, NEAR_Q30 = 60000 }; /* 1/8 pixel of 2000 */
+/* This is about 1/8 pixel where a tangent of 1 is 2000 pixels. */
+enum { MANY = 3000, NEAR_Q30 = 60000 };
 
 static double value(struct glint_real x)
 {

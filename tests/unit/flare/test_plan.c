@@ -320,8 +320,9 @@ static struct extent extent_of(const int32_t *px_q20)
     return e;
 }
 
-/* The ghost of one of many points must become wider with what they are apart,
- * where it lies and with the light it has, and not before that is needed. */
+/* Points of a lamp that are far apart must have wider ghosts, at the same place
+ * and with the same light; points near each other must have the ghost of a
+ * single light. */
 static void test_points_of_a_lamp(void **state)
 {
     static int32_t px_q20[3 * WIDTH * HEIGHT];
@@ -440,7 +441,7 @@ static void test_half(void **state)
     close_fixture(&f);
 }
 
-/* With half as many pixels each way, four pixels must have the same light, up
+/* With half as many pixels each way, every 2 x 2 pixels must have one light, up
  * to the last row and column. */
 static void test_half_of_linear(void **state)
 {
@@ -804,8 +805,8 @@ static void test_sag(void **state)
     close_fixture(&f);
 }
 
-/* No light beyond the lens may be drawn, whatever the polynomials say; it must
- * ask for no room unless another light follows. */
+/* No light beyond the angles of the lens model may be drawn, whatever the
+ * polynomials say; it must ask for no room unless another light follows. */
 static void test_beyond(void **state)
 {
     const int32_t inside_q30 = 1 << 28, outside_q30 = 3 << 27;

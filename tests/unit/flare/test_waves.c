@@ -111,7 +111,8 @@ static void test_large_picture(void **state)
     report = drawn(&frame, &chosen, WIDTH, 100, picture);
     count(&frame, ghosts, &bundles);
     more = ghosts[6] + ghosts[10] + ghosts[17] + ghosts[28];
-    assert_true(ghosts[4] > 0 && more > 0); /* each has its own */
+    /* Ghosts differ in how many they take. */
+    assert_true(ghosts[4] > 0 && more > 0);
     assert_int_equal(bundles, report.stats.bundles);
     assert_int_equal(report.stats.dropped_bundles, 0);
     glint_frame_finish(&frame);
@@ -262,9 +263,9 @@ static int compare(const void *a, const void *b)
     return *(const int *)b - *(const int *)a;
 }
 
-/* Returns the hue step of RGB against truth, codes: by how much R - G or B - G
- * changes otherwise than in truth between neighbours, exceeded by a thousandth
- * of all pairs. */
+/* Returns the step in hue, in codes, that only a thousandth of all pairs of
+ * neighbouring pixels exceed: by how much more or less than in truth R - G or B
+ * - G changes from one pixel to the other. */
 static int hue_step(const uint8_t *rgb)
 {
     static int step[WIDTH * HEIGHT];

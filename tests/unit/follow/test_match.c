@@ -78,8 +78,9 @@ static int64_t glint_cost_of(const struct glint_seeker *s,
     return p->faint || s->is_lost ? 4 * (d2 + 65536) : d2;
 }
 
-/* Takes the cheapest of all pairs that remain, again and again. Sets PARTNER,
- * and returns how many pairs there are. */
+/* Pairs seekers and spots by taking the cheapest remaining pair again and
+ * again. Sets PARTNER[i] to the spot of seeker i or -1, and returns how many
+ * pairs there are. */
 static int match_slowly(int n_spots, int32_t *partner)
 {
     static uint8_t taken[MAX];
@@ -146,8 +147,9 @@ static int count_nearer(const struct glint_seeker *s, int at)
     return n;
 }
 
-/* With as many as there can be, all in reach of each other, no spot may be
- * given twice, and each must be one of the eight nearest. */
+/* With as many seekers and spots as there can be, all in reach of each other,
+ * no spot may be given twice, and each must be one of its seeker's eight
+ * nearest. */
 static void test_crowd(void **state)
 {
     static uint8_t seen[MAX];
@@ -173,7 +175,8 @@ static void test_crowd(void **state)
     assert_in_range(n, MAX / 2, MAX);
 }
 
-/* A spot as far away as a seeker reaches is taken, and none beyond. */
+/* A spot as far away as a seeker reaches must be taken, and one farther away
+ * must not. */
 static void test_reach(void **state)
 {
     static const int32_t way[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
@@ -192,8 +195,8 @@ static void test_reach(void **state)
         }
 }
 
-/* Seekers and spots at few places, so that most costs are equal. All spots of a
- * place differ in one number. */
+/* Sets N seekers and N spots at few places, so that most costs are equal. All
+ * spots of a place differ in one number. */
 static void scatter_alike(int n)
 {
     match.n_seekers = n;
@@ -234,8 +237,8 @@ static void take_powers(int64_t power[MAX + 1])
     }
 }
 
-/* Of pairs that cost the same, ids and what is in the spots decide, and not the
- * order in which either comes. */
+/* Among pairs that cost the same, ids and the members of spots must decide, and
+ * not the order in which seekers and spots come. */
 static void test_order_is_no_matter(void **state)
 {
     static int64_t power[MAX + 1], again[MAX + 1];

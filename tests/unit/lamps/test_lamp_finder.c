@@ -172,7 +172,7 @@ static void test_disc_is_found_to_a_sixteenth(void **state)
 }
 
 /* Adds a lamp of RADIUS to a grey picture: it is four times white, and beyond
- * the radius its light falls by e every FALL pixels. */
+ * the radius its light falls by a factor of e every FALL pixels. */
 static void draw_lamp(const struct glint_image *image, double cx, double cy,
                       double radius, double fall)
 {
@@ -475,8 +475,8 @@ static void test_hysteresis(void **state)
     free(image.plane[0]);
 }
 
-/* With faint regions kept, lamps must be as they are without, and faint regions
- * must follow them, marked. */
+/* When faint regions are kept too, the lamps must be as before, and the faint
+ * regions must come after them, marked as faint. */
 static void test_faint_regions_come_last(void **state)
 {
     static struct glint_spot light[FINDER_SPOTS];
@@ -520,8 +520,8 @@ static void test_faint_regions_come_last(void **state)
     assert_true(most_faint > 20);
 }
 
-/* Sums of one large region, of noise and patches of one code, must be those in
- * doubles. */
+/* The sums of a region that fills the picture, drawn of noise and of patches of
+ * one code, must be those in double precision. */
 static void test_sums_of_a_large_region(void **state)
 {
     (void)state;
@@ -623,8 +623,8 @@ static void test_near_ones_merge(void **state)
     assert_true(finder_x(0) == 22.5 && finder_y(0) == 21.5);
     assert_int_equal(finder_spot[0].area, 12);
     assert_true(finder_spot[0].flux_q16 == 12 << 16);
-    /* Square of the RMS radius: x (9 * (1^2 + 2 / 3) + 3 * 3^2) / 12 = 3.5, y 2
-     * / 3. */
+    /* The square of the RMS radius is, in x, (9 * (1^2 + 2 / 3) + 3 * 3^2) / 12
+     * = 3.5, and in y 2 / 3. */
     assert_true(fabs(finder_spot[0].size_q8 / 256.0 - sqrt(3.5 + 0.6667)) <
                 0.01);
     free(image.plane[0]);

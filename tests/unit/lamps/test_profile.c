@@ -190,8 +190,8 @@ static void test_glare_is_no_extent(void **state)
     assert_true(spot[0].axis_q8[0] < spot[0].size_q8 / 3);
 }
 
-/* Light that is 4 up to RADIUS and beyond it begins at RIM and falls as 1 / r^
- * FALL. */
+/* Sets light[] to 4 up to RADIUS; beyond it the light begins at RIM and falls
+ * as 1 / r^FALL. */
 static void draw_core(double radius, double rim, double fall)
 {
     for (int y = 0; y < H; y++)
@@ -223,8 +223,8 @@ static void test_face_in_its_own_light(void **state)
     }
 }
 
-/* What is lost in the dark middle of a ring that lights what is around it is
- * not at a rim, and says nothing of how wide the lamp is. */
+/* A ring that lights what is around it has a dark middle. The light missing
+ * there is not missing at a rim, and must not make the lamp wider. */
 static void test_ring_is_no_face(void **state)
 {
     const struct power_lamp lamp = lamp_of(POWER_DISC, 50);
@@ -291,8 +291,8 @@ static void test_power_of_clipped_lamps(void **state)
 }
 
 /* While exposure rises by 1/32 of a stop at a time, from where nothing is
- * clipped to where all is, the power must rise by less than 0.4 stops and fall
- * by less than 0.1. */
+ * clipped to where all is, each step must raise the power by less than 0.4
+ * stops and lower it by less than 0.1. */
 static void test_power_rises_smoothly(void **state)
 {
     (void)state;
@@ -318,8 +318,9 @@ static void test_power_rises_smoothly(void **state)
         }
 }
 
-/* While a sun comes in over the left border, half a pixel at a time, its power
- * must rise by less than 0.1 and fall by less than 0.13 of the whole. */
+/* While a sun comes in over the left border, half a pixel at a time, each step
+ * must raise its power by less than 0.1 of the whole, and lower it by less than
+ * 0.13. */
 static void test_a_sun_that_enters(void **state)
 {
     enum { OUT = 48, WIDE = W + OUT };

@@ -41,8 +41,8 @@ static struct settings new_settings(int width, int height, double light)
     return s;
 }
 
-/* Adds a lamp at (X, Y) whose face is LIGHT and whose light falls by e every
- * FALL beyond RADIUS; all lengths are shares of the width. */
+/* Adds a lamp at (X, Y) whose face is LIGHT and whose light falls by a factor
+ * of e every FALL beyond RADIUS; all lengths are shares of the width. */
 static void add_lamp(const struct settings *s, double x, double y,
                      double radius, double fall, const double light[3])
 {
@@ -293,7 +293,8 @@ static void test_paper_and_text(void **state)
     assert_none(&desk);
 }
 
-/* Bars of three quarters of each colour, white first. */
+/* Draws the eight bars of a test pattern into the first ROWS rows: white, then
+ * yellow to black of codes of 75 % (0.52 in linear light). */
 static void draw_bars(const struct settings *s, int rows)
 {
     for (int y = 0; y < rows; y++)
@@ -308,8 +309,8 @@ static void draw_bars(const struct settings *s, int rows)
         }
 }
 
-/* The white bar of a test pattern, and a white box below the bars; a round lamp
- * in its place is one. */
+/* The white bar of a test pattern must be no lamp, nor a white box below the
+ * bars; a round lamp in place of the box must be one. */
 static void test_test_patterns(void **state)
 {
     static const double white[3] = {1, 1, 1};
@@ -406,8 +407,8 @@ static int32_t least_of(struct glint_candidate *candidate, int n)
     return least_q8;
 }
 
-/* Two sure lamps must speak for others, which one lamp must not, nor a lamp and
- * its own core, nor one that is faint. */
+/* Only two sure lamps may lower the limit for others: not one, nor a lamp and
+ * its own core, nor one lamp and a faint one. */
 static void test_company(void **state)
 {
     struct glint_candidate c[4] = {one_at(0, 0, -50), one_at(10, 0, 80),
@@ -443,8 +444,9 @@ static void test_best_one_alone(void **state)
     assert_int_equal(least_of(c, 0), 0);
 }
 
-/* A lamp before an ever brighter wall must be found longer in a picture by
- * itself than in a video; a video before that picture must not matter. */
+/* As the wall behind a lamp becomes brighter, a single picture must show the
+ * lamp longer than a video does; a video before that picture must not
+ * matter. */
 static void test_video_needs_more(void **state)
 {
     static const double white[3] = {4, 4, 4};

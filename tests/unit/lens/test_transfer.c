@@ -230,7 +230,9 @@ static void test_sparse_rays(void **state)
     free(m.data);
 }
 
-/* Sets coefficients and box to the largest values allowed, signs by SEED. */
+/* Sets coefficients of the first system, and its boxes if it has knots, so that
+ * the sums of magnitudes are the largest allowed. SEED gives sizes and
+ * signs. */
 static void fill_up(struct model_image *m, uint32_t *seed)
 {
     const struct glint_model_header *h = model_header(m);
@@ -347,8 +349,9 @@ static void test_grid(void **state)
     free(m.data);
 }
 
-/* Rows of an annular grid lie between its rim and that of the box, on both
- * sides. They must have the vertices of a finer grid of the whole box. */
+/* Rows of an annular grid lie between the inner rim and the edge of the box, on
+ * both sides of the middle. Their vertices must be those of a finer grid of the
+ * whole box. */
 static void test_hollow_grid(void **state)
 {
     enum { N = 16, NODES = N + 1, ANNULUS = 3, SHELL = 6 };

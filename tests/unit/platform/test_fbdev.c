@@ -29,7 +29,7 @@
 /* ---------------------------------------------------------------- scenery */
 
 /* Resets the framebuffer to 8 x 6 pixels of XRGB8888 in rows of 40 bytes, with
- * memory for one screen. */
+ * no lines beyond those in view. */
 static void reset(void)
 {
     uint8_t old[256];

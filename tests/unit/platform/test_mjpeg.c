@@ -658,8 +658,8 @@ static void test_garbage(void **state)
     glint_mjpeg_close(d);
 }
 
-/* A restart interval that is lost shifts all that follow: their numbers must
- * show it. */
+/* A restart interval that is lost shifts all that follow: the numbers of the
+ * restart markers must show it. */
 static void test_lost_interval(void **state)
 {
     struct coding c = y422;

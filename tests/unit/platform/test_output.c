@@ -180,7 +180,8 @@ static void test_taken_name(void **state)
     unlink(path);
 }
 
-/* What was flushed is there before the end, and once. */
+/* What was flushed must be in the file before it is committed, and be there
+ * only once. */
 static void test_flush(void **state)
 {
     struct glint_error error;

@@ -243,7 +243,7 @@ static void test_565_there_and_back(void **state)
     glint_panel_close(&panel);
 }
 
-/* A code in 1 to 8 bits must be the nearest, for every code. */
+/* Each code of 8 bits must become the nearest one of 1 to 8 bits. */
 static void test_fewer_bits(void **state)
 {
     uint8_t ramp[256], mem[2 * 256];
@@ -345,7 +345,8 @@ static uint8_t *make_picture(struct glint_image *image,
     return mem;
 }
 
-/* Returns sample I of a pixel, by each format's own definition. */
+/* Returns Y', Cb or Cr of a pixel, for I of 0, 1 or 2, by each format's own
+ * definition. */
 static int sample_of(const struct glint_image *im, int i, int x, int y)
 {
     const uint8_t *row[3];
@@ -397,7 +398,8 @@ static void pixel_of(int rgb[3], const struct glint_image *im, int x, int y)
     case GLINT_RGB565: {
         const int word = row[2 * x] | row[2 * x + 1] << 8;
 
-        rgb[0] = (word >> 11) * 255 / 31; /* repeated bits, within 1 */
+        /* This is what repeated bits give, within 1. */
+        rgb[0] = (word >> 11) * 255 / 31;
         rgb[1] = (word >> 5 & 63) * 255 / 63;
         rgb[2] = (word & 31) * 255 / 31;
         return;
@@ -593,8 +595,8 @@ static void test_borders(void **state)
 
 /* ------------------------------------------------------------------- dither */
 
-/* Over 8 x 8 pixels of one code, the mean in 5 bits must be the code within
- * 1/64. */
+/* Over 8 x 8 pixels of one code, the mean of the codes of 5 bits must be code *
+ * 31 / 255 within 1/64. */
 static void test_dither(void **state)
 {
     struct glint_panel_config cfg = {

@@ -74,8 +74,9 @@ static void test_rate_alone(void **state)
     must_close();
 }
 
-/* 333334 units of 100 ns, as some USB cameras say it, must count as 30 frames a
- * second, and so must 1001/30000; 24 must not count as 25. */
+/* Intervals of 333334 units of 100 ns, as some USB cameras say it, must count
+ * as 30 frames a second, and so must those of 1001/30000 s; 24 frames a second
+ * must not count as 25. */
 static void test_almost_the_rate(void **state)
 {
     static const struct fake_mode usb[] = {

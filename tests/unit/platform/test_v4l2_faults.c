@@ -216,7 +216,8 @@ static void test_never_again(void **state)
     }
 }
 
-/* The time for trying must begin anew after each frame. */
+/* After each frame there must again be the whole time for trying to begin the
+ * stream anew. */
 static void test_patience(void **state)
 {
     (void)state;

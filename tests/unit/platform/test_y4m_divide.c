@@ -2,7 +2,8 @@
  *
  * Multiplications in place of divisions must give what divisions do:
  * y4m_share() for every number, y4m_part() at both ends of each run of numbers
- * with one quotient. That is enough, as neither of them ever falls.
+ * with one quotient. That is enough, as a quotient never falls when its number
+ * rises.
  */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -24,10 +24,11 @@ static uint8_t codes[3][3 * W * H];
 
 #define DEGREE 0.017453292519943295
 
-/* Largest difference that another grid may make of the same light. In codes an
- * outline is off by 0.1 pixel over (3/4)^2, as grids have 3/4 of the cells, and
- * one that moves by so much along a block of 8 x 8 changes its mean by 255 x
- * 0.18 / 8. */
+/* Largest difference, in codes of a block's mean, that another grid may make of
+ * the same light. Where codes are drawn, grids have 3/4 of the cells each way,
+ * so that an outline may be off by 0.1 / (3/4)^2 = 0.18 pixel. One that moves
+ * by so much along a side of a block of 8 x 8 changes its mean by 255 * 0.18 /
+ * 8. */
 #define GRID_CODES 5.7
 
 static int open_stage(void **state)
@@ -169,7 +170,7 @@ static void test_quarter_turns(void **state)
 
 /* ------------------------------------------------------------------- zones */
 
-/* Returns the light whose beam has exactly this sine. */
+/* Returns the light at the angle of this sine. */
 static struct glint_lamp at_sine(int32_t sine_q30, double power)
 {
     return stage_lamp(asin(sine_q30 * 0x1p-30) / DEGREE, 33, power);
@@ -190,8 +191,9 @@ static int is_inner(const struct glint_lens *lens,
     return ends && begins;
 }
 
-/* Returns by how much block means change at the sine, codes, between it and
- * 2^-29 to either side; *FLUX gets the largest relative change of all codes. */
+/* Returns by how much means of blocks change, in codes, between a light at
+ * SINE_Q30 and lights whose sines are 2^-29 smaller or larger. Raises *FLUX to
+ * the largest relative change of the sum of codes, if that is larger. */
 static double jump_at(int32_t sine_q30, double *flux)
 {
     const struct glint_lamp middle = at_sine(sine_q30, 1);

@@ -19,9 +19,10 @@
 #include "support/stage.h"
 
 /* Pictures are so small that each takes a tenth of a second. A draft (tolerance
- * 4: errors of 0.12 pixel, for faint ghosts of a pixel and of 2.4 % of energy)
- * has 40 dB where ghosts are some ten pixels wide; most have 50. Flux must be
- * within 3 %: these 2.4 %, and an outline a tenth of a pixel off. */
+ * 4) may be off by 0.12 pixel, in faint ghosts by a pixel, and by 2.4 % of
+ * energy: it has 40 dB where ghosts are some ten pixels wide; most lenses have
+ * 50. Flux must be within 3 %: these 2.4 %, and an outline a tenth of a pixel
+ * off. */
 enum { W = 144, H = 96 };
 
 #define LEAST_DB  40.0
@@ -126,8 +127,8 @@ static void test_blades(void **state)
 }
 
 /* The outline of a round stop 300 pixels wide, whose ghost hardly bends
- * elsewhere, must show no chords. 50 dB lie between the 44.4 of 8 cells across
- * and the 54.5 of the cells that are planned. */
+ * elsewhere, must show no chords. The bound of 50 dB is between the 44.4 dB of
+ * 8 cells across and the 54.5 dB of the cells that are planned. */
 static void test_round_stop(void **state)
 {
     enum { WIDE = 432, HIGH = 288 };
@@ -327,8 +328,8 @@ static void test_smallest_ball(void **state)
     assert_true(report("radii of 1e-2 mm", worst));
 }
 
-/* A radius of 1e7 mm differs from a plane by 1e-6 of a wavelength, and must
- * give the picture of the plane. */
+/* A surface 28 mm wide with a radius of 1e7 mm differs from a plane by 1e-5 mm,
+ * a fiftieth of a wavelength, and must give the picture of the plane. */
 static void test_nearly_planes(void **state)
 {
     static const char *const radius[] = {"flat", "1e7", "-1e7", "1e9"};
@@ -362,8 +363,8 @@ static void test_nearly_planes(void **state)
 
 /* ---------------------------------------------------------------- surfaces */
 
-/* Opens a lens of N surfaces of 100 mm together, with the stop behind SPLIT of
- * them and the sensor where light comes to a focus. */
+/* Opens a lens of N surfaces with a focal length near 100 mm, with the stop
+ * behind SPLIT of them and the sensor where light comes to a focus. */
 static void open_many(int n, int split)
 {
     struct glint_prescription *l = &stage.lens;
@@ -373,7 +374,9 @@ static void open_many(int n, int split)
     assert_true(stage_parse(&stage, doublet));
     l->n_surfaces = n;
     l->stop_after = split;
-    for (int k = 0; k < n; k++) /* planes behind: all have one power */
+    /* Rear surfaces are nearly planes, so that all elements have about the same
+     * power. */
+    for (int k = 0; k < n; k++)
         l->surface[k] = (struct glint_surface){
             .radius_mm = k % 2 ? -3000.0 - 100 * k : 52.0 * n / 2,
             .thickness_mm = k % 2 ? 0.6 : 1.5,

@@ -31,8 +31,9 @@ static bool is_drawn(int family, int number)
     return extreme_long() || number == 8 || (number == 3 && !is_heavy(family));
 }
 
-/* What is drawn is twice as much as a plan tells where memory has to grow, and
- * plans are off by some. */
+/* Work may exceed its bound by this factor: plans tell it only roughly, and a
+ * plan that must be made again, coarser or with more memory, has cost work,
+ * too. */
 #define MOST_WORK 1.5
 
 static void test_hostile_models(void **state)

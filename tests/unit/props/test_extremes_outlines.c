@@ -121,9 +121,9 @@ static void add_angle(double theta_deg, struct offsets *o)
     }
 }
 
-/* No outline may be off by more than --error, half as much again and a
- * twentieth of a pixel, as grids follow how a ghost bends in the mean. Most are
- * far better, so the mean must be at most a fifth of --error. */
+/* No outline may be off by more than 1.5 times --error and a twentieth of a
+ * pixel, as grids follow how a ghost bends in the mean. Most are far better, so
+ * the mean must be at most a fifth of --error. */
 static void outlines(const char *lens)
 {
     struct offsets o[ERRORS] = {{0, 0, 0, 0}};

@@ -30,14 +30,12 @@ static int open_stage(void **state)
     return stage_open(&heliar, "heliar-tronnier", W, H) ? 0 : 1;
 }
 
-/* ----------------------------------------------------------------- linear
- * light
- */
+/* ------------------------------------------------------------- linear light */
 
 /* Linear pictures are drawn at a scale of a power of two, so for powers of two
- * each picture must be that of power 1 to the last bit of a float. For decades,
- * irradiance falls on other steps of a percent, by half a step up or down, and
- * the sum must be far better. */
+ * each picture must be that of power 1 to the last bit of a float. For powers
+ * of ten, irradiance falls on other steps of a percent, and pixels are off by
+ * up to half a step; their sum must be within 0.1 %. */
 static void test_linear_in_power(void **state)
 {
     const struct glint_lamp lamp = stage_lamp(7.5, 33, 1);
@@ -70,10 +68,10 @@ static void test_linear_in_power(void **state)
 
 /* ------------------------------------------------------------------- codes */
 
-/* While the power rises by factors of 4 from what no code shows to what
- * saturates all, no sample may get darker than the ground, as from a sum that
- * wraps, nor darker than at the power before. The brightest light must leave
- * white what it reaches. */
+/* While the power rises by factors of 4, and of 10 000 above 1e9, from what no
+ * code shows to what saturates all, no sample may get darker than the ground,
+ * as from a sum that wraps, nor darker than at the power before. The brightest
+ * light must leave white what it reaches. */
 static void test_codes_never_fall(void **state)
 {
     uint64_t r = 5;

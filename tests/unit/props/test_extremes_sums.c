@@ -33,8 +33,8 @@ static int open_stage(void **state)
 
 /* ------------------------------------------------------------------ lights */
 
-/* 10 000 lights at one place must be as one of 10 000 times the power, which is
- * added with 31 bits. */
+/* 10 000 lights at one place must give the picture of one light of 10 000 times
+ * the power; their powers are added with 31 bits. */
 static void test_same_place(void **state)
 {
     const struct glint_lamp sum = stage_lamp(7.5, 33, LIGHTS);

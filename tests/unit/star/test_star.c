@@ -130,7 +130,8 @@ static void draw_linear(const struct glint_star_tables *t,
 static int32_t linear_q20[N];
 static uint8_t codes[N], others[N];
 
-/* Returns the sum of channel C over all pixels, divided by a power of 2^10. */
+/* Returns the sum of channel C over all pixels as a share of a light of power
+ * 2^10. */
 static double sum_of(const int32_t *q20, int c)
 {
     double sum = 0;
@@ -191,7 +192,8 @@ static void test_spikes(void **state)
     }
 }
 
-/* The first dark ring of a round stop must be at 1.21967. */
+/* The first dark ring of a round stop must be at 1.21967 times wavelength times
+ * f-number. */
 static void test_ring(void **state)
 {
     double dark = 0, least = 1;
@@ -249,8 +251,8 @@ static void test_energy(void **state)
                          GLINT_OK);
         draw_linear(t, &light, 1, linear_q20);
         for (int c = 0; c < 3; c++) {
-            /* The sides of the picture are 1.08 times as far as a circle of its
-             * least half would be. */
+            /* About as much light falls beyond the sides of the picture as
+             * beyond a circle of 48 pixels. */
             const double beyond = glint_psf_beyond(&psf, 48, c);
 
             assert_true(fabs(sum_of(linear_q20, c) + beyond - 1) < 0.01);
@@ -319,8 +321,8 @@ static void draw_codes(const struct glint_star_tables *t,
 }
 
 /* Pictures must have at least 50 dB for three stops and three powers. In one so
- * small all pixels are near the light: the same errors are 24 dB less at
- * 1080p. */
+ * small all pixels are near the light; in a picture of 1080p the same errors
+ * would have 24 dB more. */
 static void test_direct(void **state)
 {
     static const struct {
@@ -411,8 +413,8 @@ static void test_extent(void **state)
     glint_star_tables_free(t);
 }
 
-/* The largest share by which what was drawn of a light of 2^25 at PLACE differs
- * from what tables give there. */
+/* Returns the largest share by which what was drawn of a light of 2^25 at PLACE
+ * differs from what tables give there. */
 static double most_off(const struct glint_star_tables *t, const double place[2])
 {
     double most = 0;
@@ -432,7 +434,8 @@ static double most_off(const struct glint_star_tables *t, const double place[2])
     return most;
 }
 
-/* Far from the light a row's pixels are not computed one by one. */
+/* Far from the light pixels of a row are not computed one by one, but must be
+ * within 3 % of what tables give. */
 static void test_far(void **state)
 {
     static const double place[][2] = {
@@ -465,8 +468,9 @@ static int count_lit(void)
     return n;
 }
 
-/* What a star will take is known before: a circle's halo by its pixels, lines
- * on top of it. */
+/* The number of pixels that a star will draw is told before it is drawn. It
+ * must be 0.75 to 1.2 times those that get light for a round stop, and 1 to 2
+ * times for six blades, as pixels of spikes count once more. */
 static void test_pixels(void **state)
 {
     static const double place[][2] = {{48, 41}, {0, 0}, {-20, 60}};
@@ -633,7 +637,7 @@ static void draw_in_tiles(const struct glint_star_tables *t,
     close_canvas(&c);
 }
 
-/* Nor may tiles change a bit of light before it becomes codes. */
+/* In linear light, too, tiles must not change a bit. */
 static void test_same_light(void **state)
 {
     static const int blades[] = {0, 5, 9};
@@ -659,8 +663,9 @@ static void test_same_light(void **state)
     }
 }
 
-/* Twice the power must nowhere give less light, from what cannot be seen to
- * what saturates, with the light in the picture and on every side of it. */
+/* Twice the power must nowhere give less light, but for a code of rounding,
+ * from what cannot be seen to what saturates, with the light in the picture and
+ * on every side of it. */
 static void test_powers(void **state)
 {
     static const double place[][2] = {{48, 41},   {48.5, 41.5}, {0, 0},

@@ -121,7 +121,8 @@ struct glint_frame {
     struct glint_image image;
     struct triangle triangle;
     struct glint_flare_config cfg;
-    int half, n_workers, n_lights, alone; /* 1: by glint_flare_draw() */
+    /* ALONE 1: the flare is drawn by glint_flare_draw(), without the pass */
+    int half, n_workers, n_lights, alone;
     uint32_t order;
 };
 

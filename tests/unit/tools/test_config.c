@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Options from files: which entries are taken, in which order, and that every
- * mistake is named with its line and takes no entry along.
+ * mistake is named with its line. A file that does not parse must set nothing.
  */
 #include <setjmp.h>
 #include <stdarg.h>

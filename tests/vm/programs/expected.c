@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * expected LAYOUT WxH VIDEO OUT [scale|centre] - writes OUT, a PPM of what a
- * panel
- *     of LAYOUT shows of the last frame of a y4m video.
- * expected yuyv WxH VIDEO OUT - writes this frame, C422, as a camera sends
- * it.
+ * expected LAYOUT WxH VIDEO OUT [scale|centre]
+ *     Writes OUT, a PPM of what a panel of LAYOUT shows of the last frame of a
+ *     y4m video.
+ * expected yuyv WxH VIDEO OUT
+ *     Writes this frame, C422, as a camera sends it.
  */
 #include <stdio.h>
 #include <stdlib.h>

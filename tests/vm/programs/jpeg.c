@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * jpeg encode VIDEO.y4m OUT.jpg - writes the first frame, C422 of limited
- * range,
- *     as a camera would send it: 4:2:2, full range.
- * jpeg decode OUT.y4m IN.jpg... - decodes frames of one size and kind, as glint
- *     takes them from a camera.
+ * jpeg encode VIDEO.y4m OUT.jpg
+ *     Writes the first frame, C422 of limited range, as a camera would send it:
+ *     4:2:2, full range. Its colours become grey.
+ * jpeg decode OUT.y4m IN.jpg...
+ *     Decodes frames of one size and kind, as glint takes them from a camera.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,7 +32,7 @@ static uint8_t full(uint8_t code)
     return (uint8_t)(value < 0 ? 0 : value > 255 ? 255 : value);
 }
 
-/* Compresses a row of LUMA with grey chroma, as scenes have no other. */
+/* Compresses a row of LUMA with grey chroma. */
 static void put_row(struct jpeg_compress_struct *j, const uint8_t *luma)
 {
     static uint8_t ycc[3 * MAX_SIDE];

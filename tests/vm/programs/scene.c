@@ -3,8 +3,9 @@
  * scene [-n FRAMES] [-m DX,DY] [-s SIGMA] YUYV|NV12|y4m WxH OUT [X,Y,R]...
  *
  * Writes a night with lamps at X, Y (pixels) of radius R, that move by DX, DY
- * each frame, under noise of SIGMA codes, over colour bars: frames as a camera
- * would send them, the same on every run. y4m has the samples of YUYV.
+ * each frame, under noise of SIGMA codes, above a strip of colour bars: frames
+ * as a camera would send them, the same on every run. y4m has the samples of
+ * YUYV.
  */
 #include <math.h>
 #include <stdint.h>
