@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * lights N MODEL.glint... - the front of many lights: frames of 1920x1080 on
- * black in codes, N lights (0: 1 to 128) of powers found in night photographs,
- * by quality and by which ghosts take the rays of one wave
- * (glint_dials.dim_codes). Prints processor milliseconds of a frame on one
- * thread, the least of some, and PSNR against the finest quality that leaves
- * nothing out.
+ * lights N MODEL.glint... - prints what frames with many lights cost and how
+ * good they are, by quality and by glint_dials.dim_codes, which tells what
+ * ghosts take the rays of one wave. Frames are 1920x1080 codes on black, with N
+ * lights (1, 4, 16, 64 or 128; 0: each of these) that were found in night
+ * photographs. A row has the processor milliseconds of a frame on one thread,
+ * the least of three, PSNR against the finest quality, which leaves out only
+ * what is below 0.01 codes, and the number of bundles.
  */
 #include <math.h>
 #include <stdio.h>
@@ -102,7 +103,8 @@ static struct stage stage;
 static struct glint_lamp lamps[MOST];
 static uint8_t want[BYTES], got[BYTES];
 
-/* The first found as they are, then mirrored. */
+/* Sets lamps[] to what was found, then to the same mirrored across, and then
+ * down. */
 static void set_lamps(void)
 {
     for (int i = 0; i < MOST; i++) {
@@ -125,7 +127,7 @@ static double seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Draws N lights on black. Returns processor seconds. */
+/* Draws the first N lamps, times SCALE, on black. Returns processor seconds. */
 static double draw(int n, double scale, uint8_t *codes)
 {
     struct glint_image image = {.format = GLINT_RGB24,
@@ -143,8 +145,8 @@ static double draw(int n, double scale, uint8_t *codes)
     return seconds() - from;
 }
 
-/* The scale at which all but a ten-thousandth of the samples are below a
- * quarter of white, about as --strength 0.5 has it. */
+/* Returns the scale at which all but a ten-thousandth of the samples are at
+ * most a quarter of white, about as --strength 0.5 has it. */
 static double scale_for(int n)
 {
     const int quarter = 137, most = BYTES / 10000;
@@ -205,7 +207,7 @@ static void run(const char *lens, int n)
     }
 }
 
-/* Makes the stage of the model at PATH. */
+/* Sets up the stage for the model at PATH. Returns false if it is refused. */
 static bool open_model(const char *path)
 {
     static const double nm[3] = {650, 532, 450};

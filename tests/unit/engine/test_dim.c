@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Dim ghosts, drawn by the rays of one wave: light stays, nothing appears at
- * once, and a picture depends on neither the frames before nor the workers.
+ * Dim ghosts, drawn by the rays of one wave: the sum of light must stay,
+ * nothing may pop up, and a picture may depend neither on frames before nor on
+ * workers.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -21,7 +22,8 @@ static struct stage stage;
 static struct glint_lamp lamps[LIGHTS];
 static uint8_t plain[BYTES], dim[BYTES], last[2][BYTES];
 
-/* A bright lamp and ever fainter ones, seven octaves in all, moved by TIME. */
+/* Sets a bright lamp and ever fainter ones, over seven octaves, moved by
+ * TIME. */
 static void set_lamps(double time)
 {
     for (int i = 0; i < LIGHTS; i++)
@@ -68,8 +70,9 @@ static double psnr(const uint8_t *a, const uint8_t *b)
     return 10 * log10(255. * 255 * BYTES / fmax(sum, 1));
 }
 
-/* The more is dim the fewer bundles there are and the farther from what all
- * waves' rays draw, but the light stays. */
+/* With a larger dim_codes there must be fewer bundles, and the picture must be
+ * farther from the one without dim ghosts, but above 40 dB, with the same sum
+ * of codes within 1 %. */
 static void test_light_stays(void **state)
 {
     int bundles;
@@ -90,8 +93,8 @@ static void test_light_stays(void **state)
     }
 }
 
-/* Three hundred frames of moving lights: with dim ghosts no block of 8 x 8
- * jumps by more than a fraction of a code beyond what it does without. */
+/* While lights move for 300 frames, the largest jump of a mean of 8 x 8 pixels
+ * with dim ghosts must be less than half a code above that without them. */
 static void test_no_pops(void **state)
 {
     double worst[2] = {0, 0};
@@ -116,7 +119,8 @@ static void test_no_pops(void **state)
     assert_true(worst[1] < worst[0] + 0.5);
 }
 
-/* The table that other frames filled, by other workers, is the same. */
+/* A picture must have the same bits with 1, 3 or 5 workers, and after another
+ * frame. */
 static void test_same_bits(void **state)
 {
     struct shuffle shuffle;
