@@ -141,8 +141,14 @@ static void check_frame(const struct glint_lens *lens, int32_t opening_q30)
         {h->wave_lo_q24, {16384, 0, 0}, {1 << 30, -30}},
         {h->wave_hi_q24, {0, 9000, 16384}, {1 << 30, 9}}};
     const struct glint_light beam[2] = {
-        {0, ONE, ONE, 0, {1 << 30, -20}, {16384, 16384, 16384}},
-        {h->sine_hi_q30, ONE / 2, ONE / 2, -ONE, {1 << 30, 20}, {16384, 1, 0}}};
+        {0, ONE, ONE, 0, {1 << 30, -20}, {16384, 16384, 16384}, 0},
+        {h->sine_hi_q30,
+         ONE / 2,
+         ONE / 2,
+         -ONE,
+         {1 << 30, 20},
+         {16384, 1, 0},
+         INT32_MAX}};
     const struct glint_flare_frame rays = {.lens = lens,
                                            .wave = wave,
                                            .n_waves = 2,
