@@ -57,7 +57,9 @@ struct glint_y4m_header {
     enum glint_range range;
     enum glint_matrix matrix;
     int fps_num, fps_den;       /* frames a second; 0, 0: not known */
-    char interlace;             /* p t b m or ?; 0: not stated */
+    char interlace;             /* the tag I: p progressive, t or b
+                                   top or bottom field first, m mixed,
+                                   ? unknown; 0: not stated */
     char aspect[24];            /* shape of a pixel, "1:1"; "": not stated */
     char colour[16];            /* the tag C, "420mpeg2"; "": not stated */
     bool range_stated;          /* XCOLORRANGE states it */

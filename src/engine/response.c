@@ -215,7 +215,8 @@ static void take_logs(struct glint_response_light *light)
     }
 }
 
-/* Measures lamps like LAMP with extents up to an eighth of the picture's
+/* Measures how much fainter the brightest part of the flare becomes if LAMP is
+ * a disc rather than a point, of radii up to an eighth of the picture's
  * diagonal. */
 static enum glint_status measure_extents(struct proxy *p,
                                          struct glint_response *r,

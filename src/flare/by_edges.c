@@ -150,9 +150,9 @@ static int add_refs(const struct glint_flare *f, int refs, int first, int n)
     return refs;
 }
 
-/* Turns a bundle into edges, if they fit into what is left of the worker's
- * share. BINS: counts the entries of a bundle that does not fit; may be NULL.
- */
+/* Turns a bundle into edges in what is left of the worker's share of them. If
+ * they do not fit, none is kept, and the entries that they would take in BINS
+ * are counted in the slot's refs, unless BINS is NULL. */
 static void emit_bundle(struct glint_flare *f, int bundle, int worker,
                         const struct glint_bins *bins)
 {
@@ -362,8 +362,8 @@ static int place_refs(struct glint_flare *f)
     return sum;
 }
 
-/* Puts the edges of the bundles that worker JOB counted into the bins, at the
- * places of that worker. */
+/* Job JOB puts into the bins what worker JOB counted: the edges of its bundles,
+ * at the places that place_refs() gave that worker. Any worker may run it. */
 static void put_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;

@@ -18,7 +18,8 @@ enum {
     FARTHEST_Q8 = 1 << 20  /* pixels from the middle that its centre may lie */
 };
 
-/* Returns X, in units of the sensor outputs, in pixels, within +-2^31. */
+/* Converts X from units of the sensor outputs of T to pixels, clamped to +-2^23
+ * pixels. */
 static int64_t pixels_q8(const struct glint_plan *p,
                          const struct glint_transfer *t, int64_t x)
 {

@@ -197,8 +197,8 @@ static void more_job(void *ctx, int number, int worker)
         plan_waves(f, job, job->first, job->set, f->worker[worker].plan);
 }
 
-/* Leaves out the ghosts that no pixel can show with the light of all lights
- * together. */
+/* Leaves out each ghost that stays too faint to be seen in any pixel even if
+ * its peaks by all lights fall on the same one. */
 static void leave_out_faint(struct glint_flare *f, int n)
 {
     const int n_ghosts = (int)f->plan.frame->lens->header->n_ghosts;

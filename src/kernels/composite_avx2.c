@@ -54,8 +54,8 @@ static inline V spread(__m128i codes, V places)
     return v_right(v_shuffle(_mm256_broadcastsi128_si256(codes), places), 1);
 }
 
-/* Places that move bytes 0, 2, 4 ... (EVENS) and 1, 3, 5 ... (ODDS) to the
- * upper bytes of lanes. */
+/* Shuffle controls that put bytes 0, 2 .. 14 (EVENS) or 1, 3 .. 15 (ODDS) into
+ * the upper bytes of eight 16-bit elements; the lower bytes become 0. */
 #define EVENS 0x0e800c800a800880, 0x0680048002800080
 #define ODDS  0x0f800d800b800980, 0x0780058003800180
 

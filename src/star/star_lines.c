@@ -9,7 +9,8 @@
 #include "base/q.h"
 #include "star/parts.h"
 
-/* Returns X 2^-SHIFT, X below 2^48, at most 2^50. */
+/* Returns X 2^-SHIFT, or 2^50 if that is more. X is below 2^48; SHIFT may be
+ * negative. */
 static int64_t scaled(uint64_t x, int shift)
 {
     const uint64_t most = UINT64_C(1) << 50;

@@ -111,8 +111,9 @@ void sweep_mark_fronts(struct sweep *s);
  * out. */
 int sweep_front(const double *cost, const double *quality, int n, int *front);
 
-/* A setting over all cases that are swept together: geometric mean of costs
- * over the standard's, mean and least PSNR, worst flux. */
+/* Means of one setting over all cases in which dials are combined: geometric
+ * mean of its cost over that of the standard setting of the same case; mean and
+ * least PSNR, dB; largest error of the flux, without its sign. */
 struct sweep_mean {
     const struct sweep_setting *set;
     double cost, psnr_db, least_db, flux_error;

@@ -34,7 +34,8 @@ struct compositor {
     size_t reserve_bytes;
     int n_hand;
     struct glint_lamp hand[SETTINGS_MAX_LAMPS];
-    /* How bright flares come out, and the scale of each frame. */
+    /* How bright flares are to be, and the factor on the lamps' powers that
+     * this gives for each frame. */
     struct glint_strength strength;
     /* what a picture by itself shows under its flare, from when its lamps are
      * found until it is exposed; else NULL */

@@ -21,7 +21,8 @@ enum { GLINT_PART_DEPTH = 4, GLINT_MAX_AXIS_DEPTH = 8 };
  * of fainter ghosts may be off by more, up to EASE times. */
 struct glint_tolerance {
     double sensor_mm, edge_mm, stop, stop_least, barrel, energy;
-    double faint_sensor_mm; /* largest tolerance of places for any ghost, mm */
+    double faint_sensor_mm; /* mm; sensor_mm of fainter ghosts is eased up to
+                               this, no further */
     double escape; /* relative radius that a ray may get past a barrel that is
                       left out */
     double ease;

@@ -104,7 +104,8 @@ static void follow(const struct seen *seen, const double *value, int degree,
                              : fit.power[k][2]] = fit.coef[k];
 }
 
-/* Returns what must be added to HALF to make it 0 or more everywhere. */
+/* Returns minus the least value of the polynomial HALF over the zone, sampled:
+ * what its constant lacks for 0 or more; negative if it has more than that. */
 static double lacks(const double half[GLINT_BOX_TERMS])
 {
     double lowest = HUGE_VAL;

@@ -9,7 +9,8 @@
 
 STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 
-#define PEAK 5.0 /* times the root mean square: tolerance of a single ray */
+/* A single ray may be off by so many times the root mean square aimed at. */
+#define PEAK 5.0
 /* Ratio of most to least energy above which a root of it is fitted. */
 #define WIDE_ENERGY 60
 

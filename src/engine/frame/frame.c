@@ -171,7 +171,8 @@ static int add_lights(struct glint_frame *f, const struct glint_lamp *lamp,
     return within;
 }
 
-/* Returns how many lights the points of N lamps may become. */
+/* Returns the most lights that N lamps may be drawn as, those with an extent as
+ * several points. */
 static int room_for(const struct glint_frame *f, int n)
 {
     const int most = f->dials.max_lights;

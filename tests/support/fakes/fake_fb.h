@@ -26,7 +26,8 @@ struct fake_fb {
 };
 extern struct fake_fb *fake_fb; /* set by the test, shared with forks */
 
-extern int fake_fb_calls;   /* number of calls so far that may fail */
+extern int fake_fb_calls;   /* calls so far of those that
+                               fake_fb_fail_at can make fail */
 extern int fake_fb_fail_at; /* number of the call that fails, from 1; 0: none */
 extern int fake_fb_maps;
 

@@ -70,9 +70,9 @@ static double psnr(const uint8_t *a, const uint8_t *b)
     return 10 * log10(255. * 255 * BYTES / fmax(sum, 1));
 }
 
-/* With a larger dim_codes there must be fewer bundles, and the picture must be
- * farther from the one without dim ghosts, but above 40 dB, with the same sum
- * of codes within 1 %. */
+/* Each larger dim_codes must give fewer bundles and a picture no nearer to that
+ * of dim_codes 0, in which each ghost has its own three waves; still above
+ * 40 dB, and with the same sum of codes within 1 %. */
 static void test_light_stays(void **state)
 {
     int bundles;

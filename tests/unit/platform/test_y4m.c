@@ -498,7 +498,8 @@ static void test_light(void **state)
         assert_int_equal(wide_at(planes, i), i == 4 ? 422 : i < 9 ? 64 : 512);
     light_up("Cmono12 XCOLORRANGE=FULL", 0, 0, layer, planes);
     assert_int_equal(wide_at(planes, 4), 1675); /* 4095 * 0.40901 */
-    layer[3 * 8] = 9;                           /* red of 9 at the odd corner */
+    layer[3 * 8] = 9; /* red light of 9, which clips, on the last of 3 x 3
+                       * pixels, whose chroma sample has no other pixel */
     light_up("C420p10", 64, 512, layer, planes);
     assert_int_equal(wide_at(planes, 8), 326);  /* 64 + 876 * 0.299 */
     assert_int_equal(wide_at(planes, 12), 361); /* 512 - 896 * 0.1687 */
