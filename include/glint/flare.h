@@ -63,7 +63,11 @@ struct glint_wave_sets {
  * and a size; plans fill it as lights need it, and no picture depends on what
  * was filled before. */
 enum { GLINT_DIM_NODES = 33, GLINT_DIM_VALUES = 4 };
+struct glint_dim_method;
+extern const struct glint_dim_method glint_dim_method;
 struct glint_dim {
+    /* glint_dim_method; a program that does not name it does not link it. */
+    const struct glint_dim_method *method;
     /* [GLINT_DIM_NODES][ghosts of the lens][GLINT_DIM_VALUES] */
     int16_t *log2_q8;
     /* 1: the node is filled. Before the first plan, and when the lens, stop,

@@ -19,6 +19,20 @@ enum {
     GLINT_DIM_DARK = INT16_MIN /* value where a wave does not get through */
 };
 
+struct glint_flare;
+
+/* What a plan asks of the table. */
+struct glint_dim_method {
+    /* Fills those nodes, which are angles, that lie next to the angles of the
+     * plan's first N_LIGHTS lights and are not filled yet. */
+    void (*fill)(struct glint_flare *flare, int n_lights);
+    /* glint_dim_share_q8() and glint_dim_ratio_q16() */
+    int (*share_q8)(const struct glint_flare_frame *frame,
+                    const struct glint_light *light, int ghost);
+    int64_t (*ratio_q16)(const struct glint_flare_frame *frame,
+                         const struct glint_light *light, int ghost, int wave);
+};
+
 /* Returns the share of its light that each wave of ghost GHOST of LIGHT draws
  * by its own rays, 0 to GLINT_DIM_WHOLE_Q8; the rays of GLINT_DIM_WAVE draw the
  * rest. */

@@ -327,7 +327,8 @@ void glint_flare_plan(struct glint_flare *flare,
                                                    : WHOLE_OPENING_Q30};
     if (frame->dim && frame->dimmest.mantissa && !frame->sets &&
         frame->n_waves == GLINT_DIM_WAVES) {
-        glint_dim_fill(flare, n_within(frame->lens, lights, n_lights));
+        frame->dim->method->fill(flare,
+                                 n_within(frame->lens, lights, n_lights));
         flare->plan.dims = 1;
     }
     flare->flux = flare->brightest = (struct glint_real){0, 0};

@@ -96,7 +96,7 @@ static void fill_node(struct glint_flare *f, int node)
     r->dim->done[node] = 1;
 }
 
-void glint_dim_fill(struct glint_flare *flare, int n_lights)
+static void fill_nodes(struct glint_flare *flare, int n_lights)
 {
     uint8_t *done = flare->plan.frame->dim->done;
 
@@ -109,3 +109,6 @@ void glint_dim_fill(struct glint_flare *flare, int n_lights)
                 fill_node(flare, node);
     }
 }
+
+const struct glint_dim_method glint_dim_method = {
+    fill_nodes, glint_dim_share_q8, glint_dim_ratio_q16};

@@ -75,8 +75,9 @@ static int64_t part_q16(const struct glint_plan *p,
 {
     if (wave == planned->wave)
         return 1 << 16;
-    return q_shift(glint_dim_ratio_q16(p->frame, &p->light[planned->light],
-                                       planned->ghost, wave) *
+    return q_shift(p->frame->dim->method->ratio_q16(p->frame,
+                                                    &p->light[planned->light],
+                                                    planned->ghost, wave) *
                        (GLINT_DIM_WHOLE_Q8 - share_q8),
                    8);
 }
@@ -323,7 +324,7 @@ static enum glint_outcome plan_bundle(const struct glint_plan *plan,
                              r->wave[planned->wave].wave_q24))
         return GLINT_OUTCOME_CLOSED;
     transfer->sets = plan->sets;
-    share_q8 = plan->dims ? glint_dim_share_q8(r, b, planned->ghost)
+    share_q8 = plan->dims ? r->dim->method->share_q8(r, b, planned->ghost)
                           : GLINT_DIM_WHOLE_Q8;
     if (share_q8 == 0 && planned->wave != GLINT_DIM_WAVE)
         return GLINT_OUTCOME_OTHER_SET;

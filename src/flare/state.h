@@ -76,11 +76,6 @@ struct glint_raster {
                  struct glint_pass *pass, int n_below);
 };
 
-/* Fills those nodes of the table of flare/dim.h, which are angles, that lie
- * next to the angles of the plan's first N_LIGHTS lights and are not filled
- * yet. */
-void glint_dim_fill(struct glint_flare *flare, int n_lights);
-
 /* Forgets the counts of the last draw, and the passes that were under it. */
 void glint_flare_forget(struct glint_flare *flare);
 

@@ -33,6 +33,7 @@ enum glint_status glint_frame_hold_ghosts(struct glint_frame *f)
 {
     if (!f->seen)
         f->seen = calloc(GLINT_MAX_GHOSTS, sizeof *f->seen);
+    f->dim.method = &glint_dim_method;
     if (!f->dim.log2_q8 && f->lens)
         f->dim.log2_q8 = calloc((size_t)GLINT_DIM_NODES * GLINT_DIM_VALUES *
                                     ((size_t)f->setup->n_ghosts + 1),
