@@ -9,6 +9,7 @@
 
 #include "command/explain.h"
 #include "overlay/compositor.h"
+#include "overlay/overlay_line.h"
 #include "engine/measure.h"
 #include "options/takes.h"
 #include "formats/picture.h"
@@ -238,6 +239,8 @@ static int tell(struct tool *tool, struct explain_command *c, bool linear)
         explain_json(&e, &title);
     else
         explain_print(&e, &title);
+    if (status == GLINT_OK && compositor->n_lamps == 0 && !tool->quiet)
+        overlay_say_none(compositor, stderr);
     if (code == EXIT_OK && c->output)
         code = save(tool, c, &e, &title);
     glint_explain_close(&e);

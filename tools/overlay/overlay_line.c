@@ -117,14 +117,12 @@ static void say_faint(const struct overlay *o,
                 compositor->strength.asked * sqrt(well_seen / light->peak));
 }
 
-/* Prints that no frame has a lamp; of a picture by itself also the brightest
- * candidate. */
-static void say_none(const struct compositor *compositor, FILE *to)
+void overlay_say_none(const struct compositor *compositor, FILE *to)
 {
     const bool is_found = !compositor->is_listed && compositor->n_hand == 0;
     const struct glint_spot *next = NULL;
 
-    if (compositor->sized && is_found && compositor->n_frames == 1)
+    if (compositor->sized && is_found && compositor->n_frames <= 1)
         next = glint_lamp_detector_doubtful(&compositor->finder);
     fputs("no light was found, so nothing was drawn; ", to);
     if (next)
@@ -145,7 +143,7 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
     if (n != 1)
         fprintf(to, "%d frames, %.1f a second, ", n, n / seconds);
     if (o->most_lights == 0) {
-        say_none(compositor, to);
+        overlay_say_none(compositor, to);
         return;
     }
     say_lights(compositor, o->most_lights, to);

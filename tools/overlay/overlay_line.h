@@ -27,6 +27,10 @@ struct overlay_light overlay_light(const struct overlay *o);
 void overlay_say(const struct overlay *o, const struct overlay_light *light,
                  FILE *to);
 
+/* Prints that no lamp was found; of a picture by itself also the brightest
+ * candidate. */
+void overlay_say_none(const struct compositor *compositor, FILE *to);
+
 /* Prints members of a JSON object, without braces. */
 void overlay_json(const struct overlay *o, const struct overlay_light *light,
                   FILE *to);
