@@ -370,7 +370,7 @@ enum glint_status glint_response_draw(const struct glint_frame *like,
             status = draw(&p, small, n, &peak_log2, light);
         if (status == GLINT_OK)
             set_least_top(&p, light);
-        if (status == GLINT_OK && ground)
+        if (status == GLINT_OK && ground && seen)
             glint_seen_on(seen, ground, p.rgb, p.view.width, p.view.height);
         close_proxy(&p);
     }

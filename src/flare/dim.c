@@ -66,7 +66,7 @@ int64_t glint_dim_ratio_q16(const struct glint_flare_frame *frame,
         q_clamp_sat(value_at(frame, light, ghost, 1 + wave) -
                         value_at(frame, light, ghost, 1 + GLINT_DIM_WAVE),
                     -16 * 256, 11 * 256);
-    const int64_t one_q16 = (256 + (log2 & 255)) << 8;
+    const int64_t one_q16 = (int64_t)(256 + (log2 & 255)) << 8;
     const int octaves = log2 >> 8;
 
     return octaves < 0 ? one_q16 >> -octaves : one_q16 << octaves;
