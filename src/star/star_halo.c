@@ -118,10 +118,10 @@ static int is_straight(const struct span *s, const struct node *a,
 static int run_of(const struct span *s, const struct glint_star_line *line,
                   const struct node *from, int x1)
 {
-    for (int n = 8; n >= 4; n /= 2) {
+    for (int n = 8; n >= 4; n >>= 1) {
         struct node to;
 
-        if (from->x % n != 0 || from->x + n > x1)
+        if ((from->x & (n - 1)) != 0 || from->x + n > x1)
             continue;
         to = node_at(s, line, from->x + n);
         if (is_straight(s, from, &to))
