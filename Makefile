@@ -13,6 +13,7 @@
 #   make check-arm  the run-time half's on ARM, in an emulator
 #   make check-vm   of these those on Debian's kernels in an emulator, ARM too
 #   make check-files   round trips of picture files, by exiftool, ImageMagick, ffmpeg
+#   make check-all  what a release must pass: all of these, about two hours
 #   make mutants  planted faults, each of which a unit test has to catch
 #   make check-valgrind   memory that was never written, by valgrind
 #   make fuzz     every fuzzer for SECONDS=60, two at a time;  FUZZ=lens: that one
@@ -28,8 +29,10 @@
 #   make growth   how that grows, as plots;  memory-table: what it takes
 #   make video-report  how steady the flare of a video is; VIDEOS="A.y4m ..."
 #   make trade    what accuracy costs: plots, pictures and a page (glint sweep)
-#   also: oiio window table lights-table hostile-table bake-table wide-table accuracy-table colour-table ray-table inputs format
-#         golden-update fuzz-keep clean
+#   also: oiio assimp window table stop-table scene-table scene-cost-table mesh-table ward-table hidden-table occlusion-table lights-table flicker-table
+#         star-table hostile-table bake-table wide-table accuracy-table colour-table
+#         coating-table ray-table inputs format
+#         golden-update fuzz-keep clean reuse-table threads-table stopping-table left-table
 
 MAKEFLAGS += -r
 .DEFAULT_GOAL := all
@@ -42,12 +45,12 @@ include tools/make/target.mk
 
 # Rooms of the sources; every file in them is built, but for the alternatives
 # below. src/README.md says what each is for.
-CORE      := base image kernels kernels/rays lens lamps follow tile flare/edges flare star
+CORE      := base image kernels kernels/rays lens lamps follow tile flare/edges flare star veil scene/around scene scene/frame scene/ward scene/account reuse
 PUBLISHED := published
 ENGINE    := engine engine/frame engine/setup engine/star
-BAKE      := bake bake/table bake/trace bake/fit bake/exact bake/published
-PLATFORM  := posix formats video panel linux jpeg oiio sdl
-TOOLS     := options lamp_files model overlay command live lab
+BAKE      := bake bake/table bake/scene bake/environment bake/trace bake/fit bake/exact bake/published
+PLATFORM  := posix formats video panel linux jpeg oiio assimp sdl
+TOOLS     := options lamp_files desk model overlay scenes command live lab
 c_files = $(wildcard $(2:%=$(1)/%/*.c))
 objects = $(patsubst %.c,$(OUT)/%.o,$(filter-out $(absent),$(call c_files,$(1),$(2))))
 
@@ -62,6 +65,7 @@ absent += platform/jpeg/$(if $(filter yes,$(WITH_JPEG)),absent,mjpeg).c
 absent += tools/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
 # A static program has no plug-ins.
 absent += platform/oiio/$(if $(CROSS),loader,absent).c
+absent += platform/assimp/$(if $(CROSS),loader,absent).c platform/assimp/assimp.c
 absent += platform/sdl/$(if $(CROSS),window,absent).c platform/sdl/sdl.c
 absent += tools/command/glint.c tools/live/glint_live.c tools/live/models_only.c tools/lab/ray_errors.c
 
@@ -102,7 +106,7 @@ $(OUT)/parts: parts := $(core_o) $(published_o) $(engine_o) $(bake_o) $(platform
 $(OUT)/prefix: parts := $(PREFIX)
 $(OUT)/parts $(OUT)/prefix: always
 	@mkdir -p $(@D); echo '$(parts)' | cmp -s - $@ || echo '$(parts)' >$@
-$(OUT)/tools/model/lens_files.o $(OUT)/platform/oiio/loader.o \
+$(OUT)/tools/model/lens_files.o $(OUT)/platform/posix/plugin.o \
         $(OUT)/platform/sdl/window.o: $(OUT)/prefix
 libs := $(archives)
 
@@ -124,7 +128,7 @@ $(OUT)/glint: $(OUT)/tools/command/glint.o $(libs)
 	$(link)
 
 # Programs that take one part of the run-time library, and no other half.
-EXAMPLES := ghost_rays add_glow find_lamps draw_flare
+EXAMPLES := ghost_rays add_glow find_lamps draw_flare draw_scene
 example_bins := $(EXAMPLES:%=$(OUT)/examples/%)
 $(example_bins): $(OUT)/examples/%: $(OUT)/tools/examples/%.o $(OUT)/libglint.a
 	@mkdir -p $(@D)
@@ -161,6 +165,14 @@ build/glint-oiio.so: $(OIIO) $(wildcard platform/oiio/*.h) platform/formats/samp
 	        $(OIIO) -o $@ $$(pkg-config --cflags --libs OpenImageIO) \
 	        $$(pkg-config --exists libwebp && pkg-config --cflags --libs libwebp)
 
+# The mesh plug-in: PLY, STL, glTF ... through Open Asset Import.
+assimp: build/glint-assimp.so
+build/glint-assimp.so: platform/assimp/assimp.c platform/assimp/assimp.h
+	@mkdir -p $(@D)
+	$(say) CC $<
+	$(Q)$(CC) -std=c99 -O2 $(filter-out -Wundef -Wpedantic -Wstrict-prototypes,$(WARN)) -D_POSIX_C_SOURCE=200809L \
+	        -fPIC -fvisibility=hidden -shared -Iinclude -Iplatform $< -o $@ $$(pkg-config --cflags --libs assimp)
+
 # The window of glint live -o window, through SDL2.
 window: build/glint-sdl.so
 build/glint-sdl.so: platform/sdl/sdl.c platform/sdl/sdl.h
@@ -172,5 +184,5 @@ build/glint-sdl.so: platform/sdl/sdl.c platform/sdl/sdl.h
 include tools/make/check.mk tools/make/emulated.mk tools/make/measure.mk tools/make/install.mk
 clean:
 	rm -rf build
-.PHONY: all help always oiio window glint-live clean
+.PHONY: all help always oiio assimp window glint-live clean
 -include $(shell find $(OUT) -name '*.d' 2>/dev/null)

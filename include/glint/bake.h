@@ -36,7 +36,8 @@ struct glint_bake_options {
      * %. */
     double tolerance;
     struct glint_workers *workers; /* does not change the model */
-    glint_progress_fn *progress;   /* NULL: silent */
+    /* NULL: silent. After each fit, an estimate: its share may fall. */
+    glint_progress_fn *progress;
     void *progress_ctx;
 };
 

@@ -15,11 +15,15 @@
 extern "C" {
 #endif
 
+/* Most of all light that may be veil. */
+#define GLINT_MOST_VEIL 0.9
+
 enum glint_dial_flag {
     GLINT_DIAL_HALF = 1, /* pictures in codes are drawn by edges with half
                             as many pixels each way */
     /* GLINT_DIAL_HALF, and a budget does not change it. */
-    GLINT_DIAL_ALWAYS_HALF = 2
+    GLINT_DIAL_ALWAYS_HALF = 2,
+    GLINT_DIAL_NO_VEIL = 4 /* veil and haze are left out */
 };
 
 struct glint_dials {
@@ -40,8 +44,16 @@ struct glint_dials {
     double area_points; /* points, at most, that a lamp with an extent is drawn
                            as */
     double dim_codes;   /* codes near black; a ghost of a light that gives fewer
-                           is drawn by the rays of one of three wavelengths, see
-                           dimmest of struct glint_flare_frame */
+                           is drawn by the rays of one of three wavelengths, and
+                           with those of lights near by, see dimmest of struct
+                           glint_flare_frame */
+    double star_cull;   /* factor on cull_codes for stars, which end smoothly
+                           and faintly, unlike ghosts */
+    double still_px; /* pixels of a video that a light may move while its rays
+                        are those of before; 0: none */
+    int dust_log2;   /* log2 of the cells a side of the finest table of dust and
+                        masks that is used, 3 .. GLINT_SHADE_MOST_LOG2; coarser
+                        ones keep the light and blur the specks */
 };
 
 /* Returns the dials at QUALITY_Q15, 0 .. 2^15, along the measured front of

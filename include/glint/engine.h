@@ -70,6 +70,11 @@ struct glint_engine_config {
      * exposure 0; 0: there is no star. */
     double starburst;
 
+    /* Shares of all light that the lens, and dirt on its front, spread: veiling
+     * glare index and haze. 0, the default: none; together at most
+     * GLINT_MOST_VEIL. */
+    double veil, haze;
+
     struct glint_dials dials;
     double budget_ms; /* milliseconds a frame, which the engine keeps to by
                          turning the dials; 0: there is no budget */
@@ -78,7 +83,8 @@ struct glint_engine_config {
      * frame needs, and more when a frame needs more. Else it keeps to
      * arena_bytes, leaves out and counts what does not fit, and draws at most 2
      * * max_found lights. ARENA, aligned to 64, is kept; NULL: the engine
-     * allocates it. */
+     * allocates it. Stars take some 50 KB for their tables and 0.3 KB for each
+     * of their lamps besides, once, when the engine is made. */
     void *arena;
     size_t arena_bytes;
 };
@@ -127,6 +133,26 @@ void glint_engine_turn(struct glint_engine *engine, struct glint_dials dials);
  * GLINT_E_ARGUMENT with ERROR: the stop stays as it is. GLINT_E_MEMORY. */
 enum glint_status glint_engine_stop(struct glint_engine *engine,
                                     double f_number, struct glint_error *error);
+
+/* Sets the stop of the pictures to come, as in struct glint_setup: N_BLADES, 0
+ * or 3 .. 64, the angle of its first corner, and IRIS, whose mask is kept. The
+ * f-number stays, and so does the exposure, as a flare is counted over the
+ * light that the stop lets through. May be called before each picture: without
+ * dust or a mask it takes less than a millisecond. GLINT_E_ARGUMENT with ERROR:
+ * the stop stays as it is. GLINT_E_MEMORY. */
+struct glint_iris;
+enum glint_status glint_engine_iris(struct glint_engine *engine, int n_blades,
+                                    double rotation_deg,
+                                    const struct glint_iris *iris,
+                                    struct glint_error *error);
+
+/* Sets what lies on the front element in the pictures to come: dust, scratches
+ * and smudges, or a mask, which is copied. It spreads light as haze does.
+ * GLINT_E_ARGUMENT with ERROR, or GLINT_E_MEMORY: all stays as it is. */
+struct glint_front;
+enum glint_status glint_engine_front(struct glint_engine *engine,
+                                     const struct glint_front *front,
+                                     struct glint_error *error);
 
 /* Finds the lamps of IMAGE, in any format but GLINT_LINEAR_Q20, which comes
  * ELAPSED_US after the last picture: lamps are followed from picture to

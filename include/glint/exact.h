@@ -4,6 +4,7 @@
 #ifndef GLINT_EXACT_H
 #define GLINT_EXACT_H
 
+#include "glint/light.h"
 #include "glint/setup.h"
 #include "glint/status.h"
 #include "glint/view.h"
@@ -20,8 +21,9 @@ struct glint_exact_config {
     int n_lamps;
     int grid; /* cells a side of the grid over each ghost's pupil box, even */
     int only_ghost; /* index of the only ghost that is drawn; -1: all are */
-    struct glint_workers *workers; /* does not change the picture */
-    glint_progress_fn *progress;   /* NULL: silent */
+    const struct glint_tint *tints; /* [ghosts of the setup]; NULL: none */
+    struct glint_workers *workers;  /* does not change the picture */
+    glint_progress_fn *progress;    /* NULL: silent */
     void *progress_ctx;
 };
 

@@ -62,7 +62,7 @@ struct glint_wave_sets {
  * its light. A program keeps one for all frames of a lens, a stop, three waves
  * and a size; plans fill it as lights need it, and no picture depends on what
  * was filled before. */
-enum { GLINT_DIM_NODES = 33, GLINT_DIM_VALUES = 4 };
+enum { GLINT_DIM_NODES = 33, GLINT_DIM_VALUES = 4, GLINT_DIM_LIGHTS = 256 };
 struct glint_dim_method;
 extern const struct glint_dim_method glint_dim_method;
 struct glint_dim {
@@ -73,6 +73,11 @@ struct glint_dim {
     /* 1: the node is filled. Before the first plan, and when the lens, stop,
      * waves or size change, the caller sets all to 0. */
     uint8_t done[GLINT_DIM_NODES];
+    /* Set by each plan: of each light but the first, the nearest one before it,
+     * and the logarithm of how far that is. Lights beyond these share no rays.
+     */
+    int16_t nearest[GLINT_DIM_LIGHTS];
+    int16_t apart_log2_q8[GLINT_DIM_LIGHTS];
 };
 
 /* Everything that a frame is planned from, except its lights. */
@@ -91,16 +96,21 @@ struct glint_flare_frame {
     int uniform;    /* 1: all grids have FINENESS cells a side */
     int only_ghost; /* number of the one ghost of the lens to draw, with its
                        parts; -1: all */
+    /* [ghosts of the lens, parts included]; NULL: all ghosts are as the lens
+     * gives them. */
+    const struct glint_tint *tints;
     /* Largest light that no pixel of a picture in codes shows, display white.
      * Ghosts below it may be left out, and a fainter ghost gets a coarser grid
      * and coarser steps of irradiance. 0: the picture is in linear light. */
     struct glint_real faintest;
-    /* For three waves without sets: a ghost whose mean light in wave 1, from
-     * one light, is below DIMMEST (display white), or below an eighth of that
-     * if it folds, is drawn by the rays of wave 1 alone, in the colours of all
-     * three. Up to twice as bright, waves 0 and 2 draw a part of their light by
-     * their own rays. DIM NULL or DIMMEST {0, 0}: every wave draws all of its
-     * light. */
+    /* For three waves without sets. Lights are as glint_lights_merge() leaves
+     * them: dim ghosts of lights near each other are drawn as one, between
+     * them, where their light is low enough for that distance. And a ghost
+     * whose mean light in wave 1, from one light, is below DIMMEST (display
+     * white), or below an eighth of that if it folds, is drawn by the rays of
+     * wave 1 alone, in the colours of all three. Up to twice as bright, waves 0
+     * and 2 draw a part of their light by their own rays. DIM NULL or DIMMEST
+     * {0, 0}: every wave draws all of its light. */
     struct glint_dim *dim;
     struct glint_real dimmest;
     /* Codes, 0 .. 2^15 in _q8: in a picture in codes, edges across which light
@@ -113,7 +123,32 @@ struct glint_flare_frame {
      * change of their mean. NULL, or glint_half, which is linked only by a
      * program that names it. */
     const struct glint_half *half;
+    /* Only with glint_reuse and reuse_gains: [n_lights] factors on red, green
+     * and blue of each light as it is drawn, 0 .. 2^15. They make no other
+     * frame of it. NULL: all are 1. */
+    const int32_t (*gain_q14)[3];
 };
+
+/* Lights over a video. Memory is the caller's, of MAX_LIGHTS entries each; N
+ * is 0 at first. */
+struct glint_still {
+    int max_lights;
+    int n; /* lights that stand, and their factors */
+    struct glint_light *light;
+    int32_t (*gain_q14)[3]; /* for struct glint_flare_frame */
+    int64_t (*sum_q20)[3];  /* scratch */
+};
+
+/* Tells whether each of LIGHTS is within NEAR_Q30, the chord of an angle, of
+ * one of those that stand, and the light there at most half as much again as
+ * it was: then these stand for them, with factors that give the light that
+ * LIGHTS have there, 0 where there are none any more. Else LIGHTS stand from
+ * now on, as they are. Returns how many stand; 0: more than max_lights. A
+ * factor is off by 2^-14, a channel by a 64th of the largest one where another
+ * colour was planned. */
+int glint_lights_still(struct glint_still *still,
+                       const struct glint_light *lights, int n_lights,
+                       int32_t near_q30);
 
 /* Merges lights in place and returns how many are left, sorted from the
  * brightest to the faintest; entries after these are undefined. Lights no
@@ -138,6 +173,11 @@ int glint_lights_merge(struct glint_light *lights, int n_lights,
  * glint_raster_cells links it. */
 struct glint_raster;
 extern const struct glint_raster glint_raster_edges, glint_raster_cells;
+
+/* Draws a frame that is planned from what the last one was planned from with
+ * the edges and lists of tiles that are still there. */
+struct glint_reuse;
+extern const struct glint_reuse glint_reuse;
 
 enum glint_weights { GLINT_WEIGHTS_LOOP_DEROSE, GLINT_WEIGHTS_WACHSPRESS };
 
@@ -180,6 +220,15 @@ struct glint_flare_config {
                      large tiles */
     int max_tile_refs; /* entries in the lists of the small tiles of one large
                           tile; 0 with one level */
+
+    /* glint_reuse: a plan of the lights, waves and dials of the plan before,
+     * whose bundles were binned, keeps these. No output changes. NULL: every
+     * frame is made anew. Only a program that names it links it. */
+    const struct glint_reuse *reuse;
+    int reuse_lights; /* lights that are remembered for that, 40 bytes each; a
+                         frame of more is always made anew */
+    int reuse_gains;  /* 1: frames may have gain_q14, which takes 12 bytes for
+                         each of max_bundles */
 };
 
 struct glint_flare_stats {
@@ -192,6 +241,7 @@ struct glint_flare_stats {
     int dropped_cells; /* cells left out of bundles that were drawn: they have a
                           lost ray, a vertex out of range, or no area */
     int merged_cells;  /* cells that became part of a larger primitive */
+    int reused; /* 1: edges and lists of tiles are those of the last frame */
     int held_cells; /* cells, or halves of cells, of drawn bundles whose light
                        was clamped to what one cell may give a pixel: 2048 times
                        white, or less if the sum over all cells could pass 2^24
@@ -288,6 +338,13 @@ struct glint_planned {
     struct glint_real flux; /* display white times pixels */
     /* Flux over the pixels that it falls on, display white. */
     struct glint_real irradiance;
+    int ghost, light, wave; /* as of glint_flare_account() */
+    int inside_q8; /* share of its rays that stop and barrels let through, of
+                      those that the plan looked at, 0 .. 255 */
+    int view_q8;   /* share of the box about its light that lies in the picture,
+                      0 .. 255 */
+    int contrast_q4; /* log2 of its brightest cell's irradiance over the mean, 0
+                        .. 254; 255: it folds, and is not known */
 };
 
 /* Sets PLANNED to planned bundle I, counted from 0; returns 0 if there are not
@@ -329,7 +386,8 @@ int glint_flare_held(const struct glint_flare *flare);
 enum glint_outcome {
     GLINT_OUTCOME_DRAWN,
     GLINT_OUTCOME_EMPTY,  /* planned, but no edge of its grid changes a pixel */
-    GLINT_OUTCOME_OTHER,  /* only_ghost asks for another ghost */
+    GLINT_OUTCOME_OTHER,  /* only_ghost asks for another ghost, or a tint mutes
+                             this one */
     GLINT_OUTCOME_BEYOND, /* the light comes from farther out than the model
                            * goes
                            */
@@ -343,6 +401,8 @@ enum glint_outcome {
                             all lamps together */
     GLINT_OUTCOME_NO_ROOM,   /* a capacity is full */
     GLINT_OUTCOME_OTHER_SET, /* the ghost takes another set of waves */
+    GLINT_OUTCOME_SHARED, /* dim, and drawn with the ghost of a brighter light
+                             near by */
     GLINT_OUTCOMES
 };
 

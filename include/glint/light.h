@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/light.h - the stop, the lights and the wavelengths of a frame. */
+ * glint/light.h - the stop, the lights and the wavelengths of a frame, and what
+ * is made of single ghosts. */
 #ifndef GLINT_LIGHT_H
 #define GLINT_LIGHT_H
 
@@ -15,6 +16,27 @@ extern "C" {
 #define GLINT_MAX_BLADES    64
 #define GLINT_MAX_WAVE_SETS 5 /* see struct glint_wave_sets, flare.h */
 
+/* The light that a stop lets through inside of its outline: a soft edge, and by
+ * place what dust or a mask leaves. */
+enum { GLINT_SHADE_LEAST_LOG2 = 3, GLINT_SHADE_MOST_LOG2 = 10 };
+struct glint_shade_method;
+extern const struct glint_shade_method glint_shade_method;
+struct glint_shade {
+    /* glint_shade_method; a program that does not name it does not link it. */
+    const struct glint_shade_method *method;
+    /* Stop radii inwards from the outline, 0 .. 2^16, over which light rises
+     * from 0 to 1: at the share x of them it is 3 x^2 - 2 x^3. */
+    int32_t soft_q16;
+    int log2; /* log2 of the number of cells a side of the finest table; 0:
+                 there are no tables, and all inside of the edge is clear */
+    /* [log2]: table k has 2^(log2 - k) + 1 nodes a side over +-1 stop radius,
+     * row 0 at the lowest y. Beyond, the nearest node counts. Kept. Light: 0 ..
+     * 2^15. Rough: most by which a finer table differs from this one nearer
+     * than a node and a half, in 256ths of all light. */
+    const uint16_t *level_q15[GLINT_SHADE_MOST_LOG2];
+    const uint8_t *rough_q8[GLINT_SHADE_MOST_LOG2];
+};
+
 /* The opening of the aperture stop, fixed to the camera: x right, y up. Its
  * unit is the stop radius: 1 is the circle that the f-number of the frame asks
  * for. */
@@ -23,6 +45,14 @@ struct glint_stop {
     /* Unit normal of each side, outwards. */
     int32_t normal_q30[GLINT_MAX_BLADES][2];
     int32_t apothem_q16; /* distance from the centre to each side */
+    int32_t inset_q16; /* (1 - r^2) / 2 at the outline of a circle: 0 .. 2^15 */
+    /* Sides that bulge: arcs of a circle from corner to corner. The curvature
+     * of the arcs, in 1 / stop radius, 0 .. 2^30 - 1, and the distance from the
+     * stop's centre to theirs times that, 1 .. 2^30. Both 0: sides are
+     * straight. */
+    int32_t round_q30, off_q30;
+    /* NULL: all of the opening is clear. Kept. */
+    const struct glint_shade *shade;
     /* Only for bundles of a model: the stop's radius over that of the stop that
      * the model was baked for, 2^20 .. 2^30; 0: both are equal. */
     int32_t opening_q30;
@@ -50,6 +80,17 @@ struct glint_light {
      * neighbours is drawn larger. 0: the light stands by itself. */
     int32_t apart_q30;
 };
+
+/* Factors on the light of one ghost: by channel, -4 .. 4, and on all. A ghost
+ * whose gain is {0, 0} is muted: nothing of it is planned. */
+struct glint_tint {
+    int32_t rgb_q14[3];
+    struct glint_real gain; /* 0 or more */
+};
+
+/* Returns the factor of TINT on channel C, for the halves that have floating
+ * point. */
+double glint_tint_factor(const struct glint_tint *tint, int c);
 
 /* A wavelength that is drawn. */
 struct glint_wave {

@@ -29,6 +29,22 @@ extern "C" {
 #define GLINT_MAX_GHOSTS   (GLINT_MAX_SURFACES * (GLINT_MAX_SURFACES - 1) / 2)
 #define GLINT_NAME_BYTES   64
 
+#define GLINT_MAX_FILMS 8
+
+/* A layer of a coating: a film that absorbs nothing. */
+struct glint_film {
+    double index;    /* 1.01 .. 4, the same at all wavelengths */
+    double quarters; /* index times thickness, in quarters of the coating's
+                        design wavelength, 0.01 .. 16 */
+};
+
+/* The layers on a surface, the one next to the air first. */
+struct glint_coating {
+    double nm;   /* design wavelength, 100 .. 5000; 0: bare */
+    int n_films; /* 0: bare */
+    struct glint_film film[GLINT_MAX_FILMS];
+};
+
 /* A refracting surface. The medium before surface 0 is air. */
 struct glint_surface {
     double radius_mm;    /* > 0: centre towards the sensor; 0: plane */
@@ -36,18 +52,10 @@ struct glint_surface {
     double semi_mm;      /* semi-diameter of the barrel here */
     double nd;           /* index at 587.56 nm of the medium after it */
     double vd;           /* Abbe number of that medium; 0 for air */
-    double coating_nm;   /* design wavelength of its quarter-wave film; 0:
-                            bare, as cemented surfaces always are */
-    double coating_n;    /* index of the film */
+    struct glint_coating coating; /* cemented surfaces are always bare */
 };
 
-/* A film on a surface, a quarter wave thick. */
-struct glint_film {
-    double nm;    /* design wavelength, 100 .. 5000; 0: no film */
-    double index; /* 1.01 .. 4 */
-};
-
-#define GLINT_MAX_FILMS GLINT_MAX_SURFACES
+#define GLINT_MAX_COATINGS GLINT_MAX_SURFACES
 
 /* A lens table, all of it checked. The stop lies between two surfaces: the
  * thickness of the surface before it is its distance from that surface. */
@@ -66,7 +74,7 @@ struct glint_prescription {
     double check_back_mm;
     /* Coatings of the lens that the table took from its look, not from
      * measurements. Surfaces have them only after glint_prescription_coat(). */
-    struct glint_film mixed[GLINT_MAX_FILMS];
+    struct glint_coating mixed[GLINT_MAX_COATINGS];
     int n_mixed; /* 0: the table lists none */
 };
 
@@ -84,22 +92,26 @@ enum glint_status
 glint_prescription_set_f_number(struct glint_prescription *lens,
                                 double f_number, struct glint_error *error);
 
-/* Replaces the coatings of LENS: surfaces between air and glass get FILMS[N] in
- * turn from the front, again from the first when all are used; N is 1 ..
- * GLINT_MAX_FILMS. Cemented surfaces are bare. */
+/* Replaces the coatings of LENS: surfaces between air and glass get COATINGS[N]
+ * in turn from the front, again from the first when all are used; N is 1 ..
+ * GLINT_MAX_COATINGS. Cemented surfaces are bare. */
 void glint_prescription_coat(struct glint_prescription *lens,
-                             const struct glint_film *films, int n);
+                             const struct glint_coating *coatings, int n);
 
-/* Sets FILMS to the mix for tables that list none; returns how many films it
+/* Sets COATINGS to the mix for tables that list none; returns how many it
  * has. */
-int glint_films_mixed(struct glint_film films[GLINT_MAX_FILMS]);
+int glint_coatings_mixed(struct glint_coating coatings[GLINT_MAX_COATINGS]);
 
-/* Reads films from TEXT, words "none", "NM" or "NM/INDEX" as in the tables, but
- * separated by commas. GLINT_E_ARGUMENT: ERROR says what is wrong, and FILMS is
- * unchanged. */
-enum glint_status glint_films_parse(struct glint_film films[GLINT_MAX_FILMS],
-                                    int *n, const char *text,
-                                    struct glint_error *error);
+/* Reads coatings from TEXT, words "none", "NAME[/NM]" or
+ * "NM[/INDEX[:QUARTERS]]..." as in the tables, but separated by commas.
+ * GLINT_E_ARGUMENT: ERROR says what is wrong, and COATINGS is unchanged. */
+enum glint_status
+glint_coatings_parse(struct glint_coating coatings[GLINT_MAX_COATINGS], int *n,
+                     const char *text, struct glint_error *error);
+
+/* Sets COATING to the Kth coating that has a name, from 0, at its usual
+ * design wavelength. Returns its name, or NULL if there are no more. */
+const char *glint_coating_named(int k, struct glint_coating *coating);
 
 /* First-order quantities at the d line (587.56 nm). */
 struct glint_optics {

@@ -33,6 +33,27 @@ extern "C" {
 void glint_spectrum(int n, double *wavelength_nm, double (*rgb)[3],
                     double *share);
 
+/* What makes an aperture stop differ from clean, straight blades. All 0:
+ * nothing does. */
+struct glint_iris {
+    /* Curvature of the blades' edges between the corners, 1 / stop radius: 0
+     * straight .. 1 a circle. */
+    double roundness;
+    /* Stop radii, 0 .. 1, inwards from the outline, over which light rises from
+     * none to all. */
+    double softness;
+    /* Share of the stop's circle that specks of dust cover, 0 .. 0.5; there are
+     * scratches and smudges with them. The seed says where. */
+    double dust;
+    int dust_seed;
+    /* [mask_height][mask_width]: light of a square of +-1 stop radius, 255: all
+     * of it; NULL: there is no mask. It turns with the blades. Kept. */
+    const uint8_t *mask;
+    int mask_width, mask_height; /* 2 or more */
+};
+
+struct glint_dirt; /* opaque */
+
 /* One wave of a set. */
 struct glint_set_wave {
     double nm, rgb[3];
@@ -53,6 +74,9 @@ struct glint_setup {
     int n_blades;   /* blades of the stop; 0: circle */
     double blade_rotation_deg; /* angle of the stop's first corner, from x
                                   towards y */
+    struct glint_iris iris;
+    const struct glint_dirt *dirt; /* what lies in the stop; NULL: nothing */
+    double clear; /* mean light that it lets through, 1 with nothing */
     int n_wavelengths;
     double wavelength_nm[GLINT_MAX_WAVELENGTHS];
     double rgb[GLINT_MAX_WAVELENGTHS][3]; /* linear BT.709; each channel sums
@@ -97,6 +121,49 @@ enum glint_status glint_setup_stop_down(struct glint_setup *setup,
                                         const struct glint_lens *lens,
                                         double f_number,
                                         struct glint_error *error);
+
+/* Gives SETUP, made before, the iris IRIS: its light is measured anew, and what
+ * glint_setup_weigh(), glint_setup_spread() and glint_setup_balance() set has
+ * to be set again. Light is counted over that which the stop lets through; one
+ * that is all black counts as if it were clear. *DIRT receives what SETUP then
+ * refers to, or NULL. GLINT_E_ARGUMENT with ERROR: a member is out of range.
+ * GLINT_E_MEMORY. */
+enum glint_status glint_setup_iris(struct glint_setup *setup,
+                                   const struct glint_iris *iris,
+                                   struct glint_dirt **dirt,
+                                   struct glint_error *error);
+
+/* Frees DIRT, which may be NULL, after all setups and flares that refer to it.
+ */
+void glint_dirt_free(struct glint_dirt *dirt);
+
+/* Returns the share of light that DIRT lets through at (X, Y) in the stop, in
+ * stop radii, x right, y up, inside of its outline. */
+double glint_dirt_light(const struct glint_dirt *dirt, double x, double y);
+
+/* Dust, scratches and smudges on the front element. All 0: there are none. */
+struct glint_front {
+    /* Share of the front element that specks of dust cover, 0 .. 0.5; there are
+     * scratches and smudges with them. The seed says where. */
+    double dust;
+    int dust_seed;
+    /* [mask_height][mask_width]: the square about the front element, up is up,
+     * 255: clear glass, 0: covered; NULL: there is no mask. Copied. */
+    const uint8_t *mask;
+    int mask_width, mask_height; /* 2 or more */
+};
+
+struct glint_front_dirt; /* opaque */
+
+/* Makes what lies on a front element, for any number of lenses. *DIRT is NULL
+ * if nothing does. GLINT_E_ARGUMENT: a member is out of range; GLINT_E_MEMORY;
+ * both with ERROR. */
+enum glint_status glint_front_make(struct glint_front_dirt **dirt,
+                                   const struct glint_front *front,
+                                   struct glint_error *error);
+
+/* Frees DIRT, which may be NULL, after all that draws with it. */
+void glint_front_free(struct glint_front_dirt *dirt);
 
 /* Gives SETUP the colours of glint_spectrum(), if its N wavelengths are those
  * of that. */

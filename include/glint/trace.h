@@ -37,8 +37,13 @@ struct glint_event {
     double semi_mm;    /* semi-diameter */
     /* Index before the surface and after it, as the ray runs. */
     double n_from, n_to;
-    double film_n;     /* index of the coating; 0: bare */
-    double film_phase; /* 4 pi n d / wavelength of the coating, radians */
+    int n_films; /* layers of the surface's coating; 0: bare */
+};
+
+/* A layer of a coating at the wavelength of a path. */
+struct glint_film_at {
+    double n;     /* index */
+    double phase; /* 4 pi n d / wavelength, radians */
 };
 
 /* The path of one ghost at one wavelength: forward to J, back to I, forward to
@@ -46,6 +51,8 @@ struct glint_event {
 struct glint_path {
     int n_events;
     struct glint_event event[GLINT_MAX_EVENTS + 1];
+    /* The coating of each surface that is met. */
+    struct glint_film_at film[GLINT_MAX_SURFACES][GLINT_MAX_FILMS];
     double to_sensor_mm; /* from the last vertex to the sensor */
     bool places_only; /* true: energies stay 1, and tracing takes a third less
                          time */
@@ -111,10 +118,22 @@ void glint_trace_row(const struct glint_path *path, const struct glint_row *row,
 double glint_index(double nd, double vd, double wavelength_nm);
 
 /* Returns the reflectance of one boundary for unpolarised light that meets it
- * at COS_FROM; 1 at total reflection. FILM_N = 0 is a bare boundary, else the
- * index of a film with FILM_PHASE = 4 pi n d / wavelength. */
+ * at COS_FROM, 1 at total reflection; what is not reflected passes. The
+ * boundary is bare where N_FILMS is 0, else coated with FILM[N_FILMS], at most
+ * GLINT_MAX_FILMS. They are those from the medium of the smaller index on, air,
+ * whichever way the light runs, which does not matter as nothing absorbs. */
 double glint_reflectance(double n_from, double n_to, double cos_from,
-                         double film_n, double film_phase);
+                         const struct glint_film_at *film, int n_films);
+
+/* Does the same for light polarised perpendicular to the plane of incidence,
+ * s, and parallel to it, p. */
+void glint_reflectance_sp(double n_from, double n_to, double cos_from,
+                          const struct glint_film_at *film, int n_films,
+                          double *s, double *p);
+
+/* Sets FILM to the layers of COATING at WAVELENGTH_NM; returns how many. */
+int glint_coating_at(const struct glint_coating *coating, double wavelength_nm,
+                     struct glint_film_at film[GLINT_MAX_FILMS]);
 
 /* A part of the vertex plane of the first surface, symmetric in y, that holds
  * every ray of a path that the stop and the barrels let through. The light is

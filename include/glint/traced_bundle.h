@@ -7,6 +7,7 @@
 #include <stdbool.h>
 
 #include "glint/bundle.h"
+#include "glint/light.h"
 #include "glint/setup.h"
 #include "glint/trace.h"
 #include "glint/view.h"
@@ -18,10 +19,11 @@ extern "C" {
 struct glint_traced_bundle_config {
     const struct glint_setup *setup;
     struct glint_view view;
-    double scale;  /* factor on all light: gain times 2^EV */
-    int max_cells; /* fineness of the grids, 1 .. 1024: see
-                      glint_traced_bundle_plan */
-    bool uniform;  /* true: all ghosts get max_cells a side */
+    double scale;                   /* factor on all light: gain times 2^EV */
+    int max_cells;                  /* fineness of the grids, 1 .. 1024: see
+                                       glint_traced_bundle_plan */
+    bool uniform;                   /* true: all ghosts get max_cells a side */
+    const struct glint_tint *tints; /* [ghosts of the setup]; NULL: none */
 };
 
 enum { GLINT_TRACED_CUTS = 8 };

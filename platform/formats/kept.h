@@ -55,7 +55,6 @@ void glint_kept_close(struct glint_kept *kept);
 struct glint_kept_options {
     int quality; /* quality of JPEG and WebP, 1 .. 100; 0: the input's own, or
                     95 */
-    bool quiet;  /* has no effect */
     char said[GLINT_KEPT_NOTES]; /* out: what was lost, "" if nothing */
 };
 

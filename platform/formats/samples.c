@@ -417,21 +417,18 @@ void glint_samples_add(struct glint_samples *samples, const float *layer)
     decoder_open(&d, samples);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++, layer += 3) {
-            uint8_t *pixel;
+            const bool lit = layer[0] > 0 || layer[1] > 0 || layer[2] > 0;
+            uint8_t *const pixel = lit ? find(samples, x, y) : NULL;
 
-            if (!(layer[0] > 0) && !(layer[1] > 0) && !(layer[2] > 0))
-                continue;
-            pixel = find(samples, x, y);
             if (pixel)
                 add_pixel(&d, pixel, layer);
         }
     decoder_close(&d);
 }
 
-/* ----------------------------------------------------------------- putting */
-
+/* Sets PIXEL to RGB over SHARE. */
 static void put_pixel(const struct glint_samples *s, uint8_t *pixel,
-                      const double rgb[3])
+                      const double rgb[3], double share)
 {
     double own[3] = {0, 0, 0};
 
@@ -440,29 +437,22 @@ static void put_pixel(const struct glint_samples *s, uint8_t *pixel,
         own[0] = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
     for (int c = 0; c < s->n_colours && c < 3; c++)
         put(&s->colour[c], s->maximum, pixel,
-            glint_tone_curve_encode(&s->colours.transfer[c], own[c]));
+            glint_tone_curve_encode(&s->colours.transfer[c], own[c] / share));
 }
 
-void glint_samples_put(struct glint_samples *samples,
-                       const struct glint_image *drawn, const uint8_t *before)
+void glint_samples_set(struct glint_samples *samples, int x, int y,
+                       const double rgb[3], double cover)
 {
-    const uint8_t *at = drawn->plane[0];
-    struct glint_tone_curve srgb;
+    uint8_t *const pixel = find(samples, x, y);
+    double alpha;
 
-    glint_tone_curve_set(&srgb, GLINT_TONE_IS_SRGB, 0);
-    for (int y = 0; y < drawn->height; y++)
-        for (int x = 0; x < drawn->width; x++, at += 3, before += 3) {
-            uint8_t *const pixel = find(samples, x, y);
-            double rgb[3];
-
-            if (!pixel || memcmp(at, before, 3) == 0)
-                continue;
-            for (int c = 0; c < 3; c++)
-                rgb[c] = glint_tone_curve_decode(&srgb, at[c] / 255.0);
-            put_pixel(samples, pixel, rgb);
-            if (samples->has_alpha)
-                put(&samples->alpha, most_of(samples->alpha.sample), pixel, 1);
-        }
+    if (!pixel)
+        return;
+    alpha = 1 - (1 - alpha_of(samples, pixel)) * (1 - cover);
+    put_pixel(samples, pixel, rgb,
+              samples->is_premultiplied || !(alpha > 0) ? 1 : alpha);
+    if (samples->has_alpha)
+        put(&samples->alpha, most_of(samples->alpha.sample), pixel, alpha);
 }
 
 /* -------------------------------------------------------------- converting */
@@ -475,7 +465,7 @@ static void convert_pixel(const struct glint_samples *to, uint8_t *dst,
 
     if (src)
         light_of(from, src, straight, rgb);
-    put_pixel(to, dst, rgb);
+    put_pixel(to, dst, rgb, 1);
     if (to->has_alpha)
         put(&to->alpha, most_of(to->alpha.sample), dst,
             src ? alpha_of(from->samples, src) : 0);

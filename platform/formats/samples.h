@@ -84,10 +84,12 @@ enum glint_status glint_samples_proxy(const struct glint_samples *samples,
  * is seen. Codes are clipped at the maximum. */
 void glint_samples_add(struct glint_samples *samples, const float *layer);
 
-/* Replaces the upright pixels at which DRAWN, GLINT_RGB24, differs from BEFORE,
- * its codes before drawing without padding. They become opaque. */
-void glint_samples_put(struct glint_samples *samples,
-                       const struct glint_image *drawn, const uint8_t *before);
+/* Sets the upright pixel X, Y to what is seen of it over black, RGB, linear
+ * light of BT.709 primaries, once the share COVER, 0 .. 1, of what is behind it
+ * is hidden: alpha becomes 1 - (1 - alpha)(1 - COVER), and straight colours RGB
+ * over that. Nothing where the file has no pixel. */
+void glint_samples_set(struct glint_samples *samples, int x, int y,
+                       const double rgb[3], double cover);
 
 /* Sets the pixels of TO to those of FROM, upright and converted. The caller has
  * set size, channels, samples, colours, alpha and memory of TO. Without alpha

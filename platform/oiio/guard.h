@@ -11,6 +11,9 @@
 #include <new>
 #include <string>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <OpenImageIO/imageio.h>
 
 #include "glint/image.h"
@@ -62,6 +65,35 @@ struct failure {
     std::string cause;
 };
 
+/* Takes standard error away from the libraries behind OpenImageIO, which print
+ * there what they also return as errors. */
+class silence
+{
+    int kept = dup(STDERR_FILENO);
+
+  public:
+    silence()
+    {
+        const int null =
+            kept < 0 ? -1 : open("/dev/null", O_WRONLY | O_CLOEXEC);
+
+        std::fflush(stderr);
+        if (null >= 0) {
+            dup2(null, STDERR_FILENO);
+            close(null);
+        }
+    }
+    ~silence()
+    {
+        if (kept < 0)
+            return;
+        dup2(kept, STDERR_FILENO);
+        close(kept);
+    }
+    silence(const silence &) = delete;
+    silence &operator=(const silence &) = delete;
+};
+
 /* Runs BODY. If it throws, returns a status, with NAME and the cause in
  * ERROR. */
 template <class Body>
@@ -71,6 +103,8 @@ enum glint_status guarded(const char *name, struct glint_error *error,
     failure what = {GLINT_OK, ""};
 
     try {
+        const silence quiet;
+
         body();
     } catch (const failure &f) {
         what = f;

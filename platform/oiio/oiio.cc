@@ -13,6 +13,9 @@
 #include <string>
 #include <vector>
 
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
@@ -115,6 +118,107 @@ std::vector<unsigned char> encode_pixels(const char *path,
     return encoded;
 }
 
+/* Returns the description of layer K of LAYERS. */
+OIIO::ImageSpec layer_spec(const struct glint_oiio_layers *layers, int k)
+{
+    OIIO::ImageSpec spec(layers->width, layers->height, 3,
+                         layers->is_half ? OIIO::TypeDesc::HALF
+                                         : OIIO::TypeDesc::FLOAT);
+
+    spec.attribute("oiio:ColorSpace", "Linear");
+    spec.attribute("oiio:subimagename", layers->layer[k].name);
+    spec.attribute("name", layers->layer[k].name);
+    spec.attribute("compression", "zip");
+    return spec;
+}
+
+/* A file in memory, for writers that take no other. */
+class memory_file
+{
+    int fd = memfd_create("layers", MFD_CLOEXEC);
+
+public:
+    memory_file()
+    {
+        if (fd < 0)
+            throw std::bad_alloc();
+    }
+    ~memory_file() { close(fd); }
+    memory_file(const memory_file &) = delete;
+    memory_file &operator=(const memory_file &) = delete;
+
+    std::string name() const { return "/proc/self/fd/" + std::to_string(fd); }
+
+    std::vector<unsigned char> bytes() const
+    {
+        const off_t size = lseek(fd, 0, SEEK_END);
+        std::vector<unsigned char> all(
+            size > 0 ? static_cast<std::size_t>(size) : 0);
+        std::size_t at = 0;
+
+        while (at < all.size()) {
+            const ssize_t n = pread(fd, all.data() + at, all.size() - at,
+                                    static_cast<off_t>(at));
+
+            if (n <= 0)
+                throw failure{GLINT_E_OUTPUT, "cannot be read back"};
+            at += static_cast<std::size_t>(n);
+        }
+        return all;
+    }
+};
+
+/* OpenImageIO 2.4 writes files of several parts by name only. */
+std::vector<unsigned char>
+encode_parts(const char *path, const struct glint_oiio_layers *layers)
+{
+    const std::unique_ptr<OIIO::ImageOutput> out =
+        OIIO::ImageOutput::create(path);
+    const memory_file file;
+    std::vector<OIIO::ImageSpec> specs;
+
+    if (!out)
+        throw failure{GLINT_E_UNSUPPORTED, OIIO::geterror()};
+    if (layers->n > 1 && !out->supports("multiimage"))
+        throw failure{GLINT_E_UNSUPPORTED,
+                      "this type has no parts; name an .exr, or a %s for the "
+                      "name of each layer"};
+    for (int k = 0; k < layers->n; k++)
+        specs.push_back(layer_spec(layers, k));
+    if (!(layers->n > 1 ? out->open(file.name(), layers->n, specs.data())
+                        : out->open(file.name(), specs[0])))
+        throw failure{GLINT_E_OUTPUT, out->geterror()};
+    for (int k = 0; k < layers->n; k++)
+        if ((k > 0 && !out->open(file.name(), specs[static_cast<size_t>(k)],
+                                 OIIO::ImageOutput::AppendSubimage)) ||
+            !out->write_image(OIIO::TypeDesc::FLOAT, layers->layer[k].rgb))
+            throw failure{GLINT_E_OUTPUT, out->geterror()};
+    if (!out->close())
+        throw failure{GLINT_E_OUTPUT, out->geterror()};
+    return file.bytes();
+}
+
+/* Sets DATA[BYTES] to a malloc'ed copy of ENCODED. */
+void give(void **data, size_t *bytes, const std::vector<unsigned char> &encoded)
+{
+    void *const block = std::malloc(encoded.size() + 1);
+
+    if (!block)
+        throw std::bad_alloc();
+    std::memcpy(block, encoded.data(), encoded.size());
+    *data = block;
+    *bytes = encoded.size();
+}
+
+enum glint_status face_encode_layers(void **data, size_t *bytes,
+                                     const char *path,
+                                     const struct glint_oiio_layers *layers,
+                                     struct glint_error *error)
+{
+    return guarded(path, error,
+                   [&] { give(data, bytes, encode_parts(path, layers)); });
+}
+
 enum glint_status face_read(struct glint_oiio_pixels *pixels, const char *path,
                             struct glint_error *error)
 {
@@ -126,15 +230,7 @@ enum glint_status face_encode(void **data, size_t *bytes, const char *path,
                               ptrdiff_t stride_bytes, struct glint_error *error)
 {
     return guarded(path, error, [&] {
-        const std::vector<unsigned char> encoded =
-            encode_pixels(path, pixels, stride_bytes);
-        void *const block = std::malloc(encoded.size() + 1);
-
-        if (!block)
-            throw std::bad_alloc();
-        std::memcpy(block, encoded.data(), encoded.size());
-        *data = block;
-        *bytes = encoded.size();
+        give(data, bytes, encode_pixels(path, pixels, stride_bytes));
     });
 }
 
@@ -145,4 +241,4 @@ const struct glint_oiio glint_oiio_face;
 const struct glint_oiio glint_oiio_face = {
     GLINT_OIIO_VERSION, face_read,         face_encode,
     glint::open_file,   glint::close_file, glint::is_same_type,
-    glint::encode_file};
+    glint::encode_file, face_encode_layers};

@@ -19,7 +19,7 @@
 #include "formats/samples.h"
 
 /* Number of this interface. A plug-in with another number is refused. */
-#define GLINT_OIIO_VERSION 2
+#define GLINT_OIIO_VERSION 3
 
 /* A picture as R G B, rows without padding, the top row first, turned upright
  * where the file says how it was held. Alpha is left out, colours weighted by
@@ -52,6 +52,19 @@ struct glint_oiio_options {
     int quality;  /* JPEG and WebP: 1 .. 100; 0: the file's own, or 95 */
     int drop_icc; /* Leaves out the profile, which does not fit the pixels any
                      more. */
+};
+
+/* One layer of light: NAME, and RGB, [height][width][3], linear. */
+struct glint_oiio_layer {
+    const char *name;
+    float *rgb;
+};
+
+/* Layers of one size, for a file with a part for each. */
+struct glint_oiio_layers {
+    int width, height, n;
+    int is_half; /* samples are written as half, else as float */
+    const struct glint_oiio_layer *layer; /* [n] */
 };
 
 struct glint_oiio {
@@ -95,6 +108,14 @@ struct glint_oiio {
                                      const struct glint_samples *pixels,
                                      const struct glint_oiio_options *options,
                                      struct glint_error *error);
+
+    /* Encodes LAYERS in the file type of PATH's extension, with a part for
+     * each if there are several. Errors are those of encode;
+     * GLINT_E_UNSUPPORTED also: the type has no parts, or no floats. */
+    enum glint_status (*encode_layers)(void **data, size_t *bytes,
+                                       const char *path,
+                                       const struct glint_oiio_layers *layers,
+                                       struct glint_error *error);
 };
 
 /* Sets OIIO to the functions of the plug-in, which the first call loads. Looks

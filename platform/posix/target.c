@@ -134,6 +134,24 @@ bool glint_target_is_input(const char *input, const char *output)
            in.st_dev == out.st_dev && in.st_ino == out.st_ino;
 }
 
+bool glint_target_is_same(const char *a, const char *b)
+{
+    char folder[PATH_BYTES];
+    struct stat in_a, in_b;
+
+    if (strcmp(a + folder_length(a), b + folder_length(b)) != 0 ||
+        (stat(a, &in_a) == 0 && !S_ISREG(in_a.st_mode)))
+        return false;
+    if (strcmp(a, b) == 0)
+        return true;
+    set_folder(folder, a);
+    if (stat(folder, &in_a) != 0)
+        return false;
+    set_folder(folder, b);
+    return stat(folder, &in_b) == 0 && in_a.st_dev == in_b.st_dev &&
+           in_a.st_ino == in_b.st_ino;
+}
+
 /* ---------------------------------------------------------- temporary names */
 
 char *glint_target_beside(const char *target, unsigned n)

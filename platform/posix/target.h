@@ -28,4 +28,9 @@ void glint_target_clean(const char *target);
  * standard stream. */
 bool glint_target_is_input(const char *input, const char *output);
 
+/* Returns whether A and B, which need not be there, name one place: the same
+ * name in the same folder. What is there and no regular file, as /dev/null, is
+ * no place. */
+bool glint_target_is_same(const char *a, const char *b);
+
 #endif

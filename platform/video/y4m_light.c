@@ -247,9 +247,9 @@ static void to_rgb(const struct glint_y4m_light *l, const int32_t ycc[3],
 }
 
 /* Sets the changes of Y', Cb and Cr, _q20, that the light of LAYER makes on a
- * pixel of YCC. */
+ * pixel of YCC of which COVER_Q8 is hidden. */
 static void change_of(const struct glint_y4m_light *l, const int32_t ycc[3],
-                      const float *layer, int64_t change_q20[3])
+                      const float *layer, int cover_q8, int64_t change_q20[3])
 {
     int32_t rgb_q20[3];
     int64_t d[3], y;
@@ -258,9 +258,12 @@ static void change_of(const struct glint_y4m_light *l, const int32_t ycc[3],
     for (int c = 0; c < 3; c++) {
         const float light = layer[c] > 4 ? 4 : layer[c] > 0 ? layer[c] : 0;
 
-        d[c] = encode(l, decode(l, rgb_q20[c]) + (int64_t)(light * WHITE_Q24)) -
-               rgb_q20[c];
-        if (d[c] < 0 || !(light > 0))
+        const int32_t own = decode(l, rgb_q20[c]);
+        const int64_t left =
+            cover_q8 ? ((int64_t)own * (256 - cover_q8) + 128) >> 8 : own;
+
+        d[c] = encode(l, left + (int64_t)(light * WHITE_Q24)) - rgb_q20[c];
+        if (!cover_q8 && (d[c] < 0 || !(light > 0)))
             d[c] = 0;
     }
     y = y4m_halve(l->kr_q16 * d[0] + l->kg_q16 * d[1] + l->kb_q16 * d[2], 16);
@@ -292,8 +295,10 @@ struct block {
     int x0, y0, x1, y1;
 };
 
+/* COVER_Q8: as LAYER, one of a pixel; NULL: nothing is hidden. */
 static void add_to_block(const struct glint_y4m_light *l, struct plane plane[4],
-                         const struct block *b, const float *layer)
+                         const struct block *b, const float *layer,
+                         const uint16_t *cover_q8)
 {
     const bool is_grey = plane[1].size[0] == 0;
     const int32_t middle = 1 << (l->layout.bits - 1);
@@ -305,14 +310,15 @@ static void add_to_block(const struct glint_y4m_light *l, struct plane plane[4],
         ycc[c] = take(&plane[c], b->x, b->y) - middle;
     for (int y = b->y0; y < b->y1; y++)
         for (int x = b->x0; x < b->x1; x++) {
-            const float *const light =
-                layer + 3 * ((size_t)y * (size_t)l->width + (size_t)x);
+            const size_t at = (size_t)y * (size_t)l->width + (size_t)x;
+            const float *const light = layer + 3 * at;
+            const int cover = cover_q8 ? cover_q8[at] : 0;
             int64_t change[3];
 
-            if (!is_lit(light))
+            if (!cover && !is_lit(light))
                 continue;
             ycc[0] = take(&plane[0], x, y);
-            change_of(l, ycc, light, change);
+            change_of(l, ycc, light, cover, change);
             put(&plane[0], x, y,
                 held(ycc[0] + y4m_halve(change[0] * l->y_span, 20), l->most));
             sum[0] += change[1];
@@ -332,6 +338,12 @@ static int least(int a, int b)
 void glint_y4m_light_add(const struct glint_y4m_light *light, uint8_t *planes,
                          const float *layer)
 {
+    glint_y4m_light_cover(light, planes, layer, NULL);
+}
+
+void glint_y4m_light_cover(const struct glint_y4m_light *light, uint8_t *planes,
+                           const float *layer, const uint16_t *cover_q8)
+{
     const struct glint_y4m_light *const l = light;
     const bool is_grey = l->layout.format == GLINT_GREY;
     const int across = l->layout.is_411                            ? 4
@@ -350,6 +362,6 @@ void glint_y4m_light_add(const struct glint_y4m_light *light, uint8_t *planes,
                                         least(x + across, l->width),
                                         least(y + down, l->height)};
 
-            add_to_block(l, plane, &block, layer);
+            add_to_block(l, plane, &block, layer, cover_q8);
         }
 }

@@ -56,4 +56,9 @@ void glint_y4m_light_blacken(const struct glint_y4m_light *light,
 void glint_y4m_light_add(const struct glint_y4m_light *light, uint8_t *planes,
                          const float *layer);
 
+/* Does as glint_y4m_light_add() after hiding of each pixel the share COVER_Q8,
+ * [height][width], 0 .. 256. */
+void glint_y4m_light_cover(const struct glint_y4m_light *light, uint8_t *planes,
+                           const float *layer, const uint16_t *cover_q8);
+
 #endif

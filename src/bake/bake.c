@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bake/effort.h"
 #include "bake/fit/fit.h"
 #include "bake/model_header.h"
 #include "bake/options.h"
@@ -30,6 +31,7 @@ struct bake_run {
     int *intruders; /* number of intruders of each ghost, see struct
                        glint_bake_report */
     int *rays;
+    struct glint_effort effort; /* worker 0's */
     struct glint_error *error;
 };
 
@@ -69,7 +71,27 @@ static enum glint_status fit_published(struct bake_run *run, int ghost)
                                &run->fitted[ghost]);
 }
 
-static enum glint_status fit_auto(struct bake_run *run, int ghost)
+/* Share of a bake until all ghosts are fitted, and until they are quantised. */
+#define FITTED    0.96
+#define QUANTISED 0.97
+
+static void report_effort(struct bake_run *run)
+{
+    const struct glint_bake_options *o = &run->options;
+
+    if (o->progress)
+        o->progress(o->progress_ctx, FITTED * glint_effort_done(&run->effort));
+}
+
+static void fit_told(void *ctx, double work, double share)
+{
+    struct bake_run *run = ctx;
+
+    glint_effort_spend(&run->effort, work, share);
+    report_effort(run);
+}
+
+static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
 {
     const double film = run->lens->film_width_mm, t = run->options.tolerance;
     const struct glint_tolerance tolerance = {
@@ -77,9 +99,9 @@ static enum glint_status fit_auto(struct bake_run *run, int ghost)
         .faint_sensor_mm = 0.07 * t * film / 1920,
         .edge_mm = 0.04 * t * film / 1920,
         .stop = 4.5e-4 * t,
-        /* 1/16 of that, or less if the lens opens wider than f/10, so that the
-         * model serves f/10, too */
-        .stop_least = 2.7e-5 * t * fmin(1, run->lens->f_number / 10),
+        /* A sixteenth of that, or less of a lens that opens wider than
+         * GLINT_WIDE, as its model serves all narrower stops. */
+        .stop_least = 2.7e-5 * t * fmin(1, run->lens->f_number / GLINT_WIDE),
         .barrel = 4e-4 * t,
         .escape = 1e-3 * t,
         .energy = 1.2e-3 * t,
@@ -93,20 +115,28 @@ static enum glint_status fit_auto(struct bake_run *run, int ghost)
 
     if (visible) {
         visible_init(run, ghost, visible);
-        status = glint_fit_ghost(visible, run->options.max_deg, &tolerance,
-                                 &run->fitted[ghost]);
+        status =
+            glint_fit_ghost(visible, run->options.max_deg, &tolerance,
+                            tells ? fit_told : NULL, run, &run->fitted[ghost]);
     }
     free(visible);
     return status;
 }
 
+/* Fits a ghost; worker 0 reports progress. */
 static void fit_job(void *ctx, int ghost, int worker)
 {
     struct bake_run *run = ctx;
-    (void)worker;
+
+    if (worker == 0)
+        glint_effort_begin(&run->effort, ghost);
     run->status[ghost] = run->options.basis == GLINT_BASIS_SPARSE
                              ? fit_published(run, ghost)
-                             : fit_auto(run, ghost);
+                             : fit_auto(run, ghost, worker == 0);
+    if (worker != 0)
+        return;
+    glint_effort_end(&run->effort);
+    report_effort(run);
 }
 
 static void quantise_job(void *ctx, int ghost, int worker)
@@ -140,8 +170,8 @@ static void measure_job(void *ctx, int ghost, int worker)
     free(visible);
 }
 
-/* One round of jobs, a job for each ghost, and its share of the progress, 0 ..
- * 1. */
+/* One round of short jobs, a job for each ghost, and its share of the progress,
+ * 0 .. 1. */
 struct round {
     struct bake_run *run;
     glint_job_fn *job;
@@ -149,8 +179,8 @@ struct round {
     int most; /* largest number of a job that worker 0 has ended */
 };
 
-/* Runs a job of a round. Ghosts differ a hundredfold in time, so workers do not
- * wait for each other; worker 0 reports progress. */
+/* Runs a job of a round. Workers do not wait for each other; worker 0 reports
+ * progress. */
 static void round_job(void *ctx, int job, int worker)
 {
     struct round *r = ctx;
@@ -164,19 +194,38 @@ static void round_job(void *ctx, int job, int worker)
     o->progress(o->progress_ctx, r->from + (r->to - r->from) * job / n);
 }
 
+static enum glint_status status_of(const struct bake_run *run)
+{
+    for (int i = 0; i < run->setup.n_ghosts; i++)
+        if (run->status[i] != GLINT_OK)
+            return run->status[i];
+    return GLINT_OK;
+}
+
 static enum glint_status for_ghosts(struct bake_run *run, glint_job_fn *job,
                                     double from, double to)
 {
     struct round round = {run, job, from, to, 0};
-    const int n = run->setup.n_ghosts;
 
-    glint_workers_run(run->options.workers, n, round_job, &round);
+    glint_workers_run(run->options.workers, run->setup.n_ghosts, round_job,
+                      &round);
     if (run->options.progress)
         run->options.progress(run->options.progress_ctx, to);
-    for (int i = 0; i < n; i++)
-        if (run->status[i] != GLINT_OK)
-            return run->status[i];
-    return GLINT_OK;
+    return status_of(run);
+}
+
+static enum glint_status fit_ghosts(struct bake_run *run)
+{
+    const struct glint_bake_options *o = &run->options;
+
+    glint_effort_init(&run->effort, run->setup.n_ghosts,
+                      glint_workers_count(o->workers),
+                      run->lens->f_number < GLINT_WIDE);
+    report_effort(run);
+    glint_workers_run(o->workers, run->setup.n_ghosts, fit_job, run);
+    if (o->progress)
+        o->progress(o->progress_ctx, FITTED);
+    return status_of(run);
 }
 
 /* ----------------------------------------------------------------- pipeline */
@@ -279,11 +328,11 @@ static enum glint_status bake_run(struct bake_run *run)
                                   glint_bake_field_mm(run->lens, &run->options),
                                   run->options.band_nm, run->options.workers);
     if (status == GLINT_OK)
-        status = for_ghosts(run, fit_job, 0, 0.88);
+        status = fit_ghosts(run);
     if (status == GLINT_OK)
         status = part_ghosts(run);
     if (status == GLINT_OK)
-        status = for_ghosts(run, quantise_job, 0.88, 0.9);
+        status = for_ghosts(run, quantise_job, FITTED, QUANTISED);
     if (status == GLINT_OK)
         status = glint_draft_write(&run->draft, &run->setup, &header,
                                    run->fitted, run->quantised);
@@ -291,7 +340,7 @@ static enum glint_status bake_run(struct bake_run *run)
         return status;
     for (int g = 1; g < run->setup.n_ghosts; g++)
         run->first[g] = run->first[g - 1] + run->fitted[g - 1].n_systems;
-    status = for_ghosts(run, measure_job, 0.9, 1);
+    status = for_ghosts(run, measure_job, QUANTISED, 1);
     if (status != GLINT_OK)
         return status;
     glint_draft_close(&run->draft);

@@ -5,11 +5,13 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "bake/fit/visible.h"
 #include "glint/model.h"
 
 enum {
-    REVISION = 12 /* version of the models: raised if a lens would bake to
-                     another model */
+    /* Versions of the models: raised if a lens would bake to another model. */
+    REVISION = 12,
+    WIDE_REVISION = 16 /* of those of lenses that open wider than GLINT_WIDE */
 };
 
 void glint_bake_defaults(struct glint_bake_options *options)
@@ -66,13 +68,29 @@ static void mix(uint64_t *key, double value)
         *key = (*key ^ byte[i]) * UINT64_C(0x100000001b3);
 }
 
+/* Mixes in what makes COATING differ; a single quarter wave as ever, so that
+ * models that are kept stay good. */
+static void mix_coating(uint64_t *key, const struct glint_coating *coating)
+{
+    mix(key, coating->nm);
+    mix(key, coating->film[0].index);
+    if (coating->n_films == 0 ||
+        (coating->n_films == 1 && coating->film[0].quarters == 1.0))
+        return;
+    mix(key, coating->n_films);
+    for (int k = 0; k < coating->n_films; k++) {
+        mix(key, coating->film[k].index);
+        mix(key, coating->film[k].quarters);
+    }
+}
+
 uint64_t glint_bake_key(const struct glint_prescription *lens,
                         const struct glint_bake_options *options)
 {
     uint64_t key = UINT64_C(0xcbf29ce484222325);
 
     mix(&key, GLINT_MODEL_VERSION);
-    mix(&key, REVISION);
+    mix(&key, lens->f_number < GLINT_WIDE ? WIDE_REVISION : REVISION);
     mix(&key, options->basis);
     mix(&key, options->band_nm[0]);
     mix(&key, options->band_nm[1]);
@@ -92,8 +110,7 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
         mix(&key, s->semi_mm);
         mix(&key, s->nd);
         mix(&key, s->vd);
-        mix(&key, s->coating_nm);
-        mix(&key, s->coating_n);
+        mix_coating(&key, &s->coating);
     }
     for (const char *c = lens->name; *c; c++)
         mix(&key, (unsigned char)*c);

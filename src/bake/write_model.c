@@ -12,42 +12,6 @@ STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
 STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
 STATIC_ASSERT(sizeof(struct glint_model_output) == 32);
 
-/* Appends BYTES from DATA (zeros if it is NULL), padded to a multiple of 4.
- * Returns the offset of its beginning. */
-static uint32_t put(struct glint_draft *d, const void *data, size_t bytes)
-{
-    const size_t padded = (bytes + 3) / 4 * 4, where = d->bytes;
-
-    if (d->out_of_memory || where + padded > UINT32_MAX / 2) {
-        d->out_of_memory = true;
-        return 0;
-    }
-    if (where + padded > d->room) {
-        const size_t room = 2 * (where + padded);
-        unsigned char *more = realloc(d->data, room);
-
-        if (!more) {
-            d->out_of_memory = true;
-            return 0;
-        }
-        d->data = more;
-        d->room = room;
-    }
-    memset(d->data + where, 0, padded);
-    if (data)
-        memcpy(d->data + where, data, bytes);
-    d->bytes += padded;
-    return (uint32_t)where;
-}
-
-/* Overwrites BYTES at the offset WHERE. */
-static void amend(struct glint_draft *d, uint32_t where, const void *data,
-                  size_t bytes)
-{
-    if (!d->out_of_memory)
-        memcpy(d->data + where, data, bytes);
-}
-
 static uint32_t put_terms(struct glint_draft *d,
                           const struct glint_fitted_output *o,
                           const struct glint_quantised_output *q)
@@ -59,7 +23,7 @@ static uint32_t put_terms(struct glint_draft *d,
 
         power[k] = (uint16_t)(p[0] | p[1] << 4 | p[2] << 8 | p[3] << 12);
     }
-    return put(d, power, (size_t)o->n_terms * sizeof *power);
+    return glint_draft_put(d, power, (size_t)o->n_terms * sizeof *power);
 }
 
 /* Appends one set of coefficients: the wide ones, then the narrow ones. */
@@ -80,8 +44,8 @@ static uint32_t put_coefficients(struct glint_draft *d,
         else
             narrow[k - n_wide] = (int16_t)(coef / (INT32_C(1) << q->shift));
     }
-    where = put(d, wide, (size_t)n_wide * sizeof *wide);
-    put(d, narrow, (size_t)q->n_narrow * sizeof *narrow);
+    where = glint_draft_put(d, wide, (size_t)n_wide * sizeof *wide);
+    glint_draft_put(d, narrow, (size_t)q->n_narrow * sizeof *narrow);
     return where;
 }
 
@@ -91,8 +55,9 @@ put_output(struct glint_draft *d, const struct glint_fitted_output *o,
 {
     const uint32_t term_at = put_terms(d, o, q);
     const uint32_t coef_at =
-        n_sets ? put(d, q->coef,
-                     (size_t)n_sets * (size_t)o->n_terms * sizeof *q->coef)
+        n_sets ? glint_draft_put(d, q->coef,
+                                 (size_t)n_sets * (size_t)o->n_terms *
+                                     sizeof *q->coef)
                : put_coefficients(d, o, q);
 
     return (struct glint_model_output){
@@ -117,7 +82,7 @@ static uint32_t put_outputs(struct glint_draft *d,
 
     for (int k = 0; k < f->n_outputs; k++)
         out[k] = put_output(d, &f->output[k], &q->output[k], f->n_knots);
-    return put(d, out, (size_t)f->n_outputs * sizeof *out);
+    return glint_draft_put(d, out, (size_t)f->n_outputs * sizeof *out);
 }
 
 static int32_t to_q30(double x)
@@ -133,7 +98,7 @@ static uint32_t put_knots(struct glint_draft *d,
     for (int k = 0; k < f->n_knots; k++) {
         const int32_t sine_q30 = to_q30(f->knot[k]);
 
-        put(d, &sine_q30, sizeof sine_q30);
+        glint_draft_put(d, &sine_q30, sizeof sine_q30);
     }
     return where;
 }
@@ -149,14 +114,14 @@ static uint32_t put_box(struct glint_draft *d,
 
     *terms = 0;
     if (knots)
-        return put(d, q->box, (size_t)q->n_box * sizeof *q->box);
+        return glint_draft_put(d, q->box, (size_t)q->n_box * sizeof *q->box);
     for (int k = 0; k < q->n_box; k++)
         if (q->box[k])
             *terms |= (uint8_t)(1 << k % GLINT_BOX_TERMS);
     for (int k = 0; k < q->n_box; k++)
         if (*terms >> k % GLINT_BOX_TERMS & 1)
             packed[n++] = q->box[k];
-    return put(d, packed, n * sizeof *packed);
+    return glint_draft_put(d, packed, n * sizeof *packed);
 }
 
 static void write_system(struct glint_draft *d, uint32_t where,
@@ -182,7 +147,7 @@ static void write_system(struct glint_draft *d, uint32_t where,
         .box_terms = box_terms,
         .annulus = (uint8_t)f->annulus};
 
-    amend(d, where, &system, sizeof system);
+    glint_draft_amend(d, where, &system, sizeof system);
 }
 
 enum glint_status
@@ -195,7 +160,7 @@ glint_draft_write(struct glint_draft *draft, const struct glint_setup *setup,
     uint32_t n = 0;
 
     *draft = (struct glint_draft){0};
-    put(draft, NULL, sizeof h);
+    glint_draft_put(draft, NULL, sizeof h);
     h.n_ghosts = (uint32_t)setup->n_ghosts;
     h.n_parts = (uint32_t)setup->n_parts;
     h.ghost_at = (uint32_t)draft->bytes;
@@ -204,11 +169,12 @@ glint_draft_write(struct glint_draft *draft, const struct glint_setup *setup,
                                                 (uint32_t)setup->ghost[k].j, n,
                                                 (uint32_t)fitted[k].n_systems};
 
-        put(draft, &ghost, sizeof ghost);
+        glint_draft_put(draft, &ghost, sizeof ghost);
         n += ghost.n_systems;
     }
     h.n_systems = n;
-    h.system_at = put(draft, NULL, n * sizeof(struct glint_model_system));
+    h.system_at =
+        glint_draft_put(draft, NULL, n * sizeof(struct glint_model_system));
     n = 0;
     for (int k = 0; k < setup->n_ghosts; k++)
         for (int m = 0; m < fitted[k].n_systems; m++, n++)
@@ -216,7 +182,7 @@ glint_draft_write(struct glint_draft *draft, const struct glint_setup *setup,
                          h.system_at +
                              n * (uint32_t)sizeof(struct glint_model_system),
                          &fitted[k].system[m], &quantised[k][m]);
-    amend(draft, 0, &h, sizeof h);
+    glint_draft_amend(draft, 0, &h, sizeof h);
     return draft->out_of_memory ? GLINT_E_MEMORY : GLINT_OK;
 }
 

@@ -7,14 +7,8 @@
 
 #include "bake/measure_model.h"
 #include "bake/fit/quantise.h"
+#include "bake/table/draft.h"
 #include "glint/setup.h"
-
-/* A model while it is written; owned. */
-struct glint_draft {
-    unsigned char *data;
-    size_t bytes, room;
-    bool out_of_memory;
-};
 
 /* Writes header, ghosts, and systems from FITTED and QUANTISED [n_ghosts].
  * Errors are 0, size and checksum are not set yet. GLINT_E_MEMORY. */

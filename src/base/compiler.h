@@ -20,6 +20,13 @@ STATIC_ASSERT((-3 >> 1) == -2);
  * instead of keeping them in registers that it lacks. */
 #define FORGET(p) __asm__("" : "+r"(p))
 
+/* Begins to load what P points to, for later; changes nothing. */
+#if defined(__GNUC__)
+#define PREFETCH(p) __builtin_prefetch(p)
+#else
+#define PREFETCH(p) ((void)(p))
+#endif
+
 /* Aligns a variable or member to a multiple of BYTES bytes. */
 #define ALIGNED(bytes) __attribute__((aligned(bytes)))
 

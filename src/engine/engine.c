@@ -1,32 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-#include "glint/engine.h"
+#include "engine/engine_parts.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/detector.h"
 #include "engine/frame/area.h"
-#include "engine/frame/frame.h"
-#include "engine/strength.h"
 #include "glint/kernels.h"
-
-struct glint_engine {
-    struct glint_setup setup;
-    struct glint_frame frame;
-    struct glint_lamp_detector detector;
-    struct glint_response response;
-    struct glint_strength strength;
-    double starburst;
-    double seen_px[GLINT_LAMP_DETECTOR_MAX]; /* extent, in pixels, of each lamp
-                                                found */
-    bool has_arena; /* true: drawing takes no memory of its own */
-    int n_found;
-    int32_t elapsed_us; /* time between the last two pictures searched */
-    struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
-    double level[GLINT_LAMP_DETECTOR_MAX]; /* level of each lamp found */
-};
 
 void glint_engine_defaults(struct glint_engine_config *cfg, int width,
                            int height)
@@ -59,6 +40,8 @@ static const char *check(const struct glint_engine_config *c)
         return "the exposure is out of range";
     if (!(c->starburst >= 0 && c->starburst <= 1000))
         return "the starburst is out of range";
+    if (!(c->veil >= 0 && c->haze >= 0 && c->veil + c->haze <= GLINT_MOST_VEIL))
+        return "the veil is out of range";
     if (!(c->threshold_ev[0] <= 0 && c->threshold_ev[0] >= -20 &&
           c->threshold_ev[1] >= -20 &&
           c->threshold_ev[1] <= c->threshold_ev[0]))
@@ -68,18 +51,24 @@ static const char *check(const struct glint_engine_config *c)
 
 /* ------------------------------------------------------------------- making */
 
-/* Makes a setup of MODEL; F_NUMBER 0: of the one that it was baked for. */
+/* Makes a setup of MODEL for SHAPE. *DIRT receives what it refers to, or NULL.
+ */
 static enum glint_status set_up(struct glint_setup *setup,
-                                const struct glint_lens *model, int n_blades,
-                                double rotation_deg, double f_number,
+                                const struct glint_lens *model,
+                                const struct glint_engine_shape *shape,
+                                struct glint_dirt **dirt,
                                 struct glint_error *error)
 {
     static const double wavelength_nm[] = {650, 532, 450};
-    enum glint_status status = glint_setup_from_model(
-        setup, model, n_blades, rotation_deg, wavelength_nm, 3, error);
+    enum glint_status status =
+        glint_setup_from_model(setup, model, shape->n_blades,
+                               shape->rotation_deg, wavelength_nm, 3, error);
 
-    if (status == GLINT_OK && f_number != 0)
-        status = glint_setup_stop_down(setup, model, f_number, error);
+    *dirt = NULL;
+    if (status == GLINT_OK && shape->f_number != 0)
+        status = glint_setup_stop_down(setup, model, shape->f_number, error);
+    if (status == GLINT_OK && shape->set_iris)
+        status = shape->set_iris(setup, &shape->iris, dirt, error);
     /* The sparse basis has its own three wavelengths and no others. */
     if (status == GLINT_OK && model->header->basis != GLINT_BASIS_SPARSE)
         glint_setup_spread(setup, model);
@@ -108,6 +97,7 @@ static enum glint_status open_frame(struct glint_engine *e,
     f->lens = c->model;
     f->clock = c->clock;
     f->cfg.sets = c->sets;
+    f->cfg.reuse = &glint_reuse;
     f->dials = f->asked = c->dials;
     if (c->budget_ms <= 0 || !c->clock)
         return GLINT_OK;
@@ -133,10 +123,13 @@ static enum glint_status make(struct glint_engine *e,
                               const struct glint_engine_config *c,
                               struct glint_error *error)
 {
-    enum glint_status status =
-        set_up(&e->setup, c->model, c->n_blades, c->blade_rotation_deg,
-               c->f_number, error);
+    enum glint_status status;
 
+    e->shape =
+        (struct glint_engine_shape){.n_blades = c->n_blades,
+                                    .rotation_deg = c->blade_rotation_deg,
+                                    .f_number = c->f_number};
+    status = set_up(&e->setup, c->model, &e->shape, &e->dirt, error);
     if (status != GLINT_OK)
         return status;
     glint_strength_defaults(&e->strength);
@@ -156,8 +149,12 @@ static enum glint_status make(struct glint_engine *e,
         status = glint_frame_reserve(&e->frame, c->arena, c->arena_bytes,
                                      GLINT_ENGINE_MAX_LAMPS, 2 * c->max_found);
     e->frame.star.share = e->starburst;
+    e->frame.veil.glare = c->gain > 0 ? c->veil : 0;
+    e->frame.veil.haze = c->gain > 0 ? c->haze : 0;
     if (status == GLINT_OK)
         status = glint_frame_star_hold(&e->frame, 2 * c->max_found);
+    if (status == GLINT_OK)
+        status = glint_frame_veil_hold(&e->frame);
     if (status != GLINT_OK)
         snprintf(error->text, sizeof error->text, "%s",
                  glint_status_text(status));
@@ -196,6 +193,9 @@ void glint_engine_destroy(struct glint_engine *engine)
         return;
     glint_lamp_detector_close(&engine->detector);
     glint_frame_finish(&engine->frame);
+    glint_dirt_free(engine->dirt);
+    if (engine->free_front)
+        engine->free_front(engine->front);
     free(engine);
 }
 
@@ -208,22 +208,27 @@ void glint_engine_turn(struct glint_engine *engine, struct glint_dials dials)
         f->dials = glint_budget_dials(&f->budget, &dials);
 }
 
-enum glint_status glint_engine_stop(struct glint_engine *engine,
-                                    double f_number, struct glint_error *error)
+enum glint_status glint_engine_reshape(struct glint_engine *engine,
+                                       const struct glint_engine_shape *shape,
+                                       bool measure, struct glint_error *error)
 {
     struct glint_engine *e = engine;
     struct glint_frame *f = &e->frame;
     struct glint_setup setup;
-    enum glint_status status =
-        set_up(&setup, f->lens, e->setup.n_blades, e->setup.blade_rotation_deg,
-               f_number, error);
+    struct glint_dirt *dirt;
+    enum glint_status status = set_up(&setup, f->lens, shape, &dirt, error);
 
-    if (status != GLINT_OK)
+    if (status != GLINT_OK) {
+        glint_dirt_free(dirt);
         return status;
+    }
     e->setup = setup;
+    e->shape = *shape;
     glint_setup_stop(&e->setup, &f->cfg.stop);
     glint_frame_retune(f);
-    if (e->strength.is_physical)
+    glint_dirt_free(e->dirt);
+    e->dirt = dirt;
+    if (!measure || e->strength.is_physical)
         return GLINT_OK;
     status =
         glint_response_measure(f, f->reserved ? f->bytes : 0, &e->response);
@@ -231,6 +236,15 @@ enum glint_status glint_engine_stop(struct glint_engine *engine,
         snprintf(error->text, sizeof error->text, "%s",
                  glint_status_text(status));
     return status;
+}
+
+enum glint_status glint_engine_stop(struct glint_engine *engine,
+                                    double f_number, struct glint_error *error)
+{
+    struct glint_engine_shape shape = engine->shape;
+
+    shape.f_number = f_number;
+    return glint_engine_reshape(engine, &shape, true, error);
 }
 
 /* ----------------------------------------------------------------- pictures */
@@ -343,6 +357,12 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
     f->star.share = glint_strength_star(&e->strength, e->starburst);
     for (int i = 0; i < n && is_found; i++)
         e->seen_px[i] = e->detector.track[i].size_q8 / 256.0;
+    for (int i = 0; i < n && is_found; i++)
+        e->excess[i] =
+            fmax(e->lamp[i].power - (double)e->detector.track[i].flux_q16 /
+                                        65536 * e->level[i],
+                 0);
+    f->veil.excess = is_found ? e->excess : NULL;
     f->star.seen_px =
         is_found && e->detector.headroom_ev < 0 ? e->seen_px : NULL;
     f->star.level = is_found ? e->level : NULL;

@@ -14,10 +14,11 @@ static double work_in(enum glint_cost_kind kind, double n)
 }
 
 /* Returns the instructions of P, and sets STAGE to those of each kind. Lit
- * pixels do not count, as they belong to no ghost, light or wave alone. */
+ * pixels and parts of cells do not count, as they belong to no ghost, light or
+ * wave alone. */
 static double work_of(const struct glint_explain_part *p, double *stage)
 {
-    const double count[GLINT_COST_LIT] = {
+    const double count[GLINT_COST_PARTS] = {
         [GLINT_COST_LOOKED_AT] = (double)p->probed,
         [GLINT_COST_BUNDLES] = glint_explain_drawn(p),
         [GLINT_COST_VERTICES] = (double)p->vertices,
@@ -25,7 +26,7 @@ static double work_of(const struct glint_explain_part *p, double *stage)
         [GLINT_COST_ROWS] = (double)p->rows};
     double work = 0;
 
-    for (int k = 0; k < GLINT_COST_LIT; k++)
+    for (int k = 0; k < GLINT_COST_PARTS; k++)
         work += stage[k] = work_in((enum glint_cost_kind)k, count[k]);
     return work;
 }
@@ -200,6 +201,7 @@ enum glint_status glint_explain_open(struct glint_explain *e,
                                      struct glint_frame *frame, double unit)
 {
     const size_t n_all = (size_t)frame->setup->n_ghosts + 1;
+    const struct glint_cost_plan plan = glint_frame_plan(frame);
 
     *e = (struct glint_explain){.frame = frame,
                                 .n_lights = frame->n_lights,
@@ -220,11 +222,18 @@ enum glint_status glint_explain_open(struct glint_explain *e,
     set_numbers(e);
     take_accounts(e);
     measure_parts(e);
+    e->stage[GLINT_COST_PARTS] =
+        work_in(GLINT_COST_PARTS,
+                glint_cost_of(&plan, &plan.dials).count[GLINT_COST_PARTS]);
     e->stage[GLINT_COST_LIT] = work_in(GLINT_COST_LIT, e->all.lit);
     e->stage[GLINT_COST_STAR] =
         work_in(GLINT_COST_STAR, frame->star.is_set ? frame->star.pixels : 0);
-    e->all.work = work_of(&e->all, e->stage) + e->stage[GLINT_COST_LIT] +
-                  e->stage[GLINT_COST_STAR];
+    e->stage[GLINT_COST_VEIL] =
+        work_in(GLINT_COST_VEIL,
+                frame->veil.is_set ? glint_frame_veil_pixels(frame) : 0);
+    e->all.work = work_of(&e->all, e->stage);
+    for (int k = GLINT_COST_PARTS; k < GLINT_COST_KINDS; k++)
+        e->all.work += e->stage[k];
     e->all.share = e->all.flux > 0;
     e->all.cost = 1;
     set_shares(e, e->ghost, e->n_ghosts);

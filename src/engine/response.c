@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/frame/area.h"
+#include "engine/setup/spectrum.h"
 
 /* Most pixels that find_top() is asked for. */
 enum { TOP_MAX = GLINT_RESPONSE_FINE / 5000 };
@@ -129,11 +130,6 @@ static void close_proxy(struct proxy *p)
     free(p->rgb);
 }
 
-static double largest(const double rgb[3])
-{
-    return fmax(rgb[0], fmax(rgb[1], rgb[2]));
-}
-
 /* Draws LAMPS times 2^BY, and sets LIGHT to the light at scale 1. */
 static enum glint_status draw_once(struct proxy *p,
                                    const struct glint_lamp *lamps, int n,
@@ -169,8 +165,8 @@ static enum glint_status draw(struct proxy *p, const struct glint_lamp *lamps,
         const double by = AIM_LOG2 - *peak_log2;
 
         status = draw_once(p, lamps, n, by, light);
-        *peak_log2 = largest(light->peak) > 0 ? log2(largest(light->peak))
-                                              : *peak_log2 - 2 * AIM_SPAN;
+        const double peak = glint_largest_channel(light->peak);
+        *peak_log2 = peak > 0 ? log2(peak) : *peak_log2 - 2 * AIM_SPAN;
         if (fabs(*peak_log2 + by - AIM_LOG2) <= AIM_SPAN)
             break;
     }

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "engine/setup/spectrum.h"
+
 /* Exponent of the sum of many lights: with 4, sixteen equal flares, which
  * mostly lie side by side, count as two on top of each other. */
 static const double norm = 4;
@@ -36,11 +38,6 @@ static const double overshoot = 0.5;
 void glint_strength_defaults(struct glint_strength *strength)
 {
     *strength = (struct glint_strength){.asked = 0.5, .gain = 1};
-}
-
-double glint_strength_largest(const double rgb[3])
-{
-    return fmax(rgb[0], fmax(rgb[1], rgb[2]));
 }
 
 /* --------------------------------------------------------------- one frame */
@@ -100,8 +97,8 @@ static double together(double a, double b)
 static double target_log2(const struct glint_strength *s,
                           const struct glint_response_light *light)
 {
-    const double peak = fmax(glint_strength_largest(light->peak), 1e-60);
-    const double mean = glint_strength_largest(light->mean) / mean_most;
+    const double peak = fmax(glint_largest_channel(light->peak), 1e-60);
+    const double mean = glint_largest_channel(light->mean) / mean_most;
     const double more =
         compression * (log2(together(peak, mean)) - common_log2);
 
@@ -223,8 +220,8 @@ void glint_strength_expose(struct glint_strength *strength,
 static double lift_log2(double base, const struct glint_response_light *drawn,
                         const struct glint_seen *seen)
 {
-    const double peak = log2(fmax(glint_strength_largest(drawn->peak), 1e-60));
-    const double mean = log2(fmax(glint_strength_largest(drawn->mean), 1e-60));
+    const double peak = log2(fmax(glint_largest_channel(drawn->peak), 1e-60));
+    const double mean = log2(fmax(glint_largest_channel(drawn->mean), 1e-60));
     const double room = fmin(log2(seen_peak) - peak, log2(seen_mean) - mean);
     const double few = seen->few > 0 ? -log2(seen->few) : room;
     const double many = seen->many > 0 ? log2(veil_light / seen->many) : room;
@@ -241,7 +238,7 @@ void glint_strength_correct(struct glint_strength *strength,
     struct glint_strength *s = strength;
 
     if (s->is_physical || !(s->scale > 0) ||
-        !(glint_strength_largest(drawn->peak) > 0))
+        !(glint_largest_channel(drawn->peak) > 0))
         return;
     s->is_drawn = true;
     s->factor_log2 = target_log2(s, drawn);

@@ -112,7 +112,4 @@ void glint_strength_light(const struct glint_response *response,
                           const struct glint_strength_lamps *lamps,
                           struct glint_response_light *light);
 
-/* Returns the largest of three channels. */
-double glint_strength_largest(const double rgb[3]);
-
 #endif

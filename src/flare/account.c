@@ -5,6 +5,7 @@
  */
 #include "base/q.h"
 #include "flare/by_edges.h"
+#include "flare/dim.h"
 #include "flare/wave_sets.h"
 
 /* Returns the number of a bundle among all that there could be. */
@@ -121,6 +122,15 @@ static void count_edges(const struct glint_flare *f,
     }
 }
 
+/* Returns whether LIGHT gave all of its light for GHOST to another one. */
+static int is_shared(const struct glint_flare *f, int ghost, int light)
+{
+    const struct glint_flare_frame *r = f->plan.frame;
+
+    return f->plan.dims &&
+           !r->dim->method->kept_q8(r, &f->plan.light[light], light, ghost);
+}
+
 void glint_flare_account(struct glint_flare *flare, int ghost, int light,
                          int wave, struct glint_account *account)
 {
@@ -134,8 +144,8 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
     struct glint_bundle bundle;
 
     *account = (struct glint_account){.outcome = GLINT_OUTCOME_DRAWN};
-    account->outcome =
-        glint_plan_bundle(&flare->plan, &planned, &bundle, scratch);
+    account->outcome = glint_plan_bundle(
+        &flare->plan, &flare->plan.light[light], &planned, &bundle, scratch);
     account->probed = scratch->probe.n_rays;
     if (sets && glint_wave_sets_of(sets, wave) != set_of(flare, ghost, light)) {
         account->outcome = GLINT_OUTCOME_OTHER_SET;
@@ -147,6 +157,9 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
         account->outcome = GLINT_OUTCOME_NO_ROOM;
     } else if (at >= flare->n_drawn)
         account->outcome = GLINT_OUTCOME_NO_ROOM;
+    else if (at < 0 && account->outcome == GLINT_OUTCOME_DRAWN &&
+             is_shared(flare, ghost, light))
+        account->outcome = GLINT_OUTCOME_SHARED;
     else if (at < 0 && account->outcome == GLINT_OUTCOME_DRAWN)
         account->outcome = GLINT_OUTCOME_FAINT;
     if (at < 0)
@@ -154,7 +167,7 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
     account->flux = flare->planned[at].flux;
     account->cells = flare->bundle[at].n_cells;
     account->vertices = (account->cells + 1) * (account->cells + 1);
-    glint_plan_transfer(&flare->plan, &planned, &scratch->transfer);
+    glint_plan_transfer(&flare->plan, &flare->planned[at], &scratch->transfer);
     count_outputs(&scratch->transfer, account);
     if (account->outcome == GLINT_OUTCOME_NO_ROOM)
         return;
@@ -180,6 +193,7 @@ void glint_flare_keep(struct glint_flare *flare, int ghost, int light, int wave)
 {
     const struct glint_edge *edge = glint_by_edges_of(flare)->edge;
 
+    flare->reusable = GLINT_REUSABLE_NOT;
     glint_bins_open(&flare->bins);
     for (int put = 0; put < 2; put++) {
         for (int i = 0; i < flare->n_drawn; i++) {

@@ -47,7 +47,7 @@ static void *carve_worker(struct glint_arena *a,
         sizeof *w->at);
     s = &w->sums;
     s->wide = glint_arena_take(a, n_sums, sizeof *s->wide);
-    s->narrow_q24 = glint_arena_take(a, n_sums, sizeof *s->narrow_q24);
+    s->narrow = glint_arena_take(a, n_sums, sizeof *s->narrow);
     s->carry = glint_arena_take(a, 3 * side, sizeof *s->carry);
     s->touched = glint_arena_take(a, 3, sizeof *s->touched);
     return placed;
@@ -65,7 +65,7 @@ static void begin(struct glint_flare *f)
             s->touched[c] = 0;
         for (int k = 0; k < (3 << log2) * GLINT_EDGE_STRIDE(log2); k++) {
             s->wide[k] = 0;
-            s->narrow_q24[k] = 0;
+            s->narrow[k] = 0;
         }
     }
 }
@@ -181,6 +181,8 @@ static void emit_bundle(struct glint_flare *f, int bundle, int worker,
         ghost.snap_codes_q8 = ghost.coded ? f->plan.frame->snap_codes_q8 : 0;
         ghost.place = glint_plan_place(&f->plan, &f->planned[bundle]);
         ghost.sag_q16 = f->planned[bundle].sag_q16;
+        ghost.flux = f->planned[bundle].flux;
+        ghost.irradiance = f->planned[bundle].irradiance;
     }
     glint_ghost_edges_emit(&ghost);
     slot->first = -1;
@@ -430,6 +432,8 @@ static void draw(struct glint_flare *flare, const struct glint_tiles *tiles,
 }
 
 const struct glint_raster glint_raster_edges = {.max_bundles = 1 << 20,
+                                                .arcs = 1,
+                                                .shades = 1,
                                                 .halves = 1,
                                                 .carve = carve,
                                                 .carve_worker = carve_worker,

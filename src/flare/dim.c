@@ -5,11 +5,13 @@
  * get through to both neighbouring nodes, the ghost counts as bright. */
 #include "flare/dim.h"
 
-/* Returns value K of ghost GHOST at the angle of LIGHT, or GLINT_DIM_DARK. */
-static int32_t value_at(const struct glint_flare_frame *frame,
-                        const struct glint_light *light, int ghost, int k)
+enum { BRIGHT_Q8 = 1 << 16 };
+
+/* Returns value K of ghost GHOST at the angle of SINE, or GLINT_DIM_DARK. */
+static int32_t value_at(const struct glint_flare_frame *frame, int32_t sine_q30,
+                        int ghost, int k)
 {
-    const int32_t at_q16 = glint_dim_node_q16(frame, light);
+    const int32_t at_q16 = glint_dim_node_q16(frame, sine_q30);
     const int node = at_q16 >> 16;
     const int32_t a = glint_dim_values(frame, node, ghost)[k];
     const int32_t b = glint_dim_values(frame, node + 1, ghost)[k];
@@ -34,37 +36,45 @@ static int is_known(const struct glint_flare_frame *frame, int ghost, int node)
 }
 
 /* If the ghost counts as bright between the two nodes before or after these
- * two, the share falls from all at the node they have in common to what it
+ * two, it falls from 1 at the node they have in common to what it
  * would be without that, halfway to the other node at the latest. */
-int glint_dim_share_q8(const struct glint_flare_frame *frame,
-                       const struct glint_light *light, int ghost)
+int32_t glint_dim_above_q8(const struct glint_flare_frame *frame,
+                           const struct glint_light *light, int ghost)
 {
-    const int32_t at_q16 = glint_dim_node_q16(frame, light);
+    const int32_t at_q16 = glint_dim_node_q16(frame, light->sine_q30);
     const int node = at_q16 >> 16;
     const int from_q8 = (at_q16 & 65535) >> 7;
     int32_t share_q8;
 
     if (!is_known(frame, ghost, node) || !is_known(frame, ghost, node + 1))
-        return GLINT_DIM_WHOLE_Q8;
-    share_q8 = value_at(frame, light, ghost, 0) +
+        return BRIGHT_Q8;
+    share_q8 = value_at(frame, light->sine_q30, ghost, 0) +
                glint_dim_log2_q8(light->power) -
                glint_dim_log2_q8(frame->dimmest);
+    if (frame->tints)
+        share_q8 += glint_dim_log2_q8(frame->tints[ghost].gain);
     if (!is_known(frame, ghost, node - 1) &&
         share_q8 < GLINT_DIM_WHOLE_Q8 - from_q8)
         share_q8 = GLINT_DIM_WHOLE_Q8 - from_q8;
     if (!is_known(frame, ghost, node + 2) &&
         share_q8 < from_q8 - GLINT_DIM_WHOLE_Q8)
         share_q8 = from_q8 - GLINT_DIM_WHOLE_Q8;
-    return q_clamp_sat(share_q8, 0, GLINT_DIM_WHOLE_Q8);
+    return share_q8;
+}
+
+int glint_dim_share_q8(const struct glint_flare_frame *frame,
+                       const struct glint_light *light, int ghost)
+{
+    return q_clamp_sat(glint_dim_above_q8(frame, light, ghost), 0,
+                       GLINT_DIM_WHOLE_Q8);
 }
 
 int64_t glint_dim_ratio_q16(const struct glint_flare_frame *frame,
-                            const struct glint_light *light, int ghost,
-                            int wave)
+                            int32_t sine_q30, int ghost, int wave)
 {
     const int32_t log2 =
-        q_clamp_sat(value_at(frame, light, ghost, 1 + wave) -
-                        value_at(frame, light, ghost, 1 + GLINT_DIM_WAVE),
+        q_clamp_sat(value_at(frame, sine_q30, ghost, 1 + wave) -
+                        value_at(frame, sine_q30, ghost, 1 + GLINT_DIM_WAVE),
                     -16 * 256, 11 * 256);
     const int64_t one_q16 = (int64_t)(256 + (log2 & 255)) << 8;
     const int octaves = log2 >> 8;

@@ -16,7 +16,9 @@ enum {
     GLINT_DIM_WAVES = 3, /* with any other number no ghost is dim */
     GLINT_DIM_WHOLE_Q8 = 256,
     GLINT_DIM_LAST = GLINT_DIM_NODES - 1,
-    GLINT_DIM_DARK = INT16_MIN /* value where a wave does not get through */
+    GLINT_DIM_DARK = INT16_MIN, /* value where a wave does not get through */
+    GLINT_LIGHT_HELD = 14 /* fraction bits that colours have more while lights
+                             merge */
 };
 
 struct glint_flare;
@@ -26,12 +28,31 @@ struct glint_dim_method {
     /* Fills those nodes, which are angles, that lie next to the angles of the
      * plan's first N_LIGHTS lights and are not filled yet. */
     void (*fill)(struct glint_flare *flare, int n_lights);
+    /* Lets dim ghosts of the plan's first N_LIGHTS lights share rays: for each
+     * ghost, a light gives its light to the nearest light before it where the
+     * ghost is so dim that it may move that far, and both are drawn as one,
+     * between them. All changes are gradual: a ghost that becomes brighter
+     * gives less and less away. */
+    void (*gather)(struct glint_flare *flare, int n_lights);
+    /* Returns what light LIGHT is then drawn as for GHOST, until the first
+     * bundle of both is planned; NULL: there is no room. */
+    struct glint_light *(*gathered)(struct glint_flare *flare, int ghost,
+                                    int light);
+    /* Returns the share of its light that light I, LIGHT with what it was
+     * given, keeps for GHOST, 0 to GLINT_DIM_WHOLE_Q8. */
+    int (*kept_q8)(const struct glint_flare_frame *frame,
+                   const struct glint_light *light, int i, int ghost);
     /* glint_dim_share_q8() and glint_dim_ratio_q16() */
     int (*share_q8)(const struct glint_flare_frame *frame,
                     const struct glint_light *light, int ghost);
     int64_t (*ratio_q16)(const struct glint_flare_frame *frame,
-                         const struct glint_light *light, int ghost, int wave);
+                         int32_t sine_q30, int ghost, int wave);
 };
+
+/* Returns log2 of the mean light of GHOST from LIGHT over the dimmest of the
+ * frame; much above 0 if that is not known. */
+int32_t glint_dim_above_q8(const struct glint_flare_frame *frame,
+                           const struct glint_light *light, int ghost);
 
 /* Returns the share of its light that each wave of ghost GHOST of LIGHT draws
  * by its own rays, 0 to GLINT_DIM_WHOLE_Q8; the rays of GLINT_DIM_WAVE draw the
@@ -42,8 +63,16 @@ int glint_dim_share_q8(const struct glint_flare_frame *frame,
 /* Returns the light of wave WAVE of that ghost over that of GLINT_DIM_WAVE,
  * both before they are given the colours of the waves; 2^27 at most. */
 int64_t glint_dim_ratio_q16(const struct glint_flare_frame *frame,
-                            const struct glint_light *light, int ghost,
-                            int wave);
+                            int32_t sine_q30, int ghost, int wave);
+
+/* Returns the squared distance of two directions on the unit sphere, at most 4.
+ */
+uint64_t glint_light_apart2_q60(const struct glint_light *a,
+                                const struct glint_light *b);
+
+/* Merges B into A: A gets the power and colour of both, and a direction
+ * between. Colours have GLINT_LIGHT_HELD more fraction bits. */
+void glint_light_merge(struct glint_light *a, const struct glint_light *b);
 
 /* Returns log2 of X, which is above 0; between powers of two it is
  * interpolated. */
@@ -53,15 +82,15 @@ static inline int32_t glint_dim_log2_q8(struct glint_real x)
            ((x.mantissa >> 22) - 256);
 }
 
-/* Returns the place of the angle of LIGHT among the nodes, counted from 0. */
+/* Returns the place of the angle of SINE among the nodes, counted from 0. */
 static inline int32_t glint_dim_node_q16(const struct glint_flare_frame *frame,
-                                         const struct glint_light *light)
+                                         int32_t sine_q30)
 {
-    const int64_t sine = light->sine_q30;
     const int64_t most = frame->lens->header->sine_hi_q30;
 
-    return q_clamp_sat(q_divide(sine * GLINT_DIM_LAST * (1 << 16), most), 0,
-                       GLINT_DIM_LAST * (1 << 16) - 1);
+    return q_clamp_sat(
+        q_divide((int64_t)sine_q30 * GLINT_DIM_LAST * (1 << 16), most), 0,
+        GLINT_DIM_LAST * (1 << 16) - 1);
 }
 
 /* Returns the GLINT_DIM_VALUES logarithms of ghost GHOST at node NODE, for a

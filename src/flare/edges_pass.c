@@ -2,11 +2,24 @@
  *
  * The pass of a flare by edges: edges become sums of a tile, sums become light
  * of its rows. */
-#include "flare/by_edges.h"
+#include <stddef.h>
 
-/* Frames of more bundles than this take sums of _q20. Rounding to _q16 loses up
- * to half a unit of each bundle, 1/40 of a code near black. */
-enum { FINE_BUNDLES = 1024 };
+#include "flare/by_edges.h"
+#include "flare/edges/ghost_shade.h"
+
+/* Frames of more outlines than this take sums of _q20. Rounding to _q16 loses
+ * up to half a unit of each, 1/40 of a code near black. */
+enum { FINE_OUTLINES = 1024 };
+
+/* Returns whether the bundles of F, each as many outlines as a soft edge may
+ * have, take sums of _q20. */
+static int is_fine(const struct glint_flare *f)
+{
+    const struct glint_shade *shade = f->cfg.stop.shade;
+    const int rings = shade && shade->soft_q16 ? GLINT_SOFT_RINGS : 1;
+
+    return f->n_bundles > FINE_OUTLINES / rings;
+}
 
 /* Returns whether light runs on into the rows of the next tile. */
 static int runs_on(const struct glint_edge_sums *s)
@@ -27,8 +40,11 @@ static void *begin_row(const void *self, struct glint_box row, int worker)
 
     w->flare = f;
     w->at_tile = (row.y0 >> log2) * f->bins.tiles_x;
+    s->shade = f->cfg.stop.shade;
+    s->patch = s->shade ? s->shade->method->draw : NULL;
+    s->scratch = w->rows; /* of no use while pixels are drawn */
     s->linear = glint_by_edges_of(f)->linear;
-    s->fine = f->n_bundles > FINE_BUNDLES;
+    s->fine = is_fine(f);
     s->lit = 0;
     s->tile_log2 = log2;
     s->stride = GLINT_EDGE_STRIDE(log2);

@@ -3,6 +3,7 @@
 
 #include "base/real.h"
 #include "flare/dim.h"
+#include "flare/edges/ghost_shade.h"
 #include "flare/state.h"
 #include "flare/wave_sets.h"
 
@@ -57,6 +58,7 @@ static struct glint_flare *carve(struct glint_arena *a,
         glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->planned);
     f->vertex = glint_arena_take(a, (size_t)c->max_vertices, sizeof *f->vertex);
     f->own = raster_of(c)->carve(a, c);
+    f->reuse = c->reuse ? c->reuse->carve(a, c) : NULL;
     f->bins.start = glint_arena_take(
         a,
         glint_flare_count_tiles(c->width, c->height, first_level_log2(c)) + 1,
@@ -70,13 +72,21 @@ static struct glint_flare *carve(struct glint_arena *a,
     return placed;
 }
 
-static int stop_ok(const struct glint_stop *s, int masks)
+static int stop_ok(const struct glint_stop *s, const struct glint_raster *r)
 {
+    const int32_t most_q30 = (1 << 30) - 1;
+
+    if (s->round_q30 && (!r->arcs || s->n_blades == 0 || s->round_q30 < 0 ||
+                         s->round_q30 > most_q30 || s->off_q30 < 1 ||
+                         s->off_q30 - 1 > most_q30))
+        return 0;
     if (s->opening_q30 && (s->opening_q30 < LEAST_OPENING_Q30 ||
                            s->opening_q30 > WHOLE_OPENING_Q30))
         return 0;
+    if (s->shade && (!r->shades || !glint_shade_ok(s->shade)))
+        return 0;
     if (s->mask_q13)
-        return masks && s->mask_nodes >= 2 && s->mask_nodes <= 4096 &&
+        return r->masks && s->mask_nodes >= 2 && s->mask_nodes <= 4096 &&
                s->mask_span_q16 >= 1 << 15 && s->mask_span_q16 <= 1 << 18;
     return s->n_blades == 0 ||
            (s->n_blades >= 3 && s->n_blades <= GLINT_MAX_BLADES &&
@@ -99,8 +109,8 @@ static int config_ok(const struct glint_flare_config *c)
            c->max_bundles >= 0 && c->max_bundles <= raster_of(c)->max_bundles &&
            c->max_vertices >= 0 && c->max_primitives >= 0 && c->max_refs >= 0 &&
            c->max_tile_refs >= 0 && c->irradiance_steps >= 0 &&
-           c->irradiance_steps <= 4096 && workers >= 1 && workers <= 64 &&
-           stop_ok(&c->stop, raster_of(c)->masks);
+           c->irradiance_steps <= 4096 && c->reuse_lights >= 0 &&
+           workers >= 1 && workers <= 64 && stop_ok(&c->stop, raster_of(c));
 }
 
 void glint_flare_forget(struct glint_flare *flare)
@@ -148,9 +158,10 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
 enum glint_status glint_flare_set_stop(struct glint_flare *flare,
                                        const struct glint_stop *stop)
 {
-    if (!stop_ok(stop, flare->cfg.raster->masks))
+    if (!stop_ok(stop, flare->cfg.raster))
         return GLINT_E_ARGUMENT;
     flare->cfg.stop = *stop;
+    flare->reusable = GLINT_REUSABLE_NOT;
     return GLINT_OK;
 }
 
@@ -172,6 +183,7 @@ void glint_flare_begin(struct glint_flare *flare)
     set_size(flare, 0);
     flare->n_bundles = flare->n_vertices = flare->n_drawn = 0;
     flare->plan.frame = NULL;
+    flare->reusable = GLINT_REUSABLE_NOT;
     for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
         flare->worker[i].plan->n_rays = 0;
     flare->stats = (struct glint_flare_stats){0};
@@ -184,6 +196,7 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
     struct glint_flare_stats *s = &flare->stats;
     struct glint_vertex *vertices;
 
+    flare->reusable = GLINT_REUSABLE_NOT;
     s->need_bundles++;
     s->need_vertices = glint_flare_add_need(s->need_vertices, n);
     if (flare->n_bundles == flare->cfg.max_bundles ||
@@ -217,6 +230,11 @@ static void plan_job(void *ctx, int job, int worker)
     struct glint_flare *f = ctx;
     const struct glint_flare_frame *r = f->plan.frame;
     const int n_ghosts = (int)r->lens->header->n_ghosts;
+    const int ghost = job % n_ghosts, i = job / n_ghosts;
+    /* a copy, as it lies where the first bundle will */
+    const struct glint_light light =
+        f->plan.dims ? *r->dim->method->gathered(f, ghost, i)
+                     : f->plan.light[i];
 
     for (int wave = 0; wave < r->n_waves; wave++) {
         const int at = job * r->n_waves + wave;
@@ -224,9 +242,12 @@ static void plan_job(void *ctx, int job, int worker)
         if (at >= f->cfg.max_bundles)
             return;
         f->planned[at] = (struct glint_bundle_plan){
-            .ghost = job % n_ghosts, .light = job / n_ghosts, .wave = wave};
-        glint_plan_bundle(&f->plan, &f->planned[at], &f->bundle[at],
-                          f->worker[worker].plan);
+            .ghost = ghost, .light = i, .wave = wave};
+        if (light.power.mantissa == 0)
+            f->bundle[at].n_cells = 0;
+        else
+            glint_plan_bundle(&f->plan, &light, &f->planned[at], &f->bundle[at],
+                              f->worker[worker].plan);
     }
 }
 
@@ -311,6 +332,9 @@ void glint_flare_plan(struct glint_flare *flare,
         (int64_t)n_within(frame->lens, lights, n_lights) * n_ghosts;
     const int n_jobs = pairs < INT32_MAX ? (int)pairs : INT32_MAX;
 
+    if (flare->cfg.reuse &&
+        flare->cfg.reuse->take(flare, frame, lights, n_lights))
+        return;
     glint_flare_begin(flare);
     flare->quads = frame->half;
     set_size(flare, frame->half && flare->cfg.raster->halves);
@@ -322,7 +346,10 @@ void glint_flare_plan(struct glint_flare *flare,
         .height = flare->cfg.height,
         .sets = flare->cfg.sets,
         .half = flare->half,
-        .round = flare->cfg.stop.n_blades == 0,
+        .round_q16 = flare->cfg.stop.n_blades == 0
+                         ? 1 << 16
+                         : flare->cfg.stop.round_q30 >> 14,
+        .shaded = flare->cfg.stop.shade != NULL,
         .opening_q30 = flare->cfg.stop.opening_q30 ? flare->cfg.stop.opening_q30
                                                    : WHOLE_OPENING_Q30};
     if (frame->dim && frame->dimmest.mantissa && !frame->sets &&
@@ -330,12 +357,16 @@ void glint_flare_plan(struct glint_flare *flare,
         frame->dim->method->fill(flare,
                                  n_within(frame->lens, lights, n_lights));
         flare->plan.dims = 1;
+        frame->dim->method->gather(flare,
+                                   n_within(frame->lens, lights, n_lights));
     }
     flare->flux = flare->brightest = (struct glint_real){0, 0};
     keep_seen(flare, frame->sets ? frame->sets->planner->plan(flare, n_jobs)
                                  : plan_all(flare, n_jobs));
     if (flare->cfg.raster->fill)
         flare->cfg.raster->fill(flare);
+    if (flare->cfg.reuse)
+        flare->reusable = GLINT_REUSABLE_PLANNED;
 }
 
 int glint_flare_ghost(const struct glint_flare *flare, int i)
@@ -349,8 +380,15 @@ int glint_flare_planned(const struct glint_flare *flare, int i,
     if (i >= flare->n_bundles)
         return 0;
     *planned =
-        (struct glint_planned){flare->bundle[i].n_cells, flare->planned[i].flux,
-                               flare->planned[i].irradiance};
+        (struct glint_planned){.n_cells = flare->bundle[i].n_cells,
+                               .flux = flare->planned[i].flux,
+                               .irradiance = flare->planned[i].irradiance,
+                               .ghost = flare->planned[i].ghost,
+                               .light = flare->planned[i].light,
+                               .wave = flare->planned[i].wave,
+                               .inside_q8 = flare->planned[i].inside_q8,
+                               .view_q8 = flare->planned[i].view_q8,
+                               .contrast_q4 = flare->planned[i].contrast_q4};
     return 1;
 }
 
@@ -393,9 +431,13 @@ static void total(struct glint_flare *f)
 
 void glint_flare_bin(struct glint_flare *flare, struct glint_flare_stats *stats)
 {
-    if (flare->n_bundles > 0)
-        flare->cfg.raster->bin(flare);
-    total(flare);
+    if (flare->reusable != GLINT_REUSABLE_BINNED) {
+        if (flare->n_bundles > 0)
+            flare->cfg.raster->bin(flare);
+        total(flare);
+    }
+    if (flare->reusable != GLINT_REUSABLE_NOT)
+        flare->cfg.reuse->turn(flare);
     *stats = flare->stats;
 }
 

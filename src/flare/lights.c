@@ -26,6 +26,7 @@
 #include "base/q.h"
 #include "base/real.h"
 #include "base/sort.h"
+#include "flare/dim.h"
 #include "glint/flare.h"
 
 enum {
@@ -33,7 +34,7 @@ enum {
         3, /* curves along which lights are sought that cannot be told apart */
     PART = 4,  /* a round merges 1 / PART of the lights that have to go */
     BINS = 64, /* bins of the histogram of costs */
-    HELD = 14,
+    HELD = GLINT_LIGHT_HELD,
     WORDS = 10 /* 32-bit words that a light consists of */
 };
 
@@ -52,10 +53,8 @@ static struct direction direction_of(const struct glint_light *b)
                               b->cosine_q30};
 }
 
-/* Returns the squared distance of two directions on the unit sphere, at most 4.
- */
-static uint64_t distance2_q60(const struct glint_light *a,
-                              const struct glint_light *b)
+uint64_t glint_light_apart2_q60(const struct glint_light *a,
+                                const struct glint_light *b)
 {
     const struct direction p = direction_of(a), q = direction_of(b);
     const int64_t x = (int64_t)p.x_q30 - q.x_q30;
@@ -184,9 +183,7 @@ static void sort_along(struct glint_light *b, int n, int round)
 
 /* ----------------------------------------------------------------- merging */
 
-/* Merges B into A: A gets the power and colour of both, and a direction
- * between. */
-static void merge(struct glint_light *a, const struct glint_light *b)
+void glint_light_merge(struct glint_light *a, const struct glint_light *b)
 {
     const struct glint_real power = real_plus(a->power, b->power);
     const int64_t share_q30 =
@@ -220,7 +217,7 @@ static void merge(struct glint_light *a, const struct glint_light *b)
  */
 static int cost_of(const struct glint_light *a, const struct glint_light *b)
 {
-    const uint64_t d2_q59 = distance2_q60(a, b) >> 1 | 1;
+    const uint64_t d2_q59 = glint_light_apart2_q60(a, b) >> 1 | 1;
     const struct glint_real light = real_times(a->power, b->power);
 
     return real_times(real_times(light, light), real_of((int64_t)d2_q59, -59))
@@ -239,7 +236,7 @@ struct rule {
 static int may_merge(const struct rule *r, const struct glint_light *a,
                      const struct glint_light *b)
 {
-    return r->near2_q60 ? distance2_q60(a, b) <= r->near2_q60
+    return r->near2_q60 ? glint_light_apart2_q60(a, b) <= r->near2_q60
                         : cost_of(a, b) <= r->cost;
 }
 
@@ -251,7 +248,7 @@ static int merge_neighbours(struct glint_light *b, int n, const struct rule *r)
 
     for (int i = 1; i < n; i++)
         if (left > r->most && may_merge(r, &b[last], &b[i])) {
-            merge(&b[last], &b[i]);
+            glint_light_merge(&b[last], &b[i]);
             left--;
         } else
             b[++last] = b[i];

@@ -2,7 +2,9 @@
  *
  * Fills the table of flare/dim.h: logarithms of each ghost's light at nodes of
  * the sine of the light's angle, of a white light of power 1, wherever the
- * picture lies. */
+ * picture lies. And lets lights near each other share the rays of dim ghosts.
+ */
+#include "base/compiler.h"
 #include "flare/dim.h"
 #include "flare/state.h"
 
@@ -50,8 +52,8 @@ static void fill_job(void *ctx, int ghost, int worker)
         struct glint_real light; /* at energy 1 */
 
         value[1 + wave] = GLINT_DIM_DARK;
-        if (glint_plan_bundle(&fill->plan, &planned, &bundle, scratch) !=
-                GLINT_OUTCOME_DRAWN ||
+        if (glint_plan_bundle(&fill->plan, &fill->light, &planned, &bundle,
+                              scratch) != GLINT_OUTCOME_DRAWN ||
             planned.irradiance.mantissa == 0 || scratch->probe.energy <= 0)
             continue;
         light = real_over(planned.flux, channel_of(&fill->frame.wave[wave]));
@@ -85,6 +87,7 @@ static void fill_node(struct glint_flare *f, int node)
                         .node = node};
 
     fill.frame.only_ghost = -1;
+    fill.frame.tints = NULL;
     fill.frame.faintest = (struct glint_real){0, 0};
     fill.plan.frame = &fill.frame;
     fill.plan.light = &fill.light;
@@ -101,8 +104,9 @@ static void fill_nodes(struct glint_flare *flare, int n_lights)
     uint8_t *done = flare->plan.frame->dim->done;
 
     for (int i = 0; i < n_lights; i++) {
-        const int at =
-            glint_dim_node_q16(flare->plan.frame, &flare->plan.light[i]) >> 16;
+        const int at = glint_dim_node_q16(flare->plan.frame,
+                                          flare->plan.light[i].sine_q30) >>
+                       16;
 
         for (int node = at - 1; node <= at + 2; node++)
             if (node >= 0 && node <= GLINT_DIM_LAST && !done[node])
@@ -110,5 +114,133 @@ static void fill_nodes(struct glint_flare *flare, int n_lights)
     }
 }
 
+/* ----------------------------------------------------------------- sharing */
+
+enum {
+    /* Lights apart by 1 / SIDE of the picture's longer side, four pixels of
+     * 1920, may share the rays of a ghost that is as bright as the dimmest one.
+     * Errors of N lights add up by the root of N. */
+    SIDE = 480,
+    FARTHEST_Q8 = 1 << 14
+};
+
+/* Lights as they are drawn lie in the memory of their first bundle. */
+static struct glint_light *gathered(struct glint_flare *f, int ghost, int light)
+{
+    const struct glint_flare_frame *r = f->plan.frame;
+    const int64_t at =
+        ((int64_t)light * (int)r->lens->header->n_ghosts + ghost) * r->n_waves;
+
+    return at < f->cfg.max_bundles ? (void *)&f->planned[at] : NULL;
+}
+
+STATIC_ASSERT(sizeof(struct glint_light) <= sizeof(struct glint_bundle_plan));
+
+/* Sets the nearest light before each of N lights, and log2 of how far that is
+ * over 1 / SIDE of the picture's longer side and over the root of 1 / N. */
+static void find_nearest(struct glint_flare *f, int n)
+{
+    const struct glint_flare_frame *r = f->plan.frame;
+    const struct glint_light *light = f->plan.light;
+    const int longer = q_larger(f->plan.width, f->plan.height);
+    const struct glint_real focal =
+        real_times(r->lens->header->focal_mm, r->pixels_per_mm); /* pixels */
+    const int32_t scale_log2 =
+        glint_dim_log2_q8(real_over(real_times(focal, real_of(SIDE, 0)),
+                                    real_of(longer, 0))) +
+        glint_dim_log2_q8(real_of(n, 0)) / 2;
+
+    for (int i = 1; i < n; i++) {
+        uint64_t least2_q60 = UINT64_MAX;
+
+        for (int k = 0; k < i; k++) {
+            const uint64_t apart2_q60 =
+                glint_light_apart2_q60(&light[k], &light[i]);
+
+            if (apart2_q60 < least2_q60) {
+                least2_q60 = apart2_q60;
+                r->dim->nearest[i] = (int16_t)k;
+            }
+        }
+        r->dim->apart_log2_q8[i] = (int16_t)q_clamp_sat(
+            scale_log2 + glint_dim_log2_q8(
+                             real_of((int64_t)(least2_q60 >> 1 | 1), -59)) /
+                             2,
+            -FARTHEST_Q8, FARTHEST_Q8);
+    }
+}
+
+/* A ghost's error is its light times the distance that it moves: half of what
+ * is allowed lets all light go, all of it none. */
+static int kept_q8(const struct glint_flare_frame *frame,
+                   const struct glint_light *light, int i, int ghost)
+{
+    if (i == 0 || i >= GLINT_DIM_LIGHTS ||
+        glint_plan_is_beyond(frame->lens, light))
+        return GLINT_DIM_WHOLE_Q8;
+    return q_clamp_sat(glint_dim_above_q8(frame, light, ghost) +
+                           frame->dim->apart_log2_q8[i],
+                       0, GLINT_DIM_WHOLE_Q8);
+}
+
+/* Gives the light of B, light I, that it does not keep to the nearest before
+ * it. */
+static void give(struct glint_flare *f, struct glint_light *b, int ghost, int i)
+{
+    struct glint_light part = *b;
+    const int left_q8 = kept_q8(f->plan.frame, b, i, ghost);
+
+    if (left_q8 == GLINT_DIM_WHOLE_Q8)
+        return;
+    b->power = real_times(part.power, real_of(left_q8, -8));
+    part.power =
+        real_times(part.power, real_of(GLINT_DIM_WHOLE_Q8 - left_q8, -8));
+    glint_light_merge(gathered(f, ghost, f->plan.frame->dim->nearest[i]),
+                      &part);
+}
+
+struct gather {
+    struct glint_flare *flare;
+    int n_lights;
+};
+
+/* From the last light to the first, so that what one gives goes on with what it
+ * was given. */
+static void gather_job(void *ctx, int ghost, int worker)
+{
+    const struct gather *g = ctx;
+    struct glint_light *b;
+    int n = 0;
+
+    (void)worker;
+    for (; n < g->n_lights; n++) {
+        b = gathered(g->flare, ghost, n);
+        if (!b)
+            break;
+        *b = g->flare->plan.light[n];
+        for (int c = 0; c < 3; c++)
+            b->rgb_q14[c] *= 1 << GLINT_LIGHT_HELD;
+    }
+    for (int i = n - 1; i >= 0; i--) {
+        b = gathered(g->flare, ghost, i);
+        if (!b)
+            continue;
+        give(g->flare, b, ghost, i);
+        for (int c = 0; c < 3; c++)
+            b->rgb_q14[c] = q_narrow(q_shift(b->rgb_q14[c], GLINT_LIGHT_HELD));
+    }
+}
+
+static void gather(struct glint_flare *flare, int n_lights)
+{
+    struct gather gather = {flare, n_lights};
+
+    find_nearest(flare, q_smaller(n_lights, GLINT_DIM_LIGHTS));
+    glint_workers_run(flare->cfg.workers,
+                      (int)flare->plan.frame->lens->header->n_ghosts,
+                      gather_job, &gather);
+}
+
 const struct glint_dim_method glint_dim_method = {
-    fill_nodes, glint_dim_share_q8, glint_dim_ratio_q16};
+    fill_nodes,         gather, gathered, kept_q8, glint_dim_share_q8,
+    glint_dim_ratio_q16};

@@ -35,30 +35,66 @@ static int64_t widened(const struct glint_bundle_plan *s, int64_t x_q8)
     return s->wider_q16 ? x_q8 * s->wider_q16 >> 16 : x_q8;
 }
 
-/* Returns whether the range E of the probe's rays, grown by a tenth and turned
- * by the light's azimuth, meets the picture. */
-static int is_in_view(const struct glint_plan *p,
-                      const struct glint_bundle_plan *planned,
-                      const struct glint_light *b,
-                      const struct glint_transfer *t,
-                      const struct glint_probe_extent *e)
+/* The box about a bundle's light: half its length along the light's azimuth and
+ * half its width across, and how far along it lies; pixels. */
+struct reach {
+    int64_t middle_q8, wide_q8, high_q8;
+};
+
+/* Makes the box of the range E of the probe's rays, grown by a tenth. */
+static struct reach reach_of(const struct glint_plan *p,
+                             const struct glint_bundle_plan *planned,
+                             const struct glint_transfer *t,
+                             const struct glint_probe_extent *e)
 {
-    const int64_t middle_q8 = pixels_q8(p, t, (e->low + e->high) / 2);
-    const int64_t wide_q8 =
+    return (struct reach){
+        pixels_q8(p, t, (e->low + e->high) / 2),
         widened(planned,
                 pixels_q8(p, t, q_divide((e->high - e->low) * 11, 20))) +
-        256;
-    const int64_t high_q8 =
+            256,
         widened(planned, pixels_q8(p, t, e->wide + q_divide(e->wide, 10))) +
-        256;
+            256};
+}
+
+/* Returns whether E, turned by the light's azimuth, meets the picture. */
+static int is_in_view(const struct glint_plan *p, const struct glint_light *b,
+                      const struct reach *e)
+{
     const int64_t c = b->cos_q30 < 0 ? -b->cos_q30 : b->cos_q30;
     const int64_t s = b->sin_q30 < 0 ? -b->sin_q30 : b->sin_q30;
-    const int64_t m = middle_q8 < 0 ? -middle_q8 : middle_q8;
+    const int64_t m = e->middle_q8 < 0 ? -e->middle_q8 : e->middle_q8;
 
-    return ((m - wide_q8) * c - s * high_q8) >> 30 <= p->width * 128 >>
+    return ((m - e->wide_q8) * c - s * e->high_q8) >> 30 <= p->width * 128 >>
                p->half &&
-           ((m - wide_q8) * s - c * high_q8) >> 30 <= p->height * 128 >>
+           ((m - e->wide_q8) * s - c * e->high_q8) >> 30 <= p->height * 128 >>
                p->half;
+}
+
+/* Returns the share, 0 to 255, of a span about MIDDLE, WIDE to each side, that
+ * lies between -HALF and HALF. */
+static int64_t span_q8(int64_t middle, int64_t wide, int64_t half)
+{
+    const int64_t low = middle - wide > -half ? middle - wide : -half;
+    const int64_t high = middle + wide < half ? middle + wide : half;
+
+    return high > low && wide > 0 ? q_divide(255 * (high - low), 2 * wide) : 0;
+}
+
+/* Returns the share of the upright box about E, turned by the light's azimuth,
+ * that lies in the picture. */
+static uint8_t view_q8(const struct glint_plan *p, const struct glint_light *b,
+                       const struct reach *e)
+{
+    const int64_t c = b->cos_q30 < 0 ? -b->cos_q30 : b->cos_q30;
+    const int64_t s = b->sin_q30 < 0 ? -b->sin_q30 : b->sin_q30;
+    const int64_t across =
+        span_q8(e->middle_q8 * c >> 30, (e->wide_q8 * c + e->high_q8 * s) >> 30,
+                p->width * 128 >> p->half);
+    const int64_t down =
+        span_q8(e->middle_q8 * s >> 30, (e->wide_q8 * s + e->high_q8 * c) >> 30,
+                p->height * 128 >> p->half);
+
+    return (uint8_t)((across * down + 254) >> 8);
 }
 
 static struct glint_real box_side(const struct glint_transfer *t, int k)
@@ -75,8 +111,7 @@ static int64_t part_q16(const struct glint_plan *p,
 {
     if (wave == planned->wave)
         return 1 << 16;
-    return q_shift(p->frame->dim->method->ratio_q16(p->frame,
-                                                    &p->light[planned->light],
+    return q_shift(p->frame->dim->method->ratio_q16(p->frame, planned->sine_q30,
                                                     planned->ghost, wave) *
                        (GLINT_DIM_WHOLE_Q8 - share_q8),
                    8);
@@ -84,11 +119,13 @@ static int64_t part_q16(const struct glint_plan *p,
 
 /* The colour of the bundle, its largest channel 1; returns what that was. */
 static struct glint_real colour_of(const struct glint_plan *p,
+                                   const struct glint_light *b,
                                    const struct glint_bundle_plan *planned,
                                    int share_q8, int32_t *rgb_q14)
 {
     const struct glint_wave *w = p->frame->wave;
-    const struct glint_light *b = &p->light[planned->light];
+    const struct glint_tint *tint =
+        p->frame->tints ? &p->frame->tints[planned->ghost] : NULL;
     const int mixes =
         share_q8 < GLINT_DIM_WHOLE_Q8 && planned->wave == GLINT_DIM_WAVE;
     const int first = mixes ? 0 : planned->wave;
@@ -103,25 +140,28 @@ static struct glint_real colour_of(const struct glint_plan *p,
                 q_shift((int64_t)w[wave].rgb_q14[c] * b->rgb_q14[c] * part, 16);
     }
     for (int c = 0; c < 3; c++) {
-        const int64_t x = rgb_q28[c];
+        int64_t x = rgb_q28[c];
 
+        if (tint)
+            rgb_q28[c] = x = q_shift(x * tint->rgb_q14[c], 14);
         most = x > most ? x : -x > most ? -x : most;
     }
     for (int c = 0; c < 3; c++)
         rgb_q14[c] =
             most ? q_narrow(q_divide(rgb_q28[c] * (1 << 14), most)) : 0;
-    return real_of(most, -28);
+    return tint ? real_times(real_of(most, -28), tint->gain)
+                : real_of(most, -28);
 }
 
 /* Returns the flux of the bundle, display white times pixels, if all rays of
  * its window had energy 2^EXPONENT. An annular box counts without its hole. */
 static struct glint_real flux_of(const struct glint_plan *p,
+                                 const struct glint_light *b,
                                  const struct glint_bundle_plan *s,
                                  const struct glint_transfer *t,
                                  struct glint_real colour, int exponent)
 {
     const struct glint_wave *w = &p->frame->wave[s->wave];
-    const struct glint_light *b = &p->light[s->light];
     struct glint_real x = real_times(box_side(t, 1), box_side(t, 2));
 
     x.exponent += 2 + exponent; /* both sides are halves of the box */
@@ -137,21 +177,20 @@ static struct glint_real flux_of(const struct glint_plan *p,
     return real_times(x, colour);
 }
 
-/* Returns the most light that a cell can give a pixel, in units of the faintest
- * light that shows: twice the flux of a cell of the probe over the least area
- * of one on the sensor, as cells between may be brighter. Returns 2^20 for
- * folded ghosts, whose areas say little, and for linear pictures. */
-static int64_t peak_q20(const struct glint_plan *p,
-                        const struct glint_bundle_plan *planned,
-                        const struct glint_probe *s,
-                        const struct glint_transfer *t, struct glint_real flux)
+/* Returns the most light that a cell can give a pixel: twice the flux of a cell
+ * of the probe over the least area of one on the sensor, as cells between may
+ * be brighter. 0 for folded ghosts, whose areas say little. */
+static struct glint_real brightest_of(const struct glint_plan *p,
+                                      const struct glint_bundle_plan *planned,
+                                      const struct glint_probe *s,
+                                      const struct glint_transfer *t,
+                                      struct glint_real flux)
 {
-    const int64_t most = INT64_C(1) << 40;
     struct glint_real area;
 
-    if (p->frame->faintest.mantissa == 0 || (s->n_up && s->n_down) ||
-        s->least_area < 2 || s->least_area == UINT64_MAX)
-        return most;
+    if ((s->n_up && s->n_down) || s->least_area < 2 ||
+        s->least_area == UINT64_MAX)
+        return real_of(0, 0);
     area = real_times(real_of((int64_t)(s->least_area >> 1),
                               2 * t->exponent[GLINT_OUT_SENSOR_X] + 2),
                       real_times(plan_pixels_per_mm(p), plan_pixels_per_mm(p)));
@@ -162,8 +201,34 @@ static int64_t peak_q20(const struct glint_plan *p,
     flux.exponent += 1;
     /* Number of cells over the whole box. */
     area = real_times(area, real_of(s->across * 2 * s->down, 0));
-    return real_integer(real_over(real_over(flux, area), p->frame->faintest),
-                        20, most);
+    return real_over(flux, area);
+}
+
+/* Returns BRIGHTEST in units of the faintest light that shows; 2^20 if it is
+ * not known, and for linear pictures. */
+static int64_t peak_q20(const struct glint_plan *p, struct glint_real brightest)
+{
+    const int64_t most = INT64_C(1) << 40;
+
+    if (p->frame->faintest.mantissa == 0 || brightest.mantissa == 0)
+        return most;
+    return real_integer(real_over(brightest, p->frame->faintest), 20, most);
+}
+
+/* Sets what glint_planned() says of a bundle beyond its light. */
+static void set_shape(const struct glint_probe *s, struct glint_real brightest,
+                      struct glint_bundle_plan *planned)
+{
+    const int nodes = (s->across + 1) * (s->down + 1);
+
+    planned->inside_q8 = (uint8_t)q_divide(255 * (int64_t)s->n_inside, nodes);
+    planned->contrast_q4 = 255;
+    if (brightest.mantissa && planned->irradiance.mantissa)
+        planned->contrast_q4 =
+            (uint8_t)q_clamp_sat((glint_dim_log2_q8(brightest) -
+                                  glint_dim_log2_q8(planned->irradiance)) >>
+                                     4,
+                                 0, 254);
 }
 
 void glint_plan_transfer(const struct glint_plan *plan,
@@ -172,8 +237,7 @@ void glint_plan_transfer(const struct glint_plan *plan,
 {
     const struct glint_flare_frame *r = plan->frame;
 
-    glint_transfer_init(transfer, r->lens, planned->ghost,
-                        plan->light[planned->light].sine_q30,
+    glint_transfer_init(transfer, r->lens, planned->ghost, planned->sine_q30,
                         r->wave[planned->wave].wave_q24);
     transfer->sets = plan->sets;
     transfer->energy_up = planned->energy_up;
@@ -183,10 +247,9 @@ void glint_plan_transfer(const struct glint_plan *plan,
 struct glint_place glint_plan_place(const struct glint_plan *plan,
                                     const struct glint_bundle_plan *planned)
 {
-    const struct glint_light *b = &plan->light[planned->light];
     struct glint_place place = {
-        .cos_q30 = b->cos_q30,
-        .sin_q30 = b->sin_q30,
+        .cos_q30 = planned->cos_q30,
+        .sin_q30 = planned->sin_q30,
         .pixels_per_mm = plan_pixels_per_mm(plan),
         .middle_x_q8 = plan->width * 128 >> plan->half,
         .middle_y_q8 = plan->height * 128 >> plan->half,
@@ -199,8 +262,8 @@ struct glint_place glint_plan_place(const struct glint_plan *plan,
 
         place.pixels_per_mm =
             real_times(place.pixels_per_mm, real_of(planned->wider_q16, -16));
-        place.middle_x_q8 -= (int32_t)q_shift(back_q8 * b->cos_q30, 30);
-        place.middle_y_q8 += (int32_t)q_shift(back_q8 * b->sin_q30, 30);
+        place.middle_x_q8 -= (int32_t)q_shift(back_q8 * planned->cos_q30, 30);
+        place.middle_y_q8 += (int32_t)q_shift(back_q8 * planned->sin_q30, 30);
     }
     return place;
 }
@@ -232,15 +295,16 @@ int glint_plan_is_beyond(const struct glint_lens *lens,
     return light->sine_q30 > lens->header->sine_hi_q30;
 }
 
-/* Returns whether ghost or part GHOST belongs to the pair of surfaces of
- * only_ghost. */
+/* Returns whether ghost or part GHOST is not muted and belongs to the pair of
+ * surfaces of only_ghost. */
 static int is_wanted(const struct glint_flare_frame *r, int ghost)
 {
     const struct glint_model_ghost *g = &r->lens->ghost[ghost];
     const struct glint_model_ghost *only =
         &r->lens->ghost[r->only_ghost < 0 ? ghost : r->only_ghost];
 
-    return g->i == only->i && g->j == only->j;
+    return g->i == only->i && g->j == only->j &&
+           (!r->tints || r->tints[ghost].gain.mantissa > 0);
 }
 
 /* Sets by how much the ghost is drawn larger, WIDEST_Q16 at most. A small ghost
@@ -248,12 +312,11 @@ static int is_wanted(const struct glint_flare_frame *r, int ghost)
  * the lamp's ghost would be a pattern of dots; so it is made two and a half
  * times as wide as they are apart. The ghost moves with the light in proportion
  * to its distance from the middle. For a light on the axis nothing is set. */
-static void set_wider(const struct glint_plan *p,
+static void set_wider(const struct glint_plan *p, const struct glint_light *b,
                       struct glint_bundle_plan *planned,
                       const struct glint_transfer *t,
                       const struct glint_probe_extent *e)
 {
-    const struct glint_light *b = &p->light[planned->light];
     const int64_t middle = (e->low + e->high) / 2;
     const struct glint_real wide = real_of((e->high - e->low) / 2 + e->wide, 0);
     struct glint_real wanted;
@@ -302,17 +365,33 @@ static int probe(const struct glint_plan *plan, struct glint_transfer *transfer,
     return s->n_inside > 0;
 }
 
+/* Returns the area of the box about the range E of rays, pixels. */
+static struct glint_real area_of(const struct glint_plan *p,
+                                 const struct glint_bundle_plan *planned,
+                                 const struct glint_transfer *t,
+                                 const struct glint_probe_extent *e)
+{
+    const int64_t wide_q8 =
+        widened(planned, pixels_q8(p, t, q_divide((e->high - e->low) * 3, 5))) +
+        256;
+    const int64_t high_q8 =
+        widened(planned, pixels_q8(p, t, e->wide + q_divide(e->wide, 10))) +
+        256;
+
+    return real_times(real_of(wide_q8, -7), real_of(high_q8, -7));
+}
+
 static enum glint_outcome plan_bundle(const struct glint_plan *plan,
+                                      const struct glint_light *b,
                                       struct glint_bundle_plan *planned,
                                       struct glint_bundle *bundle,
                                       struct glint_plan_scratch *scratch)
 {
     const struct glint_flare_frame *r = plan->frame;
-    const struct glint_light *b = &plan->light[planned->light];
     struct glint_transfer *transfer = &scratch->transfer;
     struct glint_probe *s = &scratch->probe;
-    struct glint_real colour;
-    int64_t wide_q8, high_q8;
+    struct glint_real colour, brightest;
+    struct reach reach;
     int exponent, share_q8;
 
     bundle->n_cells = s->n_rays = 0;
@@ -328,49 +407,48 @@ static enum glint_outcome plan_bundle(const struct glint_plan *plan,
                           : GLINT_DIM_WHOLE_Q8;
     if (share_q8 == 0 && planned->wave != GLINT_DIM_WAVE)
         return GLINT_OUTCOME_OTHER_SET;
-    colour = colour_of(plan, planned, share_q8, bundle->rgb_q14);
+    colour = colour_of(plan, b, planned, share_q8, bundle->rgb_q14);
     if (colour.mantissa == 0 || b->power.mantissa == 0)
         return GLINT_OUTCOME_DARK;
     if (!set_window(plan, planned, scratch))
         return GLINT_OUTCOME_BLOCKED;
     if (!probe(plan, transfer, s))
         return GLINT_OUTCOME_BLOCKED;
-    set_wider(plan, planned, transfer, &s->seen);
-    if (!is_in_view(plan, planned, b, transfer, &s->reach))
+    set_wider(plan, b, planned, transfer, &s->seen);
+    reach = reach_of(plan, planned, transfer, &s->reach);
+    if (!is_in_view(plan, b, &reach))
         return GLINT_OUTCOME_OUTSIDE;
-    wide_q8 =
-        widened(planned,
-                pixels_q8(plan, transfer,
-                          q_divide((s->seen.high - s->seen.low) * 3, 5))) +
-        256;
-    high_q8 =
-        widened(planned, pixels_q8(plan, transfer,
-                                   s->seen.wide + q_divide(s->seen.wide, 10))) +
-        256;
+    planned->view_q8 = view_q8(plan, b, &reach);
     planned->energy_up = (uint8_t)energy_up(s->energy);
     exponent = transfer->exponent[GLINT_OUT_ENERGY] + 29 - planned->energy_up;
-    planned->flux = flux_of(plan, planned, transfer, colour, exponent);
+    planned->flux = flux_of(plan, b, planned, transfer, colour, exponent);
     if (share_q8 < GLINT_DIM_WHOLE_Q8 && planned->wave != GLINT_DIM_WAVE)
         planned->flux = real_times(planned->flux, real_of(share_q8, -8));
-    planned->peak_q20 = peak_q20(plan, planned, s, transfer, planned->flux);
+    brightest = brightest_of(plan, planned, s, transfer, planned->flux);
+    planned->peak_q20 = peak_q20(plan, brightest);
     if (plan->n_lights == 1 && !r->sets && planned->peak_q20 < 1 << 20)
         return GLINT_OUTCOME_FAINT;
-    planned->irradiance = real_over(
-        planned->flux, real_times(real_of(wide_q8, -7), real_of(high_q8, -7)));
+    planned->irradiance =
+        real_over(planned->flux, area_of(plan, planned, transfer, &s->seen));
+    set_shape(s, brightest, planned);
     bundle->n_cells = glint_plan_cells(plan, s, transfer, planned->irradiance);
-    glint_plan_sags(planned, s, transfer, bundle->n_cells, plan->round);
+    glint_plan_sags(planned, s, transfer, bundle->n_cells, plan->round_q16);
     set_flux(bundle, transfer, planned->flux);
     return GLINT_OUTCOME_DRAWN;
 }
 
 enum glint_outcome glint_plan_bundle(const struct glint_plan *plan,
+                                     const struct glint_light *light,
                                      struct glint_bundle_plan *planned,
                                      struct glint_bundle *bundle,
                                      struct glint_plan_scratch *scratch)
 {
-    const enum glint_outcome outcome =
-        plan_bundle(plan, planned, bundle, scratch);
+    enum glint_outcome outcome;
 
+    planned->sine_q30 = light->sine_q30;
+    planned->cos_q30 = light->cos_q30;
+    planned->sin_q30 = light->sin_q30;
+    outcome = plan_bundle(plan, light, planned, bundle, scratch);
     scratch->n_rays += scratch->probe.n_rays;
     return outcome;
 }

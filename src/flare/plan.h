@@ -22,10 +22,15 @@
  * plan found. */
 struct glint_bundle_plan {
     int32_t ghost, light, wave;
+    /* Direction of the light that is drawn, as in struct glint_light: of LIGHT,
+     * or of several that it stands for. */
+    int32_t sine_q30, cos_q30, sin_q30;
     uint8_t energy_up; /* see struct glint_transfer */
+    /* As in struct glint_planned. */
+    uint8_t inside_q8, view_q8, contrast_q4;
     /* part of the box that the stop lets through */
     struct glint_box_window window;
-    /* For two barrels and a round stop: mean height by which the grid's
+    /* For two barrels and a curved stop: mean height by which the grid's
      * straight lines lie above (1 + r^2) / 2, which is bent between its rays */
     uint16_t sag_q16[3];
     /* Light of the whole pupil if all rays had the highest energy seen, display
@@ -47,10 +52,12 @@ struct glint_plan {
     /* number of lights, and size of the picture in pixels */
     int n_lights, width, height;
     unsigned sets;
-    int half;  /* 1: the flare's pixels are twice as wide and high as the
-                  picture's */
-    int dims;  /* 1: the frame's DIM is filled for all lights */
-    int round; /* 1: the stop is round */
+    int half; /* 1: the flare's pixels are twice as wide and high as the
+                 picture's */
+    int dims; /* 1: the frame's DIM is filled for all lights */
+    int32_t round_q16; /* curvature of the stop's outline between its corners,
+                          1 / stop radius: 0 straight, 2^16 a circle */
+    int shaded;        /* 1: the stop has a shade */
     /* opening of the stop over the model's, 2^20 .. 2^30 */
     int32_t opening_q30;
 };
@@ -68,10 +75,11 @@ struct glint_plan_scratch {
 int glint_plan_is_beyond(const struct glint_lens *lens,
                          const struct glint_light *light);
 
-/* Plans one bundle, whose ghost, light and wave are set in PLANNED. Returns
- * what becomes of it; unless that is DRAWN, BUNDLE->n_cells is 0 and nothing of
- * it can be seen. */
+/* Plans one bundle, whose ghost, light and wave are set in PLANNED, as LIGHT
+ * makes it. Returns what becomes of it; unless that is DRAWN, BUNDLE->n_cells
+ * is 0 and nothing of it can be seen. */
 enum glint_outcome glint_plan_bundle(const struct glint_plan *plan,
+                                     const struct glint_light *light,
                                      struct glint_bundle_plan *planned,
                                      struct glint_bundle *bundle,
                                      struct glint_plan_scratch *scratch);

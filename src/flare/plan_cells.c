@@ -6,7 +6,7 @@
 #include "base/real.h"
 #include "lens/grid.h"
 
-enum { FOLD_OCTAVES = 3 };
+enum { FOLD_OCTAVES = 3, MOST_SHADE_CELLS = 128, SHADE_CELL_LOG2 = 4 };
 
 /* Returns the root of the mean SUM / N of squares; each square was divided by
  * 2^10 before it was added. */
@@ -42,6 +42,15 @@ static int64_t stop_change(const struct glint_probe *s)
                      s->n_bends);
 }
 
+/* Returns the change of the place on the sensor over the box, in units of the
+ * sensor outputs times 2^GLINT_PROBE_FINE_LOG2. */
+static int64_t sensor_change(const struct glint_probe *s)
+{
+    return root_mean(s->change[GLINT_OUT_SENSOR_X].first +
+                         s->change[GLINT_OUT_SENSOR_Y].first,
+                     s->n_bends);
+}
+
 static int64_t one_radius(const struct glint_probe *s)
 {
     /* The limit is 1.05 radii. */
@@ -52,17 +61,17 @@ static int64_t one_radius(const struct glint_probe *s)
     return radius > 0 ? radius : 1;
 }
 
-/* Returns what bend_of() does for a round stop's outline, (1 + r^2) / 2 as for
- * a barrel: where r is 1, it changes as fast as the stop position s does, and
- * bends by the square of the derivative of s. */
-static int64_t round_bend(const struct glint_probe *s)
+/* Returns what bend_of() does for the outline of a stop of curvature ROUND; of
+ * a round one it is (1 + r^2) / 2 as for a barrel: where r is 1, it changes as
+ * fast as the stop position s does, and bends by the square of the derivative
+ * of s. */
+static int64_t round_bend(const struct glint_probe *s, int32_t round_q16)
 {
-    const int64_t sensor = root_mean(s->change[GLINT_OUT_SENSOR_X].first +
-                                         s->change[GLINT_OUT_SENSOR_Y].first,
-                                     s->n_bends);
+    const int64_t change = (stop_change(s) >> 2) * round_q16 >> 16;
+    const int64_t sensor = sensor_change(s);
 
     /* 2^30 * 2^31 */
-    return q_divide((stop_change(s) >> 2) * sensor, (one_radius(s) >> 2) + 1);
+    return q_divide(change * sensor, (one_radius(s) >> 2) + 1);
 }
 
 /* Returns how many of N cells a side a picture in codes needs. Errors of a
@@ -90,7 +99,21 @@ static int cells_for_codes(const struct glint_probe *s,
 static int outline_over_light(const struct glint_plan *p,
                               const struct glint_transfer *t)
 {
-    return p->round || t->outputs >> GLINT_OUT_BARREL_2 & 1 ? 5 : 10;
+    return p->round_q16 || t->outputs >> GLINT_OUT_BARREL_2 & 1 ? 5 : 10;
+}
+
+/* Returns the cells a side of which each, in parts (edges/ghost_shade.h),
+ * resolves the shade of the stop to a pixel. */
+static int cells_for_shade(const struct glint_plan *p,
+                           const struct glint_probe *s,
+                           const struct glint_transfer *t)
+{
+    const struct glint_real pixels =
+        real_times(real_of(sensor_change(s), t->exponent[GLINT_OUT_SENSOR_X] +
+                                                 GLINT_PROBE_FINE_LOG2),
+                   plan_pixels_per_mm(p));
+
+    return (int)real_integer(pixels, -SHADE_CELL_LOG2, MOST_SHADE_CELLS);
 }
 
 /* Returns the cells a side by the rule of lens/grid.h, from what the probe saw.
@@ -115,8 +138,8 @@ static int cells_of(const struct glint_plan *p, const struct glint_probe *s,
 
             outline = cut > outline ? cut : outline;
         }
-    if (p->round) {
-        const int64_t cut = round_bend(s);
+    if (p->round_q16) {
+        const int64_t cut = round_bend(s, p->round_q16);
 
         outline = cut > outline ? cut : outline;
     }
@@ -131,6 +154,11 @@ static int cells_of(const struct glint_plan *p, const struct glint_probe *s,
     n = q_narrow(
         ((int64_t)q_root((uint64_t)bend_q8 * 3200) * r->fineness + 16383) >>
         14);
+    if (p->shaded) {
+        const int shade = cells_for_shade(p, s, t);
+
+        n = shade > n ? shade : n;
+    }
     if (r->faintest.mantissa)
         n = cells_for_codes(s, irradiance, n);
     n = n < GLINT_LEAST_CELLS ? GLINT_LEAST_CELLS : n;
@@ -193,7 +221,7 @@ static uint16_t sag_q16(int64_t bowl_q16, int n_cells)
 void glint_plan_sags(struct glint_bundle_plan *planned,
                      const struct glint_probe *probe,
                      const struct glint_transfer *transfer, int n_cells,
-                     int round)
+                     int32_t round_q16)
 {
     for (int k = GLINT_OUT_BARREL_0; k <= GLINT_OUT_BARREL_1; k++) {
         const int64_t bowl_q16 =
@@ -206,5 +234,8 @@ void glint_plan_sags(struct glint_bundle_plan *planned,
 
         planned->sag_q16[k - GLINT_OUT_BARREL_0] = sag_q16(bowl_q16, n_cells);
     }
-    planned->sag_q16[2] = round ? sag_q16(round_bowl_q16(probe), n_cells) : 0;
+    planned->sag_q16[2] =
+        round_q16
+            ? sag_q16(q_shift(round_bowl_q16(probe) * round_q16, 16), n_cells)
+            : 0;
 }

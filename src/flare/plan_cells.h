@@ -25,11 +25,11 @@ int glint_plan_cells(const struct glint_plan *plan,
                      const struct glint_transfer *transfer,
                      struct glint_real irradiance);
 
-/* Sets the sags of PLANNED for a grid of N_CELLS a side; ROUND is 1 for a round
- * stop. */
+/* Sets the sags of PLANNED for a grid of N_CELLS a side and a stop whose
+ * outline has the curvature ROUND_Q16, 1 / stop radius. */
 void glint_plan_sags(struct glint_bundle_plan *planned,
                      const struct glint_probe *probe,
                      const struct glint_transfer *transfer, int n_cells,
-                     int round);
+                     int32_t round_q16);
 
 #endif

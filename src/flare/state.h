@@ -29,6 +29,13 @@ struct glint_bundle_slot {
                    room */
 };
 
+/* What of the plan is in the bins. */
+enum glint_reusable {
+    GLINT_REUSABLE_NOT,
+    GLINT_REUSABLE_PLANNED, /* nothing yet: it waits to be binned */
+    GLINT_REUSABLE_BINNED   /* all of it, and nothing else */
+};
+
 struct glint_flare {
     struct glint_flare_config cfg;
     struct glint_flare_stats stats;
@@ -44,8 +51,10 @@ struct glint_flare {
     struct glint_bundle *bundle;
     struct glint_bundle_slot *slot;
     struct glint_vertex *vertex;
-    void *own;              /* state of the raster */
-    struct glint_bins bins; /* first level */
+    void *own;                    /* state of the raster */
+    void *reuse;                  /* state of cfg.reuse; NULL: there is none */
+    enum glint_reusable reusable; /* stays NOT without cfg.reuse */
+    struct glint_bins bins;       /* first level */
     struct glint_flare_worker *worker;
     /* Tables for the picture that is being drawn. */
     struct glint_resolve *resolve;
@@ -55,6 +64,8 @@ struct glint_flare {
 struct glint_raster {
     int max_bundles;
     int masks;      /* 1: takes a stop with a mask */
+    int arcs;       /* 1: takes a stop whose sides bulge */
+    int shades;     /* 1: takes a stop with a shade */
     int two_levels; /* 1: can sort tiles into large and small ones */
     int halves;     /* 1: can draw half as many pixels each way */
     /* Carve the raster's own parts of the flare and of a worker; return NULL
@@ -74,6 +85,19 @@ struct glint_raster {
      * after them. */
     void (*draw)(struct glint_flare *f, const struct glint_tiles *tiles,
                  struct glint_pass *pass, int n_below);
+};
+
+/* Reuse of what was binned (reuse/). */
+struct glint_reuse {
+    /* Carves its state; returns NULL while A only measures. */
+    void *(*carve)(struct glint_arena *a, const struct glint_flare_config *c);
+    /* Returns whether a plan of these would be the last one, which is still
+     * binned, and takes that as if it had just been made; else notes what the
+     * next plan is made from. */
+    int (*take)(struct glint_flare *f, const struct glint_flare_frame *frame,
+                const struct glint_light *lights, int n_lights);
+    /* Gives the bundles that are binned the factors of the frame. */
+    void (*turn)(struct glint_flare *f);
 };
 
 /* Forgets the counts of the last draw, and the passes that were under it. */

@@ -106,9 +106,9 @@ static int64_t span_of(const struct glint_flare_frame *r, int set)
 }
 
 /* Returns whether no step between waves of set SET shows in a ghost with the
- * sum of light LIGHT, which is taken to change by LIGHT / (2 n) from one of n
- * waves to the next. APART is the distance of the first set's outermost
- * outlines, pixels _q8. */
+ * sum of light LIGHT: a tenth of 5 LIGHT / n, which is about how much light
+ * changes from one of n waves to the next, is below the step that may show.
+ * APART is the distance of the first set's outermost outlines, pixels _q8. */
 static int serves(const struct glint_flare_frame *r, int set, int64_t apart,
                   struct glint_real light)
 {
@@ -158,8 +158,8 @@ static void plan_waves(struct glint_flare *f, const struct job *job, int at,
     for (int i = 0; i < sets->size[set]; i++) {
         f->planned[at + i] = (struct glint_bundle_plan){
             .ghost = job->ghost, .light = job->light, .wave = first + i};
-        glint_plan_bundle(&f->plan, &f->planned[at + i], &f->bundle[at + i],
-                          scratch);
+        glint_plan_bundle(&f->plan, &f->plan.light[job->light],
+                          &f->planned[at + i], &f->bundle[at + i], scratch);
     }
 }
 

@@ -254,10 +254,15 @@ static int is_leaving(const struct glint_record *r,
 
 /* -------------------------------------------------------------------- light */
 
-static enum glint_follow_as judge_light(int64_t change, int64_t larger,
-                                        int64_t floor, int is_repeat)
+/* Returns how to follow light of CHANNEL. What a clipped core hides is guessed
+ * from its rim, and may be half or twice as much in noise, so that powers are
+ * judged by the errors so far, but where pictures repeat. */
+static enum glint_follow_as judge_light(int channel, int64_t change,
+                                        int64_t larger, int64_t floor,
+                                        int is_repeat)
 {
-    if (size_of(change) > larger / 4 + 4 * floor)
+    if ((channel != GLINT_CHANNEL_POWER || is_repeat) &&
+        size_of(change) > larger / 4 + 4 * floor)
         return GLINT_FOLLOW_CHANGED;
     return is_repeat ? GLINT_FOLLOW_REPEATED : GLINT_FOLLOW_JUDGED;
 }
@@ -288,7 +293,7 @@ static void follow_light(struct glint_record *r,
 
     glint_follow_step_q15(
         f, target, floor, &step->pace,
-        judge_light(target - before, larger, floor, is_repeat));
+        judge_light(channel, target - before, larger, floor, is_repeat));
     change = f->value - before;
     share_q15 = glint_pace_share_q15(step->pace.elapsed_us,
                                      blend_us(step->cfg, change));

@@ -17,12 +17,27 @@ static inline void copy(uint8_t *restrict to, int to_step,
     else if (to_step == 2 && from_step == 1)
         for (int i = 0; i < n; i++)
             to[2 * i] = from[i];
-    else if (to_step == 1 && from_step == 4)
-        for (int i = 0; i < n; i++)
-            to[i] = from[4 * i];
     else
         for (int i = 0; i < n; i++)
             to[(ptrdiff_t)i * to_step] = from[(ptrdiff_t)i * from_step];
+}
+
+/* Copies N pixels of three samples each, STEP bytes apart, to rows. */
+static inline void split(uint8_t (*sample)[2][WIDTH], int row,
+                         const uint8_t *const from[3], int step, int n)
+{
+    for (int i = 0; i < n; i++)
+        for (int c = 0; c < 3; c++)
+            sample[c][row][i] = from[c][(ptrdiff_t)i * step];
+}
+
+/* And back. */
+static inline void join(const struct glint_codes *codes, int row,
+                        uint8_t *const to[3], int step, int n)
+{
+    for (int i = 0; i < n; i++)
+        for (int c = 0; c < 3; c++)
+            to[c][(ptrdiff_t)i * step] = codes->sample[c][row][i];
 }
 
 /* Repeats the last of N groups of SIZE samples. */
@@ -65,6 +80,36 @@ static void write_565(const struct glint_codes *c, uint8_t *px, int n, int row)
         px[2 * i] = (uint8_t)(bits & 255);
         px[2 * i + 1] = (uint8_t)(bits >> 8);
     }
+}
+
+static void read_rgb(struct glint_codes *c, const struct glint_layout *l,
+                     const struct glint_image *image, int x, int y, int n,
+                     int row)
+{
+    const uint8_t *const from[3] = {glint_layout_at(l, image, 0, x, y),
+                                    glint_layout_at(l, image, 1, x, y),
+                                    glint_layout_at(l, image, 2, x, y)};
+
+    if (l->sample[0].step == 3)
+        split(c->sample, row, from, 3, n);
+    else
+        split(c->sample, row, from, 4, n);
+    for (int k = 0; k < 3; k++)
+        pad(c->sample[k][row], n, 1);
+}
+
+static void write_rgb(const struct glint_codes *c, const struct glint_layout *l,
+                      const struct glint_image *image, int x, int y, int n,
+                      int row)
+{
+    uint8_t *const to[3] = {glint_layout_at(l, image, 0, x, y),
+                            glint_layout_at(l, image, 1, x, y),
+                            glint_layout_at(l, image, 2, x, y)};
+
+    if (l->sample[0].step == 3)
+        join(c, row, to, 3, n);
+    else
+        join(c, row, to, 4, n);
 }
 
 /* ------------------------------------------------------------------ chroma */
@@ -154,6 +199,8 @@ void glint_codes_read(struct glint_codes *codes,
     for (int row = 0; row < n_y; row++)
         if (l->kind == GLINT_LAYOUT_565)
             read_565(codes, glint_layout_at(l, image, 0, x, y + row), n_x, row);
+        else if (l->kind == GLINT_LAYOUT_RGB)
+            read_rgb(codes, l, image, x, y + row, n_x, row);
         else
             read_row(codes, l, image, x, y + row, n_x, row);
 }
@@ -168,6 +215,8 @@ void glint_codes_write(const struct glint_codes *codes,
         if (l->kind == GLINT_LAYOUT_565)
             write_565(codes, glint_layout_at(l, image, 0, x, y + row), n_x,
                       row);
+        else if (l->kind == GLINT_LAYOUT_RGB)
+            write_rgb(codes, l, image, x, y + row, n_x, row);
         else
             write_row(codes, l, image, x, y + row, n_x, row);
 }

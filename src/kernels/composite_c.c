@@ -319,22 +319,22 @@ void glint_add_code_c(uint8_t *code, const uint16_t *light, int n,
     }
 }
 
-void glint_run_sum_c(uint32_t *change_q24, uint32_t *carry_q24,
-                     uint16_t *light_q16, int n)
+void glint_run_sum_c(uint32_t *change, uint32_t *carry, uint16_t *light_q16,
+                     int n, int more)
 {
-    uint32_t sum_q24 = *carry_q24;
+    uint32_t sum = *carry;
 
     for (int i = 0; i < n; i++) {
         int32_t light;
 
-        sum_q24 += change_q24[i];
-        change_q24[i] = 0;
-        light = (((int32_t)sum_q24 >> 7) + 1) >> 1;
+        sum += change[i];
+        change[i] = 0;
+        light = (((int32_t)sum >> (more - 1)) + 1) >> 1;
         light_q16[i] = (uint16_t)(light < 0       ? 0
                                   : light < 65535 ? light
                                                   : 65535);
     }
-    *carry_q24 = sum_q24;
+    *carry = sum;
 }
 
 /* Returns CODE, full-range, after COVER hides a part of its light. */

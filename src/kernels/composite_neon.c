@@ -260,22 +260,24 @@ static inline V v_pair_mean(const V x[2])
 
 /* -------------------------------------------------------------------- sums */
 
-/* Returns sums rounded to _q16, clamped to 0 .. 65535. */
-static inline uint16x4_t rounded(uint32x4_t sum_q24)
+/* Returns sums rounded to _q16, clamped to 0 .. 65535. FEWER: minus the number
+ * of fraction bits that they have beyond that. */
+static inline uint16x4_t rounded(uint32x4_t sum, int32x4_t fewer)
 {
-    return vqrshrun_n_s32(vreinterpretq_s32_u32(sum_q24), 8);
+    return vqmovun_s32(vrshlq_s32(vreinterpretq_s32_u32(sum), fewer));
 }
 
 /* Sums sixteen lanes in groups of four: first within each group, then the sums
  * of all groups before it are added. Groups without changes are common. */
-void glint_run_sum_neon(uint32_t *change_q24, uint32_t *carry_q24,
-                        uint16_t *light_q16, int n)
+void glint_run_sum_neon(uint32_t *change, uint32_t *carry, uint16_t *light_q16,
+                        int n, int more)
 {
     const uint32x4_t zero = vdupq_n_u32(0);
-    uint32x4_t carry = vdupq_n_u32(*carry_q24);
+    const int32x4_t fewer = vdupq_n_s32(-more);
+    uint32x4_t before = vdupq_n_u32(*carry);
 
     for (int i = 0; i < n; i += BLOCK) {
-        uint32_t *at = change_q24 + i;
+        uint32_t *at = change + i;
         const uint32x4x4_t x = vld4q_u32(at);
         const uint32x4_t x01 = vaddq_u32(x.val[0], x.val[1]);
         const uint32x4_t x012 = vaddq_u32(x01, x.val[2]);
@@ -286,7 +288,7 @@ void glint_run_sum_neon(uint32_t *change_q24, uint32_t *carry_q24,
         uint16x4x4_t light;
 
         if (v_is_zero(vreinterpretq_s16_u32(any))) {
-            const uint16x4_t same = rounded(carry);
+            const uint16x4_t same = rounded(before, fewer);
 
             vst1q_u16(light_q16 + i, vcombine_u16(same, same));
             vst1q_u16(light_q16 + i + 8, vcombine_u16(same, same));
@@ -296,14 +298,14 @@ void glint_run_sum_neon(uint32_t *change_q24, uint32_t *carry_q24,
             vst1q_u32(at + 4 * k, zero);
         sum = vaddq_u32(all, vextq_u32(zero, all, 3));
         sum = vaddq_u32(sum, vextq_u32(zero, sum, 2));
-        sum = vaddq_u32(sum, carry);
-        carry = vextq_u32(carry, sum, 3); /* the sum before each group */
-        light.val[0] = rounded(vaddq_u32(x.val[0], carry));
-        light.val[1] = rounded(vaddq_u32(x01, carry));
-        light.val[2] = rounded(vaddq_u32(x012, carry));
-        light.val[3] = rounded(sum);
+        sum = vaddq_u32(sum, before);
+        before = vextq_u32(before, sum, 3); /* the sum before each group */
+        light.val[0] = rounded(vaddq_u32(x.val[0], before), fewer);
+        light.val[1] = rounded(vaddq_u32(x01, before), fewer);
+        light.val[2] = rounded(vaddq_u32(x012, before), fewer);
+        light.val[3] = rounded(sum, fewer);
         vst4_u16(light_q16 + i, light);
-        carry = vdupq_n_u32(vgetq_lane_u32(sum, 3));
+        before = vdupq_n_u32(vgetq_lane_u32(sum, 3));
     }
-    *carry_q24 = vgetq_lane_u32(carry, 0);
+    *carry = vgetq_lane_u32(before, 0);
 }

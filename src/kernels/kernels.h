@@ -106,10 +106,11 @@ glint_cover_code_fn glint_cover_code_c;
 glint_cover_ycc_fn glint_cover_ycc_c;
 
 /* Turns changes into light along a row: light[i] is *CARRY plus changes 0 .. i,
- * _q24, rounded to _q16 and clamped to 0 .. 65535. Changes are cleared; sums
- * may wrap, and wrap back. *CARRY becomes the sum of the whole row. */
-typedef void glint_run_sum_fn(uint32_t *change_q24, uint32_t *carry_q24,
-                              uint16_t *light_q16, int n);
+ * which have MORE fraction bits than _q16, 2 .. 15, rounded to _q16 and clamped
+ * to 0 .. 65535. Changes are cleared; sums may wrap, and wrap back. *CARRY
+ * becomes the sum of the whole row. */
+typedef void glint_run_sum_fn(uint32_t *change, uint32_t *carry,
+                              uint16_t *light_q16, int n, int more);
 
 /* The kernels for pictures, except those at half resolution. */
 struct glint_kernels {

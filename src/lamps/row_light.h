@@ -43,7 +43,7 @@ struct glint_row_sum {
 struct glint_row_light {
     struct glint_row_sum *sum; /* [width + 1]: sums, kept where from[x] is x */
     /* [width + 1]: the column itself if its sum is kept; else the first column
-     * of the run of equal pixels that it is inside of */
+     * of its run of equal pixels */
     uint16_t *from;
     int end; /* end of the last stretch; -1: there is none */
 };

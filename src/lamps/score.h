@@ -78,9 +78,9 @@ enum glint_evidence {
     EVIDENCE_DARK_2,
     EVIDENCE_DARK_4,
     EVIDENCE_DARK_32,
-    /* how far a region of 36 pixels or more fills its upright box: 0 up to
-     * 250/256 of the box, 256 from 254/256 on, as of a bar, a cursor, a window
-     * of a screen */
+    /* How far a region of 36 pixels or more fills its upright box: 0 up to
+     * 250/256 of the box, 256 from 254/256 on. Bars, cursors and windows of a
+     * screen fill theirs. */
     EVIDENCE_DRAWN,
     EVIDENCES
 };

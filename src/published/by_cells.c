@@ -240,19 +240,24 @@ static void count_tile_refs(struct glint_flare *f)
 }
 
 /* Adds the entries that BOX takes in small tiles to the count of each large
- * tile. */
+ * tile that it touches. */
 static void add_tile_span(void *ctx, struct glint_box box)
 {
     const struct glint_flare *f = ctx;
-    const int n = f->bins.tiles_x * f->bins.tiles_y;
+    const int log2 = f->bins.tile_log2;
+    const struct glint_box here = glint_box_cut(box, f->bins.region);
 
-    for (int tile = 0; tile < n; tile++) {
-        const struct glint_bins bins = small_bins(f, tile, worker_of(f, 0));
-        struct span span = {&bins, f->bins.start[tile]};
+    if (glint_box_empty(here))
+        return;
+    for (int y = here.y0 >> log2; y <= (here.y1 - 1) >> log2; y++)
+        for (int x = here.x0 >> log2; x <= (here.x1 - 1) >> log2; x++) {
+            const int tile = y * f->bins.tiles_x + x;
+            const struct glint_bins bins = small_bins(f, tile, worker_of(f, 0));
+            struct span span = {&bins, f->bins.start[tile]};
 
-        add_span(&span, box);
-        f->bins.start[tile] = span.refs;
-    }
+            add_span(&span, box);
+            f->bins.start[tile] = span.refs;
+        }
 }
 
 /* Sets need_tile_refs when bundles found no room, so that lists are incomplete:

@@ -24,8 +24,14 @@ struct glint_star_lamp {
     /* Scale of the profiles for this lamp's extent: steps per pixel, and pixels
      * per step. */
     int32_t per_pixel_q16, pixels_q16;
+    /* [GLINT_STAR_HALO_ROWS] each: halos of the next smaller and the next
+     * larger extent, and how far the lamp's is between them. The same: there is
+     * one. */
+    const glint_star_halo_row *halo, *next_halo;
+    int halo_part_q15;
     int reach, halo_reach; /* distances in pixels beyond which no line, and no
                               halo, can be seen */
+    int smear_reach;       /* the same of what lies in the stop */
     int n_zones;
     /* Zone i is from start[i] to start[i + 1], pixels along x or y, whichever
      * is more. Within it, steps of a profile below seen[i] can be seen. */
@@ -64,10 +70,6 @@ struct glint_star {
 
 struct glint_pass glint_star_pass(const struct glint_star *star);
 
-/* Adds the light of LAMP to ROW. */
-typedef void glint_star_part_fn(const struct glint_star *star,
-                                const struct glint_star_lamp *lamp,
-                                struct glint_star_stretch *row);
 glint_star_part_fn glint_star_lines, glint_star_halo, glint_star_core;
 
 /* Returns whether lines of LAMP may reach pixels of BOX. */

@@ -167,6 +167,19 @@ static int halo_reach(const struct glint_star_tables *t, int32_t power_log2_q16,
     return 0;
 }
 
+/* Returns up to how many pixels from a light of POWER its smear is above LEAST,
+ * both as log2. */
+static int smear_reach(const struct glint_star_smear *s, int32_t power_log2_q16,
+                       int32_t least_log2_q16)
+{
+    int k = s ? GLINT_STAR_SMEAR_RINGS : 0;
+
+    while (k > 0 && log2_q16(s->step[k - 1]) + 16 * 65536 + power_log2_q16 <
+                        least_log2_q16)
+        k--;
+    return k > 0 ? GLINT_STAR_SMEAR_PX << (k - 1) : 0;
+}
+
 static struct glint_real held(struct glint_real power)
 {
     const struct glint_real most = {1 << 30, 0};
@@ -183,6 +196,31 @@ static int64_t wider_q8(const struct glint_star_tables *t, int32_t radius_q8)
     const int64_t held_q8 = disc_q8 < 1 << 18 ? disc_q8 : 1 << 18;
 
     return q_root((uint64_t)(65536 + held_q8 * held_q8));
+}
+
+/* Chooses the halos that a lamp of RADIUS is drawn with. */
+static void set_halos(struct glint_star_lamp *lamp,
+                      const struct glint_star_tables *t, int32_t radius_q8)
+{
+    const int32_t radius = q_clamp_sat(radius_q8, 0, 1 << 22);
+    const int32_t last_q16 = (GLINT_STAR_WIDE - 1) << 16;
+    /* place among the wide halos, from -1 on: the halo of a point */
+    const int32_t at_q16 =
+        radius < 128
+            ? (radius - 128) * 512
+            : q_smaller(q_log2_q16((uint64_t)radius) - 7 * 65536, last_q16);
+    const int at = (at_q16 + 65536) >> 16;
+
+    lamp->halo = lamp->next_halo = t->halo;
+    lamp->halo_part_q15 = 0;
+    if (!t->wide)
+        return;
+    if (at > 0)
+        lamp->halo = t->wide + (at - 1) * GLINT_STAR_HALO_ROWS;
+    if (at < GLINT_STAR_WIDE) {
+        lamp->next_halo = t->wide + at * GLINT_STAR_HALO_ROWS;
+        lamp->halo_part_q15 = (at_q16 + 65536 - at * 65536) >> 1;
+    }
 }
 
 /* Sets LAMP for light L; returns 0 if nothing of it can be seen. */
@@ -214,6 +252,7 @@ static int set_lamp(struct glint_star_lamp *lamp,
         (int32_t)q_divide((int64_t)t->per_pixel_q16 << 8, wide_q8);
     lamp->pixels_q16 = (int32_t)(t->pixels_q16 * wide_q8 >> 8);
     lamp->inner_q16 = (uint64_t)radius_q8 * (uint64_t)radius_q8;
+    set_halos(lamp, t, l->radius_q8);
     lamp->line_exponent = share(l->rgb_q14, line, lamp->line);
     lamp->core_exponent = share(l->rgb_q14, power, lamp->core);
     for (int c = 0; c < 3; c++)
@@ -227,7 +266,9 @@ static int set_lamp(struct glint_star_lamp *lamp,
             : 0;
     set_zones(lamp, t, log2_q16(line) - least_log2_q16);
     lamp->halo_reach = halo_reach(t, log2_q16(power), least_log2_q16);
-    return lamp->is_bare || lamp->reach > 1 || lamp->halo_reach > 1;
+    lamp->smear_reach = smear_reach(t->smear, log2_q16(power), least_log2_q16);
+    return lamp->smear_reach > 1 || lamp->is_bare || lamp->reach > 1 ||
+           lamp->halo_reach > 1;
 }
 
 void glint_star_set(struct glint_star *star,

@@ -47,6 +47,18 @@ static struct node node_at(const struct span *s,
     return n;
 }
 
+/* Returns channel C of HALO at ROW and COLUMN. */
+static int32_t halo_at(const glint_star_halo_row *halo, struct place row,
+                       struct place column, int c)
+{
+    const uint16_t(*near)[3] = &halo[row.at][column.at];
+    const uint16_t(*far)[3] = &halo[row.at + 1][column.at];
+
+    return between(between(near[0][c], near[1][c], column.part_q15),
+                   between(far[0][c], far[1][c], column.part_q15),
+                   row.part_q15);
+}
+
 static void light(const struct span *s, struct node *n)
 {
     const struct glint_star_tables *t = s->star->tables;
@@ -63,13 +75,12 @@ static void light(const struct span *s, struct node *n)
     row = place_of((r2_log2_q16 - 4 * 65536) * 2, GLINT_STAR_HALO_ROWS - 1);
     column = place_of(column_q16 * 4, GLINT_STAR_HALO_COLUMNS - 1);
     for (int c = 0; c < 3; c++) {
-        const uint16_t(*near)[3] = &t->halo[row.at][column.at];
-        const uint16_t(*far)[3] = &t->halo[row.at + 1][column.at];
+        int32_t at = halo_at(s->lamp->halo, row, column, c);
 
-        log2_of_q16 =
-            32 * between(between(near[0][c], near[1][c], column.part_q15),
-                         between(far[0][c], far[1][c], column.part_q15),
-                         row.part_q15);
+        if (s->lamp->halo_part_q15 > 0)
+            at = between(at, halo_at(s->lamp->next_halo, row, column, c),
+                         s->lamp->halo_part_q15);
+        log2_of_q16 = 32 * at;
         log2_of_q16 += t->halo_log2_q16 + s->lamp->halo_log2_q16[c] -
                        r2_log2_q16 + 4 * 65536;
         n->light_q20[c] = q_exp2_q16(q_smaller(log2_of_q16, 34 * 65536));

@@ -13,7 +13,7 @@ static int round_reach(const struct glint_star *star,
                        const struct glint_star_lamp *lamp)
 {
     return q_larger(lamp->is_bare ? glint_star_core_reach(star) : 0,
-                    lamp->halo_reach) +
+                    q_larger(lamp->halo_reach, lamp->smear_reach)) +
            2;
 }
 
@@ -68,6 +68,8 @@ static void light_row(const struct glint_star_row *r,
         glint_star_lines(s, lamp, row);
         glint_star_halo(s, lamp, row);
         glint_star_core(s, lamp, row);
+        if (s->tables->smear)
+            s->tables->smear->part(s, lamp, row);
     }
 }
 
@@ -161,6 +163,13 @@ static void draw_alone(struct glint_star *star, struct glint_flare *flare,
         (struct glint_box){0, 0, flare->cfg.width, flare->cfg.height};
     glint_workers_run(flare->cfg.workers, glint_tiles_down(&d.tiles), row_job,
                       &d);
+}
+
+struct glint_pass glint_star_pass_on(struct glint_star *star,
+                                     const struct glint_image *image)
+{
+    star->is_linear = image && image->format == GLINT_LINEAR_Q20;
+    return glint_star_pass(star);
 }
 
 void glint_star_draw_alone(struct glint_star *star, struct glint_flare *flare,

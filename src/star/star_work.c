@@ -52,6 +52,7 @@ int64_t glint_star_pixels(const struct glint_star *star)
         sum += lines(star, lamp);
         /* A circle has 201 / 256 of the area of its square. */
         sum += square(star, lamp, lamp->halo_reach) * 201 >> 8;
+        sum += square(star, lamp, lamp->smear_reach);
         if (lamp->is_bare)
             sum += square(star, lamp, glint_star_core_reach(star));
     }

@@ -33,6 +33,8 @@
 #include "glint/light.h"
 #include "glint/status.h"
 #include "glint/workers.h"
+#include "star/smeared.h"
+#include "tile/pass.h"
 
 enum {
     GLINT_STAR_PROFILE = 128, /* steps of a profile */
@@ -41,6 +43,7 @@ enum {
     GLINT_STAR_HALO_ROWS = 45,
     GLINT_STAR_HALO_COLUMNS = 49, /* four for each octave of
                                      1 + 4 v / reach */
+    GLINT_STAR_WIDE = 9, /* halos of fans for lamps of radius 2^(i - 1) px */
     GLINT_STAR_MAX_LIGHTS = 4096
 };
 
@@ -57,6 +60,9 @@ struct glint_star_line {
      * tables' steps. From 128 on 0. */
     uint16_t profile[GLINT_STAR_PROFILE + 2][3];
 };
+
+/* [row][column][channel]: log2 of the light times r^2, _q11. */
+typedef uint16_t glint_star_halo_row[GLINT_STAR_HALO_COLUMNS][3];
 
 /* Tables of a star for one stop, f-number and size of pixels. */
 struct glint_star_tables {
@@ -80,6 +86,12 @@ struct glint_star_tables {
     int32_t halo_log2_q16;
     uint16_t halo[GLINT_STAR_HALO_ROWS][GLINT_STAR_HALO_COLUMNS][3];
     uint16_t halo_most[GLINT_STAR_HALO_ROWS];
+    /* [GLINT_STAR_WIDE][GLINT_STAR_HALO_ROWS]: the halo as lamps of radius
+     * 2^(i - 1) pixels blur it; NULL: the stop throws no fans, and lamps do not
+     * blur its halo. */
+    const glint_star_halo_row *wide;
+    /* NULL: nothing lies in the stop. */
+    const struct glint_star_smear *smear;
     /* The half of the core with y from 0 on; the other half is its mirror image
      * about the middle. Each is a number of 16 bits, _q40: a sign, five bits e,
      * ten bits m. It is (m + 1024) 2^(e - 1), or m if e is 0. */
@@ -103,7 +115,7 @@ struct glint_star_config {
     int max_lights;    /* 1 .. GLINT_STAR_MAX_LIGHTS */
 };
 
-struct glint_star; /* opaque, in the caller's memory */
+/* struct glint_star is opaque, in the caller's memory. */
 struct glint_flare;
 
 /* Returns the exact number of bytes that init takes for CFG, or 0 if CFG is out
@@ -133,6 +145,10 @@ int64_t glint_star_pixels(const struct glint_star *star);
  * drawn to all pixels. */
 void glint_star_draw(struct glint_star *star, struct glint_flare *flare,
                      const struct glint_image *image);
+
+/* Returns the star as a pass onto IMAGE, to be drawn with others. */
+struct glint_pass glint_star_pass_on(struct glint_star *star,
+                                     const struct glint_image *image);
 
 /* Adds the star without the flare that FLARE has binned. */
 void glint_star_draw_alone(struct glint_star *star, struct glint_flare *flare,

@@ -18,11 +18,15 @@ static void add_codes(const struct glint_pass_rows *rows, int row, int n_x,
         uint16_t *to_q16 = rows->light->rgb_q16[c][row];
         const uint16_t *more_q16 = s->light.rgb_q16[c][row];
 
-        for (int x = 0; x < n_x; x++)
+        for (int x = 0; x < n_x && !covers; x++) {
+            const int32_t light_q16 = to_q16[x] + more_q16[x];
+
+            to_q16[x] = (uint16_t)(light_q16 > 65535 ? 65535 : light_q16);
+        }
+        for (int x = 0; x < n_x && covers; x++)
             to_q16[x] = (uint16_t)q_clamp_sat(
-                behind(to_q16[x], covers ? s->next.cover_q8[row][x] : 0) +
-                    more_q16[x],
-                0, 65535);
+                behind(to_q16[x], s->next.cover_q8[row][x]) + more_q16[x], 0,
+                65535);
     }
 }
 

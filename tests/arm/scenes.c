@@ -7,19 +7,20 @@
  *
  *     240 scenes, 236 with light, 1b3f...
  *
- * Models, directions, powers, formats, sizes, tiles and rasterisers are random,
- * by integers alone: no libm has a say. Lamps are then found in each picture
- * and added to the hash. With GLINT_EACH set, the hash after each scene is
- * printed, too. Exit code 3: a model is refused.
+ * Models, directions, powers, formats, sizes, tiles, rasterisers and, in every
+ * second scene, stars are random, by integers alone: no libm has a say. Lamps
+ * are then found in each picture and added to the hash. With GLINT_EACH set,
+ * the hash after each scene is printed, too. Exit code 3: a model is refused.
  */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "arm/kinds.h"
 #include "base/real.h"
 #include "glint/glint.h"
-#include "linux/sets.h"
 #include "posix/input.h"
+#include "support/stars/any.h"
 #include "support/shuffle.h"
 #include "support/rng.h"
 
@@ -28,43 +29,21 @@ enum {
     MAX_LIGHTS = 12,
     MAX_SPOTS = 32,
     ARENA_BYTES = 48 << 20,
-    FINDER_BYTES = 8 << 20
+    FINDER_BYTES = 8 << 20,
+    STAR_BYTES = 1 << 20
 };
 
 static struct glint_lens lens[MAX_MODELS];
 static int n_models;
 static unsigned sets;
 static uint32_t seed = 2026;
-static void *arena, *finder_memory;
+static void *arena, *finder_memory, *star_memory;
 
 /* Returns 0 .. BELOW - 1. A statement may call it once: C leaves open in which
  * order arguments are evaluated. */
 static int number(int below)
 {
     return (int)(rng_xorshift(&seed) % (uint32_t)below);
-}
-
-/* -------------------------------------------------------------------- hash */
-
-static const uint64_t hash_start = UINT64_C(14695981039346656037);
-
-static uint64_t hash(uint64_t h, const void *data, size_t bytes)
-{
-    const uint8_t *p = data;
-
-    for (size_t i = 0; i < bytes; i++) /* FNV-1a */
-        h = (h ^ p[i]) * UINT64_C(1099511628211);
-    return h;
-}
-
-static uint64_t hash_number(uint64_t h, int64_t x)
-{
-    for (int i = 0; i < 8; i++) {
-        const uint8_t byte = (uint8_t)((uint64_t)x >> 8 * i);
-
-        h = hash(h, &byte, 1);
-    }
-    return h;
 }
 
 /* ----------------------------------------------------------------- a scene */
@@ -137,18 +116,6 @@ static struct glint_flare_config make_config(struct shuffle *shuffle)
     return c;
 }
 
-static void make_picture(struct glint_image *image, uint8_t *mem, size_t bytes)
-{
-    image->range = (enum glint_range)number(2);
-    image->matrix = (enum glint_matrix)number(2);
-    image->transfer = (enum glint_tone)number(2);
-    glint_image_place(image, mem);
-    for (size_t i = 0; i < bytes; i++)
-        mem[i] = (uint8_t)(image->format == GLINT_LINEAR_Q20
-                               ? 0
-                               : (i * 7 + (i >> 8)) % 61 + 16);
-}
-
 static uint64_t hash_lights(uint64_t h, const struct glint_image *image)
 {
     struct glint_lamp_finder_config c;
@@ -173,9 +140,35 @@ static uint64_t hash_lights(uint64_t h, const struct glint_image *image)
                                s->rgb_q15[0], s->rgb_q15[1], s->rgb_q15[2]};
 
         for (size_t k = 0; k < sizeof all / sizeof *all; k++)
-            h = hash_number(h, all[k]);
+            h = kinds_hash_number(h, all[k]);
     }
-    return hash_number(h, n);
+    return kinds_hash_number(h, n);
+}
+
+/* Draws FLARE, which is binned, and stars of up to MAX_LIGHTS lamps. */
+static void draw_stars(const struct glint_flare_config *c,
+                       struct glint_flare *flare,
+                       const struct glint_image *image)
+{
+    static struct star_any any;
+    const struct glint_star_config star_config = {c->workers->n, c->width,
+                                                  c->height, MAX_LIGHTS};
+    struct glint_star_light light[MAX_LIGHTS];
+    struct glint_star *star;
+    const int n = 1 + number(MAX_LIGHTS);
+    const struct glint_real faintest =
+        number(2) ? real_of(1, -13) : real_of(0, 0);
+
+    if (glint_star_init(&star, &star_config, star_memory, STAR_BYTES) !=
+        GLINT_OK) {
+        fputs("scenes: the star's memory is too small\n", stderr);
+        exit(1);
+    }
+    star_any(&any, &seed);
+    for (int i = 0; i < n; i++)
+        light[i] = star_any_light(c->width, c->height, &seed);
+    glint_star_set(star, &any.tables, light, n, faintest);
+    glint_star_draw(star, flare, image);
 }
 
 static void draw_flare(const struct glint_flare_config *c,
@@ -209,7 +202,10 @@ static void draw_flare(const struct glint_flare_config *c,
     n = glint_lights_merge(light, n_given, near_q30, most, &n_apart);
     glint_flare_plan(flare, &rays, light, n);
     glint_flare_bin(flare, &stats);
-    glint_flare_draw(flare, image);
+    if (number(2))
+        draw_stars(c, flare, image);
+    else
+        glint_flare_draw(flare, image);
 }
 
 /* Draws a scene and adds its picture to *H; returns whether light was added. */
@@ -227,11 +223,11 @@ static int draw_scene(uint64_t *h)
 
     if (!mem)
         exit(1);
-    make_picture(&image, mem, bytes);
-    before = hash(hash_start, mem, bytes);
+    kinds_fill(&image, mem, bytes, &seed);
+    before = kinds_hash(KINDS_HASH_START, mem, bytes);
     draw_flare(&c, &image);
-    after = hash(hash_start, mem, bytes);
-    *h = hash_lights(hash_number(*h, (int64_t)(after >> 1)), &image);
+    after = kinds_hash(KINDS_HASH_START, mem, bytes);
+    *h = hash_lights(kinds_hash_number(*h, (int64_t)(after >> 1)), &image);
     free(mem);
     return before != after;
 }
@@ -253,40 +249,22 @@ static void open_model(const char *path)
     n_models++;
 }
 
-static unsigned sets_of(const char *word)
-{
-    static const struct {
-        const char *word;
-        unsigned sets;
-    } of[] = {{"c", 0},
-              {"sse41", GLINT_SET_SSE41},
-              {"avx2", GLINT_SET_AVX2},
-              {"neon", GLINT_SET_NEON},
-              {"best", ~0U}};
-
-    for (size_t i = 0; i < sizeof of / sizeof *of; i++)
-        if (strcmp(word, of[i].word) == 0 &&
-            (of[i].sets == ~0U || !(of[i].sets & ~glint_system_sets())))
-            return of[i].sets & glint_system_sets();
-    fprintf(stderr, "scenes: no kernels '%s' here\n", word);
-    exit(2);
-}
-
 int main(int argc, char **argv)
 {
     const int n = argc > 3 ? atoi(argv[2]) : 0;
-    uint64_t h = hash_start;
+    uint64_t h = KINDS_HASH_START;
     int lit = 0;
 
     if (n < 1 || argc - 3 > MAX_MODELS) {
         fputs("scenes SET N MODEL...\n", stderr);
         return 2;
     }
-    sets = sets_of(argv[1]);
+    sets = kinds_sets("scenes", argv[1]);
     for (int i = 3; i < argc; i++)
         open_model(argv[i]);
     if (posix_memalign(&arena, 64, ARENA_BYTES) != 0 ||
-        posix_memalign(&finder_memory, 64, FINDER_BYTES) != 0)
+        posix_memalign(&finder_memory, 64, FINDER_BYTES) != 0 ||
+        posix_memalign(&star_memory, 64, STAR_BYTES) != 0)
         return 1;
     for (int i = 0; i < n; i++) {
         lit += draw_scene(&h);

@@ -1,12 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * lights N MODEL.glint... - prints what frames with many lights cost and how
- * good they are, by quality and by glint_dials.dim_codes, which tells what
- * ghosts take the rays of one wave. Frames are 1920x1080 codes on black, with N
- * lights (1, 4, 16, 64 or 128; 0: each of these) that were found in night
- * photographs. A row has the processor milliseconds of a frame on one thread,
- * the least of three, PSNR against the finest quality, which leaves out only
- * what is below 0.01 codes, and the number of bundles.
+ * lights PLOT.svg MODEL.glint... - prints what frames with many lights cost and
+ * how good they are. Frames are 1920x1080 codes on black, with 1 to 128 lights
+ * that were found in night photographs. A row has the quality, of four, that is
+ * the fastest at 45 dB or more; its processor milliseconds of a frame on one
+ * thread, the least of three, PSNR against the finest quality, which leaves out
+ * only what is below 0.01 codes, and the number of bundles; the same with
+ * dim_codes 0, which draws the ghosts of each light by themselves; then all
+ * four. PLOT.svg receives the milliseconds over the lights.
+ *
+ * lights -j THREADS QUALITY SCALE ROUNDS MODEL.glint - draws the frame of NIGHT
+ * lights ROUNDS times, and prints the scale (that of the table for 0) and the
+ * least milliseconds by the clock and of all threads together;
+ * tools/report/threads-table counts its instructions.
  */
 #include <math.h>
 #include <stdio.h>
@@ -14,117 +20,38 @@
 #include <string.h>
 #include <time.h>
 
+#include "lab/plot.h"
 #include "options/tool.h"
-#include "support/stage.h"
+#include "support/models/street.h"
 
-enum { W = 1920, H = 1080, BYTES = 3 * W * H, MOST = 128, FRAMES = 3 };
-
-/* Places as shares of the picture, powers and colours: what glint finds in
- * bridge_night, lights_water, esplanade_lamps and night_town of the corpus. */
-static const struct light {
-    double x, y, power, rgb[3];
-} found[] = {
-    {0.338, 0.173, 34165, {2.18, 0.75, 0.00}},
-    {0.418, 0.112, 4377, {1.63, 0.87, 0.45}},
-    {0.123, 0.489, 1840, {1.76, 0.81, 0.59}},
-    {0.441, 0.507, 1408, {1.72, 0.88, 0.04}},
-    {0.375, 0.502, 1911, {1.70, 0.89, 0.03}},
-    {0.075, 0.285, 1250, {2.29, 0.70, 0.18}},
-    {0.995, 0.592, 536, {1.61, 0.90, 0.25}},
-    {0.934, 0.574, 1711, {1.65, 0.88, 0.29}},
-    {0.352, 0.485, 756, {1.95, 0.81, 0.06}},
-    {0.777, 0.476, 612, {2.00, 0.79, 0.17}},
-    {0.863, 0.538, 452, {1.85, 0.83, 0.20}},
-    {0.668, 0.385, 518, {2.07, 0.78, 0.03}},
-    {0.259, 0.236, 1473, {2.43, 0.68, 0.00}},
-    {0.548, 0.270, 475, {2.24, 0.72, 0.08}},
-    {0.489, 0.212, 868, {2.39, 0.68, 0.06}},
-    {0.603, 0.325, 382, {2.08, 0.78, 0.04}},
-    {0.189, 0.255, 549, {2.35, 0.70, 0.00}},
-    {0.823, 0.511, 447, {2.05, 0.78, 0.07}},
-    {0.754, 0.552, 398, {1.90, 0.81, 0.27}},
-    {0.639, 0.538, 304, {1.87, 0.82, 0.21}},
-    {0.492, 0.503, 335, {1.94, 0.80, 0.16}},
-    {0.279, 0.413, 19419, {1.29, 0.91, 1.03}},
-    {0.557, 0.466, 2467, {1.41, 0.87, 1.06}},
-    {0.745, 0.386, 960, {1.50, 0.92, 0.34}},
-    {0.452, 0.389, 1691, {2.04, 0.79, 0.00}},
-    {0.743, 0.468, 1724, {2.00, 0.76, 0.42}},
-    {0.685, 0.386, 1204, {1.41, 0.97, 0.10}},
-    {0.557, 0.388, 1090, {1.41, 0.97, 0.07}},
-    {0.685, 0.463, 1802, {1.86, 0.79, 0.60}},
-    {0.499, 0.389, 1167, {1.89, 0.83, 0.00}},
-    {0.616, 0.388, 951, {1.54, 0.94, 0.04}},
-    {0.616, 0.456, 1440, {1.76, 0.82, 0.59}},
-    {0.367, 0.445, 1985, {1.96, 0.78, 0.34}},
-    {0.451, 0.449, 1724, {1.87, 0.80, 0.40}},
-    {0.499, 0.450, 1144, {1.87, 0.80, 0.39}},
-    {0.046, 0.404, 1165, {2.35, 0.70, 0.00}},
-    {0.883, 0.347, 631, {2.07, 0.76, 0.27}},
-    {0.912, 0.335, 500, {1.41, 0.98, 0.03}},
-    {0.083, 0.404, 535, {2.62, 0.62, 0.00}},
-    {0.366, 0.389, 1531, {1.99, 0.81, 0.00}},
-    {0.143, 0.403, 482, {2.40, 0.68, 0.00}},
-    {0.931, 0.336, 339, {1.44, 0.90, 0.70}},
-    {0.339, 0.441, 499, {2.16, 0.76, 0.02}},
-    {0.177, 0.404, 403, {2.25, 0.73, 0.00}},
-    {0.975, 0.322, 236, {2.07, 0.77, 0.13}},
-    {0.110, 0.413, 223, {2.31, 0.71, 0.00}},
-    {0.309, 0.158, 14991, {0.52, 0.92, 3.18}},
-    {0.454, 0.404, 6568, {1.26, 0.92, 1.01}},
-    {0.281, 0.339, 1540, {0.26, 0.94, 3.78}},
-    {0.944, 0.184, 1832, {1.41, 0.93, 0.47}},
-    {0.216, 0.292, 1397, {0.16, 0.77, 5.76}},
-    {0.272, 0.266, 642, {0.91, 0.96, 1.66}},
-    {0.973, 0.334, 5042, {0.93, 0.93, 1.88}},
-    {0.037, 0.335, 2958, {0.30, 0.99, 3.17}},
-    {0.641, 0.411, 297, {1.38, 0.94, 0.45}},
-    {0.640, 0.523, 238, {1.02, 0.91, 1.88}},
-    {0.703, 0.799, 335, {1.29, 1.00, 0.19}},
-    {0.077, 0.516, 15701, {1.11, 1.00, 0.73}},
-    {0.856, 0.452, 32750, {1.47, 0.91, 0.53}},
-    {0.154, 0.580, 1913, {1.74, 0.88, 0.02}},
-    {0.737, 0.449, 1738, {1.35, 0.93, 0.63}},
-    {0.158, 0.514, 794, {1.19, 0.98, 0.62}},
-    {0.935, 0.437, 100, {1.45, 0.91, 0.53}},
+enum {
+    W = 1920,
+    H = 1080,
+    BYTES = 3 * W * H,
+    MOST = 128,
+    FRAMES = 3,
+    NIGHT = 16
 };
 
-enum { FOUND = sizeof found / sizeof *found };
+static const int qualities_q15[] = {1 << 11, 1 << 12, 1 << 13, 1 << 14};
 
-static const struct setting {
-    int quality_q15;
-    double dim;
-} settings[] = {{1 << 14, 0}, {1 << 13, 0}, {1 << 13, 1}, {1 << 12, 0},
-                {1 << 12, 4}, {1 << 11, 0}, {1 << 11, 8}};
-
-enum { SETTINGS = sizeof settings / sizeof *settings };
+enum { QUALITIES = sizeof qualities_q15 / sizeof *qualities_q15 };
 
 static struct stage stage;
 static struct glint_lamp lamps[MOST];
 static uint8_t want[BYTES], got[BYTES];
 
-/* Sets lamps[] to what was found, then to the same mirrored across, and then
- * down. */
-static void set_lamps(void)
+static double seconds_of(clockid_t clock)
 {
-    for (int i = 0; i < MOST; i++) {
-        const struct light *l = &found[i % FOUND];
-        const int turn = i / FOUND;
+    struct timespec t;
 
-        lamps[i] = (struct glint_lamp){.power = l->power};
-        memcpy(lamps[i].rgb, l->rgb, sizeof l->rgb);
-        glint_view_to_angles(&stage.view, stage.of_model.optics.focal_mm,
-                             W * (turn & 1 ? 1 - l->x : l->x),
-                             H * (turn & 2 ? 1 - l->y : l->y), &lamps[i]);
-    }
+    clock_gettime(clock, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 static double seconds(void)
 {
-    struct timespec t;
-
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+    return seconds_of(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 /* Draws the first N lamps, times SCALE, on black. Returns processor seconds. */
@@ -179,69 +106,162 @@ static double psnr(void)
     return sum > 0 ? 10 * log10(255. * 255 * BYTES / sum) : 99;
 }
 
-static void run(const char *lens, int n)
+/* What a frame took at one quality. */
+struct result {
+    double quality, dim, ms, db;
+    int bundles;
+};
+
+static struct result measure(int n, double scale, int quality_q15, double dim)
 {
     struct glint_frame *f = &stage.frame;
-    double scale;
+    struct result r = {.quality = quality_q15 / 32768., .ms = HUGE_VAL};
+
+    f->dials = glint_dials_at(quality_q15);
+    f->dials.dispersion_q8 = 0;
+    if (dim >= 0)
+        f->dials.dim_codes = dim;
+    r.dim = f->dials.dim_codes;
+    for (int k = 0; k < FRAMES; k++)
+        r.ms = fmin(r.ms, 1e3 * draw(n, scale, got));
+    r.db = psnr();
+    r.bundles = stage.drawn.stats.bundles;
+    return r;
+}
+
+/* Draws the first N lamps at each quality; sets RESULT[QUALITIES] and returns
+ * the index of the fastest that is at least 45 dB, or of the last. */
+static int run(int n, double *scale, struct result *result)
+{
+    struct glint_frame *f = &stage.frame;
+    int best = QUALITIES - 1;
 
     f->dials = glint_dials_at(1 << 12);
-    scale = scale_for(n);
+    *scale = scale_for(n);
     f->dials = glint_dials_at(1 << 15);
     f->dials.cull_codes = 0.01;
     f->dials.dispersion_q8 = 0;
     f->dials.max_lights = MOST;
     f->most_minsn = 0;
-    draw(n, scale, want);
-    for (int i = 0; i < SETTINGS; i++) {
-        double least = 1e9;
+    draw(n, *scale, want);
+    for (int i = QUALITIES - 1; i >= 0; i--) {
+        result[i] = measure(n, *scale, qualities_q15[i], -1);
+        if (result[i].db >= 45 && result[i].ms <= result[best].ms)
+            best = i;
+    }
+    return best;
+}
 
-        f->dials = glint_dials_at(settings[i].quality_q15);
-        f->dials.dispersion_q8 = 0;
-        f->dials.dim_codes = settings[i].dim;
-        for (int k = 0; k < FRAMES; k++)
-            least = fmin(least, draw(n, scale, got));
-        printf("| %s | %d | %.3g | %.3g | %.1f | %.1f | %d |\n", lens, n,
-               settings[i].quality_q15 / 32768., settings[i].dim, 1e3 * least,
-               psnr(), stage.drawn.stats.bundles);
+static const int lights[] = {1, 2, 4, 8, 16, 32, 64, 128};
+
+enum { COUNTS = sizeof lights / sizeof *lights, LENSES = 16 };
+
+/* Draws milliseconds over lights, a line a lens, and a line at 66 ms, which two
+ * processors work off in 33. */
+static void plot(FILE *file, char name[LENSES][64], double ms[LENSES][COUNTS],
+                 int n)
+{
+    struct plot p;
+
+    plot_open(file, 1);
+    plot_init(&p, file, 0, "Frames of 1080p at 45 dB or better");
+    p.x = (struct plot_axis){"lights", true, 1, 128, 0};
+    p.y = (struct plot_axis){"processor ms", true, 1, 66, 0};
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < COUNTS; k++)
+            plot_stretch(&p, lights[k], ms[i][k]);
+    plot_frame(&p);
+    plot_line(&p, 1, 66, 128, 66, "#bbb", false);
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < COUNTS; k++) {
+            char tip[128];
+
+            snprintf(tip, sizeof tip, "%s, %d lights: %.1f ms", name[i],
+                     lights[k], ms[i][k]);
+            if (k > 0)
+                plot_line(&p, lights[k - 1], ms[i][k - 1], lights[k], ms[i][k],
+                          plot_colour(i), false);
+            plot_mark(&p, lights[k], ms[i][k], 'o', plot_colour(i), tip);
+        }
+    plot_close(file);
+}
+
+/* Measures all numbers of lights of the open model, and sets MS. */
+static void rows_of_lens(double *ms)
+{
+    const char *lens = stage.file.lens.header->name;
+
+    for (int k = 0; k < COUNTS; k++) {
+        struct result r[QUALITIES], plain;
+        double scale;
+        const int best = run(lights[k], &scale, r);
+
+        plain = measure(lights[k], scale, qualities_q15[best], 0);
+        ms[k] = r[best].ms;
+        printf("| %s | %d | %.3g | %.1f | %.1f | %d | %.1f | %.1f | %d |", lens,
+               lights[k], r[best].quality, r[best].ms, r[best].db,
+               r[best].bundles, plain.ms, plain.db, plain.bundles);
+        for (int i = 0; i < QUALITIES; i++)
+            printf(" %.1f; %.1f |", r[i].ms, r[i].db);
+        puts("");
         fflush(stdout);
     }
 }
 
-/* Sets up the stage for the model at PATH. Returns false if it is refused. */
-static bool open_model(const char *path)
+/* Times the frame of NIGHT lights on several threads; does what the head says
+ * of -j. */
+static int time_threads(char **argv)
 {
-    static const double nm[3] = {650, 532, 450};
-    static const struct tool tool = {.name = "lights", .n_threads = 1};
-    struct glint_error error;
+    struct tool tool = {.name = "lights", .n_threads = atoi(argv[0])};
+    double scale = atof(argv[2]), ms = HUGE_VAL, processor_ms = HUGE_VAL;
 
-    if (tool_model(&tool, path, &stage.file) != EXIT_OK ||
-        glint_setup_from_model(&stage.of_model, &stage.file.lens, 8, 0, nm, 3,
-                               &error) != GLINT_OK)
-        return false;
-    stage.lens.film_width_mm =
-        glint_real_value(stage.file.lens.header->film_width_mm);
-    stage.lens.film_height_mm =
-        glint_real_value(stage.file.lens.header->film_height_mm);
-    stage_view(&stage, W, H, 0);
-    return true;
+    if (tool_start(&tool) != EXIT_OK)
+        return 1;
+    stage.workers = tool.workers;
+    if (!stage_read(&stage, argv[4], W, H))
+        return 1;
+    street_lamps(&stage, lamps, MOST);
+    stage.frame.dials = glint_dials_at((int)lrint(32768 * atof(argv[1])));
+    stage.frame.dials.dispersion_q8 = 0;
+    if (scale <= 0)
+        scale = scale_for(NIGHT);
+    for (int i = 0; i < atoi(argv[3]); i++) {
+        const double from = seconds_of(CLOCK_MONOTONIC);
+
+        processor_ms = fmin(processor_ms, 1e3 * draw(NIGHT, scale, got));
+        ms = fmin(ms, 1e3 * (seconds_of(CLOCK_MONOTONIC) - from));
+    }
+    printf("%s %.6g %.1f %.1f\n", stage.file.lens.header->name, scale, ms,
+           processor_ms);
+    stage_close(&stage);
+    tool_finish(&tool);
+    return 0;
 }
 
 int main(int argc, char **argv)
 {
-    static const int lights[] = {1, 4, 16, 64, 128};
-    const int n = argc > 1 ? atoi(argv[1]) : 0;
+    static char name[LENSES][64];
+    static double ms[LENSES][COUNTS];
+    FILE *file;
+    int n = 0;
 
-    puts("| lens | lights | quality | dim, codes | ms | dB | bundles |\n"
-         "|---|---|---|---|---|---|---|");
+    if (argc == 7 && strcmp(argv[1], "-j") == 0)
+        return time_threads(argv + 2);
+    file = argc > 1 ? fopen(argv[1], "w") : NULL;
+    if (!file || argc - 2 > LENSES)
+        return 2;
+    puts("| lens | lights | quality | ms | dB | bundles | dim 0: ms | dB | "
+         "bundles | 0.0625: ms; dB | 0.125 | 0.25 | 0.5 |\n"
+         "|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     fflush(stdout);
-    for (int i = 2; i < argc; i++) {
-        if (!open_model(argv[i]))
+    for (int i = 2; i < argc; i++, n++) {
+        if (!stage_read(&stage, argv[i], W, H))
             return 1;
-        set_lamps();
-        for (size_t k = 0; k < sizeof lights / sizeof *lights; k++)
-            if (n == 0 || n == lights[k])
-                run(stage.file.lens.header->name, lights[k]);
+        snprintf(name[n], sizeof name[n], "%s", stage.file.lens.header->name);
+        street_lamps(&stage, lamps, MOST);
+        rows_of_lens(ms[n]);
         stage_close(&stage);
     }
-    return 0;
+    plot(file, name, ms, n);
+    return fclose(file) == 0 ? 0 : 1;
 }

@@ -20,6 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/setup/spectrum.h"
 #include "overlay/compositor.h"
 #include "video/y4m.h"
 #include "posix/error.h"
@@ -37,6 +38,9 @@ struct steady {
     double worst, largest;    /* largest step of glint's own; largest of all */
     double unmade;            /* largest step beyond what true lamps explain */
     int worst_frame, unmade_frame, cuts, frames, most_lights;
+    /* Stars: power of all in the last frame, of all lamps, and the largest step
+     * of theirs, and of it beyond the lamps'. */
+    double stars, lamps, star_largest, star_worst;
 };
 
 /* ------------------------------------------------------------------- steps */
@@ -49,7 +53,7 @@ static double light_of(struct steady *s, const struct glint_lamp *lamps)
                             GLINT_RESPONSE_COARSE, NULL, &light,
                             NULL) != GLINT_OK)
         exit(EXIT_RUNTIME);
-    return glint_strength_largest(light.mean);
+    return glint_largest_channel(light.mean);
 }
 
 /* Returns by how much STEP exceeds the interval between 0 and OWN, all of them
@@ -121,6 +125,33 @@ static void log_frame(const struct steady *s, double own, double drawn)
     }
 }
 
+/* Notes by how much the light of all stars steps, and by how much more than the
+ * powers that their lamps were found with. */
+static void note_stars(struct steady *s, const struct glint_image *image,
+                       double lamps)
+{
+    struct compositor *c = &s->compositor;
+    double stars = 0;
+
+    if (glint_frame_star_set(&c->frame, c->lamp, c->n_lamps,
+                             compositor_scale(c), image) != GLINT_OK)
+        exit(EXIT_RUNTIME);
+    for (int i = 0; i < c->frame.star.n_lights && c->n_lamps; i++)
+        stars += glint_real_value(c->frame.star.light[i].power);
+    if (!glint_lamp_tracker_was_cut(c->finder.tracks) && s->stars > 0 &&
+        stars > 0 && s->lamps > 0 && lamps > 0) {
+        const double step = log(stars / s->stars);
+
+        s->star_largest = fmax(s->star_largest, exp(fabs(step)) - 1);
+        s->star_worst =
+            fmax(s->star_worst, exp(beyond(step, log(lamps / s->lamps))) - 1);
+    }
+    if (s->log)
+        fprintf(stderr, "    stars %.4g of lamps %.4g\n", stars, lamps);
+    s->stars = stars;
+    s->lamps = lamps;
+}
+
 static void frame(struct steady *s, const struct glint_image *image,
                   int32_t elapsed_us)
 {
@@ -139,6 +170,7 @@ static void frame(struct steady *s, const struct glint_image *image,
     if (s->log)
         log_frame(s, own, drawn);
     note(s, drawn * compositor_scale(compositor), own);
+    note_stars(s, image, power);
     if (compositor->n_lamps > s->most_lights)
         s->most_lights = compositor->n_lamps;
     s->frames++;
@@ -147,7 +179,7 @@ static void frame(struct steady *s, const struct glint_image *image,
 static void begin(struct steady *s, int width, int height)
 {
     s->total = s->own = s->worst = s->largest = 0;
-    s->unmade = 0;
+    s->unmade = s->stars = s->star_largest = s->star_worst = 0;
     s->unmade_frame = 0;
     s->worst_frame = s->cuts = s->frames = s->most_lights = 0;
     if (compositor_size(&s->tool, &s->compositor, width, height) != EXIT_OK)
@@ -160,9 +192,10 @@ static bool end(const struct steady *s, const char *name, double most)
            s->most_lights, s->cuts, 100 * s->largest, 100 * s->worst,
            s->worst_frame);
     if (s->truth[0] >= 0)
-        printf(" %.1f | %d |\n", 100 * s->unmade, s->unmade_frame);
+        printf(" %.1f | %d |", 100 * s->unmade, s->unmade_frame);
     else
-        puts(" | |");
+        printf(" | |");
+    printf(" %.1f | %.1f |\n", 100 * s->star_largest, 100 * s->star_worst);
     fflush(stdout);
     return s->worst <= most && (s->truth[0] < 0 || s->unmade <= most);
 }
@@ -308,7 +341,7 @@ static void note_truth(struct steady *s, const struct night *night,
     }
     glint_strength_light(&c->response, &lamps, &light);
     memmove(s->truth + 1, s->truth, WINDOW * sizeof *s->truth);
-    s->truth[0] = glint_strength_largest(light.mean);
+    s->truth[0] = glint_largest_channel(light.mean);
 }
 
 static bool run_scene(struct steady *s, int k, double most)
@@ -377,8 +410,10 @@ int main(int argc, char **argv)
         compositor_open(&s.tool, &s.compositor) != EXIT_OK)
         return EXIT_RUNTIME;
     puts("| scene | frames | lights | cuts | largest step, % | beside the "
-         "lamps' own, % | at frame | that no lamp made, % | at frame |\n"
-         "|---|---|---|---|---|---|---|---|---|");
+         "lamps' own, % | at frame | that no lamp made, % | at frame | of the "
+         "star, "
+         "largest step, % | beside the lamps' powers, % |\n"
+         "|---|---|---|---|---|---|---|---|---|---|---|");
     for (int k = 0; k < (int)(sizeof scenes / sizeof *scenes); k++)
         if (!only || strcmp(only, scenes[k].name) == 0)
             good = run_scene(&s, k, most) && good;

@@ -124,8 +124,11 @@ static void set_coatings(uint64_t *r, struct glint_prescription *l)
         struct glint_surface *s = &l->surface[k];
 
         if ((before > 0) != (s->vd > 0) && chance(r, coated)) {
-            s->coating_nm = stage_uniform(r, 350, 800);
-            s->coating_n = chance(r, 0.5) ? 1.38 : stage_uniform(r, 1.2, 2.3);
+            s->coating.nm = stage_uniform(r, 350, 800);
+            s->coating.n_films = 1;
+            s->coating.film[0].index =
+                chance(r, 0.5) ? 1.38 : stage_uniform(r, 1.2, 2.3);
+            s->coating.film[0].quarters = 1;
         }
         before = s->vd;
     }
@@ -201,9 +204,10 @@ static int print_surface(const struct glint_surface *s, bool cemented,
                    : print(text, at, "air", 0, 0, 0);
     if (cemented)
         return print(text, at, "\n", 0, 0, 0);
-    return s->coating_nm > 0 ? print(text, at, " coating %.6g %.6g\n",
-                                     s->coating_nm, s->coating_n, 0)
-                             : print(text, at, " coating none\n", 0, 0, 0);
+    return s->coating.n_films
+               ? print(text, at, " coating %.6g %.6g\n", s->coating.nm,
+                       s->coating.film[0].index, 0)
+               : print(text, at, " coating none\n", 0, 0, 0);
 }
 
 static void write_table(const struct glint_prescription *l, int number,

@@ -8,6 +8,7 @@
 
 #include "glint/kernels.h"
 #include "model/model_cache.h"
+#include "options/tool.h"
 
 static bool refuse(const char *why)
 {
@@ -40,9 +41,11 @@ bool stage_parse(struct stage *stage, const char *text)
            refuse(error.text);
 }
 
+/* Red, green and blue. */
+static const double nm[3] = {650, 532, 450};
+
 bool stage_prepare(struct stage *stage, int n_blades)
 {
-    static const double nm[3] = {650, 532, 450};
     struct glint_error error = {"no setup"};
 
     return glint_setup_init(&stage->setup, &stage->lens, n_blades, 0, nm, 3,
@@ -146,6 +149,24 @@ bool stage_open(struct stage *stage, const char *name, int width, int height)
     if (!stage_load(stage, name) || !stage_prepare(stage, 8) ||
         !stage_model(stage, 1, 60))
         return false;
+    stage_view(stage, width, height, 0);
+    return true;
+}
+
+bool stage_read(struct stage *stage, const char *path, int width, int height)
+{
+    static const struct tool tool = {.name = "tests", .n_threads = 1};
+    const struct glint_model_header *header;
+    struct glint_error error = {"no setup"};
+
+    if (tool_model(&tool, path, &stage->file) != EXIT_OK)
+        return false;
+    header = stage->file.lens.header;
+    if (glint_setup_from_model(&stage->of_model, &stage->file.lens, 8, 0, nm, 3,
+                               &error) != GLINT_OK)
+        return refuse(error.text);
+    stage->lens.film_width_mm = glint_real_value(header->film_width_mm);
+    stage->lens.film_height_mm = glint_real_value(header->film_height_mm);
     stage_view(stage, width, height, 0);
     return true;
 }

@@ -60,6 +60,10 @@ void stage_view(struct stage *stage, int width, int height, double sensor_mm);
  * for lights up to 60 degrees, and pictures of WIDTH x HEIGHT of its film. */
 bool stage_open(struct stage *stage, const char *name, int width, int height);
 
+/* Sets up all else for the model in the file PATH: a stop of eight blades and
+ * pictures of WIDTH x HEIGHT of its film. */
+bool stage_read(struct stage *stage, const char *path, int width, int height);
+
 /* Draw the flare of N lamps into RGB [height][width][3], linear light:
  * stage_linear() as the run time does, stage_exact() by exact rays. */
 bool stage_linear(struct stage *stage, const struct glint_lamp *lamps, int n,

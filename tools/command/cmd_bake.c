@@ -1,15 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bake: turns a lens table into a model.
+ * glint bake: turns a lens table into a model; scenes and environments have
+ * commands of their own.
  */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "desk/apart.h"
 #include "options/coating.h"
 #include "model/model_report.h"
 #include "model/table_file.h"
 #include "posix/output.h"
+#include "scenes/baked_scene.h"
+#include "scenes/environment_file.h"
+#include "command/render_scene.h"
 #include "options/tool.h"
 #include "options/takes.h"
 
@@ -20,7 +25,9 @@ static const char help[] =
     "integers, proves that these cannot overflow, measures the errors with "
     "the\n"
     "run-time arithmetic, and writes one file for render, overlay and trace.\n"
-    "The same lens and options give the same bytes.\n"
+    "The same lens and options give the same bytes. NAME.scene, and pictures\n"
+    "of all around, .exr .hdr .dds .pfm .environment, have other options:\n"
+    "glint bake NAME.scene --help.\n"
     "\n"
     "  -o, --output MODEL\n"
     "                    - is standard output; no report then\n"
@@ -99,8 +106,9 @@ static int parse(struct tool *tool, int argc, char **argv, struct bake *b)
                             &index)) >= 0)
         if ((code = take(tool, b, c, options[index].name)) >= 0)
             return code;
-    if (optind + 1 != argc)
-        return tool_usage(tool, "takes one lens");
+    code = tool_inputs(tool, argc, argv, 1, "takes one lens");
+    if (code >= 0)
+        return code;
     if (!b->output)
         return tool_usage(tool, "needs -o MODEL");
     return -1;
@@ -156,12 +164,17 @@ static int run(struct tool *tool, struct bake *b, const char *name)
     struct glint_prescription *lens = malloc(sizeof *lens);
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
+    struct apart files = {.n_read = 0};
     struct glint_output out;
     int code;
 
     if (!lens)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    code = tool_lens(tool, name, lens);
+    apart_read(&files, NULL, name);
+    apart_write(&files, "-o", b->output);
+    code = apart_check(tool, &files);
+    if (code == EXIT_OK)
+        code = tool_lens(tool, name, lens);
     if (code == EXIT_OK)
         coating_apply(&b->coating, lens);
     if (code == EXIT_OK && b->f_number > 0)
@@ -183,6 +196,11 @@ int cmd_bake(int argc, char **argv)
     struct bake b = {.output = NULL};
     int code;
 
+    if (render_has_scene(argc, argv))
+        return cmd_bake_scene(argc, argv);
+    for (int i = 1; i < argc; i++)
+        if (argv[i][0] != '-' && environment_file_is_source(argv[i]))
+            return cmd_bake_environment(argc, argv);
     glint_bake_defaults(&b.options);
     code = parse(&tool, argc, argv, &b);
     if (code >= 0)

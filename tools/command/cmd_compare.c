@@ -186,8 +186,9 @@ int cmd_compare(int argc, char **argv)
     }
     if (a.fit && a.exposed)
         return tool_usage(&tool, "--fit and --exposed do not go together");
-    if (optind + 2 != argc)
-        return tool_usage(&tool, "takes two pictures");
+    code = tool_inputs(&tool, argc, argv, 2, "takes two pictures");
+    if (code >= 0)
+        return code;
     a.name[0] = argv[optind];
     a.name[1] = argv[optind + 1];
     return compare(&tool, &a);

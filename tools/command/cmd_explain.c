@@ -8,6 +8,9 @@
 #include <string.h>
 
 #include "command/explain.h"
+#include "command/explain_scene.h"
+#include "desk/apart.h"
+#include "desk/ghost_sheet.h"
 #include "overlay/compositor.h"
 #include "overlay/overlay_line.h"
 #include "engine/measure.h"
@@ -33,7 +36,19 @@ static const char help[] =
     "\n"
     "  -o, --output OUT    a picture: touched tiles shaded, ghosts outlined "
     "and\n"
-    "                      numbered, a legend\n"
+    "                      numbered, a legend; with --scene its things "
+    "outlined,\n"
+    "                      in colours by what a pixel of each costs\n"
+    "  --scene FILE        tells, before the flare, what became of things "
+    "(drawn,\n"
+    "                      off, behind the camera, outside, covered by "
+    "another,\n"
+    "                      below a pixel) and lights; --lens none: only that\n"
+    "  --save-ghosts FILE  the ghosts, for --ghosts FILE of overlay, live and "
+    "render\n"
+    "  --ghost-sheet OUT   a picture of each of the --top ghosts, each exposed "
+    "so\n"
+    "                      that it shows, with number, surfaces and share\n"
     "  --size WxH          without IN: of the frame\n"
     "  --picture P         codes: as drawn over 8 bits (with IN, or on "
     "black);\n"
@@ -52,14 +67,16 @@ enum {
     OPT_SORT,
     OPT_TOP,
     OPT_MEMORY,
-    OPT_SIZE
+    OPT_SIZE,
+    OPT_SAVE_GHOSTS,
+    OPT_GHOST_SHEET
 };
 
 enum { AUTO, CODES, LINEAR };
 
 struct explain_command {
     struct compositor compositor;
-    const char *input, *output;
+    const char *input, *output, *ghosts, *sheet;
     int width, height; /* 0: those of the input */
     int picture, order, top;
     struct glint_image image; /* the input, over which the flare is drawn */
@@ -72,6 +89,8 @@ static const struct option options[] = {
     {"sort", required_argument, NULL, OPT_SORT},
     {"top", required_argument, NULL, OPT_TOP},
     {"memory", required_argument, NULL, OPT_MEMORY},
+    {"save-ghosts", required_argument, NULL, OPT_SAVE_GHOSTS},
+    {"ghost-sheet", required_argument, NULL, OPT_GHOST_SHEET},
     COMPOSITOR_OPTIONS,
     TOOL_COMMON_OPTIONS};
 
@@ -85,6 +104,12 @@ static bool take(struct explain_command *c, int option, const char *value)
     case 'o':
         c->output = value;
         return true;
+    case OPT_SAVE_GHOSTS:
+        c->ghosts = value;
+        return *value != '\0';
+    case OPT_GHOST_SHEET:
+        c->sheet = value;
+        return *value != '\0';
     case OPT_SIZE:
         return tool_size(value, &c->width, &c->height);
     case OPT_PICTURE:
@@ -107,24 +132,34 @@ static int check(struct tool *tool, const struct explain_command *c)
 {
     const struct settings *s = &c->compositor.settings;
 
-    if (!c->input == !c->width)
+    if (c->input && c->width)
         return tool_usage(tool, "takes one picture, or --size");
     if (c->input && c->picture == LINEAR)
         return tool_usage(tool, "--picture linear goes with --size");
-    if (!c->input && c->compositor.n_hand == 0 && c->compositor.at.n == 0 &&
-        !c->compositor.lights_file)
+    if (c->compositor.scene.file && c->picture == LINEAR)
+        return tool_usage(tool, "--picture linear is not for --scene");
+    if (!c->compositor.scene.file && strcmp(c->compositor.lens, "none") == 0)
+        return tool_usage(tool, "--lens none leaves nothing to explain but a "
+                                "--scene");
+    if (!c->input && !c->compositor.scene.file && c->compositor.n_hand == 0 &&
+        c->compositor.at.n == 0 && !c->compositor.lights_file)
         return tool_usage(tool, "--size needs a --light or --lights FILE");
     if (s->raster || s->mask_nodes || s->rays != SETTINGS_RAYS_MODEL)
-        return tool_usage(tool, "explains what is drawn by edges from a model, "
-                                "not --raster cells, --mask, --rays exact");
+        return tool_usage(tool,
+                          "explains what is drawn by edges from a model, "
+                          "not --raster cells, --stop-nodes, --rays exact");
     return -1;
 }
 
 static int parse(struct tool *tool, int argc, char **argv,
                  struct explain_command *c)
 {
-    int option, code, index = 0;
+    int option, index = 0;
+    int code = compositor_style_of(tool, &c->compositor, argc, argv,
+                                   "o:" TOOL_COMMON_SHORT, options);
 
+    if (code >= 0)
+        return code;
     while ((option = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                                  &index)) >= 0) {
         code = compositor_option(tool, &c->compositor, option, optarg);
@@ -137,10 +172,13 @@ static int parse(struct tool *tool, int argc, char **argv,
         if (code >= 0)
             return code;
     }
-    if (optind < argc)
-        c->input = argv[optind++];
-    if (optind < argc)
-        return tool_usage(tool, "takes one picture");
+    code =
+        c->width && optind == argc
+            ? -1
+            : tool_inputs(tool, argc, argv, 1, "takes one picture, or --size");
+    if (code >= 0)
+        return code;
+    c->input = argv[optind]; /* or NULL at the end */
     return check(tool, c);
 }
 
@@ -200,17 +238,67 @@ static enum glint_status draw_linear(struct explain_command *c)
 
 /* ------------------------------------------------------------------ result */
 
+/* Saves the picture of SCENE, or if that is NULL of the flare. */
 static int save(struct tool *tool, const struct explain_command *c,
-                struct glint_explain *e, const struct explain_title *title)
+                struct glint_explain *e, const struct explain_title *title,
+                const struct explained_scene *scene)
 {
     struct glint_error error = {""};
     struct glint_image marked = {.plane = {NULL}};
-    enum glint_status status = explain_mark(e, title, &c->image, &marked);
+    enum glint_status status =
+        scene ? explain_scene_mark(scene, &c->image, &marked)
+              : explain_mark(e, title, &c->image, &marked);
 
     if (status == GLINT_OK)
         status = glint_picture_save(c->output, &marked, &error);
     free(marked.plane[0]);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
+/* Writes the files of single ghosts that were asked for. */
+static int save_ghosts(struct tool *tool, const struct explain_command *c,
+                       struct glint_explain *e)
+{
+    struct glint_error error = {""};
+    int ghosts[GLINT_MAX_GHOSTS];
+    const struct ghost_list list = {.explain = e,
+                                    .lens = c->compositor.settings.lens.name,
+                                    .ghosts = ghosts,
+                                    .top = c->top,
+                                    .picture = &c->image};
+    enum glint_status status = GLINT_OK;
+
+    glint_explain_sort(e, (enum glint_explain_order)c->order, ghosts);
+    if (c->ghosts)
+        status = ghost_list_write(&list, c->ghosts, &error);
+    if (c->sheet && status == GLINT_OK)
+        status = ghost_list_sheet(&list, c->sheet, &error);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
+/* Tells of the scene, before the FLARE if there is one. */
+static int tell_scene(struct tool *tool, const struct explain_command *c,
+                      struct glint_explain *flare)
+{
+    struct explained_scene scene;
+    int code = EXIT_OK;
+    const enum glint_status status =
+        explained_scene_open(&scene, &c->compositor, flare);
+
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, NULL);
+    if (tool->json) {
+        printf("{\"scene\": ");
+        explain_scene_json(&scene);
+        printf(flare ? ", \"flare\": " : "}\n");
+    } else {
+        explain_scene_print(&scene);
+        printf(flare ? "\n" : "");
+    }
+    if (c->output)
+        code = save(tool, c, NULL, NULL, &scene);
+    explained_scene_close(&scene);
+    return code;
 }
 
 static int tell(struct tool *tool, struct explain_command *c, bool linear)
@@ -233,36 +321,68 @@ static int tell(struct tool *tool, struct explain_command *c, bool linear)
         glint_explain_open(&e, &compositor->frame, unit);
     int code = EXIT_OK;
 
+    if (status == GLINT_OK && compositor->scene.is_open)
+        code = tell_scene(tool, c, &e);
     if (status != GLINT_OK)
         code = tool_fail(tool, status, NULL);
     else if (tool->json)
         explain_json(&e, &title);
     else
         explain_print(&e, &title);
+    if (code == EXIT_OK && tool->json && compositor->scene.is_open)
+        printf("}\n");
     if (status == GLINT_OK && compositor->n_lamps == 0 && !tool->quiet)
         overlay_say_none(compositor, stderr);
-    if (code == EXIT_OK && c->output)
-        code = save(tool, c, &e, &title);
+    if (code == EXIT_OK && c->output && !compositor->scene.is_open)
+        code = save(tool, c, &e, &title, NULL);
+    if (code == EXIT_OK && (c->ghosts || c->sheet))
+        code = save_ghosts(tool, c, &e);
     glint_explain_close(&e);
     return code;
+}
+
+/* Refuses, before there is work, a picture that cannot be written. */
+static int check_picture(const struct tool *tool, const char *path)
+{
+    struct glint_error error = {""};
+
+    if (!path)
+        return EXIT_OK;
+    if (tool_check_output(tool, path) != EXIT_OK)
+        return EXIT_OUTPUT;
+    if (glint_picture_check(path, GLINT_PICTURE_8BIT, &error) == GLINT_OK)
+        return EXIT_OK;
+    tool_fail(tool, GLINT_E_OUTPUT, error.text);
+    return EXIT_OUTPUT;
+}
+
+static int check_apart(const struct tool *tool, const struct explain_command *c)
+{
+    struct apart files = {.n_read = 0};
+
+    apart_read(&files, NULL, c->input);
+    apart_write(&files, "-o", c->output);
+    apart_write(&files, "--save-ghosts", c->ghosts);
+    apart_write(&files, "--ghost-sheet", c->sheet);
+    apart_compositor(&files, &c->compositor);
+    return apart_check(tool, &files);
 }
 
 static int run(struct tool *tool, struct explain_command *c)
 {
     const bool linear =
-        c->picture == LINEAR || (c->picture == AUTO && c->width);
-    struct glint_error error = {""};
+        c->picture == LINEAR ||
+        (c->picture == AUTO && c->width && !c->compositor.scene.file);
     enum glint_status status;
     int code;
 
-    if (c->output && tool_check_output(tool, c->output) != EXIT_OK)
+    if (check_picture(tool, c->output) != EXIT_OK ||
+        check_picture(tool, c->sheet) != EXIT_OK ||
+        (c->ghosts && tool_check_output(tool, c->ghosts) != EXIT_OK))
         return EXIT_OUTPUT;
-    if (c->output && glint_picture_check(c->output, GLINT_PICTURE_8BIT,
-                                         &error) != GLINT_OK) {
-        tool_fail(tool, GLINT_E_OUTPUT, error.text);
-        return EXIT_OUTPUT;
-    }
-    code = compositor_open(tool, &c->compositor);
+    code = check_apart(tool, c);
+    if (code == EXIT_OK)
+        code = compositor_open(tool, &c->compositor);
     if (code == EXIT_OK)
         code = load(tool, c);
     if (code == EXIT_OK)
@@ -275,13 +395,17 @@ static int run(struct tool *tool, struct explain_command *c)
     if (status != GLINT_OK)
         return tool_fail(tool, status, NULL);
     code = compositor_finish(tool, &c->compositor);
-    return code == EXIT_OK ? tell(tool, c, linear) : code;
+    if (code == EXIT_OK)
+        code = c->compositor.has_lens ? tell(tool, c, linear)
+                                      : tell_scene(tool, c, NULL);
+    return code;
 }
 
 int cmd_explain(int argc, char **argv)
 {
     struct tool tool = {.name = "explain",
                         .help = help,
+                        .help_desk = DESK_HELP SCENE_HELP,
                         .help_end = help_end,
                         .help_last = help_last};
     struct explain_command *c = calloc(1, sizeof *c);
@@ -290,6 +414,7 @@ int cmd_explain(int argc, char **argv)
     if (!c)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     compositor_defaults(&c->compositor);
+    c->compositor.is_still = true;
     c->top = 20;
     code = parse(&tool, argc, argv, c);
     if (code < 0) {

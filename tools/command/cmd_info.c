@@ -9,11 +9,17 @@
 #include "model/model_report.h"
 #include "model/table_file.h"
 #include "options/tool.h"
+#include "scenes/baked_scene.h"
+#include "scenes/environment_file.h"
 
 static const char help[] =
-    "glint info LENS|MODEL [--json] [-v] [--f-number N] [--coating C]\n"
+    "glint info LENS|MODEL|SCENE|ENV [--json] [-v] [--f-number N] [--coating "
+    "C]\n"
     "\n"
-    "Prints focal length, back focal length, entrance pupil, stop radius at\n"
+    "Of a scene, NAME.scene or baked: things, triangles, bytes by keyword.\n"
+    "Of an environment, a picture of all around or baked: texels, lights.\n"
+    "Of a lens: focal length, back focal length, entrance pupil, stop radius "
+    "at\n"
     "the f-number, surfaces and ghosts with their pairs of surfaces (counted\n"
     "from 0 at the front, without the stop). First-order values are for the\n"
     "d line, 587.56 nm.\n"
@@ -101,18 +107,18 @@ static void print_coatings(const struct glint_prescription *l)
     for (int k = 0; k < l->n_surfaces; k++) {
         static const double nm[3] = {450, 550, 650};
         const struct glint_surface *s = &l->surface[k], *before = s - 1;
+        struct glint_film_at film[GLINT_MAX_FILMS];
 
         printf("%7d ", k);
         for (int i = 0; i < 3; i++)
             printf(" %6.2f %%",
                    100 * glint_reflectance(
                              k ? glint_index(before->nd, before->vd, nm[i]) : 1,
-                             glint_index(s->nd, s->vd, nm[i]), 1, s->coating_n,
-                             GLINT_PI * s->coating_nm / nm[i]));
-        if (s->coating_nm > 0)
-            printf("    %g nm, index %g\n", s->coating_nm, s->coating_n);
-        else
-            printf("    none\n");
+                             glint_index(s->nd, s->vd, nm[i]), 1, film,
+                             glint_coating_at(&s->coating, nm[i], film)));
+        printf("    ");
+        coating_print(stdout, &s->coating);
+        printf("\n");
     }
 }
 
@@ -125,6 +131,30 @@ static int info_of_model(const struct tool *tool, const char *path)
         return code;
     model_report_info(tool, &model);
     model_file_close(&model);
+    return EXIT_OK;
+}
+
+static int info_of_scene(const struct tool *tool, const char *path)
+{
+    struct baked_scene scene;
+    const int code = baked_scene_open(tool, path, &scene);
+
+    if (code != EXIT_OK)
+        return code;
+    baked_scene_print(tool, &scene);
+    baked_scene_close(&scene);
+    return EXIT_OK;
+}
+
+static int info_of_environment(const struct tool *tool, const char *path)
+{
+    struct environment_file file;
+    const int code = environment_file_open(tool, path, NULL, NULL, &file);
+
+    if (code != EXIT_OK)
+        return code;
+    environment_file_print(tool, &file);
+    environment_file_close(&file);
     return EXIT_OK;
 }
 
@@ -150,8 +180,9 @@ static int parse(struct tool *tool, int argc, char **argv, double *f_number,
         if (code >= 0)
             return code;
     }
-    if (optind + 1 != argc)
-        return tool_usage(tool, "takes one lens");
+    code = tool_inputs(tool, argc, argv, 1, "takes one lens");
+    if (code >= 0)
+        return code;
     return -1;
 }
 
@@ -166,6 +197,16 @@ int cmd_info(int argc, char **argv)
 
     if (code >= 0)
         return code;
+    if (baked_scene_is(argv[optind]))
+        return f_number != 0 || coating.kind != COATING_TABLE
+                   ? tool_usage(&tool, "a scene has no lens to stop or coat")
+                   : info_of_scene(&tool, argv[optind]);
+    if (environment_file_is_source(argv[optind]) ||
+        environment_file_is_baked(argv[optind]))
+        return f_number != 0 || coating.kind != COATING_TABLE
+                   ? tool_usage(&tool,
+                                "an environment has no lens to stop or coat")
+                   : info_of_environment(&tool, argv[optind]);
     if (tool_is_model(argv[optind]) &&
         coating_of_model(&tool, &coating, argv[optind]) != EXIT_OK)
         return EXIT_USAGE;

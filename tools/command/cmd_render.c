@@ -8,19 +8,22 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "desk/apart.h"
+#include "desk/render_file.h"
 #include "engine/frame/area.h"
 #include "lamp_files/lamp_list.h"
 #include "engine/measure.h"
-#include "formats/picture.h"
 #include "posix/error.h"
 #include "options/settings.h"
 #include "options/takes.h"
+#include "command/render_scene.h"
 
 static const char help[] =
     "glint render LENS|MODEL -o OUT --light "
     "THETA,PHI[,POWER[,R,G,B[,SIZE]]]... "
     "[options]\n"
     "glint render LENS|MODEL -o OUT --lights FILE [options]\n"
+    "glint render NAME.scene|BAKED -o OUT; --help behind it has the rest\n"
     "\n"
     "Draws the ghosts of a lens alone, from its table or its baked model; a\n"
     "table is baked when it is first drawn (see 'glint bake'). Values are\n"
@@ -127,8 +130,9 @@ static int parse(struct tool *tool, int argc, char **argv, struct render *r)
         if (code >= 0)
             return code;
     }
-    if (optind + 1 != argc)
-        return tool_usage(tool, "takes one lens");
+    code = tool_inputs(tool, argc, argv, 1, "takes one lens");
+    if (code >= 0)
+        return code;
     if (!r->output)
         return tool_usage(tool, "needs -o OUT");
     if (r->n_lamps == 0 && !r->lights_file)
@@ -183,6 +187,7 @@ static int render_exact(struct tool *tool, struct render *r)
         .grid = r->settings.has_grid ? (r->settings.dials.fineness + 1) / 2 * 2
                                      : 512,
         .only_ghost = r->settings.only_ghost,
+        .tints = r->settings.tints,
         .workers = tool->workers,
         .progress = tool_progress_show,
         .progress_ctx = &progress};
@@ -204,7 +209,7 @@ static int render_exact(struct tool *tool, struct render *r)
     if (tool->json)
         printf("{\"engine\": \"exact\", \"grid\": %d, \"lights\": %d, "
                "\"ghosts\": %d, \"bundles\": %" PRId64 ", \"primitives\": 0, "
-               "\"tiles\": 0, \"arena_bytes\": 0, ",
+               "\"tiles\": 0, \"arena_bytes\": 0, \"star_bytes\": 0, ",
                cfg.grid, r->n_lamps, n_ghosts,
                (int64_t)r->n_lamps * n_ghosts * r->settings.n_wavelengths);
     return EXIT_OK;
@@ -221,7 +226,22 @@ static void say_lights(const struct tool *tool,
     settings_lights_text(report, lights);
     fprintf(stderr, "%s, %d ghosts, %d primitives; flare memory %zu bytes\n",
             lights, report->ghosts, report->stats.primitives,
-            report->arena_bytes);
+            report->arena_bytes + report->star_bytes);
+}
+
+/* Takes the bytes of --memory: what stars and a veil take, and for ghosts what
+ * that leaves. */
+static enum glint_status reserve(const struct render *r,
+                                 struct glint_frame *frame)
+{
+    const enum glint_status status = glint_frame_star_hold(frame, r->n_lamps);
+    const enum glint_status veiled = glint_frame_veil_hold(frame);
+    const size_t star = glint_frame_star_bytes(frame);
+
+    if (status != GLINT_OK || veiled != GLINT_OK || star >= r->reserve_bytes)
+        return GLINT_E_MEMORY;
+    return glint_frame_reserve(frame, NULL, r->reserve_bytes - star, r->n_lamps,
+                               frame->dials.max_lights);
 }
 
 static int render_model(struct tool *tool, struct render *r)
@@ -235,10 +255,8 @@ static int render_model(struct tool *tool, struct render *r)
 
     frame.star.is_bare = true;
     if (code == EXIT_OK) {
-        status = r->reserve_bytes && r->n_lamps > 0
-                     ? glint_frame_reserve(&frame, NULL, r->reserve_bytes,
-                                           r->n_lamps, frame.dials.max_lights)
-                     : GLINT_OK;
+        status =
+            r->reserve_bytes && r->n_lamps > 0 ? reserve(r, &frame) : GLINT_OK;
         if (status == GLINT_OK)
             status = glint_frame_draw_alone(&frame, r->lamp, r->n_lamps,
                                             settings_scale(&r->settings),
@@ -255,50 +273,6 @@ static int render_model(struct tool *tool, struct render *r)
         say_lights(tool, &report);
     glint_frame_finish(&frame);
     return code;
-}
-
-/* ------------------------------------------------------------------- output */
-
-static int save(struct tool *tool, struct render *r)
-{
-    struct glint_image codes = {
-        .format = GLINT_RGB24, .width = r->width, .height = r->height};
-    struct glint_error error = {""};
-    enum glint_status status;
-    uint8_t *mem;
-
-    if (r->linear)
-        status = glint_picture_save_float(r->output, &r->image, &error);
-    else {
-        mem = glint_measure_encode(
-            &r->image,
-            r->settings.has_exposure ? 1 : glint_measure_exposure(&r->image));
-        if (!mem)
-            return tool_fail(tool, GLINT_E_MEMORY, NULL);
-        glint_image_place(&codes, mem);
-        status = glint_picture_save(r->output, &codes, &error);
-        free(mem);
-    }
-    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
-}
-
-/* Refuses, before there is much work, an output that cannot be written. Sets
- * r->linear. */
-static int check_output(struct tool *tool, struct render *r)
-{
-    struct glint_error error = {""};
-    enum glint_status status =
-        glint_picture_check(r->output, GLINT_PICTURE_FLOAT, &error);
-
-    if (tool_check_output(tool, r->output) != EXIT_OK)
-        return EXIT_OUTPUT;
-    r->linear = status == GLINT_OK;
-    if (!r->linear)
-        status = glint_picture_check(r->output, GLINT_PICTURE_8BIT, &error);
-    if (status == GLINT_OK)
-        return EXIT_OK;
-    tool_fail(tool, status, error.text);
-    return EXIT_OUTPUT;
 }
 
 /* Adds the lamps of frame 0 of the file to those by hand. */
@@ -326,11 +300,27 @@ static int read_lamps(struct tool *tool, struct render *r)
     return all ? EXIT_OK : tool_fail(tool, GLINT_E_MEMORY, NULL);
 }
 
+/* Refuses an output over LENS or a file of an option. */
+static int check_apart(const struct tool *tool, const struct render *r,
+                       const char *lens)
+{
+    struct apart files = {.n_read = 0};
+
+    apart_read(&files, NULL, lens);
+    apart_read(&files, "--lights", r->lights_file);
+    apart_read(&files, "--ghosts", r->settings.ghosts_file);
+    apart_read(&files, "--stop-mask", r->settings.stop.mask_file);
+    apart_write(&files, "-o", r->output);
+    return apart_check(tool, &files);
+}
+
 static int run(struct tool *tool, struct render *r, const char *lens)
 {
-    int code = check_output(tool, r);
+    int code = check_apart(tool, r, lens);
     double start;
 
+    if (code == EXIT_OK)
+        code = render_file_check(tool, r->output, &r->linear);
     if (code == EXIT_OK)
         code = settings_open(tool, &r->settings, lens);
     if (code == EXIT_OK && r->lights_file)
@@ -346,7 +336,8 @@ static int run(struct tool *tool, struct render *r, const char *lens)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     code = r->exact ? render_exact(tool, r) : render_model(tool, r);
     if (code == EXIT_OK)
-        code = save(tool, r);
+        code = render_file_save(tool, r->output, r->linear, &r->image,
+                                r->settings.has_exposure ? 1 : 0);
     if (code == EXIT_OK && tool->json)
         printf("\"ms\": %.3f}\n", 1e3 * (tool_seconds() - start));
     free(r->image.rgb);
@@ -359,9 +350,12 @@ int cmd_render(int argc, char **argv)
                         .help = help,
                         .help_end = help_end,
                         .help_last = help_last};
-    struct render *r = calloc(1, sizeof *r);
+    struct render *r = NULL;
     int code;
 
+    if (render_has_scene(argc, argv))
+        return cmd_render_scene(argc, argv);
+    r = calloc(1, sizeof *r);
     if (!r || !(r->lamp = malloc(SETTINGS_MAX_LAMPS * sizeof *r->lamp))) {
         free(r);
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);

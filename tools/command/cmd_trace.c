@@ -78,8 +78,9 @@ static int parse(struct tool *tool, int argc, char **argv, struct options *o)
         if (!ok)
             return tool_refuse(tool, options[index].name, optarg);
     }
-    if (optind + 1 != argc)
-        return tool_usage(tool, "takes one lens");
+    code = tool_inputs(tool, argc, argv, 1, "takes one lens");
+    if (code >= 0)
+        return code;
     return -1;
 }
 

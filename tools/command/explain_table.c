@@ -16,7 +16,7 @@ static const struct {
 } outcomes[GLINT_OUTCOMES] = {
     [GLINT_OUTCOME_DRAWN] = {"drawn", "drawn"},
     [GLINT_OUTCOME_EMPTY] = {"empty", "no edge of its grid changes a pixel"},
-    [GLINT_OUTCOME_OTHER] = {"other", "not the ghost asked for"},
+    [GLINT_OUTCOME_OTHER] = {"other", "not asked for, or muted"},
     [GLINT_OUTCOME_BEYOND] = {"beyond", "light beyond the model's angles"},
     [GLINT_OUTCOME_CLOSED] = {"closed", "no light gets through at this angle"},
     [GLINT_OUTCOME_BLOCKED] = {"blocked", "stop and barrels take all of it"},
@@ -25,6 +25,7 @@ static const struct {
     [GLINT_OUTCOME_FAINT] = {"faint", "too faint for any code"},
     [GLINT_OUTCOME_NO_ROOM] = {"no_room", "no room left in the arena"},
     [GLINT_OUTCOME_OTHER_SET] = {"other_set", "another set of wavelengths"},
+    [GLINT_OUTCOME_SHARED] = {"shared", "dim, drawn with a brighter light's"},
 };
 
 const char *explain_reason(enum glint_outcome outcome)
@@ -79,6 +80,27 @@ static void print_head(const char *what)
            "edges", "rows", "lit px", "tiles", "light%", "brightest", "work%");
 }
 
+/* Prints what a kind takes that few frames have. */
+static void print_price(const struct glint_explain *e,
+                        enum glint_cost_kind kind)
+{
+    if (e->stage[kind] > 0)
+        printf(",\n      %s %.1f (%.1f M)", glint_cost_weight[kind].name,
+               100 * e->stage[kind] / e->all.work, 1e-6 * e->stage[kind]);
+}
+
+/* Says which bundles are not drawn by themselves, as they are dim. */
+static void print_dim(const struct glint_explain *e)
+{
+    const double dim =
+        e->frame->rays.dimmest.mantissa ? e->frame->dials.dim_codes : 0;
+
+    if (dim > 0)
+        printf("dim: ghosts below %.3g codes share rays, %d bundles with those "
+               "of a brighter light\n",
+               dim, e->all.of[GLINT_OUTCOME_SHARED]);
+}
+
 static void print_title(const struct glint_explain *e,
                         const struct explain_title *t)
 {
@@ -102,9 +124,13 @@ static void print_title(const struct glint_explain *e,
     printf("work: about %.1f M instructions, of these %%\n     ",
            1e-6 * all->work);
     for (int i = 0; i < GLINT_COST_KINDS && all->work > 0; i++)
-        printf("%s %s %.1f", i ? "," : "", glint_cost_weight[i].name,
-               100 * e->stage[i] / all->work);
+        if (i < GLINT_COST_PARTS || i == GLINT_COST_LIT || i == GLINT_COST_STAR)
+            printf("%s %s %.1f", i ? "," : "", glint_cost_weight[i].name,
+                   100 * e->stage[i] / all->work);
+    print_price(e, GLINT_COST_PARTS);
+    print_price(e, GLINT_COST_VEIL);
     printf("\n");
+    print_dim(e);
 }
 
 static void print_lights(const struct glint_explain *e,

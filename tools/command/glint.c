@@ -15,6 +15,7 @@ static const char help[] =
     "\n"
     "  glint lenses                    the lenses that come with glint\n"
     "  glint info LENS|MODEL           what a lens is: focal length, ghosts\n"
+    "  glint coat COATING | LENS ...   what a coating reflects, as plots\n"
     "  glint bake LENS -o MODEL        polynomials of its ghosts, in integers\n"
     "  glint trace LENS --ghost K ...  rays as a table\n"
     "  glint render LENS|MODEL -o OUT  the flare alone\n"
@@ -22,6 +23,7 @@ static const char help[] =
     "                                  video, on top of it\n"
     "  glint live                      the same, from a camera to the panel\n"
     "  glint explain IN | --size WxH   what a frame models, what not, and why\n"
+    "  glint styles -o OUT             a photograph in each --style\n"
     "  glint compare A B               how far two pictures are apart\n"
     "  glint bench                     what a frame costs\n"
     "  glint sweep -o FOLDER           what accuracy costs: plots, pictures\n"
@@ -43,7 +45,8 @@ static const struct command commands[] = {
     {"info", cmd_info},       {"trace", cmd_trace},     {"render", cmd_render},
     {"overlay", cmd_overlay}, {"explain", cmd_explain}, {"live", cmd_live},
     {"compare", cmd_compare}, {"bake", cmd_bake},       {"bench", cmd_bench},
-    {"sweep", cmd_sweep},     {"lenses", cmd_lenses},
+    {"sweep", cmd_sweep},     {"lenses", cmd_lenses},   {"coat", cmd_coat},
+    {"styles", cmd_styles},
 };
 
 enum { N_COMMANDS = sizeof commands / sizeof *commands };

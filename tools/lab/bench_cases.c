@@ -35,24 +35,28 @@ struct variation {
     const char *kernels;       /* NULL: as asked */
     unsigned sets;             /* instruction sets that the kernels may use */
     double angle;
+    double star_stops; /* stars of lamps of so many stops over white, alone; 0:
+                          ghosts */
 };
 
 static const struct variation variations[] = {
-    {0, 0, 1, 0, 0, NULL, ~0U, 12}, /* the plain case */
-    {0, 0, 1, 0, 1, NULL, ~0U, 12},
-    {0, 0, 1, 0, 0, "c", 0, 12},
-    {0, 0, 1, 0, 0, "sse41", GLINT_SET_SSE41, 12},
-    {0, 0, 1, 1, 0, NULL, ~0U, 12},
-    {0, 0, 2, 0, 0, NULL, ~0U, 12},
-    {0, 0, 8, 0, 0, NULL, ~0U, 12},
-    {0, 0, 64, 0, 0, NULL, ~0U, 12},
-    {0, 0, 588, 0, 0, NULL, ~0U, 12},
-    {0, 0, 10000, 0, 0, NULL, ~0U, 12},
-    {640, 360, 1, 0, 0, NULL, ~0U, 12},
-    {1280, 720, 1, 0, 0, NULL, ~0U, 12},
-    {3840, 2160, 1, 0, 0, NULL, ~0U, 12},
-    {0, 0, 0, 0, 0, NULL, ~0U, 12},
-    {0, 0, 1, 0, 0, NULL, ~0U, 75}, /* a light beyond the angles of models */
+    {0, 0, 1, 0, 0, NULL, ~0U, 12, 0}, /* the plain case */
+    {0, 0, 1, 0, 1, NULL, ~0U, 12, 0},
+    {0, 0, 1, 0, 0, "c", 0, 12, 0},
+    {0, 0, 1, 0, 0, "sse41", GLINT_SET_SSE41, 12, 0},
+    {0, 0, 1, 1, 0, NULL, ~0U, 12, 0},
+    {0, 0, 2, 0, 0, NULL, ~0U, 12, 0},
+    {0, 0, 8, 0, 0, NULL, ~0U, 12, 0},
+    {0, 0, 64, 0, 0, NULL, ~0U, 12, 0},
+    {0, 0, 588, 0, 0, NULL, ~0U, 12, 0},
+    {0, 0, 10000, 0, 0, NULL, ~0U, 12, 0},
+    {640, 360, 1, 0, 0, NULL, ~0U, 12, 0},
+    {1280, 720, 1, 0, 0, NULL, ~0U, 12, 0},
+    {3840, 2160, 1, 0, 0, NULL, ~0U, 12, 0},
+    {0, 0, 0, 0, 0, NULL, ~0U, 12, 0},
+    {.lights = 1, .sets = ~0U, .angle = 12, .star_stops = 12},
+    {.lights = 10, .sets = ~0U, .angle = 12, .star_stops = 2},
+    {0, 0, 1, 0, 0, NULL, ~0U, 75, 0}, /* a light beyond the angles of models */
 };
 
 /* Sets t->scale to the exposure at which the 99.9th percentile of the flare's
@@ -71,6 +75,15 @@ static enum glint_status expose(struct test *t)
         t->scale = glint_measure_exposure(&flare);
     free(flare.rgb);
     return status;
+}
+
+/* Makes T draw nothing but stars of lamps of STOPS over white. */
+static void make_star(struct test *t, double stops)
+{
+    for (int i = 0; i < t->n_lamps; i++)
+        t->lamp[i].power = exp2(stops);
+    t->scale = t->frame.star.share = 1;
+    t->frame.star.is_alone = t->frame.star.is_bare = true;
 }
 
 static int add_test(struct bench *b, const struct settings *settings,
@@ -121,13 +134,15 @@ static int add_test(struct bench *b, const struct settings *settings,
             return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
         canvas_lamps(t->lamp, v->lights, v->angle);
     }
+    if (v->star_stops > 0)
+        make_star(t, v->star_stops);
     return EXIT_OK;
 }
 
 int bench_add_one(struct bench *b, const struct settings *settings, int width,
                   int height, int lights)
 {
-    const struct variation v = {width, height, lights, 0, 0, NULL, ~0U, 12};
+    const struct variation v = {width, height, lights, 0, 0, NULL, ~0U, 12, 0};
 
     return add_test(b, settings, &v);
 }

@@ -10,6 +10,8 @@ static const char *const stage_names[STAGES] = {
 
 static const char *raster_of(const struct test *t)
 {
+    if (t->frame.star.is_alone)
+        return "star";
     return t->frame.cfg.raster == &glint_raster_cells ? "cells" : "edges";
 }
 
@@ -49,7 +51,7 @@ static void print_test(const struct bench *b, const struct test *t)
         printf(" %*.2f", column(s),
                canvas_median(t->ms[s], b->rounds) / floor_ms);
     printf("  %7d %6.2f", t->report.stats.primitives,
-           (double)t->report.peak_bytes / (1 << 20));
+           (double)(t->report.peak_bytes + t->report.star_bytes) / (1 << 20));
     if (!isnan(t->psnr_db))
         printf("  %.1f", t->psnr_db);
     if (t->frame.budget.ms > 0)
@@ -104,10 +106,10 @@ static void json_test(const struct bench *b, const struct test *t, bool last)
                t->frame.budget.ms, ms / t->frame.budget.ms, off_by(b, t));
     printf("\"drawn_lights\": %d, \"ghosts\": %d, \"bundles\": %d, "
            "\"primitives\": %d, \"tiles\": "
-           "%d, \"arena_bytes\": %zu}%s\n",
+           "%d, \"arena_bytes\": %zu, \"star_bytes\": %zu}%s\n",
            t->report.drawn_lights, t->report.ghosts, t->report.stats.bundles,
            t->report.stats.primitives, t->report.tiles, t->report.peak_bytes,
-           last ? "" : ",");
+           t->report.star_bytes, last ? "" : ",");
 }
 
 void bench_print_json(const struct bench *b)

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "desk/stop_option.h"
+
 /* ------------------------------------------------------------------ canvas */
 
 /* Fills the fresh picture with a pattern of dim codes, 16 .. 87. */
@@ -100,6 +102,7 @@ enum glint_status canvas_exact(const struct tool *tool,
 {
     const size_t n = 3 * (size_t)to->width * (size_t)to->height;
     struct glint_setup *setup = malloc(sizeof *setup);
+    struct glint_dirt *dirt = NULL;
     double *rgb = malloc(n * sizeof *rgb);
     struct tool_progress progress;
     struct glint_exact_config cfg = {
@@ -117,9 +120,11 @@ enum glint_status canvas_exact(const struct tool *tool,
 
     tool_progress_start(&progress, tool, "exact");
     if (setup && rgb)
-        status = glint_setup_init(setup, &s->lens, s->n_blades,
-                                  s->blade_rotation_deg, s->wavelength_nm,
+        status = glint_setup_init(setup, &s->lens, s->stop.n_blades,
+                                  s->stop.rotation_deg, s->wavelength_nm,
                                   s->n_wavelengths, &error);
+    if (status == GLINT_OK)
+        status = stop_option_set(&s->stop, setup, &dirt, &error);
     if (status == GLINT_OK && s->balance)
         glint_setup_balance(setup);
     if (status == GLINT_OK)
@@ -127,6 +132,7 @@ enum glint_status canvas_exact(const struct tool *tool,
     for (size_t i = 0; i < n && status == GLINT_OK; i++)
         to->rgb[i] = (float)rgb[i];
     tool_progress_end(&progress);
+    glint_dirt_free(dirt);
     free(setup);
     free(rgb);
     return status;

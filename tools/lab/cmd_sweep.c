@@ -31,6 +31,9 @@ static const char help[] =
     "  trade.svg     the same of all lenses together, small\n"
     "  dials.svg     each dial by itself\n"
     "  growth.svg    time against pixels, lights and ghosts\n"
+    "  star.csv, star.svg  what --star-cull leaves of stars, and what that "
+    "costs\n"
+    "  parts.csv     what coarser tables of dust and no veil cost and save\n"
     "  table.md      the named qualities\n"
     "  index.html    these, tables, and pictures to judge by; one file\n"
     "Exact pictures and models are kept where models are, so that a second "
@@ -45,6 +48,7 @@ static const char help[] =
     "12)\n"
     "  --small             one lens, one small picture, fewer values, in "
     "seconds\n"
+    "  --stars             instead: star.csv, star.svg, parts.csv alone\n"
     "  --no-growth         without pixels, lights and ghosts\n"
     "  --repeat N          rounds, 1 to 100 (default 7)\n"
     "  --exact-grid N      cells a side of the exact picture (default 128)\n"
@@ -68,6 +72,7 @@ struct asked {
     int n_angles;
     double angle[MAX_LIST];
     bool no_growth;
+    bool stars; /* stars alone */
     bool plain; /* no --size, --lights, --angle or --small */
 };
 
@@ -100,7 +105,7 @@ static void add_growth(struct sweep *s, int lens)
         other.n_lamps = lights[i];
         add_case(s, other);
     }
-    /* for other numbers of ghosts */
+    /* Other angles show other numbers of ghosts. */
     for (int angle = 0; angle < 20; angle += 5) {
         struct sweep_case other = c;
 
@@ -192,7 +197,8 @@ static int save_all(const struct sweep *s, const char *folder)
         {"sweep.csv", sweep_csv},         {"front.svg", sweep_svg_front},
         {"trade.svg", sweep_svg_trade},   {"dials.svg", sweep_svg_dials},
         {"growth.svg", sweep_svg_growth}, {"table.md", sweep_names},
-        {"index.html", sweep_page}};
+        {"star.csv", sweep_star_csv},     {"star.svg", sweep_star_svg},
+        {"parts.csv", sweep_parts_csv},   {"index.html", sweep_page}};
     int code = EXIT_OK;
 
     for (size_t i = 0; i < sizeof files / sizeof *files && code == EXIT_OK; i++)
@@ -205,41 +211,6 @@ static int save_all(const struct sweep *s, const char *folder)
     else if (code == EXIT_OK && !s->tool->quiet)
         sweep_names(s, stdout);
     return code;
-}
-
-/* Reads the instructions of points from the file of --counts, whose lines are
- * "POINT INSTRUCTIONS". Returns an exit code. */
-static int read_counts(struct sweep *s)
-{
-    FILE *file = fopen(s->counts, "r");
-    char line[80];
-    int n = 0;
-
-    if (!file) {
-        tool_fail(s->tool, GLINT_E_IO, strerror(errno));
-        return EXIT_INPUT;
-    }
-    while (fgets(line, sizeof line, file)) {
-        double v[2];
-        char *space = strchr(line, ' ');
-
-        line[strcspn(line, "\n")] = '\0';
-        n++;
-        if (space)
-            *space = ',';
-        if (tool_numbers(line, v, 2) != 2 || v[0] != floor(v[0]) || v[0] < 0 ||
-            v[0] >= s->n_points || v[1] < 0) {
-            fclose(file);
-            fprintf(stderr,
-                    "glint sweep: %s:%d: not a point of this sweep and its "
-                    "instructions\n",
-                    s->counts, n);
-            return EXIT_INPUT;
-        }
-        s->point[(int)v[0]].instructions = v[1];
-    }
-    fclose(file);
-    return EXIT_OK;
 }
 
 static bool make_folder(const char *path)
@@ -278,6 +249,23 @@ static int measure(struct sweep *s)
     return code;
 }
 
+/* Measures stars, dust and veil alone, and saves what is said of them. */
+static int run_stars(struct sweep *s, const char *folder)
+{
+    int code;
+
+    s->counter = glint_instructions_open();
+    code = sweep_stars(s, s->lens[0]);
+    if (code == EXIT_OK)
+        code = sweep_parts(s, s->lens[0]);
+    glint_instructions_close(s->counter);
+    if (code == EXIT_OK)
+        code = save(s, folder, "star.csv", sweep_star_csv);
+    if (code == EXIT_OK)
+        code = save(s, folder, "parts.csv", sweep_parts_csv);
+    return code == EXIT_OK ? save(s, folder, "star.svg", sweep_star_svg) : code;
+}
+
 static int run(struct sweep *s, const struct asked *a)
 {
     int code = EXIT_OK;
@@ -291,14 +279,22 @@ static int run(struct sweep *s, const struct asked *a)
         fprintf(stderr, "glint sweep: %s: %s\n", a->folder, strerror(errno));
         return EXIT_OUTPUT;
     }
+    if (glint_pool_create(&s->one, 1) != GLINT_OK)
+        return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
+    if (a->stars)
+        return run_stars(s, a->folder);
     add_cases(s, a);
-    if (sweep_plan(s) != GLINT_OK || glint_pool_create(&s->one, 1) != GLINT_OK)
+    if (sweep_plan(s) != GLINT_OK)
         return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
     s->counter = glint_instructions_open();
     code = measure(s);
+    if (code == EXIT_OK && !s->count_only)
+        code = sweep_stars(s, s->lens[0]);
+    if (code == EXIT_OK && !s->count_only)
+        code = sweep_parts(s, s->lens[0]);
     glint_instructions_close(s->counter);
     if (code == EXIT_OK && s->counts)
-        code = read_counts(s);
+        code = sweep_read_counts(s);
     if (code != EXIT_OK || s->count_only)
         return code;
     sweep_mark_fronts(s);
@@ -349,7 +345,13 @@ static bool take_cost(const char *text, struct sweep *s)
     return word >= 0;
 }
 
-enum option_code { OPT_SMALL = 1, OPT_NO_GROWTH, OPT_COUNT, OPT_COUNTS };
+enum option_code {
+    OPT_SMALL = 1,
+    OPT_STARS,
+    OPT_NO_GROWTH,
+    OPT_COUNT,
+    OPT_COUNTS
+};
 
 static const struct option options[] = {
     {"output", required_argument, NULL, 'o'},
@@ -360,6 +362,7 @@ static const struct option options[] = {
     {"exact-grid", required_argument, NULL, 'g'},
     {"cost", required_argument, NULL, 'c'},
     {"small", no_argument, NULL, OPT_SMALL},
+    {"stars", no_argument, NULL, OPT_STARS},
     {"no-growth", no_argument, NULL, OPT_NO_GROWTH},
     {"count", no_argument, NULL, OPT_COUNT},
     {"counts", required_argument, NULL, OPT_COUNTS},
@@ -387,6 +390,8 @@ static int take(struct sweep *s, struct asked *a, int c)
         return take_cost(optarg, s);
     case OPT_SMALL:
         return s->small = true;
+    case OPT_STARS:
+        return a->stars = true;
     case OPT_NO_GROWTH:
         return a->no_growth = true;
     case OPT_COUNT:

@@ -13,6 +13,7 @@
 #include "lab/canvas.h"
 
 enum { SWEEP_LENSES = 16, SWEEP_CASES = 128, SWEEP_ROUNDS = 100 };
+enum { SWEEP_STAR_LAMPS = 3, SWEEP_STAR_CULLS = 10, SWEEP_PARTS = 10 };
 
 /* largest flux error on a front: brightness must not depend on dials */
 #define MAX_FLUX_ERROR 0.02
@@ -65,6 +66,30 @@ struct sweep_picture {
     uint8_t *rgb, *difference;
 };
 
+/* A frame against all of its light, in codes that are not rounded. */
+struct sweep_shot {
+    double psnr_db, most_codes, instructions, ms;
+    struct glint_frame_report report;
+};
+
+/* The stars of some lamps, drawn alone with one value of the dial star_cull. */
+struct sweep_star {
+    const char *words;
+    double cull, pixels, minsn_told;
+    struct sweep_shot shot;
+    size_t bytes;
+};
+
+/* A frame with dust or a veil, with one value of its dial. */
+struct sweep_part {
+    const char *words, *dial;
+    int value;
+    double minsn_told;
+    struct sweep_shot shot;
+    size_t bytes; /* bytes that the frame used, with tables */
+    bool front;   /* no other value is both cheaper and better */
+};
+
 struct sweep {
     struct tool *tool;
     struct settings base;
@@ -76,6 +101,10 @@ struct sweep {
     int n_points, max_points;
     struct sweep_picture *picture;
     int n_pictures, max_pictures;
+    struct sweep_star star[SWEEP_STAR_LAMPS * SWEEP_STAR_CULLS];
+    int n_stars;
+    struct sweep_part part[SWEEP_PARTS];
+    int n_parts;
     /* Rounds of timing, 1 .. SWEEP_ROUNDS; cells a side of the grid of rays
      * that draws the exact picture, 4 .. 1024, even. */
     int rounds, grid;
@@ -91,6 +120,14 @@ enum glint_status sweep_plan(struct sweep *s);
 
 /* Measures case C. Returns an exit code. */
 int sweep_measure(struct sweep *s, int c, struct tool_progress *progress);
+
+/* Measures stars through LENS for each value of the dial star_cull. Returns an
+ * exit code. */
+int sweep_stars(struct sweep *s, const char *lens);
+
+/* Measures dust and veil through LENS for each value of their dials. Returns an
+ * exit code. */
+int sweep_parts(struct sweep *s, const char *lens);
 
 /* Calls glint_frame_draw(), as a function of its own, whose instructions
  * tools/report/sweep-insn counts. */
@@ -137,6 +174,10 @@ void sweep_words(const struct sweep_setting *set, char *text, size_t bytes);
 
 /* ------------------------------------------------------------------- output */
 
+/* Reads the instructions of points from the file of --counts, whose lines are
+ * "POINT INSTRUCTIONS". Returns an exit code. */
+int sweep_read_counts(struct sweep *s);
+
 void sweep_csv(const struct sweep *s, FILE *file);
 void sweep_json(const struct sweep *s, FILE *file);
 void sweep_svg_front(const struct sweep *s, FILE *file);
@@ -147,6 +188,9 @@ void sweep_svg_dials(const struct sweep *s, FILE *file);
  * ghosts. */
 bool sweep_has_growth(const struct sweep *s);
 void sweep_svg_growth(const struct sweep *s, FILE *file);
+void sweep_star_csv(const struct sweep *s, FILE *file);
+void sweep_star_svg(const struct sweep *s, FILE *file);
+void sweep_parts_csv(const struct sweep *s, FILE *file);
 void sweep_page(const struct sweep *s, FILE *file);
 
 /* Prints the table of named qualities, as Markdown, and which settings of one

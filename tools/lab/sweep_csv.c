@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "lab/sweep.h"
 
@@ -21,10 +23,11 @@ void sweep_csv(const struct sweep *s, FILE *file)
     fputs("lens,width,height,lights,angle,kind,dial,quality", file);
     for (int d = 0; d < n_dials; d++)
         fprintf(file, ",%s", dials[d].name);
-    fputs(",ms,floor_ms,ratio,instructions,arena_bytes,model_bytes,psnr_db,"
-          "ssim,p99,flux_error,ghosts,bundles,edges,tiles,"
-          "vertices,edges_told,rows_told,lit_told,minsn_told,front\n",
-          file);
+    fputs(
+        ",ms,floor_ms,ratio,instructions,arena_bytes,model_bytes,psnr_db,"
+        "ssim,p99,flux_error,ghosts,bundles,edges,tiles,"
+        "vertices,edges_told,rows_told,parts_told,lit_told,minsn_told,front\n",
+        file);
     for (int i = 0; i < s->n_points; i++) {
         const struct sweep_point *p = &s->point[i];
         const struct sweep_case *c = &s->scase[p->of];
@@ -152,4 +155,37 @@ void sweep_names(const struct sweep *s, FILE *file)
         if (!s->scase[c].growth)
             names_row(s, c, file);
     beyond_ladder(s, file);
+}
+
+int sweep_read_counts(struct sweep *s)
+{
+    FILE *file = fopen(s->counts, "r");
+    char line[80];
+    int n = 0;
+
+    if (!file) {
+        tool_fail(s->tool, GLINT_E_IO, strerror(errno));
+        return EXIT_INPUT;
+    }
+    while (fgets(line, sizeof line, file)) {
+        double v[2];
+        char *space = strchr(line, ' ');
+
+        line[strcspn(line, "\n")] = '\0';
+        n++;
+        if (space)
+            *space = ',';
+        if (tool_numbers(line, v, 2) != 2 || v[0] != floor(v[0]) || v[0] < 0 ||
+            v[0] >= s->n_points || v[1] < 0) {
+            fclose(file);
+            fprintf(stderr,
+                    "glint sweep: %s:%d: not a point of this sweep and its "
+                    "instructions\n",
+                    s->counts, n);
+            return EXIT_INPUT;
+        }
+        s->point[(int)v[0]].instructions = v[1];
+    }
+    fclose(file);
+    return EXIT_OK;
 }

@@ -32,8 +32,18 @@ static uint64_t key_of(const struct settings *s, const struct glint_lamp *lamp,
     hash = mix(hash, &to->width, sizeof to->width);
     hash = mix(hash, &to->height, sizeof to->height);
     hash = mix(hash, &view.sensor_width_mm, sizeof view.sensor_width_mm);
-    hash = mix(hash, &s->n_blades, sizeof s->n_blades);
-    hash = mix(hash, &s->blade_rotation_deg, sizeof s->blade_rotation_deg);
+    hash = mix(hash, &s->stop.n_blades, sizeof s->stop.n_blades);
+    hash = mix(hash, &s->stop.rotation_deg, sizeof s->stop.rotation_deg);
+    if (s->stop.iris.roundness > 0 || stop_option_shades(&s->stop)) {
+        const struct glint_iris *i = &s->stop.iris;
+        const double iris[] = {i->roundness, i->softness, i->dust,
+                               i->dust_seed};
+
+        hash = mix(hash, iris, sizeof iris);
+        hash = i->mask ? mix(hash, i->mask,
+                             (size_t)i->mask_width * (size_t)i->mask_height)
+                       : hash;
+    }
     hash = mix(hash, s->wavelength_nm,
                (size_t)s->n_wavelengths * sizeof *s->wavelength_nm);
     hash = mix(hash, &s->only_ghost, sizeof s->only_ghost);

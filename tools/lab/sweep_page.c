@@ -144,6 +144,8 @@ void sweep_page(const struct sweep *s, FILE *file)
     table_of_front(s, file);
     fputs("<h2>Each dial by itself</h2>\n", file);
     sweep_svg_dials(s, file);
+    fputs("<h2>Stars</h2>\n", file);
+    sweep_star_svg(s, file);
     if (sweep_has_growth(s)) {
         fputs("<h2>Growth</h2>\n", file);
         sweep_svg_growth(s, file);

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * PNG as a data: URI. Its pixels are stored, not compressed, so that no library
- * is needed.
+ * PNG, also as a data: URI. Its pixels are stored, not compressed, so that no
+ * library is needed.
  */
 #include <stdlib.h>
 #include <string.h>
 
+#include "lab/plot.h"
 #include "lab/sweep.h"
 
 enum { BLOCK = 65535 }; /* most bytes of a stored block of deflate */
@@ -101,32 +102,57 @@ static void base64(FILE *file, const uint8_t *data, size_t n)
     }
 }
 
-void sweep_png(FILE *file, const uint8_t *rgb, int width, int height)
+/* Makes the file of a picture. Returns its bytes, to be freed, at NULL if
+ * memory is short. */
+static struct bytes png_of(const uint8_t *rgb, int width, int height)
 {
     const size_t row = 3 * (size_t)width, n = (row + 1) * (size_t)height;
     uint8_t *rows = malloc(n);
     struct bytes b = {malloc(n + n / BLOCK * 5 + 100), 0};
     size_t start;
 
-    if (rows && b.at) {
-        for (int y = 0; y < height; y++) {
-            rows[(size_t)y * (row + 1)] = 0;
-            memcpy(rows + (size_t)y * (row + 1) + 1, rgb + (size_t)y * row,
-                   row);
-        }
-        put(&b, "\x89PNG\r\n\x1a\n", 8);
-        start = begin_chunk(&b, "IHDR");
-        put_u32(&b, (uint32_t)width);
-        put_u32(&b, (uint32_t)height);
-        put(&b, "\x08\x02\0\0", 5); /* 8 bits, RGB, and the string's own end */
-        end_chunk(&b, start);
-        start = begin_chunk(&b, "IDAT");
-        put_pixels(&b, rows, n);
-        end_chunk(&b, start);
-        end_chunk(&b, begin_chunk(&b, "IEND"));
+    if (!rows || !b.at) {
+        free(rows);
+        free(b.at);
+        return (struct bytes){NULL, 0};
+    }
+    for (int y = 0; y < height; y++) {
+        rows[(size_t)y * (row + 1)] = 0;
+        memcpy(rows + (size_t)y * (row + 1) + 1, rgb + (size_t)y * row, row);
+    }
+    put(&b, "\x89PNG\r\n\x1a\n", 8);
+    start = begin_chunk(&b, "IHDR");
+    put_u32(&b, (uint32_t)width);
+    put_u32(&b, (uint32_t)height);
+    put(&b, "\x08\x02\0\0", 5); /* 8 bits, RGB, and the string's own end */
+    end_chunk(&b, start);
+    start = begin_chunk(&b, "IDAT");
+    put_pixels(&b, rows, n);
+    end_chunk(&b, start);
+    end_chunk(&b, begin_chunk(&b, "IEND"));
+    free(rows);
+    return b;
+}
+
+void sweep_png(FILE *file, const uint8_t *rgb, int width, int height)
+{
+    const struct bytes b = png_of(rgb, width, height);
+
+    if (b.at) {
         fputs("data:image/png;base64,", file);
         base64(file, b.at, b.n);
     }
-    free(rows);
     free(b.at);
+}
+
+bool plot_png(FILE *file, const struct plot_pixels *pixels)
+{
+    const struct bytes b = png_of(pixels->image.plane[0], pixels->image.width,
+                                  pixels->image.height);
+
+    if (!b.at)
+        return false;
+    fwrite(b.at, 1, b.n, file);
+    free(b.at);
+    return true;
 }

@@ -5,32 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "options/text_lines.h"
 #include "options/tool.h"
 
 /* ------------------------------------------------------------------ columns */
-
-static char *skip_blanks(char *at)
-{
-    return at + strspn(at, " \t");
-}
-
-/* Returns the next field of *REST, up to a comma, without blanks around it, and
- * moves *REST past it. Returns NULL if none is left. */
-static char *next_field(char **rest)
-{
-    char *field = *rest, *end;
-
-    if (!field)
-        return NULL;
-    end = strchr(field, ',');
-    *rest = end ? end + 1 : NULL;
-    end = end ? end : field + strlen(field);
-    *end = '\0';
-    field = skip_blanks(field);
-    while (end > field && strchr(" \t\r", end[-1]))
-        *--end = '\0';
-    return field;
-}
 
 const char *lamp_columns_read(struct lamp_columns *c, const char *heading)
 {
@@ -43,7 +21,7 @@ const char *lamp_columns_read(struct lamp_columns *c, const char *heading)
     c->n = 0;
     if ((size_t)snprintf(copy, sizeof copy, "%s", heading) >= sizeof copy)
         return NULL; /* too long for a heading, so a remark */
-    while ((name = next_field(&rest)) && c->n < LAMP_COLUMNS) {
+    while ((name = text_field(&rest)) && c->n < LAMP_COLUMNS) {
         const int field = tool_word(name, names);
 
         c->field[c->n++] = field;
@@ -82,7 +60,7 @@ const char *lamp_columns_row(const struct lamp_columns *c, char *row, double *v)
     char *rest = row, *text;
     int n = 0;
 
-    for (; n < c->n && (text = next_field(&rest)); n++) {
+    for (; n < c->n && (text = text_field(&rest)); n++) {
         const int field = c->field[n];
 
         if (field == LAMP_ID)

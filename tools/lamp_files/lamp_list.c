@@ -9,8 +9,7 @@
 
 #include "engine/frame/area.h"
 #include "lamp_files/lamp_keys.h"
-#include "posix/error.h"
-#include "posix/input.h"
+#include "options/text_lines.h"
 #include "options/tool.h"
 
 enum { FIELDS = 8 };
@@ -180,85 +179,72 @@ enum glint_status lamp_list_add(struct lamp_list *list,
     return GLINT_OK;
 }
 
-static enum glint_status parse_text(struct lamp_list *list, char *text,
-                                    const char *path, struct glint_error *error)
+static const char no_memory[] = "no memory";
+
+/* Takes LINE, which may be a heading if it is the first one, into LIST. Returns
+ * NULL, or what is wrong with it. */
+static const char *take_line(struct lamp_list *list, char *line,
+                             struct lamp_columns *columns, bool is_first)
+{
+    double v[LAMP_COLUMNS] = {-1, 0, 0, 1, 1, 1, 1, 0, 0, 1, 0, 1};
+    const char *cause;
+    struct lamp_row row;
+
+    if (is_first && is_heading(line))
+        return lamp_columns_read(columns, line);
+    cause = *line == '{' ? parse_json(line, v) : parse_csv(line, columns, v);
+    if (cause)
+        return cause;
+    if (list->n == LAMP_LIST_MAX_ROWS)
+        return "more than 1048576 lights";
+    row = row_of(v);
+    return lamp_list_add(list, &row) == GLINT_OK ? NULL : no_memory;
+}
+
+static enum glint_status take_lines(struct lamp_list *list,
+                                    struct text_lines *lines,
+                                    struct glint_error *error)
 {
     struct lamp_columns columns = {.n = 0};
-    int number = 1;
+    enum glint_status status = GLINT_OK;
+    char *line;
 
-    for (char *next; text; text = next, number++) {
-        double v[LAMP_COLUMNS] = {-1, 0, 0, 1, 1, 1, 1, 0, 0, 1, 0, 1};
-        const char *cause = NULL;
-        struct lamp_row row;
-        char *line;
+    while (status == GLINT_OK && (line = text_lines_next(lines))) {
+        const char *const cause =
+            take_line(list, line, &columns, lines->number == 1);
 
-        next = strchr(text, '\n');
-        if (next)
-            *next++ = '\0';
-        line = skip(text);
-        for (size_t n = strlen(line); n && isspace((unsigned char)line[n - 1]);)
-            line[--n] = '\0';
-        if (!*line || *line == '#')
-            continue;
-        if (number == 1 && is_heading(line)) {
-            cause = lamp_columns_read(&columns, line);
-            if (!cause)
-                continue;
-        } else
-            cause = *line == '{' ? parse_json(line, v)
-                                 : parse_csv(line, &columns, v);
         if (cause)
-            return glint_error_report(error, GLINT_E_FORMAT, path, "%d: %s",
-                                      number, cause);
-        if (list->n == LAMP_LIST_MAX_ROWS)
-            return glint_error_report(error, GLINT_E_FORMAT, path,
-                                      "%d: more than %d lights", number,
-                                      LAMP_LIST_MAX_ROWS);
-        row = row_of(v);
-        if (lamp_list_add(list, &row) != GLINT_OK)
-            return glint_error_report(error, GLINT_E_MEMORY, path,
-                                      "%d: no memory", number);
+            status = text_lines_fail(lines, error, cause);
+        if (cause == no_memory)
+            status = GLINT_E_MEMORY;
     }
-    return GLINT_OK;
+    text_lines_close(lines);
+    if (status != GLINT_OK)
+        lamp_list_free(list);
+    return status;
 }
 
 enum glint_status lamp_list_parse(struct lamp_list *list, const char *text,
                                   size_t bytes, const char *name,
                                   struct glint_error *error)
 {
-    enum glint_status status;
-    char *copy;
+    struct text_lines lines;
+    const enum glint_status status =
+        text_lines_copy(&lines, name, text, bytes, error);
 
     *list = (struct lamp_list){NULL, 0, 0};
-    if (bytes && memchr(text, '\0', bytes))
-        return glint_error_report(error, GLINT_E_FORMAT, name,
-                                  "not a text file");
-    copy = calloc(bytes + 1, 1);
-    if (!copy)
-        return glint_error_report(error, GLINT_E_MEMORY, name, "no memory");
-    if (bytes)
-        memcpy(copy, text, bytes);
-    status = parse_text(list, copy, name, error);
-    free(copy);
-    if (status != GLINT_OK)
-        lamp_list_free(list);
-    return status;
+    return status == GLINT_OK ? take_lines(list, &lines, error) : status;
 }
 
 enum glint_status lamp_list_read(struct lamp_list *list, const char *path,
                                  struct glint_error *error)
 {
-    uint8_t *data = NULL;
-    size_t bytes = 0;
-    enum glint_status status =
-        glint_input_slurp(&data, &bytes, path, 1 << 28, error);
+    struct text_lines lines;
+    const enum glint_status status =
+        text_lines_open(&lines, path, 1 << 28, error);
 
     *list = (struct lamp_list){NULL, 0, 0};
-    if (status != GLINT_OK)
-        return status;
-    status = lamp_list_parse(list, (const char *)data, bytes, path, error);
-    free(data);
-    return status;
+    return status == GLINT_OK ? take_lines(list, &lines, error) : status;
 }
 
 void lamp_list_free(struct lamp_list *list)

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "desk/apart.h"
 #include "options/config.h"
 #include "linux/fourcc.h"
 #include "live/live.h"
@@ -19,7 +20,7 @@ static const char help[] =
     "them. The newest frame wins: what is late is left out and counted.\n"
     "\n"
     "  -d, --device DEV    /dev/video0 (default), a number; FILE.y4m, -, test\n"
-    "  -o, --output OUT    fb[:/dev/fb0] (default), window, y4m:FILE, y4m:-,\n"
+    "  -o, --output OUT    fb[:/dev/fb0] (default), window, FILE.y4m, y4m:-,\n"
     "                      v4l2:/dev/videoN (v4l2loopback), null\n"
     "  --list-devices      the cameras there are\n"
     "  --list-formats      what the camera offers\n"
@@ -44,7 +45,11 @@ static const char help[] =
     "  --stats HOW         auto | line | json | none: each second; json lines "
     "go\n"
     "                      to standard output. auto: a line, json with "
-    "--json\n"
+    "--json.\n"
+    "                      Keys: t (s), fps, frames, drops, late, corrupt,\n"
+    "                      latency_ms_p50, latency_ms_p99, ms (convert, find,\n"
+    "                      plan, bin, draw, show), lights, ghosts, bytes,\n"
+    "                      quality (0 to 1); total in the last line\n"
     "  --fit HOW           scale (default) | centre: a picture of another size "
     "than\n"
     "                      the panel\n"
@@ -53,8 +58,9 @@ static const char help[] =
     "  --snapshot NAME     (default glint-%03d.ppm)\n"
     "  --config FILE       these options, without dashes: lens = zoom.glint\n"
     "Signals: SIGHUP reads --config and lens again, SIGUSR1 reports, SIGUSR2 "
-    "saves.\n"
-    "Lens and lights\n" COMPOSITOR_HELP;
+    "saves.\n" SCENE_HELP;
+
+static const char help_lens[] = "Lens and lights\n" COMPOSITOR_HELP DESK_HELP;
 
 static const char help_end[] = SETTINGS_HELP;
 static const char help_last[] = SPEED_HELP COMMON_HELP;
@@ -126,6 +132,7 @@ static void set_defaults(struct live_options *o)
                                .snapshot = "glint-%03d.ppm"};
     compositor_defaults(&o->compositor);
     o->compositor.reserve_bytes = 32 << 20;
+    o->compositor.scene.is_live = true;
 }
 
 /* Reads TEXT, "30" or "30000/1001", as a rate. */
@@ -307,6 +314,25 @@ static int parse_line(struct line *line)
                                              line->argv[optind]);
 }
 
+/* Refuses files of O, with the configuration file CONFIG (NULL: none), that
+ * would be written over each other. Returns -1 or an exit code. */
+static int check_apart(const struct tool *tool, const struct live_options *o,
+                       const char *config)
+{
+    struct apart files = {.n_read = 0};
+    struct live_output output = {.path = NULL};
+    int code;
+
+    apart_read(&files, "--device", o->input.camera.device);
+    apart_read(&files, "--config", config);
+    if (live_output_parse(&output, o->output) && output.kind == LIVE_OUTPUT_Y4M)
+        apart_write(&files, "-o", output.path);
+    apart_write(&files, "--snapshot", o->snapshot);
+    apart_compositor(&files, &o->compositor);
+    code = apart_check(tool, &files);
+    return code == EXIT_OK ? -1 : code;
+}
+
 /* Reads options into INTO, first from the file of --config, then from the line,
  * so that the line wins. CONFIG holds the strings of the file. Returns -1 or an
  * exit code. */
@@ -314,18 +340,22 @@ static int parse(struct line *line, struct config *config,
                  struct live_options *into)
 {
     const char *path;
+    int code;
 
     set_defaults(into);
     line->into = into;
     path = tool_value_of(line->argc, line->argv, SHORT, options, OPT_CONFIG);
     if (path) {
-        const int code = config_read(config, path);
-
+        code = config_read(config, path);
         if (code != EXIT_OK)
             return code;
         compositor_options_end(&into->compositor);
     }
-    return parse_line(line);
+    code = compositor_style_of(line->tool, &into->compositor, line->argc,
+                               line->argv, SHORT, options);
+    if (code < 0)
+        code = parse_line(line);
+    return code < 0 ? check_apart(line->tool, into, path) : code;
 }
 
 static int reread(void *ctx, struct tool *tool, struct live_options *into)
@@ -354,6 +384,7 @@ int cmd_live(int argc, char **argv)
 {
     struct tool tool = {.name = "live",
                         .help = help,
+                        .help_desk = help_lens,
                         .help_end = help_end,
                         .help_last = help_last};
     struct live_options *o = calloc(1, sizeof *o);

@@ -70,7 +70,7 @@ static enum glint_status open_camera(struct live *l, struct glint_error *error)
     if (status != GLINT_OK)
         return status;
     l->time_us = 0;
-    if (l->o->compositor.sized)
+    if (l->o->compositor.sized && l->o->compositor.has_lens)
         glint_lamp_detector_restart(&l->o->compositor.finder);
     l->had_signal = l->in.source->has_signal;
     take_format(l);
@@ -90,11 +90,30 @@ static int fail_without(const struct live *l, enum glint_status status,
     return tool_fail(l->tool, status, text);
 }
 
+/* Returns whether NAME has the extension of a file, as no device has. */
+static bool is_file_name(const char *name)
+{
+    const char *const slash = strrchr(name, '/');
+
+    return strncmp(name, "/dev/", 5) != 0 && strchr(slash ? slash : name, '.');
+}
+
 static int fail_camera(const struct live *l, enum glint_status status,
                        const struct glint_error *error)
 {
+    const char *const device = l->o->input.camera.device;
+    char text[sizeof error->text + 120];
+
+    if (status == GLINT_E_DEVICE && device && is_file_name(device)) {
+        snprintf(text, sizeof text,
+                 "%.160s: no camera; videos and pictures are for glint "
+                 "overlay, or 'ffmpeg -i FILE -f yuv4mpegpipe - | glint live "
+                 "-d -'",
+                 device);
+        return tool_fail(l->tool, status, text);
+    }
     return fail_without(l, status, error,
-                        live_input_is_camera(l->o->input.camera.device)
+                        device && live_input_is_camera(device)
                             ? "-d test, or a .y4m file"
                             : NULL);
 }
@@ -211,13 +230,17 @@ static void note(struct live *l, const struct glint_source_frame *frame,
         t.shown_us = at_us[3];
         t.stage_us[LIVE_CONVERT] = at_us[1] - at_us[0];
         t.stage_us[LIVE_FIND] = us(compositor->find_ms);
+        t.stage_us[LIVE_SCENE] = us(compositor->scene.ms);
         t.stage_us[LIVE_PLAN] = us(compositor->report.plan_ms);
         t.stage_us[LIVE_BIN] = us(compositor->report.bin_ms);
         t.stage_us[LIVE_DRAW] = us(compositor->report.draw_ms);
         t.stage_us[LIVE_SHOW] = at_us[3] - at_us[2];
         t.lights = compositor->report.drawn_lights;
         t.ghosts = compositor->report.ghosts;
-        t.bytes = compositor->report.peak_bytes;
+        t.bytes = compositor->report.peak_bytes +
+                  compositor->report.star_bytes +
+                  over_scene_bytes(&compositor->scene);
+        t.reused = compositor->report.stats.reused != 0;
         t.quality = 1 - (double)l->adapt.step / LIVE_MAX_STEP;
     }
     live_stats_add(&l->log.stats, &t);

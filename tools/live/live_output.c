@@ -7,6 +7,7 @@ bool live_output_parse(struct live_output *o, const char *name)
 {
     static const char *const kinds[] = {"fb", "y4m", "v4l2", "null", "window"};
     const char *colon = strchr(name, ':');
+    const char *dot = strrchr(name, '.');
     const size_t length = colon ? (size_t)(colon - name) : strlen(name);
 
     o->sink = NULL;
@@ -18,7 +19,11 @@ bool live_output_parse(struct live_output *o, const char *name)
                    : k == LIVE_OUTPUT_FB ? !colon || *o->path
                                          : colon && *o->path;
         }
-    return false;
+    if (!dot || strcmp(dot, ".y4m") != 0)
+        return false;
+    o->kind = LIVE_OUTPUT_Y4M;
+    o->path = name;
+    return true;
 }
 
 bool live_output_is_flexible(const struct live_output *o)

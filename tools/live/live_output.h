@@ -2,7 +2,7 @@
  *
  * live_output.h - where live frames go to, by name:
  *   fb[:/dev/fb0]     the panel of a framebuffer
- *   y4m:FILE | y4m:-  a video file or pipe
+ *   y4m:FILE | y4m:-  a video file or pipe; also FILE.y4m
  *   v4l2:/dev/videoN  an output node, as of v4l2loopback
  *   window            one on the desktop, where there is the SDL plug-in
  *   null              nowhere

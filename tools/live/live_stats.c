@@ -11,7 +11,8 @@
 
 static const char *const stage_names[LIVE_N_STAGES] = {
     [LIVE_CONVERT] = "convert", [LIVE_FIND] = "find", [LIVE_PLAN] = "plan",
-    [LIVE_BIN] = "bin",         [LIVE_DRAW] = "draw", [LIVE_SHOW] = "show"};
+    [LIVE_BIN] = "bin",         [LIVE_DRAW] = "draw", [LIVE_SHOW] = "show",
+    [LIVE_SCENE] = "scene"};
 
 /* ---------------------------------------------------------------- counting */
 
@@ -61,6 +62,7 @@ static void add_frame(struct live_sums *s, const struct live_frame_times *t)
     s->most_ghosts = t->ghosts > s->most_ghosts ? t->ghosts : s->most_ghosts;
     s->most_bytes = t->bytes > s->most_bytes ? t->bytes : s->most_bytes;
     s->quality += t->quality;
+    s->reused += t->reused;
 }
 
 static void add(struct live_sums *s, const struct live_frame_times *t)
@@ -154,6 +156,13 @@ static void put_latency(struct writer *w, const struct live_sums *s,
         put(w, "null");
 }
 
+/* Returns whether there is anything to say of STAGE: a run without a scene has
+ * none to draw. */
+static bool is_said(const struct live_stats *stats, int stage)
+{
+    return stage != LIVE_SCENE || stats->total.stage_us[LIVE_SCENE] > 0;
+}
+
 char *live_stats_json(const struct live_stats *stats, int64_t now_us,
                       bool total, char text[LIVE_STATS_TEXT])
 {
@@ -170,12 +179,15 @@ char *live_stats_json(const struct live_stats *stats, int64_t now_us,
     put_latency(&w, s, 99);
     put(&w, ",\"ms\":{");
     for (int i = 0; i < LIVE_N_STAGES; i++) {
+        if (!is_said(stats, i))
+            continue;
         put(&w, "%s\"%s\":", i ? "," : "", stage_names[i]);
         put_mean(&w, s, 1e-3 * (double)s->stage_us[i], 3);
     }
     put(&w, "},\"lights\":%d,\"ghosts\":%d,\"bytes\":%zu,\"quality\":",
         s->most_lights, s->most_ghosts, s->most_bytes);
     put_mean(&w, s, s->quality, 3);
+    put(&w, ",\"reused\":%" PRIu64, s->reused);
     put(&w, "%s}", total ? ",\"total\":true" : "");
     return text;
 }
@@ -198,10 +210,14 @@ static void put_summary(struct writer *w, const struct live_stats *stats,
         put(w, "  q %.2f", s->quality / (double)s->frames);
 }
 
-static void put_stages(struct writer *w, const struct live_sums *s)
+static void put_stages(struct writer *w, const struct live_stats *stats)
 {
+    const struct live_sums *const s = &stats->second;
+
     put(w, "  ms:");
     for (int i = 0; i < LIVE_N_STAGES; i++) {
+        if (!is_said(stats, i))
+            continue;
         put(w, " %s ", stage_names[i]);
         put_mean(w, s, 1e-3 * (double)s->stage_us[i], 2);
     }
@@ -215,7 +231,7 @@ char *live_stats_line(const struct live_stats *stats, int64_t now_us,
 
     if (!terminal) {
         put_summary(&w, stats, now_us);
-        put_stages(&w, &stats->second);
+        put_stages(&w, stats);
         return text;
     }
     put(&w, "\r");

@@ -30,14 +30,15 @@ enum live_stage {
     LIVE_PLAN,
     LIVE_BIN, /* rays, edges, and their lists for tiles */
     LIVE_DRAW,
-    LIVE_SHOW, /* putting frames to the sink */
+    LIVE_SHOW,  /* putting frames to the sink */
+    LIVE_SCENE, /* drawing of a scene; said where there is one */
     LIVE_N_STAGES
 };
 
 enum {
     LIVE_BINS = 10000,    /* bins of latency */
     LIVE_BIN_US = 100,    /* width of a bin */
-    LIVE_STATS_TEXT = 640 /* room for any line, bytes */
+    LIVE_STATS_TEXT = 672 /* room for any line, bytes */
 };
 
 /* Times of one frame, or only counts of lost frames. */
@@ -49,6 +50,7 @@ struct live_frame_times {
     int lights, ghosts;
     size_t bytes;   /* bytes of the arena in use */
     double quality; /* 0 .. 1 */
+    bool reused;    /* true: with the edges of the frame before */
 };
 
 /* Sums over a second, or over the run. */
@@ -60,6 +62,7 @@ struct live_sums {
     int most_lights, most_ghosts;
     size_t most_bytes;
     double quality; /* sum over the frames */
+    uint64_t reused;
     /* latencies; the last bin: a second and more */
     uint32_t bin[LIVE_BINS + 1];
 };

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Stands in for settings_table.c in programs without the offline half, which
- * take baked models only.
+ * Stands in for settings_table.c and scene_file.c in programs without the
+ * offline half, which take baked models and scenes only.
  */
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "desk/stop_option.h"
 #include "options/settings_table.h"
+#include "scenes/scene_file.h"
 
 int settings_open_table(const struct tool *tool, struct settings *settings,
                         const char *name)
@@ -33,6 +35,12 @@ int settings_open_table(const struct tool *tool, struct settings *settings,
     return tool_fail(tool, GLINT_E_LENS, error.text);
 }
 
+int stop_option_open(const struct tool *tool, struct stop_option *stop)
+{
+    (void)stop;
+    return tool_usage(tool, "--stop-mask: this program reads no pictures");
+}
+
 /* Reports that there is no model. It is not reached, as all settings that were
  * opened have one. */
 enum glint_status settings_table_setup(struct settings *settings,
@@ -41,6 +49,33 @@ enum glint_status settings_table_setup(struct settings *settings,
     (void)settings;
     snprintf(error->text, sizeof error->text, "there is no model");
     return GLINT_E_LENS;
+}
+
+bool tool_is_scene(const char *argument)
+{
+    const size_t n = strlen(argument);
+
+    return n > 6 && strcmp(argument + n - 6, ".scene") == 0;
+}
+
+/* The files that live writes are kept apart by desk/apart.h. */
+int tool_scene_is_kept(const struct tool *tool, const char *path)
+{
+    (void)tool, (void)path;
+    return EXIT_OK;
+}
+
+int tool_scene_bake(const struct tool *tool, const char *path, uint8_t **data,
+                    size_t *bytes, struct glint_scene_bake_report *report)
+{
+    struct glint_error error;
+
+    (void)data, (void)bytes, (void)report;
+    snprintf(error.text, sizeof error.text,
+             "%.120s is a text; this program takes baked scenes only (glint "
+             "bake, on any machine)",
+             path);
+    return tool_fail(tool, GLINT_E_LENS, error.text);
 }
 
 const struct glint_frame_rays *settings_table_rays(void)

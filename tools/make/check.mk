@@ -1,7 +1,7 @@
 # Tests, sanitizers, analysis.
 
 # What tests share; fakes answer calls of those alone that want them.
-$(OUT)/libglint-tests.a: $(patsubst %.c,$(OUT)/%.o,$(wildcard tests/support/*.c tests/support/models/*.c))
+$(OUT)/libglint-tests.a: $(patsubst %.c,$(OUT)/%.o,$(wildcard tests/support/*.c tests/support/models/*.c tests/support/stars/*.c))
 
 # Unit tests, each a program: tests/unit/ROOM/test_NAME.c is OUT/tests/unit/test_NAME.
 EXTREMES := $(patsubst tests/unit/props/test_extremes_%.c,%,$(wildcard tests/unit/props/test_extremes_*.c))
@@ -62,6 +62,13 @@ run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/ray_errors $(exa
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
 	        $(replay_bins)
 	@[ -n "$(filter asan tsan,$(CONFIG))" ] || tests/extremes --quick
+# What a release must pass beside .ci/run, which has to be done in 40 minutes.
+check-all:
+	@$(MAKE) --no-print-directory analyze
+	@for how in "" CC=clang CONFIG=asan CONFIG=tsan CONFIG=qcheck; do \
+	        $(MAKE) --no-print-directory check VM=no $$how || exit 1; done
+	@for what in demo check-files check-valgrind check-arm check-vm; do \
+	        $(MAKE) --no-print-directory $$what || exit 1; done
 # What other programs find in files that overlay has written.
 check-files:
 	@tools/make/deps "picture files as other programs see them" g++ pkg-config libopenimageio-dev \
@@ -138,7 +145,7 @@ lint: $(libraries) $(OUT)/libglint-engine.a $(OUT)/libglint-bake.a
 	@[ $(CONFIG) != release ] || \
 	        $(MAKE) -s --no-print-directory purity
 	@clang-format --dry-run -Werror $(sources)
-	@for h in include/glint/*.h; do \
+	@for h in include/glint/*.h include/glint/*/*.h; do \
 	        $(CC) -Iinclude -std=c99 -Wall -Wno-unused-function -Wpedantic -Werror -fsyntax-only -x c $$h || exit 1; \
 	        ! command -v $(CXX) >/dev/null || \
 	        $(CXX) -Iinclude -std=c++17 -Wall -Wno-unused-function -Wpedantic -Werror -fsyntax-only -x c++ $$h || exit 1; done
@@ -152,5 +159,5 @@ purity: $(libraries) $(board_o)
 	@tools/lint/purity --calls '$(board_calls)' $(NM) $(OBJDUMP) $(board_o) $(OUT)/libglint.a
 
 
-.PHONY: check run-check check-files extremes mutants check-valgrind run-valgrind golden-update \
+.PHONY: check run-check check-files check-all extremes mutants check-valgrind run-valgrind golden-update \
         fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format lint purity

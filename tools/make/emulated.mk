@@ -4,7 +4,7 @@
 # the same hashes, with models baked here (tests/arm/check).
 ARM_TARGETS := aarch64 armv7 armv7-neon armv6-soft
 ARM_MODELS  := heliar-tronnier double-gauss-angenieux nikon-zoom-mid
-ARM_UNIT := aim arena divide cuts kernels model transfer curve edges resolve composite lamp_finder lamp_shapes flare flare_light flare_room plan account lights bright match window pass blend hidden_lamps \
+ARM_UNIT := aim arena divide cuts kernels model transfer curve edges resolve composite lamp_finder lamp_shapes flare flare_light flare_room plan account lights scene_draw scene_model scene_rays scene_shade bright match window pass blend star_bits hidden_lamps \
         lamp_tracker lamp_tracker_any quantise pnm y4m y4m_divide output workers measure lamps fourcc panel frame \
         show_lights live_stats live_adapt
 # Those that want a model bake it here first, for all.
@@ -13,18 +13,26 @@ build/models/%.glint: lenses/%.lens $(OUT)/libglint-bake.a | $(OUT)/glint
 	@mkdir -p $(@D)
 	$(say) BAKE $@
 	$(Q)$(OUT)/glint bake $< -q -o $@
-$(OUT)/scenes: $(OUT)/tests/arm/scenes.o $(libs)
+$(OUT)/scenes: $(OUT)/tests/arm/scenes.o $(OUT)/tests/support/stars/any.o $(libs)
 	$(link)
+$(OUT)/things: $(OUT)/tests/arm/things.o $(libs)
+	$(link)
+ARM_SCENES := tools/examples/scenes/shop.scene tools/examples/scenes/ball.scene \
+        tools/examples/scenes/tutorial.scene $(patsubst %,tests/peers/%.scene,mesh phong reflect refract shadow texture)
+build/things/%.glint: $(OUT)/glint
+	@mkdir -p $(@D)
+	$(Q)$(OUT)/glint bake $(filter %/$*.scene,$(ARM_SCENES)) -q -o $@
 arm-tests: $(ARM_UNIT:%=$(OUT)/tests/unit/test_%)
 check-arm:
 	@tools/make/deps "ARM in an emulator" gcc-aarch64-linux-gnu libc6-dev-arm64-cross \
 	        gcc-arm-linux-gnueabihf libc6-dev-armhf-cross gcc-arm-linux-gnueabi \
 	        libc6-dev-armel-cross qemu-user-static debian-archive-keyring
-	@$(MAKE) --no-print-directory WERROR=-Werror all $(OUT)/scenes $(ARM_BAKES) \
+	@$(MAKE) --no-print-directory WERROR=-Werror all $(OUT)/scenes $(OUT)/things $(ARM_BAKES) \
+	        $(patsubst %.scene,build/things/%.glint,$(notdir $(ARM_SCENES))) \
 	        $(ARM_MODELS:%=build/models/%.glint)
 	@set -e; for t in $(ARM_TARGETS); do \
 	        $(MAKE) --no-print-directory WERROR=-Werror TARGET=$$t purity \
-	                build/$$t/scenes; done; \
+	                build/$$t/scenes build/$$t/things; done; \
 	for t in aarch64 armv7; do s=$$(tests/arm/prepare $$t); \
 	        $(MAKE) --no-print-directory WERROR=-Werror TARGET=$$t \
 	                SYSROOT=$$s arm-tests glint-live build/$$t/examples/draw_flare; \

@@ -46,11 +46,12 @@ of = $(eval $(patsubst %,$(OUT)/%.o,$(1)): CFLAGS += $(2))
 # Run once, or once for a lamp, bundle or row: small rather than fast.
 $(call of,$(addprefix src/base/,status arena workers blob) src/image/image,-Os)
 $(call of,$(addprefix src/lens/,model model_system),-Os)
+$(call of,$(addprefix src/scene/,phong ray shadow surface vector view visible mesh mesh_ray mesh_surface frame/quick frame/quick_mesh frame/mesh_small frame/scene_pass) src/image/cover,-O3)# loops of three
 $(call of,$(addprefix src/lamps/,lamp_finder lamp_list),-Os)
 $(call of,$(addprefix src/follow/,match follow record lamp_tracker),-Os)
 $(call of,$(addprefix src/flare/,aim by_edges capacities colours lights plan plan_cells probe window wave_sets flare draw_over account),-Os)
 $(call of,$(addprefix src/published/,ghost_grid by_cells clip),-Os)
-$(call of,src/tile/bins src/tile/pass src/star/star $(addprefix src/image/,resolve curve mix),-Os)
+$(call of,src/tile/bins src/tile/pass src/star/star src/veil/veil $(addprefix src/image/,resolve curve mix),-Os)
 
 # Hot loops are unrolled.
 $(call of,src/kernels/%,-O3)
@@ -58,7 +59,7 @@ $(call of,$(addprefix src/lamps/,bright_mark bright_scan row_light),-O3)
 $(call of,$(addprefix src/flare/edges/,ghost_edges ghost_rows),-O3)
 $(call of,$(addprefix src/flare/edges/,edge edge_add),-O3 -fno-tree-vectorize)# their loops are short
 # Unrolling these buys nothing but bytes.
-$(call of,$(addprefix src/image/,codes quads) $(addprefix src/flare/,edges/sums edges_pass) \
+$(call of,$(addprefix src/image/,codes quads) src/veil/veil_pass src/veil/veil_front src/tile/blend $(addprefix src/flare/,edges/sums edges_pass) \
 	$(addprefix src/lens/,transfer transfer_rays transfer_grid),-ftree-vectorize)
 # Every frame of a camera goes through these on its way to a panel.
 $(call of,$(addprefix platform/panel/,split row_rgb row_pack planar),-O3)
@@ -87,6 +88,8 @@ else ifeq ($(CONFIG),tsan)
 SANITIZE := -fsanitize=thread
 else ifeq ($(CONFIG),fuzz) # what make fuzz builds; clang only
 SANITIZE := -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
+# What rays compare is no word of a file, and takes half of the time to follow.
+$(filter-out %/model.o %/model_mesh.o,$(call objects,src,base kernels/rays scene)): CFLAGS += -fno-sanitize-coverage=trace-cmp
 else ifeq ($(CONFIG),analyze) # what make analyze builds; gcc only
 # as it is written: -O0 keeps functions and their messages apart
 ANALYZER := -O0 -fanalyzer -Wno-frame-larger-than

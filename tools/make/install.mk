@@ -6,24 +6,30 @@
 program := $(if $(CROSS),$(OUT)/glint,build/glint)
 PLUGIN  ?= $(if $(CROSS),no,$(shell command -v $(CXX) >/dev/null && \
         pkg-config --exists OpenImageIO 2>/dev/null && echo yes || echo no))
+MESHES  ?= $(if $(CROSS),no,$(shell pkg-config --exists assimp 2>/dev/null && echo yes || echo no))
 WINDOW  ?= $(if $(CROSS),no,$(shell pkg-config --exists sdl2 2>/dev/null && echo yes || echo no))
 MODELS  ?= $(if $(CROSS),no,yes)
 to := $(DESTDIR)$(PREFIX)
 INSTALLED := -bake -engine -published
 install: all glint-live $(if $(filter yes,$(PLUGIN)),build/glint-oiio.so) \
+        $(if $(filter yes,$(MESHES)),build/glint-assimp.so) \
         $(if $(filter yes,$(WINDOW)),build/glint-sdl.so)
-	install -d $(to)/bin $(to)/include/glint $(to)/lib/glint \
+	install -d $(to)/bin $(to)/include/glint/scene $(to)/lib/glint \
 	        $(to)/share/glint/lenses $(to)/lib/systemd/system
 	install $(if $(CROSS),-s --strip-program=$(CROSS)strip) -m 755 \
 	        $(program) $(OUT)/glint-live $(to)/bin
 	install -m 644 include/glint/*.h $(to)/include/glint
+	install -m 644 include/glint/scene/*.h $(to)/include/glint/scene
 	install -m 644 $(patsubst %,$(OUT)/libglint%.a,$(INSTALLED)) $(OUT)/libglint.a $(to)/lib
 	install -m 644 lenses/*.lens $(to)/share/glint/lenses
+	install -m 644 tests/data/bridge.$(if $(filter yes,$(PLUGIN)),jpg,ppm) $(to)/share/glint
 	sed 's,@PREFIX@,$(PREFIX),' platform/linux/glint-live.service \
 	        >$(to)/lib/systemd/system/glint-live.service
 	chmod 644 $(to)/lib/systemd/system/glint-live.service
 	$(if $(filter yes,$(PLUGIN)),install -m 755 build/glint-oiio.so $(to)/lib/glint, \
 	        @echo 'without the image plug-in (g++, pkg-config, libopenimageio-dev): PPM, PFM and y4m')
+	$(if $(filter yes,$(MESHES)),install -m 755 build/glint-assimp.so $(to)/lib/glint, \
+	        @echo 'without the mesh plug-in (pkg-config, libassimp-dev): OBJ')
 	$(if $(filter yes,$(WINDOW)),install -m 755 build/glint-sdl.so $(to)/lib/glint)
 ifneq ($(MODELS),no)
 	@echo 'baking the models of all lenses, where there are none yet (MODELS=no: later)'
@@ -36,12 +42,12 @@ endif
 uninstall:
 	rm -f $(to)/bin/glint $(to)/bin/glint-live $(to)/lib/libglint.a \
 	        $(patsubst %,$(to)/lib/libglint%.a,$(INSTALLED)) $(to)/lib/glint/glint-oiio.so \
-	        $(to)/lib/glint/glint-sdl.so \
+	        $(to)/lib/glint/glint-assimp.so $(to)/lib/glint/glint-sdl.so \
 	        $(to)/lib/systemd/system/glint-live.service \
-	        $(patsubst %,$(to)/%,$(wildcard include/glint/*.h)) \
+	        $(patsubst %,$(to)/%,$(wildcard include/glint/*.h include/glint/*/*.h)) \
 	        $(patsubst %,$(to)/share/glint/%,$(wildcard lenses/*.lens)) \
-	        $(to)/share/glint/models/*.glint
-	@for d in include/glint lib/glint share/glint/models share/glint/lenses share/glint \
+	        $(to)/share/glint/models/*.glint $(to)/share/glint/bridge.jpg $(to)/share/glint/bridge.ppm
+	@for d in include/glint/scene include/glint lib/glint share/glint/models share/glint/lenses share/glint \
 	        lib/systemd/system lib/systemd; do \
 	        if [ -d $(to)/$$d ]; then rmdir --ignore-fail-on-non-empty $(to)/$$d; fi; done
 .PHONY: install uninstall

@@ -5,6 +5,8 @@ video-report: $(OUT)/steady
 	@{ echo "revision $$(git rev-parse --short HEAD), $$(nproc)-core $$(uname -m) machine"; \
 	    echo; $(OUT)/steady --lens lenses/nikon-zoom-short.lens $(VIDEOS) || \
 	    echo "steady: a step is larger than its bound" >&2; } | tools/report/write-figures steady
+occlusion-table: $(OUT)/occlusion
+	@$(OUT)/occlusion | tools/report/write-figures occlusion
 demo:
 	@tools/make/deps "PNG and JPEG pictures, and video to look at" g++ pkg-config \
 	        libopenimageio-dev libwebp-dev ffmpeg
@@ -15,19 +17,47 @@ inputs:
 	@tools/make/inputs
 table: all
 	@tools/report/raster-table | tools/report/write-figures raster
+# Scenes as POV-Ray draws them.
+scene-table: all $(OUT)/scene_peer
+	@tools/make/deps "scenes of another program" povray >&2
+	@tests/peers/povray $(OUT) | tools/report/write-figures scene
+# A sun behind a ball: the light of its flare by frame.
+hidden-table: all
+	@tools/report/hidden-table tests/figures/scenes/hidden.svg | tools/report/write-figures scenes/hidden
+# Meshes of Debian packages; pictures of some go to build/meshes.
+mesh-table: all
+	@tools/make/deps "meshes, and the plug-in for them" libassimp-dev pkg-config \
+	        assimp-testmodels libcgal-demo >&2
+	@$(MAKE) --no-print-directory assimp >&2
+	@tools/report/mesh-table | tools/report/write-figures scenes/meshes
+# Ward's lobe under eight panoramas of Debian's blender-data.
+ward-table: all $(OUT)/ward_table
+	@tools/make/deps "pictures, and the plug-in for them" libopenimageio-dev pkg-config g++ >&2
+	@$(MAKE) --no-print-directory oiio >&2
+	@tests/programs/ward-table $(OUT)/ward_table | tools/report/write-figures scenes/ward
+scene-cost-table: all
+	@tools/make/deps "instruction counts on ARM" gcc-aarch64-linux-gnu \
+	        libc6-dev-arm64-cross qemu-user debian-archive-keyring >&2
+	@$(MAKE) -s --no-print-directory TARGET=aarch64 \
+	        SYSROOT=$$(tests/arm/prepare aarch64) build/aarch64/scene_cost >&2
+	@tools/report/scene-cost-table | tools/report/write-figures scenes/cost
 bake-table: all $(OUT)/ray_errors
 	@tools/report/bake-table | tools/report/write-figures bake
 # LENSES="A.lens ...": these; EVERY=N: each Nth angle; OPEN=N, STOPS="...".
-wide-table: all
-	@tools/report/wide-table $(LENSES) | tools/report/write-figures wide
+wide-table: all $(OUT)/stop_costs
+	@STOP_COSTS=$(OUT)/stop_costs tools/report/wide-table $(LENSES) | tools/report/write-figures wide
 wide-table: export EVERY := $(EVERY)
 accuracy-table: all
 	@tools/report/accuracy-table | tools/report/write-figures accuracy
 colour-table: all $(OUT)/hue_steps
 	@tools/make/deps "instruction counts" valgrind >&2
 	@HUE_STEPS=$(OUT)/hue_steps tools/report/colour-table | tools/report/write-figures colour
+coating-table: all
+	@tools/report/coating-table
 ray-table: all $(OUT)/ray_errors
 	@tools/report/ray-table build/bake | tools/report/write-figures rays
+stop-table: all
+	@tools/report/stop-table | tools/report/write-figures shapes/stop
 power-table: $(OUT)/power_table
 	@tools/make/deps "HDR panoramas" openimageio-tools python3 npm
 	@tests/power-table $< | tools/report/write-figures power
@@ -57,6 +87,9 @@ corpus-report: corpus all
 	    --every $(EVERY) --minutes $(MINUTES) >build/report.md
 	@{ echo "Revision $$(git rev-parse --short HEAD)."; cat build/report.md; } | \
 	    tools/report/write-figures brightness
+# Photographs with our flares, and with real ones beside ours.
+gallery: corpus all
+	@tests/corpus/gallery tests/gallery
 # The bridge by night through every lens.
 lens-sheet: all oiio
 	@tools/make/deps "contact sheets" python3-pil
@@ -82,11 +115,42 @@ trade: all
 	@build/glint sweep -o build/trade $(TRADE)
 	@echo build/trade/index.html
 lights-table: $(OUT)/lights
-	@$(OUT)/lights 0 $(MODELS) | tools/report/write-figures lights
+	@$(OUT)/lights tests/golden/lights.svg $(MODELS) | \
+	    tools/report/write-figures lights
+# MODELS="A.glint ...", VIDEOS="A.y4m ...": these, too
+reuse-table: all $(OUT)/reuse
+	@tools/make/deps "instruction counts, noise" valgrind ffmpeg >&2
+	@tools/report/reuse-table $(OUT)/reuse $(MODELS) | tools/report/write-figures videos/reuse
+reuse-table: export VIDEOS := $(VIDEOS)
+# What each of two threads does, in instructions.
+threads-table: $(OUT)/lights
+	@tools/make/deps "instruction counts" valgrind >&2
+	@tools/report/threads-table $< $(MODELS) | tools/report/write-figures night/threads
+flicker-table: $(OUT)/flicker
+	@$(OUT)/flicker $(MODELS) | tools/report/write-figures flicker
+# What bakes say of the time they will take, over what they take.
+left-table: $(OUT)/bake_left
+	@tools/report/left-table $(OUT)/bake_left | tools/report/write-figures cost/left
+# A lens stopped down through a video; MODEL: baked for its widest stop; GRID:
+# cells a side of the exact rays'.
+stopping-table: $(OUT)/stopping
+	@$(OUT)/stopping $(LENS) $(MODEL) tests/figures/shapes/stopping.svg $(GRID) | \
+	    tools/report/write-figures shapes/stopping
 hostile-table: $(OUT)/hostile_models
 	@$(OUT)/hostile_models | tools/report/write-figures hostile
+star-table: all $(OUT)/star_table
+	@tools/make/deps "instruction counts" valgrind >&2
+	@tools/report/star-table $(OUT)/star_table tests/figures/starburst.svg | tools/report/write-figures starburst
 memory-table: all
 	@tools/report/memory-table | tools/report/write-figures memory
+# The weights of src/engine/frame/cost.c, by random frames.
+cost-fit: all $(OUT)/cost_frames
+	@tools/make/deps "instruction counts" valgrind >&2
+	@tools/report/cost-fit $(OUT)/cost_frames $(COUNTS) | tools/report/write-figures cost/plans
+# The weights of tools/scenes/account.c, likewise.
+scene-cost-fit: all $(OUT)/scene_told
+	@tools/make/deps "instruction counts" valgrind >&2
+	@tests/scene-fit $(OUT)/scene_told $(COUNTS) | tools/report/write-figures scenes/told
 budget: all
 	@tools/make/deps "instruction counts on ARM" gcc-aarch64-linux-gnu \
 	        libc6-dev-arm64-cross gcc-arm-linux-gnueabihf \
@@ -95,7 +159,8 @@ budget: all
 	        build/$$t/glint >&2 || exit 1; done
 	@tools/report/budget | tools/report/write-figures arm
 
-.PHONY: video-report demo inputs table bake-table wide-table accuracy-table colour-table ray-table power-table \
+.PHONY: hidden-table occlusion-table video-report demo inputs table bake-table wide-table accuracy-table colour-table coating-table ray-table power-table \
         power-fit \
-        corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet \
-        bench bench-insn growth size trade lights-table hostile-table memory-table budget
+        corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet gallery \
+        bench bench-insn growth size trade lights-table threads-table reuse-table flicker-table left-table stopping-table hostile-table star-table memory-table \
+        cost-fit scene-cost-fit budget

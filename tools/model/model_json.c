@@ -26,6 +26,30 @@ static void json_errors(const struct model_summary *sum)
     printf("}");
 }
 
+/* Prints "misses", a list of the ghosts that miss their targets. */
+static void json_misses(const struct glint_lens *lens)
+{
+    const char *comma = "";
+
+    printf(", \"misses\": [");
+    for (uint32_t k = 0; k < model_ghost_count(lens); k++) {
+        const struct glint_model_ghost *g = &lens->ghost[k];
+        const struct model_miss miss = model_miss_of(lens, k);
+
+        if (!miss.zones)
+            continue;
+        printf("%s{\"ghost\": %lu, \"pair\": [%lu, %lu], \"angle_deg\": "
+               "[%.6f, %.6f], \"zones\": %lu, \"output\": \"%s\", "
+               "\"p99\": %.6g, \"over\": %.6g}",
+               comma, (unsigned long)k, (unsigned long)g->i,
+               (unsigned long)g->j, miss.angle_deg[0], miss.angle_deg[1],
+               (unsigned long)miss.zones, model_output_names[miss.output],
+               miss.p99, miss.over);
+        comma = ", ";
+    }
+    printf("]");
+}
+
 static void json_header(const struct model_file *model)
 {
     const struct glint_model_header *h = model->lens.header;
@@ -57,6 +81,7 @@ static void json_header(const struct model_file *model)
            model_degrees(h->sine_hi_q30), model_real_of(h->field_mm),
            (unsigned long)h->n_systems, model_mean_terms(&sum));
     json_errors(&sum);
+    json_misses(&model->lens);
 }
 
 static void json_system(const struct glint_lens *lens, uint32_t ghost,
@@ -138,6 +163,7 @@ void model_json_bake(const struct glint_lens *lens, double seconds,
            (unsigned long)h->n_systems, model_mean_terms(&sum), report->unmet,
            report->rays, report->intruders);
     json_errors(&sum);
+    json_misses(lens);
     printf(", \"by_ghost\": [");
     for (uint32_t k = 0; k < h->n_ghosts; k++) {
         printf("%s", k ? ", " : "");

@@ -172,20 +172,56 @@ uint32_t model_ghost_of(const struct glint_lens *lens, uint32_t entry)
     return k;
 }
 
+static bool is_of(const struct glint_lens *lens, uint32_t entry, uint32_t ghost)
+{
+    return lens->ghost[entry].i == lens->ghost[ghost].i &&
+           lens->ghost[entry].j == lens->ghost[ghost].j;
+}
+
+/* Adds system SYSTEM to MISS if it misses. */
+static void add_miss(const struct glint_lens *lens, uint32_t system,
+                     struct model_miss *miss)
+{
+    const struct model_span span = {system, 1};
+    const struct model_summary sum = model_summary_of(lens, span);
+    double range_deg[2];
+
+    if (!model_misses(&sum))
+        return;
+    model_span_angles(lens, span, range_deg);
+    miss->angle_deg[0] =
+        miss->zones ? fmin(miss->angle_deg[0], range_deg[0]) : range_deg[0];
+    miss->angle_deg[1] = fmax(miss->angle_deg[1], range_deg[1]);
+    miss->zones++;
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
+        const double over = sum.of[kind].p99 / model_output_targets[kind];
+
+        if (over <= miss->over)
+            continue;
+        miss->output = kind;
+        miss->p99 = sum.of[kind].p99;
+        miss->over = over;
+    }
+}
+
+struct model_miss model_miss_of(const struct glint_lens *lens, uint32_t ghost)
+{
+    struct model_miss miss = {.zones = 0};
+
+    for (uint32_t entry = ghost; entry < lens->header->n_ghosts; entry++) {
+        const struct model_span span = model_span_of_ghost(lens, entry);
+
+        for (uint32_t k = 0; is_of(lens, entry, ghost) && k < span.n; k++)
+            add_miss(lens, span.first + k, &miss);
+    }
+    return miss;
+}
+
 unsigned model_missed_count(const struct glint_lens *lens)
 {
-    bool missed[GLINT_MAX_GHOSTS] = {false};
     unsigned n = 0;
 
-    for (uint32_t k = 0; k < lens->header->n_ghosts; k++) {
-        const struct model_summary sum =
-            model_summary_of(lens, model_span_of_ghost(lens, k));
-        const uint32_t ghost = model_ghost_of(lens, k);
-
-        if (ghost < GLINT_MAX_GHOSTS && model_misses(&sum) && !missed[ghost]) {
-            missed[ghost] = true;
-            n++;
-        }
-    }
+    for (uint32_t k = 0; k < model_ghost_count(lens); k++)
+        n += model_miss_of(lens, k).zones > 0;
     return n;
 }

@@ -67,6 +67,17 @@ uint32_t model_ghost_count(const struct glint_lens *lens);
 /* Returns the number of the ghost that ENTRY is, or is a part of. */
 uint32_t model_ghost_of(const struct glint_lens *lens, uint32_t entry);
 
+/* Where a ghost misses its targets. */
+struct model_miss {
+    uint32_t zones;      /* number of zones and parts of them; 0: it does not */
+    double angle_deg[2]; /* least and largest angle of them */
+    int output;          /* the one that misses its target by most */
+    double p99, over;    /* its error, and that in targets */
+};
+
+/* Returns where ghost GHOST, with the further parts of its pupil, misses. */
+struct model_miss model_miss_of(const struct glint_lens *lens, uint32_t ghost);
+
 /* Returns the number of ghosts of which some part misses its target. */
 unsigned model_missed_count(const struct glint_lens *lens);
 

@@ -54,9 +54,14 @@ static void add_setup(uint64_t *key, const struct glint_setup *s)
     const size_t n = (size_t)s->n_wavelengths;
     const double stop[] = {s->n_blades, s->blade_rotation_deg, s->opening,
                            s->n_wavelengths, s->n_sets};
+    const struct glint_iris *own = &s->iris;
+    const double iris[] = {own->roundness, own->softness, own->dust,
+                           own->dust_seed, s->clear};
     const struct glint_set_wave *w = s->set_wave;
 
     add_values(key, stop, sizeof stop / sizeof *stop);
+    if (own->roundness > 0 || s->dirt)
+        add_values(key, iris, sizeof iris / sizeof *iris);
     add_values(key, s->wavelength_nm, n);
     add_values(key, s->rgb[0], 3 * n);
     add_values(key, s->unit_flux, n);

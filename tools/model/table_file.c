@@ -18,6 +18,43 @@ static bool offer(void *suggest, const char *name)
     return true;
 }
 
+/* Lenses whose names contain a word. */
+struct lens_matches {
+    const char *word;
+    int n;
+    char text[400]; /* ", NAME, NAME or NAME" */
+    size_t last;    /* where its last comma is */
+};
+
+static bool match(void *matches, const char *name)
+{
+    struct lens_matches *m = matches;
+    const size_t at = strlen(m->text);
+
+    if (!strstr(name, m->word) || at + strlen(name) + 8 > sizeof m->text)
+        return true;
+    m->last = at;
+    m->n++;
+    snprintf(m->text + at, sizeof m->text - at, ", %s", name);
+    return true;
+}
+
+/* Prints the lenses whose names contain NAME; returns how many there are. */
+static int print_matches(const struct tool *tool, const char *name)
+{
+    struct lens_matches m = {.word = name};
+
+    if (strlen(name) >= 3)
+        lens_files_each(match, &m);
+    if (m.n > 1)
+        fprintf(stderr,
+                "glint %s: %s: %d lenses have this in their names (did you "
+                "mean %.*s or %s)\n",
+                tool->name, name, m.n, (int)m.last - 2, m.text + 2,
+                m.text + m.last + 2);
+    return m.n;
+}
+
 static int no_lens(const struct tool *tool, const char *name)
 {
     struct suggest s;
@@ -29,6 +66,8 @@ static int no_lens(const struct tool *tool, const char *name)
                 tool->name, name, name);
         return EXIT_LENS;
     }
+    if (print_matches(tool, name) > 1)
+        return EXIT_LENS;
     suggest_begin(&s, name);
     lens_files_each(offer, &s);
     fprintf(stderr,

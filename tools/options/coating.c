@@ -10,23 +10,60 @@ int coating_take(const struct tool *tool, struct coating *c, const char *text)
     const int word = tool_word(text, words);
 
     c->given = true;
-    c->kind = word < 0 ? COATING_FILMS : (enum coating_kind)word;
-    if (word >= 0 ||
-        glint_films_parse(c->film, &c->n_films, text, &error) == GLINT_OK)
+    c->kind = word < 0 ? COATING_DEALT : (enum coating_kind)word;
+    if (word >= 0 || glint_coatings_parse(c->coating, &c->n_coatings, text,
+                                          &error) == GLINT_OK)
         return -1;
     return tool_usage(tool,
-                      "--coating takes table, mixed, none or films "
-                      "NM[/INDEX][,...], not '%s': %s",
+                      "--coating takes table, mixed, none or coatings "
+                      "NAME[/NM] or NM[/INDEX[:QUARTERS]]...[,...], not '%s': "
+                      "%s",
                       text, error.text);
+}
+
+/* Returns the name of COATING, or NULL. */
+static const char *name_of(const struct glint_coating *coating)
+{
+    struct glint_coating known;
+    const char *name;
+
+    for (int k = 0; (name = glint_coating_named(k, &known)); k++) {
+        bool same = known.n_films == coating->n_films;
+
+        for (int i = 0; i < known.n_films && same; i++)
+            same = known.film[i].index == coating->film[i].index &&
+                   known.film[i].quarters == coating->film[i].quarters;
+        if (same)
+            return name;
+    }
+    return NULL;
+}
+
+void coating_print(FILE *file, const struct glint_coating *c)
+{
+    const char *name = name_of(c);
+
+    if (c->n_films == 0)
+        fprintf(file, "none");
+    else if (name)
+        fprintf(file, "%s, %g nm", name, c->nm);
+    else
+        fprintf(file, "%g nm, index %g", c->nm, c->film[0].index);
+    if (c->n_films == 0 || (c->n_films == 1 && c->film[0].quarters == 1))
+        return;
+    for (int i = 0; i < c->n_films; i++)
+        fprintf(file, "%s%g:%g", i ? " " : " (", c->film[i].index,
+                c->film[i].quarters);
+    fprintf(file, ")");
 }
 
 void coating_apply(const struct coating *c, struct glint_prescription *lens)
 {
-    struct glint_film standard[GLINT_MAX_FILMS];
-    const int n = glint_films_mixed(standard);
+    struct glint_coating standard[GLINT_MAX_COATINGS];
+    const int n = glint_coatings_mixed(standard);
 
-    if (c->kind == COATING_FILMS)
-        glint_prescription_coat(lens, c->film, c->n_films);
+    if (c->kind == COATING_DEALT)
+        glint_prescription_coat(lens, c->coating, c->n_coatings);
     else if (c->kind == COATING_MIXED && lens->n_mixed)
         glint_prescription_coat(lens, lens->mixed, lens->n_mixed);
     else if (c->kind == COATING_MIXED)

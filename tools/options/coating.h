@@ -7,13 +7,13 @@
 
 #include "options/tool.h"
 
-enum coating_kind { COATING_TABLE, COATING_MIXED, COATING_FILMS };
+enum coating_kind { COATING_TABLE, COATING_MIXED, COATING_DEALT };
 
 struct coating {
     enum coating_kind kind; /* kind of coating; by default the table's own */
     bool given;             /* --coating was given, even if as the default */
-    int n_films;
-    struct glint_film film[GLINT_MAX_FILMS];
+    int n_coatings;
+    struct glint_coating coating[GLINT_MAX_COATINGS];
 };
 
 #define COATING_HELP                                                          \
@@ -23,23 +23,29 @@ struct coating {
     "has\n"                                                                   \
     "                      it; mixed (default of these), films that differ "  \
     "from\n"                                                                  \
-    "                      surface to surface; none; or films "               \
-    "NM[/INDEX][,...],\n"                                                     \
-    "                      100 to 5000 nm, index 1.01 to 4 (1.38), dealt "    \
-    "out\n"                                                                   \
-    "                      from the front again and again\n"
+    "                      surface to surface; none; or, dealt out from "     \
+    "the\n"                                                                   \
+    "                      front again and again, v-coat[/NM], "              \
+    "broadband-3[/NM],\n"                                                     \
+    "                      broadband-4[/NM], NM[/INDEX[:QUARTERS]]...[,...]," \
+    "\n"                                                                      \
+    "                      100 to 5000 nm, index 1.01 to 4 (1.38), films\n"   \
+    "                      from the air on (glint coat plots them)\n"
 
 /* Takes TEXT, the value of --coating. Returns -1, or an exit code after
  * printing what is wrong. */
 int coating_take(const struct tool *tool, struct coating *coating,
                  const char *text);
 
-/* Gives the surfaces of LENS the films of COATING. */
+/* Prints COATING: "none", "550 nm, index 1.38" or that and its layers. */
+void coating_print(FILE *file, const struct glint_coating *coating);
+
+/* Gives the surfaces of LENS what COATING says. */
 void coating_apply(const struct coating *coating,
                    struct glint_prescription *lens);
 
-/* Checks that no films were asked for with the model PATH, which has its own.
- * Returns EXIT_OK, or the code of a usage error. */
+/* Checks that no coatings were asked for with the model PATH, which has its
+ * own. Returns EXIT_OK, or the code of a usage error. */
 int coating_of_model(const struct tool *tool, const struct coating *coating,
                      const char *path);
 

@@ -15,7 +15,7 @@ const struct dial dials[] = {
      8, 4, {0, 0.25, 0.5, 1, 2, 4, 8, 16}, {0.25, 1, 3, 8}},
     {"cull", "what is left out, codes", DIAL_CULL, 0.125, false, false,
      7, 2, {0, 0.0625, 0.125, 0.25, 0.5, 1, 2}, {0.125, 0.5}},
-    {"dim", "ghosts of one wave's rays, codes", DIAL_DIM, 0, false, true,
+    {"dim", "dim ghosts share rays, codes", DIAL_DIM, 0, false, true,
      7, 0, {0, 0.5, 1, 2, 4, 8, 16}, {0}},
     {"whole", "edges on whole pixels, codes", DIAL_WHOLE, 4, false, false,
      6, 2, {0, 1, 2, 4, 8, 16}, {1, 4}},

@@ -5,8 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "desk/ghost_file.h"
 #include "engine/frame/area.h"
 #include "lamp_files/lamp_list.h"
+#include "desk/stop_option.h"
 #include "options/settings_table.h"
 #include "options/settings_take.h"
 #include "options/settings_waves.h"
@@ -14,7 +16,7 @@
 
 void settings_defaults(struct settings *settings)
 {
-    *settings = (struct settings){.n_blades = 8,
+    *settings = (struct settings){.stop.n_blades = 8,
                                   .wavelength_nm = {650, 532, 450},
                                   .n_wavelengths = 3,
                                   .gain = 1,
@@ -128,24 +130,62 @@ static int open_model(const struct tool *tool, struct settings *settings,
     return EXIT_OK;
 }
 
-static int set_up(const struct tool *tool, struct settings *s)
+/* Makes the setup of S for its f-number. */
+static enum glint_status make_setup(struct settings *s,
+                                    struct glint_error *error)
 {
-    struct glint_error error = {""};
+    struct glint_dirt *const before = s->stop.dirt;
     enum glint_status status =
         s->model.data
-            ? glint_setup_from_model(&s->setup, &s->model.lens, s->n_blades,
-                                     s->blade_rotation_deg, s->wavelength_nm,
-                                     s->n_wavelengths, &error)
-            : settings_table_setup(s, &error);
+            ? glint_setup_from_model(&s->setup, &s->model.lens,
+                                     s->stop.n_blades, s->stop.rotation_deg,
+                                     s->wavelength_nm, s->n_wavelengths, error)
+            : settings_table_setup(s, error);
 
     if (status == GLINT_OK && s->model.data && s->f_number > 0)
         status = glint_setup_stop_down(&s->setup, &s->model.lens, s->f_number,
-                                       &error);
+                                       error);
+    if (status == GLINT_OK)
+        status = stop_option_set(&s->stop, &s->setup, &s->stop.dirt, error);
     if (status != GLINT_OK)
-        return tool_fail(tool, status, error.text);
+        return status;
+    glint_dirt_free(before);
     settings_weigh(s);
     if (s->balance)
         glint_setup_balance(&s->setup);
+    return GLINT_OK;
+}
+
+enum glint_status settings_stop(struct settings *settings, double f_number,
+                                struct glint_error *error)
+{
+    settings->f_number = f_number;
+    return make_setup(settings, error);
+}
+
+int settings_refuse_stop(const struct tool *tool, const struct settings *s,
+                         const char *text)
+{
+    struct tool there = *tool;
+
+    if (!s->f_number_from)
+        return tool_fail(tool, GLINT_E_ARGUMENT, text);
+    there.where = s->f_number_from;
+    return tool_usage(&there, "%s", text);
+}
+
+static int set_up(const struct tool *tool, struct settings *s)
+{
+    struct glint_error error = {""};
+    enum glint_status status = make_setup(s, &error);
+
+    if (status == GLINT_E_ARGUMENT && s->f_number > 0)
+        return settings_refuse_stop(tool, s, error.text);
+    if (status == GLINT_OK && s->ghosts_file)
+        status = ghost_file_read(&s->tints, s->ghosts_file, &s->setup,
+                                 s->lens.name, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
     if (s->only_ghost >= s->setup.n_ghosts - s->setup.n_parts)
         return tool_usage(tool, "%s has %d ghosts, there is no %d",
                           s->lens.name, s->setup.n_ghosts - s->setup.n_parts,
@@ -158,7 +198,14 @@ static int set_up(const struct tool *tool, struct settings *s)
 static int check_raster(const struct tool *tool, const struct settings *s)
 {
     if (s->mask_nodes && s->by_edges)
-        return tool_usage(tool, "--mask is drawn by cells, not --raster edges");
+        return tool_usage(tool,
+                          "--stop-nodes is drawn by cells, not --raster edges");
+    if (s->raster && !s->mask_nodes && s->stop.iris.roundness > 0)
+        return tool_usage(tool,
+                          "--raster cells draws round blades by --stop-nodes");
+    if ((s->raster || s->mask_nodes) && stop_option_shades(&s->stop))
+        return tool_usage(tool, "dust, masks and soft edges of the stop are "
+                                "drawn by edges, not by cells");
     if (s->merge_steps && !s->raster && !s->mask_nodes)
         return tool_usage(tool, "--merge is for --raster cells");
     if ((s->dials.flags & GLINT_DIAL_ALWAYS_HALF) &&
@@ -175,6 +222,15 @@ int settings_open(const struct tool *tool, struct settings *settings,
 {
     int code = check_raster(tool, settings);
 
+    if (code == EXIT_OK && settings->veil_only && !settings_has_veil(settings))
+        code = tool_usage(tool, "--only veil needs a --veil, --haze or "
+                                "--front-dust to draw");
+    if (code == EXIT_OK)
+        code = settings->stop.mask_file
+                   ? stop_option_open(tool, &settings->stop)
+                   : EXIT_OK;
+    if (code == EXIT_OK)
+        code = front_option_open(tool, &settings->front);
     if (code != EXIT_OK)
         return code;
     settings_choose_waves(settings);
@@ -190,6 +246,10 @@ int settings_open(const struct tool *tool, struct settings *settings,
 void settings_close(struct settings *settings)
 {
     model_file_close(&settings->model);
+    free(settings->tints);
+    settings->tints = NULL;
+    stop_option_close(&settings->stop);
+    front_option_close(&settings->front);
 }
 
 struct glint_view settings_view(const struct settings *settings, int width,
@@ -213,6 +273,7 @@ int settings_frame(const struct tool *tool, const struct settings *settings,
     frame->dials = settings->dials;
     frame->uniform = settings->uniform;
     frame->only_ghost = settings->only_ghost;
+    frame->tints = settings->tints;
     /* A limit of work would make the grid coarser than was asked for. */
     frame->most_minsn =
         settings->has_grid && !settings->has_work ? 0 : settings->most_minsn;
@@ -244,17 +305,29 @@ int settings_frame(const struct tool *tool, const struct settings *settings,
             return tool_fail(tool, GLINT_E_MEMORY, NULL);
     }
     frame->star.share = settings_starburst(settings);
-    frame->star.is_alone = settings->starburst_only;
+    frame->star.is_alone = settings->starburst_only || settings->veil_only;
+    if (!settings->starburst_only && !settings->ghosts_only) {
+        frame->veil.glare = settings->veil;
+        frame->veil.haze = settings->haze;
+        frame->veil.front = settings->front.dirt;
+    }
     return EXIT_OK;
+}
+
+bool settings_has_veil(const struct settings *settings)
+{
+    return settings->veil > 0 || settings->haze > 0 ||
+           front_option_asked(&settings->front);
 }
 
 double settings_starburst(const struct settings *s)
 {
     if (s->starburst_asked)
-        return s->ghosts_only ? 0 : s->starburst;
+        return s->ghosts_only || s->veil_only ? 0 : s->starburst;
     if (s->starburst_only)
         return 1;
-    return s->ghosts_only || s->only_ghost >= 0 ? 0 : s->starburst;
+    return s->ghosts_only || s->veil_only || s->only_ghost >= 0 ? 0
+                                                                : s->starburst;
 }
 
 double settings_scale(const struct settings *settings)
@@ -268,22 +341,26 @@ void settings_json(const struct glint_frame_report *r)
            "\"drawn_lights\": %d, "
            "\"ghosts\": %d, \"bundles\": %d, "
            "\"primitives\": %d, \"tiles\": %d, \"arena_bytes\": %zu, "
-           "\"peak_bytes\": %zu, \"refs\": %d, \"merged_cells\": %d, "
+           "\"peak_bytes\": %zu, \"star_bytes\": %zu, \"refs\": %d, "
+           "\"merged_cells\": %d, "
            "\"dropped_bundles\": %d, \"dropped_cells\": %d, "
            "\"held_cells\": %d, \"held_samples\": %d, \"coarsened\": %s, "
            "\"plan_ms\": %.3f, \"trace_ms\": %.3f, \"bin_ms\": %.3f, "
            "\"draw_ms\": %.3f",
            r->lights, r->beyond_lights, r->apart_lights, r->drawn_lights,
            r->ghosts, r->stats.bundles, r->stats.primitives, r->tiles,
-           r->arena_bytes, r->peak_bytes, r->stats.refs, r->stats.merged_cells,
-           r->stats.dropped_bundles, r->stats.dropped_cells,
-           r->stats.held_cells, r->held_samples,
+           r->arena_bytes, r->peak_bytes, r->star_bytes, r->stats.refs,
+           r->stats.merged_cells, r->stats.dropped_bundles,
+           r->stats.dropped_cells, r->stats.held_cells, r->held_samples,
            r->coarsened ? "true" : "false", r->plan_ms, r->trace_ms, r->bin_ms,
            r->draw_ms);
     if (r->quality >= 0)
         printf(", \"quality\": %.4f, \"predicted_ms\": %.3f, "
-               "\"calibrated_minsn\": %.4f",
-               r->quality, r->predicted_ms, r->calibrated_minsn);
+               "\"calibrated_minsn\": %.4f, \"dim\": %g, "
+               "\"dust_blurred\": %s, \"veil_left_out\": %s",
+               r->quality, r->predicted_ms, r->calibrated_minsn,
+               r->dials.dim_codes, r->blurred ? "true" : "false",
+               r->unveiled ? "true" : "false");
 }
 
 void settings_lights_text(const struct glint_frame_report *r, char text[64])
@@ -312,6 +389,14 @@ void settings_warn_lights(const struct tool *tool,
         fprintf(stderr,
                 "glint %s: the frame would have taken more work than --work "
                 "allows; it is drawn coarser\n",
+                tool->name);
+    if (!tool->quiet && r->blurred)
+        fprintf(stderr,
+                "glint %s: dust and masks of the stop are drawn blurred, as %s "
+                "allows no more\n",
+                tool->name, r->quality >= 0 ? "--budget" : "--work");
+    if (!tool->quiet && r->unveiled)
+        fprintf(stderr, "glint %s: --budget has no time for the veil\n",
                 tool->name);
     if (!tool->quiet && r->beyond_lights > 0)
         fprintf(stderr,

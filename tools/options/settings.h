@@ -5,6 +5,8 @@
 #ifndef GLINT_TOOLS_OPTIONS_SETTINGS_H
 #define GLINT_TOOLS_OPTIONS_SETTINGS_H
 
+#include "desk/front_option.h"
+#include "desk/stop_option.h"
 #include "options/coating.h"
 #include "engine/frame/frame.h"
 #include "engine/frame/quality.h"
@@ -32,17 +34,22 @@ struct settings {
     double tolerance; /* tolerance that a model is baked with */
     struct glint_setup setup;
     struct coating coating;
-    double f_number; /* 0: the table's */
-    int n_blades;
-    double blade_rotation_deg;
+    double f_number;           /* 0: the table's */
+    const char *f_number_from; /* "FILE:LINE" that asks for it; NULL: the
+                                  command line */
+    struct stop_option stop;
     double wavelength_nm[GLINT_MAX_WAVELENGTHS];
     int n_wavelengths;
     enum settings_waves waves;
     double sensor_mm[2]; /* 0: the table's film */
     double exposure_ev, gain;
     double starburst; /* factor on the physical starburst; 0: none */
-    bool starburst_asked, starburst_only, ghosts_only;
+    bool starburst_asked, starburst_only, ghosts_only, veil_only;
+    double veil, haze; /* shares of all light, 0 .. GLINT_MOST_VEIL together */
+    struct front_option front;
     int only_ghost;
+    const char *ghosts_file;  /* NULL: ghosts are as the lens gives them */
+    struct glint_tint *tints; /* by that file */
     struct glint_dials dials; /* dials, but for max_lights */
     double quantum;           /* dials.irradiance_steps, in percent */
     int max_lights;           /* 0: not given */
@@ -68,12 +75,17 @@ enum settings_option {
     OPT_F_NUMBER = 1000,
     OPT_COATING,
     OPT_STOP,
+    OPT_STOP_MASK,
+    OPT_DUST,
+    OPT_FRONT_DUST,
+    OPT_FRONT_MASK,
     OPT_WAVELENGTHS,
     OPT_DISPERSION,
     OPT_SENSOR,
     OPT_EXPOSURE,
     OPT_GAIN,
     OPT_GHOST,
+    OPT_GHOSTS,
     OPT_GRID,
     OPT_UNIFORM,
     OPT_MERGE,
@@ -81,7 +93,7 @@ enum settings_option {
     OPT_COARSE,
     OPT_RASTER,
     OPT_WEIGHTS,
-    OPT_MASK,
+    OPT_STOP_NODES,
     OPT_NO_ANTIALIAS,
     OPT_DITHER,
     OPT_QUANTUM,
@@ -94,10 +106,13 @@ enum settings_option {
     OPT_RAYS,
     OPT_LANES,
     OPT_CULL,
+    OPT_STAR_CULL,
     OPT_DIM,
     OPT_BALANCE,
     OPT_ONLY,
     OPT_STARBURST,
+    OPT_VEIL,
+    OPT_HAZE,
     OPT_MAX_LIGHTS,
     OPT_AREA_SAMPLES,
     OPT_APART,
@@ -108,12 +123,17 @@ enum settings_option {
     {"f-number", required_argument, NULL, OPT_F_NUMBER},             \
         {"coating", required_argument, NULL, OPT_COATING},           \
         {"stop", required_argument, NULL, OPT_STOP},                 \
+        {"stop-mask", required_argument, NULL, OPT_STOP_MASK},       \
+        {"dust", required_argument, NULL, OPT_DUST},                 \
+        {"front-dust", required_argument, NULL, OPT_FRONT_DUST},     \
+        {"front-mask", required_argument, NULL, OPT_FRONT_MASK},     \
         {"wavelengths", required_argument, NULL, OPT_WAVELENGTHS},   \
         {"dispersion", required_argument, NULL, OPT_DISPERSION},     \
         {"sensor", required_argument, NULL, OPT_SENSOR},             \
         {"exposure", required_argument, NULL, OPT_EXPOSURE},         \
         {"gain", required_argument, NULL, OPT_GAIN},                 \
         {"ghost", required_argument, NULL, OPT_GHOST},               \
+        {"ghosts", required_argument, NULL, OPT_GHOSTS},             \
         {"grid", required_argument, NULL, OPT_GRID},                 \
         {"uniform-grid", no_argument, NULL, OPT_UNIFORM},            \
         {"merge", required_argument, NULL, OPT_MERGE},               \
@@ -121,7 +141,7 @@ enum settings_option {
         {"coarse", required_argument, NULL, OPT_COARSE},             \
         {"raster", required_argument, NULL, OPT_RASTER},             \
         {"weights", required_argument, NULL, OPT_WEIGHTS},           \
-        {"mask", required_argument, NULL, OPT_MASK},                 \
+        {"stop-nodes", required_argument, NULL, OPT_STOP_NODES},     \
         {"no-antialias", no_argument, NULL, OPT_NO_ANTIALIAS},       \
         {"dither", no_argument, NULL, OPT_DITHER},                   \
         {"quantum", required_argument, NULL, OPT_QUANTUM},           \
@@ -134,10 +154,13 @@ enum settings_option {
         {"rays", required_argument, NULL, OPT_RAYS},                 \
         {"lanes", required_argument, NULL, OPT_LANES},               \
         {"cull", required_argument, NULL, OPT_CULL},                 \
+        {"star-cull", required_argument, NULL, OPT_STAR_CULL},       \
         {"dim", required_argument, NULL, OPT_DIM},                   \
         {"balance", no_argument, NULL, OPT_BALANCE},                 \
         {"only", required_argument, NULL, OPT_ONLY},                 \
         {"starburst", required_argument, NULL, OPT_STARBURST},       \
+        {"veil", required_argument, NULL, OPT_VEIL},                 \
+        {"haze", required_argument, NULL, OPT_HAZE},                 \
         {"max-lights", required_argument, NULL, OPT_MAX_LIGHTS},     \
         {"area-samples", required_argument, NULL, OPT_AREA_SAMPLES}, \
     {                                                                \
@@ -151,9 +174,19 @@ enum settings_option {
     "model\n"                                                                  \
     "                      was baked for, which serves any larger "            \
     "N)\n" COATING_HELP                                                        \
-    "  --stop SHAPE        circle | polygon:N[,ROT], 3 to 64 sides, the "      \
+    "  --stop SHAPE        circle or polygon:N[,ROT], 3 to 64 sides, the "     \
     "first\n"                                                                  \
-    "                      corner at ROT degrees (default polygon:8)\n"        \
+    "                      corner at ROT degrees; then ,round:R, 0 to 1, "     \
+    "from\n"                                                                   \
+    "                      straight blades to a circle; ,soft:W, 0 to 1 stop " \
+    "radii\n"                                                                  \
+    "                      from dark to clear (default polygon:8)\n"           \
+    "  --stop-mask FILE    a picture in the stop, white where it is clear: "   \
+    "the\n"                                                                    \
+    "                      square about its circle, turned by ROT\n"           \
+    "  --dust A[,SEED]     dust, scratches and smudges in the stop; dust "     \
+    "covers A,\n"                                                              \
+    "                      0 to 0.5, of it\n"                                  \
     "  --wavelengths W     auto: of each ghost as many as it needs, 4 to 28 "  \
     "(default\n"                                                               \
     "                      of overlay, live and explain); N: so many, 1 to "   \
@@ -168,7 +201,11 @@ enum settings_option {
     "  --sensor WxH        mm (default: the film of the table); the picture\n" \
     "                      is the largest of its shape that fits\n"            \
     "  --ghost K           this ghost alone\n"                                 \
-    "  --only WHAT         ghosts | starburst | all\n"                         \
+    "  --ghosts FILE       solo, mute, gain and tint of single ghosts, a "     \
+    "line "                                                                    \
+    "each;\n"                                                                  \
+    "                      glint explain --save-ghosts FILE writes one\n"      \
+    "  --only WHAT         ghosts | starburst | veil | all\n"                  \
     "Brightness\n"                                                             \
     "  --starburst S       light that the stop's edges diffract, S times as "  \
     "much\n"                                                                   \
@@ -178,6 +215,19 @@ enum settings_option {
     "with "                                                                    \
     "\n"                                                                       \
     "                      --ghost; off that of others\n"                      \
+    "  --veil V            share of all light that the lens spreads over the " \
+    "\n"                                                                       \
+    "                      picture, its veiling glare index, 0 to 0.9\n"       \
+    "                      (default 0; lenses have 0.005 to 0.05)\n"           \
+    "  --haze H            share that a dirty front spreads by 1 to 10 "       \
+    "degrees\n"                                                                \
+    "                      (default 0)\n"                                      \
+    "  --front-dust A[,SEED]  dust, scratches and smudges on the front "       \
+    "element,\n"                                                               \
+    "                      of which dust covers A, 0 to 0.5: haze in discs\n"  \
+    "                      that the lamps light, sharper at a small stop\n"    \
+    "  --front-mask FILE   a picture of what lies on it, white where it is\n"  \
+    "                      clear: the square about its circle\n"               \
     "  --exposure EV       stops; all light times 2^EV (default 0)\n"          \
     "  --gain G            and times G (default 1)\n"                          \
     "  --balance           measure each wavelength by its own direct image, "  \
@@ -219,7 +269,8 @@ enum settings_option {
     "  --work N            what a frame of one light may take by its plan,\n"  \
     "                      thousand million instructions, and each further\n"  \
     "                      light a 16th of it (default 30, or any with\n"      \
-    "                      --grid or --quality; 0: any); beyond, grids,\n"     \
+    "                      --grid or --quality; 0: any); beyond, dust, "       \
+    "grids,\n"                                                                 \
     "                      wavelengths and lights are fewer, with a word\n"    \
     "  --dispersion PX     with --wavelengths auto: outlines of "              \
     "neighbouring\n"                                                           \
@@ -230,7 +281,7 @@ enum settings_option {
     "                      650,532,450 for all, as of --quality draft and "    \
     "with\n"                                                                   \
     "                      --budget\n"                                         \
-    "  --dim CODES         fainter ghosts of a light share one "               \
+    "  --dim CODES         0 to 256: fainter ghosts share one "                \
     "wavelength's rays\n"                                                      \
     "  --rays R            model: the lens's baked polynomials (default);\n"   \
     "                      exact: traced for every frame\n"                    \
@@ -239,6 +290,7 @@ enum settings_option {
     "                      may be left out, and faint ghosts are drawn "       \
     "coarser\n"                                                                \
     "                      (default 0.125)\n"                                  \
+    "  --star-cull TIMES   of stars so many times CODES (default 2)\n"         \
     "  --grid N            fineness of the ray grids, 4 to 1024: ghosts get "  \
     "as\n"                                                                     \
     "                      many cells a side as their bending asks for, 8 "    \
@@ -268,7 +320,7 @@ enum settings_option {
     "centres,\n"                                                               \
     "                      which --merge, --coarse and the next three need\n"  \
     "  --weights W         wachspress | loop-derose (default wachspress)\n"    \
-    "  --mask N            look the stop up in N x N signed distances\n"       \
+    "  --stop-nodes N      look the stop up in N x N signed distances\n"       \
     "  --no-antialias      a pixel's centre decides, as published\n"           \
     "  --dither            ordered dither when writing 8 bits\n"
 
@@ -296,6 +348,16 @@ bool settings_lamp(const char *text, struct glint_lamp *lamp);
  * baked if there is none yet, unless rays are exact. Returns an exit code. */
 int settings_open(const struct tool *tool, struct settings *settings,
                   const char *lens);
+
+/* Says by TEXT why the f-number of S cannot be had, and which line of a file
+ * asks for it. Returns an exit code. */
+int settings_refuse_stop(const struct tool *tool, const struct settings *s,
+                         const char *text);
+
+/* Stops the lens of SETTINGS, which are open and have a model, to F_NUMBER.
+ * GLINT_E_ARGUMENT with ERROR: the model was not baked for so wide a stop. */
+enum glint_status settings_stop(struct settings *settings, double f_number,
+                                struct glint_error *error);
 
 void settings_close(struct settings *settings);
 
@@ -325,6 +387,9 @@ bool settings_memory(const char *text, size_t *bytes);
 
 /* Returns the factor on the physical starburst that is drawn; 0: none. */
 double settings_starburst(const struct settings *settings);
+
+/* Returns whether light is spread over the picture. */
+bool settings_has_veil(const struct settings *settings);
 
 /* Returns the factor on all light, gain * 2^EV. */
 double settings_scale(const struct settings *settings);

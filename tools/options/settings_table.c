@@ -47,7 +47,7 @@ int settings_open_table(const struct tool *tool, struct settings *settings,
         status = glint_prescription_set_f_number(&settings->lens,
                                                  settings->f_number, &error);
     if (status != GLINT_OK)
-        return tool_fail(tool, status, error.text);
+        return settings_refuse_stop(tool, settings, error.text);
     return settings->rays == SETTINGS_RAYS_EXACT
                ? EXIT_OK
                : model_cached(tool, &settings->lens,
@@ -63,7 +63,7 @@ const struct glint_frame_rays *settings_table_rays(void)
 enum glint_status settings_table_setup(struct settings *s,
                                        struct glint_error *error)
 {
-    return glint_setup_init(&s->setup, &s->lens, s->n_blades,
-                            s->blade_rotation_deg, s->wavelength_nm,
+    return glint_setup_init(&s->setup, &s->lens, s->stop.n_blades,
+                            s->stop.rotation_deg, s->wavelength_nm,
                             s->n_wavelengths, error);
 }

@@ -1,34 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 #include "options/settings_take.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "engine/frame/area.h"
+#include "desk/stop_option.h"
 #include "options/settings_waves.h"
 
 /* The result of taking an option; the first two stand for false and true. */
 enum taken { WRONG, TAKEN, OTHER };
-
-/* Sets the stop by TEXT, "circle" or "polygon:N[,ROT]". Returns false for other
- * texts. */
-static bool parse_stop(const char *text, struct settings *settings)
-{
-    double v[2] = {0, 0};
-
-    if (strcmp(text, "circle") == 0) {
-        settings->n_blades = 0;
-        return true;
-    }
-    if (strncmp(text, "polygon:", 8) != 0 ||
-        tool_numbers(text + 8, v, 2) == 0 || v[0] != floor(v[0]) || v[0] < 3 ||
-        v[0] > GLINT_MAX_BLADES)
-        return false;
-    settings->n_blades = (int)v[0];
-    settings->blade_rotation_deg = v[1];
-    return true;
-}
 
 static bool parse_sensor(const char *text, double mm[2])
 {
@@ -140,7 +123,17 @@ static enum taken take_lens(struct settings *s, int option, const char *value)
     case OPT_F_NUMBER:
         return tool_number(value, &s->f_number) && s->f_number > 0;
     case OPT_STOP:
-        return parse_stop(value, s);
+        return stop_option_take(&s->stop, value);
+    case OPT_STOP_MASK:
+        s->stop.mask_file = value;
+        return true;
+    case OPT_DUST:
+        return stop_option_dust(&s->stop, value);
+    case OPT_FRONT_DUST:
+        return front_option_dust(&s->front, value);
+    case OPT_FRONT_MASK:
+        s->front.mask_file = value;
+        return true;
     case OPT_WAVELENGTHS:
         return settings_take_waves(s, value);
     case OPT_DISPERSION:
@@ -148,7 +141,10 @@ static enum taken take_lens(struct settings *s, int option, const char *value)
     case OPT_SENSOR:
         return parse_sensor(value, s->sensor_mm);
     case OPT_GHOST:
-        return tool_integer(value, 0, GLINT_MAX_GHOSTS, &s->only_ghost);
+        return tool_integer(value, 0, INT_MAX, &s->only_ghost);
+    case OPT_GHOSTS:
+        s->ghosts_file = value;
+        return *value != '\0';
     case OPT_BALANCE:
         s->balance = true;
         return TAKEN;
@@ -168,11 +164,13 @@ static bool take_starburst(const char *value, struct settings *s)
 
 static bool take_only(const char *value, struct settings *s)
 {
-    static const char *const parts[] = {"ghosts", "starburst", "all", NULL};
+    static const char *const parts[] = {"ghosts", "starburst", "veil", "all",
+                                        NULL};
     const int part = tool_word(value, parts);
 
     s->ghosts_only = part == 0;
     s->starburst_only = part == 1;
+    s->veil_only = part == 2;
     return part >= 0;
 }
 
@@ -188,6 +186,12 @@ static enum taken take_light(struct settings *s, int option, const char *value)
         return tool_number(value, &s->gain) && s->gain >= 0;
     case OPT_STARBURST:
         return take_starburst(value, s);
+    case OPT_VEIL:
+        return tool_number(value, &s->veil) && s->veil >= 0 &&
+               s->veil + s->haze <= GLINT_MOST_VEIL;
+    case OPT_HAZE:
+        return tool_number(value, &s->haze) && s->haze >= 0 &&
+               s->veil + s->haze <= GLINT_MOST_VEIL;
     case OPT_ONLY:
         return take_only(value, s);
     case OPT_MAX_LIGHTS:
@@ -201,6 +205,9 @@ static enum taken take_light(struct settings *s, int option, const char *value)
     case OPT_CULL:
         return tool_number(value, &s->dials.cull_codes) &&
                s->dials.cull_codes >= 0 && s->dials.cull_codes <= 16;
+    case OPT_STAR_CULL:
+        return tool_number(value, &s->dials.star_cull) &&
+               s->dials.star_cull >= 0 && s->dials.star_cull <= 256;
     case OPT_DIM:
         return tool_number(value, &s->dials.dim_codes) &&
                s->dials.dim_codes >= 0 && s->dials.dim_codes <= 256;
@@ -239,7 +246,7 @@ static enum taken take_way(struct settings *s, int option, const char *value)
         s->raster = word;
         s->by_edges = word == 0;
         return word >= 0;
-    case OPT_MASK:
+    case OPT_STOP_NODES:
         return tool_integer(value, 2, 4096, &s->mask_nodes);
     case OPT_NO_ANTIALIAS:
         s->antialias = false;

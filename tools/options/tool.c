@@ -37,6 +37,20 @@ int tool_usage(const struct tool *tool, const char *format, ...)
     return EXIT_USAGE;
 }
 
+int tool_inputs(const struct tool *tool, int argc, char **argv, int n,
+                const char *text)
+{
+    const char *const last = argv[optind - 1];
+
+    if (optind + n == argc)
+        return -1;
+    /* Inputs go behind all options, so that this is the value of one. */
+    if (optind + n < argc || optind < 3 || last[0] == '-')
+        return tool_usage(tool, "%s", text);
+    return tool_usage(tool, "%s; '%s' is the value of %s", text, last,
+                      argv[optind - 2]);
+}
+
 int tool_fail(const struct tool *tool, enum glint_status status,
               const char *text)
 {
@@ -132,6 +146,7 @@ static void suggest_option(const struct tool *tool)
     if (last_option(name)) {
         suggest_begin(&s, name);
         try_options(&s, tool->help);
+        try_options(&s, tool->help_desk);
         try_options(&s, tool->help_end);
         try_options(&s, tool->help_last);
         if (suggest_best(&s) && s.distance > 0)
@@ -145,6 +160,8 @@ int tool_option(struct tool *tool, int option, const char *value)
     switch (option) {
     case 'h':
         fputs(tool->help, stdout);
+        if (tool->help_desk)
+            fputs(tool->help_desk, stdout);
         if (tool->help_end)
             fputs(tool->help_end, stdout);
         if (tool->help_last)
@@ -186,16 +203,23 @@ int tool_option(struct tool *tool, int option, const char *value)
 const char *tool_value_of(int argc, char **argv, const char *shorts,
                           const struct option *options, int option)
 {
+    /* A copy, as getopt_long() moves words: an option at the end that lacks
+     * its value would take the input for it the second time. */
+    char **const words = malloc(((size_t)argc + 1) * sizeof *words);
     const char *value = NULL;
     int c;
 
+    if (!words)
+        return NULL;
+    memcpy(words, argv, ((size_t)argc + 1) * sizeof *words);
     opterr = 0;
     optind = 0; /* glibc and musl: from the start, with nothing remembered */
-    while ((c = getopt_long(argc, argv, shorts, options, NULL)) >= 0)
+    while ((c = getopt_long(argc, words, shorts, options, NULL)) >= 0)
         if (c == option)
             value = optarg;
     opterr = 1;
     optind = 0;
+    free(words);
     return value;
 }
 

@@ -23,10 +23,11 @@ enum exit_code {
 };
 
 struct tool {
-    const char *name;     /* name of the command */
-    const char *help;     /* first part of the command's help */
-    const char *help_end; /* second part, or NULL */
-    /* The third part, or NULL. Strings of C99 end at 4095 bytes. */
+    const char *name;      /* name of the command */
+    const char *help;      /* first part of the command's help */
+    const char *help_desk; /* further parts, or NULL: this one comes first */
+    const char *help_end;
+    /* Strings of C99 end at 4095 bytes. */
     const char *help_last;
     bool json, quiet;
     int verbose;
@@ -35,6 +36,7 @@ struct tool {
     unsigned sets_off;             /* instruction sets not to use */
     const char *kernels;           /* argument of --kernels, or NULL */
     struct glint_workers *workers; /* made by tool_start */
+    const char *written;           /* file that no scene may read, or NULL */
     const char *where; /* "FILE:LINE" of the option being taken, or NULL for the
                           command line */
 };
@@ -78,6 +80,12 @@ unsigned tool_sets(const struct tool *tool);
  * afterwards. */
 const char *tool_value_of(int argc, char **argv, const char *shorts,
                           const struct option *options, int option);
+
+/* Checks that getopt_long() has left N words of ARGV. Returns -1, or after
+ * saying TEXT the code of tool_usage(); of a line with fewer words it says
+ * which one the last option took for its value. */
+int tool_inputs(const struct tool *tool, int argc, char **argv, int n,
+                const char *text);
 
 /* Print "glint COMMAND: ..." and return an exit code: tool_usage() EXIT_USAGE,
  * or EXIT_INPUT if the option comes from a file; tool_fail() that of STATUS,
@@ -143,5 +151,7 @@ int cmd_bake(int argc, char **argv);
 int cmd_bench(int argc, char **argv);
 int cmd_sweep(int argc, char **argv);
 int cmd_lenses(int argc, char **argv);
+int cmd_coat(int argc, char **argv);
+int cmd_styles(int argc, char **argv);
 
 #endif

@@ -11,10 +11,10 @@
 
 #include "overlay/overlay_line.h"
 #include "overlay/overlay_y4m.h"
+#include "engine/setup/spectrum.h"
 #include "options/takes.h"
 #include "formats/kept.h"
 #include "posix/error.h"
-#include "posix/target.h"
 
 static const char help[] =
     "glint overlay IN -o OUT [options]\n"
@@ -37,6 +37,15 @@ static const char help[] =
     "                      glint's (H.264: -crf 18): '-c:v libx265 -crf 20'\n"
     "  --start-number N    first of a sequence (default: 0 or 1, as "
     "found)\n"
+    "  --layers OUT        flare, ghosts, starburst and, where asked for, veil "
+    "as\n"
+    "                      linear light: parts of an .exr, or with %s in its "
+    "name\n"
+    "                      a file of each; with %04d a number for each frame\n"
+    "                      in the colours of the lens, also where the picture "
+    "is\n"
+    "                      grey, which gets their luminance\n"
+    "  --layers-type T     half (default) | float\n"
     "  --jpeg-quality N    1 to 100, of JPEG and WebP (default: about the "
     "input's,\n"
     "                      else 95)\n" SETTINGS_MEMORY_HELP;
@@ -56,6 +65,8 @@ static bool take(struct overlay *o, int option, const char *value)
 {
     static const char *const ranges[] = {"auto", "full", "limited", NULL};
     static const char *const matrices[] = {"auto", "601", "709", NULL};
+    static const char *const types[] = {"half", "float", NULL};
+    int word;
 
     switch (option) {
     case 'r':
@@ -64,6 +75,14 @@ static bool take(struct overlay *o, int option, const char *value)
         return take_word(value, matrices, &o->matrix);
     case 'Q':
         return tool_integer(value, 1, 100, &o->quality);
+    case 'L':
+        o->layers.path = value;
+        return *value != '\0';
+    case 'T':
+        word = tool_word(value, types);
+        o->layers.is_float = word == 1;
+        o->has_layers_type = true;
+        return word >= 0;
     case 'm':
         return settings_memory(value, &o->compositor.reserve_bytes);
     default: /* 'n' */
@@ -79,13 +98,19 @@ static const struct option options[] = {
     {"jpeg-quality", required_argument, NULL, 'Q'},
     {"encode", required_argument, NULL, 'e'},
     {"memory", required_argument, NULL, 'm'},
+    {"layers", required_argument, NULL, 'L'},
+    {"layers-type", required_argument, NULL, 'T'},
     COMPOSITOR_OPTIONS,
     TOOL_COMMON_OPTIONS};
 
 static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
 {
-    int c, code, index = 0;
+    int c, index = 0;
+    int code = compositor_style_of(tool, &o->compositor, argc, argv,
+                                   "o:" TOOL_COMMON_SHORT, options);
 
+    if (code >= 0)
+        return code;
     while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             &index)) >= 0) {
         code = compositor_option(tool, &o->compositor, c, optarg);
@@ -97,14 +122,15 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
             o->output = optarg;
         else if (c == 'e')
             o->encode = optarg;
-        else if (strchr("rxnQm", c)) {
+        else if (strchr("rxnQmLT", c)) {
             if (!take(o, c, optarg))
                 return tool_refuse(tool, options[index].name, optarg);
         } else if ((code = tool_option(tool, c, optarg)) >= 0)
             return code;
     }
     if (optind == argc)
-        return tool_usage(tool, "needs a picture, a sequence or a video");
+        return tool_inputs(tool, argc, argv, 1,
+                           "needs a picture, a sequence or a video");
     if (optind + 1 != argc)
         return tool_usage(tool,
                           o->output ? "takes one input; '%s' is too much"
@@ -113,6 +139,11 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
                           argv[argc - 1]);
     if (!o->output)
         return tool_usage(tool, "needs -o OUT");
+    if (o->has_layers_type && !o->layers.path)
+        return tool_usage(tool, "--layers-type is for --layers OUT");
+    if (o->layers.path && strcmp(o->compositor.lens, "none") == 0)
+        return tool_usage(tool, "--layers are those of the flare of a lens, "
+                                "not of --lens none");
     o->input = argv[optind];
     if (o->compositor.reserve_bytes &&
         o->compositor.settings.rays == SETTINGS_RAYS_EXACT)
@@ -179,6 +210,7 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
     enum glint_status status;
     int code = EXIT_OK;
 
+    compositor->is_still = o->elapsed_us == 0;
     if (!compositor->sized)
         code = compositor_size(tool, compositor, image->width, image->height);
     if (code != EXIT_OK)
@@ -186,15 +218,21 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
     status = draw(ctx, compositor, image, o->elapsed_us);
     if (status != GLINT_OK)
         return tool_fail(tool, status, NULL);
+    code = layers_write(tool, &o->layers, compositor);
+    if (code != EXIT_OK)
+        return code;
     o->find_ms += compositor->find_ms;
     o->flare_ms += compositor->flare_ms;
     o->peak =
-        fmax(o->peak, glint_strength_largest(compositor->strength.light.peak));
-    o->mean_sum += glint_strength_largest(compositor->strength.light.mean);
+        fmax(o->peak, glint_largest_channel(compositor->strength.light.peak));
+    o->mean_sum += glint_largest_channel(compositor->strength.light.mean);
     if (compositor->n_lamps > o->most_lights)
         o->most_lights = compositor->n_lamps;
-    if (compositor->report.peak_bytes > o->peak_bytes)
-        o->peak_bytes = compositor->report.peak_bytes;
+    o->n_reused += compositor->report.stats.reused;
+    if (compositor->report.peak_bytes + compositor->report.star_bytes >
+        o->peak_bytes)
+        o->peak_bytes =
+            compositor->report.peak_bytes + compositor->report.star_bytes;
     note_worst(&o->worst, &compositor->report);
     if (tool->verbose && !tool->quiet)
         say_frame(o);
@@ -231,7 +269,8 @@ static void print_figures(const struct overlay *o)
             "bytes, peak %zu\n",
             o->compositor.view.width, o->compositor.view.height, o->find_ms / n,
             o->flare_ms / n, o->compositor.report.ghosts,
-            o->compositor.report.arena_bytes, o->peak_bytes);
+            o->compositor.report.arena_bytes + o->compositor.report.star_bytes,
+            o->peak_bytes);
 }
 
 static void print_json(const struct overlay *o,
@@ -241,10 +280,11 @@ static void print_json(const struct overlay *o,
     const int n = o->compositor.n_frames ? o->compositor.n_frames : 1;
 
     printf("{\"frames\": %d, \"ms\": %.3f, \"fps\": %.2f, "
-           "\"find_ms\": %.3f, \"flare_ms\": %.3f, \"most_lights\": %d, ",
+           "\"find_ms\": %.3f, \"flare_ms\": %.3f, \"most_lights\": %d, "
+           "\"reused\": %d, ",
            o->compositor.n_frames, 1e3 * seconds,
            o->compositor.n_frames / seconds, o->find_ms / n, o->flare_ms / n,
-           o->most_lights);
+           o->most_lights, o->n_reused);
     overlay_json(o, light, stdout);
     settings_json(&o->compositor.report);
     printf("}\n");
@@ -269,14 +309,15 @@ static void print_result(const struct tool *tool, const struct overlay *o)
         print_figures(o);
 }
 
-int overlay_check_apart(const struct tool *tool, const char *from,
-                        const char *to)
+int overlay_check_apart(const struct tool *tool, const struct overlay *o,
+                        const char *from, const char *to)
 {
-    if (!glint_target_is_input(from, to))
-        return EXIT_OK;
-    return tool_usage(tool,
-                      "%s is the input, which would be lost; name another file",
-                      strcmp(to, "-") ? to : "standard output");
+    struct apart files = {.n_read = 0};
+
+    apart_read(&files, NULL, from);
+    apart_write(&files, "-o", to);
+    apart_compositor(&files, &o->compositor);
+    return layers_check_apart(tool, &o->layers, &files);
 }
 
 /* Refuses, before there is work, an output that does not go with the input or
@@ -326,9 +367,12 @@ static int run(struct tool *tool, struct overlay *o)
 
     if (code == EXIT_OK)
         code = check_input(tool, o);
-
     if (code == EXIT_OK)
-        code = overlay_check_apart(tool, o->input, o->output);
+        code = layers_check(tool, &o->layers,
+                            o->is_video || (strchr(o->input, '%') &&
+                                            access(o->input, F_OK) != 0));
+    if (code == EXIT_OK)
+        code = overlay_check_apart(tool, o, o->input, o->output);
     if (code == EXIT_OK)
         code = compositor_open(tool, &o->compositor);
     if (code != EXIT_OK)
@@ -351,6 +395,7 @@ int cmd_overlay(int argc, char **argv)
 {
     struct tool tool = {.name = "overlay",
                         .help = help,
+                        .help_desk = DESK_HELP SCENE_HELP,
                         .help_end = help_end,
                         .help_last = help_last};
     struct overlay *o = calloc(1, sizeof *o);

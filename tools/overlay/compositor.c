@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-#include "overlay/compositor.h"
+#include "overlay/compositor_layer.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "desk/preview.h"
 #include "engine/frame/area.h"
 #include "lamp_files/lamp_keys.h"
+#include "overlay/paint.h"
 #include "overlay/show_lights.h"
 #include "model/response_cache.h"
 
@@ -30,15 +32,40 @@ static enum glint_status open_list(struct compositor *compositor,
     return status;
 }
 
+/* Opens the scene; without a lens there has to be one that needs none. */
+static int open_scene(const struct tool *tool, struct compositor *compositor)
+{
+    const int code = over_scene_open(&compositor->scene, tool);
+
+    if (code != EXIT_OK || compositor->has_lens)
+        return code;
+    if (!compositor->scene.is_open)
+        return tool_usage(tool, "--lens none draws no flare, and there is no "
+                                "--scene to draw");
+    if (over_scene_needs_lens(&compositor->scene))
+        return tool_usage(tool,
+                          "%s: 'camera lens' has the field of a lens, and "
+                          "--lens none is none; take 'camera fov'",
+                          compositor->scene.file);
+    return compositor->flare_only
+               ? tool_usage(tool, "--layer shows the flare of a lens, not of "
+                                  "--lens none")
+               : EXIT_OK;
+}
+
 int compositor_open(const struct tool *tool, struct compositor *compositor)
 {
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
-    const int code =
-        settings_open(tool, &compositor->settings, compositor->lens);
+    int code = compositor_desk_open_keys(tool, compositor);
     size_t n;
 
-    if (code != EXIT_OK)
+    compositor->has_lens = strcmp(compositor->lens, "none") != 0;
+    if (code == EXIT_OK)
+        code = open_scene(tool, compositor);
+    if (code == EXIT_OK && compositor->has_lens)
+        code = settings_open(tool, &compositor->settings, compositor->lens);
+    if (code != EXIT_OK || !compositor->has_lens)
         return code;
     status = open_list(compositor, &error);
     if (status == GLINT_OK && compositor->save_file)
@@ -46,16 +73,32 @@ int compositor_open(const struct tool *tool, struct compositor *compositor)
             lamp_save_open(&compositor->save, compositor->save_file, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
+    code = compositor_desk_open(tool, compositor);
+    if (code != EXIT_OK)
+        return code;
     n = (size_t)compositor->n_hand + (size_t)compositor->list.n +
-        GLINT_LAMP_DETECTOR_MAX;
+        GLINT_LAMP_DETECTOR_MAX +
+        (compositor->scene.is_open ? GLINT_SCENE_MAX_LIGHTS : 0);
     compositor->lamp = malloc(n * sizeof *compositor->lamp);
     compositor->level = malloc(n * sizeof *compositor->level);
+    compositor->share = malloc(n * sizeof *compositor->share);
+    compositor->excess = malloc(n * sizeof *compositor->excess);
+    compositor->excess_before = malloc(n * sizeof *compositor->excess);
+    compositor->id_before = malloc(n * sizeof *compositor->id_before);
     compositor->seen_px = malloc(n * sizeof *compositor->seen_px);
     compositor->id = malloc(n * sizeof *compositor->id);
     return compositor->lamp && compositor->level && compositor->seen_px &&
-                   compositor->id
+                   compositor->share && compositor->id && compositor->excess &&
+                   compositor->excess_before && compositor->id_before
                ? EXIT_OK
                : tool_fail(tool, GLINT_E_MEMORY, NULL);
+}
+
+int compositor_open_lens(const struct tool *tool, struct compositor *compositor)
+{
+    return strcmp(compositor->lens, "none") == 0
+               ? tool_usage(tool, "--lens none is for overlay and live")
+               : compositor_open(tool, compositor);
 }
 
 /* Returns how many lamps to look for, 16 by default: most pictures have many
@@ -70,7 +113,7 @@ static int finder_max(const struct compositor *compositor)
 
 static void unsize(struct compositor *compositor)
 {
-    if (compositor->sized) {
+    if (compositor->sized && compositor->has_lens) {
         glint_lamp_detector_close(&compositor->finder);
         glint_frame_finish(&compositor->frame);
     }
@@ -101,14 +144,29 @@ static int by_hand(const struct compositor *compositor)
  * that fade are drawn beside those that rise. */
 static int most_lamps(const struct compositor *compositor)
 {
-    return by_hand(compositor) + 2 * compositor->finder.max;
+    return by_hand(compositor) + 2 * compositor->finder.max +
+           (compositor->scene.is_open ? GLINT_SCENE_MAX_LIGHTS : 0);
 }
 
+/* Takes reserve_bytes: what stars and a veil take, and for ghosts what that
+ * leaves. */
 static enum glint_status reserve(struct compositor *compositor)
 {
+    struct glint_frame *frame = &compositor->frame;
+    const enum glint_status status =
+        glint_frame_star_hold(frame, most_lamps(compositor));
+    const enum glint_status veiled = glint_frame_veil_hold(frame);
+    const size_t star =
+        glint_frame_star_bytes(frame) + over_scene_bytes(&compositor->scene);
+
+    if (status != GLINT_OK || veiled != GLINT_OK ||
+        star >= compositor->reserve_bytes)
+        return GLINT_E_MEMORY;
     return glint_frame_reserve(
-        &compositor->frame, NULL, compositor->reserve_bytes,
-        by_hand(compositor) + GLINT_LAMP_DETECTOR_MAX, most_lamps(compositor));
+        frame, NULL, compositor->reserve_bytes - star,
+        by_hand(compositor) + GLINT_LAMP_DETECTOR_MAX +
+            (compositor->scene.is_open ? GLINT_SCENE_MAX_LIGHTS : 0),
+        most_lamps(compositor));
 }
 
 int compositor_size(const struct tool *tool, struct compositor *compositor,
@@ -118,13 +176,33 @@ int compositor_size(const struct tool *tool, struct compositor *compositor,
     int code;
 
     unsize(compositor);
-    compositor->view = settings_view(&compositor->settings, width, height);
+    compositor->view = compositor->has_lens
+                           ? settings_view(&compositor->settings, width, height)
+                           : (struct glint_view){width, height, 1};
+    code = compositor_scene_size(compositor, width, height);
+    if (code != EXIT_OK)
+        return code;
+    compositor->sized = true;
+    if (!compositor->has_lens)
+        return EXIT_OK;
+    compositor->sized = false;
     compositor->strength.follows = false;
     code = settings_frame(tool, &compositor->settings, compositor->view,
                           &compositor->frame);
     if (code != EXIT_OK)
         return code;
     compositor->sized = true;
+    compositor->frame.cfg.reuse = &glint_reuse;
+    if (compositor->settings.rays == SETTINGS_RAYS_EXACT) {
+        if (!tool->quiet)
+            fprintf(stderr,
+                    "glint %s: exact rays: first how bright flares of %s are, "
+                    "a minute or more for a zoom, then each frame anew\n",
+                    tool->name, compositor->settings.lens.name);
+        tool_progress_start(&compositor->progress, tool, "exact rays");
+        compositor->frame.progress = tool_progress_show;
+        compositor->frame.progress_ctx = &compositor->progress;
+    }
     status = response_cached(tool, compositor->settings.lens.name,
                              &compositor->frame, compositor->reserve_bytes,
                              &compositor->response);
@@ -137,9 +215,6 @@ int compositor_size(const struct tool *tool, struct compositor *compositor,
                 compositor->threshold_ev[1]);
     if (status == GLINT_OK && compositor->reserve_bytes)
         status = reserve(compositor);
-    if (status == GLINT_OK && compositor->reserve_bytes)
-        status =
-            glint_frame_star_hold(&compositor->frame, most_lamps(compositor));
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
 
@@ -176,6 +251,8 @@ int compositor_finish(const struct tool *tool, struct compositor *compositor)
 void compositor_close(struct compositor *compositor)
 {
     unsize(compositor);
+    compositor_desk_close(compositor);
+    over_scene_close(&compositor->scene);
     lamp_save_abort(&compositor->save);
     lamp_list_free(&compositor->list);
     lamp_list_free(&compositor->at);
@@ -183,6 +260,13 @@ void compositor_close(struct compositor *compositor)
     compositor->lamp = NULL;
     free(compositor->level);
     compositor->level = NULL;
+    free(compositor->share);
+    compositor->share = NULL;
+    free(compositor->excess);
+    free(compositor->excess_before);
+    free(compositor->id_before);
+    compositor->excess = compositor->excess_before = NULL;
+    compositor->id_before = NULL;
     free(compositor->seen_px);
     compositor->seen_px = NULL;
     free(compositor->id);
@@ -193,49 +277,6 @@ void compositor_close(struct compositor *compositor)
 }
 
 /* ------------------------------------------------------------------ drawing */
-
-/* Returns the row that lamp I is saved as: where it was found, or where a list
- * or option puts it. */
-static struct lamp_row row_of(const struct compositor *compositor, int i)
-{
-    const bool found = !compositor->is_listed && compositor->n_hand == 0;
-    const struct glint_lamp *lamp = &compositor->lamp[i];
-    const double *axis = lamp->axis;
-    const double focal = compositor->settings.setup.optics.focal_mm;
-    const double pixels =
-        compositor->view.width * fabs(focal) /
-        compositor->view.sensor_width_mm; /* pixels per tangent */
-    struct lamp_row row = {.frame = compositor->n_frames,
-                           .power = lamp->power,
-                           .size = pixels * hypot(axis[0], axis[1]),
-                           .shape = axis[0] > 0 ? axis[1] / axis[0] : 1,
-                           .turn = lamp->turn_deg,
-                           .level = compositor->level[i],
-                           .seen = compositor->seen_px[i],
-                           .id = compositor->id[i],
-                           .next = -1};
-
-    memcpy(row.rgb, lamp->rgb, sizeof row.rgb);
-    if (found) {
-        const struct glint_lamp_track *track = &compositor->finder.track[i];
-
-        row.x = track->x_q8 / 256.0;
-        row.y = track->y_q8 / 256.0;
-    } else
-        glint_view_to_pixel(&compositor->view,
-                            compositor->settings.setup.optics.focal_mm, lamp,
-                            &row.x, &row.y);
-    return row;
-}
-
-static void save_lamps(struct compositor *compositor)
-{
-    for (int i = 0; compositor->save.is_open && i < compositor->n_lamps; i++) {
-        const struct lamp_row row = row_of(compositor, i);
-
-        lamp_save_row(&compositor->save, &row);
-    }
-}
 
 static int set_lamps(struct compositor *compositor,
                      const struct glint_image *image, int32_t elapsed_us)
@@ -278,66 +319,19 @@ static int set_lamps(struct compositor *compositor,
 int compositor_lamps(struct compositor *compositor,
                      const struct glint_image *image, int32_t elapsed_us)
 {
+    compositor_desk_turn(compositor);
     compositor->n_lamps = set_lamps(compositor, image, elapsed_us);
-    save_lamps(compositor);
+    compositor->n_own = compositor->n_lamps;
+    compositor_desk_hide(compositor, compositor->n_lamps);
+    compositor_save_lamps(compositor);
     return compositor->n_lamps;
 }
 
-/* Sets CODE to the codes of black that even and odd bytes of PLANE have. */
-static void black_of(const struct glint_image *image, int plane,
-                     uint8_t code[2])
+void compositor_drawn(struct compositor *compositor)
 {
-    const bool limited = !glint_image_is_rgb(image->format) &&
-                         image->range == GLINT_RANGE_LIMITED;
-
-    code[0] = code[1] = plane > 0 ? 128 : limited ? 16 : 0;
-    if (image->format == GLINT_YUYV)
-        code[1] = 128;
-    else if (image->format == GLINT_UYVY)
-        code[0] = 128;
-}
-
-/* Sets IMAGE to black. */
-static void blacken(const struct glint_image *image)
-{
-    for (int p = 0; p < glint_image_planes(image->format); p++) {
-        const int rows =
-            glint_image_plane_height(image->format, p, image->height);
-        const size_t bytes =
-            glint_image_row_bytes(image->format, p, image->width);
-        uint8_t code[2];
-
-        black_of(image, p, code);
-        for (int y = 0; y < rows; y++) {
-            uint8_t *row = image->plane[p] + y * image->stride_bytes[p];
-
-            for (size_t i = 0; i < bytes; i++)
-                row[i] = code[i & 1];
-        }
-    }
-}
-
-/* Marks the lights on IMAGE: found lamps as they are tracked, all others at
- * their places by number. */
-void compositor_mark(const struct compositor *compositor,
-                     const struct glint_image *image)
-{
-    const bool found = !compositor->is_listed && compositor->n_hand == 0;
-
-    for (int i = 0; i < compositor->n_lamps; i++) {
-        const struct lamp_row row = row_of(compositor, i);
-        const uint32_t id = row.id < LAMP_ID_TEXT ? row.id : (uint32_t)i + 1;
-        struct glint_lamp_track track = {.id = id, .state = GLINT_LAMP_STEADY};
-
-        if (!(fabs(row.x) < 1 << 20 && fabs(row.y) < 1 << 20))
-            continue;
-        if (found)
-            track = compositor->finder.track[i];
-        track.x_q8 = (int32_t)(row.x * 256);
-        track.y_q8 = (int32_t)(row.y * 256);
-        show_light_of(image, &track, row.power);
-    }
-    show_legend(image, found && compositor->is_followed);
+    if (compositor->frame.progress)
+        tool_progress_end(&compositor->progress);
+    compositor->frame.progress = NULL;
 }
 
 double compositor_scale(const struct compositor *compositor)
@@ -380,7 +374,7 @@ void compositor_expose(struct compositor *compositor, int32_t elapsed_us)
         (double)compositor->view.width * compositor->view.height *
             compositor->white};
 
-    save_lamps(compositor);
+    compositor_save_lamps(compositor);
     compositor->strength.is_physical = compositor->settings.has_exposure;
     compositor->strength.exposure_ev = compositor->settings.exposure_ev;
     compositor->strength.gain = compositor->settings.gain;
@@ -392,6 +386,7 @@ void compositor_expose(struct compositor *compositor, int32_t elapsed_us)
     compositor->ground = NULL;
     compositor->frame.star.seen_px = compositor->seen_px;
     compositor->frame.star.level = compositor->level;
+    compositor_veil(compositor, is_new ? 0 : elapsed_us);
     compositor->frame.star.share = glint_strength_star(
         &compositor->strength, settings_starburst(&compositor->settings));
 }
@@ -407,13 +402,34 @@ static void keep_ground(struct compositor *compositor,
         glint_ground_take(compositor->ground, image);
 }
 
-void compositor_find(struct compositor *compositor,
-                     const struct glint_image *image, int32_t elapsed_us)
+/* Sets the lamps of IMAGE and draws the scene over it. */
+static enum glint_status find(struct compositor *compositor,
+                              const struct glint_image *image,
+                              int32_t elapsed_us)
+{
+    const double start = tool_seconds();
+    enum glint_status status;
+
+    compositor->n_lamps = 0;
+    if (compositor->has_lens) {
+        compositor_desk_turn(compositor);
+        compositor->n_lamps = set_lamps(compositor, image, elapsed_us);
+        compositor_desk_hide(compositor, compositor->n_lamps);
+    }
+    compositor->find_ms = 1e3 * (tool_seconds() - start);
+    status = compositor_scene(compositor, image);
+    return status;
+}
+
+enum glint_status compositor_find(struct compositor *compositor,
+                                  const struct glint_image *image,
+                                  int32_t elapsed_us)
 {
     const struct settings *settings = &compositor->settings;
-    const double start = tool_seconds();
+    const enum glint_status status = find(compositor, image, elapsed_us);
 
-    compositor->n_lamps = set_lamps(compositor, image, elapsed_us);
+    if (status != GLINT_OK || !compositor->has_lens)
+        return status;
     /* There is time to draw a picture by itself with more points of wide
      * lamps. */
     if (elapsed_us == 0 && settings->budget_ms == 0) {
@@ -426,28 +442,35 @@ void compositor_find(struct compositor *compositor,
     }
     if (elapsed_us == 0)
         keep_ground(compositor, image);
-    compositor->find_ms = 1e3 * (tool_seconds() - start);
+    return GLINT_OK;
 }
 
 enum glint_status compositor_draw(struct compositor *compositor,
                                   const struct glint_image *image,
                                   int32_t elapsed_us)
 {
-    enum glint_status status;
+    enum glint_status status = compositor_find(compositor, image, elapsed_us);
     double found;
 
-    compositor_find(compositor, image, elapsed_us);
+    if (status != GLINT_OK || !compositor->has_lens) {
+        compositor->n_frames++;
+        return status;
+    }
     compositor_expose(compositor, elapsed_us);
     found = tool_seconds();
+    status = glint_frame_veil_look(&compositor->frame, image, 1);
+    if (status != GLINT_OK)
+        return status;
     if (compositor->flare_only)
-        blacken(image);
+        paint_black(image);
     status = glint_frame_draw(
         &compositor->frame, compositor->lamp,
         compositor_scale(compositor) > 0 ? compositor->n_lamps : 0,
         compositor_scale(compositor), image, &compositor->report);
+    compositor_drawn(compositor);
     compositor->report.lights = compositor->n_lamps;
     compositor->flare_ms = 1e3 * (tool_seconds() - found);
-    if (compositor->show_lights)
+    if (compositor_marks(compositor))
         compositor_mark(compositor, image);
     compositor->n_frames++;
     return status;

@@ -116,8 +116,7 @@ static void set_lamp(struct compositor *compositor, int i,
     track->y_q8 = (int32_t)lrint(256 * sum->y / sum->luminance);
     glint_view_to_angles(&compositor->view, focal, track->x_q8 / 256.0,
                          track->y_q8 / 256.0, lamp);
-    lamp->power =
-        fmin(sum->luminance, LAMP_MAX_POWER) * track->level_q15 / 32768;
+    lamp->power = fmin(sum->luminance, LAMP_MAX_POWER) * compositor->level[i];
     for (int c = 0; c < 3; c++)
         lamp->rgb[c] = sum->rgb[c] / sum->luminance;
 }
@@ -125,7 +124,7 @@ static void set_lamp(struct compositor *compositor, int i,
 void compositor_measure(struct compositor *compositor,
                         const struct glint_samples *samples, double white)
 {
-    const int n = compositor->n_lamps;
+    const int n = compositor->n_own;
     struct reach *all;
 
     if (compositor->is_listed || compositor->n_hand || n == 0)
@@ -184,6 +183,56 @@ enum glint_status compositor_draw_layer(struct compositor *compositor,
             compositor_scale(compositor), rgb, &compositor->report);
     else
         status = draw_as_for_codes(compositor, rgb);
+    compositor_drawn(compositor);
     compositor->flare_ms = 1e3 * (tool_seconds() - start);
     return status;
+}
+
+/* -------------------------------------------------------------------- veil */
+
+/* Returns what lamp I, which the finder found, has over what the picture shows
+ * of it where nothing of the scene hides it, of a video followed from the last
+ * frame by a third of a second: what is estimated of a lamp that clips may jump
+ * for a frame. */
+static double excess_found(const struct compositor *compositor, int i,
+                           int32_t elapsed_us)
+{
+    const double share = compositor->share[i];
+    const double shown = (double)compositor->finder.track[i].flux_q16 / 65536 *
+                         compositor->level[i] / share * compositor->white;
+    const double excess = fmax(compositor->lamp[i].power / share - shown, 0);
+    const double k = 1 - exp(-3e-6 * elapsed_us);
+
+    for (int j = 0; j < compositor->n_before && elapsed_us > 0; j++)
+        if (compositor->id_before[j] == compositor->id[i])
+            return compositor->excess_before[j] +
+                   k * (excess - compositor->excess_before[j]);
+    return excess;
+}
+
+void compositor_veil(struct compositor *compositor, int32_t elapsed_us)
+{
+    struct glint_frame_veil *veil = &compositor->frame.veil;
+    const struct settings *s = &compositor->settings;
+    const bool found = !compositor->is_listed && compositor->n_hand == 0;
+    /* each frame anew: keys may turn a gain down to 0, and up again */
+    const bool is_on = s->gain > 0 && !s->starburst_only && !s->ghosts_only;
+    const size_t n = (size_t)compositor->n_lamps;
+
+    for (int i = 0; i < compositor->n_lamps; i++)
+        compositor->excess[i] =
+            found && i < compositor->n_own
+                ? excess_found(compositor, i, elapsed_us)
+                : compositor->lamp[i].power / compositor->share[i];
+    memcpy(compositor->excess_before, compositor->excess,
+           n * sizeof *compositor->excess);
+    memcpy(compositor->id_before, compositor->id, n * sizeof *compositor->id);
+    compositor->n_before = compositor->n_lamps;
+    for (int i = 0; i < compositor->n_lamps; i++)
+        compositor->excess[i] *= compositor->share[i];
+    veil->excess = compositor->excess;
+    veil->alone_gain = 1;
+    veil->glare = is_on ? s->veil : 0;
+    veil->haze = is_on ? s->haze : 0;
+    veil->front = is_on ? s->front.dirt : NULL;
 }

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "desk/styles.h"
 #include "engine/frame/area.h"
 #include "options/takes.h"
 #include "overlay/compositor.h"
@@ -22,10 +23,6 @@ void compositor_defaults(struct compositor *compositor)
 
 /* Stops by which a lamp's region extends below its threshold, by default. */
 #define EXTENDS_EV 0.05
-
-/* Default power of a lamp by hand, stops over a white pixel: a street lamp in a
- * night picture. */
-#define DEFAULT_EV 16
 
 static bool take_threshold(const char *text, double threshold_ev[2])
 {
@@ -56,7 +53,7 @@ static bool take_light(struct compositor *compositor, const char *text)
  * range, or one too many. */
 static bool take_light_at(struct compositor *compositor, const char *text)
 {
-    double v[3] = {0, 0, DEFAULT_EV};
+    double v[3] = {0, 0, COMPOSITOR_LIGHT_EV};
     const int n = tool_numbers(text, v, 3);
     const struct lamp_row row = {.frame = -1,
                                  .x = v[0],
@@ -72,6 +69,51 @@ static bool take_light_at(struct compositor *compositor, const char *text)
            lamp_list_add(&compositor->at, &row) == GLINT_OK;
 }
 
+/* Notes the file VALUE of OPTION; returns false if that names no file. */
+static bool take_file(struct compositor *compositor, int option,
+                      const char *value)
+{
+    switch (option) {
+    case OPT_SAVE_LIGHTS:
+        compositor->save_file = value;
+        return true;
+    case OPT_MASK:
+        compositor->occlusion.file = value;
+        return true;
+    case OPT_KEYS:
+        compositor->keys_file = value;
+        return true;
+    case OPT_SCENE:
+        compositor->scene.file = value;
+        return true;
+    case OPT_POSE:
+        compositor->scene.pose_file = value;
+        return true;
+    default:
+        return false;
+    }
+}
+
+/* Notes a dial of the scene; returns false if VALUE is none of its values. */
+static bool take_scene(struct over_scene *scene, int option, const char *value)
+{
+    static const char *const shading[] = {"full", "half", NULL};
+    const int word = tool_word(value, shading);
+    int n;
+
+    if (option == OPT_SHADING) {
+        scene->half_shading = word == 1;
+        return word >= 0;
+    }
+    if (!tool_integer(value, 1, 16, &n) ||
+        (n != 1 && n != 4 && n != 16 &&
+         !(n == 8 && option == OPT_EDGE_SAMPLES)))
+        return false;
+    *(option == OPT_EDGE_SAMPLES ? &scene->edge_samples
+                                 : &scene->shadow_points) = n;
+    return true;
+}
+
 static bool take(struct compositor *compositor, int option, const char *value)
 {
     static const char *const layers[] = {"composite", "flare", "flare-alpha",
@@ -79,6 +121,8 @@ static bool take(struct compositor *compositor, int option, const char *value)
     static const char *const shows[] = {"lights", NULL};
     int layer;
 
+    if (take_file(compositor, option, value))
+        return *value != '\0';
     switch (option) {
     case OPT_LENS:
         compositor->lens = value;
@@ -95,11 +139,22 @@ static bool take(struct compositor *compositor, int option, const char *value)
                compositor->headroom_ev >= 0 && compositor->headroom_ev <= 40;
     case OPT_NO_TRACKING:
         return compositor->no_tracking = true;
+    case OPT_STILL:
+        return tool_number(value, &compositor->settings.dials.still_px) &&
+               compositor->settings.dials.still_px >= 0 &&
+               compositor->settings.dials.still_px <= 16;
     case OPT_LIGHT_AT:
         return take_light_at(compositor, value);
-    case OPT_SAVE_LIGHTS:
-        compositor->save_file = value;
-        return *value != '\0';
+    case OPT_EDGE_FADE:
+        return tool_number(value, &compositor->occlusion.fade_px) &&
+               compositor->occlusion.fade_px > 0 &&
+               compositor->occlusion.fade_px <= 1e6;
+    case OPT_EDGE_SAMPLES:
+    case OPT_SHADOW_POINTS:
+    case OPT_SHADING:
+        return take_scene(&compositor->scene, option, value);
+    case OPT_PREVIEW:
+        return compositor->preview = true;
     case OPT_INTERPOLATE:
         return compositor->interpolate = true;
     case OPT_SHOW:
@@ -134,6 +189,45 @@ void compositor_options_end(struct compositor *compositor)
     compositor->dial = 0;
 }
 
+static int option_of(const char *name)
+{
+    static const struct option all[] = {COMPOSITOR_OPTIONS, {NULL, 0, NULL, 0}};
+    const struct option *o = all;
+
+    while (o->name && strcmp(o->name, name) != 0)
+        o++;
+    return o->val;
+}
+
+int compositor_style(const struct tool *tool, struct compositor *compositor,
+                     const char *name)
+{
+    const struct style *const style = style_of(name);
+    int code = -1;
+
+    if (!style)
+        return tool_refuse(tool, "style", name);
+    for (int i = 0; style->set[i].option && code == -1; i++)
+        code =
+            compositor_option(tool, compositor, option_of(style->set[i].option),
+                              style->set[i].value);
+    compositor_options_end(compositor);
+    /* A model has its own, and is no mistake with a style. */
+    compositor->settings.coating.given = false;
+    compositor->style = style->name;
+    return code;
+}
+
+int compositor_style_of(const struct tool *tool, struct compositor *compositor,
+                        int argc, char **argv, const char *shorts,
+                        const struct option *options)
+{
+    const char *const name =
+        tool_value_of(argc, argv, shorts, options, OPT_STYLE);
+
+    return name ? compositor_style(tool, compositor, name) : -1;
+}
+
 int compositor_option(const struct tool *tool, struct compositor *compositor,
                       int option, const char *value)
 {
@@ -144,6 +238,9 @@ int compositor_option(const struct tool *tool, struct compositor *compositor,
             : tool_usage(tool, "--strength chooses the exposure; "
                                "give one of it and --exposure");
 
+    if (option == OPT_STYLE)
+        /* The command line's style was taken before its other options. */
+        return tool->where ? compositor_style(tool, compositor, value) : -1;
     if (code != -2 || option < OPT_LENS || option >= OPT_COMPOSITOR_LAST)
         return code;
     if (take(compositor, option, value))

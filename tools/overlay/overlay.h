@@ -6,6 +6,7 @@
 #ifndef GLINT_TOOLS_OVERLAY_OVERLAY_H
 #define GLINT_TOOLS_OVERLAY_OVERLAY_H
 
+#include "desk/layers.h"
 #include "overlay/compositor.h"
 
 struct overlay_y4m;
@@ -21,6 +22,8 @@ struct overlay {
     int range, matrix;  /* 0: auto */
     int quality;        /* quality of JPEG and WebP; 0: the input's */
     bool is_video;
+    struct layers layers;
+    bool has_layers_type;
     const char *encode; /* options for ffmpeg, or NULL */
 
     /* Figures for warnings: those of the frame of which most lights were
@@ -28,6 +31,7 @@ struct overlay {
      * bundles and cells of all frames. */
     struct glint_frame_report worst;
     int most_lights;
+    int n_reused; /* frames that were drawn with the edges of the last */
     /* find_ms, flare_ms: ms in all frames; started, reported: times of the
      * start and the last progress, seconds */
     double find_ms, flare_ms, started, reported;
@@ -54,10 +58,10 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
 /* Prints progress: over a line of a terminal, else a line every few seconds. */
 void overlay_progress(const struct tool *tool, struct overlay *o);
 
-/* Refuses an output TO that is the file FROM, as the photograph would be
- * lost. */
-int overlay_check_apart(const struct tool *tool, const char *from,
-                        const char *to);
+/* Refuses a file that would be written over one that is read, or over another,
+ * where the picture FROM becomes the picture TO. */
+int overlay_check_apart(const struct tool *tool, const struct overlay *o,
+                        const char *from, const char *to);
 
 /* Draws one picture from file FROM to file TO. */
 int overlay_picture(struct tool *tool, struct overlay *o, const char *from,

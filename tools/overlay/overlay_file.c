@@ -98,6 +98,74 @@ void overlay_file_close(struct overlay_file *file)
 
 /* ------------------------------------------------------------------ drawing */
 
+/* Returns whether IMAGE is a photograph without colour: every pixel is grey,
+ * and a tenth of them are neither nearly black nor nearly white. A drawing of
+ * white on black is none, so that a flare on it has its colours. */
+static bool is_monochrome(const struct glint_image *image)
+{
+    int64_t n = 0;
+
+    for (int y = 0; y < image->height; y++) {
+        const uint8_t *px = image->plane[0] + y * image->stride_bytes[0];
+
+        for (int x = 0; x < image->width; x++, px += 3) {
+            if (px[0] != px[1] || px[0] != px[2])
+                return false;
+            n += px[0] >= 8 && px[0] < 248;
+        }
+    }
+    return 10 * n >= (int64_t)image->width * image->height;
+}
+
+/* Copies the grey rows of FROM to all channels of TO, or if TO is grey the
+ * first channel of FROM to it. */
+static void copy_grey(const struct glint_image *to,
+                      const struct glint_image *from)
+{
+    const int wide = to->format == GLINT_GREY ? 1 : 3;
+
+    for (int y = 0; y < to->height; y++) {
+        uint8_t *px = to->plane[0] + y * to->stride_bytes[0];
+        const uint8_t *at = from->plane[0] + y * from->stride_bytes[0];
+
+        for (int x = 0; x < to->width; x++, px += wide, at += 4 - wide)
+            memset(px, *at, (size_t)wide);
+    }
+}
+
+/* Draws on a picture without colour as on a grey one, which gets the luminance
+ * of the flare. */
+static enum glint_status draw_grey(struct overlay_file *f,
+                                   struct compositor *compositor,
+                                   int32_t elapsed_us)
+{
+    struct glint_image grey = {.format = GLINT_GREY,
+                               .transfer = f->image.transfer,
+                               .width = f->image.width,
+                               .height = f->image.height};
+    uint8_t *const mem =
+        malloc(glint_image_bytes(GLINT_GREY, f->image.width, f->image.height));
+    enum glint_status status;
+
+    if (!mem)
+        return GLINT_E_MEMORY;
+    glint_image_place(&grey, mem);
+    grey.range = GLINT_RANGE_FULL;
+    copy_grey(&grey, &f->image);
+    status = compositor_draw(compositor, &grey, elapsed_us);
+    copy_grey(&f->image, &grey);
+    free(mem);
+    return status;
+}
+
+/* Leaves of the light RGB, N pixels, its luminance. */
+static void take_colour(float *rgb, size_t n)
+{
+    for (; n > 0; n--, rgb += 3)
+        rgb[0] = rgb[1] = rgb[2] =
+            0.2126F * rgb[0] + 0.7152F * rgb[1] + 0.0722F * rgb[2];
+}
+
 static struct glint_samples *drawn_on(struct overlay_file *f)
 {
     return f->is_copied ? &f->work : &f->kept.samples;
@@ -105,7 +173,30 @@ static struct glint_samples *drawn_on(struct overlay_file *f)
 
 static bool adds_nothing(const struct compositor *compositor)
 {
-    return compositor->n_lamps == 0 || !(compositor_scale(compositor) > 0);
+    return !compositor->scene.is_open &&
+           !glint_frame_has_veil(&compositor->frame) &&
+           (compositor->n_lamps == 0 || !(compositor_scale(compositor) > 0));
+}
+
+/* Replaces the upright pixels of S at which DRAWN differs from BEFORE, its
+ * codes before drawing without padding. They become opaque. */
+static void put_marks(struct glint_samples *s, const struct glint_image *drawn,
+                      const uint8_t *before)
+{
+    const uint8_t *at = drawn->plane[0];
+    struct glint_tone_curve srgb;
+
+    glint_tone_curve_set(&srgb, GLINT_TONE_IS_SRGB, 0);
+    for (int y = 0; y < drawn->height; y++)
+        for (int x = 0; x < drawn->width; x++, at += 3, before += 3) {
+            double rgb[3];
+
+            if (memcmp(at, before, 3) == 0)
+                continue;
+            for (int c = 0; c < 3; c++)
+                rgb[c] = glint_tone_curve_decode(&srgb, at[c] / 255.0);
+            glint_samples_set(s, x, y, rgb, 1);
+        }
 }
 
 /* Marks the lights on the proxy, and copies the marks to the samples. */
@@ -120,9 +211,66 @@ static enum glint_status mark(struct overlay_file *f,
         return GLINT_E_MEMORY;
     memcpy(before, f->image.plane[0], bytes);
     compositor_mark(compositor, &f->image);
-    glint_samples_put(drawn_on(f), &f->image, before);
+    put_marks(drawn_on(f), &f->image, before);
     free(before);
     return GLINT_OK;
+}
+
+/* Sets the pixel X, Y to what of it the scene does not hide, and RGB over that.
+ */
+static void cover_pixel(struct glint_samples *s, int x, int y, double hidden,
+                        const double rgb[3])
+{
+    double sum[3];
+    float own[3];
+
+    glint_samples_light(s, x, y, own);
+    for (int c = 0; c < 3; c++)
+        sum[c] = (double)own[c] * (1 - hidden) + rgb[c];
+    glint_samples_set(s, x, y, sum, hidden);
+}
+
+/* Draws the scene on the samples, as it was drawn on their proxy, of which
+ * white is file->white. */
+static enum glint_status draw_scene(struct overlay_file *file,
+                                    struct compositor *compositor, bool is_grey)
+{
+    const size_t width = (size_t)file->image.width;
+    const size_t n = width * (size_t)file->image.height;
+    struct over_scene_layer layer;
+    const enum glint_status status =
+        over_scene_layer(&compositor->scene, &layer);
+
+    if (status != GLINT_OK)
+        return status;
+    if (is_grey)
+        take_colour(layer.rgb, n);
+    for (size_t i = 0; i < n; i++) {
+        const float *const from = layer.rgb + 3 * i;
+        const double rgb[3] = {file->white * (double)from[0],
+                               file->white * (double)from[1],
+                               file->white * (double)from[2]};
+
+        if (layer.cover_q8[i] || from[0] > 0 || from[1] > 0 || from[2] > 0)
+            cover_pixel(drawn_on(file), (int)(i % width), (int)(i / width),
+                        layer.cover_q8[i] / 256.0, rgb);
+    }
+    over_scene_layer_free(&layer);
+    return GLINT_OK;
+}
+
+/* Says that what is drawn has no colours, as the file has no room for them. */
+static void say_grey(const struct overlay_file *file,
+                     const struct compositor *compositor)
+{
+    const struct tool *const tool = compositor->scene.tool;
+
+    if (file->kept.samples.n_colours == 1 && compositor->scene.is_open &&
+        !compositor->flare_only && !tool->quiet)
+        fprintf(stderr,
+                "glint %s: %s has one channel, so that things and flare are "
+                "grey; with three they have colours\n",
+                tool->name, file->from);
 }
 
 enum glint_status overlay_file_draw(struct overlay_file *file,
@@ -131,15 +279,34 @@ enum glint_status overlay_file_draw(struct overlay_file *file,
 {
     const size_t n = 3 * (size_t)file->image.width * (size_t)file->image.height;
     enum glint_status status;
+    bool is_grey;
 
     compositor->is_measured = file->kept.is_float;
+    say_grey(file, compositor);
+    /* A thing has colours, where the file has room for them. */
+    is_grey = !compositor->flare_only &&
+              !(compositor->scene.is_open && drawn_on(file)->n_colours == 3) &&
+              is_monochrome(&file->image);
     if (file->is_direct)
-        return compositor_draw(compositor, &file->image, elapsed_us);
-    compositor_find(compositor, &file->image, elapsed_us);
+        return is_grey ? draw_grey(file, compositor, elapsed_us)
+                       : compositor_draw(compositor, &file->image, elapsed_us);
+    status = compositor_find(compositor, &file->image, elapsed_us);
+    if (status != GLINT_OK)
+        return status;
     if (file->kept.is_float)
         compositor_measure(compositor, &file->kept.samples, file->white);
     compositor->white = file->white;
+    if (compositor->scene.is_open && !compositor->flare_only)
+        status = draw_scene(file, compositor, is_grey);
+    if (status != GLINT_OK || !compositor->has_lens) {
+        compositor->n_frames++;
+        return status;
+    }
     compositor_expose(compositor, elapsed_us);
+    status =
+        glint_frame_veil_look(&compositor->frame, &file->image, file->white);
+    if (status != GLINT_OK)
+        return status;
     file->layer = calloc(n, sizeof *file->layer);
     if (!file->layer)
         return GLINT_E_MEMORY;
@@ -149,11 +316,13 @@ enum glint_status overlay_file_draw(struct overlay_file *file,
                                          is_deep(drawn_on(file)) ||
                                              compositor->flare_only,
                                          file->layer);
+    if (status == GLINT_OK && is_grey)
+        take_colour(file->layer, n / 3);
     if (status == GLINT_OK && !compositor->flare_only &&
         !adds_nothing(compositor))
         glint_samples_add(drawn_on(file), file->layer);
     if (status == GLINT_OK && !compositor->flare_only &&
-        compositor->show_lights)
+        compositor_marks(compositor))
         status = mark(file, compositor);
     compositor->n_frames++;
     return status;
@@ -206,7 +375,7 @@ static enum glint_status write(struct overlay_file *f,
     enum glint_status status;
 
     if (adds_nothing(compositor) && !compositor->flare_only &&
-        !compositor->show_lights && !options->quality &&
+        !compositor_marks(compositor) && !options->quality &&
         glint_kept_is_same_type(&f->kept, f->to))
         return glint_kept_copy(&f->kept, f->to, error);
     if (!own_layer)

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "engine/setup/spectrum.h"
+
 /* Linear light, 1 = white, of code 2 of 255 in sRGB, whose slope near black is
  * 12.92. A darker flare cannot be seen. */
 static const double least_seen = 2 / 255.0 / 12.92;
@@ -26,9 +28,9 @@ struct overlay_light overlay_light(const struct overlay *o)
                             &drawn, NULL) != GLINT_OK)
         return light;
     light.peak = compositor_scale(compositor) / compositor->white *
-                 glint_strength_largest(drawn.peak);
+                 glint_largest_channel(drawn.peak);
     light.mean = compositor_scale(compositor) / compositor->white *
-                 glint_strength_largest(drawn.mean);
+                 glint_largest_channel(drawn.mean);
     return light;
 }
 
@@ -58,6 +60,12 @@ brightest_of(const struct compositor *compositor)
     return best;
 }
 
+/* Returns X to print as a whole number, which is never -0. */
+static double whole(double x)
+{
+    return rint(x) + 0.0;
+}
+
 static void say_lights(const struct compositor *compositor, int most, FILE *to)
 {
     const struct glint_lamp *lamp;
@@ -72,7 +80,8 @@ static void say_lights(const struct compositor *compositor, int most, FILE *to)
                         compositor->settings.setup.optics.focal_mm, lamp, &x,
                         &y);
     fprintf(to, " (%s%.0f stops over a white pixel, at %.0f,%.0f)",
-            most == 1 ? "" : "the brightest ", stops_of(lamp), x, y);
+            most == 1 ? "" : "the brightest ", stops_of(lamp), whole(x),
+            whole(y));
 }
 
 static void say_dial(const struct compositor *compositor, FILE *to)
@@ -117,6 +126,47 @@ static void say_faint(const struct overlay *o,
                 compositor->strength.asked * sqrt(well_seen / light->peak));
 }
 
+/* Returns what the picture has where no lamp gives light. */
+static const char *rest_of(const struct compositor *compositor)
+{
+    const bool is_veiled = compositor->frame.veil.glare > 0 ||
+                           compositor->frame.veil.haze > 0 ||
+                           compositor->frame.veil.front;
+
+    return is_veiled ? "only the veil" : "nothing";
+}
+
+/* Returns whether lamps were there, but a mask or fade leaves none of their
+ * light: of several frames as far as the flare's LIGHT and the last tell. */
+static bool is_hidden(const struct compositor *compositor,
+                      const struct overlay_light *light)
+{
+    if (!compositor->occlusion.file && !(compositor->occlusion.fade_px > 0))
+        return false;
+    if (compositor->n_lamps == 0 ||
+        (compositor->n_frames > 1 && light->peak > 0))
+        return false;
+    for (int i = 0; i < compositor->n_lamps; i++)
+        if (compositor->lamp[i].power > 0)
+            return false;
+    return true;
+}
+
+static void say_hidden(const struct compositor *compositor, int most, FILE *to)
+{
+    const struct occlusion *const o = &compositor->occlusion;
+    const bool both = o->file && o->fade_px > 0;
+
+    fprintf(to, "%s%d light%s, but %s %s %s, so %s was drawn\n",
+            compositor->n_frames > 1 ? "at most " : "", most,
+            most == 1 ? "" : "s",
+            both      ? "--mask and --edge-fade"
+            : o->file ? "--mask"
+                      : "--edge-fade",
+            both ? "hide" : "hides", most == 1 ? "it" : "all of them",
+            rest_of(compositor));
+}
+
 void overlay_say_none(const struct compositor *compositor, FILE *to)
 {
     const bool is_found = !compositor->is_listed && compositor->n_hand == 0;
@@ -124,7 +174,7 @@ void overlay_say_none(const struct compositor *compositor, FILE *to)
 
     if (compositor->sized && is_found && compositor->n_frames <= 1)
         next = glint_lamp_detector_doubtful(&compositor->finder);
-    fputs("no light was found, so nothing was drawn; ", to);
+    fprintf(to, "no light was found, so %s was drawn; ", rest_of(compositor));
     if (next)
         fprintf(to, "brightest candidate: --light-at %.0f,%.0f\n",
                 next->x_q8 / 256.0, next->y_q8 / 256.0);
@@ -142,8 +192,25 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
     fprintf(to, "%s: ", o->output);
     if (n != 1)
         fprintf(to, "%d frames, %.1f a second, ", n, n / seconds);
+    if (compositor->scene.is_open)
+        over_scene_say(&compositor->scene, to);
+    if (!compositor->has_lens) {
+        fprintf(to, "; %.0f ms\n", 1e3 * seconds);
+        return;
+    }
+    if (compositor->scene.is_open)
+        fputs(", ", to);
     if (o->most_lights == 0) {
         overlay_say_none(compositor, to);
+        return;
+    }
+    if (is_hidden(compositor, light)) {
+        say_hidden(compositor, o->most_lights, to);
+        return;
+    }
+    if (n == 1 && compositor->scene.lamps_hidden >= compositor->n_lamps) {
+        fprintf(to, "%d light%s, hidden all, so no flare was drawn\n",
+                o->most_lights, o->most_lights == 1 ? "" : "s");
         return;
     }
     say_lights(compositor, o->most_lights, to);
@@ -168,6 +235,11 @@ void overlay_json(const struct overlay *o, const struct overlay_light *light,
     const double focal = compositor->settings.setup.optics.focal_mm;
     const double scale = compositor->strength.scale;
 
+    over_scene_json(&compositor->scene, to);
+    if (!compositor->has_lens) {
+        fputs("\"lens\": null, \"found\": [], ", to);
+        return;
+    }
     fprintf(to, "\"lens\": \"%s\", \"f_number\": %g, ",
             compositor->settings.lens.name, f_number_of(&compositor->settings));
     if (compositor->settings.has_exposure)

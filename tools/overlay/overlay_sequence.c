@@ -3,6 +3,7 @@
  * Numbered pictures as frames of a video. Missing numbers are reported, and
  * time passes for them.
  */
+#include "options/numbered.h"
 #include "overlay/overlay.h"
 
 #include <ctype.h>
@@ -12,43 +13,13 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { NAME_BYTES = 4096, FRAME_US = 1000000 / 25, RUNS_SAID = 8 };
+enum { NAME_BYTES = NUMBERED_BYTES, FRAME_US = 1000000 / 25, RUNS_SAID = 8 };
 
 /* the numbers of all pictures, rising */
 struct numbers {
     int *at;
     int n, room;
 };
-
-/* Checks whether TEXT has exactly one conversion, "%d" or "%0Nd". */
-static bool is_pattern(const char *text)
-{
-    const char *at = strchr(text, '%');
-
-    if (!at)
-        return false;
-    for (at++; isdigit((unsigned char)*at); at++)
-        ;
-    return *at == 'd' && !strchr(at, '%');
-}
-
-/* Sets NAME, NAME_BYTES long, to that of picture NUMBER by PATTERN. Returns
- * false if it is too long. */
-static bool name_of(char *name, const char *pattern, int number)
-{
-    const char *at = strchr(pattern, '%'); /* is_pattern() found one */
-    const char *end = at ? strchr(at, 'd') : NULL;
-    long stated;
-    int digits, n;
-
-    if (!end)
-        return false;
-    stated = at[1] == 'd' ? 0 : strtol(at + 1, NULL, 10);
-    digits = stated >= 0 && stated < 20 ? (int)stated : 20;
-    n = snprintf(name, NAME_BYTES, "%.*s%0*d%s", (int)(at - pattern), pattern,
-                 digits, number, end + 1);
-    return n >= 0 && n < NAME_BYTES;
-}
 
 /* ----------------------------------------------------------------- numbers */
 
@@ -82,7 +53,7 @@ static int number_of(const char *file, const char *pattern, char *name)
         !isdigit((unsigned char)file[before]))
         return -1;
     number = strtol(file + before, &end, 10);
-    if (number > 1000000000 || !name_of(name, pattern, (int)number))
+    if (number > 1000000000 || !numbered_name(name, pattern, (int)number))
         return -1;
     return strcmp(name + folder, file) == 0 ? (int)number : -1;
 }
@@ -130,10 +101,11 @@ static bool walk(struct numbers *l, const char *pattern, int first)
     int number = first;
 
     if (number < 0) {
-        name_of(name, pattern, 0);
+        numbered_name(name, pattern, 0);
         number = access(name, F_OK) == 0 ? 0 : 1;
     }
-    for (; ok && name_of(name, pattern, number) && access(name, F_OK) == 0;
+    for (;
+         ok && numbered_name(name, pattern, number) && access(name, F_OK) == 0;
          number++)
         ok = add(l, number);
     return ok;
@@ -174,9 +146,9 @@ static int one(struct tool *tool, struct overlay *o, const struct numbers *l,
     char from[NAME_BYTES], to[NAME_BYTES];
     int code;
 
-    name_of(from, o->input, l->at[i]);
-    if (is_pattern(o->output))
-        name_of(to, o->output, l->at[i]);
+    numbered_name(from, o->input, l->at[i]);
+    if (numbered_is(o->output))
+        numbered_name(to, o->output, l->at[i]);
     else
         snprintf(to, sizeof to, "%s", o->output);
     o->elapsed_us = l->n == 1                     ? 0
@@ -184,7 +156,7 @@ static int one(struct tool *tool, struct overlay *o, const struct numbers *l,
                                                   : (int32_t)(gap * FRAME_US);
     o->compositor.n_frames +=
         (int)(gap - 1); /* lists of lamps count all numbers */
-    code = overlay_check_apart(tool, from, to);
+    code = overlay_check_apart(tool, o, from, to);
     if (code == EXIT_OK)
         code = overlay_picture(tool, o, from, to);
     if (code == EXIT_OK)
@@ -201,7 +173,7 @@ static int all(struct tool *tool, struct overlay *o, const struct numbers *l)
                 o->input);
         return EXIT_INPUT;
     }
-    if (l->n > 1 && !is_pattern(o->output))
+    if (l->n > 1 && !numbered_is(o->output))
         return tool_usage(tool,
                           "%s: %d pictures need a %%04d in the output, too",
                           o->input, l->n);
@@ -220,10 +192,10 @@ int overlay_sequence(struct tool *tool, struct overlay *o)
     char name[NAME_BYTES];
     int code;
 
-    if (!is_pattern(o->input))
+    if (!percent || !numbered_is(o->input))
         return tool_usage(tool, "%s: a sequence needs one %%04d", o->input);
-    if (!name_of(name, o->input, INT_MAX) ||
-        (is_pattern(o->output) && !name_of(name, o->output, INT_MAX)))
+    if (!numbered_name(name, o->input, INT_MAX) ||
+        (numbered_is(o->output) && !numbered_name(name, o->output, INT_MAX)))
         return tool_usage(tool, "names of pictures have at most %d bytes",
                           NAME_BYTES - 1);
     if (strchr(percent, '/') ? walk(&l, o->input, o->start_number)
@@ -238,12 +210,17 @@ int overlay_sequence(struct tool *tool, struct overlay *o)
 int overlay_numbered(struct tool *tool, struct overlay *o)
 {
     char to[NAME_BYTES];
+    int code;
 
-    if (!is_pattern(o->output))
+    if (!numbered_is(o->output))
         return overlay_picture(tool, o, o->input, o->output);
-    if (!name_of(to, o->output, o->start_number < 0 ? 1 : o->start_number))
+    if (!numbered_name(to, o->output,
+                       o->start_number < 0 ? 1 : o->start_number))
         return tool_usage(tool, "names of pictures have at most %d bytes",
                           NAME_BYTES - 1);
+    code = overlay_check_apart(tool, o, o->input, to);
+    if (code != EXIT_OK)
+        return code;
     if (!tool->quiet)
         fprintf(stderr, "glint overlay: one picture, so one %s\n", to);
     return overlay_picture(tool, o, o->input, to);

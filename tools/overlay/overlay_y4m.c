@@ -28,23 +28,48 @@ void overlay_y4m_close(struct overlay *o)
     o->y4m = NULL;
 }
 
+static enum glint_status draw_scene(struct overlay_y4m *y,
+                                    struct compositor *compositor)
+{
+    struct over_scene_layer layer;
+    enum glint_status status;
+
+    if (!compositor->scene.is_open)
+        return GLINT_OK;
+    status = over_scene_layer(&compositor->scene, &layer);
+    if (status != GLINT_OK)
+        return status;
+    glint_y4m_light_cover(&y->light, y->planes, layer.rgb, layer.cover_q8);
+    over_scene_layer_free(&layer);
+    return GLINT_OK;
+}
+
 static enum glint_status draw(void *ctx, struct compositor *compositor,
                               const struct glint_image *image,
                               int32_t elapsed_us)
 {
     struct overlay_y4m *const y = ctx;
-    enum glint_status status;
+    enum glint_status status = compositor_find(compositor, image, elapsed_us);
 
-    compositor_find(compositor, image, elapsed_us);
+    if (status == GLINT_OK)
+        status = draw_scene(y, compositor);
+    if (status != GLINT_OK || !compositor->has_lens) {
+        compositor->n_frames++;
+        return status;
+    }
     compositor_expose(compositor, elapsed_us);
     compositor->n_frames++;
+    status = glint_frame_veil_look(&compositor->frame, image, 1);
+    if (status != GLINT_OK)
+        return status;
     if (compositor->flare_only)
         glint_y4m_light_blacken(&y->light, y->planes);
-    if (compositor->n_lamps == 0)
+    if (compositor->n_lamps == 0 && !glint_frame_has_veil(&compositor->frame))
         return GLINT_OK;
     status =
         compositor_draw_layer(compositor, y->light.layout.bits > 12, y->layer);
-    if (status == GLINT_OK && compositor_scale(compositor) > 0)
+    if (status == GLINT_OK && (compositor_scale(compositor) > 0 ||
+                               glint_frame_has_veil(&compositor->frame)))
         glint_y4m_light_add(&y->light, y->planes, y->layer);
     return status;
 }
@@ -70,7 +95,7 @@ int overlay_y4m_draw(struct tool *tool, struct overlay *o,
 {
     if (glint_y4m_layout_is_plain(&in->header.layout))
         return overlay_draw(tool, o, image);
-    if (o->compositor.show_lights)
+    if (compositor_marks(&o->compositor))
         return tool_usage(tool,
                           "--show lights marks frames of 8 bits, and "
                           "these are C%s",

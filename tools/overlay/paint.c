@@ -181,3 +181,36 @@ void paint_text(const struct paint *p, int x, int y, const char *text)
     for (int i = 0; text[i]; i++)
         draw_glyph(p, x + 4 * i * p->line, y, glyph_of(text[i]));
 }
+
+/* Sets CODE to the codes of black that even and odd bytes of PLANE have. */
+static void black_of(const struct glint_image *image, int plane,
+                     uint8_t code[2])
+{
+    const bool limited = !glint_image_is_rgb(image->format) &&
+                         image->range == GLINT_RANGE_LIMITED;
+
+    code[0] = code[1] = plane > 0 ? 128 : limited ? 16 : 0;
+    if (image->format == GLINT_YUYV)
+        code[1] = 128;
+    else if (image->format == GLINT_UYVY)
+        code[0] = 128;
+}
+
+void paint_black(const struct glint_image *image)
+{
+    for (int p = 0; p < glint_image_planes(image->format); p++) {
+        const int rows =
+            glint_image_plane_height(image->format, p, image->height);
+        const size_t bytes =
+            glint_image_row_bytes(image->format, p, image->width);
+        uint8_t code[2];
+
+        black_of(image, p, code);
+        for (int y = 0; y < rows; y++) {
+            uint8_t *row = image->plane[p] + y * image->stride_bytes[p];
+
+            for (size_t i = 0; i < bytes; i++)
+                row[i] = code[i & 1];
+        }
+    }
+}

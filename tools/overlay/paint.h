@@ -36,4 +36,7 @@ void paint_box(const struct paint *p, int x, int y, int half);
 void paint_text(const struct paint *p, int x, int y, const char *text);
 int paint_text_width(const struct paint *p, const char *text);
 
+/* Sets IMAGE to black. */
+void paint_black(const struct glint_image *image);
+
 #endif

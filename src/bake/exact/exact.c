@@ -315,7 +315,8 @@ static enum glint_status list_bundles(struct picture *p)
     for (int k = 0; k < all; k++) {
         const int ghost = k / waves % ghosts;
 
-        if (c->only_ghost < 0 || c->only_ghost == ghost)
+        if ((c->only_ghost < 0 || c->only_ghost == ghost) &&
+            (!c->tints || c->tints[ghost].gain.mantissa > 0))
             p->bundle[p->n_bundles++] =
                 (struct bundle){.lamp = &c->lamps[k / waves / ghosts],
                                 .ghost = ghost,
@@ -340,7 +341,9 @@ static enum glint_status draw_bundle(struct picture *p, const struct bundle *b)
     flux = b->lamp->power * p->cells.direction[2] * 0.5 *
            glint_cells_area(&p->cells) / s->unit_flux[b->wavelength];
     for (int k = 0; k < 3; k++)
-        p->weight[k] = flux * s->rgb[b->wavelength][k] * b->lamp->rgb[k];
+        p->weight[k] =
+            flux * s->rgb[b->wavelength][k] * b->lamp->rgb[k] *
+            (c->tints ? glint_tint_factor(&c->tints[b->ghost], k) : 1);
     glint_workers_run(c->workers, c->grid / 2 + 1, trace_job, p);
     glint_workers_run(c->workers, (c->view.height + BAND - 1) / BAND, band_job,
                       p);

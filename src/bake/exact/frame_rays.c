@@ -15,6 +15,13 @@ enum { MAX_BUNDLES = 65535, MAX_VERTICES = 1 << 25 };
  * picture. */
 enum { MAX_PLANNED = 1 << 24 };
 
+/* Parts of the work between which progress is told, and jobs of one at least.
+ */
+enum { PARTS = 100, LEAST_PART = 16 };
+
+/* Share of planning in the work of a frame, about. */
+#define PLAN_SHARE 0.5
+
 /* --------------------------------------------------------------------- plan */
 
 struct traced {
@@ -28,13 +35,32 @@ struct traced {
 struct job {
     struct glint_frame *frame;
     struct glint_traced_bundle_config cfg;
+    int first; /* number of the first job of a part */
 };
+
+/* Runs N jobs, in parts after each of which progress is told: FROM and TO,
+ * shares of the frame's work. */
+static void run(struct job *job, int n, glint_job_fn *each, double from,
+                double to)
+{
+    const struct glint_frame *f = job->frame;
+    const int part = f->progress ? larger(n / PARTS, LEAST_PART) : n;
+
+    for (job->first = 0; job->first < n; job->first += part) {
+        const int left = n - job->first;
+
+        glint_workers_run(f->cfg.workers, smaller(part, left), each, job);
+        if (f->progress)
+            f->progress(f->progress_ctx,
+                        from + (to - from) * smaller(job->first + part, n) / n);
+    }
+}
 
 static struct glint_traced_bundle_config
 traced_config(const struct glint_frame *f, double scale)
 {
-    return (struct glint_traced_bundle_config){f->setup, f->view, scale,
-                                               f->dials.fineness, f->uniform};
+    return (struct glint_traced_bundle_config){
+        f->setup, f->view, scale, f->dials.fineness, f->uniform, f->tints};
 }
 
 /* Plans all wavelengths of one ghost and lamp. */
@@ -43,7 +69,7 @@ static void plan_job(void *ctx, int job, int worker)
     struct job *j = ctx;
     const struct traced *const t = j->frame->traced;
     const int waves = j->frame->setup->n_wavelengths, middle = waves / 2;
-    struct glint_traced_bundle *traced = &t->bundle[job * waves];
+    struct glint_traced_bundle *traced = &t->bundle[(j->first + job) * waves];
 
     (void)worker;
     glint_traced_bundle_plan(&j->cfg, &traced[middle], NULL);
@@ -82,13 +108,21 @@ static bool begin(struct glint_frame *f)
     return f->traced;
 }
 
+/* Returns whether ghost or part GHOST is to be drawn. */
+static bool is_wanted(const struct glint_frame *f, int ghost)
+{
+    return (f->only_ghost < 0 ||
+            glint_frame_is_ghost(f->setup, ghost, f->only_ghost)) &&
+           (!f->tints || f->tints[ghost].gain.mantissa > 0);
+}
+
 /* Plans all bundles, and keeps those that reach the picture. */
 static enum glint_status plan(struct glint_frame *f,
                               const struct glint_lamp *lamps, int n_lamps)
 {
     struct traced *const t = f->traced;
     const struct glint_setup *s = f->setup;
-    struct job job = {f, traced_config(f, 1)};
+    struct job job = {f, traced_config(f, 1), 0};
     const enum glint_status status =
         reserve_feeds(f, (uint64_t)n_lamps * (uint64_t)s->n_ghosts *
                              (uint64_t)s->n_wavelengths);
@@ -100,13 +134,12 @@ static enum glint_status plan(struct glint_frame *f,
     for (int lamp = 0; lamp < n_lamps; lamp++)
         for (int ghost = 0; ghost < s->n_ghosts; ghost++)
             for (int wave = 0; wave < s->n_wavelengths; wave++)
-                if (f->only_ghost < 0 ||
-                    glint_frame_is_ghost(s, ghost, f->only_ghost))
+                if (is_wanted(f, ghost))
                     t->bundle[n++] =
                         (struct glint_traced_bundle){.lamp = &lamps[lamp],
                                                      .ghost = ghost,
                                                      .wavelength = wave};
-    glint_workers_run(f->cfg.workers, n / s->n_wavelengths, plan_job, &job);
+    run(&job, n / s->n_wavelengths, plan_job, 0, PLAN_SHARE);
     for (int i = 0; i < n; i++)
         if (t->bundle[i].n_cells > 0)
             t->bundle[kept++] = t->bundle[i];
@@ -121,8 +154,10 @@ static double flux_of(const struct glint_frame *f,
 {
     const struct glint_pupil *p = &traced->pupil;
     const double area = (p->x1_mm - p->x0_mm) * 2 * p->y1_mm;
+    const double gain =
+        f->tints ? glint_real_value(f->tints[traced->ghost].gain) : 1;
 
-    return traced->lamp->power * p->energy * area /
+    return traced->lamp->power * p->energy * area * gain /
            f->setup->unit_flux[traced->wavelength];
 }
 
@@ -204,6 +239,7 @@ static void trace_job(void *ctx, int job, int worker)
     const struct traced *const t = j->frame->traced;
 
     (void)worker;
+    job += j->first;
     glint_traced_bundle_trace(&j->cfg, &t->bundle[job], t->vertices[job]);
 }
 
@@ -274,7 +310,7 @@ static enum glint_status draw(struct glint_frame *frame,
                               double scale, const struct glint_image *image,
                               struct glint_flare_stats *stats, double times[5])
 {
-    struct job job = {frame, traced_config(frame, scale)};
+    struct job job = {frame, traced_config(frame, scale), 0};
     enum glint_status status;
     const struct traced *t;
 
@@ -286,7 +322,7 @@ static enum glint_status draw(struct glint_frame *frame,
     if (status != GLINT_OK)
         return status;
     times[1] = now(frame);
-    glint_workers_run(frame->cfg.workers, t->n_bundles, trace_job, &job);
+    run(&job, t->n_bundles, trace_job, PLAN_SHARE, 1);
     times[2] = now(frame);
     status = bin(frame, &job.cfg, stats);
     if (status != GLINT_OK)

@@ -62,7 +62,9 @@ static int cells_of(const struct glint_traced_bundle_config *cfg,
                     const struct glint_sampling *s)
 {
     const double pixels = cfg->view.width / cfg->view.sensor_width_mm;
-    const double round = cfg->setup->n_blades == 0 ? s->round_mm : 0;
+    const double curvature =
+        cfg->setup->n_blades == 0 ? 1 : cfg->setup->iris.roundness;
+    const double round = curvature * s->round_mm;
     const double outline = fmax(s->outline_mm, round);
     const double bend = fmax(s->bend_mm, 0.1 * outline);
     const double finer = cfg->max_cells / 64.0;
@@ -135,13 +137,16 @@ void glint_traced_bundle_plan(const struct glint_traced_bundle_config *cfg,
 
 /* Sets the colour of the bundle, with a largest channel of 1; returns what that
  * was before. Saturated lamps exceed the range of the format by far. */
-static double colour_of(const struct glint_setup *s,
+static double colour_of(const struct glint_traced_bundle_config *cfg,
                         const struct glint_traced_bundle *traced, double rgb[3])
 {
+    const double *wave = cfg->setup->rgb[traced->wavelength];
     double largest = 0;
 
     for (int c = 0; c < 3; c++) {
-        rgb[c] = s->rgb[traced->wavelength][c] * traced->lamp->rgb[c];
+        rgb[c] = wave[c] * traced->lamp->rgb[c];
+        if (cfg->tints)
+            rgb[c] *= glint_tint_factor(&cfg->tints[traced->ghost], c);
         largest = fmax(largest, fabs(rgb[c]));
     }
     for (int c = 0; c < 3 && largest > 0; c++)
@@ -158,7 +163,7 @@ void glint_traced_bundle_make(const struct glint_traced_bundle_config *cfg,
     const double n = traced->n_cells;
     const double area = (p->x1_mm - p->x0_mm) / n * (2 * p->y1_mm / n);
     double rgb[3];
-    const double flux = colour_of(s, traced, rgb) * cfg->scale *
+    const double flux = colour_of(cfg, traced, rgb) * cfg->scale *
                         traced->lamp->power *
                         glint_cos_deg(traced->lamp->theta_deg) * area *
                         traced->energy_unit / s->unit_flux[traced->wavelength];

@@ -12,7 +12,7 @@
  * grids. */
 #define LEAST_FILL 0.33
 /* Degrees: a wider zone with more than two barrels is halved, as a vertex has
- * room for two. */
+ * room for two, unless that was found to gain nothing. */
 #define CROWD_DEG 1.5
 /* Degrees: narrower zones may fill their boxes less. */
 #define FILL_DEG 0.6
@@ -23,8 +23,11 @@
 /* Share of the error of the whole zone: a half whose error is larger gained
  * nothing from halving. */
 #define STUCK 0.75
-/* Degrees: a narrower zone which gained nothing is not halved again. */
+/* Degrees: a narrower zone which gained nothing is not halved again, nor is a
+ * wider one whose error is endured(). */
 #define STUCK_DEG 1.2
+/* Factor on STUCK_DEG for wide stops: nearly all of their zones. */
+#define WIDE_STUCK 16
 /* Tolerances: zones with a larger error are divided into parts. If the ghost is
  * so faint that it hides more, the error may be up to MOST_HIDDEN times as
  * large. */
@@ -58,9 +61,23 @@ struct fitter {
     struct glint_visible_profile profile;
     struct glint_visible in_band, in_part;
     struct glint_visible_profile band_profile;
-    double profiled[4]; /* angles and band of band_profile */
-    int n_parts;        /* number of parts of the zone so far */
+    double profiled[4];      /* angles and band of band_profile */
+    int n_parts;             /* number of parts of the zone so far */
+    glint_fit_told_fn *told; /* NULL: nobody is told */
+    void *told_ctx;
+    double work, share; /* see glint_fit_told_fn */
+    double sines;       /* width of all ranges */
 };
+
+/* Returns whether a coating of several films reflects the ghost. */
+static bool has_stacks(const struct glint_visible *visible)
+{
+    const struct glint_setup *setup = visible->setup;
+    const struct glint_ghost ghost = setup->ghost[visible->ghost];
+
+    return setup->lens->surface[ghost.i].coating.n_films > 1 ||
+           setup->lens->surface[ghost.j].coating.n_films > 1;
+}
 
 /* ------------------------------------------------------------------- zones */
 
@@ -181,6 +198,21 @@ static double bearable(const struct glint_zone_aim *aim)
     return PART_LEFT * fmin(aim->hidden, MOST_HIDDEN);
 }
 
+/* Returns up to which error, in tolerances, a zone of any width is not halved
+ * if that gained nothing; 0: a wide zone always is. */
+static double endured(const struct fitter *f, const struct glint_zone_aim *aim)
+{
+    return f->visible->wide ? bearable(aim) : 0;
+}
+
+/* Returns STUCK_DEG, or for wide stops more. Where their rays turn around in
+ * the stop, halving angles gains nothing, but parts of the box do, and narrower
+ * zones need as many parts each. */
+static double stuck_deg(const struct fitter *f)
+{
+    return f->visible->wide ? WIDE_STUCK * STUCK_DEG : STUCK_DEG;
+}
+
 /* Returns how many times P's box may be halved. */
 static int most_depth(const struct fitter *f, const struct pending *p)
 {
@@ -195,7 +227,7 @@ static double hopeless(const struct fitter *f, const struct pending *p,
 {
     if (p->thorough)
         return p->depth < most_depth(f, p) ? HOPELESS * bearable(aim) : 0;
-    return degrees_between(p->lo, p->hi) > 2 * STUCK_DEG ? HALVES_ANYWAY : 0;
+    return degrees_between(p->lo, p->hi) > 2 * stuck_deg(f) ? HALVES_ANYWAY : 0;
 }
 
 /* Returns the width of P in degrees for halving, where zones of bright ghosts
@@ -222,12 +254,14 @@ static double settled(const struct fitter *f, const struct pending *p,
 
     if (p->thorough)
         return p->depth < most_depth(f, p) ? bearable(aim) : 0;
+    if (width >= least * stuck_deg(f) && endured(f, aim) > 0)
+        return endured(f, aim);
     /* The lower half is the narrower one in degrees. If even that is too wide
      * to be stuck, next_step() does not ask what halving gained. */
-    if (degrees_between(p->lo, 0.5 * (p->lo + p->hi)) >= STUCK_DEG ||
+    if (degrees_between(p->lo, 0.5 * (p->lo + p->hi)) >= stuck_deg(f) ||
         width < least * LEAST_DEG)
         return 1;
-    return width < least * STUCK_DEG ? fmax(1, STUCK * p->before) : 0;
+    return width < least * stuck_deg(f) ? fmax(1, STUCK * p->before) : 0;
 }
 
 /* The outcome of an attempt at a zone. */
@@ -251,7 +285,8 @@ static enum glint_status fit_zone(struct fitter *f, const struct pending *p,
     struct glint_zone_task task = {.zone = zone,
                                    .visible = band,
                                    .barrel = f->tolerance->barrel,
-                                   .thorough = p->thorough};
+                                   .thorough = p->thorough,
+                                   .stacks = has_stacks(f->visible)};
     enum glint_status status;
 
     glint_zone_trace(zone, band, &buffers->rays, &buffers->energies);
@@ -299,7 +334,7 @@ static enum glint_status try_zone(struct fitter *f, struct pending *p,
     system->wave_hi = band->wave_hi;
     glint_zone_choose_barrels(&zone, band, f->tolerance->escape, &f->sampling,
                               &f->buffers.rays);
-    if (f->buffers.rays.n_barrels > 2 &&
+    if (!p->thorough && f->buffers.rays.n_barrels > 2 &&
         degrees_between(p->lo, p->hi) > CROWD_DEG)
         return GLINT_OK;
     return fit_zone(f, p, &zone, band, system, a);
@@ -315,10 +350,18 @@ static enum next next_step(const struct fitter *f, const struct pending *p,
     const double left = a->errors.worst;
     const bool helped = left <= STUCK * p->before;
     const double width = width_of(p, &a->aim), least = least_of(f, p);
-    const bool stuck =
-        width < least * LEAST_DEG || (!helped && width < least * STUCK_DEG);
+    /* Stacks of films make energies swing with the wavelength, which parts of
+     * the band follow and narrower zones would not. */
+    const bool swings = has_stacks(f->visible) && p->depth == 0 && left > 1 &&
+                        left < HUGE_VAL && a->errors.shows <= 1 &&
+                        p->w1 - p->w0 > LEAST_BAND;
+    const bool stuck = width < least * LEAST_DEG ||
+                       (!helped && (width < least * stuck_deg(f) ||
+                                    left <= endured(f, &a->aim)));
 
-    if (p->thorough && a->errors.places <= bearable(&a->aim))
+    if (swings)
+        return BANDS;
+    if (p->thorough && a->errors.dims <= bearable(&a->aim))
         return KEEP;
     if (p->thorough && p->depth == 0 && a->wanders > WANDERS &&
         p->w1 - p->w0 > LEAST_BAND)
@@ -354,6 +397,17 @@ static int push_halves(struct pending *stack, int n, struct pending p,
     return n + 2;
 }
 
+/* Counts the fit of P, which is done if KEPT. */
+static void tell(struct fitter *f, const struct pending *p, bool kept)
+{
+    f->work += p->thorough ? 2 : 1;
+    if (kept)
+        f->share += (p->hi - p->lo) / f->sines * 0.5 * (p->w1 - p->w0) /
+                    (double)(1 << p->depth);
+    if (f->told)
+        f->told(f->told_ctx, f->work, f->share);
+}
+
 /* Fits the zones of a range from the lowest angle up; upper halves wait on a
  * stack. */
 static enum glint_status fit_range(struct fitter *f, const double range[2])
@@ -378,6 +432,7 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
         status = try_zone(f, &p, &system, &attempt);
         if (status == GLINT_OK)
             next = n + 2 > DEEP ? KEEP : next_step(f, &p, &attempt);
+        tell(f, &p, next == KEEP);
         if (p.depth == 0 && p.w0 <= -1)
             f->n_parts = 0;
         system.part = f->n_parts;
@@ -388,8 +443,8 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
             system_finish(&system);
         }
         p.before = attempt.errors.worst;
+        p.thorough |= next == THOROUGH || next == BANDS;
         if (next == THOROUGH) {
-            p.thorough = true;
             stack[n++] = p;
         } else if (next != KEEP) {
             n = push_halves(stack, n, p, next);
@@ -401,6 +456,7 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
 enum glint_status glint_fit_ghost(const struct glint_visible *visible,
                                   double max_deg,
                                   const struct glint_tolerance *tolerance,
+                                  glint_fit_told_fn *told, void *ctx,
                                   struct glint_fitted_ghost *out)
 {
     struct fitter *f = calloc(1, sizeof *f);
@@ -415,12 +471,16 @@ enum glint_status glint_fit_ghost(const struct glint_visible *visible,
     /* There is no profile of a part of the band yet. */
     f->profiled[0] = HUGE_VAL;
     f->out = out;
+    f->told = told;
+    f->told_ctx = ctx;
     f->buffers.scratch = malloc(glint_regress_doubles(GLINT_ZONE_RAYS) *
                                 sizeof *f->buffers.scratch);
     if (f->buffers.scratch) {
         const int n = glint_visible_ranges(visible, max_deg, range);
 
         status = GLINT_OK;
+        for (int k = 0; k < n; k++)
+            f->sines += range[k][1] - range[k][0];
         for (int k = 0; k < n && status == GLINT_OK; k++)
             status = fit_range(f, range[k]);
     }

@@ -20,10 +20,17 @@
 #include "bake/fit/visible.h"
 #include "glint/status.h"
 
-/* Fits a ghost. The caller finishes OUT in any case. GLINT_E_MEMORY. */
+/* Called after each fit of a zone with how many that makes, where a thorough
+ * one counts twice, and the share of the ghost's angles that are done, 0 .. 1.
+ */
+typedef void glint_fit_told_fn(void *ctx, double work, double share);
+
+/* Fits a ghost; TOLD may be NULL. The caller finishes OUT in any case.
+ * GLINT_E_MEMORY. */
 enum glint_status glint_fit_ghost(const struct glint_visible *visible,
                                   double max_deg,
                                   const struct glint_tolerance *tolerance,
+                                  glint_fit_told_fn *told, void *ctx,
                                   struct glint_fitted_ghost *out);
 
 #endif

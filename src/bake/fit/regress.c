@@ -32,11 +32,9 @@ struct column {
 enum {
     LANES = 4,   /* sums of a dot product */
     AT_ONCE = 4, /* columns that are multiplied by a direction at once */
-    NEIGHBOURS = GLINT_VARIABLES,
+    NEIGHBOURS = GLINT_VARIABLES + 1,
     BLOCK = 512 /* rays whose values stay in the nearest cache */
 };
-
-STATIC_ASSERT((int)NEIGHBOURS <= (int)AT_ONCE);
 
 struct search {
     const struct glint_regress_samples *s;
@@ -255,24 +253,29 @@ static struct column *add_candidate(struct search *s, const uint8_t *power)
     return column;
 }
 
-/* Adds all terms with one power more in one variable as candidates; two more in
- * a variable with parity. */
+/* Adds the terms next to COLUMN's as candidates: one power more in a variable,
+ * two more in one with parity. With leaps those with two powers more of
+ * variable 0 are next to it, too: where a ghost is symmetric, near the axis,
+ * the odd power in between explains nothing and would never be chosen. */
 static void add_neighbours(struct search *s, const struct column *column)
 {
     struct column *added[NEIGHBOURS];
+    const int most = s->degrees->leaps ? NEIGHBOURS : GLINT_VARIABLES;
     int n = 0;
 
-    for (int k = 0; k < GLINT_VARIABLES; k++) {
+    for (int k = 0; k < most; k++) {
+        const int v = k % GLINT_VARIABLES;
         uint8_t power[GLINT_VARIABLES];
 
         memcpy(power, column->power, sizeof power);
-        power[k] =
-            (uint8_t)(power[k] + (k == 1 && s->degrees->parity >= 0 ? 2 : 1));
+        power[v] = (uint8_t)(power[v] + (k >= GLINT_VARIABLES ? 2 : 1) +
+                             (v == 1 && s->degrees->parity >= 0));
         added[n] = add_candidate(s, power);
         n += added[n] != NULL;
     }
     for (int rank = 0; n > 0 && rank < s->n_chosen; rank++)
-        note_shares(s, added, n, rank);
+        for (int k = 0; k < n; k += AT_ONCE)
+            note_shares(s, added + k, n - k < AT_ONCE ? n - k : AT_ONCE, rank);
 }
 
 static bool is_chosen(const struct search *s, int column)

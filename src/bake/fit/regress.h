@@ -38,6 +38,7 @@ struct glint_degrees {
      * HOPELESS times what it may be; 0: it never does. */
     double hopeless;
     int patience;
+    bool leaps; /* terms two powers up in variable 0 are neighbours, too */
 };
 
 struct glint_regress_samples {

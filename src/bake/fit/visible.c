@@ -48,6 +48,7 @@ void glint_visible_init(struct glint_visible *visible,
     visible->setup = setup;
     visible->ghost = ghost;
     visible->field_mm = field_mm;
+    visible->wide = setup->lens->f_number < GLINT_WIDE;
     visible->wave_lo = 1e6 / (band_nm[1] * band_nm[1]);
     visible->wave_hi = 1e6 / (band_nm[0] * band_nm[0]);
     set_paths(visible);
@@ -60,6 +61,7 @@ void glint_visible_narrow(struct glint_visible *visible,
     visible->setup = whole->setup;
     visible->ghost = whole->ghost;
     visible->field_mm = whole->field_mm;
+    visible->wide = whole->wide;
     visible->wave_lo = wave_of(whole, w0);
     visible->wave_hi = wave_of(whole, w1);
     set_paths(visible);

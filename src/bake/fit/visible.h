@@ -25,12 +25,19 @@ enum {
     GLINT_PROFILE = 49
 };
 
+/* F-number of stops that all fits were tuned for; those of wider ones sample
+ * and weigh rays in other ways, too. */
+#define GLINT_WIDE 10
+
 /* One ghost, and what all its ranges share. */
 struct glint_visible {
     const struct glint_setup *setup;
     int ghost;
     double field_mm; /* radius about the sensor's centre beyond which light does
                         not count */
+    bool
+        wide; /* whether the lens opens wider than GLINT_WIDE: its rays come
+                 near singularities, and the model serves much narrower stops */
     double wave_lo, wave_hi;                     /* 1 / wavelength^2, um^-2 */
     struct glint_path path[GLINT_VISIBLE_WAVES]; /* paths at wavelengths from
                                                     wave_lo to wave_hi */

@@ -14,6 +14,16 @@ STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 /* Ratio of most to least energy above which a root of it is fitted. */
 #define WIDE_ENERGY 60
 
+/* Outlines of wide stops show at the rim of a ghost, errors of places all over
+ * it: a box is divided for an error of outlines so many times as large. */
+#define RIM 4.0
+/* Of wide stops, where a zone's energy may be off by this much more of its
+ * tolerance than its places before it is divided into parts. */
+#define DIMS 2.5
+/* Factor on the error of a fit, if it was not good anyway: a second one which
+ * is worse than that is dropped. */
+#define HARM 1.5
+
 enum {
     FEW_TERMS = 64,
     MANY_TERMS = 96, /* terms of each output of places in thorough fits */
@@ -47,14 +57,27 @@ struct fit {
     struct glint_zone_errors *errors;
 };
 
+static bool is_wide(const struct fit *f)
+{
+    return f->task->visible->wide;
+}
+
+/* Returns the factor on the weight of a ray whose relative radius is EXCESS.
+ * Of wide stops it falls, as places go to infinity towards total reflection:
+ * errors there, which matter to nobody, would be all that a fit sees. */
+static double far_out(const struct fit *f, double excess)
+{
+    return !is_wide(f) ? 1 : 1 / (1 + 10 * fmax(0, excess * excess - 1.25));
+}
+
 /* Returns the weight of a ray: full up to a little past the edge, as cells
  * straddle it, and hardly any far outside, where a ray only has to stay unseen.
  */
-static double weight_past_edge(double excess)
+static double weight_past_edge(const struct fit *f, double excess)
 {
     const double past = (excess - 1.02) / 0.05;
 
-    return past <= 0 ? 1 : fmax(0.002, exp(-past * past));
+    return past <= 0 ? 1 : fmax(0.002 * far_out(f, excess), exp(-past * past));
 }
 
 /* Returns the factor on the weight of a ray's position for light beyond the
@@ -72,7 +95,7 @@ static void set_weights(struct fit *f)
     const struct glint_zone_rays *r = &f->buffers->rays;
 
     for (int i = 0; i < r->n; i++) {
-        f->buffers->weight[i] = weight_past_edge(r->at[RAY_EXCESS][i]);
+        f->buffers->weight[i] = weight_past_edge(f, r->at[RAY_EXCESS][i]);
         f->buffers->sensor_weight[i] =
             f->buffers->weight[i] * weight_past_field(f, r->at[RAY_FIELD][i]);
         if (r->at[RAY_FIELD][i] > 1.05)
@@ -110,7 +133,9 @@ static bool stop_leaks(struct fit *f, const struct glint_fitted_system *system)
 
     for (int i = 0; i < f->buffers->rays.n; i++)
         if (leaks(&f->buffers->rays, i, system, f->task->visible->field_mm)) {
-            f->buffers->weight[i] = fmax(f->buffers->weight[i], 0.1);
+            f->buffers->weight[i] =
+                fmax(f->buffers->weight[i],
+                     0.1 * far_out(f, f->buffers->rays.at[RAY_EXCESS][i]));
             any = true;
         }
     return any;
@@ -156,6 +181,7 @@ static double fit_poly(struct fit *f, const struct glint_zone_rays *r,
         degrees.terms = MANY_TERMS;
     degrees.hopeless = kind == GLINT_OUT_ENERGY ? 0 : f->task->hopeless;
     degrees.patience = PATIENCE;
+    degrees.leaps = is_wide(f);
     degrees.parity = kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y;
     return glint_regress_fit(f->buffers->scratch, &samples, f->buffers->value,
                              &degrees, rms, PEAK * rms, poly);
@@ -176,6 +202,17 @@ static enum glint_status fit_output(struct fit *f,
     return keep(system, kind, &poly, rms, left <= 1);
 }
 
+/* Returns the factor on the weight of places of ray I. A stop of radius RHO
+ * sees the rays within RHO alone, and its smaller ghost shows smaller errors.
+ * Of wide stops that counts down to an eighth of the radius. */
+static double weight_inside(const struct fit *f, int i)
+{
+    const struct glint_zone_rays *r = &f->buffers->rays;
+    const double rho = hypot(r->at[RAY_STOP_X][i], r->at[RAY_STOP_Y][i]);
+
+    return is_wide(f) ? 1 / fmax(0.125, fmin(1, rho)) : 1;
+}
+
 static enum glint_status fit_channel(struct fit *f, int channel, double rms,
                                      struct glint_fitted_system *system,
                                      double *worst)
@@ -183,10 +220,11 @@ static enum glint_status fit_channel(struct fit *f, int channel, double rms,
     const size_t bytes = (size_t)f->buffers->rays.n * sizeof *f->buffers->value;
 
     memcpy(f->buffers->value, f->buffers->rays.at[channel], bytes);
-    memcpy(f->buffers->channel_weight,
-           channel <= RAY_SENSOR_Y ? f->buffers->sensor_weight
-                                   : f->buffers->weight,
-           bytes);
+    for (int i = 0; i < f->buffers->rays.n; i++)
+        f->buffers->channel_weight[i] =
+            (channel <= RAY_SENSOR_Y ? f->buffers->sensor_weight
+                                     : f->buffers->weight)[i] *
+            weight_inside(f, i);
     return fit_output(f, &f->buffers->rays, (enum glint_channel)channel, rms,
                       system, worst);
 }
@@ -202,23 +240,44 @@ static void energies_of(const struct glint_zone_rays *r, double *least,
         }
 }
 
+/* Returns whether energies vary by their wavelength alone, with stacks. */
+static bool is_smooth(const struct fit *f, const struct glint_zone_rays *r)
+{
+    return f->task->stacks && glint_zone_rays_spread(r) <= GLINT_STEEP;
+}
+
+/* Returns the energy below which errors count as shares of this one. Two stacks
+ * of films let nearly nothing of some wavelengths into a ghost: there half of
+ * the band's mean is what a colour shows. */
+static double least_share(const struct fit *f, const struct glint_zone_rays *r,
+                          double most)
+{
+    double sum = 0, n = 1e-9;
+
+    for (int i = 0; i < r->n && f->task->stacks; i++)
+        if (glint_zone_rays_seen(r, i))
+            sum += r->at[RAY_ENERGY][i], n++;
+    return fmax(0.005 * most, is_smooth(f, r) ? 0.5 * sum / n : 0);
+}
+
 /* Sets VALUE to the energy, or to its fourth root, and CHANNEL_WEIGHT so that
- * errors count as shares of the energy, or of MOST / 200 if that is more.
+ * errors count as shares of the energy, or of least_share() if that is more.
  * Returns the largest weight. */
 static double set_energies(struct fit *f, const struct glint_zone_rays *r,
                            double most, bool root)
 {
+    const double least = least_share(f, r, most);
     double largest = 0;
 
     for (int i = 0; i < r->n; i++) {
         const double out = fmax(r->at[RAY_EXCESS][i], r->at[RAY_FIELD][i]);
         const double energy = r->at[RAY_ENERGY][i];
-        const double share = fmax(energy, 0.005 * most);
+        const double share = fmax(energy, least);
 
         /* The relative error of the root is a quarter of the energy's. */
         f->buffers->value[i] = root ? sqrt(sqrt(energy)) : energy;
         f->buffers->channel_weight[i] =
-            fmax(weight_past_edge(out), 0.001) /
+            fmax(weight_past_edge(f, out), 0.001) /
             (root ? 0.25 * sqrt(sqrt(share)) : share);
         largest = fmax(largest, f->buffers->channel_weight[i]);
     }
@@ -240,7 +299,7 @@ fit_energy(struct fit *f, struct glint_fitted_system *system, double *worst)
 
     energies_of(r, &least, &most);
     energies_of(&f->buffers->rays, &least, &most);
-    root = f->task->thorough && most > WIDE_ENERGY * least;
+    root = f->task->thorough && !is_smooth(f, r) && most > WIDE_ENERGY * least;
     grain = f->aim->energy / set_energies(f, r, most, root);
     left = fit_poly(f, r, GLINT_OUT_ENERGY, f->aim->energy, &poly);
     if (root && left > 1) {
@@ -292,40 +351,53 @@ static void drop_outputs(struct glint_fitted_system *system)
         free(system->output[--system->n_outputs].coef);
 }
 
+static void sum_up(struct fit *f, double energy)
+{
+    struct glint_zone_errors *const e = f->errors;
+
+    e->shows = fmax(e->places, e->outlines / (is_wide(f) ? RIM : 1));
+    e->dims = is_wide(f) ? fmax(e->shows, energy / DIMS) : e->shows;
+    e->worst = fmax(fmax(e->places, e->outlines), energy);
+}
+
 /* Returns whether what happens to the zone does not depend on outputs that are
  * still to be fitted. */
 static bool is_decided(const struct fit *f)
 {
     const struct glint_zone_task *t = f->task;
-    const double left = t->thorough ? f->errors->places
-                                    : fmax(f->errors->places, f->errors->worst);
+    const struct glint_zone_errors *e = f->errors;
+    const double left = t->thorough ? e->dims : e->worst;
 
-    return (t->hopeless > 0 && f->errors->places > t->hopeless) ||
+    return (t->hopeless > 0 && left > t->hopeless) ||
            (t->settled > 0 && left > t->settled);
 }
 
 static enum glint_status fit_outputs(struct fit *f,
                                      struct glint_fitted_system *system)
 {
+    struct glint_zone_errors *const e = f->errors;
     enum glint_status status = GLINT_OK;
-    double *const worst = &f->errors->worst;
+    double energy = 0;
 
-    *worst = 0;
+    *e = (struct glint_zone_errors){0, 0, 0, 0, 0};
     for (int c = RAY_SENSOR_X; c <= RAY_STOP_Y && status == GLINT_OK; c++) {
-        status = fit_channel(
-            f, c, c <= RAY_SENSOR_Y ? f->aim->sensor_mm : f->aim->stop, system,
-            worst);
-        f->errors->places = *worst;
+        const bool sensor = c <= RAY_SENSOR_Y;
+
+        status = fit_channel(f, c, sensor ? f->aim->sensor_mm : f->aim->stop,
+                             system, sensor ? &e->places : &e->outlines);
+        sum_up(f, 0);
         if (is_decided(f))
             return status;
     }
     if (status == GLINT_OK)
-        status = fit_energy(f, system, worst);
+        status = fit_energy(f, system, &energy);
+    sum_up(f, energy);
     for (int b = 0;
          b < f->buffers->rays.n_barrels && status == GLINT_OK && !is_decided(f);
-         b++)
-        status = fit_barrel(f, b, system, &f->errors->places);
-    *worst = fmax(*worst, f->errors->places);
+         b++) {
+        status = fit_barrel(f, b, system, &e->outlines);
+        sum_up(f, energy);
+    }
     return status;
 }
 
@@ -359,29 +431,50 @@ static double check_output(const struct fit *f,
     return n ? sqrt(sum2 / n) / rms : 0;
 }
 
-/* Returns the largest error of the places on sensor and stop, at rays between
- * those that were fitted, over what is allowed there (CHECK_RMS tolerances);
- * above 1 the zone is not good enough. A fit can be good at every node and
- * nowhere else. */
-static double check_zone(struct fit *f,
-                         const struct glint_fitted_system *system)
+/* Raises the errors of places on sensor and stop to those at rays between the
+ * ones that were fitted, over what is allowed there (CHECK_RMS tolerances). A
+ * fit can be good at every node and nowhere else. */
+static void check_zone(struct fit *f, const struct glint_fitted_system *system)
 {
-    double worst = 0;
+    struct glint_zone_errors *const e = f->errors;
 
     glint_zone_check(f->task->zone, f->task->visible, &f->buffers->rays);
-    for (int k = 0; k < system->n_outputs; k++) {
-        const struct glint_fitted_output *o = &system->output[k];
+    for (int k = 0; k < 4 && k < system->n_outputs; k++) {
+        const bool sensor = k <= RAY_SENSOR_Y;
+        double *const error = sensor ? &e->places : &e->outlines;
+        const double rms = sensor ? f->aim->sensor_mm : f->aim->stop;
+        const double left =
+            check_output(f, &system->output[k], f->buffers->rays.at[k], rms);
 
-        if (o->kind <= GLINT_OUT_STOP_Y)
-            worst = fmax(worst, check_output(f, o, f->buffers->rays.at[o->kind],
-                                             o->kind <= GLINT_OUT_SENSOR_Y
-                                                 ? f->aim->sensor_mm
-                                                 : f->aim->stop));
+        *error = fmax(*error, left / CHECK_RMS);
     }
-    return worst / CHECK_RMS;
+    sum_up(f, e->worst);
 }
 
 /* --------------------------------------------------------------------- all */
+
+/* Fits SYSTEM again with new weights. Of wide stops, what was fitted before is
+ * kept if leaks cannot be stopped without harm to what is seen. */
+static enum glint_status fit_again(struct fit *f,
+                                   struct glint_fitted_system *system)
+{
+    const struct glint_zone_errors errors = *f->errors;
+    struct glint_fitted_system leaky = *system;
+    enum glint_status status;
+
+    system->n_outputs = 0;
+    status = fit_outputs(f, system);
+    if (is_wide(f) &&
+        fmax(f->errors->places, f->errors->outlines) >
+            fmax(1, HARM * fmax(errors.places, errors.outlines))) {
+        drop_outputs(system);
+        *system = leaky;
+        *f->errors = errors;
+    } else {
+        drop_outputs(&leaky);
+    }
+    return status;
+}
 
 enum glint_status glint_zone_fit(const struct glint_zone_task *task,
                                  const struct glint_zone_aim *aim,
@@ -396,12 +489,9 @@ enum glint_status glint_zone_fit(const struct glint_zone_task *task,
     status = fit_outputs(&f, system);
     if (status != GLINT_OK || is_decided(&f))
         return status;
-    if ((task->thorough || errors->worst <= 1) && stop_leaks(&f, system)) {
-        drop_outputs(system);
-        status = fit_outputs(&f, system);
-    }
+    if ((task->thorough || errors->worst <= 1) && stop_leaks(&f, system))
+        status = fit_again(&f, system);
     if (status == GLINT_OK)
-        errors->places = fmax(errors->places, check_zone(&f, system));
-    errors->worst = fmax(errors->worst, errors->places);
+        check_zone(&f, system);
     return status;
 }

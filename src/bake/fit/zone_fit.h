@@ -23,6 +23,7 @@ struct glint_zone_task {
     const struct glint_visible *visible;
     double barrel;   /* tolerance of barrels, as in struct glint_tolerance */
     bool thorough;   /* true allows a root of the energy, and more terms */
+    bool stacks;     /* the ghost is reflected by coatings of several films */
     double hopeless; /* tolerances: the fit of a zone with a larger error is
                         given up; 0: none is */
     /* Tolerances: if an output that was fitted has a larger error, the outputs
@@ -41,10 +42,14 @@ struct glint_zone_buffers {
     double channel_weight[GLINT_ZONE_RAYS], value[GLINT_ZONE_RAYS];
 };
 
-/* Errors of a fit, in tolerances. */
+/* Largest errors of a fit, in tolerances. */
 struct glint_zone_errors {
-    double places; /* largest error of a place or a barrel */
-    double worst;  /* largest error of a place, a barrel or the energy */
+    double places;   /* of a place on the sensor */
+    double outlines; /* of a place in the stop or of a barrel */
+    double shows;    /* of places and outlines, as far as they show */
+    double dims;     /* of these, and the energy of wide stops: by this a box is
+                        divided */
+    double worst;    /* of places, outlines and the energy */
 };
 
 /* Fits the outputs of SYSTEM, which has none yet. If errors pass TASK->hopeless

@@ -39,13 +39,27 @@ static void add_ray(const struct glint_visible *h,
  * else. */
 enum { SINES = 9, ACROSS = 24, DOWN = 12 };
 
-/* Traces rays at one angle and wavelength. In the finest grid only every third
- * ray is kept of those far outside of what is seen. */
+/* Returns the fractional part of N times R. */
+static double turn(int n, double r)
+{
+    return fmod(n * r, 1);
+}
+
+/* Traces rays at one angle and wavelength. Of wide stops each has its grid in
+ * another place, or polynomials could do between the rays what they like. In
+ * the finest grid only every third ray is kept of those far outside of what is
+ * seen. */
 static void trace_plane(const struct glint_zone *zone,
                         const struct glint_visible *visible, int sine, int wave,
                         int stride, struct glint_zone_rays *rays)
 {
     const int full = rays->n + GLINT_ZONE_RAYS / (4 * SINES);
+    /* Multiples of these two numbers fill a square evenly: 1 / g and 1 / g^2, g
+     * being the root of x^3 = x + 1. */
+    const int plane = sine * 4 + wave;
+    const double move = visible->wide ? stride : 0;
+    const double right = move * turn(plane, 0.75487766624669276);
+    const double up = move * turn(plane, 0.56984029099805327);
     struct glint_zone_batch t;
 
     t.path = &visible->path[wave];
@@ -53,9 +67,10 @@ static void trace_plane(const struct glint_zone *zone,
         t.n = 0;
         for (int i = 0; i <= ACROSS; i += stride) {
             const double x[GLINT_VARIABLES] = {
-                glint_zone_node(i, ACROSS + 1),
-                zone->annulus ? 0.5 + 0.5 * glint_zone_node(j, DOWN + 1)
-                              : sin(0.5 * GLINT_PI * j / DOWN),
+                -cos(GLINT_PI * fmin(i + right, ACROSS) / ACROSS),
+                zone->annulus
+                    ? 0.5 - 0.5 * cos(GLINT_PI * fmin(j + up, DOWN) / DOWN)
+                    : sin(0.5 * GLINT_PI * fmin(j + up, DOWN) / DOWN),
                 glint_zone_node(sine, SINES),
                 glint_zone_node(wave, GLINT_VISIBLE_WAVES)};
 

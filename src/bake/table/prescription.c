@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "bake/table/check.h"
-#include "bake/table/films.h"
+#include "bake/table/coatings.h"
 #include "bake/table/text.h"
 #include "base/compiler.h"
 
@@ -60,7 +60,7 @@ struct parser {
     struct glint_text_place word[N_FIELDS]; /* place of the last line of each
                                                kind; line 0: there was none */
     struct glint_places places;
-    struct glint_film coating; /* coating of surfaces without their own */
+    struct glint_coating coating; /* coating of surfaces without their own */
     bool has_coating[GLINT_MAX_SURFACES];
     int n_elements;
     int n_glasses;
@@ -144,27 +144,14 @@ static bool read_back_focal(struct parser *p)
                             &p->places.back_focal);
 }
 
-/* Reads "none" or NM [INDEX]. */
-static bool read_coating_value(struct parser *p, struct glint_film *coating)
-{
-    struct glint_word word = glint_text_next_word(&p->text);
-
-    if (!glint_film_of(&p->text, &word, coating) || coating->nm <= 0.0)
-        return glint_word_is(&word, "none");
-    word = glint_text_next_word(&p->text);
-    return !word.length ||
-           glint_text_value_of(&p->text, &word, &glint_film_index_range,
-                               &coating->index);
-}
-
 static bool read_coating(struct parser *p)
 {
-    return read_coating_value(p, &p->coating);
+    return glint_coating_read(&p->text, &p->coating);
 }
 
 static bool read_mixed(struct parser *p)
 {
-    return glint_films_read(&p->text, p->lens.mixed, &p->lens.n_mixed);
+    return glint_coatings_read(&p->text, p->lens.mixed, &p->lens.n_mixed);
 }
 
 /* ------------------------------------------------------------------- glass */
@@ -277,7 +264,7 @@ static bool read_surface_coating(struct parser *p, int k, bool cemented)
     struct glint_surface *s = &p->lens.surface[k];
     const struct glint_word word = glint_text_next_word(&p->text);
     char quote[GLINT_QUOTE_BYTES];
-    struct glint_film coating;
+    struct glint_coating coating;
 
     p->has_coating[k] = cemented || word.length;
     if (!word.length)
@@ -286,13 +273,12 @@ static bool read_surface_coating(struct parser *p, int k, bool cemented)
         return glint_text_fail(&p->text, word.place,
                                "'%s' stands where only coating may follow",
                                glint_word_quote(&word, quote));
-    if (!read_coating_value(p, &coating))
+    if (!glint_coating_read(&p->text, &coating))
         return false;
-    if (cemented && coating.nm > 0.0)
+    if (cemented && coating.n_films > 0)
         return glint_text_fail(&p->text, word.place,
                                "a cemented surface has no coating");
-    s->coating_nm = coating.nm;
-    s->coating_n = coating.index;
+    s->coating = coating;
     return true;
 }
 
@@ -397,10 +383,8 @@ static bool read_lines(struct parser *p)
 static void coat(struct parser *p)
 {
     for (int k = 0; k < p->lens.n_surfaces; k++)
-        if (!p->has_coating[k]) {
-            p->lens.surface[k].coating_nm = p->coating.nm;
-            p->lens.surface[k].coating_n = p->coating.index;
-        }
+        if (!p->has_coating[k])
+            p->lens.surface[k].coating = p->coating;
 }
 
 enum glint_status glint_prescription_parse(struct glint_prescription *lens,
@@ -411,7 +395,7 @@ enum glint_status glint_prescription_parse(struct glint_prescription *lens,
     struct parser p;
 
     memset(&p, 0, sizeof(p));
-    p.coating = (struct glint_film){550, GLINT_MGF2_INDEX};
+    glint_coating_single(&p.coating, 550);
     if (!glint_text_open(&p.text, text, bytes, file_name, error) ||
         !read_lines(&p) ||
         !glint_prescription_check(&p.lens, &p.text, &p.places))

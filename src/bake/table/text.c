@@ -2,6 +2,7 @@
 #include "bake/table/text.h"
 
 #include <limits.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -89,27 +90,40 @@ static bool check_characters(struct glint_text *text)
     return true;
 }
 
-bool glint_text_open(struct glint_text *text, const char *data, size_t bytes,
-                     const char *file_name, struct glint_error *error)
+/* Sets TEXT to the start of DATA[BYTES], behind the mark that some editors put
+ * before UTF-8. */
+static void begin(struct glint_text *text, const char *data, size_t bytes,
+                  const char *file_name, struct glint_error *error)
 {
     static const char mark[] = {'\xef', '\xbb', '\xbf'};
 
-    memset(text, 0, sizeof(*text));
-    text->file_name = file_name;
-    text->error = error;
+    if (!bytes) /* DATA may be NULL then. */
+        data = "";
+    if (bytes >= sizeof(mark) && memcmp(data, mark, sizeof(mark)) == 0) {
+        data += sizeof(mark);
+        bytes -= sizeof(mark);
+    }
+    *text = (struct glint_text){.file_name = file_name, .error = error};
+    text->next = text->line = text->at = text->stop = data;
+    text->end = data + bytes;
+}
+
+bool glint_text_open(struct glint_text *text, const char *data, size_t bytes,
+                     const char *file_name, struct glint_error *error)
+{
+    begin(text, data, bytes, file_name, error);
     if (bytes > GLINT_TEXT_BYTES)
         return glint_text_fail(text, (struct glint_text_place){1, 1},
                                "text is longer than %d bytes",
                                GLINT_TEXT_BYTES);
-    if (!bytes) /* DATA may be NULL then. */
-        data = "";
-    if (bytes >= sizeof(mark) && memcmp(data, mark, sizeof(mark)) == 0) {
-        data += sizeof(mark); /* some editors put this mark before UTF-8 */
-        bytes -= sizeof(mark);
-    }
-    text->next = text->line = text->at = text->stop = data;
-    text->end = data + bytes;
     return check_characters(text);
+}
+
+void glint_text_open_data(struct glint_text *text, const char *data,
+                          size_t bytes, const char *file_name,
+                          struct glint_error *error)
+{
+    begin(text, data, bytes, file_name, error);
 }
 
 bool glint_text_next_line(struct glint_text *text)
@@ -273,30 +287,43 @@ static double power_of_ten(int n)
     return power;
 }
 
+/* Reads all of WORD: DIGITS of its digits, and the power of ten by which they
+ * are to be multiplied if none had been left out. Returns false if it is no
+ * number. */
+static bool split_number(const struct glint_word *word, struct digits *digits,
+                         bool *negative, int *exponent)
+{
+    int whole;
+
+    *digits = (struct digits){word->start, word->start + word->length, 0, 0, 0};
+    *exponent = 0;
+    *negative = read_sign(digits);
+    read_digits(digits);
+    whole = digits->n;
+    digits->n = 0;
+    if (skip(digits, '.', '.'))
+        read_digits(digits);
+    if (whole + digits->n == 0 ||
+        (skip(digits, 'e', 'E') && !read_exponent(digits, exponent)) ||
+        digits->at != digits->end)
+        return false;
+    *exponent -= digits->n;
+    if (digits->value == 0)
+        *exponent = 0;
+    return true;
+}
+
 const char *glint_word_number(const struct glint_word *word, double *value)
 {
-    static const char garbage[] = "is not a number";
-    struct digits digits = {word->start, word->start + word->length, 0, 0, 0};
-    const bool negative = read_sign(&digits);
-    int whole, exponent = 0;
+    struct digits digits;
+    bool negative;
+    int exponent;
     double magnitude;
 
-    read_digits(&digits);
-    whole = digits.n;
-    digits.n = 0;
-    if (skip(&digits, '.', '.'))
-        read_digits(&digits);
-    if (whole + digits.n == 0)
-        return garbage;
-    if (skip(&digits, 'e', 'E') && !read_exponent(&digits, &exponent))
-        return garbage;
-    if (digits.at != digits.end)
-        return garbage;
+    if (!split_number(word, &digits, &negative, &exponent))
+        return "is not a number";
     if (digits.significant > GLINT_NUMBER_DIGITS)
         return "has more than 15 digits";
-    exponent -= digits.n;
-    if (digits.value == 0)
-        exponent = 0;
     if (exponent < -22 || exponent > 22)
         return "is too large or too small";
     /* Both operands are exact, so one rounding gives the nearest double. */
@@ -304,6 +331,24 @@ const char *glint_word_number(const struct glint_word *word, double *value)
                              : (double)digits.value * power_of_ten(exponent);
     *value = negative ? -magnitude : magnitude;
     return NULL;
+}
+
+bool glint_word_number_about(const struct glint_word *word, double *value)
+{
+    struct digits digits;
+    bool negative;
+    int exponent;
+    double magnitude;
+
+    if (!split_number(word, &digits, &negative, &exponent))
+        return false;
+    if (digits.significant > GLINT_NUMBER_DIGITS)
+        exponent += digits.significant - GLINT_NUMBER_DIGITS;
+    magnitude = (double)digits.value * pow(10.0, exponent);
+    if (!isfinite(magnitude))
+        return false;
+    *value = negative ? -magnitude : magnitude;
+    return true;
 }
 
 bool glint_text_number_of(const struct glint_text *text,

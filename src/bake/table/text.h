@@ -53,6 +53,12 @@ struct glint_text {
 bool glint_text_open(struct glint_text *text, const char *data, size_t bytes,
                      const char *file_name, struct glint_error *error);
 
+/* Opens DATA[BYTES], at most INT32_MAX, with lines of any length and any bytes
+ * in them, for files that programs write. */
+void glint_text_open_data(struct glint_text *text, const char *data,
+                          size_t bytes, const char *file_name,
+                          struct glint_error *error);
+
 /* Goes to the next line; returns false at the end of the text. */
 bool glint_text_next_line(struct glint_text *text);
 
@@ -108,5 +114,9 @@ const char *glint_word_quote(const struct glint_word *word,
  * is wrong with it, to follow the word in a message; VALUE is unchanged then.
  */
 const char *glint_word_number(const struct glint_word *word, double *value);
+
+/* Reads WORD likewise, with any number of digits: VALUE is within 4e-15 of it.
+ * Returns false if it is no number or too large for a double. */
+bool glint_word_number_about(const struct glint_word *word, double *value);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "bake/trace/sampling.h"
 #include "engine/setup/degrees.h"
+#include "engine/setup/dirt.h"
 
 /* Cells a side of the sampling that decides which barrels matter. */
 enum { SAMPLING = 96 };
@@ -61,15 +62,6 @@ double glint_cells_area(const struct glint_cells *cells)
     const struct glint_pupil *p = &cells->pupil;
 
     return (p->x1_mm - p->x0_mm) / cells->n * (2 * p->y1_mm / cells->n);
-}
-
-/* Sets N to the outward normal of side SIDE of a polygonal stop. */
-static void side_normal(const struct glint_setup *s, int side, double n[2])
-{
-    const double a = s->blade_rotation_deg + (side + 0.5) * 360.0 / s->n_blades;
-
-    n[0] = glint_cos_deg(a);
-    n[1] = glint_sin_deg(a);
 }
 
 static double inner_radius(const struct glint_setup *s)
@@ -160,22 +152,33 @@ static double channel(const struct shape *s, int index, const double uv[2])
            (s->corner[2][index] - a) * uv[1];
 }
 
-/* A cut of the channels FIRST and FIRST + 1: a half plane n . c <= limit, or
- * the unit disc. */
+/* A cut of the channels FIRST and FIRST + 1: a half plane n . c <= limit, or a
+ * disc, |scale c + middle| <= 1. */
 struct cut {
     int first;
     bool disc;
-    double normal[2], limit;
+    double normal[2], limit, scale, middle[2];
 };
+
+/* Sets AT to the place at UV in the unit disc of CUT. */
+static void in_disc(const struct shape *s, const struct cut *cut,
+                    const double uv[2], double at[2])
+{
+    for (int k = 0; k < 2; k++)
+        at[k] = cut->scale * channel(s, cut->first + k, uv) + cut->middle[k];
+}
 
 static double cut_value(const struct shape *s, const struct cut *cut,
                         const double uv[2])
 {
-    const double x = channel(s, cut->first, uv);
-    const double y = channel(s, cut->first + 1, uv);
+    double at[2];
 
-    return cut->disc ? 1 - (x * x + y * y)
-                     : cut->limit - cut->normal[0] * x - cut->normal[1] * y;
+    if (cut->disc) {
+        in_disc(s, cut, uv, at);
+        return 1 - (at[0] * at[0] + at[1] * at[1]);
+    }
+    return cut->limit - cut->normal[0] * channel(s, cut->first, uv) -
+           cut->normal[1] * channel(s, cut->first + 1, uv);
 }
 
 /* Returns the share of the way from A, with value FA, to B, with value FB of
@@ -184,16 +187,16 @@ static double crossing(const struct shape *s, const struct cut *cut,
                        const double a[2], const double b[2], double fa,
                        double fb)
 {
-    double ax, ay, dx, dy, qa, qb, root, t;
+    double from[2], to[2], dx, dy, qa, qb, root, t;
 
     if (!cut->disc)
         return fa / (fa - fb);
-    ax = channel(s, cut->first, a);
-    ay = channel(s, cut->first + 1, a);
-    dx = channel(s, cut->first, b) - ax;
-    dy = channel(s, cut->first + 1, b) - ay;
+    in_disc(s, cut, a, from);
+    in_disc(s, cut, b, to);
+    dx = to[0] - from[0];
+    dy = to[1] - from[1];
     qa = dx * dx + dy * dy;
-    qb = ax * dx + ay * dy;
+    qb = from[0] * dx + from[1] * dy;
     root = sqrt(fmax(0, qb * qb + qa * fa)); /* fa = 1 - |a|^2 */
     t = fa > 0 ? (root - qb) / qa : (-root - qb) / qa;
     return fmin(1, fmax(0, t));
@@ -236,19 +239,25 @@ static void clip_one(struct shape *s, const struct cut *cut)
 
 static void clip_all(const struct glint_cells *c, struct shape *s)
 {
-    const struct glint_setup *setup = c->setup;
-    struct cut cut = {.first = NODE_STOP_X, .disc = setup->n_blades == 0};
+    struct glint_iris_sides sides;
 
+    glint_iris_sides(&sides, c->setup);
     for (int k = 0; k < c->n_cuts && s->n; k++)
-        clip_one(s, &(struct cut){.first = NODE_CUT + 2 * k, .disc = true});
-    if (cut.disc) {
-        clip_one(s, &cut);
-        return;
-    }
-    cut.limit = inner_radius(setup);
-    for (int side = 0; side < setup->n_blades && s->n; side++) {
-        side_normal(setup, side, cut.normal);
-        clip_one(s, &cut);
+        clip_one(s, &(struct cut){
+                        .first = NODE_CUT + 2 * k, .disc = true, .scale = 1});
+    if (sides.n == 0)
+        clip_one(s,
+                 &(struct cut){.first = NODE_STOP_X, .disc = true, .scale = 1});
+    for (int side = 0; side < sides.n && s->n; side++) {
+        const double *n = sides.normal[side];
+
+        clip_one(s,
+                 &(struct cut){.first = NODE_STOP_X,
+                               .disc = sides.arcs,
+                               .normal = {n[0], n[1]},
+                               .limit = sides.apothem,
+                               .scale = sides.round,
+                               .middle = {sides.off * n[0], sides.off * n[1]}});
     }
 }
 
@@ -307,7 +316,10 @@ void glint_cells_clip(const struct glint_cells *cells, int i, int j, int half,
         middle[1] += s.uv[k][1] / s.n;
     }
     piece->share = fabs(2 * polygon_area((const double(*)[2])s.uv, s.n));
-    piece->energy = channel(&s, NODE_ENERGY, middle);
+    piece->energy =
+        channel(&s, NODE_ENERGY, middle) *
+        glint_dirt_through(cells->setup, channel(&s, NODE_STOP_X, middle),
+                           channel(&s, NODE_STOP_Y, middle));
 }
 
 bool glint_cells_touch(const struct glint_cells *cells, int i, int j,

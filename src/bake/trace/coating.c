@@ -1,21 +1,112 @@
 /* SPDX-License-Identifier: MIT */
 #include "bake/trace/coating.h"
 
-#include "glint/trace.h"
+#include "glint/view.h"
 
-double glint_reflectance(double n_from, double n_to, double cos_from,
-                         double film_n, double film_phase)
+int glint_coating_at(const struct glint_coating *coating, double wavelength_nm,
+                     struct glint_film_at film[GLINT_MAX_FILMS])
+{
+    for (int k = 0; k < coating->n_films; k++)
+        /* 4 pi n d / wavelength, where n d = quarters of NM */
+        film[k] = (struct glint_film_at){coating->film[k].index,
+                                         GLINT_PI * coating->film[k].quarters *
+                                             coating->nm / wavelength_nm};
+    return coating->n_films;
+}
+
+/* The matrix (m11, i m12; i m21, m22) of one polarisation. */
+struct matrix {
+    double m11, m12, m21, m22;
+};
+
+/* Multiplies M from the right by a film's (C, i S / F; i SIGN S F, C). */
+static void multiply(struct matrix *m, double c, double s, double f,
+                     double sign)
+{
+    const struct matrix old = *m;
+    const double upper = s / f, lower = sign * s * f;
+
+    m->m11 = old.m11 * c - old.m12 * lower;
+    m->m12 = old.m11 * upper + old.m12 * c;
+    m->m21 = old.m21 * c + old.m22 * lower;
+    m->m22 = old.m22 * c - old.m21 * upper;
+}
+
+/* Returns what M reflects between media of the admittances A and B. */
+static double reflected(const struct matrix *m, double a, double b)
+{
+    const double minus = a * m->m11 - b * m->m22,
+                 plus = a * m->m11 + b * m->m22;
+    const double across = a * b * m->m12, back = m->m21;
+    const double part = (minus * minus + (across - back) * (across - back)) /
+                        (plus * plus + (across + back) * (across + back));
+
+    return part < 1.0 ? part : 1.0;
+}
+
+void glint_stack_reflectance_sp(double n1, double c1, double n2, double c2,
+                                const struct glint_film_at *film, int n,
+                                double *s, double *p)
+{
+    struct matrix s_all = {1, 0, 0, 1}, p_all = s_all;
+    const bool turned = n1 > n2; /* light meets the last film first */
+
+    for (int k = 0; k < n; k++) {
+        const struct glint_film_at *const f = &film[turned ? n - 1 - k : k];
+        const double nf = f->n, inside = film_inside(n1, c1, nf);
+        const double size = sqrt(fabs(inside)), half = 0.5 * f->phase * size;
+        const double sign = inside < 0.0 ? -1.0 : 1.0;
+        /* sinh(30) in each of 8 layers is far from overflow, and as good as
+         * nothing passes. */
+        const double sine = inside < 0.0 ? sinh(fmin(half, 30.0)) : sin(half);
+        const double cosine = inside < 0.0 ? cosh(fmin(half, 30.0)) : cos(half);
+
+        /* f is nf cos(t) for s and nf / cos(t) for p: of imaginary cos(t), i
+         * size, the first is i nf size and the second -i nf / size, and sin D
+         * is i sinh |D|. */
+        multiply(&s_all, cosine, sine, nf * size, sign);
+        multiply(&p_all, cosine, sign * sine, nf / size, sign);
+    }
+    *s = reflected(&s_all, n1 * c1, n2 * c2);
+    *p = reflected(&p_all, n1 / c1, n2 / c2);
+}
+
+/* Returns the cosine behind a boundary that is met at COS_FROM, or 0 where
+ * nothing passes. */
+static double cosine_behind(double n_from, double n_to, double cos_from)
 {
     const double ratio = n_from / n_to;
     const double cos2 = 1.0 - ratio * ratio * (1.0 - cos_from * cos_from);
 
-    if (!(cos_from > 0.0 && cos2 > 0.0))
-        return 1.0; /* grazing incidence, or beyond the critical angle */
-    if (film_n > 0.0) {
-        const double inside = film_inside(n_from, cos_from, film_n);
+    return cos_from > 0.0 && cos2 > 0.0 ? sqrt(cos2) : 0.0;
+}
 
-        return film_reflectance(n_from, cos_from, n_to, sqrt(cos2), film_n,
-                                inside, film_sine2(inside, film_phase));
+double glint_reflectance(double n_from, double n_to, double cos_from,
+                         const struct glint_film_at *film, int n_films)
+{
+    const double c2 = cosine_behind(n_from, n_to, cos_from);
+
+    if (!(c2 > 0.0))
+        return 1.0; /* grazing incidence, or beyond the critical angle */
+    if (n_films > 1)
+        return stack_reflectance(n_from, cos_from, n_to, c2, film, n_films);
+    if (n_films == 1) {
+        const double inside = film_inside(n_from, cos_from, film->n);
+
+        return film_reflectance(n_from, cos_from, n_to, c2, film->n, inside,
+                                film_sine2(inside, film->phase));
     }
-    return bare_reflectance(n_from, cos_from, n_to, sqrt(cos2));
+    return bare_reflectance(n_from, cos_from, n_to, c2);
+}
+
+void glint_reflectance_sp(double n_from, double n_to, double cos_from,
+                          const struct glint_film_at *film, int n_films,
+                          double *s, double *p)
+{
+    const double c2 = cosine_behind(n_from, n_to, cos_from);
+
+    *s = *p = 1.0;
+    if (c2 > 0.0)
+        glint_stack_reflectance_sp(n_from, cos_from, n_to, c2, film, n_films, s,
+                                   p);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reflectance of a boundary between two media, from cosines that are known.
+ * Reflectance of a boundary between two media, bare or coated, from cosines
+ * that are known.
  *
  * Inline, because the tracer asks once per surface and has the cosines. With
  * one film the reflectance of the stack is Airy's sum over all orders, written
@@ -18,6 +19,8 @@
 #define GLINT_BAKE_TRACE_COATING_H
 
 #include <math.h>
+
+#include "glint/trace.h"
 
 /* Returns (s / s_all + p / p_all) / 2, at most 1, with one division. */
 static inline double mean_ratio(double s, double s_all, double p, double p_all)
@@ -83,6 +86,28 @@ static inline double film_reflectance(double n1, double c1, double n2,
                           (ab_p + g_p) * (ab_p + g_p) * sin2;
 
     return mean_ratio(minus_s, plus_s, minus_p, plus_p);
+}
+
+/* Sets S and P to what FILM[N], from the medium of the smaller index on,
+ * reflects of the two polarisations:
+ * characteristic matrices multiplied. Each is (cos D, i sin D / f; i f sin D,
+ * cos D), with D half the phase of the film and its admittance f as above. What
+ * is imaginary stays so, and beyond the critical angle inside a film both f and
+ * D are imaginary, so that all is done in real numbers. [Macleod, Thin-Film
+ * Optical Filters, ch. 2] */
+void glint_stack_reflectance_sp(double n1, double c1, double n2, double c2,
+                                const struct glint_film_at *film, int n,
+                                double *s, double *p);
+
+/* Returns their mean. */
+static inline double stack_reflectance(double n1, double c1, double n2,
+                                       double c2,
+                                       const struct glint_film_at *film, int n)
+{
+    double s, p;
+
+    glint_stack_reflectance_sp(n1, c1, n2, c2, film, n, &s, &p);
+    return 0.5 * (s + p);
 }
 
 #endif

@@ -73,12 +73,9 @@ static void append(struct route *route, int e, enum glint_event_kind kind,
         return;
     media_of(route, k, forward ? &event->n_from : &event->n_to,
              forward ? &event->n_to : &event->n_from);
-    if (route->lens->surface[k].coating_nm > 0.0) {
-        event->film_n = route->lens->surface[k].coating_n;
-        /* A quarter wave thick: 4 pi n d / wavelength, n d = design / 4. */
-        event->film_phase = GLINT_PI * route->lens->surface[k].coating_nm /
-                            route->wavelength_nm;
-    }
+    event->n_films =
+        glint_coating_at(&route->lens->surface[k].coating, route->wavelength_nm,
+                         route->path->film[k]);
 }
 
 void glint_path_init(struct glint_path *path,
@@ -188,32 +185,37 @@ static WHOLLY_INLINE void turn(struct beam *b, int k, double c, double s,
         judge(b->status[k], way * before * b->n[k] > 0.0, GLINT_RAY_MISSED);
 }
 
-/* Sets PART to the share that E reflects of rays that leave it at the cosine
- * OUT; 1 where OUT is 0. */
+/* Sets PART to the share that E, coated with FILM, reflects of rays that leave
+ * it at the cosine OUT; 1 where OUT is 0. */
 static WHOLLY_INLINE void reflectances(const struct beam *b, int n,
                                        const struct glint_event *e,
+                                       const struct glint_film_at *film,
                                        const double *out, double *part)
 {
-    const double n1 = e->n_from, n2 = e->n_to, nf = e->film_n;
-    const bool bare = !(nf > 0.0);
+    const double n1 = e->n_from, n2 = e->n_to;
+    const bool bare = e->n_films == 0, single = e->n_films == 1;
     double inside[LANES], sine2[LANES];
 
     for (int k = 0; k < n && bare; k++)
         part[k] = bare_reflectance(n1, fabs(b->cosine[k]), n2, out[k]);
-    for (int k = 0; k < n && !bare; k++)
-        inside[k] = film_inside(n1, fabs(b->cosine[k]), nf);
-    for (int k = 0; k < n && !bare; k++)
-        sine2[k] = film_sine2(inside[k], e->film_phase);
-    for (int k = 0; k < n && !bare; k++)
-        part[k] = film_reflectance(n1, fabs(b->cosine[k]), n2, out[k], nf,
+    for (int k = 0; k < n && single; k++)
+        inside[k] = film_inside(n1, fabs(b->cosine[k]), film->n);
+    for (int k = 0; k < n && single; k++)
+        sine2[k] = film_sine2(inside[k], film->phase);
+    for (int k = 0; k < n && single; k++)
+        part[k] = film_reflectance(n1, fabs(b->cosine[k]), n2, out[k], film->n,
                                    inside[k], sine2[k]);
+    for (int k = 0; k < n && !bare && !single; k++)
+        part[k] = stack_reflectance(n1, fabs(b->cosine[k]), n2, out[k], film,
+                                    e->n_films);
     for (int k = 0; k < n; k++)
         part[k] = out[k] > 0.0 ? part[k] : 1.0;
 }
 
 /* Refracts or reflects the rays at the surface of E. */
 static WHOLLY_INLINE void cross(struct beam *b, int n,
-                                const struct glint_event *e, bool energies)
+                                const struct glint_event *e,
+                                const struct glint_film_at *film, bool energies)
 {
     const double ratio = e->n_from / e->n_to, c = e->curvature;
     const bool reflects = e->kind == GLINT_REFLECT;
@@ -226,7 +228,7 @@ static WHOLLY_INLINE void cross(struct beam *b, int n,
         out[k] = sqrt(out2 > 0.0 ? out2 : 0.0);
     }
     if (energies)
-        reflectances(b, n, e, out, part);
+        reflectances(b, n, e, film, out, part);
     for (int k = 0; k < n && energies; k++)
         b->energy[k] *= reflects ? part[k] : 1.0 - part[k];
     for (int k = 0; k < n && reflects; k++)
@@ -297,7 +299,7 @@ static WHOLLY_INLINE void pass(struct beam *b, int n, int asked,
     if (e->kind == GLINT_STOP)
         return;
     widen(b, n, e->semi_mm);
-    cross(b, n, e, energies);
+    cross(b, n, e, path->film[e->surface], energies);
 }
 
 static inline enum glint_ray_status arrive(const struct beam *b, int k,

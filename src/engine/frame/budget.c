@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "glint/light.h"
+
 /* octaves that a first frame takes longer, as it takes memory */
 #define FIRST 1
 /* share of the budget that frames are planned for */
@@ -38,29 +40,60 @@ double glint_budget_quality(const struct glint_budget *b)
     return (double)b->step / GLINT_BUDGET_STEPS;
 }
 
-void glint_budget_begin(struct glint_budget *b)
+void glint_budget_begin(struct glint_budget *b, const struct glint_dials *asked)
 {
+    b->asked = *asked;
     b->n_tries = 0;
     b->n_frames += b->n_frames < 2;
 }
 
-/* Returns the dials at STEP. The cost model does not cover sets of wavelengths,
- * so a budget draws with three. */
-static struct glint_dials dials_at(int step, const struct glint_dials *asked)
+/* What is turned down beside the quality, each in addition to those before it,
+ * in the order of what is seen of it. LOSS: PSNR against a frame without any of
+ * it, dB; estimates, as no sweep has measured dust and veil yet. */
+static const struct cut {
+    double dim;    /* least dim_codes */
+    int dust_log2; /* largest */
+    bool no_veil;
+    double loss;
+} cuts[] = {{0, GLINT_SHADE_MOST_LOG2, false, 90},
+            {0.25, GLINT_SHADE_MOST_LOG2, false, 62},
+            {1, GLINT_SHADE_MOST_LOG2, false, 57},
+            {1, 8, false, 54},
+            {1, 7, false, 51},
+            {1, 6, false, 48},
+            {1, 5, false, 45},
+            {1, 3, false, 42},
+            {1, 3, true, 34}};
+
+enum { N_CUTS = sizeof cuts / sizeof *cuts, BUNDLES = 256 };
+
+/* PSNR of the levels of quality in the mean of five lenses, dB
+ * (tests/figures/trade.md). */
+static const double level_db[GLINT_QUALITY_LEVELS] = {39, 44, 49, 53.5, 54.5,
+                                                      56, 59, 62, 64,   65};
+
+/* Returns the dials at STEP and CUT. The cost model does not cover sets of
+ * wavelengths, so a budget draws with three. */
+static struct glint_dials dials_at(int step, int cut,
+                                   const struct glint_dials *asked)
 {
     struct glint_dials d =
         glint_quality_at((double)step / GLINT_BUDGET_STEPS).dials;
 
     d.dispersion_q8 = 0;
+    d.dim_codes = fmax(fmax(d.dim_codes, asked->dim_codes), cuts[cut].dim);
+    d.dust_log2 = cuts[cut].dust_log2;
     d.max_lights = asked->max_lights;
+    d.still_px = asked->still_px;
     d.flags |= asked->flags & GLINT_DIAL_ALWAYS_HALF;
+    d.flags |= cuts[cut].no_veil ? GLINT_DIAL_NO_VEIL : 0;
     return d;
 }
 
 struct glint_dials glint_budget_dials(const struct glint_budget *b,
                                       const struct glint_dials *asked)
 {
-    return dials_at(b->step, asked);
+    return dials_at(b->step, b->cut, asked);
 }
 
 static double place_of(int step)
@@ -78,33 +111,93 @@ static double octaves_at(const struct glint_budget *b, int step)
            (at - below) * (b->octaves[below + 1] - b->octaves[below]);
 }
 
-/* Returns the milliseconds that PLAN would take at quality STEP, as predicted.
- */
+/* Returns the milliseconds that PLAN would take at quality STEP and CUT, as
+ * predicted. */
 static double predict(const struct glint_budget *b,
-                      const struct glint_cost_plan *plan, int step)
+                      const struct glint_cost_plan *plan, int step, int cut)
 {
-    const struct glint_dials then = dials_at(step, &plan->dials);
+    const struct glint_dials then = dials_at(step, cut, &b->asked);
     const struct glint_cost cost = glint_cost_of(plan, &then);
 
     return b->ms_per_minsn * glint_cost_minsn(&cost) *
            exp2(octaves_at(b, step) + (b->n_frames > 1 ? 0 : FIRST));
 }
 
-/* Returns the best quality within the budget, or the coarsest. */
+/* Returns the best quality within the budget with CUT, or the coarsest. */
 static int best_step(const struct glint_budget *b,
-                     const struct glint_cost_plan *plan)
+                     const struct glint_cost_plan *plan, int cut)
 {
     int low = 0, high = GLINT_BUDGET_STEPS;
 
     while (low < high) {
         const int middle = (low + high + 1) / 2;
 
-        if (predict(b, plan, middle) <= ROOM * b->ms)
+        if (predict(b, plan, middle, cut) <= ROOM * b->ms)
             low = middle;
         else
             high = middle - 1;
     }
     return low;
+}
+
+/* Returns the mean square of the difference that a PSNR of DB stands for. */
+static double square_of(double db)
+{
+    return pow(10, -db / 10);
+}
+
+/* Returns the error of quality STEP with CUT; above 1 if it would not fit, the
+ * less so the less it takes. */
+static double error_at(const struct glint_budget *b,
+                       const struct glint_cost_plan *plan, int step, int cut)
+{
+    const double at = place_of(step);
+    const int below =
+        at < GLINT_QUALITY_LEVELS - 1 ? (int)at : GLINT_QUALITY_LEVELS - 2;
+    const double db = level_db[below] +
+                      (at - below) * (level_db[below + 1] - level_db[below]);
+    const double over = step > 0 ? 0 : predict(b, plan, 0, cut) / b->ms;
+
+    return square_of(db) + square_of(cuts[cut].loss) + (over > 1 ? over : 0);
+}
+
+/* Returns whether CUT turns down anything that PLAN has, beyond the cut before
+ * it. */
+static bool is_of_use(const struct glint_cost_plan *plan, int cut)
+{
+    const struct cut *c = &cuts[cut];
+
+    return (plan->can_dim && c->dim > c[-1].dim) ||
+           (plan->shade && c->dust_log2 < plan->shade->log2 &&
+            c->dust_log2 < c[-1].dust_log2) ||
+           (plan->n_veil > 0 && c->no_veil);
+}
+
+/* Chooses the cut and the quality of the least error that fit the budget.
+ * Returns the quality; one bundle in some stands for all of many. */
+static int best(struct glint_budget *b, const struct glint_cost_plan *plan)
+{
+    struct glint_cost_plan some = *plan;
+    struct glint_planned last;
+    double least = HUGE_VAL;
+    int n = 1, step = 0;
+
+    while (glint_flare_planned(plan->flare, n * BUNDLES, &last))
+        n++;
+    some.every = n;
+    for (int cut = 0; cut < N_CUTS; cut++) {
+        const int here =
+            cut == 0 || is_of_use(plan, cut) ? best_step(b, &some, cut) : -1;
+        const double error =
+            here < 0 ? HUGE_VAL : error_at(b, &some, here, cut);
+
+        if (error < least) {
+            least = error;
+            b->cut = cut;
+            step = here;
+        }
+    }
+    return step;
 }
 
 /* Returns STEP + 1 for a few frames in all if no level lies between STEP, which
@@ -116,8 +209,8 @@ static int try_next(struct glint_budget *b, const struct glint_cost_plan *plan,
     const int is_gap = place_of(step + 1) - place_of(step) >= 1;
 
     if (step == GLINT_BUDGET_STEPS || !is_gap || b->n_trials == TRIALS ||
-        predict(b, plan, step) >= SPARE * b->ms ||
-        predict(b, plan, step + 1) > TRY * b->ms)
+        predict(b, plan, step, b->cut) >= SPARE * b->ms ||
+        predict(b, plan, step + 1, b->cut) > TRY * b->ms)
         return step;
     b->n_trials++;
     b->n_tries = MAX_TRIES; /* no more plans, as their prediction would reject
@@ -129,18 +222,20 @@ bool glint_budget_choose(struct glint_budget *b,
                          const struct glint_cost_plan *plan,
                          struct glint_dials *dials)
 {
+    const int cut = b->cut;
     int step;
 
-    b->predicted_ms = predict(b, plan, b->step);
+    b->predicted_ms = predict(b, plan, b->step, cut);
     if (++b->n_tries >= MAX_TRIES ||
         (b->predicted_ms <= b->ms &&
-         (b->predicted_ms >= SPARE * b->ms || b->step == GLINT_BUDGET_STEPS)))
+         (b->predicted_ms >= SPARE * b->ms ||
+          (b->step == GLINT_BUDGET_STEPS && cut == 0))))
         return false;
-    step = try_next(b, plan, best_step(b, plan));
-    if (step == b->step)
+    step = try_next(b, plan, best(b, plan));
+    if (step == b->step && cut == b->cut)
         return false;
     b->step = step;
-    *dials = dials_at(step, dials);
+    *dials = dials_at(step, b->cut, &b->asked);
     return true;
 }
 

@@ -24,7 +24,9 @@ struct glint_budget {
                                 this machine with this lens */
     double octaves[GLINT_QUALITY_LEVELS]; /* log2 of measured over predicted
                                              time, as learned, by quality */
+    struct glint_dials asked;             /* of this frame */
     int step;     /* quality of the last frame, 0 .. GLINT_BUDGET_STEPS */
+    int cut;      /* how much of its parts was turned down, 0: nothing */
     int n_tries;  /* number of plans tried for this frame */
     int n_frames; /* number of frames begun, at most 2 */
     int n_trials; /* number of frames drawn though predicted to take too long */
@@ -34,8 +36,9 @@ struct glint_budget {
 
 void glint_budget_init(struct glint_budget *budget, double ms);
 
-/* Begins a frame. */
-void glint_budget_begin(struct glint_budget *budget);
+/* Begins a frame of the dials ASKED: those that do not depend on quality. */
+void glint_budget_begin(struct glint_budget *budget,
+                        const struct glint_dials *asked);
 
 /* Turns DIALS, with which PLAN was made, if that misses the budget or leaves
  * much of it; returns whether it did, so that a new plan is needed. */

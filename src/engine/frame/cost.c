@@ -6,34 +6,32 @@
 #include "engine/frame/quality.h"
 #include "glint/bake.h"
 
-/* Octaves that light typically varies over within a ghost. */
-#define VARIATION 0.35
-
 #define QUAD 2 /* number of single pixels that take as long as four at once */
 
-/* Counted: least squares of the relative errors of 35 frames, each drawn a
- * second time under callgrind, so that none is binned twice: heliar-tronnier,
- * double-gauss-angenieux and nikon-zoom-mid at qualities draft, default and
- * high, a lamp at 5, 12 or 25 degrees, RGB of 640x360 and some of 1280x720.
- * They are off by 4 percent in the median, by 8 at most.
- *
- * Planned: the weights of the counts that glint_cost_of() expects. These differ
- * from counted ones: bundles are looked at, not rays, and there are 1 to 2.6
- * times as many edges, 1.4 to 3.5 times as many rows and 1 to 6 times as many
- * lit pixels as are drawn then. Least squares of relative errors over 43 frames
- * of five lenses at both sizes, along an earlier quality table. For the 35
- * frames above they predict 0.78 times the instructions, which calibrating a
- * budget corrects; apart from that they are off by 11 percent in the median, by
- * 32 or less in nine of ten, by 40 at most. 48 frames of RGB, itoh-zoom-long
- * among them, give 0.78 again, and 14, 47 and 57 percent. Weights fitted to
- * these 48 would be off by 12, 43 and 50, and for a lens that was left out of
- * the fit by 17 to 55 in the median: what the counts lack, no weights make
- * good. */
+/* Steps an octave that light has which is not rounded. */
+#define MOST_STEPS 4096
+
+/* By make cost-fit: least squares of the relative errors of random frames, each
+ * of which callgrind counts the second time that it is drawn, so that none is
+ * binned twice. tests/figures/cost/plans.md says how far they are off. Planned:
+ * for the counts that glint_cost_of() expects; counted: for those that were
+ * drawn.
+ */
+/* clang-format off */
 const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS] = {
-    {"looking", 0.6, 1.35},  {"bundles", 75, 43},
-    {"vertices", 0.6, 0.25}, {"edges", 0.03, 1.08},
-    {"rows", 0.0275, 0.027}, {"lit pixels", 0.02, 0.069},
-    {"star", 0.32, 0.32}};
+    /* begin weights */
+    {"looking", 1.32, 0.995},
+    {"bundles", 23.4, 37.9},
+    {"vertices", 0.468, 0},
+    {"edges", 1.29, 2.19},
+    {"rows", 0.027, 0.027},
+    {"dust", 1.36, 0.5},
+    {"lit pixels", 0.0849, 0.0712},
+    {"star", 0.32, 0.32},
+    {"veil", 0.181, 0.183},
+    /* end weights */
+};
+/* clang-format on */
 
 double glint_cost_minsn(const struct glint_cost *cost)
 {
@@ -58,11 +56,147 @@ static double cells_at(int planned, double finer)
     return fmax(GLINT_LEAST_CELLS, fmin(free * finer, GLINT_MAX_CELLS));
 }
 
+/* ------------------------------------------------------------------ bundles */
+
+/* A bundle as it would be with other dials. */
+struct bundle {
+    double cells;  /* a side */
+    double light;  /* display white */
+    double area;   /* pixels that its light falls on, in the picture or not */
+    double inside; /* share of its rays that get through */
+    double view;   /* share of its light's box that lies in the picture */
+    double log_bright; /* natural logarithm of how much more its edges are, as
+                          light differs within it */
+    double rings;      /* outlines of a soft edge */
+    double share; /* of it that is drawn, as it is dim, or 3 bundles for 1 */
+};
+
 /* Returns the steps an octave for a ghost that is OCTAVES below white, in
  * codes. */
 static double steps_at(int steps, double octaves)
 {
     return octaves > 0 ? steps * pow(7. / 8, octaves) : steps;
+}
+
+/* Returns how many outlines a soft edge makes (edges/ghost_rings.c). */
+static double rings_of(const struct glint_cost_plan *p, const struct bundle *b)
+{
+    const double octaves = fmax(0, -log2(b->light));
+    const double soft =
+        p->shade ? p->shade->soft_q16 * 0x1p-16 * sqrt(b->area) : 0;
+    double most = 4;
+
+    if (p->shade == NULL || p->shade->soft_q16 == 0)
+        return 1;
+    if (p->code > 0)
+        most = fmin(most, 8 - floor(octaves * 5 / 12));
+    most = fmin(most, floor(log2(fmax(soft, 1))));
+    return exp2(fmax(most, 0));
+}
+
+/* Returns how many of the bundle are left if ghosts below DIM codes share rays
+ * where they were planned to below WAS codes. */
+static double share_of(const struct glint_cost_plan *p,
+                       const struct glint_planned *b, double light, double was,
+                       double dim)
+{
+    enum { WAVES = 3, MIDDLE = 1 };
+    const double codes = p->code > 0 ? light / p->code : HUGE_VAL;
+
+    if (!p->can_dim)
+        return 1;
+    if (dim > was && codes < dim && codes >= was)
+        return b->wave == MIDDLE ? 1 : 0;
+    if (dim < was && codes < was && codes >= dim)
+        return b->wave == MIDDLE ? WAVES : 1;
+    return 1;
+}
+
+/* ------------------------------------------------------------------- counts */
+
+/* How many edges a bundle has, and rows of pixels that they cross, as products
+ * of powers: least squares over the bundles of 48 random frames of four lenses
+ * (Poisson regression). Sums over a frame are off by 15 percent in the
+ * median. */
+static double edges_of(const struct bundle *b, double log_steps)
+{
+    const double n = log(b->cells);
+
+    return exp(0.85 + 1.5 * n + 0.06 * log_steps + 0.17 * log(b->inside) +
+               0.6 * log(b->view) + 0.15 * b->log_bright);
+}
+
+static double rows_of(const struct bundle *b, double log_steps, double height)
+{
+    return exp(0.55 + 0.91 * log(b->cells) + 0.058 * log_steps +
+               0.461 * log1p(b->area) - 0.183 * log(height) -
+               0.254 * log(b->inside) + 0.564 * log(b->view) +
+               0.293 * b->log_bright);
+}
+
+/* Makes bundle P of a plan as it would be with the dials THEN. */
+static struct bundle bundle_of(const struct glint_cost_plan *p,
+                               const struct glint_planned *b,
+                               const struct glint_dials *then, double larger)
+{
+    enum { FOLD = 255 };
+    const double light = glint_real_value(b->irradiance);
+    const double finer = (double)then->fineness / p->dials.fineness;
+    struct bundle to = {
+        .cells = cells_at(b->n_cells, finer),
+        .light = light,
+        .area = light > 0 ? larger * glint_real_value(b->flux) / light : 0,
+        .inside = fmax(b->inside_q8, 1) / 255,
+        .view = fmax(b->view_q8, 1) / 255,
+        .log_bright = b->contrast_q4 == FOLD ? 4 : b->contrast_q4 / 16.};
+
+    to.rings = rings_of(p, &to);
+    to.share = share_of(p, b, light, p->dials.dim_codes, then->dim_codes);
+    return to;
+}
+
+static void add(struct glint_cost *cost, const struct glint_cost_plan *p,
+                const struct glint_dials *then, const struct bundle *b,
+                double height)
+{
+    const double drawn = b->share * b->rings;
+    const double log_steps =
+        log1p(then->irradiance_steps
+                  ? steps_at(then->irradiance_steps, -log2(b->light))
+                  : MOST_STEPS);
+    const double edges = edges_of(b, log_steps);
+
+    cost->count[GLINT_COST_BUNDLES] += b->share;
+    cost->count[GLINT_COST_VERTICES] += drawn * (b->cells + 1) * (b->cells + 1);
+    cost->count[GLINT_COST_EDGES] += drawn * edges;
+    cost->count[GLINT_COST_ROWS] += drawn * rows_of(b, log_steps, height);
+    if (p->shade && p->shade->log2)
+        cost->count[GLINT_COST_PARTS] +=
+            drawn * glint_cost_parts(p,
+                                     &(struct glint_cost_cells){
+                                         b->cells, b->light / b->rings, b->area,
+                                         b->inside, b->view},
+                                     then->dust_log2);
+}
+
+/* Where ghosts lie: each once, whatever its waves. */
+struct covered {
+    int ghost, light;
+    double most, all; /* of this ghost, and of all before; pixels */
+};
+
+static void cover(struct covered *c, const struct glint_planned *p,
+                  const struct bundle *b)
+{
+    const double here = b->share * b->area * b->inside * b->view;
+
+    if (p->ghost != c->ghost || p->light != c->light) {
+        c->all += c->most;
+        c->most = 0;
+    }
+    c->ghost = p->ghost;
+    c->light = p->light;
+    c->most = fmax(c->most, here);
 }
 
 struct glint_cost glint_cost_of(const struct glint_cost_plan *p,
@@ -72,31 +206,29 @@ struct glint_cost glint_cost_of(const struct glint_cost_plan *p,
     const bool was_half = glint_dials_half(&p->dials) && p->can_half;
     const double width = p->width / (half ? 2. : 1);
     const double height = p->height / (half ? 2. : 1);
-    const double finer = (double)then->fineness / p->dials.fineness;
     /* Factor on the number of pixels that were planned for. */
     const double larger = pow(4, was_half - half);
-    const int steps = then->irradiance_steps;
-    struct glint_cost cost = {{p->n_looked_at, 1}};
+    const int every = p->every > 1 ? p->every : 1;
+    struct glint_cost cost = {{p->n_looked_at}};
     struct glint_planned b;
-    double covered = 0;
+    struct covered covered = {-1, -1, 0, 0};
 
-    for (int i = 0; glint_flare_planned(p->flare, i, &b); i++) {
-        const double n = cells_at(b.n_cells, finer);
-        const double light = glint_real_value(b.irradiance);
-        const double area = larger * glint_real_value(b.flux) / light;
-        const double rows = fmin(sqrt(area), height);
-        const double levels =
-            steps ? 2 + VARIATION * steps_at(steps, -log2(light)) : n;
-        const double across = fmin(n, levels);
+    for (int i = 0; p->flare && glint_flare_planned(p->flare, i, &b);
+         i += every) {
+        struct bundle here = bundle_of(p, &b, then, larger);
 
-        cost.count[GLINT_COST_BUNDLES]++;
-        cost.count[GLINT_COST_VERTICES] += (n + 1) * (n + 1);
-        cost.count[GLINT_COST_EDGES] += n * across;
-        cost.count[GLINT_COST_ROWS] += rows * across;
-        covered += fmin(1, area / (width * height));
+        here.share *= every;
+        if (!(here.light > 0) || !(here.share > 0))
+            continue;
+        add(&cost, p, then, &here, height);
+        cover(&covered, &b, &here);
     }
-    cost.count[GLINT_COST_LIT] =
-        width * height * (1 - exp(-covered)) * (half ? QUAD : 1);
+    covered.all += covered.most;
+    cost.count[GLINT_COST_LIT] = width * height *
+                                 (1 - exp(-covered.all / (width * height))) *
+                                 (half ? QUAD : 1);
     cost.count[GLINT_COST_STAR] = p->n_star;
+    cost.count[GLINT_COST_VEIL] =
+        then->flags & GLINT_DIAL_NO_VEIL ? 0 : p->n_veil;
     return cost;
 }

@@ -20,8 +20,10 @@ enum glint_cost_kind {
     GLINT_COST_VERTICES, /* vertices of grids */
     GLINT_COST_EDGES,    /* edges across which light changes */
     GLINT_COST_ROWS,     /* rows of pixels that edges cross */
+    GLINT_COST_PARTS,    /* parts of cells that dust or a mask shades */
     GLINT_COST_LIT,      /* pixels with any light */
     GLINT_COST_STAR,     /* pixels that parts of stars give light to */
+    GLINT_COST_VEIL,     /* pixels under a veil, and what spreads it as such */
     GLINT_COST_KINDS
 };
 
@@ -43,9 +45,15 @@ struct glint_cost {
 struct glint_cost_plan {
     const struct glint_flare *flare;
     int width, height;  /* size of the picture */
-    double n_looked_at; /* number of bundles */
-    bool can_half;      /* true: the picture is in codes and drawn by edges */
-    double n_star;      /* pixels that parts of stars give light to */
+    double n_looked_at; /* rays that the plan looked at */
+    int every; /* bundles of which one stands for all; 0, 1: each for itself */
+    bool can_half; /* true: the picture is in codes and drawn by edges */
+    bool can_dim;  /* true: three waves, so that ghosts may be dim */
+    double code;   /* light of a code near black; 0: linear */
+    double n_star; /* pixels that parts of stars give light to */
+    double n_veil; /* pixels under a veil, and what spreads it as such */
+    /* Shade of the stop, all of its tables; NULL: there is none. */
+    const struct glint_shade *shade;
     struct glint_dials dials; /* dials that the frame was planned with */
 };
 
@@ -59,5 +67,20 @@ struct glint_cost glint_cost_of(const struct glint_cost_plan *plan,
  * multiplied by their time on this machine that is the frame's time. Fitted to
  * counts of callgrind. */
 double glint_cost_minsn(const struct glint_cost *cost);
+
+/* The cells of a ghost that what lies in the stop shades (edges/ghost_shade.h).
+ */
+struct glint_cost_cells {
+    double cells;  /* of the ghost, a side */
+    double light;  /* display white */
+    double area;   /* pixels that its light falls on */
+    double inside; /* share of its cells within the stop */
+    double view;   /* share of these in the picture */
+};
+
+/* Returns the number of parts for the shade of PLAN, of whose tables those with
+ * 2^LOG2 cells a side and fewer are used. */
+double glint_cost_parts(const struct glint_cost_plan *plan,
+                        const struct glint_cost_cells *ghost, int log2);
 
 #endif

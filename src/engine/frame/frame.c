@@ -69,6 +69,8 @@ enum glint_status glint_frame_use_mask(struct glint_frame *frame,
     glint_setup_mask(frame->setup, frame->mask, nodes, span);
     frame->cfg.raster = raster;
     frame->cfg.stop.mask_q13 = frame->mask;
+    /* the mask has arcs in it */
+    frame->cfg.stop.round_q30 = frame->cfg.stop.off_q30 = 0;
     frame->cfg.stop.mask_nodes = nodes;
     frame->cfg.stop.mask_span_q16 = (int32_t)(span * 65536);
     return GLINT_OK;
@@ -78,6 +80,10 @@ void glint_frame_finish(struct glint_frame *frame)
 {
     free(frame->mask);
     glint_frame_star_finish(&frame->star);
+    glint_frame_veil_finish(&frame->veil);
+    free(frame->still.light);
+    free(frame->still.gain_q14);
+    free(frame->still.sum_q20);
     if (frame->trace)
         frame->trace->finish(frame);
     free(frame->light);
@@ -122,12 +128,12 @@ double glint_frame_pixels_per_tangent(const struct glint_frame *f)
                 f->view.sensor_width_mm);
 }
 
-/* Returns the chord of the angle within which lights are one. */
-static int32_t near_q30(const struct glint_frame *f)
+/* Returns the chord of the angle that PX pixels on the axis are. */
+static int32_t near_q30(const struct glint_frame *f, double px)
 {
     const double pixels = glint_frame_pixels_per_tangent(f);
 
-    return (int32_t)lrint(fmin(1, f->apart_px / pixels) * 0x1p30);
+    return (int32_t)lrint(fmin(1, px / pixels) * 0x1p30);
 }
 
 bool glint_frame_is_beyond(const struct glint_frame *frame,
@@ -196,6 +202,7 @@ static enum glint_status set_lights(struct glint_frame *f,
     if (glint_frame_hold_lights(f, total) != GLINT_OK)
         return GLINT_E_MEMORY;
     f->n_beyond = 0;
+    f->gain_q14 = NULL;
     for (int i = 0; i < n; i++) {
         const int before = within;
 
@@ -204,7 +211,7 @@ static enum glint_status set_lights(struct glint_frame *f,
     }
     f->n_more = within - (n - f->n_beyond);
     f->n_lights =
-        glint_lights_merge(f->light, within, near_q30(f),
+        glint_lights_merge(f->light, within, near_q30(f, f->apart_px),
                            larger(room, f->dials.max_lights), &f->n_apart);
     if (!f->is_held) /* after a limit was met, fewer lights keep the share of
                         all */
@@ -235,9 +242,7 @@ static struct glint_flare_frame rays_of(struct glint_frame *f,
                                         const struct glint_image *image)
 {
     set_waves(f);
-    if (f->dim_opening != f->setup->opening)
-        memset(f->dim.done, 0, sizeof f->dim.done);
-    f->dim_opening = f->setup->opening;
+    glint_frame_check_dim(f);
     f->sets.step = glint_real_of(
         glint_frame_codes_light(f, image, GLINT_FRAME_STEP_CODES));
     return (struct glint_flare_frame){
@@ -250,14 +255,15 @@ static struct glint_flare_frame rays_of(struct glint_frame *f,
         .fineness = f->dials.fineness,
         .uniform = f->uniform,
         .only_ghost = f->only_ghost,
+        .tints = f->tints,
         .faintest = glint_real_of(
             glint_frame_codes_light(f, image, f->dials.cull_codes)),
         .dim = f->dim.log2_q8 ? &f->dim : NULL,
         .dimmest = glint_real_of(
             glint_frame_codes_light(f, image, f->dials.dim_codes)),
         .snap_codes_q8 = f->dials.snap_codes_q8,
-        .half =
-            glint_dials_half(&f->dials) && f->can_half ? &glint_half : NULL};
+        .half = glint_dials_half(&f->dials) && f->can_half ? &glint_half : NULL,
+        .gain_q14 = f->gain_q14};
 }
 
 void glint_frame_retune(struct glint_frame *f)
@@ -267,10 +273,12 @@ void glint_frame_retune(struct glint_frame *f)
         glint_flare_init(&f->flare, &f->cfg, f->block, f->bytes);
 }
 
-/* Gives the flare the steps of irradiance of the dials. */
+/* Gives the flare the steps of irradiance and the shade of the dials. */
 static void follow_dials(struct glint_frame *f)
 {
-    if (f->cfg.irradiance_steps != f->dials.irradiance_steps)
+    const bool is_other = f->cfg.irradiance_steps != f->dials.irradiance_steps;
+
+    if (glint_frame_shade(f) || is_other)
         glint_frame_retune(f);
 }
 
@@ -278,36 +286,16 @@ static void follow_dials(struct glint_frame *f)
 static enum glint_status plan(struct glint_frame *f,
                               const struct glint_flare_frame *rays)
 {
-    const int bundles = glint_frame_bundles(f, f->n_lights);
+    enum glint_status status;
 
     follow_dials(f);
-    if (!f->reserved && (!f->block || bundles > f->cfg.max_bundles)) {
-        enum glint_status status;
-
-        f->cfg.max_bundles = larger(bundles, f->cfg.max_bundles);
-        status = glint_frame_regrow(f);
-        if (status != GLINT_OK)
-            return status;
-    }
+    status = glint_frame_make_room(f);
+    if (status != GLINT_OK)
+        return status;
     glint_flare_plan(f->flare, rays, f->light, f->n_lights);
     f->n_plans++;
     f->n_looked += glint_flare_looked(f->flare);
     return GLINT_OK;
-}
-
-/* Returns the plan, also before it is drawn, so that its cost can be predicted.
- */
-struct glint_cost_plan glint_frame_plan(const struct glint_frame *f)
-{
-    return (struct glint_cost_plan){
-        .flare = f->flare,
-        .width = f->cfg.width,
-        .height = f->cfg.height,
-        .n_star = f->star.is_set ? f->star.pixels : 0,
-        .n_looked_at =
-            (double)f->n_lights * f->setup->n_ghosts * f->setup->n_wavelengths,
-        .can_half = f->can_half,
-        .dials = f->dials};
 }
 
 /* Returns whether dials were turned, so that the frame has to be planned anew.
@@ -328,16 +316,19 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
     enum glint_status status;
 
     f->can_half = is_in_codes(f, image) && !f->cfg.raster;
-    f->rays = rays_of(f, image);
+    f->code_light = glint_frame_codes_light(f, image, 1);
     f->scale = scale;
     f->is_held = f->is_full = false;
     f->n_plans = f->n_binned = 0;
     f->n_looked = 0;
-    glint_budget_begin(&f->budget);
+    glint_budget_begin(&f->budget, &f->asked);
     times[0] = now(f);
     status = set_lights(f, lamps, n_lamps, scale);
     if (status == GLINT_OK && f->budget.ms <= 0 && glint_frame_hold_looking(f))
         status = set_lights(f, lamps, n_lamps, scale);
+    if (status == GLINT_OK)
+        status = glint_frame_still(f, near_q30(f, f->dials.still_px));
+    f->rays = rays_of(f, image);
     while (status == GLINT_OK) {
         status = plan(f, &f->rays);
         if (status != GLINT_OK)
@@ -347,8 +338,8 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
             continue;
         }
         if (f->budget.ms <= 0 && glint_frame_hold_work(f)) {
-            f->rays = rays_of(f, image);
             status = set_lights(f, lamps, n_lamps, scale);
+            f->rays = rays_of(f, image);
             continue;
         }
         times[1] = times[2] = now(f);
@@ -456,13 +447,16 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
     enum glint_status status;
 
     *report = (struct glint_frame_report){.lights = n_lamps, .quality = -1};
-    if (n_lamps == 0) { /* the picture need not even be read */
+    /* without a veil the picture need not even be read */
+    if (n_lamps == 0 && !glint_frame_has_veil(frame)) {
         report->arena_bytes = frame->bytes;
         return GLINT_OK;
     }
     if (glint_frame_hold_ghosts(frame) != GLINT_OK)
         return GLINT_E_MEMORY;
     status = glint_frame_star_set(frame, lamps, n_lamps, scale, image);
+    if (status == GLINT_OK)
+        status = glint_frame_veil_set(frame, lamps, n_lamps, image);
     if (status == GLINT_OK)
         status = (frame->lens ? draw_model : draw_exact)(
             frame, lamps, n_lamps, scale, image, &report->stats, times);
@@ -476,13 +470,18 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
         report->predicted_ms = frame->budget.predicted_ms;
         report->calibrated_minsn = frame->budget.calibrated_minsn;
         report->quality = glint_budget_quality(&frame->budget);
-        /* a frame that took memory tells nothing about other frames */
-        if (frame->bytes == bytes)
+        report->dials = frame->dials;
+        report->unveiled = glint_frame_has_veil(frame) &&
+                           frame->dials.flags & GLINT_DIAL_NO_VEIL;
+        /* a frame that took memory, or reused the last one, tells nothing about
+         * other frames */
+        if (frame->bytes == bytes && !report->stats.reused)
             glint_budget_note(&frame->budget, 1e3 * (times[4] - times[0]));
     }
     report->beyond_lights = frame->n_beyond;
     report->apart_lights = larger(frame->n_apart - frame->n_more, 1);
     report->coarsened = frame->is_held;
+    report->blurred = frame->cfg.stop.shade == &frame->shade;
     report->plans = frame->n_plans;
     report->binned = frame->n_binned;
     report->looked = frame->n_looked;
@@ -492,6 +491,7 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
     report->arena_bytes = frame->bytes;
     report->peak_bytes = glint_frame_bytes_used(frame, &report->stats);
     report->need_bytes = glint_frame_bytes_needed(frame, &report->stats);
+    report->star_bytes = glint_frame_star_bytes(frame);
     report->ghosts = glint_frame_count_ghosts(frame, n_drawn(frame, report));
     return GLINT_OK;
 }

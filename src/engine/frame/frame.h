@@ -15,6 +15,7 @@
 
 #include "engine/frame/budget.h"
 #include "engine/frame/frame_star.h"
+#include "engine/frame/frame_veil.h"
 #include "glint/bake.h"
 #include "glint/dials.h"
 #include "glint/engine.h"
@@ -75,24 +76,37 @@ struct glint_frame {
     /* Model of the lens; NULL: rays come from TRACE. */
     const struct glint_lens *lens;
     const struct glint_frame_rays *trace; /* not NULL if LENS is NULL */
-    glint_clock_fn *clock;                /* NULL: nothing is timed */
+    glint_progress_fn *progress;          /* of traced rays; NULL: silent */
+    void *progress_ctx;
+    glint_clock_fn *clock; /* NULL: nothing is timed */
     struct glint_view view;
-    struct glint_flare_config cfg; /* sizes, tiles, weights, merging, stop; the
-                                      frame sets the capacities itself */
-    struct glint_dials dials;      /* may be turned between frames */
-    struct glint_dials asked;      /* the dials before a budget turned them */
+    struct glint_flare_config
+        cfg;                  /* sizes, tiles, weights, merging, stop,
+                                 reuse; the frame sets the capacities itself
+                               */
+    struct glint_dials dials; /* may be turned between frames */
+    struct glint_dials asked; /* the dials before a budget turned them */
     int point_room; /* most lights that points of wide lamps may become, if that
                        is more than max_lights and there are no more lamps than
                        max_lights */
     double apart_px; /* pixels: lights whose images are nearer are merged */
     bool for_codes;  /* true: a linear picture is planned as if it were in codes
                       */
-    bool can_half;  /* true: the last picture was in codes and drawn by edges */
-    bool uniform;   /* true: all ghosts get the same grid */
-    int only_ghost; /* index of the only ghost drawn; -1: all are */
+    bool can_half; /* true: the last picture was in codes and drawn by edges */
+    double code_light; /* light of one of its codes near black; 0: linear */
+    bool uniform;      /* true: all ghosts get the same grid */
+    int only_ghost;    /* index of the only ghost drawn; -1: all are */
+    /* As in struct glint_flare_frame; the caller's. The exposure is chosen as
+     * if there were none. */
+    const struct glint_tint *tints;
+    struct glint_shade shade; /* the stop's, without its finest tables */
     int16_t *mask; /* signed distances to the stop's outline; NULL: the stop has
                       no mask */
     struct glint_frame_star star;
+    struct glint_frame_veil veil;
+    struct glint_still still; /* only for models that are reused */
+    /* Factors on the lights of the frame; NULL: none. */
+    const int32_t (*gain_q14)[3];
     struct glint_budget budget; /* turns the dials; only for models */
     bool reserved;              /* true: memory must not grow */
     size_t most_bytes; /* limit of the block for one light, if it is not
@@ -117,9 +131,12 @@ struct glint_frame {
     int n_more;   /* lights that are further points of a lamp */
     /* Frame that was planned last from a model. */
     struct glint_flare_frame rays;
-    double scale;         /* factor on the lights of the last frame */
-    struct glint_dim dim; /* how bright ghosts are, for dim_opening */
-    double dim_opening;
+    double scale; /* factor on the lights of the last frame */
+    /* How bright ghosts are, for an opening, pixels per mm, and three waves; no
+     * memory is taken before the dial asks for it. */
+    struct glint_dim dim;
+    double dim_opening, dim_size;
+    struct glint_wave dim_wave[3];
     bool *seen; /* [GLINT_MAX_GHOSTS]: true for ghosts in the last frame */
 
     /* [n_lights]: lamps to be traced, if some merged. */
@@ -142,6 +159,8 @@ struct glint_frame_report {
     size_t arena_bytes; /* bytes that the run-time half was given */
     size_t peak_bytes;  /* bytes of these that this frame used */
     size_t need_bytes;  /* bytes that would have drawn everything, exactly */
+    size_t star_bytes;  /* bytes besides that stars hold, for their tables and
+                           lamps, and a veil */
     bool coarsened;     /* true: the plan passed the limit of work and was made
                            coarser */
     int plans, binned;  /* number of plans until one was within the limits and
@@ -150,6 +169,9 @@ struct glint_frame_report {
     double plan_ms, trace_ms, bin_ms, draw_ms;
     /* Prediction and quality with a budget; else 0 and -1. */
     double predicted_ms, quality;
+    struct glint_dials dials; /* dials that the budget chose */
+    bool blurred;  /* true: dust or a mask was drawn from coarser tables */
+    bool unveiled; /* true: the budget left out the veil */
     double calibrated_minsn; /* millions of instructions of the frame that
                                 predictions are based on, or 0 */
 };

@@ -58,9 +58,13 @@ enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
         linear_q20 ? glint_frame_plan_scale(frame, lamps, n_lamps, &scale)
                    : GLINT_E_MEMORY;
     const double share = frame->star.share;
+    const double glare = frame->veil.glare, haze = frame->veil.haze;
+    const struct glint_front_dirt *front = frame->veil.front;
     int up = 1;
 
-    frame->star.share = 0;
+    frame->star.share = frame->veil.glare = frame->veil.haze = 0;
+    frame->veil.front = NULL;
+    frame->veil.is_set = false;
 
     glint_image_place(&layer, linear_q20);
     for (int i = 0; i < 4 && up && status == GLINT_OK; i++) {
@@ -73,6 +77,12 @@ enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
     for (size_t i = 0; i < n && status == GLINT_OK; i++)
         rgb[i] = (float)(linear_q20[i] * exp2(-20 - scale.likely) * gain);
     frame->star.share = share;
+    frame->veil.glare = glare;
+    frame->veil.haze = haze;
+    frame->veil.front = front;
+    if (status == GLINT_OK && glint_frame_has_veil(frame))
+        status = glint_frame_veil_alone(frame, lamps, n_lamps, gain, linear_q20,
+                                        rgb);
     if (status == GLINT_OK && share > 0)
         status = glint_frame_star_alone(frame, lamps, n_lamps, gain, linear_q20,
                                         rgb);

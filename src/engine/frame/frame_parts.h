@@ -36,9 +36,27 @@ enum glint_status glint_frame_hold_lights(struct glint_frame *frame, int n);
 /* Makes room for what is kept of each ghost. GLINT_E_MEMORY. */
 enum glint_status glint_frame_hold_ghosts(struct glint_frame *frame);
 
+/* Empties the table of dim ghosts if what it holds for has changed: the
+ * opening, the waves that are set, the size of a pixel. */
+void glint_frame_check_dim(struct glint_frame *f);
+
 /* Replaces the block by one for the present capacities, in which the flare
  * begins anew. */
 enum glint_status glint_frame_regrow(struct glint_frame *frame);
+
+/* Gives the stop the tables of dust that the dials ask for; returns whether
+ * these are others than before. */
+bool glint_frame_shade(struct glint_frame *frame);
+
+/* Makes room for all bundles that the frame's lights may have, unless memory is
+ * reserved. GLINT_E_MEMORY. */
+enum glint_status glint_frame_make_room(struct glint_frame *frame);
+
+/* Has lights that stood before, within NEAR_Q30, stand for the frame's, with
+ * factors, if the dials have a tolerance for them, frames are reused, and
+ * memory that is reserved has room. GLINT_E_MEMORY. */
+enum glint_status glint_frame_still(struct glint_frame *frame,
+                                    int32_t near_q30);
 
 /* Returns how many ghosts the N bundles of the last frame belong to. */
 int glint_frame_count_ghosts(struct glint_frame *frame, int n);

@@ -4,8 +4,10 @@
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "engine/frame/block.h"
+#include "engine/setup/dirt.h"
 
 /* Most bundles that a frame may have by edges, and by other rasters. */
 enum { MAX_BUNDLES = 1 << 20, MAX_BUNDLES_OTHER = 65535 };
@@ -29,16 +31,47 @@ enum glint_status glint_frame_hold_lights(struct glint_frame *f, int n)
     return GLINT_OK;
 }
 
+/* Takes memory for the table of dim ghosts. */
+static enum glint_status hold_dim(struct glint_frame *f)
+{
+    f->dim.method = &glint_dim_method;
+    if (!f->dim.log2_q8)
+        f->dim.log2_q8 = calloc((size_t)GLINT_DIM_NODES * GLINT_DIM_VALUES *
+                                    ((size_t)f->setup->n_ghosts + 1),
+                                sizeof *f->dim.log2_q8);
+    return f->dim.log2_q8 ? GLINT_OK : GLINT_E_MEMORY;
+}
+
+static bool is_same_wave(const struct glint_wave *a, const struct glint_wave *b)
+{
+    return a->wave_q24 == b->wave_q24 && a->rgb_q14[0] == b->rgb_q14[0] &&
+           a->rgb_q14[1] == b->rgb_q14[1] && a->rgb_q14[2] == b->rgb_q14[2] &&
+           a->weight.mantissa == b->weight.mantissa &&
+           a->weight.exponent == b->weight.exponent;
+}
+
+void glint_frame_check_dim(struct glint_frame *f)
+{
+    const double size = f->view.width / f->view.sensor_width_mm;
+    bool same = f->dim_opening == f->setup->opening && f->dim_size == size;
+
+    for (int i = 0; i < 3; i++)
+        same = same && is_same_wave(&f->dim_wave[i], &f->wave[i]);
+    if (same)
+        return;
+    memset(f->dim.done, 0, sizeof f->dim.done);
+    memcpy(f->dim_wave, f->wave, sizeof f->dim_wave);
+    f->dim_opening = f->setup->opening;
+    f->dim_size = size;
+}
+
 enum glint_status glint_frame_hold_ghosts(struct glint_frame *f)
 {
     if (!f->seen)
         f->seen = calloc(GLINT_MAX_GHOSTS, sizeof *f->seen);
-    f->dim.method = &glint_dim_method;
-    if (!f->dim.log2_q8 && f->lens)
-        f->dim.log2_q8 = calloc((size_t)GLINT_DIM_NODES * GLINT_DIM_VALUES *
-                                    ((size_t)f->setup->n_ghosts + 1),
-                                sizeof *f->dim.log2_q8);
-    return f->seen && (f->dim.log2_q8 || !f->lens) ? GLINT_OK : GLINT_E_MEMORY;
+    if (f->seen && f->lens && f->dials.dim_codes > 0)
+        return hold_dim(f);
+    return f->seen ? GLINT_OK : GLINT_E_MEMORY;
 }
 
 static bool is_by_edges(const struct glint_frame *f)
@@ -138,6 +171,70 @@ enum glint_status glint_frame_regrow(struct glint_frame *f)
     return glint_flare_init(&f->flare, &f->cfg, f->block, bytes);
 }
 
+/* Takes room for N lights that stand still. */
+static enum glint_status hold_still(struct glint_frame *f, int n)
+{
+    struct glint_still *s = &f->still;
+    const size_t size = (size_t)n;
+
+    if (n <= s->max_lights)
+        return GLINT_OK;
+    free(s->light);
+    free(s->gain_q14);
+    free(s->sum_q20);
+    *s = (struct glint_still){.light = malloc(size * sizeof *s->light),
+                              .gain_q14 = malloc(size * sizeof *s->gain_q14),
+                              .sum_q20 = malloc(size * sizeof *s->sum_q20)};
+    if (!s->light || !s->gain_q14 || !s->sum_q20)
+        return GLINT_E_MEMORY;
+    s->max_lights = n;
+    return GLINT_OK;
+}
+
+enum glint_status glint_frame_still(struct glint_frame *f, int32_t near_q30)
+{
+    struct glint_still *s = &f->still;
+    int n;
+
+    if (!f->cfg.reuse || f->dials.still_px <= 0 ||
+        (f->reserved && !f->cfg.reuse_gains))
+        return GLINT_OK;
+    if (!f->reserved && hold_still(f, f->light_capacity) != GLINT_OK)
+        return GLINT_E_MEMORY;
+    if (s->n > larger(f->n_lights, f->dials.max_lights))
+        s->n = 0;
+    n = glint_lights_still(s, f->light, f->n_lights, near_q30);
+    if (n == 0)
+        return GLINT_OK;
+    memcpy(f->light, s->light, (size_t)n * sizeof *s->light);
+    f->n_more += n - f->n_lights;
+    f->n_lights = n;
+    f->gain_q14 = (const int32_t(*)[3])s->gain_q14;
+    return GLINT_OK;
+}
+
+/* Returns whether the block has room to plan N bundles of the frame's lights.
+ */
+static bool has_room(const struct glint_frame *f, int n)
+{
+    return f->block && n <= f->cfg.max_bundles &&
+           (!f->cfg.reuse || f->n_lights <= f->cfg.reuse_lights) &&
+           (!f->gain_q14 || f->cfg.reuse_gains);
+}
+
+enum glint_status glint_frame_make_room(struct glint_frame *f)
+{
+    const int bundles = glint_frame_bundles(f, f->n_lights);
+
+    if (f->reserved || has_room(f, bundles))
+        return GLINT_OK;
+    f->cfg.max_bundles = larger(bundles, f->cfg.max_bundles);
+    if (f->cfg.reuse)
+        f->cfg.reuse_lights = larger(f->n_lights, f->cfg.reuse_lights);
+    f->cfg.reuse_gains |= f->gain_q14 != NULL;
+    return glint_frame_regrow(f);
+}
+
 enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
                                       size_t bytes, int n_lamps, int n_drawn)
 {
@@ -147,10 +244,16 @@ enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
     f->cfg.max_bundles =
         bundles_within(f, (glint_frame_has_sets(f) ? 2. : 1) *
                               glint_frame_bundles(f, f->dials.max_lights));
+    if (f->cfg.reuse)
+        f->cfg.reuse_lights = f->dials.max_lights;
+    f->cfg.reuse_gains = f->cfg.reuse && f->dials.still_px > 0;
     if (!fit(f, bytes))
         return GLINT_E_MEMORY;
+    /* Dials may be turned later, when nothing is allocated any more. */
     if (glint_frame_hold_ghosts(f) != GLINT_OK ||
-        glint_frame_hold_lights(f, n_lamps) != GLINT_OK)
+        (f->lens && hold_dim(f) != GLINT_OK) ||
+        glint_frame_hold_lights(f, n_lamps) != GLINT_OK ||
+        (f->cfg.reuse_gains && hold_still(f, f->cfg.reuse_lights) != GLINT_OK))
         return GLINT_E_MEMORY;
     f->reserved = true;
     if (!mem)
@@ -217,19 +320,36 @@ bool glint_frame_hold_looking(struct glint_frame *f)
     return f->is_held = true;
 }
 
-/* Makes grids as fine as PLAN allows within MINSN, or else the coarsest.
- * Returns the millions of instructions that they take. */
+/* Returns whether dust can be blurred further, and is most of COST. */
+static bool is_dusty(const struct glint_frame *f,
+                     const struct glint_cost_plan *plan,
+                     const struct glint_cost *cost)
+{
+    return plan->shade && f->dials.dust_log2 > GLINT_SHADE_LEAST_LOG2 &&
+           2e-3 * glint_cost_weight[GLINT_COST_PARTS].planned *
+                   cost->count[GLINT_COST_PARTS] >
+               glint_cost_minsn(cost);
+}
+
+/* Makes tables of dust and grids as fine as PLAN allows within MINSN, or else
+ * the coarsest. Returns the millions of instructions that they take. */
 static double hold_grids(struct glint_frame *f,
                          const struct glint_cost_plan *plan, double minsn)
 {
     enum { LEAST_FINENESS = 8, STEP = 8 };
     struct glint_cost cost = glint_cost_of(plan, &f->dials);
 
-    while (glint_cost_minsn(&cost) > minsn &&
-           f->dials.fineness > LEAST_FINENESS) {
-        f->dials.fineness =
-            larger(f->dials.fineness - (f->dials.fineness + STEP - 1) / STEP,
-                   LEAST_FINENESS);
+    if (plan->shade)
+        f->dials.dust_log2 = smaller(f->dials.dust_log2, plan->shade->log2);
+    while (glint_cost_minsn(&cost) > minsn) {
+        if (is_dusty(f, plan, &cost))
+            f->dials.dust_log2--;
+        else if (f->dials.fineness > LEAST_FINENESS)
+            f->dials.fineness = larger(
+                f->dials.fineness - (f->dials.fineness + STEP - 1) / STEP,
+                LEAST_FINENESS);
+        else
+            break;
         cost = glint_cost_of(plan, &f->dials);
     }
     return glint_cost_minsn(&cost);
@@ -272,8 +392,53 @@ bool glint_frame_hold_work(struct glint_frame *f)
         f->dials.max_lights = larger(
             1, (int)(f->n_lights * fmin(0.75, fmax(0, left / (then + again)))));
     if (f->dials.fineness == before.fineness &&
+        f->dials.dust_log2 == before.dust_log2 &&
         f->dials.dispersion_q8 == before.dispersion_q8 &&
         f->dials.max_lights == before.max_lights)
         return false;
     return f->is_held = true;
+}
+
+/* ------------------------------------------------------------------- dust */
+
+bool glint_frame_shade(struct glint_frame *f)
+{
+    const struct glint_shade *all =
+        f->setup->dirt ? &f->setup->dirt->shade : NULL;
+    const struct glint_shade *const before = f->cfg.stop.shade;
+    const int was = before ? before->log2 : 0;
+    int skipped;
+
+    if (!all || !before)
+        return false;
+    skipped = larger(
+        all->log2 - larger(f->dials.dust_log2, GLINT_SHADE_LEAST_LOG2), 0);
+    f->shade = *all;
+    f->shade.log2 = all->log2 - skipped;
+    for (int k = 0; k < f->shade.log2; k++) {
+        f->shade.level_q15[k] = all->level_q15[k + skipped];
+        f->shade.rough_q8[k] = all->rough_q8[k + skipped];
+    }
+    f->cfg.stop.shade = skipped ? &f->shade : all;
+    return before != f->cfg.stop.shade || was != f->cfg.stop.shade->log2;
+}
+
+/* ------------------------------------------------------------------- cost */
+
+/* Returns the plan, also before it is drawn, so that its cost can be predicted.
+ */
+struct glint_cost_plan glint_frame_plan(const struct glint_frame *f)
+{
+    return (struct glint_cost_plan){
+        .flare = f->flare,
+        .width = f->cfg.width,
+        .height = f->cfg.height,
+        .n_star = f->star.is_set ? f->star.pixels : 0,
+        .n_veil = glint_frame_veil_pixels(f),
+        .n_looked_at = f->flare ? (double)glint_flare_looked(f->flare) : 0,
+        .can_half = f->can_half,
+        .can_dim = f->dim.log2_q8 && f->setup->n_wavelengths == 3,
+        .code = f->code_light,
+        .shade = f->setup->dirt ? &f->setup->dirt->shade : NULL,
+        .dials = f->dials};
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/frame/block.h"
+#include "engine/setup/dirt.h"
 #include "engine/frame/frame_parts.h"
 
 /* Lights farther from the picture's top left corner than this many pixels,
@@ -25,9 +26,10 @@ static const double least_px = 1.5;
  * the smaller of both limits counts. */
 static const double clipped_times = 32, white_share = 0.5;
 
-/* Factor on the dial cull_codes: stars end smoothly and faintly, unlike ghosts.
- */
-static const double cull_share = 2;
+/* Light of a lamp's white spot, in white pixels for each of its own, up to
+ * which it is haze, and from which it is glare. Suns in clear skies have 4 to
+ * 50, glints and lit haze 0.6 to 1.2 (tests/figures/stars.md). */
+static const double hazy = 1, glaring = 5;
 
 /* Share of a budget that stars may take. If they would take more, their
  * faintest light is left out, up to 2^BUDGET_STEPS times what cull_codes asks
@@ -46,6 +48,8 @@ static struct glint_star_optics optics_of(const struct glint_frame *f)
     return (struct glint_star_optics){
         .n_blades = f->setup->n_blades,
         .rotation_deg = f->setup->blade_rotation_deg,
+        .round = f->setup->iris.roundness,
+        .soft = f->setup->iris.softness,
         .f_number = fabs(o->focal_mm) / (2 * o->entrance_radius_mm),
         .pixel_um = 1e3 * f->view.sensor_width_mm / f->view.width};
 }
@@ -54,15 +58,37 @@ static bool are_same(const struct glint_star_optics *a,
                      const struct glint_star_optics *b)
 {
     return a->n_blades == b->n_blades && a->rotation_deg == b->rotation_deg &&
+           a->round == b->round && a->soft == b->soft && a->smear == b->smear &&
            a->f_number == b->f_number && a->pixel_um == b->pixel_um;
+}
+
+/* Makes the smear of what lies in the stop, unless it is there. Sets IS_NEW to
+ * whether it has changed. */
+static enum glint_status make_smear(struct glint_frame *f, bool *is_new)
+{
+    struct glint_frame_star *s = &f->star;
+    const struct glint_dirt *dirt = f->setup->dirt;
+    const uint64_t mark = dirt && dirt->shade.log2 ? dirt->mark : 0;
+
+    *is_new = mark != s->smear_mark;
+    if (!*is_new)
+        return GLINT_OK;
+    glint_smear_finish(&s->smear);
+    s->smear_mark = mark;
+    return mark ? glint_smear_init(&s->smear, f->setup) : GLINT_OK;
 }
 
 static enum glint_status make_tables(struct glint_frame *f)
 {
     struct glint_frame_star *s = &f->star;
-    const struct glint_star_optics optics = optics_of(f);
+    struct glint_star_optics optics = optics_of(f);
+    bool is_new;
+    enum glint_status status = make_smear(f, &is_new);
 
-    if (s->tables && are_same(&s->optics, &optics))
+    if (status != GLINT_OK)
+        return status;
+    optics.smear = s->smear.sum ? &s->smear : NULL;
+    if (s->tables && are_same(&s->optics, &optics) && !is_new)
         return GLINT_OK;
     glint_star_tables_free(s->tables);
     s->tables = NULL;
@@ -94,6 +120,7 @@ static enum glint_status take_room(struct glint_frame *f, int n)
     if (!block || !light)
         return GLINT_E_MEMORY;
     s->max_lights = n;
+    s->bytes = bytes;
     return glint_star_init(&s->star, &cfg, block, bytes);
 }
 
@@ -112,16 +139,32 @@ enum glint_status glint_frame_star_hold(struct glint_frame *f, int n)
     return status == GLINT_OK ? take_room(f, n) : status;
 }
 
+size_t glint_frame_star_bytes(const struct glint_frame *f)
+{
+    const struct glint_frame_star *s = &f->star;
+
+    return glint_smear_bytes(&s->smear) +
+           (s->tables ? glint_star_tables_bytes(s->tables) : 0) +
+           (s->star ? s->bytes + (size_t)s->max_lights * sizeof *s->light : 0) +
+           f->veil.bytes + (f->veil.table ? f->veil.table->bytes : 0);
+}
+
 /* A lamp as the picture shows it, if it is known from there. */
 struct seen {
     double radius_px; /* radius of a disc of its extent; 0 if unknown */
+    double hidden_px; /* radius of a lamp that its rim may hide, as stills have
+                         it (engine/detector.c) */
     double level;
+    bool is_bare; /* the picture does not show it at all */
 };
 
 static struct seen seen_of(const struct glint_frame_star *s, int i)
 {
-    return (struct seen){s->seen_px ? sqrt(2) * s->seen_px[i] : 0,
-                         s->seen_px && s->level ? s->level[i] : 1};
+    const double size_px = s->seen_px ? fmax(s->seen_px[i], 0) : 0;
+
+    return (struct seen){sqrt(2) * size_px, floor(256 / 6. * size_px) / 128,
+                         s->seen_px && s->level ? s->level[i] : 1,
+                         s->is_bare || (s->seen_px && s->seen_px[i] < 0)};
 }
 
 /* Returns the POWER of a lamp, in white pixels of its brightest channel; if the
@@ -136,19 +179,30 @@ static double unclipped(const struct glint_frame *f, const struct seen *seen,
                                : power;
 }
 
-/* Returns the radius, pixels, of the disc of a lamp that the picture shows as
- * SEEN. Even a point is white as far out as least_px more than the radius at
- * which the mean of its star over a circle is white; the square of that is
- * subtracted from the square of what is SEEN. */
+/* Returns the radius, pixels, of the disc of a lamp of the extent OWN_PX that
+ * the picture shows as SEEN, with light FOUND of an estimated POWER. What the
+ * finder takes for glare counts as glare as far as the lamp is brighter than
+ * its white spot: with that much light a soft rim is that of a small lamp,
+ * without it one of haze. Without glare even a point is white as far out as
+ * least_px more than the radius at which the mean of its star over a circle is
+ * white; the square of that is subtracted from the square of what is SEEN. A
+ * lamp of a video is as wide as that of a still, which is at least HIDDEN_PX.
+ */
 static double disc_of(const struct glint_frame *f, const struct seen *seen,
-                      double power)
+                      double found, double power, double own_px)
 {
     const double white_px =
         cbrt(power / seen->level * airy_of_photo(f)) / GLINT_PI;
     const double point_px = least_px + white_px;
+    const double area = GLINT_PI * seen->radius_px * seen->radius_px;
+    const double over =
+        (found / seen->level / fmax(area, 1) - hazy) / (glaring - hazy);
+    const double glare = fmin(fmax(over, 0), 1);
+    const double least = fmax(own_px, seen->hidden_px);
+    const double rest_px =
+        sqrt(fmax(seen->radius_px * seen->radius_px - point_px * point_px, 0));
 
-    return sqrt(
-        fmax(seen->radius_px * seen->radius_px - point_px * point_px, 0));
+    return fmax(least, rest_px + glare * (least - rest_px));
 }
 
 /* Sets LIGHT for LAMP times SCALE. Returns false if it is too far from the
@@ -160,9 +214,9 @@ static bool set_light(const struct glint_frame *f,
     const double focal_mm = f->setup->optics.focal_mm;
     const double pixels = glint_frame_pixels_per_tangent(f);
     const double most = fmax(lamp->rgb[0], fmax(lamp->rgb[1], lamp->rgb[2]));
-    const double all = unclipped(f, seen, lamp->power * most);
-    const double radius = fmax(2 * fmax(lamp->axis[0], lamp->axis[1]) * pixels,
-                               disc_of(f, seen, all));
+    const double found = lamp->power * most, all = unclipped(f, seen, found);
+    const double radius = disc_of(
+        f, seen, found, all, 2 * fmax(lamp->axis[0], lamp->axis[1]) * pixels);
     const double power = all * scale;
     double x, y;
 
@@ -174,7 +228,7 @@ static bool set_light(const struct glint_frame *f,
         .x_q8 = (int32_t)lrint(256 * x),
         .y_q8 = (int32_t)lrint(256 * y),
         .radius_q8 =
-            f->star.is_bare ? -1 : (int32_t)lrint(256 * fmin(radius, 8192)),
+            seen->is_bare ? -1 : (int32_t)lrint(256 * fmin(radius, 8192)),
         .power = glint_real_of(power)};
     for (int c = 0; c < 3; c++)
         light->rgb_q14[c] = (int32_t)lrint(lamp->rgb[c] / most * 16384);
@@ -229,7 +283,8 @@ enum glint_status glint_frame_star_set(struct glint_frame *f,
     if (!(s->share > 0) || n == 0)
         return GLINT_OK;
     status = glint_frame_star_hold(f, n);
-    if (status != GLINT_OK)
+    /* what lies in the stop may let no light through */
+    if (status != GLINT_OK || (s->smear_mark && !s->smear.sum))
         return status;
     for (int i = 0; i < n; i++) {
         const struct seen seen = seen_of(s, i);
@@ -240,8 +295,9 @@ enum glint_status glint_frame_star_set(struct glint_frame *f,
     if (n_lights > GLINT_STAR_MAX_LIGHTS)
         qsort(s->light, (size_t)n_lights, sizeof *s->light, by_power);
     set_within(f, n_lights,
-               cull_share *
+               f->dials.star_cull *
                    glint_frame_codes_light(f, image, f->dials.cull_codes));
+    s->n_lights = n_lights;
     s->is_set = true;
     return GLINT_OK;
 }
@@ -249,7 +305,14 @@ enum glint_status glint_frame_star_set(struct glint_frame *f,
 void glint_frame_paint(struct glint_frame *frame,
                        const struct glint_image *image)
 {
-    if (frame->star.is_set)
+    if (frame->veil.is_set && frame->star.is_set) {
+        const struct glint_pass star =
+            glint_star_pass_on(frame->star.star, image);
+
+        glint_veil_draw(frame->veil.veil, &star, frame->flare, image);
+    } else if (frame->veil.is_set)
+        glint_veil_draw(frame->veil.veil, NULL, frame->flare, image);
+    else if (frame->star.is_set)
         glint_star_draw(frame->star.star, frame->flare, image);
     else
         glint_flare_draw(frame->flare, image);
@@ -294,6 +357,7 @@ enum glint_status glint_frame_star_alone(struct glint_frame *frame,
 void glint_frame_star_finish(struct glint_frame_star *star)
 {
     glint_star_tables_free(star->tables);
+    glint_smear_finish(&star->smear);
     free(star->light);
     free(star->mem);
 }

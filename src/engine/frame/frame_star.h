@@ -19,7 +19,8 @@ struct glint_frame_star {
     /* [n]: RMS radius, pixels, of the white spot of each lamp that the picture
      * clips, glare included; its power is then an estimate, which the star may
      * raise. 0, or NULL for all lamps: extent and power are the lamp's own
-     * members. */
+     * members; below 0 these, and the picture does not show the lamp, so that
+     * its core is drawn, too. */
     const double *seen_px;
     /* [n]: level of each lamp, which its power includes; NULL: 1. */
     const double *level;
@@ -30,14 +31,18 @@ struct glint_frame_star {
     /* Private. */
     struct glint_star_optics optics; /* optics for which the tables were made */
     struct glint_star_tables *tables;
+    /* What lies in the stop, if anything, and the mark of that. */
+    struct glint_smear smear;
+    uint64_t smear_mark;
     struct glint_star *star; /* NULL: there is none yet */
     /* [max_lights]; if there are more than GLINT_STAR_MAX_LIGHTS, the brightest
      * are drawn */
     struct glint_star_light *light;
     void *mem;
-    int max_lights;
-    double pixels; /* pixels that its parts give light to */
-    bool is_set;   /* true: the star is set for this frame */
+    size_t bytes;             /* of MEM */
+    int max_lights, n_lights; /* room for lights, and those of this frame */
+    double pixels;            /* pixels that its parts give light to */
+    bool is_set;              /* true: the star is set for this frame */
 };
 
 /* Sets the star of LAMPS times SCALE for pictures like IMAGE, and makes tables
@@ -52,7 +57,12 @@ enum glint_status glint_frame_star_set(struct glint_frame *frame,
  * take none. Does nothing if the share is 0. GLINT_E_MEMORY. */
 enum glint_status glint_frame_star_hold(struct glint_frame *frame, int n);
 
-/* Draws the bins of the flare, and the star if it is set, onto IMAGE. */
+/* Returns the bytes that the star of FRAME holds, for its tables and its lamps,
+ * and its veil. */
+size_t glint_frame_star_bytes(const struct glint_frame *frame);
+
+/* Draws the bins of the flare, and the star and the veil that are set, onto
+ * IMAGE. */
 void glint_frame_paint(struct glint_frame *frame,
                        const struct glint_image *image);
 

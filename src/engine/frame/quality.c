@@ -4,31 +4,44 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "glint/light.h"
+
 /* Most lights; so many cost less than three times as much as 64. */
 enum { MAX_LIGHTS = 128 };
+
+/* Stars end at a quarter of a code by default: as near to all of their light as
+ * one half or an eighth as much, and four times as much costs 0.2 dB and saves
+ * 2 of 9 million instructions (glint sweep --stars: a lamp of 12 stops). */
+#define STAR_CULL 2
 
 /* Levels along the front that glint sweep measures over five lenses at 1280x720
  * (tests/figures/trade.md), the coarsest first. Coarser models are not on it:
  * they save nothing and cost 6 dB. Finer models cost next to nothing but bytes
  * and time to bake, so all levels above the default have them. Dispersion has a
  * front of its own (make colour-table): levels for small boards draw three
- * wavelengths. Levels from the default up leave out ghosts below an eighth of a
- * code: hundreds of them together are still not seen. */
+ * wavelengths. Levels below the default draw dim ghosts with one wavelength and
+ * of lights near each other as one, the more the dimmer (make lights-table):
+ * half of the time of a frame of many lights. Those for small boards trace no
+ * ray anew while lamps of a video move by less than a quarter of a pixel, which
+ * is at 55 dB or more (make reuse-table). Levels from the default up leave
+ * out ghosts below an eighth of a code: hundreds of them together are still not
+ * seen. */
 /* clang-format off */
 static const struct level {
     double quality, grid, quantum, snap, cull, dim, tolerance, dispersion, points;
+    double still;
     bool half;
 } level[] = {
-    {0,      16, 8,      32,  1,  0,     1,    0,    1,  true},
-    {0.0625, 64, 1,      4,   1,  0,     1,    0,    1,  true},
-    {0.125,  20, 3,      8,   0.5,  0,   1,    0,    1,  false},
-    {0.25,   32, 1,      4,   0.5,  0,   1,    0,    1,  false},
-    {0.375,  40, 1,      4,   0.5,  0,   1,    2,    4,  false},
-    {0.5,    64, 1,      4,   0.125,  0, 1,    1,    7,  false},
-    {0.625,  96, 0.5,    2,   0.125,  0, 0.25, 1,    12, false},
-    {0.75,  160, 0.25,   1,   0.125,  0, 0.25, 0.5,  19, false},
-    {0.875, 192, 0.125,  0.5, 0.125,  0, 0.25, 0.5,  37, false},
-    {1,     256, 0.0625, 0,   0.125,  0, 0.25, 0.25, 61, false},
+    {0,      16, 8,      32,  1,  8,     1,    0,    1,  0.25, true},
+    {0.0625, 64, 1,      4,   1,  8,     1,    0,    1,  0.25, true},
+    {0.125,  20, 3,      8,   0.5,  4,   1,    0,    1,  0.25, false},
+    {0.25,   32, 1,      4,   0.5,  1,   1,    0,    1,  0.25, false},
+    {0.375,  40, 1,      4,   0.5,  0.25,   1,    2,    4,  0, false},
+    {0.5,    64, 1,      4,   0.125,  0, 1,    1,    7,  0, false},
+    {0.625,  96, 0.5,    2,   0.125,  0, 0.25, 1,    12, 0, false},
+    {0.75,  160, 0.25,   1,   0.125,  0, 0.25, 0.5,  19, 0, false},
+    {0.875, 192, 0.125,  0.5, 0.125,  0, 0.25, 0.5,  37, 0, false},
+    {1,     256, 0.0625, 0,   0.125,  0, 0.25, 0.25, 61, 0, false},
 };
 /* clang-format on */
 
@@ -80,6 +93,7 @@ static struct level level_at(double quality)
     l.cull = between(a->cull, b->cull, at - below);
     l.dim = between(a->dim, b->dim, at - below);
     l.points = between(a->points, b->points, at - below);
+    l.still = between(a->still, b->still, at - below);
     if (a->dispersion > 0 && b->dispersion > 0)
         l.dispersion = between(a->dispersion, b->dispersion, at - below);
     return l;
@@ -105,6 +119,9 @@ struct glint_quality glint_quality_at(double quality)
                   .flags = l.half ? GLINT_DIAL_HALF : 0,
                   .cull_codes = l.cull,
                   .dim_codes = l.dim,
+                  .still_px = l.still,
+                  .star_cull = STAR_CULL,
+                  .dust_log2 = GLINT_SHADE_MOST_LOG2,
                   .area_points = l.points},
         .quantum = l.quantum,
         .tolerance = l.tolerance};
@@ -152,5 +169,8 @@ struct glint_dials glint_dials_coarser(struct glint_dials a,
         .flags = a.flags | b.flags,
         .cull_codes = fmax(a.cull_codes, b.cull_codes),
         .dim_codes = fmax(a.dim_codes, b.dim_codes),
+        .still_px = fmax(a.still_px, b.still_px),
+        .star_cull = fmax(a.star_cull, b.star_cull),
+        .dust_log2 = smaller(a.dust_log2, b.dust_log2),
         .area_points = fmin(a.area_points, b.area_points)};
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "glint/real.h"
+#include "glint/light.h"
 
 #include <math.h>
 
@@ -17,4 +17,9 @@ struct glint_real glint_real_of(double x)
 double glint_real_value(struct glint_real x)
 {
     return ldexp(x.mantissa, x.exponent);
+}
+
+double glint_tint_factor(const struct glint_tint *tint, int c)
+{
+    return glint_real_value(tint->gain) * tint->rgb_q14[c] / 16384;
 }

@@ -76,6 +76,9 @@ void glint_setup_common(struct glint_setup *s, int n_blades,
                         double rotation_deg, const double *wavelength_nm, int n)
 {
     s->opening = 1;
+    s->iris = (struct glint_iris){0};
+    s->dirt = NULL;
+    s->clear = 1;
     s->n_blades = n_blades;
     s->blade_rotation_deg = rotation_deg;
     s->n_sets = 0;
@@ -102,14 +105,6 @@ enum glint_status glint_setup_units(struct glint_setup *s, const char *name,
     for (int i = 0; i < n; i++)
         s->unit_flux[i] = mean;
     return GLINT_OK;
-}
-
-/* Returns the area of the stop as a share of its circle's. The direct light is
- * even over it to 1/10000. */
-static double share_of_circle(int n_blades)
-{
-    return n_blades ? 0.5 * n_blades * sin(2 * GLINT_PI / n_blades) / GLINT_PI
-                    : 1;
 }
 
 /* Returns the polynomial COEF of N powers at W. */
@@ -170,7 +165,7 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
     glint_setup_common(setup, n_blades, blade_rotation_deg, wavelength_nm, n);
     for (int i = 0; i < n; i++)
         setup->direct_flux[i] =
-            share_of_circle(n_blades) * model_flux(h, 1, wavelength_nm[i]);
+            glint_iris_share(setup) * model_flux(h, 1, wavelength_nm[i]);
     return glint_setup_units(setup, h->name, error);
 }
 
@@ -196,7 +191,7 @@ enum glint_status glint_setup_stop_down(struct glint_setup *setup,
     setup->optics.entrance_radius_mm *= by;
     setup->optics.stop_radius_mm *= by;
     for (int i = 0; i < setup->n_wavelengths; i++)
-        setup->direct_flux[i] = share_of_circle(setup->n_blades) *
+        setup->direct_flux[i] = glint_iris_share(setup) *
                                 model_flux(h, by, setup->wavelength_nm[i]);
     return glint_setup_units(setup, h->name, error);
 }
@@ -231,7 +226,7 @@ void glint_setup_spread(struct glint_setup *setup,
             wave[i].nm = nm[i];
             memcpy(wave[i].rgb, rgb[i], sizeof rgb[i]);
             wave[i].direct_flux =
-                share_of_circle(setup->n_blades) *
+                glint_iris_share(setup) *
                 model_flux(lens->header, setup->opening, nm[i]);
             mean += share[i] * wave[i].direct_flux;
         }

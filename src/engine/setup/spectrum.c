@@ -163,3 +163,8 @@ void glint_spectrum(int n, double *wavelength_nm, double (*rgb)[3],
         }
     }
 }
+
+double glint_largest_channel(const double rgb[3])
+{
+    return fmax(rgb[0], fmax(rgb[1], rgb[2]));
+}

@@ -1,56 +1,60 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
+#include <stdlib.h>
 
-#include "engine/setup/degrees.h"
-#include "glint/setup.h"
+#include "engine/setup/dirt.h"
 
 void glint_setup_stop(const struct glint_setup *setup, struct glint_stop *stop)
 {
     const int n = setup->n_blades;
+    struct glint_iris_sides sides;
 
+    glint_iris_sides(&sides, setup);
     *stop = (struct glint_stop){.n_blades = n,
                                 .apothem_q16 = 1 << 16,
                                 .opening_q30 =
                                     (int32_t)lrint(setup->opening * 0x1p30)};
+    stop->shade = setup->dirt ? &setup->dirt->shade : NULL;
     if (n == 0)
         return;
-    stop->apothem_q16 = (int32_t)lrint(65536 * cos(GLINT_PI / n));
-    for (int i = 0; i < n; i++) {
-        const double a = setup->blade_rotation_deg + (i + 0.5) * 360.0 / n;
-
-        stop->normal_q30[i][0] = (int32_t)lrint(glint_cos_deg(a) * 0x1p30);
-        stop->normal_q30[i][1] = (int32_t)lrint(glint_sin_deg(a) * 0x1p30);
-    }
+    stop->apothem_q16 = (int32_t)lrint(65536 * sides.apothem);
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < 2; k++)
+            stop->normal_q30[i][k] =
+                (int32_t)lrint(sides.normal[i][k] * 0x1p30);
+    if (!sides.arcs)
+        return;
+    stop->round_q30 = (int32_t)lrint(sides.round * 0x1p30);
+    stop->off_q30 = (int32_t)lrint(sides.off * 0x1p30);
 }
 
-/* Returns the signed distance of a point to the outline of the stop. It is
- * exact inside and beside a side; beyond a corner it is too short, but only its
- * sign matters there. */
-static double stop_distance(const struct glint_stop *stop, double x, double y)
+void glint_dirt_free(struct glint_dirt *dirt)
 {
-    double d = stop->n_blades ? 4 : 1 - hypot(x, y);
-
-    for (int i = 0; i < stop->n_blades; i++) {
-        const double side = stop->apothem_q16 * 0x1p-16 -
-                            x * stop->normal_q30[i][0] * 0x1p-30 -
-                            y * stop->normal_q30[i][1] * 0x1p-30;
-
-        d = fmin(d, side);
-    }
-    return d;
+    if (!dirt)
+        return;
+    free(dirt->node_q15);
+    free(dirt->rough_q8);
+    free(dirt);
 }
 
 void glint_setup_mask(const struct glint_setup *setup, int16_t *mask_q13,
                       int nodes, double span)
 {
     const double step = 2 * span / (nodes - 1);
+    struct glint_iris_sides sides;
     struct glint_stop stop;
 
+    /* The mask has the very sides of cells that are drawn without one. */
     glint_setup_stop(setup, &stop);
+    glint_iris_sides(&sides, setup);
+    sides.apothem = stop.apothem_q16 * 0x1p-16;
+    for (int k = 0; k < sides.n; k++)
+        for (int axis = 0; axis < 2; axis++)
+            sides.normal[k][axis] = stop.normal_q30[k][axis] * 0x1p-30;
     for (int j = 0; j < nodes; j++)
         for (int i = 0; i < nodes; i++) {
             const double d =
-                stop_distance(&stop, i * step - span, j * step - span);
+                glint_iris_depth(&sides, i * step - span, j * step - span);
 
             mask_q13[j * nodes + i] =
                 (int16_t)lrint(fmax(-3.9, fmin(d, 3.9)) * 8192);

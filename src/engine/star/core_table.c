@@ -15,6 +15,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "engine/star/smear_table.h"
 #include "glint/view.h"
 
 enum { CELLS = 4 }; /* cells per pixel, across and down */
@@ -22,6 +23,9 @@ enum { CELLS = 4 }; /* cells per pixel, across and down */
 /* A square of cells about the light, and the sums over all cells from its first
  * corner. */
 struct cells {
+    const struct glint_psf *psf;
+    const struct glint_smear *smear; /* NULL: nothing lies in the stop */
+    double airy_px;                  /* of the smear */
     int half, side;   /* cells from the middle to a side, and cells across */
     double (*sum)[3]; /* [side + 1][side + 1] */
 };
@@ -43,8 +47,9 @@ static int points_of(const struct glint_psf *psf, double r)
     return (int)fmin(fmax(ceil(1.0 / CELLS / fine), 1), most);
 }
 
-static void cell_light(const struct glint_psf *psf, int i, int k, double rgb[3])
+static void cell_light(const struct cells *s, int i, int k, double rgb[3])
 {
+    const struct glint_psf *psf = s->psf;
     const double side = 1.0 / CELLS;
     const int n = points_of(psf, side * hypot(i + 0.5, k + 0.5));
 
@@ -59,11 +64,30 @@ static void cell_light(const struct glint_psf *psf, int i, int k, double rgb[3])
         for (int c = 0; c < 3; c++)
             rgb[c] += here[c] * side * side / (n * n);
     }
+    if (s->smear) {
+        double more[3];
+
+        glint_smear_light(s->smear, psf, s->airy_px, side * (k + 0.5),
+                          side * (i + 0.5), side / 2, more);
+        for (int c = 0; c < 3; c++)
+            rgb[c] = rgb[c] * s->smear->clear + more[c] * side * side;
+    }
+}
+
+/* Returns the share of the light of channel C that lies farther out than R
+ * pixels. */
+static double beyond(const struct cells *s, double r, int c)
+{
+    const double all = glint_psf_beyond(s->psf, r, c);
+
+    return s->smear ? s->smear->clear * all +
+                          glint_smear_beyond(s->smear, s->psf, s->airy_px, r, c)
+                    : all;
 }
 
 /* Sets the light of each cell, at the place of its sum; the half above the
  * light mirrors the one below. */
-static void set_cells(const struct glint_psf *psf, struct cells *s)
+static void set_cells(struct cells *s)
 {
     double missing[3] = {0, 0, 0};
     const double r = (double)s->half / CELLS;
@@ -72,7 +96,7 @@ static void set_cells(const struct glint_psf *psf, struct cells *s)
         for (int k = -s->half; k < s->half; k++) {
             double rgb[3];
 
-            cell_light(psf, i, k, rgb);
+            cell_light(s, i, k, rgb);
             for (int c = 0; c < 3; c++) {
                 (*at(s, i + 1, k + 1))[c] = rgb[c];
                 (*at(s, -i, -k))[c] = rgb[c];
@@ -81,7 +105,7 @@ static void set_cells(const struct glint_psf *psf, struct cells *s)
             }
         }
     for (int c = 0; c < 3; c++) {
-        const double more = (1 - glint_psf_beyond(psf, r, c) - missing[c]) / 4;
+        const double more = (1 - beyond(s, r, c) - missing[c]) / 4;
 
         for (int p = 0; p < 4; p++)
             (*at(s, p / 2, p % 2))[c] += more;
@@ -175,6 +199,17 @@ static int cells_of(const struct glint_psf *psf)
     return far > 0.5 ? 4 : far > 0.25 ? 2 : 1;
 }
 
+/* Adds the light at (X, Y) of the table of what lies in the stop. */
+static void add_smeared(const struct glint_star_tables *t, double x, double y,
+                        double rgb[3])
+{
+    double more[3];
+
+    glint_smear_tabled(t->smear, x, y, more);
+    for (int c = 0; c < 3; c++)
+        rgb[c] += more[c];
+}
+
 static void set_nodes(struct glint_star_tables *t, const struct cells *s,
                       int step)
 {
@@ -189,6 +224,9 @@ static void set_nodes(struct glint_star_tables *t, const struct cells *s,
             pixel_light(s, i * step, k * step, light);
             glint_star_tabled(t, (double)k * step / CELLS,
                               (double)i * step / CELLS, far);
+            if (t->smear)
+                add_smeared(t, (double)k * step / CELLS,
+                            (double)i * step / CELLS, far);
             for (int c = 0; c < 3; c++)
                 t->core[i][k + GLINT_STAR_CORE][c] =
                     code_of(part * (light[c] - far[c]));
@@ -196,17 +234,22 @@ static void set_nodes(struct glint_star_tables *t, const struct cells *s,
 }
 
 enum glint_status glint_star_set_core(struct glint_star_tables *tables,
-                                      const struct glint_psf *psf)
+                                      const struct glint_psf *psf,
+                                      const struct glint_smear *smear,
+                                      double airy_px)
 {
     const int step = cells_of(psf);
-    struct cells s = {.half = GLINT_STAR_CORE * step + CELLS};
+    struct cells s = {.psf = psf,
+                      .smear = smear,
+                      .airy_px = airy_px,
+                      .half = GLINT_STAR_CORE * step + CELLS};
 
     s.side = 2 * s.half;
     s.sum = calloc((size_t)(s.side + 1) * (size_t)(s.side + 1), sizeof *s.sum);
     if (!s.sum)
         return GLINT_E_MEMORY;
     tables->core_per_pixel_q16 = 65536 * CELLS / step;
-    set_cells(psf, &s);
+    set_cells(&s);
     sum_up(&s);
     set_nodes(tables, &s, step);
     free(s.sum);

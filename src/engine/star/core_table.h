@@ -6,11 +6,16 @@
 #define GLINT_ENGINE_STAR_CORE_TABLE_H
 
 #include "engine/star/psf.h"
+#include "engine/star/smear.h"
 #include "star/starburst.h"
 
-/* Sets the core of TABLES, whose other members are set. GLINT_E_MEMORY. */
+/* Sets the core of TABLES, whose other members are set, for what lies in the
+ * stop, SMEAR, unless that is NULL; AIRY_PX as of glint_smear_light().
+ * GLINT_E_MEMORY. */
 enum glint_status glint_star_set_core(struct glint_star_tables *tables,
-                                      const struct glint_psf *psf);
+                                      const struct glint_psf *psf,
+                                      const struct glint_smear *smear,
+                                      double airy_px);
 
 /* Sets RGB to the light of lines and halo at (X, Y) from a light of power 1, as
  * drawn except for the rounding of integers. */

@@ -171,7 +171,7 @@ static void profile_of(const struct glint_psf *p, double v,
                              ? a[c] + (b[c] - a[c]) * (at - i)
                              : p->square[c] / (2 * GLINT_PI * GLINT_PI * x * x);
 
-        rgb[c] = p->n_blades ? size * fmax(s, 0) : 0;
+        rgb[c] = p->n_blades && !p->fans ? size * fmax(s, 0) : 0;
     }
 }
 
@@ -205,7 +205,10 @@ static double *transforms(const struct glint_psf *p, int n_rows)
             const double q = 0.5 * i / GLINT_PSF_STEPS;
 
             table[i * p->n_columns + k] =
-                p->n_blades ? polygon(&sides, q * x, q * y) : circle(q);
+                (p->fans       ? glint_arcs_transform(&p->arcs, q * x, q * y)
+                 : p->n_blades ? polygon(&sides, q * x, q * y)
+                               : circle(q)) *
+                glint_psf_softness(p->soft, q);
         }
     }
     return table;
@@ -247,10 +250,47 @@ static enum glint_status set_near(struct glint_psf *p)
     return table && p->near ? GLINT_OK : GLINT_E_MEMORY;
 }
 
+/* Blades of less curvature throw fans that are as good as lines. */
+static const double least_round = 0.02;
+
+/* Less curvature, and a softer edge than this, are those of straight blades:
+ * their fans are narrower than lines as far as a picture reaches. More
+ * curvature than the last is a circle's, and fans fade into it before. */
+static const double straight_round = 0.01, straight_soft = 0.002;
+static const double circle_round = 0.98;
+
+/* Takes a soft edge as one in the middle of its slope: a smaller stop. */
+static void set_soft(struct glint_psf *p, double soft)
+{
+    const double apothem = p->n_blades ? cos(GLINT_PI / p->n_blades) : 1;
+    const double size = fmax(1 - 0.5 * soft / apothem, 0.1);
+
+    p->airy_px /= size;
+    p->soft = soft / size;
+}
+
+static void set_fans(struct glint_psf *p, double round)
+{
+    p->fans = 1;
+    p->round = round;
+    glint_arcs_init(&p->arcs, p->n_blades, 0,
+                    fmin(fmax(round, least_round), 0.9999));
+    p->area = p->arcs.area;
+    p->perimeter = p->arcs.perimeter;
+}
+
 enum glint_status glint_psf_init(struct glint_psf *psf, int n_blades,
                                  double rotation_deg, double airy_px)
 {
-    const int n = n_blades;
+    return glint_psf_init_iris(psf, n_blades, rotation_deg, airy_px, 0, 0);
+}
+
+enum glint_status glint_psf_init_iris(struct glint_psf *psf, int n_blades,
+                                      double rotation_deg, double airy_px,
+                                      double round, double soft)
+{
+    const int n = round >= circle_round ? 0 : n_blades;
+    const int is_straight = round < straight_round && soft < straight_soft;
 
     *psf = (struct glint_psf){.n_blades = n,
                               .rotation_deg = rotation_deg,
@@ -274,13 +314,20 @@ enum glint_status glint_psf_init(struct glint_psf *psf, int n_blades,
     set_spectrum(psf);
     set_profile(psf);
     set_smooth(psf);
+    if (soft > 0 && !(n && is_straight))
+        set_soft(psf, soft);
+    if (n && !is_straight)
+        set_fans(psf, round);
+    if (psf->fans && glint_fans_init(psf) != GLINT_OK)
+        return GLINT_E_MEMORY;
     return set_near(psf);
 }
 
 void glint_psf_finish(struct glint_psf *psf)
 {
     free(psf->near);
-    psf->near = NULL;
+    free(psf->far);
+    psf->near = psf->far = NULL;
 }
 
 double glint_psf_angle(const struct glint_psf *p, int i)
@@ -336,8 +383,15 @@ void glint_psf_far(const struct glint_psf *p, double x, double y,
 
     rgb[0] = rgb[1] = rgb[2] = 0;
     if (p->n_blades == 0) {
+        const double soft =
+            p->soft > 0 ? glint_psf_softness(p->soft, r / (2 * p->airy_px)) : 1;
+
         for (int c = 0; c < 3; c++)
-            rgb[c] = p->mean[c] * p->airy_px / (pi2 * GLINT_PI * r2 * r);
+            rgb[c] = soft * p->mean[c] * p->airy_px / (pi2 * GLINT_PI * r2 * r);
+        return;
+    }
+    if (p->fans) {
+        glint_fans_light(p, x, y, rgb);
         return;
     }
     add_edges(p, x, y, window, self, rgb, &sum);

@@ -22,6 +22,7 @@
 #ifndef GLINT_ENGINE_STAR_PSF_H
 #define GLINT_ENGINE_STAR_PSF_H
 
+#include "engine/star/arcs.h"
 #include "glint/light.h"
 #include "glint/status.h"
 
@@ -34,6 +35,13 @@ enum {
 struct glint_psf {
     int n_blades; /* 0: circle */
     double rotation_deg;
+    double soft; /* width of a soft edge, stop radii */
+    int fans; /* 1: blades are round or soft, and throw fans in place of lines
+               */
+    double round;           /* curvature of blades with fans */
+    struct glint_arcs arcs; /* of a stop with fans, not turned */
+    double (*far)[3];       /* [n_far][129]: light times r^2 of fans */
+    int n_far;
     double airy_px; /* pixels: 550 nm times the f-number */
     /* Number of lines that edges throw, and of parallel edges for each, 1 or 2.
      */
@@ -61,6 +69,24 @@ struct glint_psf {
 enum glint_status glint_psf_init(struct glint_psf *psf, int n_blades,
                                  double rotation_deg, double airy_px);
 void glint_psf_finish(struct glint_psf *psf);
+
+/* Makes the pattern of a stop with blades of curvature ROUND, 0 .. 1, and an
+ * edge as soft as SOFT, 0 .. 1, as in struct glint_iris. ROUND below 0.01 with
+ * SOFT below 0.002 is straight, ROUND from 0.98 on is a circle. */
+enum glint_status glint_psf_init_iris(struct glint_psf *psf, int n_blades,
+                                      double rotation_deg, double airy_px,
+                                      double round, double soft);
+
+/* Makes the table of fans; gives their light, at orders of diffraction
+ * above 12.
+ */
+enum glint_status glint_fans_init(struct glint_psf *psf);
+void glint_fans_light(const struct glint_psf *psf, double x, double y,
+                      double rgb[3]);
+
+/* Returns by what a soft edge of width SOFT multiplies light at Q cycles per
+ * stop radius: the square of the transform of its slope. */
+double glint_psf_softness(double soft, double q);
 
 /* Returns the angle of line I, y down, 0 to below pi, rising. */
 double glint_psf_angle(const struct glint_psf *psf, int i);

@@ -4,8 +4,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "engine/setup/spectrum.h"
 #include "engine/star/core_table.h"
 #include "engine/star/psf.h"
+#include "engine/star/smear_table.h"
 #include "glint/view.h"
 
 /* Range of 550 nm times the f-number, in pixels, for which tables are made;
@@ -18,6 +20,10 @@ static const double widths = 4;
 
 /* Half of a pixel's diagonal. */
 static const double filter_px = 0.7072;
+
+/* Size of the halos of wide lamps. */
+static const size_t wide_bytes =
+    GLINT_STAR_WIDE * GLINT_STAR_HALO_ROWS * sizeof(glint_star_halo_row);
 
 struct window {
     double end; /* pixels */
@@ -78,11 +84,6 @@ static void filtered(const struct glint_psf *psf, const struct window *window,
         rgb[c] /= total;
 }
 
-static double largest(const double rgb[3])
-{
-    return fmax(rgb[0], fmax(rgb[1], rgb[2]));
-}
-
 static void set_lines(struct glint_star_tables *t, struct glint_star_line *line,
                       const struct glint_psf *psf, const struct window *window)
 {
@@ -92,7 +93,7 @@ static void set_lines(struct glint_star_tables *t, struct glint_star_line *line,
 
     for (int i = 0; i < psf->n_lines; i++) {
         filtered(psf, window, glint_psf_angle(psf, i), 0, rgb);
-        peak = fmax(peak, largest(rgb) * 1.001);
+        peak = fmax(peak, glint_largest_channel(rgb) * 1.001);
     }
     t->step = glint_real_of(peak / 65535);
     for (int i = 0; i < psf->n_lines; i++) {
@@ -116,19 +117,70 @@ static void set_lines(struct glint_star_tables *t, struct glint_star_line *line,
 
 /* -------------------------------------------------------------------- halo */
 
-/* Sets log2 of light times r^2 at ROW and COLUMN of the halo. */
+/* Adds to RGB the fans R pixels from a lamp of radius RADIUS, at ANGLE, V
+ * pixels off a line: their mean over chords of the lamp across the line. A fan
+ * may be thinner than a pixel, and its sides steeper than the table's columns
+ * are fine, so that a point is blurred as well. */
+static void add_fans(const struct glint_psf *psf, double r, double angle,
+                     double v, double radius, double rgb[3])
+{
+    const int n = 8 + (int)(radius / 1.5);
+    const double half = hypot(radius, 0.4 + 0.1 * v);
+    double total = 0;
+
+    for (int i = -n; i <= n; i++)
+        total += sqrt(1 - (double)(i * i) / ((n + 1) * (n + 1)));
+    for (int i = -n; i <= n; i++) {
+        const double part =
+            sqrt(1 - (double)(i * i) / ((n + 1) * (n + 1))) / total;
+        const double at = angle + half * i / ((n + 1) * fmax(r, radius));
+        double here[3];
+
+        glint_psf_far(psf, r * cos(at), r * sin(at), NULL, NULL, here);
+        for (int c = 0; c < 3; c++)
+            rgb[c] += part * here[c];
+    }
+}
+
+/* Sets log2 of light times r^2 at ROW and COLUMN of the halo of a lamp of
+ * radius RADIUS. */
 static void halo_at(const struct glint_psf *psf, const struct window *window,
-                    double reach, int row, int column, double log2_of[3])
+                    double reach, double radius, int row, int column,
+                    double log2_of[3])
 {
     const double r = exp2(2 + 0.25 * row);
     const double v = 0.25 * reach * (exp2(0.25 * column) - 1);
     const double off = asin(fmin(v / r, sin(0.5 * GLINT_PI / psf->n_lines)));
     const double angle = glint_psf_angle(psf, 0) + off;
-    double rgb[3];
+    double rgb[3] = {0, 0, 0};
 
-    glint_psf_far(psf, r * cos(angle), r * sin(angle), window_at, window, rgb);
+    if (psf->fans)
+        add_fans(psf, r, angle, v, radius, rgb);
+    else
+        glint_psf_far(psf, r * cos(angle), r * sin(angle), window_at, window,
+                      rgb);
     for (int c = 0; c < 3; c++)
         log2_of[c] = log2(fmax(rgb[c] * r * r, 0x1p-60));
+}
+
+/* Sets the codes of a row of a halo, and raises MOST to the largest. */
+static void set_halo_row(struct glint_star_tables *t,
+                         const struct glint_psf *psf,
+                         const struct window *window, double radius, int row,
+                         glint_star_halo_row codes, uint16_t *most)
+{
+    double log2_of[3];
+
+    for (int k = 0; k < GLINT_STAR_HALO_COLUMNS; k++) {
+        halo_at(psf, window, t->reach_q8 / 256.0, radius, row, k, log2_of);
+        for (int c = 0; c < 3; c++) {
+            const double steps = 2048 * log2_of[c] - t->halo_log2_q16 / 32.0;
+
+            codes[k][c] = (uint16_t)lrint(fmin(fmax(steps, 0), 65535));
+            if (codes[k][c] > *most)
+                *most = codes[k][c];
+        }
+    }
 }
 
 static void set_halo(struct glint_star_tables *t, const struct glint_psf *psf,
@@ -139,24 +191,25 @@ static void set_halo(struct glint_star_tables *t, const struct glint_psf *psf,
 
     for (int i = 0; i < GLINT_STAR_HALO_ROWS; i++)
         for (int k = 0; k < GLINT_STAR_HALO_COLUMNS; k++) {
-            halo_at(psf, window, reach, i, k, log2_of);
-            top = fmax(top, largest(log2_of));
+            halo_at(psf, window, reach, 0, i, k, log2_of);
+            top = fmax(top, glint_largest_channel(log2_of));
         }
     t->halo_log2_q16 = (int32_t)lrint((top - 31.99) * 65536);
     for (int i = 0; i < GLINT_STAR_HALO_ROWS; i++) {
         t->halo_most[i] = 0;
-        for (int k = 0; k < GLINT_STAR_HALO_COLUMNS; k++) {
-            halo_at(psf, window, reach, i, k, log2_of);
-            for (int c = 0; c < 3; c++) {
-                const double steps =
-                    2048 * log2_of[c] - t->halo_log2_q16 / 32.0;
-
-                t->halo[i][k][c] = (uint16_t)lrint(fmax(steps, 0));
-                if (t->halo[i][k][c] > t->halo_most[i])
-                    t->halo_most[i] = t->halo[i][k][c];
-            }
-        }
+        set_halo_row(t, psf, window, 0, i, t->halo[i], &t->halo_most[i]);
     }
+}
+
+/* Sets the halos of wide lamps, WIDE. */
+static void set_wide(struct glint_star_tables *t, const struct glint_psf *psf,
+                     const struct window *window, glint_star_halo_row *wide)
+{
+    for (int k = 0; k < GLINT_STAR_WIDE; k++)
+        for (int i = 0; i < GLINT_STAR_HALO_ROWS; i++)
+            set_halo_row(t, psf, window, exp2(k - 1), i,
+                         wide[k * GLINT_STAR_HALO_ROWS + i], &t->halo_most[i]);
+    t->wide = (const glint_star_halo_row *)wide;
 }
 
 /* --------------------------------------------------------------------- all */
@@ -176,28 +229,57 @@ static void set_sizes(struct glint_star_tables *t, const struct glint_psf *psf,
     t->inner_q8 = (int32_t)lrint(256 * fmax(2, psf->airy_px));
 }
 
+/* Least share of the clear stop's light that is told from none. */
+static const double least_clear = 1e-6;
+
+/* Sets what SMEAR makes of the clear stop's pattern, and its table. */
+static enum glint_status set_smear(struct glint_star_tables *t,
+                                   const struct glint_psf *psf,
+                                   const struct glint_smear *smear,
+                                   double airy_px,
+                                   struct glint_star_smear *table)
+{
+    const double clear = fmax(smear->clear, least_clear);
+
+    t->step = glint_real_of(glint_real_value(t->step) * clear);
+    t->halo_log2_q16 += (int32_t)lrint(log2(clear) * 65536);
+    table->part = glint_star_smear_part;
+    t->smear = table;
+    return glint_smear_table(table, smear, psf, airy_px);
+}
+
 enum glint_status glint_star_tables_make(struct glint_star_tables **tables,
                                          const struct glint_star_optics *o)
 {
-    const double airy_px = glint_star_airy_px(o);
+    const double airy_px =
+        fmin(fmax(glint_star_airy_px(o), least_airy_px), most_airy_px);
     struct glint_psf psf;
     struct window window;
     struct glint_star_tables *t = NULL;
     struct glint_star_line *line;
-    enum glint_status status =
-        glint_psf_init(&psf, o->n_blades, o->rotation_deg,
-                       fmin(fmax(airy_px, least_airy_px), most_airy_px));
+    enum glint_status status = glint_psf_init_iris(
+        &psf, o->n_blades, o->rotation_deg, airy_px, o->round, o->soft);
+    const size_t smear_bytes = o->smear ? sizeof *t->smear : 0;
 
     if (status == GLINT_OK)
-        t = calloc(1, sizeof *t + (size_t)psf.n_lines * sizeof *line);
+        t = calloc(1, sizeof *t + smear_bytes +
+                          (size_t)psf.n_lines * sizeof *line +
+                          (psf.fans ? wide_bytes : 0));
     if (t) {
-        line = (struct glint_star_line *)(t + 1);
+        line = (void *)((char *)(t + 1) + smear_bytes);
         t->n_lines = psf.n_lines;
         t->line = line;
         set_sizes(t, &psf, &window);
         set_lines(t, line, &psf, &window);
         set_halo(t, &psf, &window);
-        status = glint_star_set_core(t, &psf);
+        if (psf.fans)
+            set_wide(t, &psf, &window,
+                     (glint_star_halo_row *)(line + psf.n_lines));
+        if (o->smear)
+            status = set_smear(t, &psf, o->smear, airy_px,
+                               (struct glint_star_smear *)(t + 1));
+        if (status == GLINT_OK)
+            status = glint_star_set_core(t, &psf, o->smear, airy_px);
     }
     glint_psf_finish(&psf);
     if (!t || status != GLINT_OK) {
@@ -215,5 +297,6 @@ void glint_star_tables_free(struct glint_star_tables *tables)
 
 size_t glint_star_tables_bytes(const struct glint_star_tables *t)
 {
-    return sizeof *t + (size_t)t->n_lines * sizeof *t->line;
+    return sizeof *t + (size_t)t->n_lines * sizeof *t->line +
+           (t->wide ? wide_bytes : 0) + (t->smear ? sizeof *t->smear : 0);
 }

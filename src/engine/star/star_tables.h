@@ -5,12 +5,16 @@
 #ifndef GLINT_ENGINE_STAR_STAR_TABLES_H
 #define GLINT_ENGINE_STAR_STAR_TABLES_H
 
+#include "engine/star/smear.h"
 #include "star/starburst.h"
 
 struct glint_star_optics {
     int n_blades; /* 0 or 3 .. GLINT_MAX_BLADES */
     double rotation_deg, f_number;
-    double pixel_um; /* side of a pixel on the sensor, um */
+    double round, soft; /* as in struct glint_iris */
+    double pixel_um;    /* side of a pixel on the sensor, um */
+    /* What lies in the stop; NULL: nothing. */
+    const struct glint_smear *smear;
 };
 
 /* Returns the pixels that a wavelength of 550 nm times the f-number takes. */

@@ -31,9 +31,11 @@ static int half_sides(const struct glint_stop *stop)
 }
 
 /* Returns 1 - (1 + r^2) / 2 at V in the round stop, clamped far outside. */
-static int64_t disc_q16(const struct glint_vertex *v)
+static int64_t disc_q16(const struct glint_stop *stop,
+                        const struct glint_vertex *v)
 {
-    const int64_t value_q16 = ((INT64_C(1) << 32) - radius2_q32(v)) >> 17;
+    const int64_t value_q16 =
+        (((INT64_C(1) << 32) - radius2_q32(v)) >> 17) - stop->inset_q16;
 
     return value_q16 > -(1 << 30) ? value_q16 : -(1 << 30);
 }
@@ -59,6 +61,17 @@ static inline uint64_t sides_of(const struct glint_stop *stop, int half,
     return half ? sides | opposite << half : sides;
 }
 
+/* Returns a bit for each arc that V lies on or beyond. */
+static uint64_t arcs_of(const struct glint_stop *stop,
+                        const struct glint_vertex *v)
+{
+    uint64_t sides = 0;
+
+    for (int k = stop->n_blades - 1; k >= 0; k--)
+        sides = 2 * sides + (glint_side_q16(stop, k, v) <= 0);
+    return sides;
+}
+
 void glint_cuts_row(const struct glint_stop *stop,
                     const struct glint_vertex *row, int n, uint64_t *sides,
                     uint8_t *barrels)
@@ -67,15 +80,16 @@ void glint_cuts_row(const struct glint_stop *stop,
     const int64_t apothem_q16 = stop->apothem_q16;
     const int64_t least_q46 =
         apothem_q16 * (INT64_C(1) << 30) - (INT64_C(1) << 29);
-    const int64_t within_q32 = (apothem_q16 - 1) * (apothem_q16 - 1);
+    const int64_t within_q32 =
+        apothem_q16 > 0 ? (apothem_q16 - 1) * (apothem_q16 - 1) : 0;
 
     for (int i = 0; i < n; i++) {
         const struct glint_vertex *v = &row[i];
 
-        sides[i] = stop->n_blades == 0 ? disc_q16(v) <= 0
-                   : radius2_q32(v) < within_q32
-                       ? 0
-                       : sides_of(stop, half, v, least_q46);
+        sides[i] = stop->n_blades == 0           ? disc_q16(stop, v) <= 0
+                   : radius2_q32(v) < within_q32 ? 0
+                   : stop->round_q30             ? arcs_of(stop, v)
+                                     : sides_of(stop, half, v, least_q46);
         barrels[i] = (uint8_t)((v->barrel_q16[0] >= 1 << 16) +
                                2 * (v->barrel_q16[1] >= 1 << 16));
     }
@@ -98,7 +112,7 @@ static int64_t cut_q16(const struct glint_stop *stop, int cut,
 {
     if (cut >= BARREL)
         return glint_barrel_q16(cut - BARREL, v);
-    return stop->n_blades ? glint_side_q16(stop, cut, v) : disc_q16(v);
+    return stop->n_blades ? glint_side_q16(stop, cut, v) : disc_q16(stop, v);
 }
 
 struct interval {

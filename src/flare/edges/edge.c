@@ -57,9 +57,9 @@ static inline int tile_of(int x, int last, int log2)
     return (x < 0 ? 0 : x > last ? last : x) >> log2;
 }
 
-/* Visits the tiles that EDGE crosses, one row of tiles after the other. Parts
- * left of the region belong to its first column. Returns how many entries that
- * is. */
+/* Visits the tiles that EDGE crosses, or those of a patch's box, one row of
+ * tiles after the other. Parts left of the region belong to its first column.
+ * Returns how many entries that is. */
 static WHOLLY_INLINE int each_tile(const struct glint_edge *e,
                                    const struct glint_bins *bins,
                                    enum visit visit, int32_t index)
@@ -74,10 +74,13 @@ static WHOLLY_INLINE int each_tile(const struct glint_edge *e,
     int64_t x_q40 = edge_x_at_q40(e, y_q8) - r->x0 * ONE_Q40;
     int n = 0;
 
+    if (e->patch && e->whole)
+        return 0;
     while (y_q8 < end_q8) {
         const int32_t next_q8 = q_smaller(end_q8, floor_q8);
         const int64_t next_q40 = x_q40 + e->slope_q40 * (next_q8 - y_q8);
-        const int x = (int)(x_q40 >> 40), next_x = (int)(next_q40 >> 40);
+        const int x = (int)(x_q40 >> 40);
+        const int next_x = e->patch ? e->right - r->x0 : (int)(next_q40 >> 40);
         const int low = q_smaller(x, next_x), high = q_larger(x, next_x);
 
         if (low <= last)

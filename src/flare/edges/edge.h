@@ -18,9 +18,9 @@
  * Formats: corners _q8, slopes _q40, light _q20 below 2^40. Sums for pictures
  * of linear light: light _q20 times areas _q16, modulo 2^64. For all others
  * light _q16 (_q20 if fine) times areas _q8, modulo 2^64, or modulo 2^32 if a
- * tile's edges together cannot bring a sum beyond that: the same results,
- * faster. The caller's limit on light keeps final sums below 2^63 (by_edges.c);
- * intermediate sums may wrap, and wrap back. */
+ * tile's edges together cannot bring a sum beyond that, which is 128 (8) times
+ * white: the same results, faster. The caller's limit on light keeps final sums
+ * below 2^63 (by_edges.c); intermediate sums may wrap, and wrap back. */
 #ifndef GLINT_FLARE_EDGE_H
 #define GLINT_FLARE_EDGE_H
 
@@ -28,6 +28,7 @@
 
 #include "base/compiler.h"
 #include "base/q.h"
+#include "glint/light.h"
 #include "kernels/kernels.h"
 #include "tile/bins.h"
 #include "flare/edges/primitive.h"
@@ -39,7 +40,9 @@ struct glint_edge {     /* 32 bytes */
     /* Light on the left and right side, packed; negative for a mirrored ghost.
      */
     int32_t left, right;
-    unsigned bundle : 31, whole : 1;
+    /* PATCH: no edge but a place of a patch, patch.h; its first if WHOLE is 0.
+     */
+    unsigned bundle : 30, patch : 1, whole : 1;
 };
 
 /* Packs light, display white: a mantissa of 25 bits above an exponent of five.
@@ -62,6 +65,14 @@ static inline int64_t glint_light_q20(int32_t packed)
 /* Sums of one tile, as changes from pixel to pixel: [3][side rows][stride], R,
  * G, B. One value after the tile's last column is the change for the next tile.
  * All are 0 between tiles. */
+enum { GLINT_PATCH_SCRATCH = 8192 };
+
+/* Adds the part of patch E that lies in a tile to its narrow or wide sums;
+ * LIGHT: of a clear stop, by channel, in the units of the sums. */
+struct glint_edge_sums;
+typedef void glint_patch_fn(const struct glint_edge_sums *sums, int narrow,
+                            const struct glint_edge *e, const int64_t light[3]);
+
 struct glint_edge_sums {
     struct glint_box tile;
     int tile_log2, stride;
@@ -69,10 +80,15 @@ struct glint_edge_sums {
     int fine;   /* 1: light of _q20 for pictures in codes, too */
     int lit; /* light runs in from the left; set by the code that draws rows of
                 tiles */
-    int narrow; /* set by glint_edge_add(): the narrow sums suffice and were
+    /* Of patches, patch.h: what draws them, the shade of the stop, and memory
+     * to work in, of GLINT_PATCH_SCRATCH bytes. */
+    glint_patch_fn *patch;
+    const struct glint_shade *shade;
+    void *scratch;
+    int in_narrow; /* set by glint_edge_add(): the narrow sums suffice and were
                    used */
     uint64_t *wide;
-    uint32_t *narrow_q24;
+    uint32_t *narrow;
     int64_t *carry;    /* [3][side rows]: light that runs in, and then out */
     uint64_t *touched; /* [3]: bit n: row n has changes */
 };

@@ -18,15 +18,19 @@
 /* An integer below 2^31, of the width that the CPU adds fastest. */
 typedef int_fast32_t fast;
 
-/* Sums have 64 bits, or 32 if light _q16 stays below MOST_NARROW. */
+/* Sums have 64 bits, or 32 if light stays below MOST_NARROW, _q16 or _q20. */
 enum mode { WIDE, NARROW };
+
+/* A tile's edges lie apart in memory, so each is fetched so many edges before
+ * it is added. */
+enum { AHEAD = 12 };
 #define MOST_NARROW (INT64_C(1) << 23)
 
 /* One row of one channel of a tile, addressed from pixel 0 of the picture. */
 struct run {
     union {
         uint64_t *wide;
-        uint32_t *narrow_q24;
+        uint32_t *narrow;
     } row;      /* the mode tells which member is in use */
     int less;   /* low bits of areas _q16 that are dropped: 8, or 0 for linear
                    light */
@@ -38,7 +42,7 @@ struct run {
 static inline void change(const struct run *r, enum mode mode, int x, fast area)
 {
     if (mode == NARROW)
-        r->row.narrow_q24[x] += (uint32_t)r->light * (uint32_t)area;
+        r->row.narrow[x] += (uint32_t)r->light * (uint32_t)area;
     else
         r->row.wide[x] += (uint64_t)(r->light * area);
 }
@@ -161,7 +165,7 @@ static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
 static inline void go_down(struct run *r, enum mode mode, ptrdiff_t n)
 {
     if (mode == NARROW)
-        r->row.narrow_q24 += n;
+        r->row.narrow += n;
     else
         r->row.wide += n;
 }
@@ -223,7 +227,7 @@ static inline struct part part_of(const struct glint_edge_sums *s,
 
     s->touched[channel] |= rows_between(row, ((end_q8 + 255) >> 8) - t->y0);
     if (mode == NARROW)
-        p.run.row.narrow_q24 = s->narrow_q24 + at;
+        p.run.row.narrow = s->narrow + at;
     else
         p.run.row.wide = s->wide + at;
     return p;
@@ -363,6 +367,22 @@ static int64_t step_of(const struct glint_edge *e, int32_t colour_q14, int less)
            q_shift(coloured_q20(e->left, colour_q14), less);
 }
 
+/* Adds patch E in the colour RGB. Returns the most light of a channel, with
+ * LESS of the 20 fraction bits dropped. */
+static int64_t add_patch(const struct glint_edge_sums *s, enum mode mode,
+                         const struct glint_edge *e, const int32_t rgb_q14[3],
+                         int less)
+{
+    int64_t light[3], most = 0;
+
+    for (int c = 0; c < 3; c++) {
+        light[c] = q_shift(coloured_q20(e->left, rgb_q14[c]), less);
+        most = light[c] > most ? light[c] : most;
+    }
+    s->patch(s, mode == NARROW, e, light);
+    return most;
+}
+
 /* Adds the edges to the sums of MODE. Returns the sum of the magnitudes of all
  * changes of light: the farthest that a sum can get from where it begins. */
 static WHOLLY_INLINE int64_t add_all(const struct glint_edge_sums *s,
@@ -371,13 +391,23 @@ static WHOLLY_INLINE int64_t add_all(const struct glint_edge_sums *s,
                                      const struct glint_bundle *bundle,
                                      const int32_t *ref, int n_refs)
 {
-    const int less = mode == NARROW || !(s->linear || s->fine) ? 4 : 0;
+    const int less = s->linear || s->fine ? 0 : 4;
     int64_t far[3] = {0, 0, 0}, most;
 
     for (int k = 0; k < n_refs; k++) {
         const struct glint_edge *e = &edge[ref[k]];
         const int32_t *rgb_q14 = bundle[e->bundle].rgb_q14;
 
+        if (k + AHEAD < n_refs)
+            PREFETCH(&edge[ref[k + AHEAD]]);
+        if (e->patch) {
+            most = add_patch(s, mode, e, rgb_q14, less);
+            for (int c = 0; c < 3; c++)
+                far[c] += most;
+            if (mode == NARROW && far[0] >= MOST_NARROW)
+                return far[0];
+            continue;
+        }
         for (int c = 0; c < 3; c++) {
             const int64_t step = rgb_q14[c] ? step_of(e, rgb_q14[c], less) : 0;
 
@@ -413,21 +443,19 @@ void glint_edge_add(struct glint_edge_sums *sums, const struct glint_edge *edge,
                     const struct glint_bundle *bundle, const int32_t *ref,
                     int n_refs)
 {
-    const int64_t most_q24 = MOST_NARROW * 256;
-    int64_t far_q24 = 0;
+    const int64_t most = MOST_NARROW * 256;
+    int64_t far = 0; /* light times areas, as of the sums */
 
-    sums->narrow = 0;
-    if (!sums->linear && !sums->fine)
-        far_q24 = far_carry(sums);
-    if (!sums->linear && !sums->fine && far_q24 < most_q24) {
-        far_q24 +=
-            add_all(sums, NARROW, edge, bundle, ref, n_refs) * INT64_C(256);
-        if (far_q24 + 128 < most_q24) {
-            sums->narrow = 1;
+    sums->in_narrow = 0;
+    if (!sums->linear)
+        far = far_carry(sums);
+    if (!sums->linear && far < most) {
+        far += add_all(sums, NARROW, edge, bundle, ref, n_refs) * INT64_C(256);
+        sums->in_narrow = far + 2048 < most;
+        if (sums->in_narrow)
             return;
-        }
         for (int i = 0; i < (3 << sums->tile_log2) * sums->stride; i++)
-            sums->narrow_q24[i] = 0;
+            sums->narrow[i] = 0;
     }
     add_all(sums, WIDE, edge, bundle, ref, n_refs);
 }

@@ -4,7 +4,8 @@
  * outline of its own. */
 #include "base/compiler.h"
 #include "base/q.h"
-#include "flare/edges/ghost_parts.h"
+#include "flare/edges/ghost_shade.h"
+#include "flare/edges/patch.h"
 
 typedef int32_t point_q8[2];
 
@@ -28,15 +29,14 @@ static void add_outline(struct glint_ghost_edges *g,
         glint_ghost_add_edge(g, last, first, light, 0);
 }
 
-/* Adds the part of a convex primitive that the cuts leave. If it is thin, its
- * light is spread over a strip a sixteenth of a pixel wide. */
-static void add_alone(struct glint_ghost_edges *g,
-                      const struct glint_vertex *const *corner, int n,
-                      int share_log2)
+void glint_ghost_add_alone(struct glint_ghost_edges *g,
+                           const struct glint_vertex *const *corner, int n,
+                           int share_log2)
 {
     struct glint_outline *o = &g->rows->outline;
     const struct glint_vertex *turned[4];
     struct glint_corners c;
+    int32_t light;
     int cut, thin;
 
     glint_corners_set(&c, corner, n);
@@ -66,10 +66,12 @@ static void add_alone(struct glint_ghost_edges *g,
             area2 = glint_outline_widen_q32(o);
             frac = 33;
         }
-        add_outline(g, o,
-                    glint_ghost_light(g, area2, frac, share,
-                                      q_shift(o->energy_q16 * share_q28, 28),
-                                      1));
+        light = glint_ghost_light(g, area2, frac, share,
+                                  q_shift(o->energy_q16 * share_q28, 28), 1);
+        if (g->patch)
+            g->stop->shade->method->patch(g, light);
+        if (!g->patch || g->patch->clear)
+            add_outline(g, o, light);
     }
 }
 
@@ -85,13 +87,13 @@ void glint_ghost_add_triangles(struct glint_ghost_edges *g,
             left[n++] = c->corner[k];
     g->n_dropped += n < 4;
     if (n == 3)
-        add_alone(g, left, 3, -1);
+        glint_ghost_add_alone(g, left, 3, -1);
     for (int k = 0; n == 4 && k < 2; k++) {
         const struct glint_vertex *const t[3] = {c->corner[half[k][0]],
                                                  c->corner[half[k][1]],
                                                  c->corner[half[k][2]]};
 
-        add_alone(g, t, 3, -1);
+        glint_ghost_add_alone(g, t, 3, -1);
     }
 }
 
@@ -102,5 +104,5 @@ void glint_ghost_add_odd(struct glint_ghost_edges *g,
     if (turn == 0 && !glint_corners_tiny(corners, 16))
         glint_ghost_add_triangles(g, c);
     else
-        add_alone(g, c->corner, 4, 0);
+        glint_ghost_add_alone(g, c->corner, 4, 0);
 }

@@ -3,7 +3,7 @@
 
 #include "base/compiler.h"
 #include "base/q.h"
-#include "flare/edges/ghost_parts.h"
+#include "flare/edges/ghost_shade.h"
 
 enum {
     OCTAVES = GLINT_LIGHT_OCTAVES,
@@ -34,7 +34,8 @@ static void make_edge(const struct glint_ghost_edges *g,
                       const int32_t b_q8[2], int32_t light, int32_t other)
 {
     glint_edge_set(edge, a_q8, b_q8, light, other);
-    edge->bundle = g->number & 0x7fffffff;
+    edge->bundle = g->number & 0x3fffffff;
+    edge->patch = 0;
     if (is_weak(g, light, other))
         glint_edge_make_snapped(edge);
 }
@@ -156,15 +157,21 @@ static int64_t in_steps(int64_t x, const uint16_t *steps_of)
     return base + (((int64_t)((k << 19) / (uint32_t)steps) << log2) >> 19);
 }
 
+int32_t glint_ghost_step(struct glint_ghost_edges *g, int64_t irradiance_q22,
+                         int64_t energy_q16, int sign)
+{
+    return glint_light_pack(
+        sign *
+        in_steps(q_shift(irradiance_q22 * energy_q16, 18), g->rows->steps));
+}
+
 int32_t glint_ghost_light(struct glint_ghost_edges *g, int64_t area2, int frac,
                           int share_log2, int64_t energy_q16, int sign)
 {
     const int64_t irradiance_q22 = glint_irradiance_q22(
         g->bundle, share_log2, area2, frac, g->limit_q8, &g->n_held);
 
-    return glint_light_pack(
-        sign *
-        in_steps(q_shift(irradiance_q22 * energy_q16, 18), g->rows->steps));
+    return glint_ghost_step(g, irradiance_q22, energy_q16, sign);
 }
 
 /* ------------------------------------------------------------- in the grid */
@@ -245,6 +252,19 @@ static int is_in_hole(const struct glint_ghost_edges *g, int j)
            (j == middle - 1 || j == middle);
 }
 
+/* Dims the corners of a cell that is drawn by itself. DIMMED is where they are
+ * then, if the stop has a shade. */
+static void dim(const struct glint_ghost_edges *g, struct glint_ghost_cell *c,
+                struct glint_corners *corners, struct glint_vertex dimmed[4])
+{
+    const struct glint_shade *shade = g->stop->shade;
+
+    if (!shade)
+        return;
+    shade->method->corners(shade, c, dimmed);
+    glint_corners_set(corners, c->corner, 4);
+}
+
 /* Returns the light of the cell at (I, J) for the edges that it shares. Cells
  * that are drawn by themselves, or not at all, return 0. Nearly all cells lie
  * wholly outside of the visible part or wholly inside of it. */
@@ -258,6 +278,8 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
                                       some & NODE_BARRELS};
     struct glint_corners corners;
     struct glint_ghost_cell cell;
+    struct glint_vertex dimmed[4];
+    int64_t energy_q16;
     int32_t light;
     int cuts, turn, odd;
 
@@ -265,6 +287,7 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
         return 0;
     if (some & NODE_LOST) {
         set_cell(g, i, j, &cell);
+        dim(g, &cell, &corners, dimmed);
         glint_ghost_add_triangles(g, &cell);
         return 0;
     }
@@ -276,17 +299,22 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
     turn = convexity(&corners);
     cuts = any.sides || any.barrels ? glint_cuts_count(any) : 0;
     odd = turn == 0 || cuts > 2 ||
-          (cuts && g->stop->n_blades == 0 && !g->transfer) ||
+          (cuts && !g->transfer &&
+           (g->stop->n_blades == 0 || g->stop->round_q30)) ||
           glint_corners_thin(&corners);
     if (odd || cuts)
         set_cell(g, i, j, &cell);
     if (odd) {
+        dim(g, &cell, &corners, dimmed);
         glint_ghost_add_odd(g, &cell, &corners, turn);
         return 0;
     }
+    energy_q16 = mean_energy_q16(&corners);
+    if (g->stop->shade &&
+        !g->stop->shade->method->cell(g, &corners, turn, cuts, &energy_q16))
+        return 0;
     light = glint_ghost_light(g, turn * corners.area2_q16,
-                              2 * GLINT_VERTEX_FRAC + 1, 0,
-                              mean_energy_q16(&corners), turn);
+                              2 * GLINT_VERTEX_FRAC + 1, 0, energy_q16, turn);
     if (cuts)
         add_chords(g, &cell, light);
     return light;
@@ -349,13 +377,11 @@ static void add_upright(struct glint_ghost_edges *g, int j,
     }
 }
 
-void glint_ghost_edges_emit(struct glint_ghost_edges *ghost)
+void glint_ghost_emit_once(struct glint_ghost_edges *ghost)
 {
     struct glint_ghost_rows *r = ghost->rows;
     const int n = ghost->bundle->n_cells;
 
-    ghost->n_edges = ghost->n_dropped = ghost->n_held = 0;
-    ghost->more_refs = 0;
     set_steps(ghost);
     set_weak(ghost);
     glint_ghost_set_nodes(ghost, 0);
@@ -373,4 +399,16 @@ void glint_ghost_edges_emit(struct glint_ghost_edges *ghost)
     for (int i = 0; i < n; i++)
         r->light[n & 1][i] = 0;
     add_level(ghost, n, r->light[~n & 1], r->light[n & 1]);
+}
+
+void glint_ghost_edges_emit(struct glint_ghost_edges *ghost)
+{
+    const struct glint_shade *shade = ghost->stop->shade;
+
+    ghost->n_edges = ghost->n_dropped = ghost->n_held = 0;
+    ghost->more_refs = 0;
+    if (shade)
+        shade->method->emit(ghost);
+    else
+        glint_ghost_emit_once(ghost);
 }

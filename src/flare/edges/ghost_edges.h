@@ -55,6 +55,7 @@ struct glint_ghost_rows {
                                               octave of the light */
 };
 
+struct glint_patch;
 struct glint_ghost_edges {
     /* [n_cells + 1][n_cells + 1]; not used if TRANSFER is set: vertices are
      * then computed, row by row */
@@ -64,6 +65,9 @@ struct glint_ghost_edges {
     const uint16_t *sag_q16; /* see struct glint_bundle_plan */
     const struct glint_bundle *bundle;
     uint32_t number; /* number of the bundle */
+    /* As planned, see struct glint_bundle_plan; 0: the bundle was not planned.
+     */
+    struct glint_real flux, irradiance;
     const struct glint_stop *stop;
     int width, height; /* size of the picture */
     int32_t limit_q8;  /* most light that a cell may give a pixel at energy 1,
@@ -73,6 +77,8 @@ struct glint_ghost_edges {
                   coarsely */
     int snap_codes_q8; /* see struct glint_flare_frame */
     struct glint_ghost_rows *rows;
+    /* While a cell of the shade is drawn by itself: what lies in it. */
+    struct glint_patch *patch;
     struct glint_edge *edge; /* [max_edges] */
     int max_edges;
     /* Bins in which more_refs counts the entries of edges without room; NULL:

@@ -32,6 +32,10 @@ ghost_node(const struct glint_ghost_edges *g, int i, int j)
     return &g->row[j & 1][i];
 }
 
+/* Adds the edges of the bundle behind the stop as it is, less what its shade
+ * says of soft edges. */
+void glint_ghost_emit_once(struct glint_ghost_edges *g);
+
 /* Fills row J of the nodes; it stays valid until row J + 2 is filled. */
 void glint_ghost_set_nodes(struct glint_ghost_edges *g, int j);
 
@@ -44,6 +48,17 @@ void glint_ghost_add_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
  * pixels. SIGN is -1 for a mirrored cell, else 1. */
 int32_t glint_ghost_light(struct glint_ghost_edges *g, int64_t area2, int frac,
                           int share_log2, int64_t energy_q16, int sign);
+
+/* Returns the packed light of a cell of IRRADIANCE at energy 1, in steps. */
+int32_t glint_ghost_step(struct glint_ghost_edges *g, int64_t irradiance_q22,
+                         int64_t energy_q16, int sign);
+
+/* Draws the part of a convex primitive of N corners, 2^SHARE_LOG2 of a cell,
+ * that the cuts leave. If it is thin, its light is spread over a strip a
+ * sixteenth of a pixel wide. */
+void glint_ghost_add_alone(struct glint_ghost_edges *g,
+                           const struct glint_vertex *const *corner, int n,
+                           int share_log2);
 
 /* Draws a cell that shares no side with its neighbours. TURN is the sign of the
  * turn at its corners, 0 if it is not convex. */

@@ -18,6 +18,14 @@ static int64_t disc_value(const struct glint_vertex *v)
                        -(1 << 30), 1 << 30);
 }
 
+/* A place 2^14 stop radii off has a value of 2^31, times 2^30. */
+int64_t glint_arc_q16(const struct glint_stop *stop, int64_t straight_q16,
+                      const struct glint_vertex *v)
+{
+    return q_shift(
+        straight_q16 * stop->off_q30 + disc_value(v) * stop->round_q30, 30);
+}
+
 /* ---------------------------------------------------------------- classify */
 
 enum side { OUTSIDE, CUT, INSIDE };
@@ -53,13 +61,14 @@ static enum side barrel_side(const struct glint_corners *c)
 /* Returns on which side of the disc a primitive lies. The disc may bulge into a
  * primitive whose corners all lie outside, so only far ones count as OUTSIDE.
  */
-static enum side disc_side(const struct glint_corners *c)
+static enum side disc_side(const struct glint_corners *c,
+                           const struct glint_stop *stop)
 {
     int64_t value[4];
     enum side side;
 
     for (int i = 0; i < c->n; i++)
-        value[i] = disc_value(c->at[i]);
+        value[i] = disc_value(c->at[i]) - stop->inset_q16;
     side = side_of(value, c->n);
     if (side != OUTSIDE)
         return side;
@@ -74,7 +83,7 @@ static enum side stop_side(const struct glint_corners *c,
     enum side all = INSIDE;
 
     if (stop->n_blades == 0)
-        return disc_side(c);
+        return disc_side(c, stop);
     for (int side = 0; side < stop->n_blades && all != OUTSIDE; side++) {
         int64_t value[4];
 
@@ -177,16 +186,19 @@ static void cut_stop(struct glint_outline *o,
                      const struct glint_vertex *const *at,
                      const struct glint_stop *stop, int lowered)
 {
+    const int64_t lift_q16 = lowered ? 0 : disc_lift_q16(at);
+    const int64_t arc_lift_q16 =
+        stop->round_q30 ? q_shift(lift_q16 * stop->round_q30, 30) : 0;
     int64_t value[3];
 
     if (stop->n_blades == 0) {
         for (int i = 0; i < 3; i++)
-            value[i] = disc_value(at[i]) + (lowered ? 0 : disc_lift_q16(at));
+            value[i] = disc_value(at[i]) + lift_q16 - stop->inset_q16;
         cut_one(o, value);
     }
     for (int side = 0; side < stop->n_blades; side++) {
         for (int i = 0; i < 3; i++)
-            value[i] = glint_side_q16(stop, side, at[i]);
+            value[i] = glint_side_q16(stop, side, at[i]) + arc_lift_q16;
         cut_one(o, value);
     }
 }

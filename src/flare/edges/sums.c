@@ -78,12 +78,12 @@ int glint_edge_light(const struct glint_edge_sums *sums, int channel, int row,
     const ptrdiff_t first = (ptrdiff_t)at * sums->stride;
     const int n = sums->tile.x1 - sums->tile.x0;
     const int padded = (n + GLINT_LANES - 1) & -GLINT_LANES;
-    uint32_t carry_q24 = (uint32_t)sums->carry[at];
+    uint32_t carry = (uint32_t)sums->carry[at];
 
     if (!(sums->touched[channel] >> row & 1))
         return even_light(sums->carry[at], padded, more_bits(sums), light_q16);
     sums->touched[channel] &= ~(UINT64_C(1) << row);
-    if (!sums->narrow) {
+    if (!sums->in_narrow) {
         wide_light(sums->wide + first, &sums->carry[at], padded,
                    more_bits(sums), light_q16);
         if (padded == n) {
@@ -92,11 +92,12 @@ int glint_edge_light(const struct glint_edge_sums *sums, int channel, int row,
         }
         return 1;
     }
-    kernels->run_sum(sums->narrow_q24 + first, &carry_q24, light_q16, padded);
+    kernels->run_sum(sums->narrow + first, &carry, light_q16, padded,
+                     more_bits(sums));
     if (padded == n) {
-        carry_q24 += sums->narrow_q24[first + n];
-        sums->narrow_q24[first + n] = 0;
+        carry += sums->narrow[first + n];
+        sums->narrow[first + n] = 0;
     }
-    sums->carry[at] = (int32_t)carry_q24;
+    sums->carry[at] = (int32_t)carry;
     return 1;
 }

@@ -98,15 +98,14 @@ static void make_singlet(struct glint_prescription *lens)
     "surface flat 2 17 air\n"         \
     "stop 46 17\n"
 
-/* Bakes TEXT. FAST_SINGLET is so fast that a small TOLERANCE makes the bake
- * divide its pupil into parts. */
-static void bake_fast_singlet(struct baked *b, struct glint_prescription *lens,
-                              const char *text, double tolerance,
-                              double max_deg)
+/* Bakes TEXT, or LENS if there is none. */
+static void bake_fast(struct baked *b, struct glint_prescription *lens,
+                      const char *text, double tolerance, double max_deg)
 {
     struct glint_bake_options o = options;
 
-    parse(lens, text);
+    if (text)
+        parse(lens, text);
     o.tolerance = tolerance;
     o.max_deg = max_deg;
     bake(b, lens, &o);
@@ -301,11 +300,12 @@ static int parts_of(const struct glint_transfer *part, int n, double x_mm,
     return found;
 }
 
-/* Each ray that comes through must be in exactly one part, but for rays on the
- * lines where parts meet, as on the axis; and each part must have rays. */
+/* In the stop, rays of a triplet's ghost of surfaces 0 and 3 turn around: its
+ * pupil is divided. Each ray that comes through must be in exactly one part,
+ * but for rays on the lines where parts meet; and each part must have rays. */
 static void test_parts(void **state)
 {
-    enum { MOST = 8, ANGLES = 16, SIDE = 61 };
+    enum { GHOST = 2, MOST = 32, ANGLES = 8, SIDE = 61 };
     static struct glint_transfer part[MOST];
     static struct glint_prescription lens;
     static struct glint_setup fast;
@@ -315,26 +315,28 @@ static void test_parts(void **state)
     struct baked b;
 
     (void)state;
-    bake_fast_singlet(&b, &lens, FAST_SINGLET, 0.1, 4);
+    load_lens(&lens, "../tests/lenses/cooke-triplet");
+    bake_fast(&b, &lens, NULL, 1, 0.5);
     assert_int_equal(glint_setup_init(&fast, &lens, 0, 0, &nm, 1, &error),
                      GLINT_OK);
-    assert_int_equal(b.lens.header->n_ghosts - b.lens.header->n_parts, 1);
+    assert_int_equal(fast.ghost[GHOST].j, 3);
     assert_in_range(b.lens.header->n_parts, 1, MOST - 1);
     for (int a = 0; a < ANGLES; a++) {
-        const double sine = sin(3.99 * a / (ANGLES - 1) * 0.0174532925199433);
+        const double sine = sin(0.499 * a / (ANGLES - 1) * 0.0174532925199433);
         const double direction[3] = {sine, 0, sqrt(1 - sine * sine)};
         struct glint_path path;
         int n = 0;
 
         for (int k = 0; k < (int)b.lens.header->n_ghosts; k++)
-            n += glint_transfer_init(&part[n], &b.lens, k,
+            n += b.lens.ghost[k].i == 0 && b.lens.ghost[k].j == 3 &&
+                 glint_transfer_init(&part[n], &b.lens, k,
                                      (int32_t)lrint(sine * 0x1p30),
                                      (int32_t)lrint(0x1p24 * 1e6 / (nm * nm)));
         shared_deg += n > 1;
-        glint_path_init(&path, &lens, &fast.ghost[0], nm);
+        glint_path_init(&path, &lens, &fast.ghost[GHOST], nm);
         for (int k = 0; k < SIDE * SIDE; k++) {
-            const double x = 16.9 * (2.0 * (k % SIDE) / (SIDE - 1) - 1.001);
-            const double y = 16.9 * (2.0 * (k / SIDE) / (SIDE - 1) - 1.001);
+            const double x = 9.4 * (2.0 * (k % SIDE) / (SIDE - 1) - 1.001);
+            const double y = 9.4 * (2.0 * (k / SIDE) / (SIDE - 1) - 1.001);
             struct glint_ray ray;
             double off = 0;
 
@@ -350,7 +352,7 @@ static void test_parts(void **state)
         }
     }
     assert_true(n_rays > 1000);
-    assert_in_range(shared_deg, 1, ANGLES - 1);
+    assert_true(shared_deg > 0);
     free(b.data);
 }
 
@@ -626,7 +628,7 @@ static void test_axis_is_finer(void **state)
     struct baked b;
 
     (void)state;
-    bake_fast_singlet(&b, &lens, FAST_SINGLET, tolerance, 4);
+    bake_fast(&b, &lens, FAST_SINGLET, tolerance, 4);
     assert_int_equal(b.lens.system[0].sine_lo_q30, 0);
     assert_true(error_of(outputs_of(&b, 0)[GLINT_OUT_SENSOR_X].rms) <
                 1.6 * tolerance * tolerance * aim_px);
@@ -641,12 +643,10 @@ static void test_energy_has_zeros(void **state)
     struct baked b;
 
     (void)state;
-    bake_fast_singlet(&b, &lens, FAST_SINGLET "coating 532 1.2316\n", 0.1, 0.5);
-    assert_true(b.lens.header->n_parts > 0);
+    bake_fast(&b, &lens, FAST_SINGLET "coating 532 1.2316\n", 0.1, 0.5);
     for (uint32_t k = 0; k < b.lens.header->n_systems; k++) {
-        const struct glint_model_output *o = outputs_of(&b, (int)k);
-
-        assert_true(error_of(o[GLINT_OUT_ENERGY].rms) < 1e-3);
+        assert_true(error_of(outputs_of(&b, (int)k)[GLINT_OUT_ENERGY].rms) <
+                    1e-3);
     }
     free(b.data);
 }
@@ -716,12 +716,12 @@ static void test_key(void **state)
     for (int s = 0; s < heliar.n_surfaces; s++)
         for (int k = 0; k < 7; k++) {
             struct glint_surface *f = &lens.surface[s];
-            double *const number[] = {
-                &f->radius_mm, &f->thickness_mm, &f->semi_mm,  &f->nd,
-                &f->vd,        &f->coating_nm,   &f->coating_n};
-
+            double *const form[] = {&f->radius_mm, &f->semi_mm, &f->nd, &f->vd};
+            double *const rest[] = {&f->thickness_mm, &f->coating.nm,
+                                    &f->coating.film->index};
+            double *const x = k < 4 ? form[k] : rest[k - 4];
             lens = heliar;
-            *number[k] = nextafter(*number[k], 1000);
+            *x = nextafter(*x, 1000);
             other_key(&lens, &o);
         }
     lens = heliar;

@@ -98,8 +98,10 @@ static void expect_surface(const struct glint_surface *s, double radius,
     assert_true(s->semi_mm == semi);
     assert_true(s->nd == nd);
     assert_true(s->vd == vd);
-    assert_true(s->coating_nm == coating_nm);
-    assert_true(s->coating_n == (coating_nm > 0 ? 1.38 : 0.0));
+    assert_true(s->coating.nm == coating_nm);
+    assert_int_equal(s->coating.n_films, coating_nm > 0);
+    assert_true(s->coating.film[0].index == (coating_nm > 0 ? 1.38 : 0.0));
+    assert_true(s->coating.film[0].quarters == (coating_nm > 0));
 }
 
 static void expect_tiny(const struct glint_prescription *lens)
@@ -148,8 +150,8 @@ static void expect_coatings(int number, const char *line, const double nm[4],
 
     expect_good(&lens, text, compose(text, number, line, "\n"));
     for (int k = 0; k < 4; k++) {
-        assert_true(lens.surface[k].coating_nm == nm[k]);
-        assert_true(lens.surface[k].coating_n == n[k]);
+        assert_true(lens.surface[k].coating.nm == nm[k]);
+        assert_true(lens.surface[k].coating.film[0].index == n[k]);
     }
 }
 
@@ -333,6 +335,23 @@ static const struct {
      "x.lens:6:35: coating index must be 1.01 .. 4, not 1"},
     {6, "surface 50 6 12 N-BK7 coating none 1.4",
      "x.lens:6:36: '1.4' is more than surface takes"},
+    {6, "surface 50 6 12 N-BK7 coating 550 1.38:0.5 2.1:17",
+     "x.lens:6:48: coating thickness must be 0.01 .. 16, not 17"},
+    {6, "surface 50 6 12 N-BK7 coating 550 1.38:",
+     "x.lens:6:40: coating thickness is missing"},
+    {6, "surface 50 6 12 N-BK7 coating 550 :1",
+     "x.lens:6:35: coating index is missing"},
+    {6, "surface 50 6 12 N-BK7 coating 550 1.1 1.2 1.3 1.4 1.5 1.6 1.7 1.8 2",
+     "x.lens:6:67: more than 8 films"},
+    {6, "surface 50 6 12 N-BK7 coating v-coat 500 1.38",
+     "x.lens:6:42: '1.38' is more than surface takes"},
+    {6, "surface 50 6 12 N-BK7 coating broadband-4 99",
+     "x.lens:6:43: coating wavelength must be 100 .. 5000, not 99"},
+    {6, "surface 50 6 12 N-BK7 coating v2",
+     "x.lens:6:31: no coating is called 'v2'; there are none, v-coat, "
+     "broadband-3, broadband-4 and wavelengths"},
+    {7, "surface -50 3 12 1.7 30 coating v-coat\nsurface -50 2 12 air",
+     "x.lens:7:25: a cemented surface has no coating"},
     {7, "surface -50 3 12 1.7 30 coating 550\nsurface -50 2 12 air",
      "x.lens:7:25: a cemented surface has no coating"},
     {10, "surface -80 40 10 1.5 60",

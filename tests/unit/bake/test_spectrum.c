@@ -75,9 +75,11 @@ static void test_flat_is_white(void **state)
 static double ghost(double first_nm, double second_nm, double index, double at)
 {
     const double pi = 3.14159265358979323846;
+    const struct glint_film_at first = {1.38, pi * first_nm / at};
+    const struct glint_film_at second = {1.38, pi * second_nm / at};
 
-    return glint_reflectance(1, index, 1, 1.38, pi * first_nm / at) *
-           glint_reflectance(1, index, 1, 1.38, pi * second_nm / at);
+    return glint_reflectance(1, index, 1, &first, 1) *
+           glint_reflectance(1, index, 1, &second, 1);
 }
 
 /* Returns the largest error of a channel of a ghost's colour by N wavelengths,

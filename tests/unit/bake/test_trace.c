@@ -173,8 +173,10 @@ static struct glint_prescription simple_lens(int n, const double *radius_mm,
     lens.f_number = 16.0;
     lens.n_surfaces = n;
     for (int k = 0; k < n; k++)
-        lens.surface[k] = (struct glint_surface){
-            radius_mm[k], thickness_mm, 10.0, k % 2 ? 1.0 : 1.5, 0.0, 0.0, 0.0};
+        lens.surface[k] = (struct glint_surface){.radius_mm = radius_mm[k],
+                                                 .thickness_mm = thickness_mm,
+                                                 .semi_mm = 10.0,
+                                                 .nd = k % 2 ? 1.0 : 1.5};
     lens.stop_after = n;
     lens.stop_thickness_mm = 50.0;
     lens.stop_semi_mm = 10.0;

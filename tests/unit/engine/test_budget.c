@@ -168,11 +168,11 @@ static void test_tries_next(void **state)
     bool last;
 
     (void)state;
-    assert_in_range(draw_whole(4.6, 2, 1.25, 20, &last), 1, 20);
+    assert_in_range(draw_whole(4.6, 2, 0.95, 20, &last), 1, 20);
     assert_true(last);
     /* A level that is predicted to miss by half must not be tried. */
-    assert_int_equal(draw_whole(4.6, 2, 1.6, 20, &last), 0);
-    assert_in_range(draw_whole(3.9, GLINT_QUALITY_LEVELS, 0, 100, &last), 1,
+    assert_int_equal(draw_whole(4.6, 2, 1.3, 20, &last), 0);
+    assert_in_range(draw_whole(4.1, GLINT_QUALITY_LEVELS, 0, 100, &last), 1,
                     25);
     assert_false(last);
 }
@@ -189,6 +189,23 @@ static void test_ends(void **state)
     assert_true(run(&frame, 1e4, 10).quality == 1);
     /* The quality falls at once, not only after many late frames. */
     assert_true(run(&frame, 0.1, 2).quality == 0);
+    machine.frame = NULL;
+    glint_frame_finish(&frame);
+}
+
+/* A veil must be left out where there is no time for anything, and come back
+ * where there is. */
+static void test_veil(void **state)
+{
+    struct glint_frame frame;
+
+    (void)state;
+    machine = machines[0];
+    make(&frame);
+    frame.veil.glare = 0.02;
+    machine.frame = &frame;
+    assert_true(run(&frame, 0.1, 4).unveiled);
+    assert_false(run(&frame, 1e4, 10).unveiled);
     machine.frame = NULL;
     glint_frame_finish(&frame);
 }
@@ -239,6 +256,7 @@ static void test_counts(void **state)
     make(&frame);
     glint_image_place(&image, px);
     frame.star.share = 1;
+    frame.veil.glare = 0.02;
     frame.dials.fineness = 64;
     glint_frame_draw(&frame, lamps, 1, 1, &image, &report);
     plan = glint_frame_plan(&frame);
@@ -259,9 +277,9 @@ static void test_counts(void **state)
     glint_frame_draw(&frame, lamps, 1, 1, &image, &report);
     plan = glint_frame_plan(&frame);
     fine = glint_cost_of(&plan, &plan.dials);
-    for (int k = 0; k < GLINT_COST_KINDS; k++) {
-        assert_true(fabs(predicted.count[k] / fine.count[k] - 1) < 0.25);
-    }
+    for (int k = 0; k < GLINT_COST_KINDS; k++)
+        if (k != GLINT_COST_PARTS) /* the stop is clean */
+            assert_true(fabs(predicted.count[k] / fine.count[k] - 1) < 0.25);
     assert_true(glint_cost_minsn(&fine) > glint_cost_minsn(&coarse));
     /* Counts must scale to half as many pixels each way, too. */
     then = plan.dials;
@@ -272,7 +290,8 @@ static void test_counts(void **state)
     plan = glint_frame_plan(&frame);
     coarse = glint_cost_of(&plan, &plan.dials);
     for (int k = 0; k < GLINT_COST_KINDS; k++)
-        assert_true(fabs(predicted.count[k] / coarse.count[k] - 1) < 0.5);
+        if (k != GLINT_COST_PARTS)
+            assert_true(fabs(predicted.count[k] / coarse.count[k] - 1) < 0.5);
     assert_true(coarse.count[GLINT_COST_LIT] <
                 0.6 * fine.count[GLINT_COST_LIT]);
     assert_true(
@@ -287,6 +306,7 @@ int main(void)
         cmocka_unit_test(test_keeps_to_it), cmocka_unit_test(test_tries_again),
         cmocka_unit_test(test_tries_next),  cmocka_unit_test(test_ends),
         cmocka_unit_test(test_new_lights),  cmocka_unit_test(test_counts),
+        cmocka_unit_test(test_veil),
     };
 
     return cmocka_run_group_tests_name("budget", tests, opened_heliar,

@@ -119,6 +119,88 @@ static void test_no_pops(void **state)
     assert_true(worst[1] < worst[0] + 0.5);
 }
 
+/* Sets four groups of four lamps, each within a degree, that move by TIME and
+ * whose powers waver by 3 %. */
+static void set_groups(double time, uint64_t *noise)
+{
+    for (int i = 0; i < LIGHTS; i++)
+        lamps[i] =
+            stage_lamp(4 + 4 * (i / 4) + 0.2 * (i % 4) + time,
+                       90 * (i / 4) + 3 * (i % 4) + 3 * time,
+                       5e3 * exp2(-(i % 4)) * stage_uniform(noise, 0.97, 1.03));
+}
+
+/* Returns the sum of the light of a linear picture that is planned as one in
+ * codes, with nothing left out. */
+static double light_of(double codes)
+{
+    static int32_t light_q20[3 * W * H];
+    struct glint_image image = {.format = GLINT_LINEAR_Q20,
+                                .width = W,
+                                .height = H,
+                                .transfer = GLINT_TONE_SRGB};
+    double sum = 0;
+
+    stage.frame.dials.dim_codes = codes;
+    stage.frame.dials.cull_codes = 1e-3;
+    stage.frame.for_codes = true;
+    memset(light_q20, 0, sizeof light_q20);
+    glint_image_place(&image, light_q20);
+    assert_int_equal(
+        glint_frame_draw(&stage.frame, lamps, LIGHTS, 1, &image, &stage.drawn),
+        GLINT_OK);
+    stage.frame.for_codes = false;
+    for (int i = 0; i < 3 * W * H; i++)
+        sum += light_q20[i];
+    return sum;
+}
+
+/* Of lights near each other, dim ghosts must be drawn as one: with less than
+ * half of the bundles, their light within 6 %, and no larger jumps of a mean of
+ * 8 x 8 pixels by half a code than when each is drawn by itself. The account
+ * must agree. */
+static void test_shared_rays(void **state)
+{
+    struct glint_account account;
+    double worst[2] = {0, 0};
+    int of[GLINT_OUTCOMES] = {0}, bundles[2];
+    uint64_t noise = 1;
+
+    (void)state;
+    for (int frame = 0; frame < 300; frame++) {
+        set_groups(0.01 * frame, &noise);
+        for (int k = 0; k < 2; k++) {
+            uint8_t *now = k ? dim : plain;
+
+            draw(k ? 4 : 0, now);
+            bundles[k] = stage.drawn.stats.bundles;
+            if (frame) {
+                const double jump = stage_block_jump(&stage, last[k], now);
+
+                worst[k] = fmax(worst[k], jump);
+            }
+            memcpy(last[k], now, BYTES);
+        }
+        assert_true(2 * bundles[1] < bundles[0]);
+        assert_true(psnr(plain, dim) > 50);
+        if (frame % 100 == 0)
+            assert_true(fabs(light_of(4) / light_of(0) - 1) < 0.06);
+    }
+    print_message("of groups: %.2f codes, with dim ghosts %.2f\n", worst[0],
+                  worst[1]);
+    assert_true(worst[1] < worst[0] + 0.5);
+    for (int light = 0; light < LIGHTS; light++)
+        for (int ghost = 0; ghost < stage.of_model.n_ghosts; ghost++)
+            for (int wave = 0; wave < 3; wave++) {
+                glint_flare_account(stage.frame.flare, ghost, light, wave,
+                                    &account);
+                of[account.outcome]++;
+            }
+    assert_int_equal(of[GLINT_OUTCOME_DRAWN] + of[GLINT_OUTCOME_EMPTY],
+                     bundles[1]);
+    assert_true(of[GLINT_OUTCOME_SHARED] > bundles[1] / 4);
+}
+
 /* A picture must have the same bits with 1, 3 or 5 workers, and after another
  * frame. */
 static void test_same_bits(void **state)
@@ -145,9 +227,9 @@ static void test_same_bits(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_light_stays),
-                                       cmocka_unit_test(test_no_pops),
-                                       cmocka_unit_test(test_same_bits)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_light_stays), cmocka_unit_test(test_no_pops),
+        cmocka_unit_test(test_shared_rays), cmocka_unit_test(test_same_bits)};
 
     return cmocka_run_group_tests_name("dim", tests, open_stage, close_stage);
 }

@@ -15,6 +15,7 @@
 #include "engine/frame/frame.h"
 #include "options/settings.h"
 #include "options/tool.h"
+#include "support/night.h"
 
 enum { WIDTH = 160, HEIGHT = 120 }; /* 200 pixels of diagonal */
 
@@ -101,15 +102,46 @@ static double radius_of(double power, double seen_px)
     return frame.star.light[0].radius_q8 / 256.0;
 }
 
-/* A lamp that the picture shows no wider than its own star must be a point; one
- * that fills what is seen must be a disc. */
+/* Radius of the widest lamp that a rim of SEEN_PX may hide, as stills have it.
+ */
+static double hidden_of(double seen_px)
+{
+    return floor(256 * seen_px / 6) * 2 / 256;
+}
+
+/* A lamp that the picture shows no wider than its own star must be as wide as
+ * its rim may hide, like that of a still; one that fills what is seen must be a
+ * disc. */
 static void test_extent(void **state)
 {
     (void)state;
     assert_true(radius_of(100, 0) == 0);
-    assert_true(radius_of(1e7, 2) == 0);
+    assert_true(radius_of(1e7, 2) == hidden_of(2));
     assert_true(radius_of(1e9, 6) < 0.6 * sqrt(2) * 6);
     assert_true(radius_of(10, 6) > 0.8 * sqrt(2) * 6);
+}
+
+/* A spot that is wide by the glare of a lamp far over white must throw spikes
+ * as a small lamp does, one that is hardly over white those of a disc, and all
+ * between must have no step. A fading lamp must keep its extent. */
+static void test_glare(void **state)
+{
+    const double white = GLINT_PI * 2 * 50 * 50;
+    double before = 1e9;
+
+    (void)state;
+    assert_true(radius_of(0.9 * white, 50) > 0.6 * sqrt(2) * 50);
+    assert_true(radius_of(6 * white, 50) == hidden_of(50));
+    for (double over = 0.5; over < 6; over += 0.1) {
+        const double radius = radius_of(over * white, 50);
+
+        assert_true(radius <= before);
+        assert_true(over == 0.5 || before - radius < 4);
+        before = radius;
+    }
+    before = radius_of(3 * white, 50);
+    power_of(1.5 * white, 50, 0.5);
+    assert_true(fabs(frame.star.light[0].radius_q8 / 256.0 - before) < 0.01);
 }
 
 /* Of too many lamps the brightest must be drawn, the brightest first, whatever
@@ -136,13 +168,20 @@ static void test_hold(void **state)
 {
     const struct glint_star *star;
     const struct glint_star_tables *tables;
+    size_t bytes;
 
     (void)state;
     assert_int_equal(glint_frame_star_hold(&frame, 5000), GLINT_OK);
     star = frame.star.star;
     tables = frame.star.tables;
+    bytes = glint_frame_star_bytes(&frame);
     power_of(1000, 0, 1);
     assert_ptr_equal(star, frame.star.star);
+    assert_int_equal(bytes, glint_frame_star_bytes(&frame));
+    /* Tables and lamps, the latter twice: as they are given and as they are
+     * drawn. */
+    assert_true(bytes > 40000 + GLINT_STAR_MAX_LIGHTS * 160);
+    assert_true(bytes < (1 << 20) + GLINT_STAR_MAX_LIGHTS * 400);
     assert_ptr_equal(tables, frame.star.tables);
 }
 
@@ -169,12 +208,75 @@ static void test_budget(void **state)
     frame.budget = none;
 }
 
+/* Noise of the camera must not show as flicker of stars: of lamps of three
+ * sizes, in noise of 2 and 4 codes, the star may change by 2 % from frame to
+ * frame once the lamp is there, and by 7 % in four seconds. In noise of 8
+ * codes, which hides the rim of the smallest, that is 6 % and 25 %: a star's
+ * power goes with the cube of the extent. */
+static void test_noise(void **state)
+{
+    enum { FRAMES = 100, SETTLED = 25 };
+    static const double radius[] = {2, 3, 6};
+
+    (void)state;
+    for (int k = 0; k < 9; k++) {
+        const struct night_lamp lamp = {80.3, 60.6, radius[k % 3], 6};
+        struct night night;
+        double last = 0, least = HUGE_VAL, most = 0, step = 0;
+
+        night_init(&night, WIDTH, HEIGHT);
+        night.sigma = 2 << k / 3;
+        assert_true(night_open(&night));
+        for (int i = 0; i < FRAMES; i++) {
+            const struct glint_lamp_track *t = &night.track[0];
+            double power;
+
+            night_step(&night, &lamp, 1, 40000);
+            if (i < SETTLED)
+                continue;
+            assert_int_equal(night.n_tracks, 1);
+            power = power_of((double)t->power_q16 / 65536, t->size_q8 / 256.0,
+                             t->level_q15 / 32768.0);
+            step = last > 0 ? fmax(step, fabs(log(power / last))) : step;
+            least = fmin(least, power);
+            most = fmax(most, power);
+            last = power;
+        }
+        print_message("%g px in noise of %g codes: steps of %.2f %%, %.2f %% "
+                      "in all\n",
+                      radius[k % 3], night.sigma, 100 * step,
+                      100 * (most / least - 1));
+        assert_true(k < 6 ? step < 0.02 && most < 1.07 * least
+                          : step < 0.06 && most < 1.25 * least);
+        night_close(&night);
+    }
+}
+
+/* The more is left out of stars, the fewer pixels they must take. */
+static void test_cull(void **state)
+{
+    const double cull = frame.dials.star_cull;
+    double last = HUGE_VAL;
+
+    (void)state;
+    for (frame.dials.star_cull = 0.5; frame.dials.star_cull < 300;
+         frame.dials.star_cull *= 8) {
+        power_of(1e4, 0, 1);
+        print_message("%g times: %.0f pixels\n", frame.dials.star_cull,
+                      frame.star.pixels);
+        assert_true(frame.star.pixels > 0 && frame.star.pixels < 0.9 * last);
+        last = frame.star.pixels;
+    }
+    frame.dials.star_cull = cull;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_power), cmocka_unit_test(test_extent),
-        cmocka_unit_test(test_most), cmocka_unit_test(test_budget),
-        cmocka_unit_test(test_hold)};
+        cmocka_unit_test(test_power),  cmocka_unit_test(test_extent),
+        cmocka_unit_test(test_glare),  cmocka_unit_test(test_most),
+        cmocka_unit_test(test_cull),   cmocka_unit_test(test_noise),
+        cmocka_unit_test(test_budget), cmocka_unit_test(test_hold)};
 
     return cmocka_run_group_tests(tests, open_frame, close_frame);
 }

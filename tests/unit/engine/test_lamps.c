@@ -214,14 +214,14 @@ static void test_lists(void **state)
 static void test_refused_lists(void **state)
 {
     static const char *const text_and_error[][2] = {
-        {"0,1,2,nan\n", "list: 1: expected 4, 7 or 8 numbers"},
-        {"*,1,2,3\n0,1,2,-3\n", "list: 2: power, also times r, g or b"},
-        {"0,1,2,1e20,1,2e10,1\n", "list: 1: power, also times r, g or b"},
-        {"0,1,2,0,1,1e31,1\n", "list: 1: power, also times r, g or b"},
-        {"0,1,2,3,1,-1,1\n", "list: 1: r, g and b must not be negative"},
-        {"0,1,2,3,1,1,1,-1\n", "list: 1: size must be 0 to a million pixels"},
-        {"0,1,2,3,1,1,1,1e308\n", "list: 1: size must be 0 to a million"},
-        {"{\"x\":1,\"y\":2}\n", "list: 1: x, y and power are needed"}};
+        {"0,1,2,nan\n", "list:1: expected 4, 7 or 8 numbers"},
+        {"*,1,2,3\n0,1,2,-3\n", "list:2: power, also times r, g or b"},
+        {"0,1,2,1e20,1,2e10,1\n", "list:1: power, also times r, g or b"},
+        {"0,1,2,0,1,1e31,1\n", "list:1: power, also times r, g or b"},
+        {"0,1,2,3,1,-1,1\n", "list:1: r, g and b must not be negative"},
+        {"0,1,2,3,1,1,1,-1\n", "list:1: size must be 0 to a million pixels"},
+        {"0,1,2,3,1,1,1,1e308\n", "list:1: size must be 0 to a million"},
+        {"{\"x\":1,\"y\":2}\n", "list:1: x, y and power are needed"}};
     struct lamp_list list;
     struct glint_error error;
 

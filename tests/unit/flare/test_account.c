@@ -16,6 +16,7 @@
 #include "flare/by_edges.h"
 #include "glint/flare.h"
 #include "support/model_builder.h"
+#include "support/models/frame_parts.h"
 
 enum {
     WIDTH = 160,
@@ -38,20 +39,13 @@ struct fixture {
     struct glint_flare *flare;
 };
 
-static const int32_t square[4][2] = {
-    {1 << 30, 0}, {0, 1 << 30}, {-(1 << 30), 0}, {0, -(1 << 30)}};
-
 /* Opens a model with WAVES wavelengths and N_LIGHTS beams at a sine of 1/8, in
  * different directions. */
 static void open_fixture(struct fixture *f, int n_lights)
 {
     *f = (struct fixture){.m = model_auto(), .n_lights = n_lights};
     f->lens = model_open(&f->m);
-    for (int i = 0; i < WAVES; i++)
-        f->wave[i] =
-            (struct glint_wave){i ? MODEL_WAVE_HI_Q24 : MODEL_WAVE_LO_Q24,
-                                {i ? 0 : 16384, i ? 16384 : 0, 0},
-                                real_of(1, 0)};
+    frame_waves(f->wave);
     for (int i = 0; i < MAX_LIGHTS; i++)
         f->light[i] = (struct glint_light){1 << 27,
                                            1065344904,
@@ -60,21 +54,11 @@ static void open_fixture(struct fixture *f, int n_lights)
                                            real_of(1000 + i, 0),
                                            {16384, 16384, 16384},
                                            0};
-    f->rays = (struct glint_flare_frame){.lens = &f->lens,
-                                         .wave = f->wave,
-                                         .n_waves = WAVES,
-                                         .pixels_per_mm = real_of(64, 0),
-                                         .fineness = 16,
-                                         .only_ghost = -1};
-    f->cfg = (struct glint_flare_config){.width = WIDTH,
-                                         .height = HEIGHT,
-                                         .tile_log2 = 4,
-                                         .max_bundles = 64,
-                                         .max_primitives = 60000,
-                                         .max_refs = 120000};
-    f->cfg.stop.n_blades = 4;
-    f->cfg.stop.apothem_q16 = 26214; /* 0.4 cuts the ghost */
-    memcpy(f->cfg.stop.normal_q30, square, sizeof square);
+    f->rays = frame_rays(&f->lens, f->wave, 16);
+    f->cfg = frame_config(WIDTH, HEIGHT, 4);
+    f->cfg.max_bundles = 64;
+    f->cfg.max_primitives = 60000;
+    f->cfg.max_refs = 120000;
 }
 
 static void bin(struct fixture *f)

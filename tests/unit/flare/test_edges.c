@@ -20,12 +20,12 @@ enum { LOG2 = 3, SIDE = 1 << LOG2, STRIDE = GLINT_EDGE_STRIDE(LOG2) };
 static struct glint_edge_sums sums_of(int linear)
 {
     static uint64_t wide[3 * SIDE * STRIDE];
-    static uint32_t narrow_q24[3 * SIDE * STRIDE];
+    static uint32_t narrow[3 * SIDE * STRIDE];
     static int64_t carry[3 * SIDE];
     static uint64_t touched[3];
 
     memset(wide, 0, sizeof wide);
-    memset(narrow_q24, 0, sizeof narrow_q24);
+    memset(narrow, 0, sizeof narrow);
     memset(carry, 0, sizeof carry);
     memset(touched, 0, sizeof touched);
     return (struct glint_edge_sums){.tile = {0, 0, SIDE, SIDE},
@@ -33,7 +33,7 @@ static struct glint_edge_sums sums_of(int linear)
                                     .stride = STRIDE,
                                     .linear = linear,
                                     .wide = wide,
-                                    .narrow_q24 = narrow_q24,
+                                    .narrow = narrow,
                                     .carry = carry,
                                     .touched = touched};
 }
@@ -160,6 +160,52 @@ static void test_parts_of_tiles(void **state)
 }
 
 /* Packed light must be exact to 25 bits, up to 2^40. */
+/* Draws eight edges that each light what is to their right by LIGHT, and if
+ * BRIGHT is 1 two more that take each other's light away again and together
+ * need wide sums. */
+static void draw_many(int fine, int64_t light_q20, int bright,
+                      uint16_t light_q16[SIDE][STRIDE])
+{
+    static const struct glint_bundle red = {.rgb_q14 = {1 << 14, 0, 0}};
+    const int64_t brightest_q20 = INT64_C(1000) << 20;
+    struct glint_edge_sums s = sums_of(0);
+    struct glint_edge edge[10];
+    int32_t ref[10];
+
+    for (int i = 0; i < 10; i++) {
+        const int32_t a[2] = {40 * i, 100}, b[2] = {600 - 60 * i, 1900};
+        const int32_t from[2] = {30, 0}, to[2] = {999, 2000};
+        const int64_t pair_q20 = i == 8 ? brightest_q20 : -brightest_q20;
+
+        ref[i] = i;
+        glint_edge_set(&edge[i], i < 8 ? a : from, i < 8 ? b : to, 0,
+                       glint_light_pack(i < 8 ? light_q20 : pair_q20));
+        edge[i].bundle = 0;
+    }
+    s.fine = fine;
+    glint_edge_add(&s, edge, &red, ref, bright ? 10 : 8);
+    assert_true(!bright || !s.in_narrow);
+    for (int y = 0; y < SIDE; y++)
+        glint_edge_light(&s, 0, y, glint_kernels_of(0), light_q16[y]);
+}
+
+/* Light must not depend on how wide the sums are, up to and beyond what narrow
+ * ones hold. */
+static void test_wide_or_narrow(void **state)
+{
+    (void)state;
+    for (int fine = 0; fine < 2; fine++)
+        for (int64_t light_q20 = 1; light_q20 < 1 << 26;
+             light_q20 += 1 + light_q20 / 16) {
+            uint16_t some[SIDE][STRIDE], all[SIDE][STRIDE];
+
+            draw_many(fine, light_q20, 0, some);
+            draw_many(fine, light_q20, 1, all);
+            for (int y = 0; y < SIDE; y++)
+                assert_memory_equal(some[y], all[y], SIDE * sizeof **some);
+        }
+}
+
 static void test_packing(void **state)
 {
     (void)state;
@@ -182,6 +228,7 @@ int main(void)
         cmocka_unit_test(test_upright),
         cmocka_unit_test(test_slanted),
         cmocka_unit_test(test_parts_of_tiles),
+        cmocka_unit_test(test_wide_or_narrow),
         cmocka_unit_test(test_packing),
     };
 

@@ -682,6 +682,59 @@ static void test_what_is_no_cut(void **state)
 
 /* -------------------------------------------------------------------- many */
 
+/* Returns what the star of a clipped lamp goes by (engine/frame/frame_star.c):
+ * at most 32 times its power, or the cube of the width of its white spot. */
+static double star_of(const struct glint_lamp_track *t)
+{
+    const double photo_airy = 0.55e-3 * 22 / 43.27 * hypot(160, 120);
+
+    return fmin(32 * night_power(t),
+                fmax(night_power(t),
+                     0.5 * pow(4.443 * t->size_q8 / 256, 3) / photo_airy));
+}
+
+/* The power of a clipped lamp in noise of 8 codes, which is a guess from what
+ * is left of its rim, must neither jump nor wander; where it halves for good
+ * the tracks must have it within a second. */
+static void test_power_in_noise(void **state)
+{
+    static const struct night_lamp lamps[] = {
+        {80, 60, 4, 1.5}, {80, 60, 1.5, 6}, {80, 60, 2, 6}};
+
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        struct night_lamp lamp = lamps[k];
+        double last = 0, least = HUGE_VAL, most = 0, step = 0;
+        double star = 0, star_step = 0;
+
+        open_night(160, 120, 8);
+        for (int i = 0; i < 200; i++) {
+            night_step(&night, &lamp, 1, 40000);
+            if (i < 25)
+                continue;
+            assert_int_equal(night.n_tracks, 1);
+            step = fmax(
+                step, last > 0 ? fabs(night_power(night.track) / last - 1) : 0);
+            last = night_power(night.track);
+            least = fmin(least, last);
+            most = fmax(most, last);
+            star_step = fmax(star_step,
+                             star ? fabs(star_of(night.track) / star - 1) : 0);
+            star = star_of(night.track);
+        }
+        print_message("%g px: steps of %.1f %%, %.0f %% in all, %.1f %% of "
+                      "its star\n",
+                      lamp.radius, 100 * step, 100 * (most / least - 1),
+                      100 * star_step);
+        assert_true(step < 0.1 && most < 1.35 * least && star_step < 0.1);
+        lamp.light /= 3;
+        for (int i = 0; i < 25; i++)
+            night_step(&night, &lamp, 1, 40000);
+        assert_true(night_power(night.track) < 0.6 * last);
+        night_close(&night);
+    }
+}
+
 /* Of ten lamps four are shown: these must stay the same four while noise makes
  * others take the fourth place of the finder in turns. A lamp that gets much
  * brighter must fade in while another one fades out. */
@@ -767,6 +820,7 @@ int main(void)
         cmocka_unit_test(test_cut_restarts_in_one_frame),
         cmocka_unit_test(test_cut_to_the_dark),
         cmocka_unit_test(test_what_is_no_cut),
+        cmocka_unit_test(test_power_in_noise),
         cmocka_unit_test(test_cap_does_not_flicker),
         cmocka_unit_test(test_more_lights_than_tracks),
     };

@@ -397,6 +397,7 @@ static void check_sum(const struct glint_kernels *k, const char *name)
     for (int turn = 0; turn < ROUNDS; turn++) {
         const int n = GLINT_LANES * (1 + (int)(draw() % (N / GLINT_LANES)));
         const int shift = (int)(draw() % 32);
+        const int more = 2 + (int)(draw() % 14);
 
         carry[0] = carry[1] =
             draw() % 9 ? draw() >> (draw() % 32) : INT32_MAX - draw() % 300;
@@ -406,14 +407,14 @@ static void check_sum(const struct glint_kernels *k, const char *name)
             want[i] = got[i] = quiet ? 0 : draw() >> shift;
             light[0][i] = light[1][i] = 7;
         }
-        plain->run_sum(want, &carry[0], light[0], n);
-        k->run_sum(got, &carry[1], light[1], n);
+        plain->run_sum(want, &carry[0], light[0], n, more);
+        k->run_sum(got, &carry[1], light[1], n, more);
         EXPECT(carry[0] == carry[1]);
         EXPECT_SAME(got, want, 4 * N);
         EXPECT_SAME(light[0], light[1], 2 * N);
     }
-    BENCH("run_sum", name, plain->run_sum(want, &carry[0], light[0], N),
-          k->run_sum(got, &carry[1], light[1], N));
+    BENCH("run_sum", name, plain->run_sum(want, &carry[0], light[0], N, 8),
+          k->run_sum(got, &carry[1], light[1], N, 8));
 }
 
 /* Checks polynomials whose coefficients have magnitudes that sum to less than

@@ -222,6 +222,45 @@ static void test_alpha(void **state)
     assert_in_range(mem[4], 201, 203);
 }
 
+static void expect_near(float is, double wanted)
+{
+    assert_true(fabs((double)is - wanted) < 1e-6);
+}
+
+/* What a thing covers becomes as opaque as it covers, straight or
+ * premultiplied: half of a thing of light 0.5 over a pixel of alpha 0.25 and
+ * light 0.2. */
+static void test_cover(void **state)
+{
+    const double behind = 0.25 * 0.2, light = 0.5 * behind + 0.5 * 0.5;
+    const double rgb[3] = {light, light, light}, alpha = 1 - 0.75 * 0.5;
+
+    (void)state;
+    for (int premultiplied = 0; premultiplied < 2; premultiplied++) {
+        float mem[8] = {0, 0, 0, 0.25F, 9, 9, 9, 0.5F}, seen[3];
+        struct glint_samples s =
+            samples_of(2, 1, GLINT_SAMPLE_FLOAT, true, mem);
+
+        s.is_premultiplied = premultiplied;
+        mem[0] = mem[1] = mem[2] = premultiplied ? 0.05F : 0.2F;
+        glint_samples_light(&s, 0, 0, seen);
+        expect_near(seen[0], behind);
+        glint_samples_set(&s, 0, 0, rgb, 0.5);
+        expect_near(mem[3], alpha);
+        expect_near(mem[0], premultiplied ? light : light / alpha);
+        glint_samples_light(&s, 0, 0, seen);
+        expect_near(seen[0], light);
+        expect_near(mem[7], 0.5);
+        /* light without cover leaves alpha, and what nothing shows */
+        mem[3] = 0;
+        glint_samples_set(&s, 0, 0, rgb, 0);
+        expect_near(mem[3], 0);
+        expect_near(mem[0], light);
+        glint_samples_set(&s, 0, 0, rgb, 1);
+        expect_near(mem[3], 1);
+    }
+}
+
 /* A picture stored as 2 x 3 pixels must stand upright by each orientation of
  * EXIF. Each string has the letters of the upright pixels. */
 static void test_orientations(void **state)
@@ -305,6 +344,7 @@ int main(void)
         cmocka_unit_test(test_light_is_added),
         cmocka_unit_test(test_floats),
         cmocka_unit_test(test_alpha),
+        cmocka_unit_test(test_cover),
         cmocka_unit_test(test_orientations),
         cmocka_unit_test(test_windows),
         cmocka_unit_test(test_convert),

@@ -383,8 +383,7 @@ static void open_many(int n, int split)
             .semi_mm = 7,
             .nd = k % 2 ? 1 : 1.5168,
             .vd = k % 2 ? 0 : 64.17,
-            .coating_nm = 550,
-            .coating_n = 1.38};
+            .coating = {550, 1, {{1.38, 1}}}};
     l->stop_thickness_mm = 0.5;
     l->stop_semi_mm = 6;
     l->f_number = 12;

@@ -179,7 +179,7 @@ static void test_files(void **state)
                 print_message("taken: %s", text);
                 lamp_list_free(&list);
                 wrong++;
-            } else if (!strstr(error.text, ": 2: ")) {
+            } else if (!strstr(error.text, ":2: ")) {
                 print_message("no line: %s\n", error.text);
                 wrong++;
             }

@@ -169,12 +169,12 @@ static void test_forgets(void **state)
 static void test_steps(void **state)
 {
     static const struct glint_dials ask[] = {
-        {64, 69, 1024, 256, 128, 0, 0.125, 7, 0},
-        {8, 1, 0, 0, 1, 0, 0, 1, 0},
-        {4, 2, 0, 0, 2, 0, 40, 1, 0},
-        {1024, 4096, 0, 64, 9, 0, 1, 61, 0},
-        {64, 0, 1024, 0, 128, 0, 0.5, 7, 0},
-        {17, 3, 1, 256, 64, 0, 0.2, 2, 0}};
+        {64, 69, 1024, 256, 128, 0, 0.125, 7, 0, 1, 0, 10},
+        {8, 1, 0, 0, 1, 0, 0, 1, 0, 1, 0.5, 10},
+        {4, 2, 0, 0, 2, 0, 40, 1, 0, 1, 2, 10},
+        {1024, 4096, 0, 64, 9, 0, 1, 61, 0, 1, 0, 10},
+        {64, 0, 1024, 0, 128, 0, 0.5, 7, 0, 1, 0, 10},
+        {17, 3, 1, 256, 64, 0, 0.2, 2, 0, 1, 0.1, 10}};
 
     (void)state;
     for (size_t i = 0; i < sizeof ask / sizeof *ask; i++) {
@@ -194,6 +194,7 @@ static void test_steps(void **state)
             assert_in_range(d.snap_codes_q8, last.snap_codes_q8, 1 << 15);
             assert_true(d.cull_codes >= last.cull_codes);
             assert_true(d.area_points <= last.area_points);
+            assert_true(d.still_px >= last.still_px);
             assert_true(d.irradiance_steps <= last.irradiance_steps);
             assert_int_equal(d.irradiance_steps == 0,
                              ask[i].irradiance_steps == 0);

@@ -133,7 +133,8 @@ static const struct live_frame_times frames[] = {
      .lights = 2,
      .ghosts = 26,
      .bytes = 3000,
-     .quality = 0.25},
+     .quality = 0.25,
+     .reused = true},
     {.shown = false, .n_corrupt = 4, .stage_us = {99, 99, 99, 99, 99, 99}},
 };
 
@@ -154,7 +155,8 @@ static void test_json(void **state)
         "\"corrupt\":4,\"latency_ms_p50\":12.35,\"latency_ms_p99\":20.05,"
         "\"ms\":{\"convert\":0.150,\"find\":1.300,\"plan\":0.400,"
         "\"bin\":4.001,\"draw\":5.002,\"show\":0.300},\"lights\":3,"
-        "\"ghosts\":39,\"bytes\":3000,\"quality\":0.375}");
+        "\"ghosts\":39,\"bytes\":3000,\"quality\":0.375,"
+        "\"reused\":1}");
 }
 
 /* After a second its figures must begin anew, and those of the total go on. */
@@ -173,14 +175,16 @@ static void test_seconds(void **state)
         "\"corrupt\":0,\"latency_ms_p50\":20.05,\"latency_ms_p99\":20.05,"
         "\"ms\":{\"convert\":0.200,\"find\":1.400,\"plan\":0.500,"
         "\"bin\":4.002,\"draw\":5.003,\"show\":0.000},\"lights\":2,"
-        "\"ghosts\":26,\"bytes\":3000,\"quality\":0.250}");
+        "\"ghosts\":26,\"bytes\":3000,\"quality\":0.250,"
+        "\"reused\":1}");
     assert_string_equal(
         live_stats_json(&stats, 9000000, true, text),
         "{\"t\":4.000,\"fps\":0.75,\"frames\":3,\"drops\":2,\"late\":2,"
         "\"corrupt\":4,\"latency_ms_p50\":20.05,\"latency_ms_p99\":20.05,"
         "\"ms\":{\"convert\":0.167,\"find\":1.333,\"plan\":0.433,"
         "\"bin\":4.001,\"draw\":5.002,\"show\":0.200},\"lights\":3,"
-        "\"ghosts\":39,\"bytes\":3000,\"quality\":0.333,\"total\":true}");
+        "\"ghosts\":39,\"bytes\":3000,\"quality\":0.333,"
+        "\"reused\":2,\"total\":true}");
 }
 
 static void test_no_frames(void **state)
@@ -194,7 +198,7 @@ static void test_no_frames(void **state)
         "\"corrupt\":4,\"latency_ms_p50\":null,\"latency_ms_p99\":null,"
         "\"ms\":{\"convert\":null,\"find\":null,\"plan\":null,\"bin\":null,"
         "\"draw\":null,\"show\":null},\"lights\":0,\"ghosts\":0,\"bytes\":0,"
-        "\"quality\":null,\"total\":true}");
+        "\"quality\":null,\"reused\":0,\"total\":true}");
     assert_string_equal(live_stats_line(&stats, 1000007, true, text),
                         "\r0.0 fps  0 dropped 0 late 4 bad  0 lights 0 ghosts"
                         "\033[K");

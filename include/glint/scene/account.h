@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint/scene/account.h - what became of each object of a frame, and what
+ * there was to do for it.
+ *
+ *     glint_scene_begin(scene, &stats);
+ *     glint_scene_account(scene, objects, &all, seen);
+ *
+ * Finds again what the samples see, and the surfaces of that, which takes
+ * about as long as half of a frame; nothing is drawn. A program that does not
+ * name it does not link it. */
+#ifndef GLINT_SCENE_ACCOUNT_H
+#define GLINT_SCENE_ACCOUNT_H
+
+#include "glint/scene/scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum glint_scene_fate {
+    GLINT_SCENE_DRAWN,
+    GLINT_SCENE_OFF,     /* is not shown */
+    GLINT_SCENE_BEHIND,  /* of the camera */
+    GLINT_SCENE_OUTSIDE, /* of the picture; of a catcher, no shadow is on it */
+    GLINT_SCENE_COVERED, /* by other objects */
+    GLINT_SCENE_SMALL,   /* there is no pixel whose middle meets it */
+    GLINT_SCENE_FATES
+};
+
+/* Items of a frame whose number decides its cost. */
+enum glint_scene_item {
+    GLINT_SCENE_TRIANGLES, /* entries in the lists of tiles */
+    GLINT_SCENE_LOOKED,    /* pixels of the boxes of balls and planes */
+    GLINT_SCENE_SAMPLED,   /* of pixels, that see it */
+    GLINT_SCENE_COVERING,  /* pixels that see it */
+    GLINT_SCENE_SHADED,    /* times that a place is shaded */
+    GLINT_SCENE_LIT,       /* of these, by lights in front of them */
+    GLINT_SCENE_SHADOWS,   /* points asked of suns' lists of shadows */
+    GLINT_SCENE_RAYS,      /* rays through the scene, to other lights and on */
+    GLINT_SCENE_WALKED,    /* grids of meshes that these rays walk through */
+    GLINT_SCENE_TEXELS,    /* texels read */
+    GLINT_SCENE_BOUNCED,   /* of places shaded, those that go on */
+    GLINT_SCENE_ITEMS
+};
+
+struct glint_scene_part {
+    enum glint_scene_fate fate;
+    int by; /* COVERED: the object that covers most of it; else -1 */
+    int64_t count[GLINT_SCENE_ITEMS];
+};
+
+/* Sets OBJECTS, [n_objects], to what becomes of each of the frame that was
+ * begun last, ALL to their sums (by: -1; covering: pixels that see anything),
+ * and SEEN, [height][width] or NULL, to the object that the first sample of
+ * each pixel sees, or -1. Of mirrored and bent rays the first is followed,
+ * straight on if it is bent. */
+void glint_scene_account(struct glint_scene *scene,
+                         struct glint_scene_part *objects,
+                         struct glint_scene_part *all, int16_t *seen);
+
+/* Returns the object that hides most of light LIGHT from the camera, or -1. */
+int glint_scene_hider(const struct glint_scene *scene, int light);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint/scene/description.h - a scene as its text describes it, in double
+ * precision.
+ *
+ *     glint_description_parse(&scene, text, bytes, "shop.scene", &files,
+ * &error);
+ *     ...
+ *     glint_description_free(&scene);
+ *
+ *   in   scene text, tools/examples/scenes/README.md; the files that it names
+ *   out  camera, lights, materials, objects and triangles, all checked
+ *
+ * Places are in scene units, colours linear light with 1 = display white,
+ * angles in degrees where names say so. Objects lie about their own origin
+ * and are turned and moved to their place, which frames may change. */
+#ifndef GLINT_SCENE_DESCRIPTION_H
+#define GLINT_SCENE_DESCRIPTION_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "glint/image.h"
+#include "glint/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum {
+    GLINT_DESCRIPTION_NAME_BYTES = 32,
+    GLINT_DESCRIPTION_MAX_LIGHTS = 16,
+    GLINT_DESCRIPTION_MAX_MATERIALS = 256,
+    GLINT_DESCRIPTION_MAX_TEXTURES = 64,
+    GLINT_DESCRIPTION_MAX_OBJECTS = 1024,
+    GLINT_DESCRIPTION_MAX_TRIANGLES = 1 << 20, /* of all things together */
+    GLINT_DESCRIPTION_MAX_SIDE = 4096,         /* texels of a texture */
+    GLINT_DESCRIPTION_MAX_MESH_BYTES = 1 << 27
+};
+
+/* Largest coordinate and size of things, in scene units, and the smallest
+ * size. */
+#define GLINT_DESCRIPTION_REACH 1e6
+#define GLINT_DESCRIPTION_LEAST 1e-6
+
+enum glint_described_field {
+    GLINT_DESCRIBED_FIELD,   /* fov_deg across the picture */
+    GLINT_DESCRIBED_CORNERS, /* of row A6: 16 x 9 at a distance of 10, samples
+                             at the corners of pixels */
+    GLINT_DESCRIBED_LENS     /* as wide as the flare lens and its sensor see */
+};
+
+struct glint_described_camera {
+    enum glint_described_field field;
+    double fov_deg;
+    double at[3];
+    /* Unit vectors at right angles. The hand of the scene is in RIGHT alone. */
+    double right[3], up[3], forward[3];
+};
+
+enum glint_described_source { GLINT_DESCRIBED_SUN, GLINT_DESCRIBED_LAMP };
+
+struct glint_described_light {
+    char name[GLINT_DESCRIPTION_NAME_BYTES]; /* sun, lamp, lamp2, ... */
+    enum glint_described_source kind;
+    double at[3]; /* lamp: place; sun: unit vector towards it */
+    /* Sun: radiance of its disc. Lamp: what a white surface shows that faces
+     * it at distance 1, its irradiance over pi. */
+    double colour[3];
+    double radius;     /* lamp: scene units, 0: a point */
+    double radius_deg; /* sun: half of its angle */
+};
+
+struct glint_described_texture {
+    char name[GLINT_DESCRIPTION_NAME_BYTES];
+    /* GLINT_RGB24, sRGB, sides powers of two; plane[0] is malloc'ed. */
+    struct glint_image image;
+};
+
+struct glint_described_material {
+    char name[GLINT_DESCRIPTION_NAME_BYTES];
+    double ambient, diffuse, specular; /* sum at most 1 */
+    double power;                      /* exponent of the specular term */
+    double colour[3];
+    int texture; /* -1: none */
+    /* Shares of what a mirrored ray sees and of what is behind, which come on
+     * top; their sum is at most 1. */
+    double reflect, pass;
+    double index; /* of refraction; 1: straight on */
+};
+
+enum glint_described_kind {
+    GLINT_DESCRIBED_SPHERE,
+    GLINT_DESCRIBED_TRIANGLE,
+    GLINT_DESCRIBED_PLANE,
+    GLINT_DESCRIBED_MESH
+};
+
+struct glint_described_object {
+    enum glint_described_kind kind;
+    char name[GLINT_DESCRIPTION_NAME_BYTES];
+    double at[3];
+    double turn[4];   /* unit quaternion w, x, y, z: from its own axes to the
+                         scene's */
+    double radius;    /* sphere */
+    double normal[3]; /* plane: unit vector, in its own axes */
+    double catcher;   /* plane: share of light that its shadows take from the
+                         picture behind it, 0: no catcher */
+    int material;     /* -1: a catcher has none; of a mesh: of the triangles
+                         whose file names no other */
+    int first_triangle, n_triangles;
+};
+
+struct glint_described_triangle {
+    double place[3][3]; /* of the corners, in the axes of the object;
+                           counter-clockwise from outside, of left-handed
+                           scenes clockwise */
+    double normal[3][3];
+    double uv[3][2]; /* v runs up a texture: 0 is its last row */
+    bool has_normals, has_uv;
+    int object, material;
+};
+
+enum glint_described_background { GLINT_BEHIND_CAMERA, GLINT_BEHIND_COLOUR };
+
+enum glint_described_flare {
+    GLINT_DESCRIBED_FLARE_OFF,
+    GLINT_DESCRIBED_FLARE_LIGHTS, /* lights of the scene that the camera sees */
+    GLINT_DESCRIBED_FLARE_HIGHLIGHTS /* these and what glints on things */
+};
+
+struct glint_description {
+    bool left_handed;
+    struct glint_described_camera camera;
+    enum glint_described_background background;
+    double background_colour[3];
+    bool has_shadows;
+    enum glint_described_flare flare;
+    int n_highlights;
+
+    int n_lights, n_textures, n_materials, n_objects, n_triangles;
+    struct glint_described_light light[GLINT_DESCRIPTION_MAX_LIGHTS];
+    struct glint_described_texture texture[GLINT_DESCRIPTION_MAX_TEXTURES];
+    struct glint_described_material material[GLINT_DESCRIPTION_MAX_MATERIALS];
+    struct glint_described_object object[GLINT_DESCRIPTION_MAX_OBJECTS];
+    struct glint_described_triangle *triangle; /* malloc'ed, object by object */
+    char warning[256]; /* a line on what is odd but allowed; may be empty */
+};
+
+/* How the files that a text names are read; NAME is as the text has it. What
+ * they hand out is malloc'ed. On failure they write a line to ERROR. */
+struct glint_description_files {
+    void *ctx;
+    enum glint_status (*read)(void *ctx, const char *name, uint8_t **data,
+                              size_t *bytes, struct glint_error *error);
+    /* As GLINT_RGB24 in sRGB, without padding. */
+    enum glint_status (*picture)(void *ctx, const char *name,
+                                 struct glint_image *image,
+                                 struct glint_error *error);
+};
+
+/* Reads a scene text. TEXT need not be terminated and may hold anything;
+ * FILE_NAME only names it in errors. GLINT_E_LENS: ERROR says file, line,
+ * column and cause; also what FILES return, and GLINT_E_MEMORY. SCENE is to be
+ * freed on GLINT_OK alone. */
+enum glint_status
+glint_description_parse(struct glint_description *scene, const char *text,
+                        size_t bytes, const char *file_name,
+                        const struct glint_description_files *files,
+                        struct glint_error *error);
+
+void glint_description_free(struct glint_description *scene);
+
+/* Sets TURN to the shortest turn that takes the y axis to the unit vector
+ * NORMAL; of the one downwards, half a turn about x. */
+void glint_described_upright(const double normal[3], double turn[4]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

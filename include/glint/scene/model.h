@@ -1,0 +1,238 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint/scene/model.h - a baked scene: its file, used where it lies.
+ *
+ *     status = glint_scene_open(&model, data, bytes, &reason);    once
+ *
+ * A baked scene is one block of 32-bit words that is used where it lies, in ROM
+ * or a mapped file: nothing is copied, nothing is allocated. After
+ * glint_scene_open() has accepted it drawing cannot fail, whatever the file
+ * holds.
+ *
+ * Lengths are in steps. One unit of the scene is 2^unit_log2 steps, and the
+ * baker chooses that so that everything lies within GLINT_SCENE_SPAN steps of
+ * the origin and small things have many: nothing else in the file depends on
+ * it. Space is left-handed: seen by a camera that is not turned, x is right, y
+ * up and z away. A right-handed scene is mirrored by the baker: z changes its
+ * sign, and triangles their order.
+ *
+ * Light is linear BT.709, 1 = display white. A weight of 1, white, that faces a
+ * light of 1 shows 1: the light's irradiance is pi then.
+ *
+ * The file: little-endian 32-bit words; offsets ("_at") are bytes from the
+ * start of the file, multiples of 4. Header first, then in any order what it
+ * points to. No two sections share bytes; an
+ * empty one points at the end of the file. Members named zero are 0. */
+#ifndef GLINT_SCENE_MODEL_H
+#define GLINT_SCENE_MODEL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "glint/real.h"
+#include "glint/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define GLINT_SCENE_MAGIC   UINT32_C(0x53544e47) /* "GNTS" */
+#define GLINT_SCENE_VERSION 1
+#define GLINT_SCENE_NONE    UINT32_C(0xffffffff) /* no texture, no material */
+
+enum {
+    GLINT_SCENE_SPAN = 1 << 28, /* steps: every coordinate is below */
+    GLINT_SCENE_MAX_OBJECTS = 4095,
+    GLINT_SCENE_MAX_LIGHTS = 16,
+    GLINT_SCENE_MAX_MATERIALS = 4096,
+    GLINT_SCENE_MAX_TEXTURES = 256,
+    GLINT_SCENE_MAX_MESHES = 4096,
+    GLINT_SCENE_MAX_TRIANGLES = 1 << 20, /* of all objects together; a mesh
+                                            counts once for each object */
+    GLINT_SCENE_MAX_CELLS = 256,         /* of a grid, along each axis */
+    GLINT_SCENE_TEXTURE_LOG2 = 12,       /* log2 of the largest side */
+    GLINT_SCENE_NAME = 32
+};
+
+enum glint_scene_camera_kind {
+    GLINT_CAMERA_FIELD,   /* square pixels; the picture's sides are tan_x from
+                             the middle; samples at pixels' centres */
+    GLINT_CAMERA_CORNERS, /* the middles of the corner pixels are tan_x and
+                             tan_y from the middle */
+    GLINT_CAMERA_LENS     /* square pixels; the focal length in pixels is given
+                             to the run time: that of the lens of the flare */
+};
+
+/* A pinhole. A point at P is seen where the ray through its camera coordinates
+ * (x, y, z) = axis (P - at) leaves the picture: x / z to the right, y / z up.
+ */
+struct glint_scene_camera {
+    uint32_t kind;          /* enum glint_scene_camera_kind */
+    int32_t at[3];          /* steps */
+    int32_t axis_q30[3][3]; /* unit vectors: to the right, up, ahead */
+    /* Tangents from the middle, 2^12 .. 2^30: half the picture's width and, of
+     * corners, height; 0 if the kind has none. */
+    int32_t tan_x_q24, tan_y_q24;
+};
+
+enum glint_scene_background {
+    GLINT_BACKGROUND_CAMERA, /* the picture that is drawn onto */
+    GLINT_BACKGROUND_COLOUR
+};
+
+enum glint_scene_light_kind {
+    GLINT_LIGHT_SUN, /* parallel rays */
+    GLINT_LIGHT_LAMP /* a ball in space */
+};
+
+struct glint_scene_light {
+    char name[GLINT_SCENE_NAME]; /* terminated */
+    uint32_t kind;               /* enum glint_scene_light_kind */
+    int32_t at[3];               /* lamp: its place, steps; else 0 */
+    int32_t toward_q30[3];       /* sun: unit vector to it; else 0 */
+    /* Sun: sine of its angular radius, 0 .. 2^29, q30. Lamp: its radius, steps,
+     * 0 .. GLINT_SCENE_SPAN. 0: a point. */
+    int32_t radius;
+    /* R, G, B of a white surface that faces it, each 0 or more: of a lamp at
+     * distance 1, in units of the scene. The radiance of the disc is this over
+     * sine^2 of its angular radius. */
+    struct glint_real rgb[3];
+};
+
+/* A picture in codes of sRGB, repeated in both directions. Levels follow each
+ * other, each half as wide and high as the one before, at least 1; the last is
+ * one texel. The middle of texel (i, j), counted from the upper left corner,
+ * is at u = (i + 1/2) / width, v = (j + 1/2) / height. */
+struct glint_scene_texture {
+    uint32_t width_log2, height_log2; /* 0 .. GLINT_SCENE_TEXTURE_LOG2 */
+    uint32_t texel_at; /* uint8 R, G, B of each texel, row by row, padded to
+                          whole words at the end of the last level */
+};
+
+/* What a surface sends to the eye:
+ *
+ *     ambient colour + sum of lights (diffuse colour (N.L) + specular (R.V)^k)
+ *     light + reflect (what the mirrored ray sees) + pass (what is behind it)
+ *
+ * with R the light mirrored at the surface. [Tutorial], [Phong75] */
+struct glint_scene_material {
+    char name[GLINT_SCENE_NAME]; /* terminated */
+    /* Weights, 0 .. 32768; those of one line sum to 32768 at most. */
+    int32_t ambient_q15, diffuse_q15, specular_q15;
+    int32_t reflect_q15, pass_q15;
+    int32_t rgb_q15[3]; /* colour, each 0 .. 32768; times the texture's */
+    int32_t power_q8;   /* k, 2^8 .. 2^20 */
+    /* Index of refraction of what the surface encloses, 2^14 .. 2^18; 2^16:
+     * rays pass straight on. */
+    int32_t index_q16;
+    uint32_t texture; /* or GLINT_SCENE_NONE */
+    uint32_t zero;
+};
+
+struct glint_scene_triangle {
+    /* Vertices; clockwise as seen from outside. */
+    uint32_t vertex[3];
+    uint32_t material; /* or GLINT_SCENE_NONE: the object's */
+};
+
+/* Triangles, and a grid of cubes over them that says which of them a ray can
+ * meet. */
+struct glint_scene_mesh {
+    uint32_t n_vertices, n_triangles;
+    uint32_t vertex_at;   /* int32 [n_vertices][3], steps */
+    uint32_t uv_at;       /* int32 _q16 [n_vertices][2], +-2^24; or 0: none */
+    uint32_t normal_at;   /* int32 _q30 [n_vertices][3], unit; or 0: flat */
+    uint32_t triangle_at; /* struct glint_scene_triangle [n_triangles] */
+    /* A ball that holds all vertices: |centre| + radius is at most
+     * GLINT_SCENE_SPAN / 2. */
+    int32_t centre[3], radius;
+    /* Cell (i, j, k) has the corner origin + (i, j, k) 2^cell_log2. Cells are
+     * numbered by x first, then y, then z. The grid holds all vertices. */
+    int32_t origin[3];  /* steps, within +-GLINT_SCENE_SPAN */
+    uint32_t cell_log2; /* 2 .. 28 */
+    uint32_t cells[3];  /* 1 .. GLINT_SCENE_MAX_CELLS; the grid's far corner,
+                           too, is within GLINT_SCENE_SPAN */
+    /* Cell c lists triangles ref[start[c]] .. ref[start[c + 1] - 1]: all whose
+     * box, larger by GLINT_SCENE_MARGIN steps each way, touches it, rising;
+     * glint_scene_open() refuses lists that lack one. */
+    uint32_t start_at; /* uint32 [cells + 1]; the first is 0 */
+    uint32_t ref_at;   /* uint32 [start[cells]] */
+};
+
+enum { GLINT_SCENE_MARGIN = 16 }; /* steps */
+
+enum glint_scene_object_kind {
+    GLINT_OBJECT_SPHERE,
+    GLINT_OBJECT_PLANE, /* through AT, its normal the turned y axis; u goes
+                           along x, v along -z, 1 a unit of the scene */
+    GLINT_OBJECT_MESH
+};
+
+struct glint_scene_object {
+    char name[GLINT_SCENE_NAME]; /* terminated */
+    uint32_t kind;               /* enum glint_scene_object_kind */
+    uint32_t material;
+    uint32_t mesh;  /* index; 0 if it is none */
+    int32_t radius; /* sphere: 1 .. GLINT_SCENE_SPAN / 2 steps; else 0 */
+    /* Plane: it only takes shadows, on the picture that is drawn onto, and
+     * hides this share of what a light does not reach, 1 .. 32768; else 0. */
+    int32_t catcher_q15;
+    uint32_t hidden; /* 1: it is not there */
+    /* The pose at the start: a point p of the object is at at + turn p. */
+    int32_t at[3];       /* steps; with what it is of it within
+                            GLINT_SCENE_SPAN */
+    int32_t turn_q30[4]; /* unit quaternion w, x, y, z */
+};
+
+/* Which way z runs in the text that the scene was baked from, where poses come
+ * from; in the file it always runs away. */
+enum glint_scene_hand { GLINT_HAND_LEFT, GLINT_HAND_RIGHT };
+
+/* Begins as every baked file does (src/base/blob.h). */
+struct glint_scene_header {
+    uint32_t magic, version;
+    uint32_t bytes;   /* bytes of the whole file */
+    uint32_t crc32;   /* checksum of all after this word: polynomial 0xedb88320,
+                         reflected, begun and ended with all ones */
+    uint32_t variant; /* enum glint_scene_hand */
+    uint32_t key[2];  /* key of all texts and what they name, low word first */
+    char name[64];    /* name of the scene, terminated */
+    int32_t unit_log2;         /* -28 .. 60: one unit is 2^unit_log2 steps */
+    uint32_t shadow;           /* 1: lights throw shadows */
+    uint32_t background;       /* enum glint_scene_background */
+    int32_t background_q15[3]; /* colour, 0 .. 2^30; else 0 */
+    struct glint_scene_camera camera;
+    uint32_t flare;                    /* 1: the lens sees the lights, else 0 */
+    uint32_t highlights;               /* as lights of the flare, 0 .. 8 */
+    uint32_t n_lights, light_at;       /* struct glint_scene_light */
+    uint32_t n_textures, texture_at;   /* struct glint_scene_texture */
+    uint32_t n_materials, material_at; /* struct glint_scene_material */
+    uint32_t n_meshes, mesh_at;        /* struct glint_scene_mesh */
+    uint32_t n_objects, object_at;     /* struct glint_scene_object */
+};
+
+/* An opened file; it points into that, which must outlive it. */
+struct glint_scene_model {
+    const struct glint_scene_header *header;
+    const struct glint_scene_light *light;
+    const struct glint_scene_texture *texture;
+    const struct glint_scene_material *material;
+    const struct glint_scene_mesh *mesh;
+    const struct glint_scene_object *object;
+};
+
+/* Checks DATA[BYTES], aligned to 4 bytes, and points MODEL into it. DATA is
+ * kept. Takes time in proportion to BYTES and the objects' triangles.
+ * GLINT_E_FORMAT: *REASON says what is wrong, in static text. */
+enum glint_status glint_scene_open(struct glint_scene_model *model,
+                                   const void *data, size_t bytes,
+                                   const char **reason);
+
+/* Returns the index of the first object of that name, or -1. */
+int glint_scene_find(const struct glint_scene_model *model, const char *name);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint/scene/scene.h - draws a baked scene onto pictures, in integers.
+ *
+ *     glint_scene_open(&model, data, bytes, &reason);        once
+ *     bytes = glint_scene_bytes(&cfg, &model);
+ *     glint_scene_init(&scene, &cfg, &model, mem, bytes);
+ *     glint_scene_set_pose(scene, object, at, turn_q30);     each frame
+ *     glint_scene_begin(scene, &stats);
+ *     glint_scene_look_around(scene, &image);                a camera's
+ *     glint_scene_draw(scene, &image);
+ *     n = glint_scene_lights(scene, lights);                 for the flare
+ *
+ * What covers a pixel sets it, and its rim is blended in linear light. All
+ * memory is the caller's, taken at init; drawing never allocates and cannot
+ * fail. Triangles for which a capacity is too small are left out with their
+ * whole object and counted. No result depends on the number of workers, the
+ * order of jobs or the tile size.
+ *
+ * Spheres, planes, Phong and shadows are always there. What else there is is
+ * named in glint_scene_parts: what a program does not name it does not link. */
+#ifndef GLINT_SCENE_SCENE_H
+#define GLINT_SCENE_SCENE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "glint/image.h"
+#include "glint/real.h"
+#include "glint/scene/model.h"
+#include "glint/status.h"
+#include "glint/workers.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct glint_scene_meshes;
+struct glint_scene_textures;
+struct glint_scene_bounces;
+extern const struct glint_scene_meshes glint_scene_meshes;
+extern const struct glint_scene_textures glint_scene_textures;
+extern const struct glint_scene_bounces glint_scene_bounces;
+
+/* Parts of the run time; NULL: it is not there, and models that need it are
+ * refused. */
+struct glint_scene_parts {
+    const struct glint_scene_meshes *meshes;
+    const struct glint_scene_textures *textures;
+    const struct glint_scene_bounces *bounces; /* reflection, passing through */
+};
+
+struct glint_scene_config {
+    struct glint_workers *workers; /* kept; NULL: serial. Changes no output */
+    unsigned sets; /* instruction sets, glint_sets_here() or fewer; 0: plain C
+                      (kernels.h). Changes no output */
+    int width, height; /* size of the picture, 1 .. GLINT_MAX_SIDE */
+    int tile_log2;     /* log2 of the side of a tile in pixels, 3 .. 6. Changes
+                          no output */
+    int edge_samples;  /* 1, 4, 8 or 16: samples of a pixel */
+    int shadow_points; /* 1, 4 or 16: points of a light that has an extent */
+    int half_shading;  /* 1: two by two pixels whose samples all see one thing
+                          are shaded once, in their middle */
+    int dither;        /* 1: 8-bit output is dithered, deterministically */
+    /* For GLINT_CAMERA_LENS: the focal length in pixels, 2^10 .. 2^40 _q16. */
+    int64_t focal_q16;
+    /* Entries in the lists of all tiles, one for each triangle and tile; the
+     * statistics say what a frame needed. */
+    int max_refs;
+    struct glint_scene_parts parts;
+};
+
+struct glint_scene_stats {
+    int objects;   /* that may be seen */
+    int triangles; /* of these objects */
+    int refs, need_refs;
+    int dropped_objects; /* left out for want of max_refs */
+};
+
+struct glint_scene; /* opaque, in the caller's memory */
+
+/* Sets CFG to good starting values for pictures of WIDTH x HEIGHT, with no
+ * parts. */
+void glint_scene_defaults(struct glint_scene_config *cfg, int width,
+                          int height);
+
+/* Returns the exact number of bytes that init takes, or 0 if CFG is out of
+ * range, or MODEL needs a part that CFG does not name. */
+size_t glint_scene_bytes(const struct glint_scene_config *cfg,
+                         const struct glint_scene_model *model);
+
+/* Returns which part MODEL needs and PARTS do not name: "meshes", "textures" or
+ * "bounces"; NULL: none. */
+const char *glint_scene_lacks(const struct glint_scene_parts *parts,
+                              const struct glint_scene_model *model);
+
+/* Places a scene in MEM[BYTES], aligned to 64, which needs no finish. MODEL is
+ * copied; what it points into is kept. GLINT_E_MEMORY: BYTES is too small.
+ * GLINT_E_UNSUPPORTED: MODEL needs a part that CFG does not name. */
+enum glint_status glint_scene_init(struct glint_scene **scene,
+                                   const struct glint_scene_config *cfg,
+                                   const struct glint_scene_model *model,
+                                   void *mem, size_t bytes);
+
+/* Moves object OBJECT: point p of it to AT + TURN p. GLINT_E_ARGUMENT: the
+ * object would leave +-GLINT_SCENE_SPAN, or TURN_Q30, w x y z, is no unit
+ * quaternion. */
+enum glint_status glint_scene_set_pose(struct glint_scene *scene, int object,
+                                       const int32_t at[3],
+                                       const int32_t turn_q30[4]);
+
+/* Moves the camera; AXIS_Q30 are its unit vectors to the right, up and ahead,
+ * at right angles. GLINT_E_ARGUMENT: out of range. */
+enum glint_status glint_scene_set_camera(struct glint_scene *scene,
+                                         const int32_t at[3],
+                                         const int32_t axis_q30[3][3]);
+
+/* Moves light LIGHT: a lamp to AT, steps; a sun to the unit vector AT, _q30.
+ * GLINT_E_ARGUMENT: out of range. */
+enum glint_status glint_scene_set_light(struct glint_scene *scene, int light,
+                                        const int32_t at[3]);
+
+/* Keeps IMAGE, of the size of the configuration, small, as what mirrors and
+ * glass of scenes on the camera's picture show where their rays meet nothing:
+ * ahead as it is, elsewhere repeated. NULL: they show black, as at first. Costs
+ * nothing if nothing mirrors or bends rays, or nothing may be seen. To be
+ * called between begin and draw, which changes IMAGE. */
+void glint_scene_look_around(struct glint_scene *scene,
+                             const struct glint_image *image);
+
+/* Shows or hides object OBJECT. */
+void glint_scene_show(struct glint_scene *scene, int object, int is_shown);
+
+/* Prepares a frame: what may be seen, and in which tiles. Everything before
+ * draw and lights; may be called again. */
+void glint_scene_begin(struct glint_scene *scene,
+                       struct glint_scene_stats *stats);
+
+/* Draws the scene onto IMAGE, which has the size of the configuration, and
+ * keeps what is covered for glint_scene_cover(). May be called again. */
+void glint_scene_draw(struct glint_scene *scene,
+                      const struct glint_image *image);
+
+/* Returns the share, 0 .. 256, of a disc of the picture drawn last that the
+ * scene hides, shadows on catchers not counted: (X, Y) in pixels from the top
+ * left corner of the picture, to 8 x 8 pixels. */
+int glint_scene_cover(const struct glint_scene *scene, int32_t x_q8,
+                      int32_t y_q8, int32_t radius_q8);
+
+/* A light of the scene as the camera sees it. */
+struct glint_scene_lamp {
+    int light;          /* its index */
+    int share;          /* of 16 points of its disc, how many are not hidden */
+    int32_t x_q8, y_q8; /* pixels from the top left corner, y down */
+    int32_t radius_q8;  /* pixels, 0 .. 2^22 */
+    /* Light of each channel in the picture, display white times pixels, of the
+     * whole disc: what is seen of it is share / 16. */
+    struct glint_real rgb[3];
+};
+
+/* Sets LAMPS[GLINT_SCENE_MAX_LIGHTS] to the lights ahead of the camera, at most
+ * 16384 pixels from the picture's middle, the hidden ones, too, and returns
+ * their number; 0 if the scene shows the lens no lights. Objects hide lights
+ * wholly, also those that let light through. */
+int glint_scene_lights(const struct glint_scene *scene,
+                       struct glint_scene_lamp *lamps);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

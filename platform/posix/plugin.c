@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: MIT */
+#include "posix/plugin.h"
+
+#include <dlfcn.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "posix/error.h"
+#include "posix/process.h"
+
+#define PATH_BYTES 4096
+#define FILE_BYTES 64
+#define INSTALLED                                                              \
+    "../lib/glint/" /* place of plug-ins as seen from bin/, wherever both were \
+                       moved */
+
+/* Sets DIR to the directory of the executable, with its last slash. Returns
+ * false if that is unknown. */
+static bool find_own_directory(char dir[PATH_BYTES])
+{
+    const ssize_t n = readlink("/proc/self/exe", dir, PATH_BYTES - 1);
+    char *slash;
+
+    if (n < 0)
+        return false;
+    dir[n] = 0;
+    slash = strrchr(dir, '/');
+    if (!slash)
+        return false;
+    slash[1] = 0;
+    return true;
+}
+
+static const void *load_from(const struct glint_plugin *plugin,
+                             const char *path, struct glint_error *error)
+{
+    void *const handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    const int *face;
+
+    if (!handle) {
+        /* dlerror() names PATH, or a library that it needs. */
+        glint_error_report(error, GLINT_E_UNSUPPORTED, plugin->noun, "%s",
+                           dlerror());
+        return NULL;
+    }
+    face = dlsym(handle, plugin->symbol);
+    if (face && *face == plugin->version)
+        return face;
+    dlclose(handle);
+    glint_error_report(error, GLINT_E_UNSUPPORTED, path,
+                       "is not %s of this "
+                       "glint",
+                       plugin->noun);
+    return NULL;
+}
+
+/* Loads the plug-in from DIR if it is there. Returns NULL also if everybody may
+ * write to DIR. */
+static const void *load_from_directory(const struct glint_plugin *plugin,
+                                       const char *dir,
+                                       struct glint_error *error)
+{
+    char path[PATH_BYTES + FILE_BYTES];
+    struct stat st;
+
+    snprintf(path, sizeof path, "%s%s", dir, plugin->file);
+    if (stat(dir, &st) < 0 || st.st_mode & S_IWOTH)
+        return NULL;
+    return access(path, F_OK) == 0 ? load_from(plugin, path, error) : NULL;
+}
+
+const void *glint_plugin_load(const struct glint_plugin *plugin,
+                              struct glint_error *error)
+{
+    const char *const stated = glint_process_setting(plugin->setting);
+    const void *face = NULL;
+    char own[PATH_BYTES];
+
+    glint_error_report(error, GLINT_E_UNSUPPORTED, plugin->file, "%s",
+                       plugin->missing);
+    if (stated && *stated)
+        return load_from(plugin, stated, error);
+    if (find_own_directory(own)) {
+        face = load_from_directory(plugin, own, error);
+        if (!face && strlen(own) + sizeof INSTALLED <= sizeof own) {
+            strcat(own, INSTALLED);
+            face = load_from_directory(plugin, own, error);
+        }
+    }
+#ifdef GLINT_PLUGIN_DIR
+    if (!face)
+        face = load_from_directory(plugin, GLINT_PLUGIN_DIR "/", error);
+#endif
+    return face;
+}

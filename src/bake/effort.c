@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/effort.h"
+
+#include <math.h>
+
+/* Fits that finding brightness takes as long as, before ghosts are begun. */
+#define HEAD 32.0
+/* Fits that finding the angles of a ghost takes as long as. */
+#define LOOK 1.5
+/* Fits of a ghost before any is known, and how many ghosts that counts for. */
+#define TYPICAL      4.0
+#define TYPICAL_WIDE 25.0
+#define TRUST        3.0
+/* Share of a ghost's angles for which the mean of the others counts. */
+#define BLUR 0.1
+
+void glint_effort_init(struct glint_effort *e, int n_ghosts, int n_workers,
+                       bool wide)
+{
+    *e = (struct glint_effort){.n_ghosts = n_ghosts,
+                               .n_workers = n_workers,
+                               .typical = wide ? TYPICAL_WIDE : TYPICAL,
+                               .ghost = -1};
+}
+
+void glint_effort_begin(struct glint_effort *e, int ghost)
+{
+    e->ghost = ghost > e->ghost ? ghost : e->ghost;
+    e->work = LOOK;
+    e->share = 0;
+}
+
+void glint_effort_spend(struct glint_effort *e, double work, double share)
+{
+    e->work = LOOK + work;
+    e->share = fmin(1, share);
+}
+
+void glint_effort_end(struct glint_effort *e)
+{
+    e->n_ended++;
+    e->ended += e->work;
+    e->work = 0;
+    e->share = 1;
+}
+
+/* Returns the work that is left for worker 0, if workers share it alike. */
+static double left_of(const struct glint_effort *e)
+{
+    const int rest = e->n_ghosts - 1 - e->ghost;
+    const int beside = (int)fmin(e->n_workers - 1, rest);
+    const double known = TRUST * e->typical + e->ended;
+    const double mean = known / (TRUST + e->n_ended);
+    double own = 0, all = mean;
+
+    if (e->work > 0 && e->share < 1) {
+        own = fmax(0, (e->work + BLUR * mean) / (e->share + BLUR) - e->work);
+        all = (known + e->work + own) / (TRUST + e->n_ended + 1);
+    }
+    /* The ghosts of the other workers are half done. */
+    return fmax(own, (own + (rest - 0.5 * beside) * all) / e->n_workers);
+}
+
+double glint_effort_done(const struct glint_effort *e)
+{
+    const double spent = HEAD / e->n_workers + e->ended + e->work;
+
+    return spent / (spent + left_of(e));
+}

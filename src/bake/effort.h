@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * How much of the work of a bake is done: an estimate, as nobody knows how
+ * often the zones of a ghost will be halved before they have been fitted.
+ *
+ *     glint_effort_begin(&effort, ghost);              worker 0, for each of
+ *     glint_effort_spend(&effort, work, share); ...    its ghosts
+ *     glint_effort_end(&effort);
+ *     ... glint_effort_done(&effort) ...
+ *
+ * Work is counted in fits of a zone, about 40 ms. What a ghost will have taken
+ * is what it took so far by the share of its angles that this was for; what
+ * ghosts take that nobody began is the mean of those that one did. Only worker
+ * 0 counts; the others are taken to be as fast. Limits: ghosts differ a
+ * hundredfold, so that the work left may be off by two or three times in the
+ * first half of a bake.
+ */
+#ifndef GLINT_BAKE_EFFORT_H
+#define GLINT_BAKE_EFFORT_H
+
+#include <stdbool.h>
+
+struct glint_effort {
+    int n_ghosts, n_workers;
+    double typical; /* work of a ghost, before any is known */
+    int ghost;      /* the largest that was begun; -1: none */
+    int n_ended;    /* number of ghosts that worker 0 ended */
+    double ended;   /* work of these */
+    double work;    /* of the ghost that worker 0 is at */
+    double share;   /* share of its angles that are done, 0 .. 1 */
+};
+
+/* WIDE: whether the lens opens wider than GLINT_WIDE. */
+void glint_effort_init(struct glint_effort *effort, int n_ghosts, int n_workers,
+                       bool wide);
+
+void glint_effort_begin(struct glint_effort *effort, int ghost);
+
+/* The ghost has taken WORK fits so far, for the SHARE of its angles. */
+void glint_effort_spend(struct glint_effort *effort, double work, double share);
+
+void glint_effort_end(struct glint_effort *effort);
+
+/* Returns the share of the work that is done, 0 .. 1: less than before where a
+ * ghost turns out to take longer. */
+double glint_effort_done(const struct glint_effort *effort);
+
+#endif

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Light from all around, as texels of an unfolded octahedron
+ * (glint/scene/environment.h), in double precision. */
+#ifndef GLINT_BAKE_ENVIRONMENT_SPHERE_H
+#define GLINT_BAKE_ENVIRONMENT_SPHERE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "glint/scene/environment_bake.h"
+
+struct glint_sphere_texel {
+    double light[3];  /* mean radiance */
+    double weight;    /* solid angle, sr */
+    double toward[3]; /* unit vector to its middle */
+};
+
+/* Owned: TEXEL is malloc'ed. */
+struct glint_sphere {
+    int side;
+    struct glint_sphere_texel *texel; /* [side][side] */
+};
+
+/* Sets TOWARD to the direction of place (U, V), 0 .. 1 across and down the
+ * square; returns its solid angle over that of the square. */
+double glint_sphere_toward(double u, double v, double toward[3]);
+
+/* The same of the middle of texel I of a square of SIDE, over that of a texel.
+ */
+double glint_sphere_middle(int side, int i, double toward[3]);
+
+/* Sets U and V to the place of unit vector TOWARD. */
+void glint_sphere_place(const double toward[3], double *u, double *v);
+
+/* Returns the index of texel (X, Y) of a square of SIDE, each -1 .. SIDE, where
+ * edges of the square meet those that lie there on the octahedron. */
+size_t glint_sphere_index(int side, int x, int y);
+
+double glint_luminance(const double rgb[3]);
+
+/* Makes SPHERE dark; returns false without memory. */
+bool glint_sphere_open(struct glint_sphere *sphere, int side);
+void glint_sphere_close(struct glint_sphere *sphere);
+
+/* Makes TO, of a side that divides FROM's, the means of FROM. Returns false
+ * without memory. */
+bool glint_sphere_shrink(struct glint_sphere *to, int side,
+                         const struct glint_sphere *from);
+
+/* panorama.c: spreads PICTURE over SPHERE, which is open and dark, turned and
+ * scaled as OPTIONS say, and holds and counts what is no light. All light
+ * stays. Returns false if PICTURE has another shape than those. */
+bool glint_sphere_project(struct glint_sphere *sphere,
+                          const struct glint_float_image *picture,
+                          const struct glint_environment_options *options,
+                          struct glint_environment_report *report);
+
+/* A disc of light that was told from the rest. */
+struct glint_split_light {
+    double toward[3];
+    double radius;        /* radians */
+    double irradiance[3]; /* of a surface that faces it */
+};
+
+/* split.c: takes from SPHERE up to options->max_lights lights, the strongest,
+ * and fills their places with what lies around. Returns their number, or -1
+ * without memory. */
+int glint_sphere_split(struct glint_sphere *sphere,
+                       const struct glint_environment_options *options,
+                       struct glint_split_light *lights,
+                       struct glint_environment_report *report);
+
+/* levels.c: sets LIGHT[4^SIDE_LOG2][3] to FROM blurred by exp((cos - 1) /
+ * SIGMA^2), at the middles of texels. Returns false without memory. */
+bool glint_sphere_blur(const struct glint_sphere *from, double sigma,
+                       int side_log2, double (*light)[3]);
+
+/* Sets LIGHT[4^SIDE_LOG2][3] to what FROM shows a white surface, by its normal.
+ */
+void glint_sphere_irradiance(const struct glint_sphere *from, int side_log2,
+                             double (*light)[3]);
+
+/* codes.c: write N texels as codes, which a decoder takes for units. SCALE is
+ * the largest channel of all. */
+void glint_environment_put_565(const double (*light)[3], size_t n, double scale,
+                               uint16_t *code);
+/* UNIT is one unit; nothing is brighter than 511 * 2^19 of them. */
+void glint_environment_put_9e5(const double (*light)[3], size_t n, double unit,
+                               uint32_t *code);
+
+#endif

@@ -1,0 +1,277 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Tells bright lights from the rest of an environment.
+ *
+ * A threshold falls by octaves, down to some times the mean of what is below
+ * it. At each, texels that touch are a spot, and a light while they lie close
+ * together; the lowest threshold at which they do says what belongs to it.
+ * Spots that run together and no longer do so stay the lights that they were.
+ */
+#include "bake/environment/sphere.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "glint/view.h"
+
+#define LEAST_SHARE .002 /* of all light, of a light */
+
+enum {
+    MAX_SPOTS = 4096,
+    RING = 2, /* texels around a light whose mean is taken for what is behind */
+    NOBODY = -1
+};
+
+struct spot {
+    double light; /* luminance x sr; 0: it has become a part of another */
+};
+
+struct split {
+    struct glint_sphere *sphere;
+    double limit; /* squared rms radius of a light, radians */
+    double all;   /* luminance x sr of the whole sphere */
+    int *owner;   /* [texels] spot, or NOBODY */
+    int *seen;    /* [texels] the round in which it was last seen */
+    int *queue;   /* [texels] */
+    struct spot spot[MAX_SPOTS];
+    int n_spots;
+};
+
+static double luminance(const struct split *s, int i)
+{
+    return glint_luminance(s->sphere->texel[i].light);
+}
+
+/* Sets NEAR to the eight texels about I. */
+static void neighbours(const struct split *s, int i, int near[8])
+{
+    const int side = s->sphere->side, x = i % side, y = i / side;
+    int n = 0;
+
+    for (int v = -1; v <= 1; v++)
+        for (int u = -1; u <= 1; u++)
+            if (u || v)
+                near[n++] = (int)glint_sphere_index(side, x + u, y + v);
+}
+
+/* Sets the queue to the texels that touch I and are at THRESHOLD or above;
+ * returns their number. */
+static int gather(struct split *s, int i, double threshold, int round)
+{
+    int n = 0, near[8];
+
+    s->queue[n++] = i;
+    s->seen[i] = round;
+    for (int at = 0; at < n; at++) {
+        neighbours(s, s->queue[at], near);
+        for (int k = 0; k < 8; k++)
+            if (s->seen[near[k]] != round &&
+                luminance(s, near[k]) >= threshold) {
+                s->seen[near[k]] = round;
+                s->queue[n++] = near[k];
+            }
+    }
+    return n;
+}
+
+/* Returns the luminance of the N texels of the queue and sets the square of
+ * their rms radius. */
+static double measure(const struct split *s, int n, double *square)
+{
+    double middle[3] = {0, 0, 0}, sum = 0, length, cosine;
+
+    for (int at = 0; at < n; at++) {
+        const struct glint_sphere_texel *t = &s->sphere->texel[s->queue[at]];
+        const double light = t->weight * glint_luminance(t->light);
+
+        for (int k = 0; k < 3; k++)
+            middle[k] += light * t->toward[k];
+        sum += light;
+    }
+    length = sqrt(middle[0] * middle[0] + middle[1] * middle[1] +
+                  middle[2] * middle[2]);
+    cosine = sum > 0 ? length / sum : 0; /* mean of cosines from the middle */
+    *square = 2 * (1 - cosine);
+    return sum;
+}
+
+/* Makes the N texels of the queue one spot if they are a light. */
+static void try_spot(struct split *s, int n)
+{
+    double square;
+    const double light = measure(s, n, &square);
+
+    if (square > s->limit || light < LEAST_SHARE * s->all ||
+        s->n_spots == MAX_SPOTS)
+        return;
+    for (int at = 0; at < n; at++) {
+        int *owner = &s->owner[s->queue[at]];
+
+        if (*owner != NOBODY)
+            s->spot[*owner].light = 0;
+        *owner = s->n_spots;
+    }
+    s->spot[s->n_spots++].light = light;
+}
+
+/* Returns the mean luminance of texels below THRESHOLD. */
+static double mean_below(const struct split *s, int n, double threshold)
+{
+    double sum = 0, weight = 0;
+
+    for (int i = 0; i < n; i++)
+        if (luminance(s, i) < threshold) {
+            sum += s->sphere->texel[i].weight * luminance(s, i);
+            weight += s->sphere->texel[i].weight;
+        }
+    return weight > 0 ? sum / weight : 0;
+}
+
+static void find_spots(struct split *s, int n, double above)
+{
+    double threshold = 0;
+
+    for (int i = 0; i < n; i++) {
+        threshold = fmax(threshold, luminance(s, i));
+        s->all += s->sphere->texel[i].weight * luminance(s, i);
+    }
+    for (int round = 1; round < 64; round++) {
+        threshold /= 2;
+        if (!(threshold > above * mean_below(s, n, threshold)))
+            return;
+        for (int i = 0; i < n; i++)
+            if (s->seen[i] != round && luminance(s, i) >= threshold)
+                try_spot(s, gather(s, i, threshold, round));
+    }
+}
+
+/* Sets MEAN to the light around spot K, whose texels are marked in round ROUND,
+ * or to that of its darkest texel if other lights are all around. */
+static void ring_of(struct split *s, int k, int n, int round, double mean[3])
+{
+    double weight = 0;
+    int count = 0, begin = 0;
+
+    memset(mean, 0, 3 * sizeof *mean);
+    for (int i = 0; i < n; i++)
+        if (s->owner[i] == k) {
+            s->seen[i] = round;
+            s->queue[count++] = i;
+        }
+    for (int ring = 0; ring < RING; ring++) {
+        const int end = count;
+
+        for (; begin < end; begin++) {
+            int near[8];
+
+            neighbours(s, s->queue[begin], near);
+            for (int j = 0; j < 8; j++)
+                if (s->seen[near[j]] != round) {
+                    s->seen[near[j]] = round;
+                    s->queue[count++] = near[j];
+                }
+        }
+    }
+    for (int at = 0; at < count; at++) {
+        const struct glint_sphere_texel *t = &s->sphere->texel[s->queue[at]];
+        const int owner = s->owner[s->queue[at]];
+
+        if (owner != NOBODY && s->spot[owner].light > 0)
+            continue;
+        for (int c = 0; c < 3; c++)
+            mean[c] += t->weight * t->light[c];
+        weight += t->weight;
+    }
+    for (int c = 0; c < 3; c++)
+        mean[c] = weight > 0 ? mean[c] / weight : 0;
+}
+
+/* Moves what spot K has above MEAN into LIGHT. */
+static void take(struct split *s, int k, int n, const double mean[3],
+                 struct glint_split_light *light)
+{
+    double middle[3] = {0, 0, 0}, sum = 0, length, square;
+
+    memset(light, 0, sizeof *light);
+    for (int i = 0; i < n; i++) {
+        struct glint_sphere_texel *t = &s->sphere->texel[i];
+        double more[3], luma;
+
+        if (s->owner[i] != k)
+            continue;
+        for (int c = 0; c < 3; c++) {
+            more[c] = t->weight * fmax(t->light[c] - mean[c], 0);
+            light->irradiance[c] += more[c];
+            t->light[c] = fmin(t->light[c], mean[c]);
+        }
+        luma = glint_luminance(more);
+        for (int j = 0; j < 3; j++)
+            middle[j] += luma * t->toward[j];
+        sum += luma;
+    }
+    length = sqrt(middle[0] * middle[0] + middle[1] * middle[1] +
+                  middle[2] * middle[2]);
+    for (int j = 0; j < 3; j++)
+        light->toward[j] = middle[j] / length;
+    /* A texel by itself has 1/6 of its area for a square radius. */
+    square = 2 * (1 - fmin(length / sum, 1)) -
+             4 * GLINT_PI / (6. * s->sphere->side * s->sphere->side);
+    light->radius = sqrt(2 * fmax(square, 0));
+}
+
+/* Takes the strongest spots, at most MOST; returns their number. */
+static int take_strongest(struct split *s, int n, int most,
+                          struct glint_split_light *lights,
+                          struct glint_environment_report *report)
+{
+    int taken = 0;
+
+    for (int k = 0; k < s->n_spots; k++)
+        report->spots += s->spot[k].light > 0;
+    while (taken < most) {
+        double mean[3];
+        int best = NOBODY;
+
+        for (int k = 0; k < s->n_spots; k++)
+            if (s->spot[k].light > 0 &&
+                (best == NOBODY || s->spot[k].light > s->spot[best].light))
+                best = k;
+        if (best == NOBODY)
+            break;
+        ring_of(s, best, n, 64 + taken, mean);
+        take(s, best, n, mean, &lights[taken]);
+        s->spot[best].light = 0;
+        report->light_share +=
+            glint_luminance(lights[taken++].irradiance) / s->all;
+    }
+    return taken;
+}
+
+int glint_sphere_split(struct glint_sphere *sphere,
+                       const struct glint_environment_options *options,
+                       struct glint_split_light *lights,
+                       struct glint_environment_report *report)
+{
+    const size_t n = (size_t)sphere->side * (size_t)sphere->side;
+    const double rms = options->light_deg * GLINT_PI / 180;
+    struct split *s = calloc(1, sizeof *s);
+    int *words = malloc(3 * n * sizeof *words);
+    int taken = -1;
+
+    if (s && words) {
+        s->sphere = sphere;
+        s->limit = rms * rms;
+        s->owner = words;
+        s->seen = words + n;
+        s->queue = words + 2 * n;
+        memset(s->owner, 0xff, n * sizeof *s->owner);
+        memset(s->seen, 0, n * sizeof *s->seen);
+        if (options->max_lights > 0)
+            find_spots(s, (int)n, options->light_above);
+        taken = take_strongest(s, (int)n, options->max_lights, lights, report);
+    }
+    free(words);
+    free(s);
+    return taken;
+}

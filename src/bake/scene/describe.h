@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What the readers of a scene's lines share. Each reads one kind of line from
+ * behind its first word, and returns false if it has written an error. */
+#ifndef GLINT_BAKE_SCENE_DESCRIBE_H
+#define GLINT_BAKE_SCENE_DESCRIBE_H
+
+#include "bake/scene/clauses.h"
+#include "glint/scene/description.h"
+
+struct glint_describer {
+    struct glint_text text;
+    struct glint_description *scene;
+    const struct glint_description_files *files;
+    struct glint_error *error;
+    enum glint_status status; /* of a failure that is not the text's */
+    int room;                 /* triangles that there is memory for */
+    /* The camera's line, which is worked out when the hand is known. */
+    struct glint_text_place camera;
+    double toward[3], up[3], orbit[3], distance, yaw_deg, pitch_deg;
+    bool has_orbit;
+};
+
+/* describe_view.c: hand, camera, background, shadow, flare. */
+bool glint_describe_hand(struct glint_describer *d);
+bool glint_describe_camera(struct glint_describer *d);
+bool glint_describe_background(struct glint_describer *d);
+bool glint_describe_shadow(struct glint_describer *d);
+bool glint_describe_flare(struct glint_describer *d);
+/* Works out where the camera stands and looks, when all lines are read. */
+bool glint_describe_axes(struct glint_describer *d);
+
+/* describe_looks.c: light, texture, material. */
+bool glint_describe_light(struct glint_describer *d);
+bool glint_describe_texture(struct glint_describer *d);
+bool glint_describe_material(struct glint_describer *d);
+/* Sets INDEX to the material called WORD. */
+bool glint_describe_find(struct glint_describer *d,
+                         const struct glint_word *word, int *index);
+
+/* describe_things.c: sphere, triangle, plane, mesh. */
+bool glint_describe_sphere(struct glint_describer *d);
+bool glint_describe_triangle(struct glint_describer *d);
+bool glint_describe_plane(struct glint_describer *d);
+bool glint_describe_mesh(struct glint_describer *d);
+
+/* Makes X a unit vector; returns false if it has no direction. */
+bool glint_describe_unit(double x[3]);
+
+/* Copies WORD, the name of a file, to NAME. */
+#define GLINT_FILE_BYTES (GLINT_LINE_BYTES + 1)
+void glint_describe_file(const struct glint_word *word,
+                         char name[GLINT_FILE_BYTES]);
+
+/* Fails because FILES did, with STATUS and what they wrote as the error. */
+bool glint_describe_refuse(struct glint_describer *d,
+                           struct glint_text_place place,
+                           enum glint_status status);
+
+#endif

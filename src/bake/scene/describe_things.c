@@ -1,0 +1,320 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Lines on things: where they are, and of which material. */
+#include "bake/scene/describe.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bake/scene/mesh.h"
+#include "glint/view.h"
+
+#define REACH GLINT_DESCRIPTION_REACH
+#define LEAST GLINT_DESCRIPTION_LEAST
+/* How often a texture may repeat over a triangle. */
+#define REPEATS 250.0
+#define NO_AXIS "the axis of a turn must not be 0 0 0"
+
+/* Begins a thing of KIND: reads its name. Returns NULL if that is wrong. */
+static struct glint_described_object *begin(struct glint_describer *d,
+                                            enum glint_described_kind kind,
+                                            const char *what)
+{
+    struct glint_description *s = d->scene;
+    struct glint_described_object *o = &s->object[s->n_objects];
+    struct glint_text at = d->text;
+    const struct glint_text_place place = glint_text_next_word(&at).place;
+
+    if (s->n_objects == GLINT_DESCRIPTION_MAX_OBJECTS) {
+        glint_text_fail(&d->text, place, "more than %d things",
+                        GLINT_DESCRIPTION_MAX_OBJECTS);
+        return NULL;
+    }
+    *o = (struct glint_described_object){.kind = kind,
+                                         .turn = {1, 0, 0, 0},
+                                         .material = -1,
+                                         .first_triangle = s->n_triangles};
+    if (!glint_name_read(&d->text, what, o->name, sizeof o->name))
+        return NULL;
+    if (strcmp(o->name, "camera") == 0) {
+        glint_text_fail(&d->text, place, "'camera' is the camera's name");
+        return NULL;
+    }
+    for (int i = 0; i < s->n_objects; i++)
+        if (strcmp(s->object[i].name, o->name) == 0) {
+            glint_text_fail(&d->text, place,
+                            "a thing of this name is already defined");
+            return NULL;
+        }
+    s->n_objects++;
+    return o;
+}
+
+/* Returns whether the texture of T repeats more often than may be. */
+static bool repeats(const struct glint_described_triangle *t)
+{
+    for (int i = 0; t->has_uv && i < 2; i++) {
+        const double low = fmin(t->uv[0][i], fmin(t->uv[1][i], t->uv[2][i]));
+        const double high = fmax(t->uv[0][i], fmax(t->uv[1][i], t->uv[2][i]));
+
+        if (high - low > REPEATS)
+            return true;
+    }
+    return false;
+}
+
+/* Sets TURN to the quaternion of AXIS and ANGLE in degrees. */
+static bool set_turn(double turn[4], double axis[3], double angle_deg)
+{
+    const double half = angle_deg * GLINT_PI / 360;
+
+    if (!glint_describe_unit(axis))
+        return false;
+    turn[0] = cos(half);
+    for (int i = 0; i < 3; i++)
+        turn[i + 1] = sin(half) * axis[i];
+    return true;
+}
+
+bool glint_describe_sphere(struct glint_describer *d)
+{
+    struct glint_described_object *o =
+        begin(d, GLINT_DESCRIBED_SPHERE, "sphere");
+    double turn[4] = {0, 1, 0, 0};
+    struct glint_word material;
+    struct glint_clause clause[] = {
+        {"at", 3, -REACH, REACH, .value = o ? o->at : NULL, .required = true},
+        {"radius", 1, LEAST, REACH, .value = o ? &o->radius : NULL,
+         .required = true},
+        {"material", .name = &material, .required = true},
+        {"turn", 4, -REACH, REACH, .value = turn},
+        {0}};
+
+    return o && glint_clauses_read(&d->text, "sphere", clause) &&
+           glint_describe_find(d, &material, &o->material) &&
+           (set_turn(o->turn, turn, turn[3]) ||
+            glint_text_fail(&d->text, clause[3].place, NO_AXIS));
+}
+
+/* Returns room for N more triangles, or NULL. */
+static struct glint_described_triangle *more(struct glint_describer *d, int n,
+                                             struct glint_text_place place)
+{
+    struct glint_description *s = d->scene;
+
+    if (n > GLINT_DESCRIPTION_MAX_TRIANGLES - s->n_triangles) {
+        glint_text_fail(&d->text, place, "more than %d triangles",
+                        GLINT_DESCRIPTION_MAX_TRIANGLES);
+        return NULL;
+    }
+    if (s->n_triangles + n > d->room) {
+        const int room = 2 * (s->n_triangles + n);
+        struct glint_described_triangle *t =
+            realloc(s->triangle, (size_t)room * sizeof *t);
+
+        if (!t) {
+            d->status = GLINT_E_MEMORY;
+            return NULL;
+        }
+        s->triangle = t;
+        d->room = room;
+    }
+    s->n_triangles += n;
+    return s->triangle + s->n_triangles - n;
+}
+
+bool glint_describe_triangle(struct glint_describer *d)
+{
+    struct glint_described_object *o =
+        begin(d, GLINT_DESCRIBED_TRIANGLE, "triangle");
+    struct glint_described_triangle t = {.has_uv = false}, *to;
+    struct glint_word material;
+    struct glint_clause clause[] = {
+        {"uv", 6, -REACH, REACH, .value = t.uv[0]},
+        {"material", .name = &material, .required = true},
+        {0}};
+
+    if (!o ||
+        !glint_numbers_read(&d->text, "triangle", 9, -REACH, REACH,
+                            t.place[0]) ||
+        !glint_clauses_read(&d->text, "triangle", clause) ||
+        !glint_describe_find(d, &material, &o->material))
+        return false;
+    t.has_uv = clause[0].place.line > 0;
+    t.object = d->scene->n_objects - 1;
+    t.material = o->material;
+    if (d->scene->material[t.material].texture >= 0 && !t.has_uv)
+        return glint_text_fail(&d->text, clause[1].place,
+                               "a material with a texture needs 'uv'");
+    if (repeats(&t))
+        return glint_text_fail(&d->text, clause[0].place,
+                               "a texture repeats at most %g times over a "
+                               "triangle",
+                               REPEATS);
+    to = more(d, 1, clause[1].place);
+    if (!to)
+        return false;
+    *to = t;
+    o->n_triangles = 1;
+    return true;
+}
+
+bool glint_describe_plane(struct glint_describer *d)
+{
+    struct glint_described_object *o = begin(d, GLINT_DESCRIBED_PLANE, "plane");
+    struct glint_word material;
+    struct glint_clause clause[] = {
+        {"at", 3, -REACH, REACH, .value = o ? o->at : NULL, .required = true},
+        {"normal", 3, -REACH, REACH, .value = o ? o->normal : NULL,
+         .required = true},
+        {"material", .name = &material},
+        {"catcher", 1, 0.001, 1, .value = o ? &o->catcher : NULL},
+        {0}};
+
+    if (!o || !glint_clauses_read(&d->text, "plane", clause))
+        return false;
+    if (!glint_describe_unit(o->normal))
+        return glint_text_fail(&d->text, clause[1].place,
+                               "a normal must not be 0 0 0");
+    if (!clause[2].place.line == !clause[3].place.line)
+        return glint_text_fail(
+            &d->text, clause[2].place.line ? clause[2].place : clause[0].place,
+            "a plane has a material or is a catcher%s",
+            clause[2].place.line ? ", not both" : "");
+    return !clause[2].place.line ||
+           (glint_describe_find(d, &material, &o->material));
+}
+
+/* -------------------------------------------------------------------- mesh */
+
+/* Sets OF to the materials of the scene that MESH names, or to the object's. */
+static bool find_materials(struct glint_describer *d,
+                           const struct glint_described_object *o,
+                           const struct glint_mesh *mesh, const char *file,
+                           struct glint_text_place place, int *of)
+{
+    const struct glint_description *s = d->scene;
+
+    for (int i = 0; i < mesh->n_names; i++) {
+        of[i] = o->material;
+        for (int m = 0; m < s->n_materials; m++)
+            if (strcmp(s->material[m].name, mesh->name[i]) == 0)
+                of[i] = m;
+        if (of[i] < 0)
+            return glint_text_fail(&d->text, place,
+                                   "%s uses '%s', which is no material above "
+                                   "this line; 'material' of the mesh would "
+                                   "stand in",
+                                   file, mesh->name[i]);
+    }
+    return true;
+}
+
+/* Appends the triangles of MESH to the scene, SCALE times as large. */
+static bool put_mesh(struct glint_describer *d,
+                     struct glint_described_object *o,
+                     const struct glint_mesh *mesh, const int *of, double scale,
+                     struct glint_text_place place)
+{
+    const struct glint_description *s = d->scene;
+    struct glint_described_triangle *to = more(d, mesh->n_triangles, place);
+
+    if (!to)
+        return false;
+    o->n_triangles = mesh->n_triangles;
+    for (int i = 0; i < mesh->n_triangles; i++) {
+        struct glint_described_triangle *t = &to[i];
+
+        *t = mesh->triangle[i];
+        t->object = s->n_objects - 1;
+        t->material = t->material < 0 ? o->material : of[t->material];
+        if (t->material < 0)
+            return glint_text_fail(&d->text, place,
+                                   "the mesh has faces without a material; "
+                                   "add 'material'");
+        if (s->material[t->material].texture >= 0 && !t->has_uv)
+            return glint_text_fail(&d->text, place,
+                                   "material %s has a texture, but faces of "
+                                   "the mesh have no places on it (vt)",
+                                   s->material[t->material].name);
+        if (repeats(t))
+            return glint_text_fail(&d->text, place,
+                                   "a texture repeats at most %g times over a "
+                                   "triangle, and more on the mesh",
+                                   REPEATS);
+        for (int k = 0; k < 3; k++) {
+            if (t->has_normals && !glint_describe_unit(t->normal[k]))
+                t->has_normals = false;
+            for (int axis = 0; axis < 3; axis++) {
+                t->place[k][axis] *= scale;
+                if (!(fabs(t->place[k][axis]) <= REACH))
+                    return glint_text_fail(&d->text, place,
+                                           "the mesh reaches %.4g from its "
+                                           "origin; at most %g",
+                                           fabs(t->place[k][axis]), REACH);
+            }
+        }
+    }
+    return true;
+}
+
+static bool read_mesh(struct glint_describer *d,
+                      struct glint_described_object *o,
+                      const struct glint_word *word, double scale)
+{
+    struct glint_mesh *mesh = malloc(sizeof *mesh);
+    char name[GLINT_FILE_BYTES];
+    int of[GLINT_MESH_MAX_NAMES];
+    uint8_t *data = NULL;
+    size_t bytes = 0;
+    bool good = false;
+    enum glint_status status;
+
+    glint_describe_file(word, name);
+    status = mesh ? d->files->read(d->files->ctx, name, &data, &bytes, d->error)
+                  : GLINT_E_MEMORY;
+    if (status != GLINT_OK) {
+        glint_describe_refuse(d, word->place, status);
+    } else {
+        status =
+            glint_mesh_read(mesh, (const char *)data, bytes, name, d->error);
+        d->status = status == GLINT_OK ? d->status : status;
+        good = status == GLINT_OK &&
+               find_materials(d, o, mesh, name, word->place, of) &&
+               put_mesh(d, o, mesh, of, scale, word->place);
+        if (status == GLINT_OK)
+            free(mesh->triangle);
+    }
+    free(data);
+    free(mesh);
+    return good;
+}
+
+bool glint_describe_mesh(struct glint_describer *d)
+{
+    struct glint_described_object *o = begin(d, GLINT_DESCRIBED_MESH, "mesh");
+    struct glint_word material, file;
+    double scale = 1, turn[4] = {0, 1, 0, 0};
+    struct glint_clause clause[] = {
+        {"at", 3, -REACH, REACH, .value = o ? o->at : NULL, .required = true},
+        {"scale", 1, 1e-9, 1e9, .value = &scale},
+        {"material", .name = &material},
+        {"turn", 4, -REACH, REACH, .value = turn},
+        {0}};
+
+    if (!o)
+        return false;
+    file = glint_text_next_word(&d->text);
+    if (!file.length)
+        return glint_text_fail(&d->text, file.place,
+                               "the mesh's file is missing");
+    if (!glint_clauses_read(&d->text, "mesh", clause) ||
+        (clause[2].place.line &&
+         !glint_describe_find(d, &material, &o->material)))
+        return false;
+    if (!set_turn(o->turn, turn, turn[3]))
+        return glint_text_fail(&d->text, clause[3].place, NO_AXIS);
+    return read_mesh(d, o, &file, scale);
+}

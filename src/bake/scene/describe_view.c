@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Lines on what is looked at, from where, and what is done with it. */
+#include "bake/scene/describe.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "glint/view.h"
+
+#define REACH     GLINT_DESCRIPTION_REACH
+#define MAX_LIGHT 32768.0 /* of a background */
+/* Sine of the angle between forward and up below which there is no right. */
+#define LEAST_RIGHT 1e-6
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double c[3])
+{
+    c[0] = a[1] * b[2] - a[2] * b[1];
+    c[1] = a[2] * b[0] - a[0] * b[2];
+    c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* Reads one of WORDS, which LINE takes, and sets INDEX to it. */
+static bool read_word(struct glint_describer *d, const char *line,
+                      const char *list, const char *const *words, int *index)
+{
+    const struct glint_word word = glint_text_next_word(&d->text);
+    const char *const instead = glint_not_built(&word);
+    char quote[GLINT_QUOTE_BYTES];
+
+    for (*index = 0; words[*index]; ++*index)
+        if (glint_word_is(&word, words[*index]))
+            return true;
+    if (!word.length)
+        return glint_text_fail(&d->text, word.place, "%s needs %s", line, list);
+    glint_word_quote(&word, quote);
+    if (instead)
+        return glint_text_fail(&d->text, word.place,
+                               "'%s' is not built yet; %s", quote, instead);
+    return glint_text_fail(&d->text, word.place, "%s takes %s, not '%s'", line,
+                           list, quote);
+}
+
+bool glint_describe_hand(struct glint_describer *d)
+{
+    static const char *const words[] = {"right", "left", NULL};
+    int index;
+
+    if (!read_word(d, "hand", "right or left", words, &index))
+        return false;
+    d->scene->left_handed = index == 1;
+    return glint_line_ends(&d->text, "hand");
+}
+
+bool glint_describe_background(struct glint_describer *d)
+{
+    static const char *const words[] = {"camera", "colour", NULL};
+    int index;
+
+    if (!read_word(d, "background", "camera or colour R G B", words, &index))
+        return false;
+    d->scene->background = index ? GLINT_BEHIND_COLOUR : GLINT_BEHIND_CAMERA;
+    return (!index || glint_numbers_read(&d->text, "colour", 3, 0, MAX_LIGHT,
+                                         d->scene->background_colour)) &&
+           glint_line_ends(&d->text, "background");
+}
+
+bool glint_describe_shadow(struct glint_describer *d)
+{
+    static const char *const words[] = {"off", "on", NULL};
+    int index;
+
+    if (!read_word(d, "shadow", "on or off", words, &index))
+        return false;
+    d->scene->has_shadows = index == 1;
+    return glint_line_ends(&d->text, "shadow");
+}
+
+bool glint_describe_flare(struct glint_describer *d)
+{
+    static const char *const words[] = {"off", "lights", NULL};
+    struct glint_description *s = d->scene;
+    double n = 0;
+    struct glint_clause clause[] = {{"highlights", 1, 0, 8, .value = &n}, {0}};
+    int index;
+
+    if (!read_word(d, "flare", "off or lights [highlights N]", words, &index))
+        return false;
+    if (index == 0)
+        return glint_line_ends(&d->text, "flare off");
+    if (!glint_clauses_read(&d->text, "flare lights", clause))
+        return false;
+    s->n_highlights = (int)n;
+    s->flare = s->n_highlights ? GLINT_DESCRIBED_FLARE_HIGHLIGHTS
+                               : GLINT_DESCRIBED_FLARE_LIGHTS;
+    return n == s->n_highlights ||
+           glint_text_fail(&d->text, clause[0].place,
+                           "highlights are a whole number");
+}
+
+/* Reads the first words of a camera: its field. Returns false on failure, and
+ * sets ALL if nothing may follow. */
+static bool read_field(struct glint_describer *d, bool *all)
+{
+    struct glint_described_camera *c = &d->scene->camera;
+    struct glint_text at = d->text;
+    const struct glint_word word = glint_text_next_word(&d->text);
+
+    *all = false;
+    if (glint_word_is(&word, "corners")) {
+        c->field = GLINT_DESCRIBED_CORNERS;
+        *all = true;
+        return glint_line_ends(&d->text, "camera corners");
+    }
+    if (glint_word_is(&word, "lens")) {
+        c->field = GLINT_DESCRIBED_LENS;
+        return true;
+    }
+    if (glint_word_is(&word, "fov"))
+        return glint_numbers_read(&d->text, "fov", 1, 0.1, 170, &c->fov_deg);
+    d->text = at;
+    return true;
+}
+
+bool glint_describe_camera(struct glint_describer *d)
+{
+    struct glint_described_camera *c = &d->scene->camera;
+    struct glint_clause clause[] = {
+        {"at", 3, -REACH, REACH, .value = c->at},
+        {"toward", 3, -REACH, REACH, .value = d->toward},
+        {"up", 3, -REACH, REACH, .value = d->up},
+        {"orbit", 3, -REACH, REACH, .value = d->orbit},
+        {"distance", 1, GLINT_DESCRIPTION_LEAST, REACH, .value = &d->distance},
+        {"yaw", 1, -1e4, 1e4, .value = &d->yaw_deg},
+        {"pitch", 1, -89.9, 89.9, .value = &d->pitch_deg},
+        {0}};
+    struct glint_text at = d->text;
+    bool all;
+
+    d->camera = glint_text_next_word(&at).place;
+    if (!read_field(d, &all))
+        return false;
+    if (all)
+        return true;
+    if (!glint_clauses_read(&d->text, "camera", clause))
+        return false;
+    d->has_orbit = clause[3].place.line > 0;
+    if (d->has_orbit) {
+        for (int i = 0; i < 3; i++)
+            if (clause[i].place.line)
+                return glint_text_fail(&d->text, clause[i].place,
+                                       "'%s' and 'orbit' exclude each other",
+                                       clause[i].word);
+        return clause[4].place.line ||
+               glint_text_fail(&d->text, clause[3].place,
+                               "an orbit needs 'distance'");
+    }
+    for (int i = 4; i < 7; i++)
+        if (clause[i].place.line)
+            return glint_text_fail(&d->text, clause[i].place,
+                                   "'%s' belongs to 'orbit'", clause[i].word);
+    return (clause[0].place.line && clause[1].place.line) ||
+           glint_text_fail(&d->text, d->camera,
+                           "camera needs 'at X Y Z toward X Y Z', or 'orbit'");
+}
+
+/* Sets place and direction of a camera that goes about a point. */
+static void set_orbit(struct glint_describer *d)
+{
+    struct glint_described_camera *c = &d->scene->camera;
+    const double yaw = d->yaw_deg * GLINT_PI / 180;
+    const double pitch = d->pitch_deg * GLINT_PI / 180;
+    /* With yaw 0 the camera looks along the axis that runs into the picture. */
+    const double from[3] = {cos(pitch) * sin(yaw), sin(pitch),
+                            (d->scene->left_handed ? -1 : 1) * cos(pitch) *
+                                cos(yaw)};
+
+    for (int i = 0; i < 3; i++) {
+        c->at[i] = d->orbit[i] + d->distance * from[i];
+        c->forward[i] = -from[i];
+    }
+}
+
+bool glint_describe_axes(struct glint_describer *d)
+{
+    struct glint_described_camera *c = &d->scene->camera;
+    const double hand = d->scene->left_handed ? 1 : -1;
+
+    if (c->field == GLINT_DESCRIBED_CORNERS || !d->camera.line) {
+        /* Row A6 looks along +z; a scene without a camera into the picture. */
+        c->forward[2] = c->field == GLINT_DESCRIBED_CORNERS ? 1 : hand;
+    } else if (d->has_orbit) {
+        set_orbit(d);
+    } else {
+        for (int i = 0; i < 3; i++)
+            c->forward[i] = d->toward[i] - c->at[i];
+    }
+    if (!glint_describe_unit(c->forward))
+        return glint_text_fail(&d->text, d->camera,
+                               "the camera stands where it looks");
+    if (!glint_describe_unit(d->up))
+        return glint_text_fail(&d->text, d->camera, "'up' has no direction");
+    cross(c->forward, d->up, c->right);
+    if (!(dot(c->right, c->right) > LEAST_RIGHT * LEAST_RIGHT))
+        return glint_text_fail(&d->text, d->camera,
+                               "the camera looks along 'up'");
+    glint_describe_unit(c->right);
+    cross(c->right, c->forward, c->up);
+    glint_describe_unit(c->up);
+    if (d->scene->left_handed)
+        for (int i = 0; i < 3; i++)
+            c->right[i] = -c->right[i];
+    return true;
+}

@@ -1,0 +1,347 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/scene/grid.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Cells of a grid for each of its triangles, at most. */
+#define CELLS_EACH 2
+
+/* A corner as the file has it; members that the mesh does not use are 0. */
+struct corner {
+    int32_t place[3], uv_q16[2], normal_q30[3];
+};
+
+/* Triangles of an object as they become a mesh. */
+struct mesher {
+    const struct glint_description *scene;
+    const struct glint_described_object *object;
+    const struct glint_steps *steps;
+    bool has_uv, has_normals;
+    struct corner *corner;
+    struct glint_scene_triangle *triangle;
+    uint32_t *slot; /* [n_slots] vertices by their contents, + 1; 0: free */
+    uint32_t n_slots, n_corners, n_triangles;
+};
+
+/* ----------------------------------------------------------------- corners */
+
+static uint32_t hash(const struct corner *c)
+{
+    const unsigned char *byte = (const unsigned char *)c;
+    uint32_t h = 2166136261u;
+
+    for (size_t i = 0; i < sizeof *c; i++)
+        h = (h ^ byte[i]) * 16777619u;
+    return h ^ h >> 15;
+}
+
+/* Returns the vertex that is C, a new one if there is none. */
+static uint32_t vertex_of(struct mesher *m, const struct corner *c)
+{
+    uint32_t at = hash(c) & (m->n_slots - 1);
+
+    while (m->slot[at]) {
+        if (memcmp(&m->corner[m->slot[at] - 1], c, sizeof *c) == 0)
+            return m->slot[at] - 1;
+        at = (at + 1) & (m->n_slots - 1);
+    }
+    m->corner[m->n_corners] = *c;
+    m->slot[at] = ++m->n_corners;
+    return m->n_corners - 1;
+}
+
+/* Sets N to the unit vector of the triangle's own plane. Without an area, which
+ * rounded places may well have, it is left as it is. */
+static void face_of(const struct glint_described_triangle *t, double n[3])
+{
+    double a[3], b[3], across[3], length;
+
+    for (int i = 0; i < 3; i++) {
+        a[i] = t->place[1][i] - t->place[0][i];
+        b[i] = t->place[2][i] - t->place[0][i];
+    }
+    for (int i = 0; i < 3; i++)
+        across[i] =
+            a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+    length = sqrt(across[0] * across[0] + across[1] * across[1] +
+                  across[2] * across[2]);
+    for (int i = 0; i < 3 && length > 1e-100; i++)
+        n[i] = across[i] / length;
+}
+
+/* Returns whether the triangle of these places has an area. */
+static bool has_area(const struct corner c[3])
+{
+    int64_t a[3], b[3];
+
+    for (int i = 0; i < 3; i++) {
+        a[i] = (int64_t)c[1].place[i] - c[0].place[i];
+        b[i] = (int64_t)c[2].place[i] - c[0].place[i];
+    }
+    return a[1] * b[2] != a[2] * b[1] || a[2] * b[0] != a[0] * b[2] ||
+           a[0] * b[1] != a[1] * b[0];
+}
+
+/* Sets C to the corners of T. Textures repeat, so that whole numbers are taken
+ * off U and V where these are large; the file's V runs down. */
+static void corners_of(const struct mesher *m,
+                       const struct glint_described_triangle *t,
+                       struct corner c[3])
+{
+    double face[3] = {0, 1, 0};
+
+    face_of(t, face);
+    memset(c, 0, 3 * sizeof *c);
+    for (int k = 0; k < 3; k++) {
+        glint_steps_place(m->steps, t->place[k], c[k].place);
+        if (m->has_normals)
+            glint_steps_unit(m->steps, t->has_normals ? t->normal[k] : face,
+                             c[k].normal_q30);
+        for (int i = 0; m->has_uv && t->has_uv && i < 2; i++) {
+            const double off =
+                floor(fmin(t->uv[0][i], fmin(t->uv[1][i], t->uv[2][i])));
+            const double x = t->uv[k][i] - (fabs(off) > 2 ? off : 0);
+
+            c[k].uv_q16[i] = (int32_t)lrint(0x1p16 * (i ? 1 - x : x));
+        }
+    }
+}
+
+static void put_triangle(struct mesher *m,
+                         const struct glint_described_triangle *t,
+                         struct glint_scene_bake_report *report)
+{
+    struct glint_scene_triangle *to = &m->triangle[m->n_triangles];
+    struct corner c[3];
+    /* Corners are clockwise from outside; a mirror changes their order. */
+    const int second = m->steps->hand > 0 ? 1 : 2;
+
+    corners_of(m, t, c);
+    if (!has_area(c)) {
+        report->flat++;
+        return;
+    }
+    to->vertex[0] = vertex_of(m, &c[0]);
+    to->vertex[1] = vertex_of(m, &c[second]);
+    to->vertex[2] = vertex_of(m, &c[3 - second]);
+    to->material = t->material == m->object->material ? GLINT_SCENE_NONE
+                                                      : (uint32_t)t->material;
+    m->n_triangles++;
+}
+
+/* Reads the triangles of the object. Returns false without memory. */
+static bool gather(struct mesher *m, struct glint_scene_bake_report *report)
+{
+    const struct glint_described_triangle *t =
+        m->scene->triangle + m->object->first_triangle;
+    const uint32_t n = (uint32_t)m->object->n_triangles;
+
+    for (uint32_t i = 0; i < n; i++) {
+        m->has_normals |= t[i].has_normals;
+        m->has_uv |= m->scene->material[t[i].material].texture >= 0;
+    }
+    for (m->n_slots = 8; m->n_slots < 6 * n;)
+        m->n_slots *= 2;
+    m->corner = malloc((3 * (size_t)n + 1) * sizeof *m->corner);
+    m->triangle = malloc(((size_t)n + 1) * sizeof *m->triangle);
+    m->slot = calloc(m->n_slots, sizeof *m->slot);
+    if (!m->corner || !m->triangle || !m->slot)
+        return false;
+    for (uint32_t i = 0; i < n; i++)
+        put_triangle(m, &t[i], report);
+    return true;
+}
+
+/* -------------------------------------------------------------------- ball */
+
+/* Sets LOW and HIGH to the box of all vertices, and the ball of MESH to one
+ * that holds them. */
+static void bound(const struct mesher *m, struct glint_scene_mesh *mesh,
+                  int32_t low[3], int32_t high[3])
+{
+    double radius = 0;
+
+    for (int i = 0; i < 3; i++) {
+        low[i] = high[i] = m->n_corners ? m->corner[0].place[i] : 0;
+        for (uint32_t k = 1; k < m->n_corners; k++) {
+            const int32_t x = m->corner[k].place[i];
+
+            low[i] = x < low[i] ? x : low[i];
+            high[i] = x > high[i] ? x : high[i];
+        }
+        mesh->centre[i] = low[i] / 2 + high[i] / 2;
+    }
+    for (uint32_t k = 0; k < m->n_corners; k++) {
+        double square = 0;
+
+        for (int i = 0; i < 3; i++) {
+            const double off = (double)m->corner[k].place[i] - mesh->centre[i];
+
+            square += off * off;
+        }
+        radius = fmax(radius, square);
+    }
+    mesh->radius = (int32_t)ceil(sqrt(radius));
+}
+
+/* -------------------------------------------------------------------- grid */
+
+/* Chooses the cells of MESH over the box from LOW to HIGH: the smallest of
+ * which there are few enough. Returns their number. */
+static uint32_t choose_cells(struct glint_scene_mesh *mesh,
+                             const int32_t low[3], const int32_t high[3])
+{
+    const uint64_t most = CELLS_EACH * (uint64_t)mesh->n_triangles + 1;
+
+    for (mesh->cell_log2 = 4; mesh->cell_log2 < 28; mesh->cell_log2++) {
+        uint64_t n = 1;
+        bool fits = true;
+
+        for (int i = 0; i < 3; i++) {
+            const uint32_t cells =
+                (uint32_t)(((int64_t)high[i] - low[i]) >> mesh->cell_log2) + 1;
+
+            fits = fits && cells <= GLINT_SCENE_MAX_CELLS;
+            n *= fits ? cells : 1;
+        }
+        if (fits && n <= most)
+            break;
+    }
+    for (int i = 0; i < 3; i++) {
+        mesh->origin[i] = low[i];
+        mesh->cells[i] =
+            (uint32_t)(((int64_t)high[i] - low[i]) >> mesh->cell_log2) + 1;
+    }
+    return mesh->cells[0] * mesh->cells[1] * mesh->cells[2];
+}
+
+/* The cells that triangle T touches, with the margin, FROM .. TO along each
+ * axis. */
+static void cells_of(const struct mesher *m,
+                     const struct glint_scene_mesh *mesh,
+                     const struct glint_scene_triangle *t, int32_t from[3],
+                     int32_t to[3])
+{
+    for (int i = 0; i < 3; i++) {
+        const int32_t last = (int32_t)mesh->cells[i] - 1;
+        int64_t low = INT64_MAX, high = INT64_MIN;
+
+        for (int k = 0; k < 3; k++) {
+            const int64_t x =
+                (int64_t)m->corner[t->vertex[k]].place[i] - mesh->origin[i];
+
+            low = x < low ? x : low;
+            high = x > high ? x : high;
+        }
+        low = low - GLINT_SCENE_MARGIN < 0 ? 0 : low - GLINT_SCENE_MARGIN;
+        from[i] = (int32_t)(low >> mesh->cell_log2);
+        to[i] = (int32_t)((high + GLINT_SCENE_MARGIN) >> mesh->cell_log2);
+        from[i] = from[i] > last ? last : from[i];
+        to[i] = to[i] > last ? last : to[i];
+    }
+}
+
+/* Counts each triangle in the cells that it touches, or, if REF is not NULL,
+ * writes it to where START says, which moves on. */
+static void list(const struct mesher *m, const struct glint_scene_mesh *mesh,
+                 uint32_t *start, uint32_t *ref)
+{
+    for (uint32_t i = 0; i < m->n_triangles; i++) {
+        int32_t from[3], to[3];
+
+        cells_of(m, mesh, &m->triangle[i], from, to);
+        for (int32_t z = from[2]; z <= to[2]; z++)
+            for (int32_t y = from[1]; y <= to[1]; y++)
+                for (int32_t x = from[0]; x <= to[0]; x++) {
+                    const uint32_t cell =
+                        ((uint32_t)z * mesh->cells[1] + (uint32_t)y) *
+                            mesh->cells[0] +
+                        (uint32_t)x;
+
+                    if (ref)
+                        ref[start[cell]++] = i;
+                    else
+                        start[cell + 1]++;
+                }
+    }
+}
+
+static bool write_grid(struct glint_draft *draft, const struct mesher *m,
+                       struct glint_scene_mesh *mesh, const int32_t low[3],
+                       const int32_t high[3],
+                       struct glint_scene_bake_report *report)
+{
+    const uint32_t n = choose_cells(mesh, low, high);
+    uint32_t *start = calloc((size_t)n + 1, sizeof *start), *ref = NULL;
+    uint64_t sum = 0;
+
+    if (start) {
+        list(m, mesh, start, NULL);
+        for (uint32_t i = 1; i <= n; i++)
+            start[i] = (uint32_t)(sum += start[i]);
+        if (sum <= UINT32_MAX / 8)
+            ref = malloc(((size_t)sum + 1) * sizeof *ref);
+    }
+    if (ref) {
+        mesh->start_at = glint_draft_put(draft, start, ((size_t)n + 1) * 4);
+        list(m, mesh, start, ref);
+        mesh->ref_at = glint_draft_put(draft, ref, (size_t)sum * 4);
+        report->cells += (int)n;
+        report->refs += (int)sum;
+    }
+    free(start);
+    free(ref);
+    return ref != NULL;
+}
+
+/* ------------------------------------------------------------------ tables */
+
+/* Appends the N numbers at OFFSET of each corner. */
+static uint32_t put_corners(struct glint_draft *draft, const struct mesher *m,
+                            size_t offset, size_t n)
+{
+    const uint32_t at = (uint32_t)draft->bytes;
+
+    for (uint32_t i = 0; i < m->n_corners; i++)
+        glint_draft_put(draft, (const unsigned char *)&m->corner[i] + offset,
+                        n * sizeof(int32_t));
+    return at;
+}
+
+bool glint_grid_write(struct glint_draft *draft,
+                      const struct glint_description *scene,
+                      const struct glint_described_object *object,
+                      const struct glint_steps *steps,
+                      struct glint_scene_mesh *mesh,
+                      struct glint_scene_bake_report *report)
+{
+    struct mesher m = {.scene = scene, .object = object, .steps = steps};
+    int32_t low[3], high[3];
+    bool good = gather(&m, report);
+
+    *mesh = (struct glint_scene_mesh){0};
+    if (good) {
+        mesh->n_vertices = m.n_corners;
+        mesh->n_triangles = m.n_triangles;
+        bound(&m, mesh, low, high);
+        mesh->vertex_at =
+            put_corners(draft, &m, offsetof(struct corner, place), 3);
+        if (m.has_uv)
+            mesh->uv_at =
+                put_corners(draft, &m, offsetof(struct corner, uv_q16), 2);
+        if (m.has_normals)
+            mesh->normal_at =
+                put_corners(draft, &m, offsetof(struct corner, normal_q30), 3);
+        mesh->triangle_at = glint_draft_put(draft, m.triangle,
+                                            m.n_triangles * sizeof *m.triangle);
+        good = write_grid(draft, &m, mesh, low, high, report);
+        report->vertices += (int)m.n_corners;
+        report->triangles += (int)m.n_triangles;
+    }
+    free(m.corner);
+    free(m.triangle);
+    free(m.slot);
+    return good;
+}

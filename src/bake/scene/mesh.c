@@ -1,0 +1,285 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/scene/mesh.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bake/table/text.h"
+
+/* A list of numbers, WIDTH together, that grows. */
+struct list {
+    double *at;
+    int n, room, width;
+};
+
+/* A corner of a face: indices of place, texture and normal, from 0; -1: none.
+ */
+struct corner {
+    int place, uv, normal;
+};
+
+struct reader {
+    struct glint_text text;
+    struct list place, uv, normal;
+    struct glint_mesh *mesh;
+    int room;     /* triangles that there is memory for */
+    int material; /* name of the material now, or -1 */
+    bool out_of_memory;
+};
+
+/* Returns room for one more item of LIST, or NULL. */
+static double *more(struct reader *r, struct list *list)
+{
+    if (list->n == list->room) {
+        const int room = list->room ? 2 * list->room : 256;
+        double *at =
+            realloc(list->at, (size_t)room * (size_t)list->width * sizeof *at);
+
+        if (!at) {
+            r->out_of_memory = true;
+            return NULL;
+        }
+        list->at = at;
+        list->room = room;
+    }
+    return list->at + (ptrdiff_t)list->n++ * list->width;
+}
+
+/* Returns the next word, from the next line if this one ends in a backslash. */
+static struct glint_word next_word(struct reader *r)
+{
+    struct glint_word word = glint_text_next_word(&r->text);
+
+    while (glint_word_is(&word, "\\") && r->text.at == r->text.stop &&
+           glint_text_next_line(&r->text))
+        word = glint_text_next_word(&r->text);
+    return word;
+}
+
+/* Reads an item of LIST, of which the last numbers may be missing: then they
+ * are 0. Numbers behind it, weights and colours, are passed over. */
+static bool read_item(struct reader *r, struct list *list, int least,
+                      const char *what)
+{
+    double *item = more(r, list);
+    char quote[GLINT_QUOTE_BYTES];
+
+    for (int i = 0; item && i < list->width; i++) {
+        const struct glint_word word = next_word(r);
+
+        item[i] = 0.0;
+        if (!word.length && i >= least)
+            continue;
+        if (!word.length)
+            return glint_text_fail(&r->text, word.place,
+                                   "%s takes %d numbers, here are %d", what,
+                                   least, i);
+        if (!glint_word_number_about(&word, &item[i]))
+            return glint_text_fail(&r->text, word.place, "'%s' is not a number",
+                                   glint_word_quote(&word, quote));
+        if (!(fabs(item[i]) <=
+              GLINT_DESCRIPTION_REACH * GLINT_DESCRIPTION_REACH))
+            return glint_text_fail(&r->text, word.place,
+                                   "numbers of a mesh are at most 1e12");
+    }
+    return item != NULL;
+}
+
+/* Reads digits of WORD from *AT on, up to a slash, as an index into LIST.
+ * Nothing before the slash is -1. */
+static bool read_index(struct reader *r, const struct glint_word *word, int *at,
+                       const struct list *list, const char *what, int *index)
+{
+    const bool negative = *at < word->length && word->start[*at] == '-';
+    const int start = *at + negative;
+    long long value = 0;
+    int i = start;
+
+    for (; i < word->length && word->start[i] >= '0' && word->start[i] <= '9';
+         i++)
+        if (value < INT32_MAX)
+            value = 10 * value + (word->start[i] - '0');
+    *at = i;
+    *index = -1;
+    if (i == start && !negative && (i == word->length || word->start[i] == '/'))
+        return true;
+    if (i == start || (i < word->length && word->start[i] != '/')) {
+        char quote[GLINT_QUOTE_BYTES];
+
+        return glint_text_fail(&r->text, word->place,
+                               "corner '%s' is none of V, V/T, V//N and V/T/N",
+                               glint_word_quote(word, quote));
+    }
+    value = negative ? list->n - value : value - 1;
+    if (value < 0 || value >= list->n)
+        return glint_text_fail(
+            &r->text, word->place, "there is no %s %.*s, only %d so far", what,
+            i - start + negative < 12 ? i - start + negative : 12,
+            word->start + start - negative, list->n);
+    *index = (int)value;
+    return true;
+}
+
+static bool read_corner(struct reader *r, const struct glint_word *word,
+                        struct corner *corner)
+{
+    int at = 0;
+
+    *corner = (struct corner){-1, -1, -1};
+    if (!read_index(r, word, &at, &r->place, "corner", &corner->place))
+        return false;
+    if (corner->place < 0)
+        return glint_text_fail(&r->text, word->place, "corner has no place");
+    if (at < word->length) {
+        at++; /* the slash */
+        if (!read_index(r, word, &at, &r->uv, "texture place", &corner->uv))
+            return false;
+    }
+    if (at < word->length) {
+        at++;
+        if (!read_index(r, word, &at, &r->normal, "normal", &corner->normal))
+            return false;
+    }
+    return at == word->length ||
+           glint_text_fail(&r->text, word->place, "corner has more than V/T/N");
+}
+
+static bool put_triangle(struct reader *r, const struct corner *const c[3],
+                         struct glint_text_place place)
+{
+    struct glint_mesh *mesh = r->mesh;
+    struct glint_described_triangle *t;
+
+    if (mesh->n_triangles == GLINT_DESCRIPTION_MAX_TRIANGLES)
+        return glint_text_fail(&r->text, place, "more than %d triangles",
+                               GLINT_DESCRIPTION_MAX_TRIANGLES);
+    if (mesh->n_triangles == r->room) {
+        const int room = r->room ? 2 * r->room : 64;
+
+        t = realloc(mesh->triangle, (size_t)room * sizeof *t);
+        if (!t) {
+            r->out_of_memory = true;
+            return false;
+        }
+        mesh->triangle = t;
+        r->room = room;
+    }
+    t = &mesh->triangle[mesh->n_triangles++];
+    *t = (struct glint_described_triangle){
+        .material = r->material, .has_normals = true, .has_uv = true};
+    for (int k = 0; k < 3; k++) {
+        memcpy(t->place[k], r->place.at + 3 * (ptrdiff_t)c[k]->place,
+               sizeof t->place[k]);
+        if (c[k]->uv < 0)
+            t->has_uv = false;
+        else
+            memcpy(t->uv[k], r->uv.at + 2 * (ptrdiff_t)c[k]->uv,
+                   sizeof t->uv[k]);
+        if (c[k]->normal < 0)
+            t->has_normals = false;
+        else
+            memcpy(t->normal[k], r->normal.at + 3 * (ptrdiff_t)c[k]->normal,
+                   sizeof t->normal[k]);
+    }
+    return true;
+}
+
+static bool read_face(struct reader *r, struct glint_text_place place)
+{
+    struct corner first = {-1, -1, -1}, last = first, now;
+    int n = 0;
+
+    for (;; n++) {
+        const struct glint_word word = next_word(r);
+        const struct corner *const c[3] = {&first, &last, &now};
+
+        if (!word.length)
+            break;
+        if (!read_corner(r, &word, &now) ||
+            (n >= 2 && !put_triangle(r, c, word.place)))
+            return false;
+        if (n == 0)
+            first = now;
+        last = now;
+    }
+    return n >= 3 ||
+           glint_text_fail(&r->text, place,
+                           "a face has 3 corners or more, this %d", n);
+}
+
+static bool read_name(struct reader *r)
+{
+    struct glint_mesh *mesh = r->mesh;
+    const struct glint_word word = glint_text_rest(&r->text);
+    const int n = word.length < GLINT_DESCRIPTION_NAME_BYTES
+                      ? word.length
+                      : GLINT_DESCRIPTION_NAME_BYTES - 1;
+    char name[GLINT_DESCRIPTION_NAME_BYTES] = "";
+
+    r->material = -1;
+    if (!n)
+        return true;
+    memcpy(name, word.start, (size_t)n);
+    for (int i = 0; i < mesh->n_names; i++)
+        if (strcmp(mesh->name[i], name) == 0) {
+            r->material = i;
+            return true;
+        }
+    if (mesh->n_names == GLINT_MESH_MAX_NAMES)
+        return glint_text_fail(&r->text, word.place, "more than %d materials",
+                               GLINT_MESH_MAX_NAMES);
+    memcpy(mesh->name[mesh->n_names], name, sizeof name);
+    r->material = mesh->n_names++;
+    return true;
+}
+
+static bool read_line(struct reader *r)
+{
+    const struct glint_word word = glint_text_next_word(&r->text);
+
+    if (glint_word_is(&word, "v"))
+        return read_item(r, &r->place, 3, "v");
+    if (glint_word_is(&word, "vt"))
+        return read_item(r, &r->uv, 1, "vt");
+    if (glint_word_is(&word, "vn"))
+        return read_item(r, &r->normal, 3, "vn");
+    if (glint_word_is(&word, "f"))
+        return read_face(r, word.place);
+    if (glint_word_is(&word, "usemtl"))
+        return read_name(r);
+    return true;
+}
+
+enum glint_status glint_mesh_read(struct glint_mesh *mesh, const char *text,
+                                  size_t bytes, const char *file_name,
+                                  struct glint_error *error)
+{
+    struct reader r = {.place.width = 3,
+                       .uv.width = 2,
+                       .normal.width = 3,
+                       .mesh = mesh,
+                       .material = -1};
+    bool good = true;
+
+    mesh->n_triangles = mesh->n_names = 0;
+    mesh->triangle = NULL;
+    glint_text_open_data(&r.text, text, bytes, file_name, error);
+    if (bytes > GLINT_DESCRIPTION_MAX_MESH_BYTES)
+        good = glint_text_fail(&r.text, (struct glint_text_place){1, 1},
+                               "a mesh has more than %d bytes",
+                               GLINT_DESCRIPTION_MAX_MESH_BYTES);
+    while (good && glint_text_next_line(&r.text))
+        good = read_line(&r);
+    if (good && !mesh->n_triangles)
+        good = glint_text_fail(&r.text, glint_text_end(&r.text),
+                               "there is no face");
+    free(r.place.at);
+    free(r.uv.at);
+    free(r.normal.at);
+    if (good)
+        return GLINT_OK;
+    free(mesh->triangle);
+    mesh->triangle = NULL;
+    return r.out_of_memory ? GLINT_E_MEMORY : GLINT_E_LENS;
+}

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/scene/steps.h"
+
+#include <math.h>
+
+#include "glint/scene/model.h"
+
+/* log2 of how often the run time reaches as far as what there is: the rest is
+ * for poses, and for planes, which end there: a plane then begins a pixel below
+ * its horizon. */
+#define SHARE_LOG2       2
+#define PLANE_SHARE_LOG2 6
+
+static double largest(const double x[3])
+{
+    return fmax(fabs(x[0]), fmax(fabs(x[1]), fabs(x[2])));
+}
+
+static double length(const double x[3])
+{
+    return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+}
+
+/* Returns how far object O reaches from its own origin, in any direction. */
+static double reach_of(const struct glint_description *scene,
+                       const struct glint_described_object *o)
+{
+    double reach = o->radius;
+
+    /* Twice, as a ball about the middle of the box reaches past its corners,
+     * and its middle lies off the origin. */
+    for (int i = 0; i < o->n_triangles; i++)
+        for (int k = 0; k < 3; k++)
+            reach = fmax(
+                reach,
+                2 * length(scene->triangle[o->first_triangle + i].place[k]));
+    return reach;
+}
+
+struct glint_steps glint_steps_of(const struct glint_description *scene,
+                                  double *reach)
+{
+    struct glint_steps steps = {.hand = scene->left_handed ? 1 : -1};
+    int exponent, share_log2 = SHARE_LOG2;
+
+    *reach = largest(scene->camera.at);
+    for (int i = 0; i < scene->n_lights; i++)
+        if (scene->light[i].kind == GLINT_DESCRIBED_LAMP)
+            *reach = fmax(*reach, fmax(largest(scene->light[i].at),
+                                       scene->light[i].radius));
+    for (int i = 0; i < scene->n_objects; i++) {
+        *reach = fmax(*reach, largest(scene->object[i].at) +
+                                  reach_of(scene, &scene->object[i]));
+        if (scene->object[i].kind == GLINT_DESCRIBED_PLANE)
+            share_log2 = PLANE_SHARE_LOG2;
+    }
+    if (*reach < GLINT_DESCRIPTION_LEAST)
+        *reach = GLINT_DESCRIPTION_LEAST;
+    frexp(*reach, &exponent); /* reach < 2^exponent */
+    steps.unit_log2 = 28 - share_log2 - exponent;
+    steps.scale = ldexp(1, steps.unit_log2);
+    return steps;
+}
+
+void glint_steps_place(const struct glint_steps *steps, const double at[3],
+                       int32_t to[3])
+{
+    for (int i = 0; i < 3; i++)
+        to[i] =
+            (int32_t)lrint(at[i] * steps->scale * (i == 2 ? steps->hand : 1));
+}
+
+void glint_steps_unit(const struct glint_steps *steps, const double x[3],
+                      int32_t to_q30[3])
+{
+    for (int i = 0; i < 3; i++)
+        to_q30[i] = (int32_t)lrint(x[i] * 0x1p30 * (i == 2 ? steps->hand : 1));
+}
+
+void glint_steps_turn(const struct glint_steps *steps, const double turn[4],
+                      int32_t to_q30[4])
+{
+    /* A mirror turns the other way, about the axis that it mirrors. */
+    for (int i = 0; i < 4; i++)
+        to_q30[i] = (int32_t)lrint(turn[i] * 0x1p30 *
+                                   (i == 1 || i == 2 ? steps->hand : 1));
+}
+
+void glint_turn_after(const double a[4], const double b[4], double turn[4])
+{
+    turn[0] = a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3];
+    turn[1] = a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2];
+    turn[2] = a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1];
+    turn[3] = a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0];
+}
+
+void glint_described_upright(const double normal[3], double turn[4])
+{
+    /* 1 + y.n and y x n: twice the cosine and sine of half the angle, times a
+     * length that is taken out. */
+    const double w = 1 + normal[1];
+    const double size =
+        sqrt(w * w + normal[0] * normal[0] + normal[2] * normal[2]);
+
+    turn[2] = 0;
+    if (size < 1e-9) {
+        turn[0] = turn[3] = 0;
+        turn[1] = 1;
+        return;
+    }
+    turn[0] = w / size;
+    turn[1] = normal[2] / size;
+    turn[3] = -normal[0] / size;
+}

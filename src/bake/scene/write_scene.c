@@ -1,0 +1,343 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Writes a baked scene: header, lights, textures, materials, meshes, objects.
+ */
+#include "glint/scene/bake.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bake/scene/grid.h"
+#include "bake/scene/texels.h"
+#include "base/blob.h"
+#include "glint/view.h"
+
+enum { ONE_Q15 = 1 << 15 };
+
+struct writer {
+    const struct glint_description *scene;
+    struct glint_draft draft;
+    struct glint_steps steps;
+    struct glint_scene_header header;
+    struct glint_scene_bake_report *report;
+    struct glint_error *error;
+};
+
+/* ------------------------------------------------------------------ lights */
+
+static struct glint_scene_light
+light_of(const struct writer *w, const struct glint_described_light *light)
+{
+    struct glint_scene_light l = {.kind = GLINT_LIGHT_LAMP};
+    double scale = 1;
+
+    memcpy(l.name, light->name, sizeof l.name);
+    if (light->kind == GLINT_DESCRIBED_SUN) {
+        const double sine = sin(light->radius_deg * GLINT_PI / 180);
+
+        l.kind = GLINT_LIGHT_SUN;
+        glint_steps_unit(&w->steps, light->at, l.toward_q30);
+        l.radius = (int32_t)lrint(sine * 0x1p30);
+        scale = sine * sine;
+    } else {
+        glint_steps_place(&w->steps, light->at, l.at);
+        l.radius = (int32_t)lrint(light->radius * w->steps.scale);
+    }
+    for (int c = 0; c < 3; c++)
+        l.rgb[c] = glint_real_of(scale * light->colour[c]);
+    return l;
+}
+
+static void write_lights(struct writer *w)
+{
+    w->header.n_lights = (uint32_t)w->scene->n_lights;
+    w->header.light_at = (uint32_t)w->draft.bytes;
+    for (int i = 0; i < w->scene->n_lights; i++) {
+        const struct glint_scene_light l = light_of(w, &w->scene->light[i]);
+
+        glint_draft_put(&w->draft, &l, sizeof l);
+    }
+}
+
+/* ---------------------------------------------------------------- textures */
+
+static int log2_of(int power)
+{
+    int n = 0;
+
+    while (power >> n > 1)
+        n++;
+    return n;
+}
+
+/* Writes all levels of IMAGE; each is the mean of the first. Returns false
+ * without memory. */
+static bool write_levels(struct writer *w, const struct glint_image *image)
+{
+    int width = image->width, height = image->height;
+    size_t bytes = 0;
+    uint8_t *mem, *at;
+    bool good = true;
+
+    for (int a = width, b = height;; a = (a + 1) / 2, b = (b + 1) / 2) {
+        bytes += 3 * (size_t)a * (size_t)b;
+        if (a == 1 && b == 1)
+            break;
+    }
+    at = mem = malloc(bytes);
+    if (!mem)
+        return false;
+    memcpy(at, image->plane[0], 3 * (size_t)width * (size_t)height);
+    while (good && (width > 1 || height > 1)) {
+        at += 3 * (size_t)width * (size_t)height;
+        width = (width + 1) / 2;
+        height = (height + 1) / 2;
+        good = glint_texels_resize(at, width, height, image->plane[0],
+                                   image->width, image->height) == GLINT_OK;
+    }
+    glint_draft_put(&w->draft, mem, bytes);
+    free(mem);
+    return good;
+}
+
+static bool write_textures(struct writer *w)
+{
+    const int n = w->scene->n_textures;
+    struct glint_scene_texture t[GLINT_DESCRIPTION_MAX_TEXTURES];
+
+    for (int i = 0; i < n; i++) {
+        const struct glint_image *image = &w->scene->texture[i].image;
+
+        t[i] = (struct glint_scene_texture){(uint32_t)log2_of(image->width),
+                                            (uint32_t)log2_of(image->height),
+                                            (uint32_t)w->draft.bytes};
+        if (!write_levels(w, image))
+            return false;
+    }
+    w->header.n_textures = (uint32_t)n;
+    w->header.texture_at = glint_draft_put(&w->draft, t, (size_t)n * sizeof *t);
+    return true;
+}
+
+/* --------------------------------------------------------------- materials */
+
+static int32_t to_q15(double x)
+{
+    return (int32_t)lrint(x * ONE_Q15);
+}
+
+/* Takes from the largest of WEIGHT_Q15[N] what rounding has put over 1. */
+static void hold_sum(int32_t *const weight_q15[], int n)
+{
+    int32_t sum = 0;
+    int most = 0;
+
+    for (int i = 0; i < n; i++) {
+        sum += *weight_q15[i];
+        most = *weight_q15[i] > *weight_q15[most] ? i : most;
+    }
+    if (sum > ONE_Q15)
+        *weight_q15[most] -= sum - ONE_Q15;
+}
+
+static struct glint_scene_material
+material_of(const struct glint_described_material *from)
+{
+    struct glint_scene_material m = {
+        .ambient_q15 = to_q15(from->ambient),
+        .diffuse_q15 = to_q15(from->diffuse),
+        .specular_q15 = to_q15(from->specular),
+        .reflect_q15 = to_q15(from->reflect),
+        .pass_q15 = to_q15(from->pass),
+        .rgb_q15 = {to_q15(from->colour[0]), to_q15(from->colour[1]),
+                    to_q15(from->colour[2])},
+        .power_q8 = (int32_t)lrint(256 * from->power),
+        .index_q16 = (int32_t)lrint(0x1p16 * from->index),
+        .texture =
+            from->texture < 0 ? GLINT_SCENE_NONE : (uint32_t)from->texture};
+    int32_t *const phong[] = {&m.ambient_q15, &m.diffuse_q15, &m.specular_q15};
+    int32_t *const next[] = {&m.reflect_q15, &m.pass_q15};
+
+    memcpy(m.name, from->name, sizeof m.name);
+    hold_sum(phong, 3);
+    hold_sum(next, 2);
+    return m;
+}
+
+static void write_materials(struct writer *w)
+{
+    /* What stands for the material of catchers where there is none. */
+    const struct glint_scene_material none = {.name = "none",
+                                              .power_q8 = 256,
+                                              .index_q16 = 1 << 16,
+                                              .texture = GLINT_SCENE_NONE};
+    const int n = w->scene->n_materials;
+
+    w->header.n_materials = (uint32_t)(n ? n : 1);
+    w->header.material_at = (uint32_t)w->draft.bytes;
+    for (int i = 0; i < n; i++) {
+        const struct glint_scene_material m =
+            material_of(&w->scene->material[i]);
+
+        glint_draft_put(&w->draft, &m, sizeof m);
+    }
+    if (!n)
+        glint_draft_put(&w->draft, &none, sizeof none);
+}
+
+/* ----------------------------------------------------------------- objects */
+
+static bool write_meshes(struct writer *w)
+{
+    const struct glint_description *s = w->scene;
+    struct glint_scene_mesh *mesh =
+        malloc(((size_t)s->n_objects + 1) * sizeof *mesh);
+    bool good = mesh != NULL;
+    uint32_t n = 0;
+
+    for (int i = 0; good && i < s->n_objects; i++)
+        if (s->object[i].n_triangles)
+            good = glint_grid_write(&w->draft, s, &s->object[i], &w->steps,
+                                    &mesh[n++], w->report);
+    w->header.n_meshes = n;
+    if (good)
+        w->header.mesh_at = glint_draft_put(&w->draft, mesh, n * sizeof *mesh);
+    free(mesh);
+    return good;
+}
+
+/* Sets O to object FROM, whose mesh, if it has one, is MESH. */
+static bool set_object(const struct writer *w,
+                       const struct glint_described_object *from, uint32_t mesh,
+                       struct glint_scene_object *o)
+{
+    double upright[4], turn[4];
+
+    memcpy(o->name, from->name, sizeof o->name);
+    memcpy(turn, from->turn, sizeof turn);
+    o->material = (uint32_t)(from->material < 0 ? 0 : from->material);
+    glint_steps_place(&w->steps, from->at, o->at);
+    switch (from->kind) {
+    case GLINT_DESCRIBED_SPHERE:
+        o->kind = GLINT_OBJECT_SPHERE;
+        o->radius = (int32_t)lrint(from->radius * w->steps.scale);
+        if (o->radius < 1) {
+            snprintf(w->error->text, sizeof w->error->text,
+                     "sphere %s is too small, %g, beside how far the scene "
+                     "reaches, %g",
+                     from->name, from->radius, w->report->reach);
+            return false;
+        }
+        break;
+    case GLINT_DESCRIBED_PLANE:
+        o->kind = GLINT_OBJECT_PLANE;
+        o->catcher_q15 = to_q15(from->catcher);
+        glint_described_upright(from->normal, upright);
+        glint_turn_after(from->turn, upright, turn);
+        break;
+    default:
+        o->kind = GLINT_OBJECT_MESH;
+        o->mesh = mesh;
+        if (from->material < 0) /* each triangle has its own */
+            o->material =
+                (uint32_t)w->scene->triangle[from->first_triangle].material;
+    }
+    glint_steps_turn(&w->steps, turn, o->turn_q30);
+    return true;
+}
+
+static bool write_objects(struct writer *w)
+{
+    uint32_t mesh = 0;
+
+    w->header.n_objects = (uint32_t)w->scene->n_objects;
+    w->header.object_at = (uint32_t)w->draft.bytes;
+    for (int i = 0; i < w->scene->n_objects; i++) {
+        struct glint_scene_object o = {.kind = 0};
+
+        if (!set_object(w, &w->scene->object[i], mesh, &o))
+            return false;
+        mesh += w->scene->object[i].n_triangles > 0;
+        glint_draft_put(&w->draft, &o, sizeof o);
+    }
+    return true;
+}
+
+/* ------------------------------------------------------------------ header */
+
+static struct glint_scene_camera camera_of(const struct writer *w)
+{
+    const struct glint_described_camera *from = &w->scene->camera;
+    struct glint_scene_camera c = {.kind = GLINT_CAMERA_LENS};
+
+    glint_steps_place(&w->steps, from->at, c.at);
+    glint_steps_unit(&w->steps, from->right, c.axis_q30[0]);
+    glint_steps_unit(&w->steps, from->up, c.axis_q30[1]);
+    glint_steps_unit(&w->steps, from->forward, c.axis_q30[2]);
+    if (from->field == GLINT_DESCRIBED_FIELD) {
+        c.kind = GLINT_CAMERA_FIELD;
+        c.tan_x_q24 =
+            (int32_t)lrint(0x1p24 * tan(from->fov_deg * GLINT_PI / 360));
+    } else if (from->field == GLINT_DESCRIBED_CORNERS) {
+        c.kind = GLINT_CAMERA_CORNERS;
+        c.tan_x_q24 = (int32_t)lrint(0x1p24 * .8); /* 8, 4.5 at 10: row A6 */
+        c.tan_y_q24 = (int32_t)lrint(0x1p24 * .45);
+    }
+    return c;
+}
+
+static void set_header(struct writer *w, const char *name, uint64_t key)
+{
+    const struct glint_description *s = w->scene;
+    struct glint_scene_header *h = &w->header;
+
+    h->magic = GLINT_SCENE_MAGIC;
+    h->version = GLINT_SCENE_VERSION;
+    h->variant = w->scene->left_handed ? GLINT_HAND_LEFT : GLINT_HAND_RIGHT;
+    h->key[0] = (uint32_t)key;
+    h->key[1] = (uint32_t)(key >> 32);
+    glint_draft_name(h->name, name, "scene");
+    h->unit_log2 = w->steps.unit_log2;
+    h->shadow = s->has_shadows;
+    h->background = GLINT_BACKGROUND_CAMERA;
+    if (s->background == GLINT_BEHIND_COLOUR) {
+        h->background = GLINT_BACKGROUND_COLOUR;
+        for (int c = 0; c < 3; c++)
+            h->background_q15[c] = to_q15(s->background_colour[c]);
+    }
+    h->camera = camera_of(w);
+    h->flare = s->flare != GLINT_DESCRIBED_FLARE_OFF;
+    h->highlights = (uint32_t)s->n_highlights;
+}
+
+enum glint_status glint_scene_bake(const struct glint_description *scene,
+                                   const char *name, uint64_t key,
+                                   unsigned char **data, size_t *bytes,
+                                   struct glint_scene_bake_report *report,
+                                   struct glint_error *error)
+{
+    struct writer w = {.scene = scene, .report = report, .error = error};
+    bool good;
+
+    *report = (struct glint_scene_bake_report){0};
+    error->text[0] = '\0';
+    w.steps = glint_steps_of(scene, &report->reach);
+    report->step = 1 / w.steps.scale;
+    glint_draft_put(&w.draft, NULL, sizeof w.header);
+    write_lights(&w);
+    good = write_textures(&w);
+    write_materials(&w);
+    good = good && write_meshes(&w) && write_objects(&w);
+    set_header(&w, name, key);
+    glint_draft_amend(&w.draft, 0, &w.header, sizeof w.header);
+    if (!good || w.draft.out_of_memory) {
+        free(w.draft.data);
+        return error->text[0] ? GLINT_E_LENS : GLINT_E_MEMORY;
+    }
+    glint_blob_seal(w.draft.data, w.draft.bytes);
+    *data = w.draft.data;
+    *bytes = w.draft.bytes;
+    return GLINT_OK;
+}

@@ -1,0 +1,275 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/table/coatings.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const struct glint_text_range nm_range = {"coating wavelength", 100,
+                                                 5000};
+static const struct glint_text_range index_range = {"coating index", 1.01, 4};
+static const struct glint_text_range quarters_range = {"coating thickness",
+                                                       0.01, 16};
+
+/* ------------------------------------------------------------------- names */
+
+/* Indices are those of magnesium fluoride 1.38, aluminium oxide 1.63 to 1.69,
+ * as it is evaporated, and zirconium oxide 2.1. The layer of 1.38 by itself and
+ * two quarters are in every textbook; three layers of a quarter, a half and a
+ * quarter are those of Cox, Hass and Thelen, Triple-layer antireflection
+ * coatings on glass for the visible and near infrared, JOSA 52(9), 1962. Four
+ * layers have two materials, the half wave's inner neighbour being a thin pair
+ * of both; their thicknesses are those that reflect least from 420 to 680 nm
+ * on glasses of 1.52 to 1.7, searched for. */
+static const struct {
+    const char *name;
+    struct glint_coating coating;
+} named[] = {
+    {"v-coat", {550, 2, {{GLINT_MGF2_INDEX, 1}, {1.69, 1}}}},
+    {"broadband-3", {520, 3, {{GLINT_MGF2_INDEX, 1}, {2.1, 2}, {1.63, 1}}}},
+    {"broadband-4",
+     {520,
+      4,
+      {{GLINT_MGF2_INDEX, 1.01},
+       {2.1, 2.2},
+       {GLINT_MGF2_INDEX, 0.31},
+       {2.1, 0.26}}}},
+};
+
+const char *glint_coating_named(int k, struct glint_coating *coating)
+{
+    if (k < 0 || k >= (int)(sizeof named / sizeof *named))
+        return NULL;
+    *coating = named[k].coating;
+    return named[k].name;
+}
+
+void glint_coating_single(struct glint_coating *coating, double nm)
+{
+    *coating = (struct glint_coating){nm, 1, {{GLINT_MGF2_INDEX, 1}}};
+}
+
+/* ----------------------------------------------------------------- reading */
+
+/* Cuts WORD before the first SIGN; returns what follows it, of length 0 if
+ * there is no sign and negative if nothing follows. */
+static struct glint_word cut(struct glint_word *word, char sign)
+{
+    const char *found = word->length > 0
+                            ? memchr(word->start, sign, (size_t)word->length)
+                            : NULL;
+    struct glint_word rest = *word;
+    const int length = found ? (int)(found - word->start) : word->length;
+
+    rest.start += length;
+    rest.length -= length;
+    rest.place.column += length;
+    if (found) {
+        word->length = length;
+        rest.start++;
+        rest.length--;
+        rest.place.column++;
+        if (rest.length == 0)
+            rest.length = -1;
+    }
+    return rest;
+}
+
+/* Reads WORD as a number in RANGE; a word of length -1 is missing. */
+static bool read_value(const struct glint_text *text, struct glint_word word,
+                       const struct glint_text_range *range, double *value)
+{
+    if (word.length < 0)
+        word.length = 0;
+    return glint_text_value_of(text, &word, range, value);
+}
+
+/* Reads "none", a name or a wavelength. TAKES: how many words may follow. */
+static bool read_kind(const struct glint_text *text,
+                      const struct glint_word *word,
+                      struct glint_coating *coating, int *takes)
+{
+    char quote[GLINT_QUOTE_BYTES];
+    double nm;
+
+    memset(coating, 0, sizeof *coating);
+    *takes = 0;
+    if (glint_word_is(word, "none"))
+        return true;
+    *takes = 1;
+    for (size_t k = 0; k < sizeof named / sizeof *named; k++)
+        if (glint_word_is(word, named[k].name)) {
+            *coating = named[k].coating;
+            return true;
+        }
+    if (word->length > 0 && word->start[0] >= 'a' && word->start[0] <= 'z')
+        return glint_text_fail(text, word->place,
+                               "no coating is called '%s'; there are none, %s, "
+                               "%s, %s and wavelengths",
+                               glint_word_quote(word, quote), named[0].name,
+                               named[1].name, named[2].name);
+    if (!read_value(text, *word, &nm_range, &nm))
+        return false;
+    glint_coating_single(coating, nm);
+    *takes = GLINT_MAX_FILMS;
+    return true;
+}
+
+/* Reads what follows the kind of COATING: word number AT. */
+static bool read_more(const struct glint_text *text, struct glint_word word,
+                      bool is_named, int at, struct glint_coating *coating)
+{
+    struct glint_film *film = &coating->film[at];
+    struct glint_word quarters;
+
+    if (is_named)
+        return read_value(text, word, &nm_range, &coating->nm);
+    quarters = cut(&word, ':');
+    film->quarters = 1;
+    coating->n_films = at + 1;
+    return read_value(text, word, &index_range, &film->index) &&
+           (quarters.length == 0 ||
+            read_value(text, quarters, &quarters_range, &film->quarters));
+}
+
+/* The parts of a coating: words of the line, or of one word what slashes
+ * divide. */
+struct parts {
+    struct glint_text *text;
+    bool in_word;
+    struct glint_word rest; /* what is left of the word */
+};
+
+static struct glint_word next_part(struct parts *parts)
+{
+    struct glint_word part = parts->rest;
+
+    if (!parts->in_word)
+        return glint_text_next_word(parts->text);
+    parts->rest = cut(&part, '/');
+    if (part.length == 0 && parts->rest.length)
+        part.length = -1; /* nothing between two slashes */
+    return part;
+}
+
+static bool read_parts(struct parts *parts, struct glint_coating *coating)
+{
+    struct glint_word part = next_part(parts);
+    int takes;
+
+    if (!read_kind(parts->text, &part, coating, &takes))
+        return false;
+    for (int at = 0; at < takes; at++) {
+        part = next_part(parts);
+        if (!part.length)
+            return true;
+        if (!read_more(parts->text, part, takes == 1, at, coating))
+            return false;
+    }
+    if (takes < GLINT_MAX_FILMS)
+        return true;
+    part = next_part(parts);
+    return !part.length ||
+           glint_text_fail(parts->text, part.place, "more than %d films",
+                           GLINT_MAX_FILMS);
+}
+
+bool glint_coating_read(struct glint_text *text, struct glint_coating *coating)
+{
+    struct parts parts = {.text = text};
+
+    return read_parts(&parts, coating);
+}
+
+static bool read_word(struct glint_text *text, struct glint_word word,
+                      struct glint_coating *coating)
+{
+    struct parts parts = {text, true, word};
+    char quote[GLINT_QUOTE_BYTES];
+
+    if (!read_parts(&parts, coating))
+        return false;
+    return !parts.rest.length ||
+           glint_text_fail(text, parts.rest.place,
+                           "'%s' is more than the coating takes",
+                           glint_word_quote(&parts.rest, quote));
+}
+
+bool glint_coatings_read(struct glint_text *text,
+                         struct glint_coating coatings[GLINT_MAX_COATINGS],
+                         int *n)
+{
+    struct glint_word word = glint_text_next_word(text);
+
+    *n = 0;
+    do {
+        if (*n == GLINT_MAX_COATINGS)
+            return glint_text_fail(text, word.place, "more than %d coatings",
+                                   GLINT_MAX_COATINGS);
+        if (!read_word(text, word, &coatings[*n]))
+            return false;
+        ++*n;
+        word = glint_text_next_word(text);
+    } while (word.length);
+    return true;
+}
+
+enum glint_status
+glint_coatings_parse(struct glint_coating coatings[GLINT_MAX_COATINGS], int *n,
+                     const char *text, struct glint_error *error)
+{
+    struct glint_coating read[GLINT_MAX_COATINGS];
+    struct glint_error found = {""};
+    struct glint_text line;
+    char words[GLINT_LINE_BYTES + 1];
+    const int length = snprintf(words, sizeof words, "%s", text);
+    int n_read;
+
+    if (length >= (int)sizeof words) {
+        snprintf(error->text, sizeof error->text,
+                 "coatings take at most %d characters", GLINT_LINE_BYTES);
+        return GLINT_E_ARGUMENT;
+    }
+    for (char *c = words; *c; c++)
+        *c = (char)(*c == ',' ? ' ' : *c == ' ' ? ',' : *c);
+    if (!glint_text_open(&line, words, (size_t)length, "", &found) ||
+        !glint_text_next_line(&line) ||
+        !glint_coatings_read(&line, read, &n_read)) {
+        const char *cause = strstr(found.text, ": ");
+
+        snprintf(error->text, sizeof error->text, "%.150s",
+                 cause ? cause + 2 : "there is no coating");
+        return GLINT_E_ARGUMENT;
+    }
+    memcpy(coatings, read, (size_t)n_read * sizeof *coatings);
+    *n = n_read;
+    return GLINT_OK;
+}
+
+/* ----------------------------------------------------------------- dealing */
+
+int glint_coatings_mixed(struct glint_coating coatings[GLINT_MAX_COATINGS])
+{
+    /* 1080 is a half wave in the middle of the band, which reflects green */
+    static const double nm[] = {450, 620, 1080, 520, 680, 490, 560};
+    enum { N = sizeof nm / sizeof *nm };
+
+    for (int i = 0; i < N; i++)
+        glint_coating_single(&coatings[i], nm[i]);
+    return N;
+}
+
+void glint_prescription_coat(struct glint_prescription *lens,
+                             const struct glint_coating *coatings, int n)
+{
+    int dealt = 0;
+
+    for (int k = 0; k < lens->n_surfaces; k++) {
+        struct glint_surface *s = &lens->surface[k];
+        const bool cemented = k > 0 && s[-1].vd > 0.0 && s->vd > 0.0;
+
+        if (cemented)
+            memset(&s->coating, 0, sizeof s->coating);
+        else
+            s->coating = coatings[dealt++ % n];
+    }
+}

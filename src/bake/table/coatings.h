@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Reads coatings of a lens table: the words of a `coating`, and those of
+ * `mixed-coating`, one word a coating. */
+#ifndef GLINT_BAKE_TABLE_COATINGS_H
+#define GLINT_BAKE_TABLE_COATINGS_H
+
+#include "bake/table/text.h"
+#include "glint/prescription.h"
+
+#define GLINT_MGF2_INDEX 1.38
+
+/* Sets COATING to one quarter of NM of magnesium fluoride. */
+void glint_coating_single(struct glint_coating *coating, double nm);
+
+/* Reads a coating from the rest of the line: "none", NAME [NM] or
+ * NM [INDEX[:QUARTERS]]... A word that is none of it is left. If it returns
+ * false the error is written, as below. */
+bool glint_coating_read(struct glint_text *text, struct glint_coating *coating);
+
+/* Reads coatings from the rest of the line, at least one word, to its end. */
+bool glint_coatings_read(struct glint_text *text,
+                         struct glint_coating coatings[GLINT_MAX_COATINGS],
+                         int *n);
+
+#endif

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The veil of a frame: the share of all light that lens and dirt spread. */
+#ifndef GLINT_ENGINE_FRAME_FRAME_VEIL_H
+#define GLINT_ENGINE_FRAME_FRAME_VEIL_H
+
+#include <stdbool.h>
+
+#include "engine/frame/front.h"
+#include "glint/bake.h"
+#include "glint/dials.h"
+#include "veil/glare.h"
+
+struct glint_frame;
+
+struct glint_frame_veil {
+    /* Share of all light that is veiling glare of the lens, as of ISO 9358,
+     * spread over the whole picture, and share that dirt on the front element
+     * spreads by 1 to 10 degrees. 0: none. */
+    double glare, haze;
+    /* What lies on the front element, which spreads light as haze is, but in
+     * discs; the caller's. NULL: nothing. */
+    const struct glint_front_dirt *front;
+    /* [n]: what each lamp has above the light that the picture shows of it, in
+     * white times pixels; NULL: all of its power. */
+    const double *excess;
+    /* Factor on the veil where it is drawn alone, rather than that on the
+     * flare; 0: the same. */
+    double alone_gain;
+
+    /* Private. */
+    struct glint_veil *veil; /* NULL: there is none yet */
+    void *mem;
+    size_t bytes;   /* of MEM */
+    bool has_front; /* true: VEIL has room for what lies on the front */
+    /* Of FRONT, and what it was made for. */
+    struct glint_front_table *table;
+    const struct glint_front_dirt *table_of;
+    struct glint_front_optics table_for;
+    bool has_look; /* true: the picture has been looked at for this frame */
+    bool is_set;   /* true: the veil is set for this frame */
+};
+
+/* Returns whether FRAME has a veil. */
+bool glint_frame_has_veil(const struct glint_frame *frame);
+
+/* Takes memory for the veil, and makes the table of what lies on the front
+ * element unless it is there for the frame's stop. Does nothing if there is no
+ * veil. GLINT_E_MEMORY. */
+enum glint_status glint_frame_veil_hold(struct glint_frame *frame);
+
+/* Takes the light of IMAGE, whose white is WHITE, for the next frame that is
+ * drawn, if that is drawn onto another picture; else drawing does so. Does
+ * nothing without a veil. GLINT_E_MEMORY. */
+enum glint_status glint_frame_veil_look(struct glint_frame *frame,
+                                        const struct glint_image *image,
+                                        double white);
+
+/* Sets the veil of IMAGE, if that has not been looked at before, and LAMPS.
+ * Does nothing without a veil. GLINT_E_MEMORY. */
+enum glint_status glint_frame_veil_set(struct glint_frame *frame,
+                                       const struct glint_lamp *lamps, int n,
+                                       const struct glint_image *image);
+
+/* Adds the veil that is set for this frame, times TIMES, to RGB, linear light;
+ * all that LINEAR_Q20, as large, holds is lost. Does nothing if none is set. */
+void glint_frame_veil_add(struct glint_frame *frame, double times,
+                          int32_t *linear_q20, float *rgb);
+
+/* Adds the veil of LAMPS alone, times GAIN, to RGB, linear light. */
+enum glint_status glint_frame_veil_alone(struct glint_frame *frame,
+                                         const struct glint_lamp *lamps, int n,
+                                         double gain, int32_t *linear_q20,
+                                         float *rgb);
+
+void glint_frame_veil_finish(struct glint_frame_veil *veil);
+
+/* Returns what the veil of FRAME costs, as a number of pixels under it. */
+double glint_frame_veil_pixels(const struct glint_frame *frame);
+
+#endif

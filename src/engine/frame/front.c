@@ -1,0 +1,326 @@
+/* SPDX-License-Identifier: MIT */
+#include "engine/frame/front.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "engine/setup/dust.h"
+#include "engine/setup/entrance.h"
+#include "engine/setup/iris.h"
+
+enum { SIDE = GLINT_FRONT_SIDE, LEAST_CHORDS = 24, MOST_CHORDS = 96 };
+
+/* ---------------------------------------------------------------- the front */
+
+/* Returns the mask's covered share at (X, Y), by its nearest pixel. */
+static double covered_by_mask(const struct glint_front *f, double x, double y)
+{
+    const int i = (int)(0.5 * (x + 1) * f->mask_width);
+    const int j = (int)(0.5 * (1 - y) * f->mask_height);
+
+    return f->mask ? 1 - f->mask[(ptrdiff_t)j * f->mask_width + i] / 255. : 0;
+}
+
+/* Sets the sums along the rows of DIRT; beyond the rim nothing is covered. */
+static void cover(struct glint_front_dirt *dirt, const struct glint_front *f,
+                  const struct glint_dust *dust)
+{
+    for (int j = 0; j < SIDE; j++) {
+        float *row = dirt->along + (ptrdiff_t)j * (SIDE + 1);
+        const double y = (2 * j + 1.) / SIDE - 1;
+        double sum = 0;
+
+        row[0] = 0;
+        for (int i = 0; i < SIDE; i++) {
+            const double x = (2 * i + 1.) / SIDE - 1;
+
+            if (x * x + y * y < 1)
+                sum += 1 - glint_dust_through(dust, x, y) *
+                               (1 - covered_by_mask(f, x, y));
+            row[i + 1] = (float)sum;
+        }
+    }
+}
+
+static const struct glint_front_method method;
+
+static const char *check(const struct glint_front *f)
+{
+    if (!(f->dust >= 0 && f->dust <= 0.5))
+        return "dust covers 0 to 0.5 of the front element";
+    if (f->mask && (f->mask_width < 2 || f->mask_height < 2))
+        return "a mask has 2 pixels a side at least";
+    return NULL;
+}
+
+enum glint_status glint_front_make(struct glint_front_dirt **dirt,
+                                   const struct glint_front *front,
+                                   struct glint_error *error)
+{
+    const char *wrong = check(front);
+    struct glint_dust *dust;
+    struct glint_front_dirt *d;
+
+    *dirt = NULL;
+    if (wrong) {
+        snprintf(error->text, sizeof error->text, "%s", wrong);
+        return GLINT_E_ARGUMENT;
+    }
+    if (!(front->dust > 0) && !front->mask)
+        return GLINT_OK;
+    dust = malloc(sizeof *dust);
+    d = malloc(sizeof *d + sizeof *d->along * SIDE * (SIDE + 1));
+    if (dust && d) {
+        d->method = &method;
+        d->along = (float *)(void *)(d + 1);
+        glint_dust_strew(dust, front->dust, front->dust_seed);
+        cover(d, front, dust);
+        *dirt = d;
+    } else {
+        free(d);
+        snprintf(error->text, sizeof error->text, "not enough memory");
+    }
+    free(dust);
+    return *dirt ? GLINT_OK : GLINT_E_MEMORY;
+}
+
+void glint_front_free(struct glint_front_dirt *dirt)
+{
+    free(dirt);
+}
+
+/* ---------------------------------------------------------------- the stop */
+
+/* The stop as chords along x, all of the same height. */
+struct chords {
+    int n;
+    double y[MOST_CHORDS], from[MOST_CHORDS], to[MOST_CHORDS]; /* stop radii */
+    double all; /* sum of their lengths */
+};
+
+/* Sets chords of SETUP's stop for one of RADIUS radii of the front: one for
+ * each row of cells, if that many are enough. */
+static void set_chords(struct chords *c, const struct glint_setup *setup,
+                       double radius)
+{
+    enum { STEPS = 512 };
+    struct glint_iris_sides sides;
+
+    glint_iris_sides(&sides, setup);
+    c->n = (int)fmin(fmax(radius * SIDE, LEAST_CHORDS), MOST_CHORDS);
+    c->all = 0;
+    for (int k = 0; k < c->n; k++) {
+        int first = STEPS, last = -1;
+
+        c->y[k] = (2 * k + 1.) / c->n - 1;
+        for (int i = 0; i < STEPS; i++)
+            if (glint_iris_depth(&sides, (2 * i + 1.) / STEPS - 1, c->y[k]) >=
+                0) {
+                first = i < first ? i : first;
+                last = i;
+            }
+        c->from[k] = 2. * first / STEPS - 1;
+        c->to[k] = first > last ? c->from[k] : 2. * (last + 1) / STEPS - 1;
+        c->all += c->to[k] - c->from[k];
+    }
+}
+
+/* Returns the sum of what is covered of a row of cells up to X, in cells. */
+static double sum_to(const float *row, double x)
+{
+    const double at = fmin(fmax(x, 0), SIDE);
+    const int i = (int)fmin(at, SIDE - 1);
+
+    return (double)row[i] + (at - i) * (double)(row[i + 1] - row[i]);
+}
+
+/* Returns what is covered of chord K, moved to MIDDLE, at row J. */
+static double on_row(const struct glint_front_dirt *d, const struct chords *c,
+                     int k, double scale, double middle, int j)
+{
+    const float *row = d->along + (ptrdiff_t)j * (SIDE + 1);
+
+    return j < 0 || j >= SIDE ? 0
+                              : sum_to(row, middle + scale * c->to[k]) -
+                                    sum_to(row, middle + scale * c->from[k]);
+}
+
+/* Returns the mean of what is covered over the stop about (X, Y) of the front,
+ * in its radii; the stop has RADIUS of these. */
+static double mean_about(const struct glint_front_dirt *d,
+                         const struct chords *c, double radius, double x,
+                         double y)
+{
+    const double half = 0.5 * SIDE, middle = (x + 1) * half;
+    const double scale = radius * half;
+    double sum = 0;
+
+    for (int k = 0; k < c->n; k++) {
+        const double at = (y + radius * c->y[k] + 1) * half - 0.5;
+        const int j = (int)floor(fmin(fmax(at, -2), SIDE));
+        const double low = on_row(d, c, k, scale, middle, j);
+        const double high = on_row(d, c, k, scale, middle, j + 1);
+
+        sum += low + (fmin(fmax(at, -2), SIDE) - j) * (high - low);
+    }
+    return sum / (c->all * scale);
+}
+
+/* --------------------------------------------------------------- the table */
+
+/* A stop of less than a cell is as good as one of a cell. */
+static void optics_of(struct glint_front_optics *o,
+                      const struct glint_setup *setup,
+                      const struct glint_lens *lens,
+                      const struct glint_view *view)
+{
+    const struct glint_entrance e = glint_entrance_of(setup, lens);
+    const double front = fmax(e.front_mm, setup->optics.entrance_radius_mm);
+
+    *o = (struct glint_front_optics){
+        .tangent = glint_view_pixel_tangent(view, fabs(setup->optics.focal_mm)),
+        .z = e.z_mm / front,
+        .radius = fmax(setup->optics.entrance_radius_mm / front, 2. / SIDE),
+        .width = view->width,
+        .height = view->height,
+        .n_blades = setup->n_blades,
+        .rotation_deg = setup->blade_rotation_deg,
+        .roundness = setup->iris.roundness};
+}
+
+/* Returns the place on the front, in its radii, that the middle of the stop is
+ * seen through from pixel AT of N, along x or, turned, y. */
+static double seen_at(const struct glint_front_optics *o, double at, int n)
+{
+    return -o->z * o->tangent * (at - 0.5 * n);
+}
+
+/* Returns how many nodes apart places are enough, 2^n: discs have 16 of these
+ * to a radius. */
+static int apart(const struct glint_front_optics *o)
+{
+    const double disc =
+        o->radius / (fabs(o->z * o->tangent) * GLINT_VEIL_FRONT_PX * 16 + 1e-9);
+    int n = 1;
+
+    while (2 * n <= disc && n < 64)
+        n *= 2;
+    return n;
+}
+
+/* Sets COVERED at every STEP-th node, and straight between them. */
+static void set_covered(double *covered, int n_x, int n_y,
+                        const struct glint_front_dirt *dirt,
+                        const struct glint_front_optics *o,
+                        const struct glint_setup *setup)
+{
+    const int step = apart(o);
+    struct chords chords;
+
+    set_chords(&chords, setup, o->radius);
+    for (int j = 0; j < n_y; j += step)
+        for (int i = 0; i < n_x; i += step)
+            covered[j * n_x + i] =
+                mean_about(dirt, &chords, o->radius,
+                           seen_at(o, GLINT_VEIL_FRONT_PX * i, o->width),
+                           -seen_at(o, GLINT_VEIL_FRONT_PX * j, o->height));
+    /* what lies beyond the last of them is as that is */
+    for (int j = 0; j < n_y; j += step)
+        for (int i = 0; i < n_x; i++) {
+            const int from = i - i % step;
+            const int to = from + step < n_x ? from + step : from;
+            const double *row = covered + (ptrdiff_t)j * n_x;
+
+            if (i != from)
+                covered[j * n_x + i] =
+                    row[from] + (row[to] - row[from]) * (i - from) / step;
+        }
+    for (int j = 0; j < n_y; j++)
+        for (int i = 0; i < n_x && j % step; i++) {
+            const int from = j - j % step;
+            const int to = from + step < n_y ? from + step : from;
+            const double low = covered[from * n_x + i];
+
+            covered[j * n_x + i] =
+                low + (covered[to * n_x + i] - low) * (j - from) / step;
+        }
+}
+
+static void set_nodes(struct glint_front_table *t, const double *covered,
+                      uint16_t *part_q16)
+{
+    const int n = t->front.n_x * t->front.n_y;
+    double sum = 0;
+
+    t->most = 1e-9;
+    for (int i = 0; i < n; i++) {
+        sum += covered[i];
+        t->most = fmax(t->most, covered[i]);
+    }
+    t->mean = sum / n;
+    for (int i = 0; i < n; i++)
+        part_q16[i] = (uint16_t)lrint(65535 * covered[i] / t->most);
+}
+
+static enum glint_status make_table(struct glint_front_table **table,
+                                    const struct glint_front_dirt *dirt,
+                                    const struct glint_front_optics *optics,
+                                    const struct glint_setup *setup)
+{
+    const int n_x = GLINT_VEIL_FRONT_NODES(optics->width);
+    const int n_y = GLINT_VEIL_FRONT_NODES(optics->height);
+    const size_t n = (size_t)n_x * (size_t)n_y;
+    double *covered = calloc(n, sizeof *covered);
+    struct glint_front_table *t;
+
+    *table = t = malloc(sizeof *t + n * sizeof(uint16_t));
+    if (!t || !covered) {
+        free(t);
+        free(covered);
+        *table = NULL;
+        return GLINT_E_MEMORY;
+    }
+    t->bytes = sizeof *t + n * sizeof(uint16_t);
+    t->front =
+        (struct glint_veil_front){glint_veil_front_row, n_x, n_y,
+                                  (const uint16_t *)(const void *)(t + 1)};
+    set_covered(covered, n_x, n_y, dirt, optics, setup);
+    set_nodes(t, covered, (uint16_t *)(void *)(t + 1));
+    free(covered);
+    return GLINT_OK;
+}
+
+static const struct glint_front_method method = {optics_of, make_table,
+                                                 glint_veil_front};
+
+double glint_front_covered(const struct glint_front_dirt *dirt,
+                           const struct glint_front_optics *o,
+                           const struct glint_setup *setup, double x, double y,
+                           int steps)
+{
+    struct glint_iris_sides sides;
+    double sum = 0;
+    int n = 0;
+
+    glint_iris_sides(&sides, setup);
+    for (int k = 0; k < steps * steps; k++) {
+        const int row = k / steps;
+        const double u = (2 * (k % steps) + 1.) / steps - 1;
+        const double v = (2 * row + 1.) / steps - 1;
+        const double at_x =
+            (seen_at(o, x, o->width) + o->radius * u + 1) * SIDE / 2;
+        const double at_y =
+            (-seen_at(o, y, o->height) + o->radius * v + 1) * SIDE / 2;
+        const float *row_at;
+
+        if (glint_iris_depth(&sides, u, v) < 0)
+            continue;
+        n++;
+        if (at_x < 0 || at_x >= SIDE || at_y < 0 || at_y >= SIDE)
+            continue;
+        row_at = dirt->along + (ptrdiff_t)at_y * (SIDE + 1) + (ptrdiff_t)at_x;
+        sum += (double)(row_at[1] - row_at[0]);
+    }
+    return n ? sum / n : 0;
+}

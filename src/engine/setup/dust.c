@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: MIT */
+#include "engine/setup/dust.h"
+
+#include <math.h>
+#include <stdint.h>
+
+#include "glint/view.h"
+
+/* Radii of specks, in stop radii: the larger, the fewer. */
+static const double least_radius = 0.01, most_radius = 0.05;
+
+struct draw {
+    uint64_t state;
+};
+
+/* Returns a number from 0 to below 1, by a multiplicative congruence whose
+ * upper bits are taken; the same on every machine. */
+static double next(struct draw *d)
+{
+    d->state = d->state * UINT64_C(6364136223846793005) +
+               UINT64_C(1442695040888963407);
+    return (double)(d->state >> 40) * 0x1p-24;
+}
+
+static double between(struct draw *d, double a, double b)
+{
+    return a + (b - a) * next(d);
+}
+
+/* Sets AT to a place in the unit circle, all of it alike. */
+static void place(struct draw *d, double at[2])
+{
+    const double r = sqrt(next(d)), phi = 2 * GLINT_PI * next(d);
+
+    at[0] = r * cos(phi);
+    at[1] = r * sin(phi);
+}
+
+static void add_disc(struct glint_dust *dust, struct draw *d, double radius,
+                     double rim, double opacity)
+{
+    struct glint_speck *s = &dust->speck[dust->n++];
+
+    place(d, s->end[0]);
+    s->end[1][0] = s->end[0][0];
+    s->end[1][1] = s->end[0][1];
+    s->radius = radius;
+    s->rim = rim;
+    s->opacity = opacity;
+}
+
+static void add_scratch(struct glint_dust *dust, struct draw *d)
+{
+    struct glint_speck *s = &dust->speck[dust->n++];
+    const double length = between(d, 0.2, 1), phi = 2 * GLINT_PI * next(d);
+
+    place(d, s->end[0]);
+    s->end[1][0] = s->end[0][0] + length * cos(phi);
+    s->end[1][1] = s->end[0][1] + length * sin(phi);
+    s->radius = between(d, 0.004, 0.01);
+    s->rim = 0.5;
+    s->opacity = between(d, 0.2, 0.6);
+}
+
+/* Sets the square that S lies in. */
+static void set_box(struct glint_speck *s)
+{
+    double half = 0;
+
+    for (int k = 0; k < 2; k++) {
+        s->middle[k] = 0.5 * (s->end[0][k] + s->end[1][k]);
+        half = fmax(half, 0.5 * fabs(s->end[1][k] - s->end[0][k]));
+    }
+    s->reach = half + s->radius * (1 + s->rim);
+}
+
+void glint_dust_strew(struct glint_dust *dust, double amount, int seed)
+{
+    /* Shares of the circle are squares of radii. */
+    const int n_lines = (int)ceil(fmin(8, 40 * amount));
+    const int n_smudges = (int)ceil(fmin(4, 20 * amount));
+    struct draw d = {(uint64_t)(uint32_t)seed * UINT64_C(0x9e3779b97f4a7c15)};
+    double left = amount;
+
+    dust->n = 0;
+    if (!(amount > 0))
+        return;
+    for (int i = 0; i < n_lines; i++)
+        add_scratch(dust, &d);
+    for (int i = 0; i < n_smudges; i++)
+        add_disc(dust, &d, between(&d, 0.15, 0.4), 0.9,
+                 fmin(amount * between(&d, 0.5, 2), 0.5));
+    while (left > 0 && dust->n < GLINT_DUST_MOST) {
+        const double radius =
+            least_radius * pow(most_radius / least_radius, pow(next(&d), 1.5));
+
+        add_disc(dust, &d, radius, 0.3, between(&d, 0.3, 0.95));
+        left -= radius * radius;
+    }
+    for (int i = 0; i < dust->n; i++)
+        set_box(&dust->speck[i]);
+}
+
+static double square(double x)
+{
+    return x * x;
+}
+
+/* Returns the square of the distance of (X, Y) from the line of S. */
+static double distance2(const struct glint_speck *s, double x, double y)
+{
+    const double ax = s->end[1][0] - s->end[0][0];
+    const double ay = s->end[1][1] - s->end[0][1];
+    const double bx = x - s->end[0][0], by = y - s->end[0][1];
+    const double length2 = ax * ax + ay * ay;
+    const double t =
+        length2 > 0 ? fmin(fmax((ax * bx + ay * by) / length2, 0), 1) : 0;
+
+    return square(bx - t * ax) + square(by - t * ay);
+}
+
+double glint_dust_through(const struct glint_dust *dust, double x, double y)
+{
+    double light = 1;
+
+    for (int i = 0; i < dust->n; i++) {
+        const struct glint_speck *s = &dust->speck[i];
+        const double end = s->radius * (1 + s->rim);
+        double far2, in;
+
+        if (fabs(x - s->middle[0]) > s->reach ||
+            fabs(y - s->middle[1]) > s->reach)
+            continue;
+        far2 = distance2(s, x, y);
+        if (far2 >= end * end)
+            continue;
+        in = fmin((end - sqrt(far2)) / (2 * s->radius * s->rim), 1);
+        light *= 1 - s->opacity * in * in * (3 - 2 * in);
+    }
+    return light;
+}

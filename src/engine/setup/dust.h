@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What lies in a stop by a seed: specks of dust, scratches and smudges. */
+#ifndef GLINT_ENGINE_SETUP_DUST_H
+#define GLINT_ENGINE_SETUP_DUST_H
+
+enum { GLINT_DUST_MOST = 512 };
+
+/* A line from end to end with round ends, or a disc if both ends are one place;
+ * its rim is soft. */
+struct glint_speck {
+    double end[2][2], radius, rim; /* stop radii */
+    double opacity;                /* 0 .. 1, in its middle */
+    double middle[2], reach;       /* of the square that it lies in */
+};
+
+struct glint_dust {
+    int n;
+    struct glint_speck speck[GLINT_DUST_MOST];
+};
+
+/* Sets DUST to specks that together cover the share AMOUNT, 0 .. 0.5, of the
+ * stop's circle, or as much as GLINT_DUST_MOST of them do, and to scratches and
+ * smudges, more with more AMOUNT. The same SEED gives the same places. */
+void glint_dust_strew(struct glint_dust *dust, double amount, int seed);
+
+/* Returns the share of light that dust lets through at (X, Y). */
+double glint_dust_through(const struct glint_dust *dust, double x, double y);
+
+#endif

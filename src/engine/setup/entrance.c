@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT */
+#include "engine/setup/entrance.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+#include "engine/setup/setup.h"
+#include "glint/transfer.h"
+
+/* Where the rays of one ghost that pass the middle of the stop enter. */
+struct chief {
+    double x_mm;         /* on the vertex plane, in the light's frame */
+    double radii_per_mm; /* stop radii that a mm of that plane takes */
+};
+
+/* Finds CHIEF of GHOST for light at SINE; false if there is none. */
+static bool chief_of(const struct glint_lens *lens, int ghost, double sine,
+                     struct chief *chief)
+{
+    enum { STOP = GLINT_OUT_STOP_X };
+    const int32_t u_q30 = 1 << 28; /* a quarter of the box to both sides */
+    struct glint_transfer t;
+    struct glint_outputs out;
+    double stop[2], mm;
+
+    if (!glint_transfer_init(
+            &t, lens, ghost, (int32_t)(sine * 0x1p30),
+            (lens->header->wave_lo_q24 + lens->header->wave_hi_q24) / 2) ||
+        t.annulus)
+        return false;
+    for (int k = 0; k < 2; k++) {
+        glint_transfer_ray(&t, k ? u_q30 : -u_q30, 0, &out);
+        stop[k] = ldexp(out.at[STOP], t.exponent[STOP]);
+    }
+    mm = ldexp(t.box[1], t.box_exponent) / 2;
+    if (!(fabs(stop[1] - stop[0]) > 1e-6) || !(mm > 0))
+        return false;
+    chief->radii_per_mm = (stop[1] - stop[0]) / mm;
+    chief->x_mm = ldexp(t.box[0], t.box_exponent) -
+                  0.5 * (stop[0] + stop[1]) / chief->radii_per_mm;
+    return true;
+}
+
+/* Light that is reflected behind the stop alone comes to it as all light does:
+ * on the axis a radius of the stop is one of the entrance pupil. Those ghosts
+ * are the last of a model. */
+static double z_of_model(const struct glint_setup *setup,
+                         const struct glint_lens *lens)
+{
+    const double sine = 0.03, tangent = sine / sqrt(1 - sine * sine);
+    const double radius = glint_real_value(lens->header->entrance_radius_mm);
+    const double front = glint_real_value(lens->header->front_mm);
+    const double field = glint_real_value(lens->header->field_mm);
+    struct chief on, off;
+
+    for (int k = setup->n_ghosts - setup->n_parts - 1; k >= 0; k--)
+        if (chief_of(lens, k, 0, &on) && fabs(on.x_mm) < 0.02 * radius &&
+            fabs(fabs(on.radii_per_mm) * radius - 1) < 0.05 &&
+            chief_of(lens, k, sine, &off))
+            return (on.x_mm - off.x_mm) / tangent;
+    /* such that the corner of the picture is seen past the rim of the front */
+    return fmax(front - radius, 0.1 * radius) * fabs(setup->optics.focal_mm) /
+           fmax(field, 1e-6);
+}
+
+struct glint_entrance glint_entrance_of(const struct glint_setup *setup,
+                                        const struct glint_lens *lens)
+{
+    if (setup->lens || !lens)
+        return (struct glint_entrance){
+            setup->optics.entrance_z_mm,
+            setup->lens ? setup->lens->surface[0].semi_mm : 0};
+    return (struct glint_entrance){z_of_model(setup, lens),
+                                   glint_real_value(lens->header->front_mm)};
+}

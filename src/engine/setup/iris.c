@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT */
+#include "engine/setup/iris.h"
+
+#include <math.h>
+
+#include "engine/setup/degrees.h"
+#include "engine/setup/setup.h"
+
+/* Arcs of more than this curvature are hardly distinct from a circle, and their
+ * centres would lie too near the stop's for 30 bits. */
+static const double most_round = 0.9999;
+
+void glint_iris_sides(struct glint_iris_sides *sides,
+                      const struct glint_setup *setup)
+{
+    const int n = setup->n_blades;
+    const double round = fmin(setup->iris.roundness, most_round);
+
+    *sides = (struct glint_iris_sides){.n = n, .arcs = n && round > 0};
+    if (n == 0)
+        return;
+    sides->apothem = cos(GLINT_PI / n);
+    sides->round = round;
+    /* The offset d solves d^2 + 2 d apothem + 1 = 1 / round^2. */
+    sides->off =
+        sqrt(1 - round * round * (1 - sides->apothem * sides->apothem)) -
+        sides->apothem * round;
+    for (int i = 0; i < n; i++) {
+        const double a = setup->blade_rotation_deg + (i + 0.5) * 360.0 / n;
+
+        sides->normal[i][0] = glint_cos_deg(a);
+        sides->normal[i][1] = glint_sin_deg(a);
+    }
+}
+
+double glint_iris_inside(const struct glint_iris_sides *s, int side, double x,
+                         double y)
+{
+    const double straight =
+        s->apothem - x * s->normal[side][0] - y * s->normal[side][1];
+
+    return s->arcs ? s->off * straight + 0.5 * s->round * (1 - x * x - y * y)
+                   : straight;
+}
+
+double glint_iris_depth(const struct glint_iris_sides *sides, double x,
+                        double y)
+{
+    double depth = sides->n ? 4 : 1 - hypot(x, y);
+
+    for (int i = 0; i < sides->n; i++)
+        depth = fmin(depth, glint_iris_inside(sides, i, x, y));
+    return depth;
+}
+
+/* Returns the area of a stop of N sides of curvature ROUND: of the polygon, and
+ * of the segments between its sides and the arcs. */
+static double area_of(int n, double round)
+{
+    const double half_side = sin(GLINT_PI / n);
+    const double polygon = 0.5 * n * sin(2 * GLINT_PI / n);
+    const double turn = 2 * asin(round * half_side);
+
+    return round < 1e-6
+               ? polygon
+               : polygon + n * (turn - sin(turn)) / (2 * round * round);
+}
+
+double glint_iris_share(const struct glint_setup *setup)
+{
+    return setup->n_blades
+               ? area_of(setup->n_blades, setup->iris.roundness) / GLINT_PI
+               : 1;
+}

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The Fraunhofer pattern of a stop whose sides are arcs, in doubles.
+ *
+ * The transform is an integral along the outline, with n its normal:
+ *
+ *     F(q) = 1 / (2 pi |q|^2) integral of (q n) exp(-2 pi i q s) ds
+ *
+ * An arc throws its light where its normal points: a fan, as wide as the arc
+ * turns, of light that falls with r^-3, rather than the line of a straight
+ * edge. Far out an arc is a Fresnel integral: with w the sine of half the angle
+ * to the direction of q the phase is 4 pi |q| w^2 / curvature, and what varies
+ * slowly beside it is taken at w = 0 and, for the rest, at both ends
+ * [Bleistein66]. */
+#ifndef GLINT_ENGINE_STAR_ARCS_H
+#define GLINT_ENGINE_STAR_ARCS_H
+
+#include "glint/light.h"
+
+struct glint_arcs {
+    int n; /* sides */
+    double rotation_deg;
+    double round;  /* curvature, above 0, 1 / stop radius */
+    double turn;   /* half the angle that an arc turns by */
+    double behind; /* distance from the stop's centre to an arc's centre */
+    double area, perimeter;
+};
+
+void glint_arcs_init(struct glint_arcs *arcs, int n, double rotation_deg,
+                     double round);
+
+/* Returns |F(q)|^2 / A^2 by adding up the outline; q is in cycles per stop
+ * radius, x right, y up. */
+double glint_arcs_transform(const struct glint_arcs *arcs, double qx,
+                            double qy);
+
+/* Returns the same far out, without the fringes between different arcs. */
+double glint_arcs_far(const struct glint_arcs *arcs, double qx, double qy);
+
+#endif

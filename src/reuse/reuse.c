@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Tells whether a frame is planned from what the frame before was planned from:
+ * then its bundles, edges and lists of tiles are still there, and are drawn
+ * again without a ray. Lights and dials are compared one by one; waves and
+ * tints, of which there can be thousands, by a digest of 64 bits. */
+#include "base/q.h"
+#include "flare/state.h"
+
+struct reuse {
+    int n_lights; /* -1: there were more than fit */
+    struct glint_flare_frame frame;
+    uint64_t digest; /* of what FRAME points to */
+    struct glint_light *light;
+    /* [max_bundles], with reuse_gains: colours of the bundles without factors,
+     * from the first frame that has some. */
+    int32_t (*rgb_q14)[3];
+    int has_rgb;
+};
+
+/* Runs twice: once to measure, which gives NULL, and once to place. */
+static void *carve(struct glint_arena *a, const struct glint_flare_config *c)
+{
+    struct reuse measured, *placed, *own;
+
+    placed = glint_arena_take(a, 1, sizeof *placed);
+    own = placed ? placed : &measured;
+    own->light =
+        glint_arena_take(a, (size_t)c->reuse_lights, sizeof *own->light);
+    own->rgb_q14 = NULL;
+    if (c->reuse_gains)
+        own->rgb_q14 =
+            glint_arena_take(a, (size_t)c->max_bundles, sizeof *own->rgb_q14);
+    return placed;
+}
+
+static uint64_t mix(uint64_t digest, int64_t x)
+{
+    const uint64_t y = (digest ^ (uint64_t)x) * UINT64_C(0x9e3779b97f4a7c15);
+
+    return y ^ y >> 29;
+}
+
+static uint64_t mix_real(uint64_t digest, struct glint_real x)
+{
+    return mix(mix(digest, x.mantissa), x.exponent);
+}
+
+static uint64_t mix_rgb(uint64_t digest, const int32_t rgb_q14[3])
+{
+    for (int c = 0; c < 3; c++)
+        digest = mix(digest, rgb_q14[c]);
+    return digest;
+}
+
+static uint64_t digest_of(const struct glint_flare_frame *r)
+{
+    uint64_t d = 1;
+
+    for (int i = 0; i < r->n_waves; i++) {
+        d = mix_real(mix(d, r->wave[i].wave_q24), r->wave[i].weight);
+        d = mix_rgb(d, r->wave[i].rgb_q14);
+    }
+    d = mix(d, r->sets != NULL);
+    if (r->sets) {
+        for (int i = 0; i < r->sets->n_sets; i++)
+            d = mix(d, r->sets->size[i]);
+        d = mix_real(mix(d, r->sets->apart_q8), r->sets->step);
+    }
+    d = mix(d, r->tints != NULL);
+    for (uint32_t i = 0; r->tints && i < r->lens->header->n_ghosts; i++)
+        d = mix_rgb(mix_real(d, r->tints[i].gain), r->tints[i].rgb_q14);
+    return d;
+}
+
+static int is_same_real(struct glint_real a, struct glint_real b)
+{
+    return a.mantissa == b.mantissa && a.exponent == b.exponent;
+}
+
+static int is_same_light(const struct glint_light *a,
+                         const struct glint_light *b)
+{
+    return a->sine_q30 == b->sine_q30 && a->cosine_q30 == b->cosine_q30 &&
+           a->cos_q30 == b->cos_q30 && a->sin_q30 == b->sin_q30 &&
+           a->apart_q30 == b->apart_q30 && is_same_real(a->power, b->power) &&
+           a->rgb_q14[0] == b->rgb_q14[0] && a->rgb_q14[1] == b->rgb_q14[1] &&
+           a->rgb_q14[2] == b->rgb_q14[2];
+}
+
+static int is_same_frame(const struct glint_flare_frame *a,
+                         const struct glint_flare_frame *b)
+{
+    return a->lens == b->lens && a->n_waves == b->n_waves &&
+           is_same_real(a->pixels_per_mm, b->pixels_per_mm) &&
+           a->fineness == b->fineness && a->uniform == b->uniform &&
+           a->only_ghost == b->only_ghost &&
+           is_same_real(a->faintest, b->faintest) && a->dim == b->dim &&
+           is_same_real(a->dimmest, b->dimmest) &&
+           a->snap_codes_q8 == b->snap_codes_q8 && a->half == b->half;
+}
+
+static int is_same(const struct glint_flare *f,
+                   const struct glint_flare_frame *frame,
+                   const struct glint_light *lights, int n_lights)
+{
+    const struct reuse *own = f->reuse;
+
+    if (n_lights != own->n_lights || !is_same_frame(frame, &own->frame))
+        return 0;
+    for (int i = 0; i < n_lights; i++)
+        if (!is_same_light(&lights[i], &own->light[i]))
+            return 0;
+    return digest_of(frame) == own->digest;
+}
+
+static void note(struct glint_flare *f, const struct glint_flare_frame *frame,
+                 const struct glint_light *lights, int n_lights)
+{
+    struct reuse *own = f->reuse;
+
+    own->n_lights = n_lights <= f->cfg.reuse_lights ? n_lights : -1;
+    own->frame = *frame;
+    own->digest = digest_of(frame);
+    for (int i = 0; i < own->n_lights; i++)
+        own->light[i] = lights[i];
+}
+
+static int take(struct glint_flare *f, const struct glint_flare_frame *frame,
+                const struct glint_light *lights, int n_lights)
+{
+    if (f->reusable != GLINT_REUSABLE_BINNED ||
+        !is_same(f, frame, lights, n_lights)) {
+        note(f, frame, lights, n_lights);
+        return 0;
+    }
+    f->plan.frame = frame;
+    f->plan.light = lights;
+    f->stats.reused = 1;
+    for (int i = 0; i < glint_workers_count(f->cfg.workers); i++)
+        f->worker[i].plan->n_rays = 0;
+    return 1;
+}
+
+static void turn(struct glint_flare *f)
+{
+    struct reuse *own = f->reuse;
+    const int32_t(*gain_q14)[3] = f->plan.frame->gain_q14;
+
+    if (f->reusable == GLINT_REUSABLE_PLANNED)
+        own->has_rgb = 0;
+    f->reusable = GLINT_REUSABLE_BINNED;
+    if (!own->rgb_q14 || (!gain_q14 && !own->has_rgb))
+        return;
+    for (int i = 0; i < f->n_bundles; i++)
+        for (int c = 0; c < 3; c++) {
+            int32_t *rgb = &f->bundle[i].rgb_q14[c], *was = &own->rgb_q14[i][c];
+
+            if (!own->has_rgb)
+                *was = *rgb;
+            *rgb =
+                gain_q14
+                    ? q_narrow(q_shift(
+                          (int64_t)*was * gain_q14[f->planned[i].light][c], 14))
+                    : *was;
+        }
+    own->has_rgb = 1;
+}
+
+const struct glint_reuse glint_reuse = {carve, take, turn};

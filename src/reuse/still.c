@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Lights that stand still: those of a frame are told from where those stood
+ * that were planned, and what has changed of their light goes into factors on
+ * the colours of their bundles. */
+#include "flare/dim.h"
+#include "flare/state.h"
+
+enum {
+    ONE_Q14 = 1 << 14,
+    MOST_GAIN_Q14 = ONE_Q14 + ONE_Q14 / 2,
+    LEAST_PART = 64 /* a channel may be off by this part of the largest */
+};
+
+/* Returns the light that was planned nearest to LIGHT, or -1 if none is within
+ * NEAR_Q30. */
+static int nearest(const struct glint_still *s, const struct glint_light *light,
+                   int32_t near_q30)
+{
+    uint64_t least2_q60 = (uint64_t)near_q30 * (uint64_t)near_q30;
+    int at = -1;
+
+    for (int i = 0; i < s->n; i++) {
+        const int32_t apart_q30 = light->apart_q30 - s->light[i].apart_q30;
+        const uint64_t apart2_q60 = glint_light_apart2_q60(light, &s->light[i]);
+
+        if (apart2_q60 > least2_q60 || apart_q30 > near_q30 ||
+            apart_q30 < -near_q30 || (at >= 0 && apart2_q60 == least2_q60))
+            continue;
+        least2_q60 = apart2_q60;
+        at = i;
+    }
+    return at;
+}
+
+/* Returns channel C of B over the power UNIT, 2^4 at most. */
+static int64_t channel_q20(const struct glint_light *b, int c,
+                           struct glint_real unit)
+{
+    const struct glint_real x =
+        real_times(b->power, real_of(b->rgb_q14[c], -14));
+
+    return real_integer(real_over(x, unit), 20, INT64_C(1) << 24);
+}
+
+/* Turns the sum of light I into its factors. Returns 0 if it is too bright for
+ * them, or of another colour. */
+static int set_gain(struct glint_still *s, int i)
+{
+    const int64_t *sum_q20 = s->sum_q20[i];
+    int64_t most_q20 = 1;
+    int serves = 1;
+
+    for (int c = 0; c < 3; c++)
+        most_q20 = sum_q20[c] > most_q20 ? sum_q20[c] : most_q20;
+    for (int c = 0; c < 3; c++) {
+        const int64_t was_q20 = channel_q20(&s->light[i], c, s->light[i].power);
+        const int64_t ratio_q14 =
+            was_q20 > 0 ? q_divide(sum_q20[c] * ONE_Q14 + was_q20 / 2, was_q20)
+                        : ONE_Q14;
+        const int32_t gain_q14 = q_clamp_sat(ratio_q14, 0, MOST_GAIN_Q14);
+        const int64_t off_q20 = sum_q20[c] - q_shift(was_q20 * gain_q14, 14);
+
+        s->gain_q14[i][c] = gain_q14;
+        serves &= off_q20 * LEAST_PART <= most_q20 &&
+                  off_q20 * LEAST_PART >= -most_q20;
+    }
+    return serves;
+}
+
+/* Returns whether the lights planned serve for LIGHTS, with the factors that
+ * this sets. */
+static int serves(struct glint_still *s, const struct glint_light *lights,
+                  int n, int32_t near_q30)
+{
+    int all = 1;
+
+    for (int i = 0; i < s->n; i++)
+        for (int c = 0; c < 3; c++)
+            s->sum_q20[i][c] = 0;
+    for (int i = 0; i < n; i++) {
+        const int at = nearest(s, &lights[i], near_q30);
+
+        if (at < 0 || s->light[at].power.mantissa <= 0)
+            return 0;
+        for (int c = 0; c < 3; c++)
+            s->sum_q20[at][c] += channel_q20(&lights[i], c, s->light[at].power);
+    }
+    for (int i = 0; i < s->n; i++)
+        all &= set_gain(s, i);
+    return all;
+}
+
+int glint_lights_still(struct glint_still *still,
+                       const struct glint_light *lights, int n_lights,
+                       int32_t near_q30)
+{
+    if (still->n > 0 && serves(still, lights, n_lights, near_q30))
+        return still->n;
+    still->n = n_lights <= still->max_lights ? n_lights : 0;
+    for (int i = 0; i < still->n; i++) {
+        still->light[i] = lights[i];
+        for (int c = 0; c < 3; c++)
+            still->gain_q14[i][c] = ONE_Q14;
+    }
+    return still->n;
+}

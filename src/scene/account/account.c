@@ -1,0 +1,322 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What becomes of each object of a frame, and how much there is to do for it:
+ * what its samples see is found as it is when it is drawn, and surfaces are
+ * found, but not shaded. */
+#include "glint/scene/account.h"
+
+#include "scene/visible.h"
+
+enum {
+    TEXELS = 8, /* of a place: four of each of two levels */
+    POINTS = 16 /* of a light's disc, as it hides behind things */
+};
+
+struct account {
+    const struct glint_scene *scene;
+    struct glint_scene_part *objects, *all;
+    int16_t *seen;
+};
+
+/* ---------------------------------------------------------------- surfaces */
+
+/* Counts TIMES rays like RAY, and the meshes about which they pass. */
+static void count_rays(const struct glint_scene *s,
+                       const struct glint_scene_ray *ray, int times,
+                       struct glint_scene_part *part)
+{
+    part->count[GLINT_SCENE_RAYS] += times;
+    for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
+        const struct glint_placed *p = &s->placed[i];
+        struct glint_chord chord;
+
+        if (p->is_shown && p->object->kind == GLINT_OBJECT_MESH &&
+            glint_ray_sphere(ray, p->centre, p->reach, &chord) &&
+            chord.t[1] > 0)
+            part->count[GLINT_SCENE_WALKED] += times;
+    }
+}
+
+/* Counts the lights that face SURFACE, and the rays to them. */
+static void count_lights(const struct glint_scene *s,
+                         const struct glint_met_surface *surface,
+                         struct glint_scene_part *part)
+{
+    for (uint32_t i = 0; i < s->model.header->n_lights; i++) {
+        const struct glint_lit *lit = &s->lit[i];
+        int32_t toward_q30[3], level_q15[3];
+        struct glint_scene_ray to;
+        int n;
+
+        if (!glint_scene_light_at(s, lit, surface->place, toward_q30,
+                                  level_q15) ||
+            v3_dot(toward_q30, surface->normal_q30) <= 0)
+            continue;
+        part->count[GLINT_SCENE_LIT]++;
+        n = lit->light->radius ? s->cfg.shadow_points : 1;
+        if (s->model.header->shadow && lit->shadow && lit->shadow->is_ready)
+            part->count[GLINT_SCENE_SHADOWS] += n;
+        else if (s->model.header->shadow) {
+            for (int k = 0; k < 3; k++) {
+                to.at[k] = surface->place[k];
+                to.toward_q30[k] = toward_q30[k];
+            }
+            count_rays(s, &to, n, part);
+        }
+    }
+}
+
+/* Counts what RAY, which goes on from SURFACE, meets. */
+static void count_bounce(const struct glint_scene *s,
+                         const struct glint_scene_ray *ray,
+                         const struct glint_met_surface *surface,
+                         struct glint_scene_part *part)
+{
+    struct glint_met_surface next;
+    struct glint_scene_ray on = *ray;
+    struct glint_met met;
+
+    part->count[GLINT_SCENE_BOUNCED]++;
+    for (int k = 0; k < 3; k++)
+        on.at[k] = surface->place[k];
+    if (surface->material->reflect_q15)
+        glint_mirror(ray->toward_q30, surface->normal_q30, on.toward_q30);
+    count_rays(s, &on, 1, part);
+    if (!glint_scene_meet(s, &on, surface->object, surface->triangle, &met) ||
+        !glint_scene_surface(s, &on, &met, &next))
+        return;
+    part->count[GLINT_SCENE_SHADED]++;
+    count_lights(s, &next, part);
+}
+
+/* Counts a place of ID that is shaded, at (X, Y), q8. */
+static void count_shade(const struct account *a, uint32_t id, int32_t x_q8,
+                        int32_t y_q8)
+{
+    const struct glint_scene *s = a->scene;
+    struct glint_scene_part *part = &a->objects[id >> 20];
+    const struct glint_scene_material *m =
+        &s->model.material[s->placed[id >> 20].object->material];
+    struct glint_met_surface surface;
+    struct glint_scene_ray ray;
+    struct glint_met met;
+    int32_t seen_q30[3];
+
+    part->count[GLINT_SCENE_SHADED]++;
+    glint_view_ray(&s->view, x_q8, y_q8, &ray, seen_q30);
+    if (!glint_scene_meet_id(s, &ray, seen_q30, id, &met) ||
+        !glint_scene_surface(s, &ray, &met, &surface))
+        return;
+    count_lights(s, &surface, part);
+    if (s->placed[id >> 20].object->catcher_q15)
+        return;
+    if (m->texture != GLINT_SCENE_NONE)
+        part->count[GLINT_SCENE_TEXELS] += TEXELS;
+    if (m->reflect_q15 || m->pass_q15)
+        count_bounce(s, &ray, &surface, part);
+}
+
+/* Returns whether samples of ID are shaded one by one. */
+static int is_split(const struct glint_scene *s, uint32_t id)
+{
+    const struct glint_scene_material *m =
+        &s->model.material[s->placed[id >> 20].object->material];
+
+    return m->reflect_q15 || m->pass_q15;
+}
+
+/* Returns whether A and B are one object's. */
+static int is_same(uint32_t a, uint32_t b)
+{
+    return a != GLINT_NOTHING && (a ^ b) >> 20 == 0;
+}
+
+/* Returns whether this is not the first of two by two pixels that see one
+ * object and are shaded as one. */
+static int is_shared(const struct glint_scene_worker *w, int x, int y,
+                     uint32_t id)
+{
+    const struct glint_box b = w->touched;
+    const int x0 = x & ~1, y0 = y & ~1, n = w->scene->cfg.edge_samples;
+
+    if (!w->scene->cfg.half_shading || !((x | y) & 1) || x0 < b.x0 ||
+        y0 < b.y0 || x0 + 1 >= b.x1 || y0 + 1 >= b.y1)
+        return 0;
+    for (int k = 0; k < 4; k++)
+        for (int i = 0; i < n; i++)
+            if (!is_same(id, w->id[glint_sample_index(w, x0 + (k & 1),
+                                                      y0 + (k >> 1), i)]))
+                return 0;
+    return 1;
+}
+
+/* Counts what the samples of pixel (X, Y) see. */
+static void count_pixel(const struct account *a,
+                        const struct glint_scene_worker *w, int x, int y)
+{
+    const struct glint_scene *s = a->scene;
+    const uint32_t *id = &w->id[glint_sample_index(w, x, y, 0)];
+    int any = 0;
+
+    if (a->seen && id[0] != GLINT_NOTHING)
+        a->seen[(ptrdiff_t)y * s->cfg.width + x] = (int16_t)(id[0] >> 20);
+    for (int k = 0; k < s->cfg.edge_samples; k++) {
+        int i = 0;
+
+        if (id[k] == GLINT_NOTHING)
+            continue;
+        any = 1;
+        a->objects[id[k] >> 20].count[GLINT_SCENE_SAMPLED]++;
+        while (!is_same(id[i], id[k]))
+            i++;
+        if (i == k)
+            a->objects[id[k] >> 20].count[GLINT_SCENE_COVERING]++;
+        if (is_split(s, id[k]))
+            count_shade(a, id[k], glint_place(s, x, 0) + glint_sample(s, k, 0),
+                        glint_place(s, y, 1) + glint_sample(s, k, 1));
+        else if (i == k && !is_shared(w, x, y, id[k]))
+            count_shade(a, id[k], glint_place(s, x, 0), glint_place(s, y, 1));
+    }
+    a->all->count[GLINT_SCENE_COVERING] += any;
+}
+
+static void count_tile(const struct account *a, struct glint_scene_worker *w,
+                       struct glint_box tile)
+{
+    const struct glint_scene *s = a->scene;
+
+    if (!glint_scene_look(w, tile))
+        return;
+    for (int y = w->touched.y0; y < w->touched.y1; y++)
+        for (int x = w->touched.x0; x < w->touched.x1; x++)
+            count_pixel(a, w, x, y);
+    for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
+        const struct glint_placed *p = &s->placed[i];
+        const struct glint_box b = glint_box_cut(tile, p->box);
+
+        if (p->is_seen && p->object->kind != GLINT_OBJECT_MESH &&
+            !glint_box_empty(b))
+            a->objects[i].count[GLINT_SCENE_LOOKED] +=
+                (int64_t)(b.x1 - b.x0) * (b.y1 - b.y0);
+    }
+}
+
+/* ------------------------------------------------------------------- fates */
+
+static enum glint_scene_fate fate_unseen(const struct glint_placed *p)
+{
+    if (!p->is_shown)
+        return GLINT_SCENE_OFF;
+    return p->object->kind != GLINT_OBJECT_PLANE && p->z[1] == GLINT_FAR
+               ? GLINT_SCENE_BEHIND
+               : GLINT_SCENE_OUTSIDE;
+}
+
+/* Returns whether the ray through the middle of pixel (X, Y) meets object I. */
+static int meets(const struct glint_scene *s, uint32_t i, int x, int y)
+{
+    struct glint_met met = {.t = GLINT_FAR};
+    struct glint_scene_ray ray;
+    int32_t seen_q30[3];
+
+    glint_view_ray(&s->view, glint_place(s, x, 0), glint_place(s, y, 1), &ray,
+                   seen_q30);
+    if (s->placed[i].object->kind == GLINT_OBJECT_MESH)
+        return s->cfg.parts.meshes->meet(s, i, GLINT_NOTHING, &ray, 1, &met);
+    return glint_scene_meet_id(s, &ray, seen_q30, glint_id(i, 0), &met);
+}
+
+/* Sets the fate of an object that is in the picture, but at no sample: which
+ * object is seen at most of its pixels, by votes [Boyer91]. */
+static void find_cover(const struct account *a, uint32_t i)
+{
+    const struct glint_scene *s = a->scene;
+    const struct glint_box b = s->placed[i].box;
+    int by = -1, votes = 0, any = 0;
+
+    for (int y = b.y0; y < b.y1; y++)
+        for (int x = b.x0; x < b.x1; x++) {
+            int other;
+
+            if (!meets(s, i, x, y))
+                continue;
+            any = 1;
+            other = a->seen ? a->seen[(ptrdiff_t)y * s->cfg.width + x] : -1;
+            by = votes == 0 ? other : by;
+            votes += other == by ? 1 : -1;
+        }
+    a->objects[i].fate = any ? GLINT_SCENE_COVERED : GLINT_SCENE_SMALL;
+    a->objects[i].by = any ? by : -1;
+}
+
+static void set_fate(const struct account *a, uint32_t i)
+{
+    struct glint_scene_part *part = &a->objects[i];
+
+    if (!a->scene->placed[i].is_seen)
+        part->fate = fate_unseen(&a->scene->placed[i]);
+    else if (part->count[GLINT_SCENE_SAMPLED] > 0)
+        part->fate = GLINT_SCENE_DRAWN;
+    else
+        find_cover(a, i);
+}
+
+/* ------------------------------------------------------------------- whole */
+
+static void clear(const struct account *a)
+{
+    const struct glint_scene *s = a->scene;
+    const ptrdiff_t n = (ptrdiff_t)s->cfg.width * s->cfg.height;
+
+    *a->all = (struct glint_scene_part){.by = -1};
+    for (uint32_t i = 0; i < s->model.header->n_objects; i++)
+        a->objects[i] = *a->all;
+    for (ptrdiff_t i = 0; a->seen && i < n; i++)
+        a->seen[i] = -1;
+}
+
+void glint_scene_account(struct glint_scene *scene,
+                         struct glint_scene_part *objects,
+                         struct glint_scene_part *all, int16_t *seen)
+{
+    const struct account a = {scene, objects, all, seen};
+    const struct glint_bins *bins = &scene->bins;
+    const int n_tiles = bins->tiles_x * bins->tiles_y;
+
+    clear(&a);
+    for (int tile = 0; tile < n_tiles; tile++)
+        count_tile(&a, &scene->worker[0], glint_bins_tile(bins, tile));
+    for (int32_t i = 0; scene->has_triangles && i < bins->start[n_tiles]; i++)
+        objects[(uint32_t)bins->ref[i] >> 20].count[GLINT_SCENE_TRIANGLES]++;
+    for (uint32_t i = 0; i < scene->model.header->n_objects; i++) {
+        set_fate(&a, i);
+        for (int k = 0; k < GLINT_SCENE_ITEMS; k++)
+            if (k != GLINT_SCENE_COVERING)
+                all->count[k] += objects[i].count[k];
+    }
+}
+
+int glint_scene_hider(const struct glint_scene *scene, int light)
+{
+    const struct glint_lit *lit = &scene->lit[light];
+    struct glint_scene_ray middle = {.at = {0}};
+    int32_t level_q15[3], t;
+    int by = -1, votes = 0;
+
+    for (int k = 0; k < 3; k++)
+        middle.at[k] = scene->view.at[k];
+    t = glint_scene_light_at(scene, lit, middle.at, middle.toward_q30,
+                             level_q15);
+    for (int i = 0; t > 0 && i < POINTS; i++) {
+        struct glint_scene_ray to = middle;
+        struct glint_met met;
+
+        glint_scene_point(&to, t, lit->light->radius, i, POINTS);
+        if (!glint_scene_meet(scene, &to, GLINT_NOTHING, GLINT_NOTHING, &met) ||
+            met.t >= t)
+            continue;
+        by = votes == 0 ? (int)met.object : by;
+        votes += (int)met.object == by ? 1 : -1;
+    }
+    return by;
+}

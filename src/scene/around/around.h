@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The camera's picture as the surroundings of a scene: what mirrors and glass
+ * show where their rays meet nothing.
+ *
+ * It is kept as means of cells of 2^n x 2^n pixels, 320 on its longer side at
+ * most, and is straight between their middles. */
+#ifndef GLINT_SCENE_AROUND_H
+#define GLINT_SCENE_AROUND_H
+
+#include "base/arena.h"
+#include "glint/workers.h"
+#include "image/light_sum.h"
+
+struct glint_around {
+    int width, height; /* of the picture */
+    int cell_log2, n_x, n_y;
+    int has_picture;
+    int has_curve;
+    enum glint_tone transfer; /* of the curve, if there is one yet */
+    struct glint_light_curve *curve;
+    uint16_t *light_q15; /* [n_y][n_x][3], display white = 32768 */
+};
+
+/* Takes the memory for pictures of WIDTH x HEIGHT; there is no picture yet. */
+void glint_around_carve(struct glint_around *around, struct glint_arena *arena,
+                        int width, int height);
+
+/* Keeps IMAGE, of that size; NULL: there is no picture again. */
+void glint_around_look(struct glint_around *around,
+                       const struct glint_image *image,
+                       struct glint_workers *workers);
+
+/* Sets RGB_Q15, 0 .. 65535, to the light at (X, Y): shares of the picture's
+ * width from its left and of its height from its top, 0 .. 1. */
+void glint_around_at(const struct glint_around *around, int32_t x_q16,
+                     int32_t y_q16, int32_t rgb_q15[3]);
+
+#endif

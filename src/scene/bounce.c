@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What mirrors and lets light through: one reflection, and up to eight
+ * surfaces on the way through.
+ *
+ * A sphere that is entered is left at the other end of the ray's chord, at the
+ * angle at which it was entered: only light from within a ball can be mirrored
+ * for good, and none of that comes out. With index 1 rays pass straight on, and
+ * what is behind the last thing that they pass is the picture itself; else it
+ * is the background's colour, as it is of reflections, or the camera's picture
+ * all around.
+ *
+ * Directions that the camera sees then have the light of the picture there.
+ * Beyond its edge, and behind the camera, nobody knows what there is: the
+ * picture goes on, mirrored at its edge. */
+#include "scene/state.h"
+
+enum { MOST_SURFACES = 8 };
+
+/* A ray on its way, and what it starts from. */
+struct passing {
+    struct glint_scene_ray ray;
+    uint32_t object, triangle;
+    int32_t weight_q15; /* of what it meets */
+    int is_bent;        /* it no longer goes where the picture's ray goes */
+};
+
+/* Starts a ray from SURFACE, on the side it came from or BEYOND it. */
+static void start(const struct glint_scene *s,
+                  const struct glint_met_surface *surface, int beyond,
+                  struct passing *p)
+{
+    const int is_mesh =
+        s->placed[surface->object].object->kind == GLINT_OBJECT_MESH;
+    const int lift =
+        is_mesh ? beyond ? -GLINT_SCENE_LIFT : GLINT_SCENE_LIFT : 0;
+
+    for (int k = 0; k < 3; k++)
+        p->ray.at[k] =
+            surface->place[k] + q_mul(surface->face_q30[k], lift, 30);
+    p->object = surface->object;
+    p->triangle = surface->triangle;
+}
+
+/* Sets RGB to the light of the camera's picture where P goes. With the
+ * picture's edge at 1, direction (x, y, z) is at (x, y) / z of it. M = max(|x|,
+ * |y|) is z at the edge; beyond, z is mirrored there: (x, y) / (2 M - z).
+ * Straight back is the middle again, and there is no step on the way. */
+static void look_around(const struct glint_scene *s, const struct passing *p,
+                        int32_t rgb_q15[3])
+{
+    const struct glint_scene_view *v = &s->view;
+    /* Half the picture's width and height as tangents, 2^30 at most. */
+    const int64_t tan_x_q24 = q_shift(v->step_q56[0] * v->width, 25);
+    const int64_t tan_y_q24 = q_shift(v->step_q56[1] * v->height, 25);
+    const int64_t both_q24 = q_shift(tan_x_q24 * tan_y_q24, 24);
+    int64_t x, y, z, most, over;
+    int32_t seen_q30[3], half_q15[2];
+
+    v3_turn(&v->turn, p->ray.toward_q30, seen_q30);
+    /* All three times both tangents, _q30: within 2^36 and 2^43. */
+    x = q_shift(seen_q30[0] * tan_y_q24, 24);
+    y = q_shift(-seen_q30[1] * tan_x_q24, 24);
+    z = q_shift(q_shift(seen_q30[2], 6) * both_q24, 18);
+    most = (int64_t)q_magnitude(x);
+    if ((int64_t)q_magnitude(y) > most)
+        most = (int64_t)q_magnitude(y);
+    over = z > most ? z : 2 * most - z;
+    half_q15[0] = glint_ratio(q_magnitude(x) << 15, (uint64_t)over);
+    half_q15[1] = glint_ratio(q_magnitude(y) << 15, (uint64_t)over);
+    glint_around_at(&s->around,
+                    (1 << 15) + (x < 0 ? -half_q15[0] : half_q15[0]),
+                    (1 << 15) + (y < 0 ? -half_q15[1] : half_q15[1]), rgb_q15);
+}
+
+/* Adds what P comes to: the background's colour, or the picture that is all
+ * around. */
+static void add_background(const struct glint_scene *s, const struct passing *p,
+                           int32_t rgb_q15[3])
+{
+    int32_t light_q15[3];
+
+    if (s->around.has_picture)
+        look_around(s, p, light_q15);
+    for (int c = 0; c < 3; c++)
+        rgb_q15[c] = q_clamp_sat(
+            rgb_q15[c] + q_shift((s->around.has_picture
+                                      ? light_q15[c]
+                                      : s->model.header->background_q15[c]) *
+                                     (int64_t)p->weight_q15,
+                                 15),
+            0, GLINT_SCENE_MOST_LIGHT);
+}
+
+static int next_surface(const struct glint_scene *s, const struct passing *p,
+                        struct glint_met_surface *next)
+{
+    struct glint_met met;
+
+    return glint_scene_meet(s, &p->ray, p->object, p->triangle, &met) &&
+           glint_scene_surface(s, &p->ray, &met, next);
+}
+
+/* Turns P's direction at SURFACE as glass does; returns 1 if it is mirrored. */
+static int bend(const struct glint_met_surface *surface, uint32_t index_q16,
+                struct passing *p)
+{
+    /* 2^44 / index: 2^28 times 1 / index, or the index itself */
+    const uint32_t eta_q28 =
+        surface->is_inside
+            ? index_q16 << 12
+            : (uint32_t)glint_ratio(UINT64_C(1) << 44, index_q16);
+    int32_t to_q30[3];
+
+    if (!glint_bend(p->ray.toward_q30, surface->normal_q30, eta_q28, to_q30)) {
+        glint_mirror(p->ray.toward_q30, surface->normal_q30, p->ray.toward_q30);
+        return 1;
+    }
+    for (int k = 0; k < 3; k++)
+        p->ray.toward_q30[k] = to_q30[k];
+    return 0;
+}
+
+/* Takes P through a sphere that it has entered: to where it leaves. */
+static void cross_sphere(const struct glint_scene *s,
+                         const struct glint_met_surface *surface,
+                         int is_straight, struct passing *p)
+{
+    const struct glint_placed *ball = &s->placed[surface->object];
+    struct glint_met_surface end = *surface;
+    struct glint_chord chord;
+
+    if (!glint_ray_sphere(&p->ray, ball->at, ball->radius, &chord))
+        return; /* grazing: it leaves where it entered */
+    glint_chord_end(&chord, &p->ray, ball->at, 1, end.place, end.normal_q30);
+    for (int k = 0; k < 3; k++)
+        end.normal_q30[k] = -end.normal_q30[k];
+    end.is_inside = 1;
+    if (!is_straight)
+        bend(&end, (uint32_t)surface->material->index_q16, p);
+    start(s, &end, 1, p);
+}
+
+/* Takes P through SURFACE. */
+static void pass_through(const struct glint_scene *s,
+                         const struct glint_met_surface *surface,
+                         struct passing *p)
+{
+    const struct glint_scene_material *m = surface->material;
+    const int is_straight = m->index_q16 == 1 << 16;
+    const int is_sphere =
+        s->placed[surface->object].object->kind == GLINT_OBJECT_SPHERE;
+    int is_mirrored = 0;
+
+    p->weight_q15 = q_mul(p->weight_q15, m->pass_q15, 15);
+    p->is_bent |= !is_straight;
+    if (!is_straight)
+        is_mirrored = bend(surface, (uint32_t)m->index_q16, p);
+    start(s, surface, !is_mirrored, p);
+    if (is_sphere && surface->is_inside && is_mirrored)
+        p->weight_q15 = 0; /* such light never leaves a ball */
+    else if (is_sphere && !surface->is_inside && !is_mirrored)
+        cross_sphere(s, surface, is_straight, p);
+}
+
+static void reflect(const struct glint_scene *s, const struct passing *from,
+                    const struct glint_met_surface *surface, int32_t rgb_q15[3])
+{
+    struct passing p = *from;
+    struct glint_met_surface next;
+
+    p.weight_q15 = q_mul(p.weight_q15, surface->material->reflect_q15, 15);
+    glint_mirror(from->ray.toward_q30, surface->normal_q30, p.ray.toward_q30);
+    start(s, surface, 0, &p);
+    if (next_surface(s, &p, &next))
+        glint_scene_phong(s, &p.ray, &next, p.weight_q15, rgb_q15);
+    else
+        add_background(s, &p, rgb_q15);
+}
+
+static void follow(const struct glint_scene *s,
+                   const struct glint_scene_ray *ray,
+                   const struct glint_met_surface *surface,
+                   struct glint_met_shade *shade)
+{
+    struct passing p = {.ray = *ray, .weight_q15 = GLINT_SCENE_ONE_Q15};
+    struct glint_met_surface at = *surface;
+
+    if (at.material->reflect_q15)
+        reflect(s, &p, &at, shade->rgb_q15);
+    for (int i = 0; i < MOST_SURFACES && at.material->pass_q15; i++) {
+        pass_through(s, &at, &p);
+        if (p.weight_q15 == 0)
+            return;
+        if (!next_surface(s, &p, &at)) {
+            const int is_picture =
+                s->model.header->background == GLINT_BACKGROUND_CAMERA;
+
+            if (is_picture && !p.is_bent)
+                shade->cover_q8 -= q_mul(p.weight_q15, GLINT_COVER_ALL, 15);
+            else
+                add_background(s, &p, shade->rgb_q15);
+            return;
+        }
+        glint_scene_phong(s, &p.ray, &at, p.weight_q15, shade->rgb_q15);
+    }
+}
+
+static void carve(struct glint_scene *scene, struct glint_arena *arena)
+{
+    glint_around_carve(&scene->around, arena, scene->cfg.width,
+                       scene->cfg.height);
+}
+
+static void look(struct glint_scene *scene, const struct glint_image *image)
+{
+    glint_around_look(&scene->around, image, scene->cfg.workers);
+}
+
+const struct glint_scene_bounces glint_scene_bounces = {follow, carve, look};

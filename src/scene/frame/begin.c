@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A frame is prepared: where objects are, what of them may be seen, and what
+ * lights need to know. */
+#include "scene/frame/quick.h"
+#include "scene/visible.h"
+
+enum { ONE_Q30 = 1 << 30 };
+
+/* The pixels that a ball may touch: those of a box about it; all if that comes
+ * too near to the camera. */
+static struct glint_box ball_box(const struct glint_scene *s,
+                                 const int32_t seen[3], int32_t reach)
+{
+    const struct glint_box all = {0, 0, s->view.width, s->view.height};
+    int32_t lo[2] = {INT32_MAX, INT32_MAX}, hi[2] = {INT32_MIN, INT32_MIN};
+
+    for (int k = 0; k < 8; k++) {
+        const int32_t v[3] = {seen[0] + (k & 1 ? reach : -reach),
+                              seen[1] + (k & 2 ? reach : -reach),
+                              seen[2] + (k & 4 ? reach : -reach)};
+        const struct glint_corner c = glint_view_corner(&s->view, v);
+
+        if (v[2] <= 0 || c.w != 1)
+            return all;
+        lo[0] = q_smaller(lo[0], c.x);
+        lo[1] = q_smaller(lo[1], c.y);
+        hi[0] = q_larger(hi[0], c.x);
+        hi[1] = q_larger(hi[1], c.y);
+    }
+    return glint_box_cut(
+        all, (struct glint_box){((lo[0] + 128 * (all.x1 - 1)) >> 8) - 1,
+                                ((lo[1] + 128 * (all.y1 - 1)) >> 8) - 1,
+                                ((hi[0] + 128 * (all.x1 - 1)) >> 8) + 2,
+                                ((hi[1] + 128 * (all.y1 - 1)) >> 8) + 2});
+}
+
+/* How far apart rays of one pixel are at the far side of a ball: a little more
+ * than to its samples, 104/256 of a pixel to four of them. */
+static int32_t margin_of(const struct glint_scene *s, const int32_t seen[3],
+                         int32_t reach)
+{
+    const struct glint_scene_view *v = &s->view;
+    const int64_t step_q56 =
+        v->step_q56[0] > v->step_q56[1] ? v->step_q56[0] : v->step_q56[1];
+    const int64_t far =
+        (int64_t)glint_root((uint64_t)v3_dot(seen, seen)) + reach;
+    const int64_t off_q30 =
+        (step_q56 >> 26) * (s->cfg.edge_samples > 4 ? 184 : 104);
+
+    if (off_q30 >= ONE_Q30)
+        return GLINT_SCENE_SPAN;
+    return (int32_t)q_clamp_sat((far * off_q30 >> 30) + 2, 0, GLINT_SCENE_SPAN);
+}
+
+/* Finds where P is in the picture; returns its least z, or GLINT_FAR. */
+static int32_t place(struct glint_scene *s, struct glint_placed *p)
+{
+    int32_t seen[3], off[3];
+
+    p->is_seen = 0;
+    p->flat_depth = 0;
+    p->z[0] = -GLINT_FAR;
+    p->z[1] = GLINT_FAR;
+    p->box = (struct glint_box){0, 0, s->view.width, s->view.height};
+    if (!p->is_shown)
+        return GLINT_FAR;
+    if (p->object->kind == GLINT_OBJECT_PLANE) {
+        v3_minus(p->at, s->view.at, off);
+        p->is_seen = 1;
+        return (int32_t)(q_magnitude(q_shift(v3_dot(off, p->centre), 30)) / 4);
+    }
+    glint_view_seen(&s->view, p->centre, seen);
+    if (seen[2] + p->reach <= 0)
+        return GLINT_FAR;
+    p->z[0] = seen[2] - p->reach;
+    p->z[1] = seen[2] + p->reach;
+    p->box = ball_box(s, seen, p->reach + 2);
+    p->margin = margin_of(s, seen, p->reach);
+    p->is_seen = !glint_box_empty(p->box);
+    return p->is_seen ? seen[2] - p->reach : GLINT_FAR;
+}
+
+/* The depths of planes, once what is nearest is known. */
+static void place_planes(struct glint_scene *s)
+{
+    for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
+        struct glint_placed *p = &s->placed[i];
+        int32_t seen[3], normal_q30[3];
+
+        if (p->object->kind != GLINT_OBJECT_PLANE || !p->is_seen)
+            continue;
+        glint_view_seen(&s->view, p->at, seen);
+        v3_turn(&s->view.turn, p->centre, normal_q30);
+        p->is_seen =
+            glint_view_depth(&s->view, seen, normal_q30, s->nearest, &p->depth);
+    }
+}
+
+/* Grids of shadows are made anew where anything has moved. */
+static void prepare_shadows(struct glint_scene *s)
+{
+    s->has_planes = 0;
+    for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
+        const struct glint_scene_object *o = s->placed[i].object;
+
+        s->has_planes |= s->placed[i].is_shown &&
+                         o->kind == GLINT_OBJECT_PLANE && o->catcher_q15 == 0;
+    }
+    for (uint32_t i = 0; i < s->model.header->n_lights; i++)
+        if (s->lit[i].shadow && !s->lit[i].shadow->is_ready)
+            glint_shadow_prepare(s, &s->lit[i], s->lit[i].shadow);
+}
+
+void glint_scene_begin(struct glint_scene *scene,
+                       struct glint_scene_stats *stats)
+{
+    const uint32_t n = scene->model.header->n_objects;
+    int32_t nearest = GLINT_FAR, farthest = 1;
+
+    *stats = (struct glint_scene_stats){0};
+    for (uint32_t i = 0; i < n; i++) {
+        const int32_t z = place(scene, &scene->placed[i]);
+
+        nearest = q_smaller(nearest, z);
+        if (z < GLINT_FAR)
+            farthest = q_larger(farthest, z + 2 * scene->placed[i].reach);
+    }
+    /* What is nearer than 2^-14 of the farthest shares its depth. */
+    scene->nearest =
+        q_clamp_sat(q_larger(nearest, farthest >> 14), 1, GLINT_SCENE_SPAN);
+    place_planes(scene);
+    glint_quick_begin(scene);
+    glint_scene_flatten(scene);
+    scene->has_triangles = 0;
+    if (scene->bins.start)
+        scene->cfg.parts.meshes->project(scene, stats);
+    for (uint32_t i = 0; i < n; i++)
+        stats->objects += scene->placed[i].is_seen;
+    if (stats->objects > 0)
+        prepare_shadows(scene);
+    glint_scene_confine(scene);
+}

@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: MIT */
+#include "scene/frame/quick.h"
+
+#include "base/divide.h"
+
+enum { ONE_Q30 = 1 << 30, LEAST_UP = 17 };
+
+/* -------------------------------------------------------------------- rays */
+
+/* The picture's farthest corner is 2^29 to 2^30 away from the middle, or the
+ * plane of the picture is 2^28 away. */
+static void set_ray(const struct glint_scene_view *view, int32_t x_q8,
+                    int32_t y_q8, struct glint_scene_ray *ray)
+{
+    const int down = 28 + view->wide;
+    const int32_t toward[3] = {(int32_t)((x_q8 * view->step_q56[0]) >> down),
+                               -(int32_t)((y_q8 * view->step_q56[1]) >> down),
+                               (1 << 28) >> view->wide};
+    int32_t seen_q30[3];
+
+    glint_quick_unit(toward, seen_q30);
+    v3_turn_back(&view->turn, seen_q30, ray->toward_q30);
+    for (int k = 0; k < 3; k++)
+        ray->at[k] = view->at[k];
+}
+
+/* ------------------------------------------------------------------- balls */
+
+/* Balls are met in units of their radius, from a camera outside of them and at
+ * most 2^13 radii away. */
+static void begin_ball(const struct glint_scene *s, struct glint_placed *p)
+{
+    int32_t to[3];
+    uint64_t away;
+    int up;
+
+    p->over_up = 0;
+    if (!p->is_seen || p->object->kind != GLINT_OBJECT_SPHERE)
+        return;
+    v3_minus(p->at, s->view.at, to);
+    away = glint_root((uint64_t)v3_dot(to, to));
+    if (away < (uint64_t)p->radius + (uint64_t)p->radius / 16 + 16)
+        return;
+    up = 29 - bit_length((uint64_t)q_divide((int64_t)away, p->radius));
+    if (up < LEAST_UP)
+        return;
+    for (int k = 0; k < 3; k++)
+        p->over[k] =
+            (int32_t)q_divide((int64_t)to[k] * (INT64_C(1) << up), p->radius);
+    p->over_up = up;
+}
+
+/* Prepares spans: M towards the ball's middle, C its rim's cosine squared, a
+ * place (X, Y) of the picture in tangents: it is on the ball where
+ * (M.x X + M.y Y + M.z)^2 >= C (1 + X^2 + Y^2). */
+static void begin_spans(const struct glint_scene *s, struct glint_placed *p)
+{
+    int32_t seen[3], away;
+    int64_t to[3], sine_q30;
+
+    p->span.is_there = 0;
+    if (p->over_up == 0 || s->view.wide > 1)
+        return;
+    glint_view_seen(&s->view, p->at, seen);
+    for (int k = 0; k < 3; k++)
+        to[k] = seen[k];
+    away = (int32_t)glint_root((uint64_t)v3_dot(seen, seen));
+    /* with room for samples beside the middles of rows */
+    sine_q30 = glint_ratio(
+        ((uint64_t)p->radius + 2 * (uint64_t)p->margin) << 30, (uint64_t)away);
+    if (!glint_unit(to, p->span.m_q30) || sine_q30 < 1 << 22 ||
+        sine_q30 > 1 << 29)
+        return;
+    p->span.c_q30 = (int32_t)((1 << 30) - (sine_q30 * sine_q30 >> 30));
+    p->span.a_q30 =
+        (int32_t)(((int64_t)p->span.m_q30[0] * p->span.m_q30[0] >> 30) -
+                  p->span.c_q30);
+    /* an ellipse, not too flat */
+    if (p->span.a_q30 > -(1 << 26))
+        return;
+    p->span.up = q_up((uint64_t)-p->span.a_q30);
+    p->span.over = q_reciprocal((uint32_t)-p->span.a_q30 << p->span.up) >> 2;
+    p->span.is_there = 1;
+}
+
+/* (C - M.x^2) X^2 - 2 M.x h X + C (1 + Y^2) - h^2 <= 0, h = M.y Y + M.z. */
+int glint_scene_span(const struct glint_scene *s, const struct glint_placed *p,
+                     int y, int32_t *x0, int32_t *x1)
+{
+    const int32_t y_q8 = 256 * y - 128 * (s->view.height - 1);
+    const int64_t y_q28 = -(y_q8 * s->view.step_q56[1] >> 28);
+    int64_t h_q28, rest_q56, half_q28, middle_q28, end_q28[2];
+    const int64_t square_q28 = (1 << 28) + (y_q28 * y_q28 >> 28);
+
+    if (!p->span.is_there)
+        return 1;
+    h_q28 = (p->span.m_q30[1] * y_q28 >> 30) + (p->span.m_q30[2] >> 2);
+    rest_q56 = h_q28 * h_q28 + (square_q28 * p->span.a_q30 >> 2);
+    if (rest_q56 < -(INT64_C(1) << 36))
+        return 0;
+    rest_q56 = rest_q56 < 0 ? 0 : rest_q56;
+    half_q28 = glint_root((uint64_t)rest_q56) + (1 << 16);
+    middle_q28 = p->span.m_q30[0] * h_q28 >> 30;
+    for (int k = 0; k < 2; k++) {
+        end_q28[k] =
+            (middle_q28 + (k ? half_q28 : -half_q28)) * (int64_t)p->span.over >>
+            (31 - p->span.up);
+        end_q28[k] =
+            (end_q28[k] * s->view.per_tan_q8 >> 36) + s->view.width / 2;
+    }
+    *x0 = q_clamp_sat(end_q28[0] - 2, *x0, *x1);
+    *x1 = q_clamp_sat(end_q28[1] + 3, *x0, *x1);
+    return *x0 < *x1;
+}
+
+void glint_quick_begin(struct glint_scene *scene)
+{
+    for (uint32_t i = 0; i < scene->model.header->n_objects; i++) {
+        begin_ball(scene, &scene->placed[i]);
+        begin_spans(scene, &scene->placed[i]);
+    }
+}
+
+/* The ray's line passes the ball's middle at A = L x D, in radii. The normal
+ * is A x D - sqrt(1 - A.A) D, a unit vector. Near the rim that is not exact
+ * enough. */
+static int find_ball(const struct glint_placed *p,
+                     const struct glint_scene_ray *ray,
+                     struct glint_met_surface *surface)
+{
+    const int32_t *d_q30 = ray->toward_q30;
+    int64_t cross[3];
+    int32_t across_q30[3], half_q30;
+    uint64_t square_q60;
+    uint32_t s_q32;
+    int up;
+
+    v3_cross(p->over, d_q30, cross);
+    for (int k = 0; k < 3; k++) {
+        const int64_t a_q30 = cross[k] >> p->over_up;
+
+        if (a_q30 > ONE_Q30 || a_q30 < -ONE_Q30)
+            return 0;
+        across_q30[k] = (int32_t)a_q30;
+    }
+    square_q60 = (UINT64_C(1) << 60) - (uint64_t)v3_dot(across_q30, across_q30);
+    if ((int64_t)square_q60 < INT64_C(1) << 44)
+        return 0;
+    up = glint_quick_up(square_q60);
+    s_q32 = (uint32_t)(square_q60 << up >> 32);
+    half_q30 = (int32_t)((uint64_t)s_q32 * glint_quick_root_q31(s_q32) >>
+                         (31 + up / 2));
+    v3_cross(across_q30, d_q30, cross);
+    for (int k = 0; k < 3; k++) {
+        const int32_t n_q30 =
+            (int32_t)((cross[k] - (int64_t)half_q30 * d_q30[k]) >> 30);
+
+        surface->normal_q30[k] = surface->face_q30[k] = n_q30;
+        surface->place[k] =
+            p->at[k] + (int32_t)q_shift((int64_t)n_q30 * p->radius, 30);
+    }
+    /* of textures: L.D - half, in radii; to 2^-13 of a radius */
+    surface->t = q_clamp_sat(
+        (((v3_dot(p->over, d_q30) >> 30) - (half_q30 >> (30 - p->over_up))) *
+         p->radius) >>
+            p->over_up,
+        1, GLINT_FAR - 1);
+    return 1;
+}
+
+/* ------------------------------------------------------------------- either */
+
+int glint_quick_find(struct glint_scene_worker *w, uint32_t id, int32_t x_q8,
+                     int32_t y_q8, struct glint_scene_ray *ray,
+                     struct glint_met_surface *surface)
+{
+    const struct glint_scene *s = w->scene;
+    const struct glint_placed *p = &s->placed[id >> 20];
+
+    surface->object = id >> 20;
+    surface->triangle = id & 0xfffff;
+    if (p->over_up) {
+        set_ray(&s->view, x_q8, y_q8, ray);
+        surface->material = &s->model.material[p->object->material];
+        surface->is_inside = 0;
+        return find_ball(p, ray, surface);
+    }
+    if (p->object->kind != GLINT_OBJECT_MESH ||
+        !s->cfg.parts.meshes->find(w, id, x_q8, y_q8, surface))
+        return 0;
+    set_ray(&s->view, x_q8, y_q8, ray);
+    return 1;
+}

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Surfaces in the middle of pixels, the quick way: 26 bits are enough to shade
+ * by, and what all pixels of a thing share is done once.
+ *
+ * What is seen there has been decided exactly (visible.c). */
+#ifndef GLINT_SCENE_FRAME_QUICK_H
+#define GLINT_SCENE_FRAME_QUICK_H
+
+#include "scene/state.h"
+
+/* ------------------------------------------------------------------- roots */
+
+/* Returns 2^31 / sqrt(S), S = S_Q32 / 2^32 from 1/4 to below 1, off by 2^-25.8
+ * of itself, never above: Newton's method from 2^-6.9 of the table's. */
+static inline uint32_t glint_quick_root_q31(uint32_t s_q32)
+{
+    uint32_t r_q31 = glint_inverse_root_start(s_q32 >> 25) << 24;
+
+    for (int i = 0; i < 2; i++) {
+        const uint32_t square_q30 = (uint32_t)((uint64_t)r_q31 * r_q31 >> 32);
+        const uint32_t one_q30 = (uint32_t)((uint64_t)square_q30 * s_q32 >> 32);
+        const uint32_t rest_q30 = (UINT32_C(3) << 30) - one_q30;
+
+        r_q31 = (uint32_t)((uint64_t)r_q31 * rest_q30 >> 31);
+    }
+    return r_q31;
+}
+
+/* Returns by how many bits X, not 0, is to be shifted up to have 63 or 64. */
+static inline int glint_quick_up(uint64_t x)
+{
+    return (64 - bit_length(x | 1)) & ~1;
+}
+
+/* Sets UNIT_Q30 to V / |V|; elements of V are within +-2^30, and one is from
+ * 2^20 on. */
+static inline void glint_quick_unit(const int32_t v[3], int32_t unit_q30[3])
+{
+    const uint64_t square = (uint64_t)v3_dot(v, v); /* below 3 * 2^60 */
+    const int up = glint_quick_up(square);
+    const int64_t r_q31 = glint_quick_root_q31((uint32_t)(square << up >> 32));
+    const int down = 33 - up / 2;
+
+    for (int k = 0; k < 3; k++)
+        unit_q30[k] = (int32_t)((v[k] * r_q31) >> down);
+}
+
+/* -------------------------------------------------------------------- find */
+
+/* Prepares the balls of a frame. */
+void glint_quick_begin(struct glint_scene *scene);
+
+/* Sets RAY to that of place (X, Y), each element off by 2^-24, and SURFACE to
+ * where it meets ID, held inside if that is a triangle. Returns 0 where that is
+ * not to be had this way: near the rim of a ball, of triangles that come near
+ * the camera or have a texture, of planes. */
+int glint_quick_find(struct glint_scene_worker *w, uint32_t id, int32_t x_q8,
+                     int32_t y_q8, struct glint_scene_ray *ray,
+                     struct glint_met_surface *surface);
+
+#endif

@@ -1,0 +1,377 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The scene as a pass: a pixel is shaded once for each thing that its samples
+ * see, at its middle, and at each sample of what mirrors or lets light through;
+ * what of it nothing covers stays. */
+#include "scene/frame/quick.h"
+#include "scene/visible.h"
+
+enum { SUMMED = 4 /* samples that light and cover are sums of */ };
+
+static void *begin_row(const void *self, struct glint_box row, int worker)
+{
+    const struct glint_scene *scene = self;
+
+    (void)row;
+    for (int i = 0; scene->worker[worker].quick && i < GLINT_QUICK_TRIANGLES;
+         i++)
+        scene->worker[worker].quick[i].id = GLINT_NOTHING;
+    return &scene->worker[worker];
+}
+
+static int go_on(void *state, struct glint_box tile)
+{
+    return glint_scene_look(state, tile);
+}
+
+/* Returns whether samples of ID are shaded one by one: edges of what it mirrors
+ * and lets through lie within it. */
+static int is_split(const struct glint_scene *s, uint32_t id)
+{
+    return id != GLINT_NOTHING && s->placed[id >> 20].is_split;
+}
+
+enum { MIDDLE = -1, QUAD = -2 /* in place of a sample: see find() */ };
+
+/* Returns where sample K lies from a pixel's middle; QUAD: where it meets its
+ * right and lower neighbours. */
+static int32_t off_of(const struct glint_scene *s, int k, int axis)
+{
+    return k >= 0 ? glint_sample(s, k, axis) : k == QUAD ? 128 : 0;
+}
+
+/* Finds the surface of ID at pixel (X, Y): on the ray through its middle, or,
+ * where that misses it or samples are shaded one by one, through sample K. */
+static int find(struct glint_scene_worker *w, uint32_t id, int x, int y, int k,
+                struct glint_scene_ray *ray, struct glint_met_surface *surface)
+{
+    const struct glint_scene *s = w->scene;
+
+    for (int i = k == QUAD || is_split(s, id); i < 2; i++) {
+        const int at = i ? k : MIDDLE;
+        struct glint_met met;
+        int32_t seen_q30[3];
+
+        const int32_t x_q8 = glint_place(s, x, 0) + off_of(s, at, 0);
+        const int32_t y_q8 = glint_place(s, y, 1) + off_of(s, at, 1);
+
+        if (glint_quick_find(w, id, x_q8, y_q8, ray, surface))
+            return 1;
+        glint_view_ray(&s->view, x_q8, y_q8, ray, seen_q30);
+        if (glint_scene_meet_id(s, ray, seen_q30, id, &met))
+            return glint_scene_surface(s, ray, &met, surface);
+    }
+    return 0;
+}
+
+/* Shades what sample K of pixel (X, Y) sees. */
+static void shade_id(struct glint_scene_worker *w, uint32_t id, int x, int y,
+                     int k, struct glint_met_shade *shade)
+{
+    const struct glint_scene *s = w->scene;
+    const struct glint_scene_header *h = s->model.header;
+    struct glint_scene_ray ray;
+    struct glint_met_surface surface;
+
+    *shade = (struct glint_met_shade){{0, 0, 0}, 0};
+    if (id != GLINT_NOTHING && find(w, id, x, y, k, &ray, &surface)) {
+        glint_scene_shade(s, &ray, &surface, shade);
+    } else if (h->background == GLINT_BACKGROUND_COLOUR) {
+        shade->cover_q8 = GLINT_COVER_ALL;
+        for (int c = 0; c < 3; c++)
+            shade->rgb_q15[c] = h->background_q15[c];
+    }
+}
+
+/* Returns whether the samples of a pixel see nothing but the picture. */
+static int is_empty(const struct glint_scene *s, const uint32_t *id)
+{
+    uint32_t all = id[0];
+
+    for (int k = 1; k < s->cfg.edge_samples; k++)
+        all &= id[k]; /* all bits of GLINT_NOTHING are set */
+    return all == GLINT_NOTHING &&
+           s->model.header->background == GLINT_BACKGROUND_CAMERA;
+}
+
+/* Returns whether ID only takes shadows, which hide no lamps. */
+static int is_catcher(const struct glint_scene *s, uint32_t id)
+{
+    return id != GLINT_NOTHING && s->placed[id >> 20].is_catcher;
+}
+
+/* Returns whether two samples may be shaded as one: they see one thing, or two
+ * triangles of a smooth surface that share a vertex. */
+static int is_joined(const struct glint_scene *s, uint32_t a, uint32_t b)
+{
+    return a == b ||
+           ((a ^ b) >> 20 == 0 && a != GLINT_NOTHING && b != GLINT_NOTHING &&
+            s->placed[a >> 20].object->kind == GLINT_OBJECT_MESH &&
+            s->cfg.parts.meshes->joins(s, a, b));
+}
+
+/* Sets TIMES to how many samples each sample is shaded for. */
+static void share(const struct glint_scene *s, const uint32_t *id,
+                  int times[GLINT_SCENE_SAMPLES])
+{
+    const int n = s->cfg.edge_samples;
+
+    for (int k = 0; k < n; k++) {
+        int i = 0;
+
+        times[k] = 0;
+        while (i < k && (times[i] == 0 || !is_joined(s, id[i], id[k])))
+            i++;
+        if (is_split(s, id[k]))
+            i = k;
+        times[i]++;
+    }
+}
+
+/* Adds TIMES samples, of N, of ID and SHADE. */
+static void add(const struct glint_scene *s, uint32_t id,
+                const struct glint_met_shade *shade, int times,
+                struct glint_scene_sum *sum)
+{
+    sum->cover_q10 += times * shade->cover_q8;
+    if (is_catcher(s, id))
+        sum->shadow_q10 += times * shade->cover_q8;
+    for (int c = 0; c < 3; c++)
+        sum->rgb_q17[c] += (int64_t)times * shade->rgb_q15[c];
+}
+
+/* Shades what the samples of pixel (X, Y) see one by one, where that differs.
+ */
+static void shade_samples(struct glint_scene_worker *w, const uint32_t *id,
+                          int x, int y, struct glint_scene_sum *sum)
+{
+    const struct glint_scene *s = w->scene;
+    const int n = s->cfg.edge_samples, down = n == 16 ? 2 : n == 8;
+    int times[GLINT_SCENE_SAMPLES];
+
+    share(s, id, times);
+    for (int k = 0; k < n; k++) {
+        struct glint_met_shade shade;
+
+        if (times[k] == 0)
+            continue;
+        shade_id(w, id[k], x, y, k, &shade);
+        add(s, id[k], &shade, times[k], sum);
+    }
+    for (int c = 0; c < 3; c++)
+        sum->rgb_q17[c] =
+            down ? q_shift(sum->rgb_q17[c], down) : sum->rgb_q17[c];
+    sum->cover_q10 = (sum->cover_q10 + down) >> down;
+    sum->shadow_q10 = (sum->shadow_q10 + down) >> down;
+}
+
+/* Returns whether N samples from ID on see the same. */
+static int is_one(const uint32_t *id, int n, uint32_t thing)
+{
+    uint32_t other = 0;
+
+    for (int k = 0; k < n; k++)
+        other |= id[k] ^ thing;
+    return other == 0;
+}
+
+/* Returns whether N samples from ID on may be shaded as THING is. */
+static int is_joined_to(const struct glint_scene *s, const uint32_t *id, int n,
+                        uint32_t thing)
+{
+    uint32_t last = thing;
+
+    for (int k = 0; k < n; k++) {
+        if (id[k] != last && !is_joined(s, id[k], thing))
+            return 0;
+        last = id[k];
+    }
+    return 1;
+}
+
+/* Returns whether (X, Y) is one of two by two pixels that all see one thing, or
+ * triangles around one of a smooth surface. */
+static int is_quad(const struct glint_scene_worker *w, int x, int y)
+{
+    const struct glint_box b = w->touched;
+    const int n = w->scene->cfg.edge_samples, x0 = x & ~1, y0 = y & ~1;
+    const uint32_t *id;
+
+    if (!w->quad || x0 < b.x0 || y0 < b.y0 || x0 + 1 >= b.x1 || y0 + 1 >= b.y1)
+        return 0;
+    id = &w->id[glint_sample_index(w, x0, y0, 0)];
+    return is_joined_to(w->scene, id, 2 * n, id[0]) &&
+           is_joined_to(w->scene, &w->id[glint_sample_index(w, x0, y0 + 1, 0)],
+                        2 * n, id[0]);
+}
+
+/* Shades pixel (X, Y), whose samples see ID. */
+static void shade_pixel(struct glint_scene_worker *w, const uint32_t *id, int x,
+                        int y, struct glint_scene_sum *sum)
+{
+    const struct glint_scene *s = w->scene;
+    const int n = s->cfg.edge_samples, quad = is_quad(w, x, y);
+    struct glint_scene_sum *kept =
+        quad ? &w->quad[(x - w->tile.x0) >> 1] : NULL;
+    struct glint_met_shade shade;
+
+    if (quad && ((x | y) & 1)) {
+        *sum = *kept;
+        return;
+    }
+    *sum = (struct glint_scene_sum){{0, 0, 0}, 0, 0};
+    if (quad || n == 1 || (is_one(id, n, id[0]) && !is_split(s, id[0]))) {
+        shade_id(w, id[0], x, y, quad ? QUAD : 0, &shade);
+        add(s, id[0], &shade, SUMMED, sum);
+    } else {
+        shade_samples(w, id, x, y, sum);
+    }
+    if (quad)
+        *kept = *sum;
+}
+
+static void put(const struct glint_scene_worker *w,
+                const struct glint_pass_rows *rows, int i, int row,
+                const int64_t sum_q17[3], int cover_q10)
+{
+    rows->cover->cover_q8[row][i] = (uint16_t)((cover_q10 + 2) >> 2);
+    for (int c = 0; c < 3; c++)
+        if (w->is_linear)
+            rows->light_q20[c][i] = q_clamp_sat(sum_q17[c] * 8, 0, INT32_MAX);
+        else
+            rows->light->rgb_q16[c][row][i] =
+                (uint16_t)q_clamp_sat(q_shift(sum_q17[c], 1), 0, 65535);
+}
+
+static void put_nothing(const struct glint_scene_worker *w,
+                        const struct glint_pass_rows *rows, int row, int x0,
+                        int x1)
+{
+    for (int i = x0; i < x1; i++)
+        rows->cover->cover_q8[row][i] = 0;
+    for (int c = 0; c < 3; c++)
+        for (int i = x0; i < x1; i++)
+            if (w->is_linear)
+                rows->light_q20[c][i] = 0;
+            else
+                rows->light->rgb_q16[c][row][i] = 0;
+}
+
+/* Sets pixels X0 .. X1 - 1 of row ROW to what is seen where there is no thing.
+ */
+static void put_background(const struct glint_scene_worker *w,
+                           const struct glint_pass_rows *rows, int row, int x0,
+                           int x1)
+{
+    const struct glint_scene_header *h = w->scene->model.header;
+    const int is_colour = h->background == GLINT_BACKGROUND_COLOUR;
+    int64_t sum_q17[3];
+
+    for (int c = 0; c < 3; c++)
+        sum_q17[c] = (int64_t)h->background_q15[c] * SUMMED;
+    if (!is_colour) {
+        put_nothing(w, rows, row, x0 - w->tile.x0, x1 - w->tile.x0);
+        return;
+    }
+    for (int x = x0; x < x1; x++) {
+        put(w, rows, x - w->tile.x0, row, sum_q17, SUMMED * GLINT_COVER_ALL);
+        w->scene->cover[((rows->y + row) >> GLINT_COVER_LOG2) *
+                            w->scene->cover_across +
+                        (x >> GLINT_COVER_LOG2)] += GLINT_COVER_ALL;
+    }
+}
+
+/* Draws row ROW; returns whether anything is to be seen. */
+static int draw_row(struct glint_scene_worker *w,
+                    const struct glint_pass_rows *rows, int row)
+{
+    const struct glint_scene *s = w->scene;
+    const struct glint_box b = w->touched;
+    const int y = rows->y + row;
+    const int is_in = !glint_box_empty(b) && y >= b.y0 && y < b.y1;
+    const int x0 = is_in ? b.x0 : w->tile.x1, x1 = is_in ? b.x1 : w->tile.x1;
+    uint16_t *cover = &s->cover[(y >> GLINT_COVER_LOG2) * s->cover_across];
+    int any = s->model.header->background == GLINT_BACKGROUND_COLOUR;
+
+    put_background(w, rows, row, w->tile.x0, x0);
+    for (int x = x0; x < x1;) {
+        const uint32_t *id = &w->id[glint_sample_index(w, x, y, 0)];
+        struct glint_scene_sum sum;
+        int end = x;
+
+        while (end < x1 && is_empty(s, id + (end - x) * s->cfg.edge_samples))
+            end++;
+        if (end > x) {
+            put_nothing(w, rows, row, x - w->tile.x0, end - w->tile.x0);
+            x = end;
+            continue;
+        }
+        shade_pixel(w, id, x, y, &sum);
+        put(w, rows, x - w->tile.x0, row, sum.rgb_q17, sum.cover_q10);
+        any |=
+            sum.cover_q10 || sum.rgb_q17[0] || sum.rgb_q17[1] || sum.rgb_q17[2];
+        cover[x >> GLINT_COVER_LOG2] =
+            (uint16_t)(cover[x >> GLINT_COVER_LOG2] +
+                       ((sum.cover_q10 - sum.shadow_q10 + 2) >> 2));
+        x++;
+    }
+    put_background(w, rows, row, x1, w->tile.x1);
+    return any;
+}
+
+static enum glint_given draw_rows(void *state,
+                                  const struct glint_pass_rows *rows)
+{
+    struct glint_scene_worker *w = state;
+    int any = 0;
+
+    if (w->scene->model.header->background == GLINT_BACKGROUND_CAMERA &&
+        (rows->y >= w->touched.y1 || rows->y + rows->n <= w->touched.y0))
+        return GLINT_GIVES_NOTHING;
+    for (int row = 0; row < rows->n; row++)
+        any |= draw_row(w, rows, row);
+    return any ? GLINT_GIVES_COVER : GLINT_GIVES_NOTHING;
+}
+
+struct glint_pass glint_scene_pass(const struct glint_scene *scene)
+{
+    return (struct glint_pass){scene, begin_row, go_on, draw_rows};
+}
+
+/* ----------------------------------------------------------------- drawing */
+
+struct draw {
+    struct glint_scene *scene;
+    struct glint_tiles tiles;
+    struct glint_pass pass;
+};
+
+static void row_job(void *ctx, int job, int worker)
+{
+    struct draw *d = ctx;
+
+    glint_tile_rows(&d->tiles, &d->pass, 1, job, worker,
+                    &d->scene->worker[worker].scratch);
+}
+
+void glint_scene_draw(struct glint_scene *scene,
+                      const struct glint_image *image)
+{
+    struct draw d = {.scene = scene, .pass = glint_scene_pass(scene)};
+
+    glint_resolve_init(scene->resolve, image, scene->cfg.dither,
+                       scene->cfg.sets);
+    d.tiles = (struct glint_tiles){.region = scene->bins.region,
+                                   .tile_log2 = scene->cfg.tile_log2,
+                                   .width = scene->cfg.width,
+                                   .height = scene->cfg.height,
+                                   .image = image,
+                                   .resolve = scene->resolve,
+                                   .blend = &glint_blend};
+    for (int i = 0; i < scene->cover_across * scene->cover_down; i++)
+        scene->cover[i] = 0;
+    for (int i = 0; i < glint_workers_count(scene->cfg.workers); i++)
+        scene->worker[i].is_linear = image->format == GLINT_LINEAR_Q20;
+    glint_workers_run(scene->cfg.workers, glint_tiles_down(&d.tiles), row_job,
+                      &d);
+}

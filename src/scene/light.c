@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Lights: how bright they are at a place, and whether they reach it. */
+#include "base/divide.h"
+#include "scene/state.h"
+
+enum { STEPS_LOG2 = 7 };
+
+/* log2(1 + i / 128). */
+/* clang-format off */
+static const int32_t log2_q30[(1 << STEPS_LOG2) + 2] = {
+    0, 12055174, 24017256, 35887675, 47667823, 59359063,
+    70962728, 82480119, 93912511, 105261148, 116527248, 127712004,
+    138816582, 149842124, 160789745, 171660541, 182455581, 193175914,
+    203822568, 214396548, 224898839, 235330407, 245692198, 255985140,
+    266210141, 276368092, 286459867, 296486323, 306448299, 316346620,
+    326182095, 335955515, 345667660, 355319292, 364911162, 374444004,
+    383918542, 393335482, 402695523, 411999347, 421247625, 430441017,
+    439580170, 448665721, 457698295, 466678506, 475606957, 484484242,
+    493310944, 502087636, 510814882, 519493235, 528123241, 536705435,
+    545240343, 553728485, 562170370, 570566499, 578917365, 587223455,
+    595485245, 603703206, 611877800, 620009483, 628098702, 636145900,
+    644151509, 652115959, 660039669, 667923055, 675766525, 683570481,
+    691335320, 699061430, 706749198, 714399001, 722011213, 729586201,
+    737124328, 744625951, 752091421, 759521085, 766915285, 774274358,
+    781598637, 788888448, 796144114, 803365955, 810554283, 817709409,
+    824831638, 831921271, 838978604, 846003931, 852997541, 859959719,
+    866890747, 873790901, 880660455, 887499680, 894308843, 901088206,
+    907838029, 914558569, 921250079, 927912807, 934547002, 941152905,
+    947730758, 954280797, 960803257, 967298370, 973766362, 980207461,
+    986621888, 993009864, 999371606, 1005707329, 1012017244, 1018301561,
+    1024560487, 1030794226, 1037002979, 1043186948, 1049346328, 1055481314,
+    1061592099, 1067678873, 1073741824, 1079781138};
+
+/* Points of the unit disc, spread evenly: four, and sixteen along a spiral. */
+static const int32_t four_q15[4][2] = {
+    {21773, 7925}, {-7925, 21773}, {-21773, -7925}, {7925, -21773}};
+static const int32_t sixteen_q15[16][2] = {
+    {5793, 0}, {-7398, 6777}, {1132, -12903}, {9325, 12163},
+    {-17112, -3027}, {16210, -10312}, {-5422, 20170}, {-10340, -19910},
+    {22434, 8193}, {-23339, 9634}, {11251, -24043}, {8314, 26507},
+    {-25059, -14522}, {29397, -6463}, {-17941, 25519}, {-4145, -31985}};
+/* clang-format on */
+
+/* ------------------------------------------------------------------- power */
+
+/* Returns -log2(X), X_Q30 1 .. 2^30, _q26, off by 2^-23: by a parabola through
+ * three neighbours of the table. */
+static int32_t minus_log2_q26(uint32_t x_q30)
+{
+    const int up = 31 - bit_length(x_q30), low = 30 - STEPS_LOG2;
+    const uint32_t m_q30 = x_q30 << up; /* 2^30 .. 2^31 - 1 */
+    const int32_t *at_q30 = &log2_q30[(m_q30 >> low) - (1 << STEPS_LOG2)];
+    const int32_t f_q23 = (int32_t)(m_q30 & ((1U << low) - 1));
+    const int32_t rise_q30 = at_q30[1] - at_q30[0];
+    const int32_t bend_q30 = at_q30[2] - at_q30[1] - rise_q30;
+    const int64_t half_q23 =
+        q_shift((int64_t)f_q23 * ((1 << low) - f_q23), low + 1);
+    const int64_t y_q30 = at_q30[0] + q_shift((int64_t)rise_q30 * f_q23, low) -
+                          q_shift(bend_q30 * half_q23, low);
+
+    return (int32_t)(((int64_t)up << 26) - q_shift(y_q30, 4));
+}
+
+/* 2^-f, f = 0 .. 1, by six terms of its series: off by 2^-12.6 at most. */
+int32_t glint_power_q15(int32_t x_q30, int32_t k_q8)
+{
+    int64_t down_q26;
+    int32_t f_q26, y_q30;
+
+    if (x_q30 <= 0)
+        return 0;
+    down_q26 = q_shift((int64_t)minus_log2_q26((uint32_t)x_q30) * k_q8, 8);
+    if (down_q26 >= INT64_C(17) << 26)
+        return 0;
+    f_q26 = (int32_t)(down_q26 & ((1 << 26) - 1));
+    y_q30 =
+        Q_CONST(0.0096181291, 30) - q_mul(f_q26, Q_CONST(0.0013333558, 30), 26);
+    y_q30 = Q_CONST(0.0555041087, 30) - q_mul(f_q26, y_q30, 26);
+    y_q30 = Q_CONST(0.2402265070, 30) - q_mul(f_q26, y_q30, 26);
+    y_q30 = Q_CONST(0.6931471806, 30) - q_mul(f_q26, y_q30, 26);
+    y_q30 = (1 << 30) - q_mul(f_q26, y_q30, 26);
+    return (int32_t)q_shift(y_q30, 15 + (int)(down_q26 >> 26));
+}
+
+/* ------------------------------------------------------------------- level */
+
+/* Returns REAL times 4^UNIT_LOG2 over SQUARE, q15, which saturates. */
+static int32_t level_of(struct glint_real real, int unit_log2, uint64_t square)
+{
+    const int up = q_up(square);
+    /* 2^63 / 2^UP times the quotient of the mantissa, below 2^63 */
+    const uint64_t over =
+        (uint64_t)real.mantissa * q_reciprocal(q_upper(square, up));
+    const int down = 63 - up - real.exponent - 2 * unit_log2 - 15;
+
+    if (real.mantissa == 0 || down > 63)
+        return 0;
+    if (down < 0 || over >> down >= GLINT_SCENE_MOST_LIGHT)
+        return GLINT_SCENE_MOST_LIGHT;
+    return (int32_t)(over >> down);
+}
+
+int32_t glint_scene_light_at(const struct glint_scene *scene,
+                             const struct glint_lit *lit,
+                             const int32_t place[3], int32_t toward_q30[3],
+                             int32_t level_q15[3])
+{
+    int32_t off[3];
+    int64_t wide[3];
+    uint64_t square;
+
+    if (lit->light->kind == GLINT_LIGHT_SUN) {
+        for (int k = 0; k < 3; k++) {
+            toward_q30[k] = lit->toward_q30[k];
+            level_q15[k] = lit->rgb_q15[k];
+        }
+        return GLINT_FAR;
+    }
+    v3_minus(lit->at, place, off);
+    for (int k = 0; k < 3; k++)
+        wide[k] = off[k];
+    if (!glint_unit(wide, toward_q30))
+        return 0;
+    square = (uint64_t)v3_dot(off, off);
+    for (int k = 0; k < 3; k++)
+        level_q15[k] = level_of(lit->light->rgb[k],
+                                scene->model.header->unit_log2, square);
+    return (int32_t)glint_root(square);
+}
+
+/* ------------------------------------------------------------------ shadows */
+
+void glint_scene_frame_of(const int32_t d_q30[3], int32_t u_q30[3],
+                          int32_t v_q30[3])
+{
+    int32_t axis_q30[3] = {0, 0, 0};
+    int64_t cross[3];
+
+    axis_q30[q_magnitude(d_q30[0]) > 1 << 29] = 1 << 30;
+    v3_cross(d_q30, axis_q30, cross);
+    glint_unit(cross, u_q30);
+    v3_cross(d_q30, u_q30, cross);
+    glint_unit(cross, v_q30);
+}
+
+void glint_scene_point(struct glint_scene_ray *ray, int32_t t, int32_t radius,
+                       int i, int n)
+{
+    const int32_t *at_q15 = n == 4 ? four_q15[i] : sixteen_q15[i];
+    int32_t u_q30[3] = {0}, v_q30[3] = {0};
+    int64_t to[3];
+
+    if (radius == 0 || n == 1)
+        return;
+    glint_scene_frame_of(ray->toward_q30, u_q30, v_q30);
+    for (int k = 0; k < 3; k++) { /* 2^60, and 1.5 * 2^30 times 2^29 */
+        const int64_t aside_q30 = q_shift(
+            (int64_t)u_q30[k] * at_q15[0] + (int64_t)v_q30[k] * at_q15[1], 15);
+
+        to[k] = (int64_t)t * ray->toward_q30[k] + aside_q30 * radius;
+    }
+    glint_unit(to, ray->toward_q30);
+}
+
+/* Where rays from SURFACE start: off that of a mesh. */
+static void leave(const struct glint_scene *scene,
+                  const struct glint_met_surface *surface, int32_t at[3])
+{
+    const int is_mesh =
+        scene->placed[surface->object].object->kind == GLINT_OBJECT_MESH;
+
+    for (int k = 0; k < 3; k++)
+        at[k] =
+            surface->place[k] +
+            (is_mesh ? q_mul(surface->face_q30[k], GLINT_SCENE_LIFT, 30) : 0);
+}
+
+int32_t glint_scene_reaches(const struct glint_scene *scene,
+                            const struct glint_met_surface *surface,
+                            const struct glint_lit *lit)
+{
+    const int n = lit->light->radius ? scene->cfg.shadow_points : 1;
+    int reached = 0;
+
+    if (!scene->model.header->shadow)
+        return GLINT_SCENE_ONE_Q15;
+    if (lit->shadow && lit->shadow->is_ready) {
+        int32_t at[3];
+
+        leave(scene, surface, at);
+        return glint_shadow_reaches(scene, lit->shadow, surface, at);
+    }
+    for (int i = 0; i < n; i++) {
+        struct glint_scene_ray to = {.at = {0}};
+        int32_t level_q15[3], distance;
+
+        leave(scene, surface, to.at);
+        distance =
+            glint_scene_light_at(scene, lit, to.at, to.toward_q30, level_q15);
+        glint_scene_point(&to, distance, lit->light->radius, i, n);
+        reached += v3_dot(to.toward_q30, surface->face_q30) > 0 &&
+                   !glint_scene_blocks(scene, &to, surface->object,
+                                       surface->triangle, distance);
+    }
+    return reached << (n == 1 ? 15 : n == 4 ? 13 : 11);
+}

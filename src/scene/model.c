@@ -1,0 +1,309 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Checks a baked scene once, so that drawing need not check anything.
+ *
+ *   in   bytes that may hold anything
+ *   out  a model that points into them, or the reason why not
+ *
+ * Drawing relies on this:
+ *   - every table lies inside the file, and every index inside its table;
+ *   - every point of space that a file or a pose can name is within
+ *     GLINT_SCENE_SPAN, 2^28 steps, so that differences are below 2^29;
+ *   - unit vectors are units to 2^-20;
+ *   - weights and colours are 0 .. 1, and lights are not negative. */
+#include "scene/model_check.h"
+
+#include "base/compiler.h"
+#include "base/q.h"
+
+/* The file is used in place: its layout is what these structs are. */
+STATIC_ASSERT(sizeof(struct glint_scene_camera) == 60);
+STATIC_ASSERT(sizeof(struct glint_scene_light) == 88);
+STATIC_ASSERT(sizeof(struct glint_scene_texture) == 12);
+STATIC_ASSERT(sizeof(struct glint_scene_material) == 80);
+STATIC_ASSERT(sizeof(struct glint_scene_triangle) == 16);
+STATIC_ASSERT(sizeof(struct glint_scene_mesh) == 76);
+STATIC_ASSERT(sizeof(struct glint_scene_object) == 84);
+STATIC_ASSERT(sizeof(struct glint_scene_header) == 224);
+
+/* The header begins as that of every baked file does. */
+#define SAME_PLACE(field)                                       \
+    STATIC_ASSERT(offsetof(struct glint_scene_header, field) == \
+                  offsetof(struct glint_blob_header, field))
+SAME_PLACE(magic);
+SAME_PLACE(version);
+SAME_PLACE(bytes);
+SAME_PLACE(crc32);
+SAME_PLACE(variant);
+SAME_PLACE(key);
+SAME_PLACE(name);
+
+enum {
+    ONE_Q15 = 1 << 15,
+    ONE_Q30 = 1 << 30,
+    MAX_HIGHLIGHTS = 8,
+    MAX_REAL_EXPONENT = 200
+};
+
+const char glint_scene_outside[] = "a table lies outside of the file";
+
+static const char *const fault_text[GLINT_BLOB_FAULTS] = {
+    [GLINT_BLOB_UNALIGNED] = "the scene is not aligned to 4 bytes",
+    [GLINT_BLOB_FOREIGN] = "this is no baked scene",
+    [GLINT_BLOB_NEWER] = "the scene was baked by a newer glint",
+    [GLINT_BLOB_NO_VERSION] = "no glint ever baked scenes of this version",
+    [GLINT_BLOB_OLDER] = "the scene was baked by an older glint: bake it again",
+    [GLINT_BLOB_TRUNCATED] = "the scene is truncated",
+    [GLINT_BLOB_LONGER] = "the scene goes on after its end",
+    [GLINT_BLOB_DAMAGED] = "the checksum is wrong: the scene is damaged",
+    [GLINT_BLOB_NAME_CONTROL] = "the name has a control character",
+    [GLINT_BLOB_NAME_FOREIGN] = "the name has a byte beyond ASCII",
+    [GLINT_BLOB_NAME_ENDLESS] = "the name does not end",
+    [GLINT_BLOB_NAME_EMPTY] = "the name is empty"};
+
+/* ----------------------------------------------------------------- members */
+
+int glint_scene_name_fits(const char *name)
+{
+    int n = 0;
+
+    while (n < GLINT_SCENE_NAME && name[n] > ' ' && name[n] <= '~')
+        n++;
+    return n > 0 && n < GLINT_SCENE_NAME && name[n] == 0;
+}
+
+static int is_between(int64_t x, int64_t lo, int64_t hi)
+{
+    return x >= lo && x <= hi;
+}
+
+int glint_scene_within(const int32_t *v, int n, int32_t limit)
+{
+    int fits = 1;
+
+    for (int k = 0; k < n; k++)
+        fits &= is_between(v[k], -(int64_t)limit, limit);
+    return fits;
+}
+
+int glint_scene_is_unit(const int32_t *v_q30, int n)
+{
+    int64_t square_q56 = 0;
+
+    if (!glint_scene_within(v_q30, n, ONE_Q30 + (1 << 12)))
+        return 0;
+    for (int k = 0; k < n; k++) /* below 4 * 2^57 */
+        square_q56 += q_shift((int64_t)v_q30[k] * v_q30[k], 4);
+    return is_between(square_q56 - (INT64_C(1) << 56), -(INT64_C(1) << 37),
+                      INT64_C(1) << 37);
+}
+
+int glint_scene_is_light(const struct glint_real *x)
+{
+    return x->mantissa == 0 ||
+           (x->mantissa >= ONE_Q30 &&
+            is_between(x->exponent, -MAX_REAL_EXPONENT, MAX_REAL_EXPONENT));
+}
+
+/* ------------------------------------------------------------------ tables */
+
+static int is_crossed(const int32_t a_q30[3], const int32_t b_q30[3])
+{
+    int64_t dot_q56 = 0;
+
+    for (int k = 0; k < 3; k++)
+        dot_q56 += q_shift((int64_t)a_q30[k] * b_q30[k], 4);
+    return is_between(dot_q56, -(INT64_C(1) << 37), INT64_C(1) << 37);
+}
+
+const char *glint_scene_camera_fault(const struct glint_scene_camera *c)
+{
+    const int has_x = c->kind != GLINT_CAMERA_LENS;
+    const int has_y = c->kind == GLINT_CAMERA_CORNERS;
+
+    if (c->kind > GLINT_CAMERA_LENS)
+        return "the camera's kind is unknown";
+    if (!glint_scene_within(c->at, 3, GLINT_SCENE_SPAN - 1))
+        return "the camera is too far out";
+    for (int k = 0; k < 3; k++)
+        if (!glint_scene_is_unit(c->axis_q30[k], 3) ||
+            !is_crossed(c->axis_q30[k], c->axis_q30[(k + 1) % 3]))
+            return "the camera's axes are no units, or not at right angles";
+    if (!is_between(c->tan_x_q24, has_x << 12, has_x << 30) ||
+        !is_between(c->tan_y_q24, has_y << 12, has_y << 30))
+        return "the camera's field is out of range";
+    return NULL;
+}
+
+static const char *check_light(const struct glint_scene_light *light)
+{
+    const int is_sun = light->kind == GLINT_LIGHT_SUN;
+
+    if (!glint_scene_name_fits(light->name))
+        return "a light's name is empty, endless or not printable";
+    if (light->kind > GLINT_LIGHT_LAMP)
+        return "a light's kind is unknown";
+    if (!glint_scene_within(light->at, 3, is_sun ? 0 : GLINT_SCENE_SPAN - 1) ||
+        !is_between(light->radius, 0, is_sun ? 1 << 29 : GLINT_SCENE_SPAN))
+        return "a light is too far out, or too large";
+    if (is_sun ? !glint_scene_is_unit(light->toward_q30, 3)
+               : !glint_scene_within(light->toward_q30, 3, 0))
+        return "a light's direction is no unit vector";
+    for (int k = 0; k < 3; k++)
+        if (!glint_scene_is_light(&light->rgb[k]))
+            return "a light is negative or not normalised";
+    return NULL;
+}
+
+static const char *check_texture(struct glint_scene_check *c,
+                                 const struct glint_scene_texture *t)
+{
+    uint32_t w = t->width_log2, h = t->height_log2;
+    uint64_t texels = 1;
+
+    if (w > GLINT_SCENE_TEXTURE_LOG2 || h > GLINT_SCENE_TEXTURE_LOG2)
+        return "a texture is too large";
+    for (; w || h; w -= w > 0, h -= h > 0)
+        texels += UINT64_C(1) << (w + h);
+    return glint_blob_section(&c->blob, t->texel_at, (3 * texels + 3) / 4, 4)
+               ? NULL
+               : glint_scene_outside;
+}
+
+static const char *check_material(const struct glint_scene_check *c,
+                                  const struct glint_scene_material *m)
+{
+    const int32_t weight[] = {m->ambient_q15, m->diffuse_q15, m->specular_q15,
+                              m->reflect_q15, m->pass_q15,    m->rgb_q15[0],
+                              m->rgb_q15[1],  m->rgb_q15[2]};
+
+    if (!glint_scene_name_fits(m->name))
+        return "a material's name is empty, endless or not printable";
+    for (size_t k = 0; k < sizeof weight / sizeof *weight; k++)
+        if (!is_between(weight[k], 0, ONE_Q15))
+            return "a material's weight or colour is not 0 .. 1";
+    if (m->ambient_q15 + m->diffuse_q15 + m->specular_q15 > ONE_Q15 ||
+        m->reflect_q15 + m->pass_q15 > ONE_Q15)
+        return "a material's weights sum to more than 1";
+    if (!is_between(m->power_q8, 1 << 8, 1 << 20) ||
+        !is_between(m->index_q16, 1 << 14, 1 << 18))
+        return "a material's power or index is out of range";
+    if (m->texture != GLINT_SCENE_NONE &&
+        m->texture >= c->model.header->n_textures)
+        return "a material's texture is out of range";
+    return m->zero ? "a member that must be 0 is not" : NULL;
+}
+
+static const char *check_header(const struct glint_scene_header *h)
+{
+    if (h->variant > GLINT_HAND_RIGHT)
+        return "the scene's variant is unknown";
+    if (!is_between(h->unit_log2, -28, 60))
+        return "the scene's unit is out of range";
+    if (h->shadow > 1 || h->flare > 1 || h->highlights > MAX_HIGHLIGHTS ||
+        h->background > GLINT_BACKGROUND_COLOUR)
+        return "the scene's settings are unknown";
+    for (int k = 0; k < 3; k++)
+        if (!is_between(h->background_q15[k], 0,
+                        h->background == GLINT_BACKGROUND_COLOUR ? ONE_Q30 : 0))
+            return "the background's colour is out of range";
+    if (h->n_lights > GLINT_SCENE_MAX_LIGHTS ||
+        h->n_textures > GLINT_SCENE_MAX_TEXTURES ||
+        h->n_materials > GLINT_SCENE_MAX_MATERIALS ||
+        h->n_meshes > GLINT_SCENE_MAX_MESHES ||
+        h->n_objects > GLINT_SCENE_MAX_OBJECTS)
+        return "the scene has too many of a kind";
+    return glint_scene_camera_fault(&h->camera);
+}
+
+/* ------------------------------------------------------------------- whole */
+
+static const char *find_tables(struct glint_scene_check *c)
+{
+    const struct glint_scene_header *h = c->model.header;
+    struct glint_scene_model *m = &c->model;
+    struct glint_blob *b = &c->blob;
+
+    m->light =
+        glint_blob_section(b, h->light_at, h->n_lights, sizeof *m->light);
+    m->texture =
+        glint_blob_section(b, h->texture_at, h->n_textures, sizeof *m->texture);
+    m->material = glint_blob_section(b, h->material_at, h->n_materials,
+                                     sizeof *m->material);
+    m->mesh = glint_blob_section(b, h->mesh_at, h->n_meshes, sizeof *m->mesh);
+    m->object =
+        glint_blob_section(b, h->object_at, h->n_objects, sizeof *m->object);
+    return m->light && m->texture && m->material && m->mesh && m->object
+               ? NULL
+               : glint_scene_outside;
+}
+
+static const char *check_contents(struct glint_scene_check *c)
+{
+    const struct glint_scene_model *m = &c->model;
+    const struct glint_scene_header *h = m->header;
+    const char *wrong = fault_text[glint_blob_check_name(&c->blob)];
+    uint64_t triangles = 0;
+
+    if (!wrong)
+        wrong = check_header(h);
+    if (!wrong)
+        wrong = find_tables(c);
+    for (uint32_t k = 0; !wrong && k < h->n_lights; k++)
+        wrong = check_light(&m->light[k]);
+    for (uint32_t k = 0; !wrong && k < h->n_textures; k++)
+        wrong = check_texture(c, &m->texture[k]);
+    for (uint32_t k = 0; !wrong && k < h->n_materials; k++)
+        wrong = check_material(c, &m->material[k]);
+    for (uint32_t k = 0; !wrong && k < h->n_meshes; k++) {
+        wrong = glint_scene_check_mesh(c, &m->mesh[k]);
+        if (!wrong && c->blob.referred > c->blob.bytes)
+            wrong = "tables share bytes";
+    }
+    for (uint32_t k = 0; !wrong && k < h->n_objects; k++) {
+        wrong = glint_scene_check_object(c, &m->object[k]);
+        if (!wrong && m->object[k].kind == GLINT_OBJECT_MESH)
+            triangles += m->mesh[m->object[k].mesh].n_triangles;
+    }
+    if (!wrong && triangles > GLINT_SCENE_MAX_TRIANGLES)
+        wrong = "the objects have too many triangles";
+    return wrong;
+}
+
+enum glint_status glint_scene_open(struct glint_scene_model *model,
+                                   const void *data, size_t bytes,
+                                   const char **reason)
+{
+    static const struct glint_blob_kind kind = {
+        GLINT_SCENE_MAGIC, GLINT_SCENE_VERSION,
+        sizeof(struct glint_scene_header)};
+    struct glint_scene_check c = {.model = {.header = data}};
+    const char *wrong =
+        fault_text[glint_blob_open(&c.blob, &kind, data, bytes)];
+
+    if (!wrong)
+        wrong = check_contents(&c);
+    if (wrong) {
+        *reason = wrong;
+        return GLINT_E_FORMAT;
+    }
+    *model = c.model;
+    return GLINT_OK;
+}
+
+static int is_same(const char *a, const char *b)
+{
+    while (*a && *a == *b) {
+        a++;
+        b++;
+    }
+    return *a == *b;
+}
+
+int glint_scene_find(const struct glint_scene_model *model, const char *name)
+{
+    for (uint32_t k = 0; k < model->header->n_objects; k++)
+        if (is_same(model->object[k].name, name))
+            return (int)k;
+    return -1;
+}

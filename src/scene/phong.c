@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a surface sends back of ambient light and of lights [Phong75]. Light is
+ * q15, up to 2^30, where it saturates: products with weights, q15 up to 1, are
+ * below 2^45. */
+#include "base/divide.h"
+#include "scene/state.h"
+
+static inline void add(int32_t *to_q15, int64_t light_q15, int32_t weight_q15)
+{
+    int64_t sum_q15 = light_q15 < GLINT_SCENE_MOST_LIGHT
+                          ? light_q15
+                          : (int64_t)GLINT_SCENE_MOST_LIGHT;
+
+    sum_q15 = *to_q15 + ((sum_q15 * weight_q15 + (1 << 14)) >> 15);
+    *to_q15 = sum_q15 < GLINT_SCENE_MOST_LIGHT ? (int32_t)sum_q15
+                                               : GLINT_SCENE_MOST_LIGHT;
+}
+
+/* ------------------------------------------------------------------- gloss */
+
+/* Where x^k is below 2^-17, it is 0: from 1 - 2^(-17 / k) on. */
+void glint_gloss_prepare(struct glint_gloss *gloss, int32_t power_q8)
+{
+    int32_t end_q30 = 1 << 30;
+
+    /* The least y, by halves, of which (1 - y)^k is 0. */
+    for (int32_t step_q30 = 1 << 29; step_q30; step_q30 /= 2)
+        if (end_q30 > step_q30 &&
+            glint_power_q15((1 << 30) - (end_q30 - step_q30), power_q8) == 0)
+            end_q30 -= step_q30;
+    gloss->end_q30 = end_q30;
+    gloss->scale_q30 = q_divide(INT64_C(1) << 60, end_q30);
+    for (int i = 0; i <= GLINT_GLOSS_STEPS; i++)
+        gloss->at_q15[i] = (uint16_t)glint_power_q15(
+            (1 << 30) -
+                (int32_t)((int64_t)end_q30 * i >> GLINT_GLOSS_STEPS_LOG2),
+            power_q8);
+}
+
+/* Returns the share of a light's rays, mirrored at the surface, that go back
+ * along the ray: the mirrored direction is L - 2 (L.N) N. */
+static inline int32_t gloss_q15(const struct glint_gloss *gloss,
+                                const struct glint_scene_ray *ray,
+                                const struct glint_met_surface *surface,
+                                const int32_t toward_q30[3], int32_t cosine_q30)
+{
+    const int64_t beside_q60 =
+        v3_dot(toward_q30, ray->toward_q30) -
+        2 * (int64_t)cosine_q30 *
+            v3_cosine_q30(surface->normal_q30, ray->toward_q30);
+    const int64_t y_q30 = (1 << 30) - (beside_q60 >> 30);
+    int32_t at_q16, i;
+
+    if (y_q30 >= gloss->end_q30)
+        return 0;
+    if (y_q30 <= 0)
+        return GLINT_SCENE_ONE_Q15;
+    at_q16 =
+        (int32_t)(y_q30 * gloss->scale_q30 >> (44 - GLINT_GLOSS_STEPS_LOG2));
+    i = at_q16 >> 16;
+    return gloss->at_q15[i] -
+           ((gloss->at_q15[i] - gloss->at_q15[i + 1]) * (at_q16 & 65535) >> 16);
+}
+
+/* ------------------------------------------------------------------ lights */
+
+static void add_light(const struct glint_scene *s,
+                      const struct glint_scene_ray *ray,
+                      const struct glint_met_surface *surface,
+                      const struct glint_lit *lit, const int32_t colour_q15[3],
+                      int32_t weight_q15, int32_t rgb_q15[3])
+{
+    const struct glint_scene_material *m = surface->material;
+    const int is_sun = lit->light->kind == GLINT_LIGHT_SUN;
+    int32_t lamp_q30[3], lamp_q15[3], cosine_q30, gloss = 0, share_q15;
+    const int32_t *toward_q30 = is_sun ? lit->toward_q30 : lamp_q30;
+    const int32_t *level_q15 = is_sun ? lit->rgb_q15 : lamp_q15;
+
+    if (!is_sun &&
+        !glint_scene_light_at(s, lit, surface->place, lamp_q30, lamp_q15))
+        return;
+    cosine_q30 = v3_cosine_q30(toward_q30, surface->normal_q30);
+    if (cosine_q30 <= 0)
+        return;
+    share_q15 = glint_scene_reaches(s, surface, lit);
+    if (share_q15 == 0)
+        return;
+    if (m->specular_q15)
+        gloss = gloss_q15(&s->gloss[m - s->model.material], ray, surface,
+                          toward_q30, cosine_q30);
+    share_q15 = q_mul(share_q15, weight_q15, 15);
+    /* below 2^30, and 2^32 together */
+    gloss *= m->specular_q15;
+    cosine_q30 = q_mul(m->diffuse_q15, cosine_q30, 15);
+    for (int c = 0; c < 3; c++) {
+        const int64_t white_q30 =
+            ((int64_t)cosine_q30 * colour_q15[c] >> 15) + gloss;
+
+        add(&rgb_q15[c], (level_q15[c] * white_q30 + (1 << 29)) >> 30,
+            share_q15);
+    }
+}
+
+void glint_scene_phong(const struct glint_scene *scene,
+                       const struct glint_scene_ray *ray,
+                       const struct glint_met_surface *surface,
+                       int32_t weight_q15, int32_t rgb_q15[3])
+{
+    const struct glint_scene_material *m = surface->material;
+    int32_t colour_q15[3];
+
+    for (int c = 0; c < 3; c++)
+        colour_q15[c] = m->rgb_q15[c];
+    if (m->texture != GLINT_SCENE_NONE)
+        scene->cfg.parts.textures->colour(scene, ray, surface, colour_q15);
+    for (int c = 0; c < 3; c++)
+        add(&rgb_q15[c], q_mul(m->ambient_q15, colour_q15[c], 15), weight_q15);
+    for (uint32_t i = 0; i < scene->model.header->n_lights; i++)
+        add_light(scene, ray, surface, &scene->lit[i], colour_q15, weight_q15,
+                  rgb_q15);
+}
+
+/* Of a plane that only takes shadows: how much of all light that lights would
+ * send there does not come. */
+static int caught_q8(const struct glint_scene *s,
+                     const struct glint_met_surface *surface,
+                     int32_t catcher_q15)
+{
+    int64_t all = 0, gone = 0;
+
+    for (uint32_t i = 0; i < s->model.header->n_lights; i++) {
+        int32_t toward_q30[3], level_q15[3];
+        int64_t light;
+
+        if (!glint_scene_light_at(s, &s->lit[i], surface->place, toward_q30,
+                                  level_q15))
+            continue;
+        light = q_larger(0, v3_cosine_q30(toward_q30, surface->normal_q30));
+        light = light * ((int64_t)level_q15[0] + 2 * (int64_t)level_q15[1] +
+                         level_q15[2]) >>
+                6; /* below 2^56; 16 of them below 2^60 */
+        all += light;
+        if (light > 0)
+            gone +=
+                (light >> 15) * (GLINT_SCENE_ONE_Q15 -
+                                 glint_scene_reaches(s, surface, &s->lit[i]));
+    }
+    if (gone <= 0 || all <= 0)
+        return 0;
+    return (int)q_shift((int64_t)glint_ratio(
+                            (uint64_t)gone << (all < INT64_C(1) << 48 ? 8 : 0),
+                            (uint64_t)all >> (all < INT64_C(1) << 48 ? 0 : 8)) *
+                            catcher_q15,
+                        15);
+}
+
+void glint_scene_shade(const struct glint_scene *scene,
+                       const struct glint_scene_ray *ray,
+                       const struct glint_met_surface *surface,
+                       struct glint_met_shade *shade)
+{
+    const struct glint_scene_material *m = surface->material;
+    const int32_t catcher_q15 =
+        scene->placed[surface->object].object->catcher_q15;
+
+    *shade = (struct glint_met_shade){{0, 0, 0}, GLINT_COVER_ALL};
+    if (catcher_q15) {
+        shade->cover_q8 =
+            q_smaller(caught_q8(scene, surface, catcher_q15), GLINT_COVER_ALL);
+        return;
+    }
+    glint_scene_phong(scene, ray, surface, GLINT_SCENE_ONE_Q15, shade->rgb_q15);
+    if (m->reflect_q15 || m->pass_q15)
+        scene->cfg.parts.bounces->follow(scene, ray, surface, shade);
+}

@@ -1,0 +1,383 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A scene's memory, and its frame: where objects are, what of them may be seen,
+ * and the order of the work. */
+#include "scene/visible.h"
+
+#include "base/real.h"
+#include "scene/model_check.h"
+
+enum { ONE_Q30 = 1 << 30 };
+
+/* ------------------------------------------------------------------ memory */
+
+void glint_scene_defaults(struct glint_scene_config *cfg, int width, int height)
+{
+    *cfg = (struct glint_scene_config){.width = width,
+                                       .height = height,
+                                       .tile_log2 = 5,
+                                       .edge_samples = 4,
+                                       .shadow_points = 4,
+                                       .max_refs = 1 << 15};
+}
+
+const char *glint_scene_lacks(const struct glint_scene_parts *parts,
+                              const struct glint_scene_model *model)
+{
+    const struct glint_scene_header *h = model->header;
+
+    if (h->n_meshes > 0 && !parts->meshes)
+        return "meshes";
+    for (uint32_t i = 0; i < h->n_materials; i++) {
+        const struct glint_scene_material *m = &model->material[i];
+
+        if (m->texture != GLINT_SCENE_NONE && !parts->textures)
+            return "textures";
+        if ((m->reflect_q15 || m->pass_q15) && !parts->bounces)
+            return "bounces";
+    }
+    return NULL;
+}
+
+static size_t vertices_of(const struct glint_scene_model *m)
+{
+    size_t n = 0;
+
+    for (uint32_t i = 0; i < m->header->n_objects; i++)
+        if (m->object[i].kind == GLINT_OBJECT_MESH)
+            n += m->mesh[m->object[i].mesh].n_vertices;
+    return n;
+}
+
+/* Returns whether N is one of the powers of two whose sum is ALL. */
+static int is_one_of(int n, int all)
+{
+    return n > 0 && (n & all) == n && (n & (n - 1)) == 0;
+}
+
+static int is_in_range(const struct glint_scene_config *c)
+{
+    return c->width >= 1 && c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
+           c->height <= GLINT_MAX_SIDE && c->tile_log2 >= 3 &&
+           c->tile_log2 <= 6 && is_one_of(c->edge_samples, 1 | 4 | 8 | 16) &&
+           is_one_of(c->shadow_points, 1 | 4 | 16) &&
+           (c->half_shading & ~1) == 0 && c->max_refs >= 0 &&
+           glint_workers_count(c->workers) <= 64;
+}
+
+/* What a grid of shadows lists: all triangles and balls. */
+static size_t things_of(const struct glint_scene_model *m)
+{
+    size_t n = 0;
+
+    for (uint32_t i = 0; i < m->header->n_objects; i++)
+        n += m->object[i].kind == GLINT_OBJECT_MESH
+                 ? m->mesh[m->object[i].mesh].n_triangles
+                 : 1;
+    return n;
+}
+
+/* The grids of suns that throw shadows. */
+static void carve_shadows(struct glint_scene *s, struct glint_arena *a)
+{
+    const size_t cells = (size_t)1 << 2 * GLINT_SHADOW_CELLS_LOG2;
+    const size_t n_vertices = vertices_of(&s->model);
+    const size_t n_refs = 12 * things_of(&s->model) + 64;
+
+    for (uint32_t i = 0; i < s->model.header->n_lights; i++) {
+        struct glint_shadow measured, *m;
+
+        if (s->lit)
+            s->lit[i].shadow = NULL;
+        if (!s->model.header->shadow ||
+            s->model.light[i].kind != GLINT_LIGHT_SUN)
+            continue;
+        m = glint_arena_take(a, 1, sizeof *m);
+        if (s->lit)
+            s->lit[i].shadow = m;
+        m = m ? m : &measured;
+        m->is_ready = 0;
+        m->max_refs = (int)n_refs;
+        m->vertex = glint_arena_take(a, n_vertices, sizeof *m->vertex);
+        m->bins.start = glint_arena_take(a, cells + 1, sizeof *m->bins.start);
+        m->bins.ref = glint_arena_take(a, n_refs, sizeof *m->bins.ref);
+        m->thing = glint_arena_take(a, things_of(&s->model), sizeof *m->thing);
+    }
+}
+
+static void carve_worker(struct glint_scene *s, struct glint_arena *a,
+                         struct glint_scene_worker *w)
+{
+    const size_t side = (size_t)1 << s->cfg.tile_log2;
+    const size_t samples = side * side * (size_t)s->cfg.edge_samples;
+
+    w->depth = glint_arena_take(a, samples, sizeof *w->depth);
+    w->id = glint_arena_take(a, samples, sizeof *w->id);
+    w->scratch = (struct glint_tile_scratch){
+        .light = glint_arena_take(a, 1, sizeof *w->scratch.light),
+        .light_q20 =
+            glint_arena_take(a, 3 * 2 * side, sizeof *w->scratch.light_q20),
+        .codes = glint_arena_take(a, 1, sizeof *w->scratch.codes),
+        .blend = glint_arena_take(a, 1, sizeof *w->scratch.blend)};
+    w->quad = s->cfg.half_shading
+                  ? glint_arena_take(a, side / 2, sizeof *w->quad)
+                  : NULL;
+    w->quick =
+        s->model.header->n_meshes
+            ? glint_arena_take(a, GLINT_QUICK_TRIANGLES, sizeof *w->quick)
+            : NULL;
+    w->scene = s;
+}
+
+/* Returns whether anything mirrors or bends rays to the camera's picture. */
+static int shows_picture(const struct glint_scene_model *model)
+{
+    const struct glint_scene_header *h = model->header;
+    int any = 0;
+
+    for (uint32_t i = 0; i < h->n_materials; i++)
+        any |= model->material[i].reflect_q15 ||
+               (model->material[i].pass_q15 &&
+                model->material[i].index_q16 != 1 << 16);
+    return any && h->background == GLINT_BACKGROUND_CAMERA;
+}
+
+/* Runs twice: to measure, which gives NULL, and to place. */
+static struct glint_scene *carve(struct glint_arena *a,
+                                 const struct glint_scene_config *cfg,
+                                 const struct glint_scene_model *model)
+{
+    struct glint_scene measured = {.cfg = *cfg, .model = *model};
+    struct glint_scene *placed = glint_arena_take(a, 1, sizeof *placed);
+    struct glint_scene *s = placed ? placed : &measured;
+    const struct glint_box all = {0, 0, cfg->width, cfg->height};
+    const size_t n_vertices = vertices_of(model);
+    const int n_workers = glint_workers_count(cfg->workers);
+
+    *s = measured;
+    s->placed =
+        glint_arena_take(a, model->header->n_objects, sizeof *s->placed);
+    s->lit = glint_arena_take(a, model->header->n_lights, sizeof *s->lit);
+    carve_shadows(s, a);
+    s->seen = glint_arena_take(a, n_vertices, sizeof *s->seen);
+    s->corner = glint_arena_take(a, n_vertices, sizeof *s->corner);
+    glint_bins_init(&s->bins, all, cfg->tile_log2, NULL, NULL);
+    if (n_vertices > 0) {
+        s->bins.start = glint_arena_take(
+            a, (size_t)s->bins.tiles_x * (size_t)s->bins.tiles_y + 1,
+            sizeof *s->bins.start);
+        s->bins.ref =
+            glint_arena_take(a, (size_t)cfg->max_refs, sizeof *s->bins.ref);
+    }
+    s->resolve = glint_arena_take(a, 1, sizeof *s->resolve);
+    s->gloss =
+        glint_arena_take(a, model->header->n_materials, sizeof *s->gloss);
+    if (model->header->n_textures > 0)
+        s->curve = glint_arena_take(a, 1, sizeof *s->curve);
+    if (shows_picture(model))
+        cfg->parts.bounces->carve(s, a);
+    s->cover_across = (cfg->width + 7) >> GLINT_COVER_LOG2;
+    s->cover_down = (cfg->height + 7) >> GLINT_COVER_LOG2;
+    s->cover = glint_arena_take(
+        a, (size_t)s->cover_across * (size_t)s->cover_down, sizeof *s->cover);
+    s->worker = glint_arena_take(a, (size_t)n_workers, sizeof *s->worker);
+    for (int i = 0; i < n_workers; i++) {
+        struct glint_scene_worker w;
+
+        carve_worker(s, a, s->worker ? &s->worker[i] : &w);
+    }
+    return placed;
+}
+
+size_t glint_scene_bytes(const struct glint_scene_config *cfg,
+                         const struct glint_scene_model *model)
+{
+    struct glint_arena arena = glint_arena_measure();
+
+    if (!is_in_range(cfg) || glint_scene_lacks(&cfg->parts, model))
+        return 0;
+    carve(&arena, cfg, model);
+    return arena.used;
+}
+
+enum glint_status glint_scene_init(struct glint_scene **scene,
+                                   const struct glint_scene_config *cfg,
+                                   const struct glint_scene_model *model,
+                                   void *mem, size_t bytes)
+{
+    struct glint_arena arena = glint_arena_over(mem, bytes);
+    struct glint_scene_view view;
+    struct glint_scene *s;
+    uint32_t first = 0;
+
+    if (!is_in_range(cfg) || (uintptr_t)mem % GLINT_ALIGN != 0 ||
+        !glint_view_init(&view, &model->header->camera, cfg->width, cfg->height,
+                         cfg->focal_q16))
+        return GLINT_E_ARGUMENT;
+    if (glint_scene_lacks(&cfg->parts, model))
+        return GLINT_E_UNSUPPORTED;
+    if (glint_scene_bytes(cfg, model) > bytes)
+        return GLINT_E_MEMORY;
+    s = carve(&arena, cfg, model);
+    s->view = view;
+    s->sample_q8 = glint_scene_samples(cfg->edge_samples);
+    if (s->curve)
+        cfg->parts.textures->prepare(s->curve);
+    for (uint32_t i = 0; i < model->header->n_materials; i++)
+        glint_gloss_prepare(&s->gloss[i], model->material[i].power_q8);
+    for (uint32_t i = 0; i < model->header->n_objects; i++) {
+        const struct glint_scene_object *o = &model->object[i];
+
+        s->placed[i] = (struct glint_placed){
+            .object = o,
+            .radius = o->radius,
+            .is_shown = !o->hidden,
+            .is_split = model->material[o->material].reflect_q15 ||
+                        model->material[o->material].pass_q15,
+            .is_catcher = o->catcher_q15 > 0,
+            .first_vertex = first};
+        if (o->kind == GLINT_OBJECT_MESH)
+            first += model->mesh[o->mesh].n_vertices;
+        if (glint_scene_set_pose(s, (int)i, o->at, o->turn_q30) != GLINT_OK)
+            return GLINT_E_ARGUMENT; /* was checked when it was opened */
+    }
+    for (uint32_t i = 0; i < model->header->n_lights; i++) {
+        const struct glint_scene_light *l = &model->light[i];
+
+        s->lit[i].light = l;
+        glint_scene_set_light(
+            s, (int)i, l->kind == GLINT_LIGHT_SUN ? l->toward_q30 : l->at);
+        for (int c = 0; c < 3; c++)
+            s->lit[i].rgb_q15[c] =
+                (int32_t)real_integer(l->rgb[c], 15, GLINT_SCENE_MOST_LIGHT);
+    }
+    *scene = s;
+    return GLINT_OK;
+}
+
+/* ------------------------------------------------------------------- poses */
+
+/* Things have moved: grids of shadows wait for the next frame. */
+static void forget_shadows(struct glint_scene *s)
+{
+    for (uint32_t i = 0; i < s->model.header->n_lights; i++)
+        if (s->lit[i].shadow)
+            s->lit[i].shadow->is_ready = 0;
+}
+
+/* Sets TO to the turn by quaternion Q. */
+static void set_turn(const int32_t q[4], struct glint_scene_turn *to)
+{
+    const int32_t w = q[0], *v = q + 1;
+
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            const int k = 3 - i - j;
+            int64_t e_q60;
+
+            if (i == j) {
+                const int32_t a = v[(i + 1) % 3], b = v[(i + 2) % 3];
+
+                e_q60 =
+                    (INT64_C(1) << 60) - 2 * ((int64_t)a * a + (int64_t)b * b);
+            } else {
+                const int64_t turn = 2 * (int64_t)w * v[k];
+
+                e_q60 = 2 * (int64_t)v[i] * v[j] +
+                        ((j - i + 3) % 3 == 1 ? -turn : turn);
+            }
+            to->row_q30[i][j] = (int32_t)q_shift(e_q60, 30);
+        }
+}
+
+enum glint_status glint_scene_set_pose(struct glint_scene *scene, int object,
+                                       const int32_t at[3],
+                                       const int32_t turn_q30[4])
+{
+    struct glint_placed *p;
+
+    if (object < 0 || object >= (int)scene->model.header->n_objects)
+        return GLINT_E_ARGUMENT;
+    p = &scene->placed[object];
+    if (!glint_scene_is_unit(turn_q30, 4) ||
+        !glint_scene_fits(&scene->model, p->object, at))
+        return GLINT_E_ARGUMENT;
+    forget_shadows(scene);
+    set_turn(turn_q30, &p->turn);
+    for (int k = 0; k < 3; k++)
+        p->at[k] = p->centre[k] = at[k];
+    p->reach = p->radius;
+    if (p->object->kind == GLINT_OBJECT_PLANE) {
+        const int64_t up[3] = {p->turn.row_q30[0][1], p->turn.row_q30[1][1],
+                               p->turn.row_q30[2][1]};
+
+        glint_unit(up, p->centre);
+    } else if (p->object->kind == GLINT_OBJECT_MESH) {
+        const struct glint_scene_mesh *m = &scene->model.mesh[p->object->mesh];
+        int32_t centre[3];
+
+        v3_turn(&p->turn, m->centre, centre);
+        for (int k = 0; k < 3; k++)
+            p->centre[k] += centre[k];
+        p->reach = m->radius + 4;
+    }
+    return GLINT_OK;
+}
+
+enum glint_status glint_scene_set_camera(struct glint_scene *scene,
+                                         const int32_t at[3],
+                                         const int32_t axis_q30[3][3])
+{
+    struct glint_scene_camera camera = scene->model.header->camera;
+
+    for (int k = 0; k < 3; k++) {
+        camera.at[k] = at[k];
+        for (int i = 0; i < 3; i++)
+            camera.axis_q30[k][i] = axis_q30[k][i];
+    }
+    if (glint_scene_camera_fault(&camera))
+        return GLINT_E_ARGUMENT;
+    glint_view_init(&scene->view, &camera, scene->cfg.width, scene->cfg.height,
+                    scene->cfg.focal_q16);
+    return GLINT_OK;
+}
+
+enum glint_status glint_scene_set_light(struct glint_scene *scene, int light,
+                                        const int32_t at[3])
+{
+    struct glint_lit *l;
+    int is_sun;
+
+    if (light < 0 || light >= (int)scene->model.header->n_lights)
+        return GLINT_E_ARGUMENT;
+    l = &scene->lit[light];
+    is_sun = l->light->kind == GLINT_LIGHT_SUN;
+    if (is_sun ? !glint_scene_is_unit(at, 3)
+               : !glint_scene_within(at, 3, GLINT_SCENE_SPAN - 1))
+        return GLINT_E_ARGUMENT;
+    for (int k = 0; k < 3; k++) {
+        l->at[k] = is_sun ? 0 : at[k];
+        l->toward_q30[k] = is_sun ? at[k] : 0;
+    }
+    forget_shadows(scene);
+    return GLINT_OK;
+}
+
+void glint_scene_look_around(struct glint_scene *scene,
+                             const struct glint_image *image)
+{
+    int any = 0;
+
+    for (uint32_t i = 0; i < scene->model.header->n_objects; i++)
+        any |= scene->placed[i].is_seen;
+    if (shows_picture(&scene->model) && (any || !image))
+        scene->cfg.parts.bounces->look(scene, image);
+}
+
+void glint_scene_show(struct glint_scene *scene, int object, int is_shown)
+{
+    if (object < 0 || object >= (int)scene->model.header->n_objects)
+        return;
+    scene->placed[object].is_shown = is_shown != 0;
+    forget_shadows(scene);
+}

@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Where rays meet objects. Few objects, or meshes with grids: all of them are
+ * asked in turn. */
+#include "scene/state.h"
+
+static int meets_sphere(const struct glint_placed *p,
+                        const struct glint_scene_ray *ray,
+                        struct glint_met *met)
+{
+    if (!glint_ray_sphere(ray, p->at, p->radius, &met->chord))
+        return 0;
+    met->end = met->chord.t[0] <= 0;
+    met->t = met->chord.t[met->end];
+    return met->t > 0;
+}
+
+static int meets_plane(const struct glint_placed *p,
+                       const struct glint_scene_ray *ray, struct glint_met *met)
+{
+    met->t = glint_ray_plane(ray, p->at, p->centre);
+    return met->t > 0;
+}
+
+/* Asks object I. MET->t is the limit on entry. ANY: the nearest is not needed.
+ */
+static int meets(const struct glint_scene *s, uint32_t i,
+                 const struct glint_scene_ray *ray, uint32_t but_triangle,
+                 int any, struct glint_met *met)
+{
+    const struct glint_placed *p = &s->placed[i];
+    const int32_t limit = met->t;
+    int does;
+
+    met->object = i;
+    met->triangle = 0;
+    if (p->object->kind == GLINT_OBJECT_MESH)
+        return s->cfg.parts.meshes->meet(s, i, but_triangle, ray, any, met);
+    does = p->object->kind == GLINT_OBJECT_SPHERE ? meets_sphere(p, ray, met)
+                                                  : meets_plane(p, ray, met);
+    return does && met->t < limit;
+}
+
+/* Returns whether rays that start on OBJECT are to ask object I: not a sphere
+ * or plane itself, which is convex. */
+static int is_asked(const struct glint_scene *s, uint32_t i, uint32_t object)
+{
+    const struct glint_scene_object *o = s->placed[i].object;
+
+    return s->placed[i].is_shown && o->catcher_q15 == 0 &&
+           (i != object || o->kind == GLINT_OBJECT_MESH);
+}
+
+int glint_scene_meet(const struct glint_scene *scene,
+                     const struct glint_scene_ray *ray, uint32_t object,
+                     uint32_t triangle, struct glint_met *met)
+{
+    int any = 0;
+
+    met->t = GLINT_FAR;
+    for (uint32_t i = 0; i < scene->model.header->n_objects; i++) {
+        struct glint_met next = {.t = met->t};
+
+        if (is_asked(scene, i, object) &&
+            meets(scene, i, ray, i == object ? triangle : GLINT_NOTHING, 0,
+                  &next)) {
+            *met = next;
+            any = 1;
+        }
+    }
+    return any;
+}
+
+int glint_scene_blocks(const struct glint_scene *scene,
+                       const struct glint_scene_ray *ray, uint32_t object,
+                       uint32_t triangle, int32_t limit)
+{
+    for (uint32_t i = 0; i < scene->model.header->n_objects; i++) {
+        struct glint_met met = {.t = limit};
+
+        if (is_asked(scene, i, object) &&
+            meets(scene, i, ray, i == object ? triangle : GLINT_NOTHING, 1,
+                  &met))
+            return 1;
+    }
+    return 0;
+}
+
+int glint_scene_planes_block(const struct glint_scene *scene,
+                             const struct glint_scene_ray *ray, uint32_t object)
+{
+    for (uint32_t i = 0; i < scene->model.header->n_objects; i++) {
+        struct glint_met met;
+
+        if (scene->placed[i].object->kind == GLINT_OBJECT_PLANE &&
+            is_asked(scene, i, object) &&
+            meets_plane(&scene->placed[i], ray, &met))
+            return 1;
+    }
+    return 0;
+}
+
+int glint_scene_meet_id(const struct glint_scene *scene,
+                        const struct glint_scene_ray *ray,
+                        const int32_t seen_q30[3], uint32_t id,
+                        struct glint_met *met)
+{
+    const uint32_t object = id >> 20, triangle = id & 0xfffff;
+    const struct glint_placed *p = &scene->placed[object];
+
+    met->object = object;
+    met->triangle = triangle;
+    if (p->object->kind == GLINT_OBJECT_MESH)
+        return scene->cfg.parts.meshes->hold(scene, object, triangle, seen_q30,
+                                             met);
+    return p->object->kind == GLINT_OBJECT_SPHERE ? meets_sphere(p, ray, met)
+                                                  : meets_plane(p, ray, met);
+}
+
+static void flip(int32_t v[3])
+{
+    for (int k = 0; k < 3; k++)
+        v[k] = -v[k];
+}
+
+static int plane_surface(const struct glint_scene_ray *ray,
+                         const struct glint_placed *p,
+                         const struct glint_met *met,
+                         struct glint_met_surface *surface)
+{
+    for (int k = 0; k < 3; k++)
+        surface->normal_q30[k] = surface->face_q30[k] = p->centre[k];
+    return glint_ray_go(ray, met->t, surface->place);
+}
+
+static int sphere_surface(const struct glint_scene_ray *ray,
+                          const struct glint_placed *p,
+                          const struct glint_met *met,
+                          struct glint_met_surface *surface)
+{
+    glint_chord_end(&met->chord, ray, p->at, met->end, surface->place,
+                    surface->normal_q30);
+    for (int k = 0; k < 3; k++)
+        surface->face_q30[k] = surface->normal_q30[k];
+    return 1;
+}
+
+int glint_scene_surface(const struct glint_scene *scene,
+                        const struct glint_scene_ray *ray,
+                        const struct glint_met *met,
+                        struct glint_met_surface *surface)
+{
+    const struct glint_placed *p = &scene->placed[met->object];
+    int is;
+
+    surface->object = met->object;
+    surface->triangle = met->triangle;
+    surface->t = met->t;
+    surface->material = &scene->model.material[p->object->material];
+    surface->uv_q16[0] = surface->uv_q16[1] = 0;
+    surface->uv_log2_q16 = 0;
+    if (p->object->kind == GLINT_OBJECT_MESH)
+        is = scene->cfg.parts.meshes->surface(scene, met, surface);
+    else if (p->object->kind == GLINT_OBJECT_SPHERE)
+        is = sphere_surface(ray, p, met, surface);
+    else
+        is = plane_surface(ray, p, met, surface);
+    surface->is_inside = v3_dot(ray->toward_q30, surface->face_q30) > 0;
+    if (surface->is_inside) {
+        flip(surface->normal_q30);
+        flip(surface->face_q30);
+    }
+    return is;
+}

@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Textures: bilinear in linear light, between the two levels whose texels are
+ * about as large as a pixel is on the surface, along its longer side. */
+#include "base/log2.h"
+#include "base/real.h"
+#include "scene/state.h"
+
+enum { LEAST_COSINE_Q30 = 1 << 22 };
+
+/* ------------------------------------------------------------------ u and v */
+
+/* Returns atan(Y / X) / 2 pi, q30, of X, Y from 0, not both; off by 2^-19: a
+ * polynomial for a ratio up to 1. */
+static int32_t quarter_turn(int32_t x, int32_t y)
+{
+    const int is_steep = y > x;
+    const uint64_t small = (uint64_t)(is_steep ? x : y);
+    const uint64_t large = (uint64_t)(is_steep ? y : x);
+    const int32_t r_q30 = glint_ratio(small << 30, large);
+    const int32_t s_q30 = q_mul(r_q30, r_q30, 30);
+    int32_t a_q30 = Q_CONST(0.0208351 / 6.2831853, 30);
+
+    a_q30 = q_mul(a_q30, s_q30, 30) - Q_CONST(0.0851330 / 6.2831853, 30);
+    a_q30 = q_mul(a_q30, s_q30, 30) + Q_CONST(0.1801410 / 6.2831853, 30);
+    a_q30 = q_mul(a_q30, s_q30, 30) - Q_CONST(0.3302995 / 6.2831853, 30);
+    a_q30 = q_mul(a_q30, s_q30, 30) + Q_CONST(0.9998660 / 6.2831853, 30);
+    a_q30 = q_mul(a_q30, r_q30, 30);
+    return is_steep ? (1 << 28) - a_q30 : a_q30;
+}
+
+/* Returns the angle of (X, Y) over 2 pi, -1/2 .. 1/2, q30. */
+static int32_t turn_of(int32_t x, int32_t y)
+{
+    int32_t a_q30;
+
+    if (x == 0 && y == 0)
+        return 0;
+    a_q30 = quarter_turn(x < 0 ? -x : x, y < 0 ? -y : y);
+    a_q30 = x < 0 ? (1 << 29) - a_q30 : a_q30;
+    return y < 0 ? -a_q30 : a_q30;
+}
+
+/* u goes round the y axis, 1/2 where a camera that is not turned sees the
+ * middle of the ball; v from its top down. */
+static void map_ball(const struct glint_placed *p, struct glint_met_surface *s)
+{
+    int32_t n_q30[3], across;
+
+    v3_turn_back(&p->turn, s->face_q30, n_q30);
+    for (int k = 0; k < 3 && s->is_inside; k++)
+        n_q30[k] = -n_q30[k];
+    across = (int32_t)glint_root((uint64_t)((int64_t)n_q30[0] * n_q30[0] +
+                                            (int64_t)n_q30[2] * n_q30[2]));
+    s->uv_q16[0] =
+        (int32_t)q_shift((1 << 29) + turn_of(-n_q30[2], n_q30[0]), 14);
+    s->uv_q16[1] = (int32_t)q_shift(turn_of(n_q30[1], across), 13);
+    /* 1 / (4 pi radius^2) */
+    s->uv_log2_q16 =
+        -Q_CONST(3.6514961, 16) - 2 * q_log2_q16((uint64_t)p->radius);
+}
+
+static void map_plane(const struct glint_scene *scene,
+                      const struct glint_placed *p, struct glint_met_surface *s)
+{
+    const int unit_log2 = scene->model.header->unit_log2;
+    int32_t off[3], at[3];
+
+    v3_minus(s->place, p->at, off);
+    v3_turn_back(&p->turn, off, at);
+    for (int k = 0; k < 2; k++) {
+        const struct glint_real uv = real_of(k ? -at[2] : at[0], -unit_log2);
+
+        /* Only what is beyond whole repeats counts. */
+        s->uv_q16[k] =
+            (int32_t)(real_integer(uv, 16, INT64_C(1) << 62) & ((1 << 24) - 1));
+    }
+    s->uv_log2_q16 = -2 * unit_log2 * 65536;
+}
+
+/* ------------------------------------------------------------------- texels */
+
+/* Returns the level, q16: by the longer side of a pixel on the surface, in
+ * texels. */
+static int32_t level_of(const struct glint_scene *scene,
+                        const struct glint_scene_ray *ray,
+                        const struct glint_met_surface *s,
+                        const struct glint_scene_texture *t)
+{
+    const int32_t cosine_q30 = q_larger(
+        -v3_cosine_q30(ray->toward_q30, s->face_q30), LEAST_COSINE_Q30);
+    const int64_t area_q16 =
+        s->uv_log2_q16 + (int32_t)((t->width_log2 + t->height_log2) << 16);
+    const int64_t side_q16 = q_log2_q16((uint64_t)s->t) +
+                             q_log2_q16((uint64_t)scene->view.step_q56[0]) -
+                             q_log2_q16((uint64_t)cosine_q30) -
+                             ((56 - 8 - 30) << 16);
+    const int most = q_larger((int32_t)t->width_log2, (int32_t)t->height_log2);
+
+    return q_clamp_sat(side_q16 + area_q16 / 2, 0, most << 16);
+}
+
+/* Where a sample lies between two texels. */
+static uint32_t between(int32_t uv_q16, uint32_t log2, uint32_t i[2])
+{
+    const int64_t at_q16 = (int64_t)uv_q16 * (1 << log2) - (1 << 15);
+    const uint32_t mask = (1U << log2) - 1;
+
+    i[0] = (uint32_t)(at_q16 >> 16) & mask;
+    i[1] = (i[0] + 1) & mask;
+    return (uint32_t)at_q16 & 0xffff;
+}
+
+/* Sets RGB_Q20 to the light of T at (U, V) in level LEVEL. */
+static void sample(const struct glint_scene *scene,
+                   const struct glint_scene_texture *t, const int32_t uv_q16[2],
+                   int level, int32_t rgb_q20[3])
+{
+    const uint8_t *texel = (const uint8_t *)scene->model.header + t->texel_at;
+    const int32_t *light_q20 = scene->curve->decode_q20;
+    uint32_t w = t->width_log2, h = t->height_log2, x[2], y[2], fx, fy;
+
+    for (int i = 0; i < level; i++) {
+        texel += (size_t)3 << (w + h);
+        w -= w > 0;
+        h -= h > 0;
+    }
+    fx = between(uv_q16[0], w, x);
+    fy = between(uv_q16[1], h, y);
+    for (size_t c = 0; c < 3; c++) {
+        int64_t row_q20[2];
+
+        for (int k = 0; k < 2; k++) {
+            const int32_t a = light_q20[texel[3 * ((y[k] << w) + x[0]) + c]];
+            const int32_t b = light_q20[texel[3 * ((y[k] << w) + x[1]) + c]];
+
+            row_q20[k] = a + q_shift((int64_t)(b - a) * fx, 16);
+        }
+        rgb_q20[c] =
+            (int32_t)(row_q20[0] + q_shift((row_q20[1] - row_q20[0]) * fy, 16));
+    }
+}
+
+static void colour(const struct glint_scene *scene,
+                   const struct glint_scene_ray *ray,
+                   const struct glint_met_surface *surface, int32_t rgb_q15[3])
+{
+    const struct glint_scene_texture *t =
+        &scene->model.texture[surface->material->texture];
+    const struct glint_placed *p = &scene->placed[surface->object];
+    struct glint_met_surface s = *surface;
+    int32_t level_q16, fine_q20[3], coarse_q20[3];
+
+    if (p->object->kind == GLINT_OBJECT_SPHERE)
+        map_ball(p, &s);
+    else if (p->object->kind == GLINT_OBJECT_PLANE)
+        map_plane(scene, p, &s);
+    level_q16 = level_of(scene, ray, &s, t);
+    sample(scene, t, s.uv_q16, level_q16 >> 16, fine_q20);
+    if (level_q16 & 0xffff)
+        sample(scene, t, s.uv_q16, (level_q16 >> 16) + 1, coarse_q20);
+    for (int c = 0; c < 3; c++) {
+        if (level_q16 & 0xffff)
+            fine_q20[c] +=
+                q_mul(coarse_q20[c] - fine_q20[c], level_q16 & 0xffff, 16);
+        rgb_q15[c] = q_mul(rgb_q15[c], fine_q20[c], 20);
+    }
+}
+
+static void prepare(struct glint_curve *curve)
+{
+    glint_curve_init(curve, GLINT_TONE_SRGB);
+}
+
+const struct glint_scene_textures glint_scene_textures = {colour, prepare};

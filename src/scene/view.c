@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: MIT */
+#include "scene/view.h"
+
+#include "base/real.h"
+
+enum { NEAR_BITS = 22, FAR_BITS = 16 };
+
+/* 2^24 tan over half of SIDE pixels: tan 2^25 / SIDE in _q56 for 1/256 pixel.
+ * tan is 2^6 at most, so that 128 SIDE of them are 2^62. */
+static int64_t step_of(int32_t tan_q24, int side)
+{
+    return q_divide((int64_t)tan_q24 << 25, side > 1 ? side : 1);
+}
+
+int glint_view_init(struct glint_scene_view *view,
+                    const struct glint_scene_camera *camera, int width,
+                    int height, int64_t focal_q16)
+{
+    const int64_t most_q56 = INT64_C(1) << 62;
+
+    for (int k = 0; k < 3; k++) {
+        view->at[k] = camera->at[k];
+        for (int i = 0; i < 3; i++)
+            view->turn.row_q30[k][i] = camera->axis_q30[k][i];
+    }
+    view->width = width;
+    view->height = height;
+    if (camera->kind == GLINT_CAMERA_CORNERS) {
+        view->step_q56[0] = step_of(camera->tan_x_q24, width - 1);
+        view->step_q56[1] = step_of(camera->tan_y_q24, height - 1);
+    } else if (camera->kind == GLINT_CAMERA_FIELD) {
+        view->step_q56[0] = step_of(camera->tan_x_q24, width);
+        view->step_q56[1] = view->step_q56[0];
+    } else {
+        if (focal_q16 < 1 << 10 || focal_q16 > INT64_C(1) << 40)
+            return 0;
+        view->step_q56[0] = /* 2^64 / focal */
+            (int64_t)((uint64_t)q_divide(INT64_MAX, focal_q16) * 2);
+        view->step_q56[1] = view->step_q56[0];
+    }
+    if (view->step_q56[0] >> 1 > q_divide(most_q56, 256 * width) ||
+        view->step_q56[1] >> 1 > q_divide(most_q56, 256 * height))
+        return 0;
+    /* 128 sides of steps, the tangent, is below 2^(57 + wide) */
+    view->per_tan_q8 = (int64_t)q_divide(INT64_C(1) << 56, view->step_q56[0]);
+    view->wide = 0;
+    while ((view->step_q56[0] * width | view->step_q56[1] * height) >>
+           (50 + view->wide))
+        view->wide++;
+    for (int k = 0; k < 2; k++)
+        view->focal_q8[k] =
+            real_over(real_of(1, 56), real_of(view->step_q56[k], 0));
+    return 1;
+}
+
+void glint_view_ray(const struct glint_scene_view *view, int32_t x_q8,
+                    int32_t y_q8, struct glint_scene_ray *ray,
+                    int32_t seen_q30[3])
+{
+    const int64_t toward_q28[3] = {q_shift(x_q8 * view->step_q56[0], 28),
+                                   -q_shift(y_q8 * view->step_q56[1], 28),
+                                   1 << 28};
+
+    glint_unit(toward_q28, seen_q30);
+    v3_turn_back(&view->turn, seen_q30, ray->toward_q30);
+    for (int k = 0; k < 3; k++)
+        ray->at[k] = view->at[k];
+}
+
+void glint_view_seen(const struct glint_scene_view *view,
+                     const int32_t place[3], int32_t to[3])
+{
+    int32_t off[3];
+
+    v3_minus(place, view->at, off);
+    v3_turn(&view->turn, off, to);
+}
+
+/* ---------------------------------------------------------------- corners */
+
+/* Returns X / 2^DOWN, which must fit, rounded; DOWN may be negative. */
+static int32_t shorter(int64_t x, int down)
+{
+    if (down > 62)
+        return 0;
+    return (int32_t)(down >= 0 ? q_shift(x, down)
+                               : x * (INT64_C(1) << (down < -62 ? 0 : -down)));
+}
+
+/* Returns X times the focal length over Z, of which ONE_OVER is 2^63 / (Z
+ * 2^UP); sets *FITS to 0 if it is too large. X 2^up is made 2^30, so the
+ * quotient keeps 30 bits however small it is. */
+static int32_t place_q8(int32_t x, struct glint_real focal_q8,
+                        uint32_t one_over, int up, int *fits)
+{
+    const int more = 30 - bit_length(q_magnitude(x));
+    const int64_t over_z = (int64_t)shorter(x, -more) * one_over >> 31;
+    const int64_t product = over_z * focal_q8.mantissa; /* below 2^62 */
+    const int down = 32 - up + more - focal_q8.exponent;
+
+    if (x == 0 || down > 62)
+        return 0;
+    if (down < 0 || bit_length(q_magnitude(product)) - down > NEAR_BITS) {
+        *fits = 0;
+        return 0;
+    }
+    return (int32_t)q_shift(product, down);
+}
+
+/* The direction to V as homogeneous numbers of 16 bits. */
+static struct glint_corner direction(const struct glint_scene_view *view,
+                                     const int32_t v[3])
+{
+    const struct glint_real *f = view->focal_q8;
+    const int64_t x = (int64_t)v[0] * f[0].mantissa;
+    const int64_t y = -(int64_t)v[1] * f[1].mantissa;
+    const int n_x = x ? bit_length(q_magnitude(x)) + f[0].exponent : -999;
+    const int n_y = y ? bit_length(q_magnitude(y)) + f[1].exponent : -999;
+    const int n_z = v[2] ? bit_length(q_magnitude(v[2])) : -999;
+    const int most = q_larger(n_z, q_larger(n_x, n_y)) - FAR_BITS;
+
+    return (struct glint_corner){shorter(x, most - f[0].exponent),
+                                 shorter(y, most - f[1].exponent),
+                                 shorter(v[2], most)};
+}
+
+struct glint_corner glint_view_corner(const struct glint_scene_view *view,
+                                      const int32_t v[3])
+{
+    struct glint_corner c = {0, 0, 1};
+    int fits = v[2] > 0;
+
+    if (fits) {
+        const int up = q_up((uint64_t)v[2]);
+        const uint32_t one_over = q_reciprocal((uint32_t)v[2] << up);
+
+        c.x = place_q8(v[0], view->focal_q8[0], one_over, up, &fits);
+        c.y = -place_q8(v[1], view->focal_q8[1], one_over, up, &fits);
+    }
+    return fits ? c : direction(view, v);
+}
+
+/* ------------------------------------------------------------------ depths */
+
+/* 1 / z = (n . r) / (n . v) for the ray r = (x step, -y step, 1). Coefficients
+ * get so many fraction bits that each term stays below 2^60. */
+int glint_view_depth(const struct glint_scene_view *view, const int32_t v[3],
+                     const int32_t normal_q30[3], int32_t nearest,
+                     struct glint_depth *depth)
+{
+    const int64_t away_q30 = v3_dot(normal_q30, v);
+    struct glint_real over, term[3];
+    int shift = 62;
+
+    if (away_q30 == 0)
+        return 0;
+    over = real_over(real_of(nearest, 60), real_of(away_q30, 0));
+    for (int k = 0; k < 3; k++) {
+        term[k] = real_times(real_of(normal_q30[k], -30), over);
+        if (k < 2)
+            term[k] = real_times(term[k], real_of(view->step_q56[k], -56));
+        if (term[k].mantissa)
+            shift = q_smaller(shift, (k < 2 ? 7 : 29) - term[k].exponent);
+    }
+    if (shift < 0)
+        return 0;
+    depth->shift = shift;
+    depth->across = real_integer(term[0], shift, INT64_C(1) << 60);
+    depth->down = -real_integer(term[1], shift, INT64_C(1) << 60);
+    depth->at = real_integer(term[2], shift, INT64_C(1) << 60);
+    return 1;
+}

@@ -1,0 +1,331 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What is seen at the samples of a tile: spheres by the ray of each sample,
+ * planes by 1 / z, triangles by the part for meshes.
+ *
+ * A sphere whose rim is farther away from a pixel's middle than its samples are
+ * gives all of them the depth of the middle. Spheres come last: one that no
+ * other ball can hide in part asks for no depth where all that is there is
+ * farther away than its far side. */
+#include "scene/visible.h"
+
+/* The corners of a square that is turned; eight and sixteen that are spread as
+ * evenly as rows and columns of their own let them. */
+/* clang-format off */
+static const int8_t one_q8[1][2] = {{0, 0}};
+static const int8_t four_q8[4][2] = {
+    {-96, -32}, {32, -96}, {96, 32}, {-32, 96}};
+static const int8_t eight_q8[8][2] = {
+    {16, -48}, {-16, 48}, {80, 16}, {-48, -80},
+    {-80, 80}, {-112, -16}, {48, 112}, {112, -112}};
+static const int8_t sixteen_q8[16][2] = {
+    {24, 24}, {-8, -40}, {-40, 40}, {72, -8}, {-72, -24}, {40, 88},
+    {88, 56}, {56, -72}, {-24, 104}, {8, -104}, {-56, -88}, {-88, 72},
+    {-120, 8}, {120, -56}, {104, 120}, {-104, -120}};
+/* clang-format on */
+
+const int8_t (*glint_scene_samples(int n))[2]
+{
+    return n == 1 ? one_q8 : n == 4 ? four_q8 : n == 8 ? eight_q8 : sixteen_q8;
+}
+
+/* ----------------------------------------------------------------- spheres */
+
+/* A ray of the picture, and what of a ball it meets. */
+struct look {
+    struct glint_scene_ray ray;
+    struct glint_chord chord;
+    int32_t seen_q30[3]; /* the ray's direction in camera coordinates */
+};
+
+/* Finds the chord of the ray of place (X, Y) in PLACED. */
+static int look_at(const struct glint_scene *s,
+                   const struct glint_placed *placed, int32_t x_q8,
+                   int32_t y_q8, struct look *look)
+{
+    glint_view_ray(&s->view, x_q8, y_q8, &look->ray, look->seen_q30);
+    return glint_ray_sphere(&look->ray, placed->at, placed->radius,
+                            &look->chord);
+}
+
+static void put_look(struct glint_scene_worker *w, const struct look *look,
+                     uint32_t id, int x, int y, int k)
+{
+    const int32_t t = look->chord.t[look->chord.t[0] <= 0];
+    const int32_t z = q_larger(1, q_mul(t, look->seen_q30[2], 30));
+
+    if (t <= 0)
+        return;
+    glint_put_sample(w, x, y, k,
+                     q_larger(1, glint_ratio((uint64_t)w->scene->nearest << 30,
+                                             (uint64_t)z)),
+                     id);
+}
+
+/* Returns whether what samples FIRST .. END - 1 see so far is farther away than
+ * all of the ball. */
+static int is_nearer(const struct glint_scene_worker *w,
+                     const struct glint_placed *placed, int first, int end)
+{
+    int32_t most = 0;
+
+    for (int i = first; i < end; i++)
+        most = q_larger(most, w->depth[i]);
+    return placed->flat_depth && most < placed->far_depth;
+}
+
+/* Has samples FIRST .. END - 1 see the ball. */
+static void set_samples(struct glint_scene_worker *w,
+                        const struct glint_placed *placed, uint32_t id,
+                        int first, int end)
+{
+    for (int i = first; i < end; i++) {
+        w->depth[i] = placed->flat_depth;
+        w->id[i] = id;
+    }
+}
+
+/* Returns whether all samples meet PLACED if LOOK, through their middle, does.
+ */
+static int is_well_inside(const struct glint_placed *placed,
+                          const struct look *look)
+{
+    const int64_t within = ((int64_t)placed->radius - placed->margin) *
+                           (INT64_C(1) << look->chord.up);
+
+    return within > 0 &&
+           v3_dot(look->chord.middle, look->chord.middle) <= within * within;
+}
+
+/* Returns whether all samples of the pixel, and rays a little beside them, meet
+ * the ball. */
+static int look_at_pixel(struct glint_scene_worker *w,
+                         const struct glint_placed *placed, uint32_t id, int x,
+                         int y)
+{
+    const struct glint_scene *s = w->scene;
+    const int32_t x_q8 = glint_place(s, x, 0), y_q8 = glint_place(s, y, 1);
+    const int n = s->cfg.edge_samples;
+    struct look look;
+    const int meets = look_at(s, placed, x_q8, y_q8, &look);
+    const int is_inside = meets && is_well_inside(placed, &look);
+    const int first = glint_sample_index(w, x, y, 0);
+
+    if (is_inside && is_nearer(w, placed, first, first + n)) {
+        set_samples(w, placed, id, first, first + n);
+        return 1;
+    }
+    if (is_inside || (meets && n == 1)) {
+        for (int k = 0; k < n; k++)
+            put_look(w, &look, id, x, y, k);
+        return is_inside;
+    }
+    if (n == 1 || (!meets && !glint_ray_sphere(&look.ray, placed->at,
+                                               placed->radius + placed->margin,
+                                               &look.chord)))
+        return 0;
+    for (int k = 0; k < n; k++)
+        if (look_at(s, placed, x_q8 + glint_sample(s, k, 0),
+                    y_q8 + glint_sample(s, k, 1), &look))
+            put_look(w, &look, id, x, y, k);
+    return 0;
+}
+
+/* Looks at a ball in row Y. What lies between two pixels well inside is inside,
+ * too: where one depth serves all of it, rays are asked there only of what may
+ * be nearer. */
+static void look_at_row(struct glint_scene_worker *w,
+                        const struct glint_placed *placed, uint32_t id,
+                        struct glint_box b, int y)
+{
+    const int n = w->scene->cfg.edge_samples;
+    int x = b.x0, end = b.x1, is_in = 0;
+
+    while (x < end && !is_in)
+        is_in = look_at_pixel(w, placed, id, x++, y) && placed->flat_depth;
+    while (is_in && x < end && !look_at_pixel(w, placed, id, end - 1, y))
+        end--;
+    for (; x < end - is_in; x++) {
+        const int first = glint_sample_index(w, x, y, 0);
+
+        if (is_nearer(w, placed, first, first + n))
+            set_samples(w, placed, id, first, first + n);
+        else
+            look_at_pixel(w, placed, id, x, y);
+    }
+}
+
+/* ------------------------------------------------------------------ planes */
+
+static void look_at_plane(struct glint_scene_worker *w,
+                          const struct glint_placed *placed, uint32_t id)
+{
+    const struct glint_scene *s = w->scene;
+    const struct glint_box b = glint_box_cut(w->tile, placed->box);
+
+    for (int y = b.y0; y < b.y1; y++)
+        for (int x = b.x0; x < b.x1; x++)
+            for (int k = 0; k < s->cfg.edge_samples; k++) {
+                const int32_t depth = glint_depth_at(
+                    &placed->depth,
+                    glint_place(s, x, 0) + glint_sample(s, k, 0),
+                    glint_place(s, y, 1) + glint_sample(s, k, 1));
+
+                if (depth > 0)
+                    glint_put_sample(w, x, y, k, depth, id);
+            }
+}
+
+/* ------------------------------------------------------------------- frame */
+
+enum { MOST_COMPARED = 64 /* objects: all with all */ };
+
+/* Returns whether B may hide what A shows, or A what B does, but not all of it.
+ */
+static int is_tangled(const struct glint_placed *a,
+                      const struct glint_placed *b)
+{
+    return b->is_seen && b->object->kind == GLINT_OBJECT_SPHERE &&
+           a->z[0] <= b->z[1] + 2 && b->z[0] <= a->z[1] + 2 &&
+           !glint_box_empty(glint_box_cut(a->box, b->box));
+}
+
+void glint_scene_flatten(struct glint_scene *s)
+{
+    const uint32_t n = s->model.header->n_objects;
+
+    for (uint32_t i = 0; i < n && n <= MOST_COMPARED; i++) {
+        struct glint_placed *p = &s->placed[i];
+        int is =
+            p->is_seen && p->object->kind == GLINT_OBJECT_SPHERE && p->z[0] > 0;
+
+        for (uint32_t k = 0; k < n && is; k++)
+            is = k == i || !is_tangled(p, &s->placed[k]);
+        if (!is)
+            continue;
+        p->far_depth =
+            glint_ratio((uint64_t)s->nearest << 30, (uint64_t)p->z[1] + 2);
+        p->flat_depth =
+            q_larger(1, glint_ratio((uint64_t)s->nearest << 30,
+                                    (uint64_t)p->z[0] + (uint64_t)p->reach));
+    }
+}
+
+/* Returns whether all of P is on the camera's side of PLANE. */
+static int is_before(const struct glint_scene *s, const struct glint_placed *p,
+                     const struct glint_placed *plane)
+{
+    int32_t off[3], camera[3];
+    int64_t away, side;
+
+    v3_minus(p->centre, plane->at, off);
+    v3_minus(s->view.at, plane->at, camera);
+    away = q_shift(v3_dot(off, plane->centre), 30);
+    side = v3_dot(camera, plane->centre);
+    return (away < 0) == (side < 0) &&
+           q_magnitude(away) > (uint64_t)p->reach + 2;
+}
+
+/* Confines a catcher to pixels in which shadows may be, or things that it may
+ * hide. */
+static void confine(const struct glint_scene *s, struct glint_placed *plane)
+{
+    struct glint_box box = {0, 0, 0, 0};
+
+    for (uint32_t i = 0; i < s->model.header->n_lights; i++) {
+        if (!s->model.header->shadow)
+            break;
+        if (!s->lit[i].shadow || s->has_planes)
+            return;
+        box = glint_box_join(box, glint_shadow_box(s, s->lit[i].shadow, plane));
+    }
+    for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
+        const struct glint_placed *p = &s->placed[i];
+
+        if (p == plane || !p->is_seen)
+            continue;
+        if (p->object->kind == GLINT_OBJECT_PLANE)
+            return;
+        if (!is_before(s, p, plane))
+            box = glint_box_join(box, p->box);
+    }
+    plane->box = box;
+    plane->is_seen = !glint_box_empty(box);
+}
+
+void glint_scene_confine(struct glint_scene *s)
+{
+    for (uint32_t i = 0; i < s->model.header->n_objects; i++)
+        if (s->placed[i].is_seen && s->placed[i].object->catcher_q15)
+            confine(s, &s->placed[i]);
+}
+
+/* -------------------------------------------------------------------- tile */
+
+/* Returns the pixels of a tile that may see a thing. Those of meshes count if
+ * the tile lists triangles. */
+static struct glint_box touch(const struct glint_scene *s,
+                              struct glint_box tile, int has_triangles)
+{
+    struct glint_box all = {0, 0, 0, 0};
+
+    for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
+        const struct glint_placed *p = &s->placed[i];
+
+        if (p->is_seen &&
+            (has_triangles || p->object->kind != GLINT_OBJECT_MESH))
+            all = glint_box_join(all, glint_box_cut(tile, p->box));
+    }
+    return all;
+}
+
+static void clear(struct glint_scene_worker *w)
+{
+    const struct glint_box b = w->touched;
+    const int n = w->scene->cfg.edge_samples * (b.x1 - b.x0);
+
+    for (int y = b.y0; y < b.y1; y++) {
+        const int first = glint_sample_index(w, b.x0, y, 0);
+
+        for (int i = first; i < first + n; i++) {
+            w->depth[i] = 0;
+            w->id[i] = GLINT_NOTHING;
+        }
+    }
+}
+
+int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile)
+{
+    const struct glint_scene *s = w->scene;
+    const int at = (tile.y0 >> s->cfg.tile_log2) * s->bins.tiles_x +
+                   (tile.x0 >> s->cfg.tile_log2);
+    const int has_triangles =
+        s->has_triangles && s->bins.start[at] < s->bins.start[at + 1];
+
+    w->tile = tile;
+    w->touched = touch(s, tile, has_triangles);
+    clear(w);
+    if (glint_box_empty(w->touched))
+        return s->model.header->background == GLINT_BACKGROUND_COLOUR;
+    for (int32_t i = has_triangles ? s->bins.start[at] : 0;
+         has_triangles && i < s->bins.start[at + 1]; i++)
+        s->cfg.parts.meshes->look(w, (uint32_t)s->bins.ref[i]);
+    for (uint32_t i = 0; i < s->model.header->n_objects; i++)
+        if (s->placed[i].is_seen &&
+            s->placed[i].object->kind == GLINT_OBJECT_PLANE)
+            look_at_plane(w, &s->placed[i], glint_id(i, 0));
+    for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
+        const struct glint_placed *placed = &s->placed[i];
+        const struct glint_box b = glint_box_cut(tile, placed->box);
+
+        if (!placed->is_seen || glint_box_empty(b))
+            continue;
+        for (int y = b.y0; placed->radius > 0 && y < b.y1; y++) {
+            struct glint_box row = b;
+
+            if (glint_scene_span(s, placed, y, &row.x0, &row.x1))
+                look_at_row(w, placed, glint_id(i, 0), row, y);
+        }
+    }
+    return 1;
+}

@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Checks a baked environment once, so that lookups need not check anything. */
+#include "glint/scene/environment.h"
+
+#include "base/blob.h"
+#include "base/compiler.h"
+#include "scene/model_check.h"
+
+/* The file is used in place: its layout is what these structs are. */
+STATIC_ASSERT(sizeof(struct glint_environment_level) == 16);
+STATIC_ASSERT(sizeof(struct glint_environment_light) == 40);
+STATIC_ASSERT(sizeof(struct glint_environment_header) == 124);
+STATIC_ASSERT(sizeof(struct glint_real) == 8);
+
+/* The header begins as that of every baked file does. */
+#define SAME_PLACE(field)                                             \
+    STATIC_ASSERT(offsetof(struct glint_environment_header, field) == \
+                  offsetof(struct glint_blob_header, field))
+SAME_PLACE(magic);
+SAME_PLACE(version);
+SAME_PLACE(bytes);
+SAME_PLACE(crc32);
+SAME_PLACE(variant);
+SAME_PLACE(key);
+SAME_PLACE(name);
+
+static const char outside[] = "a table lies outside of the environment";
+
+static const char *const fault_text[GLINT_BLOB_FAULTS] = {
+    [GLINT_BLOB_UNALIGNED] = "the environment is not aligned to 4 bytes",
+    [GLINT_BLOB_FOREIGN] = "this is no baked environment",
+    [GLINT_BLOB_NEWER] = "the environment was baked by a newer glint",
+    [GLINT_BLOB_NO_VERSION] =
+        "no glint ever baked environments of this version",
+    [GLINT_BLOB_OLDER] =
+        "the environment was baked by an older glint: bake it again",
+    [GLINT_BLOB_TRUNCATED] = "the environment is truncated",
+    [GLINT_BLOB_LONGER] = "the environment goes on after its end",
+    [GLINT_BLOB_DAMAGED] = "the checksum is wrong: the environment is damaged",
+    [GLINT_BLOB_NAME_CONTROL] = "the name has a control character",
+    [GLINT_BLOB_NAME_FOREIGN] = "the name has a byte beyond ASCII",
+    [GLINT_BLOB_NAME_ENDLESS] = "the name does not end",
+    [GLINT_BLOB_NAME_EMPTY] = "the name is empty"};
+
+uint32_t glint_environment_side_log2(uint32_t levels, uint32_t side_log2,
+                                     uint32_t level)
+{
+    if (levels == GLINT_ENVIRONMENT_MIP)
+        return side_log2 - level;
+    if (level == 0)
+        return side_log2;
+    if (side_log2 + 1 - level < GLINT_ENVIRONMENT_COARSEST_LOG2)
+        return GLINT_ENVIRONMENT_COARSEST_LOG2;
+    return side_log2 + 1 - level;
+}
+
+static const char *check_header(const struct glint_environment_header *h)
+{
+    if (h->variant > GLINT_ENVIRONMENT_MIP || h->code > GLINT_ENVIRONMENT_9E5)
+        return "the environment's levels or codes are unknown";
+    if (h->side_log2 < GLINT_ENVIRONMENT_LEAST_LOG2 ||
+        h->side_log2 > GLINT_ENVIRONMENT_MOST_LOG2 ||
+        h->n_levels != h->side_log2 + 1 ||
+        h->n_lights > GLINT_ENVIRONMENT_MAX_LIGHTS)
+        return "the environment has too many of a kind";
+    if (h->unit_log2 < -160 || h->unit_log2 > 100)
+        return "the environment's unit is out of range";
+    return NULL;
+}
+
+static const char *check_level(struct glint_environment *e,
+                               struct glint_blob *blob, uint32_t k)
+{
+    const struct glint_environment_header *h = e->header;
+    const struct glint_environment_level *l = &e->level[k];
+    const int is_root = h->code == GLINT_ENVIRONMENT_565;
+
+    if (l->side_log2 !=
+            glint_environment_side_log2(h->variant, h->side_log2, k) ||
+        l->scale < 0 ||
+        l->scale > (is_root ? 1 << GLINT_ENVIRONMENT_BITS : 0) || l->zero)
+        return "a level's side or scale is out of range";
+    /* Two codes of 565 are one word; the side of a mip may be one. */
+    e->texel[k] = glint_blob_section(
+        blob, l->texel_at,
+        ((UINT64_C(1) << (2 * l->side_log2)) + (uint64_t)is_root) >> is_root,
+        4);
+    return e->texel[k] ? NULL : outside;
+}
+
+static const char *check_light(const struct glint_environment_light *light)
+{
+    if (!glint_scene_is_unit(light->toward_q30, 3))
+        return "a light's direction is no unit vector";
+    if (light->radius_q30 < 0 || light->radius_q30 > 1 << 29)
+        return "a light is too large";
+    for (int c = 0; c < 3; c++)
+        if (!glint_scene_is_light(&light->rgb[c]))
+            return "a light is negative or not normalised";
+    return NULL;
+}
+
+static const char *check_contents(struct glint_environment *e,
+                                  struct glint_blob *blob)
+{
+    const struct glint_environment_header *h = e->header;
+    const char *wrong = fault_text[glint_blob_check_name(blob)];
+
+    if (!wrong)
+        wrong = check_header(h);
+    if (wrong)
+        return wrong;
+    e->level =
+        glint_blob_section(blob, h->level_at, h->n_levels, sizeof *e->level);
+    e->irradiance =
+        glint_blob_section(blob, h->irradiance_at,
+                           1 << (2 * GLINT_ENVIRONMENT_IRRADIANCE_LOG2), 4);
+    e->light =
+        glint_blob_section(blob, h->light_at, h->n_lights, sizeof *e->light);
+    if (!e->level || !e->irradiance || !e->light)
+        return outside;
+    for (uint32_t k = 0; !wrong && k < h->n_levels; k++)
+        wrong = check_level(e, blob, k);
+    for (uint32_t k = 0; !wrong && k < h->n_lights; k++)
+        wrong = check_light(&e->light[k]);
+    return wrong;
+}
+
+enum glint_status glint_environment_open(struct glint_environment *environment,
+                                         const void *data, size_t bytes,
+                                         const char **reason)
+{
+    static const struct glint_blob_kind kind = {
+        GLINT_ENVIRONMENT_MAGIC, GLINT_ENVIRONMENT_VERSION,
+        sizeof(struct glint_environment_header)};
+    struct glint_environment e = {.header = data};
+    struct glint_blob blob;
+    const char *wrong = fault_text[glint_blob_open(&blob, &kind, data, bytes)];
+
+    if (!wrong)
+        wrong = check_contents(&e, &blob);
+    if (wrong) {
+        *reason = wrong;
+        return GLINT_E_FORMAT;
+    }
+    *environment = e;
+    return GLINT_OK;
+}

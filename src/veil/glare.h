@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Veiling glare: a share of all light, spread wide, in integers.
+ *
+ *     bytes = glint_veil_bytes(&cfg);                         once
+ *     glint_veil_init(&veil, &cfg, mem, bytes);
+ *     glint_veil_look(veil, &image, white);                   each frame
+ *     glint_veil_lamp(veil, x_q8, y_q8, power, rgb_q14);      light above white
+ *     glint_veil_spread(veil, spreads, n);
+ *     glint_veil_draw(veil, NULL, flare, &image);   not glint_flare_draw()
+ *
+ * Light that lens, barrel and camera scatter falls far from where it belongs.
+ * ISO 9358 measures it as veiling glare index, the share of light in the
+ * picture of a small black spot amid a wide white one: V. If the share V of all
+ * light in a picture is spread, what is left of a scene P is (1 - V) P + V K P,
+ * with a kernel K whose integral is 1; on uniform white that is white, and V on
+ * the spot. Exposed so that the direct picture stays as it is, the veil adds
+ *
+ *     V / (1 - V) K P
+ *
+ * which is what is drawn: nothing gets darker, lamps that clip still do, and
+ * the veil has the share V of all light. P is the mean light of some 64 x 36
+ * cells of the picture, and what lamps have above its white. K is a sum of
+ * Gaussians, mirrored at the picture's borders, so that all light stays in it.
+ * The light of the cells is interpolated by quadratic splines, without steps.
+ * Light that dirt on the front element spreads has cells of its own, which a
+ * table of how much of that is covered, pixel by pixel, multiplies.
+ * [Talvala, Adams, Horowitz, Levoy, Veiling glare in high dynamic range
+ * imaging, ACM TOG 26(3), 2007; McCann, Rizzi, Camera and visual veiling glare
+ * in HDR images, J. SID 15(9), 2007] */
+#ifndef GLINT_VEIL_GLARE_H
+#define GLINT_VEIL_GLARE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "glint/image.h"
+#include "glint/light.h"
+#include "glint/status.h"
+#include "glint/workers.h"
+#include "tile/pass.h"
+
+enum {
+    GLINT_VEIL_CELLS = 64,  /* cells along the picture's longer side, at most */
+    GLINT_VEIL_SPREADS = 8, /* Gaussians that may be added */
+    GLINT_VEIL_LEAST_PX = 4 /* least side of a cell, pixels */
+};
+
+/* A Gaussian over cells along both axes. */
+struct glint_veil_spread {
+    /* [D]: the share that goes D cells far, of a row of n cells that its mirror
+     * images repeat every 2 n cells; D = 0 .. n. [0] + [n] + 2 times the others
+     * is 2^30. */
+    int32_t across_q30[GLINT_VEIL_CELLS + 1], down_q30[GLINT_VEIL_CELLS + 1];
+    struct glint_real share; /* of all light, above 0 */
+};
+
+struct glint_veil_config {
+    int n_workers;     /* number of workers of the flares to come, 1 .. 64 */
+    int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
+    int has_front;     /* 1: there is room for what a front element spreads */
+};
+
+/* Pixels from node to node, and how many nodes there are along a side. */
+enum { GLINT_VEIL_FRONT_PX = 4 };
+#define GLINT_VEIL_FRONT_NODES(side) \
+    (((side) + GLINT_VEIL_FRONT_PX - 1) / GLINT_VEIL_FRONT_PX + 1)
+
+struct glint_veil_row;
+struct glint_pass_rows;
+typedef void glint_veil_front_fn(const struct glint_veil_row *row,
+                                 const struct glint_pass_rows *rows, int k);
+glint_veil_front_fn glint_veil_front_row;
+
+/* How much of the front element is covered where a pixel looks through. A
+ * program that does not name glint_veil_front_row does not link what draws
+ * it. */
+struct glint_veil_front {
+    glint_veil_front_fn *row; /* glint_veil_front_row */
+    int n_x, n_y;             /* GLINT_VEIL_FRONT_NODES() of both sides */
+    /* [n_y][n_x]: share of what is covered at most, at the borders of every
+     * fourth pixel. Kept. */
+    const uint16_t *part_q16;
+};
+
+struct glint_veil; /* opaque, in the caller's memory */
+struct glint_flare;
+
+/* Sets CELLS to the numbers of cells across and down of pictures of that
+ * size. */
+void glint_veil_cells(int width, int height, int cells[2]);
+
+/* Returns the exact number of bytes that init takes for CFG, or 0 if CFG is out
+ * of range. */
+size_t glint_veil_bytes(const struct glint_veil_config *cfg);
+
+/* Places a veil in MEM[BYTES], aligned to 64, which needs no finish.
+ * GLINT_E_MEMORY: BYTES is too small. */
+enum glint_status glint_veil_init(struct glint_veil **veil,
+                                  const struct glint_veil_config *cfg,
+                                  void *mem, size_t bytes);
+
+/* Takes the light of IMAGE, whose white is WHITE; NULL: black. Forgets lamps.
+ * WORKERS may be NULL. */
+void glint_veil_look(struct glint_veil *veil, const struct glint_image *image,
+                     struct glint_real white, struct glint_workers *workers);
+
+/* Adds POWER, white times pixels, of colour RGB, 0 .. 2^14, at (X, Y), pixels
+ * from the top left corner. Lamps outside of the picture are left out. */
+void glint_veil_lamp(struct glint_veil *veil, int32_t x_q8, int32_t y_q8,
+                     struct glint_real power, const int32_t rgb_q14[3]);
+
+/* Makes the veil of N spreads, 0 .. GLINT_VEIL_SPREADS. */
+void glint_veil_spread(struct glint_veil *veil,
+                       const struct glint_veil_spread *spreads, int n);
+
+/* Makes, besides, what a front element spreads: N spreads, whose shares are
+ * those where it is covered most. FRONT is kept; NULL: nothing, as before the
+ * first call. The veil has to have room for it. */
+void glint_veil_front(struct glint_veil *veil,
+                      const struct glint_veil_front *front,
+                      const struct glint_veil_spread *spreads, int n);
+
+/* Adds the veil, in front of it OVER unless that is NULL, and over both the
+ * flare that FLARE has binned. If that is drawn at half the size, the others
+ * are still drawn to all pixels. */
+void glint_veil_draw(struct glint_veil *veil, const struct glint_pass *over,
+                     struct glint_flare *flare,
+                     const struct glint_image *image);
+
+/* Adds the veil alone. */
+void glint_veil_draw_alone(struct glint_veil *veil, struct glint_flare *flare,
+                           const struct glint_image *image);
+
+#endif

@@ -1,0 +1,284 @@
+/* SPDX-License-Identifier: MIT */
+#include "veil/glare.h"
+
+#include "base/arena.h"
+#include "base/q.h"
+#include "veil/parts.h"
+
+/* ------------------------------------------------------------------ memory */
+
+static int config_ok(const struct glint_veil_config *c)
+{
+    return c->n_workers >= 1 && c->n_workers <= 64 && c->width >= 1 &&
+           c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
+           c->height <= GLINT_MAX_SIDE;
+}
+
+/* Returns the number of cells along SIDE of a picture whose longer side is
+ * LONGER. */
+static int cells_along(int side, int longer)
+{
+    const int most =
+        q_larger(1, q_smaller(GLINT_VEIL_CELLS, longer / GLINT_VEIL_LEAST_PX));
+
+    return q_larger(1, (most * side + longer / 2) / longer);
+}
+
+void glint_veil_cells(int width, int height, int cells[2])
+{
+    const int longer = q_larger(width, height);
+
+    cells[0] = cells_along(width, longer);
+    cells[1] = cells_along(height, longer);
+}
+
+static void take_axis(struct glint_arena *a, struct glint_veil_axis *axis,
+                      int side)
+{
+    enum { N = GLINT_VEIL_CELLS };
+
+    axis->cell = glint_arena_take(a, (size_t)side, 1);
+    axis->start = glint_arena_take(a, N + 1, sizeof *axis->start);
+    for (int k = 0; k < 3; k++)
+        axis->share_q16[k] = glint_arena_take(
+            a, (size_t)side + GLINT_VEIL_LANES, sizeof *axis->share_q16[k]);
+    axis->fill_q16 = glint_arena_take(a, N, sizeof *axis->fill_q16);
+}
+
+/* Takes a veil and its tables from A, once to measure, which returns NULL, and
+ * once to place them. */
+static struct glint_veil *carve(struct glint_arena *a,
+                                const struct glint_veil_config *c)
+{
+    struct glint_veil measured, *placed, *v;
+    int cells[2];
+    size_t n;
+
+    glint_veil_cells(c->width, c->height, cells);
+    n = 3 * (size_t)cells[0] * (size_t)cells[1];
+    placed = glint_arena_take(a, 1, sizeof *placed);
+    v = placed ? placed : &measured;
+    take_axis(a, &v->across, c->width);
+    take_axis(a, &v->down, c->height);
+    v->curve = glint_arena_take(a, 1, sizeof *v->curve);
+    v->light_q16 = glint_arena_take(a, n, sizeof *v->light_q16);
+    v->narrow = glint_arena_take(a, n, sizeof *v->narrow);
+    v->along = glint_arena_take(a, n, sizeof *v->along);
+    v->sum_q30 = glint_arena_take(a, n, sizeof *v->sum_q30);
+    v->cell_q20 = glint_arena_take(a, n, sizeof *v->cell_q20);
+    v->front_q20 =
+        c->has_front ? glint_arena_take(a, n, sizeof *v->front_q20) : NULL;
+    v->worker = glint_arena_take(a, (size_t)c->n_workers, sizeof *v->worker);
+    v->rows = glint_arena_take(a, (size_t)c->n_workers, sizeof *v->rows);
+    if (placed) {
+        v->n_x = cells[0];
+        v->n_y = cells[1];
+    }
+    return placed;
+}
+
+size_t glint_veil_bytes(const struct glint_veil_config *cfg)
+{
+    struct glint_arena arena = glint_arena_measure();
+
+    if (!config_ok(cfg))
+        return 0;
+    carve(&arena, cfg);
+    return arena.used;
+}
+
+/* Finds how many pixels of SIDE cells have, and how many are looked at in them,
+ * STEP at a time. */
+static void set_fill(struct glint_veil_axis *axis, int side, int n, int step)
+{
+    for (int k = 0; k < n; k++)
+        axis->fill_q16[k] = 0;
+    for (int i = 0; i < side; i += step)
+        axis->fill_q16[axis->cell[i]] += (uint32_t)q_smaller(step, side - i);
+    for (int k = 0; k < n; k++) { /* pixels are at most 2^15, cells 2^6 */
+        const uint32_t pixels = axis->fill_q16[k] ? axis->fill_q16[k] : 1;
+
+        axis->fill_q16[k] =
+            (uint32_t)(((uint64_t)side << 16) / (pixels * (uint32_t)n));
+    }
+}
+
+/* Finds the place of each of SIDE pixels among N cells. */
+static void set_axis(struct glint_veil_axis *axis, int side, int n)
+{
+    const uint32_t twice = 2 * (uint32_t)side;
+    uint32_t next = 0;
+
+    for (int i = 0; i < side; i++) {
+        /* the pixel's middle, in units of 1 / TWICE cells */
+        const uint32_t at = (uint32_t)(2 * i + 1) * (uint32_t)n;
+        const uint32_t cell = at / twice;
+        const uint64_t t_q16 = ((uint64_t)(at - cell * twice) << 16) / twice;
+        const uint64_t rest_q16 = 65536 - t_q16;
+
+        axis->cell[i] = (uint8_t)cell;
+        axis->share_q16[0][i] = (uint16_t)(rest_q16 * rest_q16 >> 17);
+        axis->share_q16[2][i] = (uint16_t)(t_q16 * t_q16 >> 17);
+        axis->share_q16[1][i] =
+            (uint16_t)(65536 - axis->share_q16[0][i] - axis->share_q16[2][i]);
+        for (; next <= cell; next++)
+            axis->start[next] = i;
+    }
+    axis->start[n] = side;
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < GLINT_VEIL_LANES; i++)
+            axis->share_q16[k][side + i] = 0;
+}
+
+enum glint_status glint_veil_init(struct glint_veil **veil,
+                                  const struct glint_veil_config *cfg,
+                                  void *mem, size_t bytes)
+{
+    struct glint_arena arena = glint_arena_over(mem, bytes);
+    struct glint_veil *v;
+
+    if (!config_ok(cfg) || (uintptr_t)mem % GLINT_ALIGN != 0)
+        return GLINT_E_ARGUMENT;
+    if (glint_veil_bytes(cfg) > bytes)
+        return GLINT_E_MEMORY;
+    v = carve(&arena, cfg);
+    v->cfg = *cfg;
+    v->is_linear = v->any = v->any_front = v->has_curve = 0;
+    v->front = NULL;
+    set_axis(&v->across, cfg->width, v->n_x);
+    set_axis(&v->down, cfg->height, v->n_y);
+    set_fill(&v->across, cfg->width, v->n_x, 1);
+    set_fill(&v->down, cfg->height, v->n_y, 2);
+    for (int i = 0; i < cfg->n_workers; i++)
+        v->worker[i].veil = v;
+    for (int i = 0; i < 3 * v->n_x * v->n_y; i++) {
+        v->light_q16[i] = 0;
+        v->cell_q20[i] = 0;
+    }
+    *veil = v;
+    return GLINT_OK;
+}
+
+/* ---------------------------------------------------------------- spreading */
+
+/* Most light of a cell, 2^8 white: so that what lies between cells has 63
+ * bits. */
+enum { MOST_Q20 = 1 << 28 };
+
+/* Returns the most that bits of the largest of N sums have over 31. */
+static int bits_over(const int64_t *light_q16, int n)
+{
+    uint64_t all = 0;
+    int over = 0;
+
+    for (int i = 0; i < n; i++)
+        all |= (uint64_t)light_q16[i];
+    while (all >> over >= (uint64_t)1 << 30)
+        over++;
+    return over;
+}
+
+/* Sets SHARE to what each of N cells gives to cell TO, mirror images
+ * included. */
+static void shares_of(const int32_t *table_q30, int n, int to,
+                      int32_t share_q30[GLINT_VEIL_CELLS])
+{
+    for (int from = 0; from < n; from++) {
+        const int direct = to > from ? to - from : from - to;
+        const int mirrored = to + from + 1;
+
+        share_q30[from] = table_q30[direct] +
+                          table_q30[mirrored > n ? 2 * n - mirrored : mirrored];
+    }
+}
+
+/* Returns what N cells, STEP apart, give together. */
+static int32_t gather(const int32_t *from, int step,
+                      const int32_t share_q30[GLINT_VEIL_CELLS], int n)
+{
+    int64_t sum = 0;
+
+    for (int i = 0; i < n; i++)
+        sum += (int64_t)from[i * step] * share_q30[i];
+    return (int32_t)q_shift(sum, 30);
+}
+
+static void spread_across(struct glint_veil *v,
+                          const struct glint_veil_spread *s)
+{
+    int32_t share_q30[GLINT_VEIL_CELLS];
+
+    for (int x = 0; x < v->n_x; x++) {
+        shares_of(s->across_q30, v->n_x, x, share_q30);
+        for (int row = 0; row < 3 * v->n_y; row++)
+            v->along[row * v->n_x + x] =
+                gather(v->narrow + row * v->n_x, 1, share_q30, v->n_x);
+    }
+}
+
+/* Returns LIGHT, white times pixels in units of 2^(OVER - 16), times SHARE,
+ * _q30 of white in a cell of 1 / CELLS of the picture's PIXELS. */
+static int64_t share_of(int32_t light, struct glint_real factor)
+{
+    const int64_t product = (int64_t)light * factor.mantissa;
+    const int down = -factor.exponent;
+
+    if (down > 62)
+        return 0;
+    if (down >= 0)
+        return q_shift(product, down);
+    /* beyond any light that is drawn, 2^50 */
+    return product > INT64_C(1) << 50 >> q_smaller(-down, 50)
+               ? INT64_C(1) << 50
+               : (int64_t)((uint64_t)product << -down);
+}
+
+static void spread_down(struct glint_veil *v, const struct glint_veil_spread *s,
+                        struct glint_real factor)
+{
+    int32_t share_q30[GLINT_VEIL_CELLS];
+
+    for (int y = 0; y < v->n_y; y++) {
+        shares_of(s->down_q30, v->n_y, y, share_q30);
+        for (int c = 0; c < 3; c++)
+            for (int x = 0; x < v->n_x; x++) {
+                const int first = c * v->n_y * v->n_x + x;
+
+                v->sum_q30[first + y * v->n_x] += share_of(
+                    gather(v->along + first, v->n_x, share_q30, v->n_y),
+                    factor);
+            }
+    }
+}
+
+int glint_veil_spread_to(struct glint_veil *v,
+                         const struct glint_veil_spread *spreads, int n,
+                         int32_t *cell_q20)
+{
+    const int cells = v->n_x * v->n_y;
+    const int over = bits_over(v->light_q16, 3 * cells);
+    int any = 0;
+
+    for (int i = 0; i < 3 * cells; i++) {
+        v->narrow[i] = (int32_t)q_shift(v->light_q16[i], over);
+        v->sum_q30[i] = 0;
+    }
+    for (int k = 0; k < n; k++) {
+        struct glint_real factor = spreads[k].share;
+
+        factor.exponent += 30 + over - 16;
+        spread_across(v, &spreads[k]);
+        spread_down(v, &spreads[k], factor);
+    }
+    for (int i = 0; i < 3 * cells; i++) {
+        cell_q20[i] = q_clamp_sat(q_shift(v->sum_q30[i], 10), 0, MOST_Q20);
+        any |= cell_q20[i] > 0;
+    }
+    return any;
+}
+
+void glint_veil_spread(struct glint_veil *v,
+                       const struct glint_veil_spread *spreads, int n)
+{
+    v->any = glint_veil_spread_to(v, spreads, n, v->cell_q20);
+}

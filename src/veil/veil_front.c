@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Light that dirt on the front element spreads: cells of its own, times the
+ * share of the front that is covered where a pixel looks through. */
+#include "base/q.h"
+#include "veil/parts.h"
+
+enum { PX = GLINT_VEIL_FRONT_PX, LANES = GLINT_VEIL_LANES };
+
+void glint_veil_front(struct glint_veil *veil,
+                      const struct glint_veil_front *front,
+                      const struct glint_veil_spread *spreads, int n)
+{
+    int32_t most_q20 = 0;
+
+    veil->front = front;
+    veil->any_front = front && veil->front_q20 &&
+                      glint_veil_spread_to(veil, spreads, n, veil->front_q20);
+    for (int i = 0; i < 3 * veil->n_x * veil->n_y && veil->any_front; i++)
+        most_q20 = q_larger(most_q20, veil->front_q20[i]);
+    /* so that the brightest cell has 16 bits in codes */
+    veil->front_down = 4;
+    while (most_q20 >> veil->front_down > 65534)
+        veil->front_down++;
+}
+
+/* Sets PART to the covered share of the pixels X0 .. X1 - 1 of row Y, X0 being
+ * a multiple of PX, and a few more: straight between nodes, which lie on the
+ * borders of every PX-th pixel. */
+static void part_row(const struct glint_veil_front *front, int y, int x0,
+                     int x1, uint16_t *part_q16)
+{
+    const uint32_t low = 2 * (uint32_t)(y % PX) + 1, high = 2 * PX - low;
+    const uint16_t *top = front->part_q16 + (ptrdiff_t)(y / PX) * front->n_x;
+    const uint16_t *bottom = top + front->n_x;
+    uint32_t node[GLINT_CODES_WIDTH / PX + 1] = {0};
+    const int first = x0 / PX, n = (x1 - x0 + PX - 1) / PX;
+
+    for (int i = 0; i <= n; i++)
+        node[i] = top[first + i] * high + bottom[first + i] * low;
+    for (int i = 0; i < n; i++)
+        for (uint32_t k = 0; k < PX; k++)
+            part_q16[PX * i + (int)k] =
+                (uint16_t)((node[i] * (2 * PX - 1 - 2 * k) +
+                            node[i + 1] * (2 * k + 1)) /
+                           (4 * PX * PX));
+}
+
+/* Adds to N pixels LIGHT, white times 2^16 >> DOWN, times PART. */
+static void add_codes(const uint16_t *restrict light,
+                      const uint16_t *restrict part_q16, int down, int n,
+                      uint16_t *restrict to_q16)
+{
+    const uint16_t most = (uint16_t)(65535 >> down);
+
+    for (int x = 0; x < n; x++) {
+        const uint16_t part =
+            (uint16_t)((uint32_t)light[x] * part_q16[x] >> 16);
+        const uint16_t more =
+            part < most ? (uint16_t)(part << down) : UINT16_MAX;
+        const uint16_t room = (uint16_t)(65535 - to_q16[x]);
+
+        to_q16[x] = (uint16_t)(to_q16[x] + (more < room ? more : room));
+    }
+}
+
+static void add_linear(const int32_t *light_q20, const uint16_t *part_q16,
+                       int n, int32_t *to_q20)
+{
+    for (int x = 0; x < n; x++) /* both are at most 2^28 */
+        to_q20[x] += (int32_t)q_shift((int64_t)light_q20[x] * part_q16[x], 16);
+}
+
+void glint_veil_front_row(const struct glint_veil_row *r,
+                          const struct glint_pass_rows *rows, int k)
+{
+    const struct glint_veil *v = r->veil;
+    const int n = r->tile.x1 - r->tile.x0, y = rows->y + k;
+    uint16_t part_q16[GLINT_CODES_WIDTH + PX] = {0};
+    uint16_t light[GLINT_CODES_WIDTH];
+    int32_t light_q20[GLINT_CODES_WIDTH];
+
+    part_row(v->front, y, r->tile.x0, r->tile.x1, part_q16);
+    for (int c = 0; c < 3; c++)
+        if (v->is_linear) {
+            glint_veil_row(r, v->front_q20, c, y, 0, NULL, light_q20);
+            add_linear(light_q20, part_q16, n, rows->light_q20[c]);
+        } else {
+            glint_veil_row(r, v->front_q20, c, y, v->front_down, light, NULL);
+            add_codes(light, part_q16, v->front_down - 4, n,
+                      rows->light->rgb_q16[c][k]);
+        }
+}

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What programs share that must give the same on every kind of CPU: a hash,
+ * pictures to draw onto, kernels by name. */
+#ifndef GLINT_TESTS_KINDS_H
+#define GLINT_TESTS_KINDS_H
+
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "glint/image.h"
+#include "glint/kernels.h"
+#include "linux/sets.h"
+#include "support/rng.h"
+
+#define KINDS_HASH_START UINT64_C(14695981039346656037)
+
+static inline uint64_t kinds_hash(uint64_t h, const void *data, size_t bytes)
+{
+    const uint8_t *p = data;
+
+    for (size_t i = 0; i < bytes; i++) /* FNV-1a */
+        h = (h ^ p[i]) * UINT64_C(1099511628211);
+    return h;
+}
+
+static inline uint64_t kinds_hash_number(uint64_t h, int64_t x)
+{
+    for (int i = 0; i < 8; i++) {
+        const uint8_t byte = (uint8_t)((uint64_t)x >> 8 * i);
+
+        h = kinds_hash(h, &byte, 1);
+    }
+    return h;
+}
+
+/* Makes IMAGE of MEM[BYTES], with codes of any kind and a pattern in it. */
+static inline void kinds_fill(struct glint_image *image, uint8_t *mem,
+                              size_t bytes, uint32_t *seed)
+{
+    image->range = (enum glint_range)(rng_xorshift(seed) % 2);
+    image->matrix = (enum glint_matrix)(rng_xorshift(seed) % 2);
+    image->transfer = (enum glint_tone)(rng_xorshift(seed) % 2);
+    glint_image_place(image, mem);
+    for (size_t i = 0; i < bytes; i++)
+        mem[i] = (uint8_t)(image->format == GLINT_LINEAR_Q20
+                               ? 0
+                               : (i * 7 + (i >> 8)) % 61 + 16);
+}
+
+/* Returns the instruction sets that WORD names, c, sse41, avx2, neon or best;
+ * ends PROGRAM if they are not here. */
+static inline unsigned kinds_sets(const char *program, const char *word)
+{
+    static const struct {
+        const char *word;
+        unsigned sets;
+    } of[] = {{"c", 0},
+              {"sse41", GLINT_SET_SSE41},
+              {"avx2", GLINT_SET_AVX2},
+              {"neon", GLINT_SET_NEON},
+              {"best", ~0U}};
+
+    for (size_t i = 0; i < sizeof of / sizeof *of; i++)
+        if (strcmp(word, of[i].word) == 0 &&
+            (of[i].sets == ~0U || !(of[i].sets & ~glint_system_sets())))
+            return of[i].sets & glint_system_sets();
+    fprintf(stderr, "%s: no kernels '%s' here\n", program, word);
+    exit(2);
+}
+
+#endif

@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * things SET N SCENE... - draws N pictures of baked scenes and prints a hash of
+ * all output, which is the same on every CPU, whatever it was compiled for and
+ * whatever kernels were used. SET is c, sse41, avx2, neon or best.
+ *
+ *     240 pictures, 236 with things, 1b3f...
+ *
+ * Sizes, tiles, formats, samples, poses and lights are random, by integers
+ * alone, as are the order of jobs and their workers. Lights and what covers
+ * them are added to the hash. With GLINT_EACH set, the hash after each picture
+ * is printed, too. Exit code 3: a scene is refused.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "arm/kinds.h"
+#include "glint/scene/scene.h"
+#include "posix/input.h"
+#include "support/rng.h"
+#include "support/shuffle.h"
+
+enum { MAX_SCENES = 16 };
+
+static struct glint_scene_model model[MAX_SCENES];
+static int n_models;
+static unsigned sets;
+static uint32_t seed = 2026;
+
+/* Returns 0 .. BELOW - 1. A statement may call it once: C leaves open in which
+ * order arguments are evaluated. */
+static int number(int below)
+{
+    return (int)(rng_xorshift(&seed) % (uint32_t)below);
+}
+
+static struct glint_scene_config make_config(struct shuffle *shuffle)
+{
+    static const int points[3] = {1, 4, 16}, samples[4] = {1, 4, 8, 16};
+    struct glint_scene_config c;
+    const int width = 1 + number(200), height = 1 + number(150);
+
+    glint_scene_defaults(&c, width, height);
+    shuffle_init(shuffle, 1 + (int)(seed % 4), seed);
+    c.workers = &shuffle->workers;
+    c.sets = sets;
+    c.tile_log2 = 3 + number(4);
+    c.edge_samples = samples[number(4)];
+    c.half_shading = number(2);
+    c.shadow_points = points[number(3)];
+    c.dither = number(2);
+    c.focal_q16 = (int64_t)(1 + number(400)) << 16;
+    c.max_refs = 200000;
+    c.parts = (struct glint_scene_parts){
+        &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces};
+    return c;
+}
+
+/* Moves a thing and the camera, or leaves them. What is out of range is
+ * refused, everywhere alike. */
+static void move(struct glint_scene *scene, const struct glint_scene_model *m)
+{
+    static const int32_t turn_q30[3][4] = {{1 << 30, 0, 0, 0},
+                                           {858993459, 0, 644245094, 0},
+                                           {0, 644245094, 0, 858993459}};
+    static const int32_t axis_q30[2][3][3] = {{{1 << 30, 0, 0},
+                                               {0, 858993459, -644245094},
+                                               {0, 644245094, 858993459}},
+                                              {{858993459, 0, -644245094},
+                                               {0, 1 << 30, 0},
+                                               {644245094, 0, 858993459}}};
+    const int n = (int)m->header->n_objects, which = n ? number(n) : 0;
+    int32_t at[3];
+    enum glint_status status = GLINT_OK;
+
+    if (n && number(2)) {
+        for (int k = 0; k < 3; k++)
+            at[k] = m->object[which].at[k] / 4 * number(8);
+        status = glint_scene_set_pose(scene, which, at, turn_q30[number(3)]);
+    }
+    if (status == GLINT_OK && number(3) == 0) {
+        for (int k = 0; k < 3; k++)
+            at[k] = m->header->camera.at[k] / 4 * (1 + number(5));
+        status = glint_scene_set_camera(scene, at, axis_q30[number(2)]);
+    }
+    if (status == GLINT_OK && n && number(4) == 0)
+        glint_scene_show(scene, which, 0);
+}
+
+static uint64_t hash_lights(uint64_t h, struct glint_scene *scene, int width)
+{
+    struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
+    const int n = glint_scene_lights(scene, lamp);
+
+    h = kinds_hash_number(h, n);
+    for (int i = 0; i < n; i++) {
+        h = kinds_hash_number(h, lamp[i].x_q8);
+        h = kinds_hash_number(h, lamp[i].y_q8);
+        h = kinds_hash_number(h, lamp[i].share);
+        h = kinds_hash_number(
+            h, glint_scene_cover(scene, lamp[i].x_q8, lamp[i].y_q8, 5 << 8));
+    }
+    return kinds_hash_number(
+        h, glint_scene_cover(scene, width << 7, width << 6, width << 5));
+}
+
+/* Draws a picture and adds it to *H; returns whether it changed. */
+static int draw_picture(uint64_t *h)
+{
+    struct shuffle shuffle;
+    const struct glint_scene_config c = make_config(&shuffle);
+    const struct glint_scene_model *const m = &model[number(n_models)];
+    struct glint_image image = {
+        .format = (enum glint_pixel_format)number(GLINT_RGB565 + 1),
+        .width = c.width,
+        .height = c.height};
+    const size_t bytes = glint_image_bytes(image.format, c.width, c.height);
+    const size_t room = glint_scene_bytes(&c, m);
+    struct glint_scene_stats stats;
+    struct glint_scene *scene;
+    uint8_t *pixels = malloc(bytes);
+    uint64_t before, after;
+    void *mem;
+
+    if (!room) { /* it sees too much for this shape: refused, everywhere */
+        free(pixels);
+        return 0;
+    }
+    if (!pixels || posix_memalign(&mem, 64, room) != 0 ||
+        glint_scene_init(&scene, &c, m, mem, room) != GLINT_OK)
+        exit(1);
+    kinds_fill(&image, pixels, bytes, &seed);
+    before = kinds_hash(KINDS_HASH_START, pixels, bytes);
+    move(scene, m);
+    glint_scene_begin(scene, &stats);
+    glint_scene_draw(scene, &image);
+    after = kinds_hash(KINDS_HASH_START, pixels, bytes);
+    *h = hash_lights(kinds_hash_number(*h, (int64_t)(after >> 1)), scene,
+                     c.width);
+    *h = kinds_hash_number(*h, stats.need_refs);
+    free(mem);
+    free(pixels);
+    return before != after;
+}
+
+static void open_scene(const char *path)
+{
+    struct glint_error error = {""};
+    const char *reason = "";
+    uint8_t *data;
+    size_t bytes;
+
+    if (glint_input_slurp(&data, &bytes, path, 1 << 28, &error) != GLINT_OK ||
+        glint_scene_open(&model[n_models], data, bytes, &reason) != GLINT_OK) {
+        fprintf(stderr, "things: %s: %s%s\n", path, error.text, reason);
+        exit(3);
+    }
+    n_models++;
+}
+
+int main(int argc, char **argv)
+{
+    const int n = argc > 3 ? atoi(argv[2]) : 0;
+    uint64_t h = KINDS_HASH_START;
+    int changed = 0;
+
+    if (n < 1 || argc - 3 > MAX_SCENES) {
+        fputs("things SET N SCENE...\n", stderr);
+        return 2;
+    }
+    sets = kinds_sets("things", argv[1]);
+    for (int i = 3; i < argc; i++)
+        open_scene(argv[i]);
+    for (int i = 0; i < n; i++) {
+        changed += draw_picture(&h);
+        if (getenv("GLINT_EACH")) /* The first that differs tells which. */
+            printf("%d %08lx\n", i, (unsigned long)(h >> 32));
+    }
+    printf("%d pictures, %d with things, %08lx%08lx\n", n, changed,
+           (unsigned long)(h >> 32), (unsigned long)(h & 0xffffffff));
+    return 0;
+}

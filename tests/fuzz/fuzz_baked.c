@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Opens any bytes as a baked scene, after magic, version, size and checksum are
+ * put right, so that the other checks are reached. What is accepted must be
+ * drawn onto a small picture, from where its camera stands or, as its checksum
+ * says, from elsewhere, or its things moved; sanitizers and range traps judge
+ * it.
+ *
+ *     make fuzz FUZZ=baked SECONDS=120
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/blob.h"
+#include "glint/scene/scene.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+enum { SIDE = 10, ROOM = 1 << 22, ONE_Q30 = 1 << 30 };
+
+static void require(int condition)
+{
+    if (!condition)
+        abort();
+}
+
+/* Draws as the scene stands; lights must have shares of 16. */
+static void draw(struct glint_scene *scene, enum glint_pixel_format format)
+{
+    static uint8_t pixels[12 * SIDE * SIDE];
+    struct glint_image image = {
+        .format = format, .width = SIDE, .height = SIDE};
+    struct glint_scene_lamp lamps[GLINT_SCENE_MAX_LIGHTS];
+    struct glint_scene_stats stats;
+    int n;
+
+    glint_image_place(&image, pixels);
+    glint_scene_begin(scene, &stats);
+    glint_scene_draw(scene, &image);
+    n = glint_scene_lights(scene, lamps);
+    require(n >= 0 && n <= GLINT_SCENE_MAX_LIGHTS);
+    for (int i = 0; i < n; i++)
+        require(lamps[i].share >= 0 && lamps[i].share <= 16);
+    n = glint_scene_cover(scene, SIDE << 7, SIDE << 7, 5 << 8);
+    require(n >= 0 && n <= 256);
+}
+
+/* Draws as the scene stands, or with the camera at the first thing, or with
+ * that turned or hidden. */
+static void draw_one(struct glint_scene *scene,
+                     const struct glint_scene_model *model, int which)
+{
+    static const int32_t axis_q30[3][3] = {
+        {0, 0, -ONE_Q30}, {0, ONE_Q30, 0}, {ONE_Q30, 0, 0}};
+    static const int32_t turn_q30[4] = {0, 644245094, 0, 858993459};
+    static const enum glint_pixel_format format[4] = {
+        GLINT_RGB24, GLINT_RGB24, GLINT_YUYV, GLINT_LINEAR_Q20};
+    const int is_empty = model->header->n_objects < 1;
+
+    if (!is_empty && which == 1 &&
+        glint_scene_set_camera(scene, model->object->at, axis_q30) != GLINT_OK)
+        return;
+    if (!is_empty && which == 2 &&
+        glint_scene_set_pose(scene, 0, model->header->camera.at, turn_q30) !=
+            GLINT_OK)
+        return;
+    if (!is_empty && which == 3)
+        glint_scene_show(scene, 0, 0);
+    draw(scene, format[which]);
+}
+
+static void use(const struct glint_scene_model *model, int which)
+{
+    static uint8_t mem[ROOM] __attribute__((aligned(64)));
+    struct glint_scene_config cfg;
+    struct glint_scene *scene;
+    size_t bytes;
+
+    glint_scene_defaults(&cfg, SIDE, SIDE);
+    cfg.tile_log2 = 3;
+    cfg.max_refs = 4000;
+    cfg.focal_q16 = 20 << 16;
+    cfg.shadow_points = model->header->shadow ? 4 : 1;
+    cfg.parts = (struct glint_scene_parts){
+        &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces};
+    bytes = glint_scene_bytes(&cfg, model);
+    if (!bytes || bytes > sizeof mem)
+        return;
+    if (glint_scene_init(&scene, &cfg, model, mem, bytes) != GLINT_OK)
+        return;
+    draw_one(scene, model, which);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    unsigned char *copy = malloc(size ? size : 1); /* exact, for overruns */
+    struct glint_scene_model model;
+    const char *reason = NULL;
+    uint32_t *const word = (void *)copy;
+
+    require(copy != NULL);
+    if (size)
+        memcpy(copy, data, size);
+    if (size >= sizeof(struct glint_blob_header)) {
+        word[0] = GLINT_SCENE_MAGIC;
+        word[1] = GLINT_SCENE_VERSION;
+        glint_blob_seal(copy, size);
+    }
+    if (glint_scene_open(&model, copy, size, &reason) != GLINT_OK)
+        require(reason && *reason);
+    else if (model.header->n_objects <= 16)
+        use(&model, (int)(glint_blob_crc32(copy, size) & 3));
+    free(copy);
+    return 0;
+}

@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Opens any bytes as a baked environment, after magic, version, size and
+ * checksum are put right, and parses them as the text of one. What is accepted
+ * must be as its header says.
+ *
+ *     make fuzz FUZZ=environment SECONDS=60
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/blob.h"
+#include "glint/scene/environment_bake.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void require(int condition)
+{
+    if (!condition)
+        abort();
+}
+
+/* Reads all that a lookup may read. */
+static void use(const struct glint_environment *e)
+{
+    const unsigned char *byte;
+    volatile unsigned sum = 0;
+
+    for (uint32_t k = 0; k < e->header->n_levels; k++) {
+        const size_t texels = (size_t)1 << (2 * e->level[k].side_log2);
+
+        byte = e->texel[k];
+        for (size_t i = 0;
+             i < texels * (e->header->code == GLINT_ENVIRONMENT_565 ? 2 : 4);
+             i++)
+            sum += byte[i];
+    }
+    for (size_t i = 0; i < 1024; i++)
+        sum += e->irradiance[i];
+    for (uint32_t i = 0; i < e->header->n_lights; i++)
+        require(e->light[i].radius_q30 >= 0 &&
+                e->light[i].rgb[2].mantissa >= 0);
+}
+
+static void open_blob(const uint8_t *data, size_t size)
+{
+    unsigned char *copy = malloc(size ? size : 1); /* exact, for overruns */
+    struct glint_environment environment;
+    const char *reason = NULL;
+    uint32_t *const word = (void *)copy;
+
+    require(copy != NULL);
+    if (size)
+        memcpy(copy, data, size);
+    if (size >= sizeof(struct glint_blob_header)) {
+        word[0] = GLINT_ENVIRONMENT_MAGIC;
+        word[1] = GLINT_ENVIRONMENT_VERSION;
+        glint_blob_seal(copy, size);
+    }
+    if (glint_environment_open(&environment, copy, size, &reason) == GLINT_OK)
+        use(&environment);
+    else
+        require(reason && *reason);
+    free(copy);
+}
+
+static void parse(const uint8_t *data, size_t size)
+{
+    struct glint_environment_options o;
+    char source[GLINT_ENVIRONMENT_FILE_BYTES];
+    struct glint_error error = {""};
+
+    if (glint_environment_parse(&o, source, (const char *)data, size, "x",
+                                &error) == GLINT_OK)
+        require(source[0] && isfinite(o.scale) && o.scale > 0 &&
+                fabs(o.turn_deg) <= 360 && o.max_lights <= 16);
+    else
+        require(error.text[0]);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    open_blob(data, size);
+    parse(data, size);
+    return 0;
+}

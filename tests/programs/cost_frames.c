@@ -1,0 +1,264 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * cost_frames [--from N] FILE - draws the frames that the cost model is fitted
+ * to, a third of which through lenses that are held out, and writes a line for
+ * each into FILE: 1 if it is held out, what it is, the counts that its plan
+ * predicts, and those that were drawn. If FILE is there, only the frames are
+ * drawn, from number N on: tools/report/cost-fit counts their instructions by
+ * callgrind.
+ *
+ * Lights, sizes, qualities, stops and parts are random, the same ones each
+ * time.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/measure.h"
+#include "lab/sweep.h"
+#include "support/rng.h"
+
+enum { FIT = 36, HELD = 18, LAMPS = 4 };
+
+static const char *const fit_lens[] = {
+    "heliar-tronnier", "double-gauss-angenieux", "itoh-zoom-long"};
+static const char *const held_lens[] = {"nikon-zoom-mid", "nikon-zoom-short"};
+
+struct shape {
+    bool held;
+    const char *lens;
+    int width, height, n_lamps;
+    double angle, stops, star_stops;
+    double quality, dim, dispersion, starburst, veil, haze, dust, soft, round;
+};
+
+struct stage {
+    struct tool tool;
+    struct settings settings;
+    struct glint_frame frame;
+    struct canvas canvas;
+    struct glint_lamp lamp[LAMPS];
+    double exposure;
+};
+
+static double among(uint32_t *seed, double low, double high)
+{
+    return low + (high - low) * rng_unit(seed);
+}
+
+/* Makes frame I. Dust and soft edges, of many edges, are drawn in small
+ * pictures. */
+static struct shape shape_of(int i)
+{
+    static const int width[] = {320, 480, 640};
+    static const int lamps[] = {1, 1, 2, 4};
+    uint32_t seed = 2654435761u * (uint32_t)(i + 1);
+    struct shape s = {.held = i >= FIT};
+    bool dirty;
+
+    for (int k = 0; k < 8; k++)
+        rng_bits(&seed);
+    s.lens =
+        s.held ? held_lens[rng_below(&seed, 2)] : fit_lens[rng_below(&seed, 3)];
+    dirty = rng_below(&seed, 4) == 0;
+    s.width = width[rng_below(&seed, dirty ? 1 : 3)];
+    s.height = s.width * 9 / 16;
+    s.n_lamps = lamps[rng_below(&seed, dirty ? 2 : 4)];
+    s.angle = among(&seed, 1, 25);
+    s.stops = among(&seed, -5, 1);
+    s.quality = among(&seed, 0, dirty ? 0.5 : 0.75);
+    s.dim = rng_below(&seed, 3) ? 0 : exp2(among(&seed, -2, 2));
+    s.dispersion = rng_below(&seed, 4) ? 0 : 1;
+    s.starburst = rng_below(&seed, 3) ? 0 : 1;
+    s.star_stops = among(&seed, 3, 14);
+    s.veil = rng_below(&seed, 4) ? 0 : 0.02;
+    s.haze = rng_below(&seed, 5) ? 0 : 0.02;
+    s.dust = dirty && rng_below(&seed, 3) ? exp2(among(&seed, -9, -5)) : 0;
+    s.soft = dirty && rng_below(&seed, 3) == 0 ? among(&seed, 0.01, 0.1) : 0;
+    s.round = rng_below(&seed, 4) ? 0 : among(&seed, 0.1, 0.9);
+    return s;
+}
+
+static void set(struct settings *to, const struct shape *s)
+{
+    settings_defaults(to);
+    settings_set_quality(to, s->quality);
+    to->dials.dispersion_q8 = (int)(256 * s->dispersion);
+    to->waves = s->dispersion > 0 ? SETTINGS_WAVES_AUTO : SETTINGS_WAVES_LIST;
+    to->dials.dim_codes = s->dim;
+    to->starburst = s->starburst;
+    to->starburst_asked = true;
+    to->veil = s->veil;
+    to->haze = s->haze;
+    to->stop.iris.dust = s->dust;
+    to->stop.iris.softness = s->soft;
+    to->stop.iris.roundness = s->round;
+    to->most_minsn = 0;
+    to->has_work = true;
+    to->tolerance = 1;
+}
+
+static enum glint_status expose(struct stage *s)
+{
+    const size_t n =
+        3 * (size_t)s->frame.view.width * (size_t)s->frame.view.height;
+    struct glint_float_image light = {s->frame.view.width, s->frame.view.height,
+                                      malloc(n * sizeof *light.rgb)};
+    struct glint_frame_report report;
+    enum glint_status status = GLINT_E_MEMORY;
+
+    if (light.rgb)
+        status = glint_frame_draw_alone(&s->frame, s->lamp, 1, 1, light.rgb,
+                                        &report);
+    if (status == GLINT_OK)
+        s->exposure = glint_measure_exposure(&light);
+    free(light.rgb);
+    return status;
+}
+
+static void fail(const char *what)
+{
+    fprintf(stderr, "cost_frames: %s\n", what);
+    exit(1);
+}
+
+static void open_stage(struct stage *s, const struct shape *shape)
+{
+    set(&s->settings, shape);
+    if (settings_open(&s->tool, &s->settings, shape->lens) != EXIT_OK ||
+        settings_frame(&s->tool, &s->settings,
+                       settings_view(&s->settings, shape->width, shape->height),
+                       &s->frame) != EXIT_OK ||
+        canvas_init(&s->canvas, GLINT_RGB24, shape->width, shape->height) !=
+            GLINT_OK)
+        fail(shape->lens);
+    canvas_lamps(s->lamp, shape->n_lamps, shape->angle);
+}
+
+static void close_stage(struct stage *s)
+{
+    canvas_finish(&s->canvas);
+    glint_frame_finish(&s->frame);
+    settings_close(&s->settings);
+}
+
+/* Draws the frame twice, so that the second has its memory. */
+static void draw(struct stage *s, const struct shape *shape)
+{
+    struct glint_frame_report report;
+
+    for (int i = 0; i < shape->n_lamps; i++)
+        s->lamp[i].power *= s->exposure * exp2(shape->stops);
+    /* The star's share makes the lamps as bright as they are. */
+    s->frame.star.share *= exp2(shape->star_stops) /
+                           (s->exposure * exp2(shape->stops)) * shape->n_lamps;
+    canvas_fresh(&s->canvas);
+    if (glint_frame_draw(&s->frame, s->lamp, shape->n_lamps, 1,
+                         &s->canvas.image, &report) != GLINT_OK)
+        fail("no memory");
+    canvas_fresh(&s->canvas);
+    if (sweep_frame(&s->frame, s->lamp, shape->n_lamps, 1, &s->canvas.image,
+                    &report) != GLINT_OK)
+        fail("no memory");
+}
+
+static void count(const struct stage *s, double *counted)
+{
+    struct glint_planned b;
+
+    for (int k = 0; k < GLINT_COST_KINDS; k++)
+        counted[k] = 0;
+    for (int i = 0; glint_flare_planned(s->frame.flare, i, &b); i++) {
+        struct glint_account a;
+
+        glint_flare_account(s->frame.flare, b.ghost, b.light, b.wave, &a);
+        counted[GLINT_COST_LOOKED_AT] += a.probed;
+        counted[GLINT_COST_BUNDLES]++;
+        counted[GLINT_COST_VERTICES] += a.vertices;
+        counted[GLINT_COST_EDGES] += a.edges;
+        counted[GLINT_COST_ROWS] += (double)a.rows;
+    }
+}
+
+/* Returns the number of pixels that the flare gives light. */
+static double lit_pixels(const struct stage *s)
+{
+    const size_t n =
+        3 * (size_t)s->frame.view.width * (size_t)s->frame.view.height;
+    struct glint_image image = {.format = GLINT_LINEAR_Q20,
+                                .width = s->frame.view.width,
+                                .height = s->frame.view.height};
+    int32_t *px = calloc(n, sizeof *px);
+    double lit = 0;
+
+    if (!px)
+        fail("no memory");
+    glint_image_place(&image, px);
+    glint_flare_draw(s->frame.flare, &image);
+    for (size_t i = 0; i < n; i += 3)
+        lit += (px[i] | px[i + 1] | px[i + 2]) != 0;
+    free(px);
+    return lit;
+}
+
+static void print(struct stage *s, const struct shape *shape, FILE *file)
+{
+    const struct glint_cost_plan plan = glint_frame_plan(&s->frame);
+    const struct glint_cost planned = glint_cost_of(&plan, &plan.dials);
+    double counted[GLINT_COST_KINDS];
+
+    fprintf(file, "%d %s,%d,%d,%g,%g,%g,%g,%d,%d,%d %.17g", shape->held,
+            shape->lens, shape->width, shape->n_lamps, shape->quality,
+            shape->dust, shape->soft, shape->dispersion,
+            s->frame.dials.irradiance_steps, (int)s->frame.dials.flags,
+            s->frame.dials.fineness, s->exposure);
+    for (int k = 0; k < GLINT_COST_KINDS; k++)
+        fprintf(file, " %g", planned.count[k]);
+    fprintf(file, " |");
+    count(s, counted);
+    counted[GLINT_COST_LIT] = lit_pixels(s);
+    for (int k = GLINT_COST_LIT + 1; k < GLINT_COST_KINDS; k++)
+        counted[k] = planned.count[k];
+    for (int k = 0; k < GLINT_COST_KINDS; k++)
+        fprintf(file, " %g", counted[k]);
+    fprintf(file, "\n");
+}
+
+int main(int argc, char **argv)
+{
+    const int first =
+        argc > 3 && strcmp(argv[1], "--from") == 0 ? atoi(argv[2]) : 0;
+    const char *const path = argv[argc - 1];
+    FILE *const from = argc > 1 ? fopen(path, "r") : NULL;
+    FILE *const to = !from && argc > 1 ? fopen(path, "w") : NULL;
+    struct stage *s = calloc(1, sizeof *s);
+
+    if ((!from && !to) || !s)
+        fail("needs a FILE");
+    s->tool.name = "cost_frames";
+    s->tool.quiet = true;
+    for (int i = 0; i < FIT + HELD; i++) {
+        const struct shape shape = shape_of(i);
+        double exposure = 1;
+
+        s->tool.name = "cost_frames";
+        if (from && fscanf(from, "%*d %*s %lf%*[^\n]", &exposure) != 1)
+            fail(path);
+        if (i < first)
+            continue;
+        open_stage(s, &shape);
+        s->exposure = exposure;
+        if (!from && expose(s) != GLINT_OK)
+            fail("no memory");
+        draw(s, &shape);
+        if (to) {
+            print(s, &shape, to);
+            fflush(to);
+        }
+        close_stage(s);
+        memset(s, 0, sizeof *s);
+    }
+    free(s);
+    return 0;
+}

@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * scene_told FILE - draws the scenes that the cost model of scenes is fitted
+ * to, a third of which are held out, and writes a line for each into FILE: 1
+ * if it is held out, what it is, and how many there are of each item. For
+ * tests/scene-fit, which counts instructions by callgrind.
+ *
+ * Balls, rings of triangles, planes, catchers, lights, textures, mirrors,
+ * samples and sizes are random, the same ones each time.
+ */
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "glint/scene/bake.h"
+#include "scenes/account.h"
+#include "support/rng.h"
+
+enum { FIT = 40, HELD = 20, TEXT = 1 << 13, RING = 24, TUBE = 12 };
+
+/* What is counted: a frame in which things have moved. */
+void scene_told_frame(struct scene_frame *frame,
+                      const struct glint_image *image);
+
+void scene_told_frame(struct scene_frame *frame,
+                      const struct glint_image *image)
+{
+    const struct glint_scene_object *const first = frame->model->object;
+
+    glint_scene_set_pose(frame->scene, 0, first->at, first->turn_q30);
+    scene_frame_try(frame, image);
+}
+
+static double among(uint32_t *seed, double low, double high)
+{
+    return low + (high - low) * rng_unit(seed);
+}
+
+struct text {
+    char text[TEXT];
+    size_t n;
+};
+
+static void put(struct text *t, const char *format, ...)
+{
+    va_list args;
+
+    va_start(args, format);
+    t->n += (size_t)vsnprintf(t->text + t->n, TEXT - t->n, format, args);
+    va_end(args);
+}
+
+/* A ring of quads, as an OBJ text. */
+static enum glint_status read_ring(void *ctx, const char *name, uint8_t **data,
+                                   size_t *bytes, struct glint_error *error)
+{
+    char *const text = malloc(1 << 17);
+    size_t n = 0;
+
+    (void)ctx, (void)name, (void)error;
+    for (int i = 0; text && i < RING * TUBE; i++) {
+        const int row = i / TUBE;
+        const double a = row * 6.2831853 / RING;
+        const double b = i % TUBE * 6.2831853 / TUBE;
+
+        n += (size_t)sprintf(text + n, "v %f %f %f\nvn %f %f %f\n",
+                             (1 + .4 * cos(b)) * cos(a), .4 * sin(b),
+                             (1 + .4 * cos(b)) * sin(a), cos(b) * cos(a),
+                             sin(b), cos(b) * sin(a));
+    }
+    for (int i = 0; text && i < RING * TUBE; i++) {
+        const int p = i + 1, q = i / TUBE * TUBE + (i + 1) % TUBE + 1;
+        const int s = (p - 1 + TUBE) % (RING * TUBE) + 1;
+        const int r = (q - 1 + TUBE) % (RING * TUBE) + 1;
+
+        n += (size_t)sprintf(text + n, "f %d//%d %d//%d %d//%d %d//%d\n", p, p,
+                             q, q, r, r, s, s);
+    }
+    *data = (uint8_t *)text;
+    *bytes = n;
+    return text ? GLINT_OK : GLINT_E_MEMORY;
+}
+
+static enum glint_status read_picture(void *ctx, const char *name,
+                                      struct glint_image *image,
+                                      struct glint_error *error)
+{
+    uint8_t *const mem = malloc(3 * 64 * 64);
+
+    (void)ctx, (void)name, (void)error;
+    for (int i = 0; mem && i < 3 * 64 * 64; i++)
+        mem[i] = (uint8_t)(i * 37);
+    *image =
+        (struct glint_image){.format = GLINT_RGB24, .width = 64, .height = 64};
+    if (mem)
+        glint_image_place(image, mem);
+    return mem ? GLINT_OK : GLINT_E_MEMORY;
+}
+
+/* Writes scene I, of which HELD ones have other sizes of rings. */
+static void write_scene(int i, struct text *t, struct scene_dials *dials)
+{
+    static const int widths[] = {160, 240, 320};
+    static const int samples[] = {1, 4, 4};
+    static const int points[] = {1, 4, 4, 16};
+    static const char *const ends[] = {
+        "", "", "", "", "texture t", "reflect .5", "pass .8 refract 1.4"};
+    uint32_t seed = 2654435761u * (uint32_t)(i + 1);
+    int n;
+
+    for (int k = 0; k < 8; k++)
+        rng_bits(&seed);
+    *dials = (struct scene_dials){.width = widths[rng_below(&seed, 3)],
+                                  .edge_samples = samples[rng_below(&seed, 3)],
+                                  .shadow_points = points[rng_below(&seed, 4)],
+                                  .half_shading = rng_below(&seed, 4) == 0};
+    dials->height = dials->width * 9 / 16;
+    t->n = 0;
+    put(t, "camera fov 50 at 0 1.2 %f toward 0 .4 0\ntexture t x.ppm\n",
+        among(&seed, 3, 9));
+    n = 1 + rng_below(&seed, 2);
+    for (int k = 0; k < n; k++)
+        put(t, "light sun direction %f %f %f colour 5e4 5e4 5e4 radius .27\n",
+            among(&seed, -1, 1), among(&seed, .2, 1), among(&seed, -.2, 1));
+    if (rng_below(&seed, 3) == 0)
+        put(t, "light lamp at %f %f 2 colour 6 6 6%s\n", among(&seed, -2, 2),
+            among(&seed, 1, 4), rng_below(&seed, 2) ? " radius .1" : "");
+    for (int k = 0; k < 4; k++)
+        put(t, "material m%d phong .1 .6 %s colour .9 .5 .2 power 40 %s\n", k,
+            rng_below(&seed, 3) ? ".3" : "0", ends[rng_below(&seed, 7)]);
+    n = 1 + rng_below(&seed, 5);
+    for (int k = 0; k < n; k++)
+        put(t, "sphere s%d at %f %f %f radius %f material m%d\n", k,
+            among(&seed, -1.6, 1.6), among(&seed, .1, 1),
+            among(&seed, -1.5, 1.5), among(&seed, .1, .5), rng_below(&seed, 4));
+    put(t, "material ring phong .1 .6 .3 colour .9 .6 .2 power 12 %s\n",
+        rng_below(&seed, 6) ? "" : "reflect .4");
+    n = rng_below(&seed, 3);
+    for (int k = 0; k < n; k++)
+        put(t,
+            "mesh r%d r.obj at %f .4 %f scale %f turn 1 0 0 %f material "
+            "ring\n",
+            k, among(&seed, -1.2, 1.2), among(&seed, -1, .5),
+            among(&seed, .2, .7), among(&seed, 0, 90));
+    if (rng_below(&seed, 2))
+        put(t, "plane p at 0 0 0 normal 0 1 0 %s\n",
+            rng_below(&seed, 3) ? "catcher .6" : "material m0");
+    put(t, "shadow %s\n", rng_below(&seed, 5) ? "on" : "off");
+}
+
+static int bake(const struct text *t, struct glint_scene_model *model,
+                unsigned char **data)
+{
+    static struct glint_description scene;
+    const struct glint_description_files files = {NULL, read_ring,
+                                                  read_picture};
+    struct glint_scene_bake_report report;
+    struct glint_error error = {""};
+    const char *reason = "";
+    size_t bytes = 0;
+    enum glint_status status = glint_description_parse(
+        &scene, t->text, t->n, "told.scene", &files, &error);
+
+    if (status == GLINT_OK) {
+        status =
+            glint_scene_bake(&scene, "told", 1, data, &bytes, &report, &error);
+        glint_description_free(&scene);
+    }
+    if (status == GLINT_OK)
+        status = glint_scene_open(model, *data, bytes, &reason);
+    if (status != GLINT_OK)
+        fprintf(stderr, "scene_told: %s%s\n%s", error.text, reason, t->text);
+    return status == GLINT_OK;
+}
+
+static int draw(int i, FILE *to)
+{
+    static struct text text;
+    /* Not inlined: counters look for its name. */
+    void (*volatile counted)(struct scene_frame *, const struct glint_image *) =
+        scene_told_frame;
+    const struct tool tool = {.name = "scene_told", .n_threads = 1};
+    struct glint_image image = {.format = GLINT_I420};
+    struct glint_scene_model model;
+    struct scene_account account;
+    struct scene_dials dials;
+    struct scene_frame frame;
+    unsigned char *data = NULL;
+    uint8_t *mem;
+    int is_done = 0;
+
+    write_scene(i, &text, &dials);
+    image.width = dials.width;
+    image.height = dials.height;
+    mem = calloc(1, glint_image_bytes(image.format, image.width, image.height));
+    if (mem && bake(&text, &model, &data) &&
+        scene_frame_open(&frame, &tool, &model, &dials) == EXIT_OK) {
+        glint_image_place(&image, mem);
+        scene_frame_try(&frame, &image);
+        counted(&frame, &image);
+        is_done = scene_account_make(&account, &frame) == GLINT_OK;
+        if (is_done) {
+            fprintf(to, "%d %d", i >= FIT, i);
+            for (int k = 0; k < GLINT_SCENE_ITEMS; k++)
+                fprintf(to, " %" PRId64, account.all.count[k]);
+            for (int k = 0; k < SCENE_COST_RESTS; k++)
+                fprintf(to, " %.0f", account.rest[k]);
+            fprintf(to, "\n");
+            scene_account_free(&account);
+        }
+        scene_frame_close(&frame);
+    }
+    free(data);
+    free(mem);
+    return is_done;
+}
+
+int main(int argc, char **argv)
+{
+    FILE *const to = argc == 2 ? fopen(argv[1], "w") : NULL;
+    int is_done = to != NULL;
+
+    for (int i = 0; is_done && i < FIT + HELD; i++)
+        is_done = draw(i, to);
+    if (to && fclose(to) != 0)
+        is_done = 0;
+    if (!is_done)
+        fprintf(stderr, "scene_told FILE: it was not written\n");
+    return !is_done;
+}

@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ward_table 9e5|565 PICTURE... - how near lookups of Ward's lobe come to sums
+ * over all texels, by alpha, rule and number of samples: PSNR in dB of a
+ * brushed ball of 32 pixels, its median at 1/4 of white, mean of all pictures.
+ *
+ * The sums are in double over 512 x 512 texels. Split lights are added to the
+ * lookups in double, as lobes of alpha^2 + r^2 / 8. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "formats/picture.h"
+#include "glint/view.h"
+#include "support/models/ward_ball.h"
+
+enum { ALPHAS = 4, COLUMNS = 10 };
+
+static const double alphas[ALPHAS][2] = {
+    {.05, .05}, {.1, .1}, {.2, .2}, {.05, .2}};
+static const double view[3] = {0, 0, -1};
+
+struct map {
+    unsigned char *data[2][2]; /* gauss, mip; without lights, with */
+    struct glint_environment environment[2][2];
+    struct glint_sphere sphere;
+};
+
+static void add_lights(const struct glint_environment *e, const double alpha[2],
+                       ward_picture to)
+{
+    for (uint32_t k = 0; k < e->header->n_lights; k++) {
+        const struct glint_environment_light *l = &e->light[k];
+        const double r = asin(ldexp(l->radius_q30, -30));
+        const double wide[2] = {sqrt(alpha[0] * alpha[0] + r * r / 8),
+                                sqrt(alpha[1] * alpha[1] + r * r / 8)};
+        double toward[3], frame[3][3];
+
+        for (int j = 0; j < 3; j++)
+            toward[j] = ldexp(l->toward_q30[j], -30);
+        for (int i = 0; i < WARD_PIXELS; i++)
+            for (int c = 0; c < 3 && ward_frame(i, frame); c++)
+                to[i][c] += ward_lobe((const double(*)[3])frame, view, wide,
+                                      GLINT_WARD_BOUNDED, toward) *
+                            GLINT_PI * glint_real_value(l->rgb[c]);
+    }
+}
+
+static int open_map(struct map *m, const char *code, const char *path)
+{
+    struct glint_float_image image = {0};
+    struct glint_environment_options o;
+    struct glint_environment_report report = {0};
+    struct glint_error error = {""};
+    const char *reason = "";
+    size_t bytes;
+
+    if (glint_picture_load_float(path, &image, &error) != GLINT_OK)
+        return 0;
+    glint_environment_defaults(&o);
+    o.code = code[0] == '9' ? GLINT_ENVIRONMENT_9E5 : GLINT_ENVIRONMENT_565;
+    for (int k = 0; k < 4; k++) {
+        o.levels = k / 2 ? GLINT_ENVIRONMENT_MIP : GLINT_ENVIRONMENT_GAUSS;
+        o.max_lights = k % 2 ? GLINT_ENVIRONMENT_MAX_LIGHTS : 0;
+        if (glint_environment_bake(&image, &o, "x", 0, &m->data[k / 2][k % 2],
+                                   &bytes, &report, &error) != GLINT_OK ||
+            glint_environment_open(&m->environment[k / 2][k % 2],
+                                   m->data[k / 2][k % 2], bytes,
+                                   &reason) != GLINT_OK)
+            return 0;
+    }
+    o.turn_deg = 0;
+    if (!glint_sphere_open(&m->sphere, 512))
+        return 0;
+    glint_sphere_project(&m->sphere, &image, &o, &report);
+    free(image.rgb);
+    return 1;
+}
+
+/* Returns the PSNR of the published rule at its best bias. */
+static double best(const struct glint_environment *e,
+                   const struct glint_ward_material *material,
+                   ward_picture want, ward_picture got)
+{
+    struct glint_ward_options o = {8, GLINT_WARD_PUBLISHED, 0, 0};
+    double most = 0;
+
+    for (o.bias_q8 = -512; o.bias_q8 <= 256; o.bias_q8 += 128) {
+        ward_look(e, material, &o, got);
+        most = fmax(most, ward_psnr(want, got));
+    }
+    return most;
+}
+
+static void measure(struct map *m, int a, double db[COLUMNS])
+{
+    static const int samples[5] = {1, 4, 8, 16, 32};
+    static ward_picture want, got;
+    struct glint_ward_options o = {8, GLINT_WARD_PUBLISHED, 0, 0};
+    struct glint_ward_material material = {{32768, 32768, 32768}, {0, 0}, 0};
+
+    for (int k = 0; k < 2; k++)
+        material.alpha_q24[k] = (int32_t)lrint(0x1p24 * alphas[a][k]);
+    ward_sum(&m->sphere, alphas[a], want);
+    ward_look(&m->environment[1][0], &material, &o, got);
+    db[0] = ward_psnr(want, got);
+    db[1] = best(&m->environment[1][0], &material, want, got);
+    db[2] = best(&m->environment[0][0], &material, want, got);
+    o.rule = GLINT_WARD_CONSTANT;
+    ward_look(&m->environment[1][0], &material, &o, got);
+    db[3] = ward_psnr(want, got);
+    ward_look(&m->environment[0][0], &material, &o, got);
+    db[4] = ward_psnr(want, got);
+    for (int k = 0; k < 5; k++) {
+        o.samples = samples[k];
+        ward_look(&m->environment[0][1], &material, &o, got);
+        add_lights(&m->environment[0][1], alphas[a], got);
+        db[5 + k] = ward_psnr(want, got);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    double sum[ALPHAS][COLUMNS] = {{0}};
+
+    for (int i = 2; i < argc; i++) {
+        struct map m;
+
+        if (!open_map(&m, argv[1], argv[i])) {
+            fprintf(stderr, "ward_table: %s cannot be baked\n", argv[i]);
+            return 1;
+        }
+        for (int a = 0; a < ALPHAS; a++) {
+            double db[COLUMNS];
+
+            measure(&m, a, db);
+            for (int c = 0; c < COLUMNS; c++)
+                sum[a][c] += db[c];
+        }
+        for (int k = 0; k < 4; k++)
+            free(m.data[k / 2][k % 2]);
+        glint_sphere_close(&m.sphere);
+    }
+    printf("| alpha | published: mip, N 8 | mip, Gauss at its best bias | "
+           "constant, N 8: mip, Gauss | and lights: N 1, 4, 8, 16, 32 |\n"
+           "|---|---|---|---|---|\n");
+    for (int a = 0; a < ALPHAS; a++) {
+        printf("| %g, %g |", alphas[a][0], alphas[a][1]);
+        for (int c = 0; c < COLUMNS; c++)
+            printf(" %.1f%s", sum[a][c] / (argc - 2),
+                   c == 0 || c == 2 || c == 4 || c == 9 ? " |" : ",");
+        printf("\n");
+    }
+    return 0;
+}

@@ -1,0 +1,315 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Coatings of a lens table and of --coating: which surface gets which, what it
+ * reflects, which key a model gets, and what is refused.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/bake.h"
+
+/* A cemented doublet and a single lens: surface 1 is cemented, surfaces 0, 2, 3
+ * and 4 meet air. */
+static const char table[] = "name films\n"
+                            "f-number 10\n"
+                            "film 36 24\n"
+                            "surface 61.47 6 12 1.5168 64.17\n"
+                            "surface -44.64 2.5 12 1.6727 32.2\n"
+                            "surface -129.94 5 12 air\n"
+                            "stop 5 8\n"
+                            "surface 80 3 12 1.5168 64.17\n"
+                            "surface -400 60 12 air\n";
+
+static enum glint_status read(struct glint_prescription *lens, const char *line,
+                              struct glint_error *error)
+{
+    char text[1024] = "";
+
+    strcat(text, table);
+    strcat(text, line);
+    return glint_prescription_parse(lens, text, strlen(text), "x.lens", error);
+}
+
+static void good(struct glint_prescription *lens, const char *line)
+{
+    struct glint_error error;
+
+    if (read(lens, line, &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+}
+
+static void coat(struct glint_prescription *lens, const char *films)
+{
+    struct glint_coating coating[GLINT_MAX_COATINGS];
+    struct glint_error error;
+    int n = 0;
+
+    if (glint_coatings_parse(coating, &n, films, &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+    glint_prescription_coat(lens, coating, n);
+}
+
+static void expect(const struct glint_prescription *lens, const double nm[5],
+                   const double index[5])
+{
+    for (int k = 0; k < 5; k++) {
+        assert_true(lens->surface[k].coating.nm == nm[k]);
+        assert_true(lens->surface[k].coating.film[0].index == index[k]);
+    }
+}
+
+/* ------------------------------------------------------------------- tables */
+
+static void test_mixed_line(void **state)
+{
+    static struct glint_prescription lens;
+    const double all[5] = {550, 0, 550, 550, 550};
+    const double mgf2[5] = {1.38, 0, 1.38, 1.38, 1.38};
+
+    (void)state;
+    good(&lens, "");
+    assert_int_equal(lens.n_mixed, 0);
+    good(&lens, "mixed-coating 450 none 620/1.46\n");
+    assert_int_equal(lens.n_mixed, 3);
+    assert_true(lens.mixed[0].nm == 450 && lens.mixed[0].film[0].index == 1.38);
+    assert_true(lens.mixed[1].nm == 0 && lens.mixed[1].n_films == 0);
+    assert_true(lens.mixed[2].nm == 620 && lens.mixed[2].film[0].index == 1.46);
+    expect(&lens, all, mgf2); /* The mixed coating is not applied yet. */
+}
+
+static void test_mistakes(void **state)
+{
+    static const char *const bad[][2] = {
+        {"mixed-coating\n", "x.lens:10:14: coating wavelength is missing"},
+        {"mixed-coating 450 99\n",
+         "x.lens:10:19: coating wavelength must be 100 .. 5000, not 99"},
+        {"mixed-coating 450/5\n",
+         "x.lens:10:19: coating index must be 1.01 .. 4, not 5"},
+        {"mixed-coating 450/\n", "x.lens:10:19: coating index is missing"},
+        {"mixed-coating blue\n",
+         "x.lens:10:15: no coating is called 'blue'; there are none, v-coat, "
+         "broadband-3, broadband-4 and wavelengths"},
+        {"mixed-coating 450\nmixed-coating 500\n",
+         "x.lens:11:1: a second mixed-coating; the first is on line 10"}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        static struct glint_prescription lens;
+        struct glint_error error = {""};
+
+        assert_int_equal(read(&lens, bad[i][0], &error), GLINT_E_LENS);
+        assert_string_equal(error.text, bad[i][1]);
+    }
+}
+
+/* --------------------------------------------------------------- --coating */
+
+static void test_dealt_out(void **state)
+{
+    static struct glint_prescription lens;
+    const double zero[5] = {0};
+
+    (void)state;
+    good(&lens, "coating 600 1.5\n");
+    coat(&lens, "450,500/1.6,none");
+    expect(&lens, (const double[]){450, 0, 500, 0, 450},
+           (const double[]){1.38, 0, 1.6, 0, 1.38});
+    coat(&lens, "none");
+    expect(&lens, zero, zero);
+    coat(&lens, "480");
+    expect(&lens, (const double[]){480, 0, 480, 480, 480},
+           (const double[]){1.38, 0, 1.38, 1.38, 1.38});
+}
+
+static void test_refused(void **state)
+{
+    static const char *const bad[][2] = {
+        {"", "there is no coating"},
+        {"blue", "no coating is called 'blue'; there are none, v-coat, "
+                 "broadband-3, broadband-4 and wavelengths"},
+        {"v-coat/500/2", "'2' is more than the coating takes"},
+        {"none/2", "'2' is more than the coating takes"},
+        {"v-coat/", "coating wavelength is missing"},
+        {"500//2", "coating index is missing"},
+        {"500/1.4:0", "coating thickness must be 0.01 .. 16, not 0"},
+        {"500/1.4:", "coating thickness is missing"},
+        {"500/2/2/2/2/2/2/2/2/2", "more than 8 films"},
+        {"450,99", "coating wavelength must be 100 .. 5000, not 99"},
+        {"5001", "coating wavelength must be 100 .. 5000, not 5001"},
+        {"450/1", "coating index must be 1.01 .. 4, not 1"},
+        {"nan", "no coating is called 'nan'; there are none, v-coat, "
+                "broadband-3, broadband-4 and wavelengths"}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        struct glint_coating coating[GLINT_MAX_COATINGS] = {{.nm = 1}};
+        struct glint_error error = {""};
+        int n = 7;
+
+        assert_int_equal(glint_coatings_parse(coating, &n, bad[i][0], &error),
+                         GLINT_E_ARGUMENT);
+        assert_string_equal(error.text, bad[i][1]);
+        assert_true(n == 7 && coating[0].nm == 1);
+    }
+}
+
+static void test_too_many(void **state)
+{
+    struct glint_coating coating[GLINT_MAX_COATINGS];
+    struct glint_error error = {""};
+    char text[600] = "";
+    int n;
+
+    (void)state;
+    for (int i = 0; i < 65; i++)
+        strcat(text, i ? ",500" : "500");
+    assert_int_equal(glint_coatings_parse(coating, &n, text, &error),
+                     GLINT_E_ARGUMENT);
+    assert_string_equal(error.text, "coatings take at most 200 characters");
+}
+
+/* Reads TEXT as one coating and compares its films, index and quarters. */
+static void expect_films(const char *text, double nm, int n,
+                         const double film[][2])
+{
+    struct glint_coating coating[GLINT_MAX_COATINGS];
+    struct glint_error error = {""};
+    int n_coatings = 0;
+
+    if (glint_coatings_parse(coating, &n_coatings, text, &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(n_coatings, 1);
+    assert_true(coating->nm == nm);
+    assert_int_equal(coating->n_films, n);
+    for (int k = 0; k < n; k++) {
+        assert_true(coating->film[k].index == film[k][0]);
+        assert_true(coating->film[k].quarters == film[k][1]);
+    }
+}
+
+static void test_films(void **state)
+{
+    static const double v[][2] = {{1.38, 1}, {1.69, 1}};
+    static const double b3[][2] = {{1.38, 1}, {2.1, 2}, {1.63, 1}};
+    static const double b4[][2] = {
+        {1.38, 1.01}, {2.1, 2.2}, {1.38, 0.31}, {2.1, 0.26}};
+    static const double own[][2] = {{1.46, 1}, {2.3, 0.25}, {1.46, 1.5}};
+    static struct glint_prescription lens, other;
+
+    (void)state;
+    expect_films("v-coat", 550, 2, v);
+    expect_films("v-coat/600", 600, 2, v);
+    expect_films("broadband-3", 520, 3, b3);
+    expect_films("broadband-4/510", 510, 4, b4);
+    expect_films("510/1.46/2.3:.25/1.46:1.5", 510, 3, own);
+    /* The same words, divided by blanks, stand in a table. */
+    good(&lens, "coating 510 1.46 2.3:.25 1.46:1.5\n");
+    good(&other, "");
+    coat(&other, "510/1.46/2.3:.25/1.46:1.5");
+    assert_memory_equal(&lens.surface[0].coating, &other.surface[0].coating,
+                        sizeof lens.surface[0].coating);
+    good(&lens, "coating broadband-3 # as is\n");
+    coat(&other, "broadband-3");
+    assert_memory_equal(&lens.surface[4].coating, &other.surface[4].coating,
+                        sizeof lens.surface[4].coating);
+    assert_int_equal(lens.surface[1].coating.n_films, 0); /* cemented */
+}
+
+/* ------------------------------------------------------------------ optics */
+
+static double reflectance(const struct glint_prescription *lens, int k,
+                          double nm)
+{
+    const struct glint_surface *s = &lens->surface[k];
+    const double before = k ? glint_index(s[-1].nd, s[-1].vd, nm) : 1;
+    struct glint_film_at film[GLINT_MAX_FILMS];
+
+    return glint_reflectance(before, glint_index(s->nd, s->vd, nm), 1, film,
+                             glint_coating_at(&s->coating, nm, film));
+}
+
+/* A quarter-wave film must reflect least at its own wavelength (surfaces 0, 2
+ * and 4). A half-wave film for 550 nm (surface 3) must reflect there as if it
+ * were not there, and less on either side. */
+static void test_reflects(void **state)
+{
+    static struct glint_prescription lens, bare;
+
+    (void)state;
+    good(&lens, "");
+    bare = lens;
+    coat(&bare, "none");
+    coat(&lens, "450,650,1100,550"); /* nm, for surfaces 0, 2, 3, 4 */
+    assert_true(reflectance(&lens, 0, 650) > 1.2 * reflectance(&lens, 0, 450));
+    assert_true(reflectance(&lens, 2, 450) > 1.2 * reflectance(&lens, 2, 650));
+    assert_true(reflectance(&lens, 4, 550) < reflectance(&lens, 4, 450));
+    assert_true(reflectance(&lens, 4, 550) < reflectance(&lens, 4, 650));
+    assert_true(reflectance(&lens, 1, 500) == reflectance(&bare, 1, 500));
+    assert_true(fabs(reflectance(&lens, 3, 550) - reflectance(&bare, 3, 550)) <
+                1e-9);
+    assert_true(reflectance(&lens, 3, 420) < 0.7 * reflectance(&bare, 3, 420));
+    assert_true(reflectance(&lens, 3, 680) < 0.9 * reflectance(&bare, 3, 680));
+}
+
+static void test_key(void **state)
+{
+    static struct glint_prescription lens, other;
+    struct glint_bake_options options;
+    uint64_t key;
+
+    (void)state;
+    glint_bake_defaults(&options);
+    good(&lens, "");
+    key = glint_bake_key(&lens, &options);
+    good(&other, "mixed-coating 450 620\n");
+    /* A mixed coating must not change the key until it is applied. */
+    assert_true(glint_bake_key(&other, &options) == key);
+    glint_prescription_coat(&other, other.mixed, other.n_mixed);
+    assert_true(glint_bake_key(&other, &options) != key);
+    other = lens;
+    coat(&other, "550");
+    assert_true(glint_bake_key(&other, &options) == key);
+    coat(&other, "550/1.39");
+    assert_true(glint_bake_key(&other, &options) != key);
+    coat(&other, "550,550,550,551");
+    assert_true(glint_bake_key(&other, &options) != key);
+    coat(&other, "550/1.38:1");
+    assert_true(glint_bake_key(&other, &options) == key);
+    coat(&other, "550/1.38:1.01");
+    assert_true(glint_bake_key(&other, &options) != key);
+    coat(&other, "550/1.38/1.7");
+    assert_true(glint_bake_key(&other, &options) != key);
+}
+
+static void test_standard(void **state)
+{
+    struct glint_coating coating[GLINT_MAX_COATINGS];
+    const int n = glint_coatings_mixed(coating);
+
+    (void)state;
+    assert_true(n >= 2 && n <= GLINT_MAX_COATINGS);
+    for (int i = 0; i < n; i++)
+        assert_true(coating[i].nm >= 100 && coating[i].nm <= 5000 &&
+                    coating[i].n_films == 1 &&
+                    coating[i].film[0].index == 1.38 &&
+                    coating[i].film[0].quarters == 1 &&
+                    (i == 0 || coating[i].nm != coating[i - 1].nm));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_mixed_line), cmocka_unit_test(test_mistakes),
+        cmocka_unit_test(test_dealt_out),  cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_too_many),   cmocka_unit_test(test_films),
+        cmocka_unit_test(test_reflects),   cmocka_unit_test(test_key),
+        cmocka_unit_test(test_standard)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,426 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Scene texts: what the parser reads from a good one, and which place and cause
+ * it names for each mistake. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/scene/description.h"
+#include "bake/scene/mesh.h"
+
+/* This text is good. Each mistake below replaces one line of it. */
+static const char *const good[] = {
+    "hand left   # as the tutorial",                            /* line 1 */
+    "camera fov 60 at 0 1 -4 toward 0 1 0",                     /* line 2 */
+    "background colour .1 .2 .3",                               /* line 3 */
+    "light sun direction 0 3 -4 colour 5e4 4e4 3e4 radius .27", /* line 4 */
+    "light lamp at 0 3 -2 colour 8 7 6",                        /* line 5 */
+    "texture wood wood.ppm",                                    /* line 6 */
+    "material red phong .1 .7 .2 colour 1 0 0 power 20",        /* line 7 */
+    "material oak phong 0 1 0 texture wood",                    /* line 8 */
+    "material glass phong 0 .1 .2 pass .9 refract 1.5",         /* line 9 */
+    "sphere ball at 0 .5 0 radius .5 material red",             /* line 10 */
+    "triangle t 0 0 0 1 0 0 0 1 0 uv 0 0 1 0 0 1 material oak", /* line 11 */
+    "plane floor at 0 0 0 normal 0 2 0 catcher .6",             /* line 12 */
+    "mesh cup cup.obj scale .5 at 1 0 0 turn 0 2 0 90 material red", /* line 13
+                                                                      */
+    "shadow on",                 /* line 14 */
+    "flare lights highlights 3", /* line 15 */
+};
+
+#define N_GOOD 15
+
+/* A quad, whose second half has another material, and a triangle. */
+static const char cup[] = "# a cup\n"
+                          "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\n"
+                          "vt 0 0\nvt 1 0\nvt 1 1\n"
+                          "vn 0 0 -3\n"
+                          "o cup\n"
+                          "f 1/1/1 2/2/1 3/3/1 4/1/1\n"
+                          "usemtl oak\n"
+                          "f -4/1 -3/2 -2/3\n";
+
+static enum glint_status read_file(void *ctx, const char *name, uint8_t **data,
+                                   size_t *bytes, struct glint_error *error)
+{
+    (void)ctx;
+    if (strcmp(name, "cup.obj") != 0) {
+        snprintf(error->text, sizeof error->text, "%s: no such file", name);
+        return GLINT_E_IO;
+    }
+    *bytes = sizeof cup - 1;
+    *data = malloc(*bytes);
+    assert_non_null(*data);
+    memcpy(*data, cup, *bytes);
+    return GLINT_OK;
+}
+
+/* A picture of 6 x 2 pixels: a third is black, the rest white. */
+static enum glint_status read_picture(void *ctx, const char *name,
+                                      struct glint_image *image,
+                                      struct glint_error *error)
+{
+    uint8_t *mem = malloc(3 * 6 * 2);
+
+    (void)ctx;
+    (void)error;
+    assert_string_equal(name, "wood.ppm");
+    assert_non_null(mem);
+    for (int i = 0; i < 36; i++)
+        mem[i] = i % 18 < 6 ? 0 : 255;
+    *image =
+        (struct glint_image){.format = GLINT_RGB24, .width = 6, .height = 2};
+    glint_image_place(image, mem);
+    return GLINT_OK;
+}
+
+static const struct glint_description_files files = {NULL, read_file,
+                                                     read_picture};
+
+/* Parses the good text with LINE in place of line NUMBER (from 1; 0: none). */
+static enum glint_status parse(struct glint_description *scene, int number,
+                               const char *line, struct glint_error *error)
+{
+    char text[4096] = "", *copy;
+    enum glint_status status;
+    size_t bytes;
+
+    for (int i = 0; i < N_GOOD; i++) {
+        strcat(text, i + 1 == number ? line : good[i]);
+        strcat(text, "\n");
+    }
+    /* The copy ends where the text does, so that the address sanitizer sees
+     * reads beyond it. */
+    bytes = strlen(text);
+    copy = malloc(bytes);
+    assert_non_null(copy);
+    memcpy(copy, text, bytes);
+    error->text[0] = '\0';
+    status =
+        glint_description_parse(scene, copy, bytes, "x.scene", &files, error);
+    free(copy);
+    return status;
+}
+
+static void near_to(const double *a, double x, double y, double z)
+{
+    assert_true(fabs(a[0] - x) < 1e-12);
+    assert_true(fabs(a[1] - y) < 1e-12);
+    assert_true(fabs(a[2] - z) < 1e-12);
+}
+
+static void test_good(void **state)
+{
+    struct glint_description *s = malloc(sizeof *s);
+    struct glint_error error;
+
+    (void)state;
+    assert_non_null(s);
+    if (parse(s, 0, NULL, &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+    assert_true(s->left_handed && s->has_shadows);
+    near_to(s->camera.right, 1, 0, 0);
+    near_to(s->camera.up, 0, 1, 0);
+    near_to(s->camera.forward, 0, 0, 1);
+    assert_true(s->camera.fov_deg == 60);
+    near_to(s->background_colour, .1, .2, .3);
+    assert_int_equal(s->n_lights, 2);
+    near_to(s->light[0].at, 0, .6, -.8);
+    assert_string_equal(s->light[1].name, "lamp");
+    assert_int_equal(s->n_materials, 3);
+    assert_true(s->material[0].power == 20 && s->material[1].power == 32);
+    assert_int_equal(s->material[1].texture, 0);
+    assert_true(s->material[2].pass == .9 && s->material[2].index == 1.5);
+    assert_int_equal(s->n_objects, 4);
+    near_to(s->object[2].normal, 0, 1, 0);
+    assert_true(s->object[2].catcher == .6 && s->object[2].material == -1);
+    assert_int_equal(s->flare, GLINT_DESCRIBED_FLARE_HIGHLIGHTS);
+    assert_int_equal(s->n_highlights, 3);
+    assert_string_equal(s->warning, "");
+    glint_description_free(s);
+    free(s);
+}
+
+/* The quad becomes two triangles, half as large as the file has it; what oak is
+ * in the file is oak in the scene. */
+static void test_mesh(void **state)
+{
+    struct glint_description *s = malloc(sizeof *s);
+    const struct glint_described_object *o;
+    struct glint_error error;
+
+    (void)state;
+    assert_non_null(s);
+    assert_int_equal(parse(s, 0, NULL, &error), GLINT_OK);
+    o = &s->object[3];
+    assert_int_equal(o->first_triangle, 1);
+    assert_int_equal(o->n_triangles, 3);
+    assert_true(fabs(o->turn[0] - sqrt(.5)) < 1e-12 &&
+                fabs(o->turn[2] - sqrt(.5)) < 1e-12);
+    near_to(s->triangle[2].place[1], 1, 1, 0);
+    near_to(s->triangle[2].place[2], 0, 1, 0);
+    assert_true(s->triangle[2].has_normals && s->triangle[2].has_uv);
+    near_to(s->triangle[2].normal[0], 0, 0, -1);
+    assert_int_equal(s->triangle[2].material, 0);
+    assert_int_equal(s->triangle[3].material, 1);
+    assert_false(s->triangle[3].has_normals);
+    glint_description_free(s);
+    free(s);
+}
+
+/* Six texels across become eight (nearest by ratio); light is kept. */
+static void test_texture(void **state)
+{
+    struct glint_description *s = malloc(sizeof *s);
+    struct glint_error error;
+    const uint8_t *row;
+
+    (void)state;
+    assert_non_null(s);
+    assert_int_equal(parse(s, 0, NULL, &error), GLINT_OK);
+    assert_int_equal(s->texture[0].image.width, 8);
+    assert_int_equal(s->texture[0].image.height, 2);
+    row = s->texture[0].image.plane[0];
+    assert_int_equal(row[3 * 1], 0);
+    assert_int_equal(row[3 * 2], 156); /* a third of the light */
+    assert_int_equal(row[3 * 3], 255);
+    glint_description_free(s);
+    free(s);
+}
+
+static const struct mistake {
+    int line;
+    const char *text, *error;
+} mistakes[] = {
+    {1, "hand up", "1:6: hand takes right or left, not 'up'"},
+    {1, "hand", "1:5: hand needs right or left"},
+    {1, "hand left over", "1:11: 'over' is more than hand takes"},
+    {2, "camera fov 60 at 0 1 -4", "2:8: camera needs 'at X Y Z toward"},
+    {2, "camera fov 60 at 0 1 toward 0 1 0",
+     "2:22: at 'toward' is not a number"},
+    {2, "camera fov 60 at 0 1", "2:21: at takes 3 numbers, here are 2"},
+    {2, "camera fov 200 at 0 1 -4 toward 0 1 0",
+     "2:12: fov must be 0.1 .. 170, not 200"},
+    {2, "camera at 0 1 0 toward 0 1 0",
+     "2:8: the camera stands where it looks"},
+    {2, "camera at 0 1 0 toward 0 2 0", "2:8: the camera looks along 'up'"},
+    {2, "camera at 0 1 0 toward 0 2 2 up 0 0 0", "2:8: 'up' has no direction"},
+    {2, "camera fov 50 orbit 0 0 0 distance 3 at 0 0 0",
+     "2:38: 'at' and 'orbit' exclude each other"},
+    {2, "camera orbit 0 0 0 yaw 3", "2:8: an orbit needs 'distance'"},
+    {2, "camera at 0 1 0 toward 0 1 1 yaw 5", "2:30: 'yaw' belongs to 'orbit'"},
+    {2, "camera sensor 3", "2:8: 'sensor' is not built yet"},
+    {2, "camera corners 3", "2:16: '3' is more than camera corners takes"},
+    {2, "hand left", "2:1: a second hand; the first is on line 1"},
+    {3, "background environment", "3:12: 'environment' is not built yet"},
+    {3, "environment night.env", "3:1: 'environment' is not built yet; light"},
+    {3, "sphree b", "3:1: unknown word 'sphree'; did you mean 'sphere'?"},
+    {3, "xyzzy", "3:1: unknown word 'xyzzy'"},
+    {4, "light sun colour 1 1 1", "4:23: light sun needs 'direction'"},
+    {4, "light sun direction 0 0 0 colour 1 1 1",
+     "4:11: the direction to the sun must not be 0 0 0"},
+    {4, "light bulb at 0 0 0", "4:7: a light is a sun or a lamp, not 'bulb'"},
+    {5, "light lamp at 0 3 -2 color 8 7 6",
+     "5:22: light lamp takes at, colour and radius, not 'color'; did you mean "
+     "'colour'?"},
+    {5, "light lamp at 0 3 -2 at 8 7 6", "5:22: a second 'at'"},
+    {5, "light lamp at 0 3 2e6 colour 8 7 6",
+     "5:19: at must be -1000000 .. 1000000, not 2e+06"},
+    {6, "texture wood", "6:13: the texture's file is missing"},
+    {7, "material red phong .1 .8 .2",
+     "7:14: weights of phong sum to 1.1; more than 1 would make light"},
+    {7, "material red phong .1 .7 .2 reflect .6 pass .5",
+     "7:29: 'reflect' and 'pass' sum to 1.1"},
+    {7, "material red phong .1 .7 .2 refract 1.5",
+     "7:29: 'refract' needs a 'pass' above 0"},
+    {7, "material red ward", "7:14: 'ward' is not built yet; materials are"},
+    {7, "material 7up phong 0 1 0", "7:10: a name is a letter"},
+    {8, "material oak phong 0 1 0 texture wod",
+     "8:34: no texture 'wod' is defined above this line; did you mean 'wood'"},
+    {8, "material red phong 0 1 0",
+     "8:10: a material of this name is already defined"},
+    {10, "sphere ball at 0 0 0 radius 0 material red",
+     "10:29: radius must be 1e-06 .. 1000000, not 0"},
+    {10, "sphere ball at 0 0 0 radius 1 material rad",
+     "10:40: no material 'rad' is defined above this line; did you mean 'red'"},
+    {10, "sphere ball at 0 0 0 radius 1 turn 0 0 0 1 material red",
+     "10:31: the axis of a turn must not be 0 0 0"},
+    {11, "triangle t 0 0 0 1 0 0 0 1 0 uv 0 0 1 0 0 251 material oak",
+     "11:30: a texture repeats at most 250 times over a triangle"},
+    {4, "light sun direction 0 1 0 colour 1 1 1 radius 31",
+     "4:47: radius must be 0.01 .. 30, not 31"},
+    {10, "sphere ball at 0 0 0 radius 1", "10:30: sphere needs 'material'"},
+    {10, "sphere camera at 0 0 0 radius 1 material red", "10:8: 'camera' is"},
+    {11, "triangle ball 0 0 0 1 0 0 0 1 0 material red",
+     "11:10: a thing of this name is already defined"},
+    {11, "triangle t 0 0 0 1 0 0 0 1 material red",
+     "11:28: triangle 'material' is not a number"},
+    {11, "triangle t 0 0 0 1 0 0 0 1 0 material oak",
+     "11:30: a material with a texture needs 'uv'"},
+    {12, "plane floor at 0 0 0 normal 0 1 0",
+     "12:13: a plane has a material or is a catcher"},
+    {12, "plane floor at 0 0 0 normal 0 1 0 catcher .5 material red",
+     "12:46: a plane has a material or is a catcher, not both"},
+    {12, "plane floor at 0 0 0 normal 0 0 0 catcher .6",
+     "12:22: a normal must not be 0 0 0"},
+    {13, "mesh cup", "13:9: the mesh's file is missing"},
+    {13, "mesh cup pot.obj at 0 0 0", "13:10: pot.obj: no such file"},
+    {13, "mesh cup cup.obj at 0 0 0", "13:10: the mesh has faces without"},
+    {13, "mesh cup cup.obj at 0 0 0 turn 0 0 0 9 material red",
+     "13:27: the axis of a turn must not be 0 0 0"},
+    {13, "mesh cup cup.obj at 0 0 0 scale 1e9 material red",
+     "13:10: the mesh reaches 2e+09 from its origin; at most 1e+06"},
+    {14, "shadow soft", "14:8: shadow takes on or off, not 'soft'"},
+    {15, "flare lights highlights 2.5", "15:14: highlights are a whole number"},
+    {15, "flare lights highlights 9",
+     "15:25: highlights must be 0 .. 8, not 9"},
+    {15, "flare stars", "15:7: flare takes off or lights [highlights N], not"},
+};
+
+static void test_mistakes(void **state)
+{
+    struct glint_description *s = malloc(sizeof *s);
+
+    (void)state;
+    assert_non_null(s);
+    for (size_t i = 0; i < sizeof mistakes / sizeof *mistakes; i++) {
+        const struct mistake *m = &mistakes[i];
+        struct glint_error error;
+        char wanted[200];
+
+        snprintf(wanted, sizeof wanted, "x.scene:%s", m->error);
+        assert_int_not_equal(parse(s, m->line, m->text, &error), GLINT_OK);
+        if (strncmp(error.text, wanted, strlen(wanted)) != 0)
+            fail_msg("'%s': %s", m->text, error.text);
+    }
+    free(s);
+}
+
+/* Hands: the same numbers are mirrored pictures, so x runs the other way. */
+static void test_hands(void **state)
+{
+    struct glint_description *s = malloc(sizeof *s);
+    struct glint_error error;
+
+    (void)state;
+    assert_non_null(s);
+    assert_int_equal(parse(s, 1, "hand right", &error), GLINT_OK);
+    near_to(s->camera.right, -1, 0, 0);
+    near_to(s->camera.up, 0, 1, 0);
+    glint_description_free(s);
+    assert_int_equal(
+        parse(s, 2, "camera orbit 0 1 0 distance 2 yaw 90 pitch 0", &error),
+        GLINT_OK);
+    near_to(s->camera.at, 2, 1, 0);
+    near_to(s->camera.right, 0, 0, 1); /* x is to the right, z away */
+    glint_description_free(s);
+    assert_int_equal(parse(s, 2, "camera corners", &error), GLINT_OK);
+    near_to(s->camera.forward, 0, 0, 1);
+    near_to(s->camera.right, 1, 0, 0);
+    glint_description_free(s);
+    free(s);
+}
+
+static const struct mesh_text {
+    const char *text;
+    int n; /* triangles; 0: refused with ERROR */
+    const char *error;
+} mesh_texts[] = {
+    {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", 1, ""},
+    {"v 0 0 0 1\nv 1 0 0 .5 .5 .5\nv 0 1 0\nf 1// 2// 3//\r\n", 1, ""},
+    {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 \\\n 2 \\\n3\n", 1, ""},
+    {"v 0.12345678901234567890 1e-300 0\nv 1 0 0\nv 0 1 0\nv 2 2 2\n"
+     "v 3 3 3\ng x\nf -5 -4 -3 -2 -1\n",
+     3, ""},
+    {"", 0, "1:1: there is no face"},
+    {"v 0 0\n", 0, "1:6: v takes 3 numbers, here are 2"},
+    {"v 0 0 x\n", 0, "1:7: 'x' is not a number"},
+    {"v 0 0 nan\n", 0, "1:7: 'nan' is not a number"},
+    {"v 0 0 1e13\n", 0, "1:7: numbers of a mesh are at most 1e12"},
+    {"v 0 0 0\nf 1 1\n", 0, "2:1: a face has 3 corners or more, this 2"},
+    {"v 0 0 0\nf 1 1 2\n", 0, "2:7: there is no corner 2, only 1 so far"},
+    {"v 0 0 0\nf 1 1 0\n", 0, "2:7: there is no corner 0, only 1 so far"},
+    {"v 0 0 0\nf 1 1 -2\n", 0, "2:7: there is no corner -2, only 1 so far"},
+    {"v 0 0 0\nf 1 1 99999999999999999999\n", 0,
+     "2:7: there is no corner 9999"},
+    {"v 0 0 0\nf 1 1 1/1\n", 0, "2:7: there is no texture place 1, only 0"},
+    {"v 0 0 0\nf 1 1 1//1\n", 0, "2:7: there is no normal 1, only 0"},
+    {"v 0 0 0\nf 1 1 1x\n", 0, "2:7: corner '1x' is none of V, V/T"},
+    {"v 0 0 0\nf 1 1 /1\n", 0, "2:7: corner has no place"},
+    {"v 0 0 0\nf 1 1 1///\n", 0, "2:7: corner has more than V/T/N"},
+    {"v 0 0 0\nf 1 1 -\n", 0, "2:7: corner '-' is none of V, V/T"},
+};
+
+static void test_mesh_texts(void **state)
+{
+    struct glint_mesh *mesh = malloc(sizeof *mesh);
+
+    (void)state;
+    assert_non_null(mesh);
+    for (size_t i = 0; i < sizeof mesh_texts / sizeof *mesh_texts; i++) {
+        const struct mesh_text *m = &mesh_texts[i];
+        struct glint_error error = {""};
+        char wanted[200];
+        const enum glint_status status =
+            glint_mesh_read(mesh, m->text, strlen(m->text), "m.obj", &error);
+
+        if (m->n) {
+            if (status != GLINT_OK)
+                fail_msg("'%s': %s", m->text, error.text);
+            assert_int_equal(mesh->n_triangles, m->n);
+            free(mesh->triangle);
+            continue;
+        }
+        assert_int_equal(status, GLINT_E_LENS);
+        snprintf(wanted, sizeof wanted, "m.obj:%s", m->error);
+        if (strncmp(error.text, wanted, strlen(wanted)) != 0)
+            fail_msg("'%s': %s", m->text, error.text);
+    }
+    free(mesh);
+}
+
+/* A sun that no code would show, and weights that leave things dark, must be
+ * warned of, and what is as it should be must not. */
+static void test_warnings(void **state)
+{
+    static const struct {
+        int line;
+        const char *text, *warning;
+    } odd[] = {
+        {4, "light sun direction 0 1 0 colour 3 2 1 radius .27", "4.5e+04"},
+        {4, "light sun direction 0 1 0 colour 500 2 1 radius .27", ""},
+        {4, "light sun direction 0 1 0 colour 0 0 0", ""},
+        {7, "material red phong .1 .2 .1", "0.4, what is left"}};
+    struct glint_description *s = malloc(sizeof *s);
+    struct glint_error error;
+
+    (void)state;
+    assert_non_null(s);
+    for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
+        assert_int_equal(parse(s, odd[i].line, odd[i].text, &error), GLINT_OK);
+        assert_int_equal(!s->warning[0], !odd[i].warning[0]);
+        assert_non_null(strstr(s->warning, odd[i].warning));
+        glint_description_free(s);
+    }
+    free(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_good),     cmocka_unit_test(test_mesh),
+        cmocka_unit_test(test_texture),  cmocka_unit_test(test_mistakes),
+        cmocka_unit_test(test_hands),    cmocka_unit_test(test_mesh_texts),
+        cmocka_unit_test(test_warnings),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a bake says of the work that is done, as bakes of ghosts of known work
+ * on a clock of their own.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "bake/effort.h"
+#include "support/lens_check.h"
+#include "support/rng.h"
+
+enum { HEAD = 32 }; /* fits before the first ghost, see effort.c */
+
+/* Bakes N ghosts of WORK[] fits each on one worker; the share told of each
+ * grows as its work does. Sets SAID to the time left that is said at a quarter,
+ * half and three quarters of the time, over that which is. */
+static void bake(const double *work, int n, bool wide, double said[3])
+{
+    struct glint_effort e;
+    double all = HEAD, now = HEAD;
+
+    for (int g = 0; g < n; g++)
+        all += work[g];
+    glint_effort_init(&e, n, 1, wide);
+    for (int g = 0; g < n; g++) {
+        glint_effort_begin(&e, g);
+        for (int w = 1; w <= (int)work[g]; w++) {
+            double done;
+
+            glint_effort_spend(&e, w, w / work[g]);
+            done = glint_effort_done(&e);
+            assert_true(done > 0 && done <= 1);
+            now++;
+            for (int k = 0; k < 3; k++)
+                if (now - 1 < 0.25 * (k + 1) * all &&
+                    now >= 0.25 * (k + 1) * all)
+                    said[k] = now * (1 - done) / done / (all - now);
+        }
+        glint_effort_end(&e);
+    }
+    assert_true(glint_effort_done(&e) > 0.999);
+}
+
+/* Ghosts that take alike: what is said is true within a quarter. */
+static void test_alike(void **state)
+{
+    double work[100], said[3];
+
+    (void)state;
+    for (int g = 0; g < 100; g++)
+        work[g] = 20;
+    bake(work, 100, false, said);
+    for (int k = 0; k < 3; k++)
+        assert_true(said[k] > 0.8 && said[k] < 1.25);
+}
+
+/* Ghosts that differ a hundredfold, in any order: within three times at half
+ * time, nearly always. By their number alone it was off by ten. */
+static void test_random(void **state)
+{
+    uint32_t seed = 7;
+    int off = 0;
+
+    (void)state;
+    for (int round = 0; round < 200; round++) {
+        double work[20], said[3] = {0};
+
+        for (int g = 0; g < 20; g++)
+            work[g] = ceil(pow(10, 2 * rng_unit(&seed)));
+        bake(work, 20, true, said);
+        off += fabs(log(said[1])) > log(3);
+    }
+    assert_in_range(off, 0, 10);
+}
+
+/* The last ghost takes nearly all: its angles tell. */
+static void test_long_ghost(void **state)
+{
+    double work[20], said[3];
+
+    (void)state;
+    for (int g = 0; g < 20; g++)
+        work[g] = g < 19 ? 5 : 1000;
+    bake(work, 20, true, said);
+    assert_true(said[1] > 0.5 && said[1] < 2);
+    assert_true(said[2] > 0.5 && said[2] < 2);
+}
+
+/* Several workers share what nobody began, but not what one is at. */
+static void test_workers(void **state)
+{
+    double done[2];
+
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        struct glint_effort e;
+
+        glint_effort_init(&e, 50, 1 + 3 * k, false);
+        glint_effort_begin(&e, 10 * k);
+        glint_effort_spend(&e, 10, 0.5);
+        done[k] = glint_effort_done(&e);
+    }
+    assert_true(done[1] > done[0]);
+    for (int k = 0; k < 2; k++) {
+        struct glint_effort e;
+
+        glint_effort_init(&e, 1, 1 + 3 * k, false);
+        glint_effort_begin(&e, 0);
+        glint_effort_spend(&e, 1000, 0.5);
+        done[k] = glint_effort_done(&e);
+        assert_true(done[k] > 0.4 && done[k] < 0.65);
+    }
+}
+
+struct log {
+    int n;
+    double last, most_step;
+};
+
+static void note_done(void *ctx, double done)
+{
+    struct log *log = ctx;
+
+    assert_true(done > log->last - 0.2 && done <= 1);
+    log->most_step = fmax(log->most_step, done - log->last);
+    log->last = done;
+    log->n++;
+}
+
+/* A bake tells of each zone, and ends at all. */
+static void test_bake(void **state)
+{
+    static struct glint_setup setup;
+    static struct glint_prescription heliar;
+    struct log log = {0};
+    struct glint_bake_options o;
+    struct glint_bake_report report;
+    struct glint_error error;
+    unsigned char *model;
+    size_t bytes;
+
+    (void)state;
+    load_setup(&setup, &heliar, "heliar-tronnier");
+    glint_bake_defaults(&o);
+    o.tolerance = 5;
+    o.max_deg = 12;
+    o.progress = note_done;
+    o.progress_ctx = &log;
+    assert_int_equal(glint_bake(&heliar, &o, &model, &bytes, &report, &error),
+                     GLINT_OK);
+    free(model);
+    assert_true(log.n > 13);
+    assert_true(log.last == 1);
+    assert_true(log.most_step < 0.75);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_alike),      cmocka_unit_test(test_random),
+        cmocka_unit_test(test_long_ghost), cmocka_unit_test(test_workers),
+        cmocka_unit_test(test_bake),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,648 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Environments: the octahedron, what is held and counted, blurs against sums
+ * over all texels, lights that are known, codes, and files that are refused. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "bake/environment/sphere.h"
+#include "base/blob.h"
+#include "glint/view.h"
+#include "support/rng.h"
+
+enum { WIDTH = 128, HEIGHT = 64, SIDE_LOG2 = 5, SIDE = 1 << SIDE_LOG2 };
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void random_unit(uint32_t *seed, double d[3])
+{
+    double length;
+
+    do {
+        for (int k = 0; k < 3; k++)
+            d[k] = rng_signed(seed);
+        length = sqrt(dot(d, d));
+    } while (length > 1 || length < .1);
+    for (int k = 0; k < 3; k++)
+        d[k] /= length;
+}
+
+/* ------------------------------------------------------------- octahedron */
+
+static void test_octahedron(void **state)
+{
+    uint32_t seed = 7;
+    double sum = 0;
+
+    (void)state;
+    for (int i = 0; i < 2000; i++) {
+        double d[3], back[3], u, v;
+
+        random_unit(&seed, d);
+        glint_sphere_place(d, &u, &v);
+        assert_true(u >= 0 && u <= 1 && v >= 0 && v <= 1);
+        glint_sphere_toward(u, v, back);
+        assert_true(dot(d, back) > 1 - 1e-12);
+    }
+    for (int i = 0; i < 128 * 128; i++) {
+        double d[3];
+
+        sum += glint_sphere_toward((i % 128 + .5) / 128,
+                                   ((double)(i / 128) + .5) / 128, d);
+    }
+    assert_true(fabs(sum / (128 * 128) / (4 * GLINT_PI) - 1) < 1e-3);
+}
+
+/* What lies beyond an edge is near what lies before it. */
+static void test_edges_meet(void **state)
+{
+    struct glint_sphere s;
+
+    (void)state;
+    assert_true(glint_sphere_open(&s, SIDE));
+    for (int k = -1; k <= SIDE; k++) {
+        const int across[4][4] = {{-1, k, 0, k},
+                                  {SIDE, k, SIDE - 1, k},
+                                  {k, -1, k, 0},
+                                  {k, SIDE, k, SIDE - 1}};
+
+        for (int e = 0; e < 4; e++) {
+            const size_t a =
+                glint_sphere_index(SIDE, across[e][0], across[e][1]);
+            const size_t b =
+                glint_sphere_index(SIDE, across[e][2], across[e][3]);
+
+            assert_true(a < SIDE * SIDE && b < SIDE * SIDE);
+            /* at most the diagonal of the largest texels */
+            assert_true(dot(s.texel[a].toward, s.texel[b].toward) >
+                        cos(2 * sqrt(6) / SIDE));
+        }
+    }
+    glint_sphere_close(&s);
+}
+
+/* ------------------------------------------------------------------ baking */
+
+struct baked {
+    unsigned char *data;
+    size_t bytes;
+    struct glint_environment_report report;
+    struct glint_environment environment;
+};
+
+static float picture[HEIGHT][WIDTH][3];
+static const struct glint_float_image image = {WIDTH, HEIGHT, (float *)picture};
+
+/* Fills the picture by LIGHT(direction), its R, G and B 1, 1/2 and 1/4 of it.
+ */
+static void paint(double (*light)(const double d[3]))
+{
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const double east = 2 * GLINT_PI * ((x + .5) / WIDTH - .5);
+            const double up = GLINT_PI * (.5 - (y + .5) / HEIGHT);
+            const double d[3] = {cos(up) * sin(east), sin(up),
+                                 cos(up) * cos(east)};
+
+            for (int c = 0; c < 3; c++)
+                picture[y][x][c] = (float)ldexp(light(d), -c);
+        }
+}
+
+static void bake(struct baked *b, const struct glint_environment_options *o)
+{
+    struct glint_error error;
+    const char *reason = "";
+
+    if (glint_environment_bake(&image, o, "a night!", UINT64_C(0x123456789),
+                               &b->data, &b->bytes, &b->report,
+                               &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+    if (glint_environment_open(&b->environment, b->data, b->bytes, &reason) !=
+        GLINT_OK)
+        fail_msg("%s", reason);
+}
+
+static struct glint_environment_options options_of(int code)
+{
+    struct glint_environment_options o;
+
+    glint_environment_defaults(&o);
+    o.side_log2 = SIDE_LOG2;
+    o.code = (enum glint_environment_code)code;
+    return o;
+}
+
+static double decode_9e5(const struct glint_environment *e, uint32_t word,
+                         int c)
+{
+    return ldexp(word >> (9 * c) & 511,
+                 (int)(word >> 27) - 12 + e->header->unit_log2);
+}
+
+/* Returns channel C of texel I of level K. */
+static double decode(const struct glint_environment *e, int k, size_t i, int c)
+{
+    static const int shift[3] = {11, 5, 0}, most[3] = {31, 63, 31};
+    double root;
+
+    if (e->header->code == GLINT_ENVIRONMENT_9E5)
+        return decode_9e5(e, ((const uint32_t *)e->texel[k])[i], c);
+    root = (double)(((const uint16_t *)e->texel[k])[i] >> shift[c] & most[c]) /
+           most[c];
+    return root * root * ldexp(e->level[k].scale, e->header->unit_log2);
+}
+
+static double even(const double d[3])
+{
+    (void)d;
+    return 12.5;
+}
+
+/* Even light stays even, to the last code: the brightest. */
+static void test_even(void **state)
+{
+    (void)state;
+    paint(even);
+    for (int code = 0; code < 2; code++) {
+        const struct glint_environment_options o = options_of(code);
+        struct baked b;
+
+        bake(&b, &o);
+        assert_string_equal(b.environment.header->name, "anight");
+        assert_int_equal(b.environment.header->key[1], 1);
+        assert_int_equal(b.environment.header->n_lights, 0);
+        assert_true(b.report.negative == 0 && b.report.not_finite == 0);
+        for (int k = 0; k <= SIDE_LOG2; k++)
+            for (size_t i = 0; i >> (2 * b.environment.level[k].side_log2) == 0;
+                 i++)
+                assert_true(fabs(decode(&b.environment, k, i, 0) - 12.5) <
+                            12.5 / (code ? 1000 : 1e6));
+        for (int i = 0; i < 1024; i++)
+            assert_true(fabs(decode_9e5(&b.environment,
+                                        b.environment.irradiance[i], 1) -
+                             6.25) < 6.25 * .003);
+        free(b.data);
+    }
+}
+
+static double slope(const double d[3])
+{
+    return 1 + d[1];
+}
+
+/* Light 1 + y shows a white surface 1 + 2/3 y; turning by 90 degrees to the
+ * right moves what is ahead there. */
+static double ahead(const double d[3])
+{
+    return 1 + d[2];
+}
+
+static void test_irradiance(void **state)
+{
+    struct glint_environment_options o = options_of(GLINT_ENVIRONMENT_9E5);
+    double worst = 0;
+
+    (void)state;
+    for (int turned = 0; turned < 2; turned++) {
+        struct baked b;
+
+        o.turn_deg = 90 * turned;
+        o.scale = 1 + turned;
+        paint(turned ? ahead : slope);
+        bake(&b, &o);
+        for (int i = 0; i < 1024; i++) {
+            double n[3], want;
+
+            glint_sphere_toward((i % 32 + .5) / 32,
+                                ((double)(i / 32) + .5) / 32, n);
+            want = o.scale * (1 + 2. / 3 * n[turned ? 0 : 1]);
+            worst =
+                fmax(worst, fabs(decode_9e5(&b.environment,
+                                            b.environment.irradiance[i], 0) /
+                                     want -
+                                 1));
+        }
+        free(b.data);
+    }
+    print_message("irradiance: off by %.3f %% at most\n", 100 * worst);
+    assert_true(worst < .006);
+}
+
+static double patches(const double d[3])
+{
+    return 1 + fmax(0, sin(9 * d[0]) * sin(7 * d[1] + 1) + sin(11 * d[2])) +
+           (d[0] > .3 && d[1] > .2 ? 5 : 0);
+}
+
+/* Every level is the sum over all texels, none of them left out, to what lies
+ * beyond four sigma. */
+static void test_blur(void **state)
+{
+    struct glint_environment_options o = options_of(GLINT_ENVIRONMENT_9E5);
+    struct glint_environment_report report = {0};
+    struct glint_sphere s;
+    struct baked b;
+    double worst = 0;
+
+    (void)state;
+    paint(patches);
+    o.max_lights = 0;
+    bake(&b, &o);
+    assert_true(glint_sphere_open(&s, 2 * SIDE));
+    assert_true(glint_sphere_project(&s, &image, &o, &report));
+    for (int k = 0; k <= SIDE_LOG2; k++) {
+        const double sigma = sqrt(4 * GLINT_PI) / SIDE * ldexp(1, k - 1);
+        const int side = 1 << b.environment.level[k].side_log2;
+
+        for (int i = 0; i < side * side; i += side * side / 16 + 1) {
+            double d[3], sum = 0, weight = 0;
+
+            glint_sphere_toward((i % side + .5) / side,
+                                ((double)(i / side) + .5) / side, d);
+            for (int j = 0; j < 4 * SIDE * SIDE; j++) {
+                const double w =
+                    s.texel[j].weight *
+                    exp((dot(d, s.texel[j].toward) - 1) / (sigma * sigma));
+
+                sum += w * s.texel[j].light[0];
+                weight += w;
+            }
+            worst = fmax(worst, fabs(decode(&b.environment, k, (size_t)i, 0) /
+                                         (sum / weight) -
+                                     1));
+        }
+    }
+    print_message("blur: off by %.3f %% at most\n", 100 * worst);
+    assert_true(worst < .004);
+    glint_sphere_close(&s);
+    free(b.data);
+}
+
+/* Row B5: texels of a side of 256, and that a level's side is twice a mip's. */
+static void test_b5_texels(void **state)
+{
+    long mip = 0, full = 0, ours = 0;
+
+    (void)state;
+    for (uint32_t k = 0; k <= 8; k++) {
+        mip += 1L << (2 *
+                      glint_environment_side_log2(GLINT_ENVIRONMENT_MIP, 8, k));
+        full += 1L << 16;
+        ours += 1L << (2 * glint_environment_side_log2(GLINT_ENVIRONMENT_GAUSS,
+                                                       8, k));
+    }
+    assert_true(mip == 87381 && full == 589824 && ours == 152928);
+}
+
+static void test_mips(void **state)
+{
+    struct glint_environment_options o = options_of(GLINT_ENVIRONMENT_9E5);
+    struct baked b;
+
+    (void)state;
+    paint(patches);
+    o.max_lights = 0;
+    o.levels = GLINT_ENVIRONMENT_MIP;
+    bake(&b, &o);
+    for (int k = 1; k <= SIDE_LOG2; k++) {
+        const size_t side = SIDE >> k;
+
+        for (size_t i = 0; i < side * side; i++) {
+            const size_t at = 4 * side * (i / side) + 2 * (i % side);
+            const double mean =
+                (decode(&b.environment, k - 1, at, 0) +
+                 decode(&b.environment, k - 1, at + 1, 0) +
+                 decode(&b.environment, k - 1, at + 2 * side, 0) +
+                 decode(&b.environment, k - 1, at + 2 * side + 1, 0)) /
+                4;
+
+            assert_true(fabs(decode(&b.environment, k, i, 0) / mean - 1) <
+                        .004);
+        }
+    }
+    free(b.data);
+}
+
+/* ------------------------------------------------------------------ lights */
+
+static const double sun[3] = {.48, .6, .64};
+
+static double day(const double d[3])
+{
+    return (dot(d, sun) > cos(4 * GLINT_PI / 180) ? 4000 : 0) + 1 + .5 * d[1];
+}
+
+/* A disc of 4 degrees is found where it is, with its light and size; what is
+ * left there is as around. */
+static void test_light(void **state)
+{
+    struct glint_environment_options o = options_of(GLINT_ENVIRONMENT_565);
+    const struct glint_environment_light *l;
+    double solid = 0; /* of the pixels that are the disc */
+    struct baked b;
+    double d[3], power, u, v;
+
+    (void)state;
+    paint(day);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++)
+            if (picture[y][x][0] > 100)
+                solid += 2 * GLINT_PI / WIDTH * GLINT_PI / HEIGHT *
+                         cos(GLINT_PI * (.5 - (y + .5) / HEIGHT));
+    bake(&b, &o);
+    assert_int_equal(b.environment.header->n_lights, 1);
+    l = b.environment.light;
+    for (int k = 0; k < 3; k++)
+        d[k] = ldexp(l->toward_q30[k], -30);
+    power = glint_real_value(l->rgb[0]) / (4000 * solid / GLINT_PI);
+    print_message("light: %.3f deg off, %.4f of its power, %.2f deg, share "
+                  "%.4f, rest %.3f\n",
+                  180 / GLINT_PI * acos(dot(d, sun)), power,
+                  180 / GLINT_PI * asin(ldexp(l->radius_q30, -30)),
+                  b.report.light_share, b.report.residual_largest);
+    assert_true(dot(d, sun) > cos(.5 * GLINT_PI / 180));
+    assert_true(fabs(power - 1) < .002);
+    assert_true(fabs(asin(ldexp(l->radius_q30, -30)) * 180 / GLINT_PI - 4) <
+                .8);
+    assert_true(fabs(glint_real_value(l->rgb[1]) / glint_real_value(l->rgb[0]) -
+                     .5) < 1e-6);
+    assert_true(b.report.residual_largest < 1.6);
+    glint_sphere_place(sun, &u, &v);
+    assert_true(
+        fabs(decode(&b.environment, 0,
+                    glint_sphere_index(SIDE, (int)(SIDE * u), (int)(SIDE * v)),
+                    0) -
+             1.3) < .08);
+    /* None of it is lost: levels and lights have what the picture has. */
+    assert_true(fabs(b.report.light_share -
+                     (power * 4000 * solid) /
+                         (power * 4000 * solid + 4 * GLINT_PI)) < .002);
+    free(b.data);
+    o.max_lights = 0;
+    bake(&b, &o);
+    assert_int_equal(b.environment.header->n_lights, 0);
+    assert_true(b.report.residual_largest > 2000);
+    free(b.data);
+}
+
+static double window(const double d[3])
+{
+    return (d[2] > .9 ? 500 : 0) + 1;
+}
+
+/* Wide light stays where it is, and of two discs that touch none is lost. */
+static void test_areas_stay(void **state)
+{
+    const struct glint_environment_options o = options_of(0);
+    struct baked b;
+
+    (void)state;
+    paint(window);
+    bake(&b, &o);
+    assert_int_equal(b.environment.header->n_lights, 0);
+    assert_true(b.report.residual_largest > 250);
+    free(b.data);
+}
+
+/* ------------------------------------------------------------------- held */
+
+static void test_held(void **state)
+{
+    const struct glint_environment_options o = options_of(0);
+    struct glint_environment_options odd;
+    struct glint_error error;
+    struct glint_float_image narrow = image;
+    struct baked b;
+
+    (void)state;
+    paint(even);
+    picture[3][4][1] = -1;
+    picture[5][6][0] = -2e30f;
+    picture[10][8][2] = NAN;
+    picture[12][8][0] = INFINITY;
+    picture[14][9][0] = -INFINITY;
+    bake(&b, &o);
+    assert_true(b.report.negative == 2 && b.report.not_finite == 3);
+    assert_true(b.report.largest < 12.6 * .9 && b.report.mean > 6);
+    free(b.data);
+    narrow.width = 100;
+    assert_int_equal(glint_environment_bake(&narrow, &o, "x", 0, &b.data,
+                                            &b.bytes, &b.report, &error),
+                     GLINT_E_UNSUPPORTED);
+    assert_non_null(strstr(error.text, "100x64"));
+    for (int k = 0; k < 4; k++) {
+        odd = o;
+        odd.side_log2 = k == 0 ? 3 : k == 1 ? 11 : odd.side_log2;
+        odd.max_lights = k == 2 ? 17 : 0;
+        odd.scale = k == 3 ? 0 : 1;
+        assert_int_equal(glint_environment_bake(&image, &odd, "x", 0, &b.data,
+                                                &b.bytes, &b.report, &error),
+                         GLINT_E_ARGUMENT);
+    }
+    memset(picture, 0, sizeof picture); /* darkness is light, too */
+    bake(&b, &o);
+    assert_true(decode(&b.environment, 2, 3, 0) == 0);
+    free(b.data);
+}
+
+/* Six faces, each of one light, lie where they are named. */
+static void test_cube(void **state)
+{
+    static const double middle[6][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},
+                                        {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+    struct glint_environment_options o = options_of(GLINT_ENVIRONMENT_9E5);
+    struct glint_environment_report report = {0};
+    float faces[16][24][3];
+    const struct glint_float_image cube = {24, 16, (float *)faces};
+    struct glint_sphere s;
+
+    (void)state;
+    for (int y = 0; y < 16; y++)
+        for (int x = 0; x < 24; x++)
+            for (int c = 0; c < 3; c++)
+                faces[y][x][c] = (float)(1 + x / 8 + 3 * (y / 8));
+    assert_true(glint_sphere_open(&s, SIDE));
+    assert_true(glint_sphere_project(&s, &cube, &o, &report));
+    for (int i = 0; i < SIDE * SIDE; i++)
+        for (int f = 0; f < 6; f++)
+            if (dot(s.texel[i].toward, middle[f]) > .82)
+                assert_true(fabs(s.texel[i].light[0] - (1 + f)) < 1e-9);
+    glint_sphere_close(&s);
+}
+
+/* ------------------------------------------------------------------- codes */
+
+static void test_codes(void **state)
+{
+    enum { N = 4096 };
+    static double light[N][3];
+    static uint16_t roots[N];
+    static uint32_t words[N];
+    static const int shift[3] = {11, 5, 0}, most[3] = {31, 63, 31};
+
+    uint32_t seed = 3;
+
+    (void)state;
+    for (int i = 0; i < N; i++)
+        for (int c = 0; c < 3; c++)
+            light[i][c] = ldexp(rng_below(&seed, 65536), -rng_below(&seed, 20));
+    light[0][0] = 65536;
+    glint_environment_put_565((const double(*)[3])light, N, 65536, roots);
+    glint_environment_put_9e5((const double(*)[3])light, N, 0x1p-8, words);
+    for (int i = 0; i < N; i++) {
+        const double top = fmax(light[i][0], fmax(light[i][1], light[i][2]));
+        const int e = (int)(words[i] >> 27);
+
+        for (int c = 0; c < 3; c++) {
+            const double r = (roots[i] >> shift[c] & most[c]), m = most[c];
+            const double got = 65536 * r * r / (m * m);
+            /* no other code is nearer */
+            const double down = 65536 * (r - 1) * (r - 1) / (m * m);
+            const double up = 65536 * (r + 1) * (r + 1) / (m * m);
+
+            assert_true(fabs(got - light[i][c]) <=
+                        fabs(up - light[i][c]) * (1 + 1e-12));
+            assert_true(r == 0 || fabs(got - light[i][c]) <=
+                                      fabs(down - light[i][c]) * (1 + 1e-12));
+            assert_true(fabs(ldexp(words[i] >> (9 * c) & 511, e - 12 - 8) -
+                             light[i][c]) <= fmax(top / 510, 0x1p-21));
+        }
+    }
+}
+
+/* ------------------------------------------------------------------- files */
+
+static void refuse(const struct baked *b, size_t at, uint32_t value,
+                   const char *why)
+{
+    unsigned char *copy = malloc(b->bytes);
+    struct glint_environment e;
+    const char *reason = "nothing";
+
+    assert_non_null(copy);
+    memcpy(copy, b->data, b->bytes);
+    memcpy(copy + at, &value, sizeof value);
+    if (at != offsetof(struct glint_environment_header, crc32))
+        glint_blob_seal(copy, b->bytes);
+    assert_int_equal(glint_environment_open(&e, copy, b->bytes, &reason),
+                     GLINT_E_FORMAT);
+    if (!strstr(reason, why))
+        fail_msg("%zu: %s, not %s", at, reason, why);
+    free(copy);
+}
+
+#define AT(field) offsetof(struct glint_environment_header, field)
+
+static void test_refused(void **state)
+{
+    const struct glint_environment_options o = options_of(0);
+    struct baked b;
+    const struct glint_environment_header *h;
+
+    (void)state;
+    paint(day);
+    bake(&b, &o);
+    h = b.environment.header;
+    refuse(&b, AT(magic), 0, "no baked environment");
+    refuse(&b, AT(version), 9, "newer");
+    refuse(&b, AT(crc32), 0, "checksum");
+    refuse(&b, AT(variant), 2, "unknown");
+    refuse(&b, AT(code), 2, "unknown");
+    refuse(&b, AT(name), 0, "name is empty");
+    refuse(&b, AT(side_log2), 11, "too many");
+    refuse(&b, AT(side_log2), 6, "too many");
+    refuse(&b, AT(unit_log2), 101, "unit");
+    refuse(&b, AT(n_levels), 5, "too many");
+    refuse(&b, AT(n_lights), 17, "too many");
+    refuse(&b, AT(level_at), (uint32_t)b.bytes, "outside");
+    refuse(&b, AT(irradiance_at), 8, "outside");
+    refuse(&b, AT(light_at), (uint32_t)b.bytes - 4, "outside");
+    refuse(&b, h->level_at, 4, "side or scale");
+    refuse(&b, h->level_at + 4, 2, "outside");
+    refuse(&b, h->level_at + 8, (1u << 28) + 1, "side or scale");
+    refuse(&b, h->level_at + 12, 1, "side or scale");
+    refuse(&b, h->light_at, 0, "unit vector");
+    refuse(&b, h->light_at + 12, 1u << 30, "too large");
+    refuse(&b, h->light_at + 16, 5, "normalised");
+    free(b.data);
+}
+
+/* ------------------------------------------------------------------- texts */
+
+static enum glint_status parse(const char *text,
+                               struct glint_environment_options *o,
+                               char *source, struct glint_error *error)
+{
+    return glint_environment_parse(o, source, text, strlen(text),
+                                   "n.environment", error);
+}
+
+static void wrong(const char *text, const char *why)
+{
+    struct glint_environment_options o;
+    char source[GLINT_ENVIRONMENT_FILE_BYTES];
+    struct glint_error error;
+
+    assert_int_equal(parse(text, &o, source, &error), GLINT_E_LENS);
+    if (!strstr(error.text, why))
+        fail_msg("%s\nnot\n%s", error.text, why);
+}
+
+static void test_text(void **state)
+{
+    struct glint_environment_options o;
+    char source[GLINT_ENVIRONMENT_FILE_BYTES];
+    struct glint_error error;
+
+    (void)state;
+    assert_int_equal(parse("# night\nsource a night.exr\nsize 128\n"
+                           "levels mip\ncode 9e5\nturn -90\nscale .5\n"
+                           "lights 3 radius 2.5 above 20\n",
+                           &o, source, &error),
+                     GLINT_OK);
+    assert_string_equal(source, "a night.exr");
+    assert_true(o.side_log2 == 7 && o.levels == GLINT_ENVIRONMENT_MIP &&
+                o.code == GLINT_ENVIRONMENT_9E5 && o.turn_deg == -90 &&
+                o.scale == .5 && o.max_lights == 3 && o.light_deg == 2.5 &&
+                o.light_above == 20);
+    wrong("size 128\n", "n.environment:2:1: there is no picture: source FILE");
+    wrong("source\n", "n.environment:1:7: the name of the picture is missing");
+    wrong("source x\nsize 100\n",
+          "2:6: size takes 16, 32, 64, 128, 256, 512 or "
+          "1024, not '100'");
+    wrong("source x\nlevels\n", "levels takes gauss or mip");
+    wrong("source x\nturn 400\n", "turn");
+    wrong("source x\nlights 17\n", "lights");
+    wrong("source x\nlights 3 radios 2\n", "did you mean 'radius'?");
+    wrong("source x\nsize 64 64\n", "'64' is more than size takes");
+    wrong("source x\nsource y\n",
+          "2:1: a second source; the first is on line 1");
+    wrong("sources x\n", "unknown word 'sources'; did you mean 'source'?");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_octahedron), cmocka_unit_test(test_edges_meet),
+        cmocka_unit_test(test_even),       cmocka_unit_test(test_irradiance),
+        cmocka_unit_test(test_blur),       cmocka_unit_test(test_b5_texels),
+        cmocka_unit_test(test_mips),       cmocka_unit_test(test_light),
+        cmocka_unit_test(test_areas_stay), cmocka_unit_test(test_held),
+        cmocka_unit_test(test_cube),       cmocka_unit_test(test_codes),
+        cmocka_unit_test(test_refused),    cmocka_unit_test(test_text),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

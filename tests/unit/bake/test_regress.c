@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Sparse regression: terms that a greedy choice has to find.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "bake/fit/regress.h"
+#include "support/lens_check.h"
+
+enum { SIDE = 9, RAYS = SIDE * SIDE };
+
+static const struct glint_degrees degrees = {.most = {6, 6, 0, 0},
+                                             .weight = {1, 1, 1, 1},
+                                             .total = 8,
+                                             .parity = 0,
+                                             .terms = 8,
+                                             .leaps = true};
+
+/* Fits VALUE of a place, -1 .. 1 each way, on a symmetric grid. */
+static double fit(double (*value)(double u, double v), struct glint_poly *poly)
+{
+    double u[RAYS], v[RAYS], zero[RAYS], one[RAYS], y[RAYS];
+    const struct glint_regress_samples samples = {
+        RAYS, {u, v, zero, zero}, one};
+    double *scratch = malloc(glint_regress_doubles(RAYS) * sizeof *scratch);
+    double left;
+
+    assert_non_null(scratch);
+    for (int i = 0; i < RAYS; i++) {
+        u[i] = 2.0 * (i % SIDE) / (SIDE - 1) - 1;
+        v[i] = 2.0 * (i / SIDE) / (SIDE - 1) - 1;
+        zero[i] = 0;
+        one[i] = 1;
+        y[i] = value(u[i], v[i]);
+    }
+    left = glint_regress_fit(scratch, &samples, y, &degrees, 1e-9, 5e-9, poly);
+    free(scratch);
+    return left;
+}
+
+static double even(double u, double v)
+{
+    return 1 - 3 * u * u + 2 * u * u * u * u + v * v;
+}
+
+static double odd(double u, double v)
+{
+    return 0.1 + u - 0.5 * u * u * u + 0.25 * u * v * v;
+}
+
+static double at(const struct glint_poly *poly, const double *x)
+{
+    return glint_poly_at(poly->n, poly->power, poly->coef, x);
+}
+
+/* On a grid that is symmetric in u odd powers explain nothing of an even
+ * function, and the other way round: no term in between must be needed. */
+static void test_symmetric(void **state)
+{
+    const double x[GLINT_VARIABLES] = {0.3, -0.6, 0, 0};
+    struct glint_poly poly;
+
+    (void)state;
+    assert_true(fit(even, &poly) <= 1);
+    assert_int_equal(poly.n, 4);
+    assert_near(at(&poly, x), even(x[0], x[1]), 1e-8);
+    assert_true(fit(odd, &poly) <= 1);
+    assert_int_equal(poly.n, 4);
+    assert_near(at(&poly, x), odd(x[0], x[1]), 1e-8);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_symmetric),
+    };
+
+    return cmocka_run_group_tests_name("regress", tests, NULL, NULL);
+}

@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The outline of a stop: corners lie on the circle of the f-number and nowhere
+ * else, outlines are convex, round blades are arcs that lie between the
+ * straight side and the circle, areas are those that counting finds, and the
+ * integers that ghosts are cut by say the same as the doubles.
+ */
+#include "engine/setup/iris.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/setup/setup.h"
+#include "flare/edges/outline.h"
+#include "glint/view.h"
+
+static const int blades[] = {3, 4, 5, 6, 8, 9, 31, 64};
+static const double roundness[] = {0, 0.01, 0.3, 0.75, 0.99, 1};
+
+enum {
+    N_BLADES = sizeof blades / sizeof *blades,
+    N_ROUND = sizeof roundness / sizeof *roundness,
+    PHI = 1440
+};
+
+static struct glint_setup setup_of(int n, double rotation_deg, double round)
+{
+    static struct glint_setup s;
+
+    memset(&s, 0, sizeof s);
+    s.opening = 1;
+    s.n_blades = n;
+    s.blade_rotation_deg = rotation_deg;
+    s.iris.roundness = round;
+    s.clear = 1;
+    return s;
+}
+
+/* Returns the radius of the outline at the angle PHI. */
+static double radius_at(const struct glint_iris_sides *s, double phi)
+{
+    double in = 0, out = 1.5;
+
+    for (int i = 0; i < 60; i++) {
+        const double r = 0.5 * (in + out);
+
+        if (glint_iris_depth(s, r * cos(phi), r * sin(phi)) > 0)
+            in = r;
+        else
+            out = r;
+    }
+    return in;
+}
+
+/* Calls TEST for each number of blades and roundness, turned by 17 degrees. */
+static void each(void (*test)(const struct glint_setup *s,
+                              const struct glint_iris_sides *sides))
+{
+    for (int i = 0; i < N_BLADES * N_ROUND; i++) {
+        const struct glint_setup s =
+            setup_of(blades[i / N_ROUND], 17, roundness[i % N_ROUND]);
+        struct glint_iris_sides sides;
+
+        glint_iris_sides(&sides, &s);
+        assert_int_equal(sides.n, blades[i / N_ROUND]);
+        test(&s, &sides);
+    }
+}
+
+/* In the middle of a side the outline must lie where a circle of radius 1 / R
+ * through both corners does. */
+static void check_corners(const struct glint_setup *s,
+                          const struct glint_iris_sides *sides)
+{
+    const double half = sin(GLINT_PI / s->n_blades);
+    const double k = fmin(s->iris.roundness, 0.9999);
+    const double sag = k > 0 ? 1 / k - sqrt(1 / (k * k) - half * half) : 0;
+
+    for (int i = 0; i < s->n_blades; i++) {
+        const double at = (17 + i * 360.0 / s->n_blades) * GLINT_PI / 180;
+        const double middle = at + GLINT_PI / s->n_blades;
+
+        assert_true(fabs(radius_at(sides, at) - 1) < 1e-9);
+        assert_true(fabs(radius_at(sides, middle) -
+                         (cos(GLINT_PI / s->n_blades) + sag)) < 1e-9);
+    }
+}
+
+static void test_corners(void **state)
+{
+    (void)state;
+    each(check_corners);
+}
+
+static void check_convex(const struct glint_setup *s,
+                         const struct glint_iris_sides *sides)
+{
+    double x[PHI], y[PHI], area = 0;
+
+    for (int i = 0; i < PHI; i++) {
+        const double phi = 2 * GLINT_PI * i / PHI;
+        const double r = radius_at(sides, phi);
+
+        assert_true(r > 0.49 && r < 1 + 1e-9);
+        x[i] = r * cos(phi);
+        y[i] = r * sin(phi);
+    }
+    for (int i = 0; i < PHI; i++) {
+        const int j = (i + 1) % PHI, k = (i + 2) % PHI;
+
+        area += 0.5 * (x[i] * y[j] - x[j] * y[i]);
+        assert_true((x[j] - x[i]) * (y[k] - y[j]) -
+                        (y[j] - y[i]) * (x[k] - x[j]) >
+                    -1e-9);
+    }
+    assert_true(fabs(area / GLINT_PI - glint_iris_share(s)) < 2e-4);
+}
+
+static void test_convex_and_area(void **state)
+{
+    (void)state;
+    each(check_convex);
+}
+
+/* Places that the integers tell apart from the outline must lie on the same
+ * side of it as for doubles, and near it as far from it. */
+static void check_integers(const struct glint_setup *s,
+                           const struct glint_iris_sides *sides)
+{
+    struct glint_stop stop;
+    uint32_t seed = 1;
+
+    glint_setup_stop(s, &stop);
+    for (int i = 0; i < 2000; i++) {
+        struct glint_vertex v = {0};
+        double x, y;
+
+        seed = seed * 1664525 + 1013904223;
+        v.stop_x_q16 = (int32_t)(seed >> 15) - 65536;
+        seed = seed * 1664525 + 1013904223;
+        v.stop_y_q16 = (int32_t)(seed >> 15) - 65536;
+        x = v.stop_x_q16 / 65536.0;
+        y = v.stop_y_q16 / 65536.0;
+        for (int k = 0; k < stop.n_blades; k++) {
+            const double d = glint_iris_inside(sides, k, x, y);
+            const double got = (double)glint_side_q16(&stop, k, &v) / 65536;
+
+            assert_true(fabs(got - d) < 5e-5);
+        }
+    }
+}
+
+static void test_integers(void **state)
+{
+    (void)state;
+    each(check_integers);
+}
+
+/* A rounder stop must let more light through, up to the circle's. */
+static void test_area_grows(void **state)
+{
+    (void)state;
+    for (int i = 0; i < N_BLADES; i++) {
+        double last = 0;
+
+        for (int k = 0; k < N_ROUND; k++) {
+            const struct glint_setup s = setup_of(blades[i], 0, roundness[k]);
+
+            assert_true(glint_iris_share(&s) > last);
+            last = glint_iris_share(&s);
+        }
+        assert_true(fabs(last - 1) < 1e-9);
+    }
+}
+
+/* A setup must refuse what is out of range, and measure its light anew. */
+static void test_setup(void **state)
+{
+    struct glint_setup s = setup_of(6, 0, 0);
+    struct glint_iris iris = {.roundness = 1.5};
+    struct glint_dirt *dirt;
+    struct glint_error error;
+
+    (void)state;
+    s.n_wavelengths = 1;
+    s.direct_flux[0] = glint_iris_share(&s);
+    assert_int_equal(glint_setup_iris(&s, &iris, &dirt, &error),
+                     GLINT_E_ARGUMENT);
+    iris.roundness = NAN;
+    assert_int_equal(glint_setup_iris(&s, &iris, &dirt, &error),
+                     GLINT_E_ARGUMENT);
+    iris.roundness = 1;
+    assert_int_equal(glint_setup_iris(&s, &iris, &dirt, &error), GLINT_OK);
+    assert_true(fabs(s.direct_flux[0] - 1) < 1e-9);
+    iris.roundness = 0;
+    assert_int_equal(glint_setup_iris(&s, &iris, &dirt, &error), GLINT_OK);
+    assert_true(fabs(s.direct_flux[0] - glint_iris_share(&s)) < 1e-9);
+    assert_true(s.direct_flux[0] < 0.83);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_corners),  cmocka_unit_test(test_convex_and_area),
+        cmocka_unit_test(test_integers), cmocka_unit_test(test_area_grows),
+        cmocka_unit_test(test_setup),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

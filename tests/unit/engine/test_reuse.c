@@ -1,0 +1,500 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Frames that reuse what the last one binned: each must be the picture that is
+ * drawn anew, bit for bit, whatever moved, stopped or changed before it, for
+ * all workers; and a frame of which nothing changed must be reused. Lights that
+ * stand still within a tolerance must be drawn by the rays of before, with the
+ * light that they have, and never farther off than that.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/flare.h"
+#include "support/shuffle.h"
+#include "support/stage.h"
+
+enum { W = 240, H = 160, BYTES = 3 * W * H, LIGHTS = 6, FRAMES = 48 };
+
+static struct stage stage;
+static struct glint_frame reusing, fresh;
+static struct glint_lamp lamps[LIGHTS];
+static uint8_t got[BYTES], want[BYTES];
+static struct glint_frame_report of_reusing, of_fresh;
+
+static int open_stage(void **state)
+{
+    (void)state;
+    return stage_open(&stage, "double-gauss-angenieux", W, H) ? 0 : -1;
+}
+
+static int close_stage(void **state)
+{
+    (void)state;
+    stage_close(&stage);
+    return 0;
+}
+
+static void open_frames(double px)
+{
+    glint_frame_like(&reusing, &stage.frame, stage.view);
+    glint_frame_like(&fresh, &stage.frame, stage.view);
+    reusing.cfg.reuse = &glint_reuse;
+    reusing.dials.still_px = px;
+    for (int i = 0; i < LIGHTS; i++)
+        lamps[i] = stage_lamp(3 + 2 * i, 50 * i, 3e5 * exp2(-i));
+}
+
+static void close_frames(void)
+{
+    glint_frame_finish(&reusing);
+    glint_frame_finish(&fresh);
+}
+
+static void draw_one(struct glint_frame *frame, int n, double scale,
+                     uint8_t *codes, struct glint_frame_report *report)
+{
+    struct glint_image image = {.format = GLINT_RGB24, .width = W, .height = H};
+
+    memset(codes, 20, BYTES);
+    glint_image_place(&image, codes);
+    assert_int_equal(glint_frame_draw(frame, lamps, n, scale, &image, report),
+                     GLINT_OK);
+}
+
+/* Draws both ways. Returns whether the frame was reused. */
+static bool draw(int n)
+{
+    draw_one(&reusing, n, 1, got, &of_reusing);
+    draw_one(&fresh, n, 1, want, &of_fresh);
+    assert_int_equal(of_fresh.stats.reused, 0);
+    assert_memory_equal(got, want, BYTES);
+    return of_reusing.stats.reused;
+}
+
+static void stop_down(double opening)
+{
+    struct glint_frame *const all[] = {&reusing, &fresh};
+
+    for (int i = 0; i < 2; i++) {
+        all[i]->cfg.stop.opening_q30 = (int32_t)lrint(opening * 0x1p30);
+        glint_frame_retune(all[i]);
+    }
+}
+
+/* -------------------------------------------------------------------- same */
+
+/* Turns one thing of both frames and of the lamps, or nothing: then the frame
+ * must be reused. */
+static bool step(int time, int *n)
+{
+    switch (time % 12) {
+    case 1: /* one lamp moves by less than can be seen */
+        lamps[time / 12].theta_deg += 1e-6 * (time + 1);
+        return true;
+    case 3:
+        lamps[time / 12].power *= 1.001;
+        return true;
+    case 5:
+        *n = *n == LIGHTS ? LIGHTS - 1 : LIGHTS;
+        return true;
+    case 7:
+        stop_down(time % 24 == 7 ? 0.7 : 1);
+        return true;
+    case 9:
+        reusing.dials = glint_dials_at((1 << 11) + 500 * time);
+        reusing.dials.still_px = 0;
+        fresh.dials = reusing.dials;
+        return true;
+    case 11:
+        lamps[time / 12].rgb[1] *= 0.99;
+        return true;
+    default:
+        return false;
+    }
+}
+
+static void same_video(void)
+{
+    int n = LIGHTS, n_reused = 0;
+
+    open_frames(0);
+    draw(n);
+    for (int time = 0; time < FRAMES; time++) {
+        const bool turned = step(time, &n);
+        const bool reused = draw(n);
+
+        n_reused += reused;
+        assert_int_equal(reused, !turned);
+        /* rays are looked at and bundles planned once only */
+        assert_true(reused == (of_reusing.looked == 0));
+        assert_int_equal(of_reusing.stats.primitives,
+                         of_fresh.stats.primitives);
+        assert_int_equal(of_reusing.ghosts, of_fresh.ghosts);
+    }
+    assert_int_equal(n_reused, FRAMES / 2);
+    close_frames();
+}
+
+static void test_same_as_fresh(void **state)
+{
+    struct shuffle shuffle;
+
+    (void)state;
+    same_video();
+    for (int n = 2; n <= 5; n += 3) {
+        shuffle_init(&shuffle, n, (uint32_t)n);
+        stage.frame.cfg.workers = &shuffle.workers;
+        same_video();
+    }
+    stage.frame.cfg.workers = NULL;
+}
+
+static struct glint_tint tints[GLINT_MAX_GHOSTS];
+
+/* Turns thing K of what a frame is planned from; returns false if there are not
+ * so many. */
+static bool turn(int k)
+{
+    struct glint_lamp *const l = lamps;
+
+    switch (k) {
+    case 0:
+        l[1].theta_deg += 0.01;
+        return true;
+    case 1:
+        l[1].phi_deg += 0.01;
+        return true;
+    case 2:
+        l[2].power *= 1.01;
+        return true;
+    case 3:
+        l[2].rgb[2] = 0.5;
+        return true;
+    case 4:
+        l[0].axis[0] = l[0].axis[1] = 0.02;
+        return true;
+    case 5:
+        tints[2].gain.exponent = -29;
+        return true;
+    case 6:
+        tints[3].rgb_q14[1] = 1 << 13;
+        return true;
+    case 7:
+        reusing.only_ghost = fresh.only_ghost = 4;
+        return true;
+    case 8:
+        reusing.dials.snap_codes_q8 = fresh.dials.snap_codes_q8 = 300;
+        return true;
+    case 9:
+        reusing.dials.cull_codes = fresh.dials.cull_codes = 0.3;
+        return true;
+    case 10:
+        reusing.dials.fineness = fresh.dials.fineness = 24;
+        return true;
+    case 11:
+        reusing.dials.dim_codes = fresh.dials.dim_codes = 1;
+        return true;
+    case 12:
+        reusing.uniform = fresh.uniform = true;
+        return true;
+    case 13:
+        reusing.tints = fresh.tints = NULL;
+        return true;
+    default:
+        return false;
+    }
+}
+
+/* Whatever a frame is planned from makes another one of it. */
+static void test_everything_counts(void **state)
+{
+    const int things = 14;
+
+    (void)state;
+    open_frames(0);
+    for (int i = 0; i < GLINT_MAX_GHOSTS; i++)
+        tints[i] =
+            (struct glint_tint){{1 << 14, 1 << 14, 1 << 14}, {1 << 30, -30}};
+    reusing.tints = fresh.tints = tints;
+    draw(3);
+    for (int k = 0; k < things; k++) {
+        assert_true(draw(3));
+        assert_true(turn(k));
+        assert_false(draw(3));
+    }
+    assert_false(turn(things));
+    assert_true(draw(3));
+    close_frames();
+}
+
+/* What restricts a frame to some of its bundles is gone in the next one. */
+static void test_restricted(void **state)
+{
+    (void)state;
+    open_frames(0);
+    draw(3);
+    assert_true(draw(3));
+    glint_flare_keep(reusing.flare, -1, 1, -1);
+    assert_false(draw(3));
+    assert_true(draw(3));
+    close_frames();
+}
+
+/* In reserved memory more lights than it remembers are drawn anew, and a linear
+ * picture after one in codes is another frame. */
+static void test_memory(void **state)
+{
+    static int32_t linear[2][3 * W * H];
+    struct glint_image image = {
+        .format = GLINT_LINEAR_Q20, .width = W, .height = H};
+
+    (void)state;
+    open_frames(0);
+    reusing.cfg.reuse_lights = 2;
+    assert_int_equal(
+        glint_frame_reserve(&reusing, NULL, 8 << 20, LIGHTS, LIGHTS), GLINT_OK);
+    draw(4);
+    assert_true(draw(4));
+    reusing.cfg.reuse_lights = 3;
+    glint_frame_retune(&reusing);
+    draw(4);
+    assert_false(draw(4));
+    draw(3);
+    assert_true(draw(3));
+    for (int i = 0; i < 2; i++) {
+        glint_image_place(&image, linear[i]);
+        assert_int_equal(glint_frame_draw(i ? &fresh : &reusing, lamps, 3, 1,
+                                          &image, &of_reusing),
+                         GLINT_OK);
+        assert_int_equal(of_reusing.stats.reused, 0);
+    }
+    assert_memory_equal(linear[0], linear[1], sizeof linear[0]);
+    assert_false(draw(3));
+    close_frames();
+}
+
+/* ------------------------------------------------------------------- still */
+
+static double sum_of(const uint8_t *codes)
+{
+    double sum = 0;
+
+    for (int i = 0; i < BYTES; i++)
+        sum += codes[i] - 20;
+    return sum;
+}
+
+/* Draws lamps that stand still with the edges that there are, and with edges
+ * made anew for the same lights and factors. Returns whether the first was
+ * reused. */
+static bool draw_still(int n, double scale)
+{
+    draw_one(&reusing, n, scale, got, &of_reusing);
+    glint_frame_retune(&fresh);
+    draw_one(&fresh, n, scale, want, &of_fresh);
+    assert_int_equal(of_fresh.stats.reused, 0);
+    assert_memory_equal(got, want, BYTES);
+    return of_reusing.stats.reused;
+}
+
+/* Noise of place, power and colour of lamps in any order traces no ray, and
+ * power and colour are drawn as they are. */
+static void test_noise(void **state)
+{
+    const double degree = 0.02; /* 0.1 pixel */
+    uint64_t noise = 1;
+
+    (void)state;
+    open_frames(0.5);
+    fresh.cfg.reuse = &glint_reuse;
+    fresh.dials = reusing.dials;
+    draw_still(LIGHTS, 1);
+    for (int i = 0; i < 24; i++) {
+        const struct glint_lamp first = lamps[0];
+        struct glint_lamp was[LIGHTS];
+
+        for (int k = 0; k < LIGHTS - 1; k++)
+            lamps[k] = lamps[k + 1];
+        lamps[LIGHTS - 1] = first;
+        memcpy(was, lamps, sizeof was);
+        for (int k = 0; k < LIGHTS; k++) {
+            lamps[k].theta_deg += stage_uniform(&noise, -degree, degree);
+            lamps[k].power *= stage_uniform(&noise, i % 8 ? 0.8 : 0, 1.2);
+            lamps[k].rgb[i % 3] *= stage_uniform(&noise, 0.9, 1.1);
+        }
+        assert_true(draw_still(LIGHTS, i % 2 ? 0.9 : 1.1));
+        memcpy(lamps, was, sizeof was);
+    }
+    fresh.dials.still_px = 0;
+    for (double scale = 0.25; scale < 1.65; scale += 0.1) {
+        draw_one(&reusing, LIGHTS, scale, got, &of_reusing);
+        draw_one(&fresh, LIGHTS, scale, want, &of_fresh);
+        assert_int_equal(of_reusing.stats.reused, scale < 1.5);
+        assert_true(fabs(sum_of(got) / sum_of(want) - 1) < 0.005);
+        assert_true(stage_block_jump(&stage, got, want) < 1.5);
+    }
+    close_frames();
+}
+
+/* Returns how far the lamp LAMP is from the nearest light that stands, pixels.
+ */
+static double apart(const struct glint_lamp *lamp)
+{
+    const double degree = GLINT_PI / 180;
+    const double pixels =
+        fabs(stage.of_model.optics.focal_mm) * W / stage.view.sensor_width_mm;
+    const double r = sin(lamp->theta_deg * degree);
+    double least = HUGE_VAL;
+
+    for (int i = 0; i < reusing.still.n; i++) {
+        const struct glint_light *b = &reusing.still.light[i];
+        const double sine = b->sine_q30 * 0x1p-30;
+        const double x =
+            r * cos(lamp->phi_deg * degree) - sine * b->cos_q30 * 0x1p-30;
+        const double y =
+            r * sin(lamp->phi_deg * degree) - sine * b->sin_q30 * 0x1p-30;
+
+        least = fmin(least, pixels * hypot(x, y));
+    }
+    return least;
+}
+
+/* A lamp that goes on, ever so slowly, is traced anew before it is farther off
+ * than the tolerance; so is a new one, but not where one goes out. */
+static void test_moves(void **state)
+{
+    int n_reused = 0;
+
+    (void)state;
+    open_frames(0.5);
+    fresh.cfg.reuse = &glint_reuse;
+    fresh.dials = reusing.dials;
+    draw_still(LIGHTS - 1, 1);
+    for (int i = 0; i < 60; i++) {
+        lamps[2].theta_deg += 0.005;
+        n_reused += draw_still(LIGHTS - 1, 1);
+        assert_true(apart(&lamps[2]) <= 0.5);
+    }
+    assert_true(n_reused > 48 && n_reused < 59);
+    assert_false(draw_still(LIGHTS, 1));
+    assert_true(draw_still(LIGHTS - 2, 1));
+    assert_true(draw_still(LIGHTS, 1));
+    /* fewer lights than stand */
+    reusing.dials.max_lights = fresh.dials.max_lights = 2;
+    assert_false(draw_still(2, 1));
+    assert_int_equal(reusing.n_lights, 2);
+    close_frames();
+}
+
+/* Memory that is reserved has room for lights that stand, or they do not. */
+static void test_reserved(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        open_frames(i ? 0.5 : 0);
+        assert_int_equal(
+            glint_frame_reserve(&reusing, NULL, 8 << 20, LIGHTS, LIGHTS),
+            GLINT_OK);
+        reusing.dials.still_px = 0.5;
+        draw_one(&reusing, LIGHTS, 1, got, &of_reusing);
+        assert_int_equal(reusing.still.n, i ? LIGHTS : 0);
+        draw_one(&reusing, LIGHTS, 1.1, got, &of_reusing);
+        assert_int_equal(of_reusing.stats.reused, i);
+        close_frames();
+    }
+}
+
+static struct glint_light light_at(double theta_deg, double power,
+                                   const double rgb[3])
+{
+    const double degree = GLINT_PI / 180;
+    struct glint_light b = {
+        .sine_q30 = (int32_t)lrint(sin(theta_deg * degree) * 0x1p30),
+        .cosine_q30 = (int32_t)lrint(cos(theta_deg * degree) * 0x1p30),
+        .cos_q30 = 1 << 30,
+        .power = glint_real_of(power)};
+
+    for (int c = 0; c < 3; c++)
+        b.rgb_q14[c] = (int32_t)lrint(rgb[c] * 16384);
+    return b;
+}
+
+/* Factors by hand. Chords: a degree is 0.01745. */
+static void test_factors(void **state)
+{
+    static const double red[3] = {1, 0.5, 0}, other[3] = {1, 0.25, 0.01},
+                        blue[3] = {1, 0.5, 0.1}, dark[3] = {0.5, 0.25, 0};
+    const int32_t near_q30 = (int32_t)(0.00175 * 0x1p30); /* 0.1 degrees */
+    struct glint_light light[3], at[2];
+    int32_t gain_q14[2][3];
+    int64_t sum_q20[2][3];
+    struct glint_still s = {2, 0, at, gain_q14, sum_q20};
+
+    (void)state;
+    light[0] = light_at(5, 1000, red);
+    light[1] = light_at(8, 3, red);
+    assert_int_equal(glint_lights_still(&s, light, 2, near_q30), 2);
+    assert_int_equal(gain_q14[1][0], 1 << 14);
+    /* the second is out, and the first two halves of one */
+    light[0] = light_at(5.09, 600, dark);
+    light[1] = light_at(4.91, 600, dark);
+    assert_int_equal(glint_lights_still(&s, light, 2, near_q30), 2);
+    assert_in_range(gain_q14[0][0], 9830, 9831);
+    assert_in_range(gain_q14[0][1], 9830, 9831);
+    assert_int_equal(gain_q14[0][2], 1 << 14);
+    assert_int_equal(gain_q14[1][0] | gain_q14[1][1], 0);
+    assert_int_equal(at[0].power.mantissa, glint_real_of(1000).mantissa);
+    /* another colour, brighter */
+    light[0] = light_at(5, 1400, other);
+    assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 2);
+    assert_in_range(gain_q14[0][0], 22937, 22938);
+    assert_in_range(gain_q14[0][1], 11468, 11469);
+    /* blue where none was planned, too bright, too far: each stands anew */
+    light[0] = light_at(5, 1000, blue);
+    assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 1);
+    light[0] = light_at(5, 1530, blue);
+    light[1] = light_at(9, 1, blue);
+    assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 1);
+    assert_int_equal(gain_q14[0][0], 1 << 14);
+    light[0] = light_at(5.11, 1530, blue);
+    assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 1);
+    assert_int_equal(at[0].sine_q30, light[0].sine_q30);
+    light[0].apart_q30 = 2 * near_q30;
+    assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 1);
+    assert_int_equal(at[0].apart_q30, 2 * near_q30);
+    /* of two within the tolerance the nearer */
+    light[0] = light_at(5, 10, red);
+    light[1] = light_at(5.05, 10, red);
+    assert_int_equal(glint_lights_still(&s, light, 2, near_q30), 2);
+    light[0] = light_at(5.01, 5, red);
+    light[1] = light_at(5.04, 8, red);
+    assert_int_equal(glint_lights_still(&s, light, 2, near_q30), 2);
+    assert_in_range(gain_q14[0][0], 8191, 8193);
+    assert_in_range(gain_q14[1][0], 13106, 13108);
+    /* more than there is room for, and none */
+    light[2] = light_at(1, 1, red);
+    assert_int_equal(glint_lights_still(&s, light, 3, near_q30), 0);
+    assert_int_equal(glint_lights_still(&s, light, 0, near_q30), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_same_as_fresh),
+        cmocka_unit_test(test_everything_counts),
+        cmocka_unit_test(test_restricted),
+        cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_noise),
+        cmocka_unit_test(test_moves),
+        cmocka_unit_test(test_reserved),
+        cmocka_unit_test(test_factors),
+    };
+
+    return cmocka_run_group_tests(tests, open_stage, close_stage);
+}

@@ -1,0 +1,289 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What lies in a stop, drawn by edges: each pixel of a flat ghost has the light
+ * that the stop lets through where its rays cross, whether the grid is coarse
+ * or fine; nothing at all adds up to the clear ghost, and black to nothing; a
+ * soft edge has the light of its profile; workers and tiles change no bit.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/setup/dirt.h"
+#include "support/ghosts.h"
+
+static int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
+
+static const struct ghost plain = {16, 100, 75, 60, 0, 1, 0, 0, {16384, 0, 0}};
+
+/* Gives SETUP an iris; returns what lies in its stop. */
+static struct glint_dirt *give(struct glint_setup *setup, int n_blades,
+                               const struct glint_iris *iris)
+{
+    struct glint_dirt *dirt;
+    struct glint_error error;
+
+    memset(setup, 0, sizeof *setup);
+    setup->opening = setup->clear = 1;
+    setup->n_blades = n_blades;
+    setup->n_wavelengths = 1;
+    setup->direct_flux[0] = 1;
+    assert_int_equal(glint_setup_iris(setup, iris, &dirt, &error), GLINT_OK);
+    return dirt;
+}
+
+/* Draws G into OUT through an octagon with IRIS, and with 0 in CLEAR without.
+ */
+static struct glint_flare_stats draw(const struct ghost *g,
+                                     const struct glint_iris *iris,
+                                     int n_blades, int tile_log2, int32_t *out)
+{
+    struct glint_flare_config c = base_config();
+    struct glint_flare_stats stats;
+    struct glint_setup setup;
+    struct glint_dirt *const dirt = give(&setup, n_blades, iris);
+
+    glint_setup_stop(&setup, &c.stop);
+    c.stop.opening_q30 = 0;
+    c.tile_log2 = tile_log2;
+    c.max_primitives *= 64;
+    c.max_refs *= 64;
+    stats = draw_list(c, g, 1, out);
+    glint_dirt_free(dirt);
+    return stats;
+}
+
+/* Checks each pixel inside of the stop against the clear ghost times the light
+ * of IRIS; returns the root of the mean square of the difference, over the
+ * clear ghost's light. */
+static double difference(const struct ghost *g, const struct glint_iris *iris)
+{
+    const struct glint_iris clear = {0};
+    struct glint_setup setup;
+    struct glint_dirt *const dirt = give(&setup, 8, iris);
+    double sum = 0, all = 0;
+    int n = 0;
+
+    draw(g, &clear, 8, 5, want);
+    draw(g, iris, 8, 5, pixels);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const double u = (x + 0.5 - g->cx) / g->size;
+            /* the ghost leans */
+            const double v = (g->cy - y - 0.5) / g->size - u / 5;
+            const int at = 3 * (y * WIDTH + x);
+            double light = 0, off;
+
+            if (hypot(u, v) > 0.88)
+                continue;
+            for (int k = 0; k < 16; k++)
+                light += glint_dirt_light(dirt, u + (k % 4 - 1.5) / 4 / g->size,
+                                          v - (k / 4 - 1.5) / 4 / g->size) /
+                         16;
+            off = pixels[at] - want[at] * light;
+            sum += off * off;
+            all += want[at];
+            n++;
+        }
+    glint_dirt_free(dirt);
+    return sqrt(sum / n) / (all / n);
+}
+
+/* Dust must be seen where it is, and as dark as it is, whatever the grid. */
+static void test_dust(void **state)
+{
+    (void)state;
+    for (int seed = 1; seed < 5; seed++)
+        for (int n = 8; n <= 64; n *= 2) {
+            const struct glint_iris iris = {.dust = 0.05, .dust_seed = seed};
+            struct ghost g = plain;
+
+            g.n = n;
+            /* The smallest specks are less than a pixel. */
+            assert_true(difference(&g, &iris) < (n == 8 ? 0.085 : 0.045));
+        }
+}
+
+/* A mask must be seen upright: the top row of its picture at the highest y of
+ * the stop. */
+static void test_mask(void **state)
+{
+    uint8_t mask[32 * 32];
+    const struct glint_iris iris = {
+        .mask = mask, .mask_width = 32, .mask_height = 32};
+
+    (void)state;
+    for (int i = 0; i < 32 * 32; i++)
+        mask[i] = (uint8_t)(64 + 5 * (i / 32) + (i % 32 > 20 ? 20 : 0));
+    assert_true(difference(&plain, &iris) < 0.005);
+}
+
+/* What lies in the stop must turn with the blades, from x towards y. */
+static void test_turn(void **state)
+{
+    const uint8_t mask[4] = {0, 255, 0, 255};
+    const struct glint_iris iris = {
+        .mask = mask, .mask_width = 2, .mask_height = 2};
+
+    (void)state;
+    for (int turn = 0; turn < 360; turn += 30) {
+        const double phi = turn * 3.14159265358979323846 / 180;
+        struct glint_setup setup;
+        struct glint_dirt *dirt;
+        struct glint_error error;
+
+        memset(&setup, 0, sizeof setup);
+        setup.opening = setup.clear = 1;
+        setup.n_wavelengths = 1;
+        setup.direct_flux[0] = 1;
+        setup.blade_rotation_deg = turn;
+        assert_int_equal(glint_setup_iris(&setup, &iris, &dirt, &error),
+                         GLINT_OK);
+        assert_true(glint_dirt_light(dirt, 0.8 * cos(phi), 0.8 * sin(phi)) >
+                    0.99);
+        assert_true(glint_dirt_light(dirt, -0.8 * cos(phi), -0.8 * sin(phi)) <
+                    0.01);
+        glint_dirt_free(dirt);
+    }
+}
+
+/* A white mask must change next to nothing, a black one leave nothing. */
+static void test_white_and_black(void **state)
+{
+    uint8_t mask[4] = {255, 255, 255, 255};
+    struct glint_iris iris = {.mask = mask, .mask_width = 2, .mask_height = 2};
+    const struct glint_iris clear = {0};
+
+    (void)state;
+    draw(&plain, &clear, 8, 5, want);
+    draw(&plain, &iris, 8, 5, pixels);
+    assert_memory_equal(pixels, want, sizeof pixels);
+    memset(mask, 0, sizeof mask);
+    assert_int_equal(draw(&plain, &iris, 8, 5, pixels).primitives, 0);
+    assert_true(total(pixels, 0) == 0);
+}
+
+/* Dust must take few places: a patch for each cell at most, whatever lies in
+ * it. */
+static void test_few(void **state)
+{
+    const struct glint_iris iris = {.dust = 0.3, .dust_seed = 5};
+    const struct glint_iris clear = {0};
+    int plain_edges, dusty;
+
+    (void)state;
+    plain_edges = draw(&plain, &clear, 8, 5, want).primitives;
+    dusty = draw(&plain, &iris, 8, 5, pixels).primitives;
+    /* cells that are cut are two triangles, of up to five corners */
+    assert_true(dusty > plain_edges);
+    assert_true(dusty < plain_edges + 16 * 16 * 10);
+}
+
+/* A mask that is black but for one half must leave all of that, and nothing of
+ * the other, sharply. */
+static void test_half(void **state)
+{
+    uint8_t mask[64 * 64];
+    const struct glint_iris iris = {
+        .mask = mask, .mask_width = 64, .mask_height = 64};
+    const struct glint_iris clear = {0};
+    double kept, all;
+
+    (void)state;
+    for (int i = 0; i < 64 * 64; i++)
+        mask[i] = i / 64 < 32 ? 255 : 0;
+    draw(&plain, &clear, 8, 5, want);
+    draw(&plain, &iris, 8, 5, pixels);
+    kept = total(pixels, 0);
+    all = total(want, 0);
+    assert_true(fabs(kept / all - 0.5) < 0.005);
+    for (int k = 0; k < 3 * WIDTH * HEIGHT; k++)
+        assert_true(pixels[k] > -want[3 * (75 * WIDTH + 100)] / 100);
+}
+
+/* A soft edge must have as much light as its profile says, for sides, arcs and
+ * circles. */
+static void test_soft_edge(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 12; k++) {
+        const struct glint_iris clear = {.roundness = k % 3 == 2 ? 0.6 : 0};
+        const int n = k % 3 ? 6 : 0;
+        struct glint_iris iris = clear;
+        struct glint_setup setup;
+        struct glint_dirt *dirt;
+        double mean, share;
+
+        iris.softness = 0.03 * (1 << k / 3);
+        dirt = give(&setup, n, &iris);
+        mean = dirt->mean;
+        glint_dirt_free(dirt);
+        draw(&plain, &clear, n, 5, want);
+        draw(&plain, &iris, n, 5, pixels);
+        share = total(pixels, 0) / total(want, 0);
+        assert_true(fabs(share / mean - 1) < 0.01);
+    }
+}
+
+/* Tiles must change no bit. */
+static void test_same_bits(void **state)
+{
+    const struct glint_iris iris = {
+        .roundness = 0.4, .softness = 0.1, .dust = 0.1, .dust_seed = 9};
+
+    (void)state;
+    draw(&ghosts[1], &iris, 7, 5, want);
+    assert_true(total(want, 0) + total(want, 1) + total(want, 2) > 0);
+    for (int log2 = 3; log2 <= 6; log2++) {
+        draw(&ghosts[1], &iris, 7, log2, pixels);
+        assert_memory_equal(pixels, want, sizeof pixels);
+    }
+}
+
+/* What is out of range must be refused, as must what cells cannot draw. */
+static void test_refused(void **state)
+{
+    struct glint_flare_config c = base_config();
+    struct glint_shade shade = {.method = &glint_shade_method};
+
+    (void)state;
+    c.stop.shade = &shade;
+    assert_true(glint_flare_bytes(&c) > 0);
+    c.raster = &glint_raster_cells;
+    assert_int_equal(glint_flare_bytes(&c), 0);
+    c.raster = NULL;
+    shade.soft_q16 = 65537;
+    assert_int_equal(glint_flare_bytes(&c), 0);
+    shade.soft_q16 = 0;
+    shade.log2 = 2;
+    assert_int_equal(glint_flare_bytes(&c), 0);
+    c.stop.shade = NULL;
+    c.stop.round_q30 = 1 << 29;
+    assert_int_equal(glint_flare_bytes(&c), 0);
+    c.stop.off_q30 = 1 << 29;
+    assert_true(glint_flare_bytes(&c) > 0);
+    c.raster = &glint_raster_cells;
+    assert_int_equal(glint_flare_bytes(&c), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_dust),
+        cmocka_unit_test(test_mask),
+        cmocka_unit_test(test_turn),
+        cmocka_unit_test(test_white_and_black),
+        cmocka_unit_test(test_few),
+        cmocka_unit_test(test_half),
+        cmocka_unit_test(test_soft_edge),
+        cmocka_unit_test(test_same_bits),
+        cmocka_unit_test(test_refused),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

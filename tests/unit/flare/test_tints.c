@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Ghosts with tints: light must follow gain and tint, muted ghosts must cost
+ * nothing, and tints of one must change no bit.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/real.h"
+#include "glint/flare.h"
+#include "support/model_builder.h"
+#include "support/models/frame_parts.h"
+
+enum { WIDTH = 160, HEIGHT = 120, SAMPLES = 3 * WIDTH * HEIGHT, GHOSTS = 16 };
+
+struct fixture {
+    struct model_image m;
+    struct glint_lens lens;
+    struct glint_wave wave[2];
+    struct glint_light light;
+    struct glint_flare_frame rays;
+    struct glint_flare_config cfg;
+    struct glint_tint tint[GHOSTS];
+    struct glint_flare_stats stats;
+    int32_t px_q20[SAMPLES];
+    double sum[3]; /* light of the picture, display white times pixels */
+};
+
+static struct fixture *open_fixture(void)
+{
+    struct fixture *f = calloc(1, sizeof *f);
+
+    assert_non_null(f);
+    f->m = model_auto();
+    f->lens = model_open(&f->m);
+    assert_true(f->lens.header->n_ghosts <= GHOSTS);
+    frame_waves(f->wave);
+    f->light = frame_light();
+    f->rays = frame_rays(&f->lens, f->wave, 32);
+    f->cfg = frame_config(WIDTH, HEIGHT, 5);
+    f->cfg.max_bundles = 16;
+    f->cfg.max_vertices = 40000;
+    f->cfg.max_primitives = 20000;
+    f->cfg.max_refs = 40000;
+    for (int i = 0; i < GHOSTS; i++)
+        f->tint[i] = (struct glint_tint){{16384, 16384, 16384}, real_of(1, 0)};
+    return f;
+}
+
+static void close_fixture(struct fixture *f)
+{
+    free(f->m.data);
+    free(f);
+}
+
+static void draw(struct fixture *f)
+{
+    struct glint_image image = {
+        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+    const size_t bytes = glint_flare_bytes(&f->cfg);
+    struct glint_flare *flare;
+    void *mem;
+
+    memset(f->px_q20, 0, sizeof f->px_q20);
+    memset(f->sum, 0, sizeof f->sum);
+    glint_image_place(&image, f->px_q20);
+    assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
+    assert_int_equal(glint_flare_init(&flare, &f->cfg, mem, bytes), GLINT_OK);
+    glint_flare_plan(flare, &f->rays, &f->light, 1);
+    glint_flare_bin(flare, &f->stats);
+    glint_flare_draw(flare, &image);
+    free(mem);
+    for (int i = 0; i < SAMPLES; i++)
+        f->sum[i % 3] += f->px_q20[i] * 0x1p-20;
+}
+
+static void assert_share(double got, double want)
+{
+    assert_true(fabs(got - want) <= 1e-3 * fabs(want));
+}
+
+static void test_ones_change_no_bit(void **state)
+{
+    static int32_t plain[SAMPLES];
+    struct fixture *f = open_fixture();
+
+    (void)state;
+    draw(f);
+    assert_true(f->sum[0] > 1);
+    memcpy(plain, f->px_q20, sizeof plain);
+    f->rays.tints = f->tint;
+    draw(f);
+    assert_memory_equal(plain, f->px_q20, sizeof plain);
+    close_fixture(f);
+}
+
+static void test_gain_and_tint(void **state)
+{
+    struct fixture *f = open_fixture();
+    double plain[3];
+
+    (void)state;
+    draw(f);
+    memcpy(plain, f->sum, sizeof plain);
+    f->rays.tints = f->tint;
+    for (int i = 0; i < GHOSTS; i++)
+        f->tint[i] = (struct glint_tint){{8192, 32768, 0}, real_of(3, 0)};
+    draw(f);
+    assert_share(f->sum[0], 1.5 * plain[0]);
+    assert_share(f->sum[1], 6 * plain[1]);
+    assert_true(f->sum[2] == 0);
+    close_fixture(f);
+}
+
+/* Ghosts that are muted one after the other must leave the sum of the others,
+ * and all of them nothing to plan. */
+static void test_mute(void **state)
+{
+    struct fixture *f = open_fixture();
+    const int n = (int)f->lens.header->n_ghosts;
+    double all, left = 0;
+    int bundles;
+
+    (void)state;
+    draw(f);
+    all = f->sum[0];
+    bundles = f->stats.bundles;
+    f->rays.tints = f->tint;
+    for (int ghost = 0; ghost < n; ghost++) {
+        for (int i = 0; i < n; i++)
+            f->tint[i].gain = real_of(i == ghost, 0);
+        draw(f);
+        left += f->sum[0];
+        assert_true(f->stats.bundles <= bundles);
+    }
+    assert_share(left, all);
+    for (int i = 0; i < n; i++)
+        f->tint[i].gain = real_of(0, 0);
+    draw(f);
+    assert_int_equal(f->stats.bundles, 0);
+    assert_true(f->sum[0] == 0);
+    close_fixture(f);
+}
+
+/* A gain must lift a ghost that no code would show. */
+static void test_faint(void **state)
+{
+    struct fixture *f = open_fixture();
+
+    (void)state;
+    f->light.power = real_of(1, -30);
+    f->rays.faintest = real_of(1, -10);
+    draw(f);
+    assert_int_equal(f->stats.bundles, 0);
+    f->rays.tints = f->tint;
+    for (int i = 0; i < GHOSTS; i++)
+        f->tint[i].gain = real_of(1, 40);
+    draw(f);
+    assert_true(f->stats.bundles > 0);
+    close_fixture(f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ones_change_no_bit),
+        cmocka_unit_test(test_gain_and_tint),
+        cmocka_unit_test(test_mute),
+        cmocka_unit_test(test_faint),
+    };
+
+    return cmocka_run_group_tests_name("tints", tests, NULL, NULL);
+}

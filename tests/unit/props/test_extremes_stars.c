@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Extremes of stars: powers from 2^-20 to 2^30 and places from a pixel's corner
+ * to 1000 pixels beside the picture, of stops of 3 to 64 blades and a circle.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/star/core_table.h"
+#include "engine/star/star_tables.h"
+#include "support/extreme.h"
+#include "support/stars/canvas.h"
+
+enum { WIDTH = 97, HEIGHT = 83, N = 3 * WIDTH * HEIGHT };
+
+static const int blades[] = {0, 3, 6, 64};
+static const double airy_px[] = {0.02, 0.4, 4};
+
+/* On a pixel's middle and its corner, on the picture's corner and sides, and
+ * 1000 pixels away on two sides. */
+static const double place[][2] = {
+    {48.5, 41.5},   {48, 41},   {0, 0},      {WIDTH, HEIGHT},
+    {WIDTH, 40.25}, {50.75, 0}, {-1000, 40}, {50, 1000 + HEIGHT}};
+enum { PLACES = sizeof place / sizeof *place };
+
+static int32_t linear_q20[N];
+static uint8_t codes[N], others[N];
+
+/* Returns the largest difference between what was drawn of a light of
+ * 2^POWER_LOG2 at PLACE and what tables give there, as a share; a step of a
+ * linear picture counts as nothing. */
+static double most_off(const struct glint_star_tables *t, const double at[2],
+                       int power_log2)
+{
+    double most = 0;
+
+    for (int k = 0; k < N / 3; k++) {
+        double rgb[3];
+
+        glint_star_tabled(t, k % WIDTH + 0.5 - at[0], k / WIDTH + 0.5 - at[1],
+                          rgb);
+        for (int c = 0; c < 3; c++) {
+            const double want = fmin(rgb[c] * exp2(power_log2 + 20), INT32_MAX);
+
+            most =
+                fmax(most, fabs(linear_q20[3 * k + c] - want) / (want + 256));
+        }
+    }
+    return most;
+}
+
+static void test_far_powers(void **state)
+{
+    double most = 0;
+
+    (void)state;
+    for (int i = 0; i < 12; i++) {
+        struct glint_star_tables *t =
+            star_canvas_tables(blades[i % 4], 7 * i, airy_px[i / 4]);
+        struct star_canvas c;
+
+        star_canvas_open(&c, WIDTH, HEIGHT, 5, 1, 1);
+        for (int ev = -20; ev <= 30; ev += 10) {
+            const double *at = place[PLACES - 1 - i % 2];
+            const struct glint_star_light light =
+                star_canvas_light(at[0], at[1], ev);
+
+            star_canvas_draw(&c, t, &light, 1, glint_real_of(0),
+                             GLINT_LINEAR_Q20, linear_q20);
+            most = fmax(most, most_off(t, at, ev));
+        }
+        star_canvas_close(&c);
+        glint_star_tables_free(t);
+    }
+    assert_true(extreme_at_most("stars: 1000 px beside, 2^-20 to 2^30, "
+                                "against tables",
+                                most, 0.03, ""));
+}
+
+/* Where a light lies within its pixel must not change its star's light. */
+static void test_corners(void **state)
+{
+    static const double within[][2] = {
+        {0, 0}, {0.5, 0.5}, {0, 0.5}, {0.25, 0.75}, {0.996, 0.004}};
+    double most = 0;
+
+    (void)state;
+    for (int i = 0; i < 12; i++) {
+        struct glint_star_tables *t =
+            star_canvas_tables(blades[i % 4], 3, airy_px[i / 4] / 4);
+        struct star_canvas c;
+        double low = HUGE_VAL, high = 0;
+
+        star_canvas_open(&c, WIDTH, HEIGHT, 5, 1, 1);
+        for (int k = 0; k < 5; k++) {
+            const struct glint_star_light light =
+                star_canvas_light(48 + within[k][0], 41 + within[k][1], 8);
+            double sum = 0;
+
+            star_canvas_draw(&c, t, &light, 1, glint_real_of(0),
+                             GLINT_LINEAR_Q20, linear_q20);
+            for (int p = 1; p < N; p += 3)
+                sum += linear_q20[p];
+            low = fmin(low, sum);
+            high = fmax(high, sum);
+        }
+        most = fmax(most, high / low - 1);
+        star_canvas_close(&c);
+        glint_star_tables_free(t);
+    }
+    assert_true(extreme_at_most("stars: a light on corners and middles of "
+                                "pixels, its sum",
+                                most, 0.005, ""));
+}
+
+/* Twice the power must nowhere give less light, and what cannot be seen
+ * nothing. */
+static void test_rising(void **state)
+{
+    double most = 0;
+    int dark = 0;
+
+    (void)state;
+    for (int i = 0; i < 4 * PLACES; i++) {
+        struct glint_star_tables *t =
+            star_canvas_tables(blades[i % 4], 1, airy_px[i % 3]);
+        struct star_canvas c;
+
+        star_canvas_open(&c, WIDTH, HEIGHT, 5, 1, 1);
+        memset(others, 0, sizeof others);
+        for (int ev = -20; ev <= 30; ev++) {
+            const struct glint_star_light light =
+                star_canvas_light(place[i / 4][0], place[i / 4][1], ev);
+
+            star_canvas_draw(&c, t, &light, 1,
+                             glint_real_of(0.25 / 255 / 12.92), GLINT_RGB24,
+                             codes);
+            for (int k = 0; k < N; k++) {
+                most = fmax(most, others[k] - codes[k]);
+                dark += ev < -12 && codes[k] > 0;
+            }
+            memcpy(others, codes, sizeof others);
+        }
+        star_canvas_close(&c);
+        glint_star_tables_free(t);
+    }
+    assert_true(extreme_at_most("stars: codes that fall as power doubles, "
+                                "2^-20 to 2^30",
+                                most, 1, "codes"));
+    assert_true(
+        extreme_at_most("stars: codes lit below 2^-12", dark, 0, "codes"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_far_powers),
+                                       cmocka_unit_test(test_corners),
+                                       cmocka_unit_test(test_rising)};
+
+    return cmocka_run_group_tests_name("extremes: stars", tests, NULL, NULL);
+}

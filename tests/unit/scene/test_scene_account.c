@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a scene is told to have drawn: fates of objects, what hides what, and
+ * counts that are known beforehand.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/scene/account.h"
+#include "support/models/scene_builder.h"
+
+enum { UNIT = 1 << 16, WIDTH = 200, HEIGHT = 120, MOST = 8 };
+
+static struct scene_file file;
+static void *mem;
+static struct glint_scene_part object[MOST], all;
+static int16_t seen[WIDTH * HEIGHT];
+
+static struct glint_scene *account(int edge_samples, int half)
+{
+    const struct glint_scene_model model = scene_open(&file);
+    struct glint_scene_config cfg;
+    struct glint_scene_stats stats;
+    struct glint_scene *s = NULL;
+    size_t bytes;
+
+    glint_scene_defaults(&cfg, WIDTH, HEIGHT);
+    cfg.parts.bounces = &glint_scene_bounces;
+    cfg.edge_samples = edge_samples;
+    cfg.half_shading = half;
+    bytes = glint_scene_bytes(&cfg, &model);
+    free(mem);
+    assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
+    assert_int_equal(glint_scene_init(&s, &cfg, &model, mem, bytes), GLINT_OK);
+    glint_scene_begin(s, &stats);
+    glint_scene_account(s, object, &all, seen);
+    return s;
+}
+
+static void test_fates(void **state)
+{
+    uint32_t m;
+
+    (void)state;
+    scene_begin(&file);
+    m = scene_material(&file, "m");
+    scene_sphere(&file, "near", m, 0, 0, 4 * UNIT, UNIT);
+    scene_sphere(&file, "far", m, 0, 0, 8 * UNIT, UNIT);
+    scene_sphere(&file, "back", m, 0, 0, -4 * UNIT, UNIT);
+    scene_sphere(&file, "aside", m, 40 * UNIT, 0, 4 * UNIT, UNIT);
+    scene_sphere(&file, "dot", m, 2 * UNIT, UNIT / 2, 400 * UNIT, UNIT / 512);
+    scene_sphere(&file, "off", m, 0, 0, 3 * UNIT, UNIT);
+    file.object[5].hidden = 1;
+    account(4, 0);
+    assert_int_equal(object[0].fate, GLINT_SCENE_DRAWN);
+    assert_int_equal(object[1].fate, GLINT_SCENE_COVERED);
+    assert_int_equal(object[1].by, 0);
+    assert_int_equal(object[2].fate, GLINT_SCENE_BEHIND);
+    assert_int_equal(object[3].fate, GLINT_SCENE_OUTSIDE);
+    assert_int_equal(object[4].fate, GLINT_SCENE_SMALL);
+    assert_int_equal(object[5].fate, GLINT_SCENE_OFF);
+    for (int i = 0; i < 6; i++)
+        assert_int_equal(object[i].count[GLINT_SCENE_SAMPLED] > 0, i == 0);
+    assert_int_equal(seen[HEIGHT / 2 * WIDTH + WIDTH / 2], 0);
+    assert_int_equal(seen[0], -1);
+}
+
+/* A ball at 4 of radius 1 has tan = 1 / sqrt 15 about it: with 100 pixels a
+ * unit of tangent 2095 of them, under a lamp and a sun that see half of it. */
+static void test_counts(void **state)
+{
+    static const int32_t toward_q30[3] = {1 << 30, 0, 0};
+    static const int32_t at[3] = {0, 0, -1000 * UNIT};
+    const double area = 3.14159265 * 1e4 / 15;
+    int64_t full[GLINT_SCENE_ITEMS];
+    uint32_t m;
+
+    (void)state;
+    scene_begin(&file);
+    m = scene_material(&file, "m");
+    scene_sphere(&file, "ball", m, 0, 0, 4 * UNIT, UNIT);
+    scene_sun(&file, toward_q30);
+    scene_lamp(&file, at, UNIT);
+    file.header.shadow = 1;
+    file.light[0].radius = 1 << 20;
+    account(4, 0);
+    memcpy(full, object[0].count, sizeof full);
+    assert_true(fabs((double)full[GLINT_SCENE_SAMPLED] / 4 / area - 1) < 0.01);
+    assert_int_equal(full[GLINT_SCENE_SHADED], full[GLINT_SCENE_COVERING]);
+    assert_int_equal(full[GLINT_SCENE_COVERING],
+                     all.count[GLINT_SCENE_COVERING]);
+    /* the lamp sees all of it, the sun half, by four points */
+    assert_true(fabs((double)full[GLINT_SCENE_LIT] /
+                         (1.5 * (double)full[GLINT_SCENE_SHADED]) -
+                     1) < 0.03);
+    assert_true(
+        fabs((double)(full[GLINT_SCENE_SHADOWS] + full[GLINT_SCENE_RAYS]) /
+                 (3 * (double)full[GLINT_SCENE_SHADED]) -
+             1) < 0.03);
+    account(1, 0);
+    assert_true(fabs((double)object[0].count[GLINT_SCENE_SAMPLED] / area - 1) <
+                0.02);
+    account(4, 1);
+    assert_true(object[0].count[GLINT_SCENE_SHADED] <
+                full[GLINT_SCENE_SHADED] * 2 / 5);
+    assert_int_equal(object[0].count[GLINT_SCENE_COVERING],
+                     full[GLINT_SCENE_COVERING]);
+    /* what mirrors is shaded at each sample */
+    file.material[0].reflect_q15 = 1 << 14;
+    account(4, 0);
+    assert_int_equal(object[0].count[GLINT_SCENE_BOUNCED],
+                     full[GLINT_SCENE_SAMPLED]);
+}
+
+static void test_hider(void **state)
+{
+    static const int32_t toward_q30[3] = {0, 0, 1 << 30};
+    struct glint_scene *s;
+    uint32_t m;
+
+    (void)state;
+    scene_begin(&file);
+    m = scene_material(&file, "m");
+    scene_sphere(&file, "aside", m, 2 * UNIT, 0, 4 * UNIT, UNIT);
+    scene_sphere(&file, "before", m, 0, 0, 4 * UNIT, UNIT);
+    scene_sun(&file, toward_q30);
+    s = account(1, 0);
+    assert_int_equal(glint_scene_hider(s, 0), 1);
+    glint_scene_show(s, 1, 0);
+    assert_int_equal(glint_scene_hider(s, 0), -1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_fates),
+        cmocka_unit_test(test_counts),
+        cmocka_unit_test(test_hider),
+    };
+    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+
+    free(mem);
+    return failed;
+}

@@ -1,0 +1,761 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Scenes on pictures: that they are the same however they are drawn, in every
+ * format; that meshes do not leak; what the lens is told of lights.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/flare.h"
+#include "scene/state.h"
+#include "support/model_builder.h"
+#include "support/models/scene_builder.h"
+#include "support/rng.h"
+#include "support/shuffle.h"
+
+enum {
+    UNIT = 1 << 16,
+    ONE_Q30 = 1 << 30,
+    WIDTH = 131,
+    HEIGHT = 77,
+    BYTES = WIDTH * HEIGHT * 12
+};
+
+static struct scene_file file;
+static void *mem;
+
+static const struct glint_scene_parts all_parts = {
+    &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces};
+
+static struct glint_scene_config defaults(void)
+{
+    struct glint_scene_config cfg;
+
+    glint_scene_defaults(&cfg, WIDTH, HEIGHT);
+    cfg.parts = all_parts;
+    return cfg;
+}
+
+static struct glint_scene *start(const struct glint_scene_config *cfg,
+                                 struct glint_scene_stats *stats)
+{
+    const struct glint_scene_model model = scene_open(&file);
+    const size_t bytes = glint_scene_bytes(cfg, &model);
+    struct glint_scene *s = NULL;
+
+    assert_true(bytes > 0);
+    free(mem);
+    assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
+    assert_int_equal(glint_scene_init(&s, cfg, &model, mem, bytes - 1),
+                     GLINT_E_MEMORY);
+    assert_null(s);
+    memset(mem, 0xa5, bytes); /* dirty memory shows what is left unset */
+    assert_int_equal(glint_scene_init(&s, cfg, &model, mem, bytes), GLINT_OK);
+    glint_scene_begin(s, stats);
+    return s;
+}
+
+/* A closed mesh about the origin: a bumpy ball. */
+static uint32_t add_ball_mesh(double size)
+{
+    enum { SIDES = 16, RINGS = 9, N = SIDES * RINGS + 2 };
+    static int32_t at[N][3];
+    static uint32_t t[2 * SIDES * RINGS][3];
+    uint32_t seed = 5;
+    int n;
+
+    for (int i = 0; i < N; i++) {
+        const double b = i < N - 2 ? 3.14159265 * (i / SIDES + 1) / (RINGS + 1)
+                                   : 3.14159265 * (i - N + 2);
+        const double a = 6.2831853 * (i % SIDES) / SIDES;
+        const double r = size * UNIT * (.8 + .2 * rng_unit(&seed));
+
+        at[i][0] = (int32_t)lround(r * sin(b) * cos(a));
+        at[i][1] = (int32_t)lround(r * sin(b) * sin(a));
+        at[i][2] = (int32_t)lround(r * cos(b));
+    }
+    n = scene_ball(RINGS, SIDES, t);
+    return scene_mesh(&file, (const int32_t(*)[3])at, NULL, NULL, N,
+                      (const uint32_t(*)[3])t, n);
+}
+
+/* Balls, a mesh and a floor, which mirror, let through and have a texture. */
+static void make(void)
+{
+    static const int32_t sun[3] = {ONE_Q30 / 5 * 3, ONE_Q30 / 5 * 4, 0};
+    static const int32_t lamp[3] = {-3 * UNIT, 5 * UNIT, 2 * UNIT};
+    uint8_t rgb[3 * 64];
+
+    for (int i = 0; i < 3 * 64; i++)
+        rgb[i] = (uint8_t)(i * 37);
+    scene_begin(&file);
+    file.header.shadow = file.header.flare = 1;
+    scene_material(&file, "plain");
+    scene_material(&file, "mirror");
+    scene_material(&file, "glass");
+    scene_material(&file, "wood");
+    file.material[0].diffuse_q15 = 26000;
+    file.material[0].specular_q15 = 6000;
+    file.material[1].diffuse_q15 = 9000;
+    file.material[1].reflect_q15 = 20000;
+    file.material[2].diffuse_q15 = 2000;
+    file.material[2].pass_q15 = 28000;
+    file.material[2].index_q16 = 98304;
+    file.material[3].texture = scene_texture(&file, rgb, 3, 3);
+    scene_sphere(&file, "mirror", 1, -2 * UNIT, 0, 7 * UNIT, UNIT);
+    scene_sphere(&file, "glass", 2, UNIT / 2, -UNIT / 3, 5 * UNIT, UNIT / 2);
+    scene_plane(&file, "floor", 3, -UNIT);
+    file.object[scene_object(&file, "rock", 0, add_ball_mesh(1))].at[2] =
+        6 * UNIT;
+    scene_sun(&file, sun);
+    file.light[0].radius = ONE_Q30 / 20;
+    scene_lamp(&file, lamp, 4 * UNIT);
+}
+
+static void fill(uint8_t *px, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        px[i] = (uint8_t)(40 + i * 7 / 2 % 90);
+}
+
+/* -------------------------------------------------------------- invariance */
+
+static void draw(struct glint_scene_config cfg, enum glint_pixel_format format,
+                 int workers, uint32_t order, uint8_t *px)
+{
+    struct glint_image image = {
+        .format = format, .width = WIDTH, .height = HEIGHT};
+    struct glint_scene_stats stats;
+    struct shuffle shuffle;
+
+    fill(px, BYTES);
+    glint_image_place(&image, px);
+    shuffle_init(&shuffle, workers, order);
+    cfg.workers = &shuffle.workers;
+    glint_scene_draw(start(&cfg, &stats), &image);
+    assert_int_equal(stats.objects, 4);
+    assert_int_equal(stats.dropped_objects, 0);
+}
+
+static void test_any_order(void **state)
+{
+    static uint8_t px[2][BYTES];
+
+    (void)state;
+    make();
+    for (int format = GLINT_RGB24; format <= GLINT_RGB565; format++) {
+        static const int samples[4] = {4, 16, 8, 1};
+        struct glint_scene_config cfg = defaults();
+        const size_t bytes =
+            glint_image_bytes((enum glint_pixel_format)format, WIDTH, HEIGHT);
+        uint8_t before[64];
+        int changed = 0;
+
+        cfg.edge_samples = samples[format % 4];
+        cfg.half_shading = format & 1;
+
+        draw(cfg, (enum glint_pixel_format)format, 1, 1, px[0]);
+        fill(px[1], BYTES);
+        for (size_t i = 0; i < bytes; i++)
+            changed += px[0][i] != px[1][i];
+        assert_true(changed > (int)bytes / 6);
+        memcpy(before, px[1] + bytes, bytes < BYTES ? 64 : 0);
+        assert_memory_equal(px[0] + bytes, px[1] + bytes, BYTES - bytes);
+        for (int log2 = 3; log2 <= 6; log2++) {
+            cfg.tile_log2 = log2;
+            draw(cfg, (enum glint_pixel_format)format, 1 + log2,
+                 77U * (uint32_t)log2, px[1]);
+            assert_memory_equal(px[0], px[1], BYTES);
+        }
+    }
+}
+
+/* ------------------------------------------------------------------- cover */
+
+static void test_nothing(void **state)
+{
+    static uint8_t px[BYTES], before[BYTES];
+    struct glint_image image = {
+        .format = GLINT_I420, .width = WIDTH, .height = HEIGHT};
+    const struct glint_scene_config cfg = defaults();
+    struct glint_scene_stats stats;
+
+    (void)state;
+    fill(px, BYTES);
+    fill(before, BYTES);
+    glint_image_place(&image, px);
+    make();
+    for (int i = 0; i < 4; i++)
+        file.object[i].hidden = 1;
+    glint_scene_draw(start(&cfg, &stats), &image);
+    assert_memory_equal(px, before, BYTES);
+    assert_int_equal(stats.objects, 0);
+    make();
+    file.header.camera.axis_q30[0][0] = -ONE_Q30; /* all but the floor behind */
+    file.header.camera.axis_q30[2][2] = -ONE_Q30;
+    file.object[2].hidden = 1;
+    glint_scene_draw(start(&cfg, &stats), &image);
+    assert_memory_equal(px, before, BYTES);
+    /* A plane that only takes shadows, where there are none. */
+    make();
+    for (int i = 0; i < 4; i++)
+        file.object[i].hidden = i != 2;
+    file.object[2].catcher_q15 = 20000;
+    glint_scene_draw(start(&cfg, &stats), &image);
+    assert_memory_equal(px, before, BYTES);
+    /* One object in a shadow there darkens it. */
+    make();
+    file.object[2].catcher_q15 = 32768;
+    file.object[0].hidden = file.object[1].hidden = 1;
+    glint_scene_draw(start(&cfg, &stats), &image);
+    assert_memory_not_equal(px, before, BYTES);
+}
+
+/* A scene of a ball alone takes no part: as many pixels are covered as the ball
+ * has, and the memory of the picture hardly counts. */
+static void test_ball_alone(void **state)
+{
+    static uint8_t px[BYTES];
+    struct glint_image image = {
+        .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
+    struct glint_scene_config cfg;
+    struct glint_scene_stats stats;
+    struct glint_scene *s;
+    int64_t sum = 0;
+
+    (void)state;
+    scene_begin(&file);
+    scene_material(&file, "m");
+    scene_sphere(&file, "ball", 0, 0, 0, 100 * UNIT, 40 * UNIT);
+    glint_scene_defaults(&cfg, WIDTH, HEIGHT);
+    s = start(&cfg, &stats);
+    memset(px, 0, sizeof px);
+    glint_image_place(&image, px);
+    glint_scene_draw(s, &image);
+    for (int i = 0; i < s->cover_across * s->cover_down; i++)
+        sum += s->cover[i];
+    /* f tan(asin(.4)) pixels of radius */
+    assert_true(
+        fabs((double)sum / 256 / (3.14159265 * pow(WIDTH / 2. * .436436, 2)) -
+             1) < 2e-3);
+    assert_true(glint_scene_bytes(&cfg, &s->model) < 120 << 10);
+}
+
+/* From inside of a closed mesh, wherever, no sample sees past it, although some
+ * vertices are behind the camera. */
+static void test_no_leaks(void **state)
+{
+    static uint8_t px[BYTES];
+    struct glint_image image = {
+        .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
+    struct glint_scene_config cfg = defaults();
+    struct glint_scene_stats stats;
+    uint32_t seed = 1;
+
+    (void)state;
+    glint_image_place(&image, px);
+    cfg.max_refs = 1 << 18;
+    for (int i = 0; i < 60; i++) {
+        struct glint_scene *s;
+        double size = exp2(rng_below(&seed, 16) - 5);
+
+        scene_begin(&file);
+        scene_material(&file, "m");
+        file.material[0].diffuse_q15 = 0;
+        scene_object(&file, "rock", 0, add_ball_mesh(size));
+        for (int k = 0; k < 3; k++)
+            file.header.camera.at[k] =
+                (int32_t)((rng_unit(&seed) - .5) * .8 * size * UNIT);
+        file.header.camera.tan_x_q24 = 1 << (20 + rng_below(&seed, 8));
+        s = start(&cfg, &stats);
+        assert_int_equal(stats.dropped_objects, 0);
+        memset(px, 255, sizeof px);
+        glint_scene_draw(s, &image);
+        for (int k = 0; k < 3 * WIDTH * HEIGHT; k++)
+            assert_int_equal(px[k], 0);
+    }
+}
+
+/* What a sample sees is what its ray meets first. */
+static void test_samples(void **state)
+{
+    const struct glint_scene_config cfg = defaults();
+    struct glint_scene_stats stats;
+    const struct glint_scene *s;
+    int n = 0, other = 0;
+
+    (void)state;
+    make();
+    s = start(&cfg, &stats);
+    for (int y = 0; y < HEIGHT; y += 32)
+        for (int x = 0; x < WIDTH; x += 32) {
+            const struct glint_box tile = {x, y,
+                                           x + 32 < WIDTH ? x + 32 : WIDTH,
+                                           y + 32 < HEIGHT ? y + 32 : HEIGHT};
+            const struct glint_scene_worker *w = &s->worker[0];
+
+            glint_scene_look(&s->worker[0], tile);
+            for (int i = 0; i < 32 * 32 * 4; i += 4) {
+                const int px = x + i / 4 % 32, py = y + i / 4 / 32;
+                struct glint_scene_ray ray;
+                struct glint_met met;
+                int32_t seen_q30[3];
+                int is;
+
+                if (px >= WIDTH || py >= HEIGHT)
+                    continue;
+                glint_view_ray(&s->view, 256 * px - 128 * (WIDTH - 1) - 96,
+                               256 * py - 128 * (HEIGHT - 1) - 32, &ray,
+                               seen_q30);
+                is = glint_scene_meet(s, &ray, GLINT_NOTHING, 0, &met);
+                n++;
+                other += w->id[i] != (is ? glint_id(met.object, met.triangle)
+                                         : GLINT_NOTHING);
+            }
+        }
+    print_message("%d of %d samples see another thing than their rays\n", other,
+                  n);
+    assert_true(n == WIDTH * HEIGHT && other <= 5);
+}
+
+/* Draws what make() makes in linear light. */
+static void draw_dials(int edge_samples, int half, int32_t *px_q20)
+{
+    struct glint_image image = {
+        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+    struct glint_scene_config cfg = defaults();
+    struct glint_scene_stats stats;
+
+    cfg.edge_samples = edge_samples;
+    cfg.half_shading = half;
+    glint_image_place(&image, px_q20);
+    memset(px_q20, 0, sizeof *px_q20 * 3 * WIDTH * HEIGHT);
+    glint_scene_draw(start(&cfg, &stats), &image);
+}
+
+/* Returns the root of the mean square difference, display white. */
+static double rms(const int32_t *a_q20, const int32_t *b_q20)
+{
+    double sum = 0;
+
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        sum += pow((a_q20[i] - b_q20[i]) / 0x1p20, 2);
+    return sqrt(sum / (3 * WIDTH * HEIGHT));
+}
+
+/* More samples of a pixel come nearer to 16 of them; of pixels that are shaded
+ * two by two those alone change whose neighbours see the same thing. */
+static void test_dials(void **state)
+{
+    static int32_t all[3 * WIDTH * HEIGHT], some[3 * WIDTH * HEIGHT];
+    double last = 1;
+    int changed = 0;
+
+    (void)state;
+    make();
+    draw_dials(16, 0, all);
+    for (int n = 1; n <= 8; n *= n == 1 ? 4 : 2) {
+        double off;
+
+        draw_dials(n, 0, some);
+        off = rms(some, all);
+        print_message("%d samples: %.1f dB\n", n, -20 * log10(off));
+        assert_true(off > 0 && off < .8 * last);
+        last = off;
+    }
+    draw_dials(16, 1, some);
+    print_message("two by two: %.1f dB\n", -20 * log10(rms(some, all)));
+    assert_true(rms(some, all) < .1);
+    for (int y = 0; y < HEIGHT - 1; y += 2)
+        for (int x = 0; x < WIDTH - 1; x += 2) {
+            const int i = 3 * (y * WIDTH + x);
+            int is = 0, alike = 1;
+
+            for (int k = 0; k < 12; k++) {
+                const int at = i + k % 6 + k / 6 * 3 * WIDTH;
+
+                is |= some[at] != all[at];
+                alike &= some[at] == some[i + k % 3];
+            }
+            assert_true(!is || alike);
+            changed += is;
+        }
+    assert_in_range(changed, 500, WIDTH * HEIGHT / 4);
+}
+
+static void test_capacity(void **state)
+{
+    struct glint_scene_config cfg = defaults();
+    struct glint_scene_stats stats;
+    const struct glint_scene_model model = (make(), scene_open(&file));
+
+    (void)state;
+    start(&cfg, &stats);
+    assert_true(stats.need_refs == stats.refs && stats.refs > 0);
+    cfg.max_refs = stats.need_refs;
+    start(&cfg, &stats);
+    assert_int_equal(stats.dropped_objects, 0);
+    cfg.max_refs--;
+    start(&cfg, &stats);
+    assert_int_equal(stats.dropped_objects, 1);
+    assert_true(stats.refs == 0 && stats.need_refs == cfg.max_refs + 1);
+    cfg.parts.bounces = NULL;
+    assert_string_equal(glint_scene_lacks(&cfg.parts, &model), "bounces");
+    assert_int_equal(glint_scene_bytes(&cfg, &model), 0);
+    cfg.parts.meshes = NULL;
+    assert_string_equal(glint_scene_lacks(&cfg.parts, &model), "meshes");
+    cfg.parts = all_parts;
+    cfg.parts.textures = NULL;
+    assert_string_equal(glint_scene_lacks(&cfg.parts, &model), "textures");
+    cfg.parts = all_parts;
+    cfg.edge_samples = 2;
+    assert_int_equal(glint_scene_bytes(&cfg, &model), 0);
+}
+
+static void test_poses(void **state)
+{
+    const struct glint_scene_config cfg = defaults();
+    const int32_t at[4] = {UNIT, 0, 9 * UNIT}, far[3] = {GLINT_SCENE_SPAN - 9};
+    const int32_t turn[4] = {ONE_Q30 / 5 * 3, 0, ONE_Q30 / 5 * 4, 0};
+    const int32_t axes[3][3] = {{ONE_Q30}, {0, ONE_Q30}, {0, 0, -ONE_Q30}};
+    const int32_t crooked[3][3] = {{ONE_Q30}, {ONE_Q30}, {0, 0, ONE_Q30}};
+    struct glint_scene_stats stats;
+    struct glint_scene *s;
+    int32_t x[3] = {1 << 20, 0, 0}, to[3];
+
+    (void)state;
+    make();
+    s = start(&cfg, &stats);
+    assert_int_equal(glint_scene_set_pose(s, 0, at, turn), GLINT_OK);
+    assert_int_equal(glint_scene_set_pose(s, 0, far, turn), GLINT_E_ARGUMENT);
+    assert_int_equal(glint_scene_set_pose(s, 4, at, turn), GLINT_E_ARGUMENT);
+    assert_int_equal(glint_scene_set_pose(s, 0, at, at), GLINT_E_ARGUMENT);
+    /* About y by 2 atan(4/3): x goes to (-.28, 0, -.96). */
+    v3_turn(&s->placed[0].turn, x, to);
+    assert_true(abs(to[0] + 293601) <= 1 && to[1] == 0 &&
+                abs(to[2] + 1006633) <= 1);
+    assert_int_equal(s->placed[0].at[2], 9 * UNIT);
+    assert_int_equal(glint_scene_set_camera(s, at, axes), GLINT_OK);
+    assert_int_equal(glint_scene_set_camera(s, at, crooked), GLINT_E_ARGUMENT);
+    assert_int_equal(glint_scene_set_light(s, 1, at), GLINT_OK);
+    assert_int_equal(glint_scene_set_light(s, 0, at), GLINT_E_ARGUMENT);
+    assert_int_equal(glint_scene_set_light(s, 2, at), GLINT_E_ARGUMENT);
+}
+
+/* ----------------------------------------------------------------- shadows */
+
+/* A place beside the objects of make(), on the floor's side of things. */
+static void random_place(uint32_t *seed, struct glint_met_surface *surface)
+{
+    static const int32_t at[3] = {0, 0, 6 * UNIT};
+
+    *surface = (struct glint_met_surface){.object = 2};
+    for (int k = 0; k < 3; k++) {
+        surface->place[k] = at[k] + (int32_t)((rng_unit(seed) - .5) * 9 * UNIT);
+        surface->face_q30[k] = k == 1 ? ONE_Q30 : 0;
+    }
+}
+
+/* The grid of a sun's shadows says what rays say that ask all there is: also
+ * far below things, beside the grid, and from points that lean. */
+static void test_shadows(void **state)
+{
+    uint32_t seed = 1;
+    int n = 0, other = 0, partly = 0, dark = 0;
+
+    (void)state;
+    for (int points = 1; points <= 16; points *= 4) {
+        struct glint_scene_config cfg = defaults();
+        struct glint_scene_stats stats;
+        struct glint_scene *s;
+
+        cfg.shadow_points = points;
+        make();
+        file.object[2].catcher_q15 = points == 4 ? 20000 : 0;
+        s = start(&cfg, &stats);
+        assert_true(s->lit[0].shadow && s->lit[0].shadow->is_ready);
+        assert_null(s->lit[1].shadow);
+        for (int i = 0; i < 20000; i++) {
+            struct glint_met_surface surface;
+            int32_t by_grid, by_rays;
+
+            random_place(&seed, &surface);
+            s->lit[0].shadow->is_ready = 1;
+            by_grid = glint_scene_reaches(s, &surface, &s->lit[0]);
+            s->lit[0].shadow->is_ready = 0;
+            by_rays = glint_scene_reaches(s, &surface, &s->lit[0]);
+            n++;
+            other += by_grid != by_rays;
+            dark += by_rays == 0;
+            partly += by_rays > 0 && by_rays < 32768;
+        }
+        glint_scene_show(s, 0, 0);
+        assert_false(s->lit[0].shadow->is_ready);
+    }
+    print_message(
+        "%d of %d places, %d dark, %d partly: %d other than by rays\n", n, n,
+        dark, partly, other);
+    assert_true(dark > 500 && partly > 200 && other <= 3);
+}
+
+/* Catchers are looked at where shadows may be, and balls by one depth: pictures
+ * are those of all pixels and of exact depths. */
+static void test_confined(void **state)
+{
+    static uint8_t px[2][BYTES];
+    struct glint_image image = {
+        .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
+    const struct glint_box all = {0, 0, WIDTH, HEIGHT};
+    const struct glint_scene_config cfg = defaults();
+    uint32_t seed = 1;
+    int less = 0, flat = 0;
+
+    (void)state;
+    for (int i = 0; i < 40; i++) {
+        struct glint_scene_stats stats;
+        struct glint_scene *s;
+
+        make();
+        file.object[2].catcher_q15 = 30000;
+        file.object[2].hidden = file.object[3].hidden = i % 3 == 0;
+        file.header.n_lights = 1;
+        for (int k = 0; k < 4; k += k == 1 ? 2 : 1)
+            for (int j = 0; j < 3; j++)
+                file.object[k].at[j] += rng_below(&seed, UNIT) - UNIT / 3;
+        s = start(&cfg, &stats);
+        for (int k = 0; k < 2; k++) {
+            fill(px[k], BYTES);
+            glint_image_place(&image, px[k]);
+            glint_scene_draw(s, &image);
+            less += k == 0 && s->placed[2].box.x1 - s->placed[2].box.x0 < WIDTH;
+            flat += k == 0 && s->placed[0].flat_depth > 0;
+            s->placed[2].box = all;
+            s->placed[2].is_seen = !file.object[2].hidden;
+            for (int j = 0; j < 4; j++)
+                s->placed[j].flat_depth = 0;
+        }
+        assert_memory_equal(px[0], px[1], BYTES);
+    }
+    print_message("%d confined, %d flat\n", less, flat);
+    assert_true(less > 10 && flat > 5);
+}
+
+/* ------------------------------------------------------------------ lights */
+
+/* A sun above the camera's axis, by its tangent. */
+static void sun_at(double x, double y)
+{
+    const double length = sqrt(x * x + y * y + 1);
+    const double to[3] = {x / length, y / length, 1 / length};
+
+    for (int k = 0; k < 3; k++)
+        file.light[0].toward_q30[k] = (int32_t)lround(ldexp(to[k], 30));
+}
+
+static double value(struct glint_real x)
+{
+    return glint_real_value(x);
+}
+
+/* Places and light of what the lens is told, and both again through the same
+ * pinhole, in doubles. */
+static void test_lights(void **state)
+{
+    const struct glint_scene_config cfg = defaults();
+    struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
+    struct glint_scene_stats stats;
+    uint32_t seed = 1;
+
+    (void)state;
+    for (int i = 0; i < 200; i++) {
+        const double x = 3 * rng_unit(&seed) - 1.5, y = rng_unit(&seed) - .5;
+        const double f = WIDTH / 2., cosine = 1 / sqrt(1 + x * x + y * y);
+        double power;
+
+        make();
+        for (int k = 0; k < 4; k++)
+            file.object[k].hidden = 1;
+        sun_at(x, y);
+        file.light[1].at[0] = (int32_t)(x * 8 * UNIT);
+        file.light[1].at[1] = (int32_t)(y * 8 * UNIT);
+        file.light[1].at[2] = 8 * UNIT;
+        assert_int_equal(glint_scene_lights(start(&cfg, &stats), lamp), 2);
+        power = 3.14159265358979 * f * f / pow(cosine, 3);
+        for (int k = 0; k < 2; k++) {
+            assert_int_equal(lamp[k].share, 16);
+            assert_true(fabs(lamp[k].x_q8 / 256. - WIDTH / 2. - f * x) < .02);
+            assert_true(fabs(lamp[k].y_q8 / 256. - HEIGHT / 2. + f * y) < .02);
+        }
+        assert_true(fabs(value(lamp[0].rgb[1]) / power - 1) < 1e-6);
+        power *= 16 * cosine * cosine / 64; /* 1 at distance 4 */
+        assert_true(fabs(value(lamp[1].rgb[1]) / power - 1) < 1e-4);
+        assert_true(abs(lamp[0].radius_q8 - (int)(256 * f * .05 / cosine)) <=
+                    1);
+    }
+    make();
+    file.header.flare = 0;
+    assert_int_equal(glint_scene_lights(start(&cfg, &stats), lamp), 0);
+}
+
+/* Scene and lens agree on where a light is: the flare's own pinhole, from the
+ * pixel that the scene gives, has the direction that the scene has. */
+static void test_lens_agrees(void **state)
+{
+    struct model_image image = model_auto();
+    const struct glint_lens lens = model_open(&image);
+    const double f =
+        glint_real_value(lens.header->focal_mm) *
+        glint_real_value(glint_flare_pixels_per_mm(&lens, WIDTH, HEIGHT));
+    struct glint_scene_config cfg = defaults();
+    struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
+    struct glint_scene_stats stats;
+    uint32_t seed = 1;
+
+    (void)state;
+    cfg.focal_q16 = llround(ldexp(f, 16));
+    for (int i = 0; i < 300; i++) {
+        const double x = .7 * rng_unit(&seed) - .35, y = rng_unit(&seed) - .5;
+        struct glint_light light;
+        double tangent;
+
+        make();
+        file.header.camera.kind = GLINT_CAMERA_LENS;
+        file.header.camera.tan_x_q24 = 0;
+        file.header.n_lights = 1;
+        for (int k = 0; k < 4; k++)
+            file.object[k].hidden = 1;
+        sun_at(x, y);
+        assert_int_equal(glint_scene_lights(start(&cfg, &stats), lamp), 1);
+        light = glint_light_from_pixel(&lens, WIDTH, HEIGHT, lamp[0].x_q8,
+                                       lamp[0].y_q8);
+        tangent = (double)light.sine_q30 / light.cosine_q30;
+        assert_true(fabs(f * (tangent * light.cos_q30 / ONE_Q30 - x)) < .01);
+        assert_true(fabs(f * (tangent * light.sin_q30 / ONE_Q30 - y)) < .01);
+    }
+    free(image.data);
+}
+
+/* Behind a ball a sun's share falls to nothing, and comes back. */
+static void test_hidden_light(void **state)
+{
+    const struct glint_scene_config cfg = defaults();
+    struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
+    struct glint_scene_stats stats;
+    int last = 16, levels = 0;
+
+    (void)state;
+    make();
+    file.header.n_lights = 1;
+    for (int k = 1; k < 4; k++)
+        file.object[k].hidden = 1;
+    for (int i = 0; i <= 60; i++) {
+        int share;
+
+        sun_at(-2 / 7. + .3 - i * .005, 0);
+        assert_int_equal(glint_scene_lights(start(&cfg, &stats), lamp), 1);
+        share = lamp[0].share;
+        assert_true(share <= last);
+        levels += share < last;
+        last = share;
+    }
+    assert_true(last == 0 && levels >= 6);
+}
+
+/* Lamps of the picture go by what covers them. */
+static void test_cover(void **state)
+{
+    static uint8_t px[BYTES];
+    struct glint_image image = {
+        .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
+    const struct glint_scene_config cfg = defaults();
+    struct glint_scene_stats stats;
+    struct glint_scene *s;
+
+    (void)state;
+    glint_image_place(&image, px);
+    make();
+    file.object[2].hidden = 1;
+    s = start(&cfg, &stats);
+    glint_scene_draw(s, &image);
+    /* the mesh's middle, and a corner */
+    assert_int_equal(glint_scene_cover(s, 128 * WIDTH, 128 * HEIGHT, 256), 256);
+    assert_int_equal(glint_scene_cover(s, 256, 256, 2000), 0);
+    assert_int_equal(glint_scene_cover(s, -99999, 256, 2000), 0);
+    assert_in_range(glint_scene_cover(s, 128 * WIDTH, 128 * HEIGHT, 256 * 60),
+                    20, 90);
+}
+
+static int64_t drawn_cover(const struct glint_image *image)
+{
+    const struct glint_scene_config cfg = defaults();
+    struct glint_scene_stats stats;
+    struct glint_scene *s = start(&cfg, &stats);
+    int64_t sum = 0;
+
+    memset(image->plane[0], 128, WIDTH * HEIGHT * 3);
+    glint_scene_draw(s, image);
+    for (int i = 0; i < s->cover_across * s->cover_down; i++)
+        sum += s->cover[i];
+    return sum;
+}
+
+/* A shadow on a catcher darkens the picture, but hides no lamp in it. */
+static void test_shadow_hides_nothing(void **state)
+{
+    static uint8_t px[BYTES], alone[BYTES];
+    struct glint_image image = {
+        .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
+    int64_t cover;
+    int n_dark = 0;
+
+    (void)state;
+    glint_image_place(&image, px);
+    make();
+    file.header.n_lights = 1;
+    sun_at(0, 20);
+    file.object[1].hidden = file.object[2].hidden = file.object[3].hidden = 1;
+    file.object[2].catcher_q15 = 32768;
+    cover = drawn_cover(&image);
+    memcpy(alone, px, sizeof alone);
+    file.object[2].hidden = 0;
+    assert_true(cover > 0);
+    assert_int_equal(drawn_cover(&image), cover);
+    for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
+        n_dark += px[i] < alone[i];
+    assert_true(n_dark > 100);
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    free(mem);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_any_order),
+        cmocka_unit_test(test_nothing),
+        cmocka_unit_test(test_no_leaks),
+        cmocka_unit_test(test_ball_alone),
+        cmocka_unit_test(test_samples),
+        cmocka_unit_test(test_dials),
+        cmocka_unit_test(test_capacity),
+        cmocka_unit_test(test_poses),
+        cmocka_unit_test(test_lights),
+        cmocka_unit_test(test_lens_agrees),
+        cmocka_unit_test(test_hidden_light),
+        cmocka_unit_test(test_cover),
+        cmocka_unit_test(test_shadow_hides_nothing),
+        cmocka_unit_test(test_shadows),
+        cmocka_unit_test(test_confined)};
+
+    return cmocka_run_group_tests(tests, NULL, tear_down);
+}

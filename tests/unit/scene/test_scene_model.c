@@ -1,0 +1,257 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The checks of a baked scene, rule by rule.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/blob.h"
+#include "support/rng.h"
+#include "support/models/scene_builder.h"
+
+static struct scene_file file;
+
+/* A scene with one of everything. */
+static struct scene_file *make(void)
+{
+    static const int32_t at[4][3] = {
+        {0, 0, 0}, {4000, 0, 0}, {0, 4000, 0}, {0, 0, 4000}};
+    static const int32_t uv_q16[4][2] = {{0, 0}, {65536, 0}, {0, 65536}};
+    static const int32_t up_q30[3] = {0, 1 << 30, 0}, above[3] = {0, 5000, 0};
+    static const int32_t normal_q30[4][3] = {
+        {1 << 30}, {1 << 30}, {1 << 30}, {1 << 30}};
+    static const uint32_t t[4][3] = {
+        {0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
+    static const uint8_t rgb[3 * 8] = {1, 2, 3};
+
+    scene_begin(&file);
+    scene_material(&file, "white");
+    scene_texture(&file, rgb, 2, 1);
+    scene_mesh(&file, at, uv_q16, normal_q30, 4, t, 4);
+    scene_sphere(&file, "ball", 0, 0, 0, 3000, 1000);
+    scene_plane(&file, "floor", 0, -500);
+    scene_object(&file, "cup", 0, 0);
+    scene_sun(&file, up_q30);
+    scene_lamp(&file, above, 5000);
+    return &file;
+}
+
+/* Returns why the scene is refused as it is; NULL: it is accepted. */
+static const char *reason_of(const struct scene_file *s)
+{
+    struct glint_scene_model model = {0};
+    const char *reason = NULL;
+
+    if (glint_scene_open(&model, s->data, s->bytes, &reason) == GLINT_OK)
+        return NULL;
+    assert_non_null(reason);
+    assert_null(model.header); /* left alone */
+    return reason;
+}
+
+static void refuses(struct scene_file *s, const char *expected)
+{
+    const char *reason;
+
+    scene_seal(s);
+    reason = reason_of(s);
+    assert_non_null(reason);
+    assert_string_equal(reason, expected);
+}
+
+static void test_accepted(void **state)
+{
+    struct glint_scene_model m = scene_open(make());
+
+    (void)state;
+    assert_ptr_equal(m.header, file.data);
+    assert_string_equal(m.object[2].name, "cup");
+    assert_int_equal(glint_scene_find(&m, "floor"), 1);
+    assert_int_equal(glint_scene_find(&m, "flo"), -1);
+    assert_int_equal(glint_scene_find(&m, "floors"), -1);
+    assert_true(m.mesh[0].uv_at && m.light[1].kind == GLINT_LIGHT_LAMP);
+}
+
+static void test_truncated(void **state)
+{
+    struct glint_scene_model model;
+    const char *reason;
+
+    (void)state;
+    scene_seal(make());
+    for (size_t bytes = 8; bytes < file.bytes; bytes++) {
+        void *copy = malloc(bytes);
+
+        memcpy(copy, file.data, bytes);
+        assert_int_equal(glint_scene_open(&model, copy, bytes, &reason),
+                         GLINT_E_FORMAT);
+        assert_string_equal(reason, "the scene is truncated");
+        free(copy);
+    }
+    file.data[20] ^= 1;
+    assert_string_equal(reason_of(&file),
+                        "the checksum is wrong: the scene is damaged");
+}
+
+/* Sets MEMBER of a whole scene to VALUE and expects REASON. */
+#define REFUSES(member, value, reason) \
+    (make(), file.member = (value), refuses(&file, (reason)))
+
+static void test_header(void **state)
+{
+    (void)state;
+    REFUSES(header.variant, 2, "the scene's variant is unknown");
+    REFUSES(header.unit_log2, 61, "the scene's unit is out of range");
+    REFUSES(header.shadow, 2, "the scene's settings are unknown");
+    REFUSES(header.highlights, 9, "the scene's settings are unknown");
+    REFUSES(header.background_q15[1], 1,
+            "the background's colour is out of range");
+    REFUSES(header.n_lights, 17, "the scene has too many of a kind");
+    REFUSES(header.name[0], 7, "the name has a control character");
+    REFUSES(header.camera.kind, 3, "the camera's kind is unknown");
+    REFUSES(header.camera.at[2], GLINT_SCENE_SPAN, "the camera is too far out");
+    REFUSES(header.camera.axis_q30[0][1], 1 << 28,
+            "the camera's axes are no units, or not at right angles");
+    REFUSES(header.camera.tan_x_q24, 0, "the camera's field is out of range");
+    REFUSES(header.camera.tan_y_q24, 1, "the camera's field is out of range");
+}
+
+static void test_lights(void **state)
+{
+    (void)state;
+    REFUSES(light[0].kind, 2, "a light's kind is unknown");
+    REFUSES(light[0].name[0], 0,
+            "a light's name is empty, endless or not printable");
+    REFUSES(light[0].at[0], 1, "a light is too far out, or too large");
+    REFUSES(light[1].radius, -1, "a light is too far out, or too large");
+    REFUSES(light[0].toward_q30[0], 1 << 29,
+            "a light's direction is no unit vector");
+    REFUSES(light[1].toward_q30[0], 1, "a light's direction is no unit vector");
+    REFUSES(light[0].rgb[2].mantissa, -(1 << 30),
+            "a light is negative or not normalised");
+}
+
+static void test_materials(void **state)
+{
+    (void)state;
+    REFUSES(material[0].name[2], ' ',
+            "a material's name is empty, endless or not printable");
+    REFUSES(material[0].ambient_q15, 1,
+            "a material's weights sum to more than 1");
+    REFUSES(material[0].pass_q15, 32769,
+            "a material's weight or colour is not 0 .. 1");
+    REFUSES(material[0].power_q8, 255,
+            "a material's power or index is out of range");
+    REFUSES(material[0].index_q16, 0,
+            "a material's power or index is out of range");
+    REFUSES(material[0].texture, 1, "a material's texture is out of range");
+    REFUSES(material[0].zero, 1, "a member that must be 0 is not");
+    REFUSES(texture[0].width_log2, 13, "a texture is too large");
+    REFUSES(texture[0].height_log2, 12, "a table lies outside of the file");
+}
+
+/* A list of a grid that lacks a triangle, or has one twice, is refused. */
+static void test_grid_lists(void **state)
+{
+    const struct glint_scene_mesh *m = &file.mesh[0];
+    uint32_t *start, *ref, cells, end;
+
+    (void)state;
+    make();
+    cells = m->cells[0] * m->cells[1] * m->cells[2];
+    start = file.data + m->start_at / 4;
+    end = start[cells];
+    for (uint32_t i = 0; i <= cells; i++)
+        start[i] -= start[i] == end;
+    refuses(&file, "a grid's list lacks a triangle");
+    make();
+    ref = file.data + m->ref_at / 4;
+    assert_true(start[1] > 1);
+    ref[0] = ref[1];
+    refuses(&file, "a grid's list does not rise");
+    make();
+    scene_seal(&file);
+    assert_null(reason_of(&file));
+}
+
+static void test_meshes(void **state)
+{
+    (void)state;
+    REFUSES(mesh[0].radius, 2000, "a vertex is outside of its mesh's ball");
+    REFUSES(mesh[0].radius, GLINT_SCENE_SPAN / 2,
+            "a mesh is too large or too far out");
+    REFUSES(mesh[0].n_vertices, 3, "a triangle's vertex is out of range");
+    REFUSES(mesh[0].n_vertices, 1 << 30, "a table lies outside of the file");
+    REFUSES(mesh[0].cell_log2, 1, "a mesh's grid is out of range");
+    REFUSES(mesh[0].cells[1], 0, "a mesh's grid is out of range");
+    REFUSES(mesh[0].cells[1], 257, "a mesh's grid is out of range");
+    REFUSES(mesh[0].start_at, file.mesh[0].start_at + 4,
+            "a grid's lists do not begin at 0");
+    REFUSES(mesh[0].n_triangles, 3, "a grid's triangle is out of range");
+    REFUSES(mesh[0].uv_at, file.mesh[0].normal_at,
+            "a vertex's u or v is out of range");
+    REFUSES(mesh[0].normal_at, file.mesh[0].vertex_at,
+            "a vertex's normal is no unit vector");
+    make();
+    for (int i = 0; i < 63; i++)
+        file.mesh[file.header.n_meshes++] = file.mesh[0];
+    refuses(&file, "tables share bytes");
+}
+
+static void test_objects(void **state)
+{
+    (void)state;
+    REFUSES(object[0].kind, 3, "an object's kind is unknown");
+    REFUSES(object[0].material, 1, "an object's material is out of range");
+    REFUSES(object[0].mesh, 1, "an object's mesh is out of range");
+    REFUSES(object[2].mesh, 1, "an object's mesh is out of range");
+    REFUSES(object[0].radius, 0, "a sphere's radius is out of range");
+    REFUSES(object[1].radius, 1, "a sphere's radius is out of range");
+    REFUSES(object[0].catcher_q15, 1,
+            "a plane's share of shadow is out of range");
+    REFUSES(object[0].turn_q30[1], 1 << 24, "an object's pose is out of range");
+    REFUSES(object[0].at[0], GLINT_SCENE_SPAN - 1000,
+            "an object is too far out");
+    make();
+    file.object[0].at[0] = GLINT_SCENE_SPAN - 1001;
+    scene_open(&file);
+}
+
+/* Whatever one word of a sealed file becomes, opening reads nothing outside of
+ * it (asan) and ends. */
+static void test_any_word(void **state)
+{
+    static const uint32_t value[] = {0, 1, 0x7fffffff, 0x80000000, 0xffffffff};
+    uint32_t seed = 1;
+
+    (void)state;
+    scene_seal(make());
+    for (size_t i = 4; i < file.bytes / 4; i++)
+        for (int k = 0; k < 6; k++) {
+            uint32_t *copy = malloc(file.bytes);
+            struct glint_scene_model model;
+            const char *reason;
+
+            memcpy(copy, file.data, file.bytes);
+            copy[i] = k < 5 ? value[k] : rng_bits(&seed);
+            glint_blob_seal(copy, file.bytes);
+            glint_scene_open(&model, copy, file.bytes, &reason);
+            free(copy);
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_accepted),  cmocka_unit_test(test_truncated),
+        cmocka_unit_test(test_header),    cmocka_unit_test(test_lights),
+        cmocka_unit_test(test_materials), cmocka_unit_test(test_grid_lists),
+        cmocka_unit_test(test_meshes),    cmocka_unit_test(test_objects),
+        cmocka_unit_test(test_any_word)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,665 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Rays against spheres, planes and triangles: the rows of the tutorial by
+ * hand, and against exact arithmetic. Two baselines, the area test and plain
+ * Q16.16, fail where they are known to.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "scene/ray.h"
+#include "support/models/scene_builder.h"
+#include "support/rng.h"
+
+enum { ONE = 1 << 16, ONE_Q30 = 1 << 30 };
+
+static void near(int64_t x, int64_t expected, int64_t off)
+{
+    if (x < expected - off || x > expected + off)
+        fail_msg("%lld is not %lld +- %lld", (long long)x, (long long)expected,
+                 (long long)off);
+}
+
+static void is_near(const int32_t v[3], double x, double y, double z, int off)
+{
+    const double expected[3] = {x, y, z};
+
+    for (int k = 0; k < 3; k++)
+        near(v[k], llround(ldexp(expected[k], 30)), off);
+}
+
+/* Corners in units. */
+static void triangle(int32_t v[3][3], const double at[9], double size)
+{
+    for (int i = 0; i < 9; i++)
+        v[i / 3][i % 3] = (int32_t)llround(at[i] * size * ONE);
+}
+
+static int meets(const struct glint_scene_ray *ray, int32_t v[3][3],
+                 struct glint_spot_on *spot)
+{
+    const int32_t *const vertex[3] = {v[0], v[1], v[2]};
+    struct glint_sheared sheared;
+
+    glint_shear(ray, &sheared);
+    return glint_ray_triangle(&sheared, vertex, spot);
+}
+
+static const struct glint_scene_ray ahead = {{0}, {0, 0, ONE_Q30}};
+
+static const double first[9] = {0, 40, 120, 30, -40, 60, -30, -40, 60};
+
+static struct glint_scene_ray ray_to(const double from[3], const double to[3])
+{
+    struct glint_scene_ray ray;
+    const double d[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+    const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+
+    for (int k = 0; k < 3; k++) {
+        ray.at[k] = (int32_t)llround(from[k]);
+        ray.toward_q30[k] = (int32_t)llround(ldexp(d[k] / length, 30));
+    }
+    return ray;
+}
+
+/* ------------------------------------------------------------- A1, A2, A3 */
+
+static void test_a1_unit(void **state)
+{
+    const int64_t v[3] = {0, 6, 8}, zero[3] = {0};
+    uint32_t seed = 1;
+    int32_t unit_q30[3];
+
+    (void)state;
+    assert_int_equal(glint_root(100), 10);
+    assert_true(glint_unit(v, unit_q30));
+    is_near(unit_q30, 0, .6, .8, 1);
+    assert_false(glint_unit(zero, unit_q30));
+    for (int i = 0; i < 200000; i++) {
+        const int shift = rng_below(&seed, 60);
+        double length = 0;
+        int64_t w[3];
+
+        for (int k = 0; k < 3; k++) {
+            w[k] =
+                (int64_t)((uint64_t)rng_bits(&seed) << 32 | rng_bits(&seed)) >>
+                2 >> shift;
+            length += ldexp((double)w[k], -31) * ldexp((double)w[k], -31);
+        }
+        if (!glint_unit(w, unit_q30))
+            continue;
+        for (int k = 0; k < 3; k++) {
+            const double exact = ldexp((double)w[k] / sqrt(length), -1);
+
+            assert_true(fabs(unit_q30[k] - exact) < 1.1);
+        }
+    }
+}
+
+static void test_roots(void **state)
+{
+    uint32_t seed = 1;
+
+    (void)state;
+    for (uint64_t x = 0; x < 70000; x++)
+        assert_int_equal(glint_root(x), q_root(x));
+    for (int i = 0; i < 300000; i++) {
+        const uint64_t bits = (uint64_t)rng_bits(&seed) << 32 | rng_bits(&seed);
+        const uint64_t x = bits >> (i % 64), r = q_root(x);
+
+        assert_int_equal(glint_root(x), r);
+        assert_int_equal(glint_root(r * r), r);
+        assert_int_equal(glint_root(r * r - (r > 0)), r ? r - 1 : 0);
+    }
+    assert_true(glint_root(UINT64_MAX) == UINT32_MAX);
+}
+
+static void test_ratios(void **state)
+{
+    uint32_t seed = 1;
+
+    (void)state;
+    assert_int_equal(glint_ratio(5, 0), GLINT_FAR);
+    assert_int_equal(glint_ratio(0, 5), 0);
+    assert_int_equal(glint_ratio(UINT64_MAX >> 2, 1), GLINT_FAR);
+    assert_int_equal(glint_ratio(90, 1), 90);
+    for (int i = 0; i < 300000; i++) {
+        const uint64_t n = ((uint64_t)rng_bits(&seed) << 28) >> (i % 59);
+        const uint64_t d = ((uint64_t)rng_bits(&seed) << 28) >> (i / 59 % 60);
+        const double exact = (double)n / (double)(d | 1);
+        const int32_t q = glint_ratio(n, d | 1);
+
+        if (exact < GLINT_FAR - 2)
+            assert_true(fabs(q - exact) <= .5 + exact * 0x1p-29);
+        else if (exact > GLINT_FAR + 2)
+            assert_int_equal(q, GLINT_FAR);
+    }
+}
+
+static void test_a2_normal(void **state)
+{
+    int32_t v[3][3], normal_q30[3], a[3], b[3];
+    const int32_t *const clockwise[3] = {v[0], v[1], v[2]};
+    const int32_t *const back[3] = {v[0], v[2], v[1]};
+    int64_t n[3];
+
+    (void)state;
+    for (int i = 0; i < 9; i++)
+        v[i / 3][i % 3] = (int32_t)first[i];
+    v3_minus(v[1], v[0], a);
+    v3_minus(v[2], v[0], b);
+    v3_cross(a, b, n);
+    assert_true(n[0] == 0 && n[1] == 3600 && n[2] == -4800);
+    assert_true(glint_triangle_normal(clockwise, normal_q30));
+    is_near(normal_q30, 0, .6, -.8, 1); /* towards the viewer */
+    assert_true(glint_triangle_normal(back, normal_q30));
+    is_near(normal_q30, 0, -.6, .8, 1);
+}
+
+static void test_a3_plane(void **state)
+{
+    const int32_t *vertex[3];
+    int32_t v[3][3], normal_q30[3], hit[3];
+    struct glint_spot_on spot;
+
+    (void)state;
+    triangle(v, first, 1);
+    for (int k = 0; k < 3; k++)
+        vertex[k] = v[k];
+    glint_triangle_normal(vertex, normal_q30);
+    near(v3_dot(normal_q30, v[0]), -72 * (INT64_C(1) << 46), 1 << 27);
+    assert_int_equal(glint_ray_plane(&ahead, v[0], normal_q30), 90 * ONE);
+    assert_true(glint_ray_go(&ahead, 90 * ONE, hit));
+    assert_true(hit[0] == 0 && hit[1] == 0 && hit[2] == 90 * ONE);
+    assert_true(meets(&ahead, v, &spot));
+    assert_int_equal(spot.t, 90 * ONE);
+}
+
+/* ------------------------------------------------------------- A4 and A5 */
+
+static double area2(const double a[3], const double b[3], const double c[3])
+{
+    const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    const double w[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+
+    return sqrt(pow(u[1] * w[2] - u[2] * w[1], 2) +
+                pow(u[2] * w[0] - u[0] * w[2], 2) +
+                pow(u[0] * w[1] - u[1] * w[0], 2));
+}
+
+/* The baseline: a point of the plane is inside if three areas sum to the
+ * triangle's, to .005. */
+static int by_areas(const double v[9], const double p[3])
+{
+    const double s = area2(v, v + 3, v + 6);
+
+    return fabs(s - area2(v, v + 3, p) - area2(v + 3, v + 6, p) -
+                area2(v + 6, v, p)) < .005;
+}
+
+/* Returns the share of rays that the baseline takes for the other thing, of
+ * those through a box of which the triangle, its height SIZE, is a fifth; ours
+ * may differ within two steps of an edge. */
+static double area_errors(double size)
+{
+    double v[9], from[3] = {0};
+    int wrong = 0, n = 0, ours = 0;
+    uint32_t seed = 1;
+    int32_t steps[3][3];
+    struct glint_spot_on spot;
+
+    for (int i = 0; i < 9; i++)
+        v[i] = first[i] * size / 80;
+    triangle(steps, v, 1);
+    for (; n < 4000; n++) {
+        /* down from the top and across: of the triangle 0 .. 1 and -1 .. 1 */
+        const double down = .5 + 1.58 * (rng_unit(&seed) - .5);
+        const double across = 1.58 * (2 * rng_unit(&seed) - 1);
+        const double u = (down + across) / 2, w = (down - across) / 2;
+        double p[3], at[3];
+        struct glint_scene_ray ray;
+        const int is_in = u >= 0 && w >= 0 && u + w <= 1;
+
+        for (int k = 0; k < 3; k++) {
+            p[k] = v[k] + u * (v[3 + k] - v[k]) + w * (v[6 + k] - v[k]);
+            at[k] = p[k] * ONE;
+        }
+        wrong += by_areas(v, p) != is_in;
+        ray = ray_to(from, at);
+        if (fabs(u) * size > .01 * size && fabs(w) > .01 &&
+            fabs(u + w - 1) > .01)
+            ours += meets(&ray, steps, &spot) != is_in;
+    }
+    assert_int_equal(ours, 0);
+    return (double)wrong / n;
+}
+
+static void test_a4_areas(void **state)
+{
+    const double p[3] = {0, 0, 90};
+
+    (void)state;
+    near(llround(area2(first, first + 3, first + 6) * 16), 6000 * 16, 0);
+    near(llround(area2(first, first + 3, p) * 16), 1500 * 16, 0);
+    near(llround(area2(first + 6, first, p) * 16), 1500 * 16, 0);
+    near(llround(area2(first + 3, first + 6, p) * 16), 3000 * 16, 0);
+    assert_true(area_errors(80) == 0);
+    for (double size = .1; size > .005; size /= 10) {
+        const double share = area_errors(size);
+
+        print_message("areas are wrong for %.1f %% of rays at size %g\n",
+                      100 * share, size);
+        assert_true(share > (size > .05 ? .35 : .75));
+    }
+}
+
+static void test_a5_nearest(void **state)
+{
+    static const double u[9] = {0, 30, 40, 40, -30, 120, -40, -30, 120},
+                        y[9] = {-50, 30, 124, 50, 30, 124, 0, -30, 44},
+                        z[9] = {-30, 0, 37, 30, 40, 117, 30, -40, 117};
+    const double *const each[3] = {u, y, z};
+    const int expected[3] = {80, 84, 77};
+    struct glint_spot_on spot;
+    int32_t v[3][3];
+
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        triangle(v, each[i], 1);
+        assert_true(meets(&ahead, v, &spot));
+        near(spot.t, expected[i] * ONE, 1);
+    }
+}
+
+/* Edges and vertices belong to a triangle, whichever of them the ray goes
+ * through, seen from either side. */
+static void test_on_edges(void **state)
+{
+    static const double on_edge[9] = {0, -9, 50, 0, 9, 40, 9, 0, 30},
+                        on_vertex[9] = {0, 0, 50, 9, 9, 40, 9, -9, 30};
+    const double *const each[2] = {on_edge, on_vertex};
+    const int expected[2] = {45, 50};
+    struct glint_spot_on spot;
+
+    (void)state;
+    for (int i = 0; i < 12; i++) {
+        int32_t v[3][3], turned[3][3];
+
+        triangle(v, each[i % 2], 1);
+        for (int k = 0; k < 9; k++)
+            turned[k / 3][k % 3] =
+                v[(i / 6 ? 8 - k / 3 + i / 2 : k / 3 + i / 2) % 3][k % 3];
+        assert_true(meets(&ahead, turned, &spot));
+        near(spot.t, expected[i % 2] * ONE, 1);
+    }
+}
+
+/* ----------------------------------------------------------- A9, A12, A14 */
+
+static void test_a9_mirror(void **state)
+{
+    uint32_t seed = 1;
+
+    (void)state;
+    for (int i = 0; i < 100000; i++) {
+        int32_t d[3], n[3], r[3], back[3];
+        int64_t v[3], w[3];
+        double length = 0;
+
+        for (int k = 0; k < 3; k++) {
+            v[k] = (int32_t)rng_bits(&seed) >> 1;
+            w[k] = (int32_t)rng_bits(&seed) >> 1;
+        }
+        if (!glint_unit(v, d) || !glint_unit(w, n))
+            continue;
+        glint_mirror(d, n, r);
+        glint_mirror(r, n, back);
+        for (int k = 0; k < 3; k++) {
+            near(back[k], d[k], 8);
+            length += ldexp(r[k], -30) * ldexp(r[k], -30);
+        }
+        assert_true(fabs(sqrt(length) - 1) < 0x1p-28);
+    }
+}
+
+static void test_a12_bend(void **state)
+{
+    const int32_t n[3] = {0, 0, -ONE_Q30};
+    uint32_t seed = 1;
+
+    (void)state;
+    for (int i = 0; i < 100000; i++) {
+        const double index = .25 + 3.75 * rng_unit(&seed);
+        const uint32_t eta_q28 = (uint32_t)ldexp(1 / index, 28);
+        const double angle = rng_unit(&seed) * 1.57;
+        const double sine = sin(angle) * ldexp(eta_q28, -28);
+        const int32_t d[3] = {(int32_t)llround(ldexp(sin(angle), 30)), 0,
+                              (int32_t)llround(ldexp(cos(angle), 30))};
+        int32_t to[3] = {7, 7, 7};
+
+        if (fabs(sine - 1) < 1e-6)
+            continue;
+        if (!glint_bend(d, n, eta_q28, to)) {
+            assert_true(sine > 1 && to[0] == 7);
+            continue;
+        }
+        assert_true(sine < 1);
+        near(to[0], llround(ldexp(sine, 30)), 64);
+        assert_int_equal(to[1], 0);
+        near((int64_t)to[0] * to[0] + (int64_t)to[2] * to[2], INT64_C(1) << 60,
+             INT64_C(1) << 33);
+    }
+}
+
+static void test_a14_misses(void **state)
+{
+    const int32_t up[3] = {0, ONE_Q30, 0}, ground[3] = {0, -ONE, 0};
+    static const double flat[9] = {-9, 0, 10, 9, 0, 10, 0, 0, 30},
+                        line[9] = {0, 0, 10, 0, 0, 20, 0, 0, 30},
+                        point[9] = {0, 0, 9, 0, 0, 9, 0, 0, 9},
+                        side[9] = {-5, -5, 9, 5, 5, 9, 0, 0, 9};
+    const double *const each[4] = {flat, line, point, side};
+    const struct glint_scene_ray falling = {{0}, {0, -5, ONE_Q30}};
+    struct glint_spot_on spot;
+    int32_t v[3][3], n[3];
+
+    (void)state;
+    assert_int_equal(glint_ray_plane(&ahead, ground, up), 0); /* parallel */
+    assert_int_equal(glint_ray_plane(&falling, ground, up), GLINT_PLANE_END);
+    assert_int_equal(glint_ray_plane(&ahead, ahead.at, up), 0); /* within */
+    for (int i = 0; i < 4; i++) {
+        const int32_t *const vertex[3] = {v[0], v[1], v[2]};
+        struct glint_sheared sheared;
+
+        triangle(v, each[i], 1);
+        glint_shear(&ahead, &sheared);
+        assert_false(glint_ray_triangle(&sheared, vertex, &spot));
+        assert_false(glint_ray_hold(&sheared, vertex, &spot));
+        assert_int_equal(glint_triangle_normal(vertex, n), i == 0);
+    }
+    triangle(v, first, -1); /* behind */
+    assert_false(meets(&ahead, v, &spot));
+}
+
+/* --------------------------------------------------------------------- A15 */
+
+static void test_a15_sphere(void **state)
+{
+    const int32_t centre[3] = {0, 0, 10 * ONE}, far[3] = {0, 0, -10 * ONE};
+    const int32_t aside[3] = {3 * ONE, 0, 10 * ONE}, me[3] = {0, 0, ONE};
+    struct glint_chord c;
+    int32_t place[3], n[3];
+
+    (void)state;
+    /* both roots */
+    assert_true(glint_ray_sphere(&ahead, centre, 2 * ONE, &c));
+    assert_true(c.t[0] == 8 * ONE && c.t[1] == 12 * ONE);
+    glint_chord_end(&c, &ahead, centre, 0, place, n);
+    assert_true(place[0] == 0 && place[1] == 0 && place[2] == 8 * ONE);
+    is_near(n, 0, 0, -1, 0);
+    glint_chord_end(&c, &ahead, centre, 1, place, n);
+    assert_true(place[2] == 12 * ONE && n[2] == ONE_Q30);
+    /* grazing, and a step off */
+    assert_true(glint_ray_sphere(&ahead, aside, 3 * ONE, &c));
+    assert_true(c.t[0] == 10 * ONE && c.t[1] == 10 * ONE);
+    assert_false(glint_ray_sphere(&ahead, aside, 3 * ONE - 1, &c));
+    /* from inside, and behind */
+    assert_true(glint_ray_sphere(&ahead, me, 2 * ONE, &c));
+    assert_true(c.t[0] == -ONE && c.t[1] == 3 * ONE);
+    assert_true(glint_ray_sphere(&ahead, far, 2 * ONE, &c));
+    assert_true(c.t[0] < 0 && c.t[1] < 0);
+    assert_true(glint_ray_sphere(&ahead, centre, 1, &c));
+    assert_true(c.t[0] == 10 * ONE - 1 && c.t[1] == 10 * ONE + 1);
+}
+
+/* Of rays that pass a ball of radius 1/2 within a hundredth of its rim, the
+ * share that hit or miss wrongly, DISTANCE away. */
+static double rim_errors(double distance)
+{
+    const double unit = exp2(floor(log2(GLINT_FAR / 4.0 / distance)));
+    const int32_t radius = (int32_t)(unit / 2);
+    uint32_t seed = 1;
+    int wrong = 0;
+    enum { RAYS = 200000 };
+
+    for (int i = 0; i < RAYS; i++) {
+        const double a = 6.2831853 * rng_unit(&seed),
+                     b = acos(2 * rng_unit(&seed) - 1),
+                     tilt = 6.2831853 * rng_unit(&seed);
+        const double out = radius * (.99 + .02 * rng_unit(&seed));
+        const double d[3] = {sin(b) * cos(a), sin(b) * sin(a), cos(b)};
+        const double e[3] = {cos(b) * cos(a), cos(b) * sin(a), -sin(b)};
+        const double f[3] = {-sin(a), cos(a), 0};
+        long double l[3], dot = 0, square = 0;
+        struct glint_scene_ray ray = {0};
+        struct glint_chord chord;
+        int32_t centre[3];
+
+        for (int k = 0; k < 3; k++) {
+            centre[k] =
+                (int32_t)llround(d[k] * distance * unit +
+                                 out * (cos(tilt) * e[k] + sin(tilt) * f[k]));
+            ray.toward_q30[k] = (int32_t)llround(ldexp(d[k], 30));
+            l[k] = centre[k];
+            dot += l[k] * d[k];
+        }
+        for (int k = 0; k < 3; k++)
+            square += (l[k] - dot * d[k]) * (l[k] - dot * d[k]);
+        wrong += glint_ray_sphere(&ray, centre, radius, &chord) !=
+                 (square <= (long double)radius * radius);
+    }
+    return (double)wrong / RAYS;
+}
+
+static void test_a15_rim(void **state)
+{
+    (void)state;
+    for (double distance = 1; distance < 2e4; distance *= 10) {
+        const double share = rim_errors(distance);
+
+        print_message("ball of radius 0.5 at %5.0f: %.4f %% wrong\n", distance,
+                      100 * share);
+        assert_true(share <= .001);
+    }
+}
+
+/* ------------------------------------------------------------------- leaks */
+
+enum {
+    SIDES = 12,
+    RINGS = 7,
+    BALL = SIDES * RINGS + 2,
+    TRIANGLES = 2 * SIDES * RINGS
+};
+
+static void make_ball(double at[BALL][3], uint32_t t[TRIANGLES][3], double size)
+{
+    uint32_t seed = 5;
+
+    for (int i = 0; i < BALL; i++) {
+        const double b = i < BALL - 2
+                             ? 3.14159265 * (i / SIDES + 1) / (RINGS + 1)
+                             : 3.14159265 * (i - BALL + 2);
+        const double a = 6.2831853 * (i % SIDES) / SIDES;
+        const double r = size * (.7 + .3 * rng_unit(&seed));
+
+        at[i][0] = r * sin(b) * cos(a);
+        at[i][1] = r * sin(b) * sin(a);
+        at[i][2] = r * cos(b);
+    }
+    assert_int_equal(scene_ball(RINGS, SIDES, t), TRIANGLES);
+}
+
+/* The baseline: [Moller97] in numbers of 16 fraction bits. */
+static int32_t mul_q16(int32_t a, int32_t b)
+{
+    return (int32_t)(((int64_t)a * b) >> 16);
+}
+
+/* A sum that wraps. */
+static int32_t plus(int32_t a, uint32_t b)
+{
+    return (int32_t)((uint32_t)a + b);
+}
+
+static void cross_q16(const int32_t a[3], const int32_t b[3], int32_t to[3])
+{
+    for (int k = 0; k < 3; k++)
+        to[k] = plus(mul_q16(a[(k + 1) % 3], b[(k + 2) % 3]),
+                     -(uint32_t)mul_q16(a[(k + 2) % 3], b[(k + 1) % 3]));
+}
+
+static int32_t dot_q16(const int32_t a[3], const int32_t b[3])
+{
+    return plus(plus(mul_q16(a[0], b[0]), (uint32_t)mul_q16(a[1], b[1])),
+                (uint32_t)mul_q16(a[2], b[2]));
+}
+
+static int naive_meets(const struct glint_scene_ray *ray, int32_t v[3][3])
+{
+    int32_t d[3], e1[3], e2[3], s[3], p[3], q[3], det, u, w, sign;
+
+    for (int k = 0; k < 3; k++) {
+        d[k] = ray->toward_q30[k] >> 14;
+        e1[k] = v[1][k] - v[0][k];
+        e2[k] = v[2][k] - v[0][k];
+        s[k] = ray->at[k] - v[0][k];
+    }
+    cross_q16(d, e2, p);
+    det = dot_q16(e1, p);
+    cross_q16(s, e1, q);
+    u = dot_q16(s, p);
+    w = dot_q16(d, q);
+    sign = det;
+    if (det < 0) {
+        det = plus(0, -(uint32_t)det);
+        u = plus(0, -(uint32_t)u);
+        w = plus(0, -(uint32_t)w);
+    }
+    return det != 0 && u >= 0 && w >= 0 && (int64_t)u + w <= det &&
+           (dot_q16(e2, q) ^ sign) >= 0;
+}
+
+/* Aims RAYS from inside of a closed mesh, a third each at vertices, edges and
+ * well inside of triangles, and counts those that meet no triangle, or, of the
+ * last, not exactly one. */
+static int misses(double size, int is_naive)
+{
+    enum { RAYS = 1500 };
+    double at[BALL][3];
+    uint32_t t[TRIANGLES][3];
+    int n = 0;
+    uint32_t seed = 3;
+
+    make_ball(at, t, size * ONE);
+    for (int i = 0; i < RAYS; i++) {
+        const uint32_t *aim = t[rng_below(&seed, TRIANGLES)];
+        double w[3] = {.1 + rng_unit(&seed), .1 + rng_unit(&seed), 0}, from[3],
+               to[3];
+        struct glint_scene_ray ray;
+        int met = 0;
+
+        w[2] = i % 3 == 2 ? .1 + rng_unit(&seed) : 0;
+        w[1] = i % 3 == 0 ? 0 : w[1];
+        for (int k = 0; k < 3; k++) {
+            from[k] = (rng_unit(&seed) - .5) * .2 * size * ONE;
+            to[k] = 0;
+            for (int j = 0; j < 3; j++)
+                to[k] += w[j] * round(at[aim[j]][k]) / (w[0] + w[1] + w[2]);
+            from[k] = round(from[k]);
+        }
+        ray = ray_to(from, to);
+        for (int j = 0; j < TRIANGLES; j++) {
+            struct glint_spot_on spot;
+            int32_t v[3][3];
+
+            for (int k = 0; k < 9; k++)
+                v[k / 3][k % 3] = (int32_t)llround(at[t[j][k / 3]][k % 3]);
+            met += is_naive ? naive_meets(&ray, v) : meets(&ray, v, &spot);
+        }
+        n += i % 3 == 2 ? met != 1 : met == 0;
+    }
+    return n;
+}
+
+static void test_no_leaks(void **state)
+{
+    (void)state;
+    for (double size = .01; size < 3000; size *= 7)
+        assert_int_equal(misses(size, 0), 0);
+    assert_true(misses(.01, 1) > 400);
+    assert_true(misses(200, 1) > 400);
+}
+
+/* Plain Q16.16 wraps where the tutorial's first triangle is. */
+static void test_naive_wraps(void **state)
+{
+    int32_t v[3][3], a[3], b[3], n[3];
+    int64_t d = 0;
+
+    (void)state;
+    triangle(v, first, 1);
+    v3_minus(v[1], v[0], a);
+    v3_minus(v[2], v[0], b);
+    cross_q16(a, b, n);
+    for (int k = 0; k < 3; k++)
+        d += ((int64_t)n[k] * v[0][k]) >> 16;
+    assert_true(d == -432000 * (int64_t)ONE && d != (int32_t)d);
+}
+
+/* Weights of a hit place it where it is. */
+static void test_weights(void **state)
+{
+    uint32_t seed = 9;
+
+    (void)state;
+    for (int i = 0; i < 20000; i++) {
+        double w[3], from[3], to[3] = {0}, sum = 0;
+        struct glint_spot_on spot;
+        struct glint_scene_ray ray;
+        int32_t v[3][3], hit[3];
+
+        for (int k = 0; k < 3; k++) {
+            from[k] = rng_below(&seed, 1000);
+            sum += w[k] = .02 + rng_unit(&seed);
+        }
+        for (int k = 0; k < 9; k++) {
+            v[k / 3][k % 3] = (k % 3 == 2) * 40000 + rng_below(&seed, 30000);
+            to[k % 3] += w[k / 3] / sum * v[k / 3][k % 3];
+        }
+        ray = ray_to(from, to);
+        if (!meets(&ray, v, &spot))
+            continue; /* rounding of a sliver's ray */
+        assert_true(glint_ray_go(&ray, spot.t, hit));
+        assert_int_equal(spot.part_q30[0] + spot.part_q30[1] + spot.part_q30[2],
+                         ONE_Q30);
+        for (int k = 0; k < 3; k++) {
+            int64_t at = 0;
+
+            for (int j = 0; j < 3; j++)
+                at += (int64_t)spot.part_q30[j] * v[j][k];
+            near(q_shift(at, 30), hit[k], 2);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a1_unit),     cmocka_unit_test(test_roots),
+        cmocka_unit_test(test_ratios),      cmocka_unit_test(test_a2_normal),
+        cmocka_unit_test(test_a3_plane),    cmocka_unit_test(test_a4_areas),
+        cmocka_unit_test(test_a5_nearest),  cmocka_unit_test(test_on_edges),
+        cmocka_unit_test(test_a9_mirror),   cmocka_unit_test(test_a12_bend),
+        cmocka_unit_test(test_a14_misses),  cmocka_unit_test(test_a15_sphere),
+        cmocka_unit_test(test_a15_rim),     cmocka_unit_test(test_no_leaks),
+        cmocka_unit_test(test_naive_wraps), cmocka_unit_test(test_weights)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,696 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What surfaces send back: rows A6 to A13 of the tutorial, by hand or against
+ * doubles.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "scene/state.h"
+#include "support/models/scene_builder.h"
+#include "support/rng.h"
+
+enum { UNIT = 1 << 16, ONE_Q30 = 1 << 30, SIDE = 64 };
+
+static struct scene_file file;
+static void *mem;
+
+static struct glint_scene *start(int shadow_points)
+{
+    const struct glint_scene_model model = scene_open(&file);
+    struct glint_scene_config cfg;
+    struct glint_scene_stats stats;
+    struct glint_scene *s = NULL;
+    size_t bytes;
+
+    glint_scene_defaults(&cfg, SIDE, SIDE);
+    cfg.shadow_points = shadow_points;
+    cfg.parts = (struct glint_scene_parts){
+        &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces};
+    bytes = glint_scene_bytes(&cfg, &model);
+    free(mem);
+    assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
+    assert_int_equal(glint_scene_init(&s, &cfg, &model, mem, bytes), GLINT_OK);
+    glint_scene_begin(s, &stats);
+    return s;
+}
+
+static struct glint_scene_ray ray_of(double x, double y, double z, double dx,
+                                     double dy, double dz)
+{
+    const double at[3] = {x, y, z}, d[3] = {dx, dy, dz};
+    const double length = sqrt(dx * dx + dy * dy + dz * dz);
+    struct glint_scene_ray ray;
+
+    for (int k = 0; k < 3; k++) {
+        ray.at[k] = (int32_t)lround(at[k] * UNIT);
+        ray.toward_q30[k] = (int32_t)lround(ldexp(d[k] / length, 30));
+    }
+    return ray;
+}
+
+static int shade(const struct glint_scene *s, const struct glint_scene_ray *ray,
+                 struct glint_met_shade *to)
+{
+    struct glint_met_surface surface;
+    struct glint_met met;
+
+    if (!glint_scene_meet(s, ray, GLINT_NOTHING, 0, &met) ||
+        !glint_scene_surface(s, ray, &met, &surface))
+        return 0;
+    glint_scene_shade(s, ray, &surface, to);
+    return 1;
+}
+
+static int32_t red_of(const struct glint_scene *s, struct glint_scene_ray ray)
+{
+    struct glint_met_shade to;
+
+    assert_true(shade(s, &ray, &to));
+    return to.rgb_q15[0];
+}
+
+/* -------------------------------------------------------------------- A5 */
+
+/* Of three triangles behind each other the nearest is seen, whatever their
+ * order; and one that is missed, whose distance is none, is not near. */
+static void test_a5_seen(void **state)
+{
+    static const int at[4][9] = {
+        {0, 30, 40, 40, -30, 120, -40, -30, 120},
+        {-50, 30, 124, 50, 30, 124, 0, -30, 44},
+        {-30, 0, 37, 30, 40, 117, 30, -40, 117}, /* the tutorial's blue one */
+        {10, 10, 20, 20, 10, 20, 10, 20, 20}};   /* beside the ray */
+    static const uint32_t t[1][3] = {{0, 1, 2}};
+    const struct glint_scene_ray ahead = ray_of(0, 0, 0, 0, 0, 1);
+
+    (void)state;
+    for (int first = 0; first < 4; first++) {
+        struct glint_scene *s;
+        struct glint_met met;
+
+        scene_begin(&file);
+        scene_material(&file, "m");
+        for (int i = 0; i < 4; i++) {
+            int32_t v[3][3];
+
+            for (int k = 0; k < 9; k++)
+                v[k / 3][k % 3] = at[(first + i) % 4][k] * UNIT;
+            scene_object(
+                &file, (const char[2]){(char)('a' + i), 0}, 0,
+                scene_mesh(&file, (const int32_t(*)[3])v, NULL, NULL, 3, t, 1));
+        }
+        s = start(1);
+        assert_true(glint_scene_meet(s, &ahead, GLINT_NOTHING, 0, &met));
+        assert_int_equal(met.object, (6 - first) % 4);
+        assert_in_range(met.t, 77 * UNIT - 1, 77 * UNIT + 1);
+    }
+}
+
+/* -------------------------------------------------------------------- A6 */
+
+static void test_a6_corners(void **state)
+{
+    const struct glint_scene_camera camera = {
+        .kind = GLINT_CAMERA_CORNERS,
+        .axis_q30 = {{ONE_Q30}, {0, ONE_Q30}, {0, 0, ONE_Q30}},
+        .tan_x_q24 = (int32_t)lround(.8 * (1 << 24)),
+        .tan_y_q24 = (int32_t)lround(.45 * (1 << 24))};
+    struct glint_scene_view view;
+
+    (void)state;
+    assert_true(glint_view_init(&view, &camera, 640, 360, 0));
+    for (int x = 0; x < 640; x += 71)
+        for (int y = 0; y < 360; y += 359) {
+            const double expected[2] = {16. * x / 639 - 8, 4.5 - 9. * y / 359};
+            struct glint_scene_ray ray;
+            int32_t seen_q30[3];
+
+            glint_view_ray(&view, 256 * x - 128 * 639, 256 * y - 128 * 359,
+                           &ray, seen_q30);
+            for (int k = 0; k < 2; k++)
+                assert_true(fabs(10. * ray.toward_q30[k] / ray.toward_q30[2] -
+                                 expected[k]) <= 0x1p-16);
+        }
+}
+
+/* Places go to the pixel whose ray goes to them. */
+static void test_view_and_back(void **state)
+{
+    uint32_t seed = 3;
+
+    (void)state;
+    scene_begin(&file);
+    for (int i = 0; i < 20000; i++) {
+        const int x_q8 = rng_below(&seed, 1 << 16) - (1 << 15);
+        const int y_q8 = rng_below(&seed, 1 << 16) - (1 << 15);
+        struct glint_scene_ray ray;
+        struct glint_corner c;
+        struct glint_scene_view view;
+        int32_t place[3], seen[3], seen_q30[3];
+
+        file.header.camera.at[0] = rng_below(&seed, 100000);
+        file.header.camera.tan_x_q24 = (1 << 12) + rng_below(&seed, 1 << 24);
+        assert_true(glint_view_init(&view, &file.header.camera, 256, 256, 0));
+        glint_view_ray(&view, x_q8, y_q8, &ray, seen_q30);
+        assert_true(glint_ray_go(&ray, (1 << 26), place));
+        glint_view_seen(&view, place, seen);
+        c = glint_view_corner(&view, seen);
+        assert_int_equal(c.w, 1);
+        /* A step is 2^-26 of the distance. */
+        assert_true(abs(c.x - x_q8) <= 2 + 32768. * 0x1p-26 * 0x1p24 * 2 /
+                                               file.header.camera.tan_x_q24);
+        assert_true(abs(c.y - y_q8) <= 2 + 32768. * 0x1p-26 * 0x1p24 * 2 /
+                                               file.header.camera.tan_x_q24);
+    }
+}
+
+/* ---------------------------------------------------------------- A7, A8 */
+
+static void test_a7_lamp(void **state)
+{
+    const int32_t lamp[3] = {0, 40 * UNIT, 0};
+    struct glint_scene *s;
+    struct glint_met_shade to;
+    const struct glint_scene_ray down = ray_of(0, 10, 30, 0, -1, 0);
+
+    (void)state;
+    scene_begin(&file);
+    scene_plane(&file, "floor", scene_material(&file, "red"), 0);
+    file.material[0].rgb_q15[1] = file.material[0].rgb_q15[2] = 0;
+    scene_lamp(&file, lamp, 50 * UNIT); /* 1 at 50 */
+    s = start(1);
+    assert_true(shade(s, &down, &to));
+    assert_int_equal(to.cover_q8, 256);
+    assert_in_range(to.rgb_q15[0], 26212, 26216); /* 204 of 255 */
+    assert_true(to.rgb_q15[1] == 0 && to.rgb_q15[2] == 0);
+}
+
+static void test_power(void **state)
+{
+    double worst = 0;
+
+    (void)state;
+    for (int32_t k_q8 = 256; k_q8 <= 1 << 20; k_q8 += k_q8 / 7 + 1)
+        for (int i = 0; i < 20000; i++) {
+            const int32_t x_q30 =
+                i < 10000 ? ONE_Q30 - i * (1 << 12) : (i - 9999) * 107000;
+            const double exact = pow(ldexp(x_q30, -30), k_q8 / 256.);
+
+            worst = fmax(worst,
+                         fabs(glint_power_q15(x_q30, k_q8) / 32768. - exact));
+        }
+    print_message("powers are off by 1 / %.0f at most\n", 1 / worst);
+    assert_true(worst < 1. / 512);
+    assert_int_equal(glint_power_q15(ONE_Q30, 1 << 20), 32768);
+    assert_int_equal(glint_power_q15(0, 256), 0);
+    assert_int_equal(glint_power_q15(-5, 256), 0);
+}
+
+/* A ball under a sun, anywhere on it, against the formula in doubles. */
+static void test_a8_phong(void **state)
+{
+    const int32_t sun[3] = {ONE_Q30 / 5 * 3, ONE_Q30 / 5 * 4, 0};
+    struct glint_scene *s;
+    uint32_t seed = 1;
+
+    (void)state;
+    scene_begin(&file);
+    scene_sphere(&file, "ball", scene_material(&file, "m"), 0, 0, 10 * UNIT,
+                 2 * UNIT);
+    file.material[0].ambient_q15 = 3277;
+    file.material[0].diffuse_q15 = 19661;
+    file.material[0].specular_q15 = 9830;
+    file.material[0].rgb_q15[0] = 16384;
+    scene_sun(&file, sun);
+    s = start(1);
+    for (int i = 0; i < 20000; i++) {
+        const double a = 6.2831853 * rng_unit(&seed);
+        const double r = 1.99 * sqrt(rng_unit(&seed));
+        const double n[3] = {r * cos(a) / 2, r * sin(a) / 2,
+                             -sqrt(1 - r * r / 4)};
+        const double cosine = .6 * n[0] + .8 * n[1];
+        /* the eye looks along z */
+        const double gloss = fmax(0, 0 - (2 * cosine * n[2]));
+        double expected = .1 * .5;
+
+        if (cosine > 0)
+            expected += .6 * .5 * cosine + .3 * pow(gloss, 32);
+        assert_true(
+            fabs(red_of(s, ray_of(2 * n[0], 2 * n[1], 0, 0, 0, 1)) / 32768. -
+                 expected) < 2e-3);
+    }
+}
+
+/* --------------------------------------------------------------------- A10 */
+
+/* A floor under a lamp 4 above it, and a ball of radius 1 between them, its
+ * middle at height H; returns the light straight below the lamp. */
+static int32_t under_ball(double h, int hidden)
+{
+    const int32_t lamp[3] = {0, 4 * UNIT, 10 * UNIT};
+
+    scene_begin(&file);
+    file.header.shadow = 1;
+    scene_material(&file, "m");
+    scene_plane(&file, "floor", 0, 0);
+    scene_sphere(&file, "ball", 0, 0, (int32_t)(h * UNIT), 10 * UNIT, UNIT);
+    file.object[1].hidden = (uint32_t)hidden;
+    scene_lamp(&file, lamp, 4 * UNIT);
+    return red_of(start(1), ray_of(2, .5, 10, -2, -.5, 0));
+}
+
+static void test_a10_shadow(void **state)
+{
+    const int32_t lit = under_ball(2, 1);
+
+    (void)state;
+    assert_in_range(lit, 32760, 32768);
+    assert_int_equal(under_ball(2, 0), 0);      /* before the lamp */
+    assert_int_equal(under_ball(5.01, 0), lit); /* beyond it */
+    assert_int_equal(under_ball(4.99, 0), 0);   /* just reaching it */
+    assert_int_equal(under_ball(6, 0), lit);
+    assert_int_equal(under_ball(-1.01, 0), lit); /* behind the floor */
+}
+
+/* Surfaces that nothing hides are lit, to the last bit, as without shadows. */
+static void test_a10_no_acne(void **state)
+{
+    static const int32_t at[4][3] = {{-90000, -70000, 600000},
+                                     {80000, -60000, 610000},
+                                     {0, 90000, 640000},
+                                     {10000, 20000, 560003}};
+    static const uint32_t t[4][3] = {
+        {0, 2, 1}, {0, 3, 2}, {3, 1, 2}, {0, 1, 3}};
+    const int32_t sun[3] = {ONE_Q30 / 5 * 3, ONE_Q30 / 5 * 4, 0};
+    uint32_t seed = 1;
+    int n = 0;
+
+    (void)state;
+    for (int kind = 0; kind < 3; kind++)
+        for (int i = 0; i < 3000; i++) {
+            struct glint_scene_ray ray;
+            struct glint_met_shade to[2];
+            struct glint_scene *s;
+
+            if (i == 0) {
+                scene_begin(&file);
+                scene_material(&file, "m");
+                scene_sun(&file, sun);
+                if (kind == 0)
+                    scene_sphere(&file, "a", 0, 5000, -300, 9 * UNIT, 90000);
+                else if (kind == 1)
+                    scene_plane(&file, "a", 0, -3 * UNIT);
+                else
+                    scene_object(&file, "a", 0,
+                                 scene_mesh(&file, at, NULL, NULL, 4, t, 4));
+                file.header.shadow = 1;
+                start(1);
+            }
+            s = mem;
+            ray = ray_of(0, 0, 0, rng_unit(&seed) * .3 - .15,
+                         rng_unit(&seed) * .3 - .15 - .25 * (kind == 1), 1);
+            file.header.shadow = 0;
+            memcpy(file.data, &file.header, sizeof file.header);
+            if (!shade(s, &ray, &to[0]))
+                continue;
+            file.header.shadow = 1;
+            memcpy(file.data, &file.header, sizeof file.header);
+            shade(s, &ray, &to[1]);
+            assert_memory_equal(&to[0], &to[1], sizeof *to);
+            n += to[0].rgb_q15[0] > 0;
+        }
+    assert_true(n > 3000);
+}
+
+/* Across the edge of the shadow of a wide light comes all of it, then less and
+ * less, then none. */
+static void test_a10_soft(void **state)
+{
+    const int32_t up[3] = {0, ONE_Q30, 0};
+    int32_t last = 0, levels = 0;
+    struct glint_scene *s;
+
+    (void)state;
+    scene_begin(&file);
+    file.header.shadow = 1;
+    scene_material(&file, "m");
+    scene_plane(&file, "floor", 0, 0);
+    scene_sphere(&file, "ball", 0, 0, 5 * UNIT, 10 * UNIT, UNIT);
+    scene_sun(&file, up);
+    file.light[0].radius = ONE_Q30 / 10;
+    s = start(16);
+    for (int i = 0; i <= 40; i++) {
+        const int32_t light = red_of(s, ray_of(i * .05, .2, 10, 0, -1, 0));
+
+        assert_true(light >= last);
+        levels += light > last;
+        last = light;
+    }
+    assert_true(levels > 8);
+    assert_in_range(last, 32767, 32768);
+    assert_int_equal(red_of(s, ray_of(.1, .2, 10, 0, -1, 0)), 0);
+}
+
+/* ---------------------------------------------------------------- A11, A12 */
+
+static void clear(struct glint_scene_material *m)
+{
+    m->diffuse_q15 = 0;
+    m->pass_q15 = 32768;
+}
+
+/* A ball that lets all light through hides nothing: of a ball behind it, and of
+ * the picture. */
+static void test_a11_pass(void **state)
+{
+    const int32_t up[3] = {0, ONE_Q30, 0};
+    struct glint_scene *s;
+    uint32_t seed = 1;
+    int behind = 0, within = 0, rim = 0;
+
+    (void)state;
+    scene_begin(&file);
+    scene_material(&file, "m");
+    clear(&file.material[scene_material(&file, "clear")]);
+    scene_sphere(&file, "far", 0, UNIT / 2, UNIT / 3, 20 * UNIT, 3 * UNIT);
+    scene_sphere(&file, "near", 1, 0, 0, 10 * UNIT, 2 * UNIT);
+    scene_sun(&file, up);
+    s = start(1);
+    for (int i = 0; i < 20000; i++) {
+        struct glint_scene_ray ray =
+            ray_of(0, 0, i % 2 ? 9 : 0, rng_unit(&seed) * .4 - .2,
+                   rng_unit(&seed) * .4 - .2, 1);
+        struct glint_met_shade with, without;
+        struct glint_chord chord;
+        int is;
+
+        if (!glint_ray_sphere(&ray, s->placed[1].at, 2 * UNIT, &chord))
+            continue;
+        within++;
+        assert_true(shade(s, &ray, &with));
+        glint_scene_show(s, 1, 0);
+        is = shade(s, &ray, &without);
+        glint_scene_show(s, 1, 1);
+        behind += is;
+        if ((with.cover_q8 != 0) != is) {
+            rim++;
+        } else if (is) {
+            assert_int_equal(with.cover_q8, 256);
+            assert_true(abs(with.rgb_q15[1] - without.rgb_q15[1]) < 16);
+        } else {
+            assert_int_equal(with.rgb_q15[1], 0);
+        }
+    }
+    assert_true(rim <= 2); /* where the ray leaves is rounded to a step */
+    assert_true(behind > 3000 && within > behind + 3000);
+}
+
+/* The baselines of a second hit: whether a ray that goes on from where it met a
+ * ball of RADIUS stands outside of it, by its distance from the middle, MORE
+ * than the radius squared, in floats. It does not, as it has entered. */
+static int is_outside(const double middle[3], double radius, const double d[3],
+                      double more)
+{
+    const double along = middle[0] * d[0] + middle[1] * d[1] + middle[2] * d[2];
+    const double square = middle[0] * middle[0] + middle[1] * middle[1] +
+                          middle[2] * middle[2] - along * along;
+    const double t = along - sqrt(radius * radius - square);
+    float l2 = 0;
+
+    for (int k = 0; k < 3; k++) {
+        const float place = (float)t * (float)d[k];
+        const float l = (float)middle[k] - place;
+
+        l2 += l * l;
+    }
+    return l2 > (float)(radius * radius + more);
+}
+
+/* A ball that half of the light goes through, by itself: it is entered and left
+ * once by each ray, where the baselines meet it again. */
+static void test_a11_left_once(void **state)
+{
+    enum { RAYS = 100000 };
+    int n = 0, outside = 0, farther = 0;
+    uint32_t seed = 1;
+
+    (void)state;
+    while (n < RAYS) {
+        const double middle[3] = {20 * rng_unit(&seed) - 10,
+                                  20 * rng_unit(&seed) - 10,
+                                  100 + 100 * rng_unit(&seed)};
+        const double radius = 30;
+        struct glint_scene *s;
+
+        scene_begin(&file);
+        scene_material(&file, "half");
+        file.material[0].diffuse_q15 = 0;
+        file.material[0].pass_q15 = 16384;
+        scene_sphere(&file, "ball", 0, (int32_t)(middle[0] * UNIT),
+                     (int32_t)(middle[1] * UNIT), (int32_t)(middle[2] * UNIT),
+                     (int32_t)(radius * UNIT));
+        s = start(1);
+        for (int i = 0; i < 1000; i++) {
+            const double x = middle[0] / middle[2] + .4 * rng_unit(&seed) - .2;
+            const double y = middle[1] / middle[2] + .4 * rng_unit(&seed) - .2;
+            const double length = sqrt(x * x + y * y + 1);
+            const double d[3] = {x / length, y / length, 1 / length};
+            const struct glint_scene_ray ray = ray_of(0, 0, 0, x, y, 1);
+            struct glint_met_shade to;
+
+            if (!shade(s, &ray, &to))
+                continue;
+            assert_int_equal(to.cover_q8, 128);
+            outside += is_outside(middle, radius, d, 0);
+            farther += is_outside(middle, radius, d, .001);
+            n++;
+        }
+    }
+    print_message("l2 > r2 is wrong for %.1f %%, + .001 for %.1f %%\n",
+                  100. * outside / n, 100. * farther / n);
+    assert_true(outside > .3 * n && outside < .7 * n);
+    assert_true(farther > 0);
+}
+
+/* A glass ball bends rays as doubles say: what is seen in a texture behind it
+ * lies there. */
+static void test_a12_ball(void **state)
+{
+    uint8_t rgb[3 * 256];
+    struct glint_scene *s;
+    uint32_t seed = 1;
+    int n = 0;
+
+    (void)state;
+    for (int i = 0; i < 256; i++)
+        rgb[3 * i] = rgb[3 * i + 1] = rgb[3 * i + 2] = (uint8_t)i;
+    scene_begin(&file);
+    file.header.camera.tan_x_q24 = 1 << 12; /* pixels below texels */
+    scene_material(&file, "m");
+    file.material[0].ambient_q15 = 32768;
+    file.material[0].diffuse_q15 = 0;
+    file.material[0].texture = scene_texture(&file, rgb, 8, 0);
+    clear(&file.material[scene_material(&file, "glass")]);
+    file.material[1].index_q16 = 3 << 15;
+    /* a wall behind: the floor turned by 90 degrees about x, a repeat a unit */
+    scene_plane(&file, "wall", 0, 0);
+    file.object[0].at[2] = 30 * UNIT;
+    file.object[0].turn_q30[0] = 759250125;
+    file.object[0].turn_q30[1] = -759250125;
+    scene_sphere(&file, "ball", 1, 0, 0, 10 * UNIT, 2 * UNIT);
+    s = start(1);
+    for (int i = 0; i < 3000; i++) {
+        const double dx = rng_unit(&seed) * .2 - .1;
+        const double cosine0 = cos(atan(dx));
+        /* in the plane of x and z: in, across, out */
+        const double b = 10 * cosine0, q = 10 * sin(atan(dx));
+        const double t = b - sqrt(4 - q * q);
+        const double px = t * sin(atan(dx)), pz = t * cosine0 - 10;
+        const double in = asin(q / 2), out = asin(q / 3);
+        const double turn = 2 * (in - out);
+        const double phi = atan2(px, -pz);
+        const double phi_out = phi + (3.14159265358979 - 2 * out);
+        const double x = 2 * sin(phi_out), z = 10 - 2 * cos(phi_out);
+        const double heading = atan(dx) - turn;
+        const double at = x + (30 - z) * tan(heading);
+        struct glint_scene_ray ray = ray_of(0, 0, 0, dx, 0, 1);
+        struct glint_met_shade to;
+        double u = at - floor(at), code;
+
+        if (u < .02 || u > .98)
+            continue;
+        assert_true(shade(s, &ray, &to));
+        code = to.rgb_q15[0] / 32768.;
+        code = 255 * (code < .0031308 ? 12.92 * code
+                                      : 1.055 * pow(code, 1 / 2.4) - .055);
+        assert_true(fabs(code - (256 * u - .5)) < 1.6);
+        n++;
+    }
+    assert_true(n > 2500);
+}
+
+/* From within a ball of index 1.5, on rays that meet it beyond the critical
+ * angle of 41.8 degrees: such light never leaves it, and nothing is seen. */
+static void test_a12_within(void **state)
+{
+    const int32_t up[3] = {0, ONE_Q30, 0};
+    struct glint_scene *s;
+    int dark = 0;
+
+    (void)state;
+    scene_begin(&file);
+    file.header.background = GLINT_BACKGROUND_COLOUR;
+    file.header.background_q15[0] = 8192;
+    clear(&file.material[scene_material(&file, "glass")]);
+    file.material[0].index_q16 = 3 << 15;
+    scene_sphere(&file, "ball", 0, 0, 0, 0, 2 * UNIT);
+    scene_sun(&file, up);
+    s = start(1);
+    for (int i = 0; i <= 100; i++) {
+        const double x = 2 * i / 101.; /* sine of the angle: x / 2 */
+        const int32_t red = red_of(s, ray_of(x, 0, 0, 0, 0, 1));
+
+        if (fabs(x / 2 - 1 / 1.5) > .001)
+            assert_int_equal(red, x / 2 < 1 / 1.5 ? 8192 : 0);
+        dark += red == 0;
+    }
+    assert_in_range(dark, 33, 34);
+}
+
+/* --------------------------------------------------------------------- A13 */
+
+static void test_a13_texture(void **state)
+{
+    static const int32_t at[3][3] = {{-300000, -200000, 900000},
+                                     {400000, -100000, 1200000},
+                                     {0, 350000, 1000000}};
+    static const int32_t uv_q16[3][2] = {
+        {0, 0}, {65536, 6554}, {13107, 3 * 65536}};
+    static const uint32_t t[1][3] = {{0, 2, 1}};
+    const uint8_t rgb[12] = {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255};
+    struct glint_scene *s;
+    uint32_t seed = 1;
+
+    (void)state;
+    scene_begin(&file);
+    scene_material(&file, "m");
+    file.material[0].ambient_q15 = 32768;
+    file.material[0].diffuse_q15 = 0;
+    file.material[0].texture = scene_texture(&file, rgb, 1, 1);
+    scene_object(&file, "a", 0, scene_mesh(&file, at, uv_q16, NULL, 3, t, 1));
+    s = start(1);
+    for (int i = 0; i < 20000; i++) {
+        double w[3] = {1, 0, 0}, place[3] = {0}, uv[2] = {0};
+        struct glint_met_surface surface;
+        struct glint_scene_ray ray;
+        struct glint_met_shade to;
+        struct glint_met met;
+
+        if (i >= 3) {
+            w[1] = rng_unit(&seed);
+            w[2] = rng_unit(&seed) * (1 - w[1]);
+        } else {
+            w[i] = 1;
+        }
+        w[0] = 1 - w[1] - w[2];
+        for (int j = 0; j < 3; j++)
+            for (int k = 0; k < 3; k++) {
+                place[k] += w[j] * at[j][k] / UNIT;
+                if (k < 2)
+                    uv[k] += w[j] * uv_q16[j][k];
+            }
+        ray = ray_of(0, 0, 0, place[0], place[1], place[2]);
+        assert_true(glint_scene_meet_id(s, &ray, ray.toward_q30, 0, &met) &&
+                    glint_scene_surface(s, &ray, &met, &surface));
+        for (int k = 0; k < 2; k++) /* a texel is half; 1/256 of it 128 */
+            assert_true(fabs(surface.uv_q16[k] - uv[k]) < (i < 3 ? 8 : 16));
+        glint_scene_shade(s, &ray, &surface, &to);
+        for (int c = 0; c < 3; c++) {
+            const double u = 2 * uv[0] / 65536 - .5, v = 2 * uv[1] / 65536 - .5;
+            const double fu = u - floor(u), fv = v - floor(v);
+            const int iu = (int)floor(u) & 1, iv = (int)floor(v) & 1;
+            double sum = 0;
+
+            for (int j = 0; j < 4; j++)
+                sum +=
+                    (j & 1 ? fu : 1 - fu) * (j & 2 ? fv : 1 - fv) *
+                    (rgb[3 * (((j >> 1) ^ iv) * 2 + ((j & 1) ^ iu)) + c] > 0);
+            assert_true(fabs(to.rgb_q15[c] / 32768. - sum) < 2e-3);
+        }
+    }
+}
+
+/* Far away a texture is its mean. */
+static void test_a13_levels(void **state)
+{
+    uint8_t rgb[3 * 64 * 64];
+    int32_t lowest = 32768, highest = 0;
+    struct glint_scene *s;
+    uint32_t seed = 1;
+
+    (void)state;
+    for (int i = 0; i < 64 * 64; i++)
+        for (int c = 0; c < 3; c++)
+            rgb[3 * i + c] = (uint8_t)(((i ^ i >> 6) & 1) * 255);
+    scene_begin(&file);
+    scene_material(&file, "m");
+    file.material[0].ambient_q15 = 32768;
+    file.material[0].diffuse_q15 = 0;
+    file.material[0].texture = scene_texture(&file, rgb, 6, 6);
+    scene_plane(&file, "floor", 0, -UNIT);
+    s = start(1);
+    for (int i = 0; i < 2000; i++) {
+        const double x = rng_unit(&seed) - .5;
+        const int32_t near = red_of(s, ray_of(x / 9, -.99, 0, x, -1, .1));
+        const int32_t far = red_of(s, ray_of(x, 0, 0, x, -.02, 1));
+
+        assert_true(near >= 0 && near <= 32768);
+        assert_in_range(far, 6900, 7200); /* of code 127.5 */
+    }
+    /* Straight below, pixels of 1/32 the height are two texels at height 1, and
+     * half a texel at 1/4. */
+    for (int i = 0; i < 500; i++) {
+        const double x = rng_unit(&seed), z = rng_unit(&seed);
+        const int32_t close = red_of(s, ray_of(x, -.75, z, 0, -1, 0));
+
+        assert_in_range(red_of(s, ray_of(x, .001, z, 0, -1, 0)), 6900, 7200);
+        lowest = close < lowest ? close : lowest;
+        highest = close > highest ? close : highest;
+    }
+    assert_true(lowest < 2000 && highest > 30000);
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    free(mem);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_a5_seen),
+                                       cmocka_unit_test(test_a11_left_once),
+                                       cmocka_unit_test(test_a6_corners),
+                                       cmocka_unit_test(test_view_and_back),
+                                       cmocka_unit_test(test_a7_lamp),
+                                       cmocka_unit_test(test_power),
+                                       cmocka_unit_test(test_a8_phong),
+                                       cmocka_unit_test(test_a10_shadow),
+                                       cmocka_unit_test(test_a10_no_acne),
+                                       cmocka_unit_test(test_a10_soft),
+                                       cmocka_unit_test(test_a11_pass),
+                                       cmocka_unit_test(test_a12_ball),
+                                       cmocka_unit_test(test_a12_within),
+                                       cmocka_unit_test(test_a13_texture),
+                                       cmocka_unit_test(test_a13_levels)};
+
+    return cmocka_run_group_tests(tests, NULL, tear_down);
+}

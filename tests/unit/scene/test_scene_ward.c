@@ -1,0 +1,463 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Ward's lobe over an environment: rows B1, B2, B4 and B7, a white furnace, and
+ * the same lookups in double. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/view.h"
+#include "support/models/ward_ball.h"
+
+enum { WIDTH = 128, HEIGHT = 64, SIDE_LOG2 = 6 };
+
+static float pixels[HEIGHT][WIDTH][3];
+static const struct glint_float_image image = {WIDTH, HEIGHT, (float *)pixels};
+
+struct map {
+    unsigned char *data;
+    struct glint_environment e;
+};
+
+static void paint(int is_even)
+{
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const double a = x * .1, b = y * .1;
+            const double light = 1 + fmax(0, 3 * sin(3 * a) * sin(4 * b)) +
+                                 (x % 37 < 3 && y % 23 < 3 ? 40 : 0);
+
+            for (int c = 0; c < 3; c++)
+                pixels[y][x][c] = is_even ? 1 : (float)(light * (3 - c) / 3);
+        }
+}
+
+static void open_map(struct map *m, int levels, int code)
+{
+    struct glint_environment_options o;
+    struct glint_environment_report report;
+    struct glint_error error;
+    const char *reason = "";
+    size_t bytes;
+
+    glint_environment_defaults(&o);
+    o.side_log2 = SIDE_LOG2;
+    o.levels = (enum glint_environment_levels)levels;
+    o.code = (enum glint_environment_code)code;
+    o.max_lights = 0;
+    assert_int_equal(glint_environment_bake(&image, &o, "x", 0, &m->data,
+                                            &bytes, &report, &error),
+                     GLINT_OK);
+    assert_int_equal(glint_environment_open(&m->e, m->data, bytes, &reason),
+                     GLINT_OK);
+}
+
+static struct glint_ward_material material_of(double x, double y)
+{
+    return (struct glint_ward_material){
+        {32768, 32768, 32768},
+        {(int32_t)lrint(0x1p24 * x), (int32_t)lrint(0x1p24 * y)},
+        GLINT_WARD_BOUNDED};
+}
+
+static const struct glint_ward_options eight = {8, GLINT_WARD_CONSTANT, 0, 0};
+
+/* ----------------------------------------------------------------- furnace */
+
+/* In even light of 1 each norm reflects what its albedo is, by an integral in
+ * double. */
+static double albedo(int norm, double no, double alpha)
+{
+    const double frame[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const double view[3] = {sqrt(1 - no * no), 0, no};
+    const double both[2] = {alpha, alpha};
+    enum { N = 600 };
+    double sum = 0;
+
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++) {
+            const double z = (i + .5) / N, phi = 2 * GLINT_PI * (j + .5) / N;
+            const double in[3] = {sqrt(1 - z * z) * cos(phi),
+                                  sqrt(1 - z * z) * sin(phi), z};
+
+            sum += ward_lobe(frame, view, both, norm, in);
+        }
+    return sum * 2 * GLINT_PI / (N * N);
+}
+
+static void test_furnace(void **state)
+{
+    static const double cosine[4] = {1, .7, .3, .1};
+    const int32_t frame_q14[3][3] = {
+        {16384, 0, 0}, {0, 16384, 0}, {0, 0, 16384}};
+    struct glint_ward_options o = {32, GLINT_WARD_PUBLISHED, 0, 0};
+    struct map m;
+
+    (void)state;
+    paint(1);
+    open_map(&m, GLINT_ENVIRONMENT_GAUSS, GLINT_ENVIRONMENT_9E5);
+    for (int norm = 0; norm < 2; norm++)
+        for (int k = 0; k < 4; k++) {
+            const double no = cosine[k];
+            const int32_t view_q14[3] = {
+                (int32_t)lrint(0x1p14 * sqrt(1 - no * no)), 0,
+                (int32_t)lrint(0x1p14 * no)};
+            struct glint_ward_material material = material_of(.05, .05);
+            struct glint_ward_lobe lobe;
+            int32_t rgb_q15[3];
+            double want = albedo(norm, no, .05), got;
+
+            material.norm = (enum glint_ward_norm)norm;
+            glint_ward_prepare(&lobe, &m.e, &material, &o);
+            glint_ward_light(&lobe, &m.e, frame_q14, view_q14, rgb_q15);
+            got = rgb_q15[0] * 0x1p-15;
+            print_message("furnace, norm %s, n.o %.1f: %.3f, albedo %.3f\n",
+                          norm ? "of 1992" : "bounded", no, got, want);
+            assert_true(fabs(got - want) < .02);
+            if (norm == GLINT_WARD_BOUNDED)
+                assert_true(got <= 1.001 && (no < .3 || got > .98));
+        }
+    free(m.data);
+}
+
+/* -------------------------------------------------------------------- twin */
+
+static double texel_of(const struct glint_environment *e, int k, size_t i,
+                       int c)
+{
+    static const int shift[3] = {11, 5, 0}, most[3] = {31, 63, 31};
+    const uint32_t word = e->header->code == GLINT_ENVIRONMENT_9E5
+                              ? ((const uint32_t *)e->texel[k])[i]
+                              : ((const uint16_t *)e->texel[k])[i];
+    double root;
+
+    if (e->header->code == GLINT_ENVIRONMENT_9E5)
+        return ldexp(word >> (9 * c) & 511,
+                     (int)(word >> 27) - 12 + e->header->unit_log2);
+    root = (double)(word >> shift[c] & (uint32_t)most[c]) / most[c];
+    return root * root * ldexp(e->level[k].scale, e->header->unit_log2);
+}
+
+static double look_level(const struct glint_environment *e, int k,
+                         const double toward[3], int c)
+{
+    const int side = 1 << e->level[k].side_log2;
+    double u, v, x, y, sum = 0;
+
+    glint_sphere_place(toward, &u, &v);
+    x = u * side - .5;
+    y = v * side - .5;
+    for (int j = 0; j < 4; j++) {
+        const int i = (int)floor(x) + (j & 1), l = (int)floor(y) + (j >> 1);
+
+        sum += (1 - fabs(x - i)) * (1 - fabs(y - l)) *
+               texel_of(e, k, glint_sphere_index(side, i, l), c);
+    }
+    return sum;
+}
+
+static double look(const struct glint_environment *e, const double toward[3],
+                   double level, int c)
+{
+    const double last = e->header->n_levels - 1;
+    const int k = (int)(level = fmin(fmax(level, 0), last));
+
+    return level <= k ? look_level(e, k, toward, c)
+                      : (1 - (level - k)) * look_level(e, k, toward, c) +
+                            (level - k) * look_level(e, k + 1, toward, c);
+}
+
+/* Slopes of alpha 1 with constant footprints; returns f. */
+static double draw(int n, double slope[GLINT_WARD_SAMPLES][2])
+{
+    const double f = (n == 1 ? 1 : n == 4 ? 1.4 : n == 32 ? 3 : 2) / n;
+
+    for (int k = 0; k < n; k++) {
+        double v = 0;
+
+        for (int bit = 0; bit < 5; bit++)
+            v += (k >> bit & 1) * ldexp(1, -1 - bit);
+        slope[k][0] = sqrt(-log((k + .5) / n)) * cos(2 * GLINT_PI * v);
+        slope[k][1] = sqrt(-log((k + .5) / n)) * sin(2 * GLINT_PI * v);
+    }
+    for (int axis = 0; axis < 2; axis++) {
+        double mean = 0, square = 0;
+
+        for (int k = 0; k < n; k++)
+            mean += slope[k][axis] / n;
+        for (int k = 0; k < n; k++) {
+            slope[k][axis] -= mean;
+            square += slope[k][axis] * slope[k][axis] / n;
+        }
+        for (int k = 0; k < n; k++)
+            slope[k][axis] *= square > .01 ? sqrt((1 - f) / 2 / square) : 0;
+    }
+    return f;
+}
+
+static void twin_pixel(const struct glint_environment *e, const double alpha[2],
+                       int n, const double frame[3][3], double rgb[3])
+{
+    double slope[GLINT_WARD_SAMPLES][2];
+    const double f = draw(n, slope), least = fmin(alpha[0], alpha[1]);
+    const double blur = 2 * fmin(f * alpha[0] * alpha[1], .75 * least * least);
+    const double texel = sqrt(4 * GLINT_PI) / (1 << SIDE_LOG2);
+
+    for (int k = 0; k < n; k++) {
+        double h[3] = {alpha[0] * slope[k][0], alpha[1] * slope[k][1], 1};
+        double toward[3], ho = 0, ni = 0, length;
+
+        length = sqrt(h[0] * h[0] + h[1] * h[1] + 1);
+        for (int j = 0; j < 3; j++)
+            ho -= h[j] / length * frame[j][2]; /* the eye is at -z */
+        for (int j = 0; j < 3; j++) {
+            toward[j] = j == 2 ? 1 : 0;
+            for (int i = 0; i < 3; i++)
+                toward[j] += 2 * ho * h[i] / length * frame[i][j];
+            ni += toward[j] * frame[2][j];
+        }
+        if (ho <= 0 || ni <= 0)
+            continue;
+        for (int c = 0; c < 3; c++)
+            rgb[c] += fmin(ni / (ho / length), 8) / n *
+                      look(e, toward, log2(2 * sqrt(blur * ho) / texel), c);
+    }
+}
+
+static void test_twin(void **state)
+{
+    static const int samples[5] = {1, 4, 8, 16, 32};
+    static ward_picture want, got;
+    double least = 200;
+
+    (void)state;
+    paint(0);
+    for (int code = 0; code < 2; code++) {
+        struct map m;
+
+        open_map(&m, GLINT_ENVIRONMENT_GAUSS, code);
+        for (int k = 0; k < 10; k++) {
+            const double alpha[2] = {.05, k / 5 ? .05 : .3};
+            const struct glint_ward_material material =
+                material_of(alpha[0], alpha[1]);
+            struct glint_ward_options o = eight;
+
+            o.samples = samples[k % 5];
+            memset(want, 0, sizeof want);
+            for (int i = 0; i < WARD_PIXELS; i++) {
+                double frame[3][3];
+
+                if (ward_frame(i, frame))
+                    twin_pixel(&m.e, alpha, o.samples,
+                               (const double(*)[3])frame, want[i]);
+            }
+            ward_look(&m.e, &material, &o, got);
+            least = fmin(least, ward_psnr(want, got));
+        }
+        free(m.data);
+    }
+    print_message("twin: %.1f dB at least\n", least);
+    assert_true(least >= 60);
+}
+
+/* -------------------------------------------------------------------- rows */
+
+/* Sets TO to what directions of the whole hemisphere show, N of them, each
+ * looked up in the level of its share. */
+static void uniform(const struct glint_environment *e, const double alpha[2],
+                    int n, ward_picture to)
+{
+    const double view[3] = {0, 0, -1};
+    const double level =
+        .5 * log2(2 * GLINT_PI / n * ldexp(1, 2 * SIDE_LOG2) / (4 * GLINT_PI));
+
+    for (int i = 0; i < WARD_PIXELS; i++) {
+        double frame[3][3];
+
+        memset(to[i], 0, sizeof to[i]);
+        for (int k = 0; k < n && ward_frame(i, frame); k++) {
+            const double z = (k + .5) / n, turn = 2 * GLINT_PI * .618034 * k;
+            double toward[3], w;
+
+            for (int j = 0; j < 3; j++)
+                toward[j] = z * frame[2][j] +
+                            sqrt(1 - z * z) * (cos(turn) * frame[0][j] +
+                                               sin(turn) * frame[1][j]);
+            w = ward_lobe((const double(*)[3])frame, view, alpha,
+                          GLINT_WARD_BOUNDED, toward) *
+                2 * GLINT_PI / n;
+            for (int c = 0; c < 3; c++)
+                to[i][c] += w * look(e, toward, level, c);
+        }
+    }
+}
+
+struct reference {
+    struct glint_sphere sphere;
+    ward_picture want;
+};
+
+static void sum_of(const double alpha[2], struct reference *r)
+{
+    struct glint_environment_options o;
+    struct glint_environment_report report = {0};
+
+    glint_environment_defaults(&o);
+    assert_true(glint_sphere_open(&r->sphere, 1 << SIDE_LOG2));
+    assert_true(glint_sphere_project(&r->sphere, &image, &o, &report));
+    ward_sum(&r->sphere, alpha, r->want);
+    glint_sphere_close(&r->sphere);
+}
+
+/* Row B1: half vectors of the lobe's density, as published, beat directions of
+ * the whole hemisphere at every number of samples, up to alphas of .2. Row B4:
+ * Gaussian levels beat mips with 8 samples. */
+static void test_b1_b4(void **state)
+{
+    static const double alphas[3][2] = {{.05, .05}, {.2, .2}, {.05, .2}};
+    static const int samples[4] = {1, 4, 8, 32};
+    static struct reference r;
+    static ward_picture got;
+    struct map gauss, mip;
+
+    (void)state;
+    paint(0);
+    open_map(&gauss, GLINT_ENVIRONMENT_GAUSS, GLINT_ENVIRONMENT_565);
+    open_map(&mip, GLINT_ENVIRONMENT_MIP, GLINT_ENVIRONMENT_565);
+    for (int a = 0; a < 3; a++) {
+        const struct glint_ward_material material =
+            material_of(alphas[a][0], alphas[a][1]);
+        double by_gauss, by_mip;
+
+        sum_of(alphas[a], &r);
+        for (int k = 0; k < 4; k++) {
+            const struct glint_ward_options o = {samples[k],
+                                                 GLINT_WARD_PUBLISHED, 0, 0};
+            double ward, whole;
+
+            ward_look(&mip.e, &material, &o, got);
+            ward = ward_psnr(r.want, got);
+            uniform(&mip.e, alphas[a], samples[k], got);
+            whole = ward_psnr(r.want, got);
+            print_message("B1, alpha %g, %g, N %d: %.1f dB, hemisphere %.1f\n",
+                          alphas[a][0], alphas[a][1], samples[k], ward, whole);
+            assert_true(ward > whole);
+        }
+        ward_look(&gauss.e, &material, &eight, got);
+        by_gauss = ward_psnr(r.want, got);
+        ward_look(&mip.e, &material, &eight, got);
+        by_mip = ward_psnr(r.want, got);
+        print_message("B4, alpha %g, %g: %.1f dB, mips %.1f\n", alphas[a][0],
+                      alphas[a][1], by_gauss, by_mip);
+        assert_true(by_gauss > by_mip);
+    }
+    free(gauss.data);
+    free(mip.data);
+}
+
+/* Row B2: colours and alphas change over one baked environment: each lobe is
+ * that of its material, and colours are factors. */
+static void test_b2_changes(void **state)
+{
+    static ward_picture red, white, wide;
+    struct glint_ward_material material = material_of(.05, .1);
+    struct map m;
+    double differ = 0;
+
+    (void)state;
+    paint(0);
+    open_map(&m, GLINT_ENVIRONMENT_GAUSS, GLINT_ENVIRONMENT_565);
+    ward_look(&m.e, &material, &eight, white);
+    material.specular_q15[0] = 1 << 14;
+    material.specular_q15[1] = 0;
+    ward_look(&m.e, &material, &eight, red);
+    material = material_of(.3, .1);
+    ward_look(&m.e, &material, &eight, wide);
+    for (int i = 0; i < WARD_PIXELS; i++) {
+        assert_true(fabs(red[i][0] - white[i][0] / 2) <= 0x1p-15);
+        assert_true(red[i][1] == 0 && red[i][2] == white[i][2]);
+        differ = fmax(differ, fabs(wide[i][0] - white[i][0]));
+    }
+    assert_true(differ > .2);
+    free(m.data);
+}
+
+/* Row B7: a ratio of 200 becomes one of 10, and that is told. */
+static void test_b7_held(void **state)
+{
+    struct glint_ward_lobe held, plain;
+    struct glint_ward_material material = material_of(.001, .2);
+    struct map m;
+
+    (void)state;
+    paint(0);
+    open_map(&m, GLINT_ENVIRONMENT_GAUSS, GLINT_ENVIRONMENT_565);
+    memset(&held, 0, sizeof held);
+    memset(&plain, 0, sizeof plain);
+    assert_int_equal(glint_ward_prepare(&held, &m.e, &material, &eight), 1);
+    material.alpha_q24[0] = (material.alpha_q24[1] + 9) / 10;
+    assert_int_equal(glint_ward_prepare(&plain, &m.e, &material, &eight), 0);
+    assert_memory_equal(&held, &plain, sizeof held);
+    material = material_of(.2, .001);
+    assert_int_equal(glint_ward_prepare(&held, &m.e, &material, &eight), 1);
+    free(m.data);
+}
+
+/* Any material, view and file that is allowed: light within its range. */
+static void test_extremes(void **state)
+{
+    static const double alpha[4] = {.001, .01, .5, 1};
+    struct map m;
+    int32_t most = 0;
+
+    (void)state;
+    paint(0);
+    pixels[9][9][0] = 1e9f;
+    open_map(&m, GLINT_ENVIRONMENT_MIP, GLINT_ENVIRONMENT_565);
+    for (int k = 0; k < 16 * GLINT_WARD_SAMPLES; k++) {
+        struct glint_ward_material material =
+            material_of(alpha[k & 3], alpha[k >> 2 & 3]);
+        const struct glint_ward_options o = {1 + k / 16,
+                                             (enum glint_ward_rule)(k & 1),
+                                             k % 7 * 200 - 600, k % 3 == 0};
+        const int32_t frame_q14[3][3] = {
+            {0, 16384, 0}, {0, 0, 16384}, {16384, 0, 0}};
+        struct glint_ward_lobe lobe;
+
+        material.norm = (enum glint_ward_norm)(k >> 1 & 1);
+        glint_ward_prepare(&lobe, &m.e, &material, &o);
+        for (int i = -1; i <= 64; i++) {
+            const double no = i / 64.;
+            const int32_t view_q14[3] = {
+                (int32_t)lrint(0x1p14 * no),
+                (int32_t)lrint(0x1p14 * sqrt(1 - no * no)), 0};
+            int32_t rgb_q15[3];
+
+            glint_ward_light(&lobe, &m.e, frame_q14, view_q14, rgb_q15);
+            for (int c = 0; c < 3; c++)
+                assert_true(rgb_q15[c] >= 0 && rgb_q15[c] <= 1 << 30);
+            assert_true(i > 0 || rgb_q15[0] == 0);
+            most = rgb_q15[0] > most ? rgb_q15[0] : most;
+        }
+    }
+    assert_int_equal(most, 1 << 30);
+    free(m.data);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_furnace), cmocka_unit_test(test_twin),
+        cmocka_unit_test(test_b1_b4),   cmocka_unit_test(test_b2_changes),
+        cmocka_unit_test(test_b7_held), cmocka_unit_test(test_extremes),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,281 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The pattern of a stop with round blades: at both ends of roundness it is that
+ * of the polygon and of the circle, far out it is what is left of the exact
+ * pattern without fringes, it has as many fans as lines before, turns with the
+ * blades, and a soft edge makes an end to it. A lamp's extent blurs it.
+ */
+#include "engine/star/psf.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "engine/star/star_tables.h"
+#include "glint/view.h"
+#include "support/stars/canvas.h"
+
+/* Returns |F|^2 / A^2, times q^3 over (q = AT)^3, in the mean from 0.8 to 1.2
+ * AT. */
+static double mean_of(double (*f)(const struct glint_arcs *, double, double),
+                      const struct glint_arcs *arcs, double at, double phi)
+{
+    enum { N = 400 };
+    double sum = 0;
+
+    for (int i = 0; i < N; i++) {
+        const double r = 0.8 + 0.4 * (i + 0.5) / N;
+
+        sum += f(arcs, r * at * cos(phi), r * at * sin(phi)) * r * r * r / N;
+    }
+    return sum;
+}
+
+static double of_circle(const struct glint_arcs *arcs, double x, double y)
+{
+    (void)arcs;
+    return glint_psf_transform(0, 0, x, y);
+}
+
+static double of_polygon(const struct glint_arcs *arcs, double x, double y)
+{
+    return glint_psf_transform(arcs->n, arcs->rotation_deg, x, y);
+}
+
+static void test_ends(void **state)
+{
+    static const int blades[] = {3, 5, 6, 8, 9, 64};
+
+    (void)state;
+    for (int i = 0; i < 6; i++)
+        for (int k = 0; k < 40; k++) {
+            const double at = 0.3 + 0.1 * k, phi = 0.7 * k;
+            struct glint_arcs arcs;
+            double one, other;
+
+            glint_arcs_init(&arcs, blades[i], 10, 0.9999);
+            one = mean_of(glint_arcs_transform, &arcs, at, phi);
+            other = mean_of(of_circle, &arcs, at, phi);
+            assert_true(fabs(one / other - 1) < 0.02);
+            glint_arcs_init(&arcs, blades[i], 10, 1e-3);
+            one = mean_of(glint_arcs_transform, &arcs, at, phi);
+            other = mean_of(of_polygon, &arcs, at, phi);
+            assert_true(fabs(one / other - 1) < 0.02);
+        }
+}
+
+/* Where both ways to add up an arc meet, at q = 5, there must be no step. */
+static void test_no_step(void **state)
+{
+    struct glint_arcs arcs;
+
+    (void)state;
+    for (int n = 3; n < 12; n++)
+        for (int k = 0; k < 20; k++) {
+            const double phi = k * 0.31;
+            double before, after;
+
+            glint_arcs_init(&arcs, n, 10, 0.05 + 0.04 * k);
+            before = glint_arcs_transform(&arcs, 4.99999 * cos(phi),
+                                          4.99999 * sin(phi));
+            after = glint_arcs_transform(&arcs, 5.00001 * cos(phi),
+                                         5.00001 * sin(phi));
+            assert_true(fabs(sqrt(before) - sqrt(after)) < 4e-4);
+        }
+}
+
+/* The sums over a circle, where fans and what is between them both count, must
+ * agree, and single directions roughly. */
+static void test_far(void **state)
+{
+    enum { PHIS = 48 };
+
+    (void)state;
+    for (int k = 0; k < 24; k++) {
+        struct glint_arcs arcs;
+        double exact = 0, far = 0;
+
+        glint_arcs_init(&arcs, 5 + k % 4, 10, 0.05 + 0.3 * (k / 4 % 3));
+        for (int i = 0; i < PHIS; i++) {
+            const double phi = 2 * GLINT_PI * i / PHIS, at = k < 12 ? 12 : 60;
+            const double one = mean_of(glint_arcs_transform, &arcs, at, phi);
+            const double other = mean_of(glint_arcs_far, &arcs, at, phi);
+
+            assert_true(other > 0.3 * one && other < 3 * one);
+            exact += one;
+            far += other;
+        }
+        assert_true(fabs(far / exact - 1) < 0.05);
+    }
+}
+
+/* Returns the number of places on a circle of R pixels that are brighter than
+ * both neighbours and than the mean. */
+static int peaks(const struct glint_psf *p, double r)
+{
+    enum { N = 720 };
+    double light[N], mean = 0;
+    int n = 0;
+
+    for (int i = 0; i < N; i++) {
+        const double phi = 2 * GLINT_PI * i / N;
+        double rgb[3];
+
+        glint_psf_far(p, r * cos(phi), r * sin(phi), NULL, NULL, rgb);
+        light[i] = rgb[1];
+        mean += rgb[1] / N;
+    }
+    for (int i = 0; i < N; i++)
+        n += light[i] > mean && light[(i + N - 1) % N] <= mean;
+    return n;
+}
+
+/* 5, 6 and 8 blades must give 10, 6 and 8 fans, which turn with the blades. */
+static void test_fans(void **state)
+{
+    static const int blades[3] = {5, 6, 8}, fans[3] = {10, 6, 8};
+
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        struct glint_psf one, turned;
+        double a[3], b[3];
+
+        assert_int_equal(glint_psf_init_iris(&one, blades[i], 20, 1, 0.2, 0),
+                         GLINT_OK);
+        assert_int_equal(glint_psf_init_iris(&turned, blades[i], 21, 1, 0.2, 0),
+                         GLINT_OK);
+        assert_int_equal(peaks(&one, 200), fans[i]);
+        for (int k = 0; k < 90; k++) {
+            const double phi = k * GLINT_PI / 180, turn = GLINT_PI / 180;
+
+            /* y runs down here */
+            glint_psf_light(&one, 40 * cos(phi), 40 * sin(phi), a);
+            glint_psf_light(&turned, 40 * cos(phi - turn), 40 * sin(phi - turn),
+                            b);
+            assert_true(fabs(a[1] / b[1] - 1) < 1e-6);
+        }
+        glint_psf_finish(&one);
+        glint_psf_finish(&turned);
+    }
+}
+
+/* A soft edge must leave the middle as it is and take the light far out. */
+static void test_soft(void **state)
+{
+    struct glint_psf hard, soft;
+    double a[3], b[3];
+
+    (void)state;
+    assert_true(fabs(glint_psf_softness(0.1, 0) - 1) < 1e-9);
+    assert_true(glint_psf_softness(0.1, 100) < 1e-3);
+    assert_int_equal(glint_psf_init_iris(&hard, 8, 0, 1, 0.3, 0), GLINT_OK);
+    assert_int_equal(glint_psf_init_iris(&soft, 8, 0, 1, 0.3, 0.1), GLINT_OK);
+    glint_psf_light(&hard, 0, 0, a);
+    glint_psf_light(&soft, 0, 0, b);
+    assert_true(b[1] > 0.75 * a[1] && b[1] < a[1]);
+    glint_psf_light(&hard, 100, 30, a);
+    glint_psf_light(&soft, 100, 30, b);
+    assert_true(b[1] < 0.02 * a[1]);
+    glint_psf_finish(&hard);
+    glint_psf_finish(&soft);
+}
+
+static struct glint_star_tables *tables_of(int n_blades, double round,
+                                           double soft)
+{
+    const struct glint_star_optics o = {.n_blades = n_blades,
+                                        .f_number = 2 / 0.55,
+                                        .pixel_um = 1,
+                                        .round = round,
+                                        .soft = soft};
+    struct glint_star_tables *t;
+
+    assert_int_equal(glint_star_tables_make(&t, &o), GLINT_OK);
+    return t;
+}
+
+/* Returns the width in pixels, at half its brightness, of the spike that a lamp
+ * of RADIUS pixels throws up, 100 pixels from it. */
+static int spike_width(double round, double soft, double radius)
+{
+    enum { SIDE = 255, ROW = 27 };
+    struct glint_star_tables *t = tables_of(6, round, soft);
+    struct glint_star_light lamp = star_canvas_light(127.5, 127.5, 20);
+    int32_t *linear_q20 = malloc(3 * SIDE * SIDE * sizeof *linear_q20);
+    const int32_t *row = linear_q20 + 3 * SIDE * ROW;
+    struct star_canvas canvas;
+    int n = 0;
+
+    assert_non_null(linear_q20);
+    lamp.radius_q8 = (int32_t)(256 * radius);
+    star_canvas_open(&canvas, SIDE, SIDE, 5, 1, 1);
+    star_canvas_draw(&canvas, t, &lamp, 1, glint_real_of(0x1p-21),
+                     GLINT_LINEAR_Q20, linear_q20);
+    star_canvas_close(&canvas);
+    for (int x = 90; x < 165; x++)
+        n += 2 * row[3 * x + 1] > row[3 * 127 + 1];
+    free(linear_q20);
+    glint_star_tables_free(t);
+    return n;
+}
+
+/* A lamp's extent must make fans wider as it does lines, and next to straight
+ * blades there must be no step. */
+static void test_wide_lamp(void **state)
+{
+    (void)state;
+    for (int radius = 4; radius <= 16; radius *= 2) {
+        const int straight = spike_width(0, 0, radius);
+        const int close = spike_width(0.001, 0.001, radius);
+        const int round = spike_width(0.03, 0, radius);
+        const int soft = spike_width(0, 0.003, radius);
+
+        assert_int_equal(close, straight);
+        assert_true(4 * round > 3 * straight && 3 * round < 4 * straight);
+        assert_true(4 * soft > 3 * straight && 3 * soft < 4 * straight);
+    }
+}
+
+/* Blades of curvature 1 must have a circle's tables, and those close to it a
+ * halo as even. */
+static void test_to_circle(void **state)
+{
+    struct glint_star_tables *circle = tables_of(0, 0, 0);
+    struct glint_star_tables *one = tables_of(6, 1, 0);
+    struct glint_star_tables *near = tables_of(6, 0.97, 0);
+
+    (void)state;
+    assert_int_equal(glint_star_tables_bytes(one),
+                     glint_star_tables_bytes(circle));
+    assert_memory_equal(one->halo, circle->halo, sizeof one->halo);
+    assert_memory_equal(one->core, circle->core, sizeof one->core);
+    for (int i = 12; i < 24; i++) {
+        int least = 65535, most = 0;
+
+        for (int k = 0; k < GLINT_STAR_HALO_COLUMNS; k++) {
+            least = near->halo[i][k][1] < least ? near->halo[i][k][1] : least;
+            most = near->halo[i][k][1] > most ? near->halo[i][k][1] : most;
+        }
+        /* a third, as log2 in _q11 */
+        assert_true(most - least < 1024);
+    }
+    glint_star_tables_free(circle);
+    glint_star_tables_free(one);
+    glint_star_tables_free(near);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ends),      cmocka_unit_test(test_no_step),
+        cmocka_unit_test(test_far),       cmocka_unit_test(test_fans),
+        cmocka_unit_test(test_soft),      cmocka_unit_test(test_wide_lamp),
+        cmocka_unit_test(test_to_circle),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

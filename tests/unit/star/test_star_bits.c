@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The starburst in integers: the same bits whatever tiles, workers, order and
+ * machine, and what it is held to at extremes. Tables are of any stop, by
+ * integers, so that no libm has a say.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/real.h"
+#include "support/rng.h"
+#include "support/stars/any.h"
+#include "support/stars/canvas.h"
+
+enum { WIDTH = 97, HEIGHT = 83, N = 3 * WIDTH * HEIGHT, MAX_WORKERS = 3 };
+
+static int32_t linear_q20[N], other_q20[N];
+static uint8_t codes[N], others[N];
+static struct star_any any;
+
+static const struct glint_real all = {0, 0};
+
+/* Light of an eighth of a code near black, 1 / 26357. */
+static const struct glint_real eighth = {0x4f8f7a00, -45};
+
+/* ------------------------------------------------------------------ bits */
+
+/* Draws N_LIGHTS of LIGHTS in tiles of 2^TILE_LOG2. */
+static void draw(const struct glint_star_light *lights, int n_lights,
+                 int tile_log2, int n_workers, uint32_t order,
+                 enum glint_pixel_format format, void *mem)
+{
+    struct star_canvas c;
+
+    star_canvas_open(&c, WIDTH, HEIGHT, tile_log2, n_workers, order);
+    star_canvas_draw(&c, &any.tables, lights, n_lights,
+                     format == GLINT_LINEAR_Q20 ? all : eighth, format, mem);
+    star_canvas_close(&c);
+}
+
+/* Workers, tiles and the order of jobs must not change a bit of codes. */
+static void test_same_bits(void **state)
+{
+    uint32_t seed = 7;
+
+    (void)state;
+    for (int i = 0; i < 30; i++) {
+        struct glint_star_light lights[STAR_CANVAS_LIGHTS];
+        const int n = 1 + rng_below(&seed, STAR_CANVAS_LIGHTS);
+
+        star_any(&any, &seed);
+        for (int k = 0; k < n; k++)
+            lights[k] = star_any_light(WIDTH, HEIGHT, &seed);
+        for (int k = 0; k < 5; k++) {
+            draw(lights, n, k ? 2 + k : 6, k ? 1 + k % MAX_WORKERS : 1,
+                 rng_bits(&seed), GLINT_RGB24, k ? others : codes);
+            if (k)
+                assert_memory_equal(codes, others, N);
+        }
+    }
+}
+
+/* In linear light, too, tiles must not change a bit; far lights among them. */
+static void test_same_light(void **state)
+{
+    uint32_t seed = 99;
+
+    (void)state;
+    for (int i = 0; i < 24; i++) {
+        struct glint_star_light light;
+
+        star_any(&any, &seed);
+        light = star_any_light(WIDTH, HEIGHT, &seed);
+        if (i % 2) {
+            light.x_q8 = rng_below(&seed, 60000) - 20000;
+            light.y_q8 = rng_below(&seed, 60000) - 20000;
+        }
+        draw(&light, 1, 6, 1, 1, GLINT_LINEAR_Q20, linear_q20);
+        for (int tile_log2 = 3; tile_log2 < 6; tile_log2++) {
+            draw(&light, 1, tile_log2, 1, 1, GLINT_LINEAR_Q20, other_q20);
+            assert_memory_equal(linear_q20, other_q20, sizeof other_q20);
+        }
+    }
+}
+
+static uint64_t hash(uint64_t h, uint64_t x)
+{
+    return (h ^ x) * UINT64_C(1099511628211); /* FNV-1a, by words */
+}
+
+/* Every machine must draw the same: codes and linear light of 40 stars have
+ * this hash. */
+static void test_same_machines(void **state)
+{
+    const uint64_t want = UINT64_C(0x22829f9dca1d9529);
+    uint64_t h = UINT64_C(14695981039346656037);
+    uint32_t seed = 2026;
+    int n_lit = 0;
+
+    (void)state;
+    for (int i = 0; i < 40; i++) {
+        struct glint_star_light light;
+        bool is_lit = false;
+
+        star_any(&any, &seed);
+        light = star_any_light(WIDTH, HEIGHT, &seed);
+        draw(&light, 1, 5, 1, 1, GLINT_LINEAR_Q20, linear_q20);
+        draw(&light, 1, 5, 1, 1, GLINT_RGB24, codes);
+        for (int k = 0; k < N; k++) {
+            h = hash(hash(h, (uint32_t)linear_q20[k]), codes[k]);
+            is_lit |= codes[k] > 0;
+        }
+        n_lit += is_lit;
+    }
+    print_message("%d of 40 stars have light in codes, hash %08lx%08lx\n",
+                  n_lit, (unsigned long)(h >> 32),
+                  (unsigned long)(h & 0xffffffff));
+    assert_true(n_lit > 15);
+    assert_true(h == want);
+}
+
+/* -------------------------------------------------------------- extremes */
+
+/* Twice the power must nowhere give less light, but for a code of rounding,
+ * from what cannot be seen to what saturates, with the light on a pixel's
+ * middle, on its corner, on the picture's border, and 1000 px away from it on
+ * two sides. */
+static void test_powers(void **state)
+{
+    static const int place_q8[][2] = {{48 * 256 + 128, 41 * 256 + 128},
+                                      {48 * 256, 41 * 256},
+                                      {0, 0},
+                                      {WIDTH * 256, 3 * 256},
+                                      {-256000, 40 * 256},
+                                      {50 * 256, 256000 + HEIGHT * 256}};
+    uint32_t seed = 3;
+
+    (void)state;
+    for (int i = 0; i < 12; i++) {
+        struct star_canvas c;
+        int lit = 0;
+
+        star_any(&any, &seed);
+        star_canvas_open(&c, WIDTH, HEIGHT, 5, 1, 1);
+        memset(others, 0, N);
+        for (int ev = -20; ev <= 30; ev++) {
+            const struct glint_star_light light = {
+                .x_q8 = place_q8[i % 6][0],
+                .y_q8 = place_q8[i % 6][1],
+                .radius_q8 = i < 6 ? -1 : 300,
+                .power = real_of(1, ev),
+                .rgb_q14 = {16384, 16384, 16384}};
+
+            star_canvas_draw(&c, &any.tables, &light, 1, eighth, GLINT_RGB24,
+                             codes);
+            for (int k = 0; k < N; k++)
+                assert_true(codes[k] + 1 >= others[k]);
+            memcpy(others, codes, N);
+        }
+        for (int k = 0; k < N; k++)
+            lit += codes[k] > 0;
+        assert_true(lit > N / 20);
+        star_canvas_close(&c);
+    }
+}
+
+/* Lights that are no lights must be left out without a trace: without power or
+ * colour, or farther away than is drawn. */
+static void test_none(void **state)
+{
+    struct glint_star_light light[4];
+    uint32_t seed = 5;
+
+    (void)state;
+    star_any(&any, &seed);
+    for (int i = 0; i < 4; i++)
+        light[i] = (struct glint_star_light){
+            48 * 256, 41 * 256, -1, real_of(1, 20), {16384, 16384, 16384}};
+    light[0].power = all;
+    light[1].rgb_q14[0] = light[1].rgb_q14[1] = light[1].rgb_q14[2] = 0;
+    light[2].x_q8 = 1 << 25;
+    light[3].y_q8 = -(1 << 25);
+    draw(light, 4, 5, 1, 1, GLINT_LINEAR_Q20, linear_q20);
+    for (int k = 0; k < N; k++)
+        assert_int_equal(linear_q20[k], 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_same_bits), cmocka_unit_test(test_same_light),
+        cmocka_unit_test(test_same_machines), cmocka_unit_test(test_powers),
+        cmocka_unit_test(test_none)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

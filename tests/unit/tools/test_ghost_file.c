@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Files of single ghosts: what they set, and what they are refused for.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "desk/ghost_file.h"
+
+/* Three ghosts, and a part of the second. */
+static struct glint_setup *setup_of(void)
+{
+    static const int pair[4][2] = {{3, 1}, {12, 2}, {12, 5}, {12, 2}};
+    struct glint_setup *s = calloc(1, sizeof *s);
+
+    assert_non_null(s);
+    s->n_ghosts = 4;
+    s->n_parts = 1;
+    for (int i = 0; i < 4; i++) {
+        s->ghost[i].i = pair[i][0];
+        s->ghost[i].j = pair[i][1];
+    }
+    return s;
+}
+
+static enum glint_status parse(const char *text, struct glint_tint **tints,
+                               struct glint_error *error)
+{
+    struct glint_setup *s = setup_of();
+    enum glint_status status;
+
+    error->text[0] = '\0';
+    status = ghost_file_parse(tints, "g.txt", text, strlen(text), s, "lens-a",
+                              error);
+    free(s);
+    return status;
+}
+
+static double gain(const struct glint_tint *tints, int ghost)
+{
+    return glint_real_value(tints[ghost].gain);
+}
+
+static void test_values(void **state)
+{
+    struct glint_tint *t;
+    struct glint_error error;
+
+    (void)state;
+    assert_int_equal(parse("# remark\nlens lens-a\n\n0 mute # gone\r\n"
+                           "\t12-2  gain 2.5 tint 1,0.5,0\n",
+                           &t, &error),
+                     GLINT_OK);
+    assert_true(gain(t, 0) == 0 && gain(t, 1) == 2.5 && gain(t, 2) == 1);
+    assert_int_equal(t[1].rgb_q14[0], 16384);
+    assert_int_equal(t[1].rgb_q14[1], 8192);
+    assert_int_equal(t[1].rgb_q14[2], 0);
+    assert_memory_equal(&t[3], &t[1], sizeof *t); /* the part */
+    assert_int_equal(t[2].rgb_q14[2], 16384);
+    free(t);
+}
+
+static void test_solo(void **state)
+{
+    struct glint_tint *t;
+    struct glint_error error;
+
+    (void)state;
+    assert_int_equal(parse("1 solo gain 3\n2 mute\n", &t, &error), GLINT_OK);
+    assert_true(gain(t, 0) == 0 && gain(t, 1) == 3);
+    assert_true(gain(t, 2) == 0 && gain(t, 3) == 3);
+    free(t);
+    assert_int_equal(parse("1 mute\n2 solo\n1 solo\n", &t, &error),
+                     GLINT_E_FORMAT);
+    assert_non_null(strstr(error.text, ":3: solo and mute"));
+}
+
+static void test_lines_read_back(void **state)
+{
+    const struct glint_tint odd = {{16384, 4096, 65536}, {1 << 30, -29}};
+    struct glint_tint *t;
+    struct glint_error error;
+    char line[200];
+
+    (void)state;
+    ghost_file_line(line, sizeof line, 2, &odd);
+    assert_int_equal(parse(line, &t, &error), GLINT_OK);
+    assert_memory_equal(&t[2], &odd, sizeof odd);
+    free(t);
+    ghost_file_line(line, sizeof line, 0, NULL);
+    assert_int_equal(parse(line, &t, &error), GLINT_OK);
+    assert_true(gain(t, 0) == 1);
+    free(t);
+}
+
+static void test_refused(void **state)
+{
+    static const char *const bad[] = {
+        "3 mute",       "-1 mute",     "x mute",         "5-1 solo",
+        "1 quiet",      "1 gain",      "1 gain -1",      "1 gain 1001",
+        "1 gain nan",   "1 tint 1,1",  "1 tint 1,1,1,1", "1 tint 5,1,1",
+        "lens lens-b",  "lens",        "1 tint -1,0,0",  "12-9 mute",
+        "1 gain 1 mut", "12-2-1 mute", "1 gain 1e400",   "1.5 mute",
+        "2 solo mute"};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        struct glint_tint *t;
+        struct glint_error error;
+        char text[100];
+
+        strcpy(text, "# one\n\n0 mute\n");
+        strcat(text, bad[i]);
+        assert_int_equal(parse(text, &t, &error), GLINT_E_FORMAT);
+        assert_null(t);
+        assert_ptr_equal(strstr(error.text, "g.txt:4: "), error.text);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_values),
+        cmocka_unit_test(test_solo),
+        cmocka_unit_test(test_lines_read_back),
+        cmocka_unit_test(test_refused),
+    };
+
+    return cmocka_run_group_tests_name("ghost_file", tests, NULL, NULL);
+}

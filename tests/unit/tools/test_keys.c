@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Key frames: values between and beyond them, and files that are refused.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "desk/keys.h"
+
+static enum glint_status parse(struct keys *keys, const char *text,
+                               struct glint_error *error)
+{
+    return keys_parse(keys, "k.csv", text, strlen(text), error);
+}
+
+static void test_values(void **state)
+{
+    struct glint_error error = {""};
+    struct keys k;
+
+    (void)state;
+    assert_int_equal(parse(&k,
+                           "# remark\nframe, gain ,exposure,x,y\n10,1,-2,0,0\n"
+                           "20,3,,100,\n\n30,,8,,50\r\n",
+                           &error),
+                     GLINT_OK);
+    assert_true(keys_has(&k, KEYS_GAIN) && !keys_has(&k, KEYS_STRENGTH));
+    assert_true(keys_at(&k, KEYS_STRENGTH, 15, 7) == 7);
+    assert_true(keys_at(&k, KEYS_GAIN, 0, 7) == 1);
+    assert_true(keys_at(&k, KEYS_GAIN, 10, 7) == 1);
+    assert_true(keys_at(&k, KEYS_GAIN, 15, 7) == 2);
+    assert_true(keys_at(&k, KEYS_GAIN, 20, 7) == 3);
+    assert_true(keys_at(&k, KEYS_GAIN, 1000000, 7) == 3);
+    /* an empty field is no key: from frame 10 to 30 */
+    assert_true(keys_at(&k, KEYS_EXPOSURE, 20, 7) == 3);
+    assert_true(keys_at(&k, KEYS_X, 15, 7) == 50);
+    assert_true(keys_at(&k, KEYS_Y, 20, 7) == 25);
+    keys_free(&k);
+    assert_false(keys_has(&k, KEYS_GAIN));
+}
+
+/* Between many keys the right two must be found. */
+static void test_many(void **state)
+{
+    static char text[40000] = "frame,gain\n";
+    struct glint_error error = {""};
+    size_t at = strlen(text);
+    struct keys k;
+
+    (void)state;
+    for (int i = 0; i < 1000; i++) {
+        const int frame = 3 * i, gain = i * i;
+
+        at += (size_t)snprintf(text + at, sizeof text - at, "%d,%d\n", frame,
+                               gain);
+    }
+    assert_int_equal(parse(&k, text, &error), GLINT_OK);
+    for (int i = 0; i < 999; i++) {
+        assert_true(keys_at(&k, KEYS_GAIN, 3 * i, 0) == i * i);
+        assert_true(keys_at(&k, KEYS_GAIN, 3 * i + 1, 0) ==
+                    i * i + (2 * i + 1) * 1.0 / 3);
+    }
+    keys_free(&k);
+}
+
+static void test_refused(void **state)
+{
+    static const char *const bad[][2] = {
+        {"0,1\n", "k.csv:1: the first line names"},
+        {"gain\n1\n", "k.csv:1: a column is needed"},
+        {"frame,gain,gain\n", "k.csv:1: a column is there twice"},
+        {"frame,wine\n", "k.csv:1: the first line names"},
+        {"frame,exposure,strength\n", "k.csv:1: strength chooses"},
+        {"frame,x\n", "k.csv:1: a light needs"},
+        {"frame,ev\n", "k.csv:1: a light needs"},
+        {"frame,gain\n", "k.csv: has no key frames"},
+        {"", "k.csv: has no key frames"},
+        {"frame,gain\n\n1\n", "k.csv:3: expected as many"},
+        {"frame,gain\n1,2,3\n", "k.csv:2: expected as many"},
+        {"frame,gain\n1,a\n", "k.csv:2: expected a number"},
+        {"frame,gain\n1,-1\n", "k.csv:2: gain must be"},
+        {"frame,gain\n1,nan\n", "k.csv:2: "},
+        {"frame,gain\n1.5,1\n", "k.csv:2: frame must be"},
+        {"frame,gain\n,1\n", "k.csv:2: frame must be"},
+        {"frame,gain\n-1,1\n", "k.csv:2: frame must be"},
+        {"frame,gain\n2,1\n2,1\n", "k.csv:3: frames must rise"},
+        {"frame,f-number\n2,0\n", "k.csv:2: f-number must be"},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        struct glint_error error = {""};
+        struct keys k;
+
+        assert_int_equal(parse(&k, bad[i][0], &error), GLINT_E_FORMAT);
+        assert_ptr_equal(strstr(error.text, bad[i][1]), error.text);
+        assert_int_equal(k.n[KEYS_FRAME], 0);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_values),
+        cmocka_unit_test(test_many),
+        cmocka_unit_test(test_refused),
+    };
+
+    return cmocka_run_group_tests_name("keys", tests, NULL, NULL);
+}

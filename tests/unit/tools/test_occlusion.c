@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Lamps that a mask hides, and that fade beside the picture.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "desk/occlusion.h"
+#include "engine/frame/area.h"
+
+enum { SIDE = 64 };
+
+static uint8_t rgb[3 * SIDE * SIDE];
+static const struct glint_view view = {4 * SIDE, 4 * SIDE, 36};
+static const double focal_mm = 50;
+
+/* A mask a quarter as large as the picture, black left of COLUMN. */
+static struct occlusion mask_of(int column)
+{
+    struct occlusion o = {.file = "mask.ppm", .black = 0, .white = 255};
+
+    o.image = (struct glint_image){
+        .format = GLINT_RGB24, .width = SIDE, .height = SIDE};
+    for (int i = 0; i < SIDE * SIDE; i++)
+        memset(rgb + 3 * (ptrdiff_t)i, i % SIDE < column ? 0 : 255, 3);
+    glint_image_place(&o.image, rgb);
+    return o;
+}
+
+/* Returns what O leaves of a lamp of power 8 and RADIUS pixels at (X, Y). */
+static double left(struct occlusion *o, double x, double y, double radius)
+{
+    struct glint_lamp lamp = {.power = 8, .rgb = {1, 1, 1}};
+    double level = 0.5;
+
+    glint_view_to_angles(&view, focal_mm, x, y, &lamp);
+    glint_area_set_round(&lamp, radius / sqrt(2) *
+                                    glint_view_pixel_tangent(&view, focal_mm));
+    occlusion_apply(o, 0, &view, focal_mm, &lamp, &level, 1);
+    assert_true(fabs(level - fmax(0.5 * lamp.power / 8, 1e-6)) < 1e-12);
+    return lamp.power / 8;
+}
+
+static void test_share(void **state)
+{
+    struct occlusion o = mask_of(SIDE / 2);
+
+    (void)state;
+    assert_true(fabs(left(&o, 200, 100, 20) - 1) < 1e-9);
+    assert_true(left(&o, 60, 100, 20) == 0);
+    assert_true(fabs(left(&o, 128, 100, 20) - 0.5) < 0.03);
+    /* the segment of a disc beyond half of its radius */
+    assert_true(fabs(left(&o, 118, 100, 20) - 0.1955) < 0.04);
+    assert_true(fabs(left(&o, 128, 100, 0) - 0.5) < 0.1); /* a point */
+    assert_true(left(&o, -30, 100, 5) == 1);              /* beside it */
+}
+
+/* A lamp that crosses the rim of a mask must fade by small steps. */
+static void test_no_step(void **state)
+{
+    struct occlusion o = mask_of(SIDE / 2);
+    double last = 0;
+
+    (void)state;
+    for (int i = 0; i <= 120; i++) {
+        const double now = left(&o, 98 + 0.5 * i, 90, 15);
+
+        assert_true(now >= last - 0.02 && now - last < 0.05);
+        last = now;
+    }
+    assert_true(fabs(last - 1) < 1e-9);
+}
+
+static void test_fade(void **state)
+{
+    struct occlusion o = {.fade_px = 100};
+    double last = 1;
+
+    (void)state;
+    assert_true(left(&o, 10, 10, 5) == 1 && left(&o, 256, 256, 0) == 1);
+    for (int i = 0; i <= 110; i++) {
+        const double now = left(&o, 256 + i, 128, 0);
+
+        assert_true(now <= last && last - now < 0.02);
+        assert_true(i == 0 || i > 99 || (now > 0 && now < 1));
+        last = now;
+    }
+    assert_true(last == 0);
+    assert_true(fabs(left(&o, -30, -40, 0) - 0.5) < 1e-9);
+}
+
+static void test_nothing_asked(void **state)
+{
+    struct occlusion o = {.fade_px = 0};
+
+    (void)state;
+    assert_true(left(&o, -500, 10, 5) == 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_share),
+        cmocka_unit_test(test_no_step),
+        cmocka_unit_test(test_fade),
+        cmocka_unit_test(test_nothing_asked),
+    };
+
+    return cmocka_run_group_tests_name("occlusion", tests, NULL, NULL);
+}

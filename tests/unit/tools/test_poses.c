@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Poses of a scene, from files and from a pipe: their order, their hand, and
+ * lines that are none. */
+#include <fcntl.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "scenes/poses.h"
+
+#define ONE_Q30 (1 << 30)
+
+static struct glint_scene_header header;
+static struct glint_scene_object object[2];
+static struct glint_scene_light light[2];
+static struct glint_scene_model model;
+static struct poses poses;
+static struct glint_error error;
+static char name[] = "/tmp/glint-test-poses-XXXXXX";
+
+/* Two things, a sun and a lamp, 16 steps a unit. */
+static void make(uint32_t hand)
+{
+    header = (struct glint_scene_header){
+        .variant = hand, .unit_log2 = 4, .n_objects = 2, .n_lights = 2};
+    strcpy(object[0].name, "ball");
+    strcpy(object[1].name, "cup");
+    strcpy(light[0].name, "sun");
+    strcpy(light[1].name, "lamp");
+    light[0].kind = GLINT_LIGHT_SUN;
+    light[1].kind = GLINT_LIGHT_LAMP;
+    model = (struct glint_scene_model){
+        .header = &header, .light = light, .object = object};
+}
+
+static enum glint_status read_text(const char *text, uint32_t hand)
+{
+    FILE *const file = fopen(name, "w");
+
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+    make(hand);
+    return poses_open(&poses, name, false, &model, &error);
+}
+
+static void next_is(int frame, int thing, int x)
+{
+    const struct pose *const p = poses_next(&poses, frame);
+
+    assert_non_null(p);
+    assert_int_equal(p->thing, thing);
+    assert_int_equal(p->at[0], x);
+}
+
+/* By frames, of one frame by lines; every frame is the first. */
+static void test_order(void **state)
+{
+    (void)state;
+    assert_int_equal(read_text("frame,object,x,y,z,qw,qx,qy,qz\n"
+                               "7,cup,1,0,0\n# no pose\n\n"
+                               "3,camera,2,0,0\n"
+                               "{\"y\":0,\"object\":\"ball\",\"frame\":3,"
+                               "\"x\":3,\"z\":0}\n"
+                               "*,lamp,4,0,0\n",
+                               GLINT_HAND_LEFT),
+                     GLINT_OK);
+    next_is(0, 3, 64);
+    assert_null(poses_next(&poses, 0));
+    assert_null(poses_next(&poses, 2));
+    next_is(5, POSES_CAMERA, 32);
+    next_is(5, 0, 48);
+    assert_null(poses_next(&poses, 6));
+    next_is(100, 1, 16);
+    assert_null(poses_next(&poses, 100));
+    poses_close(&poses);
+}
+
+/* A pose with the other hand is the mirrored one. */
+static void test_hand(void **state)
+{
+    static const char text[] = "0,ball,1,2,3,2,.4,.6,.8\n0,sun,1,2,2\n";
+    struct pose pose[2][2];
+
+    (void)state;
+    for (uint32_t hand = 0; hand < 2; hand++) {
+        assert_int_equal(read_text(text, hand), GLINT_OK);
+        for (int i = 0; i < 2; i++)
+            pose[hand][i] = *poses_next(&poses, 0);
+        poses_close(&poses);
+    }
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(pose[0][i].at[0], pose[1][i].at[0]);
+        assert_int_equal(pose[0][i].at[1], pose[1][i].at[1]);
+        assert_int_equal(pose[0][i].at[2], -pose[1][i].at[2]);
+    }
+    assert_int_equal(pose[0][0].at[2], 48);
+    assert_int_equal(pose[0][1].at[0], lround(ONE_Q30 / 3.));
+    assert_true(pose[0][0].has_turn && !pose[0][1].has_turn);
+    for (int k = 0; k < 4; k++)
+        assert_int_equal(pose[0][0].turn_q30[k],
+                         (k == 1 || k == 2 ? -1 : 1) * pose[1][0].turn_q30[k]);
+    assert_true(
+        fabs(pose[0][0].turn_q30[0] / (double)ONE_Q30 - 2 / sqrt(5.16)) < 1e-9);
+}
+
+static void refused(const char *text, int line, const char *cause)
+{
+    char where[64];
+
+    assert_int_equal(read_text(text, GLINT_HAND_LEFT), GLINT_E_FORMAT);
+    snprintf(where, sizeof where, ":%d: ", line);
+    if (!strstr(error.text, where) || !strstr(error.text, cause))
+        fail_msg("'%s' of '%s'", error.text, text);
+}
+
+static void test_mistakes(void **state)
+{
+    (void)state;
+    refused("0,ball,1,2\n", 1, "expected frame,object,x,y,z");
+    refused("\n0,ball,1,2,3,4\n", 2, "expected frame,object,x,y,z");
+    refused("0,ball,1,2,3,1,0,0,0,0\n", 1, "expected frame,object,x,y,z");
+    refused("0,ball,1,two,3\n", 1, "are numbers");
+    refused("-3,ball,1,2,3\n", 1, "frame must be");
+    refused("1.5,ball,1,2,3\n", 1, "frame must be");
+    refused("0,bell,1,2,3\n", 1, "no 'bell'; did you mean 'ball'?");
+    refused("0,ball,1e8,2,3\n", 1, "beyond");
+    refused("0,sun,0,0,0\n", 1, "must not be 0 0 0");
+    refused("0,ball,0,0,0,0,0,0,0\n", 1, "must not be all 0");
+    refused("frame,ball\n", 1, "the heading");
+    refused("{\"x\":1}\n", 1, "are needed");
+    refused("{\"x\":1\n", 1, "expected , or }");
+    refused("{\"x\" 1}\n", 1, "expected :");
+    refused("{\"w\":1}\n", 1, "a key is none of");
+    refused("{\"object\":3}\n", 1, "object is a");
+    assert_int_equal(poses_open(&poses, "/no/such/file", false, &model, &error),
+                     GLINT_E_IO);
+}
+
+/* A pipe gives lines as they come, whole ones alone. */
+static void test_pipe(void **state)
+{
+    static const char parts[4][64] = {"0,ba",
+                                      "ll,1,0,0\nrubbish\n5,cup,2,0,0\n",
+                                      "1,sun,\n*,cup,3,0,0\n", ""};
+    int to;
+
+    (void)state;
+    unlink(name);
+    assert_int_equal(mkfifo(name, 0600), 0);
+    make(GLINT_HAND_LEFT);
+    assert_int_equal(poses_open(&poses, name, true, &model, &error), GLINT_OK);
+    assert_null(poses_next(&poses, 0));
+    to = open(name, O_WRONLY);
+    assert_true(to >= 0);
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(write(to, parts[i], strlen(parts[i])),
+                         strlen(parts[i]));
+        if (i == 0)
+            assert_null(poses_next(&poses, 1));
+        if (i == 1)
+            next_is(2, 0, 16);
+        if (i == 2)
+            next_is(3, 1, 48);
+    }
+    assert_null(poses_next(&poses, 4));
+    next_is(5, 1, 32);
+    assert_int_equal(poses.n_bad, 2);
+    assert_non_null(strstr(poses.bad.text, ":2: "));
+    /* a line that is too long, and the next one */
+    for (int i = 0; i < 700; i++)
+        assert_int_equal(write(to, "7", 1), 1);
+    assert_int_equal(write(to, "\n*,ball,9,0,0\n", 14), 14);
+    next_is(6, 0, 144);
+    assert_int_equal(poses.n_bad, 3);
+    /* without a writer, and with another one */
+    close(to);
+    assert_null(poses_next(&poses, 7));
+    to = open(name, O_WRONLY);
+    assert_int_equal(write(to, "*,ball,8,0,0\n", 13), 13);
+    next_is(8, 0, 128);
+    close(to);
+    poses_close(&poses);
+    unlink(name);
+}
+
+/* A writer that never stops gets no more than its share of a frame. */
+static void test_flood(void **state)
+{
+    static char lines[1 << 18];
+    const size_t most = sizeof lines - 16;
+    size_t n = 0;
+    int to, taken = 0;
+
+    (void)state;
+    while (n < most)
+        n += (size_t)sprintf(lines + n, "*,ball,1,0,0\n");
+    unlink(name);
+    assert_int_equal(mkfifo(name, 0600), 0);
+    make(GLINT_HAND_LEFT);
+    assert_int_equal(poses_open(&poses, name, true, &model, &error), GLINT_OK);
+    to = open(name, O_WRONLY | O_NONBLOCK);
+    for (int frame = 0; frame < 3; frame++) {
+        const int before = taken;
+
+        while (write(to, lines, 13 * 64) > 0)
+            ;
+        while (poses_next(&poses, frame))
+            taken++;
+        assert_in_range(taken - before, 1, (1 << 16) / 13 + 1);
+    }
+    close(to);
+    poses_close(&poses);
+    unlink(name);
+}
+
+static int open_name(void **state)
+{
+    const int file = mkstemp(name);
+
+    (void)state;
+    if (file < 0)
+        return -1;
+    close(file);
+    return 0;
+}
+
+static int remove_name(void **state)
+{
+    (void)state;
+    unlink(name);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_order), cmocka_unit_test(test_hand),
+        cmocka_unit_test(test_mistakes), cmocka_unit_test(test_pipe),
+        cmocka_unit_test(test_flood)};
+
+    return cmocka_run_group_tests(tests, open_name, remove_name);
+}

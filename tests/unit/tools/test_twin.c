@@ -1,0 +1,575 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The double-precision twin of scenes: rows A1 to A15 of the rows a scene must
+ * hold, with values written by hand. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "scenes/twin.h"
+#include "scenes/vec.h"
+#include "support/rng.h"
+
+struct stage {
+    struct glint_description scene;
+    struct twin twin;
+};
+
+/* Two by one texels: black on the left, white on the right. */
+static enum glint_status picture(void *ctx, const char *name,
+                                 struct glint_image *image,
+                                 struct glint_error *error)
+{
+    uint8_t *mem = calloc(1, 6);
+
+    (void)ctx;
+    (void)name;
+    (void)error;
+    assert_non_null(mem);
+    memset(mem + 3, 255, 3);
+    *image =
+        (struct glint_image){.format = GLINT_RGB24, .width = 2, .height = 1};
+    glint_image_place(image, mem);
+    return GLINT_OK;
+}
+
+/* Opens the scene of TEXT. */
+static struct stage *open_text(const char *text)
+{
+    const struct glint_description_files files = {NULL, NULL, picture};
+    struct stage *stage = malloc(sizeof *stage);
+    struct glint_error error = {""};
+
+    assert_non_null(stage);
+    if (glint_description_parse(&stage->scene, text, strlen(text), "t.scene",
+                                &files, &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(twin_open(&stage->twin, &stage->scene), GLINT_OK);
+    return stage;
+}
+
+static void close_stage(struct stage *stage)
+{
+    twin_close(&stage->twin);
+    glint_description_free(&stage->scene);
+    free(stage);
+}
+
+static struct twin_ray ray_of(double x, double y, double z, double dx,
+                              double dy, double dz)
+{
+    struct twin_ray ray = {
+        {x, y, z}, {dx, dy, dz}, .skip_object = -1, .skip_triangle = -1};
+
+    vec_unit(ray.toward);
+    return ray;
+}
+
+static void about(const double *a, double x, double y, double z, double most)
+{
+    if (fabs(a[0] - x) > most || fabs(a[1] - y) > most || fabs(a[2] - z) > most)
+        fail_msg("%.12g %.12g %.12g, not %g %g %g", a[0], a[1], a[2], x, y, z);
+}
+
+#define TUTORIAL                            \
+    "hand left\ncamera corners\n"           \
+    "material m phong 0 1 0\n"              \
+    "material u phong 1 0 0 colour 1 0 0\n" \
+    "material y phong 1 0 0 colour 1 1 0\n" \
+    "material z phong 1 0 0 colour 0 0 1\n"
+
+static void test_a1_length(void **state)
+{
+    double a[3] = {0, 6, 8};
+
+    (void)state;
+    assert_true(vec_unit(a) == 10);
+    about(a, 0, .6, .8, 1e-15);
+}
+
+/* A2, A3: the normal and the hit of the tutorial's triangle. */
+static void test_a2_a3_triangle(void **state)
+{
+    struct stage *s = open_text(
+        TUTORIAL "triangle t 0 40 120 30 -40 60 -30 -40 60 material m\n");
+    const struct twin_ray ray = ray_of(0, 0, 0, 0, 0, 1);
+    struct twin_hit hit;
+
+    (void)state;
+    assert_true(twin_meet(&s->twin, &ray, 1e9, &hit));
+    about(hit.normal, 0, .6, -.8, 1e-15);
+    assert_true(fabs(hit.t - 90) < 1e-12);
+    about(hit.place, 0, 0, 90, 1e-12);
+    close_stage(s);
+}
+
+/* A4: a ray through a place in the plane of the tutorial's triangle meets it if
+ * that is inside, however small the triangle is: where the area test, of which
+ * test_scene_rays has the baseline, fails for most. */
+static void test_a4_inside(void **state)
+{
+    static const double corner[3][3] = {
+        {0, 40, 120}, {30, -40, 60}, {-30, -40, 60}};
+    uint32_t seed = 1;
+
+    (void)state;
+    for (double size = 1; size > 1e-4; size /= 10) {
+        struct stage *s = open_text(
+            TUTORIAL "triangle t 0 40 120 30 -40 60 -30 -40 60 material m\n");
+        int met = 0;
+
+        for (int i = 0; i < 9; i++)
+            s->scene.triangle[0].place[i / 3][i % 3] *= size;
+        for (int i = 0; i < 20000; i++) {
+            const double u = rng_unit(&seed) * 2 - .5;
+            const double w = rng_unit(&seed) * 2 - .5;
+            const bool is_in = u >= 0 && w >= 0 && u + w <= 1;
+            double p[3];
+            struct twin_ray ray;
+            struct twin_hit hit;
+
+            for (int k = 0; k < 3; k++)
+                p[k] = corner[0][k] + u * (corner[1][k] - corner[0][k]) +
+                       w * (corner[2][k] - corner[0][k]);
+            ray = ray_of(0, 0, 0, p[0], p[1], p[2]);
+            if (fabs(u) < 1e-9 || fabs(w) < 1e-9 || fabs(u + w - 1) < 1e-9)
+                continue;
+            assert_int_equal(twin_meet_object(&s->twin, 0, &ray, 1e9, &hit),
+                             is_in);
+            if (is_in)
+                about(hit.place, size * p[0], size * p[1], size * p[2],
+                      1e-12 * size * 150);
+            met += is_in;
+        }
+        assert_in_range(met, 2000, 3000); /* an eighth */
+        close_stage(s);
+    }
+}
+
+/* A5: of three triangles in a row the nearest is seen. */
+static void test_a5_nearest(void **state)
+{
+    struct stage *s = open_text(
+        TUTORIAL "triangle u 0 30 40 40 -30 120 -40 -30 120 material u\n"
+                 "triangle y -50 30 124 50 30 124 0 -30 44 material y\n"
+                 "triangle z -30 0 37 30 40 117 30 -40 117 material z\n");
+    static const double t[3] = {80, 84, 77};
+    const struct twin_ray ray = ray_of(0, 0, 0, 0, 0, 1);
+    struct twin_pixel pixel;
+    struct twin_hit hit;
+
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        assert_true(twin_meet_object(&s->twin, i, &ray, 1e9, &hit));
+        assert_true(fabs(hit.t - t[i]) < 1e-12);
+    }
+    pixel = twin_see(&s->twin, &ray);
+    assert_true(pixel.rgb[0] == 0 && pixel.rgb[1] == 0 && pixel.rgb[2] == 1);
+    close_stage(s);
+}
+
+/* A6: corner pixels look at (-8, 4.5, 10) and (8, -4.5, 10). */
+static void test_a6_corners(void **state)
+{
+    const struct twin_view view = {160, 90, 0, 1};
+    struct stage *s =
+        open_text(TUTORIAL "sphere t at 0 0 9 radius 1 material m\n");
+    struct twin_ray ray;
+
+    (void)state;
+    twin_camera_ray(&s->twin, &view, 0, 0, &ray);
+    vec_add(ray.from, 10 / ray.toward[2], ray.toward, ray.toward);
+    about(ray.toward, -8, 4.5, 10, 1e-12);
+    twin_camera_ray(&s->twin, &view, 159, 89, &ray);
+    vec_add(ray.from, 10 / ray.toward[2], ray.toward, ray.toward);
+    about(ray.toward, 8, -4.5, 10, 1e-12);
+    close_stage(s);
+}
+
+/* Light in the middle of what a camera at X Y Z sees, by TEXT. */
+static struct twin_pixel look(const char *text, double x, double y, double z,
+                              double dx, double dy, double dz)
+{
+    struct stage *s = open_text(text);
+    const struct twin_ray ray = ray_of(x, y, z, dx, dy, dz);
+    const struct twin_pixel pixel = twin_see(&s->twin, &ray);
+
+    close_stage(s);
+    return pixel;
+}
+
+static void shows(struct twin_pixel p, double r, double g, double b)
+{
+    const double rgb[3] = {(double)p.rgb[0], (double)p.rgb[1],
+                           (double)p.rgb[2]};
+
+    about(rgb, r, g, b, 1e-6);
+}
+
+/* A7: a light at (0, 40, 0), a point at (0, 0, 30) of a floor: .8 of 255 is
+ * 204. The lamp has 1 at its distance of 50. */
+static void test_a7_diffuse(void **state)
+{
+    const struct twin_pixel p =
+        look("hand left\nmaterial m phong 0 1 0 colour 1 0 0\n"
+             "light lamp at 0 40 0 colour 2500 2500 2500\n"
+             "plane floor at 0 0 0 normal 0 1 0 material m\n",
+             0, 30, 0, 0, -1, 1);
+
+    (void)state;
+    shows(p, .8, 0, 0);
+    assert_int_equal((int)(255 * (double)p.rgb[0] + .5), 204);
+}
+
+/* A8: along the normal all terms are whole: .1 + .6 of the colour, .3 of the
+ * light's. Away from it the specular term falls by its power. */
+static void test_a8_phong(void **state)
+{
+    static const char text[] =
+        "hand left\nmaterial m phong .1 .6 .3 colour 1 .5 0 power 2\n"
+        "light sun direction 0 1 0 colour 1 1 2 radius 30\n" /* x .25 */
+        "plane floor at 0 0 0 normal 0 1 0 material m\n";
+
+    (void)state;
+    shows(look(text, 0, 1, 0, 0, -1, 0), .1 + .15 + .075, .05 + .075 + .075,
+          .15);
+    /* at 45 degrees (R.V)^2 is 1/2 */
+    shows(look(text, 0, 1, 0, 0, -1, 1), .1 + .15 + .0375, .05 + .075 + .0375,
+          .075);
+    /* from below it is the ambient light alone */
+    shows(look(text, 0, -1, 0, 0, 1, 0), .1, .05, 0);
+}
+
+/* A9: mirrored twice is the identity, and a mirror shows what is there. */
+static void test_a9_mirror(void **state)
+{
+    static const char text[] = "hand left\nmaterial m phong 0 0 0 reflect .5\n"
+                               "material w phong 1 0 0 colour .2 .4 .8\n"
+                               "plane floor at 0 0 0 normal 0 1 0 material m\n"
+                               "sphere ball at 0 8 9 radius .01 material w\n";
+
+    (void)state;
+    shows(look(text, 0, 1, 0, 0, -1, 1), .1, .2, .4);
+    /* upwards there is nothing, and mirrors do not show the picture behind */
+    assert_true(look(text, 0, 1, 0, 0, -1, -1).cover == 1);
+    shows(look(text, 0, 1, 0, 0, -1, -1), 0, 0, 0);
+}
+
+/* A10: a ball at height Y over a point that a lamp at height 5 lights: before
+ * it, behind, just short of and just beyond the lamp. */
+static void test_a10_shadow(void **state)
+{
+    static const struct {
+        const char *ball;
+        bool dark;
+    } row[] = {{"at 0 3 0 radius .5", true},   {"at 0 -2 0 radius .5", false},
+               {"at 0 4.4 0 radius .5", true}, {"at 0 5.6 0 radius .5", false},
+               {"at 0 5.4 0 radius .5", true}, /* the lamp is inside */
+               {"at 3 3 0 radius .5", false}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        char text[400];
+        struct twin_pixel p;
+
+        snprintf(text, sizeof text,
+                 "hand left\nmaterial m phong 0 1 0\n"
+                 "light lamp at 0 5 0 colour 25 25 25\n"
+                 "plane floor at 0 0 0 normal 0 1 0 material m\n"
+                 "sphere b %s material m\nshadow on\n",
+                 row[i].ball);
+        p = look(text, 1, 1, 0, -1, -1, 0);
+        shows(p, !row[i].dark, !row[i].dark, !row[i].dark);
+    }
+}
+
+/* No acne: a ball lit from where it is seen has no dark pixel. */
+static void test_a10_acne(void **state)
+{
+    struct stage *s =
+        open_text("hand left\ncamera fov 40 at 0 0 -4 toward 0 0 0\n"
+                  "material m phong 0 1 0\nlight lamp at 0 0 -4 colour 9 9 9\n"
+                  "sphere b at 0 0 0 radius 1 material m\nshadow on\n");
+    uint32_t seed = 1;
+
+    (void)state;
+    for (int i = 0; i < 20000; i++) {
+        const double a = .24 * rng_signed(&seed), b = .24 * rng_signed(&seed);
+        const struct twin_ray ray = ray_of(0, 0, -4, a, b, 1);
+        struct twin_hit hit;
+
+        if (twin_meet(&s->twin, &ray, 1e9, &hit) &&
+            vec_dot(hit.normal, ray.toward) < -.01)
+            assert_true(twin_see(&s->twin, &ray).rgb[0] > 0);
+    }
+    close_stage(s);
+}
+
+#define GLASS(refract)                                        \
+    "hand left\nmaterial g phong 0 0 0 pass .5 " refract "\n" \
+    "material w phong 1 0 0 colour .2 .4 .8\n"                \
+    "sphere b at 0 0 0 radius 1 material g\n"
+
+/* A11: what is behind a ball is seen straight through it, by its share; with
+ * the index 1 the same to the bit. Where there is no thing the picture is. */
+static void test_a11_pass(void **state)
+{
+    static const char plain[] = GLASS("") "sphere w at 1 0 6 radius .5 "
+                                          "material w\n";
+    static const char one[] = GLASS("refract 1") "sphere w at 1 0 6 radius .5 "
+                                                 "material w\n";
+    int seen = 0;
+
+    (void)state;
+    for (int k = 0; k < 40; k++) {
+        const struct twin_pixel a = look(plain, 0, 0, -5, k * .005, 0, 1);
+        const struct twin_pixel b = look(one, 0, 0, -5, k * .005, 0, 1);
+        /* the ball behind is met within .5 of (1, 6) */
+        const double off = fabs(11 * (k * .005) - 1) / hypot(k * .005, 1);
+
+        assert_memory_equal(&a, &b, sizeof a);
+        shows(a, off < .5 ? .1 : 0, off < .5 ? .2 : 0, off < .5 ? .4 : 0);
+        assert_true(a.cover == (off < .5 ? 1 : .5F));
+        seen += off < .5;
+    }
+    assert_true(seen > 10 && seen < 35);
+}
+
+/* A12: a ray half a radius off the middle of a ball of index 1.5 enters at 30
+ * degrees and goes on at asin(1/3) = 19.4712; it is turned by twice the
+ * difference and crosses the axis .8949 behind the ball's rim. */
+static void test_a12_refract(void **state)
+{
+    struct stage *s = open_text(
+        GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material w\n");
+    const struct twin_ray ray = ray_of(.5, 0, -5, 0, 0, 1);
+    const double a = asin(.5), b = asin(.5 / 1.5);
+    /* at the rim, ROUND from the axis, it goes towards the axis by TURN */
+    const double round = 2 * b - a, turn = 2 * (a - b);
+    const double cross = cos(round) + sin(round) / tan(turn);
+    struct glint_described_object *w = &s->scene.object[1];
+
+    (void)state;
+    /* A small ball there is seen, and one beside it is not. */
+    w->kind = GLINT_DESCRIBED_SPHERE;
+    w->radius = 1e-6;
+    w->at[0] = 0;
+    w->at[2] = cross;
+    shows(twin_see(&s->twin, &ray), .1, .2, .4);
+    w->at[0] = 2e-6;
+    shows(twin_see(&s->twin, &ray), 0, 0, 0);
+    close_stage(s);
+    /* From inside, beyond the critical angle of 41.8 degrees, nothing comes. */
+    shows(look(GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material "
+                                    "w\n",
+               .9, 0, 0, 0, 0, 1),
+          0, 0, 0);
+    shows(look(GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material "
+                                    "w\n",
+               .5, 0, 0, 0, 0, 1),
+          .1, .2, .4);
+}
+
+/* A12: a ball of less index mirrors what comes at more than 14.48 degrees. */
+static void test_a12_outside(void **state)
+{
+    static const char text[] =
+        GLASS("refract .25") "sphere w at 4 0 -5 radius .5 material w\n";
+    int seen = 0;
+
+    (void)state;
+    /* A mirror of the ball's shape: the normal at X is half way between back
+     * and the ball beside. */
+    for (int i = 0; i < 200; i++) {
+        const double x = .3 + i * .003, z = -sqrt(1 - x * x);
+        const double d[3] = {2 * x * -z, 0, -(1 - 2 * x * x)};
+        /* how far the mirrored ray passes from the middle of W */
+        const double a[3] = {4 - x, 0, -5 - z};
+        const double along = a[0] * d[0] + a[2] * d[2];
+        const double off = fabs(a[0] * d[2] - a[2] * d[0]);
+        const struct twin_pixel p = look(text, x, 0, -9, 0, 0, 1);
+
+        const double share = off < .5 && along > 0 ? .5 : 0;
+
+        if (fabs(off - .5) > .01)
+            shows(p, .2 * share, .4 * share, .8 * share);
+        seen += share > 0;
+    }
+    assert_in_range(seen, 20, 180);
+}
+
+/* A13: corners of a triangle have their texels; between texels' middles it is
+ * a straight line, in light; beyond the picture it repeats. */
+static void test_a13_texture(void **state)
+{
+    static const char text[] =
+        "hand left\ntexture t x\nmaterial w phong 1 0 0 texture t\n"
+        "triangle w 0 0 4 1 0 4 0 1 4 uv 0 0 2 0 0 1 material w\n";
+
+    (void)state;
+    shows(look(text, .125, .5, 0, 0, 0, 1), 0, 0, 0);
+    shows(look(text, .375, .5, 0, 0, 0, 1), 1, 1, 1);
+    shows(look(text, .25, .5, 0, 0, 0, 1), .5, .5, .5);
+    shows(look(text, .3125, .5, 0, 0, 0, 1), .75, .75, .75);
+    shows(look(text, .75, .1, 0, 0, 0, 1), .5, .5, .5);
+    shows(look(text, 0, 0, 0, 0, 0, 1), .5, .5, .5);
+}
+
+/* A14: what has no area and what the ray lies in is missed. */
+static void test_a14_misses(void **state)
+{
+    static const struct {
+        const char *text;
+        double toward[3];
+    } row[] = {
+        {"triangle t -9 1 5 9 1 5 0 1 9 material m\n", {0, 0, 1}},
+        {"triangle t -9 0 5 9 0 5 0 0 9 material m\n", {0, 0, 1}},
+        {"triangle t 0 -1 5 0 1 5 0 3 5 material m\n", {0, 0, 1}},
+        {"triangle t 0 0 5 0 0 5 0 0 5 material m\n", {0, 0, 1}},
+        {"plane p at 0 0 0 normal 0 1 0 material m\n", {0, 0, 1}},
+        {"plane p at 0 1 0 normal 0 1 0 material m\n", {0, 0, 1}},
+        {"plane p at 0 -1 0 normal 0 1 0 material m\n", {0, 1, 1}},
+        {"sphere s at 0 0 -5 radius 1 material m\n", {0, 0, 1}},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        char text[300];
+        struct twin_pixel p;
+
+        snprintf(text, sizeof text, "hand left\nmaterial m phong 1 0 0\n%s",
+                 row[i].text);
+        p = look(text, 0, 0, 0, row[i].toward[0], row[i].toward[1],
+                 row[i].toward[2]);
+        if (p.cover != 0)
+            fail_msg("%s", row[i].text);
+    }
+}
+
+/* A15: both roots of a ball, from before and from inside; a ray that grazes. */
+static void test_a15_sphere(void **state)
+{
+    struct stage *s = open_text("hand left\nmaterial m phong 1 0 0\n"
+                                "sphere s at 0 0 5 radius 3 material m\n");
+    struct twin_ray ray = ray_of(0, 0, 0, 0, 0, 1);
+    struct twin_hit hit;
+
+    (void)state;
+    assert_true(twin_meet(&s->twin, &ray, 1e9, &hit));
+    assert_true(hit.t == 2 && !hit.inside);
+    about(hit.normal, 0, 0, -1, 0);
+    ray.from[2] = 4;
+    assert_true(twin_meet(&s->twin, &ray, 1e9, &hit));
+    assert_true(hit.t == 4 && hit.inside);
+    about(hit.normal, 0, 0, -1, 0);
+    ray = ray_of(3, 0, 0, 0, 0, 1);
+    assert_true(twin_meet(&s->twin, &ray, 1e9, &hit) && hit.t == 5);
+    ray.from[0] = 3.0000001;
+    assert_false(twin_meet(&s->twin, &ray, 1e9, &hit));
+    close_stage(s);
+}
+
+/* A catcher has the shadow alone: .6 of what the light does not reach is taken
+ * from the picture, and where it does nothing is changed. */
+static void test_catcher(void **state)
+{
+    static const char text[] =
+        "hand left\nmaterial m phong 1 0 0\n"
+        "light lamp at 0 5 0 colour 25 25 25\n"
+        "plane floor at 0 0 0 normal 0 1 0 catcher .6\n"
+        "sphere b at 0 3 0 radius .5 material m\nshadow on\n";
+
+    (void)state;
+    assert_true(fabs((double)look(text, 1, 1, 0, -1, -1, 0).cover - .6) < 1e-6);
+    assert_true(look(text, 3, 1, 0, 0, -1, 0).cover == 0);
+}
+
+/* Rays through a closed mesh of triangles that share edges and corners meet it
+ * as those through all of its triangles do. */
+static void test_tree(void **state)
+{
+    char text[16000] = "hand left\nmaterial m phong 1 0 0\n";
+    struct stage *s;
+    uint32_t seed = 7;
+
+    (void)state;
+    for (int i = 0; i < 100; i++) {
+        const double x = 2 * rng_signed(&seed), y = 2 * rng_signed(&seed);
+
+        snprintf(text + strlen(text), sizeof text - strlen(text),
+                 "triangle t%d %.3f %.3f %.3f %.3f %.3f 5 %.3f %.3f 5 "
+                 "material m\n",
+                 i, x, y, 4 + rng_signed(&seed), x + 1, y, x,
+                 y + rng_signed(&seed));
+    }
+    s = open_text(text);
+    /* All as one object: a mesh. */
+    s->scene.n_objects = 1;
+    s->scene.object[0].kind = GLINT_DESCRIBED_MESH;
+    s->scene.object[0].n_triangles = 100;
+    twin_close(&s->twin);
+    assert_int_equal(twin_open(&s->twin, &s->scene), GLINT_OK);
+    for (int i = 0; i < 2000; i++) {
+        const struct twin_ray ray =
+            ray_of(0, 0, 0, .5 * rng_signed(&seed), .5 * rng_signed(&seed), 1);
+        struct twin_hit hit;
+        double nearest = 1e9;
+
+        for (int k = 0; k < 100; k++) {
+            double a[3], b[3], n[3], t, at[3], away[3];
+            const struct glint_described_triangle *tri = &s->scene.triangle[k];
+            bool in = true;
+
+            vec_add(tri->place[1], -1, tri->place[0], a);
+            vec_add(tri->place[2], -1, tri->place[0], b);
+            vec_cross(a, b, n);
+            t = vec_dot(tri->place[0], n) / vec_dot(ray.toward, n);
+            vec_add(ray.from, t, ray.toward, at);
+            for (int c = 0; c < 3; c++) {
+                vec_add(tri->place[(c + 1) % 3], -1, tri->place[c], a);
+                vec_add(at, -1, tri->place[c], b);
+                vec_cross(a, b, away);
+                in = in && vec_dot(away, n) >= 0;
+            }
+            if (in && t > 0 && t < nearest)
+                nearest = t;
+        }
+        if (!twin_meet(&s->twin, &ray, 1e9, &hit))
+            hit.t = 1e9;
+        assert_true(fabs(hit.t - nearest) < 1e-9);
+    }
+    close_stage(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a1_length),
+        cmocka_unit_test(test_a2_a3_triangle),
+        cmocka_unit_test(test_a4_inside),
+        cmocka_unit_test(test_a5_nearest),
+        cmocka_unit_test(test_a6_corners),
+        cmocka_unit_test(test_a7_diffuse),
+        cmocka_unit_test(test_a8_phong),
+        cmocka_unit_test(test_a9_mirror),
+        cmocka_unit_test(test_a10_shadow),
+        cmocka_unit_test(test_a10_acne),
+        cmocka_unit_test(test_a11_pass),
+        cmocka_unit_test(test_a12_refract),
+        cmocka_unit_test(test_a12_outside),
+        cmocka_unit_test(test_a13_texture),
+        cmocka_unit_test(test_a14_misses),
+        cmocka_unit_test(test_a15_sphere),
+        cmocka_unit_test(test_catcher),
+        cmocka_unit_test(test_tree),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

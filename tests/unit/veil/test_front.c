@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What lies on the front element: its light is the haze of the share that a
+ * pixel looks through, as sums over the stop have it; the same bits whatever
+ * tiles and workers; and nothing where nothing lies there.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/frame/front.h"
+#include "engine/setup/entrance.h"
+#include "support/rng.h"
+#include "support/stars/bare_flare.h"
+#include "veil/glare.h"
+
+enum { WIDTH = 131, HEIGHT = 75 };
+
+static const struct glint_real one = {1 << 30, -30};
+
+/* An octagonal stop behind a front of 20 mm. */
+static const struct glint_front_optics optics = {.tangent = 1. / WIDTH,
+                                                 .z = 1.4,
+                                                 .radius = 0.12,
+                                                 .width = WIDTH,
+                                                 .height = HEIGHT,
+                                                 .n_blades = 8};
+
+static struct glint_front_dirt *dirt_of(const struct glint_front *front)
+{
+    struct glint_front_dirt *dirt;
+    struct glint_error error;
+
+    assert_int_equal(glint_front_make(&dirt, front, &error), GLINT_OK);
+    return dirt;
+}
+
+static struct glint_front_table *table_of(const struct glint_front_dirt *dirt,
+                                          const struct glint_setup *setup)
+{
+    struct glint_front_table *table;
+
+    assert_int_equal(dirt->method->table(&table, dirt, &optics, setup),
+                     GLINT_OK);
+    return table;
+}
+
+/* ---------------------------------------------------------------- the table */
+
+static void test_table(void **state)
+{
+    static const struct glint_setup setup = {.n_blades = 8};
+    struct glint_front_dirt *dirt =
+        dirt_of(&(struct glint_front){.dust = 0.05, .dust_seed = 3});
+    struct glint_front_table *t = table_of(dirt, &setup);
+    double worst = 0;
+
+    (void)state;
+    assert_int_equal(t->front.n_x, GLINT_VEIL_FRONT_NODES(WIDTH));
+    for (int j = 0; j < t->front.n_y; j += 3)
+        for (int i = 0; i < t->front.n_x; i += 3) {
+            const double want =
+                glint_front_covered(dirt, &optics, &setup, 4 * i, 4 * j, 100);
+            const double is =
+                t->front.part_q16[j * t->front.n_x + i] * t->most / 65535;
+
+            worst = fmax(worst, fabs(is - want));
+        }
+    print_message("covered %.4f in the mean, %.4f at most, off by %.5f\n",
+                  t->mean, t->most, worst);
+    assert_true(worst < 0.03 * t->most);
+    assert_true(t->mean > 0.03 && t->mean < 0.2 && t->most > 1.5 * t->mean);
+    free(t);
+    glint_front_free(dirt);
+}
+
+/* A mask that covers a half of the front to the left, as seen from the sensor
+ * with x right, covers the right half of the picture: its light comes from
+ * there. Up in the mask is up on the front. */
+static void test_mask(void **state)
+{
+    static const uint8_t left[4] = {0, 255, 0, 255}, high[4] = {0, 0, 255, 255};
+    static const struct glint_setup setup = {.n_blades = 8};
+
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        struct glint_front_dirt *dirt = dirt_of(&(struct glint_front){
+            .mask = k ? high : left, .mask_width = 2, .mask_height = 2});
+        const double low =
+            glint_front_covered(dirt, &optics, &setup, WIDTH / 2 - (k ? 0 : 30),
+                                HEIGHT / 2 - (k ? 20 : 0), 40);
+        const double far =
+            glint_front_covered(dirt, &optics, &setup, WIDTH / 2 + (k ? 0 : 30),
+                                HEIGHT / 2 + (k ? 20 : 0), 40);
+
+        assert_true(low < 1e-3 && far > 0.99);
+        glint_front_free(dirt);
+    }
+}
+
+static void test_refuses(void **state)
+{
+    static const uint8_t mask[4] = {0, 0, 0, 0};
+    static const struct glint_front bad[] = {
+        {.dust = -0.1},
+        {.dust = 0.6},
+        {.dust = NAN},
+        {.mask = mask, .mask_width = 1, .mask_height = 4}};
+    struct glint_front_dirt *dirt;
+    struct glint_error error;
+
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        assert_int_equal(glint_front_make(&dirt, &bad[k], &error),
+                         GLINT_E_ARGUMENT);
+        assert_null(dirt);
+    }
+    assert_null(dirt_of(&(struct glint_front){0}));
+    glint_front_free(NULL);
+}
+
+/* ---------------------------------------------------------------- the light */
+
+/* A table of any parts, and the spread of a share over all cells alike. */
+struct scene {
+    struct bare_flare bare;
+    struct glint_veil *veil;
+    void *mem;
+    uint16_t part_q16[GLINT_VEIL_FRONT_NODES(WIDTH) *
+                      GLINT_VEIL_FRONT_NODES(HEIGHT)];
+    struct glint_veil_front front;
+};
+
+static void open_scene(struct scene *s, int tile_log2, int n_workers,
+                       uint32_t order)
+{
+    const struct glint_veil_config cfg = {n_workers, WIDTH, HEIGHT, 1};
+    const size_t bytes = glint_veil_bytes(&cfg);
+    uint32_t seed = 9;
+
+    bare_flare_open(&s->bare, WIDTH, HEIGHT, tile_log2, n_workers, order);
+    s->mem = bare_flare_take(bytes);
+    assert_int_equal(glint_veil_init(&s->veil, &cfg, s->mem, bytes), GLINT_OK);
+    for (size_t i = 0; i < sizeof s->part_q16 / 2; i++)
+        s->part_q16[i] = (uint16_t)rng_below(&seed, 65536);
+    s->front = (struct glint_veil_front){
+        glint_veil_front_row, GLINT_VEIL_FRONT_NODES(WIDTH),
+        GLINT_VEIL_FRONT_NODES(HEIGHT), s->part_q16};
+}
+
+static void close_scene(struct scene *s)
+{
+    bare_flare_close(&s->bare);
+    free(s->mem);
+}
+
+/* Draws onto MEM what a front spreads evenly of a lamp: LIGHT of white where
+ * it is covered most. */
+static void draw(struct scene *s, double light, enum glint_pixel_format format,
+                 void *mem)
+{
+    const int32_t rgb_q14[3] = {16384, 16384, 16384};
+    struct glint_image image = {
+        .format = format, .width = WIDTH, .height = HEIGHT};
+    struct glint_veil_spread even;
+    int cells[2];
+
+    glint_image_place(&image, mem);
+    glint_veil_cells(WIDTH, HEIGHT, cells);
+    for (int k = 0; k < 2; k++) {
+        int32_t *table = k ? even.down_q30 : even.across_q30;
+        int32_t rest = 1 << 30;
+
+        for (int d = cells[k]; d > 0; d--) {
+            table[d] = (1 << 29) / cells[k];
+            rest -= (d == cells[k] ? 1 : 2) * table[d];
+        }
+        table[0] = rest;
+    }
+    even.share =
+        glint_real_of(light * cells[0] * cells[1] / 1000 / (WIDTH * HEIGHT));
+    glint_veil_look(s->veil, NULL, one, &s->bare.shuffle.workers);
+    glint_veil_lamp(s->veil, 60 * 256, 40 * 256,
+                    glint_real_of(1000.0 * WIDTH * HEIGHT), rgb_q14);
+    glint_veil_spread(s->veil, NULL, 0);
+    glint_veil_front(s->veil, &s->front, &even, 1);
+    glint_veil_draw_alone(s->veil, s->bare.flare, &image);
+}
+
+/* Linear pictures get light times part, which is straight between nodes. */
+static void test_light(void **state)
+{
+    static int32_t linear_q20[3 * WIDTH * HEIGHT];
+    static struct scene s;
+    double worst = 0;
+
+    (void)state;
+    open_scene(&s, 5, 1, 1);
+    draw(&s, 0.25, GLINT_LINEAR_Q20, linear_q20);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const uint16_t *at = s.part_q16 + y / 4 * s.front.n_x + x / 4;
+            const double u = (x % 4 + 0.5) / 4, v = (y % 4 + 0.5) / 4;
+            const double top = at[0] + u * (at[1] - at[0]);
+            const double low =
+                at[s.front.n_x] + u * (at[s.front.n_x + 1] - at[s.front.n_x]);
+            const double want = 0.25 * (top + v * (low - top)) / 65536;
+
+            worst = fmax(
+                worst, fabs(linear_q20[3 * (y * WIDTH + x)] * 0x1p-20 - want));
+        }
+    print_message("light off by %.6f of white\n", worst);
+    assert_true(worst < 1e-4);
+    glint_veil_front(s.veil, NULL, NULL, 0);
+    close_scene(&s);
+}
+
+/* In codes: tiles, workers and order change no bit, of dim light and of such
+ * as is more than white where it is covered most; more light is nowhere darker,
+ * and every machine draws the same. */
+static void test_bits(void **state)
+{
+    const uint64_t want = UINT64_C(0x5b5e6baa4b36eb8a);
+    static uint8_t first[3 * WIDTH * HEIGHT], other[sizeof first];
+    static uint8_t before[sizeof first];
+    static struct scene s;
+    uint64_t h = UINT64_C(14695981039346656037);
+
+    (void)state;
+    memset(before, 0, sizeof before);
+    for (int k = 0; k < 6; k++) {
+        const double light = ldexp(0.01, 3 * k);
+
+        memset(first, 0, sizeof first);
+        memset(other, 0, sizeof other);
+        open_scene(&s, 6, 1, 1);
+        draw(&s, light, GLINT_RGB24, first);
+        close_scene(&s);
+        open_scene(&s, 3 + k % 3, 1 + k % 3, 7 + (uint32_t)k);
+        draw(&s, light, GLINT_RGB24, other);
+        close_scene(&s);
+        assert_memory_equal(first, other, sizeof first);
+        for (size_t i = 0; i < sizeof first; i++) {
+            assert_true(first[i] >= before[i]);
+            h = (h ^ first[i]) * UINT64_C(1099511628211); /* FNV-1a */
+        }
+        memcpy(before, first, sizeof first);
+    }
+    print_message("hash %08lx%08lx\n", (unsigned long)(h >> 32),
+                  (unsigned long)(h & 0xffffffff));
+    assert_true(h == want);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_table), cmocka_unit_test(test_mask),
+        cmocka_unit_test(test_refuses), cmocka_unit_test(test_light),
+        cmocka_unit_test(test_bits)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

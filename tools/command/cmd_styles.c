@@ -1,0 +1,315 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint styles: one photograph in each style, as a contact sheet.
+ */
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "desk/apart.h"
+#include "desk/sheet.h"
+#include "desk/styles.h"
+#include "formats/picture.h"
+#include "model/lens_files.h"
+#include "options/takes.h"
+#include "overlay/compositor.h"
+#include "posix/error.h"
+
+static const char help[] =
+    "glint styles [IN] [-o OUT] [options]\n"
+    "\n"
+    "Lists the styles that --style of overlay, live and explain takes. With "
+    "-o\n"
+    "draws IN, or a photograph that comes with glint, in each of them, as a\n"
+    "contact sheet.\n"
+    "\n"
+    "  -o, --output OUT    the sheet, a picture of 8 bits\n"
+    "  --width N           of each picture on it, 64 to 2048 (default 640)\n"
+    "Other options are those of overlay and go for all styles: --light-at,\n"
+    "--gain, --quality ... A lens, stop or strength that is given replaces "
+    "that\n"
+    "of every style.\n";
+
+enum {
+    OPT_WIDTH = OPT_COMPOSITOR_LAST,
+    PATH_BYTES = 4096,
+    CAPTION_BYTES = 160
+};
+
+static const struct option options[] = {
+    {"output", required_argument, NULL, 'o'},
+    {"width", required_argument, NULL, OPT_WIDTH},
+    COMPOSITOR_OPTIONS,
+    TOOL_COMMON_OPTIONS};
+
+static const char shorts[] = "o:" TOOL_COMMON_SHORT;
+
+struct styles_command {
+    int argc;
+    char **argv;
+    const char *input, *output;
+    int width;
+    struct glint_image image; /* the input, and a copy to draw on */
+    struct glint_image drawn;
+};
+
+/* Takes the options of the line into C; COMPOSITOR gets those of overlay. */
+static int parse(struct tool *tool, struct styles_command *c,
+                 struct compositor *compositor)
+{
+    int option, code;
+
+    optind = 0;
+    while ((option = getopt_long(c->argc, c->argv, shorts, options, NULL)) >=
+           0) {
+        code = compositor_option(tool, compositor, option, optarg);
+        if (code == -2 && option == 'o') {
+            c->output = optarg;
+            code = -1;
+        } else if (code == -2 && option == OPT_WIDTH) {
+            code = -1;
+            if (!tool_integer(optarg, 64, 2048, &c->width))
+                return tool_refuse(tool, "width", optarg);
+        } else if (code == -2)
+            code = tool_option(tool, option, optarg);
+        if (code >= 0)
+            return code;
+    }
+    c->input = optind < c->argc ? c->argv[optind] : NULL;
+    return optind + 1 < c->argc ? tool_usage(tool, "takes one picture") : -1;
+}
+
+/* Loads the photograph that comes with glint, the small one if the other takes
+ * the image plug-in and there is none. GLINT_E_ARGUMENT: neither is there. */
+static enum glint_status load_photograph(struct glint_image *image,
+                                         struct glint_error *error)
+{
+    static const char *const places[] = {
+        "../bridge.jpg", "../tests/data/bridge.jpg", "../bridge.ppm",
+        "../tests/data/bridge.ppm"};
+    char folder[PATH_BYTES - 40], path[PATH_BYTES];
+    enum glint_status status = glint_error_report(
+        error, GLINT_E_ARGUMENT, "bridge.ppm",
+        "comes with glint, but is not there; name a picture");
+
+    for (int k = 0; k < 4; k++)
+        for (int i = 0; lens_folder(i, "lenses", folder, sizeof folder); i++) {
+            snprintf(path, PATH_BYTES, "%s/%s", folder, places[k]);
+            if (!*folder || access(path, R_OK) != 0)
+                continue;
+            status = glint_picture_load(path, image, error);
+            if (status == GLINT_OK)
+                return status;
+        }
+    return status;
+}
+
+static int load(struct tool *tool, struct styles_command *c)
+{
+    struct glint_error error = {""};
+    const enum glint_status status =
+        c->input ? glint_picture_load(c->input, &c->image, &error)
+                 : load_photograph(&c->image, &error);
+    uint8_t *copy;
+
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    copy =
+        malloc(glint_image_bytes(GLINT_RGB24, c->image.width, c->image.height));
+    if (!copy)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    c->drawn = (struct glint_image){.format = GLINT_RGB24,
+                                    .width = c->image.width,
+                                    .height = c->image.height};
+    glint_image_place(&c->drawn, copy);
+    return EXIT_OK;
+}
+
+static void caption_of(char text[CAPTION_BYTES], const struct style *style)
+{
+    snprintf(text, CAPTION_BYTES, "%s: %s", style->name, style->about);
+}
+
+/* Opens SHEET for N pictures like SMALL, with room for the longest caption. */
+static enum glint_status open_sheet(struct sheet *sheet, int n,
+                                    const struct glint_image *small)
+{
+    char text[CAPTION_BYTES];
+    int most = 1;
+
+    for (int k = 0; k < n; k++) {
+        int rows;
+
+        caption_of(text, &styles[k]);
+        rows = sheet_caption_lines(small->width, text);
+        most = rows > most ? rows : most;
+    }
+    return sheet_open(sheet, n, small->width, small->height, most);
+}
+
+static void copy_rows(const struct glint_image *to,
+                      const struct glint_image *from)
+{
+    for (int y = 0; y < to->height; y++)
+        memcpy(to->plane[0] + y * to->stride_bytes[0],
+               from->plane[0] + y * from->stride_bytes[0],
+               3 * (size_t)to->width);
+}
+
+/* Draws the input in STYLE as the picture K of SHEET, which the first one
+ * opens. */
+static int put(struct tool *tool, struct styles_command *c,
+               struct compositor *compositor, const struct style *style,
+               struct sheet *sheet, int k, int n)
+{
+    struct glint_image small = {.plane = {NULL}};
+    enum glint_status status;
+    char text[CAPTION_BYTES];
+    int code =
+        compositor_size(tool, compositor, c->image.width, c->image.height);
+
+    if (code != EXIT_OK)
+        return code;
+    copy_rows(&c->drawn, &c->image);
+    status = compositor_draw(compositor, &c->drawn, 0);
+    if (status == GLINT_OK)
+        status = sheet_reduce(&small, &c->drawn, c->width);
+    if (status == GLINT_OK && k == 0)
+        status = open_sheet(sheet, n, &small);
+    if (status == GLINT_OK) {
+        const struct glint_image to = sheet_picture(sheet, k);
+
+        copy_rows(&to, &small);
+        caption_of(text, style);
+        sheet_caption(sheet, k, text);
+    }
+    free(small.plane[0]);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
+}
+
+static int draw(struct tool *tool, struct styles_command *c,
+                const struct style *style, struct sheet *sheet, int k, int n)
+{
+    struct compositor *const compositor = calloc(1, sizeof *compositor);
+    int code;
+
+    if (!compositor)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    compositor_defaults(compositor);
+    code = compositor_style(tool, compositor, style->name);
+    if (code < 0)
+        code = parse(tool, c, compositor);
+    if (code < 0)
+        code = compositor_open_lens(tool, compositor);
+    if (code == EXIT_OK)
+        code = put(tool, c, compositor, style, sheet, k, n);
+    compositor_close(compositor);
+    free(compositor);
+    return code;
+}
+
+static int draw_sheet(struct tool *tool, struct styles_command *c)
+{
+    struct glint_error error = {""};
+    struct sheet sheet = {.columns = 0};
+    enum glint_status status;
+    int n = 0, code;
+
+    while (styles[n].name)
+        n++;
+    code = load(tool, c);
+    for (int k = 0; k < n && code == EXIT_OK; k++) {
+        if (!tool->quiet)
+            fprintf(stderr, "glint styles: %s\n", styles[k].name);
+        code = draw(tool, c, &styles[k], &sheet, k, n);
+    }
+    if (code == EXIT_OK) {
+        status = glint_picture_save(c->output, &sheet.image, &error);
+        if (status != GLINT_OK)
+            code = tool_fail(tool, status, error.text);
+    }
+    sheet_close(&sheet);
+    return code;
+}
+
+static void list(void)
+{
+    for (const struct style *s = styles; s->name; s++) {
+        printf("%-9s %s\n         ", s->name, s->about);
+        for (const struct style_setting *set = s->set; set->option; set++)
+            printf(" --%s %s", set->option, set->value);
+        puts(s->set[0].option ? "" : " (the defaults)");
+    }
+}
+
+/* Returns an exit code, or -1 if OUT may be written. */
+static int check_output(const struct tool *tool, const struct styles_command *c)
+{
+    struct glint_error error = {""};
+
+    if (tool_check_output(tool, c->output) != EXIT_OK)
+        return EXIT_OUTPUT;
+    if (glint_picture_check(c->output, GLINT_PICTURE_8BIT, &error) == GLINT_OK)
+        return -1;
+    tool_fail(tool, GLINT_E_OUTPUT, error.text);
+    return EXIT_OUTPUT;
+}
+
+static int check_apart(const struct tool *tool, const struct styles_command *c,
+                       const struct compositor *compositor)
+{
+    struct apart files = {.n_read = 0};
+
+    apart_read(&files, NULL, c->input);
+    apart_write(&files, "-o", c->output);
+    apart_compositor(&files, compositor);
+    return apart_check(tool, &files);
+}
+
+/* Checks the line before a lens is baked for it. */
+static int check(struct tool *tool, struct styles_command *c)
+{
+    struct compositor *const compositor = calloc(1, sizeof *compositor);
+    int code;
+
+    if (!compositor)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    compositor_defaults(compositor);
+    code = parse(tool, c, compositor);
+    if (code < 0 && compositor->style)
+        code = tool_usage(tool, "draws every style; --style is for overlay");
+    if (code < 0 && check_apart(tool, c, compositor) != EXIT_OK)
+        code = EXIT_USAGE;
+    compositor_close(compositor);
+    free(compositor);
+    if (code >= 0)
+        return code;
+    if (c->output)
+        return check_output(tool, c);
+    return c->input ? tool_usage(tool, "needs -o OUT for the sheet") : -1;
+}
+
+int cmd_styles(int argc, char **argv)
+{
+    struct tool tool = {.name = "styles",
+                        .help = help,
+                        .help_desk = COMPOSITOR_HELP,
+                        .help_end = SETTINGS_HELP,
+                        .help_last = SCENE_HELP COMMON_HELP};
+    struct styles_command c = {.argc = argc, .argv = argv, .width = 640};
+    int code = check(&tool, &c);
+
+    if (code >= 0)
+        return code;
+    if (!c.output) {
+        list();
+        return EXIT_OK;
+    }
+    code = tool_start(&tool);
+    if (code == EXIT_OK)
+        code = draw_sheet(&tool, &c);
+    tool_finish(&tool);
+    glint_picture_free(&c.image);
+    free(c.drawn.plane[0]);
+    return code;
+}

@@ -1,0 +1,390 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint render of scenes: draws their things, in linear light.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "desk/render_file.h"
+#include "options/takes.h"
+#include "overlay/overlay.h"
+#include "command/render_scene.h"
+#include "scenes/baked_scene.h"
+#include "scenes/account.h"
+#include "scenes/scene_frame.h"
+#include "scenes/twin.h"
+
+static const char help[] =
+    "glint render NAME.scene|BAKED -o OUT [options]\n"
+    "\n"
+    "Draws the things of a scene (tools/examples/scenes/README.md has the\n"
+    "format) over black, by the integer run time. Values are linear: 1 is\n"
+    "display white. OUT is .pfm, or with the image plug-in .exr, .hdr: linear\n"
+    "as it stands. A .ppm, .png or .jpg is for the eye: sRGB, 1 and above\n"
+    "white. A baked scene is that of glint bake; a text is baked first.\n"
+    "\n"
+    "  -o, --output OUT\n"
+    "  --size WxH          default 960x540\n"
+    "  --rays R            model: the integer run time (default)\n"
+    "                      exact: every ray in double precision, the\n"
+    "                      reference; of texts\n"
+    "  --samples N         points of a pixel at outlines: 1, 4 (default), 8 "
+    "or\n"
+    "                      16; of exact rays N x N, 1 to 16\n"
+    "  --shadow-points N   1, 4 or 16 of a light's disc (default 4)\n"
+    "  --shading S         full: each pixel (default); half: two by two at\n"
+    "                      once where they see one thing\n"
+    "  --exposure EV       stops; all light times 2^EV (default 0)\n"
+    "  --pose FILE         moves things and camera, as of glint overlay\n"
+    "  --frame N           the frame of --pose to draw (default 0)\n"
+    "  --frames A-B        all of these; OUT is .y4m, - or has a %04d\n"
+    "  --fps N             of .y4m, and of how fast a lens follows (default "
+    "25)\n"
+    "  --lens LENS|none    adds the flare that LENS makes of the lights of a\n"
+    "                      scene with 'flare lights' (default none), as glint\n"
+    "                      overlay does; its options choose the flare: "
+    "--strength,\n"
+    "                      --coating, --stop, --quality, --light-at ...\n";
+
+enum { MOST_FRAME = 1000000000 };
+
+#define NEEDS_LENS \
+    "%s: 'camera lens' needs the lens of a flare; here it takes 'camera fov'"
+
+enum {
+    OPT_FRAME = OPT_COMPOSITOR_LAST,
+    OPT_FRAMES,
+    OPT_FPS,
+    OPT_SIZE,
+    OPT_SAMPLES,
+    OPT_POINTS,
+    OPT_RAYS_OF,
+    OPT_EXPOSURE_OF
+};
+
+/* Takes "A-B". */
+static bool take_frames(struct render_scene *r, const char *text)
+{
+    const char *const dash = strchr(text, '-');
+    char first[16];
+
+    if (!dash || dash - text >= (ptrdiff_t)sizeof first)
+        return false;
+    snprintf(first, sizeof first, "%.*s", (int)(dash - text), text);
+    r->is_video = r->is_frames = true;
+    return tool_integer(first, 0, MOST_FRAME, &r->first) &&
+           tool_integer(dash + 1, r->first, MOST_FRAME, &r->last);
+}
+
+/* Takes what is of frames that change. Returns -1, or -2 if it is not. */
+static int take_moving(struct tool *tool, struct render_scene *r, int c)
+{
+    switch (c) {
+    case OPT_FRAME:
+        r->is_frames = true;
+        if (!tool_integer(optarg, 0, MOST_FRAME, &r->first))
+            return tool_refuse(tool, "frame", optarg);
+        r->last = r->first;
+        return -1;
+    case OPT_FRAMES:
+        return take_frames(r, optarg) ? -1
+                                      : tool_refuse(tool, "frames", optarg);
+    case OPT_FPS:
+        return tool_number(optarg, &r->fps) && r->fps >= 1 && r->fps <= 1000
+                   ? -1
+                   : tool_refuse(tool, "fps", optarg);
+    default:
+        return -2;
+    }
+}
+
+static int take(struct tool *tool, struct render_scene *r, int c)
+{
+    static const char *const rays[] = {"model", "exact", NULL};
+    int word;
+
+    switch (c) {
+    case 'o':
+        r->output = optarg;
+        return -1;
+    case OPT_SIZE:
+        return tool_size(optarg, &r->width, &r->height)
+                   ? -1
+                   : tool_refuse(tool, "size", optarg);
+    case OPT_RAYS_OF:
+        word = tool_word(optarg, rays);
+        r->exact = word == 1;
+        return word >= 0 ? -1 : tool_refuse(tool, "rays", optarg);
+    case OPT_SAMPLES:
+        return tool_integer(optarg, 1, 16, &r->samples)
+                   ? -1
+                   : tool_usage(tool, "--samples takes 1 to 16, not '%s'",
+                                optarg);
+    case OPT_POINTS:
+        return tool_integer(optarg, 1, 16, &r->shadow_points) &&
+                       (r->shadow_points == 1 || r->shadow_points == 4 ||
+                        r->shadow_points == 16)
+                   ? -1
+                   : tool_usage(tool,
+                                "--shadow-points takes 1, 4 or 16, not "
+                                "'%s'",
+                                optarg);
+    case OPT_EXPOSURE_OF:
+        return tool_number(optarg, &r->exposure_ev) &&
+                       fabs(r->exposure_ev) <= 100
+                   ? -1
+                   : tool_refuse(tool, "exposure", optarg);
+    default:
+        return tool_option(tool, c, optarg);
+    }
+}
+
+/* Takes option C, of scenes or of the flare. Returns -1 or an exit code. */
+static int take_any(struct tool *tool, struct render_scene *r, int c)
+{
+    int code = compositor_option(tool, &r->compositor, c, optarg);
+
+    if (code == -1)
+        r->is_frames = r->is_frames || c == OPT_POSE || c == OPT_LENS;
+    if (code == -1)
+        r->is_lit =
+            r->is_lit || (c != OPT_POSE && c != OPT_LENS && c != OPT_SHADING);
+    if (code == -2)
+        code = take_moving(tool, r, c);
+    return code == -2 ? take(tool, r, c) : code;
+}
+
+static int parse(struct tool *tool, int argc, char **argv,
+                 struct render_scene *r)
+{
+    static const struct option options[] = {
+        {"output", required_argument, NULL, 'o'},
+        {"size", required_argument, NULL, OPT_SIZE},
+        {"rays", required_argument, NULL, OPT_RAYS_OF},
+        {"samples", required_argument, NULL, OPT_SAMPLES},
+        {"shadow-points", required_argument, NULL, OPT_POINTS},
+        {"exposure", required_argument, NULL, OPT_EXPOSURE_OF},
+        {"frame", required_argument, NULL, OPT_FRAME},
+        {"frames", required_argument, NULL, OPT_FRAMES},
+        {"fps", required_argument, NULL, OPT_FPS},
+        COMPOSITOR_OPTIONS, /* the first of a name counts */
+        TOOL_COMMON_OPTIONS};
+    int c, code = compositor_style_of(tool, &r->compositor, argc, argv,
+                                      "o:" TOOL_COMMON_SHORT, options);
+
+    if (code >= 0)
+        return code;
+    while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+                            NULL)) >= 0)
+        if ((code = take_any(tool, r, c)) >= 0)
+            return code;
+    code = tool_inputs(tool, argc, argv, 1, "takes one scene");
+    if (code >= 0)
+        return code;
+    if (!r->output)
+        return tool_usage(tool, "needs -o OUT");
+    if (!r->exact && r->samples && r->samples != 1 && r->samples != 4 &&
+        r->samples != 8 && r->samples != 16)
+        return tool_usage(tool,
+                          "--samples takes 1, 4, 8 or 16, not %d; of --rays "
+                          "exact 1 to 16",
+                          r->samples);
+    if (!r->samples)
+        r->samples = 4;
+    if (strcmp(r->compositor.lens, "none") != 0)
+        r->is_frames = true;
+    else if (r->is_lit)
+        return tool_usage(tool, "options of a flare need --lens LENS");
+    return -1;
+}
+
+/* ------------------------------------------------------------ exact rays */
+
+static void say_exact(const struct tool *tool,
+                      const struct glint_description *scene,
+                      const struct twin_pixel *pixels, size_t n, double ms)
+{
+    size_t covered = 0;
+
+    if (!tool->json)
+        return;
+    for (size_t i = 0; i < n; i++)
+        covered += pixels[i].cover > 0;
+    printf("{\"engine\": \"exact\", \"scene\": {\"objects\": %d, "
+           "\"triangles\": %d, \"lights\": %d, \"covered_px\": %zu}, "
+           "\"ms\": %.3f}\n",
+           scene->n_objects, scene->n_triangles, scene->n_lights, covered, ms);
+}
+
+/* Draws SCENE by its twin, over black. */
+static int draw_exact(struct tool *tool, struct render_scene *r,
+                      const struct glint_description *scene)
+{
+    const struct twin_view view = {r->width, r->height, 0, r->samples};
+    const size_t n = (size_t)r->width * (size_t)r->height;
+    struct twin_pixel *pixels = malloc(n * sizeof *pixels);
+    const double start = tool_seconds(), scale = exp2(r->exposure_ev);
+    enum glint_status status = GLINT_E_MEMORY;
+    struct twin twin;
+
+    if (pixels)
+        status = twin_open(&twin, scene);
+    if (status == GLINT_OK) {
+        twin.shadow_points = r->shadow_points;
+        twin_render(&twin, &view, tool->workers, pixels);
+        twin_close(&twin);
+        for (size_t i = 0; i < 3 * n; i++)
+            r->image.rgb[i] = (float)(scale * (double)pixels[i / 3].rgb[i % 3]);
+        say_exact(tool, scene, pixels, n, 1e3 * (tool_seconds() - start));
+    }
+    free(pixels);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
+}
+
+static int run_exact(struct tool *tool, struct render_scene *r,
+                     const char *path)
+{
+    struct glint_description *scene = calloc(1, sizeof *scene);
+    int code;
+
+    if (!scene)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    code = tool_is_scene(path)
+               ? tool_scene(tool, path, scene, NULL)
+               : tool_usage(tool, "--rays exact takes the text of a scene");
+    if (code != EXIT_OK) {
+        free(scene);
+        return code;
+    }
+    code = scene->camera.field == GLINT_DESCRIBED_LENS
+               ? tool_usage(tool, NEEDS_LENS, path)
+               : draw_exact(tool, r, scene);
+    glint_description_free(scene);
+    free(scene);
+    return code;
+}
+
+/* ---------------------------------------------------------- the run time */
+
+static void say_frame(const struct tool *tool, const struct scene_frame *frame,
+                      double ms)
+{
+    if (!tool->json)
+        return;
+    printf("{\"engine\": \"model\", \"scene\": {");
+    scene_cost_json(frame, frame->model->header->bytes, stdout);
+    printf(", \"lights\": %u, \"highlights\": []}, \"ms\": %.3f}\n",
+           frame->model->header->n_lights, ms);
+}
+
+/* Draws MODEL over black, in linear light. */
+static int draw_model(struct tool *tool, struct render_scene *r,
+                      const struct glint_scene_model *model)
+{
+    const struct scene_dials dials = {.width = r->width,
+                                      .height = r->height,
+                                      .edge_samples = r->samples,
+                                      .shadow_points = r->shadow_points,
+                                      .half_shading =
+                                          r->compositor.scene.half_shading};
+    const size_t n = 3 * (size_t)r->width * (size_t)r->height;
+    struct glint_image linear = {
+        .format = GLINT_LINEAR_Q20, .width = r->width, .height = r->height};
+    int32_t *light_q20 = calloc(n, sizeof *light_q20);
+    const double start = tool_seconds();
+    struct scene_frame frame;
+    int code;
+
+    if (!light_q20)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    code = scene_frame_open(&frame, tool, model, &dials);
+    if (code == EXIT_OK) {
+        glint_image_place(&linear, light_q20);
+        code = scene_frame_draw(&frame, &linear);
+        if (code == EXIT_OK)
+            say_frame(tool, &frame, 1e3 * (tool_seconds() - start));
+        scene_frame_close(&frame);
+    }
+    for (size_t i = 0; code == EXIT_OK && i < n; i++)
+        r->image.rgb[i] =
+            (float)ldexp(exp2(r->exposure_ev) * light_q20[i], -20);
+    free(light_q20);
+    return code;
+}
+
+static int run_model(struct tool *tool, struct render_scene *r,
+                     const char *path)
+{
+    struct baked_scene scene;
+    int code = baked_scene_open(tool, path, &scene);
+
+    if (code != EXIT_OK)
+        return code;
+    code = scene.model.header->camera.kind == GLINT_CAMERA_LENS
+               ? tool_usage(tool, NEEDS_LENS, path)
+               : draw_model(tool, r, &scene.model);
+    baked_scene_close(&scene);
+    return code;
+}
+
+/* ----------------------------------------------------------- the command */
+
+static int run(struct tool *tool, struct render_scene *r, const char *path)
+{
+    int code = r->is_frames && overlay_is_video(r->output)
+                   ? EXIT_OK
+                   : render_file_check(tool, r->output, &r->linear);
+
+    tool->written = r->output;
+    if (code != EXIT_OK)
+        return code;
+    r->image = (struct glint_float_image){
+        r->width, r->height,
+        malloc(3 * (size_t)r->width * (size_t)r->height * sizeof(float))};
+    if (!r->image.rgb)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    if (r->is_frames)
+        code = render_frames(tool, r, path);
+    else
+        code = (r->exact ? run_exact : run_model)(tool, r, path);
+    if (code == EXIT_OK && !r->is_frames)
+        code = render_file_save(tool, r->output, r->linear, &r->image, 1);
+    free(r->image.rgb);
+    return code;
+}
+
+bool render_has_scene(int argc, char **argv)
+{
+    for (int i = 1; i < argc; i++)
+        if (argv[i][0] != '-' && baked_scene_is(argv[i]))
+            return true;
+    return false;
+}
+
+int cmd_render_scene(int argc, char **argv)
+{
+    struct tool tool = {
+        .name = "render", .help = help, .help_end = COMMON_HELP};
+    struct render_scene *const r = calloc(1, sizeof *r);
+    int code;
+
+    if (!r)
+        return tool_fail(&tool, GLINT_E_MEMORY, NULL);
+    r->width = 960;
+    r->height = 540;
+    r->shadow_points = 4;
+    r->fps = 25;
+    compositor_defaults(&r->compositor);
+    r->compositor.lens = "none";
+    code = parse(&tool, argc, argv, r);
+    if (code < 0) {
+        code = tool_start(&tool);
+        if (code == EXIT_OK)
+            code = run(&tool, r, argv[optind]);
+        tool_finish(&tool);
+    }
+    compositor_close(&r->compositor);
+    free(r);
+    return code;
+}

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT */
+#include "desk/apart.h"
+
+#include <string.h>
+
+#include "posix/target.h"
+
+static void add(struct apart_file *files, int *n, const char *option,
+                const char *path)
+{
+    if (path && *n < APART_FILES)
+        files[(*n)++] = (struct apart_file){option, path};
+}
+
+void apart_read(struct apart *files, const char *option, const char *path)
+{
+    add(files->read, &files->n_read, option, path);
+}
+
+void apart_write(struct apart *files, const char *option, const char *path)
+{
+    add(files->written, &files->n_written, option, path);
+}
+
+void apart_compositor(struct apart *files, const struct compositor *compositor)
+{
+    const struct settings *const s = &compositor->settings;
+
+    apart_read(files, "--lens", compositor->lens);
+    apart_read(files, "--lights", compositor->lights_file);
+    apart_read(files, "--mask", compositor->occlusion.file);
+    apart_read(files, "--keys", compositor->keys_file);
+    apart_read(files, "--scene", compositor->scene.file);
+    apart_read(files, "--pose", compositor->scene.pose_file);
+    apart_read(files, "--ghosts", s->ghosts_file);
+    apart_read(files, "--stop-mask", s->stop.mask_file);
+    apart_write(files, "--save-lights", compositor->save_file);
+}
+
+/* Returns whether writing OUTPUT would lose INPUT. A pattern is no file, so
+ * that its text has to do. */
+static bool is_lost(const char *input, const char *output)
+{
+    return glint_target_is_input(input, output) ||
+           (strchr(input, '%') && glint_target_is_same(input, output));
+}
+
+/* Returns whether A and B are written to one place; "-" is standard output. */
+static bool is_shared(const char *a, const char *b)
+{
+    if (strcmp(a, "-") == 0)
+        return strcmp(b, "-") == 0 || glint_target_is_input(b, a);
+    return glint_target_is_input(a, b) || glint_target_is_same(a, b);
+}
+
+static int refuse_lost(const struct tool *tool, const struct apart_file *input,
+                       const struct apart_file *output)
+{
+    const char *const name =
+        strcmp(output->path, "-") ? output->path : "standard output";
+
+    if (!input->option)
+        return tool_usage(tool,
+                          "%s %s is the input, which would be lost; name "
+                          "another file",
+                          output->option, name);
+    return tool_usage(tool,
+                      "%s %s is the file of %s, which would be lost; name "
+                      "another file",
+                      output->option, name, input->option);
+}
+
+int apart_check(const struct tool *tool, const struct apart *files)
+{
+    for (int i = 0; i < files->n_written; i++) {
+        const struct apart_file *const to = &files->written[i];
+
+        for (int k = 0; k < files->n_read; k++)
+            if (is_lost(files->read[k].path, to->path))
+                return refuse_lost(tool, &files->read[k], to);
+        for (int k = 0; k < i; k++)
+            if (is_shared(files->written[k].path, to->path))
+                return tool_usage(
+                    tool, "%s and %s both write %s; name two files",
+                    files->written[k].option, to->option, to->path);
+    }
+    return EXIT_OK;
+}

@@ -1,0 +1,243 @@
+/* SPDX-License-Identifier: MIT */
+#include "desk/ghost_file.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "options/text_lines.h"
+#include "options/tool.h"
+#include "posix/error.h"
+
+enum { MOST_BYTES = 1 << 20 };
+
+/* A file being read. */
+struct reading {
+    const struct glint_setup *setup;
+    const char *lens;
+    int n; /* number of ghosts, without parts */
+    struct glint_tint *tint;
+    bool *solo, *mute;
+    char cause[160]; /* room for what is wrong */
+};
+
+/* Returns the next word of *REST, which blanks end, and moves *REST past it;
+ * NULL if none is left. */
+static char *next_word(char **rest)
+{
+    char *word = *rest + strspn(*rest, " \t"), *end;
+
+    if (!*word)
+        return NULL;
+    end = word + strcspn(word, " \t");
+    *rest = *end ? end + 1 : end;
+    *end = '\0';
+    return word;
+}
+
+/* Returns the number of the ghost WORD, "12" or "7-3", or -1. */
+static int ghost_of(const struct reading *r, const char *word)
+{
+    const char *const dash = strchr(word, '-');
+    int ghost = -1, i, j;
+    char first[16];
+
+    if (!dash)
+        return tool_integer(word, 0, r->n - 1, &ghost) ? ghost : -1;
+    if (dash - word >= (ptrdiff_t)sizeof first)
+        return -1;
+    memcpy(first, word, (size_t)(dash - word));
+    first[dash - word] = '\0';
+    if (!tool_integer(first, 0, 999, &i) || !tool_integer(dash + 1, 0, 999, &j))
+        return -1;
+    for (int k = 0; k < r->n; k++)
+        if (r->setup->ghost[k].i == i && r->setup->ghost[k].j == j)
+            return k;
+    return -1;
+}
+
+static const char *take_gain(struct glint_tint *tint, const char *text)
+{
+    double gain;
+
+    if (!text || !tool_number(text, &gain) || !(gain >= 0 && gain <= 1000))
+        return "gain takes a factor, 0 to 1000";
+    tint->gain = glint_real_of(gain);
+    return NULL;
+}
+
+static const char *take_tint(struct glint_tint *tint, const char *text)
+{
+    double rgb[3];
+
+    if (!text || tool_numbers(text, rgb, 3) != 3)
+        return "tint takes R,G,B";
+    for (int c = 0; c < 3; c++) {
+        if (!(rgb[c] >= 0 && rgb[c] <= 4))
+            return "tint takes R,G,B, each 0 to 4";
+        tint->rgb_q14[c] = (int32_t)lrint(rgb[c] * 16384);
+    }
+    return NULL;
+}
+
+/* Takes the words after a ghost. Returns NULL, or what is wrong with them. */
+static const char *take_words(struct reading *r, int ghost, char *rest)
+{
+    static const char *const words[] = {"mute", "solo", "gain", "tint", NULL};
+    const char *cause = NULL;
+    char *word;
+
+    while (!cause && (word = next_word(&rest)))
+        switch (tool_word(word, words)) {
+        case 0:
+            r->mute[ghost] = true;
+            break;
+        case 1:
+            r->solo[ghost] = true;
+            break;
+        case 2:
+            cause = take_gain(&r->tint[ghost], next_word(&rest));
+            break;
+        case 3:
+            cause = take_tint(&r->tint[ghost], next_word(&rest));
+            break;
+        default:
+            cause = "expected mute, solo, gain G or tint R,G,B after a ghost";
+        }
+    if (!cause && r->mute[ghost] && r->solo[ghost])
+        cause = "solo and mute of one ghost contradict each other";
+    return cause;
+}
+
+static const char *take_line(struct reading *r, char *line)
+{
+    char *rest = line, *word;
+    int ghost;
+
+    line[strcspn(line, "#")] = '\0';
+    word = next_word(&rest);
+    if (!word)
+        return NULL;
+    if (strcmp(word, "lens") == 0) {
+        word = next_word(&rest);
+        return word && strcmp(word, r->lens) == 0
+                   ? NULL
+                   : "these are ghosts of another lens (glint explain "
+                     "--save-ghosts writes those of this one)";
+    }
+    ghost = ghost_of(r, word);
+    if (ghost >= 0)
+        return take_words(r, ghost, rest);
+    snprintf(r->cause, sizeof r->cause,
+             "no ghost '%.20s': lines begin with a number, 0 to %d, or the two "
+             "surfaces of a ghost (glint info lists them)",
+             word, r->n - 1);
+    return r->cause;
+}
+
+/* Mutes what is not to be seen, and gives parts the tints of their ghosts. */
+static void finish(struct reading *r)
+{
+    bool any_solo = false;
+
+    for (int i = 0; i < r->n; i++)
+        any_solo |= r->solo[i];
+    for (int i = 0; i < r->n; i++)
+        if (r->mute[i] || (any_solo && !r->solo[i]))
+            r->tint[i].gain = (struct glint_real){0, 0};
+    for (int i = r->n; i < r->setup->n_ghosts; i++)
+        for (int k = 0; k < r->n; k++)
+            if (r->setup->ghost[k].i == r->setup->ghost[i].i &&
+                r->setup->ghost[k].j == r->setup->ghost[i].j)
+                r->tint[i] = r->tint[k];
+}
+
+static bool hold(struct reading *r)
+{
+    const size_t n = (size_t)r->setup->n_ghosts + 1;
+
+    r->tint = malloc(n * sizeof *r->tint);
+    r->solo = calloc(n, sizeof *r->solo);
+    r->mute = calloc(n, sizeof *r->mute);
+    for (size_t i = 0; i < n && r->tint; i++)
+        r->tint[i] =
+            (struct glint_tint){{16384, 16384, 16384}, glint_real_of(1)};
+    return r->tint && r->solo && r->mute;
+}
+
+static enum glint_status read_lines(struct glint_tint **tints,
+                                    struct text_lines *lines,
+                                    const struct glint_setup *setup,
+                                    const char *lens, struct glint_error *error)
+{
+    struct reading r = {
+        .setup = setup, .lens = lens, .n = setup->n_ghosts - setup->n_parts};
+    enum glint_status status = GLINT_OK;
+    char *line;
+
+    if (hold(&r))
+        while (status == GLINT_OK && (line = text_lines_next(lines))) {
+            const char *const cause = take_line(&r, line);
+
+            if (cause)
+                status = text_lines_fail(lines, error, cause);
+        }
+    else
+        status =
+            glint_error_report(error, GLINT_E_MEMORY, lines->name, "no memory");
+    if (status == GLINT_OK)
+        finish(&r);
+    else {
+        free(r.tint);
+        r.tint = NULL;
+    }
+    free(r.solo);
+    free(r.mute);
+    *tints = r.tint;
+    return status;
+}
+
+enum glint_status ghost_file_parse(struct glint_tint **tints, const char *name,
+                                   const char *text, size_t bytes,
+                                   const struct glint_setup *setup,
+                                   const char *lens, struct glint_error *error)
+{
+    struct text_lines lines;
+    enum glint_status status =
+        text_lines_copy(&lines, name, text, bytes, error);
+
+    *tints = NULL;
+    if (status == GLINT_OK)
+        status = read_lines(tints, &lines, setup, lens, error);
+    text_lines_close(&lines);
+    return status;
+}
+
+enum glint_status ghost_file_read(struct glint_tint **tints, const char *path,
+                                  const struct glint_setup *setup,
+                                  const char *lens, struct glint_error *error)
+{
+    struct text_lines lines;
+    enum glint_status status = text_lines_open(&lines, path, MOST_BYTES, error);
+
+    *tints = NULL;
+    if (status == GLINT_OK)
+        status = read_lines(tints, &lines, setup, lens, error);
+    text_lines_close(&lines);
+    return status;
+}
+
+void ghost_file_line(char *text, size_t room, int ghost,
+                     const struct glint_tint *tint)
+{
+    const struct glint_tint plain = {{16384, 16384, 16384}, glint_real_of(1)};
+    const struct glint_tint *t = tint ? tint : &plain;
+
+    snprintf(text, room, "%-4d %s gain %-6.4g tint %.4g,%.4g,%.4g", ghost,
+             t->gain.mantissa ? "    " : "mute",
+             t->gain.mantissa ? glint_real_value(t->gain) : 1,
+             t->rgb_q14[0] / 16384.0, t->rgb_q14[1] / 16384.0,
+             t->rgb_q14[2] / 16384.0);
+}

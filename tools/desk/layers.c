@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: MIT */
+#include "desk/layers.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "formats/picture.h"
+#include "oiio/oiio.h"
+#include "options/numbered.h"
+#include "posix/error.h"
+#include "posix/output.h"
+
+enum {
+    FLARE,
+    GHOSTS,
+    STARBURST,
+    VEIL,
+    LAYERS,
+    NAME_ROOM = NUMBERED_BYTES + 32
+};
+
+static const char *const names[LAYERS] = {"flare", "ghosts", "starburst",
+                                          "veil"};
+
+/* Sets NAME to the file of layer LAYER (NULL: "layer") in frame FRAME. Returns
+ * false if it is too long or more than one %s or %d is in the path. */
+static bool name_of(char name[NAME_ROOM], const char *path, const char *layer,
+                    int frame)
+{
+    const char *const at = strstr(path, "%s");
+    char whole[NAME_ROOM];
+    int n;
+
+    n = at ? snprintf(whole, sizeof whole, "%.*s%s%s", (int)(at - path), path,
+                      layer ? layer : "layer", at + 2)
+           : snprintf(whole, sizeof whole, "%s", path);
+    if (n < 0 || n >= NUMBERED_BYTES)
+        return false;
+    if (!strchr(whole, '%')) {
+        memcpy(name, whole, (size_t)n + 1);
+        return true;
+    }
+    return numbered_is(whole) && numbered_name(name, whole, frame);
+}
+
+/* Returns whether the kind of file NAME takes layers: an .exr as parts of it or
+ * one by one, other kinds only one by one if they take floats. */
+static bool takes_layers(const struct layers *layers, const char *name)
+{
+    static const char *const kinds[] = {".exr", ".pfm", ".hdr", ".tif",
+                                        ".tiff"};
+    const char *const dot = strrchr(name, '.');
+    const int n = strstr(layers->path, "%s") ? 5 : 1;
+
+    for (int i = 0; i < n && dot; i++)
+        if (strcasecmp(dot, kinds[i]) == 0)
+            return true;
+    return false;
+}
+
+int layers_check(const struct tool *tool, const struct layers *layers,
+                 bool is_video)
+{
+    struct glint_error error = {""};
+    char name[NAME_ROOM], other[NAME_ROOM];
+
+    if (!layers->path)
+        return EXIT_OK;
+    if (!name_of(name, layers->path, NULL, 0))
+        return tool_usage(tool,
+                          "--layers: a name has one %%s and one %%d or "
+                          "%%04d at most, not '%s'",
+                          layers->path);
+    name_of(other, layers->path, NULL, 1);
+    if (is_video && strcmp(name, other) == 0)
+        return tool_usage(tool, "--layers of a video or sequence need a number "
+                                "in their name, such as layers-%%04d.exr");
+    if (!takes_layers(layers, name))
+        return tool_usage(tool,
+                          "--layers: layers are parts of an .exr, or files "
+                          "of their own by a %%s: fl.exr, fl-%%s.exr or "
+                          "fl-%%s.pfm, not '%s'",
+                          layers->path);
+    if (tool_check_output(tool, name) != EXIT_OK)
+        return EXIT_OUTPUT;
+    if (glint_picture_check(name, GLINT_PICTURE_FLOAT, &error) == GLINT_OK)
+        return EXIT_OK;
+    tool_fail(tool, GLINT_E_OUTPUT, error.text);
+    return EXIT_OUTPUT;
+}
+
+int layers_check_apart(const struct tool *tool, const struct layers *layers,
+                       const struct apart *files)
+{
+    struct apart all = *files;
+    char name[NAME_ROOM];
+    int code;
+
+    apart_write(&all, "--layers", layers->path);
+    code = apart_check(tool, &all);
+    for (int k = 0; k < LAYERS && layers->path && code == EXIT_OK; k++) {
+        if (!name_of(name, layers->path, names[k], 0))
+            break;
+        all = *files;
+        apart_write(&all, "--layers", name);
+        code = apart_check(tool, &all);
+    }
+    return code;
+}
+
+/* ------------------------------------------------------------------- drawing
+ */
+
+/* Draws the veil alone into RGB, as it was set for the frame. */
+static enum glint_status draw_veil(struct compositor *c, float *rgb)
+{
+    const size_t n = 3 * (size_t)c->view.width * (size_t)c->view.height;
+    int32_t *const linear_q20 = malloc(n * sizeof *linear_q20);
+
+    if (!linear_q20)
+        return GLINT_E_MEMORY;
+    glint_frame_veil_add(&c->frame, 1, linear_q20, rgb);
+    free(linear_q20);
+    return GLINT_OK;
+}
+
+/* Draws ghosts or star alone into RGB. */
+static enum glint_status draw(struct compositor *c, int layer, float *rgb)
+{
+    struct glint_frame *const f = &c->frame;
+    const struct glint_frame_star star = f->star;
+    const double glare = f->veil.glare, haze = f->veil.haze;
+    const struct glint_front_dirt *front = f->veil.front;
+    const double scale = compositor_scale(c);
+    struct glint_frame_report report;
+    enum glint_status status;
+
+    if (c->n_lamps == 0 || !(scale > 0) ||
+        (layer == GHOSTS ? star.is_alone : !(star.share > 0)))
+        return GLINT_OK;
+    f->star.is_alone = layer == STARBURST;
+    f->star.share = layer == STARBURST ? star.share : 0;
+    f->veil.glare = f->veil.haze = 0;
+    f->veil.front = NULL;
+    status =
+        glint_frame_draw_alone(f, c->lamp, c->n_lamps, scale, rgb, &report);
+    f->star.is_alone = star.is_alone;
+    f->star.share = star.share;
+    f->veil.glare = glare;
+    f->veil.haze = haze;
+    f->veil.front = front;
+    return status;
+}
+
+/* Draws N_LAYERS layers of N samples into RGB: the parts, and their sum as the
+ * first. */
+static enum glint_status draw_all(struct compositor *c, int n_layers, size_t n,
+                                  float *rgb)
+{
+    enum glint_status status = GLINT_OK;
+
+    memset(rgb, 0, (size_t)n_layers * n * sizeof *rgb);
+    /* first of all, as drawing the others forgets what the veil is of */
+    if (n_layers > VEIL)
+        status = draw_veil(c, rgb + VEIL * n);
+    for (int k = GHOSTS; k <= STARBURST && status == GLINT_OK; k++)
+        status = draw(c, k, rgb + (size_t)k * n);
+    for (int k = GHOSTS; k < n_layers; k++)
+        for (size_t i = 0; i < n; i++)
+            rgb[i] += rgb[(size_t)k * n + i];
+    return status;
+}
+
+/* ------------------------------------------------------------------- writing
+ */
+
+static enum glint_status save(const char *name,
+                              const struct glint_oiio_layers *layers,
+                              struct glint_error *error)
+{
+    const struct glint_float_image floats = {.width = layers->width,
+                                             .height = layers->height,
+                                             .rgb = layers->layer->rgb};
+    const char *const dot = strrchr(name, '.');
+    const struct glint_oiio *oiio;
+    struct glint_output out;
+    enum glint_status status;
+    void *data = NULL;
+    size_t bytes = 0;
+
+    if (dot && strcmp(dot, ".pfm") == 0 && layers->n == 1)
+        return glint_picture_save_float(name, &floats, error);
+    status = glint_oiio_load(&oiio, error);
+    if (status == GLINT_OK)
+        status = oiio->encode_layers(&data, &bytes, name, layers, error);
+    if (status == GLINT_OK)
+        status = glint_output_open(&out, name, GLINT_OUTPUT_BINARY, error);
+    if (status == GLINT_OK)
+        status = glint_output_finish(&out, data, bytes, error);
+    free(data);
+    return status;
+}
+
+static enum glint_status save_all(const struct layers *layers,
+                                  struct glint_oiio_layers *all, int frame,
+                                  struct glint_error *error)
+{
+    const struct glint_oiio_layer *const first = all->layer;
+    const bool is_apart = strstr(layers->path, "%s");
+    const int files = is_apart ? all->n : 1;
+    enum glint_status status = GLINT_OK;
+    char name[NAME_ROOM];
+
+    all->n = is_apart ? 1 : all->n;
+    for (int k = 0; k < files && status == GLINT_OK; k++) {
+        all->layer = first + k;
+        status = name_of(name, layers->path, first[k].name, frame)
+                     ? save(name, all, error)
+                     : glint_error_report(error, GLINT_E_OUTPUT, layers->path,
+                                          "is too long a name");
+    }
+    return status;
+}
+
+int layers_write(const struct tool *tool, const struct layers *layers,
+                 struct compositor *c)
+{
+    const struct settings *const s = &c->settings;
+    const size_t n = 3 * (size_t)c->view.width * (size_t)c->view.height;
+    struct glint_oiio_layer layer[LAYERS];
+    struct glint_oiio_layers all = {.width = c->view.width,
+                                    .height = c->view.height,
+                                    .n = settings_has_veil(s) ? LAYERS : VEIL,
+                                    .is_half = !layers->is_float,
+                                    .layer = layer};
+    enum glint_status status = GLINT_E_MEMORY;
+    struct glint_error error = {""};
+    float *rgb;
+
+    if (!layers->path)
+        return EXIT_OK;
+    rgb = malloc((size_t)all.n * n * sizeof *rgb);
+    for (int k = 0; k < all.n && rgb; k++)
+        layer[k] = (struct glint_oiio_layer){names[k], rgb + (size_t)k * n};
+    if (rgb)
+        status = draw_all(c, all.n, n, rgb);
+    if (status == GLINT_OK)
+        status = save_all(layers, &all, c->n_frames - 1, &error);
+    free(rgb);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}

@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: MIT */
+#include "desk/occlusion.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "engine/frame/area.h"
+#include "options/numbered.h"
+#include "posix/error.h"
+
+enum { POINTS = 61, LEAST_PX = 2 };
+
+/* A lamp that is hidden keeps this share of its level, as lists of lamps take
+ * none without. */
+static const double least_level = 1e-6;
+
+/* ------------------------------------------------------------------- reading
+ */
+
+static bool is_there(const char *name)
+{
+    return access(name, F_OK) == 0;
+}
+
+/* Loads the picture of frame FRAME of a pattern, whose first picture has the
+ * number 0 or 1. */
+static enum glint_status load_numbered(struct occlusion *o, int frame,
+                                       struct glint_error *error)
+{
+    struct glint_image image = {.plane = {NULL}};
+    char name[NUMBERED_BYTES];
+    enum glint_status status;
+
+    if (!numbered_name(name, o->file, 0))
+        return glint_error_report(error, GLINT_E_FORMAT, o->file,
+                                  "is too long a name");
+    numbered_name(name, o->file, frame + !is_there(name));
+    if (o->frame >= 0 && !is_there(name)) {
+        o->is_over = true;
+        return GLINT_OK;
+    }
+    status = glint_picture_load(name, &image, error);
+    if (status != GLINT_OK)
+        return status;
+    glint_picture_free(&o->image);
+    o->image = image;
+    o->frame = frame;
+    return GLINT_OK;
+}
+
+/* Reads frames of the video up to FRAME. */
+static enum glint_status read_video(struct occlusion *o, long frame,
+                                    struct glint_error *error)
+{
+    enum glint_status status = GLINT_OK;
+
+    while (o->frame < frame && !o->is_over && status == GLINT_OK) {
+        const struct glint_image *next;
+
+        status = glint_y4m_reader_next(&o->video, &next, error);
+        if (status != GLINT_OK || !next) {
+            o->is_over = true;
+            break;
+        }
+        o->image = *next;
+        o->frame++;
+    }
+    return status;
+}
+
+static enum glint_status open_video(struct occlusion *o,
+                                    struct glint_error *error)
+{
+    const enum glint_status status =
+        glint_y4m_reader_open(&o->video, o->file, error);
+
+    o->is_video = status == GLINT_OK;
+    if (o->is_video && o->video.header.range == GLINT_RANGE_LIMITED) {
+        o->black = 16;
+        o->white = 235;
+    }
+    return status == GLINT_OK ? read_video(o, 0, error) : status;
+}
+
+enum glint_status occlusion_open(struct occlusion *o, struct glint_error *error)
+{
+    const char *const dot = o->file ? strrchr(o->file, '.') : NULL;
+
+    o->frame = -1;
+    o->black = 0;
+    o->white = 255;
+    if (!o->file)
+        return GLINT_OK;
+    if (dot && strcmp(dot, ".y4m") == 0)
+        return open_video(o, error);
+    o->is_numbered = numbered_is(o->file);
+    return o->is_numbered ? load_numbered(o, 0, error)
+                          : glint_picture_load(o->file, &o->image, error);
+}
+
+void occlusion_close(struct occlusion *o)
+{
+    if (o->is_video)
+        glint_y4m_reader_close(&o->video);
+    else
+        glint_picture_free(&o->image);
+    o->image.plane[0] = NULL;
+    o->is_video = false;
+}
+
+/* Goes on to the mask of FRAME; one that cannot be read ends it, with a word.
+ */
+static void go_to(struct occlusion *o, int frame)
+{
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_OK;
+
+    if (o->is_over || o->frame >= frame)
+        return;
+    if (o->is_video)
+        status = read_video(o, frame, &error);
+    else if (o->is_numbered)
+        status = load_numbered(o, frame, &error);
+    if (status == GLINT_OK)
+        return;
+    fprintf(stderr, "glint: %s; the mask stays as it is\n", error.text);
+    o->is_over = true;
+}
+
+/* -------------------------------------------------------------------- shares
+ */
+
+/* Returns the mask at pixel (X, Y) of its own, which is moved into it. */
+static double mask_at(const struct occlusion *o, int x, int y)
+{
+    const struct glint_image *m = &o->image;
+    const int i = x < 0 ? 0 : x < m->width ? x : m->width - 1;
+    const int j = y < 0 ? 0 : y < m->height ? y : m->height - 1;
+    const uint8_t *row = m->plane[0] + j * m->stride_bytes[0];
+    const double code =
+        m->format == GLINT_RGB24
+            ? (row[3 * i] + row[3 * i + 1] + row[3 * i + 2]) / 3.0
+            : row[i];
+
+    return fmin(fmax((code - o->black) / (o->white - o->black), 0), 1);
+}
+
+/* Returns the mask at (X, Y) of a picture of VIEW's size, between the middles
+ * of four of its pixels; 1 beside the picture. */
+static double mask_between(const struct occlusion *o,
+                           const struct glint_view *view, double x, double y)
+{
+    const double u = x * o->image.width / view->width - 0.5;
+    const double v = y * o->image.height / view->height - 0.5;
+    const int i = (int)floor(fmin(fmax(u, -1), 1e6));
+    const int j = (int)floor(fmin(fmax(v, -1), 1e6));
+    double above, below;
+
+    if (!(x >= 0 && y >= 0 && x < view->width && y < view->height))
+        return 1;
+    above = mask_at(o, i, j) * (i + 1 - u) + mask_at(o, i + 1, j) * (u - i);
+    below =
+        mask_at(o, i, j + 1) * (i + 1 - u) + mask_at(o, i + 1, j + 1) * (u - i);
+    return above * (j + 1 - v) + below * (v - j);
+}
+
+/* Returns the mean of the mask over LAMP. */
+static double share_of(const struct occlusion *o, const struct glint_view *view,
+                       double focal_mm, const struct glint_lamp *lamp)
+{
+    const double pixel = glint_view_pixel_tangent(view, focal_mm);
+    /* A million pixels across, any lamp is large and has all POINTS. */
+    const struct glint_area_rule rule = {1e6 / pixel, POINTS, 1, 1};
+    struct glint_lamp disc = *lamp;
+    struct glint_area area;
+    double sum = 0;
+    int n;
+
+    disc.power = 1;
+    for (int k = 0; k < 2; k++)
+        disc.axis[k] = fmax(disc.axis[k], 0.5 * LEAST_PX * pixel);
+    n = glint_area_plan(&area, &disc, &rule);
+    for (int i = 0; i < n; i++) {
+        const struct glint_lamp point = glint_area_point(&area, i);
+        double x, y;
+
+        glint_view_to_pixel(view, focal_mm, &point, &x, &y);
+        sum += point.power * mask_between(o, view, x, y);
+    }
+    return fmin(sum, 1);
+}
+
+double occlusion_fade(double x, double y, int width, int height, double fade_px)
+{
+    const double dx = fmax(fmax(-x, x - width), 0);
+    const double dy = fmax(fmax(-y, y - height), 0);
+    const double t = fade_px > 0 ? fmin(hypot(dx, dy) / fade_px, 1) : 0;
+
+    return 1 - t * t * (3 - 2 * t);
+}
+
+void occlusion_apply(struct occlusion *o, int frame,
+                     const struct glint_view *view, double focal_mm,
+                     struct glint_lamp *lamps, double *level, int n)
+{
+    if (!o->file && !(o->fade_px > 0))
+        return;
+    if (o->file)
+        go_to(o, frame);
+    for (int i = 0; i < n; i++) {
+        double x, y, share = 1;
+
+        glint_view_to_pixel(view, focal_mm, &lamps[i], &x, &y);
+        if (o->image.plane[0])
+            share = share_of(o, view, focal_mm, &lamps[i]);
+        share *= occlusion_fade(x, y, view->width, view->height, o->fade_px);
+        lamps[i].power *= share;
+        level[i] = fmax(level[i] * share, least_level);
+    }
+}

@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: MIT */
+#include "desk/preview.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "engine/explain.h"
+#include "overlay/paint.h"
+
+enum { SMALL = 320, MOST = 24 };
+
+/* Labels that are on the picture, as boxes x0, y0, x1, y1. */
+struct labels {
+    struct paint paint;
+    int n, box[MOST][4];
+};
+
+/* Sets X and Y to the brightest pixel of the ghost that was drawn last; returns
+ * false if it has no light. */
+static bool find_brightest(const struct glint_explain *e, int *x, int *y)
+{
+    const int width = e->frame->view.width, height = e->frame->view.height;
+    const int32_t *px = e->linear_q20;
+    int64_t most = 0;
+
+    for (int j = 0; j < height; j++)
+        for (int i = 0; i < width; i++, px += 3) {
+            const int64_t light = (int64_t)px[0] + px[1] + px[2];
+
+            if (light <= most)
+                continue;
+            most = light;
+            *x = i;
+            *y = j;
+        }
+    return most > 0;
+}
+
+static bool is_free(const struct labels *l, const int box[4])
+{
+    for (int i = 0; i < l->n; i++)
+        if (box[0] < l->box[i][2] && box[2] > l->box[i][0] &&
+            box[1] < l->box[i][3] && box[3] > l->box[i][1])
+            return false;
+    return true;
+}
+
+/* Writes NUMBER at (X, Y), or in the first free place below. */
+static void put(struct labels *l, int number, int x, int y)
+{
+    struct paint *const p = &l->paint;
+    const int high = 9 * p->line;
+    char text[16];
+    int box[4], wide;
+
+    snprintf(text, sizeof text, "%d", number);
+    wide = paint_text_width(p, text) + 4 * p->line;
+    x = x + wide > p->image->width ? p->image->width - wide : x;
+    y = y + high > p->image->height ? p->image->height - high : y;
+    for (int i = 0; i < MOST; i++, y += high) {
+        box[0] = x;
+        box[1] = y;
+        box[2] = x + wide;
+        box[3] = y + high;
+        if (is_free(l, box))
+            break;
+    }
+    for (int i = 0; i < 4; i++)
+        l->box[l->n][i] = box[i];
+    l->n++;
+    paint_colour(p, 0, 0, 0);
+    paint_fill(p, box[0], box[1], box[2], box[3]);
+    paint_colour(p, 255, 224, 96);
+    paint_text(p, x + 2 * p->line, y + 2 * p->line, text);
+}
+
+static enum glint_status put_all(struct glint_frame *small,
+                                 const struct glint_image *image)
+{
+    struct labels l = {
+        .paint = {.image = image, .line = 1 + image->height / 540}};
+    int ghosts[GLINT_MAX_GHOSTS], x = 0, y = 0;
+    struct glint_explain e;
+    const enum glint_status status = glint_explain_open(&e, small, 1);
+
+    if (status == GLINT_OK)
+        glint_explain_sort(&e, GLINT_EXPLAIN_LIGHT, ghosts);
+    for (int i = 0; status == GLINT_OK && i < e.n_ghosts && l.n < MOST; i++) {
+        if (glint_explain_drawn(&e.ghost[ghosts[i]]) == 0)
+            continue;
+        glint_explain_draw(&e, ghosts[i]);
+        if (find_brightest(&e, &x, &y))
+            put(&l, ghosts[i],
+                (int)((int64_t)x * image->width / small->view.width),
+                (int)((int64_t)y * image->height / small->view.height));
+    }
+    glint_explain_close(&e);
+    return status;
+}
+
+enum glint_status preview_number(const struct glint_frame *frame,
+                                 const struct glint_lamp *lamps, int n,
+                                 double scale, const struct glint_image *image)
+{
+    struct glint_view view = frame->view;
+    struct glint_image codes = {.format = GLINT_RGB24};
+    struct glint_frame_report report;
+    struct glint_frame small;
+    enum glint_status status = GLINT_E_MEMORY;
+    uint8_t *mem;
+
+    if (!frame->lens || n == 0 || !(scale > 0))
+        return GLINT_OK;
+    view.width = view.width < SMALL ? view.width : SMALL;
+    view.height =
+        (int)((int64_t)frame->view.height * view.width / frame->view.width);
+    view.height = view.height > 0 ? view.height : 1;
+    codes.width = view.width;
+    codes.height = view.height;
+    glint_frame_like(&small, frame, view);
+    small.tints = frame->tints;
+    small.dials = small.asked = frame->dials;
+    small.dials.dispersion_q8 = 0;
+    mem = calloc(3 * (size_t)view.width, (size_t)view.height);
+    if (mem) {
+        glint_image_place(&codes, mem);
+        status = glint_frame_draw(&small, lamps, n, scale, &codes, &report);
+    }
+    if (status == GLINT_OK && small.n_lights > 0)
+        status = put_all(&small, image);
+    glint_frame_finish(&small);
+    free(mem);
+    return status;
+}

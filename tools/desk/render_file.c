@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT */
+#include "desk/render_file.h"
+
+#include <stdlib.h>
+
+#include "formats/picture.h"
+
+int render_file_check(const struct tool *tool, const char *path,
+                      bool *is_linear)
+{
+    struct glint_error error = {""};
+    enum glint_status status =
+        glint_picture_check(path, GLINT_PICTURE_FLOAT, &error);
+
+    if (tool_check_output(tool, path) != EXIT_OK)
+        return EXIT_OUTPUT;
+    *is_linear = status == GLINT_OK;
+    if (!*is_linear)
+        status = glint_picture_check(path, GLINT_PICTURE_8BIT, &error);
+    if (status == GLINT_OK)
+        return EXIT_OK;
+    tool_fail(tool, status, error.text);
+    return EXIT_OUTPUT;
+}
+
+int render_file_save(const struct tool *tool, const char *path, bool is_linear,
+                     const struct glint_float_image *image, double exposure)
+{
+    struct glint_image codes = {
+        .format = GLINT_RGB24, .width = image->width, .height = image->height};
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_E_MEMORY;
+    uint8_t *mem = NULL;
+
+    if (is_linear) {
+        status = glint_picture_save_float(path, image, &error);
+    } else if ((mem = glint_measure_encode(
+                    image,
+                    exposure > 0 ? exposure : glint_measure_exposure(image)))) {
+        glint_image_place(&codes, mem);
+        status = glint_picture_save(path, &codes, &error);
+    }
+    free(mem);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * --stop-mask: a picture in the stop; of --front-mask, on the front element. */
+#include <stddef.h>
+#include <stdlib.h>
+
+#include "formats/picture.h"
+#include "desk/stop_option.h"
+
+/* Sets TO to the luma of the picture's codes. */
+static void to_luma(const struct glint_image *image, uint8_t *to)
+{
+    for (int y = 0; y < image->height; y++)
+        for (int x = 0; x < image->width; x++) {
+            const uint8_t *p =
+                image->plane[0] + (ptrdiff_t)y * image->stride_bytes[0] + 3 * x;
+
+            *to++ = (uint8_t)((p[0] * 54 + p[1] * 183 + p[2] * 19) >> 8);
+        }
+}
+
+int stop_mask_read(const struct tool *tool, const char *file, uint8_t **mask,
+                   int *width, int *height)
+{
+    struct glint_error error = {""};
+    struct glint_image image = {0};
+    const enum glint_status status = glint_picture_load(file, &image, &error);
+
+    *mask = NULL;
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    *mask = malloc((size_t)image.width * (size_t)image.height);
+    if (*mask)
+        to_luma(&image, *mask);
+    *width = image.width;
+    *height = image.height;
+    glint_picture_free(&image);
+    return *mask ? EXIT_OK : tool_fail(tool, GLINT_E_MEMORY, NULL);
+}
+
+int stop_option_open(const struct tool *tool, struct stop_option *stop)
+{
+    const int code =
+        stop_mask_read(tool, stop->mask_file, &stop->mask,
+                       &stop->iris.mask_width, &stop->iris.mask_height);
+
+    stop->iris.mask = stop->mask;
+    return code;
+}

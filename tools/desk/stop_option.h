@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * --stop, --stop-mask and --dust: the stop that lights are seen through.
+ */
+#ifndef GLINT_TOOLS_DESK_STOP_OPTION_H
+#define GLINT_TOOLS_DESK_STOP_OPTION_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "glint/setup.h"
+#include "options/tool.h"
+
+struct stop_option {
+    int n_blades;
+    double rotation_deg;
+    struct glint_iris iris;
+    struct glint_dirt *dirt; /* of the setup that was made last */
+    const char *mask_file;   /* NULL: none */
+    uint8_t *mask;
+};
+
+/* Takes TEXT, "circle" or "polygon:N[,ROT]", then ",round:R" and ",soft:W".
+ * Returns false for other texts. */
+bool stop_option_take(struct stop_option *stop, const char *text);
+
+/* Takes TEXT, "A[,SEED]", 0 to 0.5 and a whole number, into SHARE and SEED, 1
+ * if there is none. Returns false for other texts. */
+bool stop_option_specks(const char *text, double *share, int *seed);
+
+/* The same for the stop. */
+bool stop_option_dust(struct stop_option *stop, const char *text);
+
+/* Returns whether the stop has more than an outline. */
+bool stop_option_shades(const struct stop_option *stop);
+
+/* Reads the luma of the picture in FILE, HEIGHT rows of WIDTH, into *MASK,
+ * which the caller frees; NULL after a failure. */
+int stop_mask_read(const struct tool *tool, const char *file, uint8_t **mask,
+                   int *width, int *height);
+
+/* Reads the mask that was asked for. */
+int stop_option_open(const struct tool *tool, struct stop_option *stop);
+
+/* Gives SETUP the iris of STOP. *DIRT receives what it refers to, or NULL. */
+enum glint_status stop_option_set(const struct stop_option *stop,
+                                  struct glint_setup *setup,
+                                  struct glint_dirt **dirt,
+                                  struct glint_error *error);
+
+void stop_option_close(struct stop_option *stop);
+
+#endif

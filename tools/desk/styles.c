@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT */
+#include "desk/styles.h"
+
+#include <stddef.h>
+#include <string.h>
+
+/* How strong a flare comes out is the same for all lenses and coatings at one
+ * strength, so that styles differ by shapes, colours and where ghosts lie. */
+const struct style styles[] = {
+    {"natural", "a zoom of today, as overlay draws it", {{NULL, NULL}}},
+    {"clean",
+     "the same, of the best make: half a flare",
+     {{"stop", "polygon:9,round:0.5"},
+      {"strength", "0.25"},
+      {"starburst", "0.5"}}},
+    {"vintage",
+     "five lenses without coatings: a warm veil, large soft ghosts",
+     {{"lens", "heliar-tronnier"},
+      {"coating", "none"},
+      {"stop", "circle,soft:0.3"},
+      {"strength", "0.5"},
+      {"veil", "0.04"}}},
+    {"cinema",
+     "a coated prime of six blades: crisp ghosts, long stars",
+     {{"lens", "double-gauss-angenieux"},
+      {"stop", "polygon:6"},
+      {"strength", "0.7"},
+      {"starburst", "2"}}},
+    {"toy",
+     "no coatings, a round hole for a stop: discs and no stars",
+     {{"lens", "double-gauss-angenieux"},
+      {"coating", "none"},
+      {"stop", "circle"},
+      {"strength", "1.6"},
+      {"starburst", "0.5"},
+      {"veil", "0.02"},
+      {"haze", "0.03"}}},
+    {NULL, NULL, {{NULL, NULL}}}};
+
+const struct style *style_of(const char *name)
+{
+    for (const struct style *s = styles; s->name; s++)
+        if (strcmp(s->name, name) == 0)
+            return s;
+    return NULL;
+}

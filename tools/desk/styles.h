@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * styles.h - looks by name: options that go together.
+ */
+#ifndef GLINT_TOOLS_DESK_STYLES_H
+#define GLINT_TOOLS_DESK_STYLES_H
+
+enum { STYLE_SETTINGS = 8 };
+
+/* A long option, and its value. */
+struct style_setting {
+    const char *option, *value;
+};
+
+struct style {
+    const char *name, *about;                 /* NULL: the end of the table */
+    struct style_setting set[STYLE_SETTINGS]; /* ends with an option NULL */
+};
+
+extern const struct style styles[];
+
+/* Returns the style NAME, or NULL. */
+const struct style *style_of(const char *name);
+
+#endif

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * draw_scene SCENE IN.ppm >OUT.ppm - balls and planes of a baked scene on a
+ * picture. It names no part of the scene's, so that it links no meshes,
+ * textures, reflections, lens or flare, and says so of scenes that have them.
+ */
+#include "glint/kernels.h"
+#include "glint/scene/scene.h"
+#include "ppm.h"
+
+enum { LIMIT = 1 << 24 };
+
+/* Reads PATH, BYTES at most; returns how many there are, 0 if none. */
+static size_t read_file(const char *path, void *data, size_t bytes)
+{
+    FILE *file = fopen(path, "rb");
+    size_t n = 0;
+
+    if (file) {
+        n = fread(data, 1, bytes, file);
+        fclose(file);
+    }
+    return n;
+}
+
+static int complain(const char *path, const char *cause)
+{
+    fprintf(stderr, "%s: %s\n", path, cause);
+    return 5;
+}
+
+static int draw(const char *path, const struct glint_scene_model *model,
+                const struct glint_image *image)
+{
+    struct glint_scene_config cfg;
+    struct glint_scene_stats stats;
+    struct glint_scene *scene;
+    void *mem = NULL;
+    size_t bytes;
+    int code = 0;
+
+    glint_scene_defaults(&cfg, image->width, image->height);
+    cfg.sets = glint_sets_here();
+    if (glint_scene_lacks(&cfg.parts, model))
+        return complain(path, glint_scene_lacks(&cfg.parts, model));
+    bytes = glint_scene_bytes(&cfg, model);
+    if (posix_memalign(&mem, 64, bytes) != 0)
+        return complain(path, "out of memory");
+    if (glint_scene_init(&scene, &cfg, model, mem, bytes) == GLINT_OK) {
+        glint_scene_begin(scene, &stats);
+        glint_scene_draw(scene, image);
+    } else {
+        code = complain(path, "the camera is of a lens, or too wide");
+    }
+    free(mem);
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    struct glint_scene_model model;
+    struct glint_image image;
+    const char *reason = NULL;
+    void *data;
+    int code;
+
+    if (argc != 3) {
+        fprintf(stderr, "draw_scene SCENE IN.ppm >OUT.ppm\n");
+        return 2;
+    }
+    data = malloc(LIMIT);
+    if (!data)
+        return complain(argv[1], "out of memory");
+    if (glint_scene_open(&model, data, read_file(argv[1], data, LIMIT),
+                         &reason) != GLINT_OK) {
+        free(data);
+        return complain(argv[1], reason);
+    }
+    code = ppm_read(argv[2], &image);
+    if (code == 0) {
+        code = draw(argv[1], &model, &image);
+        if (code == 0)
+            code = ppm_write(&image);
+        free(image.plane[0]);
+    }
+    free(data);
+    return code;
+}

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+#include "options/numbered.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool numbered_is(const char *text)
+{
+    const char *at = strchr(text, '%');
+
+    if (!at)
+        return false;
+    for (at++; isdigit((unsigned char)*at); at++)
+        ;
+    return *at == 'd' && !strchr(at, '%');
+}
+
+bool numbered_name(char *name, const char *pattern, int number)
+{
+    const char *at = strchr(pattern, '%');
+    const char *end = at ? strchr(at, 'd') : NULL;
+    long stated;
+    int digits, n;
+
+    if (!end)
+        return false;
+    stated = at[1] == 'd' ? 0 : strtol(at + 1, NULL, 10);
+    digits = stated >= 0 && stated < 20 ? (int)stated : 20;
+    n = snprintf(name, NUMBERED_BYTES, "%.*s%0*d%s", (int)(at - pattern),
+                 pattern, digits, number, end + 1);
+    return n >= 0 && n < NUMBERED_BYTES;
+}

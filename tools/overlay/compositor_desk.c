@@ -1,0 +1,347 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What changes a compositor from frame to frame: key frames, masks, the
+ * distance from the picture, and scenes; and where its lamps are written and
+ * shown. */
+#include "overlay/compositor.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "desk/preview.h"
+#include "lamp_files/lamp_keys.h"
+#include "overlay/show_lights.h"
+
+/* ---------------------------------------------------------------------- keys
+ */
+
+/* The quality of a preview: as draft. */
+static const double preview_quality = 0.25;
+
+/* Asks for the least f-number of the key frames, if SIGN is 1, which the model
+ * has to serve, or for the largest, if it is -1. */
+static void ask_stop(struct compositor *c, int sign)
+{
+    const struct key_value *key = c->keys.key[KEYS_F_NUMBER];
+
+    for (int i = 1; i < c->keys.n[KEYS_F_NUMBER]; i++)
+        if (sign * c->keys.key[KEYS_F_NUMBER][i].value < sign * key->value)
+            key = &c->keys.key[KEYS_F_NUMBER][i];
+    snprintf(c->keys_line, sizeof c->keys_line, "%.200s:%d", c->keys_file,
+             key->line);
+    c->settings.f_number_from = c->keys_line;
+    c->settings.f_number = key->value;
+}
+
+/* Checks that the lens, which is open, stops down as far as the key frames
+ * say. */
+static int check_narrowest(const struct tool *tool, struct compositor *c)
+{
+    struct settings *const s = &c->settings;
+    const double widest = s->f_number;
+    struct glint_error error = {""};
+    int code = EXIT_OK;
+
+    if (!keys_has(&c->keys, KEYS_F_NUMBER))
+        return EXIT_OK;
+    ask_stop(c, -1);
+    if (settings_stop(s, s->f_number, &error) != GLINT_OK)
+        code = settings_refuse_stop(tool, s, error.text);
+    else
+        settings_stop(s, widest, &error);
+    s->f_number_from = NULL;
+    return code;
+}
+
+/* Turns down the dials that were not asked for; the model stays the same. */
+static void turn_down(struct settings *s)
+{
+    const unsigned kept = s->dials.flags & GLINT_DIAL_ALWAYS_HALF;
+
+    if (s->has_grid || s->budget_ms > 0)
+        return;
+    s->dials = glint_quality_at(preview_quality).dials;
+    s->dials.flags |= kept;
+    if (!s->area_samples_asked)
+        s->area_samples_asked = 1;
+}
+
+int compositor_desk_open_keys(const struct tool *tool, struct compositor *c)
+{
+    struct glint_error error = {""};
+    enum glint_status status;
+
+    if (c->preview)
+        turn_down(&c->settings);
+    if (!c->keys_file)
+        return EXIT_OK;
+    status = keys_read(&c->keys, c->keys_file, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    if (keys_has(&c->keys, KEYS_EXPOSURE)) {
+        if (c->dial == OPT_STRENGTH)
+            return tool_usage(tool,
+                              "--strength chooses the exposure; "
+                              "--keys %s has one",
+                              c->keys_file);
+        c->settings.has_exposure = true;
+    }
+    if (!keys_has(&c->keys, KEYS_F_NUMBER))
+        return EXIT_OK;
+    if (c->settings.rays == SETTINGS_RAYS_EXACT)
+        return tool_usage(tool, "--keys: f-numbers that change need a model, "
+                                "not --rays exact");
+    ask_stop(c, 1);
+    return EXIT_OK;
+}
+
+/* Adds the lamp of the key frames to the list. */
+static enum glint_status add_lamp(struct compositor *c)
+{
+    const struct lamp_row row = {.frame = -1,
+                                 .power = 1,
+                                 .rgb = {1, 1, 1},
+                                 .shape = 1,
+                                 .level = 1,
+                                 .next = -1};
+
+    if (!keys_has(&c->keys, KEYS_X) || !keys_has(&c->keys, KEYS_Y))
+        return GLINT_OK;
+    c->is_listed = true;
+    return lamp_list_add(&c->list, &row);
+}
+
+static void move_lamp(struct compositor *c)
+{
+    struct lamp_row *row;
+
+    if (!keys_has(&c->keys, KEYS_X) || !keys_has(&c->keys, KEYS_Y))
+        return;
+    row = &c->list.row[c->list.n - 1];
+    row->x = keys_at(&c->keys, KEYS_X, c->n_frames, 0);
+    row->y = keys_at(&c->keys, KEYS_Y, c->n_frames, 0);
+    row->power =
+        exp2(keys_at(&c->keys, KEYS_EV, c->n_frames, COMPOSITOR_LIGHT_EV));
+}
+
+/* Stops the lens as the key frames say; the exposure stays that of the widest
+ * stop. */
+static void turn_stop(struct compositor *c)
+{
+    const double f_number = keys_at(&c->keys, KEYS_F_NUMBER, c->n_frames, 0);
+    struct glint_error error;
+
+    if (f_number == 0 || f_number == c->settings.f_number)
+        return;
+    if (settings_stop(&c->settings, f_number, &error) != GLINT_OK)
+        return;
+    glint_setup_stop(&c->settings.setup, &c->frame.cfg.stop);
+    glint_frame_retune(&c->frame);
+}
+
+void compositor_desk_turn(struct compositor *c)
+{
+    const int frame = c->n_frames;
+    struct settings *const s = &c->settings;
+
+    if (!c->keys_file)
+        return;
+    s->exposure_ev = keys_at(&c->keys, KEYS_EXPOSURE, frame, s->exposure_ev);
+    s->gain = keys_at(&c->keys, KEYS_GAIN, frame, s->gain);
+    c->strength.asked =
+        keys_at(&c->keys, KEYS_STRENGTH, frame, c->strength.asked);
+    if (keys_has(&c->keys, KEYS_STARBURST)) {
+        s->starburst_asked = true;
+        s->starburst = keys_at(&c->keys, KEYS_STARBURST, frame, 1);
+    }
+    turn_stop(c);
+    move_lamp(c);
+}
+
+/* ----------------------------------------------------------------- occlusion
+ */
+
+int compositor_desk_open(const struct tool *tool, struct compositor *c)
+{
+    struct glint_error error = {""};
+    enum glint_status status = occlusion_open(&c->occlusion, &error);
+
+    if (status == GLINT_OK)
+        status = add_lamp(c);
+    return status == GLINT_OK ? check_narrowest(tool, c)
+                              : tool_fail(tool, status, error.text);
+}
+
+void compositor_desk_hide(struct compositor *c, int n)
+{
+    occlusion_apply(&c->occlusion, c->n_frames, &c->view,
+                    c->settings.setup.optics.focal_mm, c->lamp, c->level, n);
+}
+
+void compositor_desk_close(struct compositor *c)
+{
+    keys_free(&c->keys);
+    occlusion_close(&c->occlusion);
+}
+
+/* --------------------------------------------------------------------- scene
+ */
+
+/* From here on lights of scenes are numbered, beyond hashes of most texts. */
+#define SCENE_IDS UINT32_C(0x7fffff00)
+
+/* Share of a budget that a scene may take, and of which a flare has the rest,
+ * but no less than that. */
+#define SCENE_SHARE 0.6
+#define LEAST_SHARE 0.1
+
+/* Points of a light's disc that shadows are drawn by, where there is time. */
+enum { STILL_POINTS = 16, VIDEO_POINTS = 4, EDGE_SAMPLES = 4 };
+
+int compositor_scene_size(struct compositor *c, int width, int height)
+{
+    const struct scene_dials dials = {
+        .width = width,
+        .height = height,
+        .focal_px = c->has_lens
+                        ? 1 / glint_view_pixel_tangent(
+                                  &c->view, c->settings.setup.optics.focal_mm)
+                        : 0,
+        .edge_samples =
+            c->scene.edge_samples ? c->scene.edge_samples : EDGE_SAMPLES,
+        .shadow_points = c->scene.shadow_points ? c->scene.shadow_points
+                         : c->is_still          ? STILL_POINTS
+                                                : VIDEO_POINTS,
+        .half_shading = c->scene.half_shading,
+        .tile_log2 = c->settings.tile_log2,
+        .dither = c->settings.dither};
+
+    return over_scene_size(&c->scene, &dials);
+}
+
+enum glint_status compositor_scene(struct compositor *c,
+                                   const struct glint_image *image)
+{
+    const double focal_mm = c->settings.setup.optics.focal_mm;
+    const int n = c->n_lamps;
+    enum glint_status status;
+
+    c->n_own = n;
+    for (int i = 0; i < n; i++)
+        c->share[i] = 1;
+    if (!c->scene.is_open)
+        return GLINT_OK;
+    if (c->settings.budget_ms > 0)
+        c->scene.budget_ms =
+            c->settings.budget_ms * (c->has_lens ? SCENE_SHARE : 1);
+    status = over_scene_draw(&c->scene, image, c->n_frames);
+    /* The flare has what the scene leaves. */
+    if (c->settings.budget_ms > 0 && c->has_lens)
+        c->frame.budget.ms =
+            c->settings.budget_ms *
+            fmax(LEAST_SHARE, 1 - c->scene.ms / c->settings.budget_ms);
+    if (status != GLINT_OK || !c->has_lens)
+        return status;
+    over_scene_hide(&c->scene, &c->view, focal_mm, c->lamp, c->share, n);
+    c->n_lamps += over_scene_lights(&c->scene, &c->view, focal_mm, c->lamp + n,
+                                    c->share + n);
+    for (int i = n; i < c->n_lamps; i++) {
+        c->level[i] = 1;
+        c->seen_px[i] = -1; /* the picture does not show it */
+        c->id[i] = LAMP_ID_TEXT + SCENE_IDS + (uint32_t)(i - n);
+    }
+    for (int i = 0; i < c->n_lamps; i++)
+        if (c->share[i] > OVER_SCENE_HIDDEN || !c->is_still)
+            c->level[i] *= c->share[i];
+        else /* the exposure of a picture by itself lifts what is left */
+            c->lamp[i].power = 0;
+    return GLINT_OK;
+}
+
+/* --------------------------------------------------------------------- lamps
+ */
+
+/* Returns whether lamp I was found in the picture. */
+static bool is_found(const struct compositor *compositor, int i)
+{
+    return !compositor->is_listed && compositor->n_hand == 0 &&
+           i < compositor->n_own;
+}
+
+/* Returns the row that lamp I is saved as: where it was found, or where a list
+ * or option puts it. */
+static struct lamp_row row_of(const struct compositor *compositor, int i)
+{
+    const bool found = is_found(compositor, i);
+    const struct glint_lamp *lamp = &compositor->lamp[i];
+    const double *axis = lamp->axis;
+    const double focal = compositor->settings.setup.optics.focal_mm;
+    const double pixels =
+        compositor->view.width * fabs(focal) /
+        compositor->view.sensor_width_mm; /* pixels per tangent */
+    struct lamp_row row = {.frame = compositor->n_frames,
+                           .power = lamp->power,
+                           .size = pixels * hypot(axis[0], axis[1]),
+                           .shape = axis[0] > 0 ? axis[1] / axis[0] : 1,
+                           .turn = lamp->turn_deg,
+                           .level = compositor->level[i],
+                           .seen = fmax(compositor->seen_px[i], 0),
+                           .id = compositor->id[i],
+                           .next = -1};
+
+    memcpy(row.rgb, lamp->rgb, sizeof row.rgb);
+    if (found) {
+        const struct glint_lamp_track *track = &compositor->finder.track[i];
+
+        row.x = track->x_q8 / 256.0;
+        row.y = track->y_q8 / 256.0;
+    } else
+        glint_view_to_pixel(&compositor->view,
+                            compositor->settings.setup.optics.focal_mm, lamp,
+                            &row.x, &row.y);
+    return row;
+}
+
+void compositor_save_lamps(struct compositor *compositor)
+{
+    for (int i = 0; compositor->save.is_open && i < compositor->n_lamps; i++) {
+        const struct lamp_row row = row_of(compositor, i);
+
+        lamp_save_row(&compositor->save, &row);
+    }
+}
+
+/* Marks the lights on IMAGE: found lamps as they are tracked, all others at
+ * their places by number. */
+void compositor_mark(const struct compositor *compositor,
+                     const struct glint_image *image)
+{
+    const bool found = is_found(compositor, 0);
+
+    if (compositor->preview) /* without memory there are no numbers */
+        preview_number(&compositor->frame, compositor->lamp,
+                       compositor->n_lamps, compositor_scale(compositor),
+                       image);
+    if (!compositor->show_lights)
+        return;
+    for (int i = 0; i < compositor->n_lamps; i++) {
+        const struct lamp_row row = row_of(compositor, i);
+        const uint32_t id = row.id < LAMP_ID_TEXT ? row.id : (uint32_t)i + 1;
+        struct glint_lamp_track track = {.id = id, .state = GLINT_LAMP_STEADY};
+
+        if (!(fabs(row.x) < 1 << 20 && fabs(row.y) < 1 << 20))
+            continue;
+        if (is_found(compositor, i))
+            track = compositor->finder.track[i];
+        track.x_q8 = (int32_t)(row.x * 256);
+        track.y_q8 = (int32_t)(row.y * 256);
+        show_light_of(image, &track, row.power);
+    }
+    show_legend(image, found && compositor->is_followed);
+}
+
+bool compositor_marks(const struct compositor *compositor)
+{
+    return compositor->show_lights || compositor->preview;
+}

@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: MIT */
+#include "scenes/account.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+
+#include "scenes/baked_scene.h"
+
+/* By make scene-cost-fit: least squares of the relative errors of random scenes
+ * that callgrind counts. tests/figures/scenes/told.md says how far they are
+ * off. */
+/* clang-format off */
+const struct scene_cost_weight scene_cost_weight[GLINT_SCENE_ITEMS] = {
+    /* begin weights */
+    {"triangles", 8.76},
+    {"looked", 0},
+    {"samples", 0},
+    {"covering", 1.18},
+    {"shaded", 0},
+    {"lit", 0},
+    {"shadows", 0.276},
+    {"rays", 0},
+    {"walked", 10.2},
+    {"texels", 0.533},
+    {"bounced", 0},
+    /* end weights */
+};
+const struct scene_cost_weight scene_cost_rest[SCENE_COST_RESTS] = {
+    /* begin rest */
+    {"picture", 0.166},
+    {"things", 1.05},
+    /* end rest */
+};
+/* clang-format on */
+
+/* Returns the entries of lists that suns with shadows make of things that have
+ * moved: triangles and balls, for each of them. */
+static double things_of(const struct glint_scene_model *model)
+{
+    double n = 0, suns = 0;
+
+    for (uint32_t i = 0; i < model->header->n_lights; i++)
+        suns +=
+            model->header->shadow && model->light[i].kind == GLINT_LIGHT_SUN;
+
+    for (uint32_t i = 0; i < model->header->n_objects; i++)
+        n += model->object[i].kind == GLINT_OBJECT_MESH
+                 ? model->mesh[model->object[i].mesh].n_triangles
+                 : 1;
+    return suns * n;
+}
+
+enum glint_status scene_account_make(struct scene_account *account,
+                                     const struct scene_frame *frame)
+{
+    const size_t n = frame->model->header->n_objects;
+    const double px = (double)frame->cfg.width * frame->cfg.height;
+
+    *account = (struct scene_account){
+        .objects = malloc((n + 1) * sizeof *account->objects),
+        .seen = malloc((size_t)px * sizeof *account->seen),
+        .rest = {px, things_of(frame->model)}};
+    if (!account->objects || !account->seen) {
+        scene_account_free(account);
+        return GLINT_E_MEMORY;
+    }
+    glint_scene_account(frame->scene, account->objects, &account->all,
+                        account->seen);
+    return GLINT_OK;
+}
+
+void scene_account_free(struct scene_account *account)
+{
+    free(account->objects);
+    free(account->seen);
+    account->objects = NULL;
+    account->seen = NULL;
+}
+
+double scene_cost_part(const struct glint_scene_part *part)
+{
+    double sum = 0;
+
+    for (int k = 0; k < GLINT_SCENE_ITEMS; k++)
+        sum += scene_cost_weight[k].kinsn * (double)part->count[k];
+    return 1e-3 * sum;
+}
+
+double scene_cost_minsn(const struct scene_account *account)
+{
+    double sum = scene_cost_part(&account->all);
+
+    for (int k = 0; k < SCENE_COST_RESTS; k++)
+        sum += 1e-3 * scene_cost_rest[k].kinsn * account->rest[k];
+    return sum;
+}
+
+void scene_cost_json(const struct scene_frame *frame, size_t bytes, FILE *to)
+{
+    struct scene_account account;
+    const int64_t *const n = account.all.count;
+
+    fprintf(to, "\"objects\": %u, \"drawn\": %d, \"triangles\": %d, ",
+            frame->model->header->n_objects, frame->stats.objects,
+            frame->stats.triangles);
+    if (scene_account_make(&account, frame) == GLINT_OK) {
+        fprintf(to,
+                "\"refs\": %" PRId64 ", \"shaded_px\": %" PRId64
+                ", \"samples\": %" PRId64 ", \"shadow_rays\": %" PRId64
+                ", \"texels\": %" PRId64 ", \"bounces\": %" PRId64
+                ", \"predicted_minsn\": %.4f, ",
+                n[GLINT_SCENE_TRIANGLES], n[GLINT_SCENE_SHADED],
+                n[GLINT_SCENE_SAMPLED],
+                n[GLINT_SCENE_SHADOWS] + n[GLINT_SCENE_RAYS],
+                n[GLINT_SCENE_TEXELS], n[GLINT_SCENE_BOUNCED],
+                scene_cost_minsn(&account));
+        scene_account_free(&account);
+    }
+    fprintf(to, "\"bytes\": {");
+    baked_scene_bytes(frame->model, to);
+    fprintf(to,
+            ", \"scene\": %zu, \"arena\": %zu}, \"project_ms\": %.3f, "
+            "\"draw_ms\": %.3f",
+            bytes, frame->bytes, frame->project_ms, frame->draw_ms);
+}

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a scene costs to draw, by what there is to do for it. */
+#ifndef GLINT_TOOLS_SCENES_ACCOUNT_H
+#define GLINT_TOOLS_SCENES_ACCOUNT_H
+
+#include "glint/scene/account.h"
+#include "scenes/scene_frame.h"
+
+/* The name of each item, and its cost in thousand instructions of a processor
+ * with 8 lanes of 32 bits. */
+struct scene_cost_weight {
+    const char *name;
+    double kinsn;
+};
+extern const struct scene_cost_weight scene_cost_weight[GLINT_SCENE_ITEMS];
+
+/* The cost of a pixel of the picture, of a frame and of a thing that lists of
+ * shadows have, likewise. */
+enum { SCENE_COST_PICTURE, SCENE_COST_THINGS, SCENE_COST_RESTS };
+extern const struct scene_cost_weight scene_cost_rest[SCENE_COST_RESTS];
+
+/* What became of the frame that was drawn last. */
+struct scene_account {
+    struct glint_scene_part *objects; /* [n_objects], malloc'ed */
+    struct glint_scene_part all;
+    int16_t *seen; /* [height][width]: the object that is seen, or -1 */
+    double rest[SCENE_COST_RESTS]; /* how many of each */
+};
+
+/* Sets ACCOUNT; scene_account_free() frees it. GLINT_E_MEMORY. */
+enum glint_status scene_account_make(struct scene_account *account,
+                                     const struct scene_frame *frame);
+void scene_account_free(struct scene_account *account);
+
+/* Return millions of instructions: of a part, and of the whole frame. */
+double scene_cost_part(const struct glint_scene_part *part);
+double scene_cost_minsn(const struct scene_account *account);
+
+/* Writes members of a JSON object on the frame that was drawn last, but on its
+ * lights. BYTES are those of the baked scene. */
+void scene_cost_json(const struct scene_frame *frame, size_t bytes, FILE *to);
+
+#endif

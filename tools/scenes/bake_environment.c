@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint bake of environments: writes light from all around as the run time
+ * takes it.
+ */
+#include <string.h>
+
+#include "options/settings.h"
+#include "options/takes.h"
+#include "posix/output.h"
+#include "scenes/environment_file.h"
+
+static const char help[] =
+    "glint bake PICTURE|NAME.environment -o OUT.env [options]\n"
+    "\n"
+    "Turns a picture of all around, .exr, .hdr, .dds (by the image plug-in) "
+    "or\n"
+    ".pfm, twice as wide as high or 3 x 2 faces of a cube, into one file for\n"
+    "scenes: the light blurred to several levels, what it lights, and its\n"
+    "brightest spots as lights. Negative and not finite pixels are held and\n"
+    "counted. A text (tools/examples/scenes/README.md) names the picture and\n"
+    "has the same options; those of the line come before.\n"
+    "\n"
+    "  -o, --output OUT\n"
+    "  --size N            texels along a side: 16 to 1024, a power of two\n"
+    "                      (default 256)\n"
+    "  --levels L          gauss: blurred on the sphere (default)\n"
+    "                      mip: means of 2 x 2, the baseline\n"
+    "  --code C            565: roots of 5, 6 and 5 bits (default)\n"
+    "                      9e5: 9 bits each and an exponent, twice the bytes\n"
+    "  --lights N          0 to 16 (default 16)\n"
+    "  --turn DEG          about the vertical, to the right\n"
+    "  --scale X           factor of all light\n";
+
+/* What the line says; -1, or has_ false: nothing. */
+struct line {
+    const char *output;
+    int side_log2, levels, code, lights;
+    bool has_turn, has_scale;
+    double turn, scale;
+};
+
+static void over(void *ctx, struct glint_environment_options *o)
+{
+    const struct line *l = ctx;
+
+    if (l->side_log2 >= 0)
+        o->side_log2 = l->side_log2;
+    if (l->levels >= 0)
+        o->levels = l->levels ? GLINT_ENVIRONMENT_MIP : GLINT_ENVIRONMENT_GAUSS;
+    if (l->code >= 0)
+        o->code = l->code ? GLINT_ENVIRONMENT_9E5 : GLINT_ENVIRONMENT_565;
+    if (l->lights >= 0)
+        o->max_lights = l->lights;
+    if (l->has_turn)
+        o->turn_deg = l->turn;
+    if (l->has_scale)
+        o->scale = l->scale;
+}
+
+static int take(struct tool *tool, struct line *l, int c, const char *name)
+{
+    static const char *const sizes[] = {"16",  "32",  "64",   "128",
+                                        "256", "512", "1024", NULL};
+    static const char *const levels[] = {"gauss", "mip", NULL};
+    static const char *const codes[] = {"565", "9e5", NULL};
+    bool ok = true;
+
+    switch (c) {
+    case 'o':
+        l->output = optarg;
+        break;
+    case 's':
+        l->side_log2 = tool_word(optarg, sizes);
+        ok = l->side_log2 >= 0;
+        l->side_log2 += GLINT_ENVIRONMENT_LEAST_LOG2;
+        break;
+    case 'l':
+        l->levels = tool_word(optarg, levels);
+        ok = l->levels >= 0;
+        break;
+    case 'c':
+        l->code = tool_word(optarg, codes);
+        ok = l->code >= 0;
+        break;
+    case 'n':
+        ok = tool_integer(optarg, 0, GLINT_ENVIRONMENT_MAX_LIGHTS, &l->lights);
+        break;
+    case 't':
+        ok = l->has_turn =
+            tool_number(optarg, &l->turn) && l->turn >= -360 && l->turn <= 360;
+        break;
+    case 'x':
+        ok = l->has_scale = tool_number(optarg, &l->scale) &&
+                            l->scale >= 1e-6 && l->scale <= 1e6;
+        break;
+    default:
+        return tool_option(tool, c, optarg);
+    }
+    return ok ? -1 : tool_refuse(tool, name, optarg);
+}
+
+static int parse(struct tool *tool, int argc, char **argv, struct line *l)
+{
+    static const struct option options[] = {
+        {"output", required_argument, NULL, 'o'},
+        {"size", required_argument, NULL, 's'},
+        {"levels", required_argument, NULL, 'l'},
+        {"code", required_argument, NULL, 'c'},
+        {"lights", required_argument, NULL, 'n'},
+        {"turn", required_argument, NULL, 't'},
+        {"scale", required_argument, NULL, 'x'},
+        TOOL_COMMON_OPTIONS};
+    int c, code, index = 0;
+
+    while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+                            &index)) >= 0)
+        if ((code = take(tool, l, c, options[index].name)) >= 0)
+            return code;
+    code = tool_inputs(tool, argc, argv, 1, "takes one environment");
+    if (code >= 0)
+        return code;
+    return l->output ? -1 : tool_usage(tool, "needs -o OUT");
+}
+
+int cmd_bake_environment(int argc, char **argv)
+{
+    struct tool tool = {.name = "bake", .help = help, .help_end = COMMON_HELP};
+    struct line line = {
+        .side_log2 = -1, .levels = -1, .code = -1, .lights = -1};
+    struct glint_error error = {""};
+    struct environment_file file;
+    struct glint_output out;
+    enum glint_status status;
+    int code = parse(&tool, argc, argv, &line);
+
+    if (code >= 0 || !line.output)
+        return code;
+    tool.written = line.output;
+    if (tool_check_output(&tool, line.output) != EXIT_OK)
+        return EXIT_OUTPUT;
+    code = environment_file_open(&tool, argv[optind], over, &line, &file);
+    if (code != EXIT_OK)
+        return code;
+    status = glint_output_open(&out, line.output, GLINT_OUTPUT_BINARY, &error);
+    if (status == GLINT_OK)
+        status = glint_output_finish(&out, file.data, file.bytes, &error);
+    if (status != GLINT_OK)
+        code = tool_fail(&tool, status, error.text);
+    else if (strcmp(line.output, "-") != 0 && !tool.quiet)
+        environment_file_print(&tool, &file);
+    environment_file_close(&file);
+    return code;
+}

@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What is in a baked scene, in words and in numbers. */
+#include <math.h>
+
+#include "glint/view.h"
+#include "scenes/baked_scene.h"
+
+/* Bytes of a baked scene by what they hold; the keywords of its text. */
+struct scene_bytes {
+    size_t header, light, texture, material, object;
+    size_t mesh;                                   /* all of these: */
+    size_t vertices, normals, uv, triangles, grid; /* and their headers */
+};
+
+struct scene_counts {
+    int spheres, planes, catchers, meshes;
+    unsigned vertices, triangles, cells, refs;
+};
+
+static size_t texture_bytes(const struct glint_scene_texture *t)
+{
+    uint32_t w = t->width_log2, h = t->height_log2;
+    size_t texels = 1;
+
+    for (; w || h; w -= w > 0, h -= h > 0)
+        texels += (size_t)1 << (w + h);
+    return (3 * texels + 3) / 4 * 4 + sizeof *t;
+}
+
+static void measure_mesh(const struct glint_scene_model *model,
+                         const struct glint_scene_mesh *m,
+                         struct scene_bytes *b, struct scene_counts *n)
+{
+    const unsigned cells = m->cells[0] * m->cells[1] * m->cells[2];
+    const uint32_t *start =
+        (const void *)((const unsigned char *)model->header + m->start_at);
+
+    n->vertices += m->n_vertices;
+    n->triangles += m->n_triangles;
+    n->cells += cells;
+    n->refs += start[cells];
+    b->vertices += 12 * (size_t)m->n_vertices;
+    b->normals += m->normal_at ? 12 * (size_t)m->n_vertices : 0;
+    b->uv += m->uv_at ? 8 * (size_t)m->n_vertices : 0;
+    b->triangles += 16 * (size_t)m->n_triangles;
+    b->grid += 4 * ((size_t)cells + 1 + start[cells]);
+    b->mesh += sizeof *m;
+}
+
+static void measure(const struct glint_scene_model *model,
+                    struct scene_bytes *b, struct scene_counts *n)
+{
+    const struct glint_scene_header *h = model->header;
+
+    *b = (struct scene_bytes){.header = sizeof *h,
+                              .light = h->n_lights * sizeof *model->light,
+                              .material =
+                                  h->n_materials * sizeof *model->material,
+                              .object = h->n_objects * sizeof *model->object};
+    *n = (struct scene_counts){.spheres = 0};
+    for (uint32_t i = 0; i < h->n_textures; i++)
+        b->texture += texture_bytes(&model->texture[i]);
+    for (uint32_t i = 0; i < h->n_meshes; i++)
+        measure_mesh(model, &model->mesh[i], b, n);
+    b->mesh += b->vertices + b->normals + b->uv + b->triangles + b->grid;
+    for (uint32_t i = 0; i < h->n_objects; i++) {
+        n->spheres += model->object[i].kind == GLINT_OBJECT_SPHERE;
+        n->planes += model->object[i].kind == GLINT_OBJECT_PLANE;
+        n->meshes += model->object[i].kind == GLINT_OBJECT_MESH;
+        n->catchers += model->object[i].catcher_q15 > 0;
+    }
+}
+
+/* Prints members of an object. */
+static void print_bytes(const struct scene_bytes *b, FILE *to)
+{
+    fprintf(to,
+            "\"header\": %zu, \"light\": %zu, \"texture\": %zu, "
+            "\"material\": %zu, \"object\": %zu, \"mesh\": %zu",
+            b->header, b->light, b->texture, b->material, b->object, b->mesh);
+}
+
+void baked_scene_bytes(const struct glint_scene_model *model, FILE *to)
+{
+    struct scene_bytes bytes;
+    struct scene_counts counts;
+
+    measure(model, &bytes, &counts);
+    print_bytes(&bytes, to);
+}
+
+static void print_json(const struct baked_scene *scene,
+                       const struct scene_bytes *b,
+                       const struct scene_counts *n)
+{
+    const struct glint_scene_header *h = scene->model.header;
+
+    printf("{\"name\": ");
+    tool_json_string(stdout, h->name);
+    printf(", \"scene\": {\"objects\": %u, \"spheres\": %d, \"planes\": %d, "
+           "\"catchers\": %d, \"meshes\": %d, \"lights\": %u, "
+           "\"materials\": %u, \"textures\": %u, \"vertices\": %u, "
+           "\"triangles\": %u, \"cells\": %u, \"refs\": %u, \"step\": %.9g",
+           h->n_objects, n->spheres, n->planes, n->catchers, n->meshes,
+           h->n_lights, h->n_materials, h->n_textures, n->vertices,
+           n->triangles, n->cells, n->refs, ldexp(1, -h->unit_log2));
+    if (scene->is_text)
+        printf(", \"reach\": %.9g, \"flat\": %d", scene->report.reach,
+               scene->report.flat);
+    printf(", \"bytes\": {");
+    print_bytes(b, stdout);
+    printf(", \"all\": %zu}}}\n", scene->bytes);
+}
+
+static void print_camera(const struct glint_scene_camera *c)
+{
+    if (c->kind == GLINT_CAMERA_FIELD)
+        printf("camera       %.4g degrees across the picture\n",
+               360 / GLINT_PI * atan(ldexp(c->tan_x_q24, -24)));
+    else
+        printf("camera       %s\n", c->kind == GLINT_CAMERA_LENS
+                                        ? "the field of the flare's lens"
+                                        : "16 x 9 at a distance of 10");
+}
+
+static void print_text(const struct baked_scene *scene,
+                       const struct scene_bytes *b,
+                       const struct scene_counts *n)
+{
+    const struct glint_scene_header *h = scene->model.header;
+    const struct {
+        const char *what;
+        size_t bytes;
+    } row[] = {{"header", b->header},
+               {"light", b->light},
+               {"texture", b->texture},
+               {"material", b->material},
+               {"object", b->object},
+               {"mesh", b->mesh},
+               {"  vertices", b->vertices},
+               {"  normals", b->normals},
+               {"  uv", b->uv},
+               {"  triangles", b->triangles},
+               {"  grid", b->grid}};
+
+    printf("%s, a %sscene\n\n", h->name, scene->is_text ? "" : "baked ");
+    print_camera(&h->camera);
+    printf("things       %u: spheres %d, planes %d (catchers %d), meshes %d\n",
+           h->n_objects, n->spheres, n->planes, n->catchers, n->meshes);
+    printf("lights       %u%s\n", h->n_lights,
+           h->shadow ? ", with shadows" : "");
+    printf("materials    %u, textures %u\n", h->n_materials, h->n_textures);
+    printf("triangles    %u on %u vertices, %u cells with %u entries\n",
+           n->triangles, n->vertices, n->cells, n->refs);
+    if (scene->report.flat)
+        printf("left out     %d triangles without area\n", scene->report.flat);
+    printf("step         %.3g units; places are within half of one, each way\n",
+           ldexp(1, -h->unit_log2));
+    if (scene->is_text)
+        printf("reach        %.4g units from the origin; poses, to %.4g\n",
+               scene->report.reach, ldexp(1, 28 - h->unit_log2));
+    printf("bytes        %zu\n", scene->bytes);
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+        if (row[i].bytes)
+            printf("  %-12s %8zu\n", row[i].what, row[i].bytes);
+}
+
+void baked_scene_print(const struct tool *tool, const struct baked_scene *scene)
+{
+    struct scene_bytes bytes;
+    struct scene_counts counts;
+
+    measure(&scene->model, &bytes, &counts);
+    (tool->json ? print_json : print_text)(scene, &bytes, &counts);
+}

@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: MIT */
+#include "scenes/budget.h"
+
+#include <math.h>
+
+/* frames from one look at what there is to do to the next */
+#define BETWEEN 8
+/* share of an error, in octaves, that one frame teaches; most that it can */
+#define LEARNING   0.5
+#define MOST_WRONG 1.0
+
+/* Points of light go first, as edges of shadows are little of a picture, then
+ * places shaded, last the outlines. */
+static const struct {
+    int points, edge;
+    bool half;
+} levels[SCENE_BUDGET_LEVELS] = {{16, 16, false}, {4, 4, false}, {1, 4, false},
+                                 {4, 4, true},    {1, 4, true},  {1, 1, true}};
+
+void scene_budget_init(struct scene_budget *budget,
+                       const struct scene_dials *asked)
+{
+    *budget = (struct scene_budget){.asked = *asked, .ms_per_minsn = 0.1};
+}
+
+static int least(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+struct scene_dials scene_budget_dials(const struct scene_budget *budget,
+                                      int level)
+{
+    struct scene_dials d = budget->asked;
+
+    d.shadow_points = least(d.shadow_points, levels[level].points);
+    d.edge_samples = least(d.edge_samples, levels[level].edge);
+    d.half_shading = d.half_shading || levels[level].half;
+    return d;
+}
+
+bool scene_budget_looks(const struct scene_budget *budget)
+{
+    return budget->n_frames % BETWEEN == 0;
+}
+
+/* Returns what a frame of ACCOUNT, drawn with the dials FROM, is told to cost
+ * with the dials TO. */
+static double told(const struct scene_account *account,
+                   const struct scene_dials *from, const struct scene_dials *to)
+{
+    struct scene_account then = *account;
+    int64_t *const n = then.all.count;
+    /* Two by two pixels at once are a quarter of the places inside, most. */
+    const double half =
+        (to->half_shading ? 0.3 : 1) / (from->half_shading ? 0.3 : 1);
+    const double edge = (double)to->edge_samples / from->edge_samples;
+    const double points = (double)to->shadow_points / from->shadow_points;
+
+    n[GLINT_SCENE_SAMPLED] = llrint((double)n[GLINT_SCENE_SAMPLED] * edge);
+    n[GLINT_SCENE_BOUNCED] = llrint((double)n[GLINT_SCENE_BOUNCED] * edge);
+    n[GLINT_SCENE_SHADED] = llrint((double)n[GLINT_SCENE_SHADED] * half);
+    n[GLINT_SCENE_LIT] = llrint((double)n[GLINT_SCENE_LIT] * half);
+    n[GLINT_SCENE_TEXELS] = llrint((double)n[GLINT_SCENE_TEXELS] * half);
+    n[GLINT_SCENE_WALKED] = llrint((double)n[GLINT_SCENE_WALKED] * half);
+    n[GLINT_SCENE_SHADOWS] =
+        llrint((double)n[GLINT_SCENE_SHADOWS] * half * points);
+    return scene_cost_minsn(&then);
+}
+
+enum glint_status scene_budget_look(struct scene_budget *budget,
+                                    const struct scene_frame *frame)
+{
+    const struct scene_dials from = scene_budget_dials(budget, budget->level);
+    struct scene_account account;
+    const enum glint_status status = scene_account_make(&account, frame);
+
+    if (status != GLINT_OK)
+        return status;
+    for (int i = 0; i < SCENE_BUDGET_LEVELS; i++) {
+        const struct scene_dials to = scene_budget_dials(budget, i);
+
+        budget->minsn[i] = told(&account, &from, &to);
+    }
+    scene_account_free(&account);
+    return GLINT_OK;
+}
+
+bool scene_budget_choose(struct scene_budget *budget, double ms)
+{
+    const int before = budget->level;
+    int level = SCENE_BUDGET_LEVELS - 1;
+
+    for (int i = level - 1; i >= 0; i--) {
+        const double told_ms = budget->ms_per_minsn * budget->minsn[i];
+
+        /* A finer level than now has to leave room, or they would alternate. */
+        if (told_ms <= (i < before ? 0.85 : 1) * ms)
+            level = i;
+    }
+    budget->level = level;
+    budget->predicted_ms = budget->ms_per_minsn * budget->minsn[level];
+    return level != before;
+}
+
+void scene_budget_note(struct scene_budget *budget, double ms)
+{
+    /* The first frame takes memory. */
+    if (budget->n_frames++ > 0 && ms > 0 && budget->predicted_ms > 0) {
+        const double wrong = fmax(
+            -MOST_WRONG, fmin(MOST_WRONG, log2(ms / budget->predicted_ms)));
+
+        budget->ms_per_minsn *= exp2(LEARNING * wrong);
+    }
+}
+
+double scene_budget_quality(const struct scene_budget *budget)
+{
+    return 1 - (double)budget->level / (SCENE_BUDGET_LEVELS - 1);
+}

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Dials of a scene that hold a time a frame, by what the frame is told to cost
+ * and how long frames have taken. */
+#ifndef GLINT_TOOLS_SCENES_BUDGET_H
+#define GLINT_TOOLS_SCENES_BUDGET_H
+
+#include "scenes/account.h"
+
+/* Levels from the finest, as the dials are asked for, to the coarsest. */
+enum { SCENE_BUDGET_LEVELS = 6 };
+
+struct scene_budget {
+    struct scene_dials asked;
+    int level;
+    double predicted_ms; /* of the frame; 0: there is no budget */
+
+    /* Private. */
+    double ms_per_minsn;
+    double minsn[SCENE_BUDGET_LEVELS]; /* told for each level */
+    int n_frames;
+};
+
+void scene_budget_init(struct scene_budget *budget,
+                       const struct scene_dials *asked);
+
+/* Returns the dials of LEVEL. */
+struct scene_dials scene_budget_dials(const struct scene_budget *budget,
+                                      int level);
+
+/* Returns whether FRAME is to be looked at before the next choice: the first
+ * and some of those that follow. */
+bool scene_budget_looks(const struct scene_budget *budget);
+
+/* Takes what FRAME, which has begun with the dials of budget->level, is told to
+ * cost. GLINT_E_MEMORY. */
+enum glint_status scene_budget_look(struct scene_budget *budget,
+                                    const struct scene_frame *frame);
+
+/* Sets budget->level to the finest of which a frame is told to take no more
+ * than MS; returns whether that is another one. */
+bool scene_budget_choose(struct scene_budget *budget, double ms);
+
+/* Learns from a frame that took MS. */
+void scene_budget_note(struct scene_budget *budget, double ms);
+
+/* Returns 1 for the finest level to 0 for the coarsest. */
+double scene_budget_quality(const struct scene_budget *budget);
+
+#endif

@@ -1,0 +1,417 @@
+/* SPDX-License-Identifier: MIT */
+#include "scenes/over_scene.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/frame/area.h"
+#include "scenes/account.h"
+
+/* ------------------------------------------------------------------- opening
+ */
+
+static int n_objects(const struct over_scene *over)
+{
+    return (int)over->baked.model.header->n_objects;
+}
+
+static int n_lights(const struct over_scene *over)
+{
+    return (int)over->baked.model.header->n_lights;
+}
+
+/* Returns the place of THING in over->moved. */
+static int place_of(const struct over_scene *over, int thing)
+{
+    return thing == POSES_CAMERA ? n_objects(over) + n_lights(over) : thing;
+}
+
+static int open_poses(struct over_scene *over)
+{
+    struct glint_error error = {""};
+    const size_t n = (size_t)place_of(over, POSES_CAMERA) + 1;
+    const enum glint_status status =
+        poses_open(&over->poses, over->pose_file, over->is_live,
+                   &over->baked.model, &error);
+
+    if (status != GLINT_OK)
+        return tool_fail(over->tool, status, error.text);
+    over->moved = calloc(n, sizeof *over->moved);
+    if (!over->moved)
+        return tool_fail(over->tool, GLINT_E_MEMORY, NULL);
+    for (int i = 0; i < n_objects(over); i++)
+        memcpy(over->moved[i].turn_q30, over->baked.model.object[i].turn_q30,
+               sizeof over->moved[i].turn_q30);
+    return EXIT_OK;
+}
+
+int over_scene_open(struct over_scene *over, const struct tool *tool)
+{
+    int code;
+
+    over->tool = tool;
+    if (!over->file)
+        return over->pose_file ? tool_usage(tool, "--pose moves the things of "
+                                                  "--scene, of which there is "
+                                                  "none")
+                               : EXIT_OK;
+    code = baked_scene_open(tool, over->file, &over->baked);
+    if (code != EXIT_OK)
+        return code;
+    over->is_open = true;
+    return over->pose_file ? open_poses(over) : EXIT_OK;
+}
+
+bool over_scene_needs_lens(const struct over_scene *over)
+{
+    return over->is_open &&
+           over->baked.model.header->camera.kind == GLINT_CAMERA_LENS;
+}
+
+void over_scene_close(struct over_scene *over)
+{
+    if (over->is_sized)
+        scene_frame_close(&over->frame);
+    if (over->poses.is_open)
+        poses_close(&over->poses);
+    free(over->moved);
+    over->moved = NULL;
+    if (over->is_open)
+        baked_scene_close(&over->baked);
+    over->is_open = over->is_sized = false;
+}
+
+/* --------------------------------------------------------------------- poses
+ */
+
+/* Sets AXIS to where the camera's own axes go by the unit quaternion Q. */
+static void set_axes(const int32_t q_q30[4], int32_t axis_q30[3][3])
+{
+    double q[4], v[3];
+
+    for (int i = 0; i < 4; i++)
+        q[i] = q_q30[i] * 0x1p-30;
+    for (int k = 0; k < 3; k++) {
+        const int a = (k + 1) % 3, b = (k + 2) % 3;
+
+        v[k] = 1 - 2 * (q[1 + a] * q[1 + a] + q[1 + b] * q[1 + b]);
+        v[a] = 2 * (q[1 + k] * q[1 + a] + q[0] * q[1 + b]);
+        v[b] = 2 * (q[1 + k] * q[1 + b] - q[0] * q[1 + a]);
+        for (int i = 0; i < 3; i++)
+            axis_q30[k][i] = (int32_t)lround(0x1p30 * v[i]);
+    }
+}
+
+static enum glint_status move_camera(const struct over_scene *over,
+                                     struct glint_scene *scene,
+                                     const struct scene_moved *to)
+{
+    int32_t axis_q30[3][3];
+
+    if (to->turn_q30[0] || to->turn_q30[1] || to->turn_q30[2] ||
+        to->turn_q30[3])
+        set_axes(to->turn_q30, axis_q30);
+    else
+        memcpy(axis_q30, over->baked.model.header->camera.axis_q30,
+               sizeof axis_q30);
+    return glint_scene_set_camera(scene, to->at, (const int32_t(*)[3])axis_q30);
+}
+
+static enum glint_status move(const struct over_scene *over,
+                              struct glint_scene *scene, int i)
+{
+    const struct scene_moved *const to = &over->moved[i];
+
+    if (!to->is_moved)
+        return GLINT_OK;
+    if (i < n_objects(over))
+        return glint_scene_set_pose(scene, i, to->at, to->turn_q30);
+    if (i < n_objects(over) + n_lights(over))
+        return glint_scene_set_light(scene, i - n_objects(over), to->at);
+    return move_camera(over, scene, to);
+}
+
+/* Moves all things anew, of a scene that may just have been placed. */
+static void move_all(void *ctx, struct glint_scene *scene)
+{
+    const struct over_scene *const over = ctx;
+
+    for (int i = 0; i <= place_of(over, POSES_CAMERA); i++)
+        move(over, scene, i);
+}
+
+/* Takes the poses up to FRAME. */
+static void take_poses(struct over_scene *over, int frame)
+{
+    const struct pose *pose;
+
+    while ((pose = poses_next(&over->poses, frame))) {
+        const int i = place_of(over, pose->thing);
+        const struct scene_moved before = over->moved[i];
+
+        over->moved[i].is_moved = true;
+        memcpy(over->moved[i].at, pose->at, sizeof pose->at);
+        if (pose->has_turn)
+            memcpy(over->moved[i].turn_q30, pose->turn_q30,
+                   sizeof pose->turn_q30);
+        if (move(over, over->frame.scene, i) != GLINT_OK) {
+            over->moved[i] = before;
+            poses_refuse(&over->poses, pose);
+        }
+    }
+    if (over->poses.n_bad > 0 && !over->has_said && !over->tool->quiet)
+        fprintf(stderr, "glint %s: %s; such lines are passed over\n",
+                over->tool->name, over->poses.bad.text);
+    over->has_said = over->poses.n_bad > 0;
+}
+
+/* ------------------------------------------------------------------- drawing
+ */
+
+static int size(struct over_scene *over, const struct scene_dials *dials)
+{
+    int code;
+
+    if (over->is_sized)
+        scene_frame_close(&over->frame);
+    code =
+        scene_frame_open(&over->frame, over->tool, &over->baked.model, dials);
+    over->is_sized = code == EXIT_OK;
+    if (over->moved) {
+        over->frame.pose = move_all;
+        over->frame.pose_ctx = over;
+    }
+    return code;
+}
+
+int over_scene_size(struct over_scene *over, const struct scene_dials *dials)
+{
+    if (!over->is_open)
+        return EXIT_OK;
+    scene_budget_init(&over->budget, dials);
+    return size(over, dials);
+}
+
+/* Turns the dials so that the frame is told to take no more than the budget. */
+static enum glint_status spend(struct over_scene *over)
+{
+    struct scene_budget *const b = &over->budget;
+    enum glint_status status = GLINT_OK;
+
+    if (scene_budget_looks(b)) {
+        scene_frame_begin(&over->frame);
+        status = scene_budget_look(b, &over->frame);
+    }
+    if (status == GLINT_OK && scene_budget_choose(b, over->budget_ms)) {
+        const struct scene_dials dials = scene_budget_dials(b, b->level);
+
+        if (size(over, &dials) != EXIT_OK)
+            status = GLINT_E_MEMORY;
+    }
+    return status;
+}
+
+enum glint_status over_scene_draw(struct over_scene *over,
+                                  const struct glint_image *image, int frame)
+{
+    const double start = tool_seconds();
+    enum glint_status status;
+
+    if (over->moved)
+        take_poses(over, frame);
+    status = over->budget_ms > 0 ? spend(over) : GLINT_OK;
+    if (status == GLINT_OK)
+        status = scene_frame_try(&over->frame, image);
+    over->ms = 1e3 * (tool_seconds() - start);
+    if (over->budget_ms > 0)
+        scene_budget_note(&over->budget,
+                          over->frame.project_ms + over->frame.draw_ms);
+    over->lamps_hidden = over->lights = 0;
+    return status;
+}
+
+void over_scene_again(struct over_scene *over, const struct glint_image *image)
+{
+    glint_scene_draw(over->frame.scene, image);
+}
+
+void over_scene_layer_free(struct over_scene_layer *layer)
+{
+    free(layer->rgb);
+    free(layer->cover_q8);
+    *layer = (struct over_scene_layer){NULL, NULL};
+}
+
+/* Draws over a picture of LIGHT_Q20, n samples at LINEAR_Q20. */
+static void draw_over(struct over_scene *over, int32_t light, size_t n,
+                      int32_t *linear_q20)
+{
+    struct glint_image image = {.format = GLINT_LINEAR_Q20,
+                                .width = over->frame.cfg.width,
+                                .height = over->frame.cfg.height};
+
+    for (size_t i = 0; i < n; i++)
+        linear_q20[i] = light;
+    glint_image_place(&image, linear_q20);
+    glint_scene_draw(over->frame.scene, &image);
+}
+
+/* What a thing hides of white is what it is over black less what it is over
+ * white. */
+enum glint_status over_scene_layer(struct over_scene *over,
+                                   struct over_scene_layer *layer)
+{
+    const size_t n =
+        (size_t)over->frame.cfg.width * (size_t)over->frame.cfg.height;
+    int32_t *const linear_q20 = calloc(3 * n, sizeof *linear_q20);
+
+    layer->rgb = malloc(3 * n * sizeof *layer->rgb);
+    layer->cover_q8 = malloc(n * sizeof *layer->cover_q8);
+    if (!linear_q20 || !layer->rgb || !layer->cover_q8) {
+        free(linear_q20);
+        over_scene_layer_free(layer);
+        return GLINT_E_MEMORY;
+    }
+    draw_over(over, 0, 3 * n, linear_q20);
+    for (size_t i = 0; i < n; i++)
+        for (size_t c = 3 * i; c < 3 * i + 3; c++)
+            layer->rgb[c] = (float)linear_q20[c] * 0x1p-20F;
+    draw_over(over, 1 << 20, 3 * n, linear_q20);
+    for (size_t i = 0; i < n; i++)
+        layer->cover_q8[i] =
+            (uint16_t)lrintf(256 + 256 * layer->rgb[3 * i] -
+                             0x1p-12F * (float)linear_q20[3 * i]);
+    free(linear_q20);
+    return GLINT_OK;
+}
+
+/* --------------------------------------------------------------------- lamps
+ */
+
+/* Leaves of LAMP the share SEEN of its light. Returns that. */
+static double leave(struct over_scene *over, struct glint_lamp *lamp,
+                    double seen)
+{
+    const double share = fmax(seen, OVER_SCENE_HIDDEN);
+
+    over->lamps_hidden += seen <= 0;
+    lamp->power *= share;
+    return share;
+}
+
+void over_scene_hide(struct over_scene *over, const struct glint_view *view,
+                     double focal_mm, struct glint_lamp *lamps, double *share,
+                     int n)
+{
+    const double pixels = 1 / glint_view_pixel_tangent(view, focal_mm);
+
+    for (int i = 0; i < n; i++) {
+        /* An even disc has twice its RMS semi-axis as radius. */
+        const double radius = 2 * pixels * lamps[i].axis[0];
+        double x, y;
+        int cover;
+
+        glint_view_to_pixel(view, focal_mm, &lamps[i], &x, &y);
+        if (!(x >= 0 && y >= 0 && x < view->width && y < view->height))
+            continue;
+        cover = glint_scene_cover(over->frame.scene, (int32_t)(256 * x),
+                                  (int32_t)(256 * y),
+                                  (int32_t)(256 * fmin(radius, 1 << 14)));
+        share[i] = leave(over, &lamps[i], 1 - cover / 256.0);
+    }
+}
+
+/* Sets LAMP to FROM; returns false if that has no light. */
+static bool set_lamp(const struct glint_scene_lamp *from,
+                     const struct glint_view *view, double focal_mm,
+                     struct glint_lamp *lamp)
+{
+    static const double weight[3] = {0.2126, 0.7152, 0.0722};
+    double rgb[3], luminance = 0;
+
+    for (int c = 0; c < 3; c++) {
+        rgb[c] = glint_real_value(from->rgb[c]);
+        luminance += weight[c] * rgb[c];
+    }
+    if (!(luminance > 0))
+        return false;
+    glint_view_to_angles(view, focal_mm, from->x_q8 / 256.0, from->y_q8 / 256.0,
+                         lamp);
+    glint_area_set_round(lamp, from->radius_q8 / 256.0 / sqrt(2) *
+                                   glint_view_pixel_tangent(view, focal_mm));
+    lamp->power = fmin(luminance, 1e30);
+    for (int c = 0; c < 3; c++)
+        lamp->rgb[c] = rgb[c] / luminance;
+    return true;
+}
+
+int over_scene_lights(struct over_scene *over, const struct glint_view *view,
+                      double focal_mm, struct glint_lamp *lamps, double *share)
+{
+    struct glint_scene_lamp light[GLINT_SCENE_MAX_LIGHTS];
+    const int all = glint_scene_lights(over->frame.scene, light);
+    int n = 0;
+
+    for (int i = 0; i < all; i++) {
+        if (!set_lamp(&light[i], view, focal_mm, &lamps[n]))
+            continue;
+        share[n] = leave(over, &lamps[n], light[i].share / 16.0);
+        n++;
+    }
+    over->lights = n;
+    return n;
+}
+
+/* -------------------------------------------------------------------- report
+ */
+
+size_t over_scene_bytes(const struct over_scene *over)
+{
+    return over->is_sized ? over->frame.bytes : 0;
+}
+
+void over_scene_say(const struct over_scene *over, FILE *to)
+{
+    fprintf(to, "scene %s, %d of %d things", over->baked.model.header->name,
+            over->frame.stats.objects, n_objects(over));
+    if (over->lamps_hidden > 0)
+        fprintf(to, " hiding %d light%s", over->lamps_hidden,
+                over->lamps_hidden == 1 ? "" : "s");
+    if (over->poses.n_bad > 0)
+        fprintf(to, ", %ld line%s of poses passed over", over->poses.n_bad,
+                over->poses.n_bad == 1 ? "" : "s");
+}
+
+/* Returns how many pixels things hide, in all. */
+static int covered(const struct over_scene *over)
+{
+    const int width = over->frame.cfg.width, height = over->frame.cfg.height;
+    int64_t sum = 0;
+
+    for (int y = 0; y < height; y += 8)
+        for (int x = 0; x < width; x += 8) {
+            const int w = width - x < 8 ? width - x : 8;
+            const int h = height - y < 8 ? height - y : 8;
+
+            sum += (int64_t)w * h *
+                   glint_scene_cover(over->frame.scene, 256 * x + 128,
+                                     256 * y + 128, 0);
+        }
+    return (int)((sum + 128) / 256);
+}
+
+void over_scene_json(const struct over_scene *over, FILE *to)
+{
+    if (!over->is_sized)
+        return;
+    fprintf(to, "\"scene\": {");
+    scene_cost_json(&over->frame, over->baked.bytes, to);
+    fprintf(to,
+            ", \"quality\": %.3f, \"predicted_ms\": %.3f, "
+            "\"covered_px\": %d, \"lights\": %d, \"highlights\": [], "
+            "\"lamps_hidden\": %d, \"poses_bad\": %ld}, ",
+            over->budget_ms > 0 ? scene_budget_quality(&over->budget) : 1.0,
+            over->budget.predicted_ms, covered(over), over->lights,
+            over->lamps_hidden, over->poses.n_bad);
+}

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * over_scene.h - a scene over the pictures of a camera, and what it does to the
+ * lamps of the flare.
+ *
+ *     over_scene_open(&over, tool);                   scene and poses
+ *     over_scene_size(&over, &dials);                 when the size changes
+ *     over_scene_draw(&over, &image, frame);          each picture
+ *     over_scene_hide(&over, &view, focal_mm, lamps, share, n);
+ *     n = over_scene_lights(&over, &view, focal_mm, lamps, share);
+ *     over_scene_close(&over);
+ *
+ * Frames of a video rise. Moving things bakes nothing.
+ */
+#ifndef GLINT_TOOLS_SCENES_OVER_SCENE_H
+#define GLINT_TOOLS_SCENES_OVER_SCENE_H
+
+#include "glint/view.h"
+#include "scenes/baked_scene.h"
+#include "scenes/poses.h"
+#include "scenes/budget.h"
+#include "scenes/scene_frame.h"
+
+/* Share of a lamp that is hidden: as good as none, but the exposure still
+ * knows what it was. */
+#define OVER_SCENE_HIDDEN 1e-18
+
+/* Where a thing was moved to. */
+struct scene_moved {
+    bool is_moved;
+    int32_t at[3], turn_q30[4];
+};
+
+struct over_scene {
+    /* Options. */
+    const char *file;      /* NULL: there is no scene */
+    const char *pose_file; /* or NULL */
+    bool is_live;          /* a FIFO of poses is not waited for */
+    int edge_samples;      /* 1, 4, 8, 16; 0: as is usual */
+    int shadow_points;     /* 1, 4, 16; 0: as is usual */
+    bool half_shading;     /* two by two pixels at once, within one thing */
+
+    double budget_ms; /* what drawing may take; 0: as long as it does */
+
+    /* Private. */
+    const struct tool *tool;
+    struct scene_budget budget;
+    struct baked_scene baked;
+    struct poses poses;
+    struct scene_moved *moved; /* objects, lights, and the camera */
+    struct scene_frame frame;
+    bool is_open, is_sized, has_said;
+
+    /* Of the last frame. */
+    double ms;
+    int lights;       /* of the scene, that the lens is told of */
+    int lamps_hidden; /* lamps and lights of which nothing is seen */
+};
+
+/* Opens scene and poses, if there are any. Returns an exit code, after printing
+ * the reason on failure. */
+int over_scene_open(struct over_scene *over, const struct tool *tool);
+
+/* Returns whether the camera of the scene has the field of the lens. */
+bool over_scene_needs_lens(const struct over_scene *over);
+
+/* Prepares OVER for pictures of the size of DIALS, unless there is no scene.
+ * Returns an exit code. */
+int over_scene_size(struct over_scene *over, const struct scene_dials *dials);
+
+/* Draws the scene of frame FRAME onto IMAGE. */
+enum glint_status over_scene_draw(struct over_scene *over,
+                                  const struct glint_image *image, int frame);
+
+/* Draws the scene drawn last once more, onto IMAGE. */
+void over_scene_again(struct over_scene *over, const struct glint_image *image);
+
+/* The scene by itself, for pictures that are no struct glint_image. */
+struct over_scene_layer {
+    float *rgb;         /* [height][width][3], linear light, 1 = white */
+    uint16_t *cover_q8; /* [height][width], what is hidden, 0 .. 256 */
+};
+
+/* Makes LAYER of the scene drawn last; over_scene_layer_free() frees it.
+ * GLINT_E_MEMORY. */
+enum glint_status over_scene_layer(struct over_scene *over,
+                                   struct over_scene_layer *layer);
+void over_scene_layer_free(struct over_scene_layer *layer);
+
+/* Takes from N LAMPS, and their SHARE, what the scene drawn last hides. */
+void over_scene_hide(struct over_scene *over, const struct glint_view *view,
+                     double focal_mm, struct glint_lamp *lamps, double *share,
+                     int n);
+
+/* Sets LAMPS and SHARE, [GLINT_SCENE_MAX_LIGHTS], to the lights of the scene
+ * drawn last, as a lens of FOCAL_MM sees them, and what is seen of each.
+ * Returns how many there are. */
+int over_scene_lights(struct over_scene *over, const struct glint_view *view,
+                      double focal_mm, struct glint_lamp *lamps, double *share);
+
+/* Returns the memory that drawing takes. */
+size_t over_scene_bytes(const struct over_scene *over);
+
+/* Writes a few words on the frame drawn last. */
+void over_scene_say(const struct over_scene *over, FILE *to);
+
+/* Writes "scene": an object on the frame drawn last. */
+void over_scene_json(const struct over_scene *over, FILE *to);
+
+void over_scene_close(struct over_scene *over);
+
+#endif

@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: MIT */
+#include "scenes/scene_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+#include "assimp/assimp.h"
+#include "formats/picture.h"
+#include "model/model_file.h"
+#include "posix/input.h"
+#include "posix/target.h"
+
+enum { TEXT_BYTES = 1 << 20 };
+
+bool tool_is_scene(const char *argument)
+{
+    const size_t n = strlen(argument);
+
+    return n > 6 && strcmp(argument + n - 6, ".scene") == 0;
+}
+
+bool tool_begins_as(const char *argument, uint32_t magic)
+{
+    uint32_t first = 0;
+    struct stat st;
+    FILE *file;
+
+    /* A pipe can be read once only. */
+    if (!tool_is_file_name(argument) || stat(argument, &st) < 0 ||
+        !S_ISREG(st.st_mode))
+        return false;
+    file = fopen(argument, "rb");
+    if (!file)
+        return false;
+    if (fread(&first, sizeof first, 1, file) < 1)
+        first = 0;
+    fclose(file);
+    return first == magic;
+}
+
+void tool_key_mix(uint64_t *key, const void *data, size_t bytes)
+{
+    const uint8_t *byte = data;
+
+    for (size_t i = 0; i < bytes; i++)
+        *key = (*key ^ byte[i]) * UINT64_C(1099511628211);
+}
+
+bool tool_beside(const char *text, const char *name, char path[TOOL_PATH_BYTES])
+{
+    const char *const slash = name[0] == '/' ? NULL : strrchr(text, '/');
+    const int folder = slash ? (int)(slash - text) + 1 : 0;
+
+    return snprintf(path, TOOL_PATH_BYTES, "%.*s%s", folder, text, name) <
+           TOOL_PATH_BYTES;
+}
+
+void tool_scene_name(const char *path, char name[64])
+{
+    const char *const slash = strrchr(path, '/');
+    const char *const start = slash ? slash + 1 : path;
+
+    snprintf(name, 64, "%.*s", (int)strcspn(start, "."), start);
+}
+
+/* A text while it is read, and the key of what was read so far. */
+struct reading {
+    const char *path;
+    const char *written; /* a file that is not to be read, or NULL */
+    uint64_t key;
+};
+
+static void mix(struct reading *reading, const uint8_t *data, size_t bytes)
+{
+    tool_key_mix(&reading->key, data, bytes);
+}
+
+/* Sets PATH to NAME in the folder of the text, if that may be read. */
+static enum glint_status find(const struct reading *reading, const char *name,
+                              char path[TOOL_PATH_BYTES],
+                              struct glint_error *error)
+{
+    if (!tool_beside(reading->path, name, path)) {
+        snprintf(error->text, sizeof error->text,
+                 "the file's name is too long");
+        return GLINT_E_IO;
+    }
+    if (reading->written && glint_target_is_input(path, reading->written)) {
+        snprintf(error->text, sizeof error->text,
+                 "%.180s would be lost: it is what -o names; name another file",
+                 name);
+        return GLINT_E_ARGUMENT;
+    }
+    return GLINT_OK;
+}
+
+static bool is_obj(const char *name)
+{
+    const size_t n = strlen(name);
+
+    return n >= 4 && strcasecmp(name + n - 4, ".obj") == 0;
+}
+
+/* Reads a mesh as an OBJ text. */
+static enum glint_status read_mesh(void *ctx, const char *name, uint8_t **data,
+                                   size_t *bytes, struct glint_error *error)
+{
+    struct reading *reading = ctx;
+    char path[TOOL_PATH_BYTES];
+    enum glint_status status = find(reading, name, path, error);
+
+    if (status != GLINT_OK)
+        return status;
+    if (is_obj(name))
+        status = glint_input_slurp(data, bytes, path,
+                                   GLINT_DESCRIPTION_MAX_MESH_BYTES, error);
+    else
+        status = glint_assimp_read(data, bytes, path,
+                                   GLINT_DESCRIPTION_MAX_MESH_BYTES,
+                                   GLINT_DESCRIPTION_MAX_TRIANGLES, error);
+    if (status == GLINT_E_FORMAT) /* as a mistake in an OBJ file is */
+        status = GLINT_E_LENS;
+    if (status == GLINT_OK)
+        mix(reading, *data, *bytes);
+    return status;
+}
+
+static enum glint_status read_picture(void *ctx, const char *name,
+                                      struct glint_image *image,
+                                      struct glint_error *error)
+{
+    struct reading *reading = ctx;
+    char path[TOOL_PATH_BYTES];
+    enum glint_status status = find(reading, name, path, error);
+
+    if (status == GLINT_OK)
+        status = glint_picture_load(path, image, error);
+    if (status == GLINT_OK)
+        mix(reading, image->plane[0],
+            3 * (size_t)image->width * (size_t)image->height);
+    return status;
+}
+
+int tool_scene_is_kept(const struct tool *tool, const char *path)
+{
+    if (!tool->written || !glint_target_is_input(path, tool->written))
+        return EXIT_OK;
+    return tool_usage(tool,
+                      "-o %s is the input, which would be lost; name another "
+                      "file",
+                      tool->written);
+}
+
+int tool_scene(const struct tool *tool, const char *path,
+               struct glint_description *scene, uint64_t *key)
+{
+    struct reading reading = {path, tool->written, TOOL_KEY_BEGIN};
+    const struct glint_description_files files = {&reading, read_mesh,
+                                                  read_picture};
+    struct glint_error error = {""};
+    uint8_t *text = NULL;
+    size_t bytes = 0;
+    enum glint_status status;
+    const int code = tool_scene_is_kept(tool, path);
+
+    if (code != EXIT_OK)
+        return code;
+    status = glint_input_slurp(&text, &bytes, path, TEXT_BYTES, &error);
+    if (status == GLINT_OK) {
+        mix(&reading, text, bytes);
+        status = glint_description_parse(scene, (const char *)text, bytes, path,
+                                         &files, &error);
+    }
+    free(text);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    if (key)
+        *key = reading.key;
+    if (scene->warning[0] && !tool->quiet)
+        fprintf(stderr, "glint %s: %s: %s\n", tool->name, path, scene->warning);
+    return EXIT_OK;
+}
+
+int tool_scene_bake(const struct tool *tool, const char *path, uint8_t **data,
+                    size_t *bytes, struct glint_scene_bake_report *report)
+{
+    struct glint_description *description = malloc(sizeof *description);
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_E_MEMORY;
+    uint64_t key = 0;
+    char name[64];
+    int code = EXIT_OK;
+
+    if (description)
+        code = tool_scene(tool, path, description, &key);
+    if (description && code == EXIT_OK) {
+        tool_scene_name(path, name);
+        status = glint_scene_bake(description, name, key, data, bytes, report,
+                                  &error);
+        glint_description_free(description);
+    }
+    free(description);
+    if (code != EXIT_OK)
+        return code;
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT */
+#include "scenes/scene_frame.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* As the run time's arenas ask for. */
+#define ALIGNMENT 64
+
+/* Places the scene in memory of its own. */
+static enum glint_status place(struct scene_frame *frame)
+{
+    const size_t bytes = glint_scene_bytes(&frame->cfg, frame->model);
+    void *mem = NULL;
+    enum glint_status status;
+
+    if (!bytes)
+        return GLINT_E_ARGUMENT;
+    if (posix_memalign(&mem, ALIGNMENT, bytes))
+        return GLINT_E_MEMORY;
+    status =
+        glint_scene_init(&frame->scene, &frame->cfg, frame->model, mem, bytes);
+    if (status != GLINT_OK) {
+        free(mem);
+        return status;
+    }
+    free(frame->mem);
+    frame->mem = mem;
+    frame->bytes = bytes;
+    return GLINT_OK;
+}
+
+static int say(const struct tool *tool, enum glint_status status)
+{
+    return tool_fail(tool, status,
+                     status == GLINT_E_ARGUMENT
+                         ? "the scene's camera sees too much for a picture of "
+                           "this shape: tangents of 64 from the middle"
+                         : NULL);
+}
+
+int scene_frame_open(struct scene_frame *frame, const struct tool *tool,
+                     const struct glint_scene_model *model,
+                     const struct scene_dials *dials)
+{
+    enum glint_status status;
+
+    *frame = (struct scene_frame){.tool = tool, .model = model};
+    glint_scene_defaults(&frame->cfg, dials->width, dials->height);
+    frame->cfg.workers = tool->workers;
+    frame->cfg.sets = tool_sets(tool);
+    frame->cfg.edge_samples = dials->edge_samples;
+    frame->cfg.shadow_points = dials->shadow_points;
+    frame->cfg.half_shading = dials->half_shading;
+    frame->cfg.dither = dials->dither;
+    if (dials->tile_log2)
+        frame->cfg.tile_log2 = dials->tile_log2;
+    frame->cfg.focal_q16 = llrint(fmin(dials->focal_px, 1e6) * 0x1p16);
+    frame->cfg.parts = (struct glint_scene_parts){
+        &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces};
+    status = place(frame);
+    return status == GLINT_OK ? EXIT_OK : say(tool, status);
+}
+
+void scene_frame_close(struct scene_frame *frame)
+{
+    free(frame->mem);
+    *frame = (struct scene_frame){.mem = NULL};
+}
+
+void scene_frame_begin(struct scene_frame *frame)
+{
+    if (frame->pose)
+        frame->pose(frame->pose_ctx, frame->scene);
+    glint_scene_begin(frame->scene, &frame->stats);
+}
+
+enum glint_status scene_frame_try(struct scene_frame *frame,
+                                  const struct glint_image *image)
+{
+    const double start = tool_seconds();
+    double begun;
+
+    scene_frame_begin(frame);
+    if (frame->stats.dropped_objects > 0) {
+        enum glint_status status;
+
+        frame->cfg.max_refs = frame->stats.need_refs;
+        status = place(frame);
+        if (status != GLINT_OK)
+            return status;
+        scene_frame_begin(frame);
+    }
+    begun = tool_seconds();
+    glint_scene_look_around(frame->scene, image);
+    glint_scene_draw(frame->scene, image);
+    frame->project_ms = 1e3 * (begun - start);
+    frame->draw_ms = 1e3 * (tool_seconds() - begun);
+    return GLINT_OK;
+}
+
+int scene_frame_draw(struct scene_frame *frame, const struct glint_image *image)
+{
+    const enum glint_status status = scene_frame_try(frame, image);
+
+    return status == GLINT_OK ? EXIT_OK : say(frame->tool, status);
+}

@@ -1,0 +1,440 @@
+/* SPDX-License-Identifier: MIT */
+#include "scenes/twin.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "glint/view.h"
+#include "scenes/vec.h"
+
+/* ----------------------------------------------------------------- opening */
+
+static float decode(uint8_t code)
+{
+    const double x = code / 255.0;
+
+    return (float)(x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4));
+}
+
+static enum glint_status open_texels(struct twin_texels *texels,
+                                     const struct glint_image *image)
+{
+    const size_t n = 3 * (size_t)image->width * (size_t)image->height;
+
+    texels->width = image->width;
+    texels->height = image->height;
+    texels->rgb = malloc(n * sizeof *texels->rgb);
+    if (!texels->rgb)
+        return GLINT_E_MEMORY;
+    for (size_t i = 0; i < n; i++)
+        texels->rgb[i] = decode(image->plane[0][i]);
+    return GLINT_OK;
+}
+
+enum glint_status twin_open(struct twin *twin,
+                            const struct glint_description *scene)
+{
+    enum glint_status status = GLINT_OK;
+
+    *twin = (struct twin){.scene = scene, .shadow_points = 1};
+    for (int i = 0; status == GLINT_OK && i < scene->n_textures; i++)
+        status = open_texels(&twin->texels[i], &scene->texture[i].image);
+    if (status == GLINT_OK)
+        status = twin_grow(twin);
+    if (status != GLINT_OK)
+        twin_close(twin);
+    return status;
+}
+
+void twin_close(struct twin *twin)
+{
+    for (int i = 0; i < GLINT_DESCRIPTION_MAX_TEXTURES; i++)
+        free(twin->texels[i].rgb);
+    free(twin->node);
+    free(twin->order);
+    free(twin->root);
+    *twin = (struct twin){.scene = NULL};
+}
+
+/* ------------------------------------------------------------------ lights */
+
+/* Sets TOWARD to the direction of LIGHT from PLACE and RGB to what a white
+ * surface shows there that faces it. Returns the distance. */
+static double light_from(const struct glint_described_light *light,
+                         const double place[3], double toward[3], double rgb[3])
+{
+    double distance = HUGE_VAL, scale;
+
+    if (light->kind == GLINT_DESCRIBED_SUN) {
+        const double sine = sin(light->radius_deg * GLINT_PI / 180);
+
+        vec_add(light->at, 0, light->at, toward);
+        scale = sine * sine;
+    } else {
+        vec_add(light->at, -1, place, toward);
+        distance = vec_unit(toward);
+        scale = distance > 0 ? 1 / (distance * distance) : 0;
+    }
+    for (int i = 0; i < 3; i++)
+        rgb[i] = scale * light->colour[i];
+    return distance;
+}
+
+/* Points of a light's disc that shadows ask for, as the run time has them. */
+static const double four[4][2] = {
+    {.66446, .24185}, {-.24185, .66446}, {-.66446, -.24185}, {.24185, -.66446}};
+static const double sixteen[16][2] = {
+    {.17679, 0},        {-.22577, .20682},  {.03455, -.39377},
+    {.28458, .37119},   {-.52222, -.09238}, {.49469, -.31470},
+    {-.16547, .61554},  {-.31555, -.60760}, {.68463, .25003},
+    {-.71225, .29401},  {.34335, -.73373},  {.25372, .80893},
+    {-.76474, -.44318}, {.89713, -.19724},  {-.54752, .77878},
+    {-.12650, -.97610}};
+
+/* Turns TOWARD, to the middle of a light DISTANCE away, to point I of N. The
+ * axes of its disc are those of the run time, whose z runs into the picture. */
+static void aim(const struct glint_description *scene,
+                const struct glint_described_light *light, double toward[3],
+                double distance, int i, int n)
+{
+    const double *at = n == 4 ? four[i] : sixteen[i];
+    const bool is_sun = light->kind == GLINT_DESCRIBED_SUN;
+    const double size = is_sun ? sin(light->radius_deg * GLINT_PI / 180)
+                               : light->radius / distance;
+    const double hand = scene->left_handed ? 1 : -1;
+    double d[3] = {toward[0], toward[1], hand * toward[2]};
+    double axis[3] = {0, 0, 0}, u[3], v[3];
+
+    if (n == 1 || !(size > 0))
+        return;
+    axis[fabs(d[0]) > .5] = 1;
+    vec_cross(d, axis, u);
+    vec_unit(u);
+    vec_cross(d, u, v);
+    vec_unit(v);
+    for (int k = 0; k < 3; k++)
+        toward[k] =
+            (d[k] + size * (u[k] * at[0] + v[k] * at[1])) * (k == 2 ? hand : 1);
+    vec_unit(toward);
+}
+
+/* Returns the share of the light, DISTANCE away, that reaches HIT. A10: what is
+ * farther away than the light hides nothing. */
+static double reaches(const struct twin *twin, const struct twin_hit *hit,
+                      const struct glint_described_light *light,
+                      const double toward[3], double distance)
+{
+    const bool has_extent =
+        light->kind == GLINT_DESCRIBED_SUN || light->radius > 0;
+    const int n = has_extent ? twin->shadow_points : 1;
+    int reached = 0;
+
+    if (!twin->scene->has_shadows)
+        return 1;
+    for (int i = 0; i < n; i++) {
+        struct twin_ray ray = {.skip_object = hit->object,
+                               .skip_triangle = hit->triangle};
+
+        memcpy(ray.from, hit->place, sizeof ray.from);
+        memcpy(ray.toward, toward, sizeof ray.toward);
+        aim(twin->scene, light, ray.toward, distance, i, n);
+        reached += vec_dot(hit->normal, ray.toward) > 0 &&
+                   !twin_is_hidden(twin, &ray, distance);
+    }
+    return (double)reached / n;
+}
+
+/* ---------------------------------------------------------------- surfaces */
+
+static void texel_at(const struct twin_texels *t, const double uv[2],
+                     double rgb[3])
+{
+    const double x = uv[0] * t->width - 0.5;
+    const double y = (1 - uv[1]) * t->height - 0.5;
+    const double left = floor(x), top = floor(y);
+
+    rgb[0] = rgb[1] = rgb[2] = 0;
+    for (int k = 0; k < 4; k++) {
+        const double share =
+            (k & 1 ? x - left : 1 - x + left) * (k & 2 ? y - top : 1 - y + top);
+        /* Sides are powers of two: what is beyond repeats. */
+        const int i = (int)fmod(left + (k & 1), t->width);
+        const int j = (int)fmod(top + (k >> 1), t->height);
+        const float *texel =
+            t->rgb + 3 * ((ptrdiff_t)((j + t->height) % t->height) * t->width +
+                          (i + t->width) % t->width);
+
+        for (int c = 0; c < 3; c++)
+            rgb[c] += share * (double)texel[c];
+    }
+}
+
+/* Sets RGB to Phong's terms at HIT, seen along TOWARD. A7, A8. */
+static void light_of(const struct twin *twin, const struct twin_hit *hit,
+                     const double toward[3], double rgb[3])
+{
+    const struct glint_description *s = twin->scene;
+    const struct glint_described_material *m = &s->material[hit->material];
+    double colour[3] = {1, 1, 1};
+
+    if (m->texture >= 0)
+        texel_at(&twin->texels[m->texture], hit->uv, colour);
+    for (int c = 0; c < 3; c++) {
+        colour[c] *= m->colour[c];
+        rgb[c] = m->ambient * colour[c];
+    }
+    for (int i = 0; i < s->n_lights; i++) {
+        double l[3], light[3], facing, glint, share;
+        const double distance = light_from(&s->light[i], hit->place, l, light);
+
+        facing = vec_dot(hit->shading, l);
+        if (facing <= 0)
+            continue;
+        share = reaches(twin, hit, &s->light[i], l, distance);
+        /* R.V with R = 2 (N.L) N - L and V against the ray. */
+        glint = vec_dot(l, toward) - 2 * facing * vec_dot(hit->shading, toward);
+        glint = glint > 0 ? pow(glint, m->power) : 0;
+        for (int c = 0; c < 3; c++)
+            rgb[c] += share * light[c] *
+                      (m->diffuse * facing * colour[c] + m->specular * glint);
+    }
+}
+
+/* ------------------------------------------------------------ rays sent on */
+
+/* A12, Snell: turns D at a surface whose normal N points back; ETA is the index
+ * before over that behind. Returns false where all light is reflected. */
+static bool bend(const double d[3], const double n[3], double eta, double to[3])
+{
+    const double cosine = -vec_dot(d, n);
+    const double rest = 1 - eta * eta * (1 - cosine * cosine);
+
+    if (rest < 0)
+        return false;
+    for (int i = 0; i < 3; i++)
+        to[i] = eta * d[i] + (eta * cosine - sqrt(rest)) * n[i];
+    vec_unit(to);
+    return true;
+}
+
+/* A9: R - 2 (R.N) N. */
+static void mirror(const double d[3], const double n[3], double to[3])
+{
+    vec_add(d, -2 * vec_dot(d, n), n, to);
+}
+
+/* A ray on its way through things. */
+struct passing {
+    struct twin_ray ray;
+    double weight; /* of what it meets */
+    bool is_bent;  /* it no longer goes where the picture's ray goes */
+};
+
+/* Bends RAY at a surface, or mirrors it where no light passes; returns whether
+ * it is mirrored. */
+static bool bend_at(struct twin_ray *ray, const double normal[3], double eta)
+{
+    const double d[3] = {ray->toward[0], ray->toward[1], ray->toward[2]};
+
+    if (bend(d, normal, eta, ray->toward))
+        return false;
+    mirror(d, normal, ray->toward);
+    return true;
+}
+
+/* Takes P, which enters a ball at HIT, to where it leaves. */
+static void cross_ball(const struct twin *twin, const struct twin_hit *hit,
+                       double index, struct passing *p)
+{
+    const struct glint_described_object *o = &twin->scene->object[hit->object];
+    const double inward = -vec_dot(p->ray.toward, hit->normal);
+    double back[3];
+
+    vec_add(hit->place, 2 * inward * o->radius, p->ray.toward, p->ray.from);
+    vec_add(o->at, -1, p->ray.from, back);
+    vec_unit(back);
+    if (index != 1)
+        bend_at(&p->ray, back, index);
+}
+
+/* Takes P through the surface of HIT: a ball is left where the ray leaves it
+ * (A11), of other things each surface counts. */
+static void go_through(const struct twin *twin, const struct twin_hit *hit,
+                       struct passing *p)
+{
+    const struct glint_described_material *m =
+        &twin->scene->material[hit->material];
+    bool is_mirrored = false;
+
+    p->weight *= m->pass;
+    p->is_bent = p->is_bent || m->index != 1;
+    if (m->index != 1)
+        is_mirrored = bend_at(&p->ray, hit->shading,
+                              hit->inside ? m->index : 1 / m->index);
+    memcpy(p->ray.from, hit->place, sizeof p->ray.from);
+    p->ray.skip_object = hit->object;
+    p->ray.skip_triangle = hit->triangle;
+    if (twin->scene->object[hit->object].kind != GLINT_DESCRIBED_SPHERE)
+        return;
+    if (is_mirrored && hit->inside) /* such light never leaves a ball */
+        p->weight = 0;
+    else if (!is_mirrored && !hit->inside)
+        cross_ball(twin, hit, m->index, p);
+}
+
+static void add_light(struct twin_pixel *pixel, double share,
+                      const double rgb[3])
+{
+    for (int c = 0; c < 3; c++)
+        pixel->rgb[c] += (float)(share * rgb[c]);
+}
+
+/* Adds what HIT mirrors of RAY; of a picture behind, which is not what is
+ * beside it, nothing. */
+static void add_mirrored(const struct twin *twin, const struct twin_ray *ray,
+                         const struct twin_hit *hit, struct twin_pixel *pixel)
+{
+    struct twin_ray next = {.skip_object = hit->object,
+                            .skip_triangle = hit->triangle};
+    struct twin_hit met;
+    double rgb[3];
+
+    memcpy(next.from, hit->place, sizeof next.from);
+    mirror(ray->toward, hit->shading, next.toward);
+    if (twin_meet(twin, &next, HUGE_VAL, &met))
+        light_of(twin, &met, next.toward, rgb);
+    else
+        memcpy(rgb, twin->scene->background_colour, sizeof rgb);
+    add_light(pixel, twin->scene->material[hit->material].reflect, rgb);
+}
+
+/* Adds what is seen through HIT: surfaces behind each other, at most eight. */
+static void add_behind(const struct twin *twin, const struct twin_ray *ray,
+                       const struct twin_hit *hit, struct twin_pixel *pixel)
+{
+    const struct glint_description *s = twin->scene;
+    struct passing p = {*ray, 1, false};
+    struct twin_hit at = *hit;
+
+    for (int i = 0; i < 8 && s->material[at.material].pass > 0; i++) {
+        double rgb[3];
+
+        go_through(twin, &at, &p);
+        if (!twin_meet(twin, &p.ray, HUGE_VAL, &at)) {
+            if (s->background == GLINT_BEHIND_CAMERA && !p.is_bent)
+                pixel->cover -= (float)p.weight;
+            add_light(pixel, p.weight, s->background_colour);
+            return;
+        }
+        light_of(twin, &at, p.ray.toward, rgb);
+        add_light(pixel, p.weight, rgb);
+    }
+}
+
+/* ---------------------------------------------------------- primary rays */
+
+/* Returns the share of the light at HIT, on a catcher, that things hide. */
+static double shadow_at(const struct twin *twin, const struct twin_hit *hit)
+{
+    const struct glint_description *s = twin->scene;
+    double all = 0, hidden = 0;
+
+    for (int i = 0; i < s->n_lights; i++) {
+        double l[3], rgb[3], light;
+        const double distance = light_from(&s->light[i], hit->place, l, rgb);
+
+        light =
+            fmax(0, vec_dot(hit->normal, l)) * (rgb[0] + 2 * rgb[1] + rgb[2]);
+        all += light;
+        if (light > 0)
+            hidden +=
+                light * (1 - reaches(twin, hit, &s->light[i], l, distance));
+    }
+    return all > 0 ? hidden / all : 0;
+}
+
+/* Finds what RAY sees first, catchers among it. */
+static bool see_first(const struct twin *twin, const struct twin_ray *ray,
+                      struct twin_hit *hit)
+{
+    bool is_met = twin_meet(twin, ray, HUGE_VAL, hit);
+    struct twin_hit on;
+
+    for (int i = 0; i < twin->scene->n_objects; i++)
+        if (twin->scene->object[i].catcher > 0 &&
+            twin_meet_object(twin, i, ray, is_met ? hit->t : HUGE_VAL, &on)) {
+            *hit = on;
+            is_met = true;
+        }
+    return is_met;
+}
+
+struct twin_pixel twin_see(const struct twin *twin, const struct twin_ray *ray)
+{
+    const struct glint_description *s = twin->scene;
+    struct twin_pixel pixel = {{0, 0, 0}, 1};
+    struct twin_hit hit;
+    double rgb[3];
+
+    if (!see_first(twin, ray, &hit)) {
+        pixel.cover = s->background == GLINT_BEHIND_COLOUR;
+        add_light(&pixel, 1, s->background_colour);
+        return pixel;
+    }
+    if (s->object[hit.object].catcher > 0) {
+        pixel.cover =
+            (float)(s->object[hit.object].catcher * shadow_at(twin, &hit));
+        return pixel;
+    }
+    light_of(twin, &hit, ray->toward, rgb);
+    add_light(&pixel, 1, rgb);
+    if (s->material[hit.material].reflect > 0)
+        add_mirrored(twin, ray, &hit, &pixel);
+    if (s->material[hit.material].pass > 0)
+        add_behind(twin, ray, &hit, &pixel);
+    return pixel;
+}
+
+/* ---------------------------------------------------------------- pictures */
+
+struct drawing {
+    const struct twin *twin;
+    const struct twin_view *view;
+    struct twin_pixel *pixels;
+};
+
+static void draw_row(void *ctx, int y, int worker)
+{
+    const struct drawing *d = ctx;
+    const int n = d->view->samples;
+    /* Corners of pixels are what is sampled there. */
+    const double first =
+        d->twin->scene->camera.field == GLINT_DESCRIBED_CORNERS ? -0.5 : 0;
+
+    (void)worker;
+    for (int x = 0; x < d->view->width; x++) {
+        struct twin_pixel sum = {{0, 0, 0}, 0};
+
+        for (int k = 0; k < n * n; k++) {
+            struct twin_pixel one;
+            struct twin_ray ray;
+            const int row = k / n;
+
+            twin_camera_ray(d->twin, d->view, x + first + (k % n + 0.5) / n,
+                            y + first + (row + 0.5) / n, &ray);
+            one = twin_see(d->twin, &ray);
+            for (int c = 0; c < 3; c++)
+                sum.rgb[c] += one.rgb[c] / (float)(n * n);
+            sum.cover += one.cover / (float)(n * n);
+        }
+        d->pixels[(ptrdiff_t)y * d->view->width + x] = sum;
+    }
+}
+
+void twin_render(const struct twin *twin, const struct twin_view *view,
+                 struct glint_workers *workers, struct twin_pixel *pixels)
+{
+    struct drawing drawing = {twin, view, pixels};
+
+    glint_workers_run(workers, view->height, draw_row, &drawing);
+}

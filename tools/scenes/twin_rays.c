@@ -1,0 +1,237 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Where rays meet things. */
+#include "scenes/twin.h"
+
+#include "glint/view.h"
+#include "scenes/vec.h"
+
+/* Parts of its distance that a ray from a mesh's triangle must go before it may
+ * meet another of the mesh: neighbours share corners. */
+#define ACNE 1e-9
+
+/* ------------------------------------------------------ spheres and planes */
+
+/* A15: with L from the ray to the middle, s = L.d; q^2 = |L - s d|^2 <= r^2. */
+static bool meet_sphere(const struct glint_described_object *o,
+                        const struct twin_ray *ray, double most,
+                        struct twin_hit *hit)
+{
+    double l[3], q[3], s, half;
+
+    vec_add(o->at, -1, ray->from, l);
+    s = vec_dot(l, ray->toward);
+    vec_add(l, -s, ray->toward, q);
+    half = o->radius * o->radius - vec_dot(q, q);
+    if (half < 0)
+        return false;
+    half = sqrt(half);
+    hit->inside = vec_dot(l, l) < o->radius * o->radius;
+    hit->t = hit->inside ? s + half : s - half;
+    if (hit->t <= 0 || hit->t >= most)
+        return false;
+    vec_add(ray->from, hit->t, ray->toward, hit->place);
+    vec_add(hit->place, -1, o->at, hit->normal);
+    vec_unit(hit->normal);
+    return true;
+}
+
+/* U goes round the y axis of a ball, 1/2 where a camera that is not turned sees
+ * its middle; V up from its lowest point. */
+static void place_on_ball(const struct glint_description *scene,
+                          const struct glint_described_object *o,
+                          struct twin_hit *hit)
+{
+    double n[3];
+
+    vec_turn(o->turn, -1, hit->normal, n);
+    hit->uv[0] =
+        .5 + atan2(n[0], scene->left_handed ? -n[2] : n[2]) / (2 * GLINT_PI);
+    hit->uv[1] = 1 - acos(fmax(-1, fmin(1, n[1]))) / GLINT_PI;
+}
+
+/* On a plane U and V are units of the scene, along x and away, before it is
+ * turned from lying flat. */
+static void place_on_plane(const struct glint_description *scene,
+                           const struct glint_described_object *o,
+                           struct twin_hit *hit)
+{
+    double upright[4], away[3], flat[3];
+
+    glint_described_upright(o->normal, upright);
+    vec_add(hit->place, -1, o->at, away);
+    vec_turn(o->turn, -1, away, flat);
+    vec_turn(upright, -1, flat, away);
+    hit->uv[0] = away[0];
+    hit->uv[1] = scene->left_handed ? away[2] : -away[2];
+}
+
+static bool meet_plane(const struct glint_described_object *o,
+                       const struct twin_ray *ray, double most,
+                       struct twin_hit *hit)
+{
+    double away[3], slope;
+
+    vec_turn(o->turn, 1, o->normal, hit->normal);
+    slope = vec_dot(hit->normal, ray->toward);
+    vec_add(o->at, -1, ray->from, away);
+    if (slope == 0)
+        return false;
+    hit->t = vec_dot(hit->normal, away) / slope;
+    if (!(hit->t > 0) || hit->t >= most)
+        return false;
+    vec_add(ray->from, hit->t, ray->toward, hit->place);
+    hit->inside = slope > 0;
+    return true;
+}
+
+/* ------------------------------------------------------------------ meshes */
+
+/* Sets uv and normals of a hit whose uv are the shares of two corners. */
+static void finish_triangle(const struct twin *twin,
+                            const struct glint_described_object *o,
+                            struct twin_hit *hit)
+{
+    const struct glint_described_triangle *t =
+        &twin->scene->triangle[hit->triangle];
+    const double share[3] = {1 - hit->uv[0] - hit->uv[1], hit->uv[0],
+                             hit->uv[1]};
+    double a[3], b[3], n[3], smooth[3] = {0, 0, 0};
+
+    vec_add(t->place[1], -1, t->place[0], a);
+    vec_add(t->place[2], -1, t->place[0], b);
+    vec_cross(a, b, n);
+    vec_unit(n);
+    hit->uv[0] = hit->uv[1] = 0;
+    for (int k = 0; k < 3; k++) {
+        if (t->has_normals)
+            vec_add(smooth, share[k], t->normal[k], smooth);
+        for (int i = 0; t->has_uv && i < 2; i++)
+            hit->uv[i] += share[k] * t->uv[k][i];
+    }
+    /* The normals of the file say what is outside, not the corners' order. */
+    if (!t->has_normals || !(vec_unit(smooth) > 0))
+        for (int i = 0; i < 3; i++)
+            smooth[i] = n[i];
+    vec_turn(o->turn, 1, n, hit->normal);
+    vec_turn(o->turn, 1, smooth, hit->shading);
+    hit->material = t->material;
+}
+
+static bool meet_mesh(const struct twin *twin, int object,
+                      const struct twin_ray *ray, double most,
+                      struct twin_hit *hit)
+{
+    const struct glint_described_object *o = &twin->scene->object[object];
+    struct twin_ray local = *ray;
+    double away[3];
+
+    vec_add(ray->from, -1, o->at, away);
+    vec_turn(o->turn, -1, away, local.from);
+    vec_turn(o->turn, -1, ray->toward, local.toward);
+    if (ray->skip_object == object) {
+        const double step = ACNE * (1 + sqrt(vec_dot(away, away)));
+
+        vec_add(local.from, step, local.toward, local.from);
+    } else {
+        local.skip_triangle = -1;
+    }
+    if (!twin_meet_mesh(twin, object, &local, most, hit))
+        return false;
+    vec_add(ray->from, hit->t, ray->toward, hit->place);
+    finish_triangle(twin, o, hit);
+    return true;
+}
+
+/* --------------------------------------------------------------------- all */
+
+bool twin_meet_object(const struct twin *twin, int object,
+                      const struct twin_ray *ray, double most,
+                      struct twin_hit *hit)
+{
+    const struct glint_description *s = twin->scene;
+    const struct glint_described_object *o = &s->object[object];
+    const bool is_mesh = twin->root[object] >= 0;
+
+    *hit = (struct twin_hit){
+        .object = object, .triangle = -1, .material = o->material};
+    if (is_mesh) {
+        if (!meet_mesh(twin, object, ray, most, hit))
+            return false;
+    } else {
+        const bool is_ball = o->kind == GLINT_DESCRIBED_SPHERE;
+
+        if (ray->skip_object == object ||
+            !(is_ball ? meet_sphere(o, ray, most, hit)
+                      : meet_plane(o, ray, most, hit)))
+            return false;
+        if (o->material >= 0 && s->material[o->material].texture >= 0)
+            (is_ball ? place_on_ball : place_on_plane)(s, o, hit);
+        for (int i = 0; i < 3; i++)
+            hit->shading[i] = hit->normal[i];
+    }
+    if (vec_dot(hit->shading, hit->normal) < 0)
+        for (int i = 0; i < 3; i++)
+            hit->shading[i] = -hit->shading[i];
+    if (vec_dot(hit->normal, ray->toward) > 0)
+        for (int i = 0; i < 3; i++) {
+            hit->normal[i] = -hit->normal[i];
+            hit->shading[i] = -hit->shading[i];
+        }
+    return true;
+}
+
+bool twin_meet(const struct twin *twin, const struct twin_ray *ray, double most,
+               struct twin_hit *hit)
+{
+    bool found = false;
+
+    for (int i = 0; i < twin->scene->n_objects; i++) {
+        struct twin_hit next;
+
+        if (twin->scene->object[i].catcher > 0 ||
+            !twin_meet_object(twin, i, ray, found ? hit->t : most, &next))
+            continue;
+        *hit = next;
+        found = true;
+    }
+    return found;
+}
+
+bool twin_is_hidden(const struct twin *twin, const struct twin_ray *ray,
+                    double most)
+{
+    struct twin_hit hit;
+
+    for (int i = 0; i < twin->scene->n_objects; i++)
+        if (!(twin->scene->object[i].catcher > 0) &&
+            twin_meet_object(twin, i, ray, most, &hit))
+            return true;
+    return false;
+}
+
+void twin_camera_ray(const struct twin *twin, const struct twin_view *view,
+                     double x, double y, struct twin_ray *ray)
+{
+    const struct glint_described_camera *c = &twin->scene->camera;
+    const double w = view->width, h = view->height;
+    double right, up;
+
+    if (c->field == GLINT_DESCRIBED_CORNERS) {
+        right = w > 1 ? 1.6 * x / (w - 1) - 0.8 : 0;
+        up = h > 1 ? 0.45 - 0.9 * y / (h - 1) : 0;
+    } else {
+        const double focal = c->field == GLINT_DESCRIBED_LENS
+                                 ? view->focal_px
+                                 : w / 2 / tan(c->fov_deg * GLINT_PI / 360);
+
+        right = (x - w / 2) / focal;
+        up = (h / 2 - y) / focal;
+    }
+    *ray = (struct twin_ray){.skip_object = -1, .skip_triangle = -1};
+    for (int i = 0; i < 3; i++) {
+        ray->from[i] = c->at[i];
+        ray->toward[i] = c->forward[i] + right * c->right[i] + up * c->up[i];
+    }
+    vec_unit(ray->toward);
+}

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Vectors of three doubles. */
+#ifndef GLINT_TOOLS_SCENES_VEC_H
+#define GLINT_TOOLS_SCENES_VEC_H
+
+#include <math.h>
+
+static inline double vec_dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline void vec_cross(const double a[3], const double b[3], double c[3])
+{
+    const double x = a[1] * b[2] - a[2] * b[1];
+    const double y = a[2] * b[0] - a[0] * b[2];
+
+    c[2] = a[0] * b[1] - a[1] * b[0];
+    c[0] = x;
+    c[1] = y;
+}
+
+/* Sets C to A + S B. */
+static inline void vec_add(const double a[3], double s, const double b[3],
+                           double c[3])
+{
+    for (int i = 0; i < 3; i++)
+        c[i] = a[i] + s * b[i];
+}
+
+/* Divides A by its length, which it returns; 0 is left as it is. */
+static inline double vec_unit(double a[3])
+{
+    const double length = sqrt(vec_dot(a, a));
+
+    for (int i = 0; length > 0 && i < 3; i++)
+        a[i] /= length;
+    return length;
+}
+
+/* Turns A by the unit quaternion Q, or with SIGN -1 back. */
+static inline void vec_turn(const double q[4], double sign, const double a[3],
+                            double b[3])
+{
+    const double v[3] = {sign * q[1], sign * q[2], sign * q[3]};
+    double t[3], u[3];
+
+    vec_cross(v, a, t);
+    vec_cross(v, t, u);
+    for (int i = 0; i < 3; i++)
+        b[i] = a[i] + 2 * (q[0] * t[i] + u[i]);
+}
+
+#endif
