@@ -145,11 +145,11 @@ static int take_any(struct tool *tool, struct render_scene *r, int c)
 {
     int code = compositor_option(tool, &r->compositor, c, optarg);
 
-    if (code == -1)
+    if (code == -1) {
         r->is_frames = r->is_frames || c == OPT_POSE || c == OPT_LENS;
-    if (code == -1)
         r->is_lit =
             r->is_lit || (c != OPT_POSE && c != OPT_LENS && c != OPT_SHADING);
+    }
     if (code == -2)
         code = take_moving(tool, r, c);
     return code == -2 ? take(tool, r, c) : code;

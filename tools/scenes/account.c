@@ -98,12 +98,13 @@ double scene_cost_minsn(const struct scene_account *account)
 void scene_cost_json(const struct scene_frame *frame, size_t bytes, FILE *to)
 {
     struct scene_account account;
-    const int64_t *const n = account.all.count;
 
     fprintf(to, "\"objects\": %u, \"drawn\": %d, \"triangles\": %d, ",
             frame->model->header->n_objects, frame->stats.objects,
             frame->stats.triangles);
     if (scene_account_make(&account, frame) == GLINT_OK) {
+        const int64_t *const n = account.all.count;
+
         fprintf(to,
                 "\"refs\": %" PRId64 ", \"shaded_px\": %" PRId64
                 ", \"samples\": %" PRId64 ", \"shadow_rays\": %" PRId64

@@ -63,8 +63,6 @@ static inline void set_small(const struct glint_scene *s, int n,
                              const struct glint_line line[3], int32_t x_q8,
                              int32_t y_q8, struct small *small)
 {
-    const int8_t(*const sample_q8)[2] = s->sample_q8;
-
     for (int i = 0; i < 3; i++) {
         const int32_t across = (int32_t)line[i].across;
         const int32_t down = (int32_t)line[i].down;
@@ -72,7 +70,7 @@ static inline void set_small(const struct glint_scene *s, int n,
 
         for (int k = 0; k < n; k++) {
             small->off[i][k] =
-                across * sample_q8[k][0] + down * sample_q8[k][1];
+                across * glint_sample(s, k, 0) + down * glint_sample(s, k, 1);
             most = q_larger(most, small->off[i][k]);
         }
         for (int k = 0; k < n; k++)
@@ -82,9 +80,10 @@ static inline void set_small(const struct glint_scene *s, int n,
         small->at[i] = (int32_t)glint_line_at(&line[i], x_q8, y_q8) + most;
     }
     for (int k = 0; k < n; k++)
-        small->deeper[k] = (int32_t)((small->depth.across * sample_q8[k][0] +
-                                      small->depth.down * sample_q8[k][1]) >>
-                                     DEPTH_BITS);
+        small->deeper[k] =
+            (int32_t)((small->depth.across * glint_sample(s, k, 0) +
+                       small->depth.down * glint_sample(s, k, 1)) >>
+                      DEPTH_BITS);
 }
 
 /* Draws N samples of a pixel, whose middle is at depth Z, AT its lines. */
