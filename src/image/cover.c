@@ -32,46 +32,66 @@ static uint8_t *pairs_of(const struct stretch *s, int row)
 /* Sets YCC to Y', Cb and Cr of every pixel of a row. */
 static void spread(const struct stretch *s, int row, int16_t *const ycc_q7[3])
 {
-    const uint8_t *pairs = pairs_of(s, row);
+    const uint8_t *restrict pairs = pairs_of(s, row);
 
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < (s->layout->log2_x ? 1 : 3); c++) {
+        const uint8_t *restrict code = s->codes->sample[c][row];
+        int16_t *restrict to_q7 = ycc_q7[c];
+
         for (int i = 0; i < s->n_x; i++)
-            ycc_q7[c][i] = (int16_t)(128 * (c && s->layout->log2_x
-                                                ? pairs[(i & ~1) + c - 1]
-                                                : s->codes->sample[c][row][i]));
+            to_q7[i] = (int16_t)(128 * code[i]);
+    }
+    for (int c = 1; c < 3 && s->layout->log2_x; c++) {
+        int16_t *restrict to_q7 = ycc_q7[c];
+
+        for (int i = 0; i < (s->n_x + 1) >> 1; i++)
+            to_q7[2 * i] = to_q7[2 * i + 1] =
+                (int16_t)(128 * pairs[2 * i + c - 1]);
+    }
 }
 
-static uint8_t rounded(int32_t sum_q7, int log2)
+static inline uint8_t rounded(int32_t sum_q7, int log2)
 {
-    return (uint8_t)q_clamp_sat(q_shift(sum_q7, 7 + log2), 0, 255);
+    return (uint8_t)q_smaller(
+        q_larger((sum_q7 + (1 << (6 + log2))) >> (7 + log2), 0), 255);
 }
 
 /* Adds the chroma of a row to the sums of its pairs; if the width is odd, the
  * last pixel counts twice. */
 static void add_pairs(struct stretch *s, int16_t *const ycc_q7[3])
 {
-    for (int i = 0; i < s->n_x; i += 2)
-        for (int k = 0; k < 2; k++) {
-            const int16_t *at_q7 = ycc_q7[1 + k] + i;
+    const int end = s->n_x & ~1;
 
-            s->sum_q7[i + k] += at_q7[0] + at_q7[i + 1 < s->n_x];
-        }
+    for (int k = 0; k < 2; k++) {
+        const int16_t *restrict at_q7 = ycc_q7[1 + k];
+        int32_t *restrict sum_q7 = s->sum_q7 + k;
+
+        for (int i = 0; i < end; i += 2)
+            sum_q7[i] += at_q7[i] + at_q7[i + 1];
+        if (end < s->n_x)
+            sum_q7[end] += 2 * at_q7[end];
+    }
 }
 
 /* Writes the mean chroma of pairs, over both rows if they share it. */
 static void put_pairs(struct stretch *s, int row)
 {
-    uint8_t *pairs = pairs_of(s, row);
+    const int log2 = s->layout->log2_y && row ? 2 : 1;
+    uint8_t *restrict pairs = pairs_of(s, row);
 
     for (int i = 0; i < ((s->n_x + 1) & ~1); i++)
-        pairs[i] = rounded(s->sum_q7[i], s->layout->log2_y && row ? 2 : 1);
+        pairs[i] = rounded(s->sum_q7[i], log2);
 }
 
 static void put_row(const struct stretch *s, int row, int16_t *const ycc_q7[3])
 {
-    for (int c = 0; c < (s->layout->log2_x ? 1 : 3); c++)
+    for (int c = 0; c < (s->layout->log2_x ? 1 : 3); c++) {
+        const int16_t *restrict from_q7 = ycc_q7[c];
+        uint8_t *restrict code = s->codes->sample[c][row];
+
         for (int i = 0; i < s->n_x; i++)
-            s->codes->sample[c][row][i] = rounded(ycc_q7[c][i], 0);
+            code[i] = rounded(from_q7[i], 0);
+    }
 }
 
 static void cover_ycc(struct stretch *s, const struct glint_mix *mix,
