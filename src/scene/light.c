@@ -163,39 +163,20 @@ void glint_scene_point(struct glint_scene_ray *ray, int32_t t, int32_t radius,
     glint_unit(to, ray->toward_q30);
 }
 
-/* Where rays from SURFACE start: off that of a mesh. */
-static void leave(const struct glint_scene *scene,
-                  const struct glint_met_surface *surface, int32_t at[3])
-{
-    const int is_mesh =
-        scene->placed[surface->object].object->kind == GLINT_OBJECT_MESH;
-
-    for (int k = 0; k < 3; k++)
-        at[k] =
-            surface->place[k] +
-            (is_mesh ? q_mul(surface->face_q30[k], GLINT_SCENE_LIFT, 30) : 0);
-}
-
-int32_t glint_scene_reaches(const struct glint_scene *scene,
-                            const struct glint_met_surface *surface,
-                            const struct glint_lit *lit)
+int32_t glint_rays_reach(const struct glint_scene *scene,
+                         const struct glint_met_surface *surface,
+                         const struct glint_lit *lit)
 {
     const int n = lit->light->radius ? scene->cfg.shadow_points : 1;
     int reached = 0;
 
     if (!scene->model.header->shadow)
         return GLINT_SCENE_ONE_Q15;
-    if (lit->shadow && lit->shadow->is_ready) {
-        int32_t at[3];
-
-        leave(scene, surface, at);
-        return glint_shadow_reaches(scene, lit->shadow, surface, at);
-    }
     for (int i = 0; i < n; i++) {
         struct glint_scene_ray to = {.at = {0}};
         int32_t level_q15[3], distance;
 
-        leave(scene, surface, to.at);
+        glint_scene_leave(scene, surface, to.at);
         distance =
             glint_scene_light_at(scene, lit, to.at, to.toward_q30, level_q15);
         glint_scene_point(&to, distance, lit->light->radius, i, n);

@@ -114,23 +114,44 @@ static int64_t span_of(struct glint_scene *s, uint32_t object)
     return n;
 }
 
-static void list(struct glint_scene *s, int put)
+/* Returns whether a triangle turns its front to the camera, or may. */
+static int is_facing(const struct glint_scene *s, uint32_t object,
+                     const struct glint_scene_triangle *t)
+{
+    const struct glint_corner *a = corner_of(s, object, t->vertex[0]);
+    const struct glint_corner *b = corner_of(s, object, t->vertex[1]);
+    const struct glint_corner *c = corner_of(s, object, t->vertex[2]);
+
+    return a->w != 1 || b->w != 1 || c->w != 1 ||
+           (int64_t)(b->x - a->x) * (c->y - a->y) >
+               (int64_t)(b->y - a->y) * (c->x - a->x);
+}
+
+enum { BOTH_SIDES = -1 };
+
+/* Counts the triangles of all meshes, or puts into the lists those that face
+ * the camera, or those that do not. */
+static void list(struct glint_scene *s, int facing)
 {
     for (uint32_t k = 0; k < s->model.header->n_objects; k++) {
+        const struct glint_scene_triangle *t;
         const struct glint_scene_mesh *m;
 
         if (s->placed[k].object->kind != GLINT_OBJECT_MESH ||
             !s->placed[k].is_seen)
             continue;
         m = glint_mesh_of(s, k);
-        for (uint32_t i = 0; i < m->n_triangles; i++) {
+        t = glint_mesh_triangle(s, m, 0);
+        for (uint32_t i = 0; i < m->n_triangles; i++, t++) {
+            struct glint_box b;
             int is_small;
-            const struct glint_box b =
-                box_of(s, k, glint_mesh_triangle(s, m, i), &is_small);
 
+            if (facing != BOTH_SIDES && facing != is_facing(s, k, t))
+                continue;
+            b = box_of(s, k, t, &is_small);
             if (glint_box_empty(b))
                 continue;
-            if (put)
+            if (facing != BOTH_SIDES)
                 glint_bins_put(&s->bins, b, (int32_t)glint_id(k, i));
             else
                 glint_bins_count(&s->bins, b);
@@ -161,9 +182,10 @@ void glint_mesh_project(struct glint_scene *s, struct glint_scene_stats *stats)
         stats->triangles += (int)glint_mesh_of(s, k)->n_triangles;
     }
     stats->need_refs = q_clamp_sat(need, 0, INT32_MAX);
-    list(s, 0);
+    list(s, BOTH_SIDES);
     glint_bins_sum(&s->bins);
-    list(s, 1);
+    list(s, 1); /* these hide most of the others */
+    list(s, 0);
     glint_bins_close(&s->bins);
     s->has_triangles = stats->refs > 0;
 }
@@ -349,7 +371,8 @@ void glint_mesh_look(struct glint_scene_worker *w, uint32_t id)
         glint_box_cut(w->touched, box_of(s, object, t, &is_small));
     struct glint_line line[3];
 
-    if (glint_box_empty(b) || !lines_of(s, object, t, line))
+    if (glint_box_empty(b) || (is_small && glint_mesh_is_hidden(w, id, t, b)) ||
+        !lines_of(s, object, t, line))
         return;
     if (!is_small || !glint_mesh_look_small(w, id, t, line, b))
         look_at_large(w, id, t, line, b);

@@ -75,7 +75,13 @@ static inline int64_t glint_line_at(const struct glint_line *l, int64_t x,
     return l->across * x + l->down * y + l->at;
 }
 
-/* frame/mesh_small.c: draws triangle T, ID, whose corners are all in the
+/* frame/mesh_small.c: returns whether triangle T, ID, small as below, is
+ * certain not to be seen at samples of B; at least one pixel. */
+int glint_mesh_is_hidden(const struct glint_scene_worker *w, uint32_t id,
+                         const struct glint_scene_triangle *t,
+                         struct glint_box b);
+
+/* Draws triangle T, ID, whose corners are all in the
  * picture or near it and whose lines are below 2^30 at places of B, in 32 bits;
  * returns 0 if its depths need more. */
 int glint_mesh_look_small(struct glint_scene_worker *w, uint32_t id,

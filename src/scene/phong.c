@@ -102,10 +102,10 @@ static void add_light(const struct glint_scene *s,
     }
 }
 
-void glint_scene_phong(const struct glint_scene *scene,
-                       const struct glint_scene_ray *ray,
-                       const struct glint_met_surface *surface,
-                       int32_t weight_q15, int32_t rgb_q15[3])
+static inline void phong(const struct glint_scene *scene,
+                         const struct glint_scene_ray *ray,
+                         const struct glint_met_surface *surface,
+                         int32_t weight_q15, int32_t rgb_q15[3])
 {
     const struct glint_scene_material *m = surface->material;
     int32_t colour_q15[3];
@@ -119,6 +119,14 @@ void glint_scene_phong(const struct glint_scene *scene,
     for (uint32_t i = 0; i < scene->model.header->n_lights; i++)
         add_light(scene, ray, surface, &scene->lit[i], colour_q15, weight_q15,
                   rgb_q15);
+}
+
+void glint_scene_phong(const struct glint_scene *scene,
+                       const struct glint_scene_ray *ray,
+                       const struct glint_met_surface *surface,
+                       int32_t weight_q15, int32_t rgb_q15[3])
+{
+    phong(scene, ray, surface, weight_q15, rgb_q15);
 }
 
 /* Of a plane that only takes shadows: how much of all light that lights would
@@ -161,16 +169,15 @@ void glint_scene_shade(const struct glint_scene *scene,
                        struct glint_met_shade *shade)
 {
     const struct glint_scene_material *m = surface->material;
-    const int32_t catcher_q15 =
-        scene->placed[surface->object].object->catcher_q15;
+    const struct glint_placed *p = &scene->placed[surface->object];
 
     *shade = (struct glint_met_shade){{0, 0, 0}, GLINT_COVER_ALL};
-    if (catcher_q15) {
-        shade->cover_q8 =
-            q_smaller(caught_q8(scene, surface, catcher_q15), GLINT_COVER_ALL);
+    if (scene->has_catchers && p->is_catcher) {
+        shade->cover_q8 = q_smaller(
+            caught_q8(scene, surface, p->object->catcher_q15), GLINT_COVER_ALL);
         return;
     }
-    glint_scene_phong(scene, ray, surface, GLINT_SCENE_ONE_Q15, shade->rgb_q15);
+    phong(scene, ray, surface, GLINT_SCENE_ONE_Q15, shade->rgb_q15);
     if (m->reflect_q15 || m->pass_q15)
         scene->cfg.parts.bounces->follow(scene, ray, surface, shade);
 }

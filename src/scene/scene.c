@@ -96,6 +96,7 @@ static void carve_shadows(struct glint_scene *s, struct glint_arena *a)
         if (s->lit)
             s->lit[i].shadow = m;
         m = m ? m : &measured;
+        m->light = (int)i;
         m->is_ready = 0;
         m->max_refs = (int)n_refs;
         m->vertex = glint_arena_take(a, n_vertices, sizeof *m->vertex);
@@ -220,6 +221,7 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
         return GLINT_E_MEMORY;
     s = carve(&arena, cfg, model);
     s->view = view;
+    s->has_split = s->has_catchers = 0;
     s->sample_q8 = glint_scene_samples(cfg->edge_samples);
     if (s->curve)
         cfg->parts.textures->prepare(s->curve);
@@ -236,6 +238,8 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
                         model->material[o->material].pass_q15,
             .is_catcher = o->catcher_q15 > 0,
             .first_vertex = first};
+        s->has_split |= s->placed[i].is_split;
+        s->has_catchers |= s->placed[i].is_catcher;
         if (o->kind == GLINT_OBJECT_MESH)
             first += model->mesh[o->mesh].n_vertices;
         if (glint_scene_set_pose(s, (int)i, o->at, o->turn_q30) != GLINT_OK)

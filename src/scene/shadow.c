@@ -14,275 +14,11 @@
  * larger as they lean between the top of a thing and the lowest place that the
  * grid answers for. */
 #include "base/divide.h"
+#include "scene/shadow_grid.h"
 #include "scene/mesh.h"
 
-enum {
-    CELLS_LOG2 = GLINT_SHADOW_CELLS_LOG2,
-    CELLS = 1 << CELLS_LOG2,
-    SLACK = 4, /* steps, for rounding */
-    /* in place of a cell: nothing is above; the grid does not answer */
-    NONE = -1,
-    BEYOND = -2
-};
-
-static int throws(const struct glint_placed *p)
-{
-    return p->is_shown && p->object->kind != GLINT_OBJECT_PLANE;
-}
-
-/* ------------------------------------------------------------------ extents */
-
-static void grow(struct glint_shadow *shadow, const int32_t at[3],
-                 int32_t reach)
-{
-    for (int k = 0; k < 3; k++) {
-        shadow->lo[k] = q_smaller(shadow->lo[k], at[k] - reach);
-        shadow->hi[k] = q_larger(shadow->hi[k], at[k] + reach);
-    }
-}
-
-/* Sets the box of all that throws shadows; returns 0 if nothing does. */
-static int enclose(const struct glint_scene *s, struct glint_shadow *shadow)
-{
-    for (int k = 0; k < 3; k++) {
-        shadow->lo[k] = INT32_MAX;
-        shadow->hi[k] = INT32_MIN;
-    }
-    for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
-        const struct glint_placed *p = &s->placed[i];
-        int32_t at[3];
-
-        if (!throws(p))
-            continue;
-        v3_turn(&shadow->turn, p->centre, at);
-        grow(shadow, at, p->reach + SLACK);
-    }
-    return shadow->lo[0] <= shadow->hi[0];
-}
-
-/* Returns how far rays lean over a height, below 2^32. */
-static int64_t lean_over(const struct glint_shadow *shadow, int64_t height)
-{
-    return q_shift(height * shadow->lean_q30, 30);
-}
-
-/* Makes room for rays that lean: the grid answers for places as far below
- * things as these are large. */
-static void widen(struct glint_shadow *shadow)
-{
-    const int32_t side =
-        q_larger(shadow->hi[0] - shadow->lo[0], shadow->hi[1] - shadow->lo[1]);
-    int64_t lean;
-
-    shadow->lowest = -GLINT_FAR;
-    if (shadow->lean_q30 == 0)
-        return;
-    shadow->lowest = q_larger(shadow->lo[2] - side, -GLINT_FAR);
-    lean = lean_over(shadow, (int64_t)shadow->hi[2] - shadow->lowest) + SLACK;
-    for (int k = 0; k < 2; k++) {
-        shadow->lo[k] =
-            q_clamp_sat(shadow->lo[k] - lean, -GLINT_FAR, GLINT_FAR);
-        shadow->hi[k] =
-            q_clamp_sat(shadow->hi[k] + lean, -GLINT_FAR, GLINT_FAR);
-    }
-}
-
-/* ------------------------------------------------------------------- lists */
-
-/* Returns where X, within +-2^33, is along AXIS of the grid, in 256ths of a
- * cell, which is SLACK steps at least; within +-2^15. */
-static int32_t across_q8(const struct glint_shadow *shadow, int64_t x, int axis)
-{
-    return q_clamp_sat((x - shadow->lo[axis]) * shadow->cells_q32[axis] >> 24,
-                       INT16_MIN, INT16_MAX);
-}
-
-/* Returns the cells of a thing. */
-static struct glint_box cells_of(const struct glint_shadow_thing *t)
-{
-    return glint_box_cut((struct glint_box){0, 0, CELLS, CELLS},
-                         (struct glint_box){t->lo[0] >> 8, t->lo[1] >> 8,
-                                            (t->hi[0] >> 8) + 1,
-                                            (t->hi[1] >> 8) + 1});
-}
-
-/* Sets T to what a thing within LO .. HI can shadow. */
-static void set_thing(const struct glint_shadow *shadow, const int32_t lo[3],
-                      const int32_t hi[3], uint32_t id,
-                      struct glint_shadow_thing *t)
-{
-    const int64_t lean =
-        SLACK + (shadow->lean_q30
-                     ? lean_over(shadow, (int64_t)hi[2] - shadow->lowest)
-                     : 0);
-
-    t->id = id;
-    t->top = hi[2];
-    for (int k = 0; k < 2; k++) {
-        t->lo[k] = (int16_t)across_q8(shadow, lo[k] - lean, k);
-        t->hi[k] = (int16_t)across_q8(shadow, hi[k] + lean, k);
-    }
-}
-
-/* Sets the things of mesh I from T on; returns how many. */
-static int set_triangles(const struct glint_scene *s,
-                         const struct glint_shadow *shadow, uint32_t i,
-                         struct glint_shadow_thing *thing)
-{
-    const struct glint_scene_mesh *mesh = glint_mesh_of(s, i);
-    const struct glint_scene_triangle *t = glint_mesh_triangle(s, mesh, 0);
-    int32_t(*const at)[3] = shadow->vertex + s->placed[i].first_vertex;
-
-    for (uint32_t n = 0; n < mesh->n_triangles; n++, t++) {
-        int32_t lo[3], hi[3];
-
-        for (int k = 0; k < 3; k++) {
-            const int32_t a = at[t->vertex[0]][k], b = at[t->vertex[1]][k];
-            const int32_t c = at[t->vertex[2]][k];
-
-            lo[k] = q_smaller(a, q_smaller(b, c));
-            hi[k] = q_larger(a, q_larger(b, c));
-        }
-        set_thing(shadow, lo, hi, glint_id(i, n), thing++);
-    }
-    return (int)mesh->n_triangles;
-}
-
-/* Sets all things; returns how many entries they have in all cells. */
-static int64_t set_things(const struct glint_scene *s,
-                          struct glint_shadow *shadow)
-{
-    int64_t n = 0;
-
-    shadow->n_things = 0;
-    for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
-        const struct glint_placed *p = &s->placed[i];
-        struct glint_shadow_thing *t = &shadow->thing[shadow->n_things];
-        int32_t at[3], lo[3], hi[3];
-
-        if (!throws(p))
-            continue;
-        if (p->object->kind == GLINT_OBJECT_MESH) {
-            shadow->n_things += set_triangles(s, shadow, i, t);
-            continue;
-        }
-        v3_turn(&shadow->turn, p->at, at);
-        for (int k = 0; k < 3; k++) {
-            lo[k] = at[k] - p->radius;
-            hi[k] = at[k] + p->radius;
-        }
-        set_thing(shadow, lo, hi, glint_id(i, 0), t);
-        shadow->n_things++;
-    }
-    for (int i = 0; i < shadow->n_things; i++) {
-        const struct glint_box b = cells_of(&shadow->thing[i]);
-
-        if (!glint_box_empty(b))
-            n += (int64_t)(b.x1 - b.x0) * (b.y1 - b.y0);
-    }
-    return n;
-}
-
-static void list(struct glint_shadow *shadow)
-{
-    glint_bins_open(&shadow->bins);
-    for (int i = 0; i < shadow->n_things; i++) {
-        const struct glint_box b = cells_of(&shadow->thing[i]);
-
-        if (!glint_box_empty(b))
-            glint_bins_count(&shadow->bins, b);
-    }
-    glint_bins_sum(&shadow->bins);
-    for (int i = 0; i < shadow->n_things; i++) {
-        const struct glint_box b = cells_of(&shadow->thing[i]);
-
-        for (int y = b.y0; y < b.y1; y++)
-            for (int x = b.x0; x < b.x1; x++)
-                shadow->bins.ref[shadow->bins.start[y * CELLS + x]++] = i;
-    }
-    glint_bins_close(&shadow->bins);
-}
-
-static void turn_vertices(const struct glint_scene *s,
-                          struct glint_shadow *shadow)
-{
-    for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
-        const struct glint_placed *p = &s->placed[i];
-        const struct glint_scene_mesh *mesh;
-        const int32_t *vertex;
-
-        if (!throws(p) || p->object->kind != GLINT_OBJECT_MESH)
-            continue;
-        mesh = glint_mesh_of(s, i);
-        vertex = glint_mesh_table(s, mesh->vertex_at);
-        for (uint32_t k = 0; k < mesh->n_vertices; k++) {
-            int32_t place[3];
-
-            v3_turn(&p->turn, vertex + 3 * (size_t)k, place);
-            for (int j = 0; j < 3; j++)
-                place[j] += p->at[j];
-            v3_turn(&shadow->turn, place, shadow->vertex[p->first_vertex + k]);
-        }
-    }
-}
-
-/* Sets the points of the disc: how their rays lean. */
-static void set_points(const struct glint_scene *s, const struct glint_lit *lit,
-                       struct glint_shadow *shadow)
-{
-    shadow->n_points = lit->light->radius ? s->cfg.shadow_points : 1;
-    for (int i = 0; i < shadow->n_points; i++) {
-        struct glint_shadow_point *p = &shadow->point[i];
-        struct glint_scene_ray to = {.at = {0}};
-        int32_t at_q30[3];
-
-        for (int k = 0; k < 3; k++)
-            to.toward_q30[k] = lit->toward_q30[k];
-        glint_scene_point(&to, GLINT_FAR, lit->light->radius, i,
-                          shadow->n_points);
-        v3_turn(&shadow->turn, to.toward_q30, at_q30);
-        for (int k = 0; k < 3; k++)
-            p->toward_q30[k] = to.toward_q30[k];
-        for (int k = 0; k < 2; k++)
-            p->lean_q30[k] = (int32_t)q_divide(at_q30[k] * (INT64_C(1) << 30),
-                                               q_larger(at_q30[2], 1 << 28));
-        shadow->lean_q30 = q_larger(
-            shadow->lean_q30,
-            q_larger(p->lean_q30[0] < 0 ? -p->lean_q30[0] : p->lean_q30[0],
-                     p->lean_q30[1] < 0 ? -p->lean_q30[1] : p->lean_q30[1]));
-    }
-}
-
-void glint_shadow_prepare(const struct glint_scene *s,
-                          const struct glint_lit *lit,
-                          struct glint_shadow *shadow)
-{
-    int32_t *row_q30[3] = {shadow->turn.row_q30[0], shadow->turn.row_q30[1],
-                           shadow->turn.row_q30[2]};
-
-    shadow->is_ready = 0;
-    shadow->lean_q30 = 0;
-    for (int k = 0; k < 3; k++)
-        row_q30[2][k] = lit->toward_q30[k];
-    glint_scene_frame_of(row_q30[2], row_q30[0], row_q30[1]);
-    set_points(s, lit, shadow);
-    shadow->is_empty = !enclose(s, shadow);
-    shadow->is_ready = 1;
-    if (shadow->is_empty)
-        return;
-    widen(shadow);
-    for (int k = 0; k < 2; k++)
-        shadow->cells_q32[k] = (int32_t)q_divide(
-            INT64_C(1) << (32 + CELLS_LOG2),
-            (int64_t)shadow->hi[k] - shadow->lo[k] + CELLS * SLACK);
-    glint_bins_init(&shadow->bins, (struct glint_box){0, 0, CELLS, CELLS}, 0,
-                    shadow->bins.start, shadow->bins.ref);
-    turn_vertices(s, shadow);
-    while (set_things(s, shadow) > shadow->max_refs)
-        for (int k = 0; k < 2; k++)
-            shadow->cells_q32[k] -= (shadow->cells_q32[k] + 3) / 4;
-    list(shadow);
-}
+/* in place of a cell: nothing is above; the grid does not answer */
+enum { NONE = -1, BEYOND = -2 };
 
 /* -------------------------------------------------------------------- rays */
 
@@ -372,6 +108,7 @@ is_blocked(const struct glint_scene *s, const struct glint_shadow *shadow,
     const int32_t *end = shadow->bins.ref + shadow->bins.start[below->cell + 1];
     const int32_t u = below->across_q8[0], v = below->across_q8[1];
     const int32_t height = below->at[2];
+    const int is_sorted = end - ref <= GLINT_SHADOW_SORTED;
 
     for (; ref < end; ref++) {
         const struct glint_shadow_thing *thing = &shadow->thing[*ref];
@@ -379,8 +116,13 @@ is_blocked(const struct glint_scene *s, const struct glint_shadow *shadow,
         const struct glint_scene_triangle *t;
         const int32_t *vertex[3];
 
-        if (thing->top <= height || u < thing->lo[0] || u > thing->hi[0] ||
-            v < thing->lo[1] || v > thing->hi[1] || thing->id == own)
+        if (thing->top <= height) {
+            if (is_sorted)
+                return 0;
+            continue;
+        }
+        if (u < thing->lo[0] || u > thing->hi[0] || v < thing->lo[1] ||
+            v > thing->hi[1] || thing->id == own)
             continue;
         p = &s->placed[thing->id >> 20];
         if (p->object->kind == GLINT_OBJECT_SPHERE) {
@@ -410,7 +152,8 @@ static void find(const struct glint_shadow *shadow, const int32_t place[3],
         return;
     v3_turn(&shadow->turn, place, at);
     if (at[2] < shadow->lowest)
-        lean = lean_over(shadow, (int64_t)shadow->lowest - at[2]) + SLACK;
+        lean = glint_shadow_lean(shadow, (int64_t)shadow->lowest - at[2]) +
+               GLINT_SHADOW_SLACK;
     if (at[2] > shadow->hi[2] || at[0] < shadow->lo[0] - lean ||
         at[0] > shadow->hi[0] + lean || at[1] < shadow->lo[1] - lean ||
         at[1] > shadow->hi[1] + lean)
@@ -419,9 +162,9 @@ static void find(const struct glint_shadow *shadow, const int32_t place[3],
     if (lean)
         return;
     for (int k = 0; k < 2; k++)
-        below->across_q8[k] = across_q8(shadow, at[k], k);
-    below->cell =
-        (below->across_q8[1] >> 8) * CELLS + (below->across_q8[0] >> 8);
+        below->across_q8[k] = glint_shadow_across_q8(shadow, at[k], k);
+    below->cell = (below->across_q8[1] >> 8) * GLINT_SHADOW_CELLS +
+                  (below->across_q8[0] >> 8);
     if (shadow->bins.start[below->cell] == shadow->bins.start[below->cell + 1])
         below->cell = NONE;
 }
@@ -440,18 +183,15 @@ static int is_lit(const struct glint_scene *s,
             !is_blocked(s, shadow, below, p, place, surface));
 }
 
-int32_t glint_shadow_reaches(const struct glint_scene *s,
-                             const struct glint_shadow *shadow,
-                             const struct glint_met_surface *surface,
-                             const int32_t place[3])
+/* The share of a disc's points, each by itself. */
+static NEVER_INLINE int32_t
+share_of_points(const struct glint_scene *s, const struct glint_shadow *shadow,
+                const struct glint_met_surface *surface,
+                const struct below *below, const int32_t place[3])
 {
     struct glint_scene_ray ray;
-    struct below below = {.at = {0}};
     int reached = 0;
 
-    find(shadow, place, &below);
-    if (shadow->n_points == 1 && below.cell != BEYOND && !s->has_planes)
-        return is_lit(s, shadow, &below, place, surface) << 15;
     for (int k = 0; k < 3; k++)
         ray.at[k] = place[k];
     for (int i = 0; i < shadow->n_points; i++) {
@@ -461,17 +201,33 @@ int32_t glint_shadow_reaches(const struct glint_scene *s,
             ray.toward_q30[k] = p->toward_q30[k];
         if (v3_dot(p->toward_q30, surface->face_q30) <= 0)
             continue;
-        if (below.cell == BEYOND) {
+        if (below->cell == BEYOND) {
             reached += !glint_scene_blocks(s, &ray, surface->object,
                                            surface->triangle, GLINT_FAR);
             continue;
         }
         reached += !(s->has_planes &&
                      glint_scene_planes_block(s, &ray, surface->object)) &&
-                   (below.cell == NONE ||
-                    !is_blocked(s, shadow, &below, p, place, surface));
+                   (below->cell == NONE ||
+                    !is_blocked(s, shadow, below, p, place, surface));
     }
     return reached << (shadow->n_points == 1   ? 15
                        : shadow->n_points == 4 ? 13
                                                : 11);
+}
+
+int32_t glint_shadow_reaches(const struct glint_scene *s,
+                             const struct glint_shadow *shadow,
+                             const struct glint_met_surface *surface,
+                             const int32_t place[3])
+{
+    struct below below;
+
+    if (s->placed[surface->object].open_to >> shadow->light & 1)
+        below.cell = NONE;
+    else
+        find(shadow, place, &below);
+    if (shadow->n_points == 1 && below.cell != BEYOND && !s->has_planes)
+        return is_lit(s, shadow, &below, place, surface) << 15;
+    return share_of_points(s, shadow, surface, &below, place);
 }

@@ -50,6 +50,9 @@ struct glint_placed {
      * that is not to be had (frame/quick.c). */
     int32_t over[3];
     int over_up;
+    /* Sphere: the suns, by bits of their index, from which nothing can hide a
+     * place on it that faces them, as of their grids. */
+    uint32_t open_to;
     /* Which pixels of a row a ball may touch (frame/quick.c). */
     struct {
         int is_there;
@@ -96,6 +99,7 @@ struct glint_shadow_thing {
 
 /* What throws shadows, as a sun sees it (shadow.c). */
 struct glint_shadow {
+    int light;                    /* its index */
     int is_ready;                 /* nothing has moved since */
     int is_empty;                 /* nothing throws any */
     struct glint_scene_turn turn; /* to across u, v, and along its rays */
@@ -191,6 +195,7 @@ struct glint_scene {
     int32_t nearest;              /* z of what is nearest, 1 at least */
     int has_triangles;            /* bins are filled */
     int has_planes;               /* that throw shadows */
+    int has_split, has_catchers;  /* objects that are so */
     struct glint_scene_worker *worker; /* [workers] */
     struct glint_blend_rows *rows;     /* [workers] */
     struct glint_resolve *resolve;
@@ -289,10 +294,11 @@ void glint_scene_shade(const struct glint_scene *scene,
                        const struct glint_met_surface *surface,
                        struct glint_met_shade *shade);
 
-/* Returns the share, 0 .. 32768, of light LIT that reaches SURFACE. */
-int32_t glint_scene_reaches(const struct glint_scene *scene,
-                            const struct glint_met_surface *surface,
-                            const struct glint_lit *lit);
+/* Returns the share, 0 .. 32768, of light LIT that reaches SURFACE, as rays
+ * through the scene find it. */
+int32_t glint_rays_reach(const struct glint_scene *scene,
+                         const struct glint_met_surface *surface,
+                         const struct glint_lit *lit);
 
 /* Makes the grid of LIT, a sun. */
 void glint_shadow_prepare(const struct glint_scene *scene,
@@ -310,6 +316,34 @@ int32_t glint_shadow_reaches(const struct glint_scene *scene,
                              const struct glint_shadow *shadow,
                              const struct glint_met_surface *surface,
                              const int32_t place[3]);
+
+/* Sets AT to where rays from SURFACE start: off that of a mesh. */
+static inline void glint_scene_leave(const struct glint_scene *scene,
+                                     const struct glint_met_surface *surface,
+                                     int32_t at[3])
+{
+    const int32_t lift =
+        scene->placed[surface->object].object->kind == GLINT_OBJECT_MESH
+            ? GLINT_SCENE_LIFT
+            : 0;
+
+    for (int k = 0; k < 3; k++)
+        at[k] = surface->place[k] + q_mul(surface->face_q30[k], lift, 30);
+}
+
+/* Returns the share, 0 .. 32768, of light LIT that reaches SURFACE. */
+static inline int32_t
+glint_scene_reaches(const struct glint_scene *scene,
+                    const struct glint_met_surface *surface,
+                    const struct glint_lit *lit)
+{
+    int32_t at[3];
+
+    if (!lit->shadow || !lit->shadow->is_ready)
+        return glint_rays_reach(scene, surface, lit);
+    glint_scene_leave(scene, surface, at);
+    return glint_shadow_reaches(scene, lit->shadow, surface, at);
+}
 
 /* Sets U and V at right angles to D and to each other. */
 void glint_scene_frame_of(const int32_t d_q30[3], int32_t u_q30[3],

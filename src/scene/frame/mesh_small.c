@@ -19,6 +19,71 @@ struct small {
 
 enum { DEPTH_BITS = 12, MOST_DEEPER = 1 << 28 };
 
+/* Sets DEPTH_Q30 to the depths of the corners of a triangle; returns 0 if one
+ * is out of range. */
+static inline int corner_depths(const struct glint_scene *s, uint32_t object,
+                                const struct glint_scene_triangle *t,
+                                int32_t depth_q30[3])
+{
+    const uint32_t first = s->placed[object].first_vertex;
+    int fits = 1;
+
+    for (int k = 0; k < 3; k++) {
+        const int32_t z = s->seen[first + t->vertex[k]][2];
+
+        depth_q30[k] =
+            glint_ratio((uint64_t)s->nearest << 30, (uint64_t)q_larger(1, z));
+        fits &= depth_q30[k] < GLINT_FAR;
+    }
+    return fits;
+}
+
+/* Returns whether all samples of BOX see what is nearer than DEPTH_Q30. */
+static int is_nearer(const struct glint_scene_worker *w, struct glint_box b,
+                     int32_t depth_q30)
+{
+    const int n = w->scene->cfg.edge_samples * (b.x1 - b.x0);
+
+    for (int y = b.y0; y < b.y1; y++) {
+        const int32_t *at_q30 = w->depth + glint_sample_index(w, b.x0, y, 0);
+        int32_t least_q30 = at_q30[0];
+
+        for (int i = 1; i < n; i++)
+            least_q30 = q_smaller(least_q30, at_q30[i]);
+        if (least_q30 <= depth_q30)
+            return 0;
+    }
+    return 1;
+}
+
+/* Samples inside lie between the corners, but for rounding: lines may be 1 too
+ * low (mesh.c), three of them, which are at most half of twice an area of 6,
+ * and slopes of depth are cut. Slopes, at most 2 * 2 * 48 * 256 range / area,
+ * are below 2^20, so that depths are set as below. */
+int glint_mesh_is_hidden(const struct glint_scene_worker *w, uint32_t id,
+                         const struct glint_scene_triangle *t,
+                         struct glint_box b)
+{
+    enum { LEAST_AREA = 6, SLACK = 16, MOST_RANGE = 1 << 28 };
+    const struct glint_scene *s = w->scene;
+    const struct glint_corner *c[3];
+    int32_t depth_q30[3], most, range;
+    int64_t area;
+
+    for (int k = 0; k < 3; k++)
+        c[k] = &s->corner[s->placed[id >> 20].first_vertex + t->vertex[k]];
+    area = (int64_t)q_magnitude(
+        (int64_t)(c[1]->x - c[0]->x) * (c[2]->y - c[0]->y) -
+        (int64_t)(c[1]->y - c[0]->y) * (c[2]->x - c[0]->x));
+    if (area < LEAST_AREA || !corner_depths(s, id >> 20, t, depth_q30))
+        return 0;
+    most = q_larger(depth_q30[0], q_larger(depth_q30[1], depth_q30[2]));
+    range =
+        most - q_smaller(depth_q30[0], q_smaller(depth_q30[1], depth_q30[2]));
+    return range < MOST_RANGE && range <= 16 * area &&
+           is_nearer(w, b, most + range + SLACK);
+}
+
 /* Sets depths by those of the corners, of which the lines say the shares.
  * Returns 0 if they change too much for 32 bits. */
 static int set_depths(const struct glint_scene *s, uint32_t object,
@@ -30,16 +95,10 @@ static int set_depths(const struct glint_scene *s, uint32_t object,
     int32_t depth_q30[3];
     int64_t all = 0, across = 0, down = 0;
 
-    for (int k = 0; k < 3; k++) {
-        const int32_t z =
-            s->seen[s->placed[object].first_vertex + t->vertex[k]][2];
-
-        depth_q30[k] =
-            glint_ratio((uint64_t)s->nearest << 30, (uint64_t)q_larger(1, z));
-        if (depth_q30[k] >= GLINT_FAR)
-            return 0;
+    if (!corner_depths(s, object, t, depth_q30))
+        return 0;
+    for (int k = 0; k < 3; k++)
         all += glint_line_at(&line[k], c->x, c->y);
-    }
     if (all <= 0)
         return 0;
     for (int k = 1; k < 3; k++) { /* below 2^46 */
@@ -148,7 +207,10 @@ int glint_mesh_look_small(struct glint_scene_worker *w, uint32_t id,
     small.id = id;
     if (!set_depths(s, id >> 20, t, line, &small))
         return 0;
-    if (n == 4) {
+    if (n == 1) {
+        set_small(s, 1, line, x_q8, y_q8, &small);
+        look_at_rows(w, 1, &small, b);
+    } else if (n == 4) {
         set_small(s, 4, line, x_q8, y_q8, &small);
         look_at_rows(w, 4, &small, b);
     } else {

@@ -90,10 +90,11 @@ int glint_scene_span(const struct glint_scene *s, const struct glint_placed *p,
     const int32_t y_q8 = 256 * y - 128 * (s->view.height - 1);
     const int64_t y_q28 = -(y_q8 * s->view.step_q56[1] >> 28);
     int64_t h_q28, rest_q56, half_q28, middle_q28, end_q28[2];
-    const int64_t square_q28 = (1 << 28) + (y_q28 * y_q28 >> 28);
+    int64_t square_q28;
 
     if (!p->span.is_there)
         return 1;
+    square_q28 = (1 << 28) + (y_q28 * y_q28 >> 28); /* y is below 2^30 */
     h_q28 = (p->span.m_q30[1] * y_q28 >> 30) + (p->span.m_q30[2] >> 2);
     rest_q56 = h_q28 * h_q28 + (square_q28 * p->span.a_q30 >> 2);
     if (rest_q56 < -(INT64_C(1) << 36))
@@ -179,15 +180,13 @@ int glint_quick_find(struct glint_scene_worker *w, uint32_t id, int32_t x_q8,
 
     surface->object = id >> 20;
     surface->triangle = id & 0xfffff;
-    if (p->over_up) {
-        set_ray(&s->view, x_q8, y_q8, ray);
-        surface->material = &s->model.material[p->object->material];
-        surface->is_inside = 0;
-        return find_ball(p, ray, surface);
-    }
-    if (p->object->kind != GLINT_OBJECT_MESH ||
-        !s->cfg.parts.meshes->find(w, id, x_q8, y_q8, surface))
+    if (!p->over_up && (p->object->kind != GLINT_OBJECT_MESH ||
+                        !s->cfg.parts.meshes->find(w, id, x_q8, y_q8, surface)))
         return 0;
     set_ray(&s->view, x_q8, y_q8, ray);
-    return 1;
+    if (!p->over_up)
+        return 1;
+    surface->material = &s->model.material[p->object->material];
+    surface->is_inside = 0;
+    return find_ball(p, ray, surface);
 }

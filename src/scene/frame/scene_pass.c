@@ -26,9 +26,9 @@ static int go_on(void *state, struct glint_box tile)
 
 /* Returns whether samples of ID are shaded one by one: edges of what it mirrors
  * and lets through lie within it. */
-static int is_split(const struct glint_scene *s, uint32_t id)
+static inline int is_split(const struct glint_scene *s, uint32_t id)
 {
-    return id != GLINT_NOTHING && s->placed[id >> 20].is_split;
+    return s->has_split && id != GLINT_NOTHING && s->placed[id >> 20].is_split;
 }
 
 enum { MIDDLE = -1, QUAD = -2 /* in place of a sample: see find() */ };
@@ -42,8 +42,10 @@ static int32_t off_of(const struct glint_scene *s, int k, int axis)
 
 /* Finds the surface of ID at pixel (X, Y): on the ray through its middle, or,
  * where that misses it or samples are shaded one by one, through sample K. */
-static int find(struct glint_scene_worker *w, uint32_t id, int x, int y, int k,
-                struct glint_scene_ray *ray, struct glint_met_surface *surface)
+static NEVER_INLINE int find_at_length(struct glint_scene_worker *w,
+                                       uint32_t id, int x, int y, int k,
+                                       struct glint_scene_ray *ray,
+                                       struct glint_met_surface *surface)
 {
     const struct glint_scene *s = w->scene;
 
@@ -64,9 +66,22 @@ static int find(struct glint_scene_worker *w, uint32_t id, int x, int y, int k,
     return 0;
 }
 
+/* The same; what most pixels take. */
+static inline int find(struct glint_scene_worker *w, uint32_t id, int x, int y,
+                       int k, struct glint_scene_ray *ray,
+                       struct glint_met_surface *surface)
+{
+    const struct glint_scene *s = w->scene;
+
+    return (k != QUAD && !is_split(s, id) &&
+            glint_quick_find(w, id, glint_place(s, x, 0), glint_place(s, y, 1),
+                             ray, surface)) ||
+           find_at_length(w, id, x, y, k, ray, surface);
+}
+
 /* Shades what sample K of pixel (X, Y) sees. */
-static void shade_id(struct glint_scene_worker *w, uint32_t id, int x, int y,
-                     int k, struct glint_met_shade *shade)
+static inline void shade_id(struct glint_scene_worker *w, uint32_t id, int x,
+                            int y, int k, struct glint_met_shade *shade)
 {
     const struct glint_scene *s = w->scene;
     const struct glint_scene_header *h = s->model.header;
@@ -83,21 +98,21 @@ static void shade_id(struct glint_scene_worker *w, uint32_t id, int x, int y,
     }
 }
 
-/* Returns whether the samples of a pixel see nothing but the picture. */
-static int is_empty(const struct glint_scene *s, const uint32_t *id)
+/* Returns whether the N samples of a pixel see nothing. */
+static inline int is_empty(const uint32_t *id, int n)
 {
     uint32_t all = id[0];
 
-    for (int k = 1; k < s->cfg.edge_samples; k++)
+    for (int k = 1; k < n; k++)
         all &= id[k]; /* all bits of GLINT_NOTHING are set */
-    return all == GLINT_NOTHING &&
-           s->model.header->background == GLINT_BACKGROUND_CAMERA;
+    return all == GLINT_NOTHING;
 }
 
 /* Returns whether ID only takes shadows, which hide no lamps. */
-static int is_catcher(const struct glint_scene *s, uint32_t id)
+static inline int is_catcher(const struct glint_scene *s, uint32_t id)
 {
-    return id != GLINT_NOTHING && s->placed[id >> 20].is_catcher;
+    return s->has_catchers && id != GLINT_NOTHING &&
+           s->placed[id >> 20].is_catcher;
 }
 
 /* Returns whether two samples may be shaded as one: they see one thing, or two
@@ -111,11 +126,9 @@ static int is_joined(const struct glint_scene *s, uint32_t a, uint32_t b)
 }
 
 /* Sets TIMES to how many samples each sample is shaded for. */
-static void share(const struct glint_scene *s, const uint32_t *id,
-                  int times[GLINT_SCENE_SAMPLES])
+static inline void share(const struct glint_scene *s, const uint32_t *id, int n,
+                         int times[GLINT_SCENE_SAMPLES])
 {
-    const int n = s->cfg.edge_samples;
-
     for (int k = 0; k < n; k++) {
         int i = 0;
 
@@ -129,9 +142,9 @@ static void share(const struct glint_scene *s, const uint32_t *id,
 }
 
 /* Adds TIMES samples, of N, of ID and SHADE. */
-static void add(const struct glint_scene *s, uint32_t id,
-                const struct glint_met_shade *shade, int times,
-                struct glint_scene_sum *sum)
+static inline void add(const struct glint_scene *s, uint32_t id,
+                       const struct glint_met_shade *shade, int times,
+                       struct glint_scene_sum *sum)
 {
     sum->cover_q10 += times * shade->cover_q8;
     if (is_catcher(s, id))
@@ -142,14 +155,15 @@ static void add(const struct glint_scene *s, uint32_t id,
 
 /* Shades what the samples of pixel (X, Y) see one by one, where that differs.
  */
-static void shade_samples(struct glint_scene_worker *w, const uint32_t *id,
-                          int x, int y, struct glint_scene_sum *sum)
+static inline void shade_samples(struct glint_scene_worker *w,
+                                 const uint32_t *id, int n, int x, int y,
+                                 struct glint_scene_sum *sum)
 {
     const struct glint_scene *s = w->scene;
-    const int n = s->cfg.edge_samples, down = n == 16 ? 2 : n == 8;
+    const int down = n == 16 ? 2 : n == 8;
     int times[GLINT_SCENE_SAMPLES];
 
-    share(s, id, times);
+    share(s, id, n, times);
     for (int k = 0; k < n; k++) {
         struct glint_met_shade shade;
 
@@ -166,7 +180,7 @@ static void shade_samples(struct glint_scene_worker *w, const uint32_t *id,
 }
 
 /* Returns whether N samples from ID on see the same. */
-static int is_one(const uint32_t *id, int n, uint32_t thing)
+static inline int is_one(const uint32_t *id, int n, uint32_t thing)
 {
     uint32_t other = 0;
 
@@ -191,13 +205,13 @@ static int is_joined_to(const struct glint_scene *s, const uint32_t *id, int n,
 
 /* Returns whether (X, Y) is one of two by two pixels that all see one thing, or
  * triangles around one of a smooth surface. */
-static int is_quad(const struct glint_scene_worker *w, int x, int y)
+static int is_quad(const struct glint_scene_worker *w, int n, int x, int y)
 {
     const struct glint_box b = w->touched;
-    const int n = w->scene->cfg.edge_samples, x0 = x & ~1, y0 = y & ~1;
+    const int x0 = x & ~1, y0 = y & ~1;
     const uint32_t *id;
 
-    if (!w->quad || x0 < b.x0 || y0 < b.y0 || x0 + 1 >= b.x1 || y0 + 1 >= b.y1)
+    if (x0 < b.x0 || y0 < b.y0 || x0 + 1 >= b.x1 || y0 + 1 >= b.y1)
         return 0;
     id = &w->id[glint_sample_index(w, x0, y0, 0)];
     return is_joined_to(w->scene, id, 2 * n, id[0]) &&
@@ -205,12 +219,12 @@ static int is_quad(const struct glint_scene_worker *w, int x, int y)
                         2 * n, id[0]);
 }
 
-/* Shades pixel (X, Y), whose samples see ID. */
-static void shade_pixel(struct glint_scene_worker *w, const uint32_t *id, int x,
-                        int y, struct glint_scene_sum *sum)
+/* Shades pixel (X, Y), whose N samples see ID. */
+static inline void shade_pixel(struct glint_scene_worker *w, const uint32_t *id,
+                               int n, int x, int y, struct glint_scene_sum *sum)
 {
     const struct glint_scene *s = w->scene;
-    const int n = s->cfg.edge_samples, quad = is_quad(w, x, y);
+    const int quad = w->quad && is_quad(w, n, x, y);
     struct glint_scene_sum *kept =
         quad ? &w->quad[(x - w->tile.x0) >> 1] : NULL;
     struct glint_met_shade shade;
@@ -224,15 +238,15 @@ static void shade_pixel(struct glint_scene_worker *w, const uint32_t *id, int x,
         shade_id(w, id[0], x, y, quad ? QUAD : 0, &shade);
         add(s, id[0], &shade, SUMMED, sum);
     } else {
-        shade_samples(w, id, x, y, sum);
+        shade_samples(w, id, n, x, y, sum);
     }
     if (quad)
         *kept = *sum;
 }
 
-static void put(const struct glint_scene_worker *w,
-                const struct glint_pass_rows *rows, int i, int row,
-                const int64_t sum_q17[3], int cover_q10)
+static inline void put(const struct glint_scene_worker *w,
+                       const struct glint_pass_rows *rows, int i, int row,
+                       const int64_t sum_q17[3], int cover_q10)
 {
     rows->cover->cover_q8[row][i] = (uint16_t)((cover_q10 + 2) >> 2);
     for (int c = 0; c < 3; c++)
@@ -240,7 +254,7 @@ static void put(const struct glint_scene_worker *w,
             rows->light_q20[c][i] = q_clamp_sat(sum_q17[c] * 8, 0, INT32_MAX);
         else
             rows->light->rgb_q16[c][row][i] =
-                (uint16_t)q_clamp_sat(q_shift(sum_q17[c], 1), 0, 65535);
+                (uint16_t)q_clamp_sat((sum_q17[c] + 1) >> 1, 0, 65535);
 }
 
 static void put_nothing(const struct glint_scene_worker *w,
@@ -281,32 +295,35 @@ static void put_background(const struct glint_scene_worker *w,
     }
 }
 
-/* Draws row ROW; returns whether anything is to be seen. */
-static int draw_row(struct glint_scene_worker *w,
-                    const struct glint_pass_rows *rows, int row)
+/* Draws row ROW, N samples a pixel; returns whether anything is to be seen. */
+static inline int draw_row(struct glint_scene_worker *w,
+                           const struct glint_pass_rows *rows, int row, int n)
 {
     const struct glint_scene *s = w->scene;
     const struct glint_box b = w->touched;
     const int y = rows->y + row;
+    const int has_colour =
+        s->model.header->background == GLINT_BACKGROUND_COLOUR;
     const int is_in = !glint_box_empty(b) && y >= b.y0 && y < b.y1;
     const int x0 = is_in ? b.x0 : w->tile.x1, x1 = is_in ? b.x1 : w->tile.x1;
     uint16_t *cover = &s->cover[(y >> GLINT_COVER_LOG2) * s->cover_across];
-    int any = s->model.header->background == GLINT_BACKGROUND_COLOUR;
+    const uint32_t *id = &w->id[glint_sample_index(w, x0, y, 0)];
+    int any = has_colour;
 
     put_background(w, rows, row, w->tile.x0, x0);
-    for (int x = x0; x < x1;) {
-        const uint32_t *id = &w->id[glint_sample_index(w, x, y, 0)];
+    for (int x = x0; x < x1; id += n) {
         struct glint_scene_sum sum;
         int end = x;
 
-        while (end < x1 && is_empty(s, id + (end - x) * s->cfg.edge_samples))
+        for (; end < x1 && !has_colour && is_empty(id, n); id += n)
             end++;
         if (end > x) {
             put_nothing(w, rows, row, x - w->tile.x0, end - w->tile.x0);
             x = end;
-            continue;
+            if (x == x1)
+                break;
         }
-        shade_pixel(w, id, x, y, &sum);
+        shade_pixel(w, id, n, x, y, &sum);
         put(w, rows, x - w->tile.x0, row, sum.rgb_q17, sum.cover_q10);
         any |=
             sum.cover_q10 || sum.rgb_q17[0] || sum.rgb_q17[1] || sum.rgb_q17[2];
@@ -323,13 +340,16 @@ static enum glint_given draw_rows(void *state,
                                   const struct glint_pass_rows *rows)
 {
     struct glint_scene_worker *w = state;
+    const int n = w->scene->cfg.edge_samples;
     int any = 0;
 
     if (w->scene->model.header->background == GLINT_BACKGROUND_CAMERA &&
         (rows->y >= w->touched.y1 || rows->y + rows->n <= w->touched.y0))
         return GLINT_GIVES_NOTHING;
     for (int row = 0; row < rows->n; row++)
-        any |= draw_row(w, rows, row);
+        any |= n == 1   ? draw_row(w, rows, row, 1)
+               : n == 4 ? draw_row(w, rows, row, 4)
+                        : draw_row(w, rows, row, n);
     return any ? GLINT_GIVES_COVER : GLINT_GIVES_NOTHING;
 }
 
