@@ -11,7 +11,7 @@
 #include "overlay/overlay.h"
 #include "command/render_scene.h"
 #include "scenes/baked_scene.h"
-#include "scenes/account.h"
+#include "scenes/budget.h"
 #include "scenes/scene_frame.h"
 #include "scenes/twin.h"
 
@@ -267,15 +267,33 @@ static int run_exact(struct tool *tool, struct render_scene *r,
 
 /* ---------------------------------------------------------- the run time */
 
-static void say_frame(const struct tool *tool, const struct scene_frame *frame,
-                      double ms)
+/* Returns how many of the lights that the scene shows to lenses are hidden. */
+static int hidden_lights(const struct scene_frame *frame)
 {
+    struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
+    const int n = glint_scene_lights(frame->scene, lamp);
+    int hidden = 0;
+
+    for (int i = 0; i < n; i++)
+        hidden += lamp[i].share == 0;
+    return hidden;
+}
+
+static void say_frame(const struct tool *tool, const struct scene_frame *frame,
+                      const struct scene_dials *dials, double ms)
+{
+    struct scene_budget budget;
+    double minsn;
+
     if (!tool->json)
         return;
+    scene_budget_init(&budget, dials);
     printf("{\"engine\": \"model\", \"scene\": {");
-    scene_cost_json(frame, frame->model->header->bytes, stdout);
-    printf(", \"lights\": %u, \"highlights\": []}, \"ms\": %.3f}\n",
-           frame->model->header->n_lights, ms);
+    minsn = scene_cost_json(frame, frame->model->header->bytes, stdout);
+    printf(", \"quality\": 1.000, \"predicted_ms\": %.3f, \"lights\": %u, "
+           "\"highlights\": [], \"lamps_hidden\": %d}, \"ms\": %.3f}\n",
+           budget.ms_per_minsn * minsn, frame->model->header->n_lights,
+           hidden_lights(frame), ms);
 }
 
 /* Draws MODEL over black, in linear light. */
@@ -303,7 +321,7 @@ static int draw_model(struct tool *tool, struct render_scene *r,
         glint_image_place(&linear, light_q20);
         code = scene_frame_draw(&frame, &linear);
         if (code == EXIT_OK)
-            say_frame(tool, &frame, 1e3 * (tool_seconds() - start));
+            say_frame(tool, &frame, &dials, 1e3 * (tool_seconds() - start));
         scene_frame_close(&frame);
     }
     for (size_t i = 0; code == EXIT_OK && i < n; i++)

@@ -95,32 +95,59 @@ double scene_cost_minsn(const struct scene_account *account)
     return sum;
 }
 
-void scene_cost_json(const struct scene_frame *frame, size_t bytes, FILE *to)
+int scene_covered_px(const struct scene_frame *frame)
+{
+    const int width = frame->cfg.width, height = frame->cfg.height;
+    int64_t sum = 0;
+
+    for (int y = 0; y < height; y += 8)
+        for (int x = 0; x < width; x += 8) {
+            const int w = width - x < 8 ? width - x : 8;
+            const int h = height - y < 8 ? height - y : 8;
+
+            sum += (int64_t)w * h *
+                   glint_scene_cover(frame->scene, 256 * x + 128, 256 * y + 128,
+                                     0);
+        }
+    return (int)((sum + 128) / 256);
+}
+
+/* Returns the millions of instructions that it says. */
+static double counts_json(const struct scene_account *account, FILE *to)
+{
+    const int64_t *const n = account->all.count;
+    const double minsn = scene_cost_minsn(account);
+
+    fprintf(to,
+            "\"refs\": %" PRId64 ", \"shaded_px\": %" PRId64
+            ", \"samples\": %" PRId64 ", \"shadow_rays\": %" PRId64
+            ", \"texels\": %" PRId64 ", \"bounces\": %" PRId64
+            ", \"predicted_minsn\": %.4f, ",
+            n[GLINT_SCENE_TRIANGLES], n[GLINT_SCENE_SHADED],
+            n[GLINT_SCENE_SAMPLED],
+            n[GLINT_SCENE_SHADOWS] + n[GLINT_SCENE_RAYS], n[GLINT_SCENE_TEXELS],
+            n[GLINT_SCENE_BOUNCED], minsn);
+    return minsn;
+}
+
+double scene_cost_json(const struct scene_frame *frame, size_t bytes, FILE *to)
 {
     struct scene_account account;
+    double minsn = 0;
 
     fprintf(to, "\"objects\": %u, \"drawn\": %d, \"triangles\": %d, ",
             frame->model->header->n_objects, frame->stats.objects,
             frame->stats.triangles);
     if (scene_account_make(&account, frame) == GLINT_OK) {
-        const int64_t *const n = account.all.count;
-
-        fprintf(to,
-                "\"refs\": %" PRId64 ", \"shaded_px\": %" PRId64
-                ", \"samples\": %" PRId64 ", \"shadow_rays\": %" PRId64
-                ", \"texels\": %" PRId64 ", \"bounces\": %" PRId64
-                ", \"predicted_minsn\": %.4f, ",
-                n[GLINT_SCENE_TRIANGLES], n[GLINT_SCENE_SHADED],
-                n[GLINT_SCENE_SAMPLED],
-                n[GLINT_SCENE_SHADOWS] + n[GLINT_SCENE_RAYS],
-                n[GLINT_SCENE_TEXELS], n[GLINT_SCENE_BOUNCED],
-                scene_cost_minsn(&account));
+        minsn = counts_json(&account, to);
         scene_account_free(&account);
     }
-    fprintf(to, "\"bytes\": {");
+    fprintf(to, "\"covered_px\": %d, \"bytes\": {", scene_covered_px(frame));
     baked_scene_bytes(frame->model, to);
+    /* Maps are of translucent things, of which there are none. */
     fprintf(to,
             ", \"scene\": %zu, \"arena\": %zu}, \"project_ms\": %.3f, "
-            "\"draw_ms\": %.3f",
+            "\"draw_ms\": %.3f, \"map_ms\": 0.000",
             bytes, frame->bytes, frame->project_ms, frame->draw_ms);
+    return minsn;
 }

@@ -37,8 +37,13 @@ void scene_account_free(struct scene_account *account);
 double scene_cost_part(const struct glint_scene_part *part);
 double scene_cost_minsn(const struct scene_account *account);
 
+/* Returns how many pixels things hide in the frame that was drawn last, in
+ * all. */
+int scene_covered_px(const struct scene_frame *frame);
+
 /* Writes members of a JSON object on the frame that was drawn last, but on its
- * lights. BYTES are those of the baked scene. */
-void scene_cost_json(const struct scene_frame *frame, size_t bytes, FILE *to);
+ * lights. BYTES are those of the baked scene. Returns the millions of
+ * instructions that the frame is told to cost. */
+double scene_cost_json(const struct scene_frame *frame, size_t bytes, FILE *to);
 
 #endif

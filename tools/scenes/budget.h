@@ -14,9 +14,9 @@ struct scene_budget {
     struct scene_dials asked;
     int level;
     double predicted_ms; /* of the frame; 0: there is no budget */
+    double ms_per_minsn; /* what a million instructions is thought to take */
 
     /* Private. */
-    double ms_per_minsn;
     double minsn[SCENE_BUDGET_LEVELS]; /* told for each level */
     int n_frames;
 };

@@ -383,35 +383,19 @@ void over_scene_say(const struct over_scene *over, FILE *to)
                 over->poses.n_bad == 1 ? "" : "s");
 }
 
-/* Returns how many pixels things hide, in all. */
-static int covered(const struct over_scene *over)
-{
-    const int width = over->frame.cfg.width, height = over->frame.cfg.height;
-    int64_t sum = 0;
-
-    for (int y = 0; y < height; y += 8)
-        for (int x = 0; x < width; x += 8) {
-            const int w = width - x < 8 ? width - x : 8;
-            const int h = height - y < 8 ? height - y : 8;
-
-            sum += (int64_t)w * h *
-                   glint_scene_cover(over->frame.scene, 256 * x + 128,
-                                     256 * y + 128, 0);
-        }
-    return (int)((sum + 128) / 256);
-}
-
 void over_scene_json(const struct over_scene *over, FILE *to)
 {
+    const struct scene_budget *const b = &over->budget;
+    double minsn;
+
     if (!over->is_sized)
         return;
     fprintf(to, "\"scene\": {");
-    scene_cost_json(&over->frame, over->baked.bytes, to);
+    minsn = scene_cost_json(&over->frame, over->baked.bytes, to);
     fprintf(to,
-            ", \"quality\": %.3f, \"predicted_ms\": %.3f, "
-            "\"covered_px\": %d, \"lights\": %d, \"highlights\": [], "
-            "\"lamps_hidden\": %d, \"poses_bad\": %ld}, ",
-            over->budget_ms > 0 ? scene_budget_quality(&over->budget) : 1.0,
-            over->budget.predicted_ms, covered(over), over->lights,
-            over->lamps_hidden, over->poses.n_bad);
+            ", \"quality\": %.3f, \"predicted_ms\": %.3f, \"lights\": %d, "
+            "\"highlights\": [], \"lamps_hidden\": %d, \"poses_bad\": %ld}, ",
+            over->budget_ms > 0 ? scene_budget_quality(b) : 1.0,
+            over->budget_ms > 0 ? b->predicted_ms : b->ms_per_minsn * minsn,
+            over->lights, over->lamps_hidden, over->poses.n_bad);
 }
