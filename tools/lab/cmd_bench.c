@@ -6,11 +6,14 @@
 #include <string.h>
 
 #include "lab/bench.h"
+#include "lab/scenes/scene_bench.h"
+#include "lab/scenes/scene_trial.h"
 #include "posix/workers.h"
 #include "options/takes.h"
 
 static const char help[] =
     "glint bench [LENS|MODEL]... [options]\n"
+    "glint bench --scene FILE ...    of a scene; --scene x --help has more\n"
     "\n"
     "Times frames of 8-bit video with flares drawn in place, and what it "
     "takes\n"
@@ -228,9 +231,12 @@ int cmd_bench(int argc, char **argv)
                         .help = help,
                         .help_end = help_end,
                         .help_last = help_last};
-    struct bench *b = calloc(1, sizeof *b);
+    struct bench *b;
     int code;
 
+    if (scene_trial_is_asked(argc, argv))
+        return cmd_bench_scene(argc, argv);
+    b = calloc(1, sizeof *b);
     if (!b || !(b->test = calloc(MAX_CASES, sizeof *b->test))) {
         free(b);
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);

@@ -6,16 +6,17 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "linux/instructions.h"
-#include "posix/output.h"
 #include "posix/workers.h"
+#include "lab/report_file.h"
+#include "lab/scenes/scene_sweep.h"
 #include "lab/sweep.h"
 #include "options/takes.h"
 
 static const char help[] =
     "glint sweep [LENS]... -o FOLDER [options]\n"
+    "glint sweep --scene FILE ...    of a scene; --scene x --help has more\n"
     "\n"
     "Draws the same frames with every dial that trades accuracy for time "
     "turned "
@@ -154,27 +155,14 @@ typedef void write_fn(const struct sweep *s, FILE *file);
 static int save(const struct sweep *s, const char *folder, const char *name,
                 write_fn *write)
 {
-    struct glint_error error = {""};
-    struct glint_output out;
-    enum glint_status status;
-    char path[1024], *text = NULL;
+    char *text = NULL;
     size_t bytes = 0;
     FILE *file = open_memstream(&text, &bytes);
 
     if (!file)
         return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
     write(s, file);
-    if (fclose(file) != 0 || (size_t)snprintf(path, sizeof path, "%s/%s",
-                                              folder, name) >= sizeof path) {
-        free(text);
-        return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
-    }
-    status = glint_output_open(&out, path, GLINT_OUTPUT_TEXT, &error);
-    if (status == GLINT_OK)
-        status = glint_output_finish(&out, text, bytes, &error);
-    free(text);
-    return status == GLINT_OK ? EXIT_OK
-                              : tool_fail(s->tool, status, error.text);
+    return report_file_save(s->tool, folder, name, file, &text, &bytes);
 }
 
 /* Removes the file NAME of an earlier sweep, which would be taken for one of
@@ -213,14 +201,6 @@ static int save_all(const struct sweep *s, const char *folder)
     return code;
 }
 
-static bool make_folder(const char *path)
-{
-    struct stat st;
-
-    return mkdir(path, 0777) == 0 ||
-           (errno == EEXIST && stat(path, &st) == 0 && S_ISDIR(st.st_mode));
-}
-
 /* ----------------------------------------------------------------- command */
 
 static void say_case(const struct sweep *s, int c)
@@ -246,6 +226,23 @@ static int measure(struct sweep *s)
         code = sweep_measure(s, c, &progress);
         tool_progress_end(&progress);
     }
+    return code;
+}
+
+static int read_counts(struct sweep *s)
+{
+    double *const instructions =
+        malloc((size_t)s->n_points * sizeof *instructions);
+    int code;
+
+    if (!instructions)
+        return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
+    for (int i = 0; i < s->n_points; i++)
+        instructions[i] = s->point[i].instructions;
+    code = sweep_read_counts(s->counts, s->n_points, instructions);
+    for (int i = 0; i < s->n_points; i++)
+        s->point[i].instructions = instructions[i];
+    free(instructions);
     return code;
 }
 
@@ -275,7 +272,7 @@ static int run(struct sweep *s, const struct asked *a)
             return tool_usage(s->tool,
                               "%s is a model: exact pictures need the table",
                               s->lens[i]);
-    if (!s->count_only && !make_folder(a->folder)) {
+    if (!s->count_only && !report_file_folder(a->folder)) {
         fprintf(stderr, "glint sweep: %s: %s\n", a->folder, strerror(errno));
         return EXIT_OUTPUT;
     }
@@ -294,7 +291,7 @@ static int run(struct sweep *s, const struct asked *a)
         code = sweep_parts(s, s->lens[0]);
     glint_instructions_close(s->counter);
     if (code == EXIT_OK && s->counts)
-        code = sweep_read_counts(s);
+        code = read_counts(s);
     if (code != EXIT_OK || s->count_only)
         return code;
     sweep_mark_fronts(s);
@@ -466,10 +463,13 @@ static void close_sweep(struct sweep *s)
 int cmd_sweep(int argc, char **argv)
 {
     struct tool tool = {.name = "sweep", .help = help, .help_end = help_end};
-    struct sweep *s = calloc(1, sizeof *s);
     struct asked asked = {.folder = NULL};
+    struct sweep *s;
     int code;
 
+    if (scene_trial_is_asked(argc, argv))
+        return cmd_sweep_scene(argc, argv);
+    s = calloc(1, sizeof *s);
     if (!s)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     s->tool = &tool;

@@ -174,9 +174,9 @@ void sweep_words(const struct sweep_setting *set, char *text, size_t bytes);
 
 /* ------------------------------------------------------------------- output */
 
-/* Reads the instructions of points from the file of --counts, whose lines are
- * "POINT INSTRUCTIONS". Returns an exit code. */
-int sweep_read_counts(struct sweep *s);
+/* Reads INSTRUCTIONS[N_POINTS] from PATH, the file of --counts, whose lines are
+ * "POINT INSTRUCTIONS"; points without one stay. Returns an exit code. */
+int sweep_read_counts(const char *path, int n_points, double *instructions);
 
 void sweep_csv(const struct sweep *s, FILE *file);
 void sweep_json(const struct sweep *s, FILE *file);

@@ -157,14 +157,14 @@ void sweep_names(const struct sweep *s, FILE *file)
     beyond_ladder(s, file);
 }
 
-int sweep_read_counts(struct sweep *s)
+int sweep_read_counts(const char *path, int n_points, double *instructions)
 {
-    FILE *file = fopen(s->counts, "r");
+    FILE *file = fopen(path, "r");
     char line[80];
     int n = 0;
 
     if (!file) {
-        tool_fail(s->tool, GLINT_E_IO, strerror(errno));
+        fprintf(stderr, "glint sweep: %s: %s\n", path, strerror(errno));
         return EXIT_INPUT;
     }
     while (fgets(line, sizeof line, file)) {
@@ -176,15 +176,15 @@ int sweep_read_counts(struct sweep *s)
         if (space)
             *space = ',';
         if (tool_numbers(line, v, 2) != 2 || v[0] != floor(v[0]) || v[0] < 0 ||
-            v[0] >= s->n_points || v[1] < 0) {
+            v[0] >= n_points || v[1] < 0) {
             fclose(file);
             fprintf(stderr,
                     "glint sweep: %s:%d: not a point of this sweep and its "
                     "instructions\n",
-                    s->counts, n);
+                    path, n);
             return EXIT_INPUT;
         }
-        s->point[(int)v[0]].instructions = v[1];
+        instructions[(int)v[0]] = v[1];
     }
     fclose(file);
     return EXIT_OK;

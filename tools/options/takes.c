@@ -60,6 +60,7 @@ static const struct {
     {NULL, "shading", "full or half"},
     {NULL, "edge-fade", "pixels, above 0"},
     {NULL, "error", "pixels, above 0"},
+    {NULL, "exact-samples", "a whole number, 1 to 64"},
     {NULL, "exact-grid", "an even number, 4 to 1024"},
     {NULL, "exposure", "stops, -100 to 100, or of compare also auto"},
     {NULL, "f-number", "a number above 0"},
