@@ -20,7 +20,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "lab/plot.h"
+#include "lab/plots/plot.h"
 #include "options/tool.h"
 #include "support/models/street.h"
 

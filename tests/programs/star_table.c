@@ -19,7 +19,7 @@
 #include "engine/star/star_tables.h"
 #include "glint/flare.h"
 #include "glint/view.h"
-#include "lab/plot.h"
+#include "lab/plots/plot.h"
 #include "star/starburst.h"
 #include "support/stars/canvas.h"
 

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lab/plot.h"
+#include "lab/plots/plot.h"
 #include "model/model_file.h"
 #include "options/tool.h"
 #include "support/stage.h"

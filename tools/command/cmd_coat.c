@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "desk/apart.h"
-#include "lab/plot.h"
+#include "lab/plots/plot.h"
 #include "model/table_file.h"
 #include "options/coating.h"
 #include "options/takes.h"

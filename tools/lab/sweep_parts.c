@@ -10,7 +10,7 @@
 #include "engine/measure.h"
 #include "engine/frame/cost.h"
 #include "engine/setup/dirt.h"
-#include "lab/plot.h"
+#include "lab/plots/plot.h"
 #include "lab/sweep.h"
 #include "linux/instructions.h"
 

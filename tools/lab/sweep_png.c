@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lab/plot.h"
+#include "lab/plots/plot.h"
 #include "lab/sweep.h"
 
 enum { BLOCK = 65535 }; /* most bytes of a stored block of deflate */

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lab/plot.h"
+#include "lab/plots/plot.h"
 #include "lab/sweep.h"
 
 #define GREY  "#bbb"

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "lab/plot.h"
+#include "lab/plots/plot.h"
 #include "lab/scenes/scene_sweep.h"
 #include "lab/sweep.h"
 

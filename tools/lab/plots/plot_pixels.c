@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lab/plot.h"
+#include "lab/plots/plot.h"
 
 bool plot_pixels_open(struct plot_pixels *p, int n_panels)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/plot.h"
+#include "lab/plots/plot.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -2,8 +2,8 @@
  *
  * Plots as SVG, or as pixels: panels with two axes, marks and lines.
  */
-#ifndef GLINT_TOOLS_LAB_PLOT_H
-#define GLINT_TOOLS_LAB_PLOT_H
+#ifndef GLINT_TOOLS_LAB_PLOTS_PLOT_H
+#define GLINT_TOOLS_LAB_PLOTS_PLOT_H
 
 #include <stdbool.h>
 #include <stdio.h>
