@@ -7,8 +7,8 @@
  * angle at which it was entered: only light from within a ball can be mirrored
  * for good, and none of that comes out. With index 1 rays pass straight on, and
  * what is behind the last thing that they pass is the picture itself; else it
- * is the background's colour, as it is of reflections, or the camera's picture
- * all around.
+ * is the background's colour, as it is of reflections, its environment, or the
+ * camera's picture all around.
  *
  * Directions that the camera sees then have the light of the picture there.
  * Beyond its edge, and behind the camera, nobody knows what there is: the
@@ -23,6 +23,7 @@ struct passing {
     uint32_t object, triangle;
     int32_t weight_q15; /* of what it meets */
     int is_bent;        /* it no longer goes where the picture's ray goes */
+    int64_t spread_q40; /* angular variance of what a pixel sees there */
 };
 
 /* Starts a ray from SURFACE, on the side it came from or BEYOND it. */
@@ -73,8 +74,8 @@ static void look_around(const struct glint_scene *s, const struct passing *p,
                     (1 << 15) + (y < 0 ? -half_q15[1] : half_q15[1]), rgb_q15);
 }
 
-/* Adds what P comes to: the background's colour, or the picture that is all
- * around. */
+/* Adds what P comes to: the background's colour, its environment, or the
+ * picture that is all around. */
 static void add_background(const struct glint_scene *s, const struct passing *p,
                            int32_t rgb_q15[3])
 {
@@ -82,14 +83,12 @@ static void add_background(const struct glint_scene *s, const struct passing *p,
 
     if (s->around.has_picture)
         look_around(s, p, light_q15);
+    else
+        glint_scene_behind(s, p->ray.toward_q30, p->spread_q40, light_q15);
     for (int c = 0; c < 3; c++)
         rgb_q15[c] = q_clamp_sat(
-            rgb_q15[c] + q_shift((s->around.has_picture
-                                      ? light_q15[c]
-                                      : s->model.header->background_q15[c]) *
-                                     (int64_t)p->weight_q15,
-                                 15),
-            0, GLINT_SCENE_MOST_LIGHT);
+            rgb_q15[c] + q_shift(light_q15[c] * (int64_t)p->weight_q15, 15), 0,
+            GLINT_SCENE_MOST_LIGHT);
 }
 
 static int next_surface(const struct glint_scene *s, const struct passing *p,
@@ -163,6 +162,19 @@ static void pass_through(const struct glint_scene *s,
         cross_sphere(s, surface, is_straight, p);
 }
 
+/* A mirror that is bent shows more of what is around within a pixel. */
+static int64_t mirror_spread_q40(const struct glint_scene *s,
+                                 const struct glint_scene_ray *ray,
+                                 const struct glint_met_surface *surface)
+{
+    struct glint_brushed lies;
+
+    if (s->model.header->background != GLINT_BACKGROUND_ENVIRONMENT)
+        return 0;
+    s->cfg.parts.wards->lie(s, ray, surface, &lies);
+    return glint_scene_pixel_q40(s) + (int64_t)lies.spread_q30 * 2048;
+}
+
 static void reflect(const struct glint_scene *s, const struct passing *from,
                     const struct glint_met_surface *surface, int32_t rgb_q15[3])
 {
@@ -172,6 +184,7 @@ static void reflect(const struct glint_scene *s, const struct passing *from,
     p.weight_q15 = q_mul(p.weight_q15, surface->material->reflect_q15, 15);
     glint_mirror(from->ray.toward_q30, surface->normal_q30, p.ray.toward_q30);
     start(s, surface, 0, &p);
+    p.spread_q40 = mirror_spread_q40(s, &from->ray, surface);
     if (next_surface(s, &p, &next))
         glint_scene_phong(s, &p.ray, &next, p.weight_q15, rgb_q15);
     else
@@ -183,7 +196,9 @@ static void follow(const struct glint_scene *s,
                    const struct glint_met_surface *surface,
                    struct glint_met_shade *shade)
 {
-    struct passing p = {.ray = *ray, .weight_q15 = GLINT_SCENE_ONE_Q15};
+    struct passing p = {.ray = *ray,
+                        .weight_q15 = GLINT_SCENE_ONE_Q15,
+                        .spread_q40 = glint_scene_pixel_q40(s)};
     struct glint_met_surface at = *surface;
 
     if (at.material->reflect_q15)

@@ -24,7 +24,8 @@ STATIC_ASSERT(sizeof(struct glint_scene_material) == 80);
 STATIC_ASSERT(sizeof(struct glint_scene_triangle) == 16);
 STATIC_ASSERT(sizeof(struct glint_scene_mesh) == 76);
 STATIC_ASSERT(sizeof(struct glint_scene_object) == 84);
-STATIC_ASSERT(sizeof(struct glint_scene_header) == 224);
+STATIC_ASSERT(sizeof(struct glint_scene_ward) == 24);
+STATIC_ASSERT(sizeof(struct glint_scene_header) == 256);
 
 /* The header begins as that of every baked file does. */
 #define SAME_PLACE(field)                                       \
@@ -42,6 +43,7 @@ enum {
     ONE_Q15 = 1 << 15,
     ONE_Q30 = 1 << 30,
     MAX_HIGHLIGHTS = 8,
+    LEAST_ALPHA_Q24 = 1 << 14,
     MAX_REAL_EXPONENT = 200
 };
 
@@ -191,17 +193,51 @@ static const char *check_material(const struct glint_scene_check *c,
     if (m->texture != GLINT_SCENE_NONE &&
         m->texture >= c->model.header->n_textures)
         return "a material's texture is out of range";
-    return m->zero ? "a member that must be 0 is not" : NULL;
+    if (m->ward != GLINT_SCENE_NONE && m->ward >= c->model.header->n_wards)
+        return "a material's brushed metal is out of range";
+    if (m->ward != GLINT_SCENE_NONE && m->specular_q15)
+        return "a material is brushed metal and Phong's";
+    return NULL;
+}
+
+static const char *check_ward(const struct glint_scene_ward *w)
+{
+    for (int k = 0; k < 3; k++)
+        if (!is_between(w->specular_q15[k], 0, ONE_Q15))
+            return "a material's weight or colour is not 0 .. 1";
+    if (!is_between(w->alpha_q24[0], LEAST_ALPHA_Q24, 1 << 24) ||
+        !is_between(w->alpha_q24[1], LEAST_ALPHA_Q24, 1 << 24) || w->norm > 1)
+        return "a brushed metal's roughness or norm is out of range";
+    return NULL;
+}
+
+static const char *check_environment(const struct glint_scene_header *h)
+{
+    const int is_there = h->environment_bytes > 0;
+
+    if (h->background == GLINT_BACKGROUND_ENVIRONMENT && !is_there)
+        return "the background's environment is not there";
+    if (is_there
+            ? !glint_scene_is_unit(h->environment_turn_q30, 2) ||
+                  h->environment_scale.mantissa == 0 || h->environment_bytes % 4
+            : h->environment_turn_q30[0] || h->environment_turn_q30[1] ||
+                  h->environment_scale.mantissa)
+        return "the environment's turn or scale is out of range";
+    return glint_scene_is_light(&h->environment_scale)
+               ? NULL
+               : "a light is negative or not normalised";
 }
 
 static const char *check_header(const struct glint_scene_header *h)
 {
+    const char *wrong;
+
     if (h->variant > GLINT_HAND_RIGHT)
         return "the scene's variant is unknown";
     if (!is_between(h->unit_log2, -28, 60))
         return "the scene's unit is out of range";
     if (h->shadow > 1 || h->flare > 1 || h->highlights > MAX_HIGHLIGHTS ||
-        h->background > GLINT_BACKGROUND_COLOUR)
+        h->background > GLINT_BACKGROUND_ENVIRONMENT)
         return "the scene's settings are unknown";
     for (int k = 0; k < 3; k++)
         if (!is_between(h->background_q15[k], 0,
@@ -211,9 +247,11 @@ static const char *check_header(const struct glint_scene_header *h)
         h->n_textures > GLINT_SCENE_MAX_TEXTURES ||
         h->n_materials > GLINT_SCENE_MAX_MATERIALS ||
         h->n_meshes > GLINT_SCENE_MAX_MESHES ||
-        h->n_objects > GLINT_SCENE_MAX_OBJECTS)
+        h->n_objects > GLINT_SCENE_MAX_OBJECTS ||
+        h->n_wards > GLINT_SCENE_MAX_MATERIALS)
         return "the scene has too many of a kind";
-    return glint_scene_camera_fault(&h->camera);
+    wrong = check_environment(h);
+    return wrong ? wrong : glint_scene_camera_fault(&h->camera);
 }
 
 /* ------------------------------------------------------------------- whole */
@@ -233,7 +271,15 @@ static const char *find_tables(struct glint_scene_check *c)
     m->mesh = glint_blob_section(b, h->mesh_at, h->n_meshes, sizeof *m->mesh);
     m->object =
         glint_blob_section(b, h->object_at, h->n_objects, sizeof *m->object);
-    return m->light && m->texture && m->material && m->mesh && m->object
+    m->ward = glint_blob_section(b, h->ward_at, h->n_wards, sizeof *m->ward);
+    if (h->environment_bytes) {
+        m->environment = glint_blob_section(b, h->environment_at,
+                                            h->environment_bytes / 4, 4);
+        if (!m->environment)
+            return glint_scene_outside;
+    }
+    return m->light && m->texture && m->material && m->mesh && m->object &&
+                   m->ward
                ? NULL
                : glint_scene_outside;
 }
@@ -253,6 +299,8 @@ static const char *check_contents(struct glint_scene_check *c)
         wrong = check_light(&m->light[k]);
     for (uint32_t k = 0; !wrong && k < h->n_textures; k++)
         wrong = check_texture(c, &m->texture[k]);
+    for (uint32_t k = 0; !wrong && k < h->n_wards; k++)
+        wrong = check_ward(&m->ward[k]);
     for (uint32_t k = 0; !wrong && k < h->n_materials; k++)
         wrong = check_material(c, &m->material[k]);
     for (uint32_t k = 0; !wrong && k < h->n_meshes; k++) {

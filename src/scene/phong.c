@@ -65,20 +65,48 @@ static inline int32_t gloss_q15(const struct glint_gloss *gloss,
 
 /* ------------------------------------------------------------------ lights */
 
+/* Adds what metal shows of LIT, T away, of which SHARE_Q15 counts. */
+static void add_shine(const struct glint_scene *s,
+                      const struct glint_scene_ray *ray,
+                      const struct glint_met_surface *surface,
+                      const struct glint_brushed *brushed,
+                      const struct glint_lit *lit, int32_t t,
+                      const int32_t toward_q30[3], const int32_t level_q15[3],
+                      int32_t share_q15, int32_t rgb_q15[3])
+{
+    const int32_t radius = lit->light->radius;
+    const int32_t radius_q30 =
+        t == GLINT_FAR
+            ? radius
+            : q_smaller(glint_ratio((uint64_t)radius << 30, (uint64_t)t),
+                        1 << 29);
+    int32_t shine_q15[3];
+
+    if (!s->cfg.parts.wards->shine(s, ray, surface, brushed, toward_q30,
+                                   level_q15, radius_q30, shine_q15))
+        return;
+    for (int c = 0; c < 3; c++)
+        add(&rgb_q15[c], shine_q15[c], share_q15);
+}
+
+/* BRUSHED is NULL if SURFACE is no metal. */
 static void add_light(const struct glint_scene *s,
                       const struct glint_scene_ray *ray,
                       const struct glint_met_surface *surface,
+                      const struct glint_brushed *brushed,
                       const struct glint_lit *lit, const int32_t colour_q15[3],
                       int32_t weight_q15, int32_t rgb_q15[3])
 {
     const struct glint_scene_material *m = surface->material;
     const int is_sun = lit->light->kind == GLINT_LIGHT_SUN;
     int32_t lamp_q30[3], lamp_q15[3], cosine_q30, gloss = 0, share_q15;
+    int32_t t = GLINT_FAR;
     const int32_t *toward_q30 = is_sun ? lit->toward_q30 : lamp_q30;
     const int32_t *level_q15 = is_sun ? lit->rgb_q15 : lamp_q15;
 
-    if (!is_sun &&
-        !glint_scene_light_at(s, lit, surface->place, lamp_q30, lamp_q15))
+    if (!is_sun)
+        t = glint_scene_light_at(s, lit, surface->place, lamp_q30, lamp_q15);
+    if (t == 0)
         return;
     cosine_q30 = v3_cosine_q30(toward_q30, surface->normal_q30);
     if (cosine_q30 <= 0)
@@ -90,6 +118,9 @@ static void add_light(const struct glint_scene *s,
         gloss = gloss_q15(&s->gloss[m - s->model.material], ray, surface,
                           toward_q30, cosine_q30);
     share_q15 = q_mul(share_q15, weight_q15, 15);
+    if (brushed)
+        add_shine(s, ray, surface, brushed, lit, t, toward_q30, level_q15,
+                  share_q15, rgb_q15);
     /* below 2^30, and 2^32 together */
     gloss *= m->specular_q15;
     cosine_q30 = q_mul(m->diffuse_q15, cosine_q30, 15);
@@ -108,6 +139,9 @@ static inline void phong(const struct glint_scene *scene,
                          int32_t weight_q15, int32_t rgb_q15[3])
 {
     const struct glint_scene_material *m = surface->material;
+    const struct glint_scene_wards *wards = scene->cfg.parts.wards;
+    const int is_metal = m->ward != GLINT_SCENE_NONE;
+    struct glint_brushed brushed;
     int32_t colour_q15[3];
 
     for (int c = 0; c < 3; c++)
@@ -116,9 +150,14 @@ static inline void phong(const struct glint_scene *scene,
         scene->cfg.parts.textures->colour(scene, ray, surface, colour_q15);
     for (int c = 0; c < 3; c++)
         add(&rgb_q15[c], q_mul(m->ambient_q15, colour_q15[c], 15), weight_q15);
+    if (is_metal)
+        wards->lie(scene, ray, surface, &brushed);
+    if (scene->wards)
+        wards->reflect(scene, ray, surface, is_metal ? &brushed : NULL,
+                       colour_q15, weight_q15, rgb_q15);
     for (uint32_t i = 0; i < scene->model.header->n_lights; i++)
-        add_light(scene, ray, surface, &scene->lit[i], colour_q15, weight_q15,
-                  rgb_q15);
+        add_light(scene, ray, surface, is_metal ? &brushed : NULL,
+                  &scene->lit[i], colour_q15, weight_q15, rgb_q15);
 }
 
 void glint_scene_phong(const struct glint_scene *scene,
@@ -147,7 +186,7 @@ static int caught_q8(const struct glint_scene *s,
         light = q_larger(0, v3_cosine_q30(toward_q30, surface->normal_q30));
         light = light * ((int64_t)level_q15[0] + 2 * (int64_t)level_q15[1] +
                          level_q15[2]) >>
-                6; /* below 2^56; 16 of them below 2^60 */
+                6; /* below 2^56; 32 of them below 2^61 */
         all += light;
         if (light > 0)
             gone +=

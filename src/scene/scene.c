@@ -4,6 +4,7 @@
  * and the order of the work. */
 #include "scene/visible.h"
 
+#include "base/compiler.h"
 #include "base/real.h"
 #include "scene/model_check.h"
 
@@ -18,7 +19,14 @@ void glint_scene_defaults(struct glint_scene_config *cfg, int width, int height)
                                        .tile_log2 = 5,
                                        .edge_samples = 4,
                                        .shadow_points = 4,
+                                       .ward_samples = 8,
                                        .max_refs = 1 << 15};
+}
+
+/* Returns whether a scene has brushed metal or an environment. */
+static int has_wards(const struct glint_scene_header *h)
+{
+    return h->n_wards > 0 || h->environment_bytes > 0;
 }
 
 const char *glint_scene_lacks(const struct glint_scene_parts *parts,
@@ -28,6 +36,8 @@ const char *glint_scene_lacks(const struct glint_scene_parts *parts,
 
     if (h->n_meshes > 0 && !parts->meshes)
         return "meshes";
+    if (has_wards(h) && !parts->wards)
+        return "wards";
     for (uint32_t i = 0; i < h->n_materials; i++) {
         const struct glint_scene_material *m = &model->material[i];
 
@@ -60,7 +70,8 @@ static int is_in_range(const struct glint_scene_config *c)
     return c->width >= 1 && c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
            c->height <= GLINT_MAX_SIDE && c->tile_log2 >= 3 &&
            c->tile_log2 <= 6 && is_one_of(c->edge_samples, 1 | 4 | 8 | 16) &&
-           is_one_of(c->shadow_points, 1 | 4 | 16) &&
+           is_one_of(c->shadow_points, 1 | 4 | 16) && c->ward_samples >= 1 &&
+           c->ward_samples <= 32 && (c->ward_nearest & ~1) == 0 &&
            (c->half_shading & ~1) == 0 && c->max_refs >= 0 &&
            glint_workers_count(c->workers) <= 64;
 }
@@ -77,8 +88,10 @@ static size_t things_of(const struct glint_scene_model *m)
     return n;
 }
 
-/* The grids of suns that throw shadows. */
-static void carve_shadows(struct glint_scene *s, struct glint_arena *a)
+/* The grids of suns that throw shadows. In a frame of its own, as what is
+ * measured takes room on the stack. */
+static NEVER_INLINE void carve_shadows(struct glint_scene *s,
+                                       struct glint_arena *a)
 {
     const size_t cells = (size_t)1 << 2 * GLINT_SHADOW_CELLS_LOG2;
     const size_t n_vertices = vertices_of(&s->model);
@@ -106,28 +119,28 @@ static void carve_shadows(struct glint_scene *s, struct glint_arena *a)
     }
 }
 
+/* WORKER is NULL while its memory is measured. */
 static void carve_worker(struct glint_scene *s, struct glint_arena *a,
-                         struct glint_scene_worker *w)
+                         struct glint_scene_worker *worker)
 {
     const size_t side = (size_t)1 << s->cfg.tile_log2;
     const size_t samples = side * side * (size_t)s->cfg.edge_samples;
+    struct glint_scene_worker w = {.scene = s};
 
-    w->depth = glint_arena_take(a, samples, sizeof *w->depth);
-    w->id = glint_arena_take(a, samples, sizeof *w->id);
-    w->scratch = (struct glint_tile_scratch){
-        .light = glint_arena_take(a, 1, sizeof *w->scratch.light),
+    w.depth = glint_arena_take(a, samples, sizeof *w.depth);
+    w.id = glint_arena_take(a, samples, sizeof *w.id);
+    w.scratch = (struct glint_tile_scratch){
+        .light = glint_arena_take(a, 1, sizeof *w.scratch.light),
         .light_q20 =
-            glint_arena_take(a, 3 * 2 * side, sizeof *w->scratch.light_q20),
-        .codes = glint_arena_take(a, 1, sizeof *w->scratch.codes),
-        .blend = glint_arena_take(a, 1, sizeof *w->scratch.blend)};
-    w->quad = s->cfg.half_shading
-                  ? glint_arena_take(a, side / 2, sizeof *w->quad)
-                  : NULL;
-    w->quick =
-        s->model.header->n_meshes
-            ? glint_arena_take(a, GLINT_QUICK_TRIANGLES, sizeof *w->quick)
-            : NULL;
-    w->scene = s;
+            glint_arena_take(a, 3 * 2 * side, sizeof *w.scratch.light_q20),
+        .codes = glint_arena_take(a, 1, sizeof *w.scratch.codes),
+        .blend = glint_arena_take(a, 1, sizeof *w.scratch.blend)};
+    if (s->cfg.half_shading)
+        w.quad = glint_arena_take(a, side / 2, sizeof *w.quad);
+    if (s->model.header->n_meshes)
+        w.quick = glint_arena_take(a, GLINT_QUICK_TRIANGLES, sizeof *w.quick);
+    if (worker)
+        *worker = w;
 }
 
 /* Returns whether anything mirrors or bends rays to the camera's picture. */
@@ -177,16 +190,14 @@ static struct glint_scene *carve(struct glint_arena *a,
         s->curve = glint_arena_take(a, 1, sizeof *s->curve);
     if (shows_picture(model))
         cfg->parts.bounces->carve(s, a);
+    s->wards = has_wards(model->header) ? cfg->parts.wards->carve(s, a) : NULL;
     s->cover_across = (cfg->width + 7) >> GLINT_COVER_LOG2;
     s->cover_down = (cfg->height + 7) >> GLINT_COVER_LOG2;
     s->cover = glint_arena_take(
         a, (size_t)s->cover_across * (size_t)s->cover_down, sizeof *s->cover);
     s->worker = glint_arena_take(a, (size_t)n_workers, sizeof *s->worker);
-    for (int i = 0; i < n_workers; i++) {
-        struct glint_scene_worker w;
-
-        carve_worker(s, a, s->worker ? &s->worker[i] : &w);
-    }
+    for (int i = 0; i < n_workers; i++)
+        carve_worker(s, a, s->worker ? &s->worker[i] : NULL);
     return placed;
 }
 
@@ -223,6 +234,8 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
     s->view = view;
     s->has_split = s->has_catchers = 0;
     s->sample_q8 = glint_scene_samples(cfg->edge_samples);
+    if (s->wards && cfg->parts.wards->open(s) != GLINT_OK)
+        return GLINT_E_FORMAT;
     if (s->curve)
         cfg->parts.textures->prepare(s->curve);
     for (uint32_t i = 0; i < model->header->n_materials; i++)

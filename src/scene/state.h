@@ -146,6 +146,13 @@ struct glint_met_surface {
     int32_t uv_log2_q16;
 };
 
+/* How brushed metal lies at a place. */
+struct glint_brushed {
+    int32_t frame_q30[3][3]; /* rows: tangent, bitangent, normal; units */
+    int32_t spread_q30;      /* what the normal's turn within a pixel adds to
+                                the squares of alphas: twice its variance */
+};
+
 /* Light and cover of a pixel: sums over four samples. */
 struct glint_scene_sum {
     int64_t rgb_q17[3];
@@ -203,6 +210,7 @@ struct glint_scene {
     struct glint_gloss *gloss; /* [n_materials] */
     /* What mirrors and glass show; has no memory where none is seen in them. */
     struct glint_around around;
+    struct glint_ward_state *wards; /* NULL: neither environment nor metal */
     int cover_across, cover_down;
     uint16_t *cover; /* [cover_down][cover_across]: sums of q8 over 64 pixels */
 };
@@ -369,6 +377,20 @@ int32_t glint_power_q15(int32_t x_q30, int32_t k_q8);
 void glint_scene_point(struct glint_scene_ray *ray, int32_t t, int32_t radius,
                        int i, int n);
 
+/* What is seen where there is no thing, but the picture itself: sets RGB_Q15 to
+ * the light from TOWARD_Q30, in the mean of a spot of that angular variance. */
+void glint_scene_behind(const struct glint_scene *scene,
+                        const int32_t toward_q30[3], int64_t spread_q40,
+                        int32_t rgb_q15[3]);
+
+/* Returns the angular variance of a pixel. */
+static inline int64_t glint_scene_pixel_q40(const struct glint_scene *scene)
+{
+    const int64_t step_q30 = scene->view.step_q56[0] >> 18;
+
+    return step_q30 < 1 << 30 ? step_q30 * step_q30 >> 22 : INT64_C(1) << 38;
+}
+
 /* ------------------------------------------------------------------- parts */
 
 struct glint_scene_meshes {
@@ -415,6 +437,40 @@ struct glint_scene_bounces {
     /* Take the memory of the picture all around, and keep IMAGE there. */
     void (*carve)(struct glint_scene *scene, struct glint_arena *arena);
     void (*look)(struct glint_scene *scene, const struct glint_image *image);
+};
+
+struct glint_scene_wards {
+    /* Takes the memory of the part; NULL while it is measured. */
+    struct glint_ward_state *(*carve)(const struct glint_scene *scene,
+                                      struct glint_arena *arena);
+    /* Opens the environment and makes the lobes of all metals. */
+    enum glint_status (*open)(struct glint_scene *scene);
+    /* Finds how the metal of SURFACE lies, which RAY meets. */
+    void (*lie)(const struct glint_scene *scene,
+                const struct glint_scene_ray *ray,
+                const struct glint_met_surface *surface,
+                struct glint_brushed *brushed);
+    /* Adds what SURFACE, of diffuse COLOUR_Q15, leaves along RAY of the light
+     * from all around, times WEIGHT_Q15. BRUSHED is NULL if it is no metal. */
+    void (*reflect)(const struct glint_scene *scene,
+                    const struct glint_scene_ray *ray,
+                    const struct glint_met_surface *surface,
+                    const struct glint_brushed *brushed,
+                    const int32_t colour_q15[3], int32_t weight_q15,
+                    int32_t rgb_q15[3]);
+    /* Sets RGB_Q15 to what the metal of SURFACE leaves along RAY of a light of
+     * LEVEL_Q15 from TOWARD_Q30, of an angular radius of that sine. Returns 0,
+     * and sets nothing, if it is nothing. */
+    int (*shine)(const struct glint_scene *scene,
+                 const struct glint_scene_ray *ray,
+                 const struct glint_met_surface *surface,
+                 const struct glint_brushed *brushed,
+                 const int32_t toward_q30[3], const int32_t level_q15[3],
+                 int32_t radius_q30, int32_t rgb_q15[3]);
+    /* Sets RGB_Q15 to the environment's light, with its bright lights, from
+     * TOWARD_Q30, in the mean of a spot of that angular variance. */
+    void (*look)(const struct glint_scene *scene, const int32_t toward_q30[3],
+                 int64_t spread_q40, int32_t rgb_q15[3]);
 };
 
 /* Pixels of the tile that a worker draws in, as a pass. */

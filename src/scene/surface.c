@@ -100,6 +100,19 @@ int glint_scene_planes_block(const struct glint_scene *scene,
     return 0;
 }
 
+void glint_scene_behind(const struct glint_scene *scene,
+                        const int32_t toward_q30[3], int64_t spread_q40,
+                        int32_t rgb_q15[3])
+{
+    const struct glint_scene_header *h = scene->model.header;
+
+    if (h->background == GLINT_BACKGROUND_ENVIRONMENT)
+        scene->cfg.parts.wards->look(scene, toward_q30, spread_q40, rgb_q15);
+    else
+        for (int c = 0; c < 3; c++)
+            rgb_q15[c] = h->background_q15[c];
+}
+
 int glint_scene_meet_id(const struct glint_scene *scene,
                         const struct glint_scene_ray *ray,
                         const int32_t seen_q30[3], uint32_t id,

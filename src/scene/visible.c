@@ -306,7 +306,7 @@ int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile)
     w->touched = touch(s, tile, has_triangles);
     clear(w);
     if (glint_box_empty(w->touched))
-        return s->model.header->background == GLINT_BACKGROUND_COLOUR;
+        return s->model.header->background != GLINT_BACKGROUND_CAMERA;
     for (int32_t i = has_triangles ? s->bins.start[at] : 0;
          has_triangles && i < s->bins.start[at + 1]; i++)
         s->cfg.parts.meshes->look(w, (uint32_t)s->bins.ref[i]);

@@ -29,6 +29,7 @@ struct rest {
     size_t size;
 };
 
+/* Environments likewise. */
 static enum glint_status read_mesh(void *ctx, const char *name, uint8_t **data,
                                    size_t *bytes, struct glint_error *error)
 {
@@ -147,7 +148,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const size_t bytes = zero ? (size_t)(zero - data) : size;
     struct rest rest = {data + bytes, size - bytes};
     const struct glint_description_files files = {&rest, read_mesh,
-                                                  make_picture};
+                                                  make_picture, read_mesh};
     struct glint_error error;
     enum glint_status status;
 

@@ -155,8 +155,8 @@ static int bake(const struct text *t, struct glint_scene_model *model,
                 unsigned char **data)
 {
     static struct glint_description scene;
-    const struct glint_description_files files = {NULL, read_ring,
-                                                  read_picture};
+    const struct glint_description_files files = {NULL, read_ring, read_picture,
+                                                  NULL};
     struct glint_scene_bake_report report;
     struct glint_error error = {""};
     const char *reason = "";

@@ -13,7 +13,7 @@
 #include "scenes/baked_scene.h"
 #include "scenes/budget.h"
 #include "scenes/scene_frame.h"
-#include "scenes/twin.h"
+#include "twin/twin.h"
 
 static const char help[] =
     "glint render NAME.scene|BAKED -o OUT [options]\n"

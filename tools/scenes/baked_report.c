@@ -8,7 +8,7 @@
 
 /* Bytes of a baked scene by what they hold; the keywords of its text. */
 struct scene_bytes {
-    size_t header, light, texture, material, object;
+    size_t header, light, texture, material, environment, object;
     size_t mesh;                                   /* all of these: */
     size_t vertices, normals, uv, triangles, grid; /* and their headers */
 };
@@ -56,7 +56,9 @@ static void measure(const struct glint_scene_model *model,
     *b = (struct scene_bytes){.header = sizeof *h,
                               .light = h->n_lights * sizeof *model->light,
                               .material =
-                                  h->n_materials * sizeof *model->material,
+                                  h->n_materials * sizeof *model->material +
+                                  h->n_wards * sizeof *model->ward,
+                              .environment = h->environment_bytes,
                               .object = h->n_objects * sizeof *model->object};
     *n = (struct scene_counts){.spheres = 0};
     for (uint32_t i = 0; i < h->n_textures; i++)
@@ -77,8 +79,10 @@ static void print_bytes(const struct scene_bytes *b, FILE *to)
 {
     fprintf(to,
             "\"header\": %zu, \"light\": %zu, \"texture\": %zu, "
-            "\"material\": %zu, \"object\": %zu, \"mesh\": %zu",
-            b->header, b->light, b->texture, b->material, b->object, b->mesh);
+            "\"material\": %zu, \"environment\": %zu, \"object\": %zu, "
+            "\"mesh\": %zu",
+            b->header, b->light, b->texture, b->material, b->environment,
+            b->object, b->mesh);
 }
 
 void baked_scene_bytes(const struct glint_scene_model *model, FILE *to)
@@ -136,6 +140,7 @@ static void print_text(const struct baked_scene *scene,
                {"light", b->light},
                {"texture", b->texture},
                {"material", b->material},
+               {"environment", b->environment},
                {"object", b->object},
                {"mesh", b->mesh},
                {"  vertices", b->vertices},

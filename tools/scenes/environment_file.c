@@ -8,7 +8,8 @@
 #include "formats/picture.h"
 #include "model/model_file.h"
 #include "posix/input.h"
-#include "scenes/scene_file.h"
+#include "posix/target.h"
+#include "scenes/names.h"
 
 #define MAX_FILE_BYTES ((size_t)1 << 28)
 
@@ -36,39 +37,47 @@ bool environment_file_is_baked(const char *argument)
     return tool_begins_as(argument, GLINT_ENVIRONMENT_MAGIC);
 }
 
-static int read_text(const struct tool *tool, const char *path,
-                     struct glint_environment_options *options,
-                     char source[GLINT_ENVIRONMENT_FILE_BYTES])
+/* Refuses to read what is to be written. */
+static enum glint_status keep(const char *path, const char *written,
+                              struct glint_error *error)
 {
-    struct glint_error error = {""};
+    if (!written || !glint_target_is_input(path, written))
+        return GLINT_OK;
+    snprintf(error->text, sizeof error->text,
+             "%.180s would be lost: it is what -o names; name another file",
+             path);
+    return GLINT_E_ARGUMENT;
+}
+
+static enum glint_status read_text(const char *path,
+                                   struct glint_environment_options *options,
+                                   char source[GLINT_ENVIRONMENT_FILE_BYTES],
+                                   struct glint_error *error)
+{
     uint8_t *text = NULL;
     size_t bytes = 0;
     enum glint_status status =
-        glint_input_slurp(&text, &bytes, path, 1 << 16, &error);
+        glint_input_slurp(&text, &bytes, path, 1 << 16, error);
 
     if (status == GLINT_OK)
         status = glint_environment_parse(options, source, (const char *)text,
-                                         bytes, path, &error);
+                                         bytes, path, error);
     free(text);
-    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+    return status;
 }
 
 /* Bakes the picture FROM, under the name of the file NAMED. */
-static int bake(const struct tool *tool, const char *named, const char *from,
-                const struct glint_environment_options *options,
-                struct environment_file *file)
+static enum glint_status bake(const char *named, const char *from,
+                              const struct glint_environment_options *options,
+                              struct environment_file *file,
+                              struct glint_error *error)
 {
-    struct glint_error error = {""};
     struct glint_float_image picture = {0};
     unsigned char *data = NULL;
     uint64_t key = TOOL_KEY_BEGIN;
     char name[64];
-    enum glint_status status = GLINT_OK;
-    const int code = tool_scene_is_kept(tool, from);
+    enum glint_status status = glint_picture_load_float(from, &picture, error);
 
-    if (code != EXIT_OK)
-        return code;
-    status = glint_picture_load_float(from, &picture, &error);
     if (status == GLINT_OK) {
         tool_scene_name(named, name);
         tool_key_mix(&key, options, sizeof *options);
@@ -76,34 +85,74 @@ static int bake(const struct tool *tool, const char *named, const char *from,
                      3 * sizeof(float) * (size_t)picture.width *
                          (size_t)picture.height);
         status = glint_environment_bake(&picture, options, name, key, &data,
-                                        &file->bytes, &file->report, &error);
+                                        &file->bytes, &file->report, error);
         if (status == GLINT_E_UNSUPPORTED) {
-            const struct glint_error cause = error;
+            const struct glint_error cause = *error;
 
-            snprintf(error.text, sizeof error.text, "%.120s: %.120s", from,
+            snprintf(error->text, sizeof error->text, "%.120s: %.120s", from,
                      cause.text);
         }
     }
     free(picture.rgb);
     file->data = data;
     file->is_baked_now = true;
-    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+    return status;
 }
 
-static int read_baked(const struct tool *tool, const char *path,
-                      struct environment_file *file)
+/* Reads the picture or text PATH and bakes it. */
+static enum glint_status
+bake_source(const char *path, const char *written,
+            void (*over)(void *ctx, struct glint_environment_options *),
+            void *ctx, struct environment_file *file, struct glint_error *error)
 {
-    struct glint_error error = {""};
+    struct glint_environment_options options;
+    char source[GLINT_ENVIRONMENT_FILE_BYTES], beside[TOOL_PATH_BYTES];
+    const char *picture = path;
+    enum glint_status status = GLINT_OK;
+
+    memset(&options, 0, sizeof options); /* padding is a part of the key */
+    glint_environment_defaults(&options);
+    if (is_text(path)) {
+        status = read_text(path, &options, source, error);
+        if (status == GLINT_OK && !tool_beside(path, source, beside)) {
+            snprintf(error->text, sizeof error->text, "the name is too long");
+            status = GLINT_E_IO;
+        }
+        if (status == GLINT_OK)
+            status = keep(beside, written, error);
+        picture = beside;
+    }
+    if (over)
+        over(ctx, &options);
+    return status == GLINT_OK ? bake(path, picture, &options, file, error)
+                              : status;
+}
+
+enum glint_status environment_file_read(
+    const char *path, const char *written,
+    void (*over)(void *ctx, struct glint_environment_options *), void *ctx,
+    struct environment_file *file, struct glint_error *error)
+{
+    const char *reason = "";
     uint8_t *data = NULL;
     enum glint_status status;
-    const int code = tool_scene_is_kept(tool, path);
 
-    if (code != EXIT_OK)
-        return code;
-    status =
-        glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, &error);
-    file->data = data; /* malloc aligns it */
-    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+    *file = (struct environment_file){.data = NULL};
+    status = keep(path, written, error);
+    if (status == GLINT_OK && environment_file_is_source(path)) {
+        status = bake_source(path, written, over, ctx, file, error);
+    } else if (status == GLINT_OK) {
+        status =
+            glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, error);
+        file->data = data; /* malloc aligns it */
+    }
+    if (status != GLINT_OK ||
+        glint_environment_open(&file->environment, file->data, file->bytes,
+                               &reason) == GLINT_OK)
+        return status;
+    snprintf(error->text, sizeof error->text, "%.180s: %.70s", path, reason);
+    environment_file_close(file);
+    return GLINT_E_LENS;
 }
 
 int environment_file_open(const struct tool *tool, const char *path,
@@ -111,38 +160,15 @@ int environment_file_open(const struct tool *tool, const char *path,
                                        struct glint_environment_options *),
                           void *ctx, struct environment_file *file)
 {
-    struct glint_environment_options options;
     struct glint_error error = {""};
-    char source[GLINT_ENVIRONMENT_FILE_BYTES], beside[TOOL_PATH_BYTES];
-    const char *picture = path, *reason = "";
-    int code = EXIT_OK;
+    enum glint_status status;
+    const int code = tool_scene_is_kept(tool, path);
 
-    *file = (struct environment_file){.data = NULL};
-    if (!environment_file_is_source(path)) {
-        code = read_baked(tool, path, file);
-    } else {
-        memset(&options, 0, sizeof options); /* padding is a part of the key */
-        glint_environment_defaults(&options);
-        if (is_text(path)) {
-            code = tool_scene_is_kept(tool, path);
-            if (code == EXIT_OK)
-                code = read_text(tool, path, &options, source);
-            if (code == EXIT_OK && !tool_beside(path, source, beside))
-                code = tool_fail(tool, GLINT_E_IO, "the name is too long");
-            picture = beside;
-        }
-        if (over)
-            over(ctx, &options);
-        if (code == EXIT_OK)
-            code = bake(tool, path, picture, &options, file);
-    }
-    if (code != EXIT_OK ||
-        glint_environment_open(&file->environment, file->data, file->bytes,
-                               &reason) == GLINT_OK)
+    if (code != EXIT_OK)
         return code;
-    snprintf(error.text, sizeof error.text, "%.180s: %.70s", path, reason);
-    environment_file_close(file);
-    return tool_fail(tool, GLINT_E_LENS, error.text);
+    status =
+        environment_file_read(path, tool->written, over, ctx, file, &error);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
 void environment_file_close(struct environment_file *file)

@@ -4,13 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
 
 #include "assimp/assimp.h"
 #include "formats/picture.h"
 #include "model/model_file.h"
 #include "posix/input.h"
 #include "posix/target.h"
+#include "scenes/environment_file.h"
 
 enum { TEXT_BYTES = 1 << 20 };
 
@@ -19,50 +19,6 @@ bool tool_is_scene(const char *argument)
     const size_t n = strlen(argument);
 
     return n > 6 && strcmp(argument + n - 6, ".scene") == 0;
-}
-
-bool tool_begins_as(const char *argument, uint32_t magic)
-{
-    uint32_t first = 0;
-    struct stat st;
-    FILE *file;
-
-    /* A pipe can be read once only. */
-    if (!tool_is_file_name(argument) || stat(argument, &st) < 0 ||
-        !S_ISREG(st.st_mode))
-        return false;
-    file = fopen(argument, "rb");
-    if (!file)
-        return false;
-    if (fread(&first, sizeof first, 1, file) < 1)
-        first = 0;
-    fclose(file);
-    return first == magic;
-}
-
-void tool_key_mix(uint64_t *key, const void *data, size_t bytes)
-{
-    const uint8_t *byte = data;
-
-    for (size_t i = 0; i < bytes; i++)
-        *key = (*key ^ byte[i]) * UINT64_C(1099511628211);
-}
-
-bool tool_beside(const char *text, const char *name, char path[TOOL_PATH_BYTES])
-{
-    const char *const slash = name[0] == '/' ? NULL : strrchr(text, '/');
-    const int folder = slash ? (int)(slash - text) + 1 : 0;
-
-    return snprintf(path, TOOL_PATH_BYTES, "%.*s%s", folder, text, name) <
-           TOOL_PATH_BYTES;
-}
-
-void tool_scene_name(const char *path, char name[64])
-{
-    const char *const slash = strrchr(path, '/');
-    const char *const start = slash ? slash + 1 : path;
-
-    snprintf(name, 64, "%.*s", (int)strcspn(start, "."), start);
 }
 
 /* A text while it is read, and the key of what was read so far. */
@@ -143,22 +99,33 @@ static enum glint_status read_picture(void *ctx, const char *name,
     return status;
 }
 
-int tool_scene_is_kept(const struct tool *tool, const char *path)
+/* Reads or bakes an environment, whose data the caller takes. */
+static enum glint_status read_environment(void *ctx, const char *name,
+                                          uint8_t **data, size_t *bytes,
+                                          struct glint_error *error)
 {
-    if (!tool->written || !glint_target_is_input(path, tool->written))
-        return EXIT_OK;
-    return tool_usage(tool,
-                      "-o %s is the input, which would be lost; name another "
-                      "file",
-                      tool->written);
+    struct reading *reading = ctx;
+    struct environment_file file;
+    char path[TOOL_PATH_BYTES];
+    enum glint_status status = find(reading, name, path, error);
+
+    if (status == GLINT_OK)
+        status = environment_file_read(path, reading->written, NULL, NULL,
+                                       &file, error);
+    if (status != GLINT_OK)
+        return status;
+    mix(reading, file.data, file.bytes);
+    *data = file.data;
+    *bytes = file.bytes;
+    return GLINT_OK;
 }
 
 int tool_scene(const struct tool *tool, const char *path,
                struct glint_description *scene, uint64_t *key)
 {
     struct reading reading = {path, tool->written, TOOL_KEY_BEGIN};
-    const struct glint_description_files files = {&reading, read_mesh,
-                                                  read_picture};
+    const struct glint_description_files files = {
+        &reading, read_mesh, read_picture, read_environment};
     struct glint_error error = {""};
     uint8_t *text = NULL;
     size_t bytes = 0;

@@ -30,12 +30,14 @@ extern "C" {
 
 enum {
     GLINT_DESCRIPTION_NAME_BYTES = 32,
-    GLINT_DESCRIPTION_MAX_LIGHTS = 16,
+    GLINT_DESCRIPTION_TEXT_LIGHTS = 16, /* lines of a text */
+    GLINT_DESCRIPTION_MAX_LIGHTS = 32,  /* with those of the environment */
     GLINT_DESCRIPTION_MAX_MATERIALS = 256,
     GLINT_DESCRIPTION_MAX_TEXTURES = 64,
     GLINT_DESCRIPTION_MAX_OBJECTS = 1024,
     GLINT_DESCRIPTION_MAX_TRIANGLES = 1 << 20, /* of all things together */
     GLINT_DESCRIPTION_MAX_SIDE = 4096,         /* texels of a texture */
+    GLINT_DESCRIPTION_MAX_RATIO = 10,          /* of alphas of brushed metal */
     GLINT_DESCRIPTION_MAX_MESH_BYTES = 1 << 27
 };
 
@@ -62,7 +64,8 @@ struct glint_described_camera {
 enum glint_described_source { GLINT_DESCRIBED_SUN, GLINT_DESCRIBED_LAMP };
 
 struct glint_described_light {
-    char name[GLINT_DESCRIPTION_NAME_BYTES]; /* sun, lamp, lamp2, ... */
+    /* sun, lamp, lamp2, ..., environment, environment2, ... */
+    char name[GLINT_DESCRIPTION_NAME_BYTES];
     enum glint_described_source kind;
     double at[3]; /* lamp: place; sun: unit vector towards it */
     /* Sun: radiance of its disc. Lamp: what a white surface shows that faces
@@ -78,6 +81,8 @@ struct glint_described_texture {
     struct glint_image image;
 };
 
+enum glint_described_norm { GLINT_DESCRIBED_BOUNDED, GLINT_DESCRIBED_1992 };
+
 struct glint_described_material {
     char name[GLINT_DESCRIPTION_NAME_BYTES];
     double ambient, diffuse, specular; /* sum at most 1 */
@@ -88,6 +93,20 @@ struct glint_described_material {
      * top; their sum is at most 1. */
     double reflect, pass;
     double index; /* of refraction; 1: straight on */
+    /* Brushed metal: diffuse is 1, the other weights are 0. */
+    bool is_metal;
+    double metal[3]; /* specular colour */
+    double alpha[2]; /* around the y axis of balls and meshes, along the x axis
+                        of planes; and at right angles */
+    enum glint_described_norm norm;
+};
+
+/* Light from all around. */
+struct glint_described_environment {
+    uint8_t *data; /* a baked environment, malloc'ed; NULL: there is none */
+    size_t bytes;
+    double turn_deg; /* to the right */
+    double scale;    /* factor of all its light */
 };
 
 enum glint_described_kind {
@@ -122,7 +141,11 @@ struct glint_described_triangle {
     int object, material;
 };
 
-enum glint_described_background { GLINT_BEHIND_CAMERA, GLINT_BEHIND_COLOUR };
+enum glint_described_background {
+    GLINT_BEHIND_CAMERA,
+    GLINT_BEHIND_COLOUR,
+    GLINT_BEHIND_ENVIRONMENT
+};
 
 enum glint_described_flare {
     GLINT_DESCRIBED_FLARE_OFF,
@@ -135,6 +158,7 @@ struct glint_description {
     struct glint_described_camera camera;
     enum glint_described_background background;
     double background_colour[3];
+    struct glint_described_environment environment;
     bool has_shadows;
     enum glint_described_flare flare;
     int n_highlights;
@@ -158,6 +182,10 @@ struct glint_description_files {
     enum glint_status (*picture)(void *ctx, const char *name,
                                  struct glint_image *image,
                                  struct glint_error *error);
+    /* As a baked environment; NULL: there are none. */
+    enum glint_status (*environment)(void *ctx, const char *name,
+                                     uint8_t **data, size_t *bytes,
+                                     struct glint_error *error);
 };
 
 /* Reads a scene text. TEXT need not be terminated and may hold anything;

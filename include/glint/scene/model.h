@@ -19,6 +19,9 @@
  * Light is linear BT.709, 1 = display white. A weight of 1, white, that faces a
  * light of 1 shows 1: the light's irradiance is pi then.
  *
+ * Light from all around is a baked environment (glint/scene/environment.h),
+ * a section of the file; of its bright lights each is a sun of the scene, too.
+ *
  * The file: little-endian 32-bit words; offsets ("_at") are bytes from the
  * start of the file, multiples of 4. Header first, then in any order what it
  * points to. No two sections share bytes; an
@@ -37,13 +40,13 @@ extern "C" {
 #endif
 
 #define GLINT_SCENE_MAGIC   UINT32_C(0x53544e47) /* "GNTS" */
-#define GLINT_SCENE_VERSION 1
+#define GLINT_SCENE_VERSION 2
 #define GLINT_SCENE_NONE    UINT32_C(0xffffffff) /* no texture, no material */
 
 enum {
     GLINT_SCENE_SPAN = 1 << 28, /* steps: every coordinate is below */
     GLINT_SCENE_MAX_OBJECTS = 4095,
-    GLINT_SCENE_MAX_LIGHTS = 16,
+    GLINT_SCENE_MAX_LIGHTS = 32, /* with those of the environment */
     GLINT_SCENE_MAX_MATERIALS = 4096,
     GLINT_SCENE_MAX_TEXTURES = 256,
     GLINT_SCENE_MAX_MESHES = 4096,
@@ -77,7 +80,8 @@ struct glint_scene_camera {
 
 enum glint_scene_background {
     GLINT_BACKGROUND_CAMERA, /* the picture that is drawn onto */
-    GLINT_BACKGROUND_COLOUR
+    GLINT_BACKGROUND_COLOUR,
+    GLINT_BACKGROUND_ENVIRONMENT
 };
 
 enum glint_scene_light_kind {
@@ -114,7 +118,9 @@ struct glint_scene_texture {
  *     ambient colour + sum of lights (diffuse colour (N.L) + specular (R.V)^k)
  *     light + reflect (what the mirrored ray sees) + pass (what is behind it)
  *
- * with R the light mirrored at the surface. [Tutorial], [Phong75] */
+ * with R the light mirrored at the surface [Tutorial], [Phong75]. Light from
+ * all around adds diffuse colour times what it shows a white surface. In place
+ * of (R.V)^k brushed metal has Ward's lobe, over all of that light. */
 struct glint_scene_material {
     char name[GLINT_SCENE_NAME]; /* terminated */
     /* Weights, 0 .. 32768; those of one line sum to 32768 at most. */
@@ -126,7 +132,16 @@ struct glint_scene_material {
      * rays pass straight on. */
     int32_t index_q16;
     uint32_t texture; /* or GLINT_SCENE_NONE */
-    uint32_t zero;
+    uint32_t ward;    /* brushed metal, whose specular_q15 is 0; or
+                         GLINT_SCENE_NONE */
+};
+
+/* Brushed metal. Of a ball and a mesh the first alpha is that around the y axis
+ * of the object, of a plane along its x axis; the other at right angles. */
+struct glint_scene_ward {
+    int32_t specular_q15[3]; /* 0 .. 32768 */
+    int32_t alpha_q24[2];    /* .001 .. 1, 2^14 .. 2^24 */
+    uint32_t norm;           /* enum glint_ward_norm of glint/scene/ward.h */
 };
 
 struct glint_scene_triangle {
@@ -209,6 +224,13 @@ struct glint_scene_header {
     uint32_t n_materials, material_at; /* struct glint_scene_material */
     uint32_t n_meshes, mesh_at;        /* struct glint_scene_mesh */
     uint32_t n_objects, object_at;     /* struct glint_scene_object */
+    uint32_t n_wards, ward_at;         /* struct glint_scene_ward */
+    /* A baked environment, whole words; 0 bytes: there is none, and what
+     * follows is 0. */
+    uint32_t environment_at, environment_bytes;
+    /* Cosine and sine of the angle by which it is turned to the right. */
+    int32_t environment_turn_q30[2];
+    struct glint_real environment_scale; /* factor of all its light */
 };
 
 /* An opened file; it points into that, which must outlive it. */
@@ -219,6 +241,8 @@ struct glint_scene_model {
     const struct glint_scene_material *material;
     const struct glint_scene_mesh *mesh;
     const struct glint_scene_object *object;
+    const struct glint_scene_ward *ward;
+    const void *environment; /* NULL: there is none */
 };
 
 /* Checks DATA[BYTES], aligned to 4 bytes, and points MODEL into it. DATA is

@@ -38,9 +38,11 @@ extern "C" {
 struct glint_scene_meshes;
 struct glint_scene_textures;
 struct glint_scene_bounces;
+struct glint_scene_wards;
 extern const struct glint_scene_meshes glint_scene_meshes;
 extern const struct glint_scene_textures glint_scene_textures;
 extern const struct glint_scene_bounces glint_scene_bounces;
+extern const struct glint_scene_wards glint_scene_wards;
 
 /* Parts of the run time; NULL: it is not there, and models that need it are
  * refused. */
@@ -48,6 +50,7 @@ struct glint_scene_parts {
     const struct glint_scene_meshes *meshes;
     const struct glint_scene_textures *textures;
     const struct glint_scene_bounces *bounces; /* reflection, passing through */
+    const struct glint_scene_wards *wards;     /* environments, brushed metal */
 };
 
 struct glint_scene_config {
@@ -61,6 +64,9 @@ struct glint_scene_config {
     int shadow_points; /* 1, 4 or 16: points of a light that has an extent */
     int half_shading;  /* 1: two by two pixels whose samples all see one thing
                           are shaded once, in their middle */
+    int ward_samples;  /* 1 .. 32: lookups of an environment for a place on
+                          brushed metal */
+    int ward_nearest;  /* 1: each reads one level, not two blended */
     int dither;        /* 1: 8-bit output is dithered, deterministically */
     /* For GLINT_CAMERA_LENS: the focal length in pixels, 2^10 .. 2^40 _q16. */
     int64_t focal_q16;
@@ -89,14 +95,16 @@ void glint_scene_defaults(struct glint_scene_config *cfg, int width,
 size_t glint_scene_bytes(const struct glint_scene_config *cfg,
                          const struct glint_scene_model *model);
 
-/* Returns which part MODEL needs and PARTS do not name: "meshes", "textures" or
- * "bounces"; NULL: none. */
+/* Returns which part MODEL needs and PARTS do not name: "meshes", "textures",
+ * "bounces" or "wards"; NULL: none. */
 const char *glint_scene_lacks(const struct glint_scene_parts *parts,
                               const struct glint_scene_model *model);
 
 /* Places a scene in MEM[BYTES], aligned to 64, which needs no finish. MODEL is
  * copied; what it points into is kept. GLINT_E_MEMORY: BYTES is too small.
- * GLINT_E_UNSUPPORTED: MODEL needs a part that CFG does not name. */
+ * GLINT_E_UNSUPPORTED: MODEL needs a part that CFG does not name.
+ * GLINT_E_FORMAT: its environment is damaged, glint_environment_open() has the
+ * reason. */
 enum glint_status glint_scene_init(struct glint_scene **scene,
                                    const struct glint_scene_config *cfg,
                                    const struct glint_scene_model *model,

@@ -63,12 +63,17 @@ struct glint_ward_lobe {
     int n, nearest;
     enum glint_ward_norm norm;
     int32_t share_q16; /* 1 / n */
+    int unit_log2;     /* of the light of its environment */
     int32_t specular_q15[3];
     struct glint_ward_sample sample[GLINT_WARD_SAMPLES];
 };
 
 /* Sets OPTIONS to 8 samples with constant footprints. */
 void glint_ward_defaults(struct glint_ward_options *options);
+
+/* Raises the smaller alpha to a tenth of the other; returns 1 if it was less.
+ */
+int glint_ward_hold(int32_t alpha_q24[2]);
 
 /* Makes LOBE for ENVIRONMENT. Returns 1 if the smaller alpha was raised to a
  * tenth of the other, else 0. */
@@ -84,6 +89,11 @@ void glint_ward_light(const struct glint_ward_lobe *lobe,
                       const struct glint_environment *environment,
                       const int32_t frame_q14[3][3], const int32_t view_q14[3],
                       int32_t rgb_q15[3]);
+
+/* Sets RGB, in units of ENVIRONMENT, 0 .. 2^28, to what its levels show a white
+ * surface whose normal is NORMAL, of any length up to 2^16. */
+void glint_environment_irradiance(const struct glint_environment *environment,
+                                  const int32_t normal[3], int32_t rgb[3]);
 
 /* Sets RGB, in units of ENVIRONMENT, 0 .. 2^28, to its light from TOWARD, of
  * any length up to 2^16, at LEVEL_Q8, held to what there is. */

@@ -11,15 +11,11 @@ const char *glint_not_built(const struct glint_word *word)
     static const struct {
         const char *word, *instead;
     } absent[] = {
-        {"environment", "light comes from 'light sun' and 'light lamp'"},
         {"motion", "things are moved by poses"},
         {"sensor", "a camera has fov, lens, orbit or corners"},
-        {"ward", "materials are phong"},
-        {"translucent", "materials are phong"},
-        {"coat", "materials are phong"},
-        {"fresnel", "materials are phong"},
-        {"alpha", "materials are phong"},
-        {"norm", "materials are phong"},
+        {"translucent", "materials are phong or ward"},
+        {"coat", "materials are phong or ward"},
+        {"fresnel", "materials are phong or ward"},
     };
 
     for (size_t i = 0; i < sizeof absent / sizeof *absent; i++)

@@ -53,6 +53,7 @@ static const struct line {
     {"hand", glint_describe_hand, true},
     {"camera", glint_describe_camera, true},
     {"background", glint_describe_background, true},
+    {"environment", glint_describe_environment, true},
     {"light", glint_describe_light, false},
     {"texture", glint_describe_texture, false},
     {"material", glint_describe_material, false},
@@ -122,7 +123,7 @@ glint_description_parse(struct glint_description *scene, const char *text,
     good = glint_text_open(&d.text, text, bytes, file_name, error);
     while (good && glint_text_next_line(&d.text))
         good = read_line(&d, first);
-    good = good && glint_describe_axes(&d);
+    good = good && glint_describe_axes(&d) && glint_describe_around(&d);
     if (good && !scene->n_objects)
         good = glint_text_fail(&d.text, glint_text_end(&d.text),
                                "there is no thing: sphere, triangle, plane or "
@@ -138,5 +139,6 @@ void glint_description_free(struct glint_description *scene)
     for (int i = 0; i < scene->n_textures; i++)
         free(scene->texture[i].image.plane[0]);
     free(scene->triangle);
+    free(scene->environment.data);
     memset(scene, 0, sizeof *scene);
 }

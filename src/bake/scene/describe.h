@@ -17,6 +17,7 @@ struct glint_describer {
     int room;                 /* triangles that there is memory for */
     /* The camera's line, which is worked out when the hand is known. */
     struct glint_text_place camera;
+    struct glint_text_place background; /* of its word */
     double toward[3], up[3], orbit[3], distance, yaw_deg, pitch_deg;
     bool has_orbit;
 };
@@ -37,6 +38,16 @@ bool glint_describe_material(struct glint_describer *d);
 /* Sets INDEX to the material called WORD. */
 bool glint_describe_find(struct glint_describer *d,
                          const struct glint_word *word, int *index);
+
+/* describe_metal.c: a material's line from 'ward' on; TEXTURE becomes the name
+ * of its texture, if there is one. */
+bool glint_describe_metal(struct glint_describer *d,
+                          struct glint_described_material *m,
+                          struct glint_word *texture);
+
+/* describe_around.c: environment; and its lights, when all lines are read. */
+bool glint_describe_environment(struct glint_describer *d);
+bool glint_describe_around(struct glint_describer *d);
 
 /* describe_things.c: sphere, triangle, plane, mesh. */
 bool glint_describe_sphere(struct glint_describer *d);

@@ -87,9 +87,9 @@ bool glint_describe_light(struct glint_describer *d)
     char quote[GLINT_QUOTE_BYTES];
     bool good;
 
-    if (s->n_lights == GLINT_DESCRIPTION_MAX_LIGHTS)
+    if (s->n_lights == GLINT_DESCRIPTION_TEXT_LIGHTS)
         return glint_text_fail(&d->text, word.place, "more than %d lights",
-                               GLINT_DESCRIPTION_MAX_LIGHTS);
+                               GLINT_DESCRIPTION_TEXT_LIGHTS);
     if (!glint_word_is(&word, "sun") && !glint_word_is(&word, "lamp"))
         return word.length
                    ? glint_text_fail(&d->text, word.place,
@@ -208,23 +208,39 @@ static bool check_shares(struct glint_describer *d,
     return true;
 }
 
+/* Reads a material's line from 'phong' on, as glint_describe_metal() does from
+ * 'ward' on. */
+static bool read_phong(struct glint_describer *d,
+                       struct glint_described_material *m,
+                       struct glint_word *texture)
+{
+    double phong[3] = {0};
+    struct glint_clause clause[] = {
+        {"phong", 3, 0, 1, .value = phong, .required = true},
+        {"colour", 3, 0, 1, .value = m->colour},
+        {"power", 1, 1, 4096, .value = &m->power},
+        {"texture", .name = texture},
+        {"reflect", 1, 0, 1, .value = &m->reflect},
+        {"pass", 1, 0, 1, .value = &m->pass},
+        {"refract", 1, 0.25, 4, .value = &m->index},
+        {0}};
+
+    if (!glint_clauses_read(&d->text, "material", clause))
+        return false;
+    m->ambient = phong[0];
+    m->diffuse = phong[1];
+    m->specular = phong[2];
+    return check_shares(d, m, clause);
+}
+
 bool glint_describe_material(struct glint_describer *d)
 {
     struct glint_description *s = d->scene;
     struct glint_described_material *m = &s->material[s->n_materials];
     struct glint_text at = d->text;
     const struct glint_text_place place = glint_text_next_word(&at).place;
+    const struct glint_word kind = glint_text_next_word(&at);
     struct glint_word texture = {0};
-    double phong[3] = {0};
-    struct glint_clause clause[] = {
-        {"phong", 3, 0, 1, .value = phong, .required = true},
-        {"colour", 3, 0, 1, .value = m->colour},
-        {"power", 1, 1, 4096, .value = &m->power},
-        {"texture", .name = &texture},
-        {"reflect", 1, 0, 1, .value = &m->reflect},
-        {"pass", 1, 0, 1, .value = &m->pass},
-        {"refract", 1, 0.25, 4, .value = &m->index},
-        {0}};
 
     if (s->n_materials == GLINT_DESCRIPTION_MAX_MATERIALS)
         return glint_text_fail(&d->text, place, "more than %d materials",
@@ -238,12 +254,10 @@ bool glint_describe_material(struct glint_describer *d)
             return glint_text_fail(&d->text, place,
                                    "a material of this name is already "
                                    "defined");
-    if (!glint_clauses_read(&d->text, "material", clause) ||
-        (clause[3].place.line && !find_texture(d, &texture, &m->texture)))
+    if (!(glint_word_is(&kind, "ward") ? glint_describe_metal
+                                       : read_phong)(d, m, &texture) ||
+        (texture.length && !find_texture(d, &texture, &m->texture)))
         return false;
-    m->ambient = phong[0];
-    m->diffuse = phong[1];
-    m->specular = phong[2];
     s->n_materials++;
-    return check_shares(d, m, clause);
+    return true;
 }

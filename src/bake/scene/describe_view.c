@@ -59,14 +59,19 @@ bool glint_describe_hand(struct glint_describer *d)
 
 bool glint_describe_background(struct glint_describer *d)
 {
-    static const char *const words[] = {"camera", "colour", NULL};
+    static const char *const words[] = {"camera", "colour", "environment",
+                                        NULL};
+    struct glint_text at = d->text;
     int index;
 
-    if (!read_word(d, "background", "camera or colour R G B", words, &index))
+    d->background = glint_text_next_word(&at).place;
+    if (!read_word(d, "background", "camera, colour R G B or environment",
+                   words, &index))
         return false;
-    d->scene->background = index ? GLINT_BEHIND_COLOUR : GLINT_BEHIND_CAMERA;
-    return (!index || glint_numbers_read(&d->text, "colour", 3, 0, MAX_LIGHT,
-                                         d->scene->background_colour)) &&
+    d->scene->background = (enum glint_described_background)index;
+    return (index != GLINT_BEHIND_COLOUR ||
+            glint_numbers_read(&d->text, "colour", 3, 0, MAX_LIGHT,
+                               d->scene->background_colour)) &&
            glint_line_ends(&d->text, "background");
 }
 

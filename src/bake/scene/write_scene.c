@@ -12,6 +12,7 @@
 #include "bake/scene/grid.h"
 #include "bake/scene/texels.h"
 #include "base/blob.h"
+#include "glint/scene/ward.h"
 #include "glint/view.h"
 
 enum { ONE_Q15 = 1 << 15 };
@@ -156,7 +157,8 @@ material_of(const struct glint_described_material *from)
         .power_q8 = (int32_t)lrint(256 * from->power),
         .index_q16 = (int32_t)lrint(0x1p16 * from->index),
         .texture =
-            from->texture < 0 ? GLINT_SCENE_NONE : (uint32_t)from->texture};
+            from->texture < 0 ? GLINT_SCENE_NONE : (uint32_t)from->texture,
+        .ward = GLINT_SCENE_NONE};
     int32_t *const phong[] = {&m.ambient_q15, &m.diffuse_q15, &m.specular_q15};
     int32_t *const next[] = {&m.reflect_q15, &m.pass_q15};
 
@@ -166,25 +168,51 @@ material_of(const struct glint_described_material *from)
     return m;
 }
 
+static struct glint_scene_ward
+ward_of(const struct glint_described_material *from)
+{
+    struct glint_scene_ward w = {.norm = from->norm == GLINT_DESCRIBED_1992
+                                             ? GLINT_WARD_1992
+                                             : GLINT_WARD_BOUNDED};
+
+    for (int c = 0; c < 3; c++)
+        w.specular_q15[c] = to_q15(from->metal[c]);
+    for (int k = 0; k < 2; k++)
+        w.alpha_q24[k] = (int32_t)ceil(0x1p24 * from->alpha[k]);
+    return w;
+}
+
 static void write_materials(struct writer *w)
 {
     /* What stands for the material of catchers where there is none. */
     const struct glint_scene_material none = {.name = "none",
                                               .power_q8 = 256,
                                               .index_q16 = 1 << 16,
-                                              .texture = GLINT_SCENE_NONE};
+                                              .texture = GLINT_SCENE_NONE,
+                                              .ward = GLINT_SCENE_NONE};
     const int n = w->scene->n_materials;
+    uint32_t n_wards = 0;
 
     w->header.n_materials = (uint32_t)(n ? n : 1);
     w->header.material_at = (uint32_t)w->draft.bytes;
     for (int i = 0; i < n; i++) {
-        const struct glint_scene_material m =
-            material_of(&w->scene->material[i]);
+        struct glint_scene_material m = material_of(&w->scene->material[i]);
 
+        if (w->scene->material[i].is_metal)
+            m.ward = n_wards++;
         glint_draft_put(&w->draft, &m, sizeof m);
     }
     if (!n)
         glint_draft_put(&w->draft, &none, sizeof none);
+    w->header.n_wards = n_wards;
+    w->header.ward_at = (uint32_t)w->draft.bytes;
+    for (int i = 0; i < n; i++)
+        if (w->scene->material[i].is_metal) {
+            const struct glint_scene_ward ward =
+                ward_of(&w->scene->material[i]);
+
+            glint_draft_put(&w->draft, &ward, sizeof ward);
+        }
 }
 
 /* ----------------------------------------------------------------- objects */
@@ -288,6 +316,21 @@ static struct glint_scene_camera camera_of(const struct writer *w)
     return c;
 }
 
+static void set_environment(struct writer *w)
+{
+    const struct glint_described_environment *e = &w->scene->environment;
+    struct glint_scene_header *h = &w->header;
+    const double angle = e->turn_deg * GLINT_PI / 180;
+
+    if (!e->data)
+        return;
+    h->environment_bytes = (uint32_t)e->bytes;
+    h->environment_at = glint_draft_put(&w->draft, e->data, e->bytes);
+    h->environment_turn_q30[0] = (int32_t)lrint(0x1p30 * cos(angle));
+    h->environment_turn_q30[1] = (int32_t)lrint(0x1p30 * sin(angle));
+    h->environment_scale = glint_real_of(e->scale);
+}
+
 static void set_header(struct writer *w, const char *name, uint64_t key)
 {
     const struct glint_description *s = w->scene;
@@ -301,7 +344,9 @@ static void set_header(struct writer *w, const char *name, uint64_t key)
     glint_draft_name(h->name, name, "scene");
     h->unit_log2 = w->steps.unit_log2;
     h->shadow = s->has_shadows;
-    h->background = GLINT_BACKGROUND_CAMERA;
+    h->background = s->background == GLINT_BEHIND_ENVIRONMENT
+                        ? GLINT_BACKGROUND_ENVIRONMENT
+                        : GLINT_BACKGROUND_CAMERA;
     if (s->background == GLINT_BEHIND_COLOUR) {
         h->background = GLINT_BACKGROUND_COLOUR;
         for (int c = 0; c < 3; c++)
@@ -330,6 +375,7 @@ enum glint_status glint_scene_bake(const struct glint_description *scene,
     good = write_textures(&w);
     write_materials(&w);
     good = good && write_meshes(&w) && write_objects(&w);
+    set_environment(&w);
     set_header(&w, name, key);
     glint_draft_amend(&w.draft, 0, &w.header, sizeof w.header);
     if (!good || w.draft.out_of_memory) {

@@ -79,6 +79,19 @@ static inline int find(struct glint_scene_worker *w, uint32_t id, int x, int y,
            find_at_length(w, id, x, y, k, ray, surface);
 }
 
+/* Sets RGB_Q15 to the background of pixel (X, Y). */
+static void see_background(const struct glint_scene *s, int x, int y,
+                           int32_t rgb_q15[3])
+{
+    struct glint_scene_ray ray = {.at = {0}};
+    int32_t seen_q30[3];
+
+    if (s->model.header->background == GLINT_BACKGROUND_ENVIRONMENT)
+        glint_view_ray(&s->view, glint_place(s, x, 0), glint_place(s, y, 1),
+                       &ray, seen_q30);
+    glint_scene_behind(s, ray.toward_q30, glint_scene_pixel_q40(s), rgb_q15);
+}
+
 /* Shades what sample K of pixel (X, Y) sees. */
 static inline void shade_id(struct glint_scene_worker *w, uint32_t id, int x,
                             int y, int k, struct glint_met_shade *shade)
@@ -91,10 +104,9 @@ static inline void shade_id(struct glint_scene_worker *w, uint32_t id, int x,
     *shade = (struct glint_met_shade){{0, 0, 0}, 0};
     if (id != GLINT_NOTHING && find(w, id, x, y, k, &ray, &surface)) {
         glint_scene_shade(s, &ray, &surface, shade);
-    } else if (h->background == GLINT_BACKGROUND_COLOUR) {
+    } else if (h->background != GLINT_BACKGROUND_CAMERA) {
         shade->cover_q8 = GLINT_COVER_ALL;
-        for (int c = 0; c < 3; c++)
-            shade->rgb_q15[c] = h->background_q15[c];
+        see_background(s, x, y, shade->rgb_q15);
     }
 }
 
@@ -214,6 +226,8 @@ static int is_quad(const struct glint_scene_worker *w, int n, int x, int y)
     if (x0 < b.x0 || y0 < b.y0 || x0 + 1 >= b.x1 || y0 + 1 >= b.y1)
         return 0;
     id = &w->id[glint_sample_index(w, x0, y0, 0)];
+    if (id[0] == GLINT_NOTHING)
+        return 0;
     return is_joined_to(w->scene, id, 2 * n, id[0]) &&
            is_joined_to(w->scene, &w->id[glint_sample_index(w, x0, y0 + 1, 0)],
                         2 * n, id[0]);
@@ -278,16 +292,22 @@ static void put_background(const struct glint_scene_worker *w,
                            int x1)
 {
     const struct glint_scene_header *h = w->scene->model.header;
-    const int is_colour = h->background == GLINT_BACKGROUND_COLOUR;
     int64_t sum_q17[3];
 
     for (int c = 0; c < 3; c++)
         sum_q17[c] = (int64_t)h->background_q15[c] * SUMMED;
-    if (!is_colour) {
+    if (h->background == GLINT_BACKGROUND_CAMERA) {
         put_nothing(w, rows, row, x0 - w->tile.x0, x1 - w->tile.x0);
         return;
     }
     for (int x = x0; x < x1; x++) {
+        if (h->background == GLINT_BACKGROUND_ENVIRONMENT) {
+            int32_t rgb_q15[3];
+
+            see_background(w->scene, x, rows->y + row, rgb_q15);
+            for (int c = 0; c < 3; c++)
+                sum_q17[c] = (int64_t)rgb_q15[c] * SUMMED;
+        }
         put(w, rows, x - w->tile.x0, row, sum_q17, SUMMED * GLINT_COVER_ALL);
         w->scene->cover[((rows->y + row) >> GLINT_COVER_LOG2) *
                             w->scene->cover_across +
@@ -302,20 +322,20 @@ static inline int draw_row(struct glint_scene_worker *w,
     const struct glint_scene *s = w->scene;
     const struct glint_box b = w->touched;
     const int y = rows->y + row;
-    const int has_colour =
-        s->model.header->background == GLINT_BACKGROUND_COLOUR;
+    const int is_behind =
+        s->model.header->background != GLINT_BACKGROUND_CAMERA;
     const int is_in = !glint_box_empty(b) && y >= b.y0 && y < b.y1;
     const int x0 = is_in ? b.x0 : w->tile.x1, x1 = is_in ? b.x1 : w->tile.x1;
     uint16_t *cover = &s->cover[(y >> GLINT_COVER_LOG2) * s->cover_across];
     const uint32_t *id = &w->id[glint_sample_index(w, x0, y, 0)];
-    int any = has_colour;
+    int any = is_behind;
 
     put_background(w, rows, row, w->tile.x0, x0);
     for (int x = x0; x < x1; id += n) {
         struct glint_scene_sum sum;
         int end = x;
 
-        for (; end < x1 && !has_colour && is_empty(id, n); id += n)
+        for (; end < x1 && !is_behind && is_empty(id, n); id += n)
             end++;
         if (end > x) {
             put_nothing(w, rows, row, x - w->tile.x0, end - w->tile.x0);

@@ -135,6 +135,17 @@ static void place(const int32_t toward[3], int32_t *u_q17, int32_t *v_q17)
     *v_q17 = 65536 + (toward[2] < 0 ? -q_q16 : q_q16);
 }
 
+void glint_environment_irradiance(const struct glint_environment *environment,
+                                  const int32_t normal[3], int32_t rgb[3])
+{
+    int32_t u_q17, v_q17;
+    struct corners c;
+
+    place(normal, &u_q17, &v_q17);
+    find(u_q17, v_q17, GLINT_ENVIRONMENT_IRRADIANCE_LOG2, &c);
+    read_9e5(environment->irradiance, &c, rgb);
+}
+
 void glint_environment_look(const struct glint_environment *environment,
                             const int32_t toward[3], int32_t level_q8,
                             int nearest, int32_t rgb[3])

@@ -104,7 +104,7 @@ void glint_ward_light(const struct glint_ward_lobe *lobe,
             (sum_q12[k] >> 16) * lobe->share_q16 +
             ((sum_q12[k] & 0xffff) * lobe->share_q16 >> 16);
 
-        rgb_q15[k] = scaled(mean_q12 * lobe->specular_q15[k],
-                            environment->header->unit_log2 - 12);
+        rgb_q15[k] =
+            scaled(mean_q12 * lobe->specular_q15[k], lobe->unit_log2 - 12);
     }
 }

@@ -119,6 +119,20 @@ void glint_ward_defaults(struct glint_ward_options *options)
         (struct glint_ward_options){.samples = 8, .rule = GLINT_WARD_CONSTANT};
 }
 
+int glint_ward_hold(int32_t alpha_q24[2])
+{
+    int held = 0;
+
+    for (int k = 0; k < 2; k++) {
+        const int32_t least =
+            (alpha_q24[1 - k] + GLINT_WARD_RATIO - 1) / GLINT_WARD_RATIO;
+
+        held |= alpha_q24[k] < least;
+        alpha_q24[k] = q_larger(alpha_q24[k], least);
+    }
+    return held;
+}
+
 int glint_ward_prepare(struct glint_ward_lobe *lobe,
                        const struct glint_environment *environment,
                        const struct glint_ward_material *material,
@@ -128,21 +142,16 @@ int glint_ward_prepare(struct glint_ward_lobe *lobe,
               is_even = options->rule == GLINT_WARD_CONSTANT;
     const int32_t f_q16 = footprint_q16(n);
     const int32_t side_q16 = (int32_t)(environment->header->side_log2 << 17);
-    int32_t alpha_q24[2], slope_q16[GLINT_WARD_SAMPLES][2];
-    int held = 0;
+    int32_t alpha_q24[2] = {material->alpha_q24[0], material->alpha_q24[1]};
+    int32_t slope_q16[GLINT_WARD_SAMPLES][2];
+    const int held = glint_ward_hold(alpha_q24);
 
-    for (int k = 0; k < 2; k++) {
-        const int32_t least =
-            (material->alpha_q24[1 - k] + GLINT_WARD_RATIO - 1) /
-            GLINT_WARD_RATIO;
-
-        held |= material->alpha_q24[k] < least;
-        alpha_q24[k] = q_larger(material->alpha_q24[k], least);
-    }
-    *lobe = (struct glint_ward_lobe){.n = n,
-                                     .nearest = options->nearest,
-                                     .norm = material->norm,
-                                     .share_q16 = (ONE_Q16 + n / 2) / n};
+    *lobe =
+        (struct glint_ward_lobe){.n = n,
+                                 .nearest = options->nearest,
+                                 .norm = material->norm,
+                                 .unit_log2 = environment->header->unit_log2,
+                                 .share_q16 = (ONE_Q16 + n / 2) / n};
     draw(n, slope_q16);
     for (int axis = 0; axis < 2 && is_even; axis++)
         settle(n, axis, (uint32_t)(ONE_Q16 - f_q16) << 15, slope_q16);

@@ -46,7 +46,8 @@ uint32_t scene_material(struct scene_file *s, const char *name)
                                        .rgb_q15 = {32768, 32768, 32768},
                                        .power_q8 = 32 << 8,
                                        .index_q16 = 1 << 16,
-                                       .texture = GLINT_SCENE_NONE};
+                                       .texture = GLINT_SCENE_NONE,
+                                       .ward = GLINT_SCENE_NONE};
     strcpy(m->name, name);
     return s->header.n_materials++;
 }
@@ -286,6 +287,7 @@ void scene_seal(struct scene_file *s)
           h->n_materials * sizeof *s->material);
     place(s, &h->mesh_at, s->mesh, h->n_meshes * sizeof *s->mesh);
     place(s, &h->object_at, s->object, h->n_objects * sizeof *s->object);
+    place(s, &h->ward_at, s->ward, h->n_wards * sizeof *s->ward);
     memcpy(s->data, h, sizeof *h);
     glint_blob_seal(s->data, s->bytes);
 }

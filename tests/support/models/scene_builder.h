@@ -24,7 +24,8 @@ struct scene_file {
     struct glint_scene_material material[SCENE_PARTS];
     struct glint_scene_mesh mesh[SCENE_PARTS];
     struct glint_scene_object object[SCENE_PARTS];
-    size_t tables; /* bytes at which the five tables begin */
+    struct glint_scene_ward ward[4];
+    size_t tables; /* bytes at which the six tables begin */
     size_t bytes;
     uint32_t data[SCENE_BYTES / 4];
 };

@@ -61,8 +61,8 @@ struct baked {
 static enum glint_status bake(struct baked *b, const char *text,
                               struct glint_error *error)
 {
-    const struct glint_description_files files = {NULL, read_mesh,
-                                                  read_picture};
+    const struct glint_description_files files = {NULL, read_mesh, read_picture,
+                                                  NULL};
     struct glint_description *scene = malloc(sizeof *scene);
     enum glint_status status;
     const char *reason = "";

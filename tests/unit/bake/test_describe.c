@@ -83,7 +83,7 @@ static enum glint_status read_picture(void *ctx, const char *name,
 }
 
 static const struct glint_description_files files = {NULL, read_file,
-                                                     read_picture};
+                                                     read_picture, NULL};
 
 /* Parses the good text with LINE in place of line NUMBER (from 1; 0: none). */
 static enum glint_status parse(struct glint_description *scene, int number,
@@ -220,8 +220,14 @@ static const struct mistake {
     {2, "camera sensor 3", "2:8: 'sensor' is not built yet"},
     {2, "camera corners 3", "2:16: '3' is more than camera corners takes"},
     {2, "hand left", "2:1: a second hand; the first is on line 1"},
-    {3, "background environment", "3:12: 'environment' is not built yet"},
-    {3, "environment night.env", "3:1: 'environment' is not built yet; light"},
+    {3, "background environment",
+     "3:12: background environment needs a line 'environment FILE'"},
+    {3, "background sky", "3:12: background takes camera, colour R G B or"},
+    {3, "environment", "3:12: the environment's file is missing"},
+    {3, "environment night.env turn 400",
+     "3:28: turn must be -360 .. 360, not 400"},
+    {3, "environment night.env", "3:13: no environment is read here"},
+    {3, "motion run.motion", "3:1: 'motion' is not built yet; things are"},
     {3, "sphree b", "3:1: unknown word 'sphree'; did you mean 'sphere'?"},
     {3, "xyzzy", "3:1: unknown word 'xyzzy'"},
     {4, "light sun colour 1 1 1", "4:23: light sun needs 'direction'"},
@@ -241,7 +247,16 @@ static const struct mistake {
      "7:29: 'reflect' and 'pass' sum to 1.1"},
     {7, "material red phong .1 .7 .2 refract 1.5",
      "7:29: 'refract' needs a 'pass' above 0"},
-    {7, "material red ward", "7:14: 'ward' is not built yet; materials are"},
+    {7, "material red ward alpha .1 .1", "7:30: material needs 'specular'"},
+    {7, "material red ward specular .9 .9 .9 alpha .1 .1 reflect .5",
+     "7:49: material takes ward, specular, alpha, diffuse, norm and texture"},
+    {7, "material red ward specular .9 .9 .9 alpha .1 .1 diffuse 0 .2 0",
+     "7:19: 'diffuse' and 'specular' sum to 1.1; more than 1 would make light"},
+    {7, "material red ward specular .9 .9 .9 alpha .0001 .1",
+     "7:43: alpha must be 0.001 .. 1, not 0.0001"},
+    {7, "material red ward specular .9 .9 .9 alpha .1 .1 norm 2010",
+     "7:54: a norm is bounded or 1992, not '2010'"},
+    {7, "material red translucent", "7:14: 'translucent' is not built yet"},
     {7, "material 7up phong 0 1 0", "7:10: a name is a letter"},
     {8, "material oak phong 0 1 0 texture wod",
      "8:34: no texture 'wod' is defined above this line; did you mean 'wood'"},

@@ -18,7 +18,7 @@
 
 #include "glint/scene/bake.h"
 #include "scenes/scene_frame.h"
-#include "scenes/twin.h"
+#include "twin/twin.h"
 #include "support/extreme.h"
 
 /* Light that the run time holds: what is more is saturated. */
@@ -33,7 +33,7 @@ struct outcome {
 
 static void read_text(struct glint_description *scene, const char *text)
 {
-    static const struct glint_description_files none = {NULL, NULL, NULL};
+    static const struct glint_description_files none = {NULL, NULL, NULL, NULL};
     struct glint_error error = {""};
 
     if (glint_description_parse(scene, text, strlen(text), "x.scene", &none,

@@ -31,7 +31,8 @@ static struct scene_file file;
 static void *mem;
 
 static const struct glint_scene_parts all_parts = {
-    &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces};
+    &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,
+    &glint_scene_wards};
 
 static struct glint_scene_config defaults(void)
 {

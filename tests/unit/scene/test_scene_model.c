@@ -110,7 +110,7 @@ static void test_header(void **state)
     REFUSES(header.highlights, 9, "the scene's settings are unknown");
     REFUSES(header.background_q15[1], 1,
             "the background's colour is out of range");
-    REFUSES(header.n_lights, 17, "the scene has too many of a kind");
+    REFUSES(header.n_lights, 33, "the scene has too many of a kind");
     REFUSES(header.name[0], 7, "the name has a control character");
     REFUSES(header.camera.kind, 3, "the camera's kind is unknown");
     REFUSES(header.camera.at[2], GLINT_SCENE_SPAN, "the camera is too far out");
@@ -149,7 +149,15 @@ static void test_materials(void **state)
     REFUSES(material[0].index_q16, 0,
             "a material's power or index is out of range");
     REFUSES(material[0].texture, 1, "a material's texture is out of range");
-    REFUSES(material[0].zero, 1, "a member that must be 0 is not");
+    REFUSES(material[0].ward, 0, "a material's brushed metal is out of range");
+    REFUSES(header.n_wards, 1,
+            "a brushed metal's roughness or norm is out of range");
+    REFUSES(header.background, GLINT_BACKGROUND_ENVIRONMENT,
+            "the background's environment is not there");
+    REFUSES(header.environment_turn_q30[0], 1 << 30,
+            "the environment's turn or scale is out of range");
+    REFUSES(header.environment_bytes, 4,
+            "the environment's turn or scale is out of range");
     REFUSES(texture[0].width_log2, 13, "a texture is too large");
     REFUSES(texture[0].height_log2, 12, "a table lies outside of the file");
 }

@@ -13,8 +13,8 @@
 
 #include <cmocka.h>
 
-#include "scenes/twin.h"
-#include "scenes/vec.h"
+#include "twin/twin.h"
+#include "twin/vec.h"
 #include "support/rng.h"
 
 struct stage {
@@ -43,7 +43,7 @@ static enum glint_status picture(void *ctx, const char *name,
 /* Opens the scene of TEXT. */
 static struct stage *open_text(const char *text)
 {
-    const struct glint_description_files files = {NULL, NULL, picture};
+    const struct glint_description_files files = {NULL, NULL, picture, NULL};
     struct stage *stage = malloc(sizeof *stage);
     struct glint_error error = {""};
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include "scenes/twin.h"
+#include "twin/twin.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "glint/view.h"
-#include "scenes/vec.h"
+#include "twin/twin_around.h"
 
 /* ----------------------------------------------------------------- opening */
 
@@ -35,8 +35,13 @@ enum glint_status twin_open(struct twin *twin,
                             const struct glint_description *scene)
 {
     enum glint_status status = GLINT_OK;
+    const char *reason;
 
-    *twin = (struct twin){.scene = scene, .shadow_points = 1};
+    *twin =
+        (struct twin){.scene = scene, .shadow_points = 1, .ward_samples = 8};
+    if (scene->environment.data)
+        status = glint_environment_open(&twin->around, scene->environment.data,
+                                        scene->environment.bytes, &reason);
     for (int i = 0; status == GLINT_OK && i < scene->n_textures; i++)
         status = open_texels(&twin->texels[i], &scene->texture[i].image);
     if (status == GLINT_OK)
@@ -78,6 +83,15 @@ static double light_from(const struct glint_described_light *light,
     for (int i = 0; i < 3; i++)
         rgb[i] = scale * light->colour[i];
     return distance;
+}
+
+/* Returns the sine of the angular radius of LIGHT, DISTANCE away. */
+static double radius_of(const struct glint_described_light *light,
+                        double distance)
+{
+    return light->kind == GLINT_DESCRIBED_SUN
+               ? sin(light->radius_deg * GLINT_PI / 180)
+               : fmin(light->radius / distance, .5);
 }
 
 /* Points of a light's disc that shadows ask for, as the run time has them. */
@@ -183,8 +197,9 @@ static void light_of(const struct twin *twin, const struct twin_hit *hit,
         colour[c] *= m->colour[c];
         rgb[c] = m->ambient * colour[c];
     }
+    twin_add_around(twin, hit, toward, colour, rgb);
     for (int i = 0; i < s->n_lights; i++) {
-        double l[3], light[3], facing, glint, share;
+        double l[3], light[3], facing, glint, share, shine = 0;
         const double distance = light_from(&s->light[i], hit->place, l, light);
 
         facing = vec_dot(hit->shading, l);
@@ -194,9 +209,13 @@ static void light_of(const struct twin *twin, const struct twin_hit *hit,
         /* R.V with R = 2 (N.L) N - L and V against the ray. */
         glint = vec_dot(l, toward) - 2 * facing * vec_dot(hit->shading, toward);
         glint = glint > 0 ? pow(glint, m->power) : 0;
+        if (m->is_metal)
+            shine = twin_shine(twin, hit, toward, l,
+                               radius_of(&s->light[i], distance));
         for (int c = 0; c < 3; c++)
             rgb[c] += share * light[c] *
-                      (m->diffuse * facing * colour[c] + m->specular * glint);
+                      (m->diffuse * facing * colour[c] + m->specular * glint +
+                       m->metal[c] * shine);
     }
 }
 
@@ -304,7 +323,10 @@ static void add_mirrored(const struct twin *twin, const struct twin_ray *ray,
     if (twin_meet(twin, &next, HUGE_VAL, &met))
         light_of(twin, &met, next.toward, rgb);
     else
-        memcpy(rgb, twin->scene->background_colour, sizeof rgb);
+        twin_behind(twin, next.toward,
+                    twin->pixel_tan * twin->pixel_tan / 4 +
+                        2 * twin_spread(twin, hit, ray->toward),
+                    rgb);
     add_light(pixel, twin->scene->material[hit->material].reflect, rgb);
 }
 
@@ -323,7 +345,9 @@ static void add_behind(const struct twin *twin, const struct twin_ray *ray,
         if (!twin_meet(twin, &p.ray, HUGE_VAL, &at)) {
             if (s->background == GLINT_BEHIND_CAMERA && !p.is_bent)
                 pixel->cover -= (float)p.weight;
-            add_light(pixel, p.weight, s->background_colour);
+            twin_behind(twin, p.ray.toward,
+                        twin->pixel_tan * twin->pixel_tan / 4, rgb);
+            add_light(pixel, p.weight, rgb);
             return;
         }
         light_of(twin, &at, p.ray.toward, rgb);
@@ -377,8 +401,10 @@ struct twin_pixel twin_see(const struct twin *twin, const struct twin_ray *ray)
     double rgb[3];
 
     if (!see_first(twin, ray, &hit)) {
-        pixel.cover = s->background == GLINT_BEHIND_COLOUR;
-        add_light(&pixel, 1, s->background_colour);
+        pixel.cover = s->background != GLINT_BEHIND_CAMERA;
+        twin_behind(twin, ray->toward, twin->pixel_tan * twin->pixel_tan / 4,
+                    rgb);
+        add_light(&pixel, 1, rgb);
         return pixel;
     }
     if (s->object[hit.object].catcher > 0) {
@@ -434,7 +460,16 @@ static void draw_row(void *ctx, int y, int worker)
 void twin_render(const struct twin *twin, const struct twin_view *view,
                  struct glint_workers *workers, struct twin_pixel *pixels)
 {
-    struct drawing drawing = {twin, view, pixels};
+    struct twin seen = *twin;
+    struct drawing drawing = {&seen, view, pixels};
+    struct twin_ray middle, beside;
+    double off[3];
+
+    twin_camera_ray(twin, view, view->width / 2., view->height / 2., &middle);
+    twin_camera_ray(twin, view, view->width / 2. + 1, view->height / 2.,
+                    &beside);
+    vec_add(beside.toward, -1, middle.toward, off);
+    seen.pixel_tan = vec_unit(off);
 
     glint_workers_run(workers, view->height, draw_row, &drawing);
 }

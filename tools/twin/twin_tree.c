@@ -2,11 +2,11 @@
  *
  * A tree of boxes over the triangles of each object, halved at the middle of
  * the longest side, and rays through it. */
-#include "scenes/twin.h"
+#include "twin/twin.h"
 
 #include <stdlib.h>
 
-#include "scenes/vec.h"
+#include "twin/vec.h"
 
 enum { LEAF = 4, DEPTH = 64 };
 

@@ -14,13 +14,15 @@
  * Method: primary rays at points of each pixel; at a hit Phong's terms of all
  * lights that no thing hides, then one ray that is mirrored, and one straight
  * on or refracted through eight surfaces at most. What these meet is lit
- * likewise, but mirrors nothing. Triangles by [Moller97] in a tree of boxes,
- * spheres and planes by their equations. A ray skips the thing it starts from,
- * or of a mesh the triangle. */
+ * likewise, but mirrors nothing; twin_around.c has light from all around.
+ * Triangles by [Moller97] in a tree of boxes, spheres and planes by their
+ * equations. A ray skips the thing it starts from, or of a mesh the triangle.
+ */
 #ifndef GLINT_TOOLS_SCENES_TWIN_H
 #define GLINT_TOOLS_SCENES_TWIN_H
 
 #include "glint/scene/description.h"
+#include "glint/scene/environment.h"
 #include "glint/workers.h"
 
 struct twin_node;
@@ -34,6 +36,9 @@ struct twin_texels {
 struct twin {
     const struct glint_description *scene;
     int shadow_points; /* 1, 4 or 16 of a light's disc; twin_open() sets 1 */
+    int ward_samples;  /* 1 to 32 of brushed metal's lobe; it sets 8 */
+    double pixel_tan;  /* tangent of a pixel; twin_render() sets it */
+    struct glint_environment around;
     struct twin_texels texels[GLINT_DESCRIPTION_MAX_TEXTURES];
     /* Trees over the triangles of each object, one after the other. */
     struct twin_node *node;

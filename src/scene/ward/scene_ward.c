@@ -1,0 +1,270 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Light from all around on the surfaces of a scene: what the irradiance map
+ * shows of diffuse colour, and Ward's lobe of brushed metal. */
+#include "scene/ward/scene_ward.h"
+
+#include "base/real.h"
+#include "scene/mesh.h"
+
+enum { ONE_Q30 = 1 << 30, LEAST_COSINE_Q30 = 1 << 26 };
+
+/* ------------------------------------------------------------------ opening */
+
+static struct glint_ward_state *carve(const struct glint_scene *scene,
+                                      struct glint_arena *arena)
+{
+    const uint32_t n = scene->model.header->n_wards;
+    struct glint_ward_state measured;
+    struct glint_ward_state *placed =
+        glint_arena_take(arena, 1, sizeof *placed);
+    struct glint_ward_state *w = placed ? placed : &measured;
+
+    w->material = glint_arena_take(arena, n, sizeof *w->material);
+    w->lobe = glint_arena_take(arena, n, sizeof *w->lobe);
+    return placed;
+}
+
+/* Makes lobe I anew. A scale is 1 .. 2, a factor of colours, times a power of
+ * two. */
+static void set_lobe(const struct glint_scene *s, uint32_t i)
+{
+    struct glint_ward_state *w = s->wards;
+    const struct glint_scene_ward *from = &s->model.ward[i];
+    struct glint_ward_material *m = &w->material[i];
+    struct glint_ward_lobe *lobe = &w->lobe[i];
+    struct glint_ward_options options;
+
+    for (int k = 0; k < 3; k++)
+        m->specular_q15[k] = from->specular_q15[k];
+    for (int k = 0; k < 2; k++)
+        m->alpha_q24[k] = from->alpha_q24[k];
+    m->norm = (enum glint_ward_norm)from->norm;
+    glint_ward_hold(m->alpha_q24);
+    if (!w->has_environment)
+        return;
+    glint_ward_defaults(&options);
+    options.samples = s->cfg.ward_samples;
+    options.nearest = s->cfg.ward_nearest;
+    glint_ward_prepare(lobe, &w->environment, m, &options);
+    for (int k = 0; k < 3; k++)
+        lobe->specular_q15[k] = (int32_t)q_shift(
+            (int64_t)m->specular_q15[k] * w->scale.mantissa, 30);
+    lobe->unit_log2 += w->scale.exponent + 30;
+}
+
+static enum glint_status open_wards(struct glint_scene *scene)
+{
+    const struct glint_scene_header *h = scene->model.header;
+    struct glint_ward_state *w = scene->wards;
+    const char *reason;
+
+    w->has_environment = h->environment_bytes > 0;
+    if (w->has_environment) {
+        if (glint_environment_open(&w->environment, scene->model.environment,
+                                   h->environment_bytes, &reason) != GLINT_OK)
+            return GLINT_E_FORMAT;
+        for (int k = 0; k < 2; k++)
+            w->turn_q30[k] = h->environment_turn_q30[k];
+        w->scale = w->unit = h->environment_scale;
+        w->unit.exponent += w->environment.header->unit_log2;
+    }
+    for (uint32_t i = 0; i < h->n_wards; i++)
+        set_lobe(scene, i);
+    return GLINT_OK;
+}
+
+/* -------------------------------------------------------------------- lying */
+
+/* Returns how far the pixels of RAY are apart where it meets SURFACE, steps q8,
+ * below 2^32. */
+static int64_t pixel_of_q8(const struct glint_scene *s,
+                           const struct glint_scene_ray *ray,
+                           const struct glint_met_surface *surface)
+{
+    const int64_t step_q30 = s->view.step_q56[0] >> 18;
+    int32_t off[3];
+    int64_t t;
+
+    v3_minus(surface->place, ray->at, off);
+    t = v3_dot(off, ray->toward_q30) >> 30; /* below 2^30 */
+    t = t < 0 ? 0 : t;
+    t = t * (step_q30 < ONE_Q30 ? step_q30 : (int64_t)ONE_Q30) >> 22;
+    return t < UINT32_MAX ? t : (int64_t)UINT32_MAX;
+}
+
+/* Returns by how much the normals of two vertices, A and B, differ over
+ * PIXEL_Q8 of the way between them. */
+static int32_t bend_between(const int32_t a[3], const int32_t b[3],
+                            const int32_t na_q30[3], const int32_t nb_q30[3],
+                            int64_t pixel_q8)
+{
+    int32_t way[3], turn_q29[3];
+
+    v3_minus(a, b, way);
+    for (int k = 0; k < 3; k++)
+        turn_q29[k] = na_q30[k] / 2 - nb_q30[k] / 2;
+    return glint_ratio(
+        (uint64_t)glint_root((uint64_t)v3_dot(turn_q29, turn_q29)) *
+            (uint64_t)pixel_q8,
+        (uint64_t)glint_root((uint64_t)v3_dot(way, way)) << 7);
+}
+
+/* The most of the three edges of the triangle. */
+static int32_t mesh_bend_q30(const struct glint_scene *s,
+                             const struct glint_met_surface *surface,
+                             int64_t pixel)
+{
+    const struct glint_scene_mesh *m = glint_mesh_of(s, surface->object);
+    const struct glint_scene_triangle *t =
+        glint_mesh_triangle(s, m, surface->triangle);
+    const int32_t *at[3], *normal[3];
+    int32_t most = 0;
+
+    if (!m->normal_at)
+        return 0;
+    glint_mesh_vertices(s, m, surface->triangle, at);
+    for (int k = 0; k < 3; k++)
+        normal[k] = (const int32_t *)glint_mesh_table(s, m->normal_at) +
+                    3 * (size_t)t->vertex[k];
+    for (int k = 0; k < 3; k++) {
+        const int i = (k + 1) % 3;
+
+        most = q_larger(
+            most, bend_between(at[k], at[i], normal[k], normal[i], pixel));
+    }
+    return most;
+}
+
+/* Returns by how much the normal turns from pixel to pixel, seen from ahead. */
+static int32_t bend_q30(const struct glint_scene *s,
+                        const struct glint_scene_ray *ray,
+                        const struct glint_met_surface *surface)
+{
+    const struct glint_placed *p = &s->placed[surface->object];
+
+    if (p->object->kind == GLINT_OBJECT_PLANE)
+        return 0;
+    if (p->object->kind == GLINT_OBJECT_MESH)
+        return mesh_bend_q30(s, surface, pixel_of_q8(s, ray, surface));
+    return glint_ratio((uint64_t)pixel_of_q8(s, ray, surface) << 22,
+                       (uint64_t)p->radius);
+}
+
+/* From pixel to pixel a surface that leans by n.o is 1 / n.o as far, the way
+ * that it leans, and rays turn by a pixel, half vectors by about half of that.
+ * Half of the square makes a highlight, where all else is sharp, a Gaussian of
+ * half a pixel at least: samples a pixel apart then sum to the same light
+ * wherever it lies, to 1.5 % each way. */
+static int32_t spread_q30(const struct glint_scene *s,
+                          const struct glint_scene_ray *ray,
+                          const struct glint_met_surface *surface)
+{
+    const int32_t no_q30 = q_larger(
+        -v3_cosine_q30(surface->normal_q30, ray->toward_q30), LEAST_COSINE_Q30);
+    const int64_t lean_q16 =
+        glint_ratio(UINT64_C(1) << 46, (uint64_t)no_q30); /* to 2^20 */
+    const int64_t turn_q30 =
+        q_clamp_sat((bend_q30(s, ray, surface) * lean_q16 >> 16) +
+                        (s->view.step_q56[0] >> 18),
+                    0, ONE_Q30);
+
+    return (int32_t)(turn_q30 * turn_q30 >> 31);
+}
+
+/* Metal is brushed around the y axis of balls and meshes; where that is the
+ * normal, as everywhere on planes, along the x axis. */
+static void lie(const struct glint_scene *scene,
+                const struct glint_scene_ray *ray,
+                const struct glint_met_surface *surface,
+                struct glint_brushed *brushed)
+{
+    const struct glint_placed *p = &scene->placed[surface->object];
+    const int32_t *n_q30 = surface->normal_q30;
+    int32_t axis_q30[2][3];
+    int64_t across[3];
+
+    for (int k = 0; k < 3; k++) {
+        brushed->frame_q30[2][k] = n_q30[k];
+        axis_q30[0][k] = p->turn.row_q30[k][0];
+        axis_q30[1][k] = p->turn.row_q30[k][1];
+    }
+    v3_cross(axis_q30[1], n_q30, across);
+    if ((q_magnitude(across[0]) | q_magnitude(across[1]) |
+         q_magnitude(across[2])) >>
+            36 ==
+        0) {
+        int64_t along[3];
+
+        v3_cross(n_q30, axis_q30[0], along);
+        for (int k = 0; k < 3; k++)
+            brushed->frame_q30[1][k] = (int32_t)q_shift(along[k], 30);
+        v3_cross(brushed->frame_q30[1], n_q30, across);
+    }
+    glint_unit(across, brushed->frame_q30[0]);
+    v3_cross(n_q30, brushed->frame_q30[0], across);
+    for (int k = 0; k < 3; k++)
+        brushed->frame_q30[1][k] = (int32_t)q_shift(across[k], 30);
+    brushed->spread_q30 = spread_q30(scene, ray, surface);
+}
+
+/* ---------------------------------------------------------------- reflecting
+ */
+
+static void add(int32_t *to_q15, int64_t light_q15, int32_t weight_q15)
+{
+    const int64_t sum_q15 =
+        *to_q15 + ((light_q15 * weight_q15 + (1 << 14)) >> 15);
+
+    *to_q15 = q_clamp_sat(sum_q15, 0, GLINT_SCENE_MOST_LIGHT);
+}
+
+/* Sets TO_Q14 to direction V, _q30, as the environment has it. */
+static void turn_q14(const struct glint_ward_state *w, const int32_t v_q30[3],
+                     int32_t to_q14[3])
+{
+    int32_t to_q30[3];
+
+    glint_ward_turn(w, v_q30, to_q30);
+    for (int k = 0; k < 3; k++)
+        to_q14[k] = (int32_t)q_shift(to_q30[k], 16);
+}
+
+static void reflect(const struct glint_scene *scene,
+                    const struct glint_scene_ray *ray,
+                    const struct glint_met_surface *surface,
+                    const struct glint_brushed *brushed,
+                    const int32_t colour_q15[3], int32_t weight_q15,
+                    int32_t rgb_q15[3])
+{
+    const struct glint_ward_state *w = scene->wards;
+    const struct glint_scene_material *m = surface->material;
+    int32_t frame_q14[3][3], view_q14[3], light[3], back_q30[3];
+
+    if (!w->has_environment)
+        return;
+    if (m->diffuse_q15) {
+        turn_q14(w, surface->normal_q30, view_q14);
+        glint_environment_irradiance(&w->environment, view_q14, light);
+        for (int c = 0; c < 3; c++)
+            add(&rgb_q15[c],
+                real_integer(real_times(real_of(light[c], 0), w->unit), 15,
+                             GLINT_SCENE_MOST_LIGHT),
+                q_mul(q_mul(m->diffuse_q15, colour_q15[c], 15), weight_q15,
+                      15));
+    }
+    if (!brushed)
+        return;
+    for (int k = 0; k < 3; k++) {
+        turn_q14(w, brushed->frame_q30[k], frame_q14[k]);
+        back_q30[k] = -ray->toward_q30[k];
+    }
+    turn_q14(w, back_q30, view_q14);
+    glint_ward_light(&w->lobe[m->ward], &w->environment,
+                     (const int32_t(*)[3])frame_q14, view_q14, light);
+    for (int c = 0; c < 3; c++)
+        add(&rgb_q15[c], light[c], weight_q15);
+}
+
+const struct glint_scene_wards glint_scene_wards = {
+    carve, open_wards, lie, reflect, glint_ward_shine, glint_ward_behind};

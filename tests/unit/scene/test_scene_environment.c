@@ -1,0 +1,331 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Environments and brushed metal in scenes: integers against the twin in double
+ * precision, what a scene says of them, and what a highlight sums to. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/scene/bake.h"
+#include "glint/scene/environment_bake.h"
+#include "glint/view.h"
+#include "scenes/scene_frame.h"
+#include "twin/twin.h"
+
+enum {
+    SKY_WIDTH = 128,
+    SKY_HEIGHT = 64,
+    WIDTH = 160,
+    HEIGHT = 90,
+    PIXELS = WIDTH * HEIGHT
+};
+
+/* A sky over ground, softly patterned, with a lamp by the window and a sun. */
+static void paint(float sky[SKY_HEIGHT][SKY_WIDTH][3])
+{
+    for (int y = 0; y < SKY_HEIGHT; y++)
+        for (int x = 0; x < SKY_WIDTH; x++) {
+            const double a = x * .1, b = y * .1;
+            const int is_sun = abs(x - 90) < 2 && abs(y - 14) < 2;
+            const int is_lamp = abs(x - 50) < 1 && abs(y - 24) < 1;
+            const double light = (y < 32 ? .6 : .2) +
+                                 .2 * sin(3 * a) * sin(4 * b) +
+                                 (is_sun ? 400 : 0) + (is_lamp ? 150 : 0);
+
+            for (int c = 0; c < 3; c++)
+                sky[y][x][c] = (float)(light * (4 - c) / 4);
+        }
+}
+
+/* NAME is that of the code: "9e5" or "565". */
+static enum glint_status bake_sky(void *ctx, const char *name, uint8_t **data,
+                                  size_t *bytes, struct glint_error *error)
+{
+    static float sky[SKY_HEIGHT][SKY_WIDTH][3];
+    const struct glint_float_image picture = {SKY_WIDTH, SKY_HEIGHT,
+                                              (float *)sky};
+    struct glint_environment_options options;
+    struct glint_environment_report report;
+
+    (void)ctx;
+    paint(sky);
+    glint_environment_defaults(&options);
+    options.side_log2 = 6;
+    options.code = strcmp(name, "565") == 0 ? GLINT_ENVIRONMENT_565
+                                            : GLINT_ENVIRONMENT_9E5;
+    return glint_environment_bake(&picture, &options, "sky", 1, data, bytes,
+                                  &report, error);
+}
+
+static enum glint_status parse(const char *text,
+                               struct glint_description *scene,
+                               struct glint_error *error)
+{
+    const struct glint_description_files files = {NULL, NULL, NULL, bake_sky};
+
+    error->text[0] = '\0';
+    return glint_description_parse(scene, text, strlen(text), "x.scene", &files,
+                                   error);
+}
+
+/* A scene as integers draw it. */
+struct drawn {
+    struct glint_description *description;
+    unsigned char *data;
+    size_t bytes;
+    struct glint_scene_model model;
+    struct scene_frame frame;
+};
+
+static void open_text(struct drawn *d, const char *text,
+                      const struct scene_dials *dials)
+{
+    static const struct tool tool = {.name = "test"};
+    struct glint_scene_bake_report report;
+    struct glint_error error;
+    const char *reason = "";
+
+    d->description = malloc(sizeof *d->description);
+    assert_non_null(d->description);
+    if (parse(text, d->description, &error) != GLINT_OK ||
+        glint_scene_bake(d->description, "x", 1, &d->data, &d->bytes, &report,
+                         &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+    if (glint_scene_open(&d->model, d->data, d->bytes, &reason) != GLINT_OK)
+        fail_msg("%s", reason);
+    assert_int_equal(scene_frame_open(&d->frame, &tool, &d->model, dials),
+                     EXIT_OK);
+}
+
+static void close_text(struct drawn *d)
+{
+    scene_frame_close(&d->frame);
+    free(d->data);
+    glint_description_free(d->description);
+    free(d->description);
+}
+
+static void draw(struct drawn *d, int width, int height, int32_t *light_q20)
+{
+    struct glint_image image = {
+        .format = GLINT_LINEAR_Q20, .width = width, .height = height};
+
+    memset(light_q20, 0, 3 * (size_t)width * (size_t)height * 4);
+    glint_image_place(&image, light_q20);
+    assert_int_equal(scene_frame_draw(&d->frame, &image), EXIT_OK);
+}
+
+/* -------------------------------------------------------------------- twin */
+
+/* Returns whether pixel I of the twin's is like those about it. */
+static int is_inside(const struct twin_pixel *p, int i)
+{
+    const int x = i % WIDTH, y = i / WIDTH;
+
+    for (int v = y - 1; v <= y + 1; v++)
+        for (int u = x - 1; u <= x + 1; u++)
+            if (u >= 0 && v >= 0 && u < WIDTH && v < HEIGHT &&
+                fabs((double)p[v * WIDTH + u].rgb[1] - (double)p[i].rgb[1]) >
+                    .2 * (double)p[i].rgb[1] + .01)
+                return 0;
+    return 1;
+}
+
+static double compare(const char *text)
+{
+    static struct twin_pixel exact[PIXELS];
+    static int32_t light_q20[3 * PIXELS];
+    static const struct scene_dials dials = {.width = WIDTH,
+                                             .height = HEIGHT,
+                                             .edge_samples = 1,
+                                             .shadow_points = 1};
+    const struct twin_view view = {WIDTH, HEIGHT, 0, 1};
+    double square = 0;
+    struct drawn d;
+    struct twin twin;
+    int n = 0;
+
+    open_text(&d, text, &dials);
+    draw(&d, WIDTH, HEIGHT, light_q20);
+    assert_int_equal(twin_open(&twin, d.description), GLINT_OK);
+    twin_render(&twin, &view, NULL, exact);
+    twin_close(&twin);
+    close_text(&d);
+    for (int i = 0; i < PIXELS; i++)
+        for (int c = 0; c < 3 && is_inside(exact, i); c++, n++)
+            square += pow(fmin((double)exact[i].rgb[c], 1) -
+                              fmin(light_q20[3 * i + c] * 0x1p-20, 1),
+                          2);
+    assert_true(n > PIXELS);
+    return -10 * log10(square / n + 1e-12);
+}
+
+#define STAGE                                                     \
+    "camera fov 50 at 0 1 4 toward 0 .3 0\n"                      \
+    "material steel ward specular .9 .8 .7 alpha .1 .1 diffuse "  \
+    ".05 .05 .1\n"                                                \
+    "material brushed ward specular .9 .9 .9 alpha .05 .3\n"      \
+    "material old ward specular .5 .5 .5 alpha .2 .1 norm 1992\n" \
+    "material white phong .1 .9 0\n"                              \
+    "material mirror phong 0 .1 0 reflect .9\n"                   \
+    "material glass phong 0 .1 0 pass .9 refract 1.5\n"
+
+#define BALLS                                                       \
+    "sphere a at -1.2 .5 0 radius .5 material steel\n"              \
+    "sphere b at 0 .5 0 radius .5 turn 0 0 1 40 material brushed\n" \
+    "sphere c at 1.2 .5 0 radius .5 material old\n"                 \
+    "plane p at 0 0 0 normal .1 1 0 material "
+
+static void test_twin(void **state)
+{
+    static const struct {
+        const char *what, *text;
+    } row[] = {
+        {"metals", STAGE "environment 9e5\n" BALLS "brushed\n"},
+        {"metals, turned", STAGE "environment 9e5 turn 70 scale .6\n"
+                                 "background environment\n" BALLS "white\n"},
+        {"565, left",
+         "hand left\n" STAGE "environment 565 turn -200 scale 1.7\n"
+         "background environment\nshadow on\n"
+         "sphere a at -1 .5 9 radius .5 material steel\n"
+         "sphere b at 1 .5 9 radius .5 material brushed\n"},
+        {"mirrors", STAGE "environment 9e5\nbackground environment\n"
+                          "sphere a at -1 .5 0 radius .5 material mirror\n"
+                          "sphere b at 1 .5 0 radius .5 material glass\n"},
+        {"lights alone", STAGE "light lamp at 1 3 2 colour 4 4 4 radius .2\n"
+                               "light sun direction -1 1 .5 colour 2e4 2e4 "
+                               "2e4\n" BALLS "old\n"}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        const double db = compare(row[i].text);
+
+        print_message("%s: %.1f dB\n", row[i].what, db);
+        assert_true(db >= 60);
+    }
+}
+
+/* ------------------------------------------------------------------- texts */
+
+/* Row B7: a ratio over 10 is held to 10, with a warning. */
+static void test_held(void **state)
+{
+    struct glint_description *s = malloc(sizeof *s);
+    struct glint_error error;
+
+    (void)state;
+    assert_non_null(s);
+    assert_int_equal(
+        parse("material m ward specular .9 .9 .9 alpha .002 .4 norm 1992\n"
+              "environment 9e5\nsphere s at 0 0 -3 radius 1 material m\n",
+              s, &error),
+        GLINT_OK);
+    assert_non_null(strstr(s->warning, "held to a ratio of 10"));
+    assert_true(fabs(s->material[0].alpha[0] - .04) < 1e-12);
+    assert_true(s->material[0].norm == GLINT_DESCRIBED_1992);
+    assert_true(s->n_lights > 0 &&
+                strcmp(s->light[0].name, "environment") == 0);
+    glint_description_free(s);
+    free(s);
+}
+
+/* A model opens only where the part that it needs is named, and its environment
+ * is whole. */
+static void test_part(void **state)
+{
+    static const struct scene_dials dials = {
+        .width = 16, .height = 9, .edge_samples = 1, .shadow_points = 1};
+    struct glint_scene_config cfg;
+    struct glint_scene *scene;
+    struct drawn d;
+    void *mem;
+
+    (void)state;
+    open_text(&d, STAGE "environment 9e5\n" BALLS "white\n", &dials);
+    cfg = d.frame.cfg;
+    assert_int_equal(posix_memalign(&mem, 64, d.frame.bytes), 0);
+    assert_int_equal(
+        glint_scene_init(&scene, &cfg, &d.model, mem, d.frame.bytes), GLINT_OK);
+    cfg.parts.wards = NULL;
+    assert_string_equal(glint_scene_lacks(&cfg.parts, &d.model), "wards");
+    assert_int_equal(glint_scene_bytes(&cfg, &d.model), 0);
+    assert_int_equal(
+        glint_scene_init(&scene, &cfg, &d.model, mem, d.frame.bytes),
+        GLINT_E_UNSUPPORTED);
+    cfg.parts.wards = &glint_scene_wards;
+    cfg.ward_samples = 33;
+    assert_int_equal(glint_scene_bytes(&cfg, &d.model), 0);
+    cfg.ward_samples = 1;
+    d.data[d.model.header->environment_at + 999] ^= 1;
+    assert_int_equal(
+        glint_scene_init(&scene, &cfg, &d.model, mem, d.frame.bytes),
+        GLINT_E_FORMAT);
+    free(mem);
+    close_text(&d);
+}
+
+/* -------------------------------------------------------------- highlights */
+
+/* Returns the light of a whole picture of a ball 40 pixels wide, of almost a
+ * mirror's metal under a sun, moved by DX and DY pixels. */
+static double shine_of(struct drawn *d, double dx, double dy)
+{
+    enum { SIDE = 64 };
+    static int32_t light_q20[3 * SIDE * SIDE];
+    const double pixel = 2 * tan(10 * GLINT_PI / 180) * 4 / SIDE;
+    const struct glint_scene_object *o = &d->model.object[0];
+    const double steps = ldexp(pixel, d->model.header->unit_log2);
+    const int32_t at[3] = {o->at[0] + (int32_t)(dx * steps),
+                           o->at[1] + (int32_t)(dy * steps), o->at[2]};
+    double sum = 0;
+
+    assert_int_equal(glint_scene_set_pose(d->frame.scene, 0, at, o->turn_q30),
+                     GLINT_OK);
+    draw(d, SIDE, SIDE, light_q20);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        sum += light_q20[3 * i + 1] * 0x1p-20;
+    return sum;
+}
+
+/* The highlight of the sun is smaller than a pixel and moves by parts of one:
+ * its light stays within 5 %. */
+static void test_highlight_steady(void **state)
+{
+    static const struct scene_dials dials = {
+        .width = 64, .height = 64, .edge_samples = 1, .shadow_points = 1};
+    double least = HUGE_VAL, most = 0;
+    struct drawn d;
+
+    (void)state;
+    open_text(&d,
+              "camera fov 20 at 0 0 4 toward 0 0 0\n"
+              "material m ward specular .9 .9 .9 alpha .002 .002\n"
+              "light sun direction .5 .6 1 colour 2e4 2e4 2e4\n"
+              "sphere s at 0 0 0 radius .44 material m\n",
+              &dials);
+    for (int k = 0; k < 49; k++) {
+        const double sum = shine_of(&d, k % 7 / 7., k / 7 / 7.);
+
+        least = fmin(least, sum);
+        most = fmax(most, sum);
+    }
+    close_text(&d);
+    print_message("highlight: %.4f to %.4f\n", least, most);
+    assert_true(least > 0 && most < 1.05 * least);
+}
+
+int main(void)
+{
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_twin), cmocka_unit_test(test_held),
+        cmocka_unit_test(test_part), cmocka_unit_test(test_highlight_steady)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

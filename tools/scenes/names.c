@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT */
+#include "scenes/names.h"
+
+#include <string.h>
+#include <sys/stat.h>
+
+#include "model/model_file.h"
+#include "posix/target.h"
+
+bool tool_begins_as(const char *argument, uint32_t magic)
+{
+    uint32_t first = 0;
+    struct stat st;
+    FILE *file;
+
+    /* A pipe can be read once only. */
+    if (!tool_is_file_name(argument) || stat(argument, &st) < 0 ||
+        !S_ISREG(st.st_mode))
+        return false;
+    file = fopen(argument, "rb");
+    if (!file)
+        return false;
+    if (fread(&first, sizeof first, 1, file) < 1)
+        first = 0;
+    fclose(file);
+    return first == magic;
+}
+
+void tool_key_mix(uint64_t *key, const void *data, size_t bytes)
+{
+    const uint8_t *byte = data;
+
+    for (size_t i = 0; i < bytes; i++)
+        *key = (*key ^ byte[i]) * UINT64_C(1099511628211);
+}
+
+bool tool_beside(const char *text, const char *name, char path[TOOL_PATH_BYTES])
+{
+    const char *const slash = name[0] == '/' ? NULL : strrchr(text, '/');
+    const int folder = slash ? (int)(slash - text) + 1 : 0;
+
+    return snprintf(path, TOOL_PATH_BYTES, "%.*s%s", folder, text, name) <
+           TOOL_PATH_BYTES;
+}
+
+void tool_scene_name(const char *path, char name[64])
+{
+    const char *const slash = strrchr(path, '/');
+    const char *const start = slash ? slash + 1 : path;
+
+    snprintf(name, 64, "%.*s", (int)strcspn(start, "."), start);
+}
+
+int tool_scene_is_kept(const struct tool *tool, const char *path)
+{
+    if (!tool->written || !glint_target_is_input(path, tool->written))
+        return EXIT_OK;
+    return tool_usage(tool,
+                      "-o %s is the input, which would be lost; name another "
+                      "file",
+                      tool->written);
+}

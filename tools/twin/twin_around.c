@@ -1,0 +1,374 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The twin of light from all around: lookups in the baked environment, and
+ * Ward's lobe over it and under lights, in double precision, along the paths of
+ * the run time. All that is in the axes of baked scenes, whose z runs away. */
+#include "twin/twin_around.h"
+
+#include <string.h>
+
+#include "glint/scene/ward.h"
+#include "glint/view.h"
+
+#define LEAST_SPREAD 0x1p-26
+#define LEAST_COSINE .0625
+#define MOST_SLOPE   16
+#define MOST_WEIGHT  8.0
+#define LEAST_POLE   0x1p-24
+
+/* ------------------------------------------------------------------ lookups */
+
+static double decode_9e5(const struct glint_environment *e, uint32_t word,
+                         int c)
+{
+    return ldexp(word >> (9 * c) & 511,
+                 (int)(word >> 27) - 12 + e->header->unit_log2);
+}
+
+static double texel_of(const struct glint_environment *e, int level, int i,
+                       int c)
+{
+    static const int shift[3] = {11, 5, 0}, most[3] = {31, 63, 31};
+    double root;
+
+    if (e->header->code == GLINT_ENVIRONMENT_9E5)
+        return decode_9e5(e, ((const uint32_t *)e->texel[level])[i], c);
+    root =
+        (double)(((const uint16_t *)e->texel[level])[i] >> shift[c] & most[c]) /
+        most[c];
+    return root * root * ldexp(e->level[level].scale, e->header->unit_log2);
+}
+
+/* Sets PLACE, 0 .. 1 each, to that of TOWARD in the unfolded octahedron. */
+static void place_of(const double toward[3], double place[2])
+{
+    const double sum = fabs(toward[0]) + fabs(toward[1]) + fabs(toward[2]);
+    double p = fabs(toward[0]) / sum, q = fabs(toward[2]) / sum;
+
+    if (toward[1] < 0) {
+        const double unfolded = 1 - q;
+
+        q = 1 - p;
+        p = unfolded;
+    }
+    place[0] = .5 + .5 * (toward[0] < 0 ? -p : p);
+    place[1] = .5 + .5 * (toward[2] < 0 ? -q : q);
+}
+
+/* Returns the index of texel (X, Y) of a square of SIDE, past whose edges it
+ * goes on as the octahedron does. */
+static int index_of(int x, int y, int side)
+{
+    if (x < 0 || x >= side) {
+        x = x < 0 ? 0 : side - 1;
+        y = side - 1 - y;
+    }
+    if (y < 0 || y >= side) {
+        y = y < 0 ? 0 : side - 1;
+        x = side - 1 - x;
+    }
+    return y * side + x;
+}
+
+/* Sets RGB to texels of LEVEL, -1: of the irradiance map, in TOWARD. */
+static void look_level(const struct glint_environment *e, int level,
+                       const double toward[3], double rgb[3])
+{
+    const int side = 1 << (level < 0 ? GLINT_ENVIRONMENT_IRRADIANCE_LOG2
+                                     : (int)e->level[level].side_log2);
+    double place[2], x, y;
+
+    place_of(toward, place);
+    x = place[0] * side - .5;
+    y = place[1] * side - .5;
+    rgb[0] = rgb[1] = rgb[2] = 0;
+    for (int k = 0; k < 4; k++) {
+        const int i = (int)floor(x) + (k & 1), j = (int)floor(y) + (k >> 1);
+        const double share = (1 - fabs(x - i)) * (1 - fabs(y - j));
+        const int at = index_of(i, j, side);
+
+        for (int c = 0; c < 3; c++)
+            rgb[c] += share * (level < 0 ? decode_9e5(e, e->irradiance[at], c)
+                                         : texel_of(e, level, at, c));
+    }
+}
+
+static void look(const struct glint_environment *e, const double toward[3],
+                 double level, double rgb[3])
+{
+    const double last = e->header->n_levels - 1;
+    const double held = fmin(fmax(level, 0), last);
+    const int k = (int)held;
+    double next[3];
+
+    look_level(e, k, toward, rgb);
+    if (held <= k)
+        return;
+    look_level(e, k + 1, toward, next);
+    for (int c = 0; c < 3; c++)
+        rgb[c] += (held - k) * (next[c] - rgb[c]);
+}
+
+/* Sets TO, which may be V, to direction V of the text in the axes of the
+ * environment. */
+static void turn(const struct twin *twin, const double v[3], double to[3])
+{
+    const struct glint_description *s = twin->scene;
+    const double angle = s->environment.turn_deg * GLINT_PI / 180;
+    const double x = v[0], z = (s->left_handed ? 1 : -1) * v[2];
+
+    to[0] = cos(angle) * x - sin(angle) * z;
+    to[1] = v[1];
+    to[2] = cos(angle) * z + sin(angle) * x;
+}
+
+/* -------------------------------------------------------------------- metal */
+
+/* Returns how fast the normal turns at HIT, per unit of the scene. */
+static double curvature(const struct twin *twin, const struct twin_hit *hit)
+{
+    const struct glint_description *s = twin->scene;
+    const struct glint_described_object *o = &s->object[hit->object];
+    const struct glint_described_triangle *t;
+    double most = 0;
+
+    if (o->kind == GLINT_DESCRIBED_SPHERE)
+        return 1 / o->radius;
+    if (o->kind == GLINT_DESCRIBED_PLANE || hit->triangle < 0)
+        return 0;
+    t = &s->triangle[hit->triangle];
+    for (int k = 0; t->has_normals && k < 3; k++) {
+        double way[3], bend[3];
+
+        vec_add(t->place[k], -1, t->place[(k + 1) % 3], way);
+        vec_add(t->normal[k], -1, t->normal[(k + 1) % 3], bend);
+        most = fmax(most, vec_unit(bend) / vec_unit(way));
+    }
+    return most;
+}
+
+double twin_spread(const struct twin *twin, const struct twin_hit *hit,
+                   const double toward[3])
+{
+    const double no = fmax(-vec_dot(hit->shading, toward), LEAST_COSINE);
+    const double bend =
+        fmin(curvature(twin, hit) * hit->t * twin->pixel_tan, 1);
+    const double turns = fmin(bend / no + twin->pixel_tan, 1);
+
+    return turns * turns / 2;
+}
+
+void twin_lie(const struct twin *twin, const struct twin_hit *hit,
+              double frame[3][3])
+{
+    const struct glint_description *s = twin->scene;
+    const struct glint_described_object *o = &s->object[hit->object];
+    const double hand = s->left_handed ? 1 : -1;
+    double axis[2][3] = {{1, 0, 0}, {0, 1, 0}};
+
+    for (int k = 0; k < 2; k++) {
+        double own[3];
+
+        memcpy(own, axis[k], sizeof own);
+        if (o->kind == GLINT_DESCRIBED_PLANE) {
+            double upright[4];
+
+            glint_described_upright(o->normal, upright);
+            vec_turn(upright, 1, axis[k], own);
+        }
+        vec_turn(o->turn, 1, own, axis[k]);
+        axis[k][2] *= hand;
+    }
+    memcpy(frame[2], hit->shading, sizeof frame[2]);
+    frame[2][2] *= hand;
+    vec_cross(axis[1], frame[2], frame[0]);
+    if (vec_dot(frame[0], frame[0]) < LEAST_POLE * LEAST_POLE) {
+        vec_cross(frame[2], axis[0], frame[1]);
+        vec_cross(frame[1], frame[2], frame[0]);
+    }
+    vec_unit(frame[0]);
+    vec_cross(frame[2], frame[0], frame[1]);
+}
+
+/* Returns what a direction counts by the norm, before the lobe's density. */
+static double weight_of(const struct glint_described_material *m, double ho,
+                        double hn, double ni, double no)
+{
+    const double weight = m->norm == GLINT_DESCRIBED_1992
+                              ? ho * hn * hn * hn * sqrt(ni / no)
+                              : ni / (ho * hn);
+
+    return fmin(weight, MOST_WEIGHT);
+}
+
+double twin_shine(const struct twin *twin, const struct twin_hit *hit,
+                  const double toward[3], const double to_light[3],
+                  double radius)
+{
+    const struct glint_described_material *m =
+        &twin->scene->material[hit->material];
+    const double wider = radius * radius / 8 + twin_spread(twin, hit, toward);
+    const double hand = twin->scene->left_handed ? 1 : -1;
+    const double i[3] = {to_light[0], to_light[1], hand * to_light[2]};
+    const double o[3] = {-toward[0], -toward[1], -hand * toward[2]};
+    double frame[3][3], h[3], hn, ni, no, slope = 0, area = 4;
+
+    twin_lie(twin, hit, frame);
+    vec_add(i, 1, o, h);
+    vec_unit(h);
+    hn = vec_dot(h, frame[2]);
+    ni = vec_dot(i, frame[2]);
+    no = vec_dot(o, frame[2]);
+    if (hn <= 0 || ni <= 0 || no <= 0)
+        return 0;
+    for (int k = 0; k < 2; k++) {
+        const double square = m->alpha[k] * m->alpha[k] + wider;
+        const double along = vec_dot(h, frame[k]) / hn;
+
+        slope += along * along / square;
+        area *= sqrt(square);
+    }
+    if (slope > MOST_SLOPE)
+        return 0;
+    return exp(-slope) * weight_of(m, vec_dot(h, o), hn, ni, no) /
+           (area * vec_dot(h, o) * hn * hn * hn);
+}
+
+/* Slopes of alpha 1 with constant footprints, as scene/ward/ward_lobe.c says;
+ * returns the share of the variance that levels have. */
+static double draw(int n, double slope[GLINT_WARD_SAMPLES][2])
+{
+    static const int at[5] = {1, 4, 8, 16, 32};
+    static const double kappa[5] = {1, 1.4, 2, 2, 3};
+    double f;
+    int i = 0;
+
+    while (i < 3 && n > at[i + 1])
+        i++;
+    f = (kappa[i] +
+         (kappa[i + 1] - kappa[i]) * (n - at[i]) / (at[i + 1] - at[i])) /
+        n;
+    for (int k = 0; k < n; k++) {
+        double v = 0;
+
+        for (int bit = 0; bit < 5; bit++)
+            v += (k >> bit & 1) * ldexp(1, -1 - bit);
+        slope[k][0] = sqrt(-log((k + .5) / n)) * cos(2 * GLINT_PI * v);
+        slope[k][1] = sqrt(-log((k + .5) / n)) * sin(2 * GLINT_PI * v);
+    }
+    for (int axis = 0; axis < 2; axis++) {
+        double mean = 0, square = 0;
+
+        for (int k = 0; k < n; k++)
+            mean += slope[k][axis] / n;
+        for (int k = 0; k < n; k++) {
+            slope[k][axis] -= mean;
+            square += slope[k][axis] * slope[k][axis] / n;
+        }
+        for (int k = 0; k < n; k++)
+            slope[k][axis] *=
+                square > 1. / 256 ? sqrt((1 - f) / 2 / square) : 0;
+    }
+    return f;
+}
+
+/* Adds what SLOPE of N reads, at level LEVEL but for the angle to the eye. */
+static void add_sample(const struct twin *twin, const double slope[2],
+                       const struct glint_described_material *m,
+                       const double frame[3][3], const double out[3],
+                       double level, double rgb[3])
+{
+    double h[3] = {m->alpha[0] * slope[0], m->alpha[1] * slope[1], 1};
+    double in[3], toward[3] = {0, 0, 0}, light[3], ho, weight;
+
+    vec_unit(h);
+    ho = vec_dot(h, out);
+    for (int k = 0; k < 3; k++)
+        in[k] = 2 * ho * h[k] - out[k];
+    if (ho <= 0 || in[2] <= 0)
+        return;
+    weight = weight_of(m, ho, h[2], fmin(in[2], 1), out[2]);
+    for (int k = 0; k < 3; k++)
+        vec_add(toward, in[k], frame[k], toward);
+    look(&twin->around, toward, level + .5 * log2(ho), light);
+    for (int c = 0; c < 3; c++)
+        rgb[c] += weight * light[c];
+}
+
+static void add_metal(const struct twin *twin, const struct twin_hit *hit,
+                      const double toward[3], double rgb[3])
+{
+    const struct glint_description *s = twin->scene;
+    const struct glint_described_material *m = &s->material[hit->material];
+    const double hand = s->left_handed ? 1 : -1;
+    const double a = m->alpha[0], b = m->alpha[1];
+    const int n = twin->ward_samples;
+    double slope[GLINT_WARD_SAMPLES][2], frame[3][3], out[3], level;
+    double sum[3] = {0, 0, 0};
+    const double f = draw(n, slope);
+    const double back[3] = {-toward[0], -toward[1], -hand * toward[2]};
+
+    level = log2(2 * sqrt(2 * fmin(f * a * b, .75 * fmin(a * a, b * b))) /
+                 sqrt(4 * GLINT_PI) * (1 << twin->around.header->side_log2));
+    twin_lie(twin, hit, frame);
+    for (int k = 0; k < 3; k++) {
+        out[k] = vec_dot(frame[k], back);
+        frame[k][2] *= hand; /* as of the text */
+        turn(twin, frame[k], frame[k]);
+    }
+    for (int k = 0; k < n && out[2] > 0; k++)
+        add_sample(twin, slope[k], m, (const double(*)[3])frame, out, level,
+                   sum);
+    for (int c = 0; c < 3; c++)
+        rgb[c] += s->environment.scale * m->metal[c] * sum[c] / n;
+}
+
+/* -------------------------------------------------------------------- whole */
+
+void twin_add_around(const struct twin *twin, const struct twin_hit *hit,
+                     const double toward[3], const double colour[3],
+                     double rgb[3])
+{
+    const struct glint_description *s = twin->scene;
+    const struct glint_described_material *m = &s->material[hit->material];
+    double normal[3], light[3];
+
+    if (!s->environment.data)
+        return;
+    turn(twin, hit->shading, normal);
+    look_level(&twin->around, -1, normal, light);
+    for (int c = 0; c < 3; c++)
+        rgb[c] += s->environment.scale * m->diffuse * colour[c] * light[c];
+    if (m->is_metal)
+        add_metal(twin, hit, toward, rgb);
+}
+
+void twin_behind(const struct twin *twin, const double toward[3], double spread,
+                 double rgb[3])
+{
+    const struct glint_description *s = twin->scene;
+    const struct glint_environment *e = &twin->around;
+    const double seen = fmin(fmax(spread, LEAST_SPREAD), .25);
+    const double width = 2 * sqrt(seen);
+    double to[3];
+
+    memcpy(rgb, s->background_colour, 3 * sizeof *rgb);
+    if (s->background != GLINT_BEHIND_ENVIRONMENT)
+        return;
+    turn(twin, toward, to);
+    look(e, to,
+         .5 * log2(seen * ldexp(1, 2 * (int)e->header->side_log2) / GLINT_PI),
+         rgb);
+    for (uint32_t i = 0; i < e->header->n_lights; i++) {
+        const double r = fmax(e->light[i].radius_q30 * 0x1p-30, width);
+        double off[3], share;
+
+        for (int k = 0; k < 3; k++)
+            off[k] = to[k] - e->light[i].toward_q30[k] * 0x1p-30;
+        share = fmin(fmax((r - vec_unit(off)) / width + .5, 0), 1);
+        for (int c = 0; c < 3; c++)
+            rgb[c] += share * glint_real_value(e->light[i].rgb[c]) / (r * r);
+    }
+    for (int c = 0; c < 3; c++)
+        rgb[c] *= s->environment.scale;
+}
