@@ -4,7 +4,7 @@
 
 #include "engine/measure.h"
 #include "lab/scenes/scene_sweep.h"
-#include "scenes/twin.h"
+#include "twin/twin.h"
 
 /* What scenes are compared over: light grey, on which shadows show. */
 #define BEHIND 0.25F
