@@ -365,6 +365,7 @@ void tool_progress_start(struct tool_progress *p, const struct tool *tool,
     p->what = what;
     p->started = tool_seconds();
     p->last = 0;
+    p->most = 0;
     p->shown = !tool->quiet;
     p->is_terminal = isatty(STDERR_FILENO);
 }
@@ -378,16 +379,17 @@ static void show_line(struct tool_progress *p, double now, double done)
         return;
     p->last = now;
     fprintf(stderr, "%s: %.0f %% in %.0f s, about %.0f s left\n", p->what,
-            100 * done, spent, spent * (1 - done) / done);
+            100 * p->most, spent, spent * (1 - done) / done);
 }
 
 void tool_progress_show(void *progress, double done)
 {
     struct tool_progress *p = progress;
     const double now = tool_seconds(), spent = now - p->started;
-    const int width = 30, filled = (int)(done * width);
+    const int width = 30, filled = (int)(fmax(done, p->most) * width);
     char bar[32];
 
+    p->most = fmax(done, p->most);
     if (p->shown && !p->is_terminal)
         show_line(p, now, done);
     if (!p->shown || !p->is_terminal || (now - p->last < 0.1 && done < 1))
@@ -397,7 +399,7 @@ void tool_progress_show(void *progress, double done)
         bar[i] = i < filled ? '#' : '.';
     bar[width] = '\0';
     fprintf(stderr, "\r%s [%s] %3.0f %%  %.0f s left \033[K", p->what, bar,
-            100 * done, done > 0.01 ? spent * (1 - done) / done : 0);
+            100 * p->most, done > 0.01 ? spent * (1 - done) / done : 0);
     fflush(stderr);
 }
 

@@ -129,6 +129,7 @@ struct tool_progress {
     const char *what;
     bool shown, is_terminal;
     double started, last;
+    double most; /* shown: more work than was thought takes nothing back */
 };
 
 void tool_progress_start(struct tool_progress *p, const struct tool *tool,
