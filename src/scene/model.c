@@ -200,7 +200,7 @@ static const char *check_material(const struct glint_scene_check *c,
     return NULL;
 }
 
-static const char *check_ward(const struct glint_scene_ward *w)
+const char *glint_scene_ward_fault(const struct glint_scene_ward *w)
 {
     for (int k = 0; k < 3; k++)
         if (!is_between(w->specular_q15[k], 0, ONE_Q15))
@@ -300,7 +300,7 @@ static const char *check_contents(struct glint_scene_check *c)
     for (uint32_t k = 0; !wrong && k < h->n_textures; k++)
         wrong = check_texture(c, &m->texture[k]);
     for (uint32_t k = 0; !wrong && k < h->n_wards; k++)
-        wrong = check_ward(&m->ward[k]);
+        wrong = glint_scene_ward_fault(&m->ward[k]);
     for (uint32_t k = 0; !wrong && k < h->n_materials; k++)
         wrong = check_material(c, &m->material[k]);
     for (uint32_t k = 0; !wrong && k < h->n_meshes; k++) {
@@ -352,6 +352,15 @@ int glint_scene_find(const struct glint_scene_model *model, const char *name)
 {
     for (uint32_t k = 0; k < model->header->n_objects; k++)
         if (is_same(model->object[k].name, name))
+            return (int)k;
+    return -1;
+}
+
+int glint_scene_find_material(const struct glint_scene_model *model,
+                              const char *name)
+{
+    for (uint32_t k = 0; k < model->header->n_materials; k++)
+        if (is_same(model->material[k].name, name))
             return (int)k;
     return -1;
 }

@@ -25,6 +25,9 @@ const char *glint_scene_check_object(const struct glint_scene_check *check,
 /* Returns what is wrong with a camera, or NULL. */
 const char *glint_scene_camera_fault(const struct glint_scene_camera *camera);
 
+/* The same of brushed metal. */
+const char *glint_scene_ward_fault(const struct glint_scene_ward *ward);
+
 /* Returns whether NAME is terminated and printable, and not empty. */
 int glint_scene_name_fits(const char *name);
 

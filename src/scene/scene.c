@@ -190,6 +190,9 @@ static struct glint_scene *carve(struct glint_arena *a,
         s->curve = glint_arena_take(a, 1, sizeof *s->curve);
     if (shows_picture(model))
         cfg->parts.bounces->carve(s, a);
+    s->material =
+        glint_arena_take(a, model->header->n_materials, sizeof *s->material);
+    s->ward = glint_arena_take(a, model->header->n_wards, sizeof *s->ward);
     s->wards = has_wards(model->header) ? cfg->parts.wards->carve(s, a) : NULL;
     s->cover_across = (cfg->width + 7) >> GLINT_COVER_LOG2;
     s->cover_down = (cfg->height + 7) >> GLINT_COVER_LOG2;
@@ -234,6 +237,7 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
     s->view = view;
     s->has_split = s->has_catchers = 0;
     s->sample_q8 = glint_scene_samples(cfg->edge_samples);
+    glint_scene_copy_looks(s);
     if (s->wards && cfg->parts.wards->open(s) != GLINT_OK)
         return GLINT_E_FORMAT;
     if (s->curve)

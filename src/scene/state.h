@@ -210,6 +210,8 @@ struct glint_scene {
     struct glint_gloss *gloss; /* [n_materials] */
     /* What mirrors and glass show; has no memory where none is seen in them. */
     struct glint_around around;
+    struct glint_scene_material *material; /* [n_materials], as they look now */
+    struct glint_scene_ward *ward;         /* [n_wards] */
     struct glint_ward_state *wards; /* NULL: neither environment nor metal */
     int cover_across, cover_down;
     uint16_t *cover; /* [cover_down][cover_across]: sums of q8 over 64 pixels */
@@ -391,6 +393,9 @@ static inline int64_t glint_scene_pixel_q40(const struct glint_scene *scene)
     return step_q30 < 1 << 30 ? step_q30 * step_q30 >> 22 : INT64_C(1) << 38;
 }
 
+/* Copies materials and metals of the model, and draws by these from now on. */
+void glint_scene_copy_looks(struct glint_scene *scene);
+
 /* ------------------------------------------------------------------- parts */
 
 struct glint_scene_meshes {
@@ -445,6 +450,8 @@ struct glint_scene_wards {
                                       struct glint_arena *arena);
     /* Opens the environment and makes the lobes of all metals. */
     enum glint_status (*open)(struct glint_scene *scene);
+    /* Makes the lobe of metal I anew. */
+    void (*change)(const struct glint_scene *scene, uint32_t i);
     /* Finds how the metal of SURFACE lies, which RAY meets. */
     void (*lie)(const struct glint_scene *scene,
                 const struct glint_scene_ray *ray,

@@ -255,6 +255,10 @@ enum glint_status glint_scene_open(struct glint_scene_model *model,
 /* Returns the index of the first object of that name, or -1. */
 int glint_scene_find(const struct glint_scene_model *model, const char *name);
 
+/* The same of materials. */
+int glint_scene_find_material(const struct glint_scene_model *model,
+                              const char *name);
+
 #ifdef __cplusplus
 }
 #endif

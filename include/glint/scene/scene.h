@@ -128,6 +128,25 @@ enum glint_status glint_scene_set_camera(struct glint_scene *scene,
 enum glint_status glint_scene_set_light(struct glint_scene *scene, int light,
                                         const int32_t at[3]);
 
+/* What of a material changes from one frame to the next. */
+struct glint_scene_look {
+    int32_t rgb_q15[3]; /* ambient and diffuse colour, 0 .. 32768 */
+    /* Of brushed metal, as struct glint_scene_ward; of others 0. */
+    int32_t specular_q15[3], alpha_q24[2];
+};
+
+/* Sets LOOK to how material MATERIAL looks now, by its index; GLINT_E_ARGUMENT:
+ * there is none. */
+enum glint_status glint_scene_get_look(const struct glint_scene *scene,
+                                       int material,
+                                       struct glint_scene_look *look);
+
+/* Changes how it looks, from the next frame on: nothing is baked, a metal's
+ * lobe is made anew. The smaller alpha is held at a tenth of the other.
+ * GLINT_E_ARGUMENT: out of range, or a metal's members of another material. */
+enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
+                                       const struct glint_scene_look *look);
+
 /* Keeps IMAGE, of the size of the configuration, small, as what mirrors and
  * glass of scenes on the camera's picture show where their rays meet nothing:
  * ahead as it is, elsewhere repeated. NULL: they show black, as at first. Costs

@@ -267,4 +267,5 @@ static void reflect(const struct glint_scene *scene,
 }
 
 const struct glint_scene_wards glint_scene_wards = {
-    carve, open_wards, lie, reflect, glint_ward_shine, glint_ward_behind};
+    carve,   open_wards,       set_lobe,         lie,
+    reflect, glint_ward_shine, glint_ward_behind};

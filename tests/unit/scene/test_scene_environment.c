@@ -271,6 +271,53 @@ static void test_part(void **state)
     close_text(&d);
 }
 
+/* Row B2: colours and alphas change from one frame to the next: the picture is
+ * that of a scene that was baked so. */
+static void test_b2_looks(void **state)
+{
+    static const char *const text[2] = {
+        STAGE "environment 9e5\nlight sun direction 1 1 1 colour 1e4 1e4 1e4\n"
+              "material m ward specular .25 .5 .75 alpha .3 .06 diffuse .125 0 "
+              ".125\nsphere a at 0 .5 0 radius .5 material m\n",
+        STAGE "environment 9e5\nlight sun direction 1 1 1 colour 1e4 1e4 1e4\n"
+              "material m ward specular .9 .9 .9 alpha .01 .01\n"
+              "sphere a at 0 .5 0 radius .5 material m\n"};
+    static const struct scene_dials dials = {
+        .width = 64, .height = 36, .edge_samples = 4, .shadow_points = 1};
+    static int32_t want[3 * 64 * 36], got[3 * 64 * 36];
+    struct glint_scene_look look, now;
+    struct drawn d;
+    int material;
+
+    (void)state;
+    open_text(&d, text[0], &dials);
+    draw(&d, 64, 36, want);
+    material = glint_scene_find_material(&d.model, "m");
+    assert_int_equal(glint_scene_get_look(d.frame.scene, material, &look),
+                     GLINT_OK);
+    close_text(&d);
+    open_text(&d, text[1], &dials);
+    draw(&d, 64, 36, got);
+    assert_memory_not_equal(got, want, sizeof want);
+    assert_int_equal(glint_scene_set_look(d.frame.scene, material, &look),
+                     GLINT_OK);
+    draw(&d, 64, 36, got);
+    assert_memory_equal(got, want, sizeof want);
+    assert_int_equal(glint_scene_get_look(d.frame.scene, material, &now),
+                     GLINT_OK);
+    assert_memory_equal(&now, &look, sizeof now);
+    look.alpha_q24[0] = 1 << 13;
+    assert_int_equal(glint_scene_set_look(d.frame.scene, material, &look),
+                     GLINT_E_ARGUMENT);
+    assert_int_equal(glint_scene_set_look(d.frame.scene, -1, &now),
+                     GLINT_E_ARGUMENT);
+    material = glint_scene_find_material(&d.model, "white");
+    assert_int_equal(glint_scene_set_look(d.frame.scene, material, &now),
+                     GLINT_E_ARGUMENT);
+    assert_int_equal(glint_scene_find_material(&d.model, "none"), -1);
+    close_text(&d);
+}
+
 /* -------------------------------------------------------------- highlights */
 
 /* Returns the light of a whole picture of a ball 40 pixels wide, of almost a
@@ -325,7 +372,8 @@ int main(void)
 {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_twin), cmocka_unit_test(test_held),
-        cmocka_unit_test(test_part), cmocka_unit_test(test_highlight_steady)};
+        cmocka_unit_test(test_part), cmocka_unit_test(test_b2_looks),
+        cmocka_unit_test(test_highlight_steady)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * How materials look, from one frame to the next: a scene draws by its own copy
+ * of the model's tables. */
+#include "scene/model_check.h"
+#include "scene/state.h"
+
+void glint_scene_copy_looks(struct glint_scene *scene)
+{
+    const struct glint_scene_header *h = scene->model.header;
+
+    for (uint32_t i = 0; i < h->n_materials; i++)
+        scene->material[i] = scene->model.material[i];
+    for (uint32_t i = 0; i < h->n_wards; i++)
+        scene->ward[i] = scene->model.ward[i];
+    scene->model.material = scene->material;
+    scene->model.ward = scene->ward;
+}
+
+/* Returns the metal that M is; NULL: it is none. */
+static struct glint_scene_ward *metal_of(const struct glint_scene *s,
+                                         const struct glint_scene_material *m)
+{
+    return m->ward == GLINT_SCENE_NONE ? NULL : &s->ward[m->ward];
+}
+
+enum glint_status glint_scene_get_look(const struct glint_scene *scene,
+                                       int material,
+                                       struct glint_scene_look *look)
+{
+    const struct glint_scene_material *m;
+    const struct glint_scene_ward *ward;
+
+    if (material < 0 || material >= (int)scene->model.header->n_materials)
+        return GLINT_E_ARGUMENT;
+    m = &scene->material[material];
+    ward = metal_of(scene, m);
+    *look = (struct glint_scene_look){.rgb_q15 = {0}};
+    for (int k = 0; k < 3; k++) {
+        look->rgb_q15[k] = m->rgb_q15[k];
+        look->specular_q15[k] = ward ? ward->specular_q15[k] : 0;
+    }
+    for (int k = 0; ward && k < 2; k++)
+        look->alpha_q24[k] = ward->alpha_q24[k];
+    return GLINT_OK;
+}
+
+/* Returns whether LOOK is in range, of a metal or not; WARD takes the metal's
+ * members. */
+static int is_look(const struct glint_scene_look *look, int is_metal,
+                   struct glint_scene_ward *ward)
+{
+    int any = 0;
+
+    for (int k = 0; k < 3; k++) {
+        if (look->rgb_q15[k] < 0 || look->rgb_q15[k] > GLINT_SCENE_ONE_Q15)
+            return 0;
+        ward->specular_q15[k] = look->specular_q15[k];
+        any |= look->specular_q15[k];
+    }
+    for (int k = 0; k < 2; k++) {
+        ward->alpha_q24[k] = look->alpha_q24[k];
+        any |= look->alpha_q24[k];
+    }
+    return is_metal ? glint_scene_ward_fault(ward) == NULL : any == 0;
+}
+
+enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
+                                       const struct glint_scene_look *look)
+{
+    struct glint_scene_ward changed = {.norm = 0}, *ward;
+    struct glint_scene_material *m;
+
+    if (material < 0 || material >= (int)scene->model.header->n_materials)
+        return GLINT_E_ARGUMENT;
+    m = &scene->material[material];
+    ward = metal_of(scene, m);
+    if (ward)
+        changed.norm = ward->norm;
+    if (!is_look(look, ward != NULL, &changed))
+        return GLINT_E_ARGUMENT;
+    for (int k = 0; k < 3; k++)
+        m->rgb_q15[k] = look->rgb_q15[k];
+    if (ward) {
+        *ward = changed;
+        scene->cfg.parts.wards->change(scene, m->ward);
+    }
+    return GLINT_OK;
+}
