@@ -26,8 +26,9 @@ static const char help[] =
     "                      (default 256)\n"
     "  --levels L          gauss: blurred on the sphere (default)\n"
     "                      mip: means of 2 x 2, the baseline\n"
-    "  --code C            565: roots of 5, 6 and 5 bits (default)\n"
+    "  --code C            565: roots of 5, 6 and 5 bits\n"
     "                      9e5: 9 bits each and an exponent, twice the bytes\n"
+    "                      (default)\n"
     "  --lights N          0 to 16 (default 16)\n"
     "  --turn DEG          about the vertical, to the right\n"
     "  --scale X           factor of all light\n";

@@ -52,7 +52,7 @@ struct glint_environment_report {
     int spots;                      /* that are lights; those listed at most */
 };
 
-/* Sets OPTIONS to a side of 256, Gaussian levels, 565, 16 lights. */
+/* Sets OPTIONS to a side of 256, Gaussian levels, 9e5, 16 lights. */
 void glint_environment_defaults(struct glint_environment_options *options);
 
 /* Bakes PICTURE. NAME is kept in the file, its first 63 characters of a-z, A-Z,

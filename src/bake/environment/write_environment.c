@@ -29,7 +29,7 @@ void glint_environment_defaults(struct glint_environment_options *options)
     *options = (struct glint_environment_options){
         .side_log2 = 8,
         .levels = GLINT_ENVIRONMENT_GAUSS,
-        .code = GLINT_ENVIRONMENT_565,
+        .code = GLINT_ENVIRONMENT_9E5,
         .max_lights = GLINT_ENVIRONMENT_MAX_LIGHTS,
         .light_deg = 3.4,
         .light_above = 8,
