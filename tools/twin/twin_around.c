@@ -303,7 +303,8 @@ static void add_metal(const struct twin *twin, const struct twin_hit *hit,
     const double hand = s->left_handed ? 1 : -1;
     const double a = m->alpha[0], b = m->alpha[1];
     const int n = twin->ward_samples;
-    double slope[GLINT_WARD_SAMPLES][2], frame[3][3], out[3], level;
+    double slope[GLINT_WARD_SAMPLES][2], level;
+    double frame[3][3] = {{0}}, out[3] = {0};
     double sum[3] = {0, 0, 0};
     const double f = draw(n, slope);
     const double back[3] = {-toward[0], -toward[1], -hand * toward[2]};
