@@ -48,7 +48,7 @@ include tools/make/target.mk
 CORE      := base image kernels kernels/rays lens lamps follow tile flare/edges flare star veil scene/around scene scene/frame scene/ward scene/account reuse
 PUBLISHED := published
 ENGINE    := engine engine/frame engine/setup engine/star
-BAKE      := bake bake/table bake/scene bake/environment bake/trace bake/fit bake/exact bake/published
+BAKE      := bake bake/table bake/scene bake/environment bake/translucent bake/trace bake/fit bake/exact bake/published
 PLATFORM  := posix formats video panel linux jpeg oiio assimp sdl
 TOOLS     := options lamp_files desk model overlay scenes twin command live lab lab/plots lab/scenes
 c_files = $(wildcard $(2:%=$(1)/%/*.c))

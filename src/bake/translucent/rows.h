@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What all that works on rows shares: places of entries, shares of work. */
+#ifndef GLINT_BAKE_TRANSLUCENT_ROWS_H
+#define GLINT_BAKE_TRANSLUCENT_ROWS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "glint/scene/translucent_bake.h"
+
+/* Entries of a kernel. */
+static inline int glint_scatter_kernel2(int kernel)
+{
+    return kernel * kernel;
+}
+
+/* Row of texel X, channel C: [kernel * kernel]. */
+static inline float *glint_scatter_row(const struct glint_scatter_rows *rows,
+                                       int x, int c)
+{
+    const size_t k2 = (size_t)glint_scatter_kernel2(rows->kernel);
+
+    return rows->r + ((size_t)x * 3 + (size_t)c) * k2;
+}
+
+/* The offsets of a kernel that stay within the square from texel X. */
+struct glint_scatter_inside {
+    int u_from, u_to, v_from, v_to; /* to: one past the last */
+};
+struct glint_scatter_inside glint_scatter_inside(int side, int kernel, int x);
+
+/* Index of the texel that entry D of texel X leads to, or -1. */
+int glint_scatter_target(int side, int kernel, int x, int d);
+
+/* Makes ROWS of SIDE and KERNEL, all 0, with shares if SHARED; returns false
+ * without memory, ROWS then empty. */
+bool glint_scatter_open(struct glint_scatter_rows *rows, int side, int kernel,
+                        bool shared);
+
+/* Returns true if the work is to end; DONE is its share, 0 .. 1. */
+bool glint_watch_ends(const struct glint_watch *watch, double done);
+
+/* A part of the work of WATCH, from share FROM on, as long as LENGTH. */
+struct glint_watch_part {
+    const struct glint_watch *whole;
+    double from, length;
+};
+
+/* Returns a watch of PART, which must outlive it. */
+struct glint_watch glint_watch_of(struct glint_watch_part *part);
+
+#endif
