@@ -12,7 +12,9 @@ static inline void add(int32_t *to_q15, int64_t light_q15, int32_t weight_q15)
                           ? light_q15
                           : (int64_t)GLINT_SCENE_MOST_LIGHT;
 
-    sum_q15 = *to_q15 + ((sum_q15 * weight_q15 + (1 << 14)) >> 15);
+    if (weight_q15 != GLINT_SCENE_ONE_Q15)
+        sum_q15 = (sum_q15 * weight_q15 + (1 << 14)) >> 15;
+    sum_q15 += *to_q15;
     *to_q15 = sum_q15 < GLINT_SCENE_MOST_LIGHT ? (int32_t)sum_q15
                                                : GLINT_SCENE_MOST_LIGHT;
 }
@@ -90,12 +92,11 @@ static void add_shine(const struct glint_scene *s,
 }
 
 /* BRUSHED is NULL if SURFACE is no metal. */
-static void add_light(const struct glint_scene *s,
-                      const struct glint_scene_ray *ray,
-                      const struct glint_met_surface *surface,
-                      const struct glint_brushed *brushed,
-                      const struct glint_lit *lit, const int32_t colour_q15[3],
-                      int32_t weight_q15, int32_t rgb_q15[3])
+static WHOLLY_INLINE void
+add_light(const struct glint_scene *s, const struct glint_scene_ray *ray,
+          const struct glint_met_surface *surface,
+          const struct glint_brushed *brushed, const struct glint_lit *lit,
+          const int32_t colour_q15[3], int32_t weight_q15, int32_t rgb_q15[3])
 {
     const struct glint_scene_material *m = surface->material;
     const int is_sun = lit->light->kind == GLINT_LIGHT_SUN;
@@ -133,10 +134,11 @@ static void add_light(const struct glint_scene *s,
     }
 }
 
-static inline void phong(const struct glint_scene *scene,
-                         const struct glint_scene_ray *ray,
-                         const struct glint_met_surface *surface,
-                         int32_t weight_q15, int32_t rgb_q15[3])
+/* Inlined where the weight is 1, which most pixels have. */
+static WHOLLY_INLINE void phong(const struct glint_scene *scene,
+                                const struct glint_scene_ray *ray,
+                                const struct glint_met_surface *surface,
+                                int32_t weight_q15, int32_t rgb_q15[3])
 {
     const struct glint_scene_material *m = surface->material;
     const struct glint_scene_wards *wards = scene->cfg.parts.wards;

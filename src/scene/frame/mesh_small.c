@@ -145,7 +145,8 @@ static inline void set_small(const struct glint_scene *s, int n,
                       DEPTH_BITS);
 }
 
-/* Draws N samples of a pixel, whose middle is at depth Z, AT its lines. */
+/* Draws N samples of a pixel, whose middle is at depth Z, AT its lines: as one
+ * vector, if no compiler unrolls the loop before it looks for them. */
 static inline void look_at_samples(const struct small *small, int n,
                                    const int32_t at[3], int32_t z,
                                    int32_t *restrict depth,
@@ -153,6 +154,7 @@ static inline void look_at_samples(const struct small *small, int n,
 {
     const uint32_t own = small->id;
 
+#pragma GCC unroll 1
     for (int k = 0; k < n; k++) {
         const int32_t in = (at[0] + small->off[0][k]) |
                            (at[1] + small->off[1][k]) |

@@ -57,7 +57,8 @@ static NEVER_INLINE int find_at_length(struct glint_scene_worker *w,
         const int32_t x_q8 = glint_place(s, x, 0) + off_of(s, at, 0);
         const int32_t y_q8 = glint_place(s, y, 1) + off_of(s, at, 1);
 
-        if (glint_quick_find(w, id, x_q8, y_q8, ray, surface))
+        /* in the middle find() has tried */
+        if (i > 0 && glint_quick_find(w, id, x_q8, y_q8, ray, surface))
             return 1;
         glint_view_ray(&s->view, x_q8, y_q8, ray, seen_q30);
         if (glint_scene_meet_id(s, ray, seen_q30, id, &met))
@@ -141,15 +142,19 @@ static int is_joined(const struct glint_scene *s, uint32_t a, uint32_t b)
 static inline void share(const struct glint_scene *s, const uint32_t *id, int n,
                          int times[GLINT_SCENE_SAMPLES])
 {
-    for (int k = 0; k < n; k++) {
-        int i = 0;
+    int first = 0;
 
+    for (int k = 0; k < n; k++) {
         times[k] = 0;
-        while (i < k && (times[i] == 0 || !is_joined(s, id[i], id[k])))
-            i++;
-        if (is_split(s, id[k]))
-            i = k;
-        times[i]++;
+        if (is_split(s, id[k])) {
+            first = k;
+        } else if (k > 0 && id[k] != id[k - 1]) {
+            first = 0;
+            while (first < k &&
+                   (times[first] == 0 || !is_joined(s, id[first], id[k])))
+                first++;
+        }
+        times[first]++;
     }
 }
 
@@ -167,9 +172,9 @@ static inline void add(const struct glint_scene *s, uint32_t id,
 
 /* Shades what the samples of pixel (X, Y) see one by one, where that differs.
  */
-static inline void shade_samples(struct glint_scene_worker *w,
-                                 const uint32_t *id, int n, int x, int y,
-                                 struct glint_scene_sum *sum)
+static NEVER_INLINE void shade_samples(struct glint_scene_worker *w,
+                                       const uint32_t *id, int n, int x, int y,
+                                       struct glint_scene_sum *sum)
 {
     const struct glint_scene *s = w->scene;
     const int down = n == 16 ? 2 : n == 8;
