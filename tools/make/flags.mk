@@ -54,6 +54,9 @@ $(call of,$(addprefix src/flare/,aim by_edges capacities colours lights plan pla
 $(call of,$(addprefix src/published/,ghost_grid by_cells clip),-Os)
 $(call of,src/tile/bins src/tile/pass src/star/star src/veil/veil $(addprefix src/image/,resolve curve mix),-Os)
 
+# Loops over doubles that a machine takes two at a time.
+$(call of,src/bake/translucent/%,-O3)
+
 # Hot loops are unrolled.
 $(call of,src/kernels/%,-O3)
 $(call of,$(addprefix src/lamps/,bright_mark bright_scan row_light),-O3)

@@ -121,13 +121,16 @@ void glint_scatter_light_rows(const struct glint_scatter_rows *rows,
 
 /* ------------------------------------------------------------------ fits */
 
+/* What changes from texel to texel scales light where it leaves, as that is
+ * what is seen: with weights at x_i, edges of a pattern are as wide as a kernel
+ * (15 to 20 dB on chess). */
 enum glint_scatter_model {
-    /* R' = in(x_i) h_c(d) out(x_o), c the cluster of x_i */
+    /* R' = in(x_i) h_c(d) out(x_o), c the cluster of x_o */
     GLINT_SCATTER_CLUSTERED,
-    /* R' = sum over j of f_j(x_i) h_j(d), h_j = sum over q of
+    /* R' = sum over j of h_j(d) f_j(x_o), h_j(u, v) = sum over q of
      * column_jq(v) row_jq(u) */
     GLINT_SCATTER_FACTORED,
-    /* R' = in(x_i) h(d), of which h sums to 1 */
+    /* R' = h(d) out(x_o), of which h sums to 1 */
     GLINT_SCATTER_ALBEDO
 };
 
@@ -146,7 +149,7 @@ struct glint_scatter_error {
     double entry_db; /* the same in decibels */
     double light_db; /* of the radiosity under lamps, shadows and a ramp, its
                         peak = 1 */
-    double albedo;   /* largest error of the sum of a row */
+    double albedo;   /* largest error of the sum of a row: of energy */
 };
 
 /* Owned: all pointers are malloc'ed, or NULL where a model has no such part. */
@@ -156,11 +159,11 @@ struct glint_scatter_fit {
     double *h;      /* [kernels][3][kernel * kernel] */
     double *column; /* factored: [kernels][3][rank][kernel], down */
     double *row;    /* the same, across */
-    double *f;      /* factored: [kernels][3][side * side]; the sum of each row
-                       is that of the data */
-    double *in;     /* clustered, albedo: [side * side][3] */
-    double *out;    /* clustered: [side * side][3] */
-    double *albedo; /* [side * side][3]: sums of the rows of the data */
+    double *f;      /* factored: [kernels][3][side * side] */
+    double *in;     /* clustered: [side * side][3] */
+    double *out;    /* clustered, albedo: [side * side][3] */
+    double *albedo; /* [side * side][3]: what each texel shows of even light of
+                       1, which all fits keep */
     uint8_t *cluster; /* clustered: [side * side], below kernels */
     struct glint_scatter_error error;
 };
@@ -169,9 +172,10 @@ struct glint_scatter_fit {
 void glint_scatter_defaults(struct glint_scatter_options *options,
                             enum glint_scatter_model model);
 
-/* Fits ROWS and measures FIT. GLINT_E_ARGUMENT: OPTIONS are out of range.
+/* Fits ROWS, which are turned meanwhile and the same afterwards, and measures
+ * FIT. GLINT_E_ARGUMENT: OPTIONS are out of range.
  * GLINT_E_MEMORY, GLINT_E_CLOSED: FIT is empty. */
-enum glint_status glint_scatter_fit(const struct glint_scatter_rows *rows,
+enum glint_status glint_scatter_fit(struct glint_scatter_rows *rows,
                                     const struct glint_scatter_options *options,
                                     const struct glint_watch *watch,
                                     struct glint_scatter_fit *fit);

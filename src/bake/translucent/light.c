@@ -29,7 +29,7 @@ static const double *kernel_of(const struct glint_scatter_fit *fit, int j,
            (size_t)(j * 3 + c) * (size_t)glint_scatter_kernel2(fit->kernel);
 }
 
-/* Weight of kernel J in the row of texel X. */
+/* Weight of kernel J in what leaves texel X. */
 static double weight_of(const struct glint_scatter_fit *fit, int j, int c,
                         int x)
 {
@@ -38,7 +38,7 @@ static double weight_of(const struct glint_scatter_fit *fit, int j, int c,
                       (size_t)x];
     if (fit->model == GLINT_SCATTER_CLUSTERED && fit->cluster[x] != j)
         return 0;
-    return fit->in[3 * x + c];
+    return fit->out[3 * x + c];
 }
 
 double glint_scatter_entry(const struct glint_scatter_fit *fit, int x, int c,
@@ -50,41 +50,45 @@ double glint_scatter_entry(const struct glint_scatter_fit *fit, int x, int c,
     if (to < 0)
         return 0;
     for (int j = 0; j < fit->kernels; j++)
-        sum += weight_of(fit, j, c, x) * kernel_of(fit, j, c)[d];
-    return fit->out ? sum * fit->out[3 * to + c] : sum;
+        sum += weight_of(fit, j, c, to) * kernel_of(fit, j, c)[d];
+    return fit->in ? sum * fit->in[3 * x + c] : sum;
 }
 
-/* Adds to TO what light POWER on texel X makes by kernel H. */
-static void spread(const struct glint_scatter_fit *fit, int x, const double *h,
-                   double power, int c, double *to)
+/* Sum of kernel H, whose offsets lead to texel X, with channel C of LIGHT. */
+static double gather(const struct glint_scatter_fit *fit, int x,
+                     const double *h, const double *light, int c)
 {
     const int side = fit->side, n = fit->kernel, half = n / 2;
     const struct glint_scatter_inside in = glint_scatter_inside(side, n, x);
+    double sum = 0;
 
     for (int v = in.v_from; v < in.v_to; v++)
-        for (int u = in.u_from; u < in.u_to; u++)
-            to[3 * (x + (v - half) * side + u - half) + c] +=
-                power * h[v * n + u];
+        for (int u = in.u_from; u < in.u_to; u++) {
+            const int from = x + (v - half) * side + u - half;
+            const double e = light[3 * from + c];
+
+            sum += h[n * n - 1 - (v * n + u)] *
+                   (fit->in ? e * fit->in[3 * from + c] : e);
+        }
+    return sum;
 }
 
 void glint_scatter_light(const struct glint_scatter_fit *fit,
                          const double *irradiance, double *radiosity)
 {
-    const int texels = fit->side * fit->side;
+    for (int x = 0; x < fit->side * fit->side; x++)
+        for (int c = 0; c < 3; c++) {
+            double sum = 0;
 
-    memset(radiosity, 0, 3 * (size_t)texels * sizeof *radiosity);
-    for (int x = 0; x < texels; x++)
-        for (int c = 0; c < 3; c++)
             for (int j = 0; j < fit->kernels; j++) {
                 const double weight = weight_of(fit, j, c, x);
 
-                if (weight != 0 && irradiance[3 * x + c] != 0)
-                    spread(fit, x, kernel_of(fit, j, c),
-                           weight * irradiance[3 * x + c], c, radiosity);
+                if (weight != 0)
+                    sum += weight *
+                           gather(fit, x, kernel_of(fit, j, c), irradiance, c);
             }
-    for (int x = 0; fit->out && x < texels; x++)
-        for (int c = 0; c < 3; c++)
-            radiosity[3 * x + c] *= fit->out[3 * x + c];
+            radiosity[3 * x + c] = sum;
+        }
 }
 
 /* A ramp with a shadow's edge across it, and three lamps: sharp and wide. */

@@ -62,6 +62,25 @@ int glint_scatter_target(int side, int kernel, int x, int d)
     return i < 0 || j < 0 || i >= side || j >= side ? -1 : j * side + i;
 }
 
+void glint_scatter_turn(struct glint_scatter_rows *rows)
+{
+    const int side = rows->side, n = rows->kernel, last = n * n - 1;
+
+    for (int x = 0; x < side * side; x++)
+        for (int d = last / 2 + 1; d <= last; d++) {
+            const int to = glint_scatter_target(side, n, x, d);
+
+            for (int c = 0; c < 3 && to >= 0; c++) {
+                float *there = glint_scatter_row(rows, x, c) + d;
+                float *back = glint_scatter_row(rows, to, c) + last - d;
+                const float r = *there;
+
+                *there = *back;
+                *back = r;
+            }
+        }
+}
+
 bool glint_watch_ends(const struct glint_watch *watch, double done)
 {
     if (!watch)

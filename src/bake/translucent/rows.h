@@ -38,6 +38,10 @@ int glint_scatter_target(int side, int kernel, int x, int d);
 bool glint_scatter_open(struct glint_scatter_rows *rows, int side, int kernel,
                         bool shared);
 
+/* Exchanges both directions of each pair of texels: ROWS are those of where
+ * light leaves then, and the other way round. */
+void glint_scatter_turn(struct glint_scatter_rows *rows);
+
 /* Returns true if the work is to end; DONE is its share, 0 .. 1. */
 bool glint_watch_ends(const struct glint_watch *watch, double done);
 

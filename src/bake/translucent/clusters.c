@@ -1,0 +1,290 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Rows as few kernels, times what a texel takes in and what it lets out.
+ *
+ * Alternating least squares: kernels, in and out scales in turn, then each
+ * texel goes to the kernel that leaves the least of its row. Clusters begin by
+ * how much of material 0 is about a texel, where rows are measured by how much
+ * light they scatter: left to themselves they would part the rim from the rest.
+ */
+#include "bake/translucent/fits.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    ROUNDS = 8, /* errors fall by less than 1 % from there on */
+    ABOUT = 2   /* texels about one whose materials count */
+};
+
+struct clusters {
+    const struct glint_scatter_rows *rows;
+    struct glint_scatter_fit *fit;
+    double *above, *below; /* sums of least squares: a texel or an entry each */
+};
+
+/* What is the same in the entries of one row of a kernel: the last is U_TO - 1.
+ */
+struct span {
+    int x, c, u_from, u_to;
+    const float *data;
+    double *kernel, *in; /* in of the texels that entries lead to, 3 apart */
+};
+
+static double *kernel_of(const struct glint_scatter_fit *fit, int j, int c)
+{
+    return fit->h +
+           (size_t)(j * 3 + c) * (size_t)glint_scatter_kernel2(fit->kernel);
+}
+
+/* The span of line V of the row of texel X, with kernel J. */
+static struct span span_of(const struct clusters *p,
+                           const struct glint_scatter_inside *in, int x, int c,
+                           int j, int v)
+{
+    const int n = p->fit->kernel, side = p->fit->side;
+
+    return (struct span){
+        .x = x,
+        .c = c,
+        .u_from = in->u_from,
+        .u_to = in->u_to,
+        .data = glint_scatter_row(p->rows, x, c) + v * n,
+        .kernel = kernel_of(p->fit, j, c) + v * n,
+        /* the place of an entry that counts is in the square */
+        .in =
+            p->fit->in + c + 3 * (x + (v - n / 2) * side + in->u_from - n / 2),
+    };
+}
+
+/* Sets PRODUCT and SQUARE to the sums of data times kernel and in, and of the
+ * square of these. */
+static void compare(const struct clusters *p, int x, int c, int j,
+                    double *product, double *square)
+{
+    const struct glint_scatter_inside in =
+        glint_scatter_inside(p->fit->side, p->fit->kernel, x);
+
+    *product = *square = 0;
+    for (int v = in.v_from; v < in.v_to; v++) {
+        const struct span s = span_of(p, &in, x, c, j, v);
+
+        for (int u = s.u_from; u < s.u_to; u++) {
+            const double b = s.kernel[u] * s.in[3 * (u - s.u_from)];
+
+            *product += (double)s.data[u] * b;
+            *square += b * b;
+        }
+    }
+}
+
+static double ratio(double above, double below)
+{
+    return below > 0 ? above / below : 0;
+}
+
+static void set_out(const struct clusters *p)
+{
+    for (int x = 0; x < p->fit->side * p->fit->side; x++)
+        for (int c = 0; c < 3; c++) {
+            double product, square;
+
+            compare(p, x, c, p->fit->cluster[x], &product, &square);
+            p->fit->out[3 * x + c] = ratio(product, square);
+        }
+}
+
+static void clear(const struct clusters *p, size_t n)
+{
+    memset(p->above, 0, n * sizeof *p->above);
+    memset(p->below, 0, n * sizeof *p->below);
+}
+
+static void set_in(const struct clusters *p)
+{
+    const int side = p->fit->side, n = p->fit->kernel;
+
+    clear(p, 3 * (size_t)side * (size_t)side);
+    for (int x = 0; x < side * side; x++) {
+        const struct glint_scatter_inside in = glint_scatter_inside(side, n, x);
+
+        for (int c = 0; c < 3; c++)
+            for (int v = in.v_from; v < in.v_to; v++) {
+                const struct span s =
+                    span_of(p, &in, x, c, p->fit->cluster[x], v);
+                const size_t to = (size_t)(s.in - p->fit->in);
+
+                for (int u = s.u_from; u < s.u_to; u++) {
+                    const size_t at = to + 3 * (size_t)(u - s.u_from);
+                    const double b = s.kernel[u] * p->fit->out[3 * x + c];
+
+                    p->above[at] += (double)s.data[u] * b;
+                    p->below[at] += b * b;
+                }
+            }
+    }
+    for (int i = 0; i < 3 * side * side; i++)
+        p->fit->in[i] = ratio(p->above[i], p->below[i]);
+}
+
+static void set_kernels(const struct clusters *p)
+{
+    const int side = p->fit->side, n = p->fit->kernel;
+    const size_t all = (size_t)p->fit->kernels * 3 * (size_t)(n * n);
+
+    clear(p, all);
+    for (int x = 0; x < side * side; x++) {
+        const struct glint_scatter_inside in = glint_scatter_inside(side, n, x);
+
+        for (int c = 0; c < 3; c++)
+            for (int v = in.v_from; v < in.v_to; v++) {
+                const struct span s =
+                    span_of(p, &in, x, c, p->fit->cluster[x], v);
+                const size_t to = (size_t)(s.kernel - p->fit->h);
+
+                for (int u = s.u_from; u < s.u_to; u++) {
+                    const double b =
+                        p->fit->out[3 * x + c] * s.in[3 * (u - s.u_from)];
+
+                    p->above[to + (size_t)u] += (double)s.data[u] * b;
+                    p->below[to + (size_t)u] += b * b;
+                }
+            }
+    }
+    for (size_t i = 0; i < all; i++)
+        p->fit->h[i] = ratio(p->above[i], p->below[i]);
+}
+
+/* Gives each texel the kernel that explains most of its row. */
+static void assign(const struct clusters *p)
+{
+    for (int x = 0; x < p->fit->side * p->fit->side; x++) {
+        double best = -1;
+        int kernel = p->fit->cluster[x];
+
+        for (int j = 0; j < p->fit->kernels; j++) {
+            double explained = 0;
+
+            for (int c = 0; c < 3; c++) {
+                double product, square;
+
+                compare(p, x, c, j, &product, &square);
+                explained += ratio(product * product, square);
+            }
+            if (explained > best) {
+                best = explained;
+                kernel = j;
+            }
+        }
+        p->fit->cluster[x] = (uint8_t)kernel;
+    }
+}
+
+/* What a texel is ordered by at first, 0 .. 1. */
+static double place(const struct clusters *p, int x, double most)
+{
+    const int side = p->fit->side, window = 2 * ABOUT + 1;
+    const double *a = p->fit->albedo + 3 * (size_t)x;
+    double sum = 0;
+    int n = 0;
+
+    if (!p->rows->share)
+        return most > 0 ? (a[0] + a[1] + a[2]) / most : 0;
+    for (int d = 0; d < window * window; d++) {
+        const int to = glint_scatter_target(side, window, x, d);
+
+        if (to >= 0) {
+            sum += p->rows->share[to];
+            n++;
+        }
+    }
+    return sum / n;
+}
+
+static void begin(const struct clusters *p)
+{
+    const int texels = p->fit->side * p->fit->side, k = p->fit->kernels;
+    double most = 0;
+
+    for (int x = 0; x < texels; x++) {
+        const double *a = p->fit->albedo + 3 * (size_t)x;
+
+        most = fmax(most, a[0] + a[1] + a[2]);
+    }
+    for (int x = 0; x < texels; x++) {
+        const int j = (int)(place(p, x, most) * k);
+
+        p->fit->cluster[x] = (uint8_t)(j < k ? j : k - 1);
+        for (int c = 0; c < 3; c++) {
+            p->fit->out[3 * x + c] = p->fit->albedo[3 * x + c];
+            p->fit->in[3 * x + c] = 1;
+        }
+    }
+}
+
+/* Makes the sum of each kernel 1: out and in scales are near albedo and 1. */
+static void normalise(const struct clusters *p)
+{
+    const int texels = p->fit->side * p->fit->side;
+    const int k2 = glint_scatter_kernel2(p->fit->kernel);
+
+    for (int c = 0; c < 3; c++) {
+        double mean = 0;
+
+        for (int x = 0; x < texels; x++)
+            mean += p->fit->in[3 * x + c] / texels;
+        for (int x = 0; x < texels && mean > 0; x++)
+            p->fit->in[3 * x + c] /= mean;
+        for (int j = 0; j < p->fit->kernels; j++) {
+            double *h = kernel_of(p->fit, j, c), sum = 0;
+
+            for (int d = 0; d < k2; d++)
+                sum += h[d];
+            for (int d = 0; d < k2 && sum > 0; d++)
+                h[d] /= sum;
+        }
+    }
+}
+
+static enum glint_status run(struct clusters *p,
+                             const struct glint_watch *watch)
+{
+    begin(p);
+    set_kernels(p);
+    for (int i = 0; i < ROUNDS; i++) {
+        if (glint_watch_ends(watch, (double)i / ROUNDS))
+            return GLINT_E_CLOSED;
+        if (i > 0)
+            assign(p);
+        set_out(p);
+        set_in(p);
+        set_kernels(p);
+    }
+    normalise(p);
+    set_out(p);
+    return GLINT_OK;
+}
+
+enum glint_status glint_scatter_clusters(const struct glint_scatter_rows *rows,
+                                         const struct glint_watch *watch,
+                                         struct glint_scatter_fit *fit)
+{
+    const size_t texels = (size_t)fit->side * (size_t)fit->side;
+    const size_t entries =
+        (size_t)fit->kernels * 3 * (size_t)glint_scatter_kernel2(fit->kernel);
+    const size_t sums = entries > 3 * texels ? entries : 3 * texels;
+    struct clusters p = {.rows = rows, .fit = fit};
+    enum glint_status status = GLINT_E_MEMORY;
+
+    fit->h = calloc(entries, sizeof *fit->h);
+    fit->out = calloc(3 * texels, sizeof *fit->out);
+    fit->in = calloc(3 * texels, sizeof *fit->in);
+    fit->cluster = calloc(texels, sizeof *fit->cluster);
+    p.above = malloc(2 * sums * sizeof *p.above);
+    p.below = p.above + sums;
+    if (fit->h && fit->out && fit->in && fit->cluster && p.above)
+        status = run(&p, watch);
+    free(p.above);
+    return status;
+}

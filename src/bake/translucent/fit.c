@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Fits of rows, and how far they are from them.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bake/translucent/fits.h"
+
+#define NO_ERROR_DB 999.0
+
+void glint_scatter_defaults(struct glint_scatter_options *options,
+                            enum glint_scatter_model model)
+{
+    *options = (struct glint_scatter_options){
+        .model = model,
+        .kernels = model == GLINT_SCATTER_CLUSTERED  ? 4
+                   : model == GLINT_SCATTER_FACTORED ? 5
+                                                     : 1,
+        .rank = model == GLINT_SCATTER_FACTORED ? 3 : 1,
+    };
+}
+
+/* Sums of the rows of the data. */
+static void set_albedo(const struct glint_scatter_rows *rows, double *albedo)
+{
+    const int k2 = glint_scatter_kernel2(rows->kernel);
+
+    for (int x = 0; x < rows->side * rows->side; x++)
+        for (int c = 0; c < 3; c++) {
+            const float *row = glint_scatter_row(rows, x, c);
+            double sum = 0;
+
+            for (int d = 0; d < k2; d++)
+                sum += (double)row[d];
+            albedo[3 * x + c] = sum;
+        }
+}
+
+/* Sets SUM to how much texel X shows of even light, by terms. */
+static double even_light(const struct glint_scatter_fit *fit, int x, int c)
+{
+    const int n = fit->kernel;
+    const struct glint_scatter_inside in =
+        glint_scatter_inside(fit->side, n, x);
+    double sum = 0;
+
+    for (int v = in.v_from; v < in.v_to; v++)
+        for (int u = in.u_from; u < in.u_to; u++) {
+            const int d = v * n + u;
+
+            sum += glint_scatter_entry(fit,
+                                       glint_scatter_target(fit->side, n, x, d),
+                                       c, n * n - 1 - d);
+        }
+    return sum;
+}
+
+/* Scales what leaves each texel so that even light is as the data have it. */
+static void keep_albedo(struct glint_scatter_fit *fit)
+{
+    const int texels = fit->side * fit->side;
+
+    for (int x = 0; x < texels; x++)
+        for (int c = 0; c < 3; c++) {
+            const double sum = even_light(fit, x, c);
+            const double want = fit->albedo[3 * x + c];
+            /* A fit that has next to none of the light cannot be scaled. */
+            const double scale = sum > 0.1 * want && want > 0 ? want / sum : 1;
+
+            for (int j = 0; fit->f && j < fit->kernels; j++)
+                fit->f[(size_t)(j * 3 + c) * (size_t)texels + (size_t)x] *=
+                    scale;
+            if (fit->out)
+                fit->out[3 * x + c] *= scale;
+        }
+}
+
+static void reverse(double *a, int n)
+{
+    for (int i = 0; i < n / 2; i++) {
+        const double x = a[i];
+
+        a[i] = a[n - 1 - i];
+        a[n - 1 - i] = x;
+    }
+}
+
+/* Makes offsets to where light came from those to where it goes. */
+static void turn_kernels(struct glint_scatter_fit *fit)
+{
+    const int n = fit->kernel;
+
+    for (int i = 0; i < 3 * fit->kernels; i++)
+        reverse(fit->h + (size_t)i * (size_t)(n * n), n * n);
+    for (int i = 0; fit->row && i < 3 * fit->kernels * fit->rank; i++) {
+        reverse(fit->column + (size_t)i * (size_t)n, n);
+        reverse(fit->row + (size_t)i * (size_t)n, n);
+    }
+}
+
+/* h is the mean of the rows, each as much as it scatters. */
+static enum glint_status albedo_fit(const struct glint_scatter_rows *rows,
+                                    struct glint_scatter_fit *fit)
+{
+    const int side = fit->side, n = fit->kernel;
+    const size_t k2 = (size_t)glint_scatter_kernel2(n);
+    double *square = calloc(3 * k2, sizeof *square);
+
+    fit->h = calloc(3 * k2, sizeof *fit->h);
+    fit->out = calloc(3 * (size_t)side * (size_t)side, sizeof *fit->out);
+    if (!square || !fit->h || !fit->out) {
+        free(square);
+        return GLINT_E_MEMORY;
+    }
+    for (int x = 0; x < side * side; x++) {
+        const struct glint_scatter_inside in = glint_scatter_inside(side, n, x);
+
+        for (int c = 0; c < 3; c++)
+            for (int v = in.v_from; v < in.v_to; v++)
+                for (int d = v * n + in.u_from; d < v * n + in.u_to; d++) {
+                    const double a = fit->albedo[3 * x + c];
+                    const size_t at = (size_t)c * k2 + (size_t)d;
+
+                    fit->h[at] += a * (double)glint_scatter_row(rows, x, c)[d];
+                    square[at] += a * a;
+                }
+    }
+    for (int c = 0; c < 3; c++) {
+        double *h = fit->h + (size_t)c * k2, sum = 0;
+
+        for (size_t d = 0; d < k2; d++) {
+            const double below = square[(size_t)c * k2 + d];
+
+            h[d] = below > 0 ? h[d] / below : 0;
+            sum += h[d];
+        }
+        for (size_t d = 0; d < k2 && sum > 0; d++)
+            h[d] /= sum;
+        for (int x = 0; x < side * side; x++)
+            fit->out[3 * x + c] = fit->albedo[3 * x + c];
+    }
+    free(square);
+    return GLINT_OK;
+}
+
+static double decibels(double square, double peak)
+{
+    return square > 0 && peak > 0 ? 10 * log10(peak * peak / square)
+                                  : NO_ERROR_DB;
+}
+
+/* Errors of entries, and of sums of rows. */
+static void measure_entries(const struct glint_scatter_rows *rows,
+                            struct glint_scatter_fit *fit)
+{
+    const int k2 = glint_scatter_kernel2(fit->kernel);
+    double square = 0, peak = 0;
+
+    for (int x = 0; x < fit->side * fit->side; x++)
+        for (int c = 0; c < 3; c++) {
+            const float *row = glint_scatter_row(rows, x, c);
+            double sum = 0;
+
+            for (int d = 0; d < k2; d++) {
+                const double e =
+                    glint_scatter_entry(fit, x, c, d) - (double)row[d];
+
+                square += e * e;
+                sum += e;
+                peak = fmax(peak, (double)row[d]);
+            }
+            fit->error.albedo = fmax(fit->error.albedo, fabs(sum));
+        }
+    square /= 3.0 * fit->side * fit->side * k2;
+    fit->error.rmse = peak > 0 ? sqrt(square) / peak : 0;
+    fit->error.entry_db = decibels(square, peak);
+}
+
+static enum glint_status measure(const struct glint_scatter_rows *rows,
+                                 struct glint_scatter_fit *fit)
+{
+    const int n = 3 * fit->side * fit->side;
+    double *light = malloc(3 * (size_t)n * sizeof *light);
+    double *want = light + n, *got = want + n, square = 0, peak = 0;
+
+    if (!light)
+        return GLINT_E_MEMORY;
+    measure_entries(rows, fit);
+    glint_scatter_test_light(fit->side, light);
+    glint_scatter_light_rows(rows, light, want);
+    glint_scatter_light(fit, light, got);
+    for (int i = 0; i < n; i++) {
+        square += (got[i] - want[i]) * (got[i] - want[i]) / n;
+        peak = fmax(peak, want[i]);
+    }
+    fit->error.light_db = decibels(square, peak);
+    free(light);
+    return GLINT_OK;
+}
+
+static bool in_range(const struct glint_scatter_options *o)
+{
+    return o->kernels >= 1 && o->kernels <= GLINT_SCATTER_MAX_TERMS &&
+           o->rank >= 1 && o->rank <= GLINT_SCATTER_MAX_RANK &&
+           (o->model == GLINT_SCATTER_CLUSTERED ||
+            o->model == GLINT_SCATTER_FACTORED ||
+            (o->model == GLINT_SCATTER_ALBEDO && o->kernels == 1));
+}
+
+static enum glint_status fit_model(const struct glint_scatter_rows *rows,
+                                   const struct glint_watch *watch,
+                                   struct glint_scatter_fit *fit)
+{
+    switch (fit->model) {
+    case GLINT_SCATTER_CLUSTERED:
+        return glint_scatter_clusters(rows, watch, fit);
+    case GLINT_SCATTER_FACTORED:
+        return glint_scatter_factors(rows, watch, fit);
+    case GLINT_SCATTER_ALBEDO:
+    default:
+        return albedo_fit(rows, fit);
+    }
+}
+
+enum glint_status glint_scatter_fit(struct glint_scatter_rows *rows,
+                                    const struct glint_scatter_options *options,
+                                    const struct glint_watch *watch,
+                                    struct glint_scatter_fit *fit)
+{
+    const size_t texels = (size_t)rows->side * (size_t)rows->side;
+    enum glint_status status;
+
+    memset(fit, 0, sizeof *fit);
+    if (!in_range(options))
+        return GLINT_E_ARGUMENT;
+    fit->model = options->model;
+    fit->side = rows->side;
+    fit->kernel = rows->kernel;
+    fit->kernels = options->kernels;
+    fit->rank = options->rank;
+    fit->albedo = malloc(3 * texels * sizeof *fit->albedo);
+    status = fit->albedo ? GLINT_OK : GLINT_E_MEMORY;
+    if (status == GLINT_OK) {
+        /* What a person sees is where light leaves. */
+        glint_scatter_turn(rows);
+        set_albedo(rows, fit->albedo);
+        status = fit_model(rows, watch, fit);
+        glint_scatter_turn(rows);
+    }
+    if (status == GLINT_OK) {
+        turn_kernels(fit);
+        keep_albedo(fit);
+        status = measure(rows, fit);
+    }
+    if (status != GLINT_OK)
+        glint_scatter_fit_close(fit);
+    return status;
+}

@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/translucent/linear.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    SPARE = 8, /* vectors beyond those that are wanted: what the error of the
+                  last one falls by */
+    ROUNDS = 300,
+    SWEEPS = 60
+};
+
+#define SAME    1e-15 /* cosine of columns that are at right angles */
+#define NOTHING 1e-13 /* share of what was, below which nothing is left */
+#define STILL   1e-15 /* change of a sum that has come to rest */
+
+static double dot(const double *a, const double *b, int n)
+{
+    double sum = 0;
+
+    for (int i = 0; i < n; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+static void rotate(double *a, double *b, int n, double cosine, double sine)
+{
+    for (int i = 0; i < n; i++) {
+        const double x = a[i], y = b[i];
+
+        a[i] = cosine * x - sine * y;
+        b[i] = sine * x + cosine * y;
+    }
+}
+
+static void swap_rows(double *a, double *b, int n)
+{
+    for (int i = 0; i < n; i++) {
+        const double x = a[i];
+
+        a[i] = b[i];
+        b[i] = x;
+    }
+}
+
+/* Returns true if columns I, K were not at right angles. */
+static bool turn_pair(double *a, int rows, int i, int k, double *turn, int m)
+{
+    double *x = a + (size_t)i * (size_t)rows, *y = a + (size_t)k * (size_t)rows;
+    const double xx = dot(x, x, rows), yy = dot(y, y, rows);
+    const double xy = dot(x, y, rows);
+    double ratio, t, cosine;
+
+    if (yy > xx) {
+        swap_rows(x, y, rows);
+        if (turn)
+            swap_rows(turn + (size_t)i * (size_t)m,
+                      turn + (size_t)k * (size_t)m, m);
+    }
+    if (fabs(xy) <= SAME * sqrt(xx) * sqrt(yy) || xy == 0)
+        return false;
+    ratio = (fmin(xx, yy) - fmax(xx, yy)) / (2 * xy);
+    t = (ratio >= 0 ? 1 : -1) / (fabs(ratio) + sqrt(1 + ratio * ratio));
+    cosine = 1 / sqrt(1 + t * t);
+    rotate(x, y, rows, cosine, cosine * t);
+    if (turn)
+        rotate(turn + (size_t)i * (size_t)m, turn + (size_t)k * (size_t)m, m,
+               cosine, cosine * t);
+    return true;
+}
+
+void glint_jacobi(double *a, int rows, int n, double *turn, int m)
+{
+    bool turned = true;
+
+    for (int sweep = 0; sweep < SWEEPS && turned; sweep++) {
+        turned = false;
+        for (int i = 0; i < n; i++)
+            for (int k = i + 1; k < n; k++)
+                turned |= turn_pair(a, rows, i, k, turn, m);
+    }
+}
+
+void glint_solve(double *a, int n, double *b)
+{
+    double most = 0;
+
+    for (int i = 0; i < n; i++)
+        most = fmax(most, a[i * n + i]);
+    for (int i = 0; i < n; i++) { /* A = L D L', D on its diagonal */
+        double *row = a + (size_t)i * (size_t)n;
+
+        for (int k = 0; k <= i; k++) {
+            const double *other = a + (size_t)k * (size_t)n;
+
+            for (int m = 0; m < k; m++)
+                row[k] -= row[m] * other[m] * a[m * n + m];
+            if (k < i)
+                row[k] = other[k] > 0 ? row[k] / other[k] : 0;
+        }
+        row[i] = row[i] > NOTHING * most ? row[i] : 0;
+        b[i] -= dot(row, b, i);
+    }
+    for (int i = n - 1; i >= 0; i--) {
+        b[i] = a[i * n + i] > 0 ? b[i] / a[i * n + i] : 0;
+        for (int k = i + 1; k < n; k++)
+            b[i] -= a[k * n + i] * b[k];
+        if (!(a[i * n + i] > 0))
+            b[i] = 0;
+    }
+}
+
+/* Makes N rows of V orthonormal; those that are nothing become 0. */
+static void orthonormal(double *v, int n, int m)
+{
+    for (int i = 0; i < n; i++) {
+        double *x = v + (size_t)i * (size_t)m;
+        const double before = sqrt(dot(x, x, m));
+        double length;
+
+        for (int twice = 0; twice < 2; twice++)
+            for (int k = 0; k < i; k++) {
+                const double *y = v + (size_t)k * (size_t)m;
+                const double share = dot(x, y, m);
+
+                for (int j = 0; j < m; j++)
+                    x[j] -= share * y[j];
+            }
+        length = sqrt(dot(x, x, m));
+        for (int j = 0; j < m; j++)
+            x[j] = length > NOTHING * before ? x[j] / length : 0;
+    }
+}
+
+/* Sets TO[n][m] to V[n][m] times symmetric G[m][m]. */
+static void times(const double *g, const double *v, int n, int m, double *to)
+{
+    memset(to, 0, (size_t)n * (size_t)m * sizeof *to);
+    for (int j = 0; j < m; j++)
+        for (int i = 0; i < n; i++) {
+            const double share = v[(size_t)i * (size_t)m + (size_t)j];
+            const double *row = g + (size_t)j * (size_t)m;
+            double *sum = to + (size_t)i * (size_t)m;
+
+            for (int k = 0; k < m; k++)
+                sum[k] += share * row[k];
+        }
+}
+
+/* Sets V[n][m] to the space of the N largest eigenvalues of G, of which the
+ * first WANTED count. */
+static void subspace(const double *g, int m, double *v, int n, int wanted,
+                     double *scratch)
+{
+    uint32_t seed = 1;
+    double before = -1;
+
+    for (int i = 0; i < n * m; i++) {
+        seed = seed * UINT32_C(1664525) + UINT32_C(1013904223);
+        v[i] = (double)seed / 2147483648.0 - 1;
+    }
+    orthonormal(v, n, m);
+    for (int round = 0; round < ROUNDS; round++) {
+        double sum = 0;
+
+        times(g, v, n, m, scratch);
+        for (int i = 0; i < wanted; i++)
+            sum += dot(v + (size_t)i * (size_t)m,
+                       scratch + (size_t)i * (size_t)m, m);
+        memcpy(v, scratch, (size_t)n * (size_t)m * sizeof *v);
+        orthonormal(v, n, m);
+        if (fabs(sum - before) <= STILL * sum)
+            return;
+        before = sum;
+    }
+}
+
+/* Sets G to the products of all columns; ROW is scratch. */
+static void gram(const struct glint_tall *a, double *g, double *row)
+{
+    const int m = a->columns;
+
+    memset(g, 0, (size_t)m * (size_t)m * sizeof *g);
+    for (int i = 0; i < a->rows; i++) {
+        a->row(a->ctx, i, row);
+        for (int j = 0; j < m; j++) {
+            double *to = g + (size_t)j * (size_t)m;
+
+            if (row[j] == 0)
+                continue;
+            for (int k = j; k < m; k++)
+                to[k] += row[j] * row[k];
+        }
+    }
+    for (int j = 0; j < m; j++)
+        for (int k = 0; k < j; k++)
+            g[j * m + k] = g[k * m + j];
+}
+
+/* Moves the N leading terms of Y[][rows], which are at right angles, and of
+ * V[][columns] into TERMS. */
+static void take_terms(const double *y, const double *v,
+                       const struct glint_tall *a, struct glint_terms *terms)
+{
+    for (int i = 0; i < terms->n; i++) {
+        const double *from = y + (size_t)i * (size_t)a->rows;
+        double *left = terms->left + (size_t)i * (size_t)a->rows;
+
+        terms->value[i] = sqrt(dot(from, from, a->rows));
+        for (int x = 0; x < a->rows; x++)
+            left[x] = terms->value[i] > 0 ? from[x] / terms->value[i] : 0;
+        memcpy(terms->right + (size_t)i * (size_t)a->columns,
+               v + (size_t)i * (size_t)a->columns,
+               (size_t)a->columns * sizeof *v);
+    }
+}
+
+bool glint_terms_of(const struct glint_tall *a, int n,
+                    struct glint_terms *terms)
+{
+    const int m = a->columns, wanted = n < m ? n : m;
+    const int wide = wanted + SPARE < m ? wanted + SPARE : m;
+    const size_t rows = (size_t)a->rows, columns = (size_t)m;
+    double *g = malloc((columns * columns + columns) * sizeof *g);
+    double *v = malloc(2 * (size_t)wide * columns * sizeof *v);
+    double *y = malloc((size_t)wide * rows * sizeof *y);
+    double *row;
+    bool good;
+
+    terms->n = wanted;
+    terms->value = malloc((size_t)wanted * sizeof *terms->value);
+    terms->left = malloc((size_t)wanted * rows * sizeof *terms->left);
+    terms->right = malloc((size_t)wanted * columns * sizeof *terms->right);
+    good = g && v && y && terms->value && terms->left && terms->right;
+    if (good) {
+        row = g + columns * columns;
+        gram(a, g, row);
+        subspace(g, m, v, wide, wanted, v + (size_t)wide * columns);
+        for (int x = 0; x < a->rows; x++) {
+            a->row(a->ctx, x, row);
+            for (int i = 0; i < wide; i++)
+                y[(size_t)i * rows + (size_t)x] =
+                    dot(row, v + (size_t)i * columns, m);
+        }
+        glint_jacobi(y, a->rows, wide, v, m);
+        take_terms(y, v, a, terms);
+    } else {
+        glint_terms_close(terms);
+    }
+    free(g);
+    free(v);
+    free(y);
+    return good;
+}
+
+void glint_terms_close(struct glint_terms *terms)
+{
+    free(terms->value);
+    free(terms->left);
+    free(terms->right);
+    memset(terms, 0, sizeof *terms);
+}

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The little linear algebra that fits need, in double precision: the leading
+ * terms of a singular value decomposition of a tall matrix, all of a small one,
+ * small symmetric systems.
+ *
+ * Method: subspace iteration on the Gram matrix of the columns finds the space;
+ * the rows projected on it are decomposed by one-sided Jacobi rotations, which
+ * lose nothing to squares [Golub13]. */
+#ifndef GLINT_BAKE_TRANSLUCENT_LINEAR_H
+#define GLINT_BAKE_TRANSLUCENT_LINEAR_H
+
+#include <stdbool.h>
+
+#include "glint/status.h"
+
+/* A tall matrix, whose rows are made one at a time. */
+struct glint_tall {
+    int rows, columns;
+    void (*row)(const void *ctx, int i, double *to); /* sets TO[columns] */
+    const void *ctx;
+};
+
+/* A = sum over j of value[j] left_j right_j'. */
+struct glint_terms {
+    int n;         /* values fall; those that are 0 have zero vectors */
+    double *value; /* [n] */
+    double *left;  /* [n][rows] unit vectors */
+    double *right; /* [n][columns] unit vectors */
+};
+
+/* Sets TERMS, N of them at most, as many as A has columns. Owned. Returns false
+ * without memory. Takes 8 columns^2 + 8 rows (N + 8) bytes. */
+bool glint_terms_of(const struct glint_tall *a, int n,
+                    struct glint_terms *terms);
+void glint_terms_close(struct glint_terms *terms);
+
+/* Rotates N columns of A, [n][rows], until they are at right angles, sorted by
+ * falling length. TURN[n][m] takes the same rotations if it is not NULL. */
+void glint_jacobi(double *a, int rows, int n, double *turn, int m);
+
+/* Solves the symmetric system A[n][n] X = B[n], in place of B; what A does not
+ * determine becomes 0. Changes A. */
+void glint_solve(double *a, int n, double *b);
+
+#endif

@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A stone that is the same all over: modes, and its closed form.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "bake/translucent/slab.h"
+
+#define PI 3.14159265358979323846
+
+enum {
+    FINE = 16,  /* parts of a texel, each way, of entries next to the middle */
+    COARSE = 4, /* of others */
+    IMAGES = 8, /* pairs either way, and more in thin slabs */
+    MORE = 32,
+    LATTICE = 256 /* places of the grid that stands for one without an end, and
+                     no less than four kernels */
+};
+
+/* Ratio of fluence and flux at a face that reflects back [Jensen01]. */
+static double face(double index)
+{
+    const double back =
+        -1.440 / (index * index) + 0.710 / index + 0.668 + 0.0636 * index;
+
+    /* The fit is no share where there is no step of the index. */
+    return index > 1 ? (1 + back) / (1 - back) : 1;
+}
+
+void glint_slab_of(const struct glint_stone *stone, double share, int c,
+                   struct glint_slab *slab)
+{
+    const struct glint_stone_material *m = stone->material;
+    const double scatter =
+        share * m[0].scatter[c] + (1 - share) * m[1].scatter[c];
+    const double absorb = share * m[0].absorb[c] + (1 - share) * m[1].absorb[c];
+    const double all = scatter + absorb;
+
+    *slab = (struct glint_slab){
+        .texel = stone->texel_mm,
+        .slab = stone->slab_mm,
+        .scatter = scatter,
+        .absorb = absorb,
+        .diffusion = 1 / (3 * all),
+        .beyond = 2 * face(stone->index) / (3 * all),
+        .depth = fmin(1 / all, stone->slab_mm),
+        .albedo = scatter / all,
+    };
+}
+
+double glint_slab_wave(const struct glint_slab *slab, int n)
+{
+    return n * PI / (slab->slab + 2 * slab->beyond);
+}
+
+double glint_slab_source(const struct glint_slab *slab, int n)
+{
+    return slab->albedo * 2 / (slab->slab + 2 * slab->beyond) *
+           sin(glint_slab_wave(slab, n) * (slab->depth + slab->beyond));
+}
+
+double glint_slab_exit(const struct glint_slab *slab, int n)
+{
+    const double k = glint_slab_wave(slab, n);
+
+    return slab->diffusion * k * cos(k * slab->beyond);
+}
+
+/* Solid angle over 4 pi of the rectangle from the foot of height Z to (U, V).
+ */
+static double corner(double u, double v, double z)
+{
+    return atan2(u * v, z * sqrt(u * u + v * v + z * z)) / (4 * PI);
+}
+
+/* Flux through a square of side STEP about (U, V) of a source at depth Z, which
+ * may be negative. What is lost on the way is that of the middle. */
+static double flux(double u, double v, double z, double step, double loss)
+{
+    const double h = step / 2, depth = fabs(z);
+    const double far = loss * sqrt(u * u + v * v + z * z);
+    const double angle =
+        corner(u + h, v + h, depth) - corner(u - h, v + h, depth) -
+        corner(u + h, v - h, depth) + corner(u - h, v - h, depth);
+
+    return (z < 0 ? -1 : 1) * angle * (1 + far) * exp(-far);
+}
+
+/* The same of all sources and images. */
+static double images(const struct glint_slab *s, int pairs, double u, double v,
+                     double step)
+{
+    const double loss = sqrt(s->absorb / s->diffusion);
+    const double period = 2 * (s->slab + 2 * s->beyond);
+    double sum = 0;
+
+    for (int i = -pairs; i <= pairs; i++)
+        sum += flux(u, v, i * period + s->depth, step, loss) -
+               flux(u, v, i * period - s->depth - 2 * s->beyond, step, loss);
+    return s->albedo * sum;
+}
+
+/* The mean over the texel that is lit, at offset (X, Y) texels: offsets of its
+ * points and those of the other weigh as a tent. */
+static double entry_at(const struct glint_slab *s, int pairs, int x, int y)
+{
+    const int parts = x <= 1 && y <= 1 ? FINE : COARSE;
+    const double step = s->texel / parts;
+    double sum = 0;
+
+    for (int i = 1 - parts; i < parts; i++)
+        for (int j = 1 - parts; j < parts; j++)
+            sum += (parts - abs(i)) * (parts - abs(j)) *
+                   images(s, pairs, x * s->texel + i * step,
+                          y * s->texel + j * step, step);
+    return sum / (parts * parts);
+}
+
+void glint_slab_closed(const struct glint_slab *slab, int kernel, double *entry)
+{
+    const int half = kernel / 2;
+    const double reach = half * slab->texel / (slab->slab + 2 * slab->beyond);
+    const int pairs = reach < MORE - IMAGES ? IMAGES + (int)reach : MORE;
+
+    for (int y = 0; y <= half; y++)
+        for (int x = 0; x <= y; x++) {
+            const double e = entry_at(slab, pairs, x, y);
+
+            for (int i = 0; i < 8; i++) {
+                const int u = i & 4 ? y : x, v = i & 4 ? x : y;
+
+                entry[(half + (i & 2 ? -v : v)) * kernel + half +
+                      (i & 1 ? -u : u)] = e;
+            }
+        }
+}
+
+/* Adds mode N of a lattice of SIZE. WAVE[SIZE] is 4 sin^2(q / 2), COSINE[half +
+ * 1][SIZE] cos(q u); ACROSS[half + 1] is scratch. */
+static void add_mode(const struct glint_slab *s, int kernel, int size, int n,
+                     const double *wave, const double *cosine, double *across,
+                     double *entry)
+{
+    const int half = kernel / 2;
+    const double k = glint_slab_wave(s, n), area = s->texel * s->texel;
+    const double own = (s->diffusion * k * k + s->absorb) * area;
+    const double power = glint_slab_source(s, n) * glint_slab_exit(s, n) *
+                         area / ((double)size * size);
+
+    for (int p = 0; p < size; p++) {
+        for (int v = 0; v <= half; v++) {
+            across[v] = 0;
+            for (int q = 0; q < size; q++)
+                across[v] += cosine[v * size + q] /
+                             (s->diffusion * (wave[p] + wave[q]) + own);
+        }
+        for (int y = 0; y < kernel; y++)
+            for (int x = 0; x < kernel; x++)
+                entry[y * kernel + x] += power * across[abs(y - half)] *
+                                         cosine[abs(x - half) * size + p];
+    }
+}
+
+bool glint_slab_lattice(const struct glint_slab *slab, int kernel,
+                        double *entry)
+{
+    const int size = 4 * kernel > LATTICE ? 4 * kernel : LATTICE;
+    const int half = kernel / 2;
+    double *wave =
+        malloc((size_t)(size * (half + 2) + half + 1) * sizeof *wave);
+    double *cosine = wave + size, *across = cosine + size * (half + 1);
+
+    if (!wave)
+        return false;
+    for (int p = 0; p < size; p++) {
+        wave[p] = 4 * pow(sin(PI * p / size), 2);
+        for (int u = 0; u <= half; u++)
+            cosine[u * size + p] = cos(2 * PI * p * u / size);
+    }
+    for (int i = 0; i < kernel * kernel; i++)
+        entry[i] = 0;
+    for (int n = 1; n <= GLINT_SLAB_MODES; n++)
+        add_mode(slab, kernel, size, n, wave, cosine, across, entry);
+    free(wave);
+    return true;
+}

@@ -1,0 +1,341 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Rows of a stone whose texels differ.
+ *
+ * The modes of a lattice tell how materials share their light. What eight modes
+ * and whole texels cannot resolve, the next two or three texels, is added from
+ * the closed form: how far it is from the same modes in a stone that is the
+ * same all over, the mean of that of both texels. Entries are the mean of both
+ * directions, which are one in a real stone.
+ */
+#include "bake/translucent/slab.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    MARGIN = 8, /* texels by which a stone goes on, as its rim is */
+    LEVELS = 8  /* steps between the materials of which the closed form is
+                   computed */
+};
+
+struct compute {
+    const struct glint_stone *stone;
+    struct glint_scatter_rows *rows;
+    int wide; /* texels of the lattice, each way */
+    int channel;
+    double *share;                              /* [wide][wide] */
+    double *diffusion, *absorb;                 /* [wide][wide] */
+    double *own, *right, *down, *source, *exit; /* of a mode */
+    double *closed[LEVELS + 1]; /* [kernel * kernel] what to add, or NULL */
+    double beyond;              /* z_b of all, mm */
+};
+
+void glint_stone_defaults(struct glint_stone *stone)
+{
+    *stone = (struct glint_stone){
+        .side = 128,
+        .kernel = 29,
+        .texel_mm = 0.61,
+        .slab_mm = 6,
+        .index = 1.5,
+        .material = {{{2.19, 2.62, 3.00}, {0.0021, 0.0041, 0.0071}},
+                     {{0.9, 0.75, 0.6}, {0.012, 0.02, 0.035}}},
+        .pattern = GLINT_STONE_CHESS,
+        .fields = 8,
+        .seed = 1,
+    };
+}
+
+/* Returns what is out of range, or NULL. */
+static const char *wrong(const struct glint_stone *s)
+{
+    if (!(s->side >= 1 && s->side <= GLINT_SCATTER_MAX_SIDE))
+        return "size is 1 to 256 texels";
+    if (!(s->kernel >= 1 && s->kernel <= GLINT_SCATTER_MAX_KERNEL &&
+          s->kernel % 2))
+        return "kernels are odd, 1 to 63 texels";
+    if (!(s->texel_mm >= 0.01 && s->texel_mm <= 100))
+        return "texels are 0.01 to 100 mm";
+    if (!(s->slab_mm >= 0.1 && s->slab_mm <= 1000))
+        return "slabs are 0.1 to 1000 mm";
+    if (!(s->index >= 1 && s->index <= 3))
+        return "index is 1 to 3";
+    if (s->pattern == GLINT_STONE_CHESS &&
+        !(s->fields >= 1 && s->fields <= s->side))
+        return "chess has 1 field to one a texel, each way";
+    if (s->pattern == GLINT_STONE_MASK && !s->mask)
+        return "a mask is missing";
+    for (int i = 0; i < 2; i++)
+        for (int c = 0; c < 3; c++) {
+            const double scatter = s->material[i].scatter[c];
+            const double absorb = s->material[i].absorb[c];
+
+            if (!(scatter >= 1e-3 && scatter <= 1e3))
+                return "scatter is 0.001 to 1000 a mm";
+            if (!(absorb >= 0 && absorb <= 1e3))
+                return "absorb is 0 to 1000 a mm";
+        }
+    for (int i = 0; s->pattern == GLINT_STONE_MASK && i < s->side * s->side;
+         i++)
+        if (!(s->mask[i] >= 0 && s->mask[i] <= 1))
+            return "a mask is 0 to 1";
+    return NULL;
+}
+
+static int held(int x, int most)
+{
+    return x < 0 ? 0 : x > most ? most : x;
+}
+
+/* Sets what the channel's texels are made of. */
+static void set_channel(struct compute *p, int c)
+{
+    const int n = p->wide * p->wide;
+    struct glint_slab slab;
+    double sum = 0;
+
+    p->channel = c;
+    for (int i = 0; i < n; i++) {
+        glint_slab_of(p->stone, p->share[i], c, &slab);
+        p->diffusion[i] = slab.diffusion;
+        p->absorb[i] = slab.absorb;
+        sum += slab.beyond;
+    }
+    p->beyond = sum / n;
+}
+
+static double joint(double a, double b)
+{
+    return 2 * a * b / (a + b);
+}
+
+/* Sets the matrix of mode N, and what texels put into it and let out. */
+static void set_mode(struct compute *p, int n)
+{
+    const int w = p->wide;
+    const double area = p->stone->texel_mm * p->stone->texel_mm;
+
+    for (int i = 0; i < w * w; i++) {
+        const double *d = &p->diffusion[i];
+        struct glint_slab slab;
+        double k;
+
+        glint_slab_of(p->stone, p->share[i], p->channel, &slab);
+        slab.beyond = p->beyond;
+        k = glint_slab_wave(&slab, n);
+        p->source[i] = glint_slab_source(&slab, n) * area;
+        p->exit[i] = glint_slab_exit(&slab, n);
+        p->right[i] = i % w < w - 1 ? joint(d[0], d[1]) : 0;
+        p->down[i] = i / w < w - 1 ? joint(d[0], d[w]) : 0;
+        p->own[i] = (d[0] * k * k + p->absorb[i]) * area + p->right[i] +
+                    p->down[i] + (i % w > 0 ? p->right[i - 1] : 0) +
+                    (i / w > 0 ? p->down[i - w] : 0);
+    }
+}
+
+/* Adds a block of a mode's inverse to the rows, both directions of each pair.
+ */
+static void take(void *ctx, int j, int l, const double *block)
+{
+    const struct compute *p = ctx;
+    const int w = p->wide, side = p->rows->side, n = p->rows->kernel;
+    const int half = n / 2, middle = n * n / 2;
+    const int y = j - MARGIN, below = l - j;
+
+    if (y < 0 || l - MARGIN >= side)
+        return;
+    for (int x = 0; x < side; x++) {
+        const int a = j * w + x + MARGIN;
+        const int first = below ? held(x - half, x) : x;
+
+        for (int to = first; to <= held(x + half, side - 1); to++) {
+            const int b = l * w + to + MARGIN, d = below * n + to - x;
+            const double g = block[(x + MARGIN) * w + to + MARGIN];
+            const double r =
+                g * 0.5 *
+                (p->source[a] * p->exit[b] + p->source[b] * p->exit[a]);
+
+            glint_scatter_row(p->rows, y * side + x, p->channel)[middle + d] +=
+                (float)r;
+            if (d)
+                glint_scatter_row(p->rows, (l - MARGIN) * side + to,
+                                  p->channel)[middle - d] += (float)r;
+        }
+    }
+}
+
+/* Computes what level LEVEL lacks of the closed form, once for a channel. */
+static bool set_closed(struct compute *p, int level)
+{
+    const int k2 = glint_scatter_kernel2(p->rows->kernel);
+    struct glint_slab slab;
+    double *modes;
+
+    if (p->closed[level])
+        return true;
+    p->closed[level] = malloc(2 * (size_t)k2 * sizeof(double));
+    if (!p->closed[level])
+        return false;
+    modes = p->closed[level] + k2;
+    glint_slab_of(p->stone, (double)level / LEVELS, p->channel, &slab);
+    glint_slab_closed(&slab, p->rows->kernel, p->closed[level]);
+    if (!glint_slab_lattice(&slab, p->rows->kernel, modes))
+        return false;
+    for (int d = 0; d < k2; d++)
+        p->closed[level][d] -= modes[d];
+    return true;
+}
+
+static void drop_closed(struct compute *p)
+{
+    for (int i = 0; i <= LEVELS; i++) {
+        free(p->closed[i]);
+        p->closed[i] = NULL;
+    }
+}
+
+/* What is added to entry D for texel X. */
+static double lacks(const struct compute *p, int x, int d)
+{
+    const double at = p->rows->share[x] * LEVELS;
+    const int level = held((int)at, LEVELS - 1);
+    const double *low = p->closed[level], *high = p->closed[level + 1];
+    const double t = at - level;
+
+    return (low && t < 1 ? (1 - t) * low[d] : 0) +
+           (high && t > 0 ? t * high[d] : 0);
+}
+
+/* Adds the closed form's part to the channel; what is below 0 then is 0. */
+static bool add_closed(struct compute *p)
+{
+    const int side = p->rows->side, n = p->rows->kernel;
+
+    for (int x = 0; x < side * side; x++) {
+        const double at = p->rows->share[x] * LEVELS;
+        const int level = held((int)at, LEVELS - 1);
+
+        if ((at < level + 1 && !set_closed(p, level)) ||
+            (at > level && !set_closed(p, level + 1)))
+            return false;
+    }
+    for (int x = 0; x < side * side; x++) {
+        float *row = glint_scatter_row(p->rows, x, p->channel);
+
+        for (int d = 0; d < n * n; d++) {
+            const int to = glint_scatter_target(side, n, x, d);
+
+            if (to >= 0)
+                row[d] =
+                    (float)fmax(0, (double)row[d] + 0.5 * (lacks(p, x, d) +
+                                                           lacks(p, to, d)));
+        }
+    }
+    return true;
+}
+
+/* Scales rows whose sums are over 1, and what leads to their texels alike. */
+static void limit(const struct compute *p)
+{
+    const int side = p->rows->side, n = p->rows->kernel;
+    double *scale = p->own; /* the lattice has no less texels */
+
+    for (int x = 0; x < side * side; x++) {
+        const float *row = glint_scatter_row(p->rows, x, p->channel);
+        double sum = 0;
+
+        for (int d = 0; d < n * n; d++)
+            sum += (double)row[d];
+        scale[x] = sum > 1 ? 1 / sum : 1;
+    }
+    for (int x = 0; x < side * side; x++) {
+        float *row = glint_scatter_row(p->rows, x, p->channel);
+
+        for (int d = 0; d < n * n; d++) {
+            const int to = glint_scatter_target(side, n, x, d);
+
+            if (to >= 0 && (scale[x] < 1 || scale[to] < 1))
+                row[d] *= (float)(scale[x] * scale[to]);
+        }
+    }
+}
+
+static enum glint_status compute_channel(struct compute *p, int c,
+                                         const struct glint_watch *watch)
+{
+    const struct glint_blocks blocks = {p->wide, p->own, p->right, p->down};
+
+    set_channel(p, c);
+    for (int n = 1; n <= GLINT_SLAB_MODES; n++) {
+        struct glint_watch_part part = {
+            watch, (c * GLINT_SLAB_MODES + n - 1) / (3.0 * GLINT_SLAB_MODES),
+            1 / (3.0 * GLINT_SLAB_MODES)};
+        const struct glint_watch mode = glint_watch_of(&part);
+        enum glint_status status;
+
+        set_mode(p, n);
+        status =
+            glint_blocks_inverse(&blocks, p->rows->kernel / 2, &mode, take, p);
+        if (status != GLINT_OK)
+            return status;
+    }
+    if (!add_closed(p))
+        return GLINT_E_MEMORY;
+    drop_closed(p);
+    limit(p);
+    return GLINT_OK;
+}
+
+static enum glint_status compute(struct compute *p,
+                                 const struct glint_watch *watch)
+{
+    const size_t n = (size_t)p->wide * (size_t)p->wide;
+    double *memory = malloc(8 * n * sizeof *memory);
+    double **part[8] = {&p->share, &p->diffusion, &p->absorb, &p->own,
+                        &p->right, &p->down,      &p->source, &p->exit};
+    enum glint_status status = GLINT_OK;
+
+    if (!memory)
+        return GLINT_E_MEMORY;
+    for (size_t i = 0; i < 8; i++)
+        *part[i] = memory + i * n;
+    glint_stone_shares(p->stone, p->rows->share);
+    for (int i = 0; i < p->wide * p->wide; i++)
+        p->share[i] =
+            p->rows->share[held(i / p->wide - MARGIN, p->rows->side - 1) *
+                               p->rows->side +
+                           held(i % p->wide - MARGIN, p->rows->side - 1)];
+    for (int c = 0; c < 3 && status == GLINT_OK; c++)
+        status = compute_channel(p, c, watch);
+    drop_closed(p);
+    free(memory);
+    return status;
+}
+
+enum glint_status glint_scatter_compute(const struct glint_stone *stone,
+                                        const struct glint_watch *watch,
+                                        struct glint_scatter_rows *rows,
+                                        struct glint_error *error)
+{
+    struct compute p = {
+        .stone = stone, .rows = rows, .wide = stone->side + 2 * MARGIN};
+    const char *cause = wrong(stone);
+    enum glint_status status = GLINT_E_MEMORY;
+
+    *rows = (struct glint_scatter_rows){0};
+    if (cause) {
+        snprintf(error->text, sizeof error->text, "%s", cause);
+        return GLINT_E_ARGUMENT;
+    }
+    if (glint_scatter_open(rows, stone->side, stone->kernel, true))
+        status = compute(&p, watch);
+    if (status != GLINT_OK) {
+        glint_scatter_close(rows);
+        snprintf(error->text, sizeof error->text, "%s",
+                 glint_status_text(status));
+    }
+    return status;
+}

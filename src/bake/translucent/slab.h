@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Diffusion in a slab of stone, in double precision.
+ *
+ * The depth z is 0 at the face that is lit and slab at the other. Fluence is 0
+ * at z_b = 2 A D outside of either, so it is a sum of modes sin(k (z + z_b)), k
+ * = n pi / (slab + 2 z_b). Light that falls on a texel is a source at the depth
+ * 1 / (scatter + absorb) below it, and what leaves is D times the gradient
+ * [Jensen01]. Each mode is diffusion in the plane,
+ *
+ *     -div(D grad phi) + (D k^2 + absorb) phi = source,
+ *
+ * with finite volumes of a texel. Where texels differ, z_b follows the mean D:
+ * it has to be one for the modes to be apart. */
+#ifndef GLINT_BAKE_TRANSLUCENT_SLAB_H
+#define GLINT_BAKE_TRANSLUCENT_SLAB_H
+
+#include "bake/translucent/rows.h"
+
+enum { GLINT_SLAB_MODES = 8 };
+
+/* One channel of a stone that is the same all over. */
+struct glint_slab {
+    double texel, slab;     /* mm */
+    double scatter, absorb; /* 1/mm */
+    double diffusion;       /* D, mm */
+    double beyond;          /* z_b, mm */
+    double depth;           /* of the source, mm */
+    double albedo;          /* of one scattering: power of the source */
+};
+
+/* Sets SLAB to channel C of a mix of the materials of STONE, SHARE of material
+ * 0; z_b is that of its own D. */
+void glint_slab_of(const struct glint_stone *stone, double share, int c,
+                   struct glint_slab *slab);
+
+/* Mode N, 1 .. GLINT_SLAB_MODES, of a slab. */
+double glint_slab_wave(const struct glint_slab *slab, int n); /* k, 1/mm */
+/* What light of power 1 puts into it, and what of it leaves, 1/mm. */
+double glint_slab_source(const struct glint_slab *slab, int n);
+double glint_slab_exit(const struct glint_slab *slab, int n);
+
+/* Sets ENTRY[kernel * kernel] to the row of a stone without an end, by its
+ * closed form: sources and their images at the faces, the multipole of which
+ * the dipole is the first pair, over the area of both texels. */
+void glint_slab_closed(const struct glint_slab *slab, int kernel,
+                       double *entry);
+
+/* Sets ENTRY[kernel * kernel] to the same by modes and finite volumes. Returns
+ * false without memory. */
+bool glint_slab_lattice(const struct glint_slab *slab, int kernel,
+                        double *entry);
+
+/* The share of material 0 by texel, [side * side]. */
+void glint_stone_shares(const struct glint_stone *stone, double *share);
+
+/* A symmetric positive matrix of BLOCKS x BLOCKS blocks of SIDE x SIDE, of
+ * which those on the diagonal are tridiagonal and those beside them diagonal:
+ * a grid whose nodes are joined to four neighbours. */
+struct glint_blocks {
+    int side;            /* and number of blocks */
+    const double *own;   /* [side][side] diagonal, by block */
+    const double *right; /* joint of a node with the next one, >= 0 */
+    const double *down;  /* with that in the next block, >= 0 */
+};
+
+/* Takes block (J, L), L = J .. J + reach, of the inverse: [side][side]. */
+typedef void glint_blocks_fn(void *ctx, int j, int l, const double *block);
+
+/* Calls TAKE for all blocks of the inverse of BLOCKS that are at most REACH
+ * apart. Takes side^3 doubles. GLINT_E_MEMORY, GLINT_E_CLOSED. */
+enum glint_status glint_blocks_inverse(const struct glint_blocks *blocks,
+                                       int reach,
+                                       const struct glint_watch *watch,
+                                       glint_blocks_fn *take, void *ctx);
+
+#endif
