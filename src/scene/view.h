@@ -65,14 +65,4 @@ int glint_view_depth(const struct glint_scene_view *view, const int32_t v[3],
                      const int32_t normal_q30[3], int32_t nearest,
                      struct glint_depth *depth);
 
-/* Returns 2^30 nearest / z at place (X, Y): 0 .. 2^31 - 1; 0: behind. */
-static inline int32_t glint_depth_at(const struct glint_depth *depth,
-                                     int32_t x_q8, int32_t y_q8)
-{
-    const int64_t z =
-        (depth->across * x_q8 + depth->down * y_q8 + depth->at) >> depth->shift;
-
-    return z <= 0 ? 0 : z < INT32_MAX ? (int32_t)z : INT32_MAX;
-}
-
 #endif

@@ -157,23 +157,54 @@ static void look_at_row(struct glint_scene_worker *w,
 
 /* ------------------------------------------------------------------ planes */
 
+/* What 1 / z of a plane differs by from a pixel's middle to its samples. */
+struct deeper {
+    int64_t by[GLINT_SCENE_SAMPLES];
+};
+
+static inline void look_at_plane_row(struct glint_scene_worker *w,
+                                     const struct glint_depth *depth,
+                                     const struct deeper *deeper, uint32_t id,
+                                     int n, int x0, int x1, int y)
+{
+    const struct glint_scene *s = w->scene;
+    const int first = glint_sample_index(w, x0, y, 0);
+    int32_t *at = w->depth + first;
+    uint32_t *ids = w->id + first;
+    int64_t middle = depth->across * glint_place(s, x0, 0) +
+                     depth->down * glint_place(s, y, 1) + depth->at;
+
+    for (int x = x0; x < x1; x++, at += n, ids += n) {
+        for (int k = 0; k < n; k++) {
+            const int64_t far = (middle + deeper->by[k]) >> depth->shift;
+            const int32_t here = far < INT32_MAX ? (int32_t)far : INT32_MAX;
+
+            if (far > 0 && (here > at[k] || (here == at[k] && id < ids[k]))) {
+                at[k] = here;
+                ids[k] = id;
+            }
+        }
+        middle += 256 * depth->across;
+    }
+}
+
 static void look_at_plane(struct glint_scene_worker *w,
                           const struct glint_placed *placed, uint32_t id)
 {
     const struct glint_scene *s = w->scene;
     const struct glint_box b = glint_box_cut(w->tile, placed->box);
+    const struct glint_depth *d = &placed->depth;
+    const int n = s->cfg.edge_samples;
+    struct deeper deeper;
 
+    for (int k = 0; k < n; k++)
+        deeper.by[k] =
+            d->across * glint_sample(s, k, 0) + d->down * glint_sample(s, k, 1);
     for (int y = b.y0; y < b.y1; y++)
-        for (int x = b.x0; x < b.x1; x++)
-            for (int k = 0; k < s->cfg.edge_samples; k++) {
-                const int32_t depth = glint_depth_at(
-                    &placed->depth,
-                    glint_place(s, x, 0) + glint_sample(s, k, 0),
-                    glint_place(s, y, 1) + glint_sample(s, k, 1));
-
-                if (depth > 0)
-                    glint_put_sample(w, x, y, k, depth, id);
-            }
+        if (n == 4)
+            look_at_plane_row(w, d, &deeper, id, 4, b.x0, b.x1, y);
+        else
+            look_at_plane_row(w, d, &deeper, id, n, b.x0, b.x1, y);
 }
 
 /* ------------------------------------------------------------------- frame */

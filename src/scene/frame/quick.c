@@ -169,6 +169,24 @@ static int find_ball(const struct glint_placed *p,
     return 1;
 }
 
+/* ------------------------------------------------------------------ planes */
+
+/* A direction off by 2^-24 is a place beside in the picture by as much, however
+ * the plane lies. */
+static int find_plane(const struct glint_placed *p,
+                      const struct glint_scene_ray *ray,
+                      struct glint_met_surface *surface)
+{
+    int32_t sign;
+
+    surface->t = glint_ray_plane(ray, p->at, p->centre);
+    surface->is_inside = v3_dot(ray->toward_q30, p->centre) > 0;
+    sign = surface->is_inside ? -1 : 1;
+    for (int k = 0; k < 3; k++)
+        surface->normal_q30[k] = surface->face_q30[k] = sign * p->centre[k];
+    return surface->t > 0 && glint_ray_go(ray, surface->t, surface->place);
+}
+
 /* ------------------------------------------------------------------- either */
 
 int glint_quick_find(struct glint_scene_worker *w, uint32_t id, int32_t x_q8,
@@ -180,13 +198,18 @@ int glint_quick_find(struct glint_scene_worker *w, uint32_t id, int32_t x_q8,
 
     surface->object = id >> 20;
     surface->triangle = id & 0xfffff;
-    if (!p->over_up && (p->object->kind != GLINT_OBJECT_MESH ||
-                        !s->cfg.parts.meshes->find(w, id, x_q8, y_q8, surface)))
+    if (p->object->kind == GLINT_OBJECT_MESH) {
+        if (!s->cfg.parts.meshes->find(w, id, x_q8, y_q8, surface))
+            return 0;
+        set_ray(&s->view, x_q8, y_q8, ray);
+        return 1;
+    }
+    if (p->object->kind == GLINT_OBJECT_SPHERE && !p->over_up)
         return 0;
     set_ray(&s->view, x_q8, y_q8, ray);
-    if (!p->over_up)
-        return 1;
     surface->material = &s->model.material[p->object->material];
+    if (p->object->kind == GLINT_OBJECT_PLANE)
+        return find_plane(p, ray, surface);
     surface->is_inside = 0;
     return find_ball(p, ray, surface);
 }

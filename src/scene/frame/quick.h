@@ -54,7 +54,7 @@ void glint_quick_begin(struct glint_scene *scene);
 /* Sets RAY to that of place (X, Y), each element off by 2^-24, and SURFACE to
  * where it meets ID, held inside if that is a triangle. Returns 0 where that is
  * not to be had this way: near the rim of a ball, of triangles that come near
- * the camera or have a texture, of planes. */
+ * the camera or have a texture. */
 int glint_quick_find(struct glint_scene_worker *w, uint32_t id, int32_t x_q8,
                      int32_t y_q8, struct glint_scene_ray *ray,
                      struct glint_met_surface *surface);
