@@ -50,7 +50,7 @@ PUBLISHED := published
 ENGINE    := engine engine/frame engine/setup engine/star
 BAKE      := bake bake/table bake/scene bake/environment bake/translucent bake/trace bake/fit bake/exact bake/published
 PLATFORM  := posix formats video panel linux jpeg oiio assimp sdl
-TOOLS     := options lamp_files desk model overlay scenes twin command live lab lab/plots lab/scenes
+TOOLS     := options control lamp_files desk model overlay scenes twin command live lab lab/plots lab/scenes
 c_files = $(wildcard $(2:%=$(1)/%/*.c))
 objects = $(patsubst %.c,$(OUT)/%.o,$(filter-out $(absent),$(call c_files,$(1),$(2))))
 

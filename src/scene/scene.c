@@ -247,15 +247,12 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
     for (uint32_t i = 0; i < model->header->n_objects; i++) {
         const struct glint_scene_object *o = &model->object[i];
 
-        s->placed[i] = (struct glint_placed){
-            .object = o,
-            .radius = o->radius,
-            .is_shown = !o->hidden,
-            .is_split = model->material[o->material].reflect_q15 ||
-                        model->material[o->material].pass_q15,
-            .is_catcher = o->catcher_q15 > 0,
-            .first_vertex = first};
-        s->has_split |= s->placed[i].is_split;
+        s->placed[i] = (struct glint_placed){.object = o,
+                                             .radius = o->radius,
+                                             .is_shown = !o->hidden,
+                                             .is_catcher = o->catcher_q15 > 0,
+                                             .first_vertex = first};
+        glint_scene_set_material(s, (int)i, (int)o->material);
         s->has_catchers |= s->placed[i].is_catcher;
         if (o->kind == GLINT_OBJECT_MESH)
             first += model->mesh[o->mesh].n_vertices;
@@ -278,8 +275,7 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
 
 /* ------------------------------------------------------------------- poses */
 
-/* Things have moved: grids of shadows wait for the next frame. */
-static void forget_shadows(struct glint_scene *s)
+void glint_scene_forget_shadows(struct glint_scene *s)
 {
     for (uint32_t i = 0; i < s->model.header->n_lights; i++)
         if (s->lit[i].shadow)
@@ -321,9 +317,10 @@ enum glint_status glint_scene_set_pose(struct glint_scene *scene, int object,
         return GLINT_E_ARGUMENT;
     p = &scene->placed[object];
     if (!glint_scene_is_unit(turn_q30, 4) ||
-        !glint_scene_fits(&scene->model, p->object, at))
+        !glint_scene_fits(&scene->model, p->object, at) ||
+        !glint_scene_within(at, 3, GLINT_SCENE_SPAN - 1 - p->radius))
         return GLINT_E_ARGUMENT;
-    forget_shadows(scene);
+    glint_scene_forget_shadows(scene);
     set_turn(turn_q30, &p->turn);
     for (int k = 0; k < 3; k++)
         p->at[k] = p->centre[k] = at[k];
@@ -380,7 +377,7 @@ enum glint_status glint_scene_set_light(struct glint_scene *scene, int light,
         l->at[k] = is_sun ? 0 : at[k];
         l->toward_q30[k] = is_sun ? at[k] : 0;
     }
-    forget_shadows(scene);
+    glint_scene_forget_shadows(scene);
     return GLINT_OK;
 }
 
@@ -400,5 +397,5 @@ void glint_scene_show(struct glint_scene *scene, int object, int is_shown)
     if (object < 0 || object >= (int)scene->model.header->n_objects)
         return;
     scene->placed[object].is_shown = is_shown != 0;
-    forget_shadows(scene);
+    glint_scene_forget_shadows(scene);
 }

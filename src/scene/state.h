@@ -34,6 +34,7 @@ struct glint_placed {
     struct glint_scene_turn turn;
     /* A ball that holds it; of a plane, its normal, _q30, and 0. */
     int32_t centre[3], reach;
+    uint32_t material; /* of what has none of its own */
     int is_shown;
     int is_split, is_catcher; /* as its material and itself say */
     int is_seen;              /* may be seen in this frame */
@@ -396,6 +397,9 @@ static inline int64_t glint_scene_pixel_q40(const struct glint_scene *scene)
 /* Copies materials and metals of the model, and draws by these from now on. */
 void glint_scene_copy_looks(struct glint_scene *scene);
 
+/* Things have moved: grids of shadows wait for the next frame. */
+void glint_scene_forget_shadows(struct glint_scene *scene);
+
 /* ------------------------------------------------------------------- parts */
 
 struct glint_scene_meshes {
@@ -452,6 +456,8 @@ struct glint_scene_wards {
     enum glint_status (*open)(struct glint_scene *scene);
     /* Makes the lobe of metal I anew. */
     void (*change)(const struct glint_scene *scene, uint32_t i);
+    /* Turns the environment and its lights; returns 0 if there is none. */
+    int (*turn)(struct glint_scene *scene, const int32_t turn_q30[2]);
     /* Finds how the metal of SURFACE lies, which RAY meets. */
     void (*lie)(const struct glint_scene *scene,
                 const struct glint_scene_ray *ray,

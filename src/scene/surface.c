@@ -169,7 +169,7 @@ int glint_scene_surface(const struct glint_scene *scene,
     surface->object = met->object;
     surface->triangle = met->triangle;
     surface->t = met->t;
-    surface->material = &scene->model.material[p->object->material];
+    surface->material = &scene->model.material[p->material];
     surface->uv_q16[0] = surface->uv_q16[1] = 0;
     surface->uv_log2_q16 = 0;
     if (p->object->kind == GLINT_OBJECT_MESH)

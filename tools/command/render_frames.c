@@ -165,8 +165,10 @@ static enum glint_status draw(struct frames *f)
         status = compositor_find(f->c, &f->seen, f->elapsed_us);
         if (status == GLINT_OK)
             over_scene_again(&f->c->scene, &linear);
-    } else
+    } else {
+        f->c->scene.elapsed_s = 1e-6 * f->elapsed_us;
         status = over_scene_draw(&f->c->scene, &linear, f->c->n_frames);
+    }
     for (size_t i = 0; status == GLINT_OK && i < n; i++)
         r->image.rgb[i] = (float)ldexp(f->light_q20[i], -20);
     if (status == GLINT_OK && f->c->has_lens)

@@ -37,7 +37,8 @@ static const char help[] =
     "                      once where they see one thing\n"
     "  --exposure EV       stops; all light times 2^EV (default 0)\n"
     "  --pose FILE         moves things and camera, as of glint overlay\n"
-    "  --frame N           the frame of --pose to draw (default 0)\n"
+    "  --control FILE      lines that change the scene, likewise\n"
+    "  --frame N           the frame of these to draw (default 0)\n"
     "  --frames A-B        all of these; OUT is .y4m, - or has a %04d\n"
     "  --fps N             of .y4m, and of how fast a lens follows (default "
     "25)\n"
@@ -146,9 +147,10 @@ static int take_any(struct tool *tool, struct render_scene *r, int c)
     int code = compositor_option(tool, &r->compositor, c, optarg);
 
     if (code == -1) {
-        r->is_frames = r->is_frames || c == OPT_POSE || c == OPT_LENS;
-        r->is_lit =
-            r->is_lit || (c != OPT_POSE && c != OPT_LENS && c != OPT_SHADING);
+        const bool moves = c == OPT_POSE || c == OPT_CONTROL;
+
+        r->is_frames = r->is_frames || moves || c == OPT_LENS;
+        r->is_lit = r->is_lit || (!moves && c != OPT_LENS && c != OPT_SHADING);
     }
     if (code == -2)
         code = take_moving(tool, r, c);

@@ -32,6 +32,7 @@ void apart_compositor(struct apart *files, const struct compositor *compositor)
     apart_read(files, "--keys", compositor->keys_file);
     apart_read(files, "--scene", compositor->scene.file);
     apart_read(files, "--pose", compositor->scene.pose_file);
+    apart_read(files, "--control", compositor->scene.control_file);
     apart_read(files, "--ghosts", s->ghosts_file);
     apart_read(files, "--stop-mask", s->stop.mask_file);
     apart_write(files, "--save-lights", compositor->save_file);

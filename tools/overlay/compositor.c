@@ -417,6 +417,7 @@ static enum glint_status find(struct compositor *compositor,
         compositor_desk_hide(compositor, compositor->n_lamps);
     }
     compositor->find_ms = 1e3 * (tool_seconds() - start);
+    compositor->scene.elapsed_s = 1e-6 * elapsed_us;
     status = compositor_scene(compositor, image);
     return status;
 }

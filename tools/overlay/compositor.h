@@ -116,6 +116,7 @@ enum compositor_option_code {
     OPT_PREVIEW,
     OPT_SCENE,
     OPT_POSE,
+    OPT_CONTROL,
     OPT_EDGE_SAMPLES,
     OPT_SHADOW_POINTS,
     OPT_SHADING,
@@ -143,6 +144,7 @@ enum compositor_option_code {
         {"preview", no_argument, NULL, OPT_PREVIEW},                   \
         {"scene", required_argument, NULL, OPT_SCENE},                 \
         {"pose", required_argument, NULL, OPT_POSE},                   \
+        {"control", required_argument, NULL, OPT_CONTROL},             \
         {"edge-samples", required_argument, NULL, OPT_EDGE_SAMPLES},   \
         {"shadow-points", required_argument, NULL, OPT_SHADOW_POINTS}, \
         {"shading", required_argument, NULL, OPT_SHADING}, SETTINGS_OPTIONS
@@ -198,6 +200,11 @@ enum compositor_option_code {
 /* The help on what an artist turns. */
 #define SCENE_HELP                                                            \
     "\nScenes\n"                                                              \
+    "  --control FILE      lines that change the scene: [FRAME] orbit YAW "   \
+    "PITCH,\n"                                                                \
+    "                      distance D, set MATERIAL alpha X Y, show THING,\n" \
+    "                      play ...; live: also a FIFO, or - (keys of a\n"    \
+    "                      terminal)\n"                                       \
     "  --edge-samples N    points of a pixel at outlines: 1, 4 (default), 8 " \
     "or\n"                                                                    \
     "                      16\n"                                              \

@@ -89,6 +89,9 @@ static bool take_file(struct compositor *compositor, int option,
     case OPT_POSE:
         compositor->scene.pose_file = value;
         return true;
+    case OPT_CONTROL:
+        compositor->scene.control_file = value;
+        return true;
     default:
         return false;
     }

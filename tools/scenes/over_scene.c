@@ -46,11 +46,36 @@ static int open_poses(struct over_scene *over)
     return EXIT_OK;
 }
 
+/* Opens the lines of control. What those of a file name has to be there. */
+static int open_control(struct over_scene *over)
+{
+    struct glint_error error = {""};
+    enum glint_status status;
+    const struct control_line *line;
+
+    status = controls_open(&over->control, over->control_file, over->is_live,
+                           &error);
+    for (int i = 0;
+         status == GLINT_OK && (line = controls_row(&over->control, i)); i++) {
+        char where[CONTROL_WHERE];
+
+        controls_where(&over->control, i, where);
+        status = steer_check(&over->steer, line, where, &error);
+    }
+    if (status != GLINT_OK)
+        return tool_fail(over->tool, status, error.text);
+    if (over->control.is_keys && !over->tool->quiet)
+        fprintf(stderr, "%s\n", keyboard_help);
+    return EXIT_OK;
+}
+
 int over_scene_open(struct over_scene *over, const struct tool *tool)
 {
     int code;
 
     over->tool = tool;
+    if (!over->file && over->control_file)
+        return tool_usage(tool, "--control steers --scene, and there is none");
     if (!over->file)
         return over->pose_file ? tool_usage(tool, "--pose moves the things of "
                                                   "--scene, of which there is "
@@ -60,7 +85,12 @@ int over_scene_open(struct over_scene *over, const struct tool *tool)
     if (code != EXIT_OK)
         return code;
     over->is_open = true;
-    return over->pose_file ? open_poses(over) : EXIT_OK;
+    playback_init(&over->playback);
+    if (steer_open(&over->steer, &over->baked.model) != GLINT_OK)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    if (over->pose_file)
+        code = open_poses(over);
+    return code == EXIT_OK && over->control_file ? open_control(over) : code;
 }
 
 bool over_scene_needs_lens(const struct over_scene *over)
@@ -77,6 +107,9 @@ void over_scene_close(struct over_scene *over)
         poses_close(&over->poses);
     free(over->moved);
     over->moved = NULL;
+    controls_close(&over->control);
+    if (over->is_open)
+        steer_close(&over->steer);
     if (over->is_open)
         baked_scene_close(&over->baked);
     over->is_open = over->is_sized = false;
@@ -103,7 +136,8 @@ static void set_axes(const int32_t q_q30[4], int32_t axis_q30[3][3])
     }
 }
 
-static enum glint_status move_camera(const struct over_scene *over,
+/* The camera stays where lines of control have put it. */
+static enum glint_status move_camera(struct over_scene *over,
                                      struct glint_scene *scene,
                                      const struct scene_moved *to)
 {
@@ -115,10 +149,13 @@ static enum glint_status move_camera(const struct over_scene *over,
     else
         memcpy(axis_q30, over->baked.model.header->camera.axis_q30,
                sizeof axis_q30);
-    return glint_scene_set_camera(scene, to->at, (const int32_t(*)[3])axis_q30);
+    return steer_camera(&over->steer, to->at, (const int32_t(*)[3])axis_q30)
+               ? glint_scene_set_camera(scene, to->at,
+                                        (const int32_t(*)[3])axis_q30)
+               : GLINT_OK;
 }
 
-static enum glint_status move(const struct over_scene *over,
+static enum glint_status move(struct over_scene *over,
                               struct glint_scene *scene, int i)
 {
     const struct scene_moved *const to = &over->moved[i];
@@ -132,13 +169,34 @@ static enum glint_status move(const struct over_scene *over,
     return move_camera(over, scene, to);
 }
 
-/* Moves all things anew, of a scene that may just have been placed. */
+/* Moves and changes all things anew, of a scene that was just placed. */
 static void move_all(void *ctx, struct glint_scene *scene)
 {
-    const struct over_scene *const over = ctx;
+    struct over_scene *const over = ctx;
 
-    for (int i = 0; i <= place_of(over, POSES_CAMERA); i++)
+    for (int i = 0; over->moved && i <= place_of(over, POSES_CAMERA); i++)
         move(over, scene, i);
+    steer_apply(&over->steer, scene);
+}
+
+/* Puts all things where they were before the first pose. */
+static void move_back(struct over_scene *over)
+{
+    const struct glint_scene_model *const m = &over->baked.model;
+    struct glint_scene *const scene = over->frame.scene;
+
+    for (int i = 0; i < n_objects(over); i++)
+        glint_scene_set_pose(scene, i, m->object[i].at, m->object[i].turn_q30);
+    for (int i = 0; i < n_lights(over); i++)
+        glint_scene_set_light(scene, i,
+                              m->light[i].kind == GLINT_LIGHT_SUN
+                                  ? m->light[i].toward_q30
+                                  : m->light[i].at);
+    glint_scene_set_camera(scene, m->header->camera.at,
+                           (const int32_t(*)[3])m->header->camera.axis_q30);
+    steer_apply(&over->steer, scene);
+    for (int i = 0; i <= place_of(over, POSES_CAMERA); i++)
+        over->moved[i].is_moved = false;
 }
 
 /* Takes the poses up to FRAME. */
@@ -146,6 +204,9 @@ static void take_poses(struct over_scene *over, int frame)
 {
     const struct pose *pose;
 
+    if (frame < over->posed && poses_rewind(&over->poses))
+        move_back(over);
+    over->posed = frame;
     while ((pose = poses_next(&over->poses, frame))) {
         const int i = place_of(over, pose->thing);
         const struct scene_moved before = over->moved[i];
@@ -166,6 +227,31 @@ static void take_poses(struct over_scene *over, int frame)
     over->has_said = over->poses.n_bad > 0;
 }
 
+/* ------------------------------------------------------------------- control
+ */
+
+/* Obeys the lines up to PICTURE. A mistake is said, one a picture at most, and
+ * ends nothing. */
+static void take_control(struct over_scene *over, int picture)
+{
+    const long before = over->control.n_bad;
+    const struct control_line *line;
+
+    while ((line = controls_next(&over->control, picture))) {
+        struct glint_error error;
+        char where[CONTROL_WHERE];
+
+        controls_where(&over->control, -1, where);
+        if (!playback_take(&over->playback, line) &&
+            steer_take(&over->steer, over->frame.scene, line, where, &error) !=
+                GLINT_OK)
+            controls_refuse(&over->control, &error);
+    }
+    if (over->control.n_bad > before && !over->tool->quiet)
+        fprintf(stderr, "glint %s: %s\n", over->tool->name,
+                over->control.bad.text);
+}
+
 /* ------------------------------------------------------------------- drawing
  */
 
@@ -178,10 +264,8 @@ static int size(struct over_scene *over, const struct scene_dials *dials)
     code =
         scene_frame_open(&over->frame, over->tool, &over->baked.model, dials);
     over->is_sized = code == EXIT_OK;
-    if (over->moved) {
-        over->frame.pose = move_all;
-        over->frame.pose_ctx = over;
-    }
+    over->frame.pose = move_all;
+    over->frame.pose_ctx = over;
     return code;
 }
 
@@ -218,8 +302,11 @@ enum glint_status over_scene_draw(struct over_scene *over,
     const double start = tool_seconds();
     enum glint_status status;
 
+    take_control(over, frame);
     if (over->moved)
-        take_poses(over, frame);
+        take_poses(over, over->control_file
+                             ? playback_next(&over->playback, over->elapsed_s)
+                             : frame);
     status = over->budget_ms > 0 ? spend(over) : GLINT_OK;
     if (status == GLINT_OK)
         status = scene_frame_try(&over->frame, image);
@@ -394,8 +481,10 @@ void over_scene_json(const struct over_scene *over, FILE *to)
     minsn = scene_cost_json(&over->frame, over->baked.bytes, to);
     fprintf(to,
             ", \"quality\": %.3f, \"predicted_ms\": %.3f, \"lights\": %d, "
-            "\"highlights\": [], \"lamps_hidden\": %d, \"poses_bad\": %ld}, ",
+            "\"highlights\": [], \"lamps_hidden\": %d, \"poses_bad\": %ld, "
+            "\"control_bad\": %ld}, ",
             over->budget_ms > 0 ? scene_budget_quality(b) : 1.0,
             over->budget_ms > 0 ? b->predicted_ms : b->ms_per_minsn * minsn,
-            over->lights, over->lamps_hidden, over->poses.n_bad);
+            over->lights, over->lamps_hidden, over->poses.n_bad,
+            over->control.n_bad);
 }

@@ -16,10 +16,13 @@
 #define GLINT_TOOLS_SCENES_OVER_SCENE_H
 
 #include "glint/view.h"
+#include "control/controls.h"
+#include "control/playback.h"
 #include "scenes/baked_scene.h"
 #include "scenes/poses.h"
 #include "scenes/budget.h"
 #include "scenes/scene_frame.h"
+#include "scenes/steer.h"
 
 /* Share of a lamp that is hidden: as good as none, but the exposure still
  * knows what it was. */
@@ -33,14 +36,16 @@ struct scene_moved {
 
 struct over_scene {
     /* Options. */
-    const char *file;      /* NULL: there is no scene */
-    const char *pose_file; /* or NULL */
-    bool is_live;          /* a FIFO of poses is not waited for */
-    int edge_samples;      /* 1, 4, 8, 16; 0: as is usual */
-    int shadow_points;     /* 1, 4, 16; 0: as is usual */
-    bool half_shading;     /* two by two pixels at once, within one thing */
+    const char *file;         /* NULL: there is no scene */
+    const char *pose_file;    /* or NULL */
+    const char *control_file; /* or NULL; "-": standard input */
+    bool is_live;             /* a FIFO of poses or control is not waited for */
+    int edge_samples;         /* 1, 4, 8, 16; 0: as is usual */
+    int shadow_points;        /* 1, 4, 16; 0: as is usual */
+    bool half_shading;        /* two by two pixels at once, within one thing */
 
     double budget_ms; /* what drawing may take; 0: as long as it does */
+    double elapsed_s; /* from the last picture to the next */
 
     /* Private. */
     const struct tool *tool;
@@ -48,6 +53,10 @@ struct over_scene {
     struct baked_scene baked;
     struct poses poses;
     struct scene_moved *moved; /* objects, lights, and the camera */
+    struct controls control;
+    struct playback playback; /* of the poses */
+    struct steer steer;
+    int posed; /* frame of the poses that is shown */
     struct scene_frame frame;
     bool is_open, is_sized, has_said;
 

@@ -320,16 +320,15 @@ enum glint_status poses_open(struct poses *poses, const char *path,
     enum glint_status status;
     struct stat st;
 
-    *poses = (struct poses){.is_open = true,
-                            .model = *model,
-                            .name = path,
-                            .fd = -1,
-                            .read_at = -1};
+    *poses = (struct poses){
+        .is_open = true, .model = *model, .name = path, .read_at = -1};
+    line_pipe_init(&poses->pipe, -1);
     if (is_live && stat(path, &st) == 0 && S_ISFIFO(st.st_mode)) {
-        poses->fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-        return poses->fd >= 0 ? GLINT_OK
-                              : glint_error_report(error, GLINT_E_IO, path,
-                                                   "%s", strerror(errno));
+        line_pipe_init(&poses->pipe,
+                       open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+        return poses->pipe.fd >= 0 ? GLINT_OK
+                                   : glint_error_report(error, GLINT_E_IO, path,
+                                                        "%s", strerror(errno));
     }
     status = read_file(poses, error);
     if (status != GLINT_OK)
@@ -339,10 +338,10 @@ enum glint_status poses_open(struct poses *poses, const char *path,
 
 void poses_close(struct poses *poses)
 {
-    if (poses->is_open && poses->fd >= 0)
-        close(poses->fd);
+    if (poses->is_open && poses->pipe.fd >= 0)
+        close(poses->pipe.fd);
     free(poses->row);
-    *poses = (struct poses){.fd = -1};
+    *poses = (struct poses){.pipe = {.fd = -1}};
 }
 
 /* --------------------------------------------------------------------- pipe */
@@ -386,65 +385,48 @@ static void take_piped(struct poses *p, char *line)
     const char *cause;
     char text[96], *end = line + strlen(line);
 
-    p->line++;
     line = skip(line);
     while (end > line && isspace((unsigned char)end[-1]))
         *--end = '\0';
     if (!*line || *line == '#')
         return;
-    cause = take_line(p, line, p->line == 1, &pose, &is_pose, text);
+    cause = take_line(p, line, p->pipe.number == 1, &pose, &is_pose, text);
     if (!cause && is_pose)
         cause = insert(p, &pose);
     if (cause)
-        note_bad(p, p->line, cause);
+        note_bad(p, p->pipe.number, cause);
 }
 
-/* Takes the byte C of the pipe. */
-static void take_byte(struct poses *p, char c)
-{
-    if (c != '\n') {
-        if (p->n_rest < POSES_LINE - 1)
-            p->rest[p->n_rest++] = c ? c : '?';
-        else
-            p->is_long = true;
-        return;
-    }
-    p->rest[p->n_rest] = '\0';
-    p->n_rest = 0;
-    if (p->is_long)
-        note_bad(p, ++p->line, "the line is longer than 511 bytes");
-    else
-        take_piped(p, p->rest);
-    p->is_long = false;
-}
-
-/* Takes what has come, of a frame 64 KiB at most: a writer that never stops
- * does not hold the picture up. */
 static void read_pipe(struct poses *p)
 {
-    char bytes[4096];
+    char *line;
 
-    for (int i = 0; i < 16; i++) {
-        const ssize_t n = read(p->fd, bytes, sizeof bytes);
-
-        for (ssize_t k = 0; k < n; k++)
-            take_byte(p, bytes[k]);
-        if (n < (ssize_t)sizeof bytes)
-            break;
-    }
+    line_pipe_turn(&p->pipe);
+    while ((line = line_pipe_next(&p->pipe)))
+        if (p->pipe.is_long)
+            note_bad(p, p->pipe.number, "the line is longer than 511 bytes");
+        else
+            take_piped(p, line);
 }
 
 const struct pose *poses_next(struct poses *poses, int frame)
 {
     struct poses *p = poses;
 
-    if (p->fd >= 0 && p->read_at != frame) {
+    if (p->pipe.fd >= 0 && p->read_at != frame) {
         read_pipe(p);
         p->read_at = frame;
     }
     if (p->next == p->n || p->row[p->next].frame > frame)
         return NULL;
     return &p->row[p->next++];
+}
+
+bool poses_rewind(struct poses *poses)
+{
+    if (poses->pipe.fd < 0)
+        poses->next = 0;
+    return poses->pipe.fd < 0;
 }
 
 void poses_refuse(struct poses *poses, const struct pose *pose)

@@ -25,10 +25,10 @@
 
 #include "glint/scene/model.h"
 #include "glint/status.h"
+#include "control/line_pipe.h"
 
 enum {
     POSES_CAMERA = -1,
-    POSES_LINE = 512,     /* bytes of a line of a pipe, at most */
     POSES_AHEAD = 1 << 16 /* poses of a pipe that wait for their frames */
 };
 
@@ -52,11 +52,8 @@ struct poses {
     const char *name;
     struct pose *row; /* by frames */
     int n, room, next;
-    int fd, line; /* pipe, or -1, and its last line */
-    int read_at;  /* frame at which it was read last */
-    char rest[POSES_LINE];
-    size_t n_rest;
-    bool is_long; /* the rest of this line is passed over */
+    struct line_pipe pipe; /* fd is -1: there is none */
+    int read_at;           /* frame at which it was read last */
 };
 
 /* Opens PATH, which like what MODEL points to must outlive POSES. IS_LIVE: if
@@ -70,6 +67,9 @@ enum glint_status poses_open(struct poses *poses, const char *path,
 
 /* Returns the next pose that FRAME, which rises, has or had, or NULL. */
 const struct pose *poses_next(struct poses *poses, int frame);
+
+/* Goes back before the first frame; returns false of a pipe, which cannot. */
+bool poses_rewind(struct poses *poses);
 
 /* Notes that POSE, of which the scene would leave its range, was passed over.
  */

@@ -27,6 +27,7 @@ static enum glint_status place(struct scene_frame *frame)
     free(frame->mem);
     frame->mem = mem;
     frame->bytes = bytes;
+    frame->is_fresh = true;
     return GLINT_OK;
 }
 
@@ -71,8 +72,9 @@ void scene_frame_close(struct scene_frame *frame)
 
 void scene_frame_begin(struct scene_frame *frame)
 {
-    if (frame->pose)
+    if (frame->pose && frame->is_fresh)
         frame->pose(frame->pose_ctx, frame->scene);
+    frame->is_fresh = false;
     glint_scene_begin(frame->scene, &frame->stats);
 }
 

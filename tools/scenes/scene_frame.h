@@ -33,10 +33,11 @@ struct scene_frame {
     struct glint_scene *scene; /* in MEM */
     void *mem;
     size_t bytes;
-    /* NULL, or called with POSE_CTX before each picture: a scene that took more
-     * memory begins with the poses of its model. */
+    /* NULL, or called with POSE_CTX before the next picture of a scene that was
+     * placed anew: it begins with the poses and looks of its model. */
     scene_frame_pose_fn *pose;
     void *pose_ctx;
+    bool is_fresh; /* it was */
 
     /* Of the picture drawn last. */
     struct glint_scene_stats stats;

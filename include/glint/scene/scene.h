@@ -147,6 +147,22 @@ enum glint_status glint_scene_get_look(const struct glint_scene *scene,
 enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
                                        const struct glint_scene_look *look);
 
+/* Makes object OBJECT, where its triangles have none of their own, of material
+ * MATERIAL. GLINT_E_ARGUMENT: there is no such one. */
+enum glint_status glint_scene_set_material(struct glint_scene *scene,
+                                           int object, int material);
+
+/* Makes RADIUS, steps, that of ball OBJECT. GLINT_E_ARGUMENT: it is no ball, or
+ * that is below 1 or leaves +-GLINT_SCENE_SPAN. */
+enum glint_status glint_scene_set_radius(struct glint_scene *scene, int object,
+                                         int32_t radius);
+
+/* Turns the environment to the right, with its lights: TURN_Q30 are cosine and
+ * sine, as of the model's header. GLINT_E_ARGUMENT: they are none, or there is
+ * no environment. */
+enum glint_status glint_scene_turn_environment(struct glint_scene *scene,
+                                               const int32_t turn_q30[2]);
+
 /* Keeps IMAGE, of the size of the configuration, small, as what mirrors and
  * glass of scenes on the camera's picture show where their rays meet nothing:
  * ahead as it is, elsewhere repeated. NULL: they show black, as at first. Costs

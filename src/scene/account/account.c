@@ -96,7 +96,7 @@ static void count_shade(const struct account *a, uint32_t id, int32_t x_q8,
     const struct glint_scene *s = a->scene;
     struct glint_scene_part *part = &a->objects[id >> 20];
     const struct glint_scene_material *m =
-        &s->model.material[s->placed[id >> 20].object->material];
+        &s->model.material[s->placed[id >> 20].material];
     struct glint_met_surface surface;
     struct glint_scene_ray ray;
     struct glint_met met;
@@ -120,7 +120,7 @@ static void count_shade(const struct account *a, uint32_t id, int32_t x_q8,
 static int is_split(const struct glint_scene *s, uint32_t id)
 {
     const struct glint_scene_material *m =
-        &s->model.material[s->placed[id >> 20].object->material];
+        &s->model.material[s->placed[id >> 20].material];
 
     return m->reflect_q15 || m->pass_q15;
 }

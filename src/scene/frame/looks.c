@@ -87,3 +87,47 @@ enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
     }
     return GLINT_OK;
 }
+
+enum glint_status glint_scene_set_material(struct glint_scene *scene,
+                                           int object, int material)
+{
+    const struct glint_scene_header *h = scene->model.header;
+    const struct glint_scene_material *m;
+    struct glint_placed *p;
+
+    if (object < 0 || object >= (int)h->n_objects || material < 0 ||
+        material >= (int)h->n_materials)
+        return GLINT_E_ARGUMENT;
+    m = &scene->model.material[material];
+    p = &scene->placed[object];
+    p->material = (uint32_t)material;
+    p->is_split = m->reflect_q15 || m->pass_q15;
+    scene->has_split |= p->is_split;
+    return GLINT_OK;
+}
+
+enum glint_status glint_scene_set_radius(struct glint_scene *scene, int object,
+                                         int32_t radius)
+{
+    struct glint_placed *p;
+
+    if (object < 0 || object >= (int)scene->model.header->n_objects)
+        return GLINT_E_ARGUMENT;
+    p = &scene->placed[object];
+    if (p->object->kind != GLINT_OBJECT_SPHERE || radius < 1 ||
+        radius > GLINT_SCENE_SPAN / 2 ||
+        !glint_scene_within(p->at, 3, GLINT_SCENE_SPAN - 1 - radius))
+        return GLINT_E_ARGUMENT;
+    p->radius = p->reach = radius;
+    glint_scene_forget_shadows(scene);
+    return GLINT_OK;
+}
+
+enum glint_status glint_scene_turn_environment(struct glint_scene *scene,
+                                               const int32_t turn_q30[2])
+{
+    return scene->wards && glint_scene_is_unit(turn_q30, 2) &&
+                   scene->cfg.parts.wards->turn(scene, turn_q30)
+               ? GLINT_OK
+               : GLINT_E_ARGUMENT;
+}

@@ -207,7 +207,7 @@ int glint_quick_find(struct glint_scene_worker *w, uint32_t id, int32_t x_q8,
     if (p->object->kind == GLINT_OBJECT_SPHERE && !p->over_up)
         return 0;
     set_ray(&s->view, x_q8, y_q8, ray);
-    surface->material = &s->model.material[p->object->material];
+    surface->material = &s->model.material[p->material];
     if (p->object->kind == GLINT_OBJECT_PLANE)
         return find_plane(p, ray, surface);
     surface->is_inside = 0;

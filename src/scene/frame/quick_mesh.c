@@ -105,7 +105,7 @@ static struct glint_quick_triangle *triangle_of(struct glint_scene_worker *w,
     of = glint_mesh_triangle(s, glint_mesh_of(s, id >> 20), id & 0xfffff);
     t->id = id;
     t->material = &s->model.material[of->material == GLINT_SCENE_NONE
-                                         ? s->placed[id >> 20].object->material
+                                         ? s->placed[id >> 20].material
                                          : of->material];
     t->is_there = t->material->texture == GLINT_SCENE_NONE &&
                   set_corners(s, id >> 20, of, t) &&

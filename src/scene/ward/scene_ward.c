@@ -74,6 +74,31 @@ static enum glint_status open_wards(struct glint_scene *scene)
     return GLINT_OK;
 }
 
+/* Its lights are the last of the scene's. */
+static int turn(struct glint_scene *scene, const int32_t turn_q30[2])
+{
+    struct glint_ward_state *w = scene->wards;
+    const int all = (int)scene->model.header->n_lights;
+    const int64_t c = turn_q30[0], s = turn_q30[1];
+    int n;
+
+    if (!w->has_environment)
+        return 0;
+    n = (int)w->environment.header->n_lights;
+    for (int k = 0; k < 2; k++)
+        w->turn_q30[k] = turn_q30[k];
+    for (int i = 0; i < n && n <= all; i++) {
+        const int32_t *v = w->environment.light[i].toward_q30;
+        const int64_t to[3] = {q_shift(c * v[0] + s * v[2], 30), v[1],
+                               q_shift(c * v[2] - s * v[0], 30)};
+        int32_t toward_q30[3];
+
+        glint_unit(to, toward_q30);
+        glint_scene_set_light(scene, all - n + i, toward_q30);
+    }
+    return 1;
+}
+
 /* -------------------------------------------------------------------- lying */
 
 /* Returns how far the pixels of RAY are apart where it meets SURFACE, steps q8,
@@ -267,5 +292,5 @@ static void reflect(const struct glint_scene *scene,
 }
 
 const struct glint_scene_wards glint_scene_wards = {
-    carve,   open_wards,       set_lobe,         lie,
-    reflect, glint_ward_shine, glint_ward_behind};
+    carve, open_wards, set_lobe,         turn,
+    lie,   reflect,    glint_ward_shine, glint_ward_behind};

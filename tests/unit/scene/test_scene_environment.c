@@ -318,6 +318,59 @@ static void test_b2_looks(void **state)
     close_text(&d);
 }
 
+#define STEERED(turn, radius, material)                            \
+    STAGE "environment 9e5 turn " turn "\nshadow on\n"             \
+          "background environment\nplane p at 0 0 0 normal 0 1 0 " \
+          "material white\nsphere a at 0 .5 0 radius " radius      \
+          " material " material "\n"
+
+/* Material, radius and environment change from one frame to the next: the
+ * picture is that of a scene that was baked so. */
+static void test_b8_steered(void **state)
+{
+    static const struct scene_dials dials = {
+        .width = 64, .height = 36, .edge_samples = 4, .shadow_points = 4};
+    static const int32_t right_q30[2] = {0, 1 << 30}, none_q30[2] = {9, 9};
+    static int32_t want[3 * 64 * 36], got[3 * 64 * 36];
+    struct glint_scene *s;
+    struct drawn d;
+
+    (void)state;
+    open_text(&d, STEERED("90", ".25", "mirror"), &dials);
+    draw(&d, 64, 36, want);
+    close_text(&d);
+    open_text(&d, STEERED("0", ".5", "steel"), &dials);
+    s = d.frame.scene;
+    draw(&d, 64, 36, got);
+    assert_memory_not_equal(got, want, sizeof want);
+    assert_int_equal(glint_scene_turn_environment(s, right_q30), GLINT_OK);
+    assert_int_equal(glint_scene_set_radius(s, 1, d.model.object[1].radius / 2),
+                     GLINT_OK);
+    assert_int_equal(glint_scene_set_material(
+                         s, 1, glint_scene_find_material(&d.model, "mirror")),
+                     GLINT_OK);
+    draw(&d, 64, 36, got);
+    assert_memory_equal(got, want, sizeof want);
+    assert_int_equal(glint_scene_turn_environment(s, none_q30),
+                     GLINT_E_ARGUMENT);
+    assert_int_equal(glint_scene_set_radius(s, 0, 9), GLINT_E_ARGUMENT);
+    assert_int_equal(glint_scene_set_radius(s, 1, 0), GLINT_E_ARGUMENT);
+    assert_int_equal(glint_scene_set_radius(s, 2, 9), GLINT_E_ARGUMENT);
+    assert_int_equal(glint_scene_set_radius(s, 1, GLINT_SCENE_SPAN / 2 + 1),
+                     GLINT_E_ARGUMENT);
+    assert_int_equal(glint_scene_set_material(s, 1, 99), GLINT_E_ARGUMENT);
+    assert_int_equal(glint_scene_set_material(s, -1, 0), GLINT_E_ARGUMENT);
+    draw(&d, 64, 36, got);
+    assert_memory_equal(got, want, sizeof want);
+    close_text(&d);
+    open_text(&d,
+              STAGE "light sun direction 1 1 1 colour 1 1 1\n" BALLS "white\n",
+              &dials);
+    assert_int_equal(glint_scene_turn_environment(d.frame.scene, right_q30),
+                     GLINT_E_ARGUMENT);
+    close_text(&d);
+}
+
 /* -------------------------------------------------------------- highlights */
 
 /* Returns the light of a whole picture of a ball 40 pixels wide, of almost a
@@ -371,8 +424,11 @@ static void test_highlight_steady(void **state)
 int main(void)
 {
     static const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_twin), cmocka_unit_test(test_held),
-        cmocka_unit_test(test_part), cmocka_unit_test(test_b2_looks),
+        cmocka_unit_test(test_twin),
+        cmocka_unit_test(test_held),
+        cmocka_unit_test(test_part),
+        cmocka_unit_test(test_b2_looks),
+        cmocka_unit_test(test_b8_steered),
         cmocka_unit_test(test_highlight_steady)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);

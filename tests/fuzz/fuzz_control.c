@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Takes any bytes as lines of control, and as keys. What is accepted must be in
+ * the ranges of its form and say the same when it is written again; what is
+ * refused must name its place; frames of a playback must exist.
+ *
+ *     make fuzz FUZZ=control SECONDS=60
+ */
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "control/keyboard.h"
+#include "control/playback.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void require(int condition)
+{
+    if (!condition)
+        abort();
+}
+
+static const struct control_form *form_of(enum control_verb verb)
+{
+    for (int i = 0; i < control_n_forms; i++)
+        if (control_forms[i].verb == verb)
+            return &control_forms[i];
+    abort();
+}
+
+/* Writes LINE as text, and reads it again. */
+static void check_again(const struct control_line *l,
+                        const struct control_form *f)
+{
+    char text[CONTROL_LINE];
+    struct control_line again;
+    struct glint_error error;
+    int n = 0;
+
+    if (l->frame >= 0)
+        n += snprintf(text, sizeof text, "%d ", l->frame);
+    n += snprintf(text + n, sizeof text - (size_t)n, "%s %s %s %s", f->word,
+                  l->name[0], l->name[1], f->clause ? f->clause : "");
+    for (int i = 0; i < l->n; i++)
+        n += snprintf(text + n, sizeof text - (size_t)n, " %.17g", l->v[i]);
+    require(control_parse(text, "again", &again, &error) == GLINT_OK);
+    require(again.verb == l->verb && again.frame == l->frame);
+    require(again.n == l->n && !strcmp(again.name[0], l->name[0]));
+    for (int i = 0; i < l->n; i++)
+        require(again.v[i] == l->v[i]);
+}
+
+static void check(const struct control_line *l)
+{
+    const struct control_form *f;
+
+    require(l->frame >= -1 && l->frame <= CONTROL_MOST_FRAME);
+    if (l->verb == CONTROL_NONE)
+        return;
+    f = form_of(l->verb);
+    require(l->n >= f->least && l->n <= f->most && !l->is_change);
+    for (int i = 0; i < l->n; i++)
+        require(l->v[i] >= f->lowest && l->v[i] <= f->highest);
+    for (int i = 0; i < 2; i++)
+        require((*l->name[i] != 0) == (i < f->names) &&
+                strlen(l->name[i]) < CONTROL_NAME);
+    check_again(l, f);
+}
+
+static void take(const char *text, struct playback *playback)
+{
+    struct control_line line;
+    struct glint_error error;
+    int frame;
+
+    if (control_parse(text, "fuzz:7", &line, &error) != GLINT_OK) {
+        require(!strncmp(error.text, "fuzz:7:", 7) && atoi(error.text + 7) > 0);
+        return;
+    }
+    check(&line);
+    playback_take(playback, &line);
+    frame = playback_next(playback, .04);
+    require(frame >= 0 && frame <= playback->last);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct playback playback;
+    struct control_line line;
+    char *const text = malloc(size + 1);
+    char *at;
+
+    if (!text)
+        return 0;
+    memcpy(text, data, size);
+    for (size_t i = 0; i < size; i++)
+        text[i] = (char)(text[i] ? text[i] : '?');
+    text[size] = '\0';
+    for (int i = 0; i < (int)size;) {
+        const int n = keyboard_take(text + i, (int)size - i, &line);
+
+        require(n > 0 && n <= (int)size - i);
+        i += n;
+    }
+    playback_init(&playback);
+    for (at = strtok(text, "\n"); at; at = strtok(NULL, "\n"))
+        take(at, &playback);
+    free(text);
+    return 0;
+}

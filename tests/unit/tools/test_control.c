@@ -1,0 +1,330 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Lines of control: what they say, what is wrong with them and where; keys;
+ * frames that a playback shows; files and pipes. */
+#define _GNU_SOURCE /* mkstemp, posix_openpt */
+#include <fcntl.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "control/controls.h"
+#include "control/playback.h"
+
+static struct control_line line;
+static struct glint_error error;
+static struct controls input;
+static char name[] = "/tmp/glint-test-control-XXXXXX";
+
+static void says(const char *text, enum control_verb verb, int frame, int n)
+{
+    assert_int_equal(control_parse(text, "f:1", &line, &error), GLINT_OK);
+    assert_int_equal(line.verb, verb);
+    assert_int_equal(line.frame, frame);
+    assert_int_equal(line.n, n);
+    assert_false(line.is_change);
+}
+
+static void test_lines(void **state)
+{
+    (void)state;
+    says("orbit 30 -10", CONTROL_ORBIT, -1, 2);
+    assert_true(line.v[0] == 30 && line.v[1] == -10);
+    says("  25\tdistance 2.5  # near\r\n", CONTROL_DISTANCE, 25, 1);
+    assert_true(line.v[0] == 2.5);
+    says("set steel alpha .05 .2", CONTROL_ALPHA, -1, 2);
+    assert_string_equal(line.name[0], "steel");
+    assert_int_equal(line.name_column[0], 5);
+    assert_int_equal(line.column, 17);
+    says("set steel alpha .05", CONTROL_ALPHA, -1, 1);
+    says("set red colour 1 0 0", CONTROL_COLOUR, -1, 3);
+    says("set steel diffuse 0 0 .1", CONTROL_DIFFUSE, -1, 3);
+    says("material ball steel", CONTROL_MATERIAL, -1, 0);
+    assert_string_equal(line.name[1], "steel");
+    says("show ball", CONTROL_SHOW, -1, 0);
+    says("0 hide ball", CONTROL_HIDE, 0, 0);
+    says("size ball .25", CONTROL_SIZE, -1, 1);
+    says("environment turn -90", CONTROL_TURN, -1, 1);
+    says("step", CONTROL_STEP, -1, 0);
+    says("step -3", CONTROL_STEP, -1, 1);
+    says("jump 12", CONTROL_JUMP, -1, 1);
+    says("play", CONTROL_PLAY, -1, 0);
+    says("play 12.5", CONTROL_PLAY, -1, 1);
+    says("pause", CONTROL_PAUSE, -1, 0);
+    says("stop", CONTROL_STOP, -1, 0);
+    says("", CONTROL_NONE, -1, 0);
+    says(" # all a comment", CONTROL_NONE, -1, 0);
+}
+
+static void refuses(const char *text, const char *cause)
+{
+    memset(&line, 0x55, sizeof line);
+    assert_int_equal(control_parse(text, "f:1", &line, &error), GLINT_E_FORMAT);
+    assert_string_equal(error.text, cause);
+    assert_int_equal(line.n, 0x55555555); /* it is left alone */
+}
+
+static void test_mistakes(void **state)
+{
+    static char text[400];
+
+    (void)state;
+    refuses("orbti 3 4", "f:1:1: 'orbti' is no command; did you mean 'orbit'?");
+    refuses("frob", "f:1:1: 'frob' is no command");
+    refuses("orbit 3", "f:1:8: expected orbit YAW PITCH");
+    refuses("orbit 3 x", "f:1:9: 'x' is no number; expected orbit YAW PITCH");
+    refuses("orbit 3 4 5", "f:1:11: '5' is too much; expected orbit YAW PITCH");
+    refuses("orbit 3 400", "f:1:9: orbit YAW PITCH is -360 to 360, not 400");
+    refuses("orbit nan 4",
+            "f:1:7: 'nan' is no number; expected orbit YAW PITCH");
+    refuses("set", "f:1:4: expected set MATERIAL alpha X [Y]");
+    refuses("set steel", "f:1:10: expected set MATERIAL alpha X [Y]");
+    refuses("set steel alhpa 1",
+            "f:1:11: 'alhpa' is no word of set; did you mean 'alpha'?");
+    refuses("set steel alpha 0",
+            "f:1:17: set MATERIAL alpha X [Y] is 0.001 to 1, not 0");
+    refuses("jump 1.5", "f:1:6: jump N takes whole numbers, not 1.5");
+    refuses("-1 stop", "f:1:1: a frame is a whole number from 0, not '-1'");
+    refuses("1.5 stop", "f:1:1: a frame is a whole number from 0, not '1.5'");
+    refuses("7 ", "f:1:3: a command has to follow the frame");
+    refuses("show a23456789012345678901234567890123",
+            "f:1:6: a name has 31 letters at most");
+    memset(text, 'a', sizeof text - 1);
+    refuses(text, "f:1:256: a line has 255 bytes at most");
+}
+
+/* The forms of one word take as many names. */
+static void test_forms(void **state)
+{
+    (void)state;
+    for (int i = 0; i < control_n_forms; i++)
+        for (int k = 0; k < i; k++)
+            if (strcmp(control_forms[i].word, control_forms[k].word) == 0) {
+                assert_int_equal(control_forms[i].names,
+                                 control_forms[k].names);
+                assert_non_null(control_forms[i].clause);
+                assert_non_null(control_forms[k].clause);
+            }
+}
+
+static void test_keys(void **state)
+{
+    (void)state;
+    assert_int_equal(keyboard_take("\033[Cx", 4, &line), 3);
+    assert_int_equal(line.verb, CONTROL_ORBIT);
+    assert_true(line.is_change && line.v[0] > 0 && line.v[1] == 0);
+    assert_int_equal(keyboard_take("+", 1, &line), 1);
+    assert_true(line.verb == CONTROL_DISTANCE && line.v[0] < 1);
+    /* keys that are none: a function key, a lone escape, a letter */
+    assert_int_equal(keyboard_take("\033[15~+", 6, &line), 5);
+    assert_int_equal(line.verb, CONTROL_NONE);
+    assert_int_equal(keyboard_take("\033", 1, &line), 1);
+    assert_int_equal(line.verb, CONTROL_NONE);
+    assert_int_equal(keyboard_take("z", 1, &line), 1);
+    assert_int_equal(line.verb, CONTROL_NONE);
+    assert_int_equal(keyboard_open(&(struct keyboard){0}, -1), GLINT_E_IO);
+}
+
+static int played(struct playback *p, const char *text, double elapsed_s)
+{
+    assert_int_equal(control_parse(text, "f:1", &line, &error), GLINT_OK);
+    assert_int_equal(playback_take(p, &line), *text != 0);
+    return playback_next(p, elapsed_s);
+}
+
+static void test_playback(void **state)
+{
+    struct playback p;
+
+    (void)state;
+    playback_init(&p);
+    for (int i = 0; i < 5; i++) /* one a picture, however long that takes */
+        assert_int_equal(playback_next(&p, 7), i);
+    assert_int_equal(played(&p, "pause", 1), 4);
+    assert_int_equal(played(&p, "", 1), 4);
+    assert_int_equal(played(&p, "step", 1), 5);
+    assert_int_equal(played(&p, "step -2", 1), 3);
+    assert_int_equal(played(&p, "step -9", 1), 0);
+    assert_int_equal(played(&p, "jump 20", 1), 20);
+    assert_int_equal(played(&p, "", 1), 20);
+    assert_int_equal(played(&p, "play 10", .1), 21);
+    for (int i = 1; i < 40; i++) /* 40 a second show each frame 4 times */
+        assert_int_equal(playback_next(&p, .025), 21 + i / 4);
+    assert_int_equal(played(&p, "play 0", 9), 30);
+    assert_int_equal(played(&p, "stop", 9), 0);
+    assert_int_equal(played(&p, "", 9), 0);
+    p.last = 2;
+    assert_int_equal(played(&p, "play", 1), 1);
+    assert_int_equal(played(&p, "", 1), 2);
+    assert_int_equal(played(&p, "", 1), 2);
+    assert_int_equal(played(&p, "jump 9", 1), 2);
+}
+
+static void next_is(int picture, enum control_verb verb)
+{
+    const struct control_line *const l = controls_next(&input, picture);
+
+    assert_non_null(l);
+    assert_int_equal(l->verb, verb);
+}
+
+static enum glint_status read_text(const char *text)
+{
+    FILE *const file = fopen(name, "w");
+
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+    return controls_open(&input, name, false, &error);
+}
+
+/* In their order; one of a later picture holds those behind it. */
+static void test_file(void **state)
+{
+    char where[CONTROL_WHERE], wanted[CONTROL_WHERE];
+
+    (void)state;
+    assert_int_equal(read_text("orbit 1 2\n\n# none\n3 stop\nplay\n2 pause"),
+                     GLINT_OK);
+    assert_int_equal(controls_row(&input, 3)->verb, CONTROL_PAUSE);
+    assert_null(controls_row(&input, 4));
+    next_is(0, CONTROL_ORBIT);
+    assert_null(controls_next(&input, 2));
+    next_is(3, CONTROL_STOP);
+    controls_where(&input, -1, where);
+    snprintf(wanted, sizeof wanted, "%s:4", name);
+    assert_string_equal(where, wanted);
+    next_is(3, CONTROL_PLAY);
+    next_is(3, CONTROL_PAUSE);
+    assert_null(controls_next(&input, 9));
+    controls_close(&input);
+    assert_int_equal(read_text("stop\n  jumb 3\n"), GLINT_E_FORMAT);
+    snprintf(wanted, sizeof wanted,
+             "%s:2:3: 'jumb' is no command; did you mean 'jump'?", name);
+    assert_string_equal(error.text, wanted);
+    assert_int_equal(controls_open(&input, "/nonexistent", false, &error),
+                     GLINT_E_IO);
+    controls_close(&input);
+}
+
+/* Lines come as they are whole; bad ones are counted and end nothing. */
+static void test_pipe(void **state)
+{
+    int to;
+
+    (void)state;
+    unlink(name);
+    assert_int_equal(mkfifo(name, 0600), 0);
+    assert_int_equal(controls_open(&input, name, true, &error), GLINT_OK);
+    assert_null(controls_next(&input, 0));
+    to = open(name, O_WRONLY);
+    assert_true(to >= 0);
+    assert_int_equal(write(to, "pau", 3), 3);
+    assert_null(controls_next(&input, 1));
+    assert_int_equal(write(to, "se\nrubbish\n5 play\nstop\n", 23), 23);
+    next_is(2, CONTROL_PAUSE);
+    assert_null(controls_next(&input, 2));
+    assert_int_equal(input.n_bad, 1);
+    assert_non_null(strstr(input.bad.text, ":2:1: 'rubbish' is no command"));
+    assert_null(controls_next(&input, 4));
+    next_is(5, CONTROL_PLAY);
+    next_is(5, CONTROL_STOP);
+    for (int i = 0; i < 700; i++) /* a line that is too long */
+        assert_int_equal(write(to, "7", 1), 1);
+    assert_int_equal(write(to, "\nstep\n", 6), 6);
+    next_is(6, CONTROL_STEP);
+    assert_int_equal(input.n_bad, 2);
+    close(to);
+    controls_close(&input);
+    unlink(name);
+}
+
+/* Takes the keys of terminal PATH, as a session of its own, and leaves. */
+static void take_keys(const char *path, int is_killed)
+{
+    struct keyboard keys;
+    int fd;
+
+    setsid();
+    fd = open(path, O_RDWR);
+    ioctl(fd, TIOCSCTTY, 0);
+    if (keyboard_open(&keys, fd) != GLINT_OK)
+        _exit(3);
+    while (!keyboard_next(&keys, &line))
+        ;
+    if (is_killed)
+        raise(SIGTERM);
+    exit(line.verb == CONTROL_ORBIT ? 7 : 4);
+}
+
+/* Keys come at once, and the terminal is as it was, however the process ends.
+ */
+static void test_terminal(void **state)
+{
+    (void)state;
+    for (int is_killed = 0; is_killed < 2; is_killed++) {
+        const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
+        struct termios now;
+        pid_t child;
+        int status, fd;
+
+        assert_true(terminal >= 0);
+        assert_int_equal(grantpt(terminal) | unlockpt(terminal), 0);
+        child = fork();
+        if (child == 0)
+            take_keys(ptsname(terminal), is_killed);
+        fd = open(ptsname(terminal), O_RDWR | O_NOCTTY);
+        do
+            assert_int_equal(tcgetattr(fd, &now), 0);
+        while (now.c_lflag & ECHO);
+        assert_false(now.c_lflag & ICANON);
+        assert_true(now.c_lflag & ISIG);
+        assert_int_equal(write(terminal, "x\033[A", 4), 4);
+        assert_int_equal(waitpid(child, &status, 0), child);
+        assert_true(is_killed ? WIFSIGNALED(status) : WEXITSTATUS(status) == 7);
+        assert_int_equal(tcgetattr(fd, &now), 0);
+        assert_int_equal(now.c_lflag & (ECHO | ICANON), ECHO | ICANON);
+        close(fd);
+        close(terminal);
+    }
+}
+
+static int open_name(void **state)
+{
+    const int file = mkstemp(name);
+
+    (void)state;
+    if (file < 0)
+        return -1;
+    close(file);
+    return 0;
+}
+
+static int remove_name(void **state)
+{
+    (void)state;
+    unlink(name);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_lines),    cmocka_unit_test(test_mistakes),
+        cmocka_unit_test(test_forms),    cmocka_unit_test(test_keys),
+        cmocka_unit_test(test_playback), cmocka_unit_test(test_file),
+        cmocka_unit_test(test_pipe),     cmocka_unit_test(test_terminal)};
+
+    return cmocka_run_group_tests(tests, open_name, remove_name);
+}

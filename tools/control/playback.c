@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: MIT */
+#include "control/playback.h"
+
+#include <math.h>
+
+void playback_init(struct playback *playback)
+{
+    *playback = (struct playback){.fps = -1, .last = CONTROL_MOST_FRAME};
+}
+
+/* Goes to frame AT, which the next picture shows. */
+static void go(struct playback *p, double at)
+{
+    p->at = fmax(0, fmin(at, p->last));
+    p->has_shown = false;
+}
+
+bool playback_take(struct playback *playback, const struct control_line *line)
+{
+    switch (line->verb) {
+    case CONTROL_STEP:
+        playback->is_paused = true;
+        go(playback, floor(playback->at) + (line->n ? line->v[0] : 1));
+        return true;
+    case CONTROL_JUMP:
+        go(playback, line->v[0]);
+        return true;
+    case CONTROL_PLAY:
+        playback->is_paused = false;
+        playback->fps = line->n ? line->v[0] : -1;
+        return true;
+    case CONTROL_PAUSE:
+        /* A second time it goes on, as the key does. */
+        playback->is_paused = !line->is_change || !playback->is_paused;
+        return true;
+    case CONTROL_STOP:
+        playback->is_paused = true;
+        go(playback, 0);
+        return true;
+    default:
+        return false;
+    }
+}
+
+int playback_next(struct playback *playback, double elapsed_s)
+{
+    struct playback *const p = playback;
+
+    if (p->has_shown && !p->is_paused)
+        p->at += p->fps < 0 ? 1 : p->fps * fmax(0, elapsed_s);
+    p->at = fmin(p->at, p->last);
+    p->has_shown = true;
+    return (int)floor(p->at);
+}

@@ -1,0 +1,462 @@
+/* SPDX-License-Identifier: MIT */
+#include "scenes/steer.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "options/suggest.h"
+
+#define RADIAN 0.017453292519943295
+
+/* A camera straight above would have no right. */
+#define MOST_PITCH 89.0
+
+/* Slopes that keys can reach. */
+#define LEAST_ALPHA 0.001
+#define MOST_ALPHA  1.0
+
+/* ------------------------------------------------------------------- opening
+ */
+
+static int n_objects(const struct steer *s)
+{
+    return (int)s->model.header->n_objects;
+}
+
+static int n_materials(const struct steer *s)
+{
+    return (int)s->model.header->n_materials;
+}
+
+static void set_look(const struct glint_scene_model *m, int i,
+                     struct glint_scene_look *look)
+{
+    const struct glint_scene_material *const from = &m->material[i];
+
+    memcpy(look->rgb_q15, from->rgb_q15, sizeof look->rgb_q15);
+    if (from->ward != GLINT_SCENE_NONE) {
+        const struct glint_scene_ward *const ward = &m->ward[from->ward];
+
+        memcpy(look->specular_q15, ward->specular_q15,
+               sizeof look->specular_q15);
+        memcpy(look->alpha_q24, ward->alpha_q24, sizeof look->alpha_q24);
+    }
+}
+
+enum glint_status steer_open(struct steer *steer,
+                             const struct glint_scene_model *model)
+{
+    const struct glint_scene_header *const h = model->header;
+
+    *steer =
+        (struct steer){.model = *model,
+                       .thing = calloc(h->n_objects + 1, sizeof *steer->thing),
+                       .look = calloc(h->n_materials + 1, sizeof *steer->look),
+                       .camera = h->camera,
+                       .turn_deg = atan2(h->environment_turn_q30[1],
+                                         h->environment_turn_q30[0]) /
+                                   RADIAN};
+    if (!steer->thing || !steer->look) {
+        steer_close(steer);
+        return GLINT_E_MEMORY;
+    }
+    for (int i = 0; i < n_objects(steer); i++)
+        steer->thing[i] = (struct steer_thing){!model->object[i].hidden,
+                                               (int)model->object[i].material,
+                                               model->object[i].radius};
+    for (int i = 0; i < n_materials(steer); i++)
+        set_look(model, i, &steer->look[i]);
+    return GLINT_OK;
+}
+
+void steer_close(struct steer *steer)
+{
+    free(steer->thing);
+    free(steer->look);
+    steer->thing = NULL;
+    steer->look = NULL;
+}
+
+/* --------------------------------------------------------------------- names
+ */
+
+/* Returns the name of object or material I. */
+static const char *name_of(const struct steer *s, bool is_material, int i)
+{
+    return is_material ? s->model.material[i].name : s->model.object[i].name;
+}
+
+/* Sets INDEX to that of name K of LINE. */
+static enum glint_status find(const struct steer *s,
+                              const struct control_line *line, int k,
+                              bool is_material, const char *where,
+                              struct glint_error *error, int *index)
+{
+    const char *const name = line->name[k];
+    const int n = is_material ? n_materials(s) : n_objects(s);
+    struct suggest suggest;
+    const char *best;
+
+    *index = is_material ? glint_scene_find_material(&s->model, name)
+                         : glint_scene_find(&s->model, name);
+    if (*index >= 0)
+        return GLINT_OK;
+    suggest_begin(&suggest, name);
+    for (int i = 0; i < n; i++) {
+        const char *const known = name_of(s, is_material, i);
+
+        suggest_try(&suggest, known, strlen(known));
+    }
+    best = suggest_best(&suggest);
+    return control_fail(
+        error, where, line->name_column[k], "the scene has no %s '%s'%s%s%s",
+        is_material ? "material" : "thing", name,
+        best ? "; did you mean '" : "", best ? best : "", best ? "'?" : "");
+}
+
+/* Returns whether the first name of LINE is that of a material. */
+static bool is_of_material(const struct control_line *line)
+{
+    return line->verb == CONTROL_ALPHA || line->verb == CONTROL_COLOUR ||
+           line->verb == CONTROL_DIFFUSE;
+}
+
+/* Sets INDEX[2] to what LINE names; 0 where it names nothing. */
+static enum glint_status find_all(const struct steer *s,
+                                  const struct control_line *line,
+                                  const char *where, struct glint_error *error,
+                                  int index[2])
+{
+    enum glint_status status = GLINT_OK;
+
+    index[0] = index[1] = 0;
+    if (*line->name[0])
+        status = find(s, line, 0, is_of_material(line), where, error, index);
+    if (status == GLINT_OK && *line->name[1])
+        status = find(s, line, 1, true, where, error, index + 1);
+    return status;
+}
+
+/* Returns whether material I is brushed metal. */
+static bool is_metal(const struct steer *s, int i)
+{
+    return s->model.material[i].ward != GLINT_SCENE_NONE;
+}
+
+enum glint_status steer_check(const struct steer *steer,
+                              const struct control_line *line,
+                              const char *where, struct glint_error *error)
+{
+    const bool is_set = is_of_material(line) && *line->name[0];
+    int index[2];
+    enum glint_status status = find_all(steer, line, where, error, index);
+
+    if (status != GLINT_OK)
+        return status;
+    if (is_set && line->verb != CONTROL_COLOUR && !is_metal(steer, index[0]))
+        return control_fail(error, where, line->name_column[0],
+                            "'%s' is no brushed metal, and takes 'colour'",
+                            line->name[0]);
+    if (line->verb == CONTROL_SIZE &&
+        steer->model.object[index[0]].kind != GLINT_OBJECT_SPHERE)
+        return control_fail(error, where, line->name_column[0],
+                            "'%s' is no ball, whose size is its radius",
+                            line->name[0]);
+    if (line->verb == CONTROL_TURN && !steer->model.environment)
+        return control_fail(error, where, line->column,
+                            "the scene has no environment");
+    return GLINT_OK;
+}
+
+/* -------------------------------------------------------------------- camera
+ */
+
+/* Sets FROM to where the camera is from the middle, a unit. */
+static void set_from(const struct steer_orbit *o, double from[3])
+{
+    const double yaw = o->yaw_deg * RADIAN, pitch = o->pitch_deg * RADIAN;
+
+    from[0] = cos(pitch) * sin(yaw);
+    from[1] = sin(pitch);
+    from[2] = -cos(pitch) * cos(yaw);
+}
+
+static enum glint_status apply_orbit(const struct steer *s,
+                                     struct glint_scene *scene)
+{
+    const double yaw = s->orbit.yaw_deg * RADIAN;
+    int32_t at[3], axis_q30[3][3];
+    double from[3], axis[3][3];
+
+    set_from(&s->orbit, from);
+    axis[0][0] = cos(yaw);
+    axis[0][1] = 0;
+    axis[0][2] = sin(yaw);
+    for (int k = 0; k < 3; k++)
+        axis[2][k] = -from[k];
+    /* up is ahead x right, of axes whose z runs away */
+    for (int k = 0; k < 3; k++) {
+        const int a = (k + 1) % 3, b = (k + 2) % 3;
+
+        axis[1][k] = axis[2][a] * axis[0][b] - axis[2][b] * axis[0][a];
+    }
+    for (int k = 0; k < 3; k++) {
+        const double place = s->orbit.middle[k] + s->orbit.distance * from[k];
+
+        if (!(fabs(place) < GLINT_SCENE_SPAN - 1))
+            return GLINT_E_ARGUMENT;
+        at[k] = (int32_t)lround(place);
+        for (int i = 0; i < 3; i++)
+            axis_q30[k][i] = (int32_t)lround(0x1p30 * axis[k][i]);
+    }
+    return glint_scene_set_camera(scene, at, (const int32_t(*)[3])axis_q30);
+}
+
+/* Has the camera go about the point ahead of it that is as far as the mean of
+ * the things that have a middle; one unit if there is none ahead. */
+static void begin_orbit(struct steer *s)
+{
+    const struct glint_scene_camera *const c = &s->camera;
+    double mean[3] = {0, 0, 0}, ahead[3], distance = 0;
+    int n = 0;
+
+    for (int i = 0; i < n_objects(s); i++) {
+        const struct glint_scene_object *const o = &s->model.object[i];
+
+        if (o->kind == GLINT_OBJECT_PLANE || o->hidden)
+            continue;
+        for (int k = 0; k < 3; k++)
+            mean[k] += o->at[k];
+        n++;
+    }
+    for (int k = 0; k < 3; k++) {
+        ahead[k] = c->axis_q30[2][k] * 0x1p-30;
+        distance += n ? (mean[k] / n - c->at[k]) * ahead[k] : 0;
+    }
+    if (!(distance > 0))
+        distance = ldexp(1, s->model.header->unit_log2);
+    s->orbit = (struct steer_orbit){
+        .is_there = true,
+        .distance = distance,
+        .yaw_deg = atan2(-ahead[0], ahead[2]) / RADIAN,
+        .pitch_deg = asin(fmax(-1, fmin(1, -ahead[1]))) / RADIAN};
+    for (int k = 0; k < 3; k++)
+        s->orbit.middle[k] = c->at[k] + distance * ahead[k];
+}
+
+bool steer_camera(struct steer *steer, const int32_t at[3],
+                  const int32_t axis_q30[3][3])
+{
+    memcpy(steer->camera.at, at, sizeof steer->camera.at);
+    memcpy(steer->camera.axis_q30, axis_q30, sizeof steer->camera.axis_q30);
+    return !steer->orbit.is_there;
+}
+
+static enum glint_status take_camera(struct steer *s, struct glint_scene *scene,
+                                     const struct control_line *line)
+{
+    const struct steer_orbit before = s->orbit;
+    const double *const v = line->v;
+    enum glint_status status;
+
+    if (!s->orbit.is_there)
+        begin_orbit(s);
+    if (line->verb == CONTROL_DISTANCE)
+        s->orbit.distance = line->is_change
+                                ? s->orbit.distance * v[0]
+                                : ldexp(v[0], s->model.header->unit_log2);
+    else {
+        s->orbit.yaw_deg = v[0] + (line->is_change ? s->orbit.yaw_deg : 0);
+        s->orbit.pitch_deg = v[1] + (line->is_change ? s->orbit.pitch_deg : 0);
+        s->orbit.pitch_deg =
+            fmax(-MOST_PITCH, fmin(MOST_PITCH, s->orbit.pitch_deg));
+    }
+    status = apply_orbit(s, scene);
+    if (status != GLINT_OK)
+        s->orbit = before;
+    return status;
+}
+
+/* --------------------------------------------------------------------- looks
+ */
+
+/* Sets LOOK, of material I, to what LINE makes of it. */
+static void change_look(const struct steer *s, const struct control_line *line,
+                        int i, struct glint_scene_look *look)
+{
+    const bool is_specular = line->verb == CONTROL_COLOUR && is_metal(s, i);
+    int32_t *const rgb_q15 = is_specular ? look->specular_q15 : look->rgb_q15;
+
+    if (line->verb != CONTROL_ALPHA) {
+        for (int c = 0; c < 3; c++)
+            rgb_q15[c] = (int32_t)lround(0x1p15 * line->v[c]);
+        return;
+    }
+    for (int k = 0; k < 2; k++) {
+        const double v = line->v[line->n == 2 ? k : 0];
+        const double alpha =
+            line->is_change ? v * look->alpha_q24[k] * 0x1p-24 : v;
+
+        look->alpha_q24[k] =
+            (int32_t)ceil(0x1p24 * fmax(LEAST_ALPHA, fmin(MOST_ALPHA, alpha)));
+    }
+}
+
+/* Returns whether LOOK of material I sends back no more light than comes. */
+static bool is_darker(const struct steer *s, int i,
+                      const struct glint_scene_look *look)
+{
+    bool is = true;
+
+    for (int c = 0; c < 3 && is_metal(s, i); c++)
+        is = is && look->rgb_q15[c] + look->specular_q15[c] <= (1 << 15) + 1;
+    return is;
+}
+
+static enum glint_status take_look(struct steer *s, struct glint_scene *scene,
+                                   const struct control_line *line, int index)
+{
+    const bool all = !*line->name[0];
+    enum glint_status status = GLINT_OK;
+
+    for (int i = all ? 0 : index; i < (all ? n_materials(s) : index + 1); i++) {
+        struct glint_scene_look look = s->look[i];
+
+        if (all && !is_metal(s, i))
+            continue;
+        change_look(s, line, i, &look);
+        if (!is_darker(s, i, &look))
+            return GLINT_E_ARGUMENT;
+        status = glint_scene_set_look(scene, i, &look);
+        if (status == GLINT_OK)
+            s->look[i] = look;
+    }
+    return status;
+}
+
+/* -------------------------------------------------------------------- things
+ */
+
+/* Returns the first object that shows a material, or -1. */
+static int first_thing(const struct steer *s)
+{
+    for (int i = 0; i < n_objects(s); i++)
+        if (s->thing[i].is_shown && s->model.object[i].catcher_q15 == 0)
+            return i;
+    return -1;
+}
+
+static enum glint_status take_material(struct steer *s,
+                                       struct glint_scene *scene,
+                                       const struct control_line *line,
+                                       const int index[2])
+{
+    const int i = line->is_change ? first_thing(s) : index[0];
+    int material = index[1];
+    enum glint_status status;
+
+    if (i < 0)
+        return GLINT_OK;
+    if (line->is_change)
+        material = s->thing[i].material + 1 < n_materials(s)
+                       ? s->thing[i].material + 1
+                       : 0;
+    status = glint_scene_set_material(scene, i, material);
+    if (status == GLINT_OK)
+        s->thing[i].material = material;
+    return status;
+}
+
+static enum glint_status take_size(struct steer *s, struct glint_scene *scene,
+                                   const struct control_line *line, int i)
+{
+    const double radius = ldexp(line->v[0], s->model.header->unit_log2);
+    const int32_t steps = (int32_t)lround(fmin(radius, GLINT_SCENE_SPAN));
+    const enum glint_status status = glint_scene_set_radius(scene, i, steps);
+
+    if (status == GLINT_OK)
+        s->thing[i].radius = steps;
+    return status;
+}
+
+/* Turns the environment to s->turn_deg. */
+static void apply_turn(const struct steer *s, struct glint_scene *scene)
+{
+    const int32_t turn_q30[2] = {
+        (int32_t)lrint(0x1p30 * cos(s->turn_deg * RADIAN)),
+        (int32_t)lrint(0x1p30 * sin(s->turn_deg * RADIAN))};
+
+    glint_scene_turn_environment(scene, turn_q30);
+}
+
+/* ---------------------------------------------------------------------- line
+ */
+
+static enum glint_status obey(struct steer *s, struct glint_scene *scene,
+                              const struct control_line *line,
+                              const int index[2])
+{
+    switch (line->verb) {
+    case CONTROL_ORBIT:
+    case CONTROL_DISTANCE:
+        return take_camera(s, scene, line);
+    case CONTROL_ALPHA:
+    case CONTROL_COLOUR:
+    case CONTROL_DIFFUSE:
+        return take_look(s, scene, line, index[0]);
+    case CONTROL_MATERIAL:
+        return take_material(s, scene, line, index);
+    case CONTROL_SHOW:
+    case CONTROL_HIDE:
+        s->thing[index[0]].is_shown = line->verb == CONTROL_SHOW;
+        glint_scene_show(scene, index[0], s->thing[index[0]].is_shown);
+        return GLINT_OK;
+    case CONTROL_SIZE:
+        return take_size(s, scene, line, index[0]);
+    case CONTROL_TURN:
+        s->turn_deg = line->v[0] + (line->is_change ? s->turn_deg : 0);
+        apply_turn(s, scene);
+        return GLINT_OK;
+    default:
+        return GLINT_OK;
+    }
+}
+
+enum glint_status steer_take(struct steer *steer, struct glint_scene *scene,
+                             const struct control_line *line, const char *where,
+                             struct glint_error *error)
+{
+    int index[2];
+    enum glint_status status = steer_check(steer, line, where, error);
+
+    if (status != GLINT_OK)
+        return line->is_change ? GLINT_OK : status;
+    status = find_all(steer, line, where, error, index);
+    if (status == GLINT_OK && obey(steer, scene, line, index) != GLINT_OK &&
+        !line->is_change)
+        status = control_fail(
+            error, where, line->column,
+            is_of_material(line)
+                ? "specular and diffuse colour sum to more than 1"
+                : "that leaves the range that the scene was baked for");
+    return status;
+}
+
+void steer_apply(const struct steer *steer, struct glint_scene *scene)
+{
+    for (int i = 0; i < n_objects(steer); i++) {
+        const struct steer_thing *const t = &steer->thing[i];
+
+        glint_scene_show(scene, i, t->is_shown);
+        glint_scene_set_material(scene, i, t->material);
+        if (t->radius)
+            glint_scene_set_radius(scene, i, t->radius);
+    }
+    for (int i = 0; i < n_materials(steer); i++)
+        glint_scene_set_look(scene, i, &steer->look[i]);
+    if (steer->model.environment)
+        apply_turn(steer, scene);
+    if (steer->orbit.is_there)
+        apply_orbit(steer, scene);
+}

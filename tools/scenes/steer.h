@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * steer.h - what lines of control have changed of a scene.
+ *
+ *     steer_open(&steer, &model);
+ *     steer_take(&steer, scene, &line, where, &error);    each line
+ *     steer_apply(&steer, scene);               a scene that was placed anew
+ *     steer_close(&steer);
+ *
+ * Nothing is baked: what a line changes the next picture shows.
+ */
+#ifndef GLINT_TOOLS_SCENES_STEER_H
+#define GLINT_TOOLS_SCENES_STEER_H
+
+#include "control/control.h"
+#include "glint/scene/scene.h"
+
+/* An object as it was changed. */
+struct steer_thing {
+    bool is_shown;
+    int material;
+    int32_t radius; /* of a ball, steps */
+};
+
+/* A camera that goes about a point. */
+struct steer_orbit {
+    bool is_there;
+    double middle[3], distance; /* steps */
+    double yaw_deg, pitch_deg;
+};
+
+struct steer {
+    /* Private. */
+    struct glint_scene_model model;
+    struct steer_thing *thing;     /* [n_objects] */
+    struct glint_scene_look *look; /* [n_materials] */
+    struct steer_orbit orbit;
+    /* Where the camera was before it went about a point. */
+    struct glint_scene_camera camera;
+    double turn_deg; /* of the environment */
+};
+
+/* MODEL is copied; what it points into is kept. GLINT_E_MEMORY. */
+enum glint_status steer_open(struct steer *steer,
+                             const struct glint_scene_model *model);
+void steer_close(struct steer *steer);
+
+/* Notes that the camera was moved to AT, AXIS_Q30, by others. Returns false if
+ * it goes about a point, and stays there. */
+bool steer_camera(struct steer *steer, const int32_t at[3],
+                  const int32_t axis_q30[3][3]);
+
+/* Checks what LINE names. GLINT_E_FORMAT: ERROR says WHERE:COLUMN: cause. */
+enum glint_status steer_check(const struct steer *steer,
+                              const struct control_line *line,
+                              const char *where, struct glint_error *error);
+
+/* Obeys LINE, which is none of time. GLINT_E_FORMAT as steer_check(); all stays
+ * as it was then. */
+enum glint_status steer_take(struct steer *steer, struct glint_scene *scene,
+                             const struct control_line *line, const char *where,
+                             struct glint_error *error);
+
+/* Changes SCENE, which has the look of its model, to what all lines left. */
+void steer_apply(const struct steer *steer, struct glint_scene *scene);
+
+#endif
