@@ -1,7 +1,7 @@
 # glint - physically based camera effects for small machines.
 #
-#   make          build/glint; needs a C compiler only, and takes in libjpeg
-#                 and inih where it finds them
+#   make          build/glint; needs a C compiler only, and takes in libjpeg,
+#                 inih and jansson where it finds them
 #   make TARGET=aarch64|armv7-neon|armv7|armv6-soft|x86_64
 #                 build/TARGET/glint, static;  DYNAMIC=1: build/TARGET-dynamic
 #   make glint-live   build/.../glint-live: the live command alone, for
@@ -29,7 +29,7 @@
 #   make growth   how that grows, as plots;  memory-table: what it takes
 #   make video-report  how steady the flare of a video is; VIDEOS="A.y4m ..."
 #   make trade    what accuracy costs: plots, pictures and a page (glint sweep)
-#   also: oiio assimp window table stop-table scene-table scene-cost-table mesh-table ward-table hidden-table occlusion-table lights-table flicker-table
+#   also: oiio assimp window table stop-table scene-table scene-cost-table mesh-table ward-table motion-table hidden-table occlusion-table lights-table flicker-table
 #         star-table hostile-table bake-table wide-table accuracy-table colour-table
 #         coating-table ray-table inputs format
 #         golden-update fuzz-keep clean reuse-table threads-table stopping-table left-table
@@ -45,12 +45,12 @@ include tools/make/target.mk
 
 # Rooms of the sources; every file in them is built, but for the alternatives
 # below. src/README.md says what each is for.
-CORE      := base image kernels kernels/rays lens lamps follow tile flare/edges flare star veil scene/around scene scene/frame scene/ward scene/account reuse
+CORE      := base image kernels kernels/rays lens lamps follow tile flare/edges flare star veil scene/around scene scene/frame scene/ward scene/motion scene/account reuse
 PUBLISHED := published
 ENGINE    := engine engine/frame engine/setup engine/star
-BAKE      := bake bake/table bake/scene bake/environment bake/translucent bake/trace bake/fit bake/exact bake/published
+BAKE      := bake bake/table bake/scene bake/environment bake/motion bake/translucent bake/trace bake/fit bake/exact bake/published
 PLATFORM  := posix formats video panel linux jpeg oiio assimp sdl
-TOOLS     := options control lamp_files desk model overlay scenes twin command live lab lab/plots lab/scenes
+TOOLS     := options control lamp_files desk model overlay scenes motions twin command live lab lab/plots lab/scenes
 c_files = $(wildcard $(2:%=$(1)/%/*.c))
 objects = $(patsubst %.c,$(OUT)/%.o,$(filter-out $(absent),$(call c_files,$(1),$(2))))
 
@@ -62,6 +62,7 @@ sets_armv7 := neon
 sets_armv7-neon := neon
 absent := $(foreach s,$(filter-out $(sets_$(ARCH)),sse41 avx2 x86 neon),$(wildcard src/kernels/*_$(s).c src/kernels/rays/*_$(s).c))
 absent += platform/jpeg/$(if $(filter yes,$(WITH_JPEG)),absent,mjpeg).c
+absent += src/bake/motion/$(if $(filter yes,$(WITH_JANSSON)),absent,recording).c
 absent += tools/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
 # A static program has no plug-ins.
 absent += platform/oiio/$(if $(CROSS),loader,absent).c
@@ -77,7 +78,8 @@ platform_o  := $(call objects,platform,$(PLATFORM))
 tools_o     := $(call objects,tools,$(TOOLS))
 main_o      := $(patsubst %,$(OUT)/tools/%.o,command/glint live/glint_live live/models_only)
 LDLIBS := $(if $(filter yes,$(WITH_JPEG)),$(JPEG_LIBS)) \
-        $(if $(filter yes,$(WITH_INIH)),$(INIH_LIBS)) -lm -lpthread -ldl
+        $(if $(filter yes,$(WITH_INIH)),$(INIH_LIBS)) \
+        $(if $(filter yes,$(WITH_JANSSON)),$(JANSSON_LIBS)) -lm -lpthread -ldl
 include tools/make/flags.mk
 
 $(OUT)/%.o: %.c
@@ -88,6 +90,7 @@ $(OUT)/%.o: %.c
 	$(Q)$(CC) $(CPPFLAGS) -MMD -MP $(CFLAGS) $(ANALYZER) -c $< -o $@
 $(OUT)/platform/jpeg/absent.o: NOTE := MJPEG left out: no libjpeg62-turbo-dev
 $(OUT)/tools/options/config_absent.o: NOTE := --config left out: no libinih-dev
+$(OUT)/src/bake/motion/absent.o: NOTE := recordings left out: no libjansson-dev
 
 $(OUT)/libglint.a: $(core_o)
 $(OUT)/libglint-published.a: $(published_o)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bake: turns a lens table into a model; scenes and environments have
- * commands of their own.
+ * glint bake: turns a lens table into a model; scenes, environments and motions
+ * have commands of their own.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -14,6 +14,7 @@
 #include "posix/output.h"
 #include "scenes/baked_scene.h"
 #include "scenes/environment_file.h"
+#include "motions/motion_file.h"
 #include "command/render_scene.h"
 #include "options/tool.h"
 #include "options/takes.h"
@@ -26,7 +27,8 @@ static const char help[] =
     "the\n"
     "run-time arithmetic, and writes one file for render, overlay and trace.\n"
     "The same lens and options give the same bytes. NAME.scene, and pictures\n"
-    "of all around, .exr .hdr .dds .pfm .environment, have other options:\n"
+    "of all around, .exr .hdr .dds .pfm .environment, and recordings, .json,\n"
+    "have other options:\n"
     "glint bake NAME.scene --help.\n"
     "\n"
     "  -o, --output MODEL\n"
@@ -201,6 +203,9 @@ int cmd_bake(int argc, char **argv)
     for (int i = 1; i < argc; i++)
         if (argv[i][0] != '-' && environment_file_is_source(argv[i]))
             return cmd_bake_environment(argc, argv);
+    for (int i = 1; i < argc; i++)
+        if (argv[i][0] != '-' && motion_file_is_source(argv[i]))
+            return cmd_bake_motion(argc, argv);
     glint_bake_defaults(&b.options);
     code = parse(&tool, argc, argv, &b);
     if (code >= 0)

@@ -3,6 +3,7 @@
  * glint info: prints the data of a lens table or of a model.
  */
 #include <stdlib.h>
+#include <string.h>
 
 #include "options/coating.h"
 #include "model/model_file.h"
@@ -11,13 +12,15 @@
 #include "options/tool.h"
 #include "scenes/baked_scene.h"
 #include "scenes/environment_file.h"
+#include "motions/motion_file.h"
 
 static const char help[] =
-    "glint info LENS|MODEL|SCENE|ENV [--json] [-v] [--f-number N] [--coating "
-    "C]\n"
+    "glint info LENS|MODEL|SCENE|ENV|MOTION [--json] [-v] [--f-number N]\n"
+    "           [--coating C] [--poses FILE.csv]\n"
     "\n"
     "Of a scene, NAME.scene or baked: things, triangles, bytes by keyword.\n"
     "Of an environment, a picture of all around or baked: texels, lights.\n"
+    "Of a motion, a recording .json or baked: frames, foods, residuals.\n"
     "Of a lens: focal length, back focal length, entrance pupil, stop radius "
     "at\n"
     "the f-number, surfaces and ghosts with their pairs of surfaces (counted\n"
@@ -31,6 +34,7 @@ static const char help[] =
     "\n"
     "  --f-number N        stop the lens to f/N first; not of a "
     "model\n" COATING_HELP
+    "  --poses FILE.csv    of a motion: where the body is, frame by frame\n"
     "  -v                  of a table: what is on each surface; of a model: "
     "each\n"
     "                      zone\n"
@@ -158,12 +162,32 @@ static int info_of_environment(const struct tool *tool, const char *path)
     return EXIT_OK;
 }
 
+static int info_of_motion(const struct tool *tool, const char *path,
+                          const char *poses)
+{
+    struct glint_motion_options options;
+    struct motion_file file;
+    int code;
+
+    glint_motion_defaults(&options);
+    code = motion_file_open(tool, path, &options, &file);
+    if (code != EXIT_OK)
+        return code;
+    if (poses)
+        code = motion_file_poses(tool, &file, poses);
+    if (code == EXIT_OK && !(poses && strcmp(poses, "-") == 0))
+        motion_file_print(tool, &file);
+    motion_file_close(&file);
+    return code;
+}
+
 static int parse(struct tool *tool, int argc, char **argv, double *f_number,
-                 struct coating *coating)
+                 struct coating *coating, const char **poses)
 {
     static const struct option options[] = {
         {"f-number", required_argument, NULL, 'f'},
         {"coating", required_argument, NULL, 'c'},
+        {"poses", required_argument, NULL, 'p'},
         TOOL_COMMON_OPTIONS};
     int c, code;
 
@@ -173,6 +197,10 @@ static int parse(struct tool *tool, int argc, char **argv, double *f_number,
             if (!tool_number(optarg, f_number))
                 return tool_usage(tool, "--f-number takes a number, not '%s'",
                                   optarg);
+            continue;
+        }
+        if (c == 'p') {
+            *poses = optarg;
             continue;
         }
         code = c == 'c' ? coating_take(tool, coating, optarg)
@@ -193,10 +221,18 @@ int cmd_info(int argc, char **argv)
     struct info *info;
     struct coating coating = {.kind = COATING_TABLE};
     double f_number = 0;
-    int code = parse(&tool, argc, argv, &f_number, &coating);
+    const char *poses = NULL;
+    int code = parse(&tool, argc, argv, &f_number, &coating, &poses);
 
     if (code >= 0)
         return code;
+    if (motion_file_is_source(argv[optind]) ||
+        motion_file_is_baked(argv[optind]))
+        return f_number != 0 || coating.kind != COATING_TABLE
+                   ? tool_usage(&tool, "a motion has no lens to stop or coat")
+                   : info_of_motion(&tool, argv[optind], poses);
+    if (poses)
+        return tool_usage(&tool, "--poses are of a motion");
     if (baked_scene_is(argv[optind]))
         return f_number != 0 || coating.kind != COATING_TABLE
                    ? tool_usage(&tool, "a scene has no lens to stop or coat")

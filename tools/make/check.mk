@@ -1,18 +1,20 @@
 # Tests, sanitizers, analysis.
 
 # What tests share; fakes answer calls of those alone that want them.
-$(OUT)/libglint-tests.a: $(patsubst %.c,$(OUT)/%.o,$(wildcard tests/support/*.c tests/support/models/*.c tests/support/stars/*.c))
+$(OUT)/libglint-tests.a: $(patsubst %.c,$(OUT)/%.o,$(wildcard tests/support/*.c tests/support/models/*.c tests/support/stars/*.c tests/support/tracks/*.c))
 
 # Unit tests, each a program: tests/unit/ROOM/test_NAME.c is OUT/tests/unit/test_NAME.
 EXTREMES := $(patsubst tests/unit/props/test_extremes_%.c,%,$(wildcard tests/unit/props/test_extremes_*.c))
 unit_c := $(wildcard tests/unit/*/test_*.c)
 unit_c := $(filter-out %/test_mjpeg$(if $(filter yes,$(WITH_JPEG)),_absent).c \
-        %/test_config$(if $(filter yes,$(WITH_INIH)),_absent).c,$(unit_c))
+        %/test_config$(if $(filter yes,$(WITH_INIH)),_absent).c \
+        $(if $(filter yes,$(WITH_JANSSON)),,%/test_recording.c),$(unit_c))
 UNIT := $(patsubst test_%,%,$(basename $(notdir $(unit_c))))
 ifeq ($(CONFIG),tsan) # what starts threads or is interrupted by signals
 UNIT := $(filter bake exact flare flare_light flare_room workers output at_death frame live,$(UNIT))
 endif
-FUZZERS := $(filter-out $(if $(filter yes,$(WITH_JPEG)),,mjpeg) $(if $(filter yes,$(WITH_INIH)),,config), \
+FUZZERS := $(filter-out $(if $(filter yes,$(WITH_JPEG)),,mjpeg) $(if $(filter yes,$(WITH_INIH)),,config) \
+        $(if $(filter yes,$(WITH_JANSSON)),,recording), \
         $(patsubst tests/fuzz/fuzz_%.c,%,$(wildcard tests/fuzz/fuzz_*.c)))
 test_bins := $(UNIT:%=$(OUT)/tests/unit/test_%)
 $(test_bins): EXTRA := $(SYSROOT:%=-L%/lib) -lcmocka
@@ -52,7 +54,7 @@ $(PROGRAMS): $(OUT)/%: $(OUT)/tests/programs/%.o $(OUT)/libglint-tests.a $(libs)
 
 check:
 	@tools/make/deps "unit tests, lint" gcc libc6-dev binutils \
-	        libcmocka-dev clang clang-format libjpeg62-turbo-dev libinih-dev
+	        libcmocka-dev clang clang-format libjpeg62-turbo-dev libinih-dev libjansson-dev
 	@$(MAKE) --no-print-directory WERROR=-Werror run-check
 	@[ $(notdir $(CC))-$(CONFIG)$(VM) != gcc-release ] || \
 	        ! tests/vm/possible $(VM_ARCHS) || \
@@ -89,7 +91,7 @@ VALGRIND := $(filter arena kernels model transfer curve resolve lamp_finder flar
         picture bright match lamps mjpeg config prescription trace,$(UNIT))
 check-valgrind:
 	@tools/make/deps "memory checks" gcc libc6-dev valgrind libcmocka-dev \
-	        libjpeg62-turbo-dev libinih-dev
+	        libjpeg62-turbo-dev libinih-dev libjansson-dev
 	@$(MAKE) --no-print-directory WERROR=-Werror run-valgrind
 run-valgrind: $(VALGRIND:%=$(OUT)/valgrind/unit/test_%) \
         $(FUZZERS:%=$(OUT)/valgrind/fuzz/replay_%)

@@ -11,6 +11,7 @@ $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
         -DGLINT_PLUGIN_DIR='"$(PREFIX)/lib/glint"'
 $(OUT)/platform/jpeg/mjpeg.o $(OUT)/tests/%_mjpeg.o: CPPFLAGS += $(JPEG_CPPFLAGS)
 $(OUT)/tools/options/config.o: CPPFLAGS += $(INIH_CPPFLAGS)
+$(OUT)/src/bake/motion/recording.o: CPPFLAGS += $(JANSSON_CPPFLAGS)
 
 # What reads files of others is guarded against what no test has found; the
 # run-time half, which has no copies and no arrays of a length from outside, is

@@ -31,6 +31,8 @@ mesh-table: all
 	@$(MAKE) --no-print-directory assimp >&2
 	@tools/report/mesh-table | tools/report/write-figures scenes/meshes
 # Ward's lobe under eight panoramas of Debian's blender-data.
+motion-table: all $(OUT)/motion_table
+	@$(OUT)/motion_table $(or $(FRAMES),200000) tests/figures/scenes | tools/report/write-figures scenes/motion
 ward-table: all $(OUT)/ward_table
 	@tools/make/deps "pictures, and the plug-in for them" libopenimageio-dev pkg-config g++ >&2
 	@$(MAKE) --no-print-directory oiio >&2

@@ -57,6 +57,8 @@ JPEG_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
 JPEG_LIBS     := $(SYSROOT:%=-L%/lib) -ljpeg
 INIH_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
 INIH_LIBS     := $(SYSROOT:%=-L%/lib) -linih
+JANSSON_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
+JANSSON_LIBS     := $(SYSROOT:%=-L%/lib) -ljansson
 endif
 ARCH := $(if $(CROSS),$(TARGET),$(firstword $(subst -, ,$(shell $(CC) -dumpmachine))))
 ifeq ($(ARCH),arm) # of which there are many
@@ -77,4 +79,8 @@ endif
 INIH_LIBS ?= -linih
 ifndef WITH_INIH
 WITH_INIH := $(call has,ini.h,$(INIH_CPPFLAGS),$(INIH_LIBS))
+endif
+JANSSON_LIBS ?= -ljansson
+ifndef WITH_JANSSON
+WITH_JANSSON := $(call has,jansson.h,$(JANSSON_CPPFLAGS),$(JANSSON_LIBS))
 endif

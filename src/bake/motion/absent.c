@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Stands in for recording.c where glint is built without jansson. */
+#include <stdio.h>
+
+#include "glint/scene/motion_bake.h"
+
+enum glint_status glint_recording_read(struct glint_motion_baker *baker,
+                                       const char *file_name,
+                                       glint_recording_read_fn *read, void *ctx,
+                                       struct glint_error *error)
+{
+    (void)baker, (void)read, (void)ctx;
+    snprintf(error->text, sizeof error->text,
+             "%.120s: glint was built without jansson (libjansson-dev), which "
+             "reads recordings",
+             file_name);
+    return GLINT_E_UNSUPPORTED;
+}

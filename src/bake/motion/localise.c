@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/motion/localise.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MOST = GLINT_MOTION_MAX_FOODS };
+
+void glint_localiser_init(struct glint_localiser *localiser,
+                          enum glint_motion_fit fit, bool average,
+                          enum glint_arithmetic arithmetic)
+{
+    *localiser = (struct glint_localiser){
+        .fit = fit, .average = average, .arithmetic = arithmetic};
+    for (int k = 0; k < 3; k++)
+        localiser->chain[k][k] = 1;
+}
+
+/* ------------------------------------------------------------------- rigid */
+
+/* Finds the pose from the foods that are not new, but BUT. */
+static bool fit_all(const struct glint_localiser *l, int n,
+                    const double (*seen)[3], const bool *is_new, int but,
+                    struct glint_rigid *pose)
+{
+    double from[MOST][3], to[MOST][3];
+    int m = 0;
+
+    for (int i = 0; i < n; i++) {
+        if (is_new[i] || i == but)
+            continue;
+        memcpy(from[m], seen[i], sizeof *from);
+        memcpy(to[m], l->place[i], sizeof *to);
+        m++;
+    }
+    return glint_rigid_fit(m, (const double(*)[3])from, (const double(*)[3])to,
+                           pose);
+}
+
+/* Moves the place of each food towards where the others say that it is. */
+static void learn(struct glint_localiser *l, int n, const double (*seen)[3],
+                  const bool *is_new)
+{
+    double said[MOST][3];
+    bool is_said[MOST];
+
+    for (int i = 0; i < n; i++) {
+        struct glint_rigid pose;
+
+        is_said[i] = !is_new[i] && fit_all(l, n, seen, is_new, i, &pose);
+        if (is_said[i])
+            glint_rigid_take(&pose, seen[i], said[i]);
+    }
+    for (int i = 0; i < n; i++) {
+        if (!is_said[i])
+            continue;
+        l->age[i] += 1;
+        for (int k = 0; k < 3; k++)
+            l->place[i][k] += (said[i][k] - l->place[i][k]) / l->age[i];
+    }
+}
+
+/* ------------------------------------------------------------- as published */
+
+/* Sets FOUR to the foods, of those that are not new, that FIT takes; returns
+ * false if there are fewer. */
+static bool choose(const struct glint_localiser *l, int n,
+                   const double (*seen)[3], const bool *is_new, int four[4])
+{
+    int known[MOST], m = 0;
+    double best = -1;
+
+    for (int i = 0; i < n; i++)
+        if (!is_new[i])
+            known[m++] = i;
+    for (int i = 0; i < 4 && m >= 4; i++)
+        four[i] = known[i];
+    if (m < 4 || l->fit == GLINT_MOTION_FIRST4 || l->fit == GLINT_MOTION_CHAIN)
+        return m >= 4;
+    for (int a = 0; a < m; a++)
+        for (int b = a + 1; b < m; b++)
+            for (int c = b + 1; c < m; c++)
+                for (int d = c + 1; d < m; d++) {
+                    const int pick[4] = {known[a], known[b], known[c],
+                                         known[d]};
+                    const double(*const from[4])[3] = {
+                        &seen[pick[0]], &seen[pick[1]], &seen[pick[2]],
+                        &seen[pick[3]]};
+                    const double spans = glint_four_spans(from);
+
+                    if (spans > best) {
+                        best = spans;
+                        memcpy(four, pick, sizeof pick);
+                    }
+                }
+    return true;
+}
+
+/* Multiplies the chain by MAP, from this frame to the last. */
+static void lengthen(struct glint_localiser *l, double map[4][3])
+{
+    double next[4][3];
+
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 3; k++) {
+            double sum = i == 3 ? l->chain[3][k] : 0;
+
+            for (int j = 0; j < 3; j++)
+                sum = glint_rounded(
+                    l->arithmetic,
+                    sum + glint_rounded(l->arithmetic,
+                                        l->chain[j][k] * map[i][j]));
+            next[i][k] = sum;
+        }
+    memcpy(l->chain, next, sizeof next);
+    memcpy(map, next, sizeof next);
+}
+
+/* Sets MAP to where points of the body go. */
+static const char *map_four(struct glint_localiser *l, int n,
+                            const double (*seen)[3], const bool *is_new,
+                            double map[4][3])
+{
+    const double(*const places)[3] = l->fit == GLINT_MOTION_CHAIN
+                                         ? (const double(*)[3])l->last
+                                         : (const double(*)[3])l->place;
+    const double(*from[4])[3], (*to[4])[3];
+    int four[4];
+
+    if (!choose(l, n, seen, is_new, four))
+        return "fewer than four foods are known, which this fit takes";
+    for (int i = 0; i < 4; i++) {
+        from[i] = &seen[four[i]];
+        to[i] = &places[four[i]];
+    }
+    if (!glint_four_map(l->arithmetic, from, to, map))
+        return "the four foods lie in a plane, or out of range";
+    if (l->fit == GLINT_MOTION_CHAIN)
+        lengthen(l, map);
+    return NULL;
+}
+
+/* Sets TO to where MAP takes POINT. */
+static void take(const struct glint_localiser *l, double map[4][3],
+                 const double point[3], double to[3])
+{
+    for (int k = 0; k < 3; k++) {
+        to[k] = map[3][k];
+        for (int i = 0; i < 3; i++)
+            to[k] = glint_rounded(
+                l->arithmetic,
+                to[k] + glint_rounded(l->arithmetic, map[i][k] * point[i]));
+    }
+}
+
+static const char *locate_four(struct glint_localiser *l, int n,
+                               const double (*seen)[3], const bool *is_new,
+                               struct glint_located *located)
+{
+    double map[4][3], row[3][3];
+    const char *const wrong = map_four(l, n, seen, is_new, map);
+
+    if (wrong)
+        return wrong;
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            row[k][i] = map[i][k];
+    glint_rigid_nearest((const double(*)[3])row, &located->pose);
+    memcpy(located->pose.at, map[3], sizeof located->pose.at);
+    for (int i = 0; i < n; i++)
+        if (is_new[i])
+            take(l, map, seen[i], l->place[i]);
+    return NULL;
+}
+
+/* -------------------------------------------------------------------- frame */
+
+static const char *locate_all(struct glint_localiser *l, int n,
+                              const double (*seen)[3], const bool *is_new,
+                              struct glint_located *located)
+{
+    if (!fit_all(l, n, seen, is_new, -1, &located->pose))
+        return located->n_known < 3 ? "fewer than three foods are known"
+                                    : "the foods that are known lie on a line";
+    if (l->average)
+        learn(l, n, seen, is_new);
+    for (int i = 0; i < n; i++)
+        if (is_new[i]) {
+            glint_rigid_take(&located->pose, seen[i], l->place[i]);
+            l->age[i] = 1;
+        }
+    return NULL;
+}
+
+static void begin(struct glint_localiser *l, int n, const double (*seen)[3],
+                  struct glint_located *located)
+{
+    located->pose = (struct glint_rigid){
+        {0, 0, 0}, {1, 0, 0, 0}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    located->n_known = n;
+    for (int i = 0; i < n; i++) {
+        l->age[i] = 1;
+        for (int k = 0; k < 3; k++)
+            l->place[i][k] = glint_rounded(l->arithmetic, seen[i][k]);
+    }
+    l->has_begun = true;
+}
+
+/* Sets the residual: how far foods that are not new were seen from their
+ * places before this frame. */
+static void judge(int n, const double (*places)[3], const double (*seen)[3],
+                  const bool *is_new, struct glint_located *located)
+{
+    for (int i = 0; i < n; i++) {
+        double at[3], square = 0;
+
+        if (is_new[i])
+            continue;
+        glint_rigid_take(&located->pose, seen[i], at);
+        for (int k = 0; k < 3; k++)
+            square += (at[k] - places[i][k]) * (at[k] - places[i][k]);
+        located->residual = fmax(located->residual, sqrt(square));
+    }
+}
+
+const char *glint_localise(struct glint_localiser *localiser, int n,
+                           const double (*seen)[3], const bool *is_new,
+                           struct glint_located *located)
+{
+    struct glint_localiser *l = localiser;
+    double before[MOST][3], rounded[MOST][3] = {{0}};
+    const char *wrong = NULL;
+
+    located->n_known = 0;
+    located->residual = 0;
+    memcpy(before, l->place, sizeof before);
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < 3; k++)
+            rounded[i][k] = glint_rounded(l->arithmetic, seen[i][k]);
+    if (!l->has_begun) {
+        begin(l, n, seen, located);
+    } else {
+        for (int i = 0; i < n; i++)
+            located->n_known += !is_new[i];
+        wrong = l->fit == GLINT_MOTION_ALL
+                    ? locate_all(l, n, seen, is_new, located)
+                    : locate_four(l, n, (const double(*)[3])rounded, is_new,
+                                  located);
+        if (!wrong)
+            judge(n, (const double(*)[3])before, seen, is_new, located);
+    }
+    memcpy(l->last, rounded, sizeof l->last);
+    return wrong;
+}

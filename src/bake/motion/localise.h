@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Where a body is that sees foods stand still around it, frame by frame.
+ *
+ *     glint_localiser_init(&localiser, fit, average, GLINT_DOUBLE);
+ *     glint_localise(&localiser, n, seen, is_new, &located);        each frame
+ *
+ * Frame 0 is at the origin and not turned. A pose is found from the foods whose
+ * places are known; then new foods get theirs by it. With an average each place
+ * is the mean, over all frames of a food's life so far, of where the others say
+ * that it is: what one frame is off by is not handed on from food to food. */
+#ifndef GLINT_BAKE_MOTION_LOCALISE_H
+#define GLINT_BAKE_MOTION_LOCALISE_H
+
+#include "bake/motion/four.h"
+#include "bake/motion/rigid.h"
+#include "glint/scene/motion.h"
+
+struct glint_localiser {
+    enum glint_motion_fit fit;
+    bool average; /* over a food's life, of GLINT_MOTION_ALL */
+    enum glint_arithmetic arithmetic; /* of fours and chains */
+
+    double place[GLINT_MOTION_MAX_FOODS][3];
+    double age[GLINT_MOTION_MAX_FOODS]; /* frames that its place is a mean of */
+
+    /* Private. */
+    bool has_begun;
+    double last[GLINT_MOTION_MAX_FOODS][3]; /* seen one frame ago */
+    double chain[4][3];                     /* as of glint_four_map() */
+};
+
+struct glint_located {
+    struct glint_rigid pose;
+    int n_known;     /* foods that it is found from */
+    double residual; /* the most by which one of them was seen elsewhere */
+};
+
+void glint_localiser_init(struct glint_localiser *localiser,
+                          enum glint_motion_fit fit, bool average,
+                          enum glint_arithmetic arithmetic);
+
+/* Takes the N foods that are SEEN in the next frame, in the body's axes; those
+ * that are NEW were not seen before. Returns NULL, or what is wrong, in static
+ * text; the pose is then not to be had. N is the same for all frames. */
+const char *glint_localise(struct glint_localiser *localiser, int n,
+                           const double (*seen)[3], const bool *is_new,
+                           struct glint_located *located);
+
+#endif

@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Opens any bytes as a baked motion, after magic, version, size and checksum
+ * are put right, in memory and by blocks. What is accepted in memory has all
+ * its frames; by blocks each is had or refused, and those that both have are
+ * the same.
+ *
+ *     make fuzz FUZZ=motion SECONDS=60
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/blob.h"
+#include "glint/scene/motion.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void require(int condition)
+{
+    if (!condition)
+        abort();
+}
+
+struct file {
+    const uint8_t *data;
+    uint32_t n_blocks;
+};
+
+/* Hands out a block with its number and sum put right. */
+static int read_block(void *ctx, uint32_t block, uint8_t *to)
+{
+    const struct file *file = ctx;
+    uint32_t *const end = (void *)(to + GLINT_MOTION_ROOM);
+
+    require(block < file->n_blocks);
+    memcpy(to, file->data + (size_t)block * GLINT_MOTION_BLOCK,
+           GLINT_MOTION_BLOCK);
+    end[0] = block;
+    end[1] = glint_motion_sum(to, block);
+    return 1;
+}
+
+static void by_blocks(const uint8_t *data, size_t size,
+                      struct glint_motion *whole)
+{
+    static uint32_t buffer[GLINT_MOTION_BLOCK / 4];
+    struct file file = {data, (uint32_t)(size / GLINT_MOTION_BLOCK)};
+    const struct glint_motion_blocks blocks = {&file, read_block,
+                                               file.n_blocks};
+    struct glint_motion motion;
+    const char *reason = NULL;
+
+    if (glint_motion_over(&motion, &blocks, (uint8_t *)buffer, &reason) !=
+        GLINT_OK) {
+        require(reason && *reason && !whole);
+        return;
+    }
+    for (uint32_t k = 0; k < motion.header.n_frames && k < 4096; k++) {
+        struct glint_motion_frame a, b;
+
+        memset(&a, 0, sizeof a);
+        memset(&b, 0, sizeof b);
+        if (glint_motion_frame(&motion, k, &a) == GLINT_OK && whole) {
+            require(glint_motion_frame(whole, k, &b) == GLINT_OK);
+            require(memcmp(&a, &b, sizeof a) == 0);
+        } else {
+            require(!whole);
+        }
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    unsigned char *copy = malloc(size ? size : 1); /* exact, for overruns */
+    struct glint_motion motion;
+    const char *reason = NULL;
+    uint32_t *const word = (void *)copy;
+    int is_whole;
+
+    require(copy != NULL);
+    if (size)
+        memcpy(copy, data, size);
+    if (size >= sizeof(struct glint_motion_header)) {
+        word[0] = GLINT_MOTION_MAGIC;
+        word[1] = GLINT_MOTION_VERSION;
+        glint_blob_seal(copy, size);
+    }
+    is_whole = glint_motion_open(&motion, copy, size, &reason) == GLINT_OK;
+    require(is_whole || (reason && *reason));
+    by_blocks(copy, size, is_whole ? &motion : NULL);
+    free(copy);
+    return 0;
+}

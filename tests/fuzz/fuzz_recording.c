@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Reads any bytes as a recording in JSON, by pieces of several sizes, and bakes
+ * it. What is accepted opens and has finite poses.
+ *
+ *     make fuzz FUZZ=recording SECONDS=60
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "glint/scene/motion_bake.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void require(int condition)
+{
+    if (!condition)
+        abort();
+}
+
+struct text {
+    const uint8_t *at;
+    size_t left, piece;
+};
+
+static long read_text(void *ctx, char *to, size_t n)
+{
+    struct text *t = ctx;
+
+    n = n < t->left ? n : t->left;
+    n = n < t->piece ? n : t->piece;
+    if (n)
+        memcpy(to, t->at, n);
+    t->at += n;
+    t->left -= n;
+    return (long)n;
+}
+
+static void use(const unsigned char *data, size_t bytes,
+                const struct glint_motion_report *report)
+{
+    struct glint_motion motion;
+    struct glint_motion_frame frame;
+    const char *reason;
+
+    require(glint_motion_open(&motion, data, bytes, &reason) == GLINT_OK);
+    require(motion.header.n_frames == (uint32_t)report->n_frames);
+    for (uint32_t k = 0; k < motion.header.n_frames; k++)
+        require(glint_motion_frame(&motion, k, &frame) == GLINT_OK);
+    require(isfinite(report->residual) && isfinite(report->path));
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct text text = {data + 1, size ? size - 1 : 0,
+                        size ? 1 + (size_t)(data[0] >> 2) : 1};
+    struct glint_motion_options options;
+    struct glint_motion_report report;
+    struct glint_motion_baker *baker;
+    struct glint_error error = {""};
+    unsigned char *baked = NULL;
+    size_t bytes = 0;
+    enum glint_status status;
+
+    if (!size)
+        return 0;
+    glint_motion_defaults(&options);
+    options.fit = (enum glint_motion_fit)(data[0] & 3);
+    baker = glint_motion_baker_open(&options);
+    require(baker != NULL);
+    status = glint_recording_read(baker, "x", read_text, &text, &error);
+    if (status == GLINT_OK)
+        status = glint_motion_baker_finish(baker, "x", 1, &baked, &bytes,
+                                           &report, &error);
+    if (status == GLINT_OK)
+        use(baked, bytes, &report);
+    else
+        require(status == GLINT_E_LENS && error.text[0]);
+    free(baked);
+    glint_motion_baker_close(baker);
+    return 0;
+}

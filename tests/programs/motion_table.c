@@ -1,0 +1,309 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * motion_table FRAMES DIR - by how much localised places miss the true ones, by
+ * method and motion: tables to standard output, plots to DIR/motion-*.svg.
+ *
+ * Methods take turns at chunks of frames, so that their times are of one run.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "bake/motion/localise.h"
+#include "lab/plots/plot.h"
+#include "support/tracks/tracks.h"
+
+enum { CHUNK = 1000, BINS = 100, MOST_METHODS = 8, SEED = 163635 };
+
+struct method {
+    const char *name;
+    enum glint_motion_fit fit;
+    bool average;
+    enum glint_arithmetic arithmetic;
+};
+
+/* What became of a method on a track; errors are distances of places. */
+struct result {
+    struct glint_localiser localiser;
+    const char *wrong;
+    double square[BINS], worst, last_worst, seconds, residual[BINS];
+    int count[BINS];
+    /* Sums of error, mean distance of foods, their squares and product. */
+    double sums[5];
+};
+
+static const struct method exact_input[] = {
+    {"first4, float32", GLINT_MOTION_FIRST4, false, GLINT_FLOAT32},
+    {"best4, float32", GLINT_MOTION_BEST4, false, GLINT_FLOAT32},
+    {"first4, int32 q24", GLINT_MOTION_FIRST4, false, GLINT_INT32_Q24},
+    {"chain, float32", GLINT_MOTION_CHAIN, false, GLINT_FLOAT32},
+    {"chain, int32 q24", GLINT_MOTION_CHAIN, false, GLINT_INT32_Q24},
+    {"first4, double", GLINT_MOTION_FIRST4, false, GLINT_DOUBLE},
+    {"chain, double", GLINT_MOTION_CHAIN, false, GLINT_DOUBLE},
+    {"all, double", GLINT_MOTION_ALL, false, GLINT_DOUBLE}};
+
+static const struct method rounded_input[] = {
+    {"first4, float32", GLINT_MOTION_FIRST4, false, GLINT_FLOAT32},
+    {"first4, double", GLINT_MOTION_FIRST4, false, GLINT_DOUBLE},
+    {"best4, double", GLINT_MOTION_BEST4, false, GLINT_DOUBLE},
+    {"all", GLINT_MOTION_ALL, false, GLINT_DOUBLE},
+    {"all, life mean", GLINT_MOTION_ALL, true, GLINT_DOUBLE}};
+
+static const char *const motions[TRACK_MOTIONS] = {
+    "straight with turns", "spiral along x", "straight, turned at random",
+    "random steps and turns"};
+
+static struct track_frame chunk[CHUNK];
+
+static void note(struct result *r, const struct glint_located *located,
+                 const struct track_frame *f, int bin, bool is_last)
+{
+    double square = 0, x, y = f->food_distance;
+
+    for (int k = 0; k < 3; k++)
+        square += (located->pose.at[k] - f->pose.at[k]) *
+                  (located->pose.at[k] - f->pose.at[k]);
+    x = sqrt(square);
+    r->square[bin] += square;
+    r->count[bin]++;
+    r->worst = fmax(r->worst, x);
+    r->residual[bin] = fmax(r->residual[bin], located->residual);
+    if (is_last)
+        r->last_worst = fmax(r->last_worst, x);
+    r->sums[0] += x;
+    r->sums[1] += y;
+    r->sums[2] += x * x;
+    r->sums[3] += y * y;
+    r->sums[4] += x * y;
+}
+
+static void run(const struct track_options *options,
+                const struct method *method, int n, struct result *result)
+{
+    struct track track;
+
+    track_begin(&track, options);
+    for (int i = 0; i < n; i++) {
+        memset(&result[i], 0, sizeof *result);
+        glint_localiser_init(&result[i].localiser, method[i].fit,
+                             method[i].average, method[i].arithmetic);
+    }
+    for (int first = 0; first < options->n_frames; first += CHUNK) {
+        for (int k = 0; k < CHUNK; k++)
+            track_next(&track, &chunk[k]);
+        for (int i = 0; i < n; i++) {
+            static struct glint_located located[CHUNK];
+            struct result *r = &result[i];
+            const clock_t start = clock();
+
+            for (int k = 0; k < CHUNK && !r->wrong; k++)
+                r->wrong = glint_localise(&r->localiser, options->n_foods,
+                                          (const double(*)[3])chunk[k].seen,
+                                          chunk[k].is_new, &located[k]);
+            r->seconds += (double)(clock() - start) / CLOCKS_PER_SEC;
+            for (int k = 0; k < CHUNK && !r->wrong; k++) {
+                const int frame = first + k;
+
+                note(r, &located[k], &chunk[k],
+                     (int)((long long)frame * BINS / options->n_frames),
+                     frame >= options->n_frames / 10 * 9);
+            }
+        }
+    }
+}
+
+/* Returns the root of the mean square error of bins FIRST .. END - 1. */
+static double rms(const struct result *r, int first, int end)
+{
+    double square = 0;
+    int count = 0;
+
+    for (int i = first; i < end; i++) {
+        square += r->square[i];
+        count += r->count[i];
+    }
+    return sqrt(square / (count ? count : 1));
+}
+
+static double correlation(const struct result *r, int n)
+{
+    const double *s = r->sums;
+    const double x = s[2] - s[0] * s[0] / n, y = s[3] - s[1] * s[1] / n;
+
+    return (s[4] - s[0] * s[1] / n) / sqrt(x * y);
+}
+
+static void print(const struct method *method, int n, int n_frames,
+                  const struct result *result)
+{
+    for (int i = 0; i < n; i++) {
+        const struct result *r = &result[i];
+
+        if (r->wrong)
+            printf("| | %s | %s | | | |\n", method[i].name, r->wrong);
+        else
+            printf("| | %s | %.1e | %.1e | %.1e | %.2f |\n", method[i].name,
+                   rms(r, 0, BINS / 10), rms(r, BINS * 9 / 10, BINS),
+                   r->last_worst, correlation(r, n_frames));
+    }
+}
+
+/* ------------------------------------------------------------------- plots */
+
+static void plot_lines(struct plot *p, const struct method *method, int n,
+                       const struct result *result)
+{
+    p->x.words = "share of the frames";
+    p->y.words = "error, rms of a hundredth";
+    p->y.is_log = true;
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < BINS; k++)
+            plot_stretch(p, k / (double)BINS, rms(&result[i], k, k + 1));
+    plot_frame(p);
+    for (int i = 0; i < n; i++) {
+        for (int k = 1; k + 1 < BINS; k++) {
+            const double a = rms(&result[i], k, k + 1);
+            const double b = rms(&result[i], k + 1, k + 2);
+
+            if (a > 0 && b > 0)
+                plot_line(p, k / (double)BINS, a, (k + 1) / (double)BINS, b,
+                          plot_colour(i), true);
+        }
+        plot_key(p, 's', plot_colour(i), method[i].name);
+    }
+}
+
+static FILE *plot_file(const char *dir, const char *name)
+{
+    char path[512];
+    FILE *file;
+
+    snprintf(path, sizeof path, "%s/motion-%s.svg", dir, name);
+    file = fopen(path, "w");
+    if (!file) {
+        perror(path);
+        exit(1);
+    }
+    return file;
+}
+
+/* Residuals of a baked motion, as its index has them, and its way from above.
+ */
+static void plot_track(const char *dir, int n_frames)
+{
+    const struct track_options options = {1, n_frames, 5, 200, 6, SEED};
+    FILE *file = plot_file(dir, "track");
+    struct glint_localiser l;
+    struct track track;
+    struct track_frame f;
+    struct plot residual, above;
+    double *at = malloc((size_t)n_frames * 3 * sizeof *at);
+
+    if (!at)
+        exit(1);
+    plot_open(file, 2);
+    plot_init(&residual, file, 0, "residuals of a file");
+    plot_init(&above, file, 1, "the way, from above");
+    residual.x.words = "frame";
+    residual.y.words = "most of 204 frames";
+    above.x.words = "x";
+    above.y.words = "z";
+    glint_localiser_init(&l, GLINT_MOTION_ALL, true, GLINT_DOUBLE);
+    track_begin(&track, &options);
+    for (int i = 0; i < n_frames; i++) {
+        struct glint_located located;
+
+        track_next(&track, &f);
+        if (glint_localise(&l, 5, (const double(*)[3])f.seen, f.is_new,
+                           &located))
+            exit(1);
+        at[3 * i] = located.pose.at[0];
+        at[3 * i + 1] = located.pose.at[2];
+        at[3 * i + 2] =
+            i % 204 ? fmax(at[3 * i - 1], located.residual) : located.residual;
+        plot_stretch(&above, at[3 * i], at[3 * i + 1]);
+        plot_stretch(&residual, i, at[3 * i + 2]);
+    }
+    plot_frame(&residual);
+    plot_frame(&above);
+    for (int i = 203; i < n_frames; i += 204)
+        plot_mark(&residual, i, at[3 * i + 2], '.', plot_colour(0), NULL);
+    for (int i = 20; i < n_frames && i < 20000; i += 20)
+        plot_line(&above, at[3 * i - 60], at[3 * i - 59], at[3 * i],
+                  at[3 * i + 1], plot_colour(0), false);
+    plot_close(file);
+    fclose(file);
+    free(at);
+}
+
+/* ------------------------------------------------------------------ tables */
+
+static void compare(const char *dir, const char *name, int reset_every,
+                    int digits, const struct method *method, int n,
+                    int n_frames)
+{
+    static struct result result[MOST_METHODS];
+    FILE *file = plot_file(dir, name);
+
+    plot_open(file, TRACK_MOTIONS);
+    printf("| motion | method | first tenth | last tenth | worst of that | "
+           "correlation |\n|---|---|---|---|---|---|\n");
+    for (int m = 0; m < TRACK_MOTIONS; m++) {
+        const struct track_options options = {
+            m, n_frames, 5, reset_every, digits, (uint32_t)(SEED + m)};
+        struct plot p;
+
+        run(&options, method, n, result);
+        printf("| %s | | | | | |\n", motions[m]);
+        print(method, n, n_frames, result);
+        plot_init(&p, file, m, motions[m]);
+        plot_lines(&p, method, n, result);
+    }
+    plot_close(file);
+    fclose(file);
+}
+
+static void time_methods(void)
+{
+    static const int lengths[3] = {10000, 100000, 200000};
+    static struct result result[MOST_METHODS];
+    double first = 0;
+
+    printf("| frames | first4, float32 | chain, float32 | first4, q24 | all, "
+           "double | all, life mean |\n|---|---|---|---|---|---|\n");
+    for (int i = 0; i < 3; i++) {
+        const struct method method[5] = {exact_input[0], exact_input[3],
+                                         exact_input[2], rounded_input[3],
+                                         rounded_input[4]};
+        const struct track_options options = {0, lengths[i], 5, 0, 0, SEED};
+
+        run(&options, method, 5, result);
+        first = i ? first : result[0].seconds;
+        printf("| %d |", lengths[i]);
+        for (int k = 0; k < 5; k++)
+            printf(" %.1f |", result[k].seconds / first);
+        printf("\n");
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const int n = argc == 3 ? atoi(argv[1]) / CHUNK * CHUNK : 0;
+
+    if (n < 10 * CHUNK) {
+        fprintf(stderr, "motion_table FRAMES DIR: 10000 frames or more\n");
+        return 2;
+    }
+    printf("### Foods that stay, all digits, %d frames\n\n", n);
+    compare(argv[2], "stay", 0, 0, exact_input, 8, n);
+    printf("\n### A food ends every 200 frames, %d times; text of six "
+           "digits\n\n",
+           (n - 1) / 200);
+    compare(argv[2], "resets", 200, 6, rounded_input, 5, n);
+    printf("\n### Times, in those of first4 for 10000 frames\n\n");
+    time_methods();
+    plot_track(argv[2], n < 200000 ? n : 200000);
+    return 0;
+}

@@ -1,0 +1,288 @@
+/* SPDX-License-Identifier: MIT */
+#include "support/tracks/tracks.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "glint/view.h"
+#include "support/rng.h"
+
+#define SIDE 15.0
+
+/* ------------------------------------------------------------- quaternions */
+
+static void times(const double a[4], const double b[4], double to[4])
+{
+    const double q[4] = {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+                         a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+                         a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+                         a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
+    const double length =
+        sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+
+    for (int k = 0; k < 4; k++)
+        to[k] = q[k] / length;
+}
+
+static void about(double x, double y, double z, double angle, double q[4])
+{
+    const double s = sin(angle / 2);
+
+    q[0] = cos(angle / 2);
+    q[1] = s * x;
+    q[2] = s * y;
+    q[3] = s * z;
+}
+
+/* Sets TO to V turned back by Q, or by Q if FORTH. */
+static void turn(const double q[4], const double v[3], bool forth, double to[3])
+{
+    const double s = forth ? 1 : -1;
+    const double p[4] = {q[0], s * q[1], s * q[2], s * q[3]};
+    const double c[3] = {p[2] * v[2] - p[3] * v[1], p[3] * v[0] - p[1] * v[2],
+                         p[1] * v[1] - p[2] * v[0]};
+
+    to[0] = v[0] + 2 * (p[0] * c[0] + p[2] * c[2] - p[3] * c[1]);
+    to[1] = v[1] + 2 * (p[0] * c[1] + p[3] * c[0] - p[1] * c[2]);
+    to[2] = v[2] + 2 * (p[0] * c[2] + p[1] * c[1] - p[2] * c[0]);
+}
+
+/* ------------------------------------------------------------------ motions */
+
+static double signed_of(struct track *t)
+{
+    return 2 * rng_unit(&t->rng) - 1;
+}
+
+/* A step ahead, and back from the walls. */
+static void advance(struct track *t, double step)
+{
+    for (int k = 0; k < 3; k++) {
+        t->at[k] += step * t->heading[k];
+        if (t->at[k] < 1 || t->at[k] > SIDE - 1) {
+            t->at[k] = fmin(fmax(t->at[k], 1), SIDE - 1);
+            t->heading[k] = -t->heading[k];
+        }
+    }
+}
+
+static void new_heading(struct track *t)
+{
+    double length = 0;
+
+    for (int k = 0; k < 3; k++) {
+        t->heading[k] = signed_of(t) + 1e-3;
+        length += t->heading[k] * t->heading[k];
+    }
+    for (int k = 0; k < 3; k++)
+        t->heading[k] /= sqrt(length);
+}
+
+static void move_straight(struct track *t)
+{
+    double q[4];
+
+    if (t->frame % 150 == 0) {
+        new_heading(t);
+        about(0, 0, 1, .5 * signed_of(t), q);
+        times(t->turn, q, t->turn);
+    }
+    advance(t, .01);
+}
+
+static void move_spiral(struct track *t)
+{
+    const double period = 20000, angle = t->frame * .01;
+    const double along = fmod(t->frame, 2 * period) / period;
+    double q[4];
+
+    t->at[0] = 1 + (SIDE - 2) * (along < 1 ? along : 2 - along);
+    t->at[1] = SIDE / 2 + 5 * cos(angle);
+    t->at[2] = SIDE / 2 + 5 * sin(angle);
+    about(1, 0, 0, .01, q);
+    times(t->turn, q, t->turn);
+}
+
+static void move_turning(struct track *t)
+{
+    double q[4];
+
+    move_straight(t);
+    about(1, 0, 0, .05 * signed_of(t), q);
+    times(t->turn, q, t->turn);
+    about(0, 1, 0, .05 * signed_of(t), q);
+    times(t->turn, q, t->turn);
+}
+
+static void move_random(struct track *t)
+{
+    double q[4];
+
+    new_heading(t);
+    advance(t, .1 * rng_unit(&t->rng));
+    about(t->heading[1], t->heading[2], t->heading[0], .3 * signed_of(t), q);
+    times(t->turn, q, t->turn);
+}
+
+/* --------------------------------------------------------------------- foods
+ */
+
+static void new_food(struct track *t, int slot)
+{
+    for (int k = 0; k < 3; k++)
+        t->food[slot][k] = SIDE * rng_unit(&t->rng);
+}
+
+static double round_to(double x, int digits)
+{
+    char text[40];
+
+    if (!digits)
+        return x;
+    snprintf(text, sizeof text, "%.*g", digits, x);
+    return strtod(text, NULL);
+}
+
+static void see(struct track *t, struct track_frame *f)
+{
+    f->food_distance = 0;
+    for (int i = 0; i < t->options.n_foods; i++) {
+        double off[3], square = 0;
+
+        for (int k = 0; k < 3; k++) {
+            off[k] = t->food[i][k] - t->at[k];
+            square += off[k] * off[k];
+        }
+        f->food_distance += sqrt(square) / t->options.n_foods;
+        turn(t->turn, off, false, f->seen[i]);
+        for (int k = 0; k < 3; k++)
+            f->seen[i][k] = round_to(f->seen[i][k], t->options.digits);
+    }
+}
+
+/* -------------------------------------------------------------------- frames
+ */
+
+static void (*const move[TRACK_MOTIONS])(struct track *) = {
+    move_straight, move_spiral, move_turning, move_random};
+
+void track_begin(struct track *track, const struct track_options *options)
+{
+    struct track *t = track;
+
+    *t = (struct track){.options = *options,
+                        .rng = options->seed,
+                        .at = {SIDE / 2, SIDE / 2, SIDE / 2},
+                        .turn = {1, 0, 0, 0}};
+    for (int i = 0; i < 8; i++)
+        rng_bits(&t->rng);
+    for (int i = 0; i < options->n_foods; i++)
+        new_food(t, i);
+    new_heading(t);
+    move[options->motion](t);
+    memcpy(t->first_at, t->at, sizeof t->at);
+    memcpy(t->first_turn, t->turn, sizeof t->turn);
+}
+
+/* The true pose, in the axes of frame 0. */
+static void set_truth(const struct track *t, struct glint_rigid *pose)
+{
+    const double back[4] = {t->first_turn[0], -t->first_turn[1],
+                            -t->first_turn[2], -t->first_turn[3]};
+    double off[3], q[4], axis[3];
+
+    for (int k = 0; k < 3; k++)
+        off[k] = t->at[k] - t->first_at[k];
+    turn(t->first_turn, off, false, pose->at);
+    times(back, t->turn, q);
+    for (int k = 0; k < 4; k++)
+        pose->turn[k] = q[0] < 0 ? -q[k] : q[k];
+    for (int i = 0; i < 3; i++) {
+        const double unit[3] = {i == 0, i == 1, i == 2};
+
+        turn(q, unit, true, axis);
+        for (int k = 0; k < 3; k++)
+            pose->row[k][i] = axis[k];
+    }
+}
+
+void track_next(struct track *track, struct track_frame *frame)
+{
+    struct track *t = track;
+    double before_at[3], before_turn[4], off[3], spin[4], sine;
+
+    memcpy(before_at, t->at, sizeof before_at);
+    memcpy(before_turn, t->turn, sizeof before_turn);
+    memset(frame->is_new, 0, sizeof frame->is_new);
+    if (t->frame > 0)
+        move[t->options.motion](t);
+    for (int k = 0; k < 3; k++)
+        off[k] = t->at[k] - before_at[k];
+    turn(before_turn, off, false, frame->step);
+    for (int k = 1; k < 4; k++)
+        before_turn[k] = -before_turn[k];
+    times(before_turn, t->turn, spin);
+    sine = sqrt(spin[1] * spin[1] + spin[2] * spin[2] + spin[3] * spin[3]);
+    for (int k = 0; k < 3; k++)
+        frame->spin[k] =
+            sine > 0 ? 2 * atan2(sine, spin[0]) * spin[k + 1] / sine : 0;
+    if (t->options.reset_every && t->frame > 0 &&
+        t->frame % t->options.reset_every == 0) {
+        frame->is_new[t->next_slot] = true;
+        new_food(t, t->next_slot);
+        t->next_slot = (t->next_slot + 1) % t->options.n_foods;
+    }
+    set_truth(t, &frame->pose);
+    see(t, frame);
+    t->frame++;
+}
+
+/* --------------------------------------------------------------------- text */
+
+static void write_body(bool is_second, int n_sensors, double angle_deg,
+                       FILE *to)
+{
+    fprintf(to, "{\"%s\": {\"%s\": 0.5, \"%s\": [",
+            is_second ? "szerkezet" : "structure", is_second ? "meret" : "size",
+            is_second ? "erzosejtek" : "sensors");
+    for (int i = 0; i < n_sensors; i++)
+        fprintf(to, "%s{\"theta\": %.9f, \"phi\": %.9f}", i ? ", " : "",
+                GLINT_PI / 2, 2 * GLINT_PI * i / n_sensors);
+    fprintf(to, "], \"%s\": %g}, \"frames\": [\n",
+            is_second ? "latoszog" : "angleofview", angle_deg);
+}
+
+void track_write(const struct track_options *options, bool is_second,
+                 int n_sensors, double angle_deg, FILE *to)
+{
+    struct track t;
+    struct track_frame f;
+
+    write_body(is_second, n_sensors, angle_deg, to);
+    track_begin(&t, options);
+    for (int i = 0; i < options->n_frames; i++) {
+        track_next(&t, &f);
+        if (is_second)
+            fprintf(to, "{");
+        else
+            fprintf(to, "{\"frame_num\": %d, ", i);
+        fprintf(to,
+                "\"rv\": [%.6g, %.6g, %.6g], \"tv\": [%.6g, %.6g, %.6g], "
+                "\"%s\": [",
+                f.spin[0], f.spin[1], f.spin[2], f.step[0], f.step[1],
+                f.step[2], is_second ? "kajak" : "foods");
+        for (int k = 0; k < options->n_foods; k++)
+            fprintf(to,
+                    "{\"x\": %.*g, \"y\": %.*g, \"z\": %.*g, %s, \"reset\": "
+                    "%s}%s",
+                    options->digits ? options->digits : 17, f.seen[k][0],
+                    options->digits ? options->digits : 17, f.seen[k][1],
+                    options->digits ? options->digits : 17, f.seen[k][2],
+                    is_second ? "\"i1\": [0.5, 0.25]" : "\"i\": 0.75",
+                    f.is_new[k] ? "true" : "false",
+                    k + 1 < options->n_foods ? ", " : "");
+        fprintf(to, "]}%s\n", i + 1 < options->n_frames ? "," : "");
+    }
+    fprintf(to, "]}\n");
+}

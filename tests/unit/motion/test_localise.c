@@ -1,0 +1,347 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Where a body is that sees foods: rows D1 to D6 of recorded motion, on the
+ * four motions of tests/support/tracks. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "bake/motion/localise.h"
+#include "support/rng.h"
+#include "support/tracks/tracks.h"
+
+enum { FRAMES = 20000, SEED = 163635 };
+
+struct errors {
+    double first, last; /* rms of the first and the last tenth */
+    double worst;
+    double correlation; /* of the error with the mean distance of foods */
+    int n;              /* frames until it could not go on */
+};
+
+/* Localises a track of FRAMES frames. */
+static struct errors errors_of(const struct track_options *options,
+                               enum glint_motion_fit fit, bool average,
+                               enum glint_arithmetic arithmetic)
+{
+    struct errors e = {.n = 0};
+    struct glint_localiser l;
+    struct track track;
+    double s[5] = {0};
+
+    glint_localiser_init(&l, fit, average, arithmetic);
+    track_begin(&track, options);
+    for (int i = 0; i < options->n_frames; i++) {
+        struct glint_located located;
+        struct track_frame f;
+        double square = 0;
+
+        track_next(&track, &f);
+        if (glint_localise(&l, options->n_foods, (const double(*)[3])f.seen,
+                           f.is_new, &located))
+            break;
+        for (int k = 0; k < 3; k++)
+            square += (located.pose.at[k] - f.pose.at[k]) *
+                      (located.pose.at[k] - f.pose.at[k]);
+        if (i < options->n_frames / 10)
+            e.first += square / (options->n_frames / 10);
+        if (i >= options->n_frames / 10 * 9)
+            e.last += square / (options->n_frames / 10);
+        e.worst = fmax(e.worst, sqrt(square));
+        s[0] += sqrt(square);
+        s[1] += f.food_distance;
+        s[2] += square;
+        s[3] += f.food_distance * f.food_distance;
+        s[4] += sqrt(square) * f.food_distance;
+        e.n++;
+    }
+    e.first = sqrt(e.first);
+    e.last = sqrt(e.last);
+    e.correlation =
+        (s[4] - s[0] * s[1] / e.n) /
+        sqrt((s[2] - s[0] * s[0] / e.n) * (s[3] - s[1] * s[1] / e.n));
+    return e;
+}
+
+static struct track_options track_of(int motion, int reset_every, int digits)
+{
+    return (struct track_options){
+        motion, FRAMES, 5, reset_every, digits, (uint32_t)(SEED + motion)};
+}
+
+/* Row D1: weights in four foods miss by some 1e-6 in float32, and do not grow.
+ */
+static void row_d1_four_foods_do_not_drift(void **state)
+{
+    (void)state;
+    for (int m = 0; m < TRACK_MOTIONS; m++) {
+        const struct track_options o = track_of(m, 0, 0);
+        const struct errors f =
+            errors_of(&o, GLINT_MOTION_FIRST4, false, GLINT_FLOAT32);
+        const struct errors q =
+            errors_of(&o, GLINT_MOTION_FIRST4, false, GLINT_INT32_Q24);
+        const struct errors d =
+            errors_of(&o, GLINT_MOTION_FIRST4, false, GLINT_DOUBLE);
+
+        print_message("  motion %d: float32 %.1e, q24 %.1e, double %.1e\n", m,
+                      f.last, q.last, d.last);
+        assert_int_equal(f.n, FRAMES);
+        assert_true(f.last > 1e-7 && f.last < 1e-5);
+        assert_true(f.last < 3 * f.first);
+        assert_true(q.last < f.last / 5);
+        assert_true(d.worst < 1e-12);
+    }
+}
+
+/* Row D2: the chain of motions from frame to frame drifts. */
+static void row_d2_the_chain_drifts(void **state)
+{
+    (void)state;
+    for (int m = 0; m < TRACK_MOTIONS; m++) {
+        const struct track_options o = track_of(m, 0, 0);
+        const struct errors c =
+            errors_of(&o, GLINT_MOTION_CHAIN, false, GLINT_FLOAT32);
+        const struct errors f =
+            errors_of(&o, GLINT_MOTION_FIRST4, false, GLINT_FLOAT32);
+
+        print_message("  motion %d: %.1e, then %.1e\n", m, c.first, c.last);
+        assert_int_equal(c.n, FRAMES);
+        assert_true(c.first > 1e-5 && c.first < 1e-2);
+        assert_true(c.last > 2 * c.first);
+        assert_true(c.last > 100 * f.last);
+    }
+}
+
+/* Row D5: foods end and others appear: rigid fits and means over lives keep the
+ * error below 1e-4, where the published solve loses three orders more. */
+static void row_d5_resets(void **state)
+{
+    (void)state;
+    for (int m = 0; m < TRACK_MOTIONS; m++) {
+        const struct track_options o = track_of(m, 200, 6);
+        const struct errors life =
+            errors_of(&o, GLINT_MOTION_ALL, true, GLINT_DOUBLE);
+        const struct errors all =
+            errors_of(&o, GLINT_MOTION_ALL, false, GLINT_DOUBLE);
+        const struct errors four =
+            errors_of(&o, GLINT_MOTION_FIRST4, false, GLINT_DOUBLE);
+        const struct errors best =
+            errors_of(&o, GLINT_MOTION_BEST4, false, GLINT_DOUBLE);
+
+        print_message("  motion %d: life mean %.1e, all %.1e, first4 %.1e, "
+                      "best4 %.1e\n",
+                      m, life.last, all.last, four.last, best.last);
+        assert_true(life.last < 1e-4 && life.worst < 2e-4);
+        assert_true(life.last < all.last && all.last < four.last);
+        assert_true(best.last < 2 * four.last);
+        assert_true(four.last < 15e-2);
+    }
+}
+
+/* Row D6: errors and mean distances of foods go together, weakly. */
+static void row_d6_distance_of_foods(void **state)
+{
+    (void)state;
+    for (int m = 0; m < TRACK_MOTIONS; m++) {
+        const struct track_options o = track_of(m, 0, 0);
+        const struct errors e =
+            errors_of(&o, GLINT_MOTION_FIRST4, false, GLINT_FLOAT32);
+
+        print_message("  motion %d: %.2f\n", m, e.correlation);
+        assert_true(e.correlation > .1 && e.correlation < .7);
+    }
+}
+
+/* Two foods that vanish at once leave three; of four foods one may go. */
+static void two_may_vanish_at_once(void **state)
+{
+    struct track_options o = track_of(0, 0, 0);
+    struct glint_localiser l;
+    struct glint_located located;
+    struct track track;
+    struct track_frame f;
+    const bool two[5] = {false, true, false, true, false};
+    const bool three[5] = {true, true, false, true, false};
+
+    (void)state;
+    glint_localiser_init(&l, GLINT_MOTION_ALL, true, GLINT_DOUBLE);
+    track_begin(&track, &o);
+    for (int i = 0; i < 100; i++) {
+        track_next(&track, &f);
+        assert_null(glint_localise(&l, 5, (const double(*)[3])f.seen,
+                                   i == 50 ? two : f.is_new, &located));
+        for (int k = 0; k < 3; k++)
+            assert_true(fabs(located.pose.at[k] - f.pose.at[k]) < 1e-12);
+    }
+    assert_non_null(strstr(
+        glint_localise(&l, 5, (const double(*)[3])f.seen, three, &located),
+        "three foods"));
+    glint_localiser_init(&l, GLINT_MOTION_FIRST4, true, GLINT_DOUBLE);
+    assert_null(
+        glint_localise(&l, 5, (const double(*)[3])f.seen, f.is_new, &located));
+    assert_non_null(
+        strstr(glint_localise(&l, 5, (const double(*)[3])f.seen, two, &located),
+               "four foods"));
+}
+
+/* Foods on a line, or in a plane for four, are refused at 2^-20 of the bound.
+ */
+static void flat_bases_are_refused(void **state)
+{
+    const double line[4][3] = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {5, 5, 5}};
+    double flat[5][3] = {
+        {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {3, 4, 1e-6}, {1, 1, 0}};
+    const bool none[5] = {false};
+    struct glint_localiser l;
+    struct glint_located located;
+
+    (void)state;
+    glint_localiser_init(&l, GLINT_MOTION_ALL, true, GLINT_DOUBLE);
+    assert_null(glint_localise(&l, 4, line, none, &located));
+    assert_non_null(
+        strstr(glint_localise(&l, 4, line, none, &located), "on a line"));
+    for (int k = 0; k < 2; k++) {
+        glint_localiser_init(&l, GLINT_MOTION_FIRST4, true, GLINT_DOUBLE);
+        assert_null(
+            glint_localise(&l, 5, (const double(*)[3])flat, none, &located));
+        if (k == 0)
+            assert_non_null(strstr(
+                glint_localise(&l, 5, (const double(*)[3])flat, none, &located),
+                "in a plane"));
+        else
+            assert_null(glint_localise(&l, 5, (const double(*)[3])flat, none,
+                                       &located));
+        flat[3][2] = 1e-4;
+    }
+}
+
+/* ----------------------------------------------------------------- integers */
+
+static void to_q24(const double from[4][3], int32_t to[4][3])
+{
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 3; k++)
+            to[i][k] = (int32_t)lrint(0x1p24 * from[i][k]);
+}
+
+/* Returns how far the integers are from double precision, where FOUR foods that
+ * were at TO are seen at FROM. */
+static double off_of(const double from[4][3], const double to[4][3])
+{
+    const double(*const f[4])[3] = {&from[0], &from[1], &from[2], &from[3]};
+    const double(*const t[4])[3] = {&to[0], &to[1], &to[2], &to[3]};
+    double map[4][3], off = 0;
+    int32_t from_q24[4][3], to_q24_[4][3], place[3];
+    const int32_t origin[3] = {0, 0, 0};
+
+    to_q24(from, from_q24);
+    to_q24(to, to_q24_);
+    assert_true(glint_four_map(GLINT_DOUBLE, f, t, map));
+    assert_true(glint_four_place_q24((const int32_t(*)[3])from_q24,
+                                     (const int32_t(*)[3])to_q24_, origin,
+                                     place));
+    for (int k = 0; k < 3; k++)
+        off = fmax(off, fabs(0x1p-24 * place[k] - map[3][k]));
+    return off;
+}
+
+/* An older twin wrapped at 2^62.6 in frames 163635 to 163639 of motion 2: the
+ * determinant of cofactors of more than 29 bits. */
+static void frames_that_once_wrapped(void **state)
+{
+    const struct track_options o = {1, 163640, 5, 0, 0, SEED};
+    struct track track;
+    struct track_frame f;
+    double first[TRACK_FOODS][3];
+
+    (void)state;
+    track_begin(&track, &o);
+    for (int i = 0; i < 163640; i++) {
+        track_next(&track, &f);
+        if (i == 0)
+            memcpy(first, f.seen, sizeof first);
+        if (i >= 163635)
+            assert_true(off_of((const double(*)[3])f.seen,
+                               (const double(*)[3])first) < 1e-6);
+    }
+}
+
+/* Corners of the range, where products are the largest. */
+static void integers_at_the_ends_of_their_range(void **state)
+{
+    uint32_t seed = 7;
+    double worst = 0;
+    int n = 0;
+
+    (void)state;
+    while (n < 20000) {
+        double from[4][3], to[4][3];
+        const double(*const f[4])[3] = {
+            (const double(*)[3]) & from[0], (const double(*)[3]) & from[1],
+            (const double(*)[3]) & from[2], (const double(*)[3]) & from[3]};
+
+        for (int i = 0; i < 4; i++)
+            for (int k = 0; k < 3; k++) {
+                const double end = GLINT_FOUR_REACH - 0x1p-20;
+                const int pick = rng_below(&seed, 4);
+
+                from[i][k] = pick == 0   ? end
+                             : pick == 1 ? -end
+                                         : 31 * (2 * rng_unit(&seed) - 1);
+            }
+        if (glint_four_spans(f) < .1)
+            continue;
+        for (int i = 0; i < 4; i++) /* a turn, and as the integers have them */
+            for (int k = 0; k < 3; k++) {
+                from[i][k] = glint_rounded(GLINT_INT32_Q24, from[i][k]);
+                to[i][(k + 1) % 3] = k ? from[i][k] : -from[i][k];
+            }
+        worst = fmax(worst,
+                     off_of((const double(*)[3])from, (const double(*)[3])to));
+        n++;
+    }
+    print_message("  worst of %d: %.1e\n", n, worst);
+    assert_true(worst < 2e-5);
+}
+
+/* float32 by rounding doubles has the bits of float. */
+static void rounded_doubles_are_floats(void **state)
+{
+    uint32_t seed = 3;
+
+    (void)state;
+    for (int i = 0; i < 100000; i++) {
+        const float a = (float)(rng_unit(&seed) * 30 - 15);
+        const float b = (float)(rng_unit(&seed) * 30 - 15);
+        const volatile float product = a * b, sum = a + b, ratio = a / b;
+
+        assert_true(glint_rounded(GLINT_FLOAT32, (double)a * (double)b) ==
+                    (double)product);
+        assert_true(glint_rounded(GLINT_FLOAT32, (double)a + (double)b) ==
+                    (double)sum);
+        assert_true(glint_rounded(GLINT_FLOAT32, (double)a / (double)b) ==
+                    (double)ratio);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(row_d1_four_foods_do_not_drift),
+        cmocka_unit_test(row_d2_the_chain_drifts),
+        cmocka_unit_test(row_d5_resets),
+        cmocka_unit_test(row_d6_distance_of_foods),
+        cmocka_unit_test(two_may_vanish_at_once),
+        cmocka_unit_test(flat_bases_are_refused),
+        cmocka_unit_test(frames_that_once_wrapped),
+        cmocka_unit_test(integers_at_the_ends_of_their_range),
+        cmocka_unit_test(rounded_doubles_are_floats)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

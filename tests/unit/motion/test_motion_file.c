@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The file of a motion: any frame by few blocks, the same in memory and by
+ * blocks, and damage that is found. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/blob.h"
+#include "glint/scene/motion_bake.h"
+#include "support/rng.h"
+#include "support/tracks/tracks.h"
+
+enum { FRAMES = 5000, FOODS = 5 };
+
+struct baked {
+    unsigned char *data;
+    size_t bytes;
+    struct glint_motion motion;
+    int reads;
+};
+
+static struct glint_rigid truth[FRAMES];
+
+/* Bakes a track, scaled by SCALE. */
+static void bake(struct baked *baked, int n_frames, int reset_every,
+                 double scale)
+{
+    const struct track_options o = {3, n_frames, FOODS, reset_every, 0, 5};
+    const struct glint_motion_body body = {
+        .size = scale, .angle_deg = 60, .n_sensors = 2, .theta = {0, 1}};
+    struct glint_motion_options options;
+    struct glint_motion_report report;
+    struct glint_motion_baker *baker;
+    struct glint_error error;
+    struct track track;
+    const char *reason;
+
+    glint_motion_defaults(&options);
+    baker = glint_motion_baker_open(&options);
+    assert_non_null(baker);
+    assert_int_equal(glint_motion_baker_body(baker, &body, &error), GLINT_OK);
+    track_begin(&track, &o);
+    for (int i = 0; i < n_frames; i++) {
+        static struct glint_motion_sight s;
+        struct track_frame f;
+
+        track_next(&track, &f);
+        truth[i] = f.pose;
+        s.number = i;
+        s.n_foods = FOODS;
+        s.n_intensities = 2;
+        for (int k = 0; k < FOODS; k++) {
+            s.is_new[k] = f.is_new[k];
+            s.intensity[k][1] = (i % 256) / 255.;
+            for (int axis = 0; axis < 3; axis++)
+                s.food[k][axis] = scale * f.seen[k][axis];
+        }
+        assert_int_equal(glint_motion_baker_frame(baker, &s, &error), GLINT_OK);
+    }
+    memset(baked, 0, sizeof *baked);
+    assert_int_equal(glint_motion_baker_finish(baker, "a track", 1,
+                                               &baked->data, &baked->bytes,
+                                               &report, &error),
+                     GLINT_OK);
+    glint_motion_baker_close(baker);
+    assert_int_equal(
+        glint_motion_open(&baked->motion, baked->data, baked->bytes, &reason),
+        GLINT_OK);
+}
+
+static int read_block(void *ctx, uint32_t block, uint8_t *to)
+{
+    struct baked *baked = ctx;
+
+    baked->reads++;
+    memcpy(to, baked->data + (size_t)block * GLINT_MOTION_BLOCK,
+           GLINT_MOTION_BLOCK);
+    return 1;
+}
+
+static void poses_are_the_true_ones(void **state)
+{
+    struct baked baked;
+    double at = 0, turn = 0;
+
+    (void)state;
+    bake(&baked, FRAMES, 50, 1);
+    for (uint32_t k = 0; k < FRAMES; k++) {
+        struct glint_motion_frame f;
+        double same = 0, square = 0, off = 0;
+
+        assert_int_equal(glint_motion_frame(&baked.motion, k, &f), GLINT_OK);
+        for (int i = 0; i < 3; i++)
+            at = fmax(at, fabs(ldexp(f.pose.at[i], -24) - truth[k].at[i]));
+        for (int i = 0; i < 4; i++)
+            same += ldexp(f.pose.turn_q14[i], -14) * truth[k].turn[i];
+        for (int i = 0; i < 4; i++) {
+            const double q = ldexp(f.pose.turn_q14[i], -14);
+
+            square += q * q;
+            off +=
+                (q - same * truth[k].turn[i]) * (q - same * truth[k].turn[i]);
+        }
+        turn = fmax(turn, 2 * sqrt(off / square));
+        assert_int_equal(f.intensity[3][0], 0);
+        assert_int_equal(f.intensity[3][1], k % 256);
+    }
+    print_message("  off by %.1e at most, turned by %.1e; %.1f bytes a "
+                  "frame\n",
+                  at, turn, (double)baked.bytes / FRAMES);
+    assert_true(at < 0x1p-24 && turn < 2e-4);
+    free(baked.data);
+}
+
+/* Read by blocks, a frame is that of memory, and takes as many blocks at the
+ * end as at the beginning. */
+static void any_frame_by_few_blocks(void **state)
+{
+    static uint32_t words[GLINT_MOTION_BLOCK / 4];
+    uint8_t *const buffer = (uint8_t *)words;
+    static struct glint_motion streamed;
+    struct glint_motion_blocks blocks = {.read = read_block};
+    struct glint_motion_frame f, g;
+    struct baked baked;
+    const char *reason;
+    uint32_t seed = 1;
+
+    (void)state;
+    memset(&f, 0, sizeof f);
+    memset(&g, 0, sizeof g);
+    bake(&baked, FRAMES, 50, 1);
+    blocks.ctx = &baked;
+    blocks.n_blocks = (uint32_t)(baked.bytes / GLINT_MOTION_BLOCK);
+    assert_int_equal(glint_motion_over(&streamed, &blocks, buffer, &reason),
+                     GLINT_OK);
+    for (int i = 0; i < 2000; i++) {
+        const uint32_t k = (uint32_t)rng_below(&seed, FRAMES);
+
+        baked.reads = 0;
+        assert_int_equal(glint_motion_frame(&streamed, k, &f), GLINT_OK);
+        assert_int_equal(glint_motion_frame(&baked.motion, k, &g), GLINT_OK);
+        assert_memory_equal(&f, &g, sizeof f);
+        assert_true(baked.reads <= 4); /* poses, index, events, intensities */
+    }
+    assert_int_equal(glint_motion_frame(&streamed, FRAMES, &f),
+                     GLINT_E_ARGUMENT);
+    free(baked.data);
+}
+
+/* A byte that changes anywhere is found: at once in memory, when its block is
+ * read by blocks. */
+static void damage_is_found(void **state)
+{
+    static uint32_t words[GLINT_MOTION_BLOCK / 4];
+    uint8_t *const buffer = (uint8_t *)words;
+    static struct glint_motion streamed;
+    struct glint_motion_blocks blocks = {.read = read_block};
+    struct baked baked;
+    struct glint_motion motion;
+    const char *reason;
+    uint32_t seed = 2;
+
+    (void)state;
+    bake(&baked, 1000, 50, 1);
+    blocks.ctx = &baked;
+    blocks.n_blocks = (uint32_t)(baked.bytes / GLINT_MOTION_BLOCK);
+    for (int i = 0; i < 300; i++) {
+        const size_t at = (size_t)rng_below(&seed, (int)baked.bytes);
+        const unsigned char was = baked.data[at];
+        const uint32_t header = GLINT_MOTION_BLOCK;
+        bool found = false;
+
+        baked.data[at] ^= (unsigned char)(1 << rng_below(&seed, 8));
+        assert_int_equal(
+            glint_motion_open(&motion, baked.data, baked.bytes, &reason),
+            GLINT_E_FORMAT);
+        found =
+            glint_motion_over(&streamed, &blocks, buffer, &reason) != GLINT_OK;
+        for (uint32_t k = 0; !found && k < 1000; k++) {
+            struct glint_motion_frame f;
+
+            found = glint_motion_frame(&streamed, k, &f) != GLINT_OK;
+        }
+        /* but the checksum of the whole, which is not asked for */
+        assert_true(found || (at >= 12 && at < 16 && at < header));
+        baked.data[at] = was;
+    }
+    for (size_t n = 0; n < baked.bytes; n += 997) {
+        assert_int_equal(glint_motion_open(&motion, baked.data, n, &reason),
+                         GLINT_E_FORMAT);
+        assert_non_null(reason);
+    }
+    free(baked.data);
+}
+
+/* Whatever words a file holds, sealed, it is refused or can be read. */
+static void hostile_words_do_no_harm(void **state)
+{
+    struct baked baked;
+    unsigned char *copy;
+    uint32_t seed = 4;
+    int opened = 0;
+
+    (void)state;
+    bake(&baked, 300, 50, 1);
+    copy = malloc(baked.bytes);
+    assert_non_null(copy);
+    for (int i = 0; i < 3000; i++) {
+        struct glint_motion motion;
+        const char *reason;
+        /* of the header mostly */
+        const size_t at =
+            4 * (size_t)rng_below(&seed, i % 2 ? 46 : (int)baked.bytes / 4);
+        uint32_t word = rng_bits(&seed) >> rng_below(&seed, 32);
+
+        memcpy(copy, baked.data, baked.bytes);
+        memcpy(copy + at, &word, 4);
+        glint_blob_seal(copy, baked.bytes);
+        if (glint_motion_open(&motion, copy, baked.bytes, &reason) != GLINT_OK)
+            continue;
+        opened++;
+        for (uint32_t k = 0; k < motion.header.n_frames; k++) {
+            struct glint_motion_frame f;
+
+            assert_int_equal(glint_motion_frame(&motion, k, &f), GLINT_OK);
+        }
+    }
+    print_message("  %d of 3000 open\n", opened);
+    assert_true(opened > 10 && opened < 2500);
+    free(copy);
+    free(baked.data);
+}
+
+/* Sizes from 1e-6 to 1e6. */
+static void units_follow_the_size(void **state)
+{
+    (void)state;
+    for (int power = -6; power <= 4; power++) {
+        const double scale = pow(10, power);
+        double worst = 0;
+        struct baked baked;
+
+        bake(&baked, 200, 50, scale);
+        for (uint32_t k = 0; k < 200; k++) {
+            struct glint_motion_frame f;
+
+            assert_int_equal(glint_motion_frame(&baked.motion, k, &f),
+                             GLINT_OK);
+            for (int i = 0; i < 3; i++)
+                worst = fmax(worst, fabs(ldexp(f.pose.at[i],
+                                               -baked.motion.header.unit_log2) /
+                                             scale -
+                                         truth[k].at[i]));
+        }
+        print_message("  size 1e%d: 2^%d steps, off by %.1e of it\n", power,
+                      baked.motion.header.unit_log2, worst);
+        assert_true(worst < 1e-6);
+        free(baked.data);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(poses_are_the_true_ones),
+        cmocka_unit_test(any_frame_by_few_blocks),
+        cmocka_unit_test(damage_is_found),
+        cmocka_unit_test(hostile_words_do_no_harm),
+        cmocka_unit_test(units_follow_the_size)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

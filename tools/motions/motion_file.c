@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: MIT */
+#include "motions/motion_file.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "posix/error.h"
+#include "posix/input.h"
+#include "posix/output.h"
+#include "posix/target.h"
+#include "scenes/names.h"
+
+#define MAX_FILE_BYTES ((size_t)1 << 31)
+
+bool motion_file_is_source(const char *argument)
+{
+    const size_t n = strlen(argument);
+
+    return n > 5 && strcasecmp(argument + n - 5, ".json") == 0;
+}
+
+bool motion_file_is_baked(const char *argument)
+{
+    return tool_begins_as(argument, GLINT_MOTION_MAGIC);
+}
+
+/* A recording while it is read, and the key of what was read. */
+struct reading {
+    struct glint_input in;
+    uint64_t key;
+};
+
+static long read_some(void *ctx, char *to, size_t n)
+{
+    struct reading *reading = ctx;
+    const ptrdiff_t some = glint_input_some(&reading->in, to, n);
+
+    if (some > 0)
+        tool_key_mix(&reading->key, to, (size_t)some);
+    return (long)some;
+}
+
+static enum glint_status bake(const char *path,
+                              const struct glint_motion_options *options,
+                              struct motion_file *file,
+                              struct glint_error *error)
+{
+    struct reading reading = {.key = TOOL_KEY_BEGIN};
+    struct glint_motion_baker *baker = glint_motion_baker_open(options);
+    enum glint_status status = GLINT_E_MEMORY;
+    unsigned char *data = NULL;
+    char name[64];
+
+    if (baker)
+        status = glint_input_open(&reading.in, path, error);
+    if (status == GLINT_OK) {
+        tool_scene_name(path, name);
+        status = glint_recording_read(baker, path, read_some, &reading, error);
+        glint_input_close(&reading.in);
+        if (status == GLINT_OK) {
+            status =
+                glint_motion_baker_finish(baker, name, reading.key, &data,
+                                          &file->bytes, &file->report, error);
+            if (status == GLINT_E_LENS) {
+                const struct glint_error cause = *error;
+
+                glint_error_report(error, status, path, "%s", cause.text);
+            }
+        }
+    }
+    glint_motion_baker_close(baker);
+    file->data = data;
+    file->is_baked_now = true;
+    return status;
+}
+
+enum glint_status motion_file_read(const char *path, const char *written,
+                                   const struct glint_motion_options *options,
+                                   struct motion_file *file,
+                                   struct glint_error *error)
+{
+    const char *reason = "";
+    uint8_t *data = NULL;
+    enum glint_status status = GLINT_OK;
+
+    *file = (struct motion_file){.data = NULL};
+    if (written && glint_target_is_input(path, written))
+        return glint_error_report(
+            error, GLINT_E_ARGUMENT, path,
+            "would be lost: it is what -o names; name another file");
+    if (motion_file_is_source(path)) {
+        status = bake(path, options, file, error);
+    } else {
+        status =
+            glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, error);
+        file->data = data; /* malloc aligns it */
+    }
+    if (status != GLINT_OK ||
+        glint_motion_open(&file->motion, file->data, file->bytes, &reason) ==
+            GLINT_OK)
+        return status;
+    motion_file_close(file);
+    return glint_error_report(error, GLINT_E_LENS, path, "%s", reason);
+}
+
+int motion_file_open(const struct tool *tool, const char *path,
+                     const struct glint_motion_options *options,
+                     struct motion_file *file)
+{
+    struct glint_error error = {""};
+    const enum glint_status status =
+        motion_file_read(path, tool->written, options, file, &error);
+    const struct glint_motion_report *r = &file->report;
+
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text[0] ? error.text : NULL);
+    if (r->bad_frames && !tool->quiet)
+        fprintf(stderr,
+                "glint %s: %s: in %ld frames foods are seen more than a "
+                "thousandth of the span, %.4g, from their places; most in "
+                "frame %ld, %.4g: did they move, or was a reset not "
+                "recorded?\n",
+                tool->name, path, r->bad_frames, r->span, r->residual_frame,
+                r->residual);
+    if (r->held_intensities && !tool->quiet)
+        fprintf(stderr,
+                "glint %s: %s: %ld intensities outside of 0 .. 1 were held\n",
+                tool->name, path, r->held_intensities);
+    return EXIT_OK;
+}
+
+void motion_file_close(struct motion_file *file)
+{
+    free(file->data);
+    *file = (struct motion_file){.data = NULL};
+}
+
+/* -------------------------------------------------------------------- poses */
+
+/* Writes line K to TEXT[BYTES]; returns its length. */
+static int print_pose(struct motion_file *file, uint32_t k, char *text,
+                      size_t bytes)
+{
+    const double step = ldexp(1, -file->motion.header.unit_log2);
+    struct glint_motion_frame f;
+
+    if (glint_motion_frame(&file->motion, k, &f) != GLINT_OK)
+        return 0; /* of a file in memory there are all */
+    return snprintf(
+        text, bytes, "%u,%.9g,%.9g,%.9g,%.6f,%.6f,%.6f,%.6f\n", k,
+        step * f.pose.at[0], step * f.pose.at[1], step * f.pose.at[2],
+        ldexp(f.pose.turn_q14[0], -14), ldexp(f.pose.turn_q14[1], -14),
+        ldexp(f.pose.turn_q14[2], -14), ldexp(f.pose.turn_q14[3], -14));
+}
+
+int motion_file_poses(const struct tool *tool, struct motion_file *file,
+                      const char *to)
+{
+    enum { LINE = 160 };
+    const uint32_t n = file->motion.header.n_frames;
+    char *const text = malloc(((size_t)n + 1) * LINE);
+    struct glint_error error = {""};
+    struct glint_output out;
+    enum glint_status status = GLINT_E_MEMORY;
+    size_t bytes = 0;
+
+    if (text) {
+        bytes = (size_t)snprintf(text, LINE, "frame,x,y,z,qw,qx,qy,qz\n");
+        for (uint32_t k = 0; k < n; k++)
+            bytes += (size_t)print_pose(file, k, text + bytes, LINE);
+        status = glint_output_open(&out, to, GLINT_OUTPUT_TEXT, &error);
+    }
+    if (status == GLINT_OK)
+        status =
+            glint_output_finish(&out, (unsigned char *)text, bytes, &error);
+    free(text);
+    return status == GLINT_OK
+               ? EXIT_OK
+               : tool_fail(tool, status, error.text[0] ? error.text : NULL);
+}
