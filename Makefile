@@ -48,7 +48,7 @@ include tools/make/target.mk
 CORE      := base image kernels kernels/rays lens lamps follow tile flare/edges flare star veil scene/around scene scene/frame scene/ward scene/motion scene/account reuse
 PUBLISHED := published
 ENGINE    := engine engine/frame engine/setup engine/star
-BAKE      := bake bake/table bake/scene bake/environment bake/motion bake/translucent bake/trace bake/fit bake/exact bake/published
+BAKE      := bake bake/table bake/scene bake/environment bake/motion bake/translucent bake/trace bake/fit bake/exact bake/published bake/published/scatter
 PLATFORM  := posix formats video panel linux jpeg oiio assimp sdl
 TOOLS     := options control lamp_files desk model overlay scenes motions twin command live lab lab/plots lab/scenes
 c_files = $(wildcard $(2:%=$(1)/%/*.c))

@@ -56,7 +56,7 @@ $(call of,$(addprefix src/published/,ghost_grid by_cells clip),-Os)
 $(call of,src/tile/bins src/tile/pass src/star/star src/veil/veil $(addprefix src/image/,resolve curve mix),-Os)
 
 # Loops over doubles that a machine takes two at a time.
-$(call of,src/bake/translucent/%,-O3)
+$(call of,src/bake/translucent/% src/bake/published/scatter/%,-O3)
 
 # Hot loops are unrolled.
 $(call of,src/kernels/%,-O3)

@@ -10,6 +10,8 @@
 
 #define NO_ERROR_DB 999.0
 
+enum { RIM_ROUNDS = 12 };
+
 void glint_scatter_defaults(struct glint_scatter_options *options,
                             enum glint_scatter_model model)
 {
@@ -100,46 +102,76 @@ static void turn_kernels(struct glint_scatter_fit *fit)
     }
 }
 
-/* h is the mean of the rows, each as much as it scatters. */
+/* Share of kernel H that is inside of the square from texel X. */
+static double share_inside(const struct glint_scatter_fit *fit, int x,
+                           const double *h)
+{
+    const int n = fit->kernel;
+    const struct glint_scatter_inside in =
+        glint_scatter_inside(fit->side, n, x);
+    double sum = 0;
+
+    for (int v = in.v_from; v < in.v_to; v++)
+        for (int u = in.u_from; u < in.u_to; u++)
+            sum += h[v * n + u];
+    return sum;
+}
+
+/* Sets H to the mean of the rows of channel C, each as much as OUT has of it.
+ * SQUARE is scratch. */
+static void set_mean(const struct glint_scatter_rows *rows,
+                     const struct glint_scatter_fit *fit, int c, double *h,
+                     double *square)
+{
+    const int side = fit->side, n = fit->kernel, k2 = n * n;
+    double sum = 0;
+
+    memset(h, 0, (size_t)k2 * sizeof *h);
+    memset(square, 0, (size_t)k2 * sizeof *square);
+    for (int x = 0; x < side * side; x++) {
+        const struct glint_scatter_inside in = glint_scatter_inside(side, n, x);
+        const float *row = glint_scatter_row(rows, x, c);
+        const double a = fit->out[3 * x + c];
+
+        for (int v = in.v_from; v < in.v_to; v++)
+            for (int d = v * n + in.u_from; d < v * n + in.u_to; d++) {
+                h[d] += a * (double)row[d];
+                square[d] += a * a;
+            }
+    }
+    for (int d = 0; d < k2; d++) {
+        h[d] = square[d] > 0 ? h[d] / square[d] : 0;
+        sum += h[d];
+    }
+    for (int d = 0; d < k2 && sum > 0; d++)
+        h[d] /= sum;
+}
+
+/* Of rows at the rim the square has a part only: how much they would scatter
+ * follows from h, and h from that. */
 static enum glint_status albedo_fit(const struct glint_scatter_rows *rows,
                                     struct glint_scatter_fit *fit)
 {
-    const int side = fit->side, n = fit->kernel;
-    const size_t k2 = (size_t)glint_scatter_kernel2(n);
-    double *square = calloc(3 * k2, sizeof *square);
+    const int n = 3 * fit->side * fit->side;
+    const size_t k2 = (size_t)glint_scatter_kernel2(fit->kernel);
+    double *square = malloc(k2 * sizeof *square);
 
     fit->h = calloc(3 * k2, sizeof *fit->h);
-    fit->out = calloc(3 * (size_t)side * (size_t)side, sizeof *fit->out);
+    fit->out = calloc((size_t)n, sizeof *fit->out);
     if (!square || !fit->h || !fit->out) {
         free(square);
         return GLINT_E_MEMORY;
     }
-    for (int x = 0; x < side * side; x++) {
-        const struct glint_scatter_inside in = glint_scatter_inside(side, n, x);
-
+    memcpy(fit->out, fit->albedo, (size_t)n * sizeof *fit->out);
+    for (int i = 0; i < RIM_ROUNDS; i++) {
         for (int c = 0; c < 3; c++)
-            for (int v = in.v_from; v < in.v_to; v++)
-                for (int d = v * n + in.u_from; d < v * n + in.u_to; d++) {
-                    const double a = fit->albedo[3 * x + c];
-                    const size_t at = (size_t)c * k2 + (size_t)d;
+            set_mean(rows, fit, c, fit->h + (size_t)c * k2, square);
+        for (int x = 0; x < n; x++) {
+            const double share =
+                share_inside(fit, x / 3, fit->h + (size_t)(x % 3) * k2);
 
-                    fit->h[at] += a * (double)glint_scatter_row(rows, x, c)[d];
-                    square[at] += a * a;
-                }
-    }
-    for (int c = 0; c < 3; c++) {
-        double *h = fit->h + (size_t)c * k2, sum = 0;
-
-        for (size_t d = 0; d < k2; d++) {
-            const double below = square[(size_t)c * k2 + d];
-
-            h[d] = below > 0 ? h[d] / below : 0;
-            sum += h[d];
+            fit->out[x] = share > 0 ? fit->albedo[x] / share : 0;
         }
-        for (size_t d = 0; d < k2 && sum > 0; d++)
-            h[d] /= sum;
-        for (int x = 0; x < side * side; x++)
-            fit->out[3 * x + c] = fit->albedo[3 * x + c];
     }
     free(square);
     return GLINT_OK;

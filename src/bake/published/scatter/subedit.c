@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Scattering as the geometric mean of two radial profiles [Song09].
+ *
+ * Logarithms make it a sum: ln R'(i, o) = (ln P_i(r) + ln P_o(r)) / 2. Profiles
+ * are solved for in turns, each texel given the others as they were, half of
+ * the way at a time. Between their values they are linear in r.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bake/published/scatter/rebuild.h"
+
+enum { VALUES = 12, ROUNDS = 8 };
+
+#define FLOOR 1e-7 /* of the peak: what a logarithm takes 0 for */
+
+struct subedit {
+    const struct glint_scatter_rows *rows;
+    int c;
+    double floor;
+    double *profile, *next; /* [texels][VALUES] logarithms */
+    double *radius;         /* [kernel * kernel] 0 .. VALUES - 1 */
+};
+
+static double at(const double *profile, double radius)
+{
+    const int low = radius < VALUES - 1 ? (int)radius : VALUES - 2;
+    const double t = radius - low;
+
+    return (1 - t) * profile[low] + t * profile[low + 1];
+}
+
+/* Radii by entries: 0 in the middle, VALUES - 1 in the corners. */
+static void set_radii(const struct subedit *p)
+{
+    const int n = p->rows->kernel, half = n / 2;
+    const double most = half > 0 ? sqrt(2) * half : 1;
+
+    for (int d = 0; d < n * n; d++)
+        p->radius[d] =
+            fmin(VALUES - 1,
+                 (VALUES - 1) * hypot(d % n - half, d / n - half) / most);
+}
+
+/* Sets the profile of X to the mean, by radius, of what its row and the other
+ * profiles leave to it. */
+static void solve(const struct subedit *p, int x, bool alone)
+{
+    const float *row = glint_scatter_row(p->rows, x, p->c);
+    double sum[VALUES] = {0}, weight[VALUES] = {0};
+
+    for (int d = 0; d < glint_scatter_kernel2(p->rows->kernel); d++) {
+        const int to =
+            glint_scatter_target(p->rows->side, p->rows->kernel, x, d);
+        const int low = (int)fmin(p->radius[d], VALUES - 2);
+        const double t = p->radius[d] - low;
+        double value;
+
+        if (to < 0)
+            continue;
+        value = log(fmax((double)row[d], p->floor));
+        if (!alone)
+            value = 2 * value - at(p->profile + VALUES * to, p->radius[d]);
+        sum[low] += (1 - t) * value;
+        weight[low] += 1 - t;
+        sum[low + 1] += t * value;
+        weight[low + 1] += t;
+    }
+    for (int i = 0; i < VALUES; i++) {
+        const double before = p->profile[VALUES * x + i];
+        const double now = weight[i] > 1e-9 ? sum[i] / weight[i]
+                           : i > 0          ? p->next[VALUES * x + i - 1]
+                                            : before;
+
+        p->next[VALUES * x + i] = alone ? now : (before + now) / 2;
+    }
+}
+
+static void rebuild_channel(const struct subedit *p, double *row,
+                            struct glint_scatter_rows *rebuilt)
+{
+    for (int x = 0; x < p->rows->side * p->rows->side; x++) {
+        for (int d = 0; d < glint_scatter_kernel2(p->rows->kernel); d++) {
+            const int to =
+                glint_scatter_target(p->rows->side, p->rows->kernel, x, d);
+
+            row[d] = to < 0 ? 0
+                            : exp((at(p->profile + VALUES * x, p->radius[d]) +
+                                   at(p->profile + VALUES * to, p->radius[d])) /
+                                  2);
+        }
+        glint_rebuilt_row(rebuilt, x, p->c, row);
+    }
+}
+
+static enum glint_status run(struct subedit *p, double *row,
+                             const struct glint_watch *watch,
+                             struct glint_scatter_rows *rebuilt)
+{
+    const int texels = p->rows->side * p->rows->side;
+
+    set_radii(p);
+    for (p->c = 0; p->c < 3; p->c++) {
+        for (int i = 0; i < ROUNDS; i++) {
+            double *other;
+
+            if (glint_watch_ends(watch, (p->c + (double)i / ROUNDS) / 3))
+                return GLINT_E_CLOSED;
+            for (int x = 0; x < texels; x++)
+                solve(p, x, i == 0);
+            other = p->profile;
+            p->profile = p->next;
+            p->next = other;
+        }
+        rebuild_channel(p, row, rebuilt);
+    }
+    return GLINT_OK;
+}
+
+enum glint_status glint_rebuild_subedit(const struct glint_scatter_rows *rows,
+                                        struct glint_scatter_candidate *o,
+                                        const struct glint_watch *watch,
+                                        struct glint_scatter_rows *rebuilt)
+{
+    const size_t values = VALUES * (size_t)rows->side * (size_t)rows->side;
+    const size_t k2 = (size_t)glint_scatter_kernel2(rows->kernel);
+    struct subedit p = {.rows = rows,
+                        .floor = FLOOR * glint_scatter_peak(rows)};
+    double *memory = calloc(2 * values + 2 * k2, sizeof *memory);
+    enum glint_status status = GLINT_E_MEMORY;
+
+    (void)o;
+    if (!(p.floor > 0)) {
+        free(memory);
+        return GLINT_OK; /* a black stone is 0 */
+    }
+    if (memory) {
+        p.profile = memory;
+        p.next = memory + values;
+        p.radius = p.next + values;
+        status = run(&p, p.radius + k2, watch, rebuilt);
+    }
+    free(memory);
+    return status;
+}

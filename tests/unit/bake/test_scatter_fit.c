@@ -1,0 +1,366 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Fits of rows that a run time draws, and the algebra below them.
+ */
+#include <dlfcn.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "bake/translucent/linear.h"
+#include "bake/translucent/slab.h"
+#include "support/lens_check.h"
+#include "support/rng.h"
+
+enum { SIDE = 20, KERNEL = 7, K2 = KERNEL * KERNEL, TEXELS = SIDE * SIDE };
+
+static const enum glint_scatter_model models[] = {
+    GLINT_SCATTER_CLUSTERED, GLINT_SCATTER_FACTORED, GLINT_SCATTER_ALBEDO};
+
+static void chess(struct glint_scatter_rows *rows, int side, int kernel)
+{
+    struct glint_stone stone;
+    struct glint_error error;
+
+    glint_stone_defaults(&stone);
+    stone.side = side;
+    stone.kernel = kernel;
+    stone.fields = side >= 16 ? side / 12 : 1;
+    assert_int_equal(glint_scatter_compute(&stone, NULL, rows, &error),
+                     GLINT_OK);
+}
+
+static void fit_of(struct glint_scatter_rows *rows,
+                   enum glint_scatter_model model,
+                   struct glint_scatter_fit *fit)
+{
+    struct glint_scatter_options options;
+
+    glint_scatter_defaults(&options, model);
+    assert_int_equal(glint_scatter_fit(rows, &options, NULL, fit), GLINT_OK);
+}
+
+/* Kernel J of made rows: no mirror leaves it as it is. */
+static double made_kernel(int j, int d)
+{
+    const int u = d % KERNEL - KERNEL / 2, v = d / KERNEL - KERNEL / 2;
+
+    return j ? exp(-0.3 * (u + 1) * (u + 1) - 0.1 * v * v)
+             : exp(-0.1 * u * u - 0.5 * (v - 1) * (v - 1));
+}
+
+/* Rows that are SUM over kernels of what WEIGHT has of x_o, times IN of x_i.
+ */
+static void make_rows(struct glint_scatter_rows *rows, double (*weight)[2],
+                      const double *in)
+{
+    assert_true(glint_scatter_open(rows, SIDE, KERNEL, false));
+    for (int x = 0; x < TEXELS; x++)
+        for (int c = 0; c < 3; c++)
+            for (int d = 0; d < K2; d++) {
+                const int to = glint_scatter_target(SIDE, KERNEL, x, d);
+
+                if (to >= 0)
+                    glint_scatter_row(rows, x, c)[d] =
+                        (float)(in[x] * (c + 1) *
+                                (weight[to][0] * made_kernel(0, d) +
+                                 weight[to][1] * made_kernel(1, d)));
+            }
+}
+
+/* Rows that are a model come back, those that no mirror leaves alone, too. */
+static void test_models_found(void **state)
+{
+    uint32_t seed = 5;
+    static const double bound[3] = {4e-3, 1e-6, 1e-5};
+    double weight[TEXELS][2], in[TEXELS];
+
+    (void)state;
+    for (int m = 0; m < 3; m++) {
+        struct glint_scatter_options options = {models[m], m == 2 ? 1 : 2, 2};
+        struct glint_scatter_rows rows;
+        struct glint_scatter_fit fit;
+
+        for (int x = 0; x < TEXELS; x++) {
+            const bool first = m == 2 || (x % SIDE < SIDE / 2);
+
+            weight[x][0] = 0.5 + rng_unit(&seed);
+            weight[x][1] = 0.5 + rng_unit(&seed);
+            if (m != 1) {
+                weight[x][0] *= first;
+                weight[x][1] *= !first;
+            }
+            in[x] = m == 0 ? 0.5 + rng_unit(&seed) : 1;
+        }
+        make_rows(&rows, weight, in);
+        assert_int_equal(glint_scatter_fit(&rows, &options, NULL, &fit),
+                         GLINT_OK);
+        /* alternations end early, floats have seven digits */
+        assert_true(fit.error.rmse < (bound[m]));
+        glint_scatter_fit_close(&fit);
+        glint_scatter_close(&rows);
+    }
+}
+
+/* Light by a fit is light by its entries, even light is that of the data, and
+ * factors are what h is made of. */
+static void test_light(void **state)
+{
+    struct glint_scatter_rows rows, same;
+    double light[3 * TEXELS], even[3 * TEXELS], want[3 * TEXELS],
+        got[3 * TEXELS];
+
+    (void)state;
+    chess(&rows, SIDE, KERNEL);
+    assert_true(glint_scatter_open(&same, SIDE, KERNEL, false));
+    glint_scatter_test_light(SIDE, light);
+    for (int m = 0; m < 3; m++) {
+        struct glint_scatter_fit fit;
+
+        fit_of(&rows, models[m], &fit);
+        for (int x = 0; x < TEXELS; x++)
+            for (int c = 0; c < 3; c++)
+                for (int d = 0; d < K2; d++)
+                    glint_scatter_row(&same, x, c)[d] =
+                        (float)glint_scatter_entry(&fit, x, c, d);
+        glint_scatter_light_rows(&same, light, want);
+        glint_scatter_light(&fit, light, got);
+        for (int i = 0; i < 3 * TEXELS; i++) {
+            assert_near(got[i], want[i], 1e-5);
+            even[i] = 1;
+        }
+        glint_scatter_light(&fit, even, got);
+        glint_scatter_light_rows(&rows, even, want);
+        for (int i = 0; i < 3 * TEXELS; i++)
+            assert_near(got[i], want[i], 1e-5);
+        for (int d = 0; fit.row && d < K2; d++) {
+            double h = 0;
+
+            for (int q = 0; q < fit.rank; q++)
+                h += fit.column[q * KERNEL + d / KERNEL] *
+                     fit.row[q * KERNEL + d % KERNEL];
+            assert_near(h, fit.h[d], 1e-12);
+        }
+        glint_scatter_fit_close(&fit);
+    }
+    glint_scatter_close(&rows);
+    glint_scatter_close(&same);
+}
+
+/* Chess of two marbles, 40 dB under lamps and shadows: what the run time may
+ * lose begins there. More terms and ranks are nearer. */
+static void test_near(void **state)
+{
+    static const int parts[4][2] = {{1, 3}, {3, 3}, {5, 1}, {5, 3}};
+    struct glint_scatter_rows rows;
+    struct glint_scatter_fit fit;
+    double db[4];
+
+    (void)state;
+    chess(&rows, 48, 15);
+    fit_of(&rows, GLINT_SCATTER_CLUSTERED, &fit);
+    assert_true(fit.error.light_db > 44 && fit.error.entry_db > 44);
+    glint_scatter_fit_close(&fit);
+    for (int i = 0; i < 4; i++) {
+        const struct glint_scatter_options o = {GLINT_SCATTER_FACTORED,
+                                                parts[i][0], parts[i][1]};
+
+        assert_int_equal(glint_scatter_fit(&rows, &o, NULL, &fit), GLINT_OK);
+        db[i] = fit.error.light_db;
+        glint_scatter_fit_close(&fit);
+    }
+    assert_true(db[0] < db[1] && db[1] < db[3] && db[2] < db[3]);
+    assert_true(db[3] > 46);
+    glint_scatter_close(&rows);
+}
+
+/* Black stones, one texel, kernels that lead beyond the square from everywhere:
+ * finite, and exact where there is nothing to lose. */
+static void test_extremes(void **state)
+{
+    static const int shape[3][2] = {{1, 9}, {3, 13}, {9, 1}};
+
+    (void)state;
+    for (int i = 0; i < 6; i++)
+        for (int m = 0; m < 3; m++) {
+            const int side = shape[i % 3][0], kernel = shape[i % 3][1];
+            struct glint_scatter_rows rows;
+            struct glint_scatter_fit fit;
+
+            if (i < 3)
+                chess(&rows, side, kernel);
+            else
+                assert_true(glint_scatter_open(&rows, side, kernel, false));
+            fit_of(&rows, models[m], &fit);
+            assert_true(isfinite(fit.error.rmse) && fit.error.albedo < 0.5);
+            for (int d = 0; d < 3 * kernel * kernel; d++)
+                assert_true(isfinite(fit.h[d]));
+            for (int x = 0; fit.out && x < 3 * side * side; x++)
+                assert_true(isfinite(fit.out[x]));
+            if (i >= 3 || side == 1)
+                assert_true(fit.error.rmse < 1e-6);
+            glint_scatter_fit_close(&fit);
+            glint_scatter_close(&rows);
+        }
+}
+
+static bool at_once(void *ctx)
+{
+    return ++*(int *)ctx > 2;
+}
+
+static void test_refused(void **state)
+{
+    static const struct glint_scatter_options bad[] = {
+        {GLINT_SCATTER_CLUSTERED, 0, 1}, {GLINT_SCATTER_CLUSTERED, 21, 1},
+        {GLINT_SCATTER_FACTORED, 5, 0},  {GLINT_SCATTER_FACTORED, 5, 9},
+        {GLINT_SCATTER_ALBEDO, 2, 1},    {(enum glint_scatter_model)3, 1, 1},
+    };
+    struct glint_scatter_rows rows;
+    struct glint_scatter_fit fit;
+
+    (void)state;
+    chess(&rows, 8, 5);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        assert_int_equal(glint_scatter_fit(&rows, &bad[i], NULL, &fit),
+                         GLINT_E_ARGUMENT);
+        assert_null(fit.h);
+    }
+    for (int m = 0; m < 2; m++) {
+        int asked = 0;
+        const struct glint_watch watch = {NULL, at_once, &asked};
+        struct glint_scatter_options o;
+
+        glint_scatter_defaults(&o, models[m]);
+        assert_int_equal(glint_scatter_fit(&rows, &o, &watch, &fit),
+                         GLINT_E_CLOSED);
+        assert_null(fit.h);
+    }
+    glint_scatter_close(&rows);
+}
+
+enum { TALL = 120, WIDE = 40, TERMS = 9 };
+
+static void fetch(const void *ctx, int i, double *to)
+{
+    memcpy(to, (const double *)ctx + i * WIDE, WIDE * sizeof *to);
+}
+
+/* A random matrix whose values fall by half each. */
+static void falling(double *a)
+{
+    uint32_t seed = 9;
+
+    memset(a, 0, TALL * WIDE * sizeof *a);
+    for (int j = 0; j < WIDE; j++) {
+        double left[TALL], right[WIDE];
+
+        for (int i = 0; i < TALL; i++)
+            left[i] = rng_unit(&seed) - 0.5;
+        for (int i = 0; i < WIDE; i++)
+            right[i] = rng_unit(&seed) - 0.5;
+        for (int i = 0; i < TALL * WIDE; i++)
+            a[i] += ldexp(left[i / WIDE] * right[i % WIDE], -j);
+    }
+}
+
+typedef int dgesdd_fn(int layout, char job, int m, int n, double *a, int lda,
+                      double *s, double *u, int ldu, double *vt, int ldvt);
+
+/* Values and vectors of LAPACK's dgesdd, to 1e-10. */
+static void test_terms_lapacke(void **state)
+{
+    double a[TALL * WIDE], copy[TALL * WIDE], s[WIDE], u[TALL * WIDE],
+        vt[WIDE * WIDE];
+    const struct glint_tall m = {TALL, WIDE, fetch, a};
+    void *library = dlopen("liblapacke.so.3", RTLD_NOW);
+    struct glint_terms terms;
+    dgesdd_fn *dgesdd;
+
+    (void)state;
+    if (!library) {
+        fprintf(stderr, "test_terms_lapacke is skipped: no liblapacke\n");
+        skip();
+    }
+    *(void **)&dgesdd = dlsym(library, "LAPACKE_dgesdd");
+    assert_non_null(dgesdd);
+    falling(a);
+    memcpy(copy, a, sizeof a);
+    assert_int_equal(
+        dgesdd(101, 'S', TALL, WIDE, copy, WIDE, s, u, WIDE, vt, WIDE), 0);
+    assert_true(glint_terms_of(&m, TERMS, &terms));
+    for (int j = 0; j < TERMS; j++) {
+        const double sign =
+            u[j] * terms.left[j * TALL] < 0 ? -1 : 1; /* one or the other */
+
+        assert_near(terms.value[j], s[j], 1e-10 * s[0]);
+        for (int i = 0; i < TALL; i++)
+            assert_near(sign * terms.left[j * TALL + i], u[i * WIDE + j],
+                        1e-10 * s[0] / s[j]);
+        for (int i = 0; i < WIDE; i++)
+            assert_near(sign * terms.right[j * WIDE + i], vt[j * WIDE + i],
+                        1e-10 * s[0] / s[j]);
+    }
+    glint_terms_close(&terms);
+    dlclose(library);
+}
+
+/* Vectors are at right angles and what is left is as small as can be: the
+ * squares of the values that are left out. Equal and missing values, too. */
+static void test_terms(void **state)
+{
+    double a[TALL * WIDE] = {0};
+    const struct glint_tall m = {TALL, WIDE, fetch, a};
+    struct glint_terms terms;
+
+    (void)state;
+    a[0] = a[WIDE + 1] = a[2 * WIDE + 2] = 3;
+    a[3 * WIDE + 3] = -0.5;
+    assert_true(glint_terms_of(&m, 6, &terms));
+    for (int j = 0; j < 6; j++)
+        assert_near(terms.value[j], j < 3 ? 3 : j == 3 ? 0.5 : 0, 1e-12);
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < 4; j++) {
+            double left = 0, right = 0;
+
+            for (int x = 0; x < TALL; x++)
+                left += terms.left[i * TALL + x] * terms.left[j * TALL + x];
+            for (int x = 0; x < WIDE; x++)
+                right += terms.right[i * WIDE + x] * terms.right[j * WIDE + x];
+            assert_near(left, i == j, 1e-10);
+            assert_near(right, i == j, 1e-10);
+        }
+    glint_terms_close(&terms);
+}
+
+/* A system, and one that leaves a direction open. */
+static void test_solve(void **state)
+{
+    double a[9] = {4, 2, 1, 2, 5, 3, 1, 3, 6}, b[3] = {7, 10, 10};
+    double open[4] = {1, 1, 1, 1}, c[2] = {2, 2};
+
+    (void)state;
+    glint_solve(a, 3, b);
+    for (int i = 0; i < 3; i++)
+        assert_near(b[i], 1, 1e-14);
+    glint_solve(open, 2, c);
+    assert_near(c[0] + c[1], 2, 1e-14);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_models_found),  cmocka_unit_test(test_light),
+        cmocka_unit_test(test_near),          cmocka_unit_test(test_extremes),
+        cmocka_unit_test(test_refused),       cmocka_unit_test(test_terms),
+        cmocka_unit_test(test_terms_lapacke), cmocka_unit_test(test_solve),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

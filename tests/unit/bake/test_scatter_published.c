@@ -1,0 +1,424 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Published models of scattering, on small stones: C1 and C3 to C13 of what the
+ * scene half has to show (src/README.md has the sources).
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "bake/published/scatter/rebuild.h"
+#include "bake/translucent/linear.h"
+#include "support/lens_check.h"
+#include "support/rng.h"
+
+enum { SIDE = 24, KERNEL = 11, K2 = KERNEL * KERNEL, TEXELS = SIDE * SIDE };
+
+/* Stones that all tests read. */
+static struct glint_scatter_rows stone[2]; /* chess, veins */
+
+static int open_stones(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        struct glint_stone s;
+        struct glint_error error;
+
+        glint_stone_defaults(&s);
+        s.side = SIDE;
+        s.kernel = KERNEL;
+        s.fields = 2;
+        s.pattern = i ? GLINT_STONE_VEINS : GLINT_STONE_CHESS;
+        if (glint_scatter_compute(&s, NULL, &stone[i], &error) != GLINT_OK)
+            return -1;
+    }
+    return 0;
+}
+
+static int close_stones(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++)
+        glint_scatter_close(&stone[i]);
+    return 0;
+}
+
+static struct glint_scatter_candidate
+candidate_of(enum glint_scatter_candidate_kind kind, int terms)
+{
+    struct glint_scatter_candidate o;
+
+    glint_scatter_candidate_defaults(&o, kind);
+    if (terms > 0)
+        o.terms = terms;
+    return o;
+}
+
+/* What JUDGEMENT has to say of ROWS but for its maps. */
+static struct glint_scatter_judgement
+judged(struct glint_scatter_rows *rows, const struct glint_scatter_candidate *o)
+{
+    struct glint_scatter_judgement j, kept;
+
+    assert_int_equal(glint_scatter_judge(rows, o, NULL, &j), GLINT_OK);
+    kept = j;
+    glint_scatter_judgement_close(&j);
+    return kept;
+}
+
+static double rmse_of(struct glint_scatter_rows *rows,
+                      enum glint_scatter_candidate_kind kind, int terms)
+{
+    const struct glint_scatter_candidate o = candidate_of(kind, terms);
+
+    return judged(rows, &o).rmse;
+}
+
+/* C1: what models break. Those that cannot be below 0 are not; profiles alone
+ * go both ways alike; none makes light of its own. */
+static void test_c1_physics(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++)
+        for (int kind = 0; kind < GLINT_CANDIDATES; kind++) {
+            const struct glint_scatter_candidate o =
+                candidate_of((enum glint_scatter_candidate_kind)kind, 0);
+            const struct glint_scatter_judgement j = judged(&stone[i], &o);
+
+            assert_true(j.rmse < 0.05 && j.energy > 0.2 && j.energy < 1);
+            if (kind == GLINT_CANDIDATE_ALS || kind == GLINT_CANDIDATE_PEERS ||
+                kind == GLINT_CANDIDATE_SUBEDIT ||
+                kind == GLINT_CANDIDATE_CLUSTERED ||
+                kind == GLINT_CANDIDATE_ALBEDO)
+                assert_true(j.negative == 0);
+            if (kind == GLINT_CANDIDATE_SUBEDIT)
+                assert_true(j.one_way < 1e-6);
+            else
+                assert_true(j.one_way > 1e-5);
+        }
+}
+
+/* C3: rows of which 30 % are off by a texel are another kind of rows to one
+ * term, unless they are turned to begin with their maximum. On clean rows that
+ * changes little. A second term mends it by itself. */
+static void test_c3_turned(void **state)
+{
+    struct glint_scatter_rows off;
+    struct glint_scatter_candidate o = candidate_of(GLINT_CANDIDATE_TUCKER, 1);
+    double plain, turned;
+    uint32_t seed = 3;
+
+    (void)state;
+    plain = judged(&stone[0], &o).rmse;
+    o.turned = true;
+    turned = judged(&stone[0], &o).rmse;
+    assert_true(turned < 1.05 * plain);
+
+    assert_true(glint_scatter_open(&off, SIDE, KERNEL, false));
+    for (int x = 0; x < TEXELS; x++) {
+        const bool is_off = rng_unit(&seed) < 0.3;
+
+        for (int c = 0; c < 3; c++)
+            for (int d = 0; d < K2; d++) {
+                const int from = is_off && d > 0 ? d - 1 : d;
+
+                if (glint_scatter_target(SIDE, KERNEL, x, d) >= 0)
+                    glint_scatter_row(&off, x, c)[d] =
+                        glint_scatter_row(&stone[0], x, c)[from];
+            }
+    }
+    o.turned = false;
+    plain = judged(&off, &o).rmse;
+    o.turned = true;
+    turned = judged(&off, &o).rmse;
+    assert_true(turned < 0.4 * plain);
+    glint_scatter_close(&off);
+}
+
+struct greens {
+    const struct glint_scatter_rows *rows;
+};
+
+static void green_row(const void *ctx, int i, double *to)
+{
+    const struct greens *g = ctx;
+
+    for (int d = 0; d < K2; d++)
+        to[d] = (double)glint_scatter_row(g->rows, i, 1)[d];
+}
+
+/* C4: rank-1 fits of the running error are the truncated decomposition, to five
+ * digits. */
+static void test_c4_tucker(void **state)
+{
+    const struct greens g = {&stone[1]};
+    const struct glint_tall m = {TEXELS, K2, green_row, &g};
+    float *left = malloc(TEXELS * K2 * sizeof *left);
+    double f[TEXELS], h[K2];
+    struct glint_terms terms;
+
+    (void)state;
+    assert_non_null(left);
+    assert_true(glint_terms_of(&m, 5, &terms));
+    for (int x = 0; x < TEXELS; x++)
+        memcpy(left + x * K2, glint_scatter_row(&stone[1], x, 1),
+               K2 * sizeof *left);
+    for (int t = 0; t < 5; t++)
+        assert_near(sqrt(glint_tucker_term(left, TEXELS, K2, f, h)),
+                    terms.value[t], 1e-5 * terms.value[0]);
+    free(left);
+    glint_terms_close(&terms);
+}
+
+/* C5: higher degrees are nearer, and many terms than one; the size is T and 3
+ * (P + 1) numbers a texel, and T rows. */
+static void test_c5_polynomials(void **state)
+{
+    double by_degree[5];
+
+    (void)state;
+    for (int degree = 1; degree <= 5; degree++) {
+        struct glint_scatter_candidate o =
+            candidate_of(GLINT_CANDIDATE_TUCKER, 8);
+
+        o.degree = degree;
+        by_degree[degree - 1] = judged(&stone[0], &o).rmse;
+        assert_near(glint_scatter_candidate_bytes(&o, TEXELS, K2),
+                    8 * ((8 + 3 * (degree + 1)) * TEXELS + 8 * K2), 0);
+        if (degree > 1)
+            assert_true(by_degree[degree - 1] <= by_degree[degree - 2]);
+    }
+    assert_true(by_degree[3] < 0.7 * by_degree[0]);
+    assert_true(rmse_of(&stone[0], GLINT_CANDIDATE_TUCKER, 16) <
+                0.6 * rmse_of(&stone[0], GLINT_CANDIDATE_TUCKER, 1));
+}
+
+/* C6: with a large, the logarithm is a line and the fit the linear one, which
+ * is the optimum; with a small and b = 1 entries below 0 come back: "never
+ * negative" does not hold. The search does not do worse than either. */
+static void test_c6_logarithms(void **state)
+{
+    const double linear = rmse_of(&stone[0], GLINT_CANDIDATE_SVD, 3);
+    struct glint_scatter_candidate o = candidate_of(GLINT_CANDIDATE_LOG_SVD, 3);
+    struct glint_scatter_judgement found, j;
+
+    (void)state;
+    found = judged(&stone[0], &o);
+    assert_true(found.candidate.a > 0);
+    o.a = 1000;
+    assert_near(judged(&stone[0], &o).rmse, linear, 1e-3 * linear);
+    o.a = 0.01;
+    j = judged(&stone[0], &o);
+    assert_true(j.rmse > linear);
+    assert_true(j.negative > 0);
+    assert_true(found.rmse < 1.05 * linear && found.rmse < j.rmse);
+}
+
+/* C7: what is held above 0 or fitted by logarithms is further off, or as far:
+ * the decomposition spends a little on entries outside of the square. */
+static void test_c7_held(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++)
+        for (int terms = 2; terms <= 8; terms *= 2) {
+            const double linear =
+                rmse_of(&stone[i], GLINT_CANDIDATE_SVD, terms);
+            struct glint_scatter_candidate o =
+                candidate_of(GLINT_CANDIDATE_LOG_SVD, terms);
+
+            o.a = 0.1;
+            assert_true(rmse_of(&stone[i], GLINT_CANDIDATE_ALS, terms) >
+                        0.98 * linear);
+            assert_true(judged(&stone[i], &o).rmse > linear);
+        }
+}
+
+/* C8: sizes that the source prints in MiB, where one square of texels fits two
+ * of its laws; 3.60 takes 39 numbers a texel. */
+static void test_c8_sizes(void **state)
+{
+    static const struct {
+        int side, kernel, terms; /* terms 0: profiles */
+        const char *printed;
+    } size[] = {
+        {110, 29, 5, "1.48"},  {143, 35, 5, "2.48"}, {260, 35, 5, "7.88"},
+        {110, 39, 5, "1.56"},  {277, 39, 5, "8.96"}, {128, 39, 5, "2.05"},
+        {260, 35, 0, "18.57"},
+    };
+    char text[16];
+
+    (void)state;
+    for (size_t i = 0; i < sizeof size / sizeof *size; i++) {
+        const struct glint_scatter_candidate o =
+            size[i].terms ? candidate_of(GLINT_CANDIDATE_SVD, size[i].terms)
+                          : candidate_of(GLINT_CANDIDATE_SUBEDIT, 0);
+        const double bytes = glint_scatter_candidate_bytes(
+            &o, size[i].side * size[i].side, size[i].kernel * size[i].kernel);
+
+        snprintf(text, sizeof text, "%.2f", bytes / 1048576);
+        assert_string_equal(text, size[i].printed);
+    }
+    snprintf(text, sizeof text, "%.2f", 8.0 * 39 * 110 * 110 / 1048576);
+    assert_string_equal(text, "3.60");
+}
+
+/* C9: with ten terms the decomposition is nearer than profiles, by less memory.
+ */
+static void test_c9_profiles(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++)
+        assert_true(rmse_of(&stone[i], GLINT_CANDIDATE_SVD, 10) <
+                    rmse_of(&stone[i], GLINT_CANDIDATE_SUBEDIT, 0));
+}
+
+/* C10: at equal size, ten terms and more are nearer than clusters with as many
+ * non-negative ones. */
+static void test_c10_clusters(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        struct glint_scatter_candidate peers =
+            candidate_of(GLINT_CANDIDATE_PEERS, 10);
+        struct glint_scatter_candidate svd =
+            candidate_of(GLINT_CANDIDATE_SVD, 11);
+
+        peers.clusters = 5;
+        assert_near(glint_scatter_candidate_bytes(&peers, TEXELS, K2) /
+                        glint_scatter_candidate_bytes(&svd, TEXELS, K2),
+                    1, 0.05);
+        assert_true(judged(&stone[i], &svd).rmse <
+                    judged(&stone[i], &peers).rmse);
+    }
+}
+
+/* C11: sums of rows by kept sums of h are those of all entries, in 800 times
+ * less multiplications. */
+static void test_c11_albedo(void **state)
+{
+    const struct glint_scatter_candidate o =
+        candidate_of(GLINT_CANDIDATE_SVD, 5);
+    const struct greens g = {&stone[0]};
+    const struct glint_tall m = {TEXELS, K2, green_row, &g};
+    struct glint_terms terms;
+
+    (void)state;
+    assert_near(glint_scatter_candidate_sums(&o, 16384, 841, false) /
+                    glint_scatter_candidate_sums(&o, 16384, 841, true),
+                800, 1);
+    assert_true(glint_terms_of(&m, K2, &terms));
+    for (int x = 0; x < TEXELS; x += 7) {
+        double kept = 0, all = 0;
+
+        for (int d = 0; d < K2; d++)
+            all += (double)glint_scatter_row(&stone[0], x, 1)[d];
+        for (int j = 0; j < terms.n; j++) {
+            double sum = 0;
+
+            for (int d = 0; d < K2; d++)
+                sum += terms.right[j * K2 + d];
+            kept += terms.value[j] * terms.left[j * TEXELS + x] * sum;
+        }
+        assert_near(kept, all, 1e-9);
+    }
+    glint_terms_close(&terms);
+}
+
+/* C13: the map of errors adds up to the whole, and percentiles are its own. */
+static void test_c13_spread(void **state)
+{
+    struct glint_scatter_candidate o = candidate_of(GLINT_CANDIDATE_SVD, 3);
+    struct glint_scatter_judgement j;
+    double square = 0, largest = 0;
+    int below = 0;
+
+    (void)state;
+    assert_int_equal(glint_scatter_judge(&stone[1], &o, NULL, &j), GLINT_OK);
+    for (int x = 0; x < TEXELS; x++) {
+        square += j.error[x] * j.error[x] / TEXELS;
+        largest = fmax(largest, j.error[x]);
+        below += j.error[x] <= j.p95;
+    }
+    assert_near(sqrt(square), j.rmse, 1e-12);
+    assert_near(largest, j.largest, 0);
+    assert_true(j.p50 < j.p95 && j.p95 < j.largest);
+    assert_near(below, 0.95 * TEXELS, 2);
+    glint_scatter_judgement_close(&j);
+}
+
+/* A black stone, one of one texel: all models, finite. What is out of range is
+ * refused. */
+static void test_extremes(void **state)
+{
+    struct glint_scatter_rows black, one;
+    struct glint_scatter_candidate bad = candidate_of(GLINT_CANDIDATE_SVD, 21);
+    struct glint_scatter_judgement j;
+
+    (void)state;
+    assert_true(glint_scatter_open(&black, 4, 9, false));
+    assert_true(glint_scatter_open(&one, 1, 3, false));
+    one.r[4] = one.r[13] = one.r[22] = 0.25f;
+    for (int kind = 0; kind < GLINT_CANDIDATES; kind++) {
+        const struct glint_scatter_candidate o =
+            candidate_of((enum glint_scatter_candidate_kind)kind, 0);
+
+        assert_true(judged(&black, &o).rmse < 1e-9);
+        assert_true(judged(&one, &o).rmse < 1e-3);
+    }
+    assert_int_equal(glint_scatter_judge(&one, &bad, NULL, &j),
+                     GLINT_E_ARGUMENT);
+    assert_null(j.error);
+    bad = candidate_of(GLINT_CANDIDATES, 1);
+    assert_int_equal(glint_scatter_judge(&one, &bad, NULL, &j),
+                     GLINT_E_ARGUMENT);
+    glint_scatter_close(&black);
+    glint_scatter_close(&one);
+}
+
+static bool at_once(void *ctx)
+{
+    return ++*(int *)ctx > 1;
+}
+
+static void test_ended(void **state)
+{
+    (void)state;
+    for (int kind = GLINT_CANDIDATE_SVD; kind < GLINT_CANDIDATES; kind++) {
+        const struct glint_scatter_candidate o =
+            candidate_of((enum glint_scatter_candidate_kind)kind, 0);
+        int asked = 0;
+        const struct glint_watch watch = {NULL, at_once, &asked};
+        struct glint_scatter_judgement j;
+
+        assert_int_equal(glint_scatter_judge(&stone[0], &o, &watch, &j),
+                         GLINT_E_CLOSED);
+        assert_null(j.error);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_c1_physics),
+        cmocka_unit_test(test_c3_turned),
+        cmocka_unit_test(test_c4_tucker),
+        cmocka_unit_test(test_c5_polynomials),
+        cmocka_unit_test(test_c6_logarithms),
+        cmocka_unit_test(test_c7_held),
+        cmocka_unit_test(test_c8_sizes),
+        cmocka_unit_test(test_c9_profiles),
+        cmocka_unit_test(test_c10_clusters),
+        cmocka_unit_test(test_c11_albedo),
+        cmocka_unit_test(test_c13_spread),
+        cmocka_unit_test(test_extremes),
+        cmocka_unit_test(test_ended),
+    };
+
+    return cmocka_run_group_tests(tests, open_stones, close_stones);
+}
