@@ -27,6 +27,10 @@ STATIC_ASSERT((-3 >> 1) == -2);
 #define PREFETCH(p) ((void)(p))
 #endif
 
+/* Keeps a function that is seldom called, and its arrays, out of its callers.
+ */
+#define OUT_OF_LINE __attribute__((noinline))
+
 /* Aligns a variable or member to a multiple of BYTES bytes. */
 #define ALIGNED(bytes) __attribute__((aligned(bytes)))
 

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * scene_cost BAKED [FRAMES [EDGE_SAMPLES [SHADOW_POINTS [HALF]]]] - draws a
- * baked scene onto a grey picture of 640x360, YUYV, by one thread, for
- * tools/report/scene-cost-table, which counts instructions. Each frame is
- * prepared anew. Prints how many pixels are covered, in thousandths of the
- * picture, what the scene's memory takes, and a hash of the last picture.
+ * scene_cost BAKED [FRAMES [EDGE_SAMPLES [SHADOW_POINTS [HALF [WARD_SAMPLES
+ * [NEAREST]]]]]] - draws a baked scene onto a grey picture of 640x360, YUYV, by
+ * one thread, for tools/report/scene-cost-table, which counts instructions.
+ * Each frame is prepared anew. Prints how many pixels are covered, in
+ * thousandths of the picture, what the scene's memory takes, and a hash of the
+ * last picture.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -72,6 +73,10 @@ static int draw(const struct glint_scene_model *model, int argc, char **argv)
         cfg.shadow_points = atoi(argv[4]);
     if (argc > 5)
         cfg.half_shading = atoi(argv[5]);
+    if (argc > 6)
+        cfg.ward_samples = atoi(argv[6]);
+    if (argc > 7)
+        cfg.ward_nearest = atoi(argv[7]);
     bytes = glint_scene_bytes(&cfg, model);
     px = malloc(glint_image_bytes(image.format, WIDTH, HEIGHT));
     if (!px || posix_memalign(&mem, 64, bytes) != 0 ||

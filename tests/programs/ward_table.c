@@ -82,7 +82,7 @@ static double best(const struct glint_environment *e,
                    const struct glint_ward_material *material,
                    ward_picture want, ward_picture got)
 {
-    struct glint_ward_options o = {8, GLINT_WARD_PUBLISHED, 0, 0};
+    struct glint_ward_options o = {8, GLINT_WARD_PUBLISHED, 0, 0, 0};
     double most = 0;
 
     for (o.bias_q8 = -512; o.bias_q8 <= 256; o.bias_q8 += 128) {
@@ -96,7 +96,7 @@ static void measure(struct map *m, int a, double db[COLUMNS])
 {
     static const int samples[5] = {1, 4, 8, 16, 32};
     static ward_picture want, got;
-    struct glint_ward_options o = {8, GLINT_WARD_PUBLISHED, 0, 0};
+    struct glint_ward_options o = {8, GLINT_WARD_PUBLISHED, 0, 0, 0};
     struct glint_ward_material material = {{32768, 32768, 32768}, {0, 0}, 0};
 
     for (int k = 0; k < 2; k++)

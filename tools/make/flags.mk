@@ -48,7 +48,7 @@ of = $(eval $(patsubst %,$(OUT)/%.o,$(1)): CFLAGS += $(2))
 $(call of,$(addprefix src/base/,status arena workers blob) src/image/image,-Os)
 $(call of,$(addprefix src/lens/,model model_system),-Os)
 $(call of,$(addprefix src/scene/,scene model model_mesh lights account/account frame/begin frame/looks frame/shadow_box ward/environment ward/ward_lobe),-Os)
-$(call of,$(addprefix src/scene/,phong ray shadow surface vector visible mesh mesh_ray frame/quick frame/quick_mesh frame/mesh_small frame/scene_pass) src/image/cover,-O3)# loops of three
+$(call of,$(addprefix src/scene/,ward/scene_ward ward/ward phong ray shadow surface vector visible mesh mesh_ray frame/quick frame/quick_mesh frame/mesh_small frame/scene_pass) src/image/cover,-O3)# loops of three
 $(call of,$(addprefix src/lamps/,lamp_finder lamp_list),-Os)
 $(call of,$(addprefix src/follow/,match follow record lamp_tracker),-Os)
 $(call of,$(addprefix src/flare/,aim by_edges capacities colours lights plan plan_cells probe window wave_sets flare draw_over account),-Os)
@@ -60,6 +60,7 @@ $(call of,src/bake/translucent/% src/bake/published/scatter/%,-O3)
 
 # Hot loops are unrolled.
 $(call of,src/kernels/%,-O3)
+$(call of,src/kernels/ward/sum_avx2,-Wframe-larger-than=2048)# 16 vectors of texels
 $(call of,$(addprefix src/lamps/,bright_mark bright_scan row_light),-O3)
 $(call of,$(addprefix src/flare/edges/,ghost_edges ghost_rows),-O3)
 $(call of,$(addprefix src/flare/edges/,edge edge_add),-O3 -fno-tree-vectorize)# their loops are short
@@ -94,7 +95,7 @@ SANITIZE := -fsanitize=thread
 else ifeq ($(CONFIG),fuzz) # what make fuzz builds; clang only
 SANITIZE := -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
 # What rays compare is no word of a file, and takes half of the time to follow.
-$(filter-out %/model.o %/model_mesh.o,$(call objects,src,base kernels/rays scene)): CFLAGS += -fno-sanitize-coverage=trace-cmp
+$(filter-out %/model.o %/model_mesh.o,$(call objects,src,base kernels/rays kernels/ward scene)): CFLAGS += -fno-sanitize-coverage=trace-cmp
 else ifeq ($(CONFIG),analyze) # what make analyze builds; gcc only
 # as it is written: -O0 keeps functions and their messages apart
 ANALYZER := -O0 -fanalyzer -Wno-frame-larger-than

@@ -93,6 +93,7 @@ static void look_level(const struct glint_environment *e, int level,
     }
 }
 
+/* Levels are blended to the variance between theirs, which are 1 to 4. */
 static void look(const struct glint_environment *e, const double toward[3],
                  double level, double rgb[3])
 {
@@ -106,7 +107,7 @@ static void look(const struct glint_environment *e, const double toward[3],
         return;
     look_level(e, k + 1, toward, next);
     for (int c = 0; c < 3; c++)
-        rgb[c] += (held - k) * (next[c] - rgb[c]);
+        rgb[c] += (pow(4, held - k) - 1) / 3 * (next[c] - rgb[c]);
 }
 
 /* Sets TO, which may be V, to direction V of the text in the axes of the
@@ -234,20 +235,24 @@ double twin_shine(const struct twin *twin, const struct twin_hit *hit,
            (area * vec_dot(h, o) * hn * hn * hn);
 }
 
-/* Slopes of alpha 1 with constant footprints, as scene/ward/ward_lobe.c says;
- * returns the share of the variance that levels have. */
-static double draw(int n, double slope[GLINT_WARD_SAMPLES][2])
+/* Returns f of N samples, as scene/ward/ward_lobe.c says. */
+static double footprint(int n)
 {
     static const int at[5] = {1, 4, 8, 16, 32};
     static const double kappa[5] = {1, 1.4, 2, 2, 3};
-    double f;
     int i = 0;
 
     while (i < 3 && n > at[i + 1])
         i++;
-    f = (kappa[i] +
-         (kappa[i + 1] - kappa[i]) * (n - at[i]) / (at[i + 1] - at[i])) /
-        n;
+    return (kappa[i] +
+            (kappa[i + 1] - kappa[i]) * (n - at[i]) / (at[i + 1] - at[i])) /
+           n;
+}
+
+/* Slopes of alpha 1 whose squares have the means SPREAD / 2. */
+static void draw(int n, const double spread[2],
+                 double slope[GLINT_WARD_SAMPLES][2])
+{
     for (int k = 0; k < n; k++) {
         double v = 0;
 
@@ -267,9 +272,8 @@ static double draw(int n, double slope[GLINT_WARD_SAMPLES][2])
         }
         for (int k = 0; k < n; k++)
             slope[k][axis] *=
-                square > 1. / 256 ? sqrt((1 - f) / 2 / square) : 0;
+                square > 1. / 256 ? sqrt(spread[axis] / 2 / square) : 0;
     }
-    return f;
 }
 
 /* Adds what SLOPE of N reads, at level LEVEL but for the angle to the eye. */
@@ -306,11 +310,15 @@ static void add_metal(const struct twin *twin, const struct twin_hit *hit,
     double slope[GLINT_WARD_SAMPLES][2], level;
     double frame[3][3] = {{0}}, out[3] = {0};
     double sum[3] = {0, 0, 0};
-    const double f = draw(n, slope);
+    const double f = footprint(n);
+    const double blur = fmin(f * a * b, .75 * fmin(a * a, b * b));
+    const double spread[2] = {(1 - f + fmax(1 - blur / (a * a), 0)) / 2,
+                              (1 - f + fmax(1 - blur / (b * b), 0)) / 2};
     const double back[3] = {-toward[0], -toward[1], -hand * toward[2]};
 
-    level = log2(2 * sqrt(2 * fmin(f * a * b, .75 * fmin(a * a, b * b))) /
-                 sqrt(4 * GLINT_PI) * (1 << twin->around.header->side_log2));
+    draw(n, spread, slope);
+    level = log2(2 * sqrt(2 * blur) / sqrt(4 * GLINT_PI) *
+                 (1 << twin->around.header->side_log2));
     twin_lie(twin, hit, frame);
     for (int k = 0; k < 3; k++) {
         out[k] = vec_dot(frame[k], back);

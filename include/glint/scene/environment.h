@@ -28,6 +28,7 @@
 #include <stdint.h>
 
 #include "glint/real.h"
+#include "glint/scene/lobe.h"
 #include "glint/status.h"
 
 #ifdef __cplusplus
@@ -101,6 +102,7 @@ struct glint_environment {
     const struct glint_environment_header *header;
     const struct glint_environment_level *level;
     const void *texel[GLINT_ENVIRONMENT_MAX_LEVELS];
+    struct glint_texels texels; /* the same, as lookups take them */
     const uint32_t *irradiance;
     const struct glint_environment_light *light;
 };

@@ -16,20 +16,15 @@
 #include <stdint.h>
 
 #include "glint/scene/environment.h"
+#include "glint/scene/lobe.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 enum {
-    GLINT_WARD_SAMPLES = 32,
     GLINT_WARD_RATIO = 10,               /* of alphas, at most */
     GLINT_WARD_LEAST_ALPHA_Q24 = 1 << 14 /* .001 */
-};
-
-enum glint_ward_norm {
-    GLINT_WARD_BOUNDED, /* reflects no more than it receives [Geisler10] */
-    GLINT_WARD_1992     /* as published [Ward92] */
 };
 
 enum glint_ward_rule {
@@ -51,21 +46,7 @@ struct glint_ward_options {
     enum glint_ward_rule rule;
     int32_t bias_q8; /* levels; added to that of the rule, -2^12 .. 2^12 */
     int nearest;     /* 1: one level each, not two blended */
-};
-
-struct glint_ward_sample {
-    int32_t half_q14[3]; /* along tangent, bitangent, normal */
-    int32_t level_q8;    /* level, but for the angle to the view */
-    int32_t factor_q14;  /* cosine from the normal; 1992: its third power */
-};
-
-struct glint_ward_lobe {
-    int n, nearest;
-    enum glint_ward_norm norm;
-    int32_t share_q16; /* 1 / n */
-    int unit_log2;     /* of the light of its environment */
-    int32_t specular_q15[3];
-    struct glint_ward_sample sample[GLINT_WARD_SAMPLES];
+    unsigned sets;   /* of kernels, GLINT_SET_ bits (glint/kernels.h) */
 };
 
 /* Sets OPTIONS to 8 samples with constant footprints. */

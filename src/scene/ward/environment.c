@@ -12,6 +12,7 @@ STATIC_ASSERT(sizeof(struct glint_environment_level) == 16);
 STATIC_ASSERT(sizeof(struct glint_environment_light) == 40);
 STATIC_ASSERT(sizeof(struct glint_environment_header) == 124);
 STATIC_ASSERT(sizeof(struct glint_real) == 8);
+STATIC_ASSERT((int)GLINT_TEXELS_LEVELS == (int)GLINT_ENVIRONMENT_MAX_LEVELS);
 
 /* The header begins as that of every baked file does. */
 #define SAME_PLACE(field)                                             \
@@ -89,6 +90,21 @@ static const char *check_level(struct glint_environment *e,
     return e->texel[k] ? NULL : outside;
 }
 
+/* Tells lookups where level K lies. */
+static void place_level(struct glint_environment *e, uint32_t k)
+{
+    const struct glint_environment_level *l = &e->level[k];
+    const int bits = bit_length((uint32_t)l->scale);
+
+    e->texels.level[k] = (struct glint_texels_level){
+        (int32_t)l->side_log2, l->texel_at / (e->texels.is_9e5 ? 4 : 2)};
+    e->texels.scale[k] = (struct glint_texels_scale){
+        bits > 15 ? l->scale >> (bits - 15) : l->scale,
+        bits > 15 ? bits - 15 : 0};
+    e->texels.level[k + 1] = e->texels.level[k];
+    e->texels.scale[k + 1] = e->texels.scale[k];
+}
+
 static const char *check_light(const struct glint_environment_light *light)
 {
     if (!glint_scene_is_unit(light->toward_q30, 3))
@@ -120,8 +136,15 @@ static const char *check_contents(struct glint_environment *e,
         glint_blob_section(blob, h->light_at, h->n_lights, sizeof *e->light);
     if (!e->level || !e->irradiance || !e->light)
         return outside;
-    for (uint32_t k = 0; !wrong && k < h->n_levels; k++)
+    e->texels =
+        (struct glint_texels){.code = h,
+                              .is_9e5 = h->code == GLINT_ENVIRONMENT_9E5,
+                              .last = (int32_t)h->n_levels - 1};
+    for (uint32_t k = 0; !wrong && k < h->n_levels; k++) {
         wrong = check_level(e, blob, k);
+        if (!wrong)
+            place_level(e, k);
+    }
     for (uint32_t k = 0; !wrong && k < h->n_lights; k++)
         wrong = check_light(&e->light[k]);
     return wrong;

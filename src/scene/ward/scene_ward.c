@@ -6,6 +6,7 @@
 
 #include "base/real.h"
 #include "scene/mesh.h"
+#include "scene/ward/send.h"
 
 enum { ONE_Q30 = 1 << 30, LEAST_COSINE_Q30 = 1 << 26 };
 
@@ -46,6 +47,7 @@ static void set_lobe(const struct glint_scene *s, uint32_t i)
     glint_ward_defaults(&options);
     options.samples = s->cfg.ward_samples;
     options.nearest = s->cfg.ward_nearest;
+    options.sets = s->cfg.sets;
     glint_ward_prepare(lobe, &w->environment, m, &options);
     for (int k = 0; k < 3; k++)
         lobe->specular_q15[k] = (int32_t)q_shift(
@@ -255,6 +257,24 @@ static void turn_q14(const struct glint_ward_state *w, const int32_t v_q30[3],
         to_q14[k] = (int32_t)q_shift(to_q30[k], 16);
 }
 
+/* Adds what the irradiance map shows of diffuse colour. */
+static void add_diffuse(const struct glint_ward_state *w,
+                        const struct glint_met_surface *surface,
+                        const int32_t colour_q15[3], int32_t weight_q15,
+                        int32_t rgb_q15[3])
+{
+    const int32_t diffuse_q15 = surface->material->diffuse_q15;
+    int32_t normal_q14[3], light[3];
+
+    turn_q14(w, surface->normal_q30, normal_q14);
+    glint_environment_irradiance(&w->environment, normal_q14, light);
+    for (int c = 0; c < 3; c++)
+        add(&rgb_q15[c],
+            real_integer(real_times(real_of(light[c], 0), w->unit), 15,
+                         GLINT_SCENE_MOST_LIGHT),
+            q_mul(q_mul(diffuse_q15, colour_q15[c], 15), weight_q15, 15));
+}
+
 static void reflect(const struct glint_scene *scene,
                     const struct glint_scene_ray *ray,
                     const struct glint_met_surface *surface,
@@ -264,29 +284,21 @@ static void reflect(const struct glint_scene *scene,
 {
     const struct glint_ward_state *w = scene->wards;
     const struct glint_scene_material *m = surface->material;
-    int32_t frame_q14[3][3], view_q14[3], light[3], back_q30[3];
+    struct glint_ward_place place;
+    int32_t light[3];
 
     if (!w->has_environment)
         return;
-    if (m->diffuse_q15) {
-        turn_q14(w, surface->normal_q30, view_q14);
-        glint_environment_irradiance(&w->environment, view_q14, light);
-        for (int c = 0; c < 3; c++)
-            add(&rgb_q15[c],
-                real_integer(real_times(real_of(light[c], 0), w->unit), 15,
-                             GLINT_SCENE_MOST_LIGHT),
-                q_mul(q_mul(m->diffuse_q15, colour_q15[c], 15), weight_q15,
-                      15));
-    }
+    if (m->diffuse_q15 && (colour_q15[0] | colour_q15[1] | colour_q15[2]))
+        add_diffuse(w, surface, colour_q15, weight_q15, rgb_q15);
     if (!brushed)
         return;
     for (int k = 0; k < 3; k++) {
-        turn_q14(w, brushed->frame_q30[k], frame_q14[k]);
-        back_q30[k] = -ray->toward_q30[k];
+        turn_q14(w, brushed->frame_q30[k], place.frame_q14[k]);
+        place.out_q14[k] = (int32_t)q_shift(
+            -v3_dot(brushed->frame_q30[k], ray->toward_q30), 46);
     }
-    turn_q14(w, back_q30, view_q14);
-    glint_ward_light(&w->lobe[m->ward], &w->environment,
-                     (const int32_t(*)[3])frame_q14, view_q14, light);
+    glint_ward_send(&w->lobe[m->ward], &w->environment, &place, light);
     for (int c = 0; c < 3; c++)
         add(&rgb_q15[c], light[c], weight_q15);
 }

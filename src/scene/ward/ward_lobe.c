@@ -4,15 +4,21 @@
  *
  * Sample k of n has u = (k + 1/2) / n and v the bits of k in reverse: slopes
  * sqrt(-ln u) (ax cos 2 pi v, ay sin 2 pi v) [Ward92]. With constant footprints
- * they lose their mean and have variance (1 - f) alpha^2 / 2 along each axis,
- * f = kappa / n; the level read has the other part, sigma^2 = 2 f ax ay (h.o),
- * of the reflected direction. As published a sample has the solid angle
- * 4 ax ay (h.o) (h.n)^3 pi / (n u). */
+ * the level read has a part of the lobe, sigma^2 = 2 b (h.o) of the reflected
+ * direction, b = f ax ay, f = kappa / n, and slopes lose their mean and have
+ * the rest. A level is round: with a variance of (alpha^2 - b) / 2 slopes would
+ * add up to the lobe along each axis, but lie along a line where one alpha is
+ * small; with (1 - f) alpha^2 / 2 they keep the lobe's shape, blurred. They
+ * have the mean of both, which is nearer than either where alphas differ. As
+ * published a sample has the solid angle 4 ax ay (h.o) (h.n)^3 pi / (n u). */
+#include "base/divide.h"
 #include "base/log2.h"
 #include "glint/scene/ward.h"
+#include "kernels/ward/texels.h"
+#include "kernels/ward/ward.h"
 #include "scene/vector.h"
 
-enum { ONE_Q16 = 1 << 16, LN2_Q16 = 45426, LOG2_PI_Q16 = 108232 };
+enum { ONE_Q16 = 1 << 16, LN2_Q16 = 45426, TWO_OVER_PI_Q16 = 41722 };
 
 /* sin 2 pi k / 32 */
 static const int32_t sine_q30[9] = {0,         209476638,  410903207,
@@ -87,30 +93,80 @@ static void settle(int n, int axis, uint32_t want_q32,
         slope_q16[k][axis] = q_mul(slope_q16[k][axis], (int32_t)by_q16, 16);
 }
 
-/* Returns log2 of the area of the blur of the constant footprint F_Q16, times 4
- * over that of a texel of side 1: of 4 sigma^2 / (4 pi), but for h.o. */
-static int32_t constant_q16(const int32_t alpha_q24[2], int32_t f_q16)
+/* Returns b of the constant footprint F_Q16, held to 3/4 of the square of the
+ * smaller alpha. */
+static uint64_t blur_q48(const int32_t alpha_q24[2], int32_t f_q16)
 {
-    const int64_t smaller = q_smaller(alpha_q24[0], alpha_q24[1]);
+    const uint64_t smaller = (uint64_t)q_smaller(alpha_q24[0], alpha_q24[1]);
+    const uint64_t most_q48 = smaller * smaller / 4 * 3;
     const uint64_t even_q48 = (uint64_t)alpha_q24[0] * (uint64_t)alpha_q24[1];
-    const uint64_t most_q48 = (uint64_t)(smaller * smaller) / 4 * 3;
-    const uint64_t area_q48 = (even_q48 >> 16) * (uint64_t)f_q16;
+    const uint64_t b_q48 = (even_q48 >> 16) * (uint64_t)f_q16;
 
-    /* 4 * 2 / (4 pi) = 2 / pi */
-    return q_log2_q16(area_q48 < most_q48 ? area_q48 : most_q48) - (48 << 16) +
-           ONE_Q16 - LOG2_PI_Q16;
+    return b_q48 < most_q48 ? b_q48 : most_q48;
 }
 
-static void set_half(const int32_t slope_q16[2], const int32_t alpha_q24[2],
-                     struct glint_ward_sample *s, int32_t half_q30[3])
+/* Returns twice the variance of slopes of alpha 1. */
+static int32_t spread_q16(int32_t alpha_q24, uint64_t b_q48, int32_t f_q16)
+{
+    const uint64_t square_q48 = (uint64_t)alpha_q24 * (uint64_t)alpha_q24;
+    const int32_t matched_q16 =
+        ONE_Q16 -
+        (b_q48 < square_q48 ? q_part_q30(b_q48, square_q48) >> 14 : ONE_Q16);
+
+    return (ONE_Q16 - f_q16 + matched_q16) / 2;
+}
+
+/* Sets the span of sample K to X 2^LOG2, X from 1 on, BIAS_Q8 levels wider. */
+static void set_span(struct glint_ward_lobe *lobe, int k, uint64_t x, int log2,
+                     int32_t bias_q8)
+{
+    const int32_t more_q16 = bias_q8 * 512;
+    const int cut = bit_length(x) - 31;
+    const uint64_t part_q30 = cut > 0 ? x >> cut : x << -cut;
+    const uint64_t span =
+        part_q30 * (uint64_t)q_exp2_q16(more_q16 & 0xffff) >> 16;
+    const int bits = bit_length(span | 1 << 15); /* 31 or 32 */
+
+    lobe->span_q14[k] = (int32_t)(span >> (bits - 15));
+    lobe->span_log2[k] = log2 + cut + bits - 1 + (more_q16 >> 16);
+}
+
+static void set_half(struct glint_ward_lobe *lobe, int k,
+                     const int32_t slope_q16[2], const int32_t alpha_q24[2])
 {
     const int64_t v[3] = {(int64_t)alpha_q24[0] * slope_q16[0],
                           (int64_t)alpha_q24[1] * slope_q16[1],
                           INT64_C(1) << 40};
+    int32_t half_q30[3];
 
     glint_unit(v, half_q30);
-    for (int k = 0; k < 3; k++)
-        s->half_q14[k] = (int32_t)q_shift(half_q30[k], 16);
+    for (int j = 0; j < 3; j++)
+        lobe->half_q14[j][k] = (int32_t)q_shift(half_q30[j], 16);
+    lobe->factor_q14[k] =
+        q_mul(q_mul(lobe->half_q14[2][k], lobe->half_q14[2][k], 14),
+              lobe->half_q14[2][k], 14);
+}
+
+/* A texel of level 0 has a solid angle of 4 pi / side^2, and the light of that
+ * level a variance of a quarter of that. */
+static void set_spans(struct glint_ward_lobe *lobe, int n,
+                      const int32_t alpha_q24[2], uint64_t b_q48,
+                      const struct glint_ward_options *options, int side_log2)
+{
+    const uint64_t even_q32 =
+        (uint64_t)alpha_q24[0] * (uint64_t)alpha_q24[1] >> 16;
+
+    for (int k = 0; k < n; k++) {
+        if (options->rule == GLINT_WARD_CONSTANT)
+            set_span(lobe, k, (b_q48 >> 8) * TWO_OVER_PI_Q16,
+                     2 * side_log2 - 56, options->bias_q8);
+        else
+            set_span(lobe, k,
+                     (uint64_t)q_divide((int64_t)(even_q32 << 8) *
+                                            lobe->factor_q14[k],
+                                        2 * k + 1),
+                     2 * side_log2 + 1 - 54, options->bias_q8);
+    }
 }
 
 void glint_ward_defaults(struct glint_ward_options *options)
@@ -138,44 +194,32 @@ int glint_ward_prepare(struct glint_ward_lobe *lobe,
                        const struct glint_ward_material *material,
                        const struct glint_ward_options *options)
 {
-    const int n = options->samples,
-              is_even = options->rule == GLINT_WARD_CONSTANT;
+    const struct glint_environment_header *h = environment->header;
+    const int n = options->samples;
+    const int32_t codes_q15 =
+        environment->texels.is_9e5 ? 1 << 15 : GLINT_ROOTS_Q15;
     const int32_t f_q16 = footprint_q16(n);
-    const int32_t side_q16 = (int32_t)(environment->header->side_log2 << 17);
     int32_t alpha_q24[2] = {material->alpha_q24[0], material->alpha_q24[1]};
     int32_t slope_q16[GLINT_WARD_SAMPLES][2];
     const int held = glint_ward_hold(alpha_q24);
+    const uint64_t b_q48 = blur_q48(alpha_q24, f_q16);
 
-    *lobe =
-        (struct glint_ward_lobe){.n = n,
-                                 .nearest = options->nearest,
-                                 .norm = material->norm,
-                                 .unit_log2 = environment->header->unit_log2,
-                                 .share_q16 = (ONE_Q16 + n / 2) / n};
+    *lobe = (struct glint_ward_lobe){.sum = glint_ward_sum_of(options->sets),
+                                     .n = n,
+                                     .nearest = options->nearest,
+                                     .norm = material->norm,
+                                     .unit_log2 = h->unit_log2,
+                                     .share_q16 = (2 * codes_q15 + n / 2) / n};
     draw(n, slope_q16);
-    for (int axis = 0; axis < 2 && is_even; axis++)
-        settle(n, axis, (uint32_t)(ONE_Q16 - f_q16) << 15, slope_q16);
+    for (int j = 0; j < 2 && options->rule == GLINT_WARD_CONSTANT; j++)
+        settle(n, j, (uint32_t)spread_q16(alpha_q24[j], b_q48, f_q16) << 15,
+               slope_q16);
     for (int k = 0; k < 3; k++)
         lobe->specular_q15[k] = material->specular_q15[k];
-    for (int k = 0; k < n; k++) {
-        struct glint_ward_sample *s = &lobe->sample[k];
-        int32_t half_q30[3], area_q16;
-
-        set_half(slope_q16[k], alpha_q24, s, half_q30);
-        s->factor_q14 = s->half_q14[2];
-        if (material->norm == GLINT_WARD_1992)
-            s->factor_q14 = q_mul(q_mul(s->factor_q14, s->factor_q14, 14),
-                                  s->half_q14[2], 14);
-        if (is_even)
-            area_q16 = constant_q16(alpha_q24, f_q16);
-        else
-            area_q16 =
-                q_log2_q16((uint64_t)alpha_q24[0] * (uint64_t)alpha_q24[1]) +
-                3 * q_log2_q16((uint64_t)half_q30[2]) -
-                q_log2_q16(2 * (uint64_t)k + 1) + (1 << 16) -
-                ((48 + 3 * 30) << 16);
-        s->level_q8 =
-            (int32_t)q_shift(area_q16 + side_q16, 9) + options->bias_q8;
-    }
+    for (int k = 0; k < n; k++)
+        set_half(lobe, k, slope_q16[k], alpha_q24);
+    for (int k = n; k < GLINT_WARD_SAMPLES; k++)
+        lobe->half_q14[2][k] = -(1 << 14);
+    set_spans(lobe, n, alpha_q24, b_q48, options, (int)h->side_log2);
     return held;
 }

@@ -67,7 +67,8 @@ static struct glint_ward_material material_of(double x, double y)
         GLINT_WARD_BOUNDED};
 }
 
-static const struct glint_ward_options eight = {8, GLINT_WARD_CONSTANT, 0, 0};
+static const struct glint_ward_options eight = {8, GLINT_WARD_CONSTANT, 0, 0,
+                                                0};
 
 /* ----------------------------------------------------------------- furnace */
 
@@ -97,7 +98,7 @@ static void test_furnace(void **state)
     static const double cosine[4] = {1, .7, .3, .1};
     const int32_t frame_q14[3][3] = {
         {16384, 0, 0}, {0, 16384, 0}, {0, 0, 16384}};
-    struct glint_ward_options o = {32, GLINT_WARD_PUBLISHED, 0, 0};
+    struct glint_ward_options o = {32, GLINT_WARD_PUBLISHED, 0, 0, 0};
     struct map m;
 
     (void)state;
@@ -169,15 +170,20 @@ static double look(const struct glint_environment *e, const double toward[3],
     const double last = e->header->n_levels - 1;
     const int k = (int)(level = fmin(fmax(level, 0), last));
 
-    return level <= k ? look_level(e, k, toward, c)
-                      : (1 - (level - k)) * look_level(e, k, toward, c) +
-                            (level - k) * look_level(e, k + 1, toward, c);
+    return level <= k
+               ? look_level(e, k, toward, c)
+               : (4 - pow(4, level - k)) / 3 * look_level(e, k, toward, c) +
+                     (pow(4, level - k) - 1) / 3 *
+                         look_level(e, k + 1, toward, c);
 }
 
-/* Slopes of alpha 1 with constant footprints; returns f. */
-static double draw(int n, double slope[GLINT_WARD_SAMPLES][2])
+/* Slopes of alpha 1 with constant footprints; returns b. */
+static double draw(int n, const double alpha[2],
+                   double slope[GLINT_WARD_SAMPLES][2])
 {
     const double f = (n == 1 ? 1 : n == 4 ? 1.4 : n == 32 ? 3 : 2) / n;
+    const double least = fmin(alpha[0], alpha[1]);
+    const double b = fmin(f * alpha[0] * alpha[1], .75 * least * least);
 
     for (int k = 0; k < n; k++) {
         double v = 0;
@@ -188,6 +194,8 @@ static double draw(int n, double slope[GLINT_WARD_SAMPLES][2])
         slope[k][1] = sqrt(-log((k + .5) / n)) * sin(2 * GLINT_PI * v);
     }
     for (int axis = 0; axis < 2; axis++) {
+        const double matched = 1 - b / (alpha[axis] * alpha[axis]);
+        const double spread = (1 - f + fmax(matched, 0)) / 2;
         double mean = 0, square = 0;
 
         for (int k = 0; k < n; k++)
@@ -197,17 +205,16 @@ static double draw(int n, double slope[GLINT_WARD_SAMPLES][2])
             square += slope[k][axis] * slope[k][axis] / n;
         }
         for (int k = 0; k < n; k++)
-            slope[k][axis] *= square > .01 ? sqrt((1 - f) / 2 / square) : 0;
+            slope[k][axis] *= square > .01 ? sqrt(spread / 2 / square) : 0;
     }
-    return f;
+    return b;
 }
 
 static void twin_pixel(const struct glint_environment *e, const double alpha[2],
                        int n, const double frame[3][3], double rgb[3])
 {
     double slope[GLINT_WARD_SAMPLES][2];
-    const double f = draw(n, slope), least = fmin(alpha[0], alpha[1]);
-    const double blur = 2 * fmin(f * alpha[0] * alpha[1], .75 * least * least);
+    const double blur = 2 * draw(n, alpha, slope);
     const double texel = sqrt(4 * GLINT_PI) / (1 << SIDE_LOG2);
 
     for (int k = 0; k < n; k++) {
@@ -339,7 +346,7 @@ static void test_b1_b4(void **state)
         sum_of(alphas[a], &r);
         for (int k = 0; k < 4; k++) {
             const struct glint_ward_options o = {samples[k],
-                                                 GLINT_WARD_PUBLISHED, 0, 0};
+                                                 GLINT_WARD_PUBLISHED, 0, 0, 0};
             double ward, whole;
 
             ward_look(&mip.e, &material, &o, got);
@@ -426,7 +433,7 @@ static void test_extremes(void **state)
             material_of(alpha[k & 3], alpha[k >> 2 & 3]);
         const struct glint_ward_options o = {1 + k / 16,
                                              (enum glint_ward_rule)(k & 1),
-                                             k % 7 * 200 - 600, k % 3 == 0};
+                                             k % 7 * 200 - 600, k % 3 == 0, 0};
         const int32_t frame_q14[3][3] = {
             {0, 16384, 0}, {0, 0, 16384}, {16384, 0, 0}};
         struct glint_ward_lobe lobe;

@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: MIT */
+#include "kernels/ward/texels.h"
+#include "kernels/ward/ward.h"
+
+enum { ONE_Q14 = 1 << 14, ONE_Q16 = 1 << 16, NEARER_Q8 = 85 };
+
+/* Returns 2^31 / X, off by 2^-14 of itself at most, of X 2^15 .. 2^16: a line
+ * that is off by 1/17, then Newton's method twice. */
+static uint32_t reciprocal(uint32_t x)
+{
+    uint32_t r_q15 = 92521 - (x * 61681 >> 16); /* 48/17 - 32/17 x */
+
+    for (int i = 0; i < 2; i++)
+        r_q15 = r_q15 * ((0U - x * r_q15) >> 16) >> 15;
+    return r_q15;
+}
+
+/* Returns the root of X_Q14, 1 .. 2^14. One over the root of what is brought to
+ * 1/4 .. 1 is a line, off by 1/11, then Newton's method three times. */
+static uint32_t root_q15(uint32_t x_q14)
+{
+    const int up = (16 - bit_length(x_q14)) & ~1;
+    const uint32_t part_q14 = x_q14 << up >> 2;
+    uint32_t y_q14 = 34900 - (part_q14 * 20000 >> 14);
+
+    for (int i = 0; i < 3; i++) {
+        const uint32_t square_q14 = y_q14 * y_q14 >> 14;
+
+        y_q14 = y_q14 * ((3 << 14) - (square_q14 * part_q14 >> 14)) >> 15;
+    }
+    return (y_q14 * part_q14 >> 14 << 2) >> (up / 2);
+}
+
+/* A sample: the way to the light along the frame, h.o, and whether it counts.
+ */
+struct sample {
+    int32_t in_q14[3], ho_q14;
+    int counts;
+};
+
+static struct sample sample_of(const struct glint_ward_lobe *lobe, int k,
+                               const struct glint_ward_place *place)
+{
+    const int32_t *out_q14 = place->out_q14;
+    struct sample s;
+    int32_t ho_q28 = 1 << 13; /* unit vectors: products sum to 2^28 */
+
+    for (int j = 0; j < 3; j++)
+        ho_q28 += lobe->half_q14[j][k] * out_q14[j];
+    s.ho_q14 = ho_q28 >> 14;
+    for (int j = 0; j < 3; j++)
+        s.in_q14[j] =
+            ((s.ho_q14 * lobe->half_q14[j][k] + (1 << 12)) >> 13) - out_q14[j];
+    s.counts = s.ho_q14 > 0 && s.in_q14[2] > 0;
+    s.ho_q14 = q_larger(s.ho_q14, 1);
+    return s;
+}
+
+/* Returns 2 - (n.o) / ((h.o) (h.n)). */
+static int32_t bounded_q12(int32_t ho_q14, int32_t hn_q14, int32_t no_q14)
+{
+    const int32_t d_q16 =
+        q_smaller(q_larger(ho_q14 * hn_q14 >> 12, 1), ONE_Q16 - 1);
+    const int up = 16 - bit_length((uint32_t)d_q16);
+    const uint32_t r_q15 = reciprocal((uint32_t)d_q16 << up);
+    /* (n.o) 2^up is below 2^15 where n.i is above 0. */
+    const uint32_t q_q12 = ((uint32_t)no_q14 << up) * r_q15 >> 17;
+
+    return q_larger((2 << 12) - (int32_t)q_q12, 0);
+}
+
+static int32_t weight_q12(const struct glint_ward_lobe *lobe, int k,
+                          const struct sample *s,
+                          const struct glint_ward_place *place)
+{
+    uint32_t root, part_q15;
+
+    if (lobe->norm == GLINT_WARD_BOUNDED)
+        return bounded_q12(s->ho_q14, lobe->half_q14[2][k], place->out_q14[2]);
+    root = root_q15((uint32_t)q_smaller(q_larger(s->in_q14[2], 1), ONE_Q14));
+    part_q15 = ((uint32_t)(s->ho_q14 * lobe->factor_q14[k]) >> 14) * root >> 14;
+    return q_smaller((int32_t)(part_q15 * (uint32_t)place->root_q14 >>
+                               (17 - place->root_log2)),
+                     8 << 12);
+}
+
+/* Sets U and V to the place in the square of the sample's light. */
+static void place_of(const struct sample *s,
+                     const struct glint_ward_place *place, int32_t *u_q17,
+                     int32_t *v_q17)
+{
+    int32_t toward_q14[3], p_q16, q_q16;
+    uint32_t away_q14[3], r_q15;
+
+    for (int k = 0; k < 3; k++) {
+        toward_q14[k] = (place->frame_q14[0][k] * s->in_q14[0] +
+                         place->frame_q14[1][k] * s->in_q14[1] +
+                         place->frame_q14[2][k] * s->in_q14[2] + (1 << 13)) >>
+                        14;
+        away_q14[k] = (uint32_t)q_magnitude(toward_q14[k]);
+    }
+    r_q15 = reciprocal((away_q14[0] + away_q14[1] + away_q14[2]) << 1);
+    p_q16 = q_smaller((int32_t)(away_q14[0] * r_q15 >> 14), ONE_Q16);
+    q_q16 = q_smaller((int32_t)(away_q14[2] * r_q15 >> 14), ONE_Q16);
+    if (toward_q14[1] < 0) {
+        const int32_t unfolded_q16 = ONE_Q16 - q_q16;
+
+        q_q16 = ONE_Q16 - p_q16;
+        p_q16 = unfolded_q16;
+    }
+    *u_q17 = ONE_Q16 + (toward_q14[0] < 0 ? -p_q16 : p_q16);
+    *v_q17 = ONE_Q16 + (toward_q14[2] < 0 ? -q_q16 : q_q16);
+}
+
+/* Returns the level whose light is as wide as sample K's or sharper; SHARE_Q8
+ * is what the next one, of four times its variance, counts so that both
+ * together have that of the sample. */
+static int32_t level_of(const struct glint_ward_lobe *lobe, int k,
+                        int32_t ho_q14, int32_t last, uint32_t *share_q8)
+{
+    const int up = 15 - bit_length((uint32_t)ho_q14);
+    const int32_t span_q28 = lobe->span_q14[k] * (ho_q14 << up);
+    const int32_t log2 = lobe->span_log2[k] - up;
+    const int32_t level = (log2 + (span_q28 >> 29)) >> 1;
+    const int32_t over_q8 = span_q28 >> 21 << (log2 - 2 * level + 1);
+
+    *share_q8 = 0;
+    if (level < 0)
+        return 0;
+    if (level >= last)
+        return last;
+    *share_q8 = (uint32_t)(over_q8 - 256) * 171 >> 9; /* a third */
+    if (!lobe->nearest)
+        return level;
+    if (*share_q8 > NEARER_Q8) {
+        *share_q8 = 0;
+        return level + 1;
+    }
+    *share_q8 = 0;
+    return level;
+}
+
+void glint_ward_sum_c(const struct glint_ward_lobe *lobe,
+                      const struct glint_texels *texels,
+                      const struct glint_ward_place *place, uint64_t sum_q12[3])
+{
+    const int reads_of_one = lobe->nearest ? 4 : 8;
+
+    for (int j = 0; j < 3; j++)
+        sum_q12[j] = 0;
+    for (int k = 0; k < lobe->n; k++) {
+        const struct sample s = sample_of(lobe, k, place);
+        struct glint_reads reads;
+        struct glint_found found;
+        int32_t u_q17, v_q17, level;
+        uint32_t share_q8;
+
+        if (!s.counts)
+            continue;
+        place_of(&s, place, &u_q17, &v_q17);
+        level = level_of(lobe, k, s.ho_q14, texels->last, &share_q8);
+        glint_reads_of(&texels->level[level], u_q17, v_q17, 256 - share_q8,
+                       reads.at, reads.weight_q22);
+        if (!lobe->nearest)
+            glint_reads_of(&texels->level[level + 1], u_q17, v_q17, share_q8,
+                           reads.at + 4, reads.weight_q22 + 4);
+        glint_find_light(texels, level, &reads, reads_of_one, &found);
+        glint_count_light(&found, (uint32_t)weight_q12(lobe, k, &s, place),
+                          sum_q12);
+    }
+}

@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Bilinear lookups in the levels of an unfolded octahedron, one at a time. */
+#ifndef GLINT_KERNELS_WARD_TEXELS_H
+#define GLINT_KERNELS_WARD_TEXELS_H
+
+#include "base/q.h"
+#include "glint/scene/lobe.h"
+
+/* Codes of four texels, or of four of each of two levels, and what each counts:
+ * weights sum to 2^22. */
+struct glint_reads {
+    uint32_t at[8], weight_q22[8];
+};
+
+/* Light in units: RGB 2^(log2 - 34), RGB up to 2^31, log2 up to 31; of 5:6:5
+ * codes that times GLINT_ROOTS_Q15. */
+struct glint_found {
+    uint32_t rgb[3];
+    int32_t log2;
+};
+
+enum { GLINT_ROOTS_Q15 = 33817 }; /* 2^14 / (4 * 63^2) */
+
+/* Sets four of AT and WEIGHT_Q22 to the texels of LEVEL about (U, V), 0 .. 1
+ * across and down the square, which count SHARE_Q8 in all. A place beyond an
+ * edge lies across the middle of that edge, as octahedra fold. */
+static inline void glint_reads_of(const struct glint_texels_level *level,
+                                  int32_t u_q17, int32_t v_q17,
+                                  uint32_t share_q8, uint32_t at[4],
+                                  uint32_t weight_q22[4])
+{
+    const int32_t last = (1 << level->side_log2) - 1;
+    /* From the middle of the first texel, -128 .. 2^18. */
+    const int32_t x_q8 = (u_q17 << level->side_log2 >> 9) - 128;
+    const int32_t y_q8 = (v_q17 << level->side_log2 >> 9) - 128;
+    const int32_t x = x_q8 >> 8, y = y_q8 >> 8;
+    const int32_t across[2] = {q_larger(x, 0), q_smaller(x + 1, last)};
+    const int32_t down[2] = {q_larger(y, 0), q_smaller(y + 1, last)};
+    const int32_t fold_y[2] = {x < 0 ? last : 0, x >= last ? last : 0};
+    const int32_t fold_x[2] = {y < 0 ? last : 0, y >= last ? last : 0};
+    const uint32_t right_q8 = (uint32_t)x_q8 & 255;
+    const uint32_t low_q8 = (uint32_t)y_q8 & 255;
+
+    for (int k = 0; k < 4; k++) {
+        const int i = k & 1, j = k >> 1;
+        const int32_t row = down[j] ^ fold_y[i], column = across[i] ^ fold_x[j];
+
+        at[k] = level->at + (uint32_t)((row << level->side_log2) + column);
+        weight_q22[k] = (i ? right_q8 : 256 - right_q8) *
+                        ((j ? low_q8 : 256 - low_q8) * share_q8 >> 2);
+    }
+}
+
+/* Four times 63^2 of white. */
+static inline uint32_t glint_root5_q2(uint32_t c)
+{
+    return (c * c * 270692 + (1 << 13)) >> 14;
+}
+
+static inline uint32_t glint_root6_q2(uint32_t c)
+{
+    return c * c << 2;
+}
+
+static inline void glint_add_9e5(const uint32_t *code,
+                                 const struct glint_reads *reads, int n,
+                                 struct glint_found *found)
+{
+    uint32_t most = 0;
+
+    for (int k = 0; k < n; k++) {
+        const uint32_t log2 = code[reads->at[k]] >> 27;
+
+        most = log2 > most ? log2 : most;
+    }
+    *found = (struct glint_found){{0, 0, 0}, (int32_t)most};
+    for (int k = 0; k < n; k++) {
+        const uint32_t c = code[reads->at[k]];
+        const uint32_t weight = reads->weight_q22[k] >> (most - (c >> 27));
+
+        for (int j = 0; j < 3; j++)
+            found->rgb[j] += weight * (c >> (9 * j) & 511);
+    }
+}
+
+/* Sums of weights of 2^16 times squares below 2^14; times a scale of 2^15. */
+static inline void glint_add_565(const uint16_t *code,
+                                 const struct glint_texels_scale scale[2],
+                                 const struct glint_reads *reads, int n,
+                                 struct glint_found *found)
+{
+    const int32_t most = q_larger(scale[0].log2, scale[n > 4].log2);
+
+    *found = (struct glint_found){{0, 0, 0}, most + 18};
+    for (int l = 0; l < n / 4; l++) {
+        uint32_t sum[3] = {0, 0, 0};
+
+        for (int k = 4 * l; k < 4 * l + 4; k++) {
+            const uint32_t c = code[reads->at[k]];
+            const uint32_t weight_q16 = reads->weight_q22[k] >> 6;
+
+            sum[0] += weight_q16 * glint_root5_q2(c >> 11);
+            sum[1] += weight_q16 * glint_root6_q2(c >> 5 & 63);
+            sum[2] += weight_q16 * glint_root5_q2(c & 31);
+        }
+        for (int j = 0; j < 3; j++)
+            found->rgb[j] += ((sum[j] >> 14) * (uint32_t)scale[l].q15) >>
+                             (most - scale[l].log2);
+    }
+}
+
+/* Sets FOUND to the light of the levels K and, of N = 8 reads, the next. */
+static inline void glint_find_light(const struct glint_texels *texels,
+                                    int32_t k, const struct glint_reads *reads,
+                                    int n, struct glint_found *found)
+{
+    if (texels->is_9e5)
+        glint_add_9e5(texels->code, reads, n, found);
+    else
+        glint_add_565(texels->code, &texels->scale[k], reads, n, found);
+}
+
+/* Adds FOUND, which counts WEIGHT_Q12, 0 .. 2^15. */
+static inline void glint_count_light(const struct glint_found *found,
+                                     uint32_t weight_q12, uint64_t sum_q12[3])
+{
+    for (int j = 0; j < 3; j++)
+        sum_q12[j] +=
+            (uint64_t)found->rgb[j] * weight_q12 >> (34 - found->log2);
+}
+
+#endif

@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Every variant of the kernel for brushed metal must give the bits of its C
+ * definition, whatever lobes, levels and texels are, and read no texel that is
+ * not there: an array of texels ends at a page that traps. GLINT_BENCH=1 times
+ * it, too. The program needs nothing but the kernels, so that it runs in an
+ * emulator. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <time.h>
+
+#include "glint/kernels.h"
+#include "kernels/ward/ward.h"
+#include "linux/sets.h"
+#include "support/rng.h"
+
+#define EXPECT(condition)                                              \
+    do {                                                               \
+        if (!(condition)) {                                            \
+            fprintf(stderr, "%s:%d: %s, not so\n", __FILE__, __LINE__, \
+                    #condition);                                       \
+            exit(1);                                                   \
+        }                                                              \
+    } while (0)
+
+enum { SIDE_LOG2 = 6, CODES = 1 << 14, PAGE = 4096, LOBES = 3000, PLACES = 8 };
+
+static uint32_t seed = 77;
+
+static int32_t below(int32_t n)
+{
+    return (int32_t)(rng_xorshift(&seed) % (uint32_t)n);
+}
+
+static double unit_double(void)
+{
+    return below(1 << 24) / (double)(1 << 24);
+}
+
+/* Returns 4 CODES bytes of texels that end at a page which traps. */
+static uint8_t *texels_of(void)
+{
+    void *mem;
+    uint8_t *at;
+
+    EXPECT(posix_memalign(&mem, PAGE, 4 * CODES + PAGE) == 0);
+    at = mem;
+    EXPECT(mprotect(at + 4 * CODES, PAGE, PROT_NONE) == 0);
+    return at;
+}
+
+/* Levels of Gaussians or mips; the last code is the last texel of one. */
+static void draw_texels(struct glint_texels *t, uint8_t *code)
+{
+    uint32_t used = 0;
+    const int is_mip = below(2);
+
+    t->is_9e5 = below(4) > 0;
+    t->code = code;
+    t->last = SIDE_LOG2;
+    for (int k = SIDE_LOG2; k >= 0; k--) {
+        const int side = is_mip || k == 0 ? SIDE_LOG2 - k : SIDE_LOG2 + 1 - k;
+
+        t->level[k].side_log2 = is_mip || side > 2 ? side : 2;
+        used += 1U << (2 * t->level[k].side_log2);
+        t->level[k].at = (t->is_9e5 ? CODES : 2 * CODES) - used;
+        t->scale[k] =
+            (struct glint_texels_scale){16384 + below(16385), below(14)};
+    }
+    t->level[SIDE_LOG2 + 1] = t->level[SIDE_LOG2];
+    t->scale[SIDE_LOG2 + 1] = t->scale[SIDE_LOG2];
+    EXPECT(used <= CODES);
+    for (int i = 0; i < 4 * CODES; i += 4) {
+        const uint32_t word = rng_xorshift(&seed);
+
+        memcpy(code + i, &word, 4);
+    }
+}
+
+static void draw_lobe(struct glint_ward_lobe *l)
+{
+    const double alpha = pow(10, -3 * unit_double());
+
+    memset(l, 0, sizeof *l);
+    l->n = 1 + below(GLINT_WARD_SAMPLES);
+    l->nearest = below(3) == 0;
+    l->norm = (enum glint_ward_norm)below(2);
+    for (int k = 0; k < GLINT_WARD_SAMPLES; k++) {
+        const double x = alpha * 4 * (unit_double() - .5);
+        const double y = alpha * 4 * (unit_double() - .5);
+        const double over = 0x1p14 / sqrt(1 + x * x + y * y);
+
+        l->half_q14[0][k] = (int32_t)lrint(x * over);
+        l->half_q14[1][k] = (int32_t)lrint(y * over);
+        l->half_q14[2][k] = k < l->n ? (int32_t)lrint(over) : -16384;
+        l->factor_q14[k] =
+            (int32_t)((int64_t)l->half_q14[2][k] * l->half_q14[2][k] >> 14);
+        l->span_q14[k] = 16384 + below(16384);
+        l->span_log2[k] = below(20) - 3;
+    }
+}
+
+/* A random turn, and an eye that is often at a grazing angle. */
+static void draw_place(struct glint_ward_place *p)
+{
+    const double no = pow(unit_double(), below(3) ? 1 : 8) + 0x1p-13;
+    const double across = sqrt(fmax(1 - no * no, 0)), turn = 7 * unit_double();
+    double q[4], length = 0, m[3][3];
+
+    for (int k = 0; k < 4; k++) {
+        q[k] = unit_double() - .5;
+        length += q[k] * q[k];
+    }
+    for (int k = 0; k < 4; k++)
+        q[k] /= sqrt(length);
+    for (int k = 0; k < 3; k++) {
+        const int a = (k + 1) % 3, b = (k + 2) % 3;
+
+        m[k][k] = 1 - 2 * (q[a] * q[a] + q[b] * q[b]);
+        m[k][a] = 2 * (q[k] * q[a] + q[3] * q[b]);
+        m[k][b] = 2 * (q[k] * q[b] - q[3] * q[a]);
+    }
+    for (int k = 0; k < 9; k++)
+        p->frame_q14[k / 3][k % 3] = (int32_t)lrint(0x1p14 * m[k / 3][k % 3]);
+    p->out_q14[0] = (int32_t)lrint(0x1p14 * across * cos(turn));
+    p->out_q14[1] = (int32_t)lrint(0x1p14 * across * sin(turn));
+    p->out_q14[2] = (int32_t)fmax(0x1p14 * no, 1);
+    p->root_q14 = 16384 + below(16385);
+    p->root_log2 = below(8) - 1;
+}
+
+static double now_ns(void)
+{
+    struct timespec t;
+
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
+}
+
+/* Prints the least time of many rounds of 8 samples, in C and by SUM. */
+static void time_it(const char *name, glint_ward_sum_fn *sum,
+                    struct glint_ward_lobe *l, const struct glint_texels *t)
+{
+    struct glint_ward_place p;
+    double best[2] = {1e9, 1e9};
+    uint64_t rgb[3];
+
+    draw_place(&p);
+    p.out_q14[0] = p.out_q14[1] = 0;
+    p.out_q14[2] = 1 << 14;
+    l->n = 8;
+    l->nearest = 0;
+    l->norm = GLINT_WARD_BOUNDED;
+    for (int round = 0; round < 4000; round++)
+        for (int which = 0; which < 2; which++) {
+            const double begin = now_ns();
+
+            for (int k = 0; k < 20; k++)
+                (which ? sum : glint_ward_sum_c)(l, t, &p, rgb);
+            best[which] = fmin(best[which], (now_ns() - begin) / 20);
+        }
+    printf("ward 8     %-6s C %.0f ns, %.0f ns, %.1f times\n", name, best[0],
+           best[1], best[0] / best[1]);
+}
+
+static void check(const char *name, glint_ward_sum_fn *sum)
+{
+    uint8_t *const code = texels_of();
+    struct glint_texels texels;
+    struct glint_ward_lobe lobe;
+    int n_lit = 0;
+
+    for (int i = 0; i < LOBES; i++) {
+        if (i % 100 == 0)
+            draw_texels(&texels, code);
+        draw_lobe(&lobe);
+        for (int k = 0; k < PLACES; k++) {
+            struct glint_ward_place place;
+            uint64_t want[3], got[3];
+
+            draw_place(&place);
+            glint_ward_sum_c(&lobe, &texels, &place, want);
+            sum(&lobe, &texels, &place, got);
+            EXPECT(memcmp(want, got, sizeof want) == 0);
+            for (int c = 0; c < 3; c++)
+                EXPECT(want[c] < UINT64_C(1) << 48);
+            n_lit += want[0] > 0;
+        }
+    }
+    EXPECT(n_lit > LOBES * PLACES / 2);
+    do
+        draw_texels(&texels, code);
+    while (!texels.is_9e5);
+    if (getenv("GLINT_BENCH"))
+        time_it(name, sum, &lobe, &texels);
+    EXPECT(mprotect(code + 4 * CODES, PAGE, PROT_READ | PROT_WRITE) == 0);
+    free(code);
+}
+
+int main(void)
+{
+    check("c", glint_ward_sum_of(0));
+    for (unsigned set = 1; set; set <<= 1)
+        if (set & glint_system_sets())
+            check(set == GLINT_SET_SSE41  ? "sse41"
+                  : set == GLINT_SET_AVX2 ? "avx2"
+                                          : "neon",
+                  glint_ward_sum_of(set));
+    return 0;
+}
