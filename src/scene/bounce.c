@@ -15,8 +15,6 @@
  * picture goes on, mirrored at its edge. */
 #include "scene/state.h"
 
-enum { MOST_SURFACES = 8 };
-
 /* A ray on its way, and what it starts from. */
 struct passing {
     struct glint_scene_ray ray;
@@ -203,7 +201,7 @@ static void follow(const struct glint_scene *s,
 
     if (at.material->reflect_q15)
         reflect(s, &p, &at, shade->rgb_q15);
-    for (int i = 0; i < MOST_SURFACES && at.material->pass_q15; i++) {
+    for (int i = 0; i < GLINT_SCENE_PASSES && at.material->pass_q15; i++) {
         pass_through(s, &at, &p);
         if (p.weight_q15 == 0)
             return;

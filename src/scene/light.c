@@ -144,16 +144,14 @@ void glint_scene_frame_of(const int32_t d_q30[3], int32_t u_q30[3],
     glint_unit(cross, v_q30);
 }
 
-void glint_scene_point(struct glint_scene_ray *ray, int32_t t, int32_t radius,
-                       int i, int n)
+/* Turns RAY to point I of the N of a disc, RADIUS wide, T steps away, which
+ * lies along U and V. */
+static void aim(struct glint_scene_ray *ray, const int32_t u_q30[3],
+                const int32_t v_q30[3], int32_t t, int32_t radius, int i, int n)
 {
     const int32_t *at_q15 = n == 4 ? four_q15[i] : sixteen_q15[i];
-    int32_t u_q30[3] = {0}, v_q30[3] = {0};
     int64_t to[3];
 
-    if (radius == 0 || n == 1)
-        return;
-    glint_scene_frame_of(ray->toward_q30, u_q30, v_q30);
     for (int k = 0; k < 3; k++) { /* 2^60, and 1.5 * 2^30 times 2^29 */
         const int64_t aside_q30 = q_shift(
             (int64_t)u_q30[k] * at_q15[0] + (int64_t)v_q30[k] * at_q15[1], 15);
@@ -163,23 +161,39 @@ void glint_scene_point(struct glint_scene_ray *ray, int32_t t, int32_t radius,
     glint_unit(to, ray->toward_q30);
 }
 
+void glint_scene_point(struct glint_scene_ray *ray, int32_t t, int32_t radius,
+                       int i, int n)
+{
+    int32_t u_q30[3] = {0}, v_q30[3] = {0};
+
+    if (radius == 0 || n == 1)
+        return;
+    glint_scene_frame_of(ray->toward_q30, u_q30, v_q30);
+    aim(ray, u_q30, v_q30, t, radius, i, n);
+}
+
 int32_t glint_rays_reach(const struct glint_scene *scene,
                          const struct glint_met_surface *surface,
                          const struct glint_lit *lit)
 {
-    const int n = lit->light->radius ? scene->cfg.shadow_points : 1;
+    const int32_t radius = lit->light->radius;
+    const int n = radius ? scene->cfg.shadow_points : 1;
+    struct glint_scene_ray middle = {.at = {0}};
+    int32_t u_q30[3] = {0}, v_q30[3] = {0}, level_q15[3], distance;
     int reached = 0;
 
     if (!scene->model.header->shadow)
         return GLINT_SCENE_ONE_Q15;
+    glint_scene_leave(scene, surface, middle.at);
+    distance = glint_scene_light_at(scene, lit, middle.at, middle.toward_q30,
+                                    level_q15);
+    if (n > 1)
+        glint_scene_frame_of(middle.toward_q30, u_q30, v_q30);
     for (int i = 0; i < n; i++) {
-        struct glint_scene_ray to = {.at = {0}};
-        int32_t level_q15[3], distance;
+        struct glint_scene_ray to = middle;
 
-        glint_scene_leave(scene, surface, to.at);
-        distance =
-            glint_scene_light_at(scene, lit, to.at, to.toward_q30, level_q15);
-        glint_scene_point(&to, distance, lit->light->radius, i, n);
+        if (n > 1)
+            aim(&to, u_q30, v_q30, distance, radius, i, n);
         reached += v3_dot(to.toward_q30, surface->face_q30) > 0 &&
                    !glint_scene_blocks(scene, &to, surface->object,
                                        surface->triangle, distance);

@@ -13,6 +13,7 @@
  * points of the disc lean by less than a cell's margin: footprints are as much
  * larger as they lean between the top of a thing and the lowest place that the
  * grid answers for. */
+#include "base/compiler.h"
 #include "base/divide.h"
 #include "scene/shadow_grid.h"
 #include "scene/mesh.h"
@@ -141,8 +142,8 @@ is_blocked(const struct glint_scene *s, const struct glint_shadow *shadow,
 }
 
 /* Finds PLACE below the sun. */
-static void find(const struct glint_shadow *shadow, const int32_t place[3],
-                 struct below *below)
+static WHOLLY_INLINE void find(const struct glint_shadow *shadow,
+                               const int32_t place[3], struct below *below)
 {
     int32_t *at = below->at;
     int64_t lean = 0;
@@ -230,4 +231,25 @@ int32_t glint_shadow_reaches(const struct glint_scene *s,
     if (shadow->n_points == 1 && below.cell != BEYOND && !s->has_planes)
         return is_lit(s, shadow, &below, place, surface) << 15;
     return share_of_points(s, shadow, surface, &below, place);
+}
+
+int glint_shadow_listed(const struct glint_scene *s,
+                        const struct glint_shadow *shadow,
+                        const struct glint_met_surface *surface,
+                        const int32_t place[3])
+{
+    const int32_t *ref = shadow->bins.ref, *start = shadow->bins.start;
+    struct below below;
+    int n = 0;
+
+    if (s->placed[surface->object].open_to >> shadow->light & 1)
+        return 0;
+    find(shadow, place, &below);
+    if (below.cell == BEYOND)
+        return -1;
+    if (below.cell == NONE)
+        return 0;
+    for (int32_t i = start[below.cell]; i < start[below.cell + 1]; i++)
+        n += shadow->thing[ref[i]].top > below.at[2];
+    return n;
 }

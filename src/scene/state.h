@@ -21,6 +21,7 @@ enum {
     GLINT_SCENE_MOST_LIGHT = 1 << 30, /* light, q15, saturates there */
     GLINT_SCENE_LIFT = 4,     /* steps above a mesh from which its rays start */
     GLINT_SCENE_SAMPLES = 16, /* of a pixel, at most */
+    GLINT_SCENE_PASSES = 8,   /* surfaces that a ray passes through, at most */
     GLINT_COVER_LOG2 = 3 /* log2 of the side of a square of the cover kept */
 };
 
@@ -327,6 +328,13 @@ int32_t glint_shadow_reaches(const struct glint_scene *scene,
                              const struct glint_shadow *shadow,
                              const struct glint_met_surface *surface,
                              const int32_t place[3]);
+
+/* Returns how many things that grid lists above PLACE; -1: rays are asked
+ * instead. */
+int glint_shadow_listed(const struct glint_scene *scene,
+                        const struct glint_shadow *shadow,
+                        const struct glint_met_surface *surface,
+                        const int32_t place[3]);
 
 /* Sets AT to where rays from SURFACE start: off that of a mesh. */
 static inline void glint_scene_leave(const struct glint_scene *scene,

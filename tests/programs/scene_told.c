@@ -19,7 +19,7 @@
 #include "scenes/account.h"
 #include "support/rng.h"
 
-enum { FIT = 40, HELD = 20, TEXT = 1 << 13, RING = 24, TUBE = 12 };
+enum { FIT = 80, HELD = 40, TEXT = 1 << 13, RING = 24, TUBE = 12 };
 
 /* What is counted: a frame in which things have moved. */
 void scene_told_frame(struct scene_frame *frame,

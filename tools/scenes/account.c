@@ -12,23 +12,34 @@
 /* clang-format off */
 const struct scene_cost_weight scene_cost_weight[GLINT_SCENE_ITEMS] = {
     /* begin weights */
-    {"triangles", 8.76},
-    {"looked", 0},
-    {"samples", 0},
-    {"covering", 1.18},
-    {"shaded", 0},
-    {"lit", 0},
-    {"shadows", 0.276},
-    {"rays", 0},
-    {"walked", 10.2},
-    {"texels", 0.533},
-    {"bounced", 0},
+    {"triangles", 3.71},
+    {"touched", 0.022},
+    {"looked", 0.0112},
+    {"rows", 3.59},
+    {"samples", 0.0433},
+    {"covering", 0.325},
+    {"shaded", 0.256},
+    {"meshed", 0.457},
+    {"lit", 0.223},
+    {"shadows", 0.09},
+    {"listed", 0.0434},
+    {"rays", 0.237},
+    {"aimed", 0.243},
+    {"asked", 0.128},
+    {"entered", 0.439},
+    {"walked", 0.169},
+    {"tried", 0.179},
+    {"texels", 0.161},
+    {"bounced", 0.595},
+    {"passed", 0.233},
     /* end weights */
 };
 const struct scene_cost_weight scene_cost_rest[SCENE_COST_RESTS] = {
     /* begin rest */
-    {"picture", 0.166},
-    {"things", 1.05},
+    {"picture", 0.0059},
+    {"things", 0.798},
+    {"faces", 0.389},
+    {"around", 0.179},
     /* end rest */
 };
 /* clang-format on */
@@ -50,6 +61,18 @@ static double things_of(const struct glint_scene_model *model)
     return suns * n;
 }
 
+/* Returns whether things show the picture that they stand in. */
+static bool shows_picture(const struct glint_scene_model *model)
+{
+    bool any = false;
+
+    for (uint32_t i = 0; i < model->header->n_materials; i++)
+        any |= model->material[i].reflect_q15 ||
+               (model->material[i].pass_q15 &&
+                model->material[i].index_q16 != 1 << 16);
+    return any && model->header->background == GLINT_BACKGROUND_CAMERA;
+}
+
 enum glint_status scene_account_make(struct scene_account *account,
                                      const struct scene_frame *frame)
 {
@@ -59,7 +82,8 @@ enum glint_status scene_account_make(struct scene_account *account,
     *account = (struct scene_account){
         .objects = malloc((n + 1) * sizeof *account->objects),
         .seen = malloc((size_t)px * sizeof *account->seen),
-        .rest = {px, things_of(frame->model)}};
+        .rest = {px, things_of(frame->model), frame->stats.triangles,
+                 shows_picture(frame->model) ? px : 0}};
     if (!account->objects || !account->seen) {
         scene_account_free(account);
         return GLINT_E_MEMORY;

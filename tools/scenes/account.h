@@ -15,9 +15,15 @@ struct scene_cost_weight {
 };
 extern const struct scene_cost_weight scene_cost_weight[GLINT_SCENE_ITEMS];
 
-/* The cost of a pixel of the picture, of a frame and of a thing that lists of
- * shadows have, likewise. */
-enum { SCENE_COST_PICTURE, SCENE_COST_THINGS, SCENE_COST_RESTS };
+/* The cost of a pixel of the picture, of a thing that lists of shadows have,
+ * and of a triangle of a mesh that is in the picture, likewise. */
+enum {
+    SCENE_COST_PICTURE,
+    SCENE_COST_THINGS,
+    SCENE_COST_FACES,
+    SCENE_COST_AROUND,
+    SCENE_COST_RESTS
+};
 extern const struct scene_cost_weight scene_cost_rest[SCENE_COST_RESTS];
 
 /* What became of the frame that was drawn last. */

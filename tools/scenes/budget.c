@@ -44,11 +44,26 @@ bool scene_budget_looks(const struct scene_budget *budget)
     return budget->n_frames % BETWEEN == 0;
 }
 
+static void scale(int64_t *n, double by)
+{
+    *n = llrint((double)*n * by);
+}
+
 /* Returns what a frame of ACCOUNT, drawn with the dials FROM, is told to cost
  * with the dials TO. */
 static double told(const struct scene_account *account,
                    const struct scene_dials *from, const struct scene_dials *to)
 {
+    static const enum glint_scene_item at_samples[] = {
+        GLINT_SCENE_LOOKED, GLINT_SCENE_SAMPLED, GLINT_SCENE_BOUNCED,
+        GLINT_SCENE_PASSED};
+    static const enum glint_scene_item at_places[] = {
+        GLINT_SCENE_SHADED, GLINT_SCENE_MESHED, GLINT_SCENE_LIT,
+        GLINT_SCENE_TEXELS};
+    static const enum glint_scene_item at_points[] = {
+        GLINT_SCENE_SHADOWS, GLINT_SCENE_LISTED, GLINT_SCENE_RAYS,
+        GLINT_SCENE_AIMED,   GLINT_SCENE_ASKED,  GLINT_SCENE_ENTERED,
+        GLINT_SCENE_WALKED,  GLINT_SCENE_TRIED};
     struct scene_account then = *account;
     int64_t *const n = then.all.count;
     /* Two by two pixels at once are a quarter of the places inside, most. */
@@ -57,14 +72,12 @@ static double told(const struct scene_account *account,
     const double edge = (double)to->edge_samples / from->edge_samples;
     const double points = (double)to->shadow_points / from->shadow_points;
 
-    n[GLINT_SCENE_SAMPLED] = llrint((double)n[GLINT_SCENE_SAMPLED] * edge);
-    n[GLINT_SCENE_BOUNCED] = llrint((double)n[GLINT_SCENE_BOUNCED] * edge);
-    n[GLINT_SCENE_SHADED] = llrint((double)n[GLINT_SCENE_SHADED] * half);
-    n[GLINT_SCENE_LIT] = llrint((double)n[GLINT_SCENE_LIT] * half);
-    n[GLINT_SCENE_TEXELS] = llrint((double)n[GLINT_SCENE_TEXELS] * half);
-    n[GLINT_SCENE_WALKED] = llrint((double)n[GLINT_SCENE_WALKED] * half);
-    n[GLINT_SCENE_SHADOWS] =
-        llrint((double)n[GLINT_SCENE_SHADOWS] * half * points);
+    for (size_t i = 0; i < sizeof at_samples / sizeof *at_samples; i++)
+        scale(&n[at_samples[i]], edge);
+    for (size_t i = 0; i < sizeof at_places / sizeof *at_places; i++)
+        scale(&n[at_places[i]], half);
+    for (size_t i = 0; i < sizeof at_points / sizeof *at_points; i++)
+        scale(&n[at_points[i]], half * points);
     return scene_cost_minsn(&then);
 }
 

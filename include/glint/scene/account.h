@@ -31,16 +31,25 @@ enum glint_scene_fate {
 /* Items of a frame whose number decides its cost. */
 enum glint_scene_item {
     GLINT_SCENE_TRIANGLES, /* entries in the lists of tiles */
-    GLINT_SCENE_LOOKED,    /* pixels of the boxes of balls and planes */
+    GLINT_SCENE_TOUCHED,   /* pixels of boxes of things, in each tile */
+    GLINT_SCENE_LOOKED,    /* samples of the boxes of planes */
+    GLINT_SCENE_ROWS,      /* of the boxes of balls, in each tile */
     GLINT_SCENE_SAMPLED,   /* of pixels, that see it */
     GLINT_SCENE_COVERING,  /* pixels that see it */
     GLINT_SCENE_SHADED,    /* times that a place is shaded */
-    GLINT_SCENE_LIT,       /* of these, by lights in front of them */
+    GLINT_SCENE_MESHED,    /* of these, on meshes */
+    GLINT_SCENE_LIT,       /* places shaded, by each light in front of them */
     GLINT_SCENE_SHADOWS,   /* points asked of suns' lists of shadows */
+    GLINT_SCENE_LISTED,    /* things that these list above the places */
     GLINT_SCENE_RAYS,      /* rays through the scene, to other lights and on */
-    GLINT_SCENE_WALKED,    /* grids of meshes that these rays walk through */
+    GLINT_SCENE_AIMED,     /* of these, to points of a lamp's disc */
+    GLINT_SCENE_ASKED,     /* things that these ask */
+    GLINT_SCENE_ENTERED,   /* meshes of these whose grids they enter */
+    GLINT_SCENE_WALKED,    /* cells that they walk through there */
+    GLINT_SCENE_TRIED,     /* triangles that these cells list */
     GLINT_SCENE_TEXELS,    /* texels read */
-    GLINT_SCENE_BOUNCED,   /* of places shaded, those that go on */
+    GLINT_SCENE_BOUNCED,   /* rays that go on from places shaded */
+    GLINT_SCENE_PASSED,    /* of these, through things */
     GLINT_SCENE_ITEMS
 };
 
@@ -53,8 +62,7 @@ struct glint_scene_part {
 /* Sets OBJECTS, [n_objects], to what becomes of each of the frame that was
  * begun last, ALL to their sums (by: -1; covering: pixels that see anything),
  * and SEEN, [height][width] or NULL, to the object that the first sample of
- * each pixel sees, or -1. Of mirrored and bent rays the first is followed,
- * straight on if it is bent. */
+ * each pixel sees, or -1. Rays that are bent are followed straight on. */
 void glint_scene_account(struct glint_scene *scene,
                          struct glint_scene_part *objects,
                          struct glint_scene_part *all, int16_t *seen);

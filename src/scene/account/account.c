@@ -5,6 +5,7 @@
  * found, but not shaded. */
 #include "glint/scene/account.h"
 
+#include "scene/mesh.h"
 #include "scene/visible.h"
 
 enum {
@@ -20,24 +21,82 @@ struct account {
 
 /* ---------------------------------------------------------------- surfaces */
 
-/* Counts TIMES rays like RAY, and the meshes about which they pass. */
-static void count_rays(const struct glint_scene *s,
-                       const struct glint_scene_ray *ray, int times,
+/* Counts what TIMES rays like RAY, which leave SURFACE, take of mesh I. */
+static void count_mesh(const struct glint_scene *s, uint32_t i,
+                       const struct glint_scene_ray *ray,
+                       const struct glint_met_surface *surface, int any,
+                       int times, struct glint_met *met,
                        struct glint_scene_part *part)
 {
+    struct glint_mesh_work work = {0, 0};
+
+    glint_mesh_count(s, i,
+                     i == surface->object ? surface->triangle : GLINT_NOTHING,
+                     ray, any, met, &work);
+    part->count[GLINT_SCENE_ENTERED] += work.cells > 0 ? times : 0;
+    part->count[GLINT_SCENE_WALKED] += times * work.cells;
+    part->count[GLINT_SCENE_TRIED] += times * work.triangles;
+}
+
+/* Counts TIMES rays like RAY, from a place of SURFACE, and what they ask. ANY:
+ * the nearest is not needed. */
+static void count_rays(const struct glint_scene *s,
+                       const struct glint_scene_ray *ray,
+                       const struct glint_met_surface *surface, int any,
+                       int times, struct glint_scene_part *part)
+{
+    struct glint_met met = {.t = GLINT_FAR};
+
     part->count[GLINT_SCENE_RAYS] += times;
     for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
         const struct glint_placed *p = &s->placed[i];
-        struct glint_chord chord;
 
-        if (p->is_shown && p->object->kind == GLINT_OBJECT_MESH &&
-            glint_ray_sphere(ray, p->centre, p->reach, &chord) &&
-            chord.t[1] > 0)
-            part->count[GLINT_SCENE_WALKED] += times;
+        if (!p->is_shown || p->is_catcher)
+            continue;
+        part->count[GLINT_SCENE_ASKED] += times;
+        if (p->object->kind == GLINT_OBJECT_MESH)
+            count_mesh(s, i, ray, surface, any, times, &met, part);
     }
 }
 
-/* Counts the lights that face SURFACE, and the rays to them. */
+/* Returns how many planes throw shadows, which lists do not have. */
+static int planes_of(const struct glint_scene *s)
+{
+    int n = 0;
+
+    for (uint32_t i = 0; i < s->model.header->n_objects; i++)
+        n += s->placed[i].is_shown && !s->placed[i].is_catcher &&
+             s->placed[i].object->kind == GLINT_OBJECT_PLANE;
+    return n;
+}
+
+/* Counts what asking a light for its share takes. */
+static void count_shadows(const struct glint_scene *s,
+                          const struct glint_met_surface *surface,
+                          const struct glint_lit *lit,
+                          const int32_t toward_q30[3],
+                          struct glint_scene_part *part)
+{
+    const int n = lit->light->radius ? s->cfg.shadow_points : 1;
+    struct glint_scene_ray to;
+    int listed = -1;
+
+    glint_scene_leave(s, surface, to.at);
+    if (lit->shadow && lit->shadow->is_ready)
+        listed = glint_shadow_listed(s, lit->shadow, surface, to.at);
+    if (listed >= 0) {
+        part->count[GLINT_SCENE_SHADOWS] += n;
+        part->count[GLINT_SCENE_LISTED] += (int64_t)n * listed;
+        part->count[GLINT_SCENE_ASKED] += (int64_t)n * planes_of(s);
+        return;
+    }
+    for (int k = 0; k < 3; k++)
+        to.toward_q30[k] = toward_q30[k];
+    part->count[GLINT_SCENE_AIMED] += n > 1 && !lit->shadow ? n : 0;
+    count_rays(s, &to, surface, 1, n, part);
+}
+
+/* Counts the lights that face SURFACE, and what is asked about them. */
 static void count_lights(const struct glint_scene *s,
                          const struct glint_met_surface *surface,
                          struct glint_scene_part *part)
@@ -45,48 +104,66 @@ static void count_lights(const struct glint_scene *s,
     for (uint32_t i = 0; i < s->model.header->n_lights; i++) {
         const struct glint_lit *lit = &s->lit[i];
         int32_t toward_q30[3], level_q15[3];
-        struct glint_scene_ray to;
-        int n;
 
         if (!glint_scene_light_at(s, lit, surface->place, toward_q30,
                                   level_q15) ||
             v3_dot(toward_q30, surface->normal_q30) <= 0)
             continue;
         part->count[GLINT_SCENE_LIT]++;
-        n = lit->light->radius ? s->cfg.shadow_points : 1;
-        if (s->model.header->shadow && lit->shadow && lit->shadow->is_ready)
-            part->count[GLINT_SCENE_SHADOWS] += n;
-        else if (s->model.header->shadow) {
-            for (int k = 0; k < 3; k++) {
-                to.at[k] = surface->place[k];
-                to.toward_q30[k] = toward_q30[k];
-            }
-            count_rays(s, &to, n, part);
-        }
+        if (s->model.header->shadow)
+            count_shadows(s, surface, lit, toward_q30, part);
     }
 }
 
-/* Counts what RAY, which goes on from SURFACE, meets. */
-static void count_bounce(const struct glint_scene *s,
-                         const struct glint_scene_ray *ray,
-                         const struct glint_met_surface *surface,
-                         struct glint_scene_part *part)
+/* Counts a place of OBJECT that is shaded. */
+static void count_place(const struct glint_scene *s, uint32_t object,
+                        struct glint_scene_part *part)
 {
-    struct glint_met_surface next;
-    struct glint_scene_ray on = *ray;
+    part->count[GLINT_SCENE_SHADED]++;
+    part->count[GLINT_SCENE_MESHED] +=
+        s->placed[object].object->kind == GLINT_OBJECT_MESH;
+}
+
+/* Goes on along RAY from SURFACE, and counts what is met and shaded there.
+ * Returns 0 if there is nothing. */
+static int go_on(const struct glint_scene *s, struct glint_scene_ray *ray,
+                 struct glint_met_surface *surface,
+                 struct glint_scene_part *part)
+{
+    const struct glint_met_surface from = *surface;
     struct glint_met met;
 
     part->count[GLINT_SCENE_BOUNCED]++;
-    for (int k = 0; k < 3; k++)
-        on.at[k] = surface->place[k];
-    if (surface->material->reflect_q15)
+    glint_scene_leave(s, &from, ray->at);
+    count_rays(s, ray, &from, 0, 1, part);
+    if (!glint_scene_meet(s, ray, from.object, from.triangle, &met) ||
+        !glint_scene_surface(s, ray, &met, surface))
+        return 0;
+    count_place(s, met.object, part);
+    count_lights(s, surface, part);
+    return 1;
+}
+
+/* Counts what RAY does after it has met SURFACE. */
+static void count_bounces(const struct glint_scene *s,
+                          const struct glint_scene_ray *ray,
+                          const struct glint_met_surface *surface,
+                          struct glint_scene_part *part)
+{
+    struct glint_met_surface at = *surface;
+    struct glint_scene_ray on = *ray;
+
+    if (surface->material->reflect_q15) {
         glint_mirror(ray->toward_q30, surface->normal_q30, on.toward_q30);
-    count_rays(s, &on, 1, part);
-    if (!glint_scene_meet(s, &on, surface->object, surface->triangle, &met) ||
-        !glint_scene_surface(s, &on, &met, &next))
-        return;
-    part->count[GLINT_SCENE_SHADED]++;
-    count_lights(s, &next, part);
+        go_on(s, &on, &at, part);
+        at = *surface;
+        on = *ray;
+    }
+    for (int i = 0; i < GLINT_SCENE_PASSES && at.material->pass_q15; i++) {
+        part->count[GLINT_SCENE_PASSED]++;
+        if (!go_on(s, &on, &at, part))
+            return;
+    }
 }
 
 /* Counts a place of ID that is shaded, at (X, Y), q8. */
@@ -102,7 +179,7 @@ static void count_shade(const struct account *a, uint32_t id, int32_t x_q8,
     struct glint_met met;
     int32_t seen_q30[3];
 
-    part->count[GLINT_SCENE_SHADED]++;
+    count_place(s, id >> 20, part);
     glint_view_ray(&s->view, x_q8, y_q8, &ray, seen_q30);
     if (!glint_scene_meet_id(s, &ray, seen_q30, id, &met) ||
         !glint_scene_surface(s, &ray, &met, &surface))
@@ -113,7 +190,7 @@ static void count_shade(const struct account *a, uint32_t id, int32_t x_q8,
     if (m->texture != GLINT_SCENE_NONE)
         part->count[GLINT_SCENE_TEXELS] += TEXELS;
     if (m->reflect_q15 || m->pass_q15)
-        count_bounce(s, &ray, &surface, part);
+        count_bounces(s, &ray, &surface, part);
 }
 
 /* Returns whether samples of ID are shaded one by one. */
@@ -131,16 +208,16 @@ static int is_same(uint32_t a, uint32_t b)
     return a != GLINT_NOTHING && (a ^ b) >> 20 == 0;
 }
 
-/* Returns whether this is not the first of two by two pixels that see one
- * object and are shaded as one. */
-static int is_shared(const struct glint_scene_worker *w, int x, int y,
-                     uint32_t id)
+/* Returns whether this is one of two by two pixels that see one object and are
+ * shaded as one. */
+static int is_quad(const struct glint_scene_worker *w, int x, int y,
+                   uint32_t id)
 {
     const struct glint_box b = w->touched;
     const int x0 = x & ~1, y0 = y & ~1, n = w->scene->cfg.edge_samples;
 
-    if (!w->scene->cfg.half_shading || !((x | y) & 1) || x0 < b.x0 ||
-        y0 < b.y0 || x0 + 1 >= b.x1 || y0 + 1 >= b.y1)
+    if (!w->scene->cfg.half_shading || x0 < b.x0 || y0 < b.y0 ||
+        x0 + 1 >= b.x1 || y0 + 1 >= b.y1)
         return 0;
     for (int k = 0; k < 4; k++)
         for (int i = 0; i < n; i++)
@@ -156,6 +233,8 @@ static void count_pixel(const struct account *a,
 {
     const struct glint_scene *s = a->scene;
     const uint32_t *id = &w->id[glint_sample_index(w, x, y, 0)];
+    const int32_t x_q8 = glint_place(s, x, 0), y_q8 = glint_place(s, y, 1);
+    const int quad = is_quad(w, x, y, id[0]);
     int any = 0;
 
     if (a->seen && id[0] != GLINT_NOTHING)
@@ -171,11 +250,13 @@ static void count_pixel(const struct account *a,
             i++;
         if (i == k)
             a->objects[id[k] >> 20].count[GLINT_SCENE_COVERING]++;
-        if (is_split(s, id[k]))
-            count_shade(a, id[k], glint_place(s, x, 0) + glint_sample(s, k, 0),
-                        glint_place(s, y, 1) + glint_sample(s, k, 1));
-        else if (i == k && !is_shared(w, x, y, id[k]))
-            count_shade(a, id[k], glint_place(s, x, 0), glint_place(s, y, 1));
+        if (quad ? k > 0 || ((x | y) & 1) : i != k && !is_split(s, id[k]))
+            continue;
+        if (is_split(s, id[k]) && !quad)
+            count_shade(a, id[k], x_q8 + glint_sample(s, k, 0),
+                        y_q8 + glint_sample(s, k, 1));
+        else
+            count_shade(a, id[k], x_q8, y_q8);
     }
     a->all->count[GLINT_SCENE_COVERING] += any;
 }
@@ -187,6 +268,9 @@ static void count_tile(const struct account *a, struct glint_scene_worker *w,
 
     if (!glint_scene_look(w, tile))
         return;
+    a->all->count[GLINT_SCENE_TOUCHED] +=
+        (int64_t)(w->touched.x1 - w->touched.x0) *
+        (w->touched.y1 - w->touched.y0);
     for (int y = w->touched.y0; y < w->touched.y1; y++)
         for (int x = w->touched.x0; x < w->touched.x1; x++)
             count_pixel(a, w, x, y);
@@ -194,10 +278,13 @@ static void count_tile(const struct account *a, struct glint_scene_worker *w,
         const struct glint_placed *p = &s->placed[i];
         const struct glint_box b = glint_box_cut(tile, p->box);
 
-        if (p->is_seen && p->object->kind != GLINT_OBJECT_MESH &&
-            !glint_box_empty(b))
+        if (!p->is_seen || glint_box_empty(b))
+            continue;
+        if (p->object->kind == GLINT_OBJECT_PLANE)
             a->objects[i].count[GLINT_SCENE_LOOKED] +=
-                (int64_t)(b.x1 - b.x0) * (b.y1 - b.y0);
+                (int64_t)(b.x1 - b.x0) * (b.y1 - b.y0) * s->cfg.edge_samples;
+        else if (p->object->kind == GLINT_OBJECT_SPHERE)
+            a->objects[i].count[GLINT_SCENE_ROWS] += b.y1 - b.y0;
     }
 }
 
