@@ -20,6 +20,7 @@ void glint_scene_defaults(struct glint_scene_config *cfg, int width, int height)
                                        .edge_samples = 4,
                                        .shadow_points = 4,
                                        .ward_samples = 8,
+                                       .highlights = 8,
                                        .max_refs = 1 << 15};
 }
 
@@ -72,7 +73,8 @@ static int is_in_range(const struct glint_scene_config *c)
            c->tile_log2 <= 6 && is_one_of(c->edge_samples, 1 | 4 | 8 | 16) &&
            is_one_of(c->shadow_points, 1 | 4 | 16) && c->ward_samples >= 1 &&
            c->ward_samples <= 32 && (c->ward_nearest & ~1) == 0 &&
-           (c->half_shading & ~1) == 0 && c->max_refs >= 0 &&
+           (c->half_shading & ~1) == 0 && c->highlights >= 0 &&
+           c->highlights <= 8 && c->max_refs >= 0 &&
            glint_workers_count(c->workers) <= 64;
 }
 
@@ -194,6 +196,10 @@ static struct glint_scene *carve(struct glint_arena *a,
         glint_arena_take(a, model->header->n_materials, sizeof *s->material);
     s->ward = glint_arena_take(a, model->header->n_wards, sizeof *s->ward);
     s->wards = has_wards(model->header) ? cfg->parts.wards->carve(s, a) : NULL;
+    s->bright = cfg->parts.highlights && cfg->highlights > 0 &&
+                        model->header->flare && model->header->highlights > 0
+                    ? cfg->parts.highlights->carve(s, a)
+                    : NULL;
     s->cover_across = (cfg->width + 7) >> GLINT_COVER_LOG2;
     s->cover_down = (cfg->height + 7) >> GLINT_COVER_LOG2;
     s->cover = glint_arena_take(

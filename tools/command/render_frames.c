@@ -166,7 +166,7 @@ static enum glint_status draw(struct frames *f)
         if (status == GLINT_OK)
             over_scene_again(&f->c->scene, &linear);
     } else {
-        f->c->scene.elapsed_s = 1e-6 * f->elapsed_us;
+        f->c->scene.elapsed_us = f->elapsed_us;
         status = over_scene_draw(&f->c->scene, &linear, f->c->n_frames);
     }
     for (size_t i = 0; status == GLINT_OK && i < n; i++)

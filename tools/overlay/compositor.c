@@ -78,7 +78,7 @@ int compositor_open(const struct tool *tool, struct compositor *compositor)
         return code;
     n = (size_t)compositor->n_hand + (size_t)compositor->list.n +
         GLINT_LAMP_DETECTOR_MAX +
-        (compositor->scene.is_open ? GLINT_SCENE_MAX_LIGHTS : 0);
+        (compositor->scene.is_open ? OVER_SCENE_LAMPS : 0);
     compositor->lamp = malloc(n * sizeof *compositor->lamp);
     compositor->level = malloc(n * sizeof *compositor->level);
     compositor->share = malloc(n * sizeof *compositor->share);
@@ -145,7 +145,7 @@ static int by_hand(const struct compositor *compositor)
 static int most_lamps(const struct compositor *compositor)
 {
     return by_hand(compositor) + 2 * compositor->finder.max +
-           (compositor->scene.is_open ? GLINT_SCENE_MAX_LIGHTS : 0);
+           (compositor->scene.is_open ? OVER_SCENE_LAMPS : 0);
 }
 
 /* Takes reserve_bytes: what stars and a veil take, and for ghosts what that
@@ -165,7 +165,7 @@ static enum glint_status reserve(struct compositor *compositor)
     return glint_frame_reserve(
         frame, NULL, compositor->reserve_bytes - star,
         by_hand(compositor) + GLINT_LAMP_DETECTOR_MAX +
-            (compositor->scene.is_open ? GLINT_SCENE_MAX_LIGHTS : 0),
+            (compositor->scene.is_open ? OVER_SCENE_LAMPS : 0),
         most_lamps(compositor));
 }
 
@@ -417,7 +417,8 @@ static enum glint_status find(struct compositor *compositor,
         compositor_desk_hide(compositor, compositor->n_lamps);
     }
     compositor->find_ms = 1e3 * (tool_seconds() - start);
-    compositor->scene.elapsed_s = 1e-6 * elapsed_us;
+    compositor->scene.elapsed_us = elapsed_us;
+    compositor->scene.no_tracking = compositor->no_tracking;
     status = compositor_scene(compositor, image);
     return status;
 }

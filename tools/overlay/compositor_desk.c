@@ -190,6 +190,8 @@ void compositor_desk_close(struct compositor *c)
 
 /* From here on lights of scenes are numbered, beyond hashes of most texts. */
 #define SCENE_IDS UINT32_C(0x7fffff00)
+/* Highlights of scenes, likewise. */
+#define HIGHLIGHT_IDS UINT32_C(0x7ffe0000)
 
 /* Share of a budget that a scene may take, and of which a flare has the rest,
  * but no less than that. */
@@ -218,6 +220,24 @@ int compositor_scene_size(struct compositor *c, int width, int height)
         .dither = c->settings.dither};
 
     return over_scene_size(&c->scene, &dials);
+}
+
+/* Adds the highlights of the scene. The picture shows them, as it does lamps.
+ */
+static void add_glints(struct compositor *c)
+{
+    struct over_scene_glint glint[GLINTS_MAX];
+    const int n = c->n_lamps;
+
+    c->n_lamps += over_scene_glints(&c->scene, &c->view,
+                                    c->settings.setup.optics.focal_mm,
+                                    c->lamp + n, glint);
+    for (int i = n; i < c->n_lamps; i++) {
+        c->share[i] = 1;
+        c->level[i] = glint[i - n].level;
+        c->seen_px[i] = glint[i - n].size_px;
+        c->id[i] = LAMP_ID_TEXT + HIGHLIGHT_IDS + glint[i - n].id % 65536;
+    }
 }
 
 enum glint_status compositor_scene(struct compositor *c,
@@ -251,6 +271,7 @@ enum glint_status compositor_scene(struct compositor *c,
         c->seen_px[i] = -1; /* the picture does not show it */
         c->id[i] = LAMP_ID_TEXT + SCENE_IDS + (uint32_t)(i - n);
     }
+    add_glints(c);
     for (int i = 0; i < c->n_lamps; i++)
         if (c->share[i] > OVER_SCENE_HIDDEN || !c->is_still)
             c->level[i] *= c->share[i];

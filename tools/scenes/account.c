@@ -4,6 +4,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 
+#include "glint/scene/highlights.h"
 #include "scenes/baked_scene.h"
 
 /* By make scene-cost-fit: least squares of the relative errors of random scenes
@@ -174,4 +175,22 @@ double scene_cost_json(const struct scene_frame *frame, size_t bytes, FILE *to)
             "\"draw_ms\": %.3f, \"map_ms\": 0.000",
             bytes, frame->bytes, frame->project_ms, frame->draw_ms);
     return minsn;
+}
+
+void scene_highlights_json(const struct scene_frame *frame, FILE *to)
+{
+    struct glint_scene_highlight found[GLINT_SCENE_MAX_HIGHLIGHTS];
+    const int n = glint_scene_find_highlights(frame->scene, found);
+
+    fprintf(to, "\"highlights\": [");
+    for (int i = 0; i < n; i++) {
+        const struct glint_spot *const s = &found[i].spot;
+
+        fprintf(to, "%s{\"object\": ", i ? ", " : "");
+        tool_json_string(to, frame->model->object[found[i].object].name);
+        fprintf(to, ", \"x\": %.3f, \"y\": %.3f, \"power\": %.4f}",
+                s->x_q8 / 256.0, s->y_q8 / 256.0,
+                (double)s->power_q16 * 0x1p-16);
+    }
+    fprintf(to, "]");
 }

@@ -52,4 +52,7 @@ int scene_covered_px(const struct scene_frame *frame);
  * instructions that the frame is told to cost. */
 double scene_cost_json(const struct scene_frame *frame, size_t bytes, FILE *to);
 
+/* Writes "highlights": a list of those of the frame that was drawn last. */
+void scene_highlights_json(const struct scene_frame *frame, FILE *to);
+
 #endif

@@ -108,6 +108,7 @@ void over_scene_close(struct over_scene *over)
     free(over->moved);
     over->moved = NULL;
     controls_close(&over->control);
+    glints_close(&over->glints);
     if (over->is_open)
         steer_close(&over->steer);
     if (over->is_open)
@@ -273,6 +274,9 @@ int over_scene_size(struct over_scene *over, const struct scene_dials *dials)
 {
     if (!over->is_open)
         return EXIT_OK;
+    glints_close(&over->glints);
+    if (glints_open(&over->glints, dials->width, dials->height) != GLINT_OK)
+        return tool_fail(over->tool, GLINT_E_MEMORY, NULL);
     scene_budget_init(&over->budget, dials);
     return size(over, dials);
 }
@@ -304,9 +308,10 @@ enum glint_status over_scene_draw(struct over_scene *over,
 
     take_control(over, frame);
     if (over->moved)
-        take_poses(over, over->control_file
-                             ? playback_next(&over->playback, over->elapsed_s)
-                             : frame);
+        take_poses(over,
+                   over->control_file
+                       ? playback_next(&over->playback, 1e-6 * over->elapsed_us)
+                       : frame);
     status = over->budget_ms > 0 ? spend(over) : GLINT_OK;
     if (status == GLINT_OK)
         status = scene_frame_try(&over->frame, image);
@@ -450,6 +455,22 @@ int over_scene_lights(struct over_scene *over, const struct glint_view *view,
     return n;
 }
 
+int over_scene_glints(struct over_scene *over, const struct glint_view *view,
+                      double focal_mm, struct glint_lamp *lamps,
+                      struct over_scene_glint *glints)
+{
+    struct glints *const g = &over->glints;
+    const int n = glints_frame(g, over->frame.scene,
+                               over->no_tracking ? 0 : over->elapsed_us);
+
+    for (int i = 0; i < n; i++) {
+        glints[i].level = glints_lamp(g, i, view, focal_mm, &lamps[i]);
+        glints[i].size_px = g->track[i].size_q8 / 256.0;
+        glints[i].id = g->track[i].id;
+    }
+    return n;
+}
+
 /* -------------------------------------------------------------------- report
  */
 
@@ -479,12 +500,14 @@ void over_scene_json(const struct over_scene *over, FILE *to)
         return;
     fprintf(to, "\"scene\": {");
     minsn = scene_cost_json(&over->frame, over->baked.bytes, to);
-    fprintf(to,
-            ", \"quality\": %.3f, \"predicted_ms\": %.3f, \"lights\": %d, "
-            "\"highlights\": [], \"lamps_hidden\": %d, \"poses_bad\": %ld, "
-            "\"control_bad\": %ld}, ",
+    fprintf(to, ", \"quality\": %.3f, \"predicted_ms\": %.3f, \"lights\": %d, ",
             over->budget_ms > 0 ? scene_budget_quality(b) : 1.0,
             over->budget_ms > 0 ? b->predicted_ms : b->ms_per_minsn * minsn,
-            over->lights, over->lamps_hidden, over->poses.n_bad,
-            over->control.n_bad);
+            over->lights);
+    scene_highlights_json(&over->frame, to);
+    fprintf(to, ", ");
+    fprintf(to,
+            "\"lamps_hidden\": %d, \"poses_bad\": %ld, "
+            "\"control_bad\": %ld}, ",
+            over->lamps_hidden, over->poses.n_bad, over->control.n_bad);
 }

@@ -21,6 +21,7 @@
 #include "scenes/baked_scene.h"
 #include "scenes/poses.h"
 #include "scenes/budget.h"
+#include "scenes/glints.h"
 #include "scenes/scene_frame.h"
 #include "scenes/steer.h"
 
@@ -44,8 +45,10 @@ struct over_scene {
     int shadow_points;        /* 1, 4, 16; 0: as is usual */
     bool half_shading;        /* two by two pixels at once, within one thing */
 
-    double budget_ms; /* what drawing may take; 0: as long as it does */
-    double elapsed_s; /* from the last picture to the next */
+    double budget_ms;   /* what drawing may take; 0: as long as it does */
+    int32_t elapsed_us; /* from the last picture to the next; 0: it is one by
+                           itself */
+    bool no_tracking;   /* each picture's highlights are its own */
 
     /* Private. */
     const struct tool *tool;
@@ -57,6 +60,7 @@ struct over_scene {
     struct playback playback; /* of the poses */
     struct steer steer;
     int posed; /* frame of the poses that is shown */
+    struct glints glints;
     struct scene_frame frame;
     bool is_open, is_sized, has_said;
 
@@ -106,6 +110,22 @@ void over_scene_hide(struct over_scene *over, const struct glint_view *view,
  * Returns how many there are. */
 int over_scene_lights(struct over_scene *over, const struct glint_view *view,
                       double focal_mm, struct glint_lamp *lamps, double *share);
+
+/* Most lamps that a scene gives. */
+enum { OVER_SCENE_LAMPS = GLINT_SCENE_MAX_LIGHTS + GLINTS_MAX };
+
+/* A highlight of the scene drawn last. */
+struct over_scene_glint {
+    double level;   /* how far it has risen or faded, 0 .. 1 */
+    double size_px; /* RMS radius */
+    uint32_t id;    /* from picture to picture, counts from 1 */
+};
+
+/* Sets LAMPS and GLINTS, [GLINTS_MAX], to the highlights of the scene drawn
+ * last, as a lens of FOCAL_MM sees them. Returns how many there are. */
+int over_scene_glints(struct over_scene *over, const struct glint_view *view,
+                      double focal_mm, struct glint_lamp *lamps,
+                      struct over_scene_glint *glints);
 
 /* Returns the memory that drawing takes. */
 size_t over_scene_bytes(const struct over_scene *over);

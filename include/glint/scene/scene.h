@@ -39,10 +39,12 @@ struct glint_scene_meshes;
 struct glint_scene_textures;
 struct glint_scene_bounces;
 struct glint_scene_wards;
+struct glint_scene_highlights;
 extern const struct glint_scene_meshes glint_scene_meshes;
 extern const struct glint_scene_textures glint_scene_textures;
 extern const struct glint_scene_bounces glint_scene_bounces;
 extern const struct glint_scene_wards glint_scene_wards;
+extern const struct glint_scene_highlights glint_scene_highlights;
 
 /* Parts of the run time; NULL: it is not there, and models that need it are
  * refused. */
@@ -51,6 +53,8 @@ struct glint_scene_parts {
     const struct glint_scene_textures *textures;
     const struct glint_scene_bounces *bounces; /* reflection, passing through */
     const struct glint_scene_wards *wards;     /* environments, brushed metal */
+    /* What glints (glint/scene/highlights.h); no model needs it. */
+    const struct glint_scene_highlights *highlights;
 };
 
 struct glint_scene_config {
@@ -67,6 +71,7 @@ struct glint_scene_config {
     int ward_samples;  /* 1 .. 32: lookups of an environment for a place on
                           brushed metal */
     int ward_nearest;  /* 1: each reads one level, not two blended */
+    int highlights;    /* 0 .. 8: that are found at most */
     int dither;        /* 1: 8-bit output is dithered, deterministically */
     /* For GLINT_CAMERA_LENS: the focal length in pixels, 2^10 .. 2^40 _q16. */
     int64_t focal_q16;

@@ -93,9 +93,10 @@ static void see_background(const struct glint_scene *s, int x, int y,
     glint_scene_behind(s, ray.toward_q30, glint_scene_pixel_q40(s), rgb_q15);
 }
 
-/* Shades what sample K of pixel (X, Y) sees. */
-static inline void shade_id(struct glint_scene_worker *w, uint32_t id, int x,
-                            int y, int k, struct glint_met_shade *shade)
+/* Shades what sample K of pixel (X, Y) sees; returns whether that is a thing.
+ */
+static inline int shade_id(struct glint_scene_worker *w, uint32_t id, int x,
+                           int y, int k, struct glint_met_shade *shade)
 {
     const struct glint_scene *s = w->scene;
     const struct glint_scene_header *h = s->model.header;
@@ -105,10 +106,13 @@ static inline void shade_id(struct glint_scene_worker *w, uint32_t id, int x,
     *shade = (struct glint_met_shade){{0, 0, 0}, 0};
     if (id != GLINT_NOTHING && find(w, id, x, y, k, &ray, &surface)) {
         glint_scene_shade(s, &ray, &surface, shade);
-    } else if (h->background != GLINT_BACKGROUND_CAMERA) {
+        return 1;
+    }
+    if (h->background != GLINT_BACKGROUND_CAMERA) {
         shade->cover_q8 = GLINT_COVER_ALL;
         see_background(s, x, y, shade->rgb_q15);
     }
+    return 0;
 }
 
 /* Returns whether the N samples of a pixel see nothing. */
@@ -158,6 +162,21 @@ static inline void share(const struct glint_scene *s, const uint32_t *id, int n,
     }
 }
 
+/* Notes what is over white of SHADE, SHARE_Q4 of a pixel whose middle is OFF_Q8
+ * from the top left corner of pixel (X, Y). */
+static inline void note(const struct glint_scene *s, uint32_t id,
+                        const struct glint_met_shade *shade, int x, int y,
+                        int32_t off_q8, int share_q4)
+{
+    const int32_t *rgb_q15 = shade->rgb_q15;
+
+    if (s->bright &&
+        (rgb_q15[0] > GLINT_SCENE_ONE_Q15 || rgb_q15[1] > GLINT_SCENE_ONE_Q15 ||
+         rgb_q15[2] > GLINT_SCENE_ONE_Q15))
+        s->cfg.parts.highlights->note(s->bright, id >> 20, 256 * x + off_q8,
+                                      256 * y + off_q8, rgb_q15, share_q4);
+}
+
 /* Adds TIMES samples, of N, of ID and SHADE. */
 static inline void add(const struct glint_scene *s, uint32_t id,
                        const struct glint_met_shade *shade, int times,
@@ -186,7 +205,8 @@ static NEVER_INLINE void shade_samples(struct glint_scene_worker *w,
 
         if (times[k] == 0)
             continue;
-        shade_id(w, id[k], x, y, k, &shade);
+        if (shade_id(w, id[k], x, y, k, &shade))
+            note(s, id[k], &shade, x, y, 128, times[k] * (16 / n));
         add(s, id[k], &shade, times[k], sum);
     }
     for (int c = 0; c < 3; c++)
@@ -254,7 +274,8 @@ static inline void shade_pixel(struct glint_scene_worker *w, const uint32_t *id,
     }
     *sum = (struct glint_scene_sum){{0, 0, 0}, 0, 0};
     if (quad || n == 1 || (is_one(id, n, id[0]) && !is_split(s, id[0]))) {
-        shade_id(w, id[0], x, y, quad ? QUAD : 0, &shade);
+        if (shade_id(w, id[0], x, y, quad ? QUAD : 0, &shade))
+            note(s, id[0], &shade, x, y, quad ? 256 : 128, quad ? 64 : 16);
         add(s, id[0], &shade, SUMMED, sum);
     } else {
         shade_samples(w, id, n, x, y, sum);
@@ -415,6 +436,8 @@ void glint_scene_draw(struct glint_scene *scene,
                                    .blend = &glint_blend};
     for (int i = 0; i < scene->cover_across * scene->cover_down; i++)
         scene->cover[i] = 0;
+    if (scene->bright)
+        scene->cfg.parts.highlights->begin(scene->bright);
     for (int i = 0; i < glint_workers_count(scene->cfg.workers); i++)
         scene->worker[i].is_linear = image->format == GLINT_LINEAR_Q20;
     glint_workers_run(scene->cfg.workers, glint_tiles_down(&d.tiles), row_job,

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint/scene/highlights.h - what glints on the things of a scene, as lamps of
+ * the picture for a lens.
+ *
+ *     cfg.parts.highlights = &glint_scene_highlights;            once
+ *     glint_scene_draw(scene, &image);                           each frame
+ *     n = glint_scene_find_highlights(scene, found);
+ *     n = glint_lamp_tracker_step(tracks, spots, n, us, ...);    so that none
+ *                                                                jumps
+ *
+ * A pixel of a thing counts by its linear light before that saturates: wholly
+ * from a luminance of 2 on, in part from 1, so that nothing comes or goes at
+ * once. Discs of lights are lights (glint_scene_lights()), not highlights, as
+ * is the background. Light is summed with its moments in squares of 8 x 8
+ * pixels; squares with light that touch are one highlight, and highlights whose
+ * middles are within 12 pixels are. No result depends on the number of workers,
+ * the order of jobs or the tile size. */
+#ifndef GLINT_SCENE_HIGHLIGHTS_H
+#define GLINT_SCENE_HIGHLIGHTS_H
+
+#include "glint/lamps.h"
+#include "glint/scene/scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum {
+    GLINT_SCENE_MAX_HIGHLIGHTS = 8,
+    GLINT_SCENE_HIGHLIGHT_APART = 12 /* pixels */
+};
+
+struct glint_scene_highlight {
+    /* Its power is its flux, up to 2^42 _q16; area is that of its squares; it
+     * is as wide as its moments say, half a pixel at least. */
+    struct glint_spot spot;
+    int object; /* index of that whose pixel is the brightest */
+};
+
+/* Sets FOUND[GLINT_SCENE_MAX_HIGHLIGHTS] to the highlights of the picture drawn
+ * last, the brightest first, as many as scene and configuration want, and
+ * returns their number. */
+int glint_scene_find_highlights(const struct glint_scene *scene,
+                                struct glint_scene_highlight *found);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

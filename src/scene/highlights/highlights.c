@@ -1,0 +1,388 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What glints on things: light over white, summed in squares of the picture
+ * while that is drawn, and the squares that touch, which are one highlight.
+ *
+ * A square belongs to one row of tiles, which one worker draws, and all sums
+ * are integers wide enough. */
+#include "glint/scene/highlights.h"
+
+#include "base/divide.h"
+#include "scene/state.h"
+
+enum {
+    ONE_Q15 = GLINT_SCENE_ONE_Q15,
+    SIDE_LOG2 = 3,
+    SIDE_Q8 = 256 << SIDE_LOG2,
+    LEAST_Q19 = 8,   /* light of a spot, _q16 1 */
+    KEPT = 64,       /* highlights, before those that are near are one */
+    WEIGHT_LOG2 = 26 /* sums of weights are below 2^26 */
+};
+
+/* The light of a square; a pixel counts 16, of which a sample is a part. Light
+ * is below 2^30, that of 64 pixels below 2^40, moments below 2^62. */
+struct glint_bright {
+    int64_t flux_q19;   /* luminance of what counts */
+    int64_t at_q27[2];  /* times the place in the square */
+    int64_t square_q35; /* times the square of both */
+    int64_t red_q19, blue_q19;
+    int32_t peak_q15; /* the brightest pixel, and the object it shows */
+    uint32_t object;
+};
+
+/* A highlight: the list of its squares, and what they sum to. */
+struct gathered {
+    int first, n;
+    int64_t flux_q19, red_q19, blue_q19;
+    int32_t peak_q15;
+    uint32_t object;
+    int32_t at_q8[2];
+};
+
+struct glint_bright_state {
+    int across, down;
+    struct glint_bright *cell; /* [down][across] */
+    /* While squares are gathered: the next of a highlight; UNSEEN, or the last
+     * of a list, END. */
+    int32_t *next;
+    struct gathered *kept; /* [KEPT] */
+};
+
+enum { UNSEEN = -2, END = -1 };
+
+/* ------------------------------------------------------------------- light */
+
+static struct glint_bright_state *carve(const struct glint_scene *scene,
+                                        struct glint_arena *arena)
+{
+    struct glint_bright_state measured;
+    struct glint_bright_state *placed =
+        glint_arena_take(arena, 1, sizeof *placed);
+    struct glint_bright_state *b = placed ? placed : &measured;
+    size_t n;
+
+    b->across = (scene->cfg.width + 7) >> SIDE_LOG2;
+    b->down = (scene->cfg.height + 7) >> SIDE_LOG2;
+    n = (size_t)b->across * (size_t)b->down;
+    b->cell = glint_arena_take(arena, n, sizeof *b->cell);
+    b->next = glint_arena_take(arena, n, sizeof *b->next);
+    b->kept = glint_arena_take(arena, KEPT, sizeof *b->kept);
+    return placed;
+}
+
+static void begin(struct glint_bright_state *b)
+{
+    for (int i = 0; i < b->across * b->down; i++)
+        b->cell[i] = (struct glint_bright){0};
+}
+
+static void note(struct glint_bright_state *b, uint32_t object, int32_t x_q8,
+                 int32_t y_q8, const int32_t rgb_q15[3], int share_q4)
+{
+    const int64_t light_q15 =
+        q_shift(INT64_C(6966) * rgb_q15[0] + INT64_C(23436) * rgb_q15[1] +
+                    INT64_C(2366) * rgb_q15[2],
+                15);
+    const int64_t weight_q15 = q_clamp_sat(light_q15 - ONE_Q15, 0, ONE_Q15);
+    const int64_t flux_q19 = q_shift(light_q15 * weight_q15, 15) * share_q4;
+    struct glint_bright *c =
+        &b->cell[(y_q8 / SIDE_Q8) * b->across + x_q8 / SIDE_Q8];
+    const int64_t x = x_q8 % SIDE_Q8, y = y_q8 % SIDE_Q8;
+
+    c->flux_q19 += flux_q19;
+    c->at_q27[0] += flux_q19 * x;
+    c->at_q27[1] += flux_q19 * y;
+    c->square_q35 += flux_q19 * ((x * x + y * y) / 2);
+    c->red_q19 += q_shift(rgb_q15[0] * weight_q15, 15) * share_q4;
+    c->blue_q19 += q_shift(rgb_q15[2] * weight_q15, 15) * share_q4;
+    if (light_q15 > c->peak_q15) {
+        c->peak_q15 = (int32_t)light_q15;
+        c->object = object;
+    }
+}
+
+/* --------------------------------------------------------------- gathering */
+
+static void add_cell(const struct glint_bright *c, struct gathered *g)
+{
+    g->n++;
+    g->flux_q19 += c->flux_q19;
+    g->red_q19 += c->red_q19;
+    g->blue_q19 += c->blue_q19;
+    if (c->peak_q15 > g->peak_q15) {
+        g->peak_q15 = c->peak_q15;
+        g->object = c->object;
+    }
+}
+
+/* Puts the squares about square I that have light, and are in no list, behind
+ * LAST; returns the last of the list then. */
+static int put_around(struct glint_bright_state *b, int i, int last)
+{
+    const int x = i % b->across, y = i / b->across;
+
+    for (int v = q_larger(0, y - 1); v <= y + 1 && v < b->down; v++)
+        for (int u = q_larger(0, x - 1); u <= x + 1 && u < b->across; u++) {
+            const int k = v * b->across + u;
+
+            if (b->cell[k].flux_q19 == 0 || b->next[k] != UNSEEN)
+                continue;
+            b->next[last] = k;
+            b->next[k] = END;
+            last = k;
+        }
+    return last;
+}
+
+/* Returns the middle of square I, along both axes, pixels q8. */
+static void middle_of(const struct glint_bright_state *b, int i, int32_t at[2])
+{
+    const struct glint_bright *c = &b->cell[i];
+    const int corner[2] = {i % b->across * SIDE_Q8, i / b->across * SIDE_Q8};
+
+    for (int k = 0; k < 2; k++)
+        at[k] = corner[k] +
+                glint_ratio((uint64_t)c->at_q27[k], (uint64_t)c->flux_q19);
+}
+
+/* Returns what square C counts in a highlight of FLUX_Q19. */
+static uint64_t weight_of(const struct glint_bright *c, int64_t flux_q19)
+{
+    const int up = q_up((uint64_t)flux_q19);
+    const int down = q_larger(0, 32 - WEIGHT_LOG2 - up);
+
+    return (uint64_t)c->flux_q19 >> down;
+}
+
+/* Sets the middle of G, whose squares are listed. */
+static void set_middle(const struct glint_bright_state *b, struct gathered *g)
+{
+    uint64_t weight = 0, at[2] = {0, 0};
+
+    for (int i = g->first; i != END; i = b->next[i]) {
+        const uint64_t w = weight_of(&b->cell[i], g->flux_q19);
+        int32_t middle[2];
+
+        middle_of(b, i, middle);
+        weight += w;
+        for (int k = 0; k < 2; k++)
+            at[k] += w * (uint64_t)middle[k];
+    }
+    for (int k = 0; k < 2; k++)
+        g->at_q8[k] = glint_ratio(at[k], weight);
+}
+
+/* Gathers the highlight that square I, in no list yet, is part of. */
+static struct gathered gather(struct glint_bright_state *b, int i)
+{
+    struct gathered g = {.first = i};
+    int last = i;
+
+    b->next[i] = END;
+    for (int at = i; at != END; at = b->next[at]) {
+        add_cell(&b->cell[at], &g);
+        last = put_around(b, at, last);
+    }
+    set_middle(b, &g);
+    return g;
+}
+
+/* ----------------------------------------------------------------- choosing */
+
+/* Puts G among the N brightest so far, KEPT at most; returns how many there
+ * are. Of equals the one found first, higher up, stands first. */
+static int keep(struct gathered *kept, int n, const struct gathered *g)
+{
+    int i = n < KEPT ? n : KEPT - 1;
+
+    if (n == KEPT && g->flux_q19 <= kept[i].flux_q19)
+        return n;
+    for (; i > 0 && kept[i - 1].flux_q19 < g->flux_q19; i--)
+        kept[i] = kept[i - 1];
+    kept[i] = *g;
+    return n < KEPT ? n + 1 : n;
+}
+
+static int is_near(const struct gathered *a, const struct gathered *b)
+{
+    const int64_t x = a->at_q8[0] - b->at_q8[0], y = a->at_q8[1] - b->at_q8[1];
+    const int64_t most = 256 * GLINT_SCENE_HIGHLIGHT_APART;
+
+    return x * x + y * y < most * most;
+}
+
+/* Makes TO of itself and FROM, whose list it takes. */
+static void join(struct glint_bright_state *b, struct gathered *to,
+                 const struct gathered *from)
+{
+    int last = to->first;
+
+    while (b->next[last] != END)
+        last = b->next[last];
+    b->next[last] = from->first;
+    to->n += from->n;
+    to->flux_q19 += from->flux_q19;
+    to->red_q19 += from->red_q19;
+    to->blue_q19 += from->blue_q19;
+    set_middle(b, to);
+}
+
+/* Makes one of those that are near, from the brightest on; returns how many
+ * are left. */
+static int join_near(struct glint_bright_state *b, struct gathered *kept, int n)
+{
+    for (int i = 0; i < n; i++)
+        for (int k = i + 1; k < n; k++)
+            if (is_near(&kept[i], &kept[k])) {
+                join(b, &kept[i], &kept[k]);
+                for (int m = k; m + 1 < n; m++)
+                    kept[m] = kept[m + 1];
+                n--;
+                k = i; /* the middle has moved */
+            }
+    return n;
+}
+
+/* -------------------------------------------------------------------- spots */
+
+/* Variances of a highlight, pixels^2 q8, and its covariance. */
+struct spread {
+    int64_t x_q8, y_q8, xy_q8;
+};
+
+/* Those of the middles of its squares, and in the mean those within each, which
+ * count as round. */
+static struct spread spread_of(const struct glint_bright_state *b,
+                               const struct gathered *g)
+{
+    int64_t x = 0, y = 0, xy = 0, within = 0;
+    uint64_t weight = 0;
+
+    for (int i = g->first; i != END; i = b->next[i]) {
+        const struct glint_bright *c = &b->cell[i];
+        const int64_t w = (int64_t)weight_of(c, g->flux_q19);
+        int32_t middle[2];
+        int64_t off[2], own;
+
+        middle_of(b, i, middle);
+        for (int k = 0; k < 2; k++) /* below 2^17, q4 */
+            off[k] = (middle[k] - g->at_q8[k]) / 16;
+        own = glint_ratio((uint64_t)c->square_q35, (uint64_t)c->flux_q19);
+        for (int k = 0; k < 2; k++) {
+            const int64_t in = middle[k] % SIDE_Q8;
+
+            own -= in * in / 2;
+        }
+        x += w * off[0] * off[0];
+        y += w * off[1] * off[1];
+        xy += w * off[0] * off[1];
+        within += w * q_clamp_sat(own, 0, SIDE_Q8 * SIDE_Q8);
+        weight += (uint64_t)w;
+    }
+    within = glint_ratio((uint64_t)within, weight << 8);
+    return (struct spread){glint_ratio((uint64_t)x, weight) + within,
+                           glint_ratio((uint64_t)y, weight) + within,
+                           (xy < 0 ? -1 : 1) *
+                               (int64_t)glint_ratio(q_magnitude(xy), weight)};
+}
+
+/* Returns the root of a variance, pixels q8; half a pixel at least. */
+static int32_t root_q8(int64_t variance_q8)
+{
+    return q_larger(
+        128, (int32_t)glint_root((uint64_t)q_clamp_sat(variance_q8, 0, 1 << 30)
+                                 << 8));
+}
+
+static void set_extent(const struct spread *s, struct glint_spot *spot)
+{
+    const int64_t half = (s->x_q8 - s->y_q8) / 2;
+    const int64_t middle = (s->x_q8 + s->y_q8) / 2;
+    const int64_t apart =
+        glint_root((uint64_t)(half * half) + (uint64_t)(s->xy_q8 * s->xy_q8));
+    int64_t cos2_q15 = ONE_Q15;
+
+    spot->axis_q8[0] = root_q8(middle + apart);
+    spot->axis_q8[1] = root_q8(middle - apart);
+    spot->size_q8 = (int32_t)glint_root(
+        (uint64_t)((int64_t)spot->axis_q8[0] * spot->axis_q8[0] +
+                   (int64_t)spot->axis_q8[1] * spot->axis_q8[1]));
+    if (apart > 0)
+        cos2_q15 = (half < 0 ? -1 : 1) *
+                   q_smaller(ONE_Q15, glint_ratio(q_magnitude(half) << 15,
+                                                  (uint64_t)apart));
+    spot->cos_q15 = (int32_t)glint_root((uint64_t)(ONE_Q15 + cos2_q15) << 14);
+    spot->sin_q15 = (int32_t)glint_root((uint64_t)(ONE_Q15 - cos2_q15) << 14);
+    if (s->xy_q8 < 0)
+        spot->sin_q15 = -spot->sin_q15;
+}
+
+/* Sets the colour of G, of a luminance of 1. */
+static void set_colour(const struct gathered *g, struct glint_spot *spot)
+{
+    const uint64_t flux = (uint64_t)g->flux_q19;
+    const int up = q_smaller(15, q_up(flux) + 26); /* blue: 2^4 flux at most */
+    int64_t rest;
+
+    spot->rgb_q15[0] =
+        glint_ratio((uint64_t)g->red_q19 << up, flux >> (15 - up));
+    spot->rgb_q15[2] =
+        glint_ratio((uint64_t)g->blue_q19 << up, flux >> (15 - up));
+    rest = ((int64_t)ONE_Q15 << 15) - INT64_C(6966) * spot->rgb_q15[0] -
+           INT64_C(2366) * spot->rgb_q15[2];
+    spot->rgb_q15[1] = rest > 0 ? glint_ratio((uint64_t)rest, 23436) : 0;
+}
+
+static void set_spot(const struct glint_bright_state *b,
+                     const struct gathered *g,
+                     struct glint_scene_highlight *found)
+{
+    struct glint_spot *spot = &found->spot;
+    const struct spread spread = spread_of(b, g);
+    const int64_t most_q16 = INT64_C(1) << 42;
+
+    *spot = (struct glint_spot){.x_q8 = g->at_q8[0],
+                                .y_q8 = g->at_q8[1],
+                                .area = g->n << 2 * SIDE_LOG2};
+    spot->flux_q16 = q_shift(g->flux_q19, 3);
+    if (spot->flux_q16 > most_q16)
+        spot->flux_q16 = most_q16;
+    spot->power_q16 = spot->flux_q16;
+    set_extent(&spread, spot);
+    set_colour(g, spot);
+    found->object = (int)g->object;
+}
+
+static int find(const struct glint_scene *scene,
+                struct glint_scene_highlight *found)
+{
+    struct glint_bright_state *b = scene->bright;
+    const int most = q_smaller((int32_t)scene->model.header->highlights,
+                               scene->cfg.highlights);
+    struct gathered *const kept = b->kept;
+    int n = 0;
+
+    for (int i = 0; i < b->across * b->down; i++)
+        b->next[i] = UNSEEN;
+    for (int i = 0; i < b->across * b->down; i++)
+        if (b->cell[i].flux_q19 > 0 && b->next[i] == UNSEEN) {
+            const struct gathered g = gather(b, i);
+
+            n = keep(kept, n, &g);
+        }
+    n = q_smaller(join_near(b, kept, n), most);
+    while (n > 0 && kept[n - 1].flux_q19 < LEAST_Q19)
+        n--;
+    for (int i = 0; i < n; i++)
+        set_spot(b, &kept[i], &found[i]);
+    return n;
+}
+
+const struct glint_scene_highlights glint_scene_highlights = {carve, begin,
+                                                              note};
+
+int glint_scene_find_highlights(const struct glint_scene *scene,
+                                struct glint_scene_highlight *found)
+{
+    return scene->bright ? find(scene, found) : 0;
+}

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glints.h - highlights of a scene over time, as lamps of the flare.
+ *
+ *     glints_open(&glints, width, height);
+ *     n = glints_frame(&glints, scene, elapsed_us);            each picture
+ *     glints_lamp(&glints, i, &view, focal_mm, &lamp, &level);
+ *     glints_close(&glints);
+ *
+ * They are followed as lamps of a picture are: none comes, goes or jumps at
+ * once.
+ */
+#ifndef GLINT_TOOLS_SCENES_GLINTS_H
+#define GLINT_TOOLS_SCENES_GLINTS_H
+
+#include "glint/lamp_tracker.h"
+#include "glint/scene/highlights.h"
+#include "glint/setup.h"
+#include "glint/view.h"
+
+/* While some fade others rise. */
+enum { GLINTS_MAX = 2 * GLINT_SCENE_MAX_HIGHLIGHTS };
+
+struct glints {
+    struct glint_scene_highlight found[GLINT_SCENE_MAX_HIGHLIGHTS];
+    struct glint_lamp_track track[GLINTS_MAX];
+    int n_found, n; /* of the last picture */
+
+    /* Private. */
+    struct glint_lamp_tracker *tracks;
+    void *mem;
+};
+
+/* GLINT_E_MEMORY. */
+enum glint_status glints_open(struct glints *glints, int width, int height);
+void glints_close(struct glints *glints);
+
+/* Takes the highlights of the picture of SCENE drawn last, ELAPSED_US after the
+ * one before; 0: a picture by itself. Returns how many lamps there are. */
+int glints_frame(struct glints *glints, const struct glint_scene *scene,
+                 int32_t elapsed_us);
+
+/* Sets LAMP to highlight I as a lens of FOCAL_MM sees it. Returns its level,
+ * 0 .. 1. */
+double glints_lamp(const struct glints *glints, int i,
+                   const struct glint_view *view, double focal_mm,
+                   struct glint_lamp *lamp);
+
+#endif
