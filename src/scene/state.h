@@ -11,6 +11,7 @@
 #include "glint/scene/scene.h"
 #include "image/curve.h"
 #include "scene/around/around.h"
+#include "scene/highlights/part.h"
 #include "scene/ray.h"
 #include "scene/view.h"
 #include "tile/bins.h"
@@ -214,8 +215,8 @@ struct glint_scene {
     struct glint_around around;
     struct glint_scene_material *material; /* [n_materials], as they look now */
     struct glint_scene_ward *ward;         /* [n_wards] */
-    struct glint_ward_state *wards;    /* NULL: neither environment nor metal */
-    struct glint_bright_state *bright; /* NULL: highlights are not wanted */
+    struct glint_ward_state *wards; /* NULL: neither environment nor metal */
+    struct glint_highlight_state *bright; /* NULL: highlights are not wanted */
     int cover_across, cover_down;
     uint16_t *cover; /* [cover_down][cover_across]: sums of q8 over 64 pixels */
 };
@@ -493,19 +494,6 @@ struct glint_scene_wards {
      * TOWARD_Q30, in the mean of a spot of that angular variance. */
     void (*look)(const struct glint_scene *scene, const int32_t toward_q30[3],
                  int64_t spread_q40, int32_t rgb_q15[3]);
-};
-
-struct glint_scene_highlights {
-    /* Takes the memory of the part; NULL while it is measured. */
-    struct glint_bright_state *(*carve)(const struct glint_scene *scene,
-                                        struct glint_arena *arena);
-    /* Begins a picture. */
-    void (*begin)(struct glint_bright_state *bright);
-    /* Adds light of object OBJECT in the pixel whose middle is (X, Y), pixels
-     * q8 from the top left corner: SHARE_Q4 of RGB_Q15. */
-    void (*note)(struct glint_bright_state *bright, uint32_t object,
-                 int32_t x_q8, int32_t y_q8, const int32_t rgb_q15[3],
-                 int share_q4);
 };
 
 /* Pixels of the tile that a worker draws in, as a pass. */

@@ -171,6 +171,40 @@ static const char *light_name(const struct explained_scene *s, int i,
     return text;
 }
 
+/* --------------------------------------------------------------- highlights */
+
+/* What becomes of a highlight. */
+struct highlight {
+    const char *word; /* drawn, merged, too faint ... */
+    double x, y, power;
+    int object, bundles; /* of ghosts, that it makes */
+};
+
+/* Sets FOUND[GLINT_SCENE_MAX_HIGHLIGHTS]; returns how many there are. They are
+ * the last lamps of the compositor, in this order. */
+static int highlights_of(const struct explained_scene *s,
+                         struct highlight *found)
+{
+    const struct compositor *const c = s->compositor;
+    struct glint_scene_highlight seen[GLINT_SCENE_MAX_HIGHLIGHTS];
+    const int n = glint_scene_find_highlights(c->scene.frame.scene, seen);
+    const struct glint_lamp *const lamp = c->lamp + c->n_lamps - n;
+
+    for (int i = 0; i < n; i++) {
+        const struct glint_spot *const spot = &seen[i].spot;
+        const int at = c->has_lens && s->flare ? drawn_for(s, &lamp[i]) : -1;
+
+        found[i] = (struct highlight){
+            c->has_lens ? word_of(s, &lamp[i]) : "no lens",
+            spot->x_q8 / 256.0,
+            spot->y_q8 / 256.0,
+            (double)spot->power_q16 * 0x1p-16,
+            seen[i].object,
+            at < 0 ? 0 : glint_explain_drawn(&s->flare->light[at])};
+    }
+    return n;
+}
+
 /* -------------------------------------------------------------------- table */
 
 static int count_of(const struct explained_scene *s, enum glint_scene_fate fate)
@@ -216,6 +250,20 @@ static void print_lights(const struct explained_scene *s)
     }
 }
 
+static void print_highlights(const struct explained_scene *s)
+{
+    struct highlight found[GLINT_SCENE_MAX_HIGHLIGHTS];
+    const int n = highlights_of(s, found);
+
+    if (n > 0)
+        printf("\n%-22s %9s %9s %9s %7s\n", "highlight on", "x", "y", "power",
+               "bundles");
+    for (int i = 0; i < n; i++)
+        printf("%-22s %9.1f %9.1f %9.4g %7d  %s\n", name_of(s, found[i].object),
+               found[i].x, found[i].y, found[i].power, found[i].bundles,
+               found[i].word);
+}
+
 void explain_scene_print(const struct explained_scene *s)
 {
     const double minsn = scene_cost_minsn(&s->account);
@@ -241,9 +289,27 @@ void explain_scene_print(const struct explained_scene *s)
         printf(" %6.1f\n", minsn > 0 ? 100 * scene_cost_part(p) / minsn : 0);
     }
     print_lights(s);
+    print_highlights(s);
 }
 
 /* --------------------------------------------------------------------- JSON */
+
+static void highlights_json(const struct explained_scene *s)
+{
+    struct highlight found[GLINT_SCENE_MAX_HIGHLIGHTS];
+    const int n = highlights_of(s, found);
+
+    printf("\"highlights\": [");
+    for (int i = 0; i < n; i++) {
+        printf("%s{\"object\": ", i ? ", " : "");
+        tool_json_string(stdout, name_of(s, found[i].object));
+        printf(", \"x\": %.2f, \"y\": %.2f, \"power\": %.6g, "
+               "\"bundles\": %d, \"fate\": \"%s\"}",
+               found[i].x, found[i].y, found[i].power, found[i].bundles,
+               found[i].word);
+    }
+    printf("], ");
+}
 
 void explain_scene_json(const struct explained_scene *s)
 {
@@ -283,5 +349,7 @@ void explain_scene_json(const struct explained_scene *s)
             printf("null");
         printf("}");
     }
-    printf("], \"minsn\": %.4f}", minsn);
+    printf("], ");
+    highlights_json(s);
+    printf("\"minsn\": %.4f}", minsn);
 }

@@ -23,7 +23,7 @@
 #include "scenes/budget.h"
 #include "scenes/glints.h"
 #include "scenes/scene_frame.h"
-#include "scenes/steer.h"
+#include "control/steer.h"
 
 /* Share of a lamp that is hidden: as good as none, but the exposure still
  * knows what it was. */

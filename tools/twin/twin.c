@@ -457,11 +457,8 @@ static void draw_row(void *ctx, int y, int worker)
     }
 }
 
-void twin_render(const struct twin *twin, const struct twin_view *view,
-                 struct glint_workers *workers, struct twin_pixel *pixels)
+void twin_aim(struct twin *twin, const struct twin_view *view)
 {
-    struct twin seen = *twin;
-    struct drawing drawing = {&seen, view, pixels};
     struct twin_ray middle, beside;
     double off[3];
 
@@ -469,7 +466,15 @@ void twin_render(const struct twin *twin, const struct twin_view *view,
     twin_camera_ray(twin, view, view->width / 2. + 1, view->height / 2.,
                     &beside);
     vec_add(beside.toward, -1, middle.toward, off);
-    seen.pixel_tan = vec_unit(off);
+    twin->pixel_tan = vec_unit(off);
+}
 
+void twin_render(const struct twin *twin, const struct twin_view *view,
+                 struct glint_workers *workers, struct twin_pixel *pixels)
+{
+    struct twin seen = *twin;
+    struct drawing drawing = {&seen, view, pixels};
+
+    twin_aim(&seen, view);
     glint_workers_run(workers, view->height, draw_row, &drawing);
 }

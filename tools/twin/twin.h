@@ -101,6 +101,9 @@ bool twin_meet_object(const struct twin *twin, int object,
 /* Returns what RAY, a primary one, sees. */
 struct twin_pixel twin_see(const struct twin *twin, const struct twin_ray *ray);
 
+/* Tells TWIN how wide pixels of VIEW are, as twin_render() does. */
+void twin_aim(struct twin *twin, const struct twin_view *view);
+
 /* Draws PIXELS[height][width]. */
 void twin_render(const struct twin *twin, const struct twin_view *view,
                  struct glint_workers *workers, struct twin_pixel *pixels);

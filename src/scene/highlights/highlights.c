@@ -21,7 +21,7 @@ enum {
 
 /* The light of a square; a pixel counts 16, of which a sample is a part. Light
  * is below 2^30, that of 64 pixels below 2^40, moments below 2^62. */
-struct glint_bright {
+struct glint_highlight_cell {
     int64_t flux_q19;   /* luminance of what counts */
     int64_t at_q27[2];  /* times the place in the square */
     int64_t square_q35; /* times the square of both */
@@ -39,9 +39,9 @@ struct gathered {
     int32_t at_q8[2];
 };
 
-struct glint_bright_state {
+struct glint_highlight_state {
     int across, down;
-    struct glint_bright *cell; /* [down][across] */
+    struct glint_highlight_cell *cell; /* [down][across] */
     /* While squares are gathered: the next of a highlight; UNSEEN, or the last
      * of a list, END. */
     int32_t *next;
@@ -52,13 +52,13 @@ enum { UNSEEN = -2, END = -1 };
 
 /* ------------------------------------------------------------------- light */
 
-static struct glint_bright_state *carve(const struct glint_scene *scene,
-                                        struct glint_arena *arena)
+static struct glint_highlight_state *carve(const struct glint_scene *scene,
+                                           struct glint_arena *arena)
 {
-    struct glint_bright_state measured;
-    struct glint_bright_state *placed =
+    struct glint_highlight_state measured;
+    struct glint_highlight_state *placed =
         glint_arena_take(arena, 1, sizeof *placed);
-    struct glint_bright_state *b = placed ? placed : &measured;
+    struct glint_highlight_state *b = placed ? placed : &measured;
     size_t n;
 
     b->across = (scene->cfg.width + 7) >> SIDE_LOG2;
@@ -70,13 +70,13 @@ static struct glint_bright_state *carve(const struct glint_scene *scene,
     return placed;
 }
 
-static void begin(struct glint_bright_state *b)
+static void begin(struct glint_highlight_state *b)
 {
     for (int i = 0; i < b->across * b->down; i++)
-        b->cell[i] = (struct glint_bright){0};
+        b->cell[i] = (struct glint_highlight_cell){0};
 }
 
-static void note(struct glint_bright_state *b, uint32_t object, int32_t x_q8,
+static void note(struct glint_highlight_state *b, uint32_t object, int32_t x_q8,
                  int32_t y_q8, const int32_t rgb_q15[3], int share_q4)
 {
     const int64_t light_q15 =
@@ -85,7 +85,7 @@ static void note(struct glint_bright_state *b, uint32_t object, int32_t x_q8,
                 15);
     const int64_t weight_q15 = q_clamp_sat(light_q15 - ONE_Q15, 0, ONE_Q15);
     const int64_t flux_q19 = q_shift(light_q15 * weight_q15, 15) * share_q4;
-    struct glint_bright *c =
+    struct glint_highlight_cell *c =
         &b->cell[(y_q8 / SIDE_Q8) * b->across + x_q8 / SIDE_Q8];
     const int64_t x = x_q8 % SIDE_Q8, y = y_q8 % SIDE_Q8;
 
@@ -103,7 +103,7 @@ static void note(struct glint_bright_state *b, uint32_t object, int32_t x_q8,
 
 /* --------------------------------------------------------------- gathering */
 
-static void add_cell(const struct glint_bright *c, struct gathered *g)
+static void add_cell(const struct glint_highlight_cell *c, struct gathered *g)
 {
     g->n++;
     g->flux_q19 += c->flux_q19;
@@ -117,7 +117,7 @@ static void add_cell(const struct glint_bright *c, struct gathered *g)
 
 /* Puts the squares about square I that have light, and are in no list, behind
  * LAST; returns the last of the list then. */
-static int put_around(struct glint_bright_state *b, int i, int last)
+static int put_around(struct glint_highlight_state *b, int i, int last)
 {
     const int x = i % b->across, y = i / b->across;
 
@@ -135,9 +135,10 @@ static int put_around(struct glint_bright_state *b, int i, int last)
 }
 
 /* Returns the middle of square I, along both axes, pixels q8. */
-static void middle_of(const struct glint_bright_state *b, int i, int32_t at[2])
+static void middle_of(const struct glint_highlight_state *b, int i,
+                      int32_t at[2])
 {
-    const struct glint_bright *c = &b->cell[i];
+    const struct glint_highlight_cell *c = &b->cell[i];
     const int corner[2] = {i % b->across * SIDE_Q8, i / b->across * SIDE_Q8};
 
     for (int k = 0; k < 2; k++)
@@ -146,7 +147,8 @@ static void middle_of(const struct glint_bright_state *b, int i, int32_t at[2])
 }
 
 /* Returns what square C counts in a highlight of FLUX_Q19. */
-static uint64_t weight_of(const struct glint_bright *c, int64_t flux_q19)
+static uint64_t weight_of(const struct glint_highlight_cell *c,
+                          int64_t flux_q19)
 {
     const int up = q_up((uint64_t)flux_q19);
     const int down = q_larger(0, 32 - WEIGHT_LOG2 - up);
@@ -155,7 +157,8 @@ static uint64_t weight_of(const struct glint_bright *c, int64_t flux_q19)
 }
 
 /* Sets the middle of G, whose squares are listed. */
-static void set_middle(const struct glint_bright_state *b, struct gathered *g)
+static void set_middle(const struct glint_highlight_state *b,
+                       struct gathered *g)
 {
     uint64_t weight = 0, at[2] = {0, 0};
 
@@ -173,7 +176,7 @@ static void set_middle(const struct glint_bright_state *b, struct gathered *g)
 }
 
 /* Gathers the highlight that square I, in no list yet, is part of. */
-static struct gathered gather(struct glint_bright_state *b, int i)
+static struct gathered gather(struct glint_highlight_state *b, int i)
 {
     struct gathered g = {.first = i};
     int last = i;
@@ -212,7 +215,7 @@ static int is_near(const struct gathered *a, const struct gathered *b)
 }
 
 /* Makes TO of itself and FROM, whose list it takes. */
-static void join(struct glint_bright_state *b, struct gathered *to,
+static void join(struct glint_highlight_state *b, struct gathered *to,
                  const struct gathered *from)
 {
     int last = to->first;
@@ -229,7 +232,8 @@ static void join(struct glint_bright_state *b, struct gathered *to,
 
 /* Makes one of those that are near, from the brightest on; returns how many
  * are left. */
-static int join_near(struct glint_bright_state *b, struct gathered *kept, int n)
+static int join_near(struct glint_highlight_state *b, struct gathered *kept,
+                     int n)
 {
     for (int i = 0; i < n; i++)
         for (int k = i + 1; k < n; k++)
@@ -252,14 +256,14 @@ struct spread {
 
 /* Those of the middles of its squares, and in the mean those within each, which
  * count as round. */
-static struct spread spread_of(const struct glint_bright_state *b,
+static struct spread spread_of(const struct glint_highlight_state *b,
                                const struct gathered *g)
 {
     int64_t x = 0, y = 0, xy = 0, within = 0;
     uint64_t weight = 0;
 
     for (int i = g->first; i != END; i = b->next[i]) {
-        const struct glint_bright *c = &b->cell[i];
+        const struct glint_highlight_cell *c = &b->cell[i];
         const int64_t w = (int64_t)weight_of(c, g->flux_q19);
         int32_t middle[2];
         int64_t off[2], own;
@@ -333,7 +337,7 @@ static void set_colour(const struct gathered *g, struct glint_spot *spot)
     spot->rgb_q15[1] = rest > 0 ? glint_ratio((uint64_t)rest, 23436) : 0;
 }
 
-static void set_spot(const struct glint_bright_state *b,
+static void set_spot(const struct glint_highlight_state *b,
                      const struct gathered *g,
                      struct glint_scene_highlight *found)
 {
@@ -356,7 +360,7 @@ static void set_spot(const struct glint_bright_state *b,
 static int find(const struct glint_scene *scene,
                 struct glint_scene_highlight *found)
 {
-    struct glint_bright_state *b = scene->bright;
+    struct glint_highlight_state *b = scene->bright;
     const int most = q_smaller((int32_t)scene->model.header->highlights,
                                scene->cfg.highlights);
     struct gathered *const kept = b->kept;

@@ -32,7 +32,7 @@ static void *mem;
 
 static const struct glint_scene_parts all_parts = {
     &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,
-    &glint_scene_wards};
+    &glint_scene_wards, NULL};
 
 static struct glint_scene_config defaults(void)
 {

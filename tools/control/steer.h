@@ -9,8 +9,8 @@
  *
  * Nothing is baked: what a line changes the next picture shows.
  */
-#ifndef GLINT_TOOLS_SCENES_STEER_H
-#define GLINT_TOOLS_SCENES_STEER_H
+#ifndef GLINT_TOOLS_CONTROL_STEER_H
+#define GLINT_TOOLS_CONTROL_STEER_H
 
 #include "control/control.h"
 #include "glint/scene/scene.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "scenes/steer.h"
+#include "control/steer.h"
 
 #include <math.h>
 #include <stdlib.h>
