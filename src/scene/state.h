@@ -226,16 +226,6 @@ static inline uint32_t glint_id(uint32_t object, uint32_t triangle)
     return object << 20 | triangle;
 }
 
-/* Returns the least box that holds A and B. */
-static inline struct glint_box glint_box_join(struct glint_box a,
-                                              struct glint_box b)
-{
-    if (glint_box_empty(a) || glint_box_empty(b))
-        return glint_box_empty(a) ? b : a;
-    return (struct glint_box){q_smaller(a.x0, b.x0), q_smaller(a.y0, b.y0),
-                              q_larger(a.x1, b.x1), q_larger(a.y1, b.y1)};
-}
-
 /* --------------------------------------------------------- visible, surface */
 
 /* Returns where N samples of a pixel lie, 1, 4, 8 or 16, q8 from its middle. */

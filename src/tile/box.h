@@ -24,4 +24,15 @@ static inline int glint_box_empty(struct glint_box b)
     return b.x0 >= b.x1 || b.y0 >= b.y1;
 }
 
+/* Returns the least box that holds A and B. */
+static inline struct glint_box glint_box_join(struct glint_box a,
+                                              struct glint_box b)
+{
+    if (glint_box_empty(a) || glint_box_empty(b))
+        return glint_box_empty(a) ? b : a;
+    return (struct glint_box){
+        a.x0 < b.x0 ? a.x0 : b.x0, a.y0 < b.y0 ? a.y0 : b.y0,
+        a.x1 > b.x1 ? a.x1 : b.x1, a.y1 > b.y1 ? a.y1 : b.y1};
+}
+
 #endif
