@@ -23,6 +23,9 @@
 #                 run-time half has no floats and calls nobody (TARGET= too)
 #   make install  DESTDIR= PREFIX=/usr/local, TARGET= for a board, MODELS=no
 #                 without baked models;  make uninstall
+#   make shared   shared libraries;  install-library: these, archives, headers
+#                 and pkg-config files alone;  dist: the sources, packed;
+#                 abi REF=REVISION: what has changed of them since, by abidiff
 #   make bench    what a frame costs;  bench-insn: in instructions
 #   make size     bytes of the run-time library, and of programs with parts of it
 #   make budget   what a frame costs on ARM, in instructions and bytes
@@ -184,7 +187,7 @@ build/glint-sdl.so: platform/sdl/sdl.c platform/sdl/sdl.h
 	$(Q)$(CC) -std=c99 -O2 $(filter-out -Wundef,$(WARN)) -fPIC -fvisibility=hidden -shared -Iinclude -Iplatform \
 	        $< -o $@ $$(pkg-config --cflags --libs sdl2)
 
-include tools/make/check.mk tools/make/emulated.mk tools/make/measure.mk tools/make/install.mk
+include tools/make/check.mk tools/make/emulated.mk tools/make/measure.mk tools/make/shared.mk tools/make/install.mk
 clean:
 	rm -rf build
 .PHONY: all help always oiio assimp window glint-live clean

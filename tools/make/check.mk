@@ -54,7 +54,7 @@ $(PROGRAMS): $(OUT)/%: $(OUT)/tests/programs/%.o $(OUT)/libglint-tests.a $(libs)
 
 check:
 	@tools/make/deps "unit tests, lint" gcc libc6-dev binutils \
-	        libcmocka-dev clang clang-format libjpeg62-turbo-dev libinih-dev libjansson-dev
+	        libcmocka-dev clang clang-format pkg-config libjpeg62-turbo-dev libinih-dev libjansson-dev
 	@$(MAKE) --no-print-directory WERROR=-Werror run-check
 	@[ $(notdir $(CC))-$(CONFIG)$(VM) != gcc-release ] || \
 	        ! tests/vm/possible $(VM_ARCHS) || \

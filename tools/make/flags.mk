@@ -2,7 +2,7 @@
 
 WARN := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes \
         -Wmissing-prototypes -Wvla -Wdouble-promotion -Wundef $(WERROR)
-CFLAGS := $(MACHINE_$(TARGET)) $(SECTIONS) -std=c99 -O2 -g -ffp-contract=off -fvisibility=hidden $(WARN)
+CFLAGS := $(MACHINE_$(TARGET)) $(SECTIONS) -std=c99 -O2 -g -ffile-prefix-map=$(CURDIR)=. -ffp-contract=off -fvisibility=hidden $(WARN)
 $(OUT)/src/%.o $(OUT)/tests/%.o: CPPFLAGS += -Isrc
 $(OUT)/tests/%.o: CPPFLAGS += -Itests
 $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
@@ -17,7 +17,9 @@ $(OUT)/src/bake/motion/recording.o: CPPFLAGS += $(JANSSON_CPPFLAGS)
 # run-time half, which has no copies and no arrays of a length from outside, is
 # not. A sanitizer sees more by itself, and -O0 takes no _FORTIFY_SOURCE.
 LINKED := -Wl,-z,relro,-z,now
-ifeq ($(filter -static,$(LDFLAGS)),)
+ifdef PIC # for shared libraries, of which the linker keeps what is to be seen
+CFLAGS := $(filter-out -fvisibility=hidden,$(CFLAGS)) -fPIC -fno-semantic-interposition
+else ifeq ($(filter -static,$(LDFLAGS)),)
 CFLAGS += -fPIE
 LINKED += -pie
 endif

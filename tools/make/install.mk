@@ -10,17 +10,12 @@ MESHES  ?= $(if $(CROSS),no,$(shell pkg-config --exists assimp 2>/dev/null && ec
 WINDOW  ?= $(if $(CROSS),no,$(shell pkg-config --exists sdl2 2>/dev/null && echo yes || echo no))
 MODELS  ?= $(if $(CROSS),no,yes)
 to := $(DESTDIR)$(PREFIX)
-INSTALLED := -bake -engine -published
-install: all glint-live $(if $(filter yes,$(PLUGIN)),build/glint-oiio.so) \
+install: install-library all glint-live $(if $(filter yes,$(PLUGIN)),build/glint-oiio.so) \
         $(if $(filter yes,$(MESHES)),build/glint-assimp.so) \
         $(if $(filter yes,$(WINDOW)),build/glint-sdl.so)
-	install -d $(to)/bin $(to)/include/glint/scene $(to)/lib/glint \
-	        $(to)/share/glint/lenses $(to)/lib/systemd/system
+	install -d $(to)/bin $(to)/lib/glint $(to)/share/glint/lenses $(to)/lib/systemd/system
 	install $(if $(CROSS),-s --strip-program=$(CROSS)strip) -m 755 \
 	        $(program) $(OUT)/glint-live $(to)/bin
-	install -m 644 include/glint/*.h $(to)/include/glint
-	install -m 644 include/glint/scene/*.h $(to)/include/glint/scene
-	install -m 644 $(patsubst %,$(OUT)/libglint%.a,$(INSTALLED)) $(OUT)/libglint.a $(to)/lib
 	install -m 644 lenses/*.lens $(to)/share/glint/lenses
 	install -m 644 tests/data/bridge.$(if $(filter yes,$(PLUGIN)),jpg,ppm) $(to)/share/glint
 	sed 's,@PREFIX@,$(PREFIX),' platform/linux/glint-live.service \
@@ -38,16 +33,28 @@ ifneq ($(MODELS),no)
 	install -d $(to)/share/glint/models
 	install -m 644 build/models-installed/*.glint $(to)/share/glint/models
 endif
+# What programs are built and run with; for a board archives alone.
+headers := $(wildcard include/glint/*.h include/glint/*/*.h)
+install-library: $(archives) $(if $(CROSS),,shared)
+	install -d $(to)/include/glint/scene $(to)/lib/pkgconfig
+	install -m 644 $(filter-out $(wildcard include/glint/*/*.h),$(headers)) $(to)/include/glint
+	install -m 644 include/glint/scene/*.h $(to)/include/glint/scene
+	install -m 644 $(patsubst %,$(OUT)/lib%.a,$(LIBRARIES) glint-published) $(to)/lib
+	$(if $(CROSS),,cp -P $(addprefix $(OUT)-pic/,$(foreach l,$(LIBRARIES),$(call shared_names,$l))) $(to)/lib)
+	for l in $(LIBRARIES); do \
+	        tools/make/pkg-config $$l $(PREFIX) $(VERSION) '$(taken)' >$(to)/lib/pkgconfig/$$l.pc && \
+	        chmod 644 $(to)/lib/pkgconfig/$$l.pc || exit 1; done
 # What install put there, and folders that are empty then.
 uninstall:
-	rm -f $(to)/bin/glint $(to)/bin/glint-live $(to)/lib/libglint.a \
-	        $(patsubst %,$(to)/lib/libglint%.a,$(INSTALLED)) $(to)/lib/glint/glint-oiio.so \
-	        $(to)/lib/glint/glint-assimp.so $(to)/lib/glint/glint-sdl.so \
+	rm -f $(to)/bin/glint $(to)/bin/glint-live $(to)/lib/glint/glint-oiio.so \
+	        $(patsubst %,$(to)/lib/lib%.a,$(LIBRARIES) glint-published) \
+	        $(addprefix $(to)/lib/,$(foreach l,$(LIBRARIES),$(call shared_names,$l))) \
+	        $(LIBRARIES:%=$(to)/lib/pkgconfig/%.pc) $(headers:%=$(to)/%) \
+        $(to)/lib/glint/glint-assimp.so $(to)/lib/glint/glint-sdl.so \
 	        $(to)/lib/systemd/system/glint-live.service \
-	        $(patsubst %,$(to)/%,$(wildcard include/glint/*.h include/glint/*/*.h)) \
 	        $(patsubst %,$(to)/share/glint/%,$(wildcard lenses/*.lens)) \
 	        $(to)/share/glint/models/*.glint $(to)/share/glint/bridge.jpg $(to)/share/glint/bridge.ppm
-	@for d in include/glint/scene include/glint lib/glint share/glint/models share/glint/lenses share/glint \
+	@for d in include/glint/scene include/glint lib/pkgconfig lib/glint share/glint/models share/glint/lenses share/glint \
 	        lib/systemd/system lib/systemd; do \
 	        if [ -d $(to)/$$d ]; then rmdir --ignore-fail-on-non-empty $(to)/$$d; fi; done
-.PHONY: install uninstall
+.PHONY: install install-library uninstall

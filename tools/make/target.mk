@@ -65,7 +65,7 @@ ifeq ($(ARCH),arm) # of which there are many
 ARCH := $(shell $(CC) -dM -E -x c /dev/null | \
         awk '$$2 == "__ARM_ARCH" { print $$3 < 7 ? "armv6" : "armv7" }')
 endif
-OUT  := build/$(if $(CROSS),$(TARGET)$(if $(DYNAMIC),-dynamic),$(ARCH)-$(notdir $(CC))-$(CONFIG))
+OUT  := build/$(if $(CROSS),$(TARGET)$(if $(DYNAMIC),-dynamic),$(ARCH)-$(notdir $(CC))-$(CONFIG))$(if $(PIC),-pic)
 export DEPS OUT
 
 # Libraries that glint can do without:  WITH_JPEG=yes|no  says which are used,

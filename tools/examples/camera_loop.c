@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * camera_loop MODEL DEVICE FRAMES >FRAMES.yuyv - the flare of the lamps that a
+ * camera sees, frame by frame in 640x480, read by read() as the simplest of
+ * cameras give them; DEVICE may be a file of such frames.
+ */
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <linux/videodev2.h>
+
+#include "glint/engine.h"
+
+enum { WIDTH = 640, HEIGHT = 480, BYTES = 2 * WIDTH * HEIGHT, US = 33333 };
+
+static unsigned char frame[BYTES], model[8 << 20];
+
+/* Asks CAMERA for YUYV; what is no camera is taken as it is. */
+static int is_ready(int camera)
+{
+    struct v4l2_capability can;
+    struct v4l2_format format;
+
+    memset(&format, 0, sizeof format);
+    format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    format.fmt.pix.width = WIDTH;
+    format.fmt.pix.height = HEIGHT;
+    format.fmt.pix.pixelformat = V4L2_PIX_FMT_YUYV;
+    if (ioctl(camera, VIDIOC_QUERYCAP, &can) < 0)
+        return camera >= 0;
+    return ioctl(camera, VIDIOC_S_FMT, &format) == 0 &&
+           format.fmt.pix.sizeimage == BYTES;
+}
+
+int main(int argc, char **argv)
+{
+    const int camera = argc == 4 ? open(argv[2], O_RDONLY) : -1;
+    FILE *file = argc == 4 ? fopen(argv[1], "rb") : NULL;
+    const size_t bytes = file ? fread(model, 1, sizeof model, file) : 0;
+    struct glint_image image;
+    struct glint_engine_config cfg;
+    struct glint_engine_report report;
+    struct glint_error error = {"no model, no camera, or not of 640x480"};
+    struct glint_engine *engine = NULL;
+    struct glint_lens lens;
+    struct glint_lamp lamps[16];
+    const char *reason = "";
+    int left = argc == 4 ? atoi(argv[3]) : 0;
+
+    memset(&image, 0, sizeof image);
+    image.format = GLINT_YUYV;
+    image.range = GLINT_RANGE_LIMITED;
+    image.width = WIDTH;
+    image.height = HEIGHT;
+    glint_image_place(&image, frame);
+    if (glint_lens_open(&lens, model, bytes, &reason) == GLINT_OK &&
+        is_ready(camera)) {
+        glint_engine_defaults(&cfg, WIDTH, HEIGHT);
+        cfg.model = &lens;
+        glint_engine_create(&engine, &cfg, &error);
+    }
+    while (engine && left > 0 && read(camera, frame, BYTES) == BYTES) {
+        const int n = glint_engine_find(engine, &image, US, lamps, 16);
+
+        glint_engine_draw(engine, lamps, n, &image, &report);
+        left -= fwrite(frame, BYTES, 1, stdout) == 1;
+    }
+    if (!engine || left > 0)
+        fprintf(stderr, "camera_loop: %s %s\n", engine ? "no more" : error.text,
+                reason);
+    glint_engine_destroy(engine);
+    return !engine || left > 0;
+}
