@@ -37,6 +37,9 @@ ward-table: all $(OUT)/ward_table
 	@tools/make/deps "pictures, and the plug-in for them" libopenimageio-dev pkg-config g++ >&2
 	@$(MAKE) --no-print-directory oiio >&2
 	@tests/programs/ward-table $(OUT)/ward_table | tools/report/write-figures scenes/ward
+# Models of scattering side by side, on synthetic stones: three processor minutes.
+translucent-table: $(OUT)/translucent_table
+	@$(OUT)/translucent_table | tools/report/write-figures scenes/translucent
 scene-cost-table: all
 	@tools/make/deps "instruction counts on ARM" gcc-aarch64-linux-gnu \
 	        libc6-dev-arm64-cross qemu-user debian-archive-keyring >&2

@@ -37,7 +37,7 @@ static double *kernel_of(const struct factors *p, int j)
 
 static double *weights_of(const struct factors *p, int j)
 {
-    return term(p->f, j, (size_t)(p->fit->side * p->fit->side));
+    return term(p->f, j, (size_t)p->fit->side * (size_t)p->fit->side);
 }
 
 static void whole_row(const void *ctx, int i, double *to)
@@ -78,8 +78,8 @@ static void cut(const struct factors *p, int j)
 {
     const int n = p->fit->kernel, rank = p->fit->rank;
     double *h = kernel_of(p, j), *a = p->gram, *turn = p->gram + n * n;
-    double *column = term(p->column, j, (size_t)(rank * n));
-    double *row = term(p->row, j, (size_t)(rank * n));
+    double *column = term(p->column, j, (size_t)rank * (size_t)n);
+    double *row = term(p->row, j, (size_t)rank * (size_t)n);
 
     for (int u = 0; u < n; u++)
         for (int v = 0; v < n; v++) {
@@ -88,8 +88,8 @@ static void cut(const struct factors *p, int j)
         }
     glint_jacobi(a, n, n, turn, n);
     memset(h, 0, (size_t)(n * n) * sizeof *h);
-    memset(column, 0, (size_t)(rank * n) * sizeof *column);
-    memset(row, 0, (size_t)(rank * n) * sizeof *row);
+    memset(column, 0, (size_t)rank * (size_t)n * sizeof *column);
+    memset(row, 0, (size_t)rank * (size_t)n * sizeof *row);
     for (int q = 0; q < rank && q < n; q++) {
         double length = 0, root;
 

@@ -215,10 +215,12 @@ static enum glint_status measure(const struct glint_scatter_rows *rows,
 {
     const int n = 3 * fit->side * fit->side;
     double *light = malloc(3 * (size_t)n * sizeof *light);
-    double *want = light + n, *got = want + n, square = 0, peak = 0;
+    double *want, *got, square = 0, peak = 0;
 
     if (!light)
         return GLINT_E_MEMORY;
+    want = light + n;
+    got = want + n;
     measure_entries(rows, fit);
     glint_scatter_test_light(fit->side, light);
     glint_scatter_light_rows(rows, light, want);
@@ -272,7 +274,7 @@ enum glint_status glint_scatter_fit(struct glint_scatter_rows *rows,
     fit->kernel = rows->kernel;
     fit->kernels = options->kernels;
     fit->rank = options->rank;
-    fit->albedo = malloc(3 * texels * sizeof *fit->albedo);
+    fit->albedo = calloc(3 * texels, sizeof *fit->albedo);
     status = fit->albedo ? GLINT_OK : GLINT_E_MEMORY;
     if (status == GLINT_OK) {
         /* What a person sees is where light leaves. */

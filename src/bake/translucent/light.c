@@ -102,7 +102,8 @@ void glint_scatter_test_light(int side, double *irradiance)
         {1, 0.8, 0.6}, {0.7, 0.9, 1}, {1, 1, 1}};
 
     for (int x = 0; x < side * side; x++) {
-        const double u = (x % side + 0.5) / side, v = (x / side + 0.5) / side;
+        const int row = x / side;
+        const double u = (x % side + 0.5) / side, v = (row + 0.5) / side;
         const double ramp = u + 0.5 * v > 0.8 ? 0.25 + 0.5 * v : 0.02;
 
         for (int c = 0; c < 3; c++)

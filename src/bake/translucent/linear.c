@@ -225,8 +225,8 @@ bool glint_terms_of(const struct glint_tall *a, int n,
     const int wide = wanted + SPARE < m ? wanted + SPARE : m;
     const size_t rows = (size_t)a->rows, columns = (size_t)m;
     double *g = malloc((columns * columns + columns) * sizeof *g);
-    double *v = malloc(2 * (size_t)wide * columns * sizeof *v);
-    double *y = malloc((size_t)wide * rows * sizeof *y);
+    double *v = calloc(2 * (size_t)wide * columns, sizeof *v);
+    double *y = calloc((size_t)wide * rows, sizeof *y);
     double *row;
     bool good;
 

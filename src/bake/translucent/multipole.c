@@ -169,10 +169,12 @@ bool glint_slab_lattice(const struct glint_slab *slab, int kernel,
     const int half = kernel / 2;
     double *wave =
         malloc((size_t)(size * (half + 2) + half + 1) * sizeof *wave);
-    double *cosine = wave + size, *across = cosine + size * (half + 1);
+    double *cosine, *across;
 
     if (!wave)
         return false;
+    cosine = wave + size;
+    across = cosine + size * (half + 1);
     for (int p = 0; p < size; p++) {
         wave[p] = 4 * pow(sin(PI * p / size), 2);
         for (int u = 0; u <= half; u++)

@@ -35,40 +35,46 @@ static bool in_range(const struct glint_scatter_candidate *o)
            o->clusters <= GLINT_SCATTER_MAX_TERMS && o->a >= 0 && o->b > 0;
 }
 
-double glint_scatter_candidate_bytes(const struct glint_scatter_candidate *o,
-                                     double texels, double entries)
+double
+glint_scatter_candidate_bytes(const struct glint_scatter_candidate *candidate,
+                              double texels, double entries)
 {
     const double line = sqrt(entries);
 
-    switch (o->kind) {
+    switch (candidate->kind) {
     case GLINT_CANDIDATE_CLUSTERED: /* and a byte for the cluster */
-        return 8 * 3 * (2 * texels + o->terms * entries) + texels;
+        return 8 * 3 * (2 * texels + candidate->terms * entries) + texels;
     case GLINT_CANDIDATE_FACTORED:
-        return 8 * 3 * o->terms * (texels + 2 * o->rank * line);
+        return 8 * 3 * candidate->terms * (texels + 2 * candidate->rank * line);
     case GLINT_CANDIDATE_ALBEDO:
         return 8 * 3 * (texels + entries);
     case GLINT_CANDIDATE_TUCKER:
-        return 8 * ((o->terms + 2 * o->turned + 3 * (o->degree + 1)) * texels +
-                    o->terms * entries);
+        return 8 * ((candidate->terms + 2 * candidate->turned +
+                     3 * (candidate->degree + 1)) *
+                        texels +
+                    candidate->terms * entries);
     case GLINT_CANDIDATE_PEERS:
-        return 8 * 3 * (o->terms * (texels + entries) + o->clusters * entries) +
-               (o->clusters > 1 ? 3 * texels : 0);
+        return 8 * 3 *
+                   (candidate->terms * (texels + entries) +
+                    candidate->clusters * entries) +
+               (candidate->clusters > 1 ? 3 * texels : 0);
     case GLINT_CANDIDATE_SUBEDIT:
         return 8 * 36 * texels;
     case GLINT_CANDIDATE_SVD:
     case GLINT_CANDIDATE_LOG_SVD:
     case GLINT_CANDIDATE_ALS:
     default:
-        return 8 * 3 * o->terms * (texels + entries);
+        return 8 * 3 * candidate->terms * (texels + entries);
     }
 }
 
-double glint_scatter_candidate_sums(const struct glint_scatter_candidate *o,
-                                    double texels, double entries, bool kept)
+double
+glint_scatter_candidate_sums(const struct glint_scatter_candidate *candidate,
+                             double texels, double entries, bool kept)
 {
-    const double terms = 3.0 * o->terms;
+    const double terms = 3.0 * candidate->terms;
 
-    switch (o->kind) {
+    switch (candidate->kind) {
     case GLINT_CANDIDATE_SVD:
     case GLINT_CANDIDATE_ALS:
     case GLINT_CANDIDATE_FACTORED:
@@ -78,10 +84,10 @@ double glint_scatter_candidate_sums(const struct glint_scatter_candidate *o,
     case GLINT_CANDIDATE_CLUSTERED:
         return 3 * texels * entries;
     case GLINT_CANDIDATE_PEERS: /* sums of G h_j, for each cluster */
-        return kept ? terms * (texels + o->clusters * entries)
+        return kept ? terms * (texels + candidate->clusters * entries)
                     : (terms + 3) * texels * entries;
     case GLINT_CANDIDATE_TUCKER:
-        return (o->terms + 3.0 * o->degree) * texels * entries;
+        return (candidate->terms + 3.0 * candidate->degree) * texels * entries;
     case GLINT_CANDIDATE_SUBEDIT: /* two interpolations and a root */
         return 3 * 4 * texels * entries;
     case GLINT_CANDIDATE_LOG_SVD: /* and an exponential */
@@ -246,8 +252,7 @@ static enum glint_status judge(const struct glint_scatter_rows *rows,
 {
     const size_t texels = (size_t)rows->side * (size_t)rows->side;
     double *light = malloc(7 * texels * sizeof *light);
-    double *want = light + 3 * texels, *sorted = want + 3 * texels;
-    double square = 0, peak = 0;
+    double *want, *sorted, square = 0, peak = 0;
 
     j->error = malloc(texels * sizeof *j->error);
     j->light = malloc(3 * texels * sizeof *j->light);
@@ -255,6 +260,8 @@ static enum glint_status judge(const struct glint_scatter_rows *rows,
         free(light);
         return GLINT_E_MEMORY;
     }
+    want = light + 3 * texels;
+    sorted = want + 3 * texels;
     judge_entries(rows, rebuilt, sorted, j);
     glint_scatter_test_light(rows->side, light);
     glint_scatter_light_rows(rows, light, want);

@@ -38,10 +38,11 @@ static void set_radii(const struct subedit *p)
     const int n = p->rows->kernel, half = n / 2;
     const double most = half > 0 ? sqrt(2) * half : 1;
 
-    for (int d = 0; d < n * n; d++)
-        p->radius[d] =
-            fmin(VALUES - 1,
-                 (VALUES - 1) * hypot(d % n - half, d / n - half) / most);
+    for (int d = 0; d < n * n; d++) {
+        const int u = d % n - half, v = d / n - half;
+
+        p->radius[d] = fmin(VALUES - 1, (VALUES - 1) * hypot(u, v) / most);
+    }
 }
 
 /* Sets the profile of X to the mean, by radius, of what its row and the other

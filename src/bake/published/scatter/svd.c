@@ -140,7 +140,7 @@ static enum glint_status search(const struct glint_scatter_rows *rows,
                         .c = 1,
                         .step = texels > SEARCHED ? texels / SEARCHED : 1,
                         .logs = true};
-    double best = INFINITY;
+    double best = HUGE_VAL;
 
     for (int i = 0; i < 24; i++) {
         double square;

@@ -14,11 +14,11 @@
 #include "bake/translucent/linear.h"
 
 enum {
-    ROUNDS = 2000, /* of a term, at most */
+    ROUNDS = 300, /* of a term, at most */
     COEFFICIENTS = 6
 };
 
-#define STILL 1e-13 /* change of a term's square that has come to rest */
+#define STILL 1e-11 /* change of a term's square that has come to rest */
 
 struct tucker {
     const struct glint_scatter_rows *rows;
@@ -137,11 +137,10 @@ static void regress(const struct tucker *p, int x, int c, int degree,
 
     memset(coef, 0, COEFFICIENTS * sizeof *coef);
     for (int d = 0; d < p->k2; d++) {
-        double power[2 * COEFFICIENTS];
+        double power[2 * COEFFICIENTS] = {1};
 
         if (glint_scatter_target(p->rows->side, p->rows->kernel, x, d) < 0)
             continue;
-        power[0] = 1;
         for (int i = 1; i <= 2 * degree; i++)
             power[i] = power[i - 1] * mean[d];
         for (int i = 0; i < n; i++) {

@@ -1,0 +1,497 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * translucent_table [SIDE KERNEL] - models of scattering side by side on four
+ * stones, as Markdown: the tables of [Kurt14], its figures beside ours, and
+ * whether each of its claims holds. Stones of 48 texels and kernels of 21
+ * unless told otherwise. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "glint/scene/translucent_report.h"
+#include "support/rng.h"
+
+enum { STONES = 4, GRID_TERMS = 5, GRID_DEGREES = 5 };
+
+static const char *const stone_name[STONES] = {"chess 4 x 4", "chess 8 x 8",
+                                               "veins", "pale veins"};
+
+/* What is judged once for each stone, and used by many tables. */
+enum run {
+    CLUSTERED,
+    FACTORED,
+    ALBEDO,
+    SVD5,
+    SVD10,
+    SVD20,
+    LOG5,
+    LOG10,
+    TUCKER5,
+    TUCKER15,
+    ALS5,
+    PEERS5,
+    PEERS10,
+    PEERS20,
+    SUBEDIT,
+    RUNS
+};
+
+static const struct {
+    const char *name;
+    enum glint_scatter_candidate_kind kind;
+    int terms, clusters;
+} run_of[RUNS] = {
+    {"clustered, 4 kernels", GLINT_CANDIDATE_CLUSTERED, 4, 1},
+    {"factored, S = 5, rank 3", GLINT_CANDIDATE_FACTORED, 5, 1},
+    {"albedo x one kernel", GLINT_CANDIDATE_ALBEDO, 1, 1},
+    {"SVD, S = 5", GLINT_CANDIDATE_SVD, 5, 1},
+    {"SVD, S = 10", GLINT_CANDIDATE_SVD, 10, 1},
+    {"SVD, S = 20", GLINT_CANDIDATE_SVD, 20, 1},
+    {"log-SVD, S = 5, searched", GLINT_CANDIDATE_LOG_SVD, 5, 1},
+    {"log-SVD, S = 10, searched", GLINT_CANDIDATE_LOG_SVD, 10, 1},
+    {"Tucker, T = 5, P = 4", GLINT_CANDIDATE_TUCKER, 5, 1},
+    {"Tucker, T = 15, P = 4", GLINT_CANDIDATE_TUCKER, 15, 1},
+    {"non-negative ALS, S = 5", GLINT_CANDIDATE_ALS, 5, 1},
+    {"Peers, 5 clusters, 5 terms", GLINT_CANDIDATE_PEERS, 5, 5},
+    {"Peers, 5 clusters, 10 terms", GLINT_CANDIDATE_PEERS, 10, 5},
+    {"Peers, 5 clusters, 20 terms", GLINT_CANDIDATE_PEERS, 20, 5},
+    {"SubEdit", GLINT_CANDIDATE_SUBEDIT, 1, 1},
+};
+
+/* What verdicts are by. */
+struct findings {
+    double gain, clean;       /* C3 */
+    int by_terms, by_degrees; /* C5: steps that came nearer, of 20 each */
+    double negative;          /* C6 */
+    double faster;            /* C11 */
+};
+
+struct table {
+    struct findings found;
+    int side, kernel;
+    double seconds[STONES]; /* processor time of the rows */
+    struct glint_scatter_rows rows[STONES];
+    struct glint_scatter_judgement j[STONES][RUNS];
+};
+
+static double now(void)
+{
+    return (double)clock() / CLOCKS_PER_SEC;
+}
+
+static void fail(const char *what)
+{
+    fprintf(stderr, "translucent_table: %s\n", what);
+    exit(1);
+}
+
+/* What JUDGEMENT has to say, but for its maps. */
+static struct glint_scatter_judgement
+judge(struct glint_scatter_rows *rows, const struct glint_scatter_candidate *o)
+{
+    struct glint_scatter_judgement j, kept;
+
+    if (glint_scatter_judge(rows, o, NULL, &j) != GLINT_OK)
+        fail("out of memory");
+    kept = j;
+    glint_scatter_judgement_close(&j);
+    return kept;
+}
+
+static struct glint_scatter_candidate candidate(enum run run)
+{
+    struct glint_scatter_candidate o;
+
+    glint_scatter_candidate_defaults(&o, run_of[run].kind);
+    o.terms = run_of[run].terms;
+    o.clusters = run_of[run].clusters;
+    return o;
+}
+
+static void open_stone(struct table *t, int i)
+{
+    struct glint_stone stone;
+    struct glint_error error;
+    const double start = now();
+
+    glint_stone_defaults(&stone);
+    stone.side = t->side;
+    stone.kernel = t->kernel;
+    stone.pattern = i < 2 ? GLINT_STONE_CHESS : GLINT_STONE_VEINS;
+    stone.fields = i ? 8 : 4;
+    stone.seed = (uint32_t)i;
+    if (i == 3) /* materials that are near each other */
+        stone.material[1] =
+            (struct glint_stone_material){{1.6, 1.8, 2}, {0.004, 0.007, 0.012}};
+    if (glint_scatter_compute(&stone, NULL, &t->rows[i], &error) != GLINT_OK)
+        fail(error.text);
+    t->seconds[i] = now() - start;
+    for (int run = 0; run < RUNS; run++) {
+        const struct glint_scatter_candidate o = candidate((enum run)run);
+
+        t->j[i][run] = judge(&t->rows[i], &o);
+        fprintf(stderr, "%s, %s: %.0f s\n", stone_name[i], run_of[run].name,
+                t->j[i][run].seconds);
+    }
+}
+
+static void heads(const char *first, const char *const *column, int n)
+{
+    printf("\n| %s |", first);
+    for (int i = 0; i < n; i++)
+        printf(" %s |", column[i]);
+    printf("\n|---|");
+    for (int i = 0; i < n; i++)
+        printf("---:|");
+    printf("\n");
+}
+
+static void all_models(const struct table *t)
+{
+    static const char *const columns[] = {
+        "RMSE", "kB",  "smaller by", "entries, dB", "light, dB", "p50",
+        "p95",  "max", "below 0",    "one way",     "energy",    "s"};
+
+    printf("\n### All models\n\nRMSE, percentiles of texels and one-way (rms "
+           "of R'(x, y) - R'(y, x)) are of the largest entry; light is the "
+           "radiosity under lamps, shadows and a ramp; energy the largest sum "
+           "of a row; kB as the source counts, 8 bytes a number; s processor "
+           "seconds.\n");
+    for (int i = 0; i < STONES; i++) {
+        printf("\n%s", stone_name[i]);
+        printf(", %d x %d texels, kernels of %d: rows in %.1f processor "
+               "seconds\n",
+               t->side, t->side, t->kernel, t->seconds[i]);
+        heads("model", columns, 12);
+        for (int run = 0; run < RUNS; run++) {
+            const struct glint_scatter_judgement *j = &t->j[i][run];
+
+            printf("| %s | %.5f | %.0f | %.0f x | %.1f | %.1f | %.5f | %.5f | "
+                   "%.5f | %.2f %% | %.5f | %.3f | %.1f |\n",
+                   run_of[run].name, j->rmse, j->bytes / 1e3, j->compression,
+                   j->entry_db, j->light_db, j->p50, j->p95, j->largest,
+                   100 * j->negative, j->one_way, j->energy, j->seconds);
+        }
+    }
+}
+
+/* RMSE of some runs by stone, and what the source has. */
+static void beside(const struct table *t, const char *title,
+                   const enum run *runs, int n, const char *theirs)
+{
+    printf("\n### %s\n", title);
+    heads("model", stone_name, STONES);
+    for (int k = 0; k < n; k++) {
+        printf("| %s |", run_of[runs[k]].name);
+        for (int i = 0; i < STONES; i++)
+            printf(" %.4f, %.0f kB |", t->j[i][runs[k]].rmse,
+                   t->j[i][runs[k]].bytes / 1e3);
+        printf("\n");
+    }
+    printf("\nSource, its own four or eight stones: %s\n", theirs);
+}
+
+static void source_tables(const struct table *t)
+{
+    static const enum run in_72[] = {TUCKER15, TUCKER5, PEERS10, PEERS20};
+    static const enum run in_74[] = {LOG5, SVD5};
+    static const enum run in_75[] = {LOG10, SVD10, SUBEDIT};
+    static const enum run in_76[] = {SVD20,   PEERS20, SVD10,
+                                     PEERS10, SVD5,    PEERS5};
+
+    beside(t, "Tucker and Peers (table 7.2; C9, C10)", in_72, 4,
+           "Tucker .0102 .0242 .0072 .0152, 24.1 10.2 4.19 11.0 MiB; Peers at "
+           "equal size .0134 beside .007, .0384 beside .0212.");
+    beside(t, "Logarithms (table 7.4; C6, C9)", in_74, 2,
+           "S = 5 .0340 .0312 .0398 .0225 .0228 .0422 .0268 .0574, 1.48 2.48 "
+           "7.88 1.56 8.96 5.82 2.05 5.32 MiB.");
+    beside(t, "Profiles (table 7.5; C9)", in_75, 3,
+           "S = 10 .017 .028 .016 .013; SubEdit .05 .049 .029 .158.");
+    beside(t, "SVD and Peers at equal terms (table 7.6; C10)", in_76, 6,
+           "S = 20 and 10: .0066 beside .0138, .0197 beside .0492.");
+}
+
+/* Sets OFF to ROWS of which 30 % are a texel off. */
+static void shift(const struct glint_scatter_rows *rows,
+                  struct glint_scatter_rows *off)
+{
+    const size_t texels = (size_t)rows->side * (size_t)rows->side;
+    const size_t k2 = (size_t)rows->kernel * (size_t)rows->kernel;
+    const size_t n = texels * 3 * k2;
+    uint32_t seed = 1;
+
+    *off = *rows;
+    off->share = NULL;
+    off->r = malloc(n * sizeof *off->r);
+    if (!off->r)
+        fail("out of memory");
+    memcpy(off->r, rows->r, n * sizeof *off->r);
+    for (size_t x = 0; x < texels; x++)
+        if (rng_unit(&seed) < 0.3)
+            for (size_t c = 0; c < 3; c++)
+                memcpy(off->r + (x * 3 + c) * k2 + 1,
+                       rows->r + (x * 3 + c) * k2, (k2 - 1) * sizeof *off->r);
+}
+
+/* C3 */
+static void turned_rows(struct table *t)
+{
+    static const int terms[] = {1, 2, 5, 15};
+    static const char *const columns[] = {"T = 1", "T = 2", "T = 5", "T = 15"};
+    struct glint_scatter_rows off;
+    double rmse[4][4];
+
+    shift(&t->rows[0], &off);
+    printf("\n### Turned rows (C3): RMSE, P = 4, chess 4 x 4\n");
+    heads("rows", columns, 4);
+    for (int way = 0; way < 4; way++) {
+        printf("| %s, %s |",
+               way & 2 ? "30 % of them a texel off" : "as they are",
+               way & 1 ? "turned" : "plain");
+        for (int k = 0; k < 4; k++) {
+            struct glint_scatter_candidate o = candidate(TUCKER5);
+
+            o.terms = terms[k];
+            o.turned = way & 1;
+            rmse[way][k] = judge(way & 2 ? &off : &t->rows[0], &o).rmse;
+            printf(" %.5f |", rmse[way][k]);
+        }
+        printf("\n");
+    }
+    t->found.clean = rmse[1][2] / rmse[0][2];
+    t->found.gain = rmse[2][0] / rmse[3][0];
+    printf("\nSource's prototype: T = 5 .00449, turned .00102.\n");
+    free(off.r);
+}
+
+/* C5. */
+static void polynomials(struct table *t)
+{
+    static const int terms[GRID_TERMS] = {1, 2, 5, 10, 15};
+    static const char *const columns[] = {"P = 1", "P = 2", "P = 3", "P = 4",
+                                          "P = 5"};
+    double rmse[GRID_TERMS][GRID_DEGREES];
+
+    printf("\n### Terms and degrees (C5, figure 4.6): RMSE, and how much "
+           "smaller than 8-byte rows, veins\n");
+    heads("Tucker", columns, GRID_DEGREES);
+    for (int k = 0; k < GRID_TERMS; k++) {
+        printf("| T = %d |", terms[k]);
+        for (int p = 1; p <= GRID_DEGREES; p++) {
+            struct glint_scatter_candidate o = candidate(TUCKER5);
+            struct glint_scatter_judgement j;
+
+            o.terms = terms[k];
+            o.degree = p;
+            j = judge(&t->rows[2], &o);
+            t->found.by_degrees += p > 1 && j.rmse < rmse[k][p - 2];
+            t->found.by_terms += k > 0 && j.rmse < rmse[k - 1][p - 1];
+            rmse[k][p - 1] = j.rmse;
+            printf(" %.5f, %.0f x |", j.rmse, j.compression);
+        }
+        printf("\n");
+    }
+}
+
+/* C6 */
+static void logarithms(struct table *t)
+{
+    static const double as[] = {0.01, 0.1, 1, 10, 100, 1000};
+    static const char *const columns[] = {
+        "a = .01", ".1", "1", "10", "100", "1000", "searched: a, b"};
+    const int n = t->kernel * t->kernel;
+
+    printf("\n### ln(R' / a + b), b = 1, S = 5 (C6): RMSE, share of entries "
+           "below 0 (%d entries a row)\n",
+           n);
+    heads("stone", columns, 7);
+    for (int i = 0; i < STONES; i++) {
+        const struct glint_scatter_judgement *found = &t->j[i][LOG5];
+
+        printf("| %s |", stone_name[i]);
+        for (int k = 0; k < 6; k++) {
+            struct glint_scatter_candidate o = candidate(LOG5);
+            struct glint_scatter_judgement j;
+
+            o.a = as[k];
+            j = judge(&t->rows[i], &o);
+            t->found.negative = fmax(t->found.negative, j.negative);
+            printf(" %.5f, %.2f %% |", j.rmse, 100 * j.negative);
+        }
+        printf(" %.5f: %g, %g |\n", found->rmse, found->candidate.a,
+               found->candidate.b);
+    }
+    printf("\nSource: \"never negative\"; its prototype: .4 to 7 %%.\n");
+}
+
+/* C11: processor seconds of the sums of all rows of a fit of five terms, entry
+ * by entry and by kept sums. */
+static void sums(struct table *t)
+{
+    const struct glint_scatter_options options = {GLINT_SCATTER_FACTORED, 5, 3};
+    const int texels = t->side * t->side, k2 = t->kernel * t->kernel;
+    const struct glint_scatter_candidate svd = candidate(SVD5);
+    volatile double plain = 0, kept = 0;
+    struct glint_scatter_fit fit;
+    double start, first, second;
+
+    if (glint_scatter_fit(&t->rows[0], &options, NULL, &fit) != GLINT_OK)
+        fail("out of memory");
+    start = now();
+    for (int x = 0; x < texels; x++)
+        for (int d = 0; d < k2; d++) {
+            double entry = 0;
+
+            for (int j = 0; j < 5; j++)
+                entry += fit.f[3 * j * texels + x] * fit.h[3 * j * k2 + d];
+            plain = plain + entry;
+        }
+    first = now() - start;
+    start = now();
+    for (int again = 0; again < 100; again++) {
+        double sum[5] = {0};
+
+        for (int d = 0; d < 5 * k2; d++)
+            sum[d / k2] += fit.h[3 * (d / k2) * k2 + d % k2];
+        for (int x = 0; x < texels; x++) {
+            double row = 0;
+
+            for (int j = 0; j < 5; j++)
+                row += fit.f[3 * j * texels + x] * sum[j];
+            kept = kept + row;
+        }
+    }
+    second = (now() - start) / 100;
+    glint_scatter_fit_close(&fit);
+    printf("\n### Sums of all rows (C11)\n\nOne channel, five terms: %.4f s "
+           "entry by entry, %.6f s by kept sums of h, %.0f times less; %.0f "
+           "times less multiplications (128 texels, kernels of 29: 800). "
+           "Source: 3.756 s and .0427 s, 1.135 and .0314 by its model.\n",
+           first, second, first / second,
+           glint_scatter_candidate_sums(&svd, texels, k2, false) /
+               glint_scatter_candidate_sums(&svd, texels, k2, true));
+    t->found.faster = first / second;
+}
+
+static void verdict(const char *row, const char *claim, const char *what,
+                    const char *why)
+{
+    printf("| %s | %s | %s | %s |\n", row, claim, what, why);
+}
+
+/* In how many stones run A is nearer than run B. */
+static int nearer(const struct table *t, enum run a, enum run b)
+{
+    int n = 0;
+
+    for (int i = 0; i < STONES; i++)
+        n += t->j[i][a].rmse < t->j[i][b].rmse;
+    return n;
+}
+
+static const char *holds(int n)
+{
+    return n == STONES ? "holds" : n > 0 ? "holds in kind" : "does not";
+}
+
+static void verdicts(const struct table *t)
+{
+    const struct findings *f = &t->found;
+    char why[200];
+
+    printf("\n### Verdicts\n\n| row | claim | verdict | by |\n"
+           "|---|---|---|---|\n");
+    verdict("C1", "R_d is reciprocal, not below 0, below 1", "does not",
+            "of the published models SubEdit alone is reciprocal, and does "
+            "not go below 0; sums of rows stay below 1 in all");
+    snprintf(why, sizeof why,
+             "one term: %.1f times nearer; five terms on clean rows: %.2f "
+             "times as far; a second term mends the same",
+             f->gain, f->clean);
+    verdict("C3", "turned rows save fits of rows that are off",
+            f->gain > 2 ? "holds in kind" : "does not", why);
+    snprintf(why, sizeof why,
+             "nearer by a higher degree in %d of 20 steps, by more terms in %d "
+             "of 20: few terms leave to the polynomial what it does well",
+             f->by_degrees, f->by_terms);
+    verdict("C5", "more terms and higher degrees are nearer",
+            f->by_degrees + f->by_terms == 40 ? "holds" : "holds in kind", why);
+    snprintf(why, sizeof why, "largest share below 0 for b = 1: %.2f %%",
+             100 * f->negative);
+    verdict("C6", "logarithms are never negative",
+            f->negative > 0 ? "does not" : "holds", why);
+    snprintf(why, sizeof why, "nearer than the linear SVD in %d of %d",
+             nearer(t, LOG5, SVD5), STONES);
+    verdict("C6", "logarithms are nearer", holds(nearer(t, LOG5, SVD5)), why);
+    snprintf(why, sizeof why, "further off in %d of %d", nearer(t, SVD5, ALS5),
+             STONES);
+    verdict("C7", "non-negative factors are further off",
+            holds(nearer(t, SVD5, ALS5)), why);
+}
+
+static void more_verdicts(const struct table *t)
+{
+    char why[200];
+
+    verdict(
+        "C8", "sizes are those printed", "holds in kind",
+        "seven of SVD and SubEdit at one square of texels each, to the "
+        "digit (test_scatter_published); T and P of Tucker's are not known");
+    snprintf(why, sizeof why,
+             "S = 10 is nearer in %d of %d, by %.0f %% of the bytes",
+             nearer(t, SVD10, SUBEDIT), STONES,
+             100 * t->j[0][SVD10].bytes / t->j[0][SUBEDIT].bytes);
+    verdict("C9", "nearer than SubEdit", holds(nearer(t, SVD10, SUBEDIT)), why);
+    snprintf(why, sizeof why, "5, 10, 20 terms: nearer in %d, %d, %d of %d",
+             nearer(t, SVD5, PEERS5), nearer(t, SVD10, PEERS10),
+             nearer(t, SVD20, PEERS20), STONES);
+    verdict("C10", "SVD is nearer than Peers, size by size",
+            holds(nearer(t, SVD20, PEERS20)), why);
+    snprintf(why, sizeof why,
+             "T = 15 and 10 terms: nearer in %d of %d, by "
+             "%.0f %% of the bytes",
+             nearer(t, TUCKER15, PEERS10), STONES,
+             100 * t->j[0][TUCKER15].bytes / t->j[0][PEERS10].bytes);
+    verdict("C10", "Tucker is nearer than Peers",
+            holds(nearer(t, TUCKER15, PEERS10)), why);
+    snprintf(why, sizeof why, "%.0f times, where h is kept summed",
+             t->found.faster);
+    verdict("C11", "sums of rows are many times faster",
+            t->found.faster > 50 ? "holds" : "does not", why);
+    snprintf(why, sizeof why,
+             "worst texel over median, S = 5: %.1f to %.1f "
+             "times",
+             fmin(t->j[0][SVD5].largest / t->j[0][SVD5].p50,
+                  t->j[1][SVD5].largest / t->j[1][SVD5].p50),
+             fmax(t->j[2][SVD5].largest / t->j[2][SVD5].p50,
+                  t->j[3][SVD5].largest / t->j[3][SVD5].p50));
+    verdict("C13", "errors are spread over the sample", "holds", why);
+    verdict("C9", "RMSE of some hundredths", "holds in kind",
+            "our stones are synthetic and its units others: ours are 3 to 10 "
+            "times less, in the same order");
+}
+
+int main(int argc, char **argv)
+{
+    static struct table t;
+
+    t.side = argc > 2 ? (int)strtol(argv[1], NULL, 10) : 48;
+    t.kernel = argc > 2 ? (int)strtol(argv[2], NULL, 10) : 21;
+    if (t.side < 8)
+        fail("stones have 8 texels or more");
+    for (int i = 0; i < STONES; i++)
+        open_stone(&t, i);
+    source_tables(&t);
+    turned_rows(&t);
+    polynomials(&t);
+    logarithms(&t);
+    sums(&t);
+    verdicts(&t);
+    more_verdicts(&t);
+    all_models(&t);
+    for (int i = 0; i < STONES; i++)
+        glint_scatter_close(&t.rows[i]);
+    return 0;
+}

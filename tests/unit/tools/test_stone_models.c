@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The page of a stone's models.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "lab/scenes/stone_models.h"
+#include "support/scratch.h"
+
+static void stone(struct glint_scatter_rows *rows)
+{
+    struct glint_stone s;
+    struct glint_error error;
+
+    glint_stone_defaults(&s);
+    s.side = 8;
+    s.kernel = 5;
+    s.fields = 2;
+    assert_int_equal(glint_scatter_compute(&s, NULL, rows, &error), GLINT_OK);
+}
+
+/* What the file NAME begins with, and whether it has WORDS. */
+static bool has(const char *name, const char *words)
+{
+    char *text = calloc(1, 1 << 18);
+    FILE *file = fopen(scratch_path(name), "rb");
+    size_t n;
+    bool found;
+
+    assert_non_null(text);
+    assert_non_null(file);
+    n = fread(text, 1, (1 << 18) - 1, file);
+    fclose(file);
+    found = n > 0 && strstr(text, words) != NULL;
+    free(text);
+    assert_int_equal(unlink(scratch_path(name)), 0);
+    return found;
+}
+
+/* A page, a table, curves, and a picture for each model; names cannot make
+ * markup. */
+static void test_page(void **state)
+{
+    static const char *const picture[] = {
+        "clustered-2",     "clustered-4", "factored-3", "factored-5",
+        "albedo",          "svd-3",       "svd-5",      "svd-10",
+        "log-svd-5",       "log-svd-10",  "tucker-5",   "tucker-15",
+        "tucker-turned-5", "als-5",       "peers-5",    "peers-10",
+        "subedit"};
+    const struct tool tool = {.name = "bake", .quiet = true};
+    struct glint_scatter_rows rows;
+
+    (void)state;
+    stone(&rows);
+    assert_int_equal(stone_models_report(&tool, "a<b", &rows, scratch_dir),
+                     EXIT_OK);
+    assert_int_equal(scratch_count(scratch_dir), STONE_MODELS + 3);
+    assert_true(has("report.html", "Models of a&#60;b"));
+    assert_true(has("report.md", "| [SubEdit](subedit.png) |"));
+    assert_true(has("curves.svg", "</svg>"));
+    for (int i = 0; i < STONE_MODELS; i++) {
+        char name[64];
+
+        snprintf(name, sizeof name, "%s.png", picture[i]);
+        assert_true(has(name, "PNG"));
+    }
+    glint_scatter_close(&rows);
+}
+
+static void test_no_folder(void **state)
+{
+    const struct tool tool = {.name = "bake", .quiet = true};
+    struct glint_scatter_rows rows;
+
+    (void)state;
+    stone(&rows);
+    assert_int_equal(stone_models_report(&tool, "a", &rows, "/proc/none/a"),
+                     EXIT_OUTPUT);
+    glint_scatter_close(&rows);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_page),
+        cmocka_unit_test(test_no_folder),
+    };
+
+    return cmocka_run_group_tests(tests, scratch_open_dir, scratch_close_dir);
+}
