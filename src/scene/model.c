@@ -25,7 +25,8 @@ STATIC_ASSERT(sizeof(struct glint_scene_triangle) == 16);
 STATIC_ASSERT(sizeof(struct glint_scene_mesh) == 76);
 STATIC_ASSERT(sizeof(struct glint_scene_object) == 84);
 STATIC_ASSERT(sizeof(struct glint_scene_ward) == 24);
-STATIC_ASSERT(sizeof(struct glint_scene_header) == 256);
+STATIC_ASSERT(sizeof(struct glint_scene_motion) == 96);
+STATIC_ASSERT(sizeof(struct glint_scene_header) == 264);
 
 /* The header begins as that of every baked file does. */
 #define SAME_PLACE(field)                                       \
@@ -228,6 +229,28 @@ static const char *check_environment(const struct glint_scene_header *h)
                : "a light is negative or not normalised";
 }
 
+/* The motion's own file is checked by who plays it. */
+static const char *check_motion(const struct glint_scene_header *h,
+                                const struct glint_scene_motion *m)
+{
+    const int32_t length[] = {m->size, m->shell, m->line, m->box};
+    const uint32_t material[] = {m->shell_material, m->line_material,
+                                 m->box_material};
+
+    if (!glint_scene_name_fits(m->name))
+        return "a motion's name is empty, endless or not printable";
+    for (int k = 0; k < 4; k++)
+        if (!is_between(length[k], 0, GLINT_SCENE_SPAN / 4))
+            return "a size of the motion is out of range";
+    for (int k = 0; k < 3; k++)
+        if (material[k] >= h->n_materials)
+            return "a material of the motion is out of range";
+    if (m->detect > GLINT_DETECT_BOTH || m->least > 255 || m->bytes % 4 ||
+        m->zero)
+        return "the motion's settings are unknown";
+    return NULL;
+}
+
 static const char *check_header(const struct glint_scene_header *h)
 {
     const char *wrong;
@@ -248,7 +271,7 @@ static const char *check_header(const struct glint_scene_header *h)
         h->n_materials > GLINT_SCENE_MAX_MATERIALS ||
         h->n_meshes > GLINT_SCENE_MAX_MESHES ||
         h->n_objects > GLINT_SCENE_MAX_OBJECTS ||
-        h->n_wards > GLINT_SCENE_MAX_MATERIALS)
+        h->n_wards > GLINT_SCENE_MAX_MATERIALS || h->n_motions > 1)
         return "the scene has too many of a kind";
     wrong = check_environment(h);
     return wrong ? wrong : glint_scene_camera_fault(&h->camera);
@@ -276,6 +299,13 @@ static const char *find_tables(struct glint_scene_check *c)
         m->environment = glint_blob_section(b, h->environment_at,
                                             h->environment_bytes / 4, 4);
         if (!m->environment)
+            return glint_scene_outside;
+    }
+    if (h->n_motions) {
+        m->motion = glint_blob_section(b, h->motion_at, 1, sizeof *m->motion);
+        if (!m->motion ||
+            !glint_blob_section(b, h->motion_at + (uint32_t)sizeof *m->motion,
+                                m->motion->bytes / 4, 4))
             return glint_scene_outside;
     }
     return m->light && m->texture && m->material && m->mesh && m->object &&
@@ -313,6 +343,8 @@ static const char *check_contents(struct glint_scene_check *c)
         if (!wrong && m->object[k].kind == GLINT_OBJECT_MESH)
             triangles += m->mesh[m->object[k].mesh].n_triangles;
     }
+    if (!wrong && m->motion)
+        wrong = check_motion(h, m->motion);
     if (!wrong && triangles > GLINT_SCENE_MAX_TRIANGLES)
         wrong = "the objects have too many triangles";
     return wrong;

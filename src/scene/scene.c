@@ -39,6 +39,8 @@ const char *glint_scene_lacks(const struct glint_scene_parts *parts,
         return "meshes";
     if (has_wards(h) && !parts->wards)
         return "wards";
+    if (h->n_motions > 0 && !parts->motions)
+        return "motions";
     for (uint32_t i = 0; i < h->n_materials; i++) {
         const struct glint_scene_material *m = &model->material[i];
 
@@ -141,6 +143,8 @@ static void carve_worker(struct glint_scene *s, struct glint_arena *a,
         w.quad = glint_arena_take(a, side / 2, sizeof *w.quad);
     if (s->model.header->n_meshes)
         w.quick = glint_arena_take(a, GLINT_QUICK_TRIANGLES, sizeof *w.quick);
+    if (s->model.motion)
+        s->cfg.parts.motions->carve_worker(s, a, &w);
     if (worker)
         *worker = w;
 }
@@ -200,6 +204,7 @@ static struct glint_scene *carve(struct glint_arena *a,
                         model->header->flare && model->header->highlights > 0
                     ? cfg->parts.highlights->carve(s, a)
                     : NULL;
+    s->motion = model->motion ? cfg->parts.motions->carve(s, a) : NULL;
     s->cover_across = (cfg->width + 7) >> GLINT_COVER_LOG2;
     s->cover_down = (cfg->height + 7) >> GLINT_COVER_LOG2;
     s->cover = glint_arena_take(
@@ -275,6 +280,8 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
             s->lit[i].rgb_q15[c] =
                 (int32_t)real_integer(l->rgb[c], 15, GLINT_SCENE_MOST_LIGHT);
     }
+    if (s->motion && cfg->parts.motions->open(s) != GLINT_OK)
+        return GLINT_E_FORMAT;
     *scene = s;
     return GLINT_OK;
 }
@@ -288,8 +295,7 @@ void glint_scene_forget_shadows(struct glint_scene *s)
             s->lit[i].shadow->is_ready = 0;
 }
 
-/* Sets TO to the turn by quaternion Q. */
-static void set_turn(const int32_t q[4], struct glint_scene_turn *to)
+void glint_scene_turn_of(const int32_t q[4], struct glint_scene_turn *to)
 {
     const int32_t w = q[0], *v = q + 1;
 
@@ -327,7 +333,7 @@ enum glint_status glint_scene_set_pose(struct glint_scene *scene, int object,
         !glint_scene_within(at, 3, GLINT_SCENE_SPAN - 1 - p->radius))
         return GLINT_E_ARGUMENT;
     glint_scene_forget_shadows(scene);
-    set_turn(turn_q30, &p->turn);
+    glint_scene_turn_of(turn_q30, &p->turn);
     for (int k = 0; k < 3; k++)
         p->at[k] = p->centre[k] = at[k];
     p->reach = p->radius;

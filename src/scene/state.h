@@ -190,6 +190,8 @@ struct glint_scene_worker {
     struct glint_scene_sum *quad;
     struct glint_quick_triangle *quick; /* [GLINT_QUICK_TRIANGLES] */
     int is_linear;
+    struct glint_layer_span *span; /* [layers]: of the row that is drawn */
+    int n_spans;
 };
 
 struct glint_scene {
@@ -217,6 +219,7 @@ struct glint_scene {
     struct glint_scene_ward *ward;         /* [n_wards] */
     struct glint_ward_state *wards; /* NULL: neither environment nor metal */
     struct glint_highlight_state *bright; /* NULL: highlights are not wanted */
+    struct glint_motion_state *motion;    /* NULL: nothing was recorded */
     int cover_across, cover_down;
     uint16_t *cover; /* [cover_down][cover_across]: sums of q8 over 64 pixels */
 };

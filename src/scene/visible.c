@@ -335,6 +335,9 @@ int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile)
 
     w->tile = tile;
     w->touched = touch(s, tile, has_triangles);
+    if (s->motion)
+        w->touched =
+            glint_box_join(w->touched, s->cfg.parts.motions->touch(s, tile));
     clear(w);
     if (glint_box_empty(w->touched))
         return s->model.header->background != GLINT_BACKGROUND_CAMERA;

@@ -42,4 +42,44 @@ static inline void glint_put_sample(struct glint_scene_worker *w, int x, int y,
     }
 }
 
+/* ------------------------------------------------------------------ layers */
+
+/* What is laid over the things of a picture, by the part for recorded motion.
+ */
+
+/* Pixels X0 .. X1 - 1 of a row that a layer may touch. */
+struct glint_layer_span {
+    int layer, x0, x1;
+};
+
+struct glint_scene_motions {
+    /* Take the memory of the part, NULL while it is measured, and of a worker.
+     */
+    struct glint_motion_state *(*carve)(const struct glint_scene *scene,
+                                        struct glint_arena *arena);
+    void (*carve_worker)(const struct glint_scene *scene,
+                         struct glint_arena *arena,
+                         struct glint_scene_worker *worker);
+    /* Opens the motion and seeks frame 0. */
+    enum glint_status (*open)(struct glint_scene *scene);
+    /* Finds where shells, lines and box are in the picture. */
+    void (*project)(struct glint_scene *scene);
+    /* Returns the pixels of TILE that they may touch. */
+    struct glint_box (*touch)(const struct glint_scene *scene,
+                              struct glint_box tile);
+    /* Lists in W those that may touch its row Y, from back to front; */
+    void (*list)(struct glint_scene_worker *w, int y);
+    /* draws them over pixel (X, Y), of which SUM is. */
+    void (*over)(const struct glint_scene_worker *w, int x, int y,
+                 struct glint_scene_sum *sum);
+};
+
+/* Sets TO to the turn by the unit quaternion Q_Q30. */
+void glint_scene_turn_of(const int32_t q_q30[4], struct glint_scene_turn *to);
+
+/* Finds where P, whose centre and reach are known, is in the picture; returns
+ * its least z, or GLINT_FAR if it is not seen. */
+int32_t glint_scene_place(const struct glint_scene *scene,
+                          struct glint_placed *p);
+
 #endif

@@ -147,8 +147,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const uint8_t *const zero = size ? memchr(data, 0, size) : NULL;
     const size_t bytes = zero ? (size_t)(zero - data) : size;
     struct rest rest = {data + bytes, size - bytes};
-    const struct glint_description_files files = {&rest, read_mesh,
-                                                  make_picture, read_mesh};
+    const struct glint_description_files files = {
+        &rest, read_mesh, make_picture, read_mesh, read_mesh};
     struct glint_error error;
     enum glint_status status;
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/frame/area.h"
+#include "glint/scene/motion.h"
 #include "scenes/account.h"
 
 /* ------------------------------------------------------------------- opening
@@ -86,6 +87,12 @@ int over_scene_open(struct over_scene *over, const struct tool *tool)
         return code;
     over->is_open = true;
     playback_init(&over->playback);
+    if (over->baked.model.motion) {
+        const struct glint_motion_header *const h =
+            (const void *)(over->baked.model.motion + 1);
+
+        over->playback.last = (int)h->n_frames - 1;
+    }
     if (steer_open(&over->steer, &over->baked.model) != GLINT_OK)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     if (over->pose_file)
@@ -175,6 +182,7 @@ static void move_all(void *ctx, struct glint_scene *scene)
 {
     struct over_scene *const over = ctx;
 
+    glint_scene_seek(scene, (uint32_t)over->shown);
     for (int i = 0; over->moved && i <= place_of(over, POSES_CAMERA); i++)
         move(over, scene, i);
     steer_apply(&over->steer, scene);
@@ -307,11 +315,12 @@ enum glint_status over_scene_draw(struct over_scene *over,
     enum glint_status status;
 
     take_control(over, frame);
+    over->shown = over->control_file
+                      ? playback_next(&over->playback, 1e-6 * over->elapsed_us)
+                      : frame;
+    glint_scene_seek(over->frame.scene, (uint32_t)over->shown);
     if (over->moved)
-        take_poses(over,
-                   over->control_file
-                       ? playback_next(&over->playback, 1e-6 * over->elapsed_us)
-                       : frame);
+        take_poses(over, over->shown);
     status = over->budget_ms > 0 ? spend(over) : GLINT_OK;
     if (status == GLINT_OK)
         status = scene_frame_try(&over->frame, image);

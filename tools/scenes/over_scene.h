@@ -57,7 +57,8 @@ struct over_scene {
     struct poses poses;
     struct scene_moved *moved; /* objects, lights, and the camera */
     struct controls control;
-    struct playback playback; /* of the poses */
+    struct playback playback; /* of poses and recorded motion */
+    int shown;                /* the frame of them that is drawn */
     struct steer steer;
     int posed; /* frame of the poses that is shown */
     struct glints glints;

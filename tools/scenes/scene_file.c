@@ -10,6 +10,7 @@
 #include "model/model_file.h"
 #include "posix/input.h"
 #include "posix/target.h"
+#include "motions/motion_file.h"
 #include "scenes/environment_file.h"
 
 enum { TEXT_BYTES = 1 << 20 };
@@ -120,12 +121,35 @@ static enum glint_status read_environment(void *ctx, const char *name,
     return GLINT_OK;
 }
 
+/* The same of a motion. */
+static enum glint_status read_motion(void *ctx, const char *name,
+                                     uint8_t **data, size_t *bytes,
+                                     struct glint_error *error)
+{
+    struct reading *reading = ctx;
+    struct glint_motion_options options;
+    struct motion_file file;
+    char path[TOOL_PATH_BYTES];
+    enum glint_status status = find(reading, name, path, error);
+
+    glint_motion_defaults(&options);
+    if (status == GLINT_OK)
+        status =
+            motion_file_read(path, reading->written, &options, &file, error);
+    if (status != GLINT_OK)
+        return status;
+    mix(reading, file.data, file.bytes);
+    *data = file.data;
+    *bytes = file.bytes;
+    return GLINT_OK;
+}
+
 int tool_scene(const struct tool *tool, const char *path,
                struct glint_description *scene, uint64_t *key)
 {
     struct reading reading = {path, tool->written, TOOL_KEY_BEGIN};
     const struct glint_description_files files = {
-        &reading, read_mesh, read_picture, read_environment};
+        &reading, read_mesh, read_picture, read_environment, read_motion};
     struct glint_error error = {""};
     uint8_t *text = NULL;
     size_t bytes = 0;

@@ -58,8 +58,8 @@ int scene_frame_open(struct scene_frame *frame, const struct tool *tool,
         frame->cfg.tile_log2 = dials->tile_log2;
     frame->cfg.focal_q16 = llrint(fmin(dials->focal_px, 1e6) * 0x1p16);
     frame->cfg.parts = (struct glint_scene_parts){
-        &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,
-        &glint_scene_wards, &glint_scene_highlights};
+        &glint_scene_meshes, &glint_scene_textures,   &glint_scene_bounces,
+        &glint_scene_wards,  &glint_scene_highlights, &glint_scene_motions};
     status = place(frame);
     return status == GLINT_OK ? EXIT_OK : say(tool, status);
 }

@@ -109,6 +109,25 @@ struct glint_described_environment {
     double scale;    /* factor of all its light */
 };
 
+/* A recorded motion, and how it is shown. Lengths are in units of the scene,
+ * which are those of the recording; 0: such things are not there. */
+struct glint_described_motion {
+    char name[GLINT_DESCRIPTION_NAME_BYTES];
+    uint8_t *data; /* a baked motion, malloc'ed; NULL: there is none */
+    size_t bytes;
+    double reach;           /* of the body's places and the foods */
+    double size;            /* of the body, on which sensors stand */
+    double sensors, foods;  /* radii */
+    double shells;          /* radius over that of the food */
+    double lines, box;      /* widths */
+    bool both;              /* intensities count, too: those above LEAST */
+    double least;           /* 0 .. 1 */
+    int body, sensor, food; /* first object of each kind; -1: none */
+    int shell_material, line_material, box_material;
+    int camera;      /* the sensor that the camera is in, from 0; -1: none */
+    uint32_t riders; /* lights, by bits, whose places are on the body */
+};
+
 enum glint_described_kind {
     GLINT_DESCRIBED_SPHERE,
     GLINT_DESCRIBED_TRIANGLE,
@@ -159,6 +178,7 @@ struct glint_description {
     enum glint_described_background background;
     double background_colour[3];
     struct glint_described_environment environment;
+    struct glint_described_motion motion;
     bool has_shadows;
     enum glint_described_flare flare;
     int n_highlights;
@@ -186,6 +206,9 @@ struct glint_description_files {
     enum glint_status (*environment)(void *ctx, const char *name,
                                      uint8_t **data, size_t *bytes,
                                      struct glint_error *error);
+    /* As a baked motion; NULL: there are none. */
+    enum glint_status (*motion)(void *ctx, const char *name, uint8_t **data,
+                                size_t *bytes, struct glint_error *error);
 };
 
 /* Reads a scene text. TEXT need not be terminated and may hold anything;

@@ -40,7 +40,7 @@ extern "C" {
 #endif
 
 #define GLINT_SCENE_MAGIC   UINT32_C(0x53544e47) /* "GNTS" */
-#define GLINT_SCENE_VERSION 2
+#define GLINT_SCENE_VERSION 3
 #define GLINT_SCENE_NONE    UINT32_C(0xffffffff) /* no texture, no material */
 
 enum {
@@ -199,6 +199,35 @@ struct glint_scene_object {
     int32_t turn_q30[4]; /* unit quaternion w, x, y, z */
 };
 
+enum glint_scene_detect {
+    GLINT_DETECT_ANGLE, /* a food is seen that lies within the sensor's angle */
+    GLINT_DETECT_BOTH   /* and is brighter than a threshold */
+};
+
+/* How a recorded motion is shown; a file of glint/scene/motion.h follows. Its
+ * axes are those of the scene's text. */
+struct glint_scene_motion {
+    char name[GLINT_SCENE_NAME]; /* terminated */
+    /* The first object of each kind, all balls, or GLINT_SCENE_NONE: the body,
+     * as many sensors and as many foods as the motion has. */
+    uint32_t body, sensor, food;
+    int32_t size;  /* of the body, on which sensors stand; steps */
+    int32_t shell; /* radius of the shell about a food that is seen, steps; 0:
+                      none */
+    int32_t line;  /* width of lines to sensors that see it, steps; 0: none */
+    int32_t box;   /* the same of the edges of the box of all frames */
+    /* Of shells, which let their share pass; of lines and box, whose colour
+     * alone counts. */
+    uint32_t shell_material, line_material, box_material;
+    uint32_t detect; /* enum glint_scene_detect */
+    uint32_t least;  /* threshold in 255ths */
+    uint32_t camera; /* sensor that the camera is in, or GLINT_SCENE_NONE */
+    uint32_t riders; /* lamps, by bits of their index, that ride on the body:
+                        they are at places of its axes */
+    uint32_t bytes;  /* of the motion's file, whole words */
+    uint32_t zero;
+};
+
 /* Which way z runs in the text that the scene was baked from, where poses come
  * from; in the file it always runs away. */
 enum glint_scene_hand { GLINT_HAND_LEFT, GLINT_HAND_RIGHT };
@@ -231,6 +260,7 @@ struct glint_scene_header {
     /* Cosine and sine of the angle by which it is turned to the right. */
     int32_t environment_turn_q30[2];
     struct glint_real environment_scale; /* factor of all its light */
+    uint32_t n_motions, motion_at;       /* 0 or 1 struct glint_scene_motion */
 };
 
 /* An opened file; it points into that, which must outlive it. */
@@ -242,7 +272,8 @@ struct glint_scene_model {
     const struct glint_scene_mesh *mesh;
     const struct glint_scene_object *object;
     const struct glint_scene_ward *ward;
-    const void *environment; /* NULL: there is none */
+    const void *environment;                 /* NULL: there is none */
+    const struct glint_scene_motion *motion; /* NULL: there is none */
 };
 
 /* Checks DATA[BYTES], aligned to 4 bytes, and points MODEL into it. DATA is

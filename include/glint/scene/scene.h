@@ -40,11 +40,13 @@ struct glint_scene_textures;
 struct glint_scene_bounces;
 struct glint_scene_wards;
 struct glint_scene_highlights;
+struct glint_scene_motions;
 extern const struct glint_scene_meshes glint_scene_meshes;
 extern const struct glint_scene_textures glint_scene_textures;
 extern const struct glint_scene_bounces glint_scene_bounces;
 extern const struct glint_scene_wards glint_scene_wards;
 extern const struct glint_scene_highlights glint_scene_highlights;
+extern const struct glint_scene_motions glint_scene_motions;
 
 /* Parts of the run time; NULL: it is not there, and models that need it are
  * refused. */
@@ -55,6 +57,7 @@ struct glint_scene_parts {
     const struct glint_scene_wards *wards;     /* environments, brushed metal */
     /* What glints (glint/scene/highlights.h); no model needs it. */
     const struct glint_scene_highlights *highlights;
+    const struct glint_scene_motions *motions; /* recorded motion */
 };
 
 struct glint_scene_config {
@@ -101,7 +104,7 @@ size_t glint_scene_bytes(const struct glint_scene_config *cfg,
                          const struct glint_scene_model *model);
 
 /* Returns which part MODEL needs and PARTS do not name: "meshes", "textures",
- * "bounces" or "wards"; NULL: none. */
+ * "bounces", "wards" or "motions"; NULL: none. */
 const char *glint_scene_lacks(const struct glint_scene_parts *parts,
                               const struct glint_scene_model *model);
 
@@ -178,6 +181,48 @@ void glint_scene_look_around(struct glint_scene *scene,
 
 /* Shows or hides object OBJECT. */
 void glint_scene_show(struct glint_scene *scene, int object, int is_shown);
+
+/* ---------------------------------------------------------- recorded motion */
+
+/* What is shown of a recorded motion. */
+enum glint_scene_kind {
+    GLINT_KIND_BODY,
+    GLINT_KIND_SENSORS,
+    GLINT_KIND_FOODS,
+    GLINT_KIND_SHELLS, /* about foods that are seen */
+    GLINT_KIND_LINES,  /* from these to the sensors that see them */
+    GLINT_KIND_BOX,    /* of all frames */
+    GLINT_KINDS
+};
+
+/* Returns how many frames the motion of SCENE has; 0: there is none. */
+uint32_t glint_scene_frames(const struct glint_scene *scene);
+
+/* Moves body, sensors, foods, lamps that ride, and a camera in a sensor to
+ * frame FRAME, or to the last if that is beyond: the same whatever was shown
+ * before. A scene begins at frame 0. */
+void glint_scene_seek(struct glint_scene *scene, uint32_t frame);
+
+/* Puts the camera into sensor SENSOR, with its field of view; -1: back to where
+ * the scene has it. GLINT_E_ARGUMENT: there is no such sensor, or its field is
+ * too wide for the picture's shape. */
+enum glint_status glint_scene_enter(struct glint_scene *scene, int sensor);
+
+/* Shows or hides all of KIND. */
+void glint_scene_show_kind(struct glint_scene *scene,
+                           enum glint_scene_kind kind, int is_shown);
+
+/* Sets radius or width of all of KIND; of the body also how far sensors are
+ * from its middle. GLINT_E_ARGUMENT: not within 1 .. GLINT_SCENE_SPAN / 4
+ * steps, or there is no such thing. */
+enum glint_status glint_scene_size_kind(struct glint_scene *scene,
+                                        enum glint_scene_kind kind,
+                                        int32_t steps);
+
+/* Returns which sensors see food FOOD now, by bits. */
+uint32_t glint_scene_seen_by(const struct glint_scene *scene, uint32_t food);
+
+/* ------------------------------------------------------------------- frame */
 
 /* Prepares a frame: what may be seen, and in which tiles. Everything before
  * draw and lights; may be called again. */

@@ -11,8 +11,6 @@ const char *glint_not_built(const struct glint_word *word)
     static const struct {
         const char *word, *instead;
     } absent[] = {
-        {"motion", "things are moved by poses"},
-        {"sensor", "a camera has fov, lens, orbit or corners"},
         {"translucent", "materials are phong or ward"},
         {"coat", "materials are phong or ward"},
         {"fresnel", "materials are phong or ward"},

@@ -61,6 +61,7 @@ static const struct line {
     {"triangle", glint_describe_triangle, false},
     {"plane", glint_describe_plane, false},
     {"mesh", glint_describe_mesh, false},
+    {"motion", glint_describe_motion, true},
     {"shadow", glint_describe_shadow, true},
     {"flare", glint_describe_flare, true},
 };
@@ -120,14 +121,17 @@ glint_description_parse(struct glint_description *scene, const char *text,
 
     memset(scene, 0, sizeof *scene);
     scene->camera.fov_deg = 53.0;
+    scene->motion.camera = -1;
     good = glint_text_open(&d.text, text, bytes, file_name, error);
     while (good && glint_text_next_line(&d.text))
         good = read_line(&d, first);
-    good = good && glint_describe_axes(&d) && glint_describe_around(&d);
+    good = good && glint_describe_axes(&d) && glint_describe_around(&d) &&
+           glint_describe_sensors(&d);
     if (good && !scene->n_objects)
-        good = glint_text_fail(&d.text, glint_text_end(&d.text),
-                               "there is no thing: sphere, triangle, plane or "
-                               "mesh");
+        good =
+            glint_text_fail(&d.text, glint_text_end(&d.text),
+                            "there is no thing: sphere, triangle, plane, mesh "
+                            "or motion");
     if (good)
         return GLINT_OK;
     glint_description_free(scene);
@@ -140,5 +144,6 @@ void glint_description_free(struct glint_description *scene)
         free(scene->texture[i].image.plane[0]);
     free(scene->triangle);
     free(scene->environment.data);
+    free(scene->motion.data);
     memset(scene, 0, sizeof *scene);
 }

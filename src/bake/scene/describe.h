@@ -20,7 +20,21 @@ struct glint_describer {
     struct glint_text_place background; /* of its word */
     double toward[3], up[3], orbit[3], distance, yaw_deg, pitch_deg;
     bool has_orbit;
+    struct glint_text_place sensor; /* of the camera's */
+    struct glint_text_place rides;  /* of the first lamp that rides */
+    char rides_on[GLINT_DESCRIPTION_NAME_BYTES];
 };
+
+/* describe_motion.c: motion, and once all lines are read what others say of
+ * it. */
+bool glint_describe_motion(struct glint_describer *d);
+bool glint_describe_sensors(struct glint_describer *d);
+
+/* describe_things.c: appends a thing of KIND; the error says WHAT it is and
+ * stands at PLACE. Returns NULL if there are too many, or one has that name. */
+struct glint_described_object *
+glint_describe_thing(struct glint_describer *d, enum glint_described_kind kind,
+                     const char *name, struct glint_text_place place);
 
 /* describe_view.c: hand, camera, background, shadow, flare. */
 bool glint_describe_hand(struct glint_describer *d);

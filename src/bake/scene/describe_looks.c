@@ -55,17 +55,36 @@ static bool read_sun(struct glint_describer *d,
                            "the direction to the sun must not be 0 0 0");
 }
 
+/* Notes that LIGHT rides on the motion called WORD. */
+static bool ride(struct glint_describer *d,
+                 const struct glint_described_light *light,
+                 const struct glint_word *word, struct glint_text_place place)
+{
+    char name[GLINT_FILE_BYTES];
+
+    glint_describe_file(word, name);
+    if (d->rides.line && strcmp(d->rides_on, name) != 0)
+        return glint_text_fail(&d->text, place, "there is one motion at most");
+    d->rides = place;
+    snprintf(d->rides_on, sizeof d->rides_on, "%.31s", name);
+    d->scene->motion.riders |= 1u << (light - d->scene->light);
+    return true;
+}
+
 static bool read_lamp(struct glint_describer *d,
                       struct glint_described_light *light)
 {
+    struct glint_word on = {0};
     struct glint_clause clause[] = {
         {"at", 3, -REACH, REACH, .value = light->at, .required = true},
         {"colour", 3, 0, MAX_LIGHT, .value = light->colour, .required = true},
         {"radius", 1, 0, REACH, .value = &light->radius},
+        {"on", .name = &on},
         {0}};
 
     light->kind = GLINT_DESCRIBED_LAMP;
-    return glint_clauses_read(&d->text, "light lamp", clause);
+    return glint_clauses_read(&d->text, "light lamp", clause) &&
+           (!clause[3].place.line || ride(d, light, &on, clause[3].place));
 }
 
 /* Names LIGHT after its kind and, from the second on, its number. */

@@ -17,39 +17,49 @@
 #define REPEATS 250.0
 #define NO_AXIS "the axis of a turn must not be 0 0 0"
 
-/* Begins a thing of KIND: reads its name. Returns NULL if that is wrong. */
-static struct glint_described_object *begin(struct glint_describer *d,
-                                            enum glint_described_kind kind,
-                                            const char *what)
+struct glint_described_object *
+glint_describe_thing(struct glint_describer *d, enum glint_described_kind kind,
+                     const char *name, struct glint_text_place place)
 {
     struct glint_description *s = d->scene;
     struct glint_described_object *o = &s->object[s->n_objects];
-    struct glint_text at = d->text;
-    const struct glint_text_place place = glint_text_next_word(&at).place;
 
     if (s->n_objects == GLINT_DESCRIPTION_MAX_OBJECTS) {
         glint_text_fail(&d->text, place, "more than %d things",
                         GLINT_DESCRIPTION_MAX_OBJECTS);
         return NULL;
     }
-    *o = (struct glint_described_object){.kind = kind,
-                                         .turn = {1, 0, 0, 0},
-                                         .material = -1,
-                                         .first_triangle = s->n_triangles};
-    if (!glint_name_read(&d->text, what, o->name, sizeof o->name))
-        return NULL;
-    if (strcmp(o->name, "camera") == 0) {
+    if (strcmp(name, "camera") == 0) {
         glint_text_fail(&d->text, place, "'camera' is the camera's name");
         return NULL;
     }
     for (int i = 0; i < s->n_objects; i++)
-        if (strcmp(s->object[i].name, o->name) == 0) {
+        if (strcmp(s->object[i].name, name) == 0) {
             glint_text_fail(&d->text, place,
                             "a thing of this name is already defined");
             return NULL;
         }
+    *o = (struct glint_described_object){.kind = kind,
+                                         .turn = {1, 0, 0, 0},
+                                         .material = -1,
+                                         .first_triangle = s->n_triangles};
+    snprintf(o->name, sizeof o->name, "%s", name);
     s->n_objects++;
     return o;
+}
+
+/* Begins a thing of KIND: reads its name. Returns NULL if that is wrong. */
+static struct glint_described_object *begin(struct glint_describer *d,
+                                            enum glint_described_kind kind,
+                                            const char *what)
+{
+    struct glint_text at = d->text;
+    const struct glint_text_place place = glint_text_next_word(&at).place;
+    char name[GLINT_DESCRIPTION_NAME_BYTES];
+
+    return glint_name_read(&d->text, what, name, sizeof name)
+               ? glint_describe_thing(d, kind, name, place)
+               : NULL;
 }
 
 /* Returns whether the texture of T repeats more often than may be. */

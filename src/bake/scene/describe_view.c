@@ -122,6 +122,16 @@ static bool read_field(struct glint_describer *d, bool *all)
         *all = true;
         return glint_line_ends(&d->text, "camera corners");
     }
+    if (glint_word_is(&word, "sensor")) {
+        double k;
+
+        d->sensor = word.place;
+        *all = true;
+        if (!glint_numbers_read(&d->text, "sensor", 1, 1, 32, &k))
+            return false;
+        d->scene->motion.camera = (int)k - 1;
+        return glint_line_ends(&d->text, "camera sensor");
+    }
     if (glint_word_is(&word, "lens")) {
         c->field = GLINT_DESCRIBED_LENS;
         return true;
@@ -196,7 +206,8 @@ bool glint_describe_axes(struct glint_describer *d)
     struct glint_described_camera *c = &d->scene->camera;
     const double hand = d->scene->left_handed ? 1 : -1;
 
-    if (c->field == GLINT_DESCRIBED_CORNERS || !d->camera.line) {
+    if (c->field == GLINT_DESCRIBED_CORNERS || !d->camera.line ||
+        d->sensor.line) {
         /* Row A6 looks along +z; a scene without a camera into the picture. */
         c->forward[2] = c->field == GLINT_DESCRIBED_CORNERS ? 1 : hand;
     } else if (d->has_orbit) {

@@ -54,6 +54,10 @@ struct glint_steps glint_steps_of(const struct glint_description *scene,
         if (scene->object[i].kind == GLINT_DESCRIBED_PLANE)
             share_log2 = PLANE_SHARE_LOG2;
     }
+    if (scene->motion.data)
+        *reach = fmax(*reach,
+                      scene->motion.reach + 2 * scene->motion.size +
+                          scene->motion.foods * fmax(1, scene->motion.shells));
     if (*reach < GLINT_DESCRIPTION_LEAST)
         *reach = GLINT_DESCRIPTION_LEAST;
     frexp(*reach, &exponent); /* reach < 2^exponent */

@@ -331,6 +331,45 @@ static void set_environment(struct writer *w)
     h->environment_scale = glint_real_of(e->scale);
 }
 
+static uint32_t first_of(int object)
+{
+    return object < 0 ? GLINT_SCENE_NONE : (uint32_t)object;
+}
+
+static int32_t steps_of(const struct writer *w, double length)
+{
+    return length > 0 ? (int32_t)fmax(1, rint(length * w->steps.scale)) : 0;
+}
+
+static void set_motion(struct writer *w)
+{
+    const struct glint_described_motion *from = &w->scene->motion;
+    struct glint_scene_motion m = {
+        .body = first_of(from->body),
+        .sensor = first_of(from->sensor),
+        .food = first_of(from->food),
+        .size = (int32_t)lrint(from->size * w->steps.scale),
+        .shell = steps_of(w, from->shells * from->foods),
+        .line = steps_of(w, from->lines),
+        .box = steps_of(w, from->box),
+        .shell_material = (uint32_t)from->shell_material,
+        .line_material = (uint32_t)from->line_material,
+        .box_material = (uint32_t)from->box_material,
+        .detect = from->both ? GLINT_DETECT_BOTH : GLINT_DETECT_ANGLE,
+        .least = (uint32_t)lrint(255 * from->least),
+        .camera = first_of(from->camera),
+        .riders = from->riders,
+        .bytes = (uint32_t)from->bytes};
+
+    w->header.motion_at = (uint32_t)w->draft.bytes;
+    if (!from->data)
+        return;
+    memcpy(m.name, from->name, sizeof m.name);
+    w->header.n_motions = 1;
+    glint_draft_put(&w->draft, &m, sizeof m);
+    glint_draft_put(&w->draft, from->data, from->bytes);
+}
+
 static void set_header(struct writer *w, const char *name, uint64_t key)
 {
     const struct glint_description *s = w->scene;
@@ -376,6 +415,7 @@ enum glint_status glint_scene_bake(const struct glint_description *scene,
     write_materials(&w);
     good = good && write_meshes(&w) && write_objects(&w);
     set_environment(&w);
+    set_motion(&w);
     set_header(&w, name, key);
     glint_draft_amend(&w.draft, 0, &w.header, sizeof w.header);
     if (!good || w.draft.out_of_memory) {

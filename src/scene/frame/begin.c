@@ -53,8 +53,7 @@ static int32_t margin_of(const struct glint_scene *s, const int32_t seen[3],
     return (int32_t)q_clamp_sat((far * off_q30 >> 30) + 2, 0, GLINT_SCENE_SPAN);
 }
 
-/* Finds where P is in the picture; returns its least z, or GLINT_FAR. */
-static int32_t place(struct glint_scene *s, struct glint_placed *p)
+int32_t glint_scene_place(const struct glint_scene *s, struct glint_placed *p)
 {
     int32_t seen[3], off[3];
 
@@ -120,7 +119,7 @@ void glint_scene_begin(struct glint_scene *scene,
 
     *stats = (struct glint_scene_stats){0};
     for (uint32_t i = 0; i < n; i++) {
-        const int32_t z = place(scene, &scene->placed[i]);
+        const int32_t z = glint_scene_place(scene, &scene->placed[i]);
 
         nearest = q_smaller(nearest, z);
         if (z < GLINT_FAR)
@@ -131,7 +130,10 @@ void glint_scene_begin(struct glint_scene *scene,
         q_clamp_sat(q_larger(nearest, farthest >> 14), 1, GLINT_SCENE_SPAN);
     place_planes(scene);
     glint_quick_begin(scene);
-    glint_scene_flatten(scene);
+    if (scene->motion)
+        scene->cfg.parts.motions->project(scene);
+    else /* shells and lines ask for true depths */
+        glint_scene_flatten(scene);
     scene->has_triangles = 0;
     if (scene->bins.start)
         scene->cfg.parts.meshes->project(scene, stats);

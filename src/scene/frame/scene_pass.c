@@ -356,12 +356,16 @@ static inline int draw_row(struct glint_scene_worker *w,
     const uint32_t *id = &w->id[glint_sample_index(w, x0, y, 0)];
     int any = is_behind;
 
+    w->n_spans = 0;
+    if (s->motion && is_in)
+        s->cfg.parts.motions->list(w, y);
     put_background(w, rows, row, w->tile.x0, x0);
     for (int x = x0; x < x1; id += n) {
         struct glint_scene_sum sum;
         int end = x;
 
-        for (; end < x1 && !is_behind && is_empty(id, n); id += n)
+        for (; end < x1 && !is_behind && !w->n_spans && is_empty(id, n);
+             id += n)
             end++;
         if (end > x) {
             put_nothing(w, rows, row, x - w->tile.x0, end - w->tile.x0);
@@ -370,6 +374,8 @@ static inline int draw_row(struct glint_scene_worker *w,
                 break;
         }
         shade_pixel(w, id, n, x, y, &sum);
+        if (w->n_spans)
+            s->cfg.parts.motions->over(w, x, y, &sum);
         put(w, rows, x - w->tile.x0, row, sum.rgb_q17, sum.cover_q10);
         any |=
             sum.cover_q10 || sum.rgb_q17[0] || sum.rgb_q17[1] || sum.rgb_q17[2];

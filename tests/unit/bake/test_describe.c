@@ -83,7 +83,7 @@ static enum glint_status read_picture(void *ctx, const char *name,
 }
 
 static const struct glint_description_files files = {NULL, read_file,
-                                                     read_picture, NULL};
+                                                     read_picture, NULL, NULL};
 
 /* Parses the good text with LINE in place of line NUMBER (from 1; 0: none). */
 static enum glint_status parse(struct glint_description *scene, int number,
@@ -217,7 +217,7 @@ static const struct mistake {
      "2:38: 'at' and 'orbit' exclude each other"},
     {2, "camera orbit 0 0 0 yaw 3", "2:8: an orbit needs 'distance'"},
     {2, "camera at 0 1 0 toward 0 1 1 yaw 5", "2:30: 'yaw' belongs to 'orbit'"},
-    {2, "camera sensor 3", "2:8: 'sensor' is not built yet"},
+    {2, "camera sensor 3", "2:8: there is no motion, and no sensor"},
     {2, "camera corners 3", "2:16: '3' is more than camera corners takes"},
     {2, "hand left", "2:1: a second hand; the first is on line 1"},
     {3, "background environment",
@@ -227,7 +227,14 @@ static const struct mistake {
     {3, "environment night.env turn 400",
      "3:28: turn must be -360 .. 360, not 400"},
     {3, "environment night.env", "3:13: no environment is read here"},
-    {3, "motion run.motion", "3:1: 'motion' is not built yet; things are"},
+    {3, "motion run", "3:11: the motion's file is missing"},
+    {3, "motion run x.motion", "3:12: no motion is read here"},
+    {3, "motion run x.motion shells 2", "3:21: 'shells' are about 'foods'"},
+    {3, "motion run x.motion box 1", "3:21: 'box' is a factor of the width"},
+    {3, "motion run x.motion detect", "3:21: detect takes 'angle', or"},
+    {3, "motion run x.motion both .3", "3:21: 'angle' and 'both' belong"},
+    {3, "light lamp at 0 0 0 colour 1 1 1 on run",
+     "3:34: there is no motion 'run' to ride"},
     {3, "sphree b", "3:1: unknown word 'sphree'; did you mean 'sphere'?"},
     {3, "xyzzy", "3:1: unknown word 'xyzzy'"},
     {4, "light sun colour 1 1 1", "4:23: light sun needs 'direction'"},
@@ -235,7 +242,8 @@ static const struct mistake {
      "4:11: the direction to the sun must not be 0 0 0"},
     {4, "light bulb at 0 0 0", "4:7: a light is a sun or a lamp, not 'bulb'"},
     {5, "light lamp at 0 3 -2 color 8 7 6",
-     "5:22: light lamp takes at, colour and radius, not 'color'; did you mean "
+     "5:22: light lamp takes at, colour, radius and on, not 'color'; did you "
+     "mean "
      "'colour'?"},
     {5, "light lamp at 0 3 -2 at 8 7 6", "5:22: a second 'at'"},
     {5, "light lamp at 0 3 2e6 colour 8 7 6",

@@ -1,0 +1,473 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Shells about foods that are seen, lines to the sensors that see them, and the
+ * box of all frames.
+ *
+ * A line is as wide as it is: what of a pixel it covers is the overlap of the
+ * pixel with its width, at the distance of its middle, in q8. Widths below 3/4
+ * of a pixel count as that. */
+#include "scene/motion/play.h"
+
+#include "base/divide.h"
+#include "scene/visible.h"
+
+enum {
+    ALL_Q8 = 256,
+    LEAST_HALF_Q8 = 96, /* half of the width that a line has at least */
+    GUARD_Q8 = 1 << 20, /* from the middle, to which lines are cut */
+    SUMMED = 4
+};
+
+/* ---------------------------------------------------------------- projection
+ */
+
+/* A plane that lines are cut at: inside of it the product is not negative. */
+struct side {
+    int64_t by[3];
+};
+
+static int64_t inside(const struct side *side, const int32_t v[3])
+{
+    return side->by[0] * v[0] + side->by[1] * v[1] + side->by[2] * v[2];
+}
+
+/* Cuts what of A .. B is outside of SIDE; returns 0 if nothing is left. */
+static int cut(const struct side *side, int32_t a[3], int32_t b[3])
+{
+    const int64_t in[2] = {inside(side, a), inside(side, b)};
+    int32_t part_q30;
+
+    if (in[0] >= 0 && in[1] >= 0)
+        return 1;
+    if (in[0] < 0 && in[1] < 0)
+        return 0;
+    part_q30 =
+        q_part_q30(q_magnitude(in[0]), q_magnitude(in[0]) + q_magnitude(in[1]));
+    for (int k = 0; k < 3; k++) {
+        int32_t *const out = in[0] < 0 ? a : b;
+        const int32_t at =
+            q_narrow(a[k] + q_shift(((int64_t)b[k] - a[k]) * part_q30, 30));
+
+        out[k] = at;
+    }
+    return 1;
+}
+
+/* Cuts A .. B, camera coordinates, to what is well ahead and near the picture.
+ */
+static int cut_all(const struct glint_scene_view *v, int32_t near, int32_t a[3],
+                   int32_t b[3])
+{
+    /* GUARD z - f x, over f: x is below 2^30 and GUARD / f below 2^27 */
+    const int64_t tan_q16 =
+        q_divide((int64_t)GUARD_Q8 << 16, v->per_tan_q8 + 1);
+    const struct side side[4] = {{{-(1 << 16), 0, tan_q16}},
+                                 {{1 << 16, 0, tan_q16}},
+                                 {{0, -(1 << 16), tan_q16}},
+                                 {{0, 1 << 16, tan_q16}}};
+    const int32_t behind[2] = {a[2] - near, b[2] - near};
+
+    if (behind[0] < 0 && behind[1] < 0)
+        return 0;
+    if (behind[0] < 0 || behind[1] < 0) {
+        const int32_t part_q30 =
+            q_part_q30(q_magnitude(behind[0]),
+                       q_magnitude(behind[0]) + q_magnitude(behind[1]));
+        int32_t *const out = behind[0] < 0 ? a : b;
+
+        for (int k = 0; k < 3; k++)
+            out[k] =
+                q_narrow(a[k] + q_shift(((int64_t)b[k] - a[k]) * part_q30, 30));
+        out[2] = q_larger(out[2], near);
+    }
+    for (int k = 0; k < 4; k++)
+        if (!cut(&side[k], a, b))
+            return 0;
+    return a[2] > 0 && b[2] > 0;
+}
+
+static struct glint_motion_layer *next_layer(struct glint_motion_state *m)
+{
+    return m->n_layers < m->max_layers ? &m->layer[m->n_layers] : NULL;
+}
+
+/* Sets the box of L to the pixels within FAR_Q8 of its two ends. */
+static void set_box(const struct glint_scene *s, struct glint_motion_layer *l,
+                    const struct glint_corner end[2], int32_t far_q8)
+{
+    const struct glint_box all = {0, 0, s->view.width, s->view.height};
+    const int32_t x_q8 = 128 * (s->view.width - 1);
+    const int32_t y_q8 = 128 * (s->view.height - 1);
+
+    l->box = glint_box_cut(
+        all, (struct glint_box){
+                 (q_smaller(end[0].x, end[1].x) + x_q8 - far_q8) >> 8,
+                 (q_smaller(end[0].y, end[1].y) + y_q8 - far_q8) >> 8,
+                 ((q_larger(end[0].x, end[1].x) + x_q8 + far_q8) >> 8) + 2,
+                 ((q_larger(end[0].y, end[1].y) + y_q8 + far_q8) >> 8) + 2});
+}
+
+/* Adds a line of WIDTH steps from A to B, places. */
+static void add_line(struct glint_scene *s, const int32_t a[3],
+                     const int32_t b[3], int32_t width, uint32_t material)
+{
+    struct glint_motion_layer *l = next_layer(s->motion);
+    const int32_t near = q_larger(1, s->nearest >> 4);
+    int32_t v[2][3];
+    struct glint_corner end[2];
+    int64_t along[3];
+    int32_t unit_q30[3], most = 0;
+
+    glint_view_seen(&s->view, a, v[0]);
+    glint_view_seen(&s->view, b, v[1]);
+    if (!l || width < 1 || !cut_all(&s->view, near, v[0], v[1]))
+        return;
+    for (int k = 0; k < 2; k++) {
+        end[k] = glint_view_corner(&s->view, v[k]);
+        l->half_q8[k] = q_larger(
+            LEAST_HALF_Q8,
+            q_smaller(1 << 16, glint_ratio((uint64_t)width *
+                                               (uint64_t)s->view.per_tan_q8 / 2,
+                                           (uint64_t)v[k][2])));
+        l->depth[k] = q_larger(
+            1, glint_ratio((uint64_t)s->nearest << 30, (uint64_t)v[k][2]));
+        most = q_larger(most, l->half_q8[k]);
+    }
+    along[0] = (int64_t)end[1].x - end[0].x;
+    along[1] = (int64_t)end[1].y - end[0].y;
+    along[2] = 0;
+    if (end[0].w != 1 || end[1].w != 1 || !glint_unit(along, unit_q30))
+        return;
+    l->ball = NULL;
+    l->material = material;
+    l->x_q8 = end[0].x;
+    l->y_q8 = end[0].y;
+    l->length_q8 = (int32_t)glint_root(
+        (uint64_t)(along[0] * along[0] + along[1] * along[1]));
+    for (int k = 0; k < 2; k++)
+        l->along_q14[k] = (int32_t)q_shift(unit_q30[k], 16);
+    l->z = v[0][2] / 2 + v[1][2] / 2;
+    set_box(s, l, end, most + 128);
+    s->motion->n_layers += !glint_box_empty(l->box) && l->length_q8 > 0;
+}
+
+/* Moves A towards B by STEPS; returns 0 if they are nearer than that. */
+static int shorten(int32_t a[3], const int32_t b[3], int32_t steps)
+{
+    int64_t off[3];
+    int32_t d[3], unit_q30[3];
+
+    v3_minus(b, a, d);
+    for (int k = 0; k < 3; k++)
+        off[k] = d[k];
+    if (!glint_unit(off, unit_q30) ||
+        (uint64_t)v3_dot(d, d) <= (uint64_t)((int64_t)steps * steps))
+        return 0;
+    for (int k = 0; k < 3; k++)
+        a[k] += q_mul(unit_q30[k], steps, 30);
+    return 1;
+}
+
+/* Returns the radius of object FIRST + I, 0 if there is none. */
+static int32_t radius_of(const struct glint_scene *s, uint32_t first,
+                         uint32_t i)
+{
+    return first == GLINT_SCENE_NONE ? 0 : s->placed[first + i].radius;
+}
+
+/* Lines from the surface of food F to that of each sensor that sees it. */
+static void add_lines(struct glint_scene *s, uint32_t f)
+{
+    const struct glint_motion_state *m = s->motion;
+
+    for (uint32_t i = 0; i < m->motion.header.n_sensors; i++) {
+        int32_t a[3], b[3];
+
+        if (!(m->seen_by[f] >> i & 1) || (int)i == m->sensor)
+            continue;
+        for (int k = 0; k < 3; k++) {
+            a[k] = m->food_at[f][k];
+            b[k] = m->sensor_at[i][k];
+        }
+        if (shorten(a, b, radius_of(s, m->how->food, f)) &&
+            shorten(b, a, radius_of(s, m->how->sensor, i)))
+            add_line(s, a, b, m->line, m->how->line_material);
+    }
+}
+
+static void add_shell(struct glint_scene *s, uint32_t f)
+{
+    struct glint_motion_state *m = s->motion;
+    struct glint_motion_layer *l = next_layer(m);
+    struct glint_placed *p = &m->ball[f];
+
+    if (!l || m->shell < 1 || m->how->food == GLINT_SCENE_NONE)
+        return;
+    *p = (struct glint_placed){.object = &s->model.object[m->how->food + f],
+                               .radius = m->shell,
+                               .reach = m->shell,
+                               .is_shown = 1};
+    for (int k = 0; k < 3; k++)
+        p->at[k] = p->centre[k] = m->food_at[f][k];
+    glint_scene_place(s, p);
+    if (!p->is_seen)
+        return;
+    l->ball = p;
+    l->material = m->how->shell_material;
+    l->z = p->z[0] / 2 + p->z[1] / 2;
+    l->box = p->box;
+    m->n_layers++;
+}
+
+static void add_box(struct glint_scene *s)
+{
+    const struct glint_motion_state *m = s->motion;
+    const int32_t *end[2] = {m->low, m->high};
+
+    for (int axis = 0; axis < 3; axis++)
+        for (int k = 0; k < 4; k++) {
+            const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+            int32_t a[3], b[3];
+
+            a[i] = b[i] = end[k & 1][i];
+            a[j] = b[j] = end[k >> 1][j];
+            a[axis] = m->low[axis];
+            b[axis] = m->high[axis];
+            add_line(s, a, b, m->edge, m->how->box_material);
+        }
+}
+
+/* From back to front; of two as far away the first stays the first. */
+static void sort(struct glint_motion_state *m)
+{
+    for (int i = 1; i < m->n_layers; i++) {
+        const struct glint_motion_layer l = m->layer[i];
+        int k = i;
+
+        for (; k > 0 && m->layer[k - 1].z < l.z; k--)
+            m->layer[k] = m->layer[k - 1];
+        m->layer[k] = l;
+    }
+}
+
+static void project(struct glint_scene *s)
+{
+    struct glint_motion_state *m = s->motion;
+
+    m->n_layers = 0;
+    if (glint_motion_shows(m, GLINT_KIND_BOX))
+        add_box(s);
+    for (uint32_t f = 0; f < m->motion.header.n_foods; f++) {
+        if (!m->seen_by[f])
+            continue;
+        if (glint_motion_shows(m, GLINT_KIND_SHELLS))
+            add_shell(s, f);
+        if (glint_motion_shows(m, GLINT_KIND_LINES))
+            add_lines(s, f);
+    }
+    sort(m);
+}
+
+/* ------------------------------------------------------------------- drawing
+ */
+
+static struct glint_box touch(const struct glint_scene *s,
+                              struct glint_box tile)
+{
+    struct glint_box all = {0, 0, 0, 0};
+
+    for (int i = 0; i < s->motion->n_layers; i++)
+        all = glint_box_join(all, glint_box_cut(tile, s->motion->layer[i].box));
+    return all;
+}
+
+/* Confines X0 .. X1 - 1 to pixels of row Y that line L may touch. */
+static void confine(const struct glint_scene *s,
+                    const struct glint_motion_layer *l, int y, int *x0, int *x1)
+{
+    const int32_t down = glint_place(s, y, 1) - l->y_q8;
+    const int32_t *u = l->along_q14;
+    const int64_t reach =
+        (int64_t)(q_larger(l->half_q8[0], l->half_q8[1]) + 128) << 14;
+    int64_t at[2];
+
+    if (q_magnitude(u[1]) < 1 << 8) /* it runs along the row */
+        return;
+    for (int k = 0; k < 2; k++)
+        at[k] = q_divide((int64_t)down * u[0] + (k ? reach : -reach), u[1]) +
+                l->x_q8 + 128 * (s->view.width - 1);
+    if (at[0] > at[1]) {
+        const int64_t swap = at[0];
+
+        at[0] = at[1];
+        at[1] = swap;
+    }
+    *x0 = q_larger(*x0, q_clamp_sat((at[0] >> 8) - 1, 0, INT32_MAX));
+    *x1 = q_smaller(*x1, q_clamp_sat((at[1] >> 8) + 2, 0, INT32_MAX));
+}
+
+static void list(struct glint_scene_worker *w, int y)
+{
+    const struct glint_motion_state *m = w->scene->motion;
+
+    w->n_spans = 0;
+    for (int i = 0; i < m->n_layers; i++) {
+        const struct glint_box b = glint_box_cut(w->tile, m->layer[i].box);
+        struct glint_layer_span span = {i, b.x0, b.x1};
+
+        if (y < b.y0 || y >= b.y1)
+            continue;
+        if (!m->layer[i].ball)
+            confine(w->scene, &m->layer[i], y, &span.x0, &span.x1);
+        if (span.x0 < span.x1)
+            w->span[w->n_spans++] = span;
+    }
+}
+
+/* Returns the share of the samples of a pixel that see nothing nearer than
+ * DEPTH, q8. */
+static int seen_q8(const struct glint_scene_worker *w, int x, int y,
+                   int32_t depth)
+{
+    const int n = w->scene->cfg.edge_samples;
+    const int first = glint_sample_index(w, x, y, 0);
+    int seen = 0;
+
+    for (int k = 0; k < n; k++)
+        seen += w->depth[first + k] <= depth;
+    return n == 1 ? seen * ALL_Q8 : seen * (ALL_Q8 / n);
+}
+
+/* Returns what of pixel (X, Y) line L covers, q8. */
+static int line_q8(const struct glint_scene_worker *w,
+                   const struct glint_motion_layer *l, int x, int y)
+{
+    const int64_t dx = glint_place(w->scene, x, 0) - l->x_q8;
+    const int64_t dy = glint_place(w->scene, y, 1) - l->y_q8;
+    const int32_t along =
+        (int32_t)q_shift(dx * l->along_q14[0] + dy * l->along_q14[1], 14);
+    const int32_t across = (int32_t)q_magnitude(
+        q_shift(dx * l->along_q14[1] - dy * l->along_q14[0], 14));
+    const int32_t end =
+        q_smaller(ALL_Q8, q_smaller(along, l->length_q8 - along) + 128);
+    int32_t part_q30, half, cover;
+
+    if (end <= 0)
+        return 0;
+    part_q30 = q_part_q30((uint64_t)q_smaller(q_larger(along, 0), l->length_q8),
+                          (uint64_t)l->length_q8);
+    half = l->half_q8[0] + q_mul(l->half_q8[1] - l->half_q8[0], part_q30, 30);
+    cover = q_smaller(q_smaller(ALL_Q8, 2 * half), half + 128 - across);
+    if (cover <= 0)
+        return 0;
+    return (cover * end >> 8) *
+               seen_q8(w, x, y,
+                       l->depth[0] +
+                           q_mul(l->depth[1] - l->depth[0], part_q30, 30)) >>
+           8;
+}
+
+/* Sets *CLEAR_Q15 to the cosine at which the ray of place (X, Y) leaves BALL,
+ * and DEPTH to where it enters; returns 0 if it misses it. */
+static int enter(const struct glint_scene *s, const struct glint_placed *ball,
+                 int32_t x_q8, int32_t y_q8, struct glint_chord *chord,
+                 int32_t *depth)
+{
+    struct glint_scene_ray ray;
+    int32_t seen_q30[3], z;
+
+    glint_view_ray(&s->view, x_q8, y_q8, &ray, seen_q30);
+    if (!glint_ray_sphere(&ray, ball->at, ball->radius, chord) ||
+        chord->t[1] <= 0)
+        return 0;
+    z = chord->t[0] <= 0 ? 1 : q_larger(1, q_mul(chord->t[0], seen_q30[2], 30));
+    *depth = q_larger(1, glint_ratio((uint64_t)s->nearest << 30, (uint64_t)z));
+    return 1;
+}
+
+/* Returns what of pixel (X, Y) a shell covers, q8: as much as its material does
+ * not let pass at the rim, half of that in its middle. */
+static int shell_q8(const struct glint_scene_worker *w,
+                    const struct glint_motion_layer *l, int x, int y)
+{
+    const struct glint_scene *s = w->scene;
+    const struct glint_placed *ball = l->ball;
+    const int n = s->cfg.edge_samples;
+    const int32_t share_q15 =
+        GLINT_SCENE_ONE_Q15 - s->material[l->material].pass_q15;
+    const int32_t x_q8 = glint_place(s, x, 0), y_q8 = glint_place(s, y, 1);
+    struct glint_chord chord;
+    int32_t depth = 0, cosine_q15 = 0;
+    int hits = 0;
+
+    if (enter(s, ball, x_q8, y_q8, &chord, &depth)) {
+        const int64_t radius = (int64_t)ball->radius * (INT64_C(1) << chord.up);
+        const int64_t within =
+            ((int64_t)ball->radius - ball->margin) * (INT64_C(1) << chord.up);
+
+        cosine_q15 =
+            q_part_q30((uint64_t)chord.half,
+                       (uint64_t)(radius > chord.half ? radius : chord.half)) >>
+            15;
+        if (within > 0 && v3_dot(chord.middle, chord.middle) <= within * within)
+            hits = n;
+    }
+    for (int k = 0; k < n && hits < n; k++) {
+        struct glint_chord at;
+        int32_t sample_depth;
+
+        if (k == 0)
+            hits = 0;
+        if (!enter(s, ball, x_q8 + glint_sample(s, k, 0),
+                   y_q8 + glint_sample(s, k, 1), &at, &sample_depth))
+            continue;
+        depth = q_larger(depth, sample_depth);
+        hits++;
+    }
+    if (hits == 0)
+        return 0;
+    return (int)q_shift((int64_t)share_q15 *
+                            (2 * GLINT_SCENE_ONE_Q15 - cosine_q15) * hits / n *
+                            seen_q8(w, x, y, depth),
+                        31);
+}
+
+static void over(const struct glint_scene_worker *w, int x, int y,
+                 struct glint_scene_sum *sum)
+{
+    const struct glint_scene *s = w->scene;
+
+    for (int i = 0; i < w->n_spans; i++) {
+        const struct glint_motion_layer *l =
+            &s->motion->layer[w->span[i].layer];
+        const int32_t *rgb_q15 = s->material[l->material].rgb_q15;
+        int a;
+
+        if (x < w->span[i].x0 || x >= w->span[i].x1)
+            continue;
+        a = l->ball ? shell_q8(w, l, x, y) : line_q8(w, l, x, y);
+        if (a == 0)
+            continue;
+        for (int c = 0; c < 3; c++)
+            sum->rgb_q17[c] = q_shift(sum->rgb_q17[c] * (ALL_Q8 - a) +
+                                          (int64_t)SUMMED * rgb_q15[c] * a,
+                                      8);
+        sum->cover_q10 = (int)q_shift(
+            sum->cover_q10 * (int64_t)(ALL_Q8 - a) + SUMMED * ALL_Q8 * a, 8);
+    }
+}
+
+static void carve_worker(const struct glint_scene *s, struct glint_arena *arena,
+                         struct glint_scene_worker *worker)
+{
+    worker->span = glint_arena_take(arena, glint_motion_layers(s->model.motion),
+                                    sizeof *worker->span);
+}
+
+const struct glint_scene_motions glint_scene_motions = {glint_motion_carve,
+                                                        carve_worker,
+                                                        glint_motion_begin,
+                                                        project,
+                                                        touch,
+                                                        list,
+                                                        over};

@@ -1,0 +1,433 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Moves the things of a recorded motion, and finds which sensors see which
+ * foods. All that is shown of a frame comes from that frame alone. */
+#include "scene/motion/play.h"
+
+#include "base/divide.h"
+
+#include "scene/model_check.h"
+
+/* ------------------------------------------------------------------ opening */
+
+/* Sets N_FOODS and N_SENSORS to what the file says, which is only checked when
+ * it is opened: here it is held. */
+static void count(const struct glint_scene_motion *how, uint32_t *n_foods,
+                  uint32_t *n_sensors)
+{
+    const struct glint_motion_header *h = (const void *)(how + 1);
+    const int is_there = how->bytes >= sizeof *h;
+
+    *n_foods =
+        is_there && h->n_foods <= GLINT_MOTION_MAX_FOODS ? h->n_foods : 0;
+    *n_sensors =
+        is_there && h->n_sensors <= GLINT_MOTION_MAX_SENSORS ? h->n_sensors : 0;
+}
+
+size_t glint_motion_layers(const struct glint_scene_motion *how)
+{
+    uint32_t n_foods, n_sensors;
+
+    count(how, &n_foods, &n_sensors);
+    return (size_t)n_foods * (n_sensors + 1) + GLINT_BOX_EDGES;
+}
+
+struct glint_motion_state *glint_motion_carve(const struct glint_scene *scene,
+                                              struct glint_arena *arena)
+{
+    const struct glint_scene_motion *how = scene->model.motion;
+    struct glint_motion_state *m = glint_arena_take(arena, 1, sizeof *m);
+    uint32_t n_foods, n_sensors;
+    struct glint_placed *ball;
+    struct glint_motion_layer *layer;
+
+    count(how, &n_foods, &n_sensors);
+    ball = glint_arena_take(arena, n_foods, sizeof *ball);
+    layer = glint_arena_take(arena, glint_motion_layers(how), sizeof *layer);
+    if (m) {
+        m->ball = ball;
+        m->layer = layer;
+        m->max_layers = (int)glint_motion_layers(how);
+    }
+    return m;
+}
+
+/* Returns by how many bits a step of the motion is longer than the scene's. */
+static int up_of(const struct glint_scene *s)
+{
+    return s->model.header->unit_log2 - s->motion->motion.header.unit_log2;
+}
+
+/* Sets TO to FROM, a place of the motion, in the scene. */
+static void to_scene(const struct glint_scene *s, const int32_t from[3],
+                     int32_t to[3])
+{
+    const int up = up_of(s);
+    const int mirrored = s->model.header->variant == GLINT_HAND_RIGHT;
+
+    for (int k = 0; k < 3; k++) {
+        const int32_t x = up > 0 ? (int32_t)(from[k] * (INT64_C(1) << up))
+                                 : (int32_t)q_shift(from[k], -up);
+
+        to[k] = k == 2 && mirrored ? -x : x;
+    }
+}
+
+/* Returns whether all places of the motion, with what is about them, fit. */
+static int fits(const struct glint_scene *s)
+{
+    const struct glint_motion_header *h = &s->motion->motion.header;
+    const int up = up_of(s);
+
+    for (int k = 0; k < 3; k++) {
+        const int64_t most = q_larger(h->high[k], -h->low[k]);
+
+        if (up > 28 || up < -60 ||
+            (up > 0 ? most << up : most >> -up) >= GLINT_SCENE_SPAN / 4)
+            return 0;
+    }
+    return 1;
+}
+
+/* Returns whether objects FIRST .. FIRST + N - 1 are balls of the scene. */
+static int are_balls(const struct glint_scene *s, uint32_t first, uint32_t n)
+{
+    const uint32_t all = s->model.header->n_objects;
+
+    if (first == GLINT_SCENE_NONE)
+        return 1;
+    if (first > all || n > all - first)
+        return 0;
+    for (uint32_t i = first; i < first + n; i++)
+        if (s->model.object[i].kind != GLINT_OBJECT_SPHERE)
+            return 0;
+    return 1;
+}
+
+static int rides_lamps(const struct glint_scene *s)
+{
+    for (uint32_t i = 0; i < GLINT_SCENE_MAX_LIGHTS; i++)
+        if (s->motion->how->riders >> i & 1 &&
+            (i >= s->model.header->n_lights ||
+             s->model.light[i].kind != GLINT_LIGHT_LAMP))
+            return 0;
+    return 1;
+}
+
+enum glint_status glint_motion_begin(struct glint_scene *scene)
+{
+    const struct glint_scene_motion *how = scene->model.motion;
+    struct glint_motion_state *m = scene->motion;
+    const struct glint_motion_header *h = &m->motion.header;
+    const char *reason;
+
+    m->how = how;
+    if (glint_motion_open(&m->motion, how + 1, how->bytes, &reason) !=
+            GLINT_OK ||
+        !fits(scene) || !are_balls(scene, how->body, 1) ||
+        !are_balls(scene, how->sensor, h->n_sensors) ||
+        !are_balls(scene, how->food, h->n_foods) || !rides_lamps(scene) ||
+        (how->camera != GLINT_SCENE_NONE && how->camera >= h->n_sensors))
+        return GLINT_E_FORMAT;
+    m->sensor = -1;
+    m->shown = (1u << GLINT_KINDS) - 1;
+    m->size = how->size;
+    m->shell = how->shell;
+    m->line = how->line;
+    m->edge = how->box;
+    m->n_layers = 0;
+    to_scene(scene, h->low, m->low);
+    to_scene(scene, h->high, m->high);
+    glint_scene_seek(scene, 0);
+    return how->camera == GLINT_SCENE_NONE
+               ? GLINT_OK
+               : glint_scene_enter(scene, (int)how->camera);
+}
+
+/* ---------------------------------------------------------------- detection */
+
+struct wide {
+    uint64_t high, low;
+};
+
+/* Returns A B, both below 2^63. */
+static struct wide product(uint64_t a, uint64_t b)
+{
+    const uint64_t a1 = a >> 32, a0 = a & UINT32_MAX;
+    const uint64_t b1 = b >> 32, b0 = b & UINT32_MAX;
+    const uint64_t low = a0 * b0;
+    const uint64_t middle = a1 * b0 + (low >> 32);
+    const uint64_t other = a0 * b1 + (middle & UINT32_MAX);
+
+    return (struct wide){a1 * b1 + (middle >> 32) + (other >> 32),
+                         other << 32 | (low & UINT32_MAX)};
+}
+
+static int is_less(struct wide a, struct wide b)
+{
+    return a.high != b.high ? a.high < b.high : a.low < b.low;
+}
+
+/* |axis| is 1: the cosine is dot / |d|, and is compared by squares. */
+int glint_motion_sees(const int32_t axis_q30[3], int32_t cos_half_q30,
+                      const int32_t d[3])
+{
+    const int64_t dot_q30 = v3_dot(axis_q30, d);
+    const uint64_t size = q_magnitude(dot_q30); /* below 2^61 */
+    const uint64_t cosine = q_magnitude(cos_half_q30);
+    const struct wide seen = product(size, size);
+    /* 2^60 times 3 2^58 */
+    const struct wide least = product(cosine * cosine, (uint64_t)v3_dot(d, d));
+
+    if (dot_q30 > 0)
+        return cos_half_q30 <= 0 || is_less(least, seen);
+    return cos_half_q30 < 0 && is_less(seen, least);
+}
+
+static void detect(struct glint_motion_state *m)
+{
+    const struct glint_motion_header *h = &m->motion.header;
+
+    for (uint32_t f = 0; f < h->n_foods; f++) {
+        m->seen_by[f] = 0;
+        for (uint32_t s = 0; s < h->n_sensors; s++) {
+            int32_t d[3];
+
+            v3_minus(m->food_at[f], m->sensor_at[s], d);
+            if (glint_motion_sees(m->axis_q30[s], h->cos_half_q30, d) &&
+                (m->how->detect == GLINT_DETECT_ANGLE ||
+                 m->frame.intensity[f][s] > m->how->least))
+                m->seen_by[f] |= 1u << s;
+        }
+    }
+}
+
+uint32_t glint_scene_seen_by(const struct glint_scene *scene, uint32_t food)
+{
+    const struct glint_motion_state *m = scene->motion;
+
+    return m && food < m->motion.header.n_foods ? m->seen_by[food] : 0;
+}
+
+/* --------------------------------------------------------------------- seek */
+
+/* Sets TURN_Q30 to the unit quaternion of the body, mirrored as the scene is.
+ */
+static void set_turn(const struct glint_scene *s, int32_t turn_q30[4])
+{
+    const int16_t *q14 = s->motion->frame.pose.turn_q14;
+    const int mirrored = s->model.header->variant == GLINT_HAND_RIGHT;
+    uint64_t square_q28 = 0;
+    int64_t length_q29;
+
+    for (int k = 0; k < 4; k++)
+        square_q28 += (uint64_t)(q14[k] * q14[k]);
+    length_q29 = (int64_t)glint_root(square_q28 << 30);
+    for (int k = 0; k < 4; k++) {
+        const int32_t q =
+            (int32_t)q_divide((int64_t)q14[k] * (INT64_C(1) << 45), length_q29);
+
+        turn_q30[k] = mirrored && (k == 1 || k == 2) ? -q : q;
+    }
+}
+
+/* Sets AT to where OFFSET, in the body's axes, is. */
+static void on_body(const struct glint_motion_state *m, const int32_t offset[3],
+                    int32_t at[3])
+{
+    v3_turn(&m->turn, offset, at);
+    for (int k = 0; k < 3; k++)
+        at[k] = q_narrow((int64_t)at[k] + m->body[k]);
+}
+
+static void move_sensors(struct glint_scene *s)
+{
+    struct glint_motion_state *m = s->motion;
+    const int mirrored = s->model.header->variant == GLINT_HAND_RIGHT;
+
+    for (uint32_t i = 0; i < m->motion.header.n_sensors; i++) {
+        const int32_t *from = m->motion.sensor[i].axis_q30;
+        const int32_t axis_q30[3] = {from[0], from[1],
+                                     mirrored ? -from[2] : from[2]};
+        int32_t out[3];
+
+        v3_turn(&m->turn, axis_q30, m->axis_q30[i]);
+        for (int k = 0; k < 3; k++)
+            out[k] = q_mul(axis_q30[k], m->size, 30);
+        on_body(m, out, m->sensor_at[i]);
+    }
+}
+
+/* Puts the camera where the sensor is that it is in. */
+static enum glint_status move_camera(struct glint_scene *s)
+{
+    const struct glint_motion_state *m = s->motion;
+    const int32_t *ahead = m->axis_q30[m->sensor];
+    struct glint_scene_camera c = {.kind = GLINT_CAMERA_FIELD};
+    struct glint_scene_view view;
+    int64_t right[3], up[3];
+    int32_t body_up_q30[3];
+    int axis = 1;
+
+    /* up is the body's y axis, or its z axis if the sensor looks along that */
+    for (int k = 0; k < 3; k++)
+        body_up_q30[k] = m->turn.row_q30[k][axis];
+    if (q_magnitude(v3_cosine_q30(body_up_q30, ahead)) > 1063004405)
+        axis = 2;
+    for (int k = 0; k < 3; k++)
+        body_up_q30[k] = m->turn.row_q30[k][axis];
+    v3_cross(body_up_q30, ahead, right);
+    glint_unit(right, c.axis_q30[0]);
+    v3_cross(ahead, c.axis_q30[0], up);
+    glint_unit(up, c.axis_q30[1]);
+    for (int k = 0; k < 3; k++) {
+        c.axis_q30[2][k] = ahead[k];
+        c.at[k] = m->sensor_at[m->sensor][k];
+    }
+    c.tan_x_q24 = m->motion.header.tan_half_q24;
+    if (glint_scene_camera_fault(&c) ||
+        !glint_view_init(&view, &c, s->cfg.width, s->cfg.height,
+                         s->cfg.focal_q16))
+        return GLINT_E_ARGUMENT;
+    s->view = view;
+    return GLINT_OK;
+}
+
+static void move_things(struct glint_scene *s, const int32_t turn_q30[4])
+{
+    const struct glint_motion_state *m = s->motion;
+    const struct glint_motion_header *h = &m->motion.header;
+    const struct glint_scene_motion *how = m->how;
+
+    if (how->body != GLINT_SCENE_NONE)
+        glint_scene_set_pose(s, (int)how->body, m->body, turn_q30);
+    for (uint32_t i = 0; how->sensor != GLINT_SCENE_NONE && i < h->n_sensors;
+         i++)
+        glint_scene_set_pose(s, (int)(how->sensor + i), m->sensor_at[i],
+                             turn_q30);
+    for (uint32_t i = 0; how->food != GLINT_SCENE_NONE && i < h->n_foods; i++)
+        glint_scene_set_pose(s, (int)(how->food + i), m->food_at[i],
+                             s->model.object[how->food + i].turn_q30);
+    for (uint32_t i = 0; i < s->model.header->n_lights; i++) {
+        int32_t at[3];
+
+        if (!(how->riders >> i & 1))
+            continue;
+        on_body(m, s->model.light[i].at, at);
+        glint_scene_set_light(s, (int)i, at);
+    }
+}
+
+/* Places all anew by the frame that is there. */
+static void move(struct glint_scene *s)
+{
+    struct glint_motion_state *m = s->motion;
+    int32_t turn_q30[4];
+
+    to_scene(s, m->frame.pose.at, m->body);
+    set_turn(s, turn_q30);
+    glint_scene_turn_of(turn_q30, &m->turn);
+    move_sensors(s);
+    for (uint32_t i = 0; i < m->motion.header.n_foods; i++)
+        to_scene(s, m->frame.food[i], m->food_at[i]);
+    move_things(s, turn_q30);
+    detect(m);
+    if (m->sensor >= 0)
+        move_camera(s);
+}
+
+void glint_scene_seek(struct glint_scene *scene, uint32_t frame)
+{
+    struct glint_motion_state *m = scene->motion;
+
+    if (!m)
+        return;
+    m->now = frame < m->motion.header.n_frames ? frame
+                                               : m->motion.header.n_frames - 1;
+    if (glint_motion_frame(&m->motion, m->now, &m->frame) == GLINT_OK)
+        move(scene);
+}
+
+uint32_t glint_scene_frames(const struct glint_scene *scene)
+{
+    return scene->motion ? scene->motion->motion.header.n_frames : 0;
+}
+
+/* -------------------------------------------------------------------- looks */
+
+/* Sets FIRST to the first object of KIND; returns how many there are. */
+static uint32_t things_of(const struct glint_motion_state *m,
+                          enum glint_scene_kind kind, uint32_t *first)
+{
+    const uint32_t of[3] = {m->how->body, m->how->sensor, m->how->food};
+    const uint32_t n[3] = {1, m->motion.header.n_sensors,
+                           m->motion.header.n_foods};
+
+    *first = kind <= GLINT_KIND_FOODS ? of[kind] : GLINT_SCENE_NONE;
+    return *first == GLINT_SCENE_NONE ? 0 : n[kind];
+}
+
+void glint_scene_show_kind(struct glint_scene *scene,
+                           enum glint_scene_kind kind, int is_shown)
+{
+    struct glint_motion_state *m = scene->motion;
+    uint32_t first, n;
+
+    if (!m || kind >= GLINT_KINDS)
+        return;
+    m->shown = (m->shown & ~(1u << kind)) | (is_shown ? 1u << kind : 0);
+    n = things_of(m, kind, &first);
+    for (uint32_t i = 0; i < n; i++)
+        glint_scene_show(
+            scene, (int)(first + i),
+            is_shown && !(kind == GLINT_KIND_SENSORS && (int)i == m->sensor));
+}
+
+enum glint_status glint_scene_size_kind(struct glint_scene *scene,
+                                        enum glint_scene_kind kind,
+                                        int32_t steps)
+{
+    struct glint_motion_state *m = scene->motion;
+    uint32_t first, n;
+
+    if (!m || kind >= GLINT_KINDS || steps < 1 || steps > GLINT_SCENE_SPAN / 4)
+        return GLINT_E_ARGUMENT;
+    n = things_of(m, kind, &first);
+    for (uint32_t i = 0; i < n; i++)
+        glint_scene_set_radius(scene, (int)(first + i), steps);
+    if (kind == GLINT_KIND_BODY) {
+        m->size = steps;
+        move(scene);
+    } else if (kind == GLINT_KIND_SHELLS) {
+        m->shell = steps;
+    } else if (kind == GLINT_KIND_LINES) {
+        m->line = steps;
+    } else if (kind == GLINT_KIND_BOX) {
+        m->edge = steps;
+    } else if (n == 0) {
+        return GLINT_E_ARGUMENT;
+    }
+    return GLINT_OK;
+}
+
+enum glint_status glint_scene_enter(struct glint_scene *scene, int sensor)
+{
+    struct glint_motion_state *m = scene->motion;
+    const struct glint_scene_camera *c = &scene->model.header->camera;
+    const int before = m ? m->sensor : -1;
+    enum glint_status status = GLINT_OK;
+
+    if (!m || sensor < -1 || sensor >= (int)m->motion.header.n_sensors)
+        return GLINT_E_ARGUMENT;
+    m->sensor = sensor;
+    if (sensor >= 0)
+        status = move_camera(scene);
+    else
+        glint_scene_set_camera(scene, c->at, (const int32_t(*)[3])c->axis_q30);
+    if (status != GLINT_OK)
+        m->sensor = before;
+    /* its ball is about the camera */
+    glint_scene_show_kind(scene, GLINT_KIND_SENSORS,
+                          glint_motion_shows(m, GLINT_KIND_SENSORS));
+    return status;
+}

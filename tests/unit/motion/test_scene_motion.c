@@ -1,0 +1,602 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Recorded motion in scenes: rows D7 to D10. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/scene/bake.h"
+#include "glint/scene/motion_bake.h"
+#include "glint/view.h"
+#include "scene/motion/play.h"
+#include "scenes/scene_frame.h"
+#include "support/rng.h"
+#include "support/tracks/tracks.h"
+
+enum { WIDTH = 96, HEIGHT = 64, FOODS = 5, SENSORS = 6 };
+
+/* What is baked as the motion of a text: a track, or foods that stand still. */
+static struct {
+    struct track_options track;
+    double (*food)[3]; /* [n_foods], or NULL: the track */
+    int n_foods;
+    double angle_deg;
+} recorded;
+
+/* Sensors look along both ways of each axis. */
+static const struct glint_motion_body body = {
+    .size = .5,
+    .n_sensors = SENSORS,
+    .theta = {GLINT_PI / 2, GLINT_PI / 2, GLINT_PI / 2, GLINT_PI / 2, 0,
+              GLINT_PI},
+    .phi = {0, GLINT_PI / 2, GLINT_PI, -GLINT_PI / 2, 0, 0}};
+
+static void put_frames(struct glint_motion_baker *baker)
+{
+    const int n = recorded.food ? 2 : recorded.track.n_frames;
+    static struct glint_motion_sight s;
+    struct glint_error error;
+    struct track track;
+    uint32_t seed = 1;
+
+    track_begin(&track, &recorded.track);
+    for (int i = 0; i < n; i++) {
+        struct track_frame f;
+
+        if (!recorded.food)
+            track_next(&track, &f);
+        s.number = i;
+        s.n_foods = recorded.food ? recorded.n_foods : FOODS;
+        s.n_intensities = SENSORS;
+        for (int k = 0; k < s.n_foods; k++) {
+            s.is_new[k] = !recorded.food && f.is_new[k];
+            for (int j = 0; j < 3; j++)
+                s.food[k][j] =
+                    recorded.food ? recorded.food[k][j] : f.seen[k][j];
+            for (int j = 0; j < SENSORS; j++)
+                s.intensity[k][j] = recorded.food ? 1 : rng_unit(&seed);
+        }
+        if (glint_motion_baker_frame(baker, &s, &error) != GLINT_OK)
+            fail_msg("%s", error.text);
+    }
+}
+
+static enum glint_status bake_motion(void *ctx, const char *name,
+                                     uint8_t **data, size_t *bytes,
+                                     struct glint_error *error)
+{
+    struct glint_motion_body b = body;
+    struct glint_motion_options options;
+    struct glint_motion_report report;
+    struct glint_motion_baker *baker;
+
+    (void)ctx;
+    (void)name;
+    glint_motion_defaults(&options);
+    baker = glint_motion_baker_open(&options);
+    assert_non_null(baker);
+    b.angle_deg = recorded.angle_deg;
+    assert_int_equal(glint_motion_baker_body(baker, &b, error), GLINT_OK);
+    put_frames(baker);
+    assert_int_equal(
+        glint_motion_baker_finish(baker, "run", 1, data, bytes, &report, error),
+        GLINT_OK);
+    glint_motion_baker_close(baker);
+    return GLINT_OK;
+}
+
+struct drawn {
+    unsigned char *data;
+    size_t bytes;
+    struct glint_scene_model model;
+    struct scene_frame frame;
+    int32_t light_q20[3 * WIDTH * HEIGHT];
+};
+
+static struct drawn *open_text(const char *text, int tile_log2, int samples)
+{
+    static const struct tool tool = {.name = "test"};
+    const struct glint_description_files files = {NULL, NULL, NULL, NULL,
+                                                  bake_motion};
+    const struct scene_dials dials = {.width = WIDTH,
+                                      .height = HEIGHT,
+                                      .edge_samples = samples,
+                                      .shadow_points = 1,
+                                      .tile_log2 = tile_log2};
+    struct drawn *d = calloc(1, sizeof *d);
+    struct glint_description *scene = malloc(sizeof *scene);
+    struct glint_scene_bake_report report;
+    struct glint_error error = {""};
+    const char *reason = "";
+
+    assert_non_null(d);
+    assert_non_null(scene);
+    if (glint_description_parse(scene, text, strlen(text), "x.scene", &files,
+                                &error) != GLINT_OK ||
+        glint_scene_bake(scene, "x", 1, &d->data, &d->bytes, &report, &error) !=
+            GLINT_OK)
+        fail_msg("%s", error.text);
+    glint_description_free(scene);
+    free(scene);
+    if (glint_scene_open(&d->model, d->data, d->bytes, &reason) != GLINT_OK)
+        fail_msg("%s", reason);
+    assert_int_equal(scene_frame_open(&d->frame, &tool, &d->model, &dials),
+                     EXIT_OK);
+    return d;
+}
+
+static void close_text(struct drawn *d)
+{
+    scene_frame_close(&d->frame);
+    free(d->data);
+    free(d);
+}
+
+static void draw(struct drawn *d)
+{
+    struct glint_image image = {
+        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+
+    memset(d->light_q20, 0, sizeof d->light_q20);
+    glint_image_place(&image, d->light_q20);
+    assert_int_equal(scene_frame_draw(&d->frame, &image), EXIT_OK);
+}
+
+static uint64_t hash_of(const struct drawn *d)
+{
+    uint64_t hash = UINT64_C(14695981039346656037);
+
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        hash = (hash ^ (uint32_t)d->light_q20[i]) * UINT64_C(1099511628211);
+    return hash;
+}
+
+#define LOOK                                   \
+    "camera fov 53 at -4 12 26 toward 0 0 0\n" \
+    "light sun direction .35 .8 .6 colour 5e4 4.8e4 4.5e4\nshadow on\n"
+#define RUN \
+    "motion run x size .6 sensors .2 foods .5 shells 1.8 lines .06 box 1 "
+
+static void record_track(int motion, int n_frames, double angle_deg)
+{
+    recorded.track = (struct track_options){motion, n_frames, FOODS, 7, 0, 9};
+    recorded.food = NULL;
+    recorded.angle_deg = angle_deg;
+}
+
+static void record_foods(double (*food)[3], int n, double angle_deg)
+{
+    recorded.food = food;
+    recorded.n_foods = n;
+    recorded.angle_deg = angle_deg;
+}
+
+/* -------------------------------------------------------------------- row D8
+ */
+
+/* A frame is the same after any other, by play, step and jumps both ways, and
+ * for all sizes of tiles. */
+static void row_d8_seek_is_play(void **state)
+{
+    enum { N = 40 };
+    uint64_t played[N];
+    struct drawn *d;
+    uint32_t seed = 3;
+
+    (void)state;
+    record_track(3, N, 60);
+    d = open_text(LOOK RUN, 5, 4);
+    assert_int_equal(glint_scene_frames(d->frame.scene), N);
+    for (int k = 0; k < N; k++) {
+        glint_scene_seek(d->frame.scene, (uint32_t)k);
+        draw(d);
+        played[k] = hash_of(d);
+        assert_true(k == 0 || played[k] != played[k - 1]);
+    }
+    for (int i = 0; i < 200; i++) {
+        const uint32_t k = (uint32_t)rng_below(&seed, N);
+
+        glint_scene_seek(d->frame.scene, k);
+        draw(d);
+        assert_true(hash_of(d) == played[k]);
+    }
+    glint_scene_seek(d->frame.scene, 1u << 31);
+    draw(d);
+    assert_true(hash_of(d) == played[N - 1]);
+    close_text(d);
+    for (int log2 = 3; log2 <= 6; log2++) {
+        d = open_text(LOOK RUN, log2, 4);
+        for (uint32_t k = 0; k < N; k += 13) {
+            glint_scene_seek(d->frame.scene, k);
+            draw(d);
+            assert_true(hash_of(d) == played[k]);
+        }
+        close_text(d);
+    }
+}
+
+/* -------------------------------------------------------------------- row D7
+ */
+
+/* Sets AT to where the unit quaternion Q takes V. */
+static void turned(const double q[4], const double v[3], double at[3])
+{
+    const double c[3] = {q[2] * v[2] - q[3] * v[1], q[3] * v[0] - q[1] * v[2],
+                         q[1] * v[1] - q[2] * v[0]};
+
+    at[0] = v[0] + 2 * (q[0] * c[0] + q[2] * c[2] - q[3] * c[1]);
+    at[1] = v[1] + 2 * (q[0] * c[1] + q[3] * c[0] - q[1] * c[2]);
+    at[2] = v[2] + 2 * (q[0] * c[2] + q[1] * c[1] - q[2] * c[0]);
+}
+
+/* Returns by how much food F of FRAME is within the angle of sensor S, in
+ * radians, by the formula of the row. */
+static double margin_of(const struct glint_motion_frame *frame, double size,
+                        int s, int f)
+{
+    const double axis[3] = {sin(body.theta[s]) * cos(body.phi[s]),
+                            sin(body.theta[s]) * sin(body.phi[s]),
+                            cos(body.theta[s])};
+    double q[4], length = 0, to[3], dot = 0, square = 0;
+
+    for (int k = 0; k < 4; k++)
+        length += pow(frame->pose.turn_q14[k], 2);
+    for (int k = 0; k < 4; k++)
+        q[k] = frame->pose.turn_q14[k] / sqrt(length);
+    turned(q, axis, to);
+    for (int k = 0; k < 3; k++) {
+        const double d = ldexp(frame->food[f][k], -24) -
+                         ldexp(frame->pose.at[k], -24) - size * to[k];
+
+        dot += d * to[k];
+        square += d * d;
+    }
+    return recorded.angle_deg * GLINT_PI / 360 - acos(dot / sqrt(square));
+}
+
+/* 10 000 frames of random steps, turns and foods, six sensors and five foods
+ * each, by angle and by intensity too: the same as by brute force. */
+static void row_d7_detection_is_brute_force(void **state)
+{
+    enum { N = 10000 };
+    struct drawn *d[2];
+    int seen[2] = {0, 0}, close = 0;
+
+    (void)state;
+    record_track(3, N, 75);
+    d[0] = open_text(LOOK RUN "detect angle", 5, 1);
+    d[1] = open_text(LOOK RUN "detect both .3", 5, 1);
+    for (uint32_t k = 0; k < N; k++) {
+        const struct glint_motion_frame *frame =
+            &d[0]->frame.scene->motion->frame;
+
+        for (int i = 0; i < 2; i++)
+            glint_scene_seek(d[i]->frame.scene, k);
+        for (int f = 0; f < FOODS; f++)
+            for (int s = 0; s < SENSORS; s++) {
+                const double margin = margin_of(frame, .6, s, f);
+                const int bright = frame->intensity[f][s] > 76; /* .3 * 255 */
+                const int got[2] = {
+                    (int)(glint_scene_seen_by(d[0]->frame.scene, (uint32_t)f) >>
+                              s &
+                          1),
+                    (int)(glint_scene_seen_by(d[1]->frame.scene, (uint32_t)f) >>
+                              s &
+                          1)};
+
+                if (fabs(margin) < 1e-6) { /* places are rounded to steps */
+                    close++;
+                    continue;
+                }
+                assert_int_equal(got[0], margin > 0);
+                assert_int_equal(got[1], margin > 0 && bright);
+                seen[0] += got[0];
+                seen[1] += got[1];
+            }
+    }
+    print_message("  %d of %d seen, %d of them bright; %d too close to tell\n",
+                  seen[0], N * FOODS * SENSORS, seen[1], close);
+    assert_true(close < 10 && seen[0] > 10000 && seen[1] > 5000);
+    close_text(d[0]);
+    close_text(d[1]);
+}
+
+/* The comparison by squares is that of whole numbers, also for wide angles. */
+static void angles_are_compared_exactly(void **state)
+{
+    uint32_t seed = 5;
+    int seen = 0;
+
+    (void)state;
+    for (int i = 0; i < 200000; i++) {
+        const int bits = 1 + rng_below(&seed, 29);
+        int32_t axis[3], d[3], c = (int32_t)rng_bits(&seed) >> 1;
+        int64_t v[3];
+        long double dot = 0, square = 0;
+
+        for (int k = 0; k < 3; k++) {
+            v[k] = (int32_t)rng_bits(&seed);
+            d[k] = (int32_t)rng_bits(&seed) >> (32 - bits);
+        }
+        assert_true(glint_unit(v, axis));
+        if (i % 3 == 0) /* on the axis */
+            for (int k = 0; k < 3; k++)
+                d[k] = axis[k] >> (31 - bits);
+        for (int k = 0; k < 3; k++) {
+            dot += (long double)axis[k] * d[k];
+            square += (long double)d[k] * d[k];
+        }
+        if (fabsl(dot - c * sqrtl(square)) < 1e-9L * fabsl(dot))
+            continue;
+        seen += glint_motion_sees(axis, c, d);
+        assert_int_equal(glint_motion_sees(axis, c, d),
+                         dot > c * sqrtl(square));
+    }
+    assert_true(seen > 50000 && seen < 150000);
+}
+
+/* -------------------------------------------------------------------- row D9
+ */
+
+/* Returns the mean place across of what is more red than blue, -1 if nothing
+ * is. */
+static double middle_of_foods(const struct drawn *d, int *n)
+{
+    double sum = 0;
+
+    *n = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        const int32_t *p = &d->light_q20[3 * i];
+
+        if (p[0] > 4 * p[2] && p[0] > 1 << 16) {
+            sum += i % WIDTH;
+            ++*n;
+        }
+    }
+    return *n ? sum / *n : -1;
+}
+
+/* A camera in a sensor sees what is ahead of it in the middle, as wide as the
+ * sensor sees; outside of it all is as before. */
+static void row_d9_a_camera_in_a_sensor(void **state)
+{
+    /* ahead of sensor 0, 20 degrees up its side, behind it; and one more */
+    double food[4][3] = {{6, 0, 0}, {0, 6, 0}, {0, -3, 7}, {-9, 1, 2}};
+    uint64_t outside;
+    struct drawn *d;
+    int n;
+
+    (void)state;
+    record_foods(food, 4, 60);
+    d = open_text(LOOK RUN, 5, 4);
+    draw(d);
+    outside = hash_of(d);
+    for (int k = 0; k < 2; k++) { /* food k is ahead of sensor k */
+        assert_int_equal(glint_scene_enter(d->frame.scene, k), GLINT_OK);
+        glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 0);
+        draw(d);
+        assert_true(fabs(middle_of_foods(d, &n) - (WIDTH - 1) / 2.) < .5);
+        /* radius .5 at 6 - .6, in a picture 2 tan 30 wide */
+        assert_true(fabs(sqrt(n / GLINT_PI) -
+                         .5 / 5.4 * WIDTH / (2 * tan(GLINT_PI / 6))) < 1);
+    }
+    assert_int_equal(glint_scene_enter(d->frame.scene, SENSORS),
+                     GLINT_E_ARGUMENT);
+    assert_int_equal(glint_scene_enter(d->frame.scene, -1), GLINT_OK);
+    glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 1);
+    draw(d);
+    assert_true(hash_of(d) == outside);
+    close_text(d);
+    d = open_text(
+        "camera sensor 2\nlight sun direction .3 .8 .6 colour 5e4 5e4 "
+        "5e4\n" RUN,
+        5, 4);
+    glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 0);
+    draw(d);
+    assert_true(fabs(middle_of_foods(d, &n) - (WIDTH - 1) / 2.) < .5);
+    close_text(d);
+}
+
+/* ------------------------------------------------------------------- row D10
+ */
+
+/* Three foods that one sensor sees each, two that all see, and two that two
+ * see. */
+static void row_d10_who_sees_what(void **state)
+{
+    double three[3][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}};
+    double corner[4][3] = {{5, 5, 0}, {-5, 5, 0}, {5, -5, 7}, {3, 3, -8}};
+    double any[3][3] = {{4, 5, 3}, {-5, 4, 6}, {5, 3, -4}};
+    struct drawn *d;
+
+    (void)state;
+    record_foods(three, 3, 50);
+    d = open_text(LOOK RUN, 5, 4);
+    assert_int_equal(glint_scene_seen_by(d->frame.scene, 0), 1);
+    assert_int_equal(glint_scene_seen_by(d->frame.scene, 1), 2);
+    assert_int_equal(glint_scene_seen_by(d->frame.scene, 2), 16);
+    assert_int_equal(glint_scene_seen_by(d->frame.scene, 3), 0);
+    close_text(d);
+    record_foods(any, 3, 360);
+    d = open_text(LOOK RUN, 5, 4);
+    for (uint32_t f = 0; f < 3; f++)
+        assert_int_equal(glint_scene_seen_by(d->frame.scene, f), 63);
+    close_text(d);
+    record_foods(corner, 4, 100);
+    d = open_text(LOOK RUN, 5, 4);
+    assert_int_equal(glint_scene_seen_by(d->frame.scene, 0), 1 | 2);
+    assert_int_equal(glint_scene_seen_by(d->frame.scene, 1), 2 | 4);
+    close_text(d);
+}
+
+/* Each kind is in the picture, can be hidden and comes back, and has a size. */
+static void kinds_are_hidden_and_sized(void **state)
+{
+    double food[4][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}, {-5, -4, 6}};
+    uint64_t whole;
+    struct drawn *d;
+
+    (void)state;
+    record_foods(food, 4, 50);
+    d = open_text(LOOK RUN, 5, 4);
+    draw(d);
+    whole = hash_of(d);
+    for (int kind = 0; kind < GLINT_KINDS; kind++) {
+        const int32_t steps = 1 << d->model.header->unit_log2;
+
+        glint_scene_show_kind(d->frame.scene, (enum glint_scene_kind)kind, 0);
+        draw(d);
+        assert_true(hash_of(d) != whole);
+        glint_scene_show_kind(d->frame.scene, (enum glint_scene_kind)kind, 1);
+        draw(d);
+        assert_true(hash_of(d) == whole);
+        assert_int_equal(glint_scene_size_kind(d->frame.scene,
+                                               (enum glint_scene_kind)kind,
+                                               steps),
+                         GLINT_OK);
+        draw(d);
+        assert_true(hash_of(d) != whole);
+        whole = hash_of(d);
+        assert_int_equal(glint_scene_size_kind(d->frame.scene,
+                                               (enum glint_scene_kind)kind, 0),
+                         GLINT_E_ARGUMENT);
+    }
+    close_text(d);
+}
+
+/* A shell over black has the share of light that its material does not let
+ * pass, half of that in the middle; a food in it is seen through it. */
+static void shells_let_light_pass(void **state)
+{
+    double food[3][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}};
+    const int middle = 3 * (HEIGHT / 2 * WIDTH + WIDTH / 2);
+    struct drawn *d;
+
+    (void)state;
+    record_foods(food, 3, 50);
+    d = open_text("camera fov 30 at 5 0 10 toward 5 0 0\n"
+                  "material shells phong 1 0 0 colour 0 .5 1 pass .5\n"
+                  "material foods phong 1 0 0 colour 1 0 0\n"
+                  "motion run x size .6 foods .5 shells 4\n",
+                  5, 4);
+    draw(d);
+    /* the food's red, 1, behind a quarter of the shell */
+    assert_true(abs(d->light_q20[middle] - (3 << 18)) < 1 << 14);
+    assert_true(abs(d->light_q20[middle + 2] - (1 << 18)) < 1 << 14);
+    glint_scene_show_kind(d->frame.scene, GLINT_KIND_FOODS, 0);
+    draw(d);
+    assert_true(d->light_q20[middle] == 0);
+    assert_true(abs(d->light_q20[middle + 2] - (1 << 18)) < 1 << 14);
+    assert_true(abs(glint_scene_cover(d->frame.scene, 256 * WIDTH / 2,
+                                      256 * HEIGHT / 2, 1024) -
+                    64) < 8);
+    close_text(d);
+}
+
+/* Lamps ride on the body: the lens is told where they are. */
+static void lamps_ride_on_the_body(void **state)
+{
+    struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
+    struct drawn *d;
+
+    (void)state;
+    record_track(0, 100, 60);
+    d = open_text("camera fov 60 at 0 0 30 toward 0 0 0\n"
+                  "light lamp at 0 1 0 colour 5 5 5 on run\nflare lights\n"
+                  "motion run x size .5\n",
+                  5, 1);
+    for (uint32_t k = 0; k < 100; k += 9) {
+        const struct glint_motion_state *m = d->frame.scene->motion;
+        double q[4], up[3], at[3];
+        const double y[3] = {0, 1, 0};
+
+        glint_scene_seek(d->frame.scene, k);
+        draw(d);
+        for (int i = 0; i < 4; i++)
+            q[i] = ldexp(m->frame.pose.turn_q14[i], -14);
+        turned(q, y, up);
+        for (int i = 0; i < 3; i++)
+            at[i] = ldexp(m->frame.pose.at[i], -24) + up[i];
+        assert_int_equal(glint_scene_lights(d->frame.scene, lamp), 1);
+        assert_true(
+            fabs(lamp[0].x_q8 / 256. - WIDTH / 2. -
+                 at[0] / (30 - at[2]) * WIDTH / (2 * tan(GLINT_PI / 6))) < .1);
+    }
+    close_text(d);
+}
+
+/* ------------------------------------------------------------------ hostile */
+
+static void a_part_that_is_absent_is_named(void **state)
+{
+    struct glint_scene_parts parts;
+    struct drawn *d;
+
+    (void)state;
+    record_track(0, 10, 60);
+    d = open_text(LOOK RUN, 5, 1);
+    parts = d->frame.cfg.parts;
+    assert_null(glint_scene_lacks(&parts, &d->model));
+    parts.motions = NULL;
+    assert_string_equal(glint_scene_lacks(&parts, &d->model), "motions");
+    close_text(d);
+}
+
+/* Cameras anywhere, also within shells and lines, and things from a step to a
+ * quarter of the space: nothing wraps (CONFIG=qcheck), nothing is endless. */
+static void extremes_of_places_and_sizes(void **state)
+{
+    struct drawn *d;
+    uint32_t seed = 8;
+
+    (void)state;
+    record_track(3, 60, 170);
+    d = open_text(LOOK RUN, 5, 4);
+    for (int i = 0; i < 400; i++) {
+        struct glint_scene *s = d->frame.scene;
+        int32_t at[3], axis_q30[3][3] = {{0}};
+        const int shift = rng_below(&seed, 28), turn = rng_below(&seed, 3);
+
+        glint_scene_seek(s, (uint32_t)rng_below(&seed, 60));
+        for (int k = 0; k < 3; k++) {
+            at[k] = ((int32_t)rng_bits(&seed) >> 4) >> shift;
+            axis_q30[k][(k + turn) % 3] = 1 << 30;
+        }
+        if (i % 4 == 1) /* in a food, or in the body */
+            memcpy(at, s->motion->food_at[i % FOODS], sizeof at);
+        assert_int_equal(
+            glint_scene_set_camera(s, at, (const int32_t(*)[3])axis_q30),
+            GLINT_OK);
+        glint_scene_size_kind(s, (enum glint_scene_kind)rng_below(&seed, 6),
+                              1 << rng_below(&seed, 27));
+        draw(d);
+    }
+    for (int k = 0; k < SENSORS; k++)
+        if (glint_scene_enter(d->frame.scene, k) == GLINT_OK)
+            draw(d);
+    close_text(d);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(row_d7_detection_is_brute_force),
+        cmocka_unit_test(angles_are_compared_exactly),
+        cmocka_unit_test(row_d8_seek_is_play),
+        cmocka_unit_test(row_d9_a_camera_in_a_sensor),
+        cmocka_unit_test(row_d10_who_sees_what),
+        cmocka_unit_test(kinds_are_hidden_and_sized),
+        cmocka_unit_test(shells_let_light_pass),
+        cmocka_unit_test(lamps_ride_on_the_body),
+        cmocka_unit_test(a_part_that_is_absent_is_named),
+        cmocka_unit_test(extremes_of_places_and_sizes)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
