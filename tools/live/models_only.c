@@ -35,10 +35,18 @@ int settings_open_table(const struct tool *tool, struct settings *settings,
     return tool_fail(tool, GLINT_E_LENS, error.text);
 }
 
+int stop_mask_read(const struct tool *tool, const char *file, uint8_t **mask,
+                   int *width, int *height)
+{
+    (void)width, (void)height;
+    *mask = NULL;
+    return tool_usage(tool, "%s is a picture; this program reads none", file);
+}
+
 int stop_option_open(const struct tool *tool, struct stop_option *stop)
 {
-    (void)stop;
-    return tool_usage(tool, "--stop-mask: this program reads no pictures");
+    return stop_mask_read(tool, stop->mask_file, &stop->mask,
+                          &stop->iris.mask_width, &stop->iris.mask_height);
 }
 
 /* Reports that there is no model. It is not reached, as all settings that were
@@ -56,13 +64,6 @@ bool tool_is_scene(const char *argument)
     const size_t n = strlen(argument);
 
     return n > 6 && strcmp(argument + n - 6, ".scene") == 0;
-}
-
-/* The files that live writes are kept apart by desk/apart.h. */
-int tool_scene_is_kept(const struct tool *tool, const char *path)
-{
-    (void)tool, (void)path;
-    return EXIT_OK;
 }
 
 int tool_scene_bake(const struct tool *tool, const char *path, uint8_t **data,

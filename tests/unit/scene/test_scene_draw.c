@@ -248,7 +248,36 @@ static void test_ball_alone(void **state)
     assert_true(
         fabs((double)sum / 256 / (3.14159265 * pow(WIDTH / 2. * .436436, 2)) -
              1) < 2e-3);
-    assert_true(glint_scene_bytes(&cfg, &s->model) < 120 << 10);
+}
+
+/* Bounds of memory at 320x240 with two workers: balls of Phong and planes alone
+ * take 120 KiB at most, a sun that throws shadows 60 more. */
+static void test_memory(void **state)
+{
+    static const int32_t toward_q30[3] = {0, 0, -(1 << 30)};
+    struct glint_workers two = {.n = 2};
+    struct glint_scene_config cfg;
+    struct glint_scene_model model;
+    size_t bytes;
+
+    (void)state;
+    scene_begin(&file);
+    scene_material(&file, "m");
+    for (int i = 0; i < 8; i++)
+        scene_sphere(&file, "ball", 0, 0, 0, 100 * UNIT, 4 * UNIT);
+    glint_scene_defaults(&cfg, 320, 240);
+    cfg.workers = &two;
+    model = scene_open(&file);
+    bytes = glint_scene_bytes(&cfg, &model);
+    print_message("8 balls: %zu bytes", bytes);
+    assert_in_range(bytes, 1, 120 << 10);
+    scene_sun(&file, toward_q30);
+    file.header.shadow = 1;
+    model = scene_open(&file);
+    print_message(", with a sun's shadows: %zu\n",
+                  glint_scene_bytes(&cfg, &model));
+    assert_in_range(glint_scene_bytes(&cfg, &model), bytes + 1,
+                    bytes + (60 << 10));
 }
 
 /* From inside of a closed mesh, wherever, no sample sees past it, although some
@@ -749,6 +778,7 @@ int main(void)
         cmocka_unit_test(test_nothing),
         cmocka_unit_test(test_no_leaks),
         cmocka_unit_test(test_ball_alone),
+        cmocka_unit_test(test_memory),
         cmocka_unit_test(test_samples),
         cmocka_unit_test(test_dials),
         cmocka_unit_test(test_capacity),
