@@ -46,6 +46,8 @@ scene-cost-table: all
 	@$(MAKE) -s --no-print-directory TARGET=aarch64 \
 	        SYSROOT=$$(tests/arm/prepare aarch64) build/aarch64/scene_cost >&2
 	@tools/report/scene-cost-table | tools/report/write-figures scenes/cost
+scene-budget-table: all
+	@tests/programs/scene-budget-table | tools/report/write-figures scenes/budget
 bake-table: all $(OUT)/ray_errors
 	@tools/report/bake-table | tools/report/write-figures bake
 # LENSES="A.lens ...": these; EVERY=N: each Nth angle; OPEN=N, STOPS="...".
@@ -164,7 +166,7 @@ budget: all
 	        build/$$t/glint >&2 || exit 1; done
 	@tools/report/budget | tools/report/write-figures arm
 
-.PHONY: hidden-table occlusion-table video-report demo inputs table bake-table wide-table accuracy-table colour-table coating-table ray-table power-table \
+.PHONY: hidden-table scene-budget-table occlusion-table video-report demo inputs table bake-table wide-table accuracy-table colour-table coating-table ray-table power-table \
         power-fit \
         corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet gallery \
         bench bench-insn growth size trade lights-table threads-table reuse-table flicker-table left-table stopping-table hostile-table star-table memory-table \
