@@ -2,7 +2,8 @@
  *
  * ward_table 9e5|565 PICTURE... - how near lookups of Ward's lobe come to sums
  * over all texels, by alpha, rule and number of samples: PSNR in dB of a
- * brushed ball of 32 pixels, its median at 1/4 of white, mean of all pictures.
+ * brushed ball of 32 pixels, its median at 1/4 of white, mean of all pictures;
+ * of sRGB codes, and of linear light.
  *
  * The sums are in double over 512 x 512 texels. Split lights are added to the
  * lookups in double, as lobes of alpha^2 + r^2 / 8. */
@@ -14,10 +15,10 @@
 #include "glint/view.h"
 #include "support/models/ward_ball.h"
 
-enum { ALPHAS = 4, COLUMNS = 10 };
+enum { ALPHAS = 5, COLUMNS = 11, WAYS = 2 };
 
 static const double alphas[ALPHAS][2] = {
-    {.05, .05}, {.1, .1}, {.2, .2}, {.05, .2}};
+    {.05, .05}, {.1, .1}, {.2, .2}, {.05, .2}, {.02, .2}};
 static const double view[3] = {0, 0, -1};
 
 struct map {
@@ -77,22 +78,31 @@ static int open_map(struct map *m, const char *code, const char *path)
     return 1;
 }
 
-/* Returns the PSNR of the published rule at its best bias. */
-static double best(const struct glint_environment *e,
-                   const struct glint_ward_material *material,
-                   ward_picture want, ward_picture got)
+static void psnr(ward_picture want, ward_picture got, double db[WAYS])
 {
-    struct glint_ward_options o = {8, GLINT_WARD_PUBLISHED, 0, 0, 0};
-    double most = 0;
-
-    for (o.bias_q8 = -512; o.bias_q8 <= 256; o.bias_q8 += 128) {
-        ward_look(e, material, &o, got);
-        most = fmax(most, ward_psnr(want, got));
-    }
-    return most;
+    db[0] = ward_psnr_codes(want, got);
+    db[1] = ward_psnr(want, got);
 }
 
-static void measure(struct map *m, int a, double db[COLUMNS])
+/* Sets DB to the PSNR of the published rule, each way at its best bias. */
+static void best(const struct glint_environment *e,
+                 const struct glint_ward_material *material, ward_picture want,
+                 ward_picture got, double db[WAYS])
+{
+    struct glint_ward_options o = {8, GLINT_WARD_PUBLISHED, 0, 0, 0};
+
+    db[0] = db[1] = 0;
+    for (o.bias_q8 = -512; o.bias_q8 <= 256; o.bias_q8 += 128) {
+        double here[WAYS];
+
+        ward_look(e, material, &o, got);
+        psnr(want, got, here);
+        for (int w = 0; w < WAYS; w++)
+            db[w] = fmax(db[w], here[w]);
+    }
+}
+
+static void measure(struct map *m, int a, double db[COLUMNS][WAYS])
 {
     static const int samples[5] = {1, 4, 8, 16, 32};
     static ward_picture want, got;
@@ -103,25 +113,41 @@ static void measure(struct map *m, int a, double db[COLUMNS])
         material.alpha_q24[k] = (int32_t)lrint(0x1p24 * alphas[a][k]);
     ward_sum(&m->sphere, alphas[a], want);
     ward_look(&m->environment[1][0], &material, &o, got);
-    db[0] = ward_psnr(want, got);
-    db[1] = best(&m->environment[1][0], &material, want, got);
-    db[2] = best(&m->environment[0][0], &material, want, got);
+    psnr(want, got, db[0]);
+    best(&m->environment[1][0], &material, want, got, db[1]);
+    best(&m->environment[0][0], &material, want, got, db[2]);
     o.rule = GLINT_WARD_CONSTANT;
     ward_look(&m->environment[1][0], &material, &o, got);
-    db[3] = ward_psnr(want, got);
+    psnr(want, got, db[3]);
     ward_look(&m->environment[0][0], &material, &o, got);
-    db[4] = ward_psnr(want, got);
-    for (int k = 0; k < 5; k++) {
-        o.samples = samples[k];
+    psnr(want, got, db[4]);
+    for (int k = 0; k < 6; k++) {
+        o.samples = k < 5 ? samples[k] : 8;
+        o.nearest = k == 5;
         ward_look(&m->environment[0][1], &material, &o, got);
         add_lights(&m->environment[0][1], alphas[a], got);
-        db[5 + k] = ward_psnr(want, got);
+        psnr(want, got, db[5 + k]);
+    }
+}
+
+static void print(double sum[ALPHAS][COLUMNS][WAYS], int way, int n)
+{
+    printf("\n%s\n\n", way ? "Linear light:" : "Codes of sRGB:");
+    printf("| alpha | published: mip, N 8 | mip, Gauss at its best bias | "
+           "constant, N 8: mip, Gauss | and lights: N 1, 4, 8, 16, 32 | N 8, "
+           "nearest level |\n|---|---|---|---|---|---|\n");
+    for (int a = 0; a < ALPHAS; a++) {
+        printf("| %g, %g |", alphas[a][0], alphas[a][1]);
+        for (int c = 0; c < COLUMNS; c++)
+            printf(" %.1f%s", sum[a][c][way] / n,
+                   c == 0 || c == 2 || c == 4 || c >= 9 ? " |" : ",");
+        printf("\n");
     }
 }
 
 int main(int argc, char **argv)
 {
-    double sum[ALPHAS][COLUMNS] = {{0}};
+    static double sum[ALPHAS][COLUMNS][WAYS];
 
     for (int i = 2; i < argc; i++) {
         struct map m;
@@ -131,25 +157,18 @@ int main(int argc, char **argv)
             return 1;
         }
         for (int a = 0; a < ALPHAS; a++) {
-            double db[COLUMNS];
+            double db[COLUMNS][WAYS];
 
             measure(&m, a, db);
             for (int c = 0; c < COLUMNS; c++)
-                sum[a][c] += db[c];
+                for (int w = 0; w < WAYS; w++)
+                    sum[a][c][w] += db[c][w];
         }
         for (int k = 0; k < 4; k++)
             free(m.data[k / 2][k % 2]);
         glint_sphere_close(&m.sphere);
     }
-    printf("| alpha | published: mip, N 8 | mip, Gauss at its best bias | "
-           "constant, N 8: mip, Gauss | and lights: N 1, 4, 8, 16, 32 |\n"
-           "|---|---|---|---|---|\n");
-    for (int a = 0; a < ALPHAS; a++) {
-        printf("| %g, %g |", alphas[a][0], alphas[a][1]);
-        for (int c = 0; c < COLUMNS; c++)
-            printf(" %.1f%s", sum[a][c] / (argc - 2),
-                   c == 0 || c == 2 || c == 4 || c == 9 ? " |" : ",");
-        printf("\n");
-    }
+    for (int way = 0; way < WAYS; way++)
+        print(sum, way, argc - 2);
     return 0;
 }

@@ -40,6 +40,18 @@ ward-table: all $(OUT)/ward_table
 # Models of scattering side by side, on synthetic stones: three processor minutes.
 translucent-table: $(OUT)/translucent_table
 	@$(OUT)/translucent_table | tools/report/write-figures scenes/translucent
+# What it costs, and Sunflow's Ward beside ours.
+ward-cost-table: all
+	@tools/make/deps "instruction counts on ARM, panoramas" gcc-aarch64-linux-gnu \
+	        libc6-dev-arm64-cross qemu-user libopenimageio-dev pkg-config g++ debian-archive-keyring >&2
+	@$(MAKE) --no-print-directory oiio >&2
+	@tests/programs/ward-table true
+	@$(MAKE) -s --no-print-directory TARGET=aarch64 \
+	        SYSROOT=$$(tests/arm/prepare aarch64) build/aarch64/scene_cost >&2
+	@tests/programs/ward-cost-table tests/figures/scenes/ward-cost.svg | tools/report/write-figures scenes/ward-cost
+sunflow-table: all
+	@tools/make/deps "scenes of another program" libsunflow-java libjanino-java default-jdk-headless >&2
+	@tests/peers/sunflow | tools/report/write-figures scenes/sunflow
 scene-cost-table: all
 	@tools/make/deps "instruction counts on ARM" gcc-aarch64-linux-gnu \
 	        libc6-dev-arm64-cross qemu-user debian-archive-keyring >&2
@@ -170,4 +182,4 @@ budget: all
         power-fit \
         corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet gallery \
         bench bench-insn growth size trade lights-table threads-table reuse-table flicker-table left-table stopping-table hostile-table star-table memory-table \
-        cost-fit scene-cost-fit budget
+        cost-fit scene-cost-fit ward-table ward-cost-table sunflow-table budget

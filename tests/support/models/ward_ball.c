@@ -17,8 +17,8 @@ static double dot(const double a[3], const double b[3])
 int ward_frame(int i, double frame[3][3])
 {
     const int row = i / WARD_BALL;
-    const double x = (i % WARD_BALL + .5) / (WARD_BALL / 2) - 1;
-    const double y = 1 - (row + .5) / (WARD_BALL / 2), z2 = 1 - x * x - y * y;
+    const double x = (i % WARD_BALL + .5) / (WARD_BALL / 2.) - 1;
+    const double y = 1 - (row + .5) / (WARD_BALL / 2.), z2 = 1 - x * x - y * y;
     double length;
 
     if (z2 <= .01)
@@ -117,7 +117,17 @@ static int rises(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-double ward_psnr(ward_picture want, ward_picture got)
+static double linear(double x)
+{
+    return x;
+}
+
+static double code(double x)
+{
+    return x <= .0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - .055;
+}
+
+static double psnr(ward_picture want, ward_picture got, double (*of)(double))
 {
     double sorted[WARD_PIXELS], exposure, sum = 0, frame[3][3];
     int n = 0;
@@ -129,10 +139,20 @@ double ward_psnr(ward_picture want, ward_picture got)
     exposure = .25 / sorted[n / 2];
     for (int i = 0; i < WARD_PIXELS; i++)
         for (int c = 0; c < 3; c++) {
-            const double d =
-                fmin(exposure * want[i][c], 1) - fmin(exposure * got[i][c], 1);
+            const double d = of(fmin(exposure * want[i][c], 1)) -
+                             of(fmin(exposure * got[i][c], 1));
 
             sum += d * d;
         }
     return -10 * log10(sum / (3 * n));
+}
+
+double ward_psnr(ward_picture want, ward_picture got)
+{
+    return psnr(want, got, linear);
+}
+
+double ward_psnr_codes(ward_picture want, ward_picture got)
+{
+    return psnr(want, got, code);
 }
