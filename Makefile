@@ -48,12 +48,12 @@ include tools/make/target.mk
 
 # Rooms of the sources; every file in them is built, but for the alternatives
 # below. src/README.md says what each is for.
-CORE      := base image kernels kernels/rays kernels/ward lens lamps follow tile flare/edges flare star veil scene/around scene scene/frame scene/ward scene/motion scene/highlights scene/account reuse
+CORE      := base image kernels kernels/rays kernels/ward kernels/maps lens lamps follow tile flare/edges flare star veil scene/around scene scene/frame scene/ward scene/motion scene/translucent scene/highlights scene/account reuse
 PUBLISHED := published
 ENGINE    := engine engine/frame engine/setup engine/star
 BAKE      := bake bake/table bake/scene bake/environment bake/motion bake/translucent bake/trace bake/fit bake/exact bake/published bake/published/scatter
 PLATFORM  := posix formats video panel linux jpeg oiio assimp sdl
-TOOLS     := options control lamp_files desk model overlay scenes motions twin command live lab lab/plots lab/scenes
+TOOLS     := options control lamp_files desk model overlay stones scenes motions twin command live lab lab/plots lab/scenes
 c_files = $(wildcard $(2:%=$(1)/%/*.c))
 objects = $(patsubst %.c,$(OUT)/%.o,$(filter-out $(absent),$(call c_files,$(1),$(2))))
 
@@ -63,7 +63,7 @@ sets_x86_64 := sse41 avx2
 sets_aarch64 := neon
 sets_armv7 := neon
 sets_armv7-neon := neon
-absent := $(foreach s,$(filter-out $(sets_$(ARCH)),sse41 avx2 x86 neon),$(wildcard src/kernels/*_$(s).c src/kernels/rays/*_$(s).c src/kernels/ward/*_$(s).c))
+absent := $(foreach s,$(filter-out $(sets_$(ARCH)),sse41 avx2 x86 neon),$(wildcard src/kernels/*_$(s).c src/kernels/*/*_$(s).c))
 absent += platform/jpeg/$(if $(filter yes,$(WITH_JPEG)),absent,mjpeg).c
 absent += src/bake/motion/$(if $(filter yes,$(WITH_JANSSON)),absent,recording).c
 absent += tools/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c

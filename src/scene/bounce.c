@@ -13,6 +13,7 @@
  * Directions that the camera sees then have the light of the picture there.
  * Beyond its edge, and behind the camera, nobody knows what there is: the
  * picture goes on, mirrored at its edge. */
+#include "scene/parts.h"
 #include "scene/state.h"
 
 /* A ray on its way, and what it starts from. */

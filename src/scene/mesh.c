@@ -12,6 +12,7 @@
 #include "scene/mesh.h"
 
 #include "scene/visible.h"
+#include "scene/parts.h"
 
 const struct glint_scene_meshes glint_scene_meshes = {
     glint_mesh_project, glint_mesh_look,  glint_mesh_meet,      glint_mesh_hold,

@@ -95,7 +95,8 @@ int glint_mesh_surface(const struct glint_scene *scene,
     v3_turn(&p->turn, normal_q30, surface->normal_q30);
     if (t->material != GLINT_SCENE_NONE)
         surface->material = &scene->model.material[t->material];
-    if (m->uv_at && surface->material->texture != GLINT_SCENE_NONE)
+    if (m->uv_at &&
+        (surface->material->texture != GLINT_SCENE_NONE || p->skin >= 0))
         map(scene, m, t, vertex, met, surface);
     return 1;
 }

@@ -26,7 +26,9 @@ STATIC_ASSERT(sizeof(struct glint_scene_mesh) == 76);
 STATIC_ASSERT(sizeof(struct glint_scene_object) == 84);
 STATIC_ASSERT(sizeof(struct glint_scene_ward) == 24);
 STATIC_ASSERT(sizeof(struct glint_scene_motion) == 96);
-STATIC_ASSERT(sizeof(struct glint_scene_header) == 264);
+STATIC_ASSERT(sizeof(struct glint_scene_stone) == 16);
+STATIC_ASSERT(sizeof(struct glint_scene_skin) == 16);
+STATIC_ASSERT(sizeof(struct glint_scene_header) == 280);
 
 /* The header begins as that of every baked file does. */
 #define SAME_PLACE(field)                                       \
@@ -271,7 +273,9 @@ static const char *check_header(const struct glint_scene_header *h)
         h->n_materials > GLINT_SCENE_MAX_MATERIALS ||
         h->n_meshes > GLINT_SCENE_MAX_MESHES ||
         h->n_objects > GLINT_SCENE_MAX_OBJECTS ||
-        h->n_wards > GLINT_SCENE_MAX_MATERIALS || h->n_motions > 1)
+        h->n_wards > GLINT_SCENE_MAX_MATERIALS ||
+        h->n_stones > GLINT_SCENE_MAX_SKINS ||
+        h->n_skins > GLINT_SCENE_MAX_SKINS || h->n_motions > 1)
         return "the scene has too many of a kind";
     wrong = check_environment(h);
     return wrong ? wrong : glint_scene_camera_fault(&h->camera);
@@ -295,6 +299,9 @@ static const char *find_tables(struct glint_scene_check *c)
     m->object =
         glint_blob_section(b, h->object_at, h->n_objects, sizeof *m->object);
     m->ward = glint_blob_section(b, h->ward_at, h->n_wards, sizeof *m->ward);
+    m->stone =
+        glint_blob_section(b, h->stone_at, h->n_stones, sizeof *m->stone);
+    m->skin = glint_blob_section(b, h->skin_at, h->n_skins, sizeof *m->skin);
     if (h->environment_bytes) {
         m->environment = glint_blob_section(b, h->environment_at,
                                             h->environment_bytes / 4, 4);
@@ -309,7 +316,7 @@ static const char *find_tables(struct glint_scene_check *c)
             return glint_scene_outside;
     }
     return m->light && m->texture && m->material && m->mesh && m->object &&
-                   m->ward
+                   m->ward && m->stone && m->skin
                ? NULL
                : glint_scene_outside;
 }
@@ -347,7 +354,7 @@ static const char *check_contents(struct glint_scene_check *c)
         wrong = check_motion(h, m->motion);
     if (!wrong && triangles > GLINT_SCENE_MAX_TRIANGLES)
         wrong = "the objects have too many triangles";
-    return wrong;
+    return wrong ? wrong : glint_scene_check_stones(c);
 }
 
 enum glint_status glint_scene_open(struct glint_scene_model *model,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * The two parts of the check of a baked scene: model.c, what objects are made
- * of, and model_mesh.c, meshes and objects. */
+ * of, and model_mesh.c, meshes, objects and their maps. */
 #ifndef GLINT_SCENE_MODEL_CHECK_H
 #define GLINT_SCENE_MODEL_CHECK_H
 
@@ -21,6 +21,10 @@ const char *glint_scene_check_mesh(struct glint_scene_check *check,
                                    const struct glint_scene_mesh *mesh);
 const char *glint_scene_check_object(const struct glint_scene_check *check,
                                      const struct glint_scene_object *object);
+
+/* Checks stones and skins, but not the files of stones, which the part for them
+ * opens. */
+const char *glint_scene_check_stones(struct glint_scene_check *check);
 
 /* Returns what is wrong with a camera, or NULL. */
 const char *glint_scene_camera_fault(const struct glint_scene_camera *camera);

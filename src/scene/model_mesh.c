@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks of meshes and objects. */
+ * Checks of meshes, objects, and what is translucent. */
 #include "scene/model_check.h"
 
 #include "base/q.h"
+#include "glint/scene/translucent.h"
 
 enum { SPAN = GLINT_SCENE_SPAN, UV_LIMIT = 1 << 24 };
 
@@ -242,4 +243,126 @@ const char *glint_scene_check_object(const struct glint_scene_check *check,
     return glint_scene_fits(&check->model, o, o->at)
                ? NULL
                : "an object is too far out";
+}
+
+/* ------------------------------------------------------------------ stones */
+
+static const char *check_stone(struct glint_scene_check *c,
+                               const struct glint_scene_stone *s)
+{
+    const struct glint_scene_material *m;
+
+    if (s->material >= c->model.header->n_materials || s->fresnel > 1)
+        return "a stone's material is out of range";
+    m = &c->model.material[s->material];
+    if (m->ambient_q15 || m->diffuse_q15 || m->specular_q15 || m->reflect_q15 ||
+        m->pass_q15 || m->texture != GLINT_SCENE_NONE)
+        return "a stone is Phong's, too";
+    if (s->file_bytes < sizeof(struct glint_translucent_header) ||
+        s->file_bytes % 4 ||
+        !glint_blob_section(&c->blob, s->file_at, s->file_bytes / 4, 4))
+        return glint_scene_outside;
+    return NULL;
+}
+
+/* Returns log2 of the side of the stone of SKIN, of which the header alone was
+ * seen; 0: it is out of range. */
+static uint32_t side_log2_of(const struct glint_scene_model *m,
+                             const struct glint_scene_skin *skin)
+{
+    const unsigned char *file = (const unsigned char *)m->header;
+    const struct glint_translucent_header *h =
+        (const void *)(file + m->stone[skin->stone].file_at);
+
+    return h->side_log2 < GLINT_TRANSLUCENT_LEAST_LOG2 ||
+                   h->side_log2 > GLINT_TRANSLUCENT_MOST_LOG2
+               ? 0
+               : h->side_log2;
+}
+
+static const char *check_ball_map(struct glint_scene_check *c,
+                                  const struct glint_scene_skin *skin,
+                                  uint32_t side)
+{
+    const int32_t *turn_q30 =
+        glint_blob_section(&c->blob, skin->texel_at, 3 * side, 8);
+
+    if (!turn_q30)
+        return glint_scene_outside;
+    for (uint32_t i = 0; i < 3 * side; i++)
+        if (!glint_scene_is_unit(turn_q30 + 2 * (size_t)i, 2))
+            return "a column or row of a ball's map is out of range";
+    return NULL;
+}
+
+static const char *check_mesh_map(struct glint_scene_check *c,
+                                  const struct glint_scene_skin *skin,
+                                  const struct glint_scene_mesh *mesh,
+                                  uint32_t side)
+{
+    const uint32_t *texel =
+        glint_blob_section(&c->blob, skin->texel_at, side * side, 4);
+
+    if (!texel)
+        return glint_scene_outside;
+    if (!mesh->uv_at)
+        return "a mesh of stone has no uv";
+    for (uint32_t i = 0; i < side * side; i++)
+        if (texel[i] != GLINT_SCENE_NONE && texel[i] >= mesh->n_triangles)
+            return "a texel's triangle is out of range";
+    return NULL;
+}
+
+static const char *check_skin(struct glint_scene_check *c, uint32_t i)
+{
+    const struct glint_scene_model *m = &c->model;
+    const struct glint_scene_skin *skin = &m->skin[i];
+    const struct glint_scene_object *o;
+    uint32_t log2;
+
+    if (skin->object >= m->header->n_objects ||
+        skin->stone >= m->header->n_stones || skin->closed > 1)
+        return "a map's object or stone is out of range";
+    for (uint32_t k = 0; k < i; k++)
+        if (m->skin[k].object == skin->object)
+            return "an object has two maps";
+    o = &m->object[skin->object];
+    log2 = side_log2_of(m, skin);
+    if (log2 == 0)
+        return "the stone's side or kernel is out of range";
+    if (o->kind == GLINT_OBJECT_PLANE)
+        return "a plane has a map";
+    return o->kind == GLINT_OBJECT_SPHERE
+               ? check_ball_map(c, skin, UINT32_C(1) << log2)
+               : check_mesh_map(c, skin, &m->mesh[o->mesh],
+                                UINT32_C(1) << log2);
+}
+
+/* Returns whether object I, if it is of a stone, has the map for that. */
+static int has_map(const struct glint_scene_model *m, uint32_t i)
+{
+    for (uint32_t k = 0; k < m->header->n_stones; k++) {
+        int has = m->stone[k].material != m->object[i].material;
+
+        for (uint32_t j = 0; j < m->header->n_skins; j++)
+            has |= m->skin[j].object == i && m->skin[j].stone == k;
+        if (!has)
+            return 0;
+    }
+    return 1;
+}
+
+const char *glint_scene_check_stones(struct glint_scene_check *c)
+{
+    const struct glint_scene_header *h = c->model.header;
+    const char *wrong = NULL;
+
+    for (uint32_t i = 0; !wrong && i < h->n_stones; i++)
+        wrong = check_stone(c, &c->model.stone[i]);
+    for (uint32_t i = 0; !wrong && i < h->n_skins; i++)
+        wrong = check_skin(c, i);
+    for (uint32_t i = 0; !wrong && i < h->n_objects; i++)
+        if (!has_map(&c->model, i))
+            wrong = "an object of stone has no map";
+    return wrong;
 }

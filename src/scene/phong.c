@@ -4,6 +4,7 @@
  * q15, up to 2^30, where it saturates: products with weights, q15 up to 1, are
  * below 2^45. */
 #include "base/divide.h"
+#include "scene/parts.h"
 #include "scene/state.h"
 
 static inline void add(int32_t *to_q15, int64_t light_q15, int32_t weight_q15)
@@ -146,6 +147,11 @@ static WHOLLY_INLINE void phong(const struct glint_scene *scene,
     struct glint_brushed brushed;
     int32_t colour_q15[3];
 
+    if (scene->placed[surface->object].skin >= 0 &&
+        scene->cfg.parts.stones->add(scene, ray, surface, weight_q15,
+                                     rgb_q15) &&
+        !is_metal)
+        return;
     for (int c = 0; c < 3; c++)
         colour_q15[c] = m->rgb_q15[c];
     if (m->texture != GLINT_SCENE_NONE)

@@ -7,6 +7,7 @@
 #include "base/compiler.h"
 #include "base/real.h"
 #include "scene/model_check.h"
+#include "scene/parts.h"
 
 enum { ONE_Q30 = 1 << 30 };
 
@@ -20,6 +21,7 @@ void glint_scene_defaults(struct glint_scene_config *cfg, int width, int height)
                                        .edge_samples = 4,
                                        .shadow_points = 4,
                                        .ward_samples = 8,
+                                       .stone_frames = 1,
                                        .highlights = 8,
                                        .max_refs = 1 << 15};
 }
@@ -39,6 +41,8 @@ const char *glint_scene_lacks(const struct glint_scene_parts *parts,
         return "meshes";
     if (has_wards(h) && !parts->wards)
         return "wards";
+    if (h->n_skins > 0 && !parts->stones)
+        return "stones";
     if (h->n_motions > 0 && !parts->motions)
         return "motions";
     for (uint32_t i = 0; i < h->n_materials; i++) {
@@ -75,6 +79,7 @@ static int is_in_range(const struct glint_scene_config *c)
            c->tile_log2 <= 6 && is_one_of(c->edge_samples, 1 | 4 | 8 | 16) &&
            is_one_of(c->shadow_points, 1 | 4 | 16) && c->ward_samples >= 1 &&
            c->ward_samples <= 32 && (c->ward_nearest & ~1) == 0 &&
+           is_one_of(c->stone_frames, 1 | 2 | 4) &&
            (c->half_shading & ~1) == 0 && c->highlights >= 0 &&
            c->highlights <= 8 && c->max_refs >= 0 &&
            glint_workers_count(c->workers) <= 64;
@@ -200,6 +205,8 @@ static struct glint_scene *carve(struct glint_arena *a,
         glint_arena_take(a, model->header->n_materials, sizeof *s->material);
     s->ward = glint_arena_take(a, model->header->n_wards, sizeof *s->ward);
     s->wards = has_wards(model->header) ? cfg->parts.wards->carve(s, a) : NULL;
+    s->stones =
+        model->header->n_skins > 0 ? cfg->parts.stones->carve(s, a) : NULL;
     s->bright = cfg->parts.highlights && cfg->highlights > 0 &&
                         model->header->flare && model->header->highlights > 0
                     ? cfg->parts.highlights->carve(s, a)
@@ -226,6 +233,57 @@ size_t glint_scene_bytes(const struct glint_scene_config *cfg,
     return arena.used;
 }
 
+/* Returns the index of the map of object I, or -1. */
+static int skin_of(const struct glint_scene_model *model, uint32_t i)
+{
+    for (uint32_t k = 0; k < model->header->n_skins; k++)
+        if (model->skin[k].object == i)
+            return (int)k;
+    return -1;
+}
+
+/* Sets all objects to where the model has them. */
+static int place_objects(struct glint_scene *s)
+{
+    const struct glint_scene_model *model = &s->model;
+    uint32_t first = 0;
+
+    for (uint32_t i = 0; i < model->header->n_objects; i++) {
+        const struct glint_scene_object *o = &model->object[i];
+
+        s->placed[i] = (struct glint_placed){.object = o,
+                                             .radius = o->radius,
+                                             .is_shown = !o->hidden,
+                                             .is_catcher = o->catcher_q15 > 0,
+                                             .skin = skin_of(model, i),
+                                             .first_vertex = first};
+        if (glint_scene_set_material(s, (int)i, (int)o->material) != GLINT_OK)
+            return 0;
+        s->has_catchers |= s->placed[i].is_catcher;
+        if (o->kind == GLINT_OBJECT_MESH)
+            first += model->mesh[o->mesh].n_vertices;
+        if (glint_scene_set_pose(s, (int)i, o->at, o->turn_q30) != GLINT_OK)
+            return 0;
+    }
+    return 1;
+}
+
+static void set_lights(struct glint_scene *s)
+{
+    const struct glint_scene_model *model = &s->model;
+
+    for (uint32_t i = 0; i < model->header->n_lights; i++) {
+        const struct glint_scene_light *l = &model->light[i];
+
+        s->lit[i].light = l;
+        glint_scene_set_light(
+            s, (int)i, l->kind == GLINT_LIGHT_SUN ? l->toward_q30 : l->at);
+        for (int c = 0; c < 3; c++)
+            s->lit[i].rgb_q15[c] =
+                (int32_t)real_integer(l->rgb[c], 15, GLINT_SCENE_MOST_LIGHT);
+    }
+}
+
 enum glint_status glint_scene_init(struct glint_scene **scene,
                                    const struct glint_scene_config *cfg,
                                    const struct glint_scene_model *model,
@@ -234,7 +292,6 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
     struct glint_arena arena = glint_arena_over(mem, bytes);
     struct glint_scene_view view;
     struct glint_scene *s;
-    uint32_t first = 0;
 
     if (!is_in_range(cfg) || (uintptr_t)mem % GLINT_ALIGN != 0 ||
         !glint_view_init(&view, &model->header->camera, cfg->width, cfg->height,
@@ -247,39 +304,21 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
     s = carve(&arena, cfg, model);
     s->view = view;
     s->has_split = s->has_catchers = 0;
+    s->moved = 0;
+    s->is_spread = 0;
     s->sample_q8 = glint_scene_samples(cfg->edge_samples);
     glint_scene_copy_looks(s);
     if (s->wards && cfg->parts.wards->open(s) != GLINT_OK)
+        return GLINT_E_FORMAT;
+    if (s->stones && cfg->parts.stones->open(s) != GLINT_OK)
         return GLINT_E_FORMAT;
     if (s->curve)
         cfg->parts.textures->prepare(s->curve);
     for (uint32_t i = 0; i < model->header->n_materials; i++)
         glint_gloss_prepare(&s->gloss[i], model->material[i].power_q8);
-    for (uint32_t i = 0; i < model->header->n_objects; i++) {
-        const struct glint_scene_object *o = &model->object[i];
-
-        s->placed[i] = (struct glint_placed){.object = o,
-                                             .radius = o->radius,
-                                             .is_shown = !o->hidden,
-                                             .is_catcher = o->catcher_q15 > 0,
-                                             .first_vertex = first};
-        glint_scene_set_material(s, (int)i, (int)o->material);
-        s->has_catchers |= s->placed[i].is_catcher;
-        if (o->kind == GLINT_OBJECT_MESH)
-            first += model->mesh[o->mesh].n_vertices;
-        if (glint_scene_set_pose(s, (int)i, o->at, o->turn_q30) != GLINT_OK)
-            return GLINT_E_ARGUMENT; /* was checked when it was opened */
-    }
-    for (uint32_t i = 0; i < model->header->n_lights; i++) {
-        const struct glint_scene_light *l = &model->light[i];
-
-        s->lit[i].light = l;
-        glint_scene_set_light(
-            s, (int)i, l->kind == GLINT_LIGHT_SUN ? l->toward_q30 : l->at);
-        for (int c = 0; c < 3; c++)
-            s->lit[i].rgb_q15[c] =
-                (int32_t)real_integer(l->rgb[c], 15, GLINT_SCENE_MOST_LIGHT);
-    }
+    set_lights(s);
+    if (!place_objects(s))
+        return GLINT_E_ARGUMENT; /* was checked when it was opened */
     if (s->motion && cfg->parts.motions->open(s) != GLINT_OK)
         return GLINT_E_FORMAT;
     *scene = s;
@@ -290,6 +329,7 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
 
 void glint_scene_forget_shadows(struct glint_scene *s)
 {
+    s->moved++;
     for (uint32_t i = 0; i < s->model.header->n_lights; i++)
         if (s->lit[i].shadow)
             s->lit[i].shadow->is_ready = 0;
@@ -319,10 +359,25 @@ void glint_scene_turn_of(const int32_t q[4], struct glint_scene_turn *to)
         }
 }
 
+/* Returns whether P lies so already. */
+static int is_same_pose(const struct glint_placed *p, const int32_t at[3],
+                        const struct glint_scene_turn *turn)
+{
+    int32_t other = 0;
+
+    for (int i = 0; i < 3; i++) {
+        other |= p->at[i] ^ at[i];
+        for (int k = 0; k < 3; k++)
+            other |= p->turn.row_q30[i][k] ^ turn->row_q30[i][k];
+    }
+    return other == 0;
+}
+
 enum glint_status glint_scene_set_pose(struct glint_scene *scene, int object,
                                        const int32_t at[3],
                                        const int32_t turn_q30[4])
 {
+    struct glint_scene_turn turn;
     struct glint_placed *p;
 
     if (object < 0 || object >= (int)scene->model.header->n_objects)
@@ -332,8 +387,11 @@ enum glint_status glint_scene_set_pose(struct glint_scene *scene, int object,
         !glint_scene_fits(&scene->model, p->object, at) ||
         !glint_scene_within(at, 3, GLINT_SCENE_SPAN - 1 - p->radius))
         return GLINT_E_ARGUMENT;
+    glint_scene_turn_of(turn_q30, &turn);
+    if (is_same_pose(p, at, &turn))
+        return GLINT_OK;
     glint_scene_forget_shadows(scene);
-    glint_scene_turn_of(turn_q30, &p->turn);
+    p->turn = turn;
     for (int k = 0; k < 3; k++)
         p->at[k] = p->centre[k] = at[k];
     p->reach = p->radius;
@@ -404,9 +462,19 @@ void glint_scene_look_around(struct glint_scene *scene,
         scene->cfg.parts.bounces->look(scene, image);
 }
 
+int glint_scene_spread(struct glint_scene *scene)
+{
+    if (!scene->stones || scene->is_spread)
+        return 0;
+    scene->is_spread = 1;
+    return scene->cfg.parts.stones->update(scene);
+}
+
 void glint_scene_show(struct glint_scene *scene, int object, int is_shown)
 {
     if (object < 0 || object >= (int)scene->model.header->n_objects)
+        return;
+    if (scene->placed[object].is_shown == (is_shown != 0))
         return;
     scene->placed[object].is_shown = is_shown != 0;
     glint_scene_forget_shadows(scene);

@@ -39,6 +39,7 @@ struct glint_placed {
     uint32_t material; /* of what has none of its own */
     int is_shown;
     int is_split, is_catcher; /* as its material and itself say */
+    int skin;                 /* its map, where it is of stone; or -1 */
     int is_seen;              /* may be seen in this frame */
     struct glint_box box;     /* pixels that it may touch */
     uint32_t first_vertex;    /* mesh: of those of all objects */
@@ -217,7 +218,10 @@ struct glint_scene {
     struct glint_around around;
     struct glint_scene_material *material; /* [n_materials], as they look now */
     struct glint_scene_ward *ward;         /* [n_wards] */
-    struct glint_ward_state *wards; /* NULL: neither environment nor metal */
+    struct glint_ward_state *wards;   /* NULL: neither environment nor metal */
+    struct glint_stone_state *stones; /* NULL: nothing is translucent */
+    uint32_t moved; /* how often things or lights have moved */
+    int is_spread;  /* maps are up to date with the frame that was begun */
     struct glint_highlight_state *bright; /* NULL: highlights are not wanted */
     struct glint_motion_state *motion;    /* NULL: nothing was recorded */
     int cover_across, cover_down;
@@ -397,98 +401,17 @@ static inline int64_t glint_scene_pixel_q40(const struct glint_scene *scene)
     return step_q30 < 1 << 30 ? step_q30 * step_q30 >> 22 : INT64_C(1) << 38;
 }
 
+/* Sets UV to the place of SURFACE on ball P: u goes round the y axis, 1/2 where
+ * a camera that is not turned sees the middle of the ball; v from its top down.
+ */
+void glint_ball_uv(const struct glint_placed *p,
+                   const struct glint_met_surface *surface, int32_t uv_q16[2]);
+
 /* Copies materials and metals of the model, and draws by these from now on. */
 void glint_scene_copy_looks(struct glint_scene *scene);
 
-/* Things have moved: grids of shadows wait for the next frame. */
+/* Things have moved: grids of shadows, and maps, wait for the next frame. */
 void glint_scene_forget_shadows(struct glint_scene *scene);
-
-/* ------------------------------------------------------------------- parts */
-
-struct glint_scene_meshes {
-    /* Moves the vertices of all meshes into the camera and lists triangles by
-     * tiles; run by glint_scene_begin(). */
-    void (*project)(struct glint_scene *scene, struct glint_scene_stats *stats);
-    /* Draws the depth and ids of triangle ID into the samples of a tile. */
-    void (*look)(struct glint_scene_worker *w, uint32_t id);
-    /* MET->t is the limit, and is set if something is nearer. ANY: it need not
-     * be the nearest. Returns whether it is. */
-    int (*meet)(const struct glint_scene *scene, uint32_t object,
-                uint32_t but_triangle, const struct glint_scene_ray *ray,
-                int any, struct glint_met *met);
-    /* The same for a ray of the picture towards SEEN_Q30, in camera
-     * coordinates, held inside TRIANGLE. */
-    int (*hold)(const struct glint_scene *scene, uint32_t object,
-                uint32_t triangle, const int32_t seen_q30[3],
-                struct glint_met *met);
-    int (*surface)(const struct glint_scene *scene, const struct glint_met *met,
-                   struct glint_met_surface *surface);
-    /* Returns whether triangles A and B, ids of one object, are of one
-     * material and share a vertex, and its normal. */
-    int (*joins)(const struct glint_scene *scene, uint32_t a, uint32_t b);
-    /* Surfaces in the middle of pixels, the quick way (frame/quick.h). */
-    int (*find)(struct glint_scene_worker *w, uint32_t id, int32_t x_q8,
-                int32_t y_q8, struct glint_met_surface *surface);
-};
-
-struct glint_scene_textures {
-    /* Multiplies RGB_Q15 by the texture of SURFACE. */
-    void (*colour)(const struct glint_scene *scene,
-                   const struct glint_scene_ray *ray,
-                   const struct glint_met_surface *surface, int32_t rgb_q15[3]);
-    /* Makes the table that it decodes by. */
-    void (*prepare)(struct glint_curve *curve);
-};
-
-struct glint_scene_bounces {
-    /* Adds what SURFACE mirrors and lets through. */
-    void (*follow)(const struct glint_scene *scene,
-                   const struct glint_scene_ray *ray,
-                   const struct glint_met_surface *surface,
-                   struct glint_met_shade *shade);
-    /* Take the memory of the picture all around, and keep IMAGE there. */
-    void (*carve)(struct glint_scene *scene, struct glint_arena *arena);
-    void (*look)(struct glint_scene *scene, const struct glint_image *image);
-};
-
-struct glint_scene_wards {
-    /* Takes the memory of the part; NULL while it is measured. */
-    struct glint_ward_state *(*carve)(const struct glint_scene *scene,
-                                      struct glint_arena *arena);
-    /* Opens the environment and makes the lobes of all metals. */
-    enum glint_status (*open)(struct glint_scene *scene);
-    /* Makes the lobe of metal I anew. */
-    void (*change)(const struct glint_scene *scene, uint32_t i);
-    /* Turns the environment and its lights; returns 0 if there is none. */
-    int (*turn)(struct glint_scene *scene, const int32_t turn_q30[2]);
-    /* Finds how the metal of SURFACE lies, which RAY meets. */
-    void (*lie)(const struct glint_scene *scene,
-                const struct glint_scene_ray *ray,
-                const struct glint_met_surface *surface,
-                struct glint_brushed *brushed);
-    /* Adds what SURFACE, of diffuse COLOUR_Q15, leaves along RAY of the light
-     * from all around, times WEIGHT_Q15. BRUSHED is NULL if it is no metal. */
-    void (*reflect)(const struct glint_scene *scene,
-                    const struct glint_scene_ray *ray,
-                    const struct glint_met_surface *surface,
-                    const struct glint_brushed *brushed,
-                    const int32_t colour_q15[3], int32_t weight_q15,
-                    int32_t rgb_q15[3]);
-    /* Sets RGB_Q15 to what the metal of SURFACE leaves along RAY of a light of
-     * LEVEL_Q15 from TOWARD_Q30, of an angular radius of that sine. Returns 0,
-     * and sets nothing, if it is nothing. */
-    int (*shine)(const struct glint_scene *scene,
-                 const struct glint_scene_ray *ray,
-                 const struct glint_met_surface *surface,
-                 const struct glint_brushed *brushed,
-                 const int32_t toward_q30[3], const int32_t level_q15[3],
-                 int32_t radius_q30, int32_t rgb_q15[3]);
-    /* Sets RGB_Q15 to the environment's light, with its bright lights, from
-     * TOWARD_Q30, in the mean of a spot of that angular variance. */
-    void (*look)(const struct glint_scene *scene, const int32_t toward_q30[3],
-                 int64_t spread_q40, int32_t rgb_q15[3]);
-};
-
 /* Pixels of the tile that a worker draws in, as a pass. */
 struct glint_pass glint_scene_pass(const struct glint_scene *scene);
 

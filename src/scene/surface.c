@@ -2,6 +2,7 @@
  *
  * Where rays meet objects. Few objects, or meshes with grids: all of them are
  * asked in turn. */
+#include "scene/parts.h"
 #include "scene/state.h"
 
 static int meets_sphere(const struct glint_placed *p,

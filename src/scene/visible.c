@@ -8,6 +8,7 @@
  * other ball can hide in part asks for no depth where all that is there is
  * farther away than its far side. */
 #include "scene/visible.h"
+#include "scene/parts.h"
 
 /* The corners of a square that is turned; eight and sixteen that are spread as
  * evenly as rows and columns of their own let them. */

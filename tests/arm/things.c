@@ -52,12 +52,10 @@ static struct glint_scene_config make_config(struct shuffle *shuffle)
     c.dither = number(2);
     c.focal_q16 = (int64_t)(1 + number(400)) << 16;
     c.max_refs = 200000;
-    c.parts = (struct glint_scene_parts){&glint_scene_meshes,
-                                         &glint_scene_textures,
-                                         &glint_scene_bounces,
-                                         &glint_scene_wards,
-                                         NULL,
-                                         &glint_scene_motions};
+    c.parts = (struct glint_scene_parts){
+        &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,
+        &glint_scene_wards,  &glint_scene_stones,   NULL,
+        &glint_scene_motions};
     return c;
 }
 

@@ -81,12 +81,10 @@ static void use(const struct glint_scene_model *model, int which)
     cfg.max_refs = 4000;
     cfg.focal_q16 = 20 << 16;
     cfg.shadow_points = model->header->shadow ? 4 : 1;
-    cfg.parts = (struct glint_scene_parts){&glint_scene_meshes,
-                                           &glint_scene_textures,
-                                           &glint_scene_bounces,
-                                           &glint_scene_wards,
-                                           NULL,
-                                           &glint_scene_motions};
+    cfg.parts = (struct glint_scene_parts){
+        &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,
+        &glint_scene_wards,  &glint_scene_stones,   NULL,
+        &glint_scene_motions};
     bytes = glint_scene_bytes(&cfg, model);
     if (!bytes || bytes > sizeof mem)
         return;

@@ -148,7 +148,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const size_t bytes = zero ? (size_t)(zero - data) : size;
     struct rest rest = {data + bytes, size - bytes};
     const struct glint_description_files files = {
-        &rest, read_mesh, make_picture, read_mesh, read_mesh};
+        &rest, read_mesh, make_picture, read_mesh, read_mesh, read_mesh};
     struct glint_error error;
     enum glint_status status;
 

@@ -49,12 +49,10 @@ static uint64_t hash_of(const struct glint_image *image)
 
 static int draw(const struct glint_scene_model *model, int argc, char **argv)
 {
-    static const struct glint_scene_parts parts = {&glint_scene_meshes,
-                                                   &glint_scene_textures,
-                                                   &glint_scene_bounces,
-                                                   &glint_scene_wards,
-                                                   NULL,
-                                                   &glint_scene_motions};
+    static const struct glint_scene_parts parts = {
+        &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,
+        &glint_scene_wards,  &glint_scene_stones,   NULL,
+        &glint_scene_motions};
     struct glint_image image = {
         .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
     /* Not inlined: counters look for their names. */

@@ -156,7 +156,7 @@ static int bake(const struct text *t, struct glint_scene_model *model,
 {
     static struct glint_description scene;
     const struct glint_description_files files = {NULL, read_ring, read_picture,
-                                                  NULL};
+                                                  NULL, NULL,      NULL};
     struct glint_scene_bake_report report;
     struct glint_error error = {""};
     const char *reason = "";

@@ -15,6 +15,7 @@
 #include "scenes/baked_scene.h"
 #include "scenes/environment_file.h"
 #include "motions/motion_file.h"
+#include "stones/stone_file.h"
 #include "command/render_scene.h"
 #include "options/tool.h"
 #include "options/takes.h"
@@ -26,9 +27,11 @@ static const char help[] =
     "integers, proves that these cannot overflow, measures the errors with "
     "the\n"
     "run-time arithmetic, and writes one file for render, overlay and trace.\n"
-    "The same lens and options give the same bytes. NAME.scene, and pictures\n"
-    "of all around, .exr .hdr .dds .pfm .environment, and recordings, .json,\n"
-    "have other options:\n"
+    "The same lens and options give the same bytes. NAME.scene, "
+    "NAME.translucent,\n"
+    "pictures of all around, .exr .hdr .dds .pfm .environment, and "
+    "recordings,\n"
+    ".json, have other options:\n"
     "glint bake NAME.scene --help.\n"
     "\n"
     "  -o, --output MODEL\n"
@@ -206,6 +209,9 @@ int cmd_bake(int argc, char **argv)
     for (int i = 1; i < argc; i++)
         if (argv[i][0] != '-' && motion_file_is_source(argv[i]))
             return cmd_bake_motion(argc, argv);
+    for (int i = 1; i < argc; i++)
+        if (argv[i][0] != '-' && stone_file_is_text(argv[i]))
+            return cmd_bake_stone(argc, argv);
     glint_bake_defaults(&b.options);
     code = parse(&tool, argc, argv, &b);
     if (code >= 0)

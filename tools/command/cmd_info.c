@@ -13,13 +13,15 @@
 #include "scenes/baked_scene.h"
 #include "scenes/environment_file.h"
 #include "motions/motion_file.h"
+#include "stones/stone_file.h"
 
 static const char help[] =
-    "glint info LENS|MODEL|SCENE|ENV|MOTION [--json] [-v] [--f-number N]\n"
-    "           [--coating C] [--poses FILE.csv]\n"
+    "glint info LENS|MODEL|SCENE|ENV|STONE|MOTION [--json] [-v]\n"
+    "           [--f-number N] [--coating C] [--poses FILE.csv]\n"
     "\n"
     "Of a scene, NAME.scene or baked: things, triangles, bytes by keyword.\n"
     "Of an environment, a picture of all around or baked: texels, lights.\n"
+    "Of a stone, NAME.translucent or baked: model, bits, bytes of a texel.\n"
     "Of a motion, a recording .json or baked: frames, foods, residuals.\n"
     "Of a lens: focal length, back focal length, entrance pupil, stop radius "
     "at\n"
@@ -214,6 +216,51 @@ static int parse(struct tool *tool, int argc, char **argv, double *f_number,
     return -1;
 }
 
+static int info_of_stone(const struct tool *tool, const char *path)
+{
+    struct glint_error error = {""};
+    struct stone_file file;
+    const enum glint_status status =
+        stone_file_read(tool, path, NULL, NULL, false, &file, &error);
+
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    stone_file_print(tool, &file);
+    stone_file_close(&file);
+    return EXIT_OK;
+}
+
+/* Prints what PATH is if that is no lens, for which a line may STOP or coat.
+ * Returns an exit code, or -1: it is one. */
+static int info_of_other(const struct tool *tool, const char *path, bool stop,
+                         const char *poses)
+{
+    const bool is_motion =
+        motion_file_is_source(path) || motion_file_is_baked(path);
+    const bool is_scene = !is_motion && baked_scene_is(path);
+    const bool is_around =
+        !is_motion && !is_scene &&
+        (environment_file_is_source(path) || environment_file_is_baked(path));
+    const bool is_stone =
+        !is_motion && !is_scene && !is_around &&
+        (stone_file_is_text(path) || stone_file_is_baked(path));
+
+    if (stop && (is_motion || is_scene || is_around || is_stone))
+        return tool_usage(tool, "%s has no lens to stop or coat",
+                          is_motion   ? "a motion"
+                          : is_scene  ? "a scene"
+                          : is_around ? "an environment"
+                                      : "a stone");
+    if (is_motion)
+        return info_of_motion(tool, path, poses);
+    if (poses)
+        return tool_usage(tool, "--poses are of a motion");
+    return is_scene    ? info_of_scene(tool, path)
+           : is_around ? info_of_environment(tool, path)
+           : is_stone  ? info_of_stone(tool, path)
+                       : -1;
+}
+
 int cmd_info(int argc, char **argv)
 {
     struct tool tool = {.name = "info", .help = help};
@@ -226,23 +273,10 @@ int cmd_info(int argc, char **argv)
 
     if (code >= 0)
         return code;
-    if (motion_file_is_source(argv[optind]) ||
-        motion_file_is_baked(argv[optind]))
-        return f_number != 0 || coating.kind != COATING_TABLE
-                   ? tool_usage(&tool, "a motion has no lens to stop or coat")
-                   : info_of_motion(&tool, argv[optind], poses);
-    if (poses)
-        return tool_usage(&tool, "--poses are of a motion");
-    if (baked_scene_is(argv[optind]))
-        return f_number != 0 || coating.kind != COATING_TABLE
-                   ? tool_usage(&tool, "a scene has no lens to stop or coat")
-                   : info_of_scene(&tool, argv[optind]);
-    if (environment_file_is_source(argv[optind]) ||
-        environment_file_is_baked(argv[optind]))
-        return f_number != 0 || coating.kind != COATING_TABLE
-                   ? tool_usage(&tool,
-                                "an environment has no lens to stop or coat")
-                   : info_of_environment(&tool, argv[optind]);
+    code = info_of_other(&tool, argv[optind],
+                         f_number != 0 || coating.kind != COATING_TABLE, poses);
+    if (code >= 0)
+        return code;
     if (tool_is_model(argv[optind]) &&
         coating_of_model(&tool, &coating, argv[optind]) != EXIT_OK)
         return EXIT_USAGE;

@@ -49,8 +49,8 @@ of = $(eval $(patsubst %,$(OUT)/%.o,$(1)): CFLAGS += $(2))
 # Run once, or once for a lamp, bundle or row: small rather than fast.
 $(call of,$(addprefix src/base/,status arena workers blob) src/image/image,-Os)
 $(call of,$(addprefix src/lens/,model model_system),-Os)
-$(call of,$(addprefix src/scene/,scene model model_mesh lights account/account frame/begin frame/looks frame/shadow_box ward/environment ward/ward_lobe),-Os)
-$(call of,$(addprefix src/scene/,ward/scene_ward ward/ward phong ray shadow surface vector visible mesh mesh_ray frame/quick frame/quick_mesh frame/mesh_small frame/scene_pass) src/image/cover,-O3)# loops of three
+$(call of,$(addprefix src/scene/,scene model model_mesh account/account frame/begin frame/lights frame/looks frame/uv frame/shadow_box ward/environment ward/ward_lobe translucent/translucent),-Os)
+$(call of,$(addprefix src/scene/,ward/scene_ward ward/ward phong ray shadow surface vector visible mesh mesh_ray frame/quick frame/quick_mesh frame/mesh_small frame/scene_pass translucent/spread translucent/skin_light) src/image/cover,-O3)# loops of three
 $(call of,$(addprefix src/lamps/,lamp_finder lamp_list),-Os)
 $(call of,$(addprefix src/follow/,match follow record lamp_tracker),-Os)
 $(call of,$(addprefix src/flare/,aim by_edges capacities colours lights plan plan_cells probe window wave_sets flare draw_over account),-Os)

@@ -169,11 +169,11 @@ double scene_cost_json(const struct scene_frame *frame, size_t bytes, FILE *to)
     }
     fprintf(to, "\"covered_px\": %d, \"bytes\": {", scene_covered_px(frame));
     baked_scene_bytes(frame->model, to);
-    /* Maps are of translucent things, of which there are none. */
     fprintf(to,
             ", \"scene\": %zu, \"arena\": %zu}, \"project_ms\": %.3f, "
-            "\"draw_ms\": %.3f, \"map_ms\": 0.000",
-            bytes, frame->bytes, frame->project_ms, frame->draw_ms);
+            "\"draw_ms\": %.3f, \"map_ms\": %.3f, \"map_texels\": %d",
+            bytes, frame->bytes, frame->project_ms, frame->draw_ms,
+            frame->map_ms, frame->map_texels);
     return minsn;
 }
 

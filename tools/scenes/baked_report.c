@@ -4,11 +4,12 @@
 #include <math.h>
 
 #include "glint/view.h"
+#include "glint/scene/translucent.h"
 #include "scenes/baked_scene.h"
 
 /* Bytes of a baked scene by what they hold; the keywords of its text. */
 struct scene_bytes {
-    size_t header, light, texture, material, environment, object;
+    size_t header, light, texture, material, environment, stone, object;
     size_t mesh;                                   /* all of these: */
     size_t vertices, normals, uv, triangles, grid; /* and their headers */
 };
@@ -48,6 +49,30 @@ static void measure_mesh(const struct glint_scene_model *model,
     b->mesh += sizeof *m;
 }
 
+/* Returns the bytes of stones, and of the maps of what is of them. */
+static size_t stone_bytes(const struct glint_scene_model *model)
+{
+    const struct glint_scene_header *h = model->header;
+    size_t bytes =
+        h->n_stones * sizeof *model->stone + h->n_skins * sizeof *model->skin;
+
+    for (uint32_t i = 0; i < h->n_stones; i++)
+        bytes += model->stone[i].file_bytes;
+    for (uint32_t i = 0; i < h->n_skins; i++) {
+        const struct glint_scene_stone *stone =
+            &model->stone[model->skin[i].stone];
+        const struct glint_translucent_header *t =
+            (const void *)((const unsigned char *)h + stone->file_at);
+        const size_t side = (size_t)1 << t->side_log2;
+
+        bytes +=
+            model->object[model->skin[i].object].kind == GLINT_OBJECT_SPHERE
+                ? 3 * side * 8
+                : side * side * 4;
+    }
+    return bytes;
+}
+
 static void measure(const struct glint_scene_model *model,
                     struct scene_bytes *b, struct scene_counts *n)
 {
@@ -59,6 +84,7 @@ static void measure(const struct glint_scene_model *model,
                                   h->n_materials * sizeof *model->material +
                                   h->n_wards * sizeof *model->ward,
                               .environment = h->environment_bytes,
+                              .stone = stone_bytes(model),
                               .object = h->n_objects * sizeof *model->object};
     *n = (struct scene_counts){.spheres = 0};
     for (uint32_t i = 0; i < h->n_textures; i++)
@@ -79,10 +105,10 @@ static void print_bytes(const struct scene_bytes *b, FILE *to)
 {
     fprintf(to,
             "\"header\": %zu, \"light\": %zu, \"texture\": %zu, "
-            "\"material\": %zu, \"environment\": %zu, \"object\": %zu, "
-            "\"mesh\": %zu",
+            "\"material\": %zu, \"environment\": %zu, \"stone\": %zu, "
+            "\"object\": %zu, \"mesh\": %zu",
             b->header, b->light, b->texture, b->material, b->environment,
-            b->object, b->mesh);
+            b->stone, b->object, b->mesh);
 }
 
 void baked_scene_bytes(const struct glint_scene_model *model, FILE *to)
@@ -141,6 +167,7 @@ static void print_text(const struct baked_scene *scene,
                {"texture", b->texture},
                {"material", b->material},
                {"environment", b->environment},
+               {"stone", b->stone},
                {"object", b->object},
                {"mesh", b->mesh},
                {"  vertices", b->vertices},

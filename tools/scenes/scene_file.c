@@ -12,6 +12,7 @@
 #include "posix/target.h"
 #include "motions/motion_file.h"
 #include "scenes/environment_file.h"
+#include "stones/stone_file.h"
 
 enum { TEXT_BYTES = 1 << 20 };
 
@@ -24,6 +25,7 @@ bool tool_is_scene(const char *argument)
 
 /* A text while it is read, and the key of what was read so far. */
 struct reading {
+    const struct tool *tool;
     const char *path;
     const char *written; /* a file that is not to be read, or NULL */
     uint64_t key;
@@ -121,6 +123,26 @@ static enum glint_status read_environment(void *ctx, const char *name,
     return GLINT_OK;
 }
 
+/* The same of a stone. */
+static enum glint_status read_stone(void *ctx, const char *name, uint8_t **data,
+                                    size_t *bytes, struct glint_error *error)
+{
+    struct reading *reading = ctx;
+    struct stone_file file;
+    char path[TOOL_PATH_BYTES];
+    enum glint_status status = find(reading, name, path, error);
+
+    if (status == GLINT_OK)
+        status = stone_file_read(reading->tool, path, NULL, NULL, false, &file,
+                                 error);
+    if (status != GLINT_OK)
+        return status;
+    mix(reading, file.data, file.bytes);
+    *data = file.data;
+    *bytes = file.bytes;
+    return GLINT_OK;
+}
+
 /* The same of a motion. */
 static enum glint_status read_motion(void *ctx, const char *name,
                                      uint8_t **data, size_t *bytes,
@@ -147,9 +169,10 @@ static enum glint_status read_motion(void *ctx, const char *name,
 int tool_scene(const struct tool *tool, const char *path,
                struct glint_description *scene, uint64_t *key)
 {
-    struct reading reading = {path, tool->written, TOOL_KEY_BEGIN};
+    struct reading reading = {tool, path, tool->written, TOOL_KEY_BEGIN};
     const struct glint_description_files files = {
-        &reading, read_mesh, read_picture, read_environment, read_motion};
+        &reading,         read_mesh,   read_picture,
+        read_environment, read_motion, read_stone};
     struct glint_error error = {""};
     uint8_t *text = NULL;
     size_t bytes = 0;

@@ -54,12 +54,15 @@ int scene_frame_open(struct scene_frame *frame, const struct tool *tool,
     frame->cfg.shadow_points = dials->shadow_points;
     frame->cfg.half_shading = dials->half_shading;
     frame->cfg.dither = dials->dither;
+    if (dials->stone_frames)
+        frame->cfg.stone_frames = dials->stone_frames;
     if (dials->tile_log2)
         frame->cfg.tile_log2 = dials->tile_log2;
     frame->cfg.focal_q16 = llrint(fmin(dials->focal_px, 1e6) * 0x1p16);
     frame->cfg.parts = (struct glint_scene_parts){
-        &glint_scene_meshes, &glint_scene_textures,   &glint_scene_bounces,
-        &glint_scene_wards,  &glint_scene_highlights, &glint_scene_motions};
+        &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,
+        &glint_scene_wards,  &glint_scene_stones,   &glint_scene_highlights,
+        &glint_scene_motions};
     status = place(frame);
     return status == GLINT_OK ? EXIT_OK : say(tool, status);
 }
@@ -82,7 +85,7 @@ enum glint_status scene_frame_try(struct scene_frame *frame,
                                   const struct glint_image *image)
 {
     const double start = tool_seconds();
-    double begun;
+    double begun, spread;
 
     scene_frame_begin(frame);
     if (frame->stats.dropped_objects > 0) {
@@ -95,10 +98,13 @@ enum glint_status scene_frame_try(struct scene_frame *frame,
         scene_frame_begin(frame);
     }
     begun = tool_seconds();
+    frame->map_texels = glint_scene_spread(frame->scene);
+    spread = tool_seconds();
     glint_scene_look_around(frame->scene, image);
     glint_scene_draw(frame->scene, image);
     frame->project_ms = 1e3 * (begun - start);
-    frame->draw_ms = 1e3 * (tool_seconds() - begun);
+    frame->map_ms = 1e3 * (spread - begun);
+    frame->draw_ms = 1e3 * (tool_seconds() - spread);
     return GLINT_OK;
 }
 

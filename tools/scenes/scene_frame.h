@@ -20,6 +20,7 @@ struct scene_dials {
     int shadow_points; /* 1, 4 or 16 */
     bool half_shading; /* two by two pixels at once, within one thing */
     int tile_log2;     /* 0: as the run time likes it */
+    int stone_frames;  /* 0: likewise */
     bool dither;
 };
 
@@ -41,7 +42,8 @@ struct scene_frame {
 
     /* Of the picture drawn last. */
     struct glint_scene_stats stats;
-    double project_ms, draw_ms;
+    int map_texels; /* of translucent things, worked out for it */
+    double project_ms, map_ms, draw_ms;
 };
 
 /* Takes memory for pictures of MODEL, which is kept. Returns an exit code,

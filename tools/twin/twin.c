@@ -6,6 +6,7 @@
 
 #include "glint/view.h"
 #include "twin/twin_around.h"
+#include "twin/twin_stone.h"
 
 /* ----------------------------------------------------------------- opening */
 
@@ -46,6 +47,8 @@ enum glint_status twin_open(struct twin *twin,
         status = open_texels(&twin->texels[i], &scene->texture[i].image);
     if (status == GLINT_OK)
         status = twin_grow(twin);
+    if (status == GLINT_OK)
+        status = twin_open_stones(twin);
     if (status != GLINT_OK)
         twin_close(twin);
     return status;
@@ -55,6 +58,7 @@ void twin_close(struct twin *twin)
 {
     for (int i = 0; i < GLINT_DESCRIPTION_MAX_TEXTURES; i++)
         free(twin->texels[i].rgb);
+    twin_close_stones(twin);
     free(twin->node);
     free(twin->order);
     free(twin->root);
@@ -85,13 +89,16 @@ static double light_from(const struct glint_described_light *light,
     return distance;
 }
 
-/* Returns the sine of the angular radius of LIGHT, DISTANCE away. */
+/* Returns the sine of the angular radius of LIGHT from PLACE. */
 static double radius_of(const struct glint_described_light *light,
-                        double distance)
+                        const double place[3])
 {
+    double off[3];
+
+    vec_add(light->at, -1, place, off);
     return light->kind == GLINT_DESCRIBED_SUN
                ? sin(light->radius_deg * GLINT_PI / 180)
-               : fmin(light->radius / distance, .5);
+               : fmin(light->radius / vec_unit(off), .5);
 }
 
 /* Points of a light's disc that shadows ask for, as the run time has them. */
@@ -158,6 +165,17 @@ static double reaches(const struct twin *twin, const struct twin_hit *hit,
     return (double)reached / n;
 }
 
+double twin_light(const struct twin *twin, const struct twin_hit *hit,
+                  const struct glint_described_light *light, double toward[3],
+                  double rgb[3], double *share)
+{
+    const double distance = light_from(light, hit->place, toward, rgb);
+    const double facing = vec_dot(hit->shading, toward);
+
+    *share = facing > 0 ? reaches(twin, hit, light, toward, distance) : 0;
+    return facing;
+}
+
 /* ---------------------------------------------------------------- surfaces */
 
 static void texel_at(const struct twin_texels *t, const double uv[2],
@@ -197,21 +215,22 @@ static void light_of(const struct twin *twin, const struct twin_hit *hit,
         colour[c] *= m->colour[c];
         rgb[c] = m->ambient * colour[c];
     }
+    if (m->is_stone)
+        twin_add_stone(twin, hit, toward, rgb);
     twin_add_around(twin, hit, toward, colour, rgb);
     for (int i = 0; i < s->n_lights; i++) {
-        double l[3], light[3], facing, glint, share, shine = 0;
-        const double distance = light_from(&s->light[i], hit->place, l, light);
+        double l[3], light[3], glint, share, shine = 0;
+        const double facing =
+            twin_light(twin, hit, &s->light[i], l, light, &share);
 
-        facing = vec_dot(hit->shading, l);
         if (facing <= 0)
             continue;
-        share = reaches(twin, hit, &s->light[i], l, distance);
         /* R.V with R = 2 (N.L) N - L and V against the ray. */
         glint = vec_dot(l, toward) - 2 * facing * vec_dot(hit->shading, toward);
         glint = glint > 0 ? pow(glint, m->power) : 0;
         if (m->is_metal)
             shine = twin_shine(twin, hit, toward, l,
-                               radius_of(&s->light[i], distance));
+                               radius_of(&s->light[i], hit->place));
         for (int c = 0; c < 3; c++)
             rgb[c] += share * light[c] *
                       (m->diffuse * facing * colour[c] + m->specular * glint +
@@ -467,6 +486,7 @@ void twin_aim(struct twin *twin, const struct twin_view *view)
                     &beside);
     vec_add(beside.toward, -1, middle.toward, off);
     twin->pixel_tan = vec_unit(off);
+    twin_fill_maps(twin);
 }
 
 void twin_render(const struct twin *twin, const struct twin_view *view,

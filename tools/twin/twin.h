@@ -26,6 +26,7 @@
 #include "glint/workers.h"
 
 struct twin_node;
+struct twin_map;
 
 /* Light of the texels of a texture. */
 struct twin_texels {
@@ -42,8 +43,9 @@ struct twin {
     struct twin_texels texels[GLINT_DESCRIPTION_MAX_TEXTURES];
     /* Trees over the triangles of each object, one after the other. */
     struct twin_node *node;
-    int *root;  /* of each object; -1: it has no triangles */
-    int *order; /* triangles in the order of the leaves */
+    int *root;            /* of each object; -1: it has no triangles */
+    int *order;           /* triangles in the order of the leaves */
+    struct twin_map *map; /* [n_objects] of what is translucent; or NULL */
 };
 
 struct twin_ray {
@@ -98,7 +100,20 @@ bool twin_meet_object(const struct twin *twin, int object,
                       const struct twin_ray *ray, double most,
                       struct twin_hit *hit);
 
-/* Returns what RAY, a primary one, sees. */
+/* Sets what is left of a HIT of object O whose triangle is known, and whose uv
+ * are the shares of its second and third corner. */
+void twin_finish_triangle(const struct twin *twin,
+                          const struct glint_described_object *o,
+                          struct twin_hit *hit);
+
+/* Sets TOWARD to the direction of LIGHT from HIT, RGB to what a white surface
+ * shows there that faces it, SHARE to how much of it reaches HIT; returns the
+ * cosine from the shading normal. */
+double twin_light(const struct twin *twin, const struct twin_hit *hit,
+                  const struct glint_described_light *light, double toward[3],
+                  double rgb[3], double *share);
+
+/* Returns what RAY, a primary one, sees. twin_render() has worked out maps. */
 struct twin_pixel twin_see(const struct twin *twin, const struct twin_ray *ray);
 
 /* Tells TWIN how wide pixels of VIEW are, as twin_render() does. */

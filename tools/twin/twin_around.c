@@ -334,20 +334,33 @@ static void add_metal(const struct twin *twin, const struct twin_hit *hit,
 
 /* -------------------------------------------------------------------- whole */
 
+void twin_irradiance(const struct twin *twin, const double shading[3],
+                     double rgb[3])
+{
+    const struct glint_description *s = twin->scene;
+    double normal[3], light[3];
+
+    if (!s->environment.data)
+        return;
+    turn(twin, shading, normal);
+    look_level(&twin->around, -1, normal, light);
+    for (int c = 0; c < 3; c++)
+        rgb[c] += s->environment.scale * light[c];
+}
+
 void twin_add_around(const struct twin *twin, const struct twin_hit *hit,
                      const double toward[3], const double colour[3],
                      double rgb[3])
 {
     const struct glint_description *s = twin->scene;
     const struct glint_described_material *m = &s->material[hit->material];
-    double normal[3], light[3];
+    double light[3] = {0, 0, 0};
 
     if (!s->environment.data)
         return;
-    turn(twin, hit->shading, normal);
-    look_level(&twin->around, -1, normal, light);
+    twin_irradiance(twin, hit->shading, light);
     for (int c = 0; c < 3; c++)
-        rgb[c] += s->environment.scale * m->diffuse * colour[c] * light[c];
+        rgb[c] += m->diffuse * colour[c] * light[c];
     if (m->is_metal)
         add_metal(twin, hit, toward, rgb);
 }

@@ -7,6 +7,10 @@
 #include "twin/twin.h"
 #include "twin/vec.h"
 
+/* Adds to RGB what the environment shows a white surface of that normal. */
+void twin_irradiance(const struct twin *twin, const double shading[3],
+                     double rgb[3]);
+
 /* Adds to RGB what HIT, of diffuse COLOUR, leaves of the environment along a
  * ray TOWARD it. */
 void twin_add_around(const struct twin *twin, const struct twin_hit *hit,

@@ -87,10 +87,9 @@ static bool meet_plane(const struct glint_described_object *o,
 
 /* ------------------------------------------------------------------ meshes */
 
-/* Sets uv and normals of a hit whose uv are the shares of two corners. */
-static void finish_triangle(const struct twin *twin,
-                            const struct glint_described_object *o,
-                            struct twin_hit *hit)
+void twin_finish_triangle(const struct twin *twin,
+                          const struct glint_described_object *o,
+                          struct twin_hit *hit)
 {
     const struct glint_described_triangle *t =
         &twin->scene->triangle[hit->triangle];
@@ -139,7 +138,7 @@ static bool meet_mesh(const struct twin *twin, int object,
     if (!twin_meet_mesh(twin, object, &local, most, hit))
         return false;
     vec_add(ray->from, hit->t, ray->toward, hit->place);
-    finish_triangle(twin, o, hit);
+    twin_finish_triangle(twin, o, hit);
     return true;
 }
 
@@ -165,7 +164,8 @@ bool twin_meet_object(const struct twin *twin, int object,
             !(is_ball ? meet_sphere(o, ray, most, hit)
                       : meet_plane(o, ray, most, hit)))
             return false;
-        if (o->material >= 0 && s->material[o->material].texture >= 0)
+        if (o->material >= 0 && (s->material[o->material].texture >= 0 ||
+                                 s->material[o->material].is_stone))
             (is_ball ? place_on_ball : place_on_plane)(s, o, hit);
         for (int i = 0; i < 3; i++)
             hit->shading[i] = hit->normal[i];

@@ -34,6 +34,7 @@ enum {
     GLINT_DESCRIPTION_MAX_LIGHTS = 32,  /* with those of the environment */
     GLINT_DESCRIPTION_MAX_MATERIALS = 256,
     GLINT_DESCRIPTION_MAX_TEXTURES = 64,
+    GLINT_DESCRIPTION_MAX_STONES = 16,
     GLINT_DESCRIPTION_MAX_OBJECTS = 1024,
     GLINT_DESCRIPTION_MAX_TRIANGLES = 1 << 20, /* of all things together */
     GLINT_DESCRIPTION_MAX_SIDE = 4096,         /* texels of a texture */
@@ -99,6 +100,16 @@ struct glint_described_material {
     double alpha[2]; /* around the y axis of balls and meshes, along the x axis
                         of planes; and at right angles */
     enum glint_described_norm norm;
+    /* Translucent: all weights are 0, brushed metal is its coat. */
+    bool is_stone;
+    int stone;    /* if it is */
+    bool fresnel; /* what its index mirrors gets neither in nor out */
+};
+
+/* What light does below a surface. */
+struct glint_described_stone {
+    uint8_t *data; /* a baked stone, malloc'ed */
+    size_t bytes;
 };
 
 /* Light from all around. */
@@ -187,6 +198,8 @@ struct glint_description {
     struct glint_described_light light[GLINT_DESCRIPTION_MAX_LIGHTS];
     struct glint_described_texture texture[GLINT_DESCRIPTION_MAX_TEXTURES];
     struct glint_described_material material[GLINT_DESCRIPTION_MAX_MATERIALS];
+    int n_stones;
+    struct glint_described_stone stone[GLINT_DESCRIPTION_MAX_STONES];
     struct glint_described_object object[GLINT_DESCRIPTION_MAX_OBJECTS];
     struct glint_described_triangle *triangle; /* malloc'ed, object by object */
     char warning[256]; /* a line on what is odd but allowed; may be empty */
@@ -209,6 +222,9 @@ struct glint_description_files {
     /* As a baked motion; NULL: there are none. */
     enum glint_status (*motion)(void *ctx, const char *name, uint8_t **data,
                                 size_t *bytes, struct glint_error *error);
+    /* As a baked stone; NULL: there are none. */
+    enum glint_status (*stone)(void *ctx, const char *name, uint8_t **data,
+                               size_t *bytes, struct glint_error *error);
 };
 
 /* Reads a scene text. TEXT need not be terminated and may hold anything;

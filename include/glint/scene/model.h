@@ -40,7 +40,7 @@ extern "C" {
 #endif
 
 #define GLINT_SCENE_MAGIC   UINT32_C(0x53544e47) /* "GNTS" */
-#define GLINT_SCENE_VERSION 3
+#define GLINT_SCENE_VERSION 4
 #define GLINT_SCENE_NONE    UINT32_C(0xffffffff) /* no texture, no material */
 
 enum {
@@ -50,6 +50,7 @@ enum {
     GLINT_SCENE_MAX_MATERIALS = 4096,
     GLINT_SCENE_MAX_TEXTURES = 256,
     GLINT_SCENE_MAX_MESHES = 4096,
+    GLINT_SCENE_MAX_SKINS = 64,          /* and stones */
     GLINT_SCENE_MAX_TRIANGLES = 1 << 20, /* of all objects together; a mesh
                                             counts once for each object */
     GLINT_SCENE_MAX_CELLS = 256,         /* of a grid, along each axis */
@@ -142,6 +143,31 @@ struct glint_scene_ward {
     int32_t specular_q15[3]; /* 0 .. 32768 */
     int32_t alpha_q24[2];    /* .001 .. 1, 2^14 .. 2^24 */
     uint32_t norm;           /* enum glint_ward_norm of glint/scene/ward.h */
+};
+
+/* A translucent stone: light that gets in spreads below the surface, and what
+ * comes out times the material's colour is all that it shows but for its coat,
+ * which is the material's brushed metal. Diffuse, ambient and specular are 0.
+ */
+struct glint_scene_stone {
+    uint32_t material;
+    uint32_t file_at, file_bytes; /* a baked stone (glint/scene/translucent.h),
+                                     whole words */
+    uint32_t fresnel; /* 1: the surface lets through what its index does, each
+                         way; 0: all light */
+};
+
+/* The map of an object that is of stone: which place of it each texel is. */
+struct glint_scene_skin {
+    uint32_t object, stone; /* a ball or a mesh with uv, once */
+    /* Mesh: uint32 [side][side], the triangle of each texel, of those around it
+     * the nearest one, or GLINT_SCENE_NONE. Texel (i, j) is at u = (i + 1/2) /
+     * side, v = (j + 1/2) / side.
+     * Ball: int32 _q30 [2 side][2], then [side][2], units: cosine and sine of
+     * the longitude of each column, 0 ahead of a camera that is not turned, and
+     * of the angle from the upper pole of each row. */
+    uint32_t texel_at;
+    uint32_t closed; /* mesh: 1: its backs are not to be seen; else 0 */
 };
 
 struct glint_scene_triangle {
@@ -261,6 +287,8 @@ struct glint_scene_header {
     int32_t environment_turn_q30[2];
     struct glint_real environment_scale; /* factor of all its light */
     uint32_t n_motions, motion_at;       /* 0 or 1 struct glint_scene_motion */
+    uint32_t n_stones, stone_at;         /* struct glint_scene_stone */
+    uint32_t n_skins, skin_at;           /* struct glint_scene_skin */
 };
 
 /* An opened file; it points into that, which must outlive it. */
@@ -274,6 +302,8 @@ struct glint_scene_model {
     const struct glint_scene_ward *ward;
     const void *environment;                 /* NULL: there is none */
     const struct glint_scene_motion *motion; /* NULL: there is none */
+    const struct glint_scene_stone *stone;
+    const struct glint_scene_skin *skin;
 };
 
 /* Checks DATA[BYTES], aligned to 4 bytes, and points MODEL into it. DATA is

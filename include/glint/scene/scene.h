@@ -39,12 +39,14 @@ struct glint_scene_meshes;
 struct glint_scene_textures;
 struct glint_scene_bounces;
 struct glint_scene_wards;
+struct glint_scene_stones;
 struct glint_scene_highlights;
 struct glint_scene_motions;
 extern const struct glint_scene_meshes glint_scene_meshes;
 extern const struct glint_scene_textures glint_scene_textures;
 extern const struct glint_scene_bounces glint_scene_bounces;
 extern const struct glint_scene_wards glint_scene_wards;
+extern const struct glint_scene_stones glint_scene_stones;
 extern const struct glint_scene_highlights glint_scene_highlights;
 extern const struct glint_scene_motions glint_scene_motions;
 
@@ -55,6 +57,7 @@ struct glint_scene_parts {
     const struct glint_scene_textures *textures;
     const struct glint_scene_bounces *bounces; /* reflection, passing through */
     const struct glint_scene_wards *wards;     /* environments, brushed metal */
+    const struct glint_scene_stones *stones;   /* translucent things */
     /* What glints (glint/scene/highlights.h); no model needs it. */
     const struct glint_scene_highlights *highlights;
     const struct glint_scene_motions *motions; /* recorded motion */
@@ -74,6 +77,9 @@ struct glint_scene_config {
     int ward_samples;  /* 1 .. 32: lookups of an environment for a place on
                           brushed metal */
     int ward_nearest;  /* 1: each reads one level, not two blended */
+    int stone_frames;  /* 1, 2 or 4: light on translucent things that changes
+                          from frame to frame is followed in every one of so
+                          many; what comes into view is lit at once */
     int highlights;    /* 0 .. 8: that are found at most */
     int dither;        /* 1: 8-bit output is dithered, deterministically */
     /* For GLINT_CAMERA_LENS: the focal length in pixels, 2^10 .. 2^40 _q16. */
@@ -104,15 +110,15 @@ size_t glint_scene_bytes(const struct glint_scene_config *cfg,
                          const struct glint_scene_model *model);
 
 /* Returns which part MODEL needs and PARTS do not name: "meshes", "textures",
- * "bounces", "wards" or "motions"; NULL: none. */
+ * "bounces", "wards", "stones" or "motions"; NULL: none. */
 const char *glint_scene_lacks(const struct glint_scene_parts *parts,
                               const struct glint_scene_model *model);
 
 /* Places a scene in MEM[BYTES], aligned to 64, which needs no finish. MODEL is
  * copied; what it points into is kept. GLINT_E_MEMORY: BYTES is too small.
  * GLINT_E_UNSUPPORTED: MODEL needs a part that CFG does not name.
- * GLINT_E_FORMAT: its environment is damaged, glint_environment_open() has the
- * reason. */
+ * GLINT_E_FORMAT: its environment or a stone is damaged, as
+ * glint_environment_open() and glint_translucent_open() say. */
 enum glint_status glint_scene_init(struct glint_scene **scene,
                                    const struct glint_scene_config *cfg,
                                    const struct glint_scene_model *model,
@@ -156,7 +162,8 @@ enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
                                        const struct glint_scene_look *look);
 
 /* Makes object OBJECT, where its triangles have none of their own, of material
- * MATERIAL. GLINT_E_ARGUMENT: there is no such one. */
+ * MATERIAL. GLINT_E_ARGUMENT: there is no such one, or it is translucent and
+ * the object has no map for it. */
 enum glint_status glint_scene_set_material(struct glint_scene *scene,
                                            int object, int material);
 
@@ -228,6 +235,11 @@ uint32_t glint_scene_seen_by(const struct glint_scene *scene, uint32_t food);
  * draw and lights; may be called again. */
 void glint_scene_begin(struct glint_scene *scene,
                        struct glint_scene_stats *stats);
+
+/* Works out the light that spreads below what is translucent, where it may be
+ * seen and has changed; returns of how many texels. Draw does it by itself
+ * where this was not called since begin. */
+int glint_scene_spread(struct glint_scene *scene);
 
 /* Draws the scene onto IMAGE, which has the size of the configuration, and
  * keeps what is covered for glint_scene_cover(). May be called again. */

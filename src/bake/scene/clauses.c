@@ -6,22 +6,6 @@
 
 #include "bake/scene/near.h"
 
-const char *glint_not_built(const struct glint_word *word)
-{
-    static const struct {
-        const char *word, *instead;
-    } absent[] = {
-        {"translucent", "materials are phong or ward"},
-        {"coat", "materials are phong or ward"},
-        {"fresnel", "materials are phong or ward"},
-    };
-
-    for (size_t i = 0; i < sizeof absent / sizeof *absent; i++)
-        if (glint_word_is(word, absent[i].word))
-            return absent[i].instead;
-    return NULL;
-}
-
 /* Lists the words of CLAUSE: "at, radius and material". */
 static void list(const struct glint_clause *clause, char *text, size_t bytes)
 {
@@ -39,14 +23,10 @@ static bool refuse(struct glint_text *text, const char *line,
                    const struct glint_clause *clause,
                    const struct glint_word *word)
 {
-    const char *const instead = glint_not_built(word);
     struct glint_near near = glint_near_begin(*word);
     char quote[GLINT_QUOTE_BYTES], mean[GLINT_NEAR_BYTES], words[120];
 
     glint_word_quote(word, quote);
-    if (instead)
-        return glint_text_fail(text, word->place, "'%s' is not built yet; %s",
-                               quote, instead);
     for (int i = 0; clause[i].word; i++)
         glint_near_offer(&near, clause[i].word);
     glint_near_text(&near, mean);

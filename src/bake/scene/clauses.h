@@ -37,10 +37,6 @@ bool glint_numbers_read(struct glint_text *text, const char *what, int n,
 bool glint_name_read(struct glint_text *text, const char *what, char *name,
                      int bytes);
 
-/* Returns why WORD is refused, if a scene may have it one day: what there is
- * in its place; else NULL. */
-const char *glint_not_built(const struct glint_word *word);
-
 /* Checks that nothing is left of the line. */
 bool glint_line_ends(struct glint_text *text, const char *line);
 

@@ -70,14 +70,10 @@ enum { N_LINES = sizeof lines / sizeof *lines };
 
 static bool unknown(struct glint_describer *d, const struct glint_word *word)
 {
-    const char *const instead = glint_not_built(word);
     struct glint_near near = glint_near_begin(*word);
     char quote[GLINT_QUOTE_BYTES], mean[GLINT_NEAR_BYTES];
 
     glint_word_quote(word, quote);
-    if (instead)
-        return glint_text_fail(&d->text, word->place,
-                               "'%s' is not built yet; %s", quote, instead);
     for (int i = 0; i < N_LINES; i++)
         glint_near_offer(&near, lines[i].word);
     return glint_text_fail(&d->text, word->place, "unknown word '%s'%s", quote,
@@ -143,6 +139,8 @@ void glint_description_free(struct glint_description *scene)
     for (int i = 0; i < scene->n_textures; i++)
         free(scene->texture[i].image.plane[0]);
     free(scene->triangle);
+    for (int i = 0; i < scene->n_stones; i++)
+        free(scene->stone[i].data);
     free(scene->environment.data);
     free(scene->motion.data);
     memset(scene, 0, sizeof *scene);

@@ -59,6 +59,21 @@ bool glint_describe_metal(struct glint_describer *d,
                           struct glint_described_material *m,
                           struct glint_word *texture);
 
+/* Reads what NORM says of metal, and holds the ratio of its alphas. */
+bool glint_describe_lobe(struct glint_describer *d,
+                         struct glint_described_material *m,
+                         const struct glint_word *norm);
+
+/* describe_stone.c: the same from 'translucent' on. */
+bool glint_describe_stone(struct glint_describer *d,
+                          struct glint_described_material *m,
+                          struct glint_word *texture);
+/* Refuses the object O, defined last, if what of it is of stone has no place of
+ * its own on a map; PLACE is that of its material. Warns of stretch. */
+bool glint_describe_skin(struct glint_describer *d,
+                         const struct glint_described_object *o,
+                         struct glint_text_place place);
+
 /* describe_around.c: environment; and its lights, when all lines are read. */
 bool glint_describe_environment(struct glint_describer *d);
 bool glint_describe_around(struct glint_describer *d);

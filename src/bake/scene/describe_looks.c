@@ -273,8 +273,9 @@ bool glint_describe_material(struct glint_describer *d)
             return glint_text_fail(&d->text, place,
                                    "a material of this name is already "
                                    "defined");
-    if (!(glint_word_is(&kind, "ward") ? glint_describe_metal
-                                       : read_phong)(d, m, &texture) ||
+    if (!(glint_word_is(&kind, "ward")          ? glint_describe_metal
+          : glint_word_is(&kind, "translucent") ? glint_describe_stone
+                                                : read_phong)(d, m, &texture) ||
         (texture.length && !find_texture(d, &texture, &m->texture)))
         return false;
     s->n_materials++;

@@ -40,6 +40,16 @@ static void hold_ratio(struct glint_describer *d,
     m->alpha[smaller] = least;
 }
 
+bool glint_describe_lobe(struct glint_describer *d,
+                         struct glint_described_material *m,
+                         const struct glint_word *norm)
+{
+    if (norm->length && !read_norm(d, norm, m))
+        return false;
+    hold_ratio(d, m);
+    return true;
+}
+
 bool glint_describe_metal(struct glint_describer *d,
                           struct glint_described_material *m,
                           struct glint_word *texture)
@@ -58,8 +68,7 @@ bool glint_describe_metal(struct glint_describer *d,
     m->diffuse = 1;
     for (int c = 0; c < 3; c++)
         m->colour[c] = 0;
-    if (!glint_clauses_read(&d->text, "material", clause) ||
-        (clause[4].place.line && !read_norm(d, &norm, m)))
+    if (!glint_clauses_read(&d->text, "material", clause))
         return false;
     for (int c = 0; c < 3; c++)
         if (m->colour[c] + m->metal[c] > 1 + SLACK)
@@ -67,6 +76,5 @@ bool glint_describe_metal(struct glint_describer *d,
                                    "'diffuse' and 'specular' sum to %.6g; more "
                                    "than 1 would make light",
                                    m->colour[c] + m->metal[c]);
-    hold_ratio(d, m);
-    return true;
+    return glint_describe_lobe(d, m, &norm);
 }

@@ -104,6 +104,7 @@ bool glint_describe_sphere(struct glint_describer *d)
 
     return o && glint_clauses_read(&d->text, "sphere", clause) &&
            glint_describe_find(d, &material, &o->material) &&
+           glint_describe_skin(d, o, clause[2].place) &&
            (set_turn(o->turn, turn, turn[3]) ||
             glint_text_fail(&d->text, clause[3].place, NO_AXIS));
 }
@@ -168,7 +169,7 @@ bool glint_describe_triangle(struct glint_describer *d)
         return false;
     *to = t;
     o->n_triangles = 1;
-    return true;
+    return glint_describe_skin(d, o, clause[1].place);
 }
 
 bool glint_describe_plane(struct glint_describer *d)
@@ -194,7 +195,8 @@ bool glint_describe_plane(struct glint_describer *d)
             "a plane has a material or is a catcher%s",
             clause[2].place.line ? ", not both" : "");
     return !clause[2].place.line ||
-           (glint_describe_find(d, &material, &o->material));
+           (glint_describe_find(d, &material, &o->material) &&
+            glint_describe_skin(d, o, clause[2].place));
 }
 
 /* -------------------------------------------------------------------- mesh */
@@ -293,7 +295,8 @@ static bool read_mesh(struct glint_describer *d,
         d->status = status == GLINT_OK ? d->status : status;
         good = status == GLINT_OK &&
                find_materials(d, o, mesh, name, word->place, of) &&
-               put_mesh(d, o, mesh, of, scale, word->place);
+               put_mesh(d, o, mesh, of, scale, word->place) &&
+               glint_describe_skin(d, o, word->place);
         if (status == GLINT_OK)
             free(mesh->triangle);
     }

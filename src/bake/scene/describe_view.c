@@ -30,7 +30,6 @@ static bool read_word(struct glint_describer *d, const char *line,
                       const char *list, const char *const *words, int *index)
 {
     const struct glint_word word = glint_text_next_word(&d->text);
-    const char *const instead = glint_not_built(&word);
     char quote[GLINT_QUOTE_BYTES];
 
     for (*index = 0; words[*index]; ++*index)
@@ -39,9 +38,6 @@ static bool read_word(struct glint_describer *d, const char *line,
     if (!word.length)
         return glint_text_fail(&d->text, word.place, "%s needs %s", line, list);
     glint_word_quote(&word, quote);
-    if (instead)
-        return glint_text_fail(&d->text, word.place,
-                               "'%s' is not built yet; %s", quote, instead);
     return glint_text_fail(&d->text, word.place, "%s takes %s, not '%s'", line,
                            list, quote);
 }

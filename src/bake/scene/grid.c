@@ -140,7 +140,10 @@ static bool gather(struct mesher *m, struct glint_scene_bake_report *report)
 
     for (uint32_t i = 0; i < n; i++) {
         m->has_normals |= t[i].has_normals;
-        m->has_uv |= m->scene->material[t[i].material].texture >= 0;
+        const struct glint_described_material *of =
+            &m->scene->material[t[i].material];
+
+        m->has_uv |= of->texture >= 0 || of->is_stone;
     }
     for (m->n_slots = 8; m->n_slots < 6 * n;)
         m->n_slots *= 2;

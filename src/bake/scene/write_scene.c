@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "bake/scene/grid.h"
+#include "bake/scene/skin.h"
 #include "bake/scene/texels.h"
 #include "base/blob.h"
 #include "glint/scene/ward.h"
@@ -24,6 +25,8 @@ struct writer {
     struct glint_scene_header header;
     struct glint_scene_bake_report *report;
     struct glint_error *error;
+    struct glint_scene_mesh *mesh; /* malloc'ed: one for each object that has
+                                      triangles */
 };
 
 /* ------------------------------------------------------------------ lights */
@@ -225,6 +228,8 @@ static bool write_meshes(struct writer *w)
     bool good = mesh != NULL;
     uint32_t n = 0;
 
+    w->mesh = mesh;
+
     for (int i = 0; good && i < s->n_objects; i++)
         if (s->object[i].n_triangles)
             good = glint_grid_write(&w->draft, s, &s->object[i], &w->steps,
@@ -232,7 +237,6 @@ static bool write_meshes(struct writer *w)
     w->header.n_meshes = n;
     if (good)
         w->header.mesh_at = glint_draft_put(&w->draft, mesh, n * sizeof *mesh);
-    free(mesh);
     return good;
 }
 
@@ -290,6 +294,56 @@ static bool write_objects(struct writer *w)
         mesh += w->scene->object[i].n_triangles > 0;
         glint_draft_put(&w->draft, &o, sizeof o);
     }
+    return true;
+}
+
+/* ------------------------------------------------------------------- stones */
+
+/* Writes stones, and the maps of objects that are of them. */
+static bool write_stones(struct writer *w)
+{
+    const struct glint_description *s = w->scene;
+    struct glint_scene_stone stone[GLINT_DESCRIPTION_MAX_STONES];
+    struct glint_scene_skin skin[GLINT_SCENE_MAX_SKINS];
+    uint32_t n = 0, mesh = 0;
+
+    for (int i = 0; i < s->n_materials; i++) {
+        const struct glint_described_material *m = &s->material[i];
+
+        if (!m->is_stone)
+            continue;
+        stone[m->stone] = (struct glint_scene_stone){
+            (uint32_t)i,
+            glint_draft_put(&w->draft, s->stone[m->stone].data,
+                            s->stone[m->stone].bytes),
+            (uint32_t)s->stone[m->stone].bytes, m->fresnel};
+    }
+    for (int i = 0; i < s->n_objects; i++) {
+        const struct glint_described_object *o = &s->object[i];
+        const struct glint_scene_mesh *of =
+            o->n_triangles ? &w->mesh[mesh++] : NULL;
+        const int material = glint_skin_material(s, o);
+
+        if (material < 0)
+            continue;
+        if (n == GLINT_SCENE_MAX_SKINS) {
+            snprintf(w->error->text, sizeof w->error->text,
+                     "more than %d translucent objects", GLINT_SCENE_MAX_SKINS);
+            return false;
+        }
+        skin[n] = (struct glint_scene_skin){
+            .object = (uint32_t)i,
+            .stone = (uint32_t)s->material[material].stone};
+        if (!glint_skin_write(&w->draft, s, o, of, material, &skin[n],
+                              w->error))
+            return false;
+        n++;
+    }
+    w->header.n_stones = (uint32_t)s->n_stones;
+    w->header.stone_at =
+        glint_draft_put(&w->draft, stone, (size_t)s->n_stones * sizeof *stone);
+    w->header.n_skins = n;
+    w->header.skin_at = glint_draft_put(&w->draft, skin, n * sizeof *skin);
     return true;
 }
 
@@ -413,7 +467,8 @@ enum glint_status glint_scene_bake(const struct glint_description *scene,
     write_lights(&w);
     good = write_textures(&w);
     write_materials(&w);
-    good = good && write_meshes(&w) && write_objects(&w);
+    good = good && write_meshes(&w) && write_objects(&w) && write_stones(&w);
+    free(w.mesh);
     set_environment(&w);
     set_motion(&w);
     set_header(&w, name, key);

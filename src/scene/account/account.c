@@ -7,6 +7,7 @@
 
 #include "scene/mesh.h"
 #include "scene/visible.h"
+#include "scene/parts.h"
 
 enum {
     TEXELS = 8, /* of a place: four of each of two levels */

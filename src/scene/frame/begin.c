@@ -4,6 +4,7 @@
  * lights need to know. */
 #include "scene/frame/quick.h"
 #include "scene/visible.h"
+#include "scene/parts.h"
 
 enum { ONE_Q30 = 1 << 30 };
 
@@ -134,7 +135,7 @@ void glint_scene_begin(struct glint_scene *scene,
         scene->cfg.parts.motions->project(scene);
     else /* shells and lines ask for true depths */
         glint_scene_flatten(scene);
-    scene->has_triangles = 0;
+    scene->has_triangles = scene->is_spread = 0;
     if (scene->bins.start)
         scene->cfg.parts.meshes->project(scene, stats);
     for (uint32_t i = 0; i < n; i++)

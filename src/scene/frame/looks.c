@@ -3,6 +3,7 @@
  * How materials look, from one frame to the next: a scene draws by its own copy
  * of the model's tables. */
 #include "scene/model_check.h"
+#include "scene/parts.h"
 #include "scene/state.h"
 
 void glint_scene_copy_looks(struct glint_scene *scene)
@@ -88,6 +89,17 @@ enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
     return GLINT_OK;
 }
 
+/* Returns whether object P may have material MATERIAL: of a stone only one that
+ * it has a map for. */
+static int has_map(const struct glint_scene_model *m,
+                   const struct glint_placed *p, uint32_t material)
+{
+    for (uint32_t k = 0; k < m->header->n_stones; k++)
+        if (m->stone[k].material == material)
+            return p->skin >= 0 && m->skin[p->skin].stone == k;
+    return 1;
+}
+
 enum glint_status glint_scene_set_material(struct glint_scene *scene,
                                            int object, int material)
 {
@@ -100,6 +112,8 @@ enum glint_status glint_scene_set_material(struct glint_scene *scene,
         return GLINT_E_ARGUMENT;
     m = &scene->model.material[material];
     p = &scene->placed[object];
+    if (!has_map(&scene->model, p, (uint32_t)material))
+        return GLINT_E_ARGUMENT;
     p->material = (uint32_t)material;
     p->is_split = m->reflect_q15 || m->pass_q15;
     scene->has_split |= p->is_split;

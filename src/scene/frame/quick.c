@@ -2,6 +2,7 @@
 #include "scene/frame/quick.h"
 
 #include "base/divide.h"
+#include "scene/parts.h"
 
 enum { ONE_Q30 = 1 << 30, LEAST_UP = 17 };
 

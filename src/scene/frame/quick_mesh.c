@@ -108,6 +108,7 @@ static struct glint_quick_triangle *triangle_of(struct glint_scene_worker *w,
                                          ? s->placed[id >> 20].material
                                          : of->material];
     t->is_there = t->material->texture == GLINT_SCENE_NONE &&
+                  s->placed[id >> 20].skin < 0 &&
                   set_corners(s, id >> 20, of, t) &&
                   set_surface(s, id >> 20, of, t);
     return t->is_there ? t : NULL;

@@ -5,6 +5,7 @@
  * what of it nothing covers stays. */
 #include "scene/frame/quick.h"
 #include "scene/visible.h"
+#include "scene/parts.h"
 
 enum { SUMMED = 4 /* samples that light and cover are sums of */ };
 
@@ -431,6 +432,7 @@ void glint_scene_draw(struct glint_scene *scene,
 {
     struct draw d = {.scene = scene, .pass = glint_scene_pass(scene)};
 
+    glint_scene_spread(scene);
     glint_resolve_init(scene->resolve, image, scene->cfg.dither,
                        scene->cfg.sets);
     d.tiles = (struct glint_tiles){.region = scene->bins.region,

@@ -6,6 +6,7 @@
 
 #include "base/real.h"
 #include "scene/mesh.h"
+#include "scene/parts.h"
 #include "scene/ward/send.h"
 
 enum { ONE_Q30 = 1 << 30, LEAST_COSINE_Q30 = 1 << 26 };

@@ -288,6 +288,8 @@ void scene_seal(struct scene_file *s)
     place(s, &h->mesh_at, s->mesh, h->n_meshes * sizeof *s->mesh);
     place(s, &h->object_at, s->object, h->n_objects * sizeof *s->object);
     place(s, &h->ward_at, s->ward, h->n_wards * sizeof *s->ward);
+    place(s, &h->stone_at, s->stone, h->n_stones * sizeof *s->stone);
+    place(s, &h->skin_at, s->skin, h->n_skins * sizeof *s->skin);
     memcpy(s->data, h, sizeof *h);
     glint_blob_seal(s->data, s->bytes);
 }

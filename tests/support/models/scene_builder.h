@@ -25,6 +25,8 @@ struct scene_file {
     struct glint_scene_mesh mesh[SCENE_PARTS];
     struct glint_scene_object object[SCENE_PARTS];
     struct glint_scene_ward ward[4];
+    struct glint_scene_stone stone[4];
+    struct glint_scene_skin skin[4];
     size_t tables; /* bytes at which the six tables begin */
     size_t bytes;
     uint32_t data[SCENE_BYTES / 4];

@@ -62,7 +62,7 @@ static enum glint_status bake(struct baked *b, const char *text,
                               struct glint_error *error)
 {
     const struct glint_description_files files = {NULL, read_mesh, read_picture,
-                                                  NULL, NULL};
+                                                  NULL, NULL,      NULL};
     struct glint_description *scene = malloc(sizeof *scene);
     enum glint_status status;
     const char *reason = "";

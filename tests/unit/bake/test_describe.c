@@ -82,8 +82,8 @@ static enum glint_status read_picture(void *ctx, const char *name,
     return GLINT_OK;
 }
 
-static const struct glint_description_files files = {NULL, read_file,
-                                                     read_picture, NULL, NULL};
+static const struct glint_description_files files = {
+    NULL, read_file, read_picture, NULL, NULL, NULL};
 
 /* Parses the good text with LINE in place of line NUMBER (from 1; 0: none). */
 static enum glint_status parse(struct glint_description *scene, int number,
@@ -264,7 +264,15 @@ static const struct mistake {
      "7:43: alpha must be 0.001 .. 1, not 0.0001"},
     {7, "material red ward specular .9 .9 .9 alpha .1 .1 norm 2010",
      "7:54: a norm is bounded or 1992, not '2010'"},
-    {7, "material red translucent", "7:14: 'translucent' is not built yet"},
+    {7, "material red translucent", "7:25: the stone's file is missing"},
+    {7, "material red translucent a.glint", "7:26: no stone is read here"},
+    {7, "material red translucent a.glint fresnel", "7:41: the name of a"},
+    {7, "material red translucent a.glint fresnel no",
+     "7:42: fresnel is on or off, not 'no'"},
+    {7, "material red translucent a.glint colour 1 1",
+     "7:44: colour takes 3 numbers, here are 2"},
+    {7, "material red translucent a.glint reflect .1",
+     "7:34: material takes coat, specular, alpha, norm, fresnel and colour"},
     {7, "material 7up phong 0 1 0", "7:10: a name is a letter"},
     {8, "material oak phong 0 1 0 texture wod",
      "8:34: no texture 'wod' is defined above this line; did you mean 'wood'"},

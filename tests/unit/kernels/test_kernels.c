@@ -13,6 +13,7 @@
 #include "support/rng.h"
 #include "glint/kernels.h"
 #include "kernels/kernels.h"
+#include "kernels/maps/maps.h"
 #include "kernels/rays/rays.h"
 #include "linux/sets.h"
 #include "image/mix.h"
@@ -495,6 +496,36 @@ static void check_turn(glint_turn_fn *turn, const char *name)
           turn(&t, x, y, out[1], lost[1]));
 }
 
+/* Taps and values are as large as a baked stone may have them: sums are below
+ * 2^31 in any order. */
+static void check_convolve(glint_convolve_fn *convolve, const char *name)
+{
+    enum { TAPS = 32, VALUES = N + 2 * TAPS };
+    int32_t *value = fenced(VALUES * sizeof *value);
+    int32_t *tap = fenced(TAPS * sizeof *tap);
+    int32_t *got = fenced(N * sizeof *got), *want = fenced(N * sizeof *want);
+
+    for (int turn = 0; turn < ROUNDS; turn++) {
+        const int n_taps = 1 + (int)(draw() % TAPS), n = 32 * (1 + turn % 2);
+        const ptrdiff_t stride = 1 + turn % 2;
+
+        for (int i = 0; i < VALUES; i++)
+            value[i] = glint_pair(draw_below(32768), draw_below(32768));
+        for (int k = 0; k < n_taps; k++)
+            tap[k] = glint_pair(draw_below(65536 / (2 * n_taps) < 32768
+                                               ? 65536 / (2 * n_taps)
+                                               : 32768),
+                                draw_below(1024));
+        for (int i = 0; i < N; i++)
+            got[i] = want[i] = draw_below(1 << 20);
+        glint_convolve_c(want, value, stride, tap, n_taps, n);
+        convolve(got, value, stride, tap, n_taps, n);
+        EXPECT_SAME(got, want, N * sizeof *got);
+    }
+    BENCH("convolve 15", name, glint_convolve_c(want, value, 2, tap, 15, 32),
+          convolve(got, value, 2, tap, 15, 32));
+}
+
 static void test_same_bits(void)
 {
     for (int v = 0; v < N_VARIANTS; v++) {
@@ -504,6 +535,7 @@ static void test_same_bits(void)
             continue;
         check_horner(glint_horner_of(variants[v].set), variants[v].name);
         check_turn(glint_turn_of(variants[v].set), variants[v].name);
+        check_convolve(glint_convolve_of(variants[v].set), variants[v].name);
         check_luma(k, variants[v].name);
         check_pairs(k, variants[v].name);
         check_packed(k, variants[v].name);

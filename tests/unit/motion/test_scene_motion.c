@@ -103,8 +103,8 @@ struct drawn {
 static struct drawn *open_text(const char *text, int tile_log2, int samples)
 {
     static const struct tool tool = {.name = "test"};
-    const struct glint_description_files files = {NULL, NULL, NULL, NULL,
-                                                  bake_motion};
+    const struct glint_description_files files = {NULL, NULL,        NULL,
+                                                  NULL, bake_motion, NULL};
     const struct scene_dials dials = {.width = WIDTH,
                                       .height = HEIGHT,
                                       .edge_samples = samples,

@@ -33,8 +33,8 @@ struct outcome {
 
 static void read_text(struct glint_description *scene, const char *text)
 {
-    static const struct glint_description_files none = {NULL, NULL, NULL, NULL,
-                                                        NULL};
+    static const struct glint_description_files none = {NULL, NULL, NULL,
+                                                        NULL, NULL, NULL};
     struct glint_error error = {""};
 
     if (glint_description_parse(scene, text, strlen(text), "x.scene", &none,

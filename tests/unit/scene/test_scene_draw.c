@@ -30,12 +30,10 @@ enum {
 static struct scene_file file;
 static void *mem;
 
-static const struct glint_scene_parts all_parts = {&glint_scene_meshes,
-                                                   &glint_scene_textures,
-                                                   &glint_scene_bounces,
-                                                   &glint_scene_wards,
-                                                   NULL,
-                                                   &glint_scene_motions};
+static const struct glint_scene_parts all_parts = {
+    &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,
+    &glint_scene_wards,  &glint_scene_stones,   NULL,
+    &glint_scene_motions};
 
 static struct glint_scene_config defaults(void)
 {

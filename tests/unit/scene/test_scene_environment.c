@@ -68,8 +68,8 @@ static enum glint_status parse(const char *text,
                                struct glint_description *scene,
                                struct glint_error *error)
 {
-    const struct glint_description_files files = {NULL, NULL, NULL, bake_sky,
-                                                  NULL};
+    const struct glint_description_files files = {NULL,     NULL, NULL,
+                                                  bake_sky, NULL, NULL};
 
     error->text[0] = '\0';
     return glint_description_parse(scene, text, strlen(text), "x.scene", &files,

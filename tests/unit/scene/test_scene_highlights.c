@@ -35,7 +35,8 @@ static struct tool tool = {.name = "test"};
 
 static void open_text(const char *text, const struct scene_dials *with)
 {
-    const struct glint_description_files files = {NULL, NULL, NULL, NULL};
+    const struct glint_description_files files = {NULL, NULL, NULL,
+                                                  NULL, NULL, NULL};
     struct glint_scene_bake_report report;
     struct glint_error error = {""};
     const char *reason = "";

@@ -31,12 +31,10 @@ static struct glint_scene *start(int shadow_points)
 
     glint_scene_defaults(&cfg, SIDE, SIDE);
     cfg.shadow_points = shadow_points;
-    cfg.parts = (struct glint_scene_parts){&glint_scene_meshes,
-                                           &glint_scene_textures,
-                                           &glint_scene_bounces,
-                                           &glint_scene_wards,
-                                           NULL,
-                                           &glint_scene_motions};
+    cfg.parts = (struct glint_scene_parts){
+        &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,
+        &glint_scene_wards,  &glint_scene_stones,   NULL,
+        &glint_scene_motions};
     bytes = glint_scene_bytes(&cfg, &model);
     free(mem);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);

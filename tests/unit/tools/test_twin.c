@@ -43,8 +43,8 @@ static enum glint_status picture(void *ctx, const char *name,
 /* Opens the scene of TEXT. */
 static struct stage *open_text(const char *text)
 {
-    const struct glint_description_files files = {NULL, NULL, picture, NULL,
-                                                  NULL};
+    const struct glint_description_files files = {NULL, NULL, picture,
+                                                  NULL, NULL, NULL};
     struct stage *stage = malloc(sizeof *stage);
     struct glint_error error = {""};
 

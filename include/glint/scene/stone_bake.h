@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint/scene/stone_bake.h - a text on a translucent stone, and a fit of how
+ * that scatters, become a baked stone.
+ *
+ *     glint_stone_parse(&text, data, bytes, "marble.translucent", &error);
+ *     glint_scatter_compute(&text.stone, &watch, &rows, &error);
+ *     glint_scatter_fit(&rows, &text.fit, &watch, &fit);
+ *     glint_stone_bake(&fit, &text, "marble", key, &data, &bytes, &report,
+ *                      &error);
+ *     glint_translucent_open(&stone, data, bytes, &reason);
+ *
+ * Kernels that are no sums of products of rows and columns become such sums, by
+ * the singular values of each. The same fit gives the same bytes. */
+#ifndef GLINT_SCENE_STONE_BAKE_H
+#define GLINT_SCENE_STONE_BAKE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "glint/scene/translucent.h"
+#include "glint/scene/translucent_bake.h"
+#include "glint/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define GLINT_STONE_FILE_BYTES 201
+
+struct glint_stone_text {
+    struct glint_stone stone; /* its mask is the caller's to set */
+    struct glint_scatter_options fit;
+    int code_bits, tap_bits; /* 4 .. 16, 6 .. 16 */
+    /* Names of the mask's picture and of measured rows; empty: there are none.
+     */
+    char mask[GLINT_STONE_FILE_BYTES], rows[GLINT_STONE_FILE_BYTES];
+};
+
+/* What baking did. */
+struct glint_stone_report {
+    double kernel_loss; /* of what kernels have together, the share that their
+                           ranks leave out, root mean square; factored: 0 */
+    int tap_bits;       /* that the largest tap of a column has: sums of many
+                           leave fewer than were asked for */
+};
+
+/* Sets TEXT to a slab of glint_stone_defaults(), clustered, of rank 3, with 8
+ * bits of codes and 12 of taps. */
+void glint_stone_text_defaults(struct glint_stone_text *text);
+
+/* Reads DATA[BYTES], a text as tools/examples/scenes/README.md has it.
+ * GLINT_E_LENS: ERROR says file, line, column and cause. */
+enum glint_status glint_stone_parse(struct glint_stone_text *text,
+                                    const char *data, size_t bytes,
+                                    const char *file_name,
+                                    struct glint_error *error);
+
+/* Bakes FIT, with texel, index and bits of TEXT. NAME is kept in the file, its
+ * first 63 characters of a-z, A-Z, 0-9, '-' and '_', as is KEY. *DATA is
+ * malloc'ed. GLINT_E_ARGUMENT: bits of TEXT, or the rank, are out of range.
+ * GLINT_E_UNSUPPORTED: ERROR says what of FIT no baked stone can have.
+ * GLINT_E_MEMORY. */
+enum glint_status glint_stone_bake(const struct glint_scatter_fit *fit,
+                                   const struct glint_stone_text *text,
+                                   const char *name, uint64_t key,
+                                   unsigned char **data, size_t *bytes,
+                                   struct glint_stone_report *report,
+                                   struct glint_error *error);
+
+/* Sets RADIOSITY[side * side][3] to what the integers of STONE make of
+ * IRRADIANCE, of the same shape, whose largest they take for 32767.
+ * GLINT_E_MEMORY. */
+enum glint_status glint_stone_light(const struct glint_translucent *stone,
+                                    const double *irradiance,
+                                    double *radiosity);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

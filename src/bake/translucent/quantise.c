@@ -1,0 +1,399 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A fit in doubles becomes a baked stone: codes, taps, shifts and gains.
+ *
+ * Of a plane with the largest factor F, f = F code, and rows r and columns k of
+ * one of its ranks, the integers make
+ *
+ *     light -> row taps, over 2^shift -> column taps -> code -> gain
+ *
+ * Rows have taps R r, as many bits as they may have; columns V w, w = k F
+ * 2^shift / R, with one V for all of a channel, as their sums are added up. The
+ * gain is 1 / V. */
+#include "glint/scene/stone_bake.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bake/table/draft.h"
+#include "bake/translucent/separate.h"
+#include "base/blob.h"
+
+enum { CHANNELS = 3 };
+
+struct writer {
+    const struct glint_scatter_fit *fit;
+    const struct glint_stone_text *text;
+    struct glint_error *error;
+    struct glint_stone_report *report;
+    struct glint_draft draft;
+    struct glint_translucent_header header;
+    int rank, texels;
+    double *column, *row; /* [kernels][3][rank][kernel] */
+    double *largest;      /* [3][kernels] of factors */
+    double in[CHANNELS];  /* largest of what gets in; clustered, else 1 */
+};
+
+/* ----------------------------------------------------------------- kernels */
+
+static size_t kernel_at(int p, int c)
+{
+    return (size_t)p * CHANNELS + (size_t)c;
+}
+
+/* Sets rows and columns of all kernels. */
+static bool separate(struct writer *w)
+{
+    const struct glint_scatter_fit *fit = w->fit;
+    const size_t k = (size_t)fit->kernel, n = (size_t)fit->kernels * CHANNELS;
+    const size_t numbers = n * (size_t)w->rank * k;
+    double lost = 0, all = 0;
+
+    w->column = malloc(numbers * sizeof *w->column);
+    w->row = malloc(numbers * sizeof *w->row);
+    if (!w->column || !w->row)
+        return false;
+    if (fit->column) {
+        memcpy(w->column, fit->column, numbers * sizeof *w->column);
+        memcpy(w->row, fit->row, numbers * sizeof *w->row);
+        return true;
+    }
+    for (size_t i = 0; i < n; i++) {
+        struct glint_separated s = {.column =
+                                        w->column + i * (size_t)w->rank * k,
+                                    .row = w->row + i * (size_t)w->rank * k};
+
+        glint_separate(fit->h + i * k * k, fit->kernel, w->rank, &s);
+        lost += s.lost;
+        all += s.all;
+    }
+    w->report->kernel_loss = all > 0 ? sqrt(lost / all) : 0;
+    return true;
+}
+
+/* ------------------------------------------------------------------- codes */
+
+/* Returns factor of texel X in plane P, channel C. */
+static double factor_of(const struct writer *w, int p, int c, int x)
+{
+    const struct glint_scatter_fit *fit = w->fit;
+
+    if (fit->model == GLINT_SCATTER_FACTORED)
+        return fit->f[kernel_at(p, c) * (size_t)w->texels + (size_t)x];
+    if (fit->model == GLINT_SCATTER_CLUSTERED && fit->cluster[x] != p)
+        return 0;
+    return fit->out[CHANNELS * (size_t)x + (size_t)c];
+}
+
+/* Appends N codes, VALUE[i] of MOST being a full one of BITS without the sign.
+ */
+static bool put_codes(struct writer *w, const double *value, int n, double most,
+                      int bits)
+{
+    const size_t bytes = w->header.code_bits > 8 ? 2 : 1;
+    const double full = most > 0 ? (double)((1L << bits) - 1) / most : 0;
+    uint8_t *code = malloc((size_t)n * bytes);
+
+    for (int i = 0; code && i < n; i++) {
+        const long whole = lrint(value[i] * full);
+        const uint16_t wide = (uint16_t)whole;
+
+        code[(size_t)i * bytes] = (uint8_t)whole;
+        if (bytes == 2)
+            memcpy(code + 2 * (size_t)i, &wide, 2);
+    }
+    if (code)
+        glint_draft_put(&w->draft, code, (size_t)n * bytes);
+    free(code);
+    return code != NULL;
+}
+
+/* Writes the factors of channel C; of clusters each texel has that of its own.
+ */
+static bool put_factors(struct writer *w, int c, double *value)
+{
+    const bool is_factored = w->fit->model == GLINT_SCATTER_FACTORED;
+    const int bits = w->text->code_bits - is_factored;
+    double most[GLINT_SCATTER_MAX_TERMS] = {0};
+
+    for (int p = 0; p < w->fit->kernels; p++) {
+        for (int x = 0; x < w->texels; x++) {
+            value[x] = factor_of(w, p, c, x);
+            most[p] = fmax(most[p], fabs(value[x]));
+        }
+        w->largest[c * w->fit->kernels + p] = most[p];
+        if (is_factored && !put_codes(w, value, w->texels, most[p], bits))
+            return false;
+    }
+    if (is_factored)
+        return true;
+    for (int x = 0; x < w->texels; x++) {
+        const int p = w->fit->cluster ? w->fit->cluster[x] : 0;
+
+        value[x] = most[p] > 0 ? factor_of(w, p, c, x) / most[p] : 0;
+    }
+    return put_codes(w, value, w->texels, 1, bits);
+}
+
+static bool put_in(struct writer *w, int c, double *value)
+{
+    double most = 0;
+
+    for (int x = 0; x < w->texels; x++) {
+        value[x] = w->fit->in[CHANNELS * (size_t)x + (size_t)c];
+        most = fmax(most, value[x]);
+    }
+    w->in[c] = most * ldexp(1, w->text->code_bits) /
+               ((double)((1L << w->text->code_bits) - 1));
+    return put_codes(w, value, w->texels, most, w->text->code_bits);
+}
+
+static bool write_codes(struct writer *w)
+{
+    double *value = malloc((size_t)w->texels * sizeof *value);
+    bool good = value != NULL;
+
+    w->header.code_at = (uint32_t)w->draft.bytes;
+    for (int c = 0; good && c < CHANNELS; c++)
+        good = put_factors(w, c, value);
+    for (int c = 0; good && c < CHANNELS; c++) {
+        w->in[c] = 1;
+        if (w->fit->model == GLINT_SCATTER_CLUSTERED)
+            good = put_in(w, c, value);
+    }
+    free(value);
+    if (w->fit->model == GLINT_SCATTER_CLUSTERED)
+        w->header.cluster_at =
+            glint_draft_put(&w->draft, w->fit->cluster, (size_t)w->texels);
+    return good;
+}
+
+/* -------------------------------------------------------------------- taps */
+
+static double largest(const double *x, int n)
+{
+    double most = 0;
+
+    for (int k = 0; k < n; k++)
+        most = fmax(most, fabs(x[k]));
+    return most;
+}
+
+static double sum(const double *x, int n)
+{
+    double all = 0;
+
+    for (int k = 0; k < n; k++)
+        all += fabs(x[k]);
+    return all;
+}
+
+/* Returns the largest factor for taps of which the largest is MOST and N sum to
+ * ALL, at most GLINT_TRANSLUCENT_MOST_TAPS when they are rounded; 0: they are
+ * all 0. */
+static double scale_of(const struct writer *w, double most, double all, int n)
+{
+    const double tap = (double)((1L << (w->text->tap_bits - 1)) - 1);
+
+    return most > 0 ? fmin(tap / most,
+                           (GLINT_TRANSLUCENT_MOST_TAPS - n / 2. - 1) / all)
+                    : 0;
+}
+
+/* Rounds TAP[N] times SCALE; returns the sum of their magnitudes. */
+static long round_taps(const double *tap, int n, double scale, int16_t *to)
+{
+    long all = 0;
+
+    for (int k = 0; k < n; k++) {
+        to[k] = (int16_t)lrint(tap[k] * scale);
+        all += labs(to[k]);
+    }
+    return all;
+}
+
+/* Sets the taps TO[kernels][rank][2][kernel] and shifts of channel C. */
+static bool set_taps(struct writer *w, int c, int16_t *to, uint32_t *shift)
+{
+    const struct glint_scatter_fit *fit = w->fit;
+    const int k = fit->kernel, n = fit->kernels * w->rank;
+    const int bits =
+        w->text->code_bits - (fit->model == GLINT_SCATTER_FACTORED);
+    double most = 0, all = 0, scale;
+
+    for (int i = 0; i < n; i++) {
+        const size_t at = (kernel_at(i / w->rank, c) * (size_t)w->rank +
+                           (size_t)(i % w->rank)) *
+                          (size_t)k;
+        const double *row = w->row + at;
+        double *column = w->column + at;
+        const double factor = w->largest[c * fit->kernels + i / w->rank] *
+                              ldexp(1, bits) / (double)((1L << bits) - 1);
+        const double rows = scale_of(w, largest(row, k), sum(row, k), k);
+        const long taps = round_taps(row, k, rows, to + 2 * (ptrdiff_t)i * k);
+
+        while (1L << shift[i] < taps)
+            shift[i]++;
+        for (int j = 0; j < k; j++)
+            column[j] *= rows > 0 ? factor * ldexp(1, (int)shift[i]) / rows : 0;
+        most = fmax(most, largest(column, k));
+        all += sum(column, k);
+    }
+    scale = scale_of(w, most, all, n * k);
+    for (int i = 0; i < n; i++)
+        round_taps(w->column + (kernel_at(i / w->rank, c) * (size_t)w->rank +
+                                (size_t)(i % w->rank)) *
+                                   (size_t)k,
+                   k, scale, to + (2 * (ptrdiff_t)i + 1) * k);
+    if (scale > 0)
+        w->header.gain[c] = glint_real_of(w->in[c] / scale);
+    w->report->tap_bits = (int)fmin(
+        w->report->tap_bits, scale > 0 ? floor(log2(most * scale)) + 2 : 16);
+    return scale == 0 || w->in[c] < scale;
+}
+
+static bool write_taps(struct writer *w)
+{
+    const size_t n = (size_t)w->fit->kernels * (size_t)w->rank;
+    const size_t k = 2 * (size_t)w->fit->kernel;
+    int16_t *tap = calloc(CHANNELS * n, k * sizeof *tap);
+    uint32_t *shift = calloc(CHANNELS * n, sizeof *shift);
+    bool good = tap && shift;
+
+    for (int c = 0; good && c < CHANNELS; c++)
+        if (!set_taps(w, c, tap + (size_t)c * n * k, shift + (size_t)c * n)) {
+            snprintf(w->error->text, sizeof w->error->text,
+                     "the stone would make more light than falls on it");
+            good = false;
+        }
+    if (good) {
+        w->header.tap_at =
+            glint_draft_put(&w->draft, tap, CHANNELS * n * k * sizeof *tap);
+        w->header.shift_at =
+            glint_draft_put(&w->draft, shift, CHANNELS * n * sizeof *shift);
+    }
+    free(tap);
+    free(shift);
+    return good;
+}
+
+/* ----------------------------------------------------------------- surface */
+
+/* Returns the share of light that passes a surface of INDEX: unpolarised, as
+ * Fresnel has it. */
+static double transmit(double index, double cosine)
+{
+    const double g = sqrt(index * index - 1 + cosine * cosine);
+    const double across = (cosine - g) / (cosine + g);
+    const double along =
+        (index * index * cosine - g) / (index * index * cosine + g);
+
+    if (!(cosine > 0))
+        return 0;
+    return 1 - (across * across + along * along) / 2;
+}
+
+static void write_surface(struct writer *w)
+{
+    enum { N = GLINT_TRANSLUCENT_COSINES, FINE = 4096 };
+    uint16_t table_q15[N + 1];
+    double mean = 0;
+
+    for (int i = 0; i <= N; i++)
+        table_q15[i] = (uint16_t)lrint(
+            0x1p15 * transmit(w->text->stone.index, (double)i / N));
+    for (int i = 0; i < FINE; i++)
+        mean += 2 * (i + .5) / FINE *
+                transmit(w->text->stone.index, (i + .5) / FINE) / FINE;
+    w->header.transmit_at =
+        glint_draft_put(&w->draft, table_q15, sizeof table_q15);
+    w->header.mean_transmit_q15 = (int32_t)lrint(0x1p15 * mean);
+}
+
+/* ------------------------------------------------------------------- whole */
+
+static bool is_in_range(const struct glint_scatter_fit *fit,
+                        const struct glint_stone_text *text)
+{
+    return text->code_bits >= 4 && text->code_bits <= 16 &&
+           text->tap_bits >= 6 && text->tap_bits <= 16 &&
+           text->stone.texel_mm >= .001 && text->stone.texel_mm <= 1000 &&
+           text->stone.index >= 1 && text->stone.index <= 3 &&
+           text->fit.rank >= 1 &&
+           text->fit.rank <= GLINT_TRANSLUCENT_MOST_RANK && fit->kernels >= 1 &&
+           fit->kernels <= GLINT_TRANSLUCENT_MOST_PLANES;
+}
+
+static bool set_header(struct writer *w, const char *name, uint64_t key)
+{
+    struct glint_translucent_header *h = &w->header;
+    int log2 = 0;
+
+    while (1 << log2 < w->fit->side)
+        log2++;
+    if (1 << log2 != w->fit->side || log2 < GLINT_TRANSLUCENT_LEAST_LOG2 ||
+        log2 > GLINT_TRANSLUCENT_MOST_LOG2) {
+        snprintf(w->error->text, sizeof w->error->text,
+                 "a baked stone has 32, 64, 128 or 256 texels each way, not %d",
+                 w->fit->side);
+        return false;
+    }
+    h->magic = GLINT_TRANSLUCENT_MAGIC;
+    h->version = GLINT_TRANSLUCENT_VERSION;
+    h->variant =
+        w->fit->model == GLINT_SCATTER_FACTORED    ? GLINT_TRANSLUCENT_FACTORED
+        : w->fit->model == GLINT_SCATTER_CLUSTERED ? GLINT_TRANSLUCENT_CLUSTERED
+                                                   : GLINT_TRANSLUCENT_ALBEDO;
+    h->key[0] = (uint32_t)key;
+    h->key[1] = (uint32_t)(key >> 32);
+    glint_draft_name(h->name, name, "stone");
+    h->side_log2 = (uint32_t)log2;
+    h->kernel = (uint32_t)w->fit->kernel;
+    h->n_planes = (uint32_t)w->fit->kernels;
+    h->rank = (uint32_t)w->rank;
+    h->texel_um = (uint32_t)lrint(1000 * w->text->stone.texel_mm);
+    h->index_q16 = (uint32_t)lrint(0x1p16 * w->text->stone.index);
+    h->code_bits = (uint32_t)w->text->code_bits;
+    h->tap_bits = (uint32_t)w->text->tap_bits;
+    return true;
+}
+
+enum glint_status glint_stone_bake(const struct glint_scatter_fit *fit,
+                                   const struct glint_stone_text *text,
+                                   const char *name, uint64_t key,
+                                   unsigned char **data, size_t *bytes,
+                                   struct glint_stone_report *report,
+                                   struct glint_error *error)
+{
+    struct writer w = {.fit = fit,
+                       .text = text,
+                       .error = error,
+                       .report = report,
+                       .rank = fit->column ? fit->rank : text->fit.rank,
+                       .texels = fit->side * fit->side};
+    bool good;
+
+    *report = (struct glint_stone_report){0, 16};
+    error->text[0] = '\0';
+    if (!is_in_range(fit, text))
+        return GLINT_E_ARGUMENT;
+    w.largest = malloc(CHANNELS * (size_t)fit->kernels * sizeof *w.largest);
+    glint_draft_put(&w.draft, NULL, sizeof w.header);
+    good = w.largest && set_header(&w, name, key) && separate(&w) &&
+           write_codes(&w) && write_taps(&w);
+    write_surface(&w);
+    glint_draft_amend(&w.draft, 0, &w.header, sizeof w.header);
+    free(w.column);
+    free(w.row);
+    free(w.largest);
+    if (!good || w.draft.out_of_memory) {
+        free(w.draft.data);
+        return error->text[0] ? GLINT_E_UNSUPPORTED : GLINT_E_MEMORY;
+    }
+    glint_blob_seal(w.draft.data, w.draft.bytes);
+    *data = w.draft.data;
+    *bytes = w.draft.bytes;
+    return GLINT_OK;
+}

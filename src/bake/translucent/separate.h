@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A kernel as a sum of products of a column and a row: its largest singular
+ * values, by rotations of pairs of its columns (one-sided Jacobi). */
+#ifndef GLINT_BAKE_TRANSLUCENT_SEPARATE_H
+#define GLINT_BAKE_TRANSLUCENT_SEPARATE_H
+
+struct glint_separated {
+    double *column, *row; /* [rank][n]; product r is column[r][v] row[r][u] */
+    double all, lost; /* squares of all entries, and of what the products leave
+                         out, summed */
+};
+
+/* Sets TO to RANK products for KERNEL[N][N], N at most
+ * GLINT_SCATTER_MAX_KERNEL; those beyond N are 0. Rows are units. */
+void glint_separate(const double *kernel, int n, int rank,
+                    struct glint_separated *to);
+
+#endif

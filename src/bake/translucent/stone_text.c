@@ -1,0 +1,342 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Reads the text of a translucent stone line by line. */
+#include <string.h>
+
+#include "bake/scene/clauses.h"
+#include "bake/scene/near.h"
+#include "glint/scene/stone_bake.h"
+
+enum { MOST_STONES = 2 };
+
+struct reader {
+    struct glint_text text;
+    struct glint_stone_text *to;
+    char name[MOST_STONES][32];
+    int n_stones;
+    bool has_model, has_planes; /* lines on them were read */
+    bool is_turned;             /* the pattern has its second stone first */
+    struct glint_text_place pattern;
+};
+
+void glint_stone_text_defaults(struct glint_stone_text *text)
+{
+    memset(text, 0, sizeof *text);
+    glint_stone_defaults(&text->stone);
+    text->stone.pattern = GLINT_STONE_EVEN;
+    glint_scatter_defaults(&text->fit, GLINT_SCATTER_CLUSTERED);
+    text->fit.rank = 3;
+    text->code_bits = 8;
+    text->tap_bits = 12;
+}
+
+static bool read_integer(struct reader *r, const char *what, int min, int max,
+                         int *value)
+{
+    struct glint_text_place place;
+    const struct glint_text_range range = {what, min, max};
+    double x;
+
+    if (!glint_text_value(&r->text, &range, &x, &place))
+        return false;
+    *value = (int)x;
+    return (double)*value == x ||
+           glint_text_fail(&r->text, place, "%s takes a whole number", what);
+}
+
+static bool read_number(struct reader *r, const char *what, double min,
+                        double max, double *value)
+{
+    return glint_numbers_read(&r->text, what, 1, min, max, value);
+}
+
+static bool read_size(struct reader *r)
+{
+    struct glint_text at = r->text;
+    const struct glint_text_place place = glint_text_next_word(&at).place;
+    int *side = &r->to->stone.side;
+
+    return read_integer(r, "size", 32, 256, side) &&
+           ((*side & (*side - 1)) == 0 ||
+            glint_text_fail(&r->text, place,
+                            "size takes 32, 64, 128 or 256, not %d", *side));
+}
+
+static bool read_kernel(struct reader *r)
+{
+    struct glint_text at = r->text;
+    const struct glint_text_place place = glint_text_next_word(&at).place;
+    int *kernel = &r->to->stone.kernel;
+
+    return read_integer(r, "kernel", 1, GLINT_SCATTER_MAX_KERNEL, kernel) &&
+           (*kernel % 2 == 1 ||
+            glint_text_fail(&r->text, place,
+                            "kernel takes an odd number, not %d", *kernel));
+}
+
+/* Sets INDEX to the stone that WORD names. */
+static bool find_stone(struct reader *r, const struct glint_word *word,
+                       int *index)
+{
+    struct glint_near near = glint_near_begin(*word);
+    char quote[GLINT_QUOTE_BYTES], mean[GLINT_NEAR_BYTES];
+
+    if (!word->length)
+        return glint_text_fail(&r->text, word->place,
+                               "the name of a stone is missing");
+    for (*index = 0; *index < r->n_stones; ++*index) {
+        if (glint_word_is(word, r->name[*index]))
+            return true;
+        glint_near_offer(&near, r->name[*index]);
+    }
+    return glint_text_fail(
+        &r->text, word->place, "no stone '%s' is defined above this line%s",
+        glint_word_quote(word, quote), glint_near_text(&near, mean));
+}
+
+static bool read_stone(struct reader *r)
+{
+    struct glint_text at = r->text;
+    const struct glint_word word = glint_text_next_word(&at);
+    struct glint_stone_material *m = &r->to->stone.material[r->n_stones];
+    struct glint_clause clause[] = {
+        {"scatter", 3, 1e-3, 1e3, .value = m->scatter, .required = true},
+        {"absorb", 3, 0, 1e3, .value = m->absorb, .required = true},
+        {0}};
+
+    if (r->n_stones == MOST_STONES)
+        return glint_text_fail(&r->text, word.place, "more than %d stones",
+                               MOST_STONES);
+    if (!glint_name_read(&r->text, "stone", r->name[r->n_stones],
+                         sizeof r->name[0]))
+        return false;
+    for (int i = 0; i < r->n_stones; i++)
+        if (strcmp(r->name[i], r->name[r->n_stones]) == 0)
+            return glint_text_fail(&r->text, word.place,
+                                   "a stone of this name is already defined");
+    if (!glint_clauses_read(&r->text, "stone", clause))
+        return false;
+    r->n_stones++;
+    return true;
+}
+
+static bool read_file(struct reader *r, const char *what,
+                      const struct glint_word *word,
+                      char file[GLINT_STONE_FILE_BYTES])
+{
+    if (!word->length)
+        return glint_text_fail(&r->text, word->place,
+                               "the name of the %s is missing", what);
+    memcpy(file, word->start, (size_t)word->length);
+    file[word->length] = '\0';
+    return true;
+}
+
+/* Reads the two stones at the end of a pattern's line. */
+static bool read_pair(struct reader *r)
+{
+    int index[2];
+
+    for (int i = 0; i < 2; i++) {
+        const struct glint_word word = glint_text_next_word(&r->text);
+
+        if (!find_stone(r, &word, &index[i]))
+            return false;
+        if (i && index[0] == index[1])
+            return glint_text_fail(&r->text, word.place,
+                                   "a pattern takes two different stones");
+    }
+    r->is_turned = index[0] == 1;
+    return true;
+}
+
+static bool read_pattern(struct reader *r)
+{
+    struct glint_stone *s = &r->to->stone;
+    const struct glint_word word = glint_text_next_word(&r->text);
+    char quote[GLINT_QUOTE_BYTES];
+    int seed;
+
+    r->pattern = word.place;
+    if (glint_word_is(&word, "chess")) {
+        s->pattern = GLINT_STONE_CHESS;
+        return read_integer(r, "chess", 1, 256, &s->fields) && read_pair(r);
+    }
+    if (glint_word_is(&word, "veins")) {
+        s->pattern = GLINT_STONE_VEINS;
+        if (!read_integer(r, "veins", 0, 1 << 30, &seed))
+            return false;
+        s->seed = (uint32_t)seed;
+        return read_pair(r);
+    }
+    if (glint_word_is(&word, "image")) {
+        const struct glint_word file = glint_text_next_word(&r->text);
+
+        s->pattern = GLINT_STONE_MASK;
+        return read_file(r, "mask", &file, r->to->mask) && read_pair(r);
+    }
+    return glint_text_fail(&r->text, word.place,
+                           "a pattern is chess N A B, veins SEED A B or image "
+                           "MASK A B%s%s%s",
+                           word.length ? ", not '" : "",
+                           word.length ? glint_word_quote(&word, quote) : "",
+                           word.length ? "'" : "");
+}
+
+static bool read_model(struct reader *r)
+{
+    static const char *const names[] = {"clustered", "factored", "albedo"};
+    struct glint_scatter_options *fit = &r->to->fit;
+    const struct glint_word word = glint_text_next_word(&r->text);
+    const int rank = fit->rank, kernels = fit->kernels;
+    char quote[GLINT_QUOTE_BYTES];
+
+    r->has_model = true;
+    for (int i = 0; i < 3; i++)
+        if (glint_word_is(&word, names[i])) {
+            glint_scatter_defaults(fit, (enum glint_scatter_model)i);
+            fit->rank = rank;
+            if (r->has_planes)
+                fit->kernels = kernels;
+            return true;
+        }
+    return glint_text_fail(&r->text, word.place,
+                           "model takes clustered, factored or albedo%s%s%s",
+                           word.length ? ", not '" : "",
+                           word.length ? glint_word_quote(&word, quote) : "",
+                           word.length ? "'" : "");
+}
+
+static bool read_planes(struct reader *r)
+{
+    r->has_planes = true;
+    return read_integer(r, "planes", 1, GLINT_SCATTER_MAX_TERMS,
+                        &r->to->fit.kernels);
+}
+
+static bool read_rank(struct reader *r)
+{
+    return read_integer(r, "rank", 1, GLINT_TRANSLUCENT_MOST_RANK,
+                        &r->to->fit.rank);
+}
+
+static bool read_bits(struct reader *r)
+{
+    return read_integer(r, "bits", 4, 16, &r->to->code_bits) &&
+           read_integer(r, "bits", 6, 16, &r->to->tap_bits);
+}
+
+static bool read_texel(struct reader *r)
+{
+    return read_number(r, "texel", .01, 100, &r->to->stone.texel_mm);
+}
+
+static bool read_slab(struct reader *r)
+{
+    return read_number(r, "slab", .1, 1000, &r->to->stone.slab_mm);
+}
+
+static bool read_index(struct reader *r)
+{
+    return read_number(r, "index", 1, 3, &r->to->stone.index);
+}
+
+static bool read_data(struct reader *r)
+{
+    const struct glint_word word = glint_text_rest(&r->text);
+
+    return read_file(r, "rows", &word, r->to->rows);
+}
+
+static const struct line {
+    const char *word;
+    bool (*read)(struct reader *);
+    bool many;
+} lines[] = {{"size", read_size, false},       {"texel", read_texel, false},
+             {"kernel", read_kernel, false},   {"slab", read_slab, false},
+             {"index", read_index, false},     {"stone", read_stone, true},
+             {"pattern", read_pattern, false}, {"data", read_data, false},
+             {"model", read_model, false},     {"planes", read_planes, false},
+             {"rank", read_rank, false},       {"bits", read_bits, false}};
+
+enum { N_LINES = sizeof lines / sizeof *lines };
+
+static bool unknown(struct reader *r, const struct glint_word *word)
+{
+    struct glint_near near = glint_near_begin(*word);
+    char quote[GLINT_QUOTE_BYTES], mean[GLINT_NEAR_BYTES];
+
+    for (int i = 0; i < N_LINES; i++)
+        glint_near_offer(&near, lines[i].word);
+    return glint_text_fail(&r->text, word->place, "unknown word '%s'%s",
+                           glint_word_quote(word, quote),
+                           glint_near_text(&near, mean));
+}
+
+static bool read_line(struct reader *r, int first[N_LINES])
+{
+    const struct glint_word word = glint_text_next_word(&r->text);
+    int i = 0;
+
+    if (!word.length)
+        return true;
+    while (i < N_LINES && !glint_word_is(&word, lines[i].word))
+        i++;
+    if (i == N_LINES)
+        return unknown(r, &word);
+    if (first[i] && !lines[i].many)
+        return glint_text_fail(&r->text, word.place,
+                               "a second %s; the first is on line %d",
+                               lines[i].word, first[i]);
+    first[i] = word.place.line;
+    return lines[i].read(r) && glint_line_ends(&r->text, lines[i].word);
+}
+
+/* Checks what lines say together. */
+static bool check(struct reader *r)
+{
+    struct glint_stone_text *t = r->to;
+
+    if (!t->rows[0] && !r->n_stones)
+        return glint_text_fail(&r->text, glint_text_end(&r->text),
+                               "there is no stone: stone NAME scatter R G B "
+                               "absorb R G B, or data ROWS.pfm");
+    if (t->rows[0] && (r->n_stones || r->pattern.line))
+        return glint_text_fail(&r->text, glint_text_end(&r->text),
+                               "measured rows have no stone and no pattern");
+    if (r->n_stones == 2 && !r->pattern.line)
+        return glint_text_fail(&r->text, glint_text_end(&r->text),
+                               "two stones need a pattern: chess N A B, veins "
+                               "SEED A B or image MASK A B");
+    if (t->stone.pattern == GLINT_STONE_CHESS &&
+        t->stone.fields > t->stone.side)
+        return glint_text_fail(&r->text, r->pattern,
+                               "%d fields each way are more than %d texels",
+                               t->stone.fields, t->stone.side);
+    if (t->fit.model == GLINT_SCATTER_ALBEDO)
+        t->fit.kernels = 1;
+    return true;
+}
+
+enum glint_status glint_stone_parse(struct glint_stone_text *text,
+                                    const char *data, size_t bytes,
+                                    const char *file_name,
+                                    struct glint_error *error)
+{
+    struct reader r = {.to = text};
+    int first[N_LINES] = {0};
+    bool good;
+
+    glint_stone_text_defaults(text);
+    good = glint_text_open(&r.text, data, bytes, file_name, error);
+    while (good && glint_text_next_line(&r.text))
+        good = read_line(&r, first);
+    good = good && check(&r);
+    if (good && r.is_turned) {
+        const struct glint_stone_material m = text->stone.material[0];
+
+        text->stone.material[0] = text->stone.material[1];
+        text->stone.material[1] = m;
+    }
+    return good ? GLINT_OK : GLINT_E_LENS;
+}

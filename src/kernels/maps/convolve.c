@@ -1,0 +1,8 @@
+/* SPDX-License-Identifier: MIT */
+#include "kernels/choose.h"
+#include "kernels/maps/maps.h"
+
+glint_convolve_fn *glint_convolve_of(unsigned sets)
+{
+    return BEST_OF(sets, glint_convolve_);
+}

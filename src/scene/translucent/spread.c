@@ -1,0 +1,314 @@
+/* SPDX-License-Identifier: MIT */
+#include "scene/translucent/spread.h"
+
+#include "base/compiler.h"
+#include "base/q.h"
+
+enum {
+    MOST_ROW = GLINT_STRIP + GLINT_TRANSLUCENT_MOST_KERNEL + 1,
+    MOST_VALUE = 32767
+};
+
+struct glint_spread_scratch
+glint_spread_carve(struct glint_arena *arena,
+                   const struct glint_translucent *stone, int height)
+{
+    const size_t kernel = stone->header->kernel;
+    const size_t rows = (size_t)height, all = rows + kernel;
+
+    return (struct glint_spread_scratch){
+        .taps = glint_arena_take(arena, 1, sizeof(struct glint_spread_taps)),
+        .any = glint_arena_take(arena, all, sizeof(int32_t)),
+        .pair = glint_arena_take(arena, all * (GLINT_STRIP + kernel),
+                                 sizeof(int32_t)),
+        .value =
+            glint_arena_take(arena, all / 2 * GLINT_STRIP, sizeof(int32_t)),
+        .sum = glint_arena_take(arena, rows * GLINT_STRIP, sizeof(int32_t)),
+        .total = glint_arena_take(arena, rows * GLINT_STRIP, sizeof(int32_t))};
+}
+
+/* ------------------------------------------------------------------- taps */
+
+/* Returns tap I of TAP[N], counted from the last. */
+static int32_t tap_at(const int16_t *tap, int n, int i)
+{
+    return i < 0 || i >= n ? 0 : tap[n - 1 - i];
+}
+
+static void set_taps(const struct glint_translucent *t, uint32_t i,
+                     struct glint_spread_taps *taps)
+{
+    const int n = (int)t->header->kernel;
+    const int16_t *row = t->tap + 2 * (size_t)i * t->header->kernel;
+    const int16_t *column = row + n;
+
+    taps->n = (n + 1) / 2;
+    taps->shift = (int)t->shift[i];
+    for (int k = 0; k < taps->n; k++) {
+        taps->row[k] =
+            glint_pair(tap_at(row, n, 2 * k), tap_at(row, n, 2 * k + 1));
+        taps->even[k] =
+            glint_pair(tap_at(column, n, 2 * k), tap_at(column, n, 2 * k + 1));
+        taps->odd[k] =
+            glint_pair(tap_at(column, n, 2 * k - 1), tap_at(column, n, 2 * k));
+    }
+}
+
+/* ------------------------------------------------------------------- codes */
+
+/* Codes of a table, from a texel on. */
+struct codes {
+    const int8_t *narrow; /* NULL: they are wide */
+    const int16_t *wide;
+    int is_signed, bits; /* a factor is code / 2^bits */
+};
+
+/* Returns codes of table TABLE, from texel (X, Y) of the map on. */
+static struct codes codes_at(const struct glint_translucent *t, size_t table,
+                             int x, int y)
+{
+    const struct glint_translucent_header *h = t->header;
+    const int log2 = (int)h->side_log2, mask = (1 << log2) - 1;
+    const int is_signed = h->variant == GLINT_TRANSLUCENT_FACTORED;
+    const int bits = (int)h->code_bits - is_signed;
+    const size_t at =
+        (table << 2 * log2) + ((size_t)(y & mask) << log2) + (size_t)(x & mask);
+
+    if (h->code_bits <= 8)
+        return (struct codes){(const int8_t *)t->code + at, NULL, is_signed,
+                              bits};
+    return (struct codes){NULL, (const int16_t *)t->code + at, is_signed, bits};
+}
+
+static inline int32_t code_of(const struct codes *f, int i)
+{
+    if (f->narrow)
+        return f->is_signed ? f->narrow[i] : (uint8_t)f->narrow[i];
+    return f->is_signed ? f->wide[i] : (uint16_t)f->wide[i];
+}
+
+/* ------------------------------------------------------------------- light */
+
+/* Sets VALUE to the light that gets in at columns X .. X + N - 1 of row Y, all
+ * in the map, none beyond a repeat of the stone. It is below 2^15, and so are
+ * its products with codes over 2^bits. */
+static void set_piece(const struct glint_spread *s, int c, int x, int y, int n,
+                      int16_t *value)
+{
+    const int16_t *light = s->light[c] + (ptrdiff_t)y * s->width + x;
+    struct codes in;
+
+    if (!s->stone->cluster) {
+        for (int i = 0; i < n; i++)
+            value[i] = light[i];
+        return;
+    }
+    in = codes_at(s->stone, (size_t)(3 + c), x, y);
+    for (int i = 0; i < n; i++)
+        value[i] =
+            (int16_t)((light[i] * code_of(&in, i) + (1 << (in.bits - 1))) >>
+                      in.bits);
+}
+
+/* Sets VALUE[N] to the light at columns from X on of row Y, which may both lie
+ * outside of the map. Returns 0 if there is none. */
+static int set_row(const struct glint_spread *s, int c, int x, int y, int n,
+                   int16_t *value)
+{
+    const int side = 1 << s->stone->header->side_log2;
+    int done = 0, any = 0;
+
+    if (y < 0 || y >= s->height) {
+        if (!s->is_ball)
+            return 0;
+        y = y < 0 ? -1 - y : 2 * s->height - 1 - y;
+        x += s->width / 2;
+    }
+    for (int i = 0; i < n && !s->is_ball; i++)
+        value[i] = 0;
+    while (done < n) {
+        const int at = x + done;
+        const int more = q_smaller(n - done, side - (at & (side - 1)));
+
+        if (s->is_ball)
+            set_piece(s, c, at & (s->width - 1), y, more, value + done);
+        else if (at >= 0 && at < s->width)
+            set_piece(s, c, at, y, more, value + done);
+        done += more;
+    }
+    for (int i = 0; i < n; i++)
+        any |= value[i];
+    return any;
+}
+
+/* Sets pairs of N rows from Y on, around the strip from X0 on. */
+static void pair_rows(const struct glint_spread *s, int c, int x0, int y,
+                      int n_rows, struct glint_spread_scratch *scratch)
+{
+    const int kernel = (int)s->stone->header->kernel;
+    const int n = GLINT_STRIP + kernel - 1;
+    int16_t value[MOST_ROW];
+
+    for (int i = 0; i < n_rows; i++) {
+        int32_t *pair = scratch->pair + (ptrdiff_t)i * (n + 1);
+
+        scratch->any[i] = set_row(s, c, x0 - kernel / 2, y + i, n, value);
+        if (!scratch->any[i])
+            continue;
+        value[n] = value[n + 1] = 0;
+        for (int k = 0; k <= n; k++)
+            pair[k] = glint_pair(value[k], value[k + 1]);
+    }
+}
+
+/* ------------------------------------------------------------ convolutions */
+
+/* Sets SUM to row I convolved. */
+static void convolve_row(const struct glint_spread *s,
+                         const struct glint_spread_scratch *scratch, int i,
+                         const struct glint_spread_taps *taps,
+                         int32_t sum[GLINT_STRIP])
+{
+    const int stride = GLINT_STRIP + (int)s->stone->header->kernel;
+
+    for (int k = 0; k < GLINT_STRIP; k++)
+        sum[k] = 0;
+    if (scratch->any[i])
+        s->convolve(sum, scratch->pair + (ptrdiff_t)i * stride, 2, taps->row,
+                    taps->n, GLINT_STRIP);
+}
+
+/* Sets the values of TAPS to N pairs of rows, convolved. */
+static void set_values(const struct glint_spread *s,
+                       const struct glint_spread_scratch *scratch,
+                       const struct glint_spread_taps *taps, int n,
+                       int32_t *value)
+{
+    const int shift = taps->shift;
+    const int32_t half = (1 << shift) >> 1;
+
+    for (int i = 0; i < n; i++, value += GLINT_STRIP) {
+        int32_t sum[2][GLINT_STRIP];
+
+        for (int k = 0; k < 2; k++)
+            convolve_row(s, scratch, 2 * i + k, taps, sum[k]);
+        for (int k = 0; k < GLINT_STRIP; k++)
+            value[k] = glint_pair((sum[0][k] + half) >> shift,
+                                  (sum[1][k] + half) >> shift);
+    }
+}
+
+/* Adds columns of values, convolved, to SUM[ROWS]. */
+static void add_columns(const struct glint_spread *s,
+                        const struct glint_spread_taps *taps,
+                        const int32_t *value, int rows, int32_t *sum)
+{
+    for (int y = 0; y < rows; y++)
+        s->convolve(sum + (ptrdiff_t)y * GLINT_STRIP,
+                    value + (ptrdiff_t)(y / 2) * GLINT_STRIP, GLINT_STRIP,
+                    y & 1 ? taps->odd : taps->even, taps->n, GLINT_STRIP);
+}
+
+/* ------------------------------------------------------------------ planes */
+
+/* Returns whether a texel of the strip is in plane P. */
+static int has_plane(const struct glint_spread *s, uint32_t p, int x0, int y0,
+                     int y1)
+{
+    const int log2 = (int)s->stone->header->side_log2, mask = (1 << log2) - 1;
+
+    if (!s->stone->cluster)
+        return 1;
+    for (int y = y0; y < y1; y++)
+        for (int i = 0; i < GLINT_STRIP; i++)
+            if (s->stone->cluster[((y & mask) << log2) + (x0 & mask) + i] == p)
+                return 1;
+    return 0;
+}
+
+/* Adds SUM, of plane P in row Y, times its f, to TOTAL. Sums of all planes are
+ * below 2^31 together in magnitude, so that is TOTAL. */
+static void add_plane(const struct glint_spread *s, int c, uint32_t p, int x0,
+                      int y, const int32_t *sum, int32_t *total)
+{
+    const struct glint_translucent *t = s->stone;
+    const int log2 = (int)t->header->side_log2, mask = (1 << log2) - 1;
+    const size_t table = t->header->variant == GLINT_TRANSLUCENT_FACTORED
+                             ? (size_t)c * t->header->n_planes + p
+                             : (size_t)c;
+    const struct codes f = codes_at(t, table, x0, y);
+    const int32_t half = 1 << (f.bits - 1);
+
+    if (t->cluster) {
+        const uint8_t *of = t->cluster + ((y & mask) << log2) + (x0 & mask);
+
+        for (int i = 0; i < GLINT_STRIP; i++)
+            total[i] = of[i] == p ? ((sum[i] + half) >> f.bits) * code_of(&f, i)
+                                  : total[i];
+    } else if (f.narrow && f.is_signed) {
+        for (int i = 0; i < GLINT_STRIP; i++)
+            total[i] += ((sum[i] + half) >> f.bits) * f.narrow[i];
+    } else {
+        for (int i = 0; i < GLINT_STRIP; i++)
+            total[i] += ((sum[i] + half) >> f.bits) * code_of(&f, i);
+    }
+}
+
+/* Adds plane P to the total. */
+static void spread_plane(const struct glint_spread *s, int c, uint32_t p,
+                         int x0, int y0, int y1,
+                         struct glint_spread_scratch *scratch)
+{
+    const struct glint_translucent_header *h = s->stone->header;
+    const int rows = y1 - y0, n = (rows + (int)h->kernel) / 2;
+
+    for (int i = 0; i < rows * GLINT_STRIP; i++)
+        scratch->sum[i] = 0;
+    for (uint32_t r = 0; r < h->rank; r++) {
+        struct glint_spread_taps *taps = scratch->taps;
+
+        set_taps(s->stone, ((uint32_t)c * h->n_planes + p) * h->rank + r, taps);
+        set_values(s, scratch, taps, n, scratch->value);
+        add_columns(s, taps, scratch->value, rows, scratch->sum);
+    }
+    for (int y = 0; y < rows; y++)
+        add_plane(s, c, p, x0, y0 + y,
+                  scratch->sum + (ptrdiff_t)y * GLINT_STRIP,
+                  scratch->total + (ptrdiff_t)y * GLINT_STRIP);
+}
+
+/* ------------------------------------------------------------------ strips */
+
+/* Sets a row of the map to TOTAL times the gain; what is below 0 is 0. */
+static void finish(const struct glint_spread *s, int c, int x0, int y,
+                   const int32_t *total)
+{
+    const struct glint_real gain = s->stone->header->gain[c];
+    const int down = -gain.exponent;
+    int16_t *map = s->map[c] + (ptrdiff_t)y * s->width + x0;
+
+    for (int i = 0; i < GLINT_STRIP; i++) {
+        const int64_t m = total[i] > 0 && down < 62
+                              ? q_shift((int64_t)total[i] * gain.mantissa, down)
+                              : 0;
+
+        map[i] = (int16_t)q_clamp_sat(m, 0, MOST_VALUE);
+    }
+}
+
+void glint_spread_strip(const struct glint_spread *spread, int c, int x0,
+                        int y0, int y1, struct glint_spread_scratch *scratch)
+{
+    const struct glint_translucent_header *h = spread->stone->header;
+    const int kernel = (int)h->kernel, rows = y1 - y0;
+
+    for (int i = 0; i < rows * GLINT_STRIP; i++)
+        scratch->total[i] = 0;
+    pair_rows(spread, c, x0, y0 - kernel / 2, (rows + kernel) & ~1, scratch);
+    for (uint32_t p = 0; p < h->n_planes; p++)
+        if (has_plane(spread, p, x0, y0, y1))
+            spread_plane(spread, c, p, x0, y0, y1, scratch);
+    for (int y = 0; y < rows; y++)
+        finish(spread, c, x0, y0 + y,
+               scratch->total + (ptrdiff_t)y * GLINT_STRIP);
+}

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Spreads the light on a map of texels as a baked stone does
+ * (glint/scene/translucent.h), strip by strip.
+ *
+ *   in   light that gets in, 0 .. 32767 of any unit; the stone
+ *   out  light that comes out, 0 .. 32767 of that unit, where it saturates
+ *
+ * A strip is GLINT_STRIP columns of one channel. For each plane its rows are
+ * convolved, two at a time, and then its columns; what lies between stays in
+ * the cache. */
+#ifndef GLINT_SCENE_TRANSLUCENT_SPREAD_H
+#define GLINT_SCENE_TRANSLUCENT_SPREAD_H
+
+#include "base/arena.h"
+#include "glint/scene/translucent.h"
+#include "kernels/maps/maps.h"
+
+enum { GLINT_STRIP = 32 };
+
+struct glint_spread {
+    const struct glint_translucent *stone;
+    glint_convolve_fn *convolve;
+    /* Of the map, powers of two; the stone is repeated over it. Of a ball WIDTH
+     * is once around, and rows go on beyond the poles; else the map is dark
+     * outside. */
+    int width, height;
+    int is_ball;
+    int16_t *light[3]; /* [height][width] */
+    int16_t *map[3];   /* [height][width] */
+};
+
+enum { GLINT_SPREAD_PAIRS = (GLINT_TRANSLUCENT_MOST_KERNEL + 1) / 2 };
+
+/* Taps of one rank of a plane, as pairs. A convolution takes them from the last
+ * on; what is not there is 0. */
+struct glint_spread_taps {
+    int n, shift;
+    int32_t row[GLINT_SPREAD_PAIRS];
+    /* Column: beginning with the first of a pair of rows, or the second. */
+    int32_t even[GLINT_SPREAD_PAIRS], odd[GLINT_SPREAD_PAIRS];
+};
+
+/* Of one worker. */
+struct glint_spread_scratch {
+    struct glint_spread_taps *taps; /* of one rank */
+    int32_t *any;   /* [height + kernel]: whether a row has light */
+    int32_t *pair;  /* [height + kernel][GLINT_STRIP + kernel]: light that gets
+                       in, as pairs of neighbours */
+    int32_t *value; /* [(height + kernel) / 2][GLINT_STRIP] pairs of rows */
+    int32_t *sum;   /* [height][GLINT_STRIP]: of a plane */
+    int32_t *total; /* [height][GLINT_STRIP]: of all planes, by f */
+};
+
+/* Takes the scratch of one worker for STONE on maps of HEIGHT rows. */
+struct glint_spread_scratch
+glint_spread_carve(struct glint_arena *arena,
+                   const struct glint_translucent *stone, int height);
+
+/* Sets rows Y0 .. Y1 - 1 of the map of channel C in the strip from column X0
+ * on. */
+void glint_spread_strip(const struct glint_spread *spread, int c, int x0,
+                        int y0, int y1, struct glint_spread_scratch *scratch);
+
+#endif

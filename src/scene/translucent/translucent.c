@@ -1,0 +1,222 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Checks a baked stone once, so that spreading light need not check anything.
+ */
+#include "glint/scene/translucent.h"
+
+#include "base/blob.h"
+#include "base/compiler.h"
+#include "base/q.h"
+
+/* The file is used in place: its layout is what this struct is. */
+STATIC_ASSERT(sizeof(struct glint_translucent_header) == 172);
+
+/* The header begins as that of every baked file does. */
+#define SAME_PLACE(field)                                             \
+    STATIC_ASSERT(offsetof(struct glint_translucent_header, field) == \
+                  offsetof(struct glint_blob_header, field))
+SAME_PLACE(magic);
+SAME_PLACE(version);
+SAME_PLACE(bytes);
+SAME_PLACE(crc32);
+SAME_PLACE(variant);
+SAME_PLACE(key);
+SAME_PLACE(name);
+
+enum { CHANNELS = 3, MOST_SHIFT = 16, LEAST_GAIN = -200 };
+
+static const char outside[] = "a table lies outside of the stone";
+
+static const char *const fault_text[GLINT_BLOB_FAULTS] = {
+    [GLINT_BLOB_UNALIGNED] = "the stone is not aligned to 4 bytes",
+    [GLINT_BLOB_FOREIGN] = "this is no baked stone",
+    [GLINT_BLOB_NEWER] = "the stone was baked by a newer glint",
+    [GLINT_BLOB_NO_VERSION] = "no glint ever baked stones of this version",
+    [GLINT_BLOB_OLDER] = "the stone was baked by an older glint: bake it again",
+    [GLINT_BLOB_TRUNCATED] = "the stone is truncated",
+    [GLINT_BLOB_LONGER] = "the stone goes on after its end",
+    [GLINT_BLOB_DAMAGED] = "the checksum is wrong: the stone is damaged",
+    [GLINT_BLOB_NAME_CONTROL] = "the name has a control character",
+    [GLINT_BLOB_NAME_FOREIGN] = "the name has a byte beyond ASCII",
+    [GLINT_BLOB_NAME_ENDLESS] = "the name does not end",
+    [GLINT_BLOB_NAME_EMPTY] = "the name is empty"};
+
+static int is_between(int64_t x, int64_t lo, int64_t hi)
+{
+    return x >= lo && x <= hi;
+}
+
+static const char *check_header(const struct glint_translucent_header *h)
+{
+    if (h->variant > GLINT_TRANSLUCENT_ALBEDO)
+        return "the stone's model is unknown";
+    if (!is_between(h->side_log2, GLINT_TRANSLUCENT_LEAST_LOG2,
+                    GLINT_TRANSLUCENT_MOST_LOG2) ||
+        !is_between(h->kernel, 1, GLINT_TRANSLUCENT_MOST_KERNEL) ||
+        h->kernel % 2 == 0)
+        return "the stone's side or kernel is out of range";
+    if (!is_between(h->n_planes, 1,
+                    h->variant == GLINT_TRANSLUCENT_ALBEDO
+                        ? 1
+                        : GLINT_TRANSLUCENT_MOST_PLANES) ||
+        !is_between(h->rank, 1, GLINT_TRANSLUCENT_MOST_RANK))
+        return "the stone has too many planes or ranks";
+    if (!is_between(h->texel_um, 1, 1000000) ||
+        !is_between(h->index_q16, 1 << 16, 3 << 16))
+        return "the stone's texel or index is out of range";
+    if (!is_between(h->code_bits, 4, 16) || !is_between(h->tap_bits, 6, 16))
+        return "the stone's codes have too few or too many bits";
+    if (!is_between(h->mean_transmit_q15, 0, 1 << 15))
+        return "the stone's transmittance is not 0 .. 1";
+    for (int c = 0; c < CHANNELS; c++)
+        if (h->gain[c].mantissa != 0 &&
+            (h->gain[c].mantissa < 1 << 30 ||
+             !is_between(h->gain[c].exponent, LEAST_GAIN, -31)))
+            return "the stone's gain is not normalised, or not 0 .. 1";
+    return NULL;
+}
+
+/* Returns whether magnitudes of N taps are below LIMIT; adds them to SUM. */
+static int add_taps(const int16_t *tap, uint32_t n, int32_t limit,
+                    uint32_t *sum)
+{
+    int fits = 1;
+
+    for (uint32_t k = 0; k < n; k++) {
+        const uint32_t size = (uint32_t)q_magnitude(tap[k]);
+
+        fits &= size < (uint32_t)limit;
+        *sum += size;
+    }
+    return fits;
+}
+
+/* Adds up all taps: what they make of values within +-32767 fits. */
+static const char *check_taps(const struct glint_translucent *t)
+{
+    const struct glint_translucent_header *h = t->header;
+    const uint32_t n = h->n_planes * h->rank;
+    const int32_t limit = 1 << (h->tap_bits - 1);
+    const int16_t *tap = t->tap;
+
+    for (uint32_t c = 0; c < CHANNELS; c++) {
+        uint32_t columns = 0;
+
+        for (uint32_t i = 0; i < n; i++, tap += 2 * h->kernel) {
+            const uint32_t shift = t->shift[c * n + i];
+            uint32_t row = 0;
+
+            if (!add_taps(tap, h->kernel, limit, &row) ||
+                !add_taps(tap + h->kernel, h->kernel, limit, &columns))
+                return "a tap of the stone has too many bits";
+            if (shift > MOST_SHIFT || row > UINT32_C(1) << shift ||
+                row > GLINT_TRANSLUCENT_MOST_TAPS)
+                return "the rows of a plane of the stone do not fit";
+        }
+        if (columns > GLINT_TRANSLUCENT_MOST_TAPS)
+            return "the columns of a plane of the stone do not fit";
+    }
+    return NULL;
+}
+
+/* Returns whether a code has more bits than it may, or is the least of its
+ * container. */
+static int is_wide(const struct glint_translucent *t, uint32_t i)
+{
+    const struct glint_translucent_header *h = t->header;
+    const int is_signed = h->variant == GLINT_TRANSLUCENT_FACTORED;
+    const int bits = (int)h->code_bits - is_signed;
+    int32_t code;
+
+    if (h->code_bits <= 8)
+        code = is_signed ? ((const int8_t *)t->code)[i]
+                         : ((const uint8_t *)t->code)[i];
+    else
+        code = is_signed ? ((const int16_t *)t->code)[i]
+                         : ((const uint16_t *)t->code)[i];
+    return q_magnitude(code) >= UINT64_C(1) << bits;
+}
+
+static uint32_t codes_of(const struct glint_translucent_header *h)
+{
+    const uint32_t texels = 1U << 2 * h->side_log2;
+
+    return CHANNELS * texels *
+           (h->variant == GLINT_TRANSLUCENT_FACTORED    ? h->n_planes
+            : h->variant == GLINT_TRANSLUCENT_CLUSTERED ? 2
+                                                        : 1);
+}
+
+/* Returns N items of BYTES each as words. */
+static uint64_t words(uint64_t n, uint64_t bytes)
+{
+    return (n * bytes + 3) / 4;
+}
+
+static const char *find_tables(struct glint_translucent *t,
+                               struct glint_blob *b)
+{
+    const struct glint_translucent_header *h = t->header;
+    const uint32_t n = CHANNELS * h->n_planes * h->rank;
+    const uint32_t texels = 1U << 2 * h->side_log2;
+
+    t->code = glint_blob_section(
+        b, h->code_at, words(codes_of(h), h->code_bits > 8 ? 2 : 1), 4);
+    t->tap = glint_blob_section(b, h->tap_at, words(2 * n * h->kernel, 2), 4);
+    t->shift = glint_blob_section(b, h->shift_at, n, 4);
+    t->transmit_q15 = glint_blob_section(
+        b, h->transmit_at, words(GLINT_TRANSLUCENT_COSINES + 1, 2), 4);
+    if (!t->code || !t->tap || !t->shift || !t->transmit_q15)
+        return outside;
+    if (h->variant != GLINT_TRANSLUCENT_CLUSTERED)
+        return h->cluster_at ? "the stone has clusters that it does not use"
+                             : NULL;
+    t->cluster = glint_blob_section(b, h->cluster_at, texels / 4, 4);
+    return t->cluster ? NULL : outside;
+}
+
+static const char *check_contents(struct glint_translucent *t,
+                                  struct glint_blob *blob)
+{
+    const struct glint_translucent_header *h = t->header;
+    const char *wrong = fault_text[glint_blob_check_name(blob)];
+
+    if (!wrong)
+        wrong = check_header(h);
+    if (!wrong)
+        wrong = find_tables(t, blob);
+    if (!wrong)
+        wrong = check_taps(t);
+    for (uint32_t i = 0; !wrong && i < codes_of(h); i++)
+        if (is_wide(t, i))
+            wrong = "a code of the stone has too many bits";
+    for (uint32_t i = 0; !wrong && t->cluster && i < 1U << 2 * h->side_log2;
+         i++)
+        if (t->cluster[i] >= h->n_planes)
+            wrong = "a texel's cluster is out of range";
+    for (int i = 0; !wrong && i <= GLINT_TRANSLUCENT_COSINES; i++)
+        if (t->transmit_q15[i] > 1 << 15)
+            wrong = "the stone's transmittance is not 0 .. 1";
+    return wrong;
+}
+
+enum glint_status glint_translucent_open(struct glint_translucent *stone,
+                                         const void *data, size_t bytes,
+                                         const char **reason)
+{
+    static const struct glint_blob_kind kind = {
+        GLINT_TRANSLUCENT_MAGIC, GLINT_TRANSLUCENT_VERSION,
+        sizeof(struct glint_translucent_header)};
+    struct glint_translucent t = {.header = data};
+    struct glint_blob blob;
+    const char *wrong = fault_text[glint_blob_open(&blob, &kind, data, bytes)];
+
+    if (!wrong)
+        wrong = check_contents(&t, &blob);
+    if (wrong) {
+        *reason = wrong;
+        return GLINT_E_FORMAT;
+    }
+    *stone = t;
+    return GLINT_OK;
+}

@@ -1,0 +1,519 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Translucent things in scenes: integers against the twin in double precision,
+ * the same bits whoever draws, what is worked out when, extremes, and what is
+ * refused. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/scene/bake.h"
+#include "glint/scene/environment_bake.h"
+#include "scenes/scene_frame.h"
+#include "support/models/stone_builder.h"
+#include "support/shuffle.h"
+#include "twin/twin.h"
+
+enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
+
+/* What read_stone() builds, and the mesh that read_mesh() reads. */
+static int side = 64, kernel = 15;
+static double albedo = .9;
+static const char *mesh_text;
+
+/* A cube whose faces have a chart each, with gutters between. */
+static const char cube_text[] =
+    "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\n"
+    "v -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+    "vt .02 .02\nvt .31 .02\nvt .31 .31\nvt .02 .31\n"
+    "vt .35 .02\nvt .64 .02\nvt .64 .31\nvt .35 .31\n"
+    "vt .68 .02\nvt .97 .02\nvt .97 .31\nvt .68 .31\n"
+    "vt .02 .35\nvt .31 .35\nvt .31 .64\nvt .02 .64\n"
+    "vt .35 .35\nvt .64 .35\nvt .64 .64\nvt .35 .64\n"
+    "vt .68 .35\nvt .97 .35\nvt .97 .64\nvt .68 .64\n"
+    "f 5/1 6/2 7/3 8/4\nf 6/5 2/6 3/7 7/8\nf 2/9 1/10 4/11 3/12\n"
+    "f 1/13 5/14 8/15 4/16\nf 8/17 7/18 3/19 4/20\nf 1/21 2/22 6/23 5/24\n";
+
+static const char quad_text[] = "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\n"
+                                "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                                "f 1/1 2/2 3/3 4/4\n";
+
+static enum glint_status read_mesh(void *ctx, const char *name, uint8_t **data,
+                                   size_t *bytes, struct glint_error *error)
+{
+    (void)ctx;
+    (void)name;
+    (void)error;
+    *bytes = strlen(mesh_text);
+    *data = malloc(*bytes + 1);
+    assert_non_null(*data);
+    memcpy(*data, mesh_text, *bytes);
+    return GLINT_OK;
+}
+
+/* NAME is that of the model. */
+static enum glint_status read_stone(void *ctx, const char *name, uint8_t **data,
+                                    size_t *bytes, struct glint_error *error)
+{
+    struct built_stone b;
+
+    (void)ctx;
+    (void)error;
+    build_stone(&b,
+                name[0] == 'f'   ? GLINT_SCATTER_FACTORED
+                : name[0] == 'c' ? GLINT_SCATTER_CLUSTERED
+                                 : GLINT_SCATTER_ALBEDO,
+                side, kernel, albedo);
+    *data = b.data;
+    *bytes = b.bytes;
+    b.data = NULL;
+    free_stone(&b);
+    return GLINT_OK;
+}
+
+/* A sky that is brighter above. */
+static enum glint_status bake_sky(void *ctx, const char *name, uint8_t **data,
+                                  size_t *bytes, struct glint_error *error)
+{
+    static float sky[32][64][3];
+    const struct glint_float_image picture = {64, 32, (float *)sky};
+    struct glint_environment_options options;
+    struct glint_environment_report report;
+
+    (void)ctx;
+    (void)name;
+    for (int y = 0; y < 32; y++)
+        for (int x = 0; x < 64; x++)
+            for (int c = 0; c < 3; c++)
+                sky[y][x][c] = (float)((y < 16 ? .5 : .15) +
+                                       .2 * sin(x * .2) * (c + 1) / 3);
+    glint_environment_defaults(&options);
+    options.side_log2 = 5;
+    options.max_lights = 0;
+    return glint_environment_bake(&picture, &options, "sky", 1, data, bytes,
+                                  &report, error);
+}
+
+static enum glint_status parse(const char *text, struct glint_description *s,
+                               struct glint_error *error)
+{
+    const struct glint_description_files files = {
+        NULL, read_mesh, NULL, bake_sky, NULL, read_stone};
+
+    error->text[0] = '\0';
+    return glint_description_parse(s, text, strlen(text), "x.scene", &files,
+                                   error);
+}
+
+struct drawn {
+    struct glint_description *description;
+    unsigned char *data;
+    size_t bytes;
+    struct glint_scene_model model;
+    struct scene_frame frame;
+};
+
+static void open_text(struct drawn *d, const char *text,
+                      const struct scene_dials *dials, struct tool *tool)
+{
+    struct glint_scene_bake_report report;
+    struct glint_error error;
+    const char *reason = "";
+
+    d->description = malloc(sizeof *d->description);
+    assert_non_null(d->description);
+    if (parse(text, d->description, &error) != GLINT_OK ||
+        glint_scene_bake(d->description, "x", 1, &d->data, &d->bytes, &report,
+                         &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+    if (glint_scene_open(&d->model, d->data, d->bytes, &reason) != GLINT_OK)
+        fail_msg("%s", reason);
+    assert_int_equal(scene_frame_open(&d->frame, tool, &d->model, dials),
+                     EXIT_OK);
+}
+
+static void close_text(struct drawn *d)
+{
+    scene_frame_close(&d->frame);
+    free(d->data);
+    glint_description_free(d->description);
+    free(d->description);
+}
+
+static void draw(struct drawn *d, int32_t *light_q20)
+{
+    struct glint_image image = {
+        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+
+    memset(light_q20, 0, 3 * PIXELS * sizeof *light_q20);
+    glint_image_place(&image, light_q20);
+    assert_int_equal(scene_frame_draw(&d->frame, &image), EXIT_OK);
+}
+
+static const struct scene_dials one_sample = {
+    .width = WIDTH, .height = HEIGHT, .edge_samples = 1, .shadow_points = 1};
+
+#define LOOKS                                                                 \
+    "material c translucent c.glint\n"                                        \
+    "material f translucent f.glint coat ward specular .05 .05 .05 alpha .1 " \
+    ".2\n"                                                                    \
+    "material a translucent a.glint fresnel off colour 1 .8 .6\n"             \
+    "material grey phong .05 .6 .35\n"
+
+/* The camera stands on the other side. */
+#define STAGE_LEFT                                \
+    "camera fov 40 at 0 1.4 -4.5 toward 0 .4 0\n" \
+    "light sun direction .5 .7 -.6 colour 4e4 3.6e4 3e4\n" LOOKS
+
+#define STAGE                                               \
+    "camera fov 40 at 0 1.4 4.5 toward 0 .4 0\nshadow on\n" \
+    "light sun direction .5 .7 .6 colour 4e4 3.6e4 3e4\n"   \
+    "light lamp at -1.5 2 1.5 colour 1 1.2 2 radius .1\n" LOOKS
+
+#define BALLS                                                      \
+    "sphere a at -1.1 .5 0 radius .5 turn 1 1 0 40 material c\n"   \
+    "sphere b at 0 .5 0 radius .5 material f\n"                    \
+    "sphere c at 1.1 .5 .2 radius .5 turn 0 1 0 -100 material a\n" \
+    "plane p at 0 0 0 normal 0 1 0 material grey\n"
+
+/* -------------------------------------------------------------------- twin */
+
+static int is_inside(const struct twin_pixel *p, int i)
+{
+    const int x = i % WIDTH, y = i / WIDTH;
+
+    for (int v = y - 1; v <= y + 1; v++)
+        for (int u = x - 1; u <= x + 1; u++)
+            if (u >= 0 && v >= 0 && u < WIDTH && v < HEIGHT &&
+                fabs((double)p[v * WIDTH + u].rgb[1] - (double)p[i].rgb[1]) >
+                    .2 * (double)p[i].rgb[1] + .01)
+                return 0;
+    return 1;
+}
+
+static double compare(const char *text)
+{
+    static struct twin_pixel exact[PIXELS];
+    static int32_t light_q20[3 * PIXELS];
+    const struct twin_view view = {WIDTH, HEIGHT, 0, 1};
+    struct tool tool = {.name = "test"};
+    double square = 0;
+    struct drawn d;
+    struct twin twin;
+    int n = 0;
+
+    open_text(&d, text, &one_sample, &tool);
+    draw(&d, light_q20);
+    assert_int_equal(twin_open(&twin, d.description), GLINT_OK);
+    twin_render(&twin, &view, NULL, exact);
+    twin_close(&twin);
+    close_text(&d);
+    for (int i = 0; i < PIXELS; i++)
+        for (int c = 0; c < 3 && is_inside(exact, i); c++, n++)
+            square += pow(fmin((double)exact[i].rgb[c], 1) -
+                              fmin(light_q20[3 * i + c] * 0x1p-20, 1),
+                          2);
+    assert_true(n > PIXELS);
+    return -10 * log10(square / n + 1e-12);
+}
+
+static void test_twin(void **state)
+{
+    static const struct {
+        const char *what, *text, *mesh;
+    } row[] = {
+        {"balls", STAGE BALLS, NULL},
+        {"balls under a sky", STAGE "environment sky turn 30\n" BALLS, NULL},
+        {"balls, left",
+         "hand left\n" STAGE_LEFT "sphere a at -.6 .5 0 radius .5 turn 0 0 1 "
+         "20 material f\nsphere b at .6 .5 0 radius .5 material c\n",
+         NULL},
+        {"cube",
+         STAGE "mesh m cube.obj scale .5 at 0 .5 0 turn 0 1 0 30 "
+               "material c\nplane p at 0 0 0 normal 0 1 0 material "
+               "grey\n",
+         cube_text},
+        {"quad",
+         STAGE "mesh m quad.obj at 0 .2 0 material f\n"
+               "sphere b at 0 .7 0 radius .3 material grey\n",
+         quad_text}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        double db;
+
+        mesh_text = row[i].mesh;
+        db = compare(row[i].text);
+        print_message("%s: %.1f dB\n", row[i].what, db);
+        assert_true(db >= 60);
+    }
+}
+
+/* -------------------------------------------------------------------- bits */
+
+#define MIXED                       \
+    STAGE "environment sky\n" BALLS \
+          "mesh m cube.obj scale .2 at .5 .2 .9 turn 0 1 0 30 material c\n"
+
+/* No thread, tile, kernel or order of updates changes a bit. */
+static void test_same_bits(void **state)
+{
+    static int32_t want[3 * PIXELS], got[3 * PIXELS];
+    struct shuffle shuffle;
+    struct tool tool = {.name = "test", .sets_off = ~0U};
+    struct drawn d;
+
+    (void)state;
+    shuffle_init(&shuffle, 3, 7);
+    mesh_text = cube_text;
+    open_text(&d, MIXED, &one_sample, &tool);
+    draw(&d, want);
+    close_text(&d);
+    for (int k = 0; k < 3; k++) {
+        struct scene_dials dials = one_sample;
+
+        tool.sets_off = k == 1 ? ~0U : 0;
+        tool.workers = k ? &shuffle.workers : NULL;
+        dials.tile_log2 = 4 + k;
+        open_text(&d, MIXED, &dials, &tool);
+        draw(&d, got);
+        close_text(&d);
+        assert_memory_equal(got, want, sizeof want);
+    }
+}
+
+/* ------------------------------------------------------------------- updates
+ */
+
+/* Turns the camera about the origin by ANGLE and draws. */
+static void look_from(struct drawn *d, double angle, int32_t *light_q20)
+{
+    const double unit = ldexp(1, d->model.header->unit_log2);
+    const int32_t s = (int32_t)lrint(0x1p30 * sin(angle));
+    const int32_t c = (int32_t)lrint(0x1p30 * cos(angle));
+    const int32_t axis_q30[3][3] = {{c, 0, -s}, {0, 1 << 30, 0}, {s, 0, c}};
+    const int32_t at[3] = {(int32_t)(-4 * unit * sin(angle)),
+                           (int32_t)(.6 * unit),
+                           (int32_t)(-4 * unit * cos(angle))};
+
+    assert_int_equal(glint_scene_set_camera(d->frame.scene, at, axis_q30),
+                     GLINT_OK);
+    draw(d, light_q20);
+}
+
+/* Texels are worked out as they come into view, once, and all pictures are
+ * those of scenes that were just opened; nothing is done for nothing. */
+static void test_updates(void **state)
+{
+    static int32_t turned[3 * PIXELS], fresh[3 * PIXELS];
+    struct tool tool = {.name = "test"};
+    struct drawn d, other;
+    int first, sum = 0;
+
+    (void)state;
+    mesh_text = cube_text;
+    side = 128;
+    open_text(&d, MIXED, &one_sample, &tool);
+    look_from(&d, 0, turned);
+    first = d.frame.map_texels;
+    for (int k = 1; k <= 12; k++) {
+        look_from(&d, k * .5, turned);
+        sum += d.frame.map_texels;
+        open_text(&other, MIXED, &one_sample, &tool);
+        look_from(&other, k * .5, fresh);
+        assert_memory_equal(turned, fresh, sizeof fresh);
+        assert_true(other.frame.map_texels >= d.frame.map_texels);
+        close_text(&other);
+    }
+    print_message("texels: %d at first, %d in a turn\n", first, sum);
+    /* three balls of 256 x 128 and a cube of 128 x 128 */
+    assert_true(first < 75000 && sum > 20000 && first + sum <= 7 << 14);
+    draw(&d, turned);
+    assert_int_equal(d.frame.map_texels, 0);
+    close_text(&d);
+    side = 64;
+}
+
+/* What moves is followed in every frame, or every 2 or 4. */
+static void test_frames(void **state)
+{
+    static int32_t light[3 * PIXELS];
+    struct tool tool = {.name = "test"};
+
+    (void)state;
+    for (int every = 1; every <= 4; every *= 2) {
+        struct scene_dials dials = one_sample;
+        struct drawn d;
+        int lit = 0;
+
+        dials.stone_frames = every;
+        open_text(&d, STAGE BALLS, &dials, &tool);
+        draw(&d, light);
+        assert_true(d.frame.map_texels > 0);
+        for (int k = 1; k <= 8; k++) {
+            const double angle = k * .1;
+            const int32_t to[3] = {(int32_t)lrint(0x1p30 * sin(angle)),
+                                   (int32_t)lrint(0x1p30 * cos(angle)), 0};
+
+            assert_int_equal(glint_scene_set_light(d.frame.scene, 0, to),
+                             GLINT_OK);
+            draw(&d, light);
+            lit += d.frame.map_texels > 0;
+        }
+        assert_int_equal(lit, 8 / every);
+        glint_scene_show(d.frame.scene, 1, 0);
+        draw(&d, light);
+        close_text(&d);
+    }
+}
+
+/* ------------------------------------------------------------------ extremes
+ */
+
+static double brightest(const int32_t *light_q20)
+{
+    double most = 0;
+
+    for (int i = 0; i < 3 * PIXELS; i++)
+        most = fmax(most, light_q20[i] * 0x1p-20);
+    return most;
+}
+
+/* Stone that absorbs all is black; what absorbs nothing shows no more than it
+ * gets; light of any strength stays light. */
+static void test_extremes(void **state)
+{
+    static int32_t light[3 * PIXELS];
+    static const char *const model[] = {"c", "f", "a"};
+    struct tool tool = {.name = "test"};
+
+    (void)state;
+    for (int k = 0; k < 3 * 8; k++) {
+        const double power = pow(10, 2 * (k % 8) - 6);
+        char text[400];
+        struct drawn d;
+
+        albedo = k % 2;
+        kernel = k % 3 ? 63 : 1;
+        side = 32 << k % 3;
+        snprintf(text, sizeof text,
+                 "camera fov 30 at 0 0 4 toward 0 0 0\nlight lamp at 0 0 40 "
+                 "colour %.9g "
+                 "%.9g %.9g\nmaterial m translucent %s.glint fresnel off\n"
+                 "sphere s at 0 0 0 radius 1 material m\n",
+                 fmin(1600 * power, 1e9), fmin(1600 * power, 1e9),
+                 fmin(1600 * power, 1e9), model[k / 8]);
+        open_text(&d, text, &one_sample, &tool);
+        draw(&d, light);
+        if (albedo == 0) {
+            assert_true(brightest(light) == 0);
+        } else {
+            /* Near the poles, where texels are narrow, more comes together. */
+            assert_true(brightest(light) <=
+                        fmin(1.3 * 1.06 * fmin(power, 6.2e5), 32768) + 1e-4);
+            if (power > 1e-2)
+                assert_true(brightest(light) > .3 * fmin(power, 1000));
+        }
+        close_text(&d);
+    }
+    albedo = .9;
+    kernel = 15;
+    side = 64;
+}
+
+/* ------------------------------------------------------------------ refusals
+ */
+
+static void expect_refused(const char *text, const char *reason)
+{
+    struct glint_description *s = malloc(sizeof *s);
+    struct glint_scene_bake_report report;
+    struct glint_error error;
+    unsigned char *data = NULL;
+    size_t bytes;
+
+    assert_non_null(s);
+    if (parse(text, s, &error) == GLINT_OK) {
+        if (glint_scene_bake(s, "x", 1, &data, &bytes, &report, &error) ==
+            GLINT_OK) {
+            snprintf(error.text, sizeof error.text, "%s", s->warning);
+            free(data);
+        }
+        glint_description_free(s);
+    }
+    if (!strstr(error.text, reason))
+        fail_msg("'%s' is not in '%s'", reason, error.text);
+    free(s);
+}
+
+static void test_refused(void **state)
+{
+    static const char stretched[] = "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\n"
+                                    "vt 0 0\nvt .4 0\nvt .4 1\nvt 0 1\n"
+                                    "f 1/1 2/2 3/3 4/4\n";
+    static const char outside[] = "v -1 0 1\nv 1 0 1\nv 1 0 -1\n"
+                                  "vt 0 0\nvt 2 0\nvt 1 1\nf 1/1 2/2 3/3\n";
+    static const char twice[] = "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\n"
+                                "vt 0 0\nvt 1 0\nvt 1 1\n"
+                                "f 1/1 2/2 3/3\nf 3/1 4/2 1/3\n";
+    static const char bare[] = "v -1 0 1\nv 1 0 1\nv 1 0 -1\nf 1 2 3\n";
+    static const char point[] = "v -1 0 1\nv 1 0 1\nv 1 0 -1\nvt .5 .5\n"
+                                "f 1/1 2/1 3/1\n";
+
+    (void)state;
+    expect_refused(STAGE "plane p at 0 0 0 normal 0 1 0 material c\n",
+                   "a plane has no end");
+    expect_refused(STAGE "triangle t 0 0 0 1 0 0 0 1 0 material c\n",
+                   "has no places on its map");
+    mesh_text = bare;
+    expect_refused(STAGE "mesh m a.obj at 0 0 0 material c\n",
+                   "x.scene:9:8: material c is translucent, but a face has no");
+    mesh_text = outside;
+    expect_refused(STAGE "mesh m a.obj at 0 0 0 material c\n",
+                   "are 0 to 1, not 2");
+    mesh_text = twice;
+    expect_refused(STAGE "mesh m a.obj at 0 0 0 material c\n",
+                   "have two places");
+    mesh_text = point;
+    expect_refused(STAGE "mesh m a.obj at 0 0 0 material c\n",
+                   "covers no texel");
+    mesh_text = stretched;
+    expect_refused(STAGE "mesh m a.obj at 0 0 0 material c\n",
+                   "stretched up to 1.58");
+}
+
+/* Programs without the part say which one a scene needs. */
+static void test_lacks(void **state)
+{
+    struct tool tool = {.name = "test"};
+    struct glint_scene_config cfg;
+    struct drawn d;
+
+    (void)state;
+    open_text(&d, STAGE BALLS, &one_sample, &tool);
+    cfg = d.frame.cfg;
+    assert_true(glint_scene_bytes(&cfg, &d.model) > 0);
+    cfg.parts.stones = NULL;
+    assert_string_equal(glint_scene_lacks(&cfg.parts, &d.model), "stones");
+    assert_int_equal(glint_scene_bytes(&cfg, &d.model), 0);
+    close_text(&d);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_twin),     cmocka_unit_test(test_same_bits),
+        cmocka_unit_test(test_updates),  cmocka_unit_test(test_frames),
+        cmocka_unit_test(test_extremes), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_lacks),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint bake of translucent stones: writes how light spreads below a surface as
+ * the run time takes it.
+ */
+#include <string.h>
+
+#include "options/settings.h"
+#include "options/takes.h"
+#include "posix/output.h"
+#include "stones/stone_file.h"
+
+static const char help[] =
+    "glint bake NAME.translucent -o OUT.glint [options]\n"
+    "\n"
+    "Works out how light spreads below the surface of a stone\n"
+    "(tools/examples/scenes/README.md), fits that by a few kernels, and "
+    "writes\n"
+    "these as integers, for 'material .. translucent OUT.glint' of scenes. "
+    "Says\n"
+    "how near they come to the full table. A minute's work, kept in the "
+    "cache.\n"
+    "\n"
+    "  -o, --output OUT\n"
+    "  --model M           clustered: a kernel for each kind of place, 7 bytes "
+    "a\n"
+    "                      texel (default)\n"
+    "                      factored: a sum of terms, 3 bytes each\n"
+    "                      albedo: one kernel, 3 bytes\n"
+    "  --planes N          kernels or terms (default 4, 5)\n"
+    "  --rank N            products that a kernel is a sum of, 1 to 8 (default "
+    "3)\n"
+    "  --bits CODES,TAPS   4 to 16, 6 to 16 (default 8,12)\n";
+
+/* What the line says; -1: nothing. */
+struct line {
+    const char *output;
+    int model, planes, rank, bits[2];
+};
+
+static void over(void *ctx, struct glint_stone_text *t)
+{
+    const struct line *l = ctx;
+
+    if (l->model >= 0) {
+        const int rank = t->fit.rank;
+
+        glint_scatter_defaults(&t->fit, (enum glint_scatter_model)l->model);
+        t->fit.rank = rank;
+    }
+    if (l->planes >= 0 && t->fit.model != GLINT_SCATTER_ALBEDO)
+        t->fit.kernels = l->planes;
+    if (l->rank >= 0)
+        t->fit.rank = l->rank;
+    if (l->bits[0] >= 0) {
+        t->code_bits = l->bits[0];
+        t->tap_bits = l->bits[1];
+    }
+}
+
+static bool take_bits(const char *text, int bits[2])
+{
+    double value[2];
+
+    if (tool_numbers(text, value, 2) != 2)
+        return false;
+    for (int i = 0; i < 2; i++) {
+        bits[i] = (int)value[i];
+        if ((double)bits[i] != value[i] || bits[i] < (i ? 6 : 4) ||
+            bits[i] > 16)
+            return false;
+    }
+    return true;
+}
+
+static int take(struct tool *tool, struct line *l, int c, const char *name)
+{
+    static const char *const models[] = {"clustered", "factored", "albedo",
+                                         NULL};
+    bool ok = true;
+
+    switch (c) {
+    case 'o':
+        l->output = optarg;
+        break;
+    case 'm':
+        l->model = tool_word(optarg, models);
+        ok = l->model >= 0;
+        break;
+    case 'p':
+        ok = tool_integer(optarg, 1, GLINT_TRANSLUCENT_MOST_PLANES, &l->planes);
+        break;
+    case 'r':
+        ok = tool_integer(optarg, 1, GLINT_TRANSLUCENT_MOST_RANK, &l->rank);
+        break;
+    case 'b':
+        ok = take_bits(optarg, l->bits);
+        break;
+    default:
+        return tool_option(tool, c, optarg);
+    }
+    return ok ? -1 : tool_refuse(tool, name, optarg);
+}
+
+static int parse(struct tool *tool, int argc, char **argv, struct line *l)
+{
+    static const struct option options[] = {
+        {"output", required_argument, NULL, 'o'},
+        {"model", required_argument, NULL, 'm'},
+        {"planes", required_argument, NULL, 'p'},
+        {"rank", required_argument, NULL, 'r'},
+        {"bits", required_argument, NULL, 'b'},
+        TOOL_COMMON_OPTIONS};
+    int c, code, index = 0;
+
+    while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+                            &index)) >= 0)
+        if ((code = take(tool, l, c, options[index].name)) >= 0)
+            return code;
+    code = tool_inputs(tool, argc, argv, 1, "takes one stone");
+    if (code >= 0)
+        return code;
+    return l->output ? -1 : tool_usage(tool, "needs -o OUT");
+}
+
+int cmd_bake_stone(int argc, char **argv)
+{
+    struct tool tool = {.name = "bake", .help = help, .help_end = COMMON_HELP};
+    struct line line = {
+        .model = -1, .planes = -1, .rank = -1, .bits = {-1, -1}};
+    struct glint_error error = {""};
+    struct stone_file file;
+    struct glint_output out;
+    enum glint_status status;
+    int code = parse(&tool, argc, argv, &line);
+
+    if (code >= 0 || !line.output)
+        return code;
+    tool.written = line.output;
+    if (tool_check_output(&tool, line.output) != EXIT_OK)
+        return EXIT_OUTPUT;
+    status =
+        stone_file_read(&tool, argv[optind], over, &line, true, &file, &error);
+    if (status != GLINT_OK)
+        return tool_fail(&tool, status, error.text);
+    status = glint_output_open(&out, line.output, GLINT_OUTPUT_BINARY, &error);
+    if (status == GLINT_OK)
+        status = glint_output_finish(&out, file.data, file.bytes, &error);
+    if (status != GLINT_OK)
+        code = tool_fail(&tool, status, error.text);
+    else {
+        code = EXIT_OK;
+        if (strcmp(line.output, "-") != 0 && !tool.quiet)
+            stone_file_print(&tool, &file);
+    }
+    stone_file_close(&file);
+    return code;
+}

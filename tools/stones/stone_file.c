@@ -1,0 +1,360 @@
+/* SPDX-License-Identifier: MIT */
+#include "stones/stone_file.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <time.h>
+
+#include "formats/picture.h"
+#include "model/cache_file.h"
+#include "posix/input.h"
+#include "posix/target.h"
+#include "scenes/names.h"
+
+#define MAX_FILE_BYTES ((size_t)1 << 26)
+/* Changes where the same text would give another stone. */
+#define RECIPE UINT64_C(1)
+
+bool stone_file_is_text(const char *argument)
+{
+    static const char end[] = ".translucent";
+    const size_t n = strlen(argument), m = sizeof end - 1;
+
+    return n > m && strcasecmp(argument + n - m, end) == 0;
+}
+
+bool stone_file_is_baked(const char *argument)
+{
+    return tool_begins_as(argument, GLINT_TRANSLUCENT_MAGIC);
+}
+
+/* A text, and what it names, while it is read. */
+struct source {
+    struct glint_stone_text text;
+    double *mask;                  /* malloc'ed */
+    struct glint_float_image rows; /* malloc'ed */
+    uint64_t key;
+};
+
+static void close_source(struct source *s)
+{
+    free(s->mask);
+    free(s->rows.rgb);
+}
+
+/* ------------------------------------------------------------------ reading */
+
+/* Sets PATH to NAME beside the text, if that may be read. */
+static enum glint_status find(const struct tool *tool, const char *text,
+                              const char *name, char path[TOOL_PATH_BYTES],
+                              struct glint_error *error)
+{
+    if (!tool_beside(text, name, path)) {
+        snprintf(error->text, sizeof error->text,
+                 "the file's name is too long");
+        return GLINT_E_IO;
+    }
+    if (tool->written && glint_target_is_input(path, tool->written)) {
+        snprintf(error->text, sizeof error->text,
+                 "%.180s would be lost: it is what -o names; name another file",
+                 path);
+        return GLINT_E_ARGUMENT;
+    }
+    return GLINT_OK;
+}
+
+/* Sets MASK to the means of IMAGE's codes, 1 = white, over each texel. */
+static void shrink(const struct glint_image *image, int side, double *mask)
+{
+    for (int i = 0; i < side * side; i++) {
+        const int x0 = i % side * image->width / side;
+        const int y0 = i / side * image->height / side;
+        int x1 = (i % side + 1) * image->width / side;
+        int y1 = (i / side + 1) * image->height / side;
+        double sum = 0;
+
+        x1 = x1 > x0 ? x1 : x0 + 1;
+        y1 = y1 > y0 ? y1 : y0 + 1;
+        for (int y = y0; y < y1; y++)
+            for (int x = x0; x < x1; x++)
+                for (int c = 0; c < 3; c++)
+                    sum +=
+                        image->plane[0][3 * ((ptrdiff_t)y * image->width + x) +
+                                        c] /
+                        765.;
+        mask[i] = sum / ((x1 - x0) * (y1 - y0));
+    }
+}
+
+static enum glint_status read_mask(const struct tool *tool, const char *path,
+                                   struct source *s, struct glint_error *error)
+{
+    const int side = s->text.stone.side;
+    const size_t n = (size_t)side * (size_t)side;
+    char beside[TOOL_PATH_BYTES];
+    struct glint_image image = {.width = 0};
+    enum glint_status status = find(tool, path, s->text.mask, beside, error);
+
+    if (status == GLINT_OK)
+        status = glint_picture_load(beside, &image, error);
+    if (status != GLINT_OK)
+        return status;
+    s->mask = malloc(n * sizeof *s->mask);
+    if (s->mask) {
+        shrink(&image, side, s->mask);
+        tool_key_mix(&s->key, s->mask, n * sizeof *s->mask);
+    }
+    free(image.plane[0]);
+    return s->mask ? GLINT_OK : GLINT_E_MEMORY;
+}
+
+static enum glint_status read_rows(const struct tool *tool, const char *path,
+                                   struct source *s, struct glint_error *error)
+{
+    char beside[TOOL_PATH_BYTES];
+    enum glint_status status = find(tool, path, s->text.rows, beside, error);
+
+    if (status == GLINT_OK)
+        status = glint_picture_load_float(beside, &s->rows, error);
+    if (status == GLINT_OK)
+        tool_key_mix(&s->key, s->rows.rgb,
+                     3 * sizeof(float) * (size_t)s->rows.width *
+                         (size_t)s->rows.height);
+    return status;
+}
+
+static enum glint_status
+read_source(const struct tool *tool, const char *path,
+            void (*over)(void *ctx, struct glint_stone_text *), void *ctx,
+            struct source *s, struct glint_error *error)
+{
+    const uint64_t recipe = RECIPE;
+    uint8_t *data = NULL;
+    size_t bytes = 0;
+    enum glint_status status =
+        glint_input_slurp(&data, &bytes, path, 1 << 16, error);
+
+    if (status == GLINT_OK)
+        status =
+            glint_stone_parse(&s->text, (const char *)data, bytes, path, error);
+    free(data);
+    if (status != GLINT_OK)
+        return status;
+    if (over)
+        over(ctx, &s->text);
+    s->key = TOOL_KEY_BEGIN;
+    tool_key_mix(&s->key, &recipe, sizeof recipe);
+    tool_key_mix(&s->key, &s->text, sizeof s->text);
+    if (s->text.mask[0])
+        status = read_mask(tool, path, s, error);
+    if (status == GLINT_OK && s->text.rows[0])
+        status = read_rows(tool, path, s, error);
+    return status;
+}
+
+/* ------------------------------------------------------------------- baking */
+
+/* A part of what is shown as done. */
+struct part {
+    struct tool_progress *progress;
+    double from, length;
+};
+
+static void show(void *ctx, double done)
+{
+    const struct part *s = ctx;
+
+    tool_progress_show(s->progress, s->from + s->length * done);
+}
+
+/* Measures what is left of the rows. */
+static enum glint_status measure(const struct glint_scatter_rows *rows,
+                                 const struct glint_scatter_fit *fit,
+                                 struct stone_file *file)
+{
+    const size_t n = 3 * (size_t)rows->side * (size_t)rows->side;
+    double *light = malloc(3 * n * sizeof *light);
+    double square = 0, peak = 0;
+    enum glint_status status = GLINT_E_MEMORY;
+
+    if (light) {
+        glint_scatter_test_light(rows->side, light);
+        glint_scatter_light_rows(rows, light, light + n);
+        status = glint_stone_light(&file->stone, light, light + 2 * n);
+    }
+    for (size_t i = n; status == GLINT_OK && i < 2 * n; i++) {
+        square += (light[i] - light[i + n]) * (light[i] - light[i + n]);
+        peak = fmax(peak, light[i]);
+    }
+    free(light);
+    file->errors.fit_db = fit->error.light_db;
+    file->errors.baked_db =
+        square > 0 ? 10 * log10(peak * peak * (double)n / square) : 999;
+    return status;
+}
+
+static enum glint_status open_baked(struct stone_file *file,
+                                    struct glint_error *error)
+{
+    const char *reason = "";
+
+    if (glint_translucent_open(&file->stone, file->data, file->bytes,
+                               &reason) == GLINT_OK)
+        return GLINT_OK;
+    snprintf(error->text, sizeof error->text, "%s", reason);
+    return GLINT_E_LENS;
+}
+
+static enum glint_status fit_rows(struct glint_scatter_rows *rows,
+                                  struct source *s, const char *name,
+                                  const struct glint_watch *watch,
+                                  struct stone_file *file,
+                                  struct glint_error *error)
+{
+    struct glint_scatter_fit fit;
+    struct glint_stone_report report;
+    unsigned char *data = NULL;
+    enum glint_status status =
+        glint_scatter_fit(rows, &s->text.fit, watch, &fit);
+
+    if (status != GLINT_OK)
+        return status;
+    status = glint_stone_bake(&fit, &s->text, name, s->key, &data, &file->bytes,
+                              &report, error);
+    if (status == GLINT_OK) {
+        file->data = data;
+        file->errors.kernel_loss = report.kernel_loss;
+        file->errors.tap_bits = report.tap_bits;
+        status = open_baked(file, error);
+    }
+    if (status == GLINT_OK)
+        status = measure(rows, &fit, file);
+    glint_scatter_fit_close(&fit);
+    return status;
+}
+
+static enum glint_status bake(const struct tool *tool, struct source *s,
+                              const char *name, struct stone_file *file,
+                              struct glint_error *error)
+{
+    struct tool_progress progress;
+    struct part stage[2] = {{&progress, 0, .6}, {&progress, .6, .4}};
+    const struct glint_watch watch[2] = {{.progress = show, .ctx = &stage[0]},
+                                         {.progress = show, .ctx = &stage[1]}};
+    struct glint_scatter_rows rows = {.side = 0};
+    const clock_t began = clock();
+    long long held = 0;
+    enum glint_status status;
+
+    tool_progress_start(&progress, tool, name);
+    s->text.stone.mask = s->mask;
+    status =
+        s->rows.rgb
+            ? glint_scatter_read(&s->rows, s->text.stone.side,
+                                 s->text.stone.kernel, &rows, &held, error)
+            : glint_scatter_compute(&s->text.stone, &watch[0], &rows, error);
+    if (status == GLINT_OK) {
+        status = fit_rows(&rows, s, name, &watch[1], file, error);
+        glint_scatter_close(&rows);
+    }
+    tool_progress_end(&progress);
+    if (held > 0 && !tool->quiet)
+        fprintf(stderr,
+                "glint %s: %s: %lld numbers below 0 or not finite became 0\n",
+                tool->name, name, held);
+    file->is_baked_now = true;
+    file->errors.seconds = (double)(clock() - began) / CLOCKS_PER_SEC;
+    return status;
+}
+
+/* -------------------------------------------------------------------- cache */
+
+/* Opens the kept stone; returns false if there is none. */
+static bool load(const char *path, uint64_t key, struct stone_file *file)
+{
+    struct glint_error error;
+
+    file->data = cache_file_read(path, MAX_FILE_BYTES, &file->bytes);
+    if (!file->data)
+        return false;
+    if (open_baked(file, &error) == GLINT_OK &&
+        (file->stone.header->key[0] | (uint64_t)file->stone.header->key[1]
+                                          << 32) == key)
+        return true;
+    stone_file_close(file);
+    return false;
+}
+
+static void keep(const struct tool *tool, char *path,
+                 const struct stone_file *file)
+{
+    struct glint_error error = {""};
+
+    if (cache_file_write(path, file->data, file->bytes, &error) != GLINT_OK &&
+        !tool->quiet)
+        fprintf(stderr, "glint %s: the stone is not kept: %s\n", tool->name,
+                error.text);
+}
+
+static enum glint_status
+read_text(const struct tool *tool, const char *path,
+          void (*over)(void *ctx, struct glint_stone_text *), void *ctx,
+          bool anew, struct stone_file *file, struct glint_error *error)
+{
+    struct source source = {.mask = NULL};
+    char kept[CACHE_PATH_BYTES], name[64];
+    enum glint_status status =
+        read_source(tool, path, over, ctx, &source, error);
+    bool has_cache;
+
+    tool_scene_name(path, name);
+    has_cache = cache_file_folder(kept, sizeof kept) &&
+                cache_file_name(kept, sizeof kept, name, source.key, "stone");
+    if (status == GLINT_OK &&
+        (anew || !has_cache || !load(kept, source.key, file))) {
+        status = bake(tool, &source, name, file, error);
+        if (status == GLINT_OK && has_cache)
+            keep(tool, kept, file);
+    }
+    close_source(&source);
+    return status;
+}
+
+enum glint_status
+stone_file_read(const struct tool *tool, const char *path,
+                void (*over)(void *ctx, struct glint_stone_text *), void *ctx,
+                bool anew, struct stone_file *file, struct glint_error *error)
+{
+    uint8_t *data = NULL;
+    enum glint_status status;
+    char self[TOOL_PATH_BYTES];
+
+    *file = (struct stone_file){.data = NULL};
+    status = find(tool, "", path, self, error);
+    if (status == GLINT_OK && stone_file_is_text(path)) {
+        status = read_text(tool, path, over, ctx, anew, file, error);
+    } else if (status == GLINT_OK) {
+        status =
+            glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, error);
+        file->data = data; /* malloc aligns it */
+        if (status == GLINT_OK) {
+            struct glint_error cause;
+
+            status = open_baked(file, &cause);
+            if (status != GLINT_OK)
+                snprintf(error->text, sizeof error->text, "%.150s: %.100s",
+                         path, cause.text);
+        }
+    }
+    if (status != GLINT_OK)
+        stone_file_close(file);
+    return status;
+}
+
+void stone_file_close(struct stone_file *file)
+{
+    free(file->data);
+    *file = (struct stone_file){.data = NULL};
+}

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What is in a baked stone, in words and in numbers. */
+#include "stones/stone_file.h"
+
+struct counts {
+    size_t codes, clusters, taps, all; /* bytes */
+    double each;                       /* bytes of a texel, but for the taps */
+};
+
+static struct counts count(const struct stone_file *file)
+{
+    const struct glint_translucent_header *h = file->stone.header;
+    const size_t texels = (size_t)1 << 2 * h->side_log2;
+    const size_t tables = h->variant == GLINT_TRANSLUCENT_FACTORED
+                              ? 3 * h->n_planes
+                          : h->variant == GLINT_TRANSLUCENT_CLUSTERED ? 6
+                                                                      : 3;
+    struct counts n = {.codes = tables * texels * (h->code_bits > 8 ? 2 : 1),
+                       .clusters = file->stone.cluster ? texels : 0,
+                       .taps = 12 * (size_t)h->n_planes * h->rank * h->kernel,
+                       .all = file->bytes};
+
+    n.each = (double)(n.codes + n.clusters) / (double)texels;
+    return n;
+}
+
+static const char *model_of(const struct glint_translucent_header *h)
+{
+    static const char *const name[] = {"clustered", "factored", "albedo"};
+
+    return name[h->variant];
+}
+
+static void print_json(const struct stone_file *file, const struct counts *n)
+{
+    const struct glint_translucent_header *h = file->stone.header;
+
+    printf("{\"name\": ");
+    tool_json_string(stdout, h->name);
+    printf(", \"stone\": {\"model\": \"%s\", \"size\": %d, \"texel_mm\": %g, "
+           "\"kernel\": %u, \"planes\": %u, \"rank\": %u, \"index\": %.5g, "
+           "\"bits\": [%u, %u]",
+           model_of(h), 1 << h->side_log2, h->texel_um / 1000., h->kernel,
+           h->n_planes, h->rank, h->index_q16 / 65536., h->code_bits,
+           h->tap_bits);
+    if (file->is_baked_now)
+        printf(", \"fit_db\": %.2f, \"baked_db\": %.2f, \"kernel_loss\": %.6f, "
+               "\"column_bits\": %d, \"cpu_s\": %.2f",
+               file->errors.fit_db, file->errors.baked_db,
+               file->errors.kernel_loss, file->errors.tap_bits,
+               file->errors.seconds);
+    printf(", \"bytes_texel\": %g, \"bytes\": {\"codes\": %zu, \"clusters\": "
+           "%zu, \"taps\": %zu, \"all\": %zu}}}\n",
+           n->each, n->codes, n->clusters, n->taps, n->all);
+}
+
+static void print_text(const struct stone_file *file, const struct counts *n)
+{
+    const struct glint_translucent_header *h = file->stone.header;
+    const int side = 1 << h->side_log2;
+
+    printf("%s, a translucent stone of %dx%d texels of %g mm, index %.4g\n\n",
+           h->name, side, side, h->texel_um / 1000., h->index_q16 / 65536.);
+    printf("model        %s, %u plane%s of rank %u, kernels of %ux%u\n",
+           model_of(h), h->n_planes, h->n_planes > 1 ? "s" : "", h->rank,
+           h->kernel, h->kernel);
+    printf("bits         %u of codes, %u of taps\n", h->code_bits, h->tap_bits);
+    if (file->is_baked_now) {
+        printf("to the rows  %.1f dB, of the fit %.1f dB\n",
+               file->errors.baked_db, file->errors.fit_db);
+        printf("ranks lose   %.3g %% of kernels; columns have %d bits\n",
+               100 * file->errors.kernel_loss, file->errors.tap_bits);
+        printf("took         %.1f s of processor time\n", file->errors.seconds);
+    }
+    printf("a texel has  %g bytes\n", n->each);
+    printf("bytes        %zu\n  codes        %8zu\n", n->all, n->codes);
+    if (n->clusters)
+        printf("  clusters     %8zu\n", n->clusters);
+    printf("  taps         %8zu\n", n->taps);
+}
+
+void stone_file_print(const struct tool *tool, const struct stone_file *file)
+{
+    const struct counts n = count(file);
+
+    (tool->json ? print_json : print_text)(file, &n);
+}

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Translucent things in the twin of scenes (twin.h): maps as the run time has
+ * them, by the same codes and taps, in double precision. */
+#ifndef GLINT_TOOLS_SCENES_TWIN_STONE_H
+#define GLINT_TOOLS_SCENES_TWIN_STONE_H
+
+#include "twin/twin.h"
+
+/* Makes room for the maps of all objects. GLINT_E_MEMORY. */
+enum glint_status twin_open_stones(struct twin *twin);
+void twin_close_stones(struct twin *twin);
+
+/* Works out all maps, once shadow points are known. */
+void twin_fill_maps(const struct twin *twin);
+
+/* Sets RGB to what comes out at HIT, of stone, along a ray TOWARD it. */
+void twin_add_stone(const struct twin *twin, const struct twin_hit *hit,
+                    const double toward[3], double rgb[3]);
+
+#endif
