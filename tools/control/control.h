@@ -29,12 +29,16 @@ enum control_verb {
     /* The camera. */
     CONTROL_ORBIT,    /* yaw to the right and pitch up about its middle, deg */
     CONTROL_DISTANCE, /* from that, units */
+    CONTROL_SENSOR,   /* into a sensor of the motion, from 1 */
+    CONTROL_SCENE,    /* back to where the scene has it */
+    CONTROL_WALK,     /* units to the right, up and ahead of it */
+    CONTROL_LOOK,     /* yaw to the right, pitch up, roll clockwise, deg */
     /* Materials: name. */
     CONTROL_ALPHA,    /* of brushed metal; one value: both */
     CONTROL_COLOUR,   /* of Phong, or specular of brushed metal */
     CONTROL_DIFFUSE,  /* of brushed metal */
     CONTROL_MATERIAL, /* name of a thing, name of its material */
-    /* Things: name. */
+    /* Things, or kinds of things of a motion: name. */
     CONTROL_SHOW,
     CONTROL_HIDE,
     CONTROL_SIZE, /* radius of a ball, units */

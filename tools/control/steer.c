@@ -49,14 +49,17 @@ enum glint_status steer_open(struct steer *steer,
 {
     const struct glint_scene_header *const h = model->header;
 
-    *steer =
-        (struct steer){.model = *model,
-                       .thing = calloc(h->n_objects + 1, sizeof *steer->thing),
-                       .look = calloc(h->n_materials + 1, sizeof *steer->look),
-                       .camera = h->camera,
-                       .turn_deg = atan2(h->environment_turn_q30[1],
-                                         h->environment_turn_q30[0]) /
-                                   RADIAN};
+    *steer = (struct steer){
+        .model = *model,
+        .thing = calloc(h->n_objects + 1, sizeof *steer->thing),
+        .look = calloc(h->n_materials + 1, sizeof *steer->look),
+        .camera = h->camera,
+        .sensor = model->motion && model->motion->camera != GLINT_SCENE_NONE
+                      ? (int)model->motion->camera
+                      : -1,
+        .turn_deg =
+            atan2(h->environment_turn_q30[1], h->environment_turn_q30[0]) /
+            RADIAN};
     if (!steer->thing || !steer->look) {
         steer_close(steer);
         return GLINT_E_MEMORY;
@@ -150,8 +153,11 @@ enum glint_status steer_check(const struct steer *steer,
 {
     const bool is_set = is_of_material(line) && *line->name[0];
     int index[2];
-    enum glint_status status = find_all(steer, line, where, error, index);
+    enum glint_status status;
 
+    if (steer_check_motion(steer, line, where, error, &status))
+        return status;
+    status = find_all(steer, line, where, error, index);
     if (status != GLINT_OK)
         return status;
     if (is_set && line->verb != CONTROL_COLOUR && !is_metal(steer, index[0]))
@@ -182,11 +188,11 @@ static void set_from(const struct steer_orbit *o, double from[3])
     from[2] = -cos(pitch) * cos(yaw);
 }
 
-static enum glint_status apply_orbit(const struct steer *s,
-                                     struct glint_scene *scene)
+enum glint_status steer_orbit_camera(const struct steer *steer,
+                                     struct glint_scene_camera *camera)
 {
+    const struct steer *const s = steer;
     const double yaw = s->orbit.yaw_deg * RADIAN;
-    int32_t at[3], axis_q30[3][3];
     double from[3], axis[3][3];
 
     set_from(&s->orbit, from);
@@ -206,11 +212,23 @@ static enum glint_status apply_orbit(const struct steer *s,
 
         if (!(fabs(place) < GLINT_SCENE_SPAN - 1))
             return GLINT_E_ARGUMENT;
-        at[k] = (int32_t)lround(place);
+        camera->at[k] = (int32_t)lround(place);
         for (int i = 0; i < 3; i++)
-            axis_q30[k][i] = (int32_t)lround(0x1p30 * axis[k][i]);
+            camera->axis_q30[k][i] = (int32_t)lround(0x1p30 * axis[k][i]);
     }
-    return glint_scene_set_camera(scene, at, (const int32_t(*)[3])axis_q30);
+    return GLINT_OK;
+}
+
+static enum glint_status apply_orbit(const struct steer *s,
+                                     struct glint_scene *scene)
+{
+    struct glint_scene_camera c;
+    const enum glint_status status = steer_orbit_camera(s, &c);
+
+    return status == GLINT_OK
+               ? glint_scene_set_camera(scene, c.at,
+                                        (const int32_t(*)[3])c.axis_q30)
+               : status;
 }
 
 /* Has the camera go about the point ahead of it that is as far as the mean of
@@ -248,9 +266,11 @@ static void begin_orbit(struct steer *s)
 bool steer_camera(struct steer *steer, const int32_t at[3],
                   const int32_t axis_q30[3][3])
 {
+    if (steer->is_free)
+        return false;
     memcpy(steer->camera.at, at, sizeof steer->camera.at);
     memcpy(steer->camera.axis_q30, axis_q30, sizeof steer->camera.axis_q30);
-    return !steer->orbit.is_there;
+    return !steer->orbit.is_there && steer->sensor < 0;
 }
 
 static enum glint_status take_camera(struct steer *s, struct glint_scene *scene,
@@ -260,8 +280,11 @@ static enum glint_status take_camera(struct steer *s, struct glint_scene *scene,
     const double *const v = line->v;
     enum glint_status status;
 
+    if (s->sensor >= 0)
+        glint_scene_enter(scene, s->sensor = -1);
     if (!s->orbit.is_there)
         begin_orbit(s);
+    s->is_free = false;
     if (line->verb == CONTROL_DISTANCE)
         s->orbit.distance = line->is_change
                                 ? s->orbit.distance * v[0]
@@ -432,9 +455,14 @@ enum glint_status steer_take(struct steer *steer, struct glint_scene *scene,
 
     if (status != GLINT_OK)
         return line->is_change ? GLINT_OK : status;
-    status = find_all(steer, line, where, error, index);
-    if (status == GLINT_OK && obey(steer, scene, line, index) != GLINT_OK &&
-        !line->is_change)
+    if (!steer_take_motion(steer, scene, line, &status)) {
+        status = find_all(steer, line, where, error, index);
+        if (status == GLINT_OK)
+            status = obey(steer, scene, line, index);
+    }
+    if (line->is_change)
+        return GLINT_OK;
+    if (status == GLINT_E_ARGUMENT)
         status = control_fail(
             error, where, line->column,
             is_of_material(line)
@@ -457,6 +485,7 @@ void steer_apply(const struct steer *steer, struct glint_scene *scene)
         glint_scene_set_look(scene, i, &steer->look[i]);
     if (steer->model.environment)
         apply_turn(steer, scene);
+    steer_apply_motion(steer, scene);
     if (steer->orbit.is_there)
         apply_orbit(steer, scene);
 }

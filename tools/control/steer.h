@@ -22,6 +22,12 @@ struct steer_thing {
     int32_t radius; /* of a ball, steps */
 };
 
+/* A kind of things of a motion as it was changed. */
+struct steer_kind {
+    bool is_hidden;
+    int32_t steps; /* radius or width; 0: as the scene has it */
+};
+
 /* A camera that goes about a point. */
 struct steer_orbit {
     bool is_there;
@@ -37,13 +43,37 @@ struct steer {
     struct steer_orbit orbit;
     /* Where the camera was before it went about a point. */
     struct glint_scene_camera camera;
+    bool is_free;    /* it has walked, and poses no longer move it */
     double turn_deg; /* of the environment */
+    struct steer_kind kind[GLINT_KINDS];
+    int sensor; /* that the camera is in, or -1 */
 };
 
 /* MODEL is copied; what it points into is kept. GLINT_E_MEMORY. */
 enum glint_status steer_open(struct steer *steer,
                              const struct glint_scene_model *model);
 void steer_close(struct steer *steer);
+
+/* steer_motion.c: sets KIND to the kind of things called NAME; returns false if
+ * there is none, or a thing has that name. */
+bool steer_kind_of(const struct steer *steer, const char *name,
+                   enum glint_scene_kind *kind);
+
+/* Checks, and obeys, what LINE says of a motion or a free camera; returns false
+ * if it is about something else. *STATUS: as steer_check(), and
+ * GLINT_E_ARGUMENT. */
+bool steer_check_motion(const struct steer *steer,
+                        const struct control_line *line, const char *where,
+                        struct glint_error *error, enum glint_status *status);
+bool steer_take_motion(struct steer *steer, struct glint_scene *scene,
+                       const struct control_line *line,
+                       enum glint_status *status);
+void steer_apply_motion(const struct steer *steer, struct glint_scene *scene);
+
+/* Sets at and axes of CAMERA to where the orbit has it. GLINT_E_ARGUMENT: out
+ * of range. */
+enum glint_status steer_orbit_camera(const struct steer *steer,
+                                     struct glint_scene_camera *camera);
 
 /* Notes that the camera was moved to AT, AXIS_Q30, by others. Returns false if
  * it goes about a point, and stays there. */

@@ -9,7 +9,7 @@
 
 static bool is_test(const char *name)
 {
-    return strcmp(name, "test") == 0;
+    return strcmp(name, "test") == 0 || strcmp(name, "none") == 0;
 }
 
 static bool is_video_file(const char *name)
@@ -54,7 +54,8 @@ enum glint_status live_input_open(struct live_input *input,
                                  wish->n_buffers, error);
     } else if (is_test(name)) {
         source = &input->as.test.timed.source;
-        status = live_test_open(&input->as.test, &wish->camera, seed, error);
+        status = live_test_open(&input->as.test, &wish->camera, seed,
+                                strcmp(name, "none") == 0, error);
     } else {
         source = &input->as.video.timed.source;
         status = live_video_open(&input->as.video, &wish->camera, error);

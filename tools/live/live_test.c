@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "overlay/paint.h"
 #include "posix/error.h"
 
 enum { HOUSES = 14, DARKEST = 22, BRIGHTEST = 235 };
@@ -102,6 +103,10 @@ static void draw(struct live_test *s, int64_t n)
     const double turn = fmod((double)n / (8 * per_second), 1);
     const double angle = 6.283185307179586 * turn;
 
+    if (s->is_black) {
+        paint_black(i);
+        return;
+    }
     expose(s, n);
     for (int p = 1; p < 3; p++) /* a bluish night */
         for (int y = 0; y < glint_image_plane_height(i->format, p, i->height);
@@ -171,7 +176,8 @@ static enum glint_status place(struct live_test *s)
 
 enum glint_status live_test_open(struct live_test *test,
                                  const struct glint_v4l2_config *wish,
-                                 uint32_t seed, struct glint_error *error)
+                                 uint32_t seed, bool is_black,
+                                 struct glint_error *error)
 {
     const struct glint_image image = lay_out(wish);
     enum glint_status status;
@@ -181,13 +187,14 @@ enum glint_status live_test_open(struct live_test *test,
         return glint_error_report(error, GLINT_E_UNSUPPORTED, "test",
                                   "has sides of 16 to %d pixels",
                                   GLINT_PANEL_SIDE);
-    *test = (struct live_test){.image = image, .seed = seed};
+    *test =
+        (struct live_test){.image = image, .seed = seed, .is_black = is_black};
     if (place(test) != GLINT_OK)
         return glint_error_report(error, GLINT_E_MEMORY, "test",
                                   "no memory for %d x %d pixels", image.width,
                                   image.height);
     live_timed_init(&test->timed, &(struct glint_source_format){.image = image},
-                    wish, "a lamp over a night street");
+                    wish, is_black ? "black" : "a lamp over a night street");
     test->timed.source.next = next;
     test->timed.source.close = close_test;
     status = live_timed_start(&test->timed, "test", error);

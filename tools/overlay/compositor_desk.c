@@ -344,6 +344,7 @@ void compositor_mark(const struct compositor *compositor,
         preview_number(&compositor->frame, compositor->lamp,
                        compositor->n_lamps, compositor_scale(compositor),
                        image);
+    over_scene_mark(&compositor->scene, image);
     if (!compositor->show_lights)
         return;
     for (int i = 0; i < compositor->n_lamps; i++) {
@@ -364,5 +365,6 @@ void compositor_mark(const struct compositor *compositor,
 
 bool compositor_marks(const struct compositor *compositor)
 {
-    return compositor->show_lights || compositor->preview;
+    return compositor->show_lights || compositor->preview ||
+           compositor->scene.has_time_line;
 }

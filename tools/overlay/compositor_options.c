@@ -121,7 +121,7 @@ static bool take(struct compositor *compositor, int option, const char *value)
 {
     static const char *const layers[] = {"composite", "flare", "flare-alpha",
                                          NULL};
-    static const char *const shows[] = {"lights", NULL};
+    static const char *const shows[] = {"lights", "timeline", NULL};
     int layer;
 
     if (take_file(compositor, option, value))
@@ -161,7 +161,10 @@ static bool take(struct compositor *compositor, int option, const char *value)
     case OPT_INTERPOLATE:
         return compositor->interpolate = true;
     case OPT_SHOW:
-        return compositor->show_lights = tool_word(value, shows) == 0;
+        layer = tool_word(value, shows);
+        compositor->show_lights |= layer == 0;
+        compositor->scene.has_time_line |= layer == 1;
+        return layer >= 0;
     case OPT_STRENGTH:
         compositor->settings.has_exposure = false;
         return tool_number(value, &compositor->strength.asked) &&

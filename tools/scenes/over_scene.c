@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "engine/frame/area.h"
-#include "glint/scene/motion.h"
+#include "motions/time_line.h"
 #include "scenes/account.h"
 
 /* ------------------------------------------------------------------- opening
@@ -87,11 +87,12 @@ int over_scene_open(struct over_scene *over, const struct tool *tool)
         return code;
     over->is_open = true;
     playback_init(&over->playback);
-    if (over->baked.model.motion) {
-        const struct glint_motion_header *const h =
-            (const void *)(over->baked.model.motion + 1);
+    if (over->baked.model.motion) { /* which was checked with the scene */
+        const char *reason;
 
-        over->playback.last = (int)h->n_frames - 1;
+        glint_motion_open(&over->motion, over->baked.model.motion + 1,
+                          over->baked.model.motion->bytes, &reason);
+        over->playback.last = (int)over->motion.header.n_frames - 1;
     }
     if (steer_open(&over->steer, &over->baked.model) != GLINT_OK)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
@@ -330,6 +331,15 @@ enum glint_status over_scene_draw(struct over_scene *over,
                           over->frame.project_ms + over->frame.draw_ms);
     over->lamps_hidden = over->lights = 0;
     return status;
+}
+
+void over_scene_mark(const struct over_scene *over,
+                     const struct glint_image *image)
+{
+    struct glint_motion motion = over->motion;
+
+    if (over->has_time_line && over->is_open && over->baked.model.motion)
+        time_line_draw(image, &motion, over->shown);
 }
 
 void over_scene_again(struct over_scene *over, const struct glint_image *image)

@@ -15,6 +15,7 @@
 #ifndef GLINT_TOOLS_SCENES_OVER_SCENE_H
 #define GLINT_TOOLS_SCENES_OVER_SCENE_H
 
+#include "glint/scene/motion.h"
 #include "glint/view.h"
 #include "control/controls.h"
 #include "control/playback.h"
@@ -50,6 +51,8 @@ struct over_scene {
                            itself */
     bool no_tracking;   /* each picture's highlights are its own */
 
+    bool has_time_line; /* of recorded motion, over pictures of 8 bits */
+
     /* Private. */
     const struct tool *tool;
     struct scene_budget budget;
@@ -57,8 +60,9 @@ struct over_scene {
     struct poses poses;
     struct scene_moved *moved; /* objects, lights, and the camera */
     struct controls control;
-    struct playback playback; /* of poses and recorded motion */
-    int shown;                /* the frame of them that is drawn */
+    struct playback playback;   /* of poses and recorded motion */
+    int shown;                  /* the frame of them that is drawn */
+    struct glint_motion motion; /* of the scene, if it has one */
     struct steer steer;
     int posed; /* frame of the poses that is shown */
     struct glints glints;
@@ -85,6 +89,10 @@ int over_scene_size(struct over_scene *over, const struct scene_dials *dials);
 /* Draws the scene of frame FRAME onto IMAGE. */
 enum glint_status over_scene_draw(struct over_scene *over,
                                   const struct glint_image *image, int frame);
+
+/* Draws the time line of what was drawn last, if that is wanted. */
+void over_scene_mark(const struct over_scene *over,
+                     const struct glint_image *image);
 
 /* Draws the scene drawn last once more, onto IMAGE. */
 void over_scene_again(struct over_scene *over, const struct glint_image *image);

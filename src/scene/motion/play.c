@@ -419,6 +419,8 @@ enum glint_status glint_scene_enter(struct glint_scene *scene, int sensor)
 
     if (!m || sensor < -1 || sensor >= (int)m->motion.header.n_sensors)
         return GLINT_E_ARGUMENT;
+    if (sensor < 0 && before < 0)
+        return GLINT_OK;
     m->sensor = sensor;
     if (sensor >= 0)
         status = move_camera(scene);
