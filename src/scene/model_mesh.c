@@ -342,7 +342,8 @@ static const char *check_skin(struct glint_scene_check *c, uint32_t i)
 static int has_map(const struct glint_scene_model *m, uint32_t i)
 {
     for (uint32_t k = 0; k < m->header->n_stones; k++) {
-        int has = m->stone[k].material != m->object[i].material;
+        int has = m->stone[k].material != m->object[i].material ||
+                  m->object[i].catcher_q15 > 0; /* which shows no material */
 
         for (uint32_t j = 0; j < m->header->n_skins; j++)
             has |= m->skin[j].object == i && m->skin[j].stone == k;

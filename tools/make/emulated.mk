@@ -18,7 +18,8 @@ $(OUT)/scenes: $(OUT)/tests/arm/scenes.o $(OUT)/tests/support/stars/any.o $(libs
 $(OUT)/things: $(OUT)/tests/arm/things.o $(libs)
 	$(link)
 ARM_SCENES := tools/examples/scenes/shop.scene tools/examples/scenes/ball.scene \
-        tools/examples/scenes/brushed.scene tools/examples/scenes/tutorial.scene \
+        tools/examples/scenes/brushed.scene tools/examples/scenes/stone.scene \
+        tools/examples/scenes/tutorial.scene \
         $(patsubst %,tests/peers/%.scene,mesh phong reflect refract shadow texture)
 build/things/%.glint: $(OUT)/glint
 	@mkdir -p $(@D)

@@ -95,19 +95,21 @@ static enum glint_status read_mask(const struct tool *tool, const char *path,
     const size_t n = (size_t)side * (size_t)side;
     char beside[TOOL_PATH_BYTES];
     struct glint_image image = {.width = 0};
+    double *mask;
     enum glint_status status = find(tool, path, s->text.mask, beside, error);
 
     if (status == GLINT_OK)
         status = glint_picture_load(beside, &image, error);
     if (status != GLINT_OK)
         return status;
-    s->mask = malloc(n * sizeof *s->mask);
-    if (s->mask) {
-        shrink(&image, side, s->mask);
-        tool_key_mix(&s->key, s->mask, n * sizeof *s->mask);
+    mask = malloc(n * sizeof *mask);
+    if (mask) {
+        shrink(&image, side, mask);
+        tool_key_mix(&s->key, mask, n * sizeof *mask);
     }
     free(image.plane[0]);
-    return s->mask ? GLINT_OK : GLINT_E_MEMORY;
+    s->mask = mask;
+    return mask ? GLINT_OK : GLINT_E_MEMORY;
 }
 
 static enum glint_status read_rows(const struct tool *tool, const char *path,

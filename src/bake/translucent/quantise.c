@@ -82,7 +82,7 @@ static double factor_of(const struct writer *w, int p, int c, int x)
 
     if (fit->model == GLINT_SCATTER_FACTORED)
         return fit->f[kernel_at(p, c) * (size_t)w->texels + (size_t)x];
-    if (fit->model == GLINT_SCATTER_CLUSTERED && fit->cluster[x] != p)
+    if (fit->cluster && fit->cluster[x] != p)
         return 0;
     return fit->out[CHANNELS * (size_t)x + (size_t)c];
 }

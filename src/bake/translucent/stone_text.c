@@ -135,7 +135,7 @@ static bool read_file(struct reader *r, const char *what,
 /* Reads the two stones at the end of a pattern's line. */
 static bool read_pair(struct reader *r)
 {
-    int index[2];
+    int index[2] = {0, 0};
 
     for (int i = 0; i < 2; i++) {
         const struct glint_word word = glint_text_next_word(&r->text);

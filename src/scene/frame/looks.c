@@ -95,7 +95,7 @@ static int has_map(const struct glint_scene_model *m,
                    const struct glint_placed *p, uint32_t material)
 {
     for (uint32_t k = 0; k < m->header->n_stones; k++)
-        if (m->stone[k].material == material)
+        if (m->stone[k].material == material && !p->is_catcher)
             return p->skin >= 0 && m->skin[p->skin].stone == k;
     return 1;
 }

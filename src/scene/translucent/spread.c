@@ -58,9 +58,9 @@ static void set_taps(const struct glint_translucent *t, uint32_t i,
 
 /* Codes of a table, from a texel on. */
 struct codes {
-    const int8_t *narrow; /* NULL: they are wide */
-    const int16_t *wide;
-    int is_signed, bits; /* a factor is code / 2^bits */
+    const void *at; /* of 8 bits, or 16 */
+    int is_wide, is_signed;
+    int bits; /* a factor is code / 2^bits */
 };
 
 /* Returns codes of table TABLE, from texel (X, Y) of the map on. */
@@ -68,23 +68,24 @@ static struct codes codes_at(const struct glint_translucent *t, size_t table,
                              int x, int y)
 {
     const struct glint_translucent_header *h = t->header;
-    const int log2 = (int)h->side_log2, mask = (1 << log2) - 1;
+    const size_t log2 = h->side_log2, mask = ((size_t)1 << log2) - 1;
     const int is_signed = h->variant == GLINT_TRANSLUCENT_FACTORED;
     const int bits = (int)h->code_bits - is_signed;
     const size_t at =
-        (table << 2 * log2) + ((size_t)(y & mask) << log2) + (size_t)(x & mask);
+        (table << 2 * log2) + (((size_t)y & mask) << log2) + ((size_t)x & mask);
+    const int is_wide = h->code_bits > 8;
 
-    if (h->code_bits <= 8)
-        return (struct codes){(const int8_t *)t->code + at, NULL, is_signed,
-                              bits};
-    return (struct codes){NULL, (const int16_t *)t->code + at, is_signed, bits};
+    return (struct codes){(const int8_t *)t->code + (at << is_wide), is_wide,
+                          is_signed, bits};
 }
 
 static inline int32_t code_of(const struct codes *f, int i)
 {
-    if (f->narrow)
-        return f->is_signed ? f->narrow[i] : (uint8_t)f->narrow[i];
-    return f->is_signed ? f->wide[i] : (uint16_t)f->wide[i];
+    if (f->is_wide)
+        return f->is_signed ? ((const int16_t *)f->at)[i]
+                            : ((const uint16_t *)f->at)[i];
+    return f->is_signed ? ((const int8_t *)f->at)[i]
+                        : ((const uint8_t *)f->at)[i];
 }
 
 /* ------------------------------------------------------------------- light */
@@ -103,7 +104,7 @@ static void set_piece(const struct glint_spread *s, int c, int x, int y, int n,
             value[i] = light[i];
         return;
     }
-    in = codes_at(s->stone, (size_t)(3 + c), x, y);
+    in = codes_at(s->stone, 3 + (size_t)c, x, y);
     for (int i = 0; i < n; i++)
         value[i] =
             (int16_t)((light[i] * code_of(&in, i) + (1 << (in.bits - 1))) >>
@@ -124,7 +125,7 @@ static int set_row(const struct glint_spread *s, int c, int x, int y, int n,
         y = y < 0 ? -1 - y : 2 * s->height - 1 - y;
         x += s->width / 2;
     }
-    for (int i = 0; i < n && !s->is_ball; i++)
+    for (int i = 0; i < n; i++)
         value[i] = 0;
     while (done < n) {
         const int at = x + done;
@@ -245,9 +246,11 @@ static void add_plane(const struct glint_spread *s, int c, uint32_t p, int x0,
         for (int i = 0; i < GLINT_STRIP; i++)
             total[i] = of[i] == p ? ((sum[i] + half) >> f.bits) * code_of(&f, i)
                                   : total[i];
-    } else if (f.narrow && f.is_signed) {
+    } else if (!f.is_wide && f.is_signed) {
+        const int8_t *code = f.at;
+
         for (int i = 0; i < GLINT_STRIP; i++)
-            total[i] += ((sum[i] + half) >> f.bits) * f.narrow[i];
+            total[i] += ((sum[i] + half) >> f.bits) * code[i];
     } else {
         for (int i = 0; i < GLINT_STRIP; i++)
             total[i] += ((sum[i] + half) >> f.bits) * code_of(&f, i);

@@ -240,6 +240,10 @@ static void test_twin(void **state)
                "material c\nplane p at 0 0 0 normal 0 1 0 material "
                "grey\n",
          cube_text},
+        {"on a catcher",
+         STAGE "sphere b at 0 .5 0 radius .5 material f\n"
+               "plane p at 0 0 0 normal 0 1 0 catcher .5\n",
+         NULL},
         {"quad",
          STAGE "mesh m quad.obj at 0 .2 0 material f\n"
                "sphere b at 0 .7 0 radius .3 material grey\n",

@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Opens any bytes as a baked stone, after magic, version, size and checksum are
+ * put right, and spreads light as it says; parses them as the text of one. No
+ * sum may leave its range, whatever is accepted.
+ *
+ *     make fuzz FUZZ=stone SECONDS=60
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/blob.h"
+#include "glint/scene/stone_bake.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void require(int condition)
+{
+    if (!condition)
+        abort();
+}
+
+/* Spreads even light and a checked one over a small stone. */
+static void use(const struct glint_translucent *t)
+{
+    const size_t side = (size_t)1 << t->header->side_log2;
+    const size_t n = 3 * side * side;
+    double *light = malloc(2 * n * sizeof *light);
+
+    require(light != NULL);
+    for (size_t i = 0; i < n; i++)
+        light[i] = i % 7 < 4 ? 1 : .01;
+    require(glint_stone_light(t, light, light + n) == GLINT_OK);
+    for (size_t i = n; i < 2 * n; i++)
+        require(light[i] >= 0 && light[i] <= 1);
+    free(light);
+}
+
+static void open_blob(const uint8_t *data, size_t size)
+{
+    unsigned char *copy = malloc(size ? size : 1); /* exact, for overruns */
+    struct glint_translucent stone;
+    const char *reason = NULL;
+    uint32_t *const word = (void *)copy;
+
+    require(copy != NULL);
+    if (size)
+        memcpy(copy, data, size);
+    if (size >= sizeof(struct glint_blob_header)) {
+        word[0] = GLINT_TRANSLUCENT_MAGIC;
+        word[1] = GLINT_TRANSLUCENT_VERSION;
+        glint_blob_seal(copy, size);
+    }
+    if (glint_translucent_open(&stone, copy, size, &reason) != GLINT_OK)
+        require(reason && *reason);
+    else if (stone.header->side_log2 == GLINT_TRANSLUCENT_LEAST_LOG2)
+        use(&stone);
+    free(copy);
+}
+
+static void parse(const uint8_t *data, size_t size)
+{
+    struct glint_stone_text t;
+    struct glint_error error = {""};
+
+    if (glint_stone_parse(&t, (const char *)data, size, "x", &error) ==
+        GLINT_OK)
+        require(t.stone.side >= 32 && t.stone.side <= 256 &&
+                t.stone.kernel % 2 == 1 && isfinite(t.stone.texel_mm) &&
+                t.fit.kernels >= 1 && t.fit.rank >= 1 && t.code_bits >= 4 &&
+                t.tap_bits >= 6);
+    else
+        require(error.text[0]);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    open_blob(data, size);
+    parse(data, size);
+    return 0;
+}
