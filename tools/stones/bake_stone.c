@@ -5,6 +5,7 @@
  */
 #include <string.h>
 
+#include "lab/scenes/stone_models.h"
 #include "options/settings.h"
 #include "options/takes.h"
 #include "posix/output.h"
@@ -30,11 +31,14 @@ static const char help[] =
     "  --planes N          kernels or terms (default 4, 5)\n"
     "  --rank N            products that a kernel is a sum of, 1 to 8 (default "
     "3)\n"
-    "  --bits CODES,TAPS   4 to 16, 6 to 16 (default 8,12)\n";
+    "  --bits CODES,TAPS   4 to 16, 6 to 16 (default 8,12)\n"
+    "  --report DIR        these models and published ones side by side, as a "
+    "page\n"
+    "                      with pictures; some minutes\n";
 
 /* What the line says; -1: nothing. */
 struct line {
-    const char *output;
+    const char *output, *report;
     int model, planes, rank, bits[2];
 };
 
@@ -83,6 +87,9 @@ static int take(struct tool *tool, struct line *l, int c, const char *name)
     case 'o':
         l->output = optarg;
         break;
+    case 'R':
+        l->report = optarg;
+        break;
     case 'm':
         l->model = tool_word(optarg, models);
         ok = l->model >= 0;
@@ -110,6 +117,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct line *l)
         {"planes", required_argument, NULL, 'p'},
         {"rank", required_argument, NULL, 'r'},
         {"bits", required_argument, NULL, 'b'},
+        {"report", required_argument, NULL, 'R'},
         TOOL_COMMON_OPTIONS};
     int c, code, index = 0;
 
@@ -121,6 +129,20 @@ static int parse(struct tool *tool, int argc, char **argv, struct line *l)
     if (code >= 0)
         return code;
     return l->output ? -1 : tool_usage(tool, "needs -o OUT");
+}
+
+static int report(const struct tool *tool, const char *path, const char *folder)
+{
+    struct glint_error error = {""};
+    struct glint_scatter_rows rows;
+    const enum glint_status status = stone_file_rows(tool, path, &rows, &error);
+    int code;
+
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    code = stone_models_report(tool, path, &rows, folder);
+    glint_scatter_close(&rows);
+    return code;
 }
 
 int cmd_bake_stone(int argc, char **argv)
@@ -154,5 +176,7 @@ int cmd_bake_stone(int argc, char **argv)
             stone_file_print(&tool, &file);
     }
     stone_file_close(&file);
+    if (code == EXIT_OK && line.report)
+        code = report(&tool, argv[optind], line.report);
     return code;
 }

@@ -35,6 +35,7 @@ struct source {
     struct glint_stone_text text;
     double *mask;                  /* malloc'ed */
     struct glint_float_image rows; /* malloc'ed */
+    long long held;                /* numbers of rows that became 0 */
     uint64_t key;
 };
 
@@ -237,6 +238,21 @@ static enum glint_status fit_rows(struct glint_scatter_rows *rows,
     return status;
 }
 
+/* Computes what S describes, or takes its measured rows. */
+static enum glint_status make_rows(struct source *s,
+                                   const struct glint_watch *watch,
+                                   struct glint_scatter_rows *rows,
+                                   struct glint_error *error)
+{
+    const struct glint_stone *stone = &s->text.stone;
+
+    s->text.stone.mask = s->mask;
+    return s->rows.rgb
+               ? glint_scatter_read(&s->rows, stone->side, stone->kernel, rows,
+                                    &s->held, error)
+               : glint_scatter_compute(stone, watch, rows, error);
+}
+
 static enum glint_status bake(const struct tool *tool, struct source *s,
                               const char *name, struct stone_file *file,
                               struct glint_error *error)
@@ -247,25 +263,19 @@ static enum glint_status bake(const struct tool *tool, struct source *s,
                                          {.progress = show, .ctx = &stage[1]}};
     struct glint_scatter_rows rows = {.side = 0};
     const clock_t began = clock();
-    long long held = 0;
     enum glint_status status;
 
     tool_progress_start(&progress, tool, name);
-    s->text.stone.mask = s->mask;
-    status =
-        s->rows.rgb
-            ? glint_scatter_read(&s->rows, s->text.stone.side,
-                                 s->text.stone.kernel, &rows, &held, error)
-            : glint_scatter_compute(&s->text.stone, &watch[0], &rows, error);
+    status = make_rows(s, &watch[0], &rows, error);
     if (status == GLINT_OK) {
         status = fit_rows(&rows, s, name, &watch[1], file, error);
         glint_scatter_close(&rows);
     }
     tool_progress_end(&progress);
-    if (held > 0 && !tool->quiet)
+    if (s->held > 0 && !tool->quiet)
         fprintf(stderr,
                 "glint %s: %s: %lld numbers below 0 or not finite became 0\n",
-                tool->name, name, held);
+                tool->name, name, s->held);
     file->is_baked_now = true;
     file->errors.seconds = (double)(clock() - began) / CLOCKS_PER_SEC;
     return status;
@@ -359,4 +369,17 @@ void stone_file_close(struct stone_file *file)
 {
     free(file->data);
     *file = (struct stone_file){.data = NULL};
+}
+
+enum glint_status stone_file_rows(const struct tool *tool, const char *path,
+                                  struct glint_scatter_rows *rows,
+                                  struct glint_error *error)
+{
+    struct source s = {.mask = NULL};
+    enum glint_status status = read_source(tool, path, NULL, NULL, &s, error);
+
+    if (status == GLINT_OK)
+        status = make_rows(&s, NULL, rows, error);
+    close_source(&s);
+    return status;
 }
