@@ -28,6 +28,7 @@ struct baked {
 };
 
 static struct glint_rigid truth[FRAMES];
+static double true_food[FRAMES][FOODS][3];
 
 /* Bakes a track, scaled by SCALE. */
 static void bake(struct baked *baked, int n_frames, int reset_every,
@@ -59,6 +60,7 @@ static void bake(struct baked *baked, int n_frames, int reset_every,
         s.n_intensities = 2;
         for (int k = 0; k < FOODS; k++) {
             s.is_new[k] = f.is_new[k];
+            glint_rigid_take(&f.pose, f.seen[k], true_food[i][k]);
             s.intensity[k][1] = (i % 256) / 255.;
             for (int axis = 0; axis < 3; axis++)
                 s.food[k][axis] = scale * f.seen[k][axis];
@@ -110,6 +112,10 @@ static void poses_are_the_true_ones(void **state)
                 (q - same * truth[k].turn[i]) * (q - same * truth[k].turn[i]);
         }
         turn = fmax(turn, 2 * sqrt(off / square));
+        for (int i = 0; i < FOODS; i++)
+            for (int axis = 0; axis < 3; axis++)
+                assert_true(fabs(ldexp(f.food[i][axis], -24) -
+                                 true_food[k][i][axis]) < 1e-6);
         assert_int_equal(f.intensity[3][0], 0);
         assert_int_equal(f.intensity[3][1], k % 256);
     }
