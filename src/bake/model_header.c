@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "bake/fit/regress.h"
+#include "bake/regress/regress.h"
 #include "bake/fit/visible.h"
 #include "bake/options.h"
 #include "bake/trace/cells.h"
@@ -22,7 +22,9 @@ static void fit_flux(const double *w, const double *flux, double scale,
 {
     static const double zero[FLUX_NODES];
     double one[FLUX_NODES];
-    double scratch[FLUX_NODES * (GLINT_MAX_CANDIDATES + 1)];
+    double scratch[GLINT_REGRESS_DOUBLES(FLUX_NODES, GLINT_FLUX_TERMS,
+                                         GLINT_FLUX_TERMS,
+                                         2 * GLINT_FLUX_TERMS - 1)];
     const struct glint_regress_samples samples = {
         FLUX_NODES, {zero, zero, zero, w}, one};
     const struct glint_degrees degrees = {

@@ -473,8 +473,8 @@ enum glint_status glint_fit_ghost(const struct glint_visible *visible,
     f->out = out;
     f->told = told;
     f->told_ctx = ctx;
-    f->buffers.scratch = malloc(glint_regress_doubles(GLINT_ZONE_RAYS) *
-                                sizeof *f->buffers.scratch);
+    f->buffers.scratch =
+        malloc(GLINT_ZONE_SCRATCH * sizeof *f->buffers.scratch);
     if (f->buffers.scratch) {
         const int n = glint_visible_ranges(visible, max_deg, range);
 

@@ -5,7 +5,7 @@
 #ifndef GLINT_BAKE_FIT_FITTED_H
 #define GLINT_BAKE_FIT_FITTED_H
 
-#include "bake/fit/regress.h"
+#include "bake/regress/regress.h"
 #include "glint/model.h"
 #include "glint/status.h"
 

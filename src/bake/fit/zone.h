@@ -16,7 +16,7 @@
 #define GLINT_BAKE_FIT_ZONE_H
 
 #include "bake/fit/visible.h"
-#include "bake/fit/regress.h"
+#include "bake/regress/regress.h"
 #include "glint/model.h"
 #include "glint/trace.h"
 

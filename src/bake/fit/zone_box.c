@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "bake/fit/zone_batch.h"
-#include "bake/fit/regress.h"
+#include "bake/regress/regress.h"
 #include "engine/setup/degrees.h"
 
 /* Share of a box: if as much of it is seen, that is enough. A fuller box would
@@ -81,7 +81,9 @@ static void follow(const struct seen *seen, const double *value, int degree,
                    double side[GLINT_BOX_TERMS])
 {
     static const double zero[ROOM];
-    double scratch[ROOM * (GLINT_BOX_TERMS + 1)], weight[ROOM];
+    double scratch[GLINT_REGRESS_DOUBLES(ROOM, GLINT_BOX_TERMS, GLINT_BOX_TERMS,
+                                         3 * (2 * GLINT_BOX_POWERS - 1))];
+    double weight[ROOM];
     const struct glint_regress_samples samples = {
         seen->n, {zero, zero, seen->s, seen->w}, weight};
     const int total = degree < 2 ? 2 : degree;

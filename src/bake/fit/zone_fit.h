@@ -33,9 +33,14 @@ struct glint_zone_task {
     double settled;
 };
 
+/* Moments are at most those of the energy's degrees, 16, 12, 8 and 16. */
+#define GLINT_ZONE_SCRATCH                                  \
+    GLINT_REGRESS_DOUBLES(GLINT_ZONE_RAYS, GLINT_MAX_TERMS, \
+                          GLINT_MAX_CANDIDATES, 17 * 13 * 9 * 17)
+
 /* Memory for fits of zones, one after the other. */
 struct glint_zone_buffers {
-    double *scratch; /* glint_regress_doubles(GLINT_ZONE_RAYS) */
+    double *scratch; /* GLINT_ZONE_SCRATCH doubles */
     /* Rays to be fitted; they are overwritten. */
     struct glint_zone_rays rays, energies;
     double weight[GLINT_ZONE_RAYS], sensor_weight[GLINT_ZONE_RAYS];

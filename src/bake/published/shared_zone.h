@@ -21,7 +21,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "bake/fit/regress.h"
+#include "bake/regress/regress.h"
 #include "glint/model.h"
 
 enum {

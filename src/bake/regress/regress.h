@@ -12,8 +12,8 @@
  * nearly a combination of chosen terms has no length left and is passed over,
  * which makes the factorisation rank revealing.
  */
-#ifndef GLINT_BAKE_FIT_REGRESS_H
-#define GLINT_BAKE_FIT_REGRESS_H
+#ifndef GLINT_BAKE_REGRESS_REGRESS_H
+#define GLINT_BAKE_REGRESS_REGRESS_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -47,8 +47,11 @@ struct glint_regress_samples {
     const double *weight;
 };
 
-/* Returns how many doubles the scratch for N samples needs. */
-size_t glint_regress_doubles(int n);
+/* Number of doubles that the scratch of a fit to N samples needs, if there are
+ * at most TERMS terms, chosen of CANDIDATES. MOMENTS is the product of 2 MOST +
+ * 1 over the variables. */
+#define GLINT_REGRESS_DOUBLES(n, terms, candidates, moments) \
+    ((size_t)(moments) + (size_t)(n) * (1 + (terms) + (candidates)))
 
 /* Fits Y. Stops when the weighted residual is at most RMS in the root mean
  * square and PEAK everywhere, or when no term helps any more. There is at least
