@@ -126,15 +126,13 @@ static void add_products(const struct search *s, const double *a, int first,
                          int m, double sum[GLINT_MAX_TERMS])
 {
     for (int k = 0; k < s->n_chosen; k += GLINT_VECTORS) {
-        const int n =
-            s->n_chosen - k < GLINT_VECTORS ? s->n_chosen - k : GLINT_VECTORS;
         const double *at[GLINT_VECTORS];
         double product[GLINT_VECTORS];
 
         for (int j = 0; j < GLINT_VECTORS; j++)
-            at[j] = direction(s, k + (j < n ? j : 0)) + first;
+            at[j] = direction(s, k + j < s->n_chosen ? k + j : k) + first;
         glint_vector_dots(a + first, at, m, product);
-        for (int j = 0; j < n; j++)
+        for (int j = 0; j < GLINT_VECTORS && k + j < s->n_chosen; j++)
             sum[k + j] += product[j];
     }
 }
