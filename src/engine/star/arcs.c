@@ -22,6 +22,13 @@ void glint_arcs_init(struct glint_arcs *a, int n, double rotation_deg,
               n * (2 * a->turn - sin(2 * a->turn)) / (2 * round * round);
 }
 
+/* Returns how many of N sides to add up: of an even number half, as light of
+ * the opposite side is that of a side with its phase turned round. */
+static int half_of(int n)
+{
+    return n % 2 ? n : n / 2;
+}
+
 /* Returns the direction of the normal in the middle of side I. */
 static double normal_of(const struct glint_arcs *a, int i)
 {
@@ -138,9 +145,10 @@ double glint_arcs_transform(const struct glint_arcs *a, double qx, double qy)
 
     if (q < 1e-5)
         return 1;
-    for (int i = 0; i < a->n; i++)
+    for (int i = 0; i < half_of(a->n); i++)
         sum += (q > 5 ? along_far : along)(a, normal_of(a, i), q, direction);
-    size = cabs(sum) / (2 * GLINT_PI * q * q * a->area);
+    size = (a->n % 2 ? cabs(sum) : 2 * cimag(sum)) /
+           (2 * GLINT_PI * q * q * a->area);
     return size * size;
 }
 
@@ -153,7 +161,7 @@ double glint_arcs_far(const struct glint_arcs *a, double qx, double qy)
     const double limit = 0.25 / (q * q);
     double sum = 0;
 
-    for (int i = 0; i < a->n; i++) {
+    for (int i = 0; i < half_of(a->n); i++) {
         const double normal = normal_of(a, i);
         const double size = cabs(arc(a, q, normal - to));
         /* the corner after it: normals of both arcs there */
@@ -167,6 +175,6 @@ double glint_arcs_far(const struct glint_arcs *a, double qx, double qy)
         sum -= 2 * cos(one) * cos(other) / (4 * GLINT_PI * GLINT_PI) *
                (s / (s * s + limit)) * (t / (t * t + limit));
     }
-    sum = fmax(sum, 0);
+    sum = fmax(sum * (a->n % 2 ? 1 : 2), 0);
     return sum / (4 * GLINT_PI * GLINT_PI * q * q * q * q * a->area * a->area);
 }

@@ -92,15 +92,14 @@ enum glint_status glint_fans_init(struct glint_psf *p)
     return GLINT_OK;
 }
 
-void glint_fans_light(const struct glint_psf *p, double x, double y,
-                      double rgb[3])
+void glint_fans_at(const struct glint_psf *p, double r, double off,
+                   double rgb[3])
 {
-    const double step = GLINT_PI / p->n_lines, r = hypot(x, y);
-    const double off =
-        fabs(remainder(atan2(y, x) - glint_psf_angle(p, 0), step));
+    const double step = GLINT_PI / p->n_lines;
     const double row =
         PER_OCTAVE * log2(fmax(r / (first_order * p->airy_px), 1));
-    const double column = off / (0.5 * step) * (COLUMNS - 1);
+    const double column =
+        fabs(remainder(off, step)) / (0.5 * step) * (COLUMNS - 1);
     const int i = (int)fmin(row, p->n_far - 2);
     const int k = (int)fmin(column, COLUMNS - 2);
     const double s = fmin(row - i, 1), t = fmin(column - k, 1);
@@ -111,4 +110,10 @@ void glint_fans_light(const struct glint_psf *p, double x, double y,
         rgb[c] = ((1 - s) * ((1 - t) * a[0][c] + t * a[1][c]) +
                   s * ((1 - t) * b[0][c] + t * b[1][c])) /
                  (r * r);
+}
+
+void glint_fans_light(const struct glint_psf *p, double x, double y,
+                      double rgb[3])
+{
+    glint_fans_at(p, hypot(x, y), atan2(y, x) - glint_psf_angle(p, 0), rgb);
 }

@@ -81,6 +81,9 @@ enum glint_status glint_psf_init_iris(struct glint_psf *psf, int n_blades,
  * above 12.
  */
 enum glint_status glint_fans_init(struct glint_psf *psf);
+void glint_fans_at(const struct glint_psf *psf, double r, double off,
+                   double rgb[3]); /* R pixels away, turned by OFF from a line
+                                    */
 void glint_fans_light(const struct glint_psf *psf, double x, double y,
                       double rgb[3]);
 

@@ -117,11 +117,11 @@ static void set_lines(struct glint_star_tables *t, struct glint_star_line *line,
 
 /* -------------------------------------------------------------------- halo */
 
-/* Adds to RGB the fans R pixels from a lamp of radius RADIUS, at ANGLE, V
- * pixels off a line: their mean over chords of the lamp across the line. A fan
- * may be thinner than a pixel, and its sides steeper than the table's columns
- * are fine, so that a point is blurred as well. */
-static void add_fans(const struct glint_psf *psf, double r, double angle,
+/* Adds to RGB the fans R pixels from a lamp of radius RADIUS, V pixels and the
+ * angle OFF from a line: their mean over chords of the lamp across the line. A
+ * fan may be thinner than a pixel, and its sides steeper than the table's
+ * columns are fine, so that a point is blurred as well. */
+static void add_fans(const struct glint_psf *psf, double r, double off,
                      double v, double radius, double rgb[3])
 {
     const int n = 8 + (int)(radius / 1.5);
@@ -133,10 +133,10 @@ static void add_fans(const struct glint_psf *psf, double r, double angle,
     for (int i = -n; i <= n; i++) {
         const double part =
             sqrt(1 - (double)(i * i) / ((n + 1) * (n + 1))) / total;
-        const double at = angle + half * i / ((n + 1) * fmax(r, radius));
+        const double turn = half * i / ((n + 1) * fmax(r, radius));
         double here[3];
 
-        glint_psf_far(psf, r * cos(at), r * sin(at), NULL, NULL, here);
+        glint_fans_at(psf, r, off + turn, here);
         for (int c = 0; c < 3; c++)
             rgb[c] += part * here[c];
     }
@@ -155,7 +155,7 @@ static void halo_at(const struct glint_psf *psf, const struct window *window,
     double rgb[3] = {0, 0, 0};
 
     if (psf->fans)
-        add_fans(psf, r, angle, v, radius, rgb);
+        add_fans(psf, r, off, v, radius, rgb);
     else
         glint_psf_far(psf, r * cos(angle), r * sin(angle), window_at, window,
                       rgb);

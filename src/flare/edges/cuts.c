@@ -65,10 +65,14 @@ static inline uint64_t sides_of(const struct glint_stop *stop, int half,
 static uint64_t arcs_of(const struct glint_stop *stop,
                         const struct glint_vertex *v)
 {
+    const int64_t disc_q16 = glint_disc_q16(v);
     uint64_t sides = 0;
 
-    for (int k = stop->n_blades - 1; k >= 0; k--)
-        sides = 2 * sides + (glint_side_q16(stop, k, v) <= 0);
+    for (int k = stop->n_blades - 1; k >= 0; k--) {
+        const int64_t straight_q16 = glint_straight_q16(stop, k, v);
+
+        sides = 2 * sides + (glint_arc_q16(stop, straight_q16, disc_q16) <= 0);
+    }
     return sides;
 }
 

@@ -8,9 +8,7 @@ enum { TO_Q16 = 16 - GLINT_VERTEX_FRAC, STRIP_HALF_Q16 = 1 << 11 };
 
 /* --------------------------------------------------------------- functions */
 
-/* Returns the value of a round stop's cut at V: (1 - r^2) / 2, clamped far
- * outside. */
-static int64_t disc_value(const struct glint_vertex *v)
+int64_t glint_disc_q16(const struct glint_vertex *v)
 {
     const int64_t x = v->stop_x_q16 / 2, y = v->stop_y_q16 / 2;
 
@@ -20,10 +18,23 @@ static int64_t disc_value(const struct glint_vertex *v)
 
 /* A place 2^14 stop radii off has a value of 2^31, times 2^30. */
 int64_t glint_arc_q16(const struct glint_stop *stop, int64_t straight_q16,
-                      const struct glint_vertex *v)
+                      int64_t disc_q16)
 {
-    return q_shift(
-        straight_q16 * stop->off_q30 + disc_value(v) * stop->round_q30, 30);
+    return q_shift(straight_q16 * stop->off_q30 + disc_q16 * stop->round_q30,
+                   30);
+}
+
+/* Sets VALUE[N] to how far each corner lies inside side SIDE; DISC[N] has
+ * glint_disc_q16() of each where sides are round. */
+static void set_side(const struct glint_stop *stop, int side,
+                     const struct glint_vertex *const *at, int n,
+                     const int64_t *disc, int64_t *value)
+{
+    for (int i = 0; i < n; i++) {
+        value[i] = glint_straight_q16(stop, side, at[i]);
+        if (stop->round_q30)
+            value[i] = glint_arc_q16(stop, value[i], disc[i]);
+    }
 }
 
 /* ---------------------------------------------------------------- classify */
@@ -68,7 +79,7 @@ static enum side disc_side(const struct glint_corners *c,
     enum side side;
 
     for (int i = 0; i < c->n; i++)
-        value[i] = disc_value(c->at[i]) - stop->inset_q16;
+        value[i] = glint_disc_q16(c->at[i]) - stop->inset_q16;
     side = side_of(value, c->n);
     if (side != OUTSIDE)
         return side;
@@ -81,14 +92,14 @@ static enum side stop_side(const struct glint_corners *c,
                            const struct glint_stop *stop)
 {
     enum side all = INSIDE;
+    int64_t disc[4] = {0}, value[4];
 
     if (stop->n_blades == 0)
         return disc_side(c, stop);
+    for (int i = 0; i < c->n && stop->round_q30; i++)
+        disc[i] = glint_disc_q16(c->at[i]);
     for (int side = 0; side < stop->n_blades && all != OUTSIDE; side++) {
-        int64_t value[4];
-
-        for (int i = 0; i < c->n; i++)
-            value[i] = glint_side_q16(stop, side, c->at[i]);
+        set_side(stop, side, c->at, c->n, disc, value);
         all = worse(all, side_of(value, c->n));
     }
     return all;
@@ -189,16 +200,19 @@ static void cut_stop(struct glint_outline *o,
     const int64_t lift_q16 = lowered ? 0 : disc_lift_q16(at);
     const int64_t arc_lift_q16 =
         stop->round_q30 ? q_shift(lift_q16 * stop->round_q30, 30) : 0;
-    int64_t value[3];
+    int64_t disc[3] = {0}, value[3];
 
+    for (int i = 0; i < 3 && (stop->n_blades == 0 || stop->round_q30); i++)
+        disc[i] = glint_disc_q16(at[i]);
     if (stop->n_blades == 0) {
         for (int i = 0; i < 3; i++)
-            value[i] = disc_value(at[i]) + lift_q16 - stop->inset_q16;
+            value[i] = disc[i] + lift_q16 - stop->inset_q16;
         cut_one(o, value);
     }
     for (int side = 0; side < stop->n_blades; side++) {
+        set_side(stop, side, at, 3, disc, value);
         for (int i = 0; i < 3; i++)
-            value[i] = glint_side_q16(stop, side, at[i]) + arc_lift_q16;
+            value[i] += arc_lift_q16;
         cut_one(o, value);
     }
 }

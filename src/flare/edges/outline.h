@@ -24,27 +24,41 @@
 #include "flare/edges/primitive.h"
 #include "glint/light.h"
 
-/* Returns how far V lies inside the arc between two corners of which V is
- * STRAIGHT inside the straight line. With a circle of radius 1 / k whose centre
- * lies d behind the stop's, k^-2 - |v + d n|^2 is 2 d straight + 1 - r^2
- * wherever both corners have r = 1; it is multiplied by k / 2 here, after which
- * it is the distance where that is small. */
+/* Returns (1 - r^2) / 2 at V, clamped far outside: the value of a round stop's
+ * cut. */
+int64_t glint_disc_q16(const struct glint_vertex *v);
+
+/* Returns how far a place lies inside the arc between two corners that is
+ * STRAIGHT inside the straight line and has DISC by glint_disc_q16(). With a
+ * circle of radius 1 / k whose centre lies d behind the stop's, k^-2 - |v + d
+ * n|^2 is 2 d straight + 1 - r^2 wherever both corners have r = 1; it is
+ * multiplied by k / 2 here, after which it is the distance where that is small.
+ */
 int64_t glint_arc_q16(const struct glint_stop *stop, int64_t straight_q16,
-                      const struct glint_vertex *v);
+                      int64_t disc_q16);
+
+/* Returns how far V lies inside the straight line of side SIDE, in stop radii.
+ */
+static inline int64_t glint_straight_q16(const struct glint_stop *stop,
+                                         int side, const struct glint_vertex *v)
+{
+    const int64_t nx = stop->normal_q30[side][0];
+    const int64_t ny = stop->normal_q30[side][1];
+
+    return stop->apothem_q16 -
+           q_shift(nx * v->stop_x_q16 + ny * v->stop_y_q16, 30);
+}
 
 /* Return how far V lies inside side SIDE of a stop, in stop radii, and how far
  * inside a barrel, as 1 - (1 + r^2) / 2. */
 static inline int64_t glint_side_q16(const struct glint_stop *stop, int side,
                                      const struct glint_vertex *v)
 {
-    const int64_t nx = stop->normal_q30[side][0];
-    const int64_t ny = stop->normal_q30[side][1];
-    const int64_t straight_q16 =
-        stop->apothem_q16 -
-        q_shift(nx * v->stop_x_q16 + ny * v->stop_y_q16, 30);
+    const int64_t straight_q16 = glint_straight_q16(stop, side, v);
 
-    return stop->round_q30 ? glint_arc_q16(stop, straight_q16, v)
-                           : straight_q16;
+    return stop->round_q30
+               ? glint_arc_q16(stop, straight_q16, glint_disc_q16(v))
+               : straight_q16;
 }
 
 static inline int64_t glint_barrel_q16(int barrel, const struct glint_vertex *v)
