@@ -23,6 +23,8 @@ static const struct {
     [KEYS_GAIN] = {"gain", 0, 1e30, "gain must be a factor from 0"},
     [KEYS_STARBURST] = {"starburst", 0, 1000, "starburst must be 0 to 1000"},
     [KEYS_F_NUMBER] = {"f-number", 0.1, 1e5, "f-number must be 0.1 to 100000"},
+    [KEYS_TURN] = {"turn", -1e6, 1e6, "turn must be within a million degrees"},
+    [KEYS_ROUND] = {"round", 0, 1, "round must be 0 to 1"},
     [KEYS_X] = {"x", -1e6, 1e6, "x and y must be within a million pixels"},
     [KEYS_Y] = {"y", -1e6, 1e6, "x and y must be within a million pixels"},
     [KEYS_EV] = {"ev", -40, 90, "ev must be -40 to 90 stops"},
@@ -85,7 +87,8 @@ static const char *take_heading(struct reading *r, char *line)
 
         if (column < 0)
             return "the first line names the columns: frame, and of exposure, "
-                   "strength, gain, starburst, f-number, x, y, ev";
+                   "strength, gain, starburst, f-number, turn, round, x, y, "
+                   "ev";
         if (seen >> column & 1)
             return "a column is there twice";
         seen |= 1u << column;

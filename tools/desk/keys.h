@@ -8,9 +8,10 @@
  *     75,0,,,,
  *
  * The heading names the columns, in any order: frame, exposure, strength, gain,
- * starburst and f-number as the options of these names take them, and x, y, ev:
- * a lamp as of --light-at. An empty field is no key. Between two keys of a
- * column values change evenly; before the first and after the last they stay.
+ * starburst and f-number as the options of these names take them, turn and
+ * round: the rotation in degrees and the curvature of --stop's blades, and x,
+ * y, ev: a lamp as of --light-at. An empty field is no key. Between two keys of
+ * a column values change evenly; before the first and after the last they stay.
  */
 #ifndef GLINT_TOOLS_DESK_KEYS_H
 #define GLINT_TOOLS_DESK_KEYS_H
@@ -27,6 +28,8 @@ enum key_column {
     KEYS_GAIN,
     KEYS_STARBURST,
     KEYS_F_NUMBER,
+    KEYS_TURN,
+    KEYS_ROUND,
     KEYS_X,
     KEYS_Y,
     KEYS_EV,

@@ -53,6 +53,7 @@ bool stop_option_take(struct stop_option *stop, const char *text)
     stop->n_blades = (int)n;
     stop->rotation_deg = rotation;
     stop->iris = iris;
+    stop->is_asked = true;
     return true;
 }
 

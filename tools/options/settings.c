@@ -220,8 +220,11 @@ static int check_raster(const struct tool *tool, const struct settings *s)
 int settings_open(const struct tool *tool, struct settings *settings,
                   const char *lens)
 {
-    int code = check_raster(tool, settings);
+    int code;
 
+    if (settings->raster && !settings->mask_nodes && !settings->stop.is_asked)
+        settings->stop.iris.roundness = 0; /* cells have no arcs */
+    code = check_raster(tool, settings);
     if (code == EXIT_OK && settings->veil_only && !settings_has_veil(settings))
         code = tool_usage(tool, "--only veil needs a --veil, --haze or "
                                 "--front-dust to draw");

@@ -180,7 +180,9 @@ enum settings_option {
     "from\n"                                                                   \
     "                      straight blades to a circle; ,soft:W, 0 to 1 stop " \
     "radii\n"                                                                  \
-    "                      from dark to clear (default polygon:8)\n"           \
+    "                      from dark to clear (default polygon:8; of "         \
+    "overlay,\n"                                                               \
+    "                      live and explain with round:0.2)\n"                 \
     "  --stop-mask FILE    a picture in the stop, white where it is clear: "   \
     "the\n"                                                                    \
     "                      square about its circle, turned by ROT\n"           \

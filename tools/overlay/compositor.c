@@ -169,6 +169,28 @@ static enum glint_status reserve(struct compositor *compositor)
         most_lamps(compositor));
 }
 
+/* Says how much memory a picture takes at least if --memory is too little. */
+static int fail_sizing(const struct tool *tool, struct compositor *compositor,
+                       enum glint_status status)
+{
+    struct glint_frame *frame = &compositor->frame;
+    const size_t mib = (size_t)1 << 20;
+    char text[128];
+    size_t least;
+
+    if (status != GLINT_E_MEMORY || !compositor->reserve_bytes)
+        return tool_fail(tool, status, NULL);
+    least = glint_frame_star_bytes(frame) +
+            over_scene_bytes(&compositor->scene) +
+            glint_frame_least_bytes(frame);
+    snprintf(text, sizeof text,
+             "--memory %zu is too little: pictures of %dx%d with this lens "
+             "take %zu at least",
+             compositor->reserve_bytes / mib, frame->view.width,
+             frame->view.height, (least + mib - 1) / mib);
+    return tool_fail(tool, status, text);
+}
+
 int compositor_size(const struct tool *tool, struct compositor *compositor,
                     int width, int height)
 {
@@ -215,7 +237,8 @@ int compositor_size(const struct tool *tool, struct compositor *compositor,
                 compositor->threshold_ev[1]);
     if (status == GLINT_OK && compositor->reserve_bytes)
         status = reserve(compositor);
-    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
+    return status == GLINT_OK ? EXIT_OK
+                              : fail_sizing(tool, compositor, status);
 }
 
 void compositor_replace(struct compositor *compositor,

@@ -247,8 +247,8 @@ enum compositor_option_code {
     "                      above 0 and up to a million\n"                      \
     "  --keys FILE         key frames, CSV: frame, and of exposure, "          \
     "strength,\n"                                                              \
-    "                      gain, starburst, f-number and x,y[,ev] of a "       \
-    "light;\n"                                                                 \
+    "                      gain, starburst, f-number, turn, round, "           \
+    "x,y[,ev];\n"                                                              \
     "                      even between rows, an empty field is no key\n"      \
     "  --still PX          of videos: while lamps move by less, ghosts are "   \
     "drawn by\n"                                                               \

@@ -67,6 +67,26 @@ static void turn_down(struct settings *s)
         s->area_samples_asked = 1;
 }
 
+/* Refuses stops that change where none can. */
+static int open_stop_keys(const struct tool *tool, struct compositor *c)
+{
+    const bool is_stopped = keys_has(&c->keys, KEYS_F_NUMBER);
+    const bool is_round = keys_has(&c->keys, KEYS_ROUND);
+
+    if (!is_stopped && !is_round && !keys_has(&c->keys, KEYS_TURN))
+        return EXIT_OK;
+    if (c->settings.rays == SETTINGS_RAYS_EXACT)
+        return tool_usage(tool, "--keys: stops that change need a model, not "
+                                "--rays exact");
+    if (is_round && c->settings.raster)
+        return tool_usage(tool, "--keys: round blades are drawn by edges");
+    if (c->settings.mask_nodes)
+        return tool_usage(tool, "--keys: --stop-nodes has one stop");
+    if (is_stopped)
+        ask_stop(c, 1);
+    return EXIT_OK;
+}
+
 int compositor_desk_open_keys(const struct tool *tool, struct compositor *c)
 {
     struct glint_error error = {""};
@@ -87,13 +107,7 @@ int compositor_desk_open_keys(const struct tool *tool, struct compositor *c)
                               c->keys_file);
         c->settings.has_exposure = true;
     }
-    if (!keys_has(&c->keys, KEYS_F_NUMBER))
-        return EXIT_OK;
-    if (c->settings.rays == SETTINGS_RAYS_EXACT)
-        return tool_usage(tool, "--keys: f-numbers that change need a model, "
-                                "not --rays exact");
-    ask_stop(c, 1);
-    return EXIT_OK;
+    return open_stop_keys(tool, c);
 }
 
 /* Adds the lamp of the key frames to the list. */
@@ -129,12 +143,22 @@ static void move_lamp(struct compositor *c)
  * stop. */
 static void turn_stop(struct compositor *c)
 {
-    const double f_number = keys_at(&c->keys, KEYS_F_NUMBER, c->n_frames, 0);
+    struct settings *const s = &c->settings;
+    struct stop_option *const stop = &s->stop;
+    const int frame = c->n_frames;
+    const double f_number =
+        keys_at(&c->keys, KEYS_F_NUMBER, frame, s->f_number);
+    const double turn = keys_at(&c->keys, KEYS_TURN, frame, stop->rotation_deg);
+    const double round =
+        keys_at(&c->keys, KEYS_ROUND, frame, stop->iris.roundness);
     struct glint_error error;
 
-    if (f_number == 0 || f_number == c->settings.f_number)
+    if (f_number == s->f_number && turn == stop->rotation_deg &&
+        round == stop->iris.roundness)
         return;
-    if (settings_stop(&c->settings, f_number, &error) != GLINT_OK)
+    stop->rotation_deg = turn;
+    stop->iris.roundness = round;
+    if (settings_stop(s, f_number, &error) != GLINT_OK)
         return;
     glint_setup_stop(&c->settings.setup, &c->frame.cfg.stop);
     glint_frame_retune(&c->frame);

@@ -8,6 +8,10 @@
 #include "options/takes.h"
 #include "overlay/compositor.h"
 
+/* Curvature of the blades, unless a shape is said: spikes of straight ones are
+ * thinner and longer than those of lamps in photographs. */
+static const double photo_roundness = 0.2;
+
 void compositor_defaults(struct compositor *compositor)
 {
     *compositor = (struct compositor){.lens = "nikon-zoom-short",
@@ -16,6 +20,7 @@ void compositor_defaults(struct compositor *compositor)
                                       .white = 1};
     settings_defaults(&compositor->settings);
     compositor->settings.starburst = 1;
+    compositor->settings.stop.iris.roundness = photo_roundness;
     compositor->settings.coating.kind = COATING_MIXED;
     compositor->settings.waves = SETTINGS_WAVES_AUTO;
     glint_strength_defaults(&compositor->strength);

@@ -106,6 +106,11 @@ static void say_faint(const struct overlay *o,
     if (is_held)
         fprintf(to, "%s: %s draws nothing, as it says\n", o->output,
                 compositor->settings.gain <= 0 ? "--gain 0" : "--strength 0");
+    else if (light->peak <= 0 && compositor->settings.stop.mask_file)
+        fprintf(to,
+                "%s: no light gets through this lens and its --stop-mask into "
+                "the picture; white in a mask lets light through\n",
+                o->output);
     else if (light->peak <= 0)
         fprintf(to,
                 "%s: no light gets through this lens into the picture; "

@@ -473,8 +473,7 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
         report->dials = frame->dials;
         report->unveiled = glint_frame_has_veil(frame) &&
                            frame->dials.flags & GLINT_DIAL_NO_VEIL;
-        /* a frame that took memory, or reused the last one, tells nothing about
-         * other frames */
+        /* one that took memory, or reused the last, tells nothing of others */
         if (frame->bytes == bytes && !report->stats.reused)
             glint_budget_note(&frame->budget, 1e3 * (times[4] - times[0]));
     }
@@ -485,7 +484,9 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
     report->plans = frame->n_plans;
     report->binned = frame->n_binned;
     report->looked = frame->n_looked;
-    report->drawn_lights = larger(frame->n_lights - frame->n_more, 1);
+    report->drawn_lights =
+        larger(frame->n_lights - frame->n_more,
+               frame->star.is_alone ? report->apart_lights : 1);
     report->tiles = glint_flare_tiles(frame->flare);
     report->held_samples = glint_flare_held(frame->flare);
     report->arena_bytes = frame->bytes;

@@ -193,6 +193,10 @@ void glint_frame_like(struct glint_frame *frame, const struct glint_frame *like,
 enum glint_status glint_frame_reserve(struct glint_frame *frame, void *mem,
                                       size_t bytes, int n_lamps, int n_drawn);
 
+/* Returns the fewest BYTES that glint_frame_reserve() takes for as many lights
+ * as it was last asked for; nothing may be drawn afterwards. */
+size_t glint_frame_least_bytes(struct glint_frame *frame);
+
 /* Takes the stop from a mask of NODES^2 distances instead of its sides; RASTER
  * must be one that takes masks. */
 enum glint_status glint_frame_use_mask(struct glint_frame *frame,

@@ -235,6 +235,11 @@ enum glint_status glint_frame_make_room(struct glint_frame *f)
     return glint_frame_regrow(f);
 }
 
+size_t glint_frame_least_bytes(struct glint_frame *f)
+{
+    return bytes_for(f, 1);
+}
+
 enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
                                       size_t bytes, int n_lamps, int n_drawn)
 {
