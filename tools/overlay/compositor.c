@@ -175,14 +175,12 @@ static int fail_sizing(const struct tool *tool, struct compositor *compositor,
 {
     struct glint_frame *frame = &compositor->frame;
     const size_t mib = (size_t)1 << 20;
+    size_t least = over_scene_bytes(&compositor->scene);
     char text[128];
-    size_t least;
 
     if (status != GLINT_E_MEMORY || !compositor->reserve_bytes)
         return tool_fail(tool, status, NULL);
-    least = glint_frame_star_bytes(frame) +
-            over_scene_bytes(&compositor->scene) +
-            glint_frame_least_bytes(frame);
+    least += glint_frame_star_bytes(frame) + glint_frame_least_bytes(frame);
     snprintf(text, sizeof text,
              "--memory %zu is too little: pictures of %dx%d with this lens "
              "take %zu at least",
@@ -237,8 +235,7 @@ int compositor_size(const struct tool *tool, struct compositor *compositor,
                 compositor->threshold_ev[1]);
     if (status == GLINT_OK && compositor->reserve_bytes)
         status = reserve(compositor);
-    return status == GLINT_OK ? EXIT_OK
-                              : fail_sizing(tool, compositor, status);
+    return status == GLINT_OK ? EXIT_OK : fail_sizing(tool, compositor, status);
 }
 
 void compositor_replace(struct compositor *compositor,
