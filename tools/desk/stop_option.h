@@ -15,7 +15,7 @@ struct stop_option {
     int n_blades;
     double rotation_deg;
     struct glint_iris iris;
-    bool is_asked; /* the line names a shape */
+    bool is_asked;           /* the line names a shape */
     struct glint_dirt *dirt; /* of the setup that was made last */
     const char *mask_file;   /* NULL: none */
     uint8_t *mask;
