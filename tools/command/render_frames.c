@@ -284,7 +284,7 @@ static int check_options(const struct tool *tool, const struct compositor *c)
 int render_frames(struct tool *tool, struct render_scene *r, const char *path)
 {
     struct compositor *const c = &r->compositor;
-    struct frames f = {.tool = tool, .r = r, .c = c, .writer = {{.fd = -1}}};
+    struct frames f = {.tool = tool, .r = r, .c = c, .writer.out.fd = -1};
     struct apart files = {.n_read = 0};
     int code = check(tool, &f);
 

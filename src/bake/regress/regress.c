@@ -354,7 +354,7 @@ double glint_regress_fit(double *scratch,
     s.direction = s.residual + n;
     s.values = s.direction + (size_t)degrees->terms * n;
     for (int i = 0; i < n_moments; i++)
-        s.moment[i] = NAN;
+        s.moment[i] = (double)NAN;
     for (int i = 0; i < samples->n; i++)
         s.residual[i] = samples->weight[i] * y[i];
     add_candidate(&s, first, NULL);

@@ -223,20 +223,17 @@ static void write_materials(struct writer *w)
 static bool write_meshes(struct writer *w)
 {
     const struct glint_description *s = w->scene;
-    struct glint_scene_mesh *mesh =
-        malloc(((size_t)s->n_objects + 1) * sizeof *mesh);
-    bool good = mesh != NULL;
+    bool good = true;
     uint32_t n = 0;
-
-    w->mesh = mesh;
 
     for (int i = 0; good && i < s->n_objects; i++)
         if (s->object[i].n_triangles)
             good = glint_grid_write(&w->draft, s, &s->object[i], &w->steps,
-                                    &mesh[n++], w->report);
+                                    &w->mesh[n++], w->report);
     w->header.n_meshes = n;
     if (good)
-        w->header.mesh_at = glint_draft_put(&w->draft, mesh, n * sizeof *mesh);
+        w->header.mesh_at =
+            glint_draft_put(&w->draft, w->mesh, n * sizeof *w->mesh);
     return good;
 }
 
@@ -465,9 +462,11 @@ enum glint_status glint_scene_bake(const struct glint_description *scene,
     report->step = 1 / w.steps.scale;
     glint_draft_put(&w.draft, NULL, sizeof w.header);
     write_lights(&w);
+    w.mesh = malloc(((size_t)scene->n_objects + 1) * sizeof *w.mesh);
     good = write_textures(&w);
     write_materials(&w);
-    good = good && write_meshes(&w) && write_objects(&w) && write_stones(&w);
+    good = good && w.mesh && write_meshes(&w) && write_objects(&w) &&
+           write_stones(&w);
     free(w.mesh);
     set_environment(&w);
     set_motion(&w);
