@@ -56,8 +56,7 @@ static void add_codes(const uint16_t *restrict light,
     for (int x = 0; x < n; x++) {
         const uint16_t part =
             (uint16_t)((uint32_t)light[x] * part_q16[x] >> 16);
-        const uint16_t more =
-            (uint16_t)(part < most ? part << down : 65535);
+        const uint16_t more = (uint16_t)(part < most ? part << down : 65535);
         const uint16_t room = (uint16_t)(65535 - to_q16[x]);
 
         to_q16[x] = (uint16_t)(to_q16[x] + (more < room ? more : room));
