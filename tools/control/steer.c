@@ -193,20 +193,16 @@ enum glint_status steer_orbit_camera(const struct steer *steer,
 {
     const struct steer *const s = steer;
     const double yaw = s->orbit.yaw_deg * RADIAN;
-    double from[3], axis[3][3];
+    const double x = cos(yaw), z = sin(yaw);
+    double from[3];
 
     set_from(&s->orbit, from);
-    axis[0][0] = cos(yaw);
-    axis[0][1] = 0;
-    axis[0][2] = sin(yaw);
-    for (int k = 0; k < 3; k++)
-        axis[2][k] = -from[k];
     /* up is ahead x right, of axes whose z runs away */
-    for (int k = 0; k < 3; k++) {
-        const int a = (k + 1) % 3, b = (k + 2) % 3;
-
-        axis[1][k] = axis[2][a] * axis[0][b] - axis[2][b] * axis[0][a];
-    }
+    const double axis[3][3] = {
+        {x, 0, z},
+        {-from[1] * z, from[0] * z - from[2] * x, from[1] * x},
+        {-from[0], -from[1], -from[2]},
+    };
     for (int k = 0; k < 3; k++) {
         const double place = s->orbit.middle[k] + s->orbit.distance * from[k];
 
