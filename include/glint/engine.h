@@ -111,8 +111,9 @@ struct glint_engine_report {
 
 struct glint_engine; /* opaque */
 
-/* Sets CFG to the values that glint overlay draws with; the caller still sets
- * the model and the workers. */
+/* Sets CFG to the values that glint overlay draws with, but for straight
+ * blades: its own have a roundness of 0.2, which glint_engine_iris() gives. The
+ * caller still sets the model and the workers. */
 void glint_engine_defaults(struct glint_engine_config *cfg, int width,
                            int height);
 
