@@ -65,7 +65,7 @@ static inline int32_t glint_stone_passes(const struct glint_stone_skin *skin,
                                          int32_t cosine_q30)
 {
     enum { LOW = 23 }; /* 2^30 over GLINT_TRANSLUCENT_COSINES */
-    const int32_t c_q30 = cosine_q30 < 1 << 30 ? cosine_q30 : 1 << 30;
+    const int32_t c_q30 = q_smaller(cosine_q30, 1 << 30);
     const uint16_t *at_q15;
     int i;
 
