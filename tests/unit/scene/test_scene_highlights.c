@@ -296,7 +296,7 @@ static void test_one(void **state)
     assert_int_equal(found[0].object + found[1].object, 1);
     strcpy(text, CAMERA STEEL(".01 .01") BRIGHT);
     for (int i = 0; i < 16; i++)
-        snprintf(text + strlen(text), 80,
+        snprintf(text + strlen(text), 100,
                  "sphere b%d at %g %g 0 radius %g material m\n", i,
                  .32 * (i % 4) - .48, .32 * (i / 4) - .48, .02 + .001 * i);
     assert_int_equal(count(text), 8);
