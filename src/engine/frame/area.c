@@ -89,6 +89,7 @@ int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
     const double t = tan(lamp->theta_deg * degree);
     const double c = cos(lamp->turn_deg * degree);
     const double s = sin(lamp->turn_deg * degree);
+    const double a = lamp->axis[0], b = lamp->axis[1];
     int n;
 
     *area = (struct glint_area){.lamp = *lamp, .points = 1};
@@ -99,10 +100,9 @@ int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
     set_pattern(area, n);
     area->u = t * cos(lamp->phi_deg * degree);
     area->v = t * sin(lamp->phi_deg * degree);
-    area->major[0] = 2 * lamp->axis[0] * c;
-    area->major[1] = 2 * lamp->axis[0] * s;
-    area->minor[0] = -2 * lamp->axis[1] * s;
-    area->minor[1] = 2 * lamp->axis[1] * c;
+    area->stretch[0] = 2 * (a * c * c + b * s * s);
+    area->stretch[1] = 2 * (a - b) * c * s;
+    area->stretch[2] = 2 * (a * s * s + b * c * c);
     return n;
 }
 
@@ -113,8 +113,8 @@ int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
  * in gradually, as the spread does, so that nothing steps. */
 double glint_area_apart(const struct glint_area *area)
 {
-    const double major = hypot(area->major[0], area->major[1]);
-    const double minor = hypot(area->minor[0], area->minor[1]);
+    const double major = 2 * area->lamp.axis[0];
+    const double minor = 2 * area->lamp.axis[1];
     const double part = fmin((area->points - 1) / 3, 1);
 
     return part * fmin(major, 2 * sqrt(major * minor)) *
@@ -132,8 +132,8 @@ struct glint_lamp glint_area_point(const struct glint_area *area, int i)
     point.power *= at(area, i, place);
     for (int k = 0; k < 2; k++)
         place[k] = (place[k] - area->centre[k]) * area->spread;
-    u = area->u + place[0] * area->major[0] + place[1] * area->minor[0];
-    v = area->v + place[0] * area->major[1] + place[1] * area->minor[1];
+    u = area->u + place[0] * area->stretch[0] + place[1] * area->stretch[1];
+    v = area->v + place[0] * area->stretch[1] + place[1] * area->stretch[2];
     point.theta_deg = atan(hypot(u, v)) / degree;
     point.phi_deg = atan2(v, u) / degree;
     return point;

@@ -33,7 +33,11 @@ struct glint_area {
                          lamp's place */
     double spread;    /* factor that gives the pattern the lamp's RMS extent */
     double u, v;      /* place of the lamp, tangents */
-    double major[2], minor[2]; /* semi-axes, tangents */
+    /* xx, xy, yy of the symmetric matrix that takes a circle of radius 1 to the
+     * ellipse, tangents. It knows no sign of the axes, so that the points of a
+     * lamp stay where they are when its turn goes from 90 degrees to -90, and
+     * those of a nearly round one when its axes swing about. */
+    double stretch[3];
 };
 
 /* How many points lamps get. Steps between points are seen less in a faint

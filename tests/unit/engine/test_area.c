@@ -96,6 +96,37 @@ static void test_sums_are_the_lamps(void **state)
     assert_true(fabs(sqrt(sum[4] / 5) - 10) < 10 * 0.05);
 }
 
+/* Points of a lamp must stay where they are when its turn goes over 90 degrees,
+ * which is half a turn of its axes, and those of a round one whatever its axes
+ * do. */
+static void test_axes_have_no_sign(void **state)
+{
+    const struct glint_area_rule rule = {PIXELS, MOST, 5, 1};
+
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        struct glint_lamp lamp = lamp_of(12, k == 0 ? 4 : 12);
+        struct glint_area a, b;
+        double most = 0;
+        int n;
+
+        lamp.turn_deg = 90;
+        n = glint_area_plan(&a, &lamp, &rule);
+        lamp.turn_deg = k == 2 ? 0 : -90;
+        assert_int_equal(glint_area_plan(&b, &lamp, &rule), n);
+        for (int i = 0; i < n; i++) {
+            const struct glint_lamp p = glint_area_point(&a, i);
+            const struct glint_lamp q = glint_area_point(&b, i);
+            double u[2], v[2];
+
+            place_of(&p, &u[0], &v[0]);
+            place_of(&q, &u[1], &v[1]);
+            most = fmax(most, hypot(u[0] - u[1], v[0] - v[1]));
+        }
+        assert_true(most < 1e-9);
+    }
+}
+
 /* While a lamp grows by 0.005 px a step, its centroid must stay and the squares
  * of its spread must change little at each step. */
 static void test_it_grows_without_jumps(void **state)
@@ -189,8 +220,7 @@ static void test_how_far_they_are_apart(void **state)
     assert_true(fabs(last / (2 * 40 * sqrt(GLINT_PI / MOST)) - 1) < 1e-6);
     area.points = 121;
     assert_true(fabs(glint_area_apart(&area) * PIXELS - 80 / 6.2) < 0.1);
-    area.minor[0] /= 100;
-    area.minor[1] /= 100;
+    area.lamp.axis[1] /= 100;
     assert_true(fabs(glint_area_apart(&area) * PIXELS - 80 / 6.2 / 5) < 0.1);
 }
 
@@ -199,6 +229,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_point_stays_one),
         cmocka_unit_test(test_sums_are_the_lamps),
+        cmocka_unit_test(test_axes_have_no_sign),
         cmocka_unit_test(test_it_grows_without_jumps),
         cmocka_unit_test(test_all_have_room),
         cmocka_unit_test(test_faint_lamps_get_fewer),
