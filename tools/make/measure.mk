@@ -52,6 +52,9 @@ ward-cost-table: all
 sunflow-table: all
 	@tools/make/deps "scenes of another program" libsunflow-java libjanino-java default-jdk-headless >&2
 	@tests/peers/sunflow | tools/report/write-figures scenes/sunflow
+# A brushed ball that turns before a video, and flares: four processor minutes at most.
+glints-table: all $(OUT)/pan $(OUT)/twin_glints
+	@tests/programs/glints-table $(OUT) tests/figures/scenes/glints.svg | tools/report/write-figures scenes/glints
 scene-cost-table: all
 	@tools/make/deps "instruction counts on ARM" gcc-aarch64-linux-gnu \
 	        libc6-dev-arm64-cross qemu-user debian-archive-keyring >&2
@@ -178,7 +181,7 @@ budget: all
 	        build/$$t/glint >&2 || exit 1; done
 	@tools/report/budget | tools/report/write-figures arm
 
-.PHONY: hidden-table scene-budget-table occlusion-table video-report demo inputs table bake-table wide-table accuracy-table colour-table coating-table ray-table power-table \
+.PHONY: glints-table hidden-table scene-budget-table occlusion-table video-report demo inputs table bake-table wide-table accuracy-table colour-table coating-table ray-table power-table \
         power-fit \
         corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet gallery \
         bench bench-insn growth size trade lights-table threads-table reuse-table flicker-table left-table stopping-table hostile-table star-table memory-table \
