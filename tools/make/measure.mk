@@ -36,7 +36,7 @@ motion-table: all $(OUT)/motion_table
 ward-table: all $(OUT)/ward_table
 	@tools/make/deps "pictures, and the plug-in for them" libopenimageio-dev pkg-config g++ >&2
 	@$(MAKE) --no-print-directory oiio >&2
-	@tests/programs/ward-table $(OUT)/ward_table | tools/report/write-figures scenes/ward
+	@tools/report/scenes/ward-table $(OUT)/ward_table | tools/report/write-figures scenes/ward
 # Models of scattering side by side, on synthetic stones: three processor minutes.
 translucent-table: $(OUT)/translucent_table
 	@$(OUT)/translucent_table | tools/report/write-figures scenes/translucent
@@ -45,16 +45,16 @@ ward-cost-table: all
 	@tools/make/deps "instruction counts on ARM, panoramas" gcc-aarch64-linux-gnu \
 	        libc6-dev-arm64-cross qemu-user libopenimageio-dev pkg-config g++ debian-archive-keyring >&2
 	@$(MAKE) --no-print-directory oiio >&2
-	@tests/programs/ward-table true
+	@tools/report/scenes/ward-table true
 	@$(MAKE) -s --no-print-directory TARGET=aarch64 \
 	        SYSROOT=$$(tests/arm/prepare aarch64) build/aarch64/scene_cost >&2
-	@tests/programs/ward-cost-table tests/figures/scenes/ward-cost.svg | tools/report/write-figures scenes/ward-cost
+	@tools/report/scenes/ward-cost-table tests/figures/scenes/ward-cost.svg | tools/report/write-figures scenes/ward-cost
 sunflow-table: all
 	@tools/make/deps "scenes of another program" libsunflow-java libjanino-java default-jdk-headless >&2
 	@tests/peers/sunflow | tools/report/write-figures scenes/sunflow
 # A brushed ball that turns before a video, and flares: four processor minutes at most.
 glints-table: all $(OUT)/pan $(OUT)/twin_glints
-	@tests/programs/glints-table $(OUT) tests/figures/scenes/glints.svg | tools/report/write-figures scenes/glints
+	@tools/report/scenes/glints-table $(OUT) tests/figures/scenes/glints.svg | tools/report/write-figures scenes/glints
 scene-cost-table: all
 	@tools/make/deps "instruction counts on ARM" gcc-aarch64-linux-gnu \
 	        libc6-dev-arm64-cross qemu-user debian-archive-keyring >&2
@@ -62,7 +62,7 @@ scene-cost-table: all
 	        SYSROOT=$$(tests/arm/prepare aarch64) build/aarch64/scene_cost >&2
 	@tools/report/scene-cost-table | tools/report/write-figures scenes/cost
 scene-budget-table: all
-	@tests/programs/scene-budget-table | tools/report/write-figures scenes/budget
+	@tools/report/scenes/scene-budget-table | tools/report/write-figures scenes/budget
 bake-table: all $(OUT)/ray_errors
 	@tools/report/bake-table | tools/report/write-figures bake
 # LENSES="A.lens ...": these; EVERY=N: each Nth angle; OPEN=N, STOPS="...".
