@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A baked stone: its integers beside the fit in doubles, bits, models and sizes
- * at their extremes, strips and rows by themselves, and files that are refused.
+ * A baked stone: its integers beside the fit in doubles, and files that are
+ * refused.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -72,10 +72,132 @@ static void test_close_to_fit(void **state)
     }
 }
 
+/* ---------------------------------------------------------------- refusals */
+
+/* What is done to the words of a whole stone, before its checksum is set. */
+typedef void damage_fn(struct glint_translucent_header *h, unsigned char *data);
+
+static int16_t *taps_of(const struct glint_translucent_header *h,
+                        unsigned char *data)
+{
+    return (int16_t *)(void *)(data + h->tap_at);
+}
+
+/* Each tap has the bits that it may have; the sum is too large. */
+static void widen_column(struct glint_translucent_header *h,
+                         unsigned char *data)
+{
+    for (uint32_t k = 0; k < h->kernel * h->rank * h->n_planes; k++)
+        taps_of(h,
+                data)[(2 * (k / h->kernel) + 1) * h->kernel + k % h->kernel] =
+            k % 2 ? 2047 : -2047;
+}
+
+static void widen_row(struct glint_translucent_header *h, unsigned char *data)
+{
+    for (uint32_t k = 0; k < h->kernel; k++)
+        taps_of(h, data)[k] = k % 2 ? 2047 : -2047;
+}
+
+static void lose_shift(struct glint_translucent_header *h, unsigned char *data)
+{
+    uint32_t *shift = (uint32_t *)(void *)(data + h->shift_at);
+
+    shift[0]--;
+}
+
+static void raise_shift(struct glint_translucent_header *h, unsigned char *data)
+{
+    uint32_t *shift = (uint32_t *)(void *)(data + h->shift_at);
+
+    shift[3 * h->n_planes * h->rank - 1] = 17;
+}
+
+static void raise_tap(struct glint_translucent_header *h, unsigned char *data)
+{
+    taps_of(h, data)[0] = -32768;
+}
+
+static void raise_cluster(struct glint_translucent_header *h,
+                          unsigned char *data)
+{
+    data[h->cluster_at + 100] = (unsigned char)h->n_planes;
+}
+
+static void raise_transmittance(struct glint_translucent_header *h,
+                                unsigned char *data)
+{
+    uint16_t *table = (uint16_t *)(void *)(data + h->transmit_at);
+
+    table[GLINT_TRANSLUCENT_COSINES] = 32769;
+}
+
+static void raise_gain(struct glint_translucent_header *h, unsigned char *data)
+{
+    (void)data;
+    h->gain[2] = (struct glint_real){1 << 30, -30};
+}
+
+static void raise_planes(struct glint_translucent_header *h,
+                         unsigned char *data)
+{
+    (void)data;
+    h->n_planes = GLINT_TRANSLUCENT_MOST_PLANES + 1;
+}
+
+static void make_even(struct glint_translucent_header *h, unsigned char *data)
+{
+    (void)data;
+    h->kernel--;
+}
+
+static void move_taps(struct glint_translucent_header *h, unsigned char *data)
+{
+    (void)data;
+    h->tap_at = h->bytes - 4;
+}
+
+/* Every sum that the loops rely on is looked at, as are their places. */
+static void test_refused(void **state)
+{
+    static const struct {
+        damage_fn *damage;
+        const char *reason;
+    } row[] = {
+        {widen_column, "the columns of a plane of the stone do not fit"},
+        {widen_row, "the rows of a plane of the stone do not fit"},
+        {lose_shift, "the rows of a plane of the stone do not fit"},
+        {raise_shift, "the rows of a plane of the stone do not fit"},
+        {raise_tap, "a tap of the stone has too many bits"},
+        {raise_cluster, "a texel's cluster is out of range"},
+        {raise_transmittance, "the stone's transmittance is not 0 .. 1"},
+        {raise_gain, "the stone's gain is not normalised, or not 0 .. 1"},
+        {raise_planes, "the stone has too many planes or ranks"},
+        {make_even, "the stone's side or kernel is out of range"},
+        {move_taps, "a table lies outside of the stone"}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        const char *reason = "nothing";
+        struct built_stone b;
+
+        build_stone(&b, GLINT_SCATTER_CLUSTERED, 32, 29, .9);
+        row[i].damage((struct glint_translucent_header *)(void *)b.data,
+                      b.data);
+        glint_blob_seal(b.data, b.bytes);
+        assert_int_equal(
+            glint_translucent_open(&b.stone, b.data, b.bytes, &reason),
+            GLINT_E_FORMAT);
+        assert_string_equal(reason, row[i].reason);
+        free_stone(&b);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_close_to_fit),
+        cmocka_unit_test(test_refused),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
