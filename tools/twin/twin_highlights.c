@@ -108,16 +108,17 @@ static int by_flux(const void *a, const void *b)
     return p < q ? 1 : p > q ? -1 : 0;
 }
 
-/* Makes one of those of S[N] that are near; returns how many are left. */
+/* Makes one of those of S[N] that are near, the brightest first; returns how
+ * many are left. */
 static int join_near(struct sums *s, int n)
 {
     for (int i = 0; i < n; i++)
         for (int k = i + 1; k < n; k++)
             if (is_near(&s[i], &s[k])) {
                 add_sums(&s[i], &s[k]);
-                for (n--; k < n; k++)
-                    s[k] = s[k + 1];
-                k = i;
+                s[k] = s[n - 1];
+                qsort(s, (size_t)(n - 1), sizeof *s, by_flux);
+                return join_near(s, n - 1);
             }
     return n;
 }

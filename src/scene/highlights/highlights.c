@@ -227,24 +227,36 @@ static void join(struct glint_highlight_state *b, struct gathered *to,
     to->flux_q19 += from->flux_q19;
     to->red_q19 += from->red_q19;
     to->blue_q19 += from->blue_q19;
+    if (from->peak_q15 > to->peak_q15) {
+        to->peak_q15 = from->peak_q15;
+        to->object = from->object;
+    }
     set_middle(b, to);
 }
 
-/* Makes one of those that are near, from the brightest on; returns how many
- * are left. */
-static int join_near(struct glint_highlight_state *b, struct gathered *kept,
-                     int n)
+static int drop(struct gathered *kept, int n, int i)
 {
-    for (int i = 0; i < n; i++)
-        for (int k = i + 1; k < n; k++)
+    for (; i + 1 < n; i++)
+        kept[i] = kept[i + 1];
+    return n - 1;
+}
+
+/* Makes one of the first two of *N that are near each other, which stands where
+ * its brightness puts it. Returns whether there were two. */
+static int join_two(struct glint_highlight_state *b, struct gathered *kept,
+                    int *n)
+{
+    for (int i = 0; i < *n; i++)
+        for (int k = i + 1; k < *n; k++)
             if (is_near(&kept[i], &kept[k])) {
-                join(b, &kept[i], &kept[k]);
-                for (int m = k; m + 1 < n; m++)
-                    kept[m] = kept[m + 1];
-                n--;
-                k = i; /* the middle has moved */
+                struct gathered both = kept[i];
+
+                join(b, &both, &kept[k]);
+                *n = drop(kept, drop(kept, *n, k), i);
+                *n = keep(kept, *n, &both);
+                return 1;
             }
-    return n;
+    return 0;
 }
 
 /* -------------------------------------------------------------------- spots */
@@ -364,7 +376,7 @@ static int find(const struct glint_scene *scene,
     const int most = q_smaller((int32_t)scene->model.header->highlights,
                                scene->cfg.highlights);
     struct gathered *const kept = b->kept;
-    int n = 0;
+    int n = 0, joined;
 
     for (int i = 0; i < b->across * b->down; i++)
         b->next[i] = UNSEEN;
@@ -374,7 +386,10 @@ static int find(const struct glint_scene *scene,
 
             n = keep(kept, n, &g);
         }
-    n = q_smaller(join_near(b, kept, n), most);
+    do
+        joined = join_two(b, kept, &n);
+    while (joined);
+    n = q_smaller(n, most);
     while (n > 0 && kept[n - 1].flux_q19 < LEAST_Q19)
         n--;
     for (int i = 0; i < n; i++)

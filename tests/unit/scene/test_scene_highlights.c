@@ -278,7 +278,7 @@ static void test_none(void **state)
 }
 
 /* Squares that touch and middles within 12 pixels are one; more than are asked
- * for are the brightest. */
+ * for are the brightest. Two that are one stand by the light of both. */
 static void test_one(void **state)
 {
     static const char two[] = CAMERA STEEL(".01 .01") BRIGHT
@@ -294,6 +294,16 @@ static void test_one(void **state)
     snprintf(text, sizeof text, two, ".4");
     assert_int_equal(count(text), 2);
     assert_int_equal(found[0].object + found[1].object, 1);
+    for (int i = 0; i < 40; i++) {
+        snprintf(text, sizeof text,
+                 CAMERA STEEL(".01 .01") BRIGHT
+                 "sphere a at %g 0 0 radius .012 material m\n"
+                 "sphere b at %g 0 0 radius .012 material m\n"
+                 "sphere c at -.5 0 0 radius .0145 material m\n",
+                 .1 + .002 * i, .2 + .002 * i);
+        assert_in_range(count(text), 2, 3);
+        assert_true(power(0) > power(1));
+    }
     strcpy(text, CAMERA STEEL(".01 .01") BRIGHT);
     for (int i = 0; i < 16; i++)
         snprintf(text + strlen(text), 100,
