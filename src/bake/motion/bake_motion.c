@@ -145,8 +145,8 @@ static void add_senses(struct glint_motion_baker *b,
     glint_rigid_take(r, s->tv, moved);
     memcpy(r->at, moved, sizeof moved);
     for (int i = 0; i < 3; i++) {
-        /* column i: where axis i of the new body lies in the old one's axes,
-         * by Rodrigues' formula */
+        /* Rodrigues' formula gives column i: where axis i of the new body lies
+         * in the axes of the old one. */
         double to[3];
 
         for (int k = 0; k < 3; k++) {

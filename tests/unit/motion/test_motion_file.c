@@ -222,7 +222,7 @@ static void hostile_words_do_no_harm(void **state)
     for (int i = 0; i < 3000; i++) {
         struct glint_motion motion;
         const char *reason;
-        /* of the header mostly */
+        /* Every second fault is in the header. */
         const size_t at =
             4 * (size_t)rng_below(&seed, i % 2 ? 46 : (int)baked.bytes / 4);
         uint32_t word = rng_bits(&seed) >> rng_below(&seed, 32);
