@@ -26,6 +26,7 @@
 #   make shared   shared libraries;  install-library: these, archives, headers
 #                 and pkg-config files alone;  dist: the sources, packed;
 #                 abi REF=REVISION: what has changed of them since, by abidiff
+#   make frei0r   the plug-in for ffmpeg, MLT and GStreamer;  check-frei0r-threads
 #   make bench    what a frame costs;  bench-insn: in instructions
 #   make size     bytes of the run-time library, and of programs with parts of it
 #   make budget   what a frame costs on ARM, in instructions and bytes
@@ -187,7 +188,7 @@ build/glint-sdl.so: platform/sdl/sdl.c platform/sdl/sdl.h
 	$(Q)$(CC) -std=c99 -O2 $(filter-out -Wundef,$(WARN)) -fPIC -fvisibility=hidden -shared -Iinclude -Iplatform \
 	        $< -o $@ $$(pkg-config --cflags --libs sdl2)
 
-include tools/make/check.mk tools/make/emulated.mk tools/make/measure.mk tools/make/shared.mk tools/make/install.mk
+include tools/make/hosts.mk tools/make/check.mk tools/make/emulated.mk tools/make/measure.mk tools/make/shared.mk tools/make/install.mk
 clean:
 	rm -rf build
 .PHONY: all help always oiio assimp window glint-live clean

@@ -61,6 +61,7 @@ check:
 	        $(MAKE) --no-print-directory DEPS=no check-vm
 run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/ray_errors $(example_bins) $(embed_bins) \
         $(PROGRAMS)
+	@[ $(notdir $(CC))-$(CONFIG) != gcc-release ] || $(MAKE) --no-print-directory PIC=yes shared frei0r
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
 	        $(replay_bins)
 	@[ -n "$(filter asan tsan,$(CONFIG))" ] || tests/extremes --quick
@@ -127,7 +128,7 @@ run-fuzz run-fuzz-keep: $(fuzz_bins)
 analyze:
 	@tools/make/deps "static analysis" gcc clang-tidy cppcheck
 	@$(MAKE) --no-print-directory CC=gcc CONFIG=analyze WERROR=-Werror run-analyze
-run-analyze: $(core_o) $(published_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o) $(OUT)/tools/command/glint.o
+run-analyze: $(core_o) $(published_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o) $(frei0r_o) $(OUT)/tools/command/glint.o
 	$(say) CPPCHECK 'src platform tools'
 	@mkdir -p $(OUT)/cppcheck
 	$(Q)cppcheck -q --std=c99 --language=c --error-exitcode=1 \

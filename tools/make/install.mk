@@ -8,11 +8,13 @@ PLUGIN  ?= $(if $(CROSS),no,$(shell command -v $(CXX) >/dev/null && \
         pkg-config --exists OpenImageIO 2>/dev/null && echo yes || echo no))
 MESHES  ?= $(if $(CROSS),no,$(shell pkg-config --exists assimp 2>/dev/null && echo yes || echo no))
 WINDOW  ?= $(if $(CROSS),no,$(shell pkg-config --exists sdl2 2>/dev/null && echo yes || echo no))
+FREI0R  ?= $(if $(CROSS),no,yes)
 MODELS  ?= $(if $(CROSS),no,yes)
 to := $(DESTDIR)$(PREFIX)
 install: install-library all glint-live $(if $(filter yes,$(PLUGIN)),build/glint-oiio.so) \
         $(if $(filter yes,$(MESHES)),build/glint-assimp.so) \
         $(if $(filter yes,$(WINDOW)),build/glint-sdl.so)
+	$(if $(filter yes,$(FREI0R)),$(MAKE) --no-print-directory frei0r)
 	install -d $(to)/bin $(to)/lib/glint $(to)/share/glint/lenses $(to)/lib/systemd/system
 	install $(if $(CROSS),-s --strip-program=$(CROSS)strip) -m 755 \
 	        $(program) $(OUT)/glint-live $(to)/bin
@@ -26,6 +28,7 @@ install: install-library all glint-live $(if $(filter yes,$(PLUGIN)),build/glint
 	$(if $(filter yes,$(MESHES)),install -m 755 build/glint-assimp.so $(to)/lib/glint, \
 	        @echo 'without the mesh plug-in (pkg-config, libassimp-dev): OBJ')
 	$(if $(filter yes,$(WINDOW)),install -m 755 build/glint-sdl.so $(to)/lib/glint)
+	$(if $(filter yes,$(FREI0R)),install -d $(to)/lib/frei0r-1 && install -s -m 644 build/glint-frei0r.so $(to)/lib/frei0r-1/glint.so)
 ifneq ($(MODELS),no)
 	@echo 'baking the models of all lenses, where there are none yet (MODELS=no: later)'
 	rm -rf build/models-installed # of other tables
@@ -50,11 +53,11 @@ uninstall:
 	        $(patsubst %,$(to)/lib/lib%.a,$(LIBRARIES) glint-published) \
 	        $(addprefix $(to)/lib/,$(foreach l,$(LIBRARIES),$(call shared_names,$l))) \
 	        $(LIBRARIES:%=$(to)/lib/pkgconfig/%.pc) $(headers:%=$(to)/%) \
-        $(to)/lib/glint/glint-assimp.so $(to)/lib/glint/glint-sdl.so \
+        $(to)/lib/glint/glint-assimp.so $(to)/lib/glint/glint-sdl.so $(to)/lib/frei0r-1/glint.so \
 	        $(to)/lib/systemd/system/glint-live.service \
 	        $(patsubst %,$(to)/share/glint/%,$(wildcard lenses/*.lens)) \
 	        $(to)/share/glint/models/*.glint $(to)/share/glint/bridge.jpg $(to)/share/glint/bridge.ppm
-	@for d in include/glint/scene include/glint lib/pkgconfig lib/glint share/glint/models share/glint/lenses share/glint \
+	@for d in include/glint/scene include/glint lib/pkgconfig lib/glint lib/frei0r-1 share/glint/models share/glint/lenses share/glint \
 	        lib/systemd/system lib/systemd; do \
 	        if [ -d $(to)/$$d ]; then rmdir --ignore-fail-on-non-empty $(to)/$$d; fi; done
 .PHONY: install install-library uninstall

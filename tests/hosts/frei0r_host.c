@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * frei0r_host PLUGIN WIDTHxHEIGHT INSTANCES [NAME=VALUE...] <FRAMES >OUT
+ *
+ * A small host of frei0r plug-ins: BGRA frames of 1/25 s go through INSTANCES
+ * of the plug-in at once, a thread each; the frames of the first are written.
+ * Fails if another's differ. NAME@FRAME=VALUE sets a parameter before that
+ * frame.
+ */
+#include <dlfcn.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "frei0r/abi.h"
+
+enum { MOST = 64, WORD = 32 };
+
+struct setting {
+    char name[WORD];
+    const char *value;
+    int frame;
+};
+
+static struct setting setting[MOST];
+static int n_settings;
+static unsigned width, height;
+static size_t frame_bytes, n_frames;
+static unsigned char *input;
+static struct f0r_plugin plugin;
+
+/* Entries of the plug-in. Their addresses come as those of objects. */
+static void *(*construct)(unsigned, unsigned);
+static void (*destruct)(void *);
+static void (*plugin_info)(struct f0r_plugin *);
+static void (*param_info)(struct f0r_param *, int);
+static void (*set_value)(void *, void *, int);
+static void (*get_value)(void *, void *, int);
+static void (*update)(void *, double, const uint32_t *, uint32_t *);
+
+static int fail(const char *text, const char *what)
+{
+    fprintf(stderr, "frei0r_host: %s %s\n", text, what ? what : "");
+    exit(1);
+}
+
+static void entry(void *library, const char *name, void *to)
+{
+    void *const at = dlsym(library, name);
+
+    if (!at)
+        fail("no entry", name);
+    memcpy(to, &at, sizeof at);
+}
+
+/* Sets and reads back a parameter. */
+static void set(void *instance, const struct setting *s)
+{
+    struct f0r_param info;
+    double number = strtod(s->value, NULL), got = -1;
+    char *word = (char *)(uintptr_t)s->value, *back = NULL;
+    int i = 0;
+
+    for (;; i++) {
+        if (i == plugin.n_params)
+            fail("no parameter", s->name);
+        param_info(&info, i);
+        if (strcmp(info.name, s->name) == 0)
+            break;
+    }
+    if (info.type == F0R_STRING) {
+        set_value(instance, &word, i);
+        get_value(instance, &back, i);
+    } else {
+        set_value(instance, &number, i);
+        get_value(instance, &got, i);
+    }
+    if (info.type == F0R_STRING ? strcmp(back, word) != 0 : got != number)
+        fail("is not what was set:", s->name);
+}
+
+static void *run(void *out)
+{
+    void *const instance = construct(width, height);
+
+    if (!instance)
+        fail("no instance", NULL);
+    for (size_t i = 0; i < n_frames; i++) {
+        for (int k = 0; k < n_settings; k++)
+            if (setting[k].frame == (int)i)
+                set(instance, &setting[k]);
+        update(instance, (double)i / 25,
+               (const uint32_t *)(const void *)(input + i * frame_bytes),
+               (uint32_t *)(void *)((unsigned char *)out + i * frame_bytes));
+    }
+    destruct(instance);
+    return NULL;
+}
+
+static void take_setting(const char *text)
+{
+    struct setting *const s = &setting[n_settings++];
+    const char *const value = strchr(text, '=');
+
+    if (!value || n_settings == MOST ||
+        sscanf(text, "%31[^@=]@%d", s->name, &s->frame) < 1)
+        fail("not NAME=VALUE:", text);
+    s->value = value + 1;
+}
+
+static void load(const char *path)
+{
+    void *const library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    int (*init)(void);
+
+    if (!library)
+        fail("cannot load", dlerror());
+    entry(library, "f0r_init", &init);
+    entry(library, "f0r_construct", &construct);
+    entry(library, "f0r_destruct", &destruct);
+    entry(library, "f0r_get_plugin_info", &plugin_info);
+    entry(library, "f0r_get_param_info", &param_info);
+    entry(library, "f0r_set_param_value", &set_value);
+    entry(library, "f0r_get_param_value", &get_value);
+    entry(library, "f0r_update", &update);
+    if (init() != 1)
+        fail("init fails:", path);
+    plugin_info(&plugin);
+}
+
+int main(int argc, char **argv)
+{
+    static pthread_t thread[MOST];
+    static unsigned char *out[MOST];
+    const int n = argc > 3 ? atoi(argv[3]) : 0;
+    size_t bytes;
+
+    if (n < 1 || n > MOST || sscanf(argv[2], "%ux%u", &width, &height) != 2)
+        fail("PLUGIN WIDTHxHEIGHT INSTANCES [NAME=VALUE...]", NULL);
+    frame_bytes = (size_t)4 * width * height;
+    input = malloc((size_t)256 << 20);
+    if (!input)
+        fail("no memory", NULL);
+    n_frames = fread(input, 1, (size_t)256 << 20, stdin) / frame_bytes;
+    for (int i = 4; i < argc; i++)
+        take_setting(argv[i]);
+    load(argv[1]);
+    bytes = n_frames * frame_bytes;
+    for (int i = 0; i < n; i++)
+        if (!(out[i] = malloc(bytes)) ||
+            pthread_create(&thread[i], NULL, run, out[i]) != 0)
+            fail("no memory, or no thread", NULL);
+    for (int i = 0; i < n; i++) {
+        pthread_join(thread[i], NULL);
+        if (memcmp(out[0], out[i], bytes) != 0)
+            fail("an instance differs from the first", NULL);
+    }
+    return fwrite(out[0], 1, bytes, stdout) != bytes;
+}

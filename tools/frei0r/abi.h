@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * abi.h - the binary interface of frei0r 1, version 1.2, in words of our own:
+ * what hosts call of a plug-in, with the structs and numbers that they pass.
+ *
+ * A host calls f0r_init() once, then makes instances. Different instances may
+ * be called at the same time from different threads, one instance from one
+ * thread at a time. Pictures have 4 bytes a pixel and rows without padding, the
+ * top row first.
+ */
+#ifndef GLINT_TOOLS_FREI0R_ABI_H
+#define GLINT_TOOLS_FREI0R_ABI_H
+
+#include <stdint.h>
+
+enum { F0R_MAJOR = 1 };
+enum { F0R_FILTER = 0 }; /* kinds of plug-in: one picture in, one out */
+enum { F0R_BGRA = 0 };   /* colour models: bytes B, G, R, A */
+enum f0r_type {
+    F0R_BOOL = 0,   /* a double; from 0.5 on true */
+    F0R_DOUBLE = 1, /* a double, 0 .. 1 by convention */
+    F0R_STRING = 4  /* a char *, UTF-8 */
+};
+
+struct f0r_plugin {
+    const char *name, *author;
+    int kind, colour_model;
+    int frei0r_version;               /* F0R_MAJOR */
+    int major_version, minor_version; /* of the plug-in */
+    int n_params;
+    const char *explanation;
+};
+
+struct f0r_param {
+    const char *name;
+    int type; /* an f0r_type */
+    const char *explanation;
+};
+
+#define F0R_EXPORT __attribute__((visibility("default")))
+
+/* Return 1, and nothing, when the host loads and drops the plug-in. */
+F0R_EXPORT int f0r_init(void);
+F0R_EXPORT void f0r_deinit(void);
+
+F0R_EXPORT void f0r_get_plugin_info(struct f0r_plugin *info);
+F0R_EXPORT void f0r_get_param_info(struct f0r_param *info, int index);
+
+/* Returns an instance for pictures of WIDTH x HEIGHT, or NULL. */
+F0R_EXPORT void *f0r_construct(unsigned width, unsigned height);
+F0R_EXPORT void f0r_destruct(void *instance);
+
+/* VALUE points to a double or a char *; strings are copied when set, and when
+ * got belong to the instance. */
+F0R_EXPORT void f0r_set_param_value(void *instance, void *value, int index);
+F0R_EXPORT void f0r_get_param_value(void *instance, void *value, int index);
+
+/* Writes to OUT what becomes of IN at SECONDS. */
+F0R_EXPORT void f0r_update(void *instance, double seconds, const uint32_t *in,
+                           uint32_t *out);
+
+#endif

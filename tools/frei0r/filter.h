@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * filter.h - a flare over the pictures of a host, as glint overlay draws it,
+ * turned by parameters that may change from picture to picture.
+ */
+#ifndef GLINT_TOOLS_FREI0R_FILTER_H
+#define GLINT_TOOLS_FREI0R_FILTER_H
+
+#include <stdbool.h>
+
+#include "glint/image.h"
+
+/* Numbers are 0 .. 1. A number at its default leaves a style's own value. */
+enum filter_number {
+    FILTER_STRENGTH,  /* as --strength */
+    FILTER_GAIN,      /* half of --gain: 0.5 is 1 */
+    FILTER_STARBURST, /* half of --starburst: 0.5 is 1 */
+    FILTER_QUALITY,   /* as --quality */
+    FILTER_AUTO,      /* from 0.5 on lamps are found; else there is one, at: */
+    FILTER_X,         /* place in widths of the picture, from the left */
+    FILTER_Y,         /* and in heights, from the top */
+    FILTER_NUMBERS
+};
+
+/* Words, "" where none is given. */
+enum filter_word {
+    FILTER_LENS,     /* as --lens */
+    FILTER_STYLE,    /* as --style */
+    FILTER_F_NUMBER, /* as --f-number */
+    FILTER_WORDS
+};
+
+extern const double filter_default[FILTER_NUMBERS];
+
+struct filter;
+
+/* Returns a filter, or NULL without memory. It opens its lens with the first
+ * picture. */
+struct filter *filter_create(int width, int height);
+void filter_destroy(struct filter *filter);
+
+/* Returns the bytes of a picture. */
+size_t filter_bytes(const struct filter *filter);
+
+/* Set a parameter. What is not finite or out of range is clamped. */
+void filter_set_number(struct filter *filter, enum filter_number which,
+                       double value);
+void filter_set_word(struct filter *filter, enum filter_word which,
+                     const char *text);
+double filter_number(const struct filter *filter, enum filter_number which);
+const char *filter_word(const struct filter *filter, enum filter_word which);
+
+/* Draws the flare on BGRA, rows without padding, of the moment SECONDS. Where
+ * it cannot, a line on standard error says why, once, and the picture stays as
+ * it is until a parameter changes. */
+void filter_draw(struct filter *filter, double seconds, uint8_t *bgra);
+
+#endif

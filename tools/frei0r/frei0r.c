@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The frei0r plug-in: what ffmpeg, MLT, Kdenlive, Shotcut and GStreamer call.
+ */
+#include "frei0r/abi.h"
+
+#include <string.h>
+
+#include "frei0r/filter.h"
+#include "glint/glint.h"
+
+/* A parameter: a number, or a word if IS_WORD. */
+struct parameter {
+    const char *name, *about;
+    enum f0r_type type;
+    int which; /* a filter_number or a filter_word */
+};
+
+static const struct parameter parameters[] = {
+    {"lens",
+     "Lens by name, or a .lens or .glint file; empty: the style's, or "
+     "nikon-zoom-short",
+     F0R_STRING, FILTER_LENS},
+    {"strength",
+     "How bright the flare comes out: 0 none, 0.5 a quarter of "
+     "white at its brightest, 1 white",
+     F0R_DOUBLE, FILTER_STRENGTH},
+    {"gain", "Factor on all light of the flare: 0.5 is 1, 1 is 2", F0R_DOUBLE,
+     FILTER_GAIN},
+    {"starburst",
+     "Star around each lamp: 0 none, 0.5 as a lens has it, 1 twice "
+     "that",
+     F0R_DOUBLE, FILTER_STARBURST},
+    {"quality", "0 fast, 0.5 as overlay draws, 1 fine", F0R_DOUBLE,
+     FILTER_QUALITY},
+    {"auto", "Lamps are found and followed; else there is one, at x, y",
+     F0R_BOOL, FILTER_AUTO},
+    {"x", "Lamp without auto: 0 left, 1 right", F0R_DOUBLE, FILTER_X},
+    {"y", "Lamp without auto: 0 top, 1 bottom", F0R_DOUBLE, FILTER_Y},
+    {"f-number", "How far the lens is stopped down, as 5.6; empty: open",
+     F0R_STRING, FILTER_F_NUMBER},
+    {"style", "natural, clean, vintage, cinema or toy; empty: none", F0R_STRING,
+     FILTER_STYLE},
+};
+
+enum { N_PARAMETERS = sizeof parameters / sizeof *parameters };
+
+int f0r_init(void)
+{
+    return 1;
+}
+
+void f0r_deinit(void)
+{
+}
+
+void f0r_get_plugin_info(struct f0r_plugin *info)
+{
+    *info = (struct f0r_plugin){
+        .name = "glint",
+        .author = "glint",
+        .kind = F0R_FILTER,
+        .colour_model = F0R_BGRA,
+        .frei0r_version = F0R_MAJOR,
+        .minor_version = 1,
+        .n_params = N_PARAMETERS,
+        .explanation = "Lens flare: ghosts and stars of a real lens"};
+}
+
+void f0r_get_param_info(struct f0r_param *info, int index)
+{
+    if (index < 0 || index >= N_PARAMETERS)
+        return;
+    *info = (struct f0r_param){.name = parameters[index].name,
+                               .type = (int)parameters[index].type,
+                               .explanation = parameters[index].about};
+}
+
+void *f0r_construct(unsigned width, unsigned height)
+{
+    return width - 1 < GLINT_MAX_SIDE && height - 1 < GLINT_MAX_SIDE
+               ? filter_create((int)width, (int)height)
+               : NULL;
+}
+
+void f0r_destruct(void *instance)
+{
+    filter_destroy(instance);
+}
+
+void f0r_set_param_value(void *instance, void *value, int index)
+{
+    if (index < 0 || index >= N_PARAMETERS || !value)
+        return;
+    if (parameters[index].type == F0R_STRING)
+        filter_set_word(instance, (enum filter_word)parameters[index].which,
+                        *(char **)value);
+    else
+        filter_set_number(instance, (enum filter_number)parameters[index].which,
+                          *(double *)value);
+}
+
+void f0r_get_param_value(void *instance, void *value, int index)
+{
+    if (index < 0 || index >= N_PARAMETERS || !value)
+        return;
+    if (parameters[index].type == F0R_STRING)
+        *(const char **)value =
+            filter_word(instance, (enum filter_word)parameters[index].which);
+    else
+        *(double *)value = filter_number(
+            instance, (enum filter_number)parameters[index].which);
+}
+
+void f0r_update(void *instance, double seconds, const uint32_t *in,
+                uint32_t *out)
+{
+    const struct filter *const filter = instance;
+
+    if (in != out)
+        memcpy(out, in, filter_bytes(filter));
+    filter_draw(instance, seconds, (uint8_t *)out);
+}

@@ -1,0 +1,32 @@
+# Plug-ins for hosts of others. Like shared libraries they are made of objects in
+# a folder of their own, and contain all that they take of glint.
+
+frei0r_o := $(patsubst %.c,$(OUT)/%.o,$(wildcard tools/frei0r/*.c))
+# A host may drop the plug-in while a signal's action still points into it.
+$(OUT)/glint-frei0r.so: $(frei0r_o) $(archives)
+	@mkdir -p $(@D)
+	$(say) LD $@
+	$(Q)$(CC) $(CFLAGS) -shared $(filter -Wl%,$(LINKED)) $(LDFLAGS) -Wl,--exclude-libs,ALL \
+	        -Wl,--version-script=tools/frei0r/exports.map -Wl,-z,defs,-z,nodelete -Wl,--gc-sections \
+	        $(filter %.o,$^) $(libs) $(LDLIBS) -o $@
+ifdef PIC
+frei0r: $(OUT)/glint-frei0r.so
+	$(Q)cp -f $< build/glint-frei0r.so.tmp && mv -f build/glint-frei0r.so.tmp build/glint-frei0r.so
+else
+frei0r:
+	@$(MAKE) --no-print-directory PIC=yes frei0r
+endif
+# Eight instances at once, watched by ThreadSanitizer.
+check-frei0r-threads:
+	@$(MAKE) --no-print-directory CONFIG=tsan PIC=yes run-frei0r-threads
+run-frei0r-threads: $(OUT)/glint-frei0r.so $(OUT)/frei0r_host
+	@head -c 737280 tests/data/bridge.ppm | XDG_CACHE_HOME=$$PWD/build/cache GLINT_LENSES=$$PWD/lenses \
+	        TSAN_OPTIONS=exitcode=9 $(OUT)/frei0r_host $< 192x120 8 quality=.25 gain@3=.3 lens@4=heliar-tronnier >$(OUT)/frames
+	@echo '8 instances at once: no race'
+.PHONY: frei0r check-frei0r-threads run-frei0r-threads
+
+# A host of our own, for tests.
+$(OUT)/frei0r_host: $(OUT)/tests/hosts/frei0r_host.o
+	@mkdir -p $(@D)
+	$(say) LD $@
+	$(Q)$(CC) $(CFLAGS) $(LINKED) $(LDFLAGS) $^ -lpthread -ldl -o $@
