@@ -100,12 +100,13 @@ struct glint_scene_stones {
     /* Brings the maps up to date with the frame that was begun; returns how
      * many texels were worked out. */
     int (*update)(struct glint_scene *scene);
-    /* Adds what comes out of SURFACE along RAY, times WEIGHT_Q15; returns 0 if
-     * its material is no stone. */
-    int (*add)(const struct glint_scene *scene,
-               const struct glint_scene_ray *ray,
-               const struct glint_met_surface *surface, int32_t weight_q15,
-               int32_t rgb_q15[3]);
+    /* Adds what comes out of SURFACE along RAY, times WEIGHT_Q15. Returns how
+     * many times what it does straight ahead its coat mirrors there, q15, below
+     * 2^30; 0 if its material is no stone. */
+    int32_t (*add)(const struct glint_scene *scene,
+                   const struct glint_scene_ray *ray,
+                   const struct glint_met_surface *surface, int32_t weight_q15,
+                   int32_t rgb_q15[3]);
 };
 
 #endif

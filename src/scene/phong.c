@@ -147,11 +147,15 @@ static WHOLLY_INLINE void phong(const struct glint_scene *scene,
     struct glint_brushed brushed;
     int32_t colour_q15[3];
 
-    if (scene->placed[surface->object].skin >= 0 &&
-        scene->cfg.parts.stones->add(scene, ray, surface, weight_q15,
-                                     rgb_q15) &&
-        !is_metal)
-        return;
+    if (scene->placed[surface->object].skin >= 0) {
+        const int32_t coat_q15 = scene->cfg.parts.stones->add(
+            scene, ray, surface, weight_q15, rgb_q15);
+
+        if (coat_q15 && !is_metal)
+            return;
+        if (coat_q15)
+            weight_q15 = q_mul(weight_q15, coat_q15, 15);
+    }
     for (int c = 0; c < 3; c++)
         colour_q15[c] = m->rgb_q15[c];
     if (m->texture != GLINT_SCENE_NONE)

@@ -215,8 +215,6 @@ static void light_of(const struct twin *twin, const struct twin_hit *hit,
         colour[c] *= m->colour[c];
         rgb[c] = m->ambient * colour[c];
     }
-    if (m->is_stone)
-        twin_add_stone(twin, hit, toward, rgb);
     twin_add_around(twin, hit, toward, colour, rgb);
     for (int i = 0; i < s->n_lights; i++) {
         double l[3], light[3], glint, share, shine = 0;
@@ -236,6 +234,8 @@ static void light_of(const struct twin *twin, const struct twin_hit *hit,
                       (m->diffuse * facing * colour[c] + m->specular * glint +
                        m->metal[c] * shine);
     }
+    if (m->is_stone)
+        twin_add_stone(twin, hit, toward, rgb);
 }
 
 /* ------------------------------------------------------------ rays sent on */

@@ -365,6 +365,18 @@ void twin_fill_maps(const struct twin *twin)
 /* ------------------------------------------------------------------- showing
  */
 
+/* What does not pass is mirrored. */
+static double coat_of(const struct glint_described_material *m,
+                      const struct twin_map *map, double passed)
+{
+    const double ahead = 1 - passes(m, map, 1);
+    const double most = fmax(m->metal[0], fmax(m->metal[1], m->metal[2]));
+
+    if (!m->is_metal || ahead <= 0)
+        return 1;
+    return fmin((1 - passed) / ahead, 1 / most);
+}
+
 void twin_add_stone(const struct twin *twin, const struct twin_hit *hit,
                     const double toward[3], double rgb[3])
 {
@@ -375,6 +387,8 @@ void twin_add_stone(const struct twin *twin, const struct twin_hit *hit,
     const double y = (1 - hit->uv[1]) * m->height - .5;
     const double out = passes(of, m, -vec_dot(toward, hit->shading));
 
+    for (int c = 0; c < CHANNELS; c++)
+        rgb[c] *= coat_of(of, m, out);
     for (int k = 0; k < 4; k++) {
         const double left = floor(x), top = floor(y);
         const double share =

@@ -14,7 +14,8 @@ void twin_close_stones(struct twin *twin);
 /* Works out all maps, once shadow points are known. */
 void twin_fill_maps(const struct twin *twin);
 
-/* Sets RGB to what comes out at HIT, of stone, along a ray TOWARD it. */
+/* RGB is what the coat at HIT mirrors along a ray TOWARD it, were it seen from
+ * ahead: sets it to what it mirrors there, and what comes out. */
 void twin_add_stone(const struct twin *twin, const struct twin_hit *hit,
                     const double toward[3], double rgb[3]);
 

@@ -314,15 +314,39 @@ static int32_t sample(const int16_t *map, int width, const struct between *x,
     return (int32_t)(a + ((b - a) * y->part_q16 >> 16));
 }
 
-static int add(const struct glint_scene *scene,
-               const struct glint_scene_ray *ray,
-               const struct glint_met_surface *surface, int32_t weight_q15,
-               int32_t rgb_q15[3])
+/* Returns how many times what it does straight ahead the coat of SURFACE
+ * mirrors where PASSES_Q15 gets through, q15: what does not get through is
+ * mirrored, and never more than all. */
+static int32_t coat_q15(const struct glint_scene *scene,
+                        const struct glint_stone_skin *skin,
+                        const struct glint_met_surface *surface,
+                        int32_t passes_q15)
+{
+    enum { ONE_Q15 = 1 << 15 };
+    const uint32_t ward = surface->material->ward;
+    const uint16_t *at_q15 = skin->stone.transmit_q15;
+    const int32_t ahead_q15 = ONE_Q15 - at_q15[GLINT_TRANSLUCENT_COSINES];
+    int32_t most_q15 = 1;
+
+    if (!skin->fresnel || ahead_q15 <= 0 || ward == GLINT_SCENE_NONE)
+        return ONE_Q15;
+    for (int k = 0; k < 3; k++)
+        most_q15 = q_larger(most_q15, scene->model.ward[ward].specular_q15[k]);
+    return q_smaller(glint_ratio((uint64_t)(ONE_Q15 - passes_q15) << 15,
+                                 (uint64_t)ahead_q15),
+                     glint_ratio(UINT64_C(1) << 30, (uint64_t)most_q15));
+}
+
+static int32_t add(const struct glint_scene *scene,
+                   const struct glint_scene_ray *ray,
+                   const struct glint_met_surface *surface, int32_t weight_q15,
+                   int32_t rgb_q15[3])
 {
     const struct glint_placed *p = &scene->placed[surface->object];
     const struct glint_stone_skin *skin = &scene->stones->skin[p->skin];
     const int log2 = (int)skin->stone.header->side_log2;
-    int32_t uv_q16[2] = {surface->uv_q16[0], surface->uv_q16[1]}, passes_q15;
+    int32_t uv_q16[2] = {surface->uv_q16[0], surface->uv_q16[1]};
+    int32_t passes_q15, coat;
     struct between x, y;
 
     if (surface->material != &scene->model.material[skin->material])
@@ -333,6 +357,7 @@ static int add(const struct glint_scene *scene,
     y = find(uv_q16[1], log2, 0);
     passes_q15 = glint_stone_passes(
         skin, -v3_cosine_q30(ray->toward_q30, surface->normal_q30));
+    coat = coat_q15(scene, skin, surface, passes_q15);
     passes_q15 = q_mul(passes_q15, weight_q15, 15);
     for (int c = 0; c < CHANNELS; c++) {
         const int32_t part_q15 =
@@ -344,7 +369,7 @@ static int add(const struct glint_scene *scene,
         rgb_q15[c] = q_clamp_sat(rgb_q15[c] + q_shift(light_q22 * part_q15, 22),
                                  0, GLINT_SCENE_MOST_LIGHT);
     }
-    return 1;
+    return coat;
 }
 
 const struct glint_scene_stones glint_scene_stones = {carve, open_stones,
