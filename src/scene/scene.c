@@ -22,7 +22,7 @@ void glint_scene_defaults(struct glint_scene_config *cfg, int width, int height)
                                        .shadow_points = 4,
                                        .ward_samples = 8,
                                        .stone_frames = 1,
-                                       .highlights = 8,
+                                       .highlights = -1,
                                        .max_refs = 1 << 15};
 }
 
@@ -80,7 +80,7 @@ static int is_in_range(const struct glint_scene_config *c)
            is_one_of(c->shadow_points, 1 | 4 | 16) && c->ward_samples >= 1 &&
            c->ward_samples <= 32 && (c->ward_nearest & ~1) == 0 &&
            is_one_of(c->stone_frames, 1 | 2 | 4) &&
-           (c->half_shading & ~1) == 0 && c->highlights >= 0 &&
+           (c->half_shading & ~1) == 0 && c->highlights >= -1 &&
            c->highlights <= 8 && c->max_refs >= 0 &&
            glint_workers_count(c->workers) <= 64;
 }
@@ -207,8 +207,7 @@ static struct glint_scene *carve(struct glint_arena *a,
     s->wards = has_wards(model->header) ? cfg->parts.wards->carve(s, a) : NULL;
     s->stones =
         model->header->n_skins > 0 ? cfg->parts.stones->carve(s, a) : NULL;
-    s->bright = cfg->parts.highlights && cfg->highlights > 0 &&
-                        model->header->flare && model->header->highlights > 0
+    s->bright = cfg->parts.highlights && glint_scene_wanted_highlights(s) > 0
                     ? cfg->parts.highlights->carve(s, a)
                     : NULL;
     s->motion = model->motion ? cfg->parts.motions->carve(s, a) : NULL;

@@ -393,6 +393,16 @@ void glint_scene_behind(const struct glint_scene *scene,
                         const int32_t toward_q30[3], int64_t spread_q40,
                         int32_t rgb_q15[3]);
 
+/* Returns how many highlights are found at most. */
+static inline int glint_scene_wanted_highlights(const struct glint_scene *s)
+{
+    const struct glint_scene_header *h = s->model.header;
+
+    return s->cfg.highlights >= 0 ? s->cfg.highlights
+           : h->flare             ? (int)h->highlights
+                                  : 0;
+}
+
 /* Returns the angular variance of a pixel. */
 static inline int64_t glint_scene_pixel_q40(const struct glint_scene *scene)
 {

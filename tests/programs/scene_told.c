@@ -6,7 +6,8 @@
  * tests/scene-fit, which counts instructions by callgrind.
  *
  * Balls, rings of triangles, planes, catchers, lights, textures, mirrors,
- * samples and sizes are random, the same ones each time.
+ * samples and sizes are random, the same ones each time; of the later ones also
+ * environments and brushed metal.
  */
 #include <inttypes.h>
 #include <math.h>
@@ -16,10 +17,11 @@
 #include <string.h>
 
 #include "glint/scene/bake.h"
+#include "glint/scene/environment_bake.h"
 #include "scenes/account.h"
 #include "support/rng.h"
 
-enum { FIT = 80, HELD = 40, TEXT = 1 << 13, RING = 24, TUBE = 12 };
+enum { PLAIN = 120, METAL = 75, TEXT = 1 << 13, RING = 24, TUBE = 12 };
 
 /* What is counted: a frame in which things have moved. */
 void scene_told_frame(struct scene_frame *frame,
@@ -100,24 +102,101 @@ static enum glint_status read_picture(void *ctx, const char *name,
     return mem ? GLINT_OK : GLINT_E_MEMORY;
 }
 
-/* Writes scene I, of which HELD ones have other sizes of rings. */
-static void write_scene(int i, struct text *t, struct scene_dials *dials)
+/* An environment of a rising grey, and as many bright spots as the digit that
+ * NAME begins with. */
+static enum glint_status read_sky(void *ctx, const char *name, uint8_t **data,
+                                  size_t *bytes, struct glint_error *error)
+{
+    enum { W = 64, H = 32 };
+    static float rgb[3 * W * H];
+    const struct glint_float_image picture = {W, H, rgb};
+    struct glint_environment_options options;
+    struct glint_environment_report report;
+
+    (void)ctx;
+    for (int i = 0; i < 3 * W * H; i++)
+        rgb[i] =
+            0.2F + 0.01F * (float)(i % 37) + (i / 3 / W < H / 2 ? 0.5F : 0);
+    for (int k = 0; k < name[0] - '0'; k++)
+        for (int c = 0; c < 3; c++)
+            rgb[3 * ((6 + 3 * (k % 3)) * W + 5 + 12 * k) + c] = 4000;
+    glint_environment_defaults(&options);
+    options.side_log2 = GLINT_ENVIRONMENT_LEAST_LOG2 + 1;
+    return glint_environment_bake(&picture, &options, "sky", 1, data, bytes,
+                                  &report, error);
+}
+
+static void put_metal(struct text *t, int k, uint32_t *seed)
+{
+    static const double alpha[] = {.01, .05, .1, .2};
+    const double a = alpha[rng_below(seed, 4)];
+
+    put(t, "material m%d ward specular .9 .8 .7 alpha %g %g %s\n", k, a,
+        rng_below(seed, 2) ? a : 2 * a,
+        rng_below(seed, 2) ? "diffuse .1 .1 .1" : "");
+}
+
+static void turn_dials(bool is_metal, uint32_t *seed, struct scene_dials *dials)
 {
     static const int widths[] = {160, 240, 320};
     static const int samples[] = {1, 4, 4};
     static const int points[] = {1, 4, 4, 16};
+    static const int lookups[] = {1, 4, 8, 16, 32};
+
+    *dials = (struct scene_dials){.width = widths[rng_below(seed, 3)],
+                                  .edge_samples = samples[rng_below(seed, 3)],
+                                  .shadow_points = points[rng_below(seed, 4)],
+                                  .half_shading = rng_below(seed, 4) == 0};
+    if (is_metal) {
+        dials->ward_samples = lookups[rng_below(seed, 5)];
+        dials->ward_nearest = rng_below(seed, 3) == 0;
+    }
+    dials->height = dials->width * 9 / 16;
+}
+
+static void put_materials(struct text *t, bool is_metal, uint32_t *seed)
+{
     static const char *const ends[] = {
         "", "", "", "", "texture t", "reflect .5", "pass .8 refract 1.4"};
+
+    for (int k = 0; k < 4; k++) {
+        if (is_metal && rng_below(seed, 3)) {
+            put_metal(t, k, seed);
+            continue;
+        }
+        put(t, "material m%d phong .1 .6 %s colour .9 .5 .2 power 40 %s\n", k,
+            rng_below(seed, 3) ? ".3" : "0", ends[rng_below(seed, 7)]);
+    }
+}
+
+static void put_rings(struct text *t, bool is_metal, uint32_t *seed)
+{
+    int n;
+
+    if (is_metal && rng_below(seed, 2))
+        put(t, "material ring ward specular .9 .8 .6 alpha .1 .2\n");
+    else
+        put(t, "material ring phong .1 .6 .3 colour .9 .6 .2 power 12 %s\n",
+            rng_below(seed, 6) ? "" : "reflect .4");
+    n = rng_below(seed, 3);
+    for (int k = 0; k < n; k++)
+        put(t,
+            "mesh r%d r.obj at %f .4 %f scale %f turn 1 0 0 %f material "
+            "ring\n",
+            k, among(seed, -1.2, 1.2), among(seed, -1, .5), among(seed, .2, .7),
+            among(seed, 0, 90));
+}
+
+/* Writes scene I. */
+static void write_scene(int i, struct text *t, struct scene_dials *dials)
+{
     uint32_t seed = 2654435761u * (uint32_t)(i + 1);
+    const bool is_metal = i >= PLAIN;
     int n;
 
     for (int k = 0; k < 8; k++)
         rng_bits(&seed);
-    *dials = (struct scene_dials){.width = widths[rng_below(&seed, 3)],
-                                  .edge_samples = samples[rng_below(&seed, 3)],
-                                  .shadow_points = points[rng_below(&seed, 4)],
-                                  .half_shading = rng_below(&seed, 4) == 0};
-    dials->height = dials->width * 9 / 16;
+    turn_dials(is_metal, &seed, dials);
     t->n = 0;
     put(t, "camera fov 50 at 0 1.2 %f toward 0 .4 0\ntexture t x.ppm\n",
         among(&seed, 3, 9));
@@ -128,35 +207,27 @@ static void write_scene(int i, struct text *t, struct scene_dials *dials)
     if (rng_below(&seed, 3) == 0)
         put(t, "light lamp at %f %f 2 colour 6 6 6%s\n", among(&seed, -2, 2),
             among(&seed, 1, 4), rng_below(&seed, 2) ? " radius .1" : "");
-    for (int k = 0; k < 4; k++)
-        put(t, "material m%d phong .1 .6 %s colour .9 .5 .2 power 40 %s\n", k,
-            rng_below(&seed, 3) ? ".3" : "0", ends[rng_below(&seed, 7)]);
+    put_materials(t, is_metal, &seed);
     n = 1 + rng_below(&seed, 5);
     for (int k = 0; k < n; k++)
         put(t, "sphere s%d at %f %f %f radius %f material m%d\n", k,
             among(&seed, -1.6, 1.6), among(&seed, .1, 1),
             among(&seed, -1.5, 1.5), among(&seed, .1, .5), rng_below(&seed, 4));
-    put(t, "material ring phong .1 .6 .3 colour .9 .6 .2 power 12 %s\n",
-        rng_below(&seed, 6) ? "" : "reflect .4");
-    n = rng_below(&seed, 3);
-    for (int k = 0; k < n; k++)
-        put(t,
-            "mesh r%d r.obj at %f .4 %f scale %f turn 1 0 0 %f material "
-            "ring\n",
-            k, among(&seed, -1.2, 1.2), among(&seed, -1, .5),
-            among(&seed, .2, .7), among(&seed, 0, 90));
+    put_rings(t, is_metal, &seed);
     if (rng_below(&seed, 2))
         put(t, "plane p at 0 0 0 normal 0 1 0 %s\n",
             rng_below(&seed, 3) ? "catcher .6" : "material m0");
     put(t, "shadow %s\n", rng_below(&seed, 5) ? "on" : "off");
+    if (is_metal)
+        put(t, "environment %d.sky\n", rng_below(&seed, 5));
 }
 
 static int bake(const struct text *t, struct glint_scene_model *model,
                 unsigned char **data)
 {
     static struct glint_description scene;
-    const struct glint_description_files files = {NULL, read_ring, read_picture,
-                                                  NULL, NULL,      NULL};
+    const struct glint_description_files files = {
+        NULL, read_ring, read_picture, read_sky, NULL, NULL};
     struct glint_scene_bake_report report;
     struct glint_error error = {""};
     const char *reason = "";
@@ -174,6 +245,12 @@ static int bake(const struct text *t, struct glint_scene_model *model,
     if (status != GLINT_OK)
         fprintf(stderr, "scene_told: %s%s\n%s", error.text, reason, t->text);
     return status == GLINT_OK;
+}
+
+/* The last third of either kind is. */
+static int is_held(int i)
+{
+    return i < PLAIN ? i >= PLAIN * 2 / 3 : i >= PLAIN + METAL * 2 / 3;
 }
 
 static int draw(int i, FILE *to)
@@ -203,7 +280,7 @@ static int draw(int i, FILE *to)
         counted(&frame, &image);
         is_done = scene_account_make(&account, &frame) == GLINT_OK;
         if (is_done) {
-            fprintf(to, "%d %d", i >= FIT, i);
+            fprintf(to, "%d %d", is_held(i), i);
             for (int k = 0; k < GLINT_SCENE_ITEMS; k++)
                 fprintf(to, " %" PRId64, account.all.count[k]);
             for (int k = 0; k < SCENE_COST_RESTS; k++)
@@ -223,7 +300,7 @@ int main(int argc, char **argv)
     FILE *const to = argc == 2 ? fopen(argv[1], "w") : NULL;
     int is_done = to != NULL;
 
-    for (int i = 0; is_done && i < FIT + HELD; i++)
+    for (int i = 0; is_done && i < PLAIN + METAL; i++)
         is_done = draw(i, to);
     if (to && fclose(to) != 0)
         is_done = 0;

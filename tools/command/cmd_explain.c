@@ -331,8 +331,10 @@ static int tell(struct tool *tool, struct explain_command *c, bool linear)
         explain_print(&e, &title);
     if (code == EXIT_OK && tool->json && compositor->scene.is_open)
         printf("}\n");
-    if (status == GLINT_OK && compositor->n_lamps == 0 && !tool->quiet)
+    if (status == GLINT_OK && compositor->n_lamps == 0 && !tool->quiet) {
+        fflush(stdout); /* It comes after what was told. */
         overlay_say_none(compositor, stderr);
+    }
     if (code == EXIT_OK && c->output && !compositor->scene.is_open)
         code = save(tool, c, &e, &title, NULL);
     if (code == EXIT_OK && (c->ghosts || c->sheet))

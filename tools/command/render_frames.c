@@ -298,8 +298,7 @@ int render_frames(struct tool *tool, struct render_scene *r, const char *path)
     code = apart_check(tool, &files);
     if (code != EXIT_OK)
         return code;
-    c->scene.edge_samples = r->samples;
-    c->scene.shadow_points = r->shadow_points;
+    c->scene.asked.edge_samples = r->samples;
     c->is_still = !r->is_video;
     if (r->is_video)
         f.elapsed_us = (int32_t)lrint(1e6 / r->fps);

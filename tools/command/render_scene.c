@@ -35,6 +35,11 @@ static const char help[] =
     "  --shadow-points N   1, 4 or 16 of a light's disc (default 4)\n"
     "  --shading S         full: each pixel (default); half: two by two at\n"
     "                      once where they see one thing\n"
+    "  --ward-samples N    1 to 32 lookups of the environment for a place on\n"
+    "                      brushed metal (default 8; go in fours)\n"
+    "  --ward-nearest      each in one level of it, not two blended\n"
+    "  --highlights N      0 to 8 spots of things that glint are lights of a\n"
+    "                      flare (default: as the scene says)\n"
     "  --exposure EV       stops; all light times 2^EV (default 0)\n"
     "  --pose FILE         moves things and camera, as of glint overlay\n"
     "  --control FILE      lines that change the scene, likewise\n"
@@ -59,7 +64,6 @@ enum {
     OPT_FPS,
     OPT_SIZE,
     OPT_SAMPLES,
-    OPT_POINTS,
     OPT_RAYS_OF,
     OPT_EXPOSURE_OF
 };
@@ -122,15 +126,6 @@ static int take(struct tool *tool, struct render_scene *r, int c)
                    ? -1
                    : tool_usage(tool, "--samples takes 1 to 16, not '%s'",
                                 optarg);
-    case OPT_POINTS:
-        return tool_integer(optarg, 1, 16, &r->shadow_points) &&
-                       (r->shadow_points == 1 || r->shadow_points == 4 ||
-                        r->shadow_points == 16)
-                   ? -1
-                   : tool_usage(tool,
-                                "--shadow-points takes 1, 4 or 16, not "
-                                "'%s'",
-                                optarg);
     case OPT_EXPOSURE_OF:
         return tool_number(optarg, &r->exposure_ev) &&
                        fabs(r->exposure_ev) <= 100
@@ -150,7 +145,8 @@ static int take_any(struct tool *tool, struct render_scene *r, int c)
         const bool moves = c == OPT_POSE || c == OPT_CONTROL;
 
         r->is_frames = r->is_frames || moves || c == OPT_LENS;
-        r->is_lit = r->is_lit || (!moves && c != OPT_LENS && c != OPT_SHADING);
+        r->is_lit =
+            r->is_lit || (!moves && c != OPT_LENS && !compositor_is_dial(c));
     }
     if (code == -2)
         code = take_moving(tool, r, c);
@@ -165,7 +161,6 @@ static int parse(struct tool *tool, int argc, char **argv,
         {"size", required_argument, NULL, OPT_SIZE},
         {"rays", required_argument, NULL, OPT_RAYS_OF},
         {"samples", required_argument, NULL, OPT_SAMPLES},
-        {"shadow-points", required_argument, NULL, OPT_POINTS},
         {"exposure", required_argument, NULL, OPT_EXPOSURE_OF},
         {"frame", required_argument, NULL, OPT_FRAME},
         {"frames", required_argument, NULL, OPT_FRAMES},
@@ -224,6 +219,7 @@ static int draw_exact(struct tool *tool, struct render_scene *r,
                       const struct glint_description *scene)
 {
     const struct twin_view view = {r->width, r->height, 0, r->samples};
+    const struct scene_dials *const asked = &r->compositor.scene.asked;
     const size_t n = (size_t)r->width * (size_t)r->height;
     struct twin_pixel *pixels = malloc(n * sizeof *pixels);
     const double start = tool_seconds(), scale = exp2(r->exposure_ev);
@@ -233,7 +229,9 @@ static int draw_exact(struct tool *tool, struct render_scene *r,
     if (pixels)
         status = twin_open(&twin, scene);
     if (status == GLINT_OK) {
-        twin.shadow_points = r->shadow_points;
+        twin.shadow_points = asked->shadow_points;
+        if (asked->ward_samples)
+            twin.ward_samples = asked->ward_samples;
         twin_render(&twin, &view, tool->workers, pixels);
         twin_close(&twin);
         for (size_t i = 0; i < 3 * n; i++)
@@ -303,12 +301,7 @@ static void say_frame(const struct tool *tool, const struct scene_frame *frame,
 static int draw_model(struct tool *tool, struct render_scene *r,
                       const struct glint_scene_model *model)
 {
-    const struct scene_dials dials = {.width = r->width,
-                                      .height = r->height,
-                                      .edge_samples = r->samples,
-                                      .shadow_points = r->shadow_points,
-                                      .half_shading =
-                                          r->compositor.scene.half_shading};
+    struct scene_dials dials = r->compositor.scene.asked;
     const size_t n = 3 * (size_t)r->width * (size_t)r->height;
     struct glint_image linear = {
         .format = GLINT_LINEAR_Q20, .width = r->width, .height = r->height};
@@ -319,6 +312,9 @@ static int draw_model(struct tool *tool, struct render_scene *r,
 
     if (!light_q20)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    dials.width = r->width;
+    dials.height = r->height;
+    dials.edge_samples = r->samples;
     code = scene_frame_open(&frame, tool, model, &dials);
     if (code == EXIT_OK) {
         glint_image_place(&linear, light_q20);
@@ -394,10 +390,10 @@ int cmd_render_scene(int argc, char **argv)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     r->width = 960;
     r->height = 540;
-    r->shadow_points = 4;
     r->fps = 25;
     compositor_defaults(&r->compositor);
     r->compositor.lens = "none";
+    r->compositor.scene.asked.shadow_points = 4;
     code = parse(&tool, argc, argv, r);
     if (code < 0) {
         code = tool_start(&tool);

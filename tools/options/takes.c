@@ -58,6 +58,8 @@ static const struct {
     {NULL, "edge-samples", "1, 4, 8 or 16"},
     {NULL, "shadow-points", "1, 4 or 16"},
     {NULL, "shading", "full or half"},
+    {NULL, "ward-samples", "a whole number, 1 to 32"},
+    {NULL, "highlights", "a whole number, 0 to 8"},
     {NULL, "edge-fade", "pixels, above 0"},
     {NULL, "error", "pixels, above 0"},
     {NULL, "exact-samples", "a whole number, 1 to 64"},

@@ -349,6 +349,10 @@ static int check_input(struct tool *tool, const struct overlay *o)
     enum glint_status status = GLINT_OK;
     struct stat file;
 
+    if (strcmp(o->input, "-") == 0 && o->compositor.scene.control_file &&
+        strcmp(o->compositor.scene.control_file, "-") == 0)
+        return tool_usage(tool, "pictures and --control cannot both come from "
+                                "standard input");
     if (strcmp(o->input, "-") == 0 || strchr(o->input, '%'))
         return EXIT_OK;
     if (stat(o->input, &file) != 0 ||

@@ -117,9 +117,13 @@ enum compositor_option_code {
     OPT_SCENE,
     OPT_POSE,
     OPT_CONTROL,
+    /* Those of a scene, in the order of enum scene_choice. */
     OPT_EDGE_SAMPLES,
     OPT_SHADOW_POINTS,
     OPT_SHADING,
+    OPT_WARD_SAMPLES,
+    OPT_WARD_NEAREST,
+    OPT_HIGHLIGHTS,
     OPT_COMPOSITOR_LAST
 };
 
@@ -147,7 +151,11 @@ enum compositor_option_code {
         {"control", required_argument, NULL, OPT_CONTROL},             \
         {"edge-samples", required_argument, NULL, OPT_EDGE_SAMPLES},   \
         {"shadow-points", required_argument, NULL, OPT_SHADOW_POINTS}, \
-        {"shading", required_argument, NULL, OPT_SHADING}, SETTINGS_OPTIONS
+        {"shading", required_argument, NULL, OPT_SHADING},             \
+        {"ward-samples", required_argument, NULL, OPT_WARD_SAMPLES},   \
+        {"ward-nearest", no_argument, NULL, OPT_WARD_NEAREST},         \
+        {"highlights", required_argument, NULL, OPT_HIGHLIGHTS},       \
+        SETTINGS_OPTIONS
 
 #define COMPOSITOR_HELP                                                        \
     "  --lens LENS         table or baked model (default nikon-zoom-short)\n"  \
@@ -211,7 +219,14 @@ enum compositor_option_code {
     "  --shadow-points N   1, 4 (default of videos) or 16 (of stills) of a\n" \
     "                      light's disc\n"                                    \
     "  --shading S         full: each pixel (default); half: two by two at\n" \
-    "                      once where they see one thing\n"
+    "                      once where they see one thing\n"                   \
+    "  --ward-samples N    1 to 32 lookups of the environment for a place "   \
+    "on\n"                                                                    \
+    "                      brushed metal (default 8; in fours)\n"             \
+    "  --ward-nearest      each in one level of it, not two blended\n"        \
+    "  --highlights N      0 to 8 spots of things that glint are lights of "  \
+    "the\n"                                                                   \
+    "                      flare (default: as the scene says)\n"
 
 #define DESK_HELP                                                              \
     "The desk\n"                                                               \
@@ -261,6 +276,9 @@ enum compositor_option_code {
     "                      has risen),seen (pixels, of a lamp that clips)\n"
 
 void compositor_defaults(struct compositor *compositor);
+
+/* Returns whether OPTION is a dial of scenes. */
+bool compositor_is_dial(int option);
 
 /* Takes OPTION if it is one of COMPOSITOR_OPTIONS. Returns -1, or -2 if it is
  * none of these, or an exit code after printing what is wrong. VALUE must

@@ -223,26 +223,21 @@ void compositor_desk_close(struct compositor *c)
 #define LEAST_SHARE 0.1
 
 /* Points of a light's disc that shadows are drawn by, where there is time. */
-enum { STILL_POINTS = 16, VIDEO_POINTS = 4, EDGE_SAMPLES = 4 };
+enum { STILL_POINTS = 16, VIDEO_POINTS = 4 };
 
 int compositor_scene_size(struct compositor *c, int width, int height)
 {
-    const struct scene_dials dials = {
-        .width = width,
-        .height = height,
-        .focal_px = c->has_lens
-                        ? 1 / glint_view_pixel_tangent(
-                                  &c->view, c->settings.setup.optics.focal_mm)
-                        : 0,
-        .edge_samples =
-            c->scene.edge_samples ? c->scene.edge_samples : EDGE_SAMPLES,
-        .shadow_points = c->scene.shadow_points ? c->scene.shadow_points
-                         : c->is_still          ? STILL_POINTS
-                                                : VIDEO_POINTS,
-        .half_shading = c->scene.half_shading,
-        .tile_log2 = c->settings.tile_log2,
-        .dither = c->settings.dither};
+    struct scene_dials dials = c->scene.asked;
 
+    dials.width = width;
+    dials.height = height;
+    if (c->has_lens)
+        dials.focal_px = 1 / glint_view_pixel_tangent(
+                                 &c->view, c->settings.setup.optics.focal_mm);
+    if (!dials.shadow_points)
+        dials.shadow_points = c->is_still ? STILL_POINTS : VIDEO_POINTS;
+    dials.tile_log2 = c->settings.tile_log2;
+    dials.dither = c->settings.dither;
     return over_scene_size(&c->scene, &dials);
 }
 

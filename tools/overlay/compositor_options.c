@@ -102,24 +102,9 @@ static bool take_file(struct compositor *compositor, int option,
     }
 }
 
-/* Notes a dial of the scene; returns false if VALUE is none of its values. */
-static bool take_scene(struct over_scene *scene, int option, const char *value)
+bool compositor_is_dial(int option)
 {
-    static const char *const shading[] = {"full", "half", NULL};
-    const int word = tool_word(value, shading);
-    int n;
-
-    if (option == OPT_SHADING) {
-        scene->half_shading = word == 1;
-        return word >= 0;
-    }
-    if (!tool_integer(value, 1, 16, &n) ||
-        (n != 1 && n != 4 && n != 16 &&
-         !(n == 8 && option == OPT_EDGE_SAMPLES)))
-        return false;
-    *(option == OPT_EDGE_SAMPLES ? &scene->edge_samples
-                                 : &scene->shadow_points) = n;
-    return true;
+    return option >= OPT_EDGE_SAMPLES && option <= OPT_HIGHLIGHTS;
 }
 
 static bool take(struct compositor *compositor, int option, const char *value)
@@ -131,6 +116,10 @@ static bool take(struct compositor *compositor, int option, const char *value)
 
     if (take_file(compositor, option, value))
         return *value != '\0';
+    if (compositor_is_dial(option))
+        return scene_dials_choose(
+            &compositor->scene.asked,
+            (enum scene_choice)(option - OPT_EDGE_SAMPLES), value);
     switch (option) {
     case OPT_LENS:
         compositor->lens = value;
@@ -157,10 +146,6 @@ static bool take(struct compositor *compositor, int option, const char *value)
         return tool_number(value, &compositor->occlusion.fade_px) &&
                compositor->occlusion.fade_px > 0 &&
                compositor->occlusion.fade_px <= 1e6;
-    case OPT_EDGE_SAMPLES:
-    case OPT_SHADOW_POINTS:
-    case OPT_SHADING:
-        return take_scene(&compositor->scene, option, value);
     case OPT_PREVIEW:
         return compositor->preview = true;
     case OPT_INTERPOLATE:

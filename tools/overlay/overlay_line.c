@@ -138,7 +138,9 @@ static const char *rest_of(const struct compositor *compositor)
                            compositor->frame.veil.haze > 0 ||
                            compositor->frame.veil.front;
 
-    return is_veiled ? "only the veil" : "nothing";
+    return is_veiled                   ? "only the veil"
+           : compositor->scene.is_open ? "no flare"
+                                       : "nothing";
 }
 
 /* Returns whether lamps were there, but a mask or fade leaves none of their
@@ -181,10 +183,13 @@ void overlay_say_none(const struct compositor *compositor, FILE *to)
         next = glint_lamp_detector_doubtful(&compositor->finder);
     fprintf(to, "no light was found, so %s was drawn; ", rest_of(compositor));
     if (next)
-        fprintf(to, "brightest candidate: --light-at %.0f,%.0f\n",
+        fprintf(to, "brightest candidate: --light-at %.0f,%.0f",
                 next->x_q8 / 256.0, next->y_q8 / 256.0);
     else
-        fputs("see --threshold, or give one with --light-at X,Y\n", to);
+        fputs("see --threshold, or give one with --light-at X,Y", to);
+    if (over_scene_keeps_lights(&compositor->scene))
+        fputs("; 'flare lights' in the scene shows its own to the lens", to);
+    fputc('\n', to);
 }
 
 void overlay_say(const struct overlay *o, const struct overlay_light *light,

@@ -13,34 +13,39 @@
 /* clang-format off */
 const struct scene_cost_weight scene_cost_weight[GLINT_SCENE_ITEMS] = {
     /* begin weights */
-    {"triangles", 3.71},
-    {"touched", 0.022},
-    {"looked", 0.0112},
-    {"rows", 3.59},
-    {"samples", 0.0433},
-    {"covering", 0.325},
-    {"shaded", 0.256},
-    {"meshed", 0.457},
-    {"lit", 0.223},
-    {"shadows", 0.09},
-    {"listed", 0.0434},
-    {"rays", 0.237},
-    {"aimed", 0.243},
-    {"asked", 0.128},
-    {"entered", 0.439},
-    {"walked", 0.169},
-    {"tried", 0.179},
-    {"texels", 0.161},
-    {"bounced", 0.595},
-    {"passed", 0.233},
+    {"triangles", 2.22},
+    {"touched", 0.0225},
+    {"looked", 0.0115},
+    {"rows", 4.55},
+    {"samples", 0.0514},
+    {"covering", 0.342},
+    {"shaded", 0.324},
+    {"meshed", 0.331},
+    {"lit", 0.261},
+    {"shadows", 0.0444},
+    {"listed", 0.0592},
+    {"rays", 0.286},
+    {"aimed", 0.269},
+    {"asked", 0.0912},
+    {"entered", 0.45},
+    {"walked", 0.171},
+    {"tried", 0.181},
+    {"texels", 0.151},
+    {"skies", 0.353},
+    {"metals", 0.73},
+    {"fours", 0.547},
+    {"nearest", 0.369},
+    {"lobes", 0.599},
+    {"bounced", 0.71},
+    {"passed", 0.281},
     /* end weights */
 };
 const struct scene_cost_weight scene_cost_rest[SCENE_COST_RESTS] = {
     /* begin rest */
-    {"picture", 0.0059},
-    {"things", 0.798},
-    {"faces", 0.389},
-    {"around", 0.179},
+    {"picture", 0.00698},
+    {"things", 0.42},
+    {"faces", 0.346},
+    {"around", 0.173},
     /* end rest */
 };
 /* clang-format on */
@@ -155,6 +160,15 @@ static double counts_json(const struct scene_account *account, FILE *to)
     return minsn;
 }
 
+/* Returns what of the memory of FRAME highlights take. */
+static size_t highlight_bytes(const struct scene_frame *frame)
+{
+    struct glint_scene_config without = frame->cfg;
+
+    without.highlights = 0;
+    return frame->bytes - glint_scene_bytes(&without, frame->model);
+}
+
 double scene_cost_json(const struct scene_frame *frame, size_t bytes, FILE *to)
 {
     struct scene_account account;
@@ -170,10 +184,11 @@ double scene_cost_json(const struct scene_frame *frame, size_t bytes, FILE *to)
     fprintf(to, "\"covered_px\": %d, \"bytes\": {", scene_covered_px(frame));
     baked_scene_bytes(frame->model, to);
     fprintf(to,
-            ", \"scene\": %zu, \"arena\": %zu}, \"project_ms\": %.3f, "
+            ", \"scene\": %zu, \"arena\": %zu, \"highlights\": %zu}, "
+            "\"project_ms\": %.3f, "
             "\"draw_ms\": %.3f, \"map_ms\": %.3f, \"map_texels\": %d",
-            bytes, frame->bytes, frame->project_ms, frame->draw_ms,
-            frame->map_ms, frame->map_texels);
+            bytes, frame->bytes, highlight_bytes(frame), frame->project_ms,
+            frame->draw_ms, frame->map_ms, frame->map_texels);
     return minsn;
 }
 

@@ -107,6 +107,12 @@ bool over_scene_needs_lens(const struct over_scene *over)
            over->baked.model.header->camera.kind == GLINT_CAMERA_LENS;
 }
 
+bool over_scene_keeps_lights(const struct over_scene *over)
+{
+    return over->is_open && n_lights(over) > 0 &&
+           !over->baked.model.header->flare;
+}
+
 void over_scene_close(struct over_scene *over)
 {
     if (over->is_sized)

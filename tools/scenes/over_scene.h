@@ -42,9 +42,7 @@ struct over_scene {
     const char *pose_file;    /* or NULL */
     const char *control_file; /* or NULL; "-": standard input */
     bool is_live;             /* a FIFO of poses or control is not waited for */
-    int edge_samples;         /* 1, 4, 8, 16; 0: as is usual */
-    int shadow_points;        /* 1, 4, 16; 0: as is usual */
-    bool half_shading;        /* two by two pixels at once, within one thing */
+    struct scene_dials asked; /* by options; of size and camera nothing */
 
     double budget_ms;   /* what drawing may take; 0: as long as it does */
     int32_t elapsed_us; /* from the last picture to the next; 0: it is one by
@@ -81,6 +79,9 @@ int over_scene_open(struct over_scene *over, const struct tool *tool);
 
 /* Returns whether the camera of the scene has the field of the lens. */
 bool over_scene_needs_lens(const struct over_scene *over);
+
+/* Returns whether the scene has lights, but shows none to lenses. */
+bool over_scene_keeps_lights(const struct over_scene *over);
 
 /* Prepares OVER for pictures of the size of DIALS, unless there is no scene.
  * Returns an exit code. */

@@ -7,6 +7,68 @@
 /* As the run time's arenas ask for. */
 #define ALIGNMENT 64
 
+/* ------------------------------------------------------------------- dials
+ */
+
+static bool choose_points(const char *text, bool has_eight, int *points)
+{
+    return tool_integer(text, 1, 16, points) &&
+           (*points == 1 || *points == 4 || *points == 16 ||
+            (*points == 8 && has_eight));
+}
+
+static bool choose_shading(const char *text, bool *half)
+{
+    static const char *const words[] = {"full", "half", NULL};
+    const int word = tool_word(text, words);
+
+    *half = word == 1;
+    return word >= 0;
+}
+
+bool scene_dials_choose(struct scene_dials *dials, enum scene_choice choice,
+                        const char *text)
+{
+    switch (choice) {
+    case SCENE_CHOOSES_EDGES:
+        return choose_points(text, true, &dials->edge_samples);
+    case SCENE_CHOOSES_POINTS:
+        return choose_points(text, false, &dials->shadow_points);
+    case SCENE_CHOOSES_SHADING:
+        return choose_shading(text, &dials->half_shading);
+    case SCENE_CHOOSES_SAMPLES:
+        return tool_integer(text, 1, 32, &dials->ward_samples);
+    case SCENE_CHOOSES_NEAREST:
+        return dials->ward_nearest = true;
+    default:
+        dials->has_highlights = true;
+        return tool_integer(text, 0, 8, &dials->highlights);
+    }
+}
+
+static void turn(struct glint_scene_config *cfg,
+                 const struct scene_dials *dials)
+{
+    if (dials->edge_samples)
+        cfg->edge_samples = dials->edge_samples;
+    if (dials->shadow_points)
+        cfg->shadow_points = dials->shadow_points;
+    cfg->half_shading = dials->half_shading;
+    if (dials->ward_samples)
+        cfg->ward_samples = dials->ward_samples;
+    cfg->ward_nearest = dials->ward_nearest;
+    if (dials->has_highlights)
+        cfg->highlights = dials->highlights;
+    cfg->dither = dials->dither;
+    if (dials->stone_frames)
+        cfg->stone_frames = dials->stone_frames;
+    if (dials->tile_log2)
+        cfg->tile_log2 = dials->tile_log2;
+}
+
+/* ------------------------------------------------------------------ memory
+ */
+
 /* Places the scene in memory of its own. */
 static enum glint_status place(struct scene_frame *frame)
 {
@@ -50,14 +112,7 @@ int scene_frame_open(struct scene_frame *frame, const struct tool *tool,
     glint_scene_defaults(&frame->cfg, dials->width, dials->height);
     frame->cfg.workers = tool->workers;
     frame->cfg.sets = tool_sets(tool);
-    frame->cfg.edge_samples = dials->edge_samples;
-    frame->cfg.shadow_points = dials->shadow_points;
-    frame->cfg.half_shading = dials->half_shading;
-    frame->cfg.dither = dials->dither;
-    if (dials->stone_frames)
-        frame->cfg.stone_frames = dials->stone_frames;
-    if (dials->tile_log2)
-        frame->cfg.tile_log2 = dials->tile_log2;
+    turn(&frame->cfg, dials);
     frame->cfg.focal_q16 = llrint(fmin(dials->focal_px, 1e6) * 0x1p16);
     frame->cfg.parts = (struct glint_scene_parts){
         &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,

@@ -12,17 +12,36 @@
 #include "glint/scene/scene.h"
 #include "options/tool.h"
 
-/* What a picture is drawn with. */
+/* What a picture is drawn with. 0 is as the run time likes it. */
 struct scene_dials {
     int width, height; /* pixels */
     double focal_px;   /* focal length of a camera that has the lens's field */
     int edge_samples;  /* 1, 4, 8 or 16 */
     int shadow_points; /* 1, 4 or 16 */
     bool half_shading; /* two by two pixels at once, within one thing */
-    int tile_log2;     /* 0: as the run time likes it */
-    int stone_frames;  /* 0: likewise */
+    int ward_samples;  /* 1 .. 32 lookups of a place on brushed metal */
+    bool ward_nearest; /* each of one level, not two */
+    bool has_highlights;
+    int highlights; /* 0 .. 8, whatever the scene says, with has_highlights */
+    int tile_log2;
+    int stone_frames;
     bool dither;
 };
+
+/* Those that options choose. */
+enum scene_choice {
+    SCENE_CHOOSES_EDGES,
+    SCENE_CHOOSES_POINTS,
+    SCENE_CHOOSES_SHADING,
+    SCENE_CHOOSES_SAMPLES,
+    SCENE_CHOOSES_NEAREST, /* without a value */
+    SCENE_CHOOSES_HIGHLIGHTS
+};
+
+/* Sets the dial CHOICE to what TEXT says; returns false if that is none of its
+ * values. */
+bool scene_dials_choose(struct scene_dials *dials, enum scene_choice choice,
+                        const char *text);
 
 /* Puts the things of a scene where they are. */
 typedef void scene_frame_pose_fn(void *ctx, struct glint_scene *scene);

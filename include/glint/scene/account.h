@@ -48,6 +48,11 @@ enum glint_scene_item {
     GLINT_SCENE_WALKED,    /* cells that they walk through there */
     GLINT_SCENE_TRIED,     /* triangles that these cells list */
     GLINT_SCENE_TEXELS,    /* texels read */
+    GLINT_SCENE_SKIES,     /* places whose colour an environment lights */
+    GLINT_SCENE_METALS,    /* places on brushed metal that it lights */
+    GLINT_SCENE_FOURS,     /* fours of lookups of these, two levels each */
+    GLINT_SCENE_NEAREST,   /* fours of lookups, one level each */
+    GLINT_SCENE_LOBES,     /* places on brushed metal, by each light in front */
     GLINT_SCENE_BOUNCED,   /* rays that go on from places shaded */
     GLINT_SCENE_PASSED,    /* of these, through things */
     GLINT_SCENE_ITEMS

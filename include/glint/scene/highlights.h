@@ -39,7 +39,7 @@ struct glint_scene_highlight {
 };
 
 /* Sets FOUND[GLINT_SCENE_MAX_HIGHLIGHTS] to the highlights of the picture drawn
- * last, the brightest first, as many as scene and configuration want, and
+ * last, the brightest first, as many as the configuration wants, and
  * returns their number. */
 int glint_scene_find_highlights(const struct glint_scene *scene,
                                 struct glint_scene_highlight *found);

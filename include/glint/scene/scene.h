@@ -80,7 +80,8 @@ struct glint_scene_config {
     int stone_frames;  /* 1, 2 or 4: light on translucent things that changes
                           from frame to frame is followed in every one of so
                           many; what comes into view is lit at once */
-    int highlights;    /* 0 .. 8: that are found at most */
+    int highlights;    /* 0 .. 8: that are found at most; -1: as many as the
+                          model says */
     int dither;        /* 1: 8-bit output is dithered, deterministically */
     /* For GLINT_CAMERA_LENS: the focal length in pixels, 2^10 .. 2^40 _q16. */
     int64_t focal_q16;

@@ -116,6 +116,31 @@ static void count_lights(const struct glint_scene *s,
     }
 }
 
+/* Counts a place of SURFACE that is shaded: its lights, and the environment on
+ * metal. */
+static void count_lit(const struct glint_scene *s,
+                      const struct glint_met_surface *surface,
+                      struct glint_scene_part *part)
+{
+    const int64_t before = part->count[GLINT_SCENE_LIT];
+    const struct glint_scene_material *m = surface->material;
+    const int has_sky = s->model.header->environment_bytes > 0;
+    const int is_metal = m->ward != GLINT_SCENE_NONE;
+
+    count_lights(s, surface, part);
+    if (s->placed[surface->object].object->catcher_q15)
+        return;
+    part->count[GLINT_SCENE_LOBES] +=
+        is_metal ? part->count[GLINT_SCENE_LIT] - before : 0;
+    part->count[GLINT_SCENE_SKIES] += has_sky && m->diffuse_q15;
+    if (!has_sky || !is_metal)
+        return;
+    part->count[GLINT_SCENE_METALS]++;
+    part->count[s->cfg.ward_nearest ? GLINT_SCENE_NEAREST
+                                    : GLINT_SCENE_FOURS] +=
+        (s->cfg.ward_samples + 3) / 4;
+}
+
 /* Counts a place of OBJECT that is shaded. */
 static void count_place(const struct glint_scene *s, uint32_t object,
                         struct glint_scene_part *part)
@@ -141,7 +166,7 @@ static int go_on(const struct glint_scene *s, struct glint_scene_ray *ray,
         !glint_scene_surface(s, ray, &met, surface))
         return 0;
     count_place(s, met.object, part);
-    count_lights(s, surface, part);
+    count_lit(s, surface, part);
     return 1;
 }
 
@@ -185,7 +210,7 @@ static void count_shade(const struct account *a, uint32_t id, int32_t x_q8,
     if (!glint_scene_meet_id(s, &ray, seen_q30, id, &met) ||
         !glint_scene_surface(s, &ray, &met, &surface))
         return;
-    count_lights(s, &surface, part);
+    count_lit(s, &surface, part);
     if (s->placed[id >> 20].object->catcher_q15)
         return;
     if (m->texture != GLINT_SCENE_NONE)

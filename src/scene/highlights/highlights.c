@@ -337,7 +337,8 @@ static void set_extent(const struct spread *s, struct glint_spot *spot)
 static void set_colour(const struct gathered *g, struct glint_spot *spot)
 {
     const uint64_t flux = (uint64_t)g->flux_q19;
-    const int up = q_smaller(15, q_up(flux) + 26); /* blue: 2^4 flux at most */
+    /* Blue is 2^4 times the flux at most. */
+    const int up = (int)q_clamp_sat(q_up(flux) + 26, 0, 15);
     int64_t rest;
 
     spot->rgb_q15[0] =
@@ -373,8 +374,6 @@ static int find(const struct glint_scene *scene,
                 struct glint_scene_highlight *found)
 {
     struct glint_highlight_state *b = scene->bright;
-    const int most = q_smaller((int32_t)scene->model.header->highlights,
-                               scene->cfg.highlights);
     struct gathered *const kept = b->kept;
     int n = 0, joined;
 
@@ -389,7 +388,7 @@ static int find(const struct glint_scene *scene,
     do
         joined = join_two(b, kept, &n);
     while (joined);
-    n = q_smaller(n, most);
+    n = q_smaller(n, glint_scene_wanted_highlights(scene));
     while (n > 0 && kept[n - 1].flux_q19 < LEAST_Q19)
         n--;
     for (int i = 0; i < n; i++)

@@ -16,6 +16,7 @@
 #include "glint/scene/bake.h"
 #include "glint/scene/environment_bake.h"
 #include "glint/view.h"
+#include "scenes/account.h"
 #include "scenes/scene_frame.h"
 #include "twin/twin.h"
 
@@ -422,6 +423,47 @@ static void test_highlight_steady(void **state)
     assert_true(least > 0 && most < 1.05 * least);
 }
 
+/* What the account of a frame says of metal: places, lookups in fours, of one
+ * level or two, and lights. */
+static void test_account(void **state)
+{
+    struct scene_dials dials = {.width = 32,
+                                .height = 32,
+                                .edge_samples = 1,
+                                .shadow_points = 1,
+                                .ward_samples = 9};
+    struct drawn d;
+
+    (void)state;
+    for (int nearest = 0; nearest < 2; nearest++) {
+        static int32_t light_q20[3 * 32 * 32];
+        struct scene_account account;
+        const int64_t *n;
+
+        dials.ward_nearest = nearest == 1;
+        open_text(&d, STAGE "environment 9e5\n" BALLS "white\n", &dials);
+        draw(&d, 32, 32, light_q20);
+        assert_int_equal(scene_account_make(&account, &d.frame), GLINT_OK);
+        for (int i = 0; i < 4; i++) { /* steel, brushed, old, white */
+            n = account.objects[i].count;
+            assert_true(n[GLINT_SCENE_SHADED] > 0);
+            /* A ray to the middle of a pixel at the rim may miss. */
+            assert_true(i == 3 ? n[GLINT_SCENE_METALS] == 0
+                               : 20 * n[GLINT_SCENE_METALS] >
+                                     19 * n[GLINT_SCENE_SHADED]);
+            assert_int_equal(n[GLINT_SCENE_FOURS],
+                             nearest ? 0 : 3 * n[GLINT_SCENE_METALS]);
+            assert_int_equal(n[GLINT_SCENE_NEAREST],
+                             nearest ? 3 * n[GLINT_SCENE_METALS] : 0);
+            assert_int_equal(n[GLINT_SCENE_LOBES],
+                             i < 3 ? n[GLINT_SCENE_LIT] : 0);
+            assert_int_equal(n[GLINT_SCENE_SKIES] > 0, i == 0 || i == 3);
+        }
+        scene_account_free(&account);
+        close_text(&d);
+    }
+}
+
 int main(void)
 {
     static const struct CMUnitTest tests[] = {
@@ -430,7 +472,8 @@ int main(void)
         cmocka_unit_test(test_part),
         cmocka_unit_test(test_b2_looks),
         cmocka_unit_test(test_b8_steered),
-        cmocka_unit_test(test_highlight_steady)};
+        cmocka_unit_test(test_highlight_steady),
+        cmocka_unit_test(test_account)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,6 +17,8 @@
 #include "glint/scene/highlights.h"
 #include "glint/view.h"
 #include "posix/workers.h"
+#include "scene/highlights/part.h"
+#include "scene/state.h"
 #include "scenes/scene_frame.h"
 #include "twin/twin_highlights.h"
 
@@ -368,12 +370,31 @@ static void test_extremes(void **state)
     assert_true(fabs(found[0].spot.x_q8 / 256. - SIDE / 2) < 1);
 }
 
+/* As bright as the sums of a square have room for: its colour is white. */
+static void test_brightest(void **state)
+{
+    static const int32_t most_q15[3] = {1 << 30, 1 << 30, 1 << 30};
+
+    (void)state;
+    open_text(CAMERA STEEL(".05 .05") SUN BALL, &dials);
+    draw();
+    glint_scene_highlights.begin(frame.scene->bright);
+    for (int i = 0; i < 2; i++)
+        glint_scene_highlights.note(frame.scene->bright, 0, 0, 0, most_q15,
+                                    1 << 28);
+    assert_int_equal(glint_scene_find_highlights(frame.scene, found), 1);
+    for (int c = 0; c < 3; c++)
+        assert_true(abs(found[0].spot.rgb_q15[c] - (1 << 15)) <= 8);
+    close_text();
+}
+
 int main(void)
 {
     static const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_twin), cmocka_unit_test(test_steady),
-        cmocka_unit_test(test_same), cmocka_unit_test(test_none),
-        cmocka_unit_test(test_one),  cmocka_unit_test(test_extremes)};
+        cmocka_unit_test(test_twin),     cmocka_unit_test(test_steady),
+        cmocka_unit_test(test_same),     cmocka_unit_test(test_none),
+        cmocka_unit_test(test_one),      cmocka_unit_test(test_extremes),
+        cmocka_unit_test(test_brightest)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -37,7 +37,9 @@ static const char help[] =
     "or\n"
     "                      16\n"
     "  --shadow-points N   1, 4 (default) or 16 of a light's disc\n"
-    "  --shading S         full (default) or half: two by two pixels at once\n";
+    "  --shading S         full (default) or half: two by two pixels at once\n"
+    "  --ward-samples N    1 to 32 lookups on brushed metal (default 8)\n"
+    "  --ward-nearest      each in one level, not two blended\n";
 
 enum { MAX_TRIALS = 16, MAX_CANVASES = 4 };
 
@@ -330,22 +332,6 @@ static bool take_format(struct scene_bench *b, const char *text)
     return true;
 }
 
-static bool take_points(const char *text, bool eight_too, int *points)
-{
-    return tool_integer(text, 1, 16, points) &&
-           (*points == 1 || *points == 4 || *points == 16 ||
-            (*points == 8 && eight_too));
-}
-
-static bool take_shading(const char *text, bool *half)
-{
-    static const char *const words[] = {"full", "half", NULL};
-    const int word = tool_word(text, words);
-
-    *half = word == 1;
-    return word >= 0;
-}
-
 static const struct option options[] = {
     {"scene", required_argument, NULL, 'x'},
     {"all", no_argument, NULL, 'a'},
@@ -356,6 +342,8 @@ static const struct option options[] = {
     {"edge-samples", required_argument, NULL, 'e'},
     {"shadow-points", required_argument, NULL, 'p'},
     {"shading", required_argument, NULL, 'H'},
+    {"ward-samples", required_argument, NULL, 'w'},
+    {"ward-nearest", no_argument, NULL, 'n'},
     TOOL_COMMON_OPTIONS};
 
 /* Takes option C. Returns 1, or 0 if it does not take that value, or -2 if C is
@@ -377,11 +365,15 @@ static int take(struct scene_bench *b, int c)
     case 'F':
         return take_format(b, optarg);
     case 'e':
-        return take_points(optarg, true, &b->dials.edge_samples);
+        return scene_dials_choose(&b->dials, SCENE_CHOOSES_EDGES, optarg);
     case 'p':
-        return take_points(optarg, false, &b->dials.shadow_points);
+        return scene_dials_choose(&b->dials, SCENE_CHOOSES_POINTS, optarg);
     case 'H':
-        return take_shading(optarg, &b->dials.half_shading);
+        return scene_dials_choose(&b->dials, SCENE_CHOOSES_SHADING, optarg);
+    case 'w':
+        return scene_dials_choose(&b->dials, SCENE_CHOOSES_SAMPLES, optarg);
+    case 'n':
+        return scene_dials_choose(&b->dials, SCENE_CHOOSES_NEAREST, optarg);
     default:
         return -2;
     }
