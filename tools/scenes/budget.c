@@ -63,7 +63,7 @@ static void scale(int64_t *n, double by)
 }
 
 /* Returns how many fours of lookups a place on metal takes. */
-static double fours_of(const struct scene_dials *dials)
+static int fours_of(const struct scene_dials *dials)
 {
     return (dials->ward_samples + 3) / 4;
 }
@@ -92,7 +92,7 @@ static double told(const struct scene_account *account,
     const double edge = (double)to->edge_samples / from->edge_samples;
     const double points = (double)to->shadow_points / from->shadow_points;
     const double fours =
-        half * fours_of(to) / fours_of(from) *
+        half * (double)fours_of(to) / fours_of(from) *
         (double)(n[GLINT_SCENE_FOURS] + n[GLINT_SCENE_NEAREST]);
 
     for (size_t i = 0; i < sizeof at_samples / sizeof *at_samples; i++)

@@ -126,13 +126,14 @@ static void count_lit(const struct glint_scene *s,
     const struct glint_scene_material *m = surface->material;
     const int has_sky = s->model.header->environment_bytes > 0;
     const int is_metal = m->ward != GLINT_SCENE_NONE;
+    const int has_colour = m->rgb_q15[0] || m->rgb_q15[1] || m->rgb_q15[2];
 
     count_lights(s, surface, part);
     if (s->placed[surface->object].object->catcher_q15)
         return;
     part->count[GLINT_SCENE_LOBES] +=
         is_metal ? part->count[GLINT_SCENE_LIT] - before : 0;
-    part->count[GLINT_SCENE_SKIES] += has_sky && m->diffuse_q15;
+    part->count[GLINT_SCENE_SKIES] += has_sky && m->diffuse_q15 && has_colour;
     if (!has_sky || !is_metal)
         return;
     part->count[GLINT_SCENE_METALS]++;
