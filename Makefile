@@ -26,6 +26,7 @@
 #   make shared   shared libraries;  install-library: these, archives, headers
 #                 and pkg-config files alone;  dist: the sources, packed;
 #                 abi REF=REVISION: what has changed of them since, by abidiff
+#   make man      manual pages, into build/man
 #   make frei0r   the plug-in for ffmpeg, MLT and GStreamer;  check-frei0r-threads
 #   make bench    what a frame costs;  bench-insn: in instructions
 #   make size     bytes of the run-time library, and of programs with parts of it
@@ -54,7 +55,7 @@ PUBLISHED := published
 ENGINE    := engine engine/frame engine/setup engine/star
 BAKE      := bake bake/table bake/scene bake/environment bake/motion bake/translucent bake/trace bake/regress bake/fit bake/exact bake/published bake/published/scatter
 PLATFORM  := posix formats video panel linux jpeg oiio assimp sdl
-TOOLS     := options control lamp_files desk model overlay stones scenes motions twin command live lab lab/plots lab/scenes
+TOOLS     := help options control lamp_files desk model overlay stones scenes motions twin command live lab lab/plots lab/scenes
 c_files = $(wildcard $(2:%=$(1)/%/*.c))
 objects = $(patsubst %.c,$(OUT)/%.o,$(filter-out $(absent),$(call c_files,$(1),$(2))))
 
@@ -188,7 +189,7 @@ build/glint-sdl.so: platform/sdl/sdl.c platform/sdl/sdl.h
 	$(Q)$(CC) -std=c99 -O2 $(filter-out -Wundef,$(WARN)) -fPIC -fvisibility=hidden -shared -Iinclude -Iplatform \
 	        $< -o $@ $$(pkg-config --cflags --libs sdl2)
 
-include tools/make/hosts.mk tools/make/check.mk tools/make/emulated.mk tools/make/measure.mk tools/make/shared.mk tools/make/install.mk
+include tools/make/hosts.mk tools/make/man.mk tools/make/check.mk tools/make/emulated.mk tools/make/measure.mk tools/make/shared.mk tools/make/install.mk
 clean:
 	rm -rf build
 .PHONY: all help always oiio assimp window glint-live clean

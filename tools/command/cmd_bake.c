@@ -47,7 +47,7 @@ static const char help[] =
     "                    (default: a tenth more than the film's corners)\n"
     "  --tolerance T     scale of the errors aimed at (default 1)\n"
     "  -j, --threads N   default: all processors; never changes the model\n"
-    "  --json   -q   -v   --help   --version\n";
+    "  --json   -q   -v   --help   --help-all   --version\n";
 
 struct bake {
     const char *output;
@@ -107,7 +107,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct bake *b)
         TOOL_COMMON_OPTIONS};
     int c, code, index = 0;
 
-    while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+    while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             &index)) >= 0)
         if ((code = take(tool, b, c, options[index].name)) >= 0)
             return code;

@@ -306,7 +306,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct coat *o)
     struct apart files = {.n_read = 0};
     int c, code, index = 0;
 
-    while ((c = getopt_long(argc, argv, TOOL_COMMON_SHORT "o:", options,
+    while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT "o:", options,
                             &index)) >= 0) {
         code = take(tool, o, c, optarg);
         if (code == -2)

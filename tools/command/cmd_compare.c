@@ -172,7 +172,7 @@ int cmd_compare(int argc, char **argv)
     struct asked a = {{NULL, NULL}, false, false, false, false, 0};
     int c, code;
 
-    while ((c = getopt_long(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >=
+    while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >=
            0) {
         a.fit |= c == 'f';
         a.exposed |= c == 'e';

@@ -160,7 +160,7 @@ static int parse(struct tool *tool, int argc, char **argv,
 
     if (code >= 0)
         return code;
-    while ((option = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+    while ((option = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                                  &index)) >= 0) {
         code = compositor_option(tool, &c->compositor, option, optarg);
         if (code == -2 && (option == 'o' || option >= OPT_COMPOSITOR_LAST)) {

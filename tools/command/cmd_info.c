@@ -193,7 +193,7 @@ static int parse(struct tool *tool, int argc, char **argv, double *f_number,
         TOOL_COMMON_OPTIONS};
     int c, code;
 
-    while ((c = getopt_long(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >=
+    while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >=
            0) {
         if (c == 'f') {
             if (!tool_number(optarg, f_number))

@@ -17,7 +17,7 @@
 #include "options/takes.h"
 
 static const char help[] =
-    "glint lenses [--json] [--models FOLDER]\n"
+    "glint lenses [--names | --json] [--models FOLDER]\n"
     "\n"
     "The lenses that come with glint: the name that --lens takes, focal "
     "length\n"
@@ -27,6 +27,7 @@ static const char help[] =
     "drawn and takes seconds to minutes. A lens of your own is a .lens file\n"
     "(lenses/README.md); those in the folder $GLINT_LENSES are listed, too.\n"
     "\n"
+    "  --names           their names alone, a line each\n"
     "  --models FOLDER   bake what is missing and put all models there, of\n"
     "                    overlay and of render, as make install does\n"
     "  -o, --only NAME   this lens; repeatable\n";
@@ -40,6 +41,7 @@ struct lenses {
     const char *folder; /* folder that models are put into; NULL: none */
     const char *only[MAX_ONLY];
     int n_only, n, code;
+    bool names; /* lists no more than names */
 };
 
 struct entry {
@@ -189,6 +191,11 @@ static bool one(void *ctx, const char *name)
 
     if (!is_wanted(l, name))
         return true;
+    if (l->names) {
+        l->n++;
+        puts(name);
+        return true;
+    }
     e = calloc(1, sizeof *e);
     if (!e) {
         l->code = tool_fail(l->tool, GLINT_E_MEMORY, NULL);
@@ -223,7 +230,7 @@ static int run(struct lenses *l)
                         "a folder of them\n");
         return EXIT_LENS;
     }
-    if (l->tool->json && !l->folder && l->n > 0)
+    if (l->tool->json && !l->folder && !l->names && l->n > 0)
         printf("\n]}\n");
     return l->code;
 }
@@ -233,12 +240,15 @@ static int parse(struct lenses *l, int argc, char **argv)
     static const struct option options[] = {
         {"models", required_argument, NULL, 'm'},
         {"only", required_argument, NULL, 'o'},
+        {"names", no_argument, NULL, 'n'},
         TOOL_COMMON_OPTIONS};
     int c, code;
 
-    while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+    while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             NULL)) >= 0) {
-        if (c == 'm')
+        if (c == 'n')
+            l->names = true;
+        else if (c == 'm')
             l->folder = optarg;
         else if (c == 'o' && l->n_only == MAX_ONLY)
             return tool_usage(l->tool, "more than %d lenses", MAX_ONLY);

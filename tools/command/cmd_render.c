@@ -122,7 +122,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct render *r)
         TOOL_COMMON_OPTIONS};
     int c, code;
 
-    while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+    while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             NULL)) >= 0) {
         code = settings_option(tool, &r->settings, c, optarg);
         if (code == -2)

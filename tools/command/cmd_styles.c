@@ -60,7 +60,7 @@ static int parse(struct tool *tool, struct styles_command *c,
     int option, code;
 
     optind = 0;
-    while ((option = getopt_long(c->argc, c->argv, shorts, options, NULL)) >=
+    while ((option = tool_getopt(c->argc, c->argv, shorts, options, NULL)) >=
            0) {
         code = compositor_option(tool, compositor, option, optarg);
         if (code == -2 && option == 'o') {

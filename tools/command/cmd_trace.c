@@ -55,7 +55,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct options *o)
         TOOL_COMMON_OPTIONS};
     int c, code = -1, index = 0;
 
-    while ((c = getopt_long(argc, argv, TOOL_COMMON_SHORT, options, &index)) >=
+    while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, &index)) >=
            0) {
         bool ok = true;
 

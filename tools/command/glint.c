@@ -28,9 +28,10 @@ static const char help[] =
     "  glint bench                     what a frame costs\n"
     "  glint sweep -o FOLDER           what accuracy costs: plots, pictures\n"
     "\n"
-    "  glint help COMMAND              all options of a command, as does\n"
-    "                                  glint COMMAND --help\n"
-    "  glint --version\n"
+    "  glint help COMMAND              the usual options of a command, as "
+    "does\n"
+    "                                  glint COMMAND --help; --help-all: all\n"
+    "  glint --version [--json]\n"
     "\n"
     "LENS is a .lens file or the name of one that comes with glint, such as\n"
     "nikon-zoom-short. Exit codes: 0 ok, 1 run-time failure, 2 usage, 3 input\n"
@@ -110,10 +111,16 @@ static int run(int argc, char **argv)
         return help_of(argc > 2 ? argv[2] : NULL);
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0)
         return help_of(NULL);
+    if (strcmp(name, "--commands") == 0) { /* for shells */
+        for (int i = 0; i < N_COMMANDS; i++)
+            puts(commands[i].name);
+        return EXIT_OK;
+    }
     if (strcmp(name, "--version") == 0 || strcmp(name, "-V") == 0 ||
         strcmp(name, "version") == 0) {
         struct tool tool = {.name = "version", .help = help};
 
+        tool.json = argc > 2 && strcmp(argv[2], "--json") == 0;
         return tool_option(&tool, 'V', NULL);
     }
     if (*name)

@@ -172,7 +172,7 @@ static int parse(struct tool *tool, int argc, char **argv,
 
     if (code >= 0)
         return code;
-    while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+    while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             NULL)) >= 0)
         if ((code = take_any(tool, r, c)) >= 0)
             return code;

@@ -214,7 +214,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct bench *b)
         TOOL_COMMON_OPTIONS};
     int c, code;
 
-    while ((c = getopt_long(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >=
+    while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >=
            0) {
         code = settings_option(tool, &b->base, c, optarg);
         if (code == -2)

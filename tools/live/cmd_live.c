@@ -308,7 +308,7 @@ static int parse_line(struct line *line)
     int c, code;
 
     optind = 1;
-    while ((c = getopt_long(line->argc, line->argv, SHORT, options, NULL)) >= 0)
+    while ((c = tool_getopt(line->argc, line->argv, SHORT, options, NULL)) >= 0)
         if ((code = take_any(line, c, optarg)) >= 0)
             return code;
     return optind == line->argc ? -1

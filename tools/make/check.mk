@@ -61,7 +61,7 @@ check:
 	        $(MAKE) --no-print-directory DEPS=no check-vm
 run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/ray_errors $(example_bins) $(embed_bins) \
         $(PROGRAMS)
-	@[ $(notdir $(CC))-$(CONFIG) != gcc-release ] || $(MAKE) --no-print-directory PIC=yes shared frei0r
+	@[ $(notdir $(CC))-$(CONFIG) != gcc-release ] || { $(MAKE) --no-print-directory PIC=yes shared frei0r && $(MAKE) --no-print-directory man; }
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
 	        $(replay_bins)
 	@[ -n "$(filter asan tsan,$(CONFIG))" ] || tests/extremes --quick

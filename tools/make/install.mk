@@ -11,9 +11,11 @@ WINDOW  ?= $(if $(CROSS),no,$(shell pkg-config --exists sdl2 2>/dev/null && echo
 FREI0R  ?= $(if $(CROSS),no,yes)
 MODELS  ?= $(if $(CROSS),no,yes)
 to := $(DESTDIR)$(PREFIX)
+# Completions, by the folders in which shells look for them.
+shells := bash-completion/completions/glint.bash zsh/site-functions/_glint fish/vendor_completions.d/glint.fish
 install: install-library all glint-live $(if $(filter yes,$(PLUGIN)),build/glint-oiio.so) \
         $(if $(filter yes,$(MESHES)),build/glint-assimp.so) \
-        $(if $(filter yes,$(WINDOW)),build/glint-sdl.so)
+        $(if $(filter yes,$(WINDOW)),build/glint-sdl.so) $(if $(CROSS),,man)
 	$(if $(filter yes,$(FREI0R)),$(MAKE) --no-print-directory frei0r)
 	install -d $(to)/bin $(to)/lib/glint $(to)/share/glint/lenses $(to)/lib/systemd/system
 	install $(if $(CROSS),-s --strip-program=$(CROSS)strip) -m 755 \
@@ -29,6 +31,10 @@ install: install-library all glint-live $(if $(filter yes,$(PLUGIN)),build/glint
 	        @echo 'without the mesh plug-in (pkg-config, libassimp-dev): OBJ')
 	$(if $(filter yes,$(WINDOW)),install -m 755 build/glint-sdl.so $(to)/lib/glint)
 	$(if $(filter yes,$(FREI0R)),install -d $(to)/lib/frei0r-1 && install -s -m 644 build/glint-frei0r.so $(to)/lib/frei0r-1/glint.so)
+	install -d $(addprefix $(to)/share/,$(dir $(shells)) $(if $(CROSS),,man/man1 man/man3 man/man5))
+	for s in $(shells); do install -m 644 tools/man/$${s##*/} $(to)/share/$$s || exit 1; done
+	mv $(to)/share/bash-completion/completions/glint.bash $(to)/share/bash-completion/completions/glint
+	$(if $(CROSS),,for n in 1 3 5; do install -m 644 build/man/*.$$n $(to)/share/man/man$$n || exit 1; done)
 ifneq ($(MODELS),no)
 	@echo 'baking the models of all lenses, where there are none yet (MODELS=no: later)'
 	rm -rf build/models-installed # of other tables
@@ -56,8 +62,11 @@ uninstall:
         $(to)/lib/glint/glint-assimp.so $(to)/lib/glint/glint-sdl.so $(to)/lib/frei0r-1/glint.so \
 	        $(to)/lib/systemd/system/glint-live.service \
 	        $(patsubst %,$(to)/share/glint/%,$(wildcard lenses/*.lens)) \
+	        $(addprefix $(to)/share/,$(shells:.bash=)) $(to)/share/man/man1/glint.1 $(to)/share/man/man1/glint-*.1 \
+	        $(to)/share/man/man3/glint.3 $(to)/share/man/man5/glint-lens.5 $(to)/share/man/man5/glint-scene.5 \
 	        $(to)/share/glint/models/*.glint $(to)/share/glint/bridge.jpg $(to)/share/glint/bridge.ppm
 	@for d in include/glint/scene include/glint lib/pkgconfig lib/glint lib/frei0r-1 share/glint/models share/glint/lenses share/glint \
-	        lib/systemd/system lib/systemd; do \
+	        $(patsubst %/,share/%,$(dir $(shells))) share/bash-completion share/zsh share/fish \
+	        share/man/man1 share/man/man3 share/man/man5 share/man lib/systemd/system lib/systemd; do \
 	        if [ -d $(to)/$$d ]; then rmdir --ignore-fail-on-non-empty $(to)/$$d; fi; done
 .PHONY: install install-library uninstall

@@ -333,7 +333,7 @@ enum settings_option {
     "result\n"                                                                \
     "  --seed N            of the noise of live -d test; nothing else is "    \
     "random\n"                                                                \
-    "  --json   -q   -v   --help   --version\n"
+    "  --json   -q   -v   --help   --help-all   --version\n"
 
 void settings_defaults(struct settings *settings);
 

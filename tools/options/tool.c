@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "options/tool.h"
 
+#include "help/help.h"
 #include "options/suggest.h"
 
 #include <errno.h>
@@ -83,6 +84,18 @@ static int show_version(void)
     return EXIT_OK;
 }
 
+static int show_version_json(void)
+{
+    const unsigned sets = glint_system_sets();
+
+    printf("{\"name\": \"glint\", \"version\": \"%s\", \"kernels\": "
+           "[\"c\"%s%s%s], \"licence\": \"MIT\"}\n",
+           GLINT_VERSION, sets & GLINT_SET_SSE41 ? ", \"sse41\"" : "",
+           sets & GLINT_SET_AVX2 ? ", \"avx2\"" : "",
+           sets & GLINT_SET_NEON ? ", \"neon\"" : "");
+    return EXIT_OK;
+}
+
 /* Sets the instruction sets that VALUE, a word of --kernels, allows. Returns
  * false if it is no such word or this CPU lacks the set. */
 static bool take_sets(struct tool *tool, const char *value)
@@ -102,6 +115,7 @@ static bool take_sets(struct tool *tool, const char *value)
 }
 
 static char **line;
+static const struct option *taken; /* options of the command */
 
 void tool_line(char **argv)
 {
@@ -155,20 +169,31 @@ static void suggest_option(const struct tool *tool)
     fprintf(stderr, "Try 'glint %s --help'.\n", tool->name);
 }
 
+int tool_getopt(int argc, char *const *argv, const char *shorts,
+                const struct option *options, int *index)
+{
+    taken = options;
+    return getopt_long(argc, argv, shorts, options, index);
+}
+
 int tool_option(struct tool *tool, int option, const char *value)
 {
+    const struct help help = {
+        tool->name,
+        {tool->help, tool->help_desk, tool->help_end, tool->help_last}};
+
     switch (option) {
     case 'h':
-        fputs(tool->help, stdout);
-        if (tool->help_desk)
-            fputs(tool->help_desk, stdout);
-        if (tool->help_end)
-            fputs(tool->help_end, stdout);
-        if (tool->help_last)
-            fputs(tool->help_last, stdout);
+        help_screen(&help);
+        return EXIT_OK;
+    case TOOL_HELP_ALL:
+        help_all(&help);
+        return EXIT_OK;
+    case TOOL_OPTIONS:
+        help_options(&help, taken);
         return EXIT_OK;
     case 'V':
-        return show_version();
+        return tool->json ? show_version_json() : show_version();
     case 'q':
         tool->quiet = true;
         return -1;

@@ -41,6 +41,9 @@ struct tool {
                           command line */
 };
 
+/* Codes of options that no letter is for. */
+enum { TOOL_HELP_ALL = 900, TOOL_OPTIONS };
+
 /* Options that every command takes, for its struct option array. */
 #define TOOL_COMMON_SHORT "hVqvj:"
 #define TOOL_COMMON_OPTIONS                                                    \
@@ -50,6 +53,8 @@ struct tool {
         {"threads", required_argument, NULL, 'j'},                             \
         {"kernels", required_argument, NULL, 'K'},                             \
         {"seed", required_argument, NULL, 'S'},                                \
+        {"help-all", no_argument, NULL, TOOL_HELP_ALL},                        \
+        {"options", no_argument, NULL, TOOL_OPTIONS},                          \
     {                                                                          \
         NULL, 0, NULL, 0                                                       \
     }
@@ -58,8 +63,13 @@ struct tool {
  * option may mean. */
 void tool_line(char **argv);
 
+/* Does as getopt_long(), and notes OPTIONS for --options, by which shells
+ * complete. */
+int tool_getopt(int argc, char *const *argv, const char *shorts,
+                const struct option *options, int *index);
+
 /* Takes a common option. Returns -1 to go on, else the exit code to leave with
- * (EXIT_OK after --help). An unknown option is a usage error. */
+ * (EXIT_OK after --help and its like). An unknown option is a usage error. */
 int tool_option(struct tool *tool, int option, const char *value);
 
 /* Makes the workers, which tool_finish() ends. Returns an exit code. */

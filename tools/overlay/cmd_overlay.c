@@ -111,7 +111,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
 
     if (code >= 0)
         return code;
-    while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+    while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             &index)) >= 0) {
         code = compositor_option(tool, &o->compositor, c, optarg);
         if (code >= 0)

@@ -23,7 +23,7 @@ static int parse(struct tool *tool, int argc, char **argv, const char **output)
         {"output", required_argument, NULL, 'o'}, TOOL_COMMON_OPTIONS};
     int c, code;
 
-    while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+    while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             NULL)) >= 0) {
         if (c == 'o')
             *output = optarg;

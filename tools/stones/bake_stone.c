@@ -121,7 +121,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct line *l)
         TOOL_COMMON_OPTIONS};
     int c, code, index = 0;
 
-    while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+    while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             &index)) >= 0)
         if ((code = take(tool, l, c, options[index].name)) >= 0)
             return code;

@@ -384,7 +384,7 @@ static int parse(struct tool *tool, int argc, char **argv,
 {
     int c, at = 0, code;
 
-    while ((c = getopt_long(argc, argv, TOOL_COMMON_SHORT, options, &at)) >=
+    while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, &at)) >=
            0) {
         const int taken = take(b, c);
 

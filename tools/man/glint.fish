@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: MIT
+# fish completion of glint: the commands and options that the program itself names.
+function __glint_options
+    set -l words (commandline -opc)
+    $words[1] $words[2] --options 2>/dev/null | string replace -r '=\t' '\t'
+end
+complete -c glint -n 'test (count (commandline -opc)) -eq 1' -f -a '(glint --commands) help'
+complete -c glint -n 'test (count (commandline -opc)) -gt 1; and string match -q -- "-*" (commandline -ct)' -f -a '(__glint_options)'
+complete -c glint -n 'contains -- (commandline -opc)[-1] --lens; or contains -- (commandline -opc)[2] info bake trace render' -a '(glint lenses --names)'
