@@ -59,6 +59,8 @@ $(call of,src/tile/bins src/tile/pass src/star/star src/veil/veil $(addprefix sr
 
 # Loops over doubles that a machine takes two at a time.
 $(call of,src/bake/translucent/% src/bake/published/scatter/%,-O3)
+# The compiler of Debian 12 for aarch64 fails in this with -O3.
+$(call of,src/bake/translucent/quantise,-O2)
 
 # Hot loops are unrolled.
 $(call of,src/kernels/%,-O3)
