@@ -59,6 +59,7 @@ static const struct {
     {NULL, "shadow-points", "1, 4 or 16"},
     {NULL, "shading", "full or half"},
     {NULL, "ward-samples", "a whole number, 1 to 32"},
+    {NULL, "stone-frames", "1, 2 or 4"},
     {NULL, "highlights", "a whole number, 0 to 8"},
     {NULL, "edge-fade", "pixels, above 0"},
     {NULL, "error", "pixels, above 0"},

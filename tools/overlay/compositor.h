@@ -123,6 +123,7 @@ enum compositor_option_code {
     OPT_SHADING,
     OPT_WARD_SAMPLES,
     OPT_WARD_NEAREST,
+    OPT_STONE_FRAMES,
     OPT_HIGHLIGHTS,
     OPT_COMPOSITOR_LAST
 };
@@ -154,6 +155,7 @@ enum compositor_option_code {
         {"shading", required_argument, NULL, OPT_SHADING},             \
         {"ward-samples", required_argument, NULL, OPT_WARD_SAMPLES},   \
         {"ward-nearest", no_argument, NULL, OPT_WARD_NEAREST},         \
+        {"stone-frames", required_argument, NULL, OPT_STONE_FRAMES},   \
         {"highlights", required_argument, NULL, OPT_HIGHLIGHTS},       \
         SETTINGS_OPTIONS
 
@@ -224,6 +226,9 @@ enum compositor_option_code {
     "on\n"                                                                    \
     "                      brushed metal (default 8; in fours)\n"             \
     "  --ward-nearest      each in one level of it, not two blended\n"        \
+    "  --stone-frames N    1 (default), 2 or 4: light below the surface of "  \
+    "stones\n"                                                                \
+    "                      follows what moves only so often\n"                \
     "  --highlights N      0 to 8 spots of things that glint are lights of "  \
     "the\n"                                                                   \
     "                      flare (default: as the scene says)\n"

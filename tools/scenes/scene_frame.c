@@ -40,6 +40,9 @@ bool scene_dials_choose(struct scene_dials *dials, enum scene_choice choice,
         return tool_integer(text, 1, 32, &dials->ward_samples);
     case SCENE_CHOOSES_NEAREST:
         return dials->ward_nearest = true;
+    case SCENE_CHOOSES_FRAMES:
+        return tool_integer(text, 1, 4, &dials->stone_frames) &&
+               dials->stone_frames != 3;
     default:
         dials->has_highlights = true;
         return tool_integer(text, 0, 8, &dials->highlights);

@@ -24,7 +24,7 @@ struct scene_dials {
     bool has_highlights;
     int highlights; /* 0 .. 8, whatever the scene says, with has_highlights */
     int tile_log2;
-    int stone_frames;
+    int stone_frames; /* 1, 2 or 4: maps of stones are as old as that */
     bool dither;
 };
 
@@ -35,6 +35,7 @@ enum scene_choice {
     SCENE_CHOOSES_SHADING,
     SCENE_CHOOSES_SAMPLES,
     SCENE_CHOOSES_NEAREST, /* without a value */
+    SCENE_CHOOSES_FRAMES,
     SCENE_CHOOSES_HIGHLIGHTS
 };
 
