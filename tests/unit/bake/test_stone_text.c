@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Texts of stones: what they say, and where they are refused.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/scene/stone_bake.h"
+
+#define TWO                                      \
+    "stone pale scatter 2 3 4 absorb .1 .2 .3\n" \
+    "stone dark scatter .5 .6 .7 absorb 1 2 3\n"
+
+static enum glint_status parse(struct glint_stone_text *t, const char *text,
+                               struct glint_error *error)
+{
+    return glint_stone_parse(t, text, strlen(text), "x", error);
+}
+
+static void good(struct glint_stone_text *t, const char *text)
+{
+    struct glint_error error = {.text = ""};
+
+    if (parse(t, text, &error) != GLINT_OK)
+        fail_msg("%s: %s", text, error.text);
+}
+
+static void test_all_lines(void **state)
+{
+    struct glint_stone_text t;
+
+    (void)state;
+    good(&t, "# a comment\nsize 64\ntexel .25\nkernel 15\nslab 12\nindex 1.3\n"
+             "\n" TWO "pattern chess 4 pale dark\nmodel factored\nplanes 7\n"
+             "rank 2\nbits 10 14\n");
+    assert_int_equal(t.stone.side, 64);
+    assert_true(t.stone.texel_mm == .25 && t.stone.slab_mm == 12 &&
+                t.stone.index == 1.3);
+    assert_int_equal(t.stone.kernel, 15);
+    assert_int_equal(t.stone.pattern, GLINT_STONE_CHESS);
+    assert_int_equal(t.stone.fields, 4);
+    assert_true(t.stone.material[0].scatter[2] == 4 &&
+                t.stone.material[1].absorb[1] == 2);
+    assert_int_equal(t.fit.model, GLINT_SCATTER_FACTORED);
+    assert_int_equal(t.fit.kernels, 7);
+    assert_int_equal(t.fit.rank, 2);
+    assert_int_equal(t.code_bits, 10);
+    assert_int_equal(t.tap_bits, 14);
+}
+
+/* What is not said is as the README has it. */
+static void test_defaults(void **state)
+{
+    struct glint_stone_text t;
+
+    (void)state;
+    good(&t, "stone pale scatter 2 3 4 absorb .1 .2 .3\n");
+    assert_int_equal(t.stone.side, 128);
+    assert_int_equal(t.stone.kernel, 29);
+    assert_true(t.stone.texel_mm == .61 && t.stone.slab_mm == 6 &&
+                t.stone.index == 1.5);
+    assert_int_equal(t.stone.pattern, GLINT_STONE_EVEN);
+    assert_int_equal(t.fit.model, GLINT_SCATTER_CLUSTERED);
+    assert_int_equal(t.fit.kernels, 4);
+    assert_int_equal(t.fit.rank, 3);
+    assert_int_equal(t.code_bits, 8);
+    assert_int_equal(t.tap_bits, 12);
+    good(&t, TWO "pattern veins 3 pale dark\nmodel factored\n");
+    assert_int_equal(t.fit.kernels, 5);
+    assert_int_equal(t.stone.seed, 3);
+}
+
+/* A of a pattern is material 0, whichever line it stands on. */
+static void test_order(void **state)
+{
+    struct glint_stone_text t;
+
+    (void)state;
+    good(&t, TWO "pattern image a.pgm dark pale\n");
+    assert_string_equal(t.mask, "a.pgm");
+    assert_true(t.stone.material[0].scatter[0] == .5 &&
+                t.stone.material[1].scatter[0] == 2);
+    good(&t, "planes 6\nmodel clustered\ndata rows of it.pfm\n");
+    assert_string_equal(t.rows, "rows of it.pfm");
+    assert_int_equal(t.fit.kernels, 6);
+    good(&t, "data a.pfm\nmodel albedo\nplanes 6\n");
+    assert_int_equal(t.fit.kernels, 1);
+}
+
+static const struct {
+    const char *text, *error;
+} wrong[] = {
+    {"", "x:1:1: there is no stone"},
+    {"size 96\n", "x:1:6: size takes 32, 64, 128 or 256, not 96"},
+    {"size 16\n", "x:1:6: "},
+    {"size 512\n", "x:1:6: "},
+    {"kernel 14\n", "x:1:8: kernel takes an odd number, not 14"},
+    {"kernel 65\n", "x:1:8: "},
+    {"kernel 0\n", "x:1:8: "},
+    {"texel 0\n", "x:1:7: "},
+    {"texel 100.1\n", "x:1:7: "},
+    {"slab .05\n", "x:1:6: "},
+    {"index .9\n", "x:1:7: "},
+    {"index nan\n", "x:1:7: "},
+    {"size\n", "x:1:5: "},
+    {"size 32 32\n", "x:1:9: "},
+    {"size 32\nsize 64\n", "x:2:1: a second size; the first is on line 1"},
+    {"sizes 32\n", "x:1:1: unknown word 'sizes'; did you mean 'size'?"},
+    {"bits 3 12\n", "x:1:6: "},
+    {"bits 8 17\n", "x:1:8: "},
+    {"planes 21\n", "x:1:8: "},
+    {"rank 9\n", "x:1:6: "},
+    {"model tucker\n",
+     "x:1:7: model takes clustered, factored or albedo, not 'tucker'"},
+    {"stone a scatter 1 1 1\n", "x:1:"},
+    {"stone a scatter 0 1 1 absorb 0 0 0\n", "x:1:17: "},
+    {"stone a scatter 1 1 1 absorb -1 0 0\n", "x:1:30: "},
+    {TWO "stone third scatter 1 1 1 absorb 0 0 0\n",
+     "x:3:7: more than 2 stones"},
+    {"stone a scatter 1 1 1 absorb 0 0 0\n"
+     "stone a scatter 1 1 1 absorb 0 0 0\n",
+     "x:2:7: a stone of this name is already defined"},
+    {TWO, "two stones need a pattern"},
+    {TWO "pattern stripes 3 pale dark\n",
+     "x:3:9: a pattern is chess N A B, veins SEED A B or image MASK A B, "
+     "not 'stripes'"},
+    {TWO "pattern chess 3 pale dart\n",
+     "x:3:22: no stone 'dart' is defined above this line; did you mean "
+     "'dark'?"},
+    {TWO "pattern chess 3 pale pale\n",
+     "x:3:22: a pattern takes two different stones"},
+    {TWO "pattern chess 3 pale\n", "the name of a stone is missing"},
+    {"size 32\n" TWO "pattern chess 33 pale dark\n",
+     "x:4:9: 33 fields each way are more than 32 texels"},
+    {"data a.pfm\nstone a scatter 1 1 1 absorb 0 0 0\n",
+     "measured rows have no stone and no pattern"},
+    {"data\n", "the name of the rows is missing"},
+};
+
+static void test_refused(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        struct glint_error error = {.text = ""};
+        struct glint_stone_text t;
+
+        assert_int_equal(parse(&t, wrong[i].text, &error), GLINT_E_LENS);
+        if (!strstr(error.text, wrong[i].error))
+            fail_msg("%s\ngives '%s', not '%s'", wrong[i].text, error.text,
+                     wrong[i].error);
+    }
+}
+
+int main(void)
+{
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_all_lines),
+        cmocka_unit_test(test_defaults),
+        cmocka_unit_test(test_order),
+        cmocka_unit_test(test_refused),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
