@@ -40,6 +40,13 @@ ward-table: all $(OUT)/ward_table
 # Models of scattering side by side, on synthetic stones: three processor minutes.
 translucent-table: $(OUT)/translucent_table
 	@$(OUT)/translucent_table | tools/report/write-figures scenes/translucent
+# What maps of stones cost, and how near they are.
+stone-table: all $(OUT)/stone_rows $(OUT)/stone_cost
+	@tools/make/deps "instruction counts, and those on ARM" valgrind gcc-aarch64-linux-gnu \
+	        libc6-dev-arm64-cross qemu-user debian-archive-keyring >&2
+	@$(MAKE) -s --no-print-directory TARGET=aarch64 \
+	        SYSROOT=$$(tests/arm/prepare aarch64) build/aarch64/stone_cost >&2
+	@tools/report/scenes/stone-table $(OUT) | tools/report/write-figures scenes/stone
 # What it costs, and Sunflow's Ward beside ours.
 ward-cost-table: all
 	@tools/make/deps "instruction counts on ARM, panoramas" gcc-aarch64-linux-gnu \
@@ -185,4 +192,4 @@ budget: all
         power-fit \
         corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet gallery \
         bench bench-insn growth size trade lights-table threads-table reuse-table flicker-table left-table stopping-table hostile-table star-table memory-table \
-        cost-fit scene-cost-fit ward-table ward-cost-table sunflow-table budget
+        cost-fit scene-cost-fit stone-table ward-table ward-cost-table sunflow-table budget

@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * stone_cost FILE [FRAMES [SET]] - spreads light over the whole map of a baked
+ * stone, three channels, one thread, for tools/report/scenes/stone-table, which
+ * counts instructions. Prints, of each set of kernels in turn (c, sse41, avx2,
+ * neon) or of SET alone, the median of processor milliseconds of FRAMES maps,
+ * whose runs take turns, and a hash of the map.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "glint/kernels.h"
+#include "scene/translucent/spread.h"
+
+enum { CHANNELS = 3, SETS = 4, MOST = 1000, LIMIT = 1 << 24 };
+
+static const struct {
+    const char *name;
+    unsigned bits;
+} set_of[SETS] = {{"c", 0},
+                  {"sse41", GLINT_SET_SSE41},
+                  {"avx2", GLINT_SET_SSE41 | GLINT_SET_AVX2},
+                  {"neon", GLINT_SET_NEON}};
+
+/* Instructions of a map are those from here to stone_cost_idle(). */
+void stone_cost_frame(const struct glint_spread *spread,
+                      struct glint_spread_scratch *scratch);
+void stone_cost_idle(const struct glint_spread *spread);
+
+void stone_cost_frame(const struct glint_spread *spread,
+                      struct glint_spread_scratch *scratch)
+{
+    for (int c = 0; c < CHANNELS; c++)
+        for (int x = 0; x < spread->width; x += GLINT_STRIP)
+            glint_spread_strip(spread, c, x, 0, spread->height, scratch);
+}
+
+void stone_cost_idle(const struct glint_spread *spread)
+{
+    for (int c = 0; c < CHANNELS; c++)
+        spread->map[c][0] = 0;
+}
+
+/* A ramp with a shadow across, and every tenth texel bright. */
+static void set_light(const struct glint_spread *s)
+{
+    for (int c = 0; c < CHANNELS; c++)
+        for (int y = 0; y < s->height; y++)
+            for (int x = 0; x < s->width; x++)
+                s->light[c][y * s->width + x] =
+                    (int16_t)(x * 8 / s->width == 3 ? 0
+                              : (x + 3 * y) % 10    ? 9000 + 40 * y
+                                                    : 32767 - 500 * c);
+}
+
+static uint64_t hash_of(const struct glint_spread *s)
+{
+    uint64_t hash = UINT64_C(14695981039346656037);
+
+    for (int c = 0; c < CHANNELS; c++)
+        for (int i = 0; i < s->width * s->height; i++)
+            hash = (hash ^ (uint16_t)s->map[c][i]) * UINT64_C(1099511628211);
+    return hash;
+}
+
+static double now(void)
+{
+    return (double)clock() / CLOCKS_PER_SEC;
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+
+    return (x > y) - (x < y);
+}
+
+static int is_run(int set, const char *only)
+{
+    return only ? !strcmp(set_of[set].name, only)
+                : (set_of[set].bits & ~glint_sets_here()) == 0;
+}
+
+static void run(struct glint_spread *s, struct glint_spread_scratch *scratch,
+                int frames, const char *only)
+{
+    /* Not inlined: counters look for their names. */
+    void (*volatile idle)(const struct glint_spread *) = stone_cost_idle;
+    void (*volatile frame)(const struct glint_spread *,
+                           struct glint_spread_scratch *) = stone_cost_frame;
+    static double took[SETS][MOST];
+    static uint64_t hash[SETS];
+
+    for (int i = 0; i < frames; i++)
+        for (int k = 0; k < SETS; k++) {
+            double start;
+
+            if (!is_run(k, only))
+                continue;
+            s->convolve = glint_convolve_of(set_of[k].bits);
+            idle(s);
+            start = now();
+            frame(s, scratch);
+            took[k][i] = now() - start;
+            hash[k] = hash_of(s);
+        }
+    idle(s);
+    for (int k = 0; k < SETS; k++)
+        if (is_run(k, only)) {
+            qsort(took[k], (size_t)frames, sizeof **took, by_size);
+            printf("%s %.3f %016llx\n", set_of[k].name,
+                   1000 * took[k][frames / 2], (unsigned long long)hash[k]);
+        }
+}
+
+static int spread(const struct glint_translucent *stone, int frames,
+                  const char *only)
+{
+    const int side = 1 << stone->header->side_log2;
+    const size_t n = (size_t)side * (size_t)side;
+    struct glint_spread s = {.stone = stone, .width = side, .height = side};
+    struct glint_arena arena = glint_arena_measure();
+    struct glint_spread_scratch scratch;
+    int16_t *maps = calloc(2 * CHANNELS * n, sizeof *maps);
+    void *mem = NULL;
+
+    glint_spread_carve(&arena, stone, side);
+    if (maps && posix_memalign(&mem, 64, arena.used) == 0) {
+        arena = glint_arena_over(mem, arena.used);
+        scratch = glint_spread_carve(&arena, stone, side);
+        for (size_t c = 0; c < CHANNELS; c++) {
+            s.light[c] = maps + 2 * c * n;
+            s.map[c] = s.light[c] + n;
+        }
+        set_light(&s);
+        run(&s, &scratch, frames, only);
+    }
+    free(maps);
+    free(mem);
+    return mem ? 0 : 1;
+}
+
+int main(int argc, char **argv)
+{
+    const int frames = argc > 2 ? atoi(argv[2]) : 1;
+    FILE *file = argc > 1 ? fopen(argv[1], "rb") : NULL;
+    void *data = malloc(LIMIT);
+    struct glint_translucent stone;
+    const char *reason = "it cannot be read";
+    int code = 1;
+
+    if (file && data && frames > 0 && frames <= MOST &&
+        glint_translucent_open(&stone, data, fread(data, 1, LIMIT, file),
+                               &reason) == GLINT_OK)
+        code = spread(&stone, frames, argc > 3 ? argv[3] : NULL);
+    else
+        fprintf(stderr, "stone_cost: %s\n", reason);
+    if (file)
+        fclose(file);
+    free(data);
+    return code;
+}

@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * stone_rows DIR [SIDE KERNEL] - bakes two stones, chess and veins, by all
+ * models that a frame can draw and by numbers of bits, for
+ * tools/report/scenes/stone-table. Prints a line each: stone, model, bits of
+ * codes and taps, decibels of the fit and of the integers to the light of all
+ * rows, and processor seconds of the fit. Those of the first stone with 8 and
+ * 12 bits are written to DIR/MODEL.glint. Stones of 128 texels and kernels of
+ * 29 unless told otherwise. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "glint/scene/stone_bake.h"
+
+enum { STONES = 2, MODELS = 8, BITS = 7 };
+
+static const char *const stone_name[STONES] = {"chess", "veins"};
+
+static const struct {
+    const char *name;
+    enum glint_scatter_model model;
+    int kernels, rank;
+} model_of[MODELS] = {
+    {"albedo-3", GLINT_SCATTER_ALBEDO, 1, 3},
+    {"clustered-2-3", GLINT_SCATTER_CLUSTERED, 2, 3},
+    {"clustered-4-2", GLINT_SCATTER_CLUSTERED, 4, 2},
+    {"clustered-4-3", GLINT_SCATTER_CLUSTERED, 4, 3},
+    {"factored-3-3", GLINT_SCATTER_FACTORED, 3, 3},
+    {"factored-5-2", GLINT_SCATTER_FACTORED, 5, 2},
+    {"factored-5-3", GLINT_SCATTER_FACTORED, 5, 3},
+    {"factored-10-3", GLINT_SCATTER_FACTORED, 10, 3},
+};
+
+/* Codes and taps; the first ones are the default. */
+static const int bits_of[BITS][2] = {{8, 12}, {16, 16}, {12, 12}, {8, 16},
+                                     {8, 10}, {8, 8},   {6, 12}};
+
+static void fail(const char *what)
+{
+    fprintf(stderr, "stone_rows: %s\n", what);
+    exit(1);
+}
+
+static double decibels(const double *a, const double *b, size_t n)
+{
+    double square = 0, peak = 0;
+
+    for (size_t i = 0; i < n; i++) {
+        square += (a[i] - b[i]) * (a[i] - b[i]);
+        peak = fmax(peak, fabs(b[i]));
+    }
+    return square > 0 ? 10 * log10(peak * peak * (double)n / square) : 999;
+}
+
+static void write_stone(const char *dir, const char *name, const void *data,
+                        size_t bytes)
+{
+    char path[1024];
+    FILE *file;
+
+    snprintf(path, sizeof path, "%s/%s.glint", dir, name);
+    file = fopen(path, "wb");
+    if (!file || fwrite(data, 1, bytes, file) != bytes || fclose(file))
+        fail(path);
+}
+
+/* LIGHT[3][n] is what falls on the stone, what its rows make of that, and room.
+ */
+static void bake(const struct glint_scatter_fit *fit, const double *const light,
+                 double *room, const int bits[2], const char *dir,
+                 const char *name, double *db)
+{
+    const size_t n = 3 * (size_t)(fit->side * fit->side);
+    struct glint_stone_report report;
+    struct glint_translucent stone;
+    struct glint_stone_text text;
+    struct glint_error error;
+    unsigned char *data;
+    const char *reason;
+    size_t bytes;
+
+    glint_stone_text_defaults(&text);
+    text.fit.rank = fit->rank;
+    text.code_bits = bits[0];
+    text.tap_bits = bits[1];
+    if (glint_stone_bake(fit, &text, name, 0, &data, &bytes, &report, &error) !=
+        GLINT_OK)
+        fail(error.text);
+    if (glint_translucent_open(&stone, data, bytes, &reason) != GLINT_OK)
+        fail(reason);
+    if (glint_stone_light(&stone, light, room) != GLINT_OK)
+        fail("out of memory");
+    *db = decibels(room, light + n, n);
+    if (dir)
+        write_stone(dir, name, data, bytes);
+    free(data);
+}
+
+static void fit_and_bake(struct glint_scatter_rows *rows, int stone, int model,
+                         const double *light, double *room, const char *dir)
+{
+    struct glint_scatter_options o = {
+        model_of[model].model, model_of[model].kernels, model_of[model].rank};
+    const clock_t start = clock();
+    struct glint_scatter_fit fit;
+
+    if (glint_scatter_fit(rows, &o, NULL, &fit) != GLINT_OK)
+        fail("no fit");
+    /* Of clusters and albedo it counts at the bake only. */
+    fit.rank = o.rank;
+    for (int b = 0; b < BITS; b++) {
+        double db;
+
+        bake(&fit, light, room, bits_of[b], !stone && !b ? dir : NULL,
+             model_of[model].name, &db);
+        printf("%s %s %d %d %.2f %.2f %.1f\n", stone_name[stone],
+               model_of[model].name, bits_of[b][0], bits_of[b][1],
+               fit.error.light_db, db,
+               (double)(clock() - start) / CLOCKS_PER_SEC);
+    }
+    fflush(stdout);
+    glint_scatter_fit_close(&fit);
+}
+
+int main(int argc, char **argv)
+{
+    const int side = argc > 3 ? atoi(argv[2]) : 128;
+    const int kernel = argc > 3 ? atoi(argv[3]) : 29;
+    const size_t n = 3 * (size_t)(side * side);
+    double *light = calloc(3 * n, sizeof *light);
+
+    if (argc < 2 || !light)
+        fail("DIR [SIDE KERNEL]");
+    for (int i = 0; i < STONES; i++) {
+        struct glint_scatter_rows rows;
+        struct glint_stone stone;
+        struct glint_error error;
+
+        glint_stone_defaults(&stone);
+        stone.side = side;
+        stone.kernel = kernel;
+        stone.pattern = i ? GLINT_STONE_VEINS : GLINT_STONE_CHESS;
+        stone.seed = 2;
+        if (glint_scatter_compute(&stone, NULL, &rows, &error) != GLINT_OK)
+            fail(error.text);
+        glint_scatter_test_light(side, light);
+        glint_scatter_light_rows(&rows, light, light + n);
+        for (int m = 0; m < MODELS; m++)
+            fit_and_bake(&rows, i, m, light, light + 2 * n, argv[1]);
+        glint_scatter_close(&rows);
+    }
+    free(light);
+    return 0;
+}
