@@ -264,6 +264,21 @@ static void print_highlights(const struct explained_scene *s)
                found[i].word);
 }
 
+/* Light below the surface of stones. */
+static void print_maps(const struct explained_scene *s)
+{
+    const int n = s->compositor->scene.frame.map_texels;
+
+    if (model_of(s)->header->n_skins > 0)
+        printf("\nmaps of stones: light has spread to %d texels, %.2f M "
+               "instructions\n",
+               n,
+               1e-3 * (scene_cost_weight[GLINT_SCENE_GATHERED].kinsn *
+                           (double)s->account.all.count[GLINT_SCENE_GATHERED] +
+                       scene_cost_weight[GLINT_SCENE_SPREAD].kinsn *
+                           (double)s->account.all.count[GLINT_SCENE_SPREAD]));
+}
+
 void explain_scene_print(const struct explained_scene *s)
 {
     const double minsn = scene_cost_minsn(&s->account);
@@ -288,6 +303,7 @@ void explain_scene_print(const struct explained_scene *s)
                    p->fate == GLINT_SCENE_COVERED ? name_of(s, p->by) : "");
         printf(" %6.1f\n", minsn > 0 ? 100 * scene_cost_part(p) / minsn : 0);
     }
+    print_maps(s);
     print_lights(s);
     print_highlights(s);
 }

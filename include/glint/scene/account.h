@@ -55,6 +55,10 @@ enum glint_scene_item {
     GLINT_SCENE_LOBES,     /* places on brushed metal, by each light in front */
     GLINT_SCENE_BOUNCED,   /* rays that go on from places shaded */
     GLINT_SCENE_PASSED,    /* of these, through things */
+    GLINT_SCENE_GATHERED,  /* texels of maps of stones that were lit, by each
+                              light, and three times by what is around */
+    GLINT_SCENE_SPREAD,    /* texels that light has spread to, by each texel of
+                              a kernel's side, of all its ranks and planes */
     GLINT_SCENE_ITEMS
 };
 

@@ -10,8 +10,9 @@
 #include "scene/parts.h"
 
 enum {
-    TEXELS = 8, /* of a place: four of each of two levels */
-    POINTS = 16 /* of a light's disc, as it hides behind things */
+    TEXELS = 8,     /* of a place: four of each of two levels */
+    MAP_TEXELS = 4, /* of a place of stone */
+    POINTS = 16     /* of a light's disc, as it hides behind things */
 };
 
 struct account {
@@ -116,8 +117,19 @@ static void count_lights(const struct glint_scene *s,
     }
 }
 
+static int is_stone(const struct glint_scene *s,
+                    const struct glint_met_surface *surface)
+{
+    const int skin = s->placed[surface->object].skin;
+
+    return skin >= 0 &&
+           surface->material ==
+               &s->model.material[s->model.stone[s->model.skin[skin].stone]
+                                      .material];
+}
+
 /* Counts a place of SURFACE that is shaded: its lights, and the environment on
- * metal. */
+ * metal. Stone without a coat shows its map alone. */
 static void count_lit(const struct glint_scene *s,
                       const struct glint_met_surface *surface,
                       struct glint_scene_part *part)
@@ -128,6 +140,11 @@ static void count_lit(const struct glint_scene *s,
     const int is_metal = m->ward != GLINT_SCENE_NONE;
     const int has_colour = m->rgb_q15[0] || m->rgb_q15[1] || m->rgb_q15[2];
 
+    if (is_stone(s, surface)) {
+        part->count[GLINT_SCENE_TEXELS] += MAP_TEXELS;
+        if (!is_metal)
+            return;
+    }
     count_lights(s, surface, part);
     if (s->placed[surface->object].object->catcher_q15)
         return;
@@ -389,6 +406,24 @@ static void clear(const struct account *a)
         a->seen[i] = -1;
 }
 
+/* Counts what maps of stones took in the last frame. What is around a texel
+ * costs as much as three lights. */
+static void count_maps(const struct account *a)
+{
+    const struct glint_scene *s = a->scene;
+    const struct glint_scene_header *h = s->model.header;
+
+    for (uint32_t i = 0; s->stones && i < h->n_skins; i++) {
+        int64_t *count = a->objects[s->model.skin[i].object].count;
+        int64_t lit, spread;
+
+        s->cfg.parts.stones->took(s, i, &lit, &spread);
+        count[GLINT_SCENE_GATHERED] +=
+            lit * (h->n_lights + (h->environment_bytes ? 3 : 0));
+        count[GLINT_SCENE_SPREAD] += spread;
+    }
+}
+
 void glint_scene_account(struct glint_scene *scene,
                          struct glint_scene_part *objects,
                          struct glint_scene_part *all, int16_t *seen)
@@ -398,6 +433,7 @@ void glint_scene_account(struct glint_scene *scene,
     const int n_tiles = bins->tiles_x * bins->tiles_y;
 
     clear(&a);
+    count_maps(&a);
     for (int tile = 0; tile < n_tiles; tile++)
         count_tile(&a, &scene->worker[0], glint_bins_tile(bins, tile));
     for (int32_t i = 0; scene->has_triangles && i < bins->start[n_tiles]; i++)

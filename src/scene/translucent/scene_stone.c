@@ -7,7 +7,7 @@
 #include "base/compiler.h"
 #include "scene/parts.h"
 
-enum { CHANNELS = 3 };
+enum { CHANNELS = 3, BLOCK_TEXELS = GLINT_BLOCK_WIDTH * GLINT_BLOCK_HEIGHT };
 
 /* ------------------------------------------------------------------ opening */
 
@@ -257,6 +257,7 @@ static int update(struct glint_scene *scene)
         const struct glint_placed *p = &scene->placed[u.skin->of->object];
         int blocks;
 
+        u.skin->texels_lit = u.skin->texels_spread = 0;
         if (!p->is_shown || (!p->is_seen && !scene->has_split))
             continue;
         forget(scene, u.skin);
@@ -268,9 +269,21 @@ static int update(struct glint_scene *scene)
         glint_workers_run(scene->cfg.workers, CHANNELS * u.skin->across,
                           spread_job, &u);
         note(u.skin);
-        n += blocks * GLINT_BLOCK_WIDTH * GLINT_BLOCK_HEIGHT;
+        u.skin->texels_lit = u.skin->n_list * BLOCK_TEXELS;
+        u.skin->texels_spread = blocks * BLOCK_TEXELS;
+        n += u.skin->texels_spread;
     }
     return n;
+}
+
+static void took(const struct glint_scene *scene, uint32_t i, int64_t *lit,
+                 int64_t *spread)
+{
+    const struct glint_stone_skin *skin = &scene->stones->skin[i];
+    const struct glint_translucent_header *h = skin->stone.header;
+
+    *lit = skin->texels_lit;
+    *spread = (int64_t)skin->texels_spread * h->n_planes * h->rank * h->kernel;
 }
 
 /* ------------------------------------------------------------------- showing
@@ -373,4 +386,4 @@ static int32_t add(const struct glint_scene *scene,
 }
 
 const struct glint_scene_stones glint_scene_stones = {carve, open_stones,
-                                                      update, add};
+                                                      update, took, add};

@@ -34,6 +34,8 @@ struct glint_stone_skin {
     uint8_t *block;               /* [down][across] */
     uint16_t *list;               /* [down][across] blocks to be lit */
     int n_list;
+    /* Of the last frame: texels lit, and those that light has spread to. */
+    int texels_lit, texels_spread;
     int shift;      /* light, q15, is that of the map times 2^shift */
     int is_lit;     /* has been once */
     uint32_t moved; /* what the scene had when it was */

@@ -14,6 +14,7 @@
 
 #include <cmocka.h>
 
+#include "glint/scene/account.h"
 #include "glint/scene/bake.h"
 #include "glint/scene/environment_bake.h"
 #include "scenes/scene_frame.h"
@@ -345,6 +346,39 @@ static void test_updates(void **state)
     side = 64;
 }
 
+/* What maps take is counted where they were worked out, and not again. */
+static void test_account(void **state)
+{
+    static int32_t light[3 * PIXELS];
+    static int16_t seen[PIXELS];
+    struct tool tool = {.name = "test"};
+    struct glint_scene_part object[2], all;
+    struct drawn d;
+
+    (void)state;
+    open_text(&d,
+              "camera fov 30 at 0 0 4 toward 0 0 0\nlight lamp at 3 3 9 colour "
+              "9 9 9\nmaterial m translucent c.glint\nmaterial g phong .1 .7 "
+              ".2\nsphere s at 0 0 0 radius .5 material m\n"
+              "sphere t at .8 0 0 radius .2 material g\n",
+              &one_sample, &tool);
+    look_from(&d, 0, light);
+    glint_scene_account(d.frame.scene, object, &all, seen);
+    /* two planes of rank 4 */
+    assert_int_equal(object[0].count[GLINT_SCENE_SPREAD],
+                     d.frame.map_texels * 2 * 4 * kernel);
+    assert_true(object[0].count[GLINT_SCENE_GATHERED] >= d.frame.map_texels);
+    assert_int_equal(object[0].count[GLINT_SCENE_TEXELS],
+                     4 * object[0].count[GLINT_SCENE_SHADED]);
+    assert_int_equal(object[0].count[GLINT_SCENE_LIT], 0);
+    assert_int_equal(object[1].count[GLINT_SCENE_SPREAD], 0);
+    draw(&d, light);
+    glint_scene_account(d.frame.scene, object, &all, seen);
+    assert_int_equal(all.count[GLINT_SCENE_SPREAD], 0);
+    assert_int_equal(all.count[GLINT_SCENE_GATHERED], 0);
+    close_text(&d);
+}
+
 /* What moves is followed in every frame, or every 2 or 4. */
 static void test_frames(void **state)
 {
@@ -513,10 +547,10 @@ static void test_lacks(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_twin),     cmocka_unit_test(test_same_bits),
-        cmocka_unit_test(test_updates),  cmocka_unit_test(test_frames),
-        cmocka_unit_test(test_extremes), cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_lacks),
+        cmocka_unit_test(test_twin),    cmocka_unit_test(test_same_bits),
+        cmocka_unit_test(test_updates), cmocka_unit_test(test_account),
+        cmocka_unit_test(test_frames),  cmocka_unit_test(test_extremes),
+        cmocka_unit_test(test_refused), cmocka_unit_test(test_lacks),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
