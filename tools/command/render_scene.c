@@ -40,6 +40,8 @@ static const char help[] =
     "  --ward-nearest      each in one level of it, not two blended\n"
     "  --highlights N      0 to 8 spots of things that glint are lights of a\n"
     "                      flare (default: as the scene says)\n"
+    "  --quality Q         0 to 1, or least ... finest: sets what of these is\n"
+    "                      not given, and the flare\n"
     "  --exposure EV       stops; all light times 2^EV (default 0)\n"
     "  --pose FILE         moves things and camera, as of glint overlay\n"
     "  --control FILE      lines that change the scene, likewise\n"
@@ -145,8 +147,8 @@ static int take_any(struct tool *tool, struct render_scene *r, int c)
         const bool moves = c == OPT_POSE || c == OPT_CONTROL;
 
         r->is_frames = r->is_frames || moves || c == OPT_LENS;
-        r->is_lit =
-            r->is_lit || (!moves && c != OPT_LENS && !compositor_is_dial(c));
+        r->is_lit = r->is_lit || (!moves && c != OPT_LENS && c != OPT_QUALITY &&
+                                  !compositor_is_dial(c));
     }
     if (code == -2)
         code = take_moving(tool, r, c);
@@ -167,6 +169,7 @@ static int parse(struct tool *tool, int argc, char **argv,
         {"fps", required_argument, NULL, OPT_FPS},
         COMPOSITOR_OPTIONS, /* the first of a name counts */
         TOOL_COMMON_OPTIONS};
+    struct scene_dials *const asked = &r->compositor.scene.asked;
     int c, code = compositor_style_of(tool, &r->compositor, argc, argv,
                                       "o:" TOOL_COMMON_SHORT, options);
 
@@ -187,8 +190,11 @@ static int parse(struct tool *tool, int argc, char **argv,
                           "--samples takes 1, 4, 8 or 16, not %d; of --rays "
                           "exact 1 to 16",
                           r->samples);
-    if (!r->samples)
-        r->samples = 4;
+    if (r->exact || !r->compositor.settings.has_quality) {
+        r->samples = r->samples ? r->samples : 4;
+        if (!asked->shadow_points)
+            asked->shadow_points = 4;
+    }
     if (strcmp(r->compositor.lens, "none") != 0)
         r->is_frames = true;
     else if (r->is_lit)
@@ -315,6 +321,8 @@ static int draw_model(struct tool *tool, struct render_scene *r,
     dials.width = r->width;
     dials.height = r->height;
     dials.edge_samples = r->samples;
+    if (r->compositor.settings.has_quality)
+        scene_dials_be(&dials, r->compositor.settings.quality);
     code = scene_frame_open(&frame, tool, model, &dials);
     if (code == EXIT_OK) {
         glint_image_place(&linear, light_q20);
@@ -393,7 +401,6 @@ int cmd_render_scene(int argc, char **argv)
     r->fps = 25;
     compositor_defaults(&r->compositor);
     r->compositor.lens = "none";
-    r->compositor.scene.asked.shadow_points = 4;
     code = parse(&tool, argc, argv, r);
     if (code < 0) {
         code = tool_start(&tool);

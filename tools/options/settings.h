@@ -65,8 +65,9 @@ struct settings {
     bool has_work;
     int raster; /* 0: by edges, 1: by cells */
     enum glint_weights weights;
-    bool has_grid; /* --grid or a quality was given */
-    bool by_edges; /* --raster edges was given, not only the default */
+    bool has_grid;    /* --grid or a quality was given */
+    bool has_quality; /* --quality was */
+    bool by_edges;    /* --raster edges was given, not only the default */
     bool uniform, antialias, dither, has_exposure, balance;
 };
 

@@ -111,6 +111,7 @@ bool settings_take_quality(struct settings *s, const char *text)
         (!tool_number(text, &quality) || quality < 0 || quality > 1))
         return false;
     settings_set_quality(s, quality);
+    s->has_quality = true;
     if (exact)
         s->rays = SETTINGS_RAYS_EXACT;
     return true;

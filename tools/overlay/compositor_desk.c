@@ -217,8 +217,8 @@ void compositor_desk_close(struct compositor *c)
 /* Highlights of scenes, likewise. */
 #define HIGHLIGHT_IDS UINT32_C(0x7ffe0000)
 
-/* Share of a budget that a scene may take, and of which a flare has the rest,
- * but no less than that. */
+/* Share of a budget that a scene may take before it is known what the flare
+ * takes, and that the flare has at least. */
 #define SCENE_SHARE 0.6
 #define LEAST_SHARE 0.1
 
@@ -229,6 +229,9 @@ int compositor_scene_size(struct compositor *c, int width, int height)
 {
     struct scene_dials dials = c->scene.asked;
 
+    if (c->settings.has_quality || c->preview)
+        scene_dials_be(&dials, c->settings.has_quality ? c->settings.quality
+                                                       : preview_quality);
     dials.width = width;
     dials.height = height;
     if (c->has_lens)
@@ -259,6 +262,25 @@ static void add_glints(struct compositor *c)
     }
 }
 
+/* Has the scene leave the flare what is best for both, by the last frame. What
+ * the flare took beyond its plan, quality does not turn. */
+static void share_budget(struct compositor *c)
+{
+    const double all_ms = c->settings.budget_ms;
+    const double planned_ms = fmin(c->report.predicted_ms, c->flare_ms);
+    const double fixed_ms = c->flare_ms - planned_ms;
+
+    c->scene.flare_ms = 0;
+    c->scene.budget_ms = all_ms;
+    if (!c->has_lens)
+        return;
+    c->scene.budget_ms *= SCENE_SHARE;
+    if (!(planned_ms > 0))
+        return;
+    c->scene.budget_ms = fmax(LEAST_SHARE * all_ms, all_ms - fixed_ms);
+    c->scene.flare_ms = scene_budget_flare_ms(planned_ms, c->report.quality);
+}
+
 enum glint_status compositor_scene(struct compositor *c,
                                    const struct glint_image *image)
 {
@@ -272,8 +294,7 @@ enum glint_status compositor_scene(struct compositor *c,
     if (!c->scene.is_open)
         return GLINT_OK;
     if (c->settings.budget_ms > 0)
-        c->scene.budget_ms =
-            c->settings.budget_ms * (c->has_lens ? SCENE_SHARE : 1);
+        share_budget(c);
     status = over_scene_draw(&c->scene, image, c->n_frames);
     /* The flare has what the scene leaves. */
     if (c->settings.budget_ms > 0 && c->has_lens)

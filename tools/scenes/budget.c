@@ -11,14 +11,29 @@
 
 /* Points of light and lookups of metal go first, as edges of shadows are little
  * of a picture and 4 lookups lose less than 2 dB, then places shaded, last the
- * outlines. */
+ * outlines. QUALITY: of --quality, from which on it is drawn; DB: PSNR in the
+ * mean of three scenes (tests/figures/scenes/budget.md). */
 static const struct {
     int points, edge, samples;
     bool half, nearest;
+    double quality, db;
 } levels[SCENE_BUDGET_LEVELS] = {
-    {16, 16, 32, false, false}, {4, 4, 8, false, false},
-    {1, 4, 4, false, false},    {4, 4, 4, true, false},
-    {1, 4, 4, true, true},      {1, 1, 4, true, true}};
+    {16, 16, 32, false, false, 1, 48.4},  {4, 4, 8, false, false, 0.5, 46.1},
+    {1, 4, 4, false, false, 0.375, 43.8}, {1, 4, 4, true, false, 0.25, 39.2},
+    {1, 4, 4, true, true, 0.125, 39},     {1, 1, 4, true, true, 0, 36.5}};
+
+enum { USUAL = 1 }; /* the level of the default quality */
+
+/* Flares by quality: what a frame takes over that of the default, and PSNR, in
+ * the mean of three lenses (tests/figures/trade.md). */
+static const struct {
+    double quality, ratio, db;
+} flares[] = {{0, 0.52, 38},
+              {0.25, 0.78, 54.5},
+              {0.5, 1, 57.6},
+              {0.75, 2.4, 62.4},
+              {1, 6.6, 64}};
+enum { FLARES = sizeof flares / sizeof *flares };
 
 void scene_budget_init(struct scene_budget *budget,
                        const struct scene_dials *asked)
@@ -32,6 +47,24 @@ void scene_budget_init(struct scene_budget *budget,
     a->shadow_points =
         a->shadow_points ? a->shadow_points : usual.shadow_points;
     a->ward_samples = a->ward_samples ? a->ward_samples : usual.ward_samples;
+}
+
+void scene_dials_be(struct scene_dials *dials, double quality)
+{
+    int i = 0;
+
+    while (i < SCENE_BUDGET_LEVELS - 1 && levels[i].quality > quality)
+        i++;
+    if (i == USUAL)
+        return;
+    if (!dials->shadow_points)
+        dials->shadow_points = levels[i].points;
+    if (!dials->edge_samples)
+        dials->edge_samples = levels[i].edge;
+    if (!dials->ward_samples)
+        dials->ward_samples = levels[i].samples;
+    dials->half_shading |= levels[i].half;
+    dials->ward_nearest |= levels[i].nearest;
 }
 
 static int least(int a, int b)
@@ -124,17 +157,65 @@ enum glint_status scene_budget_look(struct scene_budget *budget,
     return GLINT_OK;
 }
 
-bool scene_budget_choose(struct scene_budget *budget, double ms)
+double scene_budget_flare_ms(double ms, double quality)
+{
+    int i = 0;
+    double part;
+
+    while (i < FLARES - 2 && flares[i + 1].quality < quality)
+        i++;
+    part = (quality - flares[i].quality) /
+           (flares[i + 1].quality - flares[i].quality);
+    return ms /
+           (flares[i].ratio + part * (flares[i + 1].ratio - flares[i].ratio));
+}
+
+/* Returns the mean square of the difference that a PSNR of DB stands for. */
+static double square_of(double db)
+{
+    return pow(10, -db / 10);
+}
+
+/* Returns the error of what draws with LEFT_MS of MS: of a flare, that takes
+ * FLARE_MS at its default quality, or if that is 0 of nothing. What does not
+ * fit counts above 1, the less so the less it is over. */
+static double rest_error(double left_ms, double flare_ms, double ms)
+{
+    const double least_ms = flare_ms * flares[0].ratio;
+    int i = 0;
+    double at, part;
+
+    if (left_ms < least_ms)
+        return 1 + (least_ms - left_ms) / ms;
+    if (!(flare_ms > 0))
+        return 0;
+    at = log2(left_ms / flare_ms);
+    while (i < FLARES - 2 && log2(flares[i + 1].ratio) < at)
+        i++;
+    part = (at - log2(flares[i].ratio)) /
+           log2(flares[i + 1].ratio / flares[i].ratio);
+    return square_of(flares[i].db +
+                     fmin(part, 1) * (flares[i + 1].db - flares[i].db));
+}
+
+bool scene_budget_choose(struct scene_budget *budget, double ms,
+                         double flare_ms)
 {
     const int before = budget->level;
+    double least = HUGE_VAL;
     int level = SCENE_BUDGET_LEVELS - 1;
 
-    for (int i = level - 1; i >= 0; i--) {
-        const double told_ms = budget->ms_per_minsn * budget->minsn[i];
-
+    for (int i = level; i >= 0; i--) {
         /* A finer level than now has to leave room, or they would alternate. */
-        if (told_ms <= (i < before ? 0.85 : 1) * ms)
+        const double told_ms =
+            budget->ms_per_minsn * budget->minsn[i] / (i < before ? 0.85 : 1);
+        const double error =
+            square_of(levels[i].db) + rest_error(ms - told_ms, flare_ms, ms);
+
+        if (error < least) {
+            least = error;
             level = i;
+        }
     }
     budget->level = level;
     budget->predicted_ms = budget->ms_per_minsn * budget->minsn[level];

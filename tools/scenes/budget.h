@@ -37,9 +37,20 @@ bool scene_budget_looks(const struct scene_budget *budget);
 enum glint_status scene_budget_look(struct scene_budget *budget,
                                     const struct scene_frame *frame);
 
-/* Sets budget->level to the finest of which a frame is told to take no more
- * than MS; returns whether that is another one. */
-bool scene_budget_choose(struct scene_budget *budget, double ms);
+/* Sets budget->level to that with which scene and flare together are told to
+ * have the least error within MS: the finest that fits, if FLARE_MS is 0. That
+ * is what the flare takes at its default quality. Returns whether it is another
+ * level. */
+bool scene_budget_choose(struct scene_budget *budget, double ms,
+                         double flare_ms);
+
+/* Returns what a flare is told to take at its default quality, which took MS at
+ * QUALITY. */
+double scene_budget_flare_ms(double ms, double quality);
+
+/* Turns those of DIALS that are 0 to QUALITY, as of --quality; at 0.5 they stay
+ * so. */
+void scene_dials_be(struct scene_dials *dials, double quality);
 
 /* Learns from a frame that took MS. */
 void scene_budget_note(struct scene_budget *budget, double ms);

@@ -306,7 +306,8 @@ static enum glint_status spend(struct over_scene *over)
         scene_frame_begin(&over->frame);
         status = scene_budget_look(b, &over->frame);
     }
-    if (status == GLINT_OK && scene_budget_choose(b, over->budget_ms)) {
+    if (status == GLINT_OK &&
+        scene_budget_choose(b, over->budget_ms, over->flare_ms)) {
         const struct scene_dials dials = scene_budget_dials(b, b->level);
 
         if (size(over, &dials) != EXIT_OK)
