@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
  * scene_cost BAKED [FRAMES [EDGE_SAMPLES [SHADOW_POINTS [HALF [WARD_SAMPLES
- * [NEAREST]]]]]] - draws a baked scene onto a grey picture of 640x360, YUYV, by
- * one thread, for tools/report/scene-cost-table, which counts instructions.
- * Each frame is prepared anew. Prints how many pixels are covered, in
- * thousandths of the picture, what the scene's memory takes, and a hash of the
- * last picture.
+ * [NEAREST [WIDTH HEIGHT]]]]]]] - draws a baked scene onto a grey picture,
+ * YUYV, of 640x360 if not told, by one thread, for
+ * tools/report/scene-cost-table, which counts instructions. Each frame is
+ * prepared anew. Prints how many pixels are covered, in thousandths of the
+ * picture, what the scene's memory takes, and a hash of the last picture.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 #include "glint/kernels.h"
 #include "glint/scene/scene.h"
 
-enum { WIDTH = 640, HEIGHT = 360, LIMIT = 1 << 24 };
+enum { LIMIT = 1 << 24 };
 
 /* Instructions of a frame are those from here to scene_cost_idle(). */
 void scene_cost_frame(struct glint_scene *scene,
@@ -34,12 +34,13 @@ void scene_cost_idle(const struct glint_image *image, int fills)
 {
     if (fills)
         memset(image->plane[0], 100,
-               glint_image_bytes(image->format, WIDTH, HEIGHT));
+               glint_image_bytes(image->format, image->width, image->height));
 }
 
 static uint64_t hash_of(const struct glint_image *image)
 {
-    const size_t n = glint_image_bytes(image->format, WIDTH, HEIGHT);
+    const size_t n =
+        glint_image_bytes(image->format, image->width, image->height);
     uint64_t hash = UINT64_C(14695981039346656037);
 
     for (size_t i = 0; i < n; i++)
@@ -53,8 +54,9 @@ static int draw(const struct glint_scene_model *model, int argc, char **argv)
         &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,
         &glint_scene_wards,  &glint_scene_stones,   NULL,
         &glint_scene_motions};
-    struct glint_image image = {
-        .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image = {.format = GLINT_YUYV,
+                                .width = argc > 9 ? atoi(argv[8]) : 640,
+                                .height = argc > 9 ? atoi(argv[9]) : 360};
     /* Not inlined: counters look for their names. */
     void (*volatile idle)(const struct glint_image *, int) = scene_cost_idle;
     void (*volatile frame)(struct glint_scene *, const struct glint_image *) =
@@ -65,7 +67,7 @@ static int draw(const struct glint_scene_model *model, int argc, char **argv)
     void *mem = NULL, *px;
     size_t bytes;
 
-    glint_scene_defaults(&cfg, WIDTH, HEIGHT);
+    glint_scene_defaults(&cfg, image.width, image.height);
     cfg.parts = parts;
     cfg.sets = glint_sets_here();
     if (argc > 3)
@@ -79,7 +81,7 @@ static int draw(const struct glint_scene_model *model, int argc, char **argv)
     if (argc > 7)
         cfg.ward_nearest = atoi(argv[7]);
     bytes = glint_scene_bytes(&cfg, model);
-    px = malloc(glint_image_bytes(image.format, WIDTH, HEIGHT));
+    px = malloc(glint_image_bytes(image.format, image.width, image.height));
     if (!px || posix_memalign(&mem, 64, bytes) != 0 ||
         glint_scene_init(&scene, &cfg, model, mem, bytes) != GLINT_OK) {
         fprintf(stderr, "scene_cost: no memory, or the camera is no pinhole\n");
@@ -94,8 +96,9 @@ static int draw(const struct glint_scene_model *model, int argc, char **argv)
     }
     idle(&image, 0);
     printf("%d thousandths, %zu bytes, %016llx\n",
-           glint_scene_cover(scene, 128 * WIDTH, 128 * HEIGHT, 1 << 20) * 1000 /
-               256,
+           glint_scene_cover(scene, 128 * image.width, 128 * image.height,
+                             1 << 20) *
+               1000 / 256,
            bytes, (unsigned long long)hash_of(&image));
     free(px);
     free(mem);

@@ -37,8 +37,11 @@ struct twin_texels {
 struct twin {
     const struct glint_description *scene;
     int shadow_points; /* 1, 4 or 16 of a light's disc; twin_open() sets 1 */
-    int ward_samples;  /* 1 to 32 of brushed metal's lobe; it sets 8 */
-    double pixel_tan;  /* tangent of a pixel; twin_render() sets it */
+    /* 1 to 32 of brushed metal's lobe, as the run time takes them; it sets 8.
+     * More: so many of the whole lobe, turned anew for each ray, from the
+     * finest level. */
+    int ward_samples;
+    double pixel_tan; /* tangent of a pixel; twin_render() sets it */
     struct glint_environment around;
     struct twin_texels texels[GLINT_DESCRIPTION_MAX_TEXTURES];
     /* Trees over the triangles of each object, one after the other. */

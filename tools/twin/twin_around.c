@@ -249,15 +249,23 @@ static double footprint(int n)
            n;
 }
 
+/* Returns the first N bits of I, the last first, as a fraction. */
+static double radical(unsigned i, int n)
+{
+    double v = 0;
+
+    for (int bit = 0; bit < n; bit++)
+        v += (i >> bit & 1) * ldexp(1, -1 - bit);
+    return v;
+}
+
 /* Slopes of alpha 1 whose squares have the means SPREAD / 2. */
 static void draw(int n, const double spread[2],
                  double slope[GLINT_WARD_SAMPLES][2])
 {
     for (int k = 0; k < n; k++) {
-        double v = 0;
+        const double v = radical((unsigned)k, 5);
 
-        for (int bit = 0; bit < 5; bit++)
-            v += (k >> bit & 1) * ldexp(1, -1 - bit);
         slope[k][0] = sqrt(-log((k + .5) / n)) * cos(2 * GLINT_PI * v);
         slope[k][1] = sqrt(-log((k + .5) / n)) * sin(2 * GLINT_PI * v);
     }
@@ -299,6 +307,28 @@ static void add_sample(const struct twin *twin, const double slope[2],
         rgb[c] += weight * light[c];
 }
 
+/* Adds N samples of the whole lobe from the finest level. The ray TOWARD shifts
+ * them, so that rays of one pixel differ. */
+static void add_lobe(const struct twin *twin, const double toward[3],
+                     const struct glint_described_material *m,
+                     const double frame[3][3], const double out[3],
+                     double rgb[3])
+{
+    const int n = twin->ward_samples;
+    const double off[2] = {fmod(fabs(toward[0]) * 7919.17, 1),
+                           fmod(fabs(toward[1]) * 6271.83, 1)};
+
+    for (int k = 0; k < n; k++) {
+        const double u = fmod((k + .5) / n + off[0], 1);
+        const double v = fmod(radical((unsigned)k, 16) + off[1], 1);
+        const double r = sqrt(-log(fmax(u, 1e-9)));
+        const double slope[2] = {r * cos(2 * GLINT_PI * v),
+                                 r * sin(2 * GLINT_PI * v)};
+
+        add_sample(twin, slope, m, frame, out, 0, rgb);
+    }
+}
+
 static void add_metal(const struct twin *twin, const struct twin_hit *hit,
                       const double toward[3], double rgb[3])
 {
@@ -310,13 +340,15 @@ static void add_metal(const struct twin *twin, const struct twin_hit *hit,
     double slope[GLINT_WARD_SAMPLES][2], level;
     double frame[3][3] = {{0}}, out[3] = {0};
     double sum[3] = {0, 0, 0};
-    const double f = footprint(n);
+    const bool is_whole = n > GLINT_WARD_SAMPLES;
+    const double f = footprint(is_whole ? GLINT_WARD_SAMPLES : n);
     const double blur = fmin(f * a * b, .75 * fmin(a * a, b * b));
     const double spread[2] = {(1 - f + fmax(1 - blur / (a * a), 0)) / 2,
                               (1 - f + fmax(1 - blur / (b * b), 0)) / 2};
     const double back[3] = {-toward[0], -toward[1], -hand * toward[2]};
 
-    draw(n, spread, slope);
+    if (!is_whole)
+        draw(n, spread, slope);
     level = log2(2 * sqrt(2 * blur) / sqrt(4 * GLINT_PI) *
                  (1 << twin->around.header->side_log2));
     twin_lie(twin, hit, frame);
@@ -325,7 +357,9 @@ static void add_metal(const struct twin *twin, const struct twin_hit *hit,
         frame[k][2] *= hand; /* as of the text */
         turn(twin, frame[k], frame[k]);
     }
-    for (int k = 0; k < n && out[2] > 0; k++)
+    if (is_whole && out[2] > 0)
+        add_lobe(twin, toward, m, (const double(*)[3])frame, out, sum);
+    for (int k = 0; !is_whole && k < n && out[2] > 0; k++)
         add_sample(twin, slope[k], m, (const double(*)[3])frame, out, level,
                    sum);
     for (int c = 0; c < 3; c++)

@@ -9,6 +9,9 @@
 /* What scenes are compared over: light grey, on which shadows show. */
 #define BEHIND 0.25F
 
+/* Of metal, for each point of a pixel, without footprints. */
+enum { EXACT_LOOKUPS = 256 };
+
 static size_t values(const struct scene_sweep *s)
 {
     return 3 * (size_t)s->width * (size_t)s->height;
@@ -34,7 +37,9 @@ static int open_trials(struct scene_sweep *s)
             .height = s->height,
             .edge_samples = p->value[SCENE_EDGES],
             .shadow_points = p->value[SCENE_SHADOWED],
-            .half_shading = p->value[SCENE_SHADING] == 2};
+            .half_shading = p->value[SCENE_SHADING] == 2,
+            .ward_samples = p->value[SCENE_LOOKUPS],
+            .ward_nearest = p->value[SCENE_LEVELS] == 1};
 
         p->trial = &s->trial[i];
         code = scene_trial_open(p->trial, &tool, &s->scene.model, NULL, &dials,
@@ -86,6 +91,7 @@ static enum glint_status draw_exact(struct scene_sweep *s)
         status = twin_open(&twin, s->text);
     if (status == GLINT_OK) {
         twin.shadow_points = 16;
+        twin.ward_samples = EXACT_LOOKUPS;
         twin_render(&twin, &view, s->tool->workers, pixels);
         twin_close(&twin);
         for (size_t i = 0; i < n; i++)

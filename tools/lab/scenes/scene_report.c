@@ -11,8 +11,8 @@
 #define GREY  "#bbb"
 #define FRONT "#222"
 
-const char *const scene_dial_name[SCENE_DIALS] = {"edge_samples",
-                                                  "shadow_points", "shading"};
+const char *const scene_dial_name[SCENE_DIALS] = {
+    "edge_samples", "shadow_points", "shading", "lookups", "levels"};
 static const char *const kinds[] = {"standard", "alone", "together"};
 static const char *const shading[] = {"", "full", "half"};
 
@@ -24,8 +24,10 @@ double scene_sweep_cost(const struct scene_sweep *s,
 
 void scene_sweep_words(const struct scene_point *p, char *text, size_t bytes)
 {
-    snprintf(text, bytes, "samples %d, points %d, %s", p->value[SCENE_EDGES],
-             p->value[SCENE_SHADOWED], shading[p->value[SCENE_SHADING]]);
+    snprintf(text, bytes, "samples %d, points %d, %s, lookups %d%s",
+             p->value[SCENE_EDGES], p->value[SCENE_SHADOWED],
+             shading[p->value[SCENE_SHADING]], p->value[SCENE_LOOKUPS],
+             p->value[SCENE_LEVELS] == 1 ? " nearest" : "");
 }
 
 static const char *cost_words(const struct scene_sweep *s)
@@ -47,7 +49,8 @@ static void number(FILE *file, double x, const char *none)
 void scene_sweep_csv(const struct scene_sweep *s, FILE *file)
 {
     fputs("scene,width,height,kind,dial,quality,edge_samples,shadow_points,"
-          "shading,ms,floor_ms,ratio,instructions,arena_bytes,model_bytes,"
+          "shading,lookups,levels,ms,floor_ms,ratio,instructions,arena_bytes,"
+          "model_bytes,"
           "psnr_db,ssim,p99,flux_error,covered_px,minsn_told,front\n",
           file);
     for (int i = 0; i < s->n_points; i++) {
@@ -60,8 +63,9 @@ void scene_sweep_csv(const struct scene_sweep *s, FILE *file)
                 s->height, kinds[p->kind],
                 p->dial >= 0 ? scene_dial_name[p->dial] : "");
         number(file, p->quality >= 0 ? p->quality : (double)NAN, "");
-        fprintf(file, ",%d,%d,%s", p->value[SCENE_EDGES],
-                p->value[SCENE_SHADOWED], shading[p->value[SCENE_SHADING]]);
+        fprintf(file, ",%d,%d,%s,%d,%d", p->value[SCENE_EDGES],
+                p->value[SCENE_SHADOWED], shading[p->value[SCENE_SHADING]],
+                p->value[SCENE_LOOKUPS], p->value[SCENE_LEVELS]);
         for (int k = 0; k < 4; k++)
             fputc(',', file), number(file, measured[k], "");
         fprintf(file, ",%zu,%zu", p->trial->frame.bytes, s->scene.bytes);
@@ -88,9 +92,10 @@ static void json_point(const struct scene_sweep *s, const struct scene_point *p,
     member(file, "quality", p->quality >= 0 ? p->quality : (double)NAN);
     fprintf(file,
             ", \"edge_samples\": %d, \"shadow_points\": %d, \"shading\": "
-            "\"%s\"",
+            "\"%s\", \"lookups\": %d, \"levels\": %d",
             p->value[SCENE_EDGES], p->value[SCENE_SHADOWED],
-            shading[p->value[SCENE_SHADING]]);
+            shading[p->value[SCENE_SHADING]], p->value[SCENE_LOOKUPS],
+            p->value[SCENE_LEVELS]);
     member(file, "ms", p->ms);
     member(file, "floor_ms", p->ms / p->ratio);
     member(file, "ratio", p->ratio);
@@ -135,23 +140,26 @@ void scene_sweep_table(const struct scene_sweep *s, FILE *file)
     int order[SCENE_POINTS];
 
     sort(s, order);
-    fprintf(
-        file,
-        "%s, %dx%d; %s; KiB of arena + scene; what --budget comes by, and "
-        "the front\n\n"
-        "| edge samples | shadow points | shading | cost | PSNR dB | p99 "
-        "codes | flux %% | KiB | |\n|---|---|---|---|---|---|---|---|---|\n",
-        s->scene.model.header->name, s->width, s->height, cost_words(s));
+    fprintf(file,
+            "%s, %dx%d; %s; KiB of arena + scene; what --budget comes by, and "
+            "the front\n\n"
+            "| edge samples | shadow points | shading | lookups | cost | PSNR "
+            "dB | p99 "
+            "codes | flux %% | KiB | "
+            "|\n|---|---|---|---|---|---|---|---|---|---|\n",
+            s->scene.model.header->name, s->width, s->height, cost_words(s));
     for (int i = 0; i < s->n_points; i++) {
         const struct scene_point *const p = &s->point[order[i]];
 
         if (!p->front && p->quality < 0 && p->kind != SCENE_STANDARD)
             continue;
         fprintf(file,
-                "| %d | %d | %s | %.4g | %.1f | %g | %+.2f | %zu + %zu | ",
+                "| %d | %d | %s | %d%s | %.4g | %.1f | %g | %+.2f | %zu + %zu "
+                "| ",
                 p->value[SCENE_EDGES], p->value[SCENE_SHADOWED],
-                shading[p->value[SCENE_SHADING]], scene_sweep_cost(s, p),
-                p->psnr_db, p->p99, 100 * p->flux_error,
+                shading[p->value[SCENE_SHADING]], p->value[SCENE_LOOKUPS],
+                p->value[SCENE_LEVELS] == 1 ? " nearest" : "",
+                scene_sweep_cost(s, p), p->psnr_db, p->p99, 100 * p->flux_error,
                 p->trial->frame.bytes / 1024, s->scene.bytes / 1024);
         fprintf(file, "%s%s", p->front ? "front" : "",
                 p->front && p->quality >= 0 ? ", " : "");
@@ -230,7 +238,7 @@ static void dial_curve(const struct scene_sweep *s, const struct plot *plot,
 {
     const struct scene_point *last = NULL;
 
-    for (int value = 1; value <= 16; value++)
+    for (int value = 1; value <= 32; value++)
         for (int i = 0; i < s->n_points; i++) {
             const struct scene_point *const p = &s->point[i];
             char words[16];
@@ -286,13 +294,16 @@ static void table_row(const struct scene_sweep *s, FILE *file,
                       const struct scene_point *p)
 {
     fprintf(file,
-            "<tr><td>%d</td><td>%d</td><td>%s</td><td>%.4g</td><td>%.1f</td>"
+            "<tr><td>%d</td><td>%d</td><td>%s</td><td>%d%s</td><td>%.4g</td>"
+            "<td>%.1f</td>"
             "<td>%.4f</td><td>%g</td><td>%+.2f</td><td>%zu</td><td>%s</td>"
             "</tr>\n",
             p->value[SCENE_EDGES], p->value[SCENE_SHADOWED],
-            shading[p->value[SCENE_SHADING]], scene_sweep_cost(s, p),
-            p->psnr_db, p->ssim, p->p99, 100 * p->flux_error,
-            p->trial->frame.bytes / 1024, p->front ? "front" : "");
+            shading[p->value[SCENE_SHADING]], p->value[SCENE_LOOKUPS],
+            p->value[SCENE_LEVELS] == 1 ? " nearest" : "",
+            scene_sweep_cost(s, p), p->psnr_db, p->ssim, p->p99,
+            100 * p->flux_error, p->trial->frame.bytes / 1024,
+            p->front ? "front" : "");
 }
 
 static void figure(const struct scene_sweep *s, FILE *file,
@@ -322,7 +333,8 @@ void scene_sweep_page(const struct scene_sweep *s, FILE *file)
     scene_sweep_dials(s, file);
     fprintf(file,
             "<h2>All points</h2>\n<table><tr><th>edge samples</th><th>shadow "
-            "points</th><th>shading</th><th>%s</th><th>PSNR dB</th><th>SSIM"
+            "points</th><th>shading</th><th>lookups</th><th>%s</th><th>PSNR "
+            "dB</th><th>SSIM"
             "</th><th>p99 codes</th><th>flux %%</th><th>KiB</th><th></th></tr>"
             "\n",
             cost_words(s));

@@ -22,7 +22,10 @@ static const char help[] =
     "Draws the same frame of a scene with all values of its dials: points of "
     "a\n"
     "pixel at outlines 1, 4, 8, 16; of a light 1, 4, 16; shading full and\n"
-    "half; and measures each against the exact picture, drawn by rays in\n"
+    "half; under an environment that lights brushed metal also lookups 1, 4, "
+    "8,\n"
+    "16, 32, of two levels and of the nearest; and measures each against the "
+    "exact picture, drawn by rays in\n"
     "double precision: time (as glint bench --scene does, all taking turns),\n"
     "instructions where the processor counts them, memory, PSNR, SSIM, the\n"
     "99th percentile of the differences in codes, and flux. FOLDER gets\n"
@@ -47,15 +50,17 @@ static const char help[] =
 static const int edge_samples[] = {1, 4, 8, 16}, shadow_points[] = {1, 4, 16};
 
 /* As a video is drawn that asks for nothing. */
-static const int standard[SCENE_DIALS] = {4, 4, 1};
+static const int standard[SCENE_DIALS] = {4, 4, 1, 8, 2};
+static const int lookups[] = {1, 4, 8, 16, 32};
 
 /* ------------------------------------------------------------------ points */
 
 /* Returns the quality that --budget calls these dials, or -1. */
-static double quality_of(const int value[SCENE_DIALS])
+static double quality_of(const int value[SCENE_DIALS], bool has_metal)
 {
     struct scene_budget budget;
-    const struct scene_dials most = {.edge_samples = 16, .shadow_points = 16};
+    const struct scene_dials most = {
+        .edge_samples = 16, .shadow_points = 16, .ward_samples = 32};
 
     scene_budget_init(&budget, &most);
     for (int i = 0; i < SCENE_BUDGET_LEVELS; i++) {
@@ -64,18 +69,27 @@ static double quality_of(const int value[SCENE_DIALS])
         budget.level = i;
         if (d.edge_samples == value[SCENE_EDGES] &&
             d.shadow_points == value[SCENE_SHADOWED] &&
-            d.half_shading == (value[SCENE_SHADING] == 2))
+            d.half_shading == (value[SCENE_SHADING] == 2) &&
+            (!has_metal || (d.ward_samples == value[SCENE_LOOKUPS] &&
+                            d.ward_nearest == (value[SCENE_LEVELS] == 1))))
             return scene_budget_quality(&budget);
     }
     return -1;
 }
 
-static void add(struct scene_sweep *s, int edges, int points, int shading)
+static bool has_metal(const struct scene_sweep *s)
 {
-    struct scene_point p = {
-        .dial = -1, .value = {edges, points, shading}, .psnr_db = (double)NAN};
+    const struct glint_scene_header *h = s->scene.model.header;
+
+    return h->n_wards > 0 && h->environment_bytes > 0;
+}
+
+static void add(struct scene_sweep *s, const int value[SCENE_DIALS])
+{
+    struct scene_point p = {.dial = -1, .psnr_db = (double)NAN};
     int turned = 0;
 
+    memcpy(p.value, value, sizeof p.value);
     for (int d = 0; d < SCENE_DIALS; d++)
         if (p.value[d] != standard[d]) {
             turned++;
@@ -85,16 +99,60 @@ static void add(struct scene_sweep *s, int edges, int points, int shading)
              : turned == 1 ? SCENE_ALONE
                            : SCENE_TOGETHER;
     p.dial = turned == 1 ? p.dial : -1;
-    p.quality = quality_of(p.value);
+    p.quality = quality_of(p.value, has_metal(s));
     s->point[s->n_points++] = p;
 }
 
+/* Adds what --budget comes by and the rest has not. */
+static void add_levels(struct scene_sweep *s)
+{
+    struct scene_budget budget;
+    const struct scene_dials most = {
+        .edge_samples = 16, .shadow_points = 16, .ward_samples = 32};
+
+    scene_budget_init(&budget, &most);
+    for (int i = 0; i < SCENE_BUDGET_LEVELS; i++) {
+        const struct scene_dials d = scene_budget_dials(&budget, i);
+        const int value[SCENE_DIALS] = {d.edge_samples, d.shadow_points,
+                                        d.half_shading ? 2 : 1, d.ward_samples,
+                                        d.ward_nearest ? 1 : 2};
+        bool is_there = false;
+
+        for (int k = 0; k < s->n_points; k++)
+            is_there |= memcmp(value, s->point[k].value, sizeof value) == 0;
+        if (!is_there)
+            add(s, value);
+    }
+}
+
+/* Adds all values of the dials that metal does not have, with lookups as usual,
+ * or of metal's with points of outlines as usual. */
 static void add_points(struct scene_sweep *s)
 {
     for (int e = 0; e < 4; e++)
         for (int p = 0; p < 3; p++)
-            for (int shading = 1; shading <= 2; shading++)
-                add(s, edge_samples[e], shadow_points[p], shading);
+            for (int shading = 1; shading <= 2; shading++) {
+                const int value[] = {edge_samples[e], shadow_points[p], shading,
+                                     standard[SCENE_LOOKUPS],
+                                     standard[SCENE_LEVELS]};
+
+                add(s, value);
+            }
+    if (!has_metal(s))
+        return;
+    for (int n = 0; n < 5; n++)
+        for (int levels = 1; levels <= 2; levels++)
+            for (int p = 0; p < 3; p++)
+                for (int shading = 1; shading <= 2; shading++) {
+                    const int value[] = {standard[SCENE_EDGES],
+                                         shadow_points[p], shading, lookups[n],
+                                         levels};
+
+                    if (value[SCENE_LOOKUPS] != standard[SCENE_LOOKUPS] ||
+                        value[SCENE_LEVELS] != standard[SCENE_LEVELS])
+                        add(s, value);
+                }
+    add_levels(s);
 }
 
 static void mark_front(struct scene_sweep *s)
@@ -171,6 +229,7 @@ static int measure(struct scene_sweep *s)
         return code;
     code = scene_trial_scene(s->tool, s->file, &s->scene);
     if (code == EXIT_OK) {
+        add_points(s);
         s->counter = glint_instructions_open();
         code = scene_sweep_measure(s);
         glint_instructions_close(s->counter);
@@ -201,7 +260,6 @@ static int run(struct scene_sweep *s)
     s->text = calloc(1, sizeof *s->text);
     if (!s->text || glint_pool_create(&s->one, 1) != GLINT_OK)
         return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
-    add_points(s);
     code = measure(s);
     scene_sweep_free(s);
     return code;

@@ -8,10 +8,18 @@
 
 #include "lab/scenes/scene_trial.h"
 
-enum { SCENE_POINTS = 24, SCENE_SHRUNK = 320 };
+enum { SCENE_POINTS = 96, SCENE_SHRUNK = 320 };
 
-/* The dials: points of a pixel at outlines, of a light, and shading. */
-enum scene_dial { SCENE_EDGES, SCENE_SHADOWED, SCENE_SHADING, SCENE_DIALS };
+/* The dials: points of a pixel at outlines, of a light, shading, and of brushed
+ * metal lookups and the levels of each. */
+enum scene_dial {
+    SCENE_EDGES,
+    SCENE_SHADOWED,
+    SCENE_SHADING,
+    SCENE_LOOKUPS,
+    SCENE_LEVELS,
+    SCENE_DIALS
+};
 extern const char *const scene_dial_name[SCENE_DIALS];
 
 enum scene_kind {
