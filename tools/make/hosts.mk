@@ -30,3 +30,12 @@ $(OUT)/frei0r_host: $(OUT)/tests/hosts/frei0r_host.o
 	@mkdir -p $(@D)
 	$(say) LD $@
 	$(Q)$(CC) $(CFLAGS) $(LINKED) $(LDFLAGS) $^ -lpthread -ldl -o $@
+
+# For tools/python: what its module is linked with, and the folder of archives.
+print-out:
+	@echo '$(taken)' $(OUT)
+# The Python package, in an environment of its own.
+check-python:
+	@tools/make/deps "the Python package" gcc python3-cffi python3-numpy python3-setuptools python3-wheel python3-venv python3-pip
+	@tests/hosts/python
+.PHONY: print-out check-python

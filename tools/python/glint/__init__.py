@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: MIT
+"""Lens flare of real lenses on NumPy pictures, without a GPU.
+
+    import glint
+    glint.overlay(picture, lens="heliar-tronnier")        uint8 [height, width, 3], in place
+    light = glint.render("nikon-zoom-mid", (540, 960), [glint.Lamp(12, 33)])     float32
+    model = glint.bake("heliar-tronnier")                 bytes, as of glint bake
+
+Pictures are drawn on where they lie; rows may have padding. Functions let go of Python's lock while
+they draw. Errors of lenses and arguments are ValueError, with the text that the command would say.
+"""
+from __future__ import annotations
+
+import os
+import pathlib
+from dataclasses import dataclass
+from typing import List, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from ._engine import ffi as _ffi, lib as _lib
+
+__all__ = ["Engine", "Lamp", "Report", "bake", "lenses", "overlay", "render"]
+__version__ = "0.1.0"
+
+MOST_LAMPS = 1024
+_HERE = pathlib.Path(__file__).resolve().parent
+
+
+@dataclass
+class Lamp:
+    """A lamp at infinity: degrees off the axis and about it (0 right, 90 up), and the light that its image
+    would have over one pixel, 1 = display white."""
+
+    theta: float
+    phi: float
+    power: float = 65536.0
+    rgb: Tuple[float, float, float] = (1.0, 1.0, 1.0)
+    axis: Tuple[float, float] = (0.0, 0.0)
+    turn: float = 0.0
+
+
+@dataclass
+class Report:
+    """What was drawn: the lamps, how many lights these became, ghosts, bytes that drawing took, the factor on the
+    lamps' powers."""
+
+    lamps: List[Lamp]
+    lights: int
+    ghosts: int
+    bytes: int
+    scale: float
+
+
+def _check(status: int, error=None) -> None:
+    if status == _lib.GLINT_OK:
+        return
+    text = _ffi.string(error.text).decode() if error is not None else ""
+    text = text or _ffi.string(_lib.glint_status_text(status)).decode()
+    raise MemoryError(text) if status == _lib.GLINT_E_MEMORY else ValueError(text)
+
+
+# ---------------------------------------------------------------------- lenses
+
+
+def _folders() -> List[pathlib.Path]:
+    given = os.environ.get("GLINT_LENSES")
+    return ([pathlib.Path(given)] if given else []) + [_HERE / "lenses", pathlib.Path("/usr/share/glint/lenses")]
+
+
+def lenses() -> List[str]:
+    """Names of the lenses that there are."""
+    return sorted({table.stem for folder in _folders() for table in folder.glob("*.lens")})
+
+
+def _table(lens: str) -> pathlib.Path:
+    path = pathlib.Path(lens)
+    if "/" in lens or path.suffix == ".lens":
+        return path
+    for folder in _folders():
+        if (folder / f"{lens}.lens").is_file():
+            return folder / f"{lens}.lens"
+    raise ValueError(f"no lens '{lens}'; there are {', '.join(lenses())}")
+
+
+def _prescription(lens: str, coating: str, f_number: float = 0.0):
+    path = _table(lens)
+    text = path.read_bytes()
+    table, error = _ffi.new("struct glint_prescription *"), _ffi.new("struct glint_error *")
+    _check(_lib.glint_prescription_parse(table, text, len(text), str(path).encode(), error), error)
+    if coating == "mixed":
+        _lib.glint_coat_mixed_(table)
+    elif coating != "table":
+        coatings, n = _ffi.new("struct glint_coating[]", _lib.GLINT_MAX_COATINGS), _ffi.new("int *")
+        _check(_lib.glint_coatings_parse_(coatings, n, coating.encode(), error), error)
+        _lib.glint_coat_(table, coatings, n[0])
+    if 0 < f_number < table.f_number:  # a model serves all stops narrower than its own
+        _check(_lib.glint_prescription_set_f_number(table, f_number, error), error)
+    return table
+
+
+class _Pool:
+    """Threads, which change no result."""
+
+    def __init__(self, threads: int) -> None:
+        at = _ffi.new("struct glint_workers **")
+        _check(_lib.glint_pool_create(at, threads or _lib.glint_cpu_count()))
+        self.workers = _ffi.gc(at[0], _lib.glint_pool_destroy)
+
+
+def _bake(table, options) -> bytes:
+    model, size, error = _ffi.new("unsigned char **"), _ffi.new("size_t *"), _ffi.new("struct glint_error *")
+    report = _ffi.new("struct glint_bake_report *")
+    _check(_lib.glint_bake(table, options, model, size, report, error), error)
+    try:
+        return bytes(_ffi.buffer(model[0], size[0]))
+    finally:
+        _lib.free(model[0])
+
+
+def bake(lens: str, *, coating: str = "table", tolerance: float = 1.0, threads: int = 0) -> bytes:
+    """The model of LENS, a name or a .lens file: the bytes that glint bake writes. Takes seconds to minutes.
+    COATING as of --coating: table, mixed, none or a list."""
+    pool, options = _Pool(threads), _ffi.new("struct glint_bake_options *")
+    _lib.glint_bake_defaults(options)
+    options.tolerance, options.workers = tolerance, pool.workers
+    return _bake(_prescription(lens, coating), options)
+
+
+def _cache() -> pathlib.Path:
+    return pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "glint"
+
+
+def _cached(lens: str, coating: str, f_number: float, pool: _Pool) -> bytes:
+    """The model of LENS from glint's own cache, or baked and kept there."""
+    table, options = _prescription(lens, coating, f_number), _ffi.new("struct glint_bake_options *")
+    _lib.glint_bake_defaults(options)
+    options.workers = pool.workers
+    name = _ffi.string(table.name).decode()
+    path = _cache() / f"{name}-{_lib.glint_bake_key(table, options):016x}.glint"
+    if path.is_file():
+        return path.read_bytes()
+    model = _bake(table, options)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part = path.with_suffix(f".{os.getpid()}.part")
+        part.write_bytes(model)
+        part.replace(path)
+    except OSError:
+        pass  # is baked again next time
+    return model
+
+
+# --------------------------------------------------------------------- drawing
+
+
+class Engine:
+    """Draws the flares of one lens on pictures of one size.
+
+    lens      a name, a .lens or .glint file, or the bytes of a model
+    strength  how bright flares come out: 0 none, 0.5 a quarter of white at their brightest, 1 white
+    exposure  stops, instead of strength: 0 is physical
+    stop      blades and roundness; 0 blades: a circle
+    Others are as the options of glint overlay of the same names.
+    """
+
+    def __init__(self, lens: Union[str, bytes], height: int, width: int, *, strength: float = 0.5,
+                 exposure: Optional[float] = None, gain: float = 1.0, starburst: float = 1.0, veil: float = 0.0,
+                 haze: float = 0.0, quality: float = 0.5, f_number: float = 0.0, stop: Tuple[int, float] = (8, 0.2),
+                 rotation: float = 0.0, coating: str = "mixed", threads: int = 0) -> None:
+        self._engine = None
+        self._pool = _Pool(threads)
+        if isinstance(lens, str):
+            lens = pathlib.Path(lens).read_bytes() if lens.endswith(".glint") else _cached(lens, coating, f_number, self._pool)
+        # words of 32 bits: memory of C is aligned, that of bytes need not be
+        self._model = _ffi.new("uint32_t[]", (len(lens) + 3) // 4)
+        _ffi.memmove(self._model, lens, len(lens))
+        self._lens, reason = _ffi.new("struct glint_lens *"), _ffi.new("const char **")
+        if _lib.glint_lens_open(self._lens, self._model, len(lens), reason) != _lib.GLINT_OK:
+            raise ValueError("not a model: " + _ffi.string(reason[0]).decode())
+        if not 0 <= quality <= 1:
+            raise ValueError(f"quality is 0 to 1, not {quality:g}")
+        cfg, error = _ffi.new("struct glint_engine_config *"), _ffi.new("struct glint_error *")
+        _lib.glint_engine_defaults(cfg, width, height)
+        cfg.model, cfg.workers, cfg.sets = self._lens, self._pool.workers, _lib.glint_system_sets()
+        cfg.strength, cfg.gain, cfg.starburst, cfg.veil, cfg.haze = strength, gain, starburst, veil, haze
+        cfg.f_number, cfg.n_blades, cfg.blade_rotation_deg = f_number, stop[0], rotation
+        cfg.dials = _lib.glint_dials_at(round(quality * 32768))
+        if exposure is not None:
+            cfg.by_hand, cfg.exposure_ev = 1, exposure
+        at = _ffi.new("struct glint_engine **")
+        _check(_lib.glint_engine_create(at, cfg, error), error)
+        self._engine = _ffi.gc(at[0], _lib.glint_engine_destroy)
+        if stop[0] and stop[1] > 0:
+            iris = _ffi.new("struct glint_iris *", {"roundness": stop[1]})
+            _check(_lib.glint_engine_iris(self._engine, stop[0], rotation, iris, error), error)
+        film = _ffi.new("double[2]")
+        _lib.glint_film_mm_(self._lens, film)
+        self._view = _ffi.new("struct glint_view *", _lib.glint_view_fit(width, height, film[0], film[1]))
+        self._focal_mm = _lib.glint_focal_mm_(self._lens)
+        self.height, self.width = height, width
+        self._lamps = _ffi.new("struct glint_lamp[]", MOST_LAMPS)
+
+    def _image(self, array: np.ndarray, kind: int, channels: int, item: int):
+        if array.shape[:2] != (self.height, self.width):
+            raise ValueError(f"a picture of {array.shape[1]}x{array.shape[0]}, and the engine is for "
+                             f"{self.width}x{self.height}")
+        if not array.flags.writeable:
+            raise ValueError("the array is read-only")
+        if array.strides[1] != channels * item or (channels > 1 and array.strides[2] != item):
+            raise ValueError("pixels of a row have to lie side by side: numpy.ascontiguousarray() copies")
+        image = _ffi.new("struct glint_image *")
+        image.format, image.width, image.height = kind, self.width, self.height
+        image.plane[0] = _ffi.cast("uint8_t *", array.__array_interface__["data"][0])
+        image.stride_bytes[0] = array.strides[0]
+        return image
+
+    def _codes(self, array: np.ndarray, order: str):
+        kinds = {("RGB", 3): _lib.GLINT_RGB24, ("BGR", 3): _lib.GLINT_BGR24, ("BGR", 4): _lib.GLINT_XRGB8888}
+        channels = array.shape[2] if array.ndim == 3 else 1
+        kind = _lib.GLINT_GREY if array.ndim == 2 else kinds.get((order, channels))
+        if array.dtype != np.uint8 or array.ndim not in (2, 3) or kind is None:
+            raise ValueError(f"takes uint8 [height, width], [height, width, 3] in RGB or BGR, or [height, width, 4] "
+                             f"in BGR with order='BGR', not {array.dtype} {list(array.shape)} in {order}")
+        return self._image(array, kind, channels, 1)
+
+    def _put(self, lamps: Sequence[Lamp]) -> int:
+        if len(lamps) > MOST_LAMPS:
+            raise ValueError(f"at most {MOST_LAMPS} lamps")
+        for to, lamp in zip(self._lamps, lamps):
+            to.theta_deg, to.phi_deg, to.power, to.turn_deg = lamp.theta, lamp.phi, lamp.power, lamp.turn
+            to.rgb, to.axis = list(lamp.rgb), list(lamp.axis)
+        return len(lamps)
+
+    def _draw(self, n: int, image) -> Report:
+        report = _ffi.new("struct glint_engine_report *")
+        _check(_lib.glint_engine_draw(self._engine, self._lamps, n, image, report))
+        lamps = [Lamp(l.theta_deg, l.phi_deg, l.power, tuple(l.rgb), tuple(l.axis), l.turn_deg)
+                 for l in self._lamps[0:n]]
+        return Report(lamps, report.lights, report.ghosts, report.bytes, report.scale)
+
+    def lamp_at(self, x: float, y: float, ev: float = 16.0) -> Lamp:
+        """A lamp at a pixel from the top left, EV stops over white."""
+        at = _ffi.new("struct glint_lamp *")
+        _lib.glint_view_to_angles(self._view, self._focal_mm, x, y, at)
+        return Lamp(at.theta_deg, at.phi_deg, 2.0 ** ev)
+
+    def place_of(self, lamp: Lamp) -> Tuple[float, float]:
+        """The pixel that LAMP is seen at."""
+        at = _ffi.new("struct glint_lamp *", {"theta_deg": lamp.theta, "phi_deg": lamp.phi})
+        xy = _ffi.new("double[2]")
+        _lib.glint_view_to_pixel(self._view, self._focal_mm, at, xy, xy + 1)
+        return xy[0], xy[1]
+
+    def overlay(self, array: np.ndarray, lamps: Optional[Sequence[Lamp]] = None, *, elapsed: float = 0.0,
+                order: str = "RGB") -> Report:
+        """Adds the flare to ARRAY, in place: uint8, sRGB. Without LAMPS they are found; of a video, which comes
+        ELAPSED seconds after the picture before, they are followed. 0: a picture by itself, whose flare is drawn
+        small first to see how bright it is. Given lamps are exposed by the response of the lens alone."""
+        image = self._codes(array, order)
+        if lamps is not None:
+            return self._draw(self._put(lamps), image)
+        us = min(max(round(1e6 * elapsed), 0), 10 ** 9)
+        return self._draw(_lib.glint_engine_find(self._engine, image, us, self._lamps, MOST_LAMPS), image)
+
+    def render(self, lamps: Sequence[Lamp]) -> np.ndarray:
+        """The flare of LAMPS alone, linear light as float32 [height, width, 3], 1 = display white."""
+        light = np.zeros((self.height, self.width, 3), np.int32)
+        self._draw(self._put(lamps), self._image(light, _lib.GLINT_LINEAR_Q20, 3, 4))
+        return light.astype(np.float32) / np.float32(1 << 20)
+
+
+def overlay(array: np.ndarray, lens: Union[str, bytes] = "nikon-zoom-short", lamps: Optional[Sequence[Lamp]] = None, *,
+            lights_at: Sequence[Sequence[float]] = (), order: str = "RGB", **options) -> Report:
+    """Adds the flare of the lamps in ARRAY to it, in place, as glint overlay does. LIGHTS_AT: lamps by pixel,
+    (x, y) or (x, y, stops over white). OPTIONS are those of Engine."""
+    if array.ndim < 2:
+        raise ValueError("takes a picture, [height, width] or [height, width, channels]")
+    engine = Engine(lens, array.shape[0], array.shape[1], **options)
+    if lights_at:
+        lamps = list(lamps or []) + [engine.lamp_at(*at) for at in lights_at]
+    return engine.overlay(array, lamps, order=order)
+
+
+def render(lens: Union[str, bytes], shape: Tuple[int, int], lamps: Sequence[Lamp], *, exposure: float = 0.0,
+           **options) -> np.ndarray:
+    """The flare of LAMPS alone as linear light, float32 [height, width, 3]. SHAPE is (height, width)."""
+    return Engine(lens, shape[0], shape[1], exposure=exposure, **options).render(lamps)

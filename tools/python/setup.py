@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: MIT
+"""Builds the package: glint's archives by its Makefile, then the module over them."""
+import pathlib
+import re
+import shutil
+
+import setuptools
+from setuptools.command.build_py import build_py
+
+HERE = pathlib.Path(__file__).resolve().parent
+TREE = HERE.parent.parent
+
+
+class Build(build_py):
+    """Takes the lens tables along."""
+
+    def run(self):
+        super().run()
+        to = pathlib.Path(self.build_lib) / "glint" / "lenses"
+        to.mkdir(parents=True, exist_ok=True)
+        for table in sorted((TREE / "lenses").glob("*.lens")):
+            shutil.copy(table, to)
+
+
+version = re.search(r'define GLINT_VERSION "(.*)"', (TREE / "include/glint/glint.h").read_text())[1]
+setuptools.setup(
+    version=version,
+    cffi_modules=["build_engine.py:ffi"],
+    cmdclass={"build_py": Build},
+)
