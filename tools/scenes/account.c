@@ -171,6 +171,17 @@ static size_t highlight_bytes(const struct scene_frame *frame)
     return frame->bytes - glint_scene_bytes(&without, frame->model);
 }
 
+/* Returns what of it maps of stones take. */
+static size_t map_bytes(const struct scene_frame *frame)
+{
+    struct glint_scene_header header = *frame->model->header;
+    struct glint_scene_model without = *frame->model;
+
+    header.n_skins = header.n_stones = 0;
+    without.header = &header;
+    return frame->bytes - glint_scene_bytes(&frame->cfg, &without);
+}
+
 double scene_cost_json(const struct scene_frame *frame, size_t bytes, FILE *to)
 {
     struct scene_account account;
@@ -186,11 +197,12 @@ double scene_cost_json(const struct scene_frame *frame, size_t bytes, FILE *to)
     fprintf(to, "\"covered_px\": %d, \"bytes\": {", scene_covered_px(frame));
     baked_scene_bytes(frame->model, to);
     fprintf(to,
-            ", \"scene\": %zu, \"arena\": %zu, \"highlights\": %zu}, "
-            "\"project_ms\": %.3f, "
+            ", \"scene\": %zu, \"arena\": %zu, \"highlights\": %zu, "
+            "\"maps\": %zu}, \"project_ms\": %.3f, "
             "\"draw_ms\": %.3f, \"map_ms\": %.3f, \"map_texels\": %d",
-            bytes, frame->bytes, highlight_bytes(frame), frame->project_ms,
-            frame->draw_ms, frame->map_ms, frame->map_texels);
+            bytes, frame->bytes, highlight_bytes(frame), map_bytes(frame),
+            frame->project_ms, frame->draw_ms, frame->map_ms,
+            frame->map_texels);
     return minsn;
 }
 
