@@ -34,7 +34,7 @@
 #   make growth   how that grows, as plots;  memory-table: what it takes
 #   make video-report  how steady the flare of a video is; VIDEOS="A.y4m ..."
 #   make trade    what accuracy costs: plots, pictures and a page (glint sweep)
-#   also: oiio assimp window table stop-table scene-table scene-cost-table scene-budget-table mesh-table ward-table translucent-table stone-table motion-table hidden-table occlusion-table lights-table flicker-table
+#   also: oiio assimp window table stop-table scene-table scene-cost-table scene-budget-table mesh-table ward-table ward-sheet translucent-table stone-table motion-table hidden-table occlusion-table lights-table flicker-table
 #         star-table hostile-table bake-table wide-table accuracy-table colour-table
 #         coating-table ray-table inputs format
 #         golden-update fuzz-keep clean reuse-table threads-table stopping-table left-table
