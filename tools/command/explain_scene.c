@@ -284,8 +284,9 @@ void explain_scene_print(const struct explained_scene *s)
     const double minsn = scene_cost_minsn(&s->account);
 
     print_title(s, minsn);
-    printf("\n%3s %-22s %8s %8s %9s %8s %7s %9s %6s\n", "", "thing", "pixels",
-           "shaded", "shadows", "texels", "bounced", "triangles", "work%");
+    printf("\n%3s %-22s %8s %8s %9s %8s %8s %7s %9s %6s\n", "", "thing",
+           "pixels", "shaded", "shadows", "texels", "lookups", "bounced",
+           "triangles", "work%");
     for (uint32_t i = 0; i < model_of(s)->header->n_objects; i++) {
         const struct glint_scene_part *const p = &s->account.objects[i];
         const int64_t *const n = p->count;
@@ -293,9 +294,10 @@ void explain_scene_print(const struct explained_scene *s)
         printf("%3u %-22s ", i, name_of(s, (int)i));
         if (p->fate == GLINT_SCENE_DRAWN)
             printf("%8" PRId64 " %8" PRId64 " %9" PRId64 " %8" PRId64
-                   " %7" PRId64 " %9" PRId64,
+                   " %8" PRId64 " %7" PRId64 " %9" PRId64,
                    n[GLINT_SCENE_COVERING], n[GLINT_SCENE_SHADED],
                    n[GLINT_SCENE_SHADOWS], n[GLINT_SCENE_TEXELS],
+                   4 * (n[GLINT_SCENE_FOURS] + n[GLINT_SCENE_NEAREST]),
                    n[GLINT_SCENE_BOUNCED], n[GLINT_SCENE_TRIANGLES]);
         else
             printf("%s%s%-*s", fates[p->fate].reason,
