@@ -42,7 +42,7 @@ static void open_text(const char *text, const struct scene_dials *with)
     struct glint_scene_bake_report report;
     struct glint_error error = {""};
     const char *reason = "";
-    size_t bytes;
+    size_t bytes = 0;
 
     if (glint_description_parse(&description, text, strlen(text), "x.scene",
                                 &files, &error) != GLINT_OK ||
