@@ -26,18 +26,20 @@ static struct glint_lamp lamps[LIGHTS];
 static uint8_t picture[2][BYTES];
 
 /* Sets a street of lamps in groups, over seven octaves of power, in frame
- * TIME. */
+ * TIME. They move towards the other half of the picture, so that none leaves
+ * it, which would be a jump of the scene's own. */
 static void set_lamps(int time, uint64_t *noise)
 {
     for (int i = 0; i < LIGHTS; i++) {
-        const double x = 60 + 130 * (i % 5) + 11 * i + time / 3.;
-        const double y = 90 + 40 * (i / 5) + 7 * (i % 3);
+        const double from = fmod(60 + 130 * (i % 5) + 11 * i, W);
+        const double x = from + (from < 0.5 * W ? time : -time) / 3.;
+        const int y = 90 + 40 * (i / 5) + 7 * (i % 3);
 
         lamps[i] = (struct glint_lamp){.rgb = {1, 0.8, 0.6}};
         lamps[i].power =
             3e5 * exp2(-0.45 * i) * stage_uniform(noise, 0.97, 1.03);
-        glint_view_to_angles(&stage.view, stage.of_model.optics.focal_mm,
-                             fmod(x, W), y, &lamps[i]);
+        glint_view_to_angles(&stage.view, stage.of_model.optics.focal_mm, x, y,
+                             &lamps[i]);
     }
 }
 
