@@ -272,14 +272,13 @@ bool steer_camera(struct steer *steer, const int32_t at[3],
 static enum glint_status take_camera(struct steer *s, struct glint_scene *scene,
                                      const struct control_line *line)
 {
-    const struct steer_orbit before = s->orbit;
+    const struct steer before = *s;
     const double *const v = line->v;
     enum glint_status status;
 
-    if (s->sensor >= 0)
-        glint_scene_enter(scene, s->sensor = -1);
     if (!s->orbit.is_there)
         begin_orbit(s);
+    s->sensor = -1;
     s->is_free = false;
     if (line->verb == CONTROL_DISTANCE)
         s->orbit.distance = line->is_change
@@ -291,9 +290,14 @@ static enum glint_status take_camera(struct steer *s, struct glint_scene *scene,
         s->orbit.pitch_deg =
             fmax(-MOST_PITCH, fmin(MOST_PITCH, s->orbit.pitch_deg));
     }
+    if (before.sensor >= 0)
+        glint_scene_enter(scene, -1);
     status = apply_orbit(s, scene);
-    if (status != GLINT_OK)
-        s->orbit = before;
+    if (status == GLINT_OK)
+        return status;
+    *s = before;
+    if (before.sensor >= 0)
+        glint_scene_enter(scene, before.sensor);
     return status;
 }
 
@@ -333,23 +337,32 @@ static bool is_darker(const struct steer *s, int i,
     return is;
 }
 
+/* Changes the look of material INDEX, or of all metals; none if one cannot be
+ * as LINE has it. */
 static enum glint_status take_look(struct steer *s, struct glint_scene *scene,
                                    const struct control_line *line, int index)
 {
     const bool all = !*line->name[0];
+    const int end = all ? n_materials(s) : index + 1;
     enum glint_status status = GLINT_OK;
+    int i = all ? 0 : index;
 
-    for (int i = all ? 0 : index; i < (all ? n_materials(s) : index + 1); i++) {
+    for (; i < end && status == GLINT_OK; i++) {
         struct glint_scene_look look = s->look[i];
 
         if (all && !is_metal(s, i))
             continue;
         change_look(s, line, i, &look);
-        if (!is_darker(s, i, &look))
-            return GLINT_E_ARGUMENT;
-        status = glint_scene_set_look(scene, i, &look);
+        status = is_darker(s, i, &look) ? glint_scene_set_look(scene, i, &look)
+                                        : GLINT_E_ARGUMENT;
+    }
+    while (--i >= (all ? 0 : index)) {
+        if (all && !is_metal(s, i))
+            continue;
         if (status == GLINT_OK)
-            s->look[i] = look;
+            change_look(s, line, i, &s->look[i]);
+        else
+            glint_scene_set_look(scene, i, &s->look[i]);
     }
     return status;
 }

@@ -126,6 +126,8 @@ void glint_scene_begin(struct glint_scene *scene,
         if (z < GLINT_FAR)
             farthest = q_larger(farthest, z + 2 * scene->placed[i].reach);
     }
+    if (scene->motion) /* lines may be nearer than all things */
+        nearest = q_smaller(nearest, farthest >> 13);
     /* What is nearer than 2^-14 of the farthest shares its depth. */
     scene->nearest =
         q_clamp_sat(q_larger(nearest, farthest >> 14), 1, GLINT_SCENE_SPAN);

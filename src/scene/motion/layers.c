@@ -13,8 +13,8 @@
 
 enum {
     ALL_Q8 = 256,
-    LEAST_HALF_Q8 = 96, /* half of the width that a line has at least */
-    GUARD_Q8 = 1 << 20, /* from the middle, to which lines are cut */
+    LEAST_HALF_Q8 = 96,     /* half of the width that a line has at least */
+    MOST_HALF_Q8 = 1 << 16, /* and at most */
     SUMMED = 4
 };
 
@@ -53,20 +53,36 @@ static int cut(const struct side *side, int32_t a[3], int32_t b[3])
     return 1;
 }
 
+/* Sets SIDE[2] to planes along axis K of the picture, as far outside of its
+ * edges as the widest line reaches and two pixels more. FAR steps are below
+ * 2^72, so they are cut to 30 bits, and coordinates are below 2^30. */
+static void set_sides(const struct glint_scene_view *v, int k,
+                      struct side side[2])
+{
+    const int64_t far_q8 =
+        128 * (k ? v->height : v->width) + MOST_HALF_Q8 + 512;
+    const int64_t step_q56 = v->step_q56[k];
+    const int down = q_larger(0, bit_length(q_magnitude(step_q56)) +
+                                     bit_length(q_magnitude(far_q8)) - 62);
+    const int64_t tan = (step_q56 >> down) * far_q8; /* 56 - down bits */
+    const int more = q_larger(26 - down, bit_length(q_magnitude(tan)) - 30);
+
+    for (int i = 0; i < 2; i++) {
+        side[i] = (struct side){{0, 0, (tan >> more) + 1}};
+        side[i].by[k] = (i ? -1 : 1) * (INT64_C(1) << (56 - down - more));
+    }
+}
+
 /* Cuts A .. B, camera coordinates, to what is well ahead and near the picture.
  */
 static int cut_all(const struct glint_scene_view *v, int32_t near, int32_t a[3],
                    int32_t b[3])
 {
-    /* GUARD z - f x, over f: x is below 2^30 and GUARD / f below 2^27 */
-    const int64_t tan_q16 =
-        q_divide((int64_t)GUARD_Q8 << 16, v->per_tan_q8 + 1);
-    const struct side side[4] = {{{-(1 << 16), 0, tan_q16}},
-                                 {{1 << 16, 0, tan_q16}},
-                                 {{0, -(1 << 16), tan_q16}},
-                                 {{0, 1 << 16, tan_q16}}};
+    struct side side[4];
     const int32_t behind[2] = {a[2] - near, b[2] - near};
 
+    set_sides(v, 0, side);
+    set_sides(v, 1, side + 2);
     if (behind[0] < 0 && behind[1] < 0)
         return 0;
     if (behind[0] < 0 || behind[1] < 0) {
@@ -112,7 +128,7 @@ static void add_line(struct glint_scene *s, const int32_t a[3],
                      const int32_t b[3], int32_t width, uint32_t material)
 {
     struct glint_motion_layer *l = next_layer(s->motion);
-    const int32_t near = q_larger(1, s->nearest >> 4);
+    const int32_t near = s->nearest / 2 + 1; /* depths are below 2^31 */
     int32_t v[2][3];
     struct glint_corner end[2];
     int64_t along[3];
@@ -124,14 +140,13 @@ static void add_line(struct glint_scene *s, const int32_t a[3],
         return;
     for (int k = 0; k < 2; k++) {
         end[k] = glint_view_corner(&s->view, v[k]);
-        l->half_q8[k] = q_larger(
-            LEAST_HALF_Q8,
-            q_smaller(1 << 16, glint_ratio((uint64_t)width *
-                                               (uint64_t)s->view.per_tan_q8 / 2,
-                                           (uint64_t)v[k][2])));
+        l->half_q8[k] = q_clamp_sat(
+            glint_ratio((uint64_t)width * (uint64_t)s->view.per_tan_q8 / 2,
+                        (uint64_t)v[k][2]),
+            LEAST_HALF_Q8, 1 << 30);
         l->depth[k] = q_larger(
             1, glint_ratio((uint64_t)s->nearest << 30, (uint64_t)v[k][2]));
-        most = q_larger(most, l->half_q8[k]);
+        most = q_larger(most, q_smaller(MOST_HALF_Q8, l->half_q8[k]));
     }
     along[0] = (int64_t)end[1].x - end[0].x;
     along[1] = (int64_t)end[1].y - end[0].y;
@@ -288,7 +303,10 @@ static void confine(const struct glint_scene *s,
     const int32_t down = glint_place(s, y, 1) - l->y_q8;
     const int32_t *u = l->along_q14;
     const int64_t reach =
-        (int64_t)(q_larger(l->half_q8[0], l->half_q8[1]) + 128) << 14;
+        (int64_t)(q_smaller(MOST_HALF_Q8,
+                            q_larger(l->half_q8[0], l->half_q8[1])) +
+                  128)
+        << 14;
     int64_t at[2];
 
     if (q_magnitude(u[1]) < 1 << 8) /* it runs along the row */
@@ -357,6 +375,7 @@ static int line_q8(const struct glint_scene_worker *w,
     part_q30 = q_part_q30((uint64_t)q_smaller(q_larger(along, 0), l->length_q8),
                           (uint64_t)l->length_q8);
     half = l->half_q8[0] + q_mul(l->half_q8[1] - l->half_q8[0], part_q30, 30);
+    half = q_smaller(MOST_HALF_Q8, half);
     cover = q_smaller(q_smaller(ALL_Q8, 2 * half), half + 128 - across);
     if (cover <= 0)
         return 0;
@@ -367,8 +386,8 @@ static int line_q8(const struct glint_scene_worker *w,
            8;
 }
 
-/* Sets *CLEAR_Q15 to the cosine at which the ray of place (X, Y) leaves BALL,
- * and DEPTH to where it enters; returns 0 if it misses it. */
+/* Sets CHORD to that of the ray of place (X, Y) in BALL, and DEPTH to that of
+ * where it enters; returns 0 if it misses it. */
 static int enter(const struct glint_scene *s, const struct glint_placed *ball,
                  int32_t x_q8, int32_t y_q8, struct glint_chord *chord,
                  int32_t *depth)
@@ -398,7 +417,7 @@ static int shell_q8(const struct glint_scene_worker *w,
     const int32_t x_q8 = glint_place(s, x, 0), y_q8 = glint_place(s, y, 1);
     struct glint_chord chord;
     int32_t depth = 0, cosine_q15 = 0;
-    int hits = 0;
+    int hits = 0, is_inner = 0;
 
     if (enter(s, ball, x_q8, y_q8, &chord, &depth)) {
         const int64_t radius = (int64_t)ball->radius * (INT64_C(1) << chord.up);
@@ -409,15 +428,14 @@ static int shell_q8(const struct glint_scene_worker *w,
             q_part_q30((uint64_t)chord.half,
                        (uint64_t)(radius > chord.half ? radius : chord.half)) >>
             15;
-        if (within > 0 && v3_dot(chord.middle, chord.middle) <= within * within)
-            hits = n;
+        is_inner =
+            within > 0 && v3_dot(chord.middle, chord.middle) <= within * within;
+        hits = is_inner ? n : 0;
     }
-    for (int k = 0; k < n && hits < n; k++) {
+    for (int k = 0; k < n && !is_inner; k++) {
         struct glint_chord at;
         int32_t sample_depth;
 
-        if (k == 0)
-            hits = 0;
         if (!enter(s, ball, x_q8 + glint_sample(s, k, 0),
                    y_q8 + glint_sample(s, k, 1), &at, &sample_depth))
             continue;

@@ -243,6 +243,8 @@ static enum glint_status place_foods(struct glint_motion *m, uint32_t k,
     struct glint_motion_index index;
     enum glint_status status = glint_motion_index(m, k / each, &index);
 
+    if (status != GLINT_OK)
+        return status;
     for (uint32_t s = 0; status == GLINT_OK && s < m->header.n_foods; s++) {
         status = event_of(m, index.food[s], &e);
         if (status == GLINT_OK && (e->slot != s || e->frame > k))
@@ -433,6 +435,9 @@ enum glint_status glint_motion_over(struct glint_motion *motion,
     if (!*reason &&
         motion->header.bytes / GLINT_MOTION_BLOCK != blocks->n_blocks)
         *reason = fault_text[GLINT_BLOB_TRUNCATED];
+    if (!*reason)
+        *reason = fault_text[glint_blob_check_name(
+            &(struct glint_blob){.header = (const void *)&motion->header})];
     if (!*reason)
         *reason = take_sensors(motion);
     return *reason ? GLINT_E_FORMAT : GLINT_OK;

@@ -207,6 +207,59 @@ static void damage_is_found(void **state)
     free(baked.data);
 }
 
+/* Blocks read one by one: a name that would do harm on a terminal is refused as
+ * it is of a whole file, and of a frame whose block cannot be read nothing is
+ * taken on trust, whichever block it is. */
+static void blocks_are_not_trusted(void **state)
+{
+    static uint8_t buffer[GLINT_MOTION_BLOCK] __attribute__((aligned(8)));
+    struct baked baked;
+    struct glint_motion_blocks blocks = {.read = read_block, .ctx = &baked};
+    struct glint_motion motion;
+    struct glint_motion_frame frame;
+    struct glint_motion_header *header;
+    const char *reason[2];
+    uint32_t *end;
+
+    (void)state;
+    bake(&baked, 1000, 50, 1);
+    blocks.n_blocks = (uint32_t)(baked.bytes / GLINT_MOTION_BLOCK);
+    assert_int_equal(glint_motion_over(&motion, &blocks, buffer, &reason[0]),
+                     GLINT_OK);
+    header = (void *)baked.data;
+    for (uint32_t i = 0; i < blocks.n_blocks; i++) {
+        uint8_t *const block = baked.data + (size_t)i * GLINT_MOTION_BLOCK;
+
+        block[GLINT_MOTION_BLOCK - 1] ^= 1;
+        motion.held = 0;
+        memset(&frame, 0x7f, sizeof frame);
+        assert_int_equal(
+            glint_motion_frame(&motion, 600, &frame),
+            i == header->pose_block + 2 ||
+                    i == header->index_block +
+                             2 / glint_motion_per_block(
+                                     sizeof(struct glint_motion_index)) ||
+                    i == header->event_block ||
+                    i == header->intensity_block +
+                             600 / glint_motion_per_block(header->intensities)
+                ? GLINT_E_FORMAT
+                : GLINT_OK);
+        block[GLINT_MOTION_BLOCK - 1] ^= 1;
+    }
+    header->name[2] = '\x1b';
+    end = (uint32_t *)(void *)(baked.data + GLINT_MOTION_ROOM);
+    end[1] = glint_motion_sum(baked.data, 0);
+    glint_blob_seal(baked.data, baked.bytes);
+    assert_int_equal(
+        glint_motion_open(&motion, baked.data, baked.bytes, &reason[0]),
+        GLINT_E_FORMAT);
+    assert_int_equal(glint_motion_over(&motion, &blocks, buffer, &reason[1]),
+                     GLINT_E_FORMAT);
+    assert_string_equal(reason[0], "the name has a control character");
+    assert_string_equal(reason[1], reason[0]);
+    free(baked.data);
+}
+
 /* Whatever words a file holds, sealed, it is refused or can be read. */
 static void hostile_words_do_no_harm(void **state)
 {
@@ -279,6 +332,7 @@ int main(void)
         cmocka_unit_test(poses_are_the_true_ones),
         cmocka_unit_test(any_frame_by_few_blocks),
         cmocka_unit_test(damage_is_found),
+        cmocka_unit_test(blocks_are_not_trusted),
         cmocka_unit_test(hostile_words_do_no_harm),
         cmocka_unit_test(units_follow_the_size)};
 

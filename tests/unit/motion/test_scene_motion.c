@@ -12,6 +12,7 @@
 
 #include <cmocka.h>
 
+#include "control/steer.h"
 #include "glint/scene/bake.h"
 #include "glint/scene/motion_bake.h"
 #include "glint/view.h"
@@ -342,6 +343,60 @@ static void angles_are_compared_exactly(void **state)
     assert_true(seen > 50000 && seen < 150000);
 }
 
+/* ------------------------------------------------------------------- control
+ */
+
+#define METALS                                                             \
+    "material dark ward diffuse 0 0 0 specular .2 .2 .2 alpha .1 .1\n"     \
+    "material light ward diffuse .5 .5 .5 specular .2 .2 .2 alpha .1 .1\n" \
+    "sphere a at 0 8 0 radius 1 material dark\n"
+
+/* A line that cannot be obeyed leaves the camera in its sensor, or free, and
+ * looks as they were; the one that comes next is obeyed. */
+static void lines_that_fail_change_nothing(void **state)
+{
+    static const struct control_line bright = {
+        .verb = CONTROL_COLOUR, .v = {.6, .6, .6}, .n = 3}; /* of all metals */
+    static const char *const before[2] = {"camera sensor 1", "walk 1 2 3"};
+    struct glint_error error;
+    struct control_line line;
+    struct steer steer;
+    struct drawn *d;
+
+    (void)state;
+    record_track(3, 20, 60);
+    d = open_text(LOOK METALS RUN, 5, 4);
+    assert_int_equal(steer_open(&steer, &d->model), GLINT_OK);
+    for (int i = 0; i < 2; i++) {
+        struct steer was;
+        uint64_t hash;
+
+        control_parse(before[i], "f:1", &line, &error);
+        assert_int_equal(steer_take(&steer, d->frame.scene, &line, "", &error),
+                         GLINT_OK);
+        draw(d);
+        hash = hash_of(d);
+        was = steer;
+        control_parse("distance 9e5", "f:2", &line, &error);
+        assert_int_equal(steer_take(&steer, d->frame.scene, &line, "", &error),
+                         GLINT_E_FORMAT);
+        assert_memory_equal(&steer, &was, sizeof was);
+        assert_int_equal(
+            steer_take(&steer, d->frame.scene, &bright, "", &error),
+            GLINT_E_FORMAT);
+        draw(d);
+        assert_true(hash_of(d) == hash);
+        steer_apply(&steer, d->frame.scene);
+        draw(d);
+        assert_true(hash_of(d) == hash);
+    }
+    control_parse("orbit 30 20", "f:3", &line, &error);
+    assert_int_equal(steer_take(&steer, d->frame.scene, &line, "", &error),
+                     GLINT_OK);
+    steer_close(&steer);
+    close_text(d);
+}
+
 /* -------------------------------------------------------------------- row D9
  */
 
@@ -500,6 +555,57 @@ static void shells_let_light_pass(void **state)
     close_text(d);
 }
 
+/* Lines that leave the widest of pictures go on until all of their width is
+ * outside: an edge of the box, 200 pixels wide, leaves it aslant. */
+static void wide_lines_leave_wide_pictures(void **state)
+{
+    enum { WIDE = 8192, LOW = 16 };
+    static int32_t light_q20[3 * WIDE * LOW];
+    static const struct tool tool = {.name = "test"};
+    const struct scene_dials dials = {
+        .width = WIDE, .height = LOW, .edge_samples = 1, .shadow_points = 1};
+    const int32_t half = 759250125; /* of the root of two */
+    const int32_t axis_q30[3][3] = {
+        {half, half, 0}, {-half, half, 0}, {0, 0, -(1 << 30)}};
+    double food[3][3] = {{40, 0, 0}, {-40, 5, 0}, {0, -5, -5}};
+    struct glint_image image = {
+        .format = GLINT_LINEAR_Q20, .width = WIDE, .height = LOW};
+    const struct glint_motion_state *m;
+    struct scene_frame frame;
+    int32_t at[3], away, aside;
+    struct drawn *d;
+
+    (void)state;
+    record_foods(food, 3, 50);
+    d = open_text(LOOK "motion run x lines .1 box 1\n", 5, 1);
+    assert_int_equal(scene_frame_open(&frame, &tool, &d->model, &dials),
+                     EXIT_OK);
+    m = frame.scene->motion;
+    away = m->high[0] / 4;
+    aside = (int32_t)(WIDE / 2 * 256. * away /
+                      ((double)frame.scene->view.per_tan_q8 * sqrt(2)));
+    at[0] = (m->low[0] + m->high[0]) / 2 - aside;
+    at[1] = m->low[1] - aside;
+    at[2] = m->high[2] + away;
+    assert_int_equal(glint_scene_set_camera(frame.scene, at, axis_q30),
+                     GLINT_OK);
+    assert_int_equal(
+        glint_scene_size_kind(frame.scene, GLINT_KIND_BOX,
+                              (int32_t)(200 * 256. * away /
+                                        (double)frame.scene->view.per_tan_q8)),
+        GLINT_OK);
+    glint_image_place(&image, light_q20);
+    assert_int_equal(scene_frame_draw(&frame, &image), EXIT_OK);
+    for (int y = 0; y < LOW; y++)
+        for (int x = WIDE - 20; x < WIDE; x++)
+            assert_memory_equal(light_q20 + 3 * (y * WIDE + x),
+                                light_q20 + 3 * (LOW / 2 * WIDE + WIDE - 20),
+                                3 * sizeof *light_q20);
+    assert_true(light_q20[3 * WIDE - 1] > 0);
+    scene_frame_close(&frame);
+    close_text(d);
+}
+
 /* Lamps ride on the body: the lens is told where they are. */
 static void lamps_ride_on_the_body(void **state)
 {
@@ -590,10 +696,12 @@ int main(void)
         cmocka_unit_test(row_d7_detection_is_brute_force),
         cmocka_unit_test(angles_are_compared_exactly),
         cmocka_unit_test(row_d8_seek_is_play),
+        cmocka_unit_test(lines_that_fail_change_nothing),
         cmocka_unit_test(row_d9_a_camera_in_a_sensor),
         cmocka_unit_test(row_d10_who_sees_what),
         cmocka_unit_test(kinds_are_hidden_and_sized),
         cmocka_unit_test(shells_let_light_pass),
+        cmocka_unit_test(wide_lines_leave_wide_pictures),
         cmocka_unit_test(lamps_ride_on_the_body),
         cmocka_unit_test(a_part_that_is_absent_is_named),
         cmocka_unit_test(extremes_of_places_and_sizes)};
