@@ -17,6 +17,7 @@
 #ifndef GLINT_PRESCRIPTION_H
 #define GLINT_PRESCRIPTION_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "glint/status.h"
@@ -45,6 +46,29 @@ struct glint_coating {
     struct glint_film film[GLINT_MAX_FILMS];
 };
 
+#define GLINT_SHAPE_TERMS 9 /* A4, A6 .. A20 */
+
+enum glint_bend {
+    GLINT_BEND_ROUND, /* the profile turns about the axis */
+    GLINT_BEND_X,     /* the profile lies in the x-z plane, and is swept */
+    GLINT_BEND_Y      /* in the y-z plane */
+};
+
+/* What makes a surface other than a centred sphere; all 0 where nothing does.
+ * The profile at the height h is c h^2 / (1 + sqrt(1 - (1 + conic) c^2 h^2)) +
+ * A4 h^4 + A6 h^6 + ..., c = 1 / radius_mm. A cylinder or toric sweeps it along
+ * circles of the radius across_mm about a line parallel to its own plane. */
+struct glint_shape {
+    double conic;                   /* 0: sphere, -1: paraboloid */
+    double term[GLINT_SHAPE_TERMS]; /* A4 in mm^-3, A6 in mm^-5, .. */
+    int bend;                       /* enum glint_bend */
+    double across_mm;               /* of a bend in X or Y; 0: a cylinder */
+    /* The surface, shifted by decentre_mm (x, y), then turned by tilt_deg
+     * about the point pivot_mm behind its vertex on the axis: first about x,
+     * then about y, right-handed. */
+    double decentre_mm[2], tilt_deg[2], pivot_mm;
+};
+
 /* A refracting surface. The medium before surface 0 is air. */
 struct glint_surface {
     double radius_mm;    /* > 0: centre towards the sensor; 0: plane */
@@ -53,7 +77,30 @@ struct glint_surface {
     double nd;           /* index at 587.56 nm of the medium after it */
     double vd;           /* Abbe number of that medium; 0 for air */
     struct glint_coating coating; /* cemented surfaces are always bare */
+    struct glint_shape shape;
 };
+
+/* A surface that is no centred sphere, ready to be met. */
+struct glint_form {
+    double curvature, conic, term[GLINT_SHAPE_TERMS];
+    int bend;      /* enum glint_bend */
+    double across; /* 1 / across_mm; 0: a cylinder */
+    double semi_mm;
+    /* Beyond this height, squared, there is no glass; the profile goes on with
+     * the same value, slope and curvature there, and without its powers. */
+    double end2, end_at[3];
+    /* From the light's frame at the vertex to the surface's own: at = turn at +
+     * shift; rows of TURN are unit vectors. */
+    double turn[3][3], shift[3];
+};
+
+/* Returns whether S is no sphere on the axis. */
+bool glint_surface_is_shaped(const struct glint_surface *s);
+
+struct glint_prescription;
+
+/* Returns whether all of LENS is symmetric about its axis. */
+bool glint_prescription_is_round(const struct glint_prescription *lens);
 
 #define GLINT_MAX_COATINGS GLINT_MAX_SURFACES
 
@@ -123,6 +170,10 @@ struct glint_optics {
     double stop_radius_mm;     /* radius of the aperture stop at the f-number */
     double length_mm; /* from the front vertex to the sensor, even if the stop
                          lies before it */
+    /* Focal length in the y-z plane, which is focal_mm, over that in the x-z
+     * plane: how much wider than on the sensor an anamorphic lens's picture is
+     * shown. 1 for all round lenses. */
+    double squeeze;
 };
 
 void glint_optics_of(const struct glint_prescription *lens,

@@ -38,6 +38,7 @@ struct glint_event {
     /* Index before the surface and after it, as the ray runs. */
     double n_from, n_to;
     int n_films; /* layers of the surface's coating; 0: bare */
+    bool shaped; /* the surface is no centred sphere: see path->form */
 };
 
 /* A layer of a coating at the wavelength of a path. */
@@ -53,6 +54,12 @@ struct glint_path {
     struct glint_event event[GLINT_MAX_EVENTS + 1];
     /* The coating of each surface that is met. */
     struct glint_film_at film[GLINT_MAX_SURFACES][GLINT_MAX_FILMS];
+    struct glint_form form[GLINT_MAX_SURFACES]; /* of shaped surfaces only */
+    bool round; /* true: all of the lens is symmetric about its axis, and y of a
+                   light in the x-z plane may be mirrored */
+    /* From the light's frame on the sensor to the same in the picture, which an
+     * anamorphic lens's projector widens. Used unless ROUND. */
+    double widen[2][2];
     double to_sensor_mm; /* from the last vertex to the sensor */
     bool places_only; /* true: energies stay 1, and tracing takes a third less
                          time */
@@ -62,6 +69,13 @@ struct glint_path {
 void glint_path_init(struct glint_path *path,
                      const struct glint_prescription *lens,
                      const struct glint_ghost *ghost, double wavelength_nm);
+
+/* Does the same for light in the plane at PHI_DEG about the axis, which stays
+ * the x-z plane of rays, hits and pupils: the lens is turned instead. */
+void glint_path_init_at(struct glint_path *path,
+                        const struct glint_prescription *lens,
+                        const struct glint_ghost *ghost, double wavelength_nm,
+                        double phi_deg);
 
 enum glint_ray_status {
     GLINT_RAY_OK = 0,
@@ -74,7 +88,8 @@ enum glint_ray_status {
 struct glint_ray {
     /* Point at which the ray crosses the stop's plane. */
     double stop_x_mm, stop_y_mm;
-    /* Point at which the ray hits the sensor. */
+    /* Point at which the ray hits the sensor; of an anamorphic lens its x in
+     * the picture as it is shown. */
     double sensor_x_mm, sensor_y_mm;
     double energy;     /* transmittances times reflectances, 0 .. 1 */
     double rel_radius; /* largest |xy| / semi-diameter over all surfaces */

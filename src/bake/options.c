@@ -84,6 +84,20 @@ static void mix_coating(uint64_t *key, const struct glint_coating *coating)
     }
 }
 
+static void mix_shape(uint64_t *key, const struct glint_shape *s)
+{
+    mix(key, s->conic);
+    for (int k = 0; k < GLINT_SHAPE_TERMS; k++)
+        mix(key, s->term[k]);
+    mix(key, s->bend);
+    mix(key, s->across_mm);
+    for (int k = 0; k < 2; k++) {
+        mix(key, s->decentre_mm[k]);
+        mix(key, s->tilt_deg[k]);
+    }
+    mix(key, s->pivot_mm);
+}
+
 uint64_t glint_bake_key(const struct glint_prescription *lens,
                         const struct glint_bake_options *options)
 {
@@ -111,6 +125,8 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
         mix(&key, s->nd);
         mix(&key, s->vd);
         mix_coating(&key, &s->coating);
+        if (glint_surface_is_shaped(s))
+            mix_shape(&key, &s->shape);
     }
     for (const char *c = lens->name; *c; c++)
         mix(&key, (unsigned char)*c);

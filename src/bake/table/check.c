@@ -4,6 +4,9 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "bake/table/form.h"
+#include "engine/setup/degrees.h"
+
 /* largest relative error of a stated focal length */
 #define STATED_TOLERANCE 1e-3
 /* share of the smaller semi-diameter, the height at which neighbours are
@@ -14,22 +17,108 @@
 /* relative error of the stop radius that rounding may make */
 #define STOP_SLACK 1e-9
 
-/* Returns the distance of element E at HEIGHT from the axis behind its vertex.
- */
-static double sag_mm(const struct glint_prescription *lens, int e,
-                     double height)
-{
-    const double c = element_curvature(lens, e);
-    const double ch = c * height;
+/* Heights, shares of the smaller semi-diameter, at which neighbours are
+ * compared if one of them is no sphere, and directions about the axis. */
+enum { HEIGHTS = 12, TURNS = 8 };
+/* Most mm that aspheric terms may add at the rim, semi-diameters. */
+#define MOST_TERMS 4.0
+/* An anamorphic lens's squeeze lies between this and its inverse. */
+#define MOST_SQUEEZE 16.0
 
-    return ch * height / (1.0 + sqrt(1.0 - ch * ch));
+/* Returns the sag of element E at (X, Y) from the axis of the lens. Of a tilt
+ * it sees what it lifts. */
+static double sag_mm(const struct glint_prescription *lens, int e, double x,
+                     double y)
+{
+    const int k = element_surface(lens, e);
+    const double c = element_curvature(lens, e);
+    const double ch = c * hypot(x, y);
+    double slope[2] = {0, 0}, at[3];
+    struct glint_form form;
+
+    if (k < 0 || !glint_surface_is_shaped(&lens->surface[k]))
+        return ch * hypot(x, y) / (1.0 + sqrt(1.0 - ch * ch));
+    glint_form_init(&form, &lens->surface[k], 0);
+    for (int i = 0; i < 3; i++)
+        at[i] = form.turn[i][0] * x + form.turn[i][1] * y + form.shift[i];
+    return (glint_form_sag(&form, at[0], at[1], slope) - at[2]) /
+           form.turn[2][2];
+}
+
+static bool is_shaped(const struct glint_prescription *lens, int e)
+{
+    const int k = element_surface(lens, e);
+
+    return k >= 0 && glint_surface_is_shaped(&lens->surface[k]);
+}
+
+/* Returns the least gap between element E and the next, and the height AT which
+ * it is. */
+static double least_gap_mm(const struct glint_prescription *lens, int e,
+                           double *at)
+{
+    const double height = CLEAR_SHARE * fmin(element_semi_mm(lens, e),
+                                             element_semi_mm(lens, e + 1));
+    const bool shaped = is_shaped(lens, e) || is_shaped(lens, e + 1);
+    double least = HUGE_VAL;
+
+    *at = height;
+    if (!shaped)
+        return element_gap_mm(lens, e) + sag_mm(lens, e + 1, height, 0) -
+               sag_mm(lens, e, height, 0);
+    for (int k = 0; k < HEIGHTS * TURNS; k++) {
+        const double h = height * (1 + k / TURNS) / HEIGHTS;
+        const double x = h * glint_cos_deg(360.0 / TURNS * (k % TURNS));
+        const double y = h * glint_sin_deg(360.0 / TURNS * (k % TURNS));
+        const double gap = element_gap_mm(lens, e) + sag_mm(lens, e + 1, x, y) -
+                           sag_mm(lens, e, x, y);
+
+        if (gap < least) {
+            least = gap;
+            *at = h;
+        }
+    }
+    return least;
+}
+
+/* Checks that surface K is a function of its height up to its rim, and that its
+ * powers do not carry it away, as those of a misprint do. */
+static bool check_surface(const struct glint_surface *s,
+                          const struct glint_text *text,
+                          struct glint_text_place place)
+{
+    const struct glint_shape *const a = &s->shape;
+    const double radius = fabs(s->radius_mm), semi = s->semi_mm;
+    double terms = 0.0, most = 0.0;
+
+    if (radius != 0.0 && (1.0 + a->conic) * semi * semi >= radius * radius)
+        return glint_text_fail(text, place,
+                               a->conic == 0.0
+                                   ? "semi-diameter %g must be less than the "
+                                     "radius %g"
+                                   : "semi-diameter %g must be less than %g, "
+                                     "where the conic ends",
+                               semi, radius / sqrt(1.0 + a->conic));
+    if (a->across_mm != 0.0 && semi >= fabs(a->across_mm))
+        return glint_text_fail(text, place,
+                               "semi-diameter %g must be less than the "
+                               "radius %g across",
+                               semi, fabs(a->across_mm));
+    for (int k = GLINT_SHAPE_TERMS - 1; k >= 0; k--) {
+        terms = terms * semi * semi + a->term[k];
+        most = fmax(most, fabs(terms));
+    }
+    terms *= semi * semi * semi * semi;
+    return (fabs(terms) <= MOST_TERMS * semi && most < 1e30) ||
+           glint_text_fail(text, place,
+                           "the aspheric terms add %.4g mm at the rim", terms);
 }
 
 /* Checks that each element ends before the next begins. The distance between
  * two spheres only rises or only falls from the axis to the rim, and vertices
  * are in order, so one height decides. It is not the very rim, as published
  * semi-diameters are often estimates: surfaces of the Canon zoom meet at 0.92
- * of theirs. */
+ * of theirs. Other surfaces are compared at many heights up to that. */
 static bool check_rims(const struct glint_prescription *lens,
                        const struct glint_text *text,
                        const struct glint_places *places)
@@ -37,20 +126,17 @@ static bool check_rims(const struct glint_prescription *lens,
     const int last = element_count(lens) - 1;
 
     for (int e = 0; e < last; e++) {
-        const double height = CLEAR_SHARE * fmin(element_semi_mm(lens, e),
-                                                 element_semi_mm(lens, e + 1));
-        const double gap = element_gap_mm(lens, e) +
-                           sag_mm(lens, e + 1, height) -
-                           sag_mm(lens, e, height);
+        double height;
+        const double gap = least_gap_mm(lens, e, &height);
 
-        if (gap < -CONTACT_MM)
+        if (!(gap >= -CONTACT_MM))
             return glint_text_fail(text, places->thickness[e],
                                    "overlaps the next element by %.4g mm at "
                                    "%.4g mm from the axis",
                                    -gap, height);
     }
     if (element_gap_mm(lens, last) <=
-        fmax(0.0, sag_mm(lens, last, element_semi_mm(lens, last))))
+        fmax(0.0, sag_mm(lens, last, element_semi_mm(lens, last), 0)))
         return glint_text_fail(text, places->thickness[last],
                                "the sensor must lie behind the last element");
     return true;
@@ -82,6 +168,13 @@ static bool check_optics(const struct glint_prescription *lens,
                                "the lens has no focus behind it: focal length "
                                "%.6g mm, back focal length %.6g mm",
                                optics.focal_mm, optics.back_focal_mm);
+    if (!(optics.squeeze <= MOST_SQUEEZE &&
+          optics.squeeze * MOST_SQUEEZE >= 1.0))
+        return glint_text_fail(text, end,
+                               "the focal length in x is %.6g mm, that in y "
+                               "%.6g mm",
+                               optics.focal_mm / optics.squeeze,
+                               optics.focal_mm);
     if (!(optics.stop_radius_mm >= MIN_STOP_MM))
         return glint_text_fail(text, places->stop,
                                "the stop lies in a focus of the surfaces "
@@ -102,6 +195,9 @@ bool glint_prescription_check(const struct glint_prescription *lens,
                               const struct glint_text *text,
                               const struct glint_places *places)
 {
+    for (int k = 0; k < lens->n_surfaces; k++)
+        if (!check_surface(&lens->surface[k], text, places->semi[k]))
+            return false;
     if (lens->surface[lens->n_surfaces - 1].vd > 0.0)
         return glint_text_fail(text, places->medium,
                                "the last medium must be air");

@@ -5,7 +5,8 @@
  *   in   a prescription read to the end, and the places of its numbers
  *   out  true, or the first mistake written as the error of the text
  *
- * Checked in this order: the last medium is air; elements do not overlap and
+ * Checked in this order: surfaces reach as far as their barrels; the last
+ * medium is air; elements do not overlap and
  * the sensor lies behind them; the lens has a focus behind it, and its stop
  * opens wide enough for the f-number; stated focal lengths agree with those of
  * the paraxial matrices. A new f-number must pass the same test of the stop.
@@ -30,6 +31,7 @@ struct glint_places {
     struct glint_text_place f_number, stop;
     struct glint_text_place focal, back_focal; /* line 0: not stated */
     struct glint_text_place thickness[GLINT_MAX_ELEMENTS];
+    struct glint_text_place semi[GLINT_MAX_SURFACES];
     struct glint_text_place medium; /* place of the last surface's medium */
 };
 

@@ -14,10 +14,23 @@ struct paraxial_ray {
     double y_mm, nu;
 };
 
-/* Moves RAY from the vertex plane of the front surface to element LAST and
- * through it. */
+/* Returns the curvature of element E in the plane of the bend PLANE, of a light
+ * far from the tilts and shifts that a surface may have. */
+static double curvature_in(const struct glint_prescription *lens, int e,
+                           int plane)
+{
+    const int k = element_surface(lens, e);
+    const struct glint_shape *const s = &lens->surface[k < 0 ? 0 : k].shape;
+
+    if (k < 0 || s->bend == GLINT_BEND_ROUND || s->bend == plane)
+        return element_curvature(lens, e);
+    return s->across_mm != 0.0 ? 1.0 / s->across_mm : 0.0;
+}
+
+/* Moves RAY in PLANE from the vertex plane of the front surface to element LAST
+ * and through it. */
 static void lead(struct paraxial_ray *ray,
-                 const struct glint_prescription *lens, int last)
+                 const struct glint_prescription *lens, int last, int plane)
 {
     double n = 1.0;
 
@@ -31,7 +44,7 @@ static void lead(struct paraxial_ray *ray,
             ray->y_mm += ray->nu / n * element_gap_mm(lens, e - 1);
         if (k >= 0) {
             ray->nu -= ray->y_mm * (lens->surface[k].nd - n) *
-                       element_curvature(lens, e);
+                       curvature_in(lens, e, plane);
             n = lens->surface[k].nd;
         }
     }
@@ -41,12 +54,16 @@ void glint_optics_of(const struct glint_prescription *lens,
                      struct glint_optics *optics)
 {
     struct paraxial_ray marginal = {1.0, 0.0}, to_stop = {1.0, 0.0};
-    struct paraxial_ray slanted = {0.0, 1.0};
+    struct paraxial_ray slanted = {0.0, 1.0}, flat = {1.0, 0.0};
 
-    lead(&marginal, lens, surface_element(lens, lens->n_surfaces - 1));
-    lead(&to_stop, lens, lens->stop_after);
-    lead(&slanted, lens, lens->stop_after);
+    lead(&marginal, lens, surface_element(lens, lens->n_surfaces - 1),
+         GLINT_BEND_Y);
+    lead(&to_stop, lens, lens->stop_after, GLINT_BEND_Y);
+    lead(&slanted, lens, lens->stop_after, GLINT_BEND_Y);
+    lead(&flat, lens, surface_element(lens, lens->n_surfaces - 1),
+         GLINT_BEND_X);
 
+    optics->squeeze = flat.nu / marginal.nu;
     optics->focal_mm = -1.0 / marginal.nu;
     optics->back_focal_mm = -marginal.y_mm / marginal.nu;
     optics->entrance_radius_mm = optics->focal_mm / (2.0 * lens->f_number);

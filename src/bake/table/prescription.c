@@ -7,11 +7,11 @@
  * whole is checked by check.h when all is read. */
 #include "bake/table/elements.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "bake/table/check.h"
 #include "bake/table/coatings.h"
+#include "bake/table/shapes.h"
 #include "bake/table/text.h"
 #include "base/compiler.h"
 
@@ -33,7 +33,6 @@ static const struct glint_text_range film_height_range = {"film height", 0.1,
                                                           1000};
 static const struct glint_text_range stated_range = {"focal length", 0.01,
                                                      GLINT_MAX_FOCAL_MM};
-static const struct glint_text_range radius_range = {"radius", 0.01, 1e9};
 static const struct glint_text_range thickness_range = {"thickness", 0, 1e5};
 static const struct glint_text_range semi_range = {"semi-diameter", 0.01, 1e4};
 static const struct glint_text_range nd_range = {"index", 1.01, 4};
@@ -50,6 +49,9 @@ enum field {
     MIXED,
     GLASS,
     SURFACE,
+    SHAPE,
+    GROUP,
+    END,
     STOP,
     N_FIELDS
 };
@@ -63,6 +65,9 @@ struct parser {
     struct glint_coating coating; /* coating of surfaces without their own */
     bool has_coating[GLINT_MAX_SURFACES];
     int n_elements;
+    bool in_group;   /* GROUP holds where the group's surfaces lie */
+    bool is_surface; /* the last element is a surface */
+    struct glint_shape group;
     int n_glasses;
     struct {
         char name[GLASS_NAME_BYTES];
@@ -232,22 +237,6 @@ static bool read_medium(struct parser *p, struct medium *medium)
 
 /* ---------------------------------------------------------------- elements */
 
-static bool read_radius(struct parser *p, double *radius_mm)
-{
-    const struct glint_word word = glint_text_next_word(&p->text);
-
-    *radius_mm = 0.0;
-    if (glint_word_is(&word, "flat"))
-        return true;
-    if (!glint_text_number_of(&p->text, &word, radius_range.name, radius_mm))
-        return false;
-    if (*radius_mm == 0.0)
-        return glint_text_fail(&p->text, word.place,
-                               "radius must not be 0; a plane is flat");
-    return glint_text_in_range(&p->text, word.place, &radius_range,
-                               fabs(*radius_mm));
-}
-
 /* Reads thickness and semi-diameter of an element. */
 static bool read_gap_and_semi(struct parser *p, double *thickness_mm,
                               double *semi_mm, struct glint_text_place *semi)
@@ -287,19 +276,14 @@ static bool read_surface(struct parser *p)
     const int k = p->lens.n_surfaces;
     struct glint_surface *s = &p->lens.surface[k];
     struct medium before = {1.0, 0.0}, medium = before;
-    struct glint_text_place semi;
 
     if (k == GLINT_MAX_SURFACES)
         return glint_text_fail(&p->text, p->word[SURFACE],
                                "more than %d surfaces", GLINT_MAX_SURFACES);
-    if (!read_radius(p, &s->radius_mm) ||
-        !read_gap_and_semi(p, &s->thickness_mm, &s->semi_mm, &semi))
+    if (!glint_radius_read(&p->text, &s->radius_mm) ||
+        !read_gap_and_semi(p, &s->thickness_mm, &s->semi_mm,
+                           &p->places.semi[k]))
         return false;
-    if (s->radius_mm != 0.0 && s->semi_mm >= fabs(s->radius_mm))
-        return glint_text_fail(&p->text, semi,
-                               "semi-diameter %g must be less than the "
-                               "radius %g",
-                               s->semi_mm, fabs(s->radius_mm));
     if (!read_medium(p, &medium))
         return false;
     if (k > 0)
@@ -309,12 +293,48 @@ static bool read_surface(struct parser *p)
                                "medium is the same on both sides");
     s->nd = medium.nd;
     s->vd = medium.vd;
+    s->shape = p->group;
+    p->group.pivot_mm -= p->in_group ? s->thickness_mm : 0.0;
+    p->is_surface = true;
     p->lens.n_surfaces++;
     return read_surface_coating(p, k, before.vd > 0.0 && medium.vd > 0.0);
 }
 
+/* Reads a shape of the surface above. */
+static bool read_shape(struct parser *p)
+{
+    if (!p->is_surface)
+        return glint_text_fail(&p->text, p->word[SHAPE],
+                               "a shape stands below its surface");
+    return glint_shape_read(&p->text,
+                            &p->lens.surface[p->lens.n_surfaces - 1].shape);
+}
+
+static bool read_group(struct parser *p)
+{
+    if (p->in_group)
+        return glint_text_fail(&p->text, p->word[GROUP],
+                               "the group above has no end");
+    p->in_group = true;
+    return glint_group_read(&p->text, &p->group);
+}
+
+static bool read_end(struct parser *p)
+{
+    if (!p->in_group)
+        return glint_text_fail(&p->text, p->word[END],
+                               "there is no group to end");
+    p->in_group = false;
+    p->group = (struct glint_shape){.conic = 0};
+    return true;
+}
+
 static bool read_stop(struct parser *p)
 {
+    if (p->in_group)
+        return glint_text_fail(&p->text, p->word[STOP],
+                               "the stop cannot be in a group; end it above");
+    p->is_surface = false;
     p->lens.stop_after = p->lens.n_surfaces;
     return read_gap_and_semi(p, &p->lens.stop_thickness_mm,
                              &p->lens.stop_semi_mm, &p->places.stop);
@@ -337,6 +357,9 @@ static const struct {
     [MIXED] = {"mixed-coating", read_mixed, false, false},
     [GLASS] = {"glass", read_glass, false, true},
     [SURFACE] = {"surface", read_surface, true, true},
+    [SHAPE] = {"shape", read_shape, false, true},
+    [GROUP] = {"group", read_group, false, true},
+    [END] = {"end", read_end, false, true},
     [STOP] = {"stop", read_stop, true, false},
 };
 
@@ -375,7 +398,8 @@ static bool read_lines(struct parser *p)
         if (fields[f].required && !p->word[f].line)
             return glint_text_fail(&p->text, glint_text_end(&p->text),
                                    "there is no %s line", fields[f].word);
-    return true;
+    return !p->in_group ||
+           glint_text_fail(&p->text, p->word[GROUP], "the group has no end");
 }
 
 /* ---------------------------------------------------------------- the lens */

@@ -13,6 +13,7 @@
 
 #include <math.h>
 
+#include "bake/table/form.h"
 #include "engine/setup/degrees.h"
 
 enum { ACROSS = 64, DOWN = 32, ROUNDS = 8 };
@@ -163,11 +164,15 @@ static bool shrink(struct search *s, struct glint_pupil *p)
 /* Returns the part of the vertex plane at which rays can enter. A slanted ray
  * crosses this plane beside the place where it meets the curved surface, by up
  * to the sag at the rim times its tangent. */
-static struct glint_pupil whole_front(const struct glint_event *front,
+static struct glint_pupil whole_front(const struct glint_path *path,
+                                      const struct glint_event *front,
                                       const double direction[3])
 {
     const double h = front->semi_mm, c = front->curvature;
-    const double sag = c * h * h / (1 + sqrt(fmax(0, 1 - c * c * h * h)));
+    double slope[2];
+    const double sag =
+        front->shaped ? glint_form_sag(&path->form[front->surface], h, 0, slope)
+                      : c * h * h / (1 + sqrt(fmax(0, 1 - c * c * h * h)));
     const double aside = fabs(sag) * fabs(direction[0] / direction[2]);
 
     return (struct glint_pupil){
@@ -293,7 +298,7 @@ bool glint_pupil_find_within(struct glint_pupil *pupil,
     s.direction[2] = glint_cos_deg(theta_deg);
     s.stop_mm = stop_radius_mm;
     s.field_mm = field_mm;
-    whole = whole_front(front, s.direction);
+    whole = whole_front(path, front, s.direction);
     p = near ? surroundings(near, &whole) : whole;
     found = shrink_on(&s, &p, near ? NEXT_ACROSS : ACROSS,
                       near ? NEXT_DOWN : DOWN) ||

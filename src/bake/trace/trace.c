@@ -13,12 +13,13 @@
  * and small radii keep about 1e-14 of the coordinates. [Hullin11] section 4
  */
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 
 #include "bake/trace/coating.h"
+#include "bake/table/form.h"
 #include "base/compiler.h"
 #include "bake/table/elements.h"
+#include "engine/setup/degrees.h"
 #include "glint/trace.h"
 #include "glint/view.h"
 
@@ -28,7 +29,7 @@
 struct route {
     const struct glint_prescription *lens;
     struct glint_path *path;
-    double wavelength_nm;
+    double wavelength_nm, phi_deg;
     int at; /* last element, -1: none yet */
 };
 
@@ -76,18 +77,45 @@ static void append(struct route *route, int e, enum glint_event_kind kind,
     event->n_films =
         glint_coating_at(&route->lens->surface[k].coating, route->wavelength_nm,
                          route->path->film[k]);
+    event->shaped = glint_surface_is_shaped(&route->lens->surface[k]);
+    if (event->shaped)
+        glint_form_init(&route->path->form[k], &route->lens->surface[k],
+                        route->phi_deg);
+}
+
+/* Sets how the picture is wider than the sensor, for light at PHI_DEG. */
+static void set_widening(struct glint_path *path,
+                         const struct glint_prescription *lens, double phi_deg)
+{
+    const double c = glint_cos_deg(phi_deg), s = glint_sin_deg(phi_deg);
+    struct glint_optics optics;
+
+    path->round = glint_prescription_is_round(lens);
+    glint_optics_of(lens, &optics);
+    path->widen[0][0] = 1.0 + (optics.squeeze - 1.0) * c * c;
+    path->widen[1][1] = 1.0 + (optics.squeeze - 1.0) * s * s;
+    path->widen[0][1] = path->widen[1][0] = (1.0 - optics.squeeze) * c * s;
 }
 
 void glint_path_init(struct glint_path *path,
                      const struct glint_prescription *lens,
                      const struct glint_ghost *ghost, double wavelength_nm)
 {
-    struct route route = {lens, path, wavelength_nm, -1};
+    glint_path_init_at(path, lens, ghost, wavelength_nm, 0.0);
+}
+
+void glint_path_init_at(struct glint_path *path,
+                        const struct glint_prescription *lens,
+                        const struct glint_ghost *ghost, double wavelength_nm,
+                        double phi_deg)
+{
+    struct route route = {lens, path, wavelength_nm, phi_deg, -1};
     const int n = element_count(lens);
     int e = 0;
 
     path->n_events = 0;
     path->places_only = false;
+    set_widening(path, lens, phi_deg);
     if (ghost && ghost->i >= 0) {
         const int near = surface_element(lens, ghost->i);
         const int far = surface_element(lens, ghost->j);
@@ -117,7 +145,8 @@ enum { LANES = 8 };
 struct beam {
     double x[LANES], y[LANES], z[LANES]; /* mm, from the vertex of the event */
     double l[LANES], m[LANES], n[LANES]; /* direction, unit length */
-    double cosine[LANES]; /* cosine between ray and normal at the surface */
+    double cosine[LANES];    /* cosine between ray and normal at the surface */
+    double normal[LANES][3]; /* unit normal, of shaped surfaces only */
     double energy[LANES];
     /* Height and semi-diameter where their ratio was largest so far, squared.
      */
@@ -171,6 +200,57 @@ static WHOLLY_INLINE void meet(struct beam *b, int n, double c)
     }
 }
 
+static void set_ray(struct beam *b, int k, const double at[3],
+                    const double way[3])
+{
+    b->x[k] = at[0];
+    b->y[k] = at[1];
+    b->z[k] = at[2];
+    b->l[k] = way[0];
+    b->m[k] = way[1];
+    b->n[k] = way[2];
+}
+
+/* Moves rays into the frame of FORM and on to it. */
+static void meet_form(struct beam *b, int n, const struct glint_form *form)
+{
+    for (int k = 0; k < n; k++) {
+        double at[3] = {b->x[k], b->y[k], b->z[k]};
+        double way[3] = {b->l[k], b->m[k], b->n[k]};
+        bool met;
+
+        glint_form_enter(form, at, way);
+        met = !(b->status[k] > GLINT_RAY_OK) &&
+              glint_form_meet(form, at, way, b->normal[k], &b->cosine[k]);
+        b->status[k] = judge(b->status[k], met, GLINT_RAY_MISSED);
+        set_ray(b, k, at, way);
+    }
+}
+
+/* Moves rays from the frame of FORM back to the light's. */
+static void leave_form(struct beam *b, int n, const struct glint_form *form)
+{
+    for (int k = 0; k < n; k++) {
+        double at[3] = {b->x[k], b->y[k], b->z[k]};
+        double way[3] = {b->l[k], b->m[k], b->n[k]};
+        glint_form_leave(form, at, way);
+        set_ray(b, k, at, way);
+    }
+}
+
+/* Does what turn() does, at a form. */
+static void turn_at_form(struct beam *b, int k, double s, double part,
+                         double way)
+{
+    const double before = b->n[k];
+
+    b->l[k] = s * b->l[k] + part * b->normal[k][0];
+    b->m[k] = s * b->m[k] + part * b->normal[k][1];
+    b->n[k] = s * before + part * b->normal[k][2];
+    b->status[k] =
+        judge(b->status[k], way * before * b->n[k] > 0.0, GLINT_RAY_MISSED);
+}
+
 /* Sets the direction to S times itself plus PART times the normal. Rays that
  * then do not run the way WAY, 1 as before or -1 back, are lost. */
 static WHOLLY_INLINE void turn(struct beam *b, int k, double c, double s,
@@ -212,6 +292,23 @@ static WHOLLY_INLINE void reflectances(const struct beam *b, int n,
         part[k] = out[k] > 0.0 ? part[k] : 1.0;
 }
 
+/* Turns rays at a form; OUT are the cosines behind it. */
+static void cross_form(struct beam *b, int n, bool reflects, double ratio,
+                       const double *out)
+{
+    for (int k = 0; k < n; k++) {
+        if (reflects) {
+            turn_at_form(b, k, 1.0, -2.0 * b->cosine[k], -1.0);
+            continue;
+        }
+        b->status[k] =
+            judge(b->status[k], out[k] > 0.0, GLINT_RAY_TOTAL_REFLECTION);
+        turn_at_form(b, k, ratio,
+                     (b->n[k] < 0.0 ? -out[k] : out[k]) - ratio * b->cosine[k],
+                     1.0);
+    }
+}
+
 /* Refracts or reflects the rays at the surface of E. */
 static WHOLLY_INLINE void cross(struct beam *b, int n,
                                 const struct glint_event *e,
@@ -231,6 +328,10 @@ static WHOLLY_INLINE void cross(struct beam *b, int n,
         reflectances(b, n, e, film, out, part);
     for (int k = 0; k < n && energies; k++)
         b->energy[k] *= reflects ? part[k] : 1.0 - part[k];
+    if (e->shaped) {
+        cross_form(b, n, reflects, ratio, out);
+        return;
+    }
     for (int k = 0; k < n && reflects; k++)
         turn(b, k, c, 1.0, -2.0 * b->cosine[k], -1.0);
     for (int k = 0; k < n && !reflects; k++) {
@@ -289,6 +390,8 @@ static WHOLLY_INLINE void pass(struct beam *b, int n, int asked,
             b->stop_x[k] = b->x[k];
             b->stop_y[k] = b->y[k];
         }
+    else if (e->shaped)
+        meet_form(b, n, &path->form[e->surface]);
     else
         meet(b, n, e->curvature);
     for (int k = 0; k < asked && hits; k++)
@@ -300,6 +403,19 @@ static WHOLLY_INLINE void pass(struct beam *b, int n, int asked,
         return;
     widen(b, n, e->semi_mm);
     cross(b, n, e, path->film[e->surface], energies);
+    if (e->shaped)
+        leave_form(b, n, &path->form[e->surface]);
+}
+
+/* Moves rays from the sensor to the picture of an anamorphic lens. */
+static void widen_picture(struct beam *b, int n, const double widen_by[2][2])
+{
+    for (int k = 0; k < n; k++) {
+        const double x = b->x[k], y = b->y[k];
+
+        b->x[k] = widen_by[0][0] * x + widen_by[0][1] * y;
+        b->y[k] = widen_by[1][0] * x + widen_by[1][1] * y;
+    }
 }
 
 static inline enum glint_ray_status arrive(const struct beam *b, int k,
@@ -330,6 +446,8 @@ static WHOLLY_INLINE void trace(const struct glint_path *path, int lanes, int n,
         pass(&b, lanes, n, path, &path->event[i], energies,
              hits ? hits + i : NULL);
     go(&b, lanes, path->to_sensor_mm);
+    if (!path->round)
+        widen_picture(&b, n, path->widen);
     for (int k = 0; k < n; k++)
         status[k] = arrive(&b, k, &ray[k]);
 }

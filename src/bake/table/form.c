@@ -1,0 +1,294 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/table/form.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/setup/degrees.h"
+
+/* Share of the semi-diameter up to which a profile is as the table says. */
+#define GLASS_ENDS 1.1
+/* Share of END2 beyond it over which curvature fades. */
+#define FADES 0.25
+
+enum { MOST_STEPS = 80, MOST_HALVINGS = 60 };
+
+bool glint_surface_is_shaped(const struct glint_surface *s)
+{
+    const struct glint_shape *const a = &s->shape;
+    bool shaped = a->bend != GLINT_BEND_ROUND || a->conic != 0.0;
+
+    for (int k = 0; k < GLINT_SHAPE_TERMS; k++)
+        shaped |= a->term[k] != 0.0;
+    for (int k = 0; k < 2; k++)
+        shaped |= a->decentre_mm[k] != 0.0 || a->tilt_deg[k] != 0.0;
+    return shaped;
+}
+
+bool glint_prescription_is_round(const struct glint_prescription *lens)
+{
+    for (int k = 0; k < lens->n_surfaces; k++) {
+        const struct glint_shape *const a = &lens->surface[k].shape;
+
+        if (a->bend != GLINT_BEND_ROUND || a->decentre_mm[0] != 0.0 ||
+            a->decentre_mm[1] != 0.0 || a->tilt_deg[0] != 0.0 ||
+            a->tilt_deg[1] != 0.0)
+            return false;
+    }
+    return true;
+}
+
+/* --------------------------------------------------------------------- sag */
+
+/* Sets AT to the profile at the height whose square is H2, and to its first and
+ * second derivatives by H2; as the table says. */
+static void profile_inside(const struct glint_form *f, double h2, double at[3])
+{
+    const double c = f->curvature, a = (1.0 + f->conic) * c * c;
+    const double root = sqrt(1.0 - a * h2);
+    double p[3] = {0, 0, 0};
+
+    for (int k = GLINT_SHAPE_TERMS - 1; k >= 0; k--) {
+        p[2] = p[2] * h2 + 2.0 * p[1];
+        p[1] = p[1] * h2 + p[0];
+        p[0] = p[0] * h2 + f->term[k];
+    }
+    at[0] = c * h2 / (1.0 + root) + h2 * h2 * p[0];
+    at[1] = 0.5 * c / root + h2 * (2.0 * p[0] + h2 * p[1]);
+    at[2] = 0.25 * c * a / (root * root * root) + 2.0 * p[0] +
+            h2 * (4.0 * p[1] + h2 * p[2]);
+}
+
+/* Returns the profile at H2, and its derivative by H2 in SLOPE. */
+static double profile(const struct glint_form *f, double h2, double *slope)
+{
+    const double beyond = h2 - f->end2;
+    double at[3], fade;
+
+    if (!(beyond > 0.0)) {
+        profile_inside(f, h2, at);
+        *slope = at[1];
+        return at[0];
+    }
+    fade = 1.0 + beyond / (FADES * f->end2);
+    *slope = f->end_at[1] +
+             0.5 * f->end_at[2] * beyond * (1.0 + fade) / (fade * fade);
+    return f->end_at[0] +
+           beyond * (f->end_at[1] + 0.5 * f->end_at[2] * beyond / fade);
+}
+
+double glint_form_sag(const struct glint_form *f, double x, double y,
+                      double slope[2])
+{
+    const double along = f->bend == GLINT_BEND_X ? x : y;
+    const double aside = f->bend == GLINT_BEND_X ? y : x;
+    const int first = f->bend == GLINT_BEND_X ? 0 : 1;
+    double by_h2, q, free, root;
+
+    if (f->bend == GLINT_BEND_ROUND) {
+        q = profile(f, x * x + y * y, &by_h2);
+        slope[0] = 2.0 * x * by_h2;
+        slope[1] = 2.0 * y * by_h2;
+        return q;
+    }
+    /* (R - z)^2 + aside^2 = (R - q)^2, solved without dividing by 1 / R. */
+    q = profile(f, along * along, &by_h2);
+    free = 1.0 - f->across * q;
+    root = free * free - f->across * f->across * aside * aside;
+    if (!(free > 0.0 && root > 0.0))
+        return (double)NAN;
+    root = sqrt(root);
+    slope[first] = 2.0 * along * by_h2 * free / root;
+    slope[!first] = f->across * aside / root;
+    return q + f->across * aside * aside / (free + root);
+}
+
+/* -------------------------------------------------------------------- rays */
+
+/* A ray in the form's frame. */
+struct line {
+    const double *at, *direction;
+};
+
+/* Returns how far the ray is behind the form after T; RATE receives how fast
+ * that changes. */
+static double behind(const struct glint_form *f, const struct line *line,
+                     double t, double *rate, double slope[2])
+{
+    const double *const d = line->direction;
+    const double sag = glint_form_sag(f, line->at[0] + t * d[0],
+                                      line->at[1] + t * d[1], slope);
+
+    *rate = d[2] - slope[0] * d[0] - slope[1] * d[1];
+    return t * d[2] - sag;
+}
+
+/* Finds two places BRACKET on the ray, the nearest first, with the form between
+ * them. Returns false if there are none near the barrel. */
+static bool bracket_root(const struct glint_form *f, const struct line *line,
+                         double bracket[2])
+{
+    double slope[2] = {0, 0}, rate, g = behind(f, line, 0.0, &rate, slope);
+    const double first = g, side = line->direction[2] < 0.0 ? -g : g;
+    const double reach =
+        8.0 * (f->semi_mm + fabs(line->at[0]) + fabs(line->at[1]));
+    double step = (side < 0.0 ? 0.5 : -0.5) * fabs(g);
+
+    bracket[0] = bracket[1] = 0.0;
+    if (g == 0.0)
+        return true;
+    for (int k = 0; k < MOST_STEPS && fabs(bracket[1]) < reach; k++) {
+        bracket[0] = bracket[1];
+        bracket[1] += step;
+        g = behind(f, line, bracket[1], &rate, slope);
+        if (!isfinite(g))
+            return false;
+        if ((g < 0.0) != (first < 0.0) || g == 0.0)
+            return true;
+        step *= 1.5;
+    }
+    return false;
+}
+
+/* Returns the place between LOW and HIGH at which the ray meets the form. */
+static double refine(const struct glint_form *f, const struct line *line,
+                     double low, double high)
+{
+    double slope[2] = {0, 0}, rate;
+    const bool rises = behind(f, line, low, &rate, slope) < 0.0;
+    double t = 0.5 * (low + high);
+
+    for (int k = 0; k < MOST_HALVINGS; k++) {
+        const double g = behind(f, line, t, &rate, slope);
+        double next = t - g / rate;
+
+        if ((g < 0.0) == rises)
+            low = t;
+        else
+            high = t;
+        /* A step that leaves the bracket, or a NaN, is replaced. */
+        if (!((next > low && next < high) || (next < low && next > high)))
+            next = g == 0.0 ? t : 0.5 * (low + high);
+        if (fabs(next - t) <= 2e-16 * (fabs(t) + 0.01 * f->semi_mm))
+            return next;
+        t = next;
+    }
+    return t;
+}
+
+bool glint_form_meet(const struct glint_form *f, double at[3],
+                     const double direction[3], double normal[3],
+                     double *cosine)
+{
+    const struct line line = {at, direction};
+    double bracket[2], slope[2] = {0, 0}, rate, t, size;
+
+    *cosine = 1.0;
+    if (!bracket_root(f, &line, bracket))
+        return false;
+    t = refine(f, &line, bracket[0], bracket[1]);
+    behind(f, &line, t, &rate, slope);
+    for (int k = 0; k < 2; k++)
+        at[k] += t * direction[k];
+    at[2] = t * direction[2];
+    size = sqrt(1.0 + slope[0] * slope[0] + slope[1] * slope[1]);
+    normal[0] = -slope[0] / size;
+    normal[1] = -slope[1] / size;
+    normal[2] = 1.0 / size;
+    if (!(rate * direction[2] > 0.0))
+        return false; /* it comes from the wrong side */
+    *cosine = rate / size;
+    return true;
+}
+
+/* ------------------------------------------------------------------- frame */
+
+void glint_form_enter(const struct glint_form *f, double at[3],
+                      double direction[3])
+{
+    double p[3], d[3], t;
+
+    for (int k = 0; k < 3; k++) {
+        const double *const r = f->turn[k];
+
+        p[k] = r[0] * at[0] + r[1] * at[1] + r[2] * at[2] + f->shift[k];
+        d[k] = r[0] * direction[0] + r[1] * direction[1] + r[2] * direction[2];
+    }
+    t = -p[2] / d[2];
+    for (int k = 0; k < 3; k++) {
+        at[k] = k < 2 ? p[k] + t * d[k] : 0.0;
+        direction[k] = d[k];
+    }
+}
+
+void glint_form_leave(const struct glint_form *f, double at[3],
+                      double direction[3])
+{
+    double p[3] = {0, 0, 0}, d[3] = {0, 0, 0};
+
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 3; i++) {
+            p[k] += f->turn[i][k] * (at[i] - f->shift[i]);
+            d[k] += f->turn[i][k] * direction[i];
+        }
+    for (int k = 0; k < 3; k++) {
+        at[k] = p[k];
+        direction[k] = d[k];
+    }
+}
+
+/* Returns the height, squared, at which the profile's glass ends. */
+static double end_of(const struct glint_form *f)
+{
+    const double c = f->curvature, a = (1.0 + f->conic) * c * c;
+    const double semi2 = f->semi_mm * f->semi_mm;
+    const double end2 = GLASS_ENDS * GLASS_ENDS * semi2;
+
+    /* A conic ends at its equator, where it is vertical. */
+    return a * end2 < 0.5 * (1.0 + a * semi2) ? end2 : 0.5 * (1.0 / a + semi2);
+}
+
+/* Sets the frame: shift, tilt about x and then y at the pivot, and the light's
+ * plane turned to x-z. */
+static void place(struct glint_form *f, const struct glint_shape *s,
+                  double phi_deg)
+{
+    const double cx = glint_cos_deg(s->tilt_deg[0]);
+    const double sx = glint_sin_deg(s->tilt_deg[0]);
+    const double cy = glint_cos_deg(s->tilt_deg[1]);
+    const double sy = glint_sin_deg(s->tilt_deg[1]);
+    const double cp = glint_cos_deg(phi_deg), sp = glint_sin_deg(phi_deg);
+    /* Columns of the surface's axes in the lens are rows here: Ry Rx,
+     * transposed. */
+    const double lens[3][3] = {
+        {cy, 0, -sy}, {sx * sy, cx, sx * cy}, {cx * sy, -sx, cx * cy}};
+    const double from[3] = {-s->decentre_mm[0], -s->decentre_mm[1],
+                            -s->pivot_mm};
+
+    for (int k = 0; k < 3; k++) {
+        const double *const r = lens[k];
+
+        f->turn[k][0] = r[0] * cp + r[1] * sp;
+        f->turn[k][1] = r[1] * cp - r[0] * sp;
+        f->turn[k][2] = r[2];
+        f->shift[k] = r[0] * from[0] + r[1] * from[1] + r[2] * from[2];
+    }
+    f->shift[2] += s->pivot_mm;
+}
+
+void glint_form_init(struct glint_form *form, const struct glint_surface *s,
+                     double phi_deg)
+{
+    const struct glint_shape *const shape = &s->shape;
+
+    *form = (struct glint_form){
+        .curvature = s->radius_mm != 0.0 ? 1.0 / s->radius_mm : 0.0,
+        .conic = shape->conic,
+        .bend = shape->bend,
+        .across = shape->across_mm != 0.0 ? 1.0 / shape->across_mm : 0.0,
+        .semi_mm = s->semi_mm};
+    memcpy(form->term, shape->term, sizeof form->term);
+    form->end2 = end_of(form);
+    profile_inside(form, form->end2, form->end_at);
+    place(form, shape, phi_deg);
+}

@@ -1,0 +1,417 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Conics, aspheres, cylinders, torics, shifted and tilted surfaces: text, rays
+ * against a second method, and what can be known without tracing. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/bake.h"
+
+#define LINE_D_NM 587.5618
+
+static struct glint_prescription lens;
+static struct glint_path path;
+
+/* Reads a lens of a first surface and its shape, and a flat behind it. */
+static enum glint_status read_with(const char *surfaces,
+                                   struct glint_error *error)
+{
+    char text[1500];
+
+    snprintf(text, sizeof text,
+             "name t\nf-number 20\nfilm 36 24\nstop 9 30\n%s\n", surfaces);
+    return glint_prescription_parse(&lens, text, strlen(text), "t.lens", error);
+}
+
+static void load(const char *surfaces)
+{
+    struct glint_error error = {""};
+
+    if (read_with(surfaces, &error) != GLINT_OK)
+        fail_msg("%s: %s", surfaces, error.text);
+}
+
+/* --------------------------------------------------- a second intersection */
+
+/* The same surface written down once more, in long double, by its definition:
+ * no derivative, no frame but of the angles. */
+static long double sag_of(const struct glint_surface *s, long double x,
+                          long double y)
+{
+    const struct glint_shape *const a = &s->shape;
+    const long double along2 = a->bend == GLINT_BEND_ROUND ? x * x + y * y
+                               : a->bend == GLINT_BEND_X   ? x * x
+                                                           : y * y;
+    const long double aside2 = a->bend == GLINT_BEND_X ? y * y : x * x;
+    const long double r = s->radius_mm, k1 = 1 + (long double)a->conic;
+    long double z = 0, power = along2;
+
+    if (r != 0)
+        z = along2 / r / (1 + sqrtl(1 - k1 * along2 / (r * r)));
+    for (int k = 0; k < GLINT_SHAPE_TERMS; k++)
+        z += a->term[k] * (power *= along2);
+    if (a->bend != GLINT_BEND_ROUND && a->across_mm != 0) {
+        const long double big = a->across_mm, side = big < 0 ? -1 : 1;
+
+        z = big - side * sqrtl((big - z) * (big - z) - aside2);
+    }
+    return z;
+}
+
+struct line {
+    long double at[3], way[3];
+};
+
+/* Takes LINE from the lens to the frame of surface S by turning it in steps. */
+static struct line to_surface(const struct glint_surface *s,
+                              const struct line *line)
+{
+    const struct glint_shape *const a = &s->shape;
+    const long double degree = acosl(-1) / 180;
+    struct line out = *line;
+
+    for (int k = 0; k < 2; k++)
+        out.at[k] -= a->decentre_mm[k];
+    out.at[2] -= a->pivot_mm;
+    for (int axis = 1; axis >= 0; axis--) { /* undo y, then x */
+        const long double t = (axis ? -1 : 1) * degree * a->tilt_deg[axis];
+        const int other = 1 - axis; /* turns with z */
+
+        for (int v = 0; v < 2; v++) {
+            long double *p = v ? out.way : out.at;
+            const long double q = p[other], z = p[2];
+
+            p[other] = q * cosl(t) + z * sinl(t);
+            p[2] = z * cosl(t) - q * sinl(t);
+        }
+    }
+    out.at[2] += a->pivot_mm;
+    return out;
+}
+
+static long double gap_at(const struct glint_surface *s, const struct line *l,
+                          long double t)
+{
+    return l->at[2] + t * l->way[2] -
+           sag_of(s, l->at[0] + t * l->way[0], l->at[1] + t * l->way[1]);
+}
+
+/* Finds the nearest meeting by looking everywhere in small steps outwards from
+ * the vertex plane, then halving. Returns false if there is none within REACH.
+ */
+static bool second_meet(const struct glint_surface *s, const struct line *l,
+                        long double reach, long double *t)
+{
+    const long double plane = -l->at[2] / l->way[2];
+    const int n = 4000;
+
+    for (int k = 0; k < n; k++)
+        for (int side = -1; side <= 1; side += 2) {
+            long double low = plane + side * reach * k / n;
+            long double high = plane + side * reach * (k + 1) / n;
+
+            if (!(gap_at(s, l, low) * gap_at(s, l, high) <= 0))
+                continue;
+            for (int i = 0; i < 80; i++) {
+                const long double middle = (low + high) / 2;
+
+                if (gap_at(s, l, low) * gap_at(s, l, middle) <= 0)
+                    high = middle;
+                else
+                    low = middle;
+            }
+            *t = low;
+            return true;
+        }
+    return false;
+}
+
+/* Turns WAY at the surface by Snell's law in vectors, with a normal from
+ * differences of the sag; RATIO is n / n'. */
+static void second_refract(const struct glint_surface *s, const struct line *l,
+                           long double t, long double ratio, long double way[3])
+{
+    const long double x = l->at[0] + t * l->way[0];
+    const long double y = l->at[1] + t * l->way[1], h = 1e-5L;
+    long double n[3] = {-(sag_of(s, x + h, y) - sag_of(s, x - h, y)) / (2 * h),
+                        -(sag_of(s, x, y + h) - sag_of(s, x, y - h)) / (2 * h),
+                        1};
+    const long double size = sqrtl(n[0] * n[0] + n[1] * n[1] + 1);
+    long double c = 0, out;
+
+    for (int k = 0; k < 3; k++) {
+        n[k] /= size;
+        c += n[k] * l->way[k];
+    }
+    out = sqrtl(1 - ratio * ratio * (1 - c * c));
+    for (int k = 0; k < 3; k++)
+        way[k] = ratio * l->way[k] + (out - ratio * c) * n[k];
+}
+
+static uint32_t seed = 7;
+
+static double uniform(double low, double high)
+{
+    seed = seed * 1664525u + 1013904223u;
+    return low + (high - low) * (seed >> 8) / 0x1p24;
+}
+
+/* Compares rays that start within SPAN of the axis; returns how many met. */
+static int compare_rays(const char *surfaces, double span)
+{
+    const struct glint_surface *const s = lens.surface;
+    int met = 0;
+
+    load(surfaces);
+    glint_path_init(&path, &lens, NULL, LINE_D_NM);
+    for (int i = 0; i < 60; i++) {
+        const double tilt = uniform(0, 0.5), turn = uniform(-3.1, 3.1);
+        const double direction[3] = {sin(tilt) * cos(turn),
+                                     sin(tilt) * sin(turn), cos(tilt)};
+        const double x = uniform(-span, span), y = uniform(-span, span);
+        const struct line start = {{x, y, 0},
+                                   {direction[0], direction[1], direction[2]}};
+        const struct line own = to_surface(s, &start);
+        double hits[4][2];
+        struct glint_ray ray;
+        long double t = 0, way[3], at[2];
+        const bool there = second_meet(s, &own, 3 * s->semi_mm, &t);
+        enum glint_ray_status status;
+
+        hits[1][0] = (double)NAN; /* is written by rays that meet the form */
+        status = glint_trace(&path, x, y, direction, &ray, hits);
+        for (int k = 0; k < 2; k++)
+            at[k] = own.at[k] + t * own.way[k];
+        if (!there && hypot(hits[1][0], hits[1][1]) < s->semi_mm)
+            fail_msg("%s: met at %g, %g", surfaces, hits[1][0], hits[1][1]);
+        if (!there || hypotl(at[0], at[1]) > s->semi_mm)
+            continue; /* no glass: the profile is our own there */
+        assert_true(isfinite(hits[1][0]));
+        if (status != GLINT_RAY_OK)
+            continue;
+        for (int k = 0; k < 2; k++)
+            if (!(fabsl(at[k] - hits[1][k]) < 1e-9L))
+                fail_msg("%s: %.12g, not %.12Lg", surfaces, hits[1][k], at[k]);
+        met++;
+        if (s->shape.tilt_deg[0] != 0 || s->shape.tilt_deg[1] != 0 ||
+            s[1].radius_mm != 0)
+            continue; /* the plane behind is what the next lines know */
+        second_refract(s, &own, t, 1 / (long double)s->nd, way);
+        for (int k = 0; k < 2; k++) {
+            const long double z = gap_at(s, &own, t) + sag_of(s, at[0], at[1]);
+            const long double at_flat = at[k] + s->shape.decentre_mm[k] +
+                                        (s->thickness_mm - z) / way[2] * way[k];
+
+            if (!(fabsl(at_flat - hits[2][k]) < 1e-8L))
+                fail_msg("%s: behind, %.12g, not %.12Lg", surfaces, hits[2][k],
+                         at_flat);
+        }
+    }
+    return met;
+}
+
+static void test_against_second_method(void **state)
+{
+    static const struct {
+        const char *surfaces;
+        double span;
+    } cases[] = {
+        {"surface 20 9 9 1.5 60\nshape conic -1\nsurface flat 90 30 air", 9},
+        {"surface 20 9 9 1.5 60\nshape conic -30\nsurface flat 90 30 air", 9},
+        {"surface 20 9 9 1.5 60\nshape conic 2\nsurface flat 90 30 air", 9},
+        {"surface 10 9 9.9 1.7 60\nshape conic -0.02\nsurface flat 90 30 air",
+         9},
+        {"surface 1.962 1.2 0.95 1.54 56\nshape conic -0.12 A4 9e-3 A6 -2e-2 "
+         "A8 4e-2 A10 -3e-2\nsurface flat 30 30 air",
+         0.9},
+        /* an inflection: rises, then falls beyond the rim */
+        {"surface 6 2 2 1.54 56\nshape A4 -8e-3 A6 -1e-3\n"
+         "surface flat 30 30 air",
+         2},
+        {"surface flat 2 2 1.54 56\nshape A4 2e-2\nsurface -30 30 20 air", 2},
+        {"surface 30 9 9 1.5 60\nshape cylinder y\nsurface -60 90 30 air", 9},
+        {"surface 30 9 9 1.5 60\nshape cylinder x conic -1.5 A4 1e-5\n"
+         "surface -60 90 30 air",
+         9},
+        {"surface 30 9 9 1.5 60\nshape toric y 50\nsurface flat 90 30 air", 9},
+        {"surface 30 9 9 1.5 60\nshape toric x 50 A4 -2e-5\n"
+         "surface flat 90 29 air",
+         8},
+        {"group decentre 0.5 -0.3\nsurface 30 9 9 1.5 60\nend\n"
+         "surface flat 90 30 air",
+         8},
+        {"group decentre 0.2 0.1 tilt 4 -3\nsurface 30 9 9 1.5 60\n"
+         "shape conic -1\nend\nsurface flat 90 30 air",
+         8}};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const int met = compare_rays(cases[k].surfaces, cases[k].span);
+
+        if (met < 20)
+            fail_msg("%s: only %d rays met", cases[k].surfaces, met);
+    }
+}
+
+/* ------------------------------------------------------------ known optics */
+
+/* A hyperboloid with the conic -n^2 behind a plane images without spherical
+ * aberration. */
+static void test_hyperboloid_has_a_point_focus(void **state)
+{
+    const double direction[3] = {0, 0, 1};
+    struct glint_optics optics;
+    struct glint_ray ray;
+
+    (void)state;
+    load("surface flat 12 14 1.5 60\nsurface -25 50 14 air\nshape conic -2.25");
+    glint_optics_of(&lens, &optics);
+    assert_true(fabs(optics.back_focal_mm - 50) < 1e-9);
+    glint_path_init(&path, &lens, NULL, LINE_D_NM);
+    for (int k = 0; k <= 14; k++) {
+        assert_int_equal(
+            glint_trace(&path, 0.8 * k, 0.5 * k, direction, &ray, NULL),
+            GLINT_RAY_OK);
+        assert_true(hypot(ray.sensor_x_mm, ray.sensor_y_mm) < 1e-11);
+    }
+}
+
+static void test_no_shape_is_a_sphere(void **state)
+{
+    const double direction[3] = {0.1, 0.05, sqrt(1 - 0.0125)};
+    struct glint_ray ray, same;
+
+    (void)state;
+    load("surface 30 9 9 1.5 60\nsurface -60 90 30 air");
+    glint_path_init(&path, &lens, NULL, 532);
+    assert_int_equal(glint_trace(&path, 3, 2, direction, &ray, NULL), 0);
+    load("surface 30 9 9 1.5 60\nshape conic 0 A4 0\nsurface -60 90 30 air");
+    assert_false(glint_surface_is_shaped(&lens.surface[0]));
+    glint_path_init(&path, &lens, NULL, 532);
+    assert_int_equal(glint_trace(&path, 3, 2, direction, &same, NULL), 0);
+    assert_memory_equal(&ray, &same, sizeof ray);
+    /* a form that is nearly the sphere, all but bits */
+    load("surface 30 9 9 1.5 60\nshape conic 1e-15\nsurface -60 90 30 air");
+    glint_path_init(&path, &lens, NULL, 532);
+    assert_int_equal(glint_trace(&path, 3, 2, direction, &same, NULL), 0);
+    assert_true(fabs(ray.sensor_x_mm - same.sensor_x_mm) < 1e-11);
+    assert_true(fabs(ray.energy - same.energy) < 1e-12);
+}
+
+/* Two cylinders of an anamorphic front before a lens: focal lengths by rays
+ * close to the axis in either plane. */
+static void test_squeeze(void **state)
+{
+    struct glint_optics optics;
+
+    (void)state;
+    load("surface -80 3 20 1.6 50\nshape cylinder x\nsurface flat 55 20 air\n"
+         "surface 120 4 20 1.6 50\nshape cylinder x\nsurface flat 5 20 air\n"
+         "surface 50 8 20 1.6 50\nsurface -50 60 20 air");
+    assert_false(glint_prescription_is_round(&lens));
+    glint_optics_of(&lens, &optics);
+    glint_path_init(&path, &lens, NULL, LINE_D_NM);
+    for (int plane = 0; plane < 2; plane++) {
+        const double axis[3] = {0, 0, 1}, h = 1e-3;
+        const double widened = plane ? 1 : optics.squeeze;
+        const double focal = optics.focal_mm / widened;
+        double hits[8][2], end;
+        struct glint_ray ray;
+
+        assert_int_equal(
+            glint_trace(&path, plane ? 0 : h, plane ? h : 0, axis, &ray, hits),
+            0);
+        end = plane ? ray.sensor_y_mm : ray.sensor_x_mm / widened;
+        assert_true(fabs((hits[6][plane] - end) / 60 * focal / h - 1) < 1e-6);
+    }
+    assert_true(fabs(optics.squeeze - 1) > 0.2);
+}
+
+/* Light in the plane at PHI sees the lens turned: the same ray by both ways. */
+static void test_turned_lens(void **state)
+{
+    const double phi = 33, c = cos(phi * GLINT_PI / 180),
+                 s = sin(phi * GLINT_PI / 180);
+    const double turned[3] = {0.2, 0, sqrt(0.96)};
+    const double plain[3] = {0.2 * c, 0.2 * s, sqrt(0.96)};
+    struct glint_ray a, b;
+
+    (void)state;
+    load("surface -80 3 20 1.6 50\nshape cylinder x\nsurface flat 25 20 air\n"
+         "group decentre 1 2 tilt 3 -2\n"
+         "surface 50 9 20 1.6 50\nshape conic -1\nsurface -50 60 20 air\nend");
+    glint_path_init_at(&path, &lens, NULL, 532, phi);
+    assert_int_equal(glint_trace(&path, 3, 1, turned, &a, NULL), 0);
+    glint_path_init(&path, &lens, NULL, 532);
+    assert_int_equal(glint_trace(&path, 3 * c - s, 3 * s + c, plain, &b, NULL),
+                     0);
+    assert_true(fabs(a.sensor_x_mm * c - a.sensor_y_mm * s - b.sensor_x_mm) <
+                1e-11);
+    assert_true(fabs(a.sensor_x_mm * s + a.sensor_y_mm * c - b.sensor_y_mm) <
+                1e-11);
+    assert_true(fabs(a.stop_x_mm * c - a.stop_y_mm * s - b.stop_x_mm) < 1e-11);
+}
+
+/* -------------------------------------------------------------------- text */
+
+static void test_mistakes(void **state)
+{
+    static const char *const rows[][2] = {
+        {"shape conic 1", "t.lens:5:1: a shape stands below its surface"},
+        {"surface 20 9 9 1.5 60\nshape", "t.lens:6:6: shape is missing"},
+        {"surface 20 9 9 1.5 60\nshape A5 1",
+         "t.lens:6:7: 'A5' is none of conic, A4, A6 .. A20, cylinder and "
+         "toric"},
+        {"surface 20 9 9 1.5 60\nshape conic -1\nshape conic -2",
+         "t.lens:7:7: a second 'conic' of this surface"},
+        {"surface 20 9 9 1.5 60\nshape A4", "t.lens:6:9: aspheric term is "
+                                            "missing"},
+        {"surface 20 9 9 1.5 60\nshape A4 1e-2\nsurface flat 9 9 air\n",
+         "t.lens:5:14: the aspheric terms add 65.61 mm at the rim"},
+        {"surface 20 9 9 1.5 60\nshape conic 9\nsurface flat 9 9 air\n",
+         "t.lens:5:14: semi-diameter 9 must be less than 6.32456, where the "
+         "conic ends"},
+        {"surface 20 9 9 1.5 60\nshape toric y 8\nsurface flat 9 9 air\n",
+         "t.lens:5:14: semi-diameter 9 must be less than the radius 8 across"},
+        {"surface 20 9 9 1.5 60\nshape cylinder z",
+         "t.lens:6:16: the plane of the profile must be x or y"},
+        {"surface 20 9 9 1.5 60\nshape cylinder x toric x 9",
+         "t.lens:6:18: a second 'toric' of this surface"},
+        {"group", "t.lens:5:6: decentre or tilt is missing"},
+        {"group tilt 50 0", "t.lens:5:12: tilt must be -45 .. 45, not 50"},
+        {"group tilt 5 0\ngroup tilt 5 0",
+         "t.lens:6:1: the group above has no end"},
+        {"end", "t.lens:5:1: there is no group to end"},
+        {"group tilt 1 0\nsurface 20 9 9 1.5 60\nsurface flat 9 9 air",
+         "t.lens:5:1: the group has no end"}};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        struct glint_error error = {""};
+
+        if (read_with(rows[k][0], &error) == GLINT_OK ||
+            strncmp(error.text, rows[k][1], strlen(rows[k][1])) != 0)
+            fail_msg("%s: got '%s', not '%s'", rows[k][0], error.text,
+                     rows[k][1]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_against_second_method),
+        cmocka_unit_test(test_hyperboloid_has_a_point_focus),
+        cmocka_unit_test(test_no_shape_is_a_sphere),
+        cmocka_unit_test(test_squeeze),
+        cmocka_unit_test(test_turned_lens),
+        cmocka_unit_test(test_mistakes)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
