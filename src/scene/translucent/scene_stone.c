@@ -7,7 +7,11 @@
 #include "base/compiler.h"
 #include "scene/parts.h"
 
-enum { CHANNELS = 3, BLOCK_TEXELS = GLINT_BLOCK_WIDTH * GLINT_BLOCK_HEIGHT };
+enum {
+    CHANNELS = 3,
+    BLOCK_TEXELS = GLINT_BLOCK_WIDTH * GLINT_BLOCK_HEIGHT,
+    ONE_Q15 = GLINT_SCENE_ONE_Q15
+};
 
 /* ------------------------------------------------------------------ opening */
 
@@ -248,6 +252,21 @@ static void note(struct glint_stone_skin *skin)
             skin->block[i] |= GLINT_BLOCK_READY;
 }
 
+/* Returns how many times what it does straight ahead the coat of SKIN mirrors
+ * where it mirrors all, q15; 0: it has none. */
+static int32_t most_coat_q15(const struct glint_scene *scene,
+                             const struct glint_stone_skin *skin)
+{
+    const uint32_t ward = scene->model.material[skin->material].ward;
+    int32_t most_q15 = 1;
+
+    if (ward == GLINT_SCENE_NONE)
+        return 0;
+    for (int k = 0; k < 3; k++)
+        most_q15 = q_larger(most_q15, scene->model.ward[ward].specular_q15[k]);
+    return glint_ratio(UINT64_C(1) << 30, (uint64_t)most_q15);
+}
+
 static int update(struct glint_scene *scene)
 {
     int n = 0;
@@ -258,6 +277,7 @@ static int update(struct glint_scene *scene)
         int blocks;
 
         u.skin->texels_lit = u.skin->texels_spread = 0;
+        u.skin->most_coat_q15 = most_coat_q15(scene, u.skin);
         if (!p->is_shown || (!p->is_seen && !scene->has_split))
             continue;
         forget(scene, u.skin);
@@ -327,27 +347,19 @@ static int32_t sample(const int16_t *map, int width, const struct between *x,
     return (int32_t)(a + ((b - a) * y->part_q16 >> 16));
 }
 
-/* Returns how many times what it does straight ahead the coat of SURFACE
- * mirrors where PASSES_Q15 gets through, q15: what does not get through is
- * mirrored, and never more than all. */
-static int32_t coat_q15(const struct glint_scene *scene,
-                        const struct glint_stone_skin *skin,
-                        const struct glint_met_surface *surface,
-                        int32_t passes_q15)
+/* Returns how many times what it does straight ahead a coat mirrors where
+ * PASSES_Q15 gets through, q15: what does not get through is mirrored, and
+ * never more than all. */
+static int32_t coat_q15(const struct glint_stone_skin *skin, int32_t passes_q15)
 {
-    enum { ONE_Q15 = 1 << 15 };
-    const uint32_t ward = surface->material->ward;
     const uint16_t *at_q15 = skin->stone.transmit_q15;
     const int32_t ahead_q15 = ONE_Q15 - at_q15[GLINT_TRANSLUCENT_COSINES];
-    int32_t most_q15 = 1;
 
-    if (!skin->fresnel || ahead_q15 <= 0 || ward == GLINT_SCENE_NONE)
+    if (!skin->fresnel || ahead_q15 <= 0 || !skin->most_coat_q15)
         return ONE_Q15;
-    for (int k = 0; k < 3; k++)
-        most_q15 = q_larger(most_q15, scene->model.ward[ward].specular_q15[k]);
     return q_smaller(glint_ratio((uint64_t)(ONE_Q15 - passes_q15) << 15,
                                  (uint64_t)ahead_q15),
-                     glint_ratio(UINT64_C(1) << 30, (uint64_t)most_q15));
+                     skin->most_coat_q15);
 }
 
 static int32_t add(const struct glint_scene *scene,
@@ -370,7 +382,7 @@ static int32_t add(const struct glint_scene *scene,
     y = find(uv_q16[1], log2, 0);
     passes_q15 = glint_stone_passes(
         skin, -v3_cosine_q30(ray->toward_q30, surface->normal_q30));
-    coat = coat_q15(scene, skin, surface, passes_q15);
+    coat = coat_q15(skin, passes_q15);
     passes_q15 = q_mul(passes_q15, weight_q15, 15);
     for (int c = 0; c < CHANNELS; c++) {
         const int32_t part_q15 =

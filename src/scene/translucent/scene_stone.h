@@ -26,6 +26,8 @@ struct glint_stone_skin {
     const struct glint_scene_skin *of;
     uint32_t material;
     int fresnel;
+    int32_t most_coat_q15; /* of what its coat mirrors straight ahead, where it
+                              mirrors all; 0: there is no coat */
     struct glint_translucent stone;
     struct glint_spread spread;
     const uint32_t *triangle;     /* mesh: [height][width] */
