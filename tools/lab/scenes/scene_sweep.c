@@ -55,24 +55,37 @@ static const int lookups[] = {1, 4, 8, 16, 32};
 
 /* ------------------------------------------------------------------ points */
 
-/* Returns the quality that --budget calls these dials, or -1. */
-static double quality_of(const int value[SCENE_DIALS], bool has_metal)
+/* Sets VALUE to the dials of LEVEL of --budget, and returns its quality. */
+static double level_of(int level, int value[SCENE_DIALS])
 {
     struct scene_budget budget;
     const struct scene_dials most = {
         .edge_samples = 16, .shadow_points = 16, .ward_samples = 32};
+    struct scene_dials d;
 
     scene_budget_init(&budget, &most);
-    for (int i = 0; i < SCENE_BUDGET_LEVELS; i++) {
-        const struct scene_dials d = scene_budget_dials(&budget, i);
+    budget.level = level;
+    d = scene_budget_dials(&budget, level);
+    value[SCENE_EDGES] = d.edge_samples;
+    value[SCENE_SHADOWED] = d.shadow_points;
+    value[SCENE_SHADING] = d.half_shading ? 2 : 1;
+    value[SCENE_LOOKUPS] = d.ward_samples;
+    value[SCENE_LEVELS] = d.ward_nearest ? 1 : 2;
+    return scene_budget_quality(&budget);
+}
 
-        budget.level = i;
-        if (d.edge_samples == value[SCENE_EDGES] &&
-            d.shadow_points == value[SCENE_SHADOWED] &&
-            d.half_shading == (value[SCENE_SHADING] == 2) &&
-            (!has_metal || (d.ward_samples == value[SCENE_LOOKUPS] &&
-                            d.ward_nearest == (value[SCENE_LEVELS] == 1))))
-            return scene_budget_quality(&budget);
+/* Returns the quality that --budget calls these dials, or -1. Without metal its
+ * own dials do not count. */
+static double quality_of(const int value[SCENE_DIALS], bool has_metal)
+{
+    const int n = has_metal ? SCENE_DIALS : SCENE_LOOKUPS;
+
+    for (int i = 0; i < SCENE_BUDGET_LEVELS; i++) {
+        int of_level[SCENE_DIALS];
+        const double quality = level_of(i, of_level);
+
+        if (memcmp(value, of_level, (size_t)n * sizeof *value) == 0)
+            return quality;
     }
     return -1;
 }
@@ -106,18 +119,11 @@ static void add(struct scene_sweep *s, const int value[SCENE_DIALS])
 /* Adds what --budget comes by and the rest has not. */
 static void add_levels(struct scene_sweep *s)
 {
-    struct scene_budget budget;
-    const struct scene_dials most = {
-        .edge_samples = 16, .shadow_points = 16, .ward_samples = 32};
-
-    scene_budget_init(&budget, &most);
     for (int i = 0; i < SCENE_BUDGET_LEVELS; i++) {
-        const struct scene_dials d = scene_budget_dials(&budget, i);
-        const int value[SCENE_DIALS] = {d.edge_samples, d.shadow_points,
-                                        d.half_shading ? 2 : 1, d.ward_samples,
-                                        d.ward_nearest ? 1 : 2};
+        int value[SCENE_DIALS];
         bool is_there = false;
 
+        level_of(i, value);
         for (int k = 0; k < s->n_points; k++)
             is_there |= memcmp(value, s->point[k].value, sizeof value) == 0;
         if (!is_there)
