@@ -14,6 +14,7 @@
 #include <time.h>
 
 #include "glint/scene/stone_bake.h"
+#include "support/models/psnr.h"
 
 enum { STONES = 2, MODELS = 8, BITS = 7 };
 
@@ -42,17 +43,6 @@ static void fail(const char *what)
 {
     fprintf(stderr, "stone_rows: %s\n", what);
     exit(1);
-}
-
-static double decibels(const double *a, const double *b, size_t n)
-{
-    double square = 0, peak = 0;
-
-    for (size_t i = 0; i < n; i++) {
-        square += (a[i] - b[i]) * (a[i] - b[i]);
-        peak = fmax(peak, fabs(b[i]));
-    }
-    return square > 0 ? 10 * log10(peak * peak * (double)n / square) : 999;
 }
 
 static void write_stone(const char *dir, const char *name, const void *data,
@@ -93,7 +83,7 @@ static void bake(const struct glint_scatter_fit *fit, const double *const light,
         fail(reason);
     if (glint_stone_light(&stone, light, room) != GLINT_OK)
         fail("out of memory");
-    *db = decibels(room, light + n, n);
+    *db = peak_psnr(room, light + n, n);
     if (dir)
         write_stone(dir, name, data, bytes);
     free(data);

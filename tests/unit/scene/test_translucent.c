@@ -19,22 +19,11 @@
 #include "linux/sets.h"
 #include "scene/translucent/spread.h"
 #include "support/models/stone_builder.h"
+#include "support/models/psnr.h"
 #include "support/rng.h"
 
 static const enum glint_scatter_model models[] = {
     GLINT_SCATTER_CLUSTERED, GLINT_SCATTER_FACTORED, GLINT_SCATTER_ALBEDO};
-
-/* Returns by how many decibels A and B, N each, differ; the peak is B's. */
-static double psnr(const double *a, const double *b, size_t n)
-{
-    double square = 0, peak = 0;
-
-    for (size_t i = 0; i < n; i++) {
-        square += (a[i] - b[i]) * (a[i] - b[i]);
-        peak = fmax(peak, fabs(b[i]));
-    }
-    return square > 0 ? 10 * log10(peak * peak * (double)n / square) : 999;
-}
 
 /* Returns how close the integers of B come to its fit, under lamps and shadows.
  */
@@ -51,7 +40,7 @@ static double close_by(const struct built_stone *b)
                      GLINT_OK);
     for (size_t i = 0; i < n; i++)
         light[n + i] = fmax(light[n + i], 0);
-    db = psnr(light + 2 * n, light + n, n);
+    db = peak_psnr(light + 2 * n, light + n, n);
     free(light);
     return db;
 }
