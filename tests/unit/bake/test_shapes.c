@@ -305,6 +305,46 @@ static void test_no_shape_is_a_sphere(void **state)
     assert_true(fabs(ray.energy - same.energy) < 1e-12);
 }
 
+/* Two lenses; A to D are the shapes of their surfaces. */
+#define TWO_LENSES(a, b, c, d)                            \
+    "surface 30 5 9 1.5 60\n" a "surface -60 4 9 air\n" b \
+    "surface -40 3 9 1.6 40\n" c "surface 80 90 30 air\n" d
+
+/* Ghosts are mirrored alike by spheres that are written as conics, all but
+ * bits, or as torics of two equal radii. */
+static void test_ghosts_of_spheres(void **state)
+{
+    static const char *const written[] = {
+        TWO_LENSES("", "", "", ""),
+        TWO_LENSES("shape conic 1e-15\n", "shape conic 1e-15\n",
+                   "shape conic 1e-15\n", "shape conic 1e-15\n"),
+        TWO_LENSES("shape toric x 30\n", "shape toric y -60\n",
+                   "shape toric y -40\n", "shape toric x 80\n")};
+    const double direction[3] = {0.1, 0.05, sqrt(1 - 0.0125)};
+    struct glint_ghost ghost[GLINT_MAX_GHOSTS];
+    struct glint_ray want[GLINT_MAX_GHOSTS], got;
+    int n = 0;
+
+    (void)state;
+    for (int w = 0; w < 3; w++) {
+        load(written[w]);
+        n = glint_ghost_list(&lens, ghost, GLINT_MAX_GHOSTS);
+        assert_int_equal(n, 6);
+        for (int k = 0; k < n; k++) {
+            glint_path_init(&path, &lens, &ghost[k], 532);
+            assert_int_equal(
+                glint_trace(&path, 1, 2, direction, w ? &got : &want[k], NULL),
+                GLINT_RAY_OK);
+            if (!w)
+                continue;
+            assert_true(fabs(got.sensor_x_mm - want[k].sensor_x_mm) < 1e-9);
+            assert_true(fabs(got.sensor_y_mm - want[k].sensor_y_mm) < 1e-9);
+            assert_true(fabs(got.energy - want[k].energy) <
+                        1e-9 * want[k].energy);
+        }
+    }
+}
+
 /* Two cylinders of an anamorphic front before a lens: focal lengths by rays
  * close to the axis in either plane. */
 static void test_squeeze(void **state)
@@ -409,6 +449,7 @@ int main(void)
         cmocka_unit_test(test_against_second_method),
         cmocka_unit_test(test_hyperboloid_has_a_point_focus),
         cmocka_unit_test(test_no_shape_is_a_sphere),
+        cmocka_unit_test(test_ghosts_of_spheres),
         cmocka_unit_test(test_squeeze),
         cmocka_unit_test(test_turned_lens),
         cmocka_unit_test(test_mistakes)};

@@ -199,6 +199,12 @@ static int is_inside(const struct twin_pixel *p, int i)
     return 1;
 }
 
+/* A coat that would mirror more than all towards the rim. */
+#define BRIGHT(specular)                                                 \
+    STAGE "material b translucent f.glint coat ward specular " #specular \
+          " " #specular " " #specular " alpha .1 .1\nenvironment sky\n"
+#define BRIGHT_BALL "sphere a at 0 .6 0 radius .8 material b\n"
+
 static double compare(const char *text)
 {
     static struct twin_pixel exact[PIXELS];
@@ -236,6 +242,7 @@ static void test_twin(void **state)
          "hand left\n" STAGE_LEFT "sphere a at -.6 .5 0 radius .5 turn 0 0 1 "
          "20 material f\nsphere b at .6 .5 0 radius .5 material c\n",
          NULL},
+        {"mirrors all at the rim", BRIGHT(.7) BRIGHT_BALL, NULL},
         {"cube",
          STAGE "mesh m cube.obj scale .5 at 0 .5 0 turn 0 1 0 30 "
                "material c\nplane p at 0 0 0 normal 0 1 0 material "
@@ -344,6 +351,32 @@ static void test_updates(void **state)
     assert_int_equal(d.frame.map_texels, 0);
     close_text(&d);
     side = 64;
+}
+
+/* A coat that becomes another is drawn as if it had been that from the first.
+ */
+static void test_coat_changes(void **state)
+{
+    static int32_t changed[3 * PIXELS], fresh[3 * PIXELS];
+    enum { MATERIAL = 4 }; /* behind those of LOOKS */
+    struct tool tool = {.name = "test"};
+    struct glint_scene_look look;
+    struct drawn d;
+
+    (void)state;
+    open_text(&d, BRIGHT(.75) BRIGHT_BALL, &one_sample, &tool);
+    draw(&d, fresh);
+    assert_int_equal(glint_scene_get_look(d.frame.scene, MATERIAL, &look),
+                     GLINT_OK);
+    close_text(&d);
+    open_text(&d, BRIGHT(.25) BRIGHT_BALL, &one_sample, &tool);
+    draw(&d, changed);
+    assert_true(memcmp(changed, fresh, sizeof fresh) != 0);
+    assert_int_equal(glint_scene_set_look(d.frame.scene, MATERIAL, &look),
+                     GLINT_OK);
+    draw(&d, changed);
+    assert_memory_equal(changed, fresh, sizeof fresh);
+    close_text(&d);
 }
 
 /* What maps take is counted where they were worked out, and not again. */
@@ -547,10 +580,11 @@ static void test_lacks(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_twin),    cmocka_unit_test(test_same_bits),
-        cmocka_unit_test(test_updates), cmocka_unit_test(test_account),
-        cmocka_unit_test(test_frames),  cmocka_unit_test(test_extremes),
-        cmocka_unit_test(test_refused), cmocka_unit_test(test_lacks),
+        cmocka_unit_test(test_twin),     cmocka_unit_test(test_same_bits),
+        cmocka_unit_test(test_updates),  cmocka_unit_test(test_coat_changes),
+        cmocka_unit_test(test_account),  cmocka_unit_test(test_frames),
+        cmocka_unit_test(test_extremes), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_lacks),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
