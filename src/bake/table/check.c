@@ -67,7 +67,8 @@ static double least_gap_mm(const struct glint_prescription *lens, int e,
         return element_gap_mm(lens, e) + sag_mm(lens, e + 1, height, 0) -
                sag_mm(lens, e, height, 0);
     for (int k = 0; k < HEIGHTS * TURNS; k++) {
-        const double h = height * (1 + k / TURNS) / HEIGHTS;
+        const int ring = 1 + k / TURNS;
+        const double h = height * ring / HEIGHTS;
         const double x = h * glint_cos_deg(360.0 / TURNS * (k % TURNS));
         const double y = h * glint_sin_deg(360.0 / TURNS * (k % TURNS));
         const double gap = element_gap_mm(lens, e) + sag_mm(lens, e + 1, x, y) -

@@ -183,7 +183,8 @@ bool glint_form_meet(const struct glint_form *f, double at[3],
     const struct line line = {at, direction};
     double bracket[2], slope[2] = {0, 0}, rate, t, size;
 
-    *cosine = 1.0;
+    normal[0] = normal[1] = 0.0;
+    normal[2] = *cosine = 1.0;
     if (!bracket_root(f, &line, bracket))
         return false;
     t = refine(f, &line, bracket[0], bracket[1]);

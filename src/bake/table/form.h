@@ -40,7 +40,8 @@ void glint_form_leave(const struct glint_form *form, double at[3],
 /* Moves the ray at AT along the unit vector DIRECTION, both in the form's own
  * frame and AT in its vertex plane, to the form. NORMAL receives the unit
  * normal, of positive z, and COSINE that between both, of the sign of
- * DIRECTION's z; 1 if the ray misses, which returns false. */
+ * DIRECTION's z; of a ray that misses, which returns false, they may be those
+ * of the axis. */
 bool glint_form_meet(const struct glint_form *form, double at[3],
                      const double direction[3], double normal[3],
                      double *cosine);

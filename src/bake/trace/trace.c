@@ -220,8 +220,7 @@ static void meet_form(struct beam *b, int n, const struct glint_form *form)
         bool met;
 
         glint_form_enter(form, at, way);
-        met = !(b->status[k] > GLINT_RAY_OK) &&
-              glint_form_meet(form, at, way, b->normal[k], &b->cosine[k]);
+        met = glint_form_meet(form, at, way, b->normal[k], &b->cosine[k]);
         b->status[k] = judge(b->status[k], met, GLINT_RAY_MISSED);
         set_ray(b, k, at, way);
     }
