@@ -97,6 +97,12 @@ struct glint_form {
 /* Returns whether S is no sphere on the axis. */
 bool glint_surface_is_shaped(const struct glint_surface *s);
 
+/* Sets AT to the point of S that lies at X, Y mm of its own frame, from the
+ * vertex on the axis, where the shift and tilt of S put it; in the frame of a
+ * light in the plane at PHI_DEG. Returns false where there is none. */
+bool glint_surface_point(const struct glint_surface *s, double phi_deg,
+                         double x, double y, double at[3]);
+
 struct glint_prescription;
 
 /* Returns whether all of LENS is symmetric about its axis. */
@@ -108,7 +114,8 @@ bool glint_prescription_is_round(const struct glint_prescription *lens);
  * thickness of the surface before it is its distance from that surface. */
 struct glint_prescription {
     char name[GLINT_NAME_BYTES];
-    char source[256]; /* patent or book, for people */
+    char source[256];    /* patent or book, for people */
+    char character[256]; /* what its flare is like, for people */
     double f_number;
     double film_width_mm, film_height_mm;
     int n_surfaces; /* without the stop, 1 .. GLINT_MAX_SURFACES */

@@ -99,7 +99,8 @@ struct glint_ray {
  * surface along DIRECTION, of unit length. The ray goes on where a barrel or
  * the stop would have ended it. RAY is written only if GLINT_RAY_OK is
  * returned. HITS, unless NULL, receives x and y of each event, [n_events][2],
- * in mm. Energy is that of unpolarised light. [Hullin11] section 4 */
+ * in mm; those of a surface that is no centred sphere are in its own frame.
+ * Energy is that of unpolarised light. [Hullin11] section 4 */
 enum glint_ray_status glint_trace(const struct glint_path *path, double px_mm,
                                   double py_mm, const double direction[3],
                                   struct glint_ray *ray, double (*hits)[2]);

@@ -6,18 +6,22 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
+#include "lens_figures/drawing.h"
 #include "model/lens_files.h"
 #include "overlay/compositor.h"
 #include "model/model_cache.h"
 #include "model/table_file.h"
 #include "posix/output.h"
 #include "options/settings_table.h"
+#include "options/suggest.h"
 #include "options/takes.h"
 
 static const char help[] =
-    "glint lenses [--names | --json] [--models FOLDER]\n"
+    "glint lenses [WORD ...] [--names | --json | --html FILE]\n"
+    "             [--models FOLDER]\n"
     "\n"
     "The lenses that come with glint: the name that --lens takes, focal "
     "length\n"
@@ -28,6 +32,9 @@ static const char help[] =
     "(lenses/README.md); those in the folder $GLINT_LENSES are listed, too.\n"
     "\n"
     "  --names           their names alone, a line each\n"
+    "  WORD              lenses that have all of these words in their name,\n"
+    "                    source or character, in any case of letters\n"
+    "  --html FILE       a page with their drawings\n"
     "  --models FOLDER   bake what is missing and put all models there, of\n"
     "                    overlay and of render, as make install does\n"
     "  -o, --only NAME   this lens; repeatable\n";
@@ -42,6 +49,10 @@ struct lenses {
     const char *only[MAX_ONLY];
     int n_only, n, code;
     bool names; /* lists no more than names */
+    char **words;
+    int n_words;
+    const char *html; /* page to write, or NULL */
+    FILE *page;
 };
 
 struct entry {
@@ -102,6 +113,27 @@ static double corner_deg(const struct entry *e)
                 e->optics.focal_mm);
 }
 
+static bool has_word(const char *text, const char *word)
+{
+    const size_t n = strlen(word);
+
+    for (; *text; text++)
+        if (strncasecmp(text, word, n) == 0)
+            return true;
+    return false;
+}
+
+static bool has_words(const struct lenses *l, const char *name,
+                      const struct glint_prescription *lens)
+{
+    for (int i = 0; i < l->n_words; i++)
+        if (!has_word(name, l->words[i]) &&
+            !has_word(lens->source, l->words[i]) &&
+            !has_word(lens->character, l->words[i]))
+            return false;
+    return true;
+}
+
 static void print_json(struct lenses *l, const char *name,
                        const struct entry *e)
 {
@@ -109,6 +141,8 @@ static void print_json(struct lenses *l, const char *name,
     tool_json_string(stdout, name);
     printf(", \"source\": ");
     tool_json_string(stdout, e->settings.lens.source);
+    printf(", \"character\": ");
+    tool_json_string(stdout, e->settings.lens.character);
     printf(", \"focal_length_mm\": %.3f, \"f_number\": %g, "
            "\"film_mm\": [%g, %g], \"corner_deg\": %.2f, \"ghosts\": %d, "
            "\"baked\": %s}",
@@ -130,6 +164,48 @@ static void print_text(struct lenses *l, const char *name,
     printf("%-24s %9.1f %4.0f deg %5g  %-9s %6d  %s\n", name,
            e->optics.focal_mm, corner_deg(e), e->settings.lens.f_number, film,
            e->n_ghosts, e->is_baked ? "baked" : "not yet");
+    if (l->tool->verbose || l->n_words)
+        printf("    %s%s%s\n", e->settings.lens.source,
+               *e->settings.lens.character ? "\n    " : "",
+               e->settings.lens.character);
+}
+
+/* ------------------------------------------------------------------ a page */
+
+static void print_escaped(FILE *file, const char *text)
+{
+    for (; *text; text++)
+        if (strchr("&<>\"", *text))
+            fprintf(file, "&#%d;", *text);
+        else
+            fputc(*text, file);
+}
+
+static void print_html(struct lenses *l, const char *name,
+                       const struct entry *e)
+{
+    struct lens_drawing drawing;
+
+    drawing_defaults(&drawing, &e->settings.lens);
+    drawing.spots = drawing.title = false;
+    drawing.width_px = 560;
+    if (l->n++ == 0)
+        fputs("<!DOCTYPE html><html lang=\"en\"><meta charset=\"utf-8\">"
+              "<title>lenses</title><style>body{font:14px sans-serif;"
+              "margin:2em;display:grid;grid-template-columns:"
+              "repeat(auto-fill,minmax(600px,1fr));gap:1.5em}figure{margin:0;"
+              "border:1px solid #ccc;padding:1em}svg{max-width:100%;"
+              "height:auto}figcaption{color:#444}</style>\n",
+              l->page);
+    fprintf(l->page, "<figure id=\"%s\"><b>%s</b> %.4g mm, f/%g, %d ghosts<br>",
+            name, name, e->optics.focal_mm, e->settings.lens.f_number,
+            e->n_ghosts);
+    drawing_write(&drawing, l->page);
+    fputs("<figcaption>", l->page);
+    print_escaped(l->page, e->settings.lens.source);
+    fputs("<br>", l->page);
+    print_escaped(l->page, e->settings.lens.character);
+    fputs("</figcaption></figure>\n", l->page);
 }
 
 /* ------------------------------------------------------------------ models */
@@ -202,6 +278,10 @@ static bool one(void *ctx, const char *name)
         return true;
     }
     code = set_entry(l->tool, name, e, false);
+    if (code == EXIT_OK && !has_words(l, name, &e->settings.lens)) {
+        free(e);
+        return true;
+    }
     if (code == EXIT_OK && l->folder) {
         code = put_model(l, e);
         if (code == EXIT_OK)
@@ -210,21 +290,72 @@ static bool one(void *ctx, const char *name)
             code = put_model(l, e);
         l->n++;
     } else if (code == EXIT_OK)
-        (l->tool->json ? print_json : print_text)(l, name, e);
+        (l->page         ? print_html
+         : l->tool->json ? print_json
+                         : print_text)(l, name, e);
     free(e);
     if (code != EXIT_OK)
         l->code = code;
     return code == EXIT_OK || code == EXIT_LENS;
 }
 
+static bool offer(void *suggest, const char *name)
+{
+    suggest_try(suggest, name, strlen(name));
+    return true;
+}
+
+static int no_match(const struct lenses *l)
+{
+    struct suggest s;
+
+    suggest_begin(&s, l->words[0]);
+    lens_files_each(offer, &s);
+    fprintf(stderr,
+            "glint lenses: no lens has %s'%s' in its name, source or "
+            "character%s%s\n",
+            l->n_words > 1 ? "all words from " : "", l->words[0],
+            suggest_best(&s) ? "; did you mean " : "",
+            suggest_best(&s) ? s.best : "");
+    return EXIT_LENS;
+}
+
+/* Lists into the page L->html. */
+static int run_page(struct lenses *l)
+{
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_E_MEMORY;
+    struct glint_output out;
+    char *text = NULL;
+    size_t bytes = 0;
+
+    l->page = open_memstream(&text, &bytes);
+    if (l->page) {
+        const int n = lens_files_each(one, l);
+
+        if (fclose(l->page) == 0 && n >= 0)
+            status =
+                glint_output_open(&out, l->html, GLINT_OUTPUT_TEXT, &error);
+        if (status == GLINT_OK)
+            status = glint_output_finish(&out, text, bytes, &error);
+    }
+    free(text);
+    return status == GLINT_OK ? l->code
+                              : tool_fail(l->tool, status, error.text);
+}
+
 static int run(struct lenses *l)
 {
+    if (l->html)
+        return run_page(l);
     if (l->folder && mkdir(l->folder, 0777) != 0 && errno != EEXIST) {
         fprintf(stderr, "glint lenses: %s: %s\n", l->folder, strerror(errno));
         return EXIT_OUTPUT;
     }
     if (lens_files_each(one, l) < 0)
         return tool_fail(l->tool, GLINT_E_MEMORY, NULL);
+    if (l->n == 0 && l->code == EXIT_OK && l->n_words)
+        return no_match(l);
     if (l->n == 0 && l->code == EXIT_OK) {
         fprintf(stderr, "glint lenses: there are none; $GLINT_LENSES names "
                         "a folder of them\n");
@@ -241,6 +372,7 @@ static int parse(struct lenses *l, int argc, char **argv)
         {"models", required_argument, NULL, 'm'},
         {"only", required_argument, NULL, 'o'},
         {"names", no_argument, NULL, 'n'},
+        {"html", required_argument, NULL, 'H'},
         TOOL_COMMON_OPTIONS};
     int c, code;
 
@@ -250,6 +382,8 @@ static int parse(struct lenses *l, int argc, char **argv)
             l->names = true;
         else if (c == 'm')
             l->folder = optarg;
+        else if (c == 'H')
+            l->html = optarg;
         else if (c == 'o' && l->n_only == MAX_ONLY)
             return tool_usage(l->tool, "more than %d lenses", MAX_ONLY);
         else if (c == 'o')
@@ -257,12 +391,14 @@ static int parse(struct lenses *l, int argc, char **argv)
         else if ((code = tool_option(l->tool, c, optarg)) >= 0)
             return code;
     }
-    return optind == argc
-               ? -1
-               : tool_usage(l->tool,
-                            "takes no lens but by --only; glint info "
-                            "%s tells of it",
-                            argv[optind]);
+    l->words = argv + optind;
+    l->n_words = argc - optind;
+    if (l->html && (l->tool->json || l->folder))
+        return tool_usage(l->tool, "--html goes with neither --json nor "
+                                   "--models");
+    return l->html && (code = tool_check_output(l->tool, l->html)) != EXIT_OK
+               ? code
+               : -1;
 }
 
 int cmd_lenses(int argc, char **argv)

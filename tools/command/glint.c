@@ -16,6 +16,7 @@ static const char help[] =
     "  glint lenses                    the lenses that come with glint\n"
     "  glint info LENS|MODEL           what a lens is: focal length, ghosts\n"
     "  glint coat COATING | LENS ...   what a coating reflects, as plots\n"
+    "  glint draw LENS -o FILE.svg     its section, rays, ghosts and spots\n"
     "  glint bake LENS -o MODEL        polynomials of its ghosts, in integers\n"
     "  glint trace LENS --ghost K ...  rays as a table\n"
     "  glint render LENS|MODEL -o OUT  the flare alone\n"
@@ -47,7 +48,7 @@ static const struct command commands[] = {
     {"overlay", cmd_overlay}, {"explain", cmd_explain}, {"live", cmd_live},
     {"compare", cmd_compare}, {"bake", cmd_bake},       {"bench", cmd_bench},
     {"sweep", cmd_sweep},     {"lenses", cmd_lenses},   {"coat", cmd_coat},
-    {"styles", cmd_styles},
+    {"styles", cmd_styles},   {"draw", cmd_draw},
 };
 
 enum { N_COMMANDS = sizeof commands / sizeof *commands };

@@ -13,6 +13,7 @@ MODELS  ?= $(if $(CROSS),no,yes)
 to := $(DESTDIR)$(PREFIX)
 # Completions, by the folders in which shells look for them.
 shells := bash-completion/completions/glint.bash zsh/site-functions/_glint fish/vendor_completions.d/glint.fish
+lens_rooms := $(patsubst %/,%,$(wildcard lenses/*/))
 install: install-library all glint-live $(if $(filter yes,$(PLUGIN)),build/glint-oiio.so) \
         $(if $(filter yes,$(MESHES)),build/glint-assimp.so) \
         $(if $(filter yes,$(WINDOW)),build/glint-sdl.so) $(if $(CROSS),,man)
@@ -21,6 +22,8 @@ install: install-library all glint-live $(if $(filter yes,$(PLUGIN)),build/glint
 	install $(if $(CROSS),-s --strip-program=$(CROSS)strip) -m 755 \
 	        $(program) $(OUT)/glint-live $(to)/bin
 	install -m 644 lenses/*.lens $(to)/share/glint/lenses
+	for r in $(lens_rooms); do install -d $(to)/share/glint/$$r && \
+	        install -m 644 $$r/*.lens $(to)/share/glint/$$r || exit 1; done
 	install -m 644 tests/data/bridge.$(if $(filter yes,$(PLUGIN)),jpg,ppm) $(to)/share/glint
 	sed 's,@PREFIX@,$(PREFIX),' platform/linux/glint-live.service \
 	        >$(to)/lib/systemd/system/glint-live.service
@@ -38,7 +41,7 @@ install: install-library all glint-live $(if $(filter yes,$(PLUGIN)),build/glint
 ifneq ($(MODELS),no)
 	@echo 'baking the models of all lenses, where there are none yet (MODELS=no: later)'
 	rm -rf build/models-installed # of other tables
-	build/glint lenses --models build/models-installed
+	build/glint lenses --models build/models-installed $(patsubst lenses/%.lens,--only %,$(wildcard lenses/*.lens))
 	install -d $(to)/share/glint/models
 	install -m 644 build/models-installed/*.glint $(to)/share/glint/models
 endif
@@ -61,11 +64,11 @@ uninstall:
 	        $(LIBRARIES:%=$(to)/lib/pkgconfig/%.pc) $(headers:%=$(to)/%) \
         $(to)/lib/glint/glint-assimp.so $(to)/lib/glint/glint-sdl.so $(to)/lib/frei0r-1/glint.so \
 	        $(to)/lib/systemd/system/glint-live.service \
-	        $(patsubst %,$(to)/share/glint/%,$(wildcard lenses/*.lens)) \
+	        $(patsubst %,$(to)/share/glint/%,$(wildcard lenses/*.lens lenses/*/*.lens)) \
 	        $(addprefix $(to)/share/,$(shells:.bash=)) $(to)/share/man/man1/glint.1 $(to)/share/man/man1/glint-*.1 \
 	        $(to)/share/man/man3/glint.3 $(to)/share/man/man5/glint-lens.5 $(to)/share/man/man5/glint-scene.5 \
 	        $(to)/share/glint/models/*.glint $(to)/share/glint/bridge.jpg $(to)/share/glint/bridge.ppm
-	@for d in include/glint/scene include/glint lib/pkgconfig lib/glint lib/frei0r-1 share/glint/models share/glint/lenses share/glint \
+	@for d in include/glint/scene include/glint lib/pkgconfig lib/glint lib/frei0r-1 share/glint/models $(lens_rooms:%=share/glint/%) share/glint/lenses share/glint \
 	        $(patsubst %/,share/%,$(dir $(shells))) share/bash-completion share/zsh share/fish \
 	        share/man/man1 share/man/man3 share/man/man5 share/man lib/systemd/system lib/systemd; do \
 	        if [ -d $(to)/$$d ]; then rmdir --ignore-fail-on-non-empty $(to)/$$d; fi; done

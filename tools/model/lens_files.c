@@ -64,16 +64,21 @@ bool lens_folder(int i, const char *kind, char *path, size_t bytes)
     return true;
 }
 
+/* Folders within a folder of lenses, besides itself. */
+static const char *const rooms[] = {"", "/normal", "/tele", "/wide"};
+
+enum { N_ROOMS = sizeof rooms / sizeof *rooms };
+
 bool lens_file_find(const char *name, char *path, size_t bytes)
 {
     for (int i = 0; lens_folder(i, "lenses", path, bytes); i++) {
         const size_t used = strlen(path);
 
-        if (used > 0 &&
-            (size_t)snprintf(path + used, bytes - used, "/%s.lens", name) <
-                bytes - used &&
-            access(path, R_OK) == 0)
-            return true;
+        for (int r = 0; used > 0 && r < N_ROOMS; r++)
+            if ((size_t)snprintf(path + used, bytes - used, "%s/%s.lens",
+                                 rooms[r], name) < bytes - used &&
+                access(path, R_OK) == 0)
+                return true;
     }
     return false;
 }
@@ -138,11 +143,14 @@ static int by_name(const void *a, const void *b)
 int lens_files_each(lens_files_fn *each, void *ctx)
 {
     struct list l = {NULL, 0, 0};
-    char path[PATH_CHARS];
+    char path[PATH_CHARS], room[PATH_CHARS + 16];
     bool ok = true;
 
     for (int i = 0; ok && lens_folder(i, "lenses", path, sizeof path); i++)
-        ok = add_folder(&l, path);
+        for (int r = 0; ok && *path && r < N_ROOMS; r++) {
+            snprintf(room, sizeof room, "%s%s", path, rooms[r]);
+            ok = add_folder(&l, room);
+        }
     if (l.n > 0)
         qsort(l.name, (size_t)l.n, sizeof *l.name, by_name);
     for (int i = 0; ok && i < l.n && each(ctx, l.name[i]); i++)

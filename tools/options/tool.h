@@ -163,6 +163,7 @@ int cmd_bench(int argc, char **argv);
 int cmd_sweep(int argc, char **argv);
 int cmd_lenses(int argc, char **argv);
 int cmd_coat(int argc, char **argv);
+int cmd_draw(int argc, char **argv);
 int cmd_styles(int argc, char **argv);
 
 #endif

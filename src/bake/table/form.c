@@ -293,3 +293,17 @@ void glint_form_init(struct glint_form *form, const struct glint_surface *s,
     profile_inside(form, form->end2, form->end_at);
     place(form, shape, phi_deg);
 }
+
+bool glint_surface_point(const struct glint_surface *s, double phi_deg,
+                         double x, double y, double at[3])
+{
+    double slope[2], direction[3] = {0, 0, 1};
+    struct glint_form form;
+
+    glint_form_init(&form, s, phi_deg);
+    at[0] = x;
+    at[1] = y;
+    at[2] = glint_form_sag(&form, x, y, slope);
+    glint_form_leave(&form, at, direction);
+    return isfinite(at[2]);
+}

@@ -41,6 +41,7 @@ static const struct glint_text_range vd_range = {"Abbe number", 10, 150};
 enum field {
     NAME,
     SOURCE,
+    CHARACTER,
     F_NUMBER,
     FILM,
     FOCAL,
@@ -120,6 +121,16 @@ static bool read_source(struct parser *p)
     if (!rest.length)
         return glint_text_fail(&p->text, rest.place, "source is missing");
     memcpy(p->lens.source, rest.start, (size_t)rest.length);
+    return true;
+}
+
+static bool read_character(struct parser *p)
+{
+    const struct glint_word rest = glint_text_rest(&p->text);
+
+    if (!rest.length)
+        return glint_text_fail(&p->text, rest.place, "character is missing");
+    memcpy(p->lens.character, rest.start, (size_t)rest.length);
     return true;
 }
 
@@ -349,6 +360,7 @@ static const struct {
 } fields[N_FIELDS] = {
     [NAME] = {"name", read_name, true, false},
     [SOURCE] = {"source", read_source, false, false},
+    [CHARACTER] = {"character", read_character, false, false},
     [F_NUMBER] = {"f-number", read_f_number, true, false},
     [FILM] = {"film", read_film, true, false},
     [FOCAL] = {"focal-length", read_focal, false, false},

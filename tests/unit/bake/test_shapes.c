@@ -443,6 +443,46 @@ static void test_mistakes(void **state)
     }
 }
 
+/* Where a ray meets a surface is a point of both. */
+static void test_points_lie_on_rays(void **state)
+{
+    static const char *const shapes[] = {
+        "surface 30 9 9 1.5 60\nshape conic -2 A4 1e-5\nsurface flat 90 30 air",
+        "group decentre 1 -2 tilt 7 -11\nsurface 30 9 9 1.5 60\n"
+        "shape toric y 50 A4 1e-5\nsurface flat 90 30 air\nend",
+        "group tilt 20 0\nsurface 40 9 9 1.5 60\nsurface flat 90 30 air\nend"};
+    const double direction[3] = {0.1, 0, sqrt(1 - 0.01)};
+    double hits[GLINT_MAX_EVENTS + 1][2], at[3];
+    struct glint_ray ray;
+
+    (void)state;
+    for (int i = 0; i < 3; i++)
+        for (int phi = 0; phi < 360; phi += 40) {
+            double t;
+
+            load(shapes[i]);
+            glint_path_init_at(&path, &lens, NULL, LINE_D_NM, phi);
+            assert_int_equal(glint_trace(&path, 1.5, -2, direction, &ray, hits),
+                             0);
+            assert_true(glint_surface_point(&lens.surface[0], phi, hits[1][0],
+                                            hits[1][1], at));
+            t = at[2] / direction[2];
+            assert_true(fabs(1.5 + t * direction[0] - at[0]) < 1e-9);
+            assert_true(fabs(-2 - at[1]) < 1e-9);
+        }
+    /* The tilted sphere stays one, about a centre that turned with it. */
+    load("group tilt 20 0\nsurface 40 9 9 1.5 60\nsurface flat 90 30 air\n"
+         "end");
+    for (int x = -8; x <= 8; x += 4) {
+        const double turn = 20 * 3.14159265358979323846 / 180;
+
+        assert_true(glint_surface_point(&lens.surface[0], 0, x, 3, at));
+        assert_true(fabs(hypot(hypot(at[0], at[1] + 40 * sin(turn)),
+                               at[2] - 40 * cos(turn)) -
+                         40) < 1e-9);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -452,6 +492,7 @@ int main(void)
         cmocka_unit_test(test_ghosts_of_spheres),
         cmocka_unit_test(test_squeeze),
         cmocka_unit_test(test_turned_lens),
+        cmocka_unit_test(test_points_lie_on_rays),
         cmocka_unit_test(test_mistakes)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
