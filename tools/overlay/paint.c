@@ -209,7 +209,9 @@ void paint_black(const struct glint_image *image)
         for (int y = 0; y < rows; y++) {
             uint8_t *row = image->plane[p] + y * image->stride_bytes[p];
 
-            for (size_t i = 0; i < bytes; i++)
+            if (code[0] == code[1])
+                memset(row, code[0], bytes);
+            for (size_t i = 0; i < bytes && code[0] != code[1]; i++)
                 row[i] = code[i & 1];
         }
     }
