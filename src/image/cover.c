@@ -116,6 +116,31 @@ static void cover_ycc(struct stretch *s, const struct glint_mix *mix,
     }
 }
 
+/* Returns whether all pixels of the stretch are wholly hidden. */
+static int hides_all(const struct stretch *s)
+{
+    unsigned shown = 0;
+
+    for (int row = 0; row < s->n_y; row++)
+        for (int i = 0; i < s->n_x; i++)
+            shown |= s->cover->cover_q8[row][i] ^ GLINT_COVER_ALL;
+    return !shown;
+}
+
+/* Sets the codes of a stretch to black, whatever they were. */
+static void blacken(const struct stretch *s, int is_rgb)
+{
+    const uint8_t luma = (uint8_t)(is_rgb ? 0 : s->black);
+    const uint8_t rest = is_rgb ? 0 : 128;
+
+    for (int row = 0; row < s->n_y; row++)
+        for (int i = 0; i < WIDTH; i++) {
+            s->codes->sample[0][row][i] = luma;
+            s->codes->sample[1][row][i] = s->codes->sample[2][row][i] = rest;
+            s->codes->chroma[row][i] = rest;
+        }
+}
+
 void glint_cover_stretch(const struct glint_resolve *resolve,
                          const struct glint_image *image, int x, int y, int n_x,
                          int n_y, const struct glint_cover_rows *cover,
@@ -128,13 +153,18 @@ void glint_cover_stretch(const struct glint_resolve *resolve,
                         .black = image->range == GLINT_RANGE_LIMITED ? 16 : 0,
                         .cover = cover,
                         .codes = &rows->codes};
+    const int is_rgb = s.layout->kind == GLINT_LAYOUT_RGB ||
+                       s.layout->kind == GLINT_LAYOUT_565;
 
-    glint_codes_read(&rows->codes, image, x, y, n_x, n_y);
-    if (s.layout->kind == GLINT_LAYOUT_RGB ||
-        s.layout->kind == GLINT_LAYOUT_565)
-        cover_rgb(&s, &resolve->mix);
-    else
-        cover_ycc(&s, &resolve->mix, rows);
+    if (hides_all(&s)) {
+        blacken(&s, is_rgb);
+    } else {
+        glint_codes_read(&rows->codes, image, x, y, n_x, n_y);
+        if (is_rgb)
+            cover_rgb(&s, &resolve->mix);
+        else
+            cover_ycc(&s, &resolve->mix, rows);
+    }
     if (light)
         glint_resolve_codes(resolve, image, y, n_x, n_y, light, rows);
     glint_codes_write(&rows->codes, image, x, y, n_x, n_y);
