@@ -190,6 +190,7 @@ share_of_points(const struct glint_scene *s, const struct glint_shadow *shadow,
                 const struct glint_met_surface *surface,
                 const struct below *below, const int32_t place[3])
 {
+    const int asks_planes = glint_scene_other_planes(s, surface->object);
     struct glint_scene_ray ray;
     int reached = 0;
 
@@ -207,7 +208,7 @@ share_of_points(const struct glint_scene *s, const struct glint_shadow *shadow,
                                            surface->triangle, GLINT_FAR);
             continue;
         }
-        reached += !(s->has_planes &&
+        reached += !(asks_planes &&
                      glint_scene_planes_block(s, &ray, surface->object)) &&
                    (below->cell == NONE ||
                     !is_blocked(s, shadow, below, p, place, surface));
@@ -228,7 +229,8 @@ int32_t glint_shadow_reaches(const struct glint_scene *s,
         below.cell = NONE;
     else
         find(shadow, place, &below);
-    if (shadow->n_points == 1 && below.cell != BEYOND && !s->has_planes)
+    if (shadow->n_points == 1 && below.cell != BEYOND &&
+        !glint_scene_other_planes(s, surface->object))
         return is_lit(s, shadow, &below, place, surface) << 15;
     return share_of_points(s, shadow, surface, &below, place);
 }

@@ -192,7 +192,8 @@ struct glint_scene_worker {
     struct glint_quick_triangle *quick; /* [GLINT_QUICK_TRIANGLES] */
     int is_linear;
     struct glint_layer_span *span; /* [layers]: of the row that is drawn */
-    int n_spans;
+    int *over; /* [layers]: those over the pixel that is drawn */
+    int n_spans, n_over;
 };
 
 struct glint_scene {
@@ -207,7 +208,8 @@ struct glint_scene {
     struct glint_bins bins;       /* of triangles, object << 20 | triangle */
     int32_t nearest;              /* z of what is nearest, 1 at least */
     int has_triangles;            /* bins are filled */
-    int has_planes;               /* that throw shadows */
+    int n_planes;                 /* that throw shadows, */
+    uint32_t plane;               /* and the last of them */
     int has_split, has_catchers;  /* objects that are so */
     struct glint_scene_worker *worker; /* [workers] */
     struct glint_blend_rows *rows;     /* [workers] */
@@ -268,6 +270,13 @@ int glint_scene_blocks(const struct glint_scene *scene,
 int glint_scene_planes_block(const struct glint_scene *scene,
                              const struct glint_scene_ray *ray,
                              uint32_t object);
+
+/* Returns whether a plane but OBJECT throws shadows at all. */
+static inline int glint_scene_other_planes(const struct glint_scene *s,
+                                           uint32_t object)
+{
+    return s->n_planes > (s->n_planes > 0 && s->plane == object);
+}
 
 /* Sets MET to where RAY, of the picture, meets object ID, held inside if it is
  * a triangle; returns 0 if it does not. SEEN_Q30 is its direction in camera

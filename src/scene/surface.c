@@ -90,7 +90,7 @@ int glint_scene_blocks(const struct glint_scene *scene,
 int glint_scene_planes_block(const struct glint_scene *scene,
                              const struct glint_scene_ray *ray, uint32_t object)
 {
-    for (uint32_t i = 0; i < scene->model.header->n_objects; i++) {
+    for (uint32_t i = 0; scene->n_planes && i <= scene->plane; i++) {
         struct glint_met met;
 
         if (scene->placed[i].object->kind == GLINT_OBJECT_PLANE &&

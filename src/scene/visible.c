@@ -267,7 +267,7 @@ static void confine(const struct glint_scene *s, struct glint_placed *plane)
     for (uint32_t i = 0; i < s->model.header->n_lights; i++) {
         if (!s->model.header->shadow)
             break;
-        if (!s->lit[i].shadow || s->has_planes)
+        if (!s->lit[i].shadow || s->n_planes)
             return;
         box = glint_box_join(box, glint_shadow_box(s, s->lit[i].shadow, plane));
     }

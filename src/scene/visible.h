@@ -69,6 +69,9 @@ struct glint_scene_motions {
                               struct glint_box tile);
     /* Lists in W those that may touch its row Y, from back to front; */
     void (*list)(struct glint_scene_worker *w, int y);
+    /* of these, those over pixel X, in W->over; returns the end of the pixels
+     * for which they are the same; */
+    int (*next)(struct glint_scene_worker *w, int x);
     /* draws them over pixel (X, Y), of which SUM is. */
     void (*over)(const struct glint_scene_worker *w, int x, int y,
                  struct glint_scene_sum *sum);

@@ -100,12 +100,15 @@ static void place_planes(struct glint_scene *s)
 /* Grids of shadows are made anew where anything has moved. */
 static void prepare_shadows(struct glint_scene *s)
 {
-    s->has_planes = 0;
+    s->n_planes = 0;
     for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
         const struct glint_scene_object *o = s->placed[i].object;
 
-        s->has_planes |= s->placed[i].is_shown &&
-                         o->kind == GLINT_OBJECT_PLANE && o->catcher_q15 == 0;
+        if (!s->placed[i].is_shown || o->kind != GLINT_OBJECT_PLANE ||
+            o->catcher_q15)
+            continue;
+        s->n_planes++;
+        s->plane = i;
     }
     for (uint32_t i = 0; i < s->model.header->n_lights; i++)
         if (s->lit[i].shadow && !s->lit[i].shadow->is_ready)

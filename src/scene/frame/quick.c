@@ -10,14 +10,14 @@ enum { ONE_Q30 = 1 << 30, LEAST_UP = 17 };
 
 /* The picture's farthest corner is 2^29 to 2^30 away from the middle, or the
  * plane of the picture is 2^28 away. */
-static void set_ray(const struct glint_scene_view *view, int32_t x_q8,
-                    int32_t y_q8, struct glint_scene_ray *ray)
+void glint_quick_ray(const struct glint_scene_view *view, int32_t x_q8,
+                     int32_t y_q8, struct glint_scene_ray *ray,
+                     int32_t seen_q30[3])
 {
     const int down = 28 + view->wide;
     const int32_t toward[3] = {(int32_t)((x_q8 * view->step_q56[0]) >> down),
                                -(int32_t)((y_q8 * view->step_q56[1]) >> down),
                                (1 << 28) >> view->wide};
-    int32_t seen_q30[3];
 
     glint_quick_unit(toward, seen_q30);
     v3_turn_back(&view->turn, seen_q30, ray->toward_q30);
@@ -115,29 +115,31 @@ int glint_scene_span(const struct glint_scene *s, const struct glint_placed *p,
     return *x0 < *x1;
 }
 
+void glint_quick_ball(const struct glint_scene *scene, struct glint_placed *p)
+{
+    begin_ball(scene, p);
+    begin_spans(scene, p);
+}
+
 void glint_quick_begin(struct glint_scene *scene)
 {
-    for (uint32_t i = 0; i < scene->model.header->n_objects; i++) {
-        begin_ball(scene, &scene->placed[i]);
-        begin_spans(scene, &scene->placed[i]);
-    }
+    for (uint32_t i = 0; i < scene->model.header->n_objects; i++)
+        glint_quick_ball(scene, &scene->placed[i]);
 }
 
 /* The ray's line passes the ball's middle at A = L x D, in radii. The normal
  * is A x D - sqrt(1 - A.A) D, a unit vector. Near the rim that is not exact
  * enough. */
-static int find_ball(const struct glint_placed *p,
-                     const struct glint_scene_ray *ray,
-                     struct glint_met_surface *surface)
+int glint_quick_meet(const struct glint_placed *p,
+                     const struct glint_scene_ray *ray, int32_t across_q30[3],
+                     int32_t *cosine_q30)
 {
-    const int32_t *d_q30 = ray->toward_q30;
     int64_t cross[3];
-    int32_t across_q30[3], half_q30;
     uint64_t square_q60;
     uint32_t s_q32;
     int up;
 
-    v3_cross(p->over, d_q30, cross);
+    v3_cross(p->over, ray->toward_q30, cross);
     for (int k = 0; k < 3; k++) {
         const int64_t a_q30 = cross[k] >> p->over_up;
 
@@ -150,8 +152,32 @@ static int find_ball(const struct glint_placed *p,
         return 0;
     up = glint_quick_up(square_q60);
     s_q32 = (uint32_t)(square_q60 << up >> 32);
-    half_q30 = (int32_t)((uint64_t)s_q32 * glint_quick_root_q31(s_q32) >>
-                         (31 + up / 2));
+    *cosine_q30 = (int32_t)((uint64_t)s_q32 * glint_quick_root_q31(s_q32) >>
+                            (31 + up / 2));
+    return 1;
+}
+
+/* L.D - cosine, in radii. */
+int32_t glint_quick_away(const struct glint_placed *p,
+                         const struct glint_scene_ray *ray, int32_t cosine_q30)
+{
+    return q_clamp_sat((((v3_dot(p->over, ray->toward_q30) >> 30) -
+                         (cosine_q30 >> (30 - p->over_up))) *
+                        p->radius) >>
+                           p->over_up,
+                       1, GLINT_FAR - 1);
+}
+
+static int find_ball(const struct glint_placed *p,
+                     const struct glint_scene_ray *ray,
+                     struct glint_met_surface *surface)
+{
+    const int32_t *d_q30 = ray->toward_q30;
+    int64_t cross[3];
+    int32_t across_q30[3], half_q30;
+
+    if (!glint_quick_meet(p, ray, across_q30, &half_q30))
+        return 0;
     v3_cross(across_q30, d_q30, cross);
     for (int k = 0; k < 3; k++) {
         const int32_t n_q30 =
@@ -161,12 +187,7 @@ static int find_ball(const struct glint_placed *p,
         surface->place[k] =
             p->at[k] + (int32_t)q_shift((int64_t)n_q30 * p->radius, 30);
     }
-    /* of textures: L.D - half, in radii; to 2^-13 of a radius */
-    surface->t = q_clamp_sat(
-        (((v3_dot(p->over, d_q30) >> 30) - (half_q30 >> (30 - p->over_up))) *
-         p->radius) >>
-            p->over_up,
-        1, GLINT_FAR - 1);
+    surface->t = glint_quick_away(p, ray, half_q30);
     return 1;
 }
 
@@ -196,18 +217,19 @@ int glint_quick_find(struct glint_scene_worker *w, uint32_t id, int32_t x_q8,
 {
     const struct glint_scene *s = w->scene;
     const struct glint_placed *p = &s->placed[id >> 20];
+    int32_t seen_q30[3];
 
     surface->object = id >> 20;
     surface->triangle = id & 0xfffff;
     if (p->object->kind == GLINT_OBJECT_MESH) {
         if (!s->cfg.parts.meshes->find(w, id, x_q8, y_q8, surface))
             return 0;
-        set_ray(&s->view, x_q8, y_q8, ray);
+        glint_quick_ray(&s->view, x_q8, y_q8, ray, seen_q30);
         return 1;
     }
     if (p->object->kind == GLINT_OBJECT_SPHERE && !p->over_up)
         return 0;
-    set_ray(&s->view, x_q8, y_q8, ray);
+    glint_quick_ray(&s->view, x_q8, y_q8, ray, seen_q30);
     surface->material = &s->model.material[p->material];
     if (p->object->kind == GLINT_OBJECT_PLANE)
         return find_plane(p, ray, surface);

@@ -298,18 +298,46 @@ static inline void put(const struct glint_scene_worker *w,
                 (uint16_t)q_clamp_sat((sum_q17[c] + 1) >> 1, 0, 65535);
 }
 
-static void put_nothing(const struct glint_scene_worker *w,
-                        const struct glint_pass_rows *rows, int row, int x0,
-                        int x1)
+/* Sets N pixels from X on of row ROW to light and cover that are the same for
+ * all of them. */
+static void put_same(const struct glint_scene_worker *w,
+                     const struct glint_pass_rows *rows, int row, int x, int n,
+                     const int32_t rgb_q15[3], int cover_q8)
 {
-    for (int i = x0; i < x1; i++)
-        rows->cover->cover_q8[row][i] = 0;
-    for (int c = 0; c < 3; c++)
-        for (int i = x0; i < x1; i++)
-            if (w->is_linear)
-                rows->light_q20[c][i] = 0;
-            else
-                rows->light->rgb_q16[c][row][i] = 0;
+    const int first = x - w->tile.x0;
+    uint16_t *to_q8 = &rows->cover->cover_q8[row][first];
+
+    for (int i = 0; i < n; i++)
+        to_q8[i] = (uint16_t)cover_q8;
+    for (int c = 0; c < 3; c++) {
+        const int64_t light_q17 = (int64_t)rgb_q15[c] * SUMMED;
+        const int32_t light_q20 = q_clamp_sat(light_q17 * 8, 0, INT32_MAX);
+        const uint16_t light_q16 =
+            (uint16_t)q_clamp_sat((light_q17 + 1) >> 1, 0, 65535);
+
+        if (w->is_linear) {
+            for (int i = 0; i < n; i++)
+                rows->light_q20[c][first + i] = light_q20;
+        } else {
+            uint16_t *to_q16 = &rows->light->rgb_q16[c][row][first];
+
+            for (int i = 0; i < n; i++)
+                to_q16[i] = light_q16;
+        }
+    }
+}
+
+/* Adds whole cover of pixels X0 .. X1 - 1 of row Y. */
+static void cover_wholly(const struct glint_scene *s, int y, int x0, int x1)
+{
+    enum { SIDE = 1 << GLINT_COVER_LOG2 };
+    uint16_t *cover = &s->cover[(y >> GLINT_COVER_LOG2) * s->cover_across];
+
+    for (int x = x0, end; x < x1; x = end) {
+        end = q_smaller((x + SIDE) & -SIDE, x1);
+        cover[x >> GLINT_COVER_LOG2] = (uint16_t)(cover[x >> GLINT_COVER_LOG2] +
+                                                  (end - x) * GLINT_COVER_ALL);
+    }
 }
 
 /* Sets pixels X0 .. X1 - 1 of row ROW to what is seen where there is no thing.
@@ -318,28 +346,44 @@ static void put_background(const struct glint_scene_worker *w,
                            const struct glint_pass_rows *rows, int row, int x0,
                            int x1)
 {
+    static const int32_t none_q15[3];
     const struct glint_scene_header *h = w->scene->model.header;
-    int64_t sum_q17[3];
 
-    for (int c = 0; c < 3; c++)
-        sum_q17[c] = (int64_t)h->background_q15[c] * SUMMED;
     if (h->background == GLINT_BACKGROUND_CAMERA) {
-        put_nothing(w, rows, row, x0 - w->tile.x0, x1 - w->tile.x0);
+        put_same(w, rows, row, x0, x1 - x0, none_q15, 0);
+        return;
+    }
+    cover_wholly(w->scene, rows->y + row, x0, x1);
+    if (h->background != GLINT_BACKGROUND_ENVIRONMENT) {
+        put_same(w, rows, row, x0, x1 - x0, h->background_q15, GLINT_COVER_ALL);
         return;
     }
     for (int x = x0; x < x1; x++) {
-        if (h->background == GLINT_BACKGROUND_ENVIRONMENT) {
-            int32_t rgb_q15[3];
+        int32_t rgb_q15[3];
 
-            see_background(w->scene, x, rows->y + row, rgb_q15);
-            for (int c = 0; c < 3; c++)
-                sum_q17[c] = (int64_t)rgb_q15[c] * SUMMED;
-        }
-        put(w, rows, x - w->tile.x0, row, sum_q17, SUMMED * GLINT_COVER_ALL);
-        w->scene->cover[((rows->y + row) >> GLINT_COVER_LOG2) *
-                            w->scene->cover_across +
-                        (x >> GLINT_COVER_LOG2)] += GLINT_COVER_ALL;
+        see_background(w->scene, x, rows->y + row, rgb_q15);
+        put_same(w, rows, row, x, 1, rgb_q15, GLINT_COVER_ALL);
     }
+}
+
+/* Draws pixel X of row ROW, whose N samples see ID; returns whether anything is
+ * to be seen. */
+static inline int draw_pixel(struct glint_scene_worker *w,
+                             const struct glint_pass_rows *rows, int row, int x,
+                             const uint32_t *id, int n)
+{
+    const struct glint_scene *s = w->scene;
+    const int y = rows->y + row;
+    uint16_t *cover = &s->cover[(y >> GLINT_COVER_LOG2) * s->cover_across +
+                                (x >> GLINT_COVER_LOG2)];
+    struct glint_scene_sum sum;
+
+    shade_pixel(w, id, n, x, y, &sum);
+    if (w->n_over)
+        s->cfg.parts.motions->over(w, x, y, &sum);
+    put(w, rows, x - w->tile.x0, row, sum.rgb_q17, sum.cover_q10);
+    *cover = (uint16_t)(*cover + ((sum.cover_q10 - sum.shadow_q10 + 2) >> 2));
+    return sum.cover_q10 || sum.rgb_q17[0] || sum.rgb_q17[1] || sum.rgb_q17[2];
 }
 
 /* Draws row ROW, N samples a pixel; returns whether anything is to be seen. */
@@ -349,41 +393,29 @@ static inline int draw_row(struct glint_scene_worker *w,
     const struct glint_scene *s = w->scene;
     const struct glint_box b = w->touched;
     const int y = rows->y + row;
-    const int is_behind =
-        s->model.header->background != GLINT_BACKGROUND_CAMERA;
     const int is_in = !glint_box_empty(b) && y >= b.y0 && y < b.y1;
     const int x0 = is_in ? b.x0 : w->tile.x1, x1 = is_in ? b.x1 : w->tile.x1;
-    uint16_t *cover = &s->cover[(y >> GLINT_COVER_LOG2) * s->cover_across];
     const uint32_t *id = &w->id[glint_sample_index(w, x0, y, 0)];
-    int any = is_behind;
+    int any = s->model.header->background != GLINT_BACKGROUND_CAMERA;
+    int same = x0; /* up to where the same layers are over pixels */
 
-    w->n_spans = 0;
+    w->n_spans = w->n_over = 0;
     if (s->motion && is_in)
         s->cfg.parts.motions->list(w, y);
     put_background(w, rows, row, w->tile.x0, x0);
-    for (int x = x0; x < x1; id += n) {
-        struct glint_scene_sum sum;
-        int end = x;
-
-        for (; end < x1 && !is_behind && !w->n_spans && is_empty(id, n);
-             id += n)
+    for (int x = x0, end; x < x1; x = end) {
+        if (x == same)
+            same = w->n_spans ? q_smaller(s->cfg.parts.motions->next(w, x), x1)
+                              : x1;
+        for (end = x; end < same && !w->n_over && is_empty(id, n); id += n)
             end++;
         if (end > x) {
-            put_nothing(w, rows, row, x - w->tile.x0, end - w->tile.x0);
-            x = end;
-            if (x == x1)
-                break;
+            put_background(w, rows, row, x, end);
+            continue;
         }
-        shade_pixel(w, id, n, x, y, &sum);
-        if (w->n_spans)
-            s->cfg.parts.motions->over(w, x, y, &sum);
-        put(w, rows, x - w->tile.x0, row, sum.rgb_q17, sum.cover_q10);
-        any |=
-            sum.cover_q10 || sum.rgb_q17[0] || sum.rgb_q17[1] || sum.rgb_q17[2];
-        cover[x >> GLINT_COVER_LOG2] =
-            (uint16_t)(cover[x >> GLINT_COVER_LOG2] +
-                       ((sum.cover_q10 - sum.shadow_q10 + 2) >> 2));
-        x++;
+        any |= draw_pixel(w, rows, row, x, id, n);
+        id += n;
+        end = x + 1;
     }
     put_background(w, rows, row, x1, w->tile.x1);
     return any;

@@ -1,21 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
  * Shells about foods that are seen, lines to the sensors that see them, and the
- * box of all frames.
- *
- * A line is as wide as it is: what of a pixel it covers is the overlap of the
- * pixel with its width, at the distance of its middle, in q8. Widths below 3/4
- * of a pixel count as that. */
-#include "scene/motion/play.h"
+ * box of all frames: where they are in a picture. */
+#include "scene/motion/over.h"
 
 #include "base/divide.h"
-#include "scene/visible.h"
+#include "scene/frame/quick.h"
 
 enum {
-    ALL_Q8 = 256,
-    LEAST_HALF_Q8 = 96,     /* half of the width that a line has at least */
-    MOST_HALF_Q8 = 1 << 16, /* and at most */
-    SUMMED = 4
+    MOST_HALF_Q8 = GLINT_LINE_MOST_HALF_Q8,
+    LEAST_HALF_Q8 = 96 /* half of the width that a line has at least */
 };
 
 /* ---------------------------------------------------------------- projection
@@ -210,6 +204,21 @@ static void add_lines(struct glint_scene *s, uint32_t f)
     }
 }
 
+/* Returns the least cosine, between P's normal and a ray, of pixels that see it
+ * with all samples. */
+static int32_t inner_q30(const struct glint_placed *p)
+{
+    const int64_t within = (int64_t)p->radius - p->margin;
+    int64_t sine_q30;
+
+    if (within <= 0)
+        return INT32_MAX;
+    sine_q30 = q_part_q30((uint64_t)within, (uint64_t)p->radius);
+    return (int32_t)glint_root((UINT64_C(1) << 60) -
+                               (uint64_t)(sine_q30 * sine_q30)) +
+           1;
+}
+
 static void add_shell(struct glint_scene *s, uint32_t f)
 {
     struct glint_motion_state *m = s->motion;
@@ -227,7 +236,11 @@ static void add_shell(struct glint_scene *s, uint32_t f)
     glint_scene_place(s, p);
     if (!p->is_seen)
         return;
+    glint_quick_ball(s, p);
     l->ball = p;
+    l->depth[0] = q_larger(1, glint_ratio((uint64_t)s->nearest << 30,
+                                          (uint64_t)q_larger(p->z[1], 1)));
+    l->inner_q30 = inner_q30(p);
     l->material = m->how->shell_material;
     l->z = p->z[0] / 2 + p->z[1] / 2;
     l->box = p->box;
@@ -283,209 +296,17 @@ static void project(struct glint_scene *s)
     sort(m);
 }
 
-/* ------------------------------------------------------------------- drawing
- */
-
-static struct glint_box touch(const struct glint_scene *s,
-                              struct glint_box tile)
-{
-    struct glint_box all = {0, 0, 0, 0};
-
-    for (int i = 0; i < s->motion->n_layers; i++)
-        all = glint_box_join(all, glint_box_cut(tile, s->motion->layer[i].box));
-    return all;
-}
-
-/* Confines X0 .. X1 - 1 to pixels of row Y that line L may touch. */
-static void confine(const struct glint_scene *s,
-                    const struct glint_motion_layer *l, int y, int *x0, int *x1)
-{
-    const int32_t down = glint_place(s, y, 1) - l->y_q8;
-    const int32_t *u = l->along_q14;
-    const int64_t reach =
-        (int64_t)(q_smaller(MOST_HALF_Q8,
-                            q_larger(l->half_q8[0], l->half_q8[1])) +
-                  128)
-        << 14;
-    int64_t at[2];
-
-    if (q_magnitude(u[1]) < 1 << 8) /* it runs along the row */
-        return;
-    for (int k = 0; k < 2; k++)
-        at[k] = q_divide((int64_t)down * u[0] + (k ? reach : -reach), u[1]) +
-                l->x_q8 + 128 * (s->view.width - 1);
-    if (at[0] > at[1]) {
-        const int64_t swap = at[0];
-
-        at[0] = at[1];
-        at[1] = swap;
-    }
-    *x0 = q_larger(*x0, q_clamp_sat((at[0] >> 8) - 1, 0, INT32_MAX));
-    *x1 = q_smaller(*x1, q_clamp_sat((at[1] >> 8) + 2, 0, INT32_MAX));
-}
-
-static void list(struct glint_scene_worker *w, int y)
-{
-    const struct glint_motion_state *m = w->scene->motion;
-
-    w->n_spans = 0;
-    for (int i = 0; i < m->n_layers; i++) {
-        const struct glint_box b = glint_box_cut(w->tile, m->layer[i].box);
-        struct glint_layer_span span = {i, b.x0, b.x1};
-
-        if (y < b.y0 || y >= b.y1)
-            continue;
-        if (!m->layer[i].ball)
-            confine(w->scene, &m->layer[i], y, &span.x0, &span.x1);
-        if (span.x0 < span.x1)
-            w->span[w->n_spans++] = span;
-    }
-}
-
-/* Returns the share of the samples of a pixel that see nothing nearer than
- * DEPTH, q8. */
-static int seen_q8(const struct glint_scene_worker *w, int x, int y,
-                   int32_t depth)
-{
-    const int n = w->scene->cfg.edge_samples;
-    const int first = glint_sample_index(w, x, y, 0);
-    int seen = 0;
-
-    for (int k = 0; k < n; k++)
-        seen += w->depth[first + k] <= depth;
-    return n == 1 ? seen * ALL_Q8 : seen * (ALL_Q8 / n);
-}
-
-/* Returns what of pixel (X, Y) line L covers, q8. */
-static int line_q8(const struct glint_scene_worker *w,
-                   const struct glint_motion_layer *l, int x, int y)
-{
-    const int64_t dx = glint_place(w->scene, x, 0) - l->x_q8;
-    const int64_t dy = glint_place(w->scene, y, 1) - l->y_q8;
-    const int32_t along =
-        (int32_t)q_shift(dx * l->along_q14[0] + dy * l->along_q14[1], 14);
-    const int32_t across = (int32_t)q_magnitude(
-        q_shift(dx * l->along_q14[1] - dy * l->along_q14[0], 14));
-    const int32_t end =
-        q_smaller(ALL_Q8, q_smaller(along, l->length_q8 - along) + 128);
-    int32_t part_q30, half, cover;
-
-    if (end <= 0)
-        return 0;
-    part_q30 = q_part_q30((uint64_t)q_smaller(q_larger(along, 0), l->length_q8),
-                          (uint64_t)l->length_q8);
-    half = l->half_q8[0] + q_mul(l->half_q8[1] - l->half_q8[0], part_q30, 30);
-    half = q_smaller(MOST_HALF_Q8, half);
-    cover = q_smaller(q_smaller(ALL_Q8, 2 * half), half + 128 - across);
-    if (cover <= 0)
-        return 0;
-    return (cover * end >> 8) *
-               seen_q8(w, x, y,
-                       l->depth[0] +
-                           q_mul(l->depth[1] - l->depth[0], part_q30, 30)) >>
-           8;
-}
-
-/* Sets CHORD to that of the ray of place (X, Y) in BALL, and DEPTH to that of
- * where it enters; returns 0 if it misses it. */
-static int enter(const struct glint_scene *s, const struct glint_placed *ball,
-                 int32_t x_q8, int32_t y_q8, struct glint_chord *chord,
-                 int32_t *depth)
-{
-    struct glint_scene_ray ray;
-    int32_t seen_q30[3], z;
-
-    glint_view_ray(&s->view, x_q8, y_q8, &ray, seen_q30);
-    if (!glint_ray_sphere(&ray, ball->at, ball->radius, chord) ||
-        chord->t[1] <= 0)
-        return 0;
-    z = chord->t[0] <= 0 ? 1 : q_larger(1, q_mul(chord->t[0], seen_q30[2], 30));
-    *depth = q_larger(1, glint_ratio((uint64_t)s->nearest << 30, (uint64_t)z));
-    return 1;
-}
-
-/* Returns what of pixel (X, Y) a shell covers, q8: as much as its material does
- * not let pass at the rim, half of that in its middle. */
-static int shell_q8(const struct glint_scene_worker *w,
-                    const struct glint_motion_layer *l, int x, int y)
-{
-    const struct glint_scene *s = w->scene;
-    const struct glint_placed *ball = l->ball;
-    const int n = s->cfg.edge_samples;
-    const int32_t share_q15 =
-        GLINT_SCENE_ONE_Q15 - s->material[l->material].pass_q15;
-    const int32_t x_q8 = glint_place(s, x, 0), y_q8 = glint_place(s, y, 1);
-    struct glint_chord chord;
-    int32_t depth = 0, cosine_q15 = 0;
-    int hits = 0, is_inner = 0;
-
-    if (enter(s, ball, x_q8, y_q8, &chord, &depth)) {
-        const int64_t radius = (int64_t)ball->radius * (INT64_C(1) << chord.up);
-        const int64_t within =
-            ((int64_t)ball->radius - ball->margin) * (INT64_C(1) << chord.up);
-
-        cosine_q15 =
-            q_part_q30((uint64_t)chord.half,
-                       (uint64_t)(radius > chord.half ? radius : chord.half)) >>
-            15;
-        is_inner =
-            within > 0 && v3_dot(chord.middle, chord.middle) <= within * within;
-        hits = is_inner ? n : 0;
-    }
-    for (int k = 0; k < n && !is_inner; k++) {
-        struct glint_chord at;
-        int32_t sample_depth;
-
-        if (!enter(s, ball, x_q8 + glint_sample(s, k, 0),
-                   y_q8 + glint_sample(s, k, 1), &at, &sample_depth))
-            continue;
-        depth = q_larger(depth, sample_depth);
-        hits++;
-    }
-    if (hits == 0)
-        return 0;
-    return (int)q_shift((int64_t)share_q15 *
-                            (2 * GLINT_SCENE_ONE_Q15 - cosine_q15) * hits / n *
-                            seen_q8(w, x, y, depth),
-                        31);
-}
-
-static void over(const struct glint_scene_worker *w, int x, int y,
-                 struct glint_scene_sum *sum)
-{
-    const struct glint_scene *s = w->scene;
-
-    for (int i = 0; i < w->n_spans; i++) {
-        const struct glint_motion_layer *l =
-            &s->motion->layer[w->span[i].layer];
-        const int32_t *rgb_q15 = s->material[l->material].rgb_q15;
-        int a;
-
-        if (x < w->span[i].x0 || x >= w->span[i].x1)
-            continue;
-        a = l->ball ? shell_q8(w, l, x, y) : line_q8(w, l, x, y);
-        if (a == 0)
-            continue;
-        for (int c = 0; c < 3; c++)
-            sum->rgb_q17[c] = q_shift(sum->rgb_q17[c] * (ALL_Q8 - a) +
-                                          (int64_t)SUMMED * rgb_q15[c] * a,
-                                      8);
-        sum->cover_q10 = (int)q_shift(
-            sum->cover_q10 * (int64_t)(ALL_Q8 - a) + SUMMED * ALL_Q8 * a, 8);
-    }
-}
-
 static void carve_worker(const struct glint_scene *s, struct glint_arena *arena,
                          struct glint_scene_worker *worker)
 {
     worker->span = glint_arena_take(arena, glint_motion_layers(s->model.motion),
                                     sizeof *worker->span);
+    worker->over = glint_arena_take(arena, glint_motion_layers(s->model.motion),
+                                    sizeof *worker->over);
 }
 
-const struct glint_scene_motions glint_scene_motions = {glint_motion_carve,
-                                                        carve_worker,
-                                                        glint_motion_begin,
-                                                        project,
-                                                        touch,
-                                                        list,
-                                                        over};
+const struct glint_scene_motions glint_scene_motions = {
+    glint_motion_carve, carve_worker,
+    glint_motion_begin, project,
+    glint_layers_touch, glint_layers_list,
+    glint_layers_next,  glint_layers_over};

@@ -20,11 +20,14 @@ struct glint_motion_layer {
     int32_t z;            /* of its middle, by which layers are sorted */
     uint32_t material;
     const struct glint_placed *ball; /* NULL: a line */
+    int32_t inner_q30;    /* of a shell: its least cosine, between normal and
+                             ray, where all samples of a pixel see it */
     int32_t x_q8, y_q8;   /* where the line begins, from the middle */
     int32_t along_q14[2]; /* its direction */
     int32_t length_q8;
     int32_t half_q8[2],
-        depth[2]; /* width and depth where it begins, and ends */
+        depth[2]; /* width and depth where it begins, and ends; of a shell,
+                     depth[0] is that of its farthest point */
 };
 
 struct glint_motion_state {
