@@ -170,8 +170,8 @@ static WHOLLY_INLINE void find(const struct glint_shadow *shadow,
         below->cell = NONE;
 }
 
-/* The same of a sun that is a point, where no plane throws shadows and the grid
- * answers. */
+/* Returns whether a sun that is a point reaches SURFACE, where no plane throws
+ * shadows and a list of the grid answers. */
 static int is_lit(const struct glint_scene *s,
                   const struct glint_shadow *shadow, const struct below *below,
                   const int32_t place[3],
@@ -180,8 +180,27 @@ static int is_lit(const struct glint_scene *s,
     const struct glint_shadow_point *p = &shadow->point[0];
 
     return v3_dot(p->toward_q30, surface->face_q30) > 0 &&
-           (below->cell == NONE ||
-            !is_blocked(s, shadow, below, p, place, surface));
+           !is_blocked(s, shadow, below, p, place, surface);
+}
+
+/* Returns the share of 1, 4 or 16 points that REACHED of them are. */
+static int32_t share(const struct glint_shadow *shadow, int reached)
+{
+    return reached << (shadow->n_points == 1   ? 15
+                       : shadow->n_points == 4 ? 13
+                                               : 11);
+}
+
+/* The share of a disc's points that are above SURFACE, where nothing else comes
+ * before them. */
+static int32_t share_above(const struct glint_shadow *shadow,
+                           const struct glint_met_surface *surface)
+{
+    int above = 0;
+
+    for (int i = 0; i < shadow->n_points; i++)
+        above += v3_dot(shadow->point[i].toward_q30, surface->face_q30) > 0;
+    return share(shadow, above);
 }
 
 /* The share of a disc's points, each by itself. */
@@ -213,9 +232,7 @@ share_of_points(const struct glint_scene *s, const struct glint_shadow *shadow,
                    (below->cell == NONE ||
                     !is_blocked(s, shadow, below, p, place, surface));
     }
-    return reached << (shadow->n_points == 1   ? 15
-                       : shadow->n_points == 4 ? 13
-                                               : 11);
+    return share(shadow, reached);
 }
 
 int32_t glint_shadow_reaches(const struct glint_scene *s,
@@ -229,8 +246,11 @@ int32_t glint_shadow_reaches(const struct glint_scene *s,
         below.cell = NONE;
     else
         find(shadow, place, &below);
-    if (shadow->n_points == 1 && below.cell != BEYOND &&
-        !glint_scene_other_planes(s, surface->object))
+    if (below.cell == BEYOND || glint_scene_other_planes(s, surface->object))
+        return share_of_points(s, shadow, surface, &below, place);
+    if (below.cell == NONE)
+        return share_above(shadow, surface);
+    if (shadow->n_points == 1)
         return is_lit(s, shadow, &below, place, surface) << 15;
     return share_of_points(s, shadow, surface, &below, place);
 }
