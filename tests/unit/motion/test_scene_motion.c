@@ -19,136 +19,20 @@
 #include "scene/motion/play.h"
 #include "scenes/scene_frame.h"
 #include "support/rng.h"
-#include "support/tracks/tracks.h"
+#include "support/tracks/drawn.h"
 
-enum { WIDTH = 96, HEIGHT = 64, FOODS = 5, SENSORS = 6 };
-
-/* What is baked as the motion of a text: a track, or foods that stand still. */
-static struct {
-    struct track_options track;
-    double (*food)[3]; /* [n_foods], or NULL: the track */
-    int n_foods;
-    double angle_deg;
-} recorded;
-
-/* Sensors look along both ways of each axis. */
-static const struct glint_motion_body body = {
-    .size = .5,
-    .n_sensors = SENSORS,
-    .theta = {GLINT_PI / 2, GLINT_PI / 2, GLINT_PI / 2, GLINT_PI / 2, 0,
-              GLINT_PI},
-    .phi = {0, GLINT_PI / 2, GLINT_PI, -GLINT_PI / 2, 0, 0}};
-
-static void put_frames(struct glint_motion_baker *baker)
-{
-    const int n = recorded.food ? 2 : recorded.track.n_frames;
-    static struct glint_motion_sight s;
-    struct glint_error error;
-    struct track track;
-    uint32_t seed = 1;
-
-    track_begin(&track, &recorded.track);
-    for (int i = 0; i < n; i++) {
-        struct track_frame f;
-
-        if (!recorded.food)
-            track_next(&track, &f);
-        s.number = i;
-        s.n_foods = recorded.food ? recorded.n_foods : FOODS;
-        s.n_intensities = SENSORS;
-        for (int k = 0; k < s.n_foods; k++) {
-            s.is_new[k] = !recorded.food && f.is_new[k];
-            for (int j = 0; j < 3; j++)
-                s.food[k][j] =
-                    recorded.food ? recorded.food[k][j] : f.seen[k][j];
-            for (int j = 0; j < SENSORS; j++)
-                s.intensity[k][j] = recorded.food ? 1 : rng_unit(&seed);
-        }
-        if (glint_motion_baker_frame(baker, &s, &error) != GLINT_OK)
-            fail_msg("%s", error.text);
-    }
-}
-
-static enum glint_status bake_motion(void *ctx, const char *name,
-                                     uint8_t **data, size_t *bytes,
-                                     struct glint_error *error)
-{
-    struct glint_motion_body b = body;
-    struct glint_motion_options options;
-    struct glint_motion_report report;
-    struct glint_motion_baker *baker;
-
-    (void)ctx;
-    (void)name;
-    glint_motion_defaults(&options);
-    baker = glint_motion_baker_open(&options);
-    assert_non_null(baker);
-    b.angle_deg = recorded.angle_deg;
-    assert_int_equal(glint_motion_baker_body(baker, &b, error), GLINT_OK);
-    put_frames(baker);
-    assert_int_equal(
-        glint_motion_baker_finish(baker, "run", 1, data, bytes, &report, error),
-        GLINT_OK);
-    glint_motion_baker_close(baker);
-    return GLINT_OK;
-}
-
-struct drawn {
-    unsigned char *data;
-    size_t bytes;
-    struct glint_scene_model model;
-    struct scene_frame frame;
-    int32_t light_q20[3 * WIDTH * HEIGHT];
+enum {
+    WIDTH = DRAWN_WIDTH,
+    HEIGHT = DRAWN_HEIGHT,
+    FOODS = DRAWN_FOODS,
+    SENSORS = DRAWN_SENSORS
 };
 
-static struct drawn *open_text(const char *text, int tile_log2, int samples)
-{
-    static const struct tool tool = {.name = "test"};
-    const struct glint_description_files files = {NULL, NULL,        NULL,
-                                                  NULL, bake_motion, NULL};
-    const struct scene_dials dials = {.width = WIDTH,
-                                      .height = HEIGHT,
-                                      .edge_samples = samples,
-                                      .shadow_points = 1,
-                                      .tile_log2 = tile_log2};
-    struct drawn *d = calloc(1, sizeof *d);
-    struct glint_description *scene = malloc(sizeof *scene);
-    struct glint_scene_bake_report report;
-    struct glint_error error = {""};
-    const char *reason = "";
-
-    assert_non_null(d);
-    assert_non_null(scene);
-    if (glint_description_parse(scene, text, strlen(text), "x.scene", &files,
-                                &error) != GLINT_OK ||
-        glint_scene_bake(scene, "x", 1, &d->data, &d->bytes, &report, &error) !=
-            GLINT_OK)
-        fail_msg("%s", error.text);
-    glint_description_free(scene);
-    free(scene);
-    if (glint_scene_open(&d->model, d->data, d->bytes, &reason) != GLINT_OK)
-        fail_msg("%s", reason);
-    assert_int_equal(scene_frame_open(&d->frame, &tool, &d->model, &dials),
-                     EXIT_OK);
-    return d;
-}
-
-static void close_text(struct drawn *d)
-{
-    scene_frame_close(&d->frame);
-    free(d->data);
-    free(d);
-}
-
-static void draw(struct drawn *d)
-{
-    struct glint_image image = {
-        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
-
-    memset(d->light_q20, 0, sizeof d->light_q20);
-    glint_image_place(&image, d->light_q20);
-    assert_int_equal(scene_frame_draw(&d->frame, &image), EXIT_OK);
-}
+#define LOOK                                   \
+    "camera fov 53 at -4 12 26 toward 0 0 0\n" \
+    "light sun direction .35 .8 .6 colour 5e4 4.8e4 4.5e4\nshadow on\n"
+#define RUN \
+    "motion run x size .6 sensors .2 foods .5 shells 1.8 lines .06 box 1 "
 
 static uint64_t hash_of(const struct drawn *d)
 {
@@ -157,26 +41,6 @@ static uint64_t hash_of(const struct drawn *d)
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
         hash = (hash ^ (uint32_t)d->light_q20[i]) * UINT64_C(1099511628211);
     return hash;
-}
-
-#define LOOK                                   \
-    "camera fov 53 at -4 12 26 toward 0 0 0\n" \
-    "light sun direction .35 .8 .6 colour 5e4 4.8e4 4.5e4\nshadow on\n"
-#define RUN \
-    "motion run x size .6 sensors .2 foods .5 shells 1.8 lines .06 box 1 "
-
-static void record_track(int motion, int n_frames, double angle_deg)
-{
-    recorded.track = (struct track_options){motion, n_frames, FOODS, 7, 0, 9};
-    recorded.food = NULL;
-    recorded.angle_deg = angle_deg;
-}
-
-static void record_foods(double (*food)[3], int n, double angle_deg)
-{
-    recorded.food = food;
-    recorded.n_foods = n;
-    recorded.angle_deg = angle_deg;
 }
 
 /* -------------------------------------------------------------------- row D8
@@ -192,12 +56,12 @@ static void row_d8_seek_is_play(void **state)
     uint32_t seed = 3;
 
     (void)state;
-    record_track(3, N, 60);
-    d = open_text(LOOK RUN, 5, 4);
+    drawn_of_track(3, N, 60);
+    d = drawn_open(LOOK RUN, 5, 4);
     assert_int_equal(glint_scene_frames(d->frame.scene), N);
     for (int k = 0; k < N; k++) {
         glint_scene_seek(d->frame.scene, (uint32_t)k);
-        draw(d);
+        drawn_draw(d);
         played[k] = hash_of(d);
         assert_true(k == 0 || played[k] != played[k - 1]);
     }
@@ -205,21 +69,21 @@ static void row_d8_seek_is_play(void **state)
         const uint32_t k = (uint32_t)rng_below(&seed, N);
 
         glint_scene_seek(d->frame.scene, k);
-        draw(d);
+        drawn_draw(d);
         assert_true(hash_of(d) == played[k]);
     }
     glint_scene_seek(d->frame.scene, 1u << 31);
-    draw(d);
+    drawn_draw(d);
     assert_true(hash_of(d) == played[N - 1]);
-    close_text(d);
+    drawn_close(d);
     for (int log2 = 3; log2 <= 6; log2++) {
-        d = open_text(LOOK RUN, log2, 4);
+        d = drawn_open(LOOK RUN, log2, 4);
         for (uint32_t k = 0; k < N; k += 13) {
             glint_scene_seek(d->frame.scene, k);
-            draw(d);
+            drawn_draw(d);
             assert_true(hash_of(d) == played[k]);
         }
-        close_text(d);
+        drawn_close(d);
     }
 }
 
@@ -242,9 +106,9 @@ static void turned(const double q[4], const double v[3], double at[3])
 static double margin_of(const struct glint_motion_frame *frame, double size,
                         int s, int f)
 {
-    const double axis[3] = {sin(body.theta[s]) * cos(body.phi[s]),
-                            sin(body.theta[s]) * sin(body.phi[s]),
-                            cos(body.theta[s])};
+    const double axis[3] = {sin(drawn_body.theta[s]) * cos(drawn_body.phi[s]),
+                            sin(drawn_body.theta[s]) * sin(drawn_body.phi[s]),
+                            cos(drawn_body.theta[s])};
     double q[4], length = 0, to[3], dot = 0, square = 0;
 
     for (int k = 0; k < 4; k++)
@@ -259,7 +123,7 @@ static double margin_of(const struct glint_motion_frame *frame, double size,
         dot += d * to[k];
         square += d * d;
     }
-    return recorded.angle_deg * GLINT_PI / 360 - acos(dot / sqrt(square));
+    return drawn_angle_deg() * GLINT_PI / 360 - acos(dot / sqrt(square));
 }
 
 /* 10 000 frames of random steps, turns and foods, six sensors and five foods
@@ -271,9 +135,9 @@ static void row_d7_detection_is_brute_force(void **state)
     int seen[2] = {0, 0}, close = 0;
 
     (void)state;
-    record_track(3, N, 75);
-    d[0] = open_text(LOOK RUN "detect angle", 5, 1);
-    d[1] = open_text(LOOK RUN "detect both .3", 5, 1);
+    drawn_of_track(3, N, 75);
+    d[0] = drawn_open(LOOK RUN "detect angle", 5, 1);
+    d[1] = drawn_open(LOOK RUN "detect both .3", 5, 1);
     for (uint32_t k = 0; k < N; k++) {
         const struct glint_motion_frame *frame =
             &d[0]->frame.scene->motion->frame;
@@ -305,8 +169,8 @@ static void row_d7_detection_is_brute_force(void **state)
     print_message("  %d of %d seen, %d of them bright; %d too close to tell\n",
                   seen[0], N * FOODS * SENSORS, seen[1], close);
     assert_true(close < 10 && seen[0] > 10000 && seen[1] > 5000);
-    close_text(d[0]);
-    close_text(d[1]);
+    drawn_close(d[0]);
+    drawn_close(d[1]);
 }
 
 /* The comparison by squares is that of whole numbers, also for wide angles. */
@@ -364,8 +228,8 @@ static void lines_that_fail_change_nothing(void **state)
     struct drawn *d;
 
     (void)state;
-    record_track(3, 20, 60);
-    d = open_text(LOOK METALS RUN, 5, 4);
+    drawn_of_track(3, 20, 60);
+    d = drawn_open(LOOK METALS RUN, 5, 4);
     assert_int_equal(steer_open(&steer, &d->model), GLINT_OK);
     for (int i = 0; i < 2; i++) {
         struct steer was;
@@ -374,7 +238,7 @@ static void lines_that_fail_change_nothing(void **state)
         control_parse(before[i], "f:1", &line, &error);
         assert_int_equal(steer_take(&steer, d->frame.scene, &line, "", &error),
                          GLINT_OK);
-        draw(d);
+        drawn_draw(d);
         hash = hash_of(d);
         was = steer;
         control_parse("distance 9e5", "f:2", &line, &error);
@@ -384,17 +248,17 @@ static void lines_that_fail_change_nothing(void **state)
         assert_int_equal(
             steer_take(&steer, d->frame.scene, &bright, "", &error),
             GLINT_E_FORMAT);
-        draw(d);
+        drawn_draw(d);
         assert_true(hash_of(d) == hash);
         steer_apply(&steer, d->frame.scene);
-        draw(d);
+        drawn_draw(d);
         assert_true(hash_of(d) == hash);
     }
     control_parse("orbit 30 20", "f:3", &line, &error);
     assert_int_equal(steer_take(&steer, d->frame.scene, &line, "", &error),
                      GLINT_OK);
     steer_close(&steer);
-    close_text(d);
+    drawn_close(d);
 }
 
 /* -------------------------------------------------------------------- row D9
@@ -429,14 +293,14 @@ static void row_d9_a_camera_in_a_sensor(void **state)
     int n;
 
     (void)state;
-    record_foods(food, 4, 60);
-    d = open_text(LOOK RUN, 5, 4);
-    draw(d);
+    drawn_of_foods(food, 4, 60);
+    d = drawn_open(LOOK RUN, 5, 4);
+    drawn_draw(d);
     outside = hash_of(d);
     for (int k = 0; k < 2; k++) { /* food k is ahead of sensor k */
         assert_int_equal(glint_scene_enter(d->frame.scene, k), GLINT_OK);
         glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 0);
-        draw(d);
+        drawn_draw(d);
         assert_true(fabs(middle_of_foods(d, &n) - (WIDTH - 1) / 2.) < .5);
         /* radius .5 at 6 - .6, in a picture 2 tan 30 wide */
         assert_true(fabs(sqrt(n / GLINT_PI) -
@@ -446,17 +310,17 @@ static void row_d9_a_camera_in_a_sensor(void **state)
                      GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_enter(d->frame.scene, -1), GLINT_OK);
     glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 1);
-    draw(d);
+    drawn_draw(d);
     assert_true(hash_of(d) == outside);
-    close_text(d);
-    d = open_text(
+    drawn_close(d);
+    d = drawn_open(
         "camera sensor 2\nlight sun direction .3 .8 .6 colour 5e4 5e4 "
         "5e4\n" RUN,
         5, 4);
     glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 0);
-    draw(d);
+    drawn_draw(d);
     assert_true(fabs(middle_of_foods(d, &n) - (WIDTH - 1) / 2.) < .5);
-    close_text(d);
+    drawn_close(d);
 }
 
 /* ------------------------------------------------------------------- row D10
@@ -472,23 +336,23 @@ static void row_d10_who_sees_what(void **state)
     struct drawn *d;
 
     (void)state;
-    record_foods(three, 3, 50);
-    d = open_text(LOOK RUN, 5, 4);
+    drawn_of_foods(three, 3, 50);
+    d = drawn_open(LOOK RUN, 5, 4);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 0), 1);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 1), 2);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 2), 16);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 3), 0);
-    close_text(d);
-    record_foods(any, 3, 360);
-    d = open_text(LOOK RUN, 5, 4);
+    drawn_close(d);
+    drawn_of_foods(any, 3, 360);
+    d = drawn_open(LOOK RUN, 5, 4);
     for (uint32_t f = 0; f < 3; f++)
         assert_int_equal(glint_scene_seen_by(d->frame.scene, f), 63);
-    close_text(d);
-    record_foods(corner, 4, 100);
-    d = open_text(LOOK RUN, 5, 4);
+    drawn_close(d);
+    drawn_of_foods(corner, 4, 100);
+    d = drawn_open(LOOK RUN, 5, 4);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 0), 1 | 2);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 1), 2 | 4);
-    close_text(d);
+    drawn_close(d);
 }
 
 /* Each kind is in the picture, can be hidden and comes back, and has a size. */
@@ -499,31 +363,31 @@ static void kinds_are_hidden_and_sized(void **state)
     struct drawn *d;
 
     (void)state;
-    record_foods(food, 4, 50);
-    d = open_text(LOOK RUN, 5, 4);
-    draw(d);
+    drawn_of_foods(food, 4, 50);
+    d = drawn_open(LOOK RUN, 5, 4);
+    drawn_draw(d);
     whole = hash_of(d);
     for (int kind = 0; kind < GLINT_KINDS; kind++) {
         const int32_t steps = 1 << d->model.header->unit_log2;
 
         glint_scene_show_kind(d->frame.scene, (enum glint_scene_kind)kind, 0);
-        draw(d);
+        drawn_draw(d);
         assert_true(hash_of(d) != whole);
         glint_scene_show_kind(d->frame.scene, (enum glint_scene_kind)kind, 1);
-        draw(d);
+        drawn_draw(d);
         assert_true(hash_of(d) == whole);
         assert_int_equal(glint_scene_size_kind(d->frame.scene,
                                                (enum glint_scene_kind)kind,
                                                steps),
                          GLINT_OK);
-        draw(d);
+        drawn_draw(d);
         assert_true(hash_of(d) != whole);
         whole = hash_of(d);
         assert_int_equal(glint_scene_size_kind(d->frame.scene,
                                                (enum glint_scene_kind)kind, 0),
                          GLINT_E_ARGUMENT);
     }
-    close_text(d);
+    drawn_close(d);
 }
 
 /* A shell over black has the share of light that its material does not let
@@ -535,24 +399,24 @@ static void shells_let_light_pass(void **state)
     struct drawn *d;
 
     (void)state;
-    record_foods(food, 3, 50);
-    d = open_text("camera fov 30 at 5 0 10 toward 5 0 0\n"
-                  "material shells phong 1 0 0 colour 0 .5 1 pass .5\n"
-                  "material foods phong 1 0 0 colour 1 0 0\n"
-                  "motion run x size .6 foods .5 shells 4\n",
-                  5, 4);
-    draw(d);
+    drawn_of_foods(food, 3, 50);
+    d = drawn_open("camera fov 30 at 5 0 10 toward 5 0 0\n"
+                   "material shells phong 1 0 0 colour 0 .5 1 pass .5\n"
+                   "material foods phong 1 0 0 colour 1 0 0\n"
+                   "motion run x size .6 foods .5 shells 4\n",
+                   5, 4);
+    drawn_draw(d);
     /* the food's red, 1, behind a quarter of the shell */
     assert_true(abs(d->light_q20[middle] - (3 << 18)) < 1 << 14);
     assert_true(abs(d->light_q20[middle + 2] - (1 << 18)) < 1 << 14);
     glint_scene_show_kind(d->frame.scene, GLINT_KIND_FOODS, 0);
-    draw(d);
+    drawn_draw(d);
     assert_true(d->light_q20[middle] == 0);
     assert_true(abs(d->light_q20[middle + 2] - (1 << 18)) < 1 << 14);
     assert_true(abs(glint_scene_cover(d->frame.scene, 256 * WIDTH / 2,
                                       256 * HEIGHT / 2, 1024) -
                     64) < 8);
-    close_text(d);
+    drawn_close(d);
 }
 
 /* Lines that leave the widest of pictures go on until all of their width is
@@ -576,8 +440,8 @@ static void wide_lines_leave_wide_pictures(void **state)
     struct drawn *d;
 
     (void)state;
-    record_foods(food, 3, 50);
-    d = open_text(LOOK "motion run x lines .1 box 1\n", 5, 1);
+    drawn_of_foods(food, 3, 50);
+    d = drawn_open(LOOK "motion run x lines .1 box 1\n", 5, 1);
     assert_int_equal(scene_frame_open(&frame, &tool, &d->model, &dials),
                      EXIT_OK);
     m = frame.scene->motion;
@@ -603,7 +467,7 @@ static void wide_lines_leave_wide_pictures(void **state)
                                 3 * sizeof *light_q20);
     assert_true(light_q20[3 * WIDE - 1] > 0);
     scene_frame_close(&frame);
-    close_text(d);
+    drawn_close(d);
 }
 
 /* Lamps ride on the body: the lens is told where they are. */
@@ -613,18 +477,18 @@ static void lamps_ride_on_the_body(void **state)
     struct drawn *d;
 
     (void)state;
-    record_track(0, 100, 60);
-    d = open_text("camera fov 60 at 0 0 30 toward 0 0 0\n"
-                  "light lamp at 0 1 0 colour 5 5 5 on run\nflare lights\n"
-                  "motion run x size .5\n",
-                  5, 1);
+    drawn_of_track(0, 100, 60);
+    d = drawn_open("camera fov 60 at 0 0 30 toward 0 0 0\n"
+                   "light lamp at 0 1 0 colour 5 5 5 on run\nflare lights\n"
+                   "motion run x size .5\n",
+                   5, 1);
     for (uint32_t k = 0; k < 100; k += 9) {
         const struct glint_motion_state *m = d->frame.scene->motion;
         double q[4], up[3], at[3];
         const double y[3] = {0, 1, 0};
 
         glint_scene_seek(d->frame.scene, k);
-        draw(d);
+        drawn_draw(d);
         for (int i = 0; i < 4; i++)
             q[i] = ldexp(m->frame.pose.turn_q14[i], -14);
         turned(q, y, up);
@@ -635,7 +499,7 @@ static void lamps_ride_on_the_body(void **state)
             fabs(lamp[0].x_q8 / 256. - WIDTH / 2. -
                  at[0] / (30 - at[2]) * WIDTH / (2 * tan(GLINT_PI / 6))) < .1);
     }
-    close_text(d);
+    drawn_close(d);
 }
 
 /* ------------------------------------------------------------------ hostile */
@@ -646,13 +510,13 @@ static void a_part_that_is_absent_is_named(void **state)
     struct drawn *d;
 
     (void)state;
-    record_track(0, 10, 60);
-    d = open_text(LOOK RUN, 5, 1);
+    drawn_of_track(0, 10, 60);
+    d = drawn_open(LOOK RUN, 5, 1);
     parts = d->frame.cfg.parts;
     assert_null(glint_scene_lacks(&parts, &d->model));
     parts.motions = NULL;
     assert_string_equal(glint_scene_lacks(&parts, &d->model), "motions");
-    close_text(d);
+    drawn_close(d);
 }
 
 /* Cameras anywhere, also within shells and lines, and things from a step to a
@@ -663,8 +527,8 @@ static void extremes_of_places_and_sizes(void **state)
     uint32_t seed = 8;
 
     (void)state;
-    record_track(3, 60, 170);
-    d = open_text(LOOK RUN, 5, 4);
+    drawn_of_track(3, 60, 170);
+    d = drawn_open(LOOK RUN, 5, 4);
     for (int i = 0; i < 400; i++) {
         struct glint_scene *s = d->frame.scene;
         int32_t at[3], axis_q30[3][3] = {{0}};
@@ -682,12 +546,12 @@ static void extremes_of_places_and_sizes(void **state)
             GLINT_OK);
         glint_scene_size_kind(s, (enum glint_scene_kind)rng_below(&seed, 6),
                               1 << rng_below(&seed, 27));
-        draw(d);
+        drawn_draw(d);
     }
     for (int k = 0; k < SENSORS; k++)
         if (glint_scene_enter(d->frame.scene, k) == GLINT_OK)
-            draw(d);
-    close_text(d);
+            drawn_draw(d);
+    drawn_close(d);
 }
 
 int main(void)

@@ -23,11 +23,12 @@ struct stripes {
     int step, light_q16[3];
     int linear;
     struct glint_box tile;
+    int even; /* stripes that rows of even numbers are further */
 };
 
-static int cover_of(const struct stripes *s, int x)
+static int cover_of(const struct stripes *s, int x, int y)
 {
-    return x / s->step % 5 * 64;
+    return (x / s->step + (y % 2 ? 0 : s->even)) % 5 * 64;
 }
 
 static int light_of(const struct stripes *s, int x, int y, int channel)
@@ -58,7 +59,7 @@ static enum glint_given give(void *state, const struct glint_pass_rows *rows)
         for (int i = 0; i < s->tile.x1 - s->tile.x0; i++) {
             const int x = s->tile.x0 + i, y = rows->y + row;
 
-            rows->cover->cover_q8[row][i] = (uint16_t)cover_of(s, x);
+            rows->cover->cover_q8[row][i] = (uint16_t)cover_of(s, x, y);
             for (int c = 0; c < 3; c++)
                 if (s->linear)
                     rows->light_q20[c][i] = 16 * light_of(s, x, y, c);
@@ -125,7 +126,7 @@ static double want_of(const struct stripes *s, int n_passes, int half, int x,
     y >>= half;
     for (int i = 0; i < n_passes; i++, s++) {
         if (s->step < WIDTH)
-            light *= 1 - cover_of(s, x) / 256.;
+            light *= 1 - cover_of(s, x, y) / 256.;
         light += fmin(1, light_of(s, x, y, channel) / 65535.);
     }
     return light;
@@ -153,7 +154,7 @@ static struct glint_image grey_image(enum glint_pixel_format format)
 
 static struct stripes grey(int step, int light_q16)
 {
-    return (struct stripes){step, {light_q16, light_q16, light_q16}, 0, {0}};
+    return (struct stripes){step, {light_q16, light_q16, light_q16}, 0, {0}, 0};
 }
 
 /* Checks that the first sample of each pixel, STEP bytes apart, is within OFF
@@ -196,13 +197,26 @@ static void test_codes(void **state)
         }
 }
 
+/* Of two rows, one is hidden wholly where nothing of the other is. */
+static void test_rows(void **state)
+{
+    struct stripes s = grey(64, 9000);
+
+    (void)state;
+    s.even = 4;
+    check_codes(GLINT_RGB24, 3, 0, &s, 1, 1.0);
+    check_codes(GLINT_I420, 1, 0, &s, 1, 1.0);
+    check_codes(GLINT_YUYV, 2, 0, &s, 1, 1.0);
+}
+
 static void test_linear(void **state)
 {
     (void)state;
     for (int i = 0; i < 8; i++) {
         const struct glint_image image = grey_image(GLINT_LINEAR_Q20);
-        struct stripes s[2] = {{i % 2 ? 7 : WIDTH, {900, 8000, 65535}, 0, {0}},
-                               {i / 2 % 2 ? 4 : WIDTH, {70, 50, 30}, 0, {0}}};
+        struct stripes s[2] = {
+            {i % 2 ? 7 : WIDTH, {900, 8000, 65535}, 0, {0}, 0},
+            {i / 2 % 2 ? 4 : WIDTH, {70, 50, 30}, 0, {0}, 0}};
 
         draw(&image, i / 4, s, 2);
         for (int k = 0; k < 3 * N; k++) {
@@ -248,6 +262,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_codes),
+        cmocka_unit_test(test_rows),
         cmocka_unit_test(test_linear),
         cmocka_unit_test(test_chroma),
     };

@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Shells and lines of recorded motion, pixel by pixel, against their definition
+ * in double; and what is nearer hides them. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "scene/motion/play.h"
+#include "support/rng.h"
+#include "support/tracks/drawn.h"
+
+enum { WIDTH = DRAWN_WIDTH, HEIGHT = DRAWN_HEIGHT, SAMPLES = 4 };
+
+/* Returns the cosine between ray and normal where the ray of place (X, Y), q8
+ * from the middle, enters a ball of RADIUS at C, camera coordinates; -1: it
+ * misses the ball. */
+static double cosine_at(const struct glint_scene *s, const int32_t c[3],
+                        double radius, double x_q8, double y_q8)
+{
+    const double per_tan = (double)s->view.per_tan_q8;
+    const double d[3] = {x_q8 / per_tan, -y_q8 / per_tan, 1};
+    const double length = sqrt(d[0] * d[0] + d[1] * d[1] + 1);
+    double along = 0, square = 0;
+
+    for (int k = 0; k < 3; k++) {
+        along += c[k] * d[k] / length;
+        square += (double)c[k] * c[k];
+    }
+    square = (square - along * along) / (radius * radius);
+    return square > 1 || along <= 0 ? -1 : sqrt(1 - square);
+}
+
+/* Returns the share of pixel (X, Y) that shell L covers. */
+static double shell_at(const struct glint_scene *s,
+                       const struct glint_motion_layer *l, int x, int y)
+{
+    const double share =
+        1 - s->material[l->material].pass_q15 / (double)GLINT_SCENE_ONE_Q15;
+    const double x_q8 = glint_place(s, x, 0), y_q8 = glint_place(s, y, 1);
+    int32_t c[3];
+    int hits = 0;
+
+    glint_view_seen(&s->view, l->ball->at, c);
+    for (int k = 0; k < SAMPLES; k++)
+        hits += cosine_at(s, c, l->ball->radius, x_q8 + glint_sample(s, k, 0),
+                          y_q8 + glint_sample(s, k, 1)) >= 0;
+    return share * hits / SAMPLES *
+           (1 - fmax(0, cosine_at(s, c, l->ball->radius, x_q8, y_q8)) / 2);
+}
+
+/* Returns the share of pixel (X, Y) that line L covers. */
+static double line_at(const struct glint_scene *s,
+                      const struct glint_motion_layer *l, int x, int y)
+{
+    const double dx = (glint_place(s, x, 0) - l->x_q8) / 256.;
+    const double dy = (glint_place(s, y, 1) - l->y_q8) / 256.;
+    const double u = l->along_q14[0] / 16384., v = l->along_q14[1] / 16384.;
+    const double along = dx * u + dy * v, across = fabs(dx * v - dy * u);
+    const double length = l->length_q8 / 256.;
+    const double part = fmin(1, fmax(0, along / length));
+    const double half =
+        (l->half_q8[0] + (l->half_q8[1] - l->half_q8[0]) * part) / 256;
+
+    return fmax(0, fmin(1, fmin(along, length - along) + .5)) *
+           fmax(0, fmin(fmin(1, 2 * half), half + .5 - across));
+}
+
+/* Draws shells, lines and box alone, and compares. */
+static void compare(struct drawn *d)
+{
+    const struct glint_scene *s = d->frame.scene;
+    const struct glint_motion_state *m = s->motion;
+    double worst = 0;
+
+    drawn_draw(d);
+    assert_true(m->n_layers > 0);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            double rgb[3] = {0, 0, 0};
+
+            for (int i = 0; i < m->n_layers; i++) {
+                const struct glint_motion_layer *l = &m->layer[i];
+                const double a =
+                    l->ball ? shell_at(s, l, x, y) : line_at(s, l, x, y);
+
+                for (int c = 0; c < 3; c++)
+                    rgb[c] += a * (s->material[l->material].rgb_q15[c] /
+                                       (double)GLINT_SCENE_ONE_Q15 -
+                                   rgb[c]);
+            }
+            for (int c = 0; c < 3; c++)
+                worst = fmax(
+                    worst,
+                    fabs(rgb[c] -
+                         ldexp(d->light_q20[3 * (y * WIDTH + x) + c], -20)));
+        }
+    /* each layer is rounded to 256ths, the mean of a rim to a sample */
+    if (worst > (m->n_layers + 2) / 256.)
+        fail_msg("%d layers, off by %.4f", m->n_layers, worst);
+}
+
+static void layers_are_as_defined(void **state)
+{
+    double food[4][3] = {{5, 0, 0}, {0, 5, .5}, {0, 0, 5}, {-5, -1, 0}};
+    static const char *const camera[] = {
+        "camera fov 53 at -4 12 16 toward 0 0 0\n",
+        "camera fov 70 at 9 1 1 toward 0 0 0\n",
+        "camera fov 30 at 0 3 30 toward 0 1 0\n",
+        "camera fov 53 at 1 14 0 toward 0 0 0.5\n"};
+
+    (void)state;
+    drawn_of_foods(food, 4, 50);
+    for (int i = 0; i < 4; i++)
+        for (int tile_log2 = 4; tile_log2 <= 6; tile_log2++) {
+            char text[400];
+            struct drawn *d;
+
+            strcpy(text, camera[i]);
+            strcat(text, "material shells phong 1 0 0 colour 0 .5 1 pass .4\n"
+                         "motion run x size .6 sensors .2 foods .5 shells 1.8 "
+                         "lines .3 box .1\n");
+            d = drawn_open(text, tile_log2, SAMPLES);
+            glint_scene_show_kind(d->frame.scene, GLINT_KIND_FOODS, 0);
+            glint_scene_show_kind(d->frame.scene, GLINT_KIND_BODY, 0);
+            glint_scene_show_kind(d->frame.scene, GLINT_KIND_SENSORS, 0);
+            compare(d);
+            drawn_close(d);
+        }
+}
+
+/* A food that no sensor sees stands before one that is seen, in its shell or
+ * before it: where it is, there is no shell. */
+static void nearer_things_hide_layers(void **state)
+{
+    double food[3][3] = {{5, 0, 0}, {5, 3, 3}, {0, -9, 9}};
+    const int middle = 3 * (HEIGHT / 2 * WIDTH + WIDTH / 2);
+
+    (void)state;
+    drawn_of_foods(food, 3, 50);
+    for (int i = 0; i < 2; i++) {
+        struct drawn *d =
+            drawn_open(i ? "camera fov 30 at 5 12 12 toward 5 0 0\n"
+                           "motion run x size .6 foods 1 shells 2\n"
+                         : "camera fov 30 at 5 12 12 toward 5 0 0\n"
+                           "motion run x size .6 foods 1 shells 5.4\n",
+                       5, SAMPLES);
+        int32_t with[2][3];
+
+        for (int k = 0; k < 2; k++) {
+            glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, k);
+            drawn_draw(d);
+            memcpy(with[k], d->light_q20 + middle, sizeof with[k]);
+        }
+        assert_int_equal(d->frame.scene->motion->n_layers, 1);
+        if (i)
+            assert_memory_equal(with[0], with[1], sizeof with[0]);
+        else /* the shell is so wide that the food is in it */
+            assert_memory_not_equal(with[0], with[1], sizeof with[0]);
+        drawn_close(d);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(layers_are_as_defined),
+        cmocka_unit_test(nearer_things_hide_layers)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
