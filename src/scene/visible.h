@@ -42,6 +42,30 @@ static inline void glint_put_sample(struct glint_scene_worker *w, int x, int y,
     }
 }
 
+/* ------------------------------------------------------------------- balls */
+
+/* Balls in the middle of pixels, the quick way (frame/quick.h). */
+
+/* Prepares ball P, which is placed. */
+void glint_quick_ball(const struct glint_scene *scene, struct glint_placed *p);
+
+/* Sets RAY to that of place (X, Y), and SEEN_Q30 to its direction in camera
+ * coordinates, each element off by 2^-24. */
+void glint_quick_ray(const struct glint_scene_view *view, int32_t x_q8,
+                     int32_t y_q8, struct glint_scene_ray *ray,
+                     int32_t seen_q30[3]);
+
+/* Sets COSINE_Q30 to that between RAY and the normal of P, where P->over_up is
+ * not 0, and ACROSS_Q30 to the middle's distance from the ray, in radii, turned
+ * to a right angle. Returns 0 beside P and near its rim. */
+int glint_quick_meet(const struct glint_placed *p,
+                     const struct glint_scene_ray *ray, int32_t across_q30[3],
+                     int32_t *cosine_q30);
+
+/* Returns how far along RAY that is, steps, to 2^-13 of a radius. */
+int32_t glint_quick_away(const struct glint_placed *p,
+                         const struct glint_scene_ray *ray, int32_t cosine_q30);
+
 /* ------------------------------------------------------------------ layers */
 
 /* What is laid over the things of a picture, by the part for recorded motion.

@@ -7,7 +7,7 @@
 #ifndef GLINT_SCENE_FRAME_QUICK_H
 #define GLINT_SCENE_FRAME_QUICK_H
 
-#include "scene/state.h"
+#include "scene/visible.h"
 
 /* ------------------------------------------------------------------- roots */
 
@@ -48,26 +48,8 @@ static inline void glint_quick_unit(const int32_t v[3], int32_t unit_q30[3])
 
 /* -------------------------------------------------------------------- find */
 
-/* Prepares the balls of a frame, and ball P. */
+/* Prepares the balls of a frame. */
 void glint_quick_begin(struct glint_scene *scene);
-void glint_quick_ball(const struct glint_scene *scene, struct glint_placed *p);
-
-/* Sets RAY to that of place (X, Y), and SEEN_Q30 to its direction in camera
- * coordinates, each element off by 2^-24. */
-void glint_quick_ray(const struct glint_scene_view *view, int32_t x_q8,
-                     int32_t y_q8, struct glint_scene_ray *ray,
-                     int32_t seen_q30[3]);
-
-/* Sets COSINE_Q30 to that between RAY and the normal of P, where P->over_up is
- * not 0, and ACROSS_Q30 to the middle's distance from the ray, in radii, turned
- * to a right angle. Returns 0 beside P and near its rim. */
-int glint_quick_meet(const struct glint_placed *p,
-                     const struct glint_scene_ray *ray, int32_t across_q30[3],
-                     int32_t *cosine_q30);
-
-/* Returns how far along RAY that is, steps, to 2^-13 of a radius. */
-int32_t glint_quick_away(const struct glint_placed *p,
-                         const struct glint_scene_ray *ray, int32_t cosine_q30);
 
 /* Sets RAY to that of place (X, Y), each element off by 2^-24, and SURFACE to
  * where it meets ID, held inside if that is a triangle. Returns 0 where that is

@@ -5,7 +5,6 @@
 #include "scene/motion/over.h"
 
 #include "base/divide.h"
-#include "scene/frame/quick.h"
 
 enum {
     MOST_HALF_Q8 = GLINT_LINE_MOST_HALF_Q8,

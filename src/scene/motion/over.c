@@ -3,7 +3,6 @@
 
 #include "base/compiler.h"
 #include "base/divide.h"
-#include "scene/frame/quick.h"
 
 enum { ALL_Q8 = 256, MOST_HALF_Q8 = GLINT_LINE_MOST_HALF_Q8, SUMMED = 4 };
 
