@@ -28,7 +28,8 @@ STATIC_ASSERT(sizeof(struct glint_scene_ward) == 24);
 STATIC_ASSERT(sizeof(struct glint_scene_motion) == 96);
 STATIC_ASSERT(sizeof(struct glint_scene_stone) == 16);
 STATIC_ASSERT(sizeof(struct glint_scene_skin) == 16);
-STATIC_ASSERT(sizeof(struct glint_scene_header) == 280);
+STATIC_ASSERT(sizeof(struct glint_scene_environment) == 56);
+STATIC_ASSERT(sizeof(struct glint_scene_header) == 268);
 
 /* The header begins as that of every baked file does. */
 #define SAME_PLACE(field)                                       \
@@ -214,21 +215,30 @@ const char *glint_scene_ward_fault(const struct glint_scene_ward *w)
     return NULL;
 }
 
-static const char *check_environment(const struct glint_scene_header *h)
+/* The environment's own file is checked by who shows it. */
+static const char *check_environment(struct glint_scene_check *c,
+                                     const struct glint_scene_environment *e)
 {
-    const int is_there = h->environment_bytes > 0;
-
-    if (h->background == GLINT_BACKGROUND_ENVIRONMENT && !is_there)
-        return "the background's environment is not there";
-    if (is_there
-            ? !glint_scene_is_unit(h->environment_turn_q30, 2) ||
-                  h->environment_scale.mantissa == 0 || h->environment_bytes % 4
-            : h->environment_turn_q30[0] || h->environment_turn_q30[1] ||
-                  h->environment_scale.mantissa)
+    if (!glint_scene_name_fits(e->name))
+        return "an environment's name is empty, endless or not printable";
+    if (!glint_scene_is_unit(e->turn_q30, 2) || e->scale.mantissa == 0 ||
+        !glint_scene_is_light(&e->scale))
         return "the environment's turn or scale is out of range";
-    return glint_scene_is_light(&h->environment_scale)
+    return e->file_bytes % 4 == 0 && glint_blob_section(&c->blob, e->file_at,
+                                                        e->file_bytes / 4, 4)
                ? NULL
-               : "a light is negative or not normalised";
+               : glint_scene_outside;
+}
+
+/* The last lights are suns, which those of environments become. */
+static const char *check_suns(const struct glint_scene_model *m)
+{
+    const struct glint_scene_header *h = m->header;
+
+    for (uint32_t k = 1; k <= h->n_environment_lights; k++)
+        if (m->light[h->n_lights - k].kind != GLINT_LIGHT_SUN)
+            return "a light of the environment is no sun";
+    return NULL;
 }
 
 /* The motion's own file is checked by who plays it. */
@@ -255,8 +265,6 @@ static const char *check_motion(const struct glint_scene_header *h,
 
 static const char *check_header(const struct glint_scene_header *h)
 {
-    const char *wrong;
-
     if (h->variant > GLINT_HAND_RIGHT)
         return "the scene's variant is unknown";
     if (!is_between(h->unit_log2, -28, 60))
@@ -275,10 +283,13 @@ static const char *check_header(const struct glint_scene_header *h)
         h->n_objects > GLINT_SCENE_MAX_OBJECTS ||
         h->n_wards > GLINT_SCENE_MAX_MATERIALS ||
         h->n_stones > GLINT_SCENE_MAX_SKINS ||
-        h->n_skins > GLINT_SCENE_MAX_SKINS || h->n_motions > 1)
+        h->n_skins > GLINT_SCENE_MAX_SKINS || h->n_motions > 1 ||
+        h->n_environments > GLINT_SCENE_MAX_ENVIRONMENTS ||
+        h->n_environment_lights > (h->n_environments ? h->n_lights : 0))
         return "the scene has too many of a kind";
-    wrong = check_environment(h);
-    return wrong ? wrong : glint_scene_camera_fault(&h->camera);
+    if (h->background == GLINT_BACKGROUND_ENVIRONMENT && !h->n_environments)
+        return "the background's environment is not there";
+    return glint_scene_camera_fault(&h->camera);
 }
 
 /* ------------------------------------------------------------------- whole */
@@ -302,12 +313,8 @@ static const char *find_tables(struct glint_scene_check *c)
     m->stone =
         glint_blob_section(b, h->stone_at, h->n_stones, sizeof *m->stone);
     m->skin = glint_blob_section(b, h->skin_at, h->n_skins, sizeof *m->skin);
-    if (h->environment_bytes) {
-        m->environment = glint_blob_section(b, h->environment_at,
-                                            h->environment_bytes / 4, 4);
-        if (!m->environment)
-            return glint_scene_outside;
-    }
+    m->environment = glint_blob_section(b, h->environment_at, h->n_environments,
+                                        sizeof *m->environment);
     if (h->n_motions) {
         m->motion = glint_blob_section(b, h->motion_at, 1, sizeof *m->motion);
         if (!m->motion ||
@@ -316,7 +323,7 @@ static const char *find_tables(struct glint_scene_check *c)
             return glint_scene_outside;
     }
     return m->light && m->texture && m->material && m->mesh && m->object &&
-                   m->ward && m->stone && m->skin
+                   m->ward && m->stone && m->skin && m->environment
                ? NULL
                : glint_scene_outside;
 }
@@ -334,6 +341,10 @@ static const char *check_contents(struct glint_scene_check *c)
         wrong = find_tables(c);
     for (uint32_t k = 0; !wrong && k < h->n_lights; k++)
         wrong = check_light(&m->light[k]);
+    for (uint32_t k = 0; !wrong && k < h->n_environments; k++)
+        wrong = check_environment(c, &m->environment[k]);
+    if (!wrong)
+        wrong = check_suns(m);
     for (uint32_t k = 0; !wrong && k < h->n_textures; k++)
         wrong = check_texture(c, &m->texture[k]);
     for (uint32_t k = 0; !wrong && k < h->n_wards; k++)
@@ -400,6 +411,15 @@ int glint_scene_find_material(const struct glint_scene_model *model,
 {
     for (uint32_t k = 0; k < model->header->n_materials; k++)
         if (is_same(model->material[k].name, name))
+            return (int)k;
+    return -1;
+}
+
+int glint_scene_find_environment(const struct glint_scene_model *model,
+                                 const char *name)
+{
+    for (uint32_t k = 0; k < model->header->n_environments; k++)
+        if (is_same(model->environment[k].name, name))
             return (int)k;
     return -1;
 }

@@ -61,8 +61,12 @@ struct glint_scene_wards {
     enum glint_status (*open)(struct glint_scene *scene);
     /* Makes the lobe of metal I anew. */
     void (*change)(const struct glint_scene *scene, uint32_t i);
-    /* Turns the environment and its lights; returns 0 if there is none. */
-    int (*turn)(struct glint_scene *scene, const int32_t turn_q30[2]);
+    /* Shows environment I, with its lights. */
+    void (*show)(struct glint_scene *scene, uint32_t i);
+    /* Makes SCALE the factor of its light. */
+    void (*scale)(struct glint_scene *scene, struct glint_real scale);
+    /* Turns it. */
+    void (*turn)(struct glint_scene *scene, const int32_t turn_q30[2]);
     /* Finds how the metal of SURFACE lies, which RAY meets. */
     void (*lie)(const struct glint_scene *scene,
                 const struct glint_scene_ray *ray,
@@ -97,6 +101,8 @@ struct glint_scene_stones {
                                        struct glint_arena *arena);
     /* Opens all stones; before that, of SCENE the model alone is there. */
     enum glint_status (*open)(struct glint_scene *scene);
+    /* Notes what there is of light from all around, which has changed. */
+    void (*relight)(struct glint_scene *scene);
     /* Brings the maps up to date with the frame that was begun; returns how
      * many texels were worked out. */
     int (*update)(struct glint_scene *scene);

@@ -167,7 +167,7 @@ static WHOLLY_INLINE void phong(const struct glint_scene *scene,
     if (scene->wards)
         wards->reflect(scene, ray, surface, is_metal ? &brushed : NULL,
                        colour_q15, weight_q15, rgb_q15);
-    for (uint32_t i = 0; i < scene->model.header->n_lights; i++)
+    for (uint32_t i = 0; i < scene->n_lit; i++)
         add_light(scene, ray, surface, is_metal ? &brushed : NULL,
                   &scene->lit[i], colour_q15, weight_q15, rgb_q15);
 }
@@ -188,7 +188,7 @@ static int caught_q8(const struct glint_scene *s,
 {
     int64_t all = 0, gone = 0;
 
-    for (uint32_t i = 0; i < s->model.header->n_lights; i++) {
+    for (uint32_t i = 0; i < s->n_lit; i++) {
         int32_t toward_q30[3], level_q15[3];
         int64_t light;
 

@@ -29,7 +29,7 @@ void glint_scene_defaults(struct glint_scene_config *cfg, int width, int height)
 /* Returns whether a scene has brushed metal or an environment. */
 static int has_wards(const struct glint_scene_header *h)
 {
-    return h->n_wards > 0 || h->environment_bytes > 0;
+    return h->n_wards > 0 || h->n_environments > 0;
 }
 
 const char *glint_scene_lacks(const struct glint_scene_parts *parts,
@@ -271,7 +271,8 @@ static void set_lights(struct glint_scene *s)
 {
     const struct glint_scene_model *model = &s->model;
 
-    for (uint32_t i = 0; i < model->header->n_lights; i++) {
+    s->n_lit = model->header->n_lights;
+    for (uint32_t i = 0; i < s->n_lit; i++) {
         const struct glint_scene_light *l = &model->light[i];
 
         s->lit[i].light = l;
@@ -307,6 +308,7 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
     s->is_spread = 0;
     s->sample_q8 = glint_scene_samples(cfg->edge_samples);
     glint_scene_copy_looks(s);
+    set_lights(s);
     if (s->wards && cfg->parts.wards->open(s) != GLINT_OK)
         return GLINT_E_FORMAT;
     if (s->stones && cfg->parts.stones->open(s) != GLINT_OK)
@@ -315,7 +317,6 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
         cfg->parts.textures->prepare(s->curve);
     for (uint32_t i = 0; i < model->header->n_materials; i++)
         glint_gloss_prepare(&s->gloss[i], model->material[i].power_q8);
-    set_lights(s);
     if (!place_objects(s))
         return GLINT_E_ARGUMENT; /* was checked when it was opened */
     if (s->motion && cfg->parts.motions->open(s) != GLINT_OK)

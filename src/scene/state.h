@@ -203,6 +203,7 @@ struct glint_scene {
     const int8_t (*sample_q8)[2]; /* of a pixel, from its middle */
     struct glint_placed *placed;  /* [n_objects] */
     struct glint_lit *lit;        /* [n_lights] */
+    uint32_t n_lit;               /* those that shine: the first ones */
     int32_t (*seen)[3];           /* camera coordinates of all vertices */
     struct glint_corner *corner;  /* and where they are in the picture */
     struct glint_bins bins;       /* of triangles, object << 20 | triangle */

@@ -264,7 +264,7 @@ static void confine(const struct glint_scene *s, struct glint_placed *plane)
 {
     struct glint_box box = {0, 0, 0, 0};
 
-    for (uint32_t i = 0; i < s->model.header->n_lights; i++) {
+    for (uint32_t i = 0; i < s->n_lit; i++) {
         if (!s->model.header->shadow)
             break;
         if (!s->lit[i].shadow || s->n_planes)

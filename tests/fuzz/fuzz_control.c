@@ -41,8 +41,11 @@ static void check_again(const struct control_line *l,
 
     if (l->frame >= 0)
         n += snprintf(text, sizeof text, "%d ", l->frame);
-    n += snprintf(text + n, sizeof text - (size_t)n, "%s %s %s %s", f->word,
-                  l->name[0], l->name[1], f->clause ? f->clause : "");
+    n += f->behind ? snprintf(text + n, sizeof text - (size_t)n, "%s %s %s",
+                              f->word, f->clause, l->name[0])
+                   : snprintf(text + n, sizeof text - (size_t)n, "%s %s %s %s",
+                              f->word, l->name[0], l->name[1],
+                              f->clause ? f->clause : "");
     for (int i = 0; i < l->n; i++)
         n += snprintf(text + n, sizeof text - (size_t)n, " %.17g", l->v[i]);
     require(control_parse(text, "again", &again, &error) == GLINT_OK);
@@ -64,7 +67,7 @@ static void check(const struct control_line *l)
     for (int i = 0; i < l->n; i++)
         require(l->v[i] >= f->lowest && l->v[i] <= f->highest);
     for (int i = 0; i < 2; i++)
-        require((*l->name[i] != 0) == (i < f->names) &&
+        require((*l->name[i] != 0) == (i < f->names + f->behind) &&
                 strlen(l->name[i]) < CONTROL_NAME);
     check_again(l, f);
 }

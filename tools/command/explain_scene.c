@@ -147,12 +147,20 @@ static struct light light_of(const struct explained_scene *s, int i,
     return light;
 }
 
+static bool is_bright(const struct glint_scene_light *light)
+{
+    return light->rgb[0].mantissa || light->rgb[1].mantissa ||
+           light->rgb[2].mantissa;
+}
+
 static int lights_of(const struct explained_scene *s, struct light *light)
 {
     struct glint_scene_lamp seen[GLINT_SCENE_MAX_LIGHTS];
     const int n = glint_scene_lights(s->compositor->scene.frame.scene, seen);
-    const int all = (int)model_of(s)->header->n_lights;
+    int all = (int)model_of(s)->header->n_lights;
 
+    while (all && !is_bright(&model_of(s)->light[all - 1]))
+        all--; /* kept for another environment */
     for (int i = 0; i < all; i++)
         light[i] = light_of(s, i, seen, n);
     return all;

@@ -13,44 +13,50 @@
 
 /* clang-format off */
 const struct control_form control_forms[] = {
-    /* verb             word           clause     names numbers from, to whole */
-    {CONTROL_ORBIT,    "orbit",       NULL,       0, 2, 2, -360, 360, false,
+    /* verb             word           clause    names, behind it; numbers, from, to, whole */
+    {CONTROL_ORBIT,    "orbit",       NULL,       0, 0, 2, 2, -360, 360, false,
      "orbit YAW PITCH"},
-    {CONTROL_DISTANCE, "distance",    NULL,       0, 1, 1, 1e-6, 1e6, false,
+    {CONTROL_DISTANCE, "distance",    NULL,       0, 0, 1, 1, 1e-6, 1e6, false,
      "distance D"},
-    {CONTROL_SENSOR,   "camera",      "sensor",   0, 1, 1, 1, 32, true,
+    {CONTROL_SENSOR,   "camera",      "sensor",   0, 0, 1, 1, 1, 32, true,
      "camera sensor K"},
-    {CONTROL_SCENE,    "camera",      "scene",    0, 0, 0, 0, 0, false,
+    {CONTROL_SCENE,    "camera",      "scene",    0, 0, 0, 0, 0, 0, false,
      "camera scene"},
-    {CONTROL_WALK,     "walk",        NULL,       0, 3, 3, -1e6, 1e6, false,
+    {CONTROL_WALK,     "walk",        NULL,       0, 0, 3, 3, -1e6, 1e6, false,
      "walk RIGHT UP AHEAD"},
-    {CONTROL_LOOK,     "look",        NULL,       0, 3, 3, -360, 360, false,
+    {CONTROL_LOOK,     "look",        NULL,       0, 0, 3, 3, -360, 360, false,
      "look YAW PITCH ROLL"},
-    {CONTROL_ALPHA,    "set",         "alpha",    1, 1, 2, .001, 1, false,
+    {CONTROL_ALPHA,    "set",         "alpha",    1, 0, 1, 2, .001, 1, false,
      "set MATERIAL alpha X [Y]"},
-    {CONTROL_COLOUR,   "set",         "colour",   1, 3, 3, 0, 1, false,
+    {CONTROL_COLOUR,   "set",         "colour",   1, 0, 3, 3, 0, 1, false,
      "set MATERIAL colour R G B"},
-    {CONTROL_DIFFUSE,  "set",         "diffuse",  1, 3, 3, 0, 1, false,
+    {CONTROL_DIFFUSE,  "set",         "diffuse",  1, 0, 3, 3, 0, 1, false,
      "set MATERIAL diffuse R G B"},
-    {CONTROL_MATERIAL, "material",    NULL,       2, 0, 0, 0, 0, false,
+    {CONTROL_MATERIAL, "material",    NULL,       2, 0, 0, 0, 0, 0, false,
      "material THING MATERIAL"},
-    {CONTROL_SHOW,     "show",        NULL,       1, 0, 0, 0, 0, false,
+    {CONTROL_SHOW,     "show",        NULL,       1, 0, 0, 0, 0, 0, false,
      "show THING"},
-    {CONTROL_HIDE,     "hide",        NULL,       1, 0, 0, 0, 0, false,
+    {CONTROL_HIDE,     "hide",        NULL,       1, 0, 0, 0, 0, 0, false,
      "hide THING"},
-    {CONTROL_SIZE,     "size",        NULL,       1, 1, 1, 1e-6, 1e6, false,
+    {CONTROL_SIZE,     "size",        NULL,       1, 0, 1, 1, 1e-6, 1e6, false,
      "size BALL RADIUS"},
-    {CONTROL_TURN,     "environment", "turn",     0, 1, 1, -360, 360, false,
+    {CONTROL_TURN,     "environment", "turn",     0, 0, 1, 1, -360, 360, false,
      "environment turn DEG"},
-    {CONTROL_STEP,     "step",        NULL,       0, 0, 1, -MOST, MOST, true,
+    {CONTROL_SCALE,    "environment", "scale",    0, 0, 1, 1, 1e-6, 1e6, false,
+     "environment scale X"},
+    {CONTROL_MAP,      "environment", "map",      0, 1, 0, 0, 0, 0, false,
+     "environment map NAME"},
+    {CONTROL_NEXT_MAP, "environment", "next",     0, 0, 0, 0, 0, 0, false,
+     "environment next"},
+    {CONTROL_STEP,     "step",        NULL,       0, 0, 0, 1, -MOST, MOST, true,
      "step [N]"},
-    {CONTROL_JUMP,     "jump",        NULL,       0, 1, 1, 0, MOST, true,
+    {CONTROL_JUMP,     "jump",        NULL,       0, 0, 1, 1, 0, MOST, true,
      "jump N"},
-    {CONTROL_PLAY,     "play",        NULL,       0, 0, 1, 0, 120, false,
+    {CONTROL_PLAY,     "play",        NULL,       0, 0, 0, 1, 0, 120, false,
      "play [FRAMES A SECOND]"},
-    {CONTROL_PAUSE,    "pause",       NULL,       0, 0, 0, 0, 0, false,
+    {CONTROL_PAUSE,    "pause",       NULL,       0, 0, 0, 0, 0, 0, false,
      "pause"},
-    {CONTROL_STOP,     "stop",        NULL,       0, 0, 0, 0, 0, false,
+    {CONTROL_STOP,     "stop",        NULL,       0, 0, 0, 0, 0, 0, false,
      "stop"},
 };
 /* clang-format on */
@@ -134,12 +140,12 @@ static const struct control_form *form_of(const char *word, int i)
     return NULL;
 }
 
-/* Reads names, whose number all forms of a word share. */
+/* Reads the N names of FORM. */
 static enum glint_status read_names(struct reader *r,
-                                    const struct control_form *form,
+                                    const struct control_form *form, int n,
                                     struct control_line *line)
 {
-    for (int i = 0; i < form->names; i++) {
+    for (int i = 0; i < n; i++) {
         if (!next_word(r))
             return control_fail(r->error, r->where, r->column, "expected %s",
                                 form->usage);
@@ -234,9 +240,11 @@ static enum glint_status read_command(struct reader *r,
     form = form_of(r->word, 0);
     if (!form)
         return fail_word(r, NULL);
-    status = read_names(r, form, line);
+    status = read_names(r, form, form->names, line);
     if (status == GLINT_OK)
         status = read_clause(r, &form);
+    if (status == GLINT_OK)
+        status = read_names(r, form, form->behind, line);
     if (status == GLINT_OK)
         status = read_numbers(r, form, line);
     if (status == GLINT_OK && next_word(r))

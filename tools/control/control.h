@@ -43,7 +43,10 @@ enum control_verb {
     CONTROL_HIDE,
     CONTROL_SIZE, /* radius of a ball, units */
     /* Light from all around. */
-    CONTROL_TURN, /* to the right, degrees */
+    CONTROL_TURN,     /* to the right, degrees */
+    CONTROL_SCALE,    /* factor of all its light */
+    CONTROL_MAP,      /* another environment of the scene: name */
+    CONTROL_NEXT_MAP, /* the one after that */
     /* Time of what moves by itself. */
     CONTROL_STEP, /* frames, 1 if not given; may be negative */
     CONTROL_JUMP, /* to a frame */
@@ -58,7 +61,8 @@ struct control_form {
     enum control_verb verb;
     const char *word;   /* with which it begins */
     const char *clause; /* which follows the names, or NULL */
-    int names;          /* 0 .. 2 */
+    int names;          /* 0 .. 2, the same of all forms of a word */
+    int behind;         /* names behind the clause, instead */
     int least, most;    /* numbers */
     double lowest, highest;
     bool is_whole; /* numbers are whole ones */

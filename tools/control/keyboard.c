@@ -13,10 +13,13 @@
 #define STEP_DEG 3
 #define NEARER   0.95
 #define SMOOTHER 0.87
+#define DIMMER   0.8
 
 const char keyboard_help[] =
-    "keys: arrows orbit, + - distance, [ ] turn the environment, a A slopes of "
-    "brushed metal, m next material, space pause, . , step, s stop, q end";
+    "keys: arrows orbit, + - distance, [ ] turn the environment, { } its "
+    "light, "
+    "e next environment, a A slopes of brushed metal, m next material, space "
+    "pause, . , step, s stop, q end";
 
 static const struct {
     const char *bytes;
@@ -31,6 +34,9 @@ static const struct {
     {"-", {.verb = CONTROL_DISTANCE, .n = 1, .v = {1 / NEARER}}},
     {"[", {.verb = CONTROL_TURN, .n = 1, .v = {-STEP_DEG}}},
     {"]", {.verb = CONTROL_TURN, .n = 1, .v = {STEP_DEG}}},
+    {"{", {.verb = CONTROL_SCALE, .n = 1, .v = {DIMMER}}},
+    {"}", {.verb = CONTROL_SCALE, .n = 1, .v = {1 / DIMMER}}},
+    {"e", {.verb = CONTROL_NEXT_MAP}},
     {"a", {.verb = CONTROL_ALPHA, .n = 1, .v = {SMOOTHER}}},
     {"A", {.verb = CONTROL_ALPHA, .n = 1, .v = {1 / SMOOTHER}}},
     {"m", {.verb = CONTROL_MATERIAL}},

@@ -56,14 +56,12 @@ enum glint_status steer_open(struct steer *steer,
         .camera = h->camera,
         .sensor = model->motion && model->motion->camera != GLINT_SCENE_NONE
                       ? (int)model->motion->camera
-                      : -1,
-        .turn_deg =
-            atan2(h->environment_turn_q30[1], h->environment_turn_q30[0]) /
-            RADIAN};
+                      : -1};
     if (!steer->thing || !steer->look) {
         steer_close(steer);
         return GLINT_E_MEMORY;
     }
+    steer_open_environments(steer);
     for (int i = 0; i < n_objects(steer); i++)
         steer->thing[i] = (struct steer_thing){!model->object[i].hidden,
                                                (int)model->object[i].material,
@@ -155,7 +153,8 @@ enum glint_status steer_check(const struct steer *steer,
     int index[2];
     enum glint_status status;
 
-    if (steer_check_motion(steer, line, where, error, &status))
+    if (steer_check_motion(steer, line, where, error, &status) ||
+        steer_check_environment(steer, line, where, error, &status))
         return status;
     status = find_all(steer, line, where, error, index);
     if (status != GLINT_OK)
@@ -169,9 +168,6 @@ enum glint_status steer_check(const struct steer *steer,
         return control_fail(error, where, line->name_column[0],
                             "'%s' is no ball, whose size is its radius",
                             line->name[0]);
-    if (line->verb == CONTROL_TURN && !steer->model.environment)
-        return control_fail(error, where, line->column,
-                            "the scene has no environment");
     return GLINT_OK;
 }
 
@@ -412,16 +408,6 @@ static enum glint_status take_size(struct steer *s, struct glint_scene *scene,
     return status;
 }
 
-/* Turns the environment to s->turn_deg. */
-static void apply_turn(const struct steer *s, struct glint_scene *scene)
-{
-    const int32_t turn_q30[2] = {
-        (int32_t)lrint(0x1p30 * cos(s->turn_deg * RADIAN)),
-        (int32_t)lrint(0x1p30 * sin(s->turn_deg * RADIAN))};
-
-    glint_scene_turn_environment(scene, turn_q30);
-}
-
 /* ---------------------------------------------------------------------- line
  */
 
@@ -446,10 +432,6 @@ static enum glint_status obey(struct steer *s, struct glint_scene *scene,
         return GLINT_OK;
     case CONTROL_SIZE:
         return take_size(s, scene, line, index[0]);
-    case CONTROL_TURN:
-        s->turn_deg = line->v[0] + (line->is_change ? s->turn_deg : 0);
-        apply_turn(s, scene);
-        return GLINT_OK;
     default:
         return GLINT_OK;
     }
@@ -464,7 +446,8 @@ enum glint_status steer_take(struct steer *steer, struct glint_scene *scene,
 
     if (status != GLINT_OK)
         return line->is_change ? GLINT_OK : status;
-    if (!steer_take_motion(steer, scene, line, &status)) {
+    if (!steer_take_motion(steer, scene, line, &status) &&
+        !steer_take_environment(steer, scene, line, &status)) {
         status = find_all(steer, line, where, error, index);
         if (status == GLINT_OK)
             status = obey(steer, scene, line, index);
@@ -492,8 +475,7 @@ void steer_apply(const struct steer *steer, struct glint_scene *scene)
     }
     for (int i = 0; i < n_materials(steer); i++)
         glint_scene_set_look(scene, i, &steer->look[i]);
-    if (steer->model.environment)
-        apply_turn(steer, scene);
+    steer_apply_environment(steer, scene);
     steer_apply_motion(steer, scene);
     if (steer->orbit.is_there)
         apply_orbit(steer, scene);

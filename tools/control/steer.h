@@ -22,6 +22,11 @@ struct steer_thing {
     int32_t radius; /* of a ball, steps */
 };
 
+/* An environment as it was changed. */
+struct steer_map {
+    double turn_deg, scale;
+};
+
 /* A kind of things of a motion as it was changed. */
 struct steer_kind {
     bool is_hidden;
@@ -43,8 +48,9 @@ struct steer {
     struct steer_orbit orbit;
     /* Where the camera was before it went about a point. */
     struct glint_scene_camera camera;
-    bool is_free;    /* it has walked, and poses no longer move it */
-    double turn_deg; /* of the environment */
+    bool is_free; /* it has walked, and poses no longer move it */
+    struct steer_map environment[GLINT_SCENE_MAX_ENVIRONMENTS];
+    int shown; /* environment */
     struct steer_kind kind[GLINT_KINDS];
     int sensor; /* that the camera is in, or -1 */
 };
@@ -53,6 +59,21 @@ struct steer {
 enum glint_status steer_open(struct steer *steer,
                              const struct glint_scene_model *model);
 void steer_close(struct steer *steer);
+
+/* steer_environment.c: environments as MODEL has them. */
+void steer_open_environments(struct steer *steer);
+
+/* Checks, and obeys, what LINE says of environments; returns false if it is
+ * about something else. *STATUS: as steer_check(). */
+bool steer_check_environment(const struct steer *steer,
+                             const struct control_line *line, const char *where,
+                             struct glint_error *error,
+                             enum glint_status *status);
+bool steer_take_environment(struct steer *steer, struct glint_scene *scene,
+                            const struct control_line *line,
+                            enum glint_status *status);
+void steer_apply_environment(const struct steer *steer,
+                             struct glint_scene *scene);
 
 /* steer_motion.c: sets KIND to the kind of things called NAME; returns false if
  * there is none, or a thing has that name. */

@@ -73,6 +73,16 @@ static size_t stone_bytes(const struct glint_scene_model *model)
     return bytes;
 }
 
+/* Returns the bytes of all environments. */
+static size_t environment_bytes(const struct glint_scene_model *model)
+{
+    size_t bytes = 0;
+
+    for (uint32_t i = 0; i < model->header->n_environments; i++)
+        bytes += sizeof *model->environment + model->environment[i].file_bytes;
+    return bytes;
+}
+
 static void measure(const struct glint_scene_model *model,
                     struct scene_bytes *b, struct scene_counts *n)
 {
@@ -83,7 +93,7 @@ static void measure(const struct glint_scene_model *model,
                               .material =
                                   h->n_materials * sizeof *model->material +
                                   h->n_wards * sizeof *model->ward,
-                              .environment = h->environment_bytes,
+                              .environment = environment_bytes(model),
                               .stone = stone_bytes(model),
                               .object = h->n_objects * sizeof *model->object};
     *n = (struct scene_counts){.spheres = 0};
@@ -130,11 +140,13 @@ static void print_json(const struct baked_scene *scene,
     tool_json_string(stdout, h->name);
     printf(", \"scene\": {\"objects\": %u, \"spheres\": %d, \"planes\": %d, "
            "\"catchers\": %d, \"meshes\": %d, \"lights\": %u, "
-           "\"materials\": %u, \"textures\": %u, \"vertices\": %u, "
+           "\"environments\": %u, \"materials\": %u, \"textures\": %u, "
+           "\"vertices\": %u, "
            "\"triangles\": %u, \"cells\": %u, \"refs\": %u, \"step\": %.9g",
            h->n_objects, n->spheres, n->planes, n->catchers, n->meshes,
-           h->n_lights, h->n_materials, h->n_textures, n->vertices,
-           n->triangles, n->cells, n->refs, ldexp(1, -h->unit_log2));
+           h->n_lights, h->n_environments, h->n_materials, h->n_textures,
+           n->vertices, n->triangles, n->cells, n->refs,
+           ldexp(1, -h->unit_log2));
     if (scene->is_text)
         printf(", \"reach\": %.9g, \"flat\": %d", scene->report.reach,
                scene->report.flat);
@@ -182,6 +194,9 @@ static void print_text(const struct baked_scene *scene,
            h->n_objects, n->spheres, n->planes, n->catchers, n->meshes);
     printf("lights       %u%s\n", h->n_lights,
            h->shadow ? ", with shadows" : "");
+    for (uint32_t i = 0; i < h->n_environments; i++)
+        printf("%s %s\n", i ? "            " : "environment ",
+               scene->model.environment[i].name);
     printf("materials    %u, textures %u\n", h->n_materials, h->n_textures);
     printf("triangles    %u on %u vertices, %u cells with %u entries\n",
            n->triangles, n->vertices, n->cells, n->refs);

@@ -35,14 +35,14 @@ static enum glint_status open_texels(struct twin_texels *texels,
 enum glint_status twin_open(struct twin *twin,
                             const struct glint_description *scene)
 {
+    const struct glint_described_environment *from = scene->environment;
     enum glint_status status = GLINT_OK;
-    const char *reason;
 
     *twin =
         (struct twin){.scene = scene, .shadow_points = 1, .ward_samples = 8};
-    if (scene->environment.data)
-        status = glint_environment_open(&twin->around, scene->environment.data,
-                                        scene->environment.bytes, &reason);
+    if (scene->n_environments)
+        status = glint_environment_open(&twin->around, from->data, from->bytes,
+                                        &(const char *){NULL});
     for (int i = 0; status == GLINT_OK && i < scene->n_textures; i++)
         status = open_texels(&twin->texels[i], &scene->texture[i].image);
     if (status == GLINT_OK)

@@ -115,7 +115,7 @@ static void look(const struct glint_environment *e, const double toward[3],
 static void turn(const struct twin *twin, const double v[3], double to[3])
 {
     const struct glint_description *s = twin->scene;
-    const double angle = s->environment.turn_deg * GLINT_PI / 180;
+    const double angle = s->environment[0].turn_deg * GLINT_PI / 180;
     const double x = v[0], z = (s->left_handed ? 1 : -1) * v[2];
 
     to[0] = cos(angle) * x - sin(angle) * z;
@@ -363,7 +363,7 @@ static void add_metal(const struct twin *twin, const struct twin_hit *hit,
         add_sample(twin, slope[k], m, (const double(*)[3])frame, out, level,
                    sum);
     for (int c = 0; c < 3; c++)
-        rgb[c] += s->environment.scale * m->metal[c] * sum[c] / n;
+        rgb[c] += s->environment[0].scale * m->metal[c] * sum[c] / n;
 }
 
 /* -------------------------------------------------------------------- whole */
@@ -374,12 +374,12 @@ void twin_irradiance(const struct twin *twin, const double shading[3],
     const struct glint_description *s = twin->scene;
     double normal[3], light[3];
 
-    if (!s->environment.data)
+    if (!s->n_environments)
         return;
     turn(twin, shading, normal);
     look_level(&twin->around, -1, normal, light);
     for (int c = 0; c < 3; c++)
-        rgb[c] += s->environment.scale * light[c];
+        rgb[c] += s->environment[0].scale * light[c];
 }
 
 void twin_add_around(const struct twin *twin, const struct twin_hit *hit,
@@ -390,7 +390,7 @@ void twin_add_around(const struct twin *twin, const struct twin_hit *hit,
     const struct glint_described_material *m = &s->material[hit->material];
     double light[3] = {0, 0, 0};
 
-    if (!s->environment.data)
+    if (!s->n_environments)
         return;
     twin_irradiance(twin, hit->shading, light);
     for (int c = 0; c < 3; c++)
@@ -426,5 +426,5 @@ void twin_behind(const struct twin *twin, const double toward[3], double spread,
             rgb[c] += share * glint_real_value(e->light[i].rgb[c]) / (r * r);
     }
     for (int c = 0; c < 3; c++)
-        rgb[c] *= s->environment.scale;
+        rgb[c] *= s->environment[0].scale;
 }

@@ -32,6 +32,7 @@ enum {
     GLINT_DESCRIPTION_NAME_BYTES = 32,
     GLINT_DESCRIPTION_TEXT_LIGHTS = 16, /* lines of a text */
     GLINT_DESCRIPTION_MAX_LIGHTS = 32,  /* with those of the environment */
+    GLINT_DESCRIPTION_MAX_ENVIRONMENTS = 16,
     GLINT_DESCRIPTION_MAX_MATERIALS = 256,
     GLINT_DESCRIPTION_MAX_TEXTURES = 64,
     GLINT_DESCRIPTION_MAX_STONES = 16,
@@ -114,7 +115,9 @@ struct glint_described_stone {
 
 /* Light from all around. */
 struct glint_described_environment {
-    uint8_t *data; /* a baked environment, malloc'ed; NULL: there is none */
+    /* Of its file, without folder and what follows the last dot. */
+    char name[GLINT_DESCRIPTION_NAME_BYTES];
+    uint8_t *data; /* a baked environment, malloc'ed */
     size_t bytes;
     double turn_deg; /* to the right */
     double scale;    /* factor of all its light */
@@ -188,7 +191,11 @@ struct glint_description {
     struct glint_described_camera camera;
     enum glint_described_background background;
     double background_colour[3];
-    struct glint_described_environment environment;
+    int n_environments;       /* the first is shown */
+    int n_environment_lights; /* at the end of LIGHT: as many as the one of the
+                                 most has; the last ones may be dark */
+    struct glint_described_environment
+        environment[GLINT_DESCRIPTION_MAX_ENVIRONMENTS];
     struct glint_described_motion motion;
     bool has_shadows;
     enum glint_described_flare flare;

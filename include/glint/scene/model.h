@@ -21,6 +21,7 @@
  *
  * Light from all around is a baked environment (glint/scene/environment.h),
  * a section of the file; of its bright lights each is a sun of the scene, too.
+ * There may be several, of which one at a time is shown, at first the first.
  *
  * The file: little-endian 32-bit words; offsets ("_at") are bytes from the
  * start of the file, multiples of 4. Header first, then in any order what it
@@ -40,13 +41,14 @@ extern "C" {
 #endif
 
 #define GLINT_SCENE_MAGIC   UINT32_C(0x53544e47) /* "GNTS" */
-#define GLINT_SCENE_VERSION 4
+#define GLINT_SCENE_VERSION 5
 #define GLINT_SCENE_NONE    UINT32_C(0xffffffff) /* no texture, no material */
 
 enum {
     GLINT_SCENE_SPAN = 1 << 28, /* steps: every coordinate is below */
     GLINT_SCENE_MAX_OBJECTS = 4095,
     GLINT_SCENE_MAX_LIGHTS = 32, /* with those of the environment */
+    GLINT_SCENE_MAX_ENVIRONMENTS = 16,
     GLINT_SCENE_MAX_MATERIALS = 4096,
     GLINT_SCENE_MAX_TEXTURES = 256,
     GLINT_SCENE_MAX_MESHES = 4096,
@@ -225,6 +227,14 @@ struct glint_scene_object {
     int32_t turn_q30[4]; /* unit quaternion w, x, y, z */
 };
 
+struct glint_scene_environment {
+    char name[GLINT_SCENE_NAME];  /* terminated */
+    uint32_t file_at, file_bytes; /* a baked environment, whole words */
+    /* Cosine and sine of the angle by which it is turned to the right. */
+    int32_t turn_q30[2];
+    struct glint_real scale; /* factor of all its light, above 0 */
+};
+
 enum glint_scene_detect {
     GLINT_DETECT_ANGLE, /* a food is seen that lies within the sensor's angle */
     GLINT_DETECT_BOTH   /* and is brighter than a threshold */
@@ -280,15 +290,13 @@ struct glint_scene_header {
     uint32_t n_meshes, mesh_at;        /* struct glint_scene_mesh */
     uint32_t n_objects, object_at;     /* struct glint_scene_object */
     uint32_t n_wards, ward_at;         /* struct glint_scene_ward */
-    /* A baked environment, whole words; 0 bytes: there is none, and what
-     * follows is 0. */
-    uint32_t environment_at, environment_bytes;
-    /* Cosine and sine of the angle by which it is turned to the right. */
-    int32_t environment_turn_q30[2];
-    struct glint_real environment_scale; /* factor of all its light */
-    uint32_t n_motions, motion_at;       /* 0 or 1 struct glint_scene_motion */
-    uint32_t n_stones, stone_at;         /* struct glint_scene_stone */
-    uint32_t n_skins, skin_at;           /* struct glint_scene_skin */
+    uint32_t n_environments, environment_at; /* struct of that name */
+    /* Suns at the end of the lights that are those of the environment that is
+     * shown: as many as the one of the most has. */
+    uint32_t n_environment_lights;
+    uint32_t n_motions, motion_at; /* 0 or 1 struct glint_scene_motion */
+    uint32_t n_stones, stone_at;   /* struct glint_scene_stone */
+    uint32_t n_skins, skin_at;     /* struct glint_scene_skin */
 };
 
 /* An opened file; it points into that, which must outlive it. */
@@ -300,7 +308,7 @@ struct glint_scene_model {
     const struct glint_scene_mesh *mesh;
     const struct glint_scene_object *object;
     const struct glint_scene_ward *ward;
-    const void *environment;                 /* NULL: there is none */
+    const struct glint_scene_environment *environment;
     const struct glint_scene_motion *motion; /* NULL: there is none */
     const struct glint_scene_stone *stone;
     const struct glint_scene_skin *skin;
@@ -316,9 +324,11 @@ enum glint_status glint_scene_open(struct glint_scene_model *model,
 /* Returns the index of the first object of that name, or -1. */
 int glint_scene_find(const struct glint_scene_model *model, const char *name);
 
-/* The same of materials. */
+/* The same of materials, and of environments. */
 int glint_scene_find_material(const struct glint_scene_model *model,
                               const char *name);
+int glint_scene_find_environment(const struct glint_scene_model *model,
+                                 const char *name);
 
 #ifdef __cplusplus
 }

@@ -173,6 +173,17 @@ enum glint_status glint_scene_set_material(struct glint_scene *scene,
 enum glint_status glint_scene_set_radius(struct glint_scene *scene, int object,
                                          int32_t radius);
 
+/* Shows environment ENVIRONMENT of the model, turned and as bright as the model
+ * has it: nothing is baked, allocated or checked, metals' lobes are made anew.
+ * GLINT_E_ARGUMENT: there is none. */
+enum glint_status glint_scene_set_environment(struct glint_scene *scene,
+                                              int environment);
+
+/* Makes SCALE the factor of all the light of the environment that is shown.
+ * GLINT_E_ARGUMENT: it is not above 0, or there is no environment. */
+enum glint_status glint_scene_scale_environment(struct glint_scene *scene,
+                                                struct glint_real scale);
+
 /* Turns the environment to the right, with its lights: TURN_Q30 are cosine and
  * sine, as of the model's header. GLINT_E_ARGUMENT: they are none, or there is
  * no environment. */

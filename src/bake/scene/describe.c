@@ -53,7 +53,7 @@ static const struct line {
     {"hand", glint_describe_hand, true},
     {"camera", glint_describe_camera, true},
     {"background", glint_describe_background, true},
-    {"environment", glint_describe_environment, true},
+    {"environment", glint_describe_environment, false},
     {"light", glint_describe_light, false},
     {"texture", glint_describe_texture, false},
     {"material", glint_describe_material, false},
@@ -141,7 +141,8 @@ void glint_description_free(struct glint_description *scene)
     free(scene->triangle);
     for (int i = 0; i < scene->n_stones; i++)
         free(scene->stone[i].data);
-    free(scene->environment.data);
+    for (int i = 0; i < scene->n_environments; i++)
+        free(scene->environment[i].data);
     free(scene->motion.data);
     memset(scene, 0, sizeof *scene);
 }

@@ -15,20 +15,63 @@
 /* Half of the angle of a light that is a point. */
 #define LEAST_DEG 0.01
 
+/* Sets NAME to that of an environment of FILE. */
+static void set_name(const char *file, char name[GLINT_DESCRIPTION_NAME_BYTES])
+{
+    const char *const folder = strrchr(file, '/');
+    const char *const from = folder ? folder + 1 : file;
+    const char *const dot = strrchr(from, '.');
+    size_t n = dot && dot > from ? (size_t)(dot - from) : strlen(from);
+
+    if (n > GLINT_DESCRIPTION_NAME_BYTES - 1)
+        n = GLINT_DESCRIPTION_NAME_BYTES - 1;
+    for (size_t i = 0; i < n; i++)
+        name[i] = from[i] > ' ' && from[i] < 0x7f ? from[i] : '_';
+    name[n] = '\0';
+}
+
+/* Appends an environment of FILE, whose name stands at PLACE; NULL: there are
+ * too many, or one has that name. */
+static struct glint_described_environment *append(struct glint_describer *d,
+                                                  const char *file,
+                                                  struct glint_text_place place)
+{
+    struct glint_description *s = d->scene;
+    struct glint_described_environment *e;
+
+    if (s->n_environments == GLINT_DESCRIPTION_MAX_ENVIRONMENTS) {
+        glint_text_fail(&d->text, place, "more than %d environments",
+                        GLINT_DESCRIPTION_MAX_ENVIRONMENTS);
+        return NULL;
+    }
+    e = &s->environment[s->n_environments];
+    set_name(file, e->name);
+    for (int i = 0; i < s->n_environments; i++)
+        if (strcmp(s->environment[i].name, e->name) == 0) {
+            glint_text_fail(&d->text, place,
+                            "a second environment '%s'; files are told apart "
+                            "by their names",
+                            e->name);
+            return NULL;
+        }
+    s->n_environments++;
+    e->scale = 1;
+    return e;
+}
+
 bool glint_describe_environment(struct glint_describer *d)
 {
-    struct glint_described_environment *e = &d->scene->environment;
-    struct glint_clause clause[] = {
-        {"turn", 1, -360, 360, .value = &e->turn_deg},
-        {"scale", 1, 1e-6, 1e6, .value = &e->scale},
-        {0}};
     const struct glint_word word = glint_text_next_word(&d->text);
+    double turn_deg = 0, scale = 1;
+    struct glint_clause clause[] = {{"turn", 1, -360, 360, .value = &turn_deg},
+                                    {"scale", 1, 1e-6, 1e6, .value = &scale},
+                                    {0}};
+    struct glint_described_environment *e;
     struct glint_environment opened;
     char name[GLINT_FILE_BYTES];
     const char *reason = "";
     enum glint_status status;
 
-    e->scale = 1;
     if (!word.length)
         return glint_text_fail(&d->text, word.place,
                                "the environment's file is missing");
@@ -38,6 +81,11 @@ bool glint_describe_environment(struct glint_describer *d)
     if (!d->files->environment)
         return glint_text_fail(&d->text, word.place,
                                "no environment is read here");
+    e = append(d, name, word.place);
+    if (!e)
+        return false;
+    e->turn_deg = turn_deg;
+    e->scale = scale;
     status = d->files->environment(d->files->ctx, name, &e->data, &e->bytes,
                                    d->error);
     if (status != GLINT_OK)
@@ -52,7 +100,7 @@ static void set_sun(const struct glint_description *s,
                     const struct glint_environment_light *from, int number,
                     struct glint_described_light *to)
 {
-    const double angle = s->environment.turn_deg * GLINT_PI / 180;
+    const double angle = s->environment[0].turn_deg * GLINT_PI / 180;
     const double x = from->toward_q30[0], z = from->toward_q30[2];
     const double sine =
         fmax(from->radius_q30 * 0x1p-30, sin(LEAST_DEG * GLINT_PI / 180));
@@ -64,27 +112,36 @@ static void set_sun(const struct glint_description *s,
                (s->left_handed ? 1 : -1) * (cos(angle) * z - sin(angle) * x)}};
     glint_describe_unit(to->at);
     for (int c = 0; c < 3; c++)
-        to->colour[c] = s->environment.scale * glint_real_value(from->rgb[c]) /
-                        (sine * sine);
+        to->colour[c] = s->environment[0].scale *
+                        glint_real_value(from->rgb[c]) / (sine * sine);
     snprintf(to->name, sizeof to->name,
              number ? "environment%d" : "environment", number + 1);
 }
 
 bool glint_describe_around(struct glint_describer *d)
 {
+    /* The place of a light of another environment. */
+    static const struct glint_environment_light dark = {
+        .toward_q30 = {0, 1 << 30, 0}};
     struct glint_description *s = d->scene;
     struct glint_environment e;
     const char *reason;
 
-    if (!s->environment.data)
+    if (!s->n_environments)
         return s->background != GLINT_BEHIND_ENVIRONMENT ||
                glint_text_fail(&d->text, d->background,
                                "background environment needs a line "
                                "'environment FILE'");
-    if (glint_environment_open(&e, s->environment.data, s->environment.bytes,
-                               &reason) != GLINT_OK)
-        return false; /* it was opened when it was read */
-    for (uint32_t i = 0; i < e.header->n_lights; i++)
-        set_sun(s, &e.light[i], (int)i, &s->light[s->n_lights++]);
+    for (int k = s->n_environments; k--;) { /* the first is left in E */
+        if (glint_environment_open(&e, s->environment[k].data,
+                                   s->environment[k].bytes,
+                                   &reason) != GLINT_OK)
+            return false; /* it was opened when it was read */
+        if ((int)e.header->n_lights > s->n_environment_lights)
+            s->n_environment_lights = (int)e.header->n_lights;
+    }
+    for (int i = 0; i < s->n_environment_lights; i++)
+        set_sun(s, i < (int)e.header->n_lights ? &e.light[i] : &dark, i,
+                &s->light[s->n_lights++]);
     return true;
 }

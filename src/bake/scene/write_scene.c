@@ -367,19 +367,27 @@ static struct glint_scene_camera camera_of(const struct writer *w)
     return c;
 }
 
-static void set_environment(struct writer *w)
+static void write_environments(struct writer *w)
 {
-    const struct glint_described_environment *e = &w->scene->environment;
-    struct glint_scene_header *h = &w->header;
-    const double angle = e->turn_deg * GLINT_PI / 180;
+    struct glint_scene_environment to[GLINT_DESCRIPTION_MAX_ENVIRONMENTS];
+    const int n = w->scene->n_environments;
 
-    if (!e->data)
-        return;
-    h->environment_bytes = (uint32_t)e->bytes;
-    h->environment_at = glint_draft_put(&w->draft, e->data, e->bytes);
-    h->environment_turn_q30[0] = (int32_t)lrint(0x1p30 * cos(angle));
-    h->environment_turn_q30[1] = (int32_t)lrint(0x1p30 * sin(angle));
-    h->environment_scale = glint_real_of(e->scale);
+    for (int i = 0; i < n; i++) {
+        const struct glint_described_environment *e = &w->scene->environment[i];
+        const double angle = e->turn_deg * GLINT_PI / 180;
+
+        to[i] = (struct glint_scene_environment){
+            .file_at = glint_draft_put(&w->draft, e->data, e->bytes),
+            .file_bytes = (uint32_t)e->bytes,
+            .turn_q30 = {(int32_t)lrint(0x1p30 * cos(angle)),
+                         (int32_t)lrint(0x1p30 * sin(angle))},
+            .scale = glint_real_of(e->scale)};
+        memcpy(to[i].name, e->name, sizeof e->name);
+    }
+    w->header.n_environments = (uint32_t)n;
+    w->header.n_environment_lights = (uint32_t)w->scene->n_environment_lights;
+    w->header.environment_at =
+        glint_draft_put(&w->draft, to, (size_t)n * sizeof *to);
 }
 
 static uint32_t first_of(int object)
@@ -468,7 +476,7 @@ enum glint_status glint_scene_bake(const struct glint_description *scene,
     good = good && w.mesh && write_meshes(&w) && write_objects(&w) &&
            write_stones(&w);
     free(w.mesh);
-    set_environment(&w);
+    write_environments(&w);
     set_motion(&w);
     set_header(&w, name, key);
     glint_draft_amend(&w.draft, 0, &w.header, sizeof w.header);

@@ -103,7 +103,7 @@ static void count_lights(const struct glint_scene *s,
                          const struct glint_met_surface *surface,
                          struct glint_scene_part *part)
 {
-    for (uint32_t i = 0; i < s->model.header->n_lights; i++) {
+    for (uint32_t i = 0; i < s->n_lit; i++) {
         const struct glint_lit *lit = &s->lit[i];
         int32_t toward_q30[3], level_q15[3];
 
@@ -136,7 +136,7 @@ static void count_lit(const struct glint_scene *s,
 {
     const int64_t before = part->count[GLINT_SCENE_LIT];
     const struct glint_scene_material *m = surface->material;
-    const int has_sky = s->model.header->environment_bytes > 0;
+    const int has_sky = s->model.header->n_environments > 0;
     const int is_metal = m->ward != GLINT_SCENE_NONE;
     const int has_colour = m->rgb_q15[0] || m->rgb_q15[1] || m->rgb_q15[2];
 
@@ -419,7 +419,7 @@ static void count_maps(const struct account *a)
 
         s->cfg.parts.stones->took(s, i, &lit, &spread);
         count[GLINT_SCENE_GATHERED] +=
-            lit * (h->n_lights + (h->environment_bytes ? 3 : 0));
+            lit * (s->n_lit + (h->n_environments ? 3 : 0));
         count[GLINT_SCENE_SPREAD] += spread;
     }
 }

@@ -110,7 +110,7 @@ static void prepare_shadows(struct glint_scene *s)
         s->n_planes++;
         s->plane = i;
     }
-    for (uint32_t i = 0; i < s->model.header->n_lights; i++)
+    for (uint32_t i = 0; i < s->n_lit; i++)
         if (s->lit[i].shadow && !s->lit[i].shadow->is_ready)
             glint_shadow_prepare(s, &s->lit[i], s->lit[i].shadow);
 }

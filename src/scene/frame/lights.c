@@ -88,7 +88,7 @@ int glint_scene_lights(const struct glint_scene *scene,
     const struct glint_scene_header *h = scene->model.header;
     int n = 0;
 
-    for (uint32_t i = 0; h->flare && i < h->n_lights; i++) {
+    for (uint32_t i = 0; h->flare && i < scene->n_lit; i++) {
         lamps[n].light = (int)i;
         n += see(scene, &scene->lit[i], &lamps[n]);
     }

@@ -137,11 +137,43 @@ enum glint_status glint_scene_set_radius(struct glint_scene *scene, int object,
     return GLINT_OK;
 }
 
+/* ------------------------------------------------------------- environments */
+
+/* What is lit once for several frames is to be lit anew. */
+static enum glint_status relight(struct glint_scene *scene)
+{
+    if (scene->stones)
+        scene->cfg.parts.stones->relight(scene);
+    glint_scene_forget_shadows(scene);
+    return GLINT_OK;
+}
+
+enum glint_status glint_scene_set_environment(struct glint_scene *scene,
+                                              int environment)
+{
+    if (environment < 0 ||
+        environment >= (int)scene->model.header->n_environments)
+        return GLINT_E_ARGUMENT;
+    scene->cfg.parts.wards->show(scene, (uint32_t)environment);
+    return relight(scene);
+}
+
+enum glint_status glint_scene_scale_environment(struct glint_scene *scene,
+                                                struct glint_real scale)
+{
+    if (!scene->model.header->n_environments || scale.mantissa == 0 ||
+        !glint_scene_is_light(&scale))
+        return GLINT_E_ARGUMENT;
+    scene->cfg.parts.wards->scale(scene, scale);
+    return relight(scene);
+}
+
 enum glint_status glint_scene_turn_environment(struct glint_scene *scene,
                                                const int32_t turn_q30[2])
 {
-    return scene->wards && glint_scene_is_unit(turn_q30, 2) &&
-                   scene->cfg.parts.wards->turn(scene, turn_q30)
-               ? GLINT_OK
-               : GLINT_E_ARGUMENT;
+    if (!scene->model.header->n_environments ||
+        !glint_scene_is_unit(turn_q30, 2))
+        return GLINT_E_ARGUMENT;
+    scene->cfg.parts.wards->turn(scene, turn_q30);
+    return relight(scene);
 }

@@ -130,12 +130,17 @@ static enum glint_status open_skin(const struct glint_scene *s,
     return GLINT_OK;
 }
 
+static void relight(struct glint_scene *scene)
+{
+    scene->stones->around_q15 = glint_stone_around(scene);
+}
+
 static enum glint_status open_stones(struct glint_scene *scene)
 {
     for (uint32_t i = 0; i < scene->model.header->n_skins; i++)
         if (open_skin(scene, &scene->stones->skin[i]) != GLINT_OK)
             return GLINT_E_FORMAT;
-    scene->stones->around_q15 = glint_stone_around(scene);
+    relight(scene);
     return GLINT_OK;
 }
 
@@ -397,5 +402,5 @@ static int32_t add(const struct glint_scene *scene,
     return coat;
 }
 
-const struct glint_scene_stones glint_scene_stones = {carve, open_stones,
-                                                      update, took, add};
+const struct glint_scene_stones glint_scene_stones = {
+    carve, open_stones, relight, update, took, add};

@@ -75,7 +75,7 @@ void glint_stone_expose(const struct glint_scene *scene,
     const struct glint_placed *p = &scene->placed[skin->of->object];
     int64_t most = scene->stones->around_q15;
 
-    for (uint32_t i = 0; i < scene->model.header->n_lights; i++)
+    for (uint32_t i = 0; i < scene->n_lit; i++)
         most += most_of(scene, &scene->lit[i], p);
     skin->shift = 0;
     while (most >> skin->shift > MOST_VALUE && skin->shift < 15)
@@ -198,7 +198,7 @@ static void light_texel(const struct glint_scene *s,
         ball_surface(s, skin, x, y, &surface);
     else if (!mesh_surface(s, skin, x, y, &surface))
         return;
-    for (uint32_t i = 0; i < s->model.header->n_lights; i++)
+    for (uint32_t i = 0; i < s->n_lit; i++)
         add_light(s, skin, &surface, &s->lit[i], rgb_q15);
     if (s->wards)
         add_around(s, surface.normal_q30,

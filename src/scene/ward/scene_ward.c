@@ -9,14 +9,19 @@
 #include "scene/parts.h"
 #include "scene/ward/send.h"
 
-enum { ONE_Q30 = 1 << 30, LEAST_COSINE_Q30 = 1 << 26 };
+enum {
+    ONE_Q30 = 1 << 30,
+    LEAST_COSINE_Q30 = 1 << 26,
+    LEAST_SUN_Q30 = 187404 /* sine of .01 degrees: lights that are points */
+};
 
-/* ------------------------------------------------------------------ opening */
+/* ------------------------------------------------------------------- memory */
 
 static struct glint_ward_state *carve(const struct glint_scene *scene,
                                       struct glint_arena *arena)
 {
-    const uint32_t n = scene->model.header->n_wards;
+    const struct glint_scene_header *h = scene->model.header;
+    const uint32_t n = h->n_wards;
     struct glint_ward_state measured;
     struct glint_ward_state *placed =
         glint_arena_take(arena, 1, sizeof *placed);
@@ -24,6 +29,8 @@ static struct glint_ward_state *carve(const struct glint_scene *scene,
 
     w->material = glint_arena_take(arena, n, sizeof *w->material);
     w->lobe = glint_arena_take(arena, n, sizeof *w->lobe);
+    w->opened = glint_arena_take(arena, h->n_environments, sizeof *w->opened);
+    w->sun = glint_arena_take(arena, h->n_environment_lights, sizeof *w->sun);
     return placed;
 }
 
@@ -56,50 +63,99 @@ static void set_lobe(const struct glint_scene *s, uint32_t i)
     lobe->unit_log2 += w->scale.exponent + 30;
 }
 
-static enum glint_status open_wards(struct glint_scene *scene)
+static void set_lobes(const struct glint_scene *scene)
 {
-    const struct glint_scene_header *h = scene->model.header;
-    struct glint_ward_state *w = scene->wards;
-    const char *reason;
-
-    w->has_environment = h->environment_bytes > 0;
-    if (w->has_environment) {
-        if (glint_environment_open(&w->environment, scene->model.environment,
-                                   h->environment_bytes, &reason) != GLINT_OK)
-            return GLINT_E_FORMAT;
-        for (int k = 0; k < 2; k++)
-            w->turn_q30[k] = h->environment_turn_q30[k];
-        w->scale = w->unit = h->environment_scale;
-        w->unit.exponent += w->environment.header->unit_log2;
-    }
-    for (uint32_t i = 0; i < h->n_wards; i++)
+    for (uint32_t i = 0; i < scene->model.header->n_wards; i++)
         set_lobe(scene, i);
-    return GLINT_OK;
 }
 
-/* Its lights are the last of the scene's. */
-static int turn(struct glint_scene *scene, const int32_t turn_q30[2])
+/* ------------------------------------------------------------- environment */
+
+/* Its lights are the last of those of the scene that shine. */
+static void turn(struct glint_scene *scene, const int32_t turn_q30[2])
 {
     struct glint_ward_state *w = scene->wards;
-    const int all = (int)scene->model.header->n_lights;
+    const uint32_t n = w->environment.header->n_lights;
     const int64_t c = turn_q30[0], s = turn_q30[1];
-    int n;
 
-    if (!w->has_environment)
-        return 0;
-    n = (int)w->environment.header->n_lights;
     for (int k = 0; k < 2; k++)
         w->turn_q30[k] = turn_q30[k];
-    for (int i = 0; i < n && n <= all; i++) {
+    for (uint32_t i = 0; i < n; i++) {
         const int32_t *v = w->environment.light[i].toward_q30;
         const int64_t to[3] = {q_shift(c * v[0] + s * v[2], 30), v[1],
                                q_shift(c * v[2] - s * v[0], 30)};
         int32_t toward_q30[3];
 
         glint_unit(to, toward_q30);
-        glint_scene_set_light(scene, all - n + i, toward_q30);
+        glint_scene_set_light(scene, (int)(scene->n_lit - n + i), toward_q30);
     }
-    return 1;
+}
+
+static void scale(struct glint_scene *scene, struct glint_real factor)
+{
+    struct glint_ward_state *w = scene->wards;
+    const uint32_t n = w->environment.header->n_lights;
+
+    w->scale = w->unit = factor;
+    w->unit.exponent += w->environment.header->unit_log2;
+    for (uint32_t i = 0; i < n; i++) {
+        struct glint_lit *lit = &scene->lit[scene->n_lit - n + i];
+
+        for (int c = 0; c < 3; c++) {
+            w->sun[i].rgb[c] =
+                real_times(w->environment.light[i].rgb[c], factor);
+            lit->rgb_q15[c] = (int32_t)real_integer(w->sun[i].rgb[c], 15,
+                                                    GLINT_SCENE_MOST_LIGHT);
+        }
+    }
+    set_lobes(scene);
+}
+
+static void show(struct glint_scene *scene, uint32_t i)
+{
+    struct glint_ward_state *w = scene->wards;
+    const struct glint_scene_header *h = scene->model.header;
+    const struct glint_scene_environment *from = &scene->model.environment[i];
+    const uint32_t first = h->n_lights - h->n_environment_lights;
+
+    w->environment = w->opened[i];
+    scene->n_lit = first + w->environment.header->n_lights;
+    for (uint32_t k = first; k < scene->n_lit; k++) {
+        struct glint_scene_light *sun = &w->sun[k - first];
+
+        *sun = scene->model.light[k];
+        sun->radius =
+            q_larger(w->environment.light[k - first].radius_q30, LEAST_SUN_Q30);
+        scene->lit[k].light = sun;
+    }
+    turn(scene, from->turn_q30);
+    scale(scene, from->scale);
+}
+
+/* ------------------------------------------------------------------ opening */
+
+static enum glint_status open_wards(struct glint_scene *scene)
+{
+    const struct glint_scene_header *h = scene->model.header;
+    struct glint_ward_state *w = scene->wards;
+    const char *reason;
+
+    w->has_environment = h->n_environments > 0;
+    for (uint32_t i = 0; i < h->n_environments; i++) {
+        const struct glint_scene_environment *from =
+            &scene->model.environment[i];
+
+        if (glint_environment_open(&w->opened[i],
+                                   (const unsigned char *)h + from->file_at,
+                                   from->file_bytes, &reason) != GLINT_OK ||
+            w->opened[i].header->n_lights > h->n_environment_lights)
+            return GLINT_E_FORMAT;
+    }
+    if (w->has_environment)
+        show(scene, 0);
+    else
+        set_lobes(scene);
+    return GLINT_OK;
 }
 
 /* -------------------------------------------------------------------- lying */
@@ -305,5 +361,5 @@ static void reflect(const struct glint_scene *scene,
 }
 
 const struct glint_scene_wards glint_scene_wards = {
-    carve, open_wards, set_lobe,         turn,
-    lie,   reflect,    glint_ward_shine, glint_ward_behind};
+    carve,   open_wards,       set_lobe,         show, scale, turn, lie,
+    reflect, glint_ward_shine, glint_ward_behind};

@@ -8,8 +8,10 @@
 #include "scene/state.h"
 
 struct glint_ward_state {
+    struct glint_environment *opened; /* [n_environments] */
+    struct glint_scene_light *sun;    /* [n_environment_lights] */
     int has_environment;
-    struct glint_environment environment;
+    struct glint_environment environment; /* that is shown */
     int32_t turn_q30[2];                  /* cosine and sine, to the right */
     struct glint_real scale;              /* of all its light */
     struct glint_real unit;               /* of its texels, with that scale */

@@ -290,6 +290,7 @@ void scene_seal(struct scene_file *s)
     place(s, &h->ward_at, s->ward, h->n_wards * sizeof *s->ward);
     place(s, &h->stone_at, s->stone, h->n_stones * sizeof *s->stone);
     place(s, &h->skin_at, s->skin, h->n_skins * sizeof *s->skin);
+    h->environment_at = (uint32_t)s->bytes; /* none, at the end */
     memcpy(s->data, h, sizeof *h);
     glint_blob_seal(s->data, s->bytes);
 }

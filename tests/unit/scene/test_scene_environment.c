@@ -13,6 +13,7 @@
 
 #include <cmocka.h>
 
+#include "base/blob.h"
 #include "glint/scene/bake.h"
 #include "glint/scene/environment_bake.h"
 #include "glint/view.h"
@@ -28,24 +29,26 @@ enum {
     PIXELS = WIDTH * HEIGHT
 };
 
-/* A sky over ground, softly patterned, with a lamp by the window and a sun. */
-static void paint(float sky[SKY_HEIGHT][SKY_WIDTH][3])
+/* A sky over ground, softly patterned, with a lamp by the window and a sun; at
+ * dusk two more lamps. */
+static void paint(float sky[SKY_HEIGHT][SKY_WIDTH][3], bool is_dusk)
 {
     for (int y = 0; y < SKY_HEIGHT; y++)
         for (int x = 0; x < SKY_WIDTH; x++) {
             const double a = x * .1, b = y * .1;
             const int is_sun = abs(x - 90) < 2 && abs(y - 14) < 2;
-            const int is_lamp = abs(x - 50) < 1 && abs(y - 24) < 1;
-            const double light = (y < 32 ? .6 : .2) +
+            const int is_lamp = (abs(x - 50) < 1 && abs(y - 24) < 1) ||
+                                (is_dusk && (x == 20 || x == 110) && y == 28);
+            const double light = (y < 32 ? .6 - .3 * is_dusk : .2) +
                                  .2 * sin(3 * a) * sin(4 * b) +
                                  (is_sun ? 400 : 0) + (is_lamp ? 150 : 0);
 
             for (int c = 0; c < 3; c++)
-                sky[y][x][c] = (float)(light * (4 - c) / 4);
+                sky[y][x][c] = (float)(light * (is_dusk ? 2 + c : 4 - c) / 4);
         }
 }
 
-/* NAME is that of the code: "9e5" or "565". */
+/* NAME is that of the code: "9e5" or "565"; or "dusk". */
 static enum glint_status bake_sky(void *ctx, const char *name, uint8_t **data,
                                   size_t *bytes, struct glint_error *error)
 {
@@ -56,7 +59,7 @@ static enum glint_status bake_sky(void *ctx, const char *name, uint8_t **data,
     struct glint_environment_report report;
 
     (void)ctx;
-    paint(sky);
+    paint(sky, strstr(name, "dusk") != NULL);
     glint_environment_defaults(&options);
     options.side_log2 = 6;
     options.code = strcmp(name, "565") == 0 ? GLINT_ENVIRONMENT_565
@@ -265,7 +268,7 @@ static void test_part(void **state)
     cfg.ward_samples = 33;
     assert_int_equal(glint_scene_bytes(&cfg, &d.model), 0);
     cfg.ward_samples = 1;
-    d.data[d.model.header->environment_at + 999] ^= 1;
+    d.data[d.model.environment->file_at + 999] ^= 1;
     assert_int_equal(
         glint_scene_init(&scene, &cfg, &d.model, mem, d.frame.bytes),
         GLINT_E_FORMAT);
@@ -373,6 +376,124 @@ static void test_b8_steered(void **state)
     close_text(&d);
 }
 
+#define UNDER(environments) \
+    STAGE environments "shadow on\nbackground environment\n" BALLS "white\n"
+
+/* Other environments are shown, and as bright as wanted, from one frame to the
+ * next: the picture is that of a scene that has that one alone. */
+static void test_b8_environments(void **state)
+{
+    static const struct scene_dials dials = {
+        .width = 64, .height = 36, .edge_samples = 4, .shadow_points = 4};
+    static const char *const alone[3] = {UNDER("environment 9e5 turn 30\n"),
+                                         UNDER("environment dusk scale .5\n"),
+                                         UNDER("environment dusk scale 3\n")};
+    static int32_t want[3][3 * 64 * 36], got[3 * 64 * 36];
+    const struct glint_real three = {3 << 29, -29}, none = {0, 0};
+    struct glint_scene *s;
+    struct drawn d;
+
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        open_text(&d, alone[i], &dials);
+        assert_int_equal(d.model.header->n_lights, i ? 4 : 2);
+        draw(&d, 64, 36, want[i]);
+        close_text(&d);
+    }
+    open_text(&d,
+              UNDER("environment 9e5 turn 30\n"
+                    "environment sub/dusk.exr scale .5\n"),
+              &dials);
+    s = d.frame.scene;
+    assert_int_equal(d.model.header->n_lights, 4);
+    assert_int_equal(glint_scene_find_environment(&d.model, "dusk"), 1);
+    for (int round = 0; round < 2; round++) {
+        assert_int_equal(glint_scene_set_environment(s, 0), GLINT_OK);
+        draw(&d, 64, 36, got);
+        assert_memory_equal(got, want[0], sizeof got);
+        assert_int_equal(glint_scene_set_environment(s, 1), GLINT_OK);
+        draw(&d, 64, 36, got);
+        assert_memory_equal(got, want[1], sizeof got);
+        assert_int_equal(glint_scene_scale_environment(s, three), GLINT_OK);
+        draw(&d, 64, 36, got);
+        assert_memory_equal(got, want[2], sizeof got);
+    }
+    assert_int_equal(glint_scene_set_environment(s, 2), GLINT_E_ARGUMENT);
+    assert_int_equal(glint_scene_set_environment(s, -1), GLINT_E_ARGUMENT);
+    assert_int_equal(glint_scene_scale_environment(s, none), GLINT_E_ARGUMENT);
+    draw(&d, 64, 36, got);
+    assert_memory_equal(got, want[2], sizeof got);
+    close_text(&d);
+}
+
+/* Opens D's file again, which was changed; returns what is wrong. */
+static const char *refused(struct drawn *d)
+{
+    struct glint_scene_model model;
+    const char *reason = "";
+
+    glint_blob_seal(d->data, d->bytes);
+    assert_int_equal(glint_scene_open(&model, d->data, d->bytes, &reason),
+                     GLINT_E_FORMAT);
+    return reason;
+}
+
+/* Sets FIELD to VALUE, expects REASON, and sets it back. */
+#define REFUSES(field, value, reason)             \
+    do {                                          \
+        const int32_t was = (int32_t)(field);     \
+        (field) = (value);                        \
+        assert_string_equal(refused(&d), reason); \
+        memcpy(&(field), &was, sizeof(field));    \
+    } while (0)
+
+static void test_environment_tables(void **state)
+{
+    static const struct scene_dials dials = {.width = 16, .height = 9};
+    static const char range[] =
+        "the environment's turn or scale is out of range";
+    struct glint_scene_environment *e;
+    struct glint_scene_light *light;
+    struct drawn d;
+
+    (void)state;
+    open_text(&d, UNDER("environment 9e5\n"), &dials);
+    e = (void *)(d.data + d.model.header->environment_at);
+    light = (void *)(d.data + d.model.header->light_at);
+    REFUSES(e->name[0], '\0',
+            "an environment's name is empty, endless or not printable");
+    REFUSES(e->turn_q30[0], 1 << 29, range);
+    REFUSES(e->scale.mantissa, 0, range);
+    REFUSES(e->scale.mantissa, -e->scale.mantissa, range);
+    REFUSES(e->file_bytes, 1 << 28, "a table lies outside of the file");
+    REFUSES(e->file_bytes, e->file_bytes - 1,
+            "a table lies outside of the file");
+    memset(light[1].toward_q30, 0, sizeof light[1].toward_q30);
+    light[1].radius = 0;
+    REFUSES(light[1].kind, GLINT_LIGHT_LAMP,
+            "a light of the environment is no sun");
+    close_text(&d);
+}
+
+/* Environments that cannot be told apart, and too many. */
+static void test_environment_names(void **state)
+{
+    char text[32 * 17 + 1] = "";
+    struct glint_description description;
+    struct glint_error error;
+
+    (void)state;
+    assert_int_equal(
+        parse("environment a/9e5.hdr\nenvironment 9e5\n", &description, &error),
+        GLINT_E_LENS);
+    assert_string_equal(error.text, "x.scene:2:13: a second environment '9e5'; "
+                                    "files are told apart by their names");
+    for (int i = 0; i < 17; i++)
+        sprintf(text + strlen(text), "environment sky%d\n", i);
+    assert_int_equal(parse(text, &description, &error), GLINT_E_LENS);
+    assert_string_equal(error.text, "x.scene:17:13: more than 16 environments");
+}
+
 /* -------------------------------------------------------------- highlights */
 
 /* Returns the light of a whole picture of a ball 40 pixels wide, of almost a
@@ -472,6 +593,9 @@ int main(void)
         cmocka_unit_test(test_part),
         cmocka_unit_test(test_b2_looks),
         cmocka_unit_test(test_b8_steered),
+        cmocka_unit_test(test_b8_environments),
+        cmocka_unit_test(test_environment_names),
+        cmocka_unit_test(test_environment_tables),
         cmocka_unit_test(test_highlight_steady),
         cmocka_unit_test(test_account)};
 

@@ -56,6 +56,11 @@ static void test_lines(void **state)
     says("0 hide ball", CONTROL_HIDE, 0, 0);
     says("size ball .25", CONTROL_SIZE, -1, 1);
     says("environment turn -90", CONTROL_TURN, -1, 1);
+    says("environment scale .5", CONTROL_SCALE, -1, 1);
+    says("3 environment map forest # at dusk", CONTROL_MAP, 3, 0);
+    assert_string_equal(line.name[0], "forest");
+    assert_int_equal(line.name_column[0], 19);
+    says("environment next", CONTROL_NEXT_MAP, -1, 0);
     says("step", CONTROL_STEP, -1, 0);
     says("step -3", CONTROL_STEP, -1, 1);
     says("jump 12", CONTROL_JUMP, -1, 1);
@@ -92,6 +97,14 @@ static void test_mistakes(void **state)
     refuses("set steel", "f:1:10: expected set MATERIAL alpha X [Y]");
     refuses("set steel alhpa 1",
             "f:1:11: 'alhpa' is no word of set; did you mean 'alpha'?");
+    refuses("environment", "f:1:12: expected environment turn DEG");
+    refuses("environment nxt", "f:1:13: 'nxt' is no word of environment; did "
+                               "you mean 'next'?");
+    refuses("environment map", "f:1:16: expected environment map NAME");
+    refuses("environment map a b",
+            "f:1:19: 'b' is too much; expected environment map NAME");
+    refuses("environment scale 0",
+            "f:1:19: environment scale X is 1e-06 to 1000000, not 0");
     refuses("set steel alpha 0",
             "f:1:17: set MATERIAL alpha X [Y] is 0.001 to 1, not 0");
     refuses("jump 1.5", "f:1:6: jump N takes whole numbers, not 1.5");
@@ -131,6 +144,10 @@ static void test_keys(void **state)
     assert_int_equal(line.verb, CONTROL_NONE);
     assert_int_equal(keyboard_take("\033", 1, &line), 1);
     assert_int_equal(line.verb, CONTROL_NONE);
+    assert_int_equal(keyboard_take("}", 1, &line), 1);
+    assert_true(line.verb == CONTROL_SCALE && line.v[0] > 1);
+    assert_int_equal(keyboard_take("e", 1, &line), 1);
+    assert_true(line.verb == CONTROL_NEXT_MAP && line.is_change);
     assert_int_equal(keyboard_take("z", 1, &line), 1);
     assert_int_equal(line.verb, CONTROL_NONE);
     assert_int_equal(keyboard_open(&(struct keyboard){0}, -1), GLINT_E_IO);

@@ -94,7 +94,7 @@ static bool has_metal(const struct scene_sweep *s)
 {
     const struct glint_scene_header *h = s->scene.model.header;
 
-    return h->n_wards > 0 && h->environment_bytes > 0;
+    return h->n_wards > 0 && h->n_environments > 0;
 }
 
 static void add(struct scene_sweep *s, const int value[SCENE_DIALS])
