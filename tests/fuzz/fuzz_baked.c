@@ -90,6 +90,9 @@ static void use(const struct glint_scene_model *model, int which)
         return;
     if (glint_scene_init(&scene, &cfg, model, mem, bytes) != GLINT_OK)
         return;
+    if (model->header->n_environments)
+        require(glint_scene_set_environment(
+                    scene, (int)model->header->n_environments - 1) == GLINT_OK);
     draw_one(scene, model, which);
 }
 
