@@ -16,7 +16,7 @@
 #include "glint/scene/stone_bake.h"
 #include "support/models/psnr.h"
 
-enum { STONES = 2, MODELS = 8, BITS = 7 };
+enum { STONES = 2, MODELS = 10, BITS = 7 };
 
 static const char *const stone_name[STONES] = {"chess", "veins"};
 
@@ -25,8 +25,10 @@ static const struct {
     enum glint_scatter_model model;
     int kernels, rank;
 } model_of[MODELS] = {
+    {"albedo-2", GLINT_SCATTER_ALBEDO, 1, 2},
     {"albedo-3", GLINT_SCATTER_ALBEDO, 1, 3},
     {"clustered-2-3", GLINT_SCATTER_CLUSTERED, 2, 3},
+    {"clustered-4-1", GLINT_SCATTER_CLUSTERED, 4, 1},
     {"clustered-4-2", GLINT_SCATTER_CLUSTERED, 4, 2},
     {"clustered-4-3", GLINT_SCATTER_CLUSTERED, 4, 3},
     {"factored-3-3", GLINT_SCATTER_FACTORED, 3, 3},

@@ -15,7 +15,7 @@
 
 #define MAX_FILE_BYTES ((size_t)1 << 26)
 /* Changes where the same text would give another stone. */
-#define RECIPE UINT64_C(1)
+#define RECIPE UINT64_C(2)
 
 bool stone_file_is_text(const char *argument)
 {
@@ -172,10 +172,9 @@ static void show(void *ctx, double done)
     tool_progress_show(s->progress, s->from + s->length * done);
 }
 
-/* Measures what is left of the rows. */
-static enum glint_status measure(const struct glint_scatter_rows *rows,
-                                 const struct glint_scatter_fit *fit,
-                                 struct stone_file *file)
+enum glint_status stone_file_near(const struct glint_scatter_rows *rows,
+                                  const struct glint_translucent *stone,
+                                  double *db)
 {
     const size_t n = 3 * (size_t)rows->side * (size_t)rows->side;
     double *light = malloc(3 * n * sizeof *light);
@@ -185,16 +184,14 @@ static enum glint_status measure(const struct glint_scatter_rows *rows,
     if (light) {
         glint_scatter_test_light(rows->side, light);
         glint_scatter_light_rows(rows, light, light + n);
-        status = glint_stone_light(&file->stone, light, light + 2 * n);
+        status = glint_stone_light(stone, light, light + 2 * n);
     }
     for (size_t i = n; status == GLINT_OK && i < 2 * n; i++) {
         square += (light[i] - light[i + n]) * (light[i] - light[i + n]);
         peak = fmax(peak, light[i]);
     }
     free(light);
-    file->errors.fit_db = fit->error.light_db;
-    file->errors.baked_db =
-        square > 0 ? 10 * log10(peak * peak * (double)n / square) : 999;
+    *db = square > 0 ? 10 * log10(peak * peak * (double)n / square) : 999;
     return status;
 }
 
@@ -232,8 +229,9 @@ static enum glint_status fit_rows(struct glint_scatter_rows *rows,
         file->errors.tap_bits = report.tap_bits;
         status = open_baked(file, error);
     }
+    file->errors.fit_db = fit.error.light_db;
     if (status == GLINT_OK)
-        status = measure(rows, &fit, file);
+        status = stone_file_near(rows, &file->stone, &file->errors.baked_db);
     glint_scatter_fit_close(&fit);
     return status;
 }

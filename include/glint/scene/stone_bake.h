@@ -10,8 +10,9 @@
  *                      &error);
  *     glint_translucent_open(&stone, data, bytes, &reason);
  *
- * Kernels that are no sums of products of rows and columns become such sums, by
- * the singular values of each. The same fit gives the same bytes. */
+ * Kernels that are no sums of products of rows and columns become such sums,
+ * those that are nearest under light that changes slowly. The same fit gives
+ * the same bytes. */
 #ifndef GLINT_SCENE_STONE_BAKE_H
 #define GLINT_SCENE_STONE_BAKE_H
 
@@ -39,8 +40,9 @@ struct glint_stone_text {
 
 /* What baking did. */
 struct glint_stone_report {
-    double kernel_loss; /* of what kernels have together, the share that their
-                           ranks leave out, root mean square; factored: 0 */
+    double kernel_loss; /* of what kernels make of light together, the share
+                           that their ranks leave out, root mean square;
+                           factored: 0 */
     int tap_bits;       /* that the largest tap of a column has: sums of many
                            leave fewer than were asked for */
 };

@@ -8,6 +8,10 @@
 
 enum { MOST = GLINT_SCATTER_MAX_KERNEL, SWEEPS = 30 };
 
+/* How light on a texel and on the next one are correlated. From .5 to .99 the
+ * decibels under lamps are the same within .3; at 0 they are 1 to 10 fewer. */
+static const double correlation = 0.8;
+
 /* Transposed: A[i] and V[i] are columns. V begins as the unit matrix; A = K V
  * at all times. */
 struct work {
@@ -52,6 +56,30 @@ static int part(struct work *w, int i, int j)
     return 1;
 }
 
+/* Of light whose correlation C falls by the same share from texel to texel,
+ * C = L L', sets every STEP-th number of X[N] to L' X. */
+static void weigh(double *x, int n, int step)
+{
+    const double own = sqrt(1 - correlation * correlation);
+    double sum = 0;
+
+    for (int i = n - 1; i >= 0; i--) {
+        sum = x[i * step] + correlation * sum;
+        x[i * step] = i > 0 ? own * sum : sum;
+    }
+}
+
+/* Undoes that. */
+static void unweigh(double *x, int n)
+{
+    const double own = sqrt(1 - correlation * correlation);
+
+    for (int i = 1; i < n; i++)
+        x[i] /= own;
+    for (int i = 0; i < n - 1; i++)
+        x[i] -= correlation * x[i + 1];
+}
+
 static void decompose(struct work *w, const double *kernel)
 {
     int any = 1;
@@ -61,7 +89,10 @@ static void decompose(struct work *w, const double *kernel)
         w->v[i][i] = 1;
         for (int k = 0; k < w->n; k++)
             w->a[i][k] = kernel[k * w->n + i];
+        weigh(w->a[i], w->n, 1);
     }
+    for (int k = 0; k < w->n; k++)
+        weigh(&w->a[0][k], w->n, MOST);
     for (int sweep = 0; any && sweep < SWEEPS; sweep++) {
         any = 0;
         for (int i = 0; i < w->n; i++)
@@ -97,6 +128,8 @@ void glint_separate(const double *kernel, int n, int rank,
             to->column[r * n + k] = w.a[best][k];
             to->row[r * n + k] = w.v[best][k];
         }
+        unweigh(to->column + r * n, n);
+        unweigh(to->row + r * n, n);
         to->lost -= square[best];
         square[best] = 0;
     }
