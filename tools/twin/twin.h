@@ -23,6 +23,7 @@
 
 #include "glint/scene/description.h"
 #include "glint/scene/environment.h"
+#include "glint/scene/translucent_bake.h"
 #include "glint/workers.h"
 
 struct twin_node;
@@ -49,6 +50,9 @@ struct twin {
     int *root;            /* of each object; -1: it has no triangles */
     int *order;           /* triangles in the order of the leaves */
     struct twin_map *map; /* [n_objects] of what is translucent; or NULL */
+    /* [n_stones] what light on meshes spreads by, instead of what was baked of
+     * them, as many texels each way; NULL: as baked. twin_open() sets NULL. */
+    const struct glint_scatter_rows *rows;
 };
 
 struct twin_ray {

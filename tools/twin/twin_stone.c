@@ -12,6 +12,7 @@ enum { CHANNELS = 3 };
 
 struct twin_map {
     int material; /* -1: the object is of no stone */
+    int of;       /* which stone it is */
     bool is_ball;
     int width, height;
     struct glint_translucent stone;
@@ -110,6 +111,7 @@ static bool open_map(const struct glint_description *s,
     if (glint_translucent_open(&m->stone, stone->data, stone->bytes, &reason) !=
         GLINT_OK)
         return false;
+    m->of = s->material[m->material].stone;
     m->is_ball = o->kind == GLINT_DESCRIBED_SPHERE;
     m->height = 1 << m->stone.header->side_log2;
     m->width = m->height << m->is_ball;
@@ -353,13 +355,28 @@ static void spread_map(struct twin_map *m)
     }
 }
 
+static void spread_rows(const struct glint_scatter_rows *rows,
+                        struct twin_map *m)
+{
+    const size_t n = CHANNELS * (size_t)m->width * (size_t)m->height;
+
+    memcpy(m->work, m->light, n * sizeof *m->light);
+    glint_scatter_light_rows(rows, m->work, m->light);
+}
+
 void twin_fill_maps(const struct twin *twin)
 {
-    for (int i = 0; twin->map && i < twin->scene->n_objects; i++)
-        if (twin->map[i].material >= 0) {
-            light_map(twin, i);
-            spread_map(&twin->map[i]);
-        }
+    for (int i = 0; twin->map && i < twin->scene->n_objects; i++) {
+        struct twin_map *m = &twin->map[i];
+
+        if (m->material < 0)
+            continue;
+        light_map(twin, i);
+        if (twin->rows && !m->is_ball)
+            spread_rows(&twin->rows[m->of], m);
+        else
+            spread_map(m);
+    }
 }
 
 /* ------------------------------------------------------------------- showing

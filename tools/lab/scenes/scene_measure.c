@@ -39,13 +39,34 @@ static int open_trials(struct scene_sweep *s)
             .shadow_points = p->value[SCENE_SHADOWED],
             .half_shading = p->value[SCENE_SHADING] == 2,
             .ward_samples = p->value[SCENE_LOOKUPS],
-            .ward_nearest = p->value[SCENE_LEVELS] == 1};
+            .ward_nearest = p->value[SCENE_LEVELS] == 1,
+            .stone_frames = p->value[SCENE_FRAMES]};
 
         p->trial = &s->trial[i];
-        code = scene_trial_open(p->trial, &tool, &s->scene.model, NULL, &dials,
+        code = scene_trial_open(p->trial, &tool, &p->scene->model, NULL, &dials,
                                 &s->canvas);
     }
     return code;
+}
+
+/* Runs P: where maps are worked out every few frames, so many, and notes their
+ * mean. */
+static void run(const struct scene_sweep *s, const struct scene_point *p,
+                int round)
+{
+    const int n = p->value[SCENE_FRAMES] > 1 ? p->value[SCENE_FRAMES] : 1;
+    double ms = 0, instructions = 0;
+
+    for (int i = 0; i < n; i++) {
+        if (s->count_only)
+            printf("%d\n", (int)(p - s->point));
+        stone_sweep_stir(p, round * n + i);
+        scene_trial_run(p->trial, s->counter, round);
+        ms += p->trial->ms[SCENE_WHOLE][round] / n;
+        instructions += p->trial->instructions / n;
+    }
+    p->trial->ms[SCENE_WHOLE][round] = ms;
+    p->trial->instructions = instructions;
 }
 
 /* Times all points, in turns with the memory floor. */
@@ -59,11 +80,8 @@ static enum glint_status time_all(struct scene_sweep *s,
         status = scene_trial_warm(s->point[i].trial);
     for (int round = 0; round < n && status == GLINT_OK; round++) {
         s->floor_ms[round] = canvas_floor_ms(&s->canvas);
-        for (int i = 0; i < s->n_points; i++) {
-            if (s->count_only)
-                printf("%d\n", i);
-            scene_trial_run(s->point[i].trial, s->counter, round);
-        }
+        for (int i = 0; i < s->n_points; i++)
+            run(s, &s->point[i], round);
         tool_progress_show(progress, 0.5 * (round + 1) / n);
     }
     for (int i = 0; i < s->n_points && status == GLINT_OK; i++) {
@@ -90,6 +108,7 @@ static enum glint_status draw_exact(struct scene_sweep *s)
     if (pixels)
         status = twin_open(&twin, s->text);
     if (status == GLINT_OK) {
+        twin.rows = s->rows[0].r ? s->rows : NULL;
         twin.shadow_points = 16;
         twin.ward_samples = EXACT_LOOKUPS;
         twin_render(&twin, &view, s->tool->workers, pixels);
@@ -117,6 +136,7 @@ static enum glint_status draw_point(struct scene_sweep *s,
     for (size_t i = 0; i < n; i++)
         light_q20[i] = (int32_t)(BEHIND * 0x1p20F);
     glint_image_place(&linear, light_q20);
+    stone_sweep_age(p);
     scene_frame_begin(&p->trial->frame);
     glint_scene_look_around(p->trial->frame.scene, NULL);
     glint_scene_draw(p->trial->frame.scene, &linear);
@@ -215,17 +235,23 @@ static enum glint_status compare_all(struct scene_sweep *s,
 
 int scene_sweep_measure(struct scene_sweep *s)
 {
+    struct glint_described_stone old[GLINT_DESCRIPTION_MAX_STONES] = {{0}};
     struct tool_progress progress;
     enum glint_status status;
-    const int code = open_trials(s);
+    int code = open_trials(s);
 
-    if (code != EXIT_OK)
+    if (code == EXIT_OK && !s->count_only)
+        code = stone_sweep_exact(s, old);
+    if (code != EXIT_OK) {
+        stone_sweep_restore(s, old);
         return code;
+    }
     tool_progress_start(&progress, s->tool, "sweep");
     status = time_all(s, &progress);
     if (status == GLINT_OK && !s->count_only)
         status = compare_all(s, &progress);
     tool_progress_end(&progress);
+    stone_sweep_restore(s, old);
     return status == GLINT_OK ? EXIT_OK : tool_fail(s->tool, status, NULL);
 }
 

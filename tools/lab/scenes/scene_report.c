@@ -12,7 +12,9 @@
 #define FRONT "#222"
 
 const char *const scene_dial_name[SCENE_DIALS] = {
-    "edge_samples", "shadow_points", "shading", "lookups", "levels"};
+    "edge_samples", "shadow_points", "shading",    "lookups",
+    "levels",       "stone_model",   "planes",     "rank",
+    "code_bits",    "tap_bits",      "map_texels", "stone_frames"};
 static const char *const kinds[] = {"standard", "alone", "together"};
 static const char *const shading[] = {"", "full", "half"};
 
@@ -24,10 +26,26 @@ double scene_sweep_cost(const struct scene_sweep *s,
 
 void scene_sweep_words(const struct scene_point *p, char *text, size_t bytes)
 {
-    snprintf(text, bytes, "samples %d, points %d, %s, lookups %d%s",
+    char stone[100] = "";
+
+    if (p->value[SCENE_FRAMES])
+        stone_sweep_words(p, stone, sizeof stone);
+    snprintf(text, bytes, "samples %d, points %d, %s, lookups %d%s%s%s",
              p->value[SCENE_EDGES], p->value[SCENE_SHADOWED],
              shading[p->value[SCENE_SHADING]], p->value[SCENE_LOOKUPS],
-             p->value[SCENE_LEVELS] == 1 ? " nearest" : "");
+             p->value[SCENE_LEVELS] == 1 ? " nearest" : "", *stone ? ", " : "",
+             stone);
+}
+
+static bool has_stones(const struct scene_sweep *s)
+{
+    return s->standard[SCENE_FRAMES] > 0;
+}
+
+/* How many dials there are. */
+static int dials_of(const struct scene_sweep *s)
+{
+    return has_stones(s) ? SCENE_DIALS : SCENE_MODEL;
 }
 
 static const char *cost_words(const struct scene_sweep *s)
@@ -49,7 +67,8 @@ static void number(FILE *file, double x, const char *none)
 void scene_sweep_csv(const struct scene_sweep *s, FILE *file)
 {
     fputs("scene,width,height,kind,dial,quality,edge_samples,shadow_points,"
-          "shading,lookups,levels,ms,floor_ms,ratio,instructions,arena_bytes,"
+          "shading,lookups,levels,stone_model,planes,rank,code_bits,tap_bits,"
+          "map_texels,stone_frames,ms,floor_ms,ratio,instructions,arena_bytes,"
           "model_bytes,"
           "psnr_db,ssim,p99,flux_error,covered_px,minsn_told,front\n",
           file);
@@ -66,9 +85,12 @@ void scene_sweep_csv(const struct scene_sweep *s, FILE *file)
         fprintf(file, ",%d,%d,%s,%d,%d", p->value[SCENE_EDGES],
                 p->value[SCENE_SHADOWED], shading[p->value[SCENE_SHADING]],
                 p->value[SCENE_LOOKUPS], p->value[SCENE_LEVELS]);
+        fprintf(file, ",%s", stone_sweep_model(p));
+        for (int d = SCENE_PLANES; d < SCENE_DIALS; d++)
+            fprintf(file, ",%d", p->value[d]);
         for (int k = 0; k < 4; k++)
             fputc(',', file), number(file, measured[k], "");
-        fprintf(file, ",%zu,%zu", p->trial->frame.bytes, s->scene.bytes);
+        fprintf(file, ",%zu,%zu", p->trial->frame.bytes, p->scene->bytes);
         for (int k = 0; k < 4; k++)
             fputc(',', file), number(file, error[k], "");
         fprintf(file, ",%d,%.4g,%d\n", p->trial->covered_px,
@@ -92,16 +114,19 @@ static void json_point(const struct scene_sweep *s, const struct scene_point *p,
     member(file, "quality", p->quality >= 0 ? p->quality : (double)NAN);
     fprintf(file,
             ", \"edge_samples\": %d, \"shadow_points\": %d, \"shading\": "
-            "\"%s\", \"lookups\": %d, \"levels\": %d",
+            "\"%s\", \"lookups\": %d, \"levels\": %d, \"stone_model\": "
+            "\"%s\"",
             p->value[SCENE_EDGES], p->value[SCENE_SHADOWED],
             shading[p->value[SCENE_SHADING]], p->value[SCENE_LOOKUPS],
-            p->value[SCENE_LEVELS]);
+            p->value[SCENE_LEVELS], stone_sweep_model(p));
+    for (int d = SCENE_PLANES; d < SCENE_DIALS; d++)
+        member(file, scene_dial_name[d], p->value[d]);
     member(file, "ms", p->ms);
     member(file, "floor_ms", p->ms / p->ratio);
     member(file, "ratio", p->ratio);
     member(file, "instructions", p->instructions);
     member(file, "arena_bytes", (double)p->trial->frame.bytes);
-    member(file, "model_bytes", (double)s->scene.bytes);
+    member(file, "model_bytes", (double)p->scene->bytes);
     member(file, "psnr_db", p->psnr_db);
     member(file, "ssim", p->ssim);
     member(file, "p99", p->p99);
@@ -142,25 +167,38 @@ void scene_sweep_table(const struct scene_sweep *s, FILE *file)
     sort(s, order);
     fprintf(file,
             "%s, %dx%d; %s; KiB of arena + scene; what --budget comes by, and "
-            "the front\n\n"
-            "| edge samples | shadow points | shading | lookups | cost | PSNR "
-            "dB | p99 "
-            "codes | flux %% | KiB | "
-            "|\n|---|---|---|---|---|---|---|---|---|---|\n",
-            s->scene.model.header->name, s->width, s->height, cost_words(s));
+            "the front%s",
+            s->scene.model.header->name, s->width, s->height, cost_words(s),
+            has_stones(s) ? ", of stones each dial by itself" : "");
+    if (s->exact_db > 0)
+        fprintf(file,
+                "; balls of stone are exact by a fit that is %.1f dB from all "
+                "of their rows",
+                s->exact_db);
+    fprintf(file,
+            "\n\n| edge samples | shadow points | shading | lookups |%s cost | "
+            "PSNR dB | p99 codes | flux %% | KiB | |\n"
+            "|---|---|---|---|%s---|---|---|---|---|---|\n",
+            has_stones(s) ? " stone |" : "", has_stones(s) ? "---|" : "");
     for (int i = 0; i < s->n_points; i++) {
         const struct scene_point *const p = &s->point[order[i]];
 
-        if (!p->front && p->quality < 0 && p->kind != SCENE_STANDARD)
+        if (!p->front && p->quality < 0 && p->kind != SCENE_STANDARD &&
+            p->dial < SCENE_MODEL)
             continue;
-        fprintf(file,
-                "| %d | %d | %s | %d%s | %.4g | %.1f | %g | %+.2f | %zu + %zu "
-                "| ",
-                p->value[SCENE_EDGES], p->value[SCENE_SHADOWED],
-                shading[p->value[SCENE_SHADING]], p->value[SCENE_LOOKUPS],
-                p->value[SCENE_LEVELS] == 1 ? " nearest" : "",
+        fprintf(file, "| %d | %d | %s | %d%s |", p->value[SCENE_EDGES],
+                p->value[SCENE_SHADOWED], shading[p->value[SCENE_SHADING]],
+                p->value[SCENE_LOOKUPS],
+                p->value[SCENE_LEVELS] == 1 ? " nearest" : "");
+        if (has_stones(s)) {
+            char words[100];
+
+            stone_sweep_words(p, words, sizeof words);
+            fprintf(file, " %s |", words);
+        }
+        fprintf(file, " %.4g | %.1f | %g | %+.2f | %zu + %zu | ",
                 scene_sweep_cost(s, p), p->psnr_db, p->p99, 100 * p->flux_error,
-                p->trial->frame.bytes / 1024, s->scene.bytes / 1024);
+                p->trial->frame.bytes / 1024, p->scene->bytes / 1024);
         fprintf(file, "%s%s", p->front ? "front" : "",
                 p->front && p->quality >= 0 ? ", " : "");
         if (p->quality >= 0)
@@ -188,7 +226,7 @@ static void mark(const struct scene_sweep *s, const struct plot *plot,
                  const struct scene_point *p)
 {
     const double cost = scene_sweep_cost(s, p);
-    char words[80], tip[120];
+    char words[160], tip[200];
 
     scene_sweep_words(p, words, sizeof words);
     snprintf(tip, sizeof tip, "%s: %.3g, %.1f dB", words, cost, p->psnr_db);
@@ -217,7 +255,7 @@ void scene_sweep_front(const struct scene_sweep *s, FILE *file)
     open_panel(s, &plot, file, 0, title);
     plot_key(&plot, 'D', FRONT, "--budget");
     plot_key(&plot, '.', GREY, "together");
-    for (int d = 0; d < SCENE_DIALS; d++)
+    for (int d = 0; d < dials_of(s); d++)
         plot_key(&plot, 'o', plot_colour(d), scene_dial_name[d]);
     for (int i = 0; i < s->n_points; i++) {
         const struct scene_point *const p = &s->point[order[i]];
@@ -238,7 +276,7 @@ static void dial_curve(const struct scene_sweep *s, const struct plot *plot,
 {
     const struct scene_point *last = NULL;
 
-    for (int value = 1; value <= 32; value++)
+    for (int value = 1; value <= 256; value++)
         for (int i = 0; i < s->n_points; i++) {
             const struct scene_point *const p = &s->point[i];
             char words[16];
@@ -253,15 +291,17 @@ static void dial_curve(const struct scene_sweep *s, const struct plot *plot,
             snprintf(words, sizeof words, "%d", value);
             mark(s, plot, p);
             plot_words(plot, scene_sweep_cost(s, p), p->psnr_db,
-                       dial == SCENE_SHADING ? shading[value] : words);
+                       dial == SCENE_SHADING ? shading[value]
+                       : dial == SCENE_MODEL ? stone_sweep_model(p)
+                                             : words);
             last = p;
         }
 }
 
 void scene_sweep_dials(const struct scene_sweep *s, FILE *file)
 {
-    plot_open(file, SCENE_DIALS);
-    for (int d = 0; d < SCENE_DIALS; d++) {
+    plot_open(file, dials_of(s));
+    for (int d = 0; d < dials_of(s); d++) {
         struct plot plot;
 
         open_panel(s, &plot, file, d, scene_dial_name[d]);
@@ -293,14 +333,18 @@ static const char head[] =
 static void table_row(const struct scene_sweep *s, FILE *file,
                       const struct scene_point *p)
 {
+    char stone[100] = "";
+
+    if (has_stones(s))
+        stone_sweep_words(p, stone, sizeof stone);
     fprintf(file,
-            "<tr><td>%d</td><td>%d</td><td>%s</td><td>%d%s</td><td>%.4g</td>"
-            "<td>%.1f</td>"
+            "<tr><td>%d</td><td>%d</td><td>%s</td><td>%d%s</td><td>%s</td>"
+            "<td>%.4g</td><td>%.1f</td>"
             "<td>%.4f</td><td>%g</td><td>%+.2f</td><td>%zu</td><td>%s</td>"
             "</tr>\n",
             p->value[SCENE_EDGES], p->value[SCENE_SHADOWED],
             shading[p->value[SCENE_SHADING]], p->value[SCENE_LOOKUPS],
-            p->value[SCENE_LEVELS] == 1 ? " nearest" : "",
+            p->value[SCENE_LEVELS] == 1 ? " nearest" : "", stone,
             scene_sweep_cost(s, p), p->psnr_db, p->ssim, p->p99,
             100 * p->flux_error, p->trial->frame.bytes / 1024,
             p->front ? "front" : "");
@@ -310,7 +354,7 @@ static void figure(const struct scene_sweep *s, FILE *file,
                    const struct scene_point *p, const uint8_t *rgb,
                    const char *what)
 {
-    char words[80] = "exact";
+    char words[160] = "exact";
 
     if (p)
         scene_sweep_words(p, words, sizeof words);
@@ -333,7 +377,8 @@ void scene_sweep_page(const struct scene_sweep *s, FILE *file)
     scene_sweep_dials(s, file);
     fprintf(file,
             "<h2>All points</h2>\n<table><tr><th>edge samples</th><th>shadow "
-            "points</th><th>shading</th><th>lookups</th><th>%s</th><th>PSNR "
+            "points</th><th>shading</th><th>lookups</th><th>stone</th>"
+            "<th>%s</th><th>PSNR "
             "dB</th><th>SSIM"
             "</th><th>p99 codes</th><th>flux %%</th><th>KiB</th><th></th></tr>"
             "\n",

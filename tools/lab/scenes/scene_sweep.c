@@ -24,9 +24,16 @@ static const char help[] =
     "pixel at outlines 1, 4, 8, 16; of a light 1, 4, 16; shading full and\n"
     "half; under an environment that lights brushed metal also lookups 1, 4, "
     "8,\n"
-    "16, 32, of two levels and of the nearest; and measures each against the "
-    "exact picture, drawn by rays in\n"
-    "double precision: time (as glint bench --scene does, all taking turns),\n"
+    "16, 32, of two levels and of the nearest; of translucent stones that are "
+    "texts\n"
+    "also models, kernels or terms, ranks, bits, texels, and maps of every "
+    "second\n"
+    "and fourth frame of a thing that turns a degree a frame (minutes to bake, "
+    "kept\n"
+    "in the cache); and measures each against the exact picture, drawn by rays "
+    "in\n"
+    "double precision, light in stones by all of their rows: time (as glint "
+    "bench --scene does, all taking turns),\n"
     "instructions where the processor counts them, memory, PSNR, SSIM, the\n"
     "99th percentile of the differences in codes, and flux. FOLDER gets\n"
     "  sweep.csv     all of it\n"
@@ -49,14 +56,25 @@ static const char help[] =
 
 static const int edge_samples[] = {1, 4, 8, 16}, shadow_points[] = {1, 4, 16};
 
-/* As a video is drawn that asks for nothing. */
-static const int standard[SCENE_DIALS] = {4, 4, 1, 8, 2};
 static const int lookups[] = {1, 4, 8, 16, 32};
 
 /* ------------------------------------------------------------------ points */
 
+/* Returns what dial D of VALUE is where nobody turns it: a model has numbers of
+ * kernels or terms of its own. */
+static int usual(const struct scene_sweep *s, const int value[SCENE_DIALS],
+                 int d)
+{
+    static const int planes[] = {0, 1, 4, 5};
+
+    return d == SCENE_PLANES && value[SCENE_MODEL] != s->standard[SCENE_MODEL]
+               ? planes[value[SCENE_MODEL]]
+               : s->standard[d];
+}
+
 /* Sets VALUE to the dials of LEVEL of --budget, and returns its quality. */
-static double level_of(int level, int value[SCENE_DIALS])
+static double level_of(const struct scene_sweep *s, int level,
+                       int value[SCENE_DIALS])
 {
     struct scene_budget budget;
     const struct scene_dials most = {
@@ -66,28 +84,13 @@ static double level_of(int level, int value[SCENE_DIALS])
     scene_budget_init(&budget, &most);
     budget.level = level;
     d = scene_budget_dials(&budget, level);
+    memcpy(value, s->standard, sizeof s->standard);
     value[SCENE_EDGES] = d.edge_samples;
     value[SCENE_SHADOWED] = d.shadow_points;
     value[SCENE_SHADING] = d.half_shading ? 2 : 1;
     value[SCENE_LOOKUPS] = d.ward_samples;
     value[SCENE_LEVELS] = d.ward_nearest ? 1 : 2;
     return scene_budget_quality(&budget);
-}
-
-/* Returns the quality that --budget calls these dials, or -1. Without metal its
- * own dials do not count. */
-static double quality_of(const int value[SCENE_DIALS], bool has_metal)
-{
-    const int n = has_metal ? SCENE_DIALS : SCENE_LOOKUPS;
-
-    for (int i = 0; i < SCENE_BUDGET_LEVELS; i++) {
-        int of_level[SCENE_DIALS];
-        const double quality = level_of(i, of_level);
-
-        if (memcmp(value, of_level, (size_t)n * sizeof *value) == 0)
-            return quality;
-    }
-    return -1;
 }
 
 static bool has_metal(const struct scene_sweep *s)
@@ -97,14 +100,32 @@ static bool has_metal(const struct scene_sweep *s)
     return h->n_wards > 0 && h->n_environments > 0;
 }
 
-static void add(struct scene_sweep *s, const int value[SCENE_DIALS])
+/* Returns the quality that --budget calls these dials, or -1. Without metal its
+ * own dials do not count. */
+static double quality_of(const struct scene_sweep *s,
+                         const int value[SCENE_DIALS])
+{
+    for (int i = 0; i < SCENE_BUDGET_LEVELS; i++) {
+        int of_level[SCENE_DIALS];
+        const double quality = level_of(s, i, of_level);
+
+        if (!has_metal(s))
+            memcpy(of_level + SCENE_LOOKUPS, value + SCENE_LOOKUPS,
+                   2 * sizeof *value);
+        if (memcmp(value, of_level, sizeof of_level) == 0)
+            return quality;
+    }
+    return -1;
+}
+
+void scene_sweep_add(struct scene_sweep *s, const int value[SCENE_DIALS])
 {
     struct scene_point p = {.dial = -1, .psnr_db = (double)NAN};
     int turned = 0;
 
     memcpy(p.value, value, sizeof p.value);
     for (int d = 0; d < SCENE_DIALS; d++)
-        if (p.value[d] != standard[d]) {
+        if (p.value[d] != usual(s, value, d)) {
             turned++;
             p.dial = d;
         }
@@ -112,8 +133,10 @@ static void add(struct scene_sweep *s, const int value[SCENE_DIALS])
              : turned == 1 ? SCENE_ALONE
                            : SCENE_TOGETHER;
     p.dial = turned == 1 ? p.dial : -1;
-    p.quality = quality_of(p.value, has_metal(s));
-    s->point[s->n_points++] = p;
+    p.quality = quality_of(s, p.value);
+    p.scene = &s->scene;
+    if (s->n_points < SCENE_POINTS)
+        s->point[s->n_points++] = p;
 }
 
 /* Adds what --budget comes by and the rest has not. */
@@ -123,11 +146,11 @@ static void add_levels(struct scene_sweep *s)
         int value[SCENE_DIALS];
         bool is_there = false;
 
-        level_of(i, value);
+        level_of(s, i, value);
         for (int k = 0; k < s->n_points; k++)
             is_there |= memcmp(value, s->point[k].value, sizeof value) == 0;
         if (!is_there)
-            add(s, value);
+            scene_sweep_add(s, value);
     }
 }
 
@@ -135,28 +158,31 @@ static void add_levels(struct scene_sweep *s)
  * or of metal's with points of outlines as usual. */
 static void add_points(struct scene_sweep *s)
 {
+    int value[SCENE_DIALS];
+
+    memcpy(value, s->standard, sizeof value);
     for (int e = 0; e < 4; e++)
         for (int p = 0; p < 3; p++)
             for (int shading = 1; shading <= 2; shading++) {
-                const int value[] = {edge_samples[e], shadow_points[p], shading,
-                                     standard[SCENE_LOOKUPS],
-                                     standard[SCENE_LEVELS]};
-
-                add(s, value);
+                value[SCENE_EDGES] = edge_samples[e];
+                value[SCENE_SHADOWED] = shadow_points[p];
+                value[SCENE_SHADING] = shading;
+                scene_sweep_add(s, value);
             }
     if (!has_metal(s))
         return;
+    value[SCENE_EDGES] = s->standard[SCENE_EDGES];
     for (int n = 0; n < 5; n++)
         for (int levels = 1; levels <= 2; levels++)
             for (int p = 0; p < 3; p++)
                 for (int shading = 1; shading <= 2; shading++) {
-                    const int value[] = {standard[SCENE_EDGES],
-                                         shadow_points[p], shading, lookups[n],
-                                         levels};
-
-                    if (value[SCENE_LOOKUPS] != standard[SCENE_LOOKUPS] ||
-                        value[SCENE_LEVELS] != standard[SCENE_LEVELS])
-                        add(s, value);
+                    value[SCENE_SHADOWED] = shadow_points[p];
+                    value[SCENE_SHADING] = shading;
+                    value[SCENE_LOOKUPS] = lookups[n];
+                    value[SCENE_LEVELS] = levels;
+                    if (lookups[n] != s->standard[SCENE_LOOKUPS] ||
+                        levels != s->standard[SCENE_LEVELS])
+                        scene_sweep_add(s, value);
                 }
     add_levels(s);
 }
@@ -229,13 +255,19 @@ static int read_counts(struct scene_sweep *s)
 
 static int measure(struct scene_sweep *s)
 {
-    int code = tool_scene(s->tool, s->file, s->text, NULL);
+    int code = tool_scene_stones(s->tool, s->file, s->text, NULL, s->stones);
 
     if (code != EXIT_OK)
         return code;
     code = scene_trial_scene(s->tool, s->file, &s->scene);
+    if (code == EXIT_OK)
+        code = stone_sweep_open(s);
     if (code == EXIT_OK) {
         add_points(s);
+        stone_sweep_points(s);
+        code = stone_sweep_bake(s);
+    }
+    if (code == EXIT_OK) {
         s->counter = glint_instructions_open();
         code = scene_sweep_measure(s);
         glint_instructions_close(s->counter);
@@ -264,7 +296,10 @@ static int run(struct scene_sweep *s)
         return EXIT_OUTPUT;
     }
     s->text = calloc(1, sizeof *s->text);
-    if (!s->text || glint_pool_create(&s->one, 1) != GLINT_OK)
+    s->stones = calloc(1, sizeof *s->stones);
+    s->set = calloc(SCENE_SETS, sizeof *s->set);
+    if (!s->text || !s->stones || !s->set ||
+        glint_pool_create(&s->one, 1) != GLINT_OK)
         return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
     code = measure(s);
     scene_sweep_free(s);
@@ -373,6 +408,7 @@ int cmd_sweep_scene(int argc, char **argv)
     if (code == EXIT_OK && tool.workers)
         code = run(s);
     baked_scene_close(&s->scene);
+    stone_sweep_free(s);
     glint_pool_destroy(s->one);
     free(s->text);
     free(s);
