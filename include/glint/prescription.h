@@ -76,6 +76,9 @@ struct glint_surface {
     double semi_mm;      /* semi-diameter of the barrel here */
     double nd;           /* index at 587.56 nm of the medium after it */
     double vd;           /* Abbe number of that medium; 0 for air */
+    /* Dispersion of a glass of the catalogue, as glint_glass.sellmeier; all 0
+     * where nd and vd say it. */
+    double sellmeier[6];
     struct glint_coating coating; /* cemented surfaces are always bare */
     struct glint_shape shape;
 };
@@ -102,6 +105,25 @@ bool glint_surface_is_shaped(const struct glint_surface *s);
  * light in the plane at PHI_DEG. Returns false where there is none. */
 bool glint_surface_point(const struct glint_surface *s, double phi_deg,
                          double x, double y, double at[3]);
+
+/* A glass of a maker's catalogue. */
+struct glint_glass {
+    const char *name, *maker;
+    /* B1, B2, B3, C1, C2, C3 of n^2 = 1 + sum B L^2 / (L^2 - C), where L is the
+     * wavelength in micrometres. */
+    double sellmeier[6];
+};
+
+/* Returns the Kth glass, from 0, or NULL if there are no more. */
+const struct glint_glass *glint_glass_at(int k);
+
+/* Returns the glass NAME[BYTES], or NULL; or the one with the nearest name, of
+ * those that are near. */
+const struct glint_glass *glint_glass_find(const char *name, size_t bytes);
+const struct glint_glass *glint_glass_near(const char *name, size_t bytes);
+
+/* Returns the index of refraction of the medium behind S. */
+double glint_surface_index(const struct glint_surface *s, double wavelength_nm);
 
 struct glint_prescription;
 

@@ -124,6 +124,8 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
         mix(&key, s->semi_mm);
         mix(&key, s->nd);
         mix(&key, s->vd);
+        for (int i = 0; i < 6 && s->sellmeier[0] > 0; i++)
+            mix(&key, s->sellmeier[i]);
         mix_coating(&key, &s->coating);
         if (glint_surface_is_shaped(s))
             mix_shape(&key, &s->shape);

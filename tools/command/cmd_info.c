@@ -119,8 +119,8 @@ static void print_coatings(const struct glint_prescription *l)
         for (int i = 0; i < 3; i++)
             printf(" %6.2f %%",
                    100 * glint_reflectance(
-                             k ? glint_index(before->nd, before->vd, nm[i]) : 1,
-                             glint_index(s->nd, s->vd, nm[i]), 1, film,
+                             k ? glint_surface_index(before, nm[i]) : 1,
+                             glint_surface_index(s, nm[i]), 1, film,
                              glint_coating_at(&s->coating, nm[i], film)));
         printf("    ");
         coating_print(stdout, &s->coating);

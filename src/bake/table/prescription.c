@@ -9,6 +9,7 @@
 
 #include <string.h>
 
+#include "bake/table/catalogue.h"
 #include "bake/table/check.h"
 #include "bake/table/coatings.h"
 #include "bake/table/shapes.h"
@@ -23,6 +24,7 @@ STATIC_ASSERT(sizeof(((struct glint_prescription *)0)->source) >
 
 struct medium {
     double nd, vd;
+    double sellmeier[6]; /* all 0 unless of the catalogue */
 };
 
 static const struct glint_text_range f_number_range = {
@@ -220,18 +222,42 @@ static bool read_glass(struct parser *p)
            glint_text_value(&p->text, &vd_range, &p->glass[n].medium.vd, NULL);
 }
 
+/* Sets MEDIUM to the glass of the catalogue that WORD names. */
+static bool read_catalogue(struct parser *p, const struct glint_word *word,
+                           struct medium *medium)
+{
+    const size_t bytes = (size_t)word->length;
+    const struct glint_glass *glass = glint_glass_find(word->start, bytes);
+    char quote[GLINT_QUOTE_BYTES];
+
+    if (!glass) {
+        glass = glint_glass_near(word->start, bytes);
+        return glint_text_fail(
+            &p->text, word->place,
+            "no glass '%s' is defined above this line, nor in the catalogue"
+            "%s%s%s",
+            glint_word_quote(word, quote), glass ? "; did you mean " : "",
+            glass ? glass->name : "", glass ? "?" : "");
+    }
+    memcpy(medium->sellmeier, glass->sellmeier, sizeof medium->sellmeier);
+    medium->nd = glint_sellmeier(glass->sellmeier, LINE_D_NM);
+    medium->vd =
+        (medium->nd - 1.0) / (glint_sellmeier(glass->sellmeier, LINE_F_NM) -
+                              glint_sellmeier(glass->sellmeier, LINE_C_NM));
+    return true;
+}
+
 /* Reads "air", ND VD or the name of a glass. */
 static bool read_medium(struct parser *p, struct medium *medium)
 {
     const struct glint_word word = glint_text_next_word(&p->text);
-    char quote[GLINT_QUOTE_BYTES];
     int glass;
 
     p->places.medium = word.place;
     if (!word.length)
         return glint_text_fail(&p->text, word.place,
                                "medium is missing: air, ND VD or a glass");
-    *medium = (struct medium){1.0, 0.0};
+    *medium = (struct medium){.nd = 1.0};
     if (glint_word_is(&word, "air"))
         return true;
     if (!is_letter(word.start[0]))
@@ -239,9 +265,7 @@ static bool read_medium(struct parser *p, struct medium *medium)
                glint_text_value(&p->text, &vd_range, &medium->vd, NULL);
     glass = find_glass(p, &word);
     if (glass < 0)
-        return glint_text_fail(&p->text, word.place,
-                               "no glass '%s' is defined above this line",
-                               glint_word_quote(&word, quote));
+        return read_catalogue(p, &word, medium);
     *medium = p->glass[glass].medium;
     return true;
 }
@@ -286,7 +310,7 @@ static bool read_surface(struct parser *p)
 {
     const int k = p->lens.n_surfaces;
     struct glint_surface *s = &p->lens.surface[k];
-    struct medium before = {1.0, 0.0}, medium = before;
+    struct medium before = {.nd = 1.0}, medium = before;
 
     if (k == GLINT_MAX_SURFACES)
         return glint_text_fail(&p->text, p->word[SURFACE],
@@ -298,12 +322,13 @@ static bool read_surface(struct parser *p)
     if (!read_medium(p, &medium))
         return false;
     if (k > 0)
-        before = (struct medium){s[-1].nd, s[-1].vd};
+        before = (struct medium){.nd = s[-1].nd, .vd = s[-1].vd};
     if (before.nd == medium.nd && before.vd == medium.vd)
         return glint_text_fail(&p->text, p->places.medium,
                                "medium is the same on both sides");
     s->nd = medium.nd;
     s->vd = medium.vd;
+    memcpy(s->sellmeier, medium.sellmeier, sizeof s->sellmeier);
     s->shape = p->group;
     p->group.pivot_mm -= p->in_group ? s->thickness_mm : 0.0;
     p->is_surface = true;

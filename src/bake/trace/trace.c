@@ -39,8 +39,8 @@ static void media_of(const struct route *route, int k, double *front,
 {
     const struct glint_surface *s = &route->lens->surface[k];
 
-    *front = k ? glint_index(s[-1].nd, s[-1].vd, route->wavelength_nm) : 1.0;
-    *behind = glint_index(s->nd, s->vd, route->wavelength_nm);
+    *front = k ? glint_surface_index(s - 1, route->wavelength_nm) : 1.0;
+    *behind = glint_surface_index(s, route->wavelength_nm);
 }
 
 /* Returns z from the last event to element E, a neighbour of it. */

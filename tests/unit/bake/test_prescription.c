@@ -299,8 +299,9 @@ static const struct {
      "x.lens:5:7: glass of this name is already defined"},
     {5, "glass N-BK7 1.5 60\nglass N-BK7 1.6 50",
      "x.lens:6:7: glass of this name is already defined"},
-    {5, "glass N-BK 1.5 60",
-     "x.lens:6:21: no glass 'N-BK7' is defined above this line"},
+    {6, "surface 50 6 12 N-BK77",
+     "x.lens:6:17: no glass 'N-BK77' is defined above this line, nor in the "
+     "catalogue; did you mean N-BK7?"},
     /* mistakes in surfaces */
     {6, "surface", "x.lens:6:8: radius is missing"},
     {6, "surface 50 6 12",

@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Glasses of the catalogue: their indices, their names in tables. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/bake.h"
+
+/* Indices at the d, C and F lines as makers print them, to 5 decimals; not
+ * computed from what glint has. */
+static const struct {
+    const char *name;
+    double nd, nc, nf;
+} printed[] = {
+    {"N-BK7", 1.5168, 1.51432, 1.52238},
+    {"N-BAK1", 1.5725, 1.56949, 1.57943},
+    {"N-BAK2", 1.53996, 1.53721, 1.54625},
+    {"N-BAK4", 1.56883, 1.56575, 1.57591},
+    {"N-BALF4", 1.57956, 1.57631, 1.58707},
+    {"N-BALF5", 1.54739, 1.5443, 1.55451},
+    {"N-BASF2", 1.66446, 1.65905, 1.67751},
+    {"N-BASF64", 1.704, 1.69872, 1.71659},
+    {"N-BK10", 1.49782, 1.49552, 1.50296},
+    {"N-F2", 1.62005, 1.61506, 1.63208},
+    {"N-FK5", 1.48749, 1.48535, 1.49227},
+    {"N-FK51A", 1.48656, 1.4848, 1.49056},
+    {"N-FK58", 1.456, 1.45446, 1.45948},
+    {"N-K5", 1.52249, 1.51982, 1.5286},
+    {"N-KF9", 1.52346, 1.5204, 1.53056},
+    {"N-KZFS11", 1.63775, 1.63324, 1.64828},
+    {"N-KZFS2", 1.55836, 1.55519, 1.56553},
+    {"S-LAH60", 1.834, 1.82738, 1.84982},
+    {"S-LAH63", 1.8044, 1.79838, 1.8187},
+    {"S-LAH64", 1.788, 1.783, 1.79963},
+    {"S-LAH66", 1.7725, 1.7678, 1.78337},
+    {"S-LAH79", 2.0033, 1.99301, 2.0285},
+    {"S-LAH88", 1.9165, 1.90803, 1.93703},
+    {"S-LAH89", 1.8515, 1.8453, 1.86618},
+    {"S-LAH92", 1.8919, 1.88482, 1.90884},
+    {"TAFD30", 1.883, 1.87657, 1.89821},
+    {"TAFD33", 1.881, 1.8745, 1.89644},
+    {"TAFD37", 1.90043, 1.89333, 1.91742},
+};
+
+static struct glint_prescription lens;
+
+static enum glint_status read_medium(const char *medium,
+                                     struct glint_error *error)
+{
+    char text[400];
+
+    snprintf(text, sizeof text,
+             "name t\nf-number 8\nfilm 36 24\nstop 5 9\n"
+             "surface 60 5 10 %s\nsurface -60 90 10 air\n",
+             medium);
+    return glint_prescription_parse(&lens, text, strlen(text), "t.lens", error);
+}
+
+/* 1e-5, and half of the last decimal that is printed. */
+static void near(double got, double want)
+{
+    assert_true(fabs(got - want) < 1.5e-5);
+}
+
+static void test_printed_indices(void **state)
+{
+    struct glint_error error = {""};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof printed / sizeof *printed; i++) {
+        if (read_medium(printed[i].name, &error) != GLINT_OK)
+            fail_msg("%s", error.text);
+        near(lens.surface[0].nd, printed[i].nd);
+        near(glint_surface_index(&lens.surface[0], 587.5618), printed[i].nd);
+        near(glint_surface_index(&lens.surface[0], 656.2725), printed[i].nc);
+        near(glint_surface_index(&lens.surface[0], 486.1327), printed[i].nf);
+        assert_true(fabs(lens.surface[0].vd * (printed[i].nf - printed[i].nc) /
+                             (printed[i].nd - 1) -
+                         1) < 2e-3);
+        assert_true(glint_surface_index(&lens.surface[1], 500) == 1);
+    }
+}
+
+/* Every row is a glass: none is a slip of the hand. */
+static void test_all_rows_are_glasses(void **state)
+{
+    struct glint_error error = {""};
+    const struct glint_glass *glass;
+    int n = 0;
+
+    (void)state;
+    for (; (glass = glint_glass_at(n)) != NULL; n++) {
+        double last = 9;
+
+        assert_ptr_equal(glint_glass_find(glass->name, strlen(glass->name)),
+                         glass);
+        assert_ptr_equal(glint_glass_near(glass->name, strlen(glass->name)),
+                         glass);
+        assert_int_equal(read_medium(glass->name, &error), GLINT_OK);
+        assert_true(lens.surface[0].nd > 1.4 && lens.surface[0].nd < 2.1);
+        assert_true(lens.surface[0].vd > 18 && lens.surface[0].vd < 96);
+        for (int nm = 365; nm <= 1010; nm += 15) {
+            const double at = glint_surface_index(&lens.surface[0], nm);
+
+            assert_true(at < last && at > 1.4);
+            last = at;
+        }
+    }
+    assert_true(n > 150);
+    assert_null(glint_glass_at(-1));
+}
+
+/* What a real glass does and two numbers cannot say: the violet of a flint. */
+static void test_beyond_two_terms(void **state)
+{
+    struct glint_error error = {""};
+    double by_numbers;
+
+    (void)state;
+    assert_int_equal(read_medium("N-SF11", &error), GLINT_OK);
+    by_numbers = glint_index(lens.surface[0].nd, lens.surface[0].vd, 404.66);
+    assert_true(glint_surface_index(&lens.surface[0], 404.66) - by_numbers >
+                4e-3);
+}
+
+static void test_names(void **state)
+{
+    static const struct {
+        const char *wrong, *meant;
+    } cases[] = {{"N-BK8", "did you mean N-B"},
+                 {"NBK7", "did you mean N-BK7?"},
+                 {"S-LAH6", "did you mean S-LA"},
+                 {"SLAH66", "did you mean S-LAH66?"},
+                 {"N-SF111", "did you mean N-SF11?"},
+                 {"ZZZZZZ", "nor in the catalogue"}};
+    static const char own[] =
+        "name t\nf-number 8\nfilm 36 24\nstop 5 9\n"
+        "glass N-BK7 1.6 50\nsurface 60 5 10 N-BK7\nsurface -60 90 10 air\n";
+    struct glint_error error;
+
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        error.text[0] = '\0';
+        assert_int_equal(read_medium(cases[i].wrong, &error), GLINT_E_LENS);
+        assert_non_null(strstr(error.text, "t.lens:5:17: no glass"));
+        assert_non_null(strstr(error.text, cases[i].meant));
+    }
+    assert_null(strstr(error.text, "did you mean"));
+    /* A glass of the table's own goes before the catalogue's. */
+    assert_int_equal(
+        glint_prescription_parse(&lens, own, sizeof own - 1, "t", &error),
+        GLINT_OK);
+    assert_true(lens.surface[0].nd == 1.6);
+    assert_true(lens.surface[0].sellmeier[0] == 0);
+}
+
+/* Two glasses of the same nd and Vd are two models. */
+static void test_key(void **state)
+{
+    struct glint_bake_options options;
+    struct glint_error error = {""};
+    uint64_t key;
+
+    (void)state;
+    glint_bake_defaults(&options);
+    assert_int_equal(read_medium("N-SK16", &error), GLINT_OK);
+    key = glint_bake_key(&lens, &options);
+    memset(lens.surface[0].sellmeier, 0, sizeof lens.surface[0].sellmeier);
+    assert_true(glint_bake_key(&lens, &options) != key);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_printed_indices),
+        cmocka_unit_test(test_all_rows_are_glasses),
+        cmocka_unit_test(test_beyond_two_terms), cmocka_unit_test(test_names),
+        cmocka_unit_test(test_key)};
+
+    return cmocka_run_group_tests_name("glass", tests, NULL, NULL);
+}
