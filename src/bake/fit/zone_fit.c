@@ -17,9 +17,6 @@ STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 /* Outlines of wide stops show at the rim of a ghost, errors of places all over
  * it: a box is divided for an error of outlines so many times as large. */
 #define RIM 4.0
-/* Of wide stops, where a zone's energy may be off by this much more of its
- * tolerance than its places before it is divided into parts. */
-#define DIMS 2.5
 /* Factor on the error of a fit, if it was not good anyway: a second one which
  * is worse than that is dropped. */
 #define HARM 1.5
@@ -43,7 +40,9 @@ static const struct glint_degrees energy_degrees = {.most = {6, 4, 4, 8},
                                                     .total = 10,
                                                     .terms = FEW_TERMS};
 
-/* Terms of thorough fits of energies that change a lot over the pupil. */
+/* Terms of thorough fits of energies that change a lot over the pupil, and of
+ * all energies of wide stops, as films make them swing with angle and
+ * wavelength at once. */
 static const struct glint_degrees steep_degrees = {.most = {8, 6, 4, 8},
                                                    .weight = {1, 1, 1, 1},
                                                    .total = 12,
@@ -173,7 +172,8 @@ static double fit_poly(struct fit *f, const struct glint_zone_rays *r,
     struct glint_degrees degrees =
         kind != GLINT_OUT_ENERGY ? position_degrees
         : f->task->thorough &&
-                glint_zone_rays_spread(&f->buffers->rays) > GLINT_STEEP
+                (is_wide(f) ||
+                 glint_zone_rays_spread(&f->buffers->rays) > GLINT_STEEP)
             ? steep_degrees
             : energy_degrees;
 
@@ -356,7 +356,7 @@ static void sum_up(struct fit *f, double energy)
     struct glint_zone_errors *const e = f->errors;
 
     e->shows = fmax(e->places, e->outlines / (is_wide(f) ? RIM : 1));
-    e->dims = is_wide(f) ? fmax(e->shows, energy / DIMS) : e->shows;
+    e->dims = is_wide(f) ? fmax(e->shows, energy) : e->shows;
     e->worst = fmax(fmax(e->places, e->outlines), energy);
 }
 
