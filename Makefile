@@ -55,7 +55,7 @@ PUBLISHED := published
 ENGINE    := engine engine/frame engine/setup engine/star
 BAKE      := bake bake/table bake/scene bake/environment bake/motion bake/translucent bake/trace bake/regress bake/fit bake/exact bake/published bake/published/scatter
 PLATFORM  := posix formats video panel linux jpeg oiio assimp sdl
-TOOLS     := help options control lamp_files desk model overlay stones scenes motions twin lens_figures command live lab lab/plots lab/scenes
+TOOLS     := help options control lamp_files desk model overlay stones scenes motions synth twin lens_figures command live lab lab/plots lab/scenes
 c_files = $(wildcard $(2:%=$(1)/%/*.c))
 objects = $(patsubst %.c,$(OUT)/%.o,$(filter-out $(absent),$(call c_files,$(1),$(2))))
 
@@ -68,6 +68,7 @@ sets_armv7-neon := neon
 absent := $(foreach s,$(filter-out $(sets_$(ARCH)),sse41 avx2 x86 neon),$(wildcard src/kernels/*_$(s).c src/kernels/*/*_$(s).c))
 absent += platform/jpeg/$(if $(filter yes,$(WITH_JPEG)),absent,mjpeg).c
 absent += src/bake/motion/$(if $(filter yes,$(WITH_JANSSON)),absent,recording).c
+absent += tools/synth/$(if $(filter yes,$(WITH_JANSSON)),item_absent,item_json).c
 absent += tools/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
 # A static program has no plug-ins.
 absent += platform/oiio/$(if $(CROSS),loader,absent).c
@@ -95,6 +96,7 @@ $(OUT)/%.o: %.c
 	$(Q)$(CC) $(CPPFLAGS) -MMD -MP $(CFLAGS) $(ANALYZER) -c $< -o $@
 $(OUT)/platform/jpeg/absent.o: NOTE := MJPEG left out: no libjpeg62-turbo-dev
 $(OUT)/tools/options/config_absent.o: NOTE := --config left out: no libinih-dev
+$(OUT)/tools/synth/item_absent.o: NOTE := synth --item left out: no libjansson-dev
 $(OUT)/src/bake/motion/absent.o: NOTE := recordings left out: no libjansson-dev
 
 $(OUT)/libglint.a: $(core_o)

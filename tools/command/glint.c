@@ -25,6 +25,7 @@ static const char help[] =
     "  glint live                      the same, from a camera to the panel\n"
     "  glint explain IN | --size WxH   what a frame models, what not, and why\n"
     "  glint styles -o OUT             a photograph in each --style\n"
+    "  glint synth BACKGROUNDS ...     pairs to train flare removal with\n"
     "  glint compare A B               how far two pictures are apart\n"
     "  glint bench                     what a frame costs\n"
     "  glint sweep -o FOLDER           what accuracy costs: plots, pictures\n"
@@ -48,7 +49,7 @@ static const struct command commands[] = {
     {"overlay", cmd_overlay}, {"explain", cmd_explain}, {"live", cmd_live},
     {"compare", cmd_compare}, {"bake", cmd_bake},       {"bench", cmd_bench},
     {"sweep", cmd_sweep},     {"lenses", cmd_lenses},   {"coat", cmd_coat},
-    {"styles", cmd_styles},   {"draw", cmd_draw},
+    {"styles", cmd_styles},   {"draw", cmd_draw},       {"synth", cmd_synth},
 };
 
 enum { N_COMMANDS = sizeof commands / sizeof *commands };

@@ -332,7 +332,7 @@ enum settings_option {
     "  -j, --threads N     default: all processors; never changes a result\n" \
     "  --kernels K         c | sse41 | avx2 | neon | auto: never changes a "  \
     "result\n"                                                                \
-    "  --seed N            of the noise of live -d test; nothing else is "    \
+    "  --seed N            of live -d test and synth; nothing else is "       \
     "random\n"                                                                \
     "  --json   -q   -v   --help   --help-all   --version\n"
 

@@ -165,5 +165,6 @@ int cmd_lenses(int argc, char **argv);
 int cmd_coat(int argc, char **argv);
 int cmd_draw(int argc, char **argv);
 int cmd_styles(int argc, char **argv);
+int cmd_synth(int argc, char **argv);
 
 #endif

@@ -1,0 +1,354 @@
+/* SPDX-License-Identifier: MIT */
+#include "synth/draw.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/frame/area.h"
+#include "engine/measure.h"
+
+enum glint_status synth_drawing_init(struct synth_drawing *d, int width,
+                                     int height)
+{
+    const size_t n = 3 * (size_t)width * (size_t)height;
+    float *const mem = calloc((SYNTH_LAYERS + 1) * n, sizeof *mem);
+
+    *d = (struct synth_drawing){.width = width, .height = height};
+    for (int i = 0; mem && i < SYNTH_LAYERS; i++)
+        d->layer[i] = mem + (size_t)i * n;
+    d->cover = mem ? mem + SYNTH_LAYERS * n : NULL;
+    return mem ? GLINT_OK : GLINT_E_MEMORY;
+}
+
+void synth_drawing_finish(struct synth_drawing *d)
+{
+    free(d->layer[0]);
+}
+
+static struct glint_float_image image_of(const struct synth_drawing *d,
+                                         float *rgb)
+{
+    return (struct glint_float_image){d->width, d->height, rgb};
+}
+
+/* ------------------------------------------------------------------- lenses */
+
+static int open_lens(const struct tool *tool, struct synth_lens *lens,
+                     const struct synth_item *item)
+{
+    struct settings *const s = &lens->settings;
+    const struct glint_optics *const optics = &s->setup.optics;
+    char quality[40];
+    int code;
+
+    snprintf(lens->name, sizeof lens->name, "%s", item->lens);
+    snprintf(lens->coating, sizeof lens->coating, "%s", item->coating);
+    lens->quality = item->quality;
+    settings_defaults(s);
+    s->waves = SETTINGS_WAVES_AUTO;
+    snprintf(quality, sizeof quality, "%.6f", item->quality);
+    settings_take_quality(s, quality);
+    code = coating_take(tool, &s->coating, item->coating);
+    if (code < 0)
+        code = settings_open(tool, s, item->lens);
+    if (code == EXIT_OK)
+        lens->widest =
+            fabs(optics->focal_mm) / (2 * optics->entrance_radius_mm);
+    return code;
+}
+
+int synth_lens_open(const struct tool *tool, struct synth_lenses *lenses,
+                    const struct synth_item *item, struct synth_lens **lens)
+{
+    for (int i = 0; i < lenses->n; i++) {
+        *lens = lenses->lens[i];
+        if (strcmp((*lens)->name, item->lens) == 0 &&
+            strcmp((*lens)->coating, item->coating) == 0 &&
+            (*lens)->quality == item->quality)
+            return EXIT_OK;
+    }
+    if (lenses->n == SYNTH_MAX_LENSES)
+        return tool_usage(tool, "takes up to %d lenses", SYNTH_MAX_LENSES);
+    *lens = calloc(1, sizeof **lens);
+    if (!*lens)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    lenses->lens[lenses->n++] = *lens; /* closed also if it does not open */
+    return open_lens(tool, *lens, item);
+}
+
+void synth_lenses_close(struct synth_lenses *lenses)
+{
+    for (int i = 0; i < lenses->n; i++) {
+        settings_close(&lenses->lens[i]->settings);
+        free(lenses->lens[i]);
+    }
+}
+
+/* Stops LENS as ITEM says, and lays dirt on its front. */
+static int set_lens(const struct tool *tool, struct synth_lens *lens,
+                    const struct synth_item *item, struct synth_result *result)
+{
+    struct settings *const s = &lens->settings;
+    struct glint_error error = {""};
+    enum glint_status status;
+
+    s->stop.n_blades = (int)item->blades;
+    s->stop.rotation_deg = item->rotation;
+    s->stop.iris.roundness = item->roundness;
+    s->stop.iris.softness = item->softness;
+    s->stop.iris.dust = item->dust;
+    s->stop.iris.dust_seed = (int)item->dust_seed;
+    result->f_number = lens->widest * exp2(item->stops_down / 2);
+    /* The model's own stop is not asked for by a number that rounding may have
+     * made wider. */
+    status =
+        settings_stop(s, item->stops_down > 0 ? result->f_number : 0, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    result->focal_mm = s->setup.optics.focal_mm;
+    front_option_close(&s->front);
+    s->front.front.dust = item->front_dust;
+    s->front.front.dust_seed = (int)item->front_dust_seed;
+    return front_option_open(tool, &s->front);
+}
+
+/* ------------------------------------------------------------------- lights */
+
+/* Sets RGB to the colour of a black body of KELVIN [Planck01], its largest
+ * channel 1. */
+static void black_body(double kelvin, double rgb[3])
+{
+    enum { WAVES = 16 };
+    double nm[WAVES], colour[WAVES][3], share[WAVES], most = 0;
+
+    glint_spectrum(WAVES, nm, colour, share);
+    rgb[0] = rgb[1] = rgb[2] = 0;
+    for (int i = 0; i < WAVES; i++) {
+        /* c2 = h c / k = 1.438777e7 nm K */
+        const double light =
+            pow(nm[i] / 550, -5) / expm1(1.438777e7 / (nm[i] * kelvin));
+
+        for (int c = 0; c < 3; c++)
+            rgb[c] += colour[i][c] * light;
+    }
+    for (int c = 0; c < 3; c++)
+        most = fmax(most, rgb[c] = fmax(rgb[c], 0));
+    for (int c = 0; c < 3; c++)
+        rgb[c] /= most;
+}
+
+/* Sets LAMP to the lights of ITEM, of their relative powers. */
+static void set_lamps(const struct synth_item *item, const struct settings *s,
+                      struct glint_lamp *lamp, struct synth_result *result)
+{
+    const struct glint_view view =
+        settings_view(s, (int)item->width, (int)item->height);
+    const double focal = s->setup.optics.focal_mm;
+
+    result->sensor_width_mm = view.sensor_width_mm;
+    for (int i = 0; i < (int)item->n_lights; i++) {
+        const struct synth_light *const light = &item->light[i];
+
+        lamp[i] = (struct glint_lamp){.power = light->power};
+        glint_view_to_angles(&view, focal, light->x * item->width,
+                             light->y * item->height, &lamp[i]);
+        black_body(light->kelvin, lamp[i].rgb);
+        /* A disc's RMS extent along an axis is half of its radius. */
+        glint_area_set_round(&lamp[i],
+                             0.5 * light->radius * item->height *
+                                 glint_view_pixel_tangent(&view, focal));
+        result->theta_deg[i] = lamp[i].theta_deg;
+        result->phi_deg[i] = lamp[i].phi_deg;
+    }
+}
+
+/* Draws the discs of the lights of ITEM into the source layer and the cover. */
+static void draw_sources(const struct synth_item *item,
+                         const struct glint_lamp *lamp, struct synth_drawing *d,
+                         struct synth_result *result)
+{
+    float *const source = d->layer[SYNTH_SOURCE];
+
+    memset(source, 0, 3 * (size_t)d->width * (size_t)d->height * sizeof(float));
+    memset(d->cover, 0,
+           3 * (size_t)d->width * (size_t)d->height * sizeof(float));
+    for (int i = 0; i < (int)item->n_lights; i++) {
+        const double radius = item->light[i].radius * item->height;
+        const double x = item->light[i].x * item->width;
+        const double y = item->light[i].y * item->height;
+
+        result->power[i] = lamp[i].power;
+        /* A light that flares is brighter than white. */
+        result->white[i] =
+            fmax(result->power[i] / (GLINT_PI * radius * radius), 2);
+        for (int row = 0; row < d->height; row++)
+            for (int column = 0; column < d->width; column++) {
+                const size_t at =
+                    3 * ((size_t)row * (size_t)d->width + (size_t)column);
+                const double in =
+                    radius + 0.5 - hypot(column + 0.5 - x, row + 0.5 - y);
+                const double cover = fmin(fmax(in, 0), 1);
+
+                for (int c = 0; c < 3 && cover > 0; c++) {
+                    source[at + (size_t)c] +=
+                        (float)(cover * result->white[i] * lamp[i].rgb[c]);
+                    d->cover[at + (size_t)c] =
+                        fmaxf(d->cover[at + (size_t)c], (float)cover);
+                }
+            }
+    }
+}
+
+/* ------------------------------------------------------------------- flares */
+
+/* What of a flare is drawn. */
+enum part { GHOSTS, STAR, HAZE };
+
+static int draw_part(const struct tool *tool, struct settings *s,
+                     const struct synth_item *item,
+                     const struct glint_lamp *lamp, enum part part, float *rgb)
+{
+    struct glint_frame_report report;
+    struct glint_frame frame;
+    enum glint_status status;
+    int code;
+
+    s->ghosts_only = part == GHOSTS;
+    s->starburst_only = part == STAR;
+    s->veil_only = part == HAZE;
+    s->haze = item->haze;
+    code = settings_frame(
+        tool, s, settings_view(s, (int)item->width, (int)item->height), &frame);
+    if (code != EXIT_OK)
+        return code;
+    memset(rgb, 0,
+           3 * (size_t)item->width * (size_t)item->height * sizeof *rgb);
+    status = glint_frame_draw_alone(&frame, lamp, (int)item->n_lights, 1, rgb,
+                                    &report);
+    glint_frame_finish(&frame);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
+}
+
+/* Returns how bright the lights are whose ghosts IMAGE shows for a power of 1:
+ * their brightest thousandth comes to LEVEL, or the mean of all to
+ * SYNTH_MOST_MEAN of LEVEL if that is less, as where broad ghosts fill the
+ * picture nothing else would be seen. */
+static double power_of(const struct glint_float_image *image, double level)
+{
+    const size_t n = 3 * (size_t)image->width * (size_t)image->height;
+    const double by_peak = level * glint_measure_exposure(image);
+    double sum = 0;
+
+    for (size_t i = 0; i < n; i++)
+        sum += (double)image->rgb[i];
+    return fmin(by_peak,
+                sum > 0 ? level * SYNTH_MOST_MEAN * (double)n / sum : by_peak);
+}
+
+static void times(float *rgb, size_t n, double factor)
+{
+    for (size_t i = 0; i < n; i++)
+        rgb[i] = (float)((double)rgb[i] * factor);
+}
+
+static int draw_flare(const struct tool *tool, struct settings *s,
+                      const struct synth_item *item, struct synth_drawing *d,
+                      struct synth_result *result)
+{
+    const size_t n = 3 * (size_t)d->width * (size_t)d->height;
+    float *const ghosts = d->layer[SYNTH_GHOSTS];
+    float *const glare = d->layer[SYNTH_GLARE];
+    float *const spare = d->layer[SYNTH_SOURCE]; /* drawn last */
+    struct glint_float_image image = image_of(d, ghosts);
+    struct glint_lamp lamp[SYNTH_MAX_LIGHTS] = {{.power = 0}};
+    double power;
+    int code;
+
+    set_lamps(item, s, lamp, result);
+    code = draw_part(tool, s, item, lamp, GHOSTS, ghosts);
+    if (code != EXIT_OK)
+        return code;
+    power = power_of(&image, item->ghost_level);
+    times(ghosts, n, power);
+    /* Haze is drawn in steps of a millionth of white, so lights must be as
+     * bright as they are. */
+    for (int i = 0; i < (int)item->n_lights; i++)
+        lamp[i].power *= power;
+    code = draw_part(tool, s, item, lamp, STAR, glare);
+    result->star_gain = item->star;
+    times(glare, n, item->star);
+    if (code == EXIT_OK && (item->haze > 0 || item->front_dust > 0)) {
+        code = draw_part(tool, s, item, lamp, HAZE, spare);
+        for (size_t i = 0; i < n && code == EXIT_OK; i++)
+            glare[i] += spare[i];
+    }
+    if (code == EXIT_OK)
+        draw_sources(item, lamp, d, result);
+    return code;
+}
+
+int synth_draw(const struct tool *tool, struct synth_lenses *lenses,
+               const struct synth_backgrounds *backgrounds,
+               const struct synth_item *item, struct synth_drawing *d,
+               struct synth_result *result)
+{
+    struct glint_error error = {""};
+    struct synth_lens *lens = NULL;
+    enum glint_status status;
+    int code;
+
+    *result = (struct synth_result){.f_number = 0};
+    code = synth_lens_open(tool, lenses, item, &lens);
+    if (code != EXIT_OK || !lens)
+        return code;
+    code = set_lens(tool, lens, item, result);
+    if (code == EXIT_OK)
+        code = draw_flare(tool, &lens->settings, item, d, result);
+    if (code != EXIT_OK)
+        return code;
+    status = synth_background_load(backgrounds, item, d->layer[SYNTH_BASE],
+                                   &result->background_ev, &error);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
+/* ------------------------------------------------------------------ sensors */
+
+void synth_sum(const struct synth_drawing *d, unsigned layers, float *rgb)
+{
+    const size_t n = 3 * (size_t)d->width * (size_t)d->height;
+
+    memset(rgb, 0, n * sizeof *rgb);
+    for (int k = 0; k < SYNTH_LAYERS; k++)
+        for (size_t i = 0; layers >> k & 1 && i < n; i++)
+            rgb[i] += d->layer[k][i];
+}
+
+/* Returns a number of mean 0 and variance 1, nearly normal: twelve even ones
+ * summed, exactly the same on every machine. */
+static double normal(uint64_t *state)
+{
+    int64_t sum = 0;
+
+    for (int i = 0; i < 3; i++) {
+        const uint64_t bits = synth_bits(state);
+
+        for (int k = 0; k < 64; k += 16)
+            sum += (int64_t)(bits >> k & 0xffff);
+    }
+    return ((double)sum - 12 * 32767.5) * 0x1p-16;
+}
+
+void synth_noise(const struct synth_item *item, float *rgb)
+{
+    const size_t n = 3 * (size_t)item->width * (size_t)item->height;
+    uint64_t state = synth_item_stream(item, "noise");
+
+    for (size_t i = 0; i < n; i++) {
+        const double light = rgb[i];
+
+        rgb[i] = (float)(light + normal(&state) *
+                                     sqrt(light / item->full_well +
+                                          item->read_noise * item->read_noise));
+    }
+}

@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * draw.h - the layers of an item, in linear light, and what a sensor makes of
+ * them.
+ *
+ * The ghosts are exposed: ghost_level says what the brightest of them come to,
+ * and with that how bright the lights are. Their own light, the star and the
+ * haze follow by physics, but for the star's factor. */
+#ifndef GLINT_TOOLS_SYNTH_DRAW_H
+#define GLINT_TOOLS_SYNTH_DRAW_H
+
+#include "options/settings.h"
+#include "synth/background.h"
+#include "synth/item.h"
+
+enum synth_layer {
+    SYNTH_BASE,   /* the background */
+    SYNTH_SOURCE, /* the lights themselves */
+    SYNTH_GLARE,  /* their star and haze */
+    SYNTH_GHOSTS,
+    SYNTH_LAYERS
+};
+
+struct synth_drawing {
+    int width, height;
+    float *layer[SYNTH_LAYERS]; /* [height][width][3] linear light */
+    float *cover; /* [height][width][3]: share that lights cover */
+};
+
+enum glint_status synth_drawing_init(struct synth_drawing *d, int width,
+                                     int height);
+void synth_drawing_finish(struct synth_drawing *d);
+
+/* Mean light of ghosts whose level is 1, at most. */
+#define SYNTH_MOST_MEAN 0.2
+
+enum { SYNTH_MAX_LENSES = 64 };
+
+struct synth_lens {
+    struct settings settings;
+    char name[64], coating[64];
+    double quality;
+    double widest; /* f-number of its model */
+};
+
+/* Lenses that have been opened, each once. */
+struct synth_lenses {
+    int n;
+    struct synth_lens *lens[SYNTH_MAX_LENSES];
+};
+
+/* Sets *LENS to the lens of ITEM, opened. Returns an exit code. */
+int synth_lens_open(const struct tool *tool, struct synth_lenses *lenses,
+                    const struct synth_item *item, struct synth_lens **lens);
+void synth_lenses_close(struct synth_lenses *lenses);
+
+/* Draws the layers of ITEM into D, of its size, and says what came out. Returns
+ * an exit code. */
+int synth_draw(const struct tool *tool, struct synth_lenses *lenses,
+               const struct synth_backgrounds *backgrounds,
+               const struct synth_item *item, struct synth_drawing *d,
+               struct synth_result *result);
+
+/* Sets RGB to the sum of LAYERS of D, a bit each. */
+void synth_sum(const struct synth_drawing *d, unsigned layers, float *rgb);
+
+/* Adds the noise of ITEM's sensor to RGB: of photons, and of reading. */
+void synth_noise(const struct synth_item *item, float *rgb);
+
+#endif

@@ -1,0 +1,313 @@
+/* SPDX-License-Identifier: MIT */
+#include "synth/item.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "options/tool.h"
+
+#define AT(member) offsetof(struct synth_item, member)
+#define OF(member) offsetof(struct synth_light, member)
+#define TEXT(member)                                    \
+    {                                                   \
+#member, AT(member), SYNTH_GIVEN, 0, 0, 0, 0,   \
+            sizeof(((struct synth_item *)NULL)->member) \
+    }
+#define NUMBER(member, law, low, high, least, most)         \
+    {                                                       \
+#member, AT(member), law, low, high, least, most, 0 \
+    }
+#define LIGHT(member, law, low, high, least, most)          \
+    {                                                       \
+#member, OF(member), law, low, high, least, most, 0 \
+    }
+
+const struct synth_field synth_field[SYNTH_FIELDS] = {
+    {"item", AT(number), SYNTH_COUNTED, 0, 0, 0, 2147483647, 0},
+    NUMBER(seed, SYNTH_COUNTED, 0, 0, 0, 2147483647),
+    TEXT(glint),
+    NUMBER(width, SYNTH_COUNTED, 0, 0, 16, 8192),
+    NUMBER(height, SYNTH_COUNTED, 0, 0, 16, 8192),
+    TEXT(background),
+    TEXT(background_key),
+    TEXT(lens),
+    TEXT(coating),
+    NUMBER(quality, SYNTH_GIVEN, 0, 0, 0, 1),
+    NUMBER(crop, SYNTH_EVEN, 0.5, 1, 0.01, 1),
+    NUMBER(crop_x, SYNTH_EVEN, 0, 1, 0, 1),
+    NUMBER(crop_y, SYNTH_EVEN, 0, 1, 0, 1),
+    NUMBER(mirrored, SYNTH_WHOLE, 0, 1, 0, 1),
+    NUMBER(level, SYNTH_LOG, 0.003, 0.3, 1e-6, 10),
+    NUMBER(stops_down, SYNTH_EVEN, 0, 3, 0, 12),
+    NUMBER(blades, SYNTH_WHOLE, 5, 11, 3, 64),
+    NUMBER(rotation, SYNTH_EVEN, 0, 360, -360, 360),
+    NUMBER(roundness, SYNTH_HALF, 0.1, 0.7, 0, 1),
+    NUMBER(softness, SYNTH_EVEN, 0, 0, 0, 1),
+    NUMBER(dust, SYNTH_HALF, 0.002, 0.05, 0, 0.5),
+    NUMBER(dust_seed, SYNTH_WHOLE, 0, 1000000, 0, 2147483647),
+    NUMBER(front_dust, SYNTH_HALF, 0.0005, 0.01, 0, 0.5),
+    NUMBER(front_dust_seed, SYNTH_WHOLE, 0, 1000000, 0, 2147483647),
+    NUMBER(haze, SYNTH_HALF, 0.00005, 0.002, 0, 0.4),
+    NUMBER(ghost_level, SYNTH_LOG, 0.06, 1, 1e-6, 1e6),
+    NUMBER(star, SYNTH_LOG, 0.1, 4, 0, 1e6),
+    NUMBER(read_noise, SYNTH_LOG, 0.0003, 0.004, 0, 1),
+    NUMBER(full_well, SYNTH_LOG, 1000, 30000, 1, 1e9),
+    NUMBER(n_lights, SYNTH_WHOLE, 1, 3, 1, SYNTH_MAX_LIGHTS),
+};
+
+const struct synth_field synth_light_field[SYNTH_LIGHT_FIELDS] = {
+    LIGHT(x, SYNTH_EVEN, -0.06, 1.06, -10, 11),
+    LIGHT(y, SYNTH_EVEN, -0.06, 1.06, -10, 11),
+    LIGHT(radius, SYNTH_LOG, 0.003, 0.03, 1e-4, 1),
+    LIGHT(power, SYNTH_LOG, 0.1, 1, 1e-9, 1e9),
+    LIGHT(kelvin, SYNTH_WHOLE, 1900, 9000, 1000, 40000),
+};
+
+/* ------------------------------------------------------------------- ranges */
+
+static const struct synth_field *field_of(int k)
+{
+    return k < SYNTH_FIELDS ? &synth_field[k]
+                            : &synth_light_field[k - SYNTH_FIELDS];
+}
+
+void synth_ranges_defaults(struct synth_ranges *ranges)
+{
+    for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++) {
+        ranges->low[k] = field_of(k)->low;
+        ranges->high[k] = field_of(k)->high;
+    }
+}
+
+static int field_named(const char *name, size_t n)
+{
+    for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++)
+        if (field_of(k)->law > SYNTH_COUNTED &&
+            strlen(field_of(k)->name) == n &&
+            strncmp(field_of(k)->name, name, n) == 0)
+            return k;
+    return -1;
+}
+
+bool synth_ranges_take(struct synth_ranges *ranges, const char *text,
+                       struct glint_error *why)
+{
+    const size_t n = strcspn(text, "=");
+    const int k = field_named(text, n);
+    const struct synth_field *f;
+    double v[2];
+    int count;
+
+    if (k < 0) {
+        snprintf(why->text, sizeof why->text,
+                 "nothing is named '%.*s'; --range list names what there is",
+                 (int)(n < 60 ? n : 60), text);
+        return false;
+    }
+    f = field_of(k);
+    count = text[n] ? tool_numbers(text + n + 1, v, 2) : 0;
+    if (count == 1)
+        v[1] = v[0];
+    if (count == 0 || v[0] > v[1] || v[0] < f->least || v[1] > f->most ||
+        ((f->law == SYNTH_LOG || f->law == SYNTH_HALF) && v[0] <= 0 &&
+         v[1] > 0)) {
+        snprintf(why->text, sizeof why->text,
+                 "%s takes LOW,HIGH or one number within %g to %g%s, not "
+                 "'%.40s'",
+                 f->name, f->least, f->most,
+                 f->law == SYNTH_LOG || f->law == SYNTH_HALF
+                     ? ", LOW above 0 or both 0"
+                     : "",
+                 text[n] ? text + n + 1 : "");
+        return false;
+    }
+    ranges->low[k] = v[0];
+    ranges->high[k] = v[1];
+    return true;
+}
+
+void synth_ranges_print(FILE *file, const struct synth_ranges *ranges)
+{
+    static const char *const law[] = {"",
+                                      "",
+                                      "even",
+                                      "logarithm even",
+                                      "0, or logarithm even",
+                                      "whole numbers"};
+
+    for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++)
+        if (field_of(k)->law > SYNTH_COUNTED)
+            fprintf(file, "%s=%.7g,%.7g  %s\n", field_of(k)->name,
+                    ranges->low[k], ranges->high[k], law[field_of(k)->law]);
+}
+
+void synth_ranges_json(FILE *file, const struct synth_ranges *ranges)
+{
+    const char *before = "";
+
+    for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++)
+        if (field_of(k)->law > SYNTH_COUNTED) {
+            fprintf(file, "%s\"%s\": [%.9g, %.9g]", before, field_of(k)->name,
+                    ranges->low[k], ranges->high[k]);
+            before = ", ";
+        }
+}
+
+/* ------------------------------------------------------------------ drawing */
+
+uint64_t synth_bits(uint64_t *state)
+{
+    uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
+
+    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
+    return z ^ z >> 31;
+}
+
+uint64_t synth_item_stream(const struct synth_item *item, const char *what)
+{
+    uint64_t state =
+        (uint64_t)item->seed << 32 ^ (uint64_t)(uint32_t)item->number;
+
+    for (state = synth_bits(&state); *what; what++) {
+        state ^= (unsigned char)*what;
+        state = synth_bits(&state);
+    }
+    return state;
+}
+
+/* Returns a number from 0 to less than 1 for WHAT. */
+static double unit(const struct synth_item *item, const char *what)
+{
+    uint64_t state = synth_item_stream(item, what);
+
+    return (double)(synth_bits(&state) >> 11) * 0x1p-53;
+}
+
+int synth_item_choose(const struct synth_item *item, const char *what, int n)
+{
+    return (int)(unit(item, what) * n);
+}
+
+/* Returns the number NAME by LAW, rounded to a millionth. */
+static double drawn(const struct synth_item *item, const char *name,
+                    enum synth_law law, double low, double high)
+{
+    double x = unit(item, name), value;
+
+    if (law == SYNTH_WHOLE)
+        return floor(low + x * (high - low + 1));
+    if (law == SYNTH_HALF) {
+        if (x < 0.5)
+            return 0;
+        x = 2 * x - 1;
+    }
+    value = law == SYNTH_EVEN ? low + x * (high - low)
+            : low > 0         ? low * pow(high / low, x)
+                              : 0;
+    return nearbyint(value * 1e6) / 1e6;
+}
+
+/* Returns the place of FIELD in FROM. */
+static double *number_at(void *from, const struct synth_field *field)
+{
+    return (double *)(void *)((char *)from + field->at);
+}
+
+void synth_item_draw(struct synth_item *item, const struct synth_ranges *ranges,
+                     int seed, int number)
+{
+    char name[32];
+
+    item->seed = seed;
+    item->number = number;
+    for (int k = 0; k < SYNTH_FIELDS; k++)
+        if (synth_field[k].law > SYNTH_COUNTED)
+            *number_at(item, &synth_field[k]) =
+                drawn(item, synth_field[k].name, synth_field[k].law,
+                      ranges->low[k], ranges->high[k]);
+    for (int i = 0; i < SYNTH_MAX_LIGHTS; i++)
+        for (int k = 0; k < SYNTH_LIGHT_FIELDS; k++) {
+            snprintf(name, sizeof name, "%s %d", synth_light_field[k].name, i);
+            *number_at(&item->light[i], &synth_light_field[k]) = drawn(
+                item, name, synth_light_field[k].law,
+                ranges->low[SYNTH_FIELDS + k], ranges->high[SYNTH_FIELDS + k]);
+        }
+    item->light[0].power = 1;
+}
+
+/* ----------------------------------------------------------------- printing */
+
+/* Prints X, a number of millionths or whole, with the digits that it takes. */
+static void print_exact(FILE *file, double x)
+{
+    char text[40];
+    size_t n = (size_t)snprintf(text, sizeof text, "%.6f", x);
+
+    while (text[n - 1] == '0')
+        n--;
+    if (text[n - 1] == '.')
+        n--;
+    fprintf(file, "%.*s", (int)n, text);
+}
+
+static void print_fields(FILE *file, const struct synth_field *field, int n,
+                         const void *from)
+{
+    for (int k = 0; k < n; k++) {
+        const char *const at = (const char *)from + field[k].at;
+
+        fprintf(file, "%s\"%s\": ", k ? ", " : "", field[k].name);
+        if (field[k].text_bytes)
+            tool_json_string(file, at);
+        else
+            print_exact(file, *(const double *)(const void *)at);
+    }
+}
+
+static void print_result(FILE *file, const struct synth_item *item,
+                         const struct synth_result *r)
+{
+    fprintf(file,
+            "\"drawn\": {\"background_ev\": %.6g, \"f_number\": %.6g, "
+            "\"focal_mm\": %.6g, \"sensor_width_mm\": %.6g, "
+            "\"star_gain\": %.6g, \"lights\": [",
+            r->background_ev, r->f_number, r->focal_mm, r->sensor_width_mm,
+            r->star_gain);
+    for (int i = 0; i < (int)item->n_lights; i++)
+        fprintf(file,
+                "%s{\"power\": %.6g, \"white\": %.6g, \"theta_deg\": %.6g, "
+                "\"phi_deg\": %.6g}",
+                i ? ", " : "", r->power[i], r->white[i], r->theta_deg[i],
+                r->phi_deg[i]);
+    fputs("]}", file);
+}
+
+char *synth_item_print(const struct synth_item *item,
+                       const struct synth_result *result)
+{
+    char *text = NULL;
+    size_t bytes = 0;
+    FILE *const file = open_memstream(&text, &bytes);
+
+    if (!file)
+        return NULL;
+    fputc('{', file);
+    print_fields(file, synth_field, SYNTH_FIELDS, item);
+    fputs(", \"lights\": [", file);
+    for (int i = 0; i < (int)item->n_lights; i++) {
+        fputs(i ? ", {" : "{", file);
+        print_fields(file, synth_light_field, SYNTH_LIGHT_FIELDS,
+                     &item->light[i]);
+        fputc('}', file);
+    }
+    fputs("], ", file);
+    print_result(file, item, result);
+    fputs("}\n", file);
+    if (fclose(file) == 0)
+        return text;
+    free(text);
+    return NULL;
+}

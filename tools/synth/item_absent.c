@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Items from lines, where glint is built without jansson. */
+#include "posix/error.h"
+#include "synth/item.h"
+
+enum glint_status synth_item_read(struct synth_item *item, const char *line,
+                                  struct glint_error *error)
+{
+    (void)item;
+    (void)line;
+    return glint_error_report(error, GLINT_E_UNSUPPORTED, "item",
+                              "glint was built without jansson "
+                              "(libjansson-dev), which reads it");
+}
