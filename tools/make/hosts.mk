@@ -39,3 +39,9 @@ check-python:
 	@tools/make/deps "the Python package" gcc python3-cffi python3-numpy python3-setuptools python3-wheel python3-venv python3-pip
 	@tests/hosts/python
 .PHONY: print-out check-python
+
+# Data sets by GNU parallel over ssh, and by a Slurm array on a cluster of its own.
+check-spread: build/glint
+	@tools/make/deps "data sets on many machines" parallel openssh-server openssh-client slurm-wlm munge
+	@GLINT=build/glint XDG_CACHE_HOME=$$PWD/build/cache tests/hosts/spread
+.PHONY: check-spread
