@@ -16,6 +16,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/compiler.h"
+
 struct glint_blob_header {
     uint32_t magic, version;
     uint32_t bytes;   /* bytes of the whole file */
@@ -50,6 +52,41 @@ enum glint_blob_fault {
     GLINT_BLOB_NAME_EMPTY,
     GLINT_BLOB_FAULTS
 };
+
+/* What each fault is of a THING, such THINGS, that were DONE, in words; those
+ * of GLINT_BLOB_OK are NULL. */
+#define GLINT_BLOB_FAULT_TEXT(thing, things, done)                          \
+    {                                                                       \
+        [GLINT_BLOB_UNALIGNED] = "the " thing " is not aligned to 4 bytes", \
+        [GLINT_BLOB_FOREIGN] = "this is no baked " thing,                   \
+        [GLINT_BLOB_NEWER] = "the " thing " was " done " by a newer glint", \
+        [GLINT_BLOB_NO_VERSION] =                                           \
+            "no glint ever " done " " things " of this version",            \
+        [GLINT_BLOB_OLDER] =                                                \
+            "the " thing " was " done " by an older glint: bake it again",  \
+        [GLINT_BLOB_TRUNCATED] = "the " thing " is truncated",              \
+        [GLINT_BLOB_LONGER] = "the " thing " goes on after its end",        \
+        [GLINT_BLOB_DAMAGED] =                                              \
+            "the checksum is wrong: the " thing " is damaged",              \
+        [GLINT_BLOB_NAME_CONTROL] = "the name has a control character",     \
+        [GLINT_BLOB_NAME_FOREIGN] = "the name has a byte beyond ASCII",     \
+        [GLINT_BLOB_NAME_ENDLESS] = "the name does not end",                \
+        [GLINT_BLOB_NAME_EMPTY] = "the name is empty"                       \
+    }
+
+/* Checks that HEADER, a struct, begins as that of every baked file does; its
+ * variant is the field VARIANT. */
+#define GLINT_BLOB_HEADER(header, variant_field)           \
+    GLINT_BLOB_SAME_PLACE(header, magic, magic);           \
+    GLINT_BLOB_SAME_PLACE(header, version, version);       \
+    GLINT_BLOB_SAME_PLACE(header, bytes, bytes);           \
+    GLINT_BLOB_SAME_PLACE(header, crc32, crc32);           \
+    GLINT_BLOB_SAME_PLACE(header, variant_field, variant); \
+    GLINT_BLOB_SAME_PLACE(header, key, key);               \
+    GLINT_BLOB_SAME_PLACE(header, name, name)
+#define GLINT_BLOB_SAME_PLACE(header, field, as) \
+    STATIC_ASSERT(offsetof(header, field) ==     \
+                  offsetof(struct glint_blob_header, as))
 
 struct glint_blob {
     const struct glint_blob_header *header;

@@ -34,16 +34,7 @@ STATIC_ASSERT(sizeof(struct glint_model_output) == 32);
 
 /* The header begins as that of every baked file does; its basis is the variant.
  */
-#define SAME_PLACE(field, as)                                   \
-    STATIC_ASSERT(offsetof(struct glint_model_header, field) == \
-                  offsetof(struct glint_blob_header, as))
-SAME_PLACE(magic, magic);
-SAME_PLACE(version, version);
-SAME_PLACE(bytes, bytes);
-SAME_PLACE(crc32, crc32);
-SAME_PLACE(basis, variant);
-SAME_PLACE(key, key);
-SAME_PLACE(name, name);
+GLINT_BLOB_HEADER(struct glint_model_header, basis);
 
 enum { MAX_REAL_EXPONENT = 200 };
 

@@ -32,16 +32,7 @@ STATIC_ASSERT(sizeof(struct glint_scene_environment) == 56);
 STATIC_ASSERT(sizeof(struct glint_scene_header) == 268);
 
 /* The header begins as that of every baked file does. */
-#define SAME_PLACE(field)                                       \
-    STATIC_ASSERT(offsetof(struct glint_scene_header, field) == \
-                  offsetof(struct glint_blob_header, field))
-SAME_PLACE(magic);
-SAME_PLACE(version);
-SAME_PLACE(bytes);
-SAME_PLACE(crc32);
-SAME_PLACE(variant);
-SAME_PLACE(key);
-SAME_PLACE(name);
+GLINT_BLOB_HEADER(struct glint_scene_header, variant);
 
 enum {
     ONE_Q15 = 1 << 15,
@@ -53,19 +44,8 @@ enum {
 
 const char glint_scene_outside[] = "a table lies outside of the file";
 
-static const char *const fault_text[GLINT_BLOB_FAULTS] = {
-    [GLINT_BLOB_UNALIGNED] = "the scene is not aligned to 4 bytes",
-    [GLINT_BLOB_FOREIGN] = "this is no baked scene",
-    [GLINT_BLOB_NEWER] = "the scene was baked by a newer glint",
-    [GLINT_BLOB_NO_VERSION] = "no glint ever baked scenes of this version",
-    [GLINT_BLOB_OLDER] = "the scene was baked by an older glint: bake it again",
-    [GLINT_BLOB_TRUNCATED] = "the scene is truncated",
-    [GLINT_BLOB_LONGER] = "the scene goes on after its end",
-    [GLINT_BLOB_DAMAGED] = "the checksum is wrong: the scene is damaged",
-    [GLINT_BLOB_NAME_CONTROL] = "the name has a control character",
-    [GLINT_BLOB_NAME_FOREIGN] = "the name has a byte beyond ASCII",
-    [GLINT_BLOB_NAME_ENDLESS] = "the name does not end",
-    [GLINT_BLOB_NAME_EMPTY] = "the name is empty"};
+static const char *const fault_text[GLINT_BLOB_FAULTS] =
+    GLINT_BLOB_FAULT_TEXT("scene", "scenes", "baked");
 
 /* ----------------------------------------------------------------- members */
 

@@ -18,30 +18,10 @@ STATIC_ASSERT(sizeof(struct glint_motion_index) ==
 STATIC_ASSERT(sizeof(struct glint_motion_header) == 180);
 STATIC_ASSERT(sizeof(struct glint_motion_header) <= GLINT_MOTION_ROOM);
 
-#define SAME_PLACE(field)                                        \
-    STATIC_ASSERT(offsetof(struct glint_motion_header, field) == \
-                  offsetof(struct glint_blob_header, field))
-SAME_PLACE(magic);
-SAME_PLACE(version);
-SAME_PLACE(bytes);
-SAME_PLACE(crc32);
-SAME_PLACE(variant);
-SAME_PLACE(key);
-SAME_PLACE(name);
+GLINT_BLOB_HEADER(struct glint_motion_header, variant);
 
-static const char *const fault_text[GLINT_BLOB_FAULTS] = {
-    [GLINT_BLOB_UNALIGNED] = "the motion is not aligned to 4 bytes",
-    [GLINT_BLOB_FOREIGN] = "this is no baked motion",
-    [GLINT_BLOB_NEWER] = "the motion was baked by a newer glint",
-    [GLINT_BLOB_NO_VERSION] = "no glint ever baked motions of this version",
-    [GLINT_BLOB_OLDER] = "the motion was baked by an older glint",
-    [GLINT_BLOB_TRUNCATED] = "the motion is truncated",
-    [GLINT_BLOB_LONGER] = "the motion goes on after its end",
-    [GLINT_BLOB_DAMAGED] = "the checksum is wrong: the motion is damaged",
-    [GLINT_BLOB_NAME_CONTROL] = "the name has a control character",
-    [GLINT_BLOB_NAME_FOREIGN] = "the name has a byte beyond ASCII",
-    [GLINT_BLOB_NAME_ENDLESS] = "the name does not end",
-    [GLINT_BLOB_NAME_EMPTY] = "the name is empty"};
+static const char *const fault_text[GLINT_BLOB_FAULTS] =
+    GLINT_BLOB_FAULT_TEXT("motion", "motions", "baked");
 
 static const char outside[] = "a table lies outside of the motion";
 

@@ -12,34 +12,14 @@
 STATIC_ASSERT(sizeof(struct glint_translucent_header) == 172);
 
 /* The header begins as that of every baked file does. */
-#define SAME_PLACE(field)                                             \
-    STATIC_ASSERT(offsetof(struct glint_translucent_header, field) == \
-                  offsetof(struct glint_blob_header, field))
-SAME_PLACE(magic);
-SAME_PLACE(version);
-SAME_PLACE(bytes);
-SAME_PLACE(crc32);
-SAME_PLACE(variant);
-SAME_PLACE(key);
-SAME_PLACE(name);
+GLINT_BLOB_HEADER(struct glint_translucent_header, variant);
 
 enum { CHANNELS = 3, MOST_SHIFT = 16, LEAST_GAIN = -200 };
 
 static const char outside[] = "a table lies outside of the stone";
 
-static const char *const fault_text[GLINT_BLOB_FAULTS] = {
-    [GLINT_BLOB_UNALIGNED] = "the stone is not aligned to 4 bytes",
-    [GLINT_BLOB_FOREIGN] = "this is no baked stone",
-    [GLINT_BLOB_NEWER] = "the stone was baked by a newer glint",
-    [GLINT_BLOB_NO_VERSION] = "no glint ever baked stones of this version",
-    [GLINT_BLOB_OLDER] = "the stone was baked by an older glint: bake it again",
-    [GLINT_BLOB_TRUNCATED] = "the stone is truncated",
-    [GLINT_BLOB_LONGER] = "the stone goes on after its end",
-    [GLINT_BLOB_DAMAGED] = "the checksum is wrong: the stone is damaged",
-    [GLINT_BLOB_NAME_CONTROL] = "the name has a control character",
-    [GLINT_BLOB_NAME_FOREIGN] = "the name has a byte beyond ASCII",
-    [GLINT_BLOB_NAME_ENDLESS] = "the name does not end",
-    [GLINT_BLOB_NAME_EMPTY] = "the name is empty"};
+static const char *const fault_text[GLINT_BLOB_FAULTS] =
+    GLINT_BLOB_FAULT_TEXT("stone", "stones", "baked");
 
 static int is_between(int64_t x, int64_t lo, int64_t hi)
 {

@@ -15,34 +15,12 @@ STATIC_ASSERT(sizeof(struct glint_real) == 8);
 STATIC_ASSERT((int)GLINT_TEXELS_LEVELS == (int)GLINT_ENVIRONMENT_MAX_LEVELS);
 
 /* The header begins as that of every baked file does. */
-#define SAME_PLACE(field)                                             \
-    STATIC_ASSERT(offsetof(struct glint_environment_header, field) == \
-                  offsetof(struct glint_blob_header, field))
-SAME_PLACE(magic);
-SAME_PLACE(version);
-SAME_PLACE(bytes);
-SAME_PLACE(crc32);
-SAME_PLACE(variant);
-SAME_PLACE(key);
-SAME_PLACE(name);
+GLINT_BLOB_HEADER(struct glint_environment_header, variant);
 
 static const char outside[] = "a table lies outside of the environment";
 
-static const char *const fault_text[GLINT_BLOB_FAULTS] = {
-    [GLINT_BLOB_UNALIGNED] = "the environment is not aligned to 4 bytes",
-    [GLINT_BLOB_FOREIGN] = "this is no baked environment",
-    [GLINT_BLOB_NEWER] = "the environment was baked by a newer glint",
-    [GLINT_BLOB_NO_VERSION] =
-        "no glint ever baked environments of this version",
-    [GLINT_BLOB_OLDER] =
-        "the environment was baked by an older glint: bake it again",
-    [GLINT_BLOB_TRUNCATED] = "the environment is truncated",
-    [GLINT_BLOB_LONGER] = "the environment goes on after its end",
-    [GLINT_BLOB_DAMAGED] = "the checksum is wrong: the environment is damaged",
-    [GLINT_BLOB_NAME_CONTROL] = "the name has a control character",
-    [GLINT_BLOB_NAME_FOREIGN] = "the name has a byte beyond ASCII",
-    [GLINT_BLOB_NAME_ENDLESS] = "the name does not end",
-    [GLINT_BLOB_NAME_EMPTY] = "the name is empty"};
+static const char *const fault_text[GLINT_BLOB_FAULTS] =
+    GLINT_BLOB_FAULT_TEXT("environment", "environments", "baked");
 
 uint32_t glint_environment_side_log2(uint32_t levels, uint32_t side_log2,
                                      uint32_t level)
