@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * glint bake of motions: localises what a body recorded. */
-#include <string.h>
-
-#include "options/settings.h"
-#include "options/takes.h"
-#include "posix/output.h"
+#include "model/bake_line.h"
 #include "motions/motion_file.h"
+#include "options/takes.h"
 
 static const char help[] =
     "glint bake NAME.json -o OUT.motion [options]\n"
@@ -23,83 +20,53 @@ static const char help[] =
     "  --average A         life: the place of a thing is a mean over its life\n"
     "                      (default); none\n";
 
-struct line {
-    const char *output;
-    struct glint_motion_options options;
-};
-
-static int take(struct tool *tool, struct line *l, int c, const char *name)
+static int take(struct tool *tool, void *line, int c, const char *name)
 {
     static const char *const fits[] = {"all", "best4", "first4", "chain", NULL};
     static const char *const averages[] = {"none", "life", NULL};
+    struct glint_motion_options *o = line;
     int word;
 
     switch (c) {
-    case 'o':
-        l->output = optarg;
-        return -1;
     case 'f':
         word = tool_word(optarg, fits);
         if (word < 0)
             return tool_refuse(tool, name, optarg);
-        l->options.fit = (enum glint_motion_fit)word;
+        o->fit = (enum glint_motion_fit)word;
         return -1;
     case 'a':
         word = tool_word(optarg, averages);
         if (word < 0)
             return tool_refuse(tool, name, optarg);
-        l->options.average = word;
+        o->average = word;
         return -1;
     default:
         return tool_option(tool, c, optarg);
     }
 }
 
-static int parse(struct tool *tool, int argc, char **argv, struct line *l)
+int cmd_bake_motion(int argc, char **argv)
 {
     static const struct option options[] = {
-        {"output", required_argument, NULL, 'o'},
+        BAKE_LINE_OPTIONS,
         {"fit", required_argument, NULL, 'f'},
         {"average", required_argument, NULL, 'a'},
         TOOL_COMMON_OPTIONS};
-    int c, code, index = 0;
-
-    while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
-                            &index)) >= 0)
-        if ((code = take(tool, l, c, options[index].name)) >= 0)
-            return code;
-    code = tool_inputs(tool, argc, argv, 1, "takes one recording");
-    if (code >= 0)
-        return code;
-    return l->output ? -1 : tool_usage(tool, "needs -o OUT");
-}
-
-int cmd_bake_motion(int argc, char **argv)
-{
     struct tool tool = {.name = "bake", .help = help, .help_end = COMMON_HELP};
-    struct line line = {.output = NULL};
-    struct glint_error error;
+    struct glint_motion_options o;
     struct motion_file file;
-    struct glint_output out;
-    enum glint_status status;
     int code;
 
-    glint_motion_defaults(&line.options);
-    code = parse(&tool, argc, argv, &line);
-    if (code >= 0 || !line.output)
+    glint_motion_defaults(&o);
+    code = bake_line_begin(&tool, argc, argv, options, take, &o,
+                           "takes one recording");
+    if (code >= 0)
         return code;
-    tool.written = line.output;
-    if (tool_check_output(&tool, line.output) != EXIT_OK)
-        return EXIT_OUTPUT;
-    code = motion_file_open(&tool, argv[optind], &line.options, &file);
+    code = motion_file_open(&tool, argv[optind], &o, &file);
     if (code != EXIT_OK)
         return code;
-    status = glint_output_open(&out, line.output, GLINT_OUTPUT_BINARY, &error);
-    if (status == GLINT_OK)
-        status = glint_output_finish(&out, file.data, file.bytes, &error);
-    if (status != GLINT_OK)
-        code = tool_fail(&tool, status, error.text);
-    else if (strcmp(line.output, "-") != 0 && !tool.quiet)
+    code = bake_line_write(&tool, file.data, file.bytes);
+    if (code == EXIT_OK && bake_line_tells(&tool))
         motion_file_print(&tool, &file);
     motion_file_close(&file);
     return code;

@@ -3,11 +3,8 @@
  * glint bake of environments: writes light from all around as the run time
  * takes it.
  */
-#include <string.h>
-
-#include "options/settings.h"
+#include "model/bake_line.h"
 #include "options/takes.h"
-#include "posix/output.h"
 #include "scenes/environment_file.h"
 
 static const char help[] =
@@ -35,7 +32,6 @@ static const char help[] =
 
 /* What the line says; -1, or has_ false: nothing. */
 struct line {
-    const char *output;
     int side_log2, levels, code, lights;
     bool has_turn, has_scale;
     double turn, scale;
@@ -59,18 +55,16 @@ static void over(void *ctx, struct glint_environment_options *o)
         o->scale = l->scale;
 }
 
-static int take(struct tool *tool, struct line *l, int c, const char *name)
+static int take(struct tool *tool, void *line, int c, const char *name)
 {
     static const char *const sizes[] = {"16",  "32",  "64",   "128",
                                         "256", "512", "1024", NULL};
     static const char *const levels[] = {"gauss", "mip", NULL};
     static const char *const codes[] = {"565", "9e5", NULL};
+    struct line *l = line;
     bool ok = true;
 
     switch (c) {
-    case 'o':
-        l->output = optarg;
-        break;
     case 's':
         l->side_log2 = tool_word(optarg, sizes);
         ok = l->side_log2 >= 0;
@@ -101,10 +95,10 @@ static int take(struct tool *tool, struct line *l, int c, const char *name)
     return ok ? -1 : tool_refuse(tool, name, optarg);
 }
 
-static int parse(struct tool *tool, int argc, char **argv, struct line *l)
+int cmd_bake_environment(int argc, char **argv)
 {
     static const struct option options[] = {
-        {"output", required_argument, NULL, 'o'},
+        BAKE_LINE_OPTIONS,
         {"size", required_argument, NULL, 's'},
         {"levels", required_argument, NULL, 'l'},
         {"code", required_argument, NULL, 'c'},
@@ -112,43 +106,20 @@ static int parse(struct tool *tool, int argc, char **argv, struct line *l)
         {"turn", required_argument, NULL, 't'},
         {"scale", required_argument, NULL, 'x'},
         TOOL_COMMON_OPTIONS};
-    int c, code, index = 0;
-
-    while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
-                            &index)) >= 0)
-        if ((code = take(tool, l, c, options[index].name)) >= 0)
-            return code;
-    code = tool_inputs(tool, argc, argv, 1, "takes one environment");
-    if (code >= 0)
-        return code;
-    return l->output ? -1 : tool_usage(tool, "needs -o OUT");
-}
-
-int cmd_bake_environment(int argc, char **argv)
-{
     struct tool tool = {.name = "bake", .help = help, .help_end = COMMON_HELP};
     struct line line = {
         .side_log2 = -1, .levels = -1, .code = -1, .lights = -1};
-    struct glint_error error = {""};
     struct environment_file file;
-    struct glint_output out;
-    enum glint_status status;
-    int code = parse(&tool, argc, argv, &line);
+    int code = bake_line_begin(&tool, argc, argv, options, take, &line,
+                               "takes one environment");
 
-    if (code >= 0 || !line.output)
+    if (code >= 0)
         return code;
-    tool.written = line.output;
-    if (tool_check_output(&tool, line.output) != EXIT_OK)
-        return EXIT_OUTPUT;
     code = environment_file_open(&tool, argv[optind], over, &line, &file);
     if (code != EXIT_OK)
         return code;
-    status = glint_output_open(&out, line.output, GLINT_OUTPUT_BINARY, &error);
-    if (status == GLINT_OK)
-        status = glint_output_finish(&out, file.data, file.bytes, &error);
-    if (status != GLINT_OK)
-        code = tool_fail(&tool, status, error.text);
-    else if (strcmp(line.output, "-") != 0 && !tool.quiet)
+    code = bake_line_write(&tool, file.data, file.bytes);
+    if (code == EXIT_OK && bake_line_tells(&tool))
         environment_file_print(&tool, &file);
     environment_file_close(&file);
     return code;

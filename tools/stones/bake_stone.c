@@ -3,12 +3,9 @@
  * glint bake of translucent stones: writes how light spreads below a surface as
  * the run time takes it.
  */
-#include <string.h>
-
 #include "lab/scenes/stone_models.h"
-#include "options/settings.h"
+#include "model/bake_line.h"
 #include "options/takes.h"
-#include "posix/output.h"
 #include "stones/stone_file.h"
 
 static const char help[] =
@@ -38,7 +35,7 @@ static const char help[] =
 
 /* What the line says; -1: nothing. */
 struct line {
-    const char *output, *report;
+    const char *report;
     int model, planes, rank, bits[2];
 };
 
@@ -77,16 +74,14 @@ static bool take_bits(const char *text, int bits[2])
     return true;
 }
 
-static int take(struct tool *tool, struct line *l, int c, const char *name)
+static int take(struct tool *tool, void *line, int c, const char *name)
 {
     static const char *const models[] = {"clustered", "factored", "albedo",
                                          NULL};
+    struct line *l = line;
     bool ok = true;
 
     switch (c) {
-    case 'o':
-        l->output = optarg;
-        break;
     case 'R':
         l->report = optarg;
         break;
@@ -109,28 +104,6 @@ static int take(struct tool *tool, struct line *l, int c, const char *name)
     return ok ? -1 : tool_refuse(tool, name, optarg);
 }
 
-static int parse(struct tool *tool, int argc, char **argv, struct line *l)
-{
-    static const struct option options[] = {
-        {"output", required_argument, NULL, 'o'},
-        {"model", required_argument, NULL, 'm'},
-        {"planes", required_argument, NULL, 'p'},
-        {"rank", required_argument, NULL, 'r'},
-        {"bits", required_argument, NULL, 'b'},
-        {"report", required_argument, NULL, 'R'},
-        TOOL_COMMON_OPTIONS};
-    int c, code, index = 0;
-
-    while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
-                            &index)) >= 0)
-        if ((code = take(tool, l, c, options[index].name)) >= 0)
-            return code;
-    code = tool_inputs(tool, argc, argv, 1, "takes one stone");
-    if (code >= 0)
-        return code;
-    return l->output ? -1 : tool_usage(tool, "needs -o OUT");
-}
-
 static int report(const struct tool *tool, const char *path, const char *folder)
 {
     struct glint_error error = {""};
@@ -147,34 +120,32 @@ static int report(const struct tool *tool, const char *path, const char *folder)
 
 int cmd_bake_stone(int argc, char **argv)
 {
+    static const struct option options[] = {
+        BAKE_LINE_OPTIONS,
+        {"model", required_argument, NULL, 'm'},
+        {"planes", required_argument, NULL, 'p'},
+        {"rank", required_argument, NULL, 'r'},
+        {"bits", required_argument, NULL, 'b'},
+        {"report", required_argument, NULL, 'R'},
+        TOOL_COMMON_OPTIONS};
     struct tool tool = {.name = "bake", .help = help, .help_end = COMMON_HELP};
     struct line line = {
         .model = -1, .planes = -1, .rank = -1, .bits = {-1, -1}};
     struct glint_error error = {""};
     struct stone_file file;
-    struct glint_output out;
     enum glint_status status;
-    int code = parse(&tool, argc, argv, &line);
+    int code = bake_line_begin(&tool, argc, argv, options, take, &line,
+                               "takes one stone");
 
-    if (code >= 0 || !line.output)
+    if (code >= 0)
         return code;
-    tool.written = line.output;
-    if (tool_check_output(&tool, line.output) != EXIT_OK)
-        return EXIT_OUTPUT;
     status =
         stone_file_read(&tool, argv[optind], over, &line, true, &file, &error);
     if (status != GLINT_OK)
         return tool_fail(&tool, status, error.text);
-    status = glint_output_open(&out, line.output, GLINT_OUTPUT_BINARY, &error);
-    if (status == GLINT_OK)
-        status = glint_output_finish(&out, file.data, file.bytes, &error);
-    if (status != GLINT_OK)
-        code = tool_fail(&tool, status, error.text);
-    else {
-        code = EXIT_OK;
-        if (strcmp(line.output, "-") != 0 && !tool.quiet)
-            stone_file_print(&tool, &file);
-    }
+    code = bake_line_write(&tool, file.data, file.bytes);
+    if (code == EXIT_OK && bake_line_tells(&tool))
+        stone_file_print(&tool, &file);
     stone_file_close(&file);
     if (code == EXIT_OK && line.report)
         code = report(&tool, argv[optind], line.report);

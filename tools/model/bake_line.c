@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: MIT */
+#include "model/bake_line.h"
+
+#include <string.h>
+
+#include "posix/output.h"
+
+int bake_line_begin(struct tool *tool, int argc, char **argv,
+                    const struct option *options, bake_line_fn *take,
+                    void *line, const char *text)
+{
+    int c, code, index = 0;
+
+    while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+                            &index)) >= 0) {
+        if (c == 'o') {
+            tool->written = optarg;
+            continue;
+        }
+        code = take ? take(tool, line, c, options[index].name)
+                    : tool_option(tool, c, optarg);
+        if (code >= 0)
+            return code;
+    }
+    code = tool_inputs(tool, argc, argv, 1, text);
+    if (code >= 0)
+        return code;
+    if (!tool->written)
+        return tool_usage(tool, "needs -o OUT");
+    return tool_check_output(tool, tool->written) == EXIT_OK ? -1 : EXIT_OUTPUT;
+}
+
+int bake_line_write(const struct tool *tool, const void *data, size_t bytes)
+{
+    struct glint_error error = {""};
+    struct glint_output out;
+    enum glint_status status =
+        glint_output_open(&out, tool->written, GLINT_OUTPUT_BINARY, &error);
+
+    if (status == GLINT_OK)
+        status = glint_output_finish(&out, data, bytes, &error);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
+bool bake_line_tells(const struct tool *tool)
+{
+    return strcmp(tool->written, "-") != 0 && !tool->quiet;
+}

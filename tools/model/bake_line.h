@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The commands "glint bake INPUT -o OUT" of what scenes take: their options,
+ * and the file that they write.
+ *
+ *     code = bake_line_begin(&tool, argc, argv, options, take, &line, "one");
+ *     if (code >= 0 || !tool.written)
+ *         return code;
+ *     ... bakes argv[optind] ...
+ *     code = bake_line_write(&tool, data, bytes);
+ */
+#ifndef GLINT_TOOLS_MODEL_BAKE_LINE_H
+#define GLINT_TOOLS_MODEL_BAKE_LINE_H
+
+#include <getopt.h>
+
+#include "options/settings.h"
+#include "options/tool.h"
+
+/* Options that all of them have, at the begin of OPTIONS. */
+#define BAKE_LINE_OPTIONS                      \
+    {                                          \
+        "output", required_argument, NULL, 'o' \
+    }
+
+/* Takes option C, NAME, with the value optarg; returns -1, or an exit code
+ * after saying what is wrong. */
+typedef int bake_line_fn(struct tool *tool, void *line, int c,
+                         const char *name);
+
+/* Reads the line; TAKE, unless NULL, takes options but -o and the common ones.
+ * TEXT says of a line with other than one input what it takes. Sets
+ * TOOL->written to what -o names, where a file can be. Returns -1, or an exit
+ * code. */
+int bake_line_begin(struct tool *tool, int argc, char **argv,
+                    const struct option *options, bake_line_fn *take,
+                    void *line, const char *text);
+
+/* Writes DATA to TOOL->written, all or nothing. Returns an exit code. */
+int bake_line_write(const struct tool *tool, const void *data, size_t bytes);
+
+/* Returns whether standard output is free to say what was baked. */
+bool bake_line_tells(const struct tool *tool);
+
+#endif
