@@ -268,6 +268,94 @@ static void test_twin(void **state)
     }
 }
 
+/* -------------------------------------------------------------------- maps */
+
+/* PSNR of A to B. */
+static double near_to(const int32_t *a, const int32_t *b)
+{
+    double square = 0;
+
+    for (int i = 0; i < 3 * PIXELS; i++)
+        square += pow((a[i] - b[i]) * 0x1p-20, 2);
+    return -10 * log10(square / (3 * PIXELS) + 1e-12);
+}
+
+/* The pattern comes again twice round a ball, and after half of that, so that
+ * where it is turned by quarters the same is seen, across a seam or inside of
+ * the square. */
+static void test_seams(void **state)
+{
+    static int32_t first[3 * PIXELS], light[3 * PIXELS];
+    static const char model[] = "cfa";
+    struct tool tool = {.name = "test"};
+
+    (void)state;
+    for (int k = 0; k < 3 * 4; k++) {
+        char text[900];
+        struct drawn d;
+
+        snprintf(text, sizeof text,
+                 STAGE "sphere s at 0 .5 0 radius .9 turn 0 1 0 %d material "
+                       "%c\n",
+                 90 * (k % 4), model[k / 4]);
+        open_text(&d, text, &one_sample, &tool);
+        draw(&d, k % 4 ? light : first);
+        close_text(&d);
+        if (k % 4)
+            assert_true(near_to(light, first) > 75);
+    }
+}
+
+/* Charts that are stretched, sheared or mirrored on the map are lit and shown
+ * by where their texels are. */
+static void test_stretch(void **state)
+{
+    static const char *const places[] = {
+        "vt 0 .4\nvt 1 .4\nvt 1 .6\nvt 0 .6\n",
+        "vt .3 0\nvt .8 .1\nvt .7 1\nvt .2 .9\n",
+        "vt 1 0\nvt 0 0\nvt 0 1\nvt 1 1\n"};
+
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        char mesh[200];
+        double db;
+
+        snprintf(mesh, sizeof mesh,
+                 "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\n%s"
+                 "f 1/1 2/2 3/3 4/4\n",
+                 places[i]);
+        mesh_text = mesh;
+        db = compare(STAGE "mesh m quad.obj at 0 .2 0 material c\n"
+                           "sphere b at 0 .7 0 radius .3 material grey\n");
+        print_message("stretched %d: %.1f dB\n", i, db);
+        assert_true(db >= 60);
+    }
+}
+
+/* A kernel of 63 texels on a map of 32 reaches beyond every edge, and twice
+ * round a ball's pole. */
+static void test_kernel_beyond_map(void **state)
+{
+    (void)state;
+    side = 32;
+    kernel = 63;
+    mesh_text = quad_text;
+    for (int i = 0; i < 3; i++) {
+        char text[900];
+        double db;
+
+        snprintf(text, sizeof text,
+                 STAGE "mesh m quad.obj at 0 .2 0 material %c\n"
+                       "sphere b at 0 .9 0 radius .5 material %c\n",
+                 "cfa"[i], "cfa"[i]);
+        db = compare(text);
+        print_message("beyond the map, %c: %.1f dB\n", "cfa"[i], db);
+        assert_true(db >= 60);
+    }
+    side = 64;
+    kernel = 15;
+}
+
 /* -------------------------------------------------------------------- bits */
 
 #define MIXED                       \
@@ -459,7 +547,7 @@ static double brightest(const int32_t *light_q20)
 
 /* Stone that absorbs all is black; what absorbs nothing shows no more than it
  * gets; light of any strength stays light. */
-static void test_extremes(void **state)
+static void test_albedo_0_and_1(void **state)
 {
     static int32_t light[3 * PIXELS];
     static const char *const model[] = {"c", "f", "a"};
@@ -580,10 +668,17 @@ static void test_lacks(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_twin),     cmocka_unit_test(test_same_bits),
-        cmocka_unit_test(test_updates),  cmocka_unit_test(test_coat_changes),
-        cmocka_unit_test(test_account),  cmocka_unit_test(test_frames),
-        cmocka_unit_test(test_extremes), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_twin),
+        cmocka_unit_test(test_seams),
+        cmocka_unit_test(test_stretch),
+        cmocka_unit_test(test_kernel_beyond_map),
+        cmocka_unit_test(test_same_bits),
+        cmocka_unit_test(test_updates),
+        cmocka_unit_test(test_coat_changes),
+        cmocka_unit_test(test_account),
+        cmocka_unit_test(test_frames),
+        cmocka_unit_test(test_albedo_0_and_1),
+        cmocka_unit_test(test_refused),
         cmocka_unit_test(test_lacks),
     };
 
