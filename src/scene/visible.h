@@ -73,7 +73,9 @@ int32_t glint_quick_away(const struct glint_placed *p,
 
 /* Pixels X0 .. X1 - 1 of a row that a layer may touch. */
 struct glint_layer_span {
-    int layer, x0, x1;
+    int layer;
+    enum glint_scene_kind kind;
+    int x0, x1;
 };
 
 struct glint_scene_motions {
@@ -88,6 +90,8 @@ struct glint_scene_motions {
     enum glint_status (*open)(struct glint_scene *scene);
     /* Finds where shells, lines and box are in the picture. */
     void (*project)(struct glint_scene *scene);
+    /* Returns how many of KIND are in the picture. */
+    int (*count)(const struct glint_scene *scene, enum glint_scene_kind kind);
     /* Returns the pixels of TILE that they may touch. */
     struct glint_box (*touch)(const struct glint_scene *scene,
                               struct glint_box tile);

@@ -340,6 +340,9 @@ static int run(struct tool *tool, struct render *r, const char *lens)
                                 r->settings.has_exposure ? 1 : 0);
     if (code == EXIT_OK && tool->json)
         printf("\"ms\": %.3f}\n", 1e3 * (tool_seconds() - start));
+    if (code == EXIT_OK)
+        render_file_say(tool, r->output, r->width, r->height,
+                        r->settings.lens.name, tool_seconds() - start);
     free(r->image.rgb);
     return code;
 }

@@ -272,6 +272,34 @@ static void print_highlights(const struct explained_scene *s)
                found[i].word);
 }
 
+/* What is laid over the things of a recorded motion. */
+static const struct {
+    enum glint_scene_kind kind;
+    const char *word;
+} layers[] = {{GLINT_KIND_SHELLS, "shells"},
+              {GLINT_KIND_LINES, "lines"},
+              {GLINT_KIND_BOX, "box"}};
+
+enum { N_LAYERS = sizeof layers / sizeof *layers };
+
+static void print_layers(const struct explained_scene *s, double minsn)
+{
+    if (!model_of(s)->motion)
+        return;
+    printf("\n%-26s %8s %8s %*s\n", "over the motion's things", "pixels",
+           "number", 55, "work%");
+    for (int i = 0; i < N_LAYERS; i++) {
+        const struct glint_scene_layered *const l =
+            &s->account.layer[layers[i].kind];
+
+        printf("    %-22s %8" PRId64 " %8d %*.1f\n", layers[i].word, l->pixels,
+               l->n, 55,
+               minsn > 0
+                   ? 100 * scene_cost_layer(&s->account, layers[i].kind) / minsn
+                   : 0);
+    }
+}
+
 /* Light below the surface of stones. */
 static void print_maps(const struct explained_scene *s)
 {
@@ -313,6 +341,7 @@ void explain_scene_print(const struct explained_scene *s)
                    p->fate == GLINT_SCENE_COVERED ? name_of(s, p->by) : "");
         printf(" %6.1f\n", minsn > 0 ? 100 * scene_cost_part(p) / minsn : 0);
     }
+    print_layers(s, minsn);
     print_maps(s);
     print_lights(s);
     print_highlights(s);
@@ -361,7 +390,16 @@ void explain_scene_json(const struct explained_scene *s)
         printf(", \"work_share\": %.6g}",
                minsn > 0 ? scene_cost_part(p) / minsn : 0);
     }
-    printf("], \"lights\": [");
+    printf("], \"layers\": {");
+    for (int k = 0; k < N_LAYERS; k++)
+        printf("%s\"%s\": {\"number\": %d, \"pixels\": %" PRId64
+               ", \"work_share\": %.6g}",
+               k ? ", " : "", layers[k].word,
+               s->account.layer[layers[k].kind].n,
+               s->account.layer[layers[k].kind].pixels,
+               minsn > 0 ? scene_cost_layer(&s->account, layers[k].kind) / minsn
+                         : 0);
+    printf("}, \"lights\": [");
     for (int i = 0; i < n; i++) {
         printf("%s{\"name\": ", i ? ", " : "");
         tool_json_string(stdout, light_name(s, i, name));

@@ -52,6 +52,14 @@ static int seen_at(const struct heat *h, int x, int y)
                           : h->scene->account.seen[(ptrdiff_t)y * h->width + x];
 }
 
+/* Returns whether OBJECT, or -1, only takes shadows: the picture is seen
+ * through it, and stays to be seen. */
+static bool is_catcher(const struct heat *h, int object)
+{
+    return object >= 0 &&
+           h->scene->compositor->scene.baked.model.object[object].catcher_q15;
+}
+
 static void shade(const struct heat *h)
 {
     for (int y = 0; y < h->height; y++) {
@@ -66,7 +74,10 @@ static void shade(const struct heat *h)
             if (object >= 0)
                 colour_of(h, object, rgb);
             for (int c = 0; c < 3; c++)
-                px[c] = rim ? 255 : (uint8_t)(px[c] / 3 + rgb[c] / 2);
+                px[c] = rim ? 255
+                        : is_catcher(h, object)
+                            ? (uint8_t)(px[c] / 2 + rgb[c] / 6)
+                            : (uint8_t)(px[c] / 3 + rgb[c] / 2);
         }
     }
 }

@@ -230,6 +230,11 @@ static void say(const struct frames *f, double ms)
 {
     const struct render_scene *const r = f->r;
 
+    char what[80];
+
+    snprintf(what, sizeof what, "%d frames, %d to %d", r->last - r->first + 1,
+             r->first, r->last);
+    render_file_say(f->tool, r->output, r->width, r->height, what, 1e-3 * ms);
     if (!f->tool->json || strcmp(r->output, "-") == 0)
         return;
     printf("{\"engine\": \"model\", \"frames\": %d, ", r->last - r->first + 1);

@@ -303,6 +303,24 @@ static void say_frame(const struct tool *tool, const struct scene_frame *frame,
            ms);
 }
 
+/* Says, of a scene that is drawn over black, that shadows on catchers are not
+ * to be seen. */
+static void say_catchers(const struct tool *tool,
+                         const struct glint_scene_model *model)
+{
+    const struct glint_scene_object *catcher = NULL;
+
+    for (uint32_t i = 0; i < model->header->n_objects; i++)
+        if (model->object[i].catcher_q15)
+            catcher = &model->object[i];
+    if (catcher && model->header->background == GLINT_BACKGROUND_CAMERA &&
+        !tool->quiet)
+        fprintf(stderr,
+                "glint render: '%s' only takes shadows, and over black there "
+                "are none to see; glint overlay PHOTO --scene shows them\n",
+                catcher->name);
+}
+
 /* Draws MODEL over black, in linear light. */
 static int draw_model(struct tool *tool, struct render_scene *r,
                       const struct glint_scene_model *model)
@@ -318,6 +336,7 @@ static int draw_model(struct tool *tool, struct render_scene *r,
 
     if (!light_q20)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    say_catchers(tool, model);
     dials.width = r->width;
     dials.height = r->height;
     dials.edge_samples = r->samples;
@@ -357,6 +376,7 @@ static int run_model(struct tool *tool, struct render_scene *r,
 
 static int run(struct tool *tool, struct render_scene *r, const char *path)
 {
+    const double start = tool_seconds();
     int code = r->is_frames && overlay_is_video(r->output)
                    ? EXIT_OK
                    : render_file_check(tool, r->output, &r->linear);
@@ -375,6 +395,9 @@ static int run(struct tool *tool, struct render_scene *r, const char *path)
         code = (r->exact ? run_exact : run_model)(tool, r, path);
     if (code == EXIT_OK && !r->is_frames)
         code = render_file_save(tool, r->output, r->linear, &r->image, 1);
+    if (code == EXIT_OK && !r->is_frames)
+        render_file_say(tool, r->output, r->width, r->height, path,
+                        tool_seconds() - start);
     free(r->image.rgb);
     return code;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "desk/keys.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,6 +36,7 @@ struct reading {
     struct keys *keys;
     int column[KEYS_COLUMNS], n_columns; /* of the fields of a row; 0: the
                                             heading was not read yet */
+    char cause[200];
 };
 
 static const char no_memory[] = "no memory";
@@ -85,10 +87,14 @@ static const char *take_heading(struct reading *r, char *line)
     while ((name = text_field(&rest))) {
         const int column = column_of(name);
 
-        if (column < 0)
-            return "the first line names the columns: frame, and of exposure, "
-                   "strength, gain, starburst, f-number, turn, round, x, y, "
-                   "ev";
+        if (column < 0) {
+            snprintf(r->cause, sizeof r->cause,
+                     "'%.32s' is no column: the first line names frame, and of "
+                     "exposure, strength, gain, starburst, f-number, turn, "
+                     "round, x, y, ev",
+                     name);
+            return r->cause;
+        }
         if (seen >> column & 1)
             return "a column is there twice";
         seen |= 1u << column;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "desk/render_file.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "formats/picture.h"
@@ -42,4 +43,12 @@ int render_file_save(const struct tool *tool, const char *path, bool is_linear,
     }
     free(mem);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
+void render_file_say(const struct tool *tool, const char *path, int width,
+                     int height, const char *what, double seconds)
+{
+    if (!tool->quiet && !tool->json)
+        fprintf(stderr, "%s: %dx%d, %s; %.0f ms\n", path, width, height, what,
+                1e3 * seconds);
 }

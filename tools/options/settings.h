@@ -189,7 +189,7 @@ enum settings_option {
     "                      square about its circle, turned by ROT\n"           \
     "  --dust A[,SEED]     dust, scratches and smudges in the stop; dust "     \
     "covers A,\n"                                                              \
-    "                      0 to 0.5, of it\n"                                  \
+    "                      0 to 0.5, of it; try 0.01\n"                        \
     "  --wavelengths W     auto: of each ghost as many as it needs, 4 to 28 "  \
     "(default\n"                                                               \
     "                      of overlay, live and explain); N: so many, 1 to "   \

@@ -130,8 +130,12 @@ static const struct {
     {NULL, "stop",
      "circle or polygon:N[,DEGREES], N 3 to 64, then ,round:R or ,soft:W, each "
      "0 to 1"},
-    {NULL, "dust", "A[,SEED]: 0 to 0.5, and a whole number"},
-    {NULL, "front-dust", "A[,SEED]: 0 to 0.5, and a whole number"},
+    {NULL, "dust",
+     "A[,SEED]: the share that is covered, 0 to 0.5, as 0.01, and a whole "
+     "number"},
+    {NULL, "front-dust",
+     "A[,SEED]: the share that is covered, 0 to 0.5, as 0.01, and a whole "
+     "number"},
     {NULL, "threads", "a whole number, from 1"},
     {NULL, "strength", "0 to 100"},
     {NULL, "style", "natural, clean, vintage, cinema or toy"},

@@ -52,6 +52,12 @@ const struct scene_cost_weight scene_cost_rest[SCENE_COST_RESTS] = {
 };
 /* clang-format on */
 
+/* A pixel that a layer may touch, as for scene_cost_weight: what a frame of
+ * tools/examples/scenes/walk.scene takes less where they are hidden. */
+static const double layer_kinsn[GLINT_KINDS] = {[GLINT_KIND_SHELLS] = 1.09,
+                                                [GLINT_KIND_LINES] = 0.45,
+                                                [GLINT_KIND_BOX] = 0.63};
+
 /* Returns the entries of lists that suns with shadows make of things that have
  * moved: triangles and balls, for each of them. */
 static double things_of(const struct glint_scene_model *model)
@@ -98,6 +104,7 @@ enum glint_status scene_account_make(struct scene_account *account,
     }
     glint_scene_account(frame->scene, account->objects, &account->all,
                         account->seen);
+    glint_scene_account_layers(frame->scene, account->layer);
     return GLINT_OK;
 }
 
@@ -118,9 +125,18 @@ double scene_cost_part(const struct glint_scene_part *part)
     return 1e-3 * sum;
 }
 
+double scene_cost_layer(const struct scene_account *account,
+                        enum glint_scene_kind kind)
+{
+    return 1e-3 * layer_kinsn[kind] * (double)account->layer[kind].pixels;
+}
+
 double scene_cost_minsn(const struct scene_account *account)
 {
     double sum = scene_cost_part(&account->all);
+
+    for (int kind = 0; kind < GLINT_KINDS; kind++)
+        sum += scene_cost_layer(account, (enum glint_scene_kind)kind);
 
     for (int k = 0; k < SCENE_COST_RESTS; k++)
         sum += 1e-3 * scene_cost_rest[k].kinsn * account->rest[k];
@@ -154,11 +170,14 @@ static double counts_json(const struct scene_account *account, FILE *to)
             "\"refs\": %" PRId64 ", \"shaded_px\": %" PRId64
             ", \"samples\": %" PRId64 ", \"shadow_rays\": %" PRId64
             ", \"texels\": %" PRId64 ", \"bounces\": %" PRId64
+            ", \"shells\": %d, \"lines\": %d, \"box_edges\": %d"
             ", \"predicted_minsn\": %.4f, ",
             n[GLINT_SCENE_TRIANGLES], n[GLINT_SCENE_SHADED],
             n[GLINT_SCENE_SAMPLED],
             n[GLINT_SCENE_SHADOWS] + n[GLINT_SCENE_RAYS], n[GLINT_SCENE_TEXELS],
-            n[GLINT_SCENE_BOUNCED], minsn);
+            n[GLINT_SCENE_BOUNCED], account->layer[GLINT_KIND_SHELLS].n,
+            account->layer[GLINT_KIND_LINES].n,
+            account->layer[GLINT_KIND_BOX].n, minsn);
     return minsn;
 }
 

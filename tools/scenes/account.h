@@ -32,6 +32,7 @@ struct scene_account {
     struct glint_scene_part all;
     int16_t *seen; /* [height][width]: the object that is seen, or -1 */
     double rest[SCENE_COST_RESTS]; /* how many of each */
+    struct glint_scene_layered layer[GLINT_KINDS];
 };
 
 /* Sets ACCOUNT; scene_account_free() frees it. GLINT_E_MEMORY. */
@@ -42,6 +43,10 @@ void scene_account_free(struct scene_account *account);
 /* Return millions of instructions: of a part, and of the whole frame. */
 double scene_cost_part(const struct glint_scene_part *part);
 double scene_cost_minsn(const struct scene_account *account);
+
+/* Returns that of a kind of layer of recorded motion: shells, lines, box. */
+double scene_cost_layer(const struct scene_account *account,
+                        enum glint_scene_kind kind);
 
 /* Returns how many pixels things hide in the frame that was drawn last, in
  * all. */

@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/compiler.h"
@@ -313,22 +314,41 @@ static bool split_number(const struct glint_word *word, struct digits *digits,
     return true;
 }
 
+/* Returns the nearest double to all digits of WORD, of a line, times
+ * 10^EXPONENT. Without a decimal point strtod() does not depend on the locale.
+ */
+static double nearest_of(const struct glint_word *word, int exponent)
+{
+    char text[GLINT_LINE_BYTES + 16];
+    const char *at = word->start, *const end = at + word->length;
+    int n = 0;
+
+    for (; at < end && *at != 'e' && *at != 'E' && n < GLINT_LINE_BYTES; at++)
+        if (is_digit(*at))
+            text[n++] = *at;
+    snprintf(text + n, sizeof text - (size_t)n, "e%d", exponent);
+    return strtod(text, NULL);
+}
+
 const char *glint_word_number(const struct glint_word *word, double *value)
 {
     struct digits digits;
     bool negative;
-    int exponent;
+    int exponent, more;
     double magnitude;
 
     if (!split_number(word, &digits, &negative, &exponent))
         return "is not a number";
-    if (digits.significant > GLINT_NUMBER_DIGITS)
-        return "has more than 15 digits";
-    if (exponent < -22 || exponent > 22)
+    more = digits.significant > GLINT_NUMBER_DIGITS
+               ? digits.significant - GLINT_NUMBER_DIGITS
+               : 0;
+    if (exponent + more < -22 || exponent + more > 22)
         return "is too large or too small";
-    /* Both operands are exact, so one rounding gives the nearest double. */
-    magnitude = exponent < 0 ? (double)digits.value / power_of_ten(-exponent)
-                             : (double)digits.value * power_of_ten(exponent);
+    /* Of so few digits both operands are exact, so one rounding gives the
+     * nearest double. */
+    magnitude = more > 0       ? nearest_of(word, exponent)
+                : exponent < 0 ? (double)digits.value / power_of_ten(-exponent)
+                               : (double)digits.value * power_of_ten(exponent);
     *value = negative ? -magnitude : magnitude;
     return NULL;
 }

@@ -13,8 +13,7 @@
  * the start of a word begins a comment. Every word knows its place, and
  * glint_text_fail writes "FILE:LINE:COLUMN: cause" for it.
  *
- * Numbers are read without the C library, whose decimal point depends on the
- * locale, and are correctly rounded.
+ * Numbers do not depend on the locale, and are the nearest doubles.
  */
 #ifndef GLINT_BAKE_TABLE_TEXT_H
 #define GLINT_BAKE_TABLE_TEXT_H
@@ -26,7 +25,7 @@
 
 #define GLINT_TEXT_BYTES    65536 /* longest text */
 #define GLINT_LINE_BYTES    200   /* longest line, without its end */
-#define GLINT_NUMBER_DIGITS 15    /* most significant digits of a number */
+#define GLINT_NUMBER_DIGITS 15    /* of a number that fit a double as they are */
 
 struct glint_text_place {
     /* both count from 1, columns in bytes; line 0: no place */

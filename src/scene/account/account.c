@@ -89,7 +89,10 @@ static void count_shadows(const struct glint_scene *s,
     if (listed >= 0) {
         part->count[GLINT_SCENE_SHADOWS] += n;
         part->count[GLINT_SCENE_LISTED] += (int64_t)n * listed;
-        part->count[GLINT_SCENE_ASKED] += (int64_t)n * planes_of(s);
+        part->count[GLINT_SCENE_ASKED] +=
+            glint_scene_other_planes(s, surface->object)
+                ? (int64_t)n * planes_of(s)
+                : 0;
         return;
     }
     for (int k = 0; k < 3; k++)

@@ -116,9 +116,10 @@ static void set_box(const struct glint_scene *s, struct glint_motion_layer *l,
                  ((q_larger(end[0].y, end[1].y) + y_q8 + far_q8) >> 8) + 2});
 }
 
-/* Adds a line of WIDTH steps from A to B, places. */
+/* Adds a line of KIND, WIDTH steps wide, from A to B, places. */
 static void add_line(struct glint_scene *s, const int32_t a[3],
-                     const int32_t b[3], int32_t width, uint32_t material)
+                     const int32_t b[3], int32_t width,
+                     enum glint_scene_kind kind)
 {
     struct glint_motion_layer *l = next_layer(s->motion);
     const int32_t near = s->nearest / 2 + 1; /* depths are below 2^31 */
@@ -147,7 +148,9 @@ static void add_line(struct glint_scene *s, const int32_t a[3],
     if (end[0].w != 1 || end[1].w != 1 || !glint_unit(along, unit_q30))
         return;
     l->ball = NULL;
-    l->material = material;
+    l->kind = kind;
+    l->material = kind == GLINT_KIND_BOX ? s->motion->how->box_material
+                                         : s->motion->how->line_material;
     l->x_q8 = end[0].x;
     l->y_q8 = end[0].y;
     l->length_q8 = (int32_t)glint_root(
@@ -199,7 +202,7 @@ static void add_lines(struct glint_scene *s, uint32_t f)
         }
         if (shorten(a, b, radius_of(s, m->how->food, f)) &&
             shorten(b, a, radius_of(s, m->how->sensor, i)))
-            add_line(s, a, b, m->line, m->how->line_material);
+            add_line(s, a, b, m->line, GLINT_KIND_LINES);
     }
 }
 
@@ -237,6 +240,7 @@ static void add_shell(struct glint_scene *s, uint32_t f)
         return;
     glint_quick_ball(s, p);
     l->ball = p;
+    l->kind = GLINT_KIND_SHELLS;
     l->depth[0] = q_larger(1, glint_ratio((uint64_t)s->nearest << 30,
                                           (uint64_t)q_larger(p->z[1], 1)));
     l->inner_q30 = inner_q30(p);
@@ -260,7 +264,7 @@ static void add_box(struct glint_scene *s)
             a[j] = b[j] = end[k >> 1][j];
             a[axis] = m->low[axis];
             b[axis] = m->high[axis];
-            add_line(s, a, b, m->edge, m->how->box_material);
+            add_line(s, a, b, m->edge, GLINT_KIND_BOX);
         }
 }
 
@@ -295,6 +299,15 @@ static void project(struct glint_scene *s)
     sort(m);
 }
 
+static int count(const struct glint_scene *s, enum glint_scene_kind kind)
+{
+    int n = 0;
+
+    for (int i = 0; i < s->motion->n_layers; i++)
+        n += s->motion->layer[i].kind == kind;
+    return n;
+}
+
 static void carve_worker(const struct glint_scene *s, struct glint_arena *arena,
                          struct glint_scene_worker *worker)
 {
@@ -304,8 +317,12 @@ static void carve_worker(const struct glint_scene *s, struct glint_arena *arena,
                                     sizeof *worker->over);
 }
 
-const struct glint_scene_motions glint_scene_motions = {
-    glint_motion_carve, carve_worker,
-    glint_motion_begin, project,
-    glint_layers_touch, glint_layers_list,
-    glint_layers_next,  glint_layers_over};
+const struct glint_scene_motions glint_scene_motions = {glint_motion_carve,
+                                                        carve_worker,
+                                                        glint_motion_begin,
+                                                        project,
+                                                        count,
+                                                        glint_layers_touch,
+                                                        glint_layers_list,
+                                                        glint_layers_next,
+                                                        glint_layers_over};

@@ -51,7 +51,7 @@ void glint_layers_list(struct glint_scene_worker *w, int y)
     w->n_spans = 0;
     for (int i = 0; i < m->n_layers; i++) {
         const struct glint_box b = glint_box_cut(w->tile, m->layer[i].box);
-        struct glint_layer_span span = {i, b.x0, b.x1};
+        struct glint_layer_span span = {i, m->layer[i].kind, b.x0, b.x1};
 
         if (y < b.y0 || y >= b.y1)
             continue;

@@ -17,7 +17,8 @@ enum { GLINT_BOX_EDGES = 12 };
 /* A shell, or a line between two places of the picture. */
 struct glint_motion_layer {
     struct glint_box box; /* pixels that it may touch */
-    int32_t z;            /* of its middle, by which layers are sorted */
+    enum glint_scene_kind kind;
+    int32_t z; /* of its middle, by which layers are sorted */
     uint32_t material;
     const struct glint_placed *ball; /* NULL: a line */
     int32_t inner_q30;    /* of a shell: its least cosine, between normal and

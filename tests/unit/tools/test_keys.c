@@ -72,10 +72,10 @@ static void test_many(void **state)
 static void test_refused(void **state)
 {
     static const char *const bad[][2] = {
-        {"0,1\n", "k.csv:1: the first line names"},
+        {"0,1\n", "k.csv:1: '0' is no column: the first line names"},
         {"gain\n1\n", "k.csv:1: a column is needed"},
         {"frame,gain,gain\n", "k.csv:1: a column is there twice"},
-        {"frame,wine\n", "k.csv:1: the first line names"},
+        {"frame,wine\n", "k.csv:1: 'wine' is no column: the first line names"},
         {"frame,exposure,strength\n", "k.csv:1: strength chooses"},
         {"frame,x\n", "k.csv:1: a light needs"},
         {"frame,ev\n", "k.csv:1: a light needs"},
