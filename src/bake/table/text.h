@@ -25,7 +25,7 @@
 
 #define GLINT_TEXT_BYTES    65536 /* longest text */
 #define GLINT_LINE_BYTES    200   /* longest line, without its end */
-#define GLINT_NUMBER_DIGITS 15    /* of a number that fit a double as they are */
+#define GLINT_NUMBER_DIGITS 15    /* that fit a double, whichever they are */
 
 struct glint_text_place {
     /* both count from 1, columns in bytes; line 0: no place */
