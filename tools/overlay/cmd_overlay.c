@@ -290,7 +290,7 @@ static void print_json(const struct overlay *o,
     printf("}\n");
 }
 
-static void print_result(const struct tool *tool, const struct overlay *o)
+static void print_result(const struct tool *tool, struct overlay *o)
 {
     const bool json = tool->json && strcmp(o->output, "-") != 0;
     struct overlay_light light;

@@ -2,8 +2,10 @@
 #include "overlay/overlay_line.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "engine/setup/spectrum.h"
+#include "overlay/compositor_layer.h"
 
 /* Linear light, 1 = white, of code 2 of 255 in sRGB, whose slope near black is
  * 12.92. A darker flare cannot be seen. */
@@ -14,13 +16,53 @@ static const double well_seen = 0.25;
 
 /* --------------------------------------------------------------- the light */
 
-struct overlay_light overlay_light(const struct overlay *o)
+/* Returns whether the starburst or the veil is drawn by itself. */
+static bool is_part(const struct compositor *compositor)
 {
-    const struct compositor *compositor = &o->compositor;
+    return compositor->settings.starburst_only ||
+           compositor->settings.veil_only;
+}
+
+/* Sets LIGHT to that of the layer that was drawn last; returns false without
+ * memory. */
+static bool measure_layer(struct compositor *compositor,
+                          struct glint_response_light *light)
+{
+    const size_t n =
+        (size_t)compositor->view.width * (size_t)compositor->view.height;
+    const struct glint_frame_report report = compositor->report;
+    float *rgb = malloc(3 * n * sizeof *rgb);
+    const bool is_drawn =
+        rgb && compositor_draw_layer(compositor, true, rgb) == GLINT_OK;
+
+    if (is_drawn) {
+        glint_response_around(rgb, n, light);
+        for (int c = 0; c < 3; c++) {
+            light->peak[c] /= compositor->white;
+            light->mean[c] /= compositor->white;
+        }
+    }
+    compositor->report = report;
+    free(rgb);
+    return is_drawn;
+}
+
+struct overlay_light overlay_light(struct overlay *o)
+{
+    struct compositor *compositor = &o->compositor;
     const int n = compositor->n_frames;
-    struct overlay_light light = {o->peak, n ? o->mean_sum / n : 0};
+    struct overlay_light light = {true, o->peak, n ? o->mean_sum / n : 0};
     struct glint_response_light drawn;
 
+    if (is_part(compositor) && compositor->n_lamps > 0 &&
+        compositor->strength.scale > 0) {
+        light.is_known = n == 1 && measure_layer(compositor, &drawn);
+        if (light.is_known) {
+            light.peak = glint_largest_channel(drawn.peak);
+            light.mean = glint_largest_channel(drawn.mean);
+        }
+        return light;
+    }
     if (n != 1 || compositor->n_lamps == 0 || compositor->strength.scale <= 0 ||
         compositor->strength.is_drawn ||
         glint_response_draw(&compositor->frame, compositor->lamp,
@@ -227,12 +269,14 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
     fprintf(to, ", %s f/%.3g, ", compositor->settings.lens.name,
             f_number_of(&compositor->settings));
     say_dial(compositor, to);
-    fprintf(to,
-            ": the flare peaks at %.*g %% of white, %.2g %% on average; %.0f "
-            "ms\n",
-            light->peak < 1 ? 2 : 3, 100 * light->peak, 100 * light->mean,
-            1e3 * seconds);
-    if (light->peak < least_seen)
+    if (light->is_known)
+        fprintf(to, ": %s at %.*g %% of white, %.2g %% on average",
+                compositor->settings.starburst_only ? "the starburst peaks"
+                : compositor->settings.veil_only    ? "the veil peaks"
+                                                    : "the ghosts peak",
+                light->peak < 1 ? 2 : 3, 100 * light->peak, 100 * light->mean);
+    fprintf(to, "; %.0f ms\n", 1e3 * seconds);
+    if (light->is_known && light->peak < least_seen)
         say_faint(o, light, to);
 }
 
@@ -260,8 +304,12 @@ void overlay_json(const struct overlay *o, const struct overlay_light *light,
         fprintf(to, "\"scale_ev\": %.3f, ", log2(scale));
     else
         fprintf(to, "\"scale_ev\": null, ");
-    fprintf(to, "\"peak\": %.6g, \"mean\": %.6g, \"found\": [", light->peak,
-            light->mean);
+    if (light->is_known)
+        fprintf(to, "\"peak\": %.6g, \"mean\": %.6g, ", light->peak,
+                light->mean);
+    else
+        fprintf(to, "\"peak\": null, \"mean\": null, ");
+    fputs("\"found\": [", to);
     for (int i = 0; i < compositor->n_lamps; i++) {
         const struct glint_lamp *l = &compositor->lamp[i];
         double x, y;

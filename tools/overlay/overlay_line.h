@@ -8,9 +8,11 @@
 
 #include "overlay/overlay.h"
 
-/* The light of the flare alone, 1 = white, largest channel. */
+/* The light of the ghosts alone, 1 = white, largest channel; with --only
+ * starburst or veil, of that. */
 struct overlay_light {
-    /* of a single picture, the light that 1/10000 of the pixels reach; of
+    bool is_known; /* not of the starburst or the veil over several frames */
+    /* Of a single picture, the light that 1/10000 of the pixels reach; of
      * several frames, the mean of the brightest 1/1000 of the brightest frame's
      * pixels */
     double peak;
@@ -18,10 +20,10 @@ struct overlay_light {
     double mean;
 };
 
-/* Returns the light of the flare. That of a single picture is measured by
- * drawing it once more, small, unless its exposure has done so; that of several
- * follows from the lens's response. */
-struct overlay_light overlay_light(const struct overlay *o);
+/* Returns the light of what is drawn. That of a single picture is measured by
+ * drawing it once more, ghosts small, unless their exposure has done so; that
+ * of several follows from the lens's response. */
+struct overlay_light overlay_light(struct overlay *o);
 
 /* Prints one line, or two if nothing can be seen. */
 void overlay_say(const struct overlay *o, const struct overlay_light *light,
