@@ -130,10 +130,11 @@ static void put_metal(struct text *t, int k, uint32_t *seed)
 {
     static const double alpha[] = {.01, .05, .1, .2};
     const double a = alpha[rng_below(seed, 4)];
+    const char *const diffuse = rng_below(seed, 2) ? "diffuse .1 .1 .1" : "";
+    const double b = rng_below(seed, 2) ? a : 2 * a;
 
-    put(t, "material m%d ward specular .9 .8 .7 alpha %g %g %s\n", k, a,
-        rng_below(seed, 2) ? a : 2 * a,
-        rng_below(seed, 2) ? "diffuse .1 .1 .1" : "");
+    put(t, "material m%d ward specular .9 .8 .7 alpha %g %g %s\n", k, a, b,
+        diffuse);
 }
 
 static void turn_dials(bool is_metal, uint32_t *seed, struct scene_dials *dials)
@@ -160,12 +161,16 @@ static void put_materials(struct text *t, bool is_metal, uint32_t *seed)
         "", "", "", "", "texture t", "reflect .5", "pass .8 refract 1.4"};
 
     for (int k = 0; k < 4; k++) {
+        const char *end, *specular;
+
         if (is_metal && rng_below(seed, 3)) {
             put_metal(t, k, seed);
             continue;
         }
+        end = ends[rng_below(seed, 7)];
+        specular = rng_below(seed, 3) ? ".3" : "0";
         put(t, "material m%d phong .1 .6 %s colour .9 .5 .2 power 40 %s\n", k,
-            rng_below(seed, 3) ? ".3" : "0", ends[rng_below(seed, 7)]);
+            specular, end);
     }
 }
 
@@ -179,12 +184,33 @@ static void put_rings(struct text *t, bool is_metal, uint32_t *seed)
         put(t, "material ring phong .1 .6 .3 colour .9 .6 .2 power 12 %s\n",
             rng_below(seed, 6) ? "" : "reflect .4");
     n = rng_below(seed, 3);
-    for (int k = 0; k < n; k++)
+    for (int k = 0; k < n; k++) {
+        const double turn = among(seed, 0, 90), size = among(seed, .2, .7);
+        const double z = among(seed, -1, .5), x = among(seed, -1.2, 1.2);
+
         put(t,
             "mesh r%d r.obj at %f .4 %f scale %f turn 1 0 0 %f material "
             "ring\n",
-            k, among(seed, -1.2, 1.2), among(seed, -1, .5), among(seed, .2, .7),
-            among(seed, 0, 90));
+            k, x, z, size, turn);
+    }
+}
+
+/* Puts N suns, and sometimes a lamp. */
+static void put_lights(struct text *t, int n, uint32_t *seed)
+{
+    for (int k = 0; k < n; k++) {
+        const double z = among(seed, -.2, 1), y = among(seed, .2, 1);
+        const double x = among(seed, -1, 1);
+
+        put(t, "light sun direction %f %f %f colour 5e4 5e4 5e4 radius .27\n",
+            x, y, z);
+    }
+    if (rng_below(seed, 3) == 0) {
+        const char *const radius = rng_below(seed, 2) ? " radius .1" : "";
+        const double y = among(seed, 1, 4), x = among(seed, -2, 2);
+
+        put(t, "light lamp at %f %f 2 colour 6 6 6%s\n", x, y, radius);
+    }
 }
 
 /* Writes scene I. */
@@ -201,18 +227,17 @@ static void write_scene(int i, struct text *t, struct scene_dials *dials)
     put(t, "camera fov 50 at 0 1.2 %f toward 0 .4 0\ntexture t x.ppm\n",
         among(&seed, 3, 9));
     n = 1 + rng_below(&seed, 2);
-    for (int k = 0; k < n; k++)
-        put(t, "light sun direction %f %f %f colour 5e4 5e4 5e4 radius .27\n",
-            among(&seed, -1, 1), among(&seed, .2, 1), among(&seed, -.2, 1));
-    if (rng_below(&seed, 3) == 0)
-        put(t, "light lamp at %f %f 2 colour 6 6 6%s\n", among(&seed, -2, 2),
-            among(&seed, 1, 4), rng_below(&seed, 2) ? " radius .1" : "");
+    put_lights(t, n, &seed);
     put_materials(t, is_metal, &seed);
     n = 1 + rng_below(&seed, 5);
-    for (int k = 0; k < n; k++)
-        put(t, "sphere s%d at %f %f %f radius %f material m%d\n", k,
-            among(&seed, -1.6, 1.6), among(&seed, .1, 1),
-            among(&seed, -1.5, 1.5), among(&seed, .1, .5), rng_below(&seed, 4));
+    for (int k = 0; k < n; k++) {
+        const int material = rng_below(&seed, 4);
+        const double radius = among(&seed, .1, .5), z = among(&seed, -1.5, 1.5);
+        const double y = among(&seed, .1, 1), x = among(&seed, -1.6, 1.6);
+
+        put(t, "sphere s%d at %f %f %f radius %f material m%d\n", k, x, y, z,
+            radius, material);
+    }
     put_rings(t, is_metal, &seed);
     if (rng_below(&seed, 2))
         put(t, "plane p at 0 0 0 normal 0 1 0 %s\n",

@@ -296,8 +296,9 @@ static void say_frame(const struct tool *tool, const struct scene_frame *frame,
     scene_budget_init(&budget, dials);
     printf("{\"engine\": \"model\", \"scene\": {");
     minsn = scene_cost_json(frame, frame->model->header->bytes, stdout);
-    printf(", \"quality\": 1.000, \"predicted_ms\": %.3f, \"lights\": %u, ",
-           budget.ms_per_minsn * minsn, frame->model->header->n_lights);
+    printf(", \"quality\": %.3f, \"predicted_ms\": %.3f, \"lights\": %u, ",
+           scene_budget_quality(&budget), budget.ms_per_minsn * minsn,
+           frame->model->header->n_lights);
     scene_highlights_json(frame, stdout);
     printf(", \"lamps_hidden\": %d}, \"ms\": %.3f}\n", hidden_lights(frame),
            ms);

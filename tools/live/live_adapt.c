@@ -75,6 +75,11 @@ bool live_adapt_note(struct live_adapt *a, double busy_ms, double period_ms,
     return a->below_s >= a->hold_s && go(a, -1);
 }
 
+double live_adapt_quality(const struct live_adapt *a)
+{
+    return a->step > 0 ? step_of[a->step].quality : 1;
+}
+
 struct glint_dials live_adapt_dials(const struct live_adapt *a,
                                     struct glint_dials asked)
 {

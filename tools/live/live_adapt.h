@@ -39,4 +39,7 @@ bool live_adapt_note(struct live_adapt *adapt, double busy_ms, double period_ms,
 struct glint_dials live_adapt_dials(const struct live_adapt *adapt,
                                     struct glint_dials asked);
 
+/* Returns the quality, as of --quality, that a scene is drawn no finer than. */
+double live_adapt_quality(const struct live_adapt *adapt);
+
 #endif

@@ -141,6 +141,17 @@ static int open_output(struct live *l, const struct glint_image *image)
                             : NULL);
 }
 
+/* Turns the dials of flare and scene to the step. Returns an exit code. */
+static int turn(struct live *l)
+{
+    struct compositor *compositor = &l->o->compositor;
+    const enum glint_status status =
+        over_scene_coarsen(&compositor->scene, live_adapt_quality(&l->adapt));
+
+    compositor->frame.dials = live_adapt_dials(&l->adapt, l->asked);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(l->tool, status, NULL);
+}
+
 /* Prepares the compositor for pictures of IMAGE's size. Returns an exit
  * code. */
 static int take_size(struct live *l, const struct glint_image *image)
@@ -155,8 +166,7 @@ static int take_size(struct live *l, const struct glint_image *image)
     if (code != EXIT_OK)
         return code;
     l->asked = compositor->frame.dials;
-    compositor->frame.dials = live_adapt_dials(&l->adapt, l->asked);
-    return EXIT_OK;
+    return turn(l);
 }
 
 /* ------------------------------------------------------------------- frames */
@@ -201,7 +211,7 @@ static void adapt(struct live *l, int64_t busy_us, int n_missed)
         !live_adapt_note(&l->adapt, 1e-3 * (double)busy_us, period_ms(l),
                          n_missed))
         return;
-    l->o->compositor.frame.dials = live_adapt_dials(&l->adapt, l->asked);
+    turn(l);
     snprintf(text, sizeof text, "quality %s: step %d of %d%s",
              l->adapt.step > before ? "lowered to hold the rate" : "raised",
              l->adapt.step, LIVE_MAX_STEP,

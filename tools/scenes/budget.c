@@ -24,16 +24,12 @@ static const struct {
 
 enum { USUAL = 1 }; /* the level of the default quality */
 
-/* Flares by quality: what a frame takes over that of the default, and PSNR, in
- * the mean of three lenses (tests/figures/trade.md). */
-static const struct {
-    double quality, ratio, db;
-} flares[] = {{0, 0.52, 38},
-              {0.25, 0.78, 54.5},
-              {0.5, 1, 57.6},
-              {0.75, 2.4, 62.4},
-              {1, 6.6, 64}};
-enum { FLARES = sizeof flares / sizeof *flares };
+const struct scene_budget_flare scene_budget_flares[SCENE_BUDGET_FLARES] = {
+    {0, 0.58, 37.4},
+    {0.25, 0.81, 54.5},
+    {0.5, 1, 57.6},
+    {0.75, 2.4, 62.4},
+    {1, 6.3, 64.1}};
 
 void scene_budget_init(struct scene_budget *budget,
                        const struct scene_dials *asked)
@@ -51,10 +47,8 @@ void scene_budget_init(struct scene_budget *budget,
 
 void scene_dials_be(struct scene_dials *dials, double quality)
 {
-    int i = 0;
+    const int i = scene_budget_level(quality);
 
-    while (i < SCENE_BUDGET_LEVELS - 1 && levels[i].quality > quality)
-        i++;
     if (i == USUAL)
         return;
     if (!dials->shadow_points)
@@ -162,12 +156,15 @@ double scene_budget_flare_ms(double ms, double quality)
     int i = 0;
     double part;
 
-    while (i < FLARES - 2 && flares[i + 1].quality < quality)
+    while (i < SCENE_BUDGET_FLARES - 2 &&
+           scene_budget_flares[i + 1].quality < quality)
         i++;
-    part = (quality - flares[i].quality) /
-           (flares[i + 1].quality - flares[i].quality);
-    return ms /
-           (flares[i].ratio + part * (flares[i + 1].ratio - flares[i].ratio));
+    part =
+        (quality - scene_budget_flares[i].quality) /
+        (scene_budget_flares[i + 1].quality - scene_budget_flares[i].quality);
+    return ms / (scene_budget_flares[i].ratio +
+                 part * (scene_budget_flares[i + 1].ratio -
+                         scene_budget_flares[i].ratio));
 }
 
 /* Returns the mean square of the difference that a PSNR of DB stands for. */
@@ -181,7 +178,7 @@ static double square_of(double db)
  * fit counts above 1, the less so the less it is over. */
 static double rest_error(double left_ms, double flare_ms, double ms)
 {
-    const double least_ms = flare_ms * flares[0].ratio;
+    const double least_ms = flare_ms * scene_budget_flares[0].ratio;
     int i = 0;
     double at, part;
 
@@ -190,12 +187,15 @@ static double rest_error(double left_ms, double flare_ms, double ms)
     if (!(flare_ms > 0))
         return 0;
     at = log2(left_ms / flare_ms);
-    while (i < FLARES - 2 && log2(flares[i + 1].ratio) < at)
+    while (i < SCENE_BUDGET_FLARES - 2 &&
+           log2(scene_budget_flares[i + 1].ratio) < at)
         i++;
-    part = (at - log2(flares[i].ratio)) /
-           log2(flares[i + 1].ratio / flares[i].ratio);
-    return square_of(flares[i].db +
-                     fmin(part, 1) * (flares[i + 1].db - flares[i].db));
+    part =
+        (at - log2(scene_budget_flares[i].ratio)) /
+        log2(scene_budget_flares[i + 1].ratio / scene_budget_flares[i].ratio);
+    return square_of(scene_budget_flares[i].db +
+                     fmin(part, 1) * (scene_budget_flares[i + 1].db -
+                                      scene_budget_flares[i].db));
 }
 
 bool scene_budget_choose(struct scene_budget *budget, double ms,
@@ -235,5 +235,23 @@ void scene_budget_note(struct scene_budget *budget, double ms)
 
 double scene_budget_quality(const struct scene_budget *budget)
 {
-    return 1 - (double)budget->level / (SCENE_BUDGET_LEVELS - 1);
+    const struct scene_dials d = scene_budget_dials(budget, budget->level);
+    int i = 0;
+
+    while (i < SCENE_BUDGET_LEVELS - 1 && (levels[i].points > d.shadow_points ||
+                                           levels[i].edge > d.edge_samples ||
+                                           levels[i].samples > d.ward_samples ||
+                                           levels[i].half < d.half_shading ||
+                                           levels[i].nearest < d.ward_nearest))
+        i++;
+    return levels[i].quality;
+}
+
+int scene_budget_level(double quality)
+{
+    int i = 0;
+
+    while (i < SCENE_BUDGET_LEVELS - 1 && levels[i].quality > quality)
+        i++;
+    return i;
 }

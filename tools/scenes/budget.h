@@ -55,7 +55,19 @@ void scene_dials_be(struct scene_dials *dials, double quality);
 /* Learns from a frame that took MS. */
 void scene_budget_note(struct scene_budget *budget, double ms);
 
-/* Returns 1 for the finest level to 0 for the coarsest. */
+/* Returns the quality, as of --quality, than which the dials of budget->level
+ * are nowhere coarser. */
 double scene_budget_quality(const struct scene_budget *budget);
+
+/* Returns the finest level that is no finer than QUALITY, as of --quality. */
+int scene_budget_level(double quality);
+
+/* Flares by quality: what a frame takes over that of the default, and PSNR, in
+ * the mean of the lenses of the first table of tests/figures/trade.md. */
+struct scene_budget_flare {
+    double quality, ratio, db;
+};
+enum { SCENE_BUDGET_FLARES = 5 };
+extern const struct scene_budget_flare scene_budget_flares[SCENE_BUDGET_FLARES];
 
 #endif

@@ -55,3 +55,8 @@ enum glint_status over_scene_layer(struct over_scene *over,
     free(linear_q20);
     return GLINT_OK;
 }
+
+void over_scene_again(struct over_scene *over, const struct glint_image *image)
+{
+    glint_scene_draw(over->frame.scene, image);
+}

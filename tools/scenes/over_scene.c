@@ -296,6 +296,25 @@ int over_scene_size(struct over_scene *over, const struct scene_dials *dials)
     return size(over, dials);
 }
 
+/* Turns the dials to those of LEVEL. */
+static enum glint_status turn(struct over_scene *over, int level)
+{
+    const struct scene_dials dials = scene_budget_dials(&over->budget, level);
+
+    over->budget.level = level;
+    return size(over, &dials) == EXIT_OK ? GLINT_OK : GLINT_E_MEMORY;
+}
+
+enum glint_status over_scene_coarsen(struct over_scene *over, double quality)
+{
+    const int level = scene_budget_level(quality);
+
+    return over->is_sized && !(over->budget_ms > 0) &&
+                   level != over->budget.level
+               ? turn(over, level)
+               : GLINT_OK;
+}
+
 /* Turns the dials so that the frame is told to take no more than the budget. */
 static enum glint_status spend(struct over_scene *over)
 {
@@ -306,14 +325,10 @@ static enum glint_status spend(struct over_scene *over)
         scene_frame_begin(&over->frame);
         status = scene_budget_look(b, &over->frame);
     }
-    if (status == GLINT_OK &&
-        scene_budget_choose(b, over->budget_ms, over->flare_ms)) {
-        const struct scene_dials dials = scene_budget_dials(b, b->level);
-
-        if (size(over, &dials) != EXIT_OK)
-            status = GLINT_E_MEMORY;
-    }
-    return status;
+    return status == GLINT_OK &&
+                   scene_budget_choose(b, over->budget_ms, over->flare_ms)
+               ? turn(over, b->level)
+               : status;
 }
 
 enum glint_status over_scene_draw(struct over_scene *over,
@@ -347,11 +362,6 @@ void over_scene_mark(const struct over_scene *over,
 
     if (over->has_time_line && over->is_open && over->baked.model.motion)
         time_line_draw(image, &motion, over->shown);
-}
-
-void over_scene_again(struct over_scene *over, const struct glint_image *image)
-{
-    glint_scene_draw(over->frame.scene, image);
 }
 
 /* --------------------------------------------------------------------- lamps
@@ -477,7 +487,7 @@ void over_scene_json(const struct over_scene *over, FILE *to)
     fprintf(to, "\"scene\": {");
     minsn = scene_cost_json(&over->frame, over->baked.bytes, to);
     fprintf(to, ", \"quality\": %.3f, \"predicted_ms\": %.3f, \"lights\": %d, ",
-            over->budget_ms > 0 ? scene_budget_quality(b) : 1.0,
+            scene_budget_quality(b),
             over->budget_ms > 0 ? b->predicted_ms : b->ms_per_minsn * minsn,
             over->lights);
     scene_highlights_json(&over->frame, to);

@@ -89,6 +89,11 @@ bool over_scene_keeps_lights(const struct over_scene *over);
  * Returns an exit code. */
 int over_scene_size(struct over_scene *over, const struct scene_dials *dials);
 
+/* Draws from the next picture on with the dials that were asked for, but no
+ * finer than QUALITY, as of --quality; 1: as asked. A budget turns them by
+ * itself. GLINT_E_MEMORY. */
+enum glint_status over_scene_coarsen(struct over_scene *over, double quality);
+
 /* Draws the scene of frame FRAME onto IMAGE. */
 enum glint_status over_scene_draw(struct over_scene *over,
                                   const struct glint_image *image, int frame);
