@@ -18,7 +18,7 @@
 #include "glint/scene/environment_bake.h"
 #include "glint/view.h"
 #include "scenes/account.h"
-#include "scenes/scene_frame.h"
+#include "support/models/drawn_scene.h"
 #include "twin/twin.h"
 
 enum {
@@ -68,109 +68,27 @@ static enum glint_status bake_sky(void *ctx, const char *name, uint8_t **data,
                                   &report, error);
 }
 
+static const struct glint_description_files files = {NULL,     NULL, NULL,
+                                                     bake_sky, NULL, NULL};
+
 static enum glint_status parse(const char *text,
                                struct glint_description *scene,
                                struct glint_error *error)
 {
-    const struct glint_description_files files = {NULL,     NULL, NULL,
-                                                  bake_sky, NULL, NULL};
-
     error->text[0] = '\0';
     return glint_description_parse(scene, text, strlen(text), "x.scene", &files,
                                    error);
 }
 
-/* A scene as integers draw it. */
-struct drawn {
-    struct glint_description *description;
-    unsigned char *data;
-    size_t bytes;
-    struct glint_scene_model model;
-    struct scene_frame frame;
-};
-
 static void open_text(struct drawn *d, const char *text,
                       const struct scene_dials *dials)
 {
     static const struct tool tool = {.name = "test"};
-    struct glint_scene_bake_report report;
-    struct glint_error error;
-    const char *reason = "";
 
-    d->description = malloc(sizeof *d->description);
-    assert_non_null(d->description);
-    if (parse(text, d->description, &error) != GLINT_OK ||
-        glint_scene_bake(d->description, "x", 1, &d->data, &d->bytes, &report,
-                         &error) != GLINT_OK)
-        fail_msg("%s", error.text);
-    if (glint_scene_open(&d->model, d->data, d->bytes, &reason) != GLINT_OK)
-        fail_msg("%s", reason);
-    assert_int_equal(scene_frame_open(&d->frame, &tool, &d->model, dials),
-                     EXIT_OK);
-}
-
-static void close_text(struct drawn *d)
-{
-    scene_frame_close(&d->frame);
-    free(d->data);
-    glint_description_free(d->description);
-    free(d->description);
-}
-
-static void draw(struct drawn *d, int width, int height, int32_t *light_q20)
-{
-    struct glint_image image = {
-        .format = GLINT_LINEAR_Q20, .width = width, .height = height};
-
-    memset(light_q20, 0, 3 * (size_t)width * (size_t)height * 4);
-    glint_image_place(&image, light_q20);
-    assert_int_equal(scene_frame_draw(&d->frame, &image), EXIT_OK);
+    drawn_open(d, text, &files, dials, &tool);
 }
 
 /* -------------------------------------------------------------------- twin */
-
-/* Returns whether pixel I of the twin's is like those about it. */
-static int is_inside(const struct twin_pixel *p, int i)
-{
-    const int x = i % WIDTH, y = i / WIDTH;
-
-    for (int v = y - 1; v <= y + 1; v++)
-        for (int u = x - 1; u <= x + 1; u++)
-            if (u >= 0 && v >= 0 && u < WIDTH && v < HEIGHT &&
-                fabs((double)p[v * WIDTH + u].rgb[1] - (double)p[i].rgb[1]) >
-                    .2 * (double)p[i].rgb[1] + .01)
-                return 0;
-    return 1;
-}
-
-static double compare(const char *text)
-{
-    static struct twin_pixel exact[PIXELS];
-    static int32_t light_q20[3 * PIXELS];
-    static const struct scene_dials dials = {.width = WIDTH,
-                                             .height = HEIGHT,
-                                             .edge_samples = 1,
-                                             .shadow_points = 1};
-    const struct twin_view view = {WIDTH, HEIGHT, 0, 1};
-    double square = 0;
-    struct drawn d;
-    struct twin twin;
-    int n = 0;
-
-    open_text(&d, text, &dials);
-    draw(&d, WIDTH, HEIGHT, light_q20);
-    assert_int_equal(twin_open(&twin, d.description), GLINT_OK);
-    twin_render(&twin, &view, NULL, exact);
-    twin_close(&twin);
-    close_text(&d);
-    for (int i = 0; i < PIXELS; i++)
-        for (int c = 0; c < 3 && is_inside(exact, i); c++, n++)
-            square += pow(fmin((double)exact[i].rgb[c], 1) -
-                              fmin(light_q20[3 * i + c] * 0x1p-20, 1),
-                          2);
-    assert_true(n > PIXELS);
-    return -10 * log10(square / n + 1e-12);
-}
 
 #define STAGE                                                     \
     "camera fov 50 at 0 1 4 toward 0 .3 0\n"                      \
@@ -210,7 +128,7 @@ static void test_twin(void **state)
 
     (void)state;
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
-        const double db = compare(row[i].text);
+        const double db = drawn_near_twin(row[i].text, &files);
 
         print_message("%s: %.1f dB\n", row[i].what, db);
         assert_true(db >= 60);
@@ -273,7 +191,7 @@ static void test_part(void **state)
         glint_scene_init(&scene, &cfg, &d.model, mem, d.frame.bytes),
         GLINT_E_FORMAT);
     free(mem);
-    close_text(&d);
+    drawn_close(&d);
 }
 
 /* Row B2: colours and alphas change from one frame to the next: the picture is
@@ -296,17 +214,17 @@ static void test_b2_looks(void **state)
 
     (void)state;
     open_text(&d, text[0], &dials);
-    draw(&d, 64, 36, want);
+    drawn_draw(&d, 64, 36, want);
     material = glint_scene_find_material(&d.model, "m");
     assert_int_equal(glint_scene_get_look(d.frame.scene, material, &look),
                      GLINT_OK);
-    close_text(&d);
+    drawn_close(&d);
     open_text(&d, text[1], &dials);
-    draw(&d, 64, 36, got);
+    drawn_draw(&d, 64, 36, got);
     assert_memory_not_equal(got, want, sizeof want);
     assert_int_equal(glint_scene_set_look(d.frame.scene, material, &look),
                      GLINT_OK);
-    draw(&d, 64, 36, got);
+    drawn_draw(&d, 64, 36, got);
     assert_memory_equal(got, want, sizeof want);
     assert_int_equal(glint_scene_get_look(d.frame.scene, material, &now),
                      GLINT_OK);
@@ -320,7 +238,7 @@ static void test_b2_looks(void **state)
     assert_int_equal(glint_scene_set_look(d.frame.scene, material, &now),
                      GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_find_material(&d.model, "none"), -1);
-    close_text(&d);
+    drawn_close(&d);
 }
 
 #define STEERED(turn, radius, material)                            \
@@ -342,11 +260,11 @@ static void test_b8_steered(void **state)
 
     (void)state;
     open_text(&d, STEERED("90", ".25", "mirror"), &dials);
-    draw(&d, 64, 36, want);
-    close_text(&d);
+    drawn_draw(&d, 64, 36, want);
+    drawn_close(&d);
     open_text(&d, STEERED("0", ".5", "steel"), &dials);
     s = d.frame.scene;
-    draw(&d, 64, 36, got);
+    drawn_draw(&d, 64, 36, got);
     assert_memory_not_equal(got, want, sizeof want);
     assert_int_equal(glint_scene_turn_environment(s, right_q30), GLINT_OK);
     assert_int_equal(glint_scene_set_radius(s, 1, d.model.object[1].radius / 2),
@@ -354,7 +272,7 @@ static void test_b8_steered(void **state)
     assert_int_equal(glint_scene_set_material(
                          s, 1, glint_scene_find_material(&d.model, "mirror")),
                      GLINT_OK);
-    draw(&d, 64, 36, got);
+    drawn_draw(&d, 64, 36, got);
     assert_memory_equal(got, want, sizeof want);
     assert_int_equal(glint_scene_turn_environment(s, none_q30),
                      GLINT_E_ARGUMENT);
@@ -365,15 +283,15 @@ static void test_b8_steered(void **state)
                      GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_set_material(s, 1, 99), GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_set_material(s, -1, 0), GLINT_E_ARGUMENT);
-    draw(&d, 64, 36, got);
+    drawn_draw(&d, 64, 36, got);
     assert_memory_equal(got, want, sizeof want);
-    close_text(&d);
+    drawn_close(&d);
     open_text(&d,
               STAGE "light sun direction 1 1 1 colour 1 1 1\n" BALLS "white\n",
               &dials);
     assert_int_equal(glint_scene_turn_environment(d.frame.scene, right_q30),
                      GLINT_E_ARGUMENT);
-    close_text(&d);
+    drawn_close(&d);
 }
 
 #define UNDER(environments) \
@@ -397,8 +315,8 @@ static void test_b8_environments(void **state)
     for (int i = 0; i < 3; i++) {
         open_text(&d, alone[i], &dials);
         assert_int_equal(d.model.header->n_lights, i ? 4 : 2);
-        draw(&d, 64, 36, want[i]);
-        close_text(&d);
+        drawn_draw(&d, 64, 36, want[i]);
+        drawn_close(&d);
     }
     open_text(&d,
               UNDER("environment 9e5 turn 30\n"
@@ -409,21 +327,21 @@ static void test_b8_environments(void **state)
     assert_int_equal(glint_scene_find_environment(&d.model, "dusk"), 1);
     for (int round = 0; round < 2; round++) {
         assert_int_equal(glint_scene_set_environment(s, 0), GLINT_OK);
-        draw(&d, 64, 36, got);
+        drawn_draw(&d, 64, 36, got);
         assert_memory_equal(got, want[0], sizeof got);
         assert_int_equal(glint_scene_set_environment(s, 1), GLINT_OK);
-        draw(&d, 64, 36, got);
+        drawn_draw(&d, 64, 36, got);
         assert_memory_equal(got, want[1], sizeof got);
         assert_int_equal(glint_scene_scale_environment(s, three), GLINT_OK);
-        draw(&d, 64, 36, got);
+        drawn_draw(&d, 64, 36, got);
         assert_memory_equal(got, want[2], sizeof got);
     }
     assert_int_equal(glint_scene_set_environment(s, 2), GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_set_environment(s, -1), GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_scale_environment(s, none), GLINT_E_ARGUMENT);
-    draw(&d, 64, 36, got);
+    drawn_draw(&d, 64, 36, got);
     assert_memory_equal(got, want[2], sizeof got);
-    close_text(&d);
+    drawn_close(&d);
 }
 
 /* Opens D's file again, which was changed; returns what is wrong. */
@@ -472,7 +390,7 @@ static void test_environment_tables(void **state)
     light[1].radius = 0;
     REFUSES(light[1].kind, GLINT_LIGHT_LAMP,
             "a light of the environment is no sun");
-    close_text(&d);
+    drawn_close(&d);
 }
 
 /* Environments that cannot be told apart, and too many. */
@@ -511,7 +429,7 @@ static double shine_of(struct drawn *d, double dx, double dy)
 
     assert_int_equal(glint_scene_set_pose(d->frame.scene, 0, at, o->turn_q30),
                      GLINT_OK);
-    draw(d, SIDE, SIDE, light_q20);
+    drawn_draw(d, SIDE, SIDE, light_q20);
     for (int i = 0; i < SIDE * SIDE; i++)
         sum += light_q20[3 * i + 1] * 0x1p-20;
     return sum;
@@ -539,7 +457,7 @@ static void test_highlight_steady(void **state)
         least = fmin(least, sum);
         most = fmax(most, sum);
     }
-    close_text(&d);
+    drawn_close(&d);
     print_message("highlight: %.4f to %.4f\n", least, most);
     assert_true(least > 0 && most < 1.05 * least);
 }
@@ -563,7 +481,7 @@ static void test_account(void **state)
 
         dials.ward_nearest = nearest == 1;
         open_text(&d, STAGE "environment 9e5\n" BALLS "white\n", &dials);
-        draw(&d, 32, 32, light_q20);
+        drawn_draw(&d, 32, 32, light_q20);
         assert_int_equal(scene_account_make(&account, &d.frame), GLINT_OK);
         for (int i = 0; i < 4; i++) { /* steel, brushed, old, white */
             n = account.objects[i].count;
@@ -581,7 +499,7 @@ static void test_account(void **state)
             assert_int_equal(n[GLINT_SCENE_SKIES] > 0, i == 0 || i == 3);
         }
         scene_account_free(&account);
-        close_text(&d);
+        drawn_close(&d);
     }
 }
 

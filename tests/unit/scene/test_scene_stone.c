@@ -17,7 +17,7 @@
 #include "glint/scene/account.h"
 #include "glint/scene/bake.h"
 #include "glint/scene/environment_bake.h"
-#include "scenes/scene_frame.h"
+#include "support/models/drawn_scene.h"
 #include "support/models/stone_builder.h"
 #include "support/shuffle.h"
 #include "twin/twin.h"
@@ -102,60 +102,26 @@ static enum glint_status bake_sky(void *ctx, const char *name, uint8_t **data,
                                   &report, error);
 }
 
+static const struct glint_description_files files = {
+    NULL, read_mesh, NULL, bake_sky, NULL, read_stone};
+
 static enum glint_status parse(const char *text, struct glint_description *s,
                                struct glint_error *error)
 {
-    const struct glint_description_files files = {
-        NULL, read_mesh, NULL, bake_sky, NULL, read_stone};
-
     error->text[0] = '\0';
     return glint_description_parse(s, text, strlen(text), "x.scene", &files,
                                    error);
 }
 
-struct drawn {
-    struct glint_description *description;
-    unsigned char *data;
-    size_t bytes;
-    struct glint_scene_model model;
-    struct scene_frame frame;
-};
-
 static void open_text(struct drawn *d, const char *text,
                       const struct scene_dials *dials, struct tool *tool)
 {
-    struct glint_scene_bake_report report;
-    struct glint_error error;
-    const char *reason = "";
-
-    d->description = malloc(sizeof *d->description);
-    assert_non_null(d->description);
-    if (parse(text, d->description, &error) != GLINT_OK ||
-        glint_scene_bake(d->description, "x", 1, &d->data, &d->bytes, &report,
-                         &error) != GLINT_OK)
-        fail_msg("%s", error.text);
-    if (glint_scene_open(&d->model, d->data, d->bytes, &reason) != GLINT_OK)
-        fail_msg("%s", reason);
-    assert_int_equal(scene_frame_open(&d->frame, tool, &d->model, dials),
-                     EXIT_OK);
-}
-
-static void close_text(struct drawn *d)
-{
-    scene_frame_close(&d->frame);
-    free(d->data);
-    glint_description_free(d->description);
-    free(d->description);
+    drawn_open(d, text, &files, dials, tool);
 }
 
 static void draw(struct drawn *d, int32_t *light_q20)
 {
-    struct glint_image image = {
-        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
-
-    memset(light_q20, 0, 3 * PIXELS * sizeof *light_q20);
-    glint_image_place(&image, light_q20);
-    assert_int_equal(scene_frame_draw(&d->frame, &image), EXIT_OK);
+    drawn_draw(d, WIDTH, HEIGHT, light_q20);
 }
 
 static const struct scene_dials one_sample = {
@@ -186,50 +152,11 @@ static const struct scene_dials one_sample = {
 
 /* -------------------------------------------------------------------- twin */
 
-static int is_inside(const struct twin_pixel *p, int i)
-{
-    const int x = i % WIDTH, y = i / WIDTH;
-
-    for (int v = y - 1; v <= y + 1; v++)
-        for (int u = x - 1; u <= x + 1; u++)
-            if (u >= 0 && v >= 0 && u < WIDTH && v < HEIGHT &&
-                fabs((double)p[v * WIDTH + u].rgb[1] - (double)p[i].rgb[1]) >
-                    .2 * (double)p[i].rgb[1] + .01)
-                return 0;
-    return 1;
-}
-
 /* A coat that would mirror more than all towards the rim. */
 #define BRIGHT(specular)                                                 \
     STAGE "material b translucent f.glint coat ward specular " #specular \
           " " #specular " " #specular " alpha .1 .1\nenvironment sky\n"
 #define BRIGHT_BALL "sphere a at 0 .6 0 radius .8 material b\n"
-
-static double compare(const char *text)
-{
-    static struct twin_pixel exact[PIXELS];
-    static int32_t light_q20[3 * PIXELS];
-    const struct twin_view view = {WIDTH, HEIGHT, 0, 1};
-    struct tool tool = {.name = "test"};
-    double square = 0;
-    struct drawn d;
-    struct twin twin;
-    int n = 0;
-
-    open_text(&d, text, &one_sample, &tool);
-    draw(&d, light_q20);
-    assert_int_equal(twin_open(&twin, d.description), GLINT_OK);
-    twin_render(&twin, &view, NULL, exact);
-    twin_close(&twin);
-    close_text(&d);
-    for (int i = 0; i < PIXELS; i++)
-        for (int c = 0; c < 3 && is_inside(exact, i); c++, n++)
-            square += pow(fmin((double)exact[i].rgb[c], 1) -
-                              fmin(light_q20[3 * i + c] * 0x1p-20, 1),
-                          2);
-    assert_true(n > PIXELS);
-    return -10 * log10(square / n + 1e-12);
-}
 
 static void test_twin(void **state)
 {
@@ -262,7 +189,7 @@ static void test_twin(void **state)
         double db;
 
         mesh_text = row[i].mesh;
-        db = compare(row[i].text);
+        db = drawn_near_twin(row[i].text, &files);
         print_message("%s: %.1f dB\n", row[i].what, db);
         assert_true(db >= 60);
     }
@@ -300,7 +227,7 @@ static void test_seams(void **state)
                  90 * (k % 4), model[k / 4]);
         open_text(&d, text, &one_sample, &tool);
         draw(&d, k % 4 ? light : first);
-        close_text(&d);
+        drawn_close(&d);
         if (k % 4)
             assert_true(near_to(light, first) > 75);
     }
@@ -325,8 +252,10 @@ static void test_stretch(void **state)
                  "f 1/1 2/2 3/3 4/4\n",
                  places[i]);
         mesh_text = mesh;
-        db = compare(STAGE "mesh m quad.obj at 0 .2 0 material c\n"
-                           "sphere b at 0 .7 0 radius .3 material grey\n");
+        db = drawn_near_twin(STAGE
+                             "mesh m quad.obj at 0 .2 0 material c\n"
+                             "sphere b at 0 .7 0 radius .3 material grey\n",
+                             &files);
         print_message("stretched %d: %.1f dB\n", i, db);
         assert_true(db >= 60);
     }
@@ -348,7 +277,7 @@ static void test_kernel_beyond_map(void **state)
                  STAGE "mesh m quad.obj at 0 .2 0 material %c\n"
                        "sphere b at 0 .9 0 radius .5 material %c\n",
                  "cfa"[i], "cfa"[i]);
-        db = compare(text);
+        db = drawn_near_twin(text, &files);
         print_message("beyond the map, %c: %.1f dB\n", "cfa"[i], db);
         assert_true(db >= 60);
     }
@@ -375,7 +304,7 @@ static void test_same_bits(void **state)
     mesh_text = cube_text;
     open_text(&d, MIXED, &one_sample, &tool);
     draw(&d, want);
-    close_text(&d);
+    drawn_close(&d);
     for (int k = 0; k < 3; k++) {
         struct scene_dials dials = one_sample;
 
@@ -384,7 +313,7 @@ static void test_same_bits(void **state)
         dials.tile_log2 = 4 + k;
         open_text(&d, MIXED, &dials, &tool);
         draw(&d, got);
-        close_text(&d);
+        drawn_close(&d);
         assert_memory_equal(got, want, sizeof want);
     }
 }
@@ -430,14 +359,14 @@ static void test_updates(void **state)
         look_from(&other, k * .5, fresh);
         assert_memory_equal(turned, fresh, sizeof fresh);
         assert_true(other.frame.map_texels >= d.frame.map_texels);
-        close_text(&other);
+        drawn_close(&other);
     }
     print_message("texels: %d at first, %d in a turn\n", first, sum);
     /* three balls of 256 x 128 and a cube of 128 x 128 */
     assert_true(first < 75000 && sum > 20000 && first + sum <= 7 << 14);
     draw(&d, turned);
     assert_int_equal(d.frame.map_texels, 0);
-    close_text(&d);
+    drawn_close(&d);
     side = 64;
 }
 
@@ -456,7 +385,7 @@ static void test_coat_changes(void **state)
     draw(&d, fresh);
     assert_int_equal(glint_scene_get_look(d.frame.scene, MATERIAL, &look),
                      GLINT_OK);
-    close_text(&d);
+    drawn_close(&d);
     open_text(&d, BRIGHT(.25) BRIGHT_BALL, &one_sample, &tool);
     draw(&d, changed);
     assert_true(memcmp(changed, fresh, sizeof fresh) != 0);
@@ -464,7 +393,7 @@ static void test_coat_changes(void **state)
                      GLINT_OK);
     draw(&d, changed);
     assert_memory_equal(changed, fresh, sizeof fresh);
-    close_text(&d);
+    drawn_close(&d);
 }
 
 /* What maps take is counted where they were worked out, and not again. */
@@ -497,7 +426,7 @@ static void test_account(void **state)
     glint_scene_account(d.frame.scene, object, &all, seen);
     assert_int_equal(all.count[GLINT_SCENE_SPREAD], 0);
     assert_int_equal(all.count[GLINT_SCENE_GATHERED], 0);
-    close_text(&d);
+    drawn_close(&d);
 }
 
 /* What moves is followed in every frame, or every 2 or 4. */
@@ -529,7 +458,7 @@ static void test_frames(void **state)
         assert_int_equal(lit, 8 / every);
         glint_scene_show(d.frame.scene, 1, 0);
         draw(&d, light);
-        close_text(&d);
+        drawn_close(&d);
     }
 }
 
@@ -580,7 +509,7 @@ static void test_albedo_0_and_1(void **state)
             if (power > 1e-2)
                 assert_true(brightest(light) > .3 * fmin(power, 1000));
         }
-        close_text(&d);
+        drawn_close(&d);
     }
     albedo = .9;
     kernel = 15;
@@ -662,7 +591,7 @@ static void test_lacks(void **state)
     cfg.parts.stones = NULL;
     assert_string_equal(glint_scene_lacks(&cfg.parts, &d.model), "stones");
     assert_int_equal(glint_scene_bytes(&cfg, &d.model), 0);
-    close_text(&d);
+    drawn_close(&d);
 }
 
 int main(void)
