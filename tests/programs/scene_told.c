@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * scene_told FILE - draws the scenes that the cost model of scenes is fitted
- * to, a third of which are held out, and writes a line for each into FILE: 1
- * if it is held out, what it is, and how many there are of each item. For
- * tests/scene-fit, which counts instructions by callgrind.
+ * scene_told FILE [FIRST LAST] - draws the scenes that the cost model of scenes
+ * is fitted to, a third of which are held out, and writes a line for each into
+ * FILE: 1 if it is held out, what it is, and how many there are of each item.
+ * For tests/scene-fit, which counts instructions by callgrind.
  *
  * Balls, rings of triangles, planes, catchers, lights, textures, mirrors,
  * samples and sizes are random, the same ones each time; of the later ones also
- * environments and brushed metal.
+ * environments and brushed metal, or translucent stones of any model, size,
+ * kernel, number of planes and rank.
  */
 #include <inttypes.h>
 #include <math.h>
@@ -18,10 +19,15 @@
 
 #include "glint/scene/bake.h"
 #include "glint/scene/environment_bake.h"
+#include "glint/scene/stone_bake.h"
 #include "scenes/account.h"
 #include "support/rng.h"
 
-enum { PLAIN = 120, METAL = 75, TEXT = 1 << 13, RING = 24, TUBE = 12 };
+enum { PLAIN = 120, METAL = 75, STONE = 60, ALL = PLAIN + METAL + STONE };
+enum { TEXT = 1 << 13, RING = 24, TUBE = 12, MOST_PLANES = 6 };
+
+/* What a scene has beside things of plain colours. */
+enum kind { IS_PLAIN, IS_METAL, IS_STONE };
 
 /* What is counted: a frame in which things have moved. */
 void scene_told_frame(struct scene_frame *frame,
@@ -31,8 +37,10 @@ void scene_told_frame(struct scene_frame *frame,
                       const struct glint_image *image)
 {
     const struct glint_scene_object *const first = frame->model->object;
+    /* By a step of its numbers, which nobody sees. */
+    const int32_t at[3] = {first->at[0] + 1, first->at[1], first->at[2]};
 
-    glint_scene_set_pose(frame->scene, 0, first->at, first->turn_q30);
+    glint_scene_set_pose(frame->scene, 0, at, first->turn_q30);
     scene_frame_try(frame, image);
 }
 
@@ -55,14 +63,32 @@ static void put(struct text *t, const char *format, ...)
     va_end(args);
 }
 
-/* A ring of quads, as an OBJ text. */
+static enum glint_status read_quad(uint8_t **data, size_t *bytes)
+{
+    static const char quad[] = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n"
+                               "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                               "f 1/1 2/2 3/3 4/4\n";
+
+    *bytes = sizeof quad - 1;
+    *data = malloc(sizeof quad);
+    if (*data)
+        memcpy(*data, quad, sizeof quad);
+    return *data ? GLINT_OK : GLINT_E_MEMORY;
+}
+
+/* A ring of quads, as an OBJ text; of a name in "q" one square with places on
+ * a map. */
 static enum glint_status read_ring(void *ctx, const char *name, uint8_t **data,
                                    size_t *bytes, struct glint_error *error)
 {
     char *const text = malloc(1 << 17);
     size_t n = 0;
 
-    (void)ctx, (void)name, (void)error;
+    (void)ctx, (void)error;
+    if (name[0] == 'q') {
+        free(text);
+        return read_quad(data, bytes);
+    }
     for (int i = 0; text && i < RING * TUBE; i++) {
         const int row = i / TUBE;
         const double a = row * 6.2831853 / RING;
@@ -126,6 +152,69 @@ static enum glint_status read_sky(void *ctx, const char *name, uint8_t **data,
                                   &report, error);
 }
 
+/* Sets FIT of TEXELS to bells and even factors: what it costs to draw is what
+ * counts. */
+static void fill_fit(struct glint_scatter_fit *fit, int texels)
+{
+    const int k = fit->kernel, r = k / 2;
+
+    for (int i = 0; i < 3 * fit->kernels * k * k; i++) {
+        const int u = i % k - r, v = i / k % k - r;
+
+        fit->h[i] = exp(-(hypot(u, v) + .1 * (double)(i / k / k)) / (1 + r)) /
+                    (2 * k * k);
+    }
+    for (int i = 0; i < 3 * texels; i++) {
+        fit->in[i] = fit->out[i] = .8;
+        for (int j = 0; j < fit->kernels; j++)
+            fit->f[3 * j * texels + i] = .8 / (1 + j);
+    }
+    for (int i = 0; i < texels; i++)
+        fit->cluster[i] = (uint8_t)(i / 8 % fit->kernels);
+}
+
+/* A stone of the model, side, kernel, planes and rank that NAME says. */
+static enum glint_status read_stone(void *ctx, const char *name, uint8_t **data,
+                                    size_t *bytes, struct glint_error *error)
+{
+    enum { SIDE = 128, KERNEL = 29 };
+    static double h[MOST_PLANES * 3 * KERNEL * KERNEL];
+    static double in[3 * SIDE * SIDE], out[3 * SIDE * SIDE];
+    static double f[MOST_PLANES * 3 * SIDE * SIDE];
+    static uint8_t cluster[SIDE * SIDE];
+    struct glint_scatter_fit fit = {
+        .h = h, .in = in, .out = out, .f = f, .cluster = cluster};
+    struct glint_stone_report report;
+    struct glint_stone_text text;
+    int model, rank;
+
+    (void)ctx;
+    glint_stone_text_defaults(&text);
+    if (sscanf(name, "s%d-%d-%d-%d-%d", &model, &fit.side, &fit.kernel,
+               &fit.kernels, &rank) != 5)
+        return GLINT_E_FORMAT;
+    fill_fit(&fit, fit.side * fit.side);
+    fit.model = (enum glint_scatter_model)model;
+    text.fit.rank = fit.rank = rank;
+    if (fit.model != GLINT_SCATTER_CLUSTERED)
+        fit.cluster = NULL;
+    return glint_stone_bake(&fit, &text, "stone", 1, data, bytes, &report,
+                            error);
+}
+
+static void put_stone(struct text *t, int k, uint32_t *seed)
+{
+    static const int kernels[] = {5, 9, 15, 21, 29};
+    const int model = rng_below(seed, 3), side = 32 << rng_below(seed, 3);
+    const int kernel = kernels[rng_below(seed, 5)];
+    const int planes = 1 + rng_below(seed, MOST_PLANES);
+    const int rank = 1 + rng_below(seed, 4);
+
+    put(t, "material m%d translucent s%d-%d-%d-%d-%d %s\n", k, model, side,
+        kernel, model == GLINT_SCATTER_ALBEDO ? 1 : planes, rank,
+        rng_below(seed, 2) ? "coat ward specular .04 .04 .04 alpha .1 .1" : "");
+}
+
 static void put_metal(struct text *t, int k, uint32_t *seed)
 {
     static const double alpha[] = {.01, .05, .1, .2};
@@ -155,7 +244,7 @@ static void turn_dials(bool is_metal, uint32_t *seed, struct scene_dials *dials)
     dials->height = dials->width * 9 / 16;
 }
 
-static void put_materials(struct text *t, bool is_metal, uint32_t *seed)
+static void put_materials(struct text *t, enum kind kind, uint32_t *seed)
 {
     static const char *const ends[] = {
         "", "", "", "", "texture t", "reflect .5", "pass .8 refract 1.4"};
@@ -163,8 +252,12 @@ static void put_materials(struct text *t, bool is_metal, uint32_t *seed)
     for (int k = 0; k < 4; k++) {
         const char *end, *specular;
 
-        if (is_metal && rng_below(seed, 3)) {
+        if (kind == IS_METAL && rng_below(seed, 3)) {
             put_metal(t, k, seed);
+            continue;
+        }
+        if (kind == IS_STONE && (k == 0 || rng_below(seed, 2))) {
+            put_stone(t, k, seed);
             continue;
         }
         end = ends[rng_below(seed, 7)];
@@ -217,7 +310,10 @@ static void put_lights(struct text *t, int n, uint32_t *seed)
 static void write_scene(int i, struct text *t, struct scene_dials *dials)
 {
     uint32_t seed = 2654435761u * (uint32_t)(i + 1);
-    const bool is_metal = i >= PLAIN;
+    const enum kind kind = i < PLAIN           ? IS_PLAIN
+                           : i < PLAIN + METAL ? IS_METAL
+                                               : IS_STONE;
+    const bool is_metal = kind == IS_METAL;
     int n;
 
     for (int k = 0; k < 8; k++)
@@ -228,7 +324,7 @@ static void write_scene(int i, struct text *t, struct scene_dials *dials)
         among(&seed, 3, 9));
     n = 1 + rng_below(&seed, 2);
     put_lights(t, n, &seed);
-    put_materials(t, is_metal, &seed);
+    put_materials(t, kind, &seed);
     n = 1 + rng_below(&seed, 5);
     for (int k = 0; k < n; k++) {
         const int material = rng_below(&seed, 4);
@@ -239,11 +335,15 @@ static void write_scene(int i, struct text *t, struct scene_dials *dials)
             radius, material);
     }
     put_rings(t, is_metal, &seed);
+    if (kind == IS_STONE && rng_below(&seed, 2))
+        put(t, "mesh q q.obj scale %f at 0 .5 %f turn 0 1 0 20 material m0\n",
+            among(&seed, .2, .8), -.5);
     if (rng_below(&seed, 2))
         put(t, "plane p at 0 0 0 normal 0 1 0 %s\n",
-            rng_below(&seed, 3) ? "catcher .6" : "material m0");
+            rng_below(&seed, 3) || kind == IS_STONE ? "catcher .6"
+                                                    : "material m0");
     put(t, "shadow %s\n", rng_below(&seed, 5) ? "on" : "off");
-    if (is_metal)
+    if (is_metal || (kind == IS_STONE && rng_below(&seed, 2)))
         put(t, "environment %d.sky\n", rng_below(&seed, 5));
 }
 
@@ -252,7 +352,7 @@ static int bake(const struct text *t, struct glint_scene_model *model,
 {
     static struct glint_description scene;
     const struct glint_description_files files = {
-        NULL, read_ring, read_picture, read_sky, NULL, NULL};
+        NULL, read_ring, read_picture, read_sky, NULL, read_stone};
     struct glint_scene_bake_report report;
     struct glint_error error = {""};
     const char *reason = "";
@@ -272,10 +372,12 @@ static int bake(const struct text *t, struct glint_scene_model *model,
     return status == GLINT_OK;
 }
 
-/* The last third of either kind is. */
+/* The last third of each kind is. */
 static int is_held(int i)
 {
-    return i < PLAIN ? i >= PLAIN * 2 / 3 : i >= PLAIN + METAL * 2 / 3;
+    return i < PLAIN           ? i >= PLAIN * 2 / 3
+           : i < PLAIN + METAL ? i >= PLAIN + METAL * 2 / 3
+                               : i >= PLAIN + METAL + STONE * 2 / 3;
 }
 
 static int draw(int i, FILE *to)
@@ -322,14 +424,16 @@ static int draw(int i, FILE *to)
 
 int main(int argc, char **argv)
 {
-    FILE *const to = argc == 2 ? fopen(argv[1], "w") : NULL;
+    const int first = argc == 4 ? atoi(argv[2]) : 0;
+    const int last = argc == 4 ? atoi(argv[3]) : ALL - 1;
+    FILE *const to = argc == 2 || argc == 4 ? fopen(argv[1], "w") : NULL;
     int is_done = to != NULL;
 
-    for (int i = 0; is_done && i < PLAIN + METAL; i++)
+    for (int i = first; is_done && i <= last && i < ALL; i++)
         is_done = draw(i, to);
     if (to && fclose(to) != 0)
         is_done = 0;
     if (!is_done)
-        fprintf(stderr, "scene_told FILE: it was not written\n");
+        fprintf(stderr, "scene_told FILE [FIRST LAST]: it was not written\n");
     return !is_done;
 }
