@@ -26,6 +26,8 @@ static const struct {
     {"draw", "plane", "x or y"},
     {"draw", "rays", "a whole number, 1 to 41"},
     {"explain", "top", "a whole number, from 0"},
+    {"import", "film", "WxH in mm, such as 36x24"},
+    {"import", "format", "zmx, seq, oslo, pbrt or flaresim"},
     {"live", "count", "frames, from 1"},
     {"live", "device",
      "/dev/videoN, a number, the name of a .y4m file, - or test"},

@@ -164,6 +164,7 @@ int cmd_sweep(int argc, char **argv);
 int cmd_lenses(int argc, char **argv);
 int cmd_coat(int argc, char **argv);
 int cmd_draw(int argc, char **argv);
+int cmd_import(int argc, char **argv);
 int cmd_styles(int argc, char **argv);
 int cmd_synth(int argc, char **argv);
 

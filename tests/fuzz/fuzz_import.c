@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Imports any bytes as the format that the first of them says, from 'a' on, and
+ * an odd one strictly. What is refused must say why, what is not must be a text
+ * of a table that parses or is refused with a place; the same again must give
+ * the same.
+ *
+ *     make fuzz FUZZ=import SECONDS=60
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "import/decode.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void require(int condition)
+{
+    if (!condition)
+        abort();
+}
+
+static char *import(struct imported *lens, const struct import_format *format,
+                    const uint8_t *data, size_t size, bool strict,
+                    size_t *bytes)
+{
+    uint8_t *copy = malloc(size + 1);
+    char *text;
+
+    require(copy != NULL);
+    memcpy(copy, data, size);
+    *bytes = size;
+    imported_begin(lens, "f", strict);
+    memcpy(lens->name, "fuzz", 5);
+    text = import_read(lens, format, copy, bytes);
+    free(copy);
+    return text;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static struct imported lens;
+    static struct glint_prescription table;
+    const struct import_format *format;
+    struct glint_error error = {""};
+    size_t bytes, again;
+    char *text, *second;
+    bool strict;
+
+    if (size < 2 || size > 1 << 16)
+        return 0;
+    format = import_format_at((data[0] - 'a') / 2);
+    strict = (data[0] - 'a') % 2 == 1;
+    if (!format)
+        return 0;
+    text = import(&lens, format, data + 1, size - 1, strict, &bytes);
+    if (!text) {
+        require(strncmp(lens.error, "f:", 2) == 0 && lens.error[3]);
+        return 0;
+    }
+    require(!strict || lens.n_notes == 0);
+    second = import(&lens, format, data + 1, size - 1, strict, &again);
+    require(second && again == bytes && memcmp(text, second, bytes) == 0);
+    if (glint_prescription_parse(&table, text, bytes, "t", &error) != GLINT_OK)
+        require(strncmp(error.text, "t:", 2) == 0);
+    free(text);
+    free(second);
+    return 0;
+}

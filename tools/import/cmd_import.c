@@ -1,0 +1,261 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint import: the lens files of other programs as tables.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "desk/apart.h"
+#include "import/decode.h"
+#include "options/takes.h"
+#include "options/tool.h"
+#include "posix/input.h"
+#include "posix/output.h"
+
+static const char help[] =
+    "glint import FILE -o NAME.lens [--strict] [--format F]\n"
+    "             [--film WxH] [--f-number N]\n"
+    "\n"
+    "Reads a lens file of another program and writes a table of it: Zemax\n"
+    ".zmx (sequential; STANDARD, EVENASPH; text or UTF-16), CODE V .seq,\n"
+    "OSLO .len, pbrt .dat, FlareSim .lens. Lengths become millimetres,\n"
+    "glasses those of the catalogue (lenses/README.md) or the file's nd and\n"
+    "Vd. What is guessed or left out is told with its line, and stands in\n"
+    "the table's head.\n"
+    "\n"
+    "  -o, --output FILE   the .lens, or - for standard output\n"
+    "  --strict            refuse where something would be guessed\n"
+    "  --format F          zmx, seq, oslo, pbrt or flaresim (default: by the\n"
+    "                      end of the name)\n"
+    "  --film WxH          film, mm (default: what the file's field says)\n"
+    "  --f-number N        f-number (default: the file's)\n";
+
+static const char help_end[] = COMMON_HELP;
+
+struct import {
+    struct imported lens;
+    const struct import_format *format;
+    const char *output;
+    bool strict;
+    double film_mm[2], f_number;
+};
+
+static bool take_format(struct import *o, const char *value)
+{
+    for (int k = 0; (o->format = import_format_at(k)) != NULL; k++)
+        if (strcmp(o->format->name, value) == 0)
+            return true;
+    return false;
+}
+
+static bool take_film(struct import *o, const char *value)
+{
+    const char *by = strchr(value, 'x');
+    char width[24];
+
+    if (!by || by - value >= (ptrdiff_t)sizeof width)
+        return false;
+    memcpy(width, value, (size_t)(by - value));
+    width[by - value] = '\0';
+    return tool_number(width, &o->film_mm[0]) &&
+           tool_number(by + 1, &o->film_mm[1]) && o->film_mm[0] >= 0.1 &&
+           o->film_mm[1] >= 0.1 && o->film_mm[0] <= 1000 &&
+           o->film_mm[1] <= 1000;
+}
+
+/* Takes option C; returns -1, -2 if VALUE is refused, or an exit code. */
+static int take(struct tool *tool, struct import *o, int c, const char *value)
+{
+    bool good = true;
+
+    if (c == 'o')
+        o->output = value;
+    else if (c == 's')
+        o->strict = true;
+    else if (c == 'F')
+        good = take_format(o, value);
+    else if (c == 'm')
+        good = take_film(o, value);
+    else if (c == 'f')
+        good = tool_number(value, &o->f_number) && o->f_number >= 0.5 &&
+               o->f_number <= 1000;
+    else
+        return tool_option(tool, c, value);
+    return good ? -1 : -2;
+}
+
+static int parse(struct tool *tool, int argc, char **argv, struct import *o)
+{
+    static const struct option options[] = {
+        {"output", required_argument, NULL, 'o'},
+        {"strict", no_argument, NULL, 's'},
+        {"format", required_argument, NULL, 'F'},
+        {"film", required_argument, NULL, 'm'},
+        {"f-number", required_argument, NULL, 'f'},
+        TOOL_COMMON_OPTIONS};
+    struct apart files = {.n_read = 0};
+    int c, code, index = 0;
+
+    while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT "o:", options,
+                            &index)) >= 0) {
+        code = take(tool, o, c, optarg);
+        if (code == -2)
+            return tool_refuse(tool, options[index].name, optarg);
+        if (code >= 0)
+            return code;
+    }
+    code = tool_inputs(tool, argc, argv, 1, "takes one file");
+    if (code >= 0)
+        return code;
+    if (!o->output)
+        return tool_usage(tool, "needs -o, a .lens");
+    if (!o->format)
+        o->format = import_format_of(argv[optind]);
+    if (!o->format)
+        return tool_usage(tool,
+                          "%s: which --format has it: zmx, seq, oslo, pbrt or "
+                          "flaresim?",
+                          argv[optind]);
+    apart_read(&files, NULL, argv[optind]);
+    apart_write(&files, "-o", o->output);
+    code = apart_check(tool, &files);
+    if (code == EXIT_OK)
+        code = tool_check_output(tool, o->output);
+    return code == EXIT_OK ? -1 : code;
+}
+
+/* Sets NAME to the file's own, in the letters that names of lenses have. */
+static void set_name(char name[GLINT_NAME_BYTES], const char *path)
+{
+    const char *stem = strrchr(path, '/');
+    const char *end;
+    size_t n = 0;
+
+    stem = stem ? stem + 1 : path;
+    end = strrchr(stem, '.');
+    if (!end || end == stem)
+        end = stem + strlen(stem);
+    for (; stem < end && n < GLINT_NAME_BYTES - 1; stem++) {
+        const char c =
+            *stem >= 'A' && *stem <= 'Z' ? (char)(*stem - 'A' + 'a') : *stem;
+
+        if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'))
+            name[n++] = c;
+        else if (n > 0 && name[n - 1] != '-')
+            name[n++] = '-';
+    }
+    while (n > 0 && name[n - 1] == '-')
+        n--;
+    if (n == 0)
+        memcpy(name, "lens", n = 4);
+    name[n] = '\0';
+}
+
+static void print_notes(const struct tool *tool, const struct imported *lens)
+{
+    if (tool->quiet)
+        return;
+    for (int k = 0; k < lens->n_notes && k < IMPORT_NOTES; k++)
+        if (lens->note[k].line > 0)
+            fprintf(stderr, "%s:%d: %s\n", lens->file, lens->note[k].line,
+                    lens->note[k].text);
+        else
+            fprintf(stderr, "%s: %s\n", lens->file, lens->note[k].text);
+    if (lens->n_notes > IMPORT_NOTES)
+        fprintf(stderr, "%s: and %d more\n", lens->file,
+                lens->n_notes - IMPORT_NOTES);
+}
+
+static void print_json(const struct imported *lens,
+                       const struct glint_prescription *read)
+{
+    struct glint_optics optics;
+
+    glint_optics_of(read, &optics);
+    printf("{\"name\": \"%s\", \"focal_length_mm\": %.6f, "
+           "\"back_focal_length_mm\": %.6f, \"f_number\": %g, \"film_mm\": "
+           "[%g, %g], \"surfaces\": %d, \"notes\": [",
+           read->name, optics.focal_mm, optics.back_focal_mm, read->f_number,
+           read->film_width_mm, read->film_height_mm, read->n_surfaces);
+    for (int k = 0; k < lens->n_notes && k < IMPORT_NOTES; k++) {
+        printf("%s{\"line\": %d, \"text\": ", k ? ", " : "",
+               lens->note[k].line);
+        tool_json_string(stdout, lens->note[k].text);
+        putchar('}');
+    }
+    puts("]}");
+}
+
+static int save(const struct tool *tool, const struct import *o,
+                const char *text, size_t bytes)
+{
+    struct glint_prescription read;
+    struct glint_error error = {""};
+    struct glint_output out;
+    char name[160];
+    enum glint_status status;
+
+    snprintf(name, sizeof name, "%.120s as a table", o->lens.file);
+    status = glint_prescription_parse(&read, text, bytes, name, &error);
+    if (status != GLINT_OK) {
+        tool_fail(tool, status, error.text);
+        return EXIT_INPUT;
+    }
+    status = glint_output_open(&out, o->output, GLINT_OUTPUT_TEXT, &error);
+    if (status == GLINT_OK)
+        status = glint_output_finish(&out, text, bytes, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    if (tool->json)
+        print_json(&o->lens, &read);
+    return EXIT_OK;
+}
+
+static int run(struct tool *tool, struct import *o, const char *path)
+{
+    struct glint_error error = {""};
+    enum glint_status status;
+    uint8_t *data = NULL;
+    size_t bytes = 0;
+    char *text;
+    int code;
+
+    status = glint_input_slurp(&data, &bytes, path, 1 << 22, &error);
+    if (status != GLINT_OK) {
+        free(data);
+        return tool_fail(tool, status, error.text);
+    }
+    imported_begin(&o->lens, path, o->strict);
+    set_name(o->lens.name, path);
+    memcpy(o->lens.film_mm, o->film_mm, sizeof o->film_mm);
+    o->lens.f_number_given = o->f_number;
+    text = import_read(&o->lens, o->format, data, &bytes);
+    free(data);
+    print_notes(tool, &o->lens);
+    if (!text) {
+        fprintf(stderr, "glint import: %s\n", o->lens.error);
+        return EXIT_INPUT;
+    }
+    code = save(tool, o, text, bytes);
+    free(text);
+    return code;
+}
+
+int cmd_import(int argc, char **argv)
+{
+    struct tool tool = {.name = "import", .help = help, .help_end = help_end};
+    struct import *o = calloc(1, sizeof *o);
+    int code;
+
+    if (!o)
+        return tool_fail(&tool, GLINT_E_MEMORY, NULL);
+    code = parse(&tool, argc, argv, o);
+    if (code < 0) {
+        code = tool_start(&tool);
+        if (code == EXIT_OK)
+            code = run(&tool, o, argv[optind]);
+        tool_finish(&tool);
+    }
+    free(o);
+    return code;
+}

@@ -1,0 +1,398 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a table needs and files of other programs leave out: one stop in the
+ * air, semi-diameters, a film, an f-number, a focus.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "import/imported.h"
+
+/* A paraxial ray, and what it meets. */
+struct thin_ray {
+    double y, u;                    /* height and slope before the first */
+    double height[IMPORT_SURFACES]; /* at each surface */
+};
+
+static double curvature(const struct imported_surface *s)
+{
+    return s->radius == 0 ? 0 : 1 / s->radius;
+}
+
+/* Returns that in the y-z plane, whose first-order values a lens has. */
+static double power_of(const struct imported_surface *s)
+{
+    return s->shape.bend == GLINT_BEND_X ? 0 : curvature(s);
+}
+
+/* Takes RAY through all surfaces; its y and u are then those behind the
+ * last. */
+static bool run(struct imported *lens, struct thin_ray *ray)
+{
+    double n = 1, behind;
+    char text[48];
+
+    for (int k = 0; k < lens->n; k++) {
+        struct imported_surface *s = &lens->surface[k];
+        const int notes = lens->n_notes;
+
+        if (!imported_medium(lens, s, text, &behind))
+            return false;
+        lens->n_notes = notes; /* they are told when the table is written */
+        ray->height[k] = ray->y;
+        ray->u = (n * ray->u - ray->y * (behind - n) * power_of(s)) / behind;
+        if (k + 1 < lens->n)
+            ray->y += s->thickness * ray->u;
+        n = behind;
+    }
+    return true;
+}
+
+/* --------------------------------------------------------------- dummies */
+
+static bool does_nothing(struct imported *lens, int k)
+{
+    const struct imported_surface *s = &lens->surface[k], *before = s - 1;
+
+    if (s->stop)
+        return false;
+    return k == 0
+               ? !s->glass[0] && s->nd == 1
+               : strcmp(s->glass, before->glass) == 0 && s->nd == before->nd &&
+                     (s->vd == before->vd || s->nd == 1);
+}
+
+/* Leaves out surfaces with the same medium on both sides. */
+static bool drop_dummies(struct imported *lens)
+{
+    for (int k = 0; k < lens->n;) {
+        struct imported_surface *s = &lens->surface[k];
+
+        if (!does_nothing(lens, k)) {
+            k++;
+            continue;
+        }
+        if (k > 0)
+            s[-1].thickness += s->thickness;
+        lens->n--;
+        memmove(s, s + 1, (size_t)(lens->n - k) * sizeof *s);
+    }
+    return lens->n > 0 || imported_fail(lens, 0, "there is no glass in it");
+}
+
+/* ------------------------------------------------------------------ stop */
+
+/* Returns the sag of S at the height H, or at its equator. */
+static double sag(const struct imported_surface *s, double h)
+{
+    const double c = curvature(s);
+    const double root = 1 - (1 + s->shape.conic) * c * c * h * h;
+
+    return c * h * h / (1 + sqrt(root > 0 ? root : 0));
+}
+
+static bool insert_stop(struct imported *lens, int k)
+{
+    if (lens->n == IMPORT_SURFACES)
+        return imported_fail(lens, 0, "more than %d surfaces", IMPORT_SURFACES);
+    memmove(&lens->surface[k + 1], &lens->surface[k],
+            (size_t)(lens->n - k) * sizeof lens->surface[0]);
+    lens->n++;
+    return true;
+}
+
+/* Puts the stop beside surface K, which is one: in the air there, at the rim of
+ * its opening or at the vertex, whichever is farther from the glass. */
+static bool stop_beside(struct imported *lens, int k)
+{
+    struct imported_surface *s = &lens->surface[k], stop = *s;
+    const bool behind = !s->glass[0] && s->nd == 1;
+    const double rim = sag(s, s->semi);
+    double off = behind ? fmax(0, rim) : fmin(0, rim);
+
+    if (behind && off > s->thickness)
+        off = 0;
+    if (!behind && k > 0 && -off > s[-1].thickness)
+        off = 0;
+    s->stop = false;
+    stop.radius = 0;
+    memset(&stop.shape, 0, sizeof stop.shape);
+    stop.thickness = behind ? s->thickness - off : -off;
+    if (behind)
+        s->thickness = off;
+    else if (k > 0)
+        s[-1].thickness += off;
+    if (!behind) {
+        const struct imported_surface *before = s - 1;
+
+        snprintf(stop.glass, sizeof stop.glass, "%s",
+                 k > 0 ? before->glass : "");
+        stop.nd = k > 0 ? before->nd : 1;
+        stop.vd = k > 0 ? before->vd : 0;
+    }
+    if (!insert_stop(lens, behind ? k + 1 : k))
+        return false;
+    lens->surface[behind ? k + 1 : k] = stop;
+    return imported_note(lens, stop.line,
+                         "the stop is a surface of glass: put %.3g %s it, at "
+                         "its rim",
+                         fabs(off) * lens->unit_mm,
+                         behind ? "mm behind" : "mm before");
+}
+
+static bool is_plain_stop(const struct imported *lens, int k)
+{
+    const struct imported_surface *s = &lens->surface[k];
+    const struct imported_surface *before = k > 0 ? s - 1 : NULL;
+
+    return strcmp(s->glass, before ? before->glass : "") == 0 &&
+           s->nd == (before ? before->nd : 1);
+}
+
+static bool settle_stop(struct imported *lens)
+{
+    int at = -1;
+
+    for (int k = 0; k < lens->n; k++) {
+        if (!lens->surface[k].stop)
+            continue;
+        if (at >= 0)
+            return imported_fail(lens, lens->surface[k].line,
+                                 "a second stop; the first is on line %d",
+                                 lens->surface[at].line);
+        at = k;
+    }
+    if (at < 0) {
+        if (!imported_note(lens, 0, "there is no stop: taken at the front"))
+            return false;
+        lens->surface[0].stop = true;
+        at = 0;
+    }
+    return is_plain_stop(lens, at) || stop_beside(lens, at);
+}
+
+/* ------------------------------------------------------------------ film */
+
+static double focal(struct imported *lens)
+{
+    struct thin_ray ray = {.y = 1};
+
+    return run(lens, &ray) && ray.u != 0 ? -1 / ray.u : 0;
+}
+
+/* Sets the film to 3 : 2 within the circle that the lens is for. */
+static bool settle_film(struct imported *lens, double focal_units)
+{
+    double half = lens->height;
+
+    if (lens->film_mm[0] > 0)
+        return true;
+    if (!(half > 0) && lens->field_deg > 0 && lens->field_deg < 80)
+        half = fabs(focal_units) * tan(lens->field_deg * 0.017453292519943295);
+    half *= lens->unit_mm;
+    if (!(half > 0.05)) {
+        lens->film_mm[0] = 36;
+        lens->film_mm[1] = 24;
+        return imported_note(lens, 0,
+                             "no field is said: film 36x24 mm taken "
+                             "(--film)");
+    }
+    lens->film_mm[0] = 2 * half * 3 / sqrt(13);
+    lens->film_mm[1] = 2 * half * 2 / sqrt(13);
+    return imported_note(lens, 0,
+                         "film %.4g x %.4g mm taken, 3:2 within the image of "
+                         "%.4g mm (--film)",
+                         lens->film_mm[0], lens->film_mm[1], 2 * half);
+}
+
+/* ------------------------------------------------------------- openings */
+
+static int stop_of(const struct imported *lens)
+{
+    int k = 0;
+
+    while (!lens->surface[k].stop)
+        k++;
+    return k;
+}
+
+/* Sets what is missing of f-number and pupil; the stop's semi-diameter says it
+ * where the file does not. */
+static bool settle_pupil(struct imported *lens, double focal_units)
+{
+    const int stop = stop_of(lens);
+    struct thin_ray ray = {.y = 1};
+
+    if (!run(lens, &ray))
+        return false;
+    if (lens->f_number_given > 0)
+        lens->f_number = lens->f_number_given;
+    if (lens->f_number > 0)
+        lens->pupil = focal_units / lens->f_number;
+    else if (lens->pupil > 0)
+        lens->f_number = focal_units / lens->pupil;
+    else if (lens->surface[stop].semi > 0 && fabs(ray.height[stop]) > 1e-9) {
+        lens->pupil = 2 * lens->surface[stop].semi / fabs(ray.height[stop]);
+        lens->f_number = focal_units / lens->pupil;
+        /* The table's own rounding must not make it wider than the stop. */
+        lens->f_number = ceil(lens->f_number * 1000) / 1000;
+        lens->pupil = focal_units / lens->f_number;
+        return imported_note(lens, lens->surface[stop].line,
+                             "f/%.4g taken, to which the stop opens",
+                             lens->f_number);
+    } else
+        return imported_fail(lens, 0,
+                             "neither f-number, pupil nor the stop's size is "
+                             "in it (--f-number)");
+    return true;
+}
+
+/* Sets semi-diameters that are missing to where paraxial rays of the pupil's
+ * rim and of the field's end go. */
+static bool settle_semis(struct imported *lens)
+{
+    const int stop = stop_of(lens);
+    struct thin_ray rim = {.y = lens->pupil / 2}, chief = {.u = 0.01};
+    struct thin_ray slant = {.u = 0.01};
+    double field, start;
+    int n = 0;
+
+    if (!run(lens, &rim) || !run(lens, &slant))
+        return false;
+    /* The chief ray is that with the height 0 at the stop. */
+    start = rim.height[stop] != 0
+                ? -slant.height[stop] / rim.height[stop] * lens->pupil / 2
+                : 0;
+    chief.y = start;
+    if (!run(lens, &chief))
+        return false;
+    field = hypot(lens->film_mm[0], lens->film_mm[1]) / 2 / lens->unit_mm /
+            fabs(focal(lens)) / 0.01;
+    for (int k = 0; k < lens->n; k++) {
+        struct imported_surface *s = &lens->surface[k];
+        const double least = k == stop ? fabs(rim.height[k]) * (1 + 1e-5) : 0;
+
+        if (s->semi <= 0) {
+            s->semi = 1.05 * (fabs(rim.height[k]) +
+                              (k == stop ? 0 : fabs(field * chief.height[k])));
+            n++;
+        }
+        if (s->semi < (1 - 1e-5) * least &&
+            !imported_note(lens, s->line,
+                           "the stop's semi-diameter is %.6g mm, f/%.4g needs "
+                           "%.6g: taken",
+                           s->semi * lens->unit_mm, lens->f_number,
+                           least * lens->unit_mm))
+            return false;
+        s->semi = fmax(s->semi, least);
+    }
+    return n == 0 || imported_note(lens, 0,
+                                   "%d surfaces have no semi-diameter: those "
+                                   "of paraxial rays taken",
+                                   n);
+}
+
+/* Cuts semi-diameters that reach beyond a sphere. */
+static bool cut_semis(struct imported *lens)
+{
+    for (int k = 0; k < lens->n; k++) {
+        struct imported_surface *s = &lens->surface[k];
+        const double size = fabs(s->radius);
+
+        if (s->radius != 0 && s->shape.conic == 0 && s->semi >= size) {
+            if (!imported_note(lens, s->line,
+                               "semi-diameter %.6g of radius %.6g: %.6g taken",
+                               s->semi, s->radius, 0.98 * size))
+                return false;
+            s->semi = 0.98 * size;
+        }
+    }
+    return true;
+}
+
+static double gap(const struct imported_surface *s, double h)
+{
+    return s->thickness + sag(s + 1, h) - sag(s, h);
+}
+
+/* Tables may not overlap within this share of the semi-diameters. */
+#define FREE_SHARE 0.9
+
+/* Cuts semi-diameters where neighbours' rims cross, as thin lenses of estimated
+ * ones do. */
+static bool part_rims(struct imported *lens)
+{
+    for (int k = 0; k + 1 < lens->n; k++) {
+        struct imported_surface *s = &lens->surface[k];
+        double low = 0, high = FREE_SHARE * fmin(s[0].semi, s[1].semi), semi;
+
+        if (gap(s, high) >= 0 || gap(s, 0) < 0 || s[0].stop || s[1].stop)
+            continue;
+        for (int i = 0; i < 40; i++) {
+            const double middle = 0.5 * (low + high);
+
+            if (gap(s, middle) < 0)
+                high = middle;
+            else
+                low = middle;
+        }
+        semi = low / FREE_SHARE;
+        if (!imported_note(lens, s->line,
+                           "the next surface crosses this at its rim: "
+                           "semi-diameters of %.6g mm taken",
+                           semi * lens->unit_mm))
+            return false;
+        for (int i = 0; i < 2; i++)
+            s[i].semi = fmin(s[i].semi, semi);
+    }
+    return true;
+}
+
+static bool settle_focus(struct imported *lens)
+{
+    struct thin_ray ray = {.y = 1};
+    struct imported_surface *last = &lens->surface[lens->n - 1];
+    double behind;
+
+    if (!run(lens, &ray))
+        return false;
+    behind = ray.u != 0 ? -ray.y / ray.u : 0;
+    if (last->thickness > 0 || !(behind > 0))
+        return true;
+    last->thickness = behind;
+    return imported_note(lens, last->line,
+                         "no distance to the sensor: the paraxial focus taken, "
+                         "%.6g mm",
+                         behind * lens->unit_mm);
+}
+
+/* Refuses what runs backwards. */
+static bool check_thicknesses(struct imported *lens)
+{
+    for (int k = 0; k < lens->n; k++)
+        if (!(lens->surface[k].thickness >= 0))
+            return imported_fail(lens, lens->surface[k].line,
+                                 "thickness %g runs backwards",
+                                 lens->surface[k].thickness);
+    return true;
+}
+
+bool imported_complete(struct imported *lens)
+{
+    double f;
+
+    if (!drop_dummies(lens) || !check_thicknesses(lens) || !settle_stop(lens))
+        return false;
+    f = focal(lens);
+    if (lens->error[0])
+        return false;
+    if (!(f > 0))
+        return imported_fail(lens, 0,
+                             "focal length is %.6g mm; glint takes lenses "
+                             "that form an image",
+                             f * lens->unit_mm);
+    return settle_film(lens, f) && settle_pupil(lens, f) &&
+           settle_semis(lens) && cut_semis(lens) && part_rims(lens) &&
+           settle_focus(lens);
+}

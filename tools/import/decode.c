@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: MIT */
+#include "import/decode.h"
+
+#include <string.h>
+#include <strings.h>
+
+static const struct import_format formats[] = {
+    {"zmx", ".zmx", import_zmx},
+    {"seq", ".seq", import_seq},
+    {"oslo", ".len", import_oslo},
+    {"pbrt", ".dat", import_pbrt},
+    {"flaresim", ".lens", import_flaresim},
+};
+
+enum { N_FORMATS = sizeof formats / sizeof *formats };
+
+const struct import_format *import_format_at(int k)
+{
+    return k >= 0 && k < N_FORMATS ? &formats[k] : NULL;
+}
+
+const struct import_format *import_format_of(const char *name)
+{
+    const char *end = strrchr(name, '.');
+
+    for (int k = 0; k < N_FORMATS && end; k++)
+        if (strcasecmp(end, formats[k].end) == 0)
+            return &formats[k];
+    return NULL;
+}
+
+/* Keeps every other byte of DATA from AT on, those that HIGH bytes stand beside
+ * being '?' if these are not 0. */
+static void narrow(uint8_t *data, size_t *bytes, size_t at, int high)
+{
+    size_t n = 0;
+
+    for (; at + 1 < *bytes; at += 2) {
+        const uint8_t low = data[at + (size_t)!high];
+
+        data[n++] = data[at + (size_t)high] != 0 || low > 126 ? '?' : low;
+    }
+    *bytes = n;
+}
+
+void import_decode(uint8_t *data, size_t *bytes)
+{
+    if (*bytes >= 2 && data[0] == 0xff && data[1] == 0xfe)
+        narrow(data, bytes, 2, 1);
+    else if (*bytes >= 2 && data[0] == 0xfe && data[1] == 0xff)
+        narrow(data, bytes, 2, 0);
+    else if (*bytes >= 4 && data[0] && !data[1] && data[2] && !data[3])
+        narrow(data, bytes, 0, 1);
+    else if (*bytes >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0) {
+        *bytes -= 3;
+        memmove(data, data + 3, *bytes);
+    }
+}
+
+char *import_read(struct imported *lens, const struct import_format *format,
+                  uint8_t *data, size_t *bytes)
+{
+    import_decode(data, bytes);
+    if (*bytes && memchr(data, 0, *bytes)) {
+        imported_fail(lens, 0, "is no text");
+        return NULL;
+    }
+    if (!format->read(lens, (const char *)data, *bytes))
+        return NULL;
+    return imported_finish(lens, bytes);
+}

@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * FlareSim's .lens files: "name:", "focal_length:", then "surfaces:" and rows
+ * of radius or "stop", thickness, index, Abbe number, semi-diameter, coating,
+ * and cyl_x or cyl_y of a cylinder that is straight along that axis.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "import/lines.h"
+
+static bool take_kind(struct imported *lens, const struct lines *l,
+                      struct imported_surface *s)
+{
+    const char *kind = l->n > 6 ? l->word[6] : "";
+
+    if (!*kind || strcmp(kind, "sphere") == 0 || strcmp(kind, "spherical") == 0)
+        return true;
+    if (strcmp(kind, "cyl_x") != 0 && strcmp(kind, "cyl_y") != 0)
+        return imported_fail(lens, l->number,
+                             "surfaces of kind '%.40s' are not read: cyl_x and "
+                             "cyl_y are",
+                             kind);
+    s->shape.bend = kind[4] == 'x' ? GLINT_BEND_Y : GLINT_BEND_X;
+    return true;
+}
+
+static bool take_row(struct imported *lens, const struct lines *l)
+{
+    struct imported_surface *s = imported_add(lens, l->number);
+
+    if (!s)
+        return false;
+    s->stop = lines_is(l, "stop");
+    if ((!s->stop && !lines_number(lens, l, 0, "radius", &s->radius)) ||
+        !lines_number(lens, l, 1, "thickness", &s->thickness) ||
+        !lines_number(lens, l, 2, "index", &s->nd) ||
+        !lines_number(lens, l, 3, "Abbe number", &s->vd) ||
+        !lines_number(lens, l, 4, "semi-diameter", &s->semi))
+        return false;
+    if (s->nd == 1)
+        s->vd = 0;
+    return take_kind(lens, l, s);
+}
+
+/* Halves semi-diameters if they are whole ones, which a sphere tells that is
+ * smaller. */
+static bool settle_diameters(struct imported *lens)
+{
+    int at = 0;
+
+    while (at < lens->n &&
+           !(lens->surface[at].radius != 0 &&
+             lens->surface[at].semi > fabs(lens->surface[at].radius)))
+        at++;
+    if (at == lens->n)
+        return true;
+    if (!imported_note(lens, lens->surface[at].line,
+                       "semi-diameter %g of radius %g: the column has "
+                       "diameters, and all are halved",
+                       lens->surface[at].semi, lens->surface[at].radius))
+        return false;
+    for (int k = 0; k < lens->n; k++)
+        lens->surface[k].semi /= 2;
+    return true;
+}
+
+bool import_flaresim(struct imported *lens, const char *text, size_t bytes)
+{
+    struct lines lines;
+    bool rows = false, good = true;
+    double focal = 0;
+
+    lines_begin(&lines, text, bytes);
+    while (good && lines_next(&lines, '#')) {
+        if (rows)
+            good = take_row(lens, &lines);
+        else if (lines_is(&lines, "name:"))
+            snprintf(lens->title, sizeof lens->title, "%.230s", lines.rest);
+        else if (lines_is(&lines, "focal_length:"))
+            good = lines_number(lens, &lines, 1, "focal length", &focal);
+        else if (lines_is(&lines, "squeeze:"))
+            good = true;
+        else if (lines_is(&lines, "surfaces:"))
+            rows = true;
+        else
+            good = imported_fail(lens, lines.number, "unknown word '%.40s'",
+                                 lines.word[0]);
+    }
+    if (!good)
+        return false;
+    if (lens->n < 2)
+        return imported_fail(lens, 0, "there are no surfaces in it");
+    return settle_diameters(lens) &&
+           imported_note(lens, 0, "coatings are not read");
+}

@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * imported.h - a lens as another program's file has it, before it is a table.
+ *
+ *     imported_begin(&lens, "x.zmx", strict);
+ *     import_zmx(&lens, text, bytes);                    or another reader
+ *     text = imported_finish(&lens, &bytes);             a .lens table
+ *
+ * Readers write down what the file says, in its own units; imported_finish()
+ * completes it. Whatever is guessed or left out is told by a note with its line
+ * number, or under STRICT refused.
+ */
+#ifndef GLINT_TOOLS_IMPORT_IMPORTED_H
+#define GLINT_TOOLS_IMPORT_IMPORTED_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "glint/prescription.h"
+
+enum { IMPORT_SURFACES = 128, IMPORT_NOTES = 64, IMPORT_TEXT = 240 };
+
+struct imported_surface {
+    int line;         /* of the file */
+    double radius;    /* 0: plane */
+    double thickness; /* to the next */
+    double semi;      /* 0: not said */
+    char glass[32];   /* name of the glass behind; "": see nd */
+    double nd, vd;    /* nd 1: air; vd 0: not said */
+    bool stop;
+    struct glint_shape shape; /* no group */
+};
+
+struct imported_note {
+    int line; /* 0: of the whole file */
+    char text[IMPORT_TEXT];
+};
+
+struct imported {
+    const char *file;
+    bool strict;
+    char name[GLINT_NAME_BYTES], title[IMPORT_TEXT];
+    double unit_mm;           /* of its lengths */
+    double f_number_given;    /* by the user, goes before the file's; or 0 */
+    double f_number, pupil;   /* diameter of the entrance pupil; 0: not said */
+    double field_deg, height; /* half field, or half image; 0: not said */
+    double film_mm[2];        /* 0: not said */
+    double focal;             /* that the file states; 0: none */
+    int n;
+    struct imported_surface surface[IMPORT_SURFACES];
+    char error[IMPORT_TEXT + 64]; /* "FILE:LINE: cause" */
+    int n_notes;                  /* also of those that did not fit */
+    struct imported_note note[IMPORT_NOTES];
+};
+
+void imported_begin(struct imported *lens, const char *file, bool strict);
+
+/* Sets the error, and returns false. LINE 0 is the whole file. */
+bool imported_fail(struct imported *lens, int line, const char *format, ...);
+
+/* Adds a note. Returns false if it is an error, as under STRICT. */
+bool imported_note(struct imported *lens, int line, const char *format, ...);
+
+/* Adds a surface of air; NULL, after an error, if there are too many. */
+struct imported_surface *imported_add(struct imported *lens, int line);
+
+/* Completes LENS and returns it as a table, in memory of malloc(); NULL after
+ * an error. */
+char *imported_finish(struct imported *lens, size_t *bytes);
+
+/* Returns the medium behind S as a table writes it, in TEXT[48], and sets its
+ * ND; false after an error. */
+bool imported_medium(struct imported *lens, const struct imported_surface *s,
+                     char text[48], double *nd);
+
+/* Sorts notes by their lines; those of the whole file come last. */
+void imported_sort_notes(struct imported *lens);
+
+/* Does what there is to do to LENS before it can be written down. */
+bool imported_complete(struct imported *lens);
+
+/* ------------------------------------------------------------------ readers */
+
+bool import_zmx(struct imported *lens, const char *text, size_t bytes);
+bool import_pbrt(struct imported *lens, const char *text, size_t bytes);
+bool import_flaresim(struct imported *lens, const char *text, size_t bytes);
+bool import_seq(struct imported *lens, const char *text, size_t bytes);
+bool import_oslo(struct imported *lens, const char *text, size_t bytes);
+
+#endif

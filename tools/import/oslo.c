@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * OSLO .len files: spheres, conics and even aspheres.
+ *
+ * "LEN NEW" begins, "NXT" goes on to the next surface, the object being the
+ * first; "RD", "TH", "AP", "GLA", "AST", "CC" and "AD" to "AH" are of it.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "import/lines.h"
+
+struct oslo {
+    struct imported *lens;
+    struct lines lines;
+    struct imported_surface *s;
+    int surfaces; /* that have begun, with the object */
+};
+
+static bool take_glass(struct oslo *o)
+{
+    const struct lines *l = &o->lines;
+
+    if (l->n < 2)
+        return imported_fail(o->lens, l->number, "the glass has no name");
+    if (strncmp(l->word[1], "REFL", 4) == 0)
+        return imported_fail(o->lens, l->number,
+                             "a mirror: glint has lenses alone");
+    if (strcmp(l->word[1], "AIR") != 0)
+        snprintf(o->s->glass, sizeof o->s->glass, "%s", l->word[1]);
+    /* A glass of one's own has its indices behind its name. */
+    if (l->n > 4) {
+        double n[3];
+
+        for (int i = 0; i < 3; i++)
+            if (!lines_number(o->lens, l, 2 + i, "index", &n[i]))
+                return false;
+        o->s->nd = n[0];
+        o->s->vd = n[1] != n[2] ? (n[0] - 1) / (n[1] - n[2]) : 0;
+    }
+    return true;
+}
+
+static bool take_surface(struct oslo *o)
+{
+    const struct lines *l = &o->lines;
+    struct glint_shape *shape = &o->s->shape;
+
+    if (lines_is(l, "RD"))
+        return lines_number(o->lens, l, 1, "radius", &o->s->radius);
+    if (lines_is(l, "CV")) {
+        if (!lines_number(o->lens, l, 1, "curvature", &o->s->radius))
+            return false;
+        o->s->radius = o->s->radius == 0 ? 0 : 1 / o->s->radius;
+        return true;
+    }
+    if (lines_is(l, "TH"))
+        return lines_number(o->lens, l, 1, "thickness", &o->s->thickness);
+    if (lines_is(l, "AP"))
+        return lines_number(o->lens, l, l->n > 2 ? 2 : 1, "semi-diameter",
+                            &o->s->semi);
+    if (lines_is(l, "GLA"))
+        return take_glass(o);
+    if (lines_is(l, "AIR"))
+        return true;
+    if (lines_is(l, "AST"))
+        return o->s->stop = true;
+    if (lines_is(l, "CC"))
+        return lines_number(o->lens, l, 1, "conic", &shape->conic);
+    if (strlen(l->word[0]) == 2 && l->word[0][0] == 'A' &&
+        l->word[0][1] >= 'D' && l->word[0][1] <= 'H')
+        return lines_number(o->lens, l, 1, "aspheric term",
+                            &shape->term[l->word[0][1] - 'D']);
+    if (lines_is(l, "TLA") || lines_is(l, "DCX") || lines_is(l, "DCY") ||
+        lines_is(l, "RFH") || lines_is(l, "DT"))
+        return imported_fail(o->lens, l->number,
+                             "'%s': surfaces that are not round are not read",
+                             l->word[0]);
+    return true;
+}
+
+static bool take_head(struct oslo *o)
+{
+    const struct lines *l = &o->lines;
+
+    if (lines_is(l, "LEN") && l->n > 2)
+        snprintf(o->lens->title, sizeof o->lens->title, "%s", l->word[2]);
+    if (lines_is(l, "UNI"))
+        return lines_number(o->lens, l, 1, "unit", &o->lens->unit_mm) &&
+               (o->lens->unit_mm > 0 ||
+                imported_fail(o->lens, l->number, "unit %g is no length",
+                              o->lens->unit_mm));
+    if (lines_is(l, "EBR")) {
+        if (!lines_number(o->lens, l, 1, "beam radius", &o->lens->pupil))
+            return false;
+        o->lens->pupil *= 2;
+        return true;
+    }
+    if (lines_is(l, "ANG"))
+        return lines_number(o->lens, l, 1, "field", &o->lens->field_deg);
+    return true;
+}
+
+static bool take(struct oslo *o)
+{
+    const struct lines *l = &o->lines;
+
+    if (lines_is(l, "NXT")) {
+        o->s = imported_add(o->lens, l->number);
+        return o->s != NULL;
+    }
+    if (lines_is(l, "EBR") || lines_is(l, "ANG") || lines_is(l, "UNI") ||
+        lines_is(l, "LEN"))
+        return take_head(o);
+    return !o->s || take_surface(o);
+}
+
+bool import_oslo(struct imported *lens, const char *text, size_t bytes)
+{
+    struct oslo o = {.lens = lens};
+
+    lines_begin(&o.lines, text, bytes);
+    while (lines_next(&o.lines, '\0')) {
+        if (lines_is(&o.lines, "END") || lines_is(&o.lines, "WV"))
+            o.s = NULL;
+        if (!take(&o))
+            return false;
+    }
+    if (lens->n < 2)
+        return imported_fail(lens, 0, "there are no surfaces in it");
+    lens->n--; /* the image */
+    return true;
+}

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Lens tables of pbrt: radius, distance, index and diameter of each surface, in
+ * millimetres. Radius 0 and index 0 are the stop. Distances are those to the
+ * next surface, or in the older tables of 100 mm those from the last: the first
+ * is then 0 and the last is not.
+ */
+#include "import/lines.h"
+
+static bool take(struct imported *lens, const struct lines *l)
+{
+    struct imported_surface *s = imported_add(lens, l->number);
+    double index, diameter;
+
+    if (!s)
+        return false;
+    if (l->n > 4)
+        return imported_fail(lens, l->number,
+                             "'%.40s' is more than radius, distance, index and "
+                             "diameter",
+                             l->word[4]);
+    if (!lines_number(lens, l, 0, "radius", &s->radius) ||
+        !lines_number(lens, l, 1, "distance", &s->thickness) ||
+        !lines_number(lens, l, 2, "index", &index) ||
+        !lines_number(lens, l, 3, "diameter", &diameter))
+        return false;
+    s->stop = s->radius == 0 && index == 0;
+    s->nd = index == 0 ? 1 : index;
+    s->semi = diameter / 2;
+    return true;
+}
+
+bool import_pbrt(struct imported *lens, const char *text, size_t bytes)
+{
+    struct lines lines;
+
+    lines_begin(&lines, text, bytes);
+    while (lines_next(&lines, '#'))
+        if (!take(lens, &lines))
+            return false;
+    if (lens->n < 2)
+        return imported_fail(lens, 0, "there are no surfaces in it");
+    if (lens->surface[0].thickness != 0 ||
+        lens->surface[lens->n - 1].thickness == 0)
+        return true;
+    for (int k = 0; k + 1 < lens->n; k++)
+        lens->surface[k].thickness = lens->surface[k + 1].thickness;
+    lens->surface[lens->n - 1].thickness = 0;
+    return imported_note(lens, lens->surface[0].line,
+                         "the first distance is 0: distances are taken from "
+                         "the surface before");
+}

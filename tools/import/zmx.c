@@ -1,0 +1,231 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Zemax .zmx files, sequential: STANDARD and EVENASPH surfaces.
+ *
+ * A line is a word and values. Lines behind "SURF n" are of that surface, the
+ * first being the object and the last the image. Aspheric PARM 1 .. 8 are the
+ * terms of h^2 .. h^16.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "import/lines.h"
+
+struct zmx {
+    struct imported *lens;
+    struct lines lines;
+    struct imported_surface *s; /* NULL: before the first */
+    bool even;                  /* PARM of S are aspheric terms */
+    int field_type;
+    double field, object;
+};
+
+static bool take_type(struct zmx *z)
+{
+    const char *type = z->lines.n > 1 ? z->lines.word[1] : "";
+
+    z->even = strcmp(type, "EVENASPH") == 0;
+    return z->even || strcmp(type, "STANDARD") == 0 ||
+           imported_fail(z->lens, z->lines.number,
+                         "surfaces of type '%s' are not read: STANDARD and "
+                         "EVENASPH are",
+                         type);
+}
+
+static bool take_glass(struct zmx *z)
+{
+    const struct lines *l = &z->lines;
+    double nd = 0, vd = 0;
+
+    if (l->n < 2)
+        return imported_fail(z->lens, l->number, "the glass has no name");
+    if (strcmp(l->word[1], "MIRROR") == 0)
+        return imported_fail(z->lens, l->number,
+                             "a mirror: glint has lenses alone");
+    if (l->n > 5 && (!lines_number(z->lens, l, 4, "index", &nd) ||
+                     !lines_number(z->lens, l, 5, "Abbe number", &vd)))
+        return false;
+    if (strncmp(l->word[1], "___", 3) != 0) {
+        snprintf(z->s->glass, sizeof z->s->glass, "%s", l->word[1]);
+        /* What older versions write whatever the glass. */
+        if (nd == 1.5 && vd == 40)
+            nd = vd = 0;
+    }
+    z->s->nd = nd;
+    z->s->vd = vd;
+    return true;
+}
+
+static bool take_parameter(struct zmx *z)
+{
+    double k, value;
+
+    if (!z->even)
+        return true;
+    if (!lines_number(z->lens, &z->lines, 1, "number of the term", &k) ||
+        !lines_number(z->lens, &z->lines, 2, "aspheric term", &value))
+        return false;
+    if (value == 0)
+        return true;
+    if (k < 2 || k > 8 || k != floor(k))
+        return imported_fail(z->lens, z->lines.number,
+                             "a term of h^%g: only h^4 to h^16 are read",
+                             2 * k);
+    z->s->shape.term[(int)k - 2] = value;
+    return true;
+}
+
+static bool take_surface(struct zmx *z)
+{
+    const struct lines *l = &z->lines;
+    double value;
+
+    if (lines_is(l, "TYPE"))
+        return take_type(z);
+    if (lines_is(l, "STOP"))
+        return z->s->stop = true;
+    if (lines_is(l, "CURV")) {
+        if (!lines_number(z->lens, l, 1, "curvature", &value))
+            return false;
+        z->s->radius = value == 0 ? 0 : 1 / value;
+        return true;
+    }
+    if (lines_is(l, "DISZ")) {
+        if (l->n > 1 && strcmp(l->word[1], "INFINITY") == 0) {
+            z->s->thickness = (double)INFINITY;
+            return true;
+        }
+        return lines_number(z->lens, l, 1, "thickness", &z->s->thickness);
+    }
+    if (lines_is(l, "GLAS"))
+        return take_glass(z);
+    if (lines_is(l, "DIAM"))
+        return lines_number(z->lens, l, 1, "semi-diameter", &z->s->semi);
+    if (lines_is(l, "CONI"))
+        return lines_number(z->lens, l, 1, "conic", &z->s->shape.conic);
+    return !lines_is(l, "PARM") || take_parameter(z);
+}
+
+static bool take_unit(struct zmx *z)
+{
+    static const struct {
+        const char *word;
+        double mm;
+    } units[] = {
+        {"MM", 1}, {"CM", 10}, {"IN", 25.4}, {"METER", 1000}, {"M", 1000}};
+    const char *word = z->lines.n > 1 ? z->lines.word[1] : "";
+
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+        if (strcmp(units[i].word, word) == 0) {
+            z->lens->unit_mm = units[i].mm;
+            return true;
+        }
+    return imported_fail(z->lens, z->lines.number,
+                         "unit '%s' is none of MM, CM, IN, METER", word);
+}
+
+static bool take_fields(struct zmx *z)
+{
+    double value;
+
+    for (int k = 1; k < z->lines.n; k++) {
+        if (!lines_number(z->lens, &z->lines, k, "field", &value))
+            return false;
+        z->field = fmax(z->field, fabs(value));
+    }
+    return true;
+}
+
+static bool take_head(struct zmx *z)
+{
+    const struct lines *l = &z->lines;
+    double value;
+
+    if (lines_is(l, "MODE") && l->n > 1 && strcmp(l->word[1], "SEQ") != 0)
+        return imported_fail(z->lens, l->number,
+                             "mode '%s': only SEQ, sequential lenses, are read",
+                             l->word[1]);
+    if (lines_is(l, "NAME")) {
+        snprintf(z->lens->title, sizeof z->lens->title, "%.230s", l->rest);
+        return true;
+    }
+    if (lines_is(l, "UNIT"))
+        return take_unit(z);
+    if (lines_is(l, "ENPD"))
+        return lines_number(z->lens, l, 1, "entrance pupil", &z->lens->pupil);
+    if (lines_is(l, "FNUM"))
+        return lines_number(z->lens, l, 1, "f-number", &z->lens->f_number);
+    if (lines_is(l, "FTYP")) {
+        if (!lines_number(z->lens, l, 1, "type of field", &value))
+            return false;
+        z->field_type = value >= 0 && value < 10 ? (int)value : 9;
+        return true;
+    }
+    return !(lines_is(l, "XFLN") || lines_is(l, "YFLN")) || take_fields(z);
+}
+
+/* Starts a surface; the object is not one. */
+static bool start_surface(struct zmx *z)
+{
+    z->even = false;
+    if (z->s && z->lens->n == 1 && z->object == 0) {
+        z->object = z->s->thickness;
+        z->lens->n = 0;
+    }
+    z->s = imported_add(z->lens, z->lines.number);
+    return z->s != NULL;
+}
+
+static bool close_file(struct zmx *z)
+{
+    struct imported *lens = z->lens;
+    const struct imported_surface *image;
+
+    if (lens->n < 2)
+        return imported_fail(lens, 0, "there are no surfaces in it");
+    image = &lens->surface[--lens->n];
+    if (z->field_type == 0)
+        lens->field_deg = z->field;
+    else if (z->field_type == 2 || z->field_type == 3)
+        lens->height = z->field;
+    else
+        lens->height = image->semi;
+    if (z->field_type == 0 && !(z->field > 0))
+        lens->height = image->semi;
+    for (int k = 0; k < lens->n; k++)
+        if (!isfinite(lens->surface[k].thickness))
+            return imported_fail(lens, lens->surface[k].line,
+                                 "an infinite thickness inside of the lens");
+    return isinf(z->object) || z->object > 1e8 ||
+           imported_note(lens, 0,
+                         "the object is %g mm away: the sensor stays where the "
+                         "file has it",
+                         z->object * lens->unit_mm);
+}
+
+bool import_zmx(struct imported *lens, const char *text, size_t bytes)
+{
+    struct zmx z = {.lens = lens};
+    bool more = true, tail = false;
+
+    lines_begin(&z.lines, text, bytes);
+    while (more && lines_next(&z.lines, '\0')) {
+        const struct lines *l = &z.lines;
+
+        if (lines_is(l, "SURF"))
+            more = start_surface(&z);
+        else if (lines_is(l, "MNUM") && l->n > 1 &&
+                 strcmp(l->word[1], "1") != 0)
+            more = imported_note(lens, l->number,
+                                 "configurations but the first are not read");
+        /* Merit functions and tolerances follow the last surface. */
+        else if (lines_is(l, "TOL") || lines_is(l, "DMFS"))
+            tail = true;
+        else if (!z.s)
+            more = take_head(&z);
+        else if (!tail)
+            more = take_surface(&z);
+    }
+    return more && close_file(&z);
+}
