@@ -35,6 +35,7 @@ static const struct {
     {"live", "format", "a FOURCC such as YUYV, NV12 or MJPG"},
     {"live", "output",
      "fb[:/dev/fb0], window, y4m:FILE, y4m:-, v4l2:/dev/videoN or null"},
+    {"overlay", "frames", "A-B, the first and last frame, from 0"},
     {"render", "fps", "frames a second, 1 to 1000"},
     {"render", "light",
      "THETA,PHI[,POWER[,R,G,B[,SIZE]]] with THETA 0 to 89.9 degrees"},
@@ -149,6 +150,7 @@ static const struct {
     {NULL, "wavelengths",
      "auto, a number of 1 to 32, or wavelengths of 300 to 1100 nm; 0.55 "
      "micrometres are 550"},
+    {NULL, "warm-up", "a whole number, from 0"},
     {NULL, "weights", "wachspress or loop-derose"},
     {NULL, "whole", "codes, 0 to 100"},
 };

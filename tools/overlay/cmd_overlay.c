@@ -3,6 +3,7 @@
  * glint overlay: adds the flare of the lamps in a picture or video to it.
  */
 #include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,6 +38,11 @@ static const char help[] =
     "                      glint's (H.264: -crf 18): '-c:v libx265 -crf 20'\n"
     "  --start-number N    first of a sequence (default: 0 or 1, as "
     "found)\n"
+    "  --frames A-B        of a video these alone, from 0, as in the whole: "
+    "those\n"
+    "                      before are looked at, not drawn\n"
+    "  --warm-up N         only N of those before: the same from a cut on, or\n"
+    "                      once lamps have settled\n"
     "  --layers OUT        flare, ghosts, starburst and, where asked for, veil "
     "as\n"
     "                      linear light: parts of an .exr, or with %s in its "
@@ -59,6 +65,20 @@ static bool take_word(const char *text, const char *const *words, int *value)
 {
     *value = tool_word(text, words);
     return *value >= 0;
+}
+
+/* Takes TEXT, "A-B". */
+static bool take_frames(struct overlay *o, const char *text)
+{
+    char first[12];
+    const size_t n = strcspn(text, "-");
+
+    if (n >= sizeof first || text[n] != '-')
+        return false;
+    memcpy(first, text, n);
+    first[n] = '\0';
+    return tool_integer(first, 0, INT_MAX - 1, &o->first) &&
+           tool_integer(text + n + 1, o->first, INT_MAX - 1, &o->last);
 }
 
 static bool take(struct overlay *o, int option, const char *value)
@@ -85,6 +105,10 @@ static bool take(struct overlay *o, int option, const char *value)
         return word >= 0;
     case 'm':
         return settings_memory(value, &o->compositor.reserve_bytes);
+    case 'F':
+        return take_frames(o, value);
+    case 'W':
+        return tool_integer(value, 0, INT_MAX, &o->warm_up);
     default: /* 'n' */
         return tool_integer(value, 0, 1000000000, &o->start_number);
     }
@@ -96,6 +120,8 @@ static const struct option options[] = {
     {"matrix", required_argument, NULL, 'x'},
     {"start-number", required_argument, NULL, 'n'},
     {"jpeg-quality", required_argument, NULL, 'Q'},
+    {"frames", required_argument, NULL, 'F'},
+    {"warm-up", required_argument, NULL, 'W'},
     {"encode", required_argument, NULL, 'e'},
     {"memory", required_argument, NULL, 'm'},
     {"layers", required_argument, NULL, 'L'},
@@ -122,7 +148,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
             o->output = optarg;
         else if (c == 'e')
             o->encode = optarg;
-        else if (strchr("rxnQmLT", c)) {
+        else if (strchr("rxnQmLTFW", c)) {
             if (!take(o, c, optarg))
                 return tool_refuse(tool, options[index].name, optarg);
         } else if ((code = tool_option(tool, c, optarg)) >= 0)
@@ -200,6 +226,26 @@ int overlay_draw(struct tool *tool, struct overlay *o,
                  const struct glint_image *image)
 {
     return overlay_draw_by(tool, o, image, draw_in_place, NULL);
+}
+
+int overlay_look(struct tool *tool, struct overlay *o,
+                 const struct glint_image *image)
+{
+    struct compositor *const compositor = &o->compositor;
+    enum glint_status status = GLINT_OK;
+    int code = EXIT_OK;
+
+    if (!compositor->sized)
+        code = compositor_size(tool, compositor, image->width, image->height);
+    if (code != EXIT_OK)
+        return code;
+    if (o->first - compositor->n_frames <= o->warm_up) {
+        status = compositor_find(compositor, image, o->elapsed_us);
+        if (status == GLINT_OK && compositor->has_lens)
+            compositor_expose(compositor, o->elapsed_us);
+    }
+    compositor->n_frames++;
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
 
 int overlay_draw_by(struct tool *tool, struct overlay *o,
@@ -334,6 +380,13 @@ static int check_output(struct tool *tool, struct overlay *o)
     if (!frames && o->is_video != overlay_is_video(o->output))
         return tool_usage(tool, "a video becomes a video (.y4m, - or one of "
                                 "ffmpeg's), a picture a picture");
+    if (!o->is_video && o->last < INT_MAX)
+        return tool_usage(tool, "--frames is for videos");
+    if (o->last < INT_MAX && (o->compositor.settings.budget_ms > 0 ||
+                              o->compositor.settings.dials.still_px > 0))
+        return tool_usage(tool, "--frames does not go with --budget and "
+                                "--still, by which frames depend on those "
+                                "drawn before");
     if (tool_check_output(tool, o->output) != EXIT_OK)
         return EXIT_OUTPUT;
     if (o->is_video || glint_kept_check(o->output, &error) == GLINT_OK)
@@ -409,6 +462,7 @@ int cmd_overlay(int argc, char **argv)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     compositor_defaults(&o->compositor);
     o->start_number = -1;
+    o->last = o->warm_up = INT_MAX;
     code = parse(&tool, argc, argv, o);
     if (code < 0) {
         code = tool_start(&tool);

@@ -17,6 +17,9 @@ struct overlay {
     struct overlay_y4m *y4m;
     const char *input, *output;
     int start_number;
+    /* Frames of a video that are drawn, from 0, and how many before these are
+     * looked at. */
+    int first, last, warm_up;
     int32_t elapsed_us; /* microseconds from frame to frame; 0: pictures by
                            themselves */
     int range, matrix;  /* 0: auto */
@@ -43,6 +46,11 @@ struct overlay {
 /* Puts the flare on IMAGE, the next frame, and adds up its figures. Returns an
  * exit code, as all functions here that return int. */
 int overlay_draw(struct tool *tool, struct overlay *o,
+                 const struct glint_image *image);
+
+/* Looks at IMAGE, a frame before the first that is drawn, so that lamps and the
+ * exposure are followed. */
+int overlay_look(struct tool *tool, struct overlay *o,
                  const struct glint_image *image);
 
 /* Does as overlay_draw() for frames that are not drawn in place: DRAW draws

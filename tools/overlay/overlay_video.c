@@ -7,6 +7,7 @@
 #include "overlay/overlay_y4m.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 #include <unistd.h>
@@ -26,6 +27,7 @@ struct video {
     char pipe[32];            /* name of the pipe, for OUT */
     struct glint_y4m_reader in;
     struct glint_y4m_writer out;
+    bool is_closed; /* The reader of a pipe went away. */
 };
 
 static bool is_y4m(const char *name)
@@ -138,7 +140,8 @@ static enum glint_status open_encoder(struct video *v)
     const struct overlay *o = v->o;
     struct ffmpeg_target target = {
         .name = o->output,
-        .sound = v->reads && !is_gif(o->output) ? o->input : NULL,
+        .sound = v->reads && !is_gif(o->output) && o->last == INT_MAX ? o->input
+                                                                      : NULL,
         .options = o->encode,
         .width = v->in.header.width,
         .height = v->in.header.height,
@@ -176,33 +179,45 @@ static int open_output(struct video *v)
 
 /* ------------------------------------------------------------------ frames */
 
+/* Draws IMAGE, the frame that was read last, and writes it. Returns an exit
+ * code. */
+static int draw_frame(struct video *v, const struct glint_image *image)
+{
+    enum glint_status status;
+    const int code = overlay_y4m_draw(v->tool, v->o, &v->in, image);
+
+    if (code != EXIT_OK)
+        return code;
+    status = glint_y4m_writer_put_planes(&v->out, v->in.planes,
+                                         overlay_y4m_bytes(&v->in),
+                                         v->in.frame_tags, &v->error);
+    overlay_progress(v->tool, v->o);
+    v->is_closed = status == GLINT_E_CLOSED;
+    return status == GLINT_OK || v->is_closed ? EXIT_OK : fail(v, status);
+}
+
 static int frames(struct video *v)
 {
+    const int *const at = &v->o->compositor.n_frames;
     const struct glint_image *image;
     int code = EXIT_OK;
 
-    while (code == EXIT_OK) {
-        enum glint_status status =
+    while (code == EXIT_OK && !v->is_closed && *at <= v->o->last) {
+        const enum glint_status status =
             glint_y4m_reader_next(&v->in, &image, &v->error);
 
-        if (status == GLINT_OK && !image)
-            break;
-        if (status == GLINT_OK) {
-            code = overlay_y4m_draw(v->tool, v->o, &v->in, image);
-            if (code != EXIT_OK)
-                break;
-            status = glint_y4m_writer_put_planes(&v->out, v->in.planes,
-                                                 overlay_y4m_bytes(&v->in),
-                                                 v->in.frame_tags, &v->error);
-            overlay_progress(v->tool, v->o);
-        }
-        if (status == GLINT_E_CLOSED)
+        if (status == GLINT_E_CLOSED || (status == GLINT_OK && !image))
             break;
         if (status != GLINT_OK)
             code = fail(v, status);
+        else if (*at < v->o->first)
+            code = overlay_look(v->tool, v->o, image);
+        else
+            code = draw_frame(v, image);
     }
-    if (code == EXIT_OK && v->o->compositor.n_frames == 0) {
-        fprintf(stderr, "glint overlay: %s: no frames\n", v->in.name);
+    if (code == EXIT_OK && *at <= v->o->first && !v->is_closed) {
+        fprintf(stderr, "glint overlay: %s: %s frames\n", v->in.name,
+                *at > 0 ? "has not as many" : "no");
         code = EXIT_INPUT;
     }
     return code;
@@ -259,7 +274,7 @@ static int run(struct video *v)
         return code;
     v->o->elapsed_us = frame_us(&v->in.header);
     code = frames(v);
-    whole = v->out.n_frames == v->in.n_frames;
+    whole = v->o->first + v->out.n_frames == v->in.n_frames;
     if (code == EXIT_OK && v->reads && whole)
         code = end_reader(v);
     return code == EXIT_OK ? end_writer(v) : code;

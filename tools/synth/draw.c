@@ -275,8 +275,9 @@ static int draw_flare(const struct tool *tool, struct settings *s,
      * bright as they are. */
     for (int i = 0; i < (int)item->n_lights; i++)
         lamp[i].power *= power;
-    code = draw_part(tool, s, item, lamp, STAR, glare);
-    result->star_gain = item->star;
+    memset(glare, 0, n * sizeof *glare);
+    if (item->star > 0)
+        code = draw_part(tool, s, item, lamp, STAR, glare);
     times(glare, n, item->star);
     if (code == EXIT_OK && (item->haze > 0 || item->front_dust > 0)) {
         code = draw_part(tool, s, item, lamp, HAZE, spare);

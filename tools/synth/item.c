@@ -273,9 +273,8 @@ static void print_result(FILE *file, const struct synth_item *item,
     fprintf(file,
             "\"drawn\": {\"background_ev\": %.6g, \"f_number\": %.6g, "
             "\"focal_mm\": %.6g, \"sensor_width_mm\": %.6g, "
-            "\"star_gain\": %.6g, \"lights\": [",
-            r->background_ev, r->f_number, r->focal_mm, r->sensor_width_mm,
-            r->star_gain);
+            "\"lights\": [",
+            r->background_ev, r->f_number, r->focal_mm, r->sensor_width_mm);
     for (int i = 0; i < (int)item->n_lights; i++)
         fprintf(file,
                 "%s{\"power\": %.6g, \"white\": %.6g, \"theta_deg\": %.6g, "

@@ -60,7 +60,6 @@ enum { SYNTH_LEAST_EV = -7, SYNTH_MOST_EV = 1 };
 /* What came out, for those who read a manifest; it draws nothing. */
 struct synth_result {
     double background_ev, f_number, focal_mm, sensor_width_mm;
-    double star_gain; /* factor on the star of physics */
     /* Of each light: display white times pixels, its own light over white, and
      * angles off the axis and about it. */
     double power[SYNTH_MAX_LIGHTS], white[SYNTH_MAX_LIGHTS],
