@@ -160,6 +160,7 @@ static void set_lamps(const struct synth_item *item, const struct settings *s,
                                  glint_view_pixel_tangent(&view, focal));
         result->theta_deg[i] = lamp[i].theta_deg;
         result->phi_deg[i] = lamp[i].phi_deg;
+        memcpy(result->rgb[i], lamp[i].rgb, sizeof lamp[i].rgb);
     }
 }
 

@@ -278,9 +278,9 @@ static void print_result(FILE *file, const struct synth_item *item,
     for (int i = 0; i < (int)item->n_lights; i++)
         fprintf(file,
                 "%s{\"power\": %.6g, \"white\": %.6g, \"theta_deg\": %.6g, "
-                "\"phi_deg\": %.6g}",
+                "\"phi_deg\": %.6g, \"rgb\": [%.6g, %.6g, %.6g]}",
                 i ? ", " : "", r->power[i], r->white[i], r->theta_deg[i],
-                r->phi_deg[i]);
+                r->phi_deg[i], r->rgb[i][0], r->rgb[i][1], r->rgb[i][2]);
     fputs("]}", file);
 }
 

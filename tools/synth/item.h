@@ -60,10 +60,11 @@ enum { SYNTH_LEAST_EV = -7, SYNTH_MOST_EV = 1 };
 /* What came out, for those who read a manifest; it draws nothing. */
 struct synth_result {
     double background_ev, f_number, focal_mm, sensor_width_mm;
-    /* Of each light: display white times pixels, its own light over white, and
-     * angles off the axis and about it. */
+    /* Of each light: display white times pixels, its own light over white, its
+     * angles off the axis and about it, and its linear colour. */
     double power[SYNTH_MAX_LIGHTS], white[SYNTH_MAX_LIGHTS],
-        theta_deg[SYNTH_MAX_LIGHTS], phi_deg[SYNTH_MAX_LIGHTS];
+        theta_deg[SYNTH_MAX_LIGHTS], phi_deg[SYNTH_MAX_LIGHTS],
+        rgb[SYNTH_MAX_LIGHTS][3];
 };
 
 enum { SYNTH_FIELDS = 30, SYNTH_LIGHT_FIELDS = 5 };
