@@ -18,6 +18,7 @@ static const char help[] =
     "  glint coat COATING | LENS ...   what a coating reflects, as plots\n"
     "  glint draw LENS -o FILE.svg     its section, rays, ghosts and spots\n"
     "  glint import FILE -o FILE.lens  lens files of other programs\n"
+    "  glint lint LENS                 misprints in a table, and the digit\n"
     "  glint bake LENS -o MODEL        polynomials of its ghosts, in integers\n"
     "  glint trace LENS --ghost K ...  rays as a table\n"
     "  glint render LENS|MODEL -o OUT  the flare alone\n"
@@ -51,7 +52,7 @@ static const struct command commands[] = {
     {"compare", cmd_compare}, {"bake", cmd_bake},       {"bench", cmd_bench},
     {"sweep", cmd_sweep},     {"lenses", cmd_lenses},   {"coat", cmd_coat},
     {"styles", cmd_styles},   {"draw", cmd_draw},       {"synth", cmd_synth},
-    {"import", cmd_import},
+    {"import", cmd_import},   {"lint", cmd_lint},
 };
 
 enum { N_COMMANDS = sizeof commands / sizeof *commands };

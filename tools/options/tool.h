@@ -165,6 +165,7 @@ int cmd_lenses(int argc, char **argv);
 int cmd_coat(int argc, char **argv);
 int cmd_draw(int argc, char **argv);
 int cmd_import(int argc, char **argv);
+int cmd_lint(int argc, char **argv);
 int cmd_styles(int argc, char **argv);
 int cmd_synth(int argc, char **argv);
 

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: MIT */
+#include "lens_check/glass_map.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Ends of the map of glasses: the least and the largest Vd at an nd. Makers'
+ * maps from fluorite and fluor crowns over the lanthanum crowns to the densest,
+ * and down the flints, with lead and without; two widths of a label beyond. */
+static const struct {
+    double nd, least, most;
+} ends[] = {{1.42, 60.0, 97.5}, {1.45, 56.0, 96.0}, {1.50, 48.0, 84.0},
+            {1.55, 40.0, 77.5}, {1.60, 33.5, 70.0}, {1.65, 29.0, 63.0},
+            {1.70, 26.0, 59.0}, {1.75, 23.5, 55.0}, {1.80, 21.0, 50.0},
+            {1.85, 19.0, 46.0}, {1.90, 17.5, 41.0}, {2.00, 15.5, 33.0},
+            {2.20, 14.0, 26.0}};
+
+enum { N_ENDS = sizeof ends / sizeof *ends };
+
+bool glass_is_known(double nd, double vd)
+{
+    int k = 0;
+    double part;
+
+    if (!(nd >= ends[0].nd && nd <= ends[N_ENDS - 1].nd))
+        return false;
+    while (k < N_ENDS - 2 && nd > ends[k + 1].nd)
+        k++;
+    part = (nd - ends[k].nd) / (ends[k + 1].nd - ends[k].nd);
+    return vd >= ends[k].least + part * (ends[k + 1].least - ends[k].least) &&
+           vd <= ends[k].most + part * (ends[k + 1].most - ends[k].most);
+}
+
+bool glass_is_listed(const struct glint_prescription *lens, int k)
+{
+    const struct glint_surface *s = &lens->surface[k];
+    const struct glint_glass *glass;
+
+    for (int i = 0; i < lens->n_surfaces; i++)
+        if (i != k && fabs(lens->surface[i].nd - s->nd) < 2e-6 &&
+            fabs(lens->surface[i].vd - s->vd) < 0.05)
+            return true;
+    for (int i = 0; (glass = glint_glass_at(i)) != NULL; i++) {
+        struct glint_surface known = {.nd = 1};
+        double nd, spread;
+
+        memcpy(known.sellmeier, glass->sellmeier, sizeof known.sellmeier);
+        nd = glint_surface_index(&known, 587.5618);
+        spread = glint_surface_index(&known, 486.1327) -
+                 glint_surface_index(&known, 656.2725);
+        if (fabs(nd - s->nd) < 2e-5 && fabs((nd - 1) / spread - s->vd) < 0.3)
+            return true;
+    }
+    return false;
+}
+
+int glass_suspect(const struct glint_prescription *lens, char *text,
+                  size_t bytes)
+{
+    for (int k = 0; k < lens->n_surfaces; k++) {
+        const struct glint_surface *s = &lens->surface[k];
+
+        if (!(s->vd > 0))
+            continue;
+        if (!glass_is_known(s->nd, s->vd)) {
+            snprintf(text, bytes, "no glass has nd %.6g and Vd %.4g", s->nd,
+                     s->vd);
+            return k;
+        }
+        for (int i = 0; i < k; i++)
+            if (fabs(lens->surface[i].nd - s->nd) < 2e-6 &&
+                fabs(lens->surface[i].vd - s->vd) > 1.5) {
+                snprintf(text, bytes,
+                         "nd %.6g has Vd %.4g here and %.4g at surface %d",
+                         s->nd, s->vd, lens->surface[i].vd, i);
+                return k;
+            }
+    }
+    return -1;
+}
