@@ -475,6 +475,7 @@ enum glint_status compositor_draw(struct compositor *compositor,
     double found;
 
     if (status != GLINT_OK || !compositor->has_lens) {
+        over_scene_mark(&compositor->scene, image);
         compositor->n_frames++;
         return status;
     }
