@@ -134,16 +134,17 @@ static void tick(const struct plot *p, bool is_x, double v)
 }
 
 /* Draws the ticks of axis A: on a logarithmic one 1, 2 and 5 times powers of
- * ten, and more if it spans less than a factor of 12; else every 1, 2 or 5
- * times a power of ten. */
+ * ten, more if it spans less than a factor of 12, and if it spans four decades
+ * or more some powers alone; else every 1, 2 or 5 times a power of ten. */
 static void ticks(const struct plot *p, const struct plot_axis *a, bool is_x)
 {
     static const double mantissa[] = {1, 2, 5, 0.7, 1.5, 3};
-    const int n = a->hi / a->lo < 12 ? 6 : 3;
+    const int every = a->is_log ? 1 + (int)log10(a->hi / a->lo) / 8 : 1;
+    const int n = a->hi / a->lo < 12 ? 6 : a->hi / a->lo < 1e4 ? 3 : 1;
     double step = pow(10, floor(log10((a->hi - a->lo) / 4)));
 
     if (a->is_log) {
-        for (int e = -6; e <= 9; e++)
+        for (int e = -24; e <= 9; e += every)
             for (int k = 0; k < n; k++) {
                 const double v = mantissa[k] * pow(10, e);
 
