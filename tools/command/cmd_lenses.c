@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 
 #include "lens_figures/drawing.h"
+#include "lens_figures/thumbnail.h"
 #include "model/lens_files.h"
 #include "overlay/compositor.h"
 #include "model/model_cache.h"
@@ -34,7 +35,10 @@ static const char help[] =
     "  --names           their names alone, a line each\n"
     "  WORD              lenses that have all of these words in their name,\n"
     "                    source or character, in any case of letters\n"
-    "  --html FILE       a page with their drawings\n"
+    "  --html FILE       a page with their drawings, and of those that are "
+    "baked\n"
+    "                    the flare of a lamp at three angles and the model's "
+    "bytes\n"
     "  --models FOLDER   bake what is missing and put all models there, of\n"
     "                    overlay and of render, as make install does\n"
     "  -o, --only NAME   this lens; repeatable\n";
@@ -181,6 +185,27 @@ static void print_escaped(FILE *file, const char *text)
             fputc(*text, file);
 }
 
+/* Writes thumbnails of the flare, if there is a model to draw them by. */
+static void print_flares(struct lenses *l, const char *name,
+                         const struct entry *e)
+{
+    struct settings *settings = calloc(1, sizeof *settings);
+    size_t bytes = 0;
+
+    if (!e->is_baked)
+        fputs("<p>no model yet: one is baked when the lens is first drawn</p>",
+              l->page);
+    else if (settings && set_settings(settings, false) == EXIT_OK) {
+        fputs("<p>", l->page);
+        if (thumbnails_write(l->tool, settings, name, l->page, &bytes) ==
+            EXIT_OK)
+            fprintf(l->page, "<br>model of %zu bytes</p>", bytes);
+        else
+            l->code = EXIT_RUNTIME;
+    }
+    free(settings);
+}
+
 static void print_html(struct lenses *l, const char *name,
                        const struct entry *e)
 {
@@ -195,12 +220,14 @@ static void print_html(struct lenses *l, const char *name,
               "margin:2em;display:grid;grid-template-columns:"
               "repeat(auto-fill,minmax(600px,1fr));gap:1.5em}figure{margin:0;"
               "border:1px solid #ccc;padding:1em}svg{max-width:100%;"
-              "height:auto}figcaption{color:#444}</style>\n",
+              "height:auto}img{margin-right:6px}p,figcaption{color:#444}</"
+              "style>\n",
               l->page);
     fprintf(l->page, "<figure id=\"%s\"><b>%s</b> %.4g mm, f/%g, %d ghosts<br>",
             name, name, e->optics.focal_mm, e->settings.lens.f_number,
             e->n_ghosts);
     drawing_write(&drawing, l->page);
+    print_flares(l, name, e);
     fputs("<figcaption>", l->page);
     print_escaped(l->page, e->settings.lens.source);
     fputs("<br>", l->page);
