@@ -95,6 +95,12 @@ struct glint_form {
     /* From the light's frame at the vertex to the surface's own: at = turn at +
      * shift; rows of TURN are unit vectors. */
     double turn[3][3], shift[3];
+    /* Of a round form or a cylinder on the axis, LEVEL, rays stay in the light's
+     * frame: the direction of its profile there, and 1 if that is any. */
+    bool level;
+    double along[2], round;
+    int n_terms;      /* number of terms until the last that is not 0 */
+    double steepest2; /* square of the steepest slope of the profile's glass */
 };
 
 /* Returns whether S is no sphere on the axis. */
@@ -144,7 +150,8 @@ struct glint_prescription {
     struct glint_surface surface[GLINT_MAX_SURFACES];
     int stop_after; /* number of surfaces before the stop, 0 .. n_surfaces */
     double stop_thickness_mm; /* mm from the stop to the next surface (or the
-                                 sensor); a front stop lies at z < 0 */
+                                 sensor); a front stop lies at z < 0, or
+                                 behind the vertex where this is below 0 */
     double stop_semi_mm;      /* largest opening of the stop */
     double check_focal_mm;    /* values that the table states; 0: not stated */
     double check_back_mm;

@@ -53,12 +53,15 @@ static bool is_shaped(const struct glint_prescription *lens, int e)
 }
 
 /* Returns the least gap between element E and the next, and the height AT which
- * it is. */
+ * it is. A stop that comes first may lie behind the front vertex, so that the
+ * glass reaches through its opening: its rim alone has to be free. */
 static double least_gap_mm(const struct glint_prescription *lens, int e,
                            double *at)
 {
-    const double height = CLEAR_SHARE * fmin(element_semi_mm(lens, e),
-                                             element_semi_mm(lens, e + 1));
+    const bool through = e == 0 && element_gap_mm(lens, e) < 0.0;
+    const double height =
+        (through ? 1.0 : CLEAR_SHARE) *
+        fmin(element_semi_mm(lens, e), element_semi_mm(lens, e + 1));
     const bool shaped = is_shaped(lens, e) || is_shaped(lens, e + 1);
     double least = HUGE_VAL;
 
@@ -66,7 +69,8 @@ static double least_gap_mm(const struct glint_prescription *lens, int e,
     if (!shaped)
         return element_gap_mm(lens, e) + sag_mm(lens, e + 1, height, 0) -
                sag_mm(lens, e, height, 0);
-    for (int k = 0; k < HEIGHTS * TURNS; k++) {
+    for (int k = through ? (HEIGHTS - 1) * TURNS : 0; k < HEIGHTS * TURNS;
+         k++) {
         const int ring = 1 + k / TURNS;
         const double h = height * ring / HEIGHTS;
         const double x = h * glint_cos_deg(360.0 / TURNS * (k % TURNS));

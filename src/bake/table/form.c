@@ -11,7 +11,10 @@
 /* Share of END2 beyond it over which curvature fades. */
 #define FADES 0.25
 
-enum { MOST_STEPS = 80, MOST_HALVINGS = 60 };
+/* Factor on the squares of slopes, for what lies between those sampled. */
+#define STEEPER 1.1
+
+enum { MOST_STEPS = 80, MOST_HALVINGS = 60, SLOPES = 64 };
 
 bool glint_surface_is_shaped(const struct glint_surface *s)
 {
@@ -277,6 +280,28 @@ static void place(struct glint_form *f, const struct glint_shape *s,
     f->shift[2] += s->pivot_mm;
 }
 
+/* Sets what level forms are met by. */
+static void set_level(struct glint_form *f, const struct glint_shape *s)
+{
+    const double *const along = f->turn[f->bend == GLINT_BEND_Y];
+
+    f->level = f->across == 0.0;
+    for (int k = 0; k < 2; k++) {
+        f->level &= s->decentre_mm[k] == 0.0 && s->tilt_deg[k] == 0.0;
+        f->along[k] = along[k];
+    }
+    f->round = f->bend == GLINT_BEND_ROUND ? 1.0 : 0.0;
+    for (int k = 0; k < GLINT_SHAPE_TERMS; k++)
+        f->n_terms = f->term[k] != 0.0 ? k + 1 : f->n_terms;
+    for (int k = 1; k <= SLOPES; k++) {
+        const double h2 = f->end2 * k * k / (SLOPES * SLOPES);
+        double at[3];
+
+        profile_inside(f, h2, at);
+        f->steepest2 = fmax(f->steepest2, STEEPER * 4.0 * h2 * at[1] * at[1]);
+    }
+}
+
 void glint_form_init(struct glint_form *form, const struct glint_surface *s,
                      double phi_deg)
 {
@@ -292,6 +317,7 @@ void glint_form_init(struct glint_form *form, const struct glint_surface *s,
     form->end2 = end_of(form);
     profile_inside(form, form->end2, form->end_at);
     place(form, shape, phi_deg);
+    set_level(form, shape);
 }
 
 bool glint_surface_point(const struct glint_surface *s, double phi_deg,

@@ -36,6 +36,8 @@ static const struct glint_text_range film_height_range = {"film height", 0.1,
 static const struct glint_text_range stated_range = {"focal length", 0.01,
                                                      GLINT_MAX_FOCAL_MM};
 static const struct glint_text_range thickness_range = {"thickness", 0, 1e5};
+static const struct glint_text_range front_stop_range = {"thickness", -100,
+                                                         1e5};
 static const struct glint_text_range semi_range = {"semi-diameter", 0.01, 1e4};
 static const struct glint_text_range nd_range = {"index", 1.01, 4};
 static const struct glint_text_range vd_range = {"Abbe number", 10, 150};
@@ -273,10 +275,12 @@ static bool read_medium(struct parser *p, struct medium *medium)
 /* ---------------------------------------------------------------- elements */
 
 /* Reads thickness and semi-diameter of an element. */
-static bool read_gap_and_semi(struct parser *p, double *thickness_mm,
-                              double *semi_mm, struct glint_text_place *semi)
+static bool read_gap_and_semi(struct parser *p,
+                              const struct glint_text_range *gap,
+                              double *thickness_mm, double *semi_mm,
+                              struct glint_text_place *semi)
 {
-    return glint_text_value(&p->text, &thickness_range, thickness_mm,
+    return glint_text_value(&p->text, gap, thickness_mm,
                             &p->places.thickness[p->n_elements++]) &&
            glint_text_value(&p->text, &semi_range, semi_mm, semi);
 }
@@ -316,7 +320,7 @@ static bool read_surface(struct parser *p)
         return glint_text_fail(&p->text, p->word[SURFACE],
                                "more than %d surfaces", GLINT_MAX_SURFACES);
     if (!glint_radius_read(&p->text, &s->radius_mm) ||
-        !read_gap_and_semi(p, &s->thickness_mm, &s->semi_mm,
+        !read_gap_and_semi(p, &thickness_range, &s->thickness_mm, &s->semi_mm,
                            &p->places.semi[k]))
         return false;
     if (!read_medium(p, &medium))
@@ -372,8 +376,9 @@ static bool read_stop(struct parser *p)
                                "the stop cannot be in a group; end it above");
     p->is_surface = false;
     p->lens.stop_after = p->lens.n_surfaces;
-    return read_gap_and_semi(p, &p->lens.stop_thickness_mm,
-                             &p->lens.stop_semi_mm, &p->places.stop);
+    return read_gap_and_semi(
+        p, p->lens.n_surfaces ? &thickness_range : &front_stop_range,
+        &p->lens.stop_thickness_mm, &p->lens.stop_semi_mm, &p->places.stop);
 }
 
 /* ------------------------------------------------------------------- lines */

@@ -15,6 +15,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "bake/trace/beam.h"
 #include "bake/trace/coating.h"
 #include "bake/table/form.h"
 #include "base/compiler.h"
@@ -135,36 +136,6 @@ void glint_path_init_at(struct glint_path *path,
 
 /* -------------------------------------------------------------------- rays */
 
-/* Rays are traced eight at a time: a root or a division waits for the one
- * before it in its own ray, but not for those of other rays. All code is loops
- * over N lanes, and a condition of a ray is a choice between two values, so
- * that compilers can use vectors; a lost ray goes on with meaningless values.
- * The operations of a ray do not depend on N, and neither do its bits. */
-enum { LANES = 8 };
-
-struct beam {
-    double x[LANES], y[LANES], z[LANES]; /* mm, from the vertex of the event */
-    double l[LANES], m[LANES], n[LANES]; /* direction, unit length */
-    double cosine[LANES];    /* cosine between ray and normal at the surface */
-    double normal[LANES][3]; /* unit normal, of shaped surfaces only */
-    double energy[LANES];
-    /* Height and semi-diameter where their ratio was largest so far, squared.
-     */
-    double height2[LANES], semi2[LANES];
-    double stop_x[LANES], stop_y[LANES];
-    double status[LANES]; /* an enum glint_ray_status, as a number */
-};
-
-/* Returns SO_FAR if the ray was lost already, else GLINT_RAY_OK if FINE, else
- * STATUS. */
-static WHOLLY_INLINE double judge(double so_far, bool fine,
-                                  enum glint_ray_status status)
-{
-    const double now = fine ? (double)GLINT_RAY_OK : (double)status;
-
-    return so_far > GLINT_RAY_OK ? so_far : now;
-}
-
 /* Moves rays straight to the plane ADVANCE away. */
 static WHOLLY_INLINE void go(struct beam *b, int n, double advance_mm)
 {
@@ -198,56 +169,6 @@ static WHOLLY_INLINE void meet(struct beam *b, int n, double c)
             judge(b->status[k], (square > 0.0) & (1.0 - c * b->z[k] > 0.0),
                   GLINT_RAY_MISSED);
     }
-}
-
-static void set_ray(struct beam *b, int k, const double at[3],
-                    const double way[3])
-{
-    b->x[k] = at[0];
-    b->y[k] = at[1];
-    b->z[k] = at[2];
-    b->l[k] = way[0];
-    b->m[k] = way[1];
-    b->n[k] = way[2];
-}
-
-/* Moves rays into the frame of FORM and on to it. */
-static void meet_form(struct beam *b, int n, const struct glint_form *form)
-{
-    for (int k = 0; k < n; k++) {
-        double at[3] = {b->x[k], b->y[k], b->z[k]};
-        double way[3] = {b->l[k], b->m[k], b->n[k]};
-        bool met;
-
-        glint_form_enter(form, at, way);
-        met = glint_form_meet(form, at, way, b->normal[k], &b->cosine[k]);
-        b->status[k] = judge(b->status[k], met, GLINT_RAY_MISSED);
-        set_ray(b, k, at, way);
-    }
-}
-
-/* Moves rays from the frame of FORM back to the light's. */
-static void leave_form(struct beam *b, int n, const struct glint_form *form)
-{
-    for (int k = 0; k < n; k++) {
-        double at[3] = {b->x[k], b->y[k], b->z[k]};
-        double way[3] = {b->l[k], b->m[k], b->n[k]};
-        glint_form_leave(form, at, way);
-        set_ray(b, k, at, way);
-    }
-}
-
-/* Does what turn() does, at a form. */
-static void turn_at_form(struct beam *b, int k, double s, double part,
-                         double way)
-{
-    const double before = b->n[k];
-
-    b->l[k] = s * b->l[k] + part * b->normal[k][0];
-    b->m[k] = s * b->m[k] + part * b->normal[k][1];
-    b->n[k] = s * before + part * b->normal[k][2];
-    b->status[k] =
-        judge(b->status[k], way * before * b->n[k] > 0.0, GLINT_RAY_MISSED);
 }
 
 /* Sets the direction to S times itself plus PART times the normal. Rays that
@@ -291,23 +212,6 @@ static WHOLLY_INLINE void reflectances(const struct beam *b, int n,
         part[k] = out[k] > 0.0 ? part[k] : 1.0;
 }
 
-/* Turns rays at a form; OUT are the cosines behind it. */
-static void cross_form(struct beam *b, int n, bool reflects, double ratio,
-                       const double *out)
-{
-    for (int k = 0; k < n; k++) {
-        if (reflects) {
-            turn_at_form(b, k, 1.0, -2.0 * b->cosine[k], -1.0);
-            continue;
-        }
-        b->status[k] =
-            judge(b->status[k], out[k] > 0.0, GLINT_RAY_TOTAL_REFLECTION);
-        turn_at_form(b, k, ratio,
-                     (b->n[k] < 0.0 ? -out[k] : out[k]) - ratio * b->cosine[k],
-                     1.0);
-    }
-}
-
 /* Refracts or reflects the rays at the surface of E. */
 static WHOLLY_INLINE void cross(struct beam *b, int n,
                                 const struct glint_event *e,
@@ -328,7 +232,7 @@ static WHOLLY_INLINE void cross(struct beam *b, int n,
     for (int k = 0; k < n && energies; k++)
         b->energy[k] *= reflects ? part[k] : 1.0 - part[k];
     if (e->shaped) {
-        cross_form(b, n, reflects, ratio, out);
+        glint_beam_cross_form(b, n, reflects, ratio, out);
         return;
     }
     for (int k = 0; k < n && reflects; k++)
@@ -390,7 +294,7 @@ static WHOLLY_INLINE void pass(struct beam *b, int n, int asked,
             b->stop_y[k] = b->y[k];
         }
     else if (e->shaped)
-        meet_form(b, n, &path->form[e->surface]);
+        glint_beam_meet_form(b, n, &path->form[e->surface]);
     else
         meet(b, n, e->curvature);
     for (int k = 0; k < asked && hits; k++)
@@ -403,7 +307,7 @@ static WHOLLY_INLINE void pass(struct beam *b, int n, int asked,
     widen(b, n, e->semi_mm);
     cross(b, n, e, path->film[e->surface], energies);
     if (e->shaped)
-        leave_form(b, n, &path->form[e->surface]);
+        glint_beam_leave_form(b, n, &path->form[e->surface]);
 }
 
 /* Moves rays from the sensor to the picture of an anamorphic lens. */

@@ -483,6 +483,76 @@ static void test_points_lie_on_rays(void **state)
     }
 }
 
+/* A stop behind the front vertex, about the glass: its rays are those of a
+ * plane there, as light before the glass runs straight. */
+static void test_stop_behind_the_vertex(void **state)
+{
+    static const char text[] = "name t\nf-number 4\nfilm 9 9\nstop %s\n"
+                               "surface 10 3 7 1.5 60\nshape A4 1e-5\n"
+                               "surface -30 12 7 air\n";
+    const double way[3] = {0.3, 0, sqrt(1 - 0.09)};
+    struct glint_error error = {""};
+    struct glint_optics optics;
+    struct glint_ray ray;
+    char table[300];
+
+    (void)state;
+    snprintf(table, sizeof table, text, "-0.4 3");
+    assert_int_equal(
+        glint_prescription_parse(&lens, table, strlen(table), "t.lens", &error),
+        GLINT_OK);
+    glint_optics_of(&lens, &optics);
+    assert_true(fabs(optics.entrance_z_mm - 0.4) < 1e-12);
+    glint_path_init(&path, &lens, NULL, LINE_D_NM);
+    assert_int_equal(glint_trace(&path, 1, 2, way, &ray, NULL), 0);
+    assert_true(fabs(ray.stop_x_mm - (1 + 0.4 * 0.3 / way[2])) < 1e-14);
+    assert_true(ray.stop_y_mm == 2);
+    /* At 3 mm the glass is 0.46 mm behind the vertex. */
+    snprintf(table, sizeof table, text, "-0.5 3");
+    assert_int_equal(
+        glint_prescription_parse(&lens, table, strlen(table), "t.lens", &error),
+        GLINT_E_LENS);
+    assert_non_null(strstr(error.text, "t.lens:4:6: overlaps the next"));
+    snprintf(table, sizeof table, text, "-101 3");
+    assert_int_equal(
+        glint_prescription_parse(&lens, table, strlen(table), "t.lens", &error),
+        GLINT_E_LENS);
+    assert_non_null(strstr(error.text, "thickness must be -100 .. 100000"));
+}
+
+/* Rays that are met all at once and one by one hit the same place, with the
+ * same bits however many are traced together. */
+static void test_lanes(void **state)
+{
+    struct glint_launch from[19];
+    struct glint_ray many[19], one;
+    enum glint_ray_status status[19];
+    int traced = 0;
+
+    (void)state;
+    load("surface 20 6 9 1.5 60\nshape conic -2 A4 2e-5 A8 -3e-9\n"
+         "surface -30 3 9 air\nsurface -25 2 9 1.6 40\nshape cylinder x\n"
+         "surface flat 30 9 air\n");
+    glint_path_init_at(&path, &lens, NULL, 532, 25);
+    for (int k = 0; k < 19; k++)
+        from[k] =
+            (struct glint_launch){k - 9, 0.4 * k - 3, {0.05 * k - 0.3, 0, 0}};
+    for (int k = 0; k < 19; k++)
+        from[k].direction[2] =
+            sqrt(1 - from[k].direction[0] * from[k].direction[0]);
+    glint_trace_many(&path, 19, from, many, status, NULL);
+    for (int k = 0; k < 19; k++) {
+        assert_int_equal(glint_trace(&path, from[k].x_mm, from[k].y_mm,
+                                     from[k].direction, &one, NULL),
+                         status[k]);
+        if (status[k] != GLINT_RAY_OK)
+            continue;
+        assert_memory_equal(&one, &many[k], sizeof one);
+        traced++;
+    }
+    assert_true(traced > 10);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -493,6 +563,8 @@ int main(void)
         cmocka_unit_test(test_squeeze),
         cmocka_unit_test(test_turned_lens),
         cmocka_unit_test(test_points_lie_on_rays),
+        cmocka_unit_test(test_stop_behind_the_vertex),
+        cmocka_unit_test(test_lanes),
         cmocka_unit_test(test_mistakes)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,259 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Rays at surfaces that are no centred spheres.
+ *
+ * Round forms and cylinders on the axis are met by Newton's method from the
+ * vertex plane, all lanes at once, where that is sure to find the nearest
+ * place: where the ray is steeper than the profile anywhere on its glass, and
+ * stays over the glass, z less the sag only rises or only falls along it. All
+ * other rays are met one by one (bake/table/form.h). */
+#include "bake/trace/beam.h"
+
+#include <math.h>
+
+#include "bake/table/form.h"
+
+enum { MOST_STEPS = 10 };
+/* Share of a length: a last step below it leaves an error of its square. */
+#define LAST_STEP 1e-9
+
+static void set_ray(struct beam *b, int k, const double at[3],
+                    const double way[3])
+{
+    b->x[k] = at[0];
+    b->y[k] = at[1];
+    b->z[k] = at[2];
+    b->l[k] = way[0];
+    b->m[k] = way[1];
+    b->n[k] = way[2];
+}
+
+/* Rays and the profile of a form: the height's square along ray K after T is q0
+ * + 2 q1 T + q2 T^2. */
+struct heights {
+    double q0[LANES], q1[LANES], q2[LANES];
+};
+
+static WHOLLY_INLINE void set_heights(const struct beam *b, int n,
+                                      const struct glint_form *f,
+                                      struct heights *h)
+{
+    const double ax = f->along[0], ay = f->along[1], round = f->round;
+
+    for (int k = 0; k < n; k++) {
+        const double a = ax * b->x[k] + ay * b->y[k];
+        const double da = ax * b->l[k] + ay * b->m[k];
+        const double s = ax * b->y[k] - ay * b->x[k];
+        const double ds = ax * b->m[k] - ay * b->l[k];
+
+        h->q0[k] = a * a + round * s * s;
+        h->q1[k] = a * da + round * s * ds;
+        h->q2[k] = da * da + round * ds * ds;
+    }
+}
+
+/* Sets SAG to the profile of F at the heights whose squares are Q, and SLOPE to
+ * its derivative by them; as the table says. */
+static WHOLLY_INLINE void profiles(const struct glint_form *f, int n,
+                                   const double *q, double *sag, double *slope)
+{
+    const double c = f->curvature, a = (1.0 + f->conic) * c * c;
+    double p[LANES], dp[LANES];
+
+    for (int k = 0; k < n; k++)
+        p[k] = dp[k] = 0.0;
+    for (int i = f->n_terms - 1; i >= 0; i--)
+        for (int k = 0; k < n; k++) {
+            dp[k] = dp[k] * q[k] + p[k];
+            p[k] = p[k] * q[k] + f->term[i];
+        }
+    for (int k = 0; k < n; k++) {
+        const double root = sqrt(1.0 - a * q[k]);
+
+        sag[k] = c * q[k] / (1.0 + root) + q[k] * q[k] * p[k];
+        slope[k] = 0.5 * c / root + q[k] * (2.0 * p[k] + q[k] * dp[k]);
+    }
+}
+
+static WHOLLY_INLINE void heights_at(const struct heights *h, int n,
+                                     const double *t, double *q)
+{
+    for (int k = 0; k < n; k++)
+        q[k] = h->q0[k] + t[k] * (2.0 * h->q1[k] + t[k] * h->q2[k]);
+}
+
+static WHOLLY_INLINE double least_of(int n, const double *x)
+{
+    double least = x[0];
+
+    for (int k = 1; k < n; k++)
+        least = x[k] < least ? x[k] : least;
+    return least;
+}
+
+/* Sets T to where rays meet the form, and SURE to 1 where that is certain, else
+ * to 0. */
+static WHOLLY_INLINE void find(const struct beam *b, int n,
+                               const struct glint_form *f,
+                               const struct heights *h, double *t, double *sure)
+{
+    double q[LANES], sag[LANES], slope[LANES], done[LANES];
+
+    for (int k = 0; k < n; k++)
+        t[k] = done[k] = 0.0;
+    for (int step = 0; step < MOST_STEPS && least_of(n, done) < 1.0; step++) {
+        heights_at(h, n, t, q);
+        profiles(f, n, q, sag, slope);
+        for (int k = 0; k < n; k++) {
+            const double rate =
+                b->n[k] - 2.0 * slope[k] * (h->q1[k] + t[k] * h->q2[k]);
+            const double by = (t[k] * b->n[k] - sag[k]) / rate;
+            const double to = t[k] - by;
+
+            t[k] = done[k] > 0.0 ? t[k] : to;
+            done[k] = fabs(by) <= LAST_STEP * (fabs(to) + 0.01 * f->semi_mm)
+                          ? 1.0
+                          : done[k];
+        }
+    }
+    heights_at(h, n, t, q);
+    for (int k = 0; k < n; k++) {
+        const double aside2 = b->l[k] * b->l[k] + b->m[k] * b->m[k];
+        const double over = h->q0[k] > q[k] ? h->q0[k] : q[k];
+        const double found = over <= f->end2 ? done[k] : 0.0;
+
+        sure[k] = b->n[k] * b->n[k] > f->steepest2 * aside2 ? found : 0.0;
+    }
+}
+
+/* Moves ray K on to FORM, and into its frame. */
+static void meet_alone(struct beam *b, int k, const struct glint_form *form)
+{
+    double at[3] = {b->x[k], b->y[k], b->z[k]};
+    double way[3] = {b->l[k], b->m[k], b->n[k]};
+    bool met;
+
+    glint_form_enter(form, at, way);
+    met = glint_form_meet(form, at, way, b->normal[k], &b->cosine[k]);
+    b->status[k] = judge(b->status[k], met, GLINT_RAY_MISSED);
+    set_ray(b, k, at, way);
+}
+
+/* Moves ray K from where it was BEFORE on to FORM, by way of its frame. */
+static void meet_and_leave(struct beam *b, int k, const struct beam *before,
+                           const struct glint_form *form)
+{
+    double normal[3];
+    double at[3] = {before->x[k], before->y[k], before->z[k]};
+    double way[3] = {before->l[k], before->m[k], before->n[k]};
+
+    set_ray(b, k, at, way);
+    meet_alone(b, k, form);
+    for (int i = 0; i < 3; i++) {
+        normal[i] = 0.0;
+        for (int j = 0; j < 3; j++)
+            normal[i] += form->turn[j][i] * b->normal[k][j];
+    }
+    at[0] = b->x[k], at[1] = b->y[k], at[2] = b->z[k];
+    way[0] = b->l[k], way[1] = b->m[k], way[2] = b->n[k];
+    glint_form_leave(form, at, way);
+    set_ray(b, k, at, way);
+    for (int i = 0; i < 3; i++)
+        b->normal[k][i] = normal[i];
+}
+
+/* Moves rays by T to where the profile's derivative by the height's square is
+ * SLOPE. */
+static WHOLLY_INLINE void move_to(struct beam *b, int n,
+                                  const struct glint_form *f, const double *t,
+                                  const double *slope)
+{
+    const double ax = f->along[0], ay = f->along[1];
+
+    for (int k = 0; k < n; k++) {
+        const double x = b->x[k] + t[k] * b->l[k];
+        const double y = b->y[k] + t[k] * b->m[k];
+        const double a = 2.0 * slope[k] * (ax * x + ay * y);
+        const double s = 2.0 * slope[k] * f->round * (ax * y - ay * x);
+        const double sx = a * ax - s * ay, sy = a * ay + s * ax;
+        const double size = sqrt(1.0 + sx * sx + sy * sy);
+
+        b->x[k] = x;
+        b->y[k] = y;
+        b->z[k] = t[k] * b->n[k];
+        b->normal[k][0] = -sx / size;
+        b->normal[k][1] = -sy / size;
+        b->normal[k][2] = 1.0 / size;
+        b->cosine[k] = (b->n[k] - sx * b->l[k] - sy * b->m[k]) / size;
+    }
+}
+
+static WHOLLY_INLINE void meet_level(struct beam *b, int n,
+                                     const struct glint_form *form)
+{
+    double t[LANES], q[LANES], sag[LANES], slope[LANES], sure[LANES];
+    struct heights heights;
+    const struct beam before = *b;
+
+    set_heights(b, n, form, &heights);
+    find(b, n, form, &heights, t, sure);
+    heights_at(&heights, n, t, q);
+    profiles(form, n, q, sag, slope);
+    move_to(b, n, form, t, slope);
+    for (int k = 0; k < n; k++)
+        if (!(sure[k] > 0.0 || b->status[k] > GLINT_RAY_OK))
+            meet_and_leave(b, k, &before, form);
+}
+
+WIDE_VECTORS
+void glint_beam_meet_form(struct beam *b, int n, const struct glint_form *form)
+{
+    if (!form->level)
+        for (int k = 0; k < n; k++)
+            meet_alone(b, k, form);
+    else if (n == LANES)
+        meet_level(b, LANES, form);
+    else
+        meet_level(b, n, form);
+}
+
+void glint_beam_leave_form(struct beam *b, int n, const struct glint_form *form)
+{
+    if (form->level)
+        return;
+    for (int k = 0; k < n; k++) {
+        double at[3] = {b->x[k], b->y[k], b->z[k]};
+        double way[3] = {b->l[k], b->m[k], b->n[k]};
+        glint_form_leave(form, at, way);
+        set_ray(b, k, at, way);
+    }
+}
+
+/* Does what turn() does, at a form. */
+static void turn_at_form(struct beam *b, int k, double s, double part,
+                         double way)
+{
+    const double before = b->n[k];
+
+    b->l[k] = s * b->l[k] + part * b->normal[k][0];
+    b->m[k] = s * b->m[k] + part * b->normal[k][1];
+    b->n[k] = s * before + part * b->normal[k][2];
+    b->status[k] =
+        judge(b->status[k], way * before * b->n[k] > 0.0, GLINT_RAY_MISSED);
+}
+
+void glint_beam_cross_form(struct beam *b, int n, bool reflects, double ratio,
+                           const double *out)
+{
+    for (int k = 0; k < n; k++) {
+        if (reflects) {
+            turn_at_form(b, k, 1.0, -2.0 * b->cosine[k], -1.0);
+            continue;
+        }
+        b->status[k] =
+            judge(b->status[k], out[k] > 0.0, GLINT_RAY_TOTAL_REFLECTION);
+        turn_at_form(b, k, ratio,
+                     (b->n[k] < 0.0 ? -out[k] : out[k]) - ratio * b->cosine[k],
+                     1.0);
+    }
+}
