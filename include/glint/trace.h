@@ -71,7 +71,8 @@ void glint_path_init(struct glint_path *path,
                      const struct glint_ghost *ghost, double wavelength_nm);
 
 /* Does the same for light in the plane at PHI_DEG about the axis, which stays
- * the x-z plane of rays, hits and pupils: the lens is turned instead. */
+ * the x-z plane of rays, hits and pupils: the lens is turned instead. To a
+ * round lens all planes are alike. */
 void glint_path_init_at(struct glint_path *path,
                         const struct glint_prescription *lens,
                         const struct glint_ghost *ghost, double wavelength_nm,
@@ -151,14 +152,22 @@ void glint_reflectance_sp(double n_from, double n_to, double cos_from,
 int glint_coating_at(const struct glint_coating *coating, double wavelength_nm,
                      struct glint_film_at film[GLINT_MAX_FILMS]);
 
-/* A part of the vertex plane of the first surface, symmetric in y, that holds
- * every ray of a path that the stop and the barrels let through. The light is
- * in the x-z plane. */
+/* A part of the vertex plane of the first surface that holds every ray of a
+ * path that the stop and the barrels let through. The light is in the x-z
+ * plane. Of a round lens the part is symmetric in y: y0 is 0, and what lies
+ * below is MIRRORED. */
 struct glint_pupil {
-    double x0_mm, x1_mm, y1_mm;
+    double x0_mm, x1_mm, y0_mm, y1_mm;
+    bool mirrored;
     double energy;       /* largest energy of a ray seen inside */
     double sensor_mm[4]; /* range of its light on the sensor: x0, x1, y0, y1 */
 };
+
+/* Returns the height of P with its mirror image, mm. */
+static inline double glint_pupil_height(const struct glint_pupil *p)
+{
+    return p->mirrored ? 2 * p->y1_mm : p->y1_mm - p->y0_mm;
+}
 
 /* Finds the pupil of PATH for light at THETA_DEG; returns false if nothing gets
  * through. NEAR: NULL, or the pupil at another wavelength; the search then

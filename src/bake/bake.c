@@ -375,6 +375,13 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
     run->options = *options;
     run->error = error;
     status = glint_bake_check(options, error);
+    if (status == GLINT_OK && !glint_prescription_is_round(lens)) {
+        snprintf(error->text, sizeof error->text,
+                 "%s is not symmetric about its axis: it can be drawn by exact "
+                 "rays, but not baked yet",
+                 lens->name);
+        status = GLINT_E_LENS;
+    }
     if (status == GLINT_OK)
         status = glint_setup_init(&run->setup, lens, 0, 0, rgb_nm, 3, error);
     if (status == GLINT_OK) {

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Parses any bytes as a lens table. A lens that is accepted must have a list of
- * ghosts that fits, finite optics, and rays whose records are numbers.
+ * ghosts that fits, finite optics, and rays whose records are numbers, one by
+ * one and many at once with the same bits.
  *
  *     make fuzz FUZZ=lens SECONDS=60
  */
@@ -33,21 +34,33 @@ static void check_ray(const struct glint_ray *ray)
 static void trace_some(const struct glint_prescription *lens,
                        const struct glint_ghost *ghost)
 {
+    enum { RAYS = 25 };
     static struct glint_path path;
     static double hits[GLINT_MAX_EVENTS + 1][2];
     const double semi = lens->surface[0].semi_mm;
+    struct glint_launch from[RAYS];
+    struct glint_ray ray, many[RAYS];
+    enum glint_ray_status status[RAYS];
 
-    glint_path_init(&path, lens, ghost, 450.0);
+    glint_path_init_at(&path, lens, ghost, 450.0, 33.0);
     require(path.n_events <= GLINT_MAX_EVENTS);
-    for (int i = 0; i < 25; i++) {
+    for (int i = 0; i < RAYS; i++) {
         const double sine = 0.248 * (i / 5);
-        const double direction[3] = {0.6 * sine, 0.8 * sine,
-                                     sqrt(1.0 - sine * sine)};
-        struct glint_ray ray;
 
-        if (glint_trace(&path, 0.4 * semi * (i % 5 - 2), 0.3 * semi, direction,
-                        &ray, i % 2 ? hits : NULL) == GLINT_RAY_OK)
-            check_ray(&ray);
+        from[i] = (struct glint_launch){
+            0.4 * semi * (i % 5 - 2),
+            0.3 * semi,
+            {0.6 * sine, 0.8 * sine, sqrt(1.0 - sine * sine)}};
+    }
+    glint_trace_many(&path, RAYS, from, many, status, NULL);
+    for (int i = 0; i < RAYS; i++) {
+        require(glint_trace(&path, from[i].x_mm, from[i].y_mm,
+                            from[i].direction, &ray,
+                            i % 2 ? hits : NULL) == status[i]);
+        if (status[i] != GLINT_RAY_OK)
+            continue;
+        check_ray(&ray);
+        require(memcmp(&ray, &many[i], sizeof ray) == 0);
     }
 }
 

@@ -236,7 +236,7 @@ static void place_row(struct picture *p, int row)
     }
 }
 
-/* Traces one row of rays, which also gives its mirror image. */
+/* Traces one row of rays, which of a round lens also gives its mirror image. */
 static void trace_job(void *ctx, int job, int worker)
 {
     struct picture *p = ctx;
@@ -244,7 +244,7 @@ static void trace_job(void *ctx, int job, int worker)
     (void)worker;
     glint_cells_trace(&p->cells, job);
     place_row(p, job);
-    if (job != p->cells.n - job)
+    if (p->path->round && job != p->cells.n - job)
         place_row(p, p->cells.n - job);
 }
 
@@ -281,8 +281,8 @@ static void path_of(const struct picture *p, const struct bundle *b,
 {
     const struct glint_setup *s = p->cfg->setup;
 
-    glint_path_init(path, s->lens, &s->ghost[b->ghost],
-                    s->wavelength_nm[b->wavelength]);
+    glint_path_init_at(path, s->lens, &s->ghost[b->ghost],
+                       s->wavelength_nm[b->wavelength], b->lamp->phi_deg);
 }
 
 static void find_job(void *ctx, int job, int worker)
@@ -344,7 +344,7 @@ static enum glint_status draw_bundle(struct picture *p, const struct bundle *b)
         p->weight[k] =
             flux * s->rgb[b->wavelength][k] * b->lamp->rgb[k] *
             (c->tints ? glint_tint_factor(&c->tints[b->ghost], k) : 1);
-    glint_workers_run(c->workers, c->grid / 2 + 1, trace_job, p);
+    glint_workers_run(c->workers, glint_cells_rows(&p->cells), trace_job, p);
     glint_workers_run(c->workers, (c->view.height + BAND - 1) / BAND, band_job,
                       p);
     free(p->cells.node);

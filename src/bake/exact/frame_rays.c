@@ -153,7 +153,7 @@ static double flux_of(const struct glint_frame *f,
                       const struct glint_traced_bundle *traced)
 {
     const struct glint_pupil *p = &traced->pupil;
-    const double area = (p->x1_mm - p->x0_mm) * 2 * p->y1_mm;
+    const double area = (p->x1_mm - p->x0_mm) * glint_pupil_height(p);
     const double gain =
         f->tints ? glint_real_value(f->tints[traced->ghost].gain) : 1;
 

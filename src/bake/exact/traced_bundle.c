@@ -27,7 +27,7 @@ static bool in_view(const struct glint_traced_bundle_config *cfg,
     const double c = glint_cos_deg(traced->lamp->phi_deg);
     const double d = glint_sin_deg(traced->lamp->phi_deg);
     const double x = 0.5 * (s[0] + s[1]);
-    const double w = 0.5 * (s[1] - s[0]), h = s[3];
+    const double w = 0.5 * (s[1] - s[0]), h = fmax(-s[2], s[3]);
 
     return fabs(x * c) - fabs(c) * w - fabs(d) * h < half_w &&
            fabs(x * d) - fabs(d) * w - fabs(c) * h < half_h;
@@ -44,14 +44,24 @@ static void add_rim(const struct glint_traced_bundle_config *cfg,
     const double x = fmin(0.5, pixel / (s[1] - s[0] + 1e-9));
     const double y = fmin(0.5, pixel / (s[3] - s[2] + 1e-9));
     const double wide = x * (p->x1_mm - p->x0_mm), across = x * (s[1] - s[0]);
+    const double high = y * (s[3] - s[2]);
 
     p->x0_mm -= wide;
     p->x1_mm += wide;
-    p->y1_mm *= 1 + 2 * y;
+    if (p->mirrored) {
+        p->y1_mm *= 1 + 2 * y;
+        s[2] *= 1 + 2 * y;
+        s[3] *= 1 + 2 * y;
+    } else {
+        const double more = y * (p->y1_mm - p->y0_mm);
+
+        p->y0_mm -= more;
+        p->y1_mm += more;
+        s[2] -= high;
+        s[3] += high;
+    }
     s[0] -= across;
     s[1] += across;
-    s[2] *= 1 + 2 * y;
-    s[3] *= 1 + 2 * y;
 }
 
 /* Returns the cells a side by the rule of lens/grid.h, but not so few that they
@@ -117,8 +127,9 @@ void glint_traced_bundle_plan(const struct glint_traced_bundle_config *cfg,
     struct glint_path path;
     double direction[3];
 
-    glint_path_init(&path, s->lens, &s->ghost[traced->ghost],
-                    s->wavelength_nm[traced->wavelength]);
+    glint_path_init_at(&path, s->lens, &s->ghost[traced->ghost],
+                       s->wavelength_nm[traced->wavelength],
+                       traced->lamp->phi_deg);
     traced->n_cells = 0;
     traced->found = glint_pupil_find(
         &traced->pupil, &path, traced->lamp->theta_deg,
@@ -161,7 +172,7 @@ void glint_traced_bundle_make(const struct glint_traced_bundle_config *cfg,
     const struct glint_setup *s = cfg->setup;
     const struct glint_pupil *p = &traced->pupil;
     const double n = traced->n_cells;
-    const double area = (p->x1_mm - p->x0_mm) / n * (2 * p->y1_mm / n);
+    const double area = (p->x1_mm - p->x0_mm) / n * (glint_pupil_height(p) / n);
     double rgb[3];
     const double flux = colour_of(cfg, traced, rgb) * cfg->scale *
                         traced->lamp->power *
@@ -267,14 +278,17 @@ static void trace_row(const struct glint_traced_bundle_config *cfg,
 
         row[i].energy_q16 = mirrored[i].energy_q16 = -1;
         if (glint_trace(path, p->x0_mm + (p->x1_mm - p->x0_mm) * i / n,
-                        p->y1_mm * (2.0 * j - n) / n, direction, &ray,
-                        hits) != GLINT_RAY_OK)
+                        path->round ? p->y1_mm * (2.0 * j - n) / n
+                                    : p->y0_mm + (p->y1_mm - p->y0_mm) * j / n,
+                        direction, &ray, hits) != GLINT_RAY_OK)
             continue;
         here = land(cfg, traced, &ray, 1);
-        there = land(cfg, traced, &ray, -1);
         barrel_values(traced, path, hits, here.barrel);
-        barrel_values(traced, path, hits, there.barrel);
         quantise(&here, &row[i]);
+        if (row == mirrored)
+            continue;
+        there = land(cfg, traced, &ray, -1);
+        barrel_values(traced, path, hits, there.barrel);
         quantise(&there, &mirrored[i]);
     }
 }
@@ -287,9 +301,10 @@ void glint_traced_bundle_trace(const struct glint_traced_bundle_config *cfg,
     const int n = traced->n_cells;
     struct glint_path path;
 
-    glint_path_init(&path, s->lens, &s->ghost[traced->ghost],
-                    s->wavelength_nm[traced->wavelength]);
-    for (int j = 0; j <= n / 2; j++)
+    glint_path_init_at(&path, s->lens, &s->ghost[traced->ghost],
+                       s->wavelength_nm[traced->wavelength],
+                       traced->lamp->phi_deg);
+    for (int j = 0; j <= (path.round ? n / 2 : n); j++)
         trace_row(cfg, traced, &path, j, vertex + (size_t)j * (size_t)(n + 1),
-                  vertex + (size_t)(n - j) * (size_t)(n + 1));
+                  vertex + (size_t)(path.round ? n - j : j) * (size_t)(n + 1));
 }

@@ -57,11 +57,17 @@ static double *node_at(const struct glint_cells *c, int i, int j)
            ((size_t)j * (size_t)(c->n + 1) + (size_t)i) * (size_t)c->stride;
 }
 
+int glint_cells_rows(const struct glint_cells *cells)
+{
+    return (cells->path->round ? cells->n / 2 : cells->n) + 1;
+}
+
 double glint_cells_area(const struct glint_cells *cells)
 {
     const struct glint_pupil *p = &cells->pupil;
 
-    return (p->x1_mm - p->x0_mm) / cells->n * (2 * p->y1_mm / cells->n);
+    return (p->x1_mm - p->x0_mm) / cells->n *
+           (glint_pupil_height(p) / cells->n);
 }
 
 static double inner_radius(const struct glint_setup *s)
@@ -111,12 +117,15 @@ void glint_cells_trace(const struct glint_cells *cells, int row)
     struct glint_row rays = {0,
                              0,
                              (p->x1_mm - p->x0_mm) / n,
-                             p->y1_mm * (2.0 * row - n) / n,
+                             cells->path->round
+                                 ? p->y1_mm * (2.0 * row - n) / n
+                                 : p->y0_mm + (p->y1_mm - p->y0_mm) * row / n,
                              {d[0], d[1], d[2]}};
 
     for (int i = 0; i <= n; i++) {
         double *node = node_at(cells, i, row);
-        double *mirrored = node_at(cells, i, n - row);
+        double *mirrored =
+            node_at(cells, i, cells->path->round ? n - row : row);
         const int k = i % SOME;
         double(*h)[2] = hits + k * cells->path->n_events;
 
@@ -349,7 +358,7 @@ double glint_direct_flux(const struct glint_setup *setup, double wavelength_nm)
     cells.node = malloc(glint_cells_bytes(&cells));
     if (!cells.node)
         return -1;
-    for (int j = 0; j <= cells.n / 2; j++)
+    for (int j = 0; j < glint_cells_rows(&cells); j++)
         glint_cells_trace(&cells, j);
     for (int k = 0; k < 2 * cells.n * cells.n; k++) {
         /* NOLINTNEXTLINE: n is 256 */

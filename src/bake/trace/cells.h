@@ -53,7 +53,11 @@ bool glint_cells_init(struct glint_cells *cells,
 /* Returns the bytes that NODE needs. */
 size_t glint_cells_bytes(const struct glint_cells *cells);
 
-/* Traces row ROW (0 .. n / 2) of the nodes and mirrors it into row n - ROW. */
+/* Returns how many rows of nodes are to be traced. */
+int glint_cells_rows(const struct glint_cells *cells);
+
+/* Traces row ROW of the nodes and, of a round lens, mirrors it into row
+ * n - ROW. */
 void glint_cells_trace(const struct glint_cells *cells, int row);
 
 /* The visible part of a triangle: convex, in NODE_X and NODE_Y. */

@@ -16,7 +16,7 @@
 #include "bake/table/form.h"
 #include "engine/setup/degrees.h"
 
-enum { ACROSS = 64, DOWN = 32, ROUNDS = 8 };
+enum { ACROSS = 64, DOWN = 32, ROUNDS = 8, TURNS = 16 };
 
 /* stretches, of ACROSS cells each, of the line on which spots are sought */
 enum { LINES = 4 };
@@ -39,6 +39,12 @@ static double column_x(const struct search *s, const struct glint_pupil *p,
     return p->x0_mm + (p->x1_mm - p->x0_mm) * i / s->across;
 }
 
+static double row_y(const struct search *s, const struct glint_pupil *p,
+                    double j)
+{
+    return p->y0_mm + (p->y1_mm - p->y0_mm) * j / s->down;
+}
+
 static void sample_grid(struct search *s, const struct glint_pupil *p)
 {
     struct glint_row row = {
@@ -49,7 +55,7 @@ static void sample_grid(struct search *s, const struct glint_pupil *p)
         {s->direction[0], s->direction[1], s->direction[2]}};
 
     for (int j = 0; j <= s->down; j++) {
-        row.y_mm = p->y1_mm * j / s->down;
+        row.y_mm = row_y(s, p, j);
         glint_trace_row(s->path, &row, s->ray[j], s->status[j], NULL);
     }
 }
@@ -129,6 +135,13 @@ static void keep(const struct search *s, int i, int j,
     }
 }
 
+/* Adds the mirror image of the light on the sensor. */
+static void mirror_sensor(struct glint_pupil *p)
+{
+    p->sensor_mm[3] = fmax(fabs(p->sensor_mm[2]), fabs(p->sensor_mm[3]));
+    p->sensor_mm[2] = -p->sensor_mm[3];
+}
+
 /* Shrinks P to the cells that may let a ray through; returns whether there are
  * any. */
 static bool shrink(struct search *s, struct glint_pupil *p)
@@ -152,11 +165,11 @@ static bool shrink(struct search *s, struct glint_pupil *p)
         return false;
     found.x0_mm = column_x(s, p, (int)box.low[0]);
     found.x1_mm = column_x(s, p, (int)box.high[0]);
-    found.y1_mm = p->y1_mm * box.high[2] / s->down;
-    /* The light is symmetric in y. */
-    found.sensor_mm[3] =
-        fmax(fabs(found.sensor_mm[2]), fabs(found.sensor_mm[3]));
-    found.sensor_mm[2] = -found.sensor_mm[3];
+    found.y1_mm = row_y(s, p, box.high[2]);
+    if (s->path->round)
+        mirror_sensor(&found);
+    else
+        found.y0_mm = row_y(s, p, box.low[2]);
     *p = found;
     return true;
 }
@@ -164,24 +177,52 @@ static bool shrink(struct search *s, struct glint_pupil *p)
 /* Returns the part of the vertex plane at which rays can enter. A slanted ray
  * crosses this plane beside the place where it meets the curved surface, by up
  * to the sag at the rim times its tangent. */
+static double sag_of(const struct glint_path *path,
+                     const struct glint_event *front)
+{
+    const double h = front->semi_mm, c = front->curvature;
+    double slope[2], most = 0;
+
+    if (!front->shaped)
+        return c * h * h / (1 + sqrt(fmax(0, 1 - c * c * h * h)));
+    for (int k = 0; k < TURNS; k++)
+        most = fmax(most, fabs(glint_form_sag(
+                              &path->form[front->surface],
+                              h * glint_cos_deg(360.0 / TURNS * k),
+                              h * glint_sin_deg(360.0 / TURNS * k), slope)));
+    return most;
+}
+
+/* Returns how far aside and askew a front of the lens may lie: its own decentre
+ * and what its tilt moves of the rim. */
+static double off_axis(const struct glint_path *path,
+                       const struct glint_event *front)
+{
+    const struct glint_form *f = &path->form[front->surface];
+
+    return front->shaped && !f->level
+               ? fabs(f->shift[0]) + fabs(f->shift[1]) + fabs(f->shift[2])
+               : 0;
+}
+
 static struct glint_pupil whole_front(const struct glint_path *path,
                                       const struct glint_event *front,
                                       const double direction[3])
 {
-    const double h = front->semi_mm, c = front->curvature;
-    double slope[2];
-    const double sag =
-        front->shaped ? glint_form_sag(&path->form[front->surface], h, 0, slope)
-                      : c * h * h / (1 + sqrt(fmax(0, 1 - c * c * h * h)));
-    const double aside = fabs(sag) * fabs(direction[0] / direction[2]);
+    const double off = off_axis(path, front), h = front->semi_mm + off;
+    const double aside =
+        (fabs(sag_of(path, front)) + off) * fabs(direction[0] / direction[2]);
 
-    return (struct glint_pupil){
-        .x0_mm = -h - aside, .x1_mm = h + aside, .y1_mm = h};
+    return (struct glint_pupil){.x0_mm = -h - aside,
+                                .x1_mm = h + aside,
+                                .y0_mm = path->round ? 0 : -h,
+                                .y1_mm = h,
+                                .mirrored = path->round};
 }
 
 static double extent(const struct glint_pupil *p)
 {
-    return (p->x1_mm - p->x0_mm) * p->y1_mm;
+    return (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm);
 }
 
 /* Returns BOX grown by half of its size on each side, and by a part of the
@@ -192,10 +233,15 @@ static struct glint_pupil surroundings(const struct glint_pupil *box,
     const double more =
         0.5 * (box->x1_mm - box->x0_mm) + 0.01 * (front->x1_mm - front->x0_mm);
 
+    const double half = 0.5 * (box->y1_mm - box->y0_mm);
+    const double rim = 0.02 * front->y1_mm;
+
     return (struct glint_pupil){
         .x0_mm = fmax(front->x0_mm, box->x0_mm - more),
         .x1_mm = fmin(front->x1_mm, box->x1_mm + more),
-        .y1_mm = fmin(front->y1_mm, 1.5 * box->y1_mm + 0.02 * front->y1_mm)};
+        .y0_mm = fmax(front->y0_mm, box->y0_mm - half - rim),
+        .y1_mm = fmin(front->y1_mm, box->y1_mm + half + rim),
+        .mirrored = front->mirrored};
 }
 
 /* Shrinks P by rounds of grids, the first of ACROSS x DOWN cells; returns
@@ -264,8 +310,11 @@ static bool find_spot(struct search *s, const struct glint_pupil *front,
     if (!find_on_line(s, front, x))
         return false;
     more = x[1] - x[0];
-    *p = (struct glint_pupil){
-        .x0_mm = x[0] - more, .x1_mm = x[1] + more, .y1_mm = more};
+    *p = (struct glint_pupil){.x0_mm = x[0] - more,
+                              .x1_mm = x[1] + more,
+                              .y0_mm = front->mirrored ? 0 : -more,
+                              .y1_mm = more,
+                              .mirrored = front->mirrored};
     return shrink_on(s, p, NEXT_ACROSS, NEXT_DOWN) && p->y1_mm < more;
 }
 

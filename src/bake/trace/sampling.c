@@ -235,11 +235,13 @@ void glint_sampling_run(struct glint_sampling *sampling,
     struct bend bend = {.n = 0};
     struct rows r; /* 460 KB: the offline half has the stack for it */
 
-    for (int j = 0; j <= side / 2; j++)
+    for (int j = 0; j <= (path->round ? side / 2 : side); j++)
         for (int i = 0; i <= side; i++) {
             probe_ray(&r.row[j % 3][i], path,
                       p->x0_mm + (p->x1_mm - p->x0_mm) * i / side,
-                      p->y1_mm * 2 * j / side, direction, stop_radius_mm);
+                      path->round ? p->y1_mm * 2 * j / side
+                                  : p->y0_mm + (p->y1_mm - p->y0_mm) * j / side,
+                      direction, stop_radius_mm);
             look_back(&r, i, j, path->n_events, weight, &bend);
         }
     sampling->bend_mm = sampling->outline_mm = sampling->round_mm = 0;

@@ -19,13 +19,6 @@ enum glint_status glint_setup_init(struct glint_setup *setup,
 
     if (status != GLINT_OK)
         return status;
-    if (!glint_prescription_is_round(lens)) {
-        snprintf(error->text, sizeof error->text,
-                 "%s is not symmetric about its axis: its rays can be traced, "
-                 "but it cannot be drawn or baked yet",
-                 lens->name);
-        return GLINT_E_LENS;
-    }
     setup->lens = lens;
     glint_optics_of(lens, &setup->optics);
     setup->n_ghosts = glint_ghost_list(lens, setup->ghost, GLINT_MAX_GHOSTS);

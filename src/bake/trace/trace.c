@@ -110,13 +110,15 @@ void glint_path_init_at(struct glint_path *path,
                         const struct glint_ghost *ghost, double wavelength_nm,
                         double phi_deg)
 {
-    struct route route = {lens, path, wavelength_nm, phi_deg, -1};
+    struct route route = {lens, path, wavelength_nm,
+                          glint_prescription_is_round(lens) ? 0.0 : phi_deg,
+                          -1};
     const int n = element_count(lens);
     int e = 0;
 
     path->n_events = 0;
     path->places_only = false;
-    set_widening(path, lens, phi_deg);
+    set_widening(path, lens, route.phi_deg);
     if (ghost && ghost->i >= 0) {
         const int near = surface_element(lens, ghost->i);
         const int far = surface_element(lens, ghost->j);
