@@ -377,8 +377,8 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
     status = glint_bake_check(options, error);
     if (status == GLINT_OK && !glint_prescription_is_round(lens)) {
         snprintf(error->text, sizeof error->text,
-                 "%s is not symmetric about its axis: it can be drawn by exact "
-                 "rays, but not baked yet",
+                 "%s is not symmetric about its axis: it cannot be baked yet, "
+                 "but drawn by glint render --rays exact",
                  lens->name);
         status = GLINT_E_LENS;
     }

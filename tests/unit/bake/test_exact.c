@@ -26,6 +26,7 @@ static struct glint_prescription lens;
 static struct glint_setup setup;
 static struct glint_workers *workers;
 static double rgb[3 * MAX_PIXELS], other[3 * MAX_PIXELS];
+static double swapped[3 * 120 * 120];
 static float floats[2][3 * MAX_PIXELS];
 
 static int open_pool(void **state)
@@ -320,6 +321,84 @@ static void test_faint_colour_keeps_steps(void **state)
     assert_true(apart < 0.001 * sum);
 }
 
+/* -------------------------------------------------------- not round lenses */
+
+/* Loads a triplet of which the surfaces of the first element have the lines
+ * FIRST and SECOND after them. */
+static void load_shaped(const char *before, const char *first,
+                        const char *second)
+{
+    static const double rgb_nm[] = {650, 532, 450};
+    struct glint_error error = {""};
+    char text[900];
+
+    snprintf(text, sizeof text,
+             "name t\nf-number 8\nfilm 36 24\n%s"
+             "surface 40.1 6 12 1.6 60\n%ssurface -537 8 12 air\n%s"
+             "surface -47 1 9 1.62 36\nsurface 40 3 9 air\nstop 6 8\n"
+             "surface 234 6 9 1.6 60\nsurface -37.9 80 9 air\n",
+             before, first, second);
+    if (glint_prescription_parse(&lens, text, strlen(text), "t.lens", &error) !=
+            GLINT_OK ||
+        glint_setup_init(&setup, &lens, 0, 0, rgb_nm, 3, &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+}
+
+/* A toric of two equal radii is a sphere; its lens is traced as one that is not
+ * round: over the whole pupil, turned by the light's azimuth. */
+static void test_torics_that_are_spheres(void **state)
+{
+    const struct glint_view view = {180, 120, 36};
+    const struct glint_lamp lamp = lamp_at(7, 37);
+    struct glint_frame_report report;
+    double db, flux;
+
+    (void)state;
+    load_shaped("", "", "");
+    flux = setup.direct_flux[1];
+    render(rgb, view, &lamp, 1, 128);
+    load_shaped("", "shape toric x 40.1\n", "shape toric y -537\n");
+    assert_false(glint_prescription_is_round(&lens));
+    assert_true(fabs(setup.direct_flux[1] / flux - 1) < 1e-5);
+    render(other, view, &lamp, 1, 128);
+    db = psnr(rgb, other, view);
+    print_message("spheres and torics: %.1f dB\n", db);
+    assert_true(db > 60);
+    integers(view, &lamp, 1, rgb, &report);
+    db = psnr(other, rgb, view);
+    print_message("torics in integers: %.1f dB\n", db);
+    assert_true(db >= 50);
+}
+
+/* A decentre in x seen at 30 degrees is one in y at 60, mirrored at the
+ * diagonal; and not what the centred lens makes. */
+static void test_decentred_at_the_diagonal(void **state)
+{
+    const struct glint_view view = {120, 120, 30};
+    const struct glint_lamp at[2] = {lamp_at(6, 30), lamp_at(6, 60)};
+    double db;
+
+    (void)state;
+    load_shaped("group decentre 0.7 0\n", "", "end\n");
+    render(rgb, view, &at[0], 1, 64);
+    load_shaped("group decentre 0 0.7\n", "", "end\n");
+    render(other, view, &at[1], 1, 64);
+    for (int y = 0; y < 120; y++)
+        for (int x = 0; x < 120; x++)
+            for (int c = 0; c < 3; c++) {
+                /* Up in one picture is right in the other. */
+                const int to = ((119 - x) * 120 + 119 - y) * 3 + c;
+
+                swapped[to] = other[(y * 120 + x) * 3 + c];
+            }
+    db = psnr(rgb, swapped, view);
+    print_message("decentred, mirrored: %.1f dB\n", db);
+    assert_true(db > 55);
+    load_shaped("", "", "");
+    render(other, view, &at[0], 1, 64);
+    assert_true(psnr(rgb, other, view) < 40);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -333,6 +412,8 @@ int main(void)
         cmocka_unit_test(test_threads_do_not_matter),
         cmocka_unit_test(test_integers_match),
         cmocka_unit_test(test_faint_colour_keeps_steps),
+        cmocka_unit_test(test_torics_that_are_spheres),
+        cmocka_unit_test(test_decentred_at_the_diagonal),
     };
 
     return cmocka_run_group_tests_name("exact", tests, open_pool, close_pool);
