@@ -95,8 +95,9 @@ struct glint_form {
     /* From the light's frame at the vertex to the surface's own: at = turn at +
      * shift; rows of TURN are unit vectors. */
     double turn[3][3], shift[3];
-    /* Of a round form or a cylinder on the axis, LEVEL, rays stay in the light's
-     * frame: the direction of its profile there, and 1 if that is any. */
+    /* Of a round form or a cylinder on the axis, LEVEL, rays stay in the
+     * light's frame: the direction of its profile there, and 1 if that is any.
+     */
     bool level;
     double along[2], round;
     int n_terms;      /* number of terms until the last that is not 0 */

@@ -71,8 +71,7 @@ void glint_path_init(struct glint_path *path,
                      const struct glint_ghost *ghost, double wavelength_nm);
 
 /* Does the same for light in the plane at PHI_DEG about the axis, which stays
- * the x-z plane of rays, hits and pupils: the lens is turned instead. To a
- * round lens all planes are alike. */
+ * the x-z plane of rays, hits and pupils: the lens is turned instead. */
 void glint_path_init_at(struct glint_path *path,
                         const struct glint_prescription *lens,
                         const struct glint_ghost *ghost, double wavelength_nm,

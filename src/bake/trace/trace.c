@@ -110,15 +110,13 @@ void glint_path_init_at(struct glint_path *path,
                         const struct glint_ghost *ghost, double wavelength_nm,
                         double phi_deg)
 {
-    struct route route = {lens, path, wavelength_nm,
-                          glint_prescription_is_round(lens) ? 0.0 : phi_deg,
-                          -1};
+    struct route route = {lens, path, wavelength_nm, phi_deg, -1};
     const int n = element_count(lens);
     int e = 0;
 
     path->n_events = 0;
     path->places_only = false;
-    set_widening(path, lens, route.phi_deg);
+    set_widening(path, lens, phi_deg);
     if (ghost && ghost->i >= 0) {
         const int near = surface_element(lens, ghost->i);
         const int far = surface_element(lens, ghost->j);
@@ -282,6 +280,16 @@ static WHOLLY_INLINE void start(struct beam *b, int k,
     b->status[k] = judge(GLINT_RAY_OK, b->n[k] > 0.0, GLINT_RAY_MISSED);
 }
 
+/* Sets HIT to the place of ray K, in the surface's own frame. */
+static WHOLLY_INLINE void note_hit(const struct beam *b, int k,
+                                   const struct glint_form *form, double hit[2])
+{
+    hit[0] = b->x[k];
+    hit[1] = b->y[k];
+    for (int i = 0; i < 2 && form && form->level; i++)
+        hit[i] = form->turn[i][0] * b->x[k] + form->turn[i][1] * b->y[k];
+}
+
 /* Takes rays through one event. HITS[k * n_events] receives the place of lane
  * K, below ASKED. */
 static WHOLLY_INLINE void pass(struct beam *b, int n, int asked,
@@ -300,10 +308,9 @@ static WHOLLY_INLINE void pass(struct beam *b, int n, int asked,
     else
         meet(b, n, e->curvature);
     for (int k = 0; k < asked && hits; k++)
-        if (!(b->status[k] > GLINT_RAY_OK)) {
-            hits[k * path->n_events][0] = b->x[k];
-            hits[k * path->n_events][1] = b->y[k];
-        }
+        if (!(b->status[k] > GLINT_RAY_OK))
+            note_hit(b, k, e->shaped ? &path->form[e->surface] : NULL,
+                     hits[k * path->n_events]);
     if (e->kind == GLINT_STOP)
         return;
     widen(b, n, e->semi_mm);
