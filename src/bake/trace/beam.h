@@ -43,7 +43,7 @@ static WHOLLY_INLINE double judge(double so_far, bool fine,
 }
 
 /* Moves rays from the vertex plane to FORM, and into its frame unless that is
- * round or a cylinder on the axis. */
+ * round or a cylinder on the axis. N is LANES or 1. */
 void glint_beam_meet_form(struct beam *b, int n, const struct glint_form *form);
 
 /* Refracts rays, or reflects them, where they have met a form. RATIO is that of

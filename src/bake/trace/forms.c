@@ -97,10 +97,10 @@ static WHOLLY_INLINE void find(const struct beam *b, int n,
                                const struct glint_form *f,
                                const struct heights *h, double *t, double *sure)
 {
-    double q[LANES], sag[LANES], slope[LANES], done[LANES];
+    double q[LANES], sag[LANES], slope[LANES], done[LANES] = {0};
 
     for (int k = 0; k < n; k++)
-        t[k] = done[k] = 0.0;
+        t[k] = 0.0;
     for (int step = 0; step < MOST_STEPS && least_of(n, done) < 1.0; step++) {
         heights_at(h, n, t, q);
         profiles(f, n, q, sag, slope);
@@ -214,7 +214,7 @@ void glint_beam_meet_form(struct beam *b, int n, const struct glint_form *form)
     else if (n == LANES)
         meet_level(b, LANES, form);
     else
-        meet_level(b, n, form);
+        meet_level(b, 1, form);
 }
 
 void glint_beam_leave_form(struct beam *b, int n, const struct glint_form *form)
