@@ -311,13 +311,10 @@ static bool cut_semis(struct imported *lens)
     return true;
 }
 
-static double gap(const struct imported_surface *s, double h)
+double imported_gap(const struct imported_surface *s, double h)
 {
     return s->thickness + sag(s + 1, h) - sag(s, h);
 }
-
-/* Tables may not overlap within this share of the semi-diameters. */
-#define FREE_SHARE 0.9
 
 /* Cuts semi-diameters where neighbours' rims cross, as thin lenses of estimated
  * ones do. */
@@ -325,19 +322,20 @@ static bool part_rims(struct imported *lens)
 {
     for (int k = 0; k + 1 < lens->n; k++) {
         struct imported_surface *s = &lens->surface[k];
-        double low = 0, high = FREE_SHARE * fmin(s[0].semi, s[1].semi), semi;
+        double low = 0, high = IMPORT_FREE * fmin(s[0].semi, s[1].semi), semi;
 
-        if (gap(s, high) >= 0 || gap(s, 0) < 0 || s[0].stop || s[1].stop)
+        if (imported_gap(s, high) >= 0 || imported_gap(s, 0) < 0 || s[0].stop ||
+            s[1].stop)
             continue;
         for (int i = 0; i < 40; i++) {
             const double middle = 0.5 * (low + high);
 
-            if (gap(s, middle) < 0)
+            if (imported_gap(s, middle) < 0)
                 high = middle;
             else
                 low = middle;
         }
-        semi = low / FREE_SHARE;
+        semi = low / IMPORT_FREE;
         if (!imported_note(lens, s->line,
                            "the next surface crosses this at its rim: "
                            "semi-diameters of %.6g mm taken",
@@ -386,6 +384,12 @@ bool imported_complete(struct imported *lens)
         return false;
     f = focal(lens);
     if (lens->error[0])
+        return false;
+    if (lens->nominal > 0 && fabs(f / lens->nominal - 1) > 0.02 &&
+        !imported_note(lens, 0,
+                       "its focal length is %.6g mm, not the stated %.6g: "
+                       "there may be a misprint (glint lint)",
+                       f * lens->unit_mm, lens->nominal * lens->unit_mm))
         return false;
     if (!(f > 0))
         return imported_fail(lens, 0,

@@ -44,25 +44,38 @@ static bool take_row(struct imported *lens, const struct lines *l)
     return take_kind(lens, l, s);
 }
 
-/* Halves semi-diameters if they are whole ones, which a sphere tells that is
- * smaller. */
+/* Returns whether the glass ends before the semi-diameter of surface K does. */
+static bool reaches_too_far(const struct imported *lens, int k)
+{
+    const struct imported_surface *s = &lens->surface[k];
+
+    if (s->radius != 0 && s->semi > fabs(s->radius))
+        return true;
+    return k + 1 < lens->n && !s[0].stop && !s[1].stop &&
+           imported_gap(s, IMPORT_FREE * fmin(s[0].semi, s[1].semi)) < 0;
+}
+
+/* Halves semi-diameters if they are whole ones, as files have them that were
+ * made from tables of diameters. */
 static bool settle_diameters(struct imported *lens)
 {
-    int at = 0;
+    int at = -1, whole = 0, halved = 0;
 
-    while (at < lens->n &&
-           !(lens->surface[at].radius != 0 &&
-             lens->surface[at].semi > fabs(lens->surface[at].radius)))
-        at++;
-    if (at == lens->n)
-        return true;
-    if (!imported_note(lens, lens->surface[at].line,
-                       "semi-diameter %g of radius %g: the column has "
-                       "diameters, and all are halved",
-                       lens->surface[at].semi, lens->surface[at].radius))
-        return false;
+    for (int k = 0; k < lens->n; k++)
+        if (reaches_too_far(lens, k) && whole++ == 0)
+            at = k;
     for (int k = 0; k < lens->n; k++)
         lens->surface[k].semi /= 2;
+    for (int k = 0; k < lens->n; k++)
+        halved += reaches_too_far(lens, k);
+    if (halved < whole)
+        return imported_note(lens, lens->surface[at].line,
+                             "semi-diameter %g is beyond the glass of radius "
+                             "%g: the column has diameters, and all are halved",
+                             2 * lens->surface[at].semi,
+                             lens->surface[at].radius);
+    for (int k = 0; k < lens->n; k++)
+        lens->surface[k].semi *= 2;
     return true;
 }
 
@@ -70,7 +83,6 @@ bool import_flaresim(struct imported *lens, const char *text, size_t bytes)
 {
     struct lines lines;
     bool rows = false, good = true;
-    double focal = 0;
 
     lines_begin(&lines, text, bytes);
     while (good && lines_next(&lines, '#')) {
@@ -79,7 +91,8 @@ bool import_flaresim(struct imported *lens, const char *text, size_t bytes)
         else if (lines_is(&lines, "name:"))
             snprintf(lens->title, sizeof lens->title, "%.230s", lines.rest);
         else if (lines_is(&lines, "focal_length:"))
-            good = lines_number(lens, &lines, 1, "focal length", &focal);
+            good =
+                lines_number(lens, &lines, 1, "focal length", &lens->nominal);
         else if (lines_is(&lines, "squeeze:"))
             good = true;
         else if (lines_is(&lines, "surfaces:"))

@@ -45,7 +45,7 @@ struct imported {
     double f_number, pupil;   /* diameter of the entrance pupil; 0: not said */
     double field_deg, height; /* half field, or half image; 0: not said */
     double film_mm[2];        /* 0: not said */
-    double focal;             /* that the file states; 0: none */
+    double nominal;           /* focal length, as products are named; or 0 */
     int n;
     struct imported_surface surface[IMPORT_SURFACES];
     char error[IMPORT_TEXT + 64]; /* "FILE:LINE: cause" */
@@ -67,6 +67,12 @@ struct imported_surface *imported_add(struct imported *lens, int line);
 /* Completes LENS and returns it as a table, in memory of malloc(); NULL after
  * an error. */
 char *imported_finish(struct imported *lens, size_t *bytes);
+
+/* Tables may not overlap within this share of the semi-diameters. */
+#define IMPORT_FREE 0.9
+
+/* Returns the distance from S to the next surface at the height H. */
+double imported_gap(const struct imported_surface *s, double h);
 
 /* Returns the medium behind S as a table writes it, in TEXT[48], and sets its
  * ND; false after an error. */

@@ -89,8 +89,6 @@ static void write_head(struct imported *lens, FILE *file)
     }
     fprintf(file, "f-number  %.6g\nfilm      %.6g %.6g\n", lens->f_number,
             lens->film_mm[0], lens->film_mm[1]);
-    if (lens->focal > 0)
-        fprintf(file, "focal-length %.9g\n", lens->focal * lens->unit_mm);
     fputc('\n', file);
 }
 

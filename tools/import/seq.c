@@ -4,7 +4,8 @@
  *
  * Commands are divided by ';' or ends of lines. "S r t glass", "SO" and "SI"
  * begin the next surface, the object and the image; what follows is of that
- * surface. Radii are curvatures after "RDM N". Glasses of six digits or nnn.vvv
+ * surface. Words may be in small letters. Radii are curvatures but after "RDM".
+ * Glasses of six digits or nnn.vvv
  * are (nd - 1) and Vd.
  */
 #include <math.h>
@@ -18,7 +19,7 @@ struct seq {
     struct imported *lens;
     struct lines lines;
     struct imported_surface *s;
-    bool curvatures, image;
+    bool curvatures;
 };
 
 /* Sets S to a glass of numbers, as "517.642" or "517642"; returns whether WORD
@@ -56,8 +57,7 @@ static bool start_surface(struct seq *q)
     const struct lines *l = &q->lines;
     double radius = 0;
 
-    q->image = lines_is(l, "SI");
-    if (q->image || lines_is(l, "SO")) {
+    if (lines_is(l, "SI") || lines_is(l, "SO")) {
         q->s = NULL;
         return true;
     }
@@ -123,9 +123,10 @@ static bool take_surface(struct seq *q)
 static bool take_dimension(struct seq *q)
 {
     const char *word = q->lines.n > 1 ? q->lines.word[1] : "";
+    const char unit = (char)(*word & ~0x20); /* a capital */
 
-    q->lens->unit_mm = *word == 'I' ? 25.4 : *word == 'C' ? 10 : 1;
-    return *word == 'I' || *word == 'C' || *word == 'M' ||
+    q->lens->unit_mm = unit == 'I' ? 25.4 : unit == 'C' ? 10 : 1;
+    return unit == 'I' || unit == 'C' || unit == 'M' ||
            imported_fail(q->lens, q->lines.number,
                          "unit '%s' is none of M, C and I", word);
 }
@@ -150,7 +151,7 @@ static bool take_head(struct seq *q)
         q->curvatures = l->n > 1 && *l->word[1] == 'N';
         return true;
     }
-    if (lines_is(l, "TITLE")) {
+    if (lines_is(l, "TITLE") || lines_is(l, "TIT")) {
         snprintf(q->lens->title, sizeof q->lens->title, "%s",
                  l->n > 1 ? l->word[1] : "");
         return true;
@@ -170,18 +171,27 @@ static bool take_head(struct seq *q)
                          "zoom positions but the first are not read");
 }
 
+/* Puts the first word into capitals. */
+static void raise(struct lines *l)
+{
+    for (char *c = l->text + (l->word[0] - l->text); *c; c++)
+        if (*c >= 'a' && *c <= 'z')
+            *c = (char)(*c - 'a' + 'A');
+}
+
 static bool take(struct seq *q)
 {
     const struct lines *l = &q->lines;
 
+    raise(&q->lines);
     if (lines_is(l, "S") || lines_is(l, "SO") || lines_is(l, "SI"))
         return start_surface(q);
-    return q->image ? true : q->s ? take_surface(q) : take_head(q);
+    return q->s ? take_surface(q) : take_head(q);
 }
 
 bool import_seq(struct imported *lens, const char *text, size_t bytes)
 {
-    struct seq q = {.lens = lens};
+    struct seq q = {.lens = lens, .curvatures = true};
 
     lines_begin(&q.lines, text, bytes);
     q.lines.divider = ';';
