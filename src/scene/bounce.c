@@ -166,12 +166,10 @@ static int64_t mirror_spread_q40(const struct glint_scene *s,
                                  const struct glint_scene_ray *ray,
                                  const struct glint_met_surface *surface)
 {
-    struct glint_brushed lies;
-
     if (s->model.header->background != GLINT_BACKGROUND_ENVIRONMENT)
         return 0;
-    s->cfg.parts.wards->lie(s, ray, surface, &lies);
-    return glint_scene_pixel_q40(s) + (int64_t)lies.spread_q30 * 2048;
+    return glint_scene_pixel_q40(s) +
+           (int64_t)s->cfg.parts.wards->spread(s, ray, surface) * 2048;
 }
 
 static void reflect(const struct glint_scene *s, const struct passing *from,

@@ -67,9 +67,13 @@ struct glint_scene_wards {
     void (*scale)(struct glint_scene *scene, struct glint_real scale);
     /* Turns it. */
     void (*turn)(struct glint_scene *scene, const int32_t turn_q30[2]);
-    /* Finds how the metal of SURFACE lies, which RAY meets. */
+    /* Returns by how much the normal of SURFACE turns within the pixel of RAY,
+     * as struct glint_brushed has it. */
+    int32_t (*spread)(const struct glint_scene *scene,
+                      const struct glint_scene_ray *ray,
+                      const struct glint_met_surface *surface);
+    /* Finds how the metal of SURFACE lies; its spread is not known then. */
     void (*lie)(const struct glint_scene *scene,
-                const struct glint_scene_ray *ray,
                 const struct glint_met_surface *surface,
                 struct glint_brushed *brushed);
     /* Adds what SURFACE, of diffuse COLOUR_Q15, leaves along RAY of the light

@@ -72,7 +72,7 @@ static inline int32_t gloss_q15(const struct glint_gloss *gloss,
 static void add_shine(const struct glint_scene *s,
                       const struct glint_scene_ray *ray,
                       const struct glint_met_surface *surface,
-                      const struct glint_brushed *brushed,
+                      struct glint_brushed *brushed,
                       const struct glint_lit *lit, int32_t t,
                       const int32_t toward_q30[3], const int32_t level_q15[3],
                       int32_t share_q15, int32_t rgb_q15[3])
@@ -85,6 +85,8 @@ static void add_shine(const struct glint_scene *s,
                         1 << 29);
     int32_t shine_q15[3];
 
+    if (brushed->spread_q30 < 0)
+        brushed->spread_q30 = s->cfg.parts.wards->spread(s, ray, surface);
     if (!s->cfg.parts.wards->shine(s, ray, surface, brushed, toward_q30,
                                    level_q15, radius_q30, shine_q15))
         return;
@@ -96,7 +98,7 @@ static void add_shine(const struct glint_scene *s,
 static WHOLLY_INLINE void
 add_light(const struct glint_scene *s, const struct glint_scene_ray *ray,
           const struct glint_met_surface *surface,
-          const struct glint_brushed *brushed, const struct glint_lit *lit,
+          struct glint_brushed *brushed, const struct glint_lit *lit,
           const int32_t colour_q15[3], int32_t weight_q15, int32_t rgb_q15[3])
 {
     const struct glint_scene_material *m = surface->material;
@@ -123,6 +125,8 @@ add_light(const struct glint_scene *s, const struct glint_scene_ray *ray,
     if (brushed)
         add_shine(s, ray, surface, brushed, lit, t, toward_q30, level_q15,
                   share_q15, rgb_q15);
+    if (brushed && !(colour_q15[0] | colour_q15[1] | colour_q15[2]))
+        return;
     /* below 2^30, and 2^32 together */
     gloss *= m->specular_q15;
     cosine_q30 = q_mul(m->diffuse_q15, cosine_q30, 15);
@@ -163,7 +167,7 @@ static WHOLLY_INLINE void phong(const struct glint_scene *scene,
     for (int c = 0; c < 3; c++)
         add(&rgb_q15[c], q_mul(m->ambient_q15, colour_q15[c], 15), weight_q15);
     if (is_metal)
-        wards->lie(scene, ray, surface, &brushed);
+        wards->lie(scene, surface, &brushed);
     if (scene->wards)
         wards->reflect(scene, ray, surface, is_metal ? &brushed : NULL,
                        colour_q15, weight_q15, rgb_q15);

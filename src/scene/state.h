@@ -154,7 +154,8 @@ struct glint_met_surface {
 struct glint_brushed {
     int32_t frame_q30[3][3]; /* rows: tangent, bitangent, normal; units */
     int32_t spread_q30;      /* what the normal's turn within a pixel adds to
-                                the squares of alphas: twice its variance */
+                                the squares of alphas: twice its variance; -1:
+                                no light has asked for it */
 };
 
 /* Light and cover of a pixel: sums over four samples. */

@@ -259,7 +259,6 @@ static int32_t spread_q30(const struct glint_scene *s,
 /* Metal is brushed around the y axis of balls and meshes; where that is the
  * normal, as everywhere on planes, along the x axis. */
 static void lie(const struct glint_scene *scene,
-                const struct glint_scene_ray *ray,
                 const struct glint_met_surface *surface,
                 struct glint_brushed *brushed)
 {
@@ -289,7 +288,7 @@ static void lie(const struct glint_scene *scene,
     v3_cross(n_q30, brushed->frame_q30[0], across);
     for (int k = 0; k < 3; k++)
         brushed->frame_q30[1][k] = (int32_t)q_shift(across[k], 30);
-    brushed->spread_q30 = spread_q30(scene, ray, surface);
+    brushed->spread_q30 = -1;
 }
 
 /* ---------------------------------------------------------------- reflecting
@@ -360,6 +359,14 @@ static void reflect(const struct glint_scene *scene,
         add(&rgb_q15[c], light[c], weight_q15);
 }
 
-const struct glint_scene_wards glint_scene_wards = {
-    carve,   open_wards,       set_lobe,         show, scale, turn, lie,
-    reflect, glint_ward_shine, glint_ward_behind};
+const struct glint_scene_wards glint_scene_wards = {carve,
+                                                    open_wards,
+                                                    set_lobe,
+                                                    show,
+                                                    scale,
+                                                    turn,
+                                                    spread_q30,
+                                                    lie,
+                                                    reflect,
+                                                    glint_ward_shine,
+                                                    glint_ward_behind};

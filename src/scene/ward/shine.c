@@ -24,31 +24,54 @@ struct half {
     uint64_t slope_q52[2]; /* squares of slopes along the two axes, to 2^60 */
 };
 
-/* Returns 0 if the light or the eye is behind the surface. */
+/* Returns whether ALONG_Q30 over HN_Q30 is surely so much that the lobe of the
+ * square of alpha ALPHA_Q40, below 2^42, is nothing there: before there is a
+ * root or a ratio. The left side is rounded down, to 2^56, the right one up, to
+ * 2^63, and has 1/512 more, which is more than what ratios are off. */
+static int is_beyond(uint32_t along_q30, int32_t hn_q30, int64_t alpha_q40)
+{
+    const uint64_t along_q28 = along_q30 >> 2;
+    const uint64_t hn_q28 = ((uint64_t)hn_q30 >> 2) + 1;
+    const uint64_t most_q56 = ((hn_q28 * hn_q28 >> 24) + 1) *
+                              (((uint64_t)alpha_q40 * MOST_SLOPE >> 16) + 1);
+
+    return along_q28 * along_q28 > most_q56 + (most_q56 >> 9);
+}
+
+/* Returns 0 if the light or the eye is behind the surface, or the lobe of
+ * ALPHA_Q40, squares, is nothing there. */
 static int find_half(const struct glint_scene_ray *ray,
                      const struct glint_brushed *brushed,
-                     const int32_t toward_q30[3], struct half *h)
+                     const int32_t toward_q30[3], const int64_t alpha_q40[2],
+                     struct half *h)
 {
     const int32_t *n_q30 = brushed->frame_q30[2];
     int32_t half_q30[3], hn_q30;
+    uint32_t along_q30[2];
 
     for (int k = 0; k < 3; k++)
         half_q30[k] = (int32_t)(((int64_t)toward_q30[k] - ray->toward_q30[k]) /
                                 2); /* (i + o) / 2 = (h.o) h */
     hn_q30 = v3_cosine_q30(half_q30, n_q30);
+    if (hn_q30 <= 0)
+        return 0;
+    for (int k = 0; k < 2; k++) {
+        along_q30[k] = (uint32_t)q_magnitude(
+            v3_cosine_q30(half_q30, brushed->frame_q30[k]));
+        if (is_beyond(along_q30[k], hn_q30, alpha_q40[k]))
+            return 0;
+    }
     h->ni_q30 = v3_cosine_q30(toward_q30, n_q30);
     h->no_q30 = -v3_cosine_q30(ray->toward_q30, n_q30);
-    if (hn_q30 <= 0 || h->ni_q30 <= 0 || h->no_q30 <= 0)
+    if (h->ni_q30 <= 0 || h->no_q30 <= 0)
         return 0;
     h->ho_q30 = (int32_t)glint_root((uint64_t)v3_dot(half_q30, half_q30));
     if (h->ho_q30 < hn_q30)
         h->ho_q30 = hn_q30;
     h->hn_q30 = q_part_q30((uint64_t)hn_q30, (uint64_t)h->ho_q30);
     for (int k = 0; k < 2; k++) {
-        const uint64_t along_q30 =
-            q_magnitude(v3_cosine_q30(half_q30, brushed->frame_q30[k]));
-        const uint64_t slope_q26 =
-            (uint64_t)glint_ratio(along_q30 << 26, (uint64_t)hn_q30);
+        const uint64_t slope_q26 = (uint64_t)glint_ratio(
+            (uint64_t)along_q30[k] << 26, (uint64_t)hn_q30);
 
         h->slope_q52[k] = slope_q26 * slope_q26;
     }
@@ -87,20 +110,21 @@ int glint_ward_shine(const struct glint_scene *scene,
         ((int64_t)radius_q30 * radius_q30 >> 23) +
         (int64_t)brushed->spread_q30 * 1024; /* r^2 / 8, and the normal's */
     struct glint_real area = real_of(4, 0), gain;
+    int64_t alpha_q40[2];
     int32_t slope_q16 = 0;
     struct half h;
 
-    if (!find_half(ray, brushed, toward_q30, &h))
+    for (int k = 0; k < 2; k++)
+        alpha_q40[k] =
+            ((int64_t)m->alpha_q24[k] * m->alpha_q24[k] >> 8) + wider_q40;
+    if (!find_half(ray, brushed, toward_q30, alpha_q40, &h))
         return 0;
     for (int k = 0; k < 2; k++) {
-        const int64_t alpha_q40 =
-            ((int64_t)m->alpha_q24[k] * m->alpha_q24[k] >> 8) + wider_q40;
-
-        if ((h.slope_q52[k] >> 12) >= (uint64_t)alpha_q40 * MOST_SLOPE)
+        if ((h.slope_q52[k] >> 12) >= (uint64_t)alpha_q40[k] * MOST_SLOPE)
             return 0;
-        slope_q16 += glint_ratio(h.slope_q52[k] << 4, (uint64_t)alpha_q40);
-        area = real_times(area,
-                          real_of(glint_root((uint64_t)alpha_q40 << 20), -30));
+        slope_q16 += glint_ratio(h.slope_q52[k] << 4, (uint64_t)alpha_q40[k]);
+        area = real_times(
+            area, real_of(glint_root((uint64_t)alpha_q40[k] << 20), -30));
     }
     if (slope_q16 >= MOST_SLOPE << 16)
         return 0;
