@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Items of data sets: lines give back every number, numbers keep to their
+ * ranges, and none depends on another.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "synth/draw.h"
+
+static const struct synth_item named = {.width = 64,
+                                        .height = 48,
+                                        .glint = "0",
+                                        .background = "a \"quoted\" name.ppm",
+                                        .background_key = "0123456789abcdef",
+                                        .lens = "heliar-tronnier",
+                                        .coating = "mixed",
+                                        .quality = 0.3};
+
+static double number(const struct synth_item *item, int k)
+{
+    return *(const double *)(const void *)((const char *)item +
+                                           synth_field[k].at);
+}
+
+static void lines_hold_all(void **state)
+{
+    static const struct synth_result none;
+    struct synth_ranges ranges;
+
+    (void)state;
+    synth_ranges_defaults(&ranges);
+    for (int i = 0; i < 500; i++) {
+        struct synth_item item = named, back;
+        struct glint_error error = {""};
+        char *line;
+
+        synth_item_draw(&item, &ranges, 2147483647 - i, i);
+        line = synth_item_print(&item, &none);
+        assert_non_null(line);
+        if (synth_item_read(&back, line, &error) == GLINT_E_UNSUPPORTED) {
+            free(line);
+            skip(); /* without jansson */
+        }
+        assert_string_equal(error.text, "");
+        for (int k = 0; k < SYNTH_FIELDS; k++)
+            if (synth_field[k].text_bytes)
+                assert_string_equal((char *)&item + synth_field[k].at,
+                                    (char *)&back + synth_field[k].at);
+            else
+                assert_true(number(&item, k) == number(&back, k));
+        for (int k = 0; k < (int)item.n_lights; k++)
+            assert_memory_equal(&item.light[k], &back.light[k],
+                                sizeof item.light[k]);
+        free(line);
+    }
+}
+
+static void numbers_keep_to_ranges(void **state)
+{
+    struct synth_ranges ranges;
+    double low[SYNTH_FIELDS], high[SYNTH_FIELDS];
+    int zeros = 0;
+
+    (void)state;
+    synth_ranges_defaults(&ranges);
+    for (int k = 0; k < SYNTH_FIELDS; k++) {
+        low[k] = INFINITY;
+        high[k] = -INFINITY;
+    }
+    for (int i = 0; i < 4000; i++) {
+        struct synth_item item = named;
+
+        synth_item_draw(&item, &ranges, 1, i);
+        zeros += item.dust == 0;
+        assert_true(item.light[0].power == 1);
+        for (int k = 0; k < SYNTH_FIELDS; k++)
+            if (synth_field[k].law > SYNTH_COUNTED && number(&item, k) != 0) {
+                low[k] = fmin(low[k], number(&item, k));
+                high[k] = fmax(high[k], number(&item, k));
+            }
+    }
+    assert_in_range(zeros, 1850, 2150); /* 5 sigma are 158 */
+    for (int k = 0; k < SYNTH_FIELDS; k++) {
+        const double span = synth_field[k].high - synth_field[k].low;
+
+        if (synth_field[k].law <= SYNTH_COUNTED || span == 0)
+            continue;
+        assert_true(low[k] >= synth_field[k].low - 1e-6);
+        assert_true(high[k] <= synth_field[k].high + 1e-6);
+        assert_true(high[k] > synth_field[k].high - 0.02 * span);
+    }
+}
+
+/* Another range for one number leaves all others. */
+static void numbers_stand_alone(void **state)
+{
+    struct synth_item a = named, b = named;
+    struct synth_ranges ranges;
+    struct glint_error why = {""};
+
+    (void)state;
+    synth_ranges_defaults(&ranges);
+    synth_item_draw(&a, &ranges, 3, 14);
+    /* Names of one length are as different as others. */
+    assert_true(a.crop_x != a.crop_y);
+    assert_true(synth_ranges_take(&ranges, "level=0.5", &why));
+    synth_item_draw(&b, &ranges, 3, 14);
+    assert_true(b.level == 0.5);
+    b.level = a.level;
+    assert_memory_equal(&a, &b, sizeof a);
+    synth_item_draw(&b, &ranges, 3, 15);
+    assert_true(a.crop_x != b.crop_x);
+    synth_item_draw(&b, &ranges, 4, 14);
+    assert_true(a.crop_x != b.crop_x);
+    assert_false(synth_ranges_take(&ranges, "level=1,-1", &why));
+    assert_false(synth_ranges_take(&ranges, "levels=1", &why));
+    assert_false(synth_ranges_take(&ranges, "width=64", &why));
+    assert_false(synth_ranges_take(&ranges, "star=0,1", &why));
+    assert_true(synth_ranges_take(&ranges, "star=0", &why));
+}
+
+/* The noise of a sensor has the variance of its photons and of reading. */
+static void noise_is_of_photons(void **state)
+{
+    enum { SIDE = 256, N = 3 * SIDE * SIDE };
+    struct synth_item item = {
+        .width = SIDE, .height = SIDE, .read_noise = 0.01, .full_well = 1000};
+    float *const rgb = malloc(N * sizeof *rgb);
+    const double light[] = {0, 0.1, 0.8};
+
+    (void)state;
+    assert_non_null(rgb);
+    for (int k = 0; k < 3; k++) {
+        double sum = 0, squares = 0, wanted = light[k] / 1000 + 1e-4;
+
+        for (int i = 0; i < N; i++)
+            rgb[i] = (float)light[k];
+        synth_noise(&item, rgb);
+        for (int i = 0; i < N; i++) {
+            const double off = (double)rgb[i] - light[k];
+
+            sum += off;
+            squares += off * off;
+        }
+        assert_true(fabs(sum / N) < 5 * sqrt(wanted / N));
+        assert_true(fabs(squares / N / wanted - 1) < 0.02);
+    }
+    free(rgb);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lines_hold_all),
+        cmocka_unit_test(numbers_keep_to_ranges),
+        cmocka_unit_test(numbers_stand_alone),
+        cmocka_unit_test(noise_is_of_photons),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
