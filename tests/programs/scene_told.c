@@ -152,8 +152,8 @@ static enum glint_status read_sky(void *ctx, const char *name, uint8_t **data,
                                   &report, error);
 }
 
-/* Sets FIT of TEXELS to bells and even factors: what it costs to draw is what
- * counts. */
+/* Sets FIT of TEXELS to even factors and to bells, which are products and so
+ * quickly taken apart: what it costs to draw is what counts. */
 static void fill_fit(struct glint_scatter_fit *fit, int texels)
 {
     const int k = fit->kernel, r = k / 2;
@@ -161,8 +161,7 @@ static void fill_fit(struct glint_scatter_fit *fit, int texels)
     for (int i = 0; i < 3 * fit->kernels * k * k; i++) {
         const int u = i % k - r, v = i / k % k - r;
 
-        fit->h[i] = exp(-(hypot(u, v) + .1 * (double)(i / k / k)) / (1 + r)) /
-                    (2 * k * k);
+        fit->h[i] = exp(-(u * u + v * v) / (1. + r * r)) / (2 * k * k);
     }
     for (int i = 0; i < 3 * texels; i++) {
         fit->in[i] = fit->out[i] = .8;

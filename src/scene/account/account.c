@@ -409,6 +409,24 @@ static void clear(const struct account *a)
         a->seen[i] = -1;
 }
 
+/* Counts how many shadows were asked for LIT texels of the map of skin I: of
+ * every 61st, which is in another column each time. */
+static void count_map_shadows(const struct glint_scene *s, uint32_t i, int lit,
+                              int64_t *count)
+{
+    enum { STEP = 61 };
+    struct glint_scene_part some = {.by = -1};
+
+    for (int k = 0; k < lit; k += STEP) {
+        struct glint_met_surface surface;
+
+        if (s->cfg.parts.stones->place(s, i, k, &surface))
+            count_lights(s, &surface, &some);
+    }
+    for (int k = GLINT_SCENE_SHADOWS; k <= GLINT_SCENE_TRIED; k++)
+        count[k] += STEP * some.count[k];
+}
+
 /* Counts what maps of stones took in the last frame. What is around a texel
  * costs as much as three lights. */
 static void count_maps(const struct account *a)
@@ -424,6 +442,7 @@ static void count_maps(const struct account *a)
         count[GLINT_SCENE_GATHERED] +=
             lit * (s->n_lit + (h->n_environments ? 3 : 0));
         count[GLINT_SCENE_SPREAD] += spread;
+        count_map_shadows(s, i, (int)lit, count);
     }
 }
 

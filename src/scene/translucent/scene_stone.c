@@ -311,6 +311,20 @@ static void took(const struct glint_scene *scene, uint32_t i, int64_t *lit,
     *spread = (int64_t)skin->texels_spread * h->n_planes * h->rank * h->kernel;
 }
 
+static int lit_place(const struct glint_scene *scene, uint32_t i, int texel,
+                     struct glint_met_surface *surface)
+{
+    const struct glint_stone_skin *skin = &scene->stones->skin[i];
+    const int block = skin->list[texel / BLOCK_TEXELS];
+    const int within = texel % BLOCK_TEXELS;
+
+    return glint_stone_surface(
+        scene, skin,
+        block % skin->across * GLINT_BLOCK_WIDTH + within % GLINT_BLOCK_WIDTH,
+        block / skin->across * GLINT_BLOCK_HEIGHT + within / GLINT_BLOCK_WIDTH,
+        surface);
+}
+
 /* ------------------------------------------------------------------- showing
  */
 
@@ -403,4 +417,4 @@ static int32_t add(const struct glint_scene *scene,
 }
 
 const struct glint_scene_stones glint_scene_stones = {
-    carve, open_stones, relight, update, took, add};
+    carve, open_stones, relight, update, took, lit_place, add};

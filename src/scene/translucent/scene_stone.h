@@ -61,6 +61,11 @@ void glint_stone_expose(const struct glint_scene *scene,
 void glint_stone_light_block(const struct glint_scene *scene,
                              const struct glint_stone_skin *skin, int i);
 
+/* Sets SURFACE to texel (X, Y); returns 0 if it is none of the thing. */
+int glint_stone_surface(const struct glint_scene *scene,
+                        const struct glint_stone_skin *skin, int x, int y,
+                        struct glint_met_surface *surface);
+
 /* Returns the most light that a surface has from the environment. */
 int32_t glint_stone_around(const struct glint_scene *scene);
 

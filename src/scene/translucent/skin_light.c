@@ -186,17 +186,26 @@ static void add_light(const struct glint_scene *s,
     }
 }
 
+int glint_stone_surface(const struct glint_scene *s,
+                        const struct glint_stone_skin *skin, int x, int y,
+                        struct glint_met_surface *surface)
+{
+    *surface = (struct glint_met_surface){
+        .material = &s->model.material[skin->material],
+        .object = skin->of->object};
+    if (!skin->spread.is_ball)
+        return mesh_surface(s, skin, x, y, surface);
+    ball_surface(s, skin, x, y, surface);
+    return 1;
+}
+
 static void light_texel(const struct glint_scene *s,
                         const struct glint_stone_skin *skin, int x, int y,
                         int32_t rgb_q15[3])
 {
-    struct glint_met_surface surface = {.material =
-                                            &s->model.material[skin->material],
-                                        .object = skin->of->object};
+    struct glint_met_surface surface;
 
-    if (skin->spread.is_ball)
-        ball_surface(s, skin, x, y, &surface);
-    else if (!mesh_surface(s, skin, x, y, &surface))
+    if (!glint_stone_surface(s, skin, x, y, &surface))
         return;
     for (uint32_t i = 0; i < s->n_lit; i++)
         add_light(s, skin, &surface, &s->lit[i], rgb_q15);
