@@ -47,6 +47,10 @@ stone-table: all $(OUT)/stone_rows $(OUT)/stone_cost
 	@$(MAKE) -s --no-print-directory TARGET=aarch64 \
 	        SYSROOT=$$(tests/arm/prepare aarch64) build/aarch64/stone_cost >&2
 	@tools/report/scenes/stone-table $(OUT) | tools/report/write-figures scenes/stone
+# What dials of stones cost and give, in pictures: some minutes.
+stone-dials: all
+	@tools/make/deps "instruction counts" valgrind >&2
+	@tools/report/scenes/stone-dials | tools/report/write-figures scenes/dials
 # Four materials under the eight panoramas.
 ward-sheet: all
 	@tools/make/deps "contact sheets, panoramas" python3-pil libopenimageio-dev pkg-config g++ >&2
@@ -198,4 +202,4 @@ budget: all
         power-fit \
         corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet gallery \
         bench bench-insn growth size trade lights-table threads-table reuse-table flicker-table left-table stopping-table hostile-table star-table memory-table \
-        cost-fit scene-cost-fit stone-table ward-table ward-sheet ward-cost-table sunflow-table budget
+        cost-fit scene-cost-fit stone-table stone-dials ward-table ward-sheet ward-cost-table sunflow-table budget
