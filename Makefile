@@ -69,6 +69,7 @@ absent := $(foreach s,$(filter-out $(sets_$(ARCH)),sse41 avx2 x86 neon),$(wildca
 absent += platform/jpeg/$(if $(filter yes,$(WITH_JPEG)),absent,mjpeg).c
 absent += src/bake/motion/$(if $(filter yes,$(WITH_JANSSON)),absent,recording).c
 absent += tools/synth/$(if $(filter yes,$(WITH_JANSSON)),item_absent,item_json).c
+absent += tools/import/$(if $(filter yes,$(WITH_JANSSON)),realflare_absent,realflare).c
 absent += tools/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
 # A static program has no plug-ins.
 absent += platform/oiio/$(if $(CROSS),loader,absent).c
@@ -97,6 +98,7 @@ $(OUT)/%.o: %.c
 $(OUT)/platform/jpeg/absent.o: NOTE := MJPEG left out: no libjpeg62-turbo-dev
 $(OUT)/tools/options/config_absent.o: NOTE := --config left out: no libinih-dev
 $(OUT)/tools/synth/item_absent.o: NOTE := synth --item left out: no libjansson-dev
+$(OUT)/tools/import/realflare_absent.o: NOTE := lens files of realflare left out: no libjansson-dev
 $(OUT)/src/bake/motion/absent.o: NOTE := recordings left out: no libjansson-dev
 
 $(OUT)/libglint.a: $(core_o)

@@ -18,15 +18,17 @@ static const char help[] =
     "\n"
     "Reads a lens file of another program and writes a table of it: Zemax\n"
     ".zmx (sequential; STANDARD, EVENASPH; text or UTF-16), CODE V .seq,\n"
-    "OSLO .len, pbrt .dat, FlareSim .lens. Lengths become millimetres,\n"
-    "glasses those of the catalogue (lenses/README.md) or the file's nd and\n"
-    "Vd. What is guessed or left out is told with its line, and stands in\n"
+    "OSLO .len, pbrt .dat, FlareSim .lens, realflare .json. Lengths become\n"
+    "millimetres, glasses those of the catalogue (lenses/README.md) or the\n"
+    "file's nd and Vd. What is guessed or left out is told with its line, and "
+    "stands in\n"
     "the table's head.\n"
     "\n"
     "  -o, --output FILE   the .lens, or - for standard output\n"
     "  --strict            refuse where something would be guessed\n"
-    "  --format F          zmx, seq, oslo, pbrt or flaresim (default: by the\n"
-    "                      end of the name)\n"
+    "  --format F          zmx, seq, oslo, pbrt, flaresim or realflare "
+    "(default:\n"
+    "                      by the end of the name)\n"
     "  --film WxH          film, mm (default: what the file's field says)\n"
     "  --f-number N        f-number (default: the file's)\n";
 
@@ -113,8 +115,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct import *o)
         o->format = import_format_of(argv[optind]);
     if (!o->format)
         return tool_usage(tool,
-                          "%s: which --format has it: zmx, seq, oslo, pbrt or "
-                          "flaresim?",
+                          "%s: which --format has it: zmx, seq, oslo, pbrt, "
+                          "flaresim or realflare?",
                           argv[optind]);
     apart_read(&files, NULL, argv[optind]);
     apart_write(&files, "-o", o->output);

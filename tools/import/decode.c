@@ -10,6 +10,7 @@ static const struct import_format formats[] = {
     {"oslo", ".len", import_oslo},
     {"pbrt", ".dat", import_pbrt},
     {"flaresim", ".lens", import_flaresim},
+    {"realflare", ".json", import_realflare},
 };
 
 enum { N_FORMATS = sizeof formats / sizeof *formats };

@@ -92,5 +92,6 @@ bool import_pbrt(struct imported *lens, const char *text, size_t bytes);
 bool import_flaresim(struct imported *lens, const char *text, size_t bytes);
 bool import_seq(struct imported *lens, const char *text, size_t bytes);
 bool import_oslo(struct imported *lens, const char *text, size_t bytes);
+bool import_realflare(struct imported *lens, const char *text, size_t bytes);
 
 #endif

@@ -27,7 +27,7 @@ static const struct {
     {"draw", "rays", "a whole number, 1 to 41"},
     {"explain", "top", "a whole number, from 0"},
     {"import", "film", "WxH in mm, such as 36x24"},
-    {"import", "format", "zmx, seq, oslo, pbrt or flaresim"},
+    {"import", "format", "zmx, seq, oslo, pbrt, flaresim or realflare"},
     {"live", "count", "frames, from 1"},
     {"live", "device",
      "/dev/videoN, a number, the name of a .y4m file, - or test"},
