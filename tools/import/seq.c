@@ -172,7 +172,7 @@ static bool take_head(struct seq *q)
 }
 
 /* Puts the first word into capitals. */
-static void raise(struct lines *l)
+static void capitalise(struct lines *l)
 {
     for (char *c = l->text + (l->word[0] - l->text); *c; c++)
         if (*c >= 'a' && *c <= 'z')
@@ -183,7 +183,7 @@ static bool take(struct seq *q)
 {
     const struct lines *l = &q->lines;
 
-    raise(&q->lines);
+    capitalise(&q->lines);
     if (lines_is(l, "S") || lines_is(l, "SO") || lines_is(l, "SI"))
         return start_surface(q);
     return q->s ? take_surface(q) : take_head(q);
