@@ -38,8 +38,8 @@ const struct scene_cost_weight scene_cost_weight[GLINT_SCENE_ITEMS] = {
     {"lobes", 0.617},
     {"bounced", 0.714},
     {"passed", 0.281},
-    {"gathered", 0.31},
-    {"spread", 0.0027},
+    {"gathered", 0.42},
+    {"spread", 0.0024},
     /* end weights */
 };
 const struct scene_cost_weight scene_cost_rest[SCENE_COST_RESTS] = {
