@@ -18,11 +18,21 @@ static const struct {
 
 enum { N_ENDS = sizeof ends / sizeof *ends };
 
-bool glass_is_known(double nd, double vd)
+/* Plastics of phone lenses, from polycarbonate to the densest, have a
+ * lower Vd than flints of their nd. */
+static bool is_plastic(double nd, double vd)
+{
+    return nd >= 1.57 && nd <= 1.69 && vd <= 35 &&
+           vd >= 28.5 - (nd - 1.585) * 125;
+}
+
+bool glass_is_known(double nd, double vd, bool moulded)
 {
     int k = 0;
     double part;
 
+    if (moulded && is_plastic(nd, vd))
+        return true;
     if (!(nd >= ends[0].nd && nd <= ends[N_ENDS - 1].nd))
         return false;
     while (k < N_ENDS - 2 && nd > ends[k + 1].nd)
@@ -55,6 +65,20 @@ bool glass_is_listed(const struct glint_prescription *lens, int k)
     return false;
 }
 
+/* Returns whether the glass behind S, which is not the last surface, has a side
+ * that is ground by nobody. */
+static bool is_moulded(const struct glint_surface *s)
+{
+    return glint_surface_is_shaped(&s[0]) || glint_surface_is_shaped(&s[1]);
+}
+
+/* Returns whether ND has more than three decimals: rounder ones are shared, as
+ * 1.755 is by a lanthanum crown and a flint. */
+static bool is_precise(double nd)
+{
+    return fabs(1e3 * nd - nearbyint(1e3 * nd)) > 1e-6;
+}
+
 int glass_suspect(const struct glint_prescription *lens, char *text,
                   size_t bytes)
 {
@@ -63,12 +87,12 @@ int glass_suspect(const struct glint_prescription *lens, char *text,
 
         if (!(s->vd > 0))
             continue;
-        if (!glass_is_known(s->nd, s->vd)) {
+        if (!glass_is_known(s->nd, s->vd, is_moulded(s))) {
             snprintf(text, bytes, "no glass has nd %.6g and Vd %.4g", s->nd,
                      s->vd);
             return k;
         }
-        for (int i = 0; i < k; i++)
+        for (int i = 0; i < k && is_precise(s->nd); i++)
             if (fabs(lens->surface[i].nd - s->nd) < 2e-6 &&
                 fabs(lens->surface[i].vd - s->vd) > 1.5) {
                 snprintf(text, bytes,

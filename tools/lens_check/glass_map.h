@@ -11,16 +11,16 @@
 #include "glint/prescription.h"
 
 /* Returns whether there is, or has been, a glass like that: not beyond the
- * crowns and fluorides, nor beyond the flints. */
-bool glass_is_known(double nd, double vd);
+ * crowns and fluorides, nor beyond the flints; if MOULDED, also a plastic. */
+bool glass_is_known(double nd, double vd, bool moulded);
 
 /* Returns whether the glass behind surface K of LENS is another surface's, too,
  * or in the catalogue. */
 bool glass_is_listed(const struct glint_prescription *lens, int k);
 
 /* Returns the first surface of LENS whose glass is none, or has the nd of
- * another in the table at a Vd that is apart, -1 if all are well. TEXT[BYTES]
- * says why. */
+ * another in the table, of four decimals or more, at a Vd that is apart, -1 if
+ * all are well. TEXT[BYTES] says why. */
 int glass_suspect(const struct glint_prescription *lens, char *text,
                   size_t bytes);
 
