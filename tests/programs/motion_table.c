@@ -208,6 +208,7 @@ static void plot_track(const char *dir, int n_frames)
     plot_init(&above, file, 1, "the way, from above");
     residual.x.words = "frame";
     residual.y.words = "most of 204 frames";
+    residual.y.is_log = true;
     above.x.words = "x";
     above.y.words = "z";
     glint_localiser_init(&l, GLINT_MOTION_ALL, true, GLINT_DOUBLE);
@@ -224,7 +225,8 @@ static void plot_track(const char *dir, int n_frames)
         at[3 * i + 2] =
             i % 204 ? fmax(at[3 * i - 1], located.residual) : located.residual;
         plot_stretch(&above, at[3 * i], at[3 * i + 1]);
-        plot_stretch(&residual, i, at[3 * i + 2]);
+        if (i % 204 == 203)
+            plot_stretch(&residual, i, at[3 * i + 2]);
     }
     plot_frame(&residual);
     plot_frame(&above);
