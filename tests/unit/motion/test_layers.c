@@ -13,9 +13,9 @@
 
 #include "scene/motion/play.h"
 #include "support/rng.h"
-#include "support/tracks/drawn.h"
+#include "support/tracks/moving.h"
 
-enum { WIDTH = DRAWN_WIDTH, HEIGHT = DRAWN_HEIGHT, SAMPLES = 4 };
+enum { WIDTH = MOVING_WIDTH, HEIGHT = MOVING_HEIGHT, SAMPLES = 4 };
 
 /* Returns the cosine between ray and normal where the ray of place (X, Y), q8
  * from the middle, enters a ball of RADIUS at C, camera coordinates; -1: it
@@ -72,13 +72,13 @@ static double line_at(const struct glint_scene *s,
 }
 
 /* Draws shells, lines and box alone, and compares. */
-static void compare(struct drawn *d)
+static void compare(struct moving *d)
 {
     const struct glint_scene *s = d->frame.scene;
     const struct glint_motion_state *m = s->motion;
     double worst = 0;
 
-    drawn_draw(d);
+    moving_draw(d);
     assert_true(m->n_layers > 0);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
@@ -115,22 +115,22 @@ static void layers_are_as_defined(void **state)
         "camera fov 53 at 1 14 0 toward 0 0 0.5\n"};
 
     (void)state;
-    drawn_of_foods(food, 4, 50);
+    moving_of_foods(food, 4, 50);
     for (int i = 0; i < 4; i++)
         for (int tile_log2 = 4; tile_log2 <= 6; tile_log2++) {
             char text[400];
-            struct drawn *d;
+            struct moving *d;
 
             strcpy(text, camera[i]);
             strcat(text, "material shells phong 1 0 0 colour 0 .5 1 pass .4\n"
                          "motion run x size .6 sensors .2 foods .5 shells 1.8 "
                          "lines .3 box .1\n");
-            d = drawn_open(text, tile_log2, SAMPLES);
+            d = moving_open(text, tile_log2, SAMPLES);
             glint_scene_show_kind(d->frame.scene, GLINT_KIND_FOODS, 0);
             glint_scene_show_kind(d->frame.scene, GLINT_KIND_BODY, 0);
             glint_scene_show_kind(d->frame.scene, GLINT_KIND_SENSORS, 0);
             compare(d);
-            drawn_close(d);
+            moving_close(d);
         }
 }
 
@@ -142,19 +142,19 @@ static void nearer_things_hide_layers(void **state)
     const int middle = 3 * (HEIGHT / 2 * WIDTH + WIDTH / 2);
 
     (void)state;
-    drawn_of_foods(food, 3, 50);
+    moving_of_foods(food, 3, 50);
     for (int i = 0; i < 2; i++) {
-        struct drawn *d =
-            drawn_open(i ? "camera fov 30 at 5 12 12 toward 5 0 0\n"
-                           "motion run x size .6 foods 1 shells 2\n"
-                         : "camera fov 30 at 5 12 12 toward 5 0 0\n"
-                           "motion run x size .6 foods 1 shells 5.4\n",
-                       5, SAMPLES);
+        struct moving *d =
+            moving_open(i ? "camera fov 30 at 5 12 12 toward 5 0 0\n"
+                            "motion run x size .6 foods 1 shells 2\n"
+                          : "camera fov 30 at 5 12 12 toward 5 0 0\n"
+                            "motion run x size .6 foods 1 shells 5.4\n",
+                        5, SAMPLES);
         int32_t with[2][3];
 
         for (int k = 0; k < 2; k++) {
             glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, k);
-            drawn_draw(d);
+            moving_draw(d);
             memcpy(with[k], d->light_q20 + middle, sizeof with[k]);
         }
         assert_int_equal(d->frame.scene->motion->n_layers, 1);
@@ -162,7 +162,7 @@ static void nearer_things_hide_layers(void **state)
             assert_memory_equal(with[0], with[1], sizeof with[0]);
         else /* the shell is so wide that the food is in it */
             assert_memory_not_equal(with[0], with[1], sizeof with[0]);
-        drawn_close(d);
+        moving_close(d);
     }
 }
 

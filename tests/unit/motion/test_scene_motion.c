@@ -19,13 +19,13 @@
 #include "scene/motion/play.h"
 #include "scenes/scene_frame.h"
 #include "support/rng.h"
-#include "support/tracks/drawn.h"
+#include "support/tracks/moving.h"
 
 enum {
-    WIDTH = DRAWN_WIDTH,
-    HEIGHT = DRAWN_HEIGHT,
-    FOODS = DRAWN_FOODS,
-    SENSORS = DRAWN_SENSORS
+    WIDTH = MOVING_WIDTH,
+    HEIGHT = MOVING_HEIGHT,
+    FOODS = MOVING_FOODS,
+    SENSORS = MOVING_SENSORS
 };
 
 #define LOOK                                   \
@@ -34,7 +34,7 @@ enum {
 #define RUN \
     "motion run x size .6 sensors .2 foods .5 shells 1.8 lines .06 box 1 "
 
-static uint64_t hash_of(const struct drawn *d)
+static uint64_t hash_of(const struct moving *d)
 {
     uint64_t hash = UINT64_C(14695981039346656037);
 
@@ -52,16 +52,16 @@ static void row_d8_seek_is_play(void **state)
 {
     enum { N = 40 };
     uint64_t played[N];
-    struct drawn *d;
+    struct moving *d;
     uint32_t seed = 3;
 
     (void)state;
-    drawn_of_track(3, N, 60);
-    d = drawn_open(LOOK RUN, 5, 4);
+    moving_of_track(3, N, 60);
+    d = moving_open(LOOK RUN, 5, 4);
     assert_int_equal(glint_scene_frames(d->frame.scene), N);
     for (int k = 0; k < N; k++) {
         glint_scene_seek(d->frame.scene, (uint32_t)k);
-        drawn_draw(d);
+        moving_draw(d);
         played[k] = hash_of(d);
         assert_true(k == 0 || played[k] != played[k - 1]);
     }
@@ -69,21 +69,21 @@ static void row_d8_seek_is_play(void **state)
         const uint32_t k = (uint32_t)rng_below(&seed, N);
 
         glint_scene_seek(d->frame.scene, k);
-        drawn_draw(d);
+        moving_draw(d);
         assert_true(hash_of(d) == played[k]);
     }
     glint_scene_seek(d->frame.scene, 1u << 31);
-    drawn_draw(d);
+    moving_draw(d);
     assert_true(hash_of(d) == played[N - 1]);
-    drawn_close(d);
+    moving_close(d);
     for (int log2 = 3; log2 <= 6; log2++) {
-        d = drawn_open(LOOK RUN, log2, 4);
+        d = moving_open(LOOK RUN, log2, 4);
         for (uint32_t k = 0; k < N; k += 13) {
             glint_scene_seek(d->frame.scene, k);
-            drawn_draw(d);
+            moving_draw(d);
             assert_true(hash_of(d) == played[k]);
         }
-        drawn_close(d);
+        moving_close(d);
     }
 }
 
@@ -106,9 +106,9 @@ static void turned(const double q[4], const double v[3], double at[3])
 static double margin_of(const struct glint_motion_frame *frame, double size,
                         int s, int f)
 {
-    const double axis[3] = {sin(drawn_body.theta[s]) * cos(drawn_body.phi[s]),
-                            sin(drawn_body.theta[s]) * sin(drawn_body.phi[s]),
-                            cos(drawn_body.theta[s])};
+    const double axis[3] = {sin(moving_body.theta[s]) * cos(moving_body.phi[s]),
+                            sin(moving_body.theta[s]) * sin(moving_body.phi[s]),
+                            cos(moving_body.theta[s])};
     double q[4], length = 0, to[3], dot = 0, square = 0;
 
     for (int k = 0; k < 4; k++)
@@ -123,7 +123,7 @@ static double margin_of(const struct glint_motion_frame *frame, double size,
         dot += d * to[k];
         square += d * d;
     }
-    return drawn_angle_deg() * GLINT_PI / 360 - acos(dot / sqrt(square));
+    return moving_angle_deg() * GLINT_PI / 360 - acos(dot / sqrt(square));
 }
 
 /* 10 000 frames of random steps, turns and foods, six sensors and five foods
@@ -131,13 +131,13 @@ static double margin_of(const struct glint_motion_frame *frame, double size,
 static void row_d7_detection_is_brute_force(void **state)
 {
     enum { N = 10000 };
-    struct drawn *d[2];
+    struct moving *d[2];
     int seen[2] = {0, 0}, close = 0;
 
     (void)state;
-    drawn_of_track(3, N, 75);
-    d[0] = drawn_open(LOOK RUN "detect angle", 5, 1);
-    d[1] = drawn_open(LOOK RUN "detect both .3", 5, 1);
+    moving_of_track(3, N, 75);
+    d[0] = moving_open(LOOK RUN "detect angle", 5, 1);
+    d[1] = moving_open(LOOK RUN "detect both .3", 5, 1);
     for (uint32_t k = 0; k < N; k++) {
         const struct glint_motion_frame *frame =
             &d[0]->frame.scene->motion->frame;
@@ -169,8 +169,8 @@ static void row_d7_detection_is_brute_force(void **state)
     print_message("  %d of %d seen, %d of them bright; %d too close to tell\n",
                   seen[0], N * FOODS * SENSORS, seen[1], close);
     assert_true(close < 10 && seen[0] > 10000 && seen[1] > 5000);
-    drawn_close(d[0]);
-    drawn_close(d[1]);
+    moving_close(d[0]);
+    moving_close(d[1]);
 }
 
 /* The comparison by squares is that of whole numbers, also for wide angles. */
@@ -225,11 +225,11 @@ static void lines_that_fail_change_nothing(void **state)
     struct glint_error error;
     struct control_line line;
     struct steer steer;
-    struct drawn *d;
+    struct moving *d;
 
     (void)state;
-    drawn_of_track(3, 20, 60);
-    d = drawn_open(LOOK METALS RUN, 5, 4);
+    moving_of_track(3, 20, 60);
+    d = moving_open(LOOK METALS RUN, 5, 4);
     assert_int_equal(steer_open(&steer, &d->model), GLINT_OK);
     for (int i = 0; i < 2; i++) {
         struct steer was;
@@ -238,7 +238,7 @@ static void lines_that_fail_change_nothing(void **state)
         control_parse(before[i], "f:1", &line, &error);
         assert_int_equal(steer_take(&steer, d->frame.scene, &line, "", &error),
                          GLINT_OK);
-        drawn_draw(d);
+        moving_draw(d);
         hash = hash_of(d);
         was = steer;
         control_parse("distance 9e5", "f:2", &line, &error);
@@ -248,17 +248,17 @@ static void lines_that_fail_change_nothing(void **state)
         assert_int_equal(
             steer_take(&steer, d->frame.scene, &bright, "", &error),
             GLINT_E_FORMAT);
-        drawn_draw(d);
+        moving_draw(d);
         assert_true(hash_of(d) == hash);
         steer_apply(&steer, d->frame.scene);
-        drawn_draw(d);
+        moving_draw(d);
         assert_true(hash_of(d) == hash);
     }
     control_parse("orbit 30 20", "f:3", &line, &error);
     assert_int_equal(steer_take(&steer, d->frame.scene, &line, "", &error),
                      GLINT_OK);
     steer_close(&steer);
-    drawn_close(d);
+    moving_close(d);
 }
 
 /* -------------------------------------------------------------------- row D9
@@ -266,7 +266,7 @@ static void lines_that_fail_change_nothing(void **state)
 
 /* Returns the mean place across of what is more red than blue, -1 if nothing
  * is. */
-static double middle_of_foods(const struct drawn *d, int *n)
+static double middle_of_foods(const struct moving *d, int *n)
 {
     double sum = 0;
 
@@ -289,18 +289,18 @@ static void row_d9_a_camera_in_a_sensor(void **state)
     /* ahead of sensor 0, 20 degrees up its side, behind it; and one more */
     double food[4][3] = {{6, 0, 0}, {0, 6, 0}, {0, -3, 7}, {-9, 1, 2}};
     uint64_t outside;
-    struct drawn *d;
+    struct moving *d;
     int n;
 
     (void)state;
-    drawn_of_foods(food, 4, 60);
-    d = drawn_open(LOOK RUN, 5, 4);
-    drawn_draw(d);
+    moving_of_foods(food, 4, 60);
+    d = moving_open(LOOK RUN, 5, 4);
+    moving_draw(d);
     outside = hash_of(d);
     for (int k = 0; k < 2; k++) { /* food k is ahead of sensor k */
         assert_int_equal(glint_scene_enter(d->frame.scene, k), GLINT_OK);
         glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 0);
-        drawn_draw(d);
+        moving_draw(d);
         assert_true(fabs(middle_of_foods(d, &n) - (WIDTH - 1) / 2.) < .5);
         /* radius .5 at 6 - .6, in a picture 2 tan 30 wide */
         assert_true(fabs(sqrt(n / GLINT_PI) -
@@ -310,17 +310,17 @@ static void row_d9_a_camera_in_a_sensor(void **state)
                      GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_enter(d->frame.scene, -1), GLINT_OK);
     glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 1);
-    drawn_draw(d);
+    moving_draw(d);
     assert_true(hash_of(d) == outside);
-    drawn_close(d);
-    d = drawn_open(
+    moving_close(d);
+    d = moving_open(
         "camera sensor 2\nlight sun direction .3 .8 .6 colour 5e4 5e4 "
         "5e4\n" RUN,
         5, 4);
     glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 0);
-    drawn_draw(d);
+    moving_draw(d);
     assert_true(fabs(middle_of_foods(d, &n) - (WIDTH - 1) / 2.) < .5);
-    drawn_close(d);
+    moving_close(d);
 }
 
 /* ------------------------------------------------------------------- row D10
@@ -333,26 +333,26 @@ static void row_d10_who_sees_what(void **state)
     double three[3][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}};
     double corner[4][3] = {{5, 5, 0}, {-5, 5, 0}, {5, -5, 7}, {3, 3, -8}};
     double any[3][3] = {{4, 5, 3}, {-5, 4, 6}, {5, 3, -4}};
-    struct drawn *d;
+    struct moving *d;
 
     (void)state;
-    drawn_of_foods(three, 3, 50);
-    d = drawn_open(LOOK RUN, 5, 4);
+    moving_of_foods(three, 3, 50);
+    d = moving_open(LOOK RUN, 5, 4);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 0), 1);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 1), 2);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 2), 16);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 3), 0);
-    drawn_close(d);
-    drawn_of_foods(any, 3, 360);
-    d = drawn_open(LOOK RUN, 5, 4);
+    moving_close(d);
+    moving_of_foods(any, 3, 360);
+    d = moving_open(LOOK RUN, 5, 4);
     for (uint32_t f = 0; f < 3; f++)
         assert_int_equal(glint_scene_seen_by(d->frame.scene, f), 63);
-    drawn_close(d);
-    drawn_of_foods(corner, 4, 100);
-    d = drawn_open(LOOK RUN, 5, 4);
+    moving_close(d);
+    moving_of_foods(corner, 4, 100);
+    d = moving_open(LOOK RUN, 5, 4);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 0), 1 | 2);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 1), 2 | 4);
-    drawn_close(d);
+    moving_close(d);
 }
 
 /* Each kind is in the picture, can be hidden and comes back, and has a size. */
@@ -360,34 +360,34 @@ static void kinds_are_hidden_and_sized(void **state)
 {
     double food[4][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}, {-5, -4, 6}};
     uint64_t whole;
-    struct drawn *d;
+    struct moving *d;
 
     (void)state;
-    drawn_of_foods(food, 4, 50);
-    d = drawn_open(LOOK RUN, 5, 4);
-    drawn_draw(d);
+    moving_of_foods(food, 4, 50);
+    d = moving_open(LOOK RUN, 5, 4);
+    moving_draw(d);
     whole = hash_of(d);
     for (int kind = 0; kind < GLINT_KINDS; kind++) {
         const int32_t steps = 1 << d->model.header->unit_log2;
 
         glint_scene_show_kind(d->frame.scene, (enum glint_scene_kind)kind, 0);
-        drawn_draw(d);
+        moving_draw(d);
         assert_true(hash_of(d) != whole);
         glint_scene_show_kind(d->frame.scene, (enum glint_scene_kind)kind, 1);
-        drawn_draw(d);
+        moving_draw(d);
         assert_true(hash_of(d) == whole);
         assert_int_equal(glint_scene_size_kind(d->frame.scene,
                                                (enum glint_scene_kind)kind,
                                                steps),
                          GLINT_OK);
-        drawn_draw(d);
+        moving_draw(d);
         assert_true(hash_of(d) != whole);
         whole = hash_of(d);
         assert_int_equal(glint_scene_size_kind(d->frame.scene,
                                                (enum glint_scene_kind)kind, 0),
                          GLINT_E_ARGUMENT);
     }
-    drawn_close(d);
+    moving_close(d);
 }
 
 /* A shell over black has the share of light that its material does not let
@@ -396,27 +396,27 @@ static void shells_let_light_pass(void **state)
 {
     double food[3][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}};
     const int middle = 3 * (HEIGHT / 2 * WIDTH + WIDTH / 2);
-    struct drawn *d;
+    struct moving *d;
 
     (void)state;
-    drawn_of_foods(food, 3, 50);
-    d = drawn_open("camera fov 30 at 5 0 10 toward 5 0 0\n"
-                   "material shells phong 1 0 0 colour 0 .5 1 pass .5\n"
-                   "material foods phong 1 0 0 colour 1 0 0\n"
-                   "motion run x size .6 foods .5 shells 4\n",
-                   5, 4);
-    drawn_draw(d);
+    moving_of_foods(food, 3, 50);
+    d = moving_open("camera fov 30 at 5 0 10 toward 5 0 0\n"
+                    "material shells phong 1 0 0 colour 0 .5 1 pass .5\n"
+                    "material foods phong 1 0 0 colour 1 0 0\n"
+                    "motion run x size .6 foods .5 shells 4\n",
+                    5, 4);
+    moving_draw(d);
     /* the food's red, 1, behind a quarter of the shell */
     assert_true(abs(d->light_q20[middle] - (3 << 18)) < 1 << 14);
     assert_true(abs(d->light_q20[middle + 2] - (1 << 18)) < 1 << 14);
     glint_scene_show_kind(d->frame.scene, GLINT_KIND_FOODS, 0);
-    drawn_draw(d);
+    moving_draw(d);
     assert_true(d->light_q20[middle] == 0);
     assert_true(abs(d->light_q20[middle + 2] - (1 << 18)) < 1 << 14);
     assert_true(abs(glint_scene_cover(d->frame.scene, 256 * WIDTH / 2,
                                       256 * HEIGHT / 2, 1024) -
                     64) < 8);
-    drawn_close(d);
+    moving_close(d);
 }
 
 /* Lines that leave the widest of pictures go on until all of their width is
@@ -437,11 +437,11 @@ static void wide_lines_leave_wide_pictures(void **state)
     const struct glint_motion_state *m;
     struct scene_frame frame;
     int32_t at[3], away, aside;
-    struct drawn *d;
+    struct moving *d;
 
     (void)state;
-    drawn_of_foods(food, 3, 50);
-    d = drawn_open(LOOK "motion run x lines .1 box 1\n", 5, 1);
+    moving_of_foods(food, 3, 50);
+    d = moving_open(LOOK "motion run x lines .1 box 1\n", 5, 1);
     assert_int_equal(scene_frame_open(&frame, &tool, &d->model, &dials),
                      EXIT_OK);
     m = frame.scene->motion;
@@ -467,28 +467,28 @@ static void wide_lines_leave_wide_pictures(void **state)
                                 3 * sizeof *light_q20);
     assert_true(light_q20[3 * WIDE - 1] > 0);
     scene_frame_close(&frame);
-    drawn_close(d);
+    moving_close(d);
 }
 
 /* Lamps ride on the body: the lens is told where they are. */
 static void lamps_ride_on_the_body(void **state)
 {
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
-    struct drawn *d;
+    struct moving *d;
 
     (void)state;
-    drawn_of_track(0, 100, 60);
-    d = drawn_open("camera fov 60 at 0 0 30 toward 0 0 0\n"
-                   "light lamp at 0 1 0 colour 5 5 5 on run\nflare lights\n"
-                   "motion run x size .5\n",
-                   5, 1);
+    moving_of_track(0, 100, 60);
+    d = moving_open("camera fov 60 at 0 0 30 toward 0 0 0\n"
+                    "light lamp at 0 1 0 colour 5 5 5 on run\nflare lights\n"
+                    "motion run x size .5\n",
+                    5, 1);
     for (uint32_t k = 0; k < 100; k += 9) {
         const struct glint_motion_state *m = d->frame.scene->motion;
         double q[4], up[3], at[3];
         const double y[3] = {0, 1, 0};
 
         glint_scene_seek(d->frame.scene, k);
-        drawn_draw(d);
+        moving_draw(d);
         for (int i = 0; i < 4; i++)
             q[i] = ldexp(m->frame.pose.turn_q14[i], -14);
         turned(q, y, up);
@@ -499,7 +499,7 @@ static void lamps_ride_on_the_body(void **state)
             fabs(lamp[0].x_q8 / 256. - WIDTH / 2. -
                  at[0] / (30 - at[2]) * WIDTH / (2 * tan(GLINT_PI / 6))) < .1);
     }
-    drawn_close(d);
+    moving_close(d);
 }
 
 /* ------------------------------------------------------------------ hostile */
@@ -507,28 +507,28 @@ static void lamps_ride_on_the_body(void **state)
 static void a_part_that_is_absent_is_named(void **state)
 {
     struct glint_scene_parts parts;
-    struct drawn *d;
+    struct moving *d;
 
     (void)state;
-    drawn_of_track(0, 10, 60);
-    d = drawn_open(LOOK RUN, 5, 1);
+    moving_of_track(0, 10, 60);
+    d = moving_open(LOOK RUN, 5, 1);
     parts = d->frame.cfg.parts;
     assert_null(glint_scene_lacks(&parts, &d->model));
     parts.motions = NULL;
     assert_string_equal(glint_scene_lacks(&parts, &d->model), "motions");
-    drawn_close(d);
+    moving_close(d);
 }
 
 /* Cameras anywhere, also within shells and lines, and things from a step to a
  * quarter of the space: nothing wraps (CONFIG=qcheck), nothing is endless. */
 static void extremes_of_places_and_sizes(void **state)
 {
-    struct drawn *d;
+    struct moving *d;
     uint32_t seed = 8;
 
     (void)state;
-    drawn_of_track(3, 60, 170);
-    d = drawn_open(LOOK RUN, 5, 4);
+    moving_of_track(3, 60, 170);
+    d = moving_open(LOOK RUN, 5, 4);
     for (int i = 0; i < 400; i++) {
         struct glint_scene *s = d->frame.scene;
         int32_t at[3], axis_q30[3][3] = {{0}};
@@ -546,12 +546,12 @@ static void extremes_of_places_and_sizes(void **state)
             GLINT_OK);
         glint_scene_size_kind(s, (enum glint_scene_kind)rng_below(&seed, 6),
                               1 << rng_below(&seed, 27));
-        drawn_draw(d);
+        moving_draw(d);
     }
     for (int k = 0; k < SENSORS; k++)
         if (glint_scene_enter(d->frame.scene, k) == GLINT_OK)
-            drawn_draw(d);
-    drawn_close(d);
+            moving_draw(d);
+    moving_close(d);
 }
 
 int main(void)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "support/tracks/drawn.h"
+#include "support/tracks/moving.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -23,9 +23,9 @@ static struct {
 } recorded;
 
 /* Sensors look along both ways of each axis. */
-const struct glint_motion_body drawn_body = {
+const struct glint_motion_body moving_body = {
     .size = .5,
-    .n_sensors = DRAWN_SENSORS,
+    .n_sensors = MOVING_SENSORS,
     .theta = {GLINT_PI / 2, GLINT_PI / 2, GLINT_PI / 2, GLINT_PI / 2, 0,
               GLINT_PI},
     .phi = {0, GLINT_PI / 2, GLINT_PI, -GLINT_PI / 2, 0, 0}};
@@ -45,14 +45,14 @@ static void put_frames(struct glint_motion_baker *baker)
         if (!recorded.food)
             track_next(&track, &f);
         s.number = i;
-        s.n_foods = recorded.food ? recorded.n_foods : DRAWN_FOODS;
-        s.n_intensities = DRAWN_SENSORS;
+        s.n_foods = recorded.food ? recorded.n_foods : MOVING_FOODS;
+        s.n_intensities = MOVING_SENSORS;
         for (int k = 0; k < s.n_foods; k++) {
             s.is_new[k] = !recorded.food && f.is_new[k];
             for (int j = 0; j < 3; j++)
                 s.food[k][j] =
                     recorded.food ? recorded.food[k][j] : f.seen[k][j];
-            for (int j = 0; j < DRAWN_SENSORS; j++)
+            for (int j = 0; j < MOVING_SENSORS; j++)
                 s.intensity[k][j] = recorded.food ? 1 : rng_unit(&seed);
         }
         if (glint_motion_baker_frame(baker, &s, &error) != GLINT_OK)
@@ -64,7 +64,7 @@ static enum glint_status bake_motion(void *ctx, const char *name,
                                      uint8_t **data, size_t *bytes,
                                      struct glint_error *error)
 {
-    struct glint_motion_body b = drawn_body;
+    struct glint_motion_body b = moving_body;
     struct glint_motion_options options;
     struct glint_motion_report report;
     struct glint_motion_baker *baker;
@@ -84,17 +84,17 @@ static enum glint_status bake_motion(void *ctx, const char *name,
     return GLINT_OK;
 }
 
-struct drawn *drawn_open(const char *text, int tile_log2, int samples)
+struct moving *moving_open(const char *text, int tile_log2, int samples)
 {
     static const struct tool tool = {.name = "test"};
     const struct glint_description_files files = {NULL, NULL,        NULL,
                                                   NULL, bake_motion, NULL};
-    const struct scene_dials dials = {.width = DRAWN_WIDTH,
-                                      .height = DRAWN_HEIGHT,
+    const struct scene_dials dials = {.width = MOVING_WIDTH,
+                                      .height = MOVING_HEIGHT,
                                       .edge_samples = samples,
                                       .shadow_points = 1,
                                       .tile_log2 = tile_log2};
-    struct drawn *d = calloc(1, sizeof *d);
+    struct moving *d = calloc(1, sizeof *d);
     struct glint_description *scene = malloc(sizeof *scene);
     struct glint_scene_bake_report report;
     struct glint_error error = {""};
@@ -116,40 +116,40 @@ struct drawn *drawn_open(const char *text, int tile_log2, int samples)
     return d;
 }
 
-void drawn_close(struct drawn *d)
+void moving_close(struct moving *d)
 {
     scene_frame_close(&d->frame);
     free(d->data);
     free(d);
 }
 
-void drawn_draw(struct drawn *d)
+void moving_draw(struct moving *d)
 {
     struct glint_image image = {.format = GLINT_LINEAR_Q20,
-                                .width = DRAWN_WIDTH,
-                                .height = DRAWN_HEIGHT};
+                                .width = MOVING_WIDTH,
+                                .height = MOVING_HEIGHT};
 
     memset(d->light_q20, 0, sizeof d->light_q20);
     glint_image_place(&image, d->light_q20);
     assert_int_equal(scene_frame_draw(&d->frame, &image), EXIT_OK);
 }
 
-void drawn_of_track(int motion, int n_frames, double angle_deg)
+void moving_of_track(int motion, int n_frames, double angle_deg)
 {
     recorded.track =
-        (struct track_options){motion, n_frames, DRAWN_FOODS, 7, 0, 9};
+        (struct track_options){motion, n_frames, MOVING_FOODS, 7, 0, 9};
     recorded.food = NULL;
     recorded.angle_deg = angle_deg;
 }
 
-void drawn_of_foods(double (*food)[3], int n, double angle_deg)
+void moving_of_foods(double (*food)[3], int n, double angle_deg)
 {
     recorded.food = food;
     recorded.n_foods = n;
     recorded.angle_deg = angle_deg;
 }
 
-double drawn_angle_deg(void)
+double moving_angle_deg(void)
 {
     return recorded.angle_deg;
 }
