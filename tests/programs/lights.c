@@ -156,6 +156,20 @@ static const int lights[] = {1, 2, 4, 8, 16, 32, 64, 128};
 
 enum { COUNTS = sizeof lights / sizeof *lights, LENSES = 16 };
 
+/* Sets WORDS, of SIZE bytes, to NAME for the legend, which has room for 15
+ * letters: without "-zoom"; of longer ones what is behind the last dash. */
+static void key_words(char *words, size_t size, const char *name)
+{
+    const char *const zoom = strstr(name, "-zoom");
+    const char *const dash = strrchr(name, '-');
+
+    if (zoom)
+        snprintf(words, size, "%.*s%s", (int)(zoom - name), name, zoom + 5);
+    else
+        snprintf(words, size, "%s",
+                 strlen(name) > 15 && dash ? dash + 1 : name);
+}
+
 /* Draws milliseconds over lights, a line a lens, and a line at 66 ms, which two
  * processors work off in 33. */
 static void plot(FILE *file, char name[LENSES][64], double ms[LENSES][COUNTS],
@@ -172,7 +186,14 @@ static void plot(FILE *file, char name[LENSES][64], double ms[LENSES][COUNTS],
             plot_stretch(&p, lights[k], ms[i][k]);
     plot_frame(&p);
     plot_line(&p, 1, 66, 128, 66, "#bbb", false);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; i++) {
+        /* Colours come again after ten. */
+        const char kind = i < 10 ? 'o' : 'd';
+
+        char words[64];
+
+        key_words(words, sizeof words, name[i]);
+        plot_key(&p, kind, plot_colour(i), words);
         for (int k = 0; k < COUNTS; k++) {
             char tip[128];
 
@@ -181,8 +202,9 @@ static void plot(FILE *file, char name[LENSES][64], double ms[LENSES][COUNTS],
             if (k > 0)
                 plot_line(&p, lights[k - 1], ms[i][k - 1], lights[k], ms[i][k],
                           plot_colour(i), false);
-            plot_mark(&p, lights[k], ms[i][k], 'o', plot_colour(i), tip);
+            plot_mark(&p, lights[k], ms[i][k], kind, plot_colour(i), tip);
         }
+    }
     plot_close(file);
 }
 
