@@ -165,9 +165,14 @@ int glint_engine_find(struct glint_engine *engine,
                       const struct glint_image *image, int32_t elapsed_us,
                       struct glint_lamp *lamps, int max);
 
+/* Says that the next picture, on which no lamps are looked for, comes
+ * ELAPSED_US after the last one, as to glint_engine_find(). */
+void glint_engine_elapsed(struct glint_engine *engine, int32_t elapsed_us);
+
 /* Adds the flare of N LAMPS, at most GLINT_ENGINE_MAX_LAMPS, to IMAGE: those
- * found last, for which the exposure follows that of the pictures before, or
- * any others. N 0 leaves IMAGE as it is. GLINT_E_ARGUMENT: IMAGE has another
+ * found last or any others. The exposure follows that of the picture before
+ * where the time since that is known; else, as of ELAPSED_US 0, IMAGE is a
+ * picture by itself. N 0 leaves IMAGE as it is. GLINT_E_ARGUMENT: IMAGE has another
  * size, or N is out of range. GLINT_E_MEMORY. */
 enum glint_status glint_engine_draw(struct glint_engine *engine,
                                     const struct glint_lamp *lamps, int n,

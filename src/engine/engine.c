@@ -249,6 +249,12 @@ enum glint_status glint_engine_stop(struct glint_engine *engine,
 
 /* ----------------------------------------------------------------- pictures */
 
+void glint_engine_elapsed(struct glint_engine *engine, int32_t elapsed_us)
+{
+    engine->elapsed_us = elapsed_us;
+    engine->is_timed = true;
+}
+
 int glint_engine_find(struct glint_engine *engine,
                       const struct glint_image *image, int32_t elapsed_us,
                       struct glint_lamp *lamps, int max)
@@ -258,7 +264,8 @@ int glint_engine_find(struct glint_engine *engine,
                                             &e->frame.view,
                                             e->setup.optics.focal_mm, e->lamp);
 
-    e->elapsed_us = elapsed_us;
+    glint_engine_elapsed(e, elapsed_us);
+    e->is_searched = true;
     e->n_found = n < max ? n : max;
     for (int i = 0; i < e->n_found; i++)
         e->level[i] = e->detector.track[i].level_q15 / 32768.0;
@@ -285,11 +292,12 @@ static void expose_as_drawn(struct glint_engine *e, int n,
 {
     struct glint_response_light drawn;
     struct glint_seen seen;
-    struct glint_ground *ground;
+    struct glint_ground *ground = NULL;
 
     if (e->has_arena || e->strength.is_physical || !(e->strength.scale > 0))
         return;
-    ground = malloc(sizeof *ground);
+    if (image->format != GLINT_LINEAR_Q20)
+        ground = malloc(sizeof *ground);
     if (ground)
         glint_ground_take(ground, image);
     if (glint_response_draw(&e->frame, e->lamp, n, GLINT_RESPONSE_FINE, ground,
@@ -306,12 +314,12 @@ static void expose(struct glint_engine *e, int n, bool is_found,
     const double pixels = (double)e->frame.view.width * e->frame.view.height;
     const struct glint_strength_lamps lamps = {
         e->lamp, is_found ? e->level : NULL, n, pixels};
-    const bool is_new =
-        !is_found || glint_lamp_tracker_was_cut(e->detector.tracks);
+    const bool is_new = (is_found || e->is_searched) &&
+                        glint_lamp_tracker_was_cut(e->detector.tracks);
 
     glint_strength_expose(&e->strength, &e->response, &lamps,
                           is_new ? 0 : e->elapsed_us);
-    if (is_found && e->elapsed_us == 0 && e->frame.budget.ms <= 0)
+    if (e->elapsed_us == 0 && e->frame.budget.ms <= 0)
         expose_as_drawn(e, n, image);
 }
 
@@ -352,6 +360,8 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
         return GLINT_E_ARGUMENT;
     is_found = are_found(e, lamps, n);
     e->n_found = is_found ? n : 0;
+    if (!is_found && !e->is_timed)
+        e->elapsed_us = 0;
     memcpy(e->lamp, lamps, (size_t)n * sizeof *lamps);
     expose(e, n, is_found, image);
     f->star.share = glint_strength_star(&e->strength, e->starburst);
@@ -368,7 +378,7 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
     f->star.level = is_found ? e->level : NULL;
     /* A picture by itself leaves time for more points. */
     if (f->budget.ms <= 0) {
-        const bool is_still = !is_found || !e->elapsed_us;
+        const bool is_still = e->elapsed_us == 0;
 
         f->dials.area_points =
             is_still ? 1 + GLINT_AREA_STILL * (f->asked.area_points - 1)
@@ -378,6 +388,7 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
     }
     status = glint_frame_draw(f, e->lamp, e->strength.scale > 0 ? n : 0,
                               e->strength.scale, image, &drawn);
+    e->is_timed = e->is_searched = false;
     drawn.lights = n;
     set_report(e, &drawn, report);
     return status;

@@ -46,7 +46,9 @@ struct glint_engine {
                                                 found */
     bool has_arena; /* true: drawing takes no memory of its own */
     int n_found;
-    int32_t elapsed_us; /* time between the last two pictures searched */
+    int32_t elapsed_us; /* between the last two pictures; 0: not known */
+    bool is_timed;      /* true: between the next picture and the last */
+    bool is_searched;   /* true: lamps were looked for in the next picture */
     struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
     double level[GLINT_LAMP_DETECTOR_MAX]; /* level of each lamp found */
 };

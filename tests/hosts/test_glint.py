@@ -45,6 +45,10 @@ class Package(unittest.TestCase):
             ({"lens": LENS, "exposure": 1, "threads": 1}, ["--lens", LENS, "--exposure", "1"]),
             ({"lens": LENS, "exposure": -6, "lights_at": [(100, 50), (20, 9, 15)]},
              ["--lens", LENS, "--exposure", "-6", "--light-at", "100,50", "--light-at", "20,9,15"]),
+            ({"lens": LENS, "lights_at": [(100, 50)]}, ["--lens", LENS, "--light-at", "100,50"]),
+            ({"lens": LENS, "strength": 0.8, "veil": 0.02, "lights_at": [(300, 200, 6), (20, 9, 15), (-30, 100)]},
+             ["--lens", LENS, "--strength", ".8", "--veil", ".02", "--light-at", "300,200,6", "--light-at", "20,9,15",
+              "--light-at=-30,100"]),
         ]:
             with self.subTest(options=options):
                 got = self.photo.copy()
@@ -104,9 +108,21 @@ class Package(unittest.TestCase):
             write(self.path(f"in-{i}.ppm"), self.photo)
         command("overlay", self.path("in-%d.ppm"), "-o", self.path("out-%d.ppm"), "--lens", LENS)
         for i, frame in enumerate(frames):
-            # the engine exposes within a code of the command
-            np.testing.assert_allclose(frame.astype(int), read(self.path(f"out-{i}.ppm")).astype(int), rtol=0, atol=1)
+            np.testing.assert_array_equal(frame, read(self.path(f"out-{i}.ppm")))
         self.assertTrue((frames[0] != self.photo).any())
+
+    def test_video_of_given_lamps(self):
+        engine, path = glint.Engine(LENS, 256, 384), self.path("lights.csv")
+        places = [(100 + 10 * i, 50) for i in range(4)]
+        pathlib.Path(path).write_text("".join(f"{i},{x},{y},{65536 >> i}\n" for i, (x, y) in enumerate(places)))
+        frames = [self.photo.copy() for _ in places]
+        for i, frame in enumerate(frames):
+            engine.overlay(frame, [engine.lamp_at(*places[i], 16 - i)], elapsed=0.04)
+            write(self.path(f"in-{i}.ppm"), self.photo)
+        command("overlay", self.path("in-%d.ppm"), "-o", self.path("out-%d.ppm"), "--lens", LENS, "--lights", path)
+        for i, frame in enumerate(frames):
+            np.testing.assert_array_equal(frame, read(self.path(f"out-{i}.ppm")))
+            self.assertTrue((frame != self.photo).any())
 
     def test_threads(self):
         want, got = self.photo.copy(), [self.photo.copy() for _ in range(8)]

@@ -79,6 +79,8 @@ void glint_engine_destroy(struct glint_engine *engine);
 enum glint_status glint_engine_iris(struct glint_engine *engine, int n_blades, double rotation_deg, const struct glint_iris *iris,
     struct glint_error *error);
 int glint_engine_find(struct glint_engine *engine, const struct glint_image *image, int32_t elapsed_us, struct glint_lamp *lamps, int max);
+enum glint_status glint_engine_stop(struct glint_engine *engine, double f_number, struct glint_error *error);
+void glint_engine_elapsed(struct glint_engine *engine, int32_t elapsed_us);
 enum glint_status glint_engine_draw(struct glint_engine *engine, const struct glint_lamp *lamps, int n, const struct glint_image *image,
     struct glint_engine_report *report);
 """)

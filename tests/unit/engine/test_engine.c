@@ -9,6 +9,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -124,6 +125,62 @@ static void test_follows(void **state)
     glint_engine_destroy(engine);
 }
 
+/* Draws LAMP alone on grey into PX, US after the last picture; below 0: without
+ * saying. */
+static double given(struct glint_engine *engine, const struct glint_lamp *lamp,
+                    int32_t us, uint8_t *px)
+{
+    struct glint_engine_report report;
+    const struct glint_image image = picture(px);
+
+    memset(px, 40, BYTES);
+    if (us >= 0)
+        glint_engine_elapsed(engine, us);
+    assert_int_equal(glint_engine_draw(engine, lamp, 1, &image, &report),
+                     GLINT_OK);
+    return report.scale;
+}
+
+/* A given lamp must be exposed as a found one: of a picture by itself by its
+ * flare drawn small, whatever was drawn before; of a video from picture to
+ * picture, in small steps. */
+static void test_given(void **state)
+{
+    static uint8_t px[BYTES], found[BYTES], again[BYTES];
+    const struct glint_image image = picture(px);
+    const struct glint_lamp dim = {12, 0, 20, {1, 1, 1}, {0, 0}, 0};
+    const struct glint_lamp lit = {12, 0, 2e6, {1, 1, 1}, {0, 0}, 0};
+    struct glint_engine *engine = make(NULL, 0);
+    struct glint_engine_report report;
+    struct glint_lamp lamps[8];
+    double alone, scale;
+    int n;
+
+    (void)state;
+    memcpy(found, px, BYTES);
+    n = glint_engine_find(engine, &image, 0, lamps, 8);
+    for (int i = 0; i < n; i++)
+        lamps[i].theta_deg += 1e-9; /* no longer those found */
+    assert_int_equal(glint_engine_draw(engine, lamps, n, &image, &report),
+                     GLINT_OK);
+    scale = report.scale;
+    run(engine, 0, found, &report);
+    assert_true(fabs(report.scale / scale - 1) < 1e-6);
+    alone = given(engine, &dim, -1, px);
+    given(engine, &lit, -1, again);
+    assert_true(given(engine, &dim, -1, again) == alone);
+    assert_memory_equal(px, again, BYTES);
+    scale = given(engine, &lit, 0, px);
+    for (int i = 0; i < 8; i++) {
+        const double next = given(engine, &dim, 40000, px);
+
+        assert_true(next >= scale && next <= 1.1 * scale);
+        scale = next;
+    }
+    assert_true(scale < alone);
+    glint_engine_destroy(engine);
+}
+
 /* A stop that is set later must give the picture of an engine that is made with
  * it. A wider stop than the model's must be refused. */
 static void test_stop(void **state)
@@ -191,9 +248,9 @@ static void test_refuses(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_draws), cmocka_unit_test(test_arena),
+        cmocka_unit_test(test_draws),   cmocka_unit_test(test_arena),
         cmocka_unit_test(test_follows), cmocka_unit_test(test_stop),
-        cmocka_unit_test(test_refuses)};
+        cmocka_unit_test(test_given),   cmocka_unit_test(test_refuses)};
 
     return cmocka_run_group_tests(tests, opened_heliar, opened_close);
 }

@@ -194,6 +194,8 @@ class Engine:
         if stop[0] and stop[1] > 0:
             iris = _ffi.new("struct glint_iris *", {"roundness": stop[1]})
             _check(_lib.glint_engine_iris(self._engine, stop[0], rotation, iris, error), error)
+            if exposure is None:  # videos are exposed by what is measured through this stop
+                _check(_lib.glint_engine_stop(self._engine, f_number, error), error)
         film = _ffi.new("double[2]")
         _lib.glint_film_mm_(self._lens, film)
         self._view = _ffi.new("struct glint_view *", _lib.glint_view_fit(width, height, film[0], film[1]))
@@ -256,11 +258,12 @@ class Engine:
                 order: str = "RGB") -> Report:
         """Adds the flare to ARRAY, in place: uint8, sRGB. Without LAMPS they are found; of a video, which comes
         ELAPSED seconds after the picture before, they are followed. 0: a picture by itself, whose flare is drawn
-        small first to see how bright it is. Given lamps are exposed by the response of the lens alone."""
+        small first to see how bright it is."""
         image = self._codes(array, order)
-        if lamps is not None:
-            return self._draw(self._put(lamps), image)
         us = min(max(round(1e6 * elapsed), 0), 10 ** 9)
+        if lamps is not None:
+            _lib.glint_engine_elapsed(self._engine, us)
+            return self._draw(self._put(lamps), image)
         return self._draw(_lib.glint_engine_find(self._engine, image, us, self._lamps, MOST_LAMPS), image)
 
     def render(self, lamps: Sequence[Lamp]) -> np.ndarray:
