@@ -45,3 +45,10 @@ check-spread: build/glint
 	@tools/make/deps "data sets on many machines" parallel openssh-server openssh-client slurm-wlm munge
 	@GLINT=build/glint XDG_CACHE_HOME=$$PWD/build/cache tests/hosts/spread
 .PHONY: check-spread
+
+# Every command that READMEs and manual pages name, those that take minutes, too.
+check-commands:
+	@tools/make/deps "the commands that READMEs name" gcc g++ pkg-config libopenimageio-dev ffmpeg
+	@$(MAKE) --no-print-directory all oiio frei0r man
+	@tests/hosts/commands --all
+.PHONY: check-commands

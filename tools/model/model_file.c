@@ -12,10 +12,13 @@
 
 bool tool_is_file_name(const char *argument)
 {
+    static const char *const endings[] = {".lens", ".glint", ".env", ".motion"};
     const char *const dot = strrchr(argument, '.');
+    bool is_file = strchr(argument, '/') != NULL;
 
-    return strchr(argument, '/') ||
-           (dot && (!strcmp(dot, ".lens") || !strcmp(dot, ".glint")));
+    for (size_t i = 0; dot && i < sizeof endings / sizeof *endings; i++)
+        is_file = is_file || strcmp(dot, endings[i]) == 0;
+    return is_file;
 }
 
 bool tool_is_model(const char *path)
