@@ -28,6 +28,7 @@
 #                 abi REF=REVISION: what has changed of them since, by abidiff
 #   make man      manual pages, into build/man
 #   make frei0r   the plug-in for ffmpeg, MLT and GStreamer;  check-frei0r-threads
+#   make gstreamer   the element glintflare;  check-gstreamer
 #   make check-commands   runs every command that READMEs and manual pages name
 #   make bench    what a frame costs;  bench-insn: in instructions
 #   make size     bytes of the run-time library, and of programs with parts of it

@@ -172,8 +172,8 @@ void glint_engine_elapsed(struct glint_engine *engine, int32_t elapsed_us);
 /* Adds the flare of N LAMPS, at most GLINT_ENGINE_MAX_LAMPS, to IMAGE: those
  * found last or any others. The exposure follows that of the picture before
  * where the time since that is known; else, as of ELAPSED_US 0, IMAGE is a
- * picture by itself. N 0 leaves IMAGE as it is. GLINT_E_ARGUMENT: IMAGE has another
- * size, or N is out of range. GLINT_E_MEMORY. */
+ * picture by itself. N 0 leaves IMAGE as it is. GLINT_E_ARGUMENT: IMAGE has
+ * another size, or N is out of range. GLINT_E_MEMORY. */
 enum glint_status glint_engine_draw(struct glint_engine *engine,
                                     const struct glint_lamp *lamps, int n,
                                     const struct glint_image *image,

@@ -27,7 +27,8 @@ enum glint_pixel_format {
     GLINT_UYVY,       /* one plane, Cb Y Cr Y */
     GLINT_BGR24,      /* one plane, B G R bytes */
     GLINT_XRGB8888,   /* one plane, B G R X bytes; X stays */
-    GLINT_RGB565 /* one plane, 16 bits a pixel, low byte first, R highest */
+    GLINT_RGB565,  /* one plane, 16 bits a pixel, low byte first, R highest */
+    GLINT_XBGR8888 /* one plane, R G B X bytes; X stays */
 };
 
 enum glint_range { GLINT_RANGE_FULL, GLINT_RANGE_LIMITED };

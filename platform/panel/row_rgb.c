@@ -202,6 +202,9 @@ void glint_row_rgb_read(struct glint_row_rgb *row,
     case GLINT_XRGB8888:
         glint_split_fours(c[2], c[1], c[0], from + 4 * x, n);
         return;
+    case GLINT_XBGR8888:
+        glint_split_fours(c[0], c[1], c[2], from + 4 * x, n);
+        return;
     case GLINT_RGB565:
         glint_split_565(c[0], c[1], c[2], from + 2 * x, n);
         return;

@@ -28,8 +28,10 @@ static const struct glint_layout layouts[] = {
         {GLINT_LAYOUT_RGB, 1, 0, 0, {{0, 2, 3}, {0, 1, 3}, {0, 0, 3}}},
     [GLINT_XRGB8888] =
         {GLINT_LAYOUT_RGB, 1, 0, 0, {{0, 2, 4}, {0, 1, 4}, {0, 0, 4}}},
-    [GLINT_RGB565] = {
-        GLINT_LAYOUT_565, 1, 0, 0, {{0, 0, 2}, {0, 0, 2}, {0, 0, 2}}}};
+    [GLINT_RGB565] =
+        {GLINT_LAYOUT_565, 1, 0, 0, {{0, 0, 2}, {0, 0, 2}, {0, 0, 2}}},
+    [GLINT_XBGR8888] = {
+        GLINT_LAYOUT_RGB, 1, 0, 0, {{0, 0, 4}, {0, 1, 4}, {0, 2, 4}}}};
 
 const struct glint_layout *glint_layout_of(enum glint_pixel_format format)
 {

@@ -4,9 +4,11 @@
  */
 #include "frei0r/abi.h"
 
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-#include "frei0r/filter.h"
+#include "filter/filter.h"
 #include "glint/glint.h"
 
 /* A parameter: a number, or a word if IS_WORD. */
@@ -44,6 +46,13 @@ static const struct parameter parameters[] = {
 };
 
 enum { N_PARAMETERS = sizeof parameters / sizeof *parameters };
+enum { FRAME_US = 40000 };
+
+struct instance {
+    struct filter *filter;
+    struct glint_image image;
+    double seconds; /* moment of the last picture; NAN: there was none */
+};
 
 int f0r_init(void)
 {
@@ -78,46 +87,79 @@ void f0r_get_param_info(struct f0r_param *info, int index)
 
 void *f0r_construct(unsigned width, unsigned height)
 {
-    return width - 1 < GLINT_MAX_SIDE && height - 1 < GLINT_MAX_SIDE
-               ? filter_create((int)width, (int)height)
-               : NULL;
+    struct instance *const i = calloc(1, sizeof *i);
+
+    if (i && width - 1 < GLINT_MAX_SIDE && height - 1 < GLINT_MAX_SIDE)
+        i->filter = filter_create("frei0r", (int)width, (int)height);
+    if (!i || !i->filter) {
+        free(i);
+        return NULL;
+    }
+    i->image = (struct glint_image){
+        .format = GLINT_XRGB8888, .width = (int)width, .height = (int)height};
+    i->seconds = NAN;
+    return i;
 }
 
 void f0r_destruct(void *instance)
 {
-    filter_destroy(instance);
+    struct instance *const i = instance;
+
+    if (i)
+        filter_destroy(i->filter);
+    free(i);
 }
 
 void f0r_set_param_value(void *instance, void *value, int index)
 {
+    struct filter *const f = ((struct instance *)instance)->filter;
+
     if (index < 0 || index >= N_PARAMETERS || !value)
         return;
     if (parameters[index].type == F0R_STRING)
-        filter_set_word(instance, (enum filter_word)parameters[index].which,
+        filter_set_word(f, (enum filter_word)parameters[index].which,
                         *(char **)value);
     else
-        filter_set_number(instance, (enum filter_number)parameters[index].which,
+        filter_set_number(f, (enum filter_number)parameters[index].which,
                           *(double *)value);
 }
 
 void f0r_get_param_value(void *instance, void *value, int index)
 {
+    const struct filter *const f = ((struct instance *)instance)->filter;
+
     if (index < 0 || index >= N_PARAMETERS || !value)
         return;
     if (parameters[index].type == F0R_STRING)
         *(const char **)value =
-            filter_word(instance, (enum filter_word)parameters[index].which);
+            filter_word(f, (enum filter_word)parameters[index].which);
     else
-        *(double *)value = filter_number(
-            instance, (enum filter_number)parameters[index].which);
+        *(double *)value =
+            filter_number(f, (enum filter_number)parameters[index].which);
+}
+
+/* Returns the microseconds since the last picture. The first, and one of before
+ * the last as after a jump back, counts as the next of 25 a second. Ten seconds
+ * and more are taken for milliseconds: ffmpeg 5.1 passes a thousand times the
+ * seconds. */
+static int32_t elapsed(const struct instance *i, double seconds)
+{
+    const double us = 1e6 * (seconds - i->seconds);
+    const double frame = us < 1e7 ? us : us / 1000;
+
+    return frame >= 0.5 && frame < 1e7 ? (int32_t)(frame + 0.5) : FRAME_US;
 }
 
 void f0r_update(void *instance, double seconds, const uint32_t *in,
                 uint32_t *out)
 {
-    const struct filter *const filter = instance;
+    struct instance *const i = instance;
 
     if (in != out)
-        memcpy(out, in, filter_bytes(filter));
-    filter_draw(instance, seconds, (uint8_t *)out);
+        memcpy(
+            out, in,
+            glint_image_bytes(GLINT_XRGB8888, i->image.width, i->image.height));
+    glint_image_place(&i->image, out);
+    if (filter_draw(i->filter, &i->image, elapsed(i, seconds)))
+        i->seconds = seconds;
 }

@@ -128,7 +128,7 @@ run-fuzz run-fuzz-keep: $(fuzz_bins)
 analyze:
 	@tools/make/deps "static analysis" gcc clang-tidy cppcheck
 	@$(MAKE) --no-print-directory CC=gcc CONFIG=analyze WERROR=-Werror run-analyze
-run-analyze: $(core_o) $(published_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o) $(frei0r_o) $(OUT)/tools/command/glint.o
+run-analyze: $(core_o) $(published_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o) $(frei0r_o) $(if $(filter %,$(shell pkg-config --modversion gstreamer-video-1.0 2>/dev/null)),$(gstreamer_o)) $(OUT)/tools/command/glint.o
 	$(say) CPPCHECK 'src platform tools'
 	@mkdir -p $(OUT)/cppcheck
 	$(Q)cppcheck -q --std=c99 --language=c --error-exitcode=1 \

@@ -1,20 +1,33 @@
 # Plug-ins for hosts of others. Like shared libraries they are made of objects in
 # a folder of their own, and contain all that they take of glint.
 
-frei0r_o := $(patsubst %.c,$(OUT)/%.o,$(wildcard tools/frei0r/*.c))
+filter_o := $(patsubst %.c,$(OUT)/%.o,$(wildcard tools/filter/*.c))
+frei0r_o := $(patsubst %.c,$(OUT)/%.o,$(wildcard tools/frei0r/*.c)) $(filter_o)
+gstreamer_o := $(patsubst %.c,$(OUT)/%.o,$(wildcard tools/gstreamer/*.c)) $(filter_o)
+plugins := frei0r gstreamer
+placed_frei0r    := build/glint-frei0r.so
+placed_gstreamer := build/gstreamer-1.0/libgstglint.so
+$(OUT)/glint-frei0r.so: $(frei0r_o)
+GSTREAMER := gstreamer-video-1.0 gstreamer-1.0
+$(OUT)/glint-gstreamer.so: $(gstreamer_o)
+$(OUT)/glint-gstreamer.so: EXTRA = $$(pkg-config --libs $(GSTREAMER))
+# Headers of others do not keep to our warnings.
+$(OUT)/tools/gstreamer/%.o: CPPFLAGS += $(shell pkg-config --cflags $(GSTREAMER) 2>/dev/null | sed 's/-I/-isystem /g')
 # A host may drop the plug-in while a signal's action still points into it.
-$(OUT)/glint-frei0r.so: $(frei0r_o) $(archives)
+$(plugins:%=$(OUT)/glint-%.so): $(archives)
 	@mkdir -p $(@D)
 	$(say) LD $@
 	$(Q)$(CC) $(CFLAGS) -shared $(filter -Wl%,$(LINKED)) $(LDFLAGS) -Wl,--exclude-libs,ALL \
-	        -Wl,--version-script=tools/frei0r/exports.map -Wl,-z,defs,-z,nodelete -Wl,--gc-sections \
-	        $(filter %.o,$^) $(libs) $(LDLIBS) -o $@
+	        -Wl,--version-script=tools/$(@:$(OUT)/glint-%.so=%)/exports.map -Wl,-z,defs,-z,nodelete -Wl,--gc-sections \
+	        $(filter %.o,$^) $(libs) $(EXTRA) $(LDLIBS) -o $@
 ifdef PIC
-frei0r: $(OUT)/glint-frei0r.so
-	$(Q)cp -f $< build/glint-frei0r.so.tmp && mv -f build/glint-frei0r.so.tmp build/glint-frei0r.so
+$(plugins): %: $(OUT)/glint-%.so
+	@mkdir -p $(dir $(placed_$@))
+	$(Q)cp -f $< $(placed_$@).tmp && mv -f $(placed_$@).tmp $(placed_$@)
 else
-frei0r:
-	@$(MAKE) --no-print-directory PIC=yes frei0r
+$(plugins):
+	@$(MAKE) --no-print-directory PIC=yes $@
+gstreamer: | $(filter frei0r,$(MAKECMDGOALS)) # they share archives
 endif
 # Eight instances at once, watched by ThreadSanitizer.
 check-frei0r-threads:
@@ -23,13 +36,26 @@ run-frei0r-threads: $(OUT)/glint-frei0r.so $(OUT)/frei0r_host
 	@head -c 737280 tests/data/bridge.ppm | XDG_CACHE_HOME=$$PWD/build/cache GLINT_LENSES=$$PWD/lenses \
 	        TSAN_OPTIONS=exitcode=9 $(OUT)/frei0r_host $< 192x120 8 quality=.25 gain@3=.3 lens@4=heliar-tronnier >$(OUT)/frames
 	@echo '8 instances at once: no race'
-.PHONY: frei0r check-frei0r-threads run-frei0r-threads
+.PHONY: $(plugins) check-frei0r-threads run-frei0r-threads
 
 # A host of our own, for tests.
 $(OUT)/frei0r_host: $(OUT)/tests/hosts/frei0r_host.o
 	@mkdir -p $(@D)
 	$(say) LD $@
 	$(Q)$(CC) $(CFLAGS) $(LINKED) $(LDFLAGS) $^ -lpthread -ldl -o $@
+
+# The harness that GStreamer has for tests of elements.
+$(OUT)/tests/hosts/gst_harness.o: CPPFLAGS += $(shell pkg-config --cflags gstreamer-check-1.0 2>/dev/null | sed 's/-I/-isystem /g')
+$(OUT)/gst_harness: $(OUT)/tests/hosts/gst_harness.o
+	@mkdir -p $(@D)
+	$(say) LD $@
+	$(Q)$(CC) $(CFLAGS) $(LINKED) $(LDFLAGS) $^ $$(pkg-config --libs gstreamer-check-1.0) -o $@
+check-gstreamer:
+	@tools/make/deps "the element of GStreamer" gcc pkg-config libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev \
+	        libgstreamer-plugins-bad1.0-dev gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-bad
+	@$(MAKE) --no-print-directory all
+	@tests/hosts/gstreamer $(OUT)
+.PHONY: check-gstreamer
 
 # For tools/python: what its module is linked with, and the folder of archives.
 print-out:

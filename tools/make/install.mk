@@ -9,6 +9,7 @@ PLUGIN  ?= $(if $(CROSS),no,$(shell command -v $(CXX) >/dev/null && \
 MESHES  ?= $(if $(CROSS),no,$(shell pkg-config --exists assimp 2>/dev/null && echo yes || echo no))
 WINDOW  ?= $(if $(CROSS),no,$(shell pkg-config --exists sdl2 2>/dev/null && echo yes || echo no))
 FREI0R  ?= $(if $(CROSS),no,yes)
+ELEMENT ?= $(if $(CROSS),no,$(shell pkg-config --exists gstreamer-video-1.0 2>/dev/null && echo yes || echo no))
 MODELS  ?= $(if $(CROSS),no,yes)
 to := $(DESTDIR)$(PREFIX)
 # Completions, by the folders in which shells look for them.
@@ -18,6 +19,7 @@ install: install-library all glint-live $(if $(filter yes,$(PLUGIN)),build/glint
         $(if $(filter yes,$(MESHES)),build/glint-assimp.so) \
         $(if $(filter yes,$(WINDOW)),build/glint-sdl.so) $(if $(CROSS),,man)
 	$(if $(filter yes,$(FREI0R)),$(MAKE) --no-print-directory frei0r)
+	$(if $(filter yes,$(ELEMENT)),$(MAKE) --no-print-directory gstreamer)
 	install -d $(to)/bin $(to)/lib/glint $(to)/share/glint/lenses $(to)/lib/systemd/system
 	install $(if $(CROSS),-s --strip-program=$(CROSS)strip) -m 755 \
 	        $(program) $(OUT)/glint-live $(to)/bin
@@ -34,6 +36,7 @@ install: install-library all glint-live $(if $(filter yes,$(PLUGIN)),build/glint
 	        @echo 'without the mesh plug-in (pkg-config, libassimp-dev): OBJ')
 	$(if $(filter yes,$(WINDOW)),install -m 755 build/glint-sdl.so $(to)/lib/glint)
 	$(if $(filter yes,$(FREI0R)),install -d $(to)/lib/frei0r-1 && install -s -m 644 build/glint-frei0r.so $(to)/lib/frei0r-1/glint.so)
+	$(if $(filter yes,$(ELEMENT)),install -d $(to)/lib/gstreamer-1.0 && install -s -m 644 $(placed_gstreamer) $(to)/lib/gstreamer-1.0)
 	install -d $(addprefix $(to)/share/,$(dir $(shells)) $(if $(CROSS),,man/man1 man/man3 man/man5))
 	for s in $(shells); do install -m 644 tools/man/$${s##*/} $(to)/share/$$s || exit 1; done
 	mv $(to)/share/bash-completion/completions/glint.bash $(to)/share/bash-completion/completions/glint
@@ -62,13 +65,13 @@ uninstall:
 	        $(patsubst %,$(to)/lib/lib%.a,$(LIBRARIES) glint-published) \
 	        $(addprefix $(to)/lib/,$(foreach l,$(LIBRARIES),$(call shared_names,$l))) \
 	        $(LIBRARIES:%=$(to)/lib/pkgconfig/%.pc) $(headers:%=$(to)/%) \
-        $(to)/lib/glint/glint-assimp.so $(to)/lib/glint/glint-sdl.so $(to)/lib/frei0r-1/glint.so \
+        $(to)/lib/glint/glint-assimp.so $(to)/lib/glint/glint-sdl.so $(to)/lib/frei0r-1/glint.so $(to)/lib/gstreamer-1.0/libgstglint.so \
 	        $(to)/lib/systemd/system/glint-live.service \
 	        $(patsubst %,$(to)/share/glint/%,$(wildcard lenses/*.lens lenses/*/*.lens)) \
 	        $(addprefix $(to)/share/,$(shells:.bash=)) $(to)/share/man/man1/glint.1 $(to)/share/man/man1/glint-*.1 \
 	        $(to)/share/man/man3/glint.3 $(to)/share/man/man5/glint-lens.5 $(to)/share/man/man5/glint-scene.5 \
 	        $(to)/share/glint/models/*.glint $(to)/share/glint/bridge.jpg $(to)/share/glint/bridge.ppm
-	@for d in include/glint/scene include/glint lib/pkgconfig lib/glint lib/frei0r-1 share/glint/models $(lens_rooms:%=share/glint/%) share/glint/lenses share/glint \
+	@for d in include/glint/scene include/glint lib/pkgconfig lib/glint lib/frei0r-1 lib/gstreamer-1.0 share/glint/models $(lens_rooms:%=share/glint/%) share/glint/lenses share/glint \
 	        $(patsubst %/,share/%,$(dir $(shells))) share/bash-completion share/zsh share/fish \
 	        share/man/man1 share/man/man3 share/man/man5 share/man lib/systemd/system lib/systemd; do \
 	        if [ -d $(to)/$$d ]; then rmdir --ignore-fail-on-non-empty $(to)/$$d; fi; done

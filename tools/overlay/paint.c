@@ -94,6 +94,9 @@ static void put(const struct paint *p, int x, int y)
     case GLINT_XRGB8888:
         put_rgb(p, x, y, 4, true);
         break;
+    case GLINT_XBGR8888:
+        put_rgb(p, x, y, 4, false);
+        break;
     case GLINT_RGB565:
         put_565(at(p->image, 0, 2 * x, y), p->rgb);
         break;

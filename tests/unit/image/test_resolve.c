@@ -549,9 +549,10 @@ static void test_linear_adds_and_saturates(void **state)
 
 /* Pairs of formats that hold the same codes at other places. */
 static const enum glint_pixel_format twins[][2] = {
-    {GLINT_I420, GLINT_NV12},   {GLINT_I420, GLINT_NV21},
-    {GLINT_I422, GLINT_YUYV},   {GLINT_I422, GLINT_UYVY},
-    {GLINT_RGB24, GLINT_BGR24}, {GLINT_RGB24, GLINT_XRGB8888}};
+    {GLINT_I420, GLINT_NV12},     {GLINT_I420, GLINT_NV21},
+    {GLINT_I422, GLINT_YUYV},     {GLINT_I422, GLINT_UYVY},
+    {GLINT_RGB24, GLINT_BGR24},   {GLINT_RGB24, GLINT_XRGB8888},
+    {GLINT_RGB24, GLINT_XBGR8888}};
 
 static void copy_codes(const struct glint_image *to,
                        const struct glint_image *from)
@@ -569,7 +570,6 @@ static void copy_codes(const struct glint_image *to,
 static void test_layouts_agree(void **state)
 {
     static uint8_t twin_mem[4 * 34 * 18], back_mem[4 * 34 * 18];
-
     (void)state;
     for (size_t t = 0; t < sizeof twins / sizeof *twins; t++)
         for (int s = 0; s < N_SIZES; s++) {
@@ -598,7 +598,7 @@ static void test_layouts_agree(void **state)
                             *glint_layout_at(
                                 glint_layout_of(fixture.image.format),
                                 &fixture.image, i, x, y));
-            if (twin.format == GLINT_XRGB8888)
+            if (twin.format == GLINT_XRGB8888 || twin.format == GLINT_XBGR8888)
                 for (int k = 3; k < 4 * twin.width * twin.height; k += 4)
                     assert_int_equal(twin_mem[k], 0x99);
         }

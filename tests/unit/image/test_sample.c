@@ -90,12 +90,14 @@ static void check_orange(enum glint_pixel_format format, const uint8_t *bytes,
 static void test_colours(void **state)
 {
     static const uint8_t rgb[] = {255, 96, 24}, bgrx[] = {24, 96, 255, 0};
+    static const uint8_t rgbx[] = {255, 96, 24, 0};
     static const uint8_t packed[] = {0x03, 0xfb}; /* RGB565 31, 24, 3 */
 
     (void)state;
     check_orange(GLINT_RGB24, rgb, 3);
     check_orange(GLINT_BGR24, bgrx, 3);
     check_orange(GLINT_XRGB8888, bgrx, 4);
+    check_orange(GLINT_XBGR8888, rgbx, 4);
     check_orange(GLINT_RGB565, packed, 2);
 }
 

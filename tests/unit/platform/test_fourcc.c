@@ -71,7 +71,7 @@ static void test_words(void **state)
 static void test_there_and_back(void **state)
 {
     (void)state;
-    for (int i = GLINT_RGB24; i <= GLINT_RGB565; i++) {
+    for (int i = GLINT_RGB24; i <= GLINT_XBGR8888; i++) {
         const uint32_t fourcc = glint_fourcc_of((enum glint_pixel_format)i);
         enum glint_pixel_format format;
         char text[5];

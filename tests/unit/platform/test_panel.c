@@ -395,6 +395,10 @@ static void pixel_of(int rgb[3], const struct glint_image *im, int x, int y)
         for (int i = 0; i < 3; i++)
             rgb[i] = row[4 * x + 2 - i];
         return;
+    case GLINT_XBGR8888:
+        for (int i = 0; i < 3; i++)
+            rgb[i] = row[4 * x + i];
+        return;
     case GLINT_RGB565: {
         const int word = row[2 * x] | row[2 * x + 1] << 8;
 
@@ -457,7 +461,7 @@ static void check_format(enum glint_pixel_format format, int width, int height,
 static void test_formats(void **state)
 {
     (void)state;
-    for (int f = GLINT_RGB24; f <= GLINT_RGB565; f++) {
+    for (int f = GLINT_RGB24; f <= GLINT_XBGR8888; f++) {
         const enum glint_pixel_format format = (enum glint_pixel_format)f;
 
         if (format == GLINT_LINEAR_Q20)

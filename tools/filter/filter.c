@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "frei0r/filter.h"
+#include "filter/filter.h"
 
 #include <locale.h>
 #include <math.h>
@@ -8,8 +8,6 @@
 #include <string.h>
 
 #include "overlay/compositor.h"
-
-enum { FRAME_US = 40000 };
 
 const double filter_default[FILTER_NUMBERS] = {
     [FILTER_STRENGTH] = 0.5, [FILTER_GAIN] = 0.5, [FILTER_STARBURST] = 0.5,
@@ -26,28 +24,21 @@ struct filter {
     /* Values of the style, or those of glint overlay. */
     double strength, gain, starburst;
     locale_t c_locale; /* hosts have others, in which 5.6 is no number */
-    double seconds;    /* moment of the last picture; NAN: there was none */
     bool is_open, failed;
 };
 
-struct filter *filter_create(int width, int height)
+struct filter *filter_create(const char *host, int width, int height)
 {
     struct filter *const f = calloc(1, sizeof *f);
 
     if (!f)
         return NULL;
-    f->tool = (struct tool){.name = "frei0r", .where = "parameter"};
+    f->tool = (struct tool){.name = host, .where = "parameter"};
     f->width = width;
     f->height = height;
-    f->seconds = NAN;
     memcpy(f->number, filter_default, sizeof f->number);
     f->c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     return f;
-}
-
-size_t filter_bytes(const struct filter *f)
-{
-    return (size_t)4 * (size_t)f->width * (size_t)f->height;
 }
 
 static void shut(struct filter *f)
@@ -211,42 +202,29 @@ static void turn(struct filter *f)
     }
 }
 
-/* Returns the microseconds since the last picture. The first, and one of before
- * the last as after a jump back, counts as the next of 25 a second. Ten seconds
- * and more are taken for milliseconds: ffmpeg 5.1 passes a thousand times the
- * seconds. */
-static int32_t elapsed(const struct filter *f, double seconds)
+static bool draw(struct filter *f, const struct glint_image *image,
+                 int32_t elapsed_us)
 {
-    const double us = 1e6 * (seconds - f->seconds);
-    const double frame = us < 1e7 ? us : us / 1000;
-
-    return frame >= 0.5 && frame < 1e7 ? (int32_t)(frame + 0.5) : FRAME_US;
-}
-
-static void draw(struct filter *f, double seconds, uint8_t *bgra)
-{
-    struct glint_image image = {
-        .format = GLINT_XRGB8888, .width = f->width, .height = f->height};
-
     if (!f->is_open && !f->failed)
         f->failed = !open_filter(f);
     if (f->failed)
-        return;
-    glint_image_place(&image, bgra);
+        return false;
     turn(f);
-    if (compositor_draw(&f->compositor, &image, elapsed(f, seconds)) !=
-        GLINT_OK) {
+    if (compositor_draw(&f->compositor, image, elapsed_us) != GLINT_OK) {
         f->failed = true;
-        fprintf(stderr, "glint frei0r: no memory; pictures stay as they are\n");
+        fprintf(stderr, "glint %s: no memory; pictures stay as they are\n",
+                f->tool.name);
     }
-    f->seconds = seconds;
+    return !f->failed;
 }
 
-void filter_draw(struct filter *f, double seconds, uint8_t *bgra)
+bool filter_draw(struct filter *f, const struct glint_image *image,
+                 int32_t elapsed_us)
 {
     const locale_t before = f->c_locale ? uselocale(f->c_locale) : (locale_t)0;
+    const bool is_drawn = draw(f, image, elapsed_us);
 
-    draw(f, seconds, bgra);
     if (before)
         uselocale(before);
+    return is_drawn;
 }

@@ -3,8 +3,8 @@
  * filter.h - a flare over the pictures of a host, as glint overlay draws it,
  * turned by parameters that may change from picture to picture.
  */
-#ifndef GLINT_TOOLS_FREI0R_FILTER_H
-#define GLINT_TOOLS_FREI0R_FILTER_H
+#ifndef GLINT_TOOLS_FILTER_FILTER_H
+#define GLINT_TOOLS_FILTER_FILTER_H
 
 #include <stdbool.h>
 
@@ -34,13 +34,11 @@ extern const double filter_default[FILTER_NUMBERS];
 
 struct filter;
 
-/* Returns a filter, or NULL without memory. It opens its lens with the first
- * picture. */
-struct filter *filter_create(int width, int height);
+/* Returns a filter of pictures of WIDTH x HEIGHT, or NULL without memory. It
+ * opens its lens with the first picture. HOST is what its messages begin with,
+ * behind "glint". */
+struct filter *filter_create(const char *host, int width, int height);
 void filter_destroy(struct filter *filter);
-
-/* Returns the bytes of a picture. */
-size_t filter_bytes(const struct filter *filter);
 
 /* Set a parameter. What is not finite or out of range is clamped. */
 void filter_set_number(struct filter *filter, enum filter_number which,
@@ -50,9 +48,11 @@ void filter_set_word(struct filter *filter, enum filter_word which,
 double filter_number(const struct filter *filter, enum filter_number which);
 const char *filter_word(const struct filter *filter, enum filter_word which);
 
-/* Draws the flare on BGRA, rows without padding, of the moment SECONDS. Where
- * it cannot, a line on standard error says why, once, and the picture stays as
- * it is until a parameter changes. */
-void filter_draw(struct filter *filter, double seconds, uint8_t *bgra);
+/* Draws the flare on IMAGE, which comes ELAPSED_US after the last one; 0: a
+ * picture by itself. Where it cannot, a line on standard error says why, once,
+ * and the picture stays as it is until a parameter changes. Returns whether it
+ * could. */
+bool filter_draw(struct filter *filter, const struct glint_image *image,
+                 int32_t elapsed_us);
 
 #endif
