@@ -21,8 +21,8 @@ struct model_file {
 };
 
 /* Returns whether ARGUMENT is the name of a file: with a slash, or ending in
- * .lens, .glint, .env or .motion. Otherwise it is that of a lens that comes with glint,
- * whatever the current folder holds. */
+ * .lens, .glint, .env or .motion. Otherwise it is that of a lens that comes
+ * with glint, whatever the current folder holds. */
 bool tool_is_file_name(const char *argument);
 
 /* Returns whether PATH is the name of a file that begins as models do. */
