@@ -12,7 +12,7 @@
 #   make check    every test (VM=no: not in the emulator);  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
 #   make check-arm  the run-time half's on ARM, in an emulator
 #   make check-vm   of these those on Debian's kernels in an emulator, ARM too
-#   make check-files   round trips of picture files, by exiftool, ImageMagick, ffmpeg
+#   make check-files   round trips of picture files, by other programs;  check-commands: every command documented
 #   make check-all  what a release must pass: all of these, about two hours
 #   make mutants  planted faults, each of which a unit test has to catch
 #   make check-valgrind   memory that was never written, by valgrind
@@ -27,9 +27,7 @@
 #                 and pkg-config files alone;  dist: the sources, packed;
 #                 abi REF=REVISION: what has changed of them since, by abidiff
 #   make man      manual pages, into build/man
-#   make frei0r   the plug-in for ffmpeg, MLT and GStreamer;  check-frei0r-threads
-#   make gstreamer   the element glintflare;  check-gstreamer
-#   make check-commands   runs every command that READMEs and manual pages name
+#   make frei0r, gstreamer   plug-ins for hosts of video;  check-frei0r-threads, check-gstreamer
 #   make bench    what a frame costs;  bench-insn: in instructions
 #   make size     bytes of the run-time library, and of programs with parts of it
 #   make budget   what a frame costs on ARM, in instructions and bytes
