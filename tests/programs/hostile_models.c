@@ -14,10 +14,10 @@
 #include "support/models/hostile.h"
 #include "support/stage.h"
 
-/* Work may exceed its bound by this factor: plans tell it only roughly, and a
- * plan that must be made again, coarser or with more memory, has cost work,
- * too. */
-#define SLACK 1.5
+/* Work may exceed its bound by this factor: what a frame holds to the bound is
+ * told from its plan, and a first frame is planned and binned twice, as memory
+ * is taken between. */
+#define SLACK 2.0
 
 struct row {
     double bytes; /* of the largest file */
