@@ -42,6 +42,23 @@ static bool take_glass(struct oslo *o)
     return true;
 }
 
+/* Takes a word that this reader has no place for: refuses those that make
+ * another lens of it, notes all others. */
+static bool take_other(struct oslo *o)
+{
+    static const char *const shaping[] = {"TLA", "TLB", "TLC", "DCX", "DCY",
+                                          "DCZ", "CVX", "PK",  "RFH", "DT"};
+    const struct lines *l = &o->lines;
+
+    for (size_t i = 0; i < sizeof shaping / sizeof *shaping; i++)
+        if (lines_is(l, shaping[i]))
+            return imported_fail(o->lens, l->number,
+                                 "'%s': surfaces that are tilted, decentred, "
+                                 "not round or follow others are not read",
+                                 l->word[0]);
+    return imported_note(o->lens, l->number, "'%s' is not read", l->word[0]);
+}
+
 static bool take_surface(struct oslo *o)
 {
     const struct lines *l = &o->lines;
@@ -72,12 +89,7 @@ static bool take_surface(struct oslo *o)
         l->word[0][1] >= 'D' && l->word[0][1] <= 'H')
         return lines_number(o->lens, l, 1, "aspheric term",
                             &shape->term[l->word[0][1] - 'D']);
-    if (lines_is(l, "TLA") || lines_is(l, "DCX") || lines_is(l, "DCY") ||
-        lines_is(l, "RFH") || lines_is(l, "DT"))
-        return imported_fail(o->lens, l->number,
-                             "'%s': surfaces that are not round are not read",
-                             l->word[0]);
-    return true;
+    return take_other(o);
 }
 
 static bool take_head(struct oslo *o)

@@ -372,6 +372,8 @@ static int run_line(const struct tool *tool, struct synth *s)
                 "draw it a little differently\n",
                 item.glint, GLINT_VERSION);
     if (code == EXIT_OK)
+        code = synth_set_apart(tool, &s->set);
+    if (code == EXIT_OK)
         code = synth_set_folders(tool, &s->set);
     if (code == EXIT_OK)
         code = start_drawing(tool, s, &item);

@@ -2,6 +2,7 @@
 #include "synth/set.h"
 
 #include <dirent.h>
+#include <fnmatch.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -78,6 +79,19 @@ int synth_set_folders(const struct tool *tool, const struct synth_set *set)
         return code;
     return line_path(path, set, 0) ? make_folder(tool, path)
                                    : too_long(tool, set);
+}
+
+int synth_set_apart(const struct tool *tool, const struct synth_set *set)
+{
+    char path[SYNTH_PATH_BYTES];
+
+    snprintf(path, sizeof path, "%s/synth.json", set->folder);
+    if (access(path, F_OK) != 0)
+        return EXIT_OK;
+    return tool_usage(tool,
+                      "a set was begun in %s (%s): name another folder for "
+                      "--item",
+                      set->folder, path);
 }
 
 int synth_set_begin(const struct tool *tool, const struct synth_set *set,
@@ -238,7 +252,7 @@ static void remove_parts(const struct synth_set *set)
     const struct dirent *entry;
 
     while (dir && (entry = readdir(dir)))
-        if (strncmp(entry->d_name, "manifest-", 9) == 0 &&
+        if (fnmatch("manifest-[0-9]*-of-[0-9]*.jsonl", entry->d_name, 0) == 0 &&
             snprintf(path, sizeof path, "%s/%s", set->folder, entry->d_name) <
                 (int)sizeof path)
             unlink(path);

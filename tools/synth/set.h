@@ -32,6 +32,10 @@ int synth_set_begin(const struct tool *tool, const struct synth_set *set,
 int synth_set_keep(const struct tool *tool, const struct synth_set *set,
                    const char *settings);
 
+/* Refuses a folder where a set was begun: a line's item would take the place of
+ * one of its own. */
+int synth_set_apart(const struct tool *tool, const struct synth_set *set);
+
 /* Makes the folders of SET alone. */
 int synth_set_folders(const struct tool *tool, const struct synth_set *set);
 
