@@ -26,29 +26,32 @@ static double smooth(double t)
     return t * t * (3 - 2 * t);
 }
 
-/* Noise of cells of side 1, 0 .. 1. */
-static double noise(uint32_t seed, double u, double v)
+/* Noise of CELLS x CELLS cells over places 0 .. 1, which goes on at its edges;
+ * 0 .. 1. */
+static double noise(uint32_t seed, int cells, double u, double v)
 {
-    const int x = (int)floor(u), y = (int)floor(v);
-    const double s = smooth(u - x), t = smooth(v - y);
+    const int x = (int)floor(u * cells), y = (int)floor(v * cells);
+    const int right = (x + 1) % cells, below = (y + 1) % cells;
+    const double s = smooth(u * cells - x), t = smooth(v * cells - y);
     const double top =
-        (1 - s) * hashed(seed, x, y) + s * hashed(seed, x + 1, y);
+        (1 - s) * hashed(seed, x, y) + s * hashed(seed, right, y);
     const double bottom =
-        (1 - s) * hashed(seed, x, y + 1) + s * hashed(seed, x + 1, y + 1);
+        (1 - s) * hashed(seed, x, below) + s * hashed(seed, right, below);
 
     return (1 - t) * top + t * bottom;
 }
 
-/* Veins run where a wave across the stone, bent by noise, is near 0. */
+/* Veins run where a wave across the stone, bent by noise, is near 0. The stone
+ * goes on at its edges, since it meets itself around a ball: the wave has whole
+ * numbers of halves along both. */
 static double vein(uint32_t seed, double u, double v)
 {
+    enum { CELLS = 3, ALONG_U = 3, ALONG_V = 2 };
     double bent = 0, wave;
 
     for (int i = 0; i < OCTAVES; i++)
-        bent += ldexp(
-            noise(seed + (uint32_t)i, ldexp(3 * u, i), ldexp(3 * v, i)) - 0.5,
-            -i);
-    wave = fabs(sin(3 * (u + 0.6 * v) * 3.14159265358979 + 5 * bent));
+        bent += ldexp(noise(seed + (uint32_t)i, CELLS << i, u, v) - 0.5, -i);
+    wave = fabs(sin((ALONG_U * u + ALONG_V * v) * 3.14159265358979 + 5 * bent));
     return wave >= 0.4 ? 1 : smooth(fmax(0, (wave - 0.1) / 0.3));
 }
 

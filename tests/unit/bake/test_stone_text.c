@@ -2,14 +2,17 @@
  *
  * Texts of stones: what they say, and where they are refused.
  */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
 #include <cmocka.h>
 
+#include "bake/translucent/slab.h"
 #include "glint/scene/stone_bake.h"
 
 #define TWO                                      \
@@ -156,6 +159,43 @@ static void test_refused(void **state)
     }
 }
 
+/* Returns the mean difference of SHARE between columns, or rows, that meet:
+ * within the stone, or at its edge. */
+static double mean_step(const double *share, int side, bool rows, bool edge)
+{
+    const int first = edge ? side - 1 : 0, end = edge ? side : side - 1;
+    double sum = 0;
+
+    for (int a = 0; a < side; a++)
+        for (int b = first; b < end; b++) {
+            const int next = (b + 1) % side;
+
+            sum += rows ? fabs(share[b * side + a] - share[next * side + a])
+                        : fabs(share[a * side + b] - share[a * side + next]);
+        }
+    return sum / ((double)side * (end - first));
+}
+
+/* Around a ball a stone meets itself: steps there are as those within. */
+static void test_veins_go_on_at_edges(void **state)
+{
+    enum { SIDE = 64, SEEDS = 20 };
+    static double share[SIDE * SIDE];
+    struct glint_stone stone = {.side = SIDE, .pattern = GLINT_STONE_VEINS};
+    double edge = 0, within = 0;
+
+    (void)state;
+    for (; stone.seed < SEEDS; stone.seed++) {
+        glint_stone_shares(&stone, share);
+        for (int rows = 0; rows < 2; rows++) {
+            edge += mean_step(share, SIDE, rows, true);
+            within += mean_step(share, SIDE, rows, false);
+        }
+    }
+    if (edge > 1.5 * within)
+        fail_msg("steps at edges %g, within %g", edge, within);
+}
+
 int main(void)
 {
     static const struct CMUnitTest tests[] = {
@@ -163,6 +203,7 @@ int main(void)
         cmocka_unit_test(test_defaults),
         cmocka_unit_test(test_order),
         cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_veins_go_on_at_edges),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
