@@ -190,11 +190,12 @@ static int bake_scene(struct scene_sweep *s, struct scene_set *set)
     struct glint_described_stone stone[GLINT_DESCRIPTION_MAX_STONES] = {{0}};
     struct glint_error error = {""};
     const char *reason = "";
-    enum glint_status status = GLINT_OK;
     unsigned char *data = NULL;
     int code = bake_stones(s, set->value, stone);
 
     if (code == EXIT_OK) {
+        enum glint_status status;
+
         exchange(s, stone);
         status =
             glint_scene_bake(s->text, s->scene.model.header->name, 0, &data,
