@@ -95,12 +95,12 @@ struct glint_scene_motions {
     /* Returns the pixels of TILE that they may touch. */
     struct glint_box (*touch)(const struct glint_scene *scene,
                               struct glint_box tile);
-    /* Lists in W those that may touch its row Y, from back to front; */
+    /* Lists in W those that may touch its row Y, from back to front. */
     void (*list)(struct glint_scene_worker *w, int y);
-    /* of these, those over pixel X, in W->over; returns the end of the pixels
-     * for which they are the same; */
+    /* Sets W->over to those of the list over pixel X; returns the end of the
+     * pixels that the same ones are over. */
     int (*next)(struct glint_scene_worker *w, int x);
-    /* draws them over pixel (X, Y), of which SUM is. */
+    /* Draws W->over over pixel (X, Y), whose light so far is SUM. */
     void (*over)(const struct glint_scene_worker *w, int x, int y,
                  struct glint_scene_sum *sum);
 };

@@ -157,9 +157,11 @@ static int lights_of(const struct explained_scene *s, struct light *light)
 {
     struct glint_scene_lamp seen[GLINT_SCENE_MAX_LIGHTS];
     const int n = glint_scene_lights(s->compositor->scene.frame.scene, seen);
-    int all = (int)model_of(s)->header->n_lights;
+    const struct glint_scene_header *const h = model_of(s)->header;
+    const int own = (int)(h->n_lights - h->n_environment_lights);
+    int all = (int)h->n_lights;
 
-    while (all && !is_bright(&model_of(s)->light[all - 1]))
+    while (all > own && !is_bright(&model_of(s)->light[all - 1]))
         all--; /* kept for another environment */
     for (int i = 0; i < all; i++)
         light[i] = light_of(s, i, seen, n);
