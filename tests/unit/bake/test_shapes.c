@@ -12,6 +12,8 @@
 
 #include <cmocka.h>
 
+#include "bake/table/form.h"
+#include "bake/trace/beam.h"
 #include "glint/bake.h"
 
 #define LINE_D_NM 587.5618
@@ -553,6 +555,52 @@ static void test_lanes(void **state)
     assert_true(traced > 10);
 }
 
+/* Rays as steep as their profile, or over what lies beyond the glass, where the
+ * first place that is found need not be the nearest: lanes agree with the
+ * search that tells them one by one. */
+static void test_steep_rays(void **state)
+{
+    static const char *const shapes[] = {
+        "surface 10 9 9 1.5 60\nshape conic 0.2\nsurface flat 90 30 air",
+        "surface 12 9 9 1.5 60\nshape A4 -4e-4 A6 4e-6\n"
+        "surface flat 90 30 air",
+        "surface 300 9 9 1.5 60\nshape A4 2e-3 A6 -2.5e-5\n"
+        "surface flat 90 30 air",
+    };
+    int met = 0;
+
+    (void)state;
+    for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
+        load(shapes[i]);
+        glint_path_init(&path, &lens, NULL, LINE_D_NM);
+        for (int k = 0; k < 4000; k++) {
+            const struct glint_form *const form = &path.form[0];
+            const double tilt = uniform(0, 1.5), turn = uniform(-3.1, 3.1);
+            const double way[3] = {sin(tilt) * cos(turn), sin(tilt) * sin(turn),
+                                   cos(tilt)};
+            double at[3] = {uniform(-20, 20), uniform(-20, 20), 0};
+            double normal[3], cosine;
+            struct beam b = {.x = {at[0]},
+                             .y = {at[1]},
+                             .l = {way[0]},
+                             .m = {way[1]},
+                             .n = {way[2]}};
+
+            glint_beam_meet_form(&b, 1, form);
+            if (!glint_form_meet(form, at, way, normal, &cosine)) {
+                assert_true(b.status[0] > GLINT_RAY_OK);
+                continue;
+            }
+            assert_true(b.status[0] == GLINT_RAY_OK);
+            if (!(hypot(b.x[0] - at[0], b.y[0] - at[1]) < 1e-9))
+                fail_msg("%s: (%g, %g), not (%g, %g)", shapes[i], b.x[0],
+                         b.y[0], at[0], at[1]);
+            met++;
+        }
+    }
+    assert_true(met > 2000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -565,6 +613,7 @@ int main(void)
         cmocka_unit_test(test_points_lie_on_rays),
         cmocka_unit_test(test_stop_behind_the_vertex),
         cmocka_unit_test(test_lanes),
+        cmocka_unit_test(test_steep_rays),
         cmocka_unit_test(test_mistakes)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
