@@ -66,7 +66,8 @@ vm-deps:
 	@tools/make/deps "cameras, panels and ARM in an emulator" qemu-system-x86 \
 	        qemu-system-arm qemu-system-data seabios cpio kmod xz-utils \
 	        device-tree-compiler debian-archive-keyring gcc-aarch64-linux-gnu \
-	        libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross strace xxd
+	        libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross strace xxd pkg-config \
+	        libgstreamer-plugins-base1.0-dev gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good gstreamer1.0-plugins-bad
 	@[ "$(DEPS)" = no ] || for a in x86_64 $(VM_ARCHS); do \
 	        tests/vm/prepare $$a || exit 1; done
 check-vm: vm-deps
