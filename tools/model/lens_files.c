@@ -65,8 +65,8 @@ bool lens_folder(int i, const char *kind, char *path, size_t bytes)
 }
 
 /* Folders within a folder of lenses, besides itself. */
-static const char *const rooms[] = {"",       "/anamorphic", "/normal",
-                                    "/phone", "/tele",       "/wide"};
+static const char *const rooms[] = {"",      "/anamorphic", "/normal", "/phone",
+                                    "/tele", "/vision",     "/wide",   "/zoom"};
 
 enum { N_ROOMS = sizeof rooms / sizeof *rooms };
 
