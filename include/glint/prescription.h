@@ -132,6 +132,28 @@ const struct glint_glass *glint_glass_near(const char *name, size_t bytes);
 /* Returns the index of refraction of the medium behind S. */
 double glint_surface_index(const struct glint_surface *s, double wavelength_nm);
 
+#define GLINT_MAX_POSITIONS 8  /* columns of a zoom's table */
+#define GLINT_MAX_MOVES     12 /* gaps of a zoom that change */
+
+/* What a zoom lens has for each of its positions, by rising or falling focal
+ * length; between them it is what monotone cubics through the columns say, of
+ * how far along it is: 0 at the first, 1 at the last column, in equal steps
+ * where focal lengths rise by equal factors. */
+struct glint_zoom {
+    int n_positions;           /* columns; 0: the lens does not zoom */
+    int n_moves;               /* gaps that change */
+    int move[GLINT_MAX_MOVES]; /* the element before each of them: surfaces and
+                                  the stop, counted from the front */
+    double gap_mm[GLINT_MAX_MOVES][GLINT_MAX_POSITIONS];
+    double f_number[GLINT_MAX_POSITIONS];
+    /* Values that the table states of a column; 0: not stated. */
+    double check_focal_mm[GLINT_MAX_POSITIONS];
+    double check_back_mm[GLINT_MAX_POSITIONS];
+    /* What the columns amount to. */
+    double focal_mm[GLINT_MAX_POSITIONS], back_mm[GLINT_MAX_POSITIONS];
+    double along[GLINT_MAX_POSITIONS]; /* 0 .. 1 */
+};
+
 struct glint_prescription;
 
 /* Returns whether all of LENS is symmetric about its axis. */
@@ -159,7 +181,14 @@ struct glint_prescription {
     /* Coatings of the lens that the table took from its look, not from
      * measurements. Surfaces have them only after glint_prescription_coat(). */
     struct glint_coating mixed[GLINT_MAX_COATINGS];
-    int n_mixed; /* 0: the table lists none */
+    int n_mixed;            /* 0: the table lists none */
+    struct glint_zoom zoom; /* the lens as read is at its first position */
+    /* Surfaces that move together along the axis to focus; none: all do, which
+     * is as if the sensor moved. */
+    int focus_first, n_focus;
+    /* Where the lens is: 0 .. 1, and the distance of what is in focus from the
+     * sensor, 0 for infinity. */
+    double zoom_along, focus_m;
 };
 
 /* Reads a lens table; lenses/README.md describes the format. TEXT need not be
@@ -175,6 +204,28 @@ enum glint_status glint_prescription_parse(struct glint_prescription *lens,
 enum glint_status
 glint_prescription_set_f_number(struct glint_prescription *lens,
                                 double f_number, struct glint_error *error);
+
+/* Zooms LENS, which has not been focused, to ALONG, 0 .. 1. Between columns the
+ * last gap follows the focus: it differs from the back focal length by as much
+ * as in the columns. GLINT_E_ARGUMENT: LENS does not zoom, ALONG is out of
+ * range, or elements would collide or the stop be too small there. */
+enum glint_status glint_prescription_zoom(struct glint_prescription *lens,
+                                          double along,
+                                          struct glint_error *error);
+
+/* Sets *ALONG to where LENS has the focal length FOCAL_MM. GLINT_E_ARGUMENT:
+ * LENS does not zoom, or not so far. */
+enum glint_status
+glint_prescription_zoom_to(const struct glint_prescription *lens,
+                           double focal_mm, double *along,
+                           struct glint_error *error);
+
+/* Focuses LENS, which is at infinity, at METRES from the sensor: paraxial rays
+ * from there meet where those from infinity met. What moves is the lens's
+ * focusing group, or all of it. GLINT_E_ARGUMENT: it cannot focus as near. */
+enum glint_status glint_prescription_focus(struct glint_prescription *lens,
+                                           double metres,
+                                           struct glint_error *error);
 
 /* Replaces the coatings of LENS: surfaces between air and glass get COATINGS[N]
  * in turn from the front, again from the first when all are used; N is 1 ..
@@ -211,6 +262,10 @@ struct glint_optics {
      * plane: how much wider than on the sensor an anamorphic lens's picture is
      * shown. 1 for all round lenses. */
     double squeeze;
+    /* How far from the middle of the sensor, over the tangent of its angle, the
+     * middle of a light's disc lies: the focal length of a lens at infinity.
+     * How much it changes with focus is the lens's breathing. */
+    double scale_mm;
 };
 
 void glint_optics_of(const struct glint_prescription *lens,

@@ -9,6 +9,7 @@
 
 #include "desk/apart.h"
 #include "options/coating.h"
+#include "model/zoom_option.h"
 #include "model/model_report.h"
 #include "model/table_file.h"
 #include "posix/output.h"
@@ -52,6 +53,7 @@ static const char help[] =
 struct bake {
     const char *output;
     struct coating coating;
+    struct zoom_option zoom;
     double f_number;
     struct glint_bake_options options;
 };
@@ -68,6 +70,12 @@ static int take(struct tool *tool, struct bake *b, int c, const char *name)
         break;
     case 'c':
         return coating_take(tool, &b->coating, optarg);
+    case 'z':
+        ok = zoom_option_take(&b->zoom, optarg);
+        break;
+    case 'F':
+        ok = zoom_option_focus(&b->zoom, optarg);
+        break;
     case 'f':
         ok = tool_number(optarg, &b->f_number) && b->f_number > 0;
         break;
@@ -99,6 +107,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct bake *b)
         {"output", required_argument, NULL, 'o'},
         {"coating", required_argument, NULL, 'c'},
         {"f-number", required_argument, NULL, 'f'},
+        ZOOM_OPTIONS('z', 'F'),
         {"basis", required_argument, NULL, 'b'},
         {"band", required_argument, NULL, 'w'},
         {"max-angle", required_argument, NULL, 'a'},
@@ -180,6 +189,8 @@ static int run(struct tool *tool, struct bake *b, const char *name)
     code = apart_check(tool, &files);
     if (code == EXIT_OK)
         code = tool_lens(tool, name, lens);
+    if (code == EXIT_OK)
+        code = zoom_option_apply(tool, &b->zoom, lens);
     if (code == EXIT_OK)
         coating_apply(&b->coating, lens);
     if (code == EXIT_OK && b->f_number > 0)

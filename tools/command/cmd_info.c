@@ -6,9 +6,11 @@
 #include <string.h>
 
 #include "options/coating.h"
+#include "options/takes.h"
 #include "model/model_file.h"
 #include "model/model_report.h"
 #include "model/table_file.h"
+#include "model/zoom_option.h"
 #include "options/tool.h"
 #include "scenes/baked_scene.h"
 #include "scenes/environment_file.h"
@@ -17,7 +19,8 @@
 
 static const char help[] =
     "glint info LENS|MODEL|SCENE|ENV|STONE|MOTION [--json] [-v]\n"
-    "           [--f-number N] [--coating C] [--poses FILE.csv]\n"
+    "           [--zoom Z] [--focus M] [--f-number N] [--coating C]\n"
+    "           [--poses FILE.csv]\n"
     "\n"
     "Of a scene, NAME.scene or baked: things, triangles, bytes by keyword.\n"
     "Of an environment, a picture of all around or baked: texels, lights.\n"
@@ -35,7 +38,7 @@ static const char help[] =
     "the worst zone's. Sensor in pixels of a film 1920 wide.\n"
     "\n"
     "  --f-number N        stop the lens to f/N first; not of a "
-    "model\n" COATING_HELP
+    "model\n" ZOOM_HELP COATING_HELP
     "  --poses FILE.csv    of a motion: where the body is, frame by frame\n"
     "  -v                  of a table: what is on each surface; of a model: "
     "each\n"
@@ -66,17 +69,42 @@ static void print_json(const struct info *info)
            "\"entrance_pupil_radius_mm\": %.6f, \"entrance_pupil_z_mm\": %.6f, "
            "\"stop_radius_mm\": %.6f, \"f_number\": %g, "
            "\"widest_f_number\": %.4g, \"length_mm\": %.6f, "
-           "\"film_mm\": [%g, %g], \"surfaces\": %d, "
-           "\"surfaces_before_stop\": %d, \"ghosts\": %d, \"ghost_pairs\": [",
+           "\"image_scale_mm\": %.6f, \"positions_mm\": ",
            info->optics.focal_mm, info->optics.back_focal_mm,
            info->optics.entrance_radius_mm, info->optics.entrance_z_mm,
            info->optics.stop_radius_mm, info->lens.f_number, widest_of(info),
-           info->optics.length_mm, info->lens.film_width_mm,
+           info->optics.length_mm, info->optics.scale_mm);
+    for (int k = 0; k < info->lens.zoom.n_positions; k++)
+        printf("%s%.6f", k ? ", " : "[", info->lens.zoom.focal_mm[k]);
+    printf("%s, \"film_mm\": [%g, %g], \"surfaces\": %d, "
+           "\"surfaces_before_stop\": %d, \"ghosts\": %d, \"ghost_pairs\": [",
+           info->lens.zoom.n_positions ? "]" : "[]", info->lens.film_width_mm,
            info->lens.film_height_mm, info->lens.n_surfaces,
            info->lens.stop_after, info->n_ghosts);
     for (int k = 0; k < info->n_ghosts; k++)
         printf("%s[%d, %d]", k ? ", " : "", info->ghost[k].i, info->ghost[k].j);
     printf("]}\n");
+}
+
+/* Prints where L zooms and how it is focused. */
+static void print_moves(const struct glint_prescription *l,
+                        const struct glint_optics *o)
+{
+    const struct glint_zoom *const z = &l->zoom;
+
+    if (z->n_positions) {
+        printf("zoom                %10.4f of its way; columns of the table at",
+               l->zoom_along);
+        for (int k = 0; k < z->n_positions; k++)
+            printf("%s %.3f", k ? "," : "", z->focal_mm[k]);
+        printf(" mm\n");
+    }
+    if (l->focus_m > 0)
+        printf("focus               %10.4g m from the sensor, by moving %s\n"
+               "image scale         %10.3f mm, as of a lens of this focal "
+               "length at infinity\n",
+               l->focus_m, l->n_focus ? "a group" : "the whole lens",
+               o->scale_mm);
 }
 
 static void print_text(const struct info *info)
@@ -86,6 +114,7 @@ static void print_text(const struct info *info)
 
     printf("%s\n%s\n\n", l->name, l->source);
     printf("focal length        %10.3f mm\n", o->focal_mm);
+    print_moves(l, o);
     printf("back focal length   %10.3f mm\n", o->back_focal_mm);
     printf("entrance pupil      %10.3f mm radius, %.3f mm behind the front\n",
            o->entrance_radius_mm, o->entrance_z_mm);
@@ -183,32 +212,44 @@ static int info_of_motion(const struct tool *tool, const char *path,
     return code;
 }
 
-static int parse(struct tool *tool, int argc, char **argv, double *f_number,
-                 struct coating *coating, const char **poses)
+/* What the line asks for. */
+struct asked {
+    double f_number; /* 0: the table's */
+    struct coating coating;
+    struct zoom_option zoom;
+    const char *poses; /* NULL: none */
+};
+
+static int parse(struct tool *tool, int argc, char **argv, struct asked *asked)
 {
     static const struct option options[] = {
         {"f-number", required_argument, NULL, 'f'},
         {"coating", required_argument, NULL, 'c'},
+        ZOOM_OPTIONS('z', 'F'),
         {"poses", required_argument, NULL, 'p'},
         TOOL_COMMON_OPTIONS};
-    int c, code;
+    int c, code, index = 0;
 
-    while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >=
+    while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, &index)) >=
            0) {
-        if (c == 'f') {
-            if (!tool_number(optarg, f_number))
-                return tool_usage(tool, "--f-number takes a number, not '%s'",
-                                  optarg);
-            continue;
-        }
-        if (c == 'p') {
-            *poses = optarg;
-            continue;
-        }
-        code = c == 'c' ? coating_take(tool, coating, optarg)
-                        : tool_option(tool, c, optarg);
+        bool good = true;
+
+        code = -1;
+        if (c == 'f')
+            good = tool_number(optarg, &asked->f_number);
+        else if (c == 'z')
+            good = zoom_option_take(&asked->zoom, optarg);
+        else if (c == 'F')
+            good = zoom_option_focus(&asked->zoom, optarg);
+        else if (c == 'p')
+            asked->poses = optarg;
+        else
+            code = c == 'c' ? coating_take(tool, &asked->coating, optarg)
+                            : tool_option(tool, c, optarg);
         if (code >= 0)
             return code;
+        if (!good)
+            return tool_refuse(tool, options[index].name, optarg);
     }
     code = tool_inputs(tool, argc, argv, 1, "takes one lens");
     if (code >= 0)
@@ -261,50 +302,61 @@ static int info_of_other(const struct tool *tool, const char *path, bool stop,
                        : -1;
 }
 
+static int info_of_table(const struct tool *tool, const char *path,
+                         const struct asked *asked, struct info *info)
+{
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_OK;
+    int code = tool_lens(tool, path, &info->lens);
+
+    if (code == EXIT_OK)
+        code = zoom_option_apply(tool, &asked->zoom, &info->lens);
+    if (code != EXIT_OK)
+        return code;
+    coating_apply(&asked->coating, &info->lens);
+    if (asked->f_number != 0)
+        status = glint_prescription_set_f_number(&info->lens, asked->f_number,
+                                                 &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    glint_optics_of(&info->lens, &info->optics);
+    info->n_ghosts =
+        glint_ghost_list(&info->lens, info->ghost, GLINT_MAX_GHOSTS);
+    (tool->json ? print_json : print_text)(info);
+    if (!tool->json && tool->verbose)
+        print_coatings(&info->lens);
+    return EXIT_OK;
+}
+
 int cmd_info(int argc, char **argv)
 {
     struct tool tool = {.name = "info", .help = help};
-    struct glint_error error;
+    struct asked asked = {.coating = {.kind = COATING_TABLE}};
     struct info *info;
-    struct coating coating = {.kind = COATING_TABLE};
-    double f_number = 0;
-    const char *poses = NULL;
-    int code = parse(&tool, argc, argv, &f_number, &coating, &poses);
+    int code = parse(&tool, argc, argv, &asked);
 
     if (code >= 0)
         return code;
     code = info_of_other(&tool, argv[optind],
-                         f_number != 0 || coating.kind != COATING_TABLE, poses);
+                         asked.f_number != 0 || asked.zoom.is_zoomed ||
+                             asked.zoom.is_focused ||
+                             asked.coating.kind != COATING_TABLE,
+                         asked.poses);
     if (code >= 0)
         return code;
     if (tool_is_model(argv[optind]) &&
-        coating_of_model(&tool, &coating, argv[optind]) != EXIT_OK)
+        (coating_of_model(&tool, &asked.coating, argv[optind]) != EXIT_OK ||
+         zoom_option_of_model(&tool, &asked.zoom, argv[optind]) != EXIT_OK))
         return EXIT_USAGE;
     if (tool_is_model(argv[optind]))
-        return f_number != 0 ? tool_usage(&tool, "the f-number of a model was "
-                                                 "chosen when it was baked")
-                             : info_of_model(&tool, argv[optind]);
+        return asked.f_number != 0
+                   ? tool_usage(&tool, "the f-number of a model was "
+                                       "chosen when it was baked")
+                   : info_of_model(&tool, argv[optind]);
     info = calloc(1, sizeof *info);
     if (!info)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
-    code = tool_lens(&tool, argv[optind], &info->lens);
-    if (code == EXIT_OK)
-        coating_apply(&coating, &info->lens);
-    if (code == EXIT_OK && f_number != 0) {
-        const enum glint_status status =
-            glint_prescription_set_f_number(&info->lens, f_number, &error);
-
-        if (status != GLINT_OK)
-            code = tool_fail(&tool, status, error.text);
-    }
-    if (code == EXIT_OK) {
-        glint_optics_of(&info->lens, &info->optics);
-        info->n_ghosts =
-            glint_ghost_list(&info->lens, info->ghost, GLINT_MAX_GHOSTS);
-        (tool.json ? print_json : print_text)(info);
-        if (!tool.json && tool.verbose)
-            print_coatings(&info->lens);
-    }
+    code = info_of_table(&tool, argv[optind], &asked, info);
     free(info);
     return code;
 }

@@ -9,12 +9,13 @@
 #include "options/coating.h"
 #include "model/model_file.h"
 #include "model/table_file.h"
+#include "model/zoom_option.h"
 #include "options/takes.h"
 #include "options/tool.h"
 
 static const char help[] =
     "glint trace LENS --ghost K --angle DEG --wavelength NM --grid N [--csv]\n"
-    "            [--model MODEL] [--coating C]\n"
+    "            [--model MODEL] [--coating C] [--zoom Z] [--focus M]\n"
     "\n"
     "Prints one line a ray, over an N x N grid that spans the clear square of\n"
     "the front element, x fastest:\n"
@@ -32,12 +33,13 @@ static const char help[] =
     "                   integers as render and overlay use them. Status 1\n"
     "                   outside of the box and of the angles of the ghost;\n"
     "                   rel_radius is that of the barrels that limit it, 0\n"
-    "                   where none does\n" COATING_HELP
+    "                   where none does\n" ZOOM_HELP COATING_HELP
     "  --csv            the format above; there is no other\n";
 
 struct options {
     const char *model;
     struct coating coating;
+    struct zoom_option zoom;
     int ghost, grid;
     double angle_deg, wavelength_nm;
 };
@@ -52,6 +54,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct options *o)
         {"model", required_argument, NULL, 'm'},
         {"csv", no_argument, NULL, 'c'},
         {"coating", required_argument, NULL, 'C'},
+        ZOOM_OPTIONS('z', 'F'),
         TOOL_COMMON_OPTIONS};
     int c, code = -1, index = 0;
 
@@ -68,6 +71,10 @@ static int parse(struct tool *tool, int argc, char **argv, struct options *o)
                  o->wavelength_nm >= 300 && o->wavelength_nm <= 1100;
         else if (c == 'n')
             ok = tool_integer(optarg, 1, 4096, &o->grid);
+        else if (c == 'z')
+            ok = zoom_option_take(&o->zoom, optarg);
+        else if (c == 'F')
+            ok = zoom_option_focus(&o->zoom, optarg);
         else if (c == 'm')
             o->model = optarg;
         else if (c != 'c')
@@ -215,7 +222,7 @@ static int prepare_model(const struct tool *tool, const struct options *o,
     struct glint_optics optics;
 
     glint_optics_of(lens, &optics);
-    if (!agrees(h->focal_mm, optics.focal_mm) ||
+    if (!agrees(h->focal_mm, optics.scale_mm) ||
         h->n_ghosts - h->n_parts != (uint32_t)n_ghosts)
         return tool_fail(tool, GLINT_E_LENS,
                          "the model was baked from another lens");
@@ -298,6 +305,8 @@ int cmd_trace(int argc, char **argv)
     code = o.model ? coating_of_model(&tool, &o.coating, o.model) : EXIT_OK;
     if (code == EXIT_OK)
         code = tool_lens(&tool, argv[optind], &lens);
+    if (code == EXIT_OK)
+        code = zoom_option_apply(&tool, &o.zoom, &lens);
     if (code != EXIT_OK)
         return code;
     coating_apply(&o.coating, &lens);

@@ -8,6 +8,7 @@
 #include "desk/apart.h"
 #include "lens_figures/drawing.h"
 #include "model/table_file.h"
+#include "model/zoom_option.h"
 #include "options/settings.h"
 #include "options/takes.h"
 #include "options/tool.h"
@@ -15,7 +16,8 @@
 
 static const char help[] =
     "glint draw LENS -o FILE.svg [--ghost K [--angle DEG]] [--rays N]\n"
-    "           [--plane x|y] [--no-spots] [--f-number N]\n"
+    "           [--plane x|y] [--no-spots] [--f-number N] [--zoom Z] [--focus "
+    "M]\n"
     "\n"
     "A section through the lens, for a browser or a paper: glasses, barrels,\n"
     "stop, sensor, and rays of the d line from the middle, 0.7 and all of the\n"
@@ -32,7 +34,7 @@ static const char help[] =
     "  --plane x|y         the section of a lens that is not round (default "
     "x)\n"
     "  --no-spots          no spot diagrams\n"
-    "  --f-number N        another than the table's\n";
+    "  --f-number N        another than the table's\n" ZOOM_HELP;
 
 static const char help_end[] = COMMON_HELP;
 
@@ -40,6 +42,7 @@ struct draw {
     struct glint_prescription lens;
     struct lens_drawing drawing;
     const char *output;
+    struct zoom_option zoom;
     double f_number; /* 0: the table's */
 };
 
@@ -62,6 +65,10 @@ static int take(struct tool *tool, struct draw *o, int c, const char *value)
         o->drawing.plane_deg = *value == 'y' ? 90 : 0;
     } else if (c == 's')
         o->drawing.spots = false;
+    else if (c == 'z')
+        good = zoom_option_take(&o->zoom, value);
+    else if (c == 'F')
+        good = zoom_option_focus(&o->zoom, value);
     else if (c == 'f')
         good = tool_number(value, &o->f_number) && o->f_number > 0;
     else
@@ -79,6 +86,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct draw *o)
         {"plane", required_argument, NULL, 'p'},
         {"no-spots", no_argument, NULL, 's'},
         {"f-number", required_argument, NULL, 'f'},
+        ZOOM_OPTIONS('z', 'F'),
         TOOL_COMMON_OPTIONS};
     struct apart files = {.n_read = 0};
     int c, code, index = 0;
@@ -140,6 +148,8 @@ static int draw(struct tool *tool, struct draw *o, const char *name)
     enum glint_status status = GLINT_OK;
     int code = tool_lens(tool, name, &o->lens), n;
 
+    if (code == EXIT_OK)
+        code = zoom_option_apply(tool, &o->zoom, &o->lens);
     if (code != EXIT_OK)
         return code;
     if (o->f_number > 0)

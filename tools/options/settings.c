@@ -119,6 +119,8 @@ static int open_model(const struct tool *tool, struct settings *settings,
                           path);
     code = coating_of_model(tool, &settings->coating, path);
     if (code == EXIT_OK)
+        code = zoom_option_of_model(tool, &settings->zoom, path);
+    if (code == EXIT_OK)
         code = tool_model(tool, path, &settings->model);
     if (code != EXIT_OK)
         return code;

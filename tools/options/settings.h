@@ -11,6 +11,7 @@
 #include "engine/frame/frame.h"
 #include "engine/frame/quality.h"
 #include "model/model_file.h"
+#include "model/zoom_option.h"
 #include "options/tool.h"
 
 enum { SETTINGS_MAX_LAMPS = 1024 }; /* lamps by hand; a file may have more */
@@ -34,6 +35,7 @@ struct settings {
     double tolerance; /* tolerance that a model is baked with */
     struct glint_setup setup;
     struct coating coating;
+    struct zoom_option zoom;
     double f_number;           /* 0: the table's */
     const char *f_number_from; /* "FILE:LINE" that asks for it; NULL: the
                                   command line */
@@ -117,6 +119,8 @@ enum settings_option {
     OPT_MAX_LIGHTS,
     OPT_AREA_SAMPLES,
     OPT_APART,
+    OPT_ZOOM,
+    OPT_FOCUS,
     OPT_LAST
 };
 
@@ -164,9 +168,8 @@ enum settings_option {
         {"haze", required_argument, NULL, OPT_HAZE},                 \
         {"max-lights", required_argument, NULL, OPT_MAX_LIGHTS},     \
         {"area-samples", required_argument, NULL, OPT_AREA_SAMPLES}, \
-    {                                                                \
-        "apart", required_argument, NULL, OPT_APART                  \
-    }
+        {"apart", required_argument, NULL, OPT_APART},               \
+        ZOOM_OPTIONS(OPT_ZOOM, OPT_FOCUS)
 
 /* The help of a command on these options. */
 #define SETTINGS_HELP                                                          \
@@ -174,7 +177,7 @@ enum settings_option {
     "  --f-number N        stop it to f/N (default: the table's, or what the " \
     "model\n"                                                                  \
     "                      was baked for, which serves any larger "            \
-    "N)\n" COATING_HELP                                                        \
+    "N)\n" ZOOM_HELP COATING_HELP                                              \
     "  --stop SHAPE        circle or polygon:N[,ROT], 3 to 64 sides, the "     \
     "first\n"                                                                  \
     "                      corner at ROT degrees; then ,round:R, 0 to 1, "     \

@@ -35,8 +35,10 @@ int settings_open_table(const struct tool *tool, struct settings *settings,
 {
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
-    const int code = tool_lens(tool, name, &settings->lens);
+    int code = tool_lens(tool, name, &settings->lens);
 
+    if (code == EXIT_OK)
+        code = zoom_option_apply(tool, &settings->zoom, &settings->lens);
     if (code != EXIT_OK)
         return code;
     coating_apply(&settings->coating, &settings->lens);

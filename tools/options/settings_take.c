@@ -121,6 +121,10 @@ bool settings_take_quality(struct settings *s, const char *text)
 static enum taken take_lens(struct settings *s, int option, const char *value)
 {
     switch (option) {
+    case OPT_ZOOM:
+        return zoom_option_take(&s->zoom, value);
+    case OPT_FOCUS:
+        return zoom_option_focus(&s->zoom, value);
     case OPT_F_NUMBER:
         return tool_number(value, &s->f_number) && s->f_number > 0;
     case OPT_STOP:

@@ -79,6 +79,7 @@ static const struct {
     {NULL, "exact-samples", "a whole number, 1 to 64"},
     {NULL, "exact-grid", "an even number, 4 to 1024"},
     {NULL, "exposure", "stops, -100 to 100, or of compare also auto"},
+    {NULL, "focus", "metres from the sensor, above 0, or inf"},
     {NULL, "f-number", "a number above 0"},
     {NULL, "field", "millimetres, above 0"},
     {NULL, "fps", "N or N/D, frames a second, from 1"},
@@ -153,6 +154,7 @@ static const struct {
     {NULL, "warm-up", "a whole number, from 0"},
     {NULL, "weights", "wachspress or loop-derose"},
     {NULL, "whole", "codes, 0 to 100"},
+    {NULL, "zoom", "mm of focal length, or 0 to 1 along the way"},
 };
 
 const char *takes_of(const char *command, const char *option)

@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "bake/table/form.h"
+#include "bake/table/moves.h"
 #include "engine/setup/degrees.h"
 
 /* largest relative error of a stated focal length */
@@ -207,6 +208,38 @@ bool glint_prescription_check(const struct glint_prescription *lens,
         return glint_text_fail(text, places->medium,
                                "the last medium must be air");
     return check_rims(lens, text, places) && check_optics(lens, text, places);
+}
+
+enum glint_status glint_prescription_fits(const struct glint_prescription *lens,
+                                          struct glint_error *error)
+{
+    const int last = element_count(lens) - 1;
+    struct glint_optics optics;
+    double height;
+
+    for (int e = 0; e < last; e++) {
+        const double gap = least_gap_mm(lens, e, &height);
+
+        if (gap >= -CONTACT_MM &&
+            (element_gap_mm(lens, e) >= 0.0 || lens->stop_after == 0))
+            continue;
+        snprintf(error->text, sizeof error->text,
+                 "%s: element %d would overlap the next by %.4g mm", lens->name,
+                 e + 1, -gap);
+        return GLINT_E_ARGUMENT;
+    }
+    glint_optics_of(lens, &optics);
+    if (optics.focal_mm > 0.0 && optics.focal_mm <= GLINT_MAX_FOCAL_MM &&
+        element_gap_mm(lens, last) >
+            fmax(0.0, sag_mm(lens, last, element_semi_mm(lens, last), 0)) &&
+        optics.stop_radius_mm <= lens->stop_semi_mm * (1.0 + STOP_SLACK))
+        return GLINT_OK;
+    snprintf(
+        error->text, sizeof error->text,
+        "%s: no image, or f/%g needs a stop of %.4g mm radius and it opens "
+        "to %.4g mm",
+        lens->name, lens->f_number, optics.stop_radius_mm, lens->stop_semi_mm);
+    return GLINT_E_ARGUMENT;
 }
 
 enum glint_status

@@ -5,7 +5,7 @@
  * Paraxial rays (y, n u) meet all elements in turn: n u loses y times the power
  * of a surface, y gains n u times the reduced gap. A lens without power has
  * infinite focal lengths; glint_prescription_parse() accepts none of these. */
-#include "bake/table/elements.h"
+#include "bake/table/moves.h"
 
 #include <stddef.h>
 
@@ -50,6 +50,27 @@ static void lead(struct paraxial_ray *ray,
     }
 }
 
+double glint_image_mm(const struct glint_prescription *lens, double object_mm)
+{
+    struct paraxial_ray ray = {object_mm, 1.0};
+
+    lead(&ray, lens, surface_element(lens, lens->n_surfaces - 1), GLINT_BEND_Y);
+    return -ray.y_mm / ray.nu;
+}
+
+/* Returns how far off the axis, over its tangent, light meets the sensor that
+ * passes the middle of the entrance pupil. */
+static double scale_of(const struct glint_prescription *lens,
+                       const struct glint_optics *optics)
+{
+    struct paraxial_ray chief = {-optics->entrance_z_mm, 1.0};
+
+    lead(&chief, lens, surface_element(lens, lens->n_surfaces - 1),
+         GLINT_BEND_Y);
+    return chief.y_mm +
+           chief.nu * element_gap_mm(lens, element_count(lens) - 1);
+}
+
 void glint_optics_of(const struct glint_prescription *lens,
                      struct glint_optics *optics)
 {
@@ -76,4 +97,6 @@ void glint_optics_of(const struct glint_prescription *lens,
     optics->length_mm = 0.0;
     for (int e = lens->stop_after == 0; e < element_count(lens); e++)
         optics->length_mm += element_gap_mm(lens, e);
+    optics->scale_mm =
+        lens->focus_m > 0.0 ? scale_of(lens, optics) : optics->focal_mm;
 }

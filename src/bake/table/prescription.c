@@ -12,6 +12,7 @@
 #include "bake/table/catalogue.h"
 #include "bake/table/check.h"
 #include "bake/table/coatings.h"
+#include "bake/table/columns.h"
 #include "bake/table/shapes.h"
 #include "bake/table/text.h"
 #include "base/compiler.h"
@@ -56,6 +57,7 @@ enum field {
     SURFACE,
     SHAPE,
     GROUP,
+    FOCUS,
     END,
     STOP,
     N_FIELDS
@@ -71,6 +73,7 @@ struct parser {
     bool has_coating[GLINT_MAX_SURFACES];
     int n_elements;
     bool in_group;   /* GROUP holds where the group's surfaces lie */
+    bool in_focus;   /* surfaces are those that move to focus */
     bool is_surface; /* the last element is a surface */
     struct glint_shape group;
     int n_glasses;
@@ -140,8 +143,8 @@ static bool read_character(struct parser *p)
 
 static bool read_f_number(struct parser *p)
 {
-    return glint_text_value(&p->text, &f_number_range, &p->lens.f_number,
-                            &p->places.f_number);
+    return glint_columns_read(&p->text, &f_number_range, &p->lens.zoom,
+                              p->lens.zoom.f_number, &p->places.f_number);
 }
 
 static bool read_film(struct parser *p)
@@ -154,14 +157,15 @@ static bool read_film(struct parser *p)
 
 static bool read_focal(struct parser *p)
 {
-    return glint_text_value(&p->text, &stated_range, &p->lens.check_focal_mm,
-                            &p->places.focal);
+    return glint_columns_read(&p->text, &stated_range, &p->lens.zoom,
+                              p->lens.zoom.check_focal_mm, &p->places.focal);
 }
 
 static bool read_back_focal(struct parser *p)
 {
-    return glint_text_value(&p->text, &stated_range, &p->lens.check_back_mm,
-                            &p->places.back_focal);
+    return glint_columns_read(&p->text, &stated_range, &p->lens.zoom,
+                              p->lens.zoom.check_back_mm,
+                              &p->places.back_focal);
 }
 
 static bool read_coating(struct parser *p)
@@ -280,8 +284,10 @@ static bool read_gap_and_semi(struct parser *p,
                               double *thickness_mm, double *semi_mm,
                               struct glint_text_place *semi)
 {
-    return glint_text_value(&p->text, gap, thickness_mm,
-                            &p->places.thickness[p->n_elements++]) &&
+    const int e = p->n_elements++;
+
+    return glint_columns_gap(&p->text, gap, &p->lens.zoom, e, thickness_mm,
+                             &p->places.thickness[e]) &&
            glint_text_value(&p->text, &semi_range, semi_mm, semi);
 }
 
@@ -359,11 +365,28 @@ static bool read_group(struct parser *p)
     return glint_group_read(&p->text, &p->group);
 }
 
+static bool read_focus(struct parser *p)
+{
+    if (p->in_group)
+        return glint_text_fail(&p->text, p->word[FOCUS],
+                               "the group above has no end");
+    p->in_focus = true;
+    p->lens.focus_first = p->lens.n_surfaces;
+    return true;
+}
+
 static bool read_end(struct parser *p)
 {
-    if (!p->in_group)
+    if (!p->in_group && !p->in_focus)
         return glint_text_fail(&p->text, p->word[END],
                                "there is no group to end");
+    if (!p->in_group) {
+        p->in_focus = false;
+        p->lens.n_focus = p->lens.n_surfaces - p->lens.focus_first;
+        return p->lens.n_focus > 0 ||
+               glint_text_fail(&p->text, p->word[END],
+                               "no surface moves to focus");
+    }
     p->in_group = false;
     p->group = (struct glint_shape){.conic = 0};
     return true;
@@ -371,7 +394,7 @@ static bool read_end(struct parser *p)
 
 static bool read_stop(struct parser *p)
 {
-    if (p->in_group)
+    if (p->in_group || p->in_focus)
         return glint_text_fail(&p->text, p->word[STOP],
                                "the stop cannot be in a group; end it above");
     p->is_surface = false;
@@ -401,6 +424,7 @@ static const struct {
     [SURFACE] = {"surface", read_surface, true, true},
     [SHAPE] = {"shape", read_shape, false, true},
     [GROUP] = {"group", read_group, false, true},
+    [FOCUS] = {"focus", read_focus, false, false},
     [END] = {"end", read_end, false, true},
     [STOP] = {"stop", read_stop, true, false},
 };
@@ -440,8 +464,9 @@ static bool read_lines(struct parser *p)
         if (fields[f].required && !p->word[f].line)
             return glint_text_fail(&p->text, glint_text_end(&p->text),
                                    "there is no %s line", fields[f].word);
-    return !p->in_group ||
-           glint_text_fail(&p->text, p->word[GROUP], "the group has no end");
+    return (!p->in_group && !p->in_focus) ||
+           glint_text_fail(&p->text, p->word[p->in_group ? GROUP : FOCUS],
+                           "the group has no end");
 }
 
 /* ---------------------------------------------------------------- the lens */
@@ -463,8 +488,7 @@ enum glint_status glint_prescription_parse(struct glint_prescription *lens,
     memset(&p, 0, sizeof(p));
     glint_coating_single(&p.coating, 550);
     if (!glint_text_open(&p.text, text, bytes, file_name, error) ||
-        !read_lines(&p) ||
-        !glint_prescription_check(&p.lens, &p.text, &p.places))
+        !read_lines(&p) || !glint_columns_check(&p.lens, &p.text, &p.places))
         return GLINT_E_LENS;
     coat(&p);
     *lens = p.lens;

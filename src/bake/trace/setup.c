@@ -21,6 +21,8 @@ enum glint_status glint_setup_init(struct glint_setup *setup,
         return status;
     setup->lens = lens;
     glint_optics_of(lens, &setup->optics);
+    /* Places in the picture follow from it. */
+    setup->optics.focal_mm = setup->optics.scale_mm;
     setup->n_ghosts = glint_ghost_list(lens, setup->ghost, GLINT_MAX_GHOSTS);
     setup->n_parts = 0;
     glint_setup_common(setup, n_blades, blade_rotation_deg, wavelength_nm, n);

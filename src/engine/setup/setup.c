@@ -156,7 +156,8 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
         .focal_mm = glint_real_value(h->focal_mm),
         .back_focal_mm = glint_real_value(h->back_focal_mm),
         .entrance_radius_mm = glint_real_value(h->entrance_radius_mm),
-        .stop_radius_mm = glint_real_value(h->stop_radius_mm)};
+        .stop_radius_mm = glint_real_value(h->stop_radius_mm),
+        .scale_mm = glint_real_value(h->focal_mm)};
     setup->n_ghosts = (int)h->n_ghosts;
     setup->n_parts = (int)h->n_parts;
     for (int k = 0; k < setup->n_ghosts; k++)

@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdio.h>
+
+#include "bake/table/moves.h"
+
+/* Share by which a focal length may lie beyond the ends of the zoom, as they
+ * are rounded on barrels. */
+#define BEYOND 2e-3
+
+/* ---------------------------------------------------------------- cubic */
+
+/* Returns the slope at column K: 0 at a turn, else a mean of the slopes of both
+ * sides, weighted so that the curve only rises or only falls between columns.
+ */
+static double slope_at(const struct glint_zoom *z, const double *value, int k)
+{
+    const double *const x = z->along;
+    const int last = z->n_positions - 1;
+    double h0, h1, d0, d1, slope;
+
+    if (last == 1)
+        return (value[1] - value[0]) / (x[1] - x[0]);
+    if (k > 0 && k < last) {
+        h0 = x[k] - x[k - 1];
+        h1 = x[k + 1] - x[k];
+        d0 = (value[k] - value[k - 1]) / h0;
+        d1 = (value[k + 1] - value[k]) / h1;
+        return d0 * d1 <= 0.0
+                   ? 0.0
+                   : 3.0 * (h0 + h1) /
+                         ((2.0 * h1 + h0) / d0 + (h1 + 2.0 * h0) / d1);
+    }
+    /* At an end: the parabola through three columns, held so that it does not
+     * overshoot. */
+    h0 = k ? x[last] - x[last - 1] : x[1] - x[0];
+    h1 = k ? x[last - 1] - x[last - 2] : x[2] - x[1];
+    d0 = (k ? value[last] - value[last - 1] : value[1] - value[0]) / h0;
+    d1 = (k ? value[last - 1] - value[last - 2] : value[2] - value[1]) / h1;
+    slope = ((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
+    if (slope * d0 <= 0.0)
+        return 0.0;
+    return d0 * d1 <= 0.0 && fabs(slope) > 3.0 * fabs(d0) ? 3.0 * d0 : slope;
+}
+
+/* Returns what VALUE, of each column, is at ALONG. */
+static double follow(const struct glint_zoom *z, const double *value,
+                     double along)
+{
+    int k = 0;
+    double h, t, a, b;
+
+    while (k < z->n_positions - 2 && along >= z->along[k + 1])
+        k++;
+    h = z->along[k + 1] - z->along[k];
+    t = (along - z->along[k]) / h;
+    if (t <= 0.0 || t >= 1.0) /* a column is as it stands in the table */
+        return value[t <= 0.0 ? k : k + 1];
+    a = h * slope_at(z, value, k);
+    b = h * slope_at(z, value, k + 1);
+    return value[k] +
+           t * (a + t * (3.0 * (value[k + 1] - value[k]) - 2.0 * a - b +
+                         t * (a + b - 2.0 * (value[k + 1] - value[k]))));
+}
+
+/* ----------------------------------------------------------------- zoom */
+
+/* Returns the last gap at column K. */
+static double last_gap(const struct glint_prescription *lens, int k)
+{
+    const struct glint_zoom *const z = &lens->zoom;
+    const int last = element_count(lens) - 1;
+
+    for (int m = 0; m < z->n_moves; m++)
+        if (z->move[m] == last)
+            return z->gap_mm[m][k];
+    return element_gap_mm(lens, last);
+}
+
+/* Sets gaps and f-number for ALONG. */
+static void move(struct glint_prescription *lens, double along)
+{
+    const struct glint_zoom *const z = &lens->zoom;
+    const int last = element_count(lens) - 1;
+    double defocus[GLINT_MAX_POSITIONS] = {0};
+    struct glint_optics optics;
+    bool column = false;
+
+    for (int k = 0; k < z->n_positions; k++) {
+        defocus[k] = last_gap(lens, k) - z->back_mm[k];
+        column |= !(along < z->along[k] || along > z->along[k]);
+    }
+    for (int m = 0; m < z->n_moves; m++)
+        *glint_gap_of(lens, z->move[m]) = follow(z, z->gap_mm[m], along);
+    lens->f_number = follow(z, z->f_number, along);
+    if (column)
+        return;
+    glint_optics_of(lens, &optics);
+    *glint_gap_of(lens, last) =
+        optics.back_focal_mm + follow(z, defocus, along);
+}
+
+static enum glint_status no_zoom(const struct glint_prescription *lens,
+                                 struct glint_error *error)
+{
+    snprintf(error->text, sizeof error->text,
+             "%s does not zoom: its table has one position", lens->name);
+    return GLINT_E_ARGUMENT;
+}
+
+enum glint_status glint_prescription_zoom(struct glint_prescription *lens,
+                                          double along,
+                                          struct glint_error *error)
+{
+    struct glint_prescription moved = *lens;
+    enum glint_status status;
+
+    if (!lens->zoom.n_positions)
+        return no_zoom(lens, error);
+    if (!(along >= 0.0 && along <= 1.0)) {
+        snprintf(error->text, sizeof error->text,
+                 "a zoom goes from 0 to 1, not to %g", along);
+        return GLINT_E_ARGUMENT;
+    }
+    move(&moved, along);
+    moved.zoom_along = along;
+    moved.check_focal_mm = moved.check_back_mm = 0;
+    status = glint_prescription_fits(&moved, error);
+    if (status == GLINT_OK)
+        *lens = moved;
+    return status;
+}
+
+static double focal_at(struct glint_prescription *lens, double along)
+{
+    struct glint_optics optics;
+
+    move(lens, along);
+    glint_optics_of(lens, &optics);
+    return optics.focal_mm;
+}
+
+enum glint_status
+glint_prescription_zoom_to(const struct glint_prescription *lens,
+                           double focal_mm, double *along,
+                           struct glint_error *error)
+{
+    enum { HALVINGS = 60 };
+    const struct glint_zoom *const z = &lens->zoom;
+    const int last = z->n_positions - 1;
+    struct glint_prescription moved = *lens;
+    double low = 0.0, high = 1.0;
+    bool rises;
+
+    if (!z->n_positions)
+        return no_zoom(lens, error);
+    rises = z->focal_mm[last] > z->focal_mm[0];
+    for (int end = 0; end < 2; end++) {
+        const double f = z->focal_mm[end ? last : 0];
+
+        if (fabs(focal_mm - f) <= BEYOND * f) {
+            *along = end;
+            return GLINT_OK;
+        }
+    }
+    if (!(focal_mm > fmin(z->focal_mm[0], z->focal_mm[last]) &&
+          focal_mm < fmax(z->focal_mm[0], z->focal_mm[last]))) {
+        snprintf(error->text, sizeof error->text,
+                 "%s zooms from %.4g mm to %.4g mm, not to %.4g mm", lens->name,
+                 z->focal_mm[0], z->focal_mm[last], focal_mm);
+        return GLINT_E_ARGUMENT;
+    }
+    for (int k = 0; k <= last; k++)
+        if (fabs(focal_mm - z->focal_mm[k]) <= 1e-5 * focal_mm) {
+            *along = z->along[k];
+            return GLINT_OK;
+        }
+    for (int k = 0; k < HALVINGS; k++) {
+        const double middle = 0.5 * (low + high);
+
+        if ((focal_at(&moved, middle) < focal_mm) == rises)
+            low = middle;
+        else
+            high = middle;
+    }
+    *along = 0.5 * (low + high);
+    return GLINT_OK;
+}

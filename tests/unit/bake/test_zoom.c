@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Zooms and focus: tables of several positions against those of one, gaps
+ * between columns, and exact rays near the axis of lenses that were focused. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support/lens_check.h"
+#include "glint/bake.h"
+
+#define LINE_D_NM 587.5618
+
+static const char *const zooms[] = {"canon-zoom", "nikon-zoom", "itoh-zoom"};
+static const char *const ends[] = {"short", "mid", "long"};
+
+static struct glint_prescription zoom, single;
+
+static void load_zoom(const char *name)
+{
+    char path[64];
+
+    snprintf(path, sizeof path, "zoom/%s", name);
+    load_lens(&zoom, path);
+}
+
+static void go_to(double along)
+{
+    struct glint_error error = {""};
+
+    if (glint_prescription_zoom(&zoom, along, &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+}
+
+static void focus(struct glint_prescription *lens, double metres)
+{
+    struct glint_error error = {""};
+
+    if (glint_prescription_focus(lens, metres, &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+}
+
+/* At its columns a zoom is the lens of that table, to the last bit. */
+static void test_columns(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 9; k++) {
+        char name[64];
+
+        snprintf(name, sizeof name, "%s-%s", zooms[k / 3], ends[k % 3]);
+        load_lens(&single, name);
+        load_zoom(zooms[k / 3]);
+        go_to(zoom.zoom.along[k % 3]);
+        assert_int_equal(zoom.n_surfaces, single.n_surfaces);
+        for (int i = 0; i < zoom.n_surfaces; i++)
+            assert_memory_equal(&zoom.surface[i], &single.surface[i],
+                                sizeof zoom.surface[i]);
+        assert_true(zoom.f_number == single.f_number &&
+                    zoom.stop_semi_mm == single.stop_semi_mm &&
+                    zoom.stop_thickness_mm == single.stop_thickness_mm &&
+                    zoom.stop_after == single.stop_after);
+    }
+}
+
+/* Between columns focal lengths only rise, the image stays in focus, and a
+ * focal length is found again. */
+static void test_between(void **state)
+{
+    enum { STEPS = 40 };
+
+    (void)state;
+    for (int z = 0; z < 3; z++) {
+        double before = 0;
+
+        for (int k = 0; k <= STEPS; k++) {
+            struct glint_error error;
+            struct glint_optics optics;
+            double along = -1;
+
+            load_zoom(zooms[z]);
+            go_to((double)k / STEPS);
+            glint_optics_of(&zoom, &optics);
+            assert_true(optics.focal_mm > before);
+            before = optics.focal_mm;
+            assert_near(zoom.surface[zoom.n_surfaces - 1].thickness_mm,
+                        optics.back_focal_mm, 1e-6);
+            assert_true(zoom.surface[zoom.n_surfaces - 1].thickness_mm > 20);
+            load_zoom(zooms[z]);
+            assert_int_equal(glint_prescription_zoom_to(&zoom, optics.focal_mm,
+                                                        &along, &error),
+                             GLINT_OK);
+            assert_near(along, (double)k / STEPS, k % STEPS ? 1e-6 : 1e-12);
+        }
+    }
+}
+
+/* Returns where a ray that passes (X, 0) on the front's vertex plane with the
+ * slope TANGENT meets the sensor. */
+static double land(const struct glint_prescription *lens, double x,
+                   double tangent)
+{
+    static struct glint_path path;
+    const double size = sqrt(1 + tangent * tangent);
+    const double direction[3] = {tangent / size, 0, 1 / size};
+    struct glint_ray ray;
+
+    glint_path_init(&path, lens, NULL, LINE_D_NM);
+    assert_int_equal(glint_trace(&path, x, 0, direction, &ray, NULL),
+                     GLINT_RAY_OK);
+    return ray.sensor_x_mm;
+}
+
+/* Rays from the point that is in focus meet on the sensor, and light from afar
+ * lies where the scale says. */
+static void check_focus(struct glint_prescription *lens, double metres)
+{
+    const double h = 1e-3, angle = 1e-5;
+    struct glint_optics before, optics;
+    double object;
+
+    glint_optics_of(lens, &before);
+    focus(lens, metres);
+    glint_optics_of(lens, &optics);
+    object = 1000 * metres - optics.length_mm;
+    assert_near(land(lens, h, h / object), 0, 1e-7 * h * before.focal_mm);
+    assert_true(fabs(land(lens, h, 0)) > 1e-3 * h);
+    assert_near(land(lens, -optics.entrance_z_mm * angle, angle) / angle,
+                optics.scale_mm, 1e-4 * optics.scale_mm);
+    assert_true(fabs(optics.scale_mm - before.focal_mm) >
+                1e-3 * before.focal_mm);
+}
+
+static void test_focus(void **state)
+{
+    static const double metres[] = {1.5, 5, 30};
+
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        load_lens(&single, "heliar-tronnier");
+        check_focus(&single, metres[k]);
+        load_lens(&single, "double-gauss-angenieux");
+        check_focus(&single, metres[k] / 3);
+        for (int z = 0; z < 9; z++) {
+            load_zoom(zooms[z / 3]);
+            go_to(0.5 * (z % 3));
+            check_focus(&zoom, metres[k]);
+        }
+    }
+}
+
+/* Newton's formula, x x' = f^2, for a lens that moves as a whole. */
+static void test_newton(void **state)
+{
+    struct glint_optics optics;
+    double before, moved;
+
+    (void)state;
+    load_lens(&single, "heliar-tronnier");
+    before = single.surface[single.n_surfaces - 1].thickness_mm;
+    focus(&single, 2);
+    moved = single.surface[single.n_surfaces - 1].thickness_mm - before;
+    glint_optics_of(&single, &optics);
+    /* The front focus lies about a focal length before the lens. */
+    assert_near(optics.focal_mm * optics.focal_mm / moved,
+                2000 - optics.length_mm - optics.focal_mm,
+                0.5 * optics.focal_mm);
+}
+
+/* -------------------------------------------------------------------- text */
+
+static void refuses(const char *body, const char *cause)
+{
+    struct glint_error error = {""};
+    char text[1000];
+
+    snprintf(text, sizeof text, "name t\nfilm 36 24\n%s\n", body);
+    assert_int_equal(
+        glint_prescription_parse(&single, text, strlen(text), "t.lens", &error),
+        GLINT_E_LENS);
+    if (!strstr(error.text, cause))
+        fail_msg("'%s' does not say '%s'", error.text, cause);
+}
+
+#define FRONT "surface 50 4 12 1.5 60\nsurface -50 "
+#define BACK  " 12 air\nsurface 40 4 12 1.5 60\nsurface -60 30 12 air\nstop 5 9"
+
+static void test_text(void **state)
+{
+    (void)state;
+    refuses("f-number 10\n" FRONT "4/x" BACK, "t.lens:5:15: thickness 'x'");
+    refuses("f-number 10\n" FRONT "4//6" BACK, "thickness");
+    refuses("f-number 10/11/12\n" FRONT "4/6" BACK,
+            "thickness has 2 positions, but what stands above has 3");
+    refuses("f-number 10/11\n" FRONT "4" BACK, "no thickness changes");
+    refuses("f-number 10\n" FRONT "4/4" BACK,
+            "focal lengths must only rise or only fall");
+    refuses("f-number 10\n" FRONT "1/2/3/4/5/6/7/8/9" BACK,
+            "more than 8 positions");
+    refuses("f-number 10\nfocal-length 31/99\n" FRONT "4/6" BACK,
+            "focal-length is");
+    refuses("f-number 10\nfocus\n" FRONT "4/6" BACK, "end it above");
+    refuses("f-number 10\nfocus\nend\n" FRONT "4/6" BACK, "no surface moves");
+}
+
+static void test_refusals(void **state)
+{
+    struct glint_error error = {""};
+    double along;
+
+    (void)state;
+    load_lens(&single, "heliar-tronnier");
+    assert_int_equal(glint_prescription_zoom(&single, 0.5, &error),
+                     GLINT_E_ARGUMENT);
+    assert_non_null(strstr(error.text, "does not zoom"));
+    assert_int_equal(glint_prescription_focus(&single, 0.1, &error),
+                     GLINT_E_ARGUMENT);
+    assert_non_null(strstr(error.text, "only down to 0.2"));
+    load_zoom("canon-zoom");
+    assert_int_equal(glint_prescription_zoom(&zoom, 1.5, &error),
+                     GLINT_E_ARGUMENT);
+    assert_int_equal(glint_prescription_zoom_to(&zoom, 300, &along, &error),
+                     GLINT_E_ARGUMENT);
+    assert_non_null(strstr(error.text, "from 72.12 mm to 193.9 mm"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_columns), cmocka_unit_test(test_between),
+        cmocka_unit_test(test_focus),   cmocka_unit_test(test_newton),
+        cmocka_unit_test(test_text),    cmocka_unit_test(test_refusals),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
