@@ -94,6 +94,34 @@ int synth_set_apart(const struct tool *tool, const struct synth_set *set)
                       set->folder, path);
 }
 
+/* Refuses a count below the items that SET has: a set is never made smaller,
+ * and its manifest would no longer say what is there. */
+static int check_count(const struct tool *tool, const struct synth_set *set)
+{
+    char path[SYNTH_PATH_BYTES];
+    const struct dirent *entry;
+    long last = -1;
+    DIR *dir;
+
+    snprintf(path, sizeof path, "%s/items", set->folder);
+    dir = opendir(path);
+    while (dir && (entry = readdir(dir))) {
+        char *end;
+        const long number = strtol(entry->d_name, &end, 10);
+
+        if (end > entry->d_name && strcmp(end, ".json") == 0 && number > last)
+            last = number;
+    }
+    if (dir)
+        closedir(dir);
+    if (set->count == 0 || last < set->count) /* 0 draws nothing */
+        return EXIT_OK;
+    return tool_usage(tool,
+                      "%s has items up to %ld, and --count %d would leave some "
+                      "out: take --count %ld or more, or name another folder",
+                      set->folder, last, set->count, last + 1);
+}
+
 int synth_set_begin(const struct tool *tool, const struct synth_set *set,
                     const char *settings)
 {
@@ -117,7 +145,7 @@ int synth_set_begin(const struct tool *tool, const struct synth_set *set,
     free(kept);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    return is_same ? EXIT_OK
+    return is_same ? check_count(tool, set)
                    : tool_usage(tool,
                                 "%s was begun with other options or "
                                 "backgrounds (%s): go on with those, or name "
@@ -208,40 +236,51 @@ int synth_set_put(const struct tool *tool, const struct synth_set *set,
 
 /* ---------------------------------------------------------------- manifests */
 
+/* Appends the file PATH to OUT. */
+static enum glint_status append(struct glint_output *out, const char *path,
+                                struct glint_error *error)
+{
+    uint8_t part[4096]; /* a line of three lights has 1.5 KiB */
+    struct glint_input in;
+    enum glint_status status = glint_input_open(&in, path, error);
+    ptrdiff_t n = 0;
+
+    while (status == GLINT_OK &&
+           (n = glint_input_some(&in, part, sizeof part)) > 0)
+        status = glint_output_write(out, part, (size_t)n, error);
+    if (n < 0)
+        status = glint_error_report(error, GLINT_E_IO, path, "%s",
+                                    strerror(errno));
+    glint_input_close(&in);
+    return status;
+}
+
 /* Writes the lines of items FIRST, FIRST + STEP ... to NAME. Does nothing, and
  * sets IS_WHOLE to false, if one is not there. */
 static int write_lines(const struct tool *tool, const struct synth_set *set,
                        const char *name, int first, int step, bool *is_whole)
 {
-    enum { MOST_BYTES = 1 << 30 };
-    char path[SYNTH_PATH_BYTES];
+    char path[SYNTH_PATH_BYTES], line[SYNTH_PATH_BYTES];
     struct glint_error error = {""};
-    enum glint_status status = GLINT_OK;
-    uint8_t *lines = NULL;
-    size_t bytes = 0;
-    int code = EXIT_OK;
+    struct glint_output out;
+    enum glint_status status;
 
     *is_whole = true;
     for (int i = first; i < set->count && *is_whole; i += step)
         *is_whole = synth_set_has(set, i);
     if (!*is_whole)
         return EXIT_OK;
-    for (int i = first; i < set->count && status == GLINT_OK; i += step) {
-        struct glint_input in;
-
-        line_path(path, set, i);
-        status = glint_input_open(&in, path, &error);
-        if (status == GLINT_OK)
-            status =
-                glint_input_append(&in, &lines, &bytes, MOST_BYTES, &error);
-        glint_input_close(&in);
-    }
     snprintf(path, sizeof path, "%s/%s", set->folder, name);
-    code = status == GLINT_OK
-               ? write_text(tool, path, (const char *)lines, bytes)
-               : tool_fail(tool, status, error.text);
-    free(lines);
-    return code;
+    status = glint_output_open(&out, path, GLINT_OUTPUT_TEXT, &error);
+    for (int i = first; i < set->count && status == GLINT_OK; i += step) {
+        line_path(line, set, i);
+        status = append(&out, line, &error);
+    }
+    if (status == GLINT_OK)
+        status = glint_output_commit(&out, &error);
+    else
+        glint_output_abort(&out);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
 /* Removes the manifests of shards. */
@@ -265,12 +304,12 @@ int synth_set_end(const struct tool *tool, const struct synth_set *set,
 {
     char name[64];
     bool is_done = true;
-    int code = EXIT_OK;
+    int code = check_count(tool, set); /* another process may have more */
 
     *is_whole = false;
     snprintf(name, sizeof name, "manifest-%d-of-%d.jsonl", set->shard,
              set->shards);
-    if (set->shards > 1)
+    if (code == EXIT_OK && set->shards > 1)
         code = write_lines(tool, set, name, set->shard, set->shards, &is_done);
     if (code == EXIT_OK && is_done)
         code = write_lines(tool, set, "manifest.jsonl", 0, 1, is_whole);
