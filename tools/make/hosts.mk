@@ -66,9 +66,9 @@ check-python:
 	@tests/hosts/python
 .PHONY: print-out check-python
 
-# Data sets by GNU parallel over ssh, and by a Slurm array on a cluster of its own.
+# Data sets by GNU parallel over ssh, a Slurm array and Dask, on clusters of their own.
 check-spread: build/glint
-	@tools/make/deps "data sets on many machines" parallel openssh-server openssh-client slurm-wlm munge
+	@tools/make/deps "data sets on many machines" parallel openssh-server openssh-client slurm-wlm munge python3-distributed
 	@GLINT=build/glint XDG_CACHE_HOME=$$PWD/build/cache tests/hosts/spread
 .PHONY: check-spread
 
