@@ -66,10 +66,11 @@ check-python:
 	@tests/hosts/python
 .PHONY: print-out check-python
 
-# Data sets by GNU parallel over ssh, a Slurm array and Dask, on clusters of their own.
-check-spread: build/glint
+# Data sets by GNU parallel over ssh, a Slurm array and Dask, on clusters of their own;
+# a video by GNU parallel.
+check-spread: build/glint $(OUT)/pan
 	@tools/make/deps "data sets on many machines" parallel openssh-server openssh-client slurm-wlm munge python3-distributed
-	@GLINT=build/glint XDG_CACHE_HOME=$$PWD/build/cache tests/hosts/spread
+	@GLINT=build/glint PAN=$(OUT)/pan XDG_CACHE_HOME=$$PWD/build/cache tests/hosts/spread
 .PHONY: check-spread
 
 # Every command that READMEs and manual pages name, those that take minutes, too.

@@ -43,6 +43,7 @@ static const char help[] =
     "                      before are looked at, not drawn\n"
     "  --warm-up N         only N of those before: the same from a cut on, or\n"
     "                      once lamps have settled\n"
+    "  --list-shots        prints A-B of each shot of a video; no -o then\n"
     "  --layers OUT        flare, ghosts, starburst and, where asked for, veil "
     "as\n"
     "                      linear light: parts of an .exr, or with %s in its "
@@ -109,6 +110,8 @@ static bool take(struct overlay *o, int option, const char *value)
         return take_frames(o, value);
     case 'W':
         return tool_integer(value, 0, INT_MAX, &o->warm_up);
+    case 'S':
+        return o->lists_shots = true;
     default: /* 'n' */
         return tool_integer(value, 0, 1000000000, &o->start_number);
     }
@@ -122,6 +125,7 @@ static const struct option options[] = {
     {"jpeg-quality", required_argument, NULL, 'Q'},
     {"frames", required_argument, NULL, 'F'},
     {"warm-up", required_argument, NULL, 'W'},
+    {"list-shots", no_argument, NULL, 'S'},
     {"encode", required_argument, NULL, 'e'},
     {"memory", required_argument, NULL, 'm'},
     {"layers", required_argument, NULL, 'L'},
@@ -148,7 +152,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
             o->output = optarg;
         else if (c == 'e')
             o->encode = optarg;
-        else if (strchr("rxnQmLTFW", c)) {
+        else if (strchr("rxnQmLTFWS", c)) {
             if (!take(o, c, optarg))
                 return tool_refuse(tool, options[index].name, optarg);
         } else if ((code = tool_option(tool, c, optarg)) >= 0)
@@ -163,8 +167,13 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
                                     : "takes one input; where that goes "
                                       "follows -o: -o '%s'",
                           argv[argc - 1]);
-    if (!o->output)
+    if (!o->output && !o->lists_shots)
         return tool_usage(tool, "needs -o OUT");
+    if (o->lists_shots && (o->output || o->last < INT_MAX))
+        return tool_usage(tool, "--list-shots is of a whole video, and writes "
+                                "none: leave out -o and --frames");
+    if (o->lists_shots)
+        o->output = "-";
     if (o->has_layers_type && !o->layers.path)
         return tool_usage(tool, "--layers-type is for --layers OUT");
     if (o->layers.path && strcmp(o->compositor.lens, "none") == 0)
@@ -244,6 +253,7 @@ int overlay_look(struct tool *tool, struct overlay *o,
         if (status == GLINT_OK && compositor->has_lens)
             compositor_expose(compositor, o->elapsed_us);
     }
+    o->is_cut = compositor_is_new(compositor);
     compositor->n_frames++;
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
@@ -377,11 +387,15 @@ static int check_output(struct tool *tool, struct overlay *o)
     o->is_video = frames || overlay_is_video(o->input);
     if (code != EXIT_OK)
         return code;
-    if (!frames && o->is_video != overlay_is_video(o->output))
+    if (!frames && !o->lists_shots &&
+        o->is_video != overlay_is_video(o->output))
         return tool_usage(tool, "a video becomes a video (.y4m, - or one of "
                                 "ffmpeg's), a picture a picture");
-    if (!o->is_video && o->last < INT_MAX)
-        return tool_usage(tool, "--frames is for videos");
+    if (!o->is_video && (o->last < INT_MAX || o->lists_shots))
+        return tool_usage(tool, "--%s is for videos",
+                          o->lists_shots ? "list-shots" : "frames");
+    if (o->lists_shots)
+        return EXIT_OK;
     if (o->last < INT_MAX && (o->compositor.settings.budget_ms > 0 ||
                               o->compositor.settings.dials.still_px > 0))
         return tool_usage(tool, "--frames does not go with --budget and "
@@ -443,7 +457,7 @@ static int run(struct tool *tool, struct overlay *o)
         code = overlay_numbered(tool, o);
     if (code == EXIT_OK)
         code = compositor_finish(tool, &o->compositor);
-    if (code == EXIT_OK)
+    if (code == EXIT_OK && !o->lists_shots)
         print_result(tool, o);
     return code;
 }

@@ -384,11 +384,7 @@ static void expose_as_drawn(struct compositor *compositor)
 
 void compositor_expose(struct compositor *compositor, int32_t elapsed_us)
 {
-    const bool is_new =
-        compositor->no_tracking ||
-        (compositor->is_listed
-             ? lamp_keys_is_cut(&compositor->list, compositor->n_frames)
-             : glint_lamp_tracker_was_cut(compositor->finder.tracks));
+    const bool is_new = compositor_is_new(compositor);
     const struct glint_strength_lamps lamps = {
         compositor->lamp, compositor->level, compositor->n_lamps,
         (double)compositor->view.width * compositor->view.height *

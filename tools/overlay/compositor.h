@@ -339,6 +339,9 @@ enum glint_status compositor_find(struct compositor *compositor,
                                   int32_t elapsed_us);
 void compositor_expose(struct compositor *compositor, int32_t elapsed_us);
 double compositor_scale(const struct compositor *compositor);
+/* Returns whether lamps and exposure begin anew in the frame that _find looked
+ * at, as after a cut. */
+bool compositor_is_new(const struct compositor *compositor);
 void compositor_drawn(struct compositor *compositor);
 void compositor_mark(const struct compositor *compositor,
                      const struct glint_image *image);

@@ -139,6 +139,13 @@ static void move_lamp(struct compositor *c)
         exp2(keys_at(&c->keys, KEYS_EV, c->n_frames, COMPOSITOR_LIGHT_EV));
 }
 
+bool compositor_is_new(const struct compositor *c)
+{
+    return c->no_tracking ||
+           (c->is_listed ? lamp_keys_is_cut(&c->list, c->n_frames)
+                         : glint_lamp_tracker_was_cut(c->finder.tracks));
+}
+
 /* Stops the lens as the key frames say; the exposure stays that of the widest
  * stop. */
 static void turn_stop(struct compositor *c)

@@ -25,6 +25,8 @@ struct overlay {
     int range, matrix;  /* 0: auto */
     int quality;        /* quality of JPEG and WebP; 0: the input's */
     bool is_video;
+    bool lists_shots; /* Prints the frames from cut to cut, draws nothing. */
+    bool is_cut;      /* Lamps and exposure began anew in the last frame. */
     struct layers layers;
     bool has_layers_type;
     const char *encode; /* options for ffmpeg, or NULL */

@@ -223,6 +223,37 @@ static int frames(struct video *v)
     return code;
 }
 
+/* Prints the frames of each shot: from one in which lamps and exposure begin
+ * anew to the next. In frames without lamps they do in each; those are one shot,
+ * with what comes after them. */
+static int shots(struct video *v)
+{
+    const int *const at = &v->o->compositor.n_frames;
+    const struct glint_image *image;
+    bool was_cut = true;
+    int code = EXIT_OK, first = 0;
+
+    while (code == EXIT_OK) {
+        const enum glint_status status =
+            glint_y4m_reader_next(&v->in, &image, &v->error);
+
+        if (status != GLINT_OK)
+            code = fail(v, status);
+        else if (!image)
+            break;
+        else
+            code = overlay_look(v->tool, v->o, image);
+        if (code == EXIT_OK && v->o->is_cut && !was_cut) {
+            printf("%d-%d\n", first, *at - 2);
+            first = *at - 1;
+        }
+        was_cut = v->o->is_cut;
+    }
+    if (code == EXIT_OK && *at > 0)
+        printf("%d-%d\n", first, *at - 1);
+    return code;
+}
+
 /* Returns the us from frame to frame; at 25 a second if the rate is unknown. */
 static int32_t frame_us(const struct glint_y4m_header *header)
 {
@@ -268,11 +299,15 @@ static int run(struct video *v)
     bool whole;
     int code = open_input(v);
 
+    v->o->elapsed_us = frame_us(&v->in.header);
+    if (code == EXIT_OK && v->o->lists_shots) {
+        code = shots(v);
+        return code == EXIT_OK && v->reads ? end_reader(v) : code;
+    }
     if (code == EXIT_OK)
         code = open_output(v);
     if (code != EXIT_OK)
         return code;
-    v->o->elapsed_us = frame_us(&v->in.header);
     code = frames(v);
     whole = v->o->first + v->out.n_frames == v->in.n_frames;
     if (code == EXIT_OK && v->reads && whole)

@@ -2,7 +2,8 @@
 #
 # pairs.py - items of glint synth as tensors, and flares whose geometry is broken.
 #
-# Light is linear, 1 = white; codes are of sRGB, 0 to 1.
+# Light is linear, 1 = white; its root is what a network sees and what errors count
+# in, as it is cheap and nearly as even to the eye as codes of sRGB.
 import json
 import os
 
@@ -10,17 +11,18 @@ import numpy
 import torch
 import torch.nn.functional as F
 
+CODES = torch.arange(256) / 255
+LIGHT = torch.where(CODES <= 0.04045, CODES / 12.92, ((CODES + 0.055) / 1.055) ** 2.4)  # of codes of sRGB
+
 
 def encode(light):
-    """Codes of light; a slope at 0, so that learning does not stop there."""
+    """Codes of light, 0 to 1."""
     light = light.clamp(0, 1)
-    return torch.where(light <= 0.0031308, 12.92 * light,
-                       1.055 * light.clamp(min=0.0031308) ** (1 / 2.4) - 0.055)
+    return torch.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
 def decode(codes):
-    return torch.where(codes <= 0.04045, codes / 12.92,
-                       ((codes + 0.055) / 1.055) ** 2.4)
+    return LIGHT[codes.long()]
 
 
 def picture(path):
@@ -96,16 +98,16 @@ def moved(flare, breaks, random):
 
 
 def batch(pairs, which, breaks, random):
-    """Codes of input, truth and flare of the items WHICH to learn from: the
-    flare, moved, added to the truth in linear light, noise of the item's sensor
-    added, then clipped; everything then turned and mirrored as a whole, which
-    keeps the geometry."""
-    truth = decode(pairs.truth[which] / 255)
-    flare = moved(decode(pairs.flare[which] / 255), breaks, random)
+    """Light of input, truth and flare of the items WHICH to learn from, their
+    masks and spokes: the flare, moved, added to the truth, noise of the item's
+    sensor added, then clipped; everything then turned and mirrored as a whole,
+    which keeps the geometry."""
+    truth = decode(pairs.truth[which])
+    flare = moved(decode(pairs.flare[which]), breaks, random)
     read, well = (pairs.noise[which, k].view(-1, 1, 1, 1) for k in (0, 1))
     light = truth + flare
-    light = light + torch.randn(light.shape, generator=random) * (light / well + read ** 2).sqrt()
-    all_of = [encode(light), encode(truth), encode(flare), pairs.mask[which, :1] / 255, pairs.spokes[which]]
+    light = (light + torch.randn(light.shape, generator=random) * (light / well + read ** 2).sqrt()).clamp(0, 1)
+    all_of = [light, truth, flare.clamp(0, 1), pairs.mask[which, :1] / 255, pairs.spokes[which]]
     k = int(torch.randint(8, (1,), generator=random))
     for i, one in enumerate(all_of):
         one = torch.rot90(one, k % 4, (2, 3))
@@ -115,5 +117,5 @@ def batch(pairs, which, breaks, random):
 
 def whole(pairs, which):
     """The same of items to test with, as glint synth wrote them."""
-    return [pairs.input[which] / 255, pairs.truth[which] / 255, pairs.flare[which] / 255,
+    return [decode(pairs.input[which]), decode(pairs.truth[which]), decode(pairs.flare[which]),
             pairs.mask[which, :1] / 255, pairs.spokes[which]]
