@@ -224,8 +224,8 @@ static int frames(struct video *v)
 }
 
 /* Prints the frames of each shot: from one in which lamps and exposure begin
- * anew to the next. In frames without lamps they do in each; those are one shot,
- * with what comes after them. */
+ * anew to the next. In frames without lamps they do in each; those are one
+ * shot, with what comes after them. */
 static int shots(struct video *v)
 {
     const int *const at = &v->o->compositor.n_frames;

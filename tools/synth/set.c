@@ -249,8 +249,8 @@ static enum glint_status append(struct glint_output *out, const char *path,
            (n = glint_input_some(&in, part, sizeof part)) > 0)
         status = glint_output_write(out, part, (size_t)n, error);
     if (n < 0)
-        status = glint_error_report(error, GLINT_E_IO, path, "%s",
-                                    strerror(errno));
+        status =
+            glint_error_report(error, GLINT_E_IO, path, "%s", strerror(errno));
     glint_input_close(&in);
     return status;
 }

@@ -23,8 +23,8 @@ struct synth_set {
 };
 
 /* Makes the folders of SET. SETTINGS, a line, says what all items are drawn
- * with. Returns an exit code: EXIT_USAGE if the folder was begun with others, or
- * has items beyond SET's count. */
+ * with. Returns an exit code: EXIT_USAGE if the folder was begun with others,
+ * or has items beyond SET's count. */
 int synth_set_begin(const struct tool *tool, const struct synth_set *set,
                     const char *settings);
 
