@@ -188,6 +188,9 @@ static bool read_word(struct glint_text *text, struct glint_word word,
 
     if (!read_parts(&parts, coating))
         return false;
+    if (parts.rest.length < 0)
+        return glint_text_fail(text, parts.rest.place,
+                               "nothing follows the slash");
     return !parts.rest.length ||
            glint_text_fail(text, parts.rest.place,
                            "'%s' is more than the coating takes",

@@ -135,6 +135,7 @@ static void test_refused(void **state)
                  "broadband-3, broadband-4 and wavelengths"},
         {"v-coat/500/2", "'2' is more than the coating takes"},
         {"none/2", "'2' is more than the coating takes"},
+        {"none/", "nothing follows the slash"},
         {"v-coat/", "coating wavelength is missing"},
         {"500//2", "coating index is missing"},
         {"500/1.4:0", "coating thickness must be 0.01 .. 16, not 0"},
