@@ -342,11 +342,12 @@ const char *glint_word_number(const struct glint_word *word, double *value)
     more = digits.significant > GLINT_NUMBER_DIGITS
                ? digits.significant - GLINT_NUMBER_DIGITS
                : 0;
-    if (exponent + more < -22 || exponent + more > 22)
+    /* Terms of h^20 are small: 1e-25 is a tenth of a millimetre at 14 mm. */
+    if (exponent + more < -60 || exponent + more > 22)
         return "is too large or too small";
     /* Of so few digits both operands are exact, so one rounding gives the
      * nearest double. */
-    magnitude = more > 0       ? nearest_of(word, exponent)
+    magnitude = more > 0 || exponent < -22 ? nearest_of(word, exponent)
                 : exponent < 0 ? (double)digits.value / power_of_ten(-exponent)
                                : (double)digits.value * power_of_ten(exponent);
     *value = negative ? -magnitude : magnitude;
