@@ -34,8 +34,14 @@ static void draw_ray(struct figure *f, const struct fan *fan, double x,
             "stroke-linejoin=\"round\" d=\"M%.2f %.2f ",
             colour, figure_px(f, back), figure_py(f, x + slope * back));
     for (int e = 0; e < fan->path.n_events; e++) {
+        const bool stop = fan->path.event[e].kind == GLINT_STOP;
         double at[2];
 
+        /* A stop behind the front vertex is met before the glass by the line
+         * of the light, not by the light. */
+        if (stop && f->drawing->lens->stop_after == 0 &&
+            f->drawing->lens->stop_thickness_mm < 0)
+            continue;
         figure_meeting(f, &fan->path.event[e], hits[e], at);
         fprintf(f->file, "L%.2f %.2f ", figure_px(f, at[0]),
                 figure_py(f, at[1]));
