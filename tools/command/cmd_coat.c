@@ -265,9 +265,9 @@ static int save(const struct tool *tool, const struct coat *c)
 
 /* ----------------------------------------------------------------- options */
 
-/* Takes option C; returns -1, -2 if VALUE is refused, or an exit code. */
-static int take(struct tool *tool, struct coat *o, int c, const char *value)
+static int take(struct tool *tool, void *ctx, int c, const char *value)
 {
+    struct coat *o = ctx;
     bool good = true;
 
     if (c == 'o')
@@ -304,17 +304,12 @@ static int parse(struct tool *tool, int argc, char **argv, struct coat *o)
         {"band", required_argument, NULL, 'b'},
         TOOL_COMMON_OPTIONS};
     struct apart files = {.n_read = 0};
-    int c, code, index = 0;
+    int code =
+        tool_take(tool, argc, argv, TOOL_COMMON_SHORT "o:", options, take, o);
 
-    while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT "o:", options,
-                            &index)) >= 0) {
-        code = take(tool, o, c, optarg);
-        if (code == -2)
-            return tool_refuse(tool, options[index].name, optarg);
-        if (code >= 0)
-            return code;
-    }
-    code = tool_inputs(tool, argc, argv, 1, "takes one coating, or one lens");
+    if (code < 0)
+        code =
+            tool_inputs(tool, argc, argv, 1, "takes one coating, or one lens");
     if (code >= 0)
         return code;
     if (o->output && !ends_in(o->output, ".svg") && !ends_in(o->output, ".png"))

@@ -46,9 +46,9 @@ struct draw {
     double f_number; /* 0: the table's */
 };
 
-/* Takes option C; returns -1, -2 if VALUE is refused, or an exit code. */
-static int take(struct tool *tool, struct draw *o, int c, const char *value)
+static int take(struct tool *tool, void *ctx, int c, const char *value)
 {
+    struct draw *o = ctx;
     bool good = true;
 
     if (c == 'o')
@@ -89,17 +89,11 @@ static int parse(struct tool *tool, int argc, char **argv, struct draw *o)
         ZOOM_OPTIONS('z', 'F'),
         TOOL_COMMON_OPTIONS};
     struct apart files = {.n_read = 0};
-    int c, code, index = 0;
+    int code =
+        tool_take(tool, argc, argv, TOOL_COMMON_SHORT "o:", options, take, o);
 
-    while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT "o:", options,
-                            &index)) >= 0) {
-        code = take(tool, o, c, optarg);
-        if (code == -2)
-            return tool_refuse(tool, options[index].name, optarg);
-        if (code >= 0)
-            return code;
-    }
-    code = tool_inputs(tool, argc, argv, 1, "takes one lens");
+    if (code < 0)
+        code = tool_inputs(tool, argc, argv, 1, "takes one lens");
     if (code >= 0)
         return code;
     if (!o->output)

@@ -27,7 +27,10 @@ static const struct {
     {"draw", "rays", "a whole number, 1 to 41"},
     {"explain", "top", "a whole number, from 0"},
     {"import", "film", "WxH in mm, such as 36x24"},
-    {"import", "format", "zmx, seq, oslo, pbrt, flaresim or realflare"},
+    {"import", "format",
+     "zmx, seq, oslo, pbrt, flaresim, realflare, openlensflare, polyflare or "
+     "opticalbench"},
+    {"import", "position", "a position of a zoom, 1 to 16"},
     {"live", "count", "frames, from 1"},
     {"live", "device",
      "/dev/videoN, a number, the name of a .y4m file, - or test"},
@@ -172,4 +175,19 @@ int tool_refuse(const struct tool *tool, const char *option, const char *value)
 
     return tool_usage(tool, "--%s: '%s' is not something it takes%s%s", option,
                       value, takes ? ": " : "", takes ? takes : "");
+}
+
+int tool_take(struct tool *tool, int argc, char **argv, const char *shorts,
+              const struct option *options, tool_take_fn *take, void *ctx)
+{
+    int c, code, index = 0;
+
+    while ((c = tool_getopt(argc, argv, shorts, options, &index)) >= 0) {
+        code = take(tool, ctx, c, optarg);
+        if (code == -2)
+            return tool_refuse(tool, options[index].name, optarg);
+        if (code >= 0)
+            return code;
+    }
+    return -1;
 }
