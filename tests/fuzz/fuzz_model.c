@@ -109,7 +109,8 @@ static void check_bundle(const struct glint_lens *lens, int ghost,
     check_grids(&t);
 }
 
-static void check_ghost(const struct glint_lens *lens, int ghost)
+/* Checks GHOST, and of its systems that which PICK says. */
+static void check_ghost(const struct glint_lens *lens, int ghost, uint32_t pick)
 {
     const struct glint_model_ghost *g = &lens->ghost[ghost];
     const int32_t lo = lens->header->wave_lo_q24;
@@ -117,8 +118,9 @@ static void check_ghost(const struct glint_lens *lens, int ghost)
 
     check_bundle(lens, ghost, 0, lo);
     check_bundle(lens, ghost, ONE, hi);
-    for (uint32_t k = 0; k < g->n_systems && k < 4; k++) {
-        const struct glint_model_system *s = &lens->system[g->first_system + k];
+    if (g->n_systems > 0) {
+        const struct glint_model_system *s =
+            &lens->system[g->first_system + pick % g->n_systems];
         const int32_t a = s->sine_lo_q30, b = s->sine_hi_q30;
 
         check_bundle(lens, ghost, a - 1, lo);
@@ -199,11 +201,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         memcpy(copy, data, size);
     seal(copy, size);
     if (glint_lens_open(&lens, copy, size, &reason) == GLINT_OK) {
-        require(lens.header->n_ghosts <= INT32_MAX);
-        for (uint32_t k = 0; k < lens.header->n_ghosts && k < 8; k++)
-            check_ghost(&lens, (int)k);
-        check_frame(&lens, 0);
-        check_frame(&lens, 1 << 27);
+        const uint32_t pick = ((const uint32_t *)copy)[3];
+        const uint32_t n = lens.header->n_ghosts;
+
+        require(n <= INT32_MAX);
+        for (uint32_t k = 0; k < n && k < 2; k++)
+            check_ghost(&lens, (int)((pick + k) % n), pick >> 8);
+        check_frame(&lens, pick & 128 ? 0 : 1 << 27);
     } else {
         require(reason && *reason);
     }
