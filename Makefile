@@ -1,7 +1,7 @@
 # glint - physically based camera effects for small machines.
 #
 #   make          build/glint; needs a C compiler only, and takes in libjpeg,
-#                 inih and jansson where it finds them
+#                 inih, jansson and expat where it finds them
 #   make TARGET=aarch64|armv7-neon|armv7|armv6-soft|x86_64
 #                 build/TARGET/glint, static;  DYNAMIC=1: build/TARGET-dynamic
 #   make glint-live   build/.../glint-live: the live command alone, for
@@ -68,8 +68,8 @@ sets_armv7-neon := neon
 absent := $(foreach s,$(filter-out $(sets_$(ARCH)),sse41 avx2 x86 neon),$(wildcard src/kernels/*_$(s).c src/kernels/*/*_$(s).c))
 absent += platform/jpeg/$(if $(filter yes,$(WITH_JPEG)),absent,mjpeg).c
 absent += src/bake/motion/$(if $(filter yes,$(WITH_JANSSON)),absent,recording).c
-absent += tools/synth/$(if $(filter yes,$(WITH_JANSSON)),item_absent,item_json).c
-absent += tools/import/$(if $(filter yes,$(WITH_JANSSON)),realflare_absent,realflare).c
+absent += $(if $(filter yes,$(WITH_JANSSON)),tools/synth/item_absent.c tools/import/realflare_absent.c,tools/synth/item_json.c tools/import/realflare.c)
+absent += tools/import/$(if $(filter yes,$(WITH_EXPAT)),openlensflare_absent,openlensflare).c
 absent += tools/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
 # A static program has no plug-ins.
 absent += platform/oiio/$(if $(CROSS),loader,absent).c
@@ -86,7 +86,7 @@ tools_o     := $(call objects,tools,$(TOOLS))
 main_o      := $(patsubst %,$(OUT)/tools/%.o,command/glint live/glint_live live/models_only)
 LDLIBS := $(if $(filter yes,$(WITH_JPEG)),$(JPEG_LIBS)) \
         $(if $(filter yes,$(WITH_INIH)),$(INIH_LIBS)) \
-        $(if $(filter yes,$(WITH_JANSSON)),$(JANSSON_LIBS)) -lm -lpthread -ldl
+        $(if $(filter yes,$(WITH_JANSSON)),$(JANSSON_LIBS)) $(if $(filter yes,$(WITH_EXPAT)),$(EXPAT_LIBS)) -lm -lpthread -ldl
 include tools/make/flags.mk
 
 $(OUT)/%.o: %.c

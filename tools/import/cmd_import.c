@@ -14,11 +14,13 @@
 
 static const char help[] =
     "glint import FILE -o NAME.lens [--strict] [--format F]\n"
-    "             [--film WxH] [--f-number N]\n"
+    "             [--film WxH] [--f-number N] [--position N]\n"
     "\n"
     "Reads a lens file of another program and writes a table of it: Zemax\n"
     ".zmx (sequential; STANDARD, EVENASPH; text or UTF-16), CODE V .seq,\n"
-    "OSLO .len, pbrt .dat, FlareSim .lens, realflare .json. Lengths become\n"
+    "OSLO .len, pbrt .dat, FlareSim .lens, realflare .json, OpenLensFlare "
+    ".xml,\n"
+    "polyflare .fx, PhotonsToPhotos' Optical Bench .txt. Lengths become\n"
     "millimetres, glasses those of the catalogue (lenses/README.md) or the\n"
     "file's nd and Vd. What is guessed or left out is told with its line, and "
     "stands in\n"
@@ -26,11 +28,14 @@ static const char help[] =
     "\n"
     "  -o, --output FILE   the .lens, or - for standard output\n"
     "  --strict            refuse where something would be guessed\n"
-    "  --format F          zmx, seq, oslo, pbrt, flaresim or realflare "
-    "(default:\n"
-    "                      by the end of the name)\n"
+    "  --format F          zmx, seq, oslo, pbrt, flaresim, realflare,\n"
+    "                      openlensflare, polyflare or opticalbench (default: "
+    "by\n"
+    "                      the end of the name)\n"
     "  --film WxH          film, mm (default: what the file's field says)\n"
-    "  --f-number N        f-number (default: the file's)\n";
+    "  --f-number N        f-number (default: the file's)\n"
+    "  --position N        of a zoom's positions, from 1 (default: the "
+    "first)\n";
 
 static const char help_end[] = COMMON_HELP;
 
@@ -39,6 +44,7 @@ struct import {
     const struct import_format *format;
     const char *output;
     bool strict;
+    int position;
     double film_mm[2], f_number;
 };
 
@@ -65,9 +71,9 @@ static bool take_film(struct import *o, const char *value)
            o->film_mm[1] <= 1000;
 }
 
-/* Takes option C; returns -1, -2 if VALUE is refused, or an exit code. */
-static int take(struct tool *tool, struct import *o, int c, const char *value)
+static int take(struct tool *tool, void *ctx, int c, const char *value)
 {
+    struct import *o = ctx;
     bool good = true;
 
     if (c == 'o')
@@ -81,6 +87,8 @@ static int take(struct tool *tool, struct import *o, int c, const char *value)
     else if (c == 'f')
         good = tool_number(value, &o->f_number) && o->f_number >= 0.5 &&
                o->f_number <= 1000;
+    else if (c == 'p')
+        good = tool_integer(value, 1, 16, &o->position);
     else
         return tool_option(tool, c, value);
     return good ? -1 : -2;
@@ -94,19 +102,14 @@ static int parse(struct tool *tool, int argc, char **argv, struct import *o)
         {"format", required_argument, NULL, 'F'},
         {"film", required_argument, NULL, 'm'},
         {"f-number", required_argument, NULL, 'f'},
+        {"position", required_argument, NULL, 'p'},
         TOOL_COMMON_OPTIONS};
     struct apart files = {.n_read = 0};
-    int c, code, index = 0;
+    int code =
+        tool_take(tool, argc, argv, TOOL_COMMON_SHORT "o:", options, take, o);
 
-    while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT "o:", options,
-                            &index)) >= 0) {
-        code = take(tool, o, c, optarg);
-        if (code == -2)
-            return tool_refuse(tool, options[index].name, optarg);
-        if (code >= 0)
-            return code;
-    }
-    code = tool_inputs(tool, argc, argv, 1, "takes one file");
+    if (code < 0)
+        code = tool_inputs(tool, argc, argv, 1, "takes one file");
     if (code >= 0)
         return code;
     if (!o->output)
@@ -114,10 +117,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct import *o)
     if (!o->format)
         o->format = import_format_of(argv[optind]);
     if (!o->format)
-        return tool_usage(tool,
-                          "%s: which --format has it: zmx, seq, oslo, pbrt, "
-                          "flaresim or realflare?",
-                          argv[optind]);
+        return tool_usage(tool, "%s: which --format has it: %s?", argv[optind],
+                          takes_of("import", "format"));
     apart_read(&files, NULL, argv[optind]);
     apart_write(&files, "-o", o->output);
     code = apart_check(tool, &files);
@@ -231,6 +232,7 @@ static int run(struct tool *tool, struct import *o, const char *path)
     set_name(o->lens.name, path);
     memcpy(o->lens.film_mm, o->film_mm, sizeof o->film_mm);
     o->lens.f_number_given = o->f_number;
+    o->lens.position = o->position;
     text = import_read(&o->lens, o->format, data, &bytes);
     free(data);
     print_notes(tool, &o->lens);

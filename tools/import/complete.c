@@ -28,68 +28,69 @@ static double power_of(const struct imported_surface *s)
 
 /* Takes RAY through all surfaces; its y and u are then those behind the
  * last. */
-static bool run(struct imported *lens, struct thin_ray *ray)
+static void run(const struct imported *lens, struct thin_ray *ray)
 {
-    double n = 1, behind;
-    char text[48];
+    double n = 1;
 
     for (int k = 0; k < lens->n; k++) {
-        struct imported_surface *s = &lens->surface[k];
-        const int notes = lens->n_notes;
+        const struct imported_surface *s = &lens->surface[k];
 
-        if (!imported_medium(lens, s, text, &behind))
-            return false;
-        lens->n_notes = notes; /* they are told when the table is written */
         ray->height[k] = ray->y;
-        ray->u = (n * ray->u - ray->y * (behind - n) * power_of(s)) / behind;
+        ray->u =
+            (n * ray->u - ray->y * (s->index - n) * power_of(s)) / s->index;
         if (k + 1 < lens->n)
             ray->y += s->thickness * ray->u;
-        n = behind;
+        n = s->index;
     }
-    return true;
 }
 
 /* --------------------------------------------------------------- dummies */
 
-static bool does_nothing(struct imported *lens, int k)
+/* Returns whether the same medium is on both sides of surface K. */
+static bool does_nothing(const struct imported *lens, int k)
 {
-    const struct imported_surface *s = &lens->surface[k], *before = s - 1;
+    const struct imported_surface *s = &lens->surface[k];
 
-    if (s->stop)
-        return false;
-    return k == 0
-               ? !s->glass[0] && s->nd == 1
-               : strcmp(s->glass, before->glass) == 0 && s->nd == before->nd &&
-                     (s->vd == before->vd || s->nd == 1);
+    return strcmp(s->medium, k > 0 ? s[-1].medium : "air") == 0;
 }
 
 /* Leaves out surfaces with the same medium on both sides. */
 static bool drop_dummies(struct imported *lens)
 {
+    int n = 0, line = 0;
+
     for (int k = 0; k < lens->n;) {
         struct imported_surface *s = &lens->surface[k];
 
-        if (!does_nothing(lens, k)) {
+        if (s->stop || !does_nothing(lens, k)) {
             k++;
             continue;
         }
+        line = n++ == 0 ? s->line : line;
         if (k > 0)
             s[-1].thickness += s->thickness;
         lens->n--;
         memmove(s, s + 1, (size_t)(lens->n - k) * sizeof *s);
     }
+    if (n > 0)
+        imported_tell(lens, line,
+                      "the same medium on both sides: left out%s, which "
+                      "changes nothing",
+                      n > 1 ? ", and others like it" : "");
     return lens->n > 0 || imported_fail(lens, 0, "there is no glass in it");
 }
 
 /* ------------------------------------------------------------------ stop */
 
-/* Returns the sag of S at the height H, or at its equator. */
-static double sag(const struct imported_surface *s, double h)
+double imported_sag(const struct imported_surface *s, double h)
 {
     const double c = curvature(s);
     const double root = 1 - (1 + s->shape.conic) * c * c * h * h;
+    double terms = 0;
 
-    return c * h * h / (1 + sqrt(root > 0 ? root : 0));
+    for (int i = GLINT_SHAPE_TERMS - 1; i >= 0; i--)
+        terms = (terms + s->shape.term[i]) * h * h;
+    return c * h * h / (1 + sqrt(root > 0 ? root : 0)) + terms * h * h;
 }
 
 static bool insert_stop(struct imported *lens, int k)
@@ -107,8 +108,8 @@ static bool insert_stop(struct imported *lens, int k)
 static bool stop_beside(struct imported *lens, int k)
 {
     struct imported_surface *s = &lens->surface[k], stop = *s;
-    const bool behind = !s->glass[0] && s->nd == 1;
-    const double rim = sag(s, s->semi);
+    const bool behind = strcmp(s->medium, "air") == 0;
+    const double rim = imported_sag(s, s->semi);
     double off = behind ? fmax(0, rim) : fmin(0, rim);
 
     if (behind && off > s->thickness)
@@ -124,12 +125,9 @@ static bool stop_beside(struct imported *lens, int k)
     else if (k > 0)
         s[-1].thickness += off;
     if (!behind) {
-        const struct imported_surface *before = s - 1;
-
-        snprintf(stop.glass, sizeof stop.glass, "%s",
-                 k > 0 ? before->glass : "");
-        stop.nd = k > 0 ? before->nd : 1;
-        stop.vd = k > 0 ? before->vd : 0;
+        snprintf(stop.medium, sizeof stop.medium, "%s",
+                 k > 0 ? s[-1].medium : "air");
+        stop.index = k > 0 ? s[-1].index : 1;
     }
     if (!insert_stop(lens, behind ? k + 1 : k))
         return false;
@@ -139,15 +137,6 @@ static bool stop_beside(struct imported *lens, int k)
                          "its rim",
                          fabs(off) * lens->unit_mm,
                          behind ? "mm behind" : "mm before");
-}
-
-static bool is_plain_stop(const struct imported *lens, int k)
-{
-    const struct imported_surface *s = &lens->surface[k];
-    const struct imported_surface *before = k > 0 ? s - 1 : NULL;
-
-    return strcmp(s->glass, before ? before->glass : "") == 0 &&
-           s->nd == (before ? before->nd : 1);
 }
 
 static bool settle_stop(struct imported *lens)
@@ -169,16 +158,17 @@ static bool settle_stop(struct imported *lens)
         lens->surface[0].stop = true;
         at = 0;
     }
-    return is_plain_stop(lens, at) || stop_beside(lens, at);
+    return does_nothing(lens, at) || stop_beside(lens, at);
 }
 
 /* ------------------------------------------------------------------ film */
 
-static double focal(struct imported *lens)
+static double focal(const struct imported *lens)
 {
     struct thin_ray ray = {.y = 1};
 
-    return run(lens, &ray) && ray.u != 0 ? -1 / ray.u : 0;
+    run(lens, &ray);
+    return ray.u != 0 ? -1 / ray.u : 0;
 }
 
 /* Sets the film to 3 : 2 within the circle that the lens is for. */
@@ -224,8 +214,7 @@ static bool settle_pupil(struct imported *lens, double focal_units)
     const int stop = stop_of(lens);
     struct thin_ray ray = {.y = 1};
 
-    if (!run(lens, &ray))
-        return false;
+    run(lens, &ray);
     if (lens->f_number_given > 0)
         lens->f_number = lens->f_number_given;
     if (lens->f_number > 0)
@@ -258,15 +247,14 @@ static bool settle_semis(struct imported *lens)
     double field, start;
     int n = 0;
 
-    if (!run(lens, &rim) || !run(lens, &slant))
-        return false;
+    run(lens, &rim);
+    run(lens, &slant);
     /* The chief ray is that with the height 0 at the stop. */
     start = rim.height[stop] != 0
                 ? -slant.height[stop] / rim.height[stop] * lens->pupil / 2
                 : 0;
     chief.y = start;
-    if (!run(lens, &chief))
-        return false;
+    run(lens, &chief);
     field = hypot(lens->film_mm[0], lens->film_mm[1]) / 2 / lens->unit_mm /
             fabs(focal(lens)) / 0.01;
     for (int k = 0; k < lens->n; k++) {
@@ -293,17 +281,20 @@ static bool settle_semis(struct imported *lens)
                                    n);
 }
 
-/* Cuts semi-diameters that reach beyond a sphere. */
+/* Cuts semi-diameters that reach beyond a sphere or the end of a conic. */
 static bool cut_semis(struct imported *lens)
 {
     for (int k = 0; k < lens->n; k++) {
         struct imported_surface *s = &lens->surface[k];
-        const double size = fabs(s->radius);
+        const double size = s->shape.conic > -1
+                                ? fabs(s->radius) / sqrt(1 + s->shape.conic)
+                                : (double)INFINITY;
 
-        if (s->radius != 0 && s->shape.conic == 0 && s->semi >= size) {
+        if (s->radius != 0 && s->semi >= size) {
             if (!imported_note(lens, s->line,
-                               "semi-diameter %.6g of radius %.6g: %.6g taken",
-                               s->semi, s->radius, 0.98 * size))
+                               "semi-diameter %.6g of a surface that ends at "
+                               "%.6g: %.6g taken",
+                               s->semi, size, 0.98 * size))
                 return false;
             s->semi = 0.98 * size;
         }
@@ -313,7 +304,7 @@ static bool cut_semis(struct imported *lens)
 
 double imported_gap(const struct imported_surface *s, double h)
 {
-    return s->thickness + sag(s + 1, h) - sag(s, h);
+    return s->thickness + imported_sag(s + 1, h) - imported_sag(s, h);
 }
 
 /* Cuts semi-diameters where neighbours' rims cross, as thin lenses of estimated
@@ -353,11 +344,15 @@ static bool settle_focus(struct imported *lens)
     struct imported_surface *last = &lens->surface[lens->n - 1];
     double behind;
 
-    if (!run(lens, &ray))
-        return false;
+    run(lens, &ray);
     behind = ray.u != 0 ? -ray.y / ray.u : 0;
-    if (last->thickness > 0 || !(behind > 0))
+    if (last->thickness > 0)
         return true;
+    if (!(behind > 0))
+        return imported_fail(lens, last->line,
+                             "no distance to the sensor, and the paraxial "
+                             "focus lies %.6g mm before the last surface",
+                             -behind * lens->unit_mm);
     last->thickness = behind;
     return imported_note(lens, last->line,
                          "no distance to the sensor: the paraxial focus taken, "
@@ -365,11 +360,14 @@ static bool settle_focus(struct imported *lens)
                          behind * lens->unit_mm);
 }
 
-/* Refuses what runs backwards. */
+/* Refuses what runs backwards but for a stop at the front, which may lie behind
+ * the vertex, as in phones. */
 static bool check_thicknesses(struct imported *lens)
 {
     for (int k = 0; k < lens->n; k++)
-        if (!(lens->surface[k].thickness >= 0))
+        if (!(lens->surface[k].thickness >= 0) &&
+            !(k == 0 && lens->surface[0].stop && does_nothing(lens, 0) &&
+              isfinite(lens->surface[0].thickness)))
             return imported_fail(lens, lens->surface[k].line,
                                  "thickness %g runs backwards",
                                  lens->surface[k].thickness);
@@ -380,11 +378,10 @@ bool imported_complete(struct imported *lens)
 {
     double f;
 
-    if (!drop_dummies(lens) || !check_thicknesses(lens) || !settle_stop(lens))
+    if (!imported_settle_media(lens) || !drop_dummies(lens) ||
+        !check_thicknesses(lens) || !settle_stop(lens))
         return false;
     f = focal(lens);
-    if (lens->error[0])
-        return false;
     if (lens->nominal > 0 && fabs(f / lens->nominal - 1) > 0.02 &&
         !imported_note(lens, 0,
                        "its focal length is %.6g mm, not the stated %.6g: "

@@ -11,6 +11,9 @@ static const struct import_format formats[] = {
     {"pbrt", ".dat", import_pbrt},
     {"flaresim", ".lens", import_flaresim},
     {"realflare", ".json", import_realflare},
+    {"openlensflare", ".xml", import_openlensflare},
+    {"polyflare", ".fx", import_polyflare},
+    {"opticalbench", ".txt", import_opticalbench},
 };
 
 enum { N_FORMATS = sizeof formats / sizeof *formats };
@@ -66,7 +69,11 @@ char *import_read(struct imported *lens, const struct import_format *format,
         imported_fail(lens, 0, "is no text");
         return NULL;
     }
-    if (!format->read(lens, (const char *)data, *bytes))
+    if (!format->read(lens, (const char *)data, *bytes) || lens->error[0])
         return NULL;
+    if (lens->position > 1 && !lens->chosen) {
+        imported_fail(lens, 0, "position %d of 1", lens->position);
+        return NULL;
+    }
     return imported_finish(lens, bytes);
 }

@@ -84,7 +84,7 @@ bool import_flaresim(struct imported *lens, const char *text, size_t bytes)
     struct lines lines;
     bool rows = false, good = true;
 
-    lines_begin(&lines, text, bytes);
+    lines_begin(&lines, lens, text, bytes);
     while (good && lines_next(&lines, '#')) {
         if (rows)
             good = take_row(lens, &lines);

@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 #include "import/imported.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
+#define LINE_C_NM 656.2725
 #define LINE_D_NM 587.5618
+#define LINE_F_NM 486.1327
 
 void imported_begin(struct imported *lens, const char *file, bool strict)
 {
@@ -15,13 +19,18 @@ void imported_begin(struct imported *lens, const char *file, bool strict)
     lens->unit_mm = 1;
 }
 
+/* Sets the error, but for one that there is. */
 static void say(struct imported *lens, int line, const char *format,
                 va_list values)
 {
-    int n = line > 0 ? snprintf(lens->error, sizeof lens->error,
-                                "%.100s:%d: ", lens->file, line)
-                     : snprintf(lens->error, sizeof lens->error,
-                                "%.100s: ", lens->file);
+    int n;
+
+    if (lens->error[0])
+        return;
+    n = line > 0
+            ? snprintf(lens->error, sizeof lens->error,
+                       "%.100s:%d: ", lens->file, line)
+            : snprintf(lens->error, sizeof lens->error, "%.100s: ", lens->file);
 
     n += vsnprintf(lens->error + n, sizeof lens->error - (size_t)n, format,
                    values);
@@ -39,22 +48,70 @@ bool imported_fail(struct imported *lens, int line, const char *format, ...)
     return false;
 }
 
+static void add_note(struct imported *lens, int line, const char *format,
+                     va_list values)
+{
+    const int k = lens->n_notes++;
+
+    if (k < IMPORT_NOTES) {
+        lens->note[k].line = line;
+        vsnprintf(lens->note[k].text, sizeof lens->note[k].text, format,
+                  values);
+    }
+}
+
 bool imported_note(struct imported *lens, int line, const char *format, ...)
 {
-    const int k = lens->n_notes;
     va_list values;
 
     va_start(values, format);
     if (lens->strict)
         say(lens, line, format, values);
-    else if (k < IMPORT_NOTES) {
-        lens->note[k].line = line;
-        vsnprintf(lens->note[k].text, sizeof lens->note[k].text, format,
-                  values);
-    }
+    else
+        add_note(lens, line, format, values);
     va_end(values);
-    lens->n_notes += !lens->strict;
     return !lens->strict;
+}
+
+void imported_tell(struct imported *lens, int line, const char *format, ...)
+{
+    va_list values;
+
+    va_start(values, format);
+    add_note(lens, line, format, values);
+    va_end(values);
+}
+
+bool imported_unread(struct imported *lens, int line, const char *word)
+{
+    char text[IMPORT_TEXT];
+
+    snprintf(text, sizeof text, "'%.30s' is not read", word);
+    for (int k = 0; k < lens->n_notes && k < IMPORT_NOTES; k++)
+        if (strcmp(lens->note[k].text, text) == 0)
+            return true;
+    return imported_note(lens, line, "%s", text);
+}
+
+bool imported_object(struct imported *lens, int line, double distance)
+{
+    return fabs(distance) > 1e8 ||
+           imported_note(lens, line,
+                         "the object is %g mm away: the sensor stays where the "
+                         "file has it",
+                         distance * lens->unit_mm);
+}
+
+bool imported_choose(struct imported *lens, int line, int n, int *at)
+{
+    lens->chosen = true;
+    if (lens->position > n)
+        return imported_fail(lens, line, "position %d of %d", lens->position,
+                             n);
+    *at = lens->position > 0 ? lens->position - 1 : 0;
+    return lens->position > 0 || n == 1 ||
+           imported_note(lens, line,
+                         "the first of %d positions is taken (--position)", n);
 }
 
 void imported_sort_notes(struct imported *lens)
@@ -88,14 +145,21 @@ struct imported_surface *imported_add(struct imported *lens, int line)
 
 /* -------------------------------------------------------------------- glass */
 
-/* Sets NAME to the glass of S in capitals, without the maker behind '_'. */
-static void plain_name(const struct imported_surface *s, char name[32])
+/* Sets NAME to the glass of S in capitals. Returns the maker behind '_', or "":
+ * what else is there belongs to the name. */
+static const char *plain_name(const struct imported_surface *s, char name[32])
 {
+    const struct glint_glass *glass;
+    const char *maker = strrchr(s->glass, '_');
     size_t n = 0;
+    bool known = false;
 
-    for (const char *c = s->glass; *c && *c != '_' && n < 31; c++)
+    for (int k = 0; maker && (glass = glint_glass_at(k)) != NULL && !known; k++)
+        known = strncasecmp(maker + 1, glass->maker, strlen(glass->maker)) == 0;
+    for (const char *c = s->glass; *c && (!known || c != maker) && n < 31; c++)
         name[n++] = *c >= 'a' && *c <= 'z' ? (char)(*c - 'a' + 'A') : *c;
     name[n] = '\0';
+    return known ? maker + 1 : "";
 }
 
 /* Returns whether A and B are the same but for hyphens. */
@@ -114,14 +178,17 @@ static bool same_letters(const char *a, const char *b)
 
 /* Returns the glass of the catalogue that NAME is but for hyphens, or with N-
  * before it the lead-free successor, SUCCEEDS being set; NULL if there is
- * none. */
-static const struct glint_glass *catalogue_glass(const char *name,
-                                                 bool *succeeds)
+ * none. One of another than MAKER is none, if that is said. */
+static const struct glint_glass *
+catalogue_glass(const char *name, const char *maker, bool *succeeds)
 {
     const struct glint_glass *glass, *successor = NULL;
 
     *succeeds = false;
     for (int k = 0; (glass = glint_glass_at(k)) != NULL; k++) {
+        if (*maker &&
+            strncasecmp(maker, glass->maker, strlen(glass->maker)) != 0)
+            continue;
         if (same_letters(glass->name, name))
             return glass;
         if (strncmp(glass->name, "N-", 2) == 0 &&
@@ -132,12 +199,11 @@ static const struct glint_glass *catalogue_glass(const char *name,
     return successor;
 }
 
-static bool by_numbers(struct imported *lens, const struct imported_surface *s,
-                       char text[48], double *nd)
+static bool by_numbers(struct imported *lens, struct imported_surface *s)
 {
     double vd = s->vd;
 
-    *nd = s->nd;
+    s->index = s->nd;
     if (!(s->nd >= 1.01 && s->nd <= 4))
         return imported_fail(lens, s->line, "index %g is not that of a glass",
                              s->nd);
@@ -153,27 +219,50 @@ static bool by_numbers(struct imported *lens, const struct imported_surface *s,
     } else if (!(vd >= 10 && vd <= 150))
         return imported_fail(lens, s->line,
                              "Abbe number %g is not that of a glass", vd);
-    snprintf(text, 48, "%.9g %.6g", s->nd, vd);
+    snprintf(s->medium, sizeof s->medium, "%.9g %.6g", s->nd, vd);
     return true;
 }
 
-bool imported_medium(struct imported *lens, const struct imported_surface *s,
-                     char text[48], double *nd)
+static double index_at(const struct glint_glass *glass, double nm)
+{
+    struct glint_surface medium = {.nd = 1};
+
+    memcpy(medium.sellmeier, glass->sellmeier, sizeof medium.sellmeier);
+    return glint_surface_index(&medium, nm);
+}
+
+/* Notes numbers of the file that are not those of its GLASS. */
+static bool check_numbers(struct imported *lens,
+                          const struct imported_surface *s,
+                          const struct glint_glass *glass)
+{
+    const double nd = index_at(glass, LINE_D_NM);
+    const double vd =
+        (nd - 1) / (index_at(glass, LINE_F_NM) - index_at(glass, LINE_C_NM));
+
+    return (fabs(s->nd - nd) < 2e-3 && fabs(s->vd / vd - 1) < 0.02) ||
+           imported_note(lens, s->line,
+                         "index %g and Abbe number %g beside glass %s, which "
+                         "has %.5f and %.2f: those of the glass taken",
+                         s->nd, s->vd, glass->name, nd, vd);
+}
+
+static bool settle_medium(struct imported *lens, struct imported_surface *s)
 {
     const bool has_numbers = s->nd > 1.01 && s->vd > 0;
-    struct glint_surface medium = {.nd = 1};
     const struct glint_glass *glass;
+    const char *maker;
     char name[32];
     bool succeeds;
 
-    *nd = 1;
-    snprintf(text, 48, "air");
+    s->index = 1;
+    snprintf(s->medium, sizeof s->medium, "air");
     if (!s->glass[0])
-        return s->nd == 1 || by_numbers(lens, s, text, nd);
-    plain_name(s, name);
-    glass = catalogue_glass(name, &succeeds);
+        return s->nd == 1 || by_numbers(lens, s);
+    maker = plain_name(s, name);
+    glass = catalogue_glass(name, maker, &succeeds);
     if ((!glass || succeeds) && has_numbers)
-        return by_numbers(lens, s, text, nd);
+        return by_numbers(lens, s);
     if (!glass) {
         glass = glint_glass_near(name, strlen(name));
         return imported_fail(
@@ -188,8 +277,17 @@ bool imported_medium(struct imported *lens, const struct imported_surface *s,
                                    "successor %s taken",
                                    s->glass, glass->name))
         return false;
-    memcpy(medium.sellmeier, glass->sellmeier, sizeof medium.sellmeier);
-    *nd = glint_surface_index(&medium, LINE_D_NM);
-    snprintf(text, 48, "%s", glass->name);
+    if (has_numbers && !check_numbers(lens, s, glass))
+        return false;
+    s->index = index_at(glass, LINE_D_NM);
+    snprintf(s->medium, sizeof s->medium, "%s", glass->name);
+    return true;
+}
+
+bool imported_settle_media(struct imported *lens)
+{
+    for (int k = 0; k < lens->n; k++)
+        if (!settle_medium(lens, &lens->surface[k]))
+            return false;
     return true;
 }

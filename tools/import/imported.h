@@ -29,6 +29,8 @@ struct imported_surface {
     double nd, vd;    /* nd 1: air; vd 0: not said */
     bool stop;
     struct glint_shape shape; /* no group */
+    char medium[48];          /* behind, as a table has it; set by the next */
+    double index;             /* of it */
 };
 
 struct imported_note {
@@ -46,6 +48,8 @@ struct imported {
     double field_deg, height; /* half field, or half image; 0: not said */
     double film_mm[2];        /* 0: not said */
     double nominal;           /* focal length, as products are named; or 0 */
+    int position;             /* of a zoom, from 1, by the user; 0: not said */
+    bool chosen;              /* the file has positions */
     int n;
     struct imported_surface surface[IMPORT_SURFACES];
     char error[IMPORT_TEXT + 64]; /* "FILE:LINE: cause" */
@@ -55,11 +59,25 @@ struct imported {
 
 void imported_begin(struct imported *lens, const char *file, bool strict);
 
-/* Sets the error, and returns false. LINE 0 is the whole file. */
+/* Sets the error unless there is one, and returns false. LINE 0 is the whole
+ * file. */
 bool imported_fail(struct imported *lens, int line, const char *format, ...);
 
 /* Adds a note. Returns false if it is an error, as under STRICT. */
 bool imported_note(struct imported *lens, int line, const char *format, ...);
+
+/* Adds a note of what changes nothing, which STRICT takes, too. */
+void imported_tell(struct imported *lens, int line, const char *format, ...);
+
+/* Notes that WORD is not read, the first time that it is met. */
+bool imported_unread(struct imported *lens, int line, const char *word);
+
+/* Notes that the object is so far away, if that is not infinite or as good as.
+ */
+bool imported_object(struct imported *lens, int line, double distance);
+
+/* Sets AT to which of N positions of a zoom is wanted, from 0. */
+bool imported_choose(struct imported *lens, int line, int n, int *at);
 
 /* Adds a surface of air; NULL, after an error, if there are too many. */
 struct imported_surface *imported_add(struct imported *lens, int line);
@@ -71,13 +89,14 @@ char *imported_finish(struct imported *lens, size_t *bytes);
 /* Tables may not overlap within this share of the semi-diameters. */
 #define IMPORT_FREE 0.9
 
+/* Returns the sag of S at the height H, or at its equator. */
+double imported_sag(const struct imported_surface *s, double h);
+
 /* Returns the distance from S to the next surface at the height H. */
 double imported_gap(const struct imported_surface *s, double h);
 
-/* Returns the medium behind S as a table writes it, in TEXT[48], and sets its
- * ND; false after an error. */
-bool imported_medium(struct imported *lens, const struct imported_surface *s,
-                     char text[48], double *nd);
+/* Sets the medium behind all surfaces and its index, by names and numbers. */
+bool imported_settle_media(struct imported *lens);
 
 /* Sorts notes by their lines; those of the whole file come last. */
 void imported_sort_notes(struct imported *lens);
@@ -92,6 +111,10 @@ bool import_pbrt(struct imported *lens, const char *text, size_t bytes);
 bool import_flaresim(struct imported *lens, const char *text, size_t bytes);
 bool import_seq(struct imported *lens, const char *text, size_t bytes);
 bool import_oslo(struct imported *lens, const char *text, size_t bytes);
+bool import_openlensflare(struct imported *lens, const char *text,
+                          size_t bytes);
+bool import_polyflare(struct imported *lens, const char *text, size_t bytes);
+bool import_opticalbench(struct imported *lens, const char *text, size_t bytes);
 bool import_realflare(struct imported *lens, const char *text, size_t bytes);
 
 #endif

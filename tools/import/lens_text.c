@@ -9,10 +9,12 @@
 
 #include "import/imported.h"
 
+/* Writes what the last surface is other than a sphere, four values to a line,
+ * as a table's lines are short. */
 static void write_shape(FILE *file, const struct glint_shape *shape,
                         double unit_mm)
 {
-    const char *between = "shape";
+    int n = 0;
 
     if (shape->bend != GLINT_BEND_ROUND) {
         fprintf(file, "shape %s %c",
@@ -24,38 +26,34 @@ static void write_shape(FILE *file, const struct glint_shape *shape,
     }
     if (shape->conic != 0) {
         fprintf(file, "shape conic %.12g", shape->conic);
-        between = "";
+        n++;
     }
     for (int i = 0; i < GLINT_SHAPE_TERMS; i++)
-        if (shape->term[i] != 0) {
-            fprintf(file, "%s A%d %.12g", between, 2 * i + 4,
-                    shape->term[i] * pow(unit_mm, -(2 * i + 3)));
-            between = "";
-        }
-    if (shape->conic != 0 || !*between)
+        if (shape->term[i] != 0)
+            fprintf(file, "%s A%d %.12g",
+                    n++ % 4 ? ""
+                    : n > 1 ? "\nshape"
+                            : "shape",
+                    2 * i + 4, shape->term[i] * pow(unit_mm, -(2 * i + 3)));
+    if (n > 0)
         fputc('\n', file);
 }
 
-static bool write_surface(struct imported *lens, FILE *file, int k)
+static void write_surface(FILE *file, const struct imported_surface *s,
+                          double unit)
 {
-    const struct imported_surface *s = &lens->surface[k];
-    const double unit = lens->unit_mm;
-    char medium[48], radius[32] = "flat";
-    double nd;
+    char radius[32] = "flat";
 
     if (s->stop) {
         fprintf(file, "stop    %13s %12.9g %10.8g\n", "", s->thickness * unit,
                 s->semi * unit);
-        return true;
+        return;
     }
-    if (!imported_medium(lens, s, medium, &nd))
-        return false;
     if (s->radius != 0)
         snprintf(radius, sizeof radius, "%.12g", s->radius * unit);
     fprintf(file, "surface %13s %12.9g %10.8g  %s\n", radius,
-            s->thickness * unit, s->semi * unit, medium);
+            s->thickness * unit, s->semi * unit, s->medium);
     write_shape(file, &s->shape, unit);
-    return true;
 }
 
 /* Writes TEXT as a comment may have it, other letters than those of ASCII as
@@ -66,7 +64,7 @@ static void write_words(FILE *file, const char *text, int most)
         fputc(*text < ' ' || *text > '~' ? '?' : *text, file);
 }
 
-static void write_head(struct imported *lens, FILE *file)
+static void write_head(const struct imported *lens, FILE *file)
 {
     const char *stem = strrchr(lens->file, '/');
 
@@ -92,49 +90,25 @@ static void write_head(struct imported *lens, FILE *file)
     fputc('\n', file);
 }
 
-/* Writes the surfaces to memory, by which notes of glasses come to be known. */
-static char *write_body(struct imported *lens, size_t *bytes)
-{
-    char *text = NULL;
-    FILE *file = open_memstream(&text, bytes);
-    bool good = true;
-
-    if (!file) {
-        imported_fail(lens, 0, "out of memory");
-        return NULL;
-    }
-    for (int k = 0; k < lens->n && good; k++)
-        good = write_surface(lens, file, k);
-    if (fclose(file) != 0 || !good) {
-        free(text);
-        return NULL;
-    }
-    return text;
-}
-
 char *imported_finish(struct imported *lens, size_t *bytes)
 {
-    char *body, *text = NULL;
-    size_t body_bytes = 0;
+    char *text = NULL;
     FILE *file;
 
     if (!imported_complete(lens))
         return NULL;
-    body = write_body(lens, &body_bytes);
-    if (!body)
-        return NULL;
     imported_sort_notes(lens);
     file = open_memstream(&text, bytes);
-    if (!file)
+    if (!file) {
         imported_fail(lens, 0, "out of memory");
-    else {
-        write_head(lens, file);
-        fwrite(body, 1, body_bytes, file);
-        if (fclose(file) != 0) {
-            free(text);
-            text = NULL;
-        }
+        return NULL;
     }
-    free(body);
-    return text;
+    write_head(lens, file);
+    for (int k = 0; k < lens->n; k++)
+        write_surface(file, &lens->surface[k], lens->unit_mm);
+    if (fclose(file) == 0)
+        return text;
+    free(text);
+    imported_fail(lens, 0, "out of memory");
+    return NULL;
 }

@@ -5,31 +5,78 @@
 
 #include "options/tool.h"
 
-void lines_begin(struct lines *l, const char *text, size_t bytes)
+void lines_begin(struct lines *l, struct imported *lens, const char *text,
+                 size_t bytes)
 {
-    *l = (struct lines){.at = text, .end = text + bytes};
+    *l = (struct lines){.lens = lens, .at = text, .end = text + bytes};
 }
 
-/* Copies one line to TEXT; what is too long is cut off. */
-static void copy_line(struct lines *l, char comment)
+/* Returns the quote that ends what begins with one at AT, or NULL. */
+static const char *closing(const char *at, const char *end)
 {
+    const char quote = *at;
+
+    if (quote != '"' && quote != '\'')
+        return NULL;
+    for (at++; at < end && *at && *at != '\n'; at++)
+        if (*at == quote)
+            return at;
+    return NULL;
+}
+
+/* Copies one line to TEXT. Returns false if it is too long. */
+static bool copy_line(struct lines *l, char comment)
+{
+    const char *quoted = NULL; /* what is before it is within quotes */
     size_t n = 0;
-    bool said = false, quoted = false;
+    bool said = false, fits = true;
+    char before = ' ';
 
     l->number += !l->within;
-    for (; l->at < l->end && *l->at != '\n'; l->at++) {
-        quoted ^= *l->at == '"' || *l->at == '\'';
-        if (l->divider && *l->at == l->divider && !said && !quoted)
+    for (; l->at < l->end && *l->at != '\n'; before = *l->at++) {
+        const char c = *l->at == '\r' || *l->at == '\0' ? ' ' : *l->at;
+
+        if (!quoted && !said && !l->tabs && (before == ' ' || before == '\t'))
+            quoted = closing(l->at, l->end);
+        if (!quoted && !said && l->divider && c == l->divider)
             break;
-        said |= comment && *l->at == comment;
-        if (!said && n < sizeof l->text - 1)
-            l->text[n++] = *l->at == '\r' || *l->at == '\0' ? ' ' : *l->at;
+        said |= !quoted && comment && c == comment;
+        if (quoted == l->at)
+            quoted = NULL;
+        if (said)
+            continue;
+        fits &= n < sizeof l->text - 1;
+        if (fits)
+            l->text[n++] = c;
     }
     while (n > 0 && (l->text[n - 1] == ' ' || l->text[n - 1] == '\t'))
         n--;
     l->within = l->at < l->end && *l->at != '\n';
     l->at += l->at < l->end;
     l->text[n] = '\0';
+    return fits;
+}
+
+/* Divides at each tab; words may be empty, but not all of them. */
+static void divide_at_tabs(struct lines *l)
+{
+    char *at = l->text;
+
+    l->n = 0;
+    while (*l->text && l->n < LINE_WORDS) {
+        char *const tab = at + strcspn(at, "\t");
+        char *end = tab;
+        const bool more = *tab != '\0';
+
+        at += strspn(at, " ");
+        while (end > at && end[-1] == ' ')
+            end--;
+        *tab = *end = '\0';
+        l->word[l->n++] = at;
+        if (!more)
+            return;
+        at = tab + 1;
+    }
 }
 
 static void divide(struct lines *l)
@@ -39,17 +86,17 @@ static void divide(struct lines *l)
     l->n = 0;
     l->rest[0] = '\0';
     while (l->n < LINE_WORDS) {
-        char quote;
+        const char *quote;
 
         at += strspn(at, " \t");
         if (!*at)
             return;
         if (l->n == 1)
             memcpy(l->rest, at, strlen(at) + 1);
-        quote = *at == '"' || *at == '\'' ? *at++ : '\0';
+        quote = closing(at, l->text + sizeof l->text);
+        at += quote != NULL;
         l->word[l->n++] = at;
-        at +=
-            quote ? strcspn(at, quote == '"' ? "\"" : "'") : strcspn(at, " \t");
+        at += quote ? (size_t)(quote - at) : strcspn(at, " \t");
         if (*at)
             *at++ = '\0';
     }
@@ -58,8 +105,14 @@ static void divide(struct lines *l)
 bool lines_next(struct lines *l, char comment)
 {
     while (l->at < l->end) {
-        copy_line(l, comment);
-        divide(l);
+        if (!copy_line(l, comment))
+            return imported_fail(l->lens, l->number,
+                                 "the line is longer than %d bytes",
+                                 LINE_CHARS - 1);
+        if (l->tabs)
+            divide_at_tabs(l);
+        else
+            divide(l);
         if (l->n > 0)
             return true;
     }

@@ -7,11 +7,14 @@
 
 #include "import/imported.h"
 
-enum { LINE_WORDS = 24, LINE_CHARS = 512 };
+/* A line of so many bytes has no more words than that. */
+enum { LINE_CHARS = 2048, LINE_WORDS = LINE_CHARS / 2 };
 
 struct lines {
+    struct imported *lens; /* which errors go to */
     const char *at, *end;
     int number;            /* of the line, from 1 */
+    bool tabs;             /* words are divided at each tab, and at no blank */
     char divider;          /* also ends a line, for words, if not '\0' */
     bool within;           /* a divider has ended the last one */
     char text[LINE_CHARS]; /* the line, divided into its words */
@@ -20,11 +23,14 @@ struct lines {
     const char *word[LINE_WORDS];
 };
 
-void lines_begin(struct lines *lines, const char *text, size_t bytes);
+void lines_begin(struct lines *lines, struct imported *lens, const char *text,
+                 size_t bytes);
 
 /* Takes the next line that has words, divided at blanks and tabs. Words in
- * quotes are one. What follows COMMENT is left out; '\0': there are none.
- * Returns false at the end. */
+ * quotes are one; a quote begins a word and ends on its line, so that
+ * apostrophes and inches are none. What follows COMMENT is left out; '\0':
+ * there are none. Returns false at the end, or after the error of a line that
+ * is too long, which import_read() sees. */
 bool lines_next(struct lines *lines, char comment);
 
 /* Sets VALUE to word K. Returns false, after an error that says WHAT it is, if

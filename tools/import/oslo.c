@@ -56,7 +56,7 @@ static bool take_other(struct oslo *o)
                                  "'%s': surfaces that are tilted, decentred, "
                                  "not round or follow others are not read",
                                  l->word[0]);
-    return imported_note(o->lens, l->number, "'%s' is not read", l->word[0]);
+    return imported_unread(o->lens, l->number, l->word[0]);
 }
 
 static bool take_surface(struct oslo *o)
@@ -125,6 +125,12 @@ static bool take(struct oslo *o)
     if (lines_is(l, "EBR") || lines_is(l, "ANG") || lines_is(l, "UNI") ||
         lines_is(l, "LEN"))
         return take_head(o);
+    if (!o->s && lines_is(l, "TH")) {
+        double object;
+
+        return lines_number(o->lens, l, 1, "distance of the object", &object) &&
+               imported_object(o->lens, l->number, object);
+    }
     return !o->s || take_surface(o);
 }
 
@@ -132,7 +138,7 @@ bool import_oslo(struct imported *lens, const char *text, size_t bytes)
 {
     struct oslo o = {.lens = lens};
 
-    lines_begin(&o.lines, text, bytes);
+    lines_begin(&o.lines, lens, text, bytes);
     while (lines_next(&o.lines, '\0')) {
         if (lines_is(&o.lines, "END") || lines_is(&o.lines, "WV"))
             o.s = NULL;

@@ -34,7 +34,7 @@ bool import_pbrt(struct imported *lens, const char *text, size_t bytes)
 {
     struct lines lines;
 
-    lines_begin(&lines, text, bytes);
+    lines_begin(&lines, lens, text, bytes);
     while (lines_next(&lines, '#'))
         if (!take(lens, &lines))
             return false;

@@ -5,6 +5,7 @@
  * them, "fstop". jansson reads them.
  */
 #include <jansson.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -81,6 +82,12 @@ static bool take(struct realflare *r, const json_t *root)
         return false;
     if (!number(r, root, 0, "aperture_index", &stop))
         return false;
+    if (stop != floor(stop) || stop < 0 ||
+        stop >= (double)json_array_size(elements))
+        return imported_fail(r->lens, 0,
+                             "\"aperture_index\" %g is none of the %d "
+                             "\"lens_elements\", from 0",
+                             stop, (int)json_array_size(elements));
     for (int k = 0; k < (int)json_array_size(elements); k++)
         if (!take_element(r, json_array_get(elements, (size_t)k), k,
                           k == (int)stop))

@@ -4,13 +4,15 @@
  *
  * Commands are divided by ';' or ends of lines. "S r t glass", "SO" and "SI"
  * begin the next surface, the object and the image; what follows is of that
- * surface. Words may be in small letters. Radii are curvatures but after "RDM".
- * Glasses of six digits or nnn.vvv
- * are (nd - 1) and Vd.
+ * surface, or of K where "SK" is its second word. Words may be in small
+ * letters. Radii are curvatures but after "RDM". Glasses of six digits or
+ * nnn.vvv are (nd - 1) and Vd.
  */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "import/lines.h"
 #include "options/tool.h"
@@ -42,9 +44,12 @@ static bool numbered_glass(struct imported_surface *s, const char *word)
 
 static bool take_glass(struct seq *q, const char *word)
 {
-    if (strcmp(word, "AIR") == 0)
+    q->s->glass[0] = '\0';
+    q->s->nd = 1;
+    q->s->vd = 0;
+    if (strcasecmp(word, "AIR") == 0)
         return true;
-    if (strncmp(word, "REFL", 4) == 0)
+    if (strncasecmp(word, "REFL", 4) == 0)
         return imported_fail(q->lens, q->lines.number,
                              "a mirror: glint has lenses alone");
     if (!numbered_glass(q->s, word))
@@ -52,21 +57,34 @@ static bool take_glass(struct seq *q, const char *word)
     return true;
 }
 
+/* Sets the radius of the surface to word K, a curvature if that is said. */
+static bool take_radius(struct seq *q, int k, bool curvature)
+{
+    double value;
+
+    if (!lines_number(q->lens, &q->lines, k, curvature ? "curvature" : "radius",
+                      &value))
+        return false;
+    q->s->radius = value == 0 || !curvature ? value : 1 / value;
+    return true;
+}
+
 static bool start_surface(struct seq *q)
 {
     const struct lines *l = &q->lines;
-    double radius = 0;
+    double object = 0;
 
     if (lines_is(l, "SI") || lines_is(l, "SO")) {
         q->s = NULL;
-        return true;
+        return lines_is(l, "SI") || l->n < 3 ||
+               (lines_number(q->lens, l, 2, "distance of the object",
+                             &object) &&
+                imported_object(q->lens, l->number, object));
     }
     q->s = imported_add(q->lens, l->number);
-    if (!q->s || !lines_number(q->lens, l, 1, "radius", &radius) ||
-        !lines_number(q->lens, l, 2, "thickness", &q->s->thickness))
-        return false;
-    q->s->radius = radius == 0 || !q->curvatures ? radius : 1 / radius;
-    return l->n < 4 || take_glass(q, l->word[3]);
+    return q->s && take_radius(q, 1, q->curvatures) &&
+           lines_number(q->lens, l, 2, "thickness", &q->s->thickness) &&
+           (l->n < 4 || take_glass(q, l->word[3]));
 }
 
 static bool take_aperture(struct seq *q)
@@ -75,11 +93,41 @@ static bool take_aperture(struct seq *q)
     const int k = l->n - 1;
     double value;
 
-    if (l->n > 1 && strcmp(l->word[1], "EDG") == 0 && q->s->semi > 0)
+    if (l->n > 1 && (strcasecmp(l->word[1], "OBS") == 0 ||
+                     strcasecmp(l->word[1], "HOL") == 0))
+        return imported_note(q->lens, l->number,
+                             "'%s %s' is not read: glint has no openings but "
+                             "round ones",
+                             l->word[0], l->word[1]);
+    if (l->n > 1 && strcasecmp(l->word[1], "EDG") == 0 && q->s->semi > 0)
         return true;
     if (!lines_number(q->lens, l, k, "semi-diameter", &value))
         return false;
     q->s->semi = value;
+    return true;
+}
+
+/* Takes a word for one number of the surface; DONE is whether it is one. */
+static bool take_number(struct seq *q, bool *done)
+{
+    const struct lines *l = &q->lines;
+    const char *word = l->word[0];
+
+    *done = true;
+    if (strcmp(word, "CUY") == 0 || strcmp(word, "RDY") == 0)
+        return take_radius(q, 1, *word == 'C');
+    if (strcmp(word, "THI") == 0)
+        return lines_number(q->lens, l, 1, "thickness", &q->s->thickness);
+    if (strcmp(word, "GLA") == 0)
+        return l->n > 1
+                   ? take_glass(q, l->word[1])
+                   : imported_fail(q->lens, l->number, "the glass has no name");
+    if (strcmp(word, "K") == 0)
+        return lines_number(q->lens, l, 1, "conic", &q->s->shape.conic);
+    if (*word >= 'A' && *word <= 'H' && !word[1])
+        return lines_number(q->lens, l, 1, "aspheric term",
+                            &q->s->shape.term[*word - 'A']);
+    *done = false;
     return true;
 }
 
@@ -90,12 +138,16 @@ static bool take_surface(struct seq *q)
     static const char *const ignored[] = {
         "CCY", "THC", "GLC", "KC",  "AC",  "BC",  "CC",  "DC",
         "ASP", "CON", "PIM", "SLB", "SPH", "RMD", "CUM", "THM"};
-    static const char refused[][4] = {"XDE", "YDE", "ZDE", "ADE", "BDE",
-                                      "CDE", "SPS", "XTO", "YTO", "CYL",
-                                      "DIF", "GRN", "UDS"};
+    static const char *const refused[] = {"XDE", "YDE", "ZDE", "ADE", "BDE",
+                                          "CDE", "SPS", "CUX", "RDX", "XTO",
+                                          "YTO", "CYL", "DIF", "GRN", "UDS"};
     const struct lines *l = &q->lines;
-    double value = 0;
+    bool done;
 
+    if (!take_number(q, &done))
+        return false;
+    if (done)
+        return true;
     if (lines_is(l, "STO"))
         return q->s->stop = true;
     if (lines_is(l, "CIR"))
@@ -109,15 +161,7 @@ static bool take_surface(struct seq *q)
                                  "'%s': tilted, diffractive and other surfaces "
                                  "that are not round are not read",
                                  l->word[0]);
-    if (lines_is(l, "K"))
-        return lines_number(q->lens, l, 1, "conic", &q->s->shape.conic);
-    if (strlen(l->word[0]) == 1 && *l->word[0] >= 'A' && *l->word[0] <= 'H') {
-        if (!lines_number(q->lens, l, 1, "aspheric term", &value))
-            return false;
-        q->s->shape.term[*l->word[0] - 'A'] = value;
-        return true;
-    }
-    return imported_note(q->lens, l->number, "'%.30s' is not read", l->word[0]);
+    return imported_unread(q->lens, l->number, l->word[0]);
 }
 
 static bool take_dimension(struct seq *q)
@@ -179,21 +223,50 @@ static void capitalise(struct lines *l)
             *c = (char)(*c - 'a' + 'A');
 }
 
+/* Goes to the surface of a second word "S3", and takes that away. */
+static bool go_to_surface(struct seq *q)
+{
+    struct lines *l = &q->lines;
+    const char *word = l->n > 1 ? l->word[1] : "";
+    char *end;
+    long k;
+
+    if ((*word != 'S' && *word != 's') || word[1] < '0' || word[1] > '9')
+        return true;
+    k = strtol(word + 1, &end, 10);
+    if (*end)
+        return true;
+    if (k < 1 || k > q->lens->n)
+        return imported_fail(q->lens, l->number, "there is no surface '%s'",
+                             word);
+    q->s = &q->lens->surface[k - 1];
+    l->n--;
+    for (int i = 1; i < l->n; i++)
+        l->word[i] = l->word[i + 1];
+    return true;
+}
+
 static bool take(struct seq *q)
 {
     const struct lines *l = &q->lines;
+    struct imported_surface *const current = q->s;
+    bool good;
 
     capitalise(&q->lines);
     if (lines_is(l, "S") || lines_is(l, "SO") || lines_is(l, "SI"))
         return start_surface(q);
-    return q->s ? take_surface(q) : take_head(q);
+    if (!go_to_surface(q))
+        return false;
+    good = q->s ? take_surface(q) : take_head(q);
+    q->s = current;
+    return good;
 }
 
 bool import_seq(struct imported *lens, const char *text, size_t bytes)
 {
     struct seq q = {.lens = lens, .curvatures = true};
 
-    lines_begin(&q.lines, text, bytes);
+    lines_begin(&q.lines, lens, text, bytes);
     q.lines.divider = ';';
     while (lines_next(&q.lines, '!'))
         if (!take(&q))

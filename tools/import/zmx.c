@@ -17,8 +17,10 @@ struct zmx {
     struct lines lines;
     struct imported_surface *s; /* NULL: before the first */
     bool even;                  /* PARM of S are aspheric terms */
+    bool indented;              /* what is of surfaces is */
     int field_type;
     double field, object;
+    int object_line; /* 0: not met yet */
 };
 
 static bool take_type(struct zmx *z)
@@ -78,6 +80,9 @@ static bool take_parameter(struct zmx *z)
 
 static bool take_surface(struct zmx *z)
 {
+    /* how it is drawn, made and solved for */
+    static const char *const ignored[] = {"HIDE", "MIRR", "SLAB", "POPS",
+                                          "FIMP", "MEMA", "FLAP", "COMM"};
     const struct lines *l = &z->lines;
     double value;
 
@@ -104,7 +109,12 @@ static bool take_surface(struct zmx *z)
         return lines_number(z->lens, l, 1, "semi-diameter", &z->s->semi);
     if (lines_is(l, "CONI"))
         return lines_number(z->lens, l, 1, "conic", &z->s->shape.conic);
-    return !lines_is(l, "PARM") || take_parameter(z);
+    if (lines_is(l, "PARM"))
+        return take_parameter(z);
+    for (size_t i = 0; i < sizeof ignored / sizeof *ignored; i++)
+        if (lines_is(l, ignored[i]))
+            return true;
+    return imported_unread(z->lens, l->number, l->word[0]);
 }
 
 static bool take_unit(struct zmx *z)
@@ -169,8 +179,9 @@ static bool take_head(struct zmx *z)
 static bool start_surface(struct zmx *z)
 {
     z->even = false;
-    if (z->s && z->lens->n == 1 && z->object == 0) {
+    if (z->s && z->object_line == 0) {
         z->object = z->s->thickness;
+        z->object_line = z->s->line;
         z->lens->n = 0;
     }
     z->s = imported_add(z->lens, z->lines.number);
@@ -197,11 +208,7 @@ static bool close_file(struct zmx *z)
         if (!isfinite(lens->surface[k].thickness))
             return imported_fail(lens, lens->surface[k].line,
                                  "an infinite thickness inside of the lens");
-    return isinf(z->object) || z->object > 1e8 ||
-           imported_note(lens, 0,
-                         "the object is %g mm away: the sensor stays where the "
-                         "file has it",
-                         z->object * lens->unit_mm);
+    return imported_object(lens, z->object_line, z->object);
 }
 
 bool import_zmx(struct imported *lens, const char *text, size_t bytes)
@@ -209,23 +216,30 @@ bool import_zmx(struct imported *lens, const char *text, size_t bytes)
     struct zmx z = {.lens = lens};
     bool more = true, tail = false;
 
-    lines_begin(&z.lines, text, bytes);
+    lines_begin(&z.lines, lens, text, bytes);
     while (more && lines_next(&z.lines, '\0')) {
         const struct lines *l = &z.lines;
 
         if (lines_is(l, "SURF"))
             more = start_surface(&z);
-        else if (lines_is(l, "MNUM") && l->n > 1 &&
-                 strcmp(l->word[1], "1") != 0)
-            more = imported_note(lens, l->number,
+        /* Configurations, merit functions and tolerances follow the last
+         * surface. */
+        else if (lines_is(l, "MNUM")) {
+            tail = true;
+            more = l->n < 2 || strcmp(l->word[1], "1") == 0 ||
+                   imported_note(lens, l->number,
                                  "configurations but the first are not read");
-        /* Merit functions and tolerances follow the last surface. */
-        else if (lines_is(l, "TOL") || lines_is(l, "DMFS"))
+        } else if (lines_is(l, "TOL") || lines_is(l, "DMFS"))
             tail = true;
         else if (!z.s)
             more = take_head(&z);
-        else if (!tail)
-            more = take_surface(&z);
+        else if (!tail) {
+            const bool indented = l->word[0] > l->text;
+
+            tail = z.indented && !indented;
+            z.indented |= indented;
+            more = tail || take_surface(&z);
+        }
     }
     return more && close_file(&z);
 }

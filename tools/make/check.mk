@@ -54,7 +54,7 @@ $(PROGRAMS): $(OUT)/%: $(OUT)/tests/programs/%.o $(OUT)/libglint-tests.a $(libs)
 
 check:
 	@tools/make/deps "unit tests, lint" gcc libc6-dev binutils \
-	        libcmocka-dev clang clang-format pkg-config libjpeg62-turbo-dev libinih-dev libjansson-dev
+	        libcmocka-dev clang clang-format pkg-config libjpeg62-turbo-dev libinih-dev libjansson-dev libexpat1-dev
 	@$(MAKE) --no-print-directory WERROR=-Werror run-check
 	@[ $(notdir $(CC))-$(CONFIG)$(VM) != gcc-release ] || \
 	        ! tests/vm/possible $(VM_ARCHS) || \
@@ -92,7 +92,7 @@ VALGRIND := $(filter arena kernels model transfer curve resolve lamp_finder flar
         picture bright match lamps mjpeg config prescription trace,$(UNIT))
 check-valgrind:
 	@tools/make/deps "memory checks" gcc libc6-dev valgrind libcmocka-dev \
-	        libjpeg62-turbo-dev libinih-dev libjansson-dev
+	        libjpeg62-turbo-dev libinih-dev libjansson-dev libexpat1-dev
 	@$(MAKE) --no-print-directory WERROR=-Werror run-valgrind
 run-valgrind: $(VALGRIND:%=$(OUT)/valgrind/unit/test_%) \
         $(FUZZERS:%=$(OUT)/valgrind/fuzz/replay_%)

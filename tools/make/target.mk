@@ -59,6 +59,8 @@ INIH_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
 INIH_LIBS     := $(SYSROOT:%=-L%/lib) -linih
 JANSSON_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
 JANSSON_LIBS     := $(SYSROOT:%=-L%/lib) -ljansson
+EXPAT_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
+EXPAT_LIBS     := $(SYSROOT:%=-L%/lib) -lexpat
 endif
 ARCH := $(if $(CROSS),$(TARGET),$(firstword $(subst -, ,$(shell $(CC) -dumpmachine))))
 ifeq ($(ARCH),arm) # of which there are many
@@ -83,4 +85,8 @@ endif
 JANSSON_LIBS ?= -ljansson
 ifndef WITH_JANSSON
 WITH_JANSSON := $(call has,jansson.h,$(JANSSON_CPPFLAGS),$(JANSSON_LIBS))
+endif
+EXPAT_LIBS ?= -lexpat
+ifndef WITH_EXPAT
+WITH_EXPAT := $(call has,expat.h,$(EXPAT_CPPFLAGS),$(EXPAT_LIBS))
 endif

@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The XML of OpenLensFlare and LensFlareFramework: an <opticalSystem> of
+ * <element>s, read by expat.
+ *
+ * A <height> is a semi-diameter; where there is a <heightMultiplier> it is
+ * times that, and that of the stop is a diameter whatever the multiplier.
+ */
+#include <expat.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "import/imported.h"
+#include "options/tool.h"
+
+enum { HEIGHT, THICKNESS, RADIUS, INDEX, ABBE, ELEMENT_VALUES };
+static const char *const element_words[ELEMENT_VALUES] = {
+    "height", "thickness", "radius", "refractiveIndex", "abbeNumber"};
+
+enum { F_NUMBER, FOCAL, WIDTH, FILM_HEIGHT, MULTIPLIER, SYSTEM_VALUES };
+static const char *const system_words[SYSTEM_VALUES] = {
+    "fnumber", "effectiveFocalLength", "filmWidth", "filmHeight",
+    "heightMultiplier"};
+
+struct reader {
+    struct imported *lens;
+    XML_Parser parser;
+    int depth;          /* of elements that are open */
+    bool in_element;    /* within <element> */
+    bool coated, ended; /* a coating was met; the sensor was */
+    int line;           /* of <element> */
+    char kind[24], text[IMPORT_TEXT];
+    size_t bytes; /* of TEXT */
+    double value[ELEMENT_VALUES], system[SYSTEM_VALUES];
+    bool has[ELEMENT_VALUES], system_has[SYSTEM_VALUES];
+};
+
+static int line_of(const struct reader *r)
+{
+    return (int)XML_GetCurrentLineNumber(r->parser);
+}
+
+/* Ends the reading if what was done is not GOOD. */
+static void go_on(struct reader *r, bool good)
+{
+    if (!good)
+        XML_StopParser(r->parser, XML_FALSE);
+}
+
+static void XMLCALL take_start(void *data, const char *name, const char **pairs)
+{
+    struct reader *r = data;
+
+    (void)pairs;
+    r->bytes = 0;
+    if (r->depth++ == 0 && strcmp(name, "opticalSystem") != 0)
+        go_on(r, imported_fail(r->lens, line_of(r),
+                               "<%.40s> is no <opticalSystem>", name));
+    if (strcmp(name, "element") == 0) {
+        r->in_element = true;
+        r->line = line_of(r);
+        r->kind[0] = '\0';
+        memset(r->has, 0, sizeof r->has);
+    }
+}
+
+static void XMLCALL take_text(void *data, const char *text, int n)
+{
+    struct reader *r = data;
+
+    for (int i = 0; i < n && r->bytes < sizeof r->text - 1; i++)
+        r->text[r->bytes++] = text[i] == '\n' ? ' ' : text[i];
+}
+
+static void XMLCALL refuse_doctype(void *data, const char *name,
+                                   const char *system, const char *public_id,
+                                   int has_internal)
+{
+    struct reader *r = data;
+
+    (void)name;
+    (void)system;
+    (void)public_id;
+    (void)has_internal;
+    go_on(r, imported_fail(r->lens, line_of(r),
+                           "a <!DOCTYPE>: lens files have none"));
+}
+
+/* Takes the element that ends: a surface, the stop or the sensor. */
+static bool take_element(struct reader *r)
+{
+    const bool stop = strcmp(r->kind, "apertureStop") == 0;
+    struct imported_surface *s;
+
+    if (r->ended)
+        return imported_fail(r->lens, r->line, "an element behind the sensor");
+    if (strcmp(r->kind, "sensor") == 0)
+        return r->ended = true;
+    if (!stop && strcmp(r->kind, "lensSpherical") != 0)
+        return imported_fail(r->lens, r->line,
+                             "elements of type '%s' are not read: "
+                             "lensSpherical, apertureStop and sensor are",
+                             r->kind);
+    for (int i = 0; i < ELEMENT_VALUES; i++)
+        if (!r->has[i] && !(stop && i == RADIUS))
+            return imported_fail(r->lens, r->line, "<%s> is missing",
+                                 element_words[i]);
+    s = imported_add(r->lens, r->line);
+    if (!s)
+        return false;
+    s->stop = stop;
+    s->radius = stop ? 0 : r->value[RADIUS];
+    s->thickness = r->value[THICKNESS];
+    s->semi = r->value[HEIGHT];
+    s->nd = r->value[INDEX];
+    s->vd = s->nd == 1 ? 0 : r->value[ABBE];
+    return true;
+}
+
+/* Sets the one of N VALUES whose word NAME is to the text; DONE is whether
+ * there is one. */
+static bool take_value(struct reader *r, const char *name, int n,
+                       const char *const *words, double *values, bool *has,
+                       bool *done)
+{
+    *done = false;
+    for (int i = 0; i < n && !*done; i++) {
+        if (strcmp(words[i], name) != 0)
+            continue;
+        *done = has[i] = true;
+        if (!tool_number(r->text, &values[i]))
+            return imported_fail(r->lens, line_of(r),
+                                 "<%s> '%.40s' is not a number", name, r->text);
+    }
+    return true;
+}
+
+static bool take_end_of(struct reader *r, const char *name)
+{
+    static const char *const ignored[] = {"opticalSystem", "elements", "mask",
+                                          "maskFT", "fieldOfView"};
+    bool done;
+
+    if (strcmp(name, "element") == 0) {
+        r->in_element = false;
+        return take_element(r);
+    }
+    if (!(r->in_element ? take_value(r, name, ELEMENT_VALUES, element_words,
+                                     r->value, r->has, &done)
+                        : take_value(r, name, SYSTEM_VALUES, system_words,
+                                     r->system, r->system_has, &done)))
+        return false;
+    if (done)
+        return true;
+    if (r->in_element && strcmp(name, "type") == 0) {
+        snprintf(r->kind, sizeof r->kind, "%.23s", r->text);
+        return true;
+    }
+    if (!r->in_element && strcmp(name, "name") == 0) {
+        snprintf(r->lens->title, sizeof r->lens->title, "%.230s", r->text);
+        return true;
+    }
+    if (strncmp(name, "coating", 7) == 0)
+        return r->coated = true;
+    for (size_t i = 0; i < sizeof ignored / sizeof *ignored; i++)
+        if (strcmp(ignored[i], name) == 0)
+            return true;
+    return imported_unread(r->lens, line_of(r), name);
+}
+
+static void XMLCALL take_end(void *data, const char *name)
+{
+    struct reader *r = data;
+
+    r->depth--;
+    while (r->bytes > 0 && strchr(" \t\r", r->text[r->bytes - 1]))
+        r->bytes--;
+    r->text[r->bytes] = '\0';
+    memmove(r->text, r->text + strspn(r->text, " \t\r"),
+            strlen(r->text + strspn(r->text, " \t\r")) + 1);
+    go_on(r, take_end_of(r, name));
+    r->bytes = 0;
+}
+
+static bool settle(struct reader *r)
+{
+    struct imported *lens = r->lens;
+
+    if (lens->n < 2)
+        return imported_fail(lens, 0, "there are no surfaces in it");
+    if (r->system_has[F_NUMBER])
+        lens->f_number = r->system[F_NUMBER];
+    if (r->system_has[FOCAL])
+        lens->nominal = r->system[FOCAL];
+    if (lens->film_mm[0] <= 0 && r->system_has[WIDTH] &&
+        r->system_has[FILM_HEIGHT]) {
+        lens->film_mm[0] = r->system[WIDTH];
+        lens->film_mm[1] = r->system[FILM_HEIGHT];
+    }
+    for (int k = 0; k < lens->n && r->system_has[MULTIPLIER]; k++)
+        lens->surface[k].semi *=
+            lens->surface[k].stop ? 0.5 : r->system[MULTIPLIER];
+    return !r->coated || imported_note(lens, 0, "coatings are not read");
+}
+
+bool import_openlensflare(struct imported *lens, const char *text, size_t bytes)
+{
+    struct reader r = {.lens = lens};
+    enum XML_Status status;
+
+    /* Whatever it says of itself: the numbers are ASCII, and letters that are
+     * not become question marks. */
+    r.parser = XML_ParserCreate("ISO-8859-1");
+    if (!r.parser)
+        return imported_fail(lens, 0, "out of memory");
+    XML_SetUserData(r.parser, &r);
+    XML_SetElementHandler(r.parser, take_start, take_end);
+    XML_SetCharacterDataHandler(r.parser, take_text);
+    XML_SetStartDoctypeDeclHandler(r.parser, refuse_doctype);
+    status = XML_Parse(r.parser, text, (int)bytes, XML_TRUE);
+    if (status != XML_STATUS_OK && !lens->error[0])
+        imported_fail(lens, line_of(&r), "%.150s",
+                      XML_ErrorString(XML_GetErrorCode(r.parser)));
+    XML_ParserFree(r.parser);
+    return status == XML_STATUS_OK && !lens->error[0] && settle(&r);
+}

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Stands in for openlensflare.c where there is no expat.
+ */
+#include "import/imported.h"
+
+bool import_openlensflare(struct imported *lens, const char *text, size_t bytes)
+{
+    (void)text;
+    (void)bytes;
+    return imported_fail(lens, 0, "glint was built without XML (expat)");
+}

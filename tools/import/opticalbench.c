@@ -1,0 +1,297 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The tables of PhotonsToPhotos' Optical Bench: sections of values divided by
+ * tabs.
+ *
+ * A row of [lens data] is a number, radius, thickness, index, diameter and Abbe
+ * number; radius "AS" is the stop, "CG" a cover glass, "FS" another diaphragm.
+ * A thickness may be the name of a row of [variable distances], which has a
+ * column for each position of a zoom; the angle of view is a whole one, the
+ * image height a diameter. [aspherical data] has number, radius, conic and the
+ * terms from h^4 on. Glasses are those of the numbers; names of glasses that
+ * are like them are passed over.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include "import/lines.h"
+#include "options/tool.h"
+
+enum { VARIABLES = 64, POSITIONS = 16, ID_BYTES = 8 };
+
+enum section { NO_SECTION, TITLE, CONSTANTS, DISTANCES, ROWS, ASPHERES, OTHER };
+
+struct variable {
+    char name[24];
+    int n;
+    double value[POSITIONS]; /* NAN: not said */
+};
+
+struct optical_bench {
+    struct imported *lens;
+    struct lines lines;
+    enum section section;
+    int at; /* position that is taken; -1: not known yet */
+    int n_variables;
+    struct variable variable[VARIABLES];
+    char id[IMPORT_SURFACES][ID_BYTES];
+    double odd, a2; /* kinds of aspheric terms before that of h^4 */
+};
+
+static const char *word(const struct optical_bench *b, int k)
+{
+    return k < b->lines.n ? b->lines.word[k] : "";
+}
+
+static bool start_section(struct optical_bench *b)
+{
+    static const struct {
+        const char *name;
+        enum section section;
+    } names[] = {{"[descriptive data]", TITLE},
+                 {"[constants]", CONSTANTS},
+                 {"[variable distances]", DISTANCES},
+                 {"[lens data]", ROWS},
+                 {"[aspherical data]", ASPHERES},
+                 {"[figure]", OTHER},
+                 {"[notes]", OTHER},
+                 {"[patent info]", OTHER},
+                 {"[report data]", OTHER}};
+
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (strcasecmp(word(b, 0), names[i].name) == 0) {
+            b->section = names[i].section;
+            return true;
+        }
+    b->section = OTHER;
+    return imported_unread(b->lens, b->lines.number, word(b, 0));
+}
+
+static bool take_variable(struct optical_bench *b)
+{
+    struct variable *v = &b->variable[b->n_variables];
+
+    if (b->n_variables == VARIABLES)
+        return imported_fail(b->lens, b->lines.number,
+                             "more than %d variable distances", VARIABLES);
+    snprintf(v->name, sizeof v->name, "%.23s", word(b, 0));
+    for (v->n = 0; v->n < POSITIONS && v->n + 1 < b->lines.n; v->n++) {
+        const char *text = word(b, v->n + 1);
+
+        if (strcasecmp(text, "Infinity") == 0)
+            v->value[v->n] = (double)INFINITY;
+        else if (!tool_number(text, &v->value[v->n]))
+            v->value[v->n] = (double)NAN;
+    }
+    b->n_variables++;
+    return true;
+}
+
+/* Returns the variable NAME at the position that is taken, NAN if it is not
+ * said. */
+static double variable(const struct optical_bench *b, const char *name)
+{
+    for (int i = 0; i < b->n_variables; i++)
+        if (strcasecmp(b->variable[i].name, name) == 0)
+            return b->at < b->variable[i].n ? b->variable[i].value[b->at]
+                                            : (double)NAN;
+    return (double)NAN;
+}
+
+/* Sets which position is taken: there are as many as focal lengths. */
+static bool settle_position(struct optical_bench *b)
+{
+    int n = 0;
+
+    if (b->at >= 0)
+        return true;
+    b->at = 0;
+    for (int i = 0; i < b->n_variables; i++)
+        if (strcasecmp(b->variable[i].name, "Focal Length") == 0)
+            while (n < b->variable[i].n && isfinite(b->variable[i].value[n]))
+                n++;
+    return imported_choose(b->lens, 0, n > 0 ? n : 1, &b->at);
+}
+
+/* Sets VALUE to half of the diameter in word K, 0 if that is not said. */
+static bool take_diameter(struct optical_bench *b, int k, double *value)
+{
+    const char *text = word(b, k);
+
+    *value = 0;
+    if (!*text || strcasecmp(text, "Infinity") == 0 ||
+        strcasecmp(text, "undefined") == 0)
+        return true;
+    if (!lines_number(b->lens, &b->lines, k, "diameter", value))
+        return false;
+    *value /= 2;
+    return true;
+}
+
+static bool take_thickness(struct optical_bench *b, struct imported_surface *s)
+{
+    const char *text = word(b, 2);
+
+    if (!*text)
+        return imported_fail(b->lens, b->lines.number, "thickness is missing");
+    if (tool_number(text, &s->thickness))
+        return true;
+    s->thickness = variable(b, text);
+    return isfinite(s->thickness) ||
+           imported_fail(b->lens, b->lines.number,
+                         "thickness '%.23s' is neither a number nor among the "
+                         "variable distances",
+                         text);
+}
+
+static bool take_row(struct optical_bench *b)
+{
+    const char *radius = word(b, 1);
+    struct imported_surface *s;
+
+    if (!settle_position(b) || !(s = imported_add(b->lens, b->lines.number)))
+        return false;
+    snprintf(b->id[b->lens->n - 1], ID_BYTES, "%.7s", word(b, 0));
+    s->stop = strcasecmp(radius, "AS") == 0;
+    if (!s->stop && strcasecmp(radius, "CG") != 0 &&
+        strcasecmp(radius, "FS") != 0 && strcasecmp(radius, "Infinity") != 0 &&
+        !lines_number(b->lens, &b->lines, 1, "radius", &s->radius))
+        return false;
+    if (!take_thickness(b, s) || !take_diameter(b, 4, &s->semi))
+        return false;
+    if (*word(b, 3)) {
+        if (!lines_number(b->lens, &b->lines, 3, "index", &s->nd) ||
+            (*word(b, 5) &&
+             !lines_number(b->lens, &b->lines, 5, "Abbe number", &s->vd)))
+            return false;
+    } else if (*word(b, 6))
+        snprintf(s->glass, sizeof s->glass, "%.31s", word(b, 6));
+    s->vd = s->nd == 1 ? 0 : s->vd;
+    return true;
+}
+
+static bool take_constant(struct optical_bench *b)
+{
+    if (strcasecmp(word(b, 0), "AsphericalOddCount") == 0)
+        return lines_number(b->lens, &b->lines, 1, "number of odd terms",
+                            &b->odd);
+    if (strcasecmp(word(b, 0), "AsphericalA2") == 0)
+        b->a2 = 1;
+    return true;
+}
+
+/* Takes the term in word K, the Ith from that of h^4 on. */
+static bool take_term(struct optical_bench *b, struct imported_surface *s,
+                      int k, int i)
+{
+    double value;
+
+    if (!*word(b, k))
+        return true;
+    if (!lines_number(b->lens, &b->lines, k, "aspheric term", &value))
+        return false;
+    if (value == 0)
+        return true;
+    if (i < 0 || i >= GLINT_SHAPE_TERMS)
+        return imported_fail(b->lens, b->lines.number,
+                             "a term of h^%d: only h^4 to h^20 are read",
+                             i < 0 ? b->a2 > 0 ? 2 : 3 : 2 * i + 4);
+    s->shape.term[i] = value;
+    return true;
+}
+
+static bool take_asphere(struct optical_bench *b)
+{
+    const int first = b->odd > 0 || b->a2 > 0 ? -1 : 0;
+    struct imported_surface *s = NULL;
+    double radius;
+
+    for (int k = 0; k < b->lens->n && !s; k++)
+        if (strncmp(b->id[k], word(b, 0), ID_BYTES - 1) == 0)
+            s = &b->lens->surface[k];
+    if (!s)
+        return imported_fail(b->lens, b->lines.number,
+                             "surface '%.20s' is not in [lens data]",
+                             word(b, 0));
+    if (b->odd > 1)
+        return imported_fail(b->lens, b->lines.number,
+                             "%g odd terms: only even ones are read", b->odd);
+    if (strcasecmp(word(b, 1), "Infinity") == 0)
+        radius = 0;
+    else if (!lines_number(b->lens, &b->lines, 1, "radius", &radius))
+        return false;
+    if (fabs(radius - s->radius) > 1e-3 * fabs(s->radius) &&
+        !imported_note(b->lens, b->lines.number,
+                       "radius %g, but %g in [lens data], which is taken",
+                       radius, s->radius))
+        return false;
+    if (*word(b, 2) &&
+        !lines_number(b->lens, &b->lines, 2, "conic", &s->shape.conic))
+        return false;
+    for (int k = 3; k < b->lines.n; k++)
+        if (!take_term(b, s, k, k - 3 + first))
+            return false;
+    return true;
+}
+
+static bool take(struct optical_bench *b)
+{
+    if (*word(b, 0) == '[')
+        return start_section(b);
+    switch (b->section) {
+    case NO_SECTION:
+        return imported_fail(b->lens, b->lines.number,
+                             "'%.40s' is no [section] of Optical Bench's "
+                             "(polyflare's tables: --format polyflare)",
+                             word(b, 0));
+    case TITLE:
+        if (strcasecmp(word(b, 0), "title") == 0)
+            snprintf(b->lens->title, sizeof b->lens->title, "%.230s",
+                     word(b, 1));
+        return true;
+    case CONSTANTS:
+        return take_constant(b);
+    case DISTANCES:
+        return take_variable(b);
+    case ROWS:
+        return take_row(b);
+    case ASPHERES:
+        return take_asphere(b);
+    case OTHER:
+        break;
+    }
+    return true;
+}
+
+/* Sets VALUE to SHARE of the variable NAME, if that is said. */
+static void settle(const struct optical_bench *b, const char *name,
+                   double share, double *value)
+{
+    const double said = variable(b, name);
+
+    if (isfinite(said))
+        *value = share * said;
+}
+
+bool import_opticalbench(struct imported *lens, const char *text, size_t bytes)
+{
+    static struct optical_bench b; /* large */
+    double object = (double)INFINITY;
+
+    b = (struct optical_bench){.lens = lens, .at = -1};
+    lines_begin(&b.lines, lens, text, bytes);
+    b.lines.tabs = true;
+    while (lines_next(&b.lines, '#'))
+        if (!take(&b))
+            return false;
+    if (lens->n < 2)
+        return imported_fail(lens, 0, "there are no surfaces in it");
+    settle(&b, "Focal Length", 1, &lens->nominal);
+    settle(&b, "F-Number", 1, &lens->f_number);
+    settle(&b, "Angle of View", 0.5, &lens->field_deg);
+    settle(&b, "Image Height", 0.5, &lens->height);
+    settle(&b, "d0", 1, &object);
+    return imported_object(lens, 0, object);
+}

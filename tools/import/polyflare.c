@@ -1,0 +1,209 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The tables of polyflare and of polynomial optics, .fx: radius, thickness,
+ * medium, and behind a glass its index and Abbe number, then the
+ * semi-diameter.
+ *
+ * The medium is "air", "iris" or a glass, which its numbers say; "cx_" before
+ * it makes a cylinder that is bent in x. A thickness "a/b/c" has a value for
+ * each position of a zoom, and so have "#EFL" and "#FOV", the diagonal of the
+ * field in degrees. "#!scale" multiplies all lengths, "#!aspheric=" behind a
+ * row has the conic and the terms of h^4 to h^10. "//" begins a comment, and so
+ * does
+ * '#' at the start of a line.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "import/lines.h"
+#include "options/tool.h"
+
+#define PLANE 1e4 /* what files say for a plane's radius, at least */
+
+enum { POSITIONS = 8 };
+
+struct polyflare {
+    struct imported *lens;
+    struct lines lines;
+    int at;        /* position that is taken */
+    int positions; /* most that a thickness has; 0: none met */
+    int line;      /* of the first with several */
+    double focal[POSITIONS], field[POSITIONS];
+};
+
+/* Takes away words from the first on that a comment begins in. */
+static void cut_comment(struct lines *l)
+{
+    for (int k = 0; k < l->n; k++) {
+        char *comment = strstr(l->text + (l->word[k] - l->text), "//");
+
+        if (!comment)
+            continue;
+        *comment = '\0';
+        l->n = k + (comment > l->word[k]);
+        return;
+    }
+}
+
+/* Takes "#EFL" and its like; other lines that '#' begins are comments. */
+static bool take_head(struct polyflare *p)
+{
+    const struct lines *l = &p->lines;
+    const bool focal = lines_is(l, "#EFL");
+
+    if (focal || lines_is(l, "#FOV")) {
+        for (int k = 1; k < l->n && k <= POSITIONS; k++)
+            if (!lines_number(p->lens, l, k, l->word[0] + 1,
+                              focal ? &p->focal[k - 1] : &p->field[k - 1]))
+                return false;
+        return true;
+    }
+    if (!lines_is(l, "#!scale"))
+        return strncmp(l->word[0], "#!", 2) != 0 ||
+               imported_unread(p->lens, l->number, l->word[0]);
+    return lines_number(p->lens, l, 1, "scale", &p->lens->unit_mm) &&
+           (p->lens->unit_mm > 0 ||
+            imported_fail(p->lens, l->number, "scale %g is no size",
+                          p->lens->unit_mm));
+}
+
+static bool take_thickness(struct polyflare *p, struct imported_surface *s)
+{
+    const struct lines *l = &p->lines;
+    double value[POSITIONS];
+    char word[24];
+    const char *at = l->n > 1 ? l->word[1] : "";
+    int n = 0;
+
+    if (strcmp(at, "BFL") == 0) /* where the light meets, as where none is */
+        return true;
+    for (bool more = true; more && n < POSITIONS; n++) {
+        const size_t bytes = strcspn(at, "/");
+
+        if (bytes >= sizeof word)
+            return imported_fail(p->lens, l->number,
+                                 "thickness '%.40s' is not a number", at);
+        memcpy(word, at, bytes);
+        word[bytes] = '\0';
+        if (!tool_number(word, &value[n]))
+            return imported_fail(p->lens, l->number,
+                                 "thickness '%.40s' is not a number", word);
+        more = at[bytes] == '/';
+        at += bytes + more;
+    }
+    if (n > 1 && p->positions > 0 && n != p->positions)
+        return imported_fail(p->lens, l->number,
+                             "%d positions, but %d on line %d", n, p->positions,
+                             p->line);
+    if (n > 1 && p->positions == 0) {
+        p->positions = n;
+        p->line = l->number;
+        if (!imported_choose(p->lens, l->number, n, &p->at))
+            return false;
+    }
+    s->thickness = value[n > 1 ? p->at : 0];
+    return true;
+}
+
+/* Takes "#!aspheric=0,1e-5,0,0,0", word K. */
+static bool take_terms(struct polyflare *p, int k, struct imported_surface *s)
+{
+    const char *at = p->lines.word[k] + strlen("#!aspheric=");
+    double value[5];
+    char *end;
+
+    for (int i = 0; i < 5; i++) {
+        value[i] = strtod(at, &end);
+        if (end == at || *end != (i < 4 ? ',' : '\0'))
+            return imported_fail(p->lens, p->lines.number,
+                                 "'%.60s' is not #!aspheric=K,A4,A6,A8,A10",
+                                 p->lines.word[k]);
+        at = end + 1;
+    }
+    s->shape.conic = value[0];
+    memcpy(s->shape.term, value + 1, 4 * sizeof *value);
+    return true;
+}
+
+/* Takes the medium, word 2, and what follows it. */
+static bool take_medium(struct polyflare *p, struct imported_surface *s)
+{
+    const struct lines *l = &p->lines;
+    const struct imported_surface *before = p->lens->n > 1 ? s - 1 : NULL;
+    const char *medium = l->n > 2 ? l->word[2] : "";
+    int k = 3;
+
+    if (!*medium)
+        return imported_fail(p->lens, l->number, "the medium is missing");
+    if (strncasecmp(medium, "cx_", 3) == 0) {
+        s->shape.bend = GLINT_BEND_X;
+        medium += 3;
+    }
+    s->stop = strcasecmp(medium, "iris") == 0;
+    /* A plane iris within a medium is within it; one that is bent ends it. */
+    if (s->stop && before && fabs(s->radius) >= PLANE) {
+        s->nd = before->nd;
+        s->vd = before->vd;
+    } else if (!s->stop && strcasecmp(medium, "air") != 0) {
+        if (!lines_number(p->lens, l, 3, "index", &s->nd) ||
+            !lines_number(p->lens, l, 4, "Abbe number", &s->vd))
+            return false;
+        k = 5;
+    }
+    if (k < l->n && *l->word[k] != '#' &&
+        !lines_number(p->lens, l, k++, "semi-diameter", &s->semi))
+        return false;
+    for (; k < l->n; k++)
+        if (strncmp(l->word[k], "#!aspheric=", 11) == 0)
+            return take_terms(p, k, s);
+    return true;
+}
+
+static bool take_row(struct polyflare *p)
+{
+    struct imported_surface *s = imported_add(p->lens, p->lines.number);
+
+    return s && lines_number(p->lens, &p->lines, 0, "radius", &s->radius) &&
+           take_thickness(p, s) && take_medium(p, s);
+}
+
+/* Takes a plane in the air as the stop if no iris is said. */
+static bool find_stop(struct imported *lens)
+{
+    int at = -1;
+
+    for (int k = 0; k < lens->n; k++) {
+        const struct imported_surface *s = &lens->surface[k];
+
+        if (s->stop)
+            return true;
+        if (fabs(s->radius) >= PLANE && s->nd == 1 && (k == 0 || s[-1].nd == 1))
+            at = at == -1 ? k : -2;
+    }
+    if (at < 0)
+        return true;
+    lens->surface[at].stop = true;
+    return imported_note(lens, lens->surface[at].line,
+                         "no iris: the plane in the air is taken as the stop");
+}
+
+bool import_polyflare(struct imported *lens, const char *text, size_t bytes)
+{
+    struct polyflare p = {.lens = lens};
+
+    lines_begin(&p.lines, lens, text, bytes);
+    while (lines_next(&p.lines, '\0')) {
+        cut_comment(&p.lines);
+        if (p.lines.n > 0 &&
+            !(*p.lines.word[0] == '#' ? take_head(&p) : take_row(&p)))
+            return false;
+    }
+    if (lens->n < 2)
+        return imported_fail(lens, 0, "there are no surfaces in it");
+    lens->nominal = p.focal[p.at];
+    lens->field_deg = p.field[p.at] / 2;
+    return find_stop(lens);
+}
