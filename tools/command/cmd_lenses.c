@@ -6,10 +6,11 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 
 #include "lens_figures/drawing.h"
+#include "lens_figures/measured.h"
+#include "lens_figures/search.h"
 #include "lens_figures/thumbnail.h"
 #include "model/lens_files.h"
 #include "overlay/compositor.h"
@@ -17,7 +18,6 @@
 #include "model/table_file.h"
 #include "posix/output.h"
 #include "options/settings_table.h"
-#include "options/suggest.h"
 #include "options/takes.h"
 
 static const char help[] =
@@ -38,7 +38,10 @@ static const char help[] =
     "  --html FILE       a page with their drawings, and of those that are "
     "baked\n"
     "                    the flare of a lamp at three angles and the model's "
-    "bytes\n"
+    "bytes;\n"
+    "                    with what bakes and frames took, by figures.md "
+    "beside\n"
+    "                    the tables\n"
     "  --models FOLDER   bake what is missing and put all models there, of\n"
     "                    overlay and of render, as make install does\n"
     "  -o, --only NAME   this lens; repeatable\n";
@@ -117,27 +120,6 @@ static double corner_deg(const struct entry *e)
                 e->optics.focal_mm);
 }
 
-static bool has_word(const char *text, const char *word)
-{
-    const size_t n = strlen(word);
-
-    for (; *text; text++)
-        if (strncasecmp(text, word, n) == 0)
-            return true;
-    return false;
-}
-
-static bool has_words(const struct lenses *l, const char *name,
-                      const struct glint_prescription *lens)
-{
-    for (int i = 0; i < l->n_words; i++)
-        if (!has_word(name, l->words[i]) &&
-            !has_word(lens->source, l->words[i]) &&
-            !has_word(lens->character, l->words[i]))
-            return false;
-    return true;
-}
-
 static void print_json(struct lenses *l, const char *name,
                        const struct entry *e)
 {
@@ -206,6 +188,21 @@ static void print_flares(struct lenses *l, const char *name,
     free(settings);
 }
 
+static void print_measured(FILE *page, const char *name)
+{
+    struct measured m;
+
+    if (!measured_find(name, &m))
+        fputs("<p>bake and frame not measured yet</p>", page);
+    else if (!*m.kb)
+        fprintf(page, "<p>no bake measured: %s%s</p>", m.seconds,
+                *m.f_number ? " s" : "");
+    else
+        fprintf(page, "<p>measured for f/%s: bake %s s, model %s KB%s%s%s</p>",
+                m.f_number, m.seconds, m.kb, *m.ms ? ", a frame of 1080p " : "",
+                m.ms, *m.ms ? " ms" : "");
+}
+
 static void print_html(struct lenses *l, const char *name,
                        const struct entry *e)
 {
@@ -228,6 +225,7 @@ static void print_html(struct lenses *l, const char *name,
             e->n_ghosts);
     drawing_write(&drawing, l->page);
     print_flares(l, name, e);
+    print_measured(l->page, name);
     fputs("<figcaption>", l->page);
     print_escaped(l->page, e->settings.lens.source);
     fputs("<br>", l->page);
@@ -305,7 +303,8 @@ static bool one(void *ctx, const char *name)
         return true;
     }
     code = set_entry(l->tool, name, e, false);
-    if (code == EXIT_OK && !has_words(l, name, &e->settings.lens)) {
+    if (code == EXIT_OK &&
+        !lens_has_words(name, &e->settings.lens, l->words, l->n_words)) {
         free(e);
         return true;
     }
@@ -324,27 +323,6 @@ static bool one(void *ctx, const char *name)
     if (code != EXIT_OK)
         l->code = code;
     return code == EXIT_OK || code == EXIT_LENS;
-}
-
-static bool offer(void *suggest, const char *name)
-{
-    suggest_try(suggest, name, strlen(name));
-    return true;
-}
-
-static int no_match(const struct lenses *l)
-{
-    struct suggest s;
-
-    suggest_begin(&s, l->words[0]);
-    lens_files_each(offer, &s);
-    fprintf(stderr,
-            "glint lenses: no lens has %s'%s' in its name, source or "
-            "character%s%s\n",
-            l->n_words > 1 ? "all words from " : "", l->words[0],
-            suggest_best(&s) ? "; did you mean " : "",
-            suggest_best(&s) ? s.best : "");
-    return EXIT_LENS;
 }
 
 /* Lists into the page L->html. */
@@ -382,7 +360,7 @@ static int run(struct lenses *l)
     if (lens_files_each(one, l) < 0)
         return tool_fail(l->tool, GLINT_E_MEMORY, NULL);
     if (l->n == 0 && l->code == EXIT_OK && l->n_words)
-        return no_match(l);
+        return lens_words_missed(l->tool, l->words, l->n_words);
     if (l->n == 0 && l->code == EXIT_OK) {
         fprintf(stderr, "glint lenses: there are none; $GLINT_LENSES names "
                         "a folder of them\n");

@@ -23,7 +23,7 @@ install: install-library all glint-live $(if $(filter yes,$(PLUGIN)),build/glint
 	install -d $(to)/bin $(to)/lib/glint $(to)/share/glint/lenses $(to)/lib/systemd/system
 	install $(if $(CROSS),-s --strip-program=$(CROSS)strip) -m 755 \
 	        $(program) $(OUT)/glint-live $(to)/bin
-	install -m 644 lenses/*.lens $(to)/share/glint/lenses
+	install -m 644 lenses/*.lens lenses/figures.md $(to)/share/glint/lenses
 	for r in $(lens_rooms); do install -d $(to)/share/glint/$$r && \
 	        install -m 644 $$r/*.lens $(to)/share/glint/$$r || exit 1; done
 	install -m 644 tests/data/bridge.$(if $(filter yes,$(PLUGIN)),jpg,ppm) $(to)/share/glint
@@ -67,7 +67,7 @@ uninstall:
 	        $(LIBRARIES:%=$(to)/lib/pkgconfig/%.pc) $(headers:%=$(to)/%) \
         $(to)/lib/glint/glint-assimp.so $(to)/lib/glint/glint-sdl.so $(to)/lib/frei0r-1/glint.so $(to)/lib/gstreamer-1.0/libgstglint.so \
 	        $(to)/lib/systemd/system/glint-live.service \
-	        $(patsubst %,$(to)/share/glint/%,$(wildcard lenses/*.lens lenses/*/*.lens)) \
+	        $(patsubst %,$(to)/share/glint/%,$(wildcard lenses/figures.md lenses/*.lens lenses/*/*.lens)) \
 	        $(addprefix $(to)/share/,$(shells:.bash=)) $(to)/share/man/man1/glint.1 $(to)/share/man/man1/glint-*.1 \
 	        $(to)/share/man/man3/glint.3 $(to)/share/man/man5/glint-lens.5 $(to)/share/man/man5/glint-scene.5 \
 	        $(to)/share/glint/models/*.glint $(to)/share/glint/bridge.jpg $(to)/share/glint/bridge.ppm

@@ -86,6 +86,10 @@ bake-table: all $(OUT)/ray_errors
 wide-table: all $(OUT)/stop_costs
 	@STOP_COSTS=$(OUT)/stop_costs tools/report/wide-table $(LENSES) | tools/report/write-figures wide
 wide-table: export EVERY := $(EVERY)
+# What lenses of the library cost. LENSES="A.lens ...": these; STOP=N, LIMIT=SECONDS.
+library-table: all $(OUT)/stop_costs
+	@STOP_COSTS=$(OUT)/stop_costs tools/lens_figures/library-table $(LENSES) | \
+	    tools/report/write-figures ../../lenses/figures
 accuracy-table: all
 	@tools/report/accuracy-table | tools/report/write-figures accuracy
 colour-table: all $(OUT)/hue_steps
@@ -198,7 +202,7 @@ budget: all
 	        build/$$t/glint >&2 || exit 1; done
 	@tools/report/budget | tools/report/write-figures arm
 
-.PHONY: glints-table hidden-table scene-budget-table occlusion-table video-report demo inputs table bake-table wide-table accuracy-table colour-table coating-table ray-table power-table \
+.PHONY: glints-table hidden-table scene-budget-table occlusion-table video-report demo inputs table bake-table wide-table library-table accuracy-table colour-table coating-table ray-table power-table \
         power-fit \
         corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet gallery \
         bench bench-insn growth size trade lights-table threads-table reuse-table flicker-table left-table stopping-table hostile-table star-table memory-table \

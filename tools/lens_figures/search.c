@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: MIT */
+#include "lens_figures/search.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "model/lens_files.h"
+#include "model/table_file.h"
+#include "options/suggest.h"
+
+static bool holds(const char *text, const char *word)
+{
+    const size_t n = strlen(word);
+
+    for (; *text; text++)
+        if (strncasecmp(text, word, n) == 0)
+            return true;
+    return false;
+}
+
+static bool has(const char *name, const struct glint_prescription *lens,
+                const char *word)
+{
+    return holds(name, word) || holds(lens->source, word) ||
+           holds(lens->character, word);
+}
+
+bool lens_has_words(const char *name, const struct glint_prescription *lens,
+                    char **words, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (!has(name, lens, words[i]))
+            return false;
+    return true;
+}
+
+struct search {
+    const struct tool *tool;
+    struct glint_prescription *lens; /* room for a table */
+    const char *word;
+    char small[SUGGEST_CHARS]; /* the word in small letters */
+    struct suggest suggest;
+    bool found; /* a lens has the word */
+};
+
+/* Offers words of TEXT, of four letters or digits and more, and TEXT whole. */
+static void offer_words(struct suggest *suggest, const char *text)
+{
+    char small[SUGGEST_CHARS];
+    size_t n = 0;
+
+    suggest_try(suggest, text, strlen(text));
+    for (;; text++) {
+        const int c = tolower((unsigned char)*text);
+
+        if (isalnum(c) && n < sizeof small)
+            small[n++] = (char)c;
+        else if (!isalnum(c)) {
+            if (n > 3)
+                suggest_try(suggest, small, n);
+            n = 0;
+        }
+        if (!c)
+            return;
+    }
+}
+
+static bool look(void *ctx, const char *name)
+{
+    struct search *s = ctx;
+
+    if (tool_lens(s->tool, name, s->lens) != EXIT_OK)
+        return true;
+    s->found = has(name, s->lens, s->word);
+    offer_words(&s->suggest, name);
+    offer_words(&s->suggest, s->lens->source);
+    offer_words(&s->suggest, s->lens->character);
+    return !s->found;
+}
+
+int lens_words_missed(const struct tool *tool, char **words, int n)
+{
+    struct search s = {
+        .tool = tool, .lens = malloc(sizeof *s.lens), .found = true};
+    const char *best;
+
+    if (!s.lens)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    for (int i = 0; i < n && s.found; i++) {
+        s.word = words[i];
+        s.found = false;
+        snprintf(s.small, sizeof s.small, "%s", s.word);
+        for (char *c = s.small; *c; c++)
+            *c = (char)tolower((unsigned char)*c);
+        suggest_begin(&s.suggest, s.small);
+        lens_files_each(look, &s);
+    }
+    free(s.lens);
+    best = suggest_best(&s.suggest);
+    if (s.found)
+        fprintf(stderr, "glint lenses: no lens has all of these words in its "
+                        "name, source or character\n");
+    else
+        fprintf(stderr,
+                "glint lenses: no lens has '%s' in its name, source or "
+                "character%s%s\n",
+                s.word, best ? "; did you mean " : "", best ? best : "");
+    return EXIT_LENS;
+}
