@@ -22,6 +22,13 @@
  * polynomials in u and v. Method after [Bodonyi25], in coordinates in which
  * ghosts are tame.
  *
+ * A lens that is not symmetric about its axis has ghosts that depend on the
+ * azimuth of the light, too. Its model keeps to the lens's own frame: u lies
+ * along x, v along y, s is the x component of the light's direction and p,
+ * another variable, the y component. Nothing is symmetric in v. Of a lens with
+ * a plane of symmetry only lights to one side of that are in the model: for
+ * others both are mirrored.
+ *
  * The file: little-endian 32-bit words; offsets ("_at") are bytes from the
  * start of the file, multiples of 4. Header first, then in any order what it
  * points to.
@@ -45,11 +52,21 @@ extern "C" {
 
 enum glint_basis {
     GLINT_BASIS_AUTO,  /* u, v, s, w: see above */
-    GLINT_BASIS_SPARSE /* x, y, r and 1 - r [Bodonyi25]: (x, y) is the place on
-                          the vertex plane in units of 2^(30 + box_exponent) mm,
-                          a radius that holds all boxes of the system; r =
-                          hypot(x, y) */
+    GLINT_BASIS_SPARSE, /* x, y, r and 1 - r [Bodonyi25]: (x, y) is the place on
+                           the vertex plane in units of 2^(30 + box_exponent)
+                           mm, a radius that holds all boxes of the system; r =
+                           hypot(x, y) */
+    /* u, v, s, p, w in the lens's own frame; plus GLINT_MIRRORS_X, where lights
+     * have x of 0 or more and others are mirrored, and GLINT_MIRRORS_Y. */
+    GLINT_BASIS_LENS = 4
 };
+enum { GLINT_MIRRORS_X = 1, GLINT_MIRRORS_Y = 2 };
+
+/* Returns whether BASIS is GLINT_BASIS_LENS with any mirrors. */
+static inline int glint_basis_is_lens(uint32_t basis)
+{
+    return basis >> 2 == 1;
+}
 
 struct glint_model_header {
     uint32_t magic, version;
@@ -95,21 +112,26 @@ struct glint_model_ghost {
  * of that many rising angles; between neighbours they are interpolated linearly
  * in the sine, and the variables are only those of the basis. */
 struct glint_model_system {
-    /* Range of the sine of the light's angle, 0 .. 2^30. */
+    /* Range of the sine of the light's angle, 0 .. 2^30; in the lens basis of
+     * the x component of its direction, -2^30 .. 2^30. */
     int32_t sine_lo_q30, sine_hi_q30;
     int32_t wave_lo_q24, wave_hi_q24; /* range of 1 / wavelength^2; with both
                                          equal, one wavelength */
-    uint32_t n_knots, knot_at;        /* int32 sines _q30 [n_knots] */
+    uint32_t n_knots, knot_at;        /* int32 sines _q30 [n_knots]; in the
+                                         lens basis, which has no knots, the
+                                         range of the y component, [2] */
     /* The box, mm: middle, half width, half height, int32 * 2^box_exponent.
      * Without knots each is a polynomial with up to GLINT_BOX_TERMS terms: s^0,
      * s^1 .. s^5, w, s w. Those whose bits are set in box_terms are stored:
-     * [3][bits set]. With knots the box is [n_knots][3], and box_terms is 0. */
+     * [3][bits set]. With knots the box is [n_knots][3], and box_terms is 0. In
+     * the lens basis terms are 1, s, s^2, p, s p, p^2, w, s w, and a fourth
+     * side, the middle along y, follows: [4][bits set]. */
     uint32_t box_at;
     int32_t box_exponent;
     uint32_t output_at; /* array of struct glint_model_output, by rising kind */
     uint8_t n_outputs, box_terms;
     /* k: this part lacks |v| < k / (k + 1), which other parts of the pupil
-     * cover; at most GLINT_MAX_ANNULUS, 0 with knots. */
+     * cover; at most GLINT_MAX_ANNULUS, 0 with knots and in the lens basis. */
     uint8_t annulus;
     uint8_t zero;
 };
@@ -122,12 +144,17 @@ enum {
     GLINT_RAYS = 8, /* number of rays that are computed at once */
     /* Entries in a row of powers of u: a whole number of vectors. */
     GLINT_TABLE_WIDTH = 16,
-    GLINT_MAX_MODEL_TERMS = 120
+    GLINT_MAX_MODEL_TERMS = 120,
+    GLINT_LENS_SIDES = 4, /* number of sides of a box in the lens basis */
+    /* In the lens basis powers of s and p are below the first, of w below the
+     * second. */
+    GLINT_LENS_POWERS = 6,
+    GLINT_LENS_WAVE_POWERS = 7
 };
 
 enum glint_channel {
     GLINT_OUT_SENSOR_X, /* mm, in the light's frame; both y are odd in v, all
-                           other kinds even */
+                           other kinds even, but in the lens basis */
     GLINT_OUT_SENSOR_Y,
     GLINT_OUT_STOP_X, /* stop radii */
     GLINT_OUT_STOP_Y,
@@ -157,7 +184,8 @@ struct glint_model_output {
     int16_t exponent; /* value of the polynomial = integer * 2^exponent */
     uint32_t term_at; /* uint16 [n_terms], padded to whole words: powers of u,
                          v, s, w (or x, y, r, 1 - r), four bits each, the first
-                         lowest */
+                         lowest; in the lens basis those of s, p and w share the
+                         upper eight bits: s + 6 p + 36 w */
     uint32_t coef_at; /* int32 [n_terms], with knots [n_knots][n_terms] */
     uint32_t bound;   /* proven: no intermediate is larger; < 2^30 */
     uint32_t rounding_q8; /* proven: integers differ from the polynomial by no

@@ -37,13 +37,18 @@ struct glint_transfer {
                             glint_model_output */
     uint8_t energy_up; /* log2 of the factor on a vertex's energy, 0 .. 29; init
                           sets 0, the caller may raise it */
-    int32_t box[3];    /* middle, half width and half height at this angle and
-                          wavelength */
+    int32_t box[4];    /* middle, half width and half height at this angle and
+                          wavelength, and the middle across */
     int32_t box_exponent;
     uint8_t annulus;
+    /* Of the lens basis: WHOLE is 1, as v runs over all of the box. Then x is
+     * SIGN times the lens's, and so is y, which is once more mirrored if SIDE is
+     * 1: so a light in any quarter is made of one in the model's. */
+    uint8_t whole, side;
+    int8_t sign;
     /* Part of the box that rows and grids of rays cover. Init sets it to the
      * whole box, the caller may narrow it; v begins at 0 unless the box is
-     * annular. */
+     * annular, or WHOLE. */
     struct glint_box_window window;
     enum glint_basis basis;
     union {
@@ -71,6 +76,28 @@ int glint_transfer_init(struct glint_transfer *transfer,
                         const struct glint_lens *lens, int ghost,
                         int32_t sine_q30, int32_t wave_q24);
 
+/* Cosine and sine of the azimuth of a light. */
+struct glint_azimuth {
+    int32_t cos_q30, sin_q30;
+};
+
+/* Does the same for a light at AZIMUTH, on which ghosts of lenses that are not
+ * round depend; otherwise it is 0. */
+int glint_transfer_init_at(struct glint_transfer *transfer,
+                           const struct glint_lens *lens, int ghost,
+                           int32_t sine_q30, struct glint_azimuth azimuth,
+                           int32_t wave_q24);
+
+/* Returns the window that is the whole box of TRANSFER. */
+static inline struct glint_box_window
+glint_box_whole(const struct glint_transfer *transfer)
+{
+    const int32_t one_q30 = INT32_C(1) << 30;
+
+    return (struct glint_box_window){0, one_q30,
+                                     transfer->whole ? -one_q30 : 0, one_q30};
+}
+
 /* Gives the outputs of one ray at (U, V), each within +-2^30: integers by kind,
  * to be scaled by 2^exponent; 0 for outputs that the system lacks. */
 struct glint_outputs {
@@ -87,7 +114,9 @@ void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
 
 /* The place of a bundle's light in the picture. */
 struct glint_place {
-    int32_t cos_q30, sin_q30; /* cosine and sine of the light's azimuth */
+    int32_t cos_q30, sin_q30; /* by which outputs are turned: cosine and sine of
+                                 the light's azimuth; in the lens basis sign and
+                                 0 */
     struct glint_real pixels_per_mm;
     int32_t middle_x_q8, middle_y_q8; /* pixels: place of the sensor's centre */
     struct glint_real stop_scale; /* radius of the model's stop over that of the
@@ -95,7 +124,8 @@ struct glint_place {
 };
 
 /* Return u at X_Q30, where -1 .. 1 is the width of the window, and v after J of
- * N equal steps from the lower to the upper end of its upper half. */
+ * N equal steps from the lower to the upper end of its upper half, or of all of
+ * it if it is WHOLE. */
 int32_t glint_transfer_u(const struct glint_transfer *transfer, int32_t x_q30);
 int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n);
 

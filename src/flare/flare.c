@@ -352,8 +352,10 @@ void glint_flare_plan(struct glint_flare *flare,
         .shaded = flare->cfg.stop.shade != NULL,
         .opening_q30 = flare->cfg.stop.opening_q30 ? flare->cfg.stop.opening_q30
                                                    : WHOLE_OPENING_Q30};
+    /* What is known of dim ghosts is known by the angle alone. */
     if (frame->dim && frame->dimmest.mantissa && !frame->sets &&
-        frame->n_waves == GLINT_DIM_WAVES) {
+        frame->n_waves == GLINT_DIM_WAVES &&
+        !(frame->lens && glint_basis_is_lens(frame->lens->header->basis))) {
         frame->dim->method->fill(flare,
                                  n_within(frame->lens, lights, n_lights));
         flare->plan.dims = 1;

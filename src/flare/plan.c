@@ -36,10 +36,16 @@ static int64_t widened(const struct glint_bundle_plan *s, int64_t x_q8)
 }
 
 /* The box about a bundle's light: half its length along the light's azimuth and
- * half its width across, and how far along it lies; pixels. */
+ * half its width across, and how far along and across it lies; pixels. */
 struct reach {
-    int64_t middle_q8, wide_q8, high_q8;
+    int64_t middle_q8, across_q8, wide_q8, high_q8;
 };
+
+/* Returns half the extent of E across. */
+static int64_t half_height(const struct glint_probe_extent *e)
+{
+    return (e->y_high - e->y_low) / 2;
+}
 
 /* Makes the box of the range E of the probe's rays, grown by a tenth. */
 static struct reach reach_of(const struct glint_plan *p,
@@ -47,27 +53,31 @@ static struct reach reach_of(const struct glint_plan *p,
                              const struct glint_transfer *t,
                              const struct glint_probe_extent *e)
 {
+    const int64_t high = half_height(e);
+
     return (struct reach){
         pixels_q8(p, t, (e->low + e->high) / 2),
+        pixels_q8(p, t, (e->y_low + e->y_high) / 2),
         widened(planned,
                 pixels_q8(p, t, q_divide((e->high - e->low) * 11, 20))) +
             256,
-        widened(planned, pixels_q8(p, t, e->wide + q_divide(e->wide, 10))) +
-            256};
+        widened(planned, pixels_q8(p, t, high + q_divide(high, 10))) + 256};
 }
 
-/* Returns whether E, turned by the light's azimuth, meets the picture. */
-static int is_in_view(const struct glint_plan *p, const struct glint_light *b,
+/* Returns whether E, turned as the ghost is, meets the picture. It lies aside
+ * only where it is not turned. */
+static int is_in_view(const struct glint_plan *p, struct glint_azimuth turn,
                       const struct reach *e)
 {
-    const int64_t c = b->cos_q30 < 0 ? -b->cos_q30 : b->cos_q30;
-    const int64_t s = b->sin_q30 < 0 ? -b->sin_q30 : b->sin_q30;
+    const int64_t c = turn.cos_q30 < 0 ? -turn.cos_q30 : turn.cos_q30;
+    const int64_t s = turn.sin_q30 < 0 ? -turn.sin_q30 : turn.sin_q30;
     const int64_t m = e->middle_q8 < 0 ? -e->middle_q8 : e->middle_q8;
+    const int64_t n = e->across_q8 < 0 ? -e->across_q8 : e->across_q8;
 
-    return ((m - e->wide_q8) * c - s * e->high_q8) >> 30 <= p->width * 128 >>
-               p->half &&
-           ((m - e->wide_q8) * s - c * e->high_q8) >> 30 <= p->height * 128 >>
-               p->half;
+    return ((m - e->wide_q8) * c + s * (n - e->high_q8)) >> 30 <=
+               p->width * 128 >> p->half &&
+           ((m - e->wide_q8) * s + c * (n - e->high_q8)) >> 30 <=
+               p->height * 128 >> p->half;
 }
 
 /* Returns the share, 0 to 255, of a span about MIDDLE, WIDE to each side, that
@@ -80,18 +90,19 @@ static int64_t span_q8(int64_t middle, int64_t wide, int64_t half)
     return high > low && wide > 0 ? q_divide(255 * (high - low), 2 * wide) : 0;
 }
 
-/* Returns the share of the upright box about E, turned by the light's azimuth,
- * that lies in the picture. */
-static uint8_t view_q8(const struct glint_plan *p, const struct glint_light *b,
+/* Returns the share of the upright box about E, turned as the ghost is, that
+ * lies in the picture. */
+static uint8_t view_q8(const struct glint_plan *p, struct glint_azimuth turn,
                        const struct reach *e)
 {
-    const int64_t c = b->cos_q30 < 0 ? -b->cos_q30 : b->cos_q30;
-    const int64_t s = b->sin_q30 < 0 ? -b->sin_q30 : b->sin_q30;
+    const int64_t c = turn.cos_q30 < 0 ? -turn.cos_q30 : turn.cos_q30;
+    const int64_t s = turn.sin_q30 < 0 ? -turn.sin_q30 : turn.sin_q30;
     const int64_t across =
         span_q8(e->middle_q8 * c >> 30, (e->wide_q8 * c + e->high_q8 * s) >> 30,
                 p->width * 128 >> p->half);
     const int64_t down =
-        span_q8(e->middle_q8 * s >> 30, (e->wide_q8 * s + e->high_q8 * c) >> 30,
+        span_q8((e->middle_q8 * s + e->across_q8 * c) >> 30,
+                (e->wide_q8 * s + e->high_q8 * c) >> 30,
                 p->height * 128 >> p->half);
 
     return (uint8_t)((across * down + 254) >> 8);
@@ -164,7 +175,9 @@ static struct glint_real flux_of(const struct glint_plan *p,
     const struct glint_wave *w = &p->frame->wave[s->wave];
     struct glint_real x = real_times(box_side(t, 1), box_side(t, 2));
 
-    x.exponent += 2 + exponent; /* both sides are halves of the box */
+    /* Both sides are halves of the box; so is the window's unless it is whole.
+     */
+    x.exponent += (t->whole ? 1 : 2) + exponent;
     /* Pixels at half resolution are as large as four. */
     x.exponent -= 2 * p->half;
     if (t->annulus)
@@ -200,7 +213,7 @@ static struct glint_real brightest_of(const struct glint_plan *p,
             real_of((int64_t)planned->wider_q16 * planned->wider_q16, -32));
     flux.exponent += 1;
     /* Number of cells over the whole box. */
-    area = real_times(area, real_of(s->across * 2 * s->down, 0));
+    area = real_times(area, real_of(s->across * s->rows, 0));
     return real_over(flux, area);
 }
 
@@ -237,8 +250,10 @@ void glint_plan_transfer(const struct glint_plan *plan,
 {
     const struct glint_flare_frame *r = plan->frame;
 
-    glint_transfer_init(transfer, r->lens, planned->ghost, planned->sine_q30,
-                        r->wave[planned->wave].wave_q24);
+    glint_transfer_init_at(
+        transfer, r->lens, planned->ghost, planned->sine_q30,
+        (struct glint_azimuth){planned->cos_q30, planned->sin_q30},
+        r->wave[planned->wave].wave_q24);
     transfer->sets = plan->sets;
     transfer->energy_up = planned->energy_up;
     transfer->window = planned->window;
@@ -248,8 +263,8 @@ struct glint_place glint_plan_place(const struct glint_plan *plan,
                                     const struct glint_bundle_plan *planned)
 {
     struct glint_place place = {
-        .cos_q30 = planned->cos_q30,
-        .sin_q30 = planned->sin_q30,
+        .cos_q30 = planned->turn.cos_q30,
+        .sin_q30 = planned->turn.sin_q30,
         .pixels_per_mm = plan_pixels_per_mm(plan),
         .middle_x_q8 = plan->width * 128 >> plan->half,
         .middle_y_q8 = plan->height * 128 >> plan->half,
@@ -257,13 +272,17 @@ struct glint_place glint_plan_place(const struct glint_plan *plan,
             real_over(real_of(1, 0), real_of(plan->opening_q30, -30))};
 
     if (planned->wider_q16) {
-        const int64_t back_q8 = q_shift(
-            ((int64_t)planned->wider_q16 - ONE_Q16) * planned->centre_q8, 16);
+        const int64_t more_q16 = (int64_t)planned->wider_q16 - ONE_Q16;
+        const int64_t back_q8 = q_shift(more_q16 * planned->centre_q8[0], 16);
+        const int64_t across_q8 = q_shift(more_q16 * planned->centre_q8[1], 16);
+        const struct glint_azimuth turn = planned->turn;
 
         place.pixels_per_mm =
             real_times(place.pixels_per_mm, real_of(planned->wider_q16, -16));
-        place.middle_x_q8 -= (int32_t)q_shift(back_q8 * planned->cos_q30, 30);
-        place.middle_y_q8 += (int32_t)q_shift(back_q8 * planned->sin_q30, 30);
+        place.middle_x_q8 -= (int32_t)q_shift(
+            back_q8 * turn.cos_q30 - across_q8 * turn.sin_q30, 30);
+        place.middle_y_q8 += (int32_t)q_shift(
+            back_q8 * turn.sin_q30 + across_q8 * turn.cos_q30, 30);
     }
     return place;
 }
@@ -307,33 +326,46 @@ static int is_wanted(const struct glint_flare_frame *r, int ghost)
            (!r->tints || r->tints[ghost].gain.mantissa > 0);
 }
 
+/* Returns the distance of (X, Y), each of a magnitude below 2^31, from 0. */
+static int64_t far_from(int64_t x, int64_t y)
+{
+    if (y == 0)
+        return x < 0 ? -x : x;
+    return q_root((uint64_t)(x * x + y * y));
+}
+
 /* Sets by how much the ghost is drawn larger, WIDEST_Q16 at most. A small ghost
  * of a point would lie apart from those of the lamp's neighbouring points, and
  * the lamp's ghost would be a pattern of dots; so it is made two and a half
  * times as wide as they are apart. The ghost moves with the light in proportion
- * to its distance from the middle. For a light on the axis nothing is set. */
+ * to its distance from the middle. For a light on the axis nothing is set. Its
+ * centre may lie aside only where it is not turned, but mirrored. */
 static void set_wider(const struct glint_plan *p, const struct glint_light *b,
                       struct glint_bundle_plan *planned,
                       const struct glint_transfer *t,
                       const struct glint_probe_extent *e)
 {
     const int64_t middle = (e->low + e->high) / 2;
-    const struct glint_real wide = real_of((e->high - e->low) / 2 + e->wide, 0);
+    const int64_t across = (e->y_low + e->y_high) / 2;
+    const struct glint_real wide =
+        real_of((e->high - e->low) / 2 + half_height(e), 0);
     struct glint_real wanted;
 
-    planned->wider_q16 = planned->centre_q8 = 0;
+    planned->wider_q16 = planned->centre_q8[0] = planned->centre_q8[1] = 0;
     if (b->apart_q30 <= 0 || b->sine_q30 <= 0 || wide.mantissa <= 0)
         return;
     wanted = real_times(
-        real_of(middle < 0 ? -middle : middle, 0),
+        real_of(far_from(middle, across), 0),
         real_over(real_of(b->cosine_q30, -30), real_of(b->sine_q30, -30)));
     wanted = real_times(wanted, real_of(5 * (int64_t)b->apart_q30, -31));
     if (!real_less(wide, wanted))
         return;
     planned->wider_q16 =
         (int32_t)real_integer(real_over(wanted, wide), 16, WIDEST_Q16);
-    planned->centre_q8 = (int32_t)q_clamp_sat(pixels_q8(p, t, middle),
-                                              -FARTHEST_Q8, FARTHEST_Q8);
+    planned->centre_q8[0] = (int32_t)q_clamp_sat(pixels_q8(p, t, middle),
+                                                 -FARTHEST_Q8, FARTHEST_Q8);
+    planned->centre_q8[1] = (int32_t)q_clamp_sat(
+        pixels_q8(p, t, t->side ? -across : across), -FARTHEST_Q8, FARTHEST_Q8);
 }
 
 /* Narrows the window of T to what the stop lets through, if that is narrower
@@ -371,14 +403,23 @@ static struct glint_real area_of(const struct glint_plan *p,
                                  const struct glint_transfer *t,
                                  const struct glint_probe_extent *e)
 {
+    const int64_t high = half_height(e);
     const int64_t wide_q8 =
         widened(planned, pixels_q8(p, t, q_divide((e->high - e->low) * 3, 5))) +
         256;
     const int64_t high_q8 =
-        widened(planned, pixels_q8(p, t, e->wide + q_divide(e->wide, 10))) +
-        256;
+        widened(planned, pixels_q8(p, t, high + q_divide(high, 10))) + 256;
 
     return real_times(real_of(wide_q8, -7), real_of(high_q8, -7));
+}
+
+/* Returns by what the outputs of T, for light at AZIMUTH, are turned. */
+static struct glint_azimuth turn_of(const struct glint_transfer *t,
+                                    struct glint_azimuth azimuth)
+{
+    const struct glint_azimuth upright = {t->sign * (INT32_C(1) << 30), 0};
+
+    return t->whole ? upright : azimuth;
 }
 
 static enum glint_outcome plan_bundle(const struct glint_plan *plan,
@@ -388,6 +429,7 @@ static enum glint_outcome plan_bundle(const struct glint_plan *plan,
                                       struct glint_plan_scratch *scratch)
 {
     const struct glint_flare_frame *r = plan->frame;
+    const struct glint_azimuth azimuth = {b->cos_q30, b->sin_q30};
     struct glint_transfer *transfer = &scratch->transfer;
     struct glint_probe *s = &scratch->probe;
     struct glint_real colour, brightest;
@@ -399,9 +441,10 @@ static enum glint_outcome plan_bundle(const struct glint_plan *plan,
         return GLINT_OUTCOME_OTHER;
     if (glint_plan_is_beyond(r->lens, b))
         return GLINT_OUTCOME_BEYOND;
-    if (!glint_transfer_init(transfer, r->lens, planned->ghost, b->sine_q30,
-                             r->wave[planned->wave].wave_q24))
+    if (!glint_transfer_init_at(transfer, r->lens, planned->ghost, b->sine_q30,
+                                azimuth, r->wave[planned->wave].wave_q24))
         return GLINT_OUTCOME_CLOSED;
+    planned->turn = turn_of(transfer, azimuth);
     transfer->sets = plan->sets;
     share_q8 = plan->dims ? r->dim->method->share_q8(r, b, planned->ghost)
                           : GLINT_DIM_WHOLE_Q8;
@@ -416,9 +459,9 @@ static enum glint_outcome plan_bundle(const struct glint_plan *plan,
         return GLINT_OUTCOME_BLOCKED;
     set_wider(plan, b, planned, transfer, &s->seen);
     reach = reach_of(plan, planned, transfer, &s->reach);
-    if (!is_in_view(plan, b, &reach))
+    if (!is_in_view(plan, planned->turn, &reach))
         return GLINT_OUTCOME_OUTSIDE;
-    planned->view_q8 = view_q8(plan, b, &reach);
+    planned->view_q8 = view_q8(plan, planned->turn, &reach);
     planned->energy_up = (uint8_t)energy_up(s->energy);
     exponent = transfer->exponent[GLINT_OUT_ENERGY] + 29 - planned->energy_up;
     planned->flux = flux_of(plan, b, planned, transfer, colour, exponent);

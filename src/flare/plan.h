@@ -25,6 +25,8 @@ struct glint_bundle_plan {
     /* Direction of the light that is drawn, as in struct glint_light: of LIGHT,
      * or of several that it stands for. */
     int32_t sine_q30, cos_q30, sin_q30;
+    /* By which the ghost is turned, see struct glint_place. */
+    struct glint_azimuth turn;
     uint8_t energy_up; /* see struct glint_transfer */
     /* As in struct glint_planned. */
     uint8_t inside_q8, view_q8, contrast_q4;
@@ -38,8 +40,8 @@ struct glint_bundle_plan {
     struct glint_real flux;
     /* wider: factor by which the ghost is drawn larger, above 1; 0: it is drawn
      * in its own size. centre: the point about which it grows, pixels from the
-     * picture's middle along the light's azimuth. */
-    int32_t wider_q16, centre_q8;
+     * picture's middle along the light's azimuth and across. */
+    int32_t wider_q16, centre_q8[2];
     /* Flux over the pixels that it falls on, display white. */
     struct glint_real irradiance;
     int64_t peak_q20; /* most light that a pixel gets, clamped to 2^20; 1 is the

@@ -23,10 +23,14 @@ static void begin(struct glint_probe *s, const struct glint_transfer *t,
     const int64_t near_q16 = 68813;
 
     s->across = across;
-    s->down = down;
+    s->down = t->whole ? 2 * down : down;
+    s->rows = 2 * down;
     s->n_bends = s->n_up = s->n_down = s->n_inside = 0;
     s->n_bent[0] = s->n_bent[1] = 0;
-    s->seen = s->reach = (struct glint_probe_extent){INT32_MAX, -INT32_MAX, 0};
+    s->seen = s->reach = (struct glint_probe_extent){
+        INT32_MAX, -INT32_MAX, t->whole ? INT32_MAX : 0,
+        t->whole ? -INT32_MAX : 0};
+    s->whole = t->whole;
     s->energy = 0;
     s->least_area = UINT64_MAX;
     s->n_kinds = 0;
@@ -124,14 +128,17 @@ static void add_cell(struct glint_probe *s, const struct glint_probe_node *a,
     s->least_area = area < s->least_area ? area : s->least_area;
 }
 
-static void widen(struct glint_probe_extent *e,
+static void widen(const struct glint_probe *s, struct glint_probe_extent *e,
                   const struct glint_probe_node *n)
 {
     const int64_t x = n->at[GLINT_OUT_SENSOR_X], y = n->at[GLINT_OUT_SENSOR_Y];
+    const int64_t away = y < 0 ? -y : y;
+    const int64_t low = s->whole ? y : -away, high = s->whole ? y : away;
 
     e->low = x < e->low ? x : e->low;
     e->high = x > e->high ? x : e->high;
-    e->wide = y > e->wide ? y : -y > e->wide ? -y : e->wide;
+    e->y_low = low < e->y_low ? low : e->y_low;
+    e->y_high = high > e->y_high ? high : e->y_high;
 }
 
 /* Adds the cell between A, B and C, D below them to the reach, if one of its
@@ -143,10 +150,10 @@ static void add_reach(struct glint_probe *s, const struct glint_probe_node *a,
 {
     if (!(a->inside || b->inside || c->inside || d->inside))
         return;
-    widen(&s->reach, a);
-    widen(&s->reach, b);
-    widen(&s->reach, c);
-    widen(&s->reach, d);
+    widen(s, &s->reach, a);
+    widen(s, &s->reach, b);
+    widen(s, &s->reach, c);
+    widen(s, &s->reach, d);
 }
 
 static void add_seen(struct glint_probe *s, const struct glint_probe_node *n)
@@ -154,7 +161,7 @@ static void add_seen(struct glint_probe *s, const struct glint_probe_node *n)
     if (!n->inside)
         return;
     s->n_inside++;
-    widen(&s->seen, n);
+    widen(s, &s->seen, n);
     s->energy = n->at[GLINT_OUT_ENERGY] > s->energy ? n->at[GLINT_OUT_ENERGY]
                                                     : s->energy;
 }
@@ -163,6 +170,7 @@ void glint_probe_run(struct glint_probe *probe, struct glint_transfer *t,
                      int32_t opening_q30, int across, int down)
 {
     begin(probe, t, opening_q30, across, down);
+    down = probe->down;
     probe->n_rays += (across + 1) * (down + 1);
     for (int j = 0; j <= down; j++) {
         const struct glint_probe_node *here = probe->row[j % 3];
@@ -176,7 +184,7 @@ void glint_probe_run(struct glint_probe *probe, struct glint_transfer *t,
                 add_bend(probe, &here[i - 1], &here[i], &here[i + 1], across,
                          0);
             if (j > 1)
-                add_bend(probe, &top[i], &above[i], &here[i], 2 * down, 1);
+                add_bend(probe, &top[i], &above[i], &here[i], probe->rows, 1);
             if (j > 0 && i < across) {
                 add_cell(probe, &above[i], &above[i + 1], &here[i]);
                 add_reach(probe, &above[i], &above[i + 1], &here[i],

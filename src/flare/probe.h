@@ -11,9 +11,10 @@
 #include "glint/transfer.h"
 
 /* The range in which light lands, in units of the sensor outputs: least and
- * largest x, and largest |y|. */
+ * largest x and y. Where light is symmetric in y, both y are each other's
+ * negative. */
 struct glint_probe_extent {
-    int64_t low, high, wide;
+    int64_t low, high, y_low, y_high;
 };
 
 /* Most cells across the pupil, and down half of it. */
@@ -37,8 +38,10 @@ struct glint_probe {
     /* The last three rows of rays. */
     struct glint_probe_node row[3][GLINT_PROBE_ACROSS + 1];
     struct glint_probe_change change[GLINT_OUT_KINDS];
-    /* Number of cells across the window and down half of it. */
-    int across, down;
+    /* Number of cells across the window and down half of it, or down all of it
+     * where rays have no mirror image; and down all of it in any case. */
+    int across, down, rows;
+    int whole;  /* as in struct glint_transfer */
     int n_rays; /* number of rays of all probes of the bundle */
     int n_bends, n_bent[2], n_inside, n_kinds;
     /* Kinds of outputs of this bundle, without energy: [n_kinds]. */
@@ -58,7 +61,8 @@ struct glint_probe {
 enum { GLINT_PROBE_FINE_LOG2 = 6 };
 
 /* Sends the rays of a grid of ACROSS x DOWN cells over half the window of T
- * towards a stop of OPENING_Q30 of the model's radius. Adds to n_rays; all
+ * towards a stop of OPENING_Q30 of the model's radius; over all of it, with
+ * twice as many DOWN, where T is whole. Adds to n_rays; all
  * other members begin anew. */
 void glint_probe_run(struct glint_probe *probe, struct glint_transfer *t,
                      int32_t opening_q30, int across, int down);

@@ -257,7 +257,7 @@ static int narrow(struct glint_transfer *t, struct extent *e)
         q_narrow(q_divide(old.u_half_q30 * (right - left), wide_q16));
     w->v_to_q30 = old.v_from_q30 +
                   q_narrow(q_divide(high_q30 * e->high_q16[1], high_q16));
-    if (t->annulus)
+    if (t->annulus || t->whole)
         w->v_from_q30 += q_narrow(q_divide(high_q30 * e->low_q16[1], high_q16));
     return 8 * (int64_t)w->u_half_q30 < 7 * (int64_t)old.u_half_q30 ||
            8 * ((int64_t)w->v_to_q30 - w->v_from_q30) < 7 * high_q30;

@@ -30,4 +30,15 @@ static inline int32_t box_side(const int32_t p[GLINT_BOX_TERMS], int32_t s_q30,
     return sum + q_mul(q_mul(of_w[1], s_q30, 30) + of_w[0], w_q30, 30);
 }
 
+/* Returns the value of P, of the lens basis, at S_Q30, Y_Q30 and W_Q30. */
+static inline int32_t box_lens_side(const int32_t p[GLINT_BOX_TERMS],
+                                    int32_t s_q30, int32_t y_q30, int32_t w_q30)
+{
+    const int32_t of_s = q_mul(q_mul(p[2], s_q30, 30) + p[1], s_q30, 30);
+    const int32_t of_y = q_mul(p[5], y_q30, 30) + q_mul(p[4], s_q30, 30) + p[3];
+
+    return p[0] + of_s + q_mul(of_y, y_q30, 30) +
+           q_mul(q_mul(p[7], s_q30, 30) + p[6], w_q30, 30);
+}
+
 #endif

@@ -104,7 +104,8 @@ static const char *check_header(struct glint_model_check *c)
     const struct glint_model_header *h = c->header;
     const char *reason = fault_text[glint_blob_check_name(&c->blob)];
 
-    if (h->basis != GLINT_BASIS_AUTO && h->basis != GLINT_BASIS_SPARSE)
+    if (h->basis != GLINT_BASIS_AUTO && h->basis != GLINT_BASIS_SPARSE &&
+        !glint_basis_is_lens(h->basis))
         return "the basis is unknown";
     if (!reason)
         reason = check_reals(h);
@@ -155,7 +156,10 @@ static const char *check_ghosts(const struct glint_model_check *c)
         if (g->first_system < next)
             return "two ghosts share a system, or their lists do not rise";
         next = g->first_system + g->n_systems;
-        for (uint32_t m = g->first_system + 1; m < next; m++) {
+        /* In the lens basis ranges of two components lie in no order; of two
+         * systems that overlap the first one counts. */
+        for (uint32_t m = g->first_system + 1;
+             m < next && !glint_basis_is_lens(h->basis); m++) {
             const char *reason = check_order(&c->system[m - 1], &c->system[m]);
 
             if (reason)

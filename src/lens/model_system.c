@@ -38,6 +38,21 @@ static int64_t magnitudes(const int32_t *x, uint32_t n)
     return sum;
 }
 
+/* Checks the range of the y component. */
+static const char *check_across(struct glint_model_check *c,
+                                const struct glint_model_system *s)
+{
+    const int32_t *y_q30 =
+        glint_blob_section(&c->blob, s->knot_at, 2, sizeof *y_q30);
+
+    if (!y_q30)
+        return glint_model_outside;
+    return y_q30[0] < -MODEL_LIMIT || y_q30[0] >= y_q30[1] ||
+                   y_q30[1] > MODEL_LIMIT
+               ? "a system's angles are out of range"
+               : NULL;
+}
+
 static const char *check_knots(struct glint_model_check *c,
                                const struct glint_model_system *s)
 {
@@ -45,6 +60,8 @@ static const char *check_knots(struct glint_model_check *c,
 
     if ((c->header->basis == GLINT_BASIS_SPARSE) != (s->n_knots > 0))
         return "knots do not go with the basis";
+    if (glint_basis_is_lens(c->header->basis))
+        return check_across(c, s);
     if (s->n_knots == 0)
         return NULL;
     if (s->n_knots == 1)
@@ -91,10 +108,25 @@ static int shrinks_below_0(const int32_t p[GLINT_BOX_TERMS])
     return 0;
 }
 
+/* Does the same for a box of the lens basis, at a grid of directions. */
+static int lens_side_below_0(const int32_t p[GLINT_BOX_TERMS])
+{
+    const int32_t half = 1 << (BOX_NODES_LOG2 - 2), step = MODEL_LIMIT / half;
+
+    for (int32_t k = -half; k <= half; k++)
+        for (int32_t m = -half; m <= half; m++)
+            if (box_lens_side(p, k * step, m * step, -MODEL_LIMIT) < 0 ||
+                box_lens_side(p, k * step, m * step, MODEL_LIMIT) < 0)
+                return 1;
+    return 0;
+}
+
 static const char *check_box(struct glint_model_check *c,
                              const struct glint_model_system *s)
 {
-    const uint64_t sides = s->n_knots ? s->n_knots : bits_set(s->box_terms);
+    const uint64_t terms = s->n_knots ? s->n_knots : bits_set(s->box_terms);
+    const int lens = glint_basis_is_lens(c->header->basis);
+    const int sides = lens ? GLINT_LENS_SIDES : 3;
     const int32_t *box;
     int32_t side[GLINT_BOX_TERMS];
 
@@ -102,7 +134,8 @@ static const char *check_box(struct glint_model_check *c,
         return "the exponent of a box is out of range";
     if (s->n_knots && s->box_terms)
         return "a box at knots has terms";
-    box = glint_blob_section(&c->blob, s->box_at, 3 * sides, sizeof *box);
+    box = glint_blob_section(&c->blob, s->box_at, (uint64_t)sides * terms,
+                             sizeof *box);
     if (!box)
         return glint_model_outside;
     for (uint32_t k = 0; k < s->n_knots; k++) {
@@ -111,11 +144,12 @@ static const char *check_box(struct glint_model_check *c,
         if (reason)
             return reason;
     }
-    for (int k = 0; k < 3 && s->n_knots == 0; k++) {
+    for (int k = 0; k < sides && s->n_knots == 0; k++) {
         box = box_unpack(box, s->box_terms, side);
         if (magnitudes(side, GLINT_BOX_TERMS) >= MODEL_LIMIT)
             return "a box reaches too far";
-        if (k > 0 && shrinks_below_0(side))
+        if ((k == 1 || k == 2) &&
+            (lens ? lens_side_below_0(side) : shrinks_below_0(side)))
             return "a box has a size below 0";
     }
     return NULL;
@@ -135,6 +169,17 @@ static const char *check_power(const struct glint_model_output *o,
     return v % 2 == odd ? NULL : "a power of v has the wrong parity";
 }
 
+static const char *check_lens_power(uint16_t power)
+{
+    const int u = power & 15, v = power >> 4 & 15;
+    const int most =
+        GLINT_LENS_POWERS * GLINT_LENS_POWERS * GLINT_LENS_WAVE_POWERS;
+
+    if (u > GLINT_MAX_POWER || v > GLINT_MAX_POWER)
+        return "a power of u or v is too high";
+    return power >> 8 < most ? NULL : "a power of w is too high";
+}
+
 static const char *check_terms(struct glint_model_check *c,
                                const struct glint_model_output *o)
 {
@@ -147,6 +192,8 @@ static const char *check_terms(struct glint_model_check *c,
     for (uint32_t k = 0; k < o->n_terms; k++) {
         const char *reason = c->header->basis == GLINT_BASIS_AUTO
                                  ? check_power(o, power[k])
+                             : glint_basis_is_lens(c->header->basis)
+                                 ? check_lens_power(power[k])
                                  : NULL;
 
         if (reason)
@@ -254,12 +301,14 @@ static const char *check_outputs(struct glint_model_check *c,
 const char *glint_model_check_system(struct glint_model_check *check,
                                      const struct glint_model_system *s)
 {
+    const int lens = glint_basis_is_lens(check->header->basis);
     const char *reason;
 
-    if (s->sine_lo_q30 < 0 || s->sine_lo_q30 >= s->sine_hi_q30 ||
-        s->sine_hi_q30 > MODEL_LIMIT)
+    if (s->sine_lo_q30 < (lens ? -MODEL_LIMIT : 0) ||
+        s->sine_lo_q30 >= s->sine_hi_q30 || s->sine_hi_q30 > MODEL_LIMIT)
         return "a system's angles are out of range";
-    if (s->annulus > GLINT_MAX_ANNULUS || (s->annulus && s->n_knots) || s->zero)
+    if (s->annulus > GLINT_MAX_ANNULUS ||
+        (s->annulus && (s->n_knots || lens)) || s->zero)
         return "a system's annulus is out of range";
     if (s->wave_lo_q24 <= 0 || s->wave_lo_q24 > s->wave_hi_q24)
         return "a system's band is out of range";

@@ -56,9 +56,20 @@ static int64_t off_band(const struct glint_model_system *s, int32_t wave_q24)
     return below > 0 ? below : above > 0 ? above : 0;
 }
 
+/* Returns whether Y, the y component of a light's direction, is in the range
+ * of system S; without such a range it is. */
+static int is_in_across(const struct glint_lens *lens,
+                        const struct glint_model_system *s, int32_t y_q30)
+{
+    const int32_t *range_q30 = at(lens, s->knot_at);
+
+    return !glint_basis_is_lens(lens->header->basis) ||
+           (y_q30 >= range_q30[0] && y_q30 <= range_q30[1]);
+}
+
 static const struct glint_model_system *
 find_system(const struct glint_lens *lens, int ghost, int32_t sine_q30,
-            int32_t wave_q24)
+            int32_t y_q30, int32_t wave_q24)
 {
     const struct glint_model_ghost *g = &lens->ghost[ghost];
     const struct glint_model_header *h = lens->header;
@@ -71,7 +82,8 @@ find_system(const struct glint_lens *lens, int ghost, int32_t sine_q30,
         const struct glint_model_system *s = &lens->system[g->first_system + k];
 
         if (sine_q30 < s->sine_lo_q30 || sine_q30 > s->sine_hi_q30 ||
-            (s->n_knots == 0 && !is_in_band(s, h, wave_q24)))
+            (s->n_knots == 0 && !is_in_band(s, h, wave_q24)) ||
+            !is_in_across(lens, s, y_q30))
             continue;
         if (!best || off_band(s, wave_q24) < off_band(best, wave_q24))
             best = s;
@@ -84,14 +96,17 @@ struct setting {
     uint32_t knot; /* the knot below the angle */
     int32_t part_q30;
     int32_t s_q30[TRANSFER_MAX_EXPONENT + 1], w_q30[TRANSFER_MAX_EXPONENT + 1];
+    int lens;                          /* 1: the basis is the lens basis */
+    int32_t p_q30[GLINT_LENS_POWERS];  /* of the lens basis only */
 };
 
 static void settle(struct setting *set, const struct glint_lens *lens,
                    const struct glint_model_system *s, int32_t sine_q30,
-                   int32_t wave_q24)
+                   int32_t y_q30, int32_t wave_q24)
 {
     set->knot = 0;
     set->part_q30 = 0;
+    set->lens = glint_basis_is_lens(lens->header->basis);
     if (s->n_knots) {
         const int32_t *knot_q30 = at(lens, s->knot_at);
         uint32_t k = 0;
@@ -107,6 +122,12 @@ static void settle(struct setting *set, const struct glint_lens *lens,
                     TRANSFER_MAX_EXPONENT, set->s_q30);
     transfer_powers(within_q30(wave_q24, s->wave_lo_q24, s->wave_hi_q24),
                     TRANSFER_MAX_EXPONENT, set->w_q30);
+    if (set->lens) {
+        const int32_t *range_q30 = at(lens, s->knot_at);
+
+        transfer_powers(within_q30(y_q30, range_q30[0], range_q30[1]),
+                        GLINT_LENS_POWERS - 1, set->p_q30);
+    }
 }
 
 static int32_t between(int32_t a, int32_t b, int32_t part_q30)
@@ -122,13 +143,17 @@ static void set_box(struct glint_transfer *t, const struct glint_lens *lens,
     int32_t side[GLINT_BOX_TERMS];
 
     t->box_exponent = s->box_exponent;
-    for (int k = 0; k < 3; k++) {
+    t->box[3] = 0;
+    for (int k = 0; k < (set->lens ? GLINT_LENS_SIDES : 3); k++) {
         if (s->n_knots) {
             t->box[k] = between(low[k], low[3 + k], set->part_q30);
             continue;
         }
         box = box_unpack(box, s->box_terms, side);
-        t->box[k] = box_side(side, set->s_q30[1], set->w_q30[1]);
+        t->box[k] = set->lens
+                        ? box_lens_side(side, set->s_q30[1], set->p_q30[1],
+                                        set->w_q30[1])
+                        : box_side(side, set->s_q30[1], set->w_q30[1]);
     }
 }
 
@@ -162,6 +187,21 @@ static WHOLLY_INLINE int32_t put_in(const struct setting *set, int32_t value,
     return d ? q_mul(value, set->w_q30[d], 30) : value;
 }
 
+/* Does the same in the lens basis. */
+static int32_t put_lens_in(const struct setting *set, int32_t value,
+                           uint16_t power)
+{
+    const unsigned code = power >> 8, of_s = code % GLINT_LENS_POWERS;
+    const unsigned of_p = code / GLINT_LENS_POWERS % GLINT_LENS_POWERS;
+    const unsigned of_w = code / (GLINT_LENS_POWERS * GLINT_LENS_POWERS);
+
+    if (of_s)
+        value = q_mul(value, set->s_q30[of_s], 30);
+    if (of_p)
+        value = q_mul(value, set->p_q30[of_p], 30);
+    return of_w ? q_mul(value, set->w_q30[of_w], 30) : value;
+}
+
 /* A polynomial of u and v while its terms are added. */
 struct table {
     int32_t (*row)[GLINT_TABLE_WIDTH];
@@ -193,9 +233,14 @@ static void set_table(struct glint_transfer *t, const struct glint_lens *lens,
     for (int b = 0; b <= GLINT_MAX_POWER; b++)
         for (int a = 0; a < GLINT_TABLE_WIDTH; a++)
             table.row[b][a] = 0;
-    for (uint32_t k = 0; k < n_wide; k++)
+    for (uint32_t k = 0; k < n && set->lens; k++)
+        add_term(
+            &table, power[k],
+            put_lens_in(set, k < n_wide ? coef[k] : narrow[k - n_wide] * by,
+                        power[k]));
+    for (uint32_t k = 0; k < n_wide && !set->lens; k++)
         add_term(&table, power[k], put_in(set, coef[k], power[k]));
-    for (uint32_t k = n_wide; k < n; k++)
+    for (uint32_t k = n_wide; k < n && !set->lens; k++)
         add_term(&table, power[k],
                  put_in(set, narrow[k - n_wide] * by, power[k]));
     t->degree_u[o->kind] = (uint8_t)table.degree_u;
@@ -227,18 +272,57 @@ static void clear(struct glint_transfer *t)
     t->head = t->roots = t->energy_up = 0;
     t->sets = 0;
     t->n_nodes = 0;
+    t->whole = t->side = 0;
+    t->sign = 1;
     for (int k = 0; k < GLINT_OUT_KINDS; k++) {
         t->exponent[k] = 0;
         t->degree_u[k] = t->degree_v[k] = 0;
     }
 }
 
+/* A light's direction as systems know it. X is the sine of its angle, in the
+ * lens basis the x component. */
+struct toward {
+    int32_t x_q30, y_q30;
+    int mirror_x, mirror_y; /* 1: the light lies on the other side of the plane
+                               of symmetry */
+};
+
+static struct toward toward_of(const struct glint_lens *lens, int32_t sine_q30,
+                               struct glint_azimuth azimuth)
+{
+    const uint32_t basis = lens->header->basis;
+    struct toward d = {sine_q30, 0, 0, 0};
+
+    if (!glint_basis_is_lens(basis))
+        return d;
+    d.x_q30 = q_mul(sine_q30, azimuth.cos_q30, 30);
+    d.y_q30 = q_mul(sine_q30, azimuth.sin_q30, 30);
+    d.mirror_x = (basis & GLINT_MIRRORS_X) && d.x_q30 < 0;
+    d.mirror_y = (basis & GLINT_MIRRORS_Y) && d.y_q30 < 0;
+    d.x_q30 = d.mirror_x ? -d.x_q30 : d.x_q30;
+    d.y_q30 = d.mirror_y ? -d.y_q30 : d.y_q30;
+    return d;
+}
+
 int glint_transfer_init(struct glint_transfer *transfer,
                         const struct glint_lens *lens, int ghost,
                         int32_t sine_q30, int32_t wave_q24)
 {
+    const struct glint_azimuth right = {TRANSFER_ONE_Q30, 0};
+
+    return glint_transfer_init_at(transfer, lens, ghost, sine_q30, right,
+                                  wave_q24);
+}
+
+int glint_transfer_init_at(struct glint_transfer *transfer,
+                           const struct glint_lens *lens, int ghost,
+                           int32_t sine_q30, struct glint_azimuth azimuth,
+                           int32_t wave_q24)
+{
+    const struct toward d = toward_of(lens, sine_q30, azimuth);
     const struct glint_model_system *system =
-        find_system(lens, ghost, sine_q30, wave_q24);
+        find_system(lens, ghost, d.x_q30, d.y_q30, wave_q24);
     const struct glint_model_output *output;
     struct setting set;
 
@@ -247,10 +331,13 @@ int glint_transfer_init(struct glint_transfer *transfer,
     clear(transfer);
     transfer->system = system;
     transfer->annulus = (uint8_t)system->annulus;
-    transfer->window =
-        (struct glint_box_window){0, TRANSFER_ONE_Q30, 0, TRANSFER_ONE_Q30};
     transfer->basis = (enum glint_basis)lens->header->basis;
-    settle(&set, lens, system, sine_q30, wave_q24);
+    settle(&set, lens, system, d.x_q30, d.y_q30, wave_q24);
+    transfer->whole = (uint8_t)set.lens;
+    transfer->window = glint_box_whole(transfer);
+    /* The mirror image in x is that in y, turned by half a circle. */
+    transfer->sign = (int8_t)(d.mirror_x ? -1 : 1);
+    transfer->side = (uint8_t)(d.mirror_x != d.mirror_y);
     set_box(transfer, lens, &set);
     output = at(lens, system->output_at);
     for (uint32_t k = 0; k < system->n_outputs; k++)

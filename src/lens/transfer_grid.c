@@ -204,6 +204,8 @@ static int32_t row_q30(const struct glint_transfer *t, int n_cells, int j)
     /* index of the last row below the middle */
     const int last = n_cells / 2 - 1;
 
+    if (t->whole)
+        return glint_transfer_v(t, j, n_cells);
     if (!t->annulus)
         return node_q30(0, t->window.v_to_q30, j, n_cells);
     return j <= last ? -glint_transfer_v(t, last - j, last)
@@ -211,7 +213,8 @@ static int32_t row_q30(const struct glint_transfer *t, int n_cells, int j)
 }
 
 /* Fills ROW with row J and MIRRORED with the mirror image of that row, which is
- * row N_CELLS - J; either may be NULL. MIRRORED is NULL in the sparse basis. */
+ * row N_CELLS - J; either may be NULL. MIRRORED is NULL where rows have no
+ * mirror image. */
 static void set_row_pair(struct glint_transfer *t,
                          const struct glint_place *place, int n_cells, int j,
                          struct glint_vertex *row,
@@ -235,10 +238,16 @@ static void set_row_pair(struct glint_transfer *t,
         glint_transfer_rays(t, v_q30, t->node_q30 + first, first == 0, rays);
         set_block(t, &turns, (const int32_t(*)[RAYS])rays, &b);
         if (row)
-            put_block(&b, place, 0, n, row + first);
+            put_block(&b, place, t->side, n, row + first);
         if (mirrored)
             put_block(&b, place, 1, n, mirrored + first);
     }
+}
+
+/* Returns whether each row has to be computed by itself. */
+static int is_alone(const struct glint_transfer *t)
+{
+    return t->basis == GLINT_BASIS_SPARSE || t->whole;
 }
 
 static void lose_row(struct glint_vertex *row, int n_cells)
@@ -251,11 +260,9 @@ void glint_transfer_row(struct glint_transfer *transfer,
                         const struct glint_place *place, int n_cells, int j,
                         struct glint_vertex *row)
 {
-    const int sparse = transfer->basis == GLINT_BASIS_SPARSE;
-
     if (is_hidden(transfer, n_cells, j))
         lose_row(row, n_cells);
-    else if (sparse || 2 * j <= n_cells)
+    else if (is_alone(transfer) || 2 * j <= n_cells)
         set_row_pair(transfer, place, n_cells, j, row, NULL);
     else
         set_row_pair(transfer, place, n_cells, n_cells - j, NULL, row);
@@ -269,7 +276,7 @@ void glint_transfer_rows(struct glint_transfer *transfer,
     if (is_hidden(transfer, n_cells, j)) {
         lose_row(row, n_cells);
         lose_row(mirrored, n_cells);
-    } else if (transfer->basis == GLINT_BASIS_SPARSE) {
+    } else if (is_alone(transfer)) {
         set_row_pair(transfer, place, n_cells, j, row, NULL);
         set_row_pair(transfer, place, n_cells, n_cells - j, mirrored, NULL);
     } else {
@@ -281,7 +288,7 @@ void glint_transfer_grid(struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells,
                          struct glint_vertex *vertices)
 {
-    const int sparse = transfer->basis == GLINT_BASIS_SPARSE;
+    const int alone = is_alone(transfer);
     const int nodes = n_cells + 1;
 
     for (int j = 0; j < nodes; j++) {
@@ -291,7 +298,7 @@ void glint_transfer_grid(struct glint_transfer *transfer,
 
         if (is_hidden(transfer, n_cells, j))
             lose_row(row, n_cells);
-        else if (sparse)
+        else if (alone)
             set_row_pair(transfer, place, n_cells, j, row, NULL);
         else if (2 * j <= n_cells)
             set_row_pair(transfer, place, n_cells, j, row, mirrored);

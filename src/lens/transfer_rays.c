@@ -11,11 +11,24 @@
 
 enum { RAYS = GLINT_RAYS };
 
-/* Returns whether the powers of v of KIND are all odd; else they are all even.
- */
+/* Returns whether the powers of v of KIND are all odd; else they are all even,
+ * but in the lens basis. */
 static int is_odd(int kind)
 {
     return kind & 1 && kind < GLINT_OUT_ENERGY;
+}
+
+/* Sets OF_U to the polynomial in u of the terms of KIND whose powers of v are
+ * odd, or even. */
+static void set_half(const struct glint_transfer *t,
+                     const struct glint_horner *k, int kind, int odd,
+                     int32_t v_q30, int32_t v2_q30, int32_t *of_u)
+{
+    k->across(of_u, t->of.table[kind][odd], 2 * GLINT_TABLE_WIDTH,
+              (t->degree_v[kind] - odd) / 2, v2_q30,
+              t->degree_u[kind] < 8 ? 8 : GLINT_TABLE_WIDTH);
+    for (int a = 0; odd && a <= t->degree_u[kind]; a++)
+        of_u[a] = q_mul(of_u[a], v_q30, 30);
 }
 
 /* Sets OF_U to the polynomial in u of output KIND along the row of rays at V.
@@ -24,13 +37,18 @@ static void set_row(const struct glint_transfer *t,
                     const struct glint_horner *k, int kind, int32_t v_q30,
                     int32_t v2_q30, int32_t *of_u)
 {
-    const int odd = is_odd(kind);
+    int32_t odd[GLINT_TABLE_WIDTH];
 
-    k->across(of_u, t->of.table[kind][odd], 2 * GLINT_TABLE_WIDTH,
-              (t->degree_v[kind] - odd) / 2, v2_q30,
-              t->degree_u[kind] < 8 ? 8 : GLINT_TABLE_WIDTH);
-    for (int a = 0; odd && a <= t->degree_u[kind]; a++)
-        of_u[a] = q_mul(of_u[a], v_q30, 30);
+    if (!t->whole) {
+        set_half(t, k, kind, is_odd(kind), v_q30, v2_q30, of_u);
+        return;
+    }
+    set_half(t, k, kind, 0, v_q30, v2_q30, of_u);
+    if (t->degree_v[kind] == 0)
+        return;
+    set_half(t, k, kind, 1, v_q30, v2_q30, odd);
+    for (int a = 0; a <= t->degree_u[kind]; a++)
+        of_u[a] += odd[a];
 }
 
 /* Sets the polynomials in u of all outputs along the row of rays at V. */
