@@ -14,6 +14,7 @@
 #include "bake/model_header.h"
 #include "bake/options.h"
 #include "bake/published/published.h"
+#include "bake/skew/skew_fit.h"
 #include "bake/trace/cells.h"
 #include "bake/write_model.h"
 
@@ -110,14 +111,19 @@ static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
         .axis_depth = (int)fmin(GLINT_MAX_AXIS_DEPTH,
                                 GLINT_PART_DEPTH + fmax(0, ceil(-log2(t)))),
         .brightness = &run->brightness};
+    enum glint_status (*const fit)(
+        const struct glint_visible *, double, const struct glint_tolerance *,
+        glint_fit_told_fn *, void *, struct glint_fitted_ghost *) =
+        glint_prescription_is_round(run->lens) ? glint_fit_ghost
+                                               : glint_skew_fit;
     struct glint_visible *visible = malloc(sizeof *visible);
     enum glint_status status = GLINT_E_MEMORY;
 
     if (visible) {
         visible_init(run, ghost, visible);
         status =
-            glint_fit_ghost(visible, run->options.max_deg, &tolerance,
-                            tells ? fit_told : NULL, run, &run->fitted[ghost]);
+            fit(visible, run->options.max_deg, &tolerance,
+                tells ? fit_told : NULL, run, &run->fitted[ghost]);
     }
     free(visible);
     return status;
@@ -375,10 +381,11 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
     run->options = *options;
     run->error = error;
     status = glint_bake_check(options, error);
-    if (status == GLINT_OK && !glint_prescription_is_round(lens)) {
+    if (status == GLINT_OK && options->basis == GLINT_BASIS_SPARSE &&
+        !glint_prescription_is_round(lens)) {
         snprintf(error->text, sizeof error->text,
-                 "%s is not symmetric about its axis: it cannot be baked yet, "
-                 "but drawn by glint render --rays exact",
+                 "%s is not symmetric about its axis, which the sparse basis "
+                 "is for",
                  lens->name);
         status = GLINT_E_LENS;
     }

@@ -125,7 +125,8 @@ static void try_ray(struct meter *b, double u, double v)
     struct glint_ray ray;
     const enum glint_ray_status status = glint_trace(
         &b->path, scale * (b->transfer.box[0] + u * b->transfer.box[1]),
-        scale * v * b->transfer.box[2], b->direction, &ray, hits);
+        scale * (b->transfer.box[3] + v * b->transfer.box[2]), b->direction,
+        &ray, hits);
 
     glint_transfer_ray(&b->transfer, (int32_t)lrint(u * 0x1p30),
                        (int32_t)lrint(v * 0x1p30), &o);
@@ -170,11 +171,28 @@ static struct glint_errors errors_of(double *error, int n)
     return e;
 }
 
+/* Puts the direction and the wavelength into the model. */
+static bool init_transfer(struct meter *b, const struct glint_lens *lens,
+                          int32_t wave_q24)
+{
+    const double sine = hypot(b->direction[0], b->direction[1]);
+    const double c = sine > 0 ? b->direction[0] / sine : 1;
+    const double s = sine > 0 ? b->direction[1] / sine : 0;
+
+    return glint_transfer_init_at(
+               &b->transfer, lens, b->visible->ghost,
+               (int32_t)lrint(sine * 0x1p30),
+               (struct glint_azimuth){(int32_t)lrint(c * 0x1p30),
+                                      (int32_t)lrint(s * 0x1p30)},
+               wave_q24) != 0;
+}
+
 /* Sets the bundle to a random angle and wavelength of the system; returns false
  * if it belongs to another system. */
 static bool set_bundle(struct meter *b, const struct glint_lens *lens,
                        const struct glint_model_system *s, struct random *r)
 {
+    const struct glint_fitted_system *f = b->fitted;
     const double part = 0.5 + 0.5 * next(r), w = next(r);
     const double wave = 0.5 * ((double)s->wave_lo_q24 + s->wave_hi_q24) +
                         0.5 * w * ((double)s->wave_hi_q24 - s->wave_lo_q24);
@@ -183,14 +201,16 @@ static bool set_bundle(struct meter *b, const struct glint_lens *lens,
         (int32_t)(part * ((double)s->sine_hi_q30 - s->sine_lo_q30));
     const int32_t wave_q24 = (int32_t)lrint(wave);
 
-    /* A bundle on a border may belong to the system beyond it. */
-    if (!glint_transfer_init(&b->transfer, lens, b->visible->ghost, sine_q30,
-                             wave_q24) ||
-        b->transfer.system != s)
-        return false;
     b->direction[0] = sine_q30 * 0x1p-30;
-    b->direction[1] = 0;
-    b->direction[2] = sqrt(1 - b->direction[0] * b->direction[0]);
+    b->direction[1] =
+        f->skew ? f->y_lo + (0.5 + 0.5 * next(r)) * (f->y_hi - f->y_lo) : 0;
+    /* A bundle on a border may belong to the system beyond it, and the corner
+     * of a system may lie beyond all directions. */
+    if (hypot(b->direction[0], b->direction[1]) >= 1 ||
+        !init_transfer(b, lens, wave_q24) || b->transfer.system != s)
+        return false;
+    b->direction[2] = sqrt(1 - b->direction[0] * b->direction[0] -
+                           b->direction[1] * b->direction[1]);
     glint_path_init(&b->path, b->visible->setup->lens,
                     &b->visible->setup->ghost[b->visible->ghost],
                     1e3 / sqrt(wave_q24 * 0x1p-24));
@@ -215,9 +235,10 @@ void glint_measure_system(const struct glint_visible *visible,
         if (!set_bundle(&b, lens, &lens->system[system], &random))
             continue;
         for (int i = 0; i < PER_BUNDLE && b.n < RAYS; i++) {
-            const double u = next(&random), v = 0.5 + 0.5 * next(&random);
+            const double u = next(&random), v = next(&random);
 
-            try_ray(&b, u, rim + (1 - rim) * v);
+            try_ray(&b, u,
+                    fitted->skew ? v : rim + (1 - rim) * (0.5 + 0.5 * v));
         }
     }
     out->rays = b.n;

@@ -7,6 +7,7 @@
 #include "bake/regress/regress.h"
 #include "bake/fit/visible.h"
 #include "bake/options.h"
+#include "bake/skew/skew_fit.h"
 #include "bake/trace/cells.h"
 #include "engine/setup/setup.h"
 
@@ -109,7 +110,9 @@ glint_model_header_of(const struct glint_prescription *lens,
     *h = (struct glint_model_header){
         .magic = GLINT_MODEL_MAGIC,
         .version = GLINT_MODEL_VERSION,
-        .basis = (uint32_t)options->basis,
+        .basis = glint_prescription_is_round(lens)
+                     ? (uint32_t)options->basis
+                     : GLINT_BASIS_LENS + glint_skew_mirrors(lens),
         .key = {(uint32_t)key, (uint32_t)(key >> 32)},
         .focal_mm = glint_real_of(o->focal_mm),
         .back_focal_mm = glint_real_of(o->back_focal_mm),

@@ -14,14 +14,20 @@ STATIC_ASSERT(sizeof(struct glint_model_output) == 32);
 
 static uint32_t put_terms(struct glint_draft *d,
                           const struct glint_fitted_output *o,
-                          const struct glint_quantised_output *q)
+                          const struct glint_quantised_output *q, bool skew)
 {
     uint16_t power[GLINT_MAX_MODEL_TERMS];
 
     for (int k = 0; k < o->n_terms; k++) {
         const uint8_t *p = o->power[q->order[k]];
 
-        power[k] = (uint16_t)(p[0] | p[1] << 4 | p[2] << 8 | p[3] << 12);
+        const int upper =
+            skew ? p[GLINT_S] +
+                       GLINT_LENS_POWERS *
+                           (p[GLINT_P] + GLINT_LENS_POWERS * p[GLINT_W])
+                 : p[GLINT_S] | p[GLINT_W] << 4;
+
+        power[k] = (uint16_t)(p[GLINT_U] | p[GLINT_V] << 4 | upper << 8);
     }
     return glint_draft_put(d, power, (size_t)o->n_terms * sizeof *power);
 }
@@ -51,9 +57,9 @@ static uint32_t put_coefficients(struct glint_draft *d,
 
 static struct glint_model_output
 put_output(struct glint_draft *d, const struct glint_fitted_output *o,
-           const struct glint_quantised_output *q, int n_sets)
+           const struct glint_quantised_output *q, bool skew, int n_sets)
 {
-    const uint32_t term_at = put_terms(d, o, q);
+    const uint32_t term_at = put_terms(d, o, q, skew);
     const uint32_t coef_at =
         n_sets ? glint_draft_put(d, q->coef,
                                  (size_t)n_sets * (size_t)o->n_terms *
@@ -81,7 +87,8 @@ static uint32_t put_outputs(struct glint_draft *d,
     struct glint_model_output out[GLINT_OUT_KINDS];
 
     for (int k = 0; k < f->n_outputs; k++)
-        out[k] = put_output(d, &f->output[k], &q->output[k], f->n_knots);
+        out[k] =
+            put_output(d, &f->output[k], &q->output[k], f->skew, f->n_knots);
     return glint_draft_put(d, out, (size_t)f->n_outputs * sizeof *out);
 }
 
@@ -94,7 +101,10 @@ static uint32_t put_knots(struct glint_draft *d,
                           const struct glint_fitted_system *f)
 {
     uint32_t where = (uint32_t)d->bytes;
+    const int32_t range_q30[2] = {to_q30(f->y_lo), to_q30(f->y_hi)};
 
+    if (f->skew)
+        return glint_draft_put(d, range_q30, sizeof range_q30);
     for (int k = 0; k < f->n_knots; k++) {
         const int32_t sine_q30 = to_q30(f->knot[k]);
 
@@ -109,7 +119,7 @@ static uint32_t put_box(struct glint_draft *d,
                         const struct glint_quantised_system *q, bool knots,
                         uint8_t *terms)
 {
-    int32_t packed[3 * GLINT_BOX_TERMS];
+    int32_t packed[GLINT_LENS_SIDES * GLINT_BOX_TERMS];
     size_t n = 0;
 
     *terms = 0;

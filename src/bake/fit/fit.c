@@ -81,28 +81,6 @@ static bool has_stacks(const struct glint_visible *visible)
 
 /* ------------------------------------------------------------------- zones */
 
-static void system_finish(struct glint_fitted_system *system)
-{
-    for (int k = 0; k < system->n_outputs; k++)
-        free(system->output[k].coef);
-    free(system->knot);
-    free(system->box);
-}
-
-static enum glint_status append(struct glint_fitted_ghost *ghost,
-                                const struct glint_fitted_system *system)
-{
-    const size_t n = (size_t)ghost->n_systems;
-    struct glint_fitted_system *all =
-        realloc(ghost->system, (n + 1) * sizeof *all);
-
-    if (!all)
-        return GLINT_E_MEMORY;
-    all[ghost->n_systems++] = *system;
-    ghost->system = all;
-    return GLINT_OK;
-}
-
 static enum glint_status set_box(struct glint_fitted_system *system,
                                  const struct glint_zone *zone)
 {
@@ -437,10 +415,10 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
             f->n_parts = 0;
         system.part = f->n_parts;
         if (status == GLINT_OK && next == KEEP && system.n_outputs > 0) {
-            status = append(f->out, &system);
+            status = glint_fitted_append(f->out, &system);
             f->n_parts++;
         } else {
-            system_finish(&system);
+            glint_fitted_drop(&system);
         }
         p.before = attempt.errors.worst;
         p.thorough |= next == THOROUGH || next == BANDS;

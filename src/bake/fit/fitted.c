@@ -24,16 +24,32 @@ enum glint_status glint_fitted_part(struct glint_fitted_ghost *ghost, int part,
     return GLINT_OK;
 }
 
+enum glint_status glint_fitted_append(struct glint_fitted_ghost *ghost,
+                                      const struct glint_fitted_system *system)
+{
+    const size_t n = (size_t)ghost->n_systems;
+    struct glint_fitted_system *all =
+        realloc(ghost->system, (n + 1) * sizeof *all);
+
+    if (!all)
+        return GLINT_E_MEMORY;
+    all[ghost->n_systems++] = *system;
+    ghost->system = all;
+    return GLINT_OK;
+}
+
+void glint_fitted_drop(struct glint_fitted_system *system)
+{
+    for (int k = 0; k < system->n_outputs; k++)
+        free(system->output[k].coef);
+    free(system->knot);
+    free(system->box);
+}
+
 void glint_fitted_finish(struct glint_fitted_ghost *ghost)
 {
-    for (int k = 0; k < ghost->n_systems; k++) {
-        struct glint_fitted_system *s = &ghost->system[k];
-
-        for (int i = 0; i < s->n_outputs; i++)
-            free(s->output[i].coef);
-        free(s->knot);
-        free(s->box);
-    }
+    for (int k = 0; k < ghost->n_systems; k++)
+        glint_fitted_drop(&ghost->system[k]);
     free(ghost->system);
     *ghost = (struct glint_fitted_ghost){.n_systems = 0};
 }

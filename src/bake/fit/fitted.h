@@ -30,6 +30,9 @@ struct glint_fitted_system {
     int ghost, part;
     int annulus; /* as in struct glint_model_system */
     double sine_lo, sine_hi;
+    bool skew; /* true: sine_lo .. sine_hi is the range of the x component of
+                  directions, y_lo .. y_hi that of y */
+    double y_lo, y_hi;
     double wave_lo, wave_hi; /* 1 / wavelength^2, um^-2 */
     int n_knots;  /* number of knots and of sets of coefficients; 0: one set, no
                      knots */
@@ -50,6 +53,13 @@ struct glint_fitted_ghost {
 /* Moves the systems of part PART to OUT, which is empty. GLINT_E_MEMORY. */
 enum glint_status glint_fitted_part(struct glint_fitted_ghost *ghost, int part,
                                     struct glint_fitted_ghost *out);
+
+/* Appends SYSTEM, which GHOST owns from then on. GLINT_E_MEMORY. */
+enum glint_status glint_fitted_append(struct glint_fitted_ghost *ghost,
+                                      const struct glint_fitted_system *system);
+
+/* Frees what SYSTEM owns. */
+void glint_fitted_drop(struct glint_fitted_system *system);
 
 void glint_fitted_finish(struct glint_fitted_ghost *ghost);
 

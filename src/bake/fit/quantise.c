@@ -169,31 +169,42 @@ static void prove_table(struct proof *p, const struct glint_fitted_output *o,
             seen(p, coefficient(q->coef, 1, o->n_terms, k, shift));
         struct range *to = &table[o->power[k][1]][o->power[k][0]];
 
-        for (int x = 2; x < 4; x++)
+        for (int x = 2; x < GLINT_VARIABLES; x++)
             if (o->power[k][x])
                 value = times(p, value, power_of(both_ways, o->power[k][x]));
         *to = plus(p, *to, value);
     }
 }
 
+/* Returns the range of the terms of TABLE with u to the power A and odd, or
+ * even, powers of v. */
+static struct range across(struct proof *p,
+                           struct range table[][GLINT_MAX_POWER + 1], int a,
+                           bool odd)
+{
+    const struct range v2 = {0, 1, 0.5};
+    struct range sum = {0, 0, 0};
+
+    for (int b = GLINT_MAX_POWER - 1 + odd; b >= 0; b -= 2)
+        sum = plus(p, times(p, sum, v2), table[b][a]);
+    return odd ? times(p, sum, both_ways) : sum;
+}
+
 static void prove_auto(struct proof *p, const struct glint_fitted_output *o,
-                       const struct glint_quantised_output *q,
+                       const struct glint_quantised_output *q, bool skew,
                        struct range *result)
 {
     struct range table[GLINT_MAX_POWER + 1][GLINT_MAX_POWER + 1] = {
         {{0, 0, 0}}};
-    const int odd =
+    const bool odd =
         o->kind == GLINT_OUT_SENSOR_Y || o->kind == GLINT_OUT_STOP_Y;
-    const struct range v2 = {0, 1, 0.5};
 
     prove_table(p, o, q, table);
     for (int a = GLINT_MAX_POWER; a >= 0; a--) {
-        struct range sum = {0, 0, 0};
+        struct range sum = across(p, table, a, odd && !skew);
 
-        for (int b = GLINT_MAX_POWER - 1 + odd; b >= 0; b -= 2)
-            sum = plus(p, times(p, sum, v2), table[b][a]);
-        if (odd)
-            sum = times(p, sum, both_ways);
+        if (skew)
+            sum = plus(p, sum, across(p, table, a, true));
         *result = plus(p, times(p, *result, both_ways), sum);
     }
 }
@@ -223,16 +234,17 @@ static struct range energy_of(struct range x, int head, int roots)
     return x;
 }
 
-static void prove(const struct glint_fitted_output *o, int sets, bool knots,
+static void prove(const struct glint_fitted_system *s,
+                  const struct glint_fitted_output *o,
                   struct glint_quantised_output *out)
 {
     struct proof p = {0};
     struct range result = {0, 0, 0};
 
-    if (knots)
-        prove_sparse(&p, o, out->coef, sets, &result);
+    if (s->n_knots > 0)
+        prove_sparse(&p, o, out->coef, sets_of(s), &result);
     else
-        prove_auto(&p, o, out, &result);
+        prove_auto(&p, o, out, s->skew, &result);
     while (out->head > 0 &&
            energy_of(result, out->head, o->roots).error >= 0x1p22)
         out->head--; /* only rounding would go up there */
@@ -322,16 +334,22 @@ static enum glint_status quantise_output(const struct glint_fitted_system *s,
     if (status == GLINT_OK) {
         if (s->n_knots == 0)
             narrow(o, out);
-        prove(o, sets_of(s), s->n_knots > 0, out);
+        prove(s, o, out);
         status = out->proven ? GLINT_OK : GLINT_E_LENS;
     }
     return status;
 }
 
+static int box_size(const struct glint_fitted_system *s)
+{
+    return (s->skew ? GLINT_LENS_SIDES : 3) *
+           (s->n_knots ? s->n_knots : GLINT_BOX_TERMS);
+}
+
 /* Returns whether every output has terms and all numbers are finite. */
 static bool is_sound(const struct glint_fitted_system *s)
 {
-    const int n_box = 3 * (s->n_knots ? s->n_knots : GLINT_BOX_TERMS);
+    const int n_box = box_size(s);
 
     for (int k = 0; k < s->n_outputs; k++) {
         const struct glint_fitted_output *o = &s->output[k];
@@ -349,7 +367,7 @@ enum glint_status glint_quantise(const struct glint_fitted_system *system,
     enum glint_status status;
 
     *out = (struct glint_quantised_system){.box_exponent = 0};
-    out->n_box = 3 * (system->n_knots ? system->n_knots : GLINT_BOX_TERMS);
+    out->n_box = box_size(system);
     if (!is_sound(system))
         return GLINT_E_LENS;
     if (system->n_knots) {
@@ -358,7 +376,9 @@ enum glint_status glint_quantise(const struct glint_fitted_system *system,
             return GLINT_E_LENS; /* The radius is no power of two. */
     } else {
         out->box_exponent = exponent_for(
-            largest_sum(system->box, 3, GLINT_BOX_TERMS), GLINT_BOX_TERMS);
+            largest_sum(system->box, out->n_box / GLINT_BOX_TERMS,
+                        GLINT_BOX_TERMS),
+            GLINT_BOX_TERMS);
     }
     status = to_integers(system->box, out->n_box, out->box_exponent, &out->box);
     for (int k = 0; k < system->n_outputs && status == GLINT_OK; k++)

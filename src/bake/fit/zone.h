@@ -11,7 +11,12 @@
  *   s     the sine of the light's angle within the range
  *   w     1 / wavelength^2 within the band
  * In these coordinates a ghost varies smoothly. It is symmetric in v, so only v
- * >= 0 is traced. */
+ * >= 0 is traced.
+ *
+ * A zone of a lens that is not round is SKEW: it covers ranges of both
+ * components of the light's direction, in the lens's own frame, and
+ *   p     the y component of the direction within its range
+ * is a fifth variable. Its box lies at any height. */
 #ifndef GLINT_BAKE_FIT_ZONE_H
 #define GLINT_BAKE_FIT_ZONE_H
 
@@ -24,6 +29,10 @@ struct glint_zone {
     double lo, hi;                  /* range of the sine of the angle */
     double middle[GLINT_BOX_TERMS]; /* mm; terms as in a model */
     double half_x[GLINT_BOX_TERMS], half_y[GLINT_BOX_TERMS];
+    bool skew;
+    double y_lo, y_hi; /* range of the y component of a skew zone's directions,
+                          of which lo .. hi is that of x */
+    double middle_y[GLINT_BOX_TERMS]; /* mm; of a skew zone */
     double fill; /* mean share of the box that the ghost needs */
     int annulus; /* as in struct glint_model_system */
 };
@@ -37,6 +46,11 @@ struct glint_zone_part {
 
 /* Returns the middle or a half size of the box, SIDE, at S and W. */
 double glint_zone_at(const double side[GLINT_BOX_TERMS], double s, double w);
+
+/* Returns the same of ZONE, skew or not, at X. */
+double glint_zone_side(const struct glint_zone *zone,
+                       const double side[GLINT_BOX_TERMS],
+                       const double x[GLINT_VARIABLES]);
 
 /* Sets the box for LO .. HI of PROFILE. BY_COLOUR: it moves with the wavelength
  * and takes more terms; else one box holds all colours. */

@@ -17,8 +17,7 @@ static struct sight look(const struct glint_zone_rays *r, int first)
     struct sight s = {.low = {HUGE_VAL, HUGE_VAL},
                       .high = {-HUGE_VAL, -HUGE_VAL}};
 
-    for (int i = first; i < r->n && r->x[2][i] == r->x[2][first] &&
-                        r->x[3][i] == r->x[3][first];
+    for (int i = first; i < r->n && glint_zone_rays_alike(r, i, first);
          i++, s.n_all++) {
         if (!glint_zone_rays_seen(r, i))
             continue;
@@ -33,6 +32,19 @@ static struct sight look(const struct glint_zone_rays *r, int first)
     return s;
 }
 
+/* Returns the sine of the light's angle at X. */
+static double sine_of(const struct glint_zone *zone,
+                      const double x[GLINT_VARIABLES])
+{
+    const double along = 0.5 * (zone->lo + zone->hi) +
+                         0.5 * x[GLINT_S] * (zone->hi - zone->lo);
+
+    return !zone->skew
+               ? along
+               : hypot(along, 0.5 * (zone->y_lo + zone->y_hi) +
+                                  0.5 * x[GLINT_P] * (zone->y_hi - zone->y_lo));
+}
+
 /* Returns how bright the ghost is at its brightest in the zone, relative to the
  * level that counts. */
 static double share_of(const struct glint_tolerance *tolerance,
@@ -44,15 +56,17 @@ static double share_of(const struct glint_tolerance *tolerance,
 
     for (int i = 0, next; i < r->n; i = next) {
         const struct sight v = look(r, i);
-        const double s = r->x[2][i], w = r->x[3][i];
+        const double x[GLINT_VARIABLES] = {0, 0, r->x[GLINT_S][i],
+                                           r->x[GLINT_W][i], r->x[GLINT_P][i]};
         const double pupil = 4 * (1 - glint_zone_rim(zone->annulus)) *
-                             glint_zone_at(zone->half_x, s, w) *
-                             glint_zone_at(zone->half_y, s, w) * v.n / v.n_all;
-        const double level = glint_brightness_at(
-            tolerance->brightness,
-            0.5 * (zone->lo + zone->hi) + 0.5 * s * (zone->hi - zone->lo));
-        /* The light is symmetric in y. */
-        const double y = fmax(fabs(v.low[1]), fabs(v.high[1]));
+                             glint_zone_side(zone, zone->half_x, x) *
+                             glint_zone_side(zone, zone->half_y, x) * v.n /
+                             v.n_all;
+        const double level =
+            glint_brightness_at(tolerance->brightness, sine_of(zone, x));
+        /* The light of a round lens is symmetric in y. */
+        const double y = zone->skew ? 0.5 * (v.high[1] - v.low[1])
+                                    : fmax(fabs(v.low[1]), fabs(v.high[1]));
 
         next = i + v.n_all;
         if (v.n >= FEW)
@@ -71,9 +85,9 @@ double glint_zone_aim_stretch(const struct glint_zone_rays *rays,
     for (int i = 1; i < rays->n; i++) {
         const double *x = rays->at[RAY_SENSOR_X], *y = rays->at[RAY_SENSOR_Y];
 
-        if (rays->x[1][i] != rays->x[1][i - 1] ||
-            rays->x[2][i] != rays->x[2][i - 1] ||
-            rays->x[3][i] != rays->x[3][i - 1] ||
+        if ((rays->x[GLINT_V][i] != rays->x[GLINT_V][i - 1] &&
+             !rays->scattered) ||
+            !glint_zone_rays_alike(rays, i, i - 1) ||
             !glint_zone_rays_seen(rays, i) ||
             !glint_zone_rays_seen(rays, i - 1) || a[i] < near)
             continue;

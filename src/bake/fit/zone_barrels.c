@@ -60,8 +60,7 @@ static void sample_rays(const struct glint_zone *z,
 
         t.path = &h->position_path[wave];
         for (t.n = 0; t.n < GLINT_ZONE_BATCH;) {
-            glint_zone_batch_scatter(k * GLINT_ZONE_BATCH + t.n, x);
-            x[1] = fabs(x[1]);
+            glint_zone_scatter(z, k * GLINT_ZONE_BATCH + t.n, x);
             x[3] = glint_zone_node(wave, GLINT_VISIBLE_WAVES);
             glint_zone_batch_add(&t, z, x);
         }

@@ -26,7 +26,8 @@ struct glint_zone_batch {
 };
 
 /* Adds the ray at X of the zone; its w is that of the path, its v 0 .. 1 from
- * the middle, or the inner end, of the box to its rim. */
+ * the middle, or the inner end, of the box to its rim, or of a skew zone -1 ..
+ * 1. */
 void glint_zone_batch_add(struct glint_zone_batch *batch,
                           const struct glint_zone *zone,
                           const double x[GLINT_VARIABLES]);
@@ -45,5 +46,10 @@ static inline double (*glint_zone_batch_hits(struct glint_zone_batch *batch,
  * (K + 1) / g, / g^2 .. / g^4, g being the root of x^5 = x + 1, spread over -1
  * .. 1. */
 void glint_zone_batch_scatter(int k, double x[GLINT_VARIABLES]);
+
+/* Sets X to place number K of such a sequence over ZONE: of five dimensions if
+ * it is skew, else with v of 0 or more. */
+void glint_zone_scatter(const struct glint_zone *zone, int k,
+                        double x[GLINT_VARIABLES]);
 
 #endif

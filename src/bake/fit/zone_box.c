@@ -27,6 +27,20 @@ double glint_zone_at(const double side[GLINT_BOX_TERMS], double s, double w)
            w * (side[GLINT_BOX_POWERS] + s * side[GLINT_BOX_POWERS + 1]);
 }
 
+double glint_zone_side(const struct glint_zone *zone,
+                       const double side[GLINT_BOX_TERMS],
+                       const double x[GLINT_VARIABLES])
+{
+    const double s = x[GLINT_S], p = x[GLINT_P];
+
+    if (!zone->skew)
+        return glint_zone_at(side, s, x[GLINT_W]);
+    return side[0] + s * (side[1] + s * side[2]) +
+           p * (side[3] + s * side[4] + p * side[5]) +
+           x[GLINT_W] * (side[GLINT_BOX_POWERS] +
+                         s * side[GLINT_BOX_POWERS + 1]);
+}
+
 /* The boxes that a zone's box has to hold, at places s and w of the zone. */
 enum { ROOM = GLINT_PROFILE * GLINT_VISIBLE_WAVES };
 

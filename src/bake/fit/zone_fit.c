@@ -48,6 +48,19 @@ static const struct glint_degrees steep_degrees = {.most = {8, 6, 4, 8},
                                                    .total = 12,
                                                    .terms = MANY_TERMS};
 
+/* Terms of skew zones, whose powers of s, p and w are below
+ * GLINT_LENS_POWERS and GLINT_LENS_WAVE_POWERS. */
+static const struct glint_degrees skew_degrees = {
+    .most = {GLINT_MAX_POWER, 8, 5, 4, 5},
+    .weight = {1, 1, 1, 2, 1},
+    .total = 10,
+    .terms = FEW_TERMS};
+static const struct glint_degrees skew_energy_degrees = {
+    .most = {5, 5, 4, 6, 4},
+    .weight = {1, 1, 1, 1, 1},
+    .total = 8,
+    .terms = FEW_TERMS};
+
 /* One fit: its task and tolerances, memory, and the errors so far. */
 struct fit {
     const struct glint_zone_task *task;
@@ -107,11 +120,10 @@ static void set_weights(struct fit *f)
 static bool leaks(const struct glint_zone_rays *r, int i,
                   const struct glint_fitted_system *system, double field_mm)
 {
-    const double x[GLINT_VARIABLES] = {r->x[0][i], r->x[1][i], r->x[2][i],
-                                       r->x[3][i]};
-    double at[GLINT_OUT_KINDS] = {0};
+    double x[GLINT_VARIABLES], at[GLINT_OUT_KINDS] = {0};
     bool passes = r->at[RAY_EXCESS][i] > 1.05;
 
+    glint_zone_rays_x(r, i, x);
     for (int k = 0; k < system->n_outputs && passes; k++) {
         const struct glint_fitted_output *o = &system->output[k];
 
@@ -168,9 +180,13 @@ static double fit_poly(struct fit *f, const struct glint_zone_rays *r,
                        struct glint_poly *poly)
 {
     const struct glint_regress_samples samples = {
-        r->n, {r->x[0], r->x[1], r->x[2], r->x[3]}, f->buffers->channel_weight};
+        r->n,
+        {r->x[0], r->x[1], r->x[2], r->x[3], r->x[4]},
+        f->buffers->channel_weight};
+    const bool skew = f->task->zone->skew;
     struct glint_degrees degrees =
-        kind != GLINT_OUT_ENERGY ? position_degrees
+        skew ? kind != GLINT_OUT_ENERGY ? skew_degrees : skew_energy_degrees
+        : kind != GLINT_OUT_ENERGY ? position_degrees
         : f->task->thorough &&
                 (is_wide(f) ||
                  glint_zone_rays_spread(&f->buffers->rays) > GLINT_STEEP)
@@ -182,7 +198,8 @@ static double fit_poly(struct fit *f, const struct glint_zone_rays *r,
     degrees.hopeless = kind == GLINT_OUT_ENERGY ? 0 : f->task->hopeless;
     degrees.patience = PATIENCE;
     degrees.leaps = is_wide(f);
-    degrees.parity = kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y;
+    degrees.parity =
+        skew ? -1 : kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y;
     return glint_regress_fit(f->buffers->scratch, &samples, f->buffers->value,
                              &degrees, rms, PEAK * rms, poly);
 }
@@ -418,12 +435,11 @@ static double check_output(const struct fit *f,
     int n = 0;
 
     for (int i = 0; i < r->n; i++) {
-        const double x[GLINT_VARIABLES] = {r->x[0][i], r->x[1][i], r->x[2][i],
-                                           r->x[3][i]};
-        double error;
+        double x[GLINT_VARIABLES], error;
 
         if (r->at[RAY_EXCESS][i] > 1.02 || r->at[RAY_FIELD][i] > 1)
             continue;
+        glint_zone_rays_x(r, i, x);
         error = glint_poly_at(o->n_terms, o->power, o->coef, x) - value[i];
         sum2 += error * error;
         n++;

@@ -33,10 +33,11 @@ struct glint_zone_task {
     double settled;
 };
 
-/* Moments are at most those of the energy's degrees, 16, 12, 8 and 16. */
+/* Moments are at most those of the degrees of a skew zone's places, 18, 16, 10,
+ * 8 and 10. */
 #define GLINT_ZONE_SCRATCH                                  \
     GLINT_REGRESS_DOUBLES(GLINT_ZONE_RAYS, GLINT_MAX_TERMS, \
-                          GLINT_MAX_CANDIDATES, 17 * 13 * 9 * 17)
+                          GLINT_MAX_CANDIDATES, 19 * 17 * 11 * 9 * 11)
 
 /* Memory for fits of zones, one after the other. */
 struct glint_zone_buffers {

@@ -119,6 +119,38 @@ static void trace_positions(const struct glint_zone *zone,
     }
 }
 
+/* Traces the rays of a skew zone, for positions and energies alike: a few at
+ * each of many directions and wavelengths. Directions fill the zone up to its
+ * borders. */
+static void trace_scattered(const struct glint_zone *zone,
+                            const struct glint_visible *visible,
+                            struct glint_zone_rays *rays)
+{
+    enum { PLANES = 135, RAYS = GLINT_ZONE_BATCH };
+    struct glint_zone_batch t;
+
+    rays->n = 0;
+    for (int k = 0; k < PLANES; k++) {
+        const int wave = k % GLINT_VISIBLE_WAVES;
+        double plane[GLINT_VARIABLES], x[GLINT_VARIABLES];
+
+        glint_zone_scatter(zone, k, plane);
+        t.path = &visible->path[wave];
+        for (t.n = 0; t.n < RAYS;) {
+            glint_zone_scatter(zone, k * RAYS + t.n, x);
+            for (int i = 0; i < GLINT_VARIABLES; i++)
+                x[i] = sin(0.5 * GLINT_PI * (i < GLINT_S ? x[i] : plane[i]));
+            x[GLINT_W] = glint_zone_node(wave, GLINT_VISIBLE_WAVES);
+            glint_zone_batch_add(&t, zone, x);
+        }
+        glint_zone_batch_trace(&t);
+        for (int i = 0; i < RAYS; i++)
+            if (t.status[i] == GLINT_RAY_OK)
+                add_ray(visible, t.path, t.x[i], &t.ray[i],
+                        glint_zone_batch_hits(&t, i), rays);
+    }
+}
+
 bool glint_zone_rays_dark(const struct glint_zone_rays *rays)
 {
     for (int i = 0; i < rays->n; i++)
@@ -132,8 +164,7 @@ double glint_zone_rays_spread(const struct glint_zone_rays *rays)
     double least = HUGE_VAL, most = 0, spread = 1;
 
     for (int i = 0; i < rays->n; i++) {
-        if (i == 0 || rays->x[2][i] != rays->x[2][i - 1] ||
-            rays->x[3][i] != rays->x[3][i - 1]) {
+        if (i == 0 || !glint_zone_rays_alike(rays, i, i - 1)) {
             least = HUGE_VAL;
             most = 0;
         }
@@ -169,8 +200,13 @@ void glint_zone_trace(const struct glint_zone *zone,
                       struct glint_zone_rays *rays,
                       struct glint_zone_rays *energies)
 {
+    energies->n_barrels = energies->n = 0;
+    rays->scattered = energies->scattered = zone->skew;
+    if (zone->skew) {
+        trace_scattered(zone, visible, rays);
+        return;
+    }
     trace_positions(zone, visible, rays);
-    energies->n_barrels = 0;
     trace_energies(zone, visible, glint_zone_rays_spread(rays) > GLINT_STEEP,
                    energies);
 }
@@ -187,14 +223,14 @@ void glint_zone_check(const struct glint_zone *zone,
     t.path = &path;
     rays->n = rays->n_barrels = 0;
     for (int k = 0; k < BUNDLES; k++) {
-        glint_zone_batch_scatter(k, bundle);
+        glint_zone_scatter(zone, k, bundle);
         glint_visible_path(visible, bundle[3], &path);
         path.places_only = true;
         for (t.n = 0; t.n < RAYS;) {
-            glint_zone_batch_scatter(k * RAYS + t.n, x);
-            x[1] = fabs(x[1]);
-            x[2] = bundle[2];
-            x[3] = bundle[3];
+            glint_zone_scatter(zone, k * RAYS + t.n, x);
+            x[GLINT_S] = bundle[GLINT_S];
+            x[GLINT_W] = bundle[GLINT_W];
+            x[GLINT_P] = bundle[GLINT_P];
             glint_zone_batch_add(&t, zone, x);
         }
         glint_zone_batch_trace(&t);

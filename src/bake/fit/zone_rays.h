@@ -26,6 +26,7 @@ enum {
 
 struct glint_zone_rays {
     int n;
+    bool scattered; /* false: neighbours of the same v lie in rows */
     double x[GLINT_VARIABLES][GLINT_ZONE_RAYS];
     double at[RAY_CHANNELS][GLINT_ZONE_RAYS];
     /* relative radius at each barrel that cuts in the zone */
@@ -40,6 +41,23 @@ static inline bool glint_zone_rays_seen(const struct glint_zone_rays *r,
                                         int ray)
 {
     return r->at[RAY_EXCESS][ray] <= 1 && r->at[RAY_FIELD][ray] <= 1;
+}
+
+/* Sets X to the place of ray I. */
+static inline void glint_zone_rays_x(const struct glint_zone_rays *r, int i,
+                                     double x[GLINT_VARIABLES])
+{
+    for (int k = 0; k < GLINT_VARIABLES; k++)
+        x[k] = r->x[k][i];
+}
+
+/* Returns whether rays I and J are of one direction and wavelength. */
+static inline bool glint_zone_rays_alike(const struct glint_zone_rays *r, int i,
+                                         int j)
+{
+    return r->x[GLINT_S][i] == r->x[GLINT_S][j] &&
+           r->x[GLINT_W][i] == r->x[GLINT_W][j] &&
+           r->x[GLINT_P][i] == r->x[GLINT_P][j];
 }
 
 /* Returns whether none of the rays is seen. */
@@ -62,7 +80,7 @@ void glint_zone_choose_barrels(const struct glint_zone *zone,
                                struct glint_zone_rays *rays);
 
 /* Traces RAYS for positions and barrels, and ENERGIES at fewer places but more
- * wavelengths. */
+ * wavelengths; of a skew zone RAYS are for energies, too. */
 void glint_zone_trace(const struct glint_zone *zone,
                       const struct glint_visible *visible,
                       struct glint_zone_rays *rays,

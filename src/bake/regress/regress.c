@@ -31,7 +31,7 @@ struct column {
 };
 
 enum {
-    NEIGHBOURS = GLINT_VARIABLES + 1,
+    NEIGHBOURS = GLINT_VARIABLES + 2,
     BLOCK = 512 /* rays whose values stay in the nearest cache */
 };
 
@@ -181,9 +181,10 @@ static void fill(const struct search *s, struct column *column,
 
         memcpy(at + i, from + i, (size_t)n * sizeof *at);
         for (int k = 0; k < GLINT_VARIABLES; k++)
-            glint_vector_multiply(
-                at + i, v->x[k] + i,
-                column->power[k] - (parent ? parent->power[k] : 0), n);
+            if (column->power[k])
+                glint_vector_multiply(
+                    at + i, v->x[k] + i,
+                    column->power[k] - (parent ? parent->power[k] : 0), n);
     }
     column->at = at;
     column->was2 = column->left2 = glint_vector_dot(at, at, v->n);
@@ -223,12 +224,14 @@ static struct column *add_candidate(struct search *s, const uint8_t *power,
 
 /* Adds the terms next to COLUMN's as candidates: one power more in a variable,
  * two more in one with parity. With leaps those with two powers more of
- * variable 0 are next to it, too: where a ghost is symmetric, near the axis,
- * the odd power in between explains nothing and would never be chosen. */
+ * variable 0 are next to it, too, and of variable 1 if its parity is free: where
+ * a ghost is symmetric, near the axis, the odd power in between explains nothing
+ * and would never be chosen. */
 static void add_neighbours(struct search *s, const struct column *column)
 {
     struct column *added[NEIGHBOURS];
-    const int most = s->degrees->leaps ? NEIGHBOURS : GLINT_VARIABLES;
+    const int leaps = 1 + (s->degrees->parity < 0);
+    const int most = GLINT_VARIABLES + (s->degrees->leaps ? leaps : 0);
     int n = 0;
 
     for (int k = 0; k < most; k++) {
@@ -348,7 +351,7 @@ double glint_regress_fit(double *scratch,
                        .moment = scratch,
                        .residual = scratch + n_moments};
     const uint8_t first[GLINT_VARIABLES] = {0, (uint8_t)(degrees->parity > 0),
-                                            0, 0};
+                                            0, 0, 0};
     double left;
 
     s.direction = s.residual + n;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Sparse polynomial regression in up to four variables.
+ * Sparse polynomial regression in up to five variables.
  *
  *   in   samples of the variables (each within -1 .. 1), a value and a weight
  *   out  the few monomials that describe the value well enough
@@ -19,7 +19,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { GLINT_VARIABLES = 4, GLINT_MAX_TERMS = 120, GLINT_MAX_CANDIDATES = 280 };
+enum { GLINT_VARIABLES = 5, GLINT_MAX_TERMS = 120, GLINT_MAX_CANDIDATES = 280 };
+
+/* Places of the variables of ghosts (glint/model.h) in polynomials. */
+enum { GLINT_U, GLINT_V, GLINT_S, GLINT_W, GLINT_P };
 
 struct glint_poly {
     int n;
@@ -38,12 +41,13 @@ struct glint_degrees {
      * HOPELESS times what it may be; 0: it never does. */
     double hopeless;
     int patience;
-    bool leaps; /* terms two powers up in variable 0 are neighbours, too */
+    bool leaps; /* terms two powers up in variable 0 are neighbours, too, and in
+                   variable 1 if it may have any parity */
 };
 
 struct glint_regress_samples {
     int n;
-    const double *x[GLINT_VARIABLES];
+    const double *x[GLINT_VARIABLES]; /* NULL for those that no term has */
     const double *weight;
 };
 

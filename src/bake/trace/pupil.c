@@ -210,13 +210,14 @@ static struct glint_pupil whole_front(const struct glint_path *path,
                                       const double direction[3])
 {
     const double off = off_axis(path, front), h = front->semi_mm + off;
-    const double aside =
-        (fabs(sag_of(path, front)) + off) * fabs(direction[0] / direction[2]);
+    const double deep = fabs(sag_of(path, front)) + off;
+    const double x = h + deep * fabs(direction[0] / direction[2]);
+    const double y = h + deep * fabs(direction[1] / direction[2]);
 
-    return (struct glint_pupil){.x0_mm = -h - aside,
-                                .x1_mm = h + aside,
-                                .y0_mm = path->round ? 0 : -h,
-                                .y1_mm = h,
+    return (struct glint_pupil){.x0_mm = -x,
+                                .x1_mm = x,
+                                .y0_mm = path->round ? 0 : -y,
+                                .y1_mm = y,
                                 .mirrored = path->round};
 }
 
@@ -331,6 +332,18 @@ bool glint_pupil_find_within(struct glint_pupil *pupil,
                              double stop_radius_mm, double field_mm,
                              const struct glint_pupil *near)
 {
+    const double direction[3] = {glint_sin_deg(theta_deg), 0,
+                                 glint_cos_deg(theta_deg)};
+
+    return glint_pupil_find_towards(pupil, path, direction, stop_radius_mm,
+                                    field_mm, near);
+}
+
+bool glint_pupil_find_towards(struct glint_pupil *pupil,
+                              const struct glint_path *path,
+                              const double direction[3], double stop_radius_mm,
+                              double field_mm, const struct glint_pupil *near)
+{
     struct search s; /* 110 KB: the offline half has the stack for it */
     struct glint_pupil whole, p;
     const struct glint_event *front = NULL;
@@ -342,9 +355,8 @@ bool glint_pupil_find_within(struct glint_pupil *pupil,
     if (!front)
         return false;
     s.path = path;
-    s.direction[0] = glint_sin_deg(theta_deg);
-    s.direction[1] = 0;
-    s.direction[2] = glint_cos_deg(theta_deg);
+    for (int k = 0; k < 3; k++)
+        s.direction[k] = direction[k];
     s.stop_mm = stop_radius_mm;
     s.field_mm = field_mm;
     whole = whole_front(path, front, s.direction);

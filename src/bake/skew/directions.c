@@ -1,0 +1,308 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/skew/directions.h"
+
+#include <math.h>
+
+enum { ACROSS = 24, ROUNDS = 4, GROWS = 6 };
+
+static const int waves[GLINT_PATCH_WAVES] = {GLINT_VISIBLE_WAVES / 2, 0,
+                                             GLINT_VISIBLE_WAVES - 1};
+
+/* Returns the component nearest to 0 in LO .. HI. */
+static double nearest(double lo, double hi)
+{
+    return fmax(lo, fmin(hi, 0));
+}
+
+double glint_patch_nearest(const struct glint_patch *patch)
+{
+    return hypot(nearest(patch->x0, patch->x1), nearest(patch->y0, patch->y1));
+}
+
+double glint_patch_farthest(const struct glint_patch *patch)
+{
+    return hypot(fmax(fabs(patch->x0), fabs(patch->x1)),
+                 fmax(fabs(patch->y0), fabs(patch->y1)));
+}
+
+/* ------------------------------------------------------------------- boxes */
+
+/* Columns and rows of a grid that hold rays which get through. */
+struct extent {
+    int i0, i1, j0, j1;
+};
+
+/* Sends a grid of rays over BOX; returns whether any gets through. */
+static bool look(const struct glint_visible *h, const struct glint_path *path,
+                 const double direction[3], const struct glint_pupil *box,
+                 struct extent *e)
+{
+    struct glint_row row = {ACROSS + 1,
+                            box->x0_mm,
+                            (box->x1_mm - box->x0_mm) / ACROSS,
+                            0,
+                            {direction[0], direction[1], direction[2]}};
+    struct glint_ray ray[ACROSS + 1];
+    enum glint_ray_status status[ACROSS + 1];
+
+    *e = (struct extent){ACROSS + 1, -1, ACROSS + 1, -1};
+    for (int j = 0; j <= ACROSS; j++) {
+        row.y_mm = box->y0_mm + (box->y1_mm - box->y0_mm) * j / ACROSS;
+        glint_trace_row(path, &row, ray, status, NULL);
+        for (int i = 0; i <= ACROSS; i++) {
+            if (status[i] != GLINT_RAY_OK || !glint_visible_passes(h, &ray[i]))
+                continue;
+            e->i0 = i < e->i0 ? i : e->i0;
+            e->i1 = i > e->i1 ? i : e->i1;
+            e->j0 = j < e->j0 ? j : e->j0;
+            e->j1 = j;
+        }
+    }
+    return e->i1 >= 0;
+}
+
+static double area(const struct glint_pupil *p)
+{
+    return (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm);
+}
+
+/* Shrinks BOX to the rays that get through, and a cell around them, again and
+ * again; returns whether there are any. */
+static bool tighten(const struct glint_visible *h,
+                    const struct glint_path *path, const double direction[3],
+                    struct glint_pupil *box)
+{
+    for (int round = 0; round < ROUNDS; round++) {
+        const struct glint_pupil old = *box;
+        const double dx = (old.x1_mm - old.x0_mm) / ACROSS;
+        const double dy = (old.y1_mm - old.y0_mm) / ACROSS;
+        struct extent e;
+
+        if (!look(h, path, direction, box, &e))
+            return round > 0;
+        box->x0_mm = old.x0_mm + dx * fmax(0, e.i0 - 1);
+        box->x1_mm = old.x0_mm + dx * fmin(ACROSS, e.i1 + 1);
+        box->y0_mm = old.y0_mm + dy * fmax(0, e.j0 - 1);
+        box->y1_mm = old.y0_mm + dy * fmin(ACROSS, e.j1 + 1);
+        if (area(box) > 0.8 * area(&old))
+            break;
+    }
+    return true;
+}
+
+/* Finds the box that is like NEAR, the one of another wavelength: grows that on
+ * every side at which light still comes through. */
+static bool follow(const struct glint_visible *h, const struct glint_path *path,
+                   const double direction[3], const struct glint_pupil *near,
+                   struct glint_pupil *box)
+{
+    *box = *near;
+    for (int round = 0; round < GROWS; round++) {
+        const double x = 0.25 * (box->x1_mm - box->x0_mm);
+        const double y = 0.25 * (box->y1_mm - box->y0_mm);
+        struct extent e;
+
+        if (round == 0)
+            e = (struct extent){0, ACROSS, 0, ACROSS};
+        else if (!look(h, path, direction, box, &e))
+            return false;
+        if (e.i0 > 0 && e.i1 < ACROSS && e.j0 > 0 && e.j1 < ACROSS)
+            return tighten(h, path, direction, box);
+        box->x0_mm -= e.i0 == 0 ? x : 0;
+        box->x1_mm += e.i1 == ACROSS ? x : 0;
+        box->y0_mm -= e.j0 == 0 ? y : 0;
+        box->y1_mm += e.j1 == ACROSS ? y : 0;
+    }
+    return false;
+}
+
+static bool find(const struct glint_visible *h, const struct glint_path *path,
+                 const double direction[3], struct glint_pupil *box)
+{
+    return glint_pupil_find_towards(box, path, direction,
+                                    h->setup->optics.stop_radius_mm,
+                                    h->field_mm, NULL) &&
+           tighten(h, path, direction, box);
+}
+
+/* Adds the boxes of one direction, of which S and P are the coordinates. */
+static void add_direction(const struct glint_visible *h, double s, double p,
+                          const double direction[3],
+                          struct glint_sights *sights)
+{
+    const struct glint_pupil *near = NULL;
+
+    for (int k = 0; k < GLINT_PATCH_WAVES; k++) {
+        const struct glint_path *path = &h->position_path[waves[k]];
+        struct glint_sight *to = &sights->at[sights->n];
+
+        if (!(near && follow(h, path, direction, near, &to->box)) &&
+            !find(h, path, direction, &to->box))
+            continue;
+        to->x[GLINT_U] = to->x[GLINT_V] = 0;
+        to->x[GLINT_S] = s;
+        to->x[GLINT_P] = p;
+        to->x[GLINT_W] = glint_zone_node(waves[k], GLINT_VISIBLE_WAVES);
+        near = &to->box;
+        sights->n++;
+    }
+}
+
+void glint_sights_find(const struct glint_visible *visible,
+                       const struct glint_patch *patch, double sine_hi,
+                       struct glint_sights *sights)
+{
+    sights->n = 0;
+    for (int k = 0; k < GLINT_PATCH_SIDE * GLINT_PATCH_SIDE; k++) {
+        const double s = 2.0 * (k % GLINT_PATCH_SIDE) / (GLINT_PATCH_SIDE - 1);
+        const double p = 2.0 * (k / GLINT_PATCH_SIDE) / (GLINT_PATCH_SIDE - 1);
+        const double x = patch->x0 + 0.5 * s * (patch->x1 - patch->x0);
+        const double y = patch->y0 + 0.5 * p * (patch->y1 - patch->y0);
+        const double direction[3] = {x, y, sqrt(fmax(0, 1 - x * x - y * y))};
+
+        if (hypot(x, y) <= sine_hi)
+            add_direction(visible, s - 1, p - 1, direction, sights);
+    }
+}
+
+/* -------------------------------------------------------------------- zone */
+
+enum { MOST = GLINT_PATCH_SIDE * GLINT_PATCH_SIDE * GLINT_PATCH_WAVES };
+
+/* One side of each box, at s, w and p. */
+struct sides {
+    int n;
+    double x[3][MOST], value[MOST];
+};
+
+/* Sets SIDE to the polynomial of DEGREE in s and p, and of w, that follows the
+ * values within TOLERANCE, or as well as it can. */
+static void fit_side(const struct sides *sides, int degree, double tolerance,
+                     double side[GLINT_BOX_TERMS])
+{
+    static const double zero[MOST];
+    static const int place[3][3] = {{0, 3, 5}, {1, 4, 0}, {2, 0, 0}};
+    double scratch[GLINT_REGRESS_DOUBLES(MOST, GLINT_BOX_TERMS, 16,
+                                         5 * 3 * 5)];
+    double weight[MOST];
+    const struct glint_regress_samples samples = {
+        sides->n,
+        {zero, zero, sides->x[0], sides->x[1], sides->x[2]},
+        weight};
+    const struct glint_degrees degrees = {
+        .most = {0, 0, (uint8_t)degree, 1, (uint8_t)degree},
+        .weight = {1, 1, 1, 2, 1},
+        .total = 2,
+        .parity = -1,
+        .terms = GLINT_BOX_TERMS - 1};
+    struct glint_poly fit;
+
+    for (int i = 0; i < sides->n; i++)
+        weight[i] = 1;
+    for (int k = 0; k < GLINT_BOX_TERMS; k++)
+        side[k] = 0;
+    glint_regress_fit(scratch, &samples, sides->value, &degrees, tolerance,
+                      4 * tolerance, &fit);
+    for (int k = 0; k < fit.n; k++)
+        side[fit.power[k][GLINT_W]
+                 ? GLINT_BOX_POWERS
+                 : place[fit.power[k][GLINT_S]][fit.power[k][GLINT_P]]] =
+            fit.coef[k];
+}
+
+/* Returns minus the least value of the half size HALF over ZONE, sampled. */
+static double lacks(const struct glint_zone *zone,
+                    const double half[GLINT_BOX_TERMS])
+{
+    double lowest = HUGE_VAL;
+
+    for (int k = 0; k < 9 * 9 * 2; k++) {
+        const double x[GLINT_VARIABLES] = {0, 0, (k % 9 - 4) / 4.0,
+                                           k / 81 ? 1 : -1,
+                                           (k / 9 % 9 - 4) / 4.0};
+
+        lowest = fmin(lowest, glint_zone_side(zone, half, x));
+    }
+    return -lowest;
+}
+
+static double half_of(const struct glint_pupil *box, bool y)
+{
+    return y ? 0.5 * (box->y1_mm - box->y0_mm)
+             : 0.5 * (box->x1_mm - box->x0_mm);
+}
+
+static double middle_of(const struct glint_pupil *box, bool y)
+{
+    return y ? 0.5 * (box->y0_mm + box->y1_mm)
+             : 0.5 * (box->x0_mm + box->x1_mm);
+}
+
+/* Sets MIDDLE and HALF of ZONE along x or y to what holds all sights. */
+static void set_sides(const struct glint_sights *sights, int degree, bool y,
+                      const struct glint_zone *zone,
+                      double middle[GLINT_BOX_TERMS],
+                      double half[GLINT_BOX_TERMS])
+{
+    struct sides of = {.n = sights->n};
+    double narrowest = HUGE_VAL, more = 0;
+
+    for (int i = 0; i < of.n; i++) {
+        of.x[0][i] = sights->at[i].x[GLINT_S];
+        of.x[1][i] = sights->at[i].x[GLINT_W];
+        of.x[2][i] = sights->at[i].x[GLINT_P];
+        narrowest = fmin(narrowest, half_of(&sights->at[i].box, y));
+        of.value[i] = middle_of(&sights->at[i].box, y);
+    }
+    fit_side(&of, degree, 0.02 * narrowest, middle);
+    for (int i = 0; i < of.n; i++)
+        of.value[i] = half_of(&sights->at[i].box, y);
+    fit_side(&of, degree, 0.02 * narrowest, half);
+    for (int i = 0; i < of.n; i++) {
+        const double *x = sights->at[i].x;
+        const double off = fabs(middle_of(&sights->at[i].box, y) -
+                                glint_zone_side(zone, middle, x));
+
+        more = fmax(more, of.value[i] + off - glint_zone_side(zone, half, x));
+    }
+    half[0] += more;
+    half[0] += fmax(0.01 * half[0], 1.1 * lacks(zone, half));
+}
+
+static double fill_of(const struct glint_sights *sights,
+                      const struct glint_zone *zone)
+{
+    double sum = 0;
+
+    for (int i = 0; i < sights->n; i++) {
+        const struct glint_sight *v = &sights->at[i];
+
+        sum += half_of(&v->box, false) * half_of(&v->box, true) /
+               (glint_zone_side(zone, zone->half_x, v->x) *
+                glint_zone_side(zone, zone->half_y, v->x));
+    }
+    return sum / sights->n;
+}
+
+void glint_sights_zone(const struct glint_sights *sights,
+                       const struct glint_patch *patch, struct glint_zone *zone)
+{
+    /* As in zone_box.c: what is enough, and by how much a box of a higher
+     * degree has to be fuller. */
+    const double enough = 0.6, fuller = 1.6;
+
+    *zone = (struct glint_zone){.fill = 0};
+    for (int degree = 0; degree <= 2 && zone->fill < enough; degree++) {
+        struct glint_zone z = {.lo = patch->x0,
+                               .hi = patch->x1,
+                               .skew = true,
+                               .y_lo = patch->y0,
+                               .y_hi = patch->y1};
+
+        set_sides(sights, degree, false, &z, z.middle, z.half_x);
+        set_sides(sights, degree, true, &z, z.middle_y, z.half_y);
+        z.fill = fill_of(sights, &z);
+        if (z.fill > fuller * zone->fill)
+            *zone = z;
+    }
+}

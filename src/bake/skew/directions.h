@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Where a ghost of a lens that is not round is visible: through which part of
+ * the pupil, for light from a direction.
+ *
+ *   in   a ghost, its paths in the lens's own frame, a patch of directions
+ *   out  boxes of visible light at a few directions of it and wavelengths; a
+ *        zone whose box follows them
+ *
+ * Directions are patches of their x and y components, -1 .. 1. */
+#ifndef GLINT_BAKE_SKEW_DIRECTIONS_H
+#define GLINT_BAKE_SKEW_DIRECTIONS_H
+
+#include "bake/fit/zone.h"
+
+struct glint_patch {
+    double x0, x1, y0, y1;
+};
+
+/* Returns the least and the largest sine of an angle in PATCH. */
+double glint_patch_nearest(const struct glint_patch *patch);
+double glint_patch_farthest(const struct glint_patch *patch);
+
+enum {
+    GLINT_PATCH_SIDE = 5, /* number of directions along a side of a patch */
+    GLINT_PATCH_WAVES = 3 /* ends and middle of the band */
+};
+
+/* A box of visible light at one direction and wavelength of a patch. */
+struct glint_sight {
+    double x[GLINT_VARIABLES]; /* coordinates of the zone: s, w and p count */
+    struct glint_pupil box;
+};
+
+struct glint_sights {
+    int n;
+    struct glint_sight
+        at[GLINT_PATCH_SIDE * GLINT_PATCH_SIDE * GLINT_PATCH_WAVES];
+};
+
+/* Looks for light from PATCH, at directions of at most SINE_HI. */
+void glint_sights_find(const struct glint_visible *visible,
+                       const struct glint_patch *patch, double sine_hi,
+                       struct glint_sights *sights);
+
+/* Sets ZONE to PATCH, with a box that holds all of SIGHTS, one or more. */
+void glint_sights_zone(const struct glint_sights *sights,
+                       const struct glint_patch *patch,
+                       struct glint_zone *zone);
+
+#endif

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Fits all systems of one ghost of a lens that is not round.
+ *
+ *   in   a ghost, tolerances
+ *   out  systems, each for a patch of directions and a band of wavelengths
+ *
+ * Method: directions are divided into squares of their x and y components, in
+ * the lens's own frame. One through which no light comes is dropped; one whose
+ * polynomials are not good enough is halved, along the component with which
+ * boxes move more. */
+#ifndef GLINT_BAKE_SKEW_SKEW_FIT_H
+#define GLINT_BAKE_SKEW_SKEW_FIT_H
+
+#include "bake/fit/fit.h"
+
+/* Planes of symmetry of a lens: GLINT_MIRRORS_X and GLINT_MIRRORS_Y. */
+uint32_t glint_skew_mirrors(const struct glint_prescription *lens);
+
+/* Does for a lens that is not round what glint_fit_ghost() does for others. */
+enum glint_status glint_skew_fit(const struct glint_visible *visible,
+                                 double max_deg,
+                                 const struct glint_tolerance *tolerance,
+                                 glint_fit_told_fn *told, void *ctx,
+                                 struct glint_fitted_ghost *out);
+
+#endif
