@@ -81,25 +81,27 @@ static void check_window(struct glint_transfer *t, int32_t opening_q30)
     static struct glint_window_nodes nodes;
     const struct glint_box_window *w = &t->window;
 
-    t->window = (struct glint_box_window){0, ONE, 0, ONE};
+    t->window = glint_box_whole(t);
     if (!glint_window_find(&nodes, t, opening_q30))
         return;
-    require(w->u_half_q30 > 0 && w->v_from_q30 >= 0 &&
+    require(w->u_half_q30 > 0 && w->v_from_q30 >= (t->whole ? -ONE : 0) &&
             w->v_to_q30 > w->v_from_q30 && w->v_to_q30 <= ONE);
     require((int64_t)w->u_middle_q30 + w->u_half_q30 <= ONE &&
             (int64_t)w->u_middle_q30 - w->u_half_q30 >= -ONE);
-    require(t->annulus || w->v_from_q30 == 0);
+    require(t->annulus || t->whole || w->v_from_q30 == 0);
+    require(!t->annulus || !t->whole);
 }
 
-static void check_bundle(const struct glint_lens *lens, int ghost,
-                         int32_t sine_q30, int32_t wave_q24)
+static void check_azimuth(const struct glint_lens *lens, int ghost,
+                          int32_t sine_q30, struct glint_azimuth azimuth,
+                          int32_t wave_q24)
 {
     static struct glint_transfer t;
 
     if (sine_q30 < 0 || sine_q30 > ONE)
         return;
     memset(&t, 0xa5, sizeof t);
-    if (!glint_transfer_init(&t, lens, ghost, sine_q30, wave_q24))
+    if (!glint_transfer_init_at(&t, lens, ghost, sine_q30, azimuth, wave_q24))
         return;
     require(t.outputs >> GLINT_OUT_KINDS == 0 && (t.outputs & 31) == 31);
     check_rays(&t);
@@ -107,6 +109,22 @@ static void check_bundle(const struct glint_lens *lens, int ghost,
     check_window(&t, 1 << 29);
     check_window(&t, 1 << 20);
     check_grids(&t);
+}
+
+/* Lights of models whose ghosts do not depend on it have one azimuth. */
+static void check_bundle(const struct glint_lens *lens, int ghost,
+                         int32_t sine_q30, int32_t wave_q24)
+{
+    static const struct glint_azimuth at[] = {
+        {ONE, 0},        {0, ONE},         {-ONE, 0},         {0, -ONE},
+        {ONE, ONE},      {-ONE, 1},        {ONE / 2, -ONE},   {3, 5},
+        {-ONE, -ONE},    {ONE / 3, ONE / 7}};
+    const int n = glint_basis_is_lens(lens->header->basis)
+                      ? (int)(sizeof at / sizeof *at)
+                      : 1;
+
+    for (int k = 0; k < n; k++)
+        check_azimuth(lens, ghost, sine_q30, at[k], wave_q24);
 }
 
 /* Checks GHOST, and of its systems that which PICK says. */

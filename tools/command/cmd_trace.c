@@ -143,35 +143,46 @@ static bool is_in(const struct glint_transfer *t, double px_mm, double py_mm,
     const double unit = ldexp(1, t->box_exponent);
 
     *u = (px_mm / unit - t->box[0]) / t->box[1];
-    *v = py_mm / unit / t->box[2];
+    *v = (py_mm / unit - t->box[3]) / t->box[2];
     return fabs(*u) <= 1 && fabs(*v) <= 1 &&
            fabs(*v) >= ldexp(glint_transfer_v(t, 0, 1), -30);
 }
 
-/* Traces a ray by the model, which knows angles and y from 0 on only: lights at
- * negative angles and rays at negative y are mirrored. */
+/* Sets SIDE to the signs that x and y of a ray have in the part T: of a round
+ * lens, the model knows angles and y from 0 on only; of others only those
+ * lights to one side of a plane of symmetry. */
+static void sides_of(const struct glint_transfer *t, double angle_deg,
+                     double py_mm, double side[2])
+{
+    side[0] = t->whole ? t->sign : angle_deg < 0 ? -1 : 1;
+    side[1] = t->whole    ? t->side ? -t->sign : t->sign
+              : py_mm < 0 ? -1
+                          : 1;
+}
+
+/* Traces a ray by the model. */
 static enum glint_ray_status trace_model(const struct tracer *t, double px_mm,
                                          double py_mm, struct glint_ray *ray)
 {
-    const double side_x = t->angle_deg < 0 ? -1 : 1,
-                 side_y = py_mm < 0 ? -1 : 1;
     const double stop = t->stop_radius_mm;
     const struct glint_transfer *p = t->part;
     struct glint_outputs out;
-    double u = 0, v = 0;
+    double u = 0, v = 0, side[2] = {1, 1};
 
-    while (p < t->part + t->n_parts &&
-           !is_in(p, side_x * px_mm, fabs(py_mm), &u, &v))
-        p++;
+    for (; p < t->part + t->n_parts; p++) {
+        sides_of(p, t->angle_deg, py_mm, side);
+        if (is_in(p, side[0] * px_mm, side[1] * py_mm, &u, &v))
+            break;
+    }
     if (p == t->part + t->n_parts)
         return GLINT_RAY_MISSED;
     glint_transfer_ray(p, (int32_t)lrint(ldexp(u, 30)),
                        (int32_t)lrint(ldexp(v, 30)), &out);
     *ray = (struct glint_ray){
-        .stop_x_mm = side_x * stop * output(p, &out, GLINT_OUT_STOP_X),
-        .stop_y_mm = side_y * stop * output(p, &out, GLINT_OUT_STOP_Y),
-        .sensor_x_mm = side_x * output(p, &out, GLINT_OUT_SENSOR_X),
-        .sensor_y_mm = side_y * output(p, &out, GLINT_OUT_SENSOR_Y),
+        .stop_x_mm = side[0] * stop * output(p, &out, GLINT_OUT_STOP_X),
+        .stop_y_mm = side[1] * stop * output(p, &out, GLINT_OUT_STOP_Y),
+        .sensor_x_mm = side[0] * output(p, &out, GLINT_OUT_SENSOR_X),
+        .sensor_y_mm = side[1] * output(p, &out, GLINT_OUT_SENSOR_Y),
         .energy = output(p, &out, GLINT_OUT_ENERGY),
         .rel_radius = rel_radius(p, &out)};
     return GLINT_RAY_OK;
@@ -196,6 +207,9 @@ static enum glint_status prepare_parts(const struct glint_lens *model,
                                        uint32_t ghost, int32_t sine_q30,
                                        int32_t wave_q24, struct tracer *tracer)
 {
+    const int32_t one_q30 = INT32_C(1) << 30;
+    const struct glint_azimuth azimuth = {
+        tracer->angle_deg < 0 ? -one_q30 : one_q30, 0};
     const uint32_t end = model->header->n_ghosts;
     size_t n = 0;
 
@@ -207,8 +221,8 @@ static enum glint_status prepare_parts(const struct glint_lens *model,
     for (uint32_t k = ghost; k < end; k++)
         if (is_part(model, k, ghost))
             tracer->n_parts +=
-                glint_transfer_init(&tracer->part[tracer->n_parts], model,
-                                    (int)k, sine_q30, wave_q24);
+                glint_transfer_init_at(&tracer->part[tracer->n_parts], model,
+                                       (int)k, sine_q30, azimuth, wave_q24);
     return GLINT_OK;
 }
 

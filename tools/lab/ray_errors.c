@@ -176,7 +176,7 @@ static bool model_ray(const struct parts *parts, double x_mm, double y_mm,
         const struct glint_transfer *p = &parts->part[k];
         const double unit = ldexp(1, p->box_exponent);
         const double u = (x_mm / unit - p->box[0]) / p->box[1];
-        const double v = y_mm / unit / p->box[2];
+        const double v = (y_mm / unit - p->box[3]) / p->box[2];
         struct glint_outputs out;
 
         if (fabs(u) > 1 || v > 1 || v < ldexp(glint_transfer_v(p, 0, 1), -30))

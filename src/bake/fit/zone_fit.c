@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/compiler.h"
+#include "bake/fit/zone_degrees.h"
 
 STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 
@@ -20,46 +21,6 @@ STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 /* Factor on the error of a fit, if it was not good anyway: a second one which
  * is worse than that is dropped. */
 #define HARM 1.5
-
-enum {
-    FEW_TERMS = 64,
-    MANY_TERMS = 96, /* terms of each output of places in thorough fits */
-    PATIENCE = 36    /* number of terms after which a hopeless fit stops */
-};
-
-/* ----------------------------------------------------------------- outputs */
-
-static const struct glint_degrees position_degrees = {
-    .most = {GLINT_MAX_POWER, 8, 5, 4},
-    .weight = {1, 1, 1, 2},
-    .total = 12,
-    .terms = FEW_TERMS};
-
-static const struct glint_degrees energy_degrees = {.most = {6, 4, 4, 8},
-                                                    .weight = {1, 1, 1, 1},
-                                                    .total = 10,
-                                                    .terms = FEW_TERMS};
-
-/* Terms of thorough fits of energies that change a lot over the pupil, and of
- * all energies of wide stops, as films make them swing with angle and
- * wavelength at once. */
-static const struct glint_degrees steep_degrees = {.most = {8, 6, 4, 8},
-                                                   .weight = {1, 1, 1, 1},
-                                                   .total = 12,
-                                                   .terms = MANY_TERMS};
-
-/* Terms of skew zones, whose powers of s, p and w are below
- * GLINT_LENS_POWERS and GLINT_LENS_WAVE_POWERS. */
-static const struct glint_degrees skew_degrees = {
-    .most = {GLINT_MAX_POWER, 8, 5, 4, 5},
-    .weight = {1, 1, 1, 2, 1},
-    .total = 10,
-    .terms = FEW_TERMS};
-static const struct glint_degrees skew_energy_degrees = {
-    .most = {5, 5, 4, 6, 4},
-    .weight = {1, 1, 1, 1, 1},
-    .total = 8,
-    .terms = FEW_TERMS};
 
 /* One fit: its task and tolerances, memory, and the errors so far. */
 struct fit {
@@ -183,23 +144,12 @@ static double fit_poly(struct fit *f, const struct glint_zone_rays *r,
         r->n,
         {r->x[0], r->x[1], r->x[2], r->x[3], r->x[4]},
         f->buffers->channel_weight};
-    const bool skew = f->task->zone->skew;
-    struct glint_degrees degrees =
-        skew ? kind != GLINT_OUT_ENERGY ? skew_degrees : skew_energy_degrees
-        : kind != GLINT_OUT_ENERGY ? position_degrees
-        : f->task->thorough &&
-                (is_wide(f) ||
-                 glint_zone_rays_spread(&f->buffers->rays) > GLINT_STEEP)
-            ? steep_degrees
-            : energy_degrees;
+    const bool steep =
+        f->task->thorough && kind == GLINT_OUT_ENERGY &&
+        glint_zone_rays_spread(&f->buffers->rays) > GLINT_STEEP;
+    const struct glint_degrees degrees =
+        glint_zone_degrees(f->task, kind, steep);
 
-    if (f->task->thorough && kind != GLINT_OUT_ENERGY)
-        degrees.terms = MANY_TERMS;
-    degrees.hopeless = kind == GLINT_OUT_ENERGY ? 0 : f->task->hopeless;
-    degrees.patience = PATIENCE;
-    degrees.leaps = is_wide(f);
-    degrees.parity =
-        skew ? -1 : kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y;
     return glint_regress_fit(f->buffers->scratch, &samples, f->buffers->value,
                              &degrees, rms, PEAK * rms, poly);
 }

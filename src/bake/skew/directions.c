@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-enum { ACROSS = 24, ROUNDS = 4, GROWS = 6 };
+enum { ACROSS = 16, ROUNDS = 4, GROWS = 6 };
 
 static const int waves[GLINT_PATCH_WAVES] = {GLINT_VISIBLE_WAVES / 2, 0,
                                              GLINT_VISIBLE_WAVES - 1};
@@ -125,43 +125,96 @@ static bool find(const struct glint_visible *h, const struct glint_path *path,
            tighten(h, path, direction, box);
 }
 
-/* Adds the boxes of one direction, of which S and P are the coordinates. */
-static void add_direction(const struct glint_visible *h, double s, double p,
-                          const double direction[3],
+/* A direction of a patch: places of its s and p among those of the patch. */
+struct place {
+    int i, j;
+    double direction[3];
+};
+
+/* Returns where the place K of a side lies, -1 .. 1. */
+static double along(int k)
+{
+    return 2.0 * k / (GLINT_PATCH_SIDE - 1) - 1;
+}
+
+/* Returns where X, LO .. HI as -1 .. 1, lies. */
+static double place_in(double x, double lo, double hi)
+{
+    return (2 * x - lo - hi) / (hi - lo);
+}
+
+/* Sets BOX to that of ZONE for light along DIRECTION of wave K. */
+static void box_of(const struct glint_zone *zone, const double direction[3],
+                   int k, struct glint_pupil *box)
+{
+    const double x[GLINT_VARIABLES] = {
+        [GLINT_S] = place_in(direction[0], zone->lo, zone->hi),
+        [GLINT_W] = glint_zone_node(waves[k], GLINT_VISIBLE_WAVES),
+        [GLINT_P] = place_in(direction[1], zone->y_lo, zone->y_hi)};
+    const double half_x = glint_zone_side(zone, zone->half_x, x);
+    const double half_y = glint_zone_side(zone, zone->half_y, x);
+
+    box->x0_mm = glint_zone_side(zone, zone->middle, x) - half_x;
+    box->x1_mm = box->x0_mm + 2 * half_x;
+    box->y0_mm = glint_zone_side(zone, zone->middle_y, x) - half_y;
+    box->y1_mm = box->y0_mm + 2 * half_y;
+}
+
+/* Finds the box of wave K at AT, at corners everywhere, elsewhere near the last
+ * one that was seen, if there is one. */
+static bool find_at(const struct glint_visible *h, const struct place *at,
+                    int k, const struct glint_zone *within,
+                    const struct glint_sights *seen, struct glint_pupil *box)
+{
+    const int last = GLINT_PATCH_SIDE - 1;
+    const bool corner = at->i % last == 0 && at->j % last == 0 && k == 0;
+    const struct glint_path *path = &h->position_path[waves[k]];
+
+    if (within) {
+        box_of(within, at->direction, k, box);
+        return tighten(h, path, at->direction, box);
+    }
+    return (!corner && seen->n > 0 &&
+            follow(h, path, at->direction, &seen->at[seen->n - 1].box, box)) ||
+           find(h, path, at->direction, box);
+}
+
+/* Adds the boxes of one direction; at every other one of the middle wave only.
+ */
+static void add_direction(const struct glint_visible *h, const struct place *at,
+                          const struct glint_zone *within,
                           struct glint_sights *sights)
 {
-    const struct glint_pupil *near = NULL;
+    const int n = (at->i + at->j) % 2 ? 1 : GLINT_PATCH_WAVES;
 
-    for (int k = 0; k < GLINT_PATCH_WAVES; k++) {
-        const struct glint_path *path = &h->position_path[waves[k]];
+    for (int k = 0; k < n; k++) {
         struct glint_sight *to = &sights->at[sights->n];
 
-        if (!(near && follow(h, path, direction, near, &to->box)) &&
-            !find(h, path, direction, &to->box))
+        if (!find_at(h, at, k, within, sights, &to->box))
             continue;
         to->x[GLINT_U] = to->x[GLINT_V] = 0;
-        to->x[GLINT_S] = s;
-        to->x[GLINT_P] = p;
+        to->x[GLINT_S] = along(at->i);
+        to->x[GLINT_P] = along(at->j);
         to->x[GLINT_W] = glint_zone_node(waves[k], GLINT_VISIBLE_WAVES);
-        near = &to->box;
         sights->n++;
     }
 }
 
 void glint_sights_find(const struct glint_visible *visible,
                        const struct glint_patch *patch, double sine_hi,
+                       const struct glint_zone *within,
                        struct glint_sights *sights)
 {
     sights->n = 0;
     for (int k = 0; k < GLINT_PATCH_SIDE * GLINT_PATCH_SIDE; k++) {
-        const double s = 2.0 * (k % GLINT_PATCH_SIDE) / (GLINT_PATCH_SIDE - 1);
-        const double p = 2.0 * (k / GLINT_PATCH_SIDE) / (GLINT_PATCH_SIDE - 1);
-        const double x = patch->x0 + 0.5 * s * (patch->x1 - patch->x0);
-        const double y = patch->y0 + 0.5 * p * (patch->y1 - patch->y0);
-        const double direction[3] = {x, y, sqrt(fmax(0, 1 - x * x - y * y))};
+        const int i = k % GLINT_PATCH_SIDE, j = k / GLINT_PATCH_SIDE;
+        const double s = 0.5 + 0.5 * along(i), p = 0.5 + 0.5 * along(j);
+        const double x = patch->x0 + s * (patch->x1 - patch->x0);
+        const double y = patch->y0 + p * (patch->y1 - patch->y0);
+        const struct place at = {i, j, {x, y, sqrt(fmax(0, 1 - x * x - y * y))}};
 
         if (hypot(x, y) <= sine_hi)
-            add_direction(visible, s - 1, p - 1, direction, sights);
+            add_direction(visible, &at, within, sights);
     }
 }
 

@@ -22,7 +22,7 @@ double glint_patch_nearest(const struct glint_patch *patch);
 double glint_patch_farthest(const struct glint_patch *patch);
 
 enum {
-    GLINT_PATCH_SIDE = 5, /* number of directions along a side of a patch */
+    GLINT_PATCH_SIDE = 4, /* number of directions along a side of a patch */
     GLINT_PATCH_WAVES = 3 /* ends and middle of the band */
 };
 
@@ -38,9 +38,12 @@ struct glint_sights {
         at[GLINT_PATCH_SIDE * GLINT_PATCH_SIDE * GLINT_PATCH_WAVES];
 };
 
-/* Looks for light from PATCH, at directions of at most SINE_HI. */
+/* Looks for light from PATCH, at directions of at most SINE_HI: everywhere if
+ * WITHIN is NULL, else in the box of that, a zone of the same band that covers
+ * the patch. */
 void glint_sights_find(const struct glint_visible *visible,
                        const struct glint_patch *patch, double sine_hi,
+                       const struct glint_zone *within,
                        struct glint_sights *sights);
 
 /* Sets ZONE to PATCH, with a box that holds all of SIGHTS, one or more. */

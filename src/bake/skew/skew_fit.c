@@ -29,6 +29,8 @@
 /* Boxes that move so many times as much along one component as along the other
  * are halved along that. */
 #define MOVES 2.0
+/* Fill of a box in which grids miss nothing that they would find elsewhere. */
+#define SOLID 0.08
 
 enum { DEEP = 64 };
 
@@ -51,6 +53,8 @@ struct pending {
     struct glint_patch patch;
     double w0, w1, before;
     int depth;
+    bool known; /* true: WITHIN holds all light that comes through */
+    struct glint_zone within;
 };
 
 /* What became of a patch. */
@@ -140,8 +144,8 @@ static enum glint_status fit_zone(struct fitter *f, const struct pending *p,
     glint_zone_choose_barrels(&a->zone, band, f->tolerance->escape,
                               &f->sampling, &b->rays);
     glint_zone_trace(&a->zone, band, &b->rays, &b->energies);
-    a->dark = glint_zone_rays_dark(&b->rays);
-    if (a->dark)
+    /* A sliver at the rim of the patch is seen by its halves. */
+    if (glint_zone_rays_dark(&b->rays))
         return GLINT_OK;
     status = set_box(system, &a->zone);
     aim = glint_zone_aim_of(f->tolerance, &a->zone, &b->rays);
@@ -171,7 +175,8 @@ static enum glint_status try_patch(struct fitter *f, const struct pending *p,
                                            .wave_lo = band->wave_lo,
                                            .wave_hi = band->wave_hi};
     *a = (struct attempt){.errors = {.worst = HUGE_VAL, .shows = HUGE_VAL}};
-    glint_sights_find(band, &p->patch, f->sine_hi, &f->sights);
+    glint_sights_find(band, &p->patch, f->sine_hi,
+                      p->known ? &p->within : NULL, &f->sights);
     a->dark = f->sights.n == 0;
     if (a->dark)
         return GLINT_OK;
@@ -232,6 +237,8 @@ static int push_halves(struct pending *stack, int n, const struct pending *p,
     struct pending a = *p, b = *p;
 
     a.depth = b.depth = p->depth + 1;
+    a.within = b.within = *zone;
+    a.known = b.known = how == HALVE && zone->fill > SOLID;
     if (how == BANDS)
         a.w1 = b.w0 = 0.5 * (p->w0 + p->w1);
     else if (is_along_y(p, zone))
@@ -247,7 +254,8 @@ static int push_halves(struct pending *stack, int n, const struct pending *p,
 static enum glint_status fit_patch(struct fitter *f,
                                    const struct glint_patch *patch)
 {
-    struct pending stack[DEEP + 2] = {{*patch, -1, 1, HUGE_VAL, 0}};
+    struct pending stack[DEEP + 2] = {
+        {.patch = *patch, .w0 = -1, .w1 = 1, .before = HUGE_VAL}};
     enum glint_status status = GLINT_OK;
 
     for (int n = 1; n > 0 && status == GLINT_OK;) {
