@@ -51,7 +51,7 @@ extern "C" {
 #define GLINT_FLUX_TERMS    6
 
 enum glint_basis {
-    GLINT_BASIS_AUTO,  /* u, v, s, w: see above */
+    GLINT_BASIS_AUTO,   /* u, v, s, w: see above */
     GLINT_BASIS_SPARSE, /* x, y, r and 1 - r [Bodonyi25]: (x, y) is the place on
                            the vertex plane in units of 2^(30 + box_exponent)
                            mm, a radius that holds all boxes of the system; r =

@@ -182,8 +182,8 @@ bool glint_pupil_find_within(struct glint_pupil *pupil,
                              double stop_radius_mm, double field_mm,
                              const struct glint_pupil *near);
 
-/* Finds the pupil for light along DIRECTION, of unit length, in any plane if the
- * lens is not round, in the x-z plane if it is. */
+/* Finds the pupil for light along DIRECTION, of unit length, in any plane if
+ * the lens is not round, in the x-z plane if it is. */
 bool glint_pupil_find_towards(struct glint_pupil *pupil,
                               const struct glint_path *path,
                               const double direction[3], double stop_radius_mm,

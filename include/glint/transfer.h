@@ -42,8 +42,8 @@ struct glint_transfer {
     int32_t box_exponent;
     uint8_t annulus;
     /* Of the lens basis: WHOLE is 1, as v runs over all of the box. Then x is
-     * SIGN times the lens's, and so is y, which is once more mirrored if SIDE is
-     * 1: so a light in any quarter is made of one in the model's. */
+     * SIGN times the lens's, and so is y, which is once more mirrored if SIDE
+     * is 1: so a light in any quarter is made of one in the model's. */
     uint8_t whole, side;
     int8_t sign;
     /* Part of the box that rows and grids of rays cover. Init sets it to the
@@ -93,9 +93,10 @@ static inline struct glint_box_window
 glint_box_whole(const struct glint_transfer *transfer)
 {
     const int32_t one_q30 = INT32_C(1) << 30;
+    const struct glint_box_window whole = {
+        0, one_q30, transfer->whole ? -one_q30 : 0, one_q30};
 
-    return (struct glint_box_window){0, one_q30,
-                                     transfer->whole ? -one_q30 : 0, one_q30};
+    return whole;
 }
 
 /* Gives the outputs of one ray at (U, V), each within +-2^30: integers by kind,

@@ -121,9 +121,8 @@ static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
 
     if (visible) {
         visible_init(run, ghost, visible);
-        status =
-            fit(visible, run->options.max_deg, &tolerance,
-                tells ? fit_told : NULL, run, &run->fitted[ghost]);
+        status = fit(visible, run->options.max_deg, &tolerance,
+                     tells ? fit_told : NULL, run, &run->fitted[ghost]);
     }
     free(visible);
     return status;

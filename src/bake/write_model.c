@@ -22,10 +22,10 @@ static uint32_t put_terms(struct glint_draft *d,
         const uint8_t *p = o->power[q->order[k]];
 
         const int upper =
-            skew ? p[GLINT_S] +
-                       GLINT_LENS_POWERS *
-                           (p[GLINT_P] + GLINT_LENS_POWERS * p[GLINT_W])
-                 : p[GLINT_S] | p[GLINT_W] << 4;
+            skew
+                ? p[GLINT_S] + GLINT_LENS_POWERS *
+                                   (p[GLINT_P] + GLINT_LENS_POWERS * p[GLINT_W])
+                : p[GLINT_S] | p[GLINT_W] << 4;
 
         power[k] = (uint16_t)(p[GLINT_U] | p[GLINT_V] << 4 | upper << 8);
     }

@@ -100,10 +100,9 @@ static uint8_t view_q8(const struct glint_plan *p, struct glint_azimuth turn,
     const int64_t across =
         span_q8(e->middle_q8 * c >> 30, (e->wide_q8 * c + e->high_q8 * s) >> 30,
                 p->width * 128 >> p->half);
-    const int64_t down =
-        span_q8((e->middle_q8 * s + e->across_q8 * c) >> 30,
-                (e->wide_q8 * s + e->high_q8 * c) >> 30,
-                p->height * 128 >> p->half);
+    const int64_t down = span_q8((e->middle_q8 * s + e->across_q8 * c) >> 30,
+                                 (e->wide_q8 * s + e->high_q8 * c) >> 30,
+                                 p->height * 128 >> p->half);
 
     return (uint8_t)((across * down + 254) >> 8);
 }

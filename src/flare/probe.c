@@ -27,9 +27,9 @@ static void begin(struct glint_probe *s, const struct glint_transfer *t,
     s->rows = 2 * down;
     s->n_bends = s->n_up = s->n_down = s->n_inside = 0;
     s->n_bent[0] = s->n_bent[1] = 0;
-    s->seen = s->reach = (struct glint_probe_extent){
-        INT32_MAX, -INT32_MAX, t->whole ? INT32_MAX : 0,
-        t->whole ? -INT32_MAX : 0};
+    s->seen = s->reach = (struct glint_probe_extent){INT32_MAX, -INT32_MAX,
+                                                     t->whole ? INT32_MAX : 0,
+                                                     t->whole ? -INT32_MAX : 0};
     s->whole = t->whole;
     s->energy = 0;
     s->least_area = UINT64_MAX;

@@ -190,11 +190,10 @@ static const char *check_terms(struct glint_model_check *c,
     if (!power)
         return glint_model_outside;
     for (uint32_t k = 0; k < o->n_terms; k++) {
-        const char *reason = c->header->basis == GLINT_BASIS_AUTO
-                                 ? check_power(o, power[k])
-                             : glint_basis_is_lens(c->header->basis)
-                                 ? check_lens_power(power[k])
-                                 : NULL;
+        const char *reason =
+            c->header->basis == GLINT_BASIS_AUTO    ? check_power(o, power[k])
+            : glint_basis_is_lens(c->header->basis) ? check_lens_power(power[k])
+                                                    : NULL;
 
         if (reason)
             return reason;

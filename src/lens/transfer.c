@@ -96,8 +96,8 @@ struct setting {
     uint32_t knot; /* the knot below the angle */
     int32_t part_q30;
     int32_t s_q30[TRANSFER_MAX_EXPONENT + 1], w_q30[TRANSFER_MAX_EXPONENT + 1];
-    int lens;                          /* 1: the basis is the lens basis */
-    int32_t p_q30[GLINT_LENS_POWERS];  /* of the lens basis only */
+    int lens;                         /* 1: the basis is the lens basis */
+    int32_t p_q30[GLINT_LENS_POWERS]; /* of the lens basis only */
 };
 
 static void settle(struct setting *set, const struct glint_lens *lens,
@@ -150,10 +150,9 @@ static void set_box(struct glint_transfer *t, const struct glint_lens *lens,
             continue;
         }
         box = box_unpack(box, s->box_terms, side);
-        t->box[k] = set->lens
-                        ? box_lens_side(side, set->s_q30[1], set->p_q30[1],
-                                        set->w_q30[1])
-                        : box_side(side, set->s_q30[1], set->w_q30[1]);
+        t->box[k] = set->lens ? box_lens_side(side, set->s_q30[1],
+                                              set->p_q30[1], set->w_q30[1])
+                              : box_side(side, set->s_q30[1], set->w_q30[1]);
     }
 }
 
@@ -234,10 +233,10 @@ static void set_table(struct glint_transfer *t, const struct glint_lens *lens,
         for (int a = 0; a < GLINT_TABLE_WIDTH; a++)
             table.row[b][a] = 0;
     for (uint32_t k = 0; k < n && set->lens; k++)
-        add_term(
-            &table, power[k],
-            put_lens_in(set, k < n_wide ? coef[k] : narrow[k - n_wide] * by,
-                        power[k]));
+        add_term(&table, power[k],
+                 put_lens_in(set,
+                             k < n_wide ? coef[k] : narrow[k - n_wide] * by,
+                             power[k]));
     for (uint32_t k = 0; k < n_wide && !set->lens; k++)
         add_term(&table, power[k], put_in(set, coef[k], power[k]));
     for (uint32_t k = n_wide; k < n && !set->lens; k++)

@@ -116,9 +116,9 @@ static void check_bundle(const struct glint_lens *lens, int ghost,
                          int32_t sine_q30, int32_t wave_q24)
 {
     static const struct glint_azimuth at[] = {
-        {ONE, 0},        {0, ONE},         {-ONE, 0},         {0, -ONE},
-        {ONE, ONE},      {-ONE, 1},        {ONE / 2, -ONE},   {3, 5},
-        {-ONE, -ONE},    {ONE / 3, ONE / 7}};
+        {ONE, 0},     {0, ONE},          {-ONE, 0},       {0, -ONE},
+        {ONE, ONE},   {-ONE, 1},         {ONE / 2, -ONE}, {3, 5},
+        {-ONE, -ONE}, {ONE / 3, ONE / 7}};
     const int n = glint_basis_is_lens(lens->header->basis)
                       ? (int)(sizeof at / sizeof *at)
                       : 1;

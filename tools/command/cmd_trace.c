@@ -155,9 +155,7 @@ static void sides_of(const struct glint_transfer *t, double angle_deg,
                      double py_mm, double side[2])
 {
     side[0] = t->whole ? t->sign : angle_deg < 0 ? -1 : 1;
-    side[1] = t->whole    ? t->side ? -t->sign : t->sign
-              : py_mm < 0 ? -1
-                          : 1;
+    side[1] = t->whole ? t->side ? -t->sign : t->sign : py_mm < 0 ? -1 : 1;
 }
 
 /* Traces a ray by the model. */

@@ -375,10 +375,10 @@ enum glint_status glint_quantise(const struct glint_fitted_system *system,
         if (ldexp(system->radius_mm, -out->box_exponent) != 0x1p30)
             return GLINT_E_LENS; /* The radius is no power of two. */
     } else {
-        out->box_exponent = exponent_for(
-            largest_sum(system->box, out->n_box / GLINT_BOX_TERMS,
-                        GLINT_BOX_TERMS),
-            GLINT_BOX_TERMS);
+        out->box_exponent =
+            exponent_for(largest_sum(system->box, out->n_box / GLINT_BOX_TERMS,
+                                     GLINT_BOX_TERMS),
+                         GLINT_BOX_TERMS);
     }
     status = to_integers(system->box, out->n_box, out->box_exponent, &out->box);
     for (int k = 0; k < system->n_outputs && status == GLINT_OK; k++)

@@ -36,8 +36,8 @@ static struct sight look(const struct glint_zone_rays *r, int first)
 static double sine_of(const struct glint_zone *zone,
                       const double x[GLINT_VARIABLES])
 {
-    const double along = 0.5 * (zone->lo + zone->hi) +
-                         0.5 * x[GLINT_S] * (zone->hi - zone->lo);
+    const double along =
+        0.5 * (zone->lo + zone->hi) + 0.5 * x[GLINT_S] * (zone->hi - zone->lo);
 
     return !zone->skew
                ? along

@@ -54,8 +54,7 @@ void glint_zone_batch_add(struct glint_zone_batch *batch,
     batch->x[batch->n][1] = rim + (1 - rim) * x[1];
     from->x_mm = glint_zone_side(zone, zone->middle, x) +
                  x[0] * glint_zone_side(zone, zone->half_x, x);
-    from->y_mm =
-        batch->x[batch->n][1] * glint_zone_side(zone, zone->half_y, x);
+    from->y_mm = batch->x[batch->n][1] * glint_zone_side(zone, zone->half_y, x);
     if (zone->skew)
         from->y_mm += glint_zone_side(zone, zone->middle_y, x);
     direction_of(zone, x, from->direction);

@@ -37,8 +37,8 @@ double glint_zone_side(const struct glint_zone *zone,
         return glint_zone_at(side, s, x[GLINT_W]);
     return side[0] + s * (side[1] + s * side[2]) +
            p * (side[3] + s * side[4] + p * side[5]) +
-           x[GLINT_W] * (side[GLINT_BOX_POWERS] +
-                         s * side[GLINT_BOX_POWERS + 1]);
+           x[GLINT_W] *
+               (side[GLINT_BOX_POWERS] + s * side[GLINT_BOX_POWERS + 1]);
 }
 
 /* The boxes that a zone's box has to hold, at places s and w of the zone. */

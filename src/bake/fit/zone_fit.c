@@ -144,9 +144,8 @@ static double fit_poly(struct fit *f, const struct glint_zone_rays *r,
         r->n,
         {r->x[0], r->x[1], r->x[2], r->x[3], r->x[4]},
         f->buffers->channel_weight};
-    const bool steep =
-        f->task->thorough && kind == GLINT_OUT_ENERGY &&
-        glint_zone_rays_spread(&f->buffers->rays) > GLINT_STEEP;
+    const bool steep = f->task->thorough && kind == GLINT_OUT_ENERGY &&
+                       glint_zone_rays_spread(&f->buffers->rays) > GLINT_STEEP;
     const struct glint_degrees degrees =
         glint_zone_degrees(f->task, kind, steep);
 

@@ -224,9 +224,9 @@ static struct column *add_candidate(struct search *s, const uint8_t *power,
 
 /* Adds the terms next to COLUMN's as candidates: one power more in a variable,
  * two more in one with parity. With leaps those with two powers more of
- * variable 0 are next to it, too, and of variable 1 if its parity is free: where
- * a ghost is symmetric, near the axis, the odd power in between explains nothing
- * and would never be chosen. */
+ * variable 0 are next to it, too, and of variable 1 if its parity is free:
+ * where a ghost is symmetric, near the axis, the odd power in between explains
+ * nothing and would never be chosen. */
 static void add_neighbours(struct search *s, const struct column *column)
 {
     struct column *added[NEIGHBOURS];

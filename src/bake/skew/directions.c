@@ -14,15 +14,9 @@ static double nearest(double lo, double hi)
     return fmax(lo, fmin(hi, 0));
 }
 
-double glint_patch_nearest(const struct glint_patch *patch)
+double glint_directions_nearest(const struct glint_directions *patch)
 {
     return hypot(nearest(patch->x0, patch->x1), nearest(patch->y0, patch->y1));
-}
-
-double glint_patch_farthest(const struct glint_patch *patch)
-{
-    return hypot(fmax(fabs(patch->x0), fabs(patch->x1)),
-                 fmax(fabs(patch->y0), fabs(patch->y1)));
 }
 
 /* ------------------------------------------------------------------- boxes */
@@ -201,7 +195,7 @@ static void add_direction(const struct glint_visible *h, const struct place *at,
 }
 
 void glint_sights_find(const struct glint_visible *visible,
-                       const struct glint_patch *patch, double sine_hi,
+                       const struct glint_directions *patch, double sine_hi,
                        const struct glint_zone *within,
                        struct glint_sights *sights)
 {
@@ -211,7 +205,8 @@ void glint_sights_find(const struct glint_visible *visible,
         const double s = 0.5 + 0.5 * along(i), p = 0.5 + 0.5 * along(j);
         const double x = patch->x0 + s * (patch->x1 - patch->x0);
         const double y = patch->y0 + p * (patch->y1 - patch->y0);
-        const struct place at = {i, j, {x, y, sqrt(fmax(0, 1 - x * x - y * y))}};
+        const struct place at = {
+            i, j, {x, y, sqrt(fmax(0, 1 - x * x - y * y))}};
 
         if (hypot(x, y) <= sine_hi)
             add_direction(visible, &at, within, sights);
@@ -235,13 +230,10 @@ static void fit_side(const struct sides *sides, int degree, double tolerance,
 {
     static const double zero[MOST];
     static const int place[3][3] = {{0, 3, 5}, {1, 4, 0}, {2, 0, 0}};
-    double scratch[GLINT_REGRESS_DOUBLES(MOST, GLINT_BOX_TERMS, 16,
-                                         5 * 3 * 5)];
+    double scratch[GLINT_REGRESS_DOUBLES(MOST, GLINT_BOX_TERMS, 16, 5 * 3 * 5)];
     double weight[MOST];
     const struct glint_regress_samples samples = {
-        sides->n,
-        {zero, zero, sides->x[0], sides->x[1], sides->x[2]},
-        weight};
+        sides->n, {zero, zero, sides->x[0], sides->x[1], sides->x[2]}, weight};
     const struct glint_degrees degrees = {
         .most = {0, 0, (uint8_t)degree, 1, (uint8_t)degree},
         .weight = {1, 1, 1, 2, 1},
@@ -270,9 +262,8 @@ static double lacks(const struct glint_zone *zone,
     double lowest = HUGE_VAL;
 
     for (int k = 0; k < 9 * 9 * 2; k++) {
-        const double x[GLINT_VARIABLES] = {0, 0, (k % 9 - 4) / 4.0,
-                                           k / 81 ? 1 : -1,
-                                           (k / 9 % 9 - 4) / 4.0};
+        const double x[GLINT_VARIABLES] = {
+            0, 0, (k % 9 - 4) / 4.0, k / 81 ? 1 : -1, (k / 9 % 9 - 4) / 4.0};
 
         lowest = fmin(lowest, glint_zone_side(zone, half, x));
     }
@@ -338,7 +329,8 @@ static double fill_of(const struct glint_sights *sights,
 }
 
 void glint_sights_zone(const struct glint_sights *sights,
-                       const struct glint_patch *patch, struct glint_zone *zone)
+                       const struct glint_directions *patch,
+                       struct glint_zone *zone)
 {
     /* As in zone_box.c: what is enough, and by how much a box of a higher
      * degree has to be fuller. */

@@ -13,13 +13,12 @@
 
 #include "bake/fit/zone.h"
 
-struct glint_patch {
+struct glint_directions {
     double x0, x1, y0, y1;
 };
 
-/* Returns the least and the largest sine of an angle in PATCH. */
-double glint_patch_nearest(const struct glint_patch *patch);
-double glint_patch_farthest(const struct glint_patch *patch);
+/* Returns the least sine of an angle in PATCH. */
+double glint_directions_nearest(const struct glint_directions *patch);
 
 enum {
     GLINT_PATCH_SIDE = 4, /* number of directions along a side of a patch */
@@ -42,13 +41,13 @@ struct glint_sights {
  * WITHIN is NULL, else in the box of that, a zone of the same band that covers
  * the patch. */
 void glint_sights_find(const struct glint_visible *visible,
-                       const struct glint_patch *patch, double sine_hi,
+                       const struct glint_directions *patch, double sine_hi,
                        const struct glint_zone *within,
                        struct glint_sights *sights);
 
 /* Sets ZONE to PATCH, with a box that holds all of SIGHTS, one or more. */
 void glint_sights_zone(const struct glint_sights *sights,
-                       const struct glint_patch *patch,
+                       const struct glint_directions *patch,
                        struct glint_zone *zone);
 
 #endif

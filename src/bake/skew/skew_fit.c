@@ -50,7 +50,7 @@ struct fitter {
 
 /* A patch that waits to be fitted. */
 struct pending {
-    struct glint_patch patch;
+    struct glint_directions patch;
     double w0, w1, before;
     int depth;
     bool known; /* true: WITHIN holds all light that comes through */
@@ -81,7 +81,7 @@ uint32_t glint_skew_mirrors(const struct glint_prescription *lens)
     return mirrors;
 }
 
-static double larger_side(const struct glint_patch *p)
+static double larger_side(const struct glint_directions *p)
 {
     return fmax(p->x1 - p->x0, p->y1 - p->y0);
 }
@@ -108,8 +108,8 @@ static enum glint_status set_box(struct glint_fitted_system *system,
     const double *const side[GLINT_LENS_SIDES] = {zone->middle, zone->half_x,
                                                   zone->half_y, zone->middle_y};
 
-    system->box = malloc(sizeof *system->box * GLINT_LENS_SIDES *
-                         GLINT_BOX_TERMS);
+    system->box =
+        malloc(sizeof *system->box * GLINT_LENS_SIDES * GLINT_BOX_TERMS);
     if (!system->box)
         return GLINT_E_MEMORY;
     for (int k = 0; k < GLINT_LENS_SIDES; k++)
@@ -175,8 +175,8 @@ static enum glint_status try_patch(struct fitter *f, const struct pending *p,
                                            .wave_lo = band->wave_lo,
                                            .wave_hi = band->wave_hi};
     *a = (struct attempt){.errors = {.worst = HUGE_VAL, .shows = HUGE_VAL}};
-    glint_sights_find(band, &p->patch, f->sine_hi,
-                      p->known ? &p->within : NULL, &f->sights);
+    glint_sights_find(band, &p->patch, f->sine_hi, p->known ? &p->within : NULL,
+                      &f->sights);
     a->dark = f->sights.n == 0;
     if (a->dark)
         return GLINT_OK;
@@ -252,7 +252,7 @@ static int push_halves(struct pending *stack, int n, const struct pending *p,
 
 /* Fits PATCH and, if it has to be, its halves. */
 static enum glint_status fit_patch(struct fitter *f,
-                                   const struct glint_patch *patch)
+                                   const struct glint_directions *patch)
 {
     struct pending stack[DEEP + 2] = {
         {.patch = *patch, .w0 = -1, .w1 = 1, .before = HUGE_VAL}};
@@ -264,7 +264,7 @@ static enum glint_status fit_patch(struct fitter *f,
         struct attempt a = {.dark = true};
         enum next next = KEEP;
 
-        if (glint_patch_nearest(&p.patch) < f->sine_hi)
+        if (glint_directions_nearest(&p.patch) < f->sine_hi)
             status = try_patch(f, &p, &system, &a);
         if (status == GLINT_OK)
             next = next_step(f, &p, &a);
@@ -295,8 +295,8 @@ static enum glint_status fit_all(struct fitter *f, uint32_t mirrors)
     f->area = side * side * (half - i0) * (half - j0);
     for (int j = j0; j < half; j++)
         for (int i = i0; i < half && status == GLINT_OK; i++) {
-            const struct glint_patch patch = {i * side, (i + 1) * side,
-                                              j * side, (j + 1) * side};
+            const struct glint_directions patch = {i * side, (i + 1) * side,
+                                                   j * side, (j + 1) * side};
 
             status = fit_patch(f, &patch);
         }

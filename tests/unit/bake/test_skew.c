@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Models of lenses that are not round: lights from all sides, of which a model
+ * has a quarter or a half, and rays at colours that were not fitted must land
+ * where exact rays do; rows of rays must agree with single ones.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "bake/skew/skew_fit.h"
+#include "glint/bake.h"
+#include "glint/transfer.h"
+#include "support/rng.h"
+
+#define MAX_DEG   5
+#define TOLERANCE 8
+#define PI        3.14159265358979323846
+
+enum { ONE = 1 << 30, BUNDLES = 100, CELLS = 6, NODES = CELLS + 1 };
+
+static struct glint_prescription lens;
+static struct glint_lens model;
+static struct glint_setup setup;
+static unsigned char *data;
+
+/* Bakes a doublet behind two surfaces, with FIRST behind the first, and BEFORE
+ * and AFTER around both. */
+static void bake(const char *before, const char *first, const char *after)
+{
+    static const double rgb_nm[] = {650, 532, 450};
+    struct glint_bake_options options;
+    struct glint_bake_report report;
+    struct glint_error error = {""};
+    const char *reason = "";
+    char text[900];
+    size_t bytes;
+
+    snprintf(text, sizeof text,
+             "name skew\nf-number 10\nfilm 36 24\n%s"
+             "surface 400 3 12 1.5168 64.17\n%ssurface flat 10 12 air\n%s"
+             "stop 5 8\nsurface 61.47 6 12 1.5168 64.17\n"
+             "surface -44.64 2.5 12 1.6727 32.2\n"
+             "surface -129.94 95.95 12 air coating none\n",
+             before, first, after);
+    glint_bake_defaults(&options);
+    options.max_deg = MAX_DEG;
+    options.tolerance = TOLERANCE;
+    if (glint_prescription_parse(&lens, text, strlen(text), "t.lens", &error) ||
+        glint_setup_init(&setup, &lens, 0, 0, rgb_nm, 3, &error) ||
+        glint_bake(&lens, &options, &data, &bytes, &report, &error))
+        fail_msg("%s", error.text);
+    if (glint_lens_open(&model, data, bytes, &reason))
+        fail_msg("%s", reason);
+    print_message("%s%s: %u bytes, %u systems\n", before, first,
+                  (unsigned)bytes, (unsigned)model.header->n_systems);
+    assert_true(report.intruders * 100 <= report.rays);
+}
+
+static void forget(void)
+{
+    free(data);
+    data = NULL;
+}
+
+/* A bundle of the model, the exact path, and errors so far. */
+struct meter {
+    struct glint_transfer t;
+    struct glint_path path;
+    double direction[3];
+    int n; /* number of rays that get through */
+    double places2, stops2, energies2;
+    double off; /* pixels that a vertex lies beside its ray, the largest */
+};
+
+static const struct glint_place place = {.cos_q30 = ONE,
+                                         .sin_q30 = 0,
+                                         .pixels_per_mm = {53 << 24, -24},
+                                         .middle_x_q8 = 960 << 8,
+                                         .middle_y_q8 = 540 << 8};
+
+static double value(const struct meter *m, const struct glint_outputs *o,
+                    int kind)
+{
+    return ldexp(o->at[kind], m->t.exponent[kind]);
+}
+
+/* Returns how far V lies beside where the ray (X, Y) lands, pixels. */
+static double beside(const struct glint_vertex *v, double x_mm, double y_mm)
+{
+    return hypot(v->x_q8 / 256.0 - 960 - 53 * x_mm,
+                 540 - v->y_q8 / 256.0 - 53 * y_mm);
+}
+
+/* Compares ray (I, J) of a grid. The model's frame is the lens's, mirrored by
+ * the signs X and Y. */
+static void compare(struct meter *m, int i, int j, const struct glint_vertex *v)
+{
+    const double x = m->t.sign, y = m->t.side ? -m->t.sign : m->t.sign;
+    const double u = 2.0 * i / CELLS - 1, w = 2.0 * j / CELLS - 1;
+    const double unit = ldexp(1, m->t.box_exponent);
+    const double stop = setup.optics.stop_radius_mm;
+    struct glint_outputs o;
+    struct glint_ray ray;
+
+    if (glint_trace(&m->path, x * unit * (m->t.box[0] + u * m->t.box[1]),
+                    y * unit * (m->t.box[3] + w * m->t.box[2]), m->direction,
+                    &ray, NULL) != GLINT_RAY_OK ||
+        ray.rel_radius > 1 || hypot(ray.stop_x_mm, ray.stop_y_mm) > stop ||
+        hypot(ray.sensor_x_mm, ray.sensor_y_mm) > 23)
+        return;
+    glint_transfer_ray(&m->t, (int32_t)lrint(u * 0x1p30),
+                       (int32_t)lrint(w * 0x1p30), &o);
+    m->places2 +=
+        pow(x * value(m, &o, GLINT_OUT_SENSOR_X) - ray.sensor_x_mm, 2) +
+        pow(y * value(m, &o, GLINT_OUT_SENSOR_Y) - ray.sensor_y_mm, 2);
+    m->stops2 +=
+        pow(x * value(m, &o, GLINT_OUT_STOP_X) - ray.stop_x_mm / stop, 2) +
+        pow(y * value(m, &o, GLINT_OUT_STOP_Y) - ray.stop_y_mm / stop, 2);
+    m->energies2 += pow(value(m, &o, GLINT_OUT_ENERGY) / ray.energy - 1, 2);
+    m->off = fmax(m->off, beside(v, x * value(m, &o, GLINT_OUT_SENSOR_X),
+                                 y * value(m, &o, GLINT_OUT_SENSOR_Y)));
+    m->n++;
+}
+
+/* Compares bundles of random ghosts, directions and wavelengths. */
+static void compare_all(struct meter *m)
+{
+    static struct glint_vertex vertex[NODES * NODES];
+    uint32_t seed = 7;
+
+    for (int k = 0; k < BUNDLES; k++) {
+        const int ghost = rng_below(&seed, (int)model.header->n_ghosts);
+        const double theta = MAX_DEG * 0.99 * rng_unit(&seed) * PI / 180;
+        const double phi = 2 * PI * rng_unit(&seed);
+        const double nm = 420 + 260 * rng_unit(&seed);
+        const struct glint_azimuth azimuth = {
+            (int32_t)lrint(cos(phi) * 0x1p30),
+            (int32_t)lrint(sin(phi) * 0x1p30)};
+        struct glint_place at = place;
+
+        m->direction[0] = sin(theta) * cos(phi);
+        m->direction[1] = sin(theta) * sin(phi);
+        m->direction[2] = cos(theta);
+        glint_path_init(&m->path, &lens, &setup.ghost[ghost], nm);
+        if (!glint_transfer_init_at(
+                &m->t, &model, ghost, (int32_t)lrint(sin(theta) * 0x1p30),
+                azimuth, (int32_t)lrint(0x1p24 * 1e6 / (nm * nm))))
+            continue;
+        at.cos_q30 = m->t.sign * ONE;
+        glint_transfer_grid(&m->t, &at, CELLS, vertex);
+        for (int j = 0; j < NODES; j++)
+            for (int i = 0; i < NODES; i++)
+                compare(m, i, j, &vertex[j * NODES + i]);
+    }
+}
+
+static void check(void)
+{
+    static struct meter m;
+    double pixels, radii, share;
+
+    m = (struct meter){.n = 0};
+    compare_all(&m);
+    assert_true(m.n > 500);
+    pixels = sqrt(m.places2 / m.n) * 1920 / 36;
+    radii = sqrt(m.stops2 / m.n);
+    share = sqrt(m.energies2 / m.n);
+    print_message("%d rays: %.3f pixels, %.5f radii, %.4f of the energy, rows "
+                  "within %.4f\n",
+                  m.n, pixels, radii, share, m.off);
+    assert_true(pixels < 1);
+    assert_true(radii < 0.01);
+    assert_true(share < 0.06);
+    assert_true(m.off < 0.01);
+}
+
+static void test_cylinder(void **state)
+{
+    (void)state;
+    bake("", "shape cylinder x\n", "");
+    assert_int_equal(model.header->basis,
+                     GLINT_BASIS_LENS + GLINT_MIRRORS_X + GLINT_MIRRORS_Y);
+    check();
+    forget();
+}
+
+static void test_toric_aside(void **state)
+{
+    (void)state;
+    bake("group decentre 0.6 0\n", "shape toric y 300\n", "end\n");
+    assert_int_equal(model.header->basis, GLINT_BASIS_LENS + GLINT_MIRRORS_Y);
+    check();
+    forget();
+}
+
+static void test_tilted(void **state)
+{
+    (void)state;
+    bake("group decentre 0 0.4 tilt 2 1\n", "", "end\n");
+    assert_int_equal(model.header->basis, GLINT_BASIS_LENS);
+    check();
+    forget();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_cylinder),
+        cmocka_unit_test(test_toric_aside),
+        cmocka_unit_test(test_tilted),
+    };
+
+    return cmocka_run_group_tests_name("skew", tests, NULL, NULL);
+}
