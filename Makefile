@@ -68,7 +68,7 @@ sets_armv7-neon := neon
 absent := $(foreach s,$(filter-out $(sets_$(ARCH)),sse41 avx2 x86 neon),$(wildcard src/kernels/*_$(s).c src/kernels/*/*_$(s).c))
 absent += platform/jpeg/$(if $(filter yes,$(WITH_JPEG)),absent,mjpeg).c
 absent += src/bake/motion/$(if $(filter yes,$(WITH_JANSSON)),absent,recording).c
-absent += $(if $(filter yes,$(WITH_JANSSON)),tools/synth/item_absent.c tools/import/realflare_absent.c,tools/synth/item_json.c tools/import/realflare.c)
+absent += $(if $(filter yes,$(WITH_JANSSON)),tools/synth/item_absent.c tools/import/json_absent.c,tools/synth/item_json.c tools/import/json.c)
 absent += tools/import/$(if $(filter yes,$(WITH_EXPAT)),openlensflare_absent,openlensflare).c
 absent += tools/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
 # A static program has no plug-ins.
@@ -98,7 +98,7 @@ $(OUT)/%.o: %.c
 $(OUT)/platform/jpeg/absent.o: NOTE := MJPEG left out: no libjpeg62-turbo-dev
 $(OUT)/tools/options/config_absent.o: NOTE := --config left out: no libinih-dev
 $(OUT)/tools/synth/item_absent.o: NOTE := synth --item left out: no libjansson-dev
-$(OUT)/tools/import/realflare_absent.o: NOTE := lens files of realflare left out: no libjansson-dev
+$(OUT)/tools/import/json_absent.o: NOTE := lens files of realflare and lentil left out: no libjansson-dev
 $(OUT)/src/bake/motion/absent.o: NOTE := recordings left out: no libjansson-dev
 
 $(OUT)/libglint.a: $(core_o)

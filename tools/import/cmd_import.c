@@ -14,7 +14,7 @@
 
 static const char help[] =
     "glint import FILE -o NAME.lens [--strict] [--format F]\n"
-    "             [--film WxH] [--f-number N] [--position N]\n"
+    "             [--film WxH] [--f-number N] [--position N] [--lens KEY]\n"
     "\n"
     "Reads a lens file of another program and writes a table of it: Zemax\n"
     ".zmx (sequential; STANDARD, EVENASPH; text or UTF-16), CODE V .seq,\n"
@@ -28,7 +28,7 @@ static const char help[] =
     "\n"
     "  -o, --output FILE   the .lens, or - for standard output\n"
     "  --strict            refuse where something would be guessed\n"
-    "  --format F          zmx, seq, oslo, pbrt, flaresim, realflare,\n"
+    "  --format F          zmx, seq, oslo, pbrt, flaresim, realflare, lentil,\n"
     "                      openlensflare, polyflare or opticalbench (default: "
     "by\n"
     "                      the end of the name)\n"
@@ -45,6 +45,7 @@ struct import {
     const char *output;
     bool strict;
     int position;
+    const char *key;
     double film_mm[2], f_number;
 };
 
@@ -89,6 +90,8 @@ static int take(struct tool *tool, void *ctx, int c, const char *value)
                o->f_number <= 1000;
     else if (c == 'p')
         good = tool_integer(value, 1, 16, &o->position);
+    else if (c == 'k')
+        o->key = value;
     else
         return tool_option(tool, c, value);
     return good ? -1 : -2;
@@ -103,6 +106,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct import *o)
         {"film", required_argument, NULL, 'm'},
         {"f-number", required_argument, NULL, 'f'},
         {"position", required_argument, NULL, 'p'},
+        {"lens", required_argument, NULL, 'k'},
         TOOL_COMMON_OPTIONS};
     struct apart files = {.n_read = 0};
     int code =
@@ -233,6 +237,7 @@ static int run(struct tool *tool, struct import *o, const char *path)
     memcpy(o->lens.film_mm, o->film_mm, sizeof o->film_mm);
     o->lens.f_number_given = o->f_number;
     o->lens.position = o->position;
+    o->lens.key = o->key;
     text = import_read(&o->lens, o->format, data, &bytes);
     free(data);
     print_notes(tool, &o->lens);

@@ -14,6 +14,7 @@ static const struct import_format formats[] = {
     {"openlensflare", ".xml", import_openlensflare},
     {"polyflare", ".fx", import_polyflare},
     {"opticalbench", ".txt", import_opticalbench},
+    {"lentil", "lenses.json", import_lentil},
 };
 
 enum { N_FORMATS = sizeof formats / sizeof *formats };
@@ -71,6 +72,10 @@ char *import_read(struct imported *lens, const struct import_format *format,
     }
     if (!format->read(lens, (const char *)data, *bytes) || lens->error[0])
         return NULL;
+    if (lens->key && !lens->keyed) {
+        imported_fail(lens, 0, "has one lens, which no key is needed for");
+        return NULL;
+    }
     if (lens->position > 1 && !lens->chosen) {
         imported_fail(lens, 0, "position %d of 1", lens->position);
         return NULL;

@@ -9,7 +9,8 @@
 
 #include "import/imported.h"
 
-/* A format: its name for --format, the end of its files' names, its reader. */
+/* A format: its name for --format, the end of its files' names, with the dot,
+ * if it is known by that, and its reader. */
 struct import_format {
     const char *name, *end;
     bool (*read)(struct imported *lens, const char *text, size_t bytes);

@@ -50,6 +50,8 @@ struct imported {
     double nominal;           /* focal length, as products are named; or 0 */
     int position;             /* of a zoom, from 1, by the user; 0: not said */
     bool chosen;              /* the file has positions */
+    const char *key; /* of a file of many lenses, by the user; or NULL */
+    bool keyed;      /* the file has keys */
     int n;
     struct imported_surface surface[IMPORT_SURFACES];
     char error[IMPORT_TEXT + 64]; /* "FILE:LINE: cause" */
@@ -116,5 +118,6 @@ bool import_openlensflare(struct imported *lens, const char *text,
 bool import_polyflare(struct imported *lens, const char *text, size_t bytes);
 bool import_opticalbench(struct imported *lens, const char *text, size_t bytes);
 bool import_realflare(struct imported *lens, const char *text, size_t bytes);
+bool import_lentil(struct imported *lens, const char *text, size_t bytes);
 
 #endif

@@ -28,8 +28,8 @@ static const struct {
     {"explain", "top", "a whole number, from 0"},
     {"import", "film", "WxH in mm, such as 36x24"},
     {"import", "format",
-     "zmx, seq, oslo, pbrt, flaresim, realflare, openlensflare, polyflare or "
-     "opticalbench"},
+     "zmx, seq, oslo, pbrt, flaresim, realflare, lentil, openlensflare, "
+     "polyflare or opticalbench"},
     {"import", "position", "a position of a zoom, 1 to 16"},
     {"live", "count", "frames, from 1"},
     {"live", "device",

@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Lenses in JSON, which jansson reads.
+ *
+ * realflare: "lens_elements" of "radius", "distance", "refractive_index",
+ * "abbe_nr" and "height", "aperture_index" the stop among them, "fstop".
+ *
+ * lentil's lenses.json: an object of lenses by their keys, each with
+ * "optical-elements-patent" of "radius", "thickness", "ior", "abbe",
+ * "housing-radius", "material", which may be "air" or "iris", and
+ * "lens-geometry".
+ */
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include "import/imported.h"
+
+struct json_lens {
+    struct imported *lens;
+    const char *text, *end; /* where its elements are */
+    int line;               /* of TEXT */
+};
+
+/* Goes behind the next WORD; returns false if there is none. */
+static bool go_behind(struct json_lens *j, const char *word)
+{
+    const size_t bytes = strlen(word);
+
+    for (; j->end - j->text >= (ptrdiff_t)bytes; j->text++) {
+        if (memcmp(j->text, word, bytes) == 0) {
+            j->text += bytes;
+            return true;
+        }
+        j->line += *j->text == '\n';
+    }
+    return false;
+}
+
+/* Goes to the next element, whose line is that of its radius, by which people
+ * find it; jansson does not keep places. */
+static int next_line(struct json_lens *j)
+{
+    return go_behind(j, "\"radius\"") ? j->line : 0;
+}
+
+static bool number(struct json_lens *j, const json_t *element, int line,
+                   const char *key, double *value)
+{
+    const json_t *found = json_object_get(element, key);
+
+    if (!json_is_number(found))
+        return imported_fail(j->lens, line, "\"%s\" is %s", key,
+                             found ? "no number" : "missing");
+    *value = json_number_value(found);
+    return true;
+}
+
+/* Reads TEXT; NULL after an error. */
+static json_t *load(struct imported *lens, const char *text, size_t bytes)
+{
+    json_error_t error;
+    json_t *root = json_loadb(text, bytes, JSON_REJECT_DUPLICATES, &error);
+
+    if (!root)
+        imported_fail(lens, error.line, "%.150s", error.text);
+    return root;
+}
+
+/* ---------------------------------------------------------------- realflare */
+
+static bool take_element(struct json_lens *j, const json_t *element, bool stop)
+{
+    const int line = next_line(j);
+    struct imported_surface *s = imported_add(j->lens, line);
+
+    if (!s)
+        return false;
+    s->stop = stop;
+    if (!number(j, element, line, "radius", &s->radius) ||
+        !number(j, element, line, "distance", &s->thickness) ||
+        !number(j, element, line, "refractive_index", &s->nd) ||
+        !number(j, element, line, "abbe_nr", &s->vd) ||
+        !number(j, element, line, "height", &s->semi))
+        return false;
+    if (s->nd == 1)
+        s->vd = 0;
+    return true;
+}
+
+static bool take(struct json_lens *j, const json_t *root)
+{
+    const json_t *elements = json_object_get(root, "lens_elements");
+    const json_t *name = json_object_get(root, "name");
+    double stop = -1;
+
+    if (!json_is_array(elements) || json_array_size(elements) == 0)
+        return imported_fail(j->lens, 0,
+                             "has no \"lens_elements\" (lentil's lenses: "
+                             "--format lentil)");
+    if (json_is_string(name))
+        snprintf(j->lens->title, sizeof j->lens->title, "%.230s",
+                 json_string_value(name));
+    if (json_object_get(root, "fstop") &&
+        !number(j, root, 0, "fstop", &j->lens->f_number))
+        return false;
+    if (json_object_get(root, "focal_length") &&
+        !number(j, root, 0, "focal_length", &j->lens->nominal))
+        return false;
+    if (!number(j, root, 0, "aperture_index", &stop))
+        return false;
+    if (stop != floor(stop) || stop < 0 ||
+        stop >= (double)json_array_size(elements))
+        return imported_fail(j->lens, 0,
+                             "\"aperture_index\" %g is none of the %d "
+                             "\"lens_elements\", from 0",
+                             stop, (int)json_array_size(elements));
+    for (int k = 0; k < (int)json_array_size(elements); k++)
+        if (!take_element(j, json_array_get(elements, (size_t)k),
+                          k == (int)stop))
+            return false;
+    return imported_note(j->lens, 0, "coatings are not read");
+}
+
+bool import_realflare(struct imported *lens, const char *text, size_t bytes)
+{
+    struct json_lens j = {lens, text, text + bytes, 1};
+    json_t *root = load(lens, text, bytes);
+    const bool good = root && take(&j, root);
+
+    json_decref(root);
+    return good;
+}
+
+/* ------------------------------------------------------------------- lentil */
+
+/* Sets the shape of S by "lens-geometry": "cyl-y" is straight along y. */
+static bool take_geometry(struct json_lens *j, const json_t *element,
+                          struct imported_surface *s)
+{
+    const char *kind =
+        json_string_value(json_object_get(element, "lens-geometry"));
+
+    if (!kind || strcmp(kind, "spherical") == 0)
+        return true;
+    if (strcmp(kind, "cyl-x") != 0 && strcmp(kind, "cyl-y") != 0)
+        return imported_fail(j->lens, s->line,
+                             "surfaces of geometry '%.40s' are not read: "
+                             "spherical, cyl-x and cyl-y are",
+                             kind);
+    s->shape.bend = kind[4] == 'x' ? GLINT_BEND_Y : GLINT_BEND_X;
+    return true;
+}
+
+static bool take_lentil_element(struct json_lens *j, const json_t *element)
+{
+    const char *medium =
+        json_string_value(json_object_get(element, "material"));
+    const int line = next_line(j);
+    struct imported_surface *s = imported_add(j->lens, line);
+
+    if (!s)
+        return false;
+    if (!medium)
+        return imported_fail(j->lens, line, "\"material\" is missing");
+    s->stop = strcasecmp(medium, "iris") == 0;
+    if (!number(j, element, line, "radius", &s->radius) ||
+        !number(j, element, line, "thickness", &s->thickness) ||
+        !number(j, element, line, "housing-radius", &s->semi))
+        return false;
+    if (!s->stop && strcasecmp(medium, "air") != 0 &&
+        (!number(j, element, line, "ior", &s->nd) ||
+         !number(j, element, line, "abbe", &s->vd)))
+        return false;
+    return take_geometry(j, element, s);
+}
+
+/* Returns the lens that is asked for, or the only one; NULL after an error. */
+static const json_t *find_lens(struct imported *lens, json_t *root)
+{
+    const char *key = lens->key ? lens->key : "";
+    const json_t *found;
+
+    lens->keyed = true;
+    if (!lens->key && json_object_size(root) == 1)
+        key = json_object_iter_key(json_object_iter(root));
+    found = json_object_get(root, key);
+    if (found)
+        return found;
+    if (json_object_size(root) == 0)
+        imported_fail(lens, 0, "there are no lenses in it");
+    else
+        imported_fail(
+            lens, 0, "has %d lenses%s%.40s%s: --lens %.40s or another",
+            (int)json_object_size(root),
+            lens->key ? ", and none by the key '" : "", key,
+            lens->key ? "'" : "", json_object_iter_key(json_object_iter(root)));
+    return NULL;
+}
+
+static bool take_lentil(struct json_lens *j, json_t *root)
+{
+    static const char list[] = "optical-elements-patent";
+    const json_t *found = find_lens(j->lens, root), *elements, *said;
+    char key[64];
+
+    if (!found)
+        return false;
+    elements = json_object_get(found, list);
+    if (!json_is_array(elements) || json_array_size(elements) == 0)
+        return imported_fail(j->lens, 0, "has no \"%s\"", list);
+    said = json_object_get(found, "product-name");
+    if (json_is_string(said))
+        snprintf(j->lens->title, sizeof j->lens->title, "%.230s",
+                 json_string_value(said));
+    said = json_object_get(found, "focal-length-mm-patent");
+    if (json_is_number(said))
+        j->lens->nominal = json_number_value(said);
+    if (j->lens->key) {
+        snprintf(key, sizeof key, "\"%.60s\"", j->lens->key);
+        go_behind(j, key);
+    }
+    go_behind(j, list);
+    for (size_t k = 0; k < json_array_size(elements); k++)
+        if (!take_lentil_element(j, json_array_get(elements, k)))
+            return false;
+    return true;
+}
+
+bool import_lentil(struct imported *lens, const char *text, size_t bytes)
+{
+    struct json_lens j = {lens, text, text + bytes, 1};
+    json_t *root = load(lens, text, bytes);
+    const bool good = root && take_lentil(&j, root);
+
+    json_decref(root);
+    return good;
+}
