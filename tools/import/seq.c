@@ -15,7 +15,6 @@
 #include <strings.h>
 
 #include "import/lines.h"
-#include "options/tool.h"
 
 struct seq {
     struct imported *lens;
@@ -24,22 +23,25 @@ struct seq {
     bool curvatures;
 };
 
-/* Sets S to a glass of numbers, as "517.642" or "517642"; returns whether WORD
+/* Sets S to a glass of digits, those of nd behind "1." and those of Vd / 100
+ * behind "0.", as "517642", "517.642" or "516800.641672"; returns whether WORD
  * is one. */
 static bool numbered_glass(struct imported_surface *s, const char *word)
 {
-    const char *point = strchr(word, '.');
-    double value;
+    static const char digits[] = "0123456789";
+    const size_t all = strlen(word), before = strspn(word, digits);
+    const bool point = word[before] == '.';
+    const size_t n = point ? before : 3, from = point ? n + 1 : n;
+    char text[24];
 
-    if (!tool_number(word, &value))
+    if (n < 3 || all < from + 2 || all > from + 6 || before < n ||
+        strspn(word + from, digits) != all - from || (!point && all != 6))
         return false;
-    if (point)
-        value = point - word == 3 ? value * 1000 : 0;
-    if (!(value >= 100000 && value < 1000000))
-        return false;
-    s->nd = 1 + floor(value / 1000) / 1000;
-    s->vd = fmod(value, 1000) / 10;
-    return true;
+    snprintf(text, sizeof text, "1.%.*s", (int)n, word);
+    s->nd = strtod(text, NULL);
+    snprintf(text, sizeof text, "0.%s", word + from);
+    s->vd = 100 * strtod(text, NULL);
+    return n <= 6;
 }
 
 static bool take_glass(struct seq *q, const char *word)
@@ -110,6 +112,7 @@ static bool take_aperture(struct seq *q)
 /* Takes a word for one number of the surface; DONE is whether it is one. */
 static bool take_number(struct seq *q, bool *done)
 {
+    static const char terms[] = "ABCDEFGHJ"; /* of h^4 to h^20 */
     const struct lines *l = &q->lines;
     const char *word = l->word[0];
 
@@ -124,15 +127,15 @@ static bool take_number(struct seq *q, bool *done)
                    : imported_fail(q->lens, l->number, "the glass has no name");
     if (strcmp(word, "K") == 0)
         return lines_number(q->lens, l, 1, "conic", &q->s->shape.conic);
-    if (*word >= 'A' && *word <= 'H' && !word[1])
+    if (*word && !word[1] && strchr(terms, *word))
         return lines_number(q->lens, l, 1, "aspheric term",
-                            &q->s->shape.term[*word - 'A']);
+                            &q->s->shape.term[strchr(terms, *word) - terms]);
     *done = false;
     return true;
 }
 
-/* Takes what is said of the surface: shapes of "K", and "A" to "H" for h^4 to
- * h^18. */
+/* Takes what is said of the surface: shapes of "K", and "A" to "J" for h^4 to
+ * h^20. */
 static bool take_surface(struct seq *q)
 {
     static const char *const ignored[] = {
