@@ -106,7 +106,7 @@ $(OUT)/valgrind/%: $(OUT)/tests/% always
 golden-update: $(OUT)/tests/unit/test_flare
 	@GLINT_GOLDEN_UPDATE=1 $<
 
-# Every fuzzer for SECONDS, or one:  make fuzz FUZZ=lens SECONDS=600. What they
+# Every fuzzer for SECONDS or RUNS, or one:  make fuzz FUZZ=lens SECONDS=600. What they
 # come to know stays in build/fuzz; fuzz-keep takes from there into the corpora
 # what reaches code that these do not.
 FUZZ    ?= $(FUZZERS)
