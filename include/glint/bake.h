@@ -68,6 +68,20 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
                              struct glint_bake_report *report,
                              struct glint_error *error);
 
+/* A model of a zoom at a position, 0 .. 2^30. */
+struct glint_bake_model {
+    unsigned char *data;
+    size_t bytes;
+    int32_t along_q30;
+};
+
+/* Puts N models of one lens, by rising position from 0 to 2^30, into a file as
+ * in glint/model.h, *ZOOM[*BYTES], to be freed by the caller. GLINT_E_LENS: they
+ * are no positions of one lens; ERROR says why. GLINT_E_MEMORY. */
+enum glint_status glint_bake_zoom(const struct glint_bake_model *model, int n,
+                                  unsigned char **zoom, size_t *bytes,
+                                  struct glint_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -209,6 +209,8 @@ struct glint_lens {
     const struct glint_model_header *header;
     const struct glint_model_ghost *ghost;
     const struct glint_model_system *system;
+    const struct glint_zoom_lens *zoom; /* what the lens is a position of; NULL:
+                                           it is a model by itself */
 };
 
 /* Checks all of DATA[BYTES], aligned to 4, and points LENS into it; DATA is
@@ -219,6 +221,78 @@ enum glint_status glint_lens_open(struct glint_lens *lens, const void *data,
 
 /* Returns the checksum of BYTES bytes at DATA, as crc32 of the header. */
 uint32_t glint_model_crc32(const void *data, size_t bytes);
+
+/* ---------------------------------------------------------------------- zoom
+ *
+ *     status = glint_zoom_open(zoom, data, bytes, &reason);     once
+ *     glint_zoom_set(zoom, along_q30);                          when it moves
+ *     ... &zoom->lens is a lens as any other
+ *
+ * A zoom is models of one lens at several positions. Between two of them a
+ * bundle's polynomials are those of both, with angle and wavelength put in,
+ * each taken at the same place of the pupil, mixed in proportion. So nothing
+ * that a frame does costs more but its plan. A ghost that light gets through at
+ * one of the two positions alone fades.
+ *
+ * The file: a header, then for each position an ordinary model at a multiple of
+ * 4 bytes; kept where it lies. */
+
+#define GLINT_ZOOM_MAGIC   UINT32_C(0x5a4e4c47) /* "GLNZ" */
+#define GLINT_ZOOM_VERSION 1
+
+enum { GLINT_MAX_ZOOM_MODELS = 64, GLINT_MAX_ZOOM_GHOSTS = 2048 };
+
+struct glint_zoom_header {
+    uint32_t magic, version;
+    uint32_t bytes, crc32; /* as in struct glint_model_header */
+    uint32_t variant;      /* 0 */
+    uint32_t key[2];       /* key of the table and options, low word first */
+    char name[64];         /* name of the lens, terminated */
+    uint32_t n_models, model_at; /* array of struct glint_zoom_model */
+};
+
+/* A position. They rise from 0 to 2^30. */
+struct glint_zoom_model {
+    int32_t along_q30;
+    uint32_t at, bytes; /* place and size of the model in the file */
+};
+
+struct glint_zoom_lens {
+    struct glint_lens lens; /* the lens where the zoom is set */
+    int n_models;
+    struct glint_lens model[GLINT_MAX_ZOOM_MODELS];
+    int32_t along_q30[GLINT_MAX_ZOOM_MODELS];
+    int32_t now_q30; /* where it is set, and between which models: this one and
+                        the next, PART of the way */
+    int below;
+    int32_t part_q30;
+    /* What LENS points to. */
+    struct glint_model_header header;
+    struct glint_model_ghost ghost[GLINT_MAX_ZOOM_GHOSTS];
+    /* Of each ghost and part: the ghost that it is of, its number among that
+     * one's parts, and its place in both models, -1 where they lack it. Further
+     * parts of ghost G are PART_FROM[G] .. PART_FROM[G + 1] - 1. */
+    int16_t whole[GLINT_MAX_ZOOM_GHOSTS], number[GLINT_MAX_ZOOM_GHOSTS];
+    int16_t place[2][GLINT_MAX_ZOOM_GHOSTS];
+    int16_t part_from[GLINT_MAX_ZOOM_GHOSTS + 1];
+};
+
+/* Checks all of DATA[BYTES], which is kept and must not change, and sets ZOOM
+ * to its first position. GLINT_E_LENS: *REASON, a constant text, says what is
+ * wrong. */
+enum glint_status glint_zoom_open(struct glint_zoom_lens *zoom,
+                                  const void *data, size_t bytes,
+                                  const char **reason);
+
+/* Does the same for N models that are open, at ALONG_Q30. */
+enum glint_status glint_zoom_join(struct glint_zoom_lens *zoom,
+                                  const struct glint_lens *model,
+                                  const int32_t *along_q30, int n,
+                                  const char **reason);
+
+/* Sets ZOOM to ALONG_Q30, clamped to 0 .. 2^30. ZOOM->lens changes in place:
+ * its numbers of ghosts and parts stay. */
+void glint_zoom_set(struct glint_zoom_lens *zoom, int32_t along_q30);
 
 #ifdef __cplusplus
 }

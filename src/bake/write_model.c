@@ -201,7 +201,8 @@ struct glint_lens glint_draft_lens(const struct glint_draft *draft)
     const struct glint_model_header *h = (const void *)draft->data;
 
     return (struct glint_lens){h, (const void *)(draft->data + h->ghost_at),
-                               (const void *)(draft->data + h->system_at)};
+                               (const void *)(draft->data + h->system_at),
+                               NULL};
 }
 
 /* Rounds an error up to a code of glint_model_error_q20(). */

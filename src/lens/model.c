@@ -201,5 +201,6 @@ enum glint_status glint_lens_open(struct glint_lens *lens, const void *data,
     lens->header = c.header;
     lens->ghost = c.ghost;
     lens->system = c.system;
+    lens->zoom = NULL;
     return GLINT_OK;
 }

@@ -20,6 +20,20 @@ static inline void transfer_powers(int32_t x_q30, int n, int32_t *power_q30)
         power_q30[k] = q_mul(power_q30[k - 1], x_q30, 30);
 }
 
+/* Returns the system of GHOST for this angle and wavelength, or NULL if no
+ * light gets through. */
+const struct glint_model_system *
+glint_transfer_system(const struct glint_lens *lens, int ghost,
+                      int32_t sine_q30, int32_t wave_q24);
+
+/* Mixes GHOST of LENS into TRANSFER, which has the same ghost at another
+ * position of a zoom, and the same angle and wavelength: PART of this one and
+ * the rest of that. It has light. Returns 0, and does nothing, if their
+ * energies are of other kinds. */
+int glint_transfer_mix(struct glint_transfer *transfer,
+                       const struct glint_lens *lens, int ghost,
+                       int32_t sine_q30, int32_t wave_q24, int32_t part_q30);
+
 static inline int transfer_has(const struct glint_transfer *t, int kind)
 {
     return (t->outputs >> kind & 1) != 0;

@@ -16,6 +16,7 @@
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "base/q.h"
+#include "lens/blend.h"
 #include "lens/box.h"
 #include "lens/terms.h"
 
@@ -89,6 +90,13 @@ find_system(const struct glint_lens *lens, int ghost, int32_t sine_q30,
             best = s;
     }
     return best;
+}
+
+const struct glint_model_system *
+glint_transfer_system(const struct glint_lens *lens, int ghost,
+                      int32_t sine_q30, int32_t wave_q24)
+{
+    return find_system(lens, ghost, sine_q30, 0, wave_q24);
 }
 
 /* Angle and wavelength of a bundle, relative to its system. */
@@ -217,31 +225,40 @@ static WHOLLY_INLINE void add_term(struct table *t, uint16_t power,
     t->degree_v = b > t->degree_v ? b : t->degree_v;
 }
 
-/* Sets the table of an output in the auto basis. */
-static void set_table(struct glint_transfer *t, const struct glint_lens *lens,
-                      const struct glint_model_output *o,
-                      const struct setting *set)
+/* Sets TABLE to an output in the auto or the lens basis. */
+static void fill_table(struct table *table, const struct glint_lens *lens,
+                       const struct glint_model_output *o,
+                       const struct setting *set)
 {
     const uint32_t n = o->n_terms, n_wide = n - o->n_narrow;
     const int32_t *coef = at(lens, o->coef_at);
     const int32_t by = INT32_C(1) << o->narrow_shift;
     const int16_t *narrow = (const int16_t *)(const void *)(coef + n_wide);
     const uint16_t *power = at(lens, o->term_at);
-    struct table table = {t->of.table[o->kind], 0, 0};
 
+    table->degree_u = table->degree_v = 0;
     for (int b = 0; b <= GLINT_MAX_POWER; b++)
         for (int a = 0; a < GLINT_TABLE_WIDTH; a++)
-            table.row[b][a] = 0;
+            table->row[b][a] = 0;
     for (uint32_t k = 0; k < n && set->lens; k++)
-        add_term(&table, power[k],
+        add_term(table, power[k],
                  put_lens_in(set,
                              k < n_wide ? coef[k] : narrow[k - n_wide] * by,
                              power[k]));
     for (uint32_t k = 0; k < n_wide && !set->lens; k++)
-        add_term(&table, power[k], put_in(set, coef[k], power[k]));
+        add_term(table, power[k], put_in(set, coef[k], power[k]));
     for (uint32_t k = n_wide; k < n && !set->lens; k++)
-        add_term(&table, power[k],
+        add_term(table, power[k],
                  put_in(set, narrow[k - n_wide] * by, power[k]));
+}
+
+static void set_table(struct glint_transfer *t, const struct glint_lens *lens,
+                      const struct glint_model_output *o,
+                      const struct setting *set)
+{
+    struct table table = {t->of.table[o->kind], 0, 0};
+
+    fill_table(&table, lens, o, set);
     t->degree_u[o->kind] = (uint8_t)table.degree_u;
     t->degree_v[o->kind] = (uint8_t)table.degree_v;
 }
@@ -320,11 +337,14 @@ int glint_transfer_init_at(struct glint_transfer *transfer,
                            int32_t wave_q24)
 {
     const struct toward d = toward_of(lens, sine_q30, azimuth);
-    const struct glint_model_system *system =
-        find_system(lens, ghost, d.x_q30, d.y_q30, wave_q24);
+    const struct glint_model_system *system;
     const struct glint_model_output *output;
     struct setting set;
 
+    if (lens->zoom) /* whose models are of round lenses */
+        return glint_zoom_transfer(transfer, lens->zoom, ghost, sine_q30,
+                                   wave_q24);
+    system = find_system(lens, ghost, d.x_q30, d.y_q30, wave_q24);
     if (!system)
         return 0;
     clear(transfer);
@@ -341,5 +361,36 @@ int glint_transfer_init_at(struct glint_transfer *transfer,
     output = at(lens, system->output_at);
     for (uint32_t k = 0; k < system->n_outputs; k++)
         set_output(transfer, lens, &output[k], &set);
+    return 1;
+}
+
+int glint_transfer_mix(struct glint_transfer *transfer,
+                       const struct glint_lens *lens, int ghost,
+                       int32_t sine_q30, int32_t wave_q24, int32_t part_q30)
+{
+    const struct glint_model_system *const system =
+        glint_transfer_system(lens, ghost, sine_q30, wave_q24);
+    const struct glint_model_output *o = at(lens, system->output_at);
+    struct glint_zoom_mix blend = {.to = transfer, .part_q30 = part_q30};
+    int32_t box[3] = {transfer->box[0], transfer->box[1], transfer->box[2]};
+    const int32_t box_exponent = transfer->box_exponent;
+    struct setting set;
+
+    if (o[GLINT_OUT_ENERGY].roots != transfer->roots)
+        return 0;
+    settle(&set, lens, system, sine_q30, 0, wave_q24);
+    transfer->system = system;
+    set_box(transfer, lens, &set);
+    glint_blend_box(&blend, box, box_exponent);
+    for (uint32_t k = 0; k < system->n_outputs; k++) {
+        struct table table = {transfer->of_u, 0, 0};
+
+        fill_table(&table, lens, &o[k], &set);
+        glint_blend_output(&blend, &(struct glint_blend_output){
+                                       o[k].kind, o[k].head, o[k].exponent,
+                                       table.row, (uint8_t)table.degree_u,
+                                       (uint8_t)table.degree_v});
+    }
+    glint_blend_end(&blend);
     return 1;
 }

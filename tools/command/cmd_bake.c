@@ -44,6 +44,9 @@ static const char help[] =
     "                    sparse: as published, 241 angles to 60 degrees\n"
     "  --band LO,HI      wavelengths, nm (default 400,700)\n"
     "  --max-angle DEG   of a light (default 60)\n"
+    "  --positions N     of a zoom, 2 .. 64 along its way, in one model "
+    "between\n"
+    "                    which it zooms\n"
     "  --field MM        radius on the sensor within which light counts\n"
     "                    (default: a tenth more than the film's corners)\n"
     "  --tolerance T     scale of the errors aimed at (default 1)\n"
@@ -55,6 +58,7 @@ struct bake {
     struct coating coating;
     struct zoom_option zoom;
     double f_number;
+    int positions; /* of a zoom; 0: one model */
     struct glint_bake_options options;
 };
 
@@ -70,6 +74,9 @@ static int take(struct tool *tool, struct bake *b, int c, const char *name)
         break;
     case 'c':
         return coating_take(tool, &b->coating, optarg);
+    case 'n':
+        ok = tool_integer(optarg, 2, GLINT_MAX_ZOOM_MODELS, &b->positions);
+        break;
     case 'z':
         ok = zoom_option_take(&b->zoom, optarg);
         break;
@@ -108,6 +115,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct bake *b)
         {"coating", required_argument, NULL, 'c'},
         {"f-number", required_argument, NULL, 'f'},
         ZOOM_OPTIONS('z', 'F'),
+        {"positions", required_argument, NULL, 'n'},
         {"basis", required_argument, NULL, 'b'},
         {"band", required_argument, NULL, 'w'},
         {"max-angle", required_argument, NULL, 'a'},
@@ -171,6 +179,70 @@ static int bake_into(struct glint_output *out, struct tool *tool,
     return code;
 }
 
+/* Bakes LENS at position K; *MODEL is to be freed. */
+static enum glint_status bake_position(struct bake *b,
+                                       const struct glint_prescription *lens,
+                                       int k, struct glint_bake_model *model,
+                                       struct glint_error *error)
+{
+    struct glint_prescription *const moved = malloc(sizeof *moved);
+    const double along = k / (b->positions - 1.0);
+    struct glint_bake_report report;
+    unsigned char *data = NULL;
+    enum glint_status status = GLINT_E_MEMORY;
+
+    if (moved) {
+        *moved = *lens;
+        status = glint_prescription_zoom(moved, along, error);
+    }
+    if (status == GLINT_OK && b->zoom.focus_m > 0)
+        status = glint_prescription_focus(moved, b->zoom.focus_m, error);
+    if (status == GLINT_OK && b->f_number > 0)
+        status = glint_prescription_set_f_number(moved, b->f_number, error);
+    if (status == GLINT_OK)
+        status = glint_bake(moved, &b->options, &data, &model->bytes, &report,
+                            error);
+    model->data = data;
+    model->along_q30 = (int32_t)lrint(along * 0x1p30);
+    free(moved);
+    return status;
+}
+
+/* Bakes LENS, which is as read, at all positions into OUT. */
+static int bake_positions(struct glint_output *out, struct tool *tool,
+                          struct bake *b, const struct glint_prescription *lens)
+{
+    struct glint_bake_model model[GLINT_MAX_ZOOM_MODELS] = {{NULL, 0, 0}};
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_OK;
+    const double start = tool_seconds();
+    unsigned char *zoom = NULL;
+    size_t bytes = 0;
+
+    b->options.workers = tool->workers;
+    for (int k = 0; k < b->positions && status == GLINT_OK; k++) {
+        status = bake_position(b, lens, k, &model[k], &error);
+        if (status == GLINT_OK && !tool->quiet)
+            fprintf(stderr, "glint bake: position %d of %d, %.0f s\n", k + 1,
+                    b->positions, tool_seconds() - start);
+    }
+    if (status == GLINT_OK)
+        status = glint_bake_zoom(model, b->positions, &zoom, &bytes, &error);
+    for (int k = 0; k < b->positions; k++)
+        free(model[k].data);
+    if (status == GLINT_OK)
+        status = glint_output_finish(out, zoom, bytes, &error);
+    else
+        glint_output_abort(out);
+    free(zoom);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text[0] ? error.text : NULL);
+    if (tool->json)
+        printf("{\"positions\": %d, \"bytes\": %zu, \"seconds\": %.1f}\n",
+               b->positions, bytes, tool_seconds() - start);
+    return EXIT_OK;
+}
+
 /* Bakes the lens NAME. The output is opened before, as baking can take
  * minutes. */
 static int run(struct tool *tool, struct bake *b, const char *name)
@@ -190,10 +262,10 @@ static int run(struct tool *tool, struct bake *b, const char *name)
     if (code == EXIT_OK)
         code = tool_lens(tool, name, lens);
     if (code == EXIT_OK)
-        code = zoom_option_apply(tool, &b->zoom, lens);
+        code = b->positions ? EXIT_OK : zoom_option_apply(tool, &b->zoom, lens);
     if (code == EXIT_OK)
         coating_apply(&b->coating, lens);
-    if (code == EXIT_OK && b->f_number > 0)
+    if (code == EXIT_OK && b->f_number > 0 && !b->positions)
         status = glint_prescription_set_f_number(lens, b->f_number, &error);
     if (code == EXIT_OK && status == GLINT_OK)
         status =
@@ -201,7 +273,8 @@ static int run(struct tool *tool, struct bake *b, const char *name)
     if (status != GLINT_OK)
         code = tool_fail(tool, status, error.text);
     if (code == EXIT_OK)
-        code = bake_into(&out, tool, b, lens);
+        code = b->positions ? bake_positions(&out, tool, b, lens)
+                            : bake_into(&out, tool, b, lens);
     free(lens);
     return code;
 }

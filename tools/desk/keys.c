@@ -29,6 +29,7 @@ static const struct {
     [KEYS_X] = {"x", -1e6, 1e6, "x and y must be within a million pixels"},
     [KEYS_Y] = {"y", -1e6, 1e6, "x and y must be within a million pixels"},
     [KEYS_EV] = {"ev", -40, 90, "ev must be -40 to 90 stops"},
+    [KEYS_ZOOM] = {"zoom", 0, 1e5, "zoom must be mm, or 0 to 1"},
 };
 
 /* A file being read. */

@@ -33,6 +33,7 @@ enum key_column {
     KEYS_X,
     KEYS_Y,
     KEYS_EV,
+    KEYS_ZOOM, /* as model_file_zoom() */
     KEYS_COLUMNS
 };
 

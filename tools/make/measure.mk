@@ -186,6 +186,8 @@ star-table: all $(OUT)/star_table
 	@tools/report/star-table $(OUT)/star_table tests/figures/starburst.svg | tools/report/write-figures starburst
 memory-table: all
 	@tools/report/memory-table | tools/report/write-figures memory
+zoom-table: all
+	@tools/lens_figures/zoom-table $(LENS) | tools/report/write-figures shapes/zoom
 # The weights of src/engine/frame/cost.c, by random frames.
 cost-fit: all $(OUT)/cost_frames
 	@tools/make/deps "instruction counts" valgrind >&2
@@ -205,5 +207,5 @@ budget: all
 .PHONY: glints-table hidden-table scene-budget-table occlusion-table video-report demo inputs table bake-table wide-table library-table accuracy-table colour-table coating-table ray-table power-table \
         power-fit \
         corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet gallery \
-        bench bench-insn growth size trade lights-table threads-table reuse-table flicker-table left-table stopping-table hostile-table star-table memory-table \
+        bench bench-insn growth size trade lights-table threads-table reuse-table flicker-table left-table stopping-table hostile-table star-table memory-table zoom-table \
         cost-fit scene-cost-fit stone-table stone-dials ward-table ward-sheet ward-cost-table sunflow-table budget

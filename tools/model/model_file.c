@@ -21,6 +21,12 @@ bool tool_is_file_name(const char *argument)
     return is_file;
 }
 
+static uint32_t magic_of(const unsigned char *b)
+{
+    return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 |
+           (uint32_t)b[3] << 24;
+}
+
 bool tool_is_model(const char *path)
 {
     unsigned char b[4] = {0};
@@ -38,8 +44,24 @@ bool tool_is_model(const char *path)
     if (fread(b, 1, sizeof b, file) < sizeof b)
         b[0] = 0;
     fclose(file);
-    return (b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 |
-            (uint32_t)b[3] << 24) == GLINT_MODEL_MAGIC;
+    return magic_of(b) == GLINT_MODEL_MAGIC || magic_of(b) == GLINT_ZOOM_MAGIC;
+}
+
+/* Opens what MODEL->data holds. */
+static enum glint_status open_data(struct model_file *model,
+                                   const char **reason)
+{
+    enum glint_status status;
+
+    if (model->bytes < 4 || magic_of(model->data) != GLINT_ZOOM_MAGIC)
+        return glint_lens_open(&model->lens, model->data, model->bytes, reason);
+    *reason = "no memory";
+    model->zoom = malloc(sizeof *model->zoom);
+    if (!model->zoom)
+        return GLINT_E_MEMORY;
+    status = glint_zoom_open(model->zoom, model->data, model->bytes, reason);
+    model->lens = model->zoom->lens;
+    return status;
 }
 
 int tool_model(const struct tool *tool, const char *path,
@@ -55,8 +77,7 @@ int tool_model(const struct tool *tool, const char *path,
         glint_input_slurp(&data, &model->bytes, path, MAX_MODEL_BYTES, &error);
     model->data = data; /* malloc aligns it */
     if (status == GLINT_OK) {
-        status =
-            glint_lens_open(&model->lens, model->data, model->bytes, &reason);
+        status = open_data(model, &reason);
         if (status == GLINT_OK)
             return EXIT_OK;
         snprintf(error.text, sizeof error.text, "%.180s: %.70s", path, reason);
@@ -66,8 +87,48 @@ int tool_model(const struct tool *tool, const char *path,
     return status == GLINT_E_MEMORY ? EXIT_RUNTIME : EXIT_LENS;
 }
 
+static double focal_at(struct glint_zoom_lens *z, int32_t along_q30)
+{
+    glint_zoom_set(z, along_q30);
+    return model_real_of(z->header.focal_mm);
+}
+
+bool model_file_zoom(struct model_file *model, double zoom)
+{
+    const int32_t whole_q30 = INT32_C(1) << 30;
+    /* focal lengths on barrels are rounded */
+    const double slack = 1.002;
+    struct glint_zoom_lens *const z = model->zoom;
+    const int32_t before_q30 = z->now_q30;
+    const double first = focal_at(z, 0), last = focal_at(z, whole_q30);
+    int32_t low = 0, high = whole_q30;
+
+    glint_zoom_set(z, before_q30);
+    if (zoom <= 1) {
+        if (!(zoom >= 0))
+            return false;
+        glint_zoom_set(z, (int32_t)lrint(zoom * whole_q30));
+        return true;
+    }
+    if (!(zoom * slack >= fmin(first, last) &&
+          zoom <= fmax(first, last) * slack))
+        return false;
+    while (high - low > 1) {
+        const int32_t middle = low + (high - low) / 2;
+
+        if ((focal_at(z, middle) < zoom) == (last > first))
+            low = middle;
+        else
+            high = middle;
+    }
+    glint_zoom_set(
+        z, fabs(zoom - first) < fabs(zoom - last) && low == 0 ? 0 : high);
+    return true;
+}
+
 void model_file_close(struct model_file *model)
 {
+    free(model->zoom);
     free(model->data);
     *model = (struct model_file){.data = NULL};
 }

@@ -18,6 +18,8 @@ struct model_file {
     struct glint_lens lens; /* points into data */
     void *data;
     size_t bytes;
+    struct glint_zoom_lens *zoom; /* of a zoom, of which lens is a position;
+                                     NULL: it has one position */
 };
 
 /* Returns whether ARGUMENT is the name of a file: with a slash, or ending in
@@ -32,6 +34,10 @@ bool tool_is_model(const char *path);
  * the reason and leaves MODEL closed. */
 int tool_model(const struct tool *tool, const char *path,
                struct model_file *model);
+
+/* Sets MODEL, of a zoom, to ZOOM: mm of focal length, or 0 to 1 along its way.
+ * Returns false, and does nothing, if it does not go there. */
+bool model_file_zoom(struct model_file *model, double zoom);
 
 /* Closes MODEL, unless it is closed already. */
 void model_file_close(struct model_file *model);

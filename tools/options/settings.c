@@ -8,6 +8,7 @@
 #include "desk/ghost_file.h"
 #include "engine/frame/area.h"
 #include "lamp_files/lamp_list.h"
+#include "posix/error.h"
 #include "desk/stop_option.h"
 #include "options/settings_table.h"
 #include "options/settings_take.h"
@@ -108,6 +109,19 @@ static void warn_field(const struct tool *tool, const struct settings *settings)
                 tool->name, field);
 }
 
+/* Zooms the model of PATH to where the line says. */
+static int zoom_model(const struct tool *tool, struct settings *settings,
+                      const char *path)
+{
+    const struct zoom_option *const o = &settings->zoom;
+
+    if (!settings->model.zoom || o->is_focused)
+        return zoom_option_of_model(tool, o, path);
+    return !o->is_zoomed || model_file_zoom(&settings->model, o->zoom)
+               ? EXIT_OK
+               : tool_usage(tool, "%s does not zoom to %g", path, o->zoom);
+}
+
 static int open_model(const struct tool *tool, struct settings *settings,
                       const char *path)
 {
@@ -119,9 +133,9 @@ static int open_model(const struct tool *tool, struct settings *settings,
                           path);
     code = coating_of_model(tool, &settings->coating, path);
     if (code == EXIT_OK)
-        code = zoom_option_of_model(tool, &settings->zoom, path);
-    if (code == EXIT_OK)
         code = tool_model(tool, path, &settings->model);
+    if (code == EXIT_OK)
+        code = zoom_model(tool, settings, path);
     if (code != EXIT_OK)
         return code;
     h = settings->model.lens.header;
@@ -162,6 +176,16 @@ enum glint_status settings_stop(struct settings *settings, double f_number,
                                 struct glint_error *error)
 {
     settings->f_number = f_number;
+    return make_setup(settings, error);
+}
+
+enum glint_status settings_zoom(struct settings *settings, double zoom,
+                                struct glint_error *error)
+{
+    if (!settings->model.zoom || !model_file_zoom(&settings->model, zoom))
+        return glint_error_report(error, GLINT_E_ARGUMENT, settings->lens.name,
+                                  "has no model of a zoom that goes to %g",
+                                  zoom);
     return make_setup(settings, error);
 }
 

@@ -360,6 +360,11 @@ int settings_open(const struct tool *tool, struct settings *settings,
 int settings_refuse_stop(const struct tool *tool, const struct settings *s,
                          const char *text);
 
+/* Zooms settings whose model is that of a zoom, as model_file_zoom().
+ * GLINT_E_ARGUMENT: ERROR says why not. */
+enum glint_status settings_zoom(struct settings *settings, double zoom,
+                                struct glint_error *error);
+
 /* Stops the lens of SETTINGS, which are open and have a model, to F_NUMBER.
  * GLINT_E_ARGUMENT with ERROR: the model was not baked for so wide a stop. */
 enum glint_status settings_stop(struct settings *settings, double f_number,

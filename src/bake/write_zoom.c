@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Puts models of a zoom's positions into one file: see glint/model.h. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/blob.h"
+#include "bake/table/draft.h"
+#include "glint/bake.h"
+#include "glint/model.h"
+
+/* Appends the models, and lists them at LIST_AT. */
+static void put_models(struct glint_draft *d, uint32_t list_at,
+                       const struct glint_bake_model *model, int n)
+{
+    for (int k = 0; k < n; k++) {
+        const struct glint_zoom_model entry = {
+            model[k].along_q30,
+            glint_draft_put(d, model[k].data, model[k].bytes),
+            (uint32_t)model[k].bytes};
+
+        glint_draft_amend(d, list_at + (uint32_t)k * (uint32_t)sizeof entry,
+                          &entry, sizeof entry);
+    }
+}
+
+/* Checks that readers will accept the file. */
+static enum glint_status check(const struct glint_draft *d,
+                               struct glint_error *error)
+{
+    struct glint_zoom_lens *const zoom = malloc(sizeof *zoom);
+    enum glint_status status = GLINT_E_MEMORY;
+    const char *reason;
+
+    if (zoom && (status = glint_zoom_open(zoom, d->data, d->bytes, &reason)) !=
+                    GLINT_OK)
+        snprintf(error->text, sizeof error->text, "%s", reason);
+    free(zoom);
+    return status;
+}
+
+enum glint_status glint_bake_zoom(const struct glint_bake_model *model, int n,
+                                  unsigned char **zoom, size_t *bytes,
+                                  struct glint_error *error)
+{
+    const struct glint_model_header *const first = (const void *)model[0].data;
+    struct glint_zoom_header header = {.magic = GLINT_ZOOM_MAGIC,
+                                       .version = GLINT_ZOOM_VERSION,
+                                       .n_models = (uint32_t)n};
+    struct glint_draft draft = {0};
+    enum glint_status status;
+
+    error->text[0] = 0;
+    memcpy(header.name, first->name, sizeof header.name);
+    for (int k = 0; k < n; k++)
+        for (int i = 0; i < 2; i++)
+            header.key[i] =
+                header.key[i] * UINT32_C(16777619) ^
+                ((const struct glint_model_header *)(const void *)model[k].data)
+                    ->key[i];
+    glint_draft_put(&draft, NULL, sizeof header);
+    header.model_at = glint_draft_put(
+        &draft, NULL, (size_t)n * sizeof(struct glint_zoom_model));
+    put_models(&draft, header.model_at, model, n);
+    glint_draft_amend(&draft, 0, &header, sizeof header);
+    status = draft.out_of_memory ? GLINT_E_MEMORY : GLINT_OK;
+    if (status == GLINT_OK) {
+        glint_blob_seal(draft.data, draft.bytes);
+        status = check(&draft, error);
+    }
+    if (status != GLINT_OK) {
+        free(draft.data);
+        return status;
+    }
+    *zoom = draft.data;
+    *bytes = draft.bytes;
+    return GLINT_OK;
+}

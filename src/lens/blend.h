@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Polynomials of a bundle between two positions of a zoom. */
+#ifndef GLINT_LENS_BLEND_H
+#define GLINT_LENS_BLEND_H
+
+#include "glint/transfer.h"
+
+/* A transfer into which another position's is mixed, output by output: PART of
+ * that, the rest of what it has. */
+struct glint_zoom_mix {
+    struct glint_transfer *to;
+    int32_t part_q30;
+    /* From the box of this position, and then of the other, to the mixed one
+     * and back: how much farther the other box's middle lies along u and how
+     * much wider and higher it is, in half widths and half heights; all 0 where
+     * that is more than a few. */
+    struct glint_blend_move {
+        int32_t along_q24, wider_q24, higher_q24;
+    } move[2];
+    /* Barrels that have been mixed, and those that only the other has, as bits
+     * of their number. */
+    uint32_t mixed, added;
+};
+
+/* An output of the other position, with angle and wavelength put in. */
+struct glint_blend_output {
+    uint8_t kind, head;
+    int32_t exponent;
+    int32_t (*row)[GLINT_TABLE_WIDTH];
+    uint8_t degree_u, degree_v;
+};
+
+/* The transfer holds the box of the other position; mixes it with BOX of the
+ * unit 2^EXPONENT, its own. */
+void glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
+                     int32_t exponent);
+
+/* Mixes O in. Outputs come by rising kind. */
+void glint_blend_output(struct glint_zoom_mix *blend,
+                        const struct glint_blend_output *o);
+
+/* Opens the barrels that the other position lacks. */
+void glint_blend_end(const struct glint_zoom_mix *blend);
+
+/* Dims the energy of T to SHARE. */
+void glint_blend_fade(struct glint_transfer *t, int32_t share_q30);
+
+/* Does what glint_transfer_init() does, for a zoom. */
+int glint_zoom_transfer(struct glint_transfer *transfer,
+                        const struct glint_zoom_lens *zoom, int ghost,
+                        int32_t sine_q30, int32_t wave_q24);
+
+#endif

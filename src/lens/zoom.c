@@ -1,0 +1,344 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Models of a zoom's positions as one lens.
+ *
+ *   in   models of one lens: the same surfaces, film and band
+ *   out  a header between those of two positions, a list of ghosts that has all
+ *        that any of them has, and bundles between theirs
+ *
+ * Ghosts of all models are the same pairs of surfaces in the same order; of
+ * further parts of the pupil the list has as many as any model has. Where both
+ * neighbours divide the pupil of a ghost alike at an angle, they are mixed;
+ * where they do not, the nearer one is drawn; where one is dark, the other
+ * fades. */
+#include "glint/model.h"
+
+#include "base/blob.h"
+#include "base/real.h"
+#include "lens/blend.h"
+#include "lens/terms.h"
+
+STATIC_ASSERT(sizeof(struct glint_zoom_header) == 100);
+STATIC_ASSERT(sizeof(struct glint_zoom_model) == 12);
+GLINT_BLOB_HEADER(struct glint_zoom_header, variant);
+
+static const char *const fault_text[GLINT_BLOB_FAULTS] =
+    GLINT_BLOB_FAULT_TEXT("zoom", "zooms", "made");
+
+/* ------------------------------------------------------------------- ghosts */
+
+static int n_whole(const struct glint_lens *lens)
+{
+    return (int)(lens->header->n_ghosts - lens->header->n_parts);
+}
+
+/* Returns how many further parts of ghost G, LENS has; *NEXT, the place of the
+ * first of its parts that has not been counted, moves on. */
+static int parts_of(const struct glint_lens *lens, int g, uint32_t *next)
+{
+    const struct glint_model_ghost *const of = &lens->ghost[g];
+    int n = 0;
+
+    while (*next < lens->header->n_ghosts && lens->ghost[*next].i == of->i &&
+           lens->ghost[*next].j == of->j) {
+        ++*next;
+        n++;
+    }
+    return n;
+}
+
+/* Lists the ghosts of all models and the parts of each. Returns what is wrong,
+ * or NULL. */
+static const char *list_ghosts(struct glint_zoom_lens *z)
+{
+    const int n = n_whole(&z->model[0]);
+    uint32_t next[GLINT_MAX_ZOOM_MODELS];
+    int end = n;
+
+    if (n >= GLINT_MAX_ZOOM_GHOSTS)
+        return "a zoom has too many ghosts";
+    for (int k = 0; k < z->n_models; k++)
+        next[k] = (uint32_t)n;
+    for (int g = 0; g < n; g++) {
+        int most = 0;
+
+        z->ghost[g] = (struct glint_model_ghost){z->model[0].ghost[g].i,
+                                                 z->model[0].ghost[g].j, 0, 0};
+        z->whole[g] = (int16_t)g;
+        z->number[g] = 0;
+        for (int k = 0; k < z->n_models; k++) {
+            const int parts = parts_of(&z->model[k], g, &next[k]);
+
+            most = parts > most ? parts : most;
+        }
+        z->part_from[g] = (int16_t)end;
+        for (int q = 0; q < most && end < GLINT_MAX_ZOOM_GHOSTS; q++, end++) {
+            z->ghost[end] = z->ghost[g];
+            z->whole[end] = (int16_t)g;
+            z->number[end] = (int16_t)(q + 1);
+        }
+    }
+    if (end >= GLINT_MAX_ZOOM_GHOSTS)
+        return "a zoom has too many parts of ghosts";
+    z->part_from[n] = (int16_t)end;
+    for (int k = 0; k < z->n_models; k++)
+        if (next[k] != z->model[k].header->n_ghosts)
+            return "parts of a zoom's ghosts are not in the order of ghosts";
+    return NULL;
+}
+
+/* Finds the places of all ghosts and parts in model K, as side SIDE. */
+static void find_places(struct glint_zoom_lens *z, int k, int side)
+{
+    const struct glint_lens *const m = &z->model[k];
+    uint32_t next = (uint32_t)n_whole(m);
+
+    for (int g = 0; g < n_whole(m); g++) {
+        uint32_t at = next;
+        const int parts = parts_of(m, g, &next);
+
+        z->place[side][g] = (int16_t)g;
+        for (int e = z->part_from[g]; e < z->part_from[g + 1]; e++)
+            z->place[side][e] =
+                (int16_t)(z->number[e] <= parts ? (int)at++ : -1);
+    }
+}
+
+/* ------------------------------------------------------------------- header */
+
+/* Returns A (1 - PART) + B PART. */
+static struct glint_real between(struct glint_real a, struct glint_real b,
+                                 int32_t part_q30)
+{
+    const int e = a.mantissa == 0           ? b.exponent
+                  : b.mantissa == 0         ? a.exponent
+                  : a.exponent > b.exponent ? a.exponent
+                                            : b.exponent;
+    const int off_a = e - a.exponent, off_b = e - b.exponent;
+    const int64_t rest = TRANSFER_ONE_Q30 - part_q30;
+    const int64_t x =
+        a.mantissa && off_a < 62 ? q_shift((a.mantissa * rest), off_a) : 0;
+    const int64_t y = b.mantissa && off_b < 62
+                          ? q_shift((b.mantissa * (int64_t)part_q30), off_b)
+                          : 0;
+
+    return real_of(x + y, e - 30);
+}
+
+static void set_header(struct glint_zoom_lens *z)
+{
+    const struct glint_model_header *const a = z->model[z->below].header;
+    const struct glint_model_header *const b = z->model[z->below + 1].header;
+    struct glint_model_header *const h = &z->header;
+    const int32_t part = z->part_q30;
+
+    h->focal_mm = between(a->focal_mm, b->focal_mm, part);
+    h->back_focal_mm = between(a->back_focal_mm, b->back_focal_mm, part);
+    h->entrance_radius_mm =
+        between(a->entrance_radius_mm, b->entrance_radius_mm, part);
+    h->stop_radius_mm = between(a->stop_radius_mm, b->stop_radius_mm, part);
+    h->f_number = between(a->f_number, b->f_number, part);
+    for (int k = 0; k < GLINT_FLUX_TERMS; k++) {
+        h->direct_flux[k] = between(a->direct_flux[k], b->direct_flux[k], part);
+        for (int i = 0; i < 2; i++)
+            h->stopped_flux[i][k] =
+                between(a->stopped_flux[i][k], b->stopped_flux[i][k], part);
+    }
+}
+
+static int same(struct glint_real a, struct glint_real b)
+{
+    return a.mantissa == b.mantissa && a.exponent == b.exponent;
+}
+
+/* Returns what keeps B from being another position of A, or NULL. */
+static const char *check_pair(const struct glint_lens *a,
+                              const struct glint_lens *b)
+{
+    const struct glint_model_header *const h = a->header, *const g = b->header;
+
+    if (h->basis != GLINT_BASIS_AUTO || g->basis != GLINT_BASIS_AUTO)
+        return "a zoom's models have another basis than auto";
+    if (h->n_surfaces != g->n_surfaces || n_whole(a) != n_whole(b))
+        return "a zoom's models are of different lenses";
+    if (!same(h->film_width_mm, g->film_width_mm) ||
+        !same(h->film_height_mm, g->film_height_mm) ||
+        !same(h->field_mm, g->field_mm) || h->wave_lo_q24 != g->wave_lo_q24 ||
+        h->wave_hi_q24 != g->wave_hi_q24 || h->sine_hi_q30 != g->sine_hi_q30)
+        return "a zoom's models differ in film, field, band or largest angle";
+    for (int k = 0; k < n_whole(a); k++)
+        if (a->ghost[k].i != b->ghost[k].i || a->ghost[k].j != b->ghost[k].j)
+            return "a zoom's models have different ghosts";
+    return NULL;
+}
+
+/* ------------------------------------------------------------------ opening */
+
+void glint_zoom_set(struct glint_zoom_lens *zoom, int32_t along_q30)
+{
+    struct glint_zoom_lens *const z = zoom;
+    int k = 0;
+    int64_t step;
+
+    along_q30 = along_q30 < 0                  ? 0
+                : along_q30 > TRANSFER_ONE_Q30 ? TRANSFER_ONE_Q30
+                                               : along_q30;
+    while (k + 2 < z->n_models && along_q30 >= z->along_q30[k + 1])
+        k++;
+    step = (int64_t)z->along_q30[k + 1] - z->along_q30[k];
+    z->now_q30 = along_q30;
+    z->below = k;
+    z->part_q30 = (int32_t)q_divide(
+        ((int64_t)along_q30 - z->along_q30[k]) * TRANSFER_ONE_Q30, step);
+    find_places(z, k, 0);
+    find_places(z, k + 1, 1);
+    set_header(z);
+}
+
+enum glint_status glint_zoom_join(struct glint_zoom_lens *zoom,
+                                  const struct glint_lens *model,
+                                  const int32_t *along_q30, int n,
+                                  const char **reason)
+{
+    struct glint_zoom_lens *const z = zoom;
+    const char *wrong = NULL;
+
+    if (n < 2 || n > GLINT_MAX_ZOOM_MODELS || along_q30[0] != 0 ||
+        along_q30[n - 1] != TRANSFER_ONE_Q30)
+        wrong = "a zoom's positions do not go from end to end";
+    for (int k = 0; k < n && !wrong; k++) {
+        z->model[k] = model[k];
+        z->along_q30[k] = along_q30[k];
+        if (k && along_q30[k] <= along_q30[k - 1])
+            wrong = "a zoom's positions do not rise";
+        else if (k)
+            wrong = check_pair(&model[0], &model[k]);
+    }
+    z->n_models = n;
+    if (!wrong)
+        wrong = list_ghosts(z);
+    if (wrong) {
+        *reason = wrong;
+        return GLINT_E_LENS;
+    }
+    z->header = *model[0].header;
+    z->header.n_ghosts = (uint32_t)z->part_from[n_whole(&model[0])];
+    z->header.n_parts = z->header.n_ghosts - (uint32_t)n_whole(&model[0]);
+    z->header.n_systems = 0;
+    z->lens = (struct glint_lens){&z->header, z->ghost, NULL, z};
+    glint_zoom_set(z, 0);
+    return GLINT_OK;
+}
+
+enum glint_status glint_zoom_open(struct glint_zoom_lens *zoom,
+                                  const void *data, size_t bytes,
+                                  const char **reason)
+{
+    static const struct glint_blob_kind kind = {
+        GLINT_ZOOM_MAGIC, GLINT_ZOOM_VERSION, sizeof(struct glint_zoom_header)};
+    const struct glint_zoom_header *const h = data;
+    const struct glint_zoom_model *m;
+    struct glint_blob blob;
+
+    *reason = fault_text[glint_blob_open(&blob, &kind, data, bytes)];
+    if (!*reason)
+        *reason = fault_text[glint_blob_check_name(&blob)];
+    if (*reason)
+        return GLINT_E_LENS;
+    m = glint_blob_section(&blob, h->model_at, h->n_models, sizeof *m);
+    *reason = "a table lies outside of the file";
+    if (!m)
+        return GLINT_E_LENS;
+    *reason = "a zoom has fewer than 2 models or too many";
+    if (h->n_models < 2 || h->n_models > GLINT_MAX_ZOOM_MODELS)
+        return GLINT_E_LENS;
+    for (uint32_t k = 0; k < h->n_models; k++) {
+        const void *const at =
+            glint_blob_section(&blob, m[k].at, m[k].bytes, 1);
+
+        *reason = "a model lies outside of the file";
+        if (!at || glint_lens_open(&zoom->model[k], at, m[k].bytes, reason) !=
+                       GLINT_OK)
+            return GLINT_E_LENS;
+        zoom->along_q30[k] = m[k].along_q30;
+    }
+    return glint_zoom_join(zoom, zoom->model, zoom->along_q30, (int)h->n_models,
+                           reason);
+}
+
+/* ---------------------------------------------------------------- transfers */
+
+/* Returns the polynomials' annulus of entry E on SIDE at this angle and
+ * wavelength, -1 if it is dark there. */
+static int annulus_of(const struct glint_zoom_lens *z, int e, int side,
+                      int32_t sine_q30, int32_t wave_q24)
+{
+    const int at = z->place[side][e];
+    const struct glint_model_system *const s =
+        at < 0 ? NULL
+               : glint_transfer_system(&z->model[z->below + side], at, sine_q30,
+                                       wave_q24);
+
+    return s ? s->annulus : -1;
+}
+
+/* Compares how both sides divide the pupil of ghost G: sets LIT to whether any
+ * of it lets light through on each side; returns whether they are alike. */
+static int is_alike(const struct glint_zoom_lens *z, int g, int32_t sine_q30,
+                    int32_t wave_q24, int lit[2])
+{
+    int alike = 1;
+
+    lit[0] = lit[1] = 0;
+    for (int q = z->part_from[g] - 1; q < z->part_from[g + 1]; q++) {
+        const int e = q < z->part_from[g] ? g : q;
+        const int a = annulus_of(z, e, 0, sine_q30, wave_q24);
+        const int b = annulus_of(z, e, 1, sine_q30, wave_q24);
+
+        lit[0] |= a >= 0;
+        lit[1] |= b >= 0;
+        alike &= a == b;
+    }
+    return alike;
+}
+
+/* Sets TRANSFER to entry E of SIDE alone. */
+static int of_side(struct glint_transfer *transfer,
+                   const struct glint_zoom_lens *z, int e, int side,
+                   int32_t sine_q30, int32_t wave_q24)
+{
+    return z->place[side][e] >= 0 &&
+           glint_transfer_init(transfer, &z->model[z->below + side],
+                               z->place[side][e], sine_q30, wave_q24);
+}
+
+int glint_zoom_transfer(struct glint_transfer *transfer,
+                        const struct glint_zoom_lens *zoom, int ghost,
+                        int32_t sine_q30, int32_t wave_q24)
+{
+    const struct glint_zoom_lens *const z = zoom;
+    const int nearer = z->part_q30 >= TRANSFER_ONE_Q30 / 2;
+    int lit[2];
+    int alike;
+
+    if (z->part_q30 <= 0 || z->part_q30 >= TRANSFER_ONE_Q30)
+        return of_side(transfer, z, ghost, z->part_q30 > 0, sine_q30, wave_q24);
+    alike = is_alike(z, z->whole[ghost], sine_q30, wave_q24, lit);
+    if (!lit[0] || !lit[1]) {
+        const int side = lit[1];
+
+        if (!of_side(transfer, z, ghost, side, sine_q30, wave_q24))
+            return 0;
+        glint_blend_fade(transfer,
+                         side ? z->part_q30 : TRANSFER_ONE_Q30 - z->part_q30);
+        return 1;
+    }
+    if (!alike)
+        return of_side(transfer, z, ghost, nearer, sine_q30, wave_q24);
+    if (!of_side(transfer, z, ghost, 0, sine_q30, wave_q24))
+        return 0;
+    return glint_transfer_mix(transfer, &z->model[z->below + 1],
+                              z->place[1][ghost], sine_q30, wave_q24,
+                              z->part_q30) ||
+           !nearer || of_side(transfer, z, ghost, 1, sine_q30, wave_q24);
+}

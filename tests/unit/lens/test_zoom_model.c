@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A zoom of two lenses, baked at three positions: at these it is the model of
+ * that position, between them its rays land where exact ones do, and files that
+ * are no zooms are refused. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/blob.h"
+#include "glint/bake.h"
+#include "glint/transfer.h"
+
+enum { POSITIONS = 3 };
+
+static const char table[] = "name t\n"
+                            "f-number 20\n"
+                            "film 24 16\n"
+                            "surface  60    4  12  1.52 60\n"
+                            "surface -200  2/8/15  12  air\n"
+                            "stop     6/5/3  8\n"
+                            "surface  90    4  12  1.62 36\n"
+                            "surface -90   40/38/35  12  air\n";
+
+static struct glint_prescription lens;
+static struct glint_bake_model model[POSITIONS];
+static unsigned char *file;
+static size_t bytes;
+static struct glint_zoom_lens zoom;
+
+static void move_to(struct glint_prescription *to, double along)
+{
+    struct glint_error error = {""};
+
+    *to = lens;
+    if (glint_prescription_zoom(to, along, &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+}
+
+static int bake_all(void **state)
+{
+    static struct glint_prescription at;
+    struct glint_bake_options options;
+    struct glint_bake_report report;
+    struct glint_error error = {""};
+    const char *reason = "";
+
+    (void)state;
+    if (glint_prescription_parse(&lens, table, sizeof table - 1, "t.lens",
+                                 &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+    glint_bake_defaults(&options);
+    options.max_deg = 8;
+    for (int k = 0; k < POSITIONS; k++) {
+        unsigned char *data;
+
+        move_to(&at, 0.5 * k);
+        if (glint_bake(&at, &options, &data, &model[k].bytes, &report,
+                       &error) != GLINT_OK)
+            fail_msg("%s", error.text);
+        model[k].data = data;
+        model[k].along_q30 = k << 29;
+    }
+    if (glint_bake_zoom(model, POSITIONS, &file, &bytes, &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+    if (glint_zoom_open(&zoom, file, bytes, &reason) != GLINT_OK)
+        fail_msg("%s", reason);
+    return 0;
+}
+
+static int free_all(void **state)
+{
+    (void)state;
+    for (int k = 0; k < POSITIONS; k++)
+        free(model[k].data);
+    free(file);
+    return 0;
+}
+
+static const int32_t middle_q24 = (int32_t)(1e6 / (532. * 532.) * (1 << 24));
+
+/* Gives the same bits at a position as its own model. */
+static void test_positions(void **state)
+{
+    static struct glint_transfer a, b;
+
+    (void)state;
+    for (int k = 0; k < POSITIONS; k++) {
+        struct glint_lens alone;
+        const char *reason;
+        int lit = 0;
+
+        assert_int_equal(
+            glint_lens_open(&alone, model[k].data, model[k].bytes, &reason),
+            GLINT_OK);
+        glint_zoom_set(&zoom, model[k].along_q30);
+        assert_int_equal(zoom.header.n_ghosts - zoom.header.n_parts,
+                         alone.header->n_ghosts - alone.header->n_parts);
+        assert_true(glint_real_value(zoom.header.focal_mm) ==
+                    glint_real_value(alone.header->focal_mm));
+        for (int g = 0; g < (int)alone.header->n_ghosts; g++)
+            for (int32_t s_q30 = 0; s_q30 < 1 << 27; s_q30 += 12345678) {
+                const int there =
+                    glint_transfer_init(&a, &alone, g, s_q30, middle_q24);
+
+                assert_int_equal(
+                    glint_transfer_init(&b, &zoom.lens, g, s_q30, middle_q24),
+                    there);
+                lit += there;
+                if (there)
+                    assert_memory_equal(&a.of, &b.of, sizeof a.of.table);
+            }
+        assert_true(lit > 4);
+    }
+}
+
+/* Returns the root mean square, pixels of a film 1920 wide, by which rays of
+ * the zoom at ALONG that pass the stop land off where exact ones do. */
+static double rms_at(double along)
+{
+    static struct glint_transfer t;
+    static struct glint_prescription at;
+    static struct glint_path path;
+    struct glint_ghost ghost[8];
+    struct glint_optics optics;
+    double sum = 0;
+    int n = 0, n_ghosts;
+
+    move_to(&at, along);
+    glint_optics_of(&at, &optics);
+    glint_zoom_set(&zoom, (int32_t)lrint(along * 0x1p30));
+    n_ghosts = glint_ghost_list(&at, ghost, 8);
+    for (int g = 0; g < n_ghosts; g++)
+        for (int k = 0; k < 5; k++) {
+            const double sine = 0.025 * k;
+            const double direction[3] = {sine, 0, sqrt(1 - sine * sine)};
+
+            glint_path_init(&path, &at, &ghost[g], 532);
+            if (!glint_transfer_init(&t, &zoom.lens, g,
+                                     (int32_t)(sine * 0x1p30), middle_q24))
+                continue;
+            for (int i = 0; i < 99; i++) {
+                const double u = i % 11 / 5. - 1, v = i / 11 / 8.;
+                const double x = t.box[0] + u * t.box[1], y = v * t.box[2];
+                struct glint_outputs out;
+                struct glint_ray ray;
+
+                if (glint_trace(&path, ldexp(x, t.box_exponent),
+                                ldexp(y, t.box_exponent), direction, &ray,
+                                NULL) != GLINT_RAY_OK ||
+                    hypot(ray.stop_x_mm, ray.stop_y_mm) >
+                        optics.stop_radius_mm ||
+                    hypot(ray.sensor_x_mm, ray.sensor_y_mm) > 14)
+                    continue;
+                glint_transfer_ray(&t, (int32_t)(u * 0x1p30 - (u > 0)),
+                                   (int32_t)(v * 0x1p30 - (v > 0)), &out);
+                sum += pow(ldexp(out.at[GLINT_OUT_SENSOR_X],
+                                 t.exponent[GLINT_OUT_SENSOR_X]) -
+                               ray.sensor_x_mm,
+                           2) +
+                       pow(ldexp(out.at[GLINT_OUT_SENSOR_Y],
+                                 t.exponent[GLINT_OUT_SENSOR_Y]) -
+                               ray.sensor_y_mm,
+                           2);
+                n++;
+            }
+        }
+    assert_true(n > 100);
+    return sqrt(sum / n) * 1920 / 24;
+}
+
+static void test_between(void **state)
+{
+    (void)state;
+    print_message("at 0, 1/4, 1/2, 3/4, 1: %.3f %.3f %.3f %.3f %.3f px\n",
+                  rms_at(0), rms_at(0.25), rms_at(0.5), rms_at(0.75),
+                  rms_at(1));
+    assert_true(rms_at(0) < 0.1 && rms_at(0.5) < 0.1 && rms_at(1) < 0.1);
+    assert_true(rms_at(0.25) < 8 && rms_at(0.75) < 8);
+    assert_true(rms_at(0.48) < 1 && rms_at(0.52) < 1);
+}
+
+/* ----------------------------------------------------------------- refusals */
+
+static void refuses(const char *cause)
+{
+    const char *reason = "";
+
+    glint_blob_seal(file, bytes);
+    assert_int_equal(glint_zoom_open(&zoom, file, bytes, &reason),
+                     GLINT_E_LENS);
+    if (!strstr(reason, cause))
+        fail_msg("'%s' does not say '%s'", reason, cause);
+}
+
+static void test_refusals(void **state)
+{
+    struct glint_zoom_header *const h = (void *)file;
+    struct glint_zoom_model *const m = (void *)(file + h->model_at);
+    const struct glint_zoom_model kept = m[1];
+    const char *reason = "";
+
+    (void)state;
+    assert_int_equal(glint_zoom_open(&zoom, file, bytes - 4, &reason),
+                     GLINT_E_LENS);
+    file[bytes / 2] ^= 1;
+    assert_int_equal(glint_zoom_open(&zoom, file, bytes, &reason),
+                     GLINT_E_LENS);
+    file[bytes / 2] ^= 1;
+    m[1].along_q30 = 1 << 30;
+    refuses("do not rise");
+    m[1] = kept;
+    m[0].along_q30 = 1;
+    refuses("from end to end");
+    m[0].along_q30 = 0;
+    m[1].at = (uint32_t)bytes;
+    refuses("outside");
+    m[1] = kept;
+    m[1].at += 4;
+    refuses("glint model");
+    m[1] = kept;
+    h->n_models = 1;
+    refuses("fewer than 2");
+    h->n_models = 1000;
+    refuses("or too many");
+    h->n_models = POSITIONS;
+    glint_blob_seal(file, bytes);
+    assert_int_equal(glint_zoom_open(&zoom, file, bytes, &reason), GLINT_OK);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_positions),
+        cmocka_unit_test(test_between),
+        cmocka_unit_test(test_refusals),
+    };
+
+    return cmocka_run_group_tests(tests, bake_all, free_all);
+}
