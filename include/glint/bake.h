@@ -76,8 +76,8 @@ struct glint_bake_model {
 };
 
 /* Puts N models of one lens, by rising position from 0 to 2^30, into a file as
- * in glint/model.h, *ZOOM[*BYTES], to be freed by the caller. GLINT_E_LENS: they
- * are no positions of one lens; ERROR says why. GLINT_E_MEMORY. */
+ * in glint/model.h, *ZOOM[*BYTES], to be freed by the caller. GLINT_E_LENS:
+ * they are no positions of one lens; ERROR says why. GLINT_E_MEMORY. */
 enum glint_status glint_bake_zoom(const struct glint_bake_model *model, int n,
                                   unsigned char **zoom, size_t *bytes,
                                   struct glint_error *error);
