@@ -73,6 +73,16 @@ check-spread: build/glint $(OUT)/pan
 	@GLINT=build/glint PAN=$(OUT)/pan XDG_CACHE_HOME=$$PWD/build/cache tests/hosts/spread
 .PHONY: check-spread
 
+# What items of data sets cost, and their bytes; COUNT=10000 takes a day of a processor.
+synth-table: all
+	@tools/report/synth/synth-table $(or $(COUNT),100) | tools/report/write-figures synth
+# A remover of ghosts that learns from a data set: some twenty minutes of a processor.
+synth-baseline: all
+	@tools/make/deps "photographs, and a network that learns" imagemagick python3-pil python3-numpy npm \
+	        python3-torch >&2
+	@tools/synth/baseline/all | tools/report/write-figures baseline
+.PHONY: synth-table synth-baseline
+
 # Every command that READMEs and manual pages name, those that take minutes, too.
 check-commands:
 	@tools/make/deps "the commands that READMEs name" gcc g++ pkg-config libopenimageio-dev ffmpeg
