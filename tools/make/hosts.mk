@@ -75,12 +75,12 @@ check-spread: build/glint $(OUT)/pan
 
 # What items of data sets cost, and their bytes; COUNT=10000 takes a day of a processor.
 synth-table: all
-	@tools/report/synth/synth-table $(or $(COUNT),100) | tools/report/write-figures synth
+	@tools/report/synth/synth-table $(or $(COUNT),100) | tools/report/write-figures synth/items
 # A remover of ghosts that learns from a data set: some twenty minutes of a processor.
 synth-baseline: all
 	@tools/make/deps "photographs, and a network that learns" imagemagick python3-pil python3-numpy npm \
 	        python3-torch >&2
-	@tools/synth/baseline/all | tools/report/write-figures baseline
+	@tools/synth/baseline/all | tools/report/write-figures synth/baseline
 .PHONY: synth-table synth-baseline
 
 # Every command that READMEs and manual pages name, those that take minutes, too.
