@@ -13,7 +13,7 @@
 #   make check-arm  the run-time half's on ARM, in an emulator
 #   make check-vm   of these those on Debian's kernels in an emulator, ARM too
 #   make check-files   round trips of picture files, by other programs;  check-commands: every command documented
-#   make check-all  what a release must pass: all of these, about two hours
+#   make check-all  what a release must pass: all of these, about three hours
 #   make mutants  planted faults, each of which a unit test has to catch
 #   make check-valgrind   memory that was never written, by valgrind
 #   make fuzz     every fuzzer for SECONDS=60, two at a time;  FUZZ=lens: that one
@@ -27,17 +27,17 @@
 #                 and pkg-config files alone;  dist: the sources, packed;
 #                 abi REF=REVISION: what has changed of them since, by abidiff
 #   make man      manual pages, into build/man
-#   make frei0r, gstreamer   plug-ins for hosts of video;  check-frei0r-threads, check-gstreamer
+#   make frei0r, gstreamer, obs   plug-ins for hosts of video;  check-frei0r-threads, check-gstreamer, check-obs
 #   make bench    what a frame costs;  bench-insn: in instructions
 #   make size     bytes of the run-time library, and of programs with parts of it
 #   make budget   what a frame costs on ARM, in instructions and bytes
 #   make growth   how that grows, as plots;  memory-table: what it takes
 #   make video-report  how steady the flare of a video is; VIDEOS="A.y4m ..."
 #   make trade    what accuracy costs: plots, pictures and a page (glint sweep)
+#   make debian   packages, in clean systems;  check-debian: tools/debian
 #   also: oiio assimp window table stop-table scene-table scene-cost-table scene-budget-table mesh-table ward-table ward-sheet translucent-table stone-table motion-table hidden-table occlusion-table lights-table flicker-table
 #         star-table hostile-table bake-table wide-table accuracy-table colour-table
-#         coating-table ray-table inputs format
-#         golden-update fuzz-keep clean reuse-table threads-table stopping-table left-table
+#         coating-table ray-table inputs format golden-update fuzz-keep clean reuse-table threads-table stopping-table left-table
 
 MAKEFLAGS += -r
 .DEFAULT_GOAL := all
@@ -115,7 +115,7 @@ $(OUT)/lib%.a:
 archives := $(patsubst %,$(OUT)/libglint%.a,-tools -platform -bake -engine -published) $(OUT)/libglint.a
 $(archives): $(OUT)/parts
 $(OUT)/parts: parts := $(core_o) $(published_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o)
-$(OUT)/prefix: parts := $(PREFIX)
+$(OUT)/prefix: parts := $(PREFIX) $(LIBDIR)
 $(OUT)/parts $(OUT)/prefix: always
 	@mkdir -p $(@D); echo '$(parts)' | cmp -s - $@ || echo '$(parts)' >$@
 $(OUT)/tools/model/lens_files.o $(OUT)/platform/posix/plugin.o \
@@ -163,7 +163,7 @@ embed_embed_cxx    = $(if $(findstring clang,$(CC)),clang++,$(CXX)) -std=c++17 -
 
 # The live command alone, for baked models, stripped.
 glint-live: $(OUT)/glint-live
-$(OUT)/glint-live: LDFLAGS += -s -Wl,--gc-sections
+$(OUT)/glint-live: LDFLAGS += $(if $(filter yes,$(STRIP)),-s) -Wl,--gc-sections
 $(OUT)/glint-live: $(OUT)/tools/live/glint_live.o $(OUT)/tools/live/models_only.o $(libs)
 	$(link)
 
@@ -173,7 +173,7 @@ OIIO := $(wildcard platform/oiio/*.cc)
 build/glint-oiio.so: $(OIIO) $(wildcard platform/oiio/*.h) platform/formats/samples.h platform/formats/tones.h
 	@mkdir -p $(@D)
 	$(say) CXX '$(OIIO)'
-	$(Q)$(CXX) -std=c++17 -O2 -Wall -Wextra -fPIC -fvisibility=hidden -shared -Iinclude -Iplatform \
+	$(Q)$(CXX) -std=c++17 -Wall -Wextra $(PLUGGED) -Iinclude -Iplatform \
 	        $(OIIO) -o $@ $$(pkg-config --cflags --libs OpenImageIO) \
 	        $$(pkg-config --exists libwebp && pkg-config --cflags --libs libwebp)
 
@@ -182,18 +182,18 @@ assimp: build/glint-assimp.so
 build/glint-assimp.so: platform/assimp/assimp.c platform/assimp/assimp.h
 	@mkdir -p $(@D)
 	$(say) CC $<
-	$(Q)$(CC) -std=c99 -O2 $(filter-out -Wundef -Wpedantic -Wstrict-prototypes,$(WARN)) -D_POSIX_C_SOURCE=200809L \
-	        -fPIC -fvisibility=hidden -shared -Iinclude -Iplatform $< -o $@ $$(pkg-config --cflags --libs assimp)
+	$(Q)$(CC) -std=c99 $(filter-out -Wundef -Wpedantic -Wstrict-prototypes,$(WARN)) -D_POSIX_C_SOURCE=200809L \
+	        $(PLUGGED) -Iinclude -Iplatform $< -o $@ $$(pkg-config --cflags --libs assimp)
 
 # The window of glint live -o window, through SDL2.
 window: build/glint-sdl.so
 build/glint-sdl.so: platform/sdl/sdl.c platform/sdl/sdl.h
 	@mkdir -p $(@D)
 	$(say) CC $<
-	$(Q)$(CC) -std=c99 -O2 $(filter-out -Wundef,$(WARN)) -fPIC -fvisibility=hidden -shared -Iinclude -Iplatform \
+	$(Q)$(CC) -std=c99 $(filter-out -Wundef,$(WARN)) $(PLUGGED) -Iinclude -Iplatform \
 	        $< -o $@ $$(pkg-config --cflags --libs sdl2)
 
-include tools/make/hosts.mk tools/make/man.mk tools/make/check.mk tools/make/emulated.mk tools/make/measure.mk tools/make/shared.mk tools/make/install.mk
+include tools/make/hosts.mk tools/make/man.mk tools/make/check.mk tools/make/emulated.mk tools/make/measure.mk tools/make/shared.mk tools/make/install.mk tools/make/debian.mk
 clean:
 	rm -rf build
 .PHONY: all help always oiio assimp window glint-live clean

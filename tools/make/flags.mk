@@ -8,7 +8,7 @@ $(OUT)/tests/%.o: CPPFLAGS += -Itests
 $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
         -Isrc -Iplatform -Itools -D_POSIX_C_SOURCE=200809L \
         -DGLINT_SHARE_DIR='"$(PREFIX)/share/glint"' \
-        -DGLINT_PLUGIN_DIR='"$(PREFIX)/lib/glint"'
+        -DGLINT_PLUGIN_DIR='"$(LIBDIR)/glint"'
 $(OUT)/platform/jpeg/mjpeg.o $(OUT)/tests/%_mjpeg.o: CPPFLAGS += $(JPEG_CPPFLAGS)
 $(OUT)/tools/options/config.o: CPPFLAGS += $(INIH_CPPFLAGS)
 $(OUT)/src/bake/motion/recording.o: CPPFLAGS += $(JANSSON_CPPFLAGS)
@@ -29,6 +29,9 @@ ifneq ($(filter release qcheck,$(CONFIG)),)
 $(engine_o) $(bake_o) $(platform_o) $(tools_o) $(main_o): CFLAGS += \
         -fstack-protector-strong -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2
 endif
+# Plug-ins of one command each.
+PLUGGED := -O2 -g -ffile-prefix-map=$(CURDIR)=. -fPIC -fvisibility=hidden -shared -fstack-protector-strong \
+        -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2 -Wl,-z,relro,-z,now
 # On boards what is around the frames is small rather than fast, but for the rows
 # of pixels below.
 ifdef CROSS

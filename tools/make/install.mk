@@ -11,17 +11,21 @@ WINDOW  ?= $(if $(CROSS),no,$(shell pkg-config --exists sdl2 2>/dev/null && echo
 FREI0R  ?= $(if $(CROSS),no,yes)
 ELEMENT ?= $(if $(CROSS),no,$(shell pkg-config --exists gstreamer-video-1.0 2>/dev/null && echo yes || echo no))
 MODELS  ?= $(if $(CROSS),no,yes)
+MANUAL  ?= $(if $(CROSS),no,yes)
 to := $(DESTDIR)$(PREFIX)
+libdir := $(DESTDIR)$(LIBDIR)
+lib := $(LIBDIR:$(PREFIX)/%=%)
+strip_too := $(if $(filter yes,$(STRIP)),-s $(CROSS:%=--strip-program=%strip))
 # Completions, by the folders in which shells look for them.
 shells := bash-completion/completions/glint.bash zsh/site-functions/_glint fish/vendor_completions.d/glint.fish
 lens_rooms := $(patsubst %/,%,$(wildcard lenses/*/))
 install: install-library all glint-live $(if $(filter yes,$(PLUGIN)),build/glint-oiio.so) \
         $(if $(filter yes,$(MESHES)),build/glint-assimp.so) \
-        $(if $(filter yes,$(WINDOW)),build/glint-sdl.so) $(if $(CROSS),,man)
+        $(if $(filter yes,$(WINDOW)),build/glint-sdl.so) $(if $(filter yes,$(MANUAL)),man)
 	$(if $(filter yes,$(FREI0R)),$(MAKE) --no-print-directory frei0r)
 	$(if $(filter yes,$(ELEMENT)),$(MAKE) --no-print-directory gstreamer)
-	install -d $(to)/bin $(to)/lib/glint $(to)/share/glint/lenses $(to)/lib/systemd/system
-	install $(if $(CROSS),-s --strip-program=$(CROSS)strip) -m 755 \
+	install -d $(to)/bin $(libdir)/glint $(to)/share/glint/lenses $(to)/lib/systemd/system
+	install $(if $(CROSS),$(strip_too)) -m 755 \
 	        $(program) $(OUT)/glint-live $(to)/bin
 	install -m 644 lenses/*.lens lenses/figures.md $(to)/share/glint/lenses
 	for r in $(lens_rooms); do install -d $(to)/share/glint/$$r && \
@@ -30,17 +34,17 @@ install: install-library all glint-live $(if $(filter yes,$(PLUGIN)),build/glint
 	sed 's,@PREFIX@,$(PREFIX),' platform/linux/glint-live.service \
 	        >$(to)/lib/systemd/system/glint-live.service
 	chmod 644 $(to)/lib/systemd/system/glint-live.service
-	$(if $(filter yes,$(PLUGIN)),install -m 755 build/glint-oiio.so $(to)/lib/glint, \
+	$(if $(filter yes,$(PLUGIN)),install $(strip_too) -m 755 build/glint-oiio.so $(libdir)/glint, \
 	        @echo 'without the image plug-in (g++, pkg-config, libopenimageio-dev): PPM, PFM and y4m')
-	$(if $(filter yes,$(MESHES)),install -m 755 build/glint-assimp.so $(to)/lib/glint, \
+	$(if $(filter yes,$(MESHES)),install $(strip_too) -m 755 build/glint-assimp.so $(libdir)/glint, \
 	        @echo 'without the mesh plug-in (pkg-config, libassimp-dev): OBJ')
-	$(if $(filter yes,$(WINDOW)),install -m 755 build/glint-sdl.so $(to)/lib/glint)
-	$(if $(filter yes,$(FREI0R)),install -d $(to)/lib/frei0r-1 && install -s -m 644 build/glint-frei0r.so $(to)/lib/frei0r-1/glint.so)
-	$(if $(filter yes,$(ELEMENT)),install -d $(to)/lib/gstreamer-1.0 && install -s -m 644 $(placed_gstreamer) $(to)/lib/gstreamer-1.0)
-	install -d $(addprefix $(to)/share/,$(dir $(shells)) $(if $(CROSS),,man/man1 man/man3 man/man5))
+	$(if $(filter yes,$(WINDOW)),install $(strip_too) -m 755 build/glint-sdl.so $(libdir)/glint)
+	$(if $(filter yes,$(FREI0R)),install -d $(to)/lib/frei0r-1 && install $(strip_too) -m 644 build/glint-frei0r.so $(to)/lib/frei0r-1/glint.so)
+	$(if $(filter yes,$(ELEMENT)),install -d $(libdir)/gstreamer-1.0 && install $(strip_too) -m 644 $(placed_gstreamer) $(libdir)/gstreamer-1.0)
+	install -d $(addprefix $(to)/share/,$(dir $(shells)) $(if $(filter yes,$(MANUAL)),man/man1 man/man3 man/man5))
 	for s in $(shells); do install -m 644 tools/man/$${s##*/} $(to)/share/$$s || exit 1; done
 	mv $(to)/share/bash-completion/completions/glint.bash $(to)/share/bash-completion/completions/glint
-	$(if $(CROSS),,for n in 1 3 5; do install -m 644 build/man/*.$$n $(to)/share/man/man$$n || exit 1; done)
+	$(if $(filter yes,$(MANUAL)),for n in 1 3 5; do install -m 644 build/man/*.$$n $(to)/share/man/man$$n || exit 1; done)
 ifneq ($(MODELS),no)
 	@echo 'baking the models of all lenses, where there are none yet (MODELS=no: later)'
 	rm -rf build/models-installed # of other tables
@@ -51,27 +55,27 @@ endif
 # What programs are built and run with; for a board archives alone.
 headers := $(wildcard include/glint/*.h include/glint/*/*.h)
 install-library: $(archives) $(if $(CROSS),,shared)
-	install -d $(to)/include/glint/scene $(to)/lib/pkgconfig
+	install -d $(to)/include/glint/scene $(libdir)/pkgconfig
 	install -m 644 $(filter-out $(wildcard include/glint/*/*.h),$(headers)) $(to)/include/glint
 	install -m 644 include/glint/scene/*.h $(to)/include/glint/scene
-	install -m 644 $(patsubst %,$(OUT)/lib%.a,$(LIBRARIES) glint-published) $(to)/lib
-	$(if $(CROSS),,cp -P $(addprefix $(OUT)-pic/,$(foreach l,$(LIBRARIES),$(call shared_names,$l))) $(to)/lib)
+	install -m 644 $(patsubst %,$(OUT)/lib%.a,$(LIBRARIES) glint-published) $(libdir)
+	$(if $(CROSS),,cp -P $(addprefix $(OUT)-pic/,$(foreach l,$(LIBRARIES),$(call shared_names,$l))) $(libdir))
 	for l in $(LIBRARIES); do \
-	        tools/make/pkg-config $$l $(PREFIX) $(VERSION) '$(taken)' >$(to)/lib/pkgconfig/$$l.pc && \
-	        chmod 644 $(to)/lib/pkgconfig/$$l.pc || exit 1; done
+	        tools/make/pkg-config $$l $(PREFIX) $(LIBDIR) $(VERSION) '$(taken)' >$(libdir)/pkgconfig/$$l.pc && \
+	        chmod 644 $(libdir)/pkgconfig/$$l.pc || exit 1; done
 # What install put there, and folders that are empty then.
 uninstall:
-	rm -f $(to)/bin/glint $(to)/bin/glint-live $(to)/lib/glint/glint-oiio.so \
-	        $(patsubst %,$(to)/lib/lib%.a,$(LIBRARIES) glint-published) \
-	        $(addprefix $(to)/lib/,$(foreach l,$(LIBRARIES),$(call shared_names,$l))) \
-	        $(LIBRARIES:%=$(to)/lib/pkgconfig/%.pc) $(headers:%=$(to)/%) \
-        $(to)/lib/glint/glint-assimp.so $(to)/lib/glint/glint-sdl.so $(to)/lib/frei0r-1/glint.so $(to)/lib/gstreamer-1.0/libgstglint.so \
+	rm -f $(to)/bin/glint $(to)/bin/glint-live $(libdir)/glint/glint-oiio.so \
+	        $(patsubst %,$(libdir)/lib%.a,$(LIBRARIES) glint-published) \
+	        $(addprefix $(libdir)/,$(foreach l,$(LIBRARIES),$(call shared_names,$l))) \
+	        $(LIBRARIES:%=$(libdir)/pkgconfig/%.pc) $(headers:%=$(to)/%) \
+        $(libdir)/glint/glint-assimp.so $(libdir)/glint/glint-sdl.so $(to)/lib/frei0r-1/glint.so $(libdir)/gstreamer-1.0/libgstglint.so \
 	        $(to)/lib/systemd/system/glint-live.service \
 	        $(patsubst %,$(to)/share/glint/%,$(wildcard lenses/figures.md lenses/*.lens lenses/*/*.lens)) \
 	        $(addprefix $(to)/share/,$(shells:.bash=)) $(to)/share/man/man1/glint.1 $(to)/share/man/man1/glint-*.1 \
 	        $(to)/share/man/man3/glint.3 $(to)/share/man/man5/glint-lens.5 $(to)/share/man/man5/glint-scene.5 \
 	        $(to)/share/glint/models/*.glint $(to)/share/glint/bridge.jpg $(to)/share/glint/bridge.ppm
-	@for d in include/glint/scene include/glint lib/pkgconfig lib/glint lib/frei0r-1 lib/gstreamer-1.0 share/glint/models $(lens_rooms:%=share/glint/%) share/glint/lenses share/glint \
+	@for d in include/glint/scene include/glint $(lib)/pkgconfig $(lib)/glint lib/frei0r-1 $(lib)/gstreamer-1.0 share/glint/models $(lens_rooms:%=share/glint/%) share/glint/lenses share/glint \
 	        $(patsubst %/,share/%,$(dir $(shells))) share/bash-completion share/zsh share/fish \
 	        share/man/man1 share/man/man3 share/man/man5 share/man lib/systemd/system lib/systemd; do \
 	        if [ -d $(to)/$$d ]; then rmdir --ignore-fail-on-non-empty $(to)/$$d; fi; done

@@ -9,6 +9,10 @@ AR      ?= ar
 NM      ?= nm
 SIZE    ?= size
 OBJDUMP ?= objdump
+# Of packages: libraries go to a folder of the machine's kind, and what strips
+# programs is not the Makefile (STRIP=no).
+LIBDIR  ?= $(PREFIX)/lib
+STRIP   ?= yes
 # Static, for boards and the emulator, with the libraries of SYSROOT, if given
 # (tests/vm/prepare makes one): armv7 has NEON kernels and those in C and takes
 # what the CPU has, armv7-neon takes NEON for granted, armv6-soft has neither
