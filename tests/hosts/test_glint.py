@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The Python package against the command: the same bytes. Run by tests/hosts/python, from the root."""
+import json
 import os
 import pathlib
 import subprocess
@@ -76,6 +77,10 @@ class Package(unittest.TestCase):
         np.testing.assert_array_equal(bgra[..., 2::-1], want)
         self.assertTrue((bgra[..., 3] == 77).all())
 
+    def test_lenses_are_the_commands(self):
+        listed = subprocess.run([GLINT, "lenses", "--json"], check=True, stdout=subprocess.PIPE, text=True).stdout
+        self.assertEqual(glint.lenses(), sorted(lens["name"] for lens in json.loads(listed)["lenses"]))
+
     def test_bake_is_bakes(self):
         command("bake", LENS, "-o", self.path("x.glint"))
         model = glint.bake(LENS)
@@ -143,7 +148,7 @@ class Package(unittest.TestCase):
     def test_refused(self):
         picture = self.photo
         for text, call in [
-            ("no lens 'x'; there are canon", lambda: glint.overlay(picture, "x")),
+            ("no lens 'x'; there are .*canon", lambda: glint.overlay(picture, "x")),
             ("not a model", lambda: glint.overlay(picture, b"GLINT")),
             ("takes uint8", lambda: glint.overlay(picture.astype(np.float32), LENS)),
             ("takes uint8", lambda: glint.overlay(np.zeros((8, 8, 4), np.uint8), LENS)),

@@ -16,9 +16,9 @@ class Build(build_py):
 
     def run(self):
         super().run()
-        to = pathlib.Path(self.build_lib) / "glint" / "lenses"
-        to.mkdir(parents=True, exist_ok=True)
-        for table in sorted((TREE / "lenses").glob("*.lens")):
+        for table in sorted((TREE / "lenses").rglob("*.lens")):
+            to = pathlib.Path(self.build_lib) / "glint" / table.relative_to(TREE)
+            to.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(table, to)
 
 

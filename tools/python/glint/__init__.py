@@ -70,7 +70,7 @@ def _folders() -> List[pathlib.Path]:
 
 def lenses() -> List[str]:
     """Names of the lenses that there are."""
-    return sorted({table.stem for folder in _folders() for table in folder.glob("*.lens")})
+    return sorted({table.stem for folder in _folders() for table in folder.rglob("*.lens")})
 
 
 def _table(lens: str) -> pathlib.Path:
@@ -78,8 +78,9 @@ def _table(lens: str) -> pathlib.Path:
     if "/" in lens or path.suffix == ".lens":
         return path
     for folder in _folders():
-        if (folder / f"{lens}.lens").is_file():
-            return folder / f"{lens}.lens"
+        for table in [folder / f"{lens}.lens", *sorted(folder.glob(f"*/{lens}.lens"))]:
+            if table.is_file():
+                return table
     raise ValueError(f"no lens '{lens}'; there are {', '.join(lenses())}")
 
 
