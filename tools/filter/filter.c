@@ -202,12 +202,17 @@ static void turn(struct filter *f)
     }
 }
 
-static bool draw(struct filter *f, const struct glint_image *image,
-                 int32_t elapsed_us)
+static bool opened(struct filter *f)
 {
     if (!f->is_open && !f->failed)
         f->failed = !open_filter(f);
-    if (f->failed)
+    return !f->failed;
+}
+
+static bool draw(struct filter *f, const struct glint_image *image,
+                 int32_t elapsed_us)
+{
+    if (!opened(f))
         return false;
     turn(f);
     if (compositor_draw(&f->compositor, image, elapsed_us) != GLINT_OK) {
@@ -218,13 +223,33 @@ static bool draw(struct filter *f, const struct glint_image *image,
     return !f->failed;
 }
 
+/* Sets the locale of numbers and returns what leave() restores. */
+static locale_t enter(const struct filter *f)
+{
+    return f->c_locale ? uselocale(f->c_locale) : (locale_t)0;
+}
+
+static void leave(locale_t before)
+{
+    if (before)
+        uselocale(before);
+}
+
+bool filter_open(struct filter *f)
+{
+    const locale_t before = enter(f);
+    const bool is_open = opened(f);
+
+    leave(before);
+    return is_open;
+}
+
 bool filter_draw(struct filter *f, const struct glint_image *image,
                  int32_t elapsed_us)
 {
-    const locale_t before = f->c_locale ? uselocale(f->c_locale) : (locale_t)0;
+    const locale_t before = enter(f);
     const bool is_drawn = draw(f, image, elapsed_us);
 
-    if (before)
-        uselocale(before);
+    leave(before);
     return is_drawn;
 }

@@ -48,6 +48,11 @@ void filter_set_word(struct filter *filter, enum filter_word which,
 double filter_number(const struct filter *filter, enum filter_number which);
 const char *filter_word(const struct filter *filter, enum filter_word which);
 
+/* Opens the lens before the first picture comes: where it is not baked yet,
+ * that takes seconds to minutes. Returns whether it could, as filter_draw()
+ * does. */
+bool filter_open(struct filter *filter);
+
 /* Draws the flare on IMAGE, which comes ELAPSED_US after the last one; 0: a
  * picture by itself. Where it cannot, a line on standard error says why, once,
  * and the picture stays as it is until a parameter changes. Returns whether it

@@ -70,7 +70,7 @@ check-all:
 	@$(MAKE) --no-print-directory analyze
 	@for how in "" CC=clang CONFIG=asan CONFIG=tsan CONFIG=qcheck; do \
 	        $(MAKE) --no-print-directory check VM=no $$how || exit 1; done
-	@for what in demo check-files check-valgrind check-arm check-vm; do \
+	@for what in demo check-files check-valgrind check-arm check-vm check-obs check-debian; do \
 	        $(MAKE) --no-print-directory $$what || exit 1; done
 # What other programs find in files that overlay has written.
 check-files:
@@ -128,7 +128,7 @@ run-fuzz run-fuzz-keep: $(fuzz_bins)
 analyze:
 	@tools/make/deps "static analysis" gcc clang-tidy cppcheck
 	@$(MAKE) --no-print-directory CC=gcc CONFIG=analyze WERROR=-Werror run-analyze
-run-analyze: $(core_o) $(published_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o) $(frei0r_o) $(if $(filter %,$(shell pkg-config --modversion gstreamer-video-1.0 2>/dev/null)),$(gstreamer_o)) $(OUT)/tools/command/glint.o
+run-analyze: $(core_o) $(published_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o) $(frei0r_o) $(if $(filter %,$(shell pkg-config --modversion gstreamer-video-1.0 2>/dev/null)),$(gstreamer_o)) $(if $(filter %,$(shell pkg-config --modversion libobs 2>/dev/null)),$(obs_o)) $(OUT)/tools/command/glint.o
 	$(say) CPPCHECK 'src platform tools'
 	@mkdir -p $(OUT)/cppcheck
 	$(Q)cppcheck -q --std=c99 --language=c --error-exitcode=1 \

@@ -4,15 +4,20 @@
 filter_o := $(patsubst %.c,$(OUT)/%.o,$(wildcard tools/filter/*.c))
 frei0r_o := $(patsubst %.c,$(OUT)/%.o,$(wildcard tools/frei0r/*.c)) $(filter_o)
 gstreamer_o := $(patsubst %.c,$(OUT)/%.o,$(wildcard tools/gstreamer/*.c)) $(filter_o)
-plugins := frei0r gstreamer
+obs_o := $(patsubst %.c,$(OUT)/%.o,$(wildcard tools/obs/*.c)) $(filter_o)
+plugins := frei0r gstreamer obs
 placed_frei0r    := build/glint-frei0r.so
 placed_gstreamer := build/gstreamer-1.0/libgstglint.so
+placed_obs       := build/obs-plugins/glint.so
 $(OUT)/glint-frei0r.so: $(frei0r_o)
 GSTREAMER := gstreamer-video-1.0 gstreamer-1.0
 $(OUT)/glint-gstreamer.so: $(gstreamer_o)
 $(OUT)/glint-gstreamer.so: EXTRA = $$(pkg-config --libs $(GSTREAMER))
 # Headers of others do not keep to our warnings.
 $(OUT)/tools/gstreamer/%.o: CPPFLAGS += $(shell pkg-config --cflags $(GSTREAMER) 2>/dev/null | sed 's/-I/-isystem /g')
+$(OUT)/glint-obs.so: $(obs_o)
+$(OUT)/glint-obs.so: EXTRA = $$(pkg-config --libs libobs)
+$(OUT)/tools/obs/%.o: CPPFLAGS += $(shell pkg-config --cflags libobs 2>/dev/null | sed 's/-I/-isystem /g')
 # A host may drop the plug-in while a signal's action still points into it.
 $(plugins:%=$(OUT)/glint-%.so): $(archives)
 	@mkdir -p $(@D)
@@ -27,7 +32,7 @@ $(plugins): %: $(OUT)/glint-%.so
 else
 $(plugins):
 	@$(MAKE) --no-print-directory PIC=yes $@
-gstreamer: | $(filter frei0r,$(MAKECMDGOALS)) # they share archives
+gstreamer obs: | $(filter frei0r,$(MAKECMDGOALS)) # they share archives
 endif
 # Eight instances at once, watched by ThreadSanitizer.
 check-frei0r-threads:
@@ -56,6 +61,18 @@ check-gstreamer:
 	@$(MAKE) --no-print-directory all
 	@tests/hosts/gstreamer $(OUT)
 .PHONY: check-gstreamer
+
+# A host of libobs.
+$(OUT)/tests/hosts/obs_host.o: CPPFLAGS += -D_DEFAULT_SOURCE $(shell pkg-config --cflags libobs 2>/dev/null | sed 's/-I/-isystem /g')
+$(OUT)/obs_host: $(OUT)/tests/hosts/obs_host.o
+	@mkdir -p $(@D)
+	$(say) LD $@
+	$(Q)$(CC) $(CFLAGS) $(LINKED) $(LDFLAGS) $^ $$(pkg-config --libs libobs) -lpthread -o $@
+check-obs:
+	@tools/make/deps "the filter of OBS" gcc pkg-config libobs-dev obs-studio xvfb xauth libgl1-mesa-dri libegl-mesa0
+	@$(MAKE) --no-print-directory all
+	@tests/hosts/obs $(OUT)
+.PHONY: check-obs
 
 # For tools/python: what its module is linked with, and the folder of archives.
 print-out:

@@ -1,0 +1,285 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * obs_host MODULE FORMAT WxH [KEY=VALUE[@FRAME]]... - frames of standard input
+ * through libobs: its own core and graphics thread, a source of frames in
+ * memory, the filter of MODULE over it, and behind that one of the host's that
+ * writes frames to standard output. Values are bool:, number: or word:. The
+ * first frame is given until the filter has opened its lens, or at most WAIT_S
+ * long.
+ */
+#include <inttypes.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <obs-module.h>
+
+enum { WAIT_S = 60, FRAME_MS = 40, POLL_US = 2000, SLOW_POLLS = 5000 };
+
+/* ------------------------------------------------------------------- frames */
+
+/* Rows and bytes of each plane, for WIDTH x HEIGHT. */
+static int planes_of(enum video_format format, uint32_t width, uint32_t height,
+                     uint32_t bytes[3], uint32_t rows[3])
+{
+    const uint32_t w2 = (width + 1) / 2, h2 = (height + 1) / 2;
+
+    rows[0] = height;
+    bytes[0] = width;
+    switch (format) {
+    case VIDEO_FORMAT_I420:
+        rows[1] = rows[2] = h2;
+        bytes[1] = bytes[2] = w2;
+        return 3;
+    case VIDEO_FORMAT_NV12:
+        rows[1] = h2;
+        bytes[1] = 2 * w2;
+        return 2;
+    case VIDEO_FORMAT_YUY2:
+    case VIDEO_FORMAT_UYVY:
+        bytes[0] = 4 * w2;
+        return 1;
+    case VIDEO_FORMAT_Y800:
+        return 1;
+    default: /* those of four bytes */
+        bytes[0] = 4 * width;
+        return 1;
+    }
+}
+
+static enum video_format format_named(const char *name)
+{
+    for (int f = VIDEO_FORMAT_I420; f <= VIDEO_FORMAT_AYUV; f++)
+        if (strcmp(get_video_format_name((enum video_format)f), name) == 0)
+            return (enum video_format)f;
+    fprintf(stderr, "obs_host: no format %s\n", name);
+    exit(2);
+}
+
+/* -------------------------------------------------------------------- probe */
+
+/* The last frame that came out of the filter, packed. */
+static struct {
+    pthread_mutex_t lock;
+    uint64_t timestamp;
+    unsigned char *bytes;
+} seen = {.lock = PTHREAD_MUTEX_INITIALIZER};
+
+static const char *name_of(void *type)
+{
+    (void)type;
+    return "of the host";
+}
+
+static void *no_data(obs_data_t *settings, obs_source_t *source)
+{
+    (void)settings;
+    return source;
+}
+
+static void nothing(void *data)
+{
+    (void)data;
+}
+
+static struct obs_source_frame *look(void *data, struct obs_source_frame *frame)
+{
+    uint32_t bytes[3], rows[3];
+    const int n =
+        planes_of(frame->format, frame->width, frame->height, bytes, rows);
+    unsigned char *to;
+
+    (void)data;
+    pthread_mutex_lock(&seen.lock);
+    to = seen.bytes;
+    for (int p = 0; p < n; p++)
+        for (uint32_t y = 0; y < rows[p]; y++, to += bytes[p])
+            memcpy(to, frame->data[p] + (size_t)y * frame->linesize[p],
+                   bytes[p]);
+    seen.timestamp = frame->timestamp;
+    pthread_mutex_unlock(&seen.lock);
+    return frame;
+}
+
+static struct obs_source_info feed = {.id = "host_feed",
+                                      .type = OBS_SOURCE_TYPE_INPUT,
+                                      .output_flags = OBS_SOURCE_ASYNC_VIDEO,
+                                      .get_name = name_of,
+                                      .create = no_data,
+                                      .destroy = nothing};
+static struct obs_source_info probe = {.id = "host_probe",
+                                       .type = OBS_SOURCE_TYPE_FILTER,
+                                       .output_flags = OBS_SOURCE_ASYNC_VIDEO,
+                                       .get_name = name_of,
+                                       .create = no_data,
+                                       .destroy = nothing,
+                                       .filter_video = look};
+
+/* ---------------------------------------------------------------------- run */
+
+struct run {
+    enum video_format format;
+    uint32_t width, height, bytes[3], rows[3];
+    int n_planes;
+    size_t size;
+    obs_source_t *source, *filter;
+};
+
+static void fail(const char *what)
+{
+    fprintf(stderr, "obs_host: %s\n", what);
+    exit(1);
+}
+
+/* Of what OBS says, warnings go to standard error, as standard output is for
+ * frames. */
+static void log_line(int level, const char *format, va_list args, void *ctx)
+{
+    (void)ctx;
+    if (level > LOG_WARNING)
+        return;
+    vfprintf(stderr, format, args);
+    fputc('\n', stderr);
+}
+
+static void start(const char *path)
+{
+    struct obs_video_info video = {.graphics_module = "libobs-opengl",
+                                   .fps_num = 120,
+                                   .fps_den = 1,
+                                   .base_width = 64,
+                                   .base_height = 64,
+                                   .output_width = 64,
+                                   .output_height = 64,
+                                   .output_format = VIDEO_FORMAT_NV12,
+                                   .gpu_conversion = true,
+                                   .colorspace = VIDEO_CS_709,
+                                   .range = VIDEO_RANGE_PARTIAL};
+    obs_module_t *module;
+
+    base_set_log_handler(log_line, NULL);
+    if (!obs_startup("en-US", NULL, NULL))
+        fail("libobs does not start");
+    if (obs_reset_video(&video) != OBS_VIDEO_SUCCESS)
+        fail("libobs has no graphics");
+    if (obs_open_module(&module, path, NULL) != MODULE_SUCCESS ||
+        !obs_init_module(module))
+        fail("the module does not load");
+    fprintf(stderr, "obs_host: libobs %s, %s\n", obs_get_version_string(),
+            obs_get_module_name(module));
+    obs_register_source(&feed);
+    obs_register_source(&probe);
+}
+
+/* Sets what SETTINGS say for FRAME. */
+static void set(struct run *r, char **settings, int n, long frame)
+{
+    obs_data_t *const data = obs_source_get_settings(r->filter);
+
+    for (int i = 0; i < n; i++) {
+        char key[64], value[256];
+        long at = 0;
+
+        if (sscanf(settings[i], "%63[^=]=%255[^@]@%ld", key, value, &at) < 2)
+            fail(settings[i]);
+        if (at != frame)
+            continue;
+        if (strncmp(value, "number:", 7) == 0)
+            obs_data_set_double(data, key, strtod(value + 7, NULL));
+        else if (strncmp(value, "bool:", 5) == 0)
+            obs_data_set_bool(data, key, strcmp(value + 5, "true") == 0);
+        else
+            obs_data_set_string(data, key, value + strlen("word:"));
+    }
+    obs_source_update(r->filter, data);
+    obs_data_release(data);
+}
+
+/* Gives the frame of BYTES at MS, and waits until it came out. */
+static void pass(struct run *r, unsigned char *bytes, uint64_t ms)
+{
+    struct obs_source_frame frame = {.width = r->width,
+                                     .height = r->height,
+                                     .timestamp = ms * 1000000,
+                                     .format = r->format,
+                                     .full_range = !format_is_yuv(r->format)};
+    uint64_t timestamp;
+    int polls = 0;
+
+    if (format_is_yuv(r->format))
+        video_format_get_parameters(VIDEO_CS_601, VIDEO_RANGE_PARTIAL,
+                                    frame.color_matrix, frame.color_range_min,
+                                    frame.color_range_max);
+    for (int p = 0; p < r->n_planes; p++) {
+        frame.data[p] = bytes;
+        frame.linesize[p] = r->bytes[p];
+        bytes += r->bytes[p] * r->rows[p];
+    }
+    obs_source_output_video(r->source, &frame);
+    do {
+        usleep(POLL_US);
+        pthread_mutex_lock(&seen.lock);
+        timestamp = seen.timestamp;
+        pthread_mutex_unlock(&seen.lock);
+    } while (timestamp != frame.timestamp && polls++ < SLOW_POLLS);
+    if (timestamp != frame.timestamp)
+        fail("a frame did not come out");
+}
+
+static void run(struct run *r, char **settings, int n_settings)
+{
+    unsigned char *const frame = malloc(r->size);
+    uint64_t ms = 1000;
+
+    seen.bytes = malloc(r->size);
+    if (!frame || !seen.bytes)
+        fail("no memory");
+    for (long i = 0; fread(frame, r->size, 1, stdin) == 1; i++) {
+        const uint64_t end = ms + (uint64_t)WAIT_S * 1000;
+
+        set(r, settings, n_settings, i);
+        do {
+            pass(r, frame, ms);
+            ms += FRAME_MS;
+        } while (i == 0 && memcmp(seen.bytes, frame, r->size) == 0 &&
+                 !getenv("OBS_HOST_ONCE") && ms < end);
+        fwrite(seen.bytes, r->size, 1, stdout);
+    }
+    free(frame);
+}
+
+int main(int argc, char **argv)
+{
+    struct run r = {.n_planes = 0};
+    obs_source_t *watch;
+
+    if (argc < 4 ||
+        sscanf(argv[3], "%" SCNu32 "x%" SCNu32, &r.width, &r.height) != 2) {
+        fputs("usage: obs_host MODULE FORMAT WxH [KEY=VALUE[@FRAME]]...\n",
+              stderr);
+        return 2;
+    }
+    start(argv[1]);
+    r.format = format_named(argv[2]);
+    r.n_planes = planes_of(r.format, r.width, r.height, r.bytes, r.rows);
+    for (int p = 0; p < r.n_planes; p++)
+        r.size += (size_t)r.bytes[p] * r.rows[p];
+    r.source = obs_source_create_private("host_feed", "feed", NULL);
+    r.filter = obs_source_create_private("glint_flare", "flare", NULL);
+    watch = obs_source_create_private("host_probe", "probe", NULL);
+    if (!r.source || !r.filter || !watch)
+        fail("no source");
+    obs_source_set_async_unbuffered(r.source, true);
+    obs_source_filter_add(r.source, r.filter);
+    obs_source_filter_add(r.source, watch);
+    obs_set_output_source(0, r.source);
+    run(&r, argv + 4, argc - 4);
+    obs_set_output_source(0, NULL);
+    obs_source_release(watch);
+    obs_source_release(r.filter);
+    obs_source_release(r.source);
+    obs_shutdown();
+    return ferror(stdout) ? 1 : 0;
+}
