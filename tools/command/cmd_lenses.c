@@ -195,8 +195,8 @@ static void print_measured(FILE *page, const char *name)
     if (!measured_find(name, &m))
         fputs("<p>bake and frame not measured yet</p>", page);
     else if (!*m.kb)
-        fprintf(page, "<p>no bake measured: %s%s</p>", m.seconds,
-                *m.f_number ? " s" : "");
+        fprintf(page, "<p>measured for f/%s: bake %s s</p>", m.f_number,
+                m.seconds);
     else
         fprintf(page, "<p>measured for f/%s: bake %s s, model %s KB%s%s%s</p>",
                 m.f_number, m.seconds, m.kb, *m.ms ? ", a frame of 1080p " : "",

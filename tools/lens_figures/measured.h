@@ -9,8 +9,8 @@
 
 /* Cells of a row of figures.md, which lies beside the tables. */
 struct measured {
-    char f_number[24]; /* that the lens was baked for; "" if it was not */
-    char seconds[24];  /* of a processor, or why there are none */
+    char f_number[24]; /* that the lens was baked for */
+    char seconds[24];  /* of a processor; "over N" of a bake given up */
     char kb[24];       /* of the model; "" without one */
     char ms[24];       /* of a processor, a frame of 1080p; "" without */
 };
