@@ -92,9 +92,15 @@ static void fit_told(void *ctx, double work, double share)
     report_effort(run);
 }
 
+/* Factor on all tolerances of lenses that are not round: with two components of
+ * the direction, tenths of a pixel take many times the systems. */
+#define SKEW_TOLERANCE 2.5
+
 static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
 {
-    const double film = run->lens->film_width_mm, t = run->options.tolerance;
+    const bool round = glint_prescription_is_round(run->lens);
+    const double film = run->lens->film_width_mm;
+    const double t = run->options.tolerance * (round ? 1 : SKEW_TOLERANCE);
     const struct glint_tolerance tolerance = {
         .sensor_mm = 0.04 * t * film / 1920,
         .faint_sensor_mm = 0.07 * t * film / 1920,
@@ -114,8 +120,7 @@ static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
     enum glint_status (*const fit)(
         const struct glint_visible *, double, const struct glint_tolerance *,
         glint_fit_told_fn *, void *, struct glint_fitted_ghost *) =
-        glint_prescription_is_round(run->lens) ? glint_fit_ghost
-                                               : glint_skew_fit;
+        round ? glint_fit_ghost : glint_skew_fit;
     struct glint_visible *visible = malloc(sizeof *visible);
     enum glint_status status = GLINT_E_MEMORY;
 

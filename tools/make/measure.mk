@@ -90,6 +90,9 @@ wide-table: export EVERY := $(EVERY)
 library-table: all $(OUT)/stop_costs
 	@STOP_COSTS=$(OUT)/stop_costs tools/lens_figures/library-table $(LENSES) | \
 	    tools/report/write-figures ../../lenses/figures
+# Lenses that are not round. LENSES="A.lens ...": these; COUNT=N directions.
+azimuth-table: all
+	@tools/lens_figures/azimuth-table $(LENSES) | tools/report/write-figures shapes/azimuth
 accuracy-table: all
 	@tools/report/accuracy-table | tools/report/write-figures accuracy
 colour-table: all $(OUT)/hue_steps
@@ -204,7 +207,7 @@ budget: all
 	        build/$$t/glint >&2 || exit 1; done
 	@tools/report/budget | tools/report/write-figures arm
 
-.PHONY: glints-table hidden-table scene-budget-table occlusion-table video-report demo inputs table bake-table wide-table library-table accuracy-table colour-table coating-table ray-table power-table \
+.PHONY: glints-table hidden-table scene-budget-table occlusion-table video-report demo inputs table bake-table wide-table library-table azimuth-table accuracy-table colour-table coating-table ray-table power-table \
         power-fit \
         corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet gallery \
         bench bench-insn growth size trade lights-table threads-table reuse-table flicker-table left-table stopping-table hostile-table star-table memory-table zoom-table \

@@ -50,11 +50,13 @@ static void sample_rays(const struct glint_zone *z,
 {
     static const int waves[] = {GLINT_VISIBLE_WAVES / 2, 0,
                                 GLINT_VISIBLE_WAVES - 1};
+    /* Zones of two components of the direction are many. */
+    const int n = GLINT_SAMPLING_RAYS / (z->skew ? 2 : 1);
     struct glint_zone_batch t;
 
     sampling->n = 0;
     sampling->n_events = h->path[0].n_events;
-    for (int k = 0; k < GLINT_SAMPLING_RAYS / GLINT_ZONE_BATCH; k++) {
+    for (int k = 0; k < n / GLINT_ZONE_BATCH; k++) {
         const int wave = waves[k % 3];
         double x[GLINT_VARIABLES];
 

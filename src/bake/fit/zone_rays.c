@@ -126,7 +126,7 @@ static void trace_scattered(const struct glint_zone *zone,
                             const struct glint_visible *visible,
                             struct glint_zone_rays *rays)
 {
-    enum { PLANES = 135, RAYS = GLINT_ZONE_BATCH };
+    enum { PLANES = 132, RAYS = 24 };
     struct glint_zone_batch t;
 
     rays->n = 0;

@@ -12,7 +12,7 @@
 /* Largest side of a patch, as a difference of sines. */
 #define MOST_SIDE 0.22
 /* A smaller patch is not halved. */
-#define LEAST_SIDE 0.02
+#define LEAST_SIDE 0.04
 /* A smaller one is kept if halving gained nothing and its error is endured. */
 #define STUCK_SIDE 0.12
 /* Share of the error of the whole patch: see fit.c. */

@@ -19,7 +19,7 @@
 #include "support/rng.h"
 
 #define MAX_DEG   5
-#define TOLERANCE 8
+#define TOLERANCE 3
 #define PI        3.14159265358979323846
 
 enum { ONE = 1 << 30, BUNDLES = 100, CELLS = 6, NODES = CELLS + 1 };
