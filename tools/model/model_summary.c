@@ -15,7 +15,9 @@ const double model_output_targets[GLINT_OUT_KINDS] = {
 
 const char *model_basis_name(const struct glint_lens *lens)
 {
-    return lens->header->basis == GLINT_BASIS_SPARSE ? "sparse" : "auto";
+    return lens->header->basis == GLINT_BASIS_SPARSE  ? "sparse"
+           : glint_basis_is_lens(lens->header->basis) ? "lens"
+                                                      : "auto";
 }
 
 /* --------------------------------------------------------------- quantities */
