@@ -94,7 +94,7 @@ static void fit_told(void *ctx, double work, double share)
 
 /* Factor on all tolerances of lenses that are not round: with two components of
  * the direction, tenths of a pixel take many times the systems. */
-#define SKEW_TOLERANCE 2.5
+#define SKEW_TOLERANCE 1.5
 
 static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
 {
