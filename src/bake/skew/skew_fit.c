@@ -17,7 +17,7 @@
 #define STUCK_SIDE 0.12
 /* Share of the error of the whole patch: see fit.c. */
 #define STUCK   0.75
-#define ENDURED 5.0
+#define ENDURED 3.0
 /* Least share of a box that a ghost must fill, in patches wider than FILL_SIDE.
  */
 #define LEAST_FILL 0.25
@@ -137,7 +137,8 @@ static enum glint_status fit_zone(struct fitter *f, const struct pending *p,
                                    .thorough = !may_halve(p),
                                    .stacks = has_stacks(f->visible),
                                    .hopeless = may_halve(p) ? HOPELESS : 0,
-                                   .settled = side > STUCK_SIDE ? 1 : 0};
+                                   .settled =
+                                       may_halve(p) && side > STUCK_SIDE};
     struct glint_zone_aim aim;
     enum glint_status status;
 
@@ -200,7 +201,7 @@ static enum next next_step(const struct fitter *f, const struct pending *p,
         p->w1 - p->w0 > LEAST_BAND)
         return BANDS;
     return !helped && side < STUCK_SIDE &&
-                   left <= ENDURED * fmin(a->hidden, 3.0)
+                   left <= fmin(HOPELESS, ENDURED * fmin(a->hidden, 3.0))
                ? KEEP
                : HALVE;
 }
