@@ -224,13 +224,21 @@ static enum glint_status for_ghosts(struct bake_run *run, glint_job_fn *job,
     return status_of(run);
 }
 
+static enum glint_effort_kind kind_of(const struct glint_prescription *lens)
+{
+    for (int k = 0; k < lens->n_surfaces; k++)
+        if (glint_surface_is_shaped(&lens->surface[k]))
+            return GLINT_EFFORT_SHAPED;
+    return lens->f_number < GLINT_WIDE ? GLINT_EFFORT_WIDE
+                                       : GLINT_EFFORT_NARROW;
+}
+
 static enum glint_status fit_ghosts(struct bake_run *run)
 {
     const struct glint_bake_options *o = &run->options;
 
     glint_effort_init(&run->effort, run->setup.n_ghosts,
-                      glint_workers_count(o->workers),
-                      run->lens->f_number < GLINT_WIDE);
+                      glint_workers_count(o->workers), kind_of(run->lens));
     report_effort(run);
     glint_workers_run(o->workers, run->setup.n_ghosts, fit_job, run);
     if (o->progress)

@@ -3,36 +3,37 @@
 
 #include <math.h>
 
-/* Fits that finding brightness takes as long as, before ghosts are begun. */
-#define HEAD 32.0
-/* Fits that finding the angles of a ghost takes as long as. */
-#define LOOK 1.5
-/* Fits of a ghost before any is known, and how many ghosts that counts for. */
-#define TYPICAL      4.0
-#define TYPICAL_WIDE 25.0
-#define TRUST        3.0
+/* In fits, by kind: what finding brightness takes as long as, before ghosts are
+ * begun, finding the angles of a ghost, and a ghost before any is known. */
+static const double heads[] = {32, 32, 90};
+static const double looks[] = {1.5, 1.5, 25};
+static const double typicals[] = {4, 25, 110};
+/* How many ghosts the last of these counts for. */
+#define TRUST 3.0
 /* Share of a ghost's angles for which the mean of the others counts. */
 #define BLUR 0.1
 
 void glint_effort_init(struct glint_effort *e, int n_ghosts, int n_workers,
-                       bool wide)
+                       enum glint_effort_kind kind)
 {
     *e = (struct glint_effort){.n_ghosts = n_ghosts,
                                .n_workers = n_workers,
-                               .typical = wide ? TYPICAL_WIDE : TYPICAL,
+                               .head = heads[kind],
+                               .look = looks[kind],
+                               .typical = typicals[kind],
                                .ghost = -1};
 }
 
 void glint_effort_begin(struct glint_effort *e, int ghost)
 {
     e->ghost = ghost > e->ghost ? ghost : e->ghost;
-    e->work = LOOK;
+    e->work = e->look;
     e->share = 0;
 }
 
 void glint_effort_spend(struct glint_effort *e, double work, double share)
 {
-    e->work = LOOK + work;
+    e->work = e->look + work;
     e->share = fmin(1, share);
 }
 
@@ -63,7 +64,7 @@ static double left_of(const struct glint_effort *e)
 
 double glint_effort_done(const struct glint_effort *e)
 {
-    const double spent = HEAD / e->n_workers + e->ended + e->work;
+    const double spent = e->head / e->n_workers + e->ended + e->work;
 
     return spent / (spent + left_of(e));
 }

@@ -22,6 +22,8 @@
 
 struct glint_effort {
     int n_ghosts, n_workers;
+    double head;    /* work before ghosts are begun */
+    double look;    /* work of finding the angles of a ghost */
     double typical; /* work of a ghost, before any is known */
     int ghost;      /* the largest that was begun; -1: none */
     int n_ended;    /* number of ghosts that worker 0 ended */
@@ -30,9 +32,16 @@ struct glint_effort {
     double share;   /* share of its angles that are done, 0 .. 1 */
 };
 
-/* WIDE: whether the lens opens wider than GLINT_WIDE. */
+/* What makes the ghosts of a lens take long: it opens wider than GLINT_WIDE, or
+ * has surfaces that are no spheres. */
+enum glint_effort_kind {
+    GLINT_EFFORT_NARROW,
+    GLINT_EFFORT_WIDE,
+    GLINT_EFFORT_SHAPED
+};
+
 void glint_effort_init(struct glint_effort *effort, int n_ghosts, int n_workers,
-                       bool wide);
+                       enum glint_effort_kind kind);
 
 void glint_effort_begin(struct glint_effort *effort, int ghost);
 

@@ -11,7 +11,9 @@
 enum {
     /* Versions of the models: raised if a lens would bake to another model. */
     REVISION = 12,
-    WIDE_REVISION = 16 /* of those of lenses that open wider than GLINT_WIDE */
+    WIDE_REVISION = 16, /* of those of lenses that open wider than GLINT_WIDE */
+    SHAPED_REVISION =
+        1 /* besides, of those with surfaces that are no spheres */
 };
 
 void glint_bake_defaults(struct glint_bake_options *options)
@@ -86,6 +88,7 @@ static void mix_coating(uint64_t *key, const struct glint_coating *coating)
 
 static void mix_shape(uint64_t *key, const struct glint_shape *s)
 {
+    mix(key, SHAPED_REVISION);
     mix(key, s->conic);
     for (int k = 0; k < GLINT_SHAPE_TERMS; k++)
         mix(key, s->term[k]);

@@ -81,7 +81,7 @@ $(call of,$(addprefix platform/panel/,split row_rgb row_pack planar),-O3)
 # The floor that frames are measured by is as fast as can be.
 $(call of,tools/lab/canvas,-O3)
 # Rays in eights: errno and traps are all that these give away.
-$(call of,src/bake/trace/trace,-O3 -fno-math-errno -fno-trapping-math)
+$(call of,src/bake/trace/trace src/bake/trace/forms src/bake/table/form,-O3 -fno-math-errno -fno-trapping-math)
 
 ifeq ($(ARCH)-$(findstring gcc,$(CC)),aarch64-gcc)
 # Else constants that are hoisted push out tables: a tenth more instructions.

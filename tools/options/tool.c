@@ -392,6 +392,7 @@ void tool_progress_start(struct tool_progress *p, const struct tool *tool,
     p->last = 0;
     p->most = 0;
     p->shown = !tool->quiet;
+    p->told = false;
     p->is_terminal = isatty(STDERR_FILENO);
 }
 
@@ -407,6 +408,20 @@ static void show_line(struct tool_progress *p, double now, double done)
             100 * p->most, spent, spent * (1 - done) / done);
 }
 
+/* Says how long it will take, once, if that is long. */
+static void tell_length(struct tool_progress *p, double spent, double done)
+{
+    const double left = spent * (1 - done) / done;
+
+    p->told = true;
+    if (spent + left < 20)
+        return;
+    if (left < 120)
+        fprintf(stderr, "%s: takes about %.0f s\n", p->what, left);
+    else
+        fprintf(stderr, "%s: takes about %.0f minutes\n", p->what, left / 60);
+}
+
 void tool_progress_show(void *progress, double done)
 {
     struct tool_progress *p = progress;
@@ -415,6 +430,8 @@ void tool_progress_show(void *progress, double done)
     char bar[32];
 
     p->most = fmax(done, p->most);
+    if (p->shown && !p->told && done > 0)
+        tell_length(p, spent, done);
     if (p->shown && !p->is_terminal)
         show_line(p, now, done);
     if (!p->shown || !p->is_terminal || (now - p->last < 0.1 && done < 1))

@@ -134,10 +134,12 @@ int tool_check_output(const struct tool *tool, const char *path);
 /* ----------------------------------------------------------------- progress */
 
 /* Progress as a bar on a terminal's standard error, elsewhere as a line every
- * ten seconds. PROGRESS below is such a struct, and DONE is 0 .. 1. */
+ * ten seconds; work of more than twenty says so as soon as any is done.
+ * PROGRESS below is such a struct, and DONE is 0 .. 1. */
 struct tool_progress {
     const char *what;
     bool shown, is_terminal;
+    bool told; /* how long it takes was said, or is short */
     double started, last;
     double most; /* shown: more work than was thought takes nothing back */
 };

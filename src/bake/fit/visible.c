@@ -3,14 +3,17 @@
 
 #include <math.h>
 
+#include "bake/table/form.h"
 #include "engine/setup/degrees.h"
 
 enum {
     ACROSS = 64, /* cells of the finest grid */
     SCAN_DEG = 1,
     BISECTIONS = 8,
-    AFRESH = 4, /* number of angles after which boxes are looked for everywhere
-                   again */
+    /* numbers of angles after which boxes are looked for everywhere again, and
+     * of shaped lenses, whose rays take long */
+    AFRESH = 4,
+    AFRESH_SHAPED = 12,
     /* steps of the scan by which a range of angles is widened at most, on each
      * side, where only the ends of the band get through */
     FARTHER = 4
@@ -49,6 +52,10 @@ void glint_visible_init(struct glint_visible *visible,
     visible->ghost = ghost;
     visible->field_mm = field_mm;
     visible->wide = setup->lens->f_number < GLINT_WIDE;
+    visible->shaped = false;
+    for (int k = 0; k < setup->lens->n_surfaces; k++)
+        visible->shaped |= glint_surface_is_shaped(&setup->lens->surface[k]);
+    visible->shaped &= glint_prescription_is_round(setup->lens);
     visible->wave_lo = 1e6 / (band_nm[1] * band_nm[1]);
     visible->wave_hi = 1e6 / (band_nm[0] * band_nm[0]);
     set_paths(visible);
@@ -62,6 +69,7 @@ void glint_visible_narrow(struct glint_visible *visible,
     visible->ghost = whole->ghost;
     visible->field_mm = whole->field_mm;
     visible->wide = whole->wide;
+    visible->shaped = whole->shaped;
     visible->wave_lo = wave_of(whole, w0);
     visible->wave_hi = wave_of(whole, w1);
     set_paths(visible);
@@ -249,17 +257,23 @@ static bool find_box(const struct glint_visible *h,
     return seek(h, path, sine, box) && tighten(h, path, sine, box);
 }
 
+static struct glint_pupil grown(const struct glint_pupil *near)
+{
+    const double more = 0.2 * (near->x1_mm - near->x0_mm);
+    struct glint_pupil box = *near;
+
+    box.x0_mm -= more;
+    box.x1_mm += more;
+    box.y1_mm *= 1.25;
+    return box;
+}
+
 /* Finds the box at SINE, looking around NEAR first. */
 static bool follow_box(const struct glint_visible *h,
                        const struct glint_path *path, double sine,
                        const struct glint_pupil *near, struct glint_pupil *box)
 {
-    const double more = 0.2 * (near->x1_mm - near->x0_mm);
-
-    *box = *near;
-    box->x0_mm -= more;
-    box->x1_mm += more;
-    box->y1_mm *= 1.25;
+    *box = grown(near);
     return (enclose(h, path, sine, box) && tighten(h, path, sine, box)) ||
            find_box(h, path, sine, box);
 }
@@ -271,15 +285,38 @@ static const int waves[] = {GLINT_VISIBLE_WAVES / 2, 0,
                             GLINT_VISIBLE_WAVES - 1};
 
 /* Returns whether light gets through at one of the first N of these
- * wavelengths. */
+ * wavelengths, and its BOX. */
+static bool passes_in(const struct glint_visible *h, double sine, int n,
+                      struct glint_pupil *box)
+{
+    for (int k = 0; k < n; k++)
+        if (find_box(h, &h->position_path[waves[k]], sine, box))
+            return true;
+    return false;
+}
+
 static bool passes(const struct glint_visible *h, double sine, int n)
 {
     struct glint_pupil box;
 
-    for (int k = 0; k < n; k++)
-        if (find_box(h, &h->position_path[waves[k]], sine, &box))
+    return passes_in(h, sine, n, &box);
+}
+
+/* Returns whether light of the middle of the band gets through; of shaped
+ * lenses, whose rays take long, looks where it did a step before first. BOX is
+ * that of the step before if INSIDE, and becomes this one's. */
+static bool still_passes(const struct glint_visible *h, double sine,
+                         bool inside, struct glint_pupil *box)
+{
+    if (h->shaped && inside) {
+        struct glint_pupil near = grown(box);
+
+        if (shrink(h, &h->position_path[waves[0]], sine, 24, 12, &near)) {
+            *box = near;
             return true;
-    return false;
+        }
+    }
+    return passes_in(h, sine, 1, box);
 }
 
 /* Returns the last sine at which light of any of the three wavelengths gets
@@ -326,13 +363,14 @@ int glint_visible_ranges(const struct glint_visible *visible, double max_deg,
                          double (*range)[2])
 {
     const int steps = (int)ceil(max_deg / SCAN_DEG);
+    struct glint_pupil box;
     double before = 0;
     bool inside = false;
     int n = 0;
 
     for (int k = 0; k <= steps; k++) {
         const double sine = glint_sin_deg(fmin(k * SCAN_DEG, max_deg));
-        const bool now = passes(visible, sine, 1);
+        const bool now = still_passes(visible, sine, inside, &box);
 
         if (now && !inside && n == GLINT_MAX_RANGES)
             break;
@@ -394,7 +432,8 @@ static void look(const struct glint_visible *h, const double *sine,
         before = box;
         now = have ? follow_box(h, path, *s, &near, &box)
                    : find_box(h, path, *s, &box);
-        if (have && k % AFRESH == 0 && find_box(h, path, *s, &near)) {
+        if (have && k % (h->shaped ? AFRESH_SHAPED : AFRESH) == 0 &&
+            find_box(h, path, *s, &near)) {
             if (now)
                 glint_visible_join(&near, &box);
             box = near;

@@ -3,6 +3,9 @@
 
 #include <math.h>
 
+/* Light of a ray below which its errors show no less. */
+#define LEAST_LIGHT 1e-3
+
 /* The rays of one angle and wavelength: how many are seen, and where they land.
  */
 struct sight {
@@ -125,11 +128,103 @@ struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
         .sensor_mm = axis * fmin(ease * t->sensor_mm, t->faint_sensor_mm),
         .edge_mm = ease * t->edge_mm,
         .energy = ease * t->energy,
-        .ease = ease};
+        .ease = ease,
+        .share = share};
 
     aim.hidden = shows * t->sensor_mm / aim.sensor_mm;
     aim.stop = outline(&aim, t->stop_least, t->stop,
                        glint_zone_aim_stretch(rays, rays->at[RAY_STOP_X],
                                               rays->at[RAY_STOP_Y], -HUGE_VAL));
     return aim;
+}
+
+double glint_zone_aim_off(const struct glint_zone_rays *r,
+                          const struct glint_fitted_output *o,
+                          const double *light, int step)
+{
+    const double *value = r->at[o->kind];
+    double sum2 = 0;
+    int n = 0;
+
+    for (int i = step / 2; i < r->n; i += step) {
+        double x[GLINT_VARIABLES], error;
+
+        if (r->at[RAY_EXCESS][i] > 1.02 || r->at[RAY_FIELD][i] > 1)
+            continue;
+        glint_zone_rays_x(r, i, x);
+        error = glint_poly_at(o->n_terms, o->power, o->coef, x) - value[i];
+        error *= light ? light[i] : 1;
+        sum2 += error * error;
+        n++;
+    }
+    return n ? sqrt(sum2 / n) : 0;
+}
+
+/* ------------------------------------------------------------------- light */
+
+/* Returns the ray of the row before that of ray I, in its plane, which is
+ * nearest to it; -1 if there is none. */
+static int ray_before(const struct glint_zone_rays *r, int i)
+{
+    int row = i, near = -1;
+
+    while (row >= 0 && glint_zone_rays_alike(r, row, i) &&
+           r->x[GLINT_V][row] == r->x[GLINT_V][i])
+        row--;
+    for (int k = row; k >= 0 && glint_zone_rays_alike(r, k, i) &&
+                      r->x[GLINT_V][k] == r->x[GLINT_V][row];
+         k--)
+        if (near < 0 || fabs(r->x[GLINT_U][k] - r->x[GLINT_U][i]) <
+                            fabs(r->x[GLINT_U][near] - r->x[GLINT_U][i]))
+            near = k;
+    return near;
+}
+
+/* Returns the area between channels C and D of ray I, A and B. */
+static double area_of(const double *c, const double *d, int i, int a, int b)
+{
+    return fabs((c[a] - c[i]) * (d[b] - d[i]) - (d[a] - d[i]) * (c[b] - c[i]));
+}
+
+/* Returns the light of ray I by how far its neighbours A and B, in its plane,
+ * land from it. */
+static double light_of(const struct glint_zone *zone,
+                       const struct glint_zone_rays *r, int i, int a, int b)
+{
+    double x[GLINT_VARIABLES], pupil;
+
+    glint_zone_rays_x(r, i, x);
+    pupil = glint_zone_side(zone, zone->half_x, x) *
+            glint_zone_side(zone, zone->half_y, x) *
+            area_of(r->x[GLINT_U], r->x[GLINT_V], i, a, b);
+
+    return r->at[RAY_ENERGY][i] * pupil /
+           fmax(1e-12,
+                area_of(r->at[RAY_SENSOR_X], r->at[RAY_SENSOR_Y], i, a, b));
+}
+
+void glint_zone_aim_light(const struct glint_tolerance *tolerance,
+                          const struct glint_zone *zone,
+                          const struct glint_zone_aim *aim,
+                          const struct glint_zone_rays *rays, double *light)
+{
+    for (int i = 0; i < rays->n; i++) {
+        const int before = ray_before(rays, i);
+        const int beside =
+            i + 1 < rays->n && glint_zone_rays_alike(rays, i, i + 1) &&
+                    rays->x[GLINT_V][i] == rays->x[GLINT_V][i + 1]
+                ? i + 1
+                : i - 1;
+        double x[GLINT_VARIABLES], level;
+
+        glint_zone_rays_x(rays, i, x);
+        level = glint_brightness_at(tolerance->brightness, sine_of(zone, x)) *
+                aim->share;
+        light[i] = 1;
+        if (before >= 0 && beside != before && beside >= 0 &&
+            glint_zone_rays_alike(rays, i, beside))
+            light[i] = fmin(
+                1, fmax(LEAST_LIGHT, light_of(zone, rays, i, beside, before) /
+                                         fmax(level, 1e-30)));
+    }
 }

@@ -17,6 +17,7 @@ struct glint_zone_aim {
     double stop;   /* tolerance of places in the stop, radii */
     double energy; /* tolerance of the energy, as a share */
     double ease;   /* factor over the tolerances of a bright ghost */
+    double share;  /* brightness over that of a bright ghost */
     double hidden; /* error of places at which the ghost begins to show it, in
                       units of sensor_mm */
 };
@@ -24,6 +25,21 @@ struct glint_zone_aim {
 struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
                                         const struct glint_zone *zone,
                                         const struct glint_zone_rays *rays);
+
+/* Sets LIGHT[N] to how bright the ghost is at the place of each of RAYS, over
+ * AIM->share, 1 at most: where rays are spread wide, errors of places show as
+ * little as their light does. */
+void glint_zone_aim_light(const struct glint_tolerance *tolerance,
+                          const struct glint_zone *zone,
+                          const struct glint_zone_aim *aim,
+                          const struct glint_zone_rays *rays, double *light);
+
+/* Returns the root mean square error of OUTPUT over those of RAYS that get
+ * through, the middle one of every STEP, times their LIGHT if that is not NULL.
+ */
+double glint_zone_aim_off(const struct glint_zone_rays *rays,
+                          const struct glint_fitted_output *output,
+                          const double *light, int step);
 
 /* Returns the tolerance of an outline in a unit that stands for STRETCH_MM on
  * the sensor: 0.06 MOST to MOST. */

@@ -50,8 +50,9 @@ static void sample_rays(const struct glint_zone *z,
 {
     static const int waves[] = {GLINT_VISIBLE_WAVES / 2, 0,
                                 GLINT_VISIBLE_WAVES - 1};
-    /* Zones of two components of the direction are many. */
-    const int n = GLINT_SAMPLING_RAYS / (z->skew ? 2 : 1);
+    /* Zones of two components of the direction are many, and rays of shaped
+     * lenses take long. */
+    const int n = GLINT_SAMPLING_RAYS / (z->skew ? 2 : h->shaped ? 3 : 1);
     struct glint_zone_batch t;
 
     sampling->n = 0;

@@ -274,6 +274,8 @@ double glint_zone_crop(const struct glint_zone *zone,
                        struct glint_zone_part *part)
 {
     enum { ANGLES = 5, COLUMNS = GLINT_ZONE_BATCH, ROWS = 12 };
+    /* Rays of shaped lenses take long; few of their colours go apart. */
+    const int stride = visible->shaped ? (GLINT_VISIBLE_WAVES - 1) / 2 : 1;
     const double margin = 3.0 / COLUMNS;
     const struct glint_zone_part before = *part;
     struct sighting seen = {{9, 9, 9, 9}, {-9, -9, -9, -9}};
@@ -282,6 +284,8 @@ double glint_zone_crop(const struct glint_zone *zone,
     for (int k = 0; k < ANGLES * GLINT_VISIBLE_WAVES * (ROWS + 1); k++) {
         const int row = k % (ROWS + 1), wave = k / (ROWS + 1) / ANGLES;
 
+        if (wave % stride)
+            continue;
         t.path = &visible->position_path[wave];
         for (t.n = 0; t.n < COLUMNS;) {
             const double x[GLINT_VARIABLES] = {

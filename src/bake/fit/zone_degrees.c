@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "bake/fit/zone_degrees.h"
+#include "bake/fit/zone_fit.h"
 
 enum {
     FEW_TERMS = 64,

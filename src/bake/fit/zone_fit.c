@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "base/compiler.h"
-#include "bake/fit/zone_degrees.h"
 
 STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 
@@ -63,14 +62,27 @@ static double weight_past_field(const struct fit *f, double fields)
     return out_mm <= 0 ? 1 : 1 / (1 + 0.2 * out_mm / f->aim->sensor_mm);
 }
 
+/* Sets the light of the rays; of spheres, 1. */
+static void find_light(struct fit *f)
+{
+    if (f->task->visible->shaped)
+        glint_zone_aim_light(f->task->tolerance, f->task->zone, f->aim,
+                             &f->buffers->rays, f->buffers->light);
+    else
+        for (int i = 0; i < f->buffers->rays.n; i++)
+            f->buffers->light[i] = 1;
+}
+
 static void set_weights(struct fit *f)
 {
     const struct glint_zone_rays *r = &f->buffers->rays;
 
+    find_light(f);
     for (int i = 0; i < r->n; i++) {
         f->buffers->weight[i] = weight_past_edge(f, r->at[RAY_EXCESS][i]);
         f->buffers->sensor_weight[i] =
-            f->buffers->weight[i] * weight_past_field(f, r->at[RAY_FIELD][i]);
+            f->buffers->weight[i] * f->buffers->light[i] *
+            weight_past_field(f, r->at[RAY_FIELD][i]);
         if (r->at[RAY_FIELD][i] > 1.05)
             f->buffers->weight[i] *= 0.1;
     }
@@ -373,43 +385,25 @@ static enum glint_status fit_outputs(struct fit *f,
  */
 #define CHECK_RMS 1.6
 
-/* Returns the root mean square error of one output over the rays that get
- * through, in units of RMS. */
-static double check_output(const struct fit *f,
-                           const struct glint_fitted_output *o,
-                           const double *value, double rms)
-{
-    const struct glint_zone_rays *r = &f->buffers->rays;
-    double sum2 = 0;
-    int n = 0;
-
-    for (int i = 0; i < r->n; i++) {
-        double x[GLINT_VARIABLES], error;
-
-        if (r->at[RAY_EXCESS][i] > 1.02 || r->at[RAY_FIELD][i] > 1)
-            continue;
-        glint_zone_rays_x(r, i, x);
-        error = glint_poly_at(o->n_terms, o->power, o->coef, x) - value[i];
-        sum2 += error * error;
-        n++;
-    }
-    return n ? sqrt(sum2 / n) / rms : 0;
-}
-
 /* Raises the errors of places on sensor and stop to those at rays between the
  * ones that were fitted, over what is allowed there (CHECK_RMS tolerances). A
  * fit can be good at every node and nowhere else. */
 static void check_zone(struct fit *f, const struct glint_fitted_system *system)
 {
     struct glint_zone_errors *const e = f->errors;
+    const bool shaped = f->task->visible->shaped;
 
     glint_zone_check(f->task->zone, f->task->visible, &f->buffers->rays);
+    find_light(f);
     for (int k = 0; k < 4 && k < system->n_outputs; k++) {
         const bool sensor = k <= RAY_SENSOR_Y;
         double *const error = sensor ? &e->places : &e->outlines;
         const double rms = sensor ? f->aim->sensor_mm : f->aim->stop;
         const double left =
-            check_output(f, &system->output[k], f->buffers->rays.at[k], rms);
+            glint_zone_aim_off(&f->buffers->rays, &system->output[k],
+                               sensor && shaped ? f->buffers->light : NULL,
+                               shaped ? 3 : 1) /
+            rms;
 
         *error = fmax(*error, left / CHECK_RMS);
     }

@@ -19,6 +19,7 @@
 
 struct glint_zone_task {
     const struct glint_zone *zone;
+    const struct glint_tolerance *tolerance;
     /* Visibility of the ghost over the wavelengths to be fitted. */
     const struct glint_visible *visible;
     double barrel;   /* tolerance of barrels, as in struct glint_tolerance */
@@ -33,6 +34,11 @@ struct glint_zone_task {
     double settled;
 };
 
+/* Returns the terms of output KIND in TASK. STEEP: energies change a lot over
+ * the pupil. */
+struct glint_degrees glint_zone_degrees(const struct glint_zone_task *task,
+                                        enum glint_channel kind, bool steep);
+
 /* Moments are at most those of the degrees of a skew zone's places, 18, 16, 10,
  * 8 and 10. */
 #define GLINT_ZONE_SCRATCH                                  \
@@ -45,6 +51,7 @@ struct glint_zone_buffers {
     /* Rays to be fitted; they are overwritten. */
     struct glint_zone_rays rays, energies;
     double weight[GLINT_ZONE_RAYS], sensor_weight[GLINT_ZONE_RAYS];
+    double light[GLINT_ZONE_RAYS]; /* see glint_zone_aim_light() */
     double channel_weight[GLINT_ZONE_RAYS], value[GLINT_ZONE_RAYS];
 };
 

@@ -211,11 +211,47 @@ void glint_zone_trace(const struct glint_zone *zone,
                    energies);
 }
 
+/* Adds the ray at X and, if THREE, its neighbours before and behind it. */
+static void add_place(struct glint_zone_batch *t, const struct glint_zone *zone,
+                      double x[GLINT_VARIABLES], bool three)
+{
+    const double aside = 0.01, v = x[1];
+
+    if (three) {
+        x[1] = v + (v < 0.5 ? aside : -aside);
+        glint_zone_batch_add(t, zone, x);
+        x[1] = v;
+    }
+    glint_zone_batch_add(t, zone, x);
+    if (three) {
+        x[0] += x[0] < 0 ? aside : -aside;
+        glint_zone_batch_add(t, zone, x);
+    }
+}
+
+/* Adds those rays of T that get through, in groups of N that all do. */
+static void add_groups(const struct glint_visible *visible,
+                       struct glint_zone_batch *t, int n,
+                       struct glint_zone_rays *rays)
+{
+    for (int i = 0; i < t->n; i += n) {
+        bool all = true;
+
+        for (int k = 0; k < n; k++)
+            all &= t->status[i + k] == GLINT_RAY_OK;
+        for (int k = i; k < i + n && all; k++)
+            add_ray(visible, t->path, t->x[k], &t->ray[k],
+                    glint_zone_batch_hits(t, k), rays);
+    }
+}
+
 void glint_zone_check(const struct glint_zone *zone,
                       const struct glint_visible *visible,
                       struct glint_zone_rays *rays)
 {
-    enum { BUNDLES = 24, RAYS = 16 };
+    enum { BUNDLES = 24, RAYS = 16, IN_THREES = 10 };
+    const int group = visible->shaped ? 3 : 1;
+    const int places = visible->shaped ? IN_THREES : RAYS;
     double x[GLINT_VARIABLES], bundle[GLINT_VARIABLES];
     struct glint_path path;
     struct glint_zone_batch t;
@@ -225,18 +261,16 @@ void glint_zone_check(const struct glint_zone *zone,
     for (int k = 0; k < BUNDLES; k++) {
         glint_zone_scatter(zone, k, bundle);
         glint_visible_path(visible, bundle[3], &path);
-        path.places_only = true;
-        for (t.n = 0; t.n < RAYS;) {
-            glint_zone_scatter(zone, k * RAYS + t.n, x);
+        path.places_only = !visible->shaped;
+        t.n = 0;
+        for (int i = 0; i < places; i++) {
+            glint_zone_scatter(zone, k * RAYS + i, x);
             x[GLINT_S] = bundle[GLINT_S];
             x[GLINT_W] = bundle[GLINT_W];
             x[GLINT_P] = bundle[GLINT_P];
-            glint_zone_batch_add(&t, zone, x);
+            add_place(&t, zone, x, group == 3);
         }
         glint_zone_batch_trace(&t);
-        for (int i = 0; i < RAYS; i++)
-            if (t.status[i] == GLINT_RAY_OK)
-                add_ray(visible, &path, t.x[i], &t.ray[i],
-                        glint_zone_batch_hits(&t, i), rays);
+        add_groups(visible, &t, group, rays);
     }
 }

@@ -87,7 +87,9 @@ void glint_zone_trace(const struct glint_zone *zone,
                       struct glint_zone_rays *energies);
 
 /* Sets RAYS to scattered rays of the zone, at angles and wavelengths between
- * those that were fitted, without barrels. Deterministic. */
+ * those that were fitted, without barrels. Deterministic. Where VISIBLE is
+ * shaped they come in threes, the middle one with a neighbour across and one
+ * along. */
 void glint_zone_check(const struct glint_zone *zone,
                       const struct glint_visible *visible,
                       struct glint_zone_rays *rays);

@@ -23,7 +23,7 @@ struct beam {
     double x[LANES], y[LANES], z[LANES]; /* mm, from the vertex of the event */
     double l[LANES], m[LANES], n[LANES]; /* direction, unit length */
     double cosine[LANES];    /* cosine between ray and normal at the surface */
-    double normal[LANES][3]; /* unit normal, of shaped surfaces only */
+    double normal[3][LANES]; /* unit normal, of shaped surfaces only */
     double energy[LANES];
     /* Height and semi-diameter where their ratio was largest so far, squared.
      */

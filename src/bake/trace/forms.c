@@ -15,7 +15,9 @@
 
 enum { MOST_STEPS = 10 };
 /* Share of a length: a last step below it leaves an error of its square. */
-#define LAST_STEP 1e-9
+#define LAST_STEP 1e-7
+/* Terms of a short profile, up to A14. */
+#define SHORT 6
 
 static void set_ray(struct beam *b, int k, const double at[3],
                     const double way[3])
@@ -53,26 +55,36 @@ static WHOLLY_INLINE void set_heights(const struct beam *b, int n,
 }
 
 /* Sets SAG to the profile of F at the heights whose squares are Q, and SLOPE to
- * its derivative by them; as the table says. */
+ * its derivative by them; as the table says. TERMS, a constant, is at least
+ * those of F: a ray's sums then stay in registers. */
+static WHOLLY_INLINE void profiles_of(const struct glint_form *f, int n,
+                                      int terms, const double *q, double *sag,
+                                      double *slope)
+{
+    const double c = f->curvature, a = (1.0 + f->conic) * c * c;
+
+    for (int k = 0; k < n; k++) {
+        const double root = sqrt(1.0 - a * q[k]);
+        const double inverse = 1.0 / (root * (1.0 + root));
+        double p = 0.0, dp = 0.0;
+
+        for (int i = terms - 1; i >= 0; i--) {
+            dp = dp * q[k] + p;
+            p = p * q[k] + f->term[i];
+        }
+        sag[k] = c * q[k] * root * inverse + q[k] * q[k] * p;
+        slope[k] =
+            0.5 * c * (1.0 + root) * inverse + q[k] * (2.0 * p + q[k] * dp);
+    }
+}
+
 static WHOLLY_INLINE void profiles(const struct glint_form *f, int n,
                                    const double *q, double *sag, double *slope)
 {
-    const double c = f->curvature, a = (1.0 + f->conic) * c * c;
-    double p[LANES], dp[LANES];
-
-    for (int k = 0; k < n; k++)
-        p[k] = dp[k] = 0.0;
-    for (int i = f->n_terms - 1; i >= 0; i--)
-        for (int k = 0; k < n; k++) {
-            dp[k] = dp[k] * q[k] + p[k];
-            p[k] = p[k] * q[k] + f->term[i];
-        }
-    for (int k = 0; k < n; k++) {
-        const double root = sqrt(1.0 - a * q[k]);
-
-        sag[k] = c * q[k] / (1.0 + root) + q[k] * q[k] * p[k];
-        slope[k] = 0.5 * c / root + q[k] * (2.0 * p[k] + q[k] * dp[k]);
-    }
+    if (f->n_terms <= SHORT)
+        profiles_of(f, n, SHORT, q, sag, slope);
+    else
+        profiles_of(f, n, GLINT_SHAPE_TERMS, q, sag, slope);
 }
 
 static WHOLLY_INLINE void heights_at(const struct heights *h, int n,
@@ -131,12 +143,15 @@ static void meet_alone(struct beam *b, int k, const struct glint_form *form)
 {
     double at[3] = {b->x[k], b->y[k], b->z[k]};
     double way[3] = {b->l[k], b->m[k], b->n[k]};
+    double normal[3];
     bool met;
 
     glint_form_enter(form, at, way);
-    met = glint_form_meet(form, at, way, b->normal[k], &b->cosine[k]);
+    met = glint_form_meet(form, at, way, normal, &b->cosine[k]);
     b->status[k] = judge(b->status[k], met, GLINT_RAY_MISSED);
     set_ray(b, k, at, way);
+    for (int i = 0; i < 3; i++)
+        b->normal[i][k] = normal[i];
 }
 
 /* Moves ray K from where it was BEFORE on to FORM, by way of its frame. */
@@ -152,14 +167,14 @@ static void meet_and_leave(struct beam *b, int k, const struct beam *before,
     for (int i = 0; i < 3; i++) {
         normal[i] = 0.0;
         for (int j = 0; j < 3; j++)
-            normal[i] += form->turn[j][i] * b->normal[k][j];
+            normal[i] += form->turn[j][i] * b->normal[j][k];
     }
     at[0] = b->x[k], at[1] = b->y[k], at[2] = b->z[k];
     way[0] = b->l[k], way[1] = b->m[k], way[2] = b->n[k];
     glint_form_leave(form, at, way);
     set_ray(b, k, at, way);
     for (int i = 0; i < 3; i++)
-        b->normal[k][i] = normal[i];
+        b->normal[i][k] = normal[i];
 }
 
 /* Moves rays by T to where the profile's derivative by the height's square is
@@ -181,9 +196,9 @@ static WHOLLY_INLINE void move_to(struct beam *b, int n,
         b->x[k] = x;
         b->y[k] = y;
         b->z[k] = t[k] * b->n[k];
-        b->normal[k][0] = -sx / size;
-        b->normal[k][1] = -sy / size;
-        b->normal[k][2] = 1.0 / size;
+        b->normal[0][k] = -sx / size;
+        b->normal[1][k] = -sy / size;
+        b->normal[2][k] = 1.0 / size;
         b->cosine[k] = (b->n[k] - sx * b->l[k] - sy * b->m[k]) / size;
     }
 }
@@ -230,30 +245,38 @@ void glint_beam_leave_form(struct beam *b, int n, const struct glint_form *form)
 }
 
 /* Does what turn() does, at a form. */
-static void turn_at_form(struct beam *b, int k, double s, double part,
-                         double way)
+static WHOLLY_INLINE void turn_at_form(struct beam *b, int k, double s,
+                                       double part, double way)
 {
     const double before = b->n[k];
 
-    b->l[k] = s * b->l[k] + part * b->normal[k][0];
-    b->m[k] = s * b->m[k] + part * b->normal[k][1];
-    b->n[k] = s * before + part * b->normal[k][2];
+    b->l[k] = s * b->l[k] + part * b->normal[0][k];
+    b->m[k] = s * b->m[k] + part * b->normal[1][k];
+    b->n[k] = s * before + part * b->normal[2][k];
     b->status[k] =
         judge(b->status[k], way * before * b->n[k] > 0.0, GLINT_RAY_MISSED);
 }
 
-void glint_beam_cross_form(struct beam *b, int n, bool reflects, double ratio,
-                           const double *out)
+static WHOLLY_INLINE void cross_form(struct beam *b, int n, bool reflects,
+                                     double ratio, const double *out)
 {
-    for (int k = 0; k < n; k++) {
-        if (reflects) {
-            turn_at_form(b, k, 1.0, -2.0 * b->cosine[k], -1.0);
-            continue;
-        }
+    for (int k = 0; k < n && reflects; k++)
+        turn_at_form(b, k, 1.0, -2.0 * b->cosine[k], -1.0);
+    for (int k = 0; k < n && !reflects; k++) {
         b->status[k] =
             judge(b->status[k], out[k] > 0.0, GLINT_RAY_TOTAL_REFLECTION);
         turn_at_form(b, k, ratio,
                      (b->n[k] < 0.0 ? -out[k] : out[k]) - ratio * b->cosine[k],
                      1.0);
     }
+}
+
+WIDE_VECTORS
+void glint_beam_cross_form(struct beam *b, int n, bool reflects, double ratio,
+                           const double *out)
+{
+    if (n == LANES)
+        cross_form(b, LANES, reflects, ratio, out);
+    else
+        cross_form(b, 1, reflects, ratio, out);
 }

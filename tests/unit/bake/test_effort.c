@@ -27,7 +27,7 @@ static void bake(const double *work, int n, bool wide, double said[3])
 
     for (int g = 0; g < n; g++)
         all += work[g];
-    glint_effort_init(&e, n, 1, wide);
+    glint_effort_init(&e, n, 1, wide ? GLINT_EFFORT_WIDE : GLINT_EFFORT_NARROW);
     for (int g = 0; g < n; g++) {
         glint_effort_begin(&e, g);
         for (int w = 1; w <= (int)work[g]; w++) {
@@ -101,7 +101,7 @@ static void test_workers(void **state)
     for (int k = 0; k < 2; k++) {
         struct glint_effort e;
 
-        glint_effort_init(&e, 50, 1 + 3 * k, false);
+        glint_effort_init(&e, 50, 1 + 3 * k, GLINT_EFFORT_NARROW);
         glint_effort_begin(&e, 10 * k);
         glint_effort_spend(&e, 10, 0.5);
         done[k] = glint_effort_done(&e);
@@ -110,7 +110,7 @@ static void test_workers(void **state)
     for (int k = 0; k < 2; k++) {
         struct glint_effort e;
 
-        glint_effort_init(&e, 1, 1 + 3 * k, false);
+        glint_effort_init(&e, 1, 1 + 3 * k, GLINT_EFFORT_NARROW);
         glint_effort_begin(&e, 0);
         glint_effort_spend(&e, 1000, 0.5);
         done[k] = glint_effort_done(&e);

@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/fit/next.h"
+
+#include <math.h>
+
+#include "engine/setup/degrees.h"
+
+/* Degrees: narrower zones are not halved. */
+#define LEAST_DEG 0.7
+/* Zones of ghosts with less ease are bright and may be half as wide. */
+#define BRIGHT_EASE 1.5
+/* Share of the error of the whole zone: a half whose error is larger gained
+ * nothing from halving. */
+#define STUCK 0.75
+/* Degrees: a narrower zone which gained nothing is not halved again, nor is a
+ * wider one whose error is endured(). */
+#define STUCK_DEG 1.2
+/* Factor on STUCK_DEG for wide stops: nearly all of their zones. */
+#define WIDE_STUCK 16
+/* Tolerances: zones with a larger error are divided into parts. If the ghost is
+ * so faint that it hides more, the error may be up to MOST_HIDDEN times as
+ * large. */
+#define PART_LEFT   5.0
+#define MOST_HIDDEN 3.0
+/* Multiples of bearable(), which is PART_LEFT and more for faint ghosts: zones
+ * with a larger error are divided at once, as more terms would not help. */
+#define HOPELESS 20.0
+/* Tolerances: a wide zone with a larger error will be halved anyway. */
+#define HALVES_ANYWAY 10.0
+/* Half widths: if a box moves or grows by more over the band, the band is
+ * halved. */
+#define WANDERS 0.5
+/* Width of a band in w, 0 .. 2: narrower ones are not halved. */
+#define LEAST_BAND 0.6
+/* STUCK of shaped lenses: what halving leaves of a smooth error is far less. */
+#define STUCK_SHAPED 0.35
+/* Ease up to which errors of shaped lenses are worth all that is done, and from
+ * which all that is bearable is kept. */
+#define NOT_FAINT 1.5
+#define FAINT     6.0
+
+/* The ghost, and what its zones are fitted to. */
+struct rules {
+    const struct glint_visible *visible;
+    const struct glint_tolerance *tolerance;
+};
+
+/* Returns whether a coating of several films reflects the ghost. */
+bool glint_next_stacks(const struct glint_visible *visible)
+{
+    const struct glint_setup *setup = visible->setup;
+    const struct glint_ghost ghost = setup->ghost[visible->ghost];
+
+    return setup->lens->surface[ghost.i].coating.n_films > 1 ||
+           setup->lens->surface[ghost.j].coating.n_films > 1;
+}
+
+double glint_next_degrees(double lo, double hi)
+{
+    return (asin(hi) - asin(lo)) * (180 / GLINT_PI);
+}
+
+/* Returns how large the error of places of a zone may be, in tolerances. */
+static double bearable(const struct glint_zone_aim *aim)
+{
+    return PART_LEFT * fmin(aim->hidden, MOST_HIDDEN);
+}
+
+/* Returns up to which error, in tolerances, P is kept at once. */
+static double acceptable(const struct rules *f,
+                         const struct glint_zone_aim *aim)
+{
+    const double faint =
+        fmin(1, fmax(0, (aim->ease - NOT_FAINT) / (FAINT - NOT_FAINT)));
+
+    return f->visible->shaped ? 1 + faint * (bearable(aim) - 1) : 1;
+}
+
+/* Returns up to which error, in tolerances, a zone of any width is not halved
+ * if that gained nothing; 0: a wide zone always is. */
+static double endured(const struct rules *f, const struct glint_zone_aim *aim)
+{
+    return f->visible->wide ? bearable(aim) : 0;
+}
+
+/* Returns STUCK_DEG, or for wide stops more. Where their rays turn around in
+ * the stop, halving angles gains nothing, but parts of the box do, and narrower
+ * zones need as many parts each. */
+static double stuck_deg(const struct rules *f)
+{
+    return f->visible->wide ? WIDE_STUCK * STUCK_DEG : STUCK_DEG;
+}
+
+static double stuck_share(const struct rules *f)
+{
+    return f->visible->shaped ? STUCK_SHAPED : STUCK;
+}
+
+/* Returns how many times P's box may be halved. */
+static int most_depth(const struct rules *f, const struct glint_zone_piece *p)
+{
+    return p->lo <= 0 ? f->tolerance->axis_depth : GLINT_PART_DEPTH;
+}
+
+/* Returns the error, in tolerances, beyond which P will be halved or divided
+ * anyway, so that its fit may stop early; 0: there is none. Narrow zones may be
+ * at the end of halving, where the error has to be known. */
+static double hopeless(const struct rules *f, const struct glint_zone_piece *p,
+                       const struct glint_zone_aim *aim)
+{
+    if (p->thorough)
+        return p->depth < most_depth(f, p) ? HOPELESS * bearable(aim) : 0;
+    return glint_next_degrees(p->lo, p->hi) > 2 * stuck_deg(f)
+               ? fmax(HALVES_ANYWAY, acceptable(f, aim))
+               : 0;
+}
+
+/* Returns the width of P in degrees for halving, where zones of bright ghosts
+ * count twice. */
+static double width_of(const struct glint_zone_piece *p,
+                       const struct glint_zone_aim *aim)
+{
+    return glint_next_degrees(p->lo, p->hi) * (aim->ease < BRIGHT_EASE ? 2 : 1);
+}
+
+/* Returns the factor on LEAST_DEG and STUCK_DEG for P. */
+static double least_of(const struct rules *f, const struct glint_zone_piece *p)
+{
+    return p->lo <= 0 ? f->tolerance->axis : 1;
+}
+
+/* Returns the error, in tolerances, above which next_step() decides the same
+ * for P, and later for its halves, however large the error is; 0: there is
+ * none. */
+static double settled(const struct rules *f, const struct glint_zone_piece *p,
+                      const struct glint_zone_aim *aim)
+{
+    const double least = least_of(f, p), width = width_of(p, aim);
+    const double kept = acceptable(f, aim);
+
+    if (p->thorough)
+        return p->depth < most_depth(f, p) ? bearable(aim) : 0;
+    if (width >= least * stuck_deg(f) && endured(f, aim) > 0)
+        return fmax(endured(f, aim), kept);
+    /* The lower half is the narrower one in degrees. If even that is too wide
+     * to be stuck, next_step() does not ask what halving gained. */
+    if (glint_next_degrees(p->lo, 0.5 * (p->lo + p->hi)) >= stuck_deg(f) ||
+        width < least * LEAST_DEG)
+        return kept;
+    return width < least * stuck_deg(f) ? fmax(kept, stuck_share(f) * p->before)
+                                        : 0;
+}
+
+/* The next step for a zone after attempt A. For bright ghosts zones are halved
+ * further. */
+static enum glint_next next_step(const struct rules *f,
+                                 const struct glint_zone_piece *p,
+                                 const struct glint_attempt *a)
+{
+    const double left = a->errors.worst;
+    const bool helped = left <= stuck_share(f) * p->before;
+    const double width = width_of(p, &a->aim), least = least_of(f, p);
+    /* Stacks of films make energies swing with the wavelength, which parts of
+     * the band follow and narrower zones would not. */
+    const bool swings = glint_next_stacks(f->visible) && p->depth == 0 &&
+                        left > 1 && left < HUGE_VAL && a->errors.shows <= 1 &&
+                        p->w1 - p->w0 > LEAST_BAND;
+    const bool stuck = width < least * LEAST_DEG ||
+                       (!helped && (width < least * stuck_deg(f) ||
+                                    left <= endured(f, &a->aim)));
+
+    if (swings)
+        return GLINT_BANDS;
+    if (p->thorough && a->errors.dims <= bearable(&a->aim))
+        return GLINT_KEEP;
+    if (p->thorough && p->depth == 0 && a->wanders > WANDERS &&
+        p->w1 - p->w0 > LEAST_BAND)
+        return GLINT_BANDS;
+    if (p->thorough)
+        return p->depth < most_depth(f, p) ? GLINT_PART : GLINT_KEEP;
+    if (left <= acceptable(f, &a->aim))
+        return GLINT_KEEP;
+    return stuck && left < HUGE_VAL ? GLINT_THOROUGH : GLINT_HALVE;
+}
+
+double glint_next_hopeless(const struct glint_visible *visible,
+                           const struct glint_tolerance *tolerance,
+                           const struct glint_zone_piece *p,
+                           const struct glint_zone_aim *aim)
+{
+    const struct rules rules = {visible, tolerance};
+
+    return hopeless(&rules, p, aim);
+}
+
+double glint_next_settled(const struct glint_visible *visible,
+                          const struct glint_tolerance *tolerance,
+                          const struct glint_zone_piece *p,
+                          const struct glint_zone_aim *aim)
+{
+    const struct rules rules = {visible, tolerance};
+
+    return settled(&rules, p, aim);
+}
+
+enum glint_next glint_next(const struct glint_visible *visible,
+                           const struct glint_tolerance *tolerance,
+                           const struct glint_zone_piece *p,
+                           const struct glint_attempt *a)
+{
+    const struct rules rules = {visible, tolerance};
+
+    return next_step(&rules, p, a);
+}

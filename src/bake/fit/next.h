@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What is done with a zone, or a part of one, after an attempt at it.
+ *
+ *   in   how wide it is, and the errors of its fit in tolerances
+ *   out  whether it is kept, halved, fitted thoroughly, divided by colours or
+ *        into parts; up to which error a fit has to go on to tell
+ *
+ * Of shaped lenses faint zones are kept as they are where errors hide: powers
+ * of surfaces leave some at every width, and halves of halves gain nothing. */
+#ifndef GLINT_BAKE_FIT_NEXT_H
+#define GLINT_BAKE_FIT_NEXT_H
+
+#include "bake/fit/tolerance.h"
+#include "bake/fit/visible.h"
+#include "bake/fit/zone_fit.h"
+
+/* A zone, or a part of one, that waits to be fitted. BEFORE is the error of the
+ * last attempt at the wider zone that it is a piece of. THOROUGH: it is fitted
+ * with a box that follows the colours, a root of the energy, and more terms. */
+struct glint_zone_piece {
+    double lo, hi, before;
+    double w0, w1; /* the part of the band, -1 .. 1 */
+    bool thorough;
+    struct glint_zone_part part;
+    int depth; /* number of halvings that led to the part; 0: it is the whole
+                  zone */
+};
+
+/* The outcome of an attempt at a zone. */
+struct glint_attempt {
+    struct glint_zone_aim aim;
+    /* Errors in tolerances, at most 1 if good; worst is HUGE_VAL if nothing was
+     * fitted. */
+    struct glint_zone_errors errors;
+    double wanders; /* half widths that the box moves or grows over the band */
+};
+
+enum glint_next {
+    GLINT_KEEP,
+    GLINT_HALVE,
+    GLINT_THOROUGH,
+    GLINT_BANDS,
+    GLINT_PART
+};
+
+/* Returns the width from the sine LO to HI in degrees. */
+double glint_next_degrees(double lo, double hi);
+
+/* Returns whether a coating of several films reflects the ghost. */
+bool glint_next_stacks(const struct glint_visible *visible);
+
+/* Returns the error, in tolerances, beyond which P will be halved or divided
+ * anyway, so that its fit may stop early; 0: there is none. */
+double glint_next_hopeless(const struct glint_visible *visible,
+                           const struct glint_tolerance *tolerance,
+                           const struct glint_zone_piece *p,
+                           const struct glint_zone_aim *aim);
+
+/* Returns the error, in tolerances, above which glint_next() decides the same
+ * for P, and later for its halves, however large the error is; 0: there is
+ * none. */
+double glint_next_settled(const struct glint_visible *visible,
+                          const struct glint_tolerance *tolerance,
+                          const struct glint_zone_piece *p,
+                          const struct glint_zone_aim *aim);
+
+/* Returns what to do with P after attempt A. For bright ghosts zones are halved
+ * further. */
+enum glint_next glint_next(const struct glint_visible *visible,
+                           const struct glint_tolerance *tolerance,
+                           const struct glint_zone_piece *p,
+                           const struct glint_attempt *a);
+
+#endif
