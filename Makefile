@@ -36,7 +36,7 @@
 #   make trade    what accuracy costs: plots, pictures and a page (glint sweep)
 #   make debian   packages, in clean systems;  check-debian: tools/debian
 #   also: oiio assimp window table stop-table scene-table scene-cost-table scene-budget-table mesh-table ward-table ward-sheet translucent-table stone-table motion-table hidden-table occlusion-table lights-table flicker-table
-#         star-table hostile-table bake-table wide-table accuracy-table colour-table
+#         star-table hostile-table bake-table wide-table accuracy-table colour-table projection-table
 #         coating-table ray-table inputs format golden-update fuzz-keep clean reuse-table threads-table stopping-table left-table
 
 MAKEFLAGS += -r
@@ -75,7 +75,7 @@ absent += tools/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
 absent += platform/oiio/$(if $(CROSS),loader,absent).c
 absent += platform/assimp/$(if $(CROSS),loader,absent).c platform/assimp/assimp.c
 absent += platform/sdl/$(if $(CROSS),window,absent).c platform/sdl/sdl.c
-absent += tools/command/glint.c tools/live/glint_live.c tools/live/models_only.c tools/lab/ray_errors.c
+absent += tools/command/glint.c tools/live/glint_live.c tools/live/models_only.c tools/lab/ray_errors.c tools/lab/projection_table.c
 
 core_o      := $(call objects,src,$(CORE))
 published_o := $(call objects,src,$(PUBLISHED))

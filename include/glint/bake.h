@@ -48,6 +48,16 @@ void glint_bake_defaults(struct glint_bake_options *options);
 uint64_t glint_bake_key(const struct glint_prescription *lens,
                         const struct glint_bake_options *options);
 
+/* Sets PROJECTION to that of LENS at the d line, by its chief rays at whole
+ * degrees, finer ones of narrow lenses, up to the last that gets through or 85.
+ * MISS_DEG receives how far the polynomial is off at them. GLINT_E_LENS: LENS
+ * is not round, or hardly any light gets through, and ERROR says which;
+ * PROJECTION is that by tangents. */
+enum glint_status glint_projection_of(struct glint_projection *projection,
+                                      const struct glint_prescription *lens,
+                                      double *miss_deg,
+                                      struct glint_error *error);
+
 /* Figures of a bake that are not in its model. */
 struct glint_bake_report {
     int rays; /* number of rays measured: those that get through the lens */

@@ -26,11 +26,35 @@ struct glint_lamp {
     double turn_deg; /* direction of the major axis, 0 = +x, 90 = up */
 };
 
+/* Where a lens images what lies off the axis. With rho, the image's distance
+ * from the axis over the focal length, light comes from the angle
+ *
+ *     theta = atan(rho) (1 + b[0] r^2 + b[1] r^4 + .. ),  r = min(rho, reach)
+ *
+ * All zeros: as through a pinhole, rho = tan(theta), and no less than 90
+ * degrees are seen. */
+#define GLINT_PROJECTION_TERMS 4
+struct glint_projection {
+    double reach; /* rho up to which the lens was traced */
+    double b[GLINT_PROJECTION_TERMS];
+};
+
 /* The place of a picture on the sensor: centred, with square pixels. */
 struct glint_view {
     int width, height;      /* pixels */
     double sensor_width_mm; /* mm that the whole width of the picture takes */
+    struct glint_projection projection; /* of all lights of the picture */
 };
+
+/* Returns the angle off the axis, 0 .. 89.9 degrees, of light that is imaged
+ * RHO focal lengths from it. */
+double glint_projection_deg(const struct glint_projection *projection,
+                            double rho);
+
+/* Returns how many focal lengths from the axis light from THETA_DEG is imaged,
+ * at most 1e6. */
+double glint_projection_rho(const struct glint_projection *projection,
+                            double theta_deg);
 
 /* Returns the largest view of WIDTH x HEIGHT that fits the film. */
 struct glint_view glint_view_fit(int width, int height, double film_width_mm,

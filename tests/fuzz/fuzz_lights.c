@@ -35,7 +35,8 @@ static void check_row(const struct lamp_row *r)
 
 static void check_lamps(const struct lamp_list *list, int frame)
 {
-    const struct glint_view view = {640, 360, 36};
+    const struct glint_view view = {
+        .width = 640, .height = 360, .sensor_width_mm = 36};
     struct glint_lamp lamp[ROWS];
     const int n =
         lamp_list_frame(list, frame, &view, 50, lamp, NULL, NULL, ROWS);

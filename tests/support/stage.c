@@ -116,7 +116,9 @@ void stage_view(struct stage *stage, int width, int height, double sensor_mm)
     if (stage->framed)
         glint_frame_finish(&stage->frame);
     stage->view = sensor_mm > 0
-                      ? (struct glint_view){width, height, sensor_mm}
+                      ? (struct glint_view){.width = width,
+                                            .height = height,
+                                            .sensor_width_mm = sensor_mm}
                       : glint_view_fit(width, height, stage->lens.film_width_mm,
                                        stage->lens.film_height_mm);
     glint_frame_init(&stage->frame,

@@ -93,6 +93,9 @@ library-table: all $(OUT)/stop_costs
 # Lenses that are not round. LENSES="A.lens ...": these; COUNT=N directions.
 azimuth-table: all
 	@tools/lens_figures/azimuth-table $(LENSES) | tools/report/write-figures shapes/azimuth
+# How far lights and ghosts move by a lens's own projection: a processor minute.
+projection-table: $(OUT)/projection_table
+	@$< lenses/*.lens lenses/*/*.lens | tools/report/write-figures shapes/projection
 accuracy-table: all
 	@tools/report/accuracy-table | tools/report/write-figures accuracy
 colour-table: all $(OUT)/hue_steps
@@ -112,7 +115,7 @@ power-fit: $(OUT)/power_table
 	@tools/make/deps "HDR panoramas" openimageio-tools python3-numpy npm
 	@tests/power-table $< --features >build/features.txt
 	@tests/power-fit build/features.txt
-$(OUT)/ray_errors: $(OUT)/tools/lab/ray_errors.o $(libs)
+$(OUT)/ray_errors $(OUT)/projection_table: $(OUT)/%: $(OUT)/tools/lab/%.o $(libs)
 	$(link)
 
 # Photographs of Debian packages with their lamps marked: tests/corpus/README.md.
@@ -207,7 +210,7 @@ budget: all
 	        build/$$t/glint >&2 || exit 1; done
 	@tools/report/budget | tools/report/write-figures arm
 
-.PHONY: glints-table hidden-table scene-budget-table occlusion-table video-report demo inputs table bake-table wide-table library-table azimuth-table accuracy-table colour-table coating-table ray-table power-table \
+.PHONY: glints-table hidden-table scene-budget-table occlusion-table video-report demo inputs table bake-table wide-table projection-table library-table azimuth-table accuracy-table colour-table coating-table ray-table power-table \
         power-fit \
         corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet gallery \
         bench bench-insn growth size trade lights-table threads-table reuse-table flicker-table left-table stopping-table hostile-table star-table memory-table zoom-table \

@@ -262,6 +262,9 @@ int settings_open(const struct tool *tool, struct settings *settings,
         code = front_option_open(tool, &settings->front);
     if (code != EXIT_OK)
         return code;
+    if (settings->by_lens && tool_is_model(lens))
+        return tool_usage(tool, "--projection lens needs a lens table: a "
+                                "baked model has no chief rays");
     settings_choose_waves(settings);
     code = tool_is_model(lens) ? open_model(tool, settings, lens)
                                : settings_open_table(tool, settings, lens);
@@ -286,9 +289,12 @@ struct glint_view settings_view(const struct settings *settings, int width,
 {
     const double *mm = settings->sensor_mm;
 
-    return glint_view_fit(width, height,
-                          mm[0] > 0 ? mm[0] : settings->lens.film_width_mm,
-                          mm[0] > 0 ? mm[1] : settings->lens.film_height_mm);
+    struct glint_view view = glint_view_fit(
+        width, height, mm[0] > 0 ? mm[0] : settings->lens.film_width_mm,
+        mm[0] > 0 ? mm[1] : settings->lens.film_height_mm);
+
+    view.projection = settings->projection;
+    return view;
 }
 
 int settings_frame(const struct tool *tool, const struct settings *settings,

@@ -44,6 +44,8 @@ struct settings {
     int n_wavelengths;
     enum settings_waves waves;
     double sensor_mm[2]; /* 0: the table's film */
+    bool by_lens;        /* lights come from where the lens images them */
+    struct glint_projection projection; /* if by_lens; else by tangents */
     double exposure_ev, gain;
     double starburst; /* factor on the physical starburst; 0: none */
     bool starburst_asked, starburst_only, ghosts_only, veil_only;
@@ -85,6 +87,7 @@ enum settings_option {
     OPT_WAVELENGTHS,
     OPT_DISPERSION,
     OPT_SENSOR,
+    OPT_PROJECTION,
     OPT_EXPOSURE,
     OPT_GAIN,
     OPT_GHOST,
@@ -135,6 +138,7 @@ enum settings_option {
         {"wavelengths", required_argument, NULL, OPT_WAVELENGTHS},   \
         {"dispersion", required_argument, NULL, OPT_DISPERSION},     \
         {"sensor", required_argument, NULL, OPT_SENSOR},             \
+        {"projection", required_argument, NULL, OPT_PROJECTION},     \
         {"exposure", required_argument, NULL, OPT_EXPOSURE},         \
         {"gain", required_argument, NULL, OPT_GAIN},                 \
         {"ghost", required_argument, NULL, OPT_GHOST},               \
@@ -206,6 +210,10 @@ enum settings_option {
     "                      the CIE 1931 observer\n"                            \
     "  --sensor WxH        mm (default: the film of the table); the picture\n" \
     "                      is the largest of its shape that fits\n"            \
+    "  --projection P      lens: light at a pixel comes from where this lens " \
+    "\n"                                                                       \
+    "                      images it, by its chief rays; tan (default): as\n"  \
+    "                      behind a lens without distortion\n"                 \
     "  --ghost K           this ghost alone\n"                                 \
     "  --ghosts FILE       solo, mute, gain and tint of single ghosts, a "     \
     "line "                                                                    \

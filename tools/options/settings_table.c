@@ -30,6 +30,31 @@ struct glint_bake_options settings_bake_options(const struct settings *settings)
     return o;
 }
 
+/* Sets how the lens images angles, and the largest angle of the picture. */
+static enum glint_status set_projection(struct settings *settings,
+                                        struct glint_error *error)
+{
+    const struct glint_prescription *l = &settings->lens;
+    const double *mm = settings->sensor_mm;
+    struct glint_optics optics;
+    double miss_deg;
+    const enum glint_status status =
+        glint_projection_of(&settings->projection, l, &miss_deg, error);
+
+    if (status != GLINT_OK)
+        return status;
+    glint_optics_of(l, &optics);
+    settings->max_deg =
+        fmax(settings->max_deg,
+             glint_projection_deg(
+                 &settings->projection,
+                 0.5 *
+                     (mm[0] > 0 ? hypot(mm[0], mm[1])
+                                : hypot(l->film_width_mm, l->film_height_mm)) /
+                     fabs(optics.focal_mm)));
+    return GLINT_OK;
+}
+
 int settings_open_table(const struct tool *tool, struct settings *settings,
                         const char *name)
 {
@@ -50,6 +75,10 @@ int settings_open_table(const struct tool *tool, struct settings *settings,
                                                  settings->f_number, &error);
     if (status != GLINT_OK)
         return settings_refuse_stop(tool, settings, error.text);
+    if (settings->by_lens)
+        status = set_projection(settings, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
     return settings->rays == SETTINGS_RAYS_EXACT
                ? EXIT_OK
                : model_cached(tool, &settings->lens,

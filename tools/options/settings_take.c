@@ -117,6 +117,15 @@ bool settings_take_quality(struct settings *s, const char *text)
     return true;
 }
 
+static bool take_projection(struct settings *s, const char *value)
+{
+    static const char *const words[] = {"tan", "lens", NULL};
+    const int word = tool_word(value, words);
+
+    s->by_lens = word == 1;
+    return word >= 0;
+}
+
 /* Takes the options of the lens. */
 static enum taken take_lens(struct settings *s, int option, const char *value)
 {
@@ -139,6 +148,8 @@ static enum taken take_lens(struct settings *s, int option, const char *value)
     case OPT_FRONT_MASK:
         s->front.mask_file = value;
         return true;
+    case OPT_PROJECTION:
+        return take_projection(s, value);
     case OPT_WAVELENGTHS:
         return settings_take_waves(s, value);
     case OPT_DISPERSION:

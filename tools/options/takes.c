@@ -114,6 +114,7 @@ static const struct {
     {NULL, "merge", "STEPS,GAMMA: 0 to 4 and 0 to 1"},
     {NULL, "only", "ghosts, starburst, veil or all"},
     {NULL, "picture", "codes or linear"},
+    {NULL, "projection", "lens or tan"},
     {NULL, "quality", "0 to 1, or least, draft, default, high, finest, exact"},
     {NULL, "quantum", "percent, 0 to 50"},
     {NULL, "range", "auto, full or limited"},

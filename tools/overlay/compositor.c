@@ -198,7 +198,7 @@ int compositor_size(const struct tool *tool, struct compositor *compositor,
     unsize(compositor);
     compositor->view = compositor->has_lens
                            ? settings_view(&compositor->settings, width, height)
-                           : (struct glint_view){width, height, 1};
+                           : (struct glint_view){width, height, 1, {0, {0}}};
     code = compositor_scene_size(compositor, width, height);
     if (code != EXIT_OK)
         return code;

@@ -108,7 +108,8 @@ static bool load_golden(const char *name, struct glint_float_image *image)
 
 static void compare_golden(const struct golden *g)
 {
-    const struct glint_view view = {480, 270, 36};
+    const struct glint_view view = {
+        .width = 480, .height = 270, .sensor_width_mm = 36};
     const struct glint_lamp lamp = lamp_at(g->theta, g->phi);
     struct glint_float_image want, got;
     struct glint_measure m;
@@ -151,7 +152,8 @@ static void test_golden_canon(void **state)
 
 static void test_axis_light_is_symmetric(void **state)
 {
-    const struct glint_view view = {160, 160, 24};
+    const struct glint_view view = {
+        .width = 160, .height = 160, .sensor_width_mm = 24};
     const struct glint_lamp lamp = lamp_at(0, 0);
     double worst = 0, peak = 0;
 
@@ -178,7 +180,8 @@ static void test_axis_light_is_symmetric(void **state)
  * an octagonal stop and a square picture as they are. */
 static void test_quarter_turn(void **state)
 {
-    const struct glint_view view = {160, 160, 24};
+    const struct glint_view view = {
+        .width = 160, .height = 160, .sensor_width_mm = 24};
     const struct glint_lamp lamp = lamp_at(6, 20), turned = lamp_at(6, 110);
 
     (void)state;
@@ -199,7 +202,8 @@ static void test_quarter_turn(void **state)
 
 static void test_doubling_the_grid(void **state)
 {
-    const struct glint_view view = {240, 135, 36};
+    const struct glint_view view = {
+        .width = 240, .height = 135, .sensor_width_mm = 36};
     const struct glint_lamp lamp = lamp_at(7.58, 33.2);
     double db;
 
@@ -217,7 +221,8 @@ static void test_doubling_the_grid(void **state)
  * front. */
 static void test_flux_is_bounded(void **state)
 {
-    const struct glint_view view = {200, 200, 2000};
+    const struct glint_view view = {
+        .width = 200, .height = 200, .sensor_width_mm = 2000};
     const struct glint_lamp lamp = lamp_at(10, 45);
     const double front = 3.14159265 * 14.5 * 14.5;
     double sum[3] = {0, 0, 0};
@@ -236,7 +241,8 @@ static void test_flux_is_bounded(void **state)
 
 static void test_threads_do_not_matter(void **state)
 {
-    const struct glint_view view = {120, 67, 36};
+    const struct glint_view view = {
+        .width = 120, .height = 67, .sensor_width_mm = 36};
     const struct glint_lamp lamps[2] = {lamp_at(5, 33), lamp_at(9, -120)};
     struct glint_workers *const pool = workers;
 
@@ -276,7 +282,8 @@ static void test_integers_match(void **state)
 {
     static const char *const names[] = {"heliar-tronnier",
                                         "double-gauss-angenieux"};
-    const struct glint_view view = {480, 270, 36};
+    const struct glint_view view = {
+        .width = 480, .height = 270, .sensor_width_mm = 36};
     const struct glint_lamp lamps[2] = {lamp_at(7.58, 33.2),
                                         lamp_at(3.1, -100)};
 
@@ -303,7 +310,8 @@ static void test_integers_match(void **state)
  * of this lens is far fainter than the size of its box suggests. */
 static void test_faint_colour_keeps_steps(void **state)
 {
-    const struct glint_view view = {480, 270, 36};
+    const struct glint_view view = {
+        .width = 480, .height = 270, .sensor_width_mm = 36};
     const struct glint_lamp green = {5.3, 33, 0.01, {0, 1, 0}, {0, 0}, 0};
     const struct glint_lamp reddish = {5.3, 33, 1, {1, 0.01, 0}, {0, 0}, 0};
     struct glint_frame_report report;
@@ -348,7 +356,8 @@ static void load_shaped(const char *before, const char *first,
  * round: over the whole pupil, turned by the light's azimuth. */
 static void test_torics_that_are_spheres(void **state)
 {
-    const struct glint_view view = {180, 120, 36};
+    const struct glint_view view = {
+        .width = 180, .height = 120, .sensor_width_mm = 36};
     const struct glint_lamp lamp = lamp_at(7, 37);
     struct glint_frame_report report;
     double db, flux;
@@ -374,7 +383,8 @@ static void test_torics_that_are_spheres(void **state)
  * diagonal; and not what the centred lens makes. */
 static void test_decentred_at_the_diagonal(void **state)
 {
-    const struct glint_view view = {120, 120, 30};
+    const struct glint_view view = {
+        .width = 120, .height = 120, .sensor_width_mm = 30};
     const struct glint_lamp at[2] = {lamp_at(6, 30), lamp_at(6, 60)};
     double db;
 

@@ -184,7 +184,8 @@ static void test_lists(void **state)
         "{\"frame\": 0, \"x\": 10, \"y\": 20, \"power\": 5}\n"
         "{\"x\":-30,\"y\":40,\"power\":6,\"r\":1,\"g\":0.5,\"b\":0.25}\n"
         "{\"frame\":2,\"x\":1,\"y\":2,\"power\":3,\"size\":4}\n"};
-    const struct glint_view view = {WIDTH, HEIGHT, 36};
+    const struct glint_view view = {
+        .width = WIDTH, .height = HEIGHT, .sensor_width_mm = 36};
 
     (void)state;
     for (int k = 0; k < 2; k++) {

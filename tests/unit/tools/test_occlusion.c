@@ -17,7 +17,8 @@
 enum { SIDE = 64 };
 
 static uint8_t rgb[3 * SIDE * SIDE];
-static const struct glint_view view = {4 * SIDE, 4 * SIDE, 36};
+static const struct glint_view view = {
+    .width = 4 * SIDE, .height = 4 * SIDE, .sensor_width_mm = 36};
 static const double focal_mm = 50;
 
 /* A mask a quarter as large as the picture, black left of COLUMN. */

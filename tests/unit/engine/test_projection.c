@@ -1,0 +1,180 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Projections of lenses: polynomials against chief rays traced anew, there and
+ * back again, and what is known of each lens.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/setup/degrees.h"
+#include "glint/bake.h"
+#include "support/lens_check.h"
+
+static struct glint_projection projection_of(struct glint_prescription *lens,
+                                             const char *name, double *miss_deg)
+{
+    struct glint_projection p;
+    struct glint_error error = {""};
+
+    load_lens(lens, name);
+    if (glint_projection_of(&p, lens, miss_deg, &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+    return p;
+}
+
+/* A view without a projection is that of a pinhole, to the bit. */
+static void zeros_are_tangents(void **state)
+{
+    const struct glint_projection none = {.reach = 0};
+
+    (void)state;
+    for (int deg = 0; deg < 90; deg++) {
+        const double tangent = glint_sin_deg(deg) / glint_cos_deg(deg);
+
+        assert_true(glint_projection_rho(&none, deg) == tangent);
+        assert_true(glint_projection_deg(&none, tangent) ==
+                    atan(tangent) * (180 / GLINT_PI));
+    }
+}
+
+/* Angles to places and back, within and beyond what was traced. */
+static void there_and_back(void **state)
+{
+    static const char *const names[] = {"heliar-tronnier", "phone/phone-six",
+                                        "wide/fisheye-nikkor-6",
+                                        "wide/retrofocus-nikkor-28"};
+    struct glint_prescription lens;
+    double miss_deg;
+
+    (void)state;
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        const struct glint_projection p =
+            projection_of(&lens, names[k], &miss_deg);
+        double before = -1;
+
+        for (int i = 0; i <= 200; i++) {
+            const double rho = 0.01 * i * p.reach;
+            const double deg = glint_projection_deg(&p, rho);
+
+            assert_true(deg > before || deg >= 89.9);
+            before = deg;
+            if (deg < 89.9)
+                assert_near(glint_projection_rho(&p, deg), rho, 1e-9);
+        }
+    }
+}
+
+/* Lights at a pixel go back to it. */
+static void pixels_go_back(void **state)
+{
+    struct glint_prescription lens;
+    struct glint_view view;
+    double miss_deg;
+
+    (void)state;
+    view = glint_view_fit(1920, 1080, 18.58, 13.93);
+    view.projection = projection_of(&lens, "wide/fisheye-nikkor-6", &miss_deg);
+    for (int k = 0; k < 50; k++) {
+        const double at[2] = {700 + 10.3 * k, 100 + 17.1 * k};
+        struct glint_lamp lamp;
+        double x, y;
+
+        glint_view_to_angles(&view, 6.296, at[0], at[1], &lamp);
+        glint_view_to_pixel(&view, 6.296, &lamp, &x, &y);
+        assert_near(x, at[0], 1e-6);
+        assert_near(y, at[1], 1e-6);
+    }
+}
+
+/* What polynomials miss, and what kind of lens each is. */
+static void lenses_are_as_known(void **state)
+{
+    struct glint_prescription lens;
+    struct glint_projection p;
+    double miss_deg;
+
+    (void)state;
+    /* Equidistant to a tenth, as fisheyes of 220 degrees are. */
+    p = projection_of(&lens, "wide/fisheye-nikkor-6", &miss_deg);
+    assert_true(miss_deg < 0.1);
+    for (int deg = 10; deg <= 80; deg += 10)
+        assert_near(glint_projection_rho(&p, deg) / (deg * GLINT_PI / 180), 1,
+                    0.1);
+    /* A camera lens has a percent of distortion or so. */
+    p = projection_of(&lens, "normal/double-gauss-nikkor-50", &miss_deg);
+    assert_true(miss_deg < 0.005);
+    assert_near(glint_projection_rho(&p, 20) / tan(20 * GLINT_PI / 180), 1,
+                0.03);
+    assert_true(glint_projection_rho(&p, 20) != tan(20 * GLINT_PI / 180));
+}
+
+/* Chief rays between the whole degrees that were fitted. */
+static void between_degrees(void **state)
+{
+    const double degrees[] = {3.5, 11.5, 19.5};
+    struct glint_prescription lens;
+    struct glint_optics optics;
+    struct glint_path path;
+    double miss_deg;
+    const struct glint_projection p =
+        projection_of(&lens, "heliar-tronnier", &miss_deg);
+
+    (void)state;
+    glint_optics_of(&lens, &optics);
+    glint_path_init(&path, &lens, NULL, 588);
+    for (int k = 0; k < 3; k++) {
+        const double d[3] = {glint_sin_deg(degrees[k]), 0,
+                             glint_cos_deg(degrees[k])};
+        double x = 0, before = 0, stop = 0;
+        struct glint_ray ray;
+
+        /* The secant method, from the middle of the front. */
+        for (int i = 0; i < 20; i++) {
+            const double now = x;
+
+            if (glint_trace(&path, x, 0, d, &ray, NULL) != GLINT_RAY_OK)
+                fail_msg("%g degrees: a ray is lost", degrees[k]);
+            if (fabs(ray.stop_x_mm) < 1e-12)
+                break;
+            x = i ? x - ray.stop_x_mm * (x - before) / (ray.stop_x_mm - stop)
+                  : x - 0.1;
+            before = now;
+            stop = ray.stop_x_mm;
+        }
+        assert_near(glint_projection_deg(&p, ray.sensor_x_mm / optics.focal_mm),
+                    degrees[k], 0.01);
+    }
+}
+
+static void others_are_refused(void **state)
+{
+    struct glint_prescription lens;
+    struct glint_projection p;
+    struct glint_error error = {""};
+    double miss_deg;
+
+    (void)state;
+    load_lens(&lens, "anamorphic/anamorphic-schneider");
+    assert_int_equal(glint_projection_of(&p, &lens, &miss_deg, &error),
+                     GLINT_E_LENS);
+    assert_non_null(strstr(error.text, "not symmetric"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(zeros_are_tangents),
+        cmocka_unit_test(there_and_back),
+        cmocka_unit_test(pixels_go_back),
+        cmocka_unit_test(lenses_are_as_known),
+        cmocka_unit_test(between_degrees),
+        cmocka_unit_test(others_are_refused),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
