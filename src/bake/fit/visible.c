@@ -55,7 +55,8 @@ void glint_visible_init(struct glint_visible *visible,
     visible->shaped = false;
     for (int k = 0; k < setup->lens->n_surfaces; k++)
         visible->shaped |= glint_surface_is_shaped(&setup->lens->surface[k]);
-    visible->shaped &= glint_prescription_is_round(setup->lens);
+    visible->shaped &=
+        visible->wide && glint_prescription_is_round(setup->lens);
     visible->wave_lo = 1e6 / (band_nm[1] * band_nm[1]);
     visible->wave_hi = 1e6 / (band_nm[0] * band_nm[0]);
     set_paths(visible);

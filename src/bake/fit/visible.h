@@ -38,9 +38,9 @@ struct glint_visible {
     bool
         wide; /* whether the lens opens wider than GLINT_WIDE: its rays come
                  near singularities, and the model serves much narrower stops */
-    /* Whether the lens is round and has surfaces that are no spheres, whose
-     * powers grow steeply: what cannot be fitted is hidden rather than halved,
-     * as that has no end. */
+    /* Whether the lens is round and wide and has surfaces that are no spheres,
+     * whose powers grow steeply: what cannot be fitted is hidden rather than
+     * halved, as that has no end. */
     bool shaped;
     double wave_lo, wave_hi;                     /* 1 / wavelength^2, um^-2 */
     struct glint_path path[GLINT_VISIBLE_WAVES]; /* paths at wavelengths from
