@@ -27,7 +27,8 @@ enum {
     LIKE_Q16 = 3 << 14,
     OPEN_Q16 = 1 << 15, /* a barrel through whose middle all light goes */
     MOST_HEAD = 28,
-    MOST_MOVE = 4 /* half widths that boxes may lie apart */
+    LATE_Q30 = 3 << 28, /* share of the way after which a barrel opens */
+    MOST_MOVE = 8       /* half widths that boxes may lie apart */
 };
 
 /* Returns X / 2^S, rounded, for any S of 0 or more. */
@@ -229,6 +230,7 @@ static void open_barrel(struct glint_transfer *t, int kind, int32_t share_q30)
 {
     const int up = 46 + t->exponent[kind];
 
+    share_q30 = share_q30 > LATE_Q30 ? 4 * (share_q30 - LATE_Q30) : 0;
     scale(t, kind, TRANSFER_ONE_Q30 - share_q30);
     t->of.table[kind][0][0] +=
         (int32_t)down((int64_t)OPEN_Q16 * share_q30, up > 0 ? up : 0);
