@@ -255,8 +255,8 @@ static int narrow(struct glint_transfer *t, struct extent *e)
         q_divide(old.u_half_q30 * (left + right - wide_q16), wide_q16));
     w->u_half_q30 =
         q_narrow(q_divide(old.u_half_q30 * (right - left), wide_q16));
-    w->v_to_q30 = old.v_from_q30 +
-                  q_narrow(q_divide(high_q30 * e->high_q16[1], high_q16));
+    w->v_to_q30 = q_narrow(old.v_from_q30 +
+                           q_divide(high_q30 * e->high_q16[1], high_q16));
     if (t->annulus || t->whole)
         w->v_from_q30 += q_narrow(q_divide(high_q30 * e->low_q16[1], high_q16));
     return 8 * (int64_t)w->u_half_q30 < 7 * (int64_t)old.u_half_q30 ||
@@ -281,8 +281,9 @@ int glint_window_find(struct glint_window_nodes *nodes,
         loosen(&e, 0, ACROSS - 1, 48);
         loosen(&e, 1, DOWN - 1, 24); /* The extent is half of the height, so a
                                         24th of it is a 48th of the whole. */
-        more = narrow(t, &e) && t->window.u_half_q30 > LEAST_HALF_Q30 &&
-               t->window.v_to_q30 - t->window.v_from_q30 > LEAST_HALF_Q30;
+        more =
+            narrow(t, &e) && t->window.u_half_q30 > LEAST_HALF_Q30 &&
+            (int64_t)t->window.v_to_q30 - t->window.v_from_q30 > LEAST_HALF_Q30;
     }
     return 1;
 }

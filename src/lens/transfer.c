@@ -62,10 +62,12 @@ static int64_t off_band(const struct glint_model_system *s, int32_t wave_q24)
 static int is_in_across(const struct glint_lens *lens,
                         const struct glint_model_system *s, int32_t y_q30)
 {
-    const int32_t *range_q30 = at(lens, s->knot_at);
+    const int32_t *range_q30;
 
-    return !glint_basis_is_lens(lens->header->basis) ||
-           (y_q30 >= range_q30[0] && y_q30 <= range_q30[1]);
+    if (!glint_basis_is_lens(lens->header->basis))
+        return 1; /* knot_at has not been checked then */
+    range_q30 = at(lens, s->knot_at);
+    return y_q30 >= range_q30[0] && y_q30 <= range_q30[1];
 }
 
 static const struct glint_model_system *
