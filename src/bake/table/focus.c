@@ -25,16 +25,16 @@ struct search {
 /* Moves the group, or all, by D towards the light. */
 static void advance(struct glint_prescription *lens, double d)
 {
-    const int first = lens->focus_first, n = lens->n_focus;
-    const int last = element_count(lens) - 1;
+    const int n = lens->n_focus, last = element_count(lens) - 1;
+    const int first = surface_element(lens, lens->focus_first);
 
     if (!n) {
         *glint_gap_of(lens, last) += d;
         return;
     }
     if (first > 0)
-        *glint_gap_of(lens, surface_element(lens, first) - 1) -= d;
-    *glint_gap_of(lens, surface_element(lens, first + n - 1)) += d;
+        *glint_gap_of(lens, first - 1) -= d;
+    *glint_gap_of(lens, first + n - 1) += d;
 }
 
 /* Returns how far the image lies behind where it is to be; NaN if the lens does

@@ -358,7 +358,7 @@ static bool read_shape(struct parser *p)
 
 static bool read_group(struct parser *p)
 {
-    if (p->in_group)
+    if (p->in_group || p->in_focus)
         return glint_text_fail(&p->text, p->word[GROUP],
                                "the group above has no end");
     p->in_group = true;

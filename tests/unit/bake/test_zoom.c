@@ -172,6 +172,30 @@ static void test_newton(void **state)
                 0.5 * optics.focal_mm);
 }
 
+/* A stop in front of the group that focuses keeps its distance to the sensor.
+ */
+static void test_front_stop(void **state)
+{
+    static const char text[] =
+        "name t\nfilm 36 24\nf-number 10\nstop 5 8\nfocus\n"
+        "surface 61.47 6 12 1.5168 64.17\nsurface -44.64 2.5 12 1.6727 32.2\n"
+        "surface -129.94 40 12 air\nend\n"
+        "surface 300 3 12 1.5168 64.17\nsurface flat 55 12 air\n";
+    struct glint_error error = {""};
+    struct glint_optics optics;
+    double before;
+
+    (void)state;
+    if (glint_prescription_parse(&single, text, strlen(text), "t.lens", &error))
+        fail_msg("%s", error.text);
+    glint_optics_of(&single, &optics);
+    before = optics.length_mm + single.stop_thickness_mm;
+    focus(&single, 3);
+    glint_optics_of(&single, &optics);
+    assert_true(single.stop_thickness_mm < 4.5);
+    assert_near(optics.length_mm + single.stop_thickness_mm, before, 1e-9);
+}
+
 /* -------------------------------------------------------------------- text */
 
 static void refuses(const char *body, const char *cause)
@@ -205,6 +229,8 @@ static void test_text(void **state)
     refuses("f-number 10\nfocal-length 31/99\n" FRONT "4/6" BACK,
             "focal-length is");
     refuses("f-number 10\nfocus\n" FRONT "4/6" BACK, "end it above");
+    refuses("f-number 10\nfocus\ngroup tilt 1 0\n" FRONT "4/6" BACK,
+            "t.lens:5:1: the group above has no end");
     refuses("f-number 10\nfocus\nend\n" FRONT "4/6" BACK, "no surface moves");
 }
 
@@ -232,9 +258,10 @@ static void test_refusals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_columns), cmocka_unit_test(test_between),
-        cmocka_unit_test(test_focus),   cmocka_unit_test(test_newton),
-        cmocka_unit_test(test_text),    cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_columns),    cmocka_unit_test(test_between),
+        cmocka_unit_test(test_focus),      cmocka_unit_test(test_newton),
+        cmocka_unit_test(test_front_stop), cmocka_unit_test(test_text),
+        cmocka_unit_test(test_refusals),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
