@@ -35,7 +35,9 @@ static const char help[] =
     "  --film WxH          film, mm (default: what the file's field says)\n"
     "  --f-number N        f-number (default: the file's)\n"
     "  --position N        of a zoom's positions, from 1 (default: the "
-    "first)\n";
+    "first)\n"
+    "  --lens KEY          of a file of several lenses (lentil's "
+    "lenses.json)\n";
 
 static const char help_end[] = COMMON_HELP;
 

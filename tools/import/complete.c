@@ -119,7 +119,7 @@ static bool stop_beside(struct imported *lens, int k)
     s->stop = false;
     stop.radius = 0;
     memset(&stop.shape, 0, sizeof stop.shape);
-    stop.thickness = behind ? s->thickness - off : -off;
+    stop.thickness = behind ? s->thickness - off : fabs(off);
     if (behind)
         s->thickness = off;
     else if (k > 0)

@@ -60,10 +60,11 @@ static bool copy_line(struct lines *l, char comment)
 /* Divides at each tab; words may be empty, but not all of them. */
 static void divide_at_tabs(struct lines *l)
 {
+    const bool said = *l->text != '\0';
     char *at = l->text;
 
     l->n = 0;
-    while (*l->text && l->n < LINE_WORDS) {
+    while (said && l->n < LINE_WORDS) {
         char *const tab = at + strcspn(at, "\t");
         char *end = tab;
         const bool more = *tab != '\0';

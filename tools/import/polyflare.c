@@ -117,7 +117,7 @@ static bool take_terms(struct polyflare *p, int k, struct imported_surface *s)
 
     for (int i = 0; i < 5; i++) {
         value[i] = strtod(at, &end);
-        if (end == at || *end != (i < 4 ? ',' : '\0'))
+        if (end == at || *end != (i < 4 ? ',' : '\0') || !isfinite(value[i]))
             return imported_fail(p->lens, p->lines.number,
                                  "'%.60s' is not #!aspheric=K,A4,A6,A8,A10",
                                  p->lines.word[k]);
