@@ -133,6 +133,9 @@ static int parse(struct tool *tool, int argc, char **argv, struct bake *b)
         return code;
     if (!b->output)
         return tool_usage(tool, "needs -o MODEL");
+    if (b->positions && b->zoom.is_zoomed)
+        return tool_usage(tool, "--positions are of the whole zoom: leave out "
+                                "--zoom");
     return -1;
 }
 
@@ -214,14 +217,19 @@ static int bake_positions(struct glint_output *out, struct tool *tool,
 {
     struct glint_bake_model model[GLINT_MAX_ZOOM_MODELS] = {{NULL, 0, 0}};
     struct glint_error error = {""};
+    struct tool_progress progress;
     enum glint_status status = GLINT_OK;
     const double start = tool_seconds();
     unsigned char *zoom = NULL;
     size_t bytes = 0;
 
     b->options.workers = tool->workers;
+    b->options.progress = tool_progress_show;
+    b->options.progress_ctx = &progress;
     for (int k = 0; k < b->positions && status == GLINT_OK; k++) {
+        tool_progress_start(&progress, tool, "bake");
         status = bake_position(b, lens, k, &model[k], &error);
+        tool_progress_end(&progress);
         if (status == GLINT_OK && !tool->quiet)
             fprintf(stderr, "glint bake: position %d of %d, %.0f s\n", k + 1,
                     b->positions, tool_seconds() - start);

@@ -122,6 +122,8 @@ static void json_systems(const struct glint_lens *lens)
 void model_json_info(const struct tool *tool, const struct model_file *model)
 {
     json_header(model);
+    if (model->zoom)
+        printf(", \"positions\": %d", model->zoom->n_models);
     if (tool->verbose)
         json_systems(&model->lens);
     printf("}\n");

@@ -37,6 +37,10 @@ static void print_header(const struct model_file *model)
            (unsigned long)model_ghost_count(&model->lens),
            (unsigned long)h->n_ghosts, (unsigned long)h->n_systems,
            model_mean_terms(&sum));
+    if (model->zoom)
+        printf("positions           %6d along the zoom; lengths and ghosts are "
+               "of the first\n",
+               model->zoom->n_models);
 }
 
 static void print_errors(const struct model_summary *sum)
@@ -214,7 +218,11 @@ static void print_bake(const struct tool *tool, const struct glint_lens *lens,
 
 void model_report_info(const struct tool *tool, const struct model_file *model)
 {
-    (tool->json ? model_json_info : print_info)(tool, model);
+    struct model_file shown = *model;
+
+    if (shown.zoom) /* between positions a lens has no systems to tell of */
+        shown.lens = shown.zoom->model[0];
+    (tool->json ? model_json_info : print_info)(tool, &shown);
 }
 
 void model_report_bake(const struct tool *tool, const struct glint_lens *lens,

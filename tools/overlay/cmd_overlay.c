@@ -318,7 +318,7 @@ void overlay_progress(const struct tool *tool, struct overlay *o)
 
 static void print_figures(const struct overlay *o)
 {
-    const int n = o->compositor.n_frames ? o->compositor.n_frames : 1;
+    const int drawn = overlay_drawn(o), n = drawn ? drawn : 1;
 
     fprintf(stderr,
             "%dx%d (find %.1f ms, flare %.1f ms), %d ghosts; flare memory %zu "
@@ -333,14 +333,13 @@ static void print_json(const struct overlay *o,
                        const struct overlay_light *light)
 {
     const double seconds = tool_seconds() - o->started;
-    const int n = o->compositor.n_frames ? o->compositor.n_frames : 1;
+    const int drawn = overlay_drawn(o), n = drawn ? drawn : 1;
 
     printf("{\"frames\": %d, \"ms\": %.3f, \"fps\": %.2f, "
            "\"find_ms\": %.3f, \"flare_ms\": %.3f, \"most_lights\": %d, "
            "\"reused\": %d, ",
-           o->compositor.n_frames, 1e3 * seconds,
-           o->compositor.n_frames / seconds, o->find_ms / n, o->flare_ms / n,
-           o->most_lights, o->n_reused);
+           drawn, 1e3 * seconds, drawn / seconds, o->find_ms / n,
+           o->flare_ms / n, o->most_lights, o->n_reused);
     overlay_json(o, light, stdout);
     settings_json(&o->compositor.report);
     printf("}\n");

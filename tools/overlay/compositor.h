@@ -267,9 +267,9 @@ enum compositor_option_code {
     "                      above 0 and up to a million\n"                      \
     "  --keys FILE         key frames, CSV: frame, and of exposure, "          \
     "strength,\n"                                                              \
-    "                      gain, starburst, f-number, turn, round, "           \
+    "                      gain, starburst, f-number, turn, round, zoom, "     \
     "x,y[,ev];\n"                                                              \
-    "                      even between rows, an empty field is no key\n"      \
+    "                      even between rows, empty is no key\n"               \
     "  --still PX          of videos: while lamps move by less, ghosts are "   \
     "drawn by\n"                                                               \
     "                      the rays of before, with the light of now\n"        \

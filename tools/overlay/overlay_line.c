@@ -47,16 +47,24 @@ static bool measure_layer(struct compositor *compositor,
     return is_drawn;
 }
 
+int overlay_drawn(const struct overlay *o)
+{
+    const int n = o->compositor.n_frames;
+
+    return n > o->first ? n - o->first : 0;
+}
+
 struct overlay_light overlay_light(struct overlay *o)
 {
     struct compositor *compositor = &o->compositor;
-    const int n = compositor->n_frames;
+    const int n = overlay_drawn(o);
     struct overlay_light light = {true, o->peak, n ? o->mean_sum / n : 0};
     struct glint_response_light drawn;
 
     if (is_part(compositor) && compositor->n_lamps > 0 &&
         compositor->strength.scale > 0) {
-        light.is_known = n == 1 && measure_layer(compositor, &drawn);
+        light.is_known =
+            compositor->n_frames == 1 && measure_layer(compositor, &drawn);
         if (light.is_known) {
             light.peak = glint_largest_channel(drawn.peak);
             light.mean = glint_largest_channel(drawn.mean);
@@ -239,7 +247,7 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
 {
     const struct compositor *compositor = &o->compositor;
     const double seconds = tool_seconds() - o->started;
-    const int n = compositor->n_frames;
+    const int n = overlay_drawn(o);
 
     fprintf(to, "%s: ", o->output);
     if (n != 1)
