@@ -26,6 +26,7 @@ enum {
      * their coefficients, _q16: 1 is at the rim */
     LIKE_Q16 = 3 << 14,
     OPEN_Q16 = 1 << 15, /* a barrel through whose middle all light goes */
+    LEAST_UP = 16,      /* of units of 2^-30 or more, in which that is 2^29 */
     MOST_HEAD = 28,
     LATE_Q30 = 3 << 28, /* share of the way after which a barrel opens */
     MOST_MOVE = 8       /* half widths that boxes may lie apart */
@@ -225,15 +226,17 @@ void glint_blend_fade(struct glint_transfer *t, int32_t share_q30)
 /* ----------------------------------------------------------------- barrels */
 
 /* Opens barrel KIND as far as SHARE says: to a mean of it and of a barrel
- * through whose middle all goes. */
+ * through whose middle all goes. One whose unit is so fine that sums would not
+ * stay below 2^30, which no barrel's is, is left as it is. */
 static void open_barrel(struct glint_transfer *t, int kind, int32_t share_q30)
 {
     const int up = 46 + t->exponent[kind];
 
+    if (up < LEAST_UP)
+        return;
     share_q30 = share_q30 > LATE_Q30 ? 4 * (share_q30 - LATE_Q30) : 0;
     scale(t, kind, TRANSFER_ONE_Q30 - share_q30);
-    t->of.table[kind][0][0] +=
-        (int32_t)down((int64_t)OPEN_Q16 * share_q30, up > 0 ? up : 0);
+    t->of.table[kind][0][0] += (int32_t)down((int64_t)OPEN_Q16 * share_q30, up);
 }
 
 /* Returns the sum of the differences of the coefficients of barrel KIND and O,
