@@ -372,12 +372,15 @@ int glint_transfer_mix(struct glint_transfer *transfer,
 {
     const struct glint_model_system *const system =
         glint_transfer_system(lens, ghost, sine_q30, wave_q24);
-    const struct glint_model_output *o = at(lens, system->output_at);
+    const struct glint_model_output *o;
     struct glint_zoom_mix blend = {.to = transfer, .part_q30 = part_q30};
     int32_t box[3] = {transfer->box[0], transfer->box[1], transfer->box[2]};
     const int32_t box_exponent = transfer->box_exponent;
     struct setting set;
 
+    if (!system)
+        return 0;
+    o = at(lens, system->output_at);
     if (o[GLINT_OUT_ENERGY].roots != transfer->roots)
         return 0;
     settle(&set, lens, system, sine_q30, 0, wave_q24);

@@ -37,7 +37,7 @@ static const char help[] =
     "\n"
     "  -o, --output MODEL\n"
     "                    - is standard output; no report then\n"
-    "  --f-number N      stop the lens to f/N first\n" COATING_HELP
+    "  --f-number N      stop the lens to f/N first\n" ZOOM_HELP COATING_HELP
     "  --basis B         auto: place in the ghost's own box, zones of angles "
     "as\n"
     "                    needed (default)\n"
@@ -60,6 +60,7 @@ struct bake {
     double f_number;
     int positions; /* of a zoom; 0: one model */
     struct glint_bake_options options;
+    struct tool_progress progress;
 };
 
 static int take(struct tool *tool, struct bake *b, int c, const char *name)
@@ -156,7 +157,6 @@ static int bake_into(struct glint_output *out, struct tool *tool,
                      struct bake *b, const struct glint_prescription *lens)
 {
     struct glint_error error = {""};
-    struct tool_progress progress;
     struct glint_bake_report r;
     unsigned char *model = NULL;
     const double start = tool_seconds();
@@ -166,10 +166,10 @@ static int bake_into(struct glint_output *out, struct tool *tool,
 
     b->options.workers = tool->workers;
     b->options.progress = tool_progress_show;
-    b->options.progress_ctx = &progress;
-    tool_progress_start(&progress, tool, "bake");
+    b->options.progress_ctx = &b->progress;
+    tool_progress_start(&b->progress, tool, "bake");
     status = glint_bake(lens, &b->options, &model, &bytes, &r, &error);
-    tool_progress_end(&progress);
+    tool_progress_end(&b->progress);
     if (status == GLINT_OK)
         status = glint_output_finish(out, model, bytes, &error);
     else
@@ -217,7 +217,6 @@ static int bake_positions(struct glint_output *out, struct tool *tool,
 {
     struct glint_bake_model model[GLINT_MAX_ZOOM_MODELS] = {{NULL, 0, 0}};
     struct glint_error error = {""};
-    struct tool_progress progress;
     enum glint_status status = GLINT_OK;
     const double start = tool_seconds();
     unsigned char *zoom = NULL;
@@ -225,11 +224,11 @@ static int bake_positions(struct glint_output *out, struct tool *tool,
 
     b->options.workers = tool->workers;
     b->options.progress = tool_progress_show;
-    b->options.progress_ctx = &progress;
+    b->options.progress_ctx = &b->progress;
     for (int k = 0; k < b->positions && status == GLINT_OK; k++) {
-        tool_progress_start(&progress, tool, "bake");
+        tool_progress_start(&b->progress, tool, "bake");
         status = bake_position(b, lens, k, &model[k], &error);
-        tool_progress_end(&progress);
+        tool_progress_end(&b->progress);
         if (status == GLINT_OK && !tool->quiet)
             fprintf(stderr, "glint bake: position %d of %d, %.0f s\n", k + 1,
                     b->positions, tool_seconds() - start);

@@ -110,7 +110,7 @@ static bool take(struct overlay *o, int option, const char *value)
         return take_frames(o, value);
     case 'W':
         return tool_integer(value, 0, INT_MAX, &o->warm_up);
-    case 'S':
+    case 'B':
         return o->lists_shots = true;
     default: /* 'n' */
         return tool_integer(value, 0, 1000000000, &o->start_number);
@@ -125,7 +125,7 @@ static const struct option options[] = {
     {"jpeg-quality", required_argument, NULL, 'Q'},
     {"frames", required_argument, NULL, 'F'},
     {"warm-up", required_argument, NULL, 'W'},
-    {"list-shots", no_argument, NULL, 'S'},
+    {"list-shots", no_argument, NULL, 'B'},
     {"encode", required_argument, NULL, 'e'},
     {"memory", required_argument, NULL, 'm'},
     {"layers", required_argument, NULL, 'L'},
@@ -152,7 +152,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
             o->output = optarg;
         else if (c == 'e')
             o->encode = optarg;
-        else if (strchr("rxnQmLTFWS", c)) {
+        else if (strchr("rxnQmLTFWB", c)) {
             if (!take(o, c, optarg))
                 return tool_refuse(tool, options[index].name, optarg);
         } else if ((code = tool_option(tool, c, optarg)) >= 0)
