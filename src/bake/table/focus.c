@@ -59,7 +59,7 @@ static double off(const struct search *s, double d)
 static bool find(const struct search *s, double side, double *d)
 {
     struct glint_optics optics;
-    double low = 0.0, at = off(s, 0.0), high, step;
+    double at = off(s, 0.0), step;
 
     glint_optics_of(s->lens, &optics);
     step = side * STEP * optics.focal_mm;
@@ -69,8 +69,8 @@ static bool find(const struct search *s, double side, double *d)
         if (!isfinite(now) || !isfinite(at))
             return false;
         if ((now < 0.0) != (at < 0.0)) {
-            high = k * step;
-            low = high - step;
+            double high = k * step, low = high - step;
+
             for (int i = 0; i < HALVINGS; i++) {
                 const double middle = 0.5 * (low + high);
 
