@@ -19,7 +19,7 @@
 /* Returns why a model is refused; NULL: it is accepted. */
 static const char *reason_of(const void *data, size_t bytes)
 {
-    struct glint_lens lens = {NULL, NULL, NULL};
+    struct glint_lens lens = {0};
     const char *reason = NULL;
 
     if (glint_lens_open(&lens, data, bytes, &reason) == GLINT_OK) {
