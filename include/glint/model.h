@@ -257,7 +257,13 @@ struct glint_zoom_model {
     uint32_t at, bytes; /* place and size of the model in the file */
 };
 
+struct glint_transfer;
 struct glint_zoom_lens {
+    /* Does as glint_transfer_init() between positions, and is linked by who
+     * zooms alone. */
+    int (*transfer)(struct glint_transfer *transfer,
+                    const struct glint_zoom_lens *zoom, int ghost,
+                    int32_t sine_q30, int32_t wave_q24);
     struct glint_lens lens; /* the lens where the zoom is set */
     int n_models;
     struct glint_lens model[GLINT_MAX_ZOOM_MODELS];

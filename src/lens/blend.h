@@ -46,9 +46,4 @@ void glint_blend_end(const struct glint_zoom_mix *blend);
 /* Dims the energy of T to SHARE. */
 void glint_blend_fade(struct glint_transfer *t, int32_t share_q30);
 
-/* Does what glint_transfer_init() does, for a zoom. */
-int glint_zoom_transfer(struct glint_transfer *transfer,
-                        const struct glint_zoom_lens *zoom, int ghost,
-                        int32_t sine_q30, int32_t wave_q24);
-
 #endif

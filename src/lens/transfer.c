@@ -344,8 +344,8 @@ int glint_transfer_init_at(struct glint_transfer *transfer,
     struct setting set;
 
     if (lens->zoom) /* whose models are of round lenses */
-        return glint_zoom_transfer(transfer, lens->zoom, ghost, sine_q30,
-                                   wave_q24);
+        return lens->zoom->transfer(transfer, lens->zoom, ghost, sine_q30,
+                                    wave_q24);
     system = find_system(lens, ghost, d.x_q30, d.y_q30, wave_q24);
     if (!system)
         return 0;

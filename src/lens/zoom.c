@@ -172,6 +172,83 @@ static const char *check_pair(const struct glint_lens *a,
     return NULL;
 }
 
+/* ---------------------------------------------------------------- transfers */
+
+/* Returns the polynomials' annulus of entry E on SIDE at this angle and
+ * wavelength, -1 if it is dark there. */
+static int annulus_of(const struct glint_zoom_lens *z, int e, int side,
+                      int32_t sine_q30, int32_t wave_q24)
+{
+    const int at = z->place[side][e];
+    const struct glint_model_system *const s =
+        at < 0 ? NULL
+               : glint_transfer_system(&z->model[z->below + side], at, sine_q30,
+                                       wave_q24);
+
+    return s ? s->annulus : -1;
+}
+
+/* Compares how both sides divide the pupil of ghost G: sets LIT to whether any
+ * of it lets light through on each side; returns whether they are alike. */
+static int is_alike(const struct glint_zoom_lens *z, int g, int32_t sine_q30,
+                    int32_t wave_q24, int lit[2])
+{
+    int alike = 1;
+
+    lit[0] = lit[1] = 0;
+    for (int q = z->part_from[g] - 1; q < z->part_from[g + 1]; q++) {
+        const int e = q < z->part_from[g] ? g : q;
+        const int a = annulus_of(z, e, 0, sine_q30, wave_q24);
+        const int b = annulus_of(z, e, 1, sine_q30, wave_q24);
+
+        lit[0] |= a >= 0;
+        lit[1] |= b >= 0;
+        alike &= a == b;
+    }
+    return alike;
+}
+
+/* Sets TRANSFER to entry E of SIDE alone. */
+static int of_side(struct glint_transfer *transfer,
+                   const struct glint_zoom_lens *z, int e, int side,
+                   int32_t sine_q30, int32_t wave_q24)
+{
+    return z->place[side][e] >= 0 &&
+           glint_transfer_init(transfer, &z->model[z->below + side],
+                               z->place[side][e], sine_q30, wave_q24);
+}
+
+static int transfer_between(struct glint_transfer *transfer,
+                            const struct glint_zoom_lens *zoom, int ghost,
+                            int32_t sine_q30, int32_t wave_q24)
+{
+    const struct glint_zoom_lens *const z = zoom;
+    const int nearer = z->part_q30 >= TRANSFER_ONE_Q30 / 2;
+    int lit[2];
+    int alike;
+
+    if (z->part_q30 <= 0 || z->part_q30 >= TRANSFER_ONE_Q30)
+        return of_side(transfer, z, ghost, z->part_q30 > 0, sine_q30, wave_q24);
+    alike = is_alike(z, z->whole[ghost], sine_q30, wave_q24, lit);
+    if (!lit[0] || !lit[1]) {
+        const int side = lit[1];
+
+        if (!of_side(transfer, z, ghost, side, sine_q30, wave_q24))
+            return 0;
+        glint_blend_fade(transfer,
+                         side ? z->part_q30 : TRANSFER_ONE_Q30 - z->part_q30);
+        return 1;
+    }
+    if (!alike)
+        return of_side(transfer, z, ghost, nearer, sine_q30, wave_q24);
+    if (!of_side(transfer, z, ghost, 0, sine_q30, wave_q24))
+        return 0;
+    return glint_transfer_mix(transfer, &z->model[z->below + 1],
+                              z->place[1][ghost], sine_q30, wave_q24,
+                              z->part_q30) ||
+           !nearer || of_side(transfer, z, ghost, 1, sine_q30, wave_q24);
+}
+
 /* ------------------------------------------------------------------ opening */
 
 void glint_zoom_set(struct glint_zoom_lens *zoom, int32_t along_q30)
@@ -225,6 +302,7 @@ enum glint_status glint_zoom_join(struct glint_zoom_lens *zoom,
     z->header.n_ghosts = (uint32_t)z->part_from[n_whole(&model[0])];
     z->header.n_parts = z->header.n_ghosts - (uint32_t)n_whole(&model[0]);
     z->header.n_systems = 0;
+    z->transfer = transfer_between;
     z->lens = (struct glint_lens){&z->header, z->ghost, NULL, z};
     glint_zoom_set(z, 0);
     return GLINT_OK;
@@ -264,81 +342,4 @@ enum glint_status glint_zoom_open(struct glint_zoom_lens *zoom,
     }
     return glint_zoom_join(zoom, zoom->model, zoom->along_q30, (int)h->n_models,
                            reason);
-}
-
-/* ---------------------------------------------------------------- transfers */
-
-/* Returns the polynomials' annulus of entry E on SIDE at this angle and
- * wavelength, -1 if it is dark there. */
-static int annulus_of(const struct glint_zoom_lens *z, int e, int side,
-                      int32_t sine_q30, int32_t wave_q24)
-{
-    const int at = z->place[side][e];
-    const struct glint_model_system *const s =
-        at < 0 ? NULL
-               : glint_transfer_system(&z->model[z->below + side], at, sine_q30,
-                                       wave_q24);
-
-    return s ? s->annulus : -1;
-}
-
-/* Compares how both sides divide the pupil of ghost G: sets LIT to whether any
- * of it lets light through on each side; returns whether they are alike. */
-static int is_alike(const struct glint_zoom_lens *z, int g, int32_t sine_q30,
-                    int32_t wave_q24, int lit[2])
-{
-    int alike = 1;
-
-    lit[0] = lit[1] = 0;
-    for (int q = z->part_from[g] - 1; q < z->part_from[g + 1]; q++) {
-        const int e = q < z->part_from[g] ? g : q;
-        const int a = annulus_of(z, e, 0, sine_q30, wave_q24);
-        const int b = annulus_of(z, e, 1, sine_q30, wave_q24);
-
-        lit[0] |= a >= 0;
-        lit[1] |= b >= 0;
-        alike &= a == b;
-    }
-    return alike;
-}
-
-/* Sets TRANSFER to entry E of SIDE alone. */
-static int of_side(struct glint_transfer *transfer,
-                   const struct glint_zoom_lens *z, int e, int side,
-                   int32_t sine_q30, int32_t wave_q24)
-{
-    return z->place[side][e] >= 0 &&
-           glint_transfer_init(transfer, &z->model[z->below + side],
-                               z->place[side][e], sine_q30, wave_q24);
-}
-
-int glint_zoom_transfer(struct glint_transfer *transfer,
-                        const struct glint_zoom_lens *zoom, int ghost,
-                        int32_t sine_q30, int32_t wave_q24)
-{
-    const struct glint_zoom_lens *const z = zoom;
-    const int nearer = z->part_q30 >= TRANSFER_ONE_Q30 / 2;
-    int lit[2];
-    int alike;
-
-    if (z->part_q30 <= 0 || z->part_q30 >= TRANSFER_ONE_Q30)
-        return of_side(transfer, z, ghost, z->part_q30 > 0, sine_q30, wave_q24);
-    alike = is_alike(z, z->whole[ghost], sine_q30, wave_q24, lit);
-    if (!lit[0] || !lit[1]) {
-        const int side = lit[1];
-
-        if (!of_side(transfer, z, ghost, side, sine_q30, wave_q24))
-            return 0;
-        glint_blend_fade(transfer,
-                         side ? z->part_q30 : TRANSFER_ONE_Q30 - z->part_q30);
-        return 1;
-    }
-    if (!alike)
-        return of_side(transfer, z, ghost, nearer, sine_q30, wave_q24);
-    if (!of_side(transfer, z, ghost, 0, sine_q30, wave_q24))
-        return 0;
-    return glint_transfer_mix(transfer, &z->model[z->below + 1],
-                              z->place[1][ghost], sine_q30, wave_q24,
-                              z->part_q30) ||
-           !nearer || of_side(transfer, z, ghost, 1, sine_q30, wave_q24);
 }
