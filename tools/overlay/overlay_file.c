@@ -98,38 +98,72 @@ void overlay_file_close(struct overlay_file *file)
 
 /* ------------------------------------------------------------------ drawing */
 
-/* Returns whether IMAGE is a photograph without colour: every pixel is grey,
- * and a tenth of them are neither nearly black nor nearly white. A drawing of
- * white on black is none, so that a flare on it has its colours. */
+/* Codes that channels of a grey pixel differ by after a JPEG file or a profile:
+ * of nearly all pixels, and of any. */
+enum { NEARLY_GREY = 2, AT_MOST_GREY = 8 };
+
+static int spread(const uint8_t px[3])
+{
+    const int low = px[0] < px[1] ? px[0] : px[1];
+    const int high = px[0] < px[1] ? px[1] : px[0];
+
+    return (px[2] > high ? px[2] : high) - (px[2] < low ? px[2] : low);
+}
+
+/* Returns whether IMAGE is a photograph without colour: every pixel is grey, 99
+ * of 100 nearly exactly, and a tenth of them are neither nearly black nor
+ * nearly white. A drawing of white on black is none, so that a flare on it has
+ * its colours. */
 static bool is_monochrome(const struct glint_image *image)
 {
-    int64_t n = 0;
+    const int64_t all = (int64_t)image->width * image->height;
+    int64_t n = 0, n_tinged = 0;
 
     for (int y = 0; y < image->height; y++) {
         const uint8_t *px = image->plane[0] + y * image->stride_bytes[0];
 
         for (int x = 0; x < image->width; x++, px += 3) {
-            if (px[0] != px[1] || px[0] != px[2])
+            const int codes = spread(px);
+
+            if (codes > AT_MOST_GREY)
                 return false;
-            n += px[0] >= 8 && px[0] < 248;
+            n_tinged += codes > NEARLY_GREY;
+            n += px[1] >= 8 && px[1] < 248;
         }
     }
-    return 10 * n >= (int64_t)image->width * image->height;
+    return 10 * n >= all && 100 * n_tinged <= all;
 }
 
-/* Copies the grey rows of FROM to all channels of TO, or if TO is grey the
- * first channel of FROM to it. */
-static void copy_grey(const struct glint_image *to,
-                      const struct glint_image *from)
+/* Copies the green channel of FROM to GREY. */
+static void copy_green(const struct glint_image *grey,
+                       const struct glint_image *from)
 {
-    const int wide = to->format == GLINT_GREY ? 1 : 3;
+    for (int y = 0; y < from->height; y++) {
+        uint8_t *to = grey->plane[0] + y * grey->stride_bytes[0];
+        const uint8_t *px = from->plane[0] + y * from->stride_bytes[0];
 
-    for (int y = 0; y < to->height; y++) {
-        uint8_t *px = to->plane[0] + y * to->stride_bytes[0];
-        const uint8_t *at = from->plane[0] + y * from->stride_bytes[0];
+        for (int x = 0; x < from->width; x++, px += 3)
+            to[x] = px[1];
+    }
+}
 
-        for (int x = 0; x < to->width; x++, px += wide, at += 4 - wide)
-            memset(px, *at, (size_t)wide);
+/* Adds to all channels of IMAGE by how much GREY differs from its green one. */
+static void add_grey(const struct glint_image *image,
+                     const struct glint_image *grey)
+{
+    for (int y = 0; y < image->height; y++) {
+        uint8_t *px = image->plane[0] + y * image->stride_bytes[0];
+        const uint8_t *from = grey->plane[0] + y * grey->stride_bytes[0];
+
+        for (int x = 0; x < image->width; x++, px += 3) {
+            const int more = from[x] - px[1];
+
+            for (int c = 0; c < 3; c++) {
+                const int sum = px[c] + more;
+
+                px[c] = (uint8_t)(sum < 0 ? 0 : sum > 255 ? 255 : sum);
+            }
+        }
     }
 }
 
@@ -151,9 +185,9 @@ static enum glint_status draw_grey(struct overlay_file *f,
         return GLINT_E_MEMORY;
     glint_image_place(&grey, mem);
     grey.range = GLINT_RANGE_FULL;
-    copy_grey(&grey, &f->image);
+    copy_green(&grey, &f->image);
     status = compositor_draw(compositor, &grey, elapsed_us);
-    copy_grey(&f->image, &grey);
+    add_grey(&f->image, &grey);
     free(mem);
     return status;
 }
