@@ -168,9 +168,15 @@ int synth_set_keep(const struct tool *tool, const struct synth_set *set,
 
 bool synth_set_has(const struct synth_set *set, int number)
 {
+    const struct synth_file *const file = set->layout->file;
     char path[SYNTH_PATH_BYTES];
+    bool is_there = line_path(path, set, number) && access(path, F_OK) == 0;
 
-    return line_path(path, set, number) && access(path, F_OK) == 0;
+    for (int i = 0; i < SYNTH_MAX_FILES && file[i].folder && is_there; i++)
+        is_there =
+            synth_layout_path(path, set->folder, &file[i], number, set->type) &&
+            access(path, F_OK) == 0;
+    return is_there;
 }
 
 /* Writes FILE of ITEM; RGB is room for its light. */

@@ -9,8 +9,9 @@
  *     synth_set_end(&tool, &set);                manifests
  *
  * Every file is written beside its place and moved there when it is whole. The
- * item's line, items/NUMBER.json, comes last: where it is, the item is. A
- * manifest is all lines in their order, and is there once all items are. */
+ * item's line, items/NUMBER.json, comes last. An item is there if its line and
+ * all its pictures are. A manifest is all lines in their order, and is there
+ * once all items are. */
 #ifndef GLINT_TOOLS_SYNTH_SET_H
 #define GLINT_TOOLS_SYNTH_SET_H
 
