@@ -93,7 +93,8 @@ static double focal_at(struct glint_zoom_lens *z, int32_t along_q30)
     return model_real_of(z->header.focal_mm);
 }
 
-bool model_file_zoom(struct model_file *model, double zoom)
+enum glint_status model_file_zoom(struct model_file *model, double zoom,
+                                  struct glint_error *error)
 {
     const int32_t whole_q30 = INT32_C(1) << 30;
     /* focal lengths on barrels are rounded */
@@ -104,15 +105,17 @@ bool model_file_zoom(struct model_file *model, double zoom)
     int32_t low = 0, high = whole_q30;
 
     glint_zoom_set(z, before_q30);
-    if (zoom <= 1) {
-        if (!(zoom >= 0))
-            return false;
+    if (zoom >= 0 && zoom <= 1) {
         glint_zoom_set(z, (int32_t)lrint(zoom * whole_q30));
-        return true;
+        return GLINT_OK;
     }
     if (!(zoom * slack >= fmin(first, last) &&
-          zoom <= fmax(first, last) * slack))
-        return false;
+          zoom <= fmax(first, last) * slack)) {
+        snprintf(error->text, sizeof error->text,
+                 "%s zooms from %.4g mm to %.4g mm, not to %.4g mm",
+                 z->header.name, first, last, zoom);
+        return GLINT_E_ARGUMENT;
+    }
     while (high - low > 1) {
         const int32_t middle = low + (high - low) / 2;
 
@@ -123,7 +126,7 @@ bool model_file_zoom(struct model_file *model, double zoom)
     }
     glint_zoom_set(
         z, fabs(zoom - first) < fabs(zoom - last) && low == 0 ? 0 : high);
-    return true;
+    return GLINT_OK;
 }
 
 void model_file_close(struct model_file *model)

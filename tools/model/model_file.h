@@ -36,8 +36,10 @@ int tool_model(const struct tool *tool, const char *path,
                struct model_file *model);
 
 /* Sets MODEL, of a zoom, to ZOOM: mm of focal length, or 0 to 1 along its way.
- * Returns false, and does nothing, if it does not go there. */
-bool model_file_zoom(struct model_file *model, double zoom);
+ * GLINT_E_ARGUMENT: it does not go there; ERROR says how far it does, and MODEL
+ * stays as it was. */
+enum glint_status model_file_zoom(struct model_file *model, double zoom,
+                                  struct glint_error *error);
 
 /* Closes MODEL, unless it is closed already. */
 void model_file_close(struct model_file *model);

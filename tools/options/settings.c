@@ -114,12 +114,14 @@ static int zoom_model(const struct tool *tool, struct settings *settings,
                       const char *path)
 {
     const struct zoom_option *const o = &settings->zoom;
+    struct glint_error error = {""};
 
     if (!settings->model.zoom || o->is_focused)
         return zoom_option_of_model(tool, o, path);
-    return !o->is_zoomed || model_file_zoom(&settings->model, o->zoom)
+    return !o->is_zoomed || model_file_zoom(&settings->model, o->zoom,
+                                            &error) == GLINT_OK
                ? EXIT_OK
-               : tool_usage(tool, "%s does not zoom to %g", path, o->zoom);
+               : tool_usage(tool, "%s: %s", path, error.text);
 }
 
 static int open_model(const struct tool *tool, struct settings *settings,
@@ -182,11 +184,21 @@ enum glint_status settings_stop(struct settings *settings, double f_number,
 enum glint_status settings_zoom(struct settings *settings, double zoom,
                                 struct glint_error *error)
 {
-    if (!settings->model.zoom || !model_file_zoom(&settings->model, zoom))
-        return glint_error_report(error, GLINT_E_ARGUMENT, settings->lens.name,
-                                  "has no model of a zoom that goes to %g",
-                                  zoom);
-    return make_setup(settings, error);
+    enum glint_status status;
+
+    if (!settings->model.zoom)
+        return glint_error_report(
+            error, GLINT_E_ARGUMENT, settings->lens.name,
+            settings->rays == SETTINGS_RAYS_EXACT
+                ? "exact rays do not zoom from frame to frame"
+            : settings->lens.zoom.n_positions
+                ? "its model is of one position: zoom one that 'glint bake "
+                  "--positions' made"
+            : settings->lens.n_surfaces
+                ? "does not zoom: its table has one position"
+                : "does not zoom: its model is of one position");
+    status = model_file_zoom(&settings->model, zoom, error);
+    return status == GLINT_OK ? make_setup(settings, error) : status;
 }
 
 int settings_refuse_stop(const struct tool *tool, const struct settings *s,
