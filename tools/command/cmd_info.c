@@ -69,11 +69,13 @@ static void print_json(const struct info *info)
            "\"entrance_pupil_radius_mm\": %.6f, \"entrance_pupil_z_mm\": %.6f, "
            "\"stop_radius_mm\": %.6f, \"f_number\": %g, "
            "\"widest_f_number\": %.4g, \"length_mm\": %.6f, "
-           "\"image_scale_mm\": %.6f, \"positions_mm\": ",
+           "\"image_scale_mm\": %.6f, \"squeeze\": %.6f, "
+           "\"focal_length_across_mm\": %.6f, \"positions_mm\": ",
            info->optics.focal_mm, info->optics.back_focal_mm,
            info->optics.entrance_radius_mm, info->optics.entrance_z_mm,
            info->optics.stop_radius_mm, info->lens.f_number, widest_of(info),
-           info->optics.length_mm, info->optics.scale_mm);
+           info->optics.length_mm, info->optics.scale_mm, info->optics.squeeze,
+           info->optics.focal_mm / info->optics.squeeze);
     for (int k = 0; k < info->lens.zoom.n_positions; k++)
         printf("%s%.6f", k ? ", " : "[", info->lens.zoom.focal_mm[k]);
     printf("%s, \"film_mm\": [%g, %g], \"surfaces\": %d, "
@@ -113,7 +115,11 @@ static void print_text(const struct info *info)
     const struct glint_optics *o = &info->optics;
 
     printf("%s\n%s\n\n", l->name, l->source);
-    printf("focal length        %10.3f mm\n", o->focal_mm);
+    printf("focal length        %10.3f mm", o->focal_mm);
+    if (!glint_prescription_is_round(l))
+        printf(" up and down, %.3f mm across: squeeze %.4g",
+               o->focal_mm / o->squeeze, o->squeeze);
+    printf("\n");
     print_moves(l, o);
     printf("back focal length   %10.3f mm\n", o->back_focal_mm);
     printf("entrance pupil      %10.3f mm radius, %.3f mm behind the front\n",

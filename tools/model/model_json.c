@@ -73,10 +73,15 @@ static void json_header(const struct model_file *model)
         printf("%s[%lu, %lu]", k ? ", " : "",
                (unsigned long)model->lens.ghost[k].i,
                (unsigned long)model->lens.ghost[k].j);
-    printf("], \"bytes\": %zu, \"basis\": \"%s\", \"band_nm\": [%.3f, %.3f], "
+    printf("], \"bytes\": %zu, \"basis\": \"%s\", ", model->bytes,
+           model_basis_name(&model->lens));
+    if (glint_basis_is_lens(h->basis))
+        printf("\"mirrors_x\": %s, \"mirrors_y\": %s, ",
+               h->basis & GLINT_MIRRORS_X ? "true" : "false",
+               h->basis & GLINT_MIRRORS_Y ? "true" : "false");
+    printf("\"band_nm\": [%.3f, %.3f], "
            "\"max_angle_deg\": %.6f, \"field_mm\": %.6f, \"systems\": %lu, "
            "\"mean_terms\": %.4f, ",
-           model->bytes, model_basis_name(&model->lens),
            model_nanometres(h->wave_hi_q24), model_nanometres(h->wave_lo_q24),
            model_degrees(h->sine_hi_q30), model_real_of(h->field_mm),
            (unsigned long)h->n_systems, model_mean_terms(&sum));

@@ -12,9 +12,16 @@ static void print_header(const struct model_file *model)
     const struct model_summary sum =
         model_summary_of(&model->lens, model_span_of_all(&model->lens));
 
+    static const char *const lights[] = {
+        "all", "a half, x of 0 or more: others are mirrored",
+        "a half, y of 0 or more: others are mirrored",
+        "a quarter, x and y of 0 or more: others are mirrored"};
+
     printf("%s\nbaked model, %zu bytes, %s basis, key %08lx%08lx\n\n", h->name,
            model->bytes, model_basis_name(&model->lens),
            (unsigned long)h->key[1], (unsigned long)h->key[0]);
+    if (glint_basis_is_lens(h->basis))
+        printf("lights              %s\n", lights[h->basis & 3U]);
     printf("focal length        %10.3f mm\n", model_real_of(h->focal_mm));
     printf("back focal length   %10.3f mm\n", model_real_of(h->back_focal_mm));
     printf("entrance pupil      %10.3f mm radius\n",
