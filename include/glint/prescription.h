@@ -151,7 +151,8 @@ struct glint_zoom {
     double check_back_mm[GLINT_MAX_POSITIONS];
     /* What the columns amount to. */
     double focal_mm[GLINT_MAX_POSITIONS], back_mm[GLINT_MAX_POSITIONS];
-    double along[GLINT_MAX_POSITIONS]; /* 0 .. 1 */
+    double last_gap_mm[GLINT_MAX_POSITIONS]; /* to the sensor */
+    double along[GLINT_MAX_POSITIONS];       /* 0 .. 1 */
 };
 
 struct glint_prescription;

@@ -153,6 +153,7 @@ bool glint_columns_check(struct glint_prescription *lens,
         glint_optics_of(lens, &optics);
         z->focal_mm[k] = optics.focal_mm;
         z->back_mm[k] = optics.back_focal_mm;
+        z->last_gap_mm[k] = element_gap_mm(lens, element_count(lens) - 1);
     }
     put_at(lens, 0);
     return !z->n_positions || set_along(z, text, places);

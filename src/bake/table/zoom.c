@@ -65,18 +65,6 @@ static double follow(const struct glint_zoom *z, const double *value,
 
 /* ----------------------------------------------------------------- zoom */
 
-/* Returns the last gap at column K. */
-static double last_gap(const struct glint_prescription *lens, int k)
-{
-    const struct glint_zoom *const z = &lens->zoom;
-    const int last = element_count(lens) - 1;
-
-    for (int m = 0; m < z->n_moves; m++)
-        if (z->move[m] == last)
-            return z->gap_mm[m][k];
-    return element_gap_mm(lens, last);
-}
-
 /* Sets gaps and f-number for ALONG. */
 static void move(struct glint_prescription *lens, double along)
 {
@@ -87,11 +75,12 @@ static void move(struct glint_prescription *lens, double along)
     bool column = false;
 
     for (int k = 0; k < z->n_positions; k++) {
-        defocus[k] = last_gap(lens, k) - z->back_mm[k];
+        defocus[k] = z->last_gap_mm[k] - z->back_mm[k];
         column |= !(along < z->along[k] || along > z->along[k]);
     }
     for (int m = 0; m < z->n_moves; m++)
         *glint_gap_of(lens, z->move[m]) = follow(z, z->gap_mm[m], along);
+    *glint_gap_of(lens, last) = follow(z, z->last_gap_mm, along);
     lens->f_number = follow(z, z->f_number, along);
     if (column)
         return;

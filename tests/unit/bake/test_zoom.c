@@ -234,6 +234,31 @@ static void test_text(void **state)
     refuses("f-number 10\nfocus\nend\n" FRONT "4/6" BACK, "no surface moves");
 }
 
+/* Where a lens is zoomed to does not depend on where it was before, though the
+ * table has one last gap, which lies off the focus by another distance in each
+ * column. */
+static void test_again(void **state)
+{
+    static const char text[] =
+        "name t\nfilm 36 24\nf-number 10\n" FRONT "4/6/7" BACK;
+    struct glint_prescription once;
+    struct glint_error error = {""};
+    const double places[] = {0.3, 0.75, 1, 0.2, 0};
+
+    (void)state;
+    assert_int_equal(
+        glint_prescription_parse(&once, text, strlen(text), "t.lens", &error),
+        GLINT_OK);
+    zoom = once;
+    for (int i = 0; i < 5; i++) {
+        single = once;
+        assert_int_equal(glint_prescription_zoom(&single, places[i], &error),
+                         GLINT_OK);
+        go_to(places[i]);
+        assert_memory_equal(&zoom, &single, sizeof zoom);
+    }
+}
+
 static void test_refusals(void **state)
 {
     struct glint_error error = {""};
@@ -261,7 +286,7 @@ int main(void)
         cmocka_unit_test(test_columns),    cmocka_unit_test(test_between),
         cmocka_unit_test(test_focus),      cmocka_unit_test(test_newton),
         cmocka_unit_test(test_front_stop), cmocka_unit_test(test_text),
-        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_again),      cmocka_unit_test(test_refusals),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
