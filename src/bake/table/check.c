@@ -221,11 +221,11 @@ enum glint_status glint_prescription_fits(const struct glint_prescription *lens,
         const double gap = least_gap_mm(lens, e, &height);
 
         if (gap >= -CONTACT_MM &&
-            (element_gap_mm(lens, e) >= 0.0 || lens->stop_after == 0))
+            (element_gap_mm(lens, e) >= 0.0 || (e == 0 && !lens->stop_after)))
             continue;
         snprintf(error->text, sizeof error->text,
                  "%s: element %d would overlap the next by %.4g mm", lens->name,
-                 e + 1, -gap);
+                 e + 1, -fmin(gap, element_gap_mm(lens, e)));
         return GLINT_E_ARGUMENT;
     }
     glint_optics_of(lens, &optics);

@@ -196,6 +196,30 @@ static void test_front_stop(void **state)
     assert_near(optics.length_mm + single.stop_thickness_mm, before, 1e-9);
 }
 
+/* A stop in front leaves the glass behind it as solid: surfaces whose rims are
+ * apart do not pass through each other's vertices. */
+static void test_solid(void **state)
+{
+    static const char text[] =
+        "name t\nfilm 36 24\nf-number 10\nstop 5 8\n"
+        "surface 100 4 12 1.5 60\nsurface -100 0.5 12 air\nfocus\n"
+        "surface 100 4 12 1.5 60\nsurface -100 47 12 air\nend\n";
+    struct glint_error error = {""};
+
+    (void)state;
+    assert_int_equal(
+        glint_prescription_parse(&single, text, strlen(text), "t.lens", &error),
+        GLINT_OK);
+    focus(&single, 20);
+    assert_true(single.surface[1].thickness_mm > 0);
+    assert_int_equal(
+        glint_prescription_parse(&single, text, strlen(text), "t.lens", &error),
+        GLINT_OK);
+    assert_int_equal(glint_prescription_focus(&single, 3, &error),
+                     GLINT_E_ARGUMENT);
+    assert_non_null(strstr(error.text, "cannot focus at 3 m"));
+}
+
 /* -------------------------------------------------------------------- text */
 
 static void refuses(const char *body, const char *cause)
@@ -286,7 +310,8 @@ int main(void)
         cmocka_unit_test(test_columns),    cmocka_unit_test(test_between),
         cmocka_unit_test(test_focus),      cmocka_unit_test(test_newton),
         cmocka_unit_test(test_front_stop), cmocka_unit_test(test_text),
-        cmocka_unit_test(test_again),      cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_solid),      cmocka_unit_test(test_again),
+        cmocka_unit_test(test_refusals),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
