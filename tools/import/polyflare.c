@@ -48,6 +48,13 @@ static void cut_comment(struct lines *l)
     }
 }
 
+static bool too_many(struct polyflare *p)
+{
+    return imported_fail(p->lens, p->lines.number,
+                         "more than %d positions of a zoom are not read",
+                         POSITIONS);
+}
+
 /* Takes "#EFL" and its like; other lines that '#' begins are comments. */
 static bool take_head(struct polyflare *p)
 {
@@ -55,7 +62,9 @@ static bool take_head(struct polyflare *p)
     const bool focal = lines_is(l, "#EFL");
 
     if (focal || lines_is(l, "#FOV")) {
-        for (int k = 1; k < l->n && k <= POSITIONS; k++)
+        if (l->n > 1 + POSITIONS)
+            return too_many(p);
+        for (int k = 1; k < l->n; k++)
             if (!lines_number(p->lens, l, k, l->word[0] + 1,
                               focal ? &p->focal[k - 1] : &p->field[k - 1]))
                 return false;
@@ -80,9 +89,11 @@ static bool take_thickness(struct polyflare *p, struct imported_surface *s)
 
     if (strcmp(at, "BFL") == 0) /* where the light meets, as where none is */
         return true;
-    for (bool more = true; more && n < POSITIONS; n++) {
+    for (bool more = true; more; n++) {
         const size_t bytes = strcspn(at, "/");
 
+        if (n == POSITIONS)
+            return too_many(p);
         if (bytes >= sizeof word)
             return imported_fail(p->lens, l->number,
                                  "thickness '%.40s' is not a number", at);
