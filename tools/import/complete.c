@@ -374,6 +374,27 @@ static bool check_thicknesses(struct imported *lens)
     return true;
 }
 
+/* Refuses an f-number of the user's whose light does not fit through the front.
+ * A file's own is taken as it is, as stops of published lenses open a little
+ * wider than their fronts. */
+static bool check_front(struct imported *lens, double focal_units)
+{
+    const double slack = 1.01; /* semi-diameters are rounded */
+    const struct imported_surface *front = lens->surface;
+
+    if (front->stop && lens->n > 1)
+        front++;
+    if (!(lens->f_number_given > 0) || lens->pupil / 2 <= front->semi * slack)
+        return true;
+    return imported_fail(lens, front->line,
+                         "f/%.4g needs %.4g mm of the front, which has a "
+                         "semi-diameter of %.4g: f/%.4g is the fastest "
+                         "that there can be",
+                         lens->f_number, lens->pupil / 2 * lens->unit_mm,
+                         front->semi * lens->unit_mm,
+                         ceil(500 * focal_units / front->semi) / 1000);
+}
+
 bool imported_complete(struct imported *lens)
 {
     double f;
@@ -394,6 +415,6 @@ bool imported_complete(struct imported *lens)
                              "that form an image",
                              f * lens->unit_mm);
     return settle_film(lens, f) && settle_pupil(lens, f) &&
-           settle_semis(lens) && cut_semis(lens) && part_rims(lens) &&
-           settle_focus(lens);
+           settle_semis(lens) && cut_semis(lens) && check_front(lens, f) &&
+           part_rims(lens) && settle_focus(lens);
 }
