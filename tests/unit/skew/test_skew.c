@@ -73,7 +73,8 @@ struct meter {
     struct glint_transfer t;
     struct glint_path path;
     double direction[3];
-    int n; /* number of rays that get through */
+    int n;          /* number of rays that get through */
+    int from[2][2]; /* of light from x below 0, and from y below 0 */
     double places2, stops2, energies2;
     double off; /* pixels that a vertex lies beside its ray, the largest */
 };
@@ -125,6 +126,7 @@ static void compare(struct meter *m, int i, int j, const struct glint_vertex *v)
     m->energies2 += pow(value(m, &o, GLINT_OUT_ENERGY) / ray.energy - 1, 2);
     m->off = fmax(m->off, beside(v, x * value(m, &o, GLINT_OUT_SENSOR_X),
                                  y * value(m, &o, GLINT_OUT_SENSOR_Y)));
+    m->from[m->direction[0] < 0][m->direction[1] < 0]++;
     m->n++;
 }
 
@@ -167,7 +169,12 @@ static void check(void)
 
     m = (struct meter){.n = 0};
     compare_all(&m);
-    assert_true(m.n > 500);
+    assert_true(m.n > 1500);
+    /* Light from no side is lost, be it mirrored or not. */
+    for (int k = 0; k < 4; k++)
+        if (8 * m.from[k / 2][k % 2] < m.n)
+            fail_msg("%d of %d rays of quarter %d", m.from[k / 2][k % 2], m.n,
+                     k);
     pixels = sqrt(m.places2 / m.n) * 1920 / 36;
     radii = sqrt(m.stops2 / m.n);
     share = sqrt(m.energies2 / m.n);
