@@ -58,15 +58,19 @@ static bool number(struct json_lens *j, const json_t *element, int line,
     return true;
 }
 
-/* Reads TEXT; NULL after an error. */
-static json_t *load(struct imported *lens, const char *text, size_t bytes)
+/* Reads TEXT and has TAKE take what is in it. */
+static bool read_text(struct imported *lens, const char *text, size_t bytes,
+                      bool (*take)(struct json_lens *j, json_t *root))
 {
+    struct json_lens j = {lens, text, text + bytes, 1};
     json_error_t error;
     json_t *root = json_loadb(text, bytes, JSON_REJECT_DUPLICATES, &error);
+    const bool good =
+        root ? take(&j, root)
+             : imported_fail(lens, error.line, "%.150s", error.text);
 
-    if (!root)
-        imported_fail(lens, error.line, "%.150s", error.text);
-    return root;
+    json_decref(root);
+    return good;
 }
 
 /* ---------------------------------------------------------------- realflare */
@@ -90,7 +94,7 @@ static bool take_element(struct json_lens *j, const json_t *element, bool stop)
     return true;
 }
 
-static bool take(struct json_lens *j, const json_t *root)
+static bool take_realflare(struct json_lens *j, json_t *root)
 {
     const json_t *elements = json_object_get(root, "lens_elements");
     const json_t *name = json_object_get(root, "name");
@@ -126,12 +130,7 @@ static bool take(struct json_lens *j, const json_t *root)
 
 bool import_realflare(struct imported *lens, const char *text, size_t bytes)
 {
-    struct json_lens j = {lens, text, text + bytes, 1};
-    json_t *root = load(lens, text, bytes);
-    const bool good = root && take(&j, root);
-
-    json_decref(root);
-    return good;
+    return read_text(lens, text, bytes, take_realflare);
 }
 
 /* ------------------------------------------------------------------- lentil */
@@ -231,10 +230,5 @@ static bool take_lentil(struct json_lens *j, json_t *root)
 
 bool import_lentil(struct imported *lens, const char *text, size_t bytes)
 {
-    struct json_lens j = {lens, text, text + bytes, 1};
-    json_t *root = load(lens, text, bytes);
-    const bool good = root && take_lentil(&j, root);
-
-    json_decref(root);
-    return good;
+    return read_text(lens, text, bytes, take_lentil);
 }

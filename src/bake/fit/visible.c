@@ -10,10 +10,8 @@ enum {
     ACROSS = 64, /* cells of the finest grid */
     SCAN_DEG = 1,
     BISECTIONS = 8,
-    /* numbers of angles after which boxes are looked for everywhere again, and
-     * of shaped lenses, whose rays take long */
-    AFRESH = 4,
-    AFRESH_SHAPED = 12,
+    AFRESH = 4, /* angles after which boxes are looked for everywhere again */
+    AFRESH_SHAPED = 12, /* the same of shaped lenses, whose rays take long */
     /* steps of the scan by which a range of angles is widened at most, on each
      * side, where only the ends of the band get through */
     FARTHER = 4

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bake/fit/next.h"
 #include "bake/fit/zone_fit.h"
 #include "bake/skew/directions.h"
 #include "engine/setup/degrees.h"
@@ -92,16 +93,6 @@ static double area_of(const struct pending *p)
            (p->w1 - p->w0);
 }
 
-/* Returns whether a coating of several films reflects the ghost. */
-static bool has_stacks(const struct glint_visible *visible)
-{
-    const struct glint_setup *setup = visible->setup;
-    const struct glint_ghost ghost = setup->ghost[visible->ghost];
-
-    return setup->lens->surface[ghost.i].coating.n_films > 1 ||
-           setup->lens->surface[ghost.j].coating.n_films > 1;
-}
-
 static enum glint_status set_box(struct glint_fitted_system *system,
                                  const struct glint_zone *zone)
 {
@@ -135,7 +126,7 @@ static enum glint_status fit_zone(struct fitter *f, const struct pending *p,
                                    .visible = band,
                                    .barrel = f->tolerance->barrel,
                                    .thorough = !may_halve(p),
-                                   .stacks = has_stacks(f->visible),
+                                   .stacks = glint_next_stacks(f->visible),
                                    .hopeless = may_halve(p) ? HOPELESS : 0,
                                    .settled =
                                        may_halve(p) && side > STUCK_SIDE};
@@ -197,7 +188,7 @@ static enum next next_step(const struct fitter *f, const struct pending *p,
 
     if (a->dark || left <= 1 || !may_halve(p))
         return KEEP;
-    if (has_stacks(f->visible) && a->errors.shows <= 1 &&
+    if (glint_next_stacks(f->visible) && a->errors.shows <= 1 &&
         p->w1 - p->w0 > LEAST_BAND)
         return BANDS;
     return !helped && side < STUCK_SIDE &&
