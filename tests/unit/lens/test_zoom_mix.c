@@ -33,13 +33,12 @@ static int32_t q28(double x)
 /* Heads of both positions, and roots, of energies. */
 static uint8_t head[2], roots;
 
-/* Opens a model with N barrels at M; sensor x is SENSOR u, mm, and energy is
+/* Returns a system with N barrels; sensor x is SENSOR u, mm, and energy is
  * ENERGY, squared if there are roots. */
-static struct glint_lens open_position(struct model_image *m, double sensor,
-                                       double energy, uint8_t head_bits,
-                                       const struct barrel *barrel, uint32_t n)
+static struct glint_model_system put(struct model_image *m, double sensor,
+                                     double energy, uint8_t head_bits,
+                                     const struct barrel *barrel, uint32_t n)
 {
-    static const struct glint_model_ghost ghost = {0, 1, 0, 1};
     static const int32_t box[3] = {0, 1 << 22, 1 << 22};
     struct model_polynomial p[5 + MOST] = {
         {GLINT_OUT_SENSOR_X, 1, EXPONENT, {P(1, 0)}, {{q28(sensor)}}},
@@ -54,7 +53,6 @@ static struct glint_lens open_position(struct model_image *m, double sensor,
                                    .box_terms = 1};
     struct glint_model_output *outputs;
 
-    model_begin(m, GLINT_BASIS_AUTO, "position");
     s.box_at = model_put(m, box, sizeof box);
     for (uint32_t k = 0; k < n; k++)
         p[5 + k] = (struct model_polynomial){
@@ -67,6 +65,19 @@ static struct glint_lens open_position(struct model_image *m, double sensor,
     outputs = (void *)(m->data + s.output_at);
     outputs[GLINT_OUT_ENERGY].head = head_bits;
     outputs[GLINT_OUT_ENERGY].roots = roots;
+    return s;
+}
+
+/* Opens a model of that system at M. */
+static struct glint_lens open_position(struct model_image *m, double sensor,
+                                       double energy, uint8_t head_bits,
+                                       const struct barrel *barrel, uint32_t n)
+{
+    static const struct glint_model_ghost ghost = {0, 1, 0, 1};
+    struct glint_model_system s;
+
+    model_begin(m, GLINT_BASIS_AUTO, "position");
+    s = put(m, sensor, energy, head_bits, barrel, n);
     model_end(m, &ghost, 1, &s, 1);
     return model_open(m);
 }
@@ -197,6 +208,169 @@ static void energies_have_heads_and_roots(void **state)
     roots = head[0] = head[1] = 0;
 }
 
+/* ------------------------------------------------------------------- ghosts */
+
+enum { WHOLE = 2 };
+
+/* A ghost or a part of one: its pair of surfaces, sensor x = SENSOR u, 0 if it
+ * is dark, and the annulus of its box. */
+struct part {
+    int i, j;
+    double sensor;
+    int annulus;
+};
+
+/* Opens a model of the N ghosts and parts at M; energies are 1/4. */
+static struct glint_lens open_parts(struct model_image *m,
+                                    const struct part *part, uint32_t n)
+{
+    struct glint_model_ghost ghost[2 * WHOLE];
+    struct glint_model_system s[2 * WHOLE];
+    uint32_t n_systems = 0;
+
+    model_begin(m, GLINT_BASIS_AUTO, "parts");
+    model_header(m)->n_parts = n - WHOLE;
+    for (uint32_t k = 0; k < n; k++) {
+        ghost[k] =
+            (struct glint_model_ghost){(uint8_t)part[k].i, (uint8_t)part[k].j,
+                                       n_systems, part[k].sensor > 0};
+        if (part[k].sensor <= 0)
+            continue;
+        s[n_systems] = put(m, part[k].sensor, 0.25, 0, NULL, 0);
+        s[n_systems++].annulus = (uint8_t)part[k].annulus;
+    }
+    model_end(m, ghost, n, s, n_systems);
+    return model_open(m);
+}
+
+static struct glint_zoom_lens zoom;
+
+/* Asserts that ghost G at PART of the way has sensor x = SENSOR u and ENERGY;
+ * 0: that it is dark. */
+static void shows(int g, double part, double sensor, double energy)
+{
+    glint_zoom_set(&zoom, (int32_t)ldexp(part, 30));
+    assert_int_equal(
+        glint_transfer_init(&mixed, &zoom.lens, g, 0, MODEL_WAVE_LO_Q24),
+        sensor > 0);
+    if (sensor <= 0)
+        return;
+    is(GLINT_OUT_SENSOR_X, 1, 0, sensor);
+    is(GLINT_OUT_ENERGY, 0, 0, energy);
+}
+
+/* Joins models of A and B. */
+static void join(struct model_image at[2], const struct part *a, uint32_t n_a,
+                 const struct part *b, uint32_t n_b)
+{
+    static const int32_t along_q30[2] = {0, ONE};
+    const struct glint_lens lens[2] = {open_parts(&at[0], a, n_a),
+                                       open_parts(&at[1], b, n_b)};
+    const char *reason = "";
+
+    if (glint_zoom_join(&zoom, lens, along_q30, 2, &reason) != GLINT_OK)
+        fail_msg("%s", reason);
+}
+
+static void forget(struct model_image at[2])
+{
+    free(at[0].data);
+    free(at[1].data);
+}
+
+/* Where one side is dark, the other fades. */
+static void ghosts_fade(void **state)
+{
+    const struct part a[] = {{0, 1, 0.5, 0}, {0, 2, 0, 0}};
+    const struct part b[] = {{0, 1, 0, 0}, {0, 2, 0.75, 0}};
+    struct model_image at[2];
+
+    (void)state;
+    join(at, a, 2, b, 2);
+    shows(0, 0, 0.5, 0.25);
+    shows(0, 0.25, 0.5, 0.1875);
+    shows(0, 0.75, 0.5, 0.0625);
+    shows(0, 1, 0, 0);
+    shows(1, 0, 0, 0);
+    shows(1, 0.25, 0.75, 0.0625);
+    shows(1, 0.75, 0.75, 0.1875);
+    shows(1, 1, 0.75, 0.25);
+    forget(at);
+}
+
+/* Where both divide the pupil otherwise, the nearer one is drawn; parts are
+ * mixed with those of the same ghost, wherever these stand. */
+static void parts_go_with_their_ghost(void **state)
+{
+    const struct part a[] = {{0, 1, 0.5, 0}, {0, 2, 0.25, 0}, {0, 2, 0.375, 0}};
+    const struct part b[] = {
+        {0, 1, 0.75, 1}, {0, 2, 0.5, 0}, {0, 1, 0.125, 0}, {0, 2, 0.875, 0}};
+    struct model_image at[2];
+
+    (void)state;
+    join(at, a, 3, b, 4);
+    assert_int_equal(zoom.header.n_ghosts, 4);
+    assert_int_equal(zoom.header.n_parts, 2);
+    shows(0, 0.25, 0.5, 0.25);
+    shows(0, 0.75, 0.75, 0.25);
+    shows(1, 0.25, 0.3125, 0.25);
+    shows(2, 0.25, 0, 0);
+    shows(2, 0.75, 0.125, 0.25);
+    shows(3, 0.25, 0.5, 0.25);
+    shows(3, 0.75, 0.75, 0.25);
+    forget(at);
+}
+
+static double between(double a, double b)
+{
+    return 0.75 * a + 0.25 * b;
+}
+
+/* Numbers of the whole lens go from one to the other, each its own way. */
+static void numbers_are_in_proportion(void **state)
+{
+    const struct part part[] = {{0, 1, 0.5, 0}, {0, 2, 0.25, 0}};
+    static const double by[2] = {1, 96}; /* of another exponent, too */
+    struct model_image at[2];
+    const struct glint_model_header *const z = &zoom.header;
+    const char *reason = "";
+
+    (void)state;
+    join(at, part, 2, part, 2);
+    for (int k = 0; k < 2; k++) {
+        struct glint_model_header *const h = model_header(&at[k]);
+
+        h->focal_mm = model_real(50 * by[k]);
+        h->back_focal_mm = model_real(40 * by[1 - k]);
+        h->entrance_radius_mm = model_real(7 * by[k]);
+        h->stop_radius_mm = model_real(5 * by[1 - k]);
+        h->f_number = model_real(2 * by[k]);
+        for (int i = 0; i < GLINT_FLUX_TERMS; i++) {
+            h->direct_flux[i] = model_real((i + 1) * by[k]);
+            h->stopped_flux[0][i] = model_real((i + 20) * by[k]);
+            h->stopped_flux[1][i] = model_real(-(i + 30) * by[1 - k]);
+        }
+        model_seal(&at[k]);
+        if (glint_lens_open(&zoom.model[k], at[k].data, at[k].bytes, &reason))
+            fail_msg("%s", reason);
+    }
+    glint_zoom_set(&zoom, ONE / 4);
+    assert_true(glint_real_value(z->focal_mm) == between(50, 4800));
+    assert_true(glint_real_value(z->back_focal_mm) == between(3840, 40));
+    assert_true(glint_real_value(z->entrance_radius_mm) == between(7, 672));
+    assert_true(glint_real_value(z->stop_radius_mm) == between(480, 5));
+    assert_true(glint_real_value(z->f_number) == between(2, 192));
+    for (int i = 0; i < GLINT_FLUX_TERMS; i++) {
+        assert_true(glint_real_value(z->direct_flux[i]) ==
+                    (i + 1) * between(1, 96));
+        assert_true(glint_real_value(z->stopped_flux[0][i]) ==
+                    (i + 20) * between(1, 96));
+        assert_true(glint_real_value(z->stopped_flux[1][i]) ==
+                    -(i + 30) * between(96, 1));
+    }
+    forget(at);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -205,6 +379,9 @@ int main(void)
         cmocka_unit_test(barrels_that_come),
         cmocka_unit_test(barrels_that_go),
         cmocka_unit_test(energies_have_heads_and_roots),
+        cmocka_unit_test(ghosts_fade),
+        cmocka_unit_test(parts_go_with_their_ghost),
+        cmocka_unit_test(numbers_are_in_proportion),
     };
 
     return cmocka_run_group_tests_name("zoom_mix", tests, NULL, NULL);
