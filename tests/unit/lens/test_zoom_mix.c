@@ -165,6 +165,7 @@ static void barrels_that_come(void **state)
 {
     const struct barrel a[] = {right}, b[] = {more_right, high};
     const struct barrel twice[] = {more_right, more_right};
+    const struct barrel other[] = {left};
 
     (void)state;
     mix(a, 1, b, 2, 0.5);
@@ -175,6 +176,9 @@ static void barrels_that_come(void **state)
     mix(a, 1, twice, 2, 0.5);
     is_barrel(0, (struct barrel){0.32, 0.52, 0.1});
     is_barrel(1, more_right);
+    mix(a, 1, other, 1, 0.5); /* the only one is not like it */
+    is_barrel(0, right);
+    is_barrel(1, left);
 }
 
 /* One that the second lacks opens behind three quarters of the way. */
@@ -206,6 +210,64 @@ static void energies_have_heads_and_roots(void **state)
         is(GLINT_OUT_ENERGY, 0, 0, (roots ? value * value : value) / 4);
     }
     roots = head[0] = head[1] = 0;
+}
+
+/* -------------------------------------------------------------------- boxes */
+
+/* Opens a model at M whose box lies at MIDDLE, with the half sides HALF and
+ * RISE, mm, and whose sensor x and y are those of the place in the pupil times
+ * SLOPE. */
+static struct glint_lens open_box(struct model_image *m, double middle,
+                                  double half, double rise, double slope)
+{
+    static const struct glint_model_ghost ghost = {0, 1, 0, 1};
+    const int32_t box[3] = {(int32_t)ldexp(middle, 20),
+                            (int32_t)ldexp(half, 20), (int32_t)ldexp(rise, 20)};
+    const struct model_polynomial p[5] = {
+        {GLINT_OUT_SENSOR_X,
+         2,
+         EXPONENT,
+         {P(0, 0), P(1, 0)},
+         {{q28(middle * slope), q28(half * slope)}}},
+        {GLINT_OUT_SENSOR_Y, 1, EXPONENT, {P(0, 1)}, {{q28(rise * slope)}}},
+        {GLINT_OUT_STOP_X, 1, EXPONENT, {P(1, 0)}, {{1 << 27}}},
+        {GLINT_OUT_STOP_Y, 1, EXPONENT, {P(0, 1)}, {{1 << 27}}},
+        {GLINT_OUT_ENERGY, 1, EXPONENT, {P(0, 0)}, {{1 << 26}}}};
+    struct glint_model_system s;
+
+    model_begin(m, GLINT_BASIS_AUTO, "box");
+    s = put(m, 0, 0, 0, NULL, 0);
+    s.box_at = model_put(m, box, sizeof box);
+    model_outputs(m, &s, p, 5, 0);
+    model_end(m, &ghost, 1, &s, 1);
+    return model_open(m);
+}
+
+/* Straight lines over places in the pupil are in proportion at each place, even
+ * where boxes lie and reach elsewhere. */
+static void boxes_move(void **state)
+{
+    struct model_image at[2];
+    const struct glint_lens a = open_box(&at[0], 0, 4, 3, 0.125);
+    const struct glint_lens b = open_box(&at[1], 0.5, 4.5, 4, 0.0625);
+
+    (void)state;
+    for (int k = 1; k < 4; k++) {
+        const double part = 0.25 * k, slope = 0.125 - 0.0625 * part;
+
+        assert_int_equal(
+            glint_transfer_init(&mixed, &a, 0, 0, MODEL_WAVE_LO_Q24), 1);
+        assert_int_equal(glint_transfer_mix(&mixed, &b, 0, 0, MODEL_WAVE_LO_Q24,
+                                            (int32_t)ldexp(part, 30)),
+                         1);
+        for (int i = -2; i <= 2; i++) {
+            is(GLINT_OUT_SENSOR_X, 0.5 * i, 0.5,
+               slope * (0.5 * part + (4 + 0.5 * part) * 0.5 * i));
+            is(GLINT_OUT_SENSOR_Y, 0.5 * i, 0.5, slope * 0.5 * (3 + part));
+        }
+    }
+    free(at[0].data);
+    free(at[1].data);
 }
 
 /* ------------------------------------------------------------------- ghosts */
@@ -379,6 +441,7 @@ int main(void)
         cmocka_unit_test(barrels_that_come),
         cmocka_unit_test(barrels_that_go),
         cmocka_unit_test(energies_have_heads_and_roots),
+        cmocka_unit_test(boxes_move),
         cmocka_unit_test(ghosts_fade),
         cmocka_unit_test(parts_go_with_their_ghost),
         cmocka_unit_test(numbers_are_in_proportion),

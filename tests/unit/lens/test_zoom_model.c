@@ -193,7 +193,7 @@ static void test_between(void **state)
         print_message("at %g: %.3f pixels, %.4f of the energy\n", 0.25 * k,
                       off.pixels, off.energies);
         assert_true(off.pixels < (k % 2 ? 8 : 0.1));
-        assert_true(off.energies < (k % 2 ? 0.1 : 0.05));
+        assert_true(off.energies < 0.01);
     }
     assert_true(off_at(0.48).pixels < 1 && off_at(0.52).pixels < 1);
 }
