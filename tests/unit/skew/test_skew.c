@@ -19,7 +19,7 @@
 #include "glint/transfer.h"
 #include "support/rng.h"
 
-#define MAX_DEG   5
+#define MAX_DEG   12
 #define TOLERANCE 3
 #define PI        3.14159265358979323846
 
