@@ -283,6 +283,34 @@ static void test_again(void **state)
     }
 }
 
+/* Of two columns f-numbers are in proportion; focal lengths that fall are found
+ * as those that rise. */
+static void test_two_columns(void **state)
+{
+    static const char *const texts[] = {
+        "name t\nfilm 36 24\nf-number 10/20\n" FRONT "4/6" BACK,
+        "name t\nfilm 36 24\nf-number 10/20\n" FRONT "6/4" BACK};
+    struct glint_error error = {""};
+
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        struct glint_optics optics;
+        double along = -1;
+
+        if (glint_prescription_parse(&zoom, texts[k], strlen(texts[k]),
+                                     "t.lens", &error))
+            fail_msg("%s", error.text);
+        single = zoom;
+        go_to(0.3);
+        assert_near(zoom.f_number, 13, 1e-9);
+        glint_optics_of(&zoom, &optics);
+        assert_int_equal(glint_prescription_zoom_to(&single, optics.focal_mm,
+                                                    &along, &error),
+                         GLINT_OK);
+        assert_near(along, 0.3, 1e-6);
+    }
+}
+
 static void test_refusals(void **state)
 {
     struct glint_error error = {""};
@@ -311,7 +339,7 @@ int main(void)
         cmocka_unit_test(test_focus),      cmocka_unit_test(test_newton),
         cmocka_unit_test(test_front_stop), cmocka_unit_test(test_text),
         cmocka_unit_test(test_solid),      cmocka_unit_test(test_again),
-        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_refusals),   cmocka_unit_test(test_two_columns),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
