@@ -7,6 +7,7 @@
 #ifndef GLINT_BAKE_H
 #define GLINT_BAKE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -35,6 +36,9 @@ struct glint_bake_options {
      * faint ghosts to at most 0.07 pixels for places, 0.4 for outlines, and 1.2
      * %. */
     double tolerance;
+    /* [ghosts of the lens]: those to be baked; NULL: all. The others are in the
+     * model as if never seen. */
+    const bool *ghosts;
     struct glint_workers *workers; /* does not change the model */
     /* NULL: silent. After each fit, an estimate: its share may fall. */
     glint_progress_fn *progress;
@@ -83,6 +87,7 @@ struct glint_bake_model {
     unsigned char *data;
     size_t bytes;
     int32_t along_q30;
+    const bool *ghosts; /* as in its options; NULL at both ends of the zoom */
 };
 
 /* Puts N models of one lens, by rising position from 0 to 2^30, into a file as

@@ -232,15 +232,17 @@ uint32_t glint_model_crc32(const void *data, size_t bytes);
  * bundle's polynomials are those of both, with angle and wavelength put in,
  * each taken at the same place of the pupil, mixed in proportion. So nothing
  * that a frame does costs more but its plan. A ghost that light gets through at
- * one of the two positions alone fades.
+ * one of the two positions alone fades. Ghosts change at different rates: those
+ * between the first position and the last may have some ghosts only, and each
+ * ghost is mixed of the nearest two that have it.
  *
  * The file: a header, then for each position an ordinary model at a multiple of
  * 4 bytes; kept where it lies. */
 
 #define GLINT_ZOOM_MAGIC   UINT32_C(0x5a4e4c47) /* "GLNZ" */
-#define GLINT_ZOOM_VERSION 1
+#define GLINT_ZOOM_VERSION 2
 
-enum { GLINT_MAX_ZOOM_MODELS = 64, GLINT_MAX_ZOOM_GHOSTS = 2048 };
+enum { GLINT_MAX_ZOOM_MODELS = 129, GLINT_MAX_ZOOM_GHOSTS = 2048 };
 
 struct glint_zoom_header {
     uint32_t magic, version;
@@ -255,6 +257,9 @@ struct glint_zoom_header {
 struct glint_zoom_model {
     int32_t along_q30;
     uint32_t at, bytes; /* place and size of the model in the file */
+    uint32_t has_at;    /* bits of the ghosts that the model has, without parts,
+                           the first one lowest, uint32 [(ghosts + 31) / 32]; 0:
+                           all, as the first and the last position */
 };
 
 struct glint_transfer;
@@ -268,15 +273,19 @@ struct glint_zoom_lens {
     int n_models;
     struct glint_lens model[GLINT_MAX_ZOOM_MODELS];
     int32_t along_q30[GLINT_MAX_ZOOM_MODELS];
+    const uint32_t *has[GLINT_MAX_ZOOM_MODELS]; /* as has_at; NULL: all */
     int32_t now_q30; /* where it is set, and between which models: this one and
                         the next, PART of the way */
     int below;
     int32_t part_q30;
+    /* Of each ghost, the nearest two models that have it. */
+    uint8_t side[2][GLINT_MAX_ZOOM_GHOSTS];
     /* What LENS points to. */
     struct glint_model_header header;
     struct glint_model_ghost ghost[GLINT_MAX_ZOOM_GHOSTS];
     /* Of each ghost and part: the ghost that it is of, its number among that
-     * one's parts, and its place in both models, -1 where they lack it. Further
+     * one's parts, and its place in both models of its ghost, -1 where they
+     * lack it. Further
      * parts of ghost G are PART_FROM[G] .. PART_FROM[G + 1] - 1. */
     int16_t whole[GLINT_MAX_ZOOM_GHOSTS], number[GLINT_MAX_ZOOM_GHOSTS];
     int16_t place[2][GLINT_MAX_ZOOM_GHOSTS];

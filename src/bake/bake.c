@@ -140,7 +140,9 @@ static void fit_job(void *ctx, int ghost, int worker)
 
     if (worker == 0)
         glint_effort_begin(&run->effort, ghost);
-    run->status[ghost] = run->options.basis == GLINT_BASIS_SPARSE
+    run->status[ghost] = run->options.ghosts && !run->options.ghosts[ghost]
+                             ? GLINT_OK
+                         : run->options.basis == GLINT_BASIS_SPARSE
                              ? fit_published(run, ghost)
                              : fit_auto(run, ghost, worker == 0);
     if (worker != 0)

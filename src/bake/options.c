@@ -114,6 +114,8 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
     mix(&key, options->max_deg);
     mix(&key, glint_bake_field_mm(lens, options));
     mix(&key, options->tolerance);
+    for (int g = 0; options->ghosts && g < glint_ghost_list(lens, NULL, 0); g++)
+        mix(&key, options->ghosts[g]);
     mix(&key, lens->f_number);
     mix(&key, lens->film_width_mm);
     mix(&key, lens->film_height_mm);

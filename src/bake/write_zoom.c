@@ -10,15 +10,36 @@
 #include "glint/bake.h"
 #include "glint/model.h"
 
+/* Appends the list of the ghosts that MODEL has; returns its place, 0 if it has
+ * all. */
+static uint32_t put_ghosts(struct glint_draft *d,
+                           const struct glint_bake_model *model)
+{
+    const struct glint_model_header *const h = (const void *)model->data;
+    const uint32_t n = h->n_ghosts - h->n_parts;
+    uint32_t at = 0;
+
+    for (uint32_t word = 0; model->ghosts && word < (n + 31) / 32; word++) {
+        uint32_t bits = 0, to;
+
+        for (uint32_t g = 32 * word; g < n && g < 32 * word + 32; g++)
+            bits |= (uint32_t)model->ghosts[g] << g % 32;
+        to = glint_draft_put(d, &bits, sizeof bits);
+        at = word ? at : to;
+    }
+    return at;
+}
+
 /* Appends the models, and lists them at LIST_AT. */
 static void put_models(struct glint_draft *d, uint32_t list_at,
                        const struct glint_bake_model *model, int n)
 {
     for (int k = 0; k < n; k++) {
-        const struct glint_zoom_model entry = {
-            model[k].along_q30,
-            glint_draft_put(d, model[k].data, model[k].bytes),
-            (uint32_t)model[k].bytes};
+        struct glint_zoom_model entry = {.along_q30 = model[k].along_q30,
+                                         .bytes = (uint32_t)model[k].bytes};
+
+        entry.at = glint_draft_put(d, model[k].data, model[k].bytes);
+        entry.has_at = put_ghosts(d, &model[k]);
 
         glint_draft_amend(d, list_at + (uint32_t)k * (uint32_t)sizeof entry,
                           &entry, sizeof entry);

@@ -19,7 +19,7 @@
 #include "lens/terms.h"
 
 STATIC_ASSERT(sizeof(struct glint_zoom_header) == 100);
-STATIC_ASSERT(sizeof(struct glint_zoom_model) == 12);
+STATIC_ASSERT(sizeof(struct glint_zoom_model) == 16);
 GLINT_BLOB_HEADER(struct glint_zoom_header, variant);
 
 static const char *const fault_text[GLINT_BLOB_FAULTS] =
@@ -87,20 +87,55 @@ static const char *list_ghosts(struct glint_zoom_lens *z)
     return NULL;
 }
 
-/* Finds the places of all ghosts and parts in model K, as side SIDE. */
-static void find_places(struct glint_zoom_lens *z, int k, int side)
+static int has(const struct glint_zoom_lens *z, int k, int g)
+{
+    return !z->has[k] || (z->has[k][g / 32] >> g % 32 & 1);
+}
+
+/* Finds the models on both sides of where the zoom is that have each ghost, and
+ * the first and the last of them, END. */
+static void find_sides(struct glint_zoom_lens *z, int end[2])
+{
+    end[0] = z->below;
+    end[1] = z->below + 1;
+    for (int g = 0; g < n_whole(&z->model[0]); g++) {
+        int below = z->below, above = z->below + 1;
+
+        while (!has(z, below, g))
+            below--;
+        while (!has(z, above, g))
+            above++;
+        z->side[0][g] = (uint8_t)below;
+        z->side[1][g] = (uint8_t)above;
+        end[0] = below < end[0] ? below : end[0];
+        end[1] = above > end[1] ? above : end[1];
+    }
+}
+
+/* Finds the places of the parts of ghost G, which begin at AT and are PARTS in
+ * number, as those of SIDE. */
+static void set_places(struct glint_zoom_lens *z, int side, int g, uint32_t at,
+                       int parts)
+{
+    z->place[side][g] = (int16_t)g;
+    for (int e = z->part_from[g]; e < z->part_from[g + 1]; e++)
+        z->place[side][e] = (int16_t)(z->number[e] <= parts ? (int)at++ : -1);
+}
+
+/* Finds the places of all ghosts and parts in model K, for those that it is a
+ * side of. */
+static void find_places(struct glint_zoom_lens *z, int k)
 {
     const struct glint_lens *const m = &z->model[k];
     uint32_t next = (uint32_t)n_whole(m);
 
     for (int g = 0; g < n_whole(m); g++) {
-        uint32_t at = next;
+        const uint32_t at = next;
         const int parts = parts_of(m, g, &next);
 
-        z->place[side][g] = (int16_t)g;
-        for (int e = z->part_from[g]; e < z->part_from[g + 1]; e++)
-            z->place[side][e] =
-                (int16_t)(z->number[e] <= parts ? (int)at++ : -1);
+        for (int side = 0; side < 2; side++)
+            if (z->side[side][g] == k)
+                set_places(z, side, g, at, parts);
     }
 }
 
@@ -174,6 +209,24 @@ static const char *check_pair(const struct glint_lens *a,
 
 /* ---------------------------------------------------------------- transfers */
 
+/* Returns the model of entry E on SIDE. */
+static const struct glint_lens *model_of(const struct glint_zoom_lens *z, int e,
+                                         int side)
+{
+    return &z->model[z->side[side][z->whole[e]]];
+}
+
+/* Returns how far the zoom is between both models of GHOST. */
+static int32_t part_of(const struct glint_zoom_lens *z, int ghost)
+{
+    const int g = z->whole[ghost];
+    const int32_t from_q30 = z->along_q30[z->side[0][g]];
+
+    return (int32_t)q_divide(((int64_t)z->now_q30 - from_q30) *
+                                 TRANSFER_ONE_Q30,
+                             (int64_t)z->along_q30[z->side[1][g]] - from_q30);
+}
+
 /* Returns the polynomials' annulus of entry E on SIDE at this angle and
  * wavelength, -1 if it is dark there. */
 static int annulus_of(const struct glint_zoom_lens *z, int e, int side,
@@ -182,7 +235,7 @@ static int annulus_of(const struct glint_zoom_lens *z, int e, int side,
     const int at = z->place[side][e];
     const struct glint_model_system *const s =
         at < 0 ? NULL
-               : glint_transfer_system(&z->model[z->below + side], at, sine_q30,
+               : glint_transfer_system(model_of(z, e, side), at, sine_q30,
                                        wave_q24);
 
     return s ? s->annulus : -1;
@@ -214,7 +267,7 @@ static int of_side(struct glint_transfer *transfer,
                    int32_t sine_q30, int32_t wave_q24)
 {
     return z->place[side][e] >= 0 &&
-           glint_transfer_init(transfer, &z->model[z->below + side],
+           glint_transfer_init(transfer, model_of(z, e, side),
                                z->place[side][e], sine_q30, wave_q24);
 }
 
@@ -223,12 +276,13 @@ static int transfer_between(struct glint_transfer *transfer,
                             int32_t sine_q30, int32_t wave_q24)
 {
     const struct glint_zoom_lens *const z = zoom;
-    const int nearer = z->part_q30 >= TRANSFER_ONE_Q30 / 2;
+    const int32_t part_q30 = part_of(z, ghost);
+    const int nearer = part_q30 >= TRANSFER_ONE_Q30 / 2;
     int lit[2];
     int alike;
 
-    if (z->part_q30 <= 0 || z->part_q30 >= TRANSFER_ONE_Q30)
-        return of_side(transfer, z, ghost, z->part_q30 > 0, sine_q30, wave_q24);
+    if (part_q30 <= 0 || part_q30 >= TRANSFER_ONE_Q30)
+        return of_side(transfer, z, ghost, part_q30 > 0, sine_q30, wave_q24);
     alike = is_alike(z, z->whole[ghost], sine_q30, wave_q24, lit);
     if (!lit[0] || !lit[1]) {
         const int side = lit[1];
@@ -236,16 +290,16 @@ static int transfer_between(struct glint_transfer *transfer,
         if (!of_side(transfer, z, ghost, side, sine_q30, wave_q24))
             return 0;
         glint_blend_fade(transfer,
-                         side ? z->part_q30 : TRANSFER_ONE_Q30 - z->part_q30);
+                         side ? part_q30 : TRANSFER_ONE_Q30 - part_q30);
         return 1;
     }
     if (!alike)
         return of_side(transfer, z, ghost, nearer, sine_q30, wave_q24);
     if (!of_side(transfer, z, ghost, 0, sine_q30, wave_q24))
         return 0;
-    return glint_transfer_mix(transfer, &z->model[z->below + 1],
+    return glint_transfer_mix(transfer, model_of(z, ghost, 1),
                               z->place[1][ghost], sine_q30, wave_q24,
-                              z->part_q30) ||
+                              part_q30) ||
            !nearer || of_side(transfer, z, ghost, 1, sine_q30, wave_q24);
 }
 
@@ -254,7 +308,7 @@ static int transfer_between(struct glint_transfer *transfer,
 void glint_zoom_set(struct glint_zoom_lens *zoom, int32_t along_q30)
 {
     struct glint_zoom_lens *const z = zoom;
-    int k = 0;
+    int k = 0, end[2];
     int64_t step;
 
     along_q30 = along_q30 < 0                  ? 0
@@ -267,8 +321,9 @@ void glint_zoom_set(struct glint_zoom_lens *zoom, int32_t along_q30)
     z->below = k;
     z->part_q30 = (int32_t)q_divide(
         ((int64_t)along_q30 - z->along_q30[k]) * TRANSFER_ONE_Q30, step);
-    find_places(z, k, 0);
-    find_places(z, k + 1, 1);
+    find_sides(z, end);
+    for (int m = end[0]; m <= end[1]; m++)
+        find_places(z, m);
     set_header(z);
 }
 
@@ -286,6 +341,7 @@ enum glint_status glint_zoom_join(struct glint_zoom_lens *zoom,
     for (int k = 0; k < n && !wrong; k++) {
         z->model[k] = model[k];
         z->along_q30[k] = along_q30[k];
+        z->has[k] = NULL;
         if (k && along_q30[k] <= along_q30[k - 1])
             wrong = "a zoom's positions do not rise";
         else if (k)
@@ -305,6 +361,30 @@ enum glint_status glint_zoom_join(struct glint_zoom_lens *zoom,
     z->transfer = transfer_between;
     z->lens = (struct glint_lens){&z->header, z->ghost, NULL, z};
     glint_zoom_set(z, 0);
+    return GLINT_OK;
+}
+
+/* Notes which ghosts each of the models M of the file has. */
+static enum glint_status set_lacks(struct glint_zoom_lens *zoom,
+                                   struct glint_blob *blob,
+                                   const struct glint_zoom_model *m,
+                                   const char **reason)
+{
+    const uint32_t words = ((uint32_t)n_whole(&zoom->model[0]) + 31) / 32;
+
+    for (int k = 0; k < zoom->n_models; k++) {
+        const int end = k == 0 || k == zoom->n_models - 1;
+
+        if (!m[k].has_at)
+            continue;
+        zoom->has[k] =
+            glint_blob_section(blob, m[k].has_at, words, sizeof(uint32_t));
+        *reason = end ? "a zoom's first or last position lacks ghosts"
+                      : "a list of ghosts lies outside of the file";
+        if (end || !zoom->has[k])
+            return GLINT_E_LENS;
+    }
+    glint_zoom_set(zoom, 0);
     return GLINT_OK;
 }
 
@@ -340,6 +420,8 @@ enum glint_status glint_zoom_open(struct glint_zoom_lens *zoom,
             return GLINT_E_LENS;
         zoom->along_q30[k] = m[k].along_q30;
     }
-    return glint_zoom_join(zoom, zoom->model, zoom->along_q30, (int)h->n_models,
-                           reason);
+    if (glint_zoom_join(zoom, zoom->model, zoom->along_q30, (int)h->n_models,
+                        reason) != GLINT_OK)
+        return GLINT_E_LENS;
+    return set_lacks(zoom, &blob, m, reason);
 }

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Opens any bytes as a model, after magic, version, size and checksum are put
- * right, so that the other checks are reached. A model that is accepted must
- * carry rays at the ends of every range of angles, between and outside of them,
- * over the corners of the pupil, to places near and far, and draw a whole
- * frame; no integer may leave the range that rays rely on.
+ * Opens any bytes as a model, or as a zoom of models if they begin as one,
+ * after magic, version, size and checksum are put right, so that the other
+ * checks are reached. A model that is accepted must carry rays at the ends of
+ * every range of angles, between and outside of them, over the corners of the
+ * pupil, to places near and far, and draw a whole frame; no integer may leave
+ * the range that rays rely on. So must a zoom, at its positions and between.
  *
  *     make fuzz FUZZ=model SECONDS=120
  */
@@ -198,28 +199,107 @@ static void check_frame(const struct glint_lens *lens, int32_t opening_q30)
 }
 
 /* Writes a valid magic, version, size and checksum into the header. */
-static void seal(uint32_t *word, size_t size)
+static void seal(uint32_t *word, size_t size, uint32_t magic, uint32_t version)
 {
     if (size < 16)
         return;
-    word[0] = GLINT_MODEL_MAGIC;
-    word[1] = GLINT_MODEL_VERSION;
+    word[0] = magic;
+    word[1] = version;
     word[2] = (uint32_t)size;
     word[3] = glint_model_crc32(word + 4, size - 16);
 }
 
+/* ---------------------------------------------------------------------- zoom
+ */
+
+/* Seals the models of the zoom in WORD[SIZE], where they lie within, and it. */
+static void seal_zoom(uint32_t *word, size_t size)
+{
+    const struct glint_zoom_header *const h = (const void *)word;
+    const struct glint_zoom_model *m;
+
+    if (size >= sizeof *h && h->model_at < size && h->model_at % 4 == 0) {
+        m = (const void *)(word + h->model_at / 4);
+        for (uint32_t k = 0; k < h->n_models && k < GLINT_MAX_ZOOM_MODELS &&
+                             h->model_at + (k + 1) * sizeof *m <= size;
+             k++)
+            if (m[k].at >= h->model_at + h->n_models * sizeof *m &&
+                m[k].at % 4 == 0 && m[k].bytes < size &&
+                m[k].at < size - m[k].bytes)
+                seal(word + m[k].at / 4, m[k].bytes, GLINT_MODEL_MAGIC,
+                     GLINT_MODEL_VERSION);
+    }
+    seal(word, size, GLINT_ZOOM_MAGIC, GLINT_ZOOM_VERSION);
+}
+
+/* Checks GHOST of the zoom at angles of the model below where it is set. */
+static void check_zoomed(const struct glint_zoom_lens *zoom, int ghost,
+                         uint32_t pick)
+{
+    const struct glint_lens *const below = &zoom->model[zoom->below];
+    const struct glint_model_ghost *const g = &below->ghost[zoom->whole[ghost]];
+    const int32_t lo = zoom->header.wave_lo_q24;
+    const int32_t hi = zoom->header.wave_hi_q24;
+
+    check_bundle(&zoom->lens, ghost, 0, lo);
+    check_bundle(&zoom->lens, ghost, ONE, hi);
+    if (g->n_systems > 0) {
+        const struct glint_model_system *const s =
+            &below->system[g->first_system + pick % g->n_systems];
+        const int32_t a = s->sine_lo_q30, b = s->sine_hi_q30;
+
+        check_bundle(&zoom->lens, ghost, a, lo);
+        check_bundle(&zoom->lens, ghost, a + (b - a) / 3, lo + (hi - lo) / 3);
+        check_bundle(&zoom->lens, ghost, b, hi);
+    }
+}
+
+static void check_zoom(void *data, size_t size)
+{
+    static const int32_t along_q30[] = {-1,      0,       1,  ONE / 7,
+                                        ONE / 2, ONE - 1, ONE};
+    static struct glint_zoom_lens zoom;
+    const char *reason = NULL;
+    uint32_t pick;
+
+    memset(&zoom, 0xa5, sizeof zoom);
+    seal_zoom(data, size);
+    if (glint_zoom_open(&zoom, data, size, &reason) != GLINT_OK) {
+        require(reason && *reason);
+        return;
+    }
+    pick = ((const uint32_t *)data)[3];
+    for (int k = 0; k < 7; k++) {
+        const uint32_t n = zoom.header.n_ghosts;
+
+        require(n < GLINT_MAX_ZOOM_GHOSTS);
+        glint_zoom_set(&zoom, along_q30[k]);
+        require(zoom.below >= 0 && zoom.below + 1 < zoom.n_models);
+        for (uint32_t g = 0; g < n && g < 2; g++)
+            check_zoomed(&zoom, (int)((pick + g) % n), pick >> 8);
+    }
+    glint_zoom_set(&zoom, (int32_t)(pick >> 2));
+    check_frame(&zoom.lens, pick & 128 ? 0 : 1 << 27);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    void *copy = malloc(size ? size : 1); /* exact, so that an overrun shows */
+    uint32_t *copy = malloc(size ? size : 1); /* exact, so that an overrun
+                                                 shows */
     struct glint_lens lens;
     const char *reason = NULL;
 
     require(copy != NULL);
     if (size)
         memcpy(copy, data, size);
-    seal(copy, size);
+    if (size >= 4 && *copy == GLINT_ZOOM_MAGIC) {
+        check_zoom(copy, size);
+        free(copy);
+        return 0;
+    }
+    seal(copy, size, GLINT_MODEL_MAGIC, GLINT_MODEL_VERSION);
     if (glint_lens_open(&lens, copy, size, &reason) == GLINT_OK) {
-        const uint32_t pick = ((const uint32_t *)copy)[3];
+        const uint32_t pick = copy[3];
         const uint32_t n = lens.header->n_ghosts;
 
         require(n <= INT32_MAX);

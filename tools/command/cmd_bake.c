@@ -9,6 +9,7 @@
 
 #include "desk/apart.h"
 #include "options/coating.h"
+#include "zooms/zoom_bake.h"
 #include "model/zoom_option.h"
 #include "model/model_report.h"
 #include "model/table_file.h"
@@ -47,11 +48,18 @@ static const char help[] =
     "  --positions N     of a zoom, 2 .. 64 along its way, in one model "
     "between\n"
     "                    which it zooms\n"
+    "  --halfway DB      of these: ghosts that need it are baked between them, "
+    "too,\n"
+    "                    until pictures half-way are so near to exact ones; "
+    "0: none\n"
+    "                    is, nor measured (default 45)\n"
     "  --field MM        radius on the sensor within which light counts\n"
     "                    (default: a tenth more than the film's corners)\n"
     "  --tolerance T     scale of the errors aimed at (default 1)\n"
     "  -j, --threads N   default: all processors; never changes the model\n"
     "  --json   -q   -v   --help   --help-all   --version\n";
+
+enum { MOST_POSITIONS = 64 };
 
 struct bake {
     const char *output;
@@ -59,6 +67,7 @@ struct bake {
     struct zoom_option zoom;
     double f_number;
     int positions; /* of a zoom; 0: one model */
+    double halfway_db;
     struct glint_bake_options options;
     struct tool_progress progress;
 };
@@ -76,7 +85,12 @@ static int take(struct tool *tool, struct bake *b, int c, const char *name)
     case 'c':
         return coating_take(tool, &b->coating, optarg);
     case 'n':
-        ok = tool_integer(optarg, 2, GLINT_MAX_ZOOM_MODELS, &b->positions);
+        ok = tool_integer(optarg, 2, MOST_POSITIONS, &b->positions);
+        break;
+    case 'H':
+        ok = tool_number(optarg, &b->halfway_db) &&
+             (b->halfway_db == 0.0 ||
+              (b->halfway_db >= 20 && b->halfway_db <= 60));
         break;
     case 'z':
         ok = zoom_option_take(&b->zoom, optarg);
@@ -117,6 +131,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct bake *b)
         {"f-number", required_argument, NULL, 'f'},
         ZOOM_OPTIONS('z', 'F'),
         {"positions", required_argument, NULL, 'n'},
+        {"halfway", required_argument, NULL, 'H'},
         {"basis", required_argument, NULL, 'b'},
         {"band", required_argument, NULL, 'w'},
         {"max-angle", required_argument, NULL, 'a'},
@@ -182,71 +197,56 @@ static int bake_into(struct glint_output *out, struct tool *tool,
     return code;
 }
 
-/* Bakes LENS at position K; *MODEL is to be freed. */
-static enum glint_status bake_position(struct bake *b,
-                                       const struct glint_prescription *lens,
-                                       int k, struct glint_bake_model *model,
-                                       struct glint_error *error)
+/* Says what was baked. */
+static void tell_zoom(const struct tool *tool, const struct bake *b,
+                      const struct zoom_baked *baked, double seconds)
 {
-    struct glint_prescription *const moved = malloc(sizeof *moved);
-    const double along = k / (b->positions - 1.0);
-    struct glint_bake_report report;
-    unsigned char *data = NULL;
-    enum glint_status status = GLINT_E_MEMORY;
-
-    if (moved) {
-        *moved = *lens;
-        status = glint_prescription_zoom(moved, along, error);
+    if (tool->json) {
+        printf("{\"positions\": %d, \"models\": %d, \"ghosts\": %d, ",
+               b->positions, baked->n_models, baked->n_bakes);
+        if (baked->least_db > 0)
+            printf("\"halfway_db\": %.1f, \"halfway_mm\": %.3f, ",
+                   baked->least_db, baked->least_mm);
+        printf("\"bytes\": %zu, \"seconds\": %.1f}\n", baked->bytes, seconds);
+        return;
     }
-    if (status == GLINT_OK && b->zoom.focus_m > 0)
-        status = glint_prescription_focus(moved, b->zoom.focus_m, error);
-    if (status == GLINT_OK && b->f_number > 0)
-        status = glint_prescription_set_f_number(moved, b->f_number, error);
-    if (status == GLINT_OK)
-        status = glint_bake(moved, &b->options, &data, &model->bytes, &report,
-                            error);
-    model->data = data;
-    model->along_q30 = (int32_t)lrint(along * 0x1p30);
-    free(moved);
-    return status;
+    if (tool->quiet || strcmp(b->output, "-") == 0)
+        return;
+    printf("%d positions, %d with those of single ghosts between them, %zu "
+           "bytes, %.0f s\n",
+           b->positions, baked->n_models, baked->bytes, seconds);
+    if (baked->least_db > 0)
+        printf("half-way between positions pictures are %.1f dB from exact "
+               "ones at least, at %.2f mm\n",
+               baked->least_db, baked->least_mm);
+    if (baked->least_db > 0 && baked->least_db < b->halfway_db)
+        printf("that is less than %g dB: bake more --positions\n",
+               b->halfway_db);
 }
 
 /* Bakes LENS, which is as read, at all positions into OUT. */
 static int bake_positions(struct glint_output *out, struct tool *tool,
                           struct bake *b, const struct glint_prescription *lens)
 {
-    struct glint_bake_model model[GLINT_MAX_ZOOM_MODELS] = {{NULL, 0, 0}};
-    struct glint_error error = {""};
-    enum glint_status status = GLINT_OK;
+    const struct zoom_bake zoom = {.lens = lens,
+                                   .options = &b->options,
+                                   .focus_m = b->zoom.focus_m,
+                                   .f_number = b->f_number,
+                                   .positions = b->positions,
+                                   .halfway_db = b->halfway_db};
     const double start = tool_seconds();
-    unsigned char *zoom = NULL;
-    size_t bytes = 0;
+    struct glint_error error = {""};
+    struct zoom_baked baked;
+    enum glint_status status = zoom_bake_run(tool, &zoom, &baked, &error);
 
-    b->options.workers = tool->workers;
-    b->options.progress = tool_progress_show;
-    b->options.progress_ctx = &b->progress;
-    for (int k = 0; k < b->positions && status == GLINT_OK; k++) {
-        tool_progress_start(&b->progress, tool, "bake");
-        status = bake_position(b, lens, k, &model[k], &error);
-        tool_progress_end(&b->progress);
-        if (status == GLINT_OK && !tool->quiet)
-            fprintf(stderr, "glint bake: position %d of %d, %.0f s\n", k + 1,
-                    b->positions, tool_seconds() - start);
-    }
     if (status == GLINT_OK)
-        status = glint_bake_zoom(model, b->positions, &zoom, &bytes, &error);
-    for (int k = 0; k < b->positions; k++)
-        free(model[k].data);
-    if (status == GLINT_OK)
-        status = glint_output_finish(out, zoom, bytes, &error);
+        status = glint_output_finish(out, baked.data, baked.bytes, &error);
     else
         glint_output_abort(out);
-    free(zoom);
+    free(baked.data);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text[0] ? error.text : NULL);
-    if (tool->json)
-        printf("{\"positions\": %d, \"bytes\": %zu, \"seconds\": %.1f}\n",
-               b->positions, bytes, tool_seconds() - start);
+    tell_zoom(tool, b, &baked, tool_seconds() - start);
     return EXIT_OK;
 }
 
@@ -304,6 +304,7 @@ int cmd_bake(int argc, char **argv)
         if (argv[i][0] != '-' && stone_file_is_text(argv[i]))
             return cmd_bake_stone(argc, argv);
     glint_bake_defaults(&b.options);
+    b.halfway_db = ZOOM_BAKE_DB;
     code = parse(&tool, argc, argv, &b);
     if (code >= 0)
         return code;

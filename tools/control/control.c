@@ -58,6 +58,8 @@ const struct control_form control_forms[] = {
      "pause"},
     {CONTROL_STOP,     "stop",        NULL,       0, 0, 0, 0, 0, 0, false,
      "stop"},
+    {CONTROL_ZOOM,     "zoom",        NULL,       0, 0, 1, 1, 0, 1e5, false,
+     "zoom Z"},
 };
 /* clang-format on */
 const int control_n_forms = sizeof control_forms / sizeof *control_forms;

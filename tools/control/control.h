@@ -53,6 +53,8 @@ enum control_verb {
     CONTROL_PLAY, /* frames a second; none given: one a picture */
     CONTROL_PAUSE,
     CONTROL_STOP, /* pauses at frame 0 */
+    /* The lens. */
+    CONTROL_ZOOM, /* mm of focal length, or how far along, 0 .. 1 */
     CONTROL_VERBS
 };
 

@@ -29,7 +29,8 @@ void apart_compositor(struct apart *files, const struct compositor *compositor)
     apart_read(files, "--lens", compositor->lens);
     apart_read(files, "--lights", compositor->lights_file);
     apart_read(files, "--mask", compositor->occlusion.file);
-    apart_read(files, "--keys", compositor->keys_file);
+    if (!compositor->keys_text)
+        apart_read(files, "--keys", compositor->keys_file);
     apart_read(files, "--scene", compositor->scene.file);
     apart_read(files, "--pose", compositor->scene.pose_file);
     apart_read(files, "--control", compositor->scene.control_file);

@@ -93,6 +93,15 @@ static double focal_at(struct glint_zoom_lens *z, int32_t along_q30)
     return model_real_of(z->header.focal_mm);
 }
 
+int model_file_positions(const struct glint_zoom_lens *zoom)
+{
+    int n = 0;
+
+    for (int k = 0; k < zoom->n_models; k++)
+        n += !zoom->has[k];
+    return n;
+}
+
 enum glint_status model_file_zoom(struct model_file *model, double zoom,
                                   struct glint_error *error)
 {

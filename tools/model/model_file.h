@@ -41,6 +41,9 @@ int tool_model(const struct tool *tool, const char *path,
 enum glint_status model_file_zoom(struct model_file *model, double zoom,
                                   struct glint_error *error);
 
+/* Returns the number of positions of ZOOM that have all ghosts. */
+int model_file_positions(const struct glint_zoom_lens *zoom);
+
 /* Closes MODEL, unless it is closed already. */
 void model_file_close(struct model_file *model);
 

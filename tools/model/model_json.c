@@ -128,7 +128,8 @@ void model_json_info(const struct tool *tool, const struct model_file *model)
 {
     json_header(model);
     if (model->zoom)
-        printf(", \"positions\": %d", model->zoom->n_models);
+        printf(", \"positions\": %d, \"models\": %d",
+               model_file_positions(model->zoom), model->zoom->n_models);
     if (tool->verbose)
         json_systems(&model->lens);
     printf("}\n");

@@ -45,9 +45,11 @@ static void print_header(const struct model_file *model)
            (unsigned long)h->n_ghosts, (unsigned long)h->n_systems,
            model_mean_terms(&sum));
     if (model->zoom)
-        printf("positions           %6d along the zoom; lengths and ghosts are "
-               "of the first\n",
-               model->zoom->n_models);
+        printf(
+            "positions           %6d along the zoom, %d more of some ghosts; "
+            "lengths and ghosts are of the first\n",
+            model_file_positions(model->zoom),
+            model->zoom->n_models - model_file_positions(model->zoom));
 }
 
 static void print_errors(const struct model_summary *sum)

@@ -14,6 +14,7 @@ static const struct {
     {"bake", "levels", "gauss or mip"},
     {"bake", "lights", "a whole number, 0 to 16"},
     {"bake", "positions", "a whole number, 2 to 64"},
+    {"bake", "halfway", "dB, 20 to 60, or 0"},
     {"bake", "scale", "a factor, 1e-6 to 1e6"},
     {"bake", "size", "16, 32, 64, 128, 256, 512 or 1024"},
     {"bake", "turn", "degrees, -360 to 360"},

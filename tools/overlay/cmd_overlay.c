@@ -143,6 +143,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
         return code;
     while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             &index)) >= 0) {
+        if (c == OPT_ZOOM && zoom_clip_take(&o->zoom, optarg))
+            continue;
         code = compositor_option(tool, &o->compositor, c, optarg);
         if (code >= 0)
             return code;
@@ -444,6 +446,9 @@ static int run(struct tool *tool, struct overlay *o)
     if (code == EXIT_OK)
         code = overlay_check_apart(tool, o, o->input, o->output);
     if (code == EXIT_OK)
+        code = zoom_clip_open(tool, &o->zoom, o->is_video ? o->input : NULL,
+                              &o->compositor);
+    if (code == EXIT_OK)
         code = compositor_open(tool, &o->compositor);
     if (code != EXIT_OK)
         return code;
@@ -485,6 +490,7 @@ int cmd_overlay(int argc, char **argv)
     }
     overlay_y4m_close(o);
     compositor_close(&o->compositor);
+    zoom_clip_close(&o->zoom);
     free(o);
     return code;
 }

@@ -27,7 +27,10 @@ struct compositor {
     const char *save_file;          /* file to save lamps to, or NULL */
     const char *style;              /* the look that was chosen, or NULL */
     const char *keys_file;          /* file of key frames, or NULL */
-    char keys_line[224];            /* "FILE:LINE" of the f-number asked for */
+    /* Key frames in place of those of a file, whose name keys_file is then in
+     * messages; NULL: none. */
+    const char *keys_text;
+    char keys_line[224]; /* "FILE:LINE" of the f-number asked for */
     struct keys keys;
     struct occlusion occlusion; /* what hides lamps */
     struct over_scene scene;    /* things over the picture */
@@ -356,6 +359,18 @@ int compositor_desk_open_keys(const struct tool *tool,
 int compositor_desk_open(const struct tool *tool,
                          struct compositor *compositor);
 void compositor_desk_turn(struct compositor *compositor);
+
+/* Lets lines of control zoom the lens, before the scene is opened, if they may:
+ * key frames do not, and its model is given. */
+void compositor_zoom_control(struct compositor *compositor);
+
+/* Checks that the lens, which is open, zooms as far as lines of control and key
+ * frames say, and leaves it at the first of these. Returns an exit code. */
+int compositor_zoom_open(const struct tool *tool,
+                         struct compositor *compositor);
+
+/* Zooms as the key frames say of the next frame. */
+void compositor_zoom_turn(struct compositor *compositor);
 void compositor_desk_hide(struct compositor *compositor, int n);
 void compositor_desk_close(struct compositor *compositor);
 

@@ -96,7 +96,9 @@ int compositor_desk_open_keys(const struct tool *tool, struct compositor *c)
         turn_down(&c->settings);
     if (!c->keys_file)
         return EXIT_OK;
-    status = keys_read(&c->keys, c->keys_file, &error);
+    status = c->keys_text ? keys_parse(&c->keys, c->keys_file, c->keys_text,
+                                       strlen(c->keys_text), &error)
+                          : keys_read(&c->keys, c->keys_file, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     if (keys_has(&c->keys, KEYS_EXPOSURE)) {
@@ -171,47 +173,13 @@ static void turn_stop(struct compositor *c)
     glint_frame_retune(&c->frame);
 }
 
-/* Zooms as the key frames say. A frame at which the zoom does not go so far
- * stays where the last one was, which the first frames' check rules out. */
-static void zoom_lens(struct compositor *c)
-{
-    struct settings *const s = &c->settings;
-    const double zoom = keys_at(&c->keys, KEYS_ZOOM, c->n_frames, s->zoom.zoom);
-    struct glint_error error;
-
-    if (!keys_has(&c->keys, KEYS_ZOOM) || zoom == s->zoom.zoom)
-        return;
-    s->zoom.zoom = zoom;
-    if (settings_zoom(s, zoom, &error) != GLINT_OK)
-        return;
-    glint_setup_stop(&s->setup, &c->frame.cfg.stop);
-    glint_frame_retune(&c->frame);
-}
-
-/* Checks that the lens, which is open, zooms as far as the key frames say, and
- * leaves it at the first of them. */
-static int check_zoom(const struct tool *tool, struct compositor *c)
-{
-    struct settings *const s = &c->settings;
-    const struct key_value *const key = c->keys.key[KEYS_ZOOM];
-    struct glint_error error = {""};
-    enum glint_status status = GLINT_OK;
-
-    for (int i = c->keys.n[KEYS_ZOOM] - 1; i >= 0 && status == GLINT_OK; i--) {
-        status = settings_zoom(s, key[i].value, &error);
-        if (status != GLINT_OK)
-            return tool_usage(tool, "%.200s:%d: %s", c->keys_file, key[i].line,
-                              error.text);
-        s->zoom.zoom = key[i].value;
-    }
-    return EXIT_OK;
-}
-
 void compositor_desk_turn(struct compositor *c)
 {
     const int frame = c->n_frames;
     struct settings *const s = &c->settings;
 
+    c->scene.zoom_ctx = c;
+    over_scene_obey(&c->scene, frame);
     if (!c->keys_file)
         return;
     s->exposure_ev = keys_at(&c->keys, KEYS_EXPOSURE, frame, s->exposure_ev);
@@ -222,7 +190,7 @@ void compositor_desk_turn(struct compositor *c)
         s->starburst_asked = true;
         s->starburst = keys_at(&c->keys, KEYS_STARBURST, frame, 1);
     }
-    zoom_lens(c);
+    compositor_zoom_turn(c);
     turn_stop(c);
     move_lamp(c);
 }
@@ -240,7 +208,7 @@ int compositor_desk_open(const struct tool *tool, struct compositor *c)
         status = add_lamp(c);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    code = check_zoom(tool, c);
+    code = compositor_zoom_open(tool, c);
     return code == EXIT_OK ? check_narrowest(tool, c) : code;
 }
 

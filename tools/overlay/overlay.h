@@ -8,6 +8,7 @@
 
 #include "desk/layers.h"
 #include "overlay/compositor.h"
+#include "zooms/zoom_clip.h"
 
 struct overlay_y4m;
 
@@ -17,6 +18,7 @@ struct overlay {
     struct overlay_y4m *y4m;
     const char *input, *output;
     int start_number;
+    struct zoom_clip zoom;
     /* Frames of a video that are drawn, from 0, and how many before these are
      * looked at. */
     int first, last, warm_up;

@@ -47,41 +47,19 @@ static int open_poses(struct over_scene *over)
     return EXIT_OK;
 }
 
-/* Opens the lines of control. What those of a file name has to be there. */
-static int open_control(struct over_scene *over)
-{
-    struct glint_error error = {""};
-    enum glint_status status;
-    const struct control_line *line;
-
-    status = controls_open(&over->control, over->control_file, over->is_live,
-                           &error);
-    for (int i = 0;
-         status == GLINT_OK && (line = controls_row(&over->control, i)); i++) {
-        char where[CONTROL_WHERE];
-
-        controls_where(&over->control, i, where);
-        status = steer_check(&over->steer, line, where, &error);
-    }
-    if (status != GLINT_OK)
-        return tool_fail(over->tool, status, error.text);
-    if (over->control.is_keys && !over->tool->quiet)
-        fprintf(stderr, "%s\n", keyboard_help);
-    return EXIT_OK;
-}
-
 int over_scene_open(struct over_scene *over, const struct tool *tool)
 {
     int code;
 
     over->tool = tool;
-    if (!over->file && over->control_file)
-        return tool_usage(tool, "--control steers --scene, and there is none");
+    if (!over->file && over->control_file && !over->zoom)
+        return tool_usage(tool, "--control steers --scene or zooms a baked "
+                                "zoom, and there is neither");
+    if (!over->file && over->pose_file)
+        return tool_usage(tool, "--pose moves the things of --scene, of which "
+                                "there is none");
     if (!over->file)
-        return over->pose_file ? tool_usage(tool, "--pose moves the things of "
-                                                  "--scene, of which there is "
-                                                  "none")
-                               : EXIT_OK;
+        return over->control_file ? over_scene_open_control(over) : EXIT_OK;
     code = baked_scene_open(tool, over->file, &over->baked);
     if (code != EXIT_OK)
         return code;
@@ -98,7 +76,8 @@ int over_scene_open(struct over_scene *over, const struct tool *tool)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     if (over->pose_file)
         code = open_poses(over);
-    return code == EXIT_OK && over->control_file ? open_control(over) : code;
+    return code == EXIT_OK && over->control_file ? over_scene_open_control(over)
+                                                 : code;
 }
 
 bool over_scene_needs_lens(const struct over_scene *over)
@@ -243,31 +222,6 @@ static void take_poses(struct over_scene *over, int frame)
     over->has_said = over->poses.n_bad > 0;
 }
 
-/* ------------------------------------------------------------------- control
- */
-
-/* Obeys the lines up to PICTURE. A mistake is said, one a picture at most, and
- * ends nothing. */
-static void take_control(struct over_scene *over, int picture)
-{
-    const long before = over->control.n_bad;
-    const struct control_line *line;
-
-    while ((line = controls_next(&over->control, picture))) {
-        struct glint_error error;
-        char where[CONTROL_WHERE];
-
-        controls_where(&over->control, -1, where);
-        if (!playback_take(&over->playback, line) &&
-            steer_take(&over->steer, over->frame.scene, line, where, &error) !=
-                GLINT_OK)
-            controls_refuse(&over->control, &error);
-    }
-    if (over->control.n_bad > before && !over->tool->quiet)
-        fprintf(stderr, "glint %s: %s\n", over->tool->name,
-                over->control.bad.text);
-}
-
 /* ------------------------------------------------------------------- drawing
  */
 
@@ -337,7 +291,7 @@ enum glint_status over_scene_draw(struct over_scene *over,
     const double start = tool_seconds();
     enum glint_status status;
 
-    take_control(over, frame);
+    over_scene_obey(over, frame);
     over->shown = over->control_file
                       ? playback_next(&over->playback, 1e-6 * over->elapsed_us)
                       : frame;

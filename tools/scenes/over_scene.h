@@ -43,6 +43,11 @@ struct over_scene {
     const char *control_file; /* or NULL; "-": standard input */
     bool is_live;             /* a FIFO of poses or control is not waited for */
     struct scene_dials asked; /* by options; of size and camera nothing */
+    /* Zooms the lens, for lines of control; GLINT_E_ARGUMENT: ERROR says why it
+     * does not go there. NULL: there is none. */
+    enum glint_status (*zoom)(void *ctx, double zoom,
+                              struct glint_error *error);
+    void *zoom_ctx;
 
     double budget_ms;   /* what drawing may take; 0: as long as it does */
     double flare_ms;    /* of that for a flare of default quality; 0: there is
@@ -75,8 +80,8 @@ struct over_scene {
     int lamps_hidden; /* lamps and lights of which nothing is seen */
 };
 
-/* Opens scene and poses, if there are any. Returns an exit code, after printing
- * the reason on failure. */
+/* Opens scene, poses and lines of control, if there are any. Returns an exit
+ * code, after printing the reason on failure. */
 int over_scene_open(struct over_scene *over, const struct tool *tool);
 
 /* Returns whether the camera of the scene has the field of the lens. */
@@ -93,6 +98,14 @@ int over_scene_size(struct over_scene *over, const struct scene_dials *dials);
  * finer than QUALITY, as of --quality; 1: as asked. A budget turns them by
  * itself. GLINT_E_MEMORY. */
 enum glint_status over_scene_coarsen(struct over_scene *over, double quality);
+
+/* Opens the lines of control. What those of a file name has to be there.
+ * Returns an exit code. */
+int over_scene_open_control(struct over_scene *over);
+
+/* Obeys the lines of control up to FRAME. Drawing it does so, but the lens has
+ * to be zoomed before lamps are placed. */
+void over_scene_obey(struct over_scene *over, int frame);
 
 /* Draws the scene of frame FRAME onto IMAGE. */
 enum glint_status over_scene_draw(struct over_scene *over,

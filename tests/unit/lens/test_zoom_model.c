@@ -6,6 +6,7 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -198,6 +199,76 @@ static void test_between(void **state)
     assert_true(off_at(0.48).pixels < 1 && off_at(0.52).pixels < 1);
 }
 
+/* --------------------------------------------------------------- some ghosts
+ */
+
+/* Checks that ghost G of A and of B is the same at half the way and beyond. */
+static void check_alike(struct glint_zoom_lens *a, struct glint_zoom_lens *b,
+                        int g)
+{
+    static struct glint_transfer from, to;
+
+    for (int k = 1; k < 8; k++) {
+        int there;
+
+        memset(&from, 0, sizeof from);
+        memset(&to, 0, sizeof to);
+        glint_zoom_set(a, k << 27);
+        glint_zoom_set(b, k << 27);
+        there = glint_transfer_init(&from, &a->lens, g, 1 << 25, middle_q24);
+        assert_int_equal(
+            glint_transfer_init(&to, &b->lens, g, 1 << 25, middle_q24), there);
+        if (there)
+            assert_memory_equal(&from.of, &to.of, sizeof to.of.table);
+    }
+}
+
+/* Of a position that has one ghost, that one is mixed of three positions, and
+ * the others of two. */
+static void test_some(void **state)
+{
+    static struct glint_zoom_lens some, two;
+    static struct glint_prescription at;
+    struct glint_bake_model pair[2] = {model[0], model[2]};
+    struct glint_bake_model three[POSITIONS] = {model[0], model[1], model[2]};
+    bool ghosts[GLINT_MAX_GHOSTS] = {false, true};
+    struct glint_bake_options options;
+    struct glint_bake_report report;
+    struct glint_error error = {""};
+    unsigned char *of_some, *of_two;
+    const char *reason = "";
+    struct glint_lens alone;
+    size_t n_some, n_two;
+
+    (void)state;
+    glint_bake_defaults(&options);
+    options.max_deg = 8;
+    options.ghosts = three[1].ghosts = ghosts;
+    move_to(&at, 0.5);
+    assert_int_equal(glint_bake(&at, &options, &three[1].data, &three[1].bytes,
+                                &report, &error),
+                     GLINT_OK);
+    assert_int_equal(
+        glint_lens_open(&alone, three[1].data, three[1].bytes, &reason),
+        GLINT_OK);
+    for (uint32_t g = 0; g < alone.header->n_ghosts; g++)
+        assert_int_equal(alone.ghost[g].n_systems > 0,
+                         g == 1 || g + alone.header->n_parts >=
+                                       alone.header->n_ghosts);
+    assert_int_equal(glint_bake_zoom(three, 3, &of_some, &n_some, &error),
+                     GLINT_OK);
+    assert_int_equal(glint_bake_zoom(pair, 2, &of_two, &n_two, &error),
+                     GLINT_OK);
+    assert_int_equal(glint_zoom_open(&some, of_some, n_some, &reason),
+                     GLINT_OK);
+    assert_int_equal(glint_zoom_open(&two, of_two, n_two, &reason), GLINT_OK);
+    check_alike(&some, &two, 0);
+    check_alike(&some, &zoom, 1);
+    free(three[1].data);
+    free(of_some);
+    free(of_two);
+}
+
 /* ----------------------------------------------------------------- refusals */
 
 static void refuses(const char *cause)
@@ -237,6 +308,12 @@ static void test_refusals(void **state)
     m[1].at += 4;
     refuses("glint model");
     m[1] = kept;
+    m[1].has_at = (uint32_t)bytes;
+    refuses("list of ghosts");
+    m[1] = kept;
+    m[0].has_at = h->model_at;
+    refuses("lacks ghosts");
+    m[0].has_at = 0;
     h->n_models = 1;
     refuses("fewer than 2");
     h->n_models = 1000;
@@ -251,6 +328,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_positions),
         cmocka_unit_test(test_between),
+        cmocka_unit_test(test_some),
         cmocka_unit_test(test_refusals),
     };
 

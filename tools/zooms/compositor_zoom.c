@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Zooms a compositor's lens from frame to frame: by key frames and by lines of
+ * control. */
+#include "overlay/compositor.h"
+
+/* Zooms to ZOOM; GLINT_E_ARGUMENT: it stays where it was. */
+static enum glint_status zoom_to(struct compositor *c, double zoom,
+                                 struct glint_error *error)
+{
+    struct settings *const s = &c->settings;
+    const enum glint_status status = settings_zoom(s, zoom, error);
+
+    if (status != GLINT_OK)
+        return status;
+    s->zoom.zoom = zoom;
+    glint_setup_stop(&s->setup, &c->frame.cfg.stop);
+    glint_frame_retune(&c->frame);
+    return GLINT_OK;
+}
+
+/* Obeys a line of control. */
+static enum glint_status obey(void *ctx, double zoom, struct glint_error *error)
+{
+    return zoom_to(ctx, zoom, error);
+}
+
+void compositor_zoom_control(struct compositor *c)
+{
+    if (!c->has_lens || !tool_is_model(c->lens) ||
+        keys_has(&c->keys, KEYS_ZOOM))
+        return;
+    c->scene.zoom = obey;
+}
+
+/* Says what is wrong with a line of control. Returns an exit code. */
+static int bad_line(const struct tool *tool, const char *where, int column,
+                    const char *cause)
+{
+    struct glint_error error = {""};
+
+    control_fail(&error, where, column, "%s", cause);
+    return tool_fail(tool, GLINT_E_FORMAT, error.text);
+}
+
+/* Checks that the lens zooms as far as the lines of control say, and leaves it
+ * where it was. */
+static int check_control(const struct tool *tool, struct compositor *c)
+{
+    struct settings *const s = &c->settings;
+    const double before = s->zoom.zoom;
+    const struct control_line *line;
+    struct glint_error error = {""};
+
+    if (c->scene.control_file && !c->scene.is_open && !s->model.zoom)
+        return tool_usage(tool,
+                          "%s is of one position: --control zooms what 'glint "
+                          "bake --positions' made, or steers --scene",
+                          c->lens);
+    for (int i = 0; (line = controls_row(&c->scene.control, i)); i++) {
+        char where[CONTROL_WHERE];
+
+        if (line->verb != CONTROL_ZOOM ||
+            settings_zoom(s, line->v[0], &error) == GLINT_OK)
+            continue;
+        controls_where(&c->scene.control, i, where);
+        return bad_line(tool, where, line->column, error.text);
+    }
+    if (s->model.zoom)
+        settings_zoom(s, before, &error);
+    return EXIT_OK;
+}
+
+/* Checks the same of the key frames, and leaves it at the first of them. */
+static int check_keys(const struct tool *tool, struct compositor *c)
+{
+    struct settings *const s = &c->settings;
+    const struct key_value *const key = c->keys.key[KEYS_ZOOM];
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_OK;
+
+    for (int i = c->keys.n[KEYS_ZOOM] - 1; i >= 0 && status == GLINT_OK; i--) {
+        status = settings_zoom(s, key[i].value, &error);
+        if (status != GLINT_OK)
+            return tool_usage(tool, "%.200s:%d: %s", c->keys_file, key[i].line,
+                              error.text);
+        s->zoom.zoom = key[i].value;
+    }
+    return EXIT_OK;
+}
+
+int compositor_zoom_open(const struct tool *tool, struct compositor *c)
+{
+    const int code = check_control(tool, c);
+
+    return code == EXIT_OK ? check_keys(tool, c) : code;
+}
+
+/* A frame at which the zoom does not go so far stays where the last one was,
+ * which the first frames' check rules out. */
+void compositor_zoom_turn(struct compositor *c)
+{
+    const double before = c->settings.zoom.zoom;
+    const double zoom = keys_at(&c->keys, KEYS_ZOOM, c->n_frames, before);
+    struct glint_error error;
+
+    if (keys_has(&c->keys, KEYS_ZOOM) && zoom != before)
+        zoom_to(c, zoom, &error);
+}

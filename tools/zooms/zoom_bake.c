@@ -1,0 +1,310 @@
+/* SPDX-License-Identifier: MIT */
+#include "zooms/zoom_bake.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "zooms/zoom_error.h"
+
+enum {
+    DEPTH = 4, /* most times that a step is halved */
+    LAST = 2,  /* the finest step, half-way of which is only measured */
+    /* Places: positions, and what lies half-way between the finest. */
+    PLACES = 2 * GLINT_MAX_ZOOM_MODELS - 1
+};
+
+/* Errors at the angles that are measured are brought to so many dB less than
+ * what is asked for, as others have more. */
+#define MARGIN_DB 1.5
+/* Lights half-way come from angles up to this times the half diagonal of what
+ * the widest position sees. */
+#define BEYOND 1.5
+/* Share of the error of the step before: a ghost that keeps more, and is not
+ * so far off that its place does not matter, gains nothing by another position:
+ * its models themselves are no better. */
+#define STUCK 0.9
+#define FAR   10 /* times what is asked for */
+
+struct place {
+    struct glint_bake_model model; /* no data: nothing is baked there */
+    bool *ghosts;                  /* that are baked there, [n_ghosts] */
+    struct zoom_error left; /* in the step that begins here, of ghosts that are
+                               good enough */
+    double *before; /* largest error of each ghost half-way in the step that
+                       the one that begins here is half of; 0: none */
+};
+
+struct run {
+    struct tool *tool;
+    const struct zoom_bake *bake;
+    struct zoom_baked *baked;
+    struct glint_error *error;
+    struct glint_prescription lens; /* at the place in work */
+    int n_ghosts, n_places, step;
+    double max_deg, start;
+    struct place place[PLACES];
+    struct zoom_error *ghost; /* [n_ghosts] */
+    bool *asked, *is_stuck;   /* [n_ghosts] */
+    struct glint_zoom_lens zoom;
+};
+
+/* Zooms the lens of RUN to PLACE. */
+static enum glint_status move_to(struct run *run, int place)
+{
+    const struct zoom_bake *const b = run->bake;
+    enum glint_status status;
+
+    run->lens = *b->lens;
+    status = glint_prescription_zoom(&run->lens, place / (run->n_places - 1.0),
+                                     run->error);
+    if (status == GLINT_OK && b->focus_m > 0)
+        status = glint_prescription_focus(&run->lens, b->focus_m, run->error);
+    if (status == GLINT_OK && b->f_number > 0)
+        status = glint_prescription_set_f_number(&run->lens, b->f_number,
+                                                 run->error);
+    return status;
+}
+
+/* Bakes the ghosts of PLACE, all if WHOLE. */
+static enum glint_status bake_place(struct run *run, int place, bool whole)
+{
+    struct place *const p = &run->place[place];
+    struct glint_bake_options options = *run->bake->options;
+    struct glint_bake_report report;
+    struct tool_progress progress;
+    enum glint_status status = move_to(run, place);
+
+    options.ghosts = p->model.ghosts = whole ? NULL : p->ghosts;
+    options.workers = run->tool->workers;
+    options.progress = tool_progress_show;
+    options.progress_ctx = &progress;
+    tool_progress_start(&progress, run->tool, "bake");
+    if (status == GLINT_OK)
+        status = glint_bake(&run->lens, &options, &p->model.data,
+                            &p->model.bytes, &report, run->error);
+    tool_progress_end(&progress);
+    p->model.along_q30 = (int32_t)lrint(place / (run->n_places - 1.0) * 0x1p30);
+    for (int g = 0; g < run->n_ghosts; g++) {
+        p->ghosts[g] |= whole;
+        run->baked->n_bakes += p->ghosts[g];
+    }
+    return status;
+}
+
+/* Puts all that has been baked into one model, in place of the one before. */
+static enum glint_status join(struct run *run)
+{
+    struct glint_bake_model model[GLINT_MAX_ZOOM_MODELS];
+    struct zoom_baked *const baked = run->baked;
+    const char *reason;
+
+    baked->n_models = 0;
+    for (int k = 0; k < run->n_places; k++)
+        if (run->place[k].model.data)
+            model[baked->n_models++] = run->place[k].model;
+    free(baked->data);
+    baked->data = NULL;
+    return glint_bake_zoom(model, baked->n_models, &baked->data, &baked->bytes,
+                           run->error) == GLINT_OK
+               ? glint_zoom_open(&run->zoom, baked->data, baked->bytes, &reason)
+               : GLINT_E_LENS;
+}
+
+/* Returns the error that all ghosts together may leave. */
+static double most_error(const struct run *run)
+{
+    return pow(10, -0.1 * (run->bake->halfway_db + MARGIN_DB));
+}
+
+/* Chooses ghosts to be baked at TO until all others are exact enough, and
+ * leaves in LEFT what these leave. Returns how many. */
+static int choose(struct run *run, struct place *to, struct zoom_error *left)
+{
+    const double most = most_error(run);
+    int n = 0;
+
+    for (int g = 0; g < run->n_ghosts; g++)
+        for (int a = 0; a < ZOOM_ANGLES; a++) {
+            left->of[a] += run->ghost[g].of[a];
+            run->ghost[g].of[a] *= !run->is_stuck[g];
+        }
+    for (;; n++) {
+        int angle = 0, worst = 0;
+
+        for (int a = 1; a < ZOOM_ANGLES; a++)
+            angle = left->of[a] > left->of[angle] ? a : angle;
+        for (int g = 1; g < run->n_ghosts; g++)
+            worst = run->ghost[g].of[angle] > run->ghost[worst].of[angle]
+                        ? g
+                        : worst;
+        if (left->of[angle] <= most || run->ghost[worst].of[angle] <= 0)
+            return n;
+        to->ghosts[worst] = true;
+        for (int a = 0; a < ZOOM_ANGLES; a++) {
+            left->of[a] -= run->ghost[worst].of[a];
+            run->ghost[worst].of[a] = 0;
+        }
+    }
+}
+
+/* Notes how exact the zoom is where it is set, with what is LEFT there. */
+static void note(struct run *run, const struct zoom_error *left, int n_added)
+{
+    struct zoom_baked *const baked = run->baked;
+    double worst = 0, db;
+
+    for (int a = 0; a < ZOOM_ANGLES; a++)
+        worst = fmax(worst, left->of[a]);
+    db = fmin(99, -10 * log10(fmax(worst, 1e-10)));
+    if (baked->least_db <= 0 || db < baked->least_db) {
+        baked->least_db = db;
+        baked->least_mm = glint_real_value(run->zoom.header.focal_mm);
+    }
+    if (!run->tool->quiet)
+        fprintf(stderr, "glint bake: %.2f mm: %d ghosts more, %.0f s\n",
+                glint_real_value(run->zoom.header.focal_mm), n_added,
+                tool_seconds() - run->start);
+}
+
+/* Notes the largest error of each ghost half-way at MIDDLE of the step that
+ * begins at FROM, and which are stuck. */
+static void compare_steps(struct run *run, int from, int middle)
+{
+    for (int g = 0; g < run->n_ghosts; g++) {
+        double worst = 0;
+
+        for (int a = 0; a < ZOOM_ANGLES; a++)
+            worst = fmax(worst, run->ghost[g].of[a]);
+        run->is_stuck[g] =
+            run->step == LAST ||
+            (worst < FAR * most_error(run) && run->place[from].before[g] > 0 &&
+             worst > STUCK * run->place[from].before[g]);
+        run->place[from].before[g] = run->place[middle].before[g] = worst;
+    }
+}
+
+/* Measures half-way between FROM and the next place of the step, and bakes
+ * there what has to be. */
+static enum glint_status halve(struct run *run, int from)
+{
+    const int middle = from + run->step / 2, to = from + run->step;
+    struct place *const p = &run->place[middle];
+    struct zoom_error left = run->place[from].left;
+    enum glint_status status;
+    int n = 0;
+
+    for (int g = 0; g < run->n_ghosts; g++) {
+        run->asked[g] = run->place[from].ghosts[g] && run->place[to].ghosts[g];
+        n += run->asked[g];
+    }
+    p->left = left;
+    if (n == 0)
+        return GLINT_OK;
+    glint_zoom_set(&run->zoom,
+                   (int32_t)lrint(middle / (run->n_places - 1.0) * 0x1p30));
+    status = move_to(run, middle);
+    if (status == GLINT_OK)
+        status = zoom_error_measure(run->tool, &run->lens, &run->zoom,
+                                    run->max_deg, run->asked, run->n_ghosts,
+                                    run->ghost, run->error);
+    if (status != GLINT_OK)
+        return status;
+    compare_steps(run, from, middle);
+    n = choose(run, p, &left);
+    p->left = run->place[from].left = left;
+    note(run, &left, n);
+    return n > 0 ? bake_place(run, middle, false) : GLINT_OK;
+}
+
+/* Bakes the even positions, and halves steps between them. */
+static enum glint_status bake_all(struct run *run)
+{
+    const int first = run->step;
+    enum glint_status status = GLINT_OK;
+
+    for (int k = 0; k < run->n_places && status == GLINT_OK; k += first) {
+        status = bake_place(run, k, true);
+        if (status == GLINT_OK && !run->tool->quiet)
+            fprintf(stderr, "glint bake: position %d of %d, %.0f s\n",
+                    k / first + 1, run->bake->positions,
+                    tool_seconds() - run->start);
+    }
+    if (status == GLINT_OK)
+        status = join(run);
+    for (; run->step >= LAST && run->bake->halfway_db > 0 && status == GLINT_OK;
+         run->step /= 2) {
+        for (int k = 0; k + 1 < run->n_places && status == GLINT_OK;
+             k += run->step)
+            status = halve(run, k);
+        if (status == GLINT_OK)
+            status = join(run);
+    }
+    return status;
+}
+
+static bool reserve(struct run *run)
+{
+    const size_t n = (size_t)run->n_ghosts + 1;
+
+    run->ghost = calloc(n, sizeof *run->ghost);
+    run->asked = calloc(n, sizeof *run->asked);
+    run->is_stuck = calloc(n, sizeof *run->is_stuck);
+    for (int k = 0; k < run->n_places; k++) {
+        run->place[k].ghosts = calloc(n, sizeof(bool));
+        run->place[k].before = calloc(n, sizeof(double));
+        if (!run->place[k].ghosts || !run->place[k].before)
+            return false;
+    }
+    return run->ghost && run->asked && run->is_stuck;
+}
+
+enum glint_status zoom_bake_run(struct tool *tool, const struct zoom_bake *bake,
+                                struct zoom_baked *baked,
+                                struct glint_error *error)
+{
+    struct run *const run = calloc(1, sizeof *run);
+    const int n = bake->positions - 1;
+    enum glint_status status = GLINT_E_MEMORY;
+
+    *baked = (struct zoom_baked){.data = NULL};
+    if (!run)
+        return status;
+    run->tool = tool;
+    run->bake = bake;
+    run->baked = baked;
+    run->error = error;
+    run->start = tool_seconds();
+    run->step = LAST << (bake->halfway_db > 0 ? DEPTH : 0);
+    while (n * run->step + 1 > PLACES)
+        run->step /= 2;
+    run->n_places = n * run->step + 1;
+    run->n_ghosts = glint_ghost_list(bake->lens, NULL, 0);
+    if (reserve(run))
+        status = move_to(run, 0);
+    if (status == GLINT_OK) {
+        struct glint_optics optics;
+
+        glint_optics_of(&run->lens, &optics);
+        run->max_deg = fmin(
+            bake->options->max_deg,
+            BEYOND * 180 / GLINT_PI *
+                atan(0.5 *
+                     hypot(run->lens.film_width_mm, run->lens.film_height_mm) /
+                     fabs(optics.focal_mm)));
+        status = bake_all(run);
+    }
+    for (int k = 0; k < run->n_places; k++) {
+        free(run->place[k].model.data);
+        free(run->place[k].ghosts);
+        free(run->place[k].before);
+    }
+    free(run->ghost);
+    free(run->asked);
+    free(run->is_stuck);
+    free(run);
+    if (status != GLINT_OK) {
+        free(baked->data);
+        baked->data = NULL;
+    }
+    return status;
+}

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Bakes a zoom at several positions into one model.
+ *
+ *   in   a table of several positions, how many to bake at least
+ *   out  a model of all ghosts at these, evenly along the zoom, and of those
+ *        ghosts that need it half-way between, again and again until pictures
+ *        there are exact enough */
+#ifndef GLINT_TOOLS_MODEL_ZOOM_BAKE_H
+#define GLINT_TOOLS_MODEL_ZOOM_BAKE_H
+
+#include "glint/bake.h"
+#include "options/tool.h"
+
+/* Half-way between positions pictures are brought to so many dB of exact ones
+ * by default. */
+#define ZOOM_BAKE_DB 45
+
+struct zoom_bake {
+    const struct glint_prescription *lens;    /* as it was read */
+    const struct glint_bake_options *options; /* without ghosts */
+    double focus_m, f_number;                 /* 0: the table's */
+    int positions;                            /* 2 or more */
+    double halfway_db;                        /* 0: nothing is added */
+};
+
+/* A model, to be freed, and what it is. */
+struct zoom_baked {
+    unsigned char *data;
+    size_t bytes;
+    int n_models; /* number of positions of any ghost */
+    int n_bakes;  /* number of ghosts that were baked, over all positions */
+    /* PSNR of pictures half-way, the least, and at which focal length, mm; 0 if
+     * none was looked at. */
+    double least_db, least_mm;
+};
+
+enum glint_status zoom_bake_run(struct tool *tool, const struct zoom_bake *bake,
+                                struct zoom_baked *baked,
+                                struct glint_error *error);
+
+#endif

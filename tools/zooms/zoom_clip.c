@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: MIT */
+#include "zooms/zoom_clip.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "overlay/child.h"
+#include "video/y4m.h"
+
+enum { ROW = 40, MOST_FRAMES = 10000000 };
+
+static const char heading[] = "frame,zoom\n";
+
+bool zoom_clip_take(struct zoom_clip *clip, const char *text)
+{
+    char from[32];
+    const size_t n = strcspn(text, "-");
+
+    if (n == 0 || n >= sizeof from || text[n] != '-')
+        return false;
+    memcpy(from, text, n);
+    from[n] = '\0';
+    clip->is_asked = tool_number(from, &clip->from) &&
+                     tool_number(text + n + 1, &clip->to) && clip->from >= 0 &&
+                     clip->to >= 0;
+    return clip->is_asked;
+}
+
+/* Returns the number of frames of the y4m file NAME; 0 if it cannot be read. */
+static long count_y4m(const char *name, struct glint_error *error)
+{
+    struct glint_y4m_reader in;
+    const struct glint_image *frame;
+    long n = 0;
+
+    if (glint_y4m_reader_open(&in, name, error) != GLINT_OK)
+        return 0;
+    while (glint_y4m_reader_next(&in, &frame, error) == GLINT_OK && frame)
+        n = in.n_frames;
+    glint_y4m_reader_close(&in);
+    return n;
+}
+
+/* Returns the number of frames that ffprobe counts in NAME; 0 if it cannot. */
+static long count_others(const char *name)
+{
+    char url[4096], text[64];
+    const char *const argv[] = {"ffprobe",
+                                "-v",
+                                "quiet",
+                                "-select_streams",
+                                "v:0",
+                                "-count_packets",
+                                "-show_entries",
+                                "stream=nb_read_packets",
+                                "-of",
+                                "csv=p=0",
+                                url,
+                                NULL};
+    struct glint_error error;
+    struct child child;
+    size_t used = 0;
+    ssize_t n;
+
+    if ((size_t)snprintf(url, sizeof url, "file:%s", name) >= sizeof url ||
+        child_start(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
+        return 0;
+    while (used < sizeof text - 1 &&
+           (n = read(child.fd, text + used, sizeof text - 1 - used)) > 0)
+        used += (size_t)n;
+    text[used] = '\0';
+    return child_end(&child) == 0 ? strtol(text, NULL, 10) : 0;
+}
+
+/* Returns key frames for N frames, malloc'ed. */
+static char *make_keys(const struct zoom_clip *clip, long n)
+{
+    const bool is_mm = clip->from > 1;
+    const size_t room = sizeof heading + (size_t)n * ROW;
+    char *const text = malloc(room);
+    size_t at = sizeof heading - 1;
+
+    if (!text)
+        return NULL;
+    memcpy(text, heading, sizeof heading);
+    for (long k = 0; k < n; k++) {
+        const double part = n > 1 ? (double)k / (double)(n - 1) : 0;
+        const double zoom = is_mm
+                                ? clip->from * pow(clip->to / clip->from, part)
+                                : clip->from + (clip->to - clip->from) * part;
+
+        at += (size_t)snprintf(text + at, room - at, "%ld,%.12g\n", k, zoom);
+    }
+    return text;
+}
+
+int zoom_clip_open(struct tool *tool, struct zoom_clip *clip, const char *input,
+                   struct compositor *compositor)
+{
+    struct glint_error error = {""};
+    long n;
+
+    if (!clip->is_asked)
+        return EXIT_OK;
+    if ((clip->from > 1) != (clip->to > 1))
+        return tool_usage(tool,
+                          "--zoom %g-%g: both are mm, or both 0 to 1 along the "
+                          "way",
+                          clip->from, clip->to);
+    if (compositor->keys_file)
+        return tool_usage(tool, "--zoom A-B does not go with --keys: give the "
+                                "key frames a column zoom");
+    if (!input || strcmp(input, "-") == 0)
+        return tool_usage(tool, "--zoom A-B is over all frames of a video in a "
+                                "file: else give --keys a column zoom");
+    n = strlen(input) > 4 && strcmp(input + strlen(input) - 4, ".y4m") == 0
+            ? count_y4m(input, &error)
+            : count_others(input);
+    if (n <= 0 || n > MOST_FRAMES)
+        return tool_fail(tool, GLINT_E_FORMAT,
+                         error.text[0]
+                             ? error.text
+                             : "--zoom A-B: how many frames there are "
+                               "cannot be told (ffprobe)");
+    clip->keys = make_keys(clip, n);
+    if (!clip->keys)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    compositor->keys_file = "--zoom";
+    compositor->keys_text = clip->keys;
+    return EXIT_OK;
+}
+
+void zoom_clip_close(struct zoom_clip *clip)
+{
+    free(clip->keys);
+    clip->keys = NULL;
+}

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * How far a zoom is off between positions, ghost by ghost, in pictures.
+ *
+ *   in   a zoom that is set somewhere, the table zoomed to the same place
+ *   out  of each ghost and of lights at several angles, the mean squared error
+ *        of the whole picture, as shares of white in sRGB, if all but that
+ *        ghost was exact
+ *
+ * Pictures are exposed as glint compare does. */
+#ifndef GLINT_TOOLS_MODEL_ZOOM_ERROR_H
+#define GLINT_TOOLS_MODEL_ZOOM_ERROR_H
+
+#include "glint/model.h"
+#include "options/tool.h"
+#include "glint/bake.h"
+
+enum { ZOOM_ANGLES = 6 };
+
+/* Errors of one ghost, by angle. */
+struct zoom_error {
+    double of[ZOOM_ANGLES];
+};
+
+/* Sets ERROR[ghost] of those of the N ghosts that GHOSTS names, those of others
+ * to 0. Lights go up to MAX_DEG. */
+enum glint_status zoom_error_measure(const struct tool *tool,
+                                     const struct glint_prescription *lens,
+                                     const struct glint_zoom_lens *zoom,
+                                     double max_deg, const bool *ghosts, int n,
+                                     struct zoom_error *error,
+                                     struct glint_error *message);
+
+#endif
