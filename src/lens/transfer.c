@@ -164,6 +164,10 @@ static void set_box(struct glint_transfer *t, const struct glint_lens *lens,
                                               set->p_q30[1], set->w_q30[1])
                               : box_side(side, set->s_q30[1], set->w_q30[1]);
     }
+    /* The check of a model looks at a grid of places; between them a half size
+     * that falls below 0 is 0. */
+    for (int k = 1; k < 3; k++)
+        t->box[k] = t->box[k] < 0 ? 0 : t->box[k];
 }
 
 /* Sets the terms of an output in the sparse basis, interpolated between two

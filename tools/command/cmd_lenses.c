@@ -26,10 +26,12 @@ static const char help[] =
     "\n"
     "The lenses that come with glint: the name that --lens takes, focal "
     "length\n"
-    "and widest angle to a corner of the film, f-number, film, ghosts, and\n"
-    "whether a model is baked already, which else is done when a lens is "
-    "first\n"
-    "drawn and takes seconds to minutes. A lens of your own is a .lens file\n"
+    "and angle off the axis at a corner of the film (90+: 90 degrees or "
+    "more),\n"
+    "f-number, film, ghosts, and whether a model is baked already, which else "
+    "is\n"
+    "done when a lens is first drawn and takes seconds to minutes. A lens of "
+    "your own is a .lens file\n"
     "(lenses/README.md); those in the folder $GLINT_LENSES are listed, too.\n"
     "\n"
     "  --names           their names alone, a line each\n"
@@ -111,13 +113,26 @@ static int set_entry(const struct tool *tool, const char *name, struct entry *e,
 
 /* ------------------------------------------------------------------ tables */
 
+/* Degrees: lenses whose corner is wider by the tangent have it by their own
+ * projection, for which 85 chief rays are traced, instead. */
+#define WIDE_DEG 40.0
+/* Degrees: the widest angle that a light of a picture has. */
+#define WIDEST_DEG 89.9
+
 static double corner_deg(const struct entry *e)
 {
     const struct glint_prescription *l = &e->settings.lens;
+    const double rho =
+        0.5 * hypot(l->film_width_mm, l->film_height_mm) / e->optics.focal_mm;
+    const double deg = 45 / atan(1) * atan(rho);
+    struct glint_projection projection;
+    struct glint_error error;
+    double miss_deg;
 
-    return 45 / atan(1) *
-           atan(0.5 * hypot(l->film_width_mm, l->film_height_mm) /
-                e->optics.focal_mm);
+    return deg > WIDE_DEG && glint_projection_of(&projection, l, &miss_deg,
+                                                 &error) == GLINT_OK
+               ? glint_projection_deg(&projection, rho)
+               : deg;
 }
 
 static void print_json(struct lenses *l, const char *name,
@@ -140,6 +155,7 @@ static void print_json(struct lenses *l, const char *name,
 static void print_text(struct lenses *l, const char *name,
                        const struct entry *e)
 {
+    const double corner = corner_deg(e);
     char film[32];
 
     if (l->n++ == 0)
@@ -147,9 +163,10 @@ static void print_text(struct lenses *l, const char *name,
                "corner", "f/", "film mm", "ghosts", "model");
     snprintf(film, sizeof film, "%gx%g", e->settings.lens.film_width_mm,
              e->settings.lens.film_height_mm);
-    printf("%-24s %9.1f %4.0f deg %5g  %-9s %6d  %s\n", name,
-           e->optics.focal_mm, corner_deg(e), e->settings.lens.f_number, film,
-           e->n_ghosts, e->is_baked ? "baked" : "not yet");
+    printf("%-24s %9.1f %4.0f%cdeg %5g  %-9s %6d  %s\n", name,
+           e->optics.focal_mm, corner, corner < WIDEST_DEG ? ' ' : '+',
+           e->settings.lens.f_number, film, e->n_ghosts,
+           e->is_baked ? "baked" : "not yet");
     if (l->tool->verbose || l->n_words)
         printf("    %s%s%s\n", e->settings.lens.source,
                *e->settings.lens.character ? "\n    " : "",

@@ -15,7 +15,8 @@
 
 static const char help[] =
     "glint trace LENS --ghost K --angle DEG --wavelength NM --grid N [--csv]\n"
-    "            [--model MODEL] [--coating C] [--zoom Z] [--focus M]\n"
+    "            [--pupil] [--model MODEL] [--coating C] [--zoom Z] [--focus "
+    "M]\n"
     "\n"
     "Prints one line a ray, over an N x N grid that spans the clear square of\n"
     "the front element, x fastest:\n"
@@ -28,6 +29,9 @@ static const char help[] =
     "  --angle DEG      off the axis, below 90 (default 0)\n"
     "  --wavelength NM  default 532\n"
     "  --grid N         1 to 4096 rays a side (default 17)\n"
+    "  --pupil          the grid spans where light of this path comes in, "
+    "which\n"
+    "                   in wide lenses is a small part of the front\n"
     "  --model MODEL    the same rays by a model that was baked from LENS: "
     "its\n"
     "                   integers as render and overlay use them. Status 1\n"
@@ -41,6 +45,7 @@ struct options {
     struct coating coating;
     struct zoom_option zoom;
     int ghost, grid;
+    bool pupil; /* the grid spans the pupil alone */
     double angle_deg, wavelength_nm;
 };
 
@@ -52,6 +57,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct options *o)
         {"wavelength", required_argument, NULL, 'w'},
         {"grid", required_argument, NULL, 'n'},
         {"model", required_argument, NULL, 'm'},
+        {"pupil", no_argument, NULL, 'p'},
         {"csv", no_argument, NULL, 'c'},
         {"coating", required_argument, NULL, 'C'},
         ZOOM_OPTIONS('z', 'F'),
@@ -77,6 +83,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct options *o)
             ok = zoom_option_focus(&o->zoom, optarg);
         else if (c == 'm')
             o->model = optarg;
+        else if (c == 'p')
+            o->pupil = true;
         else if (c != 'c')
             code = c == 'C' ? coating_take(tool, &o->coating, optarg)
                             : tool_option(tool, c, optarg);
@@ -255,20 +263,51 @@ static int prepare_model(const struct tool *tool, const struct options *o,
 
 /* --------------------------------------------------------------------- both */
 
-static void print_rays(const struct options *o, double semi,
+/* Sets AREA to the part of the front's vertex plane that the grid spans.
+ * Returns an exit code. */
+static int area_of(const struct tool *tool, const struct options *o,
+                   const struct glint_prescription *lens,
+                   const struct tracer *tracer, struct glint_pupil *area)
+{
+    const double semi = lens->surface[0].semi_mm;
+    struct glint_optics optics;
+
+    *area = (struct glint_pupil){
+        .x0_mm = -semi, .x1_mm = semi, .y0_mm = -semi, .y1_mm = semi};
+    if (!o->pupil)
+        return EXIT_OK;
+    glint_optics_of(lens, &optics);
+    if (!glint_pupil_find(area, &tracer->path, o->angle_deg,
+                          optics.stop_radius_mm, NULL))
+        return tool_fail(tool, GLINT_E_LENS,
+                         "no light of this path gets through the stop and the "
+                         "barrels");
+    if (area->mirrored)
+        area->y0_mm = -area->y1_mm;
+    return EXIT_OK;
+}
+
+static double place(double from, double to, int k, int last)
+{
+    return last ? from + (to - from) * k / last : 0.5 * (from + to);
+}
+
+static void print_rays(const struct tool *tool, const struct options *o,
+                       const struct glint_pupil *area,
                        const struct tracer *tracer)
 {
     const int last = o->grid - 1;
+    int n = 0;
 
     printf("px,py,status,stop_x,stop_y,sensor_x,sensor_y,energy,rel_radius\n");
     for (int k = 0; k < o->grid * o->grid && !ferror(stdout); k++) {
-        const int i = k % o->grid, j = k / o->grid;
-        const double x = last ? semi * (2.0 * i - last) / last : 0;
-        const double y = last ? semi * (2.0 * j - last) / last : 0;
+        const double x = place(area->x0_mm, area->x1_mm, k % o->grid, last);
+        const double y = place(area->y0_mm, area->y1_mm, k / o->grid, last);
         struct glint_ray ray;
         const enum glint_ray_status status = tracer->trace(tracer, x, y, &ray);
 
         printf("%.12g,%.12g,%d,", x, y, (int)status);
+        n += status == GLINT_RAY_OK;
         if (status == GLINT_RAY_OK)
             printf("%.12g,%.12g,%.12g,%.12g,%.12g,%.12g\n", ray.stop_x_mm,
                    ray.stop_y_mm, ray.sensor_x_mm, ray.sensor_y_mm, ray.energy,
@@ -276,6 +315,9 @@ static void print_rays(const struct options *o, double semi,
         else
             printf(",,,,,\n");
     }
+    if (n == 0 && !o->pupil && !tool->quiet)
+        fprintf(stderr, "glint trace: no ray of this grid gets through; "
+                        "--pupil spans where light comes in\n");
 }
 
 static int trace(const struct tool *tool, const struct options *o,
@@ -285,6 +327,7 @@ static int trace(const struct tool *tool, const struct options *o,
     static struct tracer tracer;
     const int n = glint_ghost_list(lens, ghosts, GLINT_MAX_GHOSTS);
     struct model_file model = {.data = NULL};
+    struct glint_pupil area;
     int code = EXIT_OK;
 
     if (o->ghost >= n)
@@ -299,7 +342,9 @@ static int trace(const struct tool *tool, const struct options *o,
     if (o->model && code == EXIT_OK)
         code = prepare_model(tool, o, lens, n, &model.lens, &tracer);
     if (code == EXIT_OK)
-        print_rays(o, lens->surface[0].semi_mm, &tracer);
+        code = area_of(tool, o, lens, &tracer, &area);
+    if (code == EXIT_OK)
+        print_rays(tool, o, &area, &tracer);
     free(tracer.part);
     model_file_close(&model);
     return code;

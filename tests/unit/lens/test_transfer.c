@@ -198,6 +198,34 @@ static void test_init(void **state)
     free(m.data);
 }
 
+/* The half width, (s - 1/32)^2 - 1/2048, is above 0 at all places that the
+ * check of a model looks at, and below 0 between two. */
+static void test_half_size_below_0(void **state)
+{
+    struct model_image m = model_auto();
+    struct glint_model_system *s =
+        (void *)(m.data + model_header(&m)->system_at);
+    const int32_t box[3][3] = {
+        {1 << 20, 0, 0},
+        {(ONE >> 11) - (ONE >> 12), -(ONE >> 5), ONE / 2},
+        {3 << 20, 0, 0}};
+    static struct glint_transfer t;
+    struct glint_lens lens;
+
+    (void)state;
+    s->box_terms = 1 | 2 | 4;
+    s->box_at = model_put(&m, box, sizeof box);
+    model_seal(&m);
+    lens = model_open(&m);
+    assert_int_equal(glint_transfer_init(&t, &lens, 0, 33 * (ONE / 256), 1), 1);
+    assert_int_equal(t.box[0], 1 << 20);
+    assert_int_equal(t.box[1], 0);
+    assert_int_equal(t.box[2], 3 << 20);
+    assert_int_equal(glint_transfer_init(&t, &lens, 0, ONE / 8, 1), 1);
+    assert_int_equal(t.box[1], (ONE >> 11) - (ONE >> 12));
+    free(m.data);
+}
+
 static void test_sparse_rays(void **state)
 {
     struct model_image m = model_sparse();
@@ -471,6 +499,7 @@ int main(void)
         cmocka_unit_test(test_roots),
         cmocka_unit_test(test_narrow),
         cmocka_unit_test(test_init),
+        cmocka_unit_test(test_half_size_below_0),
         cmocka_unit_test(test_sparse_rays),
         cmocka_unit_test(test_extremes),
         cmocka_unit_test(test_grid),
