@@ -432,7 +432,12 @@ bool settings_memory(const char *text, size_t *bytes)
 void settings_warn_lights(const struct tool *tool,
                           const struct glint_frame_report *r)
 {
-    if (r->coarsened)
+    if (r->tight)
+        fprintf(stderr,
+                "glint %s: the frame would have taken more memory than a frame "
+                "may; it is drawn coarser (--memory allows up to 1024 MiB)\n",
+                tool->name);
+    else if (r->coarsened)
         fprintf(stderr,
                 "glint %s: the frame would have taken more work than --work "
                 "allows; it is drawn coarser\n",

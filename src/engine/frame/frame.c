@@ -319,6 +319,7 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
     f->code_light = glint_frame_codes_light(f, image, 1);
     f->scale = scale;
     f->is_held = f->is_full = false;
+    f->tight_bytes = 0;
     f->n_plans = f->n_binned = 0;
     f->n_looked = 0;
     glint_budget_begin(&f->budget, &f->asked);
@@ -328,18 +329,15 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
         status = set_lights(f, lamps, n_lamps, scale);
     if (status == GLINT_OK)
         status = glint_frame_still(f, near_q30(f, f->dials.still_px));
-    f->rays = rays_of(f, image);
     while (status == GLINT_OK) {
+        f->rays = rays_of(f, image);
         status = plan(f, &f->rays);
         if (status != GLINT_OK)
             break;
-        if (f->budget.ms > 0 && choose(f)) {
-            f->rays = rays_of(f, image);
+        if (f->budget.ms > 0 && choose(f))
             continue;
-        }
         if (f->budget.ms <= 0 && glint_frame_hold_work(f)) {
             status = set_lights(f, lamps, n_lamps, scale);
-            f->rays = rays_of(f, image);
             continue;
         }
         times[1] = times[2] = now(f);
@@ -446,12 +444,11 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
     const size_t bytes = frame->bytes;
     enum glint_status status;
 
-    *report = (struct glint_frame_report){.lights = n_lamps, .quality = -1};
+    *report = (struct glint_frame_report){
+        .lights = n_lamps, .quality = -1, .arena_bytes = frame->bytes};
     /* without a veil the picture need not even be read */
-    if (n_lamps == 0 && !glint_frame_has_veil(frame)) {
-        report->arena_bytes = frame->bytes;
+    if (n_lamps == 0 && !glint_frame_has_veil(frame))
         return GLINT_OK;
-    }
     if (glint_frame_hold_ghosts(frame) != GLINT_OK)
         return GLINT_E_MEMORY;
     status = glint_frame_star_set(frame, lamps, n_lamps, scale, image);
@@ -480,6 +477,7 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
     report->beyond_lights = frame->n_beyond;
     report->apart_lights = larger(frame->n_apart - frame->n_more, 1);
     report->coarsened = frame->is_held;
+    report->tight = frame->tight_bytes > 0;
     report->blurred = frame->cfg.stop.shade == &frame->shade;
     report->plans = frame->n_plans;
     report->binned = frame->n_binned;

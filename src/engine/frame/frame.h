@@ -109,13 +109,15 @@ struct glint_frame {
     const int32_t (*gain_q14)[3];
     struct glint_budget budget; /* turns the dials; only for models */
     bool reserved;              /* true: memory must not grow */
-    size_t most_bytes; /* limit of the block for one light, if it is not
-                          reserved; 0: there is none */
-    double share;      /* factor on the limits of one light for all lights */
-    bool is_full;      /* true: the block has reached its limit */
-    double most_minsn; /* limit of a plan for one light; 0: there is none */
-    bool is_held;      /* true: the last frame was drawn coarser because of that
-                          limit */
+    size_t most_bytes;  /* limit of the block for one light, if it is not
+                           reserved; 0: there is none */
+    double share;       /* factor on the limits of one light for all lights */
+    bool is_full;       /* true: the block has reached its limit */
+    double tight_bytes; /* what grids of the last frame would have taken that
+                           were made coarser so that it does not; 0: none */
+    double most_minsn;  /* limit of a plan for one light; 0: there is none */
+    bool is_held; /* true: the last frame was drawn coarser because of that
+                     limit */
     /* Numbers of plans of the last frame and of those that were binned, and of
      * the rays that all plans looked at. */
     int n_plans, n_binned;
@@ -161,8 +163,8 @@ struct glint_frame_report {
     size_t need_bytes;  /* bytes that would have drawn everything, exactly */
     size_t star_bytes;  /* bytes besides that stars hold, for their tables and
                            lamps, and a veil */
-    bool coarsened;     /* true: the plan passed the limit of work and was made
-                           coarser */
+    bool coarsened;     /* true: the plan passed a limit and was made coarser */
+    bool tight;         /* true: that was the limit of memory */
     int plans, binned;  /* number of plans until one was within the limits and
                            had room, and of those that were binned */
     long long looked;   /* number of rays that the plans looked at */

@@ -65,7 +65,8 @@ int glint_frame_count_ghosts(struct glint_frame *frame, int n);
  * the first set. */
 int glint_frame_bundles(const struct glint_frame *frame, int n_lights);
 
-/* Returns whether everything fitted; if not, raises the capacities. */
+/* Returns whether everything fitted; if not, raises the capacities, or makes
+ * grids coarser that would take more memory than a frame may. */
 bool glint_frame_is_served(struct glint_frame *frame,
                            const struct glint_flare_stats *stats);
 

@@ -11,6 +11,16 @@
 
 /* Most bundles that a frame may have by edges, and by other rasters. */
 enum { MAX_BUNDLES = 1 << 20, MAX_BUNDLES_OTHER = 65535 };
+/* Limits do not make grids coarser than this. */
+enum { LEAST_FINENESS = 8 };
+/* Workers' shares are never quite even: room for so many times the primitives.
+ */
+#define UNEVEN 1.5
+/* Share of the limit of memory that a frame which has to be drawn coarser is
+ * meant to take: grids are whole numbers of cells. */
+#define ROOM_SHARE 0.9
+/* Coarser grids that take more of the bytes than this gain too little. */
+#define NO_GAIN 0.98
 
 bool glint_frame_has_sets(const struct glint_frame *f)
 {
@@ -96,6 +106,66 @@ int glint_frame_bundles(const struct glint_frame *f, int n_lights)
                (glint_frame_has_sets(f) ? s->set_size[0] : s->n_wavelengths));
 }
 
+static size_t most_bytes(const struct glint_frame *f)
+{
+    return (size_t)((double)f->most_bytes * f->share);
+}
+
+/* Returns a configuration in which what was binned finds room. */
+static struct glint_flare_config needed_by(const struct glint_frame *f,
+                                           const struct glint_flare_stats *s)
+{
+    struct glint_flare_config needed = f->cfg;
+
+    needed.max_bundles = bundles_within(f, s->need_bundles);
+    needed.max_vertices = s->need_vertices;
+    needed.max_primitives = s->need_primitives;
+    needed.max_refs = s->need_refs;
+    needed.max_tile_refs = s->need_tile_refs;
+    return needed;
+}
+
+/* Returns the bytes of that with one worker. FIXED receives those that coarser
+ * grids take, too. */
+static double bytes_of(const struct glint_frame *f,
+                       const struct glint_flare_stats *s, double *fixed)
+{
+    struct glint_flare_config needed = needed_by(f, s);
+    double bytes;
+
+    needed.workers = NULL;
+    needed.max_primitives = (int)fmin(INT_MAX, s->need_primitives * UNEVEN);
+    bytes = (double)glint_flare_bytes(&needed);
+    needed.max_primitives = needed.max_refs = 1;
+    needed.max_vertices = smaller(needed.max_vertices, 1);
+    needed.max_tile_refs = smaller(needed.max_tile_refs, 1);
+    *fixed = (double)glint_flare_bytes(&needed);
+    return bytes;
+}
+
+/* Makes grids coarser if what was binned would take more memory than a frame
+ * may. Returns whether it did. That does not depend on how many workers there
+ * are, nor on frames before. */
+static bool hold_room(struct glint_frame *f, const struct glint_flare_stats *s)
+{
+    const double most = (double)most_bytes(f);
+    const int fineness = f->dials.fineness;
+    double fixed;
+    const double bytes = bytes_of(f, s, &fixed);
+
+    if (most <= 0 || f->budget.ms > 0 || bytes <= most ||
+        fineness <= LEAST_FINENESS ||
+        (f->tight_bytes > 0 && bytes > NO_GAIN * f->tight_bytes))
+        return false;
+    f->tight_bytes = bytes;
+    f->dials.fineness = larger(
+        LEAST_FINENESS,
+        smaller(fineness - 1,
+                (int)(fineness * sqrt(fmax(0, (ROOM_SHARE * most - fixed) /
+                                                  (bytes - fixed))))));
+    return f->is_held = true;
+}
+
 bool glint_frame_is_served(struct glint_frame *f,
                            const struct glint_flare_stats *s)
 {
@@ -105,18 +175,19 @@ bool glint_frame_is_served(struct glint_frame *f,
 
     if (f->reserved || f->is_full)
         return true;
+    if (hold_room(f, s))
+        return false;
     if (bundles <= c->max_bundles && s->need_vertices <= c->max_vertices &&
         s->need_primitives <= c->max_primitives &&
         s->need_refs <= c->max_refs && s->need_tile_refs <= c->max_tile_refs)
         return true;
     c->max_bundles = larger(c->max_bundles, bundles);
     c->max_vertices = larger(c->max_vertices, s->need_vertices);
-    /* Workers' shares are never quite even. */
     c->max_primitives = larger(
         c->max_primitives,
         (int)fmin(INT_MAX,
                   s->need_primitives *
-                      (glint_workers_count(c->workers) > 1 ? 1.5 : 1.0)));
+                      (glint_workers_count(c->workers) > 1 ? UNEVEN : 1.0)));
     c->max_refs = larger(c->max_refs, s->need_refs);
     c->max_tile_refs = larger(c->max_tile_refs, s->need_tile_refs);
     return false;
@@ -152,7 +223,7 @@ static bool fit(struct glint_frame *f, size_t bytes)
 
 enum glint_status glint_frame_regrow(struct glint_frame *f)
 {
-    const size_t most = (size_t)((double)f->most_bytes * f->share);
+    const size_t most = most_bytes(f);
     size_t bytes = glint_flare_bytes(&f->cfg);
 
     if (f->lens && !f->reserved && most && bytes > most) {
@@ -284,13 +355,8 @@ size_t glint_frame_bytes_used(const struct glint_frame *f,
 size_t glint_frame_bytes_needed(const struct glint_frame *f,
                                 const struct glint_flare_stats *s)
 {
-    struct glint_flare_config needed = f->cfg;
+    const struct glint_flare_config needed = needed_by(f, s);
 
-    needed.max_bundles = bundles_within(f, s->need_bundles);
-    needed.max_vertices = s->need_vertices;
-    needed.max_primitives = s->need_primitives;
-    needed.max_refs = s->need_refs;
-    needed.max_tile_refs = s->need_tile_refs;
     return glint_flare_bytes(&needed);
 }
 
@@ -341,7 +407,7 @@ static bool is_dusty(const struct glint_frame *f,
 static double hold_grids(struct glint_frame *f,
                          const struct glint_cost_plan *plan, double minsn)
 {
-    enum { LEAST_FINENESS = 8, STEP = 8 };
+    enum { STEP = 8 };
     struct glint_cost cost = glint_cost_of(plan, &f->dials);
 
     if (plan->shade)
@@ -426,24 +492,4 @@ bool glint_frame_shade(struct glint_frame *f)
     }
     f->cfg.stop.shade = skipped ? &f->shade : all;
     return before != f->cfg.stop.shade || was != f->cfg.stop.shade->log2;
-}
-
-/* ------------------------------------------------------------------- cost */
-
-/* Returns the plan, also before it is drawn, so that its cost can be predicted.
- */
-struct glint_cost_plan glint_frame_plan(const struct glint_frame *f)
-{
-    return (struct glint_cost_plan){
-        .flare = f->flare,
-        .width = f->cfg.width,
-        .height = f->cfg.height,
-        .n_star = f->star.is_set ? f->star.pixels : 0,
-        .n_veil = glint_frame_veil_pixels(f),
-        .n_looked_at = f->flare ? (double)glint_flare_looked(f->flare) : 0,
-        .can_half = f->can_half,
-        .can_dim = f->dim.log2_q8 && f->setup->n_wavelengths == 3,
-        .code = f->code_light,
-        .shade = f->setup->dirt ? &f->setup->dirt->shade : NULL,
-        .dials = f->dials};
 }

@@ -228,6 +228,41 @@ static void test_bounds(void **state)
     glint_frame_finish(&frame);
 }
 
+/* What would take too much memory must be drawn by coarser grids, all of it,
+ * say so, and come out the same again. */
+static void test_tight(void **state)
+{
+    static uint8_t want[BYTES], got[BYTES], coarse[BYTES];
+    struct glint_frame frame;
+    struct glint_frame_report full, held;
+
+    (void)state;
+    make(&frame);
+    frame.uniform = true;
+    frame.dials.fineness = 64;
+    draw(&frame, N_LAMPS, want, &full);
+    assert_false(full.coarsened || full.tight);
+    glint_frame_finish(&frame);
+    make(&frame);
+    frame.uniform = true;
+    frame.dials.fineness = 64;
+    frame.most_bytes = full.need_bytes * 3 / 4;
+    draw(&frame, N_LAMPS, coarse, &held);
+    assert_true(held.coarsened && held.tight);
+    assert_true(held.arena_bytes <= frame.most_bytes * 5 / 4);
+    assert_int_equal(held.stats.dropped_bundles, 0);
+    assert_int_equal(held.ghosts, full.ghosts);
+    assert_true(held.stats.primitives < full.stats.primitives);
+    assert_int_equal(frame.dials.fineness, 64);
+    draw(&frame, N_LAMPS, got, &held);
+    assert_memory_equal(got, coarse, BYTES);
+    frame.most_bytes = 0;
+    draw(&frame, N_LAMPS, got, &held);
+    assert_false(held.coarsened || held.tight);
+    assert_memory_equal(got, want, BYTES);
+    glint_frame_finish(&frame);
+}
+
 /* More lamps than the dial allows must be merged as ever, without a request
  * for memory. */
 static void test_more_lamps(void **state)
@@ -425,6 +460,7 @@ int main(void)
         cmocka_unit_test(test_same_as_grown),
         cmocka_unit_test(test_too_little),
         cmocka_unit_test(test_bounds),
+        cmocka_unit_test(test_tight),
         cmocka_unit_test(test_more_lamps),
         cmocka_unit_test(test_retune),
         cmocka_unit_test(test_no_memory),
