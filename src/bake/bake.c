@@ -343,10 +343,10 @@ static enum glint_status bake_run(struct bake_run *run)
         status = glint_model_header_of(run->lens, &run->options, &run->setup,
                                        &header);
     if (status == GLINT_OK)
-        status =
-            glint_brightness_find(&run->brightness, &run->setup,
-                                  glint_bake_field_mm(run->lens, &run->options),
-                                  run->options.band_nm, run->options.workers);
+        status = glint_brightness_find(
+            &run->brightness, &run->setup,
+            glint_bake_field_mm(run->lens, &run->options), run->options.max_deg,
+            run->options.band_nm, run->options.workers);
     if (status == GLINT_OK)
         status = fit_ghosts(run);
     if (status == GLINT_OK)

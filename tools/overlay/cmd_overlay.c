@@ -43,6 +43,7 @@ static const char help[] =
     "                      before are looked at, not drawn\n"
     "  --warm-up N         only N of those before: the same from a cut on, or\n"
     "                      once lamps have settled\n"
+    "  --zoom A-B          of a whole video, evenly (or one zoom, see below)\n"
     "  --list-shots        prints A-B of each shot of a video; no -o then\n"
     "  --layers OUT        flare, ghosts, starburst and, where asked for, veil "
     "as\n"

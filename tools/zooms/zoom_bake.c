@@ -24,14 +24,18 @@ enum {
  * its models themselves are no better. */
 #define STUCK 0.9
 #define FAR   10 /* times what is asked for */
+/* Share of what is asked for: an error that was less is not measured again in
+ * the halves of its step. */
+#define SMALL 1e-3
 
 struct place {
     struct glint_bake_model model; /* no data: nothing is baked there */
     bool *ghosts;                  /* that are baked there, [n_ghosts] */
     struct zoom_error left; /* in the step that begins here, of ghosts that are
                                good enough */
-    double *before; /* largest error of each ghost half-way in the step that
-                       the one that begins here is half of; 0: none */
+    struct zoom_error *before; /* of each ghost, half-way in the step that the
+                                  one that begins here is half of */
+    bool is_half;              /* there was such a step */
 };
 
 struct run {
@@ -44,7 +48,7 @@ struct run {
     double max_deg, start;
     struct place place[PLACES];
     struct zoom_error *ghost; /* [n_ghosts] */
-    bool *asked, *is_stuck;   /* [n_ghosts] */
+    bool *is_stuck;           /* [n_ghosts] */
     struct glint_zoom_lens zoom;
 };
 
@@ -147,15 +151,21 @@ static int choose(struct run *run, struct place *to, struct zoom_error *left)
     }
 }
 
+static double largest(const struct zoom_error *error)
+{
+    double worst = 0;
+
+    for (int a = 0; a < ZOOM_ANGLES; a++)
+        worst = fmax(worst, error->of[a]);
+    return worst;
+}
+
 /* Notes how exact the zoom is where it is set, with what is LEFT there. */
 static void note(struct run *run, const struct zoom_error *left, int n_added)
 {
     struct zoom_baked *const baked = run->baked;
-    double worst = 0, db;
+    const double db = fmin(99, -10 * log10(fmax(largest(left), 1e-10)));
 
-    for (int a = 0; a < ZOOM_ANGLES; a++)
-        worst = fmax(worst, left->of[a]);
-    db = fmin(99, -10 * log10(fmax(worst, 1e-10)));
     if (baked->least_db <= 0 || db < baked->least_db) {
         baked->least_db = db;
         baked->least_mm = glint_real_value(run->zoom.header.focal_mm);
@@ -166,21 +176,43 @@ static void note(struct run *run, const struct zoom_error *left, int n_added)
                 tool_seconds() - run->start);
 }
 
-/* Notes the largest error of each ghost half-way at MIDDLE of the step that
- * begins at FROM, and which are stuck. */
+/* Asks for the errors half-way of the step from FROM to TO, but for small ones.
+ * Returns whether any ghost has both ends. */
+static bool ask(struct run *run, int from, int to)
+{
+    const struct place *const p = &run->place[from];
+    bool any = false;
+
+    for (int g = 0; g < run->n_ghosts; g++) {
+        const bool has = p->ghosts[g] && run->place[to].ghosts[g];
+
+        any |= has;
+        for (int a = 0; a < ZOOM_ANGLES; a++)
+            run->ghost[g].of[a] =
+                !has ? 0
+                : p->is_half && p->before[g].of[a] < SMALL * most_error(run)
+                    ? p->before[g].of[a]
+                    : -1;
+    }
+    return any;
+}
+
+/* Notes the error of each ghost at MIDDLE, half-way in the step that begins at
+ * FROM, and which are stuck. */
 static void compare_steps(struct run *run, int from, int middle)
 {
-    for (int g = 0; g < run->n_ghosts; g++) {
-        double worst = 0;
+    struct place *const p = &run->place[from], *const m = &run->place[middle];
 
-        for (int a = 0; a < ZOOM_ANGLES; a++)
-            worst = fmax(worst, run->ghost[g].of[a]);
+    for (int g = 0; g < run->n_ghosts; g++) {
+        const double worst = largest(&run->ghost[g]);
+        const double before = p->is_half ? largest(&p->before[g]) : 0;
+
         run->is_stuck[g] =
-            run->step == LAST ||
-            (worst < FAR * most_error(run) && run->place[from].before[g] > 0 &&
-             worst > STUCK * run->place[from].before[g]);
-        run->place[from].before[g] = run->place[middle].before[g] = worst;
+            run->step == LAST || (worst < FAR * most_error(run) && before > 0 &&
+                                  worst > STUCK * before);
+        p->before[g] = m->before[g] = run->ghost[g];
     }
+    p->is_half = m->is_half = true;
 }
 
 /* Measures half-way between FROM and the next place of the step, and bakes
@@ -191,22 +223,18 @@ static enum glint_status halve(struct run *run, int from)
     struct place *const p = &run->place[middle];
     struct zoom_error left = run->place[from].left;
     enum glint_status status;
-    int n = 0;
+    int n;
 
-    for (int g = 0; g < run->n_ghosts; g++) {
-        run->asked[g] = run->place[from].ghosts[g] && run->place[to].ghosts[g];
-        n += run->asked[g];
-    }
     p->left = left;
-    if (n == 0)
+    if (!ask(run, from, to))
         return GLINT_OK;
     glint_zoom_set(&run->zoom,
                    (int32_t)lrint(middle / (run->n_places - 1.0) * 0x1p30));
     status = move_to(run, middle);
     if (status == GLINT_OK)
-        status = zoom_error_measure(run->tool, &run->lens, &run->zoom,
-                                    run->max_deg, run->asked, run->n_ghosts,
-                                    run->ghost, run->error);
+        status =
+            zoom_error_measure(run->tool, &run->lens, &run->zoom, run->max_deg,
+                               run->n_ghosts, run->ghost, run->error);
     if (status != GLINT_OK)
         return status;
     compare_steps(run, from, middle);
@@ -247,15 +275,14 @@ static bool reserve(struct run *run)
     const size_t n = (size_t)run->n_ghosts + 1;
 
     run->ghost = calloc(n, sizeof *run->ghost);
-    run->asked = calloc(n, sizeof *run->asked);
     run->is_stuck = calloc(n, sizeof *run->is_stuck);
     for (int k = 0; k < run->n_places; k++) {
         run->place[k].ghosts = calloc(n, sizeof(bool));
-        run->place[k].before = calloc(n, sizeof(double));
+        run->place[k].before = calloc(n, sizeof *run->place[k].before);
         if (!run->place[k].ghosts || !run->place[k].before)
             return false;
     }
-    return run->ghost && run->asked && run->is_stuck;
+    return run->ghost && run->is_stuck;
 }
 
 enum glint_status zoom_bake_run(struct tool *tool, const struct zoom_bake *bake,
@@ -299,7 +326,6 @@ enum glint_status zoom_bake_run(struct tool *tool, const struct zoom_bake *bake,
         free(run->place[k].before);
     }
     free(run->ghost);
-    free(run->asked);
     free(run->is_stuck);
     free(run);
     if (status != GLINT_OK) {

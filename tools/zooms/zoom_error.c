@@ -68,7 +68,6 @@ struct measuring {
     const struct glint_zoom_lens *zoom;
     struct glint_view view;
     double max_deg;
-    const bool *ghosts;
     int n;
     struct zoom_error *error;
     enum glint_status status[ZOOM_ANGLES];
@@ -87,7 +86,7 @@ static enum glint_status measure_angle(const struct measuring *m,
 
     p->exposure = glint_measure_exposure(&p->all);
     for (int g = 0; g < m->n && status == GLINT_OK; g++) {
-        if (!m->ghosts[g])
+        if (m->error[g].of[angle] >= 0)
             continue;
         status = draw(&p->model, &lamp, g, &p->mixed);
         if (status == GLINT_OK)
@@ -132,7 +131,7 @@ static void angle_job(void *ctx, int angle, int worker)
 enum glint_status zoom_error_measure(const struct tool *tool,
                                      const struct glint_prescription *lens,
                                      const struct glint_zoom_lens *zoom,
-                                     double max_deg, const bool *ghosts, int n,
+                                     double max_deg, int n,
                                      struct zoom_error *error,
                                      struct glint_error *message)
 {
@@ -145,13 +144,10 @@ enum glint_status zoom_error_measure(const struct tool *tool,
         .view = glint_view_fit(WIDE, (int)fmin(fmax(high, 8), MOST_HIGH),
                                lens->film_width_mm, lens->film_height_mm),
         .max_deg = max_deg,
-        .ghosts = ghosts,
         .n = n,
         .error = error};
     enum glint_status status = GLINT_E_MEMORY;
 
-    for (int g = 0; g < n; g++)
-        error[g] = (struct zoom_error){{0}};
     if (setup)
         status = glint_setup_init(setup, lens, 0, 0, rgb_nm, 3, message);
     if (status == GLINT_OK)

@@ -22,12 +22,12 @@ struct zoom_error {
     double of[ZOOM_ANGLES];
 };
 
-/* Sets ERROR[ghost] of those of the N ghosts that GHOSTS names, those of others
- * to 0. Lights go up to MAX_DEG. */
+/* Sets those entries of ERROR, one for each of N ghosts, that are below 0.
+ * Lights go up to MAX_DEG. */
 enum glint_status zoom_error_measure(const struct tool *tool,
                                      const struct glint_prescription *lens,
                                      const struct glint_zoom_lens *zoom,
-                                     double max_deg, const bool *ghosts, int n,
+                                     double max_deg, int n,
                                      struct zoom_error *error,
                                      struct glint_error *message);
 

@@ -145,7 +145,7 @@ static void angle_job(void *ctx, int job, int worker)
 
 enum glint_status glint_brightness_find(struct glint_brightness *brightness,
                                         const struct glint_setup *setup,
-                                        double field_mm,
+                                        double field_mm, double max_deg,
                                         const double band_nm[2],
                                         struct glint_workers *workers)
 {
@@ -161,10 +161,15 @@ enum glint_status glint_brightness_find(struct glint_brightness *brightness,
         0.5 * (band_nm[0] + band_nm[1]),
         {scale * lens->film_width_mm, scale * lens->film_height_mm},
         {GLINT_OK}};
+    int n = 2;
 
-    for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++)
+    for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++) {
         brightness->sine[k] = glint_sin_deg(degrees[k]);
-    glint_workers_run(workers, GLINT_BRIGHTNESS_ANGLES, angle_job, &t);
+        brightness->level[k] = 0;
+    }
+    while (n < GLINT_BRIGHTNESS_ANGLES && degrees[n - 1] <= max_deg)
+        n++;
+    glint_workers_run(workers, n, angle_job, &t);
     for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++)
         if (t.status[k] != GLINT_OK)
             return t.status[k];

@@ -24,10 +24,11 @@ struct glint_brightness {
                                               sensor area; 0: no light */
 };
 
-/* Finds the levels; they do not depend on WORKERS. GLINT_E_MEMORY. */
+/* Finds the levels that angles up to MAX_DEG need; they do not depend on
+ * WORKERS. GLINT_E_MEMORY. */
 enum glint_status glint_brightness_find(struct glint_brightness *brightness,
                                         const struct glint_setup *setup,
-                                        double field_mm,
+                                        double field_mm, double max_deg,
                                         const double band_nm[2],
                                         struct glint_workers *workers);
 
