@@ -21,7 +21,7 @@
 #include "options/takes.h"
 
 static const char help[] =
-    "glint lenses [WORD ...] [--names | --json | --html FILE]\n"
+    "glint lenses [WORD ...] [--names | --json | --html FILE [--rays exact]]\n"
     "             [--models FOLDER]\n"
     "\n"
     "The lenses that come with glint: the name that --lens takes, focal "
@@ -44,6 +44,9 @@ static const char help[] =
     "                    with what bakes and frames took, by figures.md "
     "beside\n"
     "                    the tables\n"
+    "  --rays exact      that page has flares of lenses that are not baked, "
+    "too,\n"
+    "                    traced for each: seconds to a minute a lens\n"
     "  --models FOLDER   bake what is missing and put all models there, of\n"
     "                    overlay and of render, as make install does\n"
     "  -o, --only NAME   this lens; repeatable\n";
@@ -58,6 +61,7 @@ struct lenses {
     const char *only[MAX_ONLY];
     int n_only, n, code;
     bool names; /* lists no more than names */
+    bool exact; /* flares of lenses without a model are traced */
     char **words;
     int n_words;
     const char *html; /* page to write, or NULL */
@@ -184,23 +188,39 @@ static void print_escaped(FILE *file, const char *text)
             fputc(*text, file);
 }
 
-/* Writes thumbnails of the flare, if there is a model to draw them by. */
+/* Sets SETTINGS to those by which thumbnails of E are drawn. Three wavelengths
+ * and coarse grids do for pictures that small. Returns an exit code. */
+static int set_flares(struct settings *settings, const struct entry *e)
+{
+    const int code = set_settings(settings, false);
+
+    if (code != EXIT_OK || e->is_baked)
+        return code;
+    settings->rays = SETTINGS_RAYS_EXACT;
+    settings_set_quality(settings, 0.25);
+    return EXIT_OK;
+}
+
+/* Writes thumbnails of the flare, if there is a model to draw them by, or rays
+ * are exact. */
 static void print_flares(struct lenses *l, const char *name,
                          const struct entry *e)
 {
     struct settings *settings = calloc(1, sizeof *settings);
     size_t bytes = 0;
 
-    if (!e->is_baked)
+    if (!e->is_baked && !l->exact)
         fputs("<p>no model yet: one is baked when the lens is first drawn</p>",
               l->page);
-    else if (settings && set_settings(settings, false) == EXIT_OK) {
+    else if (settings && set_flares(settings, e) == EXIT_OK) {
         fputs("<p>", l->page);
-        if (thumbnails_write(l->tool, settings, name, l->page, &bytes) ==
+        if (thumbnails_write(l->tool, settings, name, l->page, &bytes) !=
             EXIT_OK)
+            l->code = EXIT_RUNTIME;
+        else if (e->is_baked)
             fprintf(l->page, "<br>model of %zu bytes</p>", bytes);
         else
-            l->code = EXIT_RUNTIME;
+            fputs("<br>exact rays, as there is no model yet</p>", l->page);
     }
     free(settings);
 }
@@ -395,6 +415,7 @@ static int parse(struct lenses *l, int argc, char **argv)
         {"only", required_argument, NULL, 'o'},
         {"names", no_argument, NULL, 'n'},
         {"html", required_argument, NULL, 'H'},
+        {"rays", required_argument, NULL, 'r'},
         TOOL_COMMON_OPTIONS};
     int c, code;
 
@@ -406,6 +427,10 @@ static int parse(struct lenses *l, int argc, char **argv)
             l->folder = optarg;
         else if (c == 'H')
             l->html = optarg;
+        else if (c == 'r' && strcmp(optarg, "exact") == 0)
+            l->exact = true;
+        else if (c == 'r')
+            return tool_refuse(l->tool, "rays", optarg);
         else if (c == 'o' && l->n_only == MAX_ONLY)
             return tool_usage(l->tool, "more than %d lenses", MAX_ONLY);
         else if (c == 'o')
@@ -415,6 +440,8 @@ static int parse(struct lenses *l, int argc, char **argv)
     }
     l->words = argv + optind;
     l->n_words = argc - optind;
+    if (l->exact && !l->html)
+        return tool_usage(l->tool, "--rays exact goes with --html");
     if (l->html && (l->tool->json || l->folder))
         return tool_usage(l->tool, "--html goes with neither --json nor "
                                    "--models");
