@@ -200,6 +200,12 @@ static WHOLLY_INLINE int32_t put_in(const struct setting *set, int32_t value,
     return d ? q_mul(value, set->w_q30[d], 30) : value;
 }
 
+/* The check of a model keeps powers of u and v to GLINT_MAX_POWER, and codes of
+ * the lens basis below these. */
+STATIC_ASSERT(GLINT_MAX_POWER < GLINT_TABLE_WIDTH);
+STATIC_ASSERT(GLINT_LENS_POWERS <= TRANSFER_MAX_EXPONENT + 1);
+STATIC_ASSERT(GLINT_LENS_WAVE_POWERS <= TRANSFER_MAX_EXPONENT + 1);
+
 /* Does the same in the lens basis. */
 static int32_t put_lens_in(const struct setting *set, int32_t value,
                            uint16_t power)
