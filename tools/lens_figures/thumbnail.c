@@ -12,8 +12,13 @@ enum { ANGLES = 3, WIDE = 168, MOST_HIGH = 168 };
 
 static const double share[ANGLES] = {0.25, 0.5, 0.8};
 
-/* How much brighter than by the star's light, which is most of a frame's. */
-#define BRIGHTER 3.0
+/* Ghosts are exposed as pictures of them alone are, but no more than so many
+ * times what would show the star beside them: where ghosts are faint it would
+ * fill the picture. */
+#define BRIGHTER 40.0
+
+/* The ghosts, and the star. */
+enum { PARTS = 2 };
 
 /* Returns the angle at SHARE of the half diagonal, by f tan T, which places
  * lamps in pictures. */
@@ -25,20 +30,28 @@ static double angle_deg(const struct settings *s, double at)
     return atan(at * half / s->setup.optics.focal_mm) * 180 / GLINT_PI;
 }
 
-static enum glint_status draw(struct glint_frame *frame, double theta_deg,
-                              struct glint_float_image *image, FILE *file)
+static enum glint_status draw(struct glint_frame part[PARTS], double theta_deg,
+                              struct glint_float_image *image, float *star,
+                              FILE *file)
 {
     const struct glint_lamp lamp = {
         .theta_deg = theta_deg, .phi_deg = 33, .power = 1, .rgb = {1, 1, 1}};
+    const size_t n = 3 * (size_t)image->width * (size_t)image->height;
     struct glint_frame_report report;
     uint8_t *codes;
-    const enum glint_status status =
-        glint_frame_draw_alone(frame, &lamp, 1, 1, image->rgb, &report);
+    double exposure;
+    enum glint_status status =
+        glint_frame_draw_alone(&part[0], &lamp, 1, 1, image->rgb, &report);
 
+    if (status == GLINT_OK)
+        status = glint_frame_draw_alone(&part[1], &lamp, 1, 1, star, &report);
     if (status != GLINT_OK)
         return status;
-    codes =
-        glint_measure_encode(image, BRIGHTER * glint_measure_exposure(image));
+    exposure = glint_measure_exposure(image);
+    for (size_t i = 0; i < n; i++)
+        image->rgb[i] += star[i];
+    codes = glint_measure_encode(
+        image, fmin(exposure, BRIGHTER * glint_measure_exposure(image)));
     if (!codes)
         return GLINT_E_MEMORY;
     fprintf(file, "<img alt=\"lamp at %.1f degrees\" src=\"", theta_deg);
@@ -48,26 +61,32 @@ static enum glint_status draw(struct glint_frame *frame, double theta_deg,
     return GLINT_OK;
 }
 
-static int draw_all(const struct tool *tool, const struct settings *s,
-                    FILE *file)
+static int draw_all(const struct tool *tool, struct settings *s, FILE *file)
 {
     const double tall =
         ceil(WIDE * s->lens.film_height_mm / s->lens.film_width_mm);
     struct glint_float_image image = {
         .width = WIDE, .height = (int)fmin(fmax(tall, 8), MOST_HIGH)};
+    const size_t n = 3 * (size_t)image.width * (size_t)image.height;
     enum glint_status status = GLINT_E_MEMORY;
-    struct glint_frame frame;
-    int code;
+    struct glint_frame part[PARTS] = {{.lens = NULL}, {.lens = NULL}};
+    float *star = calloc(n, sizeof *star);
+    int code = EXIT_OK;
 
-    image.rgb =
-        calloc(3 * (size_t)image.width * (size_t)image.height, sizeof(float));
-    code = settings_frame(tool, s, settings_view(s, image.width, image.height),
-                          &frame);
-    if (code == EXIT_OK && image.rgb)
+    image.rgb = calloc(n, sizeof *image.rgb);
+    for (int k = 0; k < PARTS && code == EXIT_OK; k++) {
+        s->ghosts_only = k == 0;
+        s->starburst_only = k == 1;
+        code = settings_frame(
+            tool, s, settings_view(s, image.width, image.height), &part[k]);
+    }
+    if (code == EXIT_OK && image.rgb && star)
         status = GLINT_OK;
     for (int i = 0; i < ANGLES && status == GLINT_OK; i++)
-        status = draw(&frame, angle_deg(s, share[i]), &image, file);
-    glint_frame_finish(&frame);
+        status = draw(part, angle_deg(s, share[i]), &image, star, file);
+    for (int k = 0; k < PARTS; k++)
+        glint_frame_finish(&part[k]);
+    free(star);
     free(image.rgb);
     return code != EXIT_OK || status == GLINT_OK
                ? code
