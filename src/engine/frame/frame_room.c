@@ -143,9 +143,38 @@ static double bytes_of(const struct glint_frame *f,
     return bytes;
 }
 
+/* Returns the bytes for a number of primitives, with references for each and,
+ * by cells, vertices: rather too many. */
+static size_t bytes_for(struct glint_frame *f, int primitives)
+{
+    const bool by_edges = is_by_edges(f);
+
+    f->cfg.max_primitives = primitives;
+    f->cfg.max_refs = 2 * primitives;
+    f->cfg.max_vertices = by_edges ? 0 : 2 * primitives;
+    f->cfg.max_tile_refs = f->cfg.coarse_log2 ? primitives : 0;
+    return glint_flare_bytes(&f->cfg);
+}
+
+/* Sets the capacities that BYTES have room for; returns false if there is none.
+ */
+static bool fit(struct glint_frame *f, size_t bytes)
+{
+    int most = 0;
+
+    for (int step = 1 << 24; step > 0; step /= 2) {
+        const size_t need = bytes_for(f, most + step);
+
+        if (need != 0 && need <= bytes)
+            most += step;
+    }
+    return most > 0 && bytes_for(f, most) <= bytes;
+}
+
 /* Makes grids coarser if what was binned would take more memory than a frame
  * may. Returns whether it did. That does not depend on how many workers there
- * are, nor on frames before. */
+ * are, nor on frames before. The block becomes as large as it may be, so that
+ * they find room the next time. */
 static bool hold_room(struct glint_frame *f, const struct glint_flare_stats *s)
 {
     const double most = (double)most_bytes(f);
@@ -163,6 +192,7 @@ static bool hold_room(struct glint_frame *f, const struct glint_flare_stats *s)
         smaller(fineness - 1,
                 (int)(fineness * sqrt(fmax(0, (ROOM_SHARE * most - fixed) /
                                                   (bytes - fixed))))));
+    fit(f, (size_t)most);
     return f->is_held = true;
 }
 
@@ -191,34 +221,6 @@ bool glint_frame_is_served(struct glint_frame *f,
     c->max_refs = larger(c->max_refs, s->need_refs);
     c->max_tile_refs = larger(c->max_tile_refs, s->need_tile_refs);
     return false;
-}
-
-/* Returns the bytes for a number of primitives, with references for each and,
- * by cells, vertices: rather too many. */
-static size_t bytes_for(struct glint_frame *f, int primitives)
-{
-    const bool by_edges = is_by_edges(f);
-
-    f->cfg.max_primitives = primitives;
-    f->cfg.max_refs = 2 * primitives;
-    f->cfg.max_vertices = by_edges ? 0 : 2 * primitives;
-    f->cfg.max_tile_refs = f->cfg.coarse_log2 ? primitives : 0;
-    return glint_flare_bytes(&f->cfg);
-}
-
-/* Sets the capacities that BYTES have room for; returns false if there is none.
- */
-static bool fit(struct glint_frame *f, size_t bytes)
-{
-    int most = 0;
-
-    for (int step = 1 << 24; step > 0; step /= 2) {
-        const size_t need = bytes_for(f, most + step);
-
-        if (need != 0 && need <= bytes)
-            most += step;
-    }
-    return most > 0 && bytes_for(f, most) <= bytes;
 }
 
 enum glint_status glint_frame_regrow(struct glint_frame *f)
