@@ -288,16 +288,15 @@ static void test_integers_match(void **state)
                                         lamp_at(3.1, -100)};
 
     (void)state;
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 2; i++) {
         struct glint_frame_report report;
         double db;
 
-        load_setup(&setup, &lens, names[i / 2]);
-        render(rgb, view, lamps, 1 + i % 2, 192);
-        integers(view, lamps, 1 + i % 2, other, &report);
+        load_setup(&setup, &lens, names[i]);
+        render(rgb, view, lamps, 1 + i, 192);
+        integers(view, lamps, 1 + i, other, &report);
         db = psnr(rgb, other, view);
-        print_message("%s, %d light(s): %.1f dB\n", names[i / 2], 1 + i % 2,
-                      db);
+        print_message("%s, %d light(s): %.1f dB\n", names[i], 1 + i, db);
         assert_true(db >= 45);
         /* The arena must have exactly the bytes that the frame used. */
         assert_int_equal(report.arena_bytes, report.peak_bytes);
