@@ -112,6 +112,7 @@ static enum glint_status open_beside(struct glint_output *out, mode_t mode,
     const bool keep = mode != (mode_t)-1;
     int number = 0;
 
+    glint_target_clean(out->target);
     for (int i = 0; i < MAX_TRIES; i++) {
         out->tmp = glint_target_beside(
             out->target, __atomic_fetch_add(&counter, 1, __ATOMIC_RELAXED));
@@ -138,19 +139,28 @@ static enum glint_status open_beside(struct glint_output *out, mode_t mode,
     return GLINT_OK;
 }
 
-/* Opens a temporary file that is to replace OUT's target: a regular file whose
- * status is ST, or NULL if it is not there yet. */
-static enum glint_status open_replacing(struct glint_output *out,
-                                        const struct stat *st,
-                                        struct glint_error *error)
+/* Finds where OUT's name leads: sets ST to the status of the file there, or
+ * IS_THERE to false, and OUT's target unless that is no regular file. Looks
+ * again if somebody puts another file there meanwhile, as shards do that end
+ * together. Returns 0 or an errno. */
+static int find_target(struct glint_output *out, struct stat *st,
+                       bool *is_there)
 {
-    if (st && access(out->name, W_OK) < 0)
-        return refuse(out, error, errno);
-    out->target = glint_target_of(out->name, st);
-    if (!out->target)
-        return refuse(out, error, errno);
-    glint_target_clean(out->target);
-    return open_beside(out, st ? st->st_mode & 0777 : (mode_t)-1, error);
+    for (int i = 0; i < MAX_TRIES; i++) {
+        *is_there = stat(out->name, st) == 0;
+        if (!*is_there && (errno != ENOENT || !*out->name))
+            return errno;
+        if (*is_there && !S_ISREG(st->st_mode))
+            return 0;
+        if (*is_there && access(out->name, W_OK) < 0)
+            return errno;
+        out->target = glint_target_of(out->name, *is_there ? st : NULL);
+        if (out->target)
+            return 0;
+        if (errno != ESTALE)
+            return errno;
+    }
+    return ESTALE;
 }
 
 static enum glint_status open_straight(struct glint_output *out, bool is_stdout,
@@ -175,7 +185,9 @@ enum glint_status glint_output_open(struct glint_output *out, const char *path,
 {
     const bool is_stdout = !strcmp(path, "-");
     enum glint_status status;
+    bool is_there = false;
     struct stat st;
+    int number = 0;
 
     glint_at_death(remove_doomed);
     *out = (struct glint_output){.fd = -1,
@@ -186,13 +198,13 @@ enum glint_status glint_output_open(struct glint_output *out, const char *path,
                                     "no memory for a buffer");
     else if (is_stdout)
         status = open_straight(out, true, kind, error);
-    else if (stat(path, &st) == 0)
-        status = S_ISREG(st.st_mode) ? open_replacing(out, &st, error)
-                                     : open_straight(out, false, kind, error);
-    else if (errno == ENOENT && *path)
-        status = open_replacing(out, NULL, error);
+    else if ((number = find_target(out, &st, &is_there)) != 0)
+        status = refuse(out, error, number);
+    else if (!out->target)
+        status = open_straight(out, false, kind, error);
     else
-        status = refuse(out, error, errno);
+        status =
+            open_beside(out, is_there ? st.st_mode & 0777 : (mode_t)-1, error);
     if (status)
         glint_output_abort(out);
     return status;

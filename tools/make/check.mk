@@ -26,6 +26,7 @@ endif
 $(OUT)/tests/unit/test_fbdev: LDFLAGS += -Wl,--wrap=open64,--wrap=ioctl \
         -Wl,--wrap=mmap64,--wrap=munmap,--wrap=malloc
 $(OUT)/tests/unit/test_output: LDFLAGS += -Wl,--wrap=close
+$(OUT)/tests/unit/test_output_together: LDFLAGS += -Wl,--wrap=realpath
 $(OUT)/tests/unit/test_workers: LDFLAGS += -Wl,--wrap=pthread_create
 $(OUT)/tests/unit/test_sinks: LDFLAGS += -Wl,--wrap=ioctl,--wrap=write
 FAKE_CAMERA := ioctl open64 stat64 close read mmap64 munmap malloc calloc \

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A file that another process replaces just when it is opened, as shards do
+ * that end together, is replaced all the same.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <string.h>
+
+#include "posix/output.h"
+#include "support/scratch.h"
+
+static int others; /* processes that come between, one each time */
+
+char *__real_realpath(const char *path, char *resolved);
+char *__wrap_realpath(const char *path, char *resolved);
+
+char *__wrap_realpath(const char *path, char *resolved)
+{
+    if (others > 0) {
+        char other[96];
+        FILE *f;
+
+        others--;
+        snprintf(other, sizeof other, "%s/other", scratch_dir);
+        f = fopen(other, "w");
+        assert_non_null(f);
+        fputs("other", f);
+        fclose(f);
+        assert_int_equal(rename(other, path), 0);
+    }
+    return __real_realpath(path, resolved);
+}
+
+static void put(const char *path, const char *text)
+{
+    struct glint_error error = {""};
+    struct glint_output out;
+
+    assert_int_equal(glint_output_open(&out, path, GLINT_OUTPUT_TEXT, &error),
+                     GLINT_OK);
+    assert_int_equal(glint_output_write(&out, text, strlen(text), &error),
+                     GLINT_OK);
+    assert_int_equal(glint_output_commit(&out, &error), GLINT_OK);
+}
+
+static void test_together(void **state)
+{
+    char path[96], text[16] = "";
+    FILE *f;
+
+    (void)state;
+    snprintf(path, sizeof path, "%s/manifest.jsonl", scratch_dir);
+    put(path, "first");
+    others = 3;
+    put(path, "second");
+    assert_int_equal(others, 0);
+    f = fopen(path, "r");
+    assert_non_null(f);
+    assert_int_equal(fread(text, 1, sizeof text, f), 6);
+    assert_string_equal(text, "second");
+    fclose(f);
+    remove(path);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_together, scratch_open_dir,
+                                        scratch_close_dir),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
