@@ -417,6 +417,7 @@ static int parse(struct lenses *l, int argc, char **argv)
         {"html", required_argument, NULL, 'H'},
         {"rays", required_argument, NULL, 'r'},
         TOOL_COMMON_OPTIONS};
+    static const char *const rays[] = {"model", "exact", NULL};
     int c, code;
 
     while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
@@ -427,10 +428,10 @@ static int parse(struct lenses *l, int argc, char **argv)
             l->folder = optarg;
         else if (c == 'H')
             l->html = optarg;
-        else if (c == 'r' && strcmp(optarg, "exact") == 0)
-            l->exact = true;
-        else if (c == 'r')
+        else if (c == 'r' && tool_word(optarg, rays) < 0)
             return tool_refuse(l->tool, "rays", optarg);
+        else if (c == 'r')
+            l->exact = tool_word(optarg, rays) == 1;
         else if (c == 'o' && l->n_only == MAX_ONLY)
             return tool_usage(l->tool, "more than %d lenses", MAX_ONLY);
         else if (c == 'o')
