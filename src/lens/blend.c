@@ -28,6 +28,7 @@ enum {
     OPEN_Q16 = 1 << 15, /* a barrel through whose middle all light goes */
     LEAST_UP = 16,      /* of units of 2^-30 or more, in which that is 2^29 */
     MOST_HEAD = 28,
+    NEAR_Q24 = 1 << 23, /* half widths */
     LATE_Q30 = 3 << 28, /* share of the way after which a barrel opens */
     MOST_MOVE = 8       /* half widths that boxes may lie apart */
 };
@@ -74,9 +75,9 @@ static int32_t move_q24(int32_t b, int32_t eb, int32_t a, int32_t ea,
 }
 
 /* Sets how the boxes lie to each other: BOX of 2^EXPONENT and that of the
- * transfer, the other's. */
-static void set_moves(struct glint_zoom_mix *blend, const int32_t box[3],
-                      int32_t exponent)
+ * transfer, the other's. Returns whether they are too far apart for that. */
+static int set_moves(struct glint_zoom_mix *blend, const int32_t box[3],
+                     int32_t exponent)
 {
     const struct glint_transfer *const t = blend->to;
     const int32_t *const of[2] = {box, t->box};
@@ -95,19 +96,37 @@ static void set_moves(struct glint_zoom_mix *blend, const int32_t box[3],
     }
     for (int k = 0; k < 2 && far; k++)
         blend->move[k] = (struct glint_blend_move){0, 0, 0};
+    return far;
+}
+
+/* Returns whether the other box lies near enough that a ghost goes on beyond
+ * this one as it does between both. */
+static int is_near(const struct glint_zoom_mix *blend)
+{
+    const struct glint_blend_move *const m = &blend->move[1];
+
+    return q_magnitude(m->along_q24) <= NEAR_Q24 &&
+           q_magnitude(m->wider_q24) <= NEAR_Q24 &&
+           q_magnitude(m->higher_q24) <= NEAR_Q24;
 }
 
 void glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
                      int32_t exponent)
 {
     struct glint_transfer *const t = blend->to;
-    const int32_t e = exponent > t->box_exponent ? exponent : t->box_exponent;
+    /* going on takes up to three times the size */
+    const int32_t e =
+        (exponent > t->box_exponent ? exponent : t->box_exponent) +
+        (blend->part_q30 < 0 ? 2 : 0);
 
-    set_moves(blend, box, exponent);
+    blend->is_apart = set_moves(blend, box, exponent) || !is_near(blend);
+    blend->is_apart &= blend->part_q30 < 0;
     for (int k = 0; k < 3; k++)
         t->box[k] = mix(box[k], exponent, t->box[k], t->box_exponent, e,
                         blend->part_q30);
     t->box_exponent = e;
+    blend->is_apart |=
+        blend->part_q30 < 0 && (t->box[1] <= 0 || t->box[2] <= 0);
 }
 
 /* Returns by how much the coefficient of u^A v^B changes where a place of the
@@ -297,7 +316,8 @@ static void mix_barrel(struct glint_zoom_mix *blend,
         }
     }
     if (best < 0) {
-        add_barrel(blend, o);
+        if (blend->part_q30 > 0)
+            add_barrel(blend, o);
         return;
     }
     t->exponent[best] = mix_output(blend, best, t->exponent[best], o);
@@ -322,6 +342,8 @@ void glint_blend_output(struct glint_zoom_mix *blend,
 
 void glint_blend_end(const struct glint_zoom_mix *blend)
 {
+    if (blend->part_q30 < 0)
+        return;
     for (int kind = BARREL; kind < GLINT_OUT_KINDS; kind++)
         if (transfer_has(blend->to, kind) &&
             !((blend->mixed | blend->added) >> kind & 1))

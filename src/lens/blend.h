@@ -7,7 +7,8 @@
 #include "glint/transfer.h"
 
 /* A transfer into which another position's is mixed, output by output: PART of
- * that, the rest of what it has. */
+ * that, the rest of what it has. PART below 0, down to -1, goes on beyond this
+ * position, away from the other. */
 struct glint_zoom_mix {
     struct glint_transfer *to;
     int32_t part_q30;
@@ -18,6 +19,8 @@ struct glint_zoom_mix {
     struct glint_blend_move {
         int32_t along_q24, wider_q24, higher_q24;
     } move[2];
+    int is_apart; /* PART is below 0, and the boxes lie too far apart for that
+                   */
     /* Barrels that have been mixed, and those that only the other has, as bits
      * of their number. */
     uint32_t mixed, added;

@@ -397,6 +397,8 @@ int glint_transfer_mix(struct glint_transfer *transfer,
     transfer->system = system;
     set_box(transfer, lens, &set);
     glint_blend_box(&blend, box, box_exponent);
+    if (blend.is_apart)
+        return 0;
     for (uint32_t k = 0; k < system->n_outputs; k++) {
         struct table table = {transfer->of_u, 0, 0};
 

@@ -271,6 +271,53 @@ static int of_side(struct glint_transfer *transfer,
                                z->place[side][e], sine_q30, wave_q24);
 }
 
+/* Finds the nearest model beyond SIDE of ghost G that has it and is as far from
+ * there as where the zoom goes on that side, so that nothing is drawn out to
+ * more than twice its length; -1: there is none. */
+static int find_beyond(const struct glint_zoom_lens *z, int g, int side)
+{
+    const int from = z->side[side][g], step = side ? 1 : -1;
+    const int64_t gap =
+        (int64_t)z->along_q30[z->side[1][g]] - z->along_q30[z->side[0][g]];
+
+    for (int k = from + step; k >= 0 && k < z->n_models; k += step)
+        if (has(z, k, g) &&
+            step * ((int64_t)z->along_q30[k] - z->along_q30[from]) >= gap)
+            return k;
+    return -1;
+}
+
+/* Sets TRANSFER to ghost G, which has light on SIDE alone and no further parts
+ * there, as what it does between that and a model beyond it goes on. Returns
+ * whether it can. */
+static int draw_out(struct glint_transfer *transfer,
+                    const struct glint_zoom_lens *z, int g, int side,
+                    int32_t sine_q30, int32_t wave_q24)
+{
+    const int beyond = find_beyond(z, g, side);
+    const int32_t from_q30 = z->along_q30[z->side[side][g]];
+    const struct glint_model_system *there;
+    int32_t part_q30;
+
+    for (int q = z->part_from[g]; q < z->part_from[g + 1]; q++)
+        if (annulus_of(z, q, side, sine_q30, wave_q24) >= 0)
+            return 0;
+    if (beyond < 0)
+        return 0;
+    there = glint_transfer_system(&z->model[beyond], g, sine_q30, wave_q24);
+    if (!there || there->annulus != 0 ||
+        annulus_of(z, g, side, sine_q30, wave_q24) != 0)
+        return 0;
+    part_q30 =
+        (int32_t)q_divide(((int64_t)z->now_q30 - from_q30) * TRANSFER_ONE_Q30,
+                          (int64_t)z->along_q30[beyond] - from_q30);
+    if (!of_side(transfer, z, g, side, sine_q30, wave_q24) ||
+        !glint_transfer_mix(transfer, &z->model[beyond], g, sine_q30, wave_q24,
+                            part_q30))
+        return 0;
+    return 1;
+}
+
 static int transfer_between(struct glint_transfer *transfer,
                             const struct glint_zoom_lens *zoom, int ghost,
                             int32_t sine_q30, int32_t wave_q24)
@@ -287,6 +334,9 @@ static int transfer_between(struct glint_transfer *transfer,
     if (!lit[0] || !lit[1]) {
         const int side = lit[1];
 
+        if (lit[side] && ghost < n_whole(&z->model[0]) &&
+            draw_out(transfer, z, ghost, side, sine_q30, wave_q24))
+            return 1;
         if (!of_side(transfer, z, ghost, side, sine_q30, wave_q24))
             return 0;
         glint_blend_fade(transfer,

@@ -24,9 +24,12 @@ enum {
  * its models themselves are no better. */
 #define STUCK 0.9
 #define FAR   10 /* times what is asked for */
-/* Share of what is asked for: an error that was less is not measured again in
- * the halves of its step. */
+/* Share of what is asked for: a ghost whose largest error was less is not
+ * measured again in the halves of its step. */
 #define SMALL 1e-3
+/* Angles that are measured lie elsewhere at each place: multiples of this fill
+ * 0 to 1 evenly. */
+#define GOLDEN 0.6180339887
 
 struct place {
     struct glint_bake_model model; /* no data: nothing is baked there */
@@ -185,14 +188,12 @@ static bool ask(struct run *run, int from, int to)
 
     for (int g = 0; g < run->n_ghosts; g++) {
         const bool has = p->ghosts[g] && run->place[to].ghosts[g];
+        const bool small =
+            p->is_half && largest(&p->before[g]) < SMALL * most_error(run);
 
         any |= has;
         for (int a = 0; a < ZOOM_ANGLES; a++)
-            run->ghost[g].of[a] =
-                !has ? 0
-                : p->is_half && p->before[g].of[a] < SMALL * most_error(run)
-                    ? p->before[g].of[a]
-                    : -1;
+            run->ghost[g].of[a] = !has ? 0 : small ? p->before[g].of[a] : -1;
     }
     return any;
 }
@@ -234,7 +235,8 @@ static enum glint_status halve(struct run *run, int from)
     if (status == GLINT_OK)
         status =
             zoom_error_measure(run->tool, &run->lens, &run->zoom, run->max_deg,
-                               run->n_ghosts, run->ghost, run->error);
+                               fmod(0.5 + middle * GOLDEN, 1), run->n_ghosts,
+                               run->ghost, run->error);
     if (status != GLINT_OK)
         return status;
     compare_steps(run, from, middle);

@@ -67,7 +67,7 @@ struct measuring {
     const struct glint_setup *setup;
     const struct glint_zoom_lens *zoom;
     struct glint_view view;
-    double max_deg;
+    double max_deg, shift;
     int n;
     struct zoom_error *error;
     enum glint_status status[ZOOM_ANGLES];
@@ -131,7 +131,7 @@ static void angle_job(void *ctx, int angle, int worker)
 enum glint_status zoom_error_measure(const struct tool *tool,
                                      const struct glint_prescription *lens,
                                      const struct glint_zoom_lens *zoom,
-                                     double max_deg, int n,
+                                     double max_deg, double shift, int n,
                                      struct zoom_error *error,
                                      struct glint_error *message)
 {
@@ -144,6 +144,7 @@ enum glint_status zoom_error_measure(const struct tool *tool,
         .view = glint_view_fit(WIDE, (int)fmin(fmax(high, 8), MOST_HIGH),
                                lens->film_width_mm, lens->film_height_mm),
         .max_deg = max_deg,
+        .shift = shift,
         .n = n,
         .error = error};
     enum glint_status status = GLINT_E_MEMORY;

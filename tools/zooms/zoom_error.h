@@ -15,7 +15,7 @@
 #include "options/tool.h"
 #include "glint/bake.h"
 
-enum { ZOOM_ANGLES = 6 };
+enum { ZOOM_ANGLES = 8 };
 
 /* Errors of one ghost, by angle. */
 struct zoom_error {
@@ -23,11 +23,12 @@ struct zoom_error {
 };
 
 /* Sets those entries of ERROR, one for each of N ghosts, that are below 0.
- * Lights go up to MAX_DEG. */
+ * Lights go up to MAX_DEG; SHIFT, 0 to 1, is where each lies in its share of
+ * that. */
 enum glint_status zoom_error_measure(const struct tool *tool,
                                      const struct glint_prescription *lens,
                                      const struct glint_zoom_lens *zoom,
-                                     double max_deg, int n,
+                                     double max_deg, double shift, int n,
                                      struct zoom_error *error,
                                      struct glint_error *message);
 

@@ -360,6 +360,33 @@ static void ghosts_fade(void **state)
     forget(at);
 }
 
+/* Where two positions show how it goes on, it does so into the dark one. */
+static void ghosts_go_on(void **state)
+{
+    const struct part part[3][2] = {{{0, 1, 0.5, 0}, {0, 2, 0, 0}},
+                                    {{0, 1, 0.4, 0}, {0, 2, 0.25, 0}},
+                                    {{0, 1, 0, 0}, {0, 2, 0.5, 0}}};
+    static const int32_t along_q30[3] = {0, ONE / 2, ONE};
+    struct model_image at[3];
+    struct glint_lens lens[3];
+    const char *reason = "";
+
+    (void)state;
+    for (int k = 0; k < 3; k++)
+        lens[k] = open_parts(&at[k], part[k], 2);
+    if (glint_zoom_join(&zoom, lens, along_q30, 3, &reason) != GLINT_OK)
+        fail_msg("%s", reason);
+    shows(0, 0.25, 0.45, 0.25);
+    shows(0, 0.5, 0.4, 0.25);
+    shows(0, 0.75, 0.35, 0.25);
+    shows(0, 1, 0, 0);
+    shows(1, 0.375, 0.1875, 0.25);
+    shows(1, 0.125, 0.0625, 0.25);
+    shows(1, 0, 0, 0);
+    for (int k = 0; k < 3; k++)
+        free(at[k].data);
+}
+
 /* Where both divide the pupil otherwise, the nearer one is drawn; parts are
  * mixed with those of the same ghost, wherever these stand. */
 static void parts_go_with_their_ghost(void **state)
@@ -443,6 +470,7 @@ int main(void)
         cmocka_unit_test(energies_have_heads_and_roots),
         cmocka_unit_test(boxes_move),
         cmocka_unit_test(ghosts_fade),
+        cmocka_unit_test(ghosts_go_on),
         cmocka_unit_test(parts_go_with_their_ghost),
         cmocka_unit_test(numbers_are_in_proportion),
     };
