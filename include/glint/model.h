@@ -233,9 +233,10 @@ uint32_t glint_model_crc32(const void *data, size_t bytes);
  * each taken at the same place of the pupil, mixed in proportion. What costs
  * more is planning a frame, and drawing it as far as mixed polynomials have
  * more terms and more ghosts are there: 1.3 to 2.1 times as long. A ghost that
- * light gets through at one of the two positions alone fades. Ghosts change at
- * different rates: those between the first position and the last may have some
- * ghosts only, and each ghost is mixed of the nearest two that have it.
+ * light gets through at one of the two positions alone goes on as between that
+ * one and another beyond it, if that is near enough, and else fades. Ghosts
+ * change at different rates: positions between the first and the last may have
+ * some ghosts only, and each ghost is mixed of the nearest two that have it.
  *
  * The file: a header, then for each position an ordinary model at a multiple of
  * 4 bytes; kept where it lies. */

@@ -10,7 +10,7 @@
  * further parts of the pupil the list has as many as any model has. Where both
  * neighbours divide the pupil of a ghost alike at an angle, they are mixed;
  * where they do not, the nearer one is drawn; where one is dark, the other
- * fades. */
+ * goes on as from a model beyond it, or fades. */
 #include "glint/model.h"
 
 #include "base/blob.h"
