@@ -40,15 +40,15 @@ inside() {
     shift
     # shellcheck disable=SC2016 # which the inner shell expands
     unshare --mount --pid --fork --kill-child ${offline:+--net} sh -c '
-        dir=$1; shift
+        dir=$1 archives=$2; shift 2
         for device in null zero full random urandom tty; do
             : >"$dir/dev/$device" && mount --bind "/dev/$device" "$dir/dev/$device" || exit 1
         done
         mkdir -p "$dir/dev/shm" && mount -t tmpfs none "$dir/dev/shm" &&
-            mount -t proc none "$dir/proc" && mount --bind '"$PWD/$kept"'/archives "$dir/var/cache/apt/archives" || exit 1
+            mount -t proc none "$dir/proc" && mount --bind "$archives" "$dir/var/cache/apt/archives" || exit 1
         [ -z "$CCACHE_DIR" ] || mount --bind "$CCACHE_DIR" "$dir/cache" || exit 1
         exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/nonexistent LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
-            ${CCACHE_DIR:+CCACHE_DIR=/cache} ${http_proxy:+http_proxy="$http_proxy"} chroot "$dir" "$@"' sh "$dir" "$@"
+            ${CCACHE_DIR:+CCACHE_DIR=/cache} ${http_proxy:+http_proxy="$http_proxy"} chroot "$dir" "$@"' sh "$dir" "$PWD/$kept/archives" "$@"
 }
 alone() { local offline=yes; inside "$@"; }
 

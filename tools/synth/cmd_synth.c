@@ -240,18 +240,25 @@ static int take(struct tool *tool, struct synth *s, int c)
     }
 }
 
-/* Checks whether files of the type can be written. */
-static int check_type(const struct tool *tool, const struct synth *s)
+/* Takes the layout's type if none was asked for, and checks whether pictures of
+ * the type can be written. */
+static int take_type(const struct tool *tool, struct synth *s)
 {
+    const bool is_asked = s->set.type != NULL;
     struct glint_error error = {""};
     char name[64];
 
-    snprintf(name, sizeof name, "x.%.50s", s->set.type);
-    if (strpbrk(s->set.type, "/%") ||
-        glint_picture_check(name, GLINT_PICTURE_8BIT, &error) != GLINT_OK)
-        return tool_usage(tool, "--type %s: %s", s->set.type,
-                          *error.text ? error.text : "no type of picture");
-    return EXIT_OK;
+    if (!is_asked)
+        s->set.type = s->set.layout->type;
+    snprintf(name, sizeof name, "input.%.50s", s->set.type);
+    if (!strpbrk(s->set.type, "/%") &&
+        glint_picture_check(name, GLINT_PICTURE_8BIT, &error) == GLINT_OK)
+        return EXIT_OK;
+    if (!is_asked)
+        return tool_usage(tool, "--layout %s: %s; or take --type ppm",
+                          s->set.layout->name, error.text);
+    return tool_usage(tool, "--type %s: %s", s->set.type,
+                      *error.text ? error.text : "no type of picture");
 }
 
 static int parse(struct tool *tool, int argc, char **argv, struct synth *s)
@@ -269,9 +276,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct synth *s)
                                 "such");
     if (!s->set.folder || !*s->set.folder)
         return tool_usage(tool, "needs -o FOLDER");
-    if (!s->set.type)
-        s->set.type = s->set.layout->type;
-    code = check_type(tool, s);
+    code = take_type(tool, s);
     return code == EXIT_OK ? -1 : code;
 }
 
