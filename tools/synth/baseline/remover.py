@@ -4,38 +4,43 @@
 import torch
 import torch.nn.functional as F
 from torch import nn
-BLOCK = 4  # pixels a side that are one place of the network
+
+BLOCK = 2  # pixels a side that are one place of the network
+PLACES = 6  # channels of a pixel's place
 SEEN = 0.0024  # light of a flare that counts as one: 8 codes
 
 
 def block(n_in, n_out):
-    return nn.Sequential(nn.Conv2d(n_in, n_out, 3, padding=1), nn.ReLU(True),
-                         nn.Conv2d(n_out, n_out, 3, padding=1), nn.ReLU(True))
+    layers = []
+    for n in (n_in, n_out):
+        layers += [nn.Conv2d(n, n_out, 3, padding=1, bias=False), nn.BatchNorm2d(n_out), nn.ReLU(True)]
+    return nn.Sequential(*layers)
 
 
 class Remover(nn.Module):
-    """A U-Net over blocks of 4 x 4 pixels. It sees the picture, the picture
-    mirrored at its middle, where a ghost's light is, where the lights are, and
-    the place of a pixel by them and by the middle; it says the root of the
-    flare's light."""
+    """A U-Net over blocks of 2 x 2 pixels, whose coarsest places are 16 pixels
+    wide, so that it sees the whole of a picture. It is given the picture and
+    where its lights are, both turned by half about the middle, where a light's
+    ghosts may be, and the place of a block by the lights and the middle; it says
+    the root of the flare's light, as a share of that of the picture."""
 
-    def __init__(self, width=20):
+    def __init__(self, sizes=(16, 32, 48, 64)):
         super().__init__()
-        sizes = [width, int(1.5 * width), 2 * width]
-        self.first = nn.Conv2d(BLOCK ** 2 * 12, width, 1)
-        self.down = nn.ModuleList(block(i, o) for i, o in zip([width] + sizes, sizes))
+        self.first = nn.Conv2d(BLOCK ** 2 * 4 + 5 + PLACES, sizes[0], 1)
+        self.down = nn.ModuleList(block(i, o) for i, o in zip(sizes[:1] + sizes, sizes))
         self.up = nn.ModuleList(block(i + o, o) for i, o in zip(sizes[:0:-1], sizes[-2::-1]))
-        self.last = nn.Conv2d(2 * width, BLOCK ** 2 * 3, 1)
+        self.last = nn.Conv2d(2 * sizes[0], BLOCK ** 2 * 3, 1)
         self.to(memory_format=torch.channels_last)
         nn.init.constant_(self.last.bias, -2)  # little flare at first
+        nn.init.normal_(self.last.weight, std=0.05)
 
-    def forward(self, light, mask, spokes):
+    def forward(self, light, mask, place):
         n, _, height, width = light.shape
         v, u = torch.meshgrid(torch.linspace(-1, 1, height), torch.linspace(-1, 1, width), indexing='ij')
-        place = (u * u + v * v).sqrt().expand(n, 1, height, width)
-        root = light.sqrt()
-        mirrored = torch.cat([root, mask], 1).flip((2, 3))
-        x = F.pixel_unshuffle(torch.cat([root, mask, mirrored, spokes, place], 1), BLOCK)
+        out = (u * u + v * v).sqrt().expand(n, 1, height, width)
+        seen = torch.cat([light.sqrt(), mask], 1)
+        coarse = F.avg_pool2d(torch.cat([seen.flip((2, 3)), place, out], 1), BLOCK)
+        x = torch.cat([F.pixel_unshuffle(seen, BLOCK), coarse], 1)
         first = x = F.relu(self.first(x.contiguous(memory_format=torch.channels_last)))
         kept = []
         for i, down in enumerate(self.down):
@@ -43,7 +48,8 @@ class Remover(nn.Module):
             kept.append(x)
         for up, side in zip(self.up, kept[-2::-1]):
             x = up(torch.cat([F.interpolate(x, scale_factor=2.0), side], 1))
-        return F.pixel_shuffle(torch.sigmoid(self.last(torch.cat([x, first], 1))), BLOCK)
+        share = torch.sigmoid(self.last(torch.cat([x, first], 1)).float())
+        return F.pixel_shuffle(share, BLOCK) * light.sqrt()
 
 
 def without(light, root):
@@ -57,8 +63,13 @@ def tone(light):
 
 
 def loss_of(root, light, truth, flare, mask):
-    """Mean of what the picture and the flare are off by, in roots of light, four
-    times as much where there is a flare. Lights themselves are left out."""
+    """What the pictures and the flares are off by, in roots of light, as a share of
+    what they are off by if they are left, so that a broad bright flare counts no
+    more than a small one; four times as much where there is a flare. Lights
+    themselves are left out."""
     weight = (1 - mask) * (1 + 3 * (flare.amax(1, keepdim=True) > SEEN).float())
-    off = (tone(without(light, root)) - tone(truth)).abs() + 0.5 * (root - flare.sqrt()).abs()
-    return (weight * off).mean()
+
+    def off(root):
+        error = (tone(without(light, root)) - tone(truth)) ** 2 + 0.25 * (root - flare.sqrt()) ** 2
+        return (weight * error).mean((1, 2, 3))
+    return ((off(root) + 1e-6) / (off(torch.zeros_like(root)) + 1e-4)).sqrt().mean()
