@@ -10,6 +10,8 @@ static const double looks[] = {1.5, 1.5, 25};
 static const double typicals[] = {4, 25, 110};
 /* How many ghosts the last of these counts for. */
 #define TRUST 3.0
+/* A ghost takes at most so many times what is expected. */
+#define MOST 10.0
 /* Share of a ghost's angles for which the mean of the others counts. */
 #define BLUR 0.1
 
@@ -22,6 +24,14 @@ void glint_effort_init(struct glint_effort *e, int n_ghosts, int n_workers,
                                .look = looks[kind],
                                .typical = typicals[kind],
                                .ghost = -1};
+}
+
+void glint_effort_expect(struct glint_effort *e, double head, double typical)
+{
+    e->head = head;
+    e->look = 1;
+    e->typical = typical;
+    e->expected = e->n_ghosts * typical;
 }
 
 void glint_effort_begin(struct glint_effort *e, int ghost)
@@ -52,14 +62,19 @@ static double left_of(const struct glint_effort *e)
     const int beside = (int)fmin(e->n_workers - 1, rest);
     const double known = TRUST * e->typical + e->ended;
     const double mean = known / (TRUST + e->n_ended);
-    double own = 0, all = mean;
+    double own = 0, all = mean, others;
 
     if (e->work > 0 && e->share < 1) {
         own = fmax(0, (e->work + BLUR * mean) / (e->share + BLUR) - e->work);
         all = (known + e->work + own) / (TRUST + e->n_ended + 1);
     }
     /* The ghosts of the other workers are half done. */
-    return fmax(own, (own + (rest - 0.5 * beside) * all) / e->n_workers);
+    others = (rest - 0.5 * beside) * all;
+    if (e->expected > 0)
+        others =
+            fmax(others, fmin(e->expected - e->n_workers * (e->ended + e->work),
+                              MOST * e->typical * rest));
+    return fmax(own, (own + others) / e->n_workers);
 }
 
 double glint_effort_done(const struct glint_effort *e)

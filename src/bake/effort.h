@@ -22,14 +22,15 @@
 
 struct glint_effort {
     int n_ghosts, n_workers;
-    double head;    /* work before ghosts are begun */
-    double look;    /* work of finding the angles of a ghost */
-    double typical; /* work of a ghost, before any is known */
-    int ghost;      /* the largest that was begun; -1: none */
-    int n_ended;    /* number of ghosts that worker 0 ended */
-    double ended;   /* work of these */
-    double work;    /* of the ghost that worker 0 is at */
-    double share;   /* share of its angles that are done, 0 .. 1 */
+    double head;     /* work before ghosts are begun */
+    double look;     /* work of finding the angles of a ghost */
+    double typical;  /* work of a ghost, before any is known */
+    double expected; /* work of all ghosts; 0: nobody knows */
+    int ghost;       /* the largest that was begun; -1: none */
+    int n_ended;     /* number of ghosts that worker 0 ended */
+    double ended;    /* work of these */
+    double work;     /* of the ghost that worker 0 is at */
+    double share;    /* share of its angles that are done, 0 .. 1 */
 };
 
 /* What makes the ghosts of a lens take long: it opens wider than GLINT_WIDE, or
@@ -42,6 +43,12 @@ enum glint_effort_kind {
 
 void glint_effort_init(struct glint_effort *effort, int n_ghosts, int n_workers,
                        enum glint_effort_kind kind);
+
+/* Replaces what is expected by HEAD and TYPICAL: N times TYPICAL is the work of
+ * all ghosts. Of lenses that are not round the last ghosts fold, and take a
+ * hundred times as long as the first ones. */
+void glint_effort_expect(struct glint_effort *effort, double head,
+                         double typical);
 
 void glint_effort_begin(struct glint_effort *effort, int ghost);
 

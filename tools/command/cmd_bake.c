@@ -183,6 +183,7 @@ static int bake_into(struct glint_output *out, struct tool *tool,
     b->options.progress = tool_progress_show;
     b->options.progress_ctx = &b->progress;
     tool_progress_start(&b->progress, tool, "bake");
+    b->progress.less = "a smaller --max-angle or a larger --tolerance";
     status = glint_bake(lens, &b->options, &model, &bytes, &r, &error);
     tool_progress_end(&b->progress);
     if (status == GLINT_OK)

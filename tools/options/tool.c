@@ -388,6 +388,7 @@ void tool_progress_start(struct tool_progress *p, const struct tool *tool,
                          const char *what)
 {
     p->what = what;
+    p->less = NULL;
     p->started = tool_seconds();
     p->last = 0;
     p->most = 0;
@@ -419,7 +420,9 @@ static void tell_length(struct tool_progress *p, double spent, double done)
     if (left < 120)
         fprintf(stderr, "%s: takes about %.0f s\n", p->what, left);
     else
-        fprintf(stderr, "%s: takes about %.0f minutes\n", p->what, left / 60);
+        fprintf(stderr, "%s: takes about %.0f minutes%s%s\n", p->what,
+                left / 60, p->less ? "; less with " : "",
+                p->less ? p->less : "");
 }
 
 void tool_progress_show(void *progress, double done)

@@ -138,6 +138,8 @@ int tool_check_output(const struct tool *tool, const char *path);
  * PROGRESS below is such a struct, and DONE is 0 .. 1. */
 struct tool_progress {
     const char *what;
+    const char *less; /* what makes it take less, said where it takes minutes;
+                         NULL: nothing */
     bool shown, is_terminal;
     bool told; /* how long it takes was said, or is short */
     double started, last;

@@ -17,10 +17,12 @@
 
 enum { HEAD = 32 }; /* fits before the first ghost, see effort.c */
 
-/* Bakes N ghosts of WORK[] fits each on one worker; the share told of each
- * grows as its work does. Sets SAID to the time left that is said at a quarter,
- * half and three quarters of the time, over that which is. */
-static void bake(const double *work, int n, bool wide, double said[3])
+/* Bakes N ghosts of WORK[] fits each on one worker, EXPECTED if that is not 0;
+ * the share told of each grows as its work does. Sets SAID to the time left
+ * that is said at a quarter, half and three quarters of the time, over that
+ * which is. */
+static void bake(const double *work, int n, bool wide, double expected,
+                 double said[3])
 {
     struct glint_effort e;
     double all = HEAD, now = HEAD;
@@ -28,6 +30,8 @@ static void bake(const double *work, int n, bool wide, double said[3])
     for (int g = 0; g < n; g++)
         all += work[g];
     glint_effort_init(&e, n, 1, wide ? GLINT_EFFORT_WIDE : GLINT_EFFORT_NARROW);
+    if (expected > 0)
+        glint_effort_expect(&e, HEAD, expected);
     for (int g = 0; g < n; g++) {
         glint_effort_begin(&e, g);
         for (int w = 1; w <= (int)work[g]; w++) {
@@ -55,7 +59,7 @@ static void test_alike(void **state)
     (void)state;
     for (int g = 0; g < 100; g++)
         work[g] = 20;
-    bake(work, 100, false, said);
+    bake(work, 100, false, 0, said);
     for (int k = 0; k < 3; k++)
         assert_true(said[k] > 0.8 && said[k] < 1.25);
 }
@@ -73,7 +77,7 @@ static void test_random(void **state)
 
         for (int g = 0; g < 20; g++)
             work[g] = ceil(pow(10, 2 * rng_unit(&seed)));
-        bake(work, 20, true, said);
+        bake(work, 20, true, 0, said);
         off += fabs(log(said[1])) > log(3);
     }
     assert_in_range(off, 0, 10);
@@ -87,7 +91,7 @@ static void test_long_ghost(void **state)
     (void)state;
     for (int g = 0; g < 20; g++)
         work[g] = g < 19 ? 5 : 1000;
-    bake(work, 20, true, said);
+    bake(work, 20, true, 0, said);
     assert_true(said[1] > 0.5 && said[1] < 2);
     assert_true(said[2] > 0.5 && said[2] < 2);
 }
@@ -116,6 +120,20 @@ static void test_workers(void **state)
         done[k] = glint_effort_done(&e);
         assert_true(done[k] > 0.4 && done[k] < 0.65);
     }
+}
+
+/* The last ghosts take nearly all, as was expected: what is said is true within
+ * a factor of two from the first quarter on. */
+static void test_late(void **state)
+{
+    double work[100], said[3];
+
+    (void)state;
+    for (int g = 0; g < 100; g++)
+        work[g] = g < 70 ? 1 : 70;
+    bake(work, 100, false, 20, said);
+    for (int k = 0; k < 3; k++)
+        assert_true(said[k] > 0.5 && said[k] < 2);
 }
 
 struct log {
@@ -165,7 +183,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_alike),      cmocka_unit_test(test_random),
         cmocka_unit_test(test_long_ghost), cmocka_unit_test(test_workers),
-        cmocka_unit_test(test_bake),
+        cmocka_unit_test(test_late),       cmocka_unit_test(test_bake),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
