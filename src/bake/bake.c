@@ -14,6 +14,7 @@
 #include "bake/model_header.h"
 #include "bake/options.h"
 #include "bake/published/published.h"
+#include "bake/skew/skew_brightness.h"
 #include "bake/skew/skew_fit.h"
 #include "bake/trace/cells.h"
 #include "bake/write_model.h"
@@ -96,6 +97,9 @@ static void fit_told(void *ctx, double work, double share)
  * the direction, tenths of a pixel take many times the systems. */
 #define SKEW_TOLERANCE 1.5
 
+/* The same of energies, which parts of the band make cheap. */
+#define SKEW_ENERGY 0.7
+
 static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
 {
     const bool round = glint_prescription_is_round(run->lens);
@@ -111,8 +115,9 @@ static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
         .stop_least = 2.7e-5 * t * fmin(1, run->lens->f_number / GLINT_WIDE),
         .barrel = 4e-4 * t,
         .escape = 1e-3 * t,
-        .energy = 1.2e-3 * t,
+        .energy = 1.2e-3 * (round ? t : SKEW_ENERGY * run->options.tolerance),
         .ease = 10,
+        .pixel_mm = film / 1920,
         .axis = fmin(1, t),
         .axis_depth = (int)fmin(GLINT_MAX_AXIS_DEPTH,
                                 GLINT_PART_DEPTH + fmax(0, ceil(-log2(t)))),
@@ -238,9 +243,15 @@ static enum glint_effort_kind kind_of(const struct glint_prescription *lens)
 static enum glint_status fit_ghosts(struct bake_run *run)
 {
     const struct glint_bake_options *o = &run->options;
+    double head, typical;
 
     glint_effort_init(&run->effort, run->setup.n_ghosts,
                       glint_workers_count(o->workers), kind_of(run->lens));
+    if (!glint_prescription_is_round(run->lens)) {
+        glint_skew_work(run->lens, run->setup.n_ghosts, o->max_deg,
+                        o->tolerance, &head, &typical);
+        glint_effort_expect(&run->effort, head, typical);
+    }
     report_effort(run);
     glint_workers_run(o->workers, run->setup.n_ghosts, fit_job, run);
     if (o->progress)
@@ -334,6 +345,19 @@ static enum glint_status check_draft(const struct bake_run *run)
     return GLINT_E_LENS;
 }
 
+static enum glint_status find_brightness(struct bake_run *run)
+{
+    const struct glint_bake_options *o = &run->options;
+    const double field_mm = glint_bake_field_mm(run->lens, o);
+
+    return glint_prescription_is_round(run->lens)
+               ? glint_brightness_find(&run->brightness, &run->setup, field_mm,
+                                       o->max_deg, o->band_nm, o->workers)
+               : glint_skew_brightness_find(&run->brightness, &run->setup,
+                                            field_mm, o->max_deg, o->band_nm,
+                                            o->workers);
+}
+
 static enum glint_status bake_run(struct bake_run *run)
 {
     struct glint_model_header header;
@@ -343,10 +367,7 @@ static enum glint_status bake_run(struct bake_run *run)
         status = glint_model_header_of(run->lens, &run->options, &run->setup,
                                        &header);
     if (status == GLINT_OK)
-        status = glint_brightness_find(
-            &run->brightness, &run->setup,
-            glint_bake_field_mm(run->lens, &run->options), run->options.max_deg,
-            run->options.band_nm, run->options.workers);
+        status = find_brightness(run);
     if (status == GLINT_OK)
         status = fit_ghosts(run);
     if (status == GLINT_OK)

@@ -13,7 +13,8 @@ enum {
     REVISION = 12,
     WIDE_REVISION = 16, /* of those of lenses that open wider than GLINT_WIDE */
     SHAPED_REVISION =
-        1 /* besides, of those with surfaces that are no spheres */
+        1,            /* besides, of those with surfaces that are no spheres */
+    SKEW_REVISION = 2 /* and of those that are not round */
 };
 
 void glint_bake_defaults(struct glint_bake_options *options)
@@ -135,6 +136,8 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
         if (glint_surface_is_shaped(s))
             mix_shape(&key, &s->shape);
     }
+    if (!glint_prescription_is_round(lens))
+        mix(&key, SKEW_REVISION);
     for (const char *c = lens->name; *c; c++)
         mix(&key, (unsigned char)*c);
     return key;

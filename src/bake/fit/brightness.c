@@ -143,14 +143,21 @@ static void angle_job(void *ctx, int job, int worker)
     free(patch);
 }
 
+static const double degrees[GLINT_BRIGHTNESS_ANGLES] = {0,  3,  6,  9,  12, 15,
+                                                        18, 22, 27, 34, 45};
+
+void glint_brightness_sines(struct glint_brightness *brightness)
+{
+    for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++)
+        brightness->sine[k] = glint_sin_deg(degrees[k]);
+}
+
 enum glint_status glint_brightness_find(struct glint_brightness *brightness,
                                         const struct glint_setup *setup,
                                         double field_mm, double max_deg,
                                         const double band_nm[2],
                                         struct glint_workers *workers)
 {
-    static const double degrees[GLINT_BRIGHTNESS_ANGLES] = {
-        0, 3, 6, 9, 12, 15, 18, 22, 27, 34, 45};
     const struct glint_prescription *lens = setup->lens;
     const double scale =
         field_mm / (1.1 * hypot(lens->film_width_mm, lens->film_height_mm));
@@ -163,10 +170,9 @@ enum glint_status glint_brightness_find(struct glint_brightness *brightness,
         {GLINT_OK}};
     int n = 2;
 
-    for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++) {
-        brightness->sine[k] = glint_sin_deg(degrees[k]);
+    glint_brightness_sines(brightness);
+    for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++)
         brightness->level[k] = 0;
-    }
     while (n < GLINT_BRIGHTNESS_ANGLES && degrees[n - 1] <= max_deg)
         n++;
     glint_workers_run(workers, n, angle_job, &t);

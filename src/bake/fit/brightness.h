@@ -24,6 +24,9 @@ struct glint_brightness {
                                               sensor area; 0: no light */
 };
 
+/* Sets the angles. */
+void glint_brightness_sines(struct glint_brightness *brightness);
+
 /* Finds the levels that angles up to MAX_DEG need; they do not depend on
  * WORKERS. GLINT_E_MEMORY. */
 enum glint_status glint_brightness_find(struct glint_brightness *brightness,

@@ -26,6 +26,7 @@ struct glint_tolerance {
     double escape; /* relative radius that a ray may get past a barrel that is
                       left out */
     double ease;
+    double pixel_mm; /* of a picture 1920 wide */
     /* Factor for zones at the axis, where light folds into rings: on how narrow
      * they may become, and on the tolerance of places. */
     double axis;

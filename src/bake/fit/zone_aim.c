@@ -5,6 +5,13 @@
 
 /* Light of a ray below which its errors show no less. */
 #define LEAST_LIGHT 1e-3
+/* Least factor on the tolerances of places of skew zones that are brighter than
+ * white: at their outlines a shift shows as many times as much. */
+#define CLIPPED 0.4
+/* Least factor on the tolerance of places across a streak that is thinner than
+ * a pixel: where it passes from one row of pixels to the next its whole light
+ * does. */
+#define THIN 0.1
 
 /* The rays of one angle and wavelength: how many are seen, and where they land.
  */
@@ -13,6 +20,7 @@ struct sight {
     double low[2], high[2]; /* corners of the area on the sensor on which seen
                                rays land, mm */
     double energy;          /* mean energy of the seen rays */
+    double spread;          /* their mean RAY_SPREAD */
 };
 
 static struct sight look(const struct glint_zone_rays *r, int first)
@@ -29,9 +37,11 @@ static struct sight look(const struct glint_zone_rays *r, int first)
             s.high[k] = fmax(s.high[k], r->at[RAY_SENSOR_X + k][i]);
         }
         s.energy += r->at[RAY_ENERGY][i];
+        s.spread += r->at[RAY_SPREAD][i];
         s.n++;
     }
     s.energy /= s.n > 0 ? s.n : 1;
+    s.spread /= s.n > 0 ? s.n : 1;
     return s;
 }
 
@@ -48,14 +58,29 @@ static double sine_of(const struct glint_zone *zone,
                                   0.5 * x[GLINT_P] * (zone->y_hi - zone->y_lo));
 }
 
-/* Returns how bright the ghost is at its brightest in the zone, relative to the
- * level that counts. */
+/* Returns the area that the rays of V land on, of a ghost in ZONE, mm^2. */
+static double area_on_sensor(const struct glint_zone *zone,
+                             const struct sight *v, double blur_mm)
+{
+    /* The light of a round lens is symmetric in y. */
+    const double y = zone->skew ? 0.5 * (v->high[1] - v->low[1] + blur_mm)
+                                : fmax(fabs(v->low[1]), fabs(v->high[1]));
+
+    return fmax(1e-9, (v->high[0] - v->low[0] + blur_mm) * 1.6 * y);
+}
+
+/* Returns how bright the ghost is in the zone, relative to the level that
+ * counts: at its brightest, or of skew zones, which have few rays at each of
+ * many directions, in the mean. Of these light spreads over a pixel at least.
+ */
 static double share_of(const struct glint_tolerance *tolerance,
                        const struct glint_zone *zone,
-                       const struct glint_zone_rays *r)
+                       const struct glint_zone_rays *r, double thin[2])
 {
     enum { FEW = 4 }; /* this few rays have no area to speak of */
-    double most = 0;
+    const double blur = zone->skew ? tolerance->pixel_mm : 0;
+    double most = 0, light = 0, area = 0, covered = 0, on_screen[2] = {0},
+           n = 0;
 
     for (int i = 0, next; i < r->n; i = next) {
         const struct sight v = look(r, i);
@@ -67,17 +92,26 @@ static double share_of(const struct glint_tolerance *tolerance,
                              v.n_all;
         const double level =
             glint_brightness_at(tolerance->brightness, sine_of(zone, x));
-        /* The light of a round lens is symmetric in y. */
-        const double y = zone->skew ? 0.5 * (v.high[1] - v.low[1])
-                                    : fmax(fabs(v.low[1]), fabs(v.high[1]));
+        const double on = area_on_sensor(zone, &v, blur);
 
         next = i + v.n_all;
-        if (v.n >= FEW)
-            most = fmax(most, v.energy * pupil /
-                                  fmax(1e-9, (v.high[0] - v.low[0]) * 1.6 * y) /
-                                  fmax(level, 1e-30));
+        if (v.n < FEW)
+            continue;
+        most = fmax(most, v.energy * pupil / on / fmax(level, 1e-30));
+        light += v.energy * pupil / fmax(level, 1e-30);
+        area += on;
+        for (int k = 0; k < 2; k++)
+            on_screen[k] += v.high[k] - v.low[k];
+        covered += 4 * v.spread * v.n / v.n_all;
+        n++;
     }
-    return most;
+    for (int k = 0; k < 2; k++)
+        thin[k] =
+            !zone->skew
+                ? 1
+                : fmax(THIN,
+                       fmin(1, covered / (on_screen[1 - k] + n * 1e-9) / blur));
+    return zone->skew ? light / fmax(area, 1e-30) : most;
 }
 
 double glint_zone_aim_stretch(const struct glint_zone_rays *rays,
@@ -120,16 +154,21 @@ struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
                                         const struct glint_zone_rays *rays)
 {
     const struct glint_tolerance *t = tolerance;
-    const double share = share_of(t, zone, rays);
+    double thin[2];
+    const double share = share_of(t, zone, rays, thin);
     const double shows = fmax(1, pow(fmax(share, 1e-9), -0.42));
     const double ease = fmin(t->ease, shows);
     const double axis = zone->lo <= 0 ? t->axis : 1;
+    const double bright =
+        zone->skew ? fmax(CLIPPED, fmin(1, pow(fmax(share, 1e-9), -0.42))) : 1;
     struct glint_zone_aim aim = {
-        .sensor_mm = axis * fmin(ease * t->sensor_mm, t->faint_sensor_mm),
-        .edge_mm = ease * t->edge_mm,
+        .sensor_mm =
+            bright * axis * fmin(ease * t->sensor_mm, t->faint_sensor_mm),
+        .edge_mm = bright * ease * t->edge_mm,
         .energy = ease * t->energy,
         .ease = ease,
-        .share = share};
+        .share = share,
+        .thin = {thin[0], thin[1]}};
 
     aim.hidden = shows * t->sensor_mm / aim.sensor_mm;
     aim.stop = outline(&aim, t->stop_least, t->stop,
@@ -203,12 +242,32 @@ static double light_of(const struct glint_zone *zone,
                 area_of(r->at[RAY_SENSOR_X], r->at[RAY_SENSOR_Y], i, a, b));
 }
 
+/* Returns the light of ray I of a skew zone, as glint_zone_aim_light(). */
+static double light_of_skew(const struct glint_tolerance *tolerance,
+                            const struct glint_zone *zone,
+                            const struct glint_zone_aim *aim,
+                            const struct glint_zone_rays *r, int i)
+{
+    double x[GLINT_VARIABLES], level, pupil;
+
+    glint_zone_rays_x(r, i, x);
+    level = glint_brightness_at(tolerance->brightness, sine_of(zone, x)) *
+            aim->share;
+    pupil = glint_zone_side(zone, zone->half_x, x) *
+            glint_zone_side(zone, zone->half_y, x);
+    return fmin(
+        1, fmax(LEAST_LIGHT, r->at[RAY_ENERGY][i] * pupil /
+                                 fmax(1e-30, r->at[RAY_SPREAD][i] * level)));
+}
+
 void glint_zone_aim_light(const struct glint_tolerance *tolerance,
                           const struct glint_zone *zone,
                           const struct glint_zone_aim *aim,
                           const struct glint_zone_rays *rays, double *light)
 {
-    for (int i = 0; i < rays->n; i++) {
+    for (int i = 0; i < rays->n && zone->skew; i++)
+        light[i] = light_of_skew(tolerance, zone, aim, rays, i);
+    for (int i = 0; i < rays->n && !zone->skew; i++) {
         const int before = ray_before(rays, i);
         const int beside =
             i + 1 < rays->n && glint_zone_rays_alike(rays, i, i + 1) &&

@@ -14,12 +14,13 @@
 struct glint_zone_aim {
     /* Tolerances of places and of outlines on the sensor. */
     double sensor_mm, edge_mm;
-    double stop;   /* tolerance of places in the stop, radii */
-    double energy; /* tolerance of the energy, as a share */
-    double ease;   /* factor over the tolerances of a bright ghost */
-    double share;  /* brightness over that of a bright ghost */
-    double hidden; /* error of places at which the ghost begins to show it, in
-                      units of sensor_mm */
+    double thin[2]; /* factors on sensor_mm along x and y */
+    double stop;    /* tolerance of places in the stop, radii */
+    double energy;  /* tolerance of the energy, as a share */
+    double ease;    /* factor over the tolerances of a bright ghost */
+    double share;   /* brightness over that of a bright ghost */
+    double hidden;  /* error of places at which the ghost begins to show it, in
+                       units of sensor_mm */
 };
 
 struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,

@@ -34,10 +34,10 @@ static const struct glint_degrees skew_degrees = {
     .total = 10,
     .terms = MANY_TERMS};
 static const struct glint_degrees skew_energy_degrees = {
-    .most = {5, 5, 4, 6, 4},
+    .most = {8, 8, 4, 6, 4},
     .weight = {1, 1, 1, 1, 1},
-    .total = 8,
-    .terms = FEW_TERMS};
+    .total = 10,
+    .terms = MANY_TERMS};
 
 struct glint_degrees glint_zone_degrees(const struct glint_zone_task *task,
                                         enum glint_channel kind, bool steep)

@@ -62,10 +62,10 @@ static double weight_past_field(const struct fit *f, double fields)
     return out_mm <= 0 ? 1 : 1 / (1 + 0.2 * out_mm / f->aim->sensor_mm);
 }
 
-/* Sets the light of the rays; of spheres, 1. */
+/* Sets the light of the rays; of round lenses of spheres, 1. */
 static void find_light(struct fit *f)
 {
-    if (f->task->visible->shaped)
+    if (f->task->visible->shaped || f->task->zone->skew)
         glint_zone_aim_light(f->task->tolerance, f->task->zone, f->aim,
                              &f->buffers->rays, f->buffers->light);
     else
@@ -344,10 +344,20 @@ static bool is_decided(const struct fit *f)
 {
     const struct glint_zone_task *t = f->task;
     const struct glint_zone_errors *e = f->errors;
-    const double left = t->thorough ? e->dims : e->worst;
+    const double left = t->zone->skew ? fmax(e->places, e->outlines)
+                        : t->thorough ? e->dims
+                                      : e->worst;
 
     return (t->hopeless > 0 && left > t->hopeless) ||
            (t->settled > 0 && left > t->settled);
+}
+
+/* Returns the tolerance of a place on sensor or stop. */
+static double tolerance_of(const struct fit *f, int channel)
+{
+    return channel <= RAY_SENSOR_Y
+               ? f->aim->sensor_mm * f->aim->thin[channel - RAY_SENSOR_X]
+               : f->aim->stop;
 }
 
 static enum glint_status fit_outputs(struct fit *f,
@@ -357,18 +367,19 @@ static enum glint_status fit_outputs(struct fit *f,
     enum glint_status status = GLINT_OK;
     double energy = 0;
 
-    *e = (struct glint_zone_errors){0, 0, 0, 0, 0};
+    *e = (struct glint_zone_errors){.worst = 0};
     for (int c = RAY_SENSOR_X; c <= RAY_STOP_Y && status == GLINT_OK; c++) {
         const bool sensor = c <= RAY_SENSOR_Y;
 
-        status = fit_channel(f, c, sensor ? f->aim->sensor_mm : f->aim->stop,
-                             system, sensor ? &e->places : &e->outlines);
+        status = fit_channel(f, c, tolerance_of(f, c), system,
+                             sensor ? &e->places : &e->outlines);
         sum_up(f, 0);
         if (is_decided(f))
             return status;
     }
     if (status == GLINT_OK)
         status = fit_energy(f, system, &energy);
+    e->energy = energy;
     sum_up(f, energy);
     for (int b = 0;
          b < f->buffers->rays.n_barrels && status == GLINT_OK && !is_decided(f);
@@ -392,18 +403,18 @@ static void check_zone(struct fit *f, const struct glint_fitted_system *system)
 {
     struct glint_zone_errors *const e = f->errors;
     const bool shaped = f->task->visible->shaped;
+    const bool by_light = shaped || f->task->zone->skew;
 
     glint_zone_check(f->task->zone, f->task->visible, &f->buffers->rays);
     find_light(f);
     for (int k = 0; k < 4 && k < system->n_outputs; k++) {
         const bool sensor = k <= RAY_SENSOR_Y;
         double *const error = sensor ? &e->places : &e->outlines;
-        const double rms = sensor ? f->aim->sensor_mm : f->aim->stop;
         const double left =
             glint_zone_aim_off(&f->buffers->rays, &system->output[k],
-                               sensor && shaped ? f->buffers->light : NULL,
+                               sensor && by_light ? f->buffers->light : NULL,
                                shaped ? 3 : 1) /
-            rms;
+            tolerance_of(f, k);
 
         *error = fmax(*error, left / CHECK_RMS);
     }

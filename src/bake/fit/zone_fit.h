@@ -29,8 +29,8 @@ struct glint_zone_task {
                         given up; 0: none is */
     /* Tolerances: if an output that was fitted has a larger error, the outputs
      * after it are left out, as the zone will be fitted anew however they come
-     * out. In a thorough fit only errors of places and barrels count. 0: none
-     * is left out. */
+     * out. In a thorough fit only errors of places and barrels count, of a skew
+     * zone as far as they show. 0: none is left out. */
     double settled;
 };
 
@@ -63,6 +63,7 @@ struct glint_zone_errors {
     double dims;     /* of these, and the energy of wide stops: by this a box is
                         divided */
     double worst;    /* of places, outlines and the energy */
+    double energy;   /* of the energy */
 };
 
 /* Fits the outputs of SYSTEM, which has none yet. If errors pass TASK->hopeless

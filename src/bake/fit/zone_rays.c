@@ -24,6 +24,7 @@ static void add_ray(const struct glint_visible *h,
     rays->at[RAY_ENERGY][i] = ray->energy;
     rays->at[RAY_EXCESS][i] =
         fmax(ray->rel_radius, hypot(ray->stop_x_mm, ray->stop_y_mm) / stop);
+    rays->at[RAY_SPREAD][i] = 0;
     rays->at[RAY_FIELD][i] =
         hypot(ray->sensor_x_mm, ray->sensor_y_mm) / h->field_mm;
     for (int k = 0; k < rays->n_barrels; k++) {
@@ -119,6 +120,52 @@ static void trace_positions(const struct glint_zone *zone,
     }
 }
 
+/* How far from a ray its neighbours are, in u or v. */
+#define ASIDE 0.01
+
+/* Adds the ray at X and, if THREE, its neighbours before and behind it. */
+static void add_place(struct glint_zone_batch *t, const struct glint_zone *zone,
+                      double x[GLINT_VARIABLES], bool three)
+{
+    const double v = x[1];
+
+    if (three) {
+        x[1] = v + (v < 0.5 ? ASIDE : -ASIDE);
+        glint_zone_batch_add(t, zone, x);
+        x[1] = v;
+    }
+    glint_zone_batch_add(t, zone, x);
+    if (three) {
+        x[0] += x[0] < 0 ? ASIDE : -ASIDE;
+        glint_zone_batch_add(t, zone, x);
+    }
+}
+
+/* Adds the middle rays of T, which come in threes, with how far their
+ * neighbours land from them. */
+static void add_middles(const struct glint_visible *visible,
+                        struct glint_zone_batch *t,
+                        struct glint_zone_rays *rays)
+{
+    for (int i = 1; i < t->n; i += 3) {
+        const struct glint_ray *const a = &t->ray[i - 1], *const b = &t->ray[i];
+        const struct glint_ray *const c = &t->ray[i + 1];
+
+        if (t->status[i] != GLINT_RAY_OK)
+            continue;
+        add_ray(visible, t->path, t->x[i], b, glint_zone_batch_hits(t, i),
+                rays);
+        if (t->status[i - 1] == GLINT_RAY_OK &&
+            t->status[i + 1] == GLINT_RAY_OK)
+            rays->at[RAY_SPREAD][rays->n - 1] =
+                fabs((a->sensor_x_mm - b->sensor_x_mm) *
+                         (c->sensor_y_mm - b->sensor_y_mm) -
+                     (a->sensor_y_mm - b->sensor_y_mm) *
+                         (c->sensor_x_mm - b->sensor_x_mm)) /
+                (ASIDE * ASIDE);
+    }
+}
+
 /* Traces the rays of a skew zone, for positions and energies alike: a few at
  * each of many directions and wavelengths. Directions fill the zone up to its
  * borders. */
@@ -126,28 +173,26 @@ static void trace_scattered(const struct glint_zone *zone,
                             const struct glint_visible *visible,
                             struct glint_zone_rays *rays)
 {
-    enum { PLANES = 132, RAYS = 24 };
+    enum { PLANES = 132, RAYS = 24, AT_ONCE = RAYS / 3 };
     struct glint_zone_batch t;
 
     rays->n = 0;
-    for (int k = 0; k < PLANES; k++) {
-        const int wave = k % GLINT_VISIBLE_WAVES;
+    for (int k = 0; k < PLANES * RAYS / AT_ONCE; k++) {
+        const int wave = k / 3 % GLINT_VISIBLE_WAVES;
         double plane[GLINT_VARIABLES], x[GLINT_VARIABLES];
 
-        glint_zone_scatter(zone, k, plane);
+        glint_zone_scatter(zone, k / 3, plane);
         t.path = &visible->path[wave];
-        for (t.n = 0; t.n < RAYS;) {
-            glint_zone_scatter(zone, k * RAYS + t.n, x);
+        t.n = 0;
+        for (int n = 0; n < AT_ONCE; n++) {
+            glint_zone_scatter(zone, k * AT_ONCE + n, x);
             for (int i = 0; i < GLINT_VARIABLES; i++)
                 x[i] = sin(0.5 * GLINT_PI * (i < GLINT_S ? x[i] : plane[i]));
             x[GLINT_W] = glint_zone_node(wave, GLINT_VISIBLE_WAVES);
-            glint_zone_batch_add(&t, zone, x);
+            add_place(&t, zone, x, true);
         }
         glint_zone_batch_trace(&t);
-        for (int i = 0; i < RAYS; i++)
-            if (t.status[i] == GLINT_RAY_OK)
-                add_ray(visible, t.path, t.x[i], &t.ray[i],
-                        glint_zone_batch_hits(&t, i), rays);
+        add_middles(visible, &t, rays);
     }
 }
 
@@ -211,24 +256,6 @@ void glint_zone_trace(const struct glint_zone *zone,
                    energies);
 }
 
-/* Adds the ray at X and, if THREE, its neighbours before and behind it. */
-static void add_place(struct glint_zone_batch *t, const struct glint_zone *zone,
-                      double x[GLINT_VARIABLES], bool three)
-{
-    const double aside = 0.01, v = x[1];
-
-    if (three) {
-        x[1] = v + (v < 0.5 ? aside : -aside);
-        glint_zone_batch_add(t, zone, x);
-        x[1] = v;
-    }
-    glint_zone_batch_add(t, zone, x);
-    if (three) {
-        x[0] += x[0] < 0 ? aside : -aside;
-        glint_zone_batch_add(t, zone, x);
-    }
-}
-
 /* Adds those rays of T that get through, in groups of N that all do. */
 static void add_groups(const struct glint_visible *visible,
                        struct glint_zone_batch *t, int n,
@@ -250,8 +277,8 @@ void glint_zone_check(const struct glint_zone *zone,
                       struct glint_zone_rays *rays)
 {
     enum { BUNDLES = 24, RAYS = 16, IN_THREES = 10 };
-    const int group = visible->shaped ? 3 : 1;
-    const int places = visible->shaped ? IN_THREES : RAYS;
+    const int group = visible->shaped || zone->skew ? 3 : 1;
+    const int places = group == 3 ? IN_THREES : RAYS;
     double x[GLINT_VARIABLES], bundle[GLINT_VARIABLES];
     struct glint_path path;
     struct glint_zone_batch t;
@@ -261,7 +288,7 @@ void glint_zone_check(const struct glint_zone *zone,
     for (int k = 0; k < BUNDLES; k++) {
         glint_zone_scatter(zone, k, bundle);
         glint_visible_path(visible, bundle[3], &path);
-        path.places_only = !visible->shaped;
+        path.places_only = group == 1;
         t.n = 0;
         for (int i = 0; i < places; i++) {
             glint_zone_scatter(zone, k * RAYS + i, x);
@@ -271,6 +298,9 @@ void glint_zone_check(const struct glint_zone *zone,
             add_place(&t, zone, x, group == 3);
         }
         glint_zone_batch_trace(&t);
-        add_groups(visible, &t, group, rays);
+        if (zone->skew)
+            add_middles(visible, &t, rays);
+        else
+            add_groups(visible, &t, group, rays);
     }
 }

@@ -21,6 +21,8 @@ enum {
     RAY_ENERGY,
     RAY_EXCESS, /* largest relative radius at any surface and at the stop */
     RAY_FIELD,  /* distance from the sensor's centre, in radii of the field */
+    RAY_SPREAD, /* area on the sensor over that of u and v, mm^2; of skew zones;
+                   0: unknown */
     RAY_CHANNELS
 };
 
@@ -89,7 +91,7 @@ void glint_zone_trace(const struct glint_zone *zone,
 /* Sets RAYS to scattered rays of the zone, at angles and wavelengths between
  * those that were fitted, without barrels. Deterministic. Where VISIBLE is
  * shaped they come in threes, the middle one with a neighbour across and one
- * along. */
+ * along; of a skew zone that is the only one of them. */
 void glint_zone_check(const struct glint_zone *zone,
                       const struct glint_visible *visible,
                       struct glint_zone_rays *rays);

@@ -8,6 +8,7 @@
 #include "bake/fit/next.h"
 #include "bake/fit/zone_fit.h"
 #include "bake/skew/directions.h"
+#include "bake/skew/pieces.h"
 #include "engine/setup/degrees.h"
 
 /* Largest side of a patch, as a difference of sines. */
@@ -17,8 +18,7 @@
 /* A smaller one is kept if halving gained nothing and its error is endured. */
 #define STUCK_SIDE 0.12
 /* Share of the error of the whole patch: see fit.c. */
-#define STUCK   0.75
-#define ENDURED 3.0
+#define STUCK 0.75
 /* Least share of a box that a ghost must fill, in patches wider than FILL_SIDE.
  */
 #define LEAST_FILL 0.25
@@ -27,11 +27,31 @@
 #define HOPELESS 10.0
 /* Width of a band in w, 0 .. 2: narrower ones are not halved. */
 #define LEAST_BAND 0.6
-/* Boxes that move so many times as much along one component as along the other
- * are halved along that. */
-#define MOVES 2.0
 /* Fill of a box in which grids miss nothing that they would find elsewhere. */
 #define SOLID 0.08
+/* Tolerances: as in next.c, errors up to which a box is not divided, more if
+ * the ghost is so faint that it hides them. */
+#define PART_LEFT   5.0
+#define MOST_HIDDEN 3.0
+/* Share of that up to which a part is kept. */
+#define PART_KEPT 0.4
+/* Multiples of that: boxes with a larger error are divided at once. */
+#define PART_HOPELESS 20.0
+/* Most times that a box is halved. */
+#define MOST_PARTS 5
+/* A box is divided rather than directions if that takes away so many times as
+ * much: all parts are drawn, but one patch. */
+#define RATHER 1.5
+/* Ease of tolerances up to which errors are worth all that is done, and from
+ * which all that is bearable is kept. */
+#define NOT_FAINT 1.5
+#define FAINT     6.0
+/* Degrees of angles, fits a ghost and direction, and fits a ghost, surface and
+ * area of directions, in sines; of anamorphic-schneider within 4 and 8 degrees.
+ */
+#define SEEN_DEG 25.0
+#define HEAD     0.16
+#define PER_AREA 175.0
 
 enum { DEEP = 64 };
 
@@ -49,20 +69,11 @@ struct fitter {
     double work, share, area; /* area: of all patches */
 };
 
-/* A patch that waits to be fitted. */
-struct pending {
-    struct glint_directions patch;
-    double w0, w1, before;
-    int depth;
-    bool known; /* true: WITHIN holds all light that comes through */
-    struct glint_zone within;
-};
-
 /* What became of a patch. */
 struct attempt {
-    struct glint_zone zone;
     struct glint_zone_errors errors; /* worst: HUGE_VAL if nothing was fitted */
-    double hidden;
+    double bearable; /* error up to which a box is not divided */
+    double kept;     /* error up to which the patch is kept at once */
     bool dark;
 };
 
@@ -82,15 +93,40 @@ uint32_t glint_skew_mirrors(const struct glint_prescription *lens)
     return mirrors;
 }
 
-static double larger_side(const struct glint_directions *p)
+void glint_skew_work(const struct glint_prescription *lens, int n_ghosts,
+                     double max_deg, double tolerance, double *head,
+                     double *typical)
 {
-    return fmax(p->x1 - p->x0, p->y1 - p->y0);
+    const uint32_t mirrors = glint_skew_mirrors(lens);
+    const int quarters = (mirrors & GLINT_MIRRORS_X ? 1 : 2) *
+                         (mirrors & GLINT_MIRRORS_Y ? 1 : 2);
+    /* Beyond SEEN few ghosts have light. */
+    const double side = glint_sin_deg(fmin(max_deg, SEEN_DEG));
+
+    /* Brightness is looked for at up to 30 directions. */
+    *head = HEAD * n_ghosts * fmin(30, 3 + 2 * max_deg / 3);
+    *typical = 1 + PER_AREA * lens->n_surfaces * quarters * side * side *
+                       pow(tolerance, -0.7);
 }
 
-static double area_of(const struct pending *p)
+static double wide(const struct glint_skew_piece *p)
 {
-    return (p->patch.x1 - p->patch.x0) * (p->patch.y1 - p->patch.y0) * 0.5 *
-           (p->w1 - p->w0);
+    return p->zone.hi - p->zone.lo;
+}
+
+static double high(const struct glint_skew_piece *p)
+{
+    return p->zone.y_hi - p->zone.y_lo;
+}
+
+static double larger_side(const struct glint_skew_piece *p)
+{
+    return fmax(wide(p), high(p));
+}
+
+static double area_of(const struct glint_skew_piece *p)
+{
+    return ldexp(wide(p) * high(p) * 0.5 * (p->w1 - p->w0), -p->parts);
 }
 
 static enum glint_status set_box(struct glint_fitted_system *system,
@@ -109,46 +145,87 @@ static enum glint_status set_box(struct glint_fitted_system *system,
     return GLINT_OK;
 }
 
-static bool may_halve(const struct pending *p)
+static bool may_halve(const struct glint_skew_piece *p)
 {
-    return larger_side(&p->patch) > LEAST_SIDE && p->depth < DEEP - 2;
+    return larger_side(p) > LEAST_SIDE && p->depth < DEEP - 2;
 }
 
-/* Fits the zone of A in BAND. */
-static enum glint_status fit_zone(struct fitter *f, const struct pending *p,
+static bool may_part(const struct glint_skew_piece *p)
+{
+    return p->parts < MOST_PARTS && p->depth < DEEP - 2;
+}
+
+/* Sets which errors of A may stay. */
+static void set_limits(const struct glint_skew_piece *p,
+                       const struct glint_zone_aim *aim, struct attempt *a)
+{
+    const double faint =
+        fmin(1, fmax(0, (aim->ease - NOT_FAINT) / (FAINT - NOT_FAINT)));
+
+    a->bearable = PART_LEFT * fmin(aim->hidden, MOST_HIDDEN);
+    a->kept =
+        p->parts > 0 ? PART_KEPT * a->bearable : 1 + faint * (a->bearable - 1);
+}
+
+/* Fits the zone of P in BAND. */
+static enum glint_status fit_zone(struct fitter *f,
+                                  const struct glint_skew_piece *p,
                                   const struct glint_visible *band,
                                   struct glint_fitted_system *system,
                                   struct attempt *a)
 {
-    const double side = larger_side(&p->patch);
+    const bool settled = may_halve(p) && larger_side(p) > STUCK_SIDE;
     struct glint_zone_buffers *const b = &f->buffers;
-    struct glint_zone_task task = {.zone = &a->zone,
+    struct glint_zone_task task = {.zone = &p->zone,
+                                   .tolerance = f->tolerance,
                                    .visible = band,
                                    .barrel = f->tolerance->barrel,
-                                   .thorough = !may_halve(p),
-                                   .stacks = glint_next_stacks(f->visible),
-                                   .hopeless = may_halve(p) ? HOPELESS : 0,
-                                   .settled =
-                                       may_halve(p) && side > STUCK_SIDE};
+                                   .thorough = !settled,
+                                   .stacks = glint_next_stacks(f->visible)};
     struct glint_zone_aim aim;
     enum glint_status status;
 
-    glint_zone_choose_barrels(&a->zone, band, f->tolerance->escape,
+    glint_zone_choose_barrels(&p->zone, band, f->tolerance->escape,
                               &f->sampling, &b->rays);
-    glint_zone_trace(&a->zone, band, &b->rays, &b->energies);
+    glint_zone_trace(&p->zone, band, &b->rays, &b->energies);
     /* A sliver at the rim of the patch is seen by its halves. */
     if (glint_zone_rays_dark(&b->rays))
         return GLINT_OK;
-    status = set_box(system, &a->zone);
-    aim = glint_zone_aim_of(f->tolerance, &a->zone, &b->rays);
-    a->hidden = aim.hidden;
+    status = set_box(system, &p->zone);
+    aim = glint_zone_aim_of(f->tolerance, &p->zone, &b->rays);
+    set_limits(p, &aim, a);
+    task.settled = settled ? a->kept : 0;
+    task.hopeless = may_halve(p)  ? fmax(HOPELESS, a->kept)
+                    : may_part(p) ? PART_HOPELESS * a->bearable
+                                  : 0;
     if (status == GLINT_OK)
         status = glint_zone_fit(&task, &aim, b, system, &a->errors);
     system->met = a->errors.worst <= 1;
     return status;
 }
 
-static enum glint_status try_patch(struct fitter *f, const struct pending *p,
+/* Sets the box of P. Returns whether it is worth a fit. */
+static bool find_box(struct fitter *f, struct glint_skew_piece *p,
+                     const struct glint_visible *band, struct attempt *a)
+{
+    const struct glint_directions patch = {p->zone.lo, p->zone.hi, p->zone.y_lo,
+                                           p->zone.y_hi};
+    const struct glint_zone within = p->zone;
+
+    if (p->parts > 0) {
+        glint_piece_crop(p, band);
+        return true;
+    }
+    glint_sights_find(band, &patch, f->sine_hi, p->known ? &within : NULL,
+                      &f->sights);
+    a->dark = f->sights.n == 0;
+    if (a->dark)
+        return false;
+    glint_sights_zone(&f->sights, &patch, &p->zone);
+    return p->zone.fill >= LEAST_FILL || larger_side(p) <= FILL_SIDE;
+}
+
+static enum glint_status try_piece(struct fitter *f, struct glint_skew_piece *p,
                                    struct glint_fitted_system *system,
                                    struct attempt *a)
 {
@@ -159,43 +236,22 @@ static enum glint_status try_patch(struct fitter *f, const struct pending *p,
         band = &f->in_band;
     }
     *system = (struct glint_fitted_system){.ghost = f->visible->ghost,
-                                           .sine_lo = p->patch.x0,
-                                           .sine_hi = p->patch.x1,
+                                           .sine_lo = p->zone.lo,
+                                           .sine_hi = p->zone.hi,
                                            .skew = true,
-                                           .y_lo = p->patch.y0,
-                                           .y_hi = p->patch.y1,
+                                           .y_lo = p->zone.y_lo,
+                                           .y_hi = p->zone.y_hi,
                                            .wave_lo = band->wave_lo,
                                            .wave_hi = band->wave_hi};
-    *a = (struct attempt){.errors = {.worst = HUGE_VAL, .shows = HUGE_VAL}};
-    glint_sights_find(band, &p->patch, f->sine_hi, p->known ? &p->within : NULL,
-                      &f->sights);
-    a->dark = f->sights.n == 0;
-    if (a->dark)
-        return GLINT_OK;
-    glint_sights_zone(&f->sights, &p->patch, &a->zone);
-    if (a->zone.fill < LEAST_FILL && larger_side(&p->patch) > FILL_SIDE)
-        return GLINT_OK;
-    return fit_zone(f, p, band, system, a);
+    *a = (struct attempt){.errors = {.places = HUGE_VAL, .worst = HUGE_VAL},
+                          .bearable = PART_LEFT};
+    return find_box(f, p, band, a) ? fit_zone(f, p, band, system, a) : GLINT_OK;
 }
 
-enum next { KEEP, HALVE, BANDS };
+/* -------------------------------------------------------------------- halves
+ */
 
-static enum next next_step(const struct fitter *f, const struct pending *p,
-                           const struct attempt *a)
-{
-    const double left = a->errors.worst, side = larger_side(&p->patch);
-    const bool helped = left <= STUCK * p->before;
-
-    if (a->dark || left <= 1 || !may_halve(p))
-        return KEEP;
-    if (glint_next_stacks(f->visible) && a->errors.shows <= 1 &&
-        p->w1 - p->w0 > LEAST_BAND)
-        return BANDS;
-    return !helped && side < STUCK_SIDE &&
-                   left <= fmin(HOPELESS, ENDURED * fmin(a->hidden, 3.0))
-               ? KEEP
-               : HALVE;
-}
+enum { KEEP = -1 };
 
 /* Returns how much the box moves and grows with terms FIRST and SQUARE, over
  * its half sizes. */
@@ -209,68 +265,112 @@ static double moves(const struct glint_zone *z, int first, int square)
                fmax(1e-9, z->half_y[0]);
 }
 
-/* Returns whether to halve along y. */
-static bool is_along_y(const struct pending *p, const struct glint_zone *zone)
+/* Returns the component of the direction along which to halve P. SHARE says how
+ * much that would gain. */
+static int component(const struct glint_skew_piece *p,
+                     const double share[GLINT_VARIABLES])
 {
-    const double x = moves(zone, 1, 2), y = moves(zone, 3, 5);
-    const double wide = p->patch.x1 - p->patch.x0;
-    const double high = p->patch.y1 - p->patch.y0;
+    const double times = 2;
 
-    if (wide > 3 * high || high > 3 * wide)
-        return high > wide;
-    if (x > MOVES * y || y > MOVES * x)
-        return y > x;
-    return high > wide || (high == wide && p->depth % 2);
+    if (wide(p) > 3 * high(p) || high(p) > 3 * wide(p))
+        return high(p) > wide(p) ? GLINT_P : GLINT_S;
+    if (share[GLINT_S] > times * share[GLINT_P] ||
+        share[GLINT_P] > times * share[GLINT_S])
+        return share[GLINT_P] > share[GLINT_S] ? GLINT_P : GLINT_S;
+    return high(p) > wide(p) || (high(p) == wide(p) && p->depth % 2) ? GLINT_P
+                                                                     : GLINT_S;
 }
 
-static int push_halves(struct pending *stack, int n, const struct pending *p,
-                       const struct glint_zone *zone, enum next how)
+/* Returns the error of what is drawn where, in tolerances. */
+static double left_of(const struct attempt *a)
 {
-    struct pending a = *p, b = *p;
+    return fmax(a->errors.places, a->errors.outlines);
+}
 
-    a.depth = b.depth = p->depth + 1;
-    a.within = b.within = *zone;
-    a.known = b.known = how == HALVE && zone->fill > SOLID;
-    if (how == BANDS)
-        a.w1 = b.w0 = 0.5 * (p->w0 + p->w1);
-    else if (is_along_y(p, zone))
-        a.patch.y1 = b.patch.y0 = 0.5 * (p->patch.y0 + p->patch.y1);
-    else
-        a.patch.x1 = b.patch.x0 = 0.5 * (p->patch.x0 + p->patch.x1);
-    stack[n] = b;
-    stack[n + 1] = a;
-    return n + 2;
+/* Returns the variable in which to halve P after attempt A, or KEEP. */
+static int choose(const struct glint_skew_piece *p, const struct attempt *a,
+                  const struct glint_fitted_system *system)
+{
+    const bool parts =
+        may_part(p) && left_of(a) > a->bearable && system->n_outputs > 0;
+    double share[GLINT_VARIABLES];
+    int along, across;
+
+    glint_piece_shares(system, share);
+    across = share[GLINT_V] > share[GLINT_U] ? GLINT_V : GLINT_U;
+    if (system->n_outputs == 0) {
+        share[GLINT_S] = moves(&p->zone, 1, 2);
+        share[GLINT_P] = moves(&p->zone, 3, 5);
+    }
+    along = component(p, share);
+    if (parts && (!may_halve(p) || share[across] > RATHER * share[along]))
+        return across;
+    return may_halve(p) ? along : KEEP;
+}
+
+static int next_step(const struct glint_skew_piece *p, const struct attempt *a,
+                     const struct glint_fitted_system *system)
+{
+    const double left = left_of(a);
+    const bool helped = left <= STUCK * p->before;
+
+    if (a->dark || (p->parts > 0 && system->n_outputs == 0))
+        return KEEP;
+    /* Coatings make energies swing with the wavelength, which parts of the band
+     * follow with a fifth of the terms, and smaller patches do not. */
+    if (left <= a->kept)
+        return a->errors.energy > 1 && p->parts == 0 &&
+                       p->w1 - p->w0 > LEAST_BAND
+                   ? GLINT_W
+                   : KEEP;
+    if (!helped && larger_side(p) < STUCK_SIDE &&
+        left <= fmin(HOPELESS, a->bearable))
+        return KEEP;
+    return choose(p, a, system);
 }
 
 /* Fits PATCH and, if it has to be, its halves. */
 static enum glint_status fit_patch(struct fitter *f,
                                    const struct glint_directions *patch)
 {
-    struct pending stack[DEEP + 2] = {
-        {.patch = *patch, .w0 = -1, .w1 = 1, .before = HUGE_VAL}};
+    struct glint_skew_piece stack[DEEP + 2] = {{.zone = {.lo = patch->x0,
+                                                         .hi = patch->x1,
+                                                         .y_lo = patch->y0,
+                                                         .y_hi = patch->y1,
+                                                         .skew = true},
+                                                .w0 = -1,
+                                                .w1 = 1,
+                                                .before = HUGE_VAL}};
     enum glint_status status = GLINT_OK;
 
     for (int n = 1; n > 0 && status == GLINT_OK;) {
-        struct pending p = stack[--n];
+        struct glint_skew_piece p = stack[--n];
+        const struct glint_directions at = {p.zone.lo, p.zone.hi, p.zone.y_lo,
+                                            p.zone.y_hi};
         struct glint_fitted_system system = {.ghost = f->visible->ghost};
         struct attempt a = {.dark = true};
-        enum next next = KEEP;
+        int next = KEEP;
 
-        if (glint_directions_nearest(&p.patch) < f->sine_hi)
-            status = try_patch(f, &p, &system, &a);
+        if (glint_directions_nearest(&at) < f->sine_hi)
+            status = try_piece(f, &p, &system, &a);
         if (status == GLINT_OK)
-            next = next_step(f, &p, &a);
+            next = next_step(&p, &a, &system);
         f->work++;
         f->share += next == KEEP ? area_of(&p) / f->area : 0;
         if (f->told)
             f->told(f->told_ctx, f->work, f->share);
-        if (status == GLINT_OK && next == KEEP && system.n_outputs > 0)
+        if (status == GLINT_OK && next == KEEP && system.n_outputs > 0) {
+            system.part = glint_piece_number(f->out, &system);
             status = glint_fitted_append(f->out, &system);
-        else
+        } else {
             glint_fitted_drop(&system);
-        p.before = a.errors.worst;
-        if (next != KEEP)
-            n = push_halves(stack, n, &p, &a.zone, next);
+        }
+        p.before = left_of(&a);
+        p.known = next != GLINT_W && p.zone.fill > SOLID;
+        if (next != KEEP) {
+            glint_piece_halve(&p, next, &stack[n + 1], &stack[n]);
+            n += 2;
+        }
     }
     return status;
 }

@@ -17,6 +17,13 @@
 /* Planes of symmetry of a lens: GLINT_MIRRORS_X and GLINT_MIRRORS_Y. */
 uint32_t glint_skew_mirrors(const struct glint_prescription *lens);
 
+/* Sets how much work a bake will be, in fits: HEAD before any ghost, TYPICAL a
+ * ghost, by the area of directions and the number of surfaces. Limits: what
+ * folds takes ten times as long as what does not. */
+void glint_skew_work(const struct glint_prescription *lens, int n_ghosts,
+                     double max_deg, double tolerance, double *head,
+                     double *typical);
+
 /* Does for a lens that is not round what glint_fit_ghost() does for others. */
 enum glint_status glint_skew_fit(const struct glint_visible *visible,
                                  double max_deg,
