@@ -28,6 +28,7 @@ struct video {
     struct glint_y4m_reader in;
     struct glint_y4m_writer out;
     bool is_closed; /* The reader of a pipe went away. */
+    bool has_ended; /* The input was read to its end, not to --frames' last. */
 };
 
 static bool is_y4m(const char *name)
@@ -206,7 +207,9 @@ static int frames(struct video *v)
         const enum glint_status status =
             glint_y4m_reader_next(&v->in, &image, &v->error);
 
-        if (status == GLINT_E_CLOSED || (status == GLINT_OK && !image))
+        v->has_ended =
+            status == GLINT_E_CLOSED || (status == GLINT_OK && !image);
+        if (v->has_ended)
             break;
         if (status != GLINT_OK)
             code = fail(v, status);
@@ -296,7 +299,6 @@ static int end_writer(struct video *v)
 
 static int run(struct video *v)
 {
-    bool whole;
     int code = open_input(v);
 
     v->o->elapsed_us = frame_us(&v->in.header);
@@ -309,8 +311,7 @@ static int run(struct video *v)
     if (code != EXIT_OK)
         return code;
     code = frames(v);
-    whole = v->o->first + v->out.n_frames == v->in.n_frames;
-    if (code == EXIT_OK && v->reads && whole)
+    if (code == EXIT_OK && v->reads && v->has_ended)
         code = end_reader(v);
     return code == EXIT_OK ? end_writer(v) : code;
 }
