@@ -187,7 +187,7 @@ enum glint_status glint_output_open(struct glint_output *out, const char *path,
     enum glint_status status;
     bool is_there = false;
     struct stat st;
-    int number = 0;
+    int number;
 
     glint_at_death(remove_doomed);
     *out = (struct glint_output){.fd = -1,
