@@ -315,7 +315,7 @@ static void print_rays(const struct tool *tool, const struct options *o,
         else
             printf(",,,,,\n");
     }
-    if (n == 0 && !o->pupil && !tool->quiet)
+    if (n == 0 && !ferror(stdout) && !o->pupil && !tool->quiet)
         fprintf(stderr, "glint trace: no ray of this grid gets through; "
                         "--pupil spans where light comes in\n");
 }
