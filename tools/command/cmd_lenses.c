@@ -362,7 +362,18 @@ static bool one(void *ctx, const char *name)
     return code == EXIT_OK || code == EXIT_LENS;
 }
 
-/* Lists into the page L->html. */
+/* Says that no lens is wanted. Returns an exit code. */
+static int tell_none(const struct lenses *l)
+{
+    if (l->n_words)
+        return lens_words_missed(l->tool, l->words, l->n_words);
+    fprintf(stderr, "glint lenses: there are none; $GLINT_LENSES names a "
+                    "folder of them\n");
+    return EXIT_LENS;
+}
+
+/* Lists into the page L->html, which stays as it was if there is nothing to
+ * list. */
 static int run_page(struct lenses *l)
 {
     struct glint_error error = {""};
@@ -376,6 +387,12 @@ static int run_page(struct lenses *l)
         const int n = lens_files_each(one, l);
 
         if (fclose(l->page) == 0 && n >= 0)
+            status = GLINT_OK;
+        if (status == GLINT_OK && l->n == 0) {
+            free(text);
+            return l->code == EXIT_OK ? tell_none(l) : l->code;
+        }
+        if (status == GLINT_OK)
             status =
                 glint_output_open(&out, l->html, GLINT_OUTPUT_TEXT, &error);
         if (status == GLINT_OK)
@@ -388,6 +405,10 @@ static int run_page(struct lenses *l)
 
 static int run(struct lenses *l)
 {
+    const int code = lens_names_check(l->only, l->n_only);
+
+    if (code != EXIT_OK)
+        return code;
     if (l->html)
         return run_page(l);
     if (l->folder && mkdir(l->folder, 0777) != 0 && errno != EEXIST) {
@@ -396,13 +417,8 @@ static int run(struct lenses *l)
     }
     if (lens_files_each(one, l) < 0)
         return tool_fail(l->tool, GLINT_E_MEMORY, NULL);
-    if (l->n == 0 && l->code == EXIT_OK && l->n_words)
-        return lens_words_missed(l->tool, l->words, l->n_words);
-    if (l->n == 0 && l->code == EXIT_OK) {
-        fprintf(stderr, "glint lenses: there are none; $GLINT_LENSES names "
-                        "a folder of them\n");
-        return EXIT_LENS;
-    }
+    if (l->n == 0 && l->code == EXIT_OK)
+        return tell_none(l);
     if (l->tool->json && !l->folder && !l->names && l->n > 0)
         printf("\n]}\n");
     return l->code;

@@ -110,3 +110,39 @@ int lens_words_missed(const struct tool *tool, char **words, int n)
                 s.word, best ? "; did you mean " : "", best ? best : "");
     return EXIT_LENS;
 }
+
+struct wanted {
+    const char *name;
+    struct suggest near;
+    bool found;
+};
+
+static bool compare(void *ctx, const char *name)
+{
+    struct wanted *w = ctx;
+
+    w->found = strcmp(name, w->name) == 0;
+    suggest_try(&w->near, name, strlen(name));
+    return !w->found;
+}
+
+int lens_names_check(const char *const *names, int n)
+{
+    for (int i = 0; i < n; i++) {
+        struct wanted w = {.name = names[i]};
+        const char *best;
+
+        suggest_begin(&w.near, w.name);
+        lens_files_each(compare, &w);
+        if (w.found)
+            continue;
+        best = suggest_best(&w.near);
+        fprintf(stderr,
+                "glint lenses: -o, --only: no lens has the name '%s'; %s%s\n",
+                w.name,
+                best ? "did you mean " : "glint lenses --names lists them",
+                best ? best : "");
+        return EXIT_LENS;
+    }
+    return EXIT_OK;
+}

@@ -19,4 +19,8 @@ bool lens_has_words(const char *name, const struct glint_prescription *lens,
  * code. */
 int lens_words_missed(const struct tool *tool, char **words, int n);
 
+/* Refuses the first of N NAMES that no lens of the library has, with the one
+ * that it may have meant. Returns an exit code. */
+int lens_names_check(const char *const *names, int n);
+
 #endif
