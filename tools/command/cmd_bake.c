@@ -50,9 +50,10 @@ static const char help[] =
     "                    which it zooms\n"
     "  --halfway DB      of these: ghosts that need it are baked between them, "
     "too,\n"
-    "                    until pictures half-way are so near to exact ones; "
-    "0: none\n"
-    "                    is, nor measured (default 45)\n"
+    "                    until pictures half-way are so near to exact ones "
+    "(default\n"
+    "                    45); 0: nothing is baked between, nor its error "
+    "measured\n"
     "  --field MM        radius on the sensor within which light counts\n"
     "                    (default: a tenth more than the film's corners)\n"
     "  --tolerance T     scale of the errors aimed at (default 1)\n"
@@ -213,9 +214,9 @@ static void tell_zoom(const struct tool *tool, const struct bake *b,
     }
     if (tool->quiet || strcmp(b->output, "-") == 0)
         return;
-    printf("%d positions, %d with those of single ghosts between them, %zu "
+    printf("%d positions, and single ghosts at %d places between them, %zu "
            "bytes, %.0f s\n",
-           b->positions, baked->n_models, baked->bytes, seconds);
+           b->positions, baked->n_models - b->positions, baked->bytes, seconds);
     if (baked->least_db > 0)
         printf("half-way between positions pictures are %.1f dB from exact "
                "ones at least, at %.2f mm\n",

@@ -174,9 +174,10 @@ static void note(struct run *run, const struct zoom_error *left, int n_added)
         baked->least_mm = glint_real_value(run->zoom.header.focal_mm);
     }
     if (!run->tool->quiet)
-        fprintf(stderr, "glint bake: %.2f mm: %d ghosts more, %.0f s\n",
+        fprintf(stderr,
+                "glint bake: at %.2f mm %d ghost%s more to bake, %.0f s\n",
                 glint_real_value(run->zoom.header.focal_mm), n_added,
-                tool_seconds() - run->start);
+                n_added == 1 ? "" : "s", tool_seconds() - run->start);
 }
 
 /* Asks for the errors half-way of the step from FROM to TO, but for small ones.
