@@ -192,8 +192,8 @@ enum glint_status settings_zoom(struct settings *settings, double zoom,
             settings->rays == SETTINGS_RAYS_EXACT
                 ? "exact rays do not zoom from frame to frame"
             : settings->lens.zoom.n_positions
-                ? "its model is of one position: zoom one that 'glint bake "
-                  "--positions' made"
+                ? "a table is baked for one position: zoom a model that "
+                  "'glint bake LENS --positions N' made"
             : settings->lens.n_surfaces
                 ? "does not zoom: its table has one position"
                 : "does not zoom: its model is of one position");

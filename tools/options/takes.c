@@ -41,6 +41,9 @@ static const struct {
     {"live", "output",
      "fb[:/dev/fb0], window, y4m:FILE, y4m:-, v4l2:/dev/videoN or null"},
     {"overlay", "frames", "A-B, the first and last frame, from 0"},
+    {"overlay", "zoom",
+     "mm of focal length, or 0 to 1 along the way, or of a video A-B, from one "
+     "to the other"},
     {"render", "fps", "frames a second, 1 to 1000"},
     {"render", "light",
      "THETA,PHI[,POWER[,R,G,B[,SIZE]]] with THETA 0 to 89.9 degrees"},

@@ -43,7 +43,9 @@ static const char help[] =
     "                      at, not drawn\n"
     "  --warm-up N         only N of those before: the same from a cut on, or\n"
     "                      once lamps have settled\n"
-    "  --zoom A-B          of a video: over all of it\n"
+    "  --zoom A-B          of a video: over all of it, both mm or both 0 to 1, "
+    "of a\n"
+    "                      model of 'glint bake LENS --positions N'\n"
     "  --list-shots        prints A-B of each shot of a video; no -o then\n"
     "  --layers OUT        flare, ghosts, starburst and, where asked for, veil "
     "as\n"
@@ -54,7 +56,7 @@ static const char help[] =
     "  --layers-type T     half (default) | float\n"
     "  --jpeg-quality N    1 to 100, of JPEG and WebP (default: about the "
     "input's,\n"
-    "                      else 95)\n" SETTINGS_MEMORY_HELP;
+    "                      else 95)\n";
 
 static const char help_end[] = SETTINGS_HELP;
 static const char help_last[] = SPEED_HELP COMMON_HELP;
@@ -469,7 +471,7 @@ int cmd_overlay(int argc, char **argv)
 {
     struct tool tool = {.name = "overlay",
                         .help = help,
-                        .help_desk = DESK_HELP SCENE_HELP,
+                        .help_desk = SETTINGS_MEMORY_HELP DESK_HELP SCENE_HELP,
                         .help_end = help_end,
                         .help_last = help_last};
     struct overlay *o = calloc(1, sizeof *o);

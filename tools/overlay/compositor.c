@@ -61,7 +61,8 @@ int compositor_open(const struct tool *tool, struct compositor *compositor)
     size_t n;
 
     compositor->has_lens = strcmp(compositor->lens, "none") != 0;
-    compositor_zoom_control(compositor);
+    if (code == EXIT_OK)
+        code = compositor_zoom_begin(tool, compositor);
     if (code == EXIT_OK)
         code = open_scene(tool, compositor);
     if (code == EXIT_OK && compositor->has_lens)

@@ -360,9 +360,11 @@ int compositor_desk_open(const struct tool *tool,
                          struct compositor *compositor);
 void compositor_desk_turn(struct compositor *compositor);
 
-/* Lets lines of control zoom the lens, before the scene is opened, if they may:
- * key frames do not, and its model is given. */
-void compositor_zoom_control(struct compositor *compositor);
+/* Before scene and lens are opened: lets lines of control zoom the lens if they
+ * may, as key frames do not and its model is given; refuses key frames that
+ * zoom a table, which would be baked for one position. Returns an exit code. */
+int compositor_zoom_begin(const struct tool *tool,
+                          struct compositor *compositor);
 
 /* Checks that the lens, which is open, zooms as far as lines of control and key
  * frames say, and leaves it at the first of these. Returns an exit code. */

@@ -53,8 +53,9 @@ int over_scene_open(struct over_scene *over, const struct tool *tool)
 
     over->tool = tool;
     if (!over->file && over->control_file && !over->zoom)
-        return tool_usage(tool, "--control steers --scene or zooms a baked "
-                                "zoom, and there is neither");
+        return tool_usage(tool, "--control steers --scene or zooms what 'glint "
+                                "bake LENS --positions N' made, and there is "
+                                "neither");
     if (!over->file && over->pose_file)
         return tool_usage(tool, "--pose moves the things of --scene, of which "
                                 "there is none");

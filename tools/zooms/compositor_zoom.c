@@ -2,6 +2,7 @@
  *
  * Zooms a compositor's lens from frame to frame: by key frames and by lines of
  * control. */
+#include "model/table_file.h"
 #include "overlay/compositor.h"
 
 /* Zooms to ZOOM; GLINT_E_ARGUMENT: it stays where it was. */
@@ -23,14 +24,6 @@ static enum glint_status zoom_to(struct compositor *c, double zoom,
 static enum glint_status obey(void *ctx, double zoom, struct glint_error *error)
 {
     return zoom_to(ctx, zoom, error);
-}
-
-void compositor_zoom_control(struct compositor *c)
-{
-    if (!c->has_lens || !tool_is_model(c->lens) ||
-        keys_has(&c->keys, KEYS_ZOOM))
-        return;
-    c->scene.zoom = obey;
 }
 
 /* Says what is wrong with a line of control. Returns an exit code. */
@@ -55,7 +48,7 @@ static int check_control(const struct tool *tool, struct compositor *c)
     if (c->scene.control_file && !c->scene.is_open && !s->model.zoom)
         return tool_usage(tool,
                           "%s is of one position: --control zooms what 'glint "
-                          "bake --positions' made, or steers --scene",
+                          "bake LENS --positions N' made, or steers --scene",
                           c->lens);
     for (int i = 0; (line = controls_row(&c->scene.control, i)); i++) {
         char where[CONTROL_WHERE];
@@ -71,6 +64,16 @@ static int check_control(const struct tool *tool, struct compositor *c)
     return EXIT_OK;
 }
 
+/* Says what is wrong with the key frame of LINE, which is none of the user's if
+ * glint wrote the text. Returns an exit code. */
+static int refuse_key(const struct tool *tool, const struct compositor *c,
+                      int line, const char *cause)
+{
+    return c->keys_text
+               ? tool_usage(tool, "%.200s: %s", c->keys_file, cause)
+               : tool_usage(tool, "%.200s:%d: %s", c->keys_file, line, cause);
+}
+
 /* Checks the same of the key frames, and leaves it at the first of them. */
 static int check_keys(const struct tool *tool, struct compositor *c)
 {
@@ -82,11 +85,26 @@ static int check_keys(const struct tool *tool, struct compositor *c)
     for (int i = c->keys.n[KEYS_ZOOM] - 1; i >= 0 && status == GLINT_OK; i--) {
         status = settings_zoom(s, key[i].value, &error);
         if (status != GLINT_OK)
-            return tool_usage(tool, "%.200s:%d: %s", c->keys_file, key[i].line,
-                              error.text);
+            return refuse_key(tool, c, key[i].line, error.text);
         s->zoom.zoom = key[i].value;
     }
     return EXIT_OK;
+}
+
+int compositor_zoom_begin(const struct tool *tool, struct compositor *c)
+{
+    const bool is_table = c->has_lens && !tool_is_model(c->lens);
+    int code;
+
+    if (!keys_has(&c->keys, KEYS_ZOOM)) {
+        if (c->has_lens && !is_table)
+            c->scene.zoom = obey;
+        return EXIT_OK;
+    }
+    if (!is_table)
+        return EXIT_OK;
+    code = tool_lens(tool, c->lens, &c->settings.lens);
+    return code == EXIT_OK ? check_keys(tool, c) : code;
 }
 
 int compositor_zoom_open(const struct tool *tool, struct compositor *c)

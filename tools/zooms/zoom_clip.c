@@ -12,6 +12,9 @@
 
 enum { ROW = 40, MOST_FRAMES = 10000000 };
 
+/* The longest focal length that key frames take. */
+#define MOST_MM 1e5
+
 static const char heading[] = "frame,zoom\n";
 
 bool zoom_clip_take(struct zoom_clip *clip, const char *text)
@@ -25,7 +28,9 @@ bool zoom_clip_take(struct zoom_clip *clip, const char *text)
     from[n] = '\0';
     clip->is_asked = tool_number(from, &clip->from) &&
                      tool_number(text + n + 1, &clip->to) && clip->from >= 0 &&
-                     clip->to >= 0;
+                     clip->to >= 0 && clip->from <= MOST_MM &&
+                     clip->to <= MOST_MM;
+    snprintf(clip->label, sizeof clip->label, "--zoom %s", text);
     return clip->is_asked;
 }
 
@@ -128,7 +133,7 @@ int zoom_clip_open(struct tool *tool, struct zoom_clip *clip, const char *input,
     clip->keys = make_keys(clip, n);
     if (!clip->keys)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    compositor->keys_file = "--zoom";
+    compositor->keys_file = clip->label;
     compositor->keys_text = clip->keys;
     return EXIT_OK;
 }

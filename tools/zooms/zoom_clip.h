@@ -15,6 +15,7 @@
 struct zoom_clip {
     bool is_asked;
     double from, to; /* mm, or 0 to 1 along the way, both */
+    char label[80];  /* "--zoom A-B", for errors */
     char *keys;      /* text of the key frames */
 };
 
