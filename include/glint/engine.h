@@ -81,10 +81,11 @@ struct glint_engine_config {
 
     /* Memory for drawing. If arena_bytes is 0 the engine takes exactly what a
      * frame needs, and more when a frame needs more. Else it keeps to
-     * arena_bytes, leaves out and counts what does not fit, and draws at most 2
-     * * max_found lights. ARENA, aligned to 64, is kept; NULL: the engine
-     * allocates it. Stars take some 50 KB for their tables and 0.3 KB for each
-     * of their lamps besides, once, when the engine is made. */
+     * arena_bytes: without a budget grids become coarser until what is seen
+     * fits, what still does not is left out and counted, and at most 2 *
+     * max_found lights are drawn. ARENA, aligned to 64, is kept; NULL: the
+     * engine allocates it. Stars take some 50 KB for their tables and 0.3 KB
+     * for each of their lamps besides, once, when the engine is made. */
     void *arena;
     size_t arena_bytes;
 };
@@ -102,7 +103,7 @@ struct glint_engine_report {
                             them were lost */
     size_t bytes;        /* size of the memory for drawing */
     size_t need_bytes;   /* size that would have drawn everything in this very
-                            picture */
+                            picture, and with grids as fine as asked for */
     double scale;        /* factor on the powers of lamps */
     double plan_ms, bin_ms, draw_ms;
     double quality; /* quality that the budget chose; below 0: there is no

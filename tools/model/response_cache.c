@@ -10,7 +10,7 @@
 /* Revision of the figures. It is to be raised when glint_response_measure()
  * gives other figures for the same scene, because frames are drawn or measured
  * in another way. */
-enum { REVISION = 1 };
+enum { REVISION = 2 };
 
 enum {
     VALUES = 7 * GLINT_RESPONSE_ANGLES + 2 * GLINT_RESPONSE_EXTENTS,
@@ -91,8 +91,8 @@ static void add_dials(uint64_t *key, const struct glint_frame *like)
 }
 
 /* Returns the key of a scene. It depends on the shape of the picture, not on
- * its size, and on BYTES, as too little memory leaves parts of the flare
- * out. */
+ * its size, and on BYTES, as too little memory makes grids coarser or leaves
+ * parts of the flare out. */
 static uint64_t key_of(const struct glint_frame *like, size_t bytes)
 {
     const struct glint_model_header *h = like->lens->header;

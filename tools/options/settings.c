@@ -434,8 +434,9 @@ void settings_warn_lights(const struct tool *tool,
 {
     if (r->tight)
         fprintf(stderr,
-                "glint %s: the frame would have taken more memory than a frame "
-                "may; it is drawn coarser (--memory allows up to 1024 MiB)\n",
+                "glint %s: the frame could take more memory than it may, by an "
+                "estimate that does not depend on --threads; it is drawn "
+                "coarser (a larger --memory, up to 1024 MiB, allows more)\n",
                 tool->name);
     else if (r->coarsened)
         fprintf(stderr,
@@ -463,7 +464,8 @@ void settings_warn_lights(const struct tool *tool,
     if (r->stats.dropped_bundles > 0)
         fprintf(stderr,
                 "glint %s: there was no room for %d bundles of rays, which are "
-                "missing: fewer lights or a smaller --grid would fit\n",
+                "missing: a larger --memory, fewer lights or a smaller --grid "
+                "would fit\n",
                 tool->name, r->stats.dropped_bundles);
     if (tool->verbose && r->stats.dropped_cells > 0)
         fprintf(stderr,

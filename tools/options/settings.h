@@ -398,12 +398,11 @@ bool settings_take_quality(struct settings *settings, const char *text);
  * texts. */
 bool settings_memory(const char *text, size_t *bytes);
 
-#define SETTINGS_MEMORY_HELP                                              \
-    "  --memory MIB        most that the flare may take, 1 to 1024; the " \
-    "rest\n"                                                              \
-    "                      is left out, with a word (default: what it "   \
-    "needs;\n"                                                            \
-    "                      grids are coarser from 384 on)\n"
+#define SETTINGS_MEMORY_HELP                                                  \
+    "  --memory MIB        most that the flare may take, 1 to 1024; to fit, " \
+    "grids\n"                                                                 \
+    "                      get coarser, then rays are left out (default:\n"   \
+    "                      what it needs, grids coarser from 384 on)\n"
 
 /* Returns the factor on the physical starburst that is drawn; 0: none. */
 double settings_starburst(const struct settings *settings);

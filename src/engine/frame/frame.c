@@ -319,7 +319,7 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
     f->code_light = glint_frame_codes_light(f, image, 1);
     f->scale = scale;
     f->is_held = f->is_full = false;
-    f->tight_bytes = 0;
+    f->tight = 0;
     f->n_plans = f->n_binned = 0;
     f->n_looked = 0;
     glint_budget_begin(&f->budget, &f->asked);
@@ -345,7 +345,7 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
         f->n_binned++;
         if (glint_frame_is_served(f, stats))
             break;
-        status = glint_frame_regrow(f);
+        status = f->reserved ? GLINT_OK : glint_frame_regrow(f);
     }
     if (f->is_held)
         f->dials = asked;
@@ -477,7 +477,7 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
     report->beyond_lights = frame->n_beyond;
     report->apart_lights = larger(frame->n_apart - frame->n_more, 1);
     report->coarsened = frame->is_held;
-    report->tight = frame->tight_bytes > 0;
+    report->tight = frame->tight > 0;
     report->blurred = frame->cfg.stop.shade == &frame->shade;
     report->plans = frame->n_plans;
     report->binned = frame->n_binned;
@@ -489,7 +489,9 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
     report->held_samples = glint_flare_held(frame->flare);
     report->arena_bytes = frame->bytes;
     report->peak_bytes = glint_frame_bytes_used(frame, &report->stats);
-    report->need_bytes = glint_frame_bytes_needed(frame, &report->stats);
+    report->need_bytes = frame->tight > 0
+                             ? frame->tight_bytes
+                             : glint_frame_bytes_needed(frame, &report->stats);
     report->star_bytes = glint_frame_star_bytes(frame);
     report->ghosts = glint_frame_count_ghosts(frame, n_drawn(frame, report));
     return GLINT_OK;

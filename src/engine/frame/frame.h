@@ -109,12 +109,16 @@ struct glint_frame {
     const int32_t (*gain_q14)[3];
     struct glint_budget budget; /* turns the dials; only for models */
     bool reserved;              /* true: memory must not grow */
-    size_t most_bytes;  /* limit of the block for one light, if it is not
-                           reserved; 0: there is none */
-    double share;       /* factor on the limits of one light for all lights */
-    bool is_full;       /* true: the block has reached its limit */
-    double tight_bytes; /* what grids of the last frame would have taken that
-                           were made coarser so that it does not; 0: none */
+    int most_primitives; /* primitives that reserved memory has room for with
+                            one worker */
+    size_t most_bytes;   /* limit of the block for one light, if it is not
+                            reserved; 0: there is none */
+    double share;        /* factor on the limits of one light for all lights */
+    bool is_full;        /* true: the block has reached its limit */
+    double tight; /* what grids of the last frame would have taken that were
+                     made coarser so that it does not, in bytes, or reserved in
+                     primitives; 0: none */
+    size_t tight_bytes; /* bytes that would have drawn these as they were */
     double most_minsn;  /* limit of a plan for one light; 0: there is none */
     bool is_held; /* true: the last frame was drawn coarser because of that
                      limit */
@@ -160,7 +164,8 @@ struct glint_frame_report {
     int held_samples;   /* samples of a linear picture that saturated */
     size_t arena_bytes; /* bytes that the run-time half was given */
     size_t peak_bytes;  /* bytes of these that this frame used */
-    size_t need_bytes;  /* bytes that would have drawn everything, exactly */
+    size_t need_bytes;  /* bytes that would have drawn everything, exactly, and
+                           not coarser because of memory */
     size_t star_bytes;  /* bytes besides that stars hold, for their tables and
                            lamps, and a veil */
     bool coarsened;     /* true: the plan passed a limit and was made coarser */
@@ -188,8 +193,9 @@ void glint_frame_like(struct glint_frame *frame, const struct glint_frame *like,
                       struct glint_view view);
 
 /* Takes BYTES for all frames to come, of up to N_LAMPS lamps each, of which
- * N_DRAWN are drawn and more merge: nothing is allocated while drawing, and
- * what does not fit is left out and counted. MEM: the caller's own BYTES,
+ * N_DRAWN are drawn and more merge: nothing is allocated while drawing. What
+ * does not fit is drawn by coarser grids, as where memory grows; what no grid
+ * is coarse enough for is left out and counted. MEM: the caller's own BYTES,
  * aligned to 64, or NULL. GLINT_E_MEMORY: memory is short, or BYTES are too few
  * for one light. */
 enum glint_status glint_frame_reserve(struct glint_frame *frame, void *mem,

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <stdlib.h>
 #include <string.h>
 
 #include "engine/frame/frame_parts.h"
@@ -41,4 +42,46 @@ int glint_frame_count_ghosts(struct glint_frame *frame, int n)
             note_ghost(frame, frame->lens ? glint_flare_ghost(frame->flare, i)
                                           : frame->trace->ghost(frame, i));
     return n_ghosts;
+}
+
+enum glint_status glint_frame_hold_dim(struct glint_frame *f)
+{
+    f->dim.method = &glint_dim_method;
+    if (!f->dim.log2_q8)
+        f->dim.log2_q8 = calloc((size_t)GLINT_DIM_NODES * GLINT_DIM_VALUES *
+                                    ((size_t)f->setup->n_ghosts + 1),
+                                sizeof *f->dim.log2_q8);
+    return f->dim.log2_q8 ? GLINT_OK : GLINT_E_MEMORY;
+}
+
+static bool is_same_wave(const struct glint_wave *a, const struct glint_wave *b)
+{
+    return a->wave_q24 == b->wave_q24 && a->rgb_q14[0] == b->rgb_q14[0] &&
+           a->rgb_q14[1] == b->rgb_q14[1] && a->rgb_q14[2] == b->rgb_q14[2] &&
+           a->weight.mantissa == b->weight.mantissa &&
+           a->weight.exponent == b->weight.exponent;
+}
+
+void glint_frame_check_dim(struct glint_frame *f)
+{
+    const double size = f->view.width / f->view.sensor_width_mm;
+    bool same = f->dim_opening == f->setup->opening && f->dim_size == size;
+
+    for (int i = 0; i < 3; i++)
+        same = same && is_same_wave(&f->dim_wave[i], &f->wave[i]);
+    if (same)
+        return;
+    memset(f->dim.done, 0, sizeof f->dim.done);
+    memcpy(f->dim_wave, f->wave, sizeof f->dim_wave);
+    f->dim_opening = f->setup->opening;
+    f->dim_size = size;
+}
+
+enum glint_status glint_frame_hold_ghosts(struct glint_frame *f)
+{
+    if (!f->seen)
+        f->seen = calloc(GLINT_MAX_GHOSTS, sizeof *f->seen);
+    if (f->seen && f->lens && f->dials.dim_codes > 0)
+        return glint_frame_hold_dim(f);
+    return f->seen ? GLINT_OK : GLINT_E_MEMORY;
 }

@@ -14,7 +14,8 @@ enum { MAX_BUNDLES = 1 << 20, MAX_BUNDLES_OTHER = 65535 };
 /* Limits do not make grids coarser than this. */
 enum { LEAST_FINENESS = 8 };
 /* Workers' shares are never quite even: room for so many times the primitives.
- */
+ * Limits count that for one worker, too, so that what they do is the same for
+ * all: an estimate, and with one worker more than it would take. */
 #define UNEVEN 1.5
 /* Share of the limit of memory that a frame which has to be drawn coarser is
  * meant to take: grids are whole numbers of cells. */
@@ -39,49 +40,6 @@ enum glint_status glint_frame_hold_lights(struct glint_frame *f, int n)
     f->light = light;
     f->light_capacity = n;
     return GLINT_OK;
-}
-
-/* Takes memory for the table of dim ghosts. */
-static enum glint_status hold_dim(struct glint_frame *f)
-{
-    f->dim.method = &glint_dim_method;
-    if (!f->dim.log2_q8)
-        f->dim.log2_q8 = calloc((size_t)GLINT_DIM_NODES * GLINT_DIM_VALUES *
-                                    ((size_t)f->setup->n_ghosts + 1),
-                                sizeof *f->dim.log2_q8);
-    return f->dim.log2_q8 ? GLINT_OK : GLINT_E_MEMORY;
-}
-
-static bool is_same_wave(const struct glint_wave *a, const struct glint_wave *b)
-{
-    return a->wave_q24 == b->wave_q24 && a->rgb_q14[0] == b->rgb_q14[0] &&
-           a->rgb_q14[1] == b->rgb_q14[1] && a->rgb_q14[2] == b->rgb_q14[2] &&
-           a->weight.mantissa == b->weight.mantissa &&
-           a->weight.exponent == b->weight.exponent;
-}
-
-void glint_frame_check_dim(struct glint_frame *f)
-{
-    const double size = f->view.width / f->view.sensor_width_mm;
-    bool same = f->dim_opening == f->setup->opening && f->dim_size == size;
-
-    for (int i = 0; i < 3; i++)
-        same = same && is_same_wave(&f->dim_wave[i], &f->wave[i]);
-    if (same)
-        return;
-    memset(f->dim.done, 0, sizeof f->dim.done);
-    memcpy(f->dim_wave, f->wave, sizeof f->dim_wave);
-    f->dim_opening = f->setup->opening;
-    f->dim_size = size;
-}
-
-enum glint_status glint_frame_hold_ghosts(struct glint_frame *f)
-{
-    if (!f->seen)
-        f->seen = calloc(GLINT_MAX_GHOSTS, sizeof *f->seen);
-    if (f->seen && f->lens && f->dials.dim_codes > 0)
-        return hold_dim(f);
-    return f->seen ? GLINT_OK : GLINT_E_MEMORY;
 }
 
 static bool is_by_edges(const struct glint_frame *f)
@@ -125,8 +83,9 @@ static struct glint_flare_config needed_by(const struct glint_frame *f,
     return needed;
 }
 
-/* Returns the bytes of that with one worker. FIXED receives those that coarser
- * grids take, too. */
+/* Returns the bytes of that with one worker and primitives as for uneven
+ * shares, so that they do not depend on how many workers there are. FIXED
+ * receives those that coarser grids take, too. */
 static double bytes_of(const struct glint_frame *f,
                        const struct glint_flare_stats *s, double *fixed)
 {
@@ -171,28 +130,45 @@ static bool fit(struct glint_frame *f, size_t bytes)
     return most > 0 && bytes_for(f, most) <= bytes;
 }
 
+/* Returns the primitives that reserved memory would have to have room for, with
+ * the shares of bytes_for(). */
+static double primitives_of(const struct glint_frame *f,
+                            const struct glint_flare_stats *s)
+{
+    const double others = fmax(s->need_refs, s->need_vertices) / 2;
+
+    return fmax(fmax(s->need_primitives * UNEVEN, others),
+                f->cfg.coarse_log2 ? s->need_tile_refs : 0);
+}
+
 /* Makes grids coarser if what was binned would take more memory than a frame
- * may. Returns whether it did. That does not depend on how many workers there
- * are, nor on frames before. The block becomes as large as it may be, so that
- * they find room the next time. */
+ * may, or than is reserved, by an estimate. Returns whether it did. That does
+ * not depend on how many workers there are, nor on frames before. A block that
+ * is not reserved becomes as large as it may be, so that they find room the
+ * next time. */
 static bool hold_room(struct glint_frame *f, const struct glint_flare_stats *s)
 {
-    const double most = (double)most_bytes(f);
+    const double most =
+        f->reserved ? f->most_primitives : (double)most_bytes(f);
     const int fineness = f->dials.fineness;
-    double fixed;
-    const double bytes = bytes_of(f, s, &fixed);
+    double fixed = 0;
+    const double need =
+        f->reserved ? primitives_of(f, s) : bytes_of(f, s, &fixed);
 
-    if (most <= 0 || f->budget.ms > 0 || bytes <= most ||
+    if (most <= 0 || f->budget.ms > 0 || need <= most ||
         fineness <= LEAST_FINENESS ||
-        (f->tight_bytes > 0 && bytes > NO_GAIN * f->tight_bytes))
+        (f->tight > 0 && need > NO_GAIN * f->tight))
         return false;
-    f->tight_bytes = bytes;
+    if (f->tight <= 0)
+        f->tight_bytes = glint_frame_bytes_needed(f, s);
+    f->tight = need;
     f->dials.fineness = larger(
         LEAST_FINENESS,
         smaller(fineness - 1,
                 (int)(fineness * sqrt(fmax(0, (ROOM_SHARE * most - fixed) /
-                                                  (bytes - fixed))))));
-    fit(f, (size_t)most);
+                                                  (need - fixed))))));
+    if (!f->reserved)
+        fit(f, (size_t)most);
     return f->is_held = true;
 }
 
@@ -203,10 +179,12 @@ bool glint_frame_is_served(struct glint_frame *f,
 
     const int bundles = bundles_within(f, s->need_bundles);
 
-    if (f->reserved || f->is_full)
+    if (f->is_full)
         return true;
     if (hold_room(f, s))
         return false;
+    if (f->reserved)
+        return true;
     if (bundles <= c->max_bundles && s->need_vertices <= c->max_vertices &&
         s->need_primitives <= c->max_primitives &&
         s->need_refs <= c->max_refs && s->need_tile_refs <= c->max_tile_refs)
@@ -316,6 +294,8 @@ size_t glint_frame_least_bytes(struct glint_frame *f)
 enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
                                       size_t bytes, int n_lamps, int n_drawn)
 {
+    struct glint_workers *const workers = f->cfg.workers;
+
     f->dials.max_lights =
         smaller(f->dials.max_lights, smaller(n_drawn, n_lamps));
     /* Not all ghosts are seen, and few take the largest set. */
@@ -325,11 +305,15 @@ enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
     if (f->cfg.reuse)
         f->cfg.reuse_lights = f->dials.max_lights;
     f->cfg.reuse_gains = f->cfg.reuse && f->dials.still_px > 0;
+    f->cfg.workers = NULL;
+    fit(f, bytes);
+    f->most_primitives = f->cfg.max_primitives;
+    f->cfg.workers = workers;
     if (!fit(f, bytes))
         return GLINT_E_MEMORY;
     /* Dials may be turned later, when nothing is allocated any more. */
     if (glint_frame_hold_ghosts(f) != GLINT_OK ||
-        (f->lens && hold_dim(f) != GLINT_OK) ||
+        (f->lens && glint_frame_hold_dim(f) != GLINT_OK) ||
         glint_frame_hold_lights(f, n_lamps) != GLINT_OK ||
         (f->cfg.reuse_gains && hold_still(f, f->cfg.reuse_lights) != GLINT_OK))
         return GLINT_E_MEMORY;

@@ -18,6 +18,7 @@
 #include "options/settings.h"
 #include "options/tool.h"
 #include "support/fakes/wrapped.h"
+#include "support/shuffle.h"
 
 enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 
@@ -80,6 +81,13 @@ static void make_of(const struct settings *of, struct glint_frame *frame)
 static void make(struct glint_frame *frame)
 {
     make_of(&settings, frame);
+}
+
+static void make_even(struct glint_frame *frame, int fineness)
+{
+    make(frame);
+    frame->uniform = true;
+    frame->dials.fineness = fineness;
 }
 
 static void draw(struct glint_frame *frame, int n, uint8_t rgb[BYTES],
@@ -146,29 +154,28 @@ static void test_same_as_grown(void **state)
         glint_frame_finish(&grown);
     }
     draw(&reserved, 0, want, &report);
-    assert_int_not_equal(n_different(want, got), 0);
+    assert_true(n_different(want, got) > 0);
     glint_frame_finish(&reserved);
 }
 
-/* With ever less memory ever less must be drawn, and all that is left out must
- * be counted. It may make the picture darker, never brighter. */
+/* Where grids are coarsest, ever less must be drawn with ever less memory, and
+ * all that is left out be counted. It may make the picture darker, never
+ * brighter. */
 static void test_too_little(void **state)
 {
     static uint8_t full[BYTES], got[BYTES];
     struct glint_frame frame;
     struct glint_frame_report report;
-    size_t bytes;
     int n_lost = 0, n_darker = 0;
 
     (void)state;
-    make(&frame);
+    make_even(&frame, 8);
     draw(&frame, N_LAMPS, full, &report);
-    bytes = report.peak_bytes;
     glint_frame_finish(&frame);
-    for (; bytes > 50000; bytes -= bytes / 32) {
+    for (size_t bytes = report.peak_bytes; bytes > 5e4; bytes -= bytes / 32) {
         int lost;
 
-        make(&frame);
+        make_even(&frame, 8);
         if (glint_frame_reserve(&frame, NULL, bytes, N_LAMPS, N_LAMPS) !=
             GLINT_OK) {
             glint_frame_finish(&frame);
@@ -185,8 +192,7 @@ static void test_too_little(void **state)
         n_lost += lost > 0;
         glint_frame_finish(&frame);
     }
-    assert_true(n_lost >= 5);
-    assert_true(n_darker >= 5);
+    assert_true(n_lost >= 5 && n_darker >= 5);
     make(&frame);
     assert_int_equal(glint_frame_reserve(&frame, NULL, 1000, N_LAMPS, N_LAMPS),
                      GLINT_E_MEMORY);
@@ -237,15 +243,11 @@ static void test_tight(void **state)
     struct glint_frame_report full, held;
 
     (void)state;
-    make(&frame);
-    frame.uniform = true;
-    frame.dials.fineness = 64;
+    make_even(&frame, 64);
     draw(&frame, N_LAMPS, want, &full);
-    assert_false(full.coarsened || full.tight);
+    assert_false(full.tight);
     glint_frame_finish(&frame);
-    make(&frame);
-    frame.uniform = true;
-    frame.dials.fineness = 64;
+    make_even(&frame, 64);
     frame.most_bytes = full.need_bytes * 3 / 4;
     draw(&frame, N_LAMPS, coarse, &held);
     assert_true(held.coarsened && held.tight);
@@ -261,6 +263,31 @@ static void test_tight(void **state)
     assert_false(held.coarsened || held.tight);
     assert_memory_equal(got, want, BYTES);
     glint_frame_finish(&frame);
+}
+
+/* So must what reserved memory has no room for, with all numbers of workers. */
+static void test_tight_reserved(void **state)
+{
+    static uint8_t got[2][BYTES];
+
+    (void)state;
+    for (int n = 1; n <= 5; n += 2) {
+        struct glint_frame_report report;
+        struct glint_frame frame;
+        struct shuffle shuffle;
+
+        shuffle_init(&shuffle, n, 7);
+        make_even(&frame, 192);
+        frame.cfg.workers = &shuffle.workers;
+        assert_int_equal(
+            glint_frame_reserve(&frame, NULL, 4 << 20, N_LAMPS, N_LAMPS),
+            GLINT_OK);
+        draw(&frame, n, got[n > 1], &report);
+        draw(&frame, N_LAMPS, got[n > 1], &report);
+        assert_true(report.tight && report.stats.dropped_bundles == 0);
+        assert_memory_equal(got[n > 1], got[0], BYTES);
+        glint_frame_finish(&frame);
+    }
 }
 
 /* More lamps than the dial allows must be merged as ever, without a request
@@ -461,6 +488,7 @@ int main(void)
         cmocka_unit_test(test_too_little),
         cmocka_unit_test(test_bounds),
         cmocka_unit_test(test_tight),
+        cmocka_unit_test(test_tight_reserved),
         cmocka_unit_test(test_more_lamps),
         cmocka_unit_test(test_retune),
         cmocka_unit_test(test_no_memory),
