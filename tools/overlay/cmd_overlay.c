@@ -216,6 +216,7 @@ static void note_worst(struct glint_frame_report *worst,
                            : report->beyond_lights;
     const int lights =
         worst->lights > report->lights ? worst->lights : report->lights;
+    const bool tight = worst->tight || report->tight;
 
     if (report->apart_lights - report->drawn_lights >
         worst->apart_lights - worst->drawn_lights)
@@ -224,6 +225,7 @@ static void note_worst(struct glint_frame_report *worst,
     worst->stats.dropped_cells = cells;
     worst->lights = lights;
     worst->beyond_lights = beyond;
+    worst->tight = tight;
 }
 
 static enum glint_status draw_in_place(void *ctx, struct compositor *compositor,

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "posix/error.h"
 #include "zooms/zoom_error.h"
 
 enum {
@@ -103,6 +104,7 @@ static enum glint_status join(struct run *run)
 {
     struct glint_bake_model model[GLINT_MAX_ZOOM_MODELS];
     struct zoom_baked *const baked = run->baked;
+    enum glint_status status;
     const char *reason;
 
     baked->n_models = 0;
@@ -111,10 +113,15 @@ static enum glint_status join(struct run *run)
             model[baked->n_models++] = run->place[k].model;
     free(baked->data);
     baked->data = NULL;
-    return glint_bake_zoom(model, baked->n_models, &baked->data, &baked->bytes,
-                           run->error) == GLINT_OK
-               ? glint_zoom_open(&run->zoom, baked->data, baked->bytes, &reason)
-               : GLINT_E_LENS;
+    status = glint_bake_zoom(model, baked->n_models, &baked->data,
+                             &baked->bytes, run->error);
+    if (status != GLINT_OK)
+        return status;
+    status = glint_zoom_open(&run->zoom, baked->data, baked->bytes, &reason);
+    return status == GLINT_OK
+               ? status
+               : glint_error_report(run->error, status, "the models of a zoom",
+                                    "%s", reason);
 }
 
 /* Returns the error that all ghosts together may leave. */

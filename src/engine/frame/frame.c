@@ -489,9 +489,7 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
     report->held_samples = glint_flare_held(frame->flare);
     report->arena_bytes = frame->bytes;
     report->peak_bytes = glint_frame_bytes_used(frame, &report->stats);
-    report->need_bytes = frame->tight > 0
-                             ? frame->tight_bytes
-                             : glint_frame_bytes_needed(frame, &report->stats);
+    report->need_bytes = glint_frame_bytes_needed(frame, &report->stats);
     report->star_bytes = glint_frame_star_bytes(frame);
     report->ghosts = glint_frame_count_ghosts(frame, n_drawn(frame, report));
     return GLINT_OK;

@@ -343,7 +343,7 @@ size_t glint_frame_bytes_needed(const struct glint_frame *f,
 {
     const struct glint_flare_config needed = needed_by(f, s);
 
-    return glint_flare_bytes(&needed);
+    return f->tight > 0 ? f->tight_bytes : glint_flare_bytes(&needed);
 }
 
 /* Returns the millions of instructions that a plan takes for looking at N rays.
