@@ -388,7 +388,8 @@ void tool_progress_start(struct tool_progress *p, const struct tool *tool,
                          const char *what)
 {
     p->what = what;
-    p->less = NULL;
+    p->less = p->besides = NULL;
+    p->times = 1;
     p->started = tool_seconds();
     p->last = 0;
     p->most = 0;
@@ -412,17 +413,18 @@ static void show_line(struct tool_progress *p, double now, double done)
 /* Says how long it will take, once, if that is long. */
 static void tell_length(struct tool_progress *p, double spent, double done)
 {
-    const double left = spent * (1 - done) / done;
+    const double all = spent / done * p->times, left = all - spent;
 
     p->told = true;
-    if (spent + left < 20)
+    if (all < 20)
         return;
     if (left < 120)
-        fprintf(stderr, "%s: takes about %.0f s\n", p->what, left);
+        fprintf(stderr, "%s: takes about %.0f s%s\n", p->what, left,
+                p->besides ? p->besides : "");
     else
-        fprintf(stderr, "%s: takes about %.0f minutes%s%s\n", p->what,
-                left / 60, p->less ? "; less with " : "",
-                p->less ? p->less : "");
+        fprintf(stderr, "%s: takes about %.0f minutes%s%s%s\n", p->what,
+                left / 60, p->besides ? p->besides : "",
+                p->less ? "; less with " : "", p->less ? p->less : "");
 }
 
 void tool_progress_show(void *progress, double done)

@@ -140,6 +140,9 @@ struct tool_progress {
     const char *what;
     const char *less; /* what makes it take less, said where it takes minutes;
                          NULL: nothing */
+    const char *besides; /* what is not in that, said likewise; NULL: nothing */
+    int times; /* so many pieces of work like this one are to be done, and how
+                  long it takes is said of all; 1: only this one */
     bool shown, is_terminal;
     bool told; /* how long it takes was said, or is short */
     double started, last;

@@ -87,6 +87,15 @@ static enum glint_status bake_place(struct run *run, int place, bool whole)
     options.progress = tool_progress_show;
     options.progress_ctx = &progress;
     tool_progress_start(&progress, run->tool, "bake");
+    if (whole) { /* how long all take is said at the first */
+        progress.times = run->bake->positions;
+        progress.told = place > 0;
+        progress.besides = run->bake->halfway_db > 0
+                               ? " for all positions, and more half-way"
+                               : " for all positions";
+        progress.less = "fewer --positions, a smaller --max-angle or a larger "
+                        "--tolerance";
+    }
     if (status == GLINT_OK)
         status = glint_bake(&run->lens, &options, &p->model.data,
                             &p->model.bytes, &report, run->error);
