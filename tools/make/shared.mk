@@ -36,8 +36,9 @@ dist:
 	@mkdir -p build
 	git archive --prefix=glint-$(VERSION)/ HEAD | gzip -n >build/glint-$(VERSION).tar.gz
 	@echo build/glint-$(VERSION).tar.gz
-# What programs would notice of the change since REF.
+# What programs would notice of the change since REF, a commit or a tag.
 abi: shared
+	@[ -n "$(REF)" ] || { echo "make abi: with what? REF=HEAD~10, say" >&2; exit 2; }
 	@tools/make/deps "differences of interfaces" abigail-tools git
 	@tools/make/abi $(REF) $(OUT)-pic $(LIBRARIES)
 .PRECIOUS: $(OUT)/%.map
