@@ -6,8 +6,8 @@
  *   out  a model of all ghosts at these, evenly along the zoom, and of those
  *        ghosts that need it half-way between, again and again until pictures
  *        there are exact enough */
-#ifndef GLINT_TOOLS_MODEL_ZOOM_BAKE_H
-#define GLINT_TOOLS_MODEL_ZOOM_BAKE_H
+#ifndef GLINT_TOOLS_ZOOMS_ZOOM_BAKE_H
+#define GLINT_TOOLS_ZOOMS_ZOOM_BAKE_H
 
 #include "glint/bake.h"
 #include "options/tool.h"

@@ -77,11 +77,11 @@ struct measuring {
 static enum glint_status measure_angle(const struct measuring *m,
                                        struct pictures *p, int angle)
 {
-    const struct glint_lamp lamp = {.theta_deg = m->max_deg * (angle + 0.5) /
-                                                 ZOOM_ANGLES,
-                                    .phi_deg = AZIMUTH_DEG,
-                                    .power = 1,
-                                    .rgb = {1, 1, 1}};
+    const struct glint_lamp lamp = {
+        .theta_deg = m->max_deg * (angle + m->shift) / ZOOM_ANGLES,
+        .phi_deg = AZIMUTH_DEG,
+        .power = 1,
+        .rgb = {1, 1, 1}};
     enum glint_status status = draw(&p->model, &lamp, -1, &p->all);
 
     p->exposure = glint_measure_exposure(&p->all);

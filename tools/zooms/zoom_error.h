@@ -8,8 +8,8 @@
  *        ghost was exact
  *
  * Pictures are exposed as glint compare does. */
-#ifndef GLINT_TOOLS_MODEL_ZOOM_ERROR_H
-#define GLINT_TOOLS_MODEL_ZOOM_ERROR_H
+#ifndef GLINT_TOOLS_ZOOMS_ZOOM_ERROR_H
+#define GLINT_TOOLS_ZOOMS_ZOOM_ERROR_H
 
 #include "glint/model.h"
 #include "options/tool.h"

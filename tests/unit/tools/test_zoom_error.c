@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Errors of a zoom of two lenses that was baked at both ends: lights come from
+ * where they are said to, an end is exact, and the middle is not. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "zooms/zoom_error.h"
+
+enum { GHOSTS = 2, MAX_DEG = 3 };
+
+static const char table[] = "name t\n"
+                            "f-number 20\n"
+                            "film 24 16\n"
+                            "surface  60    4  12  1.52 60\n"
+                            "surface -200  2/8  12  air\n"
+                            "stop     6/5  8\n"
+                            "surface  90    4  12  1.62 36\n"
+                            "surface -90   40/38  12  air\n";
+
+static struct glint_prescription at[3]; /* both ends, and half-way */
+static struct glint_bake_model model[2];
+static unsigned char *file;
+static struct glint_zoom_lens zoom;
+
+static int bake_ends(void **state)
+{
+    static struct glint_prescription lens;
+    struct glint_bake_options options;
+    struct glint_bake_report report;
+    struct glint_error error = {""};
+    const char *reason = "";
+    size_t bytes;
+
+    (void)state;
+    glint_bake_defaults(&options);
+    options.max_deg = MAX_DEG;
+    if (glint_prescription_parse(&lens, table, sizeof table - 1, "t.lens",
+                                 &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(glint_ghost_list(&lens, NULL, 0), GHOSTS);
+    for (int k = 0; k < 3; k++) {
+        at[k] = lens;
+        if (glint_prescription_zoom(&at[k], k == 2 ? 0.5 : k, &error) !=
+            GLINT_OK)
+            fail_msg("%s", error.text);
+    }
+    for (int k = 0; k < 2; k++) {
+        model[k].along_q30 = k << 30;
+        if (glint_bake(&at[k], &options, &model[k].data, &model[k].bytes,
+                       &report, &error) != GLINT_OK)
+            fail_msg("%s", error.text);
+    }
+    if (glint_bake_zoom(model, 2, &file, &bytes, &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+    if (glint_zoom_open(&zoom, file, bytes, &reason) != GLINT_OK)
+        fail_msg("%s", reason);
+    return 0;
+}
+
+static int free_all(void **state)
+{
+    (void)state;
+    free(model[0].data);
+    free(model[1].data);
+    free(file);
+    return 0;
+}
+
+/* Sets those entries of ERROR that are below 0, with lights SHIFT of their
+ * shares on. The zoom is set to ALONG, as LENS is. */
+static void measure(const struct glint_prescription *lens, double along,
+                    double shift, struct zoom_error error[GHOSTS])
+{
+    const struct tool tool = {.name = "test"};
+    struct glint_error message = {""};
+
+    glint_zoom_set(&zoom, (int32_t)(along * (1 << 30)));
+    if (zoom_error_measure(&tool, lens, &zoom, MAX_DEG, shift, GHOSTS, error,
+                           &message) != GLINT_OK)
+        fail_msg("%s", message.text);
+}
+
+enum { STEP = 3 };
+
+/* Asks for the errors of ghost 0 at every third angle from FIRST on; all other
+ * entries are 2. */
+static void ask(struct zoom_error error[GHOSTS], int first)
+{
+    for (int g = 0; g < GHOSTS; g++)
+        for (int a = 0; a < ZOOM_ANGLES; a++)
+            error[g].of[a] = g == 0 && a % STEP == first ? -1 : 2;
+}
+
+static double largest(const struct zoom_error *error, int first)
+{
+    double most = 0;
+
+    for (int a = first; a < ZOOM_ANGLES; a += STEP)
+        most = error->of[a] > most ? error->of[a] : most;
+    return most;
+}
+
+static void ends_are_exact(void **state)
+{
+    struct zoom_error end[GHOSTS];
+
+    (void)state;
+    ask(end, 1);
+    measure(&at[0], 0, 0.5, end);
+    for (int g = 0; g < GHOSTS; g++)
+        for (int a = 0; a < ZOOM_ANGLES; a++)
+            if (g == 0 && a % STEP == 1) /* 50 dB */
+                assert_true(end[g].of[a] >= 0 && end[g].of[a] < 1e-5);
+            else
+                assert_true(end[g].of[a] == 2);
+}
+
+/* The middle is not. The end of a share of the angles is where the next
+ * begins. */
+static void lights_are_shifted(void **state)
+{
+    struct zoom_error begin[GHOSTS], end[GHOSTS];
+
+    (void)state;
+    ask(begin, 1);
+    ask(end, 0);
+    measure(&at[2], 0.5, 0, begin);
+    measure(&at[2], 0.5, 1, end);
+    assert_true(largest(&begin[0], 1) > 3e-5);
+    for (int a = 0; a + 1 < ZOOM_ANGLES; a += STEP)
+        assert_true(end[0].of[a] == begin[0].of[a + 1]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ends_are_exact),
+        cmocka_unit_test(lights_are_shifted),
+    };
+
+    return cmocka_run_group_tests_name("zoom_error", tests, bake_ends,
+                                       free_all);
+}
