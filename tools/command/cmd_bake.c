@@ -67,8 +67,8 @@ struct bake {
     struct coating coating;
     struct zoom_option zoom;
     double f_number;
-    int positions; /* of a zoom; 0: one model */
-    double halfway_db;
+    int positions;     /* of a zoom; 0: one model */
+    double halfway_db; /* below 0: not asked for */
     struct glint_bake_options options;
     struct tool_progress progress;
 };
@@ -153,6 +153,10 @@ static int parse(struct tool *tool, int argc, char **argv, struct bake *b)
     if (b->positions && b->zoom.is_zoomed)
         return tool_usage(tool, "--positions are of the whole zoom: leave out "
                                 "--zoom");
+    if (!b->positions && b->halfway_db >= 0)
+        return tool_usage(tool, "--halfway goes with --positions");
+    if (b->halfway_db < 0)
+        b->halfway_db = ZOOM_BAKE_DB;
     return -1;
 }
 
@@ -199,10 +203,12 @@ static int bake_into(struct glint_output *out, struct tool *tool,
     return code;
 }
 
-/* Says what was baked. */
+/* Says what was baked, unless that went to the standard output. */
 static void tell_zoom(const struct tool *tool, const struct bake *b,
                       const struct zoom_baked *baked, double seconds)
 {
+    if (strcmp(b->output, "-") == 0)
+        return;
     if (tool->json) {
         printf("{\"positions\": %d, \"models\": %d, \"ghosts\": %d, ",
                b->positions, baked->n_models, baked->n_bakes);
@@ -212,7 +218,7 @@ static void tell_zoom(const struct tool *tool, const struct bake *b,
         printf("\"bytes\": %zu, \"seconds\": %.1f}\n", baked->bytes, seconds);
         return;
     }
-    if (tool->quiet || strcmp(b->output, "-") == 0)
+    if (tool->quiet)
         return;
     printf("%d positions, and single ghosts at %d places between them, %zu "
            "bytes, %.0f s\n",
@@ -306,7 +312,7 @@ int cmd_bake(int argc, char **argv)
         if (argv[i][0] != '-' && stone_file_is_text(argv[i]))
             return cmd_bake_stone(argc, argv);
     glint_bake_defaults(&b.options);
-    b.halfway_db = ZOOM_BAKE_DB;
+    b.halfway_db = -1;
     code = parse(&tool, argc, argv, &b);
     if (code >= 0)
         return code;
