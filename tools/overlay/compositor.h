@@ -359,10 +359,13 @@ int compositor_desk_open_keys(const struct tool *tool,
 int compositor_desk_open(const struct tool *tool,
                          struct compositor *compositor);
 void compositor_desk_turn(struct compositor *compositor);
+void compositor_desk_hide(struct compositor *compositor, int n);
+void compositor_desk_close(struct compositor *compositor);
 
 /* Before scene and lens are opened: lets lines of control zoom the lens if they
- * may, as key frames do not and its model is given; refuses key frames that
- * zoom a table, which would be baked for one position. Returns an exit code. */
+ * may, as key frames do not and its model is given; refuses lines that would
+ * have nothing to do beside key frames, and key frames that zoom a table, which
+ * would be baked for one position. Returns an exit code. */
 int compositor_zoom_begin(const struct tool *tool,
                           struct compositor *compositor);
 
@@ -373,8 +376,6 @@ int compositor_zoom_open(const struct tool *tool,
 
 /* Zooms as the key frames say of the next frame. */
 void compositor_zoom_turn(struct compositor *compositor);
-void compositor_desk_hide(struct compositor *compositor, int n);
-void compositor_desk_close(struct compositor *compositor);
 
 /* Draws the scene over IMAGE, takes from the lamps what it hides, and adds the
  * scene's own. GLINT_E_MEMORY. */

@@ -101,6 +101,11 @@ int compositor_zoom_begin(const struct tool *tool, struct compositor *c)
             c->scene.zoom = obey;
         return EXIT_OK;
     }
+    if (c->scene.control_file && !c->scene.file)
+        return tool_usage(tool,
+                          "%.200s zooms the lens: --control has no "
+                          "--scene to steer besides",
+                          c->keys_file);
     if (!is_table)
         return EXIT_OK;
     code = tool_lens(tool, c->lens, &c->settings.lens);
