@@ -3,27 +3,32 @@
 
 #include <string.h>
 
+/* Of the frames that are due the last that there is is shown, also where the
+ * video ends before; those before it are late. */
 static enum glint_status next(struct glint_source *source,
                               struct glint_source_frame *frame,
                               struct glint_error *error)
 {
     struct live_video *v = (struct live_video *)source;
     const uint64_t n = live_timed_due(&v->timed, frame);
-    const struct glint_image *image = NULL;
+    const struct glint_image *image = NULL, *after = NULL;
+    uint64_t n_read = 0;
 
-    for (uint64_t i = 0; i < n; i++) {
+    while (n_read < n) {
         const enum glint_status status =
-            glint_y4m_reader_next(&v->reader, &image, error);
+            glint_y4m_reader_next(&v->reader, &after, error);
 
         if (status != GLINT_OK)
             return status;
-        if (!image)
-            return GLINT_E_CLOSED;
-        v->timed.n++;
+        if (!after)
+            break;
+        image = after;
+        n_read++;
     }
-    if (n > 0)
-        live_timed_show(&v->timed, frame, image, n);
-    return GLINT_OK;
+    v->timed.n += (int64_t)n_read;
+    if (image)
+        live_timed_show(&v->timed, frame, image, n_read);
+    return n > 0 && !image ? GLINT_E_CLOSED : GLINT_OK;
 }
 
 static void close_video(struct glint_source *source)
