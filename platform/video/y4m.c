@@ -27,6 +27,13 @@ static bool is_jpeg(const struct glint_y4m_header *h)
            (!*h->colour || !strcmp(h->colour, "420jpeg"));
 }
 
+bool glint_y4m_is_name(const char *name)
+{
+    const char *const dot = strrchr(name, '.');
+
+    return dot && strcmp(dot, ".y4m") == 0;
+}
+
 void glint_y4m_header_init(struct glint_y4m_header *header, int width,
                            int height, enum glint_pixel_format format,
                            int fps_num, int fps_den)

@@ -69,6 +69,9 @@ struct glint_y4m_header {
     enum glint_range line_range;
 };
 
+/* Returns whether NAME is that of such a file: it ends in .y4m. */
+bool glint_y4m_is_name(const char *name);
+
 /* Sets HEADER for a new stream: progressive, square pixels, limited range.
  * FORMAT is GLINT_GREY, _I420, _I422 or _I444. FPS_NUM and FPS_DEN >= 1, or 0
  * and 0: not known. */

@@ -87,14 +87,12 @@ static enum glint_status open_video(struct occlusion *o,
 
 enum glint_status occlusion_open(struct occlusion *o, struct glint_error *error)
 {
-    const char *const dot = o->file ? strrchr(o->file, '.') : NULL;
-
     o->frame = -1;
     o->black = 0;
     o->white = 255;
     if (!o->file)
         return GLINT_OK;
-    if (dot && strcmp(dot, ".y4m") == 0)
+    if (glint_y4m_is_name(o->file))
         return open_video(o, error);
     o->is_numbered = numbered_is(o->file);
     return o->is_numbered ? load_numbered(o, 0, error)

@@ -12,16 +12,9 @@ static bool is_test(const char *name)
     return strcmp(name, "test") == 0 || strcmp(name, "none") == 0;
 }
 
-static bool is_video_file(const char *name)
-{
-    const char *const dot = strrchr(name, '.');
-
-    return dot && strcmp(dot, ".y4m") == 0;
-}
-
 bool live_input_is_camera(const char *name)
 {
-    return !is_test(name) && !is_video_file(name) && strcmp(name, "-") != 0;
+    return !is_test(name) && !glint_y4m_is_name(name) && strcmp(name, "-") != 0;
 }
 
 enum glint_status live_input_check(const char *name, struct glint_error *error)
@@ -29,7 +22,7 @@ enum glint_status live_input_check(const char *name, struct glint_error *error)
     struct glint_v4l2_device device;
     enum glint_status status;
 
-    if (is_video_file(name) && access(name, R_OK) != 0)
+    if (glint_y4m_is_name(name) && access(name, R_OK) != 0)
         return glint_error_report(error, GLINT_E_IO, name, "%s",
                                   strerror(errno));
     if (!live_input_is_camera(name))

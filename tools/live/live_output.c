@@ -7,7 +7,6 @@ bool live_output_parse(struct live_output *o, const char *name)
 {
     static const char *const kinds[] = {"fb", "y4m", "v4l2", "null", "window"};
     const char *colon = strchr(name, ':');
-    const char *dot = strrchr(name, '.');
     const size_t length = colon ? (size_t)(colon - name) : strlen(name);
 
     o->sink = NULL;
@@ -19,7 +18,7 @@ bool live_output_parse(struct live_output *o, const char *name)
                    : k == LIVE_OUTPUT_FB ? !colon || *o->path
                                          : colon && *o->path;
         }
-    if (!dot || strcmp(dot, ".y4m") != 0)
+    if (!glint_y4m_is_name(name))
         return false;
     o->kind = LIVE_OUTPUT_Y4M;
     o->path = name;

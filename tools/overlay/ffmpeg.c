@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include "posix/error.h"
-#include "posix/input.h"
 
 enum { MAX_WORDS = 96, FILE_NAME = 4096, PROBE_BYTES = 1 << 14 };
 
@@ -42,56 +41,6 @@ bool ffmpeg_is_video(const char *name)
 static bool file_url(char url[FILE_NAME], const char *name)
 {
     return (size_t)snprintf(url, FILE_NAME, "file:%s", name) < FILE_NAME;
-}
-
-/* ---------------------------------------------------------------------- GIF */
-
-/* Returns where the sub-blocks that begin at AT end, or the end of the data. */
-static size_t skip_blocks(const uint8_t *d, size_t n, size_t at)
-{
-    while (at < n && d[at] != 0)
-        at += (size_t)d[at] + 1;
-    return at < n ? at + 1 : n;
-}
-
-static size_t colours(uint8_t packed)
-{
-    return packed & 0x80 ? (size_t)3 << ((packed & 7) + 1) : 0;
-}
-
-static int count_frames(const uint8_t *d, size_t n)
-{
-    int frames = 0;
-    size_t at;
-
-    if (n < 13 || memcmp(d, "GIF8", 4) != 0)
-        return 0;
-    at = 13 + colours(d[10]);
-    while (at < n && d[at] != 0x3b) {
-        if (d[at] == 0x21 && at + 2 < n) {
-            at = skip_blocks(d, n, at + 2);
-        } else if (d[at] == 0x2c && at + 11 < n) {
-            frames++;
-            at = skip_blocks(d, n, at + 11 + colours(d[at + 9]));
-        } else
-            break;
-    }
-    return frames;
-}
-
-int ffmpeg_gif_frames(const char *name)
-{
-    struct glint_error error;
-    uint8_t *data = NULL;
-    size_t bytes = 0;
-    int n = 0;
-
-    if (strcasecmp(extension(name), "gif") != 0)
-        return 0;
-    if (glint_input_slurp(&data, &bytes, name, 1 << 28, &error) == GLINT_OK)
-        n = count_frames(data, bytes);
-    free(data);
-    return n;
 }
 
 /* -------------------------------------------------------------------- probe */
@@ -141,29 +90,23 @@ static void read_all(struct child *child, char text[PROBE_BYTES])
 }
 
 /* Sets TEXT to the lines that ffprobe prints on ENTRIES of the streams KIND of
- * URL, or to "" if it cannot be run. */
-static void ask(const char *url, const char *kind, const char *entries,
-                char text[PROBE_BYTES])
+ * URL, with OPTION unless that is NULL. Returns false if it fails; TEXT is ""
+ * if it cannot be run. */
+static bool ask(const char *url, const char *kind, const char *entries,
+                const char *option, char text[PROBE_BYTES])
 {
-    const char *const argv[] = {"ffprobe",
-                                "-v",
-                                "quiet",
-                                "-select_streams",
-                                kind,
-                                "-show_entries",
-                                entries,
-                                "-of",
-                                "default=nw=1",
-                                url,
-                                NULL};
+    const char *const argv[] = {
+        "ffprobe",       "-v",    "quiet", "-select_streams", kind,
+        "-show_entries", entries, "-of",   "default=nw=1",    url,
+        option,          NULL};
     struct glint_error error;
     struct child child;
 
     *text = '\0';
     if (child_start(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
-        return;
+        return false;
     read_all(&child, text);
-    child_end(&child);
+    return child_end(&child) == 0;
 }
 
 void ffmpeg_probe(struct ffmpeg_video *video, const char *name)
@@ -176,13 +119,25 @@ void ffmpeg_probe(struct ffmpeg_video *video, const char *name)
     ask(url, "v:0",
         "stream=width,height,pix_fmt,color_range,color_space,color_transfer,"
         "color_primaries",
-        text);
+        NULL, text);
     while ((line = strtok_r(rest, "\r\n", &rest)))
         take_line(video, line);
     rest = text;
-    ask(url, "a:0", "stream=codec_name", text);
+    ask(url, "a:0", "stream=codec_name", NULL, text);
     while ((line = strtok_r(rest, "\r\n", &rest)))
         take_word(line, "codec_name", video->sound);
+}
+
+long ffmpeg_count_frames(const char *name)
+{
+    char url[FILE_NAME], text[PROBE_BYTES], n[FFMPEG_WORD] = "";
+
+    if (!file_url(url, name) ||
+        !ask(url, "v:0", "stream=nb_read_packets", "-count_packets", text))
+        return 0;
+    text[strcspn(text, "\r\n")] = '\0';
+    take_word(text, "nb_read_packets", n);
+    return strtol(n, NULL, 10);
 }
 
 bool ffmpeg_matrix(const struct ffmpeg_video *video, enum glint_matrix *matrix)

@@ -35,13 +35,13 @@ struct ffmpeg_video {
  * and their like. */
 bool ffmpeg_is_video(const char *name);
 
-/* Returns the number of frames of the GIF NAME, which it reads; 0 if NAME is no
- * GIF. */
-int ffmpeg_gif_frames(const char *name);
-
 /* Sets VIDEO to what ffprobe knows of NAME; all is empty if it knows
  * nothing. */
 void ffmpeg_probe(struct ffmpeg_video *video, const char *name);
+
+/* Returns the number of frames that ffprobe counts in NAME, all of which it
+ * reads; 0 if it cannot. */
+long ffmpeg_count_frames(const char *name);
 
 /* Sets MATRIX to that of VIDEO's codes. Returns false if it is not stated. */
 bool ffmpeg_matrix(const struct ffmpeg_video *video, enum glint_matrix *matrix);

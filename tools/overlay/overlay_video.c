@@ -12,6 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "formats/gif.h"
 #include "overlay/ffmpeg.h"
 #include "video/y4m.h"
 #include "posix/error.h"
@@ -33,9 +34,7 @@ struct video {
 
 static bool is_y4m(const char *name)
 {
-    const char *dot = strrchr(name, '.');
-
-    return strcmp(name, "-") == 0 || (dot && strcmp(dot, ".y4m") == 0);
+    return strcmp(name, "-") == 0 || glint_y4m_is_name(name);
 }
 
 static bool is_gif(const char *name)
@@ -52,7 +51,7 @@ bool overlay_is_video(const char *name)
 
 int overlay_check_gif(struct tool *tool, const struct overlay *o, bool *video)
 {
-    const int n = ffmpeg_gif_frames(o->input);
+    const int n = glint_gif_frames(o->input);
     const bool moves = overlay_is_video(o->output) || is_gif(o->output);
 
     *video = n > 1 && moves;

@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#include "overlay/child.h"
+#include "overlay/ffmpeg.h"
+#include "posix/error.h"
 #include "video/y4m.h"
 
 enum { ROW = 40, MOST_FRAMES = 10000000 };
@@ -47,37 +47,6 @@ static long count_y4m(const char *name, struct glint_error *error)
         n = in.n_frames;
     glint_y4m_reader_close(&in);
     return n;
-}
-
-/* Returns the number of frames that ffprobe counts in NAME; 0 if it cannot. */
-static long count_others(const char *name)
-{
-    char url[4096], text[64];
-    const char *const argv[] = {"ffprobe",
-                                "-v",
-                                "quiet",
-                                "-select_streams",
-                                "v:0",
-                                "-count_packets",
-                                "-show_entries",
-                                "stream=nb_read_packets",
-                                "-of",
-                                "csv=p=0",
-                                url,
-                                NULL};
-    struct glint_error error;
-    struct child child;
-    size_t used = 0;
-    ssize_t n;
-
-    if ((size_t)snprintf(url, sizeof url, "file:%s", name) >= sizeof url ||
-        child_start(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
-        return 0;
-    while (used < sizeof text - 1 &&
-           (n = read(child.fd, text + used, sizeof text - 1 - used)) > 0)
-        used += (size_t)n;
-    text[used] = '\0';
-    return child_end(&child) == 0 ? strtol(text, NULL, 10) : 0;
 }
 
 /* Returns key frames for N frames, malloc'ed. */
@@ -121,15 +90,14 @@ int zoom_clip_open(struct tool *tool, struct zoom_clip *clip, const char *input,
     if (!input || strcmp(input, "-") == 0)
         return tool_usage(tool, "--zoom A-B is over all frames of a video in a "
                                 "file: else give --keys a column zoom");
-    n = strlen(input) > 4 && strcmp(input + strlen(input) - 4, ".y4m") == 0
-            ? count_y4m(input, &error)
-            : count_others(input);
+    n = glint_y4m_is_name(input) ? count_y4m(input, &error)
+                                 : ffmpeg_count_frames(input);
+    if ((n <= 0 || n > MOST_FRAMES) && !error.text[0])
+        glint_error_report(&error, GLINT_E_FORMAT, input,
+                           "how many frames it has, which --zoom A-B needs, "
+                           "cannot be told");
     if (n <= 0 || n > MOST_FRAMES)
-        return tool_fail(tool, GLINT_E_FORMAT,
-                         error.text[0]
-                             ? error.text
-                             : "--zoom A-B: how many frames there are "
-                               "cannot be told (ffprobe)");
+        return tool_fail(tool, GLINT_E_FORMAT, error.text);
     clip->keys = make_keys(clip, n);
     if (!clip->keys)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
