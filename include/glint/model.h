@@ -276,10 +276,8 @@ struct glint_zoom_lens {
     struct glint_lens model[GLINT_MAX_ZOOM_MODELS];
     int32_t along_q30[GLINT_MAX_ZOOM_MODELS];
     const uint32_t *has[GLINT_MAX_ZOOM_MODELS]; /* as has_at; NULL: all */
-    int32_t now_q30; /* where it is set, and between which models: this one and
-                        the next, PART of the way */
-    int below;
-    int32_t part_q30;
+    int32_t now_q30;                            /* where it is set */
+    int below; /* the model there or before; the next is above */
     /* Of each ghost, the nearest two models that have it. */
     uint8_t side[2][GLINT_MAX_ZOOM_GHOSTS];
     /* What LENS points to. */

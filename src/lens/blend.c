@@ -110,23 +110,22 @@ static int is_near(const struct glint_zoom_mix *blend)
            q_magnitude(m->higher_q24) <= NEAR_Q24;
 }
 
-void glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
-                     int32_t exponent)
+int glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
+                    int32_t exponent)
 {
     struct glint_transfer *const t = blend->to;
     /* going on takes up to three times the size */
     const int32_t e =
         (exponent > t->box_exponent ? exponent : t->box_exponent) +
         (blend->part_q30 < 0 ? 2 : 0);
+    const int far = set_moves(blend, box, exponent);
 
-    blend->is_apart = set_moves(blend, box, exponent) || !is_near(blend);
-    blend->is_apart &= blend->part_q30 < 0;
     for (int k = 0; k < 3; k++)
         t->box[k] = mix(box[k], exponent, t->box[k], t->box_exponent, e,
                         blend->part_q30);
     t->box_exponent = e;
-    blend->is_apart |=
-        blend->part_q30 < 0 && (t->box[1] <= 0 || t->box[2] <= 0);
+    return blend->part_q30 >= 0 ||
+           (!far && is_near(blend) && t->box[1] > 0 && t->box[2] > 0);
 }
 
 /* Returns by how much the coefficient of u^A v^B changes where a place of the

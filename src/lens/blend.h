@@ -19,8 +19,6 @@ struct glint_zoom_mix {
     struct glint_blend_move {
         int32_t along_q24, wider_q24, higher_q24;
     } move[2];
-    int is_apart; /* PART is below 0, and the boxes lie too far apart for that
-                   */
     /* Barrels that have been mixed, and those that only the other has, as bits
      * of their number. */
     uint32_t mixed, added;
@@ -35,9 +33,10 @@ struct glint_blend_output {
 };
 
 /* The transfer holds the box of the other position; mixes it with BOX of the
- * unit 2^EXPONENT, its own. */
-void glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
-                     int32_t exponent);
+ * unit 2^EXPONENT, its own. Returns 0 if PART is below 0 and both lie too far
+ * apart for that. */
+int glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
+                    int32_t exponent);
 
 /* Mixes O in. Outputs come by rising kind. */
 void glint_blend_output(struct glint_zoom_mix *blend,

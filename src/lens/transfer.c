@@ -396,8 +396,7 @@ int glint_transfer_mix(struct glint_transfer *transfer,
     settle(&set, lens, system, sine_q30, 0, wave_q24);
     transfer->system = system;
     set_box(transfer, lens, &set);
-    glint_blend_box(&blend, box, box_exponent);
-    if (blend.is_apart)
+    if (!glint_blend_box(&blend, box, box_exponent))
         return 0;
     for (uint32_t k = 0; k < system->n_outputs; k++) {
         struct table table = {transfer->of_u, 0, 0};

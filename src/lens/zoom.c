@@ -160,12 +160,22 @@ static struct glint_real between(struct glint_real a, struct glint_real b,
     return real_of(x + y, e - 30);
 }
 
+/* Returns how far the zoom is on the way from model FROM to model TO; below 0
+ * if it is beyond FROM. */
+static int32_t way_q30(const struct glint_zoom_lens *z, int from, int to)
+{
+    const int64_t at_q30 = z->along_q30[from];
+
+    return (int32_t)q_divide((z->now_q30 - at_q30) * TRANSFER_ONE_Q30,
+                             z->along_q30[to] - at_q30);
+}
+
 static void set_header(struct glint_zoom_lens *z)
 {
     const struct glint_model_header *const a = z->model[z->below].header;
     const struct glint_model_header *const b = z->model[z->below + 1].header;
     struct glint_model_header *const h = &z->header;
-    const int32_t part = z->part_q30;
+    const int32_t part = way_q30(z, z->below, z->below + 1);
 
     h->focal_mm = between(a->focal_mm, b->focal_mm, part);
     h->back_focal_mm = between(a->back_focal_mm, b->back_focal_mm, part);
@@ -220,11 +230,8 @@ static const struct glint_lens *model_of(const struct glint_zoom_lens *z, int e,
 static int32_t part_of(const struct glint_zoom_lens *z, int ghost)
 {
     const int g = z->whole[ghost];
-    const int32_t from_q30 = z->along_q30[z->side[0][g]];
 
-    return (int32_t)q_divide(((int64_t)z->now_q30 - from_q30) *
-                                 TRANSFER_ONE_Q30,
-                             (int64_t)z->along_q30[z->side[1][g]] - from_q30);
+    return way_q30(z, z->side[0][g], z->side[1][g]);
 }
 
 /* Returns the polynomials' annulus of entry E on SIDE at this angle and
@@ -295,9 +302,7 @@ static int draw_out(struct glint_transfer *transfer,
                     int32_t sine_q30, int32_t wave_q24)
 {
     const int beyond = find_beyond(z, g, side);
-    const int32_t from_q30 = z->along_q30[z->side[side][g]];
     const struct glint_model_system *there;
-    int32_t part_q30;
 
     for (int q = z->part_from[g]; q < z->part_from[g + 1]; q++)
         if (annulus_of(z, q, side, sine_q30, wave_q24) >= 0)
@@ -308,14 +313,9 @@ static int draw_out(struct glint_transfer *transfer,
     if (!there || there->annulus != 0 ||
         annulus_of(z, g, side, sine_q30, wave_q24) != 0)
         return 0;
-    part_q30 =
-        (int32_t)q_divide(((int64_t)z->now_q30 - from_q30) * TRANSFER_ONE_Q30,
-                          (int64_t)z->along_q30[beyond] - from_q30);
-    if (!of_side(transfer, z, g, side, sine_q30, wave_q24) ||
-        !glint_transfer_mix(transfer, &z->model[beyond], g, sine_q30, wave_q24,
-                            part_q30))
-        return 0;
-    return 1;
+    return of_side(transfer, z, g, side, sine_q30, wave_q24) &&
+           glint_transfer_mix(transfer, &z->model[beyond], g, sine_q30,
+                              wave_q24, way_q30(z, z->side[side][g], beyond));
 }
 
 static int transfer_between(struct glint_transfer *transfer,
@@ -359,18 +359,14 @@ void glint_zoom_set(struct glint_zoom_lens *zoom, int32_t along_q30)
 {
     struct glint_zoom_lens *const z = zoom;
     int k = 0, end[2];
-    int64_t step;
 
     along_q30 = along_q30 < 0                  ? 0
                 : along_q30 > TRANSFER_ONE_Q30 ? TRANSFER_ONE_Q30
                                                : along_q30;
     while (k + 2 < z->n_models && along_q30 >= z->along_q30[k + 1])
         k++;
-    step = (int64_t)z->along_q30[k + 1] - z->along_q30[k];
     z->now_q30 = along_q30;
     z->below = k;
-    z->part_q30 = (int32_t)q_divide(
-        ((int64_t)along_q30 - z->along_q30[k]) * TRANSFER_ONE_Q30, step);
     find_sides(z, end);
     for (int m = end[0]; m <= end[1]; m++)
         find_places(z, m);
