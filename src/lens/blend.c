@@ -5,10 +5,11 @@
  *   in   two transfers of the same ghost, angle and wavelength
  *   out  one: every coefficient and the box in proportion
  *
- * In the coordinates of its box a ghost changes slowly with the zoom. Shares
- * are 0 or more and sum to 1, so that sums of magnitudes stay below the larger
- * of both, which keeps the proof of the transfer; each coefficient rounds once.
- * The unit is the coarser one.
+ * In the coordinates of its box a ghost changes slowly with the zoom. Between
+ * both, shares are 0 or more and sum to 1, so that sums of magnitudes stay
+ * below the larger of both, which keeps the proof of the transfer; beyond, they
+ * are up to 2 and -1, and sums up to three times that, for which there are two
+ * bits of room. Each coefficient rounds once. The unit is the coarser one.
  *
  * Barrels have no names in a model. Each of the other position is mixed with
  * the one whose polynomial is most like its own. One that has no partner
@@ -30,7 +31,8 @@ enum {
     MOST_HEAD = 28,
     NEAR_Q24 = 1 << 23, /* half widths */
     LATE_Q30 = 3 << 28, /* share of the way after which a barrel opens */
-    MOST_MOVE = 8       /* half widths that boxes may lie apart */
+    MOST_MOVE = 8,      /* half widths that boxes may lie apart */
+    BEYOND = 2          /* bits that going on takes, to three times the size */
 };
 
 /* Returns X / 2^S, rounded, for any S of 0 or more. */
@@ -114,10 +116,9 @@ int glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
                     int32_t exponent)
 {
     struct glint_transfer *const t = blend->to;
-    /* going on takes up to three times the size */
     const int32_t e =
         (exponent > t->box_exponent ? exponent : t->box_exponent) +
-        (blend->part_q30 < 0 ? 2 : 0);
+        (blend->part_q30 < 0 ? BEYOND : 0);
     const int far = set_moves(blend, box, exponent);
 
     for (int k = 0; k < 3; k++)
@@ -177,8 +178,9 @@ static int32_t mix_output(const struct glint_zoom_mix *blend, int kind,
                           int32_t exponent, const struct glint_blend_output *o)
 {
     struct glint_transfer *const t = blend->to;
-    /* a bit of room for what moves */
-    const int32_t e = (exponent > o->exponent ? exponent : o->exponent) + 1;
+    /* a bit of room for what moves, or what going on takes */
+    const int32_t e = (exponent > o->exponent ? exponent : o->exponent) +
+                      (blend->part_q30 < 0 ? BEYOND : 1);
     int32_t more[ROWS][GLINT_TABLE_WIDTH];
     const int moves = find_moved(blend, kind, exponent, o, e, more);
 

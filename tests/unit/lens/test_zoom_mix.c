@@ -6,6 +6,7 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -282,6 +283,11 @@ struct part {
     int annulus;
 };
 
+static bool is_dark(double sensor)
+{
+    return !(sensor < 0 || sensor > 0);
+}
+
 /* Opens a model of the N ghosts and parts at M; energies are 1/4. */
 static struct glint_lens open_parts(struct model_image *m,
                                     const struct part *part, uint32_t n)
@@ -295,8 +301,8 @@ static struct glint_lens open_parts(struct model_image *m,
     for (uint32_t k = 0; k < n; k++) {
         ghost[k] =
             (struct glint_model_ghost){(uint8_t)part[k].i, (uint8_t)part[k].j,
-                                       n_systems, part[k].sensor > 0};
-        if (part[k].sensor <= 0)
+                                       n_systems, !is_dark(part[k].sensor)};
+        if (is_dark(part[k].sensor))
             continue;
         s[n_systems] = put(m, part[k].sensor, 0.25, 0, NULL, 0);
         s[n_systems++].annulus = (uint8_t)part[k].annulus;
@@ -314,8 +320,8 @@ static void shows(int g, double part, double sensor, double energy)
     glint_zoom_set(&zoom, (int32_t)ldexp(part, 30));
     assert_int_equal(
         glint_transfer_init(&mixed, &zoom.lens, g, 0, MODEL_WAVE_LO_Q24),
-        sensor > 0);
-    if (sensor <= 0)
+        !is_dark(sensor));
+    if (is_dark(sensor))
         return;
     is(GLINT_OUT_SENSOR_X, 1, 0, sensor);
     is(GLINT_OUT_ENERGY, 0, 0, energy);
@@ -360,22 +366,29 @@ static void ghosts_fade(void **state)
     forget(at);
 }
 
+/* Joins models of two ghosts each, at the ends and in the middle. */
+static void join_three(struct model_image at[3], const struct part part[3][2])
+{
+    static const int32_t along_q30[3] = {0, ONE / 2, ONE};
+    struct glint_lens lens[3];
+    const char *reason = "";
+
+    for (int k = 0; k < 3; k++)
+        lens[k] = open_parts(&at[k], part[k], 2);
+    if (glint_zoom_join(&zoom, lens, along_q30, 3, &reason) != GLINT_OK)
+        fail_msg("%s", reason);
+}
+
 /* Where two positions show how it goes on, it does so into the dark one. */
 static void ghosts_go_on(void **state)
 {
     const struct part part[3][2] = {{{0, 1, 0.5, 0}, {0, 2, 0, 0}},
                                     {{0, 1, 0.4, 0}, {0, 2, 0.25, 0}},
                                     {{0, 1, 0, 0}, {0, 2, 0.5, 0}}};
-    static const int32_t along_q30[3] = {0, ONE / 2, ONE};
     struct model_image at[3];
-    struct glint_lens lens[3];
-    const char *reason = "";
 
     (void)state;
-    for (int k = 0; k < 3; k++)
-        lens[k] = open_parts(&at[k], part[k], 2);
-    if (glint_zoom_join(&zoom, lens, along_q30, 3, &reason) != GLINT_OK)
-        fail_msg("%s", reason);
+    join_three(at, part);
     shows(0, 0.25, 0.45, 0.25);
     shows(0, 0.5, 0.4, 0.25);
     shows(0, 0.75, 0.35, 0.25);
@@ -383,6 +396,30 @@ static void ghosts_go_on(void **state)
     shows(1, 0.375, 0.1875, 0.25);
     shows(1, 0.125, 0.0625, 0.25);
     shows(1, 0, 0, 0);
+    for (int k = 0; k < 3; k++)
+        free(at[k].data);
+}
+
+/* Sums of magnitudes stay below 2^30, which vectors and heads rely on, also
+ * where a ghost goes on to three times the largest that a model may have. */
+static void going_on_stays_small(void **state)
+{
+    const struct part part[3][2] = {{{0, 1, -3.9, 0}, {0, 2, 0.5, 0}},
+                                    {{0, 1, 3.9, 0}, {0, 2, 0.5, 0}},
+                                    {{0, 1, 0, 0}, {0, 2, 0.5, 0}}};
+    struct model_image at[3];
+
+    (void)state;
+    join_three(at, part);
+    shows(0, 0.96875, 3 * 3.9 - 2 * 3.9 / 16, 0.25);
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
+        int64_t sum = 0;
+
+        for (int b = 0; b <= GLINT_MAX_POWER; b++)
+            for (int a = 0; a < GLINT_TABLE_WIDTH; a++)
+                sum += llabs((long long)mixed.of.table[kind][b][a]);
+        assert_true(!(mixed.outputs >> kind & 1) || sum < ONE);
+    }
     for (int k = 0; k < 3; k++)
         free(at[k].data);
 }
@@ -471,6 +508,7 @@ int main(void)
         cmocka_unit_test(boxes_move),
         cmocka_unit_test(ghosts_fade),
         cmocka_unit_test(ghosts_go_on),
+        cmocka_unit_test(going_on_stays_small),
         cmocka_unit_test(parts_go_with_their_ghost),
         cmocka_unit_test(numbers_are_in_proportion),
     };
