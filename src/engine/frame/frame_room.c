@@ -176,7 +176,6 @@ bool glint_frame_is_served(struct glint_frame *f,
                            const struct glint_flare_stats *s)
 {
     struct glint_flare_config *c = &f->cfg;
-
     const int bundles = bundles_within(f, s->need_bundles);
 
     if (f->is_full)
@@ -213,12 +212,15 @@ enum glint_status glint_frame_regrow(struct glint_frame *f)
         bytes = glint_flare_bytes(&f->cfg);
     }
 
-    free(f->mem);
-    f->bytes = 0;
-    f->block = glint_block_take(bytes, &f->mem);
-    if (!f->block)
-        return GLINT_E_MEMORY;
-    f->bytes = bytes;
+    /* Frames of a video that are all drawn coarser keep theirs. */
+    if (!f->block || f->bytes != bytes) {
+        free(f->mem);
+        f->bytes = 0;
+        f->block = glint_block_take(bytes, &f->mem);
+        if (!f->block)
+            return GLINT_E_MEMORY;
+        f->bytes = bytes;
+    }
     return glint_flare_init(&f->flare, &f->cfg, f->block, bytes);
 }
 

@@ -235,7 +235,7 @@ static void test_bounds(void **state)
 }
 
 /* What would take too much memory must be drawn by coarser grids, all of it,
- * say so, and come out the same again. */
+ * say so, and come out the same again, in the same memory. */
 static void test_tight(void **state)
 {
     static uint8_t want[BYTES], got[BYTES], coarse[BYTES];
@@ -256,7 +256,9 @@ static void test_tight(void **state)
     assert_int_equal(held.ghosts, full.ghosts);
     assert_true(held.stats.primitives < full.stats.primitives);
     assert_int_equal(frame.dials.fineness, 64);
+    n_asked = 0;
     draw(&frame, N_LAMPS, got, &held);
+    assert_int_equal(n_asked, 0);
     assert_memory_equal(got, coarse, BYTES);
     frame.most_bytes = 0;
     draw(&frame, N_LAMPS, got, &held);
