@@ -146,10 +146,25 @@ static void angle_job(void *ctx, int job, int worker)
 static const double degrees[GLINT_BRIGHTNESS_ANGLES] = {0,  3,  6,  9,  12, 15,
                                                         18, 22, 27, 34, 45};
 
-void glint_brightness_sines(struct glint_brightness *brightness)
+int glint_brightness_angles(struct glint_brightness *brightness, double max_deg)
 {
+    int n = 2;
+
     for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++)
         brightness->sine[k] = glint_sin_deg(degrees[k]);
+    while (n < GLINT_BRIGHTNESS_ANGLES && degrees[n - 1] <= max_deg)
+        n++;
+    return n;
+}
+
+void glint_brightness_picture(const struct glint_prescription *lens,
+                              double field_mm, double half_mm[2])
+{
+    const double scale =
+        field_mm / (1.1 * hypot(lens->film_width_mm, lens->film_height_mm));
+
+    half_mm[0] = scale * lens->film_width_mm;
+    half_mm[1] = scale * lens->film_height_mm;
 }
 
 enum glint_status glint_brightness_find(struct glint_brightness *brightness,
@@ -158,25 +173,17 @@ enum glint_status glint_brightness_find(struct glint_brightness *brightness,
                                         const double band_nm[2],
                                         struct glint_workers *workers)
 {
-    const struct glint_prescription *lens = setup->lens;
-    const double scale =
-        field_mm / (1.1 * hypot(lens->film_width_mm, lens->film_height_mm));
-    struct task t = {
-        brightness,
-        setup,
-        field_mm,
-        0.5 * (band_nm[0] + band_nm[1]),
-        {scale * lens->film_width_mm, scale * lens->film_height_mm},
-        {GLINT_OK}};
-    int n = 2;
+    const int n = glint_brightness_angles(brightness, max_deg);
+    struct task t = {.out = brightness,
+                     .setup = setup,
+                     .field_mm = field_mm,
+                     .nm = 0.5 * (band_nm[0] + band_nm[1])};
 
-    glint_brightness_sines(brightness);
+    glint_brightness_picture(setup->lens, field_mm, t.half_mm);
     for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++)
         brightness->level[k] = 0;
-    while (n < GLINT_BRIGHTNESS_ANGLES && degrees[n - 1] <= max_deg)
-        n++;
     glint_workers_run(workers, n, angle_job, &t);
-    for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++)
+    for (int k = 0; k < n; k++)
         if (t.status[k] != GLINT_OK)
             return t.status[k];
     return GLINT_OK;

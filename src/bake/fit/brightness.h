@@ -20,12 +20,19 @@ enum { GLINT_BRIGHTNESS_ANGLES = 11 };
 
 struct glint_brightness {
     double sine[GLINT_BRIGHTNESS_ANGLES];
-    double level[GLINT_BRIGHTNESS_ANGLES]; /* energy times pupil area over
-                                              sensor area; 0: no light */
+    /* Energy times pupil area over sensor area; without light 0, or HUGE_VAL of
+     * lenses that are not round. */
+    double level[GLINT_BRIGHTNESS_ANGLES];
 };
 
-/* Sets the angles. */
-void glint_brightness_sines(struct glint_brightness *brightness);
+/* Sets the angles; returns how many of them angles up to MAX_DEG need. */
+int glint_brightness_angles(struct glint_brightness *brightness,
+                            double max_deg);
+
+/* Sets HALF_MM to half the width and height of the picture that a field of
+ * FIELD_MM holds. */
+void glint_brightness_picture(const struct glint_prescription *lens,
+                              double field_mm, double half_mm[2]);
 
 /* Finds the levels that angles up to MAX_DEG need; they do not depend on
  * WORKERS. GLINT_E_MEMORY. */

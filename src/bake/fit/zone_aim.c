@@ -156,11 +156,11 @@ struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
     const struct glint_tolerance *t = tolerance;
     double thin[2];
     const double share = share_of(t, zone, rays, thin);
-    const double shows = fmax(1, pow(fmax(share, 1e-9), -0.42));
+    const double faint = pow(fmax(share, 1e-9), -0.42);
+    const double shows = fmax(1, faint);
     const double ease = fmin(t->ease, shows);
     const double axis = zone->lo <= 0 ? t->axis : 1;
-    const double bright =
-        zone->skew ? fmax(CLIPPED, fmin(1, pow(fmax(share, 1e-9), -0.42))) : 1;
+    const double bright = zone->skew ? fmax(CLIPPED, fmin(1, faint)) : 1;
     struct glint_zone_aim aim = {
         .sensor_mm =
             bright * axis * fmin(ease * t->sensor_mm, t->faint_sensor_mm),

@@ -65,7 +65,7 @@ static double weight_past_field(const struct fit *f, double fields)
 /* Sets the light of the rays; of round lenses of spheres, 1. */
 static void find_light(struct fit *f)
 {
-    if (f->task->visible->shaped || f->task->zone->skew)
+    if (glint_zone_by_light(f->task->zone, f->task->visible))
         glint_zone_aim_light(f->task->tolerance, f->task->zone, f->aim,
                              &f->buffers->rays, f->buffers->light);
     else
@@ -403,7 +403,7 @@ static void check_zone(struct fit *f, const struct glint_fitted_system *system)
 {
     struct glint_zone_errors *const e = f->errors;
     const bool shaped = f->task->visible->shaped;
-    const bool by_light = shaped || f->task->zone->skew;
+    const bool by_light = glint_zone_by_light(f->task->zone, f->task->visible);
 
     glint_zone_check(f->task->zone, f->task->visible, &f->buffers->rays);
     find_light(f);

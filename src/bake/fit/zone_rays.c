@@ -277,7 +277,7 @@ void glint_zone_check(const struct glint_zone *zone,
                       struct glint_zone_rays *rays)
 {
     enum { BUNDLES = 24, RAYS = 16, IN_THREES = 10 };
-    const int group = visible->shaped || zone->skew ? 3 : 1;
+    const int group = glint_zone_by_light(zone, visible) ? 3 : 1;
     const int places = group == 3 ? IN_THREES : RAYS;
     double x[GLINT_VARIABLES], bundle[GLINT_VARIABLES];
     struct glint_path path;

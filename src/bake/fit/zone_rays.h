@@ -88,10 +88,18 @@ void glint_zone_trace(const struct glint_zone *zone,
                       struct glint_zone_rays *rays,
                       struct glint_zone_rays *energies);
 
+/* Returns whether errors of rays of ZONE weigh as much as their light, which
+ * neighbours tell. */
+static inline bool glint_zone_by_light(const struct glint_zone *zone,
+                                       const struct glint_visible *visible)
+{
+    return visible->shaped || zone->skew;
+}
+
 /* Sets RAYS to scattered rays of the zone, at angles and wavelengths between
- * those that were fitted, without barrels. Deterministic. Where VISIBLE is
- * shaped they come in threes, the middle one with a neighbour across and one
- * along; of a skew zone that is the only one of them. */
+ * those that were fitted, without barrels. Deterministic. Where light weighs
+ * they come in threes, the middle one with a neighbour across and one along; of
+ * a skew zone that is the only one of them. */
 void glint_zone_check(const struct glint_zone *zone,
                       const struct glint_visible *visible,
                       struct glint_zone_rays *rays);

@@ -178,21 +178,17 @@ glint_skew_brightness_find(struct glint_brightness *brightness,
                            double max_deg, const double band_nm[2],
                            struct glint_workers *workers)
 {
-    const struct glint_prescription *lens = setup->lens;
-    const double scale =
-        field_mm / (1.1 * hypot(lens->film_width_mm, lens->film_height_mm));
     const bool quarter =
-        glint_skew_mirrors(lens) == (GLINT_MIRRORS_X | GLINT_MIRRORS_Y);
-    struct task t = {
-        .out = brightness,
-        .setup = setup,
-        .field_mm = field_mm,
-        .half_mm = {scale * lens->film_width_mm, scale * lens->film_height_mm},
-        .pixel_mm = 2 * scale * lens->film_width_mm / 1920,
-        .n_azimuths = quarter ? 3 : 6,
-        .turns = quarter ? 0.125 : 1 / 6.0};
-    int n = 0; /* number of angles up to MAX_DEG, and one more */
+        glint_skew_mirrors(setup->lens) == (GLINT_MIRRORS_X | GLINT_MIRRORS_Y);
+    struct task t = {.out = brightness,
+                     .setup = setup,
+                     .field_mm = field_mm,
+                     .n_azimuths = quarter ? 3 : 6,
+                     .turns = quarter ? 0.125 : 1 / 6.0};
+    const int n = glint_brightness_angles(brightness, max_deg);
 
+    glint_brightness_picture(setup->lens, field_mm, t.half_mm);
+    t.pixel_mm = 2 * t.half_mm[0] / 1920;
     for (int k = 0; k < WAVES; k++) {
         /* The middle one first. */
         const double node = (k + 1) % WAVES - 1.0;
@@ -200,11 +196,8 @@ glint_skew_brightness_find(struct glint_brightness *brightness,
 
         t.nm[k] = pow(0.5 * (lo + hi) + 0.433 * node * (hi - lo), -0.5);
     }
-    glint_brightness_sines(brightness);
-    for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++) {
+    for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++)
         brightness->level[k] = HUGE_VAL;
-        n += k == 0 || brightness->sine[k - 1] <= glint_sin_deg(max_deg);
-    }
     glint_workers_run(workers, n, angle_job, &t);
     for (int k = 0; k < n; k++)
         if (t.status[k] != GLINT_OK)

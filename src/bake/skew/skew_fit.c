@@ -109,6 +109,13 @@ void glint_skew_work(const struct glint_prescription *lens, int n_ghosts,
                        pow(tolerance, -0.7);
 }
 
+static struct glint_directions patch_of(const struct glint_skew_piece *p)
+{
+    const struct glint_zone *const z = &p->zone;
+
+    return (struct glint_directions){z->lo, z->hi, z->y_lo, z->y_hi};
+}
+
 static double wide(const struct glint_skew_piece *p)
 {
     return p->zone.hi - p->zone.lo;
@@ -208,8 +215,7 @@ static enum glint_status fit_zone(struct fitter *f,
 static bool find_box(struct fitter *f, struct glint_skew_piece *p,
                      const struct glint_visible *band, struct attempt *a)
 {
-    const struct glint_directions patch = {p->zone.lo, p->zone.hi, p->zone.y_lo,
-                                           p->zone.y_hi};
+    const struct glint_directions patch = patch_of(p);
     const struct glint_zone within = p->zone;
 
     if (p->parts > 0) {
@@ -345,8 +351,7 @@ static enum glint_status fit_patch(struct fitter *f,
 
     for (int n = 1; n > 0 && status == GLINT_OK;) {
         struct glint_skew_piece p = stack[--n];
-        const struct glint_directions at = {p.zone.lo, p.zone.hi, p.zone.y_lo,
-                                            p.zone.y_hi};
+        const struct glint_directions at = patch_of(&p);
         struct glint_fitted_system system = {.ghost = f->visible->ghost};
         struct attempt a = {.dark = true};
         int next = KEEP;
