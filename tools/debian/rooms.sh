@@ -24,7 +24,8 @@ room() {
         local how=(--variant=apt)
         [ "$arch" != "$(dpkg --print-architecture)" ] || how=(--variant=buildd --include=debhelper)
         echo "a clean Debian for $arch, once" >&2
-        mmdebstrap --mode=root "--arch=$arch" "${how[@]}" --dpkgopt=force-unsafe-io \
+        rm -rf "$packed.part" # of a run that was ended, perhaps a folder
+        mmdebstrap --mode=root --format=tar "--arch=$arch" "${how[@]}" --dpkgopt=force-unsafe-io \
             --aptopt='Acquire::Retries 3' $suite "$packed.part" "$mirror" >"$kept/base-$arch.log" 2>&1 ||
             { tail -n 5 "$kept/base-$arch.log" >&2; return 1; }
         mv "$packed.part" "$packed"
