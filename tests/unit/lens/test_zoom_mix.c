@@ -34,13 +34,16 @@ static int32_t q28(double x)
 /* Heads of both positions, and roots, of energies. */
 static uint8_t head[2], roots;
 
+/* Where boxes lie, in units of 2^-20. */
+static int32_t box_middle;
+
 /* Returns a system with N barrels; sensor x is SENSOR u, mm, and energy is
  * ENERGY, squared if there are roots. */
 static struct glint_model_system put(struct model_image *m, double sensor,
                                      double energy, uint8_t head_bits,
                                      const struct barrel *barrel, uint32_t n)
 {
-    static const int32_t box[3] = {0, 1 << 22, 1 << 22};
+    const int32_t box[3] = {box_middle, 1 << 22, 1 << 22};
     struct model_polynomial p[5 + MOST] = {
         {GLINT_OUT_SENSOR_X, 1, EXPONENT, {P(1, 0)}, {{q28(sensor)}}},
         {GLINT_OUT_SENSOR_Y, 1, EXPONENT, {P(0, 1)}, {{1 << 27}}},
@@ -313,138 +316,183 @@ static struct glint_lens open_parts(struct model_image *m,
 
 static struct glint_zoom_lens zoom;
 
-/* Asserts that ghost G at PART of the way has sensor x = SENSOR u and ENERGY;
- * 0: that it is dark. */
-static void shows(int g, double part, double sensor, double energy)
+/* What is seen of a ghost at PART of the way: sensor x = SENSOR u and ENERGY,
+ * or if SENSOR is 0 that it is dark. */
+struct sight {
+    int ghost;
+    double part, sensor, energy;
+};
+
+static void shows(const struct sight *sight, size_t n)
 {
-    glint_zoom_set(&zoom, (int32_t)ldexp(part, 30));
-    assert_int_equal(
-        glint_transfer_init(&mixed, &zoom.lens, g, 0, MODEL_WAVE_LO_Q24),
-        !is_dark(sensor));
-    if (is_dark(sensor))
-        return;
-    is(GLINT_OUT_SENSOR_X, 1, 0, sensor);
-    is(GLINT_OUT_ENERGY, 0, 0, energy);
+    for (const struct sight *s = sight; s < sight + n; s++) {
+        glint_zoom_set(&zoom, (int32_t)ldexp(s->part, 30));
+        if (glint_transfer_init(&mixed, &zoom.lens, s->ghost, 0,
+                                MODEL_WAVE_LO_Q24) == is_dark(s->sensor))
+            fail_msg("ghost %d at %g is %s", s->ghost, s->part,
+                     is_dark(s->sensor) ? "not dark" : "dark");
+        if (is_dark(s->sensor))
+            continue;
+        is(GLINT_OUT_SENSOR_X, 1, 0, s->sensor);
+        is(GLINT_OUT_ENERGY, 0, 0, s->energy);
+    }
 }
 
-/* Joins models of A and B. */
-static void join(struct model_image at[2], const struct part *a, uint32_t n_a,
-                 const struct part *b, uint32_t n_b)
+#define SHOWS(sights) shows(sights, sizeof(sights) / sizeof *(sights))
+
+/* How far along the way a position is, its ghosts and parts, and where their
+ * boxes lie. */
+struct position {
+    double along;
+    const struct part *part;
+    uint32_t n;
+    int32_t middle;
+};
+
+enum { MOST_POSITIONS = 3 };
+
+static void join(struct model_image at[MOST_POSITIONS],
+                 const struct position *position, int n)
 {
-    static const int32_t along_q30[2] = {0, ONE};
-    const struct glint_lens lens[2] = {open_parts(&at[0], a, n_a),
-                                       open_parts(&at[1], b, n_b)};
+    int32_t along_q30[MOST_POSITIONS];
+    struct glint_lens lens[MOST_POSITIONS];
     const char *reason = "";
 
-    if (glint_zoom_join(&zoom, lens, along_q30, 2, &reason) != GLINT_OK)
+    for (int k = 0; k < n; k++) {
+        along_q30[k] = (int32_t)ldexp(position[k].along, 30);
+        box_middle = position[k].middle;
+        lens[k] = open_parts(&at[k], position[k].part, position[k].n);
+    }
+    box_middle = 0;
+    if (glint_zoom_join(&zoom, lens, along_q30, n, &reason) != GLINT_OK)
         fail_msg("%s", reason);
 }
 
-static void forget(struct model_image at[2])
+static void forget(const struct model_image *at, int n)
 {
-    free(at[0].data);
-    free(at[1].data);
+    for (int k = 0; k < n; k++)
+        free(at[k].data);
 }
 
 /* Where one side is dark, the other fades. */
 static void ghosts_fade(void **state)
 {
-    const struct part a[] = {{0, 1, 0.5, 0}, {0, 2, 0, 0}};
-    const struct part b[] = {{0, 1, 0, 0}, {0, 2, 0.75, 0}};
-    struct model_image at[2];
+    static const struct part a[] = {{0, 1, 0.5, 0}, {0, 2, 0, 0}};
+    static const struct part b[] = {{0, 1, 0, 0}, {0, 2, 0.75, 0}};
+    static const struct position both[] = {{0, a, 2, 0}, {1, b, 2, 0}};
+    static const struct sight sights[] = {{0, 0, 0.5, 0.25},
+                                          {0, 0.25, 0.5, 0.1875},
+                                          {0, 0.75, 0.5, 0.0625},
+                                          {0, 1, 0, 0},
+                                          {1, 0, 0, 0},
+                                          {1, 0.25, 0.75, 0.0625},
+                                          {1, 0.75, 0.75, 0.1875},
+                                          {1, 1, 0.75, 0.25}};
+    struct model_image at[MOST_POSITIONS];
 
     (void)state;
-    join(at, a, 2, b, 2);
-    shows(0, 0, 0.5, 0.25);
-    shows(0, 0.25, 0.5, 0.1875);
-    shows(0, 0.75, 0.5, 0.0625);
-    shows(0, 1, 0, 0);
-    shows(1, 0, 0, 0);
-    shows(1, 0.25, 0.75, 0.0625);
-    shows(1, 0.75, 0.75, 0.1875);
-    shows(1, 1, 0.75, 0.25);
-    forget(at);
-}
-
-/* Joins models of two ghosts each, at the ends and in the middle. */
-static void join_three(struct model_image at[3], const struct part part[3][2])
-{
-    static const int32_t along_q30[3] = {0, ONE / 2, ONE};
-    struct glint_lens lens[3];
-    const char *reason = "";
-
-    for (int k = 0; k < 3; k++)
-        lens[k] = open_parts(&at[k], part[k], 2);
-    if (glint_zoom_join(&zoom, lens, along_q30, 3, &reason) != GLINT_OK)
-        fail_msg("%s", reason);
+    join(at, both, 2);
+    SHOWS(sights);
+    forget(at, 2);
 }
 
 /* Where two positions show how it goes on, it does so into the dark one. */
 static void ghosts_go_on(void **state)
 {
-    const struct part part[3][2] = {{{0, 1, 0.5, 0}, {0, 2, 0, 0}},
-                                    {{0, 1, 0.4, 0}, {0, 2, 0.25, 0}},
-                                    {{0, 1, 0, 0}, {0, 2, 0.5, 0}}};
-    struct model_image at[3];
+    static const struct part a[] = {{0, 1, 0.5, 0}, {0, 2, 0, 0}};
+    static const struct part b[] = {{0, 1, 0.4, 0}, {0, 2, 0.25, 0}};
+    static const struct part c[] = {{0, 1, 0, 0}, {0, 2, 0.5, 0}};
+    static const struct position all[] = {
+        {0, a, 2, 0}, {0.5, b, 2, 0}, {1, c, 2, 0}};
+    static const struct sight sights[] = {{0, 0.25, 0.45, 0.25},
+                                          {0, 0.5, 0.4, 0.25},
+                                          {0, 0.75, 0.35, 0.25},
+                                          {0, 1, 0, 0},
+                                          {1, 0.375, 0.1875, 0.25},
+                                          {1, 0.125, 0.0625, 0.25},
+                                          {1, 0, 0, 0}};
+    struct model_image at[MOST_POSITIONS];
 
     (void)state;
-    join_three(at, part);
-    shows(0, 0.25, 0.45, 0.25);
-    shows(0, 0.5, 0.4, 0.25);
-    shows(0, 0.75, 0.35, 0.25);
-    shows(0, 1, 0, 0);
-    shows(1, 0.375, 0.1875, 0.25);
-    shows(1, 0.125, 0.0625, 0.25);
-    shows(1, 0, 0, 0);
-    for (int k = 0; k < 3; k++)
-        free(at[k].data);
+    join(at, all, 3);
+    SHOWS(sights);
+    forget(at, 3);
+}
+
+/* It does not where that would be for more than the way between both, nor with
+ * parts, whose number may change, nor where boxes lie too far apart. */
+static void ghosts_that_cannot_go_on(void **state)
+{
+    static const struct part a[] = {
+        {0, 1, 0.5, 0}, {0, 2, 0.5, 0}, {0, 1, 0.5, 0}};
+    static const struct part b[] = {
+        {0, 1, 0.4, 0}, {0, 2, 0.5, 0}, {0, 1, 0.5, 0}};
+    static const struct part c[] = {{0, 1, 0, 0}, {0, 2, 0.5, 0}, {0, 1, 0, 0}};
+    static const struct position all[][3] = {
+        {{0, a, 2, 0}, {0.4, b, 2, 0}, {1, c, 2, 0}},
+        {{0, a, 3, 0}, {0.5, b, 3, 0}, {1, c, 3, 0}},
+        {{0, a, 2, 3 << 20}, {0.5, b, 2, 0}, {1, c, 2, 0}}};
+    static const struct sight half[] = {
+        {0, 0.7, 0.4, 0.125}, {0, 0.75, 0.4, 0.125}, {0, 0.75, 0.4, 0.125}};
+
+    (void)state;
+    for (int t = 0; t < 3; t++) {
+        struct model_image at[MOST_POSITIONS];
+
+        join(at, all[t], 3);
+        shows(&half[t], 1);
+        forget(at, 3);
+    }
 }
 
 /* Sums of magnitudes stay below 2^30, which vectors and heads rely on, also
  * where a ghost goes on to three times the largest that a model may have. */
 static void going_on_stays_small(void **state)
 {
-    const struct part part[3][2] = {{{0, 1, -3.9, 0}, {0, 2, 0.5, 0}},
-                                    {{0, 1, 3.9, 0}, {0, 2, 0.5, 0}},
-                                    {{0, 1, 0, 0}, {0, 2, 0.5, 0}}};
-    struct model_image at[3];
+    static const struct part a[] = {{0, 1, -3.9, 0}, {0, 2, 0.5, 0}};
+    static const struct part b[] = {{0, 1, 3.9, 0}, {0, 2, 0.5, 0}};
+    static const struct part c[] = {{0, 1, 0, 0}, {0, 2, 0.5, 0}};
+    static const struct position all[] = {
+        {0, a, 2, 0}, {0.5, b, 2, 0}, {1, c, 2, 0}};
+    static const struct sight sights[] = {
+        {0, 0.96875, 3 * 3.9 - 2 * 3.9 / 16, 0.25}};
+    struct model_image at[MOST_POSITIONS];
 
     (void)state;
-    join_three(at, part);
-    shows(0, 0.96875, 3 * 3.9 - 2 * 3.9 / 16, 0.25);
+    join(at, all, 3);
+    SHOWS(sights);
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
         int64_t sum = 0;
 
-        for (int b = 0; b <= GLINT_MAX_POWER; b++)
-            for (int a = 0; a < GLINT_TABLE_WIDTH; a++)
-                sum += llabs((long long)mixed.of.table[kind][b][a]);
+        for (int y = 0; y <= GLINT_MAX_POWER; y++)
+            for (int x = 0; x < GLINT_TABLE_WIDTH; x++)
+                sum += llabs((long long)mixed.of.table[kind][y][x]);
         assert_true(!(mixed.outputs >> kind & 1) || sum < ONE);
     }
-    for (int k = 0; k < 3; k++)
-        free(at[k].data);
+    forget(at, 3);
 }
 
 /* Where both divide the pupil otherwise, the nearer one is drawn; parts are
  * mixed with those of the same ghost, wherever these stand. */
 static void parts_go_with_their_ghost(void **state)
 {
-    const struct part a[] = {{0, 1, 0.5, 0}, {0, 2, 0.25, 0}, {0, 2, 0.375, 0}};
-    const struct part b[] = {
+    static const struct part a[] = {
+        {0, 1, 0.5, 0}, {0, 2, 0.25, 0}, {0, 2, 0.375, 0}};
+    static const struct part b[] = {
         {0, 1, 0.75, 1}, {0, 2, 0.5, 0}, {0, 1, 0.125, 0}, {0, 2, 0.875, 0}};
-    struct model_image at[2];
+    static const struct position both[] = {{0, a, 3, 0}, {1, b, 4, 0}};
+    static const struct sight sights[] = {
+        {0, 0.25, 0.5, 0.25}, {0, 0.75, 0.75, 0.25},  {1, 0.25, 0.3125, 0.25},
+        {2, 0.25, 0, 0},      {2, 0.75, 0.125, 0.25}, {3, 0.25, 0.5, 0.25},
+        {3, 0.75, 0.75, 0.25}};
+    struct model_image at[MOST_POSITIONS];
 
     (void)state;
-    join(at, a, 3, b, 4);
+    join(at, both, 2);
     assert_int_equal(zoom.header.n_ghosts, 4);
     assert_int_equal(zoom.header.n_parts, 2);
-    shows(0, 0.25, 0.5, 0.25);
-    shows(0, 0.75, 0.75, 0.25);
-    shows(1, 0.25, 0.3125, 0.25);
-    shows(2, 0.25, 0, 0);
-    shows(2, 0.75, 0.125, 0.25);
-    shows(3, 0.25, 0.5, 0.25);
-    shows(3, 0.75, 0.75, 0.25);
-    forget(at);
+    SHOWS(sights);
+    forget(at, 2);
 }
 
 static double between(double a, double b)
@@ -455,14 +503,15 @@ static double between(double a, double b)
 /* Numbers of the whole lens go from one to the other, each its own way. */
 static void numbers_are_in_proportion(void **state)
 {
-    const struct part part[] = {{0, 1, 0.5, 0}, {0, 2, 0.25, 0}};
+    static const struct part part[] = {{0, 1, 0.5, 0}, {0, 2, 0.25, 0}};
+    static const struct position both[] = {{0, part, 2, 0}, {1, part, 2, 0}};
     static const double by[2] = {1, 96}; /* of another exponent, too */
-    struct model_image at[2];
+    struct model_image at[MOST_POSITIONS];
     const struct glint_model_header *const z = &zoom.header;
     const char *reason = "";
 
     (void)state;
-    join(at, part, 2, part, 2);
+    join(at, both, 2);
     for (int k = 0; k < 2; k++) {
         struct glint_model_header *const h = model_header(&at[k]);
 
@@ -494,7 +543,7 @@ static void numbers_are_in_proportion(void **state)
         assert_true(glint_real_value(z->stopped_flux[1][i]) ==
                     -(i + 30) * between(96, 1));
     }
-    forget(at);
+    forget(at, 2);
 }
 
 int main(void)
@@ -508,6 +557,7 @@ int main(void)
         cmocka_unit_test(boxes_move),
         cmocka_unit_test(ghosts_fade),
         cmocka_unit_test(ghosts_go_on),
+        cmocka_unit_test(ghosts_that_cannot_go_on),
         cmocka_unit_test(going_on_stays_small),
         cmocka_unit_test(parts_go_with_their_ghost),
         cmocka_unit_test(numbers_are_in_proportion),
