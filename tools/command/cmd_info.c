@@ -163,16 +163,26 @@ static void print_coatings(const struct glint_prescription *l)
     }
 }
 
-static int info_of_model(const struct tool *tool, const char *path)
+static int info_of_model(const struct tool *tool, const char *path,
+                         const struct zoom_option *zoom)
 {
     struct model_file model;
-    const int code = tool_model(tool, path, &model);
+    int code = tool_model(tool, path, &model);
 
     if (code != EXIT_OK)
         return code;
-    model_report_info(tool, &model);
+    if (model.zoom && zoom->is_zoomed)
+        code = tool_usage(
+            tool,
+            "%s is a zoom: info takes no --zoom, it tells of the first "
+            "position",
+            path);
+    else
+        code = zoom_option_of_model(tool, zoom, path);
+    if (code == EXIT_OK)
+        model_report_info(tool, &model);
     model_file_close(&model);
-    return EXIT_OK;
+    return code;
 }
 
 static int info_of_scene(const struct tool *tool, const char *path)
@@ -351,14 +361,13 @@ int cmd_info(int argc, char **argv)
     if (code >= 0)
         return code;
     if (tool_is_model(argv[optind]) &&
-        (coating_of_model(&tool, &asked.coating, argv[optind]) != EXIT_OK ||
-         zoom_option_of_model(&tool, &asked.zoom, argv[optind]) != EXIT_OK))
+        coating_of_model(&tool, &asked.coating, argv[optind]) != EXIT_OK)
         return EXIT_USAGE;
     if (tool_is_model(argv[optind]))
         return asked.f_number != 0
                    ? tool_usage(&tool, "the f-number of a model was "
                                        "chosen when it was baked")
-                   : info_of_model(&tool, argv[optind]);
+                   : info_of_model(&tool, argv[optind], &asked.zoom);
     info = calloc(1, sizeof *info);
     if (!info)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);

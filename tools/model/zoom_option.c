@@ -44,7 +44,7 @@ int zoom_option_of_model(const struct tool *tool,
     if (!option->is_zoomed && !option->is_focused)
         return EXIT_OK;
     return tool_usage(tool,
-                      "%s is a model: where it is zoomed and focused was "
-                      "chosen when it was baked",
-                      path);
+                      "%s is a model: where it is %s was chosen when it was "
+                      "baked",
+                      path, option->is_focused ? "focused" : "zoomed");
 }
