@@ -267,6 +267,53 @@ static void test_tight(void **state)
     glint_frame_finish(&frame);
 }
 
+/* Draws a frame whose memory is limited to BYTES with N workers. */
+static bool is_tight(int n, size_t bytes, uint8_t rgb[BYTES],
+                     struct glint_frame_report *report)
+{
+    struct shuffle shuffle;
+    struct glint_frame frame;
+
+    shuffle_init(&shuffle, n, 7);
+    make_even(&frame, 192);
+    frame.cfg.workers = &shuffle.workers;
+    frame.most_bytes = bytes;
+    draw(&frame, N_LAMPS, rgb, report);
+    glint_frame_finish(&frame);
+    return report->tight;
+}
+
+/* The limit below which grids get coarser must be the same with all numbers of
+ * workers, not less than is needed nor more than uneven shares take, and grids
+ * not coarser than has to be. */
+static void test_tight_edge(void **state)
+{
+    static uint8_t want[BYTES], got[BYTES];
+    struct glint_frame_report full, held;
+    size_t low, high;
+
+    (void)state;
+    assert_false(is_tight(1, 0, want, &full));
+    low = full.need_bytes * 3 / 4;
+    for (high = full.need_bytes * 3 / 2; high - low > high / 10;) {
+        const size_t middle = (low + high) / 2;
+
+        if (is_tight(1, middle, got, &held))
+            low = middle;
+        else
+            high = middle;
+    }
+    assert_true(high >= full.need_bytes);
+    /* Where there is just room, shares may be too uneven, which is counted. */
+    assert_false(is_tight(5, high, got, &held));
+    assert_true(held.stats.dropped_bundles + held.stats.dropped_cells > 0 ||
+                n_different(got, want) == 0);
+    assert_true(is_tight(1, low, want, &held));
+    assert_true(held.stats.primitives > full.stats.primitives / 2);
+    assert_true(is_tight(5, low, got, &held));
+    assert_memory_equal(got, want, BYTES);
+}
+
 /* So must what reserved memory has no room for, with all numbers of workers. */
 static void test_tight_reserved(void **state)
 {
@@ -490,6 +537,7 @@ int main(void)
         cmocka_unit_test(test_too_little),
         cmocka_unit_test(test_bounds),
         cmocka_unit_test(test_tight),
+        cmocka_unit_test(test_tight_edge),
         cmocka_unit_test(test_tight_reserved),
         cmocka_unit_test(test_more_lamps),
         cmocka_unit_test(test_retune),
