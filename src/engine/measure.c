@@ -61,10 +61,9 @@ double glint_measure_exposure(const struct glint_float_image *image)
     return at > 0 ? 1 / at : 1;
 }
 
-/* Returns the sRGB code of X, 0 .. 255, not rounded. */
-static double encode(double x)
+double glint_measure_code(double light)
 {
-    const double v = fmin(1, fmax(0, x));
+    const double v = fmin(1, fmax(0, light));
 
     return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055);
 }
@@ -76,7 +75,8 @@ uint8_t *glint_measure_encode(const struct glint_float_image *image,
     uint8_t *codes = calloc(n, 1);
 
     for (size_t i = 0; codes && i < n; i++)
-        codes[i] = (uint8_t)lrint(encode((double)image->rgb[i] * exposure));
+        codes[i] = (uint8_t)lrint(
+            glint_measure_code((double)image->rgb[i] * exposure));
     return codes;
 }
 
@@ -179,8 +179,9 @@ static double fine_db(const struct glint_float_image *reference,
     double squares = 0;
 
     for (size_t i = 0; i < n; i++) {
-        const double e = encode((double)reference->rgb[i] * m->exposure) -
-                         encode((double)test->rgb[i] * m->exposure * m->factor);
+        const double e =
+            glint_measure_code((double)reference->rgb[i] * m->exposure) -
+            glint_measure_code((double)test->rgb[i] * m->exposure * m->factor);
 
         squares += e * e;
     }

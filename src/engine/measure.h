@@ -30,6 +30,9 @@ struct glint_measure {
  * black picture. */
 double glint_measure_exposure(const struct glint_float_image *image);
 
+/* Returns the sRGB code of LIGHT, 1 being white, 0 .. 255, not rounded. */
+double glint_measure_code(double light);
+
 /* Returns IMAGE times EXPOSURE as sRGB codes, [height][width][3], to be freed;
  * NULL if memory is short. */
 uint8_t *glint_measure_encode(const struct glint_float_image *image,

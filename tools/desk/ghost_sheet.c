@@ -8,6 +8,7 @@
 
 #include "desk/ghost_file.h"
 #include "desk/sheet.h"
+#include "engine/measure.h"
 #include "formats/picture.h"
 #include "posix/output.h"
 
@@ -115,14 +116,6 @@ static double exposure_of(const float *light, size_t n, float *room)
     return shown / (double)room[lit - 1 - lit / 100];
 }
 
-static uint8_t code_of(double light)
-{
-    const double x = fmin(fmax(light, 0), 1);
-
-    return (uint8_t)lrint(
-        255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055));
-}
-
 /* Draws LIGHT times SCALE over SMALL, dimmed, onto TO. */
 static void put(const struct glint_image *to, const struct glint_image *small,
                 const float *light, double scale)
@@ -133,7 +126,8 @@ static void put(const struct glint_image *to, const struct glint_image *small,
 
         for (int x = 0; x < 3 * to->width; x++) {
             const int code =
-                code_of(scale * (double)*light++) + *from++ / DIMMED;
+                (int)lrint(glint_measure_code(scale * (double)*light++)) +
+                *from++ / DIMMED;
 
             *px++ = (uint8_t)(code < 255 ? code : 255);
         }

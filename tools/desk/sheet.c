@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/measure.h"
 #include "overlay/paint.h"
 
 enum { GAP = 8, GROUND = 32 };
@@ -135,13 +136,6 @@ static double light_of(double code)
     return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
 }
 
-static uint8_t code_of(double light)
-{
-    return (uint8_t)lrint(255 * (light <= 0.0031308
-                                     ? 12.92 * light
-                                     : 1.055 * pow(light, 1 / 2.4) - 0.055));
-}
-
 /* Sets PX to the mean light of BIG from (X0, Y0) up to (X1, Y1). */
 static void mean_of(const struct glint_image *big, const double light[256],
                     const int x[2], const int y[2], uint8_t *px)
@@ -157,7 +151,7 @@ static void mean_of(const struct glint_image *big, const double light[256],
             sum[i % 3] += light[*from++];
     }
     for (int c = 0; c < 3; c++)
-        px[c] = code_of(fmin(sum[c] / n, 1));
+        px[c] = (uint8_t)lrint(glint_measure_code(sum[c] / n));
 }
 
 enum glint_status sheet_reduce(struct glint_image *small,

@@ -58,14 +58,6 @@ static enum glint_status draw(struct bay *b, enum glint_pixel_format format,
                             report);
 }
 
-static double code_of(double light)
-{
-    const double held = fmin(fmax(light, 0), 1);
-
-    return 255 * (held <= 0.0031308 ? 12.92 * held
-                                    : 1.055 * pow(held, 1 / 2.4) - 0.055);
-}
-
 /* Sets the codes that all of the light has, as the dials are. */
 static enum glint_status set_exact(struct bay *b)
 {
@@ -79,7 +71,7 @@ static enum glint_status set_exact(struct bay *b)
     if (linear_q20 && b->exact)
         status = draw(b, GLINT_LINEAR_Q20, linear_q20, &report);
     for (size_t i = 0; i < n && status == GLINT_OK; i++)
-        b->exact[i] = (float)code_of(linear_q20[i] * 0x1p-20);
+        b->exact[i] = (float)glint_measure_code(linear_q20[i] * 0x1p-20);
     free(linear_q20);
     return status;
 }

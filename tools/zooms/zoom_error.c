@@ -23,13 +23,6 @@ struct pictures {
     double exposure;
 };
 
-static double encoded(double x)
-{
-    const double v = fmin(1, fmax(0, x));
-
-    return v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055;
-}
-
 /* Returns the mean squared error if the ghost alone was mixed. */
 static double error_of(const struct pictures *p)
 {
@@ -44,8 +37,9 @@ static double error_of(const struct pictures *p)
 
         if (mixed <= 0 && traced <= 0)
             continue;
-        off = encoded(p->exposure * (rest + mixed)) -
-              encoded(p->exposure * (rest + traced));
+        off = (glint_measure_code(p->exposure * (rest + mixed)) -
+               glint_measure_code(p->exposure * (rest + traced))) /
+              255;
         sum += off * off;
     }
     return sum / (double)n;

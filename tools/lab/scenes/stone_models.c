@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/measure.h"
 #include "lab/plots/plot.h"
 #include "lab/report_file.h"
 
@@ -94,10 +95,7 @@ static enum glint_status judge(const struct tool *tool, struct stone_models *m,
 
 static uint8_t code(double light)
 {
-    const double x = light < 0 ? 0 : light > 1 ? 1 : light;
-
-    return (uint8_t)lrint(
-        255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055));
+    return (uint8_t)lrint(glint_measure_code(light));
 }
 
 /* Sets RGB to texel X of a panel: light, difference about grey, error. */
