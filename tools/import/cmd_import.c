@@ -27,7 +27,8 @@ static const char help[] =
     "the table's head.\n"
     "\n"
     "  -o, --output FILE   the .lens, or - for standard output\n"
-    "  --strict            refuse where something would be guessed\n"
+    "  --strict            tell all that would be guessed or left out, and\n"
+    "                      refuse the file if there is any\n"
     "  --format F          zmx, seq, oslo, pbrt, flaresim, realflare, lentil,\n"
     "                      openlensflare, polyflare or opticalbench (default: "
     "by\n"
@@ -160,16 +161,23 @@ static void set_name(char name[GLINT_NAME_BYTES], const char *path)
     name[n] = '\0';
 }
 
+/* Prints all notes, but of what --strict refuses guesses alone. */
 static void print_notes(const struct tool *tool, const struct imported *lens)
 {
-    if (tool->quiet)
+    const bool refused = lens->strict && lens->n_guesses > 0;
+
+    if (tool->quiet && !refused)
         return;
-    for (int k = 0; k < lens->n_notes && k < IMPORT_NOTES; k++)
-        if (lens->note[k].line > 0)
-            fprintf(stderr, "%s:%d: %s\n", lens->file, lens->note[k].line,
-                    lens->note[k].text);
+    for (int k = 0; k < lens->n_notes && k < IMPORT_NOTES; k++) {
+        const struct imported_note *const note = &lens->note[k];
+
+        if (refused && !note->guess)
+            continue;
+        if (note->line > 0)
+            fprintf(stderr, "%s:%d: %s\n", lens->file, note->line, note->text);
         else
-            fprintf(stderr, "%s: %s\n", lens->file, lens->note[k].text);
+            fprintf(stderr, "%s: %s\n", lens->file, note->text);
+    }
     if (lens->n_notes > IMPORT_NOTES)
         fprintf(stderr, "%s: and %d more\n", lens->file,
                 lens->n_notes - IMPORT_NOTES);

@@ -153,8 +153,7 @@ static bool settle_stop(struct imported *lens)
         at = k;
     }
     if (at < 0) {
-        if (!imported_note(lens, 0, "there is no stop: taken at the front"))
-            return false;
+        imported_note(lens, 0, "there is no stop: taken at the front");
         lens->surface[0].stop = true;
         at = 0;
     }
@@ -172,28 +171,28 @@ static double focal(const struct imported *lens)
 }
 
 /* Sets the film to 3 : 2 within the circle that the lens is for. */
-static bool settle_film(struct imported *lens, double focal_units)
+static void settle_film(struct imported *lens, double focal_units)
 {
     double half = lens->height;
 
     if (lens->film_mm[0] > 0)
-        return true;
+        return;
     if (!(half > 0) && lens->field_deg > 0 && lens->field_deg < 80)
         half = fabs(focal_units) * tan(lens->field_deg * 0.017453292519943295);
     half *= lens->unit_mm;
     if (!(half > 0.05)) {
         lens->film_mm[0] = 36;
         lens->film_mm[1] = 24;
-        return imported_note(lens, 0,
-                             "no field is said: film 36x24 mm taken "
-                             "(--film)");
+        imported_note(lens, 0,
+                      "no field is said: film 36x24 mm taken (--film)");
+        return;
     }
     lens->film_mm[0] = 2 * half * 3 / sqrt(13);
     lens->film_mm[1] = 2 * half * 2 / sqrt(13);
-    return imported_note(lens, 0,
-                         "film %.4g x %.4g mm taken, 3:2 within the image of "
-                         "%.4g mm (--film)",
-                         lens->film_mm[0], lens->film_mm[1], 2 * half);
+    imported_note(lens, 0,
+                  "film %.4g x %.4g mm taken, 3:2 within the image of %.4g mm "
+                  "(--film)",
+                  lens->film_mm[0], lens->film_mm[1], 2 * half);
 }
 
 /* ------------------------------------------------------------- openings */
@@ -239,7 +238,7 @@ static bool settle_pupil(struct imported *lens, double focal_units)
 
 /* Sets semi-diameters that are missing to where paraxial rays of the pupil's
  * rim and of the field's end go. */
-static bool settle_semis(struct imported *lens)
+static void settle_semis(struct imported *lens)
 {
     const int stop = stop_of(lens);
     struct thin_ray rim = {.y = lens->pupil / 2}, chief = {.u = 0.01};
@@ -266,23 +265,23 @@ static bool settle_semis(struct imported *lens)
                               (k == stop ? 0 : fabs(field * chief.height[k])));
             n++;
         }
-        if (s->semi < (1 - 1e-5) * least &&
-            !imported_note(lens, s->line,
-                           "the stop's semi-diameter is %.6g mm, f/%.4g needs "
-                           "%.6g: taken",
-                           s->semi * lens->unit_mm, lens->f_number,
-                           least * lens->unit_mm))
-            return false;
+        if (s->semi < (1 - 1e-5) * least)
+            imported_note(lens, s->line,
+                          "the stop's semi-diameter is %.6g mm, f/%.4g needs "
+                          "%.6g: taken",
+                          s->semi * lens->unit_mm, lens->f_number,
+                          least * lens->unit_mm);
         s->semi = fmax(s->semi, least);
     }
-    return n == 0 || imported_note(lens, 0,
-                                   "%d surfaces have no semi-diameter: those "
-                                   "of paraxial rays taken",
-                                   n);
+    if (n > 0)
+        imported_note(lens, 0,
+                      "%d surfaces have no semi-diameter: those of paraxial "
+                      "rays taken",
+                      n);
 }
 
 /* Cuts semi-diameters that reach beyond a sphere or the end of a conic. */
-static bool cut_semis(struct imported *lens)
+static void cut_semis(struct imported *lens)
 {
     for (int k = 0; k < lens->n; k++) {
         struct imported_surface *s = &lens->surface[k];
@@ -291,15 +290,13 @@ static bool cut_semis(struct imported *lens)
                                 : (double)INFINITY;
 
         if (s->radius != 0 && s->semi >= size) {
-            if (!imported_note(lens, s->line,
-                               "semi-diameter %.6g of a surface that ends at "
-                               "%.6g: %.6g taken",
-                               s->semi, size, 0.98 * size))
-                return false;
+            imported_note(lens, s->line,
+                          "semi-diameter %.6g of a surface that ends at "
+                          "%.6g: %.6g taken",
+                          s->semi, size, 0.98 * size);
             s->semi = 0.98 * size;
         }
     }
-    return true;
 }
 
 double imported_gap(const struct imported_surface *s, double h)
@@ -309,7 +306,7 @@ double imported_gap(const struct imported_surface *s, double h)
 
 /* Cuts semi-diameters where neighbours' rims cross, as thin lenses of estimated
  * ones do. */
-static bool part_rims(struct imported *lens)
+static void part_rims(struct imported *lens)
 {
     for (int k = 0; k + 1 < lens->n; k++) {
         struct imported_surface *s = &lens->surface[k];
@@ -327,15 +324,13 @@ static bool part_rims(struct imported *lens)
                 low = middle;
         }
         semi = low / IMPORT_FREE;
-        if (!imported_note(lens, s->line,
-                           "the next surface crosses this at its rim: "
-                           "semi-diameters of %.6g mm taken",
-                           semi * lens->unit_mm))
-            return false;
+        imported_note(lens, s->line,
+                      "the next surface crosses this at its rim: "
+                      "semi-diameters of %.6g mm taken",
+                      semi * lens->unit_mm);
         for (int i = 0; i < 2; i++)
             s[i].semi = fmin(s[i].semi, semi);
     }
-    return true;
 }
 
 static bool settle_focus(struct imported *lens)
@@ -403,18 +398,23 @@ bool imported_complete(struct imported *lens)
         !check_thicknesses(lens) || !settle_stop(lens))
         return false;
     f = focal(lens);
-    if (lens->nominal > 0 && fabs(f / lens->nominal - 1) > 0.02 &&
-        !imported_note(lens, 0,
-                       "its focal length is %.6g mm, not the stated %.6g: "
-                       "there may be a misprint (glint lint)",
-                       f * lens->unit_mm, lens->nominal * lens->unit_mm))
-        return false;
+    if (lens->nominal > 0 && fabs(f / lens->nominal - 1) > 0.02)
+        imported_note(lens, 0,
+                      "its focal length is %.6g mm, not the stated %.6g: "
+                      "there may be a misprint (glint lint)",
+                      f * lens->unit_mm, lens->nominal * lens->unit_mm);
     if (!(f > 0))
         return imported_fail(lens, 0,
                              "focal length is %.6g mm; glint takes lenses "
                              "that form an image",
                              f * lens->unit_mm);
-    return settle_film(lens, f) && settle_pupil(lens, f) &&
-           settle_semis(lens) && cut_semis(lens) && check_front(lens, f) &&
-           part_rims(lens) && settle_focus(lens);
+    settle_film(lens, f);
+    if (!settle_pupil(lens, f))
+        return false;
+    settle_semis(lens);
+    cut_semis(lens);
+    if (!check_front(lens, f))
+        return false;
+    part_rims(lens);
+    return settle_focus(lens);
 }

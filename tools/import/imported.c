@@ -48,13 +48,15 @@ bool imported_fail(struct imported *lens, int line, const char *format, ...)
     return false;
 }
 
-static void add_note(struct imported *lens, int line, const char *format,
-                     va_list values)
+static void add_note(struct imported *lens, int line, bool guess,
+                     const char *format, va_list values)
 {
     const int k = lens->n_notes++;
 
+    lens->n_guesses += guess;
     if (k < IMPORT_NOTES) {
         lens->note[k].line = line;
+        lens->note[k].guess = guess;
         vsnprintf(lens->note[k].text, sizeof lens->note[k].text, format,
                   values);
     }
@@ -65,12 +67,9 @@ bool imported_note(struct imported *lens, int line, const char *format, ...)
     va_list values;
 
     va_start(values, format);
-    if (lens->strict)
-        say(lens, line, format, values);
-    else
-        add_note(lens, line, format, values);
+    add_note(lens, line, true, format, values);
     va_end(values);
-    return !lens->strict;
+    return true;
 }
 
 void imported_tell(struct imported *lens, int line, const char *format, ...)
@@ -78,7 +77,7 @@ void imported_tell(struct imported *lens, int line, const char *format, ...)
     va_list values;
 
     va_start(values, format);
-    add_note(lens, line, format, values);
+    add_note(lens, line, false, format, values);
     va_end(values);
 }
 
@@ -211,11 +210,10 @@ static bool by_numbers(struct imported *lens, struct imported_surface *s)
         /* Schott's line of normal glasses, from K7 to F2. */
         vd = 60.5 - 24.2 * (s->nd - 1.511) / 0.109;
         vd = vd > 70 ? 70 : vd < 22 ? 22 : vd;
-        if (!imported_note(lens, s->line,
-                           "no Abbe number of index %g: %.1f guessed, that of "
-                           "normal glasses",
-                           s->nd, vd))
-            return false;
+        imported_note(lens, s->line,
+                      "no Abbe number of index %g: %.1f guessed, that of "
+                      "normal glasses",
+                      s->nd, vd);
     } else if (!(vd >= 10 && vd <= 150))
         return imported_fail(lens, s->line,
                              "Abbe number %g is not that of a glass", vd);
@@ -232,7 +230,7 @@ static double index_at(const struct glint_glass *glass, double nm)
 }
 
 /* Notes numbers of the file that are not those of its GLASS. */
-static bool check_numbers(struct imported *lens,
+static void check_numbers(struct imported *lens,
                           const struct imported_surface *s,
                           const struct glint_glass *glass)
 {
@@ -240,11 +238,11 @@ static bool check_numbers(struct imported *lens,
     const double vd =
         (nd - 1) / (index_at(glass, LINE_F_NM) - index_at(glass, LINE_C_NM));
 
-    return (fabs(s->nd - nd) < 2e-3 && fabs(s->vd / vd - 1) < 0.02) ||
-           imported_note(lens, s->line,
-                         "index %g and Abbe number %g beside glass %s, which "
-                         "has %.5f and %.2f: those of the glass taken",
-                         s->nd, s->vd, glass->name, nd, vd);
+    if (!(fabs(s->nd - nd) < 2e-3 && fabs(s->vd / vd - 1) < 0.02))
+        imported_note(lens, s->line,
+                      "index %g and Abbe number %g beside glass %s, which "
+                      "has %.5f and %.2f: those of the glass taken",
+                      s->nd, s->vd, glass->name, nd, vd);
 }
 
 static bool settle_medium(struct imported *lens, struct imported_surface *s)
@@ -272,13 +270,13 @@ static bool settle_medium(struct imported *lens, struct imported_surface *s)
             s->glass, glass ? "; did they mean " : "", glass ? glass->name : "",
             glass ? "?" : "");
     }
-    if (succeeds && !imported_note(lens, s->line,
-                                   "glass %s is not in the catalogue: its "
-                                   "successor %s taken",
-                                   s->glass, glass->name))
-        return false;
-    if (has_numbers && !check_numbers(lens, s, glass))
-        return false;
+    if (succeeds)
+        imported_note(lens, s->line,
+                      "glass %s is not in the catalogue: its successor %s "
+                      "taken",
+                      s->glass, glass->name);
+    if (has_numbers)
+        check_numbers(lens, s, glass);
     s->index = index_at(glass, LINE_D_NM);
     snprintf(s->medium, sizeof s->medium, "%s", glass->name);
     return true;

@@ -8,7 +8,7 @@
  *
  * Readers write down what the file says, in its own units; imported_finish()
  * completes it. Whatever is guessed or left out is told by a note with its line
- * number, or under STRICT refused.
+ * number; STRICT refuses at the end, so that one run tells all of it.
  */
 #ifndef GLINT_TOOLS_IMPORT_IMPORTED_H
 #define GLINT_TOOLS_IMPORT_IMPORTED_H
@@ -18,7 +18,7 @@
 
 #include "glint/prescription.h"
 
-enum { IMPORT_SURFACES = 128, IMPORT_NOTES = 64, IMPORT_TEXT = 240 };
+enum { IMPORT_SURFACES = 128, IMPORT_NOTES = 256, IMPORT_TEXT = 240 };
 
 struct imported_surface {
     int line;         /* of the file */
@@ -34,7 +34,8 @@ struct imported_surface {
 };
 
 struct imported_note {
-    int line; /* 0: of the whole file */
+    int line;   /* 0: of the whole file */
+    bool guess; /* STRICT refuses it */
     char text[IMPORT_TEXT];
 };
 
@@ -55,7 +56,7 @@ struct imported {
     int n;
     struct imported_surface surface[IMPORT_SURFACES];
     char error[IMPORT_TEXT + 64]; /* "FILE:LINE: cause" */
-    int n_notes;                  /* also of those that did not fit */
+    int n_notes, n_guesses;       /* also of those that did not fit */
     struct imported_note note[IMPORT_NOTES];
 };
 
@@ -65,7 +66,7 @@ void imported_begin(struct imported *lens, const char *file, bool strict);
  * file. */
 bool imported_fail(struct imported *lens, int line, const char *format, ...);
 
-/* Adds a note. Returns false if it is an error, as under STRICT. */
+/* Adds a note of a guess. Returns true, as reading goes on. */
 bool imported_note(struct imported *lens, int line, const char *format, ...);
 
 /* Adds a note of what changes nothing, which STRICT takes, too. */

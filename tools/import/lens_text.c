@@ -98,6 +98,11 @@ char *imported_finish(struct imported *lens, size_t *bytes)
     if (!imported_complete(lens))
         return NULL;
     imported_sort_notes(lens);
+    if (lens->strict && lens->n_guesses > 0) {
+        imported_fail(lens, 0, "%d guess%s, which --strict refuses",
+                      lens->n_guesses, lens->n_guesses == 1 ? "" : "es");
+        return NULL;
+    }
     file = open_memstream(&text, bytes);
     if (!file) {
         imported_fail(lens, 0, "out of memory");

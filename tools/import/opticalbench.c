@@ -222,11 +222,10 @@ static bool take_asphere(struct optical_bench *b)
         radius = 0;
     else if (!lines_number(b->lens, &b->lines, 1, "radius", &radius))
         return false;
-    if (fabs(radius - s->radius) > 1e-3 * fabs(s->radius) &&
-        !imported_note(b->lens, b->lines.number,
-                       "radius %g, but %g in [lens data], which is taken",
-                       radius, s->radius))
-        return false;
+    if (fabs(radius - s->radius) > 1e-3 * fabs(s->radius))
+        imported_note(b->lens, b->lines.number,
+                      "radius %g, but %g in [lens data], which is taken",
+                      radius, s->radius);
     if (*word(b, 2) &&
         !lines_number(b->lens, &b->lines, 2, "conic", &s->shape.conic))
         return false;
