@@ -389,13 +389,19 @@ void tool_progress_start(struct tool_progress *p, const struct tool *tool,
 {
     p->what = what;
     p->less = p->besides = NULL;
-    p->times = 1;
+    tool_progress_part(p, 0, 1);
     p->started = tool_seconds();
     p->last = 0;
     p->most = 0;
     p->shown = !tool->quiet;
     p->told = false;
     p->is_terminal = isatty(STDERR_FILENO);
+}
+
+void tool_progress_part(struct tool_progress *p, double from, double share)
+{
+    p->from = from;
+    p->share = share;
 }
 
 /* Prints a line every ten seconds, where there is no terminal for a bar. */
@@ -413,7 +419,7 @@ static void show_line(struct tool_progress *p, double now, double done)
 /* Says how long it will take, once, if that is long. */
 static void tell_length(struct tool_progress *p, double spent, double done)
 {
-    const double all = spent / done * p->times, left = all - spent;
+    const double all = spent / done, left = all - spent;
 
     p->told = true;
     if (all < 20)
@@ -431,10 +437,13 @@ void tool_progress_show(void *progress, double done)
 {
     struct tool_progress *p = progress;
     const double now = tool_seconds(), spent = now - p->started;
-    const int width = 30, filled = (int)(fmax(done, p->most) * width);
+    const int width = 30;
     char bar[32];
+    int filled;
 
+    done = p->from + p->share * done;
     p->most = fmax(done, p->most);
+    filled = (int)(p->most * width);
     if (p->shown && !p->told && done > 0)
         tell_length(p, spent, done);
     if (p->shown && !p->is_terminal)

@@ -141,8 +141,7 @@ struct tool_progress {
     const char *less; /* what makes it take less, said where it takes minutes;
                          NULL: nothing */
     const char *besides; /* what is not in that, said likewise; NULL: nothing */
-    int times; /* so many pieces of work like this one are to be done, and how
-                  long it takes is said of all; 1: only this one */
+    double from, share;  /* see tool_progress_part() */
     bool shown, is_terminal;
     bool told; /* how long it takes was said, or is short */
     double started, last;
@@ -151,6 +150,9 @@ struct tool_progress {
 
 void tool_progress_start(struct tool_progress *p, const struct tool *tool,
                          const char *what);
+/* DONE is from now on of the part of the work that begins at FROM and is SHARE
+ * of it; at first of all: 0 and 1. */
+void tool_progress_part(struct tool_progress *p, double from, double share);
 void tool_progress_show(void *progress, double done);
 void tool_progress_end(struct tool_progress *p);
 

@@ -159,19 +159,6 @@ read_source(const struct tool *tool, const char *path,
 
 /* ------------------------------------------------------------------- baking */
 
-/* A part of what is shown as done. */
-struct part {
-    struct tool_progress *progress;
-    double from, length;
-};
-
-static void show(void *ctx, double done)
-{
-    const struct part *s = ctx;
-
-    tool_progress_show(s->progress, s->from + s->length * done);
-}
-
 enum glint_status stone_file_near(const struct glint_scatter_rows *rows,
                                   const struct glint_translucent *stone,
                                   double *db)
@@ -256,17 +243,18 @@ static enum glint_status bake(const struct tool *tool, struct source *s,
                               struct glint_error *error)
 {
     struct tool_progress progress;
-    struct part stage[2] = {{&progress, 0, .6}, {&progress, .6, .4}};
-    const struct glint_watch watch[2] = {{.progress = show, .ctx = &stage[0]},
-                                         {.progress = show, .ctx = &stage[1]}};
+    const struct glint_watch watch = {.progress = tool_progress_show,
+                                      .ctx = &progress};
     struct glint_scatter_rows rows = {.side = 0};
     const clock_t began = clock();
     enum glint_status status;
 
     tool_progress_start(&progress, tool, name);
-    status = make_rows(s, &watch[0], &rows, error);
+    tool_progress_part(&progress, 0, .6);
+    status = make_rows(s, &watch, &rows, error);
     if (status == GLINT_OK) {
-        status = fit_rows(&rows, s, name, &watch[1], file, error);
+        tool_progress_part(&progress, .6, .4);
+        status = fit_rows(&rows, s, name, &watch, file, error);
         glint_scatter_close(&rows);
     }
     tool_progress_end(&progress);

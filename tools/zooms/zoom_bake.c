@@ -47,6 +47,7 @@ struct run {
     const struct zoom_bake *bake;
     struct zoom_baked *baked;
     struct glint_error *error;
+    struct tool_progress progress;  /* of all positions, or of one half-way */
     struct glint_prescription lens; /* at the place in work */
     int n_ghosts, n_places, step;
     double max_deg, start;
@@ -79,27 +80,16 @@ static enum glint_status bake_place(struct run *run, int place, bool whole)
     struct place *const p = &run->place[place];
     struct glint_bake_options options = *run->bake->options;
     struct glint_bake_report report;
-    struct tool_progress progress;
     enum glint_status status = move_to(run, place);
 
     options.ghosts = p->model.ghosts = whole ? NULL : p->ghosts;
     options.workers = run->tool->workers;
     options.progress = tool_progress_show;
-    options.progress_ctx = &progress;
-    tool_progress_start(&progress, run->tool, "bake");
-    if (whole) { /* how long all take is said at the first */
-        progress.times = run->bake->positions;
-        progress.told = place > 0;
-        progress.besides = run->bake->halfway_db > 0
-                               ? " for all positions, and more half-way"
-                               : " for all positions";
-        progress.less = "fewer --positions, a smaller --max-angle or a larger "
-                        "--tolerance";
-    }
+    options.progress_ctx = &run->progress;
     if (status == GLINT_OK)
         status = glint_bake(&run->lens, &options, &p->model.data,
                             &p->model.bytes, &report, run->error);
-    tool_progress_end(&progress);
+    tool_progress_end(&run->progress);
     p->model.along_q30 = (int32_t)lrint(place / (run->n_places - 1.0) * 0x1p30);
     for (int g = 0; g < run->n_ghosts; g++) {
         p->ghosts[g] |= whole;
@@ -260,22 +250,40 @@ static enum glint_status halve(struct run *run, int from)
     n = choose(run, p, &left);
     p->left = run->place[from].left = left;
     note(run, &left, n);
-    return n > 0 ? bake_place(run, middle, false) : GLINT_OK;
+    if (n == 0)
+        return GLINT_OK;
+    tool_progress_start(&run->progress, run->tool, "bake");
+    return bake_place(run, middle, false);
+}
+
+/* Bakes the even positions; how long all take is said at the first. */
+static enum glint_status bake_even(struct run *run)
+{
+    struct tool_progress *const p = &run->progress;
+    const int positions = run->bake->positions;
+    enum glint_status status = GLINT_OK;
+
+    tool_progress_start(p, run->tool, "bake");
+    p->besides = run->bake->halfway_db > 0
+                     ? " for all positions, and more half-way"
+                     : " for all positions";
+    p->less = "fewer --positions, a smaller --max-angle or a larger "
+              "--tolerance";
+    for (int k = 0; k < positions && status == GLINT_OK; k++) {
+        tool_progress_part(p, (double)k / positions, 1.0 / positions);
+        status = bake_place(run, k * run->step, true);
+        if (status == GLINT_OK && !run->tool->quiet)
+            fprintf(stderr, "glint bake: position %d of %d, %.0f s\n", k + 1,
+                    positions, tool_seconds() - run->start);
+    }
+    return status;
 }
 
 /* Bakes the even positions, and halves steps between them. */
 static enum glint_status bake_all(struct run *run)
 {
-    const int first = run->step;
-    enum glint_status status = GLINT_OK;
+    enum glint_status status = bake_even(run);
 
-    for (int k = 0; k < run->n_places && status == GLINT_OK; k += first) {
-        status = bake_place(run, k, true);
-        if (status == GLINT_OK && !run->tool->quiet)
-            fprintf(stderr, "glint bake: position %d of %d, %.0f s\n",
-                    k / first + 1, run->bake->positions,
-                    tool_seconds() - run->start);
-    }
     if (status == GLINT_OK)
         status = join(run);
     for (; run->step >= LAST && run->bake->halfway_db > 0 && status == GLINT_OK;

@@ -59,37 +59,27 @@ static struct stone_model model_of(int i)
     return model;
 }
 
-/* The progress of all models as one. */
-struct share {
-    struct tool_progress shown;
-    int done;
-};
-
-static void progress(void *ctx, double done)
-{
-    struct share *s = ctx;
-
-    tool_progress_show(&s->shown, (s->done + done) / STONE_MODELS);
-}
-
 static enum glint_status judge(const struct tool *tool, struct stone_models *m,
                                struct glint_scatter_rows *rows)
 {
-    struct share share = {.done = 0};
-    const struct glint_watch watch = {progress, NULL, &share};
+    struct tool_progress progress;
+    const struct glint_watch watch = {.progress = tool_progress_show,
+                                      .ctx = &progress};
     enum glint_status status = GLINT_OK;
 
-    tool_progress_start(&share.shown, tool, "report");
-    for (; share.done < STONE_MODELS && status == GLINT_OK; share.done++) {
-        struct stone_model *model = &m->model[share.done];
+    tool_progress_start(&progress, tool, "report");
+    for (int k = 0; k < STONE_MODELS && status == GLINT_OK; k++) {
+        struct stone_model *model = &m->model[k];
 
-        *model = model_of(share.done);
+        *model = model_of(k);
+        tool_progress_part(&progress, (double)k / STONE_MODELS,
+                           1.0 / STONE_MODELS);
         status =
             glint_scatter_judge(rows, &model->asked, &watch, &model->judged);
         if (status == GLINT_OK)
             m->worst = fmax(m->worst, model->judged.largest);
     }
-    tool_progress_end(&share.shown);
+    tool_progress_end(&progress);
     return status;
 }
 
