@@ -18,12 +18,15 @@ static const struct {
 
 enum { N_ENDS = sizeof ends / sizeof *ends };
 
-/* Plastics of phone lenses, from polycarbonate to the densest, have a
- * lower Vd than flints of their nd. */
+/* Plastics of phone lenses have a lower Vd than flints of their nd: from 1.529,
+ * 45.4 by polycarbonate, 1.585, 29.9, to the densest, 1.705, 14.0. */
 static bool is_plastic(double nd, double vd)
 {
-    return nd >= 1.57 && nd <= 1.69 && vd <= 35 &&
-           vd >= 28.5 - (nd - 1.585) * 125;
+    const double slope = nd < 1.585 ? 270 : 125;
+    const double least = 28.5 - (nd - 1.585) * slope;
+
+    return nd >= 1.525 && nd <= 1.71 && vd >= least &&
+           vd <= fmax(least + 6.5, 35);
 }
 
 bool glass_is_known(double nd, double vd, bool moulded)
