@@ -8,8 +8,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "lens_figures/drawing.h"
 #include "lens_figures/measured.h"
+#include "lens_figures/page.h"
 #include "lens_figures/search.h"
 #include "lens_figures/thumbnail.h"
 #include "model/lens_files.h"
@@ -45,7 +45,7 @@ static const char help[] =
     "bytes;\n"
     "                    with what bakes and frames took, by figures.md "
     "beside\n"
-    "                    the tables\n"
+    "                    the tables; it finds by words, and sorts\n"
     "  --rays exact      that page has flares of lenses that are not baked, "
     "too,\n"
     "                    traced for each: seconds to a minute a lens\n"
@@ -181,15 +181,6 @@ static void print_text(struct lenses *l, const char *name,
 
 /* ------------------------------------------------------------------ a page */
 
-static void print_escaped(FILE *file, const char *text)
-{
-    for (; *text; text++)
-        if (strchr("&<>\"", *text))
-            fprintf(file, "&#%d;", *text);
-        else
-            fputc(*text, file);
-}
-
 /* Sets SETTINGS to those by which thumbnails of E are drawn. Three wavelengths
  * and coarse grids do for pictures that small. Returns an exit code. */
 static int set_flares(struct settings *settings, const struct entry *e)
@@ -212,7 +203,8 @@ static void print_flares(struct lenses *l, const char *name,
     size_t bytes = 0;
 
     if (!e->is_baked && !l->exact)
-        fputs("<p>no model yet: one is baked when the lens is first drawn</p>",
+        fputs("<p class=\"less\">no model yet: one is baked when the lens is "
+              "first drawn</p>",
               l->page);
     else if (settings && set_flares(settings, e) == EXIT_OK) {
         fputs("<p>", l->page);
@@ -220,9 +212,12 @@ static void print_flares(struct lenses *l, const char *name,
             EXIT_OK)
             l->code = EXIT_RUNTIME;
         else if (e->is_baked)
-            fprintf(l->page, "<br>model of %zu bytes</p>", bytes);
+            fprintf(l->page, "</p><p class=\"less\">model of %zu bytes</p>",
+                    bytes);
         else
-            fputs("<br>exact rays, as there is no model yet</p>", l->page);
+            fputs("</p><p class=\"less\">exact rays, as there is no model "
+                  "yet</p>",
+                  l->page);
     }
     free(settings);
 }
@@ -232,12 +227,14 @@ static void print_measured(FILE *page, const char *name)
     struct measured m;
 
     if (!measured_find(name, &m))
-        fputs("<p>bake and frame not measured yet</p>", page);
+        fputs("<p class=\"less\">bake and frame not measured yet</p>", page);
     else if (!*m.kb)
-        fprintf(page, "<p>measured for f/%s: bake %s s</p>", m.f_number,
-                m.seconds);
+        fprintf(page, "<p class=\"less\">measured for f/%s: bake %s s</p>",
+                m.f_number, m.seconds);
     else
-        fprintf(page, "<p>measured for f/%s: bake %s s, model %s KB%s%s%s</p>",
+        fprintf(page,
+                "<p class=\"less\">measured for f/%s: bake %s s, model %s "
+                "KB%s%s%s</p>",
                 m.f_number, m.seconds, m.kb, *m.ms ? ", a frame of 1080p " : "",
                 m.ms, *m.ms ? " ms" : "");
 }
@@ -245,31 +242,18 @@ static void print_measured(FILE *page, const char *name)
 static void print_html(struct lenses *l, const char *name,
                        const struct entry *e)
 {
-    struct lens_drawing drawing;
+    const struct page_card card = {.name = name,
+                                   .lens = &e->settings.lens,
+                                   .focal_mm = e->optics.focal_mm,
+                                   .corner_deg = corner_deg(e),
+                                   .n_ghosts = e->n_ghosts};
 
-    drawing_defaults(&drawing, &e->settings.lens);
-    drawing.spots = drawing.title = false;
-    drawing.width_px = 560;
     if (l->n++ == 0)
-        fputs("<!DOCTYPE html><html lang=\"en\"><meta charset=\"utf-8\">"
-              "<title>lenses</title><style>body{font:14px sans-serif;"
-              "margin:2em;display:grid;grid-template-columns:"
-              "repeat(auto-fill,minmax(600px,1fr));gap:1.5em}figure{margin:0;"
-              "border:1px solid #ccc;padding:1em}svg{max-width:100%;"
-              "height:auto}img{margin-right:6px}p,figcaption{color:#444}</"
-              "style>\n",
-              l->page);
-    fprintf(l->page, "<figure id=\"%s\"><b>%s</b> %.4g mm, f/%g, %d ghosts<br>",
-            name, name, e->optics.focal_mm, e->settings.lens.f_number,
-            e->n_ghosts);
-    drawing_write(&drawing, l->page);
+        page_begin(l->page);
+    page_card_begin(l->page, &card);
     print_flares(l, name, e);
     print_measured(l->page, name);
-    fputs("<figcaption>", l->page);
-    print_escaped(l->page, e->settings.lens.source);
-    fputs("<br>", l->page);
-    print_escaped(l->page, e->settings.lens.character);
-    fputs("</figcaption></figure>\n", l->page);
+    page_card_end(l->page);
 }
 
 /* ------------------------------------------------------------------ models */
@@ -388,6 +372,7 @@ static int run_page(struct lenses *l)
     if (l->page) {
         const int n = lens_files_each(one, l);
 
+        page_end(l->page);
         if (fclose(l->page) == 0 && n >= 0)
             status = GLINT_OK;
         if (status == GLINT_OK && l->n == 0) {

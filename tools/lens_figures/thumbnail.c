@@ -54,7 +54,10 @@ static enum glint_status draw(struct glint_frame part[PARTS], double theta_deg,
         image, fmin(exposure, BRIGHTER * glint_measure_exposure(image)));
     if (!codes)
         return GLINT_E_MEMORY;
-    fprintf(file, "<img alt=\"lamp at %.1f degrees\" src=\"", theta_deg);
+    fprintf(file,
+            "<img alt=\"lamp at %.1f degrees\" title=\"lamp at %.1f degrees\" "
+            "src=\"",
+            theta_deg, theta_deg);
     sweep_png(file, codes, image->width, image->height);
     fputs("\">", file);
     free(codes);
