@@ -17,6 +17,9 @@
 #define STUCK_DEG 1.2
 /* Factor on STUCK_DEG for wide stops: nearly all of their zones. */
 #define WIDE_STUCK 16
+/* The same of shaped lenses, whose zones of several degrees leave parts that do
+ * not meet. */
+#define SHAPED_STUCK 3
 /* Tolerances: zones with a larger error are divided into parts. If the ghost is
  * so faint that it hides more, the error may be up to MOST_HIDDEN times as
  * large. */
@@ -32,8 +35,6 @@
 #define WANDERS 0.5
 /* Width of a band in w, 0 .. 2: narrower ones are not halved. */
 #define LEAST_BAND 0.6
-/* STUCK of shaped lenses: what halving leaves of a smooth error is far less. */
-#define STUCK_SHAPED 0.35
 /* Ease up to which errors of shaped lenses are worth all that is done, and from
  * which all that is bearable is kept. */
 #define NOT_FAINT 1.5
@@ -88,18 +89,17 @@ static double endured(const struct rules *f, const struct glint_zone_aim *aim)
  * zones need as many parts each. */
 static double stuck_deg(const struct rules *f)
 {
-    return f->visible->wide ? WIDE_STUCK * STUCK_DEG : STUCK_DEG;
-}
-
-static double stuck_share(const struct rules *f)
-{
-    return f->visible->shaped ? STUCK_SHAPED : STUCK;
+    return f->visible->shaped ? SHAPED_STUCK * STUCK_DEG
+           : f->visible->wide ? WIDE_STUCK * STUCK_DEG
+                              : STUCK_DEG;
 }
 
 /* Returns how many times P's box may be halved. */
 static int most_depth(const struct rules *f, const struct glint_zone_piece *p)
 {
-    return p->lo <= 0 ? f->tolerance->axis_depth : GLINT_PART_DEPTH;
+    return f->visible->shaped ? GLINT_SHAPED_DEPTH
+           : p->lo <= 0       ? f->tolerance->axis_depth
+                              : GLINT_PART_DEPTH;
 }
 
 /* Returns the error, in tolerances, beyond which P will be halved or divided
@@ -147,8 +147,7 @@ static double settled(const struct rules *f, const struct glint_zone_piece *p,
     if (glint_next_degrees(p->lo, 0.5 * (p->lo + p->hi)) >= stuck_deg(f) ||
         width < least * LEAST_DEG)
         return kept;
-    return width < least * stuck_deg(f) ? fmax(kept, stuck_share(f) * p->before)
-                                        : 0;
+    return width < least * stuck_deg(f) ? fmax(kept, STUCK * p->before) : 0;
 }
 
 /* The next step for a zone after attempt A. For bright ghosts zones are halved
@@ -158,7 +157,7 @@ static enum glint_next next_step(const struct rules *f,
                                  const struct glint_attempt *a)
 {
     const double left = a->errors.worst;
-    const bool helped = left <= stuck_share(f) * p->before;
+    const bool helped = left <= STUCK * p->before;
     const double width = width_of(p, &a->aim), least = least_of(f, p);
     /* Stacks of films make energies swing with the wavelength, which parts of
      * the band follow and narrower zones would not. */

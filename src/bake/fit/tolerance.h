@@ -6,8 +6,9 @@
 
 #include "bake/fit/brightness.h"
 
-/* Most times that a zone's box may be halved, in general and at the axis. */
-enum { GLINT_PART_DEPTH = 4, GLINT_MAX_AXIS_DEPTH = 8 };
+/* Most times that a zone's box may be halved: in general, of shaped lenses, and
+ * at the axis. */
+enum { GLINT_PART_DEPTH = 4, GLINT_SHAPED_DEPTH = 6, GLINT_MAX_AXIS_DEPTH = 8 };
 
 /* Root mean squares that are aimed at; single rays may be off by five times as
  * much. Positions in the stop and at barrels draw the outline: EDGE_MM is how
