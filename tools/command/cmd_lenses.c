@@ -305,6 +305,13 @@ static bool is_wanted(const struct lenses *l, const char *name)
     return l->n_only == 0;
 }
 
+static bool print_name(struct lenses *l, const char *name)
+{
+    l->n++;
+    puts(name);
+    return true;
+}
+
 /* Lists the lens NAME, or puts its models into the folder. Returns whether to
  * go on: a mistake in a table is reported and does not end the list. */
 static bool one(void *ctx, const char *name)
@@ -315,11 +322,8 @@ static bool one(void *ctx, const char *name)
 
     if (!is_wanted(l, name))
         return true;
-    if (l->names) {
-        l->n++;
-        puts(name);
-        return true;
-    }
+    if (l->names && l->n_words == 0)
+        return print_name(l, name);
     e = calloc(1, sizeof *e);
     if (!e) {
         l->code = tool_fail(l->tool, GLINT_E_MEMORY, NULL);
@@ -331,7 +335,9 @@ static bool one(void *ctx, const char *name)
         free(e);
         return true;
     }
-    if (code == EXIT_OK && l->folder) {
+    if (code == EXIT_OK && l->names)
+        print_name(l, name);
+    else if (code == EXIT_OK && l->folder) {
         code = put_model(l, e);
         if (code == EXIT_OK)
             code = set_entry(l->tool, name, e, true);
