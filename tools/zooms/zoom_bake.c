@@ -18,7 +18,7 @@ enum {
  * what is asked for, as others have more. */
 #define MARGIN_DB 1.5
 /* Lights half-way come from angles up to this times the half diagonal of what
- * the widest position sees. */
+ * the lens sees there. */
 #define BEYOND 1.5
 /* Share of the error of the step before: a ghost that keeps more, and is not
  * so far off that its place does not matter, gains nothing by another position:
@@ -50,12 +50,26 @@ struct run {
     struct tool_progress progress;  /* of all positions, or of one half-way */
     struct glint_prescription lens; /* at the place in work */
     int n_ghosts, n_places, step;
-    double max_deg, start;
+    double start;
     struct place place[PLACES];
     struct zoom_error *ghost; /* [n_ghosts] */
     bool *is_stuck;           /* [n_ghosts] */
     struct glint_zoom_lens zoom;
 };
+
+/* Returns the largest angle of a light of which a picture of LENS is asked. */
+static double most_deg(const struct run *run)
+{
+    const struct glint_prescription *const lens = &run->lens;
+    struct glint_optics optics;
+
+    glint_optics_of(lens, &optics);
+    return fmin(
+        run->bake->options->max_deg,
+        BEYOND * 180 / GLINT_PI *
+            atan(0.5 * hypot(lens->film_width_mm, lens->film_height_mm) /
+                 fabs(optics.focal_mm)));
+}
 
 /* Zooms the lens of RUN to PLACE. */
 static enum glint_status move_to(struct run *run, int place)
@@ -241,7 +255,7 @@ static enum glint_status halve(struct run *run, int from)
     status = move_to(run, middle);
     if (status == GLINT_OK)
         status =
-            zoom_error_measure(run->tool, &run->lens, &run->zoom, run->max_deg,
+            zoom_error_measure(run->tool, &run->lens, &run->zoom, most_deg(run),
                                fmod(0.5 + middle * GOLDEN, 1), run->n_ghosts,
                                run->ghost, run->error);
     if (status != GLINT_OK)
@@ -335,18 +349,8 @@ enum glint_status zoom_bake_run(struct tool *tool, const struct zoom_bake *bake,
     run->n_ghosts = glint_ghost_list(bake->lens, NULL, 0);
     if (reserve(run))
         status = move_to(run, 0);
-    if (status == GLINT_OK) {
-        struct glint_optics optics;
-
-        glint_optics_of(&run->lens, &optics);
-        run->max_deg = fmin(
-            bake->options->max_deg,
-            BEYOND * 180 / GLINT_PI *
-                atan(0.5 *
-                     hypot(run->lens.film_width_mm, run->lens.film_height_mm) /
-                     fabs(optics.focal_mm)));
+    if (status == GLINT_OK)
         status = bake_all(run);
-    }
     for (int k = 0; k < run->n_places; k++) {
         free(run->place[k].model.data);
         free(run->place[k].ghosts);

@@ -8,9 +8,9 @@
 #include "engine/measure.h"
 #include "glint/glint.h"
 
-/* Pictures are so many pixels wide: a fourth of 1080p's, whose outlines are as
+/* Pictures are so many pixels wide: an eighth of 1080p's, whose outlines are as
  * far off in shares of the picture. */
-enum { WIDE = 480, MOST_HIGH = 480 };
+enum { WIDE = 240, MOST_HIGH = 240 };
 
 /* A degree about the axis at which light falls in no symmetry of the film. */
 #define AZIMUTH_DEG 33
