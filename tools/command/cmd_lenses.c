@@ -452,8 +452,11 @@ static int parse(struct lenses *l, int argc, char **argv)
     l->n_words = argc - optind;
     if (l->exact && !l->html)
         return tool_usage(l->tool, "--rays exact goes with --html");
-    if (l->html && (l->tool->json || l->folder))
-        return tool_usage(l->tool, "--html goes with neither --json nor "
+    if (l->html && (l->tool->json || l->folder || l->names))
+        return tool_usage(l->tool, "--html goes with neither --json, --models "
+                                   "nor --names");
+    if (l->names && (l->tool->json || l->folder))
+        return tool_usage(l->tool, "--names goes with neither --json nor "
                                    "--models");
     return l->html && (code = tool_check_output(l->tool, l->html)) != EXIT_OK
                ? code
