@@ -97,9 +97,12 @@ static double stuck_deg(const struct rules *f)
 /* Returns how many times P's box may be halved. */
 static int most_depth(const struct rules *f, const struct glint_zone_piece *p)
 {
-    return f->visible->shaped ? GLINT_SHAPED_DEPTH
-           : p->lo <= 0       ? f->tolerance->axis_depth
-                              : GLINT_PART_DEPTH;
+    const int off_axis =
+        f->visible->shaped ? GLINT_SHAPED_DEPTH : GLINT_PART_DEPTH;
+
+    return p->lo <= 0 && f->tolerance->axis_depth > off_axis
+               ? f->tolerance->axis_depth
+               : off_axis;
 }
 
 /* Returns the error, in tolerances, beyond which P will be halved or divided

@@ -7,7 +7,7 @@
 #include "bake/fit/brightness.h"
 
 /* Most times that a zone's box may be halved: in general, of shaped lenses, and
- * at the axis. */
+ * at the axis for fine tolerances. */
 enum { GLINT_PART_DEPTH = 4, GLINT_SHAPED_DEPTH = 6, GLINT_MAX_AXIS_DEPTH = 8 };
 
 /* Root mean squares that are aimed at; single rays may be off by five times as
