@@ -139,6 +139,25 @@ static bool stop_beside(struct imported *lens, int k)
                          behind ? "mm behind" : "mm before");
 }
 
+static int stop_of(const struct imported *lens)
+{
+    int k = 0;
+
+    while (!lens->surface[k].stop)
+        k++;
+    return k;
+}
+
+/* Puts a stop that is a surface of glass into the air. */
+static bool free_stop(struct imported *lens)
+{
+    const int at = stop_of(lens);
+
+    return does_nothing(lens, at) || stop_beside(lens, at);
+}
+
+/* Finds the stop, and frees it. One whose opening is not said waits until that
+ * is, as what it has to clear is the surface at its rim. */
 static bool settle_stop(struct imported *lens)
 {
     int at = -1;
@@ -157,7 +176,7 @@ static bool settle_stop(struct imported *lens)
         lens->surface[0].stop = true;
         at = 0;
     }
-    return does_nothing(lens, at) || stop_beside(lens, at);
+    return !(lens->surface[at].semi > 0) || free_stop(lens);
 }
 
 /* ------------------------------------------------------------------ film */
@@ -196,15 +215,6 @@ static void settle_film(struct imported *lens, double focal_units)
 }
 
 /* ------------------------------------------------------------- openings */
-
-static int stop_of(const struct imported *lens)
-{
-    int k = 0;
-
-    while (!lens->surface[k].stop)
-        k++;
-    return k;
-}
 
 /* Sets what is missing of f-number and pupil; the stop's semi-diameter says it
  * where the file does not. */
@@ -413,7 +423,7 @@ bool imported_complete(struct imported *lens)
         return false;
     settle_semis(lens);
     cut_semis(lens);
-    if (!check_front(lens, f))
+    if (!free_stop(lens) || !check_front(lens, f))
         return false;
     part_rims(lens);
     return settle_focus(lens);
