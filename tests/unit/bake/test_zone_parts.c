@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Halves of the box of a zone, and halves of these.
+ * Halves of the box of a zone, halves of these, and when a zone is halved.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -9,7 +9,9 @@
 
 #include <cmocka.h>
 
+#include "bake/fit/next.h"
 #include "bake/fit/zone_rays.h"
+#include "engine/setup/degrees.h"
 #include "support/lens_check.h"
 #include "support/rng.h"
 
@@ -51,10 +53,78 @@ static void test_halves(void **state)
     }
 }
 
+/* A zone of a ghost that hides nothing, from FROM to TO degrees, and an attempt
+ * that left errors of LEFT tolerances, before 10. Of DEPTH 0 it is no part. */
+struct attempted {
+    bool shaped;
+    double from, to, left;
+    int depth; /* of a thorough fit; -1: of another */
+    int axis_depth;
+    enum glint_next next;
+};
+
+static enum glint_next next_of(const struct attempted *c)
+{
+    static struct glint_prescription lens = {.n_surfaces = 2};
+    static struct glint_setup setup;
+    static struct glint_visible visible;
+    const struct glint_tolerance tolerance = {.axis = 1,
+                                              .axis_depth = c->axis_depth};
+    const struct glint_zone_piece piece = {.lo = glint_sin_deg(c->from),
+                                           .hi = glint_sin_deg(c->to),
+                                           .before = 10,
+                                           .w0 = -1,
+                                           .w1 = 1,
+                                           .thorough = c->depth >= 0,
+                                           .depth =
+                                               c->depth > 0 ? c->depth : 0};
+    const struct glint_attempt attempt = {
+        .aim = {.ease = 2, .hidden = 1},
+        .errors = {.worst = c->left, .dims = c->left}};
+
+    setup.lens = &lens;
+    setup.ghost[0] = (struct glint_ghost){0, 1};
+    visible.setup = &setup;
+    visible.wide = true;
+    visible.shaped = c->shaped;
+    return glint_next(&visible, &tolerance, &piece, &attempt);
+}
+
+/* Parts of wide zones of aspheric lenses do not meet, so that their zones are
+ * halved where those of spheres are divided, and their parts further. */
+static void test_shaped(void **state)
+{
+    static const struct attempted all[] = {
+        {false, 5, 11, 9, -1, 4, GLINT_THOROUGH},
+        {true, 5, 11, 9, -1, 4, GLINT_HALVE},
+        {true, 5, 8.7, 9, -1, 4, GLINT_HALVE},
+        {true, 5, 8.5, 9, -1, 4, GLINT_THOROUGH},
+        {true, 5, 8.5, 7, -1, 4, GLINT_HALVE}, /* as the last one helped */
+        {true, 5, 11, 0.9, -1, 4, GLINT_KEEP},
+        {false, 5, 8, 9, 3, 4, GLINT_PART},
+        {false, 5, 8, 9, 4, 4, GLINT_KEEP},
+        {true, 5, 8, 9, 5, 4, GLINT_PART},
+        {true, 5, 8, 9, 6, 4, GLINT_KEEP},
+        {true, 5, 8, 4, 5, 4, GLINT_KEEP},
+        /* at the axis by the tolerance, if that asks for more */
+        {false, 0, 3, 9, 4, 5, GLINT_PART},
+        {true, 0, 3, 9, 5, 4, GLINT_PART},
+        {true, 0, 3, 9, 6, 4, GLINT_KEEP},
+        {true, 0, 3, 9, 7, 8, GLINT_PART},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        if (next_of(&all[i]) != all[i].next)
+            fail_msg("attempt %d: %d, not %d", (int)i, (int)next_of(&all[i]),
+                     (int)all[i].next);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_halves),
+        cmocka_unit_test(test_shaped),
     };
 
     return cmocka_run_group_tests_name("zone_parts", tests, NULL, NULL);
