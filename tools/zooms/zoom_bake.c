@@ -17,9 +17,6 @@ enum {
 /* Errors at the angles that are measured are brought to so many dB less than
  * what is asked for, as others have more. */
 #define MARGIN_DB 1.5
-/* Lights half-way come from angles up to this times the half diagonal of what
- * the lens sees there. */
-#define BEYOND 1.5
 /* Share of the error of the step before: a ghost that keeps more, and is not
  * so far off that its place does not matter, gains nothing by another position:
  * its models themselves are no better. */
@@ -56,20 +53,6 @@ struct run {
     bool *is_stuck;           /* [n_ghosts] */
     struct glint_zoom_lens zoom;
 };
-
-/* Returns the largest angle of a light of which a picture of LENS is asked. */
-static double most_deg(const struct run *run)
-{
-    const struct glint_prescription *const lens = &run->lens;
-    struct glint_optics optics;
-
-    glint_optics_of(lens, &optics);
-    return fmin(
-        run->bake->options->max_deg,
-        BEYOND * 180 / GLINT_PI *
-            atan(0.5 * hypot(lens->film_width_mm, lens->film_height_mm) /
-                 fabs(optics.focal_mm)));
-}
 
 /* Zooms the lens of RUN to PLACE. */
 static enum glint_status move_to(struct run *run, int place)
@@ -254,10 +237,10 @@ static enum glint_status halve(struct run *run, int from)
                    (int32_t)lrint(middle / (run->n_places - 1.0) * 0x1p30));
     status = move_to(run, middle);
     if (status == GLINT_OK)
-        status =
-            zoom_error_measure(run->tool, &run->lens, &run->zoom, most_deg(run),
-                               fmod(0.5 + middle * GOLDEN, 1), run->n_ghosts,
-                               run->ghost, run->error);
+        status = zoom_error_measure(run->tool, &run->lens, &run->zoom,
+                                    run->bake->options->max_deg,
+                                    fmod(0.5 + middle * GOLDEN, 1),
+                                    run->n_ghosts, run->ghost, run->error);
     if (status != GLINT_OK)
         return status;
     compare_steps(run, from, middle);

@@ -12,6 +12,10 @@
  * far off in shares of the picture. */
 enum { WIDE = 240, MOST_HIGH = 240 };
 
+/* Lights come from angles up to this times the half diagonal of what the lens
+ * sees. */
+#define BEYOND 1.5
+
 /* A degree about the axis at which light falls in no symmetry of the film. */
 #define AZIMUTH_DEG 33
 
@@ -90,6 +94,19 @@ static enum glint_status measure_angle(const struct measuring *m,
     return status;
 }
 
+/* Returns the largest angle of a light, up to MAX_DEG, of which a picture of
+ * LENS is asked. */
+static double most_deg(const struct glint_prescription *lens, double max_deg)
+{
+    const double corner_mm =
+        0.5 * hypot(lens->film_width_mm, lens->film_height_mm);
+    struct glint_optics optics;
+
+    glint_optics_of(lens, &optics);
+    return fmin(max_deg, BEYOND * 180 / GLINT_PI *
+                             atan(corner_mm / fabs(optics.focal_mm)));
+}
+
 static bool take_image(struct glint_float_image *image,
                        const struct glint_view *view)
 {
@@ -137,7 +154,7 @@ enum glint_status zoom_error_measure(const struct tool *tool,
         .zoom = zoom,
         .view = glint_view_fit(WIDE, (int)fmin(fmax(high, 8), MOST_HIGH),
                                lens->film_width_mm, lens->film_height_mm),
-        .max_deg = max_deg,
+        .max_deg = most_deg(lens, max_deg),
         .shift = shift,
         .n = n,
         .error = error};

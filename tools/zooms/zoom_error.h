@@ -23,8 +23,8 @@ struct zoom_error {
 };
 
 /* Sets those entries of ERROR, one for each of N ghosts, that are below 0.
- * Lights go up to MAX_DEG; SHIFT, 0 to 1, is where each lies in its share of
- * that. */
+ * Lights go up to one and a half times the half diagonal of what LENS sees, at
+ * most MAX_DEG; SHIFT, 0 to 1, is where each lies in its share of that. */
 enum glint_status zoom_error_measure(const struct tool *tool,
                                      const struct glint_prescription *lens,
                                      const struct glint_zoom_lens *zoom,

@@ -2,6 +2,7 @@
  *
  * Errors of a zoom of two lenses that was baked at both ends: lights come from
  * where they are said to, an end is exact, and the middle is not. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "glint/view.h"
 #include "zooms/zoom_error.h"
 
 enum { GHOSTS = 2, MAX_DEG = 3 };
@@ -72,18 +74,25 @@ static int free_all(void **state)
     return 0;
 }
 
-/* Sets those entries of ERROR that are below 0, with lights SHIFT of their
- * shares on. The zoom is set to ALONG, as LENS is. */
-static void measure(const struct glint_prescription *lens, double along,
-                    double shift, struct zoom_error error[GHOSTS])
+/* Sets those entries of ERROR that are below 0, with lights up to MAX_DEG,
+ * SHIFT of their shares on. The zoom is set to ALONG, as LENS is. */
+static void measure_to(double max_deg, const struct glint_prescription *lens,
+                       double along, double shift,
+                       struct zoom_error error[GHOSTS])
 {
     const struct tool tool = {.name = "test"};
     struct glint_error message = {""};
 
     glint_zoom_set(&zoom, (int32_t)(along * (1 << 30)));
-    if (zoom_error_measure(&tool, lens, &zoom, MAX_DEG, shift, GHOSTS, error,
+    if (zoom_error_measure(&tool, lens, &zoom, max_deg, shift, GHOSTS, error,
                            &message) != GLINT_OK)
         fail_msg("%s", message.text);
+}
+
+static void measure(const struct glint_prescription *lens, double along,
+                    double shift, struct zoom_error error[GHOSTS])
+{
+    measure_to(MAX_DEG, lens, along, shift, error);
 }
 
 enum { STEP = 3 };
@@ -137,11 +146,34 @@ static void lights_are_shifted(void **state)
         assert_true(end[0].of[a] == begin[0].of[a + 1]);
 }
 
+/* Lights go up to 1.5 times the half diagonal, here beyond what was baked, so
+ * that the last of them show whole ghosts as errors. */
+static void lights_end_beyond_the_corner(void **state)
+{
+    const double corner_mm = 0.5 * hypot(24, 16);
+    struct zoom_error asked[GHOSTS], all[GHOSTS], less[GHOSTS];
+    struct glint_optics optics;
+    double corner_deg;
+
+    (void)state;
+    glint_optics_of(&at[0], &optics);
+    corner_deg = 180 / GLINT_PI * atan(corner_mm / optics.focal_mm);
+    ask(asked, 0);
+    ask(all, 0);
+    ask(less, 0);
+    measure_to(1.5 * corner_deg, &at[0], 0, 0.5, asked);
+    measure_to(80, &at[0], 0, 0.5, all);
+    measure_to(1.4 * corner_deg, &at[0], 0, 0.5, less);
+    assert_memory_equal(asked, all, sizeof all);
+    assert_memory_not_equal(asked, less, sizeof all);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ends_are_exact),
         cmocka_unit_test(lights_are_shifted),
+        cmocka_unit_test(lights_end_beyond_the_corner),
     };
 
     return cmocka_run_group_tests_name("zoom_error", tests, bake_ends,
