@@ -79,10 +79,8 @@ static void print_numbers(FILE *file, const struct page_card *card)
         fprintf(file, "%.0f&deg; from corner to corner", 2 * card->corner_deg);
     else
         fputs("180&deg; or more", file);
-    fprintf(file, " of %g x %g mm", lens->film_width_mm, lens->film_height_mm);
-    if (!*lens->character) /* which would have them */
-        fprintf(file, ", %d ghosts", card->n_ghosts);
-    fputs("</p>\n", file);
+    fprintf(file, " of %g x %g mm, %d ghosts</p>\n", lens->film_width_mm,
+            lens->film_height_mm, card->n_ghosts);
 }
 
 void page_card_begin(FILE *file, const struct page_card *card)
