@@ -101,6 +101,19 @@ bool imported_object(struct imported *lens, int line, double distance)
                          distance * lens->unit_mm);
 }
 
+bool imported_unit(struct imported *lens, int line, double mm)
+{
+    lens->unit_mm = mm;
+    lens->unit_said = true;
+    return mm > 0 || imported_fail(lens, line, "unit %g is no length", mm);
+}
+
+bool imported_need_unit(struct imported *lens, const char *word)
+{
+    return lens->unit_said ||
+           imported_note(lens, 0, "no %s says its unit: mm taken", word);
+}
+
 bool imported_choose(struct imported *lens, int line, int n, int *at)
 {
     lens->chosen = true;

@@ -44,6 +44,7 @@ struct imported {
     bool strict;
     char name[GLINT_NAME_BYTES], title[IMPORT_TEXT];
     double unit_mm;           /* of its lengths */
+    bool unit_said;           /* by a word of the file */
     double f_number_given;    /* by the user, goes before the file's; or 0 */
     double f_number, pupil;   /* diameter of the entrance pupil; 0: not said */
     double field_deg, height; /* half field, or half image; 0: not said */
@@ -78,6 +79,12 @@ bool imported_unread(struct imported *lens, int line, const char *word);
 /* Notes that the object is so far away, if that is not infinite or as good as.
  */
 bool imported_object(struct imported *lens, int line, double distance);
+
+/* Sets the unit that LINE says. */
+bool imported_unit(struct imported *lens, int line, double mm);
+
+/* Notes that lengths are taken for mm, unless the file's WORD said a unit. */
+bool imported_need_unit(struct imported *lens, const char *word);
 
 /* Sets AT to which of N positions of a zoom is wanted, from 0. */
 bool imported_choose(struct imported *lens, int line, int n, int *at);

@@ -95,14 +95,13 @@ static bool take_surface(struct oslo *o)
 static bool take_head(struct oslo *o)
 {
     const struct lines *l = &o->lines;
+    double value;
 
     if (lines_is(l, "LEN") && l->n > 2)
         snprintf(o->lens->title, sizeof o->lens->title, "%s", l->word[2]);
     if (lines_is(l, "UNI"))
-        return lines_number(o->lens, l, 1, "unit", &o->lens->unit_mm) &&
-               (o->lens->unit_mm > 0 ||
-                imported_fail(o->lens, l->number, "unit %g is no length",
-                              o->lens->unit_mm));
+        return lines_number(o->lens, l, 1, "unit", &value) &&
+               imported_unit(o->lens, l->number, value);
     if (lines_is(l, "EBR")) {
         if (!lines_number(o->lens, l, 1, "beam radius", &o->lens->pupil))
             return false;
@@ -148,5 +147,5 @@ bool import_oslo(struct imported *lens, const char *text, size_t bytes)
     if (lens->n < 2)
         return imported_fail(lens, 0, "there are no surfaces in it");
     lens->n--; /* the image */
-    return true;
+    return imported_need_unit(lens, "UNI");
 }

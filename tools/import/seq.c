@@ -172,10 +172,13 @@ static bool take_dimension(struct seq *q)
     const char *word = q->lines.n > 1 ? q->lines.word[1] : "";
     const char unit = (char)(*word & ~0x20); /* a capital */
 
-    q->lens->unit_mm = unit == 'I' ? 25.4 : unit == 'C' ? 10 : 1;
-    return unit == 'I' || unit == 'C' || unit == 'M' ||
-           imported_fail(q->lens, q->lines.number,
-                         "unit '%s' is none of M, C and I", word);
+    if (unit != 'I' && unit != 'C' && unit != 'M')
+        return imported_fail(q->lens, q->lines.number,
+                             "unit '%s' is none of M, C and I", word);
+    return imported_unit(q->lens, q->lines.number,
+                         unit == 'I'   ? 25.4
+                         : unit == 'C' ? 10
+                                       : 1);
 }
 
 static bool take_fields(struct seq *q, double *most)
@@ -260,7 +263,7 @@ static bool take(struct seq *q)
         return start_surface(q);
     if (!go_to_surface(q))
         return false;
-    good = q->s ? take_surface(q) : take_head(q);
+    good = q->s && !lines_is(l, "DIM") ? take_surface(q) : take_head(q);
     q->s = current;
     return good;
 }
@@ -274,5 +277,7 @@ bool import_seq(struct imported *lens, const char *text, size_t bytes)
     while (lines_next(&q.lines, '!'))
         if (!take(&q))
             return false;
-    return lens->n > 0 || imported_fail(lens, 0, "there are no surfaces in it");
+    if (lens->n == 0)
+        return imported_fail(lens, 0, "there are no surfaces in it");
+    return imported_need_unit(lens, "DIM");
 }

@@ -127,10 +127,8 @@ static bool take_unit(struct zmx *z)
     const char *word = z->lines.n > 1 ? z->lines.word[1] : "";
 
     for (size_t i = 0; i < sizeof units / sizeof *units; i++)
-        if (strcmp(units[i].word, word) == 0) {
-            z->lens->unit_mm = units[i].mm;
-            return true;
-        }
+        if (strcmp(units[i].word, word) == 0)
+            return imported_unit(z->lens, z->lines.number, units[i].mm);
     return imported_fail(z->lens, z->lines.number,
                          "unit '%s' is none of MM, CM, IN, METER", word);
 }
@@ -208,7 +206,8 @@ static bool close_file(struct zmx *z)
         if (!isfinite(lens->surface[k].thickness))
             return imported_fail(lens, lens->surface[k].line,
                                  "an infinite thickness inside of the lens");
-    return imported_object(lens, z->object_line, z->object);
+    return imported_need_unit(lens, "UNIT") &&
+           imported_object(lens, z->object_line, z->object);
 }
 
 bool import_zmx(struct imported *lens, const char *text, size_t bytes)
