@@ -132,7 +132,9 @@ static bool stop_beside(struct imported *lens, int k)
     if (!insert_stop(lens, behind ? k + 1 : k))
         return false;
     lens->surface[behind ? k + 1 : k] = stop;
-    return imported_note(lens, stop.line,
+    /* One that is a guess itself has been told. */
+    return lens->stop_guessed ||
+           imported_note(lens, stop.line,
                          "the stop is a surface of glass: put %.3g %s it, at "
                          "its rim",
                          fabs(off) * lens->unit_mm,
@@ -173,7 +175,7 @@ static bool settle_stop(struct imported *lens)
     }
     if (at < 0) {
         imported_note(lens, 0, "there is no stop: taken at the front");
-        lens->surface[0].stop = true;
+        lens->surface[0].stop = lens->stop_guessed = true;
         at = 0;
     }
     return !(lens->surface[at].semi > 0) || free_stop(lens);
@@ -365,6 +367,19 @@ static bool settle_focus(struct imported *lens)
                          behind * lens->unit_mm);
 }
 
+/* Tells that the light comes from afar where the file has an object that is
+ * near, and, where it has a sensor, that this is not moved for it. */
+static void tell_object(struct imported *lens)
+{
+    if (lens->object_near)
+        imported_note(lens, lens->object_line,
+                      "the object is %g mm away: light from afar taken%s",
+                      lens->object * lens->unit_mm,
+                      lens->surface[lens->n - 1].thickness > 0
+                          ? ", the sensor where the file has it"
+                          : "");
+}
+
 /* Refuses what runs backwards but for a stop at the front, which may lie behind
  * the vertex, as in phones. */
 static bool check_thicknesses(struct imported *lens)
@@ -405,7 +420,10 @@ bool imported_complete(struct imported *lens)
     double f;
 
     if (!imported_settle_media(lens) || !drop_dummies(lens) ||
-        !check_thicknesses(lens) || !settle_stop(lens))
+        !check_thicknesses(lens))
+        return false;
+    tell_object(lens);
+    if (!settle_stop(lens))
         return false;
     f = focal(lens);
     if (lens->nominal > 0 && fabs(f / lens->nominal - 1) > 0.02)

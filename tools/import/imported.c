@@ -94,11 +94,10 @@ bool imported_unread(struct imported *lens, int line, const char *word)
 
 bool imported_object(struct imported *lens, int line, double distance)
 {
-    return fabs(distance) > 1e8 ||
-           imported_note(lens, line,
-                         "the object is %g mm away: the sensor stays where the "
-                         "file has it",
-                         distance * lens->unit_mm);
+    lens->object_near = fabs(distance) <= 1e8;
+    lens->object_line = line;
+    lens->object = distance;
+    return true;
 }
 
 bool imported_unit(struct imported *lens, int line, double mm)

@@ -43,8 +43,12 @@ struct imported {
     const char *file;
     bool strict;
     char name[GLINT_NAME_BYTES], title[IMPORT_TEXT];
-    double unit_mm;           /* of its lengths */
-    bool unit_said;           /* by a word of the file */
+    double unit_mm;    /* of its lengths */
+    bool unit_said;    /* by a word of the file */
+    bool stop_guessed; /* there was none */
+    bool object_near;  /* glint has light from afar instead of that */
+    int object_line;
+    double object;            /* its distance */
     double f_number_given;    /* by the user, goes before the file's; or 0 */
     double f_number, pupil;   /* diameter of the entrance pupil; 0: not said */
     double field_deg, height; /* half field, or half image; 0: not said */
@@ -76,8 +80,8 @@ void imported_tell(struct imported *lens, int line, const char *format, ...);
 /* Notes that WORD is not read, the first time that it is met. */
 bool imported_unread(struct imported *lens, int line, const char *word);
 
-/* Notes that the object is so far away, if that is not infinite or as good as.
- */
+/* Takes how far away the object is; if that is neither infinite nor as good as,
+ * light from afar is a guess. Returns true. */
 bool imported_object(struct imported *lens, int line, double distance);
 
 /* Sets the unit that LINE says. */
