@@ -37,12 +37,16 @@ bool lens_has_words(const char *name, const struct glint_prescription *lens,
     return true;
 }
 
+/* Where words are, the more telling first: of two that are as near, that of a
+ * name is meant rather than one of a sentence. */
+enum { OF_NAME, OF_SOURCE, OF_CHARACTER, N_PLACES };
+
 struct search {
     const struct tool *tool;
     struct glint_prescription *lens; /* room for a table */
     const char *word;
     char small[SUGGEST_CHARS]; /* the word in small letters */
-    struct suggest suggest;
+    struct suggest near[N_PLACES];
     bool found; /* a lens has the word */
 };
 
@@ -75,10 +79,21 @@ static bool look(void *ctx, const char *name)
     if (tool_lens(s->tool, name, s->lens) != EXIT_OK)
         return true;
     s->found = has(name, s->lens, s->word);
-    offer_words(&s->suggest, name);
-    offer_words(&s->suggest, s->lens->source);
-    offer_words(&s->suggest, s->lens->character);
+    offer_words(&s->near[OF_NAME], name);
+    offer_words(&s->near[OF_SOURCE], s->lens->source);
+    offer_words(&s->near[OF_CHARACTER], s->lens->character);
     return !s->found;
+}
+
+/* Returns the word that may have been meant, or NULL. */
+static const char *meant(const struct search *s)
+{
+    const struct suggest *best = &s->near[0];
+
+    for (int i = 1; i < N_PLACES; i++)
+        if (s->near[i].distance < best->distance)
+            best = &s->near[i];
+    return suggest_best(best);
 }
 
 int lens_words_missed(const struct tool *tool, char **words, int n)
@@ -95,11 +110,12 @@ int lens_words_missed(const struct tool *tool, char **words, int n)
         snprintf(s.small, sizeof s.small, "%s", s.word);
         for (char *c = s.small; *c; c++)
             *c = (char)tolower((unsigned char)*c);
-        suggest_begin(&s.suggest, s.small);
+        for (int k = 0; k < N_PLACES; k++)
+            suggest_begin(&s.near[k], s.small);
         lens_files_each(look, &s);
     }
     free(s.lens);
-    best = suggest_best(&s.suggest);
+    best = meant(&s);
     if (s.found)
         fprintf(stderr, "glint lenses: no lens has all of these words in its "
                         "name, source or character\n");
