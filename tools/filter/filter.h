@@ -49,7 +49,7 @@ double filter_number(const struct filter *filter, enum filter_number which);
 const char *filter_word(const struct filter *filter, enum filter_word which);
 
 /* Opens the lens before the first picture comes: where it is not baked yet,
- * that takes seconds to minutes. Returns whether it could, as filter_draw()
+ * that takes seconds to hours. Returns whether it could, as filter_draw()
  * does. */
 bool filter_open(struct filter *filter);
 

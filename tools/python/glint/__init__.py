@@ -120,8 +120,8 @@ def _bake(table, options) -> bytes:
 
 
 def bake(lens: str, *, coating: str = "table", tolerance: float = 1.0, threads: int = 0) -> bytes:
-    """The model of LENS, a name or a .lens file: the bytes that glint bake writes. Takes seconds to minutes.
-    COATING as of --coating: table, mixed, none or a list."""
+    """The model of LENS, a name or a .lens file: the bytes that glint bake writes. Takes seconds to minutes for narrow
+    stops, minutes to an hour for wide ones, and hours for anamorphic lenses. COATING as of --coating: table, mixed, none or a list."""
     pool, options = _Pool(threads), _ffi.new("struct glint_bake_options *")
     _lib.glint_bake_defaults(options)
     options.tolerance, options.workers = tolerance, pool.workers
