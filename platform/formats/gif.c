@@ -4,8 +4,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
+#include "posix/ending.h"
 #include "posix/input.h"
 
 /* Returns where the sub-blocks that begin at AT end, or the end of the data. */
@@ -43,13 +43,12 @@ static int count_frames(const uint8_t *d, size_t n)
 
 int glint_gif_frames(const char *name)
 {
-    const char *const dot = strrchr(name, '.');
     struct glint_error error;
     uint8_t *data = NULL;
     size_t bytes = 0;
     int n = 0;
 
-    if (!dot || strcasecmp(dot, ".gif") != 0)
+    if (!glint_ends_in(name, ".gif"))
         return 0;
     if (glint_input_slurp(&data, &bytes, name, 1 << 28, &error) == GLINT_OK)
         n = count_frames(data, bytes);

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "video/y4m_light.h"
+#include "posix/ending.h"
 #include "posix/error.h"
 
 #define MAGIC "YUV4MPEG2"
@@ -29,9 +30,7 @@ static bool is_jpeg(const struct glint_y4m_header *h)
 
 bool glint_y4m_is_name(const char *name)
 {
-    const char *const dot = strrchr(name, '.');
-
-    return dot && strcmp(dot, ".y4m") == 0;
+    return glint_ends_in(name, ".y4m");
 }
 
 void glint_y4m_header_init(struct glint_y4m_header *header, int width,

@@ -5,7 +5,6 @@
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "desk/apart.h"
 #include "lab/plots/plot.h"
@@ -13,6 +12,7 @@
 #include "options/coating.h"
 #include "options/takes.h"
 #include "options/tool.h"
+#include "posix/ending.h"
 #include "posix/output.h"
 
 static const char help[] =
@@ -231,16 +231,9 @@ static bool write_plot(const struct coat *c, FILE *file, bool is_png)
     return fine;
 }
 
-static bool ends_in(const char *path, const char *end)
-{
-    const size_t n = strlen(path), m = strlen(end);
-
-    return n > m && strcmp(path + n - m, end) == 0;
-}
-
 static int save(const struct tool *tool, const struct coat *c)
 {
-    const bool is_png = ends_in(c->output, ".png");
+    const bool is_png = glint_ends_in(c->output, ".png");
     struct glint_output out;
     struct glint_error error;
     enum glint_status status = GLINT_E_MEMORY;
@@ -312,7 +305,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct coat *o)
             tool_inputs(tool, argc, argv, 1, "takes one coating, or one lens");
     if (code >= 0)
         return code;
-    if (o->output && !ends_in(o->output, ".svg") && !ends_in(o->output, ".png"))
+    if (o->output && !glint_ends_in(o->output, ".svg") &&
+        !glint_ends_in(o->output, ".png"))
         return tool_usage(tool, "a plot is a .svg or a .png, not '%s'",
                           o->output);
     if (o->output && o->surface >= 0)

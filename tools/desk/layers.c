@@ -3,11 +3,11 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "formats/picture.h"
 #include "oiio/oiio.h"
 #include "options/numbered.h"
+#include "posix/ending.h"
 #include "posix/error.h"
 #include "posix/output.h"
 
@@ -50,11 +50,10 @@ static bool takes_layers(const struct layers *layers, const char *name)
 {
     static const char *const kinds[] = {".exr", ".pfm", ".hdr", ".tif",
                                         ".tiff"};
-    const char *const dot = strrchr(name, '.');
     const int n = strstr(layers->path, "%s") ? 5 : 1;
 
-    for (int i = 0; i < n && dot; i++)
-        if (strcasecmp(dot, kinds[i]) == 0)
+    for (int i = 0; i < n; i++)
+        if (glint_ends_in(name, kinds[i]))
             return true;
     return false;
 }
@@ -182,14 +181,13 @@ static enum glint_status save(const char *name,
     const struct glint_float_image floats = {.width = layers->width,
                                              .height = layers->height,
                                              .rgb = layers->layer->rgb};
-    const char *const dot = strrchr(name, '.');
     const struct glint_oiio *oiio;
     struct glint_output out;
     enum glint_status status;
     void *data = NULL;
     size_t bytes = 0;
 
-    if (dot && strcmp(dot, ".pfm") == 0 && layers->n == 1)
+    if (glint_ends_in(name, ".pfm") && layers->n == 1)
         return glint_picture_save_float(name, &floats, error);
     status = glint_oiio_load(&oiio, error);
     if (status == GLINT_OK)

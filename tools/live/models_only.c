@@ -10,6 +10,7 @@
 #include "desk/stop_option.h"
 #include "options/settings_table.h"
 #include "scenes/scene_file.h"
+#include "posix/ending.h"
 
 int settings_open_table(const struct tool *tool, struct settings *settings,
                         const char *name)
@@ -61,9 +62,7 @@ enum glint_status settings_table_setup(struct settings *settings,
 
 bool tool_is_scene(const char *argument)
 {
-    const size_t n = strlen(argument);
-
-    return n > 6 && strcmp(argument + n - 6, ".scene") == 0;
+    return glint_ends_in(argument, ".scene");
 }
 
 int tool_scene_bake(const struct tool *tool, const char *path, uint8_t **data,

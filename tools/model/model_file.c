@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "posix/ending.h"
 #include "posix/input.h"
 
 #define MAX_MODEL_BYTES ((size_t)256 << 20)
@@ -13,11 +14,10 @@
 bool tool_is_file_name(const char *argument)
 {
     static const char *const endings[] = {".lens", ".glint", ".env", ".motion"};
-    const char *const dot = strrchr(argument, '.');
     bool is_file = strchr(argument, '/') != NULL;
 
-    for (size_t i = 0; dot && i < sizeof endings / sizeof *endings; i++)
-        is_file = is_file || strcmp(dot, endings[i]) == 0;
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+        is_file = is_file || glint_ends_in(argument, endings[i]);
     return is_file;
 }
 

@@ -3,9 +3,8 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
-#include <strings.h>
 
+#include "posix/ending.h"
 #include "posix/error.h"
 #include "posix/input.h"
 #include "posix/output.h"
@@ -16,9 +15,7 @@
 
 bool motion_file_is_source(const char *argument)
 {
-    const size_t n = strlen(argument);
-
-    return n > 5 && strcasecmp(argument + n - 5, ".json") == 0;
+    return glint_ends_in(argument, ".json");
 }
 
 bool motion_file_is_baked(const char *argument)

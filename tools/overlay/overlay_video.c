@@ -15,6 +15,7 @@
 #include "formats/gif.h"
 #include "overlay/ffmpeg.h"
 #include "video/y4m.h"
+#include "posix/ending.h"
 #include "posix/error.h"
 
 struct video {
@@ -37,13 +38,6 @@ static bool is_y4m(const char *name)
     return strcmp(name, "-") == 0 || glint_y4m_is_name(name);
 }
 
-static bool is_gif(const char *name)
-{
-    const char *dot = strrchr(name, '.');
-
-    return dot && strcmp(dot, ".gif") == 0;
-}
-
 bool overlay_is_video(const char *name)
 {
     return is_y4m(name) || ffmpeg_is_video(name);
@@ -52,10 +46,11 @@ bool overlay_is_video(const char *name)
 int overlay_check_gif(struct tool *tool, const struct overlay *o, bool *video)
 {
     const int n = glint_gif_frames(o->input);
-    const bool moves = overlay_is_video(o->output) || is_gif(o->output);
+    const bool moves =
+        overlay_is_video(o->output) || glint_ends_in(o->output, ".gif");
 
     *video = n > 1 && moves;
-    if (is_gif(o->output) && overlay_is_video(o->input))
+    if (glint_ends_in(o->output, ".gif") && overlay_is_video(o->input))
         *video = true;
     else if (n == 1 && overlay_is_video(o->output))
         return tool_usage(tool, "%s has one frame, which is no video",
@@ -140,8 +135,10 @@ static enum glint_status open_encoder(struct video *v)
     const struct overlay *o = v->o;
     struct ffmpeg_target target = {
         .name = o->output,
-        .sound = v->reads && !is_gif(o->output) && o->last == INT_MAX ? o->input
-                                                                      : NULL,
+        .sound =
+            v->reads && !glint_ends_in(o->output, ".gif") && o->last == INT_MAX
+                ? o->input
+                : NULL,
         .options = o->encode,
         .width = v->in.header.width,
         .height = v->in.header.height,

@@ -3,33 +3,26 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "formats/picture.h"
 #include "model/model_file.h"
+#include "posix/ending.h"
 #include "posix/input.h"
 #include "posix/target.h"
 #include "scenes/names.h"
 
 #define MAX_FILE_BYTES ((size_t)1 << 28)
 
-static bool ends_in(const char *name, const char *end)
-{
-    const size_t n = strlen(name), m = strlen(end);
-
-    return n > m && strcasecmp(name + n - m, end) == 0;
-}
-
 static bool is_text(const char *name)
 {
-    return ends_in(name, ".environment");
+    return glint_ends_in(name, ".environment");
 }
 
 bool environment_file_is_source(const char *argument)
 {
-    return is_text(argument) || ends_in(argument, ".exr") ||
-           ends_in(argument, ".hdr") || ends_in(argument, ".pfm") ||
-           ends_in(argument, ".dds");
+    return is_text(argument) || glint_ends_in(argument, ".exr") ||
+           glint_ends_in(argument, ".hdr") || glint_ends_in(argument, ".pfm") ||
+           glint_ends_in(argument, ".dds");
 }
 
 bool environment_file_is_baked(const char *argument)

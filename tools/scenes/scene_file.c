@@ -2,12 +2,11 @@
 #include "scenes/scene_file.h"
 
 #include <stdlib.h>
-#include <string.h>
-#include <strings.h>
 
 #include "assimp/assimp.h"
 #include "formats/picture.h"
 #include "model/model_file.h"
+#include "posix/ending.h"
 #include "posix/input.h"
 #include "posix/target.h"
 #include "motions/motion_file.h"
@@ -18,9 +17,7 @@ enum { TEXT_BYTES = 1 << 20 };
 
 bool tool_is_scene(const char *argument)
 {
-    const size_t n = strlen(argument);
-
-    return n > 6 && strcmp(argument + n - 6, ".scene") == 0;
+    return glint_ends_in(argument, ".scene");
 }
 
 /* A text while it is read, and the key of what was read so far. */
@@ -58,9 +55,7 @@ static enum glint_status find(const struct reading *reading, const char *name,
 
 static bool is_obj(const char *name)
 {
-    const size_t n = strlen(name);
-
-    return n >= 4 && strcasecmp(name + n - 4, ".obj") == 0;
+    return glint_ends_in(name, ".obj");
 }
 
 /* Reads a mesh as an OBJ text. */

@@ -3,12 +3,11 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
-#include <strings.h>
 #include <time.h>
 
 #include "formats/picture.h"
 #include "model/cache_file.h"
+#include "posix/ending.h"
 #include "posix/input.h"
 #include "posix/target.h"
 #include "scenes/names.h"
@@ -19,10 +18,7 @@
 
 bool stone_file_is_text(const char *argument)
 {
-    static const char end[] = ".translucent";
-    const size_t n = strlen(argument), m = sizeof end - 1;
-
-    return n > m && strcasecmp(argument + n - m, end) == 0;
+    return glint_ends_in(argument, ".translucent");
 }
 
 bool stone_file_is_baked(const char *argument)

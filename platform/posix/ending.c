@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: MIT */
+#include "posix/ending.h"
+
+#include <string.h>
+#include <strings.h>
+
+bool glint_ends_in(const char *name, const char *ending)
+{
+    const size_t n = strlen(name), m = strlen(ending);
+
+    return n > m && strcasecmp(name + n - m, ending) == 0;
+}
+
+const char *glint_ending_of(const char *name)
+{
+    const char *const slash = strrchr(name, '/');
+    const char *const last = slash ? slash + 1 : name;
+    const char *const dot = strrchr(last, '.');
+
+    return dot && dot > last ? dot : "";
+}

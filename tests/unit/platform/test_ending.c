@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What kind of file a name says.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "posix/ending.h"
+#include "video/y4m.h"
+
+static void letters_of_any_case_end_a_name(void **state)
+{
+    (void)state;
+    assert_true(glint_ends_in("clip.y4m", ".y4m"));
+    assert_true(glint_ends_in("in.d/CLIP.Y4M", ".y4m"));
+    assert_true(glint_y4m_is_name("CLIP.Y4m"));
+    assert_false(glint_ends_in("clip.y4m2", ".y4m"));
+    assert_false(glint_ends_in("clipy4m", ".y4m"));
+    assert_false(glint_ends_in("4m", ".y4m"));
+    assert_false(glint_ends_in(".y4m", ".y4m"));
+    assert_false(glint_ends_in("", ".y4m"));
+}
+
+static void the_ending_is_that_of_the_last_part(void **state)
+{
+    (void)state;
+    assert_string_equal(glint_ending_of("a.b/flare.tar.gz"), ".gz");
+    assert_string_equal(glint_ending_of("X.BMP"), ".BMP");
+    assert_string_equal(glint_ending_of("x."), ".");
+    assert_string_equal(glint_ending_of("folder.d/x"), "");
+    assert_string_equal(glint_ending_of("/dev/stdout"), "");
+    assert_string_equal(glint_ending_of("a/.hidden"), "");
+    assert_string_equal(glint_ending_of("-"), "");
+    assert_string_equal(glint_ending_of(""), "");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(letters_of_any_case_end_a_name),
+        cmocka_unit_test(the_ending_is_that_of_the_last_part),
+    };
+
+    return cmocka_run_group_tests_name("ending", tests, NULL, NULL);
+}
