@@ -460,9 +460,12 @@ static int parse(struct lenses *l, int argc, char **argv)
     if (l->names && (l->tool->json || l->folder))
         return tool_usage(l->tool, "--names goes with neither --json nor "
                                    "--models");
-    return l->html && (code = tool_check_output(l->tool, l->html)) != EXIT_OK
-               ? code
-               : -1;
+    if (!l->html)
+        return -1;
+    code = tool_check_ending(l->tool, l->html, ".html", "a page");
+    if (code == EXIT_OK)
+        code = tool_check_output(l->tool, l->html);
+    return code == EXIT_OK ? -1 : code;
 }
 
 int cmd_lenses(int argc, char **argv)

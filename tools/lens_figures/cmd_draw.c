@@ -104,6 +104,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct draw *o)
     apart_write(&files, "-o", o->output);
     code = apart_check(tool, &files);
     if (code == EXIT_OK)
+        code = tool_check_ending(tool, o->output, ".svg", "a figure");
+    if (code == EXIT_OK)
         code = tool_check_output(tool, o->output);
     return code == EXIT_OK ? -1 : code;
 }

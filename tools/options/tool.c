@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "linux/sets.h"
+#include "posix/ending.h"
 #include "posix/error.h"
 #include "posix/output.h"
 #include "posix/utf8.h"
@@ -380,6 +381,14 @@ int tool_check_output(const struct tool *tool, const char *path)
         return EXIT_OK;
     tool_fail(tool, GLINT_E_OUTPUT, error.text);
     return EXIT_OUTPUT;
+}
+
+int tool_check_ending(struct tool *tool, const char *path, const char *ending,
+                      const char *what)
+{
+    return !*glint_ending_of(path) || glint_ends_in(path, ending)
+               ? EXIT_OK
+               : tool_usage(tool, "%s is a %s, not '%s'", what, ending, path);
 }
 
 /* ----------------------------------------------------------------- progress */

@@ -131,6 +131,11 @@ double tool_seconds(void);
  * pattern; it is not checked if its folders have the number. */
 int tool_check_output(const struct tool *tool, const char *path);
 
+/* Checks that PATH has the ENDING of WHAT is written there, or none, as "-" or
+ * /dev/stdout. Returns EXIT_OK, or the code of tool_usage(). */
+int tool_check_ending(struct tool *tool, const char *path, const char *ending,
+                      const char *what);
+
 /* ----------------------------------------------------------------- progress */
 
 /* Progress as a bar on a terminal's standard error, elsewhere as a line every
