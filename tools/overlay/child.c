@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#define _GNU_SOURCE /* pipe2 */
+#define _GNU_SOURCE /* pipe2, memfd_create, fallocate */
 #include "overlay/child.h"
 
 #include <errno.h>
@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -63,9 +64,11 @@ bool child_exists(const char *name)
 
 /* ----------------------------------------------------------------- starting */
 
-/* Runs ARGV in the child, with IN and OUT as its streams. If it cannot be run,
- * sends errno through FAILED. Makes system calls only. */
-static void become(const char *const *argv, int in, int out, int failed)
+/* Runs ARGV in the child, with IN, OUT and SAID, unless that is -1, as its
+ * streams. If it cannot be run, sends errno through FAILED. Makes system calls
+ * only. */
+static void become(const char *const *argv, int in, int out, int said,
+                   int failed)
 {
     sigset_t none;
     int number;
@@ -75,7 +78,8 @@ static void become(const char *const *argv, int in, int out, int failed)
     signal(SIGPIPE, SIG_DFL);
     signal(SIGXFSZ, SIG_DFL);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (dup2(in, STDIN_FILENO) >= 0 && dup2(out, STDOUT_FILENO) >= 0)
+    if (dup2(in, STDIN_FILENO) >= 0 && dup2(out, STDOUT_FILENO) >= 0 &&
+        (said < 0 || dup2(said, STDERR_FILENO) >= 0))
         execvp(argv[0], (char *const *)argv);
     number = errno;
     if (write(failed, &number, sizeof number) < 0)
@@ -115,14 +119,13 @@ static enum glint_status refuse(const char *name, int number,
         number == ENOENT ? "is not installed" : strerror(number));
 }
 
-enum glint_status child_start(struct child *child, const char *const *argv,
-                              enum child_pipe kind, struct glint_error *error)
+static enum glint_status start(struct child *child, const char *const *argv,
+                               enum child_pipe kind, struct glint_error *error)
 {
     const int mine = kind == CHILD_WRITES ? 0 : 1;
     int data[2], failed[2], number;
     const int null = open("/dev/null", O_RDWR | O_CLOEXEC);
 
-    *child = (struct child){0, -1};
     glint_at_death(kill_all);
     if (null < 0 || !open_pipes(data, failed)) {
         number = errno;
@@ -133,7 +136,7 @@ enum glint_status child_start(struct child *child, const char *const *argv,
     child->pid = fork();
     if (child->pid == 0)
         become(argv, mine == 0 ? null : data[0], mine == 0 ? data[1] : null,
-               failed[1]);
+               child->said, failed[1]);
     number = errno;
     close(null);
     close(data[1 - mine]);
@@ -152,6 +155,73 @@ enum glint_status child_start(struct child *child, const char *const *argv,
     return refuse(argv[0], number, error);
 }
 
+enum glint_status child_start(struct child *child, const char *const *argv,
+                              enum child_pipe kind, struct glint_error *error)
+{
+    *child = CHILD_NONE;
+    return start(child, argv, kind, error);
+}
+
+enum glint_status child_start_heard(struct child *child,
+                                    const char *const *argv,
+                                    enum child_pipe kind,
+                                    const char *const *words,
+                                    struct glint_error *error)
+{
+    enum glint_status status;
+
+    *child = CHILD_NONE;
+    child->listening = words;
+    /* A file, not a pipe: nobody has to read it for the child to go on. */
+    child->said = memfd_create("said", MFD_CLOEXEC);
+    if (child->said >= 0)
+        fcntl(child->said, F_SETFL, O_APPEND);
+    status = start(child, argv, kind, error);
+    if (status != GLINT_OK)
+        child_kill(child);
+    return status;
+}
+
+/* ------------------------------------------------------------------ hearing */
+
+/* Passes on whole lines, or if ALL what is left. */
+static void pass_on(struct child *child, bool all)
+{
+    char text[4096];
+    ssize_t n;
+
+    while (child->said >= 0 &&
+           (n = pread(child->said, text, sizeof text - 1, child->told)) > 0) {
+        const char *const end = memrchr(text, '\n', (size_t)n);
+
+        if (end)
+            n = end - text + 1;
+        else if (!all && n < (ssize_t)sizeof text - 1)
+            return;
+        text[n] = '\0';
+        for (int i = 0; child->listening[i]; i++)
+            child->heard |= strstr(text, child->listening[i]) != NULL;
+        fwrite(text, 1, (size_t)n, stderr);
+        child->told += n;
+        /* Its memory is given back; where that cannot be, it stays. */
+        (void)fallocate(child->said, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
+                        0, child->told);
+    }
+}
+
+void child_hear(struct child *child)
+{
+    pass_on(child, false);
+}
+
+static void end_hearing(struct child *child)
+{
+    pass_on(child, true);
+    if (child->said >= 0)
+        close(child->said);
+    child->said = -1;
+}
+
 /* ------------------------------------------------------------------- ending */
 
 int child_end(struct child *child)
@@ -162,13 +232,16 @@ int child_end(struct child *child)
     if (child->fd >= 0)
         close(child->fd);
     child->fd = -1;
-    if (child->pid <= 0)
+    if (child->pid <= 0) {
+        end_hearing(child);
         return 0;
+    }
     do
         pid = waitpid(child->pid, &status, 0);
     while (pid < 0 && errno == EINTR);
     replace(child->pid, 0);
     child->pid = 0;
+    end_hearing(child);
     if (pid < 0)
         return NOT_FOUND;
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

@@ -7,8 +7,8 @@
  *     child_end(&child);                                   its exit status
  *
  * No shell takes part, so names need no quotes. The program shares glint's
- * standard error. It is killed when glint dies or gives it up, and its status
- * is always taken.
+ * standard error, or is heard there. It is killed when glint dies or gives it
+ * up, and its status is always taken.
  */
 #ifndef GLINT_TOOLS_OVERLAY_CHILD_H
 #define GLINT_TOOLS_OVERLAY_CHILD_H
@@ -24,9 +24,16 @@ enum child_pipe {
 };
 
 struct child {
-    pid_t pid; /* 0: none */
-    int fd;    /* glint's end of the pipe; -1: closed */
+    pid_t pid;  /* 0: none */
+    int fd;     /* glint's end of the pipe; -1: closed */
+    int said;   /* file of its standard error; -1: that is glint's own */
+    off_t told; /* bytes of SAID that were passed on */
+    const char *const *listening; /* ends with NULL, not owned */
+    bool heard;                   /* it has said one of those */
 };
+
+/* A child that is none. */
+#define CHILD_NONE ((struct child){.fd = -1, .said = -1})
 
 /* Returns whether NAME is a program of $PATH. */
 bool child_exists(const char *name);
@@ -35,6 +42,17 @@ bool child_exists(const char *name);
  * it is not there. GLINT_E_IO: the system gives no process or descriptor. */
 enum glint_status child_start(struct child *child, const char *const *argv,
                               enum child_pipe kind, struct glint_error *error);
+
+/* Like child_start(), of a child that WORDS, which end with NULL, are listened
+ * for in what it says; child_hear() passes that on. */
+enum glint_status child_start_heard(struct child *child,
+                                    const char *const *argv,
+                                    enum child_pipe kind,
+                                    const char *const *words,
+                                    struct glint_error *error);
+
+/* Passes on to standard error the lines that a child has said since. */
+void child_hear(struct child *child);
 
 /* Closes the pipe and waits until the child has ended. Returns its exit status,
  * or 128 plus the signal that killed it, or 0 if there is no child. */

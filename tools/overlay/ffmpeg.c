@@ -182,15 +182,21 @@ static void begin(struct words *w)
         add(w, first[i]);
 }
 
-static enum glint_status run(struct child *child, struct words *w,
-                             enum child_pipe pipe, struct glint_error *error)
+/* Ends the words of a line. */
+static enum glint_status end(struct words *w, struct glint_error *error)
 {
     if (w->n > MAX_WORDS)
         return glint_error_report(error, GLINT_E_ARGUMENT, "ffmpeg",
                                   "more than %d words of options", MAX_WORDS);
     w->word[w->n] = NULL;
-    return child_start(child, w->word, pipe, error);
+    return GLINT_OK;
 }
+
+/* What ffmpeg 5 says of files that are cut off, which are no errors to it, as
+ * their end is. */
+static const char *const of_cut_files[] = {
+    "File ended prematurely" /* .mkv, .webm */, "partial file" /* .mp4, .mov */,
+    NULL};
 
 static enum glint_status too_long(const char *name, struct glint_error *error)
 {
@@ -269,9 +275,10 @@ enum glint_status ffmpeg_read(struct child *child, const char *name,
                               struct glint_error *error)
 {
     char url[FILE_NAME];
+    enum glint_status status;
     struct words w;
 
-    *child = (struct child){0, -1};
+    *child = CHILD_NONE;
     if (!file_url(url, name))
         return too_long(name, error);
     begin(&w);
@@ -281,7 +288,10 @@ enum glint_status ffmpeg_read(struct child *child, const char *name,
     add_two(&w, "-strict", "-1");
     add_two(&w, "-f", "yuv4mpegpipe");
     add(&w, "-");
-    return run(child, &w, CHILD_WRITES, error);
+    status = end(&w, error);
+    return status == GLINT_OK ? child_start_heard(child, w.word, CHILD_WRITES,
+                                                  of_cut_files, error)
+                              : status;
 }
 
 /* ---------------------------------------------------------------- encoding */
@@ -407,9 +417,10 @@ enum glint_status ffmpeg_write(struct child *child,
 {
     const struct ffmpeg_target *t = target;
     char out[FILE_NAME], sound[FILE_NAME] = "", options[1024];
+    enum glint_status status;
     struct words w;
 
-    *child = (struct child){0, -1};
+    *child = CHILD_NONE;
     if (!file_url(out, t->file) || (t->sound && !file_url(sound, t->sound)) ||
         (t->options && strlen(t->options) >= sizeof options))
         return too_long(t->name, error);
@@ -426,7 +437,9 @@ enum glint_status ffmpeg_write(struct child *child,
     } else
         add_pictures(&w, t, video);
     add(&w, out);
-    return run(child, &w, CHILD_READS, error);
+    status = end(&w, error);
+    return status == GLINT_OK ? child_start(child, w.word, CHILD_READS, error)
+                              : status;
 }
 
 void ffmpeg_by_hand(const struct tool *tool, const char *in, const char *out)

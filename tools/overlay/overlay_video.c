@@ -72,12 +72,13 @@ static int fail(struct video *v, enum glint_status status)
 
 static ptrdiff_t read_child(void *ctx, void *dst, size_t bytes)
 {
-    const struct child *child = ctx;
+    struct child *child = ctx;
     ssize_t n;
 
     do
         n = read(child->fd, dst, bytes);
     while (n < 0 && errno == EINTR);
+    child_hear(child);
     return n;
 }
 
@@ -271,10 +272,16 @@ static int end_reader(struct video *v)
 {
     const int code = child_end(&v->reader);
 
-    if (code == 0)
+    if (code == 0 && !v->reader.heard)
         return EXIT_OK;
-    fprintf(stderr, "glint overlay: %s: ffmpeg could not read all of it\n",
-            v->o->input);
+    if (code != 0)
+        fprintf(stderr, "glint overlay: %s: ffmpeg could not read all of it\n",
+                v->o->input);
+    else
+        fprintf(stderr,
+                "glint overlay: %s is cut off behind frame %d; 'ffmpeg -i IN "
+                "-c copy OUT' makes a whole video of what is there\n",
+                v->o->input, v->o->compositor.n_frames - 1);
     return EXIT_INPUT;
 }
 
@@ -330,8 +337,8 @@ int overlay_video(struct tool *tool, struct overlay *o)
                       .o = o,
                       .reads = !is_y4m(o->input),
                       .writes = !is_y4m(o->output),
-                      .reader = {0, -1},
-                      .writer = {0, -1},
+                      .reader = CHILD_NONE,
+                      .writer = CHILD_NONE,
                       .file = {.fd = -1},
                       .in = {.in = {.fd = -1}},
                       .out = {.out = {.fd = -1}}};
