@@ -177,6 +177,7 @@ struct glint_prescription {
                                  sensor); a front stop lies at z < 0, or
                                  behind the vertex where this is below 0 */
     double stop_semi_mm;      /* largest opening of the stop */
+    bool stop_is_circle;      /* at every opening; else it has blades */
     double check_focal_mm;    /* values that the table states; 0: not stated */
     double check_back_mm;
     /* Coatings of the lens that the table took from its look, not from

@@ -102,6 +102,7 @@ enum glint_status canvas_exact(const struct tool *tool,
 {
     const size_t n = 3 * (size_t)to->width * (size_t)to->height;
     struct glint_setup *setup = malloc(sizeof *setup);
+    const struct stop_option stop = settings_stop_shape(s);
     struct glint_dirt *dirt = NULL;
     double *rgb = malloc(n * sizeof *rgb);
     struct tool_progress progress;
@@ -120,11 +121,11 @@ enum glint_status canvas_exact(const struct tool *tool,
 
     tool_progress_start(&progress, tool, "exact");
     if (setup && rgb)
-        status = glint_setup_init(setup, &s->lens, s->stop.n_blades,
-                                  s->stop.rotation_deg, s->wavelength_nm,
-                                  s->n_wavelengths, &error);
+        status =
+            glint_setup_init(setup, &s->lens, stop.n_blades, stop.rotation_deg,
+                             s->wavelength_nm, s->n_wavelengths, &error);
     if (status == GLINT_OK)
-        status = stop_option_set(&s->stop, setup, &dirt, &error);
+        status = stop_option_set(&stop, setup, &dirt, &error);
     if (status == GLINT_OK && s->balance)
         glint_setup_balance(setup);
     if (status == GLINT_OK)

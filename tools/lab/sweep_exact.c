@@ -24,6 +24,7 @@ static uint64_t key_of(const struct settings *s, const struct glint_lamp *lamp,
                        const struct glint_float_image *to)
 {
     const struct glint_view view = settings_view(s, to->width, to->height);
+    const struct stop_option stop = settings_stop_shape(s);
     struct glint_bake_options options;
     uint64_t hash;
 
@@ -32,10 +33,10 @@ static uint64_t key_of(const struct settings *s, const struct glint_lamp *lamp,
     hash = mix(hash, &to->width, sizeof to->width);
     hash = mix(hash, &to->height, sizeof to->height);
     hash = mix(hash, &view.sensor_width_mm, sizeof view.sensor_width_mm);
-    hash = mix(hash, &s->stop.n_blades, sizeof s->stop.n_blades);
-    hash = mix(hash, &s->stop.rotation_deg, sizeof s->stop.rotation_deg);
-    if (s->stop.iris.roundness > 0 || stop_option_shades(&s->stop)) {
-        const struct glint_iris *i = &s->stop.iris;
+    hash = mix(hash, &stop.n_blades, sizeof stop.n_blades);
+    hash = mix(hash, &stop.rotation_deg, sizeof stop.rotation_deg);
+    if (stop.iris.roundness > 0 || stop_option_shades(&stop)) {
+        const struct glint_iris *i = &stop.iris;
         const double iris[] = {i->roundness, i->softness, i->dust,
                                i->dust_seed};
 

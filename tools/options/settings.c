@@ -144,27 +144,40 @@ static int open_model(const struct tool *tool, struct settings *settings,
     snprintf(settings->lens.name, sizeof settings->lens.name, "%s", h->name);
     settings->lens.film_width_mm = model_real_of(h->film_width_mm);
     settings->lens.film_height_mm = model_real_of(h->film_height_mm);
+    settings->lens.stop_is_circle = false; /* models do not say */
     warn_field(tool, settings);
     return EXIT_OK;
+}
+
+struct stop_option settings_stop_shape(const struct settings *settings)
+{
+    struct stop_option stop = settings->stop;
+
+    if (!stop.is_asked && settings->lens.stop_is_circle) {
+        stop.n_blades = 0;
+        stop.iris.roundness = 0;
+    }
+    return stop;
 }
 
 /* Makes the setup of S for its f-number. */
 static enum glint_status make_setup(struct settings *s,
                                     struct glint_error *error)
 {
+    const struct stop_option stop = settings_stop_shape(s);
     struct glint_dirt *const before = s->stop.dirt;
     enum glint_status status =
         s->model.data
-            ? glint_setup_from_model(&s->setup, &s->model.lens,
-                                     s->stop.n_blades, s->stop.rotation_deg,
-                                     s->wavelength_nm, s->n_wavelengths, error)
+            ? glint_setup_from_model(&s->setup, &s->model.lens, stop.n_blades,
+                                     stop.rotation_deg, s->wavelength_nm,
+                                     s->n_wavelengths, error)
             : settings_table_setup(s, error);
 
     if (status == GLINT_OK && s->model.data && s->f_number > 0)
         status = glint_setup_stop_down(&s->setup, &s->model.lens, s->f_number,
                                        error);
     if (status == GLINT_OK)
-        status = stop_option_set(&s->stop, &s->setup, &s->stop.dirt, error);
+        status = stop_option_set(&stop, &s->setup, &s->stop.dirt, error);
     if (status != GLINT_OK)
         return status;
     glint_dirt_free(before);

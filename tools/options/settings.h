@@ -188,9 +188,11 @@ enum settings_option {
     "from\n"                                                                   \
     "                      straight blades to a circle; ,soft:W, 0 to 1 stop " \
     "radii\n"                                                                  \
-    "                      from dark to clear (default polygon:8; of "         \
+    "                      from dark to clear (default polygon:8, of "         \
     "overlay,\n"                                                               \
-    "                      live and explain with round:0.2)\n"                 \
+    "                      live and explain with round:0.2, or the circle "    \
+    "of the\n"                                                                 \
+    "                      table)\n"                                           \
     "  --stop-mask FILE    a picture in the stop, white where it is clear: "   \
     "the\n"                                                                    \
     "                      square about its circle, turned by ROT\n"           \
@@ -372,6 +374,10 @@ int settings_refuse_stop(const struct tool *tool, const struct settings *s,
  * GLINT_E_ARGUMENT: ERROR says why not. */
 enum glint_status settings_zoom(struct settings *settings, double zoom,
                                 struct glint_error *error);
+
+/* Returns the stop of SETTINGS: where the line asks for no shape, a circle if
+ * the table says so. */
+struct stop_option settings_stop_shape(const struct settings *settings);
 
 /* Stops the lens of SETTINGS, which are open and have a model, to F_NUMBER.
  * GLINT_E_ARGUMENT with ERROR: the model was not baked for so wide a stop. */

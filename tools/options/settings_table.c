@@ -94,7 +94,9 @@ const struct glint_frame_rays *settings_table_rays(void)
 enum glint_status settings_table_setup(struct settings *s,
                                        struct glint_error *error)
 {
-    return glint_setup_init(&s->setup, &s->lens, s->stop.n_blades,
-                            s->stop.rotation_deg, s->wavelength_nm,
+    const struct stop_option stop = settings_stop_shape(s);
+
+    return glint_setup_init(&s->setup, &s->lens, stop.n_blades,
+                            stop.rotation_deg, s->wavelength_nm,
                             s->n_wavelengths, error);
 }

@@ -25,7 +25,7 @@ enum glint_status { GLINT_OK, GLINT_E_ARGUMENT, GLINT_E_MEMORY, ... };
 struct glint_error { char text[256]; };
 const char *glint_status_text(enum glint_status status);
 
-struct glint_prescription { char name[...]; double f_number; int n_mixed; ...; };
+struct glint_prescription { char name[...]; double f_number; _Bool stop_is_circle; int n_mixed; ...; };
 struct glint_coating { ...; };
 #define GLINT_MAX_COATINGS ...
 enum glint_status glint_prescription_parse(struct glint_prescription *lens, const char *text, size_t bytes,

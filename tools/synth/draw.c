@@ -93,6 +93,7 @@ static int set_lens(const struct tool *tool, struct synth_lens *lens,
     struct glint_error error = {""};
     enum glint_status status;
 
+    s->stop.is_asked = true;
     s->stop.n_blades = (int)item->blades;
     s->stop.rotation_deg = item->rotation;
     s->stop.iris.roundness = item->roundness;

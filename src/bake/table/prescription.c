@@ -296,17 +296,14 @@ static bool read_gap_and_semi(struct parser *p,
 static bool read_surface_coating(struct parser *p, int k, bool cemented)
 {
     struct glint_surface *s = &p->lens.surface[k];
-    const struct glint_word word = glint_text_next_word(&p->text);
-    char quote[GLINT_QUOTE_BYTES];
     struct glint_coating coating;
+    struct glint_word word;
 
+    if (!glint_text_may_follow(&p->text, "coating", &word))
+        return false;
     p->has_coating[k] = cemented || word.length;
     if (!word.length)
         return true;
-    if (!glint_word_is(&word, "coating"))
-        return glint_text_fail(&p->text, word.place,
-                               "'%s' stands where only coating may follow",
-                               glint_word_quote(&word, quote));
     if (!glint_coating_read(&p->text, &coating))
         return false;
     if (cemented && coating.n_films > 0)
@@ -394,14 +391,21 @@ static bool read_end(struct parser *p)
 
 static bool read_stop(struct parser *p)
 {
+    struct glint_word word;
+
     if (p->in_group || p->in_focus)
         return glint_text_fail(&p->text, p->word[STOP],
                                "the stop cannot be in a group; end it above");
     p->is_surface = false;
     p->lens.stop_after = p->lens.n_surfaces;
-    return read_gap_and_semi(
-        p, p->lens.n_surfaces ? &thickness_range : &front_stop_range,
-        &p->lens.stop_thickness_mm, &p->lens.stop_semi_mm, &p->places.stop);
+    if (!read_gap_and_semi(
+            p, p->lens.n_surfaces ? &thickness_range : &front_stop_range,
+            &p->lens.stop_thickness_mm, &p->lens.stop_semi_mm,
+            &p->places.stop) ||
+        !glint_text_may_follow(&p->text, "circle", &word))
+        return false;
+    p->lens.stop_is_circle = word.length > 0;
+    return true;
 }
 
 /* ------------------------------------------------------------------- lines */

@@ -167,6 +167,18 @@ struct glint_word glint_text_next_word(struct glint_text *text)
     return word;
 }
 
+bool glint_text_may_follow(struct glint_text *text, const char *only,
+                           struct glint_word *word)
+{
+    char quote[GLINT_QUOTE_BYTES];
+
+    *word = glint_text_next_word(text);
+    return !word->length || glint_word_is(word, only) ||
+           glint_text_fail(text, word->place,
+                           "'%s' stands where only %s may follow",
+                           glint_word_quote(word, quote), only);
+}
+
 struct glint_word glint_text_rest(struct glint_text *text)
 {
     struct glint_word word = start_word(text);

@@ -64,6 +64,11 @@ bool glint_text_next_line(struct glint_text *text);
 /* Returns the next word of the line. */
 struct glint_word glint_text_next_word(struct glint_text *text);
 
+/* Reads the next word of the line into WORD, of length 0 if none is left.
+ * Refuses others than ONLY. */
+bool glint_text_may_follow(struct glint_text *text, const char *only,
+                           struct glint_word *word);
+
 /* Returns all that is left of the line, without blanks at either end. */
 struct glint_word glint_text_rest(struct glint_text *text);
 

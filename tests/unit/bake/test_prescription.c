@@ -202,6 +202,23 @@ static void test_stop_at_either_end(void **state)
     assert_int_equal(lens.stop_after, 0);
 }
 
+static void test_round_stops(void **state)
+{
+    static struct glint_prescription lens;
+    static const char table[] = "name a\nf-number 8\nfilm 36 24\n"
+                                "surface 50 6 12 1.5 60\n"
+                                "surface -50 3 12 air\nstop 40 8";
+    char text[sizeof table + 20];
+
+    (void)state;
+    expect_good(&lens, table, strlen(table));
+    assert_false(lens.stop_is_circle);
+    snprintf(text, sizeof text, "%s  circle # always", table);
+    expect_good(&lens, text, strlen(text));
+    assert_true(lens.stop_is_circle);
+    assert_true(lens.stop_thickness_mm == 40 && lens.stop_semi_mm == 8);
+}
+
 /* The parser must round decimals as the compiler does. */
 static void test_numbers_are_exact(void **state)
 {
@@ -365,7 +382,8 @@ static const struct {
     {8, "stop 5 8\nstop 5 8",
      "x.lens:9:1: a second stop; the first is on line 8"},
     {8, "stop 5", "x.lens:8:7: semi-diameter is missing"},
-    {8, "stop 5 8 9", "x.lens:8:10: '9' is more than stop takes"},
+    {8, "stop 5 8 circle 9", "x.lens:8:17: '9' is more than stop takes"},
+    {8, "stop 5 8 9", "x.lens:8:10: '9' stands where only circle may follow"},
     /* mistakes that only the lens as a whole shows */
     {6, "surface 50 2.3 12 N-BK7",
      "x.lens:6:12: overlaps the next element by 0.06066 mm at 10.8 mm from "
@@ -672,6 +690,7 @@ int main(void)
         cmocka_unit_test(test_bytes),
         cmocka_unit_test(test_longest_line_and_text),
         cmocka_unit_test(test_utf8_and_comments),
+        cmocka_unit_test(test_round_stops),
         cmocka_unit_test(test_too_many_surfaces),
         cmocka_unit_test(test_power),
         cmocka_unit_test(test_stated_values),

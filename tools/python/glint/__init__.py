@@ -161,16 +161,19 @@ class Engine:
     lens      a name, a .lens or .glint file, or the bytes of a model
     strength  how bright flares come out: 0 none, 0.5 a quarter of white at their brightest, 1 white
     exposure  stops, instead of strength: 0 is physical
-    stop      blades and roundness; 0 blades: a circle
+    stop      blades and roundness, 0 blades a circle; None: (8, 0.2), or the circle of the table
     Others are as the options of glint overlay of the same names.
     """
 
     def __init__(self, lens: Union[str, bytes], height: int, width: int, *, strength: float = 0.5,
                  exposure: Optional[float] = None, gain: float = 1.0, starburst: float = 1.0, veil: float = 0.0,
-                 haze: float = 0.0, quality: float = 0.5, f_number: float = 0.0, stop: Tuple[int, float] = (8, 0.2),
+                 haze: float = 0.0, quality: float = 0.5, f_number: float = 0.0, stop: Optional[Tuple[int, float]] = None,
                  rotation: float = 0.0, coating: str = "mixed", threads: int = 0) -> None:
         self._engine = None
         self._pool = _Pool(threads)
+        if stop is None:
+            of_table = isinstance(lens, str) and not lens.endswith(".glint")
+            stop = (0, 0.0) if of_table and _prescription(lens, coating).stop_is_circle else (8, 0.2)
         if isinstance(lens, str):
             lens = pathlib.Path(lens).read_bytes() if lens.endswith(".glint") else _cached(lens, coating, f_number, self._pool)
         # words of 32 bits: memory of C is aligned, that of bytes need not be
