@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
  * PNG, also as a data: URI. Its pixels are stored, not compressed, so that no
- * library is needed.
+ * library is needed; pages, which have many, take the image plug-in where it
+ * is.
  */
 #include <stdlib.h>
 #include <string.h>
 
 #include "lab/plots/plot.h"
 #include "lab/sweep.h"
+#include "oiio/oiio.h"
 
 enum { BLOCK = 65535 }; /* most bytes of a stored block of deflate */
 
@@ -134,9 +136,36 @@ static struct bytes png_of(const uint8_t *rgb, int width, int height)
     return b;
 }
 
+/* Makes the file of a picture by the image plug-in, compressed; at NULL if it
+ * is not there, or cannot. */
+static struct bytes small_png_of(const uint8_t *rgb, int width, int height)
+{
+    const size_t row = 3 * (size_t)width, n = row * (size_t)height;
+    struct glint_oiio_pixels pixels = {.width = width, .height = height};
+    const struct glint_oiio *oiio;
+    struct glint_error error;
+    void *data = NULL;
+    size_t bytes = 0;
+
+    if (glint_oiio_load(&oiio, &error) != GLINT_OK)
+        return (struct bytes){NULL, 0};
+    pixels.rgb = malloc(n);
+    if (pixels.rgb) {
+        memcpy(pixels.rgb, rgb, n);
+        if (oiio->encode(&data, &bytes, "x.png", &pixels, (ptrdiff_t)row,
+                         &error) != GLINT_OK)
+            data = NULL;
+    }
+    free(pixels.rgb);
+    return (struct bytes){data, bytes};
+}
+
 void sweep_png(FILE *file, const uint8_t *rgb, int width, int height)
 {
-    const struct bytes b = png_of(rgb, width, height);
+    struct bytes b = small_png_of(rgb, width, height);
+
+    if (!b.at)
+        b = png_of(rgb, width, height);
 
     if (b.at) {
         fputs("data:image/png;base64,", file);
