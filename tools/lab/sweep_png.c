@@ -162,16 +162,17 @@ static struct bytes small_png_of(const uint8_t *rgb, int width, int height)
 
 void sweep_png(FILE *file, const uint8_t *rgb, int width, int height)
 {
-    struct bytes b = small_png_of(rgb, width, height);
-
-    if (!b.at)
-        b = png_of(rgb, width, height);
+    const struct bytes stored = png_of(rgb, width, height);
+    const struct bytes small = small_png_of(rgb, width, height);
+    const bool is_small = small.at && (!stored.at || small.n < stored.n);
+    const struct bytes b = is_small ? small : stored;
 
     if (b.at) {
         fputs("data:image/png;base64,", file);
         base64(file, b.at, b.n);
     }
-    free(b.at);
+    free(stored.at);
+    free(small.at);
 }
 
 bool plot_png(FILE *file, const struct plot_pixels *pixels)
