@@ -39,6 +39,11 @@ struct glint_bake_options {
     /* [ghosts of the lens]: those to be baked; NULL: all. The others are in the
      * model as if never seen. */
     const bool *ghosts;
+    /* [n_beside], 2 at most: the lens at nearby positions of its zoom. What
+     * is seen or cut there is part of the model, so that models of positions
+     * can be mixed. Only of lenses symmetric about their axis. */
+    const struct glint_prescription *beside;
+    int n_beside;
     struct glint_workers *workers; /* does not change the model */
     /* NULL: silent. After each fit, an estimate: its share may fall. */
     glint_progress_fn *progress;

@@ -24,6 +24,7 @@ struct bake_run {
     const struct glint_prescription *lens;
     struct glint_bake_options options;
     struct glint_setup setup;
+    struct glint_setup beside[GLINT_MAX_BESIDE];
     struct glint_brightness brightness;
     struct glint_fitted_ghost *fitted;         /* [n_ghosts] */
     struct glint_quantised_system **quantised; /* [n_ghosts][n_systems] */
@@ -39,12 +40,21 @@ struct bake_run {
 
 /* --------------------------------------------------------------------- jobs */
 
-static void visible_init(const struct bake_run *run, int ghost,
-                         struct glint_visible *visible)
+/* Returns the ghost and N beside it, to be freed; NULL: no memory. */
+static struct glint_visible *visible_of(const struct bake_run *run, int ghost,
+                                        int n)
 {
-    glint_visible_init(visible, &run->setup, ghost,
-                       glint_bake_field_mm(run->lens, &run->options),
-                       run->options.band_nm);
+    struct glint_visible *const v = calloc((size_t)n + 1, sizeof *v);
+
+    for (int k = 0; v && k <= n; k++)
+        glint_visible_init(&v[k], k ? &run->beside[k - 1] : &run->setup, ghost,
+                           glint_bake_field_mm(run->lens, &run->options),
+                           run->options.band_nm);
+    if (v) {
+        v->beside = v + 1;
+        v->n_beside = n;
+    }
+    return v;
 }
 
 static enum glint_status quantise_ghost(struct bake_run *run, int ghost)
@@ -126,14 +136,13 @@ static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
         const struct glint_visible *, double, const struct glint_tolerance *,
         glint_fit_told_fn *, void *, struct glint_fitted_ghost *) =
         round ? glint_fit_ghost : glint_skew_fit;
-    struct glint_visible *visible = malloc(sizeof *visible);
-    enum glint_status status = GLINT_E_MEMORY;
+    struct glint_visible *const visible =
+        visible_of(run, ghost, round ? run->options.n_beside : 0);
+    const enum glint_status status =
+        visible ? fit(visible, run->options.max_deg, &tolerance,
+                      tells ? fit_told : NULL, run, &run->fitted[ghost])
+                : GLINT_E_MEMORY;
 
-    if (visible) {
-        visible_init(run, ghost, visible);
-        status = fit(visible, run->options.max_deg, &tolerance,
-                     tells ? fit_told : NULL, run, &run->fitted[ghost]);
-    }
     free(visible);
     return status;
 }
@@ -167,13 +176,12 @@ static void measure_job(void *ctx, int ghost, int worker)
 {
     struct bake_run *run = ctx;
     const struct glint_lens lens = glint_draft_lens(&run->draft);
-    struct glint_visible *visible = malloc(sizeof *visible);
+    struct glint_visible *const visible = visible_of(run, ghost, 0);
 
     (void)worker;
     run->status[ghost] = GLINT_E_MEMORY;
     if (!visible)
         return;
-    visible_init(run, ghost, visible);
     for (int i = 0; i < run->fitted[ghost].n_systems; i++) {
         struct glint_measured m;
 
@@ -426,6 +434,9 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
     }
     if (status == GLINT_OK)
         status = glint_setup_init(&run->setup, lens, 0, 0, rgb_nm, 3, error);
+    for (int n = 0; n < options->n_beside && status == GLINT_OK; n++)
+        status = glint_setup_init(&run->beside[n], &options->beside[n], 0, 0,
+                                  rgb_nm, 3, error);
     if (status == GLINT_OK) {
         status = bake_run(run);
         if (status == GLINT_E_LENS && !error->text[0])

@@ -6,7 +6,7 @@
 #define GLINT_BAKE_MEASURE_MODEL_H
 
 #include "bake/fit/fitted.h"
-#include "bake/fit/visible.h"
+#include "bake/visible/visible.h"
 #include "glint/model.h"
 
 struct glint_errors {

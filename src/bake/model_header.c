@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "bake/regress/regress.h"
-#include "bake/fit/visible.h"
+#include "bake/visible/visible.h"
 #include "bake/options.h"
 #include "bake/skew/skew_fit.h"
 #include "bake/trace/cells.h"

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "bake/fit/visible.h"
+#include "bake/visible/visible.h"
 #include "glint/model.h"
 
 enum {
@@ -46,6 +46,8 @@ enum glint_status glint_bake_check(const struct glint_bake_options *options,
             ? "the field must be a length"
         : !(o->tolerance >= 0.1 && o->tolerance <= 100)
             ? "the tolerance must be 0.1 to 100"
+        : !(o->n_beside >= 0 && o->n_beside <= GLINT_MAX_BESIDE)
+            ? "a position has at most two beside it"
             : NULL;
 
     if (wrong)
@@ -102,6 +104,29 @@ static void mix_shape(uint64_t *key, const struct glint_shape *s)
     mix(key, s->pivot_mm);
 }
 
+static void mix_lens(uint64_t *key, const struct glint_prescription *lens)
+{
+    mix(key, lens->f_number);
+    mix(key, lens->film_width_mm);
+    mix(key, lens->film_height_mm);
+    mix(key, lens->stop_after);
+    mix(key, lens->stop_thickness_mm);
+    for (int k = 0; k < lens->n_surfaces; k++) {
+        const struct glint_surface *s = &lens->surface[k];
+
+        mix(key, s->radius_mm);
+        mix(key, s->thickness_mm);
+        mix(key, s->semi_mm);
+        mix(key, s->nd);
+        mix(key, s->vd);
+        for (int i = 0; i < 6 && s->sellmeier[0] > 0; i++)
+            mix(key, s->sellmeier[i]);
+        mix_coating(key, &s->coating);
+        if (glint_surface_is_shaped(s))
+            mix_shape(key, &s->shape);
+    }
+}
+
 uint64_t glint_bake_key(const struct glint_prescription *lens,
                         const struct glint_bake_options *options)
 {
@@ -117,25 +142,9 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
     mix(&key, options->tolerance);
     for (int g = 0; options->ghosts && g < glint_ghost_list(lens, NULL, 0); g++)
         mix(&key, options->ghosts[g]);
-    mix(&key, lens->f_number);
-    mix(&key, lens->film_width_mm);
-    mix(&key, lens->film_height_mm);
-    mix(&key, lens->stop_after);
-    mix(&key, lens->stop_thickness_mm);
-    for (int k = 0; k < lens->n_surfaces; k++) {
-        const struct glint_surface *s = &lens->surface[k];
-
-        mix(&key, s->radius_mm);
-        mix(&key, s->thickness_mm);
-        mix(&key, s->semi_mm);
-        mix(&key, s->nd);
-        mix(&key, s->vd);
-        for (int i = 0; i < 6 && s->sellmeier[0] > 0; i++)
-            mix(&key, s->sellmeier[i]);
-        mix_coating(&key, &s->coating);
-        if (glint_surface_is_shaped(s))
-            mix_shape(&key, &s->shape);
-    }
+    mix_lens(&key, lens);
+    for (int k = 0; k < options->n_beside; k++)
+        mix_lens(&key, &options->beside[k]);
     if (!glint_prescription_is_round(lens))
         mix(&key, SKEW_REVISION);
     for (const char *c = lens->name; *c; c++)

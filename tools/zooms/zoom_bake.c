@@ -46,6 +46,7 @@ struct run {
     struct glint_error *error;
     struct tool_progress progress;  /* of all positions, or of one half-way */
     struct glint_prescription lens; /* at the place in work */
+    struct glint_prescription beside[2]; /* a finest step before and after */
     int n_ghosts, n_places, step;
     double start;
     struct place place[PLACES];
@@ -54,20 +55,35 @@ struct run {
     struct glint_zoom_lens zoom;
 };
 
-/* Zooms the lens of RUN to PLACE. */
-static enum glint_status move_to(struct run *run, int place)
+/* Sets LENS to that of RUN at PLACE. */
+static enum glint_status move_to(const struct run *run, int place,
+                                 struct glint_prescription *lens)
 {
     const struct zoom_bake *const b = run->bake;
     enum glint_status status;
 
-    run->lens = *b->lens;
-    status = glint_prescription_zoom(&run->lens, place / (run->n_places - 1.0),
+    *lens = *b->lens;
+    status = glint_prescription_zoom(lens, place / (run->n_places - 1.0),
                                      run->error);
     if (status == GLINT_OK && b->focus_m > 0)
-        status = glint_prescription_focus(&run->lens, b->focus_m, run->error);
+        status = glint_prescription_focus(lens, b->focus_m, run->error);
     if (status == GLINT_OK && b->f_number > 0)
-        status = glint_prescription_set_f_number(&run->lens, b->f_number,
-                                                 run->error);
+        status = glint_prescription_set_f_number(lens, b->f_number, run->error);
+    return status;
+}
+
+/* Sets what lies a finest step before and after PLACE, for OPTIONS. */
+static enum glint_status set_beside(struct run *run, int place,
+                                    struct glint_bake_options *options)
+{
+    enum glint_status status = GLINT_OK;
+
+    options->beside = run->beside;
+    options->n_beside = 0;
+    for (int at = place - LAST; at <= place + LAST && status == GLINT_OK;
+         at += 2 * LAST)
+        if (at >= 0 && at < run->n_places)
+            status = move_to(run, at, &run->beside[options->n_beside++]);
     return status;
 }
 
@@ -77,8 +93,10 @@ static enum glint_status bake_place(struct run *run, int place, bool whole)
     struct place *const p = &run->place[place];
     struct glint_bake_options options = *run->bake->options;
     struct glint_bake_report report;
-    enum glint_status status = move_to(run, place);
+    enum glint_status status = move_to(run, place, &run->lens);
 
+    if (status == GLINT_OK)
+        status = set_beside(run, place, &options);
     options.ghosts = p->model.ghosts = whole ? NULL : p->ghosts;
     options.workers = run->tool->workers;
     options.progress = tool_progress_show;
@@ -235,7 +253,7 @@ static enum glint_status halve(struct run *run, int from)
         return GLINT_OK;
     glint_zoom_set(&run->zoom,
                    (int32_t)lrint(middle / (run->n_places - 1.0) * 0x1p30));
-    status = move_to(run, middle);
+    status = move_to(run, middle, &run->lens);
     if (status == GLINT_OK)
         status = zoom_error_measure(run->tool, &run->lens, &run->zoom,
                                     run->bake->options->max_deg,
@@ -331,7 +349,7 @@ enum glint_status zoom_bake_run(struct tool *tool, const struct zoom_bake *bake,
     run->n_places = n * run->step + 1;
     run->n_ghosts = glint_ghost_list(bake->lens, NULL, 0);
     if (reserve(run))
-        status = move_to(run, 0);
+        status = move_to(run, 0, &run->lens);
     if (status == GLINT_OK)
         status = bake_all(run);
     for (int k = 0; k < run->n_places; k++) {

@@ -8,9 +8,9 @@
 #include "engine/measure.h"
 #include "glint/glint.h"
 
-/* Pictures are so many pixels wide: an eighth of 1080p's, whose outlines are as
+/* Pictures are so many pixels wide: a fourth of 1080p's, whose outlines are as
  * far off in shares of the picture. */
-enum { WIDE = 240, MOST_HIGH = 240 };
+enum { WIDE = 480, MOST_HIGH = 480 };
 
 /* Lights come from angles up to this times the half diagonal of what the lens
  * sees. */

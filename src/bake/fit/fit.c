@@ -33,6 +33,8 @@ struct fitter {
     glint_zone_sampling sampling;
     struct glint_visible_profile profile;
     struct glint_visible in_band, in_part;
+    struct glint_visible beside_band[GLINT_MAX_BESIDE];
+    struct glint_visible beside_part[GLINT_MAX_BESIDE];
     struct glint_visible_profile band_profile;
     double profiled[4];      /* angles and band of band_profile */
     int n_parts;             /* number of parts of the zone so far */
@@ -281,6 +283,8 @@ enum glint_status glint_fit_ghost(const struct glint_visible *visible,
         return status;
     f->visible = visible;
     f->tolerance = tolerance;
+    f->in_band.beside = f->beside_band;
+    f->in_part.beside = f->beside_part;
     /* There is no profile of a part of the band yet. */
     f->profiled[0] = HUGE_VAL;
     f->out = out;

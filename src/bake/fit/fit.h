@@ -17,7 +17,7 @@
 
 #include "bake/fit/fitted.h"
 #include "bake/fit/tolerance.h"
-#include "bake/fit/visible.h"
+#include "bake/visible/visible.h"
 #include "glint/status.h"
 
 /* Called after each fit of a zone with how many that makes, where a thorough

@@ -12,7 +12,7 @@
 #define GLINT_BAKE_FIT_NEXT_H
 
 #include "bake/fit/tolerance.h"
-#include "bake/fit/visible.h"
+#include "bake/visible/visible.h"
 #include "bake/fit/zone_fit.h"
 
 /* A zone, or a part of one, that waits to be fitted. BEFORE is the error of the

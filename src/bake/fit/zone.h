@@ -20,7 +20,7 @@
 #ifndef GLINT_BAKE_FIT_ZONE_H
 #define GLINT_BAKE_FIT_ZONE_H
 
-#include "bake/fit/visible.h"
+#include "bake/visible/visible.h"
 #include "bake/regress/regress.h"
 #include "glint/model.h"
 #include "glint/trace.h"

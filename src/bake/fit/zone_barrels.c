@@ -45,20 +45,22 @@ static bool sample_ray(const struct glint_visible *h,
 /* Samples rays at scattered angles, as a barrel may cut in a narrow range of
  * angles only. */
 static void sample_rays(const struct glint_zone *z,
-                        const struct glint_visible *h,
+                        const struct glint_visible *visible,
                         struct sampling *sampling)
 {
-    static const int waves[] = {GLINT_VISIBLE_WAVES / 2, 0,
-                                GLINT_VISIBLE_WAVES - 1};
     /* Zones of two components of the direction are many, and rays of shaped
      * lenses take long. */
-    const int n = GLINT_SAMPLING_RAYS / (z->skew ? 2 : h->shaped ? 3 : 1);
+    const int n = GLINT_SAMPLING_RAYS / (z->skew ? 2 : visible->shaped ? 3 : 1);
     struct glint_zone_batch t;
 
     sampling->n = 0;
-    sampling->n_events = h->path[0].n_events;
+    sampling->n_events = visible->path[0].n_events;
     for (int k = 0; k < n / GLINT_ZONE_BATCH; k++) {
-        const int wave = waves[k % 3];
+        const int members = 1 + visible->n_beside;
+        const struct glint_visible *const h =
+            glint_visible_member(visible, k % members);
+        const int wave =
+            glint_visible_colour[k / members % GLINT_VISIBLE_COLOURS];
         double x[GLINT_VARIABLES];
 
         t.path = &h->position_path[wave];

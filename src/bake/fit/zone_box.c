@@ -258,15 +258,23 @@ struct sighting {
     double low[GLINT_VARIABLES], high[GLINT_VARIABLES];
 };
 
-static void sight(const struct glint_visible *h,
-                  const struct glint_zone_batch *t, struct sighting *seen)
+/* Traces T at wavelength WAVE of the ghost and of those beside it. */
+static void sight(const struct glint_visible *visible, int wave,
+                  struct glint_zone_batch *t, struct sighting *seen)
 {
-    for (int i = 0; i < t->n; i++)
-        if (t->status[i] == GLINT_RAY_OK && glint_visible_passes(h, &t->ray[i]))
-            for (int k = 0; k < GLINT_VARIABLES; k++) {
-                seen->low[k] = fmin(seen->low[k], t->x[i][k]);
-                seen->high[k] = fmax(seen->high[k], t->x[i][k]);
-            }
+    for (int m = 0; m <= visible->n_beside; m++) {
+        const struct glint_visible *const h = glint_visible_member(visible, m);
+
+        t->path = &h->position_path[wave];
+        glint_zone_batch_trace(t);
+        for (int i = 0; i < t->n; i++)
+            if (t->status[i] == GLINT_RAY_OK &&
+                glint_visible_passes(h, &t->ray[i]))
+                for (int k = 0; k < GLINT_VARIABLES; k++) {
+                    seen->low[k] = fmin(seen->low[k], t->x[i][k]);
+                    seen->high[k] = fmax(seen->high[k], t->x[i][k]);
+                }
+    }
 }
 
 double glint_zone_crop(const struct glint_zone *zone,
@@ -286,7 +294,6 @@ double glint_zone_crop(const struct glint_zone *zone,
 
         if (wave % stride)
             continue;
-        t.path = &visible->position_path[wave];
         for (t.n = 0; t.n < COLUMNS;) {
             const double x[GLINT_VARIABLES] = {
                 2.0 * t.n / (COLUMNS - 1) - 1, (double)row / ROWS,
@@ -295,8 +302,7 @@ double glint_zone_crop(const struct glint_zone *zone,
 
             glint_zone_batch_add(&t, zone, x);
         }
-        glint_zone_batch_trace(&t);
-        sight(visible, &t, &seen);
+        sight(visible, wave, &t, &seen);
     }
     if (seen.high[0] < seen.low[0])
         return 0;

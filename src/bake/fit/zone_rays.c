@@ -6,6 +6,22 @@
 #include "bake/fit/zone_batch.h"
 #include "engine/setup/degrees.h"
 
+/* Returns the largest relative radius of RAY at any surface and at the stop. */
+static double excess_of(const struct glint_visible *h,
+                        const struct glint_ray *ray)
+{
+    return fmax(ray->rel_radius, hypot(ray->stop_x_mm, ray->stop_y_mm) /
+                                     h->setup->optics.stop_radius_mm);
+}
+
+/* Returns the distance of RAY from the sensor's centre in radii of the field.
+ */
+static double field_of(const struct glint_visible *h,
+                       const struct glint_ray *ray)
+{
+    return hypot(ray->sensor_x_mm, ray->sensor_y_mm) / h->field_mm;
+}
+
 static void add_ray(const struct glint_visible *h,
                     const struct glint_path *path,
                     const double x[GLINT_VARIABLES],
@@ -22,17 +38,67 @@ static void add_ray(const struct glint_visible *h,
     rays->at[RAY_STOP_X][i] = ray->stop_x_mm / stop;
     rays->at[RAY_STOP_Y][i] = ray->stop_y_mm / stop;
     rays->at[RAY_ENERGY][i] = ray->energy;
-    rays->at[RAY_EXCESS][i] =
-        fmax(ray->rel_radius, hypot(ray->stop_x_mm, ray->stop_y_mm) / stop);
+    rays->at[RAY_EXCESS][i] = excess_of(h, ray);
     rays->at[RAY_SPREAD][i] = 0;
-    rays->at[RAY_FIELD][i] =
-        hypot(ray->sensor_x_mm, ray->sensor_y_mm) / h->field_mm;
+    rays->at[RAY_FIELD][i] = field_of(h, ray);
     for (int k = 0; k < rays->n_barrels; k++) {
         const int e = rays->barrel[k];
 
         rays->radius[k][i] =
             hypot(hits[e][0], hits[e][1]) / path->event[e].semi_mm;
     }
+}
+
+/* How far out rays of a batch are at the same ghost of other positions: at the
+ * one at which they are least. */
+struct beside {
+    double excess[GLINT_ZONE_BATCH], field[GLINT_ZONE_BATCH];
+};
+
+/* Returns whether a ray of EXCESS and FIELD is less far out than ray I beside.
+ */
+static bool is_nearer(const struct beside *b, int i, double excess,
+                      double field)
+{
+    return fmax(excess, field) < fmax(b->excess[i], b->field[i]);
+}
+
+/* Traces the rays of T at wavelength WAVE of the ghosts beside that of VISIBLE.
+ */
+static void trace_beside(const struct glint_visible *visible, int wave,
+                         struct glint_zone_batch *t, struct beside *b)
+{
+    for (int i = 0; i < t->n; i++)
+        b->excess[i] = b->field[i] = HUGE_VAL;
+    for (int m = 0; m < visible->n_beside; m++) {
+        const struct glint_visible *const h = &visible->beside[m];
+
+        t->path = &h->position_path[wave];
+        glint_zone_batch_trace(t);
+        for (int i = 0; i < t->n; i++) {
+            const double excess = excess_of(h, &t->ray[i]);
+            const double field = field_of(h, &t->ray[i]);
+
+            if (t->status[i] == GLINT_RAY_OK &&
+                is_nearer(b, i, excess, field)) {
+                b->excess[i] = excess;
+                b->field[i] = field;
+            }
+        }
+    }
+}
+
+/* Gives the last of RAYS how far out ray I of B is, if that is less. */
+static void take_beside(const struct beside *b, int i,
+                        struct glint_zone_rays *rays)
+{
+    double *const excess = &rays->at[RAY_EXCESS][rays->n - 1];
+    double *const field = &rays->at[RAY_FIELD][rays->n - 1];
+
+    if (is_nearer(b, i, *excess, *field))
+        return;
+    *excess = b->excess[i];
+    *field = b->field[i];
 }
 
 /* Numbers of angles and of cells across and down. There are more nodes than
@@ -62,8 +128,8 @@ static void trace_plane(const struct glint_zone *zone,
     const double right = move * turn(plane, 0.75487766624669276);
     const double up = move * turn(plane, 0.56984029099805327);
     struct glint_zone_batch t;
+    struct beside beside;
 
-    t.path = &visible->path[wave];
     for (int j = 0; j <= DOWN; j += stride) {
         t.n = 0;
         for (int i = 0; i <= ACROSS; i += stride) {
@@ -77,12 +143,15 @@ static void trace_plane(const struct glint_zone *zone,
 
             glint_zone_batch_add(&t, zone, x);
         }
+        trace_beside(visible, wave, &t, &beside);
+        t.path = &visible->path[wave];
         glint_zone_batch_trace(&t);
         for (int i = 0; i < t.n && rays->n < full; i++) {
             if (t.status[i] != GLINT_RAY_OK)
                 continue;
             add_ray(visible, t.path, t.x[i], &t.ray[i],
                     glint_zone_batch_hits(&t, i), rays);
+            take_beside(&beside, i, rays);
             if (stride == 1 && (i + j) % 3 &&
                 fmax(rays->at[RAY_EXCESS][rays->n - 1],
                      rays->at[RAY_FIELD][rays->n - 1]) > 1.1)

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "engine/setup/degrees.h"
-#include "bake/fit/visible.h"
+#include "bake/visible/visible.h"
 #include "bake/published/shared_basis.h"
 
 enum {

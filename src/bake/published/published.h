@@ -16,11 +16,11 @@
  * the method leaves open: the search takes zones of each wavelength in turn, in
  * a third of the time.
  *
- * Limits: those of the search for visible light (bake/fit/visible.h); ranges
- * and boxes are shared by all wavelengths; boxes are interpolated between those
- * of that search's profile. Between two knots the error is that of the
- * interpolation: where the box moves by its own size from knot to knot it is
- * much larger than at the knots. */
+ * Limits: those of the search for visible light (bake/visible/visible.h);
+ * ranges and boxes are shared by all wavelengths; boxes are interpolated
+ * between those of that search's profile. Between two knots the error is that
+ * of the interpolation: where the box moves by its own size from knot to knot
+ * it is much larger than at the knots. */
 #ifndef GLINT_BAKE_PUBLISHED_PUBLISHED_H
 #define GLINT_BAKE_PUBLISHED_PUBLISHED_H
 

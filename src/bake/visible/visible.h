@@ -12,18 +12,23 @@
  * own box (unless the field is so small that the search closes in on it), or
  * that is there for less than four angles and apart from the one that is
  * followed. */
-#ifndef GLINT_BAKE_FIT_VISIBLE_H
-#define GLINT_BAKE_FIT_VISIBLE_H
+#ifndef GLINT_BAKE_VISIBLE_VISIBLE_H
+#define GLINT_BAKE_VISIBLE_VISIBLE_H
 
 #include "glint/setup.h"
 #include "glint/trace.h"
 
 enum {
     GLINT_VISIBLE_WAVES = 11,
+    GLINT_VISIBLE_COLOURS = 3,
     GLINT_MAX_RANGES = 8,
     /* Number of angles of a range at which boxes are found. */
-    GLINT_PROFILE = 49
+    GLINT_PROFILE = 49,
+    GLINT_MAX_BESIDE = 2
 };
+
+/* Numbers of the wavelengths in the middle and at the ends of the band. */
+extern const int glint_visible_colour[GLINT_VISIBLE_COLOURS];
 
 /* F-number of stops that all fits were tuned for; those of wider ones sample
  * and weigh rays in other ways, too. */
@@ -47,13 +52,25 @@ struct glint_visible {
                                                     wave_lo to wave_hi */
     struct glint_path position_path[GLINT_VISIBLE_WAVES]; /* those paths, for
                                                              positions only */
+    /* The ghost of the same lens at nearby positions of a zoom: what is seen or
+     * cut there counts as if it were so here, that models can be mixed. */
+    int n_beside;
+    struct glint_visible *beside; /* [n_beside], with none of their own */
 };
+
+/* Returns the ghost itself for K of 0, and then those beside it. */
+static inline const struct glint_visible *
+glint_visible_member(const struct glint_visible *visible, int k)
+{
+    return k == 0 ? visible : &visible->beside[k - 1];
+}
 
 void glint_visible_init(struct glint_visible *visible,
                         const struct glint_setup *setup, int ghost,
                         double field_mm, const double band_nm[2]);
 
-/* Sets VISIBLE for the part W0 .. W1, -1 .. 1, of the band of WHOLE. */
+/* Sets VISIBLE for the part W0 .. W1, -1 .. 1, of the band of WHOLE; it has
+ * room for as many beside it. */
 void glint_visible_narrow(struct glint_visible *visible,
                           const struct glint_visible *whole, double w0,
                           double w1);

@@ -1,0 +1,217 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A ghost beside the same one at a nearby position of a zoom: ranges and boxes
+ * hold what is seen at either, and models have what is cut at either. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "bake/fit/zone_rays.h"
+#include "bake/visible/visible.h"
+#include "engine/setup/degrees.h"
+#include "glint/bake.h"
+#include "glint/transfer.h"
+
+enum { MAX_DEG = 9, GHOSTS = 7, CUT = 3 /* at more than 7 degrees */ };
+
+/* The second group moves by 12 mm, and what it cuts with it: its end first. */
+static const char table[] = "name t\n"
+                            "f-number 8\n"
+                            "film 24 16\n"
+                            "surface  60    4    11  1.52 60\n"
+                            "surface -200   2/14 11  air\n"
+                            "surface -80    2     7  1.62 36\n"
+                            "surface  70   14/2   7  air\n"
+                            "stop      4    6\n"
+                            "surface   90   4     9  1.62 36\n"
+                            "surface  -60  60     9  air\n";
+
+static const double band_nm[2] = {400, 700};
+static struct glint_prescription at[2];
+static struct glint_setup setup[2];
+static struct glint_visible alone[2], both[2];
+
+static int open_lens(void **state)
+{
+    static struct glint_prescription lens;
+    static const double rgb_nm[] = {650, 532, 450};
+    struct glint_error error = {""};
+
+    (void)state;
+    if (glint_prescription_parse(&lens, table, sizeof table - 1, "t.lens",
+                                 &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+    for (int k = 0; k < 2; k++) {
+        at[k] = lens;
+        if (glint_prescription_zoom(&at[k], 1 - k, &error) != GLINT_OK ||
+            glint_setup_init(&setup[k], &at[k], 0, 0, rgb_nm, 3, &error) !=
+                GLINT_OK)
+            fail_msg("%s", error.text);
+    }
+    assert_int_equal(setup[0].n_ghosts, GHOSTS);
+    return 0;
+}
+
+static void set_ghost(int ghost)
+{
+    for (int k = 0; k < 2; k++)
+        glint_visible_init(&alone[k], &setup[k], ghost, 16, band_nm);
+    both[0] = alone[0];
+    both[1] = alone[1];
+    both[0].beside = &both[1];
+    both[0].n_beside = 1;
+}
+
+static bool is_in(double (*range)[2], int n, double lo, double hi)
+{
+    for (int k = 0; k < n; k++)
+        if (range[k][0] <= lo && hi <= range[k][1])
+            return true;
+    return false;
+}
+
+/* Every range of either is in one of both, which begins and ends where one of
+ * either does. */
+static void test_ranges(void **state)
+{
+    int wider = 0;
+
+    (void)state;
+    for (int g = 1; g < 4; g++) {
+        double of[3][GLINT_MAX_RANGES][2], last = -1;
+        int n[3];
+
+        set_ghost(g);
+        n[2] = glint_visible_ranges(&both[0], MAX_DEG, of[2]);
+        for (int k = 0; k < 2; k++) {
+            n[k] = glint_visible_ranges(&alone[k], MAX_DEG, of[k]);
+            for (int i = 0; i < n[k]; i++)
+                assert_true(is_in(of[2], n[2], of[k][i][0], of[k][i][1]));
+        }
+        wider += n[2] > 0 && !is_in(of[0], n[0], of[2][0][0], of[2][0][1]);
+        for (int i = 0; i < n[2]; i++) {
+            int begins = 0, ends = 0;
+
+            assert_true(of[2][i][0] > last && of[2][i][1] > of[2][i][0]);
+            last = of[2][i][1];
+            for (int k = 0; k < 2; k++)
+                for (int j = 0; j < n[k]; j++) {
+                    begins += of[k][j][0] == of[2][i][0];
+                    ends += of[k][j][1] == of[2][i][1];
+                }
+            assert_true(begins > 0 && ends > 0);
+        }
+    }
+    assert_true(wider > 0);
+}
+
+/* Boxes of both hold those of either, and are no wider. */
+static void test_boxes(void **state)
+{
+    static struct glint_visible_profile of[3];
+    const double range[2] = {0, glint_sin_deg(4)};
+    int moved = 0;
+
+    (void)state;
+    for (int g = 1; g < 4; g++) {
+        set_ghost(g);
+        for (int k = 0; k < 2; k++)
+            glint_visible_profile_find(&alone[k], range, &of[k]);
+        glint_visible_profile_find(&both[0], range, &of[2]);
+        if (of[0].n < GLINT_PROFILE || of[1].n < GLINT_PROFILE)
+            continue;
+        assert_int_equal(of[2].n, GLINT_PROFILE);
+        for (int i = 0; i < GLINT_PROFILE; i++) {
+            struct glint_pupil box = of[0].box[i];
+
+            glint_visible_join(&box, &of[1].box[i]);
+            assert_true(box.x0_mm == of[2].box[i].x0_mm &&
+                        box.x1_mm == of[2].box[i].x1_mm &&
+                        box.y1_mm == of[2].box[i].y1_mm);
+            moved += box.x0_mm != of[0].box[i].x0_mm;
+        }
+    }
+    assert_true(moved > 0);
+}
+
+/* Returns the number of rays that GHOST of the model DATA lets through at
+ * DEGREES in green; -1: it has no polynomials there. */
+static int count_rays(const unsigned char *data, size_t bytes, int ghost,
+                      double degrees)
+{
+    enum { ACROSS = 40 };
+    struct glint_transfer t;
+    struct glint_lens lens;
+    const char *reason = "";
+    int n = 0;
+
+    if (glint_lens_open(&lens, data, bytes, &reason) != GLINT_OK)
+        fail_msg("%s", reason);
+    if (!glint_transfer_init(&t, &lens, ghost,
+                             (int32_t)lrint(glint_sin_deg(degrees) * 0x1p30),
+                             (int32_t)lrint(0x1p24 / (0.532 * 0.532))))
+        return -1;
+    for (int j = -ACROSS; j <= ACROSS; j++)
+        for (int i = -ACROSS; i <= ACROSS; i++) {
+            struct glint_outputs o;
+            bool passes;
+
+            glint_transfer_ray(&t, (int32_t)lrint((double)i / ACROSS * 0x1p30),
+                               (int32_t)lrint((double)j / ACROSS * 0x1p30), &o);
+            passes = hypot(ldexp(o.at[GLINT_OUT_STOP_X],
+                                 t.exponent[GLINT_OUT_STOP_X]),
+                           ldexp(o.at[GLINT_OUT_STOP_Y],
+                                 t.exponent[GLINT_OUT_STOP_Y])) <= 1;
+            for (int k = GLINT_OUT_BARREL_0; k < GLINT_OUT_KINDS; k++)
+                passes &=
+                    !(t.outputs >> k & 1) || ldexp(o.at[k], t.exponent[k]) <= 1;
+            n += passes;
+        }
+    return n;
+}
+
+/* Where the ghost is seen at the other position alone, a model with that beside
+ * it has its polynomials, and its barrels stop all light. */
+static void test_models(void **state)
+{
+    const bool ghosts[GHOSTS] = {[CUT] = true};
+    struct glint_bake_options options;
+    struct glint_bake_report report;
+    struct glint_error error = {""};
+    unsigned char *data[3];
+    size_t bytes[3];
+
+    (void)state;
+    glint_bake_defaults(&options);
+    options.max_deg = MAX_DEG;
+    options.ghosts = ghosts;
+    options.beside = &at[1];
+    for (int k = 0; k < 3; k++) {
+        options.n_beside = k == 2;
+        if (glint_bake(&at[k % 2], &options, &data[k], &bytes[k], &report,
+                       &error) != GLINT_OK)
+            fail_msg("%s", error.text);
+    }
+    assert_int_equal(count_rays(data[0], bytes[0], CUT, 8.5), -1);
+    assert_true(count_rays(data[1], bytes[1], CUT, 8.5) > 3000);
+    assert_in_range(count_rays(data[2], bytes[2], CUT, 8.5), 0, 3);
+    assert_true(count_rays(data[2], bytes[2], CUT, 2.5) > 1000);
+    for (int k = 0; k < 3; k++)
+        free(data[k]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_boxes),
+        cmocka_unit_test(test_models),
+    };
+
+    return cmocka_run_group_tests_name("beside", tests, open_lens, NULL);
+}
