@@ -17,11 +17,6 @@ enum {
 /* Errors at the angles that are measured are brought to so many dB less than
  * what is asked for, as others have more. */
 #define MARGIN_DB 1.5
-/* Share of the error of the step before: a ghost that keeps more, and is not
- * so far off that its place does not matter, gains nothing by another position:
- * its models themselves are no better. */
-#define STUCK 0.9
-#define FAR   10 /* times what is asked for */
 /* Share of what is asked for: a ghost whose largest error was less is not
  * measured again in the halves of its step. */
 #define SMALL 1e-3
@@ -51,7 +46,6 @@ struct run {
     double start;
     struct place place[PLACES];
     struct zoom_error *ghost; /* [n_ghosts] */
-    bool *is_stuck;           /* [n_ghosts] */
     struct glint_zoom_lens zoom;
 };
 
@@ -144,8 +138,8 @@ static double most_error(const struct run *run)
     return pow(10, -0.1 * (run->bake->halfway_db + MARGIN_DB));
 }
 
-/* Chooses ghosts to be baked at TO until all others are exact enough, and
- * leaves in LEFT what these leave. Returns how many. */
+/* Chooses ghosts to be baked at TO until all others are exact enough, none in
+ * the finest step, and leaves in LEFT what these leave. Returns how many. */
 static int choose(struct run *run, struct place *to, struct zoom_error *left)
 {
     const double most = most_error(run);
@@ -154,7 +148,7 @@ static int choose(struct run *run, struct place *to, struct zoom_error *left)
     for (int g = 0; g < run->n_ghosts; g++)
         for (int a = 0; a < ZOOM_ANGLES; a++) {
             left->of[a] += run->ghost[g].of[a];
-            run->ghost[g].of[a] *= !run->is_stuck[g];
+            run->ghost[g].of[a] *= run->step != LAST;
         }
     for (;; n++) {
         int angle = 0, worst = 0;
@@ -220,21 +214,14 @@ static bool ask(struct run *run, int from, int to)
     return any;
 }
 
-/* Notes the error of each ghost at MIDDLE, half-way in the step that begins at
- * FROM, and which are stuck. */
-static void compare_steps(struct run *run, int from, int middle)
+/* Keeps the error of each ghost at MIDDLE, half-way in the step that begins at
+ * FROM, for the halves of the step. */
+static void keep_errors(struct run *run, int from, int middle)
 {
     struct place *const p = &run->place[from], *const m = &run->place[middle];
 
-    for (int g = 0; g < run->n_ghosts; g++) {
-        const double worst = largest(&run->ghost[g]);
-        const double before = p->is_half ? largest(&p->before[g]) : 0;
-
-        run->is_stuck[g] =
-            run->step == LAST || (worst < FAR * most_error(run) && before > 0 &&
-                                  worst > STUCK * before);
+    for (int g = 0; g < run->n_ghosts; g++)
         p->before[g] = m->before[g] = run->ghost[g];
-    }
     p->is_half = m->is_half = true;
 }
 
@@ -261,7 +248,7 @@ static enum glint_status halve(struct run *run, int from)
                                     run->n_ghosts, run->ghost, run->error);
     if (status != GLINT_OK)
         return status;
-    compare_steps(run, from, middle);
+    keep_errors(run, from, middle);
     n = choose(run, p, &left);
     p->left = run->place[from].left = left;
     note(run, &left, n);
@@ -317,14 +304,13 @@ static bool reserve(struct run *run)
     const size_t n = (size_t)run->n_ghosts + 1;
 
     run->ghost = calloc(n, sizeof *run->ghost);
-    run->is_stuck = calloc(n, sizeof *run->is_stuck);
     for (int k = 0; k < run->n_places; k++) {
         run->place[k].ghosts = calloc(n, sizeof(bool));
         run->place[k].before = calloc(n, sizeof *run->place[k].before);
         if (!run->place[k].ghosts || !run->place[k].before)
             return false;
     }
-    return run->ghost && run->is_stuck;
+    return run->ghost != NULL;
 }
 
 enum glint_status zoom_bake_run(struct tool *tool, const struct zoom_bake *bake,
@@ -358,7 +344,6 @@ enum glint_status zoom_bake_run(struct tool *tool, const struct zoom_bake *bake,
         free(run->place[k].before);
     }
     free(run->ghost);
-    free(run->is_stuck);
     free(run);
     if (status != GLINT_OK) {
         free(baked->data);

@@ -15,7 +15,7 @@
 #include "options/tool.h"
 #include "glint/bake.h"
 
-enum { ZOOM_ANGLES = 12 };
+enum { ZOOM_ANGLES = 24 };
 
 /* Errors of one ghost, by angle. */
 struct zoom_error {
