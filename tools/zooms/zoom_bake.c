@@ -66,7 +66,9 @@ static enum glint_status move_to(const struct run *run, int place,
     return status;
 }
 
-/* Sets what lies a finest step before and after PLACE, for OPTIONS. */
+/* Sets what lies a finest step before and after PLACE, for OPTIONS; of
+ * positions in even steps, which are coarse, nothing, as ghosts differ too much
+ * there. */
 static enum glint_status set_beside(struct run *run, int place,
                                     struct glint_bake_options *options)
 {
@@ -76,7 +78,7 @@ static enum glint_status set_beside(struct run *run, int place,
     options->n_beside = 0;
     for (int at = place - LAST; at <= place + LAST && status == GLINT_OK;
          at += 2 * LAST)
-        if (at >= 0 && at < run->n_places)
+        if (run->bake->halfway_db > 0 && at >= 0 && at < run->n_places)
             status = move_to(run, at, &run->beside[options->n_beside++]);
     return status;
 }
