@@ -93,6 +93,10 @@ library-table: all $(OUT)/stop_costs
 # Lenses that are not round. LENSES="A.lens ...": these; COUNT=N directions.
 azimuth-table: all
 	@tools/lens_figures/azimuth-table $(LENSES) | tools/report/write-figures shapes/azimuth
+fisheye-table: all
+	@STOP=11 DEGREES=85 tools/lens_figures/azimuth-table \
+	    $(or $(LENSES),$(addprefix lenses/wide/fisheye-,rokkor-16.lens zuiko-8.lens)) | \
+	    tools/report/write-figures shapes/fisheye
 # How far lights and ghosts move by a lens's own projection: a processor minute.
 projection-table: $(OUT)/projection_table
 	@$< lenses/*.lens lenses/*/*.lens | tools/report/write-figures shapes/projection
@@ -210,7 +214,7 @@ budget: all
 	        build/$$t/glint >&2 || exit 1; done
 	@tools/report/budget | tools/report/write-figures arm
 
-.PHONY: glints-table hidden-table scene-budget-table occlusion-table video-report demo inputs table bake-table wide-table projection-table library-table azimuth-table accuracy-table colour-table coating-table ray-table power-table \
+.PHONY: glints-table hidden-table scene-budget-table occlusion-table video-report demo inputs table bake-table wide-table projection-table library-table azimuth-table fisheye-table accuracy-table colour-table coating-table ray-table power-table \
         power-fit \
         corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet gallery \
         bench bench-insn growth size trade lights-table threads-table reuse-table flicker-table left-table stopping-table hostile-table star-table memory-table zoom-table \
