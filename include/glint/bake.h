@@ -41,7 +41,8 @@ struct glint_bake_options {
     const bool *ghosts;
     /* [n_beside], 2 at most: the lens at nearby positions of its zoom. What
      * is seen or cut there is part of the model, so that models of positions
-     * can be mixed. Only of lenses symmetric about their axis. */
+     * can be mixed. GLINT_E_ARGUMENT if it is another lens or not
+     * symmetric about its axis. */
     const struct glint_prescription *beside;
     int n_beside;
     struct glint_workers *workers; /* does not change the model */

@@ -137,7 +137,7 @@ static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
         glint_fit_told_fn *, void *, struct glint_fitted_ghost *) =
         round ? glint_fit_ghost : glint_skew_fit;
     struct glint_visible *const visible =
-        visible_of(run, ghost, round ? run->options.n_beside : 0);
+        visible_of(run, ghost, run->options.n_beside);
     const enum glint_status status =
         visible ? fit(visible, run->options.max_deg, &tolerance,
                       tells ? fit_told : NULL, run, &run->fitted[ghost])
@@ -407,6 +407,33 @@ static void sum_up(const struct bake_run *run, struct glint_bake_report *r)
     }
 }
 
+/* Sets up what lies beside LENS, which has to be the same lens at other
+ * positions. */
+static enum glint_status set_up_beside(struct bake_run *run,
+                                       const double rgb_nm[3])
+{
+    const struct glint_bake_options *const o = &run->options;
+
+    for (int k = 0; k < o->n_beside; k++) {
+        const struct glint_prescription *const beside = &o->beside[k];
+        enum glint_status status = GLINT_E_ARGUMENT;
+
+        if (!glint_prescription_is_round(run->lens) ||
+            beside->n_surfaces != run->lens->n_surfaces ||
+            beside->stop_after != run->lens->stop_after)
+            snprintf(run->error->text, sizeof run->error->text,
+                     "%s is not round, or what is beside it is no position of "
+                     "it: another number of surfaces, or another stop",
+                     run->lens->name);
+        else
+            status = glint_setup_init(&run->beside[k], beside, 0, 0, rgb_nm, 3,
+                                      run->error);
+        if (status != GLINT_OK)
+            return status;
+    }
+    return GLINT_OK;
+}
+
 enum glint_status glint_bake(const struct glint_prescription *lens,
                              const struct glint_bake_options *options,
                              unsigned char **model, size_t *bytes,
@@ -434,9 +461,8 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
     }
     if (status == GLINT_OK)
         status = glint_setup_init(&run->setup, lens, 0, 0, rgb_nm, 3, error);
-    for (int n = 0; n < options->n_beside && status == GLINT_OK; n++)
-        status = glint_setup_init(&run->beside[n], &options->beside[n], 0, 0,
-                                  rgb_nm, 3, error);
+    if (status == GLINT_OK)
+        status = set_up_beside(run, rgb_nm);
     if (status == GLINT_OK) {
         status = bake_run(run);
         if (status == GLINT_E_LENS && !error->text[0])

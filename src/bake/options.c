@@ -46,8 +46,9 @@ enum glint_status glint_bake_check(const struct glint_bake_options *options,
             ? "the field must be a length"
         : !(o->tolerance >= 0.1 && o->tolerance <= 100)
             ? "the tolerance must be 0.1 to 100"
-        : !(o->n_beside >= 0 && o->n_beside <= GLINT_MAX_BESIDE)
-            ? "a position has at most two beside it"
+        : !(o->n_beside >= 0 && o->n_beside <= GLINT_MAX_BESIDE) ||
+                (o->n_beside > 0 && !o->beside)
+            ? "a position has none, one or two beside it"
             : NULL;
 
     if (wrong)

@@ -110,7 +110,7 @@ bool imported_unit(struct imported *lens, int line, double mm)
 bool imported_need_unit(struct imported *lens, const char *word)
 {
     return lens->unit_said ||
-           imported_note(lens, 0, "no %s says its unit: mm taken", word);
+           imported_note(lens, 0, "no %s line: lengths are taken as mm", word);
 }
 
 bool imported_choose(struct imported *lens, int line, int n, int *at)

@@ -279,7 +279,7 @@ static int end_reader(struct video *v)
                 v->o->input);
     else
         fprintf(stderr,
-                "glint overlay: %s is cut off behind frame %d; 'ffmpeg -i IN "
+                "glint overlay: %s is cut off after frame %d; 'ffmpeg -i IN "
                 "-c copy OUT' makes a whole video of what is there\n",
                 v->o->input, v->o->compositor.n_frames - 1);
     return EXIT_INPUT;

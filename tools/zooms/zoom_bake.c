@@ -66,9 +66,10 @@ static enum glint_status move_to(const struct run *run, int place,
     return status;
 }
 
-/* Sets what lies a finest step before and after PLACE, for OPTIONS; of
- * positions in even steps, which are coarse, nothing, as ghosts differ too much
- * there. */
+/* Sets what lies a finest step before and after PLACE, for OPTIONS, also for
+ * ghosts that will stay in coarser steps. Nothing does of even positions alone,
+ * which are so far apart that ghosts differ too much, nor of lenses that are
+ * not round. */
 static enum glint_status set_beside(struct run *run, int place,
                                     struct glint_bake_options *options)
 {
@@ -78,7 +79,8 @@ static enum glint_status set_beside(struct run *run, int place,
     options->n_beside = 0;
     for (int at = place - LAST; at <= place + LAST && status == GLINT_OK;
          at += 2 * LAST)
-        if (run->bake->halfway_db > 0 && at >= 0 && at < run->n_places)
+        if (run->bake->halfway_db > 0 && at >= 0 && at < run->n_places &&
+            glint_prescription_is_round(&run->lens))
             status = move_to(run, at, &run->beside[options->n_beside++]);
     return status;
 }
@@ -150,7 +152,8 @@ static int choose(struct run *run, struct place *to, struct zoom_error *left)
     for (int g = 0; g < run->n_ghosts; g++)
         for (int a = 0; a < ZOOM_ANGLES; a++) {
             left->of[a] += run->ghost[g].of[a];
-            run->ghost[g].of[a] *= run->step != LAST;
+            if (run->step == LAST)
+                run->ghost[g].of[a] = 0;
         }
     for (;; n++) {
         int angle = 0, worst = 0;

@@ -88,8 +88,8 @@ static void set_weights(struct fit *f)
     }
 }
 
-/* Returns whether the polynomials let ray I pass though the lens stops it by
- * far. */
+/* Returns whether the polynomials let ray I pass though the lens, and that of
+ * any position beside it, stops it by far. */
 static bool leaks(const struct glint_zone_rays *r, int i,
                   const struct glint_fitted_system *system, double field_mm)
 {

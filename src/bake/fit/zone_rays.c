@@ -76,11 +76,13 @@ static void trace_beside(const struct glint_visible *visible, int wave,
         t->path = &h->position_path[wave];
         glint_zone_batch_trace(t);
         for (int i = 0; i < t->n; i++) {
-            const double excess = excess_of(h, &t->ray[i]);
-            const double field = field_of(h, &t->ray[i]);
+            double excess, field;
 
-            if (t->status[i] == GLINT_RAY_OK &&
-                is_nearer(b, i, excess, field)) {
+            if (t->status[i] != GLINT_RAY_OK)
+                continue;
+            excess = excess_of(h, &t->ray[i]);
+            field = field_of(h, &t->ray[i]);
+            if (is_nearer(b, i, excess, field)) {
                 b->excess[i] = excess;
                 b->field[i] = field;
             }

@@ -19,8 +19,11 @@ enum {
     RAY_STOP_X, /* stop radii */
     RAY_STOP_Y,
     RAY_ENERGY,
-    RAY_EXCESS, /* largest relative radius at any surface and at the stop */
-    RAY_FIELD,  /* distance from the sensor's centre, in radii of the field */
+    /* Largest relative radius at any surface and at the stop, and distance from
+     * the sensor's centre, in radii of the field: of the ghost, or of the one
+     * beside it at which the larger of both is least. */
+    RAY_EXCESS,
+    RAY_FIELD,
     RAY_SPREAD, /* area on the sensor over that of u and v, mm^2; of skew zones;
                    0: unknown */
     RAY_CHANNELS
@@ -97,9 +100,10 @@ static inline bool glint_zone_by_light(const struct glint_zone *zone,
 }
 
 /* Sets RAYS to scattered rays of the zone, at angles and wavelengths between
- * those that were fitted, without barrels. Deterministic. Where light weighs
- * they come in threes, the middle one with a neighbour across and one along; of
- * a skew zone that is the only one of them. */
+ * those that were fitted, without barrels and what is seen beside alone.
+ * Deterministic. Where light weighs they come in threes, the middle one with a
+ * neighbour across and one along; of a skew zone that is the only one of them.
+ */
 void glint_zone_check(const struct glint_zone *zone,
                       const struct glint_visible *visible,
                       struct glint_zone_rays *rays);

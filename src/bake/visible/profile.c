@@ -84,8 +84,9 @@ static void add_angle(struct glint_visible_profile *p, double sine,
     p->n++;
 }
 
-/* Finds the boxes of one ghost at the angles SINE. It is ALONE, or one of those
- * beside each other, which need not be seen at all of them. */
+/* Finds the boxes of one ghost at the angles SINE. If it is ALONE it is seen at
+ * all of them in some colour, so that all wavelengths are tried where three are
+ * not; one of several beside each other may be dark. */
 static void find_boxes(const struct glint_visible *h, bool alone,
                        const double *sine, struct box_samples *g)
 {

@@ -116,10 +116,7 @@ static int ranges_of(const struct glint_visible *visible, double max_deg,
     return inside ? end_range(range, n, before) : n;
 }
 
-/* Adds the range MORE to N that do not touch, by rising angle, and joins it to
- * those that it touches; without room for it, it is left out. Returns how many
- * there are then. */
-static int add_range(double (*range)[2], int n, const double more[2])
+int glint_visible_add_range(double (*range)[2], int n, const double more[2])
 {
     double lo = more[0], hi = more[1];
     int kept = 0, at;
@@ -156,7 +153,7 @@ int glint_visible_ranges(const struct glint_visible *visible, double max_deg,
         const int n_other = ranges_of(&visible->beside[k], max_deg, other);
 
         for (int i = 0; i < n_other; i++)
-            n = add_range(range, n, other[i]);
+            n = glint_visible_add_range(range, n, other[i]);
     }
     return n;
 }

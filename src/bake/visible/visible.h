@@ -11,7 +11,9 @@
  * band. A visible part can be missed that is smaller than a thirtieth of its
  * own box (unless the field is so small that the search closes in on it), or
  * that is there for less than four angles and apart from the one that is
- * followed. */
+ * followed. Beside other positions of a zoom, angles at which a ghost gets
+ * through at other wavelengths than the middle and the ends of the band alone
+ * are missed. */
 #ifndef GLINT_BAKE_VISIBLE_VISIBLE_H
 #define GLINT_BAKE_VISIBLE_VISIBLE_H
 
@@ -83,6 +85,11 @@ void glint_visible_path(const struct glint_visible *visible, double w,
  * Returns how many. */
 int glint_visible_ranges(const struct glint_visible *visible, double max_deg,
                          double (*range)[2]);
+
+/* Adds the range MORE to N of GLINT_MAX_RANGES that do not touch, by rising
+ * sine, and joins it to those that it touches; without room for it, it is left
+ * out. Returns how many there are then. */
+int glint_visible_add_range(double (*range)[2], int n, const double more[2]);
 
 /* The box of visible light at one angle and wavelength. */
 struct glint_box_sample {

@@ -110,6 +110,101 @@ static void test_ranges(void **state)
     assert_true(wider > 0);
 }
 
+/* A range that touches others is joined to them, and stands in order. */
+static void test_joined(void **state)
+{
+    static const struct {
+        double more[2], range[3][2];
+        int n;
+    } is[] = {{{0.0, 0.1}, {{0, 0.1}, {0.2, 0.3}, {0.6, 0.7}}, 3},
+              {{0.4, 0.5}, {{0.2, 0.3}, {0.4, 0.5}, {0.6, 0.7}}, 3},
+              {{0.8, 0.9}, {{0.2, 0.3}, {0.6, 0.7}, {0.8, 0.9}}, 3},
+              {{0.1, 0.2}, {{0.1, 0.3}, {0.6, 0.7}}, 2},
+              {{0.25, 0.4}, {{0.2, 0.4}, {0.6, 0.7}}, 2},
+              {{0.65, 0.66}, {{0.2, 0.3}, {0.6, 0.7}}, 2},
+              {{0.5, 0.9}, {{0.2, 0.3}, {0.5, 0.9}}, 2},
+              {{0.25, 0.65}, {{0.2, 0.7}}, 1}};
+    double full[GLINT_MAX_RANGES][2];
+
+    (void)state;
+    for (size_t k = 0; k < sizeof is / sizeof *is; k++) {
+        double range[GLINT_MAX_RANGES][2] = {{0.2, 0.3}, {0.6, 0.7}};
+
+        assert_int_equal(glint_visible_add_range(range, 2, is[k].more),
+                         is[k].n);
+        assert_memory_equal(range, is[k].range,
+                            (size_t)is[k].n * sizeof *range);
+    }
+    for (int k = 0; k < GLINT_MAX_RANGES; k++) {
+        full[k][0] = 0.1 * k + 0.05;
+        full[k][1] = 0.1 * k + 0.1;
+    }
+    assert_int_equal(glint_visible_add_range(full, GLINT_MAX_RANGES,
+                                             (const double[2]){0, 0.01}),
+                     GLINT_MAX_RANGES);
+    assert_true(full[0][0] == 0.05);
+    assert_int_equal(glint_visible_add_range(full, GLINT_MAX_RANGES,
+                                             (const double[2]){0, 0.06}),
+                     GLINT_MAX_RANGES);
+    assert_true(full[0][0] == 0 && full[0][1] == 0.1);
+}
+
+/* Returns the number of the ray of RAYS at the place of ray I of OF; -1: there
+ * is none. */
+static int find_ray(const struct glint_zone_rays *rays,
+                    const struct glint_zone_rays *of, int i)
+{
+    for (int k = 0; k < rays->n; k++)
+        if (rays->x[GLINT_U][k] == of->x[GLINT_U][i] &&
+            rays->x[GLINT_V][k] == of->x[GLINT_V][i] &&
+            rays->x[GLINT_S][k] == of->x[GLINT_S][i] &&
+            rays->x[GLINT_W][k] == of->x[GLINT_W][i])
+            return k;
+    return -1;
+}
+
+static double farther(const struct glint_zone_rays *rays, int i)
+{
+    return fmax(rays->at[RAY_EXCESS][i], rays->at[RAY_FIELD][i]);
+}
+
+/* Each ray lands where it does alone, and is as far out as at the position at
+ * which that is least. */
+static void test_rays(void **state)
+{
+    static struct glint_visible_profile profile;
+    static struct glint_zone_rays of[3], energies;
+    const double range[2] = {0, glint_sin_deg(4)};
+    struct glint_zone zone;
+    int own = 0, beside = 0;
+
+    (void)state;
+    set_ghost(CUT);
+    glint_visible_profile_find(&both[0], range, &profile);
+    glint_zone_init(&zone, &profile, range[0], range[1], false);
+    for (int k = 0; k < 3; k++)
+        glint_zone_trace(&zone, k < 2 ? &alone[k] : &both[0], &of[k],
+                         &energies);
+    for (int i = 0; i < of[2].n; i++) {
+        const int a = find_ray(&of[0], &of[2], i);
+        const int b = find_ray(&of[1], &of[2], i);
+
+        if (a < 0 || b < 0)
+            continue;
+        assert_true(of[2].at[RAY_SENSOR_X][i] == of[0].at[RAY_SENSOR_X][a]);
+        if (farther(&of[0], a) < farther(&of[1], b)) {
+            assert_true(of[2].at[RAY_EXCESS][i] == of[0].at[RAY_EXCESS][a] &&
+                        of[2].at[RAY_FIELD][i] == of[0].at[RAY_FIELD][a]);
+            own++;
+        } else {
+            assert_true(of[2].at[RAY_EXCESS][i] == of[1].at[RAY_EXCESS][b] &&
+                        of[2].at[RAY_FIELD][i] == of[1].at[RAY_FIELD][b]);
+            beside++;
+        }
+    }
+    assert_true(own > 100 && beside > 100);
+}
+
 /* Boxes of both hold those of either, and are no wider. */
 static void test_boxes(void **state)
 {
@@ -205,12 +300,37 @@ static void test_models(void **state)
         free(data[k]);
 }
 
+/* Another lens is no position of this one. */
+static void test_refused(void **state)
+{
+    struct glint_prescription other = at[1];
+    struct glint_bake_options options;
+    struct glint_bake_report report;
+    struct glint_error error = {""};
+    unsigned char *data = NULL;
+    size_t bytes;
+
+    (void)state;
+    glint_bake_defaults(&options);
+    other.n_surfaces -= 2;
+    options.beside = &other;
+    options.n_beside = 1;
+    assert_int_equal(
+        glint_bake(&at[0], &options, &data, &bytes, &report, &error),
+        GLINT_E_ARGUMENT);
+    assert_true(error.text[0] != 0 && !data);
+    options.beside = NULL;
+    assert_int_equal(
+        glint_bake(&at[0], &options, &data, &bytes, &report, &error),
+        GLINT_E_ARGUMENT);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ranges),
-        cmocka_unit_test(test_boxes),
-        cmocka_unit_test(test_models),
+        cmocka_unit_test(test_joined), cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_boxes),  cmocka_unit_test(test_rays),
+        cmocka_unit_test(test_models), cmocka_unit_test(test_refused),
     };
 
     return cmocka_run_group_tests_name("beside", tests, open_lens, NULL);
