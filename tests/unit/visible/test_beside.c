@@ -17,7 +17,12 @@
 #include "glint/bake.h"
 #include "glint/transfer.h"
 
-enum { MAX_DEG = 9, GHOSTS = 7, CUT = 3 /* at more than 7 degrees */ };
+enum {
+    MAX_DEG = 9,
+    GHOSTS = 7,
+    CUT = 3,  /* a ghost with no light at more than 7 degrees */
+    UNCUT = 2 /* one that no barrel cuts */
+};
 
 /* The second group moves by 12 mm, and what it cuts with it: its end first. */
 static const char table[] = "name t\n"
@@ -270,6 +275,38 @@ static int count_rays(const unsigned char *data, size_t bytes, int ghost,
     return n;
 }
 
+/* A barrel that cuts at the other position alone is chosen: the rear one, which
+ * is a fifth as wide there. */
+static void test_barrels(void **state)
+{
+    static const double rgb_nm[] = {650, 532, 450};
+    static struct glint_setup narrower;
+    static struct glint_visible_profile profile;
+    static glint_zone_sampling sampling;
+    static struct glint_zone_rays rays;
+    const double range[2] = {0, glint_sin_deg(4)};
+    struct glint_prescription lens = at[0];
+    struct glint_error error = {""};
+    struct glint_zone zone;
+    int n[2];
+
+    (void)state;
+    set_ghost(UNCUT);
+    lens.surface[lens.n_surfaces - 1].semi_mm *= 0.2;
+    if (glint_setup_init(&narrower, &lens, 0, 0, rgb_nm, 3, &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+    glint_visible_init(&both[1], &narrower, UNCUT, 16, band_nm);
+    glint_visible_profile_find(&both[0], range, &profile);
+    glint_zone_init(&zone, &profile, range[0], range[1], false);
+    for (int k = 0; k < 2; k++) {
+        glint_zone_choose_barrels(&zone, k ? &both[0] : &alone[0], 0.01,
+                                  &sampling, &rays);
+        n[k] = rays.n_barrels;
+    }
+    assert_int_equal(n[0], 0);
+    assert_int_equal(n[1], 1);
+}
+
 /* Where the ghost is seen at the other position alone, a model with that beside
  * it has its polynomials, and its barrels stop all light. */
 static void test_models(void **state)
@@ -328,9 +365,10 @@ static void test_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_joined), cmocka_unit_test(test_ranges),
-        cmocka_unit_test(test_boxes),  cmocka_unit_test(test_rays),
-        cmocka_unit_test(test_models), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_joined),  cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_boxes),   cmocka_unit_test(test_rays),
+        cmocka_unit_test(test_barrels), cmocka_unit_test(test_models),
+        cmocka_unit_test(test_refused),
     };
 
     return cmocka_run_group_tests_name("beside", tests, open_lens, NULL);
