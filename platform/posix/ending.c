@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "posix/ending.h"
 
+#include <ctype.h>
 #include <string.h>
 #include <strings.h>
 
@@ -17,5 +18,5 @@ const char *glint_ending_of(const char *name)
     const char *const last = slash ? slash + 1 : name;
     const char *const dot = strrchr(last, '.');
 
-    return dot && dot > last ? dot : "";
+    return dot && dot > last && !isdigit((unsigned char)dot[1]) ? dot : "";
 }

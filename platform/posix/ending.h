@@ -12,7 +12,8 @@
 bool glint_ends_in(const char *name, const char *ending);
 
 /* Returns the ending of the last part of the path NAME, from its dot on, or ""
- * if it has none, as "-", "/dev/stdout" or ".hidden". */
+ * if it has none, as "-", "/dev/stdout", ".hidden" or "f1.4", whose dot belongs
+ * to a number. */
 const char *glint_ending_of(const char *name);
 
 #endif

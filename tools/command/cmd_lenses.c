@@ -70,6 +70,8 @@ struct lenses {
     int n_words;
     const char *html; /* page to write, or NULL */
     FILE *page;
+    struct tool_progress progress; /* of a page */
+    int n_files, n_looked;         /* of all lenses, and those looked at */
 };
 
 struct entry {
@@ -322,6 +324,8 @@ static bool one(void *ctx, const char *name)
     struct entry *e;
     int code;
 
+    if (l->page)
+        tool_progress_show(&l->progress, (double)l->n_looked++ / l->n_files);
     if (!is_wanted(l, name))
         return true;
     if (l->names && l->n_words == 0)
@@ -356,6 +360,13 @@ static bool one(void *ctx, const char *name)
     return code == EXIT_OK || code == EXIT_LENS;
 }
 
+static bool stop_looking(void *ctx, const char *name)
+{
+    (void)ctx;
+    (void)name;
+    return false;
+}
+
 /* Says that no lens is wanted. Returns an exit code. */
 static int tell_none(const struct lenses *l)
 {
@@ -378,8 +389,12 @@ static int run_page(struct lenses *l)
 
     l->page = open_memstream(&text, &bytes);
     if (l->page) {
-        const int n = lens_files_each(one, l);
+        int n;
 
+        l->n_files = lens_files_each(stop_looking, l);
+        tool_progress_start(&l->progress, l->tool, "lenses");
+        n = lens_files_each(one, l);
+        tool_progress_end(&l->progress);
         page_end(l->page);
         if (fclose(l->page) == 0 && n >= 0)
             status = GLINT_OK;

@@ -92,12 +92,11 @@ bool imported_unread(struct imported *lens, int line, const char *word)
     return imported_note(lens, line, "%s", text);
 }
 
-bool imported_object(struct imported *lens, int line, double distance)
+void imported_object(struct imported *lens, int line, double distance)
 {
     lens->object_near = fabs(distance) <= 1e8;
     lens->object_line = line;
     lens->object = distance;
-    return true;
 }
 
 bool imported_unit(struct imported *lens, int line, double mm)

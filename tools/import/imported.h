@@ -81,8 +81,8 @@ void imported_tell(struct imported *lens, int line, const char *format, ...);
 bool imported_unread(struct imported *lens, int line, const char *word);
 
 /* Takes how far away the object is; if that is neither infinite nor as good as,
- * light from afar is a guess. Returns true. */
-bool imported_object(struct imported *lens, int line, double distance);
+ * light from afar is a guess. */
+void imported_object(struct imported *lens, int line, double distance);
 
 /* Sets the unit that LINE says. */
 bool imported_unit(struct imported *lens, int line, double mm);

@@ -292,5 +292,6 @@ bool import_opticalbench(struct imported *lens, const char *text, size_t bytes)
     settle(&b, "Angle of View", 0.5, &lens->field_deg);
     settle(&b, "Image Height", 0.5, &lens->height);
     settle(&b, "d0", 1, &object);
-    return imported_object(lens, 0, object);
+    imported_object(lens, 0, object);
+    return true;
 }

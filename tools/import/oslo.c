@@ -127,8 +127,10 @@ static bool take(struct oslo *o)
     if (!o->s && lines_is(l, "TH")) {
         double object;
 
-        return lines_number(o->lens, l, 1, "distance of the object", &object) &&
-               imported_object(o->lens, l->number, object);
+        if (!lines_number(o->lens, l, 1, "distance of the object", &object))
+            return false;
+        imported_object(o->lens, l->number, object);
+        return true;
     }
     return !o->s || take_surface(o);
 }

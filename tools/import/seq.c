@@ -78,10 +78,12 @@ static bool start_surface(struct seq *q)
 
     if (lines_is(l, "SI") || lines_is(l, "SO")) {
         q->s = NULL;
-        return lines_is(l, "SI") || l->n < 3 ||
-               (lines_number(q->lens, l, 2, "distance of the object",
-                             &object) &&
-                imported_object(q->lens, l->number, object));
+        if (lines_is(l, "SI") || l->n < 3)
+            return true;
+        if (!lines_number(q->lens, l, 2, "distance of the object", &object))
+            return false;
+        imported_object(q->lens, l->number, object);
+        return true;
     }
     q->s = imported_add(q->lens, l->number);
     return q->s && take_radius(q, 1, q->curvatures) &&

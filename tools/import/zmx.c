@@ -206,8 +206,8 @@ static bool close_file(struct zmx *z)
         if (!isfinite(lens->surface[k].thickness))
             return imported_fail(lens, lens->surface[k].line,
                                  "an infinite thickness inside of the lens");
-    return imported_object(lens, z->object_line, z->object) &&
-           imported_need_unit(lens, "UNIT");
+    imported_object(lens, z->object_line, z->object);
+    return imported_need_unit(lens, "UNIT");
 }
 
 bool import_zmx(struct imported *lens, const char *text, size_t bytes)

@@ -33,6 +33,7 @@ static void the_ending_is_that_of_the_last_part(void **state)
     assert_string_equal(glint_ending_of("folder.d/x"), "");
     assert_string_equal(glint_ending_of("/dev/stdout"), "");
     assert_string_equal(glint_ending_of("a/.hidden"), "");
+    assert_string_equal(glint_ending_of("planar-f1.4"), "");
     assert_string_equal(glint_ending_of("-"), "");
     assert_string_equal(glint_ending_of(""), "");
 }
