@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What positions of a zoom are baked with: their keys tell. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "zooms/zoom_bake.h"
+
+static const char table[] = "name t\n"
+                            "f-number 20\n"
+                            "film 24 16\n"
+                            "surface  60    4    12  1.52 60\n"
+                            "surface -200  2/8  12  air\n"
+                            "stop     6/5  8\n"
+                            "surface  90    4    12  1.62 36\n"
+                            "surface -90   40/38  12  air\n";
+
+static struct glint_prescription lens;
+
+static void zoom_to(struct glint_prescription *at, double along)
+{
+    struct glint_error error = {""};
+
+    *at = lens;
+    if (glint_prescription_zoom(at, along, &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+}
+
+/* Bakes both ends, and what it takes for HALFWAY_DB. KEY receives those of the
+ * models of the ends. */
+static void bake(const struct glint_bake_options *options, double halfway_db,
+                 uint64_t key[2])
+{
+    static struct glint_zoom_lens zoom;
+    struct tool tool = {.name = "test", .quiet = true};
+    const struct zoom_bake what = {.lens = &lens,
+                                   .options = options,
+                                   .positions = 2,
+                                   .halfway_db = halfway_db};
+    struct zoom_baked baked;
+    struct glint_error error = {""};
+    const char *reason = "";
+
+    if (zoom_bake_run(&tool, &what, &baked, &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+    if (glint_zoom_open(&zoom, baked.data, baked.bytes, &reason) != GLINT_OK)
+        fail_msg("%s", reason);
+    assert_int_equal(zoom.n_models, 2);
+    for (int k = 0; k < 2; k++)
+        key[k] = zoom.model[k].header->key[0] |
+                 (uint64_t)zoom.model[k].header->key[1] << 32;
+    free(baked.data);
+}
+
+/* Returns the key of the position ALONG with that at BESIDE, below 0 none, next
+ * to it. */
+static uint64_t key_of(const struct glint_bake_options *options, double along,
+                       double beside)
+{
+    struct glint_prescription at, other;
+    struct glint_bake_options with = *options;
+
+    zoom_to(&at, along);
+    zoom_to(&other, beside < 0 ? 0 : beside);
+    with.beside = &other;
+    with.n_beside = beside >= 0;
+    return glint_bake_key(&at, &with);
+}
+
+/* Two positions may be halved four times: finest steps are a sixteenth of the
+ * way. */
+static void ends_know_what_lies_a_finest_step_off(void **state)
+{
+    struct glint_bake_options options;
+    struct glint_error error = {""};
+    uint64_t key[2];
+
+    (void)state;
+    if (glint_prescription_parse(&lens, table, sizeof table - 1, "t.lens",
+                                 &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+    glint_bake_defaults(&options);
+    options.max_deg = 3;
+    bake(&options, 1, key);
+    assert_true(key[0] == key_of(&options, 0, 1 / 16.0));
+    assert_true(key[1] == key_of(&options, 1, 15 / 16.0));
+    bake(&options, 0, key);
+    assert_true(key[0] == key_of(&options, 0, -1));
+    assert_true(key[1] == key_of(&options, 1, -1));
+    assert_true(key_of(&options, 0, 1) != key_of(&options, 0, -1));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ends_know_what_lies_a_finest_step_off),
+    };
+
+    return cmocka_run_group_tests_name("zoom_bake", tests, NULL, NULL);
+}
