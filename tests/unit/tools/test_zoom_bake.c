@@ -93,6 +93,7 @@ static void ends_know_what_lies_a_finest_step_off(void **state)
     assert_true(key[0] == key_of(&options, 0, -1));
     assert_true(key[1] == key_of(&options, 1, -1));
     assert_true(key_of(&options, 0, 1) != key_of(&options, 0, -1));
+    assert_true(key_of(&options, 0, 1) != key_of(&options, 0, 0.5));
 }
 
 int main(void)
