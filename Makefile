@@ -126,7 +126,7 @@ define link
 	@mkdir -p $(@D)
 	$(say) LD $@
 	$(Q)$(CC) $(CFLAGS) $(LINKED) $(LDFLAGS) $(filter %.o,$^) $(libs) $(EXTRA) \
-	        $(LDLIBS) -o $@
+	        $(LDLIBS) -o $@.$$$$ && mv -f $@.$$$$ $@
 endef
 
 # The comment that this file begins with.

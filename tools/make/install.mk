@@ -54,7 +54,7 @@ ifneq ($(MODELS),no)
 endif
 # What programs are built and run with; for a board archives alone.
 headers := $(wildcard include/glint/*.h include/glint/*/*.h)
-install-library: $(archives) $(if $(CROSS),,shared)
+install-library: $(LIBRARIES:%=$(OUT)/lib%.a) $(OUT)/libglint-published.a $(if $(CROSS),,shared)
 	install -d $(to)/include/glint/scene $(libdir)/pkgconfig
 	install -m 644 $(filter-out $(wildcard include/glint/*/*.h),$(headers)) $(to)/include/glint
 	install -m 644 include/glint/scene/*.h $(to)/include/glint/scene
