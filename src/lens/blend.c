@@ -12,8 +12,9 @@
  * bits of room. Each coefficient rounds once. The unit is the coarser one.
  *
  * Barrels have no names in a model. Each of the other position is mixed with
- * the one whose polynomial is most like its own. One that has no partner
- * becomes wider towards the position that lacks it, until it cuts nothing. */
+ * the one whose polynomial is most like its own, in their boxes or else where
+ * both boxes lie on the pupil. One that has no partner becomes wider towards
+ * the position that lacks it, until it cuts nothing. */
 #include "lens/blend.h"
 
 #include "base/q.h"
@@ -26,6 +27,10 @@ enum {
     /* most that two polynomials of the same barrel differ by, summed over
      * their coefficients, _q16: 1 is at the rim */
     LIKE_Q16 = 3 << 14,
+    /* and most at the same place of the pupil */
+    NEAR_Q16 = 1 << 15,
+    ACROSS = 3,
+    PLACES = 2 * ACROSS,
     OPEN_Q16 = 1 << 15, /* a barrel through whose middle all light goes */
     LEAST_UP = 16,      /* of units of 2^-30 or more, in which that is 2^29 */
     MOST_HEAD = 28,
@@ -77,9 +82,9 @@ static int32_t move_q24(int32_t b, int32_t eb, int32_t a, int32_t ea,
 }
 
 /* Sets how the boxes lie to each other: BOX of 2^EXPONENT and that of the
- * transfer, the other's. Returns whether they are too far apart for that. */
-static int set_moves(struct glint_zoom_mix *blend, const int32_t box[3],
-                     int32_t exponent)
+ * transfer, the other's. */
+static void set_moves(struct glint_zoom_mix *blend, const int32_t box[3],
+                      int32_t exponent)
 {
     const struct glint_transfer *const t = blend->to;
     const int32_t *const of[2] = {box, t->box};
@@ -98,7 +103,7 @@ static int set_moves(struct glint_zoom_mix *blend, const int32_t box[3],
     }
     for (int k = 0; k < 2 && far; k++)
         blend->move[k] = (struct glint_blend_move){0, 0, 0};
-    return far;
+    blend->far = far;
 }
 
 /* Returns whether the other box lies near enough that a ghost goes on beyond
@@ -119,14 +124,14 @@ int glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
     const int32_t e =
         (exponent > t->box_exponent ? exponent : t->box_exponent) +
         (blend->part_q30 < 0 ? BEYOND : 0);
-    const int far = set_moves(blend, box, exponent);
 
+    set_moves(blend, box, exponent);
     for (int k = 0; k < 3; k++)
         t->box[k] = mix(box[k], exponent, t->box[k], t->box_exponent, e,
                         blend->part_q30);
     t->box_exponent = e;
     return blend->part_q30 >= 0 ||
-           (!far && is_near(blend) && t->box[1] > 0 && t->box[2] > 0);
+           (!blend->far && is_near(blend) && t->box[1] > 0 && t->box[2] > 0);
 }
 
 /* Returns by how much the coefficient of u^A v^B changes where a place of the
@@ -261,8 +266,8 @@ static void open_barrel(struct glint_transfer *t, int kind, int32_t share_q30)
 
 /* Returns the sum of the differences of the coefficients of barrel KIND and O,
  * _q16. */
-static int64_t apart_q16(const struct glint_transfer *t, int kind,
-                         const struct glint_blend_output *o)
+static int64_t unlike_q16(const struct glint_transfer *t, int kind,
+                          const struct glint_blend_output *o)
 {
     const int ours = -16 - t->exponent[kind], others = -16 - o->exponent;
     int64_t sum = 0;
@@ -273,6 +278,58 @@ static int64_t apart_q16(const struct glint_transfer *t, int kind,
                 down(t->of.table[kind][b][a], ours > 0 ? ours : 0) -
                 down(o->row[b][a], others > 0 ? others : 0));
     return sum;
+}
+
+/* Returns the value, _q16, of the polynomial ROW of 2^EXPONENT and DEGREE in v
+ * at a place of its box. */
+static int64_t value_q16(int32_t (*row)[GLINT_TABLE_WIDTH], int32_t exponent,
+                         int degree, int64_t u_q24, int64_t v_q24)
+{
+    int64_t sum = 0;
+
+    for (int b = degree; b >= 0; b--) {
+        int64_t of_u = 0;
+
+        for (int a = GLINT_TABLE_WIDTH - 1; a >= 0; a--)
+            of_u = q_shift(of_u * u_q24, 24) + row[b][a];
+        sum = q_shift(sum * v_q24, 24) + of_u;
+    }
+    return down(sum, -16 - exponent > 0 ? -16 - exponent : 0);
+}
+
+/* Returns the largest difference of barrel KIND and O, _q16, at places of the
+ * pupil that are in both boxes; NEAR_Q16 if there are none. */
+static int64_t apart_q16(const struct glint_zoom_mix *blend, int kind,
+                         const struct glint_blend_output *o)
+{
+    struct glint_transfer *const t = blend->to;
+    const struct glint_blend_move *const to = &blend->move[0],
+                                         *const back = &blend->move[1];
+    const int64_t one = 1 << 24, half = one + to->wider_q24;
+    const int64_t high =
+        one + to->higher_q24 < one ? one + to->higher_q24 : one;
+    const int64_t first =
+        to->along_q24 - half > -one ? to->along_q24 - half : -one;
+    const int64_t last =
+        to->along_q24 + half < one ? to->along_q24 + half : one;
+    int64_t most = 0;
+
+    if (blend->far || last <= first)
+        return NEAR_Q16;
+    for (int k = 0; k < PLACES; k++) {
+        const int64_t u = first + (last - first) * (k % ACROSS) / (ACROSS - 1);
+        const int64_t v = k < ACROSS ? 0 : high;
+        const int64_t ours = value_q16(t->of.table[kind], t->exponent[kind],
+                                       t->degree_v[kind], u, v);
+        const int64_t theirs = value_q16(
+            o->row, o->exponent, o->degree_v,
+            q_shift(u * (one - back->wider_q24), 24) - back->along_q24,
+            q_shift(v * (one - back->higher_q24), 24));
+        const int64_t off = ours > theirs ? ours - theirs : theirs - ours;
+
+        most = off > most ? off : most;
+    }
+    return most;
 }
 
 /* Gives the transfer the barrel O in a place that is free, open as far as the
@@ -298,11 +355,14 @@ static void add_barrel(struct glint_zoom_mix *blend,
     open_barrel(t, kind, TRANSFER_ONE_Q30 - blend->part_q30);
 }
 
-static void mix_barrel(struct glint_zoom_mix *blend,
-                       const struct glint_blend_output *o)
+/* Mixes O with the barrel that has not been mixed yet and differs least from
+ * it, if that is by less than is alike: in their boxes, or AT the same PLACES
+ * of the pupil. Returns whether there is one. */
+static int mix_barrel(struct glint_zoom_mix *blend,
+                      const struct glint_blend_output *o, int at_places)
 {
     struct glint_transfer *const t = blend->to;
-    int64_t least = LIKE_Q16;
+    int64_t least = at_places ? NEAR_Q16 : LIKE_Q16;
     int best = -1;
 
     for (int kind = BARREL; kind < GLINT_OUT_KINDS; kind++) {
@@ -310,35 +370,41 @@ static void mix_barrel(struct glint_zoom_mix *blend,
 
         if (!transfer_has(t, kind) || (blend->mixed | blend->added) >> kind & 1)
             continue;
-        off = apart_q16(t, kind, o);
+        off = at_places ? apart_q16(blend, kind, o) : unlike_q16(t, kind, o);
         if (off < least) {
             least = off;
             best = kind;
         }
     }
-    if (best < 0) {
-        if (blend->part_q30 > 0)
-            add_barrel(blend, o);
-        return;
-    }
+    if (best < 0)
+        return 0;
     t->exponent[best] = mix_output(blend, best, t->exponent[best], o);
     blend->mixed |= UINT32_C(1) << best;
+    return 1;
 }
 
 /* -------------------------------------------------------------------- both */
 
-void glint_blend_output(struct glint_zoom_mix *blend,
-                        const struct glint_blend_output *o)
+int glint_blend_output(struct glint_zoom_mix *blend,
+                       const struct glint_blend_output *o)
 {
     struct glint_transfer *const t = blend->to;
 
     if (o->kind >= BARREL)
-        mix_barrel(blend, o);
-    else if (o->kind == GLINT_OUT_ENERGY)
+        return mix_barrel(blend, o, 0);
+    if (o->kind == GLINT_OUT_ENERGY)
         mix_energy(blend, o);
     else if (transfer_has(t, o->kind))
         t->exponent[o->kind] =
             mix_output(blend, o->kind, t->exponent[o->kind], o);
+    return 1;
+}
+
+void glint_blend_barrel(struct glint_zoom_mix *blend,
+                        const struct glint_blend_output *o)
+{
+    if (!mix_barrel(blend, o, 1) && blend->part_q30 > 0)
+        add_barrel(blend, o);
 }
 
 void glint_blend_end(const struct glint_zoom_mix *blend)

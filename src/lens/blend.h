@@ -19,6 +19,7 @@ struct glint_zoom_mix {
     struct glint_blend_move {
         int32_t along_q24, wider_q24, higher_q24;
     } move[2];
+    int far; /* whether it is */
     /* Barrels that have been mixed, and those that only the other has, as bits
      * of their number. */
     uint32_t mixed, added;
@@ -38,8 +39,14 @@ struct glint_blend_output {
 int glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
                     int32_t exponent);
 
-/* Mixes O in. Outputs come by rising kind. */
-void glint_blend_output(struct glint_zoom_mix *blend,
+/* Mixes O in. Outputs come by rising kind. Returns 0 for a barrel that is like
+ * none of this position in its box, which comes again after all others. */
+int glint_blend_output(struct glint_zoom_mix *blend,
+                       const struct glint_blend_output *o);
+
+/* Mixes the barrel O with one that stops the same light of the pupil, or adds
+ * it. */
+void glint_blend_barrel(struct glint_zoom_mix *blend,
                         const struct glint_blend_output *o);
 
 /* Opens the barrels that the other position lacks. */

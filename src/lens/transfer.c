@@ -376,6 +376,24 @@ int glint_transfer_init_at(struct glint_transfer *transfer,
     return 1;
 }
 
+/* Returns output O of a position that is mixed in, whose coefficients are put
+ * into ROW. */
+static struct glint_blend_output output_of(const struct glint_lens *lens,
+                                           const struct glint_model_output *o,
+                                           const struct setting *set,
+                                           int32_t (*row)[GLINT_TABLE_WIDTH])
+{
+    struct table table = {row, 0, 0};
+
+    fill_table(&table, lens, o, set);
+    return (struct glint_blend_output){.kind = o->kind,
+                                       .head = o->head,
+                                       .exponent = o->exponent,
+                                       .row = row,
+                                       .degree_u = (uint8_t)table.degree_u,
+                                       .degree_v = (uint8_t)table.degree_v};
+}
+
 int glint_transfer_mix(struct glint_transfer *transfer,
                        const struct glint_lens *lens, int ghost,
                        int32_t sine_q30, int32_t wave_q24, int32_t part_q30)
@@ -386,6 +404,7 @@ int glint_transfer_mix(struct glint_transfer *transfer,
     struct glint_zoom_mix blend = {.to = transfer, .part_q30 = part_q30};
     int32_t box[3] = {transfer->box[0], transfer->box[1], transfer->box[2]};
     const int32_t box_exponent = transfer->box_exponent;
+    uint32_t left = 0; /* barrels that are like none, as bits */
     struct setting set;
 
     if (!system)
@@ -399,14 +418,19 @@ int glint_transfer_mix(struct glint_transfer *transfer,
     if (!glint_blend_box(&blend, box, box_exponent))
         return 0;
     for (uint32_t k = 0; k < system->n_outputs; k++) {
-        struct table table = {transfer->of_u, 0, 0};
+        const struct glint_blend_output of =
+            output_of(lens, &o[k], &set, transfer->of_u);
 
-        fill_table(&table, lens, &o[k], &set);
-        glint_blend_output(&blend, &(struct glint_blend_output){
-                                       o[k].kind, o[k].head, o[k].exponent,
-                                       table.row, (uint8_t)table.degree_u,
-                                       (uint8_t)table.degree_v});
+        if (!glint_blend_output(&blend, &of))
+            left |= UINT32_C(1) << k;
     }
+    for (uint32_t k = 0; left >> k; k++)
+        if (left >> k & 1) {
+            const struct glint_blend_output of =
+                output_of(lens, &o[k], &set, transfer->of_u);
+
+            glint_blend_barrel(&blend, &of);
+        }
     glint_blend_end(&blend);
     return 1;
 }

@@ -19,7 +19,7 @@
 enum {
     MODEL_ROOM = 1 << 20,
     MODEL_KNOTS = 3,
-    MODEL_TERMS = 3,
+    MODEL_TERMS = 4,
     MODEL_BOX_TERMS = 1 | 2 | 1 << GLINT_BOX_POWERS /* s^0, s^1 and w */
 };
 

@@ -220,14 +220,14 @@ static void energies_have_heads_and_roots(void **state)
 
 /* Opens a model at M whose box lies at MIDDLE, with the half sides HALF and
  * RISE, mm, and whose sensor x and y are those of the place in the pupil times
- * SLOPE. */
+ * SLOPE. Its barrel is a circle of 4 mm on the pupil. */
 static struct glint_lens open_box(struct model_image *m, double middle,
                                   double half, double rise, double slope)
 {
     static const struct glint_model_ghost ghost = {0, 1, 0, 1};
     const int32_t box[3] = {(int32_t)ldexp(middle, 20),
                             (int32_t)ldexp(half, 20), (int32_t)ldexp(rise, 20)};
-    const struct model_polynomial p[5] = {
+    const struct model_polynomial p[6] = {
         {GLINT_OUT_SENSOR_X,
          2,
          EXPONENT,
@@ -236,13 +236,19 @@ static struct glint_lens open_box(struct model_image *m, double middle,
         {GLINT_OUT_SENSOR_Y, 1, EXPONENT, {P(0, 1)}, {{q28(rise * slope)}}},
         {GLINT_OUT_STOP_X, 1, EXPONENT, {P(1, 0)}, {{1 << 27}}},
         {GLINT_OUT_STOP_Y, 1, EXPONENT, {P(0, 1)}, {{1 << 27}}},
-        {GLINT_OUT_ENERGY, 1, EXPONENT, {P(0, 0)}, {{1 << 26}}}};
+        {GLINT_OUT_ENERGY, 1, EXPONENT, {P(0, 0)}, {{1 << 26}}},
+        {GLINT_OUT_BARREL_0,
+         4,
+         EXPONENT,
+         {P(0, 0), P(1, 0), P(2, 0), P(0, 2)},
+         {{q28(0.5 + middle * middle / 32), q28(middle * half / 16),
+           q28(half * half / 32), q28(rise * rise / 32)}}}};
     struct glint_model_system s;
 
     model_begin(m, GLINT_BASIS_AUTO, "box");
     s = put(m, 0, 0, 0, NULL, 0);
     s.box_at = model_put(m, box, sizeof box);
-    model_outputs(m, &s, p, 5, 0);
+    model_outputs(m, &s, p, 6, 0);
     model_end(m, &ghost, 1, &s, 1);
     return model_open(m);
 }
@@ -272,6 +278,50 @@ static void boxes_move(void **state)
     }
     free(at[0].data);
     free(at[1].data);
+}
+
+/* Half-way, value of the only barrel at U and V, which lies at X and Y mm. */
+static void is_circle(double u, double v, double x, double y)
+{
+    struct glint_outputs out;
+    double got;
+
+    glint_transfer_ray(&mixed, (int32_t)ldexp(u, 30), (int32_t)ldexp(v, 30),
+                       &out);
+    got = ldexp(out.at[GLINT_OUT_BARREL_0], mixed.exponent[GLINT_OUT_BARREL_0]);
+    if (fabs(got - 0.5 - (x * x + y * y) / 32) > 0.1)
+        fail_msg("the barrel is %g at %g, %g mm", got, x, y);
+}
+
+/* A barrel is the same where boxes are so different that its polynomials are;
+ * that of a box far away is another. */
+static void barrels_are_the_same_on_the_pupil(void **state)
+{
+    struct model_image at[3];
+    const struct glint_lens a = open_box(&at[0], 0, 4, 2, 0);
+    const struct glint_lens b = open_box(&at[1], 1, 6.5, 3, 0);
+    const struct glint_lens c = open_box(&at[2], 7, 0.5, 2, 0);
+
+    (void)state;
+    for (int k = 0; k < 2; k++) { /* either may be the first */
+        const struct glint_lens *const first = k ? &b : &a;
+
+        assert_int_equal(
+            glint_transfer_init(&mixed, first, 0, 0, MODEL_WAVE_LO_Q24), 1);
+        assert_int_equal(glint_transfer_mix(&mixed, k ? &a : &b, 0, 0,
+                                            MODEL_WAVE_LO_Q24, ONE / 2),
+                         1);
+        assert_false(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
+        is_circle(1, 0, 0.5 + 5.25, 0);
+        is_circle(-1, 0, 0.5 - 5.25, 0);
+        is_circle(0, 1, 0.5, 2.5);
+    }
+    glint_transfer_init(&mixed, &a, 0, 0, MODEL_WAVE_LO_Q24);
+    assert_int_equal(
+        glint_transfer_mix(&mixed, &c, 0, 0, MODEL_WAVE_LO_Q24, ONE / 2), 1);
+    assert_true(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
+    for (int k = 0; k < 3; k++)
+        free(at[k].data);
 }
 
 /* ------------------------------------------------------------------- ghosts */
@@ -555,6 +605,7 @@ int main(void)
         cmocka_unit_test(barrels_that_go),
         cmocka_unit_test(energies_have_heads_and_roots),
         cmocka_unit_test(boxes_move),
+        cmocka_unit_test(barrels_are_the_same_on_the_pupil),
         cmocka_unit_test(ghosts_fade),
         cmocka_unit_test(ghosts_go_on),
         cmocka_unit_test(ghosts_that_cannot_go_on),
