@@ -16,7 +16,7 @@ enum {
 
 /* Errors at the angles that are measured are brought to so many dB less than
  * what is asked for, as others have more. */
-#define MARGIN_DB 1.5
+#define MARGIN_DB 2
 /* Share of what is asked for: a ghost whose largest error was less is not
  * measured again in the halves of its step. */
 #define SMALL 1e-3

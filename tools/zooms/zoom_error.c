@@ -7,6 +7,7 @@
 #include "engine/frame/frame.h"
 #include "engine/measure.h"
 #include "glint/glint.h"
+#include "glint/transfer.h"
 
 /* Pictures are so many pixels wide: a fourth of 1080p's, whose outlines are as
  * far off in shares of the picture. */
@@ -19,45 +20,24 @@ enum { WIDE = 480, MOST_HIGH = 480 };
 /* A degree about the axis at which light falls in no symmetry of the film. */
 #define AZIMUTH_DEG 33
 
-/* Pictures of one light: all as the zoom has it, and one ghost of that and of
- * exact rays. */
-struct pictures {
-    struct glint_frame model, exact;
-    struct glint_float_image all, mixed, traced;
-    double exposure;
+/* Wavelength of all pictures, nm; three would take twice as long. Near the
+ * middle of the visible band coatings leave too little of ghosts to tell. */
+#define WAVE_NM 450
+
+/* Share of white from which on a ghost is seen: a third of the first code. */
+#define FAINT 1e-4
+
+enum { EACH = 4 }; /* of the angles is measured at first */
+
+/* What is known of a ghost at an angle, as bits. */
+enum {
+    MEASURED = 1,
+    IN_MODEL = 2, /* it is seen in the model's picture */
+    IN_EXACT = 4, /* and in that of exact rays */
+    IN_RANGE = 8, /* the model has rays of it, seen or not */
+    WANTED = 16   /* is to be measured now */
 };
-
-/* Returns the mean squared error if the ghost alone was mixed. */
-static double error_of(const struct pictures *p)
-{
-    const size_t n = 3 * (size_t)p->all.width * (size_t)p->all.height;
-    double sum = 0;
-
-    for (size_t i = 0; i < n; i++) {
-        const double mixed = (double)p->mixed.rgb[i];
-        const double traced = (double)p->traced.rgb[i];
-        const double rest = fmax(0, (double)p->all.rgb[i] - mixed);
-        double off;
-
-        if (mixed <= 0 && traced <= 0)
-            continue;
-        off = (glint_measure_code(p->exposure * (rest + mixed)) -
-               glint_measure_code(p->exposure * (rest + traced))) /
-              255;
-        sum += off * off;
-    }
-    return sum / (double)n;
-}
-
-static enum glint_status draw(struct glint_frame *frame,
-                              const struct glint_lamp *lamp, int ghost,
-                              struct glint_float_image *image)
-{
-    struct glint_frame_report report;
-
-    frame->only_ghost = ghost;
-    return glint_frame_draw_alone(frame, lamp, 1, 1, image->rgb, &report);
-}
+enum { SEEN = IN_MODEL | IN_EXACT };
 
 /* What all angles share. Each is a job of its own, as frames are too small to
  * be shared out. */
@@ -68,43 +48,90 @@ struct measuring {
     double max_deg, shift;
     int n;
     struct zoom_error *error;
+    unsigned char (*known)[ZOOM_ANGLES]; /* [n] */
     enum glint_status status[ZOOM_ANGLES];
 };
 
-/* Sets entry ANGLE of the errors. */
+static double angle_deg(const struct measuring *m, int angle)
+{
+    return m->max_deg * (angle + EACH * m->shift) / ZOOM_ANGLES;
+}
+
+/* ----------------------------------------------------------------- pictures */
+
+/* Pictures of one light: all as the zoom has it, and one ghost of that and of
+ * exact rays; all their channels are alike. */
+struct pictures {
+    struct glint_frame model, exact;
+    struct glint_float_image all, mixed, traced;
+    double exposure;
+};
+
+/* Sets ERROR to the mean squared error if the ghost alone was mixed. Returns in
+ * which pictures it is seen. */
+static int find_error(const struct pictures *p, double *error)
+{
+    const size_t n = (size_t)p->all.width * (size_t)p->all.height;
+    double sum = 0;
+    int seen = 0;
+
+    for (size_t i = 0; i < n; i++) {
+        const double mixed = (double)p->mixed.rgb[3 * i];
+        const double traced = (double)p->traced.rgb[3 * i];
+        const double rest = fmax(0, (double)p->all.rgb[3 * i] - mixed);
+        double off;
+
+        if (mixed <= 0 && traced <= 0)
+            continue;
+        seen |= (mixed * p->exposure > FAINT ? IN_MODEL : 0) |
+                (traced * p->exposure > FAINT ? IN_EXACT : 0);
+        off = (glint_measure_code(p->exposure * (rest + mixed)) -
+               glint_measure_code(p->exposure * (rest + traced))) /
+              255;
+        sum += off * off;
+    }
+    *error = sum / (double)n;
+    return seen;
+}
+
+/* Draws GHOST, or all if it is below 0, in grey, as green sees it. */
+static enum glint_status draw(struct glint_frame *frame,
+                              const struct glint_lamp *lamp, int ghost,
+                              struct glint_float_image *image)
+{
+    const size_t n = (size_t)image->width * (size_t)image->height;
+    struct glint_frame_report report;
+    enum glint_status status;
+
+    frame->only_ghost = ghost;
+    status = glint_frame_draw_alone(frame, lamp, 1, 1, image->rgb, &report);
+    for (size_t i = 0; i < n; i++)
+        image->rgb[3 * i] = image->rgb[3 * i + 2] = image->rgb[3 * i + 1];
+    return status;
+}
+
+/* Sets the errors of ghosts that are wanted at ANGLE. */
 static enum glint_status measure_angle(const struct measuring *m,
                                        struct pictures *p, int angle)
 {
-    const struct glint_lamp lamp = {
-        .theta_deg = m->max_deg * (angle + m->shift) / ZOOM_ANGLES,
-        .phi_deg = AZIMUTH_DEG,
-        .power = 1,
-        .rgb = {1, 1, 1}};
+    const struct glint_lamp lamp = {.theta_deg = angle_deg(m, angle),
+                                    .phi_deg = AZIMUTH_DEG,
+                                    .power = 1,
+                                    .rgb = {1, 1, 1}};
     enum glint_status status = draw(&p->model, &lamp, -1, &p->all);
 
     p->exposure = glint_measure_exposure(&p->all);
     for (int g = 0; g < m->n && status == GLINT_OK; g++) {
-        if (m->error[g].of[angle] >= 0)
+        if (!(m->known[g][angle] & WANTED))
             continue;
         status = draw(&p->model, &lamp, g, &p->mixed);
         if (status == GLINT_OK)
             status = draw(&p->exact, &lamp, g, &p->traced);
-        m->error[g].of[angle] = error_of(p);
+        m->known[g][angle] =
+            (unsigned char)((m->known[g][angle] & IN_RANGE) | MEASURED |
+                            find_error(p, &m->error[g].of[angle]));
     }
     return status;
-}
-
-/* Returns the largest angle of a light, up to MAX_DEG, of which a picture of
- * LENS is asked. */
-static double most_deg(const struct glint_prescription *lens, double max_deg)
-{
-    const double corner_mm =
-        0.5 * hypot(lens->film_width_mm, lens->film_height_mm);
-    struct glint_optics optics;
-
-    glint_optics_of(lens, &optics);
-    return fmin(max_deg, BEYOND * 180 / GLINT_PI *
-                             atan(corner_mm / fabs(optics.focal_mm)));
 }
 
 static bool take_image(struct glint_float_image *image,
@@ -121,8 +148,13 @@ static void angle_job(void *ctx, int angle, int worker)
 {
     struct measuring *const m = ctx;
     struct pictures p = {.exposure = 1};
+    bool any = false;
 
     (void)worker;
+    for (int g = 0; g < m->n; g++)
+        any |= m->known[g][angle] & WANTED;
+    if (!any)
+        return;
     glint_frame_init(&p.model, m->setup, m->view, NULL);
     p.model.lens = &m->zoom->lens;
     glint_frame_init(&p.exact, m->setup, m->view, NULL);
@@ -139,6 +171,106 @@ static void angle_job(void *ctx, int angle, int worker)
     free(p.traced.rgb);
 }
 
+/* ------------------------------------------------------------------- angles */
+
+/* Notes at which angles the model has rays of the ghosts that are asked for. */
+static bool find_ranges(struct measuring *m)
+{
+    struct glint_transfer *const transfer = malloc(sizeof *transfer);
+    const struct glint_model_header *const h = m->zoom->lens.header;
+    const int32_t wave_q24 = h->wave_lo_q24 / 2 + h->wave_hi_q24 / 2;
+
+    for (int g = 0; g < m->n && transfer; g++)
+        for (int a = 0; a < ZOOM_ANGLES && m->error[g].of[0] < 0; a++) {
+            const double sine = sin(angle_deg(m, a) * GLINT_PI / 180);
+
+            if (glint_transfer_init(transfer, &m->zoom->lens, g,
+                                    (int32_t)(sine * 0x1p30), wave_q24))
+                m->known[g][a] |= IN_RANGE;
+        }
+    free(transfer);
+    return transfer != NULL;
+}
+
+/* Returns whether a ghost, of which KNOWN is known, is to be measured at ANGLE,
+ * between two that have been: it is seen at one alone, or in one picture alone,
+ * or has rays here and at neither. */
+static bool is_wanted(const unsigned char known[ZOOM_ANGLES], int angle,
+                      int step)
+{
+    const int before = known[angle - step];
+    const int after = angle + step < ZOOM_ANGLES ? known[angle + step] : before;
+    const int seen = before & SEEN;
+
+    if (!(before & after & MEASURED))
+        return false;
+    return ((before ^ after) & SEEN) || (seen && seen != SEEN) ||
+           (known[angle] & ~(before | after) & IN_RANGE);
+}
+
+/* Wants each STEP-th angle of the ghosts that are asked for; of those between
+ * angles that have been measured only some. */
+static void want(struct measuring *m, int step)
+{
+    for (int g = 0; g < m->n; g++)
+        for (int a = 0; a < ZOOM_ANGLES; a += step)
+            if (step == EACH ? m->error[g].of[0] < 0
+                             : (m->known[g][0] & MEASURED) && a % (2 * step) &&
+                                   is_wanted(m->known[g], a, step))
+                m->known[g][a] |= WANTED;
+}
+
+/* Sets entries of ERROR, of which KNOWN is known, that were not measured. */
+static void fill(const unsigned char known[ZOOM_ANGLES],
+                 struct zoom_error *error)
+{
+    int before = 0, after = 0;
+
+    for (int a = 0; a < ZOOM_ANGLES; a++) {
+        if (known[a] & MEASURED) {
+            before = a;
+            continue;
+        }
+        for (after = a; after < ZOOM_ANGLES && !(known[after] & MEASURED);)
+            after++;
+        error->of[a] =
+            after < ZOOM_ANGLES
+                ? error->of[before] + (error->of[after] - error->of[before]) *
+                                          (a - before) / (after - before)
+                : error->of[before];
+    }
+}
+/* Returns the largest angle of a light, up to MAX_DEG, of which a picture of
+ * LENS is asked. */
+static double most_deg(const struct glint_prescription *lens, double max_deg)
+{
+    const double corner_mm =
+        0.5 * hypot(lens->film_width_mm, lens->film_height_mm);
+    struct glint_optics optics;
+
+    glint_optics_of(lens, &optics);
+    return fmin(max_deg, BEYOND * 180 / GLINT_PI *
+                             atan(corner_mm / fabs(optics.focal_mm)));
+}
+
+/* Measures at angles that come ever closer. */
+static enum glint_status measure_all(struct measuring *m,
+                                     struct glint_workers *workers)
+{
+    enum glint_status status = find_ranges(m) ? GLINT_OK : GLINT_E_MEMORY;
+
+    for (int step = EACH; step > 0 && status == GLINT_OK; step /= 2) {
+        want(m, step);
+        glint_workers_run(workers, ZOOM_ANGLES, angle_job, m);
+        for (int k = 0; k < ZOOM_ANGLES && status == GLINT_OK; k++)
+            status = m->status[k];
+    }
+    for (int g = 0; g < m->n && status == GLINT_OK; g++)
+        if (m->known[g][0] & MEASURED)
+            fill(m->known[g], &m->error[g]);
+    return status;
+}
+
 enum glint_status zoom_error_measure(const struct tool *tool,
                                      const struct glint_prescription *lens,
                                      const struct glint_zoom_lens *zoom,
@@ -146,7 +278,7 @@ enum glint_status zoom_error_measure(const struct tool *tool,
                                      struct zoom_error *error,
                                      struct glint_error *message)
 {
-    static const double rgb_nm[] = {650, 532, 450};
+    static const double wave_nm[] = {WAVE_NM};
     const double high = ceil(WIDE * lens->film_height_mm / lens->film_width_mm);
     struct glint_setup *const setup = malloc(sizeof *setup);
     struct measuring m = {
@@ -157,15 +289,15 @@ enum glint_status zoom_error_measure(const struct tool *tool,
         .max_deg = most_deg(lens, max_deg),
         .shift = shift,
         .n = n,
-        .error = error};
+        .error = error,
+        .known = calloc((size_t)n + 1, sizeof *m.known)};
     enum glint_status status = GLINT_E_MEMORY;
 
-    if (setup)
-        status = glint_setup_init(setup, lens, 0, 0, rgb_nm, 3, message);
+    if (setup && m.known)
+        status = glint_setup_init(setup, lens, 0, 0, wave_nm, 1, message);
     if (status == GLINT_OK)
-        glint_workers_run(tool->workers, ZOOM_ANGLES, angle_job, &m);
-    for (int k = 0; k < ZOOM_ANGLES && status == GLINT_OK; k++)
-        status = m.status[k];
+        status = measure_all(&m, tool->workers);
+    free(m.known);
     free(setup);
     return status;
 }

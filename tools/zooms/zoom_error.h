@@ -15,16 +15,18 @@
 #include "options/tool.h"
 #include "glint/bake.h"
 
-enum { ZOOM_ANGLES = 24 };
+enum { ZOOM_ANGLES = 96 };
 
 /* Errors of one ghost, by angle. */
 struct zoom_error {
     double of[ZOOM_ANGLES];
 };
 
-/* Sets those entries of ERROR, one for each of N ghosts, that are below 0.
- * Lights go up to one and a half times the half diagonal of what LENS sees, at
- * most MAX_DEG; SHIFT, 0 to 1, is where each lies in its share of that. */
+/* Sets those of the N entries of ERROR, one for each ghost, whose first error
+ * is below 0. Lights go up to one and a half times the half diagonal of what
+ * LENS sees, at most MAX_DEG; SHIFT, 0 to 1, is where each lies in its share of
+ * that. Each fourth angle is measured, others only where a ghost begins or ends
+ * near them, and else are in proportion. */
 enum glint_status zoom_error_measure(const struct tool *tool,
                                      const struct glint_prescription *lens,
                                      const struct glint_zoom_lens *zoom,
