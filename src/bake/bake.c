@@ -46,10 +46,12 @@ static struct glint_visible *visible_of(const struct bake_run *run, int ghost,
 {
     struct glint_visible *const v = calloc((size_t)n + 1, sizeof *v);
 
-    for (int k = 0; v && k <= n; k++)
+    for (int k = 0; v && k <= n; k++) {
         glint_visible_init(&v[k], k ? &run->beside[k - 1] : &run->setup, ghost,
                            glint_bake_field_mm(run->lens, &run->options),
                            run->options.band_nm);
+        glint_visible_reach(&v[k], run->options.max_deg);
+    }
     if (v) {
         v->beside = v + 1;
         v->n_beside = n;

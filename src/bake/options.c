@@ -10,11 +10,12 @@
 
 enum {
     /* Versions of the models: raised if a lens would bake to another model. */
-    REVISION = 12,
-    WIDE_REVISION = 16, /* of those of lenses that open wider than GLINT_WIDE */
+    REVISION = 13,
+    WIDE_REVISION = 17, /* of those of lenses that open wider than GLINT_WIDE */
     SHAPED_REVISION =
-        1,            /* besides, of those with surfaces that are no spheres */
-    SKEW_REVISION = 2 /* and of those that are not round */
+        1,             /* besides, of those with surfaces that are no spheres */
+    SKEW_REVISION = 2, /* of those that are not round */
+    FAR_REVISION = 1   /* and of round ones with lights beyond GLINT_FAR */
 };
 
 void glint_bake_defaults(struct glint_bake_options *options)
@@ -148,6 +149,8 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
         mix_lens(&key, &options->beside[k]);
     if (!glint_prescription_is_round(lens))
         mix(&key, SKEW_REVISION);
+    else if (options->max_deg > GLINT_FAR)
+        mix(&key, FAR_REVISION);
     for (const char *c = lens->name; *c; c++)
         mix(&key, (unsigned char)*c);
     return key;

@@ -14,20 +14,16 @@
 #include <math.h>
 
 #include "bake/table/form.h"
+#include "bake/trace/spot.h"
 #include "engine/setup/degrees.h"
 
 enum { ACROSS = 64, DOWN = 32, ROUNDS = 8, TURNS = 16 };
-
-/* stretches, of ACROSS cells each, of the line on which spots are sought */
-enum { LINES = 4 };
 
 /* Cells of later rounds, which cover less and get by with a coarser grid. */
 enum { NEXT_ACROSS = 24, NEXT_DOWN = 12 };
 
 struct search {
-    const struct glint_path *path;
-    double direction[3];
-    double stop_mm, field_mm;
+    struct glint_openings openings;
     int across, down; /* number of cells of this round */
     struct glint_ray ray[DOWN + 1][ACROSS + 1];
     enum glint_ray_status status[DOWN + 1][ACROSS + 1];
@@ -47,16 +43,16 @@ static double row_y(const struct search *s, const struct glint_pupil *p,
 
 static void sample_grid(struct search *s, const struct glint_pupil *p)
 {
-    struct glint_row row = {
-        s->across + 1,
-        p->x0_mm,
-        (p->x1_mm - p->x0_mm) / s->across,
-        0,
-        {s->direction[0], s->direction[1], s->direction[2]}};
+    struct glint_row row = {s->across + 1,
+                            p->x0_mm,
+                            (p->x1_mm - p->x0_mm) / s->across,
+                            0,
+                            {s->openings.direction[0], s->openings.direction[1],
+                             s->openings.direction[2]}};
 
     for (int j = 0; j <= s->down; j++) {
         row.y_mm = row_y(s, p, j);
-        glint_trace_row(s->path, &row, s->ray[j], s->status[j], NULL);
+        glint_trace_row(s->openings.path, &row, s->ray[j], s->status[j], NULL);
     }
 }
 
@@ -100,9 +96,9 @@ static bool may_pass(const struct search *s, const struct bounds *b)
     }
     return low[2] <= 1 &&
            hypot(from_zero(low[0], high[0]), from_zero(low[1], high[1])) <=
-               s->stop_mm &&
+               s->openings.stop_mm &&
            hypot(from_zero(low[3], high[3]), from_zero(low[4], high[4])) <=
-               s->field_mm;
+               s->openings.field_mm;
 }
 
 /* Adds one cell to those that are kept: its place, its energy and where its
@@ -166,7 +162,7 @@ static bool shrink(struct search *s, struct glint_pupil *p)
     found.x0_mm = column_x(s, p, (int)box.low[0]);
     found.x1_mm = column_x(s, p, (int)box.high[0]);
     found.y1_mm = row_y(s, p, box.high[2]);
-    if (s->path->round)
+    if (s->openings.path->round)
         mirror_sensor(&found);
     else
         found.y0_mm = row_y(s, p, box.low[2]);
@@ -264,59 +260,39 @@ static bool shrink_on(struct search *s, struct glint_pupil *p, int across,
     return found;
 }
 
-/* ----------------------------------------------------------------- slivers */
-
-/* Finds the part of the light's plane that may hold rays that get through,
- * judged by neighbouring rays. FRONT is where rays can enter. */
-static bool find_on_line(struct search *s, const struct glint_pupil *front,
-                         double x_mm[2])
-{
-    const double step = (front->x1_mm - front->x0_mm) / (LINES * ACROSS);
-    bool found = false;
-
-    for (int k = 0; k < LINES; k++) {
-        const double x0 = front->x0_mm + k * ACROSS * step;
-        const struct glint_row row = {
-            ACROSS + 1,
-            x0,
-            step,
-            0,
-            {s->direction[0], s->direction[1], s->direction[2]}};
-
-        glint_trace_row(s->path, &row, s->ray[0], s->status[0], NULL);
-        for (int i = 0; i < ACROSS; i++) {
-            struct bounds pair = {.n = 0};
-
-            for (int end = 0; end < 2; end++)
-                if (s->status[0][i + end] == GLINT_RAY_OK)
-                    bounds_add(&pair, &s->ray[0][i + end]);
-            if (pair.n < 2 || !may_pass(s, &pair))
-                continue;
-            x_mm[0] = found ? x_mm[0] : x0 + i * step;
-            x_mm[1] = x0 + (i + 1) * step;
-            found = true;
-        }
-    }
-    return found;
-}
-
-/* Finds a spot that is smaller than a cell of the first grid and has lost rays
- * around it; the light's plane goes through its middle. A part that is much
- * larger in y lies at the rim of something and is no spot. */
+/* Finds a spot that is smaller than a cell of the first grid; the light's plane
+ * goes through its middle. */
 static bool find_spot(struct search *s, const struct glint_pupil *front,
                       struct glint_pupil *p)
 {
-    double x[2], more;
+    double x[2];
 
-    if (!find_on_line(s, front, x))
+    if (!glint_spot_find(&s->openings, front, x))
         return false;
-    more = x[1] - x[0];
-    *p = (struct glint_pupil){.x0_mm = x[0] - more,
-                              .x1_mm = x[1] + more,
-                              .y0_mm = front->mirrored ? 0 : -more,
-                              .y1_mm = more,
+    *p = (struct glint_pupil){.x0_mm = x[0],
+                              .x1_mm = x[1],
+                              .y0_mm = front->mirrored ? 0 : x[0] - x[1],
+                              .y1_mm = x[1] - x[0],
                               .mirrored = front->mirrored};
-    return shrink_on(s, p, NEXT_ACROSS, NEXT_DOWN) && p->y1_mm < more;
+    glint_spot_grow(&s->openings, p);
+    return shrink_on(s, p, NEXT_ACROSS, NEXT_DOWN);
+}
+
+/* Finds the pupil on P, or a spot of FRONT. */
+static bool find(struct search *s, const struct glint_pupil *front,
+                 struct glint_pupil *p, bool near)
+{
+    struct glint_pupil wider;
+
+    if (!shrink_on(s, p, near ? NEXT_ACROSS : ACROSS, near ? NEXT_DOWN : DOWN))
+        return find_spot(s, front, p);
+    /* Where light bends more than cells allow for, some of it enters beside
+     * those that were kept. */
+    wider = *p;
+    if (glint_spot_grow(&s->openings, &wider) &&
+        shrink_on(s, &wider, NEXT_ACROSS, NEXT_DOWN))
+        *p = wider;
+    return true;
 }
 
 bool glint_pupil_find(struct glint_pupil *pupil, const struct glint_path *path,
@@ -354,16 +330,14 @@ bool glint_pupil_find_towards(struct glint_pupil *pupil,
             front = &path->event[k];
     if (!front)
         return false;
-    s.path = path;
-    for (int k = 0; k < 3; k++)
-        s.direction[k] = direction[k];
-    s.stop_mm = stop_radius_mm;
-    s.field_mm = field_mm;
-    whole = whole_front(path, front, s.direction);
+    s.openings = (struct glint_openings){
+        .path = path,
+        .direction = {direction[0], direction[1], direction[2]},
+        .stop_mm = stop_radius_mm,
+        .field_mm = field_mm};
+    whole = whole_front(path, front, direction);
     p = near ? surroundings(near, &whole) : whole;
-    found = shrink_on(&s, &p, near ? NEXT_ACROSS : ACROSS,
-                      near ? NEXT_DOWN : DOWN) ||
-            find_spot(&s, &whole, &p);
+    found = find(&s, &whole, &p, near);
     if (found)
         *pupil = p;
     return found;

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "bake/trace/spot.h"
 #include "engine/setup/degrees.h"
 
 enum { ACROSS = 64 /* cells of the finest grid */ };
@@ -81,6 +82,22 @@ static bool enclose(const struct glint_visible *h,
     return false;
 }
 
+/* Moves the sides of BOX past which rays get through, as tips of crescents that
+ * are thinner than its cells do. */
+static void grow(const struct glint_visible *h, const struct glint_path *path,
+                 double sine, struct glint_pupil *box)
+{
+    const struct glint_openings openings = {
+        .path = path,
+        .direction = {sine, 0, sqrt(1 - sine * sine)},
+        .stop_mm = h->setup->optics.stop_radius_mm,
+        .field_mm = h->field_mm};
+
+    box->y0_mm = 0;
+    box->mirrored = true;
+    glint_spot_grow(&openings, box);
+}
+
 /* Shrinks BOX, which holds all rays that get through, to the box of these. */
 static bool tighten(const struct glint_visible *h,
                     const struct glint_path *path, double sine,
@@ -96,6 +113,8 @@ static bool tighten(const struct glint_visible *h,
             (box->x1_mm - box->x0_mm) * box->y1_mm > 0.8 * before)
             break;
     }
+    if (found && h->far)
+        grow(h, path, sine, box);
     return found;
 }
 

@@ -42,7 +42,7 @@ void glint_visible_init(struct glint_visible *visible,
     visible->ghost = ghost;
     visible->field_mm = field_mm;
     visible->wide = setup->lens->f_number < GLINT_WIDE;
-    visible->shaped = false;
+    visible->far = visible->shaped = false;
     for (int k = 0; k < setup->lens->n_surfaces; k++)
         visible->shaped |= glint_surface_is_shaped(&setup->lens->surface[k]);
     visible->shaped &=
@@ -53,6 +53,13 @@ void glint_visible_init(struct glint_visible *visible,
     set_paths(visible);
 }
 
+void glint_visible_reach(struct glint_visible *visible, double max_deg)
+{
+    visible->far = max_deg > GLINT_FAR &&
+                   glint_prescription_is_round(visible->setup->lens);
+    visible->wide |= visible->far;
+}
+
 void glint_visible_narrow(struct glint_visible *visible,
                           const struct glint_visible *whole, double w0,
                           double w1)
@@ -61,6 +68,7 @@ void glint_visible_narrow(struct glint_visible *visible,
     visible->ghost = whole->ghost;
     visible->field_mm = whole->field_mm;
     visible->wide = whole->wide;
+    visible->far = whole->far;
     visible->shaped = whole->shaped;
     visible->wave_lo = wave_of(whole, w0);
     visible->wave_hi = wave_of(whole, w1);

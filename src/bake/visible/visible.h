@@ -36,6 +36,10 @@ extern const int glint_visible_colour[GLINT_VISIBLE_COLOURS];
  * and weigh rays in other ways, too. */
 #define GLINT_WIDE 10
 
+/* Degrees: of lights further off the axis, of fisheyes, rays of any stop come
+ * near the equators of surfaces as those of wide stops do. */
+#define GLINT_FAR 60
+
 /* One ghost, and what all its ranges share. */
 struct glint_visible {
     const struct glint_setup *setup;
@@ -45,9 +49,11 @@ struct glint_visible {
     bool
         wide; /* whether the lens opens wider than GLINT_WIDE: its rays come
                  near singularities, and the model serves much narrower stops */
-    /* Whether the lens is round and wide and has surfaces that are no spheres,
-     * whose powers grow steeply: what cannot be fitted is hidden rather than
-     * halved, as that has no end. */
+    bool far; /* whether lights beyond GLINT_FAR are asked for, of a round lens;
+                 it is wide then */
+    /* Whether the lens is round and opens wider than GLINT_WIDE and has
+     * surfaces that are no spheres, whose powers grow steeply: what cannot be
+     * fitted is hidden rather than halved, as that has no end. */
     bool shaped;
     double wave_lo, wave_hi;                     /* 1 / wavelength^2, um^-2 */
     struct glint_path path[GLINT_VISIBLE_WAVES]; /* paths at wavelengths from
@@ -70,6 +76,9 @@ glint_visible_member(const struct glint_visible *visible, int k)
 void glint_visible_init(struct glint_visible *visible,
                         const struct glint_setup *setup, int ghost,
                         double field_mm, const double band_nm[2]);
+
+/* Tells VISIBLE that lights of up to MAX_DEG are asked for. */
+void glint_visible_reach(struct glint_visible *visible, double max_deg);
 
 /* Sets VISIBLE for the part W0 .. W1, -1 .. 1, of the band of WHOLE; it has
  * room for as many beside it. */

@@ -120,6 +120,84 @@ static void test_spot(void **state)
     }
 }
 
+static void load_fisheye(struct glint_path *path, int ghost, double nm)
+{
+    struct glint_error error = {""};
+
+    load_lens(&lens, "wide/fisheye-zuiko-8");
+    assert_int_equal(glint_prescription_set_f_number(&lens, 11, &error),
+                     GLINT_OK);
+    glint_optics_of(&lens, &optics);
+    glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
+    glint_path_init(path, &lens, &ghosts[ghost], nm);
+}
+
+/* Ghosts of a fisheye enter by spots of a twentieth of a millimetre in a front
+ * of 80, about which all rays are lost. Every colour has one, beside that of
+ * the colour before. */
+static void test_spots_of_fisheye(void **state)
+{
+    static const struct {
+        int ghost;
+        double deg;
+    } spot[] = {{3, 61.13}, {6, 57.17}, {15, 12.74}, {15, 78.87}};
+
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        const double t = spot[k].deg * 3.14159265358979 / 180;
+        const double direction[3] = {sin(t), 0, cos(t)};
+        double before = 0;
+
+        for (int nm = 400; nm <= 700; nm += 50) {
+            struct glint_pupil box;
+            struct glint_path path;
+            struct glint_ray ray;
+            int n = 0;
+
+            load_fisheye(&path, spot[k].ghost, nm);
+            assert_true(glint_pupil_find(&box, &path, spot[k].deg,
+                                         optics.stop_radius_mm, NULL));
+            assert_true(box.x1_mm - box.x0_mm < 0.3 && box.y1_mm < 0.1);
+            for (int i = 0; i <= SCAN; i++)
+                n += passes(&path,
+                            box.x0_mm + (box.x1_mm - box.x0_mm) * i / SCAN, 0,
+                            direction, &ray);
+            assert_true(n > SCAN / 2);
+            assert_true(nm == 400 || fabs(box.x0_mm - before) < 1);
+            before = box.x0_mm;
+        }
+    }
+}
+
+/* A crescent whose tips are thinner than the cells of the search. */
+static void test_tips(void **state)
+{
+    const double t = 12.74 * 3.14159265358979 / 180;
+    const double direction[3] = {sin(t), 0, cos(t)};
+
+    (void)state;
+    for (int nm = 400; nm <= 700; nm += 50) {
+        struct glint_pupil box;
+        struct glint_path path;
+        struct glint_ray ray;
+        int n = 0;
+
+        load_fisheye(&path, 51, nm);
+        assert_true(
+            glint_pupil_find(&box, &path, 12.74, optics.stop_radius_mm, NULL));
+        for (int j = 0; j <= SCAN; j++)
+            for (int i = 0; i <= SCAN; i++) {
+                const double x = -9 + 7.0 * i / SCAN, y = 3.0 * j / SCAN;
+
+                if (!passes(&path, x, y, direction, &ray))
+                    continue;
+                n++;
+                assert_true(x >= box.x0_mm && x <= box.x1_mm && y <= box.y1_mm);
+            }
+        assert_true(n > 1000);
+    }
+}
+
 /* At 85 degrees no light of this ghost reaches the stop, so there is no box. */
 static void test_nothing_gets_through(void **state)
 {
@@ -142,6 +220,8 @@ int main(void)
         cmocka_unit_test(test_angenieux),
         cmocka_unit_test(test_itoh),
         cmocka_unit_test(test_spot),
+        cmocka_unit_test(test_spots_of_fisheye),
+        cmocka_unit_test(test_tips),
         cmocka_unit_test(test_nothing_gets_through),
     };
 

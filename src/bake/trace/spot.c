@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/trace/spot.h"
+
+#include <math.h>
+
+enum {
+    LINE = 64,   /* cells of a stretch of the line */
+    LINES = 4,   /* stretches of the whole line */
+    CLOSER = 6,  /* times that a stretch is looked at, each one closer */
+    BORDER = 64, /* cells along a border */
+    SHORT = 32,  /* of one across the rows */
+    GROWTHS = 12 /* times that a side is moved out */
+};
+
+/* Ranges of what is signed may be so many times as wide between two rays. */
+#define BENDS 0.5
+/* Of two rays, one of which is lost, others between may get through if they are
+ * so many semi-diameters apart where both were last. */
+#define APART 0.25
+/* Share of a box by which a side is moved out at a time: as little as a tip is
+ * shorter than what holds the rest. */
+#define STEP 0.125
+
+/* Neighbouring rays on the light's plane. */
+struct line {
+    double x0_mm, step_mm;
+    struct glint_ray ray[LINE + 1];
+    enum glint_ray_status status[LINE + 1];
+    double hits[(LINE + 1) * (GLINT_MAX_EVENTS + 1)][2]; /* 200 KB: the offline
+                                                half has the stack for it */
+};
+
+bool glint_openings_pass(const struct glint_openings *o,
+                         const struct glint_ray *ray)
+{
+    return ray->rel_radius <= 1 &&
+           hypot(ray->stop_x_mm, ray->stop_y_mm) <= o->stop_mm &&
+           hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= o->field_mm;
+}
+
+static void trace_line(const struct glint_openings *o, double x0_mm,
+                       double x1_mm, struct line *line)
+{
+    const double *d = o->direction;
+    const struct glint_row row = {
+        LINE + 1, x0_mm, (x1_mm - x0_mm) / LINE, 0, {d[0], d[1], d[2]}};
+
+    line->x0_mm = x0_mm;
+    line->step_mm = row.step_mm;
+    for (int k = 0; k < row.n * o->path->n_events; k++)
+        line->hits[k][0] = HUGE_VAL;
+    glint_trace_row(o->path, &row, line->ray, line->status, line->hits);
+}
+
+/* Returns the least distance from 0 of what is at A and at B, and may bend
+ * between them. */
+static double nearest(double a, double b)
+{
+    const double more = BENDS * fabs(a - b);
+    const double low = fmin(a, b) - more, high = fmax(a, b) + more;
+
+    return low > 0 ? low : high < 0 ? -high : 0;
+}
+
+/* Returns how many events ray I of LINE has reached. */
+static int reached(const struct line *line, int i, int n_events)
+{
+    int n = 0;
+
+    while (n < n_events && line->hits[i * n_events + n][0] < HUGE_VAL)
+        n++;
+    return n;
+}
+
+/* Returns whether a ray between rays I and I + 1 may get through. Where one of
+ * these is lost, that is because light fans out from a spot. */
+static bool may_pass(const struct glint_openings *o, const struct line *line,
+                     int i)
+{
+    const struct glint_ray *a = &line->ray[i], *b = &line->ray[i + 1];
+    const int all = o->path->n_events;
+    const int n = (int)fmin(reached(line, i, all), reached(line, i + 1, all));
+    double apart = 0;
+
+    for (int k = 0; k < n; k++) {
+        const struct glint_event *e = &o->path->event[k];
+        const double *p = line->hits[i * all + k];
+        const double *q = line->hits[(i + 1) * all + k];
+        const double semi = e->kind == GLINT_STOP ? o->stop_mm : e->semi_mm;
+
+        if (hypot(nearest(p[0], q[0]), nearest(p[1], q[1])) > semi)
+            return false;
+        apart = fabs(p[0] - q[0]) / semi;
+    }
+    if (line->status[i] != GLINT_RAY_OK || line->status[i + 1] != GLINT_RAY_OK)
+        return apart > APART;
+    return hypot(nearest(a->sensor_x_mm, b->sensor_x_mm),
+                 nearest(a->sensor_y_mm, b->sensor_y_mm)) <= o->field_mm;
+}
+
+/* Sets X_MM to the rays of LINE that get through, and to their neighbours;
+ * returns whether there are any. */
+static bool seen_on(const struct glint_openings *o, const struct line *line,
+                    double x_mm[2])
+{
+    bool seen = false;
+
+    for (int i = 0; i <= LINE; i++) {
+        if (line->status[i] != GLINT_RAY_OK ||
+            !glint_openings_pass(o, &line->ray[i]))
+            continue;
+        x_mm[0] = seen ? x_mm[0] : line->x0_mm + (i - 1) * line->step_mm;
+        x_mm[1] = line->x0_mm + (i + 1) * line->step_mm;
+        seen = true;
+    }
+    return seen;
+}
+
+/* Shrinks X_MM, a stretch in which rays may get through, to those that do;
+ * returns whether there are any. */
+static bool look_closer(const struct glint_openings *o, double x_mm[2])
+{
+    struct line line;
+
+    for (int round = 0; round < CLOSER; round++) {
+        int first = LINE, last = -1;
+
+        trace_line(o, x_mm[0], x_mm[1], &line);
+        if (seen_on(o, &line, x_mm))
+            return true;
+        for (int i = 0; i < LINE; i++)
+            if (may_pass(o, &line, i)) {
+                first = i < first ? i : first;
+                last = i;
+            }
+        if (last < 0)
+            return false;
+        x_mm[0] = line.x0_mm + first * line.step_mm;
+        x_mm[1] = line.x0_mm + (last + 1) * line.step_mm;
+    }
+    return false;
+}
+
+/* Looks at each run of cells of LINE in which rays may get through; *X_MM
+ * becomes the widest range in which they do, if that is wider than it. */
+static void look_at_runs(const struct glint_openings *o,
+                         const struct line *line, double x_mm[2])
+{
+    int first = -1;
+
+    for (int i = 0; i <= LINE; i++) {
+        const bool may = i < LINE && may_pass(o, line, i);
+
+        if (may && first < 0)
+            first = i;
+        if (!may && first >= 0) {
+            double run[2] = {line->x0_mm + first * line->step_mm,
+                             line->x0_mm + i * line->step_mm};
+
+            if (look_closer(o, run) && run[1] - run[0] > x_mm[1] - x_mm[0]) {
+                x_mm[0] = run[0];
+                x_mm[1] = run[1];
+            }
+            first = -1;
+        }
+    }
+}
+
+bool glint_spot_find(const struct glint_openings *o,
+                     const struct glint_pupil *front, double x_mm[2])
+{
+    const double length = (front->x1_mm - front->x0_mm) / LINES;
+    struct line line;
+
+    x_mm[0] = x_mm[1] = 0;
+    for (int k = 0; k < LINES; k++) {
+        trace_line(o, front->x0_mm + k * length,
+                   front->x0_mm + (k + 1) * length, &line);
+        look_at_runs(o, &line, x_mm);
+    }
+    return x_mm[1] > x_mm[0];
+}
+
+/* Returns whether one of N + 1 rays from (X0, Y0) to (X1, Y1) gets through. */
+static bool crosses(const struct glint_openings *o, double x0, double y0,
+                    double x1, double y1, int n)
+{
+    struct glint_launch from[BORDER + 1];
+    struct glint_ray ray[BORDER + 1];
+    enum glint_ray_status status[BORDER + 1];
+    bool any = false;
+
+    for (int i = 0; i <= n; i++)
+        from[i] = (struct glint_launch){
+            x0 + (x1 - x0) * i / n,
+            y0 + (y1 - y0) * i / n,
+            {o->direction[0], o->direction[1], o->direction[2]}};
+    glint_trace_many(o->path, n + 1, from, ray, status, NULL);
+    for (int i = 0; i <= n && !any; i++)
+        any = status[i] == GLINT_RAY_OK && glint_openings_pass(o, &ray[i]);
+    return any;
+}
+
+bool glint_spot_grow(const struct glint_openings *o, struct glint_pupil *p)
+{
+    const struct glint_pupil before = *p;
+
+    for (int k = 0; k < GROWTHS; k++) {
+        const double x0 = p->x0_mm, x1 = p->x1_mm, y0 = p->y0_mm, y1 = p->y1_mm;
+        const double wide = STEP * (x1 - x0), high = STEP * (y1 - y0);
+
+        if (crosses(o, x0, y0, x0, y1, SHORT))
+            p->x0_mm -= wide;
+        if (crosses(o, x1, y0, x1, y1, SHORT))
+            p->x1_mm += wide;
+        if (crosses(o, x0, y1, x1, y1, BORDER))
+            p->y1_mm += high;
+        if (!p->mirrored && crosses(o, x0, y0, x1, y0, BORDER))
+            p->y0_mm -= high;
+        if (p->x0_mm == x0 && p->x1_mm == x1 && p->y0_mm == y0 &&
+            p->y1_mm == y1)
+            break;
+    }
+    return p->x0_mm < before.x0_mm || p->x1_mm > before.x1_mm ||
+           p->y0_mm < before.y0_mm || p->y1_mm > before.y1_mm;
+}
