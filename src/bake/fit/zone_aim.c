@@ -143,10 +143,10 @@ static double outline(const struct glint_zone_aim *aim, double least,
     return fmax(least, fmin(most, aim->edge_mm / fmax(1e-12, stretch_mm)));
 }
 
-double glint_zone_aim_outline(const struct glint_zone_aim *aim, double most,
-                              double stretch_mm)
+double glint_zone_aim_outline(const struct glint_zone_aim *aim, double least,
+                              double most, double stretch_mm)
 {
-    return outline(aim, 0.06 * most, most, stretch_mm);
+    return outline(aim, least * most, most, stretch_mm);
 }
 
 struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,

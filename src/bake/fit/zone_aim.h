@@ -43,9 +43,9 @@ double glint_zone_aim_off(const struct glint_zone_rays *rays,
                           const double *light, int step);
 
 /* Returns the tolerance of an outline in a unit that stands for STRETCH_MM on
- * the sensor: 0.06 MOST to MOST. */
-double glint_zone_aim_outline(const struct glint_zone_aim *aim, double most,
-                              double stretch_mm);
+ * the sensor: LEAST times MOST to MOST. */
+double glint_zone_aim_outline(const struct glint_zone_aim *aim, double least,
+                              double most, double stretch_mm);
 
 /* Returns for how many mm on the sensor a unit of the place (A, B) stands (of A
  * alone if B is NULL), root mean square over neighbouring rays. Rays with A

@@ -17,6 +17,13 @@ STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 /* Outlines of wide stops show at the rim of a ghost, errors of places all over
  * it: a box is divided for an error of outlines so many times as large. */
 #define RIM 4.0
+/* Least tolerance of a barrel, as a share of its largest; where light grazes
+ * a half sphere a ghost lies within 0.003 of its rim. */
+#define LEAST     0.06
+#define LEAST_FAR 5e-4
+/* Rays that leak as a share of those that are seen, of lights beyond GLINT_FAR:
+ * so many are a tolerance of outlines. */
+#define LEAK 0.02
 /* Factor on the error of a fit, if it was not good anyway: a second one which
  * is worse than that is dropped. */
 #define HARM 1.5
@@ -123,6 +130,20 @@ static bool stop_leaks(struct fit *f, const struct glint_fitted_system *system)
             any = true;
         }
     return any;
+}
+
+/* Returns how many of the rays leak, as a share of those that are seen. */
+static double leaking(const struct fit *f,
+                      const struct glint_fitted_system *system)
+{
+    const struct glint_zone_rays *r = &f->buffers->rays;
+    int n = 0, n_seen = 0;
+
+    for (int i = 0; i < r->n; i++) {
+        n += leaks(r, i, system, f->task->visible->field_mm);
+        n_seen += glint_zone_rays_seen(r, i);
+    }
+    return n / fmax(1, n_seen);
 }
 
 static enum glint_status keep(struct glint_fitted_system *system,
@@ -319,7 +340,9 @@ static enum glint_status fit_barrel(struct fit *f, int barrel,
     stretch = glint_zone_aim_stretch(r, f->buffers->value, NULL, 0.8);
     system->output[system->n_outputs].event = r->barrel[barrel];
     return fit_output(f, r, (enum glint_channel)(GLINT_OUT_BARREL_0 + barrel),
-                      glint_zone_aim_outline(f->aim, f->task->barrel, stretch),
+                      glint_zone_aim_outline(
+                          f->aim, f->task->visible->far ? LEAST_FAR : LEAST,
+                          f->task->barrel, stretch),
                       system, worst);
 }
 
@@ -461,6 +484,8 @@ enum glint_status glint_zone_fit(const struct glint_zone_task *task,
         return status;
     if ((task->thorough || errors->worst <= 1) && stop_leaks(&f, system))
         status = fit_again(&f, system);
+    if (status == GLINT_OK && task->visible->far)
+        errors->outlines = fmax(errors->outlines, leaking(&f, system) / LEAK);
     if (status == GLINT_OK)
         check_zone(&f, system);
     return status;
