@@ -15,7 +15,7 @@ enum {
     SHAPED_REVISION =
         1,             /* besides, of those with surfaces that are no spheres */
     SKEW_REVISION = 2, /* of those that are not round */
-    FAR_REVISION = 2   /* and of round ones with lights beyond GLINT_FAR */
+    FAR_REVISION = 3   /* and of round ones with lights beyond GLINT_FAR */
 };
 
 void glint_bake_defaults(struct glint_bake_options *options)

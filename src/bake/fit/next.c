@@ -17,8 +17,8 @@
 #define STUCK_DEG 1.2
 /* Factor on STUCK_DEG for wide stops: nearly all of their zones. */
 #define WIDE_STUCK 16
-/* The same of shaped lenses, whose zones of several degrees leave parts that do
- * not meet. */
+/* The same of shaped lenses and of far lights, whose zones of several degrees
+ * leave parts that do not meet. */
 #define SHAPED_STUCK 3
 /* Tolerances: zones with a larger error are divided into parts. If the ghost is
  * so faint that it hides more, the error may be up to MOST_HIDDEN times as
@@ -89,9 +89,9 @@ static double endured(const struct rules *f, const struct glint_zone_aim *aim)
  * zones need as many parts each. */
 static double stuck_deg(const struct rules *f)
 {
-    return f->visible->shaped ? SHAPED_STUCK * STUCK_DEG
-           : f->visible->wide ? WIDE_STUCK * STUCK_DEG
-                              : STUCK_DEG;
+    return f->visible->shaped || f->visible->far ? SHAPED_STUCK * STUCK_DEG
+           : f->visible->wide                    ? WIDE_STUCK * STUCK_DEG
+                                                 : STUCK_DEG;
 }
 
 /* Returns how many times P's box may be halved. */
