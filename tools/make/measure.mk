@@ -198,6 +198,8 @@ memory-table: all
 	@tools/report/memory-table | tools/report/write-figures memory
 zoom-table: all
 	@tools/lens_figures/zoom-table $(LENS) | tools/report/write-figures shapes/zoom
+zoom-halfway-table: all
+	@tools/lens_figures/zoom-halfway $(LENS) | tools/report/write-figures shapes/zoom-halfway
 # The weights of src/engine/frame/cost.c, by random frames.
 cost-fit: all $(OUT)/cost_frames
 	@tools/make/deps "instruction counts" valgrind >&2
@@ -217,5 +219,5 @@ budget: all
 .PHONY: glints-table hidden-table scene-budget-table occlusion-table video-report demo inputs table bake-table wide-table projection-table library-table azimuth-table fisheye-table accuracy-table colour-table coating-table ray-table power-table \
         power-fit \
         corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet gallery \
-        bench bench-insn growth size trade lights-table threads-table reuse-table flicker-table left-table stopping-table hostile-table star-table memory-table zoom-table \
+        bench bench-insn growth size trade lights-table threads-table reuse-table flicker-table left-table stopping-table hostile-table star-table memory-table zoom-table zoom-halfway-table \
         cost-fit scene-cost-fit stone-table stone-dials ward-table ward-sheet ward-cost-table sunflow-table budget
