@@ -11,10 +11,9 @@
  * are up to 2 and -1, and sums up to three times that, for which there are two
  * bits of room. Each coefficient rounds once. The unit is the coarser one.
  *
- * Barrels have no names in a model. Each of the other position is mixed with
- * the one whose polynomial is most like its own, in their boxes or else where
- * both boxes lie on the pupil. One that has no partner becomes wider towards
- * the position that lacks it, until it cuts nothing. */
+ * Barrels are mixed with those that pair.c finds to be the same. One that is
+ * like none becomes wider towards the position that lacks it, until it cuts
+ * nothing. */
 #include "lens/blend.h"
 
 #include "base/q.h"
@@ -24,13 +23,6 @@
 enum {
     ROWS = GLINT_MAX_POWER + 1,
     BARREL = GLINT_OUT_BARREL_0,
-    /* most that two polynomials of the same barrel differ by, summed over
-     * their coefficients, _q16: 1 is at the rim */
-    LIKE_Q16 = 3 << 14,
-    /* and most at the same place of the pupil */
-    NEAR_Q16 = 1 << 15,
-    ACROSS = 3,
-    PLACES = 2 * ACROSS,
     OPEN_Q16 = 1 << 15, /* a barrel through whose middle all light goes */
     LEAST_UP = 16,      /* of units of 2^-30 or more, in which that is 2^29 */
     MOST_HEAD = 28,
@@ -264,147 +256,46 @@ static void open_barrel(struct glint_transfer *t, int kind, int32_t share_q30)
     t->of.table[kind][0][0] += (int32_t)down((int64_t)OPEN_Q16 * share_q30, up);
 }
 
-/* Returns the sum of the differences of the coefficients of barrel KIND and O,
- * _q16. */
-static int64_t unlike_q16(const struct glint_transfer *t, int kind,
-                          const struct glint_blend_output *o)
-{
-    const int ours = -16 - t->exponent[kind], others = -16 - o->exponent;
-    int64_t sum = 0;
-
-    for (int b = 0; b < ROWS; b++)
-        for (int a = 0; a < GLINT_TABLE_WIDTH; a++)
-            sum += (int64_t)q_magnitude(
-                down(t->of.table[kind][b][a], ours > 0 ? ours : 0) -
-                down(o->row[b][a], others > 0 ? others : 0));
-    return sum;
-}
-
-/* Returns the value, _q16, of the polynomial ROW of 2^EXPONENT and DEGREE in v
- * at a place of its box. */
-static int64_t value_q16(int32_t (*row)[GLINT_TABLE_WIDTH], int32_t exponent,
-                         int degree, int64_t u_q24, int64_t v_q24)
-{
-    int64_t sum = 0;
-
-    for (int b = degree; b >= 0; b--) {
-        int64_t of_u = 0;
-
-        for (int a = GLINT_TABLE_WIDTH - 1; a >= 0; a--)
-            of_u = q_shift(of_u * u_q24, 24) + row[b][a];
-        sum = q_shift(sum * v_q24, 24) + of_u;
-    }
-    return down(sum, -16 - exponent > 0 ? -16 - exponent : 0);
-}
-
-/* Returns the largest difference of barrel KIND and O, _q16, at places of the
- * pupil that are in both boxes; NEAR_Q16 if there are none. */
-static int64_t apart_q16(const struct glint_zoom_mix *blend, int kind,
-                         const struct glint_blend_output *o)
-{
-    struct glint_transfer *const t = blend->to;
-    const struct glint_blend_move *const to = &blend->move[0],
-                                         *const back = &blend->move[1];
-    const int64_t one = 1 << 24, half = one + to->wider_q24;
-    const int64_t high =
-        one + to->higher_q24 < one ? one + to->higher_q24 : one;
-    const int64_t first =
-        to->along_q24 - half > -one ? to->along_q24 - half : -one;
-    const int64_t last =
-        to->along_q24 + half < one ? to->along_q24 + half : one;
-    int64_t most = 0;
-
-    if (blend->far || last <= first)
-        return NEAR_Q16;
-    for (int k = 0; k < PLACES; k++) {
-        const int64_t u = first + (last - first) * (k % ACROSS) / (ACROSS - 1);
-        const int64_t v = k < ACROSS ? 0 : high;
-        const int64_t ours = value_q16(t->of.table[kind], t->exponent[kind],
-                                       t->degree_v[kind], u, v);
-        const int64_t theirs = value_q16(
-            o->row, o->exponent, o->degree_v,
-            q_shift(u * (one - back->wider_q24), 24) - back->along_q24,
-            q_shift(v * (one - back->higher_q24), 24));
-        const int64_t off = ours > theirs ? ours - theirs : theirs - ours;
-
-        most = off > most ? off : most;
-    }
-    return most;
-}
-
-/* Gives the transfer the barrel O in a place that is free, open as far as the
- * zoom is where it is not. */
+/* Adds the barrel O, open as far as the zoom is where it is not. */
 static void add_barrel(struct glint_zoom_mix *blend,
                        const struct glint_blend_output *o)
 {
-    struct glint_transfer *const t = blend->to;
-    int kind = BARREL;
+    const int added = glint_blend_put(blend->to, o);
 
-    while (kind < GLINT_OUT_KINDS && transfer_has(t, kind))
-        kind++;
-    if (kind == GLINT_OUT_KINDS)
+    if (added < 0)
         return;
-    t->outputs |= UINT32_C(1) << kind;
-    blend->added |= UINT32_C(1) << kind;
-    t->exponent[kind] = o->exponent;
-    t->degree_u[kind] = o->degree_u;
-    t->degree_v[kind] = o->degree_v;
-    for (int b = 0; b < ROWS; b++)
-        for (int a = 0; a < GLINT_TABLE_WIDTH; a++)
-            t->of.table[kind][b][a] = o->row[b][a];
-    open_barrel(t, kind, TRANSFER_ONE_Q30 - blend->part_q30);
+    blend->taken |= UINT32_C(1) << added;
+    open_barrel(blend->to, BARREL + added, TRANSFER_ONE_Q30 - blend->part_q30);
 }
 
-/* Mixes O with the barrel that has not been mixed yet and differs least from
- * it, if that is by less than is alike: in their boxes, or AT the same PLACES
- * of the pupil. Returns whether there is one. */
-static int mix_barrel(struct glint_zoom_mix *blend,
-                      const struct glint_blend_output *o, int at_places)
+static void mix_barrel(struct glint_zoom_mix *blend,
+                       const struct glint_blend_output *o)
 {
     struct glint_transfer *const t = blend->to;
-    int64_t least = at_places ? NEAR_Q16 : LIKE_Q16;
-    int best = -1;
+    const uint32_t partners = blend->partners[blend->n_mixed++];
 
-    for (int kind = BARREL; kind < GLINT_OUT_KINDS; kind++) {
-        int64_t off;
-
-        if (!transfer_has(t, kind) || (blend->mixed | blend->added) >> kind & 1)
-            continue;
-        off = at_places ? apart_q16(blend, kind, o) : unlike_q16(t, kind, o);
-        if (off < least) {
-            least = off;
-            best = kind;
-        }
-    }
-    if (best < 0)
-        return 0;
-    t->exponent[best] = mix_output(blend, best, t->exponent[best], o);
-    blend->mixed |= UINT32_C(1) << best;
-    return 1;
+    for (int k = 0; k < GLINT_BLEND_BARRELS; k++)
+        if (partners >> k & 1)
+            t->exponent[BARREL + k] =
+                mix_output(blend, BARREL + k, t->exponent[BARREL + k], o);
+    if (!partners && blend->part_q30 > 0)
+        add_barrel(blend, o);
 }
 
 /* -------------------------------------------------------------------- both */
 
-int glint_blend_output(struct glint_zoom_mix *blend,
-                       const struct glint_blend_output *o)
+void glint_blend_output(struct glint_zoom_mix *blend,
+                        const struct glint_blend_output *o)
 {
     struct glint_transfer *const t = blend->to;
 
     if (o->kind >= BARREL)
-        return mix_barrel(blend, o, 0);
-    if (o->kind == GLINT_OUT_ENERGY)
+        mix_barrel(blend, o);
+    else if (o->kind == GLINT_OUT_ENERGY)
         mix_energy(blend, o);
     else if (transfer_has(t, o->kind))
         t->exponent[o->kind] =
             mix_output(blend, o->kind, t->exponent[o->kind], o);
-    return 1;
-}
-
-void glint_blend_barrel(struct glint_zoom_mix *blend,
-                        const struct glint_blend_output *o)
-{
-    if (!mix_barrel(blend, o, 1) && blend->part_q30 > 0)
-        add_barrel(blend, o);
 }
 
 void glint_blend_end(const struct glint_zoom_mix *blend)
@@ -413,6 +304,6 @@ void glint_blend_end(const struct glint_zoom_mix *blend)
         return;
     for (int kind = BARREL; kind < GLINT_OUT_KINDS; kind++)
         if (transfer_has(blend->to, kind) &&
-            !((blend->mixed | blend->added) >> kind & 1))
+            !(blend->taken >> (kind - BARREL) & 1))
             open_barrel(blend->to, kind, blend->part_q30);
 }

@@ -6,6 +6,11 @@
 
 #include "glint/transfer.h"
 
+enum {
+    GLINT_BLEND_BARRELS = GLINT_OUT_KINDS - GLINT_OUT_BARREL_0,
+    GLINT_BLEND_PLACES = 6
+};
+
 /* A transfer into which another position's is mixed, output by output: PART of
  * that, the rest of what it has. PART below 0, down to -1, goes on beyond this
  * position, away from the other. */
@@ -20,9 +25,16 @@ struct glint_zoom_mix {
         int32_t along_q24, wider_q24, higher_q24;
     } move[2];
     int far; /* whether it is */
-    /* Barrels that have been mixed, and those that only the other has, as bits
-     * of their number. */
-    uint32_t mixed, added;
+    /* Values, _q16, of the barrels of this position and of the other one at
+     * places of their own box, and then at places of the pupil that are in
+     * both; N of the other's. */
+    int32_t barrel_q16[2][GLINT_BLEND_BARRELS][2][GLINT_BLEND_PLACES];
+    int n_others, n_mixed;
+    /* Barrels that each of the other's is mixed with, and all that are mixed or
+     * were added, as bits. */
+    uint32_t partners[GLINT_BLEND_BARRELS];
+    uint32_t taken;
+    uint32_t own; /* barrels of this position, as bits */
 };
 
 /* An output of the other position, with angle and wavelength put in. */
@@ -39,14 +51,19 @@ struct glint_blend_output {
 int glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
                     int32_t exponent);
 
-/* Mixes O in. Outputs come by rising kind. Returns 0 for a barrel that is like
- * none of this position in its box, which comes again after all others. */
-int glint_blend_output(struct glint_zoom_mix *blend,
-                       const struct glint_blend_output *o);
+/* Looks at O, if it is a barrel; they come by rising kind. */
+void glint_blend_look(struct glint_zoom_mix *blend,
+                      const struct glint_blend_output *o);
 
-/* Mixes the barrel O with one that stops the same light of the pupil, or adds
- * it. */
-void glint_blend_barrel(struct glint_zoom_mix *blend,
+/* Finds the partner of each barrel that was looked at. */
+void glint_blend_pair(struct glint_zoom_mix *blend);
+
+/* Gives T the barrel O in a place that is free. Returns its number, or -1. */
+int glint_blend_put(struct glint_transfer *t,
+                    const struct glint_blend_output *o);
+
+/* Mixes O in. Outputs come by rising kind. */
+void glint_blend_output(struct glint_zoom_mix *blend,
                         const struct glint_blend_output *o);
 
 /* Opens the barrels that the other position lacks. */

@@ -404,7 +404,6 @@ int glint_transfer_mix(struct glint_transfer *transfer,
     struct glint_zoom_mix blend = {.to = transfer, .part_q30 = part_q30};
     int32_t box[3] = {transfer->box[0], transfer->box[1], transfer->box[2]};
     const int32_t box_exponent = transfer->box_exponent;
-    uint32_t left = 0; /* barrels that are like none, as bits */
     struct setting set;
 
     if (!system)
@@ -417,20 +416,20 @@ int glint_transfer_mix(struct glint_transfer *transfer,
     set_box(transfer, lens, &set);
     if (!glint_blend_box(&blend, box, box_exponent))
         return 0;
+    for (uint32_t k = 0; k < system->n_outputs; k++)
+        if (o[k].kind >= GLINT_OUT_BARREL_0) {
+            const struct glint_blend_output of =
+                output_of(lens, &o[k], &set, transfer->of_u);
+
+            glint_blend_look(&blend, &of);
+        }
+    glint_blend_pair(&blend);
     for (uint32_t k = 0; k < system->n_outputs; k++) {
         const struct glint_blend_output of =
             output_of(lens, &o[k], &set, transfer->of_u);
 
-        if (!glint_blend_output(&blend, &of))
-            left |= UINT32_C(1) << k;
+        glint_blend_output(&blend, &of);
     }
-    for (uint32_t k = 0; left >> k; k++)
-        if (left >> k & 1) {
-            const struct glint_blend_output of =
-                output_of(lens, &o[k], &set, transfer->of_u);
-
-            glint_blend_barrel(&blend, &of);
-        }
     glint_blend_end(&blend);
     return 1;
 }

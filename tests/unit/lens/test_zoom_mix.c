@@ -164,7 +164,7 @@ static void barrels_find_their_like(void **state)
 }
 
 /* A barrel that the first position lacks is whole from a quarter of the way on,
- * and opens to 1/2 before; one that has its partner already is another. */
+ * and opens to 1/2 before. */
 static void barrels_that_come(void **state)
 {
     const struct barrel a[] = {right}, b[] = {more_right, high};
@@ -179,7 +179,7 @@ static void barrels_that_come(void **state)
     is_barrel(1, (struct barrel){0.35, 0, 0.6});
     mix(a, 1, twice, 2, 0.5);
     is_barrel(0, (struct barrel){0.32, 0.52, 0.1});
-    is_barrel(1, more_right);
+    is_barrel(1, (struct barrel){0.32, 0.52, 0.1}); /* from behind its like */
     mix(a, 1, other, 1, 0.5); /* the only one is not like it */
     is_barrel(0, right);
     is_barrel(1, left);
@@ -196,6 +196,22 @@ static void barrels_that_go(void **state)
     is_barrel(1, (struct barrel){0.32, 0.52, 0.1});
     mix(a, 2, b, 1, 0.875);
     is_barrel(0, (struct barrel){0.35, 0, 0.6});
+}
+
+/* The two that differ least go together, whichever comes first; what is left
+ * over comes out from behind its like. */
+static void barrels_find_the_nearest(void **state)
+{
+    const struct barrel one[] = {right};
+    const struct barrel two[] = {{0.3, 0.5, 0.5}, more_right};
+
+    (void)state;
+    mix(one, 1, two, 2, 0.25);
+    is_barrel(0, (struct barrel){0.31, 0.51, 0.1});
+    is_barrel(1, (struct barrel){0.3, 0.5, 0.2});
+    mix(two, 2, one, 1, 0.25);
+    is_barrel(0, (struct barrel){0.3, 0.5, 0.4});
+    is_barrel(1, (struct barrel){0.33, 0.53, 0.1});
 }
 
 /* The mix has room under the smaller of both heads alone. */
@@ -602,6 +618,7 @@ int main(void)
         cmocka_unit_test(outputs_are_in_proportion),
         cmocka_unit_test(barrels_find_their_like),
         cmocka_unit_test(barrels_that_come),
+        cmocka_unit_test(barrels_find_the_nearest),
         cmocka_unit_test(barrels_that_go),
         cmocka_unit_test(energies_have_heads_and_roots),
         cmocka_unit_test(boxes_move),

@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Finds which barrels of two positions of a zoom are the same.
+ *
+ *   in   the barrels of a bundle at both positions, as polynomials
+ *   out  for each of the other position's those of this one it is mixed with
+ *
+ * Barrels have no names in a model. Two are alike if their polynomials have
+ * nearly the same values: in each one's box, which follows what is seen, or at
+ * the same places of the pupil, as boxes may change faster than barrels move.
+ * The two that differ least go together first. One that is left over cuts
+ * nothing at the position that lacks it which another one there, that is like
+ * it, would not; so it comes out from behind that. */
+#include "base/q.h"
+#include "lens/blend.h"
+#include "lens/terms.h"
+
+enum {
+    BARREL = GLINT_OUT_BARREL_0,
+    LIKE_Q16 = 1 << 15, /* most that values of the same barrel differ by */
+    FAR_Q16 = 1 << 28,
+    ACROSS = 3 /* of the places, in two rows */
+};
+
+/* Returns the value, _q16, of the polynomial ROW of 2^EXPONENT and DEGREE in v
+ * at a place of its box; a barrel that is as far away as limits it cuts nothing
+ * or all. */
+static int32_t value_q16(int32_t (*row)[GLINT_TABLE_WIDTH], int32_t exponent,
+                         int degree, int64_t u_q24, int64_t v_q24)
+{
+    int64_t sum = 0;
+
+    for (int b = degree; b >= 0; b--) {
+        int64_t of_u = 0;
+
+        for (int a = GLINT_TABLE_WIDTH - 1; a >= 0; a--)
+            of_u = q_shift(of_u * u_q24, 24) + row[b][a];
+        sum = q_shift(sum * v_q24, 24) + of_u;
+    }
+    if (exponent < -16)
+        sum = -16 - exponent > 62 ? 0 : q_shift(sum, -16 - exponent);
+    return q_clamp_sat(sum, -FAR_Q16, FAR_Q16);
+}
+
+static int64_t smaller(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
+/* Finds the part of the pupil that is in both boxes, FIRST to LAST along u and
+ * 0 to HIGH along v of this position's. Returns whether there is any. */
+static int find_common(const struct glint_zoom_mix *blend, int64_t *first,
+                       int64_t *last, int64_t *high)
+{
+    const struct glint_blend_move *const to = &blend->move[0];
+    const int64_t one = 1 << 24, half = one + to->wider_q24;
+
+    *first = -smaller(one, half - to->along_q24);
+    *last = smaller(one, half + to->along_q24);
+    *high = smaller(one, one + to->higher_q24);
+    return !blend->far && *first < *last;
+}
+
+/* Sets VALUES of a barrel: of this position for SIDE 0, else of the other. */
+static void set_values(const struct glint_zoom_mix *blend, int side,
+                       const struct glint_blend_output *o,
+                       int32_t (*values)[GLINT_BLEND_PLACES])
+{
+    const struct glint_blend_move *const back = &blend->move[1];
+    const int64_t one = 1 << 24;
+    int64_t first, last, high;
+    const int any = find_common(blend, &first, &last, &high);
+
+    for (int k = 0; k < GLINT_BLEND_PLACES; k++) {
+        int64_t u = first + (last - first) * (k % ACROSS) / (ACROSS - 1);
+        int64_t v = k < ACROSS ? 0 : high;
+
+        if (side) {
+            u = q_shift(u * (one - back->wider_q24), 24) - back->along_q24;
+            v = q_shift(v * (one - back->higher_q24), 24);
+        }
+        values[0][k] = value_q16(o->row, o->exponent, o->degree_v,
+                                 (k % ACROSS - 1) * one, k < ACROSS ? 0 : one);
+        values[1][k] =
+            any ? value_q16(o->row, o->exponent, o->degree_v, u, v) : 0;
+    }
+}
+
+/* Returns the largest difference of two barrels, _q16: in their boxes or on the
+ * pupil, whichever is less. */
+static int64_t apart_q16(const struct glint_zoom_mix *blend, int ours,
+                         int theirs)
+{
+    int64_t first, last, high, least = LIKE_Q16;
+
+    for (int way = 0; way <= find_common(blend, &first, &last, &high); way++) {
+        int64_t most = 0;
+
+        for (int k = 0; k < GLINT_BLEND_PLACES; k++) {
+            const int64_t off = (int64_t)q_magnitude(
+                (int64_t)blend->barrel_q16[0][ours][way][k] -
+                blend->barrel_q16[1][theirs][way][k]);
+
+            most = off > most ? off : most;
+        }
+        least = smaller(least, most);
+    }
+    return least;
+}
+
+void glint_blend_look(struct glint_zoom_mix *blend,
+                      const struct glint_blend_output *o)
+{
+    if (o->kind >= BARREL)
+        set_values(blend, 1, o, blend->barrel_q16[1][blend->n_others++]);
+}
+
+/* Finds the two barrels that differ least, of those that have no partner unless
+ * it is for OURS or THEIRS alone, not -1, whose partner may have another one.
+ * Returns whether they are alike. */
+static int find_pair(const struct glint_zoom_mix *blend, int *ours, int *theirs)
+{
+    const int only_ours = *ours, only_theirs = *theirs;
+    int64_t least = LIKE_Q16;
+
+    for (int k = 0; k < blend->n_others; k++)
+        for (int i = 0; i < GLINT_BLEND_BARRELS; i++) {
+            const int any = only_ours >= 0     ? i == only_ours
+                            : only_theirs >= 0 ? k == only_theirs
+                                               : !blend->partners[k] &&
+                                                     !(blend->taken >> i & 1);
+            int64_t off;
+
+            if (!any || !(blend->own >> i & 1))
+                continue;
+            off = apart_q16(blend, i, k);
+            if (off < least) {
+                least = off;
+                *ours = i;
+                *theirs = k;
+            }
+        }
+    return least < LIKE_Q16;
+}
+
+static void pair(struct glint_zoom_mix *blend, int ours, int theirs)
+{
+    blend->partners[theirs] |= UINT32_C(1) << ours;
+    blend->taken |= UINT32_C(1) << ours;
+}
+
+/* Returns barrel K of this position. */
+static struct glint_blend_output own(struct glint_transfer *t, int k)
+{
+    return (struct glint_blend_output){.exponent = t->exponent[BARREL + k],
+                                       .row = t->of.table[BARREL + k],
+                                       .degree_u = t->degree_u[BARREL + k],
+                                       .degree_v = t->degree_v[BARREL + k]};
+}
+
+/* Finds partners of barrels that are left over among those that have one. */
+static void pair_lone(struct glint_zoom_mix *blend)
+{
+    const uint32_t had = blend->taken;
+
+    for (int k = 0; k < GLINT_BLEND_BARRELS; k++) {
+        int ours = k, theirs = -1;
+
+        if ((blend->own & ~had) >> k & 1 && find_pair(blend, &ours, &theirs))
+            pair(blend, ours, theirs);
+    }
+    for (int k = 0; k < blend->n_others; k++) {
+        struct glint_blend_output copy;
+        int ours = -1, theirs = k;
+
+        if (blend->partners[k] || !find_pair(blend, &ours, &theirs))
+            continue;
+        copy = own(blend->to, ours);
+        ours = glint_blend_put(blend->to, &copy);
+        if (ours >= 0)
+            pair(blend, ours, theirs);
+    }
+}
+
+void glint_blend_pair(struct glint_zoom_mix *blend)
+{
+    struct glint_transfer *const t = blend->to;
+
+    blend->own = t->outputs >> BARREL;
+    for (int k = 0; k < GLINT_BLEND_BARRELS; k++) {
+        const struct glint_blend_output o = own(t, k);
+
+        if (blend->own >> k & 1)
+            set_values(blend, 0, &o, blend->barrel_q16[0][k]);
+    }
+    for (int ours = -1, theirs = -1; find_pair(blend, &ours, &theirs);
+         ours = theirs = -1)
+        pair(blend, ours, theirs);
+    if (blend->part_q30 > 0)
+        pair_lone(blend);
+}
+
+int glint_blend_put(struct glint_transfer *t,
+                    const struct glint_blend_output *o)
+{
+    int kind = BARREL;
+
+    while (kind < GLINT_OUT_KINDS && transfer_has(t, kind))
+        kind++;
+    if (kind == GLINT_OUT_KINDS)
+        return -1;
+    t->outputs |= UINT32_C(1) << kind;
+    t->exponent[kind] = o->exponent;
+    t->degree_u[kind] = o->degree_u;
+    t->degree_v[kind] = o->degree_v;
+    for (int b = 0; b <= GLINT_MAX_POWER; b++)
+        for (int a = 0; a < GLINT_TABLE_WIDTH; a++)
+            t->of.table[kind][b][a] = o->row[b][a];
+    return kind - BARREL;
+}
