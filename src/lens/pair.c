@@ -78,6 +78,9 @@ static void set_values(const struct glint_zoom_mix *blend, int side,
         if (side) {
             u = q_shift(u * (one - back->wider_q24), 24) - back->along_q24;
             v = q_shift(v * (one - back->higher_q24), 24);
+            /* Moves are rounded in units that may be as large as a box. */
+            u = -smaller(one, -smaller(one, u));
+            v = smaller(one, v);
         }
         values[0][k] = value_q16(o->row, o->exponent, o->degree_v,
                                  (k % ACROSS - 1) * one, k < ACROSS ? 0 : one);

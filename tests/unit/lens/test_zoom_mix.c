@@ -340,6 +340,59 @@ static void barrels_are_the_same_on_the_pupil(void **state)
         free(at[k].data);
 }
 
+/* Opens a model at M of a box that no lens has, in units of 2^EXPONENT, with
+ * one barrel. */
+static struct glint_lens open_coarse(struct model_image *m,
+                                     const int32_t box[3], int16_t exponent,
+                                     const struct model_polynomial *barrel)
+{
+    static const struct glint_model_ghost ghost = {0, 1, 0, 1};
+    struct model_polynomial p[6] = {
+        {GLINT_OUT_SENSOR_X, 1, EXPONENT, {P(1, 0)}, {{1 << 27}}},
+        {GLINT_OUT_SENSOR_Y, 1, EXPONENT, {P(0, 1)}, {{1 << 27}}},
+        {GLINT_OUT_STOP_X, 1, EXPONENT, {P(1, 0)}, {{1 << 27}}},
+        {GLINT_OUT_STOP_Y, 1, EXPONENT, {P(0, 1)}, {{1 << 27}}},
+        {GLINT_OUT_ENERGY, 1, EXPONENT, {P(0, 0)}, {{1 << 26}}}};
+    struct glint_model_system s;
+
+    p[5] = *barrel;
+    model_begin(m, GLINT_BASIS_AUTO, "coarse");
+    s = put(m, 0, 0, 0, NULL, 0);
+    s.box_at = model_put(m, box, 3 * sizeof *box);
+    s.box_exponent = exponent;
+    model_outputs(m, &s, p, 6, 0);
+    model_end(m, &ghost, 1, &s, 1);
+    return model_open(m);
+}
+
+/* The other box is half a unit of this one, so that roundings move its places
+ * by more than it is wide; barrels are looked at in it all the same. */
+static void places_stay_in_both_boxes(void **state)
+{
+    static const int32_t wide[3] = {0, 5, 5};
+    static const int32_t narrow[3] = {4 << 20, (1 << 19) + 1000,
+                                      (1 << 19) + 1000};
+    const struct model_polynomial a = {GLINT_OUT_BARREL_0,
+                                       2,
+                                       EXPONENT,
+                                       {P(0, 0), P(1, 0)},
+                                       {{q28(-1.6), q28(2)}}};
+    const struct model_polynomial b = {
+        GLINT_OUT_BARREL_0, 1, EXPONENT - 2, {P(9, 0)}, {{q28(2.4)}}};
+    struct model_image at[2];
+    const struct glint_lens first = open_coarse(&at[0], wide, 0, &a);
+    const struct glint_lens second = open_coarse(&at[1], narrow, -20, &b);
+
+    (void)state;
+    glint_transfer_init(&mixed, &first, 0, 0, MODEL_WAVE_LO_Q24);
+    assert_int_equal(
+        glint_transfer_mix(&mixed, &second, 0, 0, MODEL_WAVE_LO_Q24, ONE / 2),
+        1);
+    assert_false(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
+    free(at[0].data);
+    free(at[1].data);
+}
+
 /* ------------------------------------------------------------------- ghosts */
 
 enum { WHOLE = 2 };
@@ -620,6 +673,7 @@ int main(void)
         cmocka_unit_test(barrels_that_come),
         cmocka_unit_test(barrels_find_the_nearest),
         cmocka_unit_test(barrels_that_go),
+        cmocka_unit_test(places_stay_in_both_boxes),
         cmocka_unit_test(energies_have_heads_and_roots),
         cmocka_unit_test(boxes_move),
         cmocka_unit_test(barrels_are_the_same_on_the_pupil),
