@@ -152,8 +152,8 @@ static int find_moved(const struct glint_zoom_mix *blend, int kind,
     const int64_t both_q15 = part * ((1 << 15) - part) >> 15;
     int64_t all = 0;
 
-    for (int b = 0; b < ROWS; b++)
-        for (int a = 0; a < GLINT_TABLE_WIDTH; a++) {
+    for (int b = 0; b <= blend->to->degree_v[kind]; b++)
+        for (int a = 0; a <= blend->to->degree_u[kind]; a++) {
             const int64_t x =
                 down(moved(ours, a, b, &blend->move[0]) * both_q15,
                      15 + e - exponent) -
@@ -179,16 +179,17 @@ static int32_t mix_output(const struct glint_zoom_mix *blend, int kind,
     const int32_t e = (exponent > o->exponent ? exponent : o->exponent) +
                       (blend->part_q30 < 0 ? BEYOND : 1);
     int32_t more[ROWS][GLINT_TABLE_WIDTH];
-    const int moves = find_moved(blend, kind, exponent, o, e, more);
+    int moves;
 
-    for (int b = 0; b < ROWS; b++)
-        for (int a = 0; a < GLINT_TABLE_WIDTH; a++)
+    t->degree_u[kind] = larger(t->degree_u[kind], o->degree_u);
+    t->degree_v[kind] = larger(t->degree_v[kind], o->degree_v);
+    moves = find_moved(blend, kind, exponent, o, e, more);
+    for (int b = 0; b <= t->degree_v[kind]; b++)
+        for (int a = 0; a <= t->degree_u[kind]; a++)
             t->of.table[kind][b][a] =
                 mix(t->of.table[kind][b][a], exponent, o->row[b][a],
                     o->exponent, e, blend->part_q30) +
                 (moves ? more[b][a] : 0);
-    t->degree_u[kind] = larger(t->degree_u[kind], o->degree_u);
-    t->degree_v[kind] = larger(t->degree_v[kind], o->degree_v);
     return e;
 }
 

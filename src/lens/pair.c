@@ -22,19 +22,20 @@ enum {
     ACROSS = 3 /* of the places, in two rows */
 };
 
-/* Returns the value, _q16, of the polynomial ROW of 2^EXPONENT and DEGREE in v
- * at a place of its box; a barrel that is as far away as limits it cuts nothing
- * or all. */
-static int32_t value_q16(int32_t (*row)[GLINT_TABLE_WIDTH], int32_t exponent,
-                         int degree, int64_t u_q24, int64_t v_q24)
+/* Returns the value, _q16, of the polynomial of O at a place of its box. A
+ * barrel that is so far away that it is clamped cuts nothing or all; units
+ * coarser than 2^-16, which no barrel's is, are not told apart. */
+static int32_t value_q16(const struct glint_blend_output *o, int64_t u_q24,
+                         int64_t v_q24)
 {
+    const int32_t exponent = o->exponent;
     int64_t sum = 0;
 
-    for (int b = degree; b >= 0; b--) {
+    for (int b = o->degree_v; b >= 0; b--) {
         int64_t of_u = 0;
 
-        for (int a = GLINT_TABLE_WIDTH - 1; a >= 0; a--)
-            of_u = q_shift(of_u * u_q24, 24) + row[b][a];
+        for (int a = o->degree_u; a >= 0; a--)
+            of_u = q_shift(of_u * u_q24, 24) + o->row[b][a];
         sum = q_shift(sum * v_q24, 24) + of_u;
     }
     if (exponent < -16)
@@ -82,10 +83,9 @@ static void set_values(const struct glint_zoom_mix *blend, int side,
             u = -smaller(one, -smaller(one, u));
             v = smaller(one, v);
         }
-        values[0][k] = value_q16(o->row, o->exponent, o->degree_v,
-                                 (k % ACROSS - 1) * one, k < ACROSS ? 0 : one);
-        values[1][k] =
-            any ? value_q16(o->row, o->exponent, o->degree_v, u, v) : 0;
+        values[0][k] =
+            value_q16(o, (k % ACROSS - 1) * one, k < ACROSS ? 0 : one);
+        values[1][k] = any ? value_q16(o, u, v) : 0;
     }
 }
 

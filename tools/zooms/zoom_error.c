@@ -54,7 +54,8 @@ struct measuring {
 
 static double angle_deg(const struct measuring *m, int angle)
 {
-    return m->max_deg * (angle + EACH * m->shift) / ZOOM_ANGLES;
+    return fmin(m->max_deg,
+                m->max_deg * (angle + EACH * m->shift) / ZOOM_ANGLES);
 }
 
 /* ----------------------------------------------------------------- pictures */
@@ -177,10 +178,11 @@ static void angle_job(void *ctx, int angle, int worker)
 static bool find_ranges(struct measuring *m)
 {
     struct glint_transfer *const transfer = malloc(sizeof *transfer);
+    const bool has_room = transfer != NULL;
     const struct glint_model_header *const h = m->zoom->lens.header;
     const int32_t wave_q24 = h->wave_lo_q24 / 2 + h->wave_hi_q24 / 2;
 
-    for (int g = 0; g < m->n && transfer; g++)
+    for (int g = 0; g < m->n && has_room; g++)
         for (int a = 0; a < ZOOM_ANGLES && m->error[g].of[0] < 0; a++) {
             const double sine = sin(angle_deg(m, a) * GLINT_PI / 180);
 
@@ -189,7 +191,7 @@ static bool find_ranges(struct measuring *m)
                 m->known[g][a] |= IN_RANGE;
         }
     free(transfer);
-    return transfer != NULL;
+    return has_room;
 }
 
 /* Returns whether a ghost, of which KNOWN is known, is to be measured at ANGLE,
@@ -240,6 +242,7 @@ static void fill(const unsigned char known[ZOOM_ANGLES],
                 : error->of[before];
     }
 }
+
 /* Returns the largest angle of a light, up to MAX_DEG, of which a picture of
  * LENS is asked. */
 static double most_deg(const struct glint_prescription *lens, double max_deg)

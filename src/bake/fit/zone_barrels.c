@@ -32,8 +32,8 @@ static bool is_unreached(const double hit[2])
     return hit[0] == -1 && hit[1] == -1;
 }
 
-/* Notes that a ray misses the first surface that it does not reach: it passes
- * by MISS at least outside of that. Returns the radius. */
+/* Notes that a ray misses the first surface that it has no hit at: it passes by
+ * MISS at least outside of that. Returns the radius. */
 static double note_missed(double *radius, double (*hits)[2], int n_events)
 {
     int k = 0;

@@ -26,7 +26,8 @@ struct line {
     double x0_mm, step_mm;
     struct glint_ray ray[LINE + 1];
     enum glint_ray_status status[LINE + 1];
-    double hits[(LINE + 1) * (GLINT_MAX_EVENTS + 1)][2]; /* 200 KB: the offline
+    double hits[(LINE + 1) * (GLINT_MAX_EVENTS + 1)][2]; /* 200 KB, and two
+                                                lines are looked at: the offline
                                                 half has the stack for it */
 };
 
