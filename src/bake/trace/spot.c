@@ -186,7 +186,7 @@ bool glint_spot_find(const struct glint_openings *o,
 static bool crosses(const struct glint_openings *o, double x0, double y0,
                     double x1, double y1, int n)
 {
-    struct glint_launch from[BORDER + 1];
+    struct glint_launch from[BORDER + 1] = {{0, 0, {0, 0, 0}}};
     struct glint_ray ray[BORDER + 1];
     enum glint_ray_status status[BORDER + 1];
     bool any = false;
