@@ -34,7 +34,6 @@ struct glint_zoom_mix {
      * were added, as bits. */
     uint32_t partners[GLINT_BLEND_BARRELS];
     uint32_t taken;
-    uint32_t own; /* barrels of this position, as bits */
 };
 
 /* An output of the other position, with angle and wavelength put in. */

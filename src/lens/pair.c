@@ -118,42 +118,35 @@ void glint_blend_look(struct glint_zoom_mix *blend,
         set_values(blend, 1, o, blend->barrel_q16[1][blend->n_others++]);
 }
 
-/* Finds the two barrels that differ least, of those that have no partner unless
- * it is for OURS or THEIRS alone, not -1, whose partner may have another one.
+/* Finds the two barrels that differ least among OURS and THEIRS, as bits.
  * Returns whether they are alike. */
-static int find_pair(const struct glint_zoom_mix *blend, int *ours, int *theirs)
+static int find_pair(const struct glint_zoom_mix *blend, uint32_t ours,
+                     uint32_t theirs, int pair[2])
 {
-    const int only_ours = *ours, only_theirs = *theirs;
     int64_t least = LIKE_Q16;
 
-    for (int k = 0; k < blend->n_others; k++)
-        for (int i = 0; i < GLINT_BLEND_BARRELS; i++) {
-            const int any = only_ours >= 0     ? i == only_ours
-                            : only_theirs >= 0 ? k == only_theirs
-                                               : !blend->partners[k] &&
-                                                     !(blend->taken >> i & 1);
-            int64_t off;
+    for (int i = 0; ours >> i; i++)
+        for (int k = 0; theirs >> k; k++) {
+            const int64_t off =
+                ours >> i & theirs >> k & 1 ? apart_q16(blend, i, k) : LIKE_Q16;
 
-            if (!any || !(blend->own >> i & 1))
-                continue;
-            off = apart_q16(blend, i, k);
             if (off < least) {
                 least = off;
-                *ours = i;
-                *theirs = k;
+                pair[0] = i;
+                pair[1] = k;
             }
         }
     return least < LIKE_Q16;
 }
 
-static void pair(struct glint_zoom_mix *blend, int ours, int theirs)
+static void mark(struct glint_zoom_mix *blend, const int pair[2])
 {
-    blend->partners[theirs] |= UINT32_C(1) << ours;
-    blend->taken |= UINT32_C(1) << ours;
+    blend->partners[pair[1]] |= UINT32_C(1) << pair[0];
+    blend->taken |= UINT32_C(1) << pair[0];
 }
 
 /* Returns barrel K of this position. */
-static struct glint_blend_output own(struct glint_transfer *t, int k)
+static struct glint_blend_output barrel_of(struct glint_transfer *t, int k)
 {
     return (struct glint_blend_output){.exponent = t->exponent[BARREL + k],
                                        .row = t->of.table[BARREL + k],
@@ -161,46 +154,47 @@ static struct glint_blend_output own(struct glint_transfer *t, int k)
                                        .degree_v = t->degree_v[BARREL + k]};
 }
 
-/* Finds partners of barrels that are left over among those that have one. */
-static void pair_lone(struct glint_zoom_mix *blend)
+/* Finds partners of OURS and THEIRS, which are left over, among all; OWN are
+ * all of this position. */
+static void pair_left(struct glint_zoom_mix *blend, uint32_t own, uint32_t ours,
+                      uint32_t theirs)
 {
-    const uint32_t had = blend->taken;
+    const uint32_t all = (UINT32_C(1) << blend->n_others) - 1;
+    int pair[2];
 
-    for (int k = 0; k < GLINT_BLEND_BARRELS; k++) {
-        int ours = k, theirs = -1;
+    for (int i = 0; ours >> i; i++)
+        if (find_pair(blend, ours & UINT32_C(1) << i, all, pair))
+            mark(blend, pair);
+    for (int k = 0; theirs >> k; k++)
+        if (find_pair(blend, own, theirs & UINT32_C(1) << k, pair)) {
+            const struct glint_blend_output copy =
+                barrel_of(blend->to, pair[0]);
 
-        if ((blend->own & ~had) >> k & 1 && find_pair(blend, &ours, &theirs))
-            pair(blend, ours, theirs);
-    }
-    for (int k = 0; k < blend->n_others; k++) {
-        struct glint_blend_output copy;
-        int ours = -1, theirs = k;
-
-        if (blend->partners[k] || !find_pair(blend, &ours, &theirs))
-            continue;
-        copy = own(blend->to, ours);
-        ours = glint_blend_put(blend->to, &copy);
-        if (ours >= 0)
-            pair(blend, ours, theirs);
-    }
+            pair[0] = glint_blend_put(blend->to, &copy);
+            if (pair[0] >= 0)
+                mark(blend, pair);
+        }
 }
 
 void glint_blend_pair(struct glint_zoom_mix *blend)
 {
-    struct glint_transfer *const t = blend->to;
+    const uint32_t own = blend->to->outputs >> BARREL;
+    uint32_t ours = own, theirs = (UINT32_C(1) << blend->n_others) - 1;
+    int pair[2];
 
-    blend->own = t->outputs >> BARREL;
-    for (int k = 0; k < GLINT_BLEND_BARRELS; k++) {
-        const struct glint_blend_output o = own(t, k);
+    for (int k = 0; ours >> k; k++) {
+        const struct glint_blend_output o = barrel_of(blend->to, k);
 
-        if (blend->own >> k & 1)
+        if (ours >> k & 1)
             set_values(blend, 0, &o, blend->barrel_q16[0][k]);
     }
-    for (int ours = -1, theirs = -1; find_pair(blend, &ours, &theirs);
-         ours = theirs = -1)
-        pair(blend, ours, theirs);
+    while (find_pair(blend, ours, theirs, pair)) {
+        mark(blend, pair);
+        ours &= ~(UINT32_C(1) << pair[0]);
+        theirs &= ~(UINT32_C(1) << pair[1]);
+    }
     if (blend->part_q30 > 0)
-        pair_lone(blend);
+        pair_left(blend, own, ours, theirs);
 }
 
 int glint_blend_put(struct glint_transfer *t,

@@ -61,7 +61,7 @@ static double angle_deg(const struct measuring *m, int angle)
 /* ----------------------------------------------------------------- pictures */
 
 /* Pictures of one light: all as the zoom has it, and one ghost of that and of
- * exact rays; all their channels are alike. */
+ * exact rays, which are grey, as they have one wavelength. */
 struct pictures {
     struct glint_frame model, exact;
     struct glint_float_image all, mixed, traced;
@@ -95,20 +95,15 @@ static int find_error(const struct pictures *p, double *error)
     return seen;
 }
 
-/* Draws GHOST, or all if it is below 0, in grey, as green sees it. */
+/* Draws GHOST, or all if it is below 0. */
 static enum glint_status draw(struct glint_frame *frame,
                               const struct glint_lamp *lamp, int ghost,
                               struct glint_float_image *image)
 {
-    const size_t n = (size_t)image->width * (size_t)image->height;
     struct glint_frame_report report;
-    enum glint_status status;
 
     frame->only_ghost = ghost;
-    status = glint_frame_draw_alone(frame, lamp, 1, 1, image->rgb, &report);
-    for (size_t i = 0; i < n; i++)
-        image->rgb[3 * i] = image->rgb[3 * i + 2] = image->rgb[3 * i + 1];
-    return status;
+    return glint_frame_draw_alone(frame, lamp, 1, 1, image->rgb, &report);
 }
 
 /* Sets the errors of ghosts that are wanted at ANGLE. */

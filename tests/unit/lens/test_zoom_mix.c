@@ -88,6 +88,17 @@ static struct glint_lens open_position(struct model_image *m, double sensor,
 
 static struct glint_transfer mixed;
 
+/* Mixes models A and B at PART. */
+static void mix_models(const struct glint_lens *a, const struct glint_lens *b,
+                       double part)
+{
+    assert_int_equal(glint_transfer_init(&mixed, a, 0, 0, MODEL_WAVE_LO_Q24),
+                     1);
+    assert_int_equal(glint_transfer_mix(&mixed, b, 0, 0, MODEL_WAVE_LO_Q24,
+                                        (int32_t)ldexp(part, 30)),
+                     1);
+}
+
 /* Mixes A and B, of N_A and N_B barrels, at PART. */
 static void mix(const struct barrel *a, uint32_t n_a, const struct barrel *b,
                 uint32_t n_b, double part)
@@ -98,25 +109,25 @@ static void mix(const struct barrel *a, uint32_t n_a, const struct barrel *b,
     const struct glint_lens second =
         open_position(&at[1], 0.25, 0.5, head[1], b, n_b);
 
-    assert_int_equal(
-        glint_transfer_init(&mixed, &first, 0, 0, MODEL_WAVE_LO_Q24), 1);
-    assert_int_equal(glint_transfer_mix(&mixed, &second, 0, 0,
-                                        MODEL_WAVE_LO_Q24,
-                                        (int32_t)ldexp(part, 30)),
-                     1);
+    mix_models(&first, &second, part);
     free(at[0].data);
     free(at[1].data);
+}
+
+static double output_at(int kind, double u, double v)
+{
+    struct glint_outputs out;
+
+    glint_transfer_ray(&mixed, (int32_t)ldexp(u, 30), (int32_t)ldexp(v, 30),
+                       &out);
+    return ldexp(out.at[kind], mixed.exponent[kind]);
 }
 
 /* Asserts that output KIND is X at U and V. */
 static void is(int kind, double u, double v, double x)
 {
-    struct glint_outputs out;
-    double got;
+    const double got = output_at(kind, u, v);
 
-    glint_transfer_ray(&mixed, (int32_t)ldexp(u, 30), (int32_t)ldexp(v, 30),
-                       &out);
-    got = ldexp(out.at[kind], mixed.exponent[kind]);
     if (fabs(got - x) > 1e-6)
         fail_msg("output %d at %g, %g is %.9f, not %.9f", kind, u, v, got, x);
 }
@@ -281,11 +292,7 @@ static void boxes_move(void **state)
     for (int k = 1; k < 4; k++) {
         const double part = 0.25 * k, slope = 0.125 - 0.0625 * part;
 
-        assert_int_equal(
-            glint_transfer_init(&mixed, &a, 0, 0, MODEL_WAVE_LO_Q24), 1);
-        assert_int_equal(glint_transfer_mix(&mixed, &b, 0, 0, MODEL_WAVE_LO_Q24,
-                                            (int32_t)ldexp(part, 30)),
-                         1);
+        mix_models(&a, &b, part);
         for (int i = -2; i <= 2; i++) {
             is(GLINT_OUT_SENSOR_X, 0.5 * i, 0.5,
                slope * (0.5 * part + (4 + 0.5 * part) * 0.5 * i));
@@ -296,15 +303,12 @@ static void boxes_move(void **state)
     free(at[1].data);
 }
 
-/* Half-way, value of the only barrel at U and V, which lies at X and Y mm. */
+/* Asserts that the first barrel is that circle at U and V, which lie at X and Y
+ * mm, as nearly as boxes that differ so much can be mixed. */
 static void is_circle(double u, double v, double x, double y)
 {
-    struct glint_outputs out;
-    double got;
+    const double got = output_at(GLINT_OUT_BARREL_0, u, v);
 
-    glint_transfer_ray(&mixed, (int32_t)ldexp(u, 30), (int32_t)ldexp(v, 30),
-                       &out);
-    got = ldexp(out.at[GLINT_OUT_BARREL_0], mixed.exponent[GLINT_OUT_BARREL_0]);
     if (fabs(got - 0.5 - (x * x + y * y) / 32) > 0.1)
         fail_msg("the barrel is %g at %g, %g mm", got, x, y);
 }
@@ -320,21 +324,13 @@ static void barrels_are_the_same_on_the_pupil(void **state)
 
     (void)state;
     for (int k = 0; k < 2; k++) { /* either may be the first */
-        const struct glint_lens *const first = k ? &b : &a;
-
-        assert_int_equal(
-            glint_transfer_init(&mixed, first, 0, 0, MODEL_WAVE_LO_Q24), 1);
-        assert_int_equal(glint_transfer_mix(&mixed, k ? &a : &b, 0, 0,
-                                            MODEL_WAVE_LO_Q24, ONE / 2),
-                         1);
+        mix_models(k ? &b : &a, k ? &a : &b, 0.5);
         assert_false(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
         is_circle(1, 0, 0.5 + 5.25, 0);
         is_circle(-1, 0, 0.5 - 5.25, 0);
         is_circle(0, 1, 0.5, 2.5);
     }
-    glint_transfer_init(&mixed, &a, 0, 0, MODEL_WAVE_LO_Q24);
-    assert_int_equal(
-        glint_transfer_mix(&mixed, &c, 0, 0, MODEL_WAVE_LO_Q24, ONE / 2), 1);
+    mix_models(&a, &c, 0.5);
     assert_true(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
     for (int k = 0; k < 3; k++)
         free(at[k].data);
@@ -384,10 +380,7 @@ static void places_stay_in_both_boxes(void **state)
     const struct glint_lens second = open_coarse(&at[1], narrow, -20, &b);
 
     (void)state;
-    glint_transfer_init(&mixed, &first, 0, 0, MODEL_WAVE_LO_Q24);
-    assert_int_equal(
-        glint_transfer_mix(&mixed, &second, 0, 0, MODEL_WAVE_LO_Q24, ONE / 2),
-        1);
+    mix_models(&first, &second, 0.5);
     assert_false(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
     free(at[0].data);
     free(at[1].data);
