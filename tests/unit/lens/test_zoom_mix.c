@@ -313,6 +313,25 @@ static void is_circle(double u, double v, double x, double y)
         fail_msg("the barrel is %g at %g, %g mm", got, x, y);
 }
 
+/* And so it is where it goes along with its box. */
+static void barrels_go_along_with_boxes(void **state)
+{
+    const struct barrel a = {0.3, 0.5, 0.1}, b = {0.3, 0.9, 0.1};
+    struct model_image at[2];
+    const struct glint_lens first = open_position(&at[0], 0.5, 0.25, 0, &a, 1);
+    struct glint_lens second;
+
+    (void)state;
+    box_middle = 1 << 22; /* half a box on */
+    second = open_position(&at[1], 0.5, 0.25, 0, &b, 1);
+    box_middle = 0;
+    mix_models(&first, &second, 0.5);
+    assert_true(mixed.outputs >> GLINT_OUT_BARREL_0 & 1);
+    assert_false(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
+    free(at[0].data);
+    free(at[1].data);
+}
+
 /* A barrel is the same where boxes are so different that its polynomials are;
  * that of a box far away is another. */
 static void barrels_are_the_same_on_the_pupil(void **state)
@@ -670,6 +689,7 @@ int main(void)
         cmocka_unit_test(energies_have_heads_and_roots),
         cmocka_unit_test(boxes_move),
         cmocka_unit_test(barrels_are_the_same_on_the_pupil),
+        cmocka_unit_test(barrels_go_along_with_boxes),
         cmocka_unit_test(ghosts_fade),
         cmocka_unit_test(ghosts_go_on),
         cmocka_unit_test(ghosts_that_cannot_go_on),
