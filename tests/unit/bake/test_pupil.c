@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "bake/trace/spot.h"
 #include "support/lens_check.h"
 
 enum { SCAN = 240 };
@@ -213,6 +214,53 @@ static void test_nothing_gets_through(void **state)
         glint_pupil_find(&box, &path, 85, optics.stop_radius_mm, NULL));
 }
 
+/* A box whose side K was moved in by a fifth is grown past all rays that get
+ * through, and no other side is moved in. */
+static void grow_side(const struct glint_path *path, const double direction[3],
+                      const struct glint_pupil *whole, int k)
+{
+    const struct glint_openings openings = {
+        .path = path,
+        .direction = {direction[0], direction[1], direction[2]},
+        .stop_mm = optics.stop_radius_mm,
+        .field_mm = HUGE_VAL};
+    const double wide = whole->x1_mm - whole->x0_mm, high = whole->y1_mm;
+    struct glint_pupil p = *whole;
+    struct glint_ray ray;
+
+    p.mirrored = false;
+    p.y0_mm = -high;
+    p.x0_mm += k == 0 ? 0.2 * wide : 0;
+    p.x1_mm -= k == 1 ? 0.2 * wide : 0;
+    p.y0_mm += k == 2 ? 0.4 * high : 0;
+    p.y1_mm -= k == 3 ? 0.4 * high : 0;
+    assert_true(glint_spot_grow(&openings, &p));
+    for (int j = -SCAN / 8; j <= SCAN / 8; j++)
+        for (int i = 0; i <= SCAN / 4; i++) {
+            const double x = whole->x0_mm + wide * i * 4 / SCAN;
+            const double y = high * j * 8 / SCAN;
+
+            if (passes(path, x, y, direction, &ray) &&
+                (x < p.x0_mm || x > p.x1_mm || y < p.y0_mm || y > p.y1_mm))
+                fail_msg("side %d: %g, %g mm is outside", k, x, y);
+        }
+}
+
+static void test_sides(void **state)
+{
+    const double t = 12.74 * 3.14159265358979 / 180;
+    const double direction[3] = {sin(t), 0, cos(t)};
+    struct glint_pupil whole;
+    struct glint_path path;
+
+    (void)state;
+    load_fisheye(&path, 51, 550);
+    assert_true(
+        glint_pupil_find(&whole, &path, 12.74, optics.stop_radius_mm, NULL));
+    for (int k = 0; k < 4; k++)
+        grow_side(&path, direction, &whole, k);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -222,6 +270,7 @@ int main(void)
         cmocka_unit_test(test_spot),
         cmocka_unit_test(test_spots_of_fisheye),
         cmocka_unit_test(test_tips),
+        cmocka_unit_test(test_sides),
         cmocka_unit_test(test_nothing_gets_through),
     };
 
