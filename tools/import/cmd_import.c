@@ -134,7 +134,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct import *o)
     return code == EXIT_OK ? -1 : code;
 }
 
-/* Sets NAME to the file's own, in the letters that names of lenses have. */
+/* Sets NAME to that of the file PATH, in the letters that names of lenses have.
+ */
 static void set_name(char name[GLINT_NAME_BYTES], const char *path)
 {
     const char *stem = strrchr(path, '/');
@@ -243,7 +244,7 @@ static int run(struct tool *tool, struct import *o, const char *path)
         return tool_fail(tool, status, error.text);
     }
     imported_begin(&o->lens, path, o->strict);
-    set_name(o->lens.name, path);
+    set_name(o->lens.name, strcmp(o->output, "-") == 0 ? path : o->output);
     memcpy(o->lens.film_mm, o->film_mm, sizeof o->film_mm);
     o->lens.f_number_given = o->f_number;
     o->lens.position = o->position;

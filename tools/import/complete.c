@@ -287,9 +287,9 @@ static void settle_semis(struct imported *lens)
     }
     if (n > 0)
         imported_note(lens, 0,
-                      "%d surfaces have no semi-diameter: those of paraxial "
-                      "rays taken",
-                      n);
+                      "%d surface%s no semi-diameter: those of paraxial rays "
+                      "taken",
+                      n, n == 1 ? " has" : "s have");
 }
 
 /* Cuts semi-diameters that reach beyond a sphere or the end of a conic. */
@@ -318,7 +318,7 @@ double imported_gap(const struct imported_surface *s, double h)
 
 /* Cuts semi-diameters where neighbours' rims cross, as thin lenses of estimated
  * ones do. */
-static void part_rims(struct imported *lens)
+static bool part_rims(struct imported *lens)
 {
     for (int k = 0; k + 1 < lens->n; k++) {
         struct imported_surface *s = &lens->surface[k];
@@ -336,6 +336,11 @@ static void part_rims(struct imported *lens)
                 low = middle;
         }
         semi = low / IMPORT_FREE;
+        if (semi * lens->unit_mm < 0.01)
+            return imported_fail(lens, s->line,
+                                 "the next surface, %.6g mm behind this, "
+                                 "crosses it next to the axis",
+                                 s->thickness * lens->unit_mm);
         imported_note(lens, s->line,
                       "the next surface crosses this at its rim: "
                       "semi-diameters of %.6g mm taken",
@@ -343,6 +348,7 @@ static void part_rims(struct imported *lens)
         for (int i = 0; i < 2; i++)
             s[i].semi = fmin(s[i].semi, semi);
     }
+    return true;
 }
 
 static bool settle_focus(struct imported *lens)
@@ -394,6 +400,16 @@ static bool check_thicknesses(struct imported *lens)
     return true;
 }
 
+static bool check_end(struct imported *lens)
+{
+    const struct imported_surface *last = &lens->surface[lens->n - 1];
+
+    return strcmp(last->medium, "air") == 0 ||
+           imported_fail(lens, last->line,
+                         "there is glass behind the last surface: one is "
+                         "missing, as sensors stand in the air");
+}
+
 /* Refuses an f-number of the user's whose light does not fit through the front.
  * A file's own is taken as it is, as stops of published lenses open a little
  * wider than their fronts. */
@@ -420,7 +436,7 @@ bool imported_complete(struct imported *lens)
     double f;
 
     if (!imported_settle_media(lens) || !drop_dummies(lens) ||
-        !check_thicknesses(lens))
+        !check_thicknesses(lens) || !check_end(lens))
         return false;
     tell_object(lens);
     if (!settle_stop(lens))
@@ -431,6 +447,10 @@ bool imported_complete(struct imported *lens)
                       "its focal length is %.6g mm, not the stated %.6g: "
                       "there may be a misprint (glint lint)",
                       f * lens->unit_mm, lens->nominal * lens->unit_mm);
+    if (f == 0)
+        return imported_fail(lens, 0,
+                             "light leaves it as it comes in, without a focus; "
+                             "glint takes lenses that form an image");
     if (!(f > 0))
         return imported_fail(lens, 0,
                              "focal length is %.6g mm; glint takes lenses "
@@ -443,6 +463,5 @@ bool imported_complete(struct imported *lens)
     cut_semis(lens);
     if (!free_stop(lens) || !check_front(lens, f))
         return false;
-    part_rims(lens);
-    return settle_focus(lens);
+    return part_rims(lens) && settle_focus(lens);
 }

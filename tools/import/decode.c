@@ -48,6 +48,16 @@ static void narrow(uint8_t *data, size_t *bytes, size_t at, int high)
     *bytes = n;
 }
 
+/* Ends lines by '\n' where a text has them end by '\r' alone. */
+static void end_lines(uint8_t *data, size_t bytes)
+{
+    if (bytes == 0 || memchr(data, '\n', bytes))
+        return;
+    for (size_t i = 0; i < bytes; i++)
+        if (data[i] == '\r')
+            data[i] = '\n';
+}
+
 void import_decode(uint8_t *data, size_t *bytes)
 {
     if (*bytes >= 2 && data[0] == 0xff && data[1] == 0xfe)
@@ -60,11 +70,13 @@ void import_decode(uint8_t *data, size_t *bytes)
         *bytes -= 3;
         memmove(data, data + 3, *bytes);
     }
+    end_lines(data, *bytes);
 }
 
 char *import_read(struct imported *lens, const struct import_format *format,
                   uint8_t *data, size_t *bytes)
 {
+    lens->format = format->name;
     import_decode(data, bytes);
     if (*bytes && memchr(data, 0, *bytes)) {
         imported_fail(lens, 0, "is no text");

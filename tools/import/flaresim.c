@@ -98,13 +98,16 @@ bool import_flaresim(struct imported *lens, const char *text, size_t bytes)
         else if (lines_is(&lines, "surfaces:"))
             rows = true;
         else
-            good = imported_fail(lens, lines.number, "unknown word '%.40s'",
-                                 lines.word[0]);
+            good = imported_fail(lens, lines.number, "unknown word '%.40s'%s",
+                                 lines.word[0],
+                                 lines_is(&lines, "name")
+                                     ? ": this is a table of glint's already"
+                                     : "");
     }
     if (!good)
         return false;
     if (lens->n < 2)
-        return imported_fail(lens, 0, "there are no surfaces in it");
+        return imported_empty(lens);
     return settle_diameters(lens) &&
            imported_note(lens, 0, "coatings are not read");
 }

@@ -48,6 +48,13 @@ bool imported_fail(struct imported *lens, int line, const char *format, ...)
     return false;
 }
 
+bool imported_empty(struct imported *lens)
+{
+    return imported_fail(lens, 0,
+                         "there are no surfaces in it, read as %s (--format)",
+                         lens->format);
+}
+
 static void add_note(struct imported *lens, int line, bool guess,
                      const char *format, va_list values)
 {
@@ -104,6 +111,23 @@ bool imported_unit(struct imported *lens, int line, double mm)
     lens->unit_mm = mm;
     lens->unit_said = true;
     return mm > 0 || imported_fail(lens, line, "unit %g is no length", mm);
+}
+
+void imported_image(struct imported *lens, int line, double radius,
+                    double defocus)
+{
+    if (radius != 0)
+        imported_note(lens, line,
+                      "the image is bent, by a radius of %.6g mm: a flat "
+                      "sensor taken",
+                      radius * lens->unit_mm);
+    if (defocus == 0)
+        return;
+    lens->surface[lens->n - 1].thickness += defocus;
+    imported_tell(lens, line,
+                  "the image's defocus, %.6g mm, is added to the sensor's "
+                  "distance",
+                  defocus * lens->unit_mm);
 }
 
 bool imported_need_unit(struct imported *lens, const char *word)

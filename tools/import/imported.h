@@ -40,7 +40,7 @@ struct imported_note {
 };
 
 struct imported {
-    const char *file;
+    const char *file, *format;
     bool strict;
     char name[GLINT_NAME_BYTES], title[IMPORT_TEXT];
     double unit_mm;    /* of its lengths */
@@ -71,6 +71,9 @@ void imported_begin(struct imported *lens, const char *file, bool strict);
  * file. */
 bool imported_fail(struct imported *lens, int line, const char *format, ...);
 
+/* Refuses a file without surfaces, which may be of another format. */
+bool imported_empty(struct imported *lens);
+
 /* Adds a note of a guess. Returns true, as reading goes on. */
 bool imported_note(struct imported *lens, int line, const char *format, ...);
 
@@ -86,6 +89,11 @@ void imported_object(struct imported *lens, int line, double distance);
 
 /* Sets the unit that LINE says. */
 bool imported_unit(struct imported *lens, int line, double mm);
+
+/* Notes that the image that LINE has is bent, if RADIUS is not 0, and moves the
+ * sensor by its DEFOCUS, in the file's unit, which is told. */
+void imported_image(struct imported *lens, int line, double radius,
+                    double defocus);
 
 /* Notes that lengths are taken for mm, unless the file's WORD said a unit. */
 bool imported_need_unit(struct imported *lens, const char *word);

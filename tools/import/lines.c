@@ -126,8 +126,9 @@ bool lines_number(struct imported *lens, const struct lines *l, int k,
     if (k >= l->n)
         return imported_fail(lens, l->number, "%s is missing", what);
     if (!tool_number(l->word[k], value))
-        return imported_fail(lens, l->number, "%s '%.40s' is not a number",
-                             what, l->word[k]);
+        return imported_fail(
+            lens, l->number, "%s '%.40s' is not a number%s", what, l->word[k],
+            strchr(l->word[k], ',') ? ": decimals follow a point" : "");
     return true;
 }
 

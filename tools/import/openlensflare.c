@@ -188,7 +188,7 @@ static bool settle(struct reader *r)
     struct imported *lens = r->lens;
 
     if (lens->n < 2)
-        return imported_fail(lens, 0, "there are no surfaces in it");
+        return imported_empty(lens);
     if (r->system_has[F_NUMBER])
         lens->f_number = r->system[F_NUMBER];
     if (r->system_has[FOCAL])

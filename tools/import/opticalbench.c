@@ -286,7 +286,7 @@ bool import_opticalbench(struct imported *lens, const char *text, size_t bytes)
         if (!take(&b))
             return false;
     if (lens->n < 2)
-        return imported_fail(lens, 0, "there are no surfaces in it");
+        return imported_empty(lens);
     settle(&b, "Focal Length", 1, &lens->nominal);
     settle(&b, "F-Number", 1, &lens->f_number);
     settle(&b, "Angle of View", 0.5, &lens->field_deg);

@@ -16,6 +16,7 @@ struct oslo {
     struct lines lines;
     struct imported_surface *s;
     int surfaces; /* that have begun, with the object */
+    bool ended;
 };
 
 static bool take_glass(struct oslo *o)
@@ -47,9 +48,12 @@ static bool take_glass(struct oslo *o)
 static bool take_other(struct oslo *o)
 {
     static const char *const shaping[] = {"TLA", "TLB", "TLC", "DCX", "DCY",
-                                          "DCZ", "CVX", "PK",  "RFH", "DT"};
+                                          "DCZ", "CVX", "PK",  "DT"};
     const struct lines *l = &o->lines;
 
+    if (lines_is(l, "RFL") || lines_is(l, "RFH"))
+        return imported_fail(o->lens, l->number,
+                             "a mirror: glint has lenses alone");
     for (size_t i = 0; i < sizeof shaping / sizeof *shaping; i++)
         if (lines_is(l, shaping[i]))
             return imported_fail(o->lens, l->number,
@@ -138,16 +142,23 @@ static bool take(struct oslo *o)
 bool import_oslo(struct imported *lens, const char *text, size_t bytes)
 {
     struct oslo o = {.lens = lens};
+    const struct imported_surface *image;
 
     lines_begin(&o.lines, lens, text, bytes);
     while (lines_next(&o.lines, '\0')) {
-        if (lines_is(&o.lines, "END") || lines_is(&o.lines, "WV"))
+        if (lines_is(&o.lines, "END") || lines_is(&o.lines, "WV")) {
             o.s = NULL;
+            o.ended = true;
+        }
         if (!take(&o))
             return false;
     }
     if (lens->n < 2)
-        return imported_fail(lens, 0, "there are no surfaces in it");
-    lens->n--; /* the image */
+        return imported_empty(lens);
+    image = &lens->surface[--lens->n];
+    if (o.ended)
+        imported_image(lens, image->line, image->radius, image->thickness);
+    else
+        imported_note(lens, 0, "no END line: the file may be cut off");
     return imported_need_unit(lens, "UNI");
 }

@@ -39,7 +39,7 @@ bool import_pbrt(struct imported *lens, const char *text, size_t bytes)
         if (!take(lens, &lines))
             return false;
     if (lens->n < 2)
-        return imported_fail(lens, 0, "there are no surfaces in it");
+        return imported_empty(lens);
     if (lens->surface[0].thickness != 0 ||
         lens->surface[lens->n - 1].thickness == 0)
         return true;

@@ -213,7 +213,7 @@ bool import_polyflare(struct imported *lens, const char *text, size_t bytes)
             return false;
     }
     if (lens->n < 2)
-        return imported_fail(lens, 0, "there are no surfaces in it");
+        return imported_empty(lens);
     lens->nominal = p.focal[p.at];
     lens->field_deg = p.field[p.at] / 2;
     return find_stop(lens);

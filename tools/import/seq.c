@@ -21,6 +21,7 @@ struct seq {
     struct lines lines;
     struct imported_surface *s;
     bool curvatures;
+    bool image; /* has been met */
 };
 
 /* Sets S to a glass of digits, those of nd behind "1." and those of Vd / 100
@@ -71,6 +72,22 @@ static bool take_radius(struct seq *q, int k, bool curvature)
     return true;
 }
 
+/* The thickness behind the image says by how much it is out of focus. */
+static bool take_image(struct seq *q)
+{
+    const struct lines *l = &q->lines;
+    double bend = 0, defocus = 0;
+
+    q->image = true;
+    if (q->lens->n == 0 ||
+        (l->n > 1 && !lines_number(q->lens, l, 1, "curvature", &bend)) ||
+        (l->n > 2 && !lines_number(q->lens, l, 2, "defocus", &defocus)))
+        return q->lens->n == 0;
+    imported_image(q->lens, l->number,
+                   bend == 0 || !q->curvatures ? bend : 1 / bend, defocus);
+    return true;
+}
+
 static bool start_surface(struct seq *q)
 {
     const struct lines *l = &q->lines;
@@ -78,7 +95,9 @@ static bool start_surface(struct seq *q)
 
     if (lines_is(l, "SI") || lines_is(l, "SO")) {
         q->s = NULL;
-        if (lines_is(l, "SI") || l->n < 3)
+        if (lines_is(l, "SI"))
+            return take_image(q);
+        if (l->n < 3)
             return true;
         if (!lines_number(q->lens, l, 2, "distance of the object", &object))
             return false;
@@ -280,6 +299,9 @@ bool import_seq(struct imported *lens, const char *text, size_t bytes)
         if (!take(&q))
             return false;
     if (lens->n == 0)
-        return imported_fail(lens, 0, "there are no surfaces in it");
+        return imported_empty(lens);
+    if (!q.image)
+        imported_note(lens, 0,
+                      "no SI line, the image: the file may be cut off");
     return imported_need_unit(lens, "DIM");
 }

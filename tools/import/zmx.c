@@ -183,7 +183,45 @@ static bool start_surface(struct zmx *z)
         z->lens->n = 0;
     }
     z->s = imported_add(z->lens, z->lines.number);
+    if (z->s)
+        z->s->thickness = (double)NAN; /* not said yet */
     return z->s != NULL;
+}
+
+/* Takes off the last surface, the image, which ends the lens: what goes on is
+ * a file that has been cut off. */
+static bool take_image(struct imported *lens)
+{
+    const struct imported_surface *image = &lens->surface[--lens->n];
+
+    if (image->glass[0] || image->nd != 1)
+        return imported_fail(lens, image->line,
+                             "the last surface, which is the image, has glass "
+                             "behind it: the file is cut off");
+    if (image->thickness == 0)
+        imported_image(lens, image->line, image->radius, 0);
+    else
+        imported_note(lens, image->line,
+                      "the last surface, which is the image, has no DISZ of 0: "
+                      "the file may be cut off");
+    return true;
+}
+
+static bool check_distances(struct imported *lens)
+{
+    for (int k = 0; k < lens->n; k++) {
+        struct imported_surface *s = &lens->surface[k];
+
+        if (isnan(s->thickness)) {
+            imported_note(lens, s->line,
+                          "no DISZ of it: a thickness of 0 taken");
+            s->thickness = 0;
+        }
+        if (!isfinite(s->thickness))
+            return imported_fail(lens, s->line,
+                                 "an infinite thickness inside of the lens");
+    }
+    return true;
 }
 
 static bool close_file(struct zmx *z)
@@ -192,8 +230,10 @@ static bool close_file(struct zmx *z)
     const struct imported_surface *image;
 
     if (lens->n < 2)
-        return imported_fail(lens, 0, "there are no surfaces in it");
-    image = &lens->surface[--lens->n];
+        return imported_empty(lens);
+    if (!take_image(lens))
+        return false;
+    image = &lens->surface[lens->n];
     if (z->field_type == 0)
         lens->field_deg = z->field;
     else if (z->field_type == 2 || z->field_type == 3)
@@ -202,10 +242,8 @@ static bool close_file(struct zmx *z)
         lens->height = image->semi;
     if (z->field_type == 0 && !(z->field > 0))
         lens->height = image->semi;
-    for (int k = 0; k < lens->n; k++)
-        if (!isfinite(lens->surface[k].thickness))
-            return imported_fail(lens, lens->surface[k].line,
-                                 "an infinite thickness inside of the lens");
+    if (!check_distances(lens))
+        return false;
     imported_object(lens, z->object_line, z->object);
     return imported_need_unit(lens, "UNIT");
 }
