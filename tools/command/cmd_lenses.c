@@ -171,9 +171,9 @@ static void print_text(struct lenses *l, const char *name,
     if (l->n++ == 0)
         printf("%-24s %9s %7s %6s  %-9s %6s  %s\n", "lens", "focal mm",
                "corner", "f/", "film mm", "ghosts", "model");
-    snprintf(film, sizeof film, "%gx%g", e->settings.lens.film_width_mm,
+    snprintf(film, sizeof film, "%.4gx%.4g", e->settings.lens.film_width_mm,
              e->settings.lens.film_height_mm);
-    printf("%-24s %9.1f %4.0f%cdeg %5g  %-9s %6d  %s\n", name,
+    printf("%-24s %9.1f %4.0f%cdeg %5.3g  %-9s %6d  %s\n", name,
            e->optics.focal_mm, corner, corner < WIDEST_DEG ? ' ' : '+',
            e->settings.lens.f_number, film, e->n_ghosts,
            e->is_baked ? "baked" : "not yet");

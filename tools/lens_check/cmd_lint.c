@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "lens_check/one_digit.h"
-#include "model/lens_files.h"
+#include "model/table_file.h"
 #include "options/settings.h"
 #include "options/takes.h"
 #include "options/tool.h"
@@ -74,15 +74,17 @@ static int lint(const struct tool *tool, const char *name)
     struct mend mend[MENDS];
     struct glint_error error = {""};
     char path[1024];
-    const char *file =
-        strpbrk(name, "./") || !lens_file_find(name, path, sizeof path) ? name
-                                                                        : path;
+    const char *file = strpbrk(name, "./") || strcmp(name, "-") == 0
+                           ? name
+                           : tool_lens_file(tool, name, path, sizeof path);
     uint8_t *text = NULL;
     size_t bytes = 0;
     int n = 0;
-    enum glint_status status =
-        glint_input_slurp(&text, &bytes, file, LENS_TEXT, &error);
+    enum glint_status status;
 
+    if (!file)
+        return EXIT_LENS;
+    status = glint_input_slurp(&text, &bytes, file, LENS_TEXT, &error);
     if (status != GLINT_OK) {
         free(text);
         return tool_fail(tool, status, error.text);

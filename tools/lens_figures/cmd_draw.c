@@ -21,7 +21,9 @@ static const char help[] =
     "\n"
     "A section through the lens, for a browser or a paper: glasses, barrels,\n"
     "stop, sensor, and rays of the d line from the middle, 0.7 and all of the\n"
-    "field; below, where rays of 450, 546 and 650 nm meet the sensor.\n"
+    "field; below, where rays of 450, 546 and 650 nm meet the sensor. Light "
+    "is\n"
+    "from afar, however the lens is focused.\n"
     "\n"
     "  -o, --output FILE   the .svg, or - for standard output\n"
     "  --ghost K           the path of ghost K, numbered as glint info -v "
@@ -152,6 +154,7 @@ static int draw(struct tool *tool, struct draw *o, const char *name)
         status = glint_prescription_set_f_number(&o->lens, o->f_number, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
+    o->drawing.focus_m = o->zoom.focus_m;
     n = glint_ghost_list(&o->lens, NULL, 0);
     if (o->drawing.ghost >= n)
         return tool_usage(tool, "%s has %d ghosts, 0 .. %d", o->lens.name, n,

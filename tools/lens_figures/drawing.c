@@ -112,7 +112,11 @@ static void draw_title(const struct figure *f, const struct glint_optics *o,
                        const char *path)
 {
     const struct glint_prescription *lens = f->drawing->lens;
+    char focus[64] = "";
 
+    if (f->drawing->focus_m > 0)
+        snprintf(focus, sizeof focus, ", focused at %.4g m, light from afar",
+                 f->drawing->focus_m);
     fprintf(f->file,
             "<text x=\"%.0f\" y=\"22\" font-size=\"15\" "
             "font-weight=\"bold\">",
@@ -120,8 +124,8 @@ static void draw_title(const struct figure *f, const struct glint_optics *o,
     write_words(f->file, lens->name);
     fprintf(f->file,
             "<tspan dx=\"10\" font-weight=\"normal\" font-size=\"12\">"
-            "f = %.2f mm, f/%g%s</tspan></text>\n",
-            o->focal_mm, lens->f_number, path);
+            "f = %.2f mm, f/%.3g%s%s</tspan></text>\n",
+            o->focal_mm, lens->f_number, focus, path);
     fprintf(f->file, "<text x=\"%.0f\" y=\"40\" fill=\"#555\">",
             FIGURE_MARGIN_PX);
     write_words(f->file, lens->source);
@@ -153,15 +157,16 @@ static void open_svg(const struct figure *f)
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" "
             "height=\"%.0f\" viewBox=\"0 0 %.0f %.0f\" "
             "font-family=\"Helvetica,Arial,sans-serif\" font-size=\"11\">\n"
-            "<defs><pattern id=\"hatch\" width=\"4\" height=\"4\" "
+            "<defs><pattern id=\"hatch-%s\" width=\"4\" height=\"4\" "
             "patternUnits=\"userSpaceOnUse\"><path d=\"M0 4 L4 0\" "
             "stroke=\"#777\" stroke-width=\"0.7\"/></pattern>\n"
             "<clipPath id=\"view-%s\"><rect x=\"%.1f\" y=\"%.1f\" "
             "width=\"%.1f\" height=\"%.1f\"/></clipPath></defs>\n"
             "<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
             width, height, width, height, f->drawing->lens->name,
-            figure_px(f, f->z0), f->middle - 0.5 * f->height_px,
-            f->scale * (f->z1 - f->z0), f->height_px);
+            f->drawing->lens->name, figure_px(f, f->z0),
+            f->middle - 0.5 * f->height_px, f->scale * (f->z1 - f->z0),
+            f->height_px);
 }
 
 /* Draws the rays, or those of the ghost; PATH receives what of the latter. */

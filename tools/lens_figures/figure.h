@@ -24,6 +24,8 @@ struct lens_drawing {
     int rays;         /* rays of a fan, 1 .. DRAWING_MAX_RAYS */
     bool spots;       /* spot diagrams below the section */
     bool title;       /* words above it */
+    double focus_m;   /* the lens is focused there, which the title says; 0:
+                         infinity. Light is from afar in any case. */
     double width_px;
 };
 

@@ -74,12 +74,12 @@ static void print_numbers(FILE *file, const struct page_card *card)
 {
     const struct glint_prescription *lens = card->lens;
 
-    fprintf(file, "<p>%.4g mm, f/%g, ", card->focal_mm, lens->f_number);
+    fprintf(file, "<p>%.4g mm, f/%.3g, ", card->focal_mm, lens->f_number);
     if (card->corner_deg < 89.5)
         fprintf(file, "%.0f&deg; from corner to corner", 2 * card->corner_deg);
     else
         fputs("180&deg; or more", file);
-    fprintf(file, " of %g x %g mm, %d ghosts</p>\n", lens->film_width_mm,
+    fprintf(file, " of %.4g x %.4g mm, %d ghosts</p>\n", lens->film_width_mm,
             lens->film_height_mm, card->n_ghosts);
 }
 

@@ -179,11 +179,11 @@ static void draw_barrel(const struct figure *f, int first, int last)
     for (int side = 0; side < 2; side++)
         fprintf(f->file,
                 "<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.1f\" "
-                "fill=\"url(#hatch)\" stroke=\"#777\" "
+                "fill=\"url(#hatch-%s)\" stroke=\"#777\" "
                 "stroke-width=\"0.5\"/>\n",
                 figure_px(f, a),
                 side ? figure_py(f, semi[1]) - wall : figure_py(f, -semi[0]),
-                f->scale * (b - a), wall);
+                f->scale * (b - a), wall, lens->name);
 }
 
 void figure_draw_glasses(const struct figure *f)

@@ -55,7 +55,7 @@ static int print_matches(const struct tool *tool, const char *name)
     return m.n;
 }
 
-static int no_lens(const struct tool *tool, const char *name)
+static void print_no_lens(const struct tool *tool, const char *name)
 {
     struct suggest s;
 
@@ -64,10 +64,10 @@ static int no_lens(const struct tool *tool, const char *name)
                 "glint %s: %s: no lens that comes with glint has this name; "
                 "the file is ./%s\n",
                 tool->name, name, name);
-        return EXIT_LENS;
+        return;
     }
     if (print_matches(tool, name) > 1)
-        return EXIT_LENS;
+        return;
     suggest_begin(&s, name);
     lens_files_each(offer, &s);
     fprintf(stderr,
@@ -76,7 +76,6 @@ static int no_lens(const struct tool *tool, const char *name)
             tool->name, name,
             suggest_best(&s) ? "did you mean " : "glint lenses lists them",
             suggest_best(&s) ? s.best : "");
-    return EXIT_LENS;
 }
 
 /* Reads the table in FILE. Pictures and the like are refused as no tables, for
@@ -102,19 +101,27 @@ static enum glint_status parse_table(const char *file,
     return status;
 }
 
+const char *tool_lens_file(const struct tool *tool, const char *argument,
+                           char *path, size_t bytes)
+{
+    if (tool_is_file_name(argument))
+        return argument;
+    if (lens_file_find(argument, path, bytes))
+        return path;
+    print_no_lens(tool, argument);
+    return NULL;
+}
+
 int tool_lens(const struct tool *tool, const char *argument,
               struct glint_prescription *lens)
 {
     struct glint_error error = {""};
     char path[1024];
-    const char *file = argument;
+    const char *file = tool_lens_file(tool, argument, path, sizeof path);
     enum glint_status status;
 
-    if (!tool_is_file_name(argument)) {
-        if (!lens_file_find(argument, path, sizeof path))
-            return no_lens(tool, argument);
-        file = path;
-    }
+    if (!file)
+        return EXIT_LENS;
     if (tool_is_model(file)) {
         fprintf(stderr,
                 "glint %s: %s: a baked model; this needs the lens table\n",

@@ -8,6 +8,11 @@
 #include "glint/prescription.h"
 #include "options/tool.h"
 
+/* Returns the table of lens ARGUMENT: itself, if it is a file, or PATH, set to
+ * that of the name. Returns NULL after printing what it may mean. */
+const char *tool_lens_file(const struct tool *tool, const char *argument,
+                           char *path, size_t bytes);
+
 /* Reads lens ARGUMENT: a file, or the name of a table that comes with glint.
  * Returns an exit code, after printing the reason on failure. */
 int tool_lens(const struct tool *tool, const char *argument,
