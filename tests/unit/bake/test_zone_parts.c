@@ -56,7 +56,7 @@ static void test_halves(void **state)
 /* A zone of a ghost that hides nothing, from FROM to TO degrees, and an attempt
  * that left errors of LEFT tolerances, before 10. Of DEPTH 0 it is no part. */
 struct attempted {
-    bool shaped;
+    bool shaped, far;
     double from, to, left;
     int depth; /* of a thorough fit; -1: of another */
     int axis_depth;
@@ -87,6 +87,7 @@ static enum glint_next next_of(const struct attempted *c)
     visible.setup = &setup;
     visible.wide = true;
     visible.shaped = c->shaped;
+    visible.far = c->far;
     return glint_next(&visible, &tolerance, &piece, &attempt);
 }
 
@@ -95,22 +96,28 @@ static enum glint_next next_of(const struct attempted *c)
 static void test_shaped(void **state)
 {
     static const struct attempted all[] = {
-        {false, 5, 11, 9, -1, 4, GLINT_THOROUGH},
-        {true, 5, 11, 9, -1, 4, GLINT_HALVE},
-        {true, 5, 8.7, 9, -1, 4, GLINT_HALVE},
-        {true, 5, 8.5, 9, -1, 4, GLINT_THOROUGH},
-        {true, 5, 8.5, 7, -1, 4, GLINT_HALVE}, /* as the last one helped */
-        {true, 5, 11, 0.9, -1, 4, GLINT_KEEP},
-        {false, 5, 8, 9, 3, 4, GLINT_PART},
-        {false, 5, 8, 9, 4, 4, GLINT_KEEP},
-        {true, 5, 8, 9, 5, 4, GLINT_PART},
-        {true, 5, 8, 9, 6, 4, GLINT_KEEP},
-        {true, 5, 8, 4, 5, 4, GLINT_KEEP},
+        {false, false, 5, 11, 9, -1, 4, GLINT_THOROUGH},
+        {true, false, 5, 11, 9, -1, 4, GLINT_HALVE},
+        {true, false, 5, 8.7, 9, -1, 4, GLINT_HALVE},
+        {true, false, 5, 8.5, 9, -1, 4, GLINT_THOROUGH},
+        {true, false, 5, 8.5, 7, -1, 4,
+         GLINT_HALVE}, /* as the last one helped */
+        {true, false, 5, 11, 0.9, -1, 4, GLINT_KEEP},
+        {false, false, 5, 8, 9, 3, 4, GLINT_PART},
+        {false, false, 5, 8, 9, 4, 4, GLINT_KEEP},
+        {true, false, 5, 8, 9, 5, 4, GLINT_PART},
+        {true, false, 5, 8, 9, 6, 4, GLINT_KEEP},
+        {true, false, 5, 8, 4, 5, 4, GLINT_KEEP},
         /* at the axis by the tolerance, if that asks for more */
-        {false, 0, 3, 9, 4, 5, GLINT_PART},
-        {true, 0, 3, 9, 5, 4, GLINT_PART},
-        {true, 0, 3, 9, 6, 4, GLINT_KEEP},
-        {true, 0, 3, 9, 7, 8, GLINT_PART},
+        {false, false, 0, 3, 9, 4, 5, GLINT_PART},
+        {true, false, 0, 3, 9, 5, 4, GLINT_PART},
+        {true, false, 0, 3, 9, 6, 4, GLINT_KEEP},
+        {true, false, 0, 3, 9, 7, 8, GLINT_PART},
+        /* lights beyond 60 degrees: halved as far, divided no further */
+        {false, true, 70, 74, 9, -1, 4, GLINT_HALVE},
+        {false, true, 70, 73.7, 9, -1, 4, GLINT_HALVE},
+        {false, true, 70, 73.5, 9, -1, 4, GLINT_THOROUGH},
+        {false, true, 70, 72, 9, 4, 4, GLINT_KEEP},
     };
 
     (void)state;
