@@ -25,7 +25,7 @@ static const char help[] =
     "after it are empty then. The light lies in the x-z plane.\n"
     "\n"
     "  --ghost K        number of the ghost as 'glint info' counts; -1 is the\n"
-    "                   direct path\n"
+    "                   direct path (default 0)\n"
     "  --angle DEG      off the axis, below 90 (default 0)\n"
     "  --wavelength NM  default 532\n"
     "  --grid N         1 to 4096 rays a side (default 17)\n"

@@ -74,7 +74,7 @@ static int lint(const struct tool *tool, const char *name)
     struct mend mend[MENDS];
     struct glint_error error = {""};
     char path[1024];
-    const char *file = strpbrk(name, "./") || strcmp(name, "-") == 0
+    const char *file = strcmp(name, "-") == 0
                            ? name
                            : tool_lens_file(tool, name, path, sizeof path);
     uint8_t *text = NULL;

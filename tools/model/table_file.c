@@ -9,6 +9,7 @@
 #include "model/lens_files.h"
 #include "model/model_file.h"
 #include "options/suggest.h"
+#include "posix/ending.h"
 #include "posix/error.h"
 #include "posix/input.h"
 
@@ -78,6 +79,18 @@ static void print_no_lens(const struct tool *tool, const char *name)
             suggest_best(&s) ? s.best : "");
 }
 
+/* Returns whether NAME is of a file as glint import takes them, which there
+ * is. */
+static bool is_foreign(const char *name)
+{
+    static const char *const endings[] = {".zmx", ".seq", ".len", ".fx"};
+    bool is = false;
+
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+        is = is || glint_ends_in(name, endings[i]);
+    return is && access(name, F_OK) == 0;
+}
+
 /* Reads the table in FILE. Pictures and the like are refused as no tables, for
  * which a line and column would not help. */
 static enum glint_status parse_table(const char *file,
@@ -104,6 +117,19 @@ static enum glint_status parse_table(const char *file,
 const char *tool_lens_file(const struct tool *tool, const char *argument,
                            char *path, size_t bytes)
 {
+    if (is_foreign(argument)) {
+        fprintf(stderr,
+                "glint %s: %s: a lens file of another program; glint import "
+                "makes a table of it\n",
+                tool->name, argument);
+        return NULL;
+    }
+    if (tool_is_model(argument)) {
+        fprintf(stderr,
+                "glint %s: %s: a baked model; this needs the lens table\n",
+                tool->name, argument);
+        return NULL;
+    }
     if (tool_is_file_name(argument))
         return argument;
     if (lens_file_find(argument, path, bytes))
@@ -122,12 +148,6 @@ int tool_lens(const struct tool *tool, const char *argument,
 
     if (!file)
         return EXIT_LENS;
-    if (tool_is_model(file)) {
-        fprintf(stderr,
-                "glint %s: %s: a baked model; this needs the lens table\n",
-                tool->name, file);
-        return EXIT_LENS;
-    }
     status = parse_table(file, lens, &error);
     if (status == GLINT_OK)
         return EXIT_OK;
