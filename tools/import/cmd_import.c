@@ -251,6 +251,7 @@ static int run(struct tool *tool, struct import *o, const char *path)
     o->lens.key = o->key;
     text = import_read(&o->lens, o->format, data, &bytes);
     free(data);
+    imported_sort_notes(&o->lens);
     print_notes(tool, &o->lens);
     if (!text) {
         fprintf(stderr, "glint import: %s\n", o->lens.error);

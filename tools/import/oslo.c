@@ -48,7 +48,8 @@ static bool take_glass(struct oslo *o)
 static bool take_other(struct oslo *o)
 {
     static const char *const shaping[] = {"TLA", "TLB", "TLC", "DCX", "DCY",
-                                          "DCZ", "CVX", "PK",  "DT"};
+                                          "DCZ", "CVX", "PK",  "DT",  "ASP",
+                                          "PI",  "PIC", "PU",  "PUC"};
     const struct lines *l = &o->lines;
 
     if (lines_is(l, "RFL") || lines_is(l, "RFH"))
@@ -58,7 +59,8 @@ static bool take_other(struct oslo *o)
         if (lines_is(l, shaping[i]))
             return imported_fail(o->lens, l->number,
                                  "'%s': surfaces that are tilted, decentred, "
-                                 "not round or follow others are not read",
+                                 "not round, of other terms or curved as rays "
+                                 "or others are, are not read",
                                  l->word[0]);
     return imported_unread(o->lens, l->number, l->word[0]);
 }

@@ -237,6 +237,10 @@ static bool take_head(struct seq *q)
         return take_fields(q, &q->lens->field_deg);
     if (lines_is(l, "YIM") || lines_is(l, "YRI") || lines_is(l, "XIM"))
         return take_fields(q, &q->lens->height);
+    if (lines_is(l, "PRV"))
+        return imported_note(q->lens, l->number,
+                             "glasses of the file's own (PRV) are not read: "
+                             "those of the catalogue taken");
     return !lines_is(l, "ZOO") ||
            imported_note(q->lens, l->number,
                          "zoom positions but the first are not read");
