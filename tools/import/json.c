@@ -58,6 +58,23 @@ static bool number(struct json_lens *j, const json_t *element, int line,
     return true;
 }
 
+/* Notes keys of ELEMENT that are none of KNOWN, words with blanks around. */
+static void note_others(struct json_lens *j, json_t *element, int line,
+                        const char *known)
+{
+    const char *key;
+    json_t *value;
+
+    json_object_foreach(element, key, value)
+    {
+        char word[40];
+
+        snprintf(word, sizeof word, " %.36s ", key);
+        if (!strstr(known, word) && !json_is_null(value))
+            imported_unread(j->lens, line, key);
+    }
+}
+
 /* Reads TEXT and has TAKE take what is in it. */
 static bool read_text(struct imported *lens, const char *text, size_t bytes,
                       bool (*take)(struct json_lens *j, json_t *root))
@@ -75,7 +92,7 @@ static bool read_text(struct imported *lens, const char *text, size_t bytes,
 
 /* ---------------------------------------------------------------- realflare */
 
-static bool take_element(struct json_lens *j, const json_t *element, bool stop)
+static bool take_element(struct json_lens *j, json_t *element, bool stop)
 {
     const int line = next_line(j);
     struct imported_surface *s = imported_add(j->lens, line);
@@ -91,6 +108,8 @@ static bool take_element(struct json_lens *j, const json_t *element, bool stop)
         return false;
     if (s->nd == 1)
         s->vd = 0;
+    note_others(j, element, line,
+                " radius distance refractive_index abbe_nr height ");
     return true;
 }
 
@@ -153,7 +172,7 @@ static bool take_geometry(struct json_lens *j, const json_t *element,
     return true;
 }
 
-static bool take_lentil_element(struct json_lens *j, const json_t *element)
+static bool take_lentil_element(struct json_lens *j, json_t *element)
 {
     const char *medium =
         json_string_value(json_object_get(element, "material"));
@@ -164,6 +183,14 @@ static bool take_lentil_element(struct json_lens *j, const json_t *element)
         return false;
     if (!medium)
         return imported_fail(j->lens, line, "\"material\" is missing");
+    if (json_object_get(element, "aspherical-equation") &&
+        !json_is_null(json_object_get(element, "aspherical-equation")))
+        return imported_fail(j->lens, line,
+                             "an asphere (\"aspherical-equation\"): spheres "
+                             "and cylinders are read");
+    note_others(j, element, line,
+                " radius thickness housing-radius ior abbe material "
+                "lens-geometry ");
     s->stop = strcasecmp(medium, "iris") == 0;
     if (!number(j, element, line, "radius", &s->radius) ||
         !number(j, element, line, "thickness", &s->thickness) ||
