@@ -154,10 +154,10 @@ static void print_json(struct lenses *l, const char *name,
     tool_json_string(stdout, e->settings.lens.source);
     printf(", \"character\": ");
     tool_json_string(stdout, e->settings.lens.character);
-    printf(", \"focal_length_mm\": %.3f, \"f_number\": %g, "
+    printf(", \"focal_length_mm\": %.3f, \"squeeze\": %.6g, \"f_number\": %g, "
            "\"film_mm\": [%g, %g], \"corner_deg\": %.2f, \"ghosts\": %d, "
            "\"baked\": %s}",
-           e->optics.focal_mm, e->settings.lens.f_number,
+           e->optics.focal_mm, e->optics.squeeze, e->settings.lens.f_number,
            e->settings.lens.film_width_mm, e->settings.lens.film_height_mm,
            corner_deg(e), e->n_ghosts, e->is_baked ? "true" : "false");
 }
@@ -249,6 +249,7 @@ static void print_html(struct lenses *l, const char *name,
     const struct page_card card = {.name = name,
                                    .lens = &e->settings.lens,
                                    .focal_mm = e->optics.focal_mm,
+                                   .squeeze = e->optics.squeeze,
                                    .corner_deg = corner_deg(e),
                                    .n_ghosts = e->n_ghosts};
 

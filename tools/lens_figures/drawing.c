@@ -112,8 +112,11 @@ static void draw_title(const struct figure *f, const struct glint_optics *o,
                        const char *path)
 {
     const struct glint_prescription *lens = f->drawing->lens;
-    char focus[64] = "";
+    char focus[64] = "", across[48] = "";
 
+    if (fabs(o->squeeze - 1) > 1e-6)
+        snprintf(across, sizeof across, " up and down, %.2f across",
+                 o->focal_mm / o->squeeze);
     if (f->drawing->focus_m > 0)
         snprintf(focus, sizeof focus, ", focused at %.4g m, light from afar",
                  f->drawing->focus_m);
@@ -124,8 +127,8 @@ static void draw_title(const struct figure *f, const struct glint_optics *o,
     write_words(f->file, lens->name);
     fprintf(f->file,
             "<tspan dx=\"10\" font-weight=\"normal\" font-size=\"12\">"
-            "f = %.2f mm, f/%.3g%s%s</tspan></text>\n",
-            o->focal_mm, lens->f_number, focus, path);
+            "f = %.2f mm%s, f/%.3g%s%s</tspan></text>\n",
+            o->focal_mm, across, lens->f_number, focus, path);
     fprintf(f->file, "<text x=\"%.0f\" y=\"40\" fill=\"#555\">",
             FIGURE_MARGIN_PX);
     write_words(f->file, lens->source);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "lens_figures/page.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "lens_figures/drawing.h"
@@ -74,7 +75,11 @@ static void print_numbers(FILE *file, const struct page_card *card)
 {
     const struct glint_prescription *lens = card->lens;
 
-    fprintf(file, "<p>%.4g mm, f/%.3g, ", card->focal_mm, lens->f_number);
+    fprintf(file, "<p>%.4g mm", card->focal_mm);
+    if (fabs(card->squeeze - 1) > 1e-6)
+        fprintf(file, " up and down, %.4g across",
+                card->focal_mm / card->squeeze);
+    fprintf(file, ", f/%.3g, ", lens->f_number);
     if (card->corner_deg < 89.5)
         fprintf(file, "%.0f&deg; from corner to corner", 2 * card->corner_deg);
     else

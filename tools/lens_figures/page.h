@@ -14,6 +14,7 @@ struct page_card {
     const char *name;
     const struct glint_prescription *lens;
     double focal_mm;
+    double squeeze;    /* of an anamorphic lens; else 1 */
     double corner_deg; /* off the axis, at a corner of the film */
     int n_ghosts;
 };
