@@ -2,6 +2,7 @@
 #include "model/lens_files.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -141,12 +142,28 @@ static int by_name(const void *a, const void *b)
     return strcmp(a, b);
 }
 
+/* Says, once, if the folder of one's own lenses cannot be read: they would be
+ * missed in silence. */
+static void check_own(void)
+{
+    static bool said;
+    const char *own = glint_process_setting("GLINT_LENSES");
+    DIR *folder = own && *own && !said ? opendir(own) : NULL;
+
+    if (own && *own && !said && !folder)
+        fprintf(stderr, "glint: GLINT_LENSES: %s: %s\n", own, strerror(errno));
+    if (folder)
+        closedir(folder);
+    said = true;
+}
+
 int lens_files_each(lens_files_fn *each, void *ctx)
 {
     struct list l = {NULL, 0, 0};
     char path[PATH_CHARS], room[PATH_CHARS + 16];
     bool ok = true;
 
+    check_own();
     for (int i = 0; ok && lens_folder(i, "lenses", path, sizeof path); i++)
         for (int r = 0; ok && *path && r < N_ROOMS; r++) {
             snprintf(room, sizeof room, "%s%s", path, rooms[r]);
