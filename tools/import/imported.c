@@ -116,7 +116,8 @@ bool imported_unit(struct imported *lens, int line, double mm)
 void imported_image(struct imported *lens, int line, double radius,
                     double defocus)
 {
-    if (radius != 0)
+    /* Planes of some have a radius that no table takes. */
+    if (radius != 0 && fabs(radius) * lens->unit_mm < 1e9)
         imported_note(lens, line,
                       "the image is bent, by a radius of %.6g mm: a flat "
                       "sensor taken",
