@@ -234,29 +234,6 @@ catalogue_glass(const char *name, const char *maker, bool *succeeds)
     return successor;
 }
 
-static bool by_numbers(struct imported *lens, struct imported_surface *s)
-{
-    double vd = s->vd;
-
-    s->index = s->nd;
-    if (!(s->nd >= 1.01 && s->nd <= 4))
-        return imported_fail(lens, s->line, "index %g is not that of a glass",
-                             s->nd);
-    if (!(vd > 0)) {
-        /* Schott's line of normal glasses, from K7 to F2. */
-        vd = 60.5 - 24.2 * (s->nd - 1.511) / 0.109;
-        vd = vd > 70 ? 70 : vd < 22 ? 22 : vd;
-        imported_note(lens, s->line,
-                      "no Abbe number of index %g: %.1f guessed, that of "
-                      "normal glasses",
-                      s->nd, vd);
-    } else if (!(vd >= 10 && vd <= 150))
-        return imported_fail(lens, s->line,
-                             "Abbe number %g is not that of a glass", vd);
-    snprintf(s->medium, sizeof s->medium, "%.9g %.6g", s->nd, vd);
-    return true;
-}
-
 static double index_at(const struct glint_glass *glass, double nm)
 {
     struct glint_surface medium = {.nd = 1};
@@ -265,14 +242,65 @@ static double index_at(const struct glint_glass *glass, double nm)
     return glint_surface_index(&medium, nm);
 }
 
+static double abbe_of(const struct glint_glass *glass)
+{
+    return (index_at(glass, LINE_D_NM) - 1) /
+           (index_at(glass, LINE_F_NM) - index_at(glass, LINE_C_NM));
+}
+
+/* Guesses the Abbe number of the index of S: that of the glass of the catalogue
+ * that has it to the fifth decimal, if there is one. */
+static double guess_abbe(struct imported *lens,
+                         const struct imported_surface *s)
+{
+    const struct glint_glass *glass;
+    const bool is_fine = fabs(s->nd * 1e4 - round(s->nd * 1e4)) > 0.05;
+    double vd;
+
+    for (int k = 0; is_fine && (glass = glint_glass_at(k)) != NULL; k++) {
+        if (fabs(index_at(glass, LINE_D_NM) - s->nd) > 6e-6)
+            continue;
+        vd = abbe_of(glass);
+        imported_note(lens, s->line,
+                      "no Abbe number of index %.9g: %.1f guessed, that of %s, "
+                      "which has this index",
+                      s->nd, vd, glass->name);
+        return vd;
+    }
+    /* Schott's line of normal glasses, from K7 to F2. */
+    vd = 60.5 - 24.2 * (s->nd - 1.511) / 0.109;
+    vd = vd > 70 ? 70 : vd < 22 ? 22 : vd;
+    imported_note(lens, s->line,
+                  "no Abbe number of index %g: %.1f guessed, that of "
+                  "normal glasses",
+                  s->nd, vd);
+    return vd;
+}
+
+static bool by_numbers(struct imported *lens, struct imported_surface *s)
+{
+    double vd = s->vd;
+
+    s->index = s->nd;
+    if (!(s->nd >= 1.01 && s->nd <= 4))
+        return imported_fail(lens, s->line, "index %g is not that of a glass",
+                             s->nd);
+    if (!(vd > 0))
+        vd = guess_abbe(lens, s);
+    else if (!(vd >= 10 && vd <= 150))
+        return imported_fail(lens, s->line,
+                             "Abbe number %g is not that of a glass", vd);
+    snprintf(s->medium, sizeof s->medium, "%.9g %.6g", s->nd, vd);
+    return true;
+}
+
 /* Notes numbers of the file that are not those of its GLASS. */
 static void check_numbers(struct imported *lens,
                           const struct imported_surface *s,
                           const struct glint_glass *glass)
 {
     const double nd = index_at(glass, LINE_D_NM);
-    const double vd =
-        (nd - 1) / (index_at(glass, LINE_F_NM) - index_at(glass, LINE_C_NM));
+    const double vd = abbe_of(glass);
 
     if (!(fabs(s->nd - nd) < 2e-3 && fabs(s->vd / vd - 1) < 0.02))
         imported_note(lens, s->line,
