@@ -278,7 +278,7 @@ static void sum_up(const struct glint_motion_baker *b,
 
     glint_recorded_box(b, low, high);
     *r = b->report;
-    r->n_frames = b->n_frames;
+    r->n_frames = (long)b->n_frames;
     r->span = distance(low, high);
     for (uint32_t i = 0; i < b->n_frames; i++) {
         const double residual = (double)b->pose[i].residual;
@@ -288,7 +288,7 @@ static void sum_up(const struct glint_motion_baker *b,
         r->bad_frames += residual > BAD_RESIDUAL * r->span;
         if (residual > r->residual) {
             r->residual = residual;
-            r->residual_frame = i;
+            r->residual_frame = (long)i;
         }
     }
     r->residual_rms = b->n_frames ? sqrt(squares / b->n_frames) : 0;
