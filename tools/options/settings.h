@@ -30,6 +30,9 @@ struct settings {
     /* Lens table; of a model only its name and film. */
     struct glint_prescription lens;
     struct model_file model; /* closed for exact rays */
+    /* What is drawn on: it has to be a picture before a lens is baked for it.
+     * NULL: that is not known yet. */
+    const char *picture;
     enum settings_rays rays;
     double max_deg;   /* largest angle of the lamps that a model is baked for */
     double tolerance; /* tolerance that a model is baked with */

@@ -4,6 +4,7 @@
  */
 #include <math.h>
 
+#include "formats/kept.h"
 #include "model/model_cache.h"
 #include "model/table_file.h"
 #include "options/settings_table.h"
@@ -55,6 +56,24 @@ static enum glint_status set_projection(struct settings *settings,
     return GLINT_OK;
 }
 
+/* Refuses what is no picture while that costs no bake. */
+static int check_picture(const struct tool *tool,
+                         const struct settings *settings)
+{
+    const struct glint_bake_options options = settings_bake_options(settings);
+    struct glint_error error = {""};
+    enum glint_status status;
+    struct glint_kept kept;
+
+    if (!settings->picture || model_is_cached(&settings->lens, &options))
+        return EXIT_OK;
+    status = glint_kept_open(&kept, settings->picture, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    glint_kept_close(&kept);
+    return EXIT_OK;
+}
+
 int settings_open_table(const struct tool *tool, struct settings *settings,
                         const char *name)
 {
@@ -79,11 +98,13 @@ int settings_open_table(const struct tool *tool, struct settings *settings,
         status = set_projection(settings, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    return settings->rays == SETTINGS_RAYS_EXACT
-               ? EXIT_OK
-               : model_cached(tool, &settings->lens,
-                              settings_bake_options(settings),
-                              &settings->model);
+    if (settings->rays == SETTINGS_RAYS_EXACT)
+        return EXIT_OK;
+    code = check_picture(tool, settings);
+    return code != EXIT_OK ? code
+                           : model_cached(tool, &settings->lens,
+                                          settings_bake_options(settings),
+                                          &settings->model);
 }
 
 const struct glint_frame_rays *settings_table_rays(void)

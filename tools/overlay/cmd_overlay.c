@@ -2,12 +2,10 @@
  *
  * glint overlay: adds the flare of the lamps in a picture or video to it.
  */
-#include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "overlay/overlay_line.h"
@@ -413,35 +411,12 @@ static int check_output(struct tool *tool, struct overlay *o)
     return EXIT_OUTPUT;
 }
 
-/* Refuses an input that is not there, or empty, before a lens is baked. */
-static int check_input(struct tool *tool, const struct overlay *o)
-{
-    struct glint_error error = {""};
-    enum glint_status status = GLINT_OK;
-    struct stat file;
-
-    if (strcmp(o->input, "-") == 0 && o->compositor.scene.control_file &&
-        strcmp(o->compositor.scene.control_file, "-") == 0)
-        return tool_usage(tool, "pictures and --control cannot both come from "
-                                "standard input");
-    if (strcmp(o->input, "-") == 0 || strchr(o->input, '%'))
-        return EXIT_OK;
-    if (stat(o->input, &file) != 0 ||
-        (S_ISREG(file.st_mode) && access(o->input, R_OK) != 0))
-        status = glint_error_report(&error, GLINT_E_IO, o->input, "%s",
-                                    strerror(errno));
-    else if (S_ISREG(file.st_mode) && file.st_size == 0)
-        status =
-            glint_error_report(&error, GLINT_E_FORMAT, o->input, "is empty");
-    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
-}
-
 static int run(struct tool *tool, struct overlay *o)
 {
     int code = check_output(tool, o);
 
     if (code == EXIT_OK)
-        code = check_input(tool, o);
+        code = overlay_check_input(tool, o);
     if (code == EXIT_OK)
         code = layers_check(tool, &o->layers,
                             o->is_video || (strchr(o->input, '%') &&

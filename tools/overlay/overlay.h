@@ -75,6 +75,10 @@ void overlay_progress(const struct tool *tool, struct overlay *o);
 int overlay_check_apart(const struct tool *tool, const struct overlay *o,
                         const char *from, const char *to);
 
+/* Refuses an input that is not there, or empty, before a lens is baked; a
+ * picture is to be one before that, too. Returns an exit code. */
+int overlay_check_input(struct tool *tool, struct overlay *o);
+
 /* Draws one picture from file FROM to file TO. */
 int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
                     const char *to);
