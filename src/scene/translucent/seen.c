@@ -2,6 +2,7 @@
  *
  * Which blocks of a map may be seen. More of them cost time, fewer would show
  * as black. */
+#include "base/compiler.h"
 #include "base/divide.h"
 #include "scene/mesh.h"
 #include "scene/translucent/scene_stone.h"
@@ -113,7 +114,8 @@ static int is_seen(const struct glint_scene *s, const struct glint_placed *p,
 static void see_uv(struct glint_stone_skin *skin,
                    const int32_t *const uv_q16[3])
 {
-    const int size[2] = {GLINT_BLOCK_WIDTH, GLINT_BLOCK_HEIGHT};
+    const int size_log2[2] = {bit_length(GLINT_BLOCK_WIDTH) - 1,
+                              bit_length(GLINT_BLOCK_HEIGHT) - 1};
     const int n[2] = {skin->across, skin->down};
     const int log2 = (int)skin->stone.header->side_log2;
     int lo[2], hi[2];
@@ -123,8 +125,10 @@ static void see_uv(struct glint_stone_skin *skin,
         const int64_t least = q_smaller(a, q_smaller(b, c));
         const int64_t most = q_larger(a, q_larger(b, c));
 
-        lo[i] = q_clamp_sat(((least << log2 >> 16) - 1) / size[i], 0, n[i] - 1);
-        hi[i] = q_clamp_sat(((most << log2 >> 16) + 1) / size[i], 0, n[i] - 1);
+        lo[i] = q_clamp_sat(((least << log2 >> 16) - 1) >> size_log2[i], 0,
+                            n[i] - 1);
+        hi[i] = q_clamp_sat(((most << log2 >> 16) + 1) >> size_log2[i], 0,
+                            n[i] - 1);
     }
     for (int y = lo[1]; y <= hi[1]; y++)
         for (int x = lo[0]; x <= hi[0]; x++)
