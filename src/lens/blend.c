@@ -12,7 +12,8 @@
  * bits of room. Each coefficient rounds once. The unit is the coarser one.
  *
  * Barrels are mixed with those that pair.c finds to be the same. One that is
- * like none becomes wider towards the position that lacks it, until it cuts
+ * like none stays where it is in the stop, as boxes may change faster than what
+ * is seen, and becomes wider towards the position that lacks it, until it cuts
  * nothing. */
 #include "lens/blend.h"
 
@@ -55,8 +56,8 @@ static int32_t mix(int32_t a, int32_t ea, int32_t b, int32_t eb, int32_t e,
 
 /* Returns (B - A) / SIZE, where B is of 2^EB, A of 2^EA and SIZE of 2^ES; or
  * sets *FAR if that is more than MOST_MOVE. */
-static int32_t move_q24(int32_t b, int32_t eb, int32_t a, int32_t ea,
-                        int32_t size, int32_t es, int *far)
+static int32_t move_q24(int64_t b, int32_t eb, int64_t a, int32_t ea,
+                        int64_t size, int32_t es, int *far)
 {
     const int32_t e = ea > eb ? ea : eb;
     const int64_t off = down(b, e - eb) - down(a, e - ea);
@@ -98,15 +99,43 @@ static void set_moves(struct glint_zoom_mix *blend, const int32_t box[3],
     blend->far = far;
 }
 
-/* Returns whether the other box lies near enough that a ghost goes on beyond
- * this one as it does between both. */
-static int is_near(const struct glint_zoom_mix *blend)
+/* Returns whether M is half a box or less. */
+static int is_small(const struct glint_blend_move *m)
 {
-    const struct glint_blend_move *const m = &blend->move[1];
-
     return q_magnitude(m->along_q24) <= NEAR_Q24 &&
            q_magnitude(m->wider_q24) <= NEAR_Q24 &&
            q_magnitude(m->higher_q24) <= NEAR_Q24;
+}
+
+/* Notes where rays pass the stop, if O says so. */
+static void note_stop(struct glint_blend_stop *stop,
+                      const struct glint_blend_output *o)
+{
+    if (o->kind == GLINT_OUT_STOP_X) {
+        stop->middle = o->row[0][0];
+        stop->across = o->degree_u ? o->row[0][1] : 0;
+        stop->x_exponent = o->exponent;
+    } else if (o->kind == GLINT_OUT_STOP_Y) {
+        stop->up = o->degree_v ? o->row[1][0] : 0;
+        stop->y_exponent = o->exponent;
+    }
+}
+
+static struct glint_blend_stop stop_of(struct glint_transfer *t)
+{
+    struct glint_blend_stop stop = {0, 0, 0, 0, 0};
+
+    for (int kind = GLINT_OUT_STOP_X; kind <= GLINT_OUT_STOP_Y; kind++) {
+        const struct glint_blend_output o = {.kind = (uint8_t)kind,
+                                             .exponent = t->exponent[kind],
+                                             .row = t->of.table[kind],
+                                             .degree_u = t->degree_u[kind],
+                                             .degree_v = t->degree_v[kind]};
+
+        if (transfer_has(t, kind))
+            note_stop(&stop, &o);
+    }
+    return stop;
 }
 
 int glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
@@ -118,12 +147,13 @@ int glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
         (blend->part_q30 < 0 ? BEYOND : 0);
 
     set_moves(blend, box, exponent);
+    blend->stop[0] = stop_of(t);
     for (int k = 0; k < 3; k++)
         t->box[k] = mix(box[k], exponent, t->box[k], t->box_exponent, e,
                         blend->part_q30);
     t->box_exponent = e;
-    return blend->part_q30 >= 0 ||
-           (!blend->far && is_near(blend) && t->box[1] > 0 && t->box[2] > 0);
+    return blend->part_q30 >= 0 || (!blend->far && is_small(&blend->move[1]) &&
+                                    t->box[1] > 0 && t->box[2] > 0);
 }
 
 /* Returns by how much the coefficient of u^A v^B changes where a place of the
@@ -257,6 +287,91 @@ static void open_barrel(struct glint_transfer *t, int kind, int32_t share_q30)
     t->of.table[kind][0][0] += (int32_t)down((int64_t)OPEN_Q16 * share_q30, up);
 }
 
+/* Returns (B - A) / SIZE as move_q24() does, of a SIZE of either sign. */
+static int32_t turn_q24(int64_t b, int32_t eb, int64_t a, int32_t ea,
+                        int64_t size, int32_t es, int *far)
+{
+    return size < 0 ? move_q24(-b, eb, -a, ea, -size, es, far)
+                    : move_q24(b, eb, a, ea, size, es, far);
+}
+
+/* Sets M to how places of the mixed box lie in that of SIDE if they are the
+ * same in the stop. Returns whether they are near enough for terms of first
+ * order. */
+static int find_in_stop(const struct glint_zoom_mix *blend, int side,
+                        struct glint_blend_move *m)
+{
+    const struct glint_blend_stop *const of = &blend->stop[side];
+    const struct glint_blend_stop mixed = stop_of(blend->to);
+    int far = 0;
+
+    m->along_q24 = turn_q24(mixed.middle, mixed.x_exponent, of->middle,
+                            of->x_exponent, of->across, of->x_exponent, &far);
+    m->wider_q24 = turn_q24(mixed.across, mixed.x_exponent, of->across,
+                            of->x_exponent, of->across, of->x_exponent, &far);
+    m->higher_q24 = turn_q24(mixed.up, mixed.y_exponent, of->up, of->y_exponent,
+                             of->up, of->y_exponent, &far);
+    return !far && is_small(m);
+}
+
+/* Returns the largest value, _q16, of a barrel at the rim of the stop, or at
+ * that of the box where that is nearer. */
+static int32_t at_rim_q16(const struct glint_blend_output *barrel,
+                          const struct glint_blend_stop *stop)
+{
+    const int32_t one = TRANSFER_ONE_Q30;
+    const int32_t place[3][2] = {{-one, 0}, {one, 0}, {0, one}};
+    int32_t most = INT32_MIN;
+
+    for (int k = 0; k < 3; k++) {
+        int far = 0;
+        const int32_t u_q24 =
+            turn_q24(place[k][0], -30, stop->middle, stop->x_exponent,
+                     stop->across, stop->x_exponent, &far);
+        const int32_t v_q24 = turn_q24(place[k][1], -30, 0, stop->y_exponent,
+                                       stop->up, stop->y_exponent, &far);
+        const int32_t value_q16 = glint_blend_value_q16(
+            barrel, q_clamp_sat(u_q24, -(1 << 24), 1 << 24),
+            q_clamp_sat(v_q24 < 0 ? -(int64_t)v_q24 : v_q24, 0, 1 << 24));
+
+        most = most > value_q16 || far ? most : value_q16;
+    }
+    return most;
+}
+
+/* Moves barrel KIND of SIDE to where it is in the stop, if it cuts less there
+ * and sums stay small enough for the transfer. */
+static void keep_in_stop(const struct glint_zoom_mix *blend, int side, int kind)
+{
+    struct glint_transfer *const t = blend->to;
+    const struct glint_blend_stop stop = stop_of(t);
+    int32_t moved_row[ROWS][GLINT_TABLE_WIDTH];
+    struct glint_blend_output own = {.exponent = t->exponent[kind],
+                                     .row = t->of.table[kind],
+                                     .degree_u = t->degree_u[kind],
+                                     .degree_v = t->degree_v[kind]};
+    struct glint_blend_output kept = own;
+    struct glint_blend_move m;
+    int64_t all = 0;
+
+    if (!find_in_stop(blend, side, &m))
+        return;
+    kept.row = moved_row;
+    for (int b = 0; b <= own.degree_v; b++)
+        for (int a = 0; a <= own.degree_u; a++) {
+            const int64_t x = own.row[b][a] + moved(own.row, a, b, &m);
+
+            all += (int64_t)q_magnitude(x);
+            kept.row[b][a] = all < TRANSFER_ONE_Q30 ? (int32_t)x : 0;
+        }
+    if (all >= TRANSFER_ONE_Q30 ||
+        at_rim_q16(&kept, &stop) >= at_rim_q16(&own, &stop))
+        return;
+    for (int b = 0; b <= own.degree_v; b++)
+        for (int a = 0; a <= own.degree_u; a++)
+            own.row[b][a] = kept.row[b][a];
+}
+
 /* Adds the barrel O, open as far as the zoom is where it is not. */
 static void add_barrel(struct glint_zoom_mix *blend,
                        const struct glint_blend_output *o)
@@ -266,6 +381,7 @@ static void add_barrel(struct glint_zoom_mix *blend,
     if (added < 0)
         return;
     blend->taken |= UINT32_C(1) << added;
+    keep_in_stop(blend, 1, BARREL + added);
     open_barrel(blend->to, BARREL + added, TRANSFER_ONE_Q30 - blend->part_q30);
 }
 
@@ -290,6 +406,7 @@ void glint_blend_output(struct glint_zoom_mix *blend,
 {
     struct glint_transfer *const t = blend->to;
 
+    note_stop(&blend->stop[1], o);
     if (o->kind >= BARREL)
         mix_barrel(blend, o);
     else if (o->kind == GLINT_OUT_ENERGY)
@@ -305,6 +422,8 @@ void glint_blend_end(const struct glint_zoom_mix *blend)
         return;
     for (int kind = BARREL; kind < GLINT_OUT_KINDS; kind++)
         if (transfer_has(blend->to, kind) &&
-            !(blend->taken >> (kind - BARREL) & 1))
+            !(blend->taken >> (kind - BARREL) & 1)) {
+            keep_in_stop(blend, 0, kind);
             open_barrel(blend->to, kind, blend->part_q30);
+        }
 }

@@ -25,6 +25,12 @@ struct glint_zoom_mix {
         int32_t along_q24, wider_q24, higher_q24;
     } move[2];
     int far; /* whether it is */
+    /* Where rays of this position, and of the other, pass the stop: of the
+     * middle of the box, and how that changes with u and v, in stop radii. */
+    struct glint_blend_stop {
+        int32_t middle, across, up;
+        int32_t x_exponent, y_exponent;
+    } stop[2];
     /* Values, _q16, of the barrels of this position and of the other one at
      * places of their own box, and then at places of the pupil that are in
      * both; N of the other's. */
@@ -49,6 +55,12 @@ struct glint_blend_output {
  * apart for that. */
 int glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
                     int32_t exponent);
+
+/* Returns the value, _q16, of the polynomial of O at a place of its box. A
+ * barrel that is so far away that it is clamped cuts nothing or all; units
+ * coarser than 2^-16, which no barrel's is, are not told apart. */
+int32_t glint_blend_value_q16(const struct glint_blend_output *o, int64_t u_q24,
+                              int64_t v_q24);
 
 /* Looks at O, if it is a barrel; they come by rising kind. */
 void glint_blend_look(struct glint_zoom_mix *blend,

@@ -22,11 +22,8 @@ enum {
     ACROSS = 3 /* of the places, in two rows */
 };
 
-/* Returns the value, _q16, of the polynomial of O at a place of its box. A
- * barrel that is so far away that it is clamped cuts nothing or all; units
- * coarser than 2^-16, which no barrel's is, are not told apart. */
-static int32_t value_q16(const struct glint_blend_output *o, int64_t u_q24,
-                         int64_t v_q24)
+int32_t glint_blend_value_q16(const struct glint_blend_output *o, int64_t u_q24,
+                              int64_t v_q24)
 {
     const int32_t exponent = o->exponent;
     int64_t sum = 0;
@@ -83,9 +80,9 @@ static void set_values(const struct glint_zoom_mix *blend, int side,
             u = -smaller(one, -smaller(one, u));
             v = smaller(one, v);
         }
-        values[0][k] =
-            value_q16(o, (k % ACROSS - 1) * one, k < ACROSS ? 0 : one);
-        values[1][k] = any ? value_q16(o, u, v) : 0;
+        values[0][k] = glint_blend_value_q16(o, (k % ACROSS - 1) * one,
+                                             k < ACROSS ? 0 : one);
+        values[1][k] = any ? glint_blend_value_q16(o, u, v) : 0;
     }
 }
 

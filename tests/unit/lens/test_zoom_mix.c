@@ -37,6 +37,13 @@ static uint8_t head[2], roots;
 /* Where boxes lie, in units of 2^-20. */
 static int32_t box_middle;
 
+/* Where rays pass the stop: u 0 and 1, v 1. */
+struct stop {
+    double middle, u, v;
+};
+static const struct stop usual = {0, 0.5, 0.5};
+static struct stop stop = {0, 0.5, 0.5};
+
 /* Returns a system with N barrels; sensor x is SENSOR u, mm, and energy is
  * ENERGY, squared if there are roots. */
 static struct glint_model_system put(struct model_image *m, double sensor,
@@ -47,8 +54,12 @@ static struct glint_model_system put(struct model_image *m, double sensor,
     struct model_polynomial p[5 + MOST] = {
         {GLINT_OUT_SENSOR_X, 1, EXPONENT, {P(1, 0)}, {{q28(sensor)}}},
         {GLINT_OUT_SENSOR_Y, 1, EXPONENT, {P(0, 1)}, {{1 << 27}}},
-        {GLINT_OUT_STOP_X, 1, EXPONENT, {P(1, 0)}, {{1 << 27}}},
-        {GLINT_OUT_STOP_Y, 1, EXPONENT, {P(0, 1)}, {{1 << 27}}},
+        {GLINT_OUT_STOP_X,
+         2,
+         EXPONENT,
+         {P(0, 0), P(1, 0)},
+         {{q28(stop.middle), q28(stop.u)}}},
+        {GLINT_OUT_STOP_Y, 1, EXPONENT, {P(0, 1)}, {{q28(stop.v)}}},
         {GLINT_OUT_ENERGY, 1, EXPONENT, {P(0, 0)}, {{q28(energy)}}}};
     struct glint_model_system s = {.sine_hi_q30 = ONE / 2,
                                    .wave_lo_q24 = MODEL_WAVE_LO_Q24,
@@ -207,6 +218,61 @@ static void barrels_that_go(void **state)
     is_barrel(1, (struct barrel){0.32, 0.52, 0.1});
     mix(a, 2, b, 1, 0.875);
     is_barrel(0, (struct barrel){0.35, 0, 0.6});
+}
+
+/* Mixes a position without barrels, whose rays pass the stop as OURS says, and
+ * one with barrel B, where THEIRS does, at PART; if TURNED the other way
+ * round. */
+static void mix_stops(const struct stop *ours, const struct stop *theirs,
+                      struct barrel b, double part, bool turned)
+{
+    struct model_image at[2];
+    struct glint_lens none, one;
+
+    stop = *ours;
+    none = open_position(&at[0], 0.5, 0.25, 0, NULL, 0);
+    stop = *theirs;
+    one = open_position(&at[1], 0.5, 0.25, 0, &b, 1);
+    stop = usual;
+    if (turned)
+        mix_models(&one, &none, 1 - part);
+    else
+        mix_models(&none, &one, part);
+    free(at[0].data);
+    free(at[1].data);
+}
+
+static void stays(struct stop ours, struct stop theirs, struct barrel b,
+                  struct barrel expected)
+{
+    for (int k = 0; k < 4; k++) {
+        if (k == 2) { /* the stop may be upside down */
+            ours = (struct stop){-ours.middle, -ours.u, -ours.v};
+            theirs = (struct stop){-theirs.middle, -theirs.u, -theirs.v};
+        }
+        mix_stops(&ours, &theirs, b, 0.5, k & 1);
+        is_barrel(0, expected);
+    }
+}
+
+/* A barrel that one position lacks cuts of the stop what it cut at the other,
+ * or of the box, if that is less, or the stop moves by more than half a box. */
+static void barrels_stay_in_the_stop(void **state)
+{
+    const struct stop wide = {-0.1, 0.8, 0.8}, aside = {0.3, 0.5, 0.5};
+    const struct barrel r = {0.9, 0.5, 0}, l = {0.9, -0.5, 0};
+    const struct barrel up = {0.4, 0, 0.5};
+
+    (void)state;
+    stays(usual, wide, r, (struct barrel){0.93125, 0.40625, 0});
+    stays(wide, usual, r, r);
+    stays(wide, usual, l, l);
+    stays(aside, usual, r, r);
+    stays(aside, usual, l, (struct barrel){0.75, -0.5, 0});
+    stays(usual, wide, up, (struct barrel){0.4, 0, 0.3125});
+    stays(wide, usual, up, up);
+    stays(usual, (struct stop){0, 0, 0}, l, l);
+    stays((struct stop){0, -0.2, 0.5}, (struct stop){0, 1.6, 0.5}, r, r);
 }
 
 /* The two that differ least go together, whichever comes first; what is left
@@ -685,6 +751,7 @@ int main(void)
         cmocka_unit_test(barrels_that_come),
         cmocka_unit_test(barrels_find_the_nearest),
         cmocka_unit_test(barrels_that_go),
+        cmocka_unit_test(barrels_stay_in_the_stop),
         cmocka_unit_test(places_stay_in_both_boxes),
         cmocka_unit_test(energies_have_heads_and_roots),
         cmocka_unit_test(boxes_move),
