@@ -21,6 +21,12 @@ static inline int32_t glint_sample(const struct glint_scene *s, int k, int axis)
     return s->sample_q8[k][axis];
 }
 
+/* Returns log2 of N samples of a pixel: 0, 2, 3 or 4. */
+static inline int glint_samples_log2(int n)
+{
+    return n == 1 ? 0 : n == 4 ? 2 : n == 8 ? 3 : 4;
+}
+
 static inline int glint_sample_index(const struct glint_scene_worker *w, int x,
                                      int y, int k)
 {

@@ -3,7 +3,6 @@
  * The scene as a pass: a pixel is shaded once for each thing that its samples
  * see, at its middle, and at each sample of what mirrors or lets light through;
  * what of it nothing covers stays. */
-#include "base/compiler.h"
 #include "scene/frame/quick.h"
 #include "scene/visible.h"
 #include "scene/parts.h"
@@ -209,7 +208,7 @@ static NEVER_INLINE void shade_samples(struct glint_scene_worker *w,
             continue;
         if (shade_id(w, id[k], x, y, k, &shade))
             note(s, id[k], &shade, x, y, 128,
-                 times[k] << (5 - bit_length((uint64_t)n)));
+                 times[k] << (4 - glint_samples_log2(n)));
         add(s, id[k], &shade, times[k], sum);
     }
     for (int c = 0; c < 3; c++)

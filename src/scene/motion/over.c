@@ -76,7 +76,7 @@ static int seen_q8(const struct glint_scene_worker *w, int x, int y,
 
     for (int k = 0; k < n; k++)
         seen += w->depth[first + k] <= depth;
-    return seen * ALL_Q8 >> (bit_length((uint64_t)n) - 1);
+    return seen * ALL_Q8 >> glint_samples_log2(n);
 }
 
 /* Returns what of pixel (X, Y) line L covers, q8. */
@@ -188,7 +188,7 @@ static NEVER_INLINE int rim_q8(const struct glint_scene_worker *w,
     if (hits == 0)
         return 0;
     return (int)q_shift(
-        (shell_q31(s, l, cosine_q15) * hits >> (bit_length((uint64_t)n) - 1)) *
+        (shell_q31(s, l, cosine_q15) * hits >> glint_samples_log2(n)) *
             seen_q8(w, x, y, depth),
         31);
 }
