@@ -121,16 +121,21 @@ static void note_stop(struct glint_blend_stop *stop,
     }
 }
 
+struct glint_blend_output glint_blend_of(struct glint_transfer *t, int kind)
+{
+    return (struct glint_blend_output){.kind = (uint8_t)kind,
+                                       .exponent = t->exponent[kind],
+                                       .row = t->of.table[kind],
+                                       .degree_u = t->degree_u[kind],
+                                       .degree_v = t->degree_v[kind]};
+}
+
 static struct glint_blend_stop stop_of(struct glint_transfer *t)
 {
     struct glint_blend_stop stop = {0, 0, 0, 0, 0};
 
     for (int kind = GLINT_OUT_STOP_X; kind <= GLINT_OUT_STOP_Y; kind++) {
-        const struct glint_blend_output o = {.kind = (uint8_t)kind,
-                                             .exponent = t->exponent[kind],
-                                             .row = t->of.table[kind],
-                                             .degree_u = t->degree_u[kind],
-                                             .degree_v = t->degree_v[kind]};
+        const struct glint_blend_output o = glint_blend_of(t, kind);
 
         if (transfer_has(t, kind))
             note_stop(&stop, &o);
@@ -295,22 +300,21 @@ static int32_t turn_q24(int64_t b, int32_t eb, int64_t a, int32_t ea,
                     : move_q24(b, eb, a, ea, size, es, far);
 }
 
-/* Sets M to how places of the mixed box lie in that of SIDE if they are the
- * same in the stop. Returns whether they are near enough for terms of first
+/* Sets M to how places of the MIXED box lie in that OF a position if they are
+ * the same in the stop. Returns whether they are near enough for terms of first
  * order. */
-static int find_in_stop(const struct glint_zoom_mix *blend, int side,
+static int find_in_stop(const struct glint_blend_stop *of,
+                        const struct glint_blend_stop *mixed,
                         struct glint_blend_move *m)
 {
-    const struct glint_blend_stop *const of = &blend->stop[side];
-    const struct glint_blend_stop mixed = stop_of(blend->to);
     int far = 0;
 
-    m->along_q24 = turn_q24(mixed.middle, mixed.x_exponent, of->middle,
+    m->along_q24 = turn_q24(mixed->middle, mixed->x_exponent, of->middle,
                             of->x_exponent, of->across, of->x_exponent, &far);
-    m->wider_q24 = turn_q24(mixed.across, mixed.x_exponent, of->across,
+    m->wider_q24 = turn_q24(mixed->across, mixed->x_exponent, of->across,
                             of->x_exponent, of->across, of->x_exponent, &far);
-    m->higher_q24 = turn_q24(mixed.up, mixed.y_exponent, of->up, of->y_exponent,
-                             of->up, of->y_exponent, &far);
+    m->higher_q24 = turn_q24(mixed->up, mixed->y_exponent, of->up,
+                             of->y_exponent, of->up, of->y_exponent, &far);
     return !far && is_small(m);
 }
 
@@ -346,15 +350,12 @@ static void keep_in_stop(const struct glint_zoom_mix *blend, int side, int kind)
     struct glint_transfer *const t = blend->to;
     const struct glint_blend_stop stop = stop_of(t);
     int32_t moved_row[ROWS][GLINT_TABLE_WIDTH];
-    struct glint_blend_output own = {.exponent = t->exponent[kind],
-                                     .row = t->of.table[kind],
-                                     .degree_u = t->degree_u[kind],
-                                     .degree_v = t->degree_v[kind]};
+    const struct glint_blend_output own = glint_blend_of(t, kind);
     struct glint_blend_output kept = own;
     struct glint_blend_move m;
     int64_t all = 0;
 
-    if (!find_in_stop(blend, side, &m))
+    if (!find_in_stop(&blend->stop[side], &stop, &m))
         return;
     kept.row = moved_row;
     for (int b = 0; b <= own.degree_v; b++)

@@ -56,6 +56,9 @@ struct glint_blend_output {
 int glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
                     int32_t exponent);
 
+/* Returns output KIND of T itself. */
+struct glint_blend_output glint_blend_of(struct glint_transfer *t, int kind);
+
 /* Returns the value, _q16, of the polynomial of O at a place of its box. A
  * barrel that is so far away that it is clamped cuts nothing or all; units
  * coarser than 2^-16, which no barrel's is, are not told apart. */

@@ -142,15 +142,6 @@ static void mark(struct glint_zoom_mix *blend, const int pair[2])
     blend->taken |= UINT32_C(1) << pair[0];
 }
 
-/* Returns barrel K of this position. */
-static struct glint_blend_output barrel_of(struct glint_transfer *t, int k)
-{
-    return (struct glint_blend_output){.exponent = t->exponent[BARREL + k],
-                                       .row = t->of.table[BARREL + k],
-                                       .degree_u = t->degree_u[BARREL + k],
-                                       .degree_v = t->degree_v[BARREL + k]};
-}
-
 /* Finds partners of OURS and THEIRS, which are left over, among all; OWN are
  * all of this position. */
 static void pair_left(struct glint_zoom_mix *blend, uint32_t own, uint32_t ours,
@@ -165,7 +156,7 @@ static void pair_left(struct glint_zoom_mix *blend, uint32_t own, uint32_t ours,
     for (int k = 0; theirs >> k; k++)
         if (find_pair(blend, own, theirs & UINT32_C(1) << k, pair)) {
             const struct glint_blend_output copy =
-                barrel_of(blend->to, pair[0]);
+                glint_blend_of(blend->to, BARREL + pair[0]);
 
             pair[0] = glint_blend_put(blend->to, &copy);
             if (pair[0] >= 0)
@@ -180,7 +171,8 @@ void glint_blend_pair(struct glint_zoom_mix *blend)
     int pair[2];
 
     for (int k = 0; ours >> k; k++) {
-        const struct glint_blend_output o = barrel_of(blend->to, k);
+        const struct glint_blend_output o =
+            glint_blend_of(blend->to, BARREL + k);
 
         if (ours >> k & 1)
             set_values(blend, 0, &o, blend->barrel_q16[0][k]);
