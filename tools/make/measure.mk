@@ -8,7 +8,7 @@ video-report: $(OUT)/steady
 occlusion-table: $(OUT)/occlusion
 	@$(OUT)/occlusion | tools/report/write-figures occlusion
 demo:
-	@tools/make/deps "PNG and JPEG pictures, and video to look at" g++ pkg-config \
+	@tools/make/deps "PNG and JPEG pictures, and video to look at" gcc libc6-dev g++ pkg-config \
 	        libopenimageio-dev libwebp-dev ffmpeg
 	@$(MAKE) --no-print-directory all \
 	        $(shell [ "$(DEPS)" = no ] || echo oiio)
