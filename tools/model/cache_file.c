@@ -2,6 +2,7 @@
 #include "model/cache_file.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -115,4 +116,44 @@ enum glint_status cache_file_write(char *path, const void *data, size_t bytes,
     if (status == GLINT_OK)
         status = glint_output_finish(&out, data, bytes, error);
     return status;
+}
+
+static bool lock_name(char *name, size_t bytes, const char *path)
+{
+    return (size_t)snprintf(name, bytes, "%s.lock", path) < bytes;
+}
+
+int cache_file_lock(char *path)
+{
+    struct flock all = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    char name[CACHE_PATH_BYTES + 8];
+    int fd, got;
+
+    cache_file_make_folders(path);
+    if (!lock_name(name, sizeof name, path))
+        return -1;
+    fd = open(name, O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
+              0600);
+    if (fd < 0)
+        return -1;
+    do
+        got = fcntl(fd, F_SETLKW, &all);
+    while (got < 0 && errno == EINTR);
+    if (got == 0)
+        return fd;
+    close(fd);
+    return -1;
+}
+
+/* The name goes first: who opens it later makes a file of its own, and who
+ * waits for this one finds the file in the cache. */
+void cache_file_unlock(const char *path, int lock)
+{
+    char name[CACHE_PATH_BYTES + 8];
+
+    if (lock < 0)
+        return;
+    if (lock_name(name, sizeof name, path))
+        unlink(name);
+    close(lock);
 }

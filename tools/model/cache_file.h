@@ -38,4 +38,10 @@ uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes);
 enum glint_status cache_file_write(char *path, const void *data, size_t bytes,
                                    struct glint_error *error);
 
+/* Waits until no other process makes the file PATH, and keeps others waiting
+ * until the lock is released. Returns a descriptor, or -1 if there can be no
+ * lock: the file is then made without one. */
+int cache_file_lock(char *path);
+void cache_file_unlock(const char *path, int lock);
+
 #endif

@@ -118,12 +118,11 @@ static void keep(const struct tool *tool, char *path,
                 error.text);
 }
 
-int model_cached(const struct tool *tool, const struct glint_prescription *lens,
-                 struct glint_bake_options options, struct model_file *model)
+/* Bakes the model of LENS into MODEL, and keeps it in PATH if that is given. */
+static int bake(const struct tool *tool, const struct glint_prescription *lens,
+                struct glint_bake_options options, char *path,
+                struct model_file *model)
 {
-    const uint64_t key = glint_bake_key(lens, &options);
-    char path[CACHE_PATH_BYTES];
-    const bool kept = model_path(path, sizeof path, lens->name, key);
     struct glint_error error = {""};
     struct glint_bake_report report;
     struct tool_progress progress;
@@ -131,12 +130,9 @@ int model_cached(const struct tool *tool, const struct glint_prescription *lens,
     enum glint_status status;
     const char *reason = "";
 
-    if (load_installed(lens->name, key, model) ||
-        (kept && load(path, key, read_ours, model)))
-        return EXIT_OK;
     if (!tool->quiet)
         fprintf(stderr, "glint %s: baking %s, once%s%s\n", tool->name,
-                lens->name, kept ? ", for " : "", kept ? path : "");
+                lens->name, path ? ", for " : "", path ? path : "");
     options.workers = tool->workers;
     options.progress = tool_progress_show;
     options.progress_ctx = &progress;
@@ -152,7 +148,28 @@ int model_cached(const struct tool *tool, const struct glint_prescription *lens,
     }
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text[0] ? error.text : NULL);
-    if (kept)
+    if (path)
         keep(tool, path, model);
     return EXIT_OK;
+}
+
+int model_cached(const struct tool *tool, const struct glint_prescription *lens,
+                 struct glint_bake_options options, struct model_file *model)
+{
+    const uint64_t key = glint_bake_key(lens, &options);
+    char path[CACHE_PATH_BYTES];
+    int lock, code = EXIT_OK;
+
+    if (load_installed(lens->name, key, model))
+        return EXIT_OK;
+    if (!model_path(path, sizeof path, lens->name, key))
+        return bake(tool, lens, options, NULL, model);
+    if (load(path, key, read_ours, model))
+        return EXIT_OK;
+    /* Another process may be baking the same model. */
+    lock = cache_file_lock(path);
+    if (!load(path, key, read_ours, model))
+        code = bake(tool, lens, options, path, model);
+    cache_file_unlock(path, lock);
+    return code;
 }
