@@ -53,9 +53,10 @@ $(test_bins) $(PROGRAMS): libs := $(OUT)/libglint-tests.a $(archives)
 $(PROGRAMS): $(OUT)/%: $(OUT)/tests/programs/%.o $(OUT)/libglint-tests.a $(libs)
 	$(link)
 
+CHECK_PACKAGES := gcc libc6-dev binutils libcmocka-dev clang clang-format pkg-config \
+        libjpeg62-turbo-dev libinih-dev libjansson-dev libexpat1-dev
 check:
-	@tools/make/deps "unit tests, lint" gcc libc6-dev binutils \
-	        libcmocka-dev clang clang-format pkg-config libjpeg62-turbo-dev libinih-dev libjansson-dev libexpat1-dev
+	@tools/make/deps "unit tests, lint" $(CHECK_PACKAGES)
 	@$(MAKE) --no-print-directory WERROR=-Werror run-check
 	@[ $(notdir $(CC))-$(CONFIG)$(VM) != gcc-release ] || \
 	        ! tests/vm/possible $(VM_ARCHS) || \
@@ -66,6 +67,18 @@ run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/ray_errors $(exa
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
 	        $(replay_bins)
 	@[ -n "$(filter asan tsan,$(CONFIG))" ] || tests/extremes --quick
+# One test by its name, its file or its program, with all that it prints:
+# make test TEST=flare   TEST=cli/overlay   TEST=replay_lens
+test_bin := $(if $(TEST),$(filter %/$(TEST) %/test_$(TEST),$(test_bins)))
+replay_bin := $(if $(TEST),$(filter %/$(TEST),$(replay_bins)))
+test_script := $(if $(TEST),$(firstword $(wildcard $(patsubst tests/%,%,$(TEST:%=tests/%)) $(addsuffix $(TEST),tests/ tests/cli/ tests/cli/*/))))
+test_script := $(if $(test_bin)$(replay_bin),,$(test_script))
+test:
+	@tools/make/deps "unit tests" $(CHECK_PACKAGES)
+	@$(MAKE) --no-print-directory run-test
+run-test: $(test_bin) $(replay_bin) $(if $(test_script),$(OUT)/glint $(OUT)/ray_errors $(OUT)/pan $(example_bins) $(embed_bins))
+	@[ -n "$^" ] || { echo 'TEST is one of these, or a file in tests/cli or tests/hosts:' $(UNIT) $(notdir $(replay_bins)) >&2; exit 2; }
+	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run -v $(test_bin) -- $(replay_bin) -- $(test_script)
 # What a release must pass beside .ci/run, which has to be done in 40 minutes.
 check-all:
 	@$(MAKE) --no-print-directory analyze
@@ -163,5 +176,5 @@ purity: $(libraries) $(board_o)
 	@tools/lint/purity --calls '$(board_calls)' $(NM) $(OBJDUMP) $(board_o) $(OUT)/libglint.a
 
 
-.PHONY: check run-check check-files check-all extremes mutants check-valgrind run-valgrind golden-update \
+.PHONY: check run-check test run-test check-files check-all extremes mutants check-valgrind run-valgrind golden-update \
         fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format lint purity
