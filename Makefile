@@ -10,6 +10,7 @@
 #                 how well lamps are found in them
 #   make demo     ghosts on a real photograph and a video  (DEPS=no: no apt)
 #   make check    every test (VM=no: not in the emulator);  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
+#   make test TEST=NAME   one test, and all that it prints
 #   make check-arm  the run-time half's on ARM, in an emulator
 #   make check-vm   of these those on Debian's kernels in an emulator, ARM too
 #   make check-files   round trips of picture files, by other programs;  check-commands: every command documented
@@ -39,7 +40,8 @@
 #         star-table hostile-table bake-table wide-table accuracy-table colour-table projection-table
 #         coating-table ray-table inputs format golden-update fuzz-keep clean reuse-table threads-table stopping-table left-table
 
-MAKEFLAGS += -r
+# One job a processor, unless the command line has a -j of its own.
+MAKEFLAGS += -r $(if $(filter 0,$(MAKELEVEL)),-j$(shell nproc))
 .DEFAULT_GOAL := all
 CONFIG ?= release
 PREFIX ?= /usr/local
