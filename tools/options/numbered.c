@@ -32,3 +32,21 @@ bool numbered_name(char *name, const char *pattern, int number)
                  pattern, digits, number, end + 1);
     return n >= 0 && n < NUMBERED_BYTES;
 }
+
+bool numbered_from_hashes(char *pattern, const char *text)
+{
+    const char *const last = strrchr(text, '#');
+    const char *first = last;
+    char width[16] = "";
+    int n;
+
+    if (!last)
+        return false;
+    while (first > text && first[-1] == '#')
+        first--;
+    if (last > first)
+        snprintf(width, sizeof width, "0%d", (int)(last - first + 1));
+    n = snprintf(pattern, NUMBERED_BYTES, "%.*s%%%sd%s", (int)(first - text),
+                 text, width, last + 1);
+    return n >= 0 && n < NUMBERED_BYTES && numbered_is(pattern);
+}

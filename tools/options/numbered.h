@@ -16,4 +16,9 @@ bool numbered_is(const char *text);
  * false if it is too long or PATTERN is none. */
 bool numbered_name(char *name, const char *pattern, int number);
 
+/* Sets PATTERN, NUMBERED_BYTES long, to TEXT with "%0Nd" in place of its last
+ * run of N '#', by which other programs name sequences. Returns false if TEXT
+ * has no '#', or if PATTERN is too long or not a pattern. */
+bool numbered_from_hashes(char *pattern, const char *text);
+
 #endif

@@ -21,7 +21,8 @@ static const char help[] =
     "Puts the ghosts of a lens on top of IN, in linear light:\n"
     "  a picture         .ppm; with the image plug-in .png .jpg and more\n"
     "  a sequence        frames/%04d.ppm -> out/%04d.ppm, all that are there;\n"
-    "                    numbers that are missing are said\n"
+    "                    reports missing numbers; a file of that very name is\n"
+    "                    one picture\n"
     "  a video           .y4m, or - for standard input and output, by itself;\n"
     "                    .mp4 .mkv .mov .webm .avi .mpg, animated .gif and "
     "more\n"
@@ -419,8 +420,7 @@ static int run(struct tool *tool, struct overlay *o)
         code = overlay_check_input(tool, o);
     if (code == EXIT_OK)
         code = layers_check(tool, &o->layers,
-                            o->is_video || (strchr(o->input, '%') &&
-                                            access(o->input, F_OK) != 0));
+                            o->is_video || overlay_is_sequence(o));
     if (code == EXIT_OK)
         code = overlay_check_apart(tool, o, o->input, o->output);
     if (code == EXIT_OK)
@@ -433,10 +433,10 @@ static int run(struct tool *tool, struct overlay *o)
     o->started = tool_seconds();
     if (o->is_video)
         code = overlay_video(tool, o);
-    else if (strchr(o->input, '%') && access(o->input, F_OK) != 0)
+    else if (overlay_is_sequence(o))
         code = overlay_sequence(tool, o);
     else
-        code = overlay_numbered(tool, o);
+        code = overlay_picture(tool, o, o->input, o->output);
     if (code == EXIT_OK)
         code = compositor_finish(tool, &o->compositor);
     if (code == EXIT_OK && !o->lists_shots)

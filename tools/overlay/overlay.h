@@ -83,9 +83,9 @@ int overlay_check_input(struct tool *tool, struct overlay *o);
 int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
                     const char *to);
 
-/* Draws one picture, o->input, to o->output, or if that is a pattern to its
- * first name. */
-int overlay_numbered(struct tool *tool, struct overlay *o);
+/* Returns whether the input is a sequence: its name has a '%' and is not the
+ * name of a file. */
+bool overlay_is_sequence(const struct overlay *o);
 
 /* Draws the numbered pictures of the patterns o->input and o->output. */
 int overlay_sequence(struct tool *tool, struct overlay *o);

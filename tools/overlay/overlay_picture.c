@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "options/numbered.h"
 #include "overlay/overlay.h"
 #include "overlay/overlay_file.h"
 #include "posix/error.h"
@@ -47,16 +48,21 @@ int overlay_check_input(struct tool *tool, struct overlay *o)
 {
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
+    char pattern[NUMBERED_BYTES];
     struct stat file;
 
     if (strcmp(o->input, "-") == 0 && o->compositor.scene.control_file &&
         strcmp(o->compositor.scene.control_file, "-") == 0)
         return tool_usage(tool, "pictures and --control cannot both come from "
                                 "standard input");
-    if (strcmp(o->input, "-") == 0 || strchr(o->input, '%'))
+    if (strcmp(o->input, "-") == 0 || overlay_is_sequence(o))
         return EXIT_OK;
-    if (stat(o->input, &file) != 0 ||
-        (S_ISREG(file.st_mode) && access(o->input, R_OK) != 0))
+    if (access(o->input, F_OK) != 0 && numbered_from_hashes(pattern, o->input))
+        status =
+            glint_error_report(&error, GLINT_E_IO, o->input,
+                               "is not there; a sequence is named %s", pattern);
+    else if (stat(o->input, &file) != 0 ||
+             (S_ISREG(file.st_mode) && access(o->input, R_OK) != 0))
         status = glint_error_report(&error, GLINT_E_IO, o->input, "%s",
                                     strerror(errno));
     else if (S_ISREG(file.st_mode) && file.st_size == 0)

@@ -166,6 +166,7 @@ static int one(struct tool *tool, struct overlay *o, const struct numbers *l,
 
 static int all(struct tool *tool, struct overlay *o, const struct numbers *l)
 {
+    char pattern[NAME_BYTES];
     int code = EXIT_OK;
 
     if (l->n == 0) {
@@ -173,16 +174,26 @@ static int all(struct tool *tool, struct overlay *o, const struct numbers *l)
                 o->input);
         return EXIT_INPUT;
     }
-    if (l->n > 1 && !numbered_is(o->output))
+    if (l->n > 1 && !numbered_is(o->output)) {
+        const bool hashes = numbered_from_hashes(pattern, o->output);
+
         return tool_usage(tool,
-                          "%s: %d pictures need a %%04d in the output, too",
-                          o->input, l->n);
+                          "%s: %d pictures need a %%04d in the output, "
+                          "too%s%s",
+                          o->input, l->n, hashes ? ": -o " : "",
+                          hashes ? pattern : "");
+    }
     say_missing(tool, o, l);
     for (int i = 0; i < l->n && code == EXIT_OK; i++)
         code = one(tool, o, l, i);
     if (code == EXIT_OK)
         o->compositor.n_frames = l->n; /* without the missing ones */
     return code;
+}
+
+bool overlay_is_sequence(const struct overlay *o)
+{
+    return strchr(o->input, '%') && access(o->input, F_OK) != 0;
 }
 
 int overlay_sequence(struct tool *tool, struct overlay *o)
@@ -205,23 +216,4 @@ int overlay_sequence(struct tool *tool, struct overlay *o)
         code = tool_fail(tool, GLINT_E_MEMORY, NULL);
     free(l.at);
     return code;
-}
-
-int overlay_numbered(struct tool *tool, struct overlay *o)
-{
-    char to[NAME_BYTES];
-    int code;
-
-    if (!numbered_is(o->output))
-        return overlay_picture(tool, o, o->input, o->output);
-    if (!numbered_name(to, o->output,
-                       o->start_number < 0 ? 1 : o->start_number))
-        return tool_usage(tool, "names of pictures have at most %d bytes",
-                          NAME_BYTES - 1);
-    code = overlay_check_apart(tool, o, o->input, to);
-    if (code != EXIT_OK)
-        return code;
-    if (!tool->quiet)
-        fprintf(stderr, "glint overlay: one picture, so one %s\n", to);
-    return overlay_picture(tool, o, o->input, to);
 }
