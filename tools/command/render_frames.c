@@ -11,7 +11,7 @@
 #include "glint/composite.h"
 #include "options/numbered.h"
 #include "overlay/compositor_layer.h"
-#include "overlay/ffmpeg.h"
+#include "ffmpeg/ffmpeg.h"
 #include "overlay/overlay.h"
 #include "overlay/paint.h"
 #include "command/render_scene.h"

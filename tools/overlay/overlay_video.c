@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include "formats/gif.h"
-#include "overlay/ffmpeg.h"
+#include "ffmpeg/ffmpeg.h"
 #include "video/y4m.h"
 #include "posix/ending.h"
 #include "posix/error.h"

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "overlay/ffmpeg.h"
+#include "ffmpeg/ffmpeg.h"
 #include "posix/error.h"
 #include "video/y4m.h"
 

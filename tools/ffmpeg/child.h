@@ -10,8 +10,8 @@
  * standard error, or is heard there. It is killed when glint dies or gives it
  * up, and its status is always taken.
  */
-#ifndef GLINT_TOOLS_OVERLAY_CHILD_H
-#define GLINT_TOOLS_OVERLAY_CHILD_H
+#ifndef GLINT_TOOLS_FFMPEG_CHILD_H
+#define GLINT_TOOLS_FFMPEG_CHILD_H
 
 #include <stdbool.h>
 #include <sys/types.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #define _GNU_SOURCE /* pipe2, memfd_create, fallocate */
-#include "overlay/child.h"
+#include "ffmpeg/child.h"
 
 #include <errno.h>
 #include <fcntl.h>

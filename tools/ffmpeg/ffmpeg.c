@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "overlay/ffmpeg.h"
+#include "ffmpeg/ffmpeg.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -8,9 +8,10 @@
 #include <strings.h>
 #include <unistd.h>
 
+#include "ffmpeg/pixels.h"
 #include "posix/error.h"
 
-enum { MAX_WORDS = 96, FILE_NAME = 4096, PROBE_BYTES = 1 << 14 };
+enum { MAX_WORDS = 96, PROBE_BYTES = 1 << 14 };
 
 static const char *extension(const char *name)
 {
@@ -36,11 +37,9 @@ bool ffmpeg_is_video(const char *name)
     return is_one_of(extension(name), extensions);
 }
 
-/* Sets URL to "file:NAME", which ffmpeg takes as a file, whatever NAME looks
- * like. Returns false if it is too long. */
-static bool file_url(char url[FILE_NAME], const char *name)
+bool ffmpeg_url(char url[FFMPEG_URL], const char *name)
 {
-    return (size_t)snprintf(url, FILE_NAME, "file:%s", name) < FILE_NAME;
+    return (size_t)snprintf(url, FFMPEG_URL, "file:%s", name) < FFMPEG_URL;
 }
 
 /* -------------------------------------------------------------------- probe */
@@ -111,10 +110,10 @@ static bool ask(const char *url, const char *kind, const char *entries,
 
 void ffmpeg_probe(struct ffmpeg_video *video, const char *name)
 {
-    char url[FILE_NAME], text[PROBE_BYTES], *line, *rest = text;
+    char url[FFMPEG_URL], text[PROBE_BYTES], *line, *rest = text;
 
     *video = (struct ffmpeg_video){.width = 0};
-    if (!file_url(url, name))
+    if (!ffmpeg_url(url, name))
         return;
     ask(url, "v:0",
         "stream=width,height,pix_fmt,color_range,color_space,color_transfer,"
@@ -130,9 +129,9 @@ void ffmpeg_probe(struct ffmpeg_video *video, const char *name)
 
 long ffmpeg_count_frames(const char *name)
 {
-    char url[FILE_NAME], text[PROBE_BYTES], n[FFMPEG_WORD] = "";
+    char url[FFMPEG_URL], text[PROBE_BYTES], n[FFMPEG_WORD] = "";
 
-    if (!file_url(url, name) ||
+    if (!ffmpeg_url(url, name) ||
         !ask(url, "v:0", "stream=nb_read_packets", "-count_packets", text))
         return 0;
     text[strcspn(text, "\r\n")] = '\0';
@@ -192,9 +191,8 @@ static enum glint_status end(struct words *w, struct glint_error *error)
     return GLINT_OK;
 }
 
-/* What ffmpeg 5 says of files that are cut off, which are no errors to it, as
- * their end is. */
-static const char *const of_cut_files[] = {
+/* Messages of ffmpeg 5 on files that are cut off, at which it exits with 0. */
+static const char *const ffmpeg_cut_words[] = {
     "File ended prematurely" /* .mkv, .webm */, "partial file" /* .mp4, .mov */,
     NULL};
 
@@ -206,91 +204,27 @@ static enum glint_status too_long(const char *name, struct glint_error *error)
 
 /* ---------------------------------------------------------------- decoding */
 
-static bool has_one_of(const char *text, const char *const *words)
-{
-    for (; *words; words++)
-        if (strstr(text, *words))
-            return true;
-    return false;
-}
-
-/* Returns the bits of a sample of PIXELS, ffmpeg's word: 8, 10, 12 or 16. In
- * some words a number is that of the layout, or of all samples of a pixel. */
-static int bits_of(const char *pixels)
-{
-    static const char *const of_8[] = {"nv12", "nv16", "yuv410p", NULL};
-    static const char *const of_16[] = {"16", "14", "48", "64", "f32", NULL};
-    static const char *const of_10[] = {"10", "p9", NULL};
-
-    return has_one_of(pixels, of_8)    ? 8
-           : has_one_of(pixels, of_16) ? 16
-           : strstr(pixels, "12")      ? 12
-           : has_one_of(pixels, of_10) ? 10
-                                       : 8;
-}
-
-/* Returns ffmpeg's word for planes with CHROMA of BITS. */
-static const char *planes_of(const char *chroma, int bits)
-{
-    static const char *const table[][5] = {
-        {"420", "yuv420p", "yuv420p10le", "yuv420p12le", "yuv420p16le"},
-        {"422", "yuv422p", "yuv422p10le", "yuv422p12le", "yuv422p16le"},
-        {"444", "yuv444p", "yuv444p10le", "yuv444p12le", "yuv444p16le"},
-        {"gray", "gray", "gray10le", "gray12le", "gray16le"}};
-    const int column = bits == 8 ? 1 : bits == 10 ? 2 : bits == 12 ? 3 : 4;
-    size_t i = 0;
-
-    while (i < 3 && strcmp(table[i][0], chroma) != 0)
-        i++;
-    return table[i][column];
-}
-
-static bool is_rgb(const struct ffmpeg_video *v)
-{
-    return *v->pixels && strncmp(v->pixels, "yuv", 3) != 0 &&
-           strncmp(v->pixels, "gray", 4) != 0 &&
-           strncmp(v->pixels, "nv", 2) != 0 && strncmp(v->pixels, "p0", 2) != 0;
-}
-
-/* Returns ffmpeg's word for the y4m format that keeps all samples of V. */
-static const char *planes_for(const struct ffmpeg_video *v)
-{
-    static const char *const of_422[] = {"422", "nv16", "nv20", NULL};
-    const char *chroma = strstr(v->pixels, "444") || is_rgb(v) ? "444"
-                         : has_one_of(v->pixels, of_422)       ? "422"
-                                                               : "420";
-
-    if (strncmp(v->pixels, "yuvj", 4) ==
-        0) /* These names also mean full range. */
-        return chroma[2] == '4'   ? "yuvj444p"
-               : chroma[2] == '2' ? "yuvj422p"
-                                  : "yuvj420p";
-    if (strncmp(v->pixels, "gray", 4) == 0)
-        chroma = "gray";
-    return planes_of(chroma, bits_of(v->pixels));
-}
-
 enum glint_status ffmpeg_read(struct child *child, const char *name,
                               const struct ffmpeg_video *video,
                               struct glint_error *error)
 {
-    char url[FILE_NAME];
+    char url[FFMPEG_URL];
     enum glint_status status;
     struct words w;
 
     *child = CHILD_NONE;
-    if (!file_url(url, name))
+    if (!ffmpeg_url(url, name))
         return too_long(name, error);
     begin(&w);
     add_two(&w, "-i", url);
     add_two(&w, "-map", "0:v:0");
-    add_two(&w, "-pix_fmt", planes_for(video));
+    add_two(&w, "-pix_fmt", pixels_of_y4m(video->pixels));
     add_two(&w, "-strict", "-1");
     add_two(&w, "-f", "yuv4mpegpipe");
     add(&w, "-");
     status = end(&w, error);
     return status == GLINT_OK ? child_start_heard(child, w.word, CHILD_WRITES,
-                                                  of_cut_files, error)
+                                                  ffmpeg_cut_words, error)
                               : status;
 }
 
@@ -357,15 +291,30 @@ static void add_tags(struct words *w, const struct ffmpeg_target *t,
         add_two(w, "-color_primaries", v->primaries);
 }
 
-/* Adds the options of files whose pictures are H.264 by default. Odd sides grow
- * by one where pixels share their chroma. */
+/* Adds the options of files whose pictures are H.264. Odd sides grow by one
+ * where pixels share their chroma.
+ *
+ * ffmpeg's .mov writer labels H.264 of 10 bits in the sizes of AVC-Intra (4:2:2
+ * of 1280x720 and 1920x1080, 4:2:0 of 960x720 and 1440x1080) as AVC-Intra,
+ * which leaves the decoder's parameters out of the file: nothing decodes it.
+ * The label avc1 has them, but is taken in these sizes with -strict -1 only. */
 static void add_h264(struct words *w, const struct ffmpeg_target *t,
                      const struct ffmpeg_video *v)
 {
+    static const char *const by_default[] = {"mp4", "m4v", "mkv", NULL};
+    const char *ext = extension(t->name);
+
+    if (!is_one_of(ext, by_default))
+        add_two(w, "-c:v", "libx264");
     add_two(w, "-crf", "18");
-    if (is_rgb(v))
-        add_two(w, "-pix_fmt", planes_of("420", bits_of(v->pixels)));
-    if ((t->width % 2 == 0 && t->height % 2 == 0) || (t->is_444 && !is_rgb(v)))
+    if (strcasecmp(ext, "mov") == 0) {
+        add_two(w, "-tag:v", "avc1");
+        add_two(w, "-strict", "-1");
+    }
+    if (pixels_are_rgb(v->pixels))
+        add_two(w, "-pix_fmt", pixels_named("420", pixels_bits(v->pixels)));
+    if ((t->width % 2 == 0 && t->height % 2 == 0) ||
+        (t->is_444 && !pixels_are_rgb(v->pixels)))
         return;
     add_two(w, "-vf",
             t->width % 2 && t->height % 2
@@ -381,8 +330,8 @@ static void add_h264(struct words *w, const struct ffmpeg_target *t,
 static void add_pictures(struct words *w, const struct ffmpeg_target *t,
                          const struct ffmpeg_video *v)
 {
-    static const char *const h264[] = {"mp4", "m4v", "mkv", "mov", "flv",
-                                       "ts",  "mts", "3gp", NULL};
+    static const char *const h264[] = {"mp4", "m4v", "mkv",  "mov", "flv",
+                                       "ts",  "mts", "m2ts", "3gp", NULL};
     const char *ext = extension(t->name);
 
     if (strcasecmp(ext, "gif") == 0) {
@@ -394,8 +343,6 @@ static void add_pictures(struct words *w, const struct ffmpeg_target *t,
         add_two(w, "-row-mt", "1");
         add_two(w, "-cpu-used", "4");
     } else if (is_one_of(ext, h264)) {
-        if (strcasecmp(ext, "ts") == 0 || strcasecmp(ext, "mts") == 0)
-            add_two(w, "-c:v", "libx264");
         add_h264(w, t, v);
     } else
         add_two(w, "-q:v", "2");
@@ -416,12 +363,13 @@ enum glint_status ffmpeg_write(struct child *child,
                                struct glint_error *error)
 {
     const struct ffmpeg_target *t = target;
-    char out[FILE_NAME], sound[FILE_NAME] = "", options[1024];
+    char out[FFMPEG_URL], sound[FFMPEG_URL] = "", options[1024];
     enum glint_status status;
     struct words w;
 
     *child = CHILD_NONE;
-    if (!file_url(out, t->file) || (t->sound && !file_url(sound, t->sound)) ||
+    if (!ffmpeg_url(out, t->file) ||
+        (t->sound && !ffmpeg_url(sound, t->sound)) ||
         (t->options && strlen(t->options) >= sizeof options))
         return too_long(t->name, error);
     begin(&w);

@@ -12,15 +12,15 @@
  * encoded anew, with a message. Frame rate, range, matrix, primaries, transfer,
  * titles and chapters are kept; subtitles and further pictures are not.
  */
-#ifndef GLINT_TOOLS_OVERLAY_FFMPEG_H
-#define GLINT_TOOLS_OVERLAY_FFMPEG_H
+#ifndef GLINT_TOOLS_FFMPEG_FFMPEG_H
+#define GLINT_TOOLS_FFMPEG_FFMPEG_H
 
-#include "overlay/child.h"
+#include "ffmpeg/child.h"
 #include "glint/image.h"
 #include "posix/output.h"
 #include "options/tool.h"
 
-enum { FFMPEG_WORD = 32 };
+enum { FFMPEG_WORD = 32, FFMPEG_URL = 4096 };
 
 /* A video in words of ffmpeg's, "" if unknown. */
 struct ffmpeg_video {
@@ -34,6 +34,10 @@ struct ffmpeg_video {
 /* Returns whether the extension is a video's: .mp4 .mkv .mov .webm .avi .mpg
  * and their like. */
 bool ffmpeg_is_video(const char *name);
+
+/* Sets URL to "file:NAME", which ffmpeg opens as a file whatever NAME looks
+ * like. Returns false if it is too long. */
+bool ffmpeg_url(char url[FFMPEG_URL], const char *name);
 
 /* Sets VIDEO to what ffprobe knows of NAME; all is empty if it knows
  * nothing. */
@@ -67,8 +71,8 @@ struct ffmpeg_target {
 };
 
 /* Starts ffmpeg as CHILD, which reads y4m from child->fd and writes TARGET.
- * VIDEO is that of the input, or all empty. Errors are those of ffmpeg_read(),
- * and GLINT_E_ARGUMENT: more than 96 words. */
+ * VIDEO is that of the input, empty where it is not known. Errors are those of
+ * ffmpeg_read(), and GLINT_E_ARGUMENT: more than 96 words. */
 enum glint_status ffmpeg_write(struct child *child,
                                const struct ffmpeg_target *target,
                                const struct ffmpeg_video *video,
