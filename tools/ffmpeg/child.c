@@ -122,7 +122,7 @@ static enum glint_status refuse(const char *name, int number,
 static enum glint_status start(struct child *child, const char *const *argv,
                                enum child_pipe kind, struct glint_error *error)
 {
-    const int mine = kind == CHILD_WRITES ? 0 : 1;
+    const int mine = kind == CHILD_READS ? 1 : 0;
     int data[2], failed[2], number;
     const int null = open("/dev/null", O_RDWR | O_CLOEXEC);
 
@@ -136,7 +136,7 @@ static enum glint_status start(struct child *child, const char *const *argv,
     child->pid = fork();
     if (child->pid == 0)
         become(argv, mine == 0 ? null : data[0], mine == 0 ? data[1] : null,
-               child->said, failed[1]);
+               kind == CHILD_PRINTS ? data[1] : child->said, failed[1]);
     number = errno;
     close(null);
     close(data[1 - mine]);

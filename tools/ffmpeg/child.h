@@ -20,6 +20,7 @@
 
 enum child_pipe {
     CHILD_WRITES, /* The child's standard output is FD, its input is empty. */
+    CHILD_PRINTS, /* So are its standard output and standard error. */
     CHILD_READS /* The child's standard input is FD, its output goes nowhere. */
 };
 

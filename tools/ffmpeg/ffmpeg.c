@@ -191,8 +191,7 @@ static enum glint_status end(struct words *w, struct glint_error *error)
     return GLINT_OK;
 }
 
-/* Messages of ffmpeg 5 on files that are cut off, at which it exits with 0. */
-static const char *const ffmpeg_cut_words[] = {
+const char *const ffmpeg_cut_words[] = {
     "File ended prematurely" /* .mkv, .webm */, "partial file" /* .mp4, .mov */,
     NULL};
 

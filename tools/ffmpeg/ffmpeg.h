@@ -6,6 +6,7 @@
  *     ffmpeg_probe(&video, "in.mp4");                  size, colours, sound
  *     ffmpeg_read(&reader, "in.mp4", &video, &error);  y4m comes out
  *     ffmpeg_write(&writer, &target, &video, &error);  y4m goes in
+ *     ffmpeg_check(target.file, target.name, &error);  and decodes
  *
  * ffmpeg runs beside glint, at the other end of a pipe of y4m frames. Sound is
  * copied from the input as it is if the type of the output takes it, else it is
@@ -30,6 +31,10 @@ struct ffmpeg_video {
     char sound[FFMPEG_WORD]; /* codec of the first audio stream; "": none */
     int width, height;       /* 0: not known */
 };
+
+/* Messages of ffmpeg 5 on files that are cut off, at which it exits with 0;
+ * ends with NULL. */
+extern const char *const ffmpeg_cut_words[];
 
 /* Returns whether the extension is a video's: .mp4 .mkv .mov .webm .avi .mpg
  * and their like. */
@@ -77,6 +82,16 @@ enum glint_status ffmpeg_write(struct child *child,
                                const struct ffmpeg_target *target,
                                const struct ffmpeg_video *video,
                                struct glint_error *error);
+
+/* Checks that the first and the last frames of FILE, which ffmpeg has written
+ * to become NAME, decode. GLINT_E_OUTPUT: they do not. */
+enum glint_status ffmpeg_check(const char *file, const char *name,
+                               struct glint_error *error);
+
+/* Prints a warning if FILE, which ffmpeg has written to become NAME, has fewer
+ * bits or less chroma than PIXELS, or no alpha. */
+void ffmpeg_report_losses(const char *file, const char *name,
+                          const char *pixels);
 
 /* Prints the pipe that does by hand what glint overlay IN -o OUT would. */
 void ffmpeg_by_hand(const struct tool *tool, const char *in, const char *out);

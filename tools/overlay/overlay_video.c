@@ -14,6 +14,7 @@
 
 #include "formats/gif.h"
 #include "ffmpeg/ffmpeg.h"
+#include "ffmpeg/pixels.h"
 #include "video/y4m.h"
 #include "posix/ending.h"
 #include "posix/error.h"
@@ -107,6 +108,19 @@ static int open_coded(struct video *v)
     return fail(v, status == GLINT_E_MEMORY ? status : GLINT_E_FORMAT);
 }
 
+/* Returns ffmpeg's name of the samples of LAYOUT. */
+static const char *pixels_of_layout(const struct glint_y4m_layout *layout)
+{
+    const char *const chroma = layout->format == GLINT_GREY   ? "gray"
+                               : layout->format == GLINT_I444 ? "444"
+                               : layout->format == GLINT_I422 ? "422"
+                                                              : "420";
+
+    return layout->has_alpha ? "yuva444p"
+           : layout->is_411  ? "yuv411p"
+                             : pixels_named(chroma, layout->bits);
+}
+
 static int open_input(struct video *v)
 {
     struct glint_y4m_header *h = &v->in.header;
@@ -121,6 +135,8 @@ static int open_input(struct video *v)
 
         if (status != GLINT_OK)
             code = fail(v, status);
+        snprintf(v->about.pixels, sizeof v->about.pixels, "%s",
+                 pixels_of_layout(&h->layout));
     }
     if (code == EXIT_OK && o->range)
         h->range = o->range == 1 ? GLINT_RANGE_FULL : GLINT_RANGE_LIMITED;
@@ -295,8 +311,13 @@ static int end_writer(struct video *v)
         return EXIT_OUTPUT;
     }
     /* An encoder that stops early, as with -frames:v, has made a file. */
-    if (v->writes && (status == GLINT_OK || status == GLINT_E_CLOSED))
-        status = glint_output_commit(&v->file, &v->error);
+    if (v->writes && (status == GLINT_OK || status == GLINT_E_CLOSED)) {
+        status = ffmpeg_check(v->file.tmp, v->o->output, &v->error);
+        if (status == GLINT_OK && !v->o->encode && !v->tool->quiet)
+            ffmpeg_report_losses(v->file.tmp, v->o->output, v->about.pixels);
+        if (status == GLINT_OK)
+            status = glint_output_commit(&v->file, &v->error);
+    }
     return status == GLINT_OK ? EXIT_OK : fail(v, status);
 }
 
