@@ -97,7 +97,8 @@ static const char *end(pid_t child, int is_wanted)
     if (WIFSIGNALED(status))
         return WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL
                    ? "takes too long, or too much memory, to read"
-                   : "is damaged such that reading it failed";
+                   : "is damaged: Assimp, which reads it, aborted; convert it "
+                     "to .obj";
     return WEXITSTATUS(status) ? "cannot be read" : NULL;
 }
 

@@ -5,9 +5,11 @@
 #ifndef GLINT_PLATFORM_OIIO_GUARD_H
 #define GLINT_PLATFORM_OIIO_GUARD_H
 
+#include <atomic>
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <mutex>
 #include <new>
 #include <string>
 
@@ -65,45 +67,96 @@ struct failure {
     std::string cause;
 };
 
-/* Takes standard error away from the libraries behind OpenImageIO, which print
- * there what they also return as errors. */
-class silence
-{
-    int kept = dup(STDERR_FILENO);
+/* Calls of the plug-in that are under way, in all threads. */
+struct calls {
+    std::mutex lock;
+    std::atomic<int> n{0};
+    std::atomic<int> err{-1}; /* glint's standard error while N > 0 */
+    char text[256] = "";      /* message on an abort in the newest call */
+};
 
+inline calls under_way;
+
+/* A call that is under way, for the file NAME. Meanwhile standard error is
+ * /dev/null, as the libraries behind OpenImageIO print there what they also
+ * return as errors. */
+class call
+{
   public:
-    silence()
+    explicit call(const char *name)
     {
-        const int null =
-            kept < 0 ? -1 : open("/dev/null", O_WRONLY | O_CLOEXEC);
+        const std::string shown = shorten(name);
+        const std::lock_guard<std::mutex> held(under_way.lock);
+
+        std::snprintf(under_way.text, sizeof under_way.text,
+                      "glint: %s: OpenImageIO aborted on this file; convert it "
+                      "with another program\n",
+                      shown.c_str());
+        if (under_way.n++ == 0)
+            hush();
+    }
+    ~call()
+    {
+        const std::lock_guard<std::mutex> held(under_way.lock);
+        const int err = under_way.err;
+
+        if (--under_way.n > 0 || err < 0)
+            return;
+        under_way.err = -1;
+        dup2(err, STDERR_FILENO);
+        close(err);
+    }
+    call(const call &) = delete;
+    call &operator=(const call &) = delete;
+
+    /* Returns the end of NAME, safe to print. */
+    static std::string shorten(const char *name)
+    {
+        const size_t len = std::strlen(name), most = 120;
+
+        return len > most ? "..." + printable(name + len - most)
+                          : printable(name);
+    }
+
+  private:
+    static void hush()
+    {
+        const int err = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
+        const int null = err < 0 ? -1 : open("/dev/null", O_WRONLY | O_CLOEXEC);
 
         std::fflush(stderr);
         if (null >= 0) {
             dup2(null, STDERR_FILENO);
             close(null);
         }
+        under_way.err = err;
     }
-    ~silence()
-    {
-        if (kept < 0)
-            return;
-        dup2(kept, STDERR_FILENO);
-        close(kept);
-    }
-    silence(const silence &) = delete;
-    silence &operator=(const silence &) = delete;
 };
 
-/* Runs BODY. If it throws, returns a status, with NAME and the cause in
+/* If a call is under way, writes to glint's standard error that OpenImageIO has
+ * aborted, and returns 1. Async-signal-safe. */
+inline int report_abort()
+{
+    const int err = under_way.err;
+
+    if (under_way.n == 0)
+        return 0;
+    (void)!write(err < 0 ? STDERR_FILENO : err, under_way.text,
+                 std::strlen(under_way.text));
+    return 1;
+}
+
+/* Runs BODY, which reads or writes the file NAME. If it throws, returns a
+ * status, UNKNOWN for exceptions that say none, with NAME and the cause in
  * ERROR. */
 template <class Body>
-enum glint_status guarded(const char *name, struct glint_error *error,
-                          Body body)
-{
+enum glint_status guarded(const char *name, enum glint_status unknown,
+                          struct glint_error *error, Body body) noexcept
+try {
     failure what = {GLINT_OK, ""};
 
     try {
-        const silence quiet;
+        const call now(name);
 
         body();
     } catch (const failure &f) {
@@ -111,20 +164,19 @@ enum glint_status guarded(const char *name, struct glint_error *error,
     } catch (const std::bad_alloc &) {
         what = {GLINT_E_MEMORY, "not enough memory"};
     } catch (const std::exception &e) {
-        what = {GLINT_E_FORMAT, e.what()};
+        what = {unknown, std::string("OpenImageIO failed: ") + e.what()};
     } catch (...) {
-        what = {GLINT_E_FORMAT, "OpenImageIO failed"};
+        what = {unknown, "OpenImageIO failed"};
     }
-    if (what.status) {
-        const size_t len = std::strlen(name), most = 120;
-        const bool cut = len > most;
-        const std::string shown = printable(name + (cut ? len - most : 0));
-
-        std::snprintf(error->text, sizeof error->text, "%s%s: %s",
-                      cut ? "..." : "", shown.c_str(),
+    if (what.status)
+        std::snprintf(error->text, sizeof error->text, "%s: %s",
+                      call::shorten(name).c_str(),
                       printable(what.cause).c_str());
-    }
     return what.status;
+} catch (...) {
+    std::snprintf(error->text, sizeof error->text,
+                  "not enough memory for a picture");
+    return GLINT_E_MEMORY;
 }
 
 /* Throws failure, before any memory is taken, if glint cannot read pictures

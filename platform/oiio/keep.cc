@@ -319,7 +319,7 @@ enum glint_status glint::open_file(struct glint_oiio_file **file,
                                    struct glint_oiio_facts *facts,
                                    const char *path, struct glint_error *error)
 {
-    return guarded(path, error, [&] {
+    return guarded(path, GLINT_E_FORMAT, error, [&] {
         auto made = std::make_unique<struct glint_oiio_file>();
         choice best = {{0, 0, 0, -1}, 0};
         size_t at = 0;
@@ -347,6 +347,7 @@ void glint::close_file(struct glint_oiio_file *file)
 int glint::is_same_type(const struct glint_oiio_file *file, const char *path)
 {
     try {
+        const glint::call now(path);
         const std::unique_ptr<ImageOutput> out = ImageOutput::create(path);
 
         return out && file->type == out->format_name();

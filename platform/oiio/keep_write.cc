@@ -286,6 +286,17 @@ bytes encode_by_oiio(ImageOutput &out, const char *path,
     return encoded;
 }
 
+/* Removes empty texts: OpenImageIO 2.4 aborts on an empty one that it copies
+ * into the IPTC block of a JPEG or TIFF. */
+void clear_empty(ImageSpec &spec)
+{
+    auto &all = spec.extra_attribs;
+
+    for (size_t i = all.size(); i-- > 0;)
+        if (all[i].type() == TypeDesc::STRING && all[i].get_string().empty())
+            all.erase(all.begin() + static_cast<std::ptrdiff_t>(i));
+}
+
 bytes encode_parts(const char *path, const std::vector<kept_part> &parts,
                    const struct glint_oiio_file *file, bool same,
                    const struct glint_oiio_options &options)
@@ -303,6 +314,8 @@ bytes encode_parts(const char *path, const std::vector<kept_part> &parts,
         specs.push_back(same && is_carried_from(*file) ? bare(p.spec) : p.spec);
         if (type == "tiff")
             clear_exif(specs.back());
+        if (type == "tiff" || type == "jpeg")
+            clear_empty(specs.back());
         if (drop)
             specs.back().erase_attribute("ICCProfile");
         if (type == "jpeg")
@@ -335,7 +348,7 @@ enum glint_status glint::encode_file(void **data, size_t *n_bytes,
                                      const struct glint_oiio_options *options,
                                      struct glint_error *error)
 {
-    return guarded(path, error, [&] {
+    return guarded(path, GLINT_E_OUTPUT, error, [&] {
         const bool same = file && is_same_type(file, path);
         std::vector<kept_part> made;
 

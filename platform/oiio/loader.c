@@ -3,6 +3,7 @@
 
 #include <pthread.h>
 
+#include "posix/at_death.h"
 #include "posix/plugin.h"
 
 enum glint_status glint_oiio_load(const struct glint_oiio **oiio,
@@ -19,8 +20,11 @@ enum glint_status glint_oiio_load(const struct glint_oiio **oiio,
     static const struct glint_oiio *found; /* under LOCK; stays loaded */
 
     pthread_mutex_lock(&lock);
-    if (!found)
+    if (!found) {
         found = glint_plugin_load(&plugin, error);
+        if (found)
+            glint_at_death_in_library(found->report_abort);
+    }
     *oiio = found;
     pthread_mutex_unlock(&lock);
     return *oiio ? GLINT_OK : GLINT_E_UNSUPPORTED;

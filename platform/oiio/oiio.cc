@@ -215,21 +215,22 @@ enum glint_status face_encode_layers(void **data, size_t *bytes,
                                      const struct glint_oiio_layers *layers,
                                      struct glint_error *error)
 {
-    return guarded(path, error,
+    return guarded(path, GLINT_E_OUTPUT, error,
                    [&] { give(data, bytes, encode_parts(path, layers)); });
 }
 
 enum glint_status face_read(struct glint_oiio_pixels *pixels, const char *path,
                             struct glint_error *error)
 {
-    return guarded(path, error, [&] { read_pixels(pixels, path); });
+    return guarded(path, GLINT_E_FORMAT, error,
+                   [&] { read_pixels(pixels, path); });
 }
 
 enum glint_status face_encode(void **data, size_t *bytes, const char *path,
                               const struct glint_oiio_pixels *pixels,
                               ptrdiff_t stride_bytes, struct glint_error *error)
 {
-    return guarded(path, error, [&] {
+    return guarded(path, GLINT_E_OUTPUT, error, [&] {
         give(data, bytes, encode_pixels(path, pixels, stride_bytes));
     });
 }
@@ -239,6 +240,6 @@ enum glint_status face_encode(void **data, size_t *bytes, const char *path,
 extern "C" __attribute__((visibility("default")))
 const struct glint_oiio glint_oiio_face;
 const struct glint_oiio glint_oiio_face = {
-    GLINT_OIIO_VERSION, face_read,         face_encode,
-    glint::open_file,   glint::close_file, glint::is_same_type,
-    glint::encode_file, face_encode_layers};
+    GLINT_OIIO_VERSION, face_read,          face_encode,
+    glint::open_file,   glint::close_file,  glint::is_same_type,
+    glint::encode_file, face_encode_layers, glint::report_abort};

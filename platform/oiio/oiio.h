@@ -19,7 +19,7 @@
 #include "formats/samples.h"
 
 /* Number of this interface. A plug-in with another number is refused. */
-#define GLINT_OIIO_VERSION 3
+#define GLINT_OIIO_VERSION 4
 
 /* A picture as R G B, rows without padding, the top row first, turned upright
  * where the file says how it was held. Alpha is left out, colours weighted by
@@ -116,6 +116,11 @@ struct glint_oiio {
                                        const char *path,
                                        const struct glint_oiio_layers *layers,
                                        struct glint_error *error);
+
+    /* While one of these functions runs, writes to standard error that
+     * OpenImageIO has aborted on its file, and returns 1; else returns 0.
+     * Async-signal-safe, for glint_at_death_in_library(). */
+    int (*report_abort)(void);
 };
 
 /* Sets OIIO to the functions of the plug-in, which the first call loads. Looks

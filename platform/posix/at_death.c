@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #define MAX_FN 8
 
@@ -29,12 +30,32 @@ static void run_all(void)
     }
 }
 
-/* Runs all functions and dies of the signal. SA_RESETHAND has restored the
- * default action, so the second signal, delivered on return, kills the process
- * with the status that its parent expects. */
+static int (*library_report)(void); /* atomic; NULL: none */
+
+/* Returns whether a library has ended the process, which it reports then. */
+static bool report_library(void)
+{
+    int (*const report)(void) =
+        __atomic_load_n(&library_report, __ATOMIC_SEQ_CST);
+
+    return report && report();
+}
+
+static void at_exit(void)
+{
+    run_all();
+    report_library();
+}
+
+/* Runs all functions and dies of the signal, or exits with 1 if it is an abort
+ * in a library. SA_RESETHAND has restored the default action, so the second
+ * signal, delivered on return, kills the process with the status that its
+ * parent expects. */
 static void die(int signal_number)
 {
     run_all();
+    if (signal_number == SIGABRT && report_library())
+        _exit(EXIT_FAILURE);
     raise(signal_number);
 }
 
@@ -52,14 +73,25 @@ static void take_signals(void)
     for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++)
         if (!sigaction(deadly[i], NULL, &old) && old.sa_handler == SIG_DFL)
             sigaction(deadly[i], &act, NULL);
-    atexit(run_all);
+    atexit(at_exit);
 }
 
-bool glint_at_death(glint_at_death_fn *fn)
+static void take_signals_once(void)
 {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
 
     pthread_once(&once, take_signals);
+}
+
+void glint_at_death_in_library(int (*report)(void))
+{
+    take_signals_once();
+    __atomic_store_n(&library_report, report, __ATOMIC_SEQ_CST);
+}
+
+bool glint_at_death(glint_at_death_fn *fn)
+{
+    take_signals_once();
     for (int i = 0; i < MAX_FN; i++) {
         glint_at_death_fn *none = NULL;
 

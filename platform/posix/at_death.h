@@ -28,6 +28,12 @@ typedef void glint_at_death_fn(void);
  * Returns false if there are 8 others already, which is a mistake in glint. */
 bool glint_at_death(glint_at_death_fn *fn);
 
+/* Has a library that ends the process reported: by exit(), as libjpeg does, or
+ * by an abort (SIGABRT, an assertion, std::terminate), which becomes exit code
+ * 1. REPORT, which must be async-signal-safe, returns 0 if the library is not
+ * at work, else prints a message. A later REPORT replaces it. */
+void glint_at_death_in_library(int (*report)(void));
+
 /* Runs all functions and dies of SIGNAL_NUMBER by its default action; for
  * signal handlers that have waited long enough. Async-signal-safe. */
 void glint_at_death_by(int signal_number);

@@ -84,6 +84,29 @@ static void by_abort(int number)
     abort();
 }
 
+static int report_at_work(void)
+{
+    tell('r');
+    return 1;
+}
+
+static int report_idle(void)
+{
+    return 0;
+}
+
+static void by_library(int number)
+{
+    glint_at_death_in_library(number ? report_at_work : report_idle);
+    abort();
+}
+
+static void by_exit_of_library(int number)
+{
+    glint_at_death_in_library(report_at_work);
+    exit(number);
+}
+
 static void by_quick_exit(int number)
 {
     _exit(number);
@@ -153,6 +176,27 @@ static void test_faults(void **state)
     assert_string_equal(text, "21");
 }
 
+/* An abort in a library is an exit with 1, one of glint itself a death. */
+static void test_library(void **state)
+{
+    char text[8];
+    int how;
+
+    (void)state;
+    how = end_of(by_library, 1, text);
+    assert_true(WIFEXITED(how));
+    assert_int_equal(WEXITSTATUS(how), 1);
+    assert_string_equal(text, "21r");
+    how = end_of(by_exit_of_library, 4, text);
+    assert_true(WIFEXITED(how));
+    assert_int_equal(WEXITSTATUS(how), 4);
+    assert_string_equal(text, "21r");
+    how = end_of(by_library, 0, text);
+    assert_true(WIFSIGNALED(how));
+    assert_int_equal(WTERMSIG(how), SIGABRT);
+    assert_string_equal(text, "21");
+}
+
 static void test_exit(void **state)
 {
     char text[8];
@@ -204,7 +248,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_signals), cmocka_unit_test(test_faults),
         cmocka_unit_test(test_exit),    cmocka_unit_test(test_own_handler),
-        cmocka_unit_test(test_ignored),
+        cmocka_unit_test(test_ignored), cmocka_unit_test(test_library),
     };
 
     return cmocka_run_group_tests_name("at_death", tests, NULL, NULL);
