@@ -22,8 +22,9 @@
 #   make extremes  the list of extremes, each with the worst figure seen and its bound
 #   make lint     layers, Q formats, formatting, symbols;  purity: that the
 #                 run-time half has no floats and calls nobody (TARGET= too)
-#   make install  DESTDIR= PREFIX=/usr/local, TARGET= for a board, MODELS=no
-#                 without baked models;  make uninstall
+#   make install  DESTDIR= PREFIX=/usr/local, TARGET= for a board's image,
+#                 MODELS=no without baked models;  make uninstall
+#   make board    TARGET=: an archive to unpack on a board
 #   make shared   shared libraries;  install-library: these, archives, headers
 #                 and pkg-config files alone;  dist: the sources, packed;
 #                 abi REF=REVISION: what has changed of them since, by abidiff

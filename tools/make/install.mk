@@ -1,7 +1,7 @@
 # To install, and to take away again.
 
-# With TARGET= for a board: copy DESTDIR there, or make it a part of its image.
-# The image plug-in is built where it can be. MODELS=no: without baked models of
+# With TARGET= for a board: make DESTDIR a part of its image; for a board that runs,
+# make board. The image plug-in is built where it can be. MODELS=no: without baked models of
 # the lenses, which take minutes where there are none yet.
 program := $(if $(CROSS),$(OUT)/glint,build/glint)
 PLUGIN  ?= $(if $(CROSS),no,$(shell command -v $(CXX) >/dev/null && \
@@ -19,21 +19,13 @@ strip_too := $(if $(filter yes,$(STRIP)),-s $(CROSS:%=--strip-program=%strip))
 # Completions, by the folders in which shells look for them.
 shells := bash-completion/completions/glint.bash zsh/site-functions/_glint fish/vendor_completions.d/glint.fish
 lens_rooms := $(patsubst %/,%,$(wildcard lenses/*/))
-install: install-library all glint-live $(if $(filter yes,$(PLUGIN)),build/glint-oiio.so) \
+install: install-library install-programs $(if $(filter yes,$(PLUGIN)),build/glint-oiio.so) \
         $(if $(filter yes,$(MESHES)),build/glint-assimp.so) \
         $(if $(filter yes,$(WINDOW)),build/glint-sdl.so) $(if $(filter yes,$(MANUAL)),man)
 	$(if $(filter yes,$(FREI0R)),$(MAKE) --no-print-directory frei0r)
 	$(if $(filter yes,$(ELEMENT)),$(MAKE) --no-print-directory gstreamer)
-	install -d $(to)/bin $(libdir)/glint $(to)/share/glint/lenses $(to)/lib/systemd/system
-	install $(if $(CROSS),$(strip_too)) -m 755 \
-	        $(program) $(OUT)/glint-live $(to)/bin
-	install -m 644 lenses/*.lens lenses/figures.md $(to)/share/glint/lenses
-	for r in $(lens_rooms); do install -d $(to)/share/glint/$$r && \
-	        install -m 644 $$r/*.lens $(to)/share/glint/$$r || exit 1; done
+	install -d $(libdir)/glint
 	install -m 644 tests/data/bridge.$(if $(filter yes,$(PLUGIN)),jpg,ppm) $(to)/share/glint
-	sed 's,@PREFIX@,$(PREFIX),' platform/linux/glint-live.service \
-	        >$(to)/lib/systemd/system/glint-live.service
-	chmod 644 $(to)/lib/systemd/system/glint-live.service
 	$(if $(filter yes,$(PLUGIN)),install $(strip_too) -m 755 build/glint-oiio.so $(libdir)/glint, \
 	        @echo 'without the image plug-in (g++, pkg-config, libopenimageio-dev): PPM, PFM and y4m')
 	$(if $(filter yes,$(MESHES)),install $(strip_too) -m 755 build/glint-assimp.so $(libdir)/glint, \
@@ -45,13 +37,37 @@ install: install-library all glint-live $(if $(filter yes,$(PLUGIN)),build/glint
 	for s in $(shells); do install -m 644 tools/man/$${s##*/} $(to)/share/$$s || exit 1; done
 	mv $(to)/share/bash-completion/completions/glint.bash $(to)/share/bash-completion/completions/glint
 	$(if $(filter yes,$(MANUAL)),for n in 1 3 5; do install -m 644 build/man/*.$$n $(to)/share/man/man$$n || exit 1; done)
+# The files that programs need at run time: all that a board needs.
+install-programs: all glint-live
+	install -d $(to)/bin $(to)/share/glint/lenses $(to)/lib/systemd/system
+	install $(if $(CROSS),$(strip_too)) -m 755 \
+	        $(program) $(OUT)/glint-live $(to)/bin
+	install -m 644 lenses/*.lens lenses/figures.md $(to)/share/glint/lenses
+	for r in $(lens_rooms); do install -d $(to)/share/glint/$$r && \
+	        install -m 644 $$r/*.lens $(to)/share/glint/$$r || exit 1; done
+	sed 's,@PREFIX@,$(PREFIX),' platform/linux/glint-live.service \
+	        >$(to)/lib/systemd/system/glint-live.service
+	chmod 644 $(to)/lib/systemd/system/glint-live.service
 ifneq ($(MODELS),no)
 	@echo 'baking the models of all lenses, where there are none yet (MODELS=no: later)'
+	$(if $(CROSS),$(MAKE) --no-print-directory TARGET= build/glint)
 	rm -rf build/models-installed # of other tables
 	build/glint lenses --models build/models-installed $(patsubst lenses/%.lens,--only %,$(wildcard lenses/*.lens))
 	install -d $(to)/share/glint/models
 	install -m 644 build/models-installed/*.glint $(to)/share/glint/models
 endif
+# These packed, to be unpacked by root in / of a running board: of folders those of
+# glint alone are in it, as tar gives a folder that is there the owner and mode of
+# its entry.
+board_prefix := $(if $(filter file,$(origin PREFIX)),/usr,$(PREFIX))
+board_tar := build/glint-$(VERSION)-$(notdir $(OUT)).tar.gz
+board:
+	@[ -n "$(CROSS)" ] || { echo "make board: which machine? TARGET=aarch64, say: $(TARGETS)" >&2; exit 2; }
+	rm -rf $(OUT)/root
+	$(MAKE) --no-print-directory install-programs DESTDIR=$(OUT)/root PREFIX=$(board_prefix)
+	cd $(OUT)/root && find $(board_prefix:/%=%) -type f -o -type d -path '*/share/glint*' | LC_ALL=C sort | \
+	        tar --owner=0 --group=0 --numeric-owner --mode=u=rwX,go=rX --no-recursion -T - -czf $(CURDIR)/$(board_tar).tmp
+	@mv -f $(board_tar).tmp $(board_tar) && echo $(board_tar)
 # What programs are built and run with; for a board archives alone.
 headers := $(wildcard include/glint/*.h include/glint/*/*.h)
 install-library: $(LIBRARIES:%=$(OUT)/lib%.a) $(OUT)/libglint-published.a $(if $(CROSS),,shared)
@@ -79,4 +95,4 @@ uninstall:
 	        $(patsubst %/,share/%,$(dir $(shells))) share/bash-completion share/zsh share/fish \
 	        share/man/man1 share/man/man3 share/man/man5 share/man lib/systemd/system lib/systemd; do \
 	        if [ -d $(to)/$$d ]; then rmdir --ignore-fail-on-non-empty $(to)/$$d; fi; done
-.PHONY: install install-library uninstall
+.PHONY: install install-programs install-library board uninstall
