@@ -121,8 +121,7 @@ $(OUT)/parts: parts := $(core_o) $(published_o) $(engine_o) $(bake_o) $(platform
 $(OUT)/prefix: parts := $(PREFIX) $(LIBDIR)
 $(OUT)/parts $(OUT)/prefix: always
 	@mkdir -p $(@D); echo '$(parts)' | cmp -s - $@ || echo '$(parts)' >$@
-$(OUT)/tools/model/lens_files.o $(OUT)/platform/posix/plugin.o \
-        $(OUT)/platform/sdl/window.o: $(OUT)/prefix
+$(OUT)/tools/model/lens_files.o $(OUT)/platform/posix/plugin.o: $(OUT)/prefix
 libs := $(archives)
 
 define link

@@ -24,13 +24,10 @@ enum {
 static const struct glint_assimp *load(struct glint_error *error)
 {
     static const struct glint_plugin plugin = {
-        "glint-assimp.so",
-        "GLINT_ASSIMP",
-        "glint_assimp_face",
-        "the mesh plug-in",
-        "not found, so that only OBJ meshes are read; with libassimp-dev "
-        "installed, 'make assimp' builds it",
-        GLINT_ASSIMP_VERSION};
+        "glint-assimp.so",    "GLINT_ASSIMP",
+        "glint_assimp_face",  "the mesh plug-in",
+        GLINT_ASSIMP_VERSION, ", so that only OBJ meshes are read",
+        "libassimp-dev",      "assimp"};
     static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
     static const struct glint_assimp *found; /* under LOCK; stays loaded */
     const struct glint_assimp *face;

@@ -10,12 +10,10 @@ enum glint_status glint_oiio_load(const struct glint_oiio **oiio,
                                   struct glint_error *error)
 {
     static const struct glint_plugin plugin = {
-        "glint-oiio.so",
-        "GLINT_OIIO",
-        "glint_oiio_face",
-        "the image plug-in",
-        "not found; with libopenimageio-dev installed, 'make oiio' builds it",
-        GLINT_OIIO_VERSION};
+        "glint-oiio.so",      "GLINT_OIIO",
+        "glint_oiio_face",    "the image plug-in",
+        GLINT_OIIO_VERSION,   "",
+        "libopenimageio-dev", "oiio"};
     static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
     static const struct glint_oiio *found; /* under LOCK; stays loaded */
 

@@ -17,21 +17,42 @@
     "../lib/glint/" /* place of plug-ins as seen from bin/, wherever both were \
                        moved */
 
-/* Sets DIR to the directory of the executable, with its last slash. Returns
+/* Sets DIR to the folder of glint's own file, with its last slash. Returns
  * false if that is unknown. */
 static bool find_own_directory(char dir[PATH_BYTES])
 {
-    const ssize_t n = readlink("/proc/self/exe", dir, PATH_BYTES - 1);
     char *slash;
 
-    if (n < 0)
+    if (!glint_process_own_file(dir, PATH_BYTES))
         return false;
-    dir[n] = 0;
     slash = strrchr(dir, '/');
-    if (!slash)
-        return false;
     slash[1] = 0;
     return true;
+}
+
+/* Returns whether DIR is of an installed glint, bin/ beside share/glint/. */
+static bool is_installed(const char *dir)
+{
+    char share[PATH_BYTES + FILE_BYTES];
+
+    snprintf(share, sizeof share, "%s../share/glint", dir);
+    return access(share, F_OK) == 0;
+}
+
+static void report_missing(const struct glint_plugin *plugin, bool installed,
+                           struct glint_error *error)
+{
+    if (installed)
+        glint_error_report(error, GLINT_E_UNSUPPORTED, plugin->file,
+                           "not found%s; it is in the package %.*s, or "
+                           "install %s and then glint again",
+                           plugin->without, (int)strcspn(plugin->file, "."),
+                           plugin->file, plugin->library);
+    else
+        glint_error_report(
+            error, GLINT_E_UNSUPPORTED, plugin->file,
+            "not found%s; with %s installed, 'make %s' builds it",
+            plugin->without, plugin->library, plugin->target);
 }
 
 static const void *load_from(const struct glint_plugin *plugin,
@@ -79,11 +100,12 @@ const void *glint_plugin_load(const struct glint_plugin *plugin,
     const void *face = NULL;
     char own[PATH_BYTES];
 
-    glint_error_report(error, GLINT_E_UNSUPPORTED, plugin->file, "%s",
-                       plugin->missing);
     if (stated && *stated)
         return load_from(plugin, stated, error);
-    if (find_own_directory(own)) {
+    if (!find_own_directory(own))
+        *own = '\0';
+    report_missing(plugin, *own && is_installed(own), error);
+    if (*own) {
         face = load_from_directory(plugin, own, error);
         if (!face && strlen(own) + sizeof INSTALLED <= sizeof own) {
             strcat(own, INSTALLED);

@@ -4,10 +4,12 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <pthread.h>
 #include <signal.h>
-#include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -22,6 +24,36 @@ void glint_process_hold_streams(void)
 const char *glint_process_setting(const char *name)
 {
     return secure_getenv(name);
+}
+
+/* dladdr() gives the path that the host passed to dlopen(), which is relative
+ * to a folder of then, and argv[0] for a program. */
+bool glint_process_own_file(char *path, size_t bytes)
+{
+    static const char own = 0;
+    const uintptr_t at = (uintptr_t)&own;
+    FILE *const maps = fopen("/proc/self/maps", "re");
+    char *line = NULL, *file = NULL;
+    size_t room = 0, n = 0;
+
+    while (maps && !file && getline(&line, &room, maps) > 0) {
+        uintptr_t begin, end;
+
+        if (sscanf(line, "%" SCNxPTR "-%" SCNxPTR, &begin, &end) == 2 &&
+            begin <= at && at < end)
+            file = strchr(line, '/');
+    }
+    if (file) {
+        n = strcspn(file, "\n");
+        if (n < bytes) {
+            memcpy(path, file, n);
+            path[n] = '\0';
+        }
+    }
+    free(line);
+    if (maps)
+        fclose(maps);
+    return n > 0 && n < bytes;
 }
 
 struct call {

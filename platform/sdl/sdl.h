@@ -7,9 +7,9 @@
  *     window.sink.close(&window.sink);
  *
  * SDL2 lives in a plug-in, glint-sdl.so, which is loaded when a window is asked
- * for: beside the executable, in ../lib/glint from there, or as $GLINT_SDL
- * names it. The picture keeps its shape in a window of any size. Once the user
- * closes it or presses Escape or q, put returns GLINT_E_CLOSED.
+ * for, from the places that posix/plugin.h lists, of which $GLINT_SDL
+ * is the first. The picture keeps its shape in a window of any size. Once the
+ * user closes it or presses Escape or q, put returns GLINT_E_CLOSED.
  */
 #ifndef GLINT_PLATFORM_SDL_SDL_H
 #define GLINT_PLATFORM_SDL_SDL_H

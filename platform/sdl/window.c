@@ -1,61 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include "sdl/sdl.h"
 
-#include <dlfcn.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 #include "posix/error.h"
-#include "posix/process.h"
+#include "posix/plugin.h"
 
-#define PLUGIN     "glint-sdl.so"
-#define PATH_BYTES 4096
-
-static const struct glint_sdl *load(const char *path)
-{
-    void *const handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-    const struct glint_sdl *face =
-        handle ? dlsym(handle, "glint_sdl_face") : NULL;
-
-    return face && face->version == GLINT_SDL_VERSION ? face : NULL;
-}
-
-/* Loads the plug-in at BEHIND, a path from the folder of the executable.
- * Returns NULL if it is not there. */
-static const struct glint_sdl *load_near(const char *behind)
-{
-    char path[PATH_BYTES + 64];
-    const ssize_t n = readlink("/proc/self/exe", path, PATH_BYTES - 1);
-    char *slash;
-
-    if (n <= 0)
-        return NULL;
-    path[n] = '\0';
-    slash = strrchr(path, '/');
-    if (!slash)
-        return NULL;
-    snprintf(slash, sizeof path - (size_t)(slash - path), "/%s", behind);
-    return access(path, F_OK) == 0 ? load(path) : NULL;
-}
-
-static const struct glint_sdl *search(void)
-{
-    const char *const stated = glint_process_setting("GLINT_SDL");
-    const struct glint_sdl *face;
-
-    if (stated && *stated)
-        return load(stated);
-    face = load_near(PLUGIN);
-    if (!face)
-        face = load_near("../lib/glint/" PLUGIN);
-#ifdef GLINT_PLUGIN_DIR
-    if (!face)
-        face = load(GLINT_PLUGIN_DIR "/" PLUGIN);
-#endif
-    return face;
-}
+static const struct glint_plugin plugin = {
+    "glint-sdl.so",    "GLINT_SDL", "glint_sdl_face", "the window plug-in",
+    GLINT_SDL_VERSION, "",          "libsdl2-dev",    "window"};
 
 /* ------------------------------------------------------------------- frames */
 
@@ -128,12 +81,15 @@ enum glint_status glint_window_open(struct glint_window *window,
                                     const char *title,
                                     struct glint_error *error)
 {
-    *window = (struct glint_window){
-        .sink = {put, close_window}, .sdl = search(), .title = title};
+    struct glint_error cause;
+
+    *window = (struct glint_window){.sink = {put, close_window},
+                                    .sdl = glint_plugin_load(&plugin, &cause),
+                                    .title = title};
     if (window->sdl)
         return GLINT_OK;
     return glint_error_report(
         error, GLINT_E_DEVICE, "window",
-        "needs glint-sdl.so ('make window', with libsdl2-dev); or a pipe: "
-        "glint live -o y4m:- ... | ffplay -loglevel error -");
+        "%s; or a pipe: glint live -o y4m:- ... | ffplay -loglevel error -",
+        cause.text);
 }

@@ -3,6 +3,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,16 +18,14 @@
 
 enum { ABOVE = 3, NAME_CHARS = 64, PATH_CHARS = 1024 };
 
-/* Sets PATH to the folder UP levels above the executable, 1 being its own.
- * Returns false if everybody may put things there. */
+/* Sets PATH to the folder UP levels above glint's own file, 1 being that which
+ * contains it. Returns false if everybody may write there. */
 static bool folder_above(int up, char *path, size_t bytes)
 {
-    const ssize_t n = readlink("/proc/self/exe", path, bytes - 1);
     struct stat st;
 
-    if (n <= 0 || (size_t)n >= bytes - 1)
+    if (!glint_process_own_file(path, bytes))
         return false;
-    path[n] = '\0';
     while (up-- > 0) {
         char *slash = strrchr(path, '/');
 
@@ -142,28 +141,27 @@ static int by_name(const void *a, const void *b)
     return strcmp(a, b);
 }
 
-/* Says, once, if the folder of one's own lenses cannot be read: they would be
- * missed in silence. */
+/* Prints a warning if the folder of one's own lenses cannot be read: they would
+ * be missed in silence. */
 static void check_own(void)
 {
-    static bool said;
     const char *own = glint_process_setting("GLINT_LENSES");
-    DIR *folder = own && *own && !said ? opendir(own) : NULL;
+    DIR *folder = own && *own ? opendir(own) : NULL;
 
-    if (own && *own && !said && !folder)
+    if (own && *own && !folder)
         fprintf(stderr, "glint: GLINT_LENSES: %s: %s\n", own, strerror(errno));
     if (folder)
         closedir(folder);
-    said = true;
 }
 
 int lens_files_each(lens_files_fn *each, void *ctx)
 {
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
     struct list l = {NULL, 0, 0};
     char path[PATH_CHARS], room[PATH_CHARS + 16];
     bool ok = true;
 
-    check_own();
+    pthread_once(&once, check_own);
     for (int i = 0; ok && lens_folder(i, "lenses", path, sizeof path); i++)
         for (int r = 0; ok && *path && r < N_ROOMS; r++) {
             snprintf(room, sizeof room, "%s%s", path, rooms[r]);
