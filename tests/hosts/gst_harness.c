@@ -88,15 +88,37 @@ static void test_in_place(void)
     gst_harness_teardown(h);
 }
 
+/* Returns whether the error that E has posted contains NAME. */
+static int names_lens(GstElement *e, const gchar *name)
+{
+    GstBus *const bus = gst_element_get_bus(e);
+    GstMessage *const message =
+        bus ? gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR) : NULL;
+    GError *error = NULL;
+    int found;
+
+    if (!message)
+        return 0;
+    gst_message_parse_error(message, &error, NULL);
+    found = strstr(error->message, name) != NULL;
+    g_error_free(error);
+    gst_message_unref(message);
+    gst_object_unref(bus);
+    return found;
+}
+
 static void test_live(void)
 {
     GstHarness *const h = harness("lens=heliar-tronnier");
     GstElement *const e = gst_harness_find_element(h, "glintflare");
+    GstBus *const bus = gst_bus_new();
     gchar *lens = NULL;
     gdouble gain = 0;
     GstBuffer *full;
     guint8 first[BYTES];
 
+    gst_element_set_bus(e, bus);
+    gst_object_unref(bus);
     full = drawn(h, 0);
     memcpy(first, bytes_of(full), BYTES);
     gst_buffer_unref(full);
@@ -112,7 +134,9 @@ static void test_live(void)
     report("properties are read back",
            g_strcmp0(lens, "heliar-tronnier") == 0 && gain > 0.99);
     g_object_set(e, "lens", "nothing", NULL);
-    report("an unknown lens leaves frames as they are", is_plain(drawn(h, 4)));
+    report("an unknown lens is an error of the stream",
+           gst_harness_push(h, frame_of(4)) == GST_FLOW_ERROR);
+    report("whose message names it", names_lens(e, "nothing"));
     g_object_set(e, "lens", "heliar-tronnier", NULL);
     report("until it is known", !is_plain(drawn(h, 5)));
     g_free(lens);

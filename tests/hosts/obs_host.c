@@ -244,9 +244,11 @@ static void run(struct run *r, char **settings, int n_settings)
             pass(r, frame, ms);
             ms += FRAME_MS;
         } while (i == 0 && memcmp(seen.bytes, frame, r->size) == 0 &&
-                 !getenv("OBS_HOST_ONCE") && ms < end);
+                 obs_source_enabled(r->filter) && ms < end);
         fwrite(seen.bytes, r->size, 1, stdout);
     }
+    if (!obs_source_enabled(r->filter))
+        fputs("obs_host: disabled\n", stderr);
     free(frame);
 }
 

@@ -16,6 +16,7 @@ const double filter_default[FILTER_NUMBERS] = {
 
 struct filter {
     struct tool tool;
+    struct glint_error cause; /* of a failure, as hosts show it */
     struct compositor compositor;
     int width, height;
     double number[FILTER_NUMBERS];
@@ -33,7 +34,8 @@ struct filter *filter_create(const char *host, int width, int height)
 
     if (!f)
         return NULL;
-    f->tool = (struct tool){.name = host, .where = "parameter"};
+    f->tool =
+        (struct tool){.name = host, .where = "parameter", .cause = &f->cause};
     f->width = width;
     f->height = height;
     memcpy(f->number, filter_default, sizeof f->number);
@@ -164,6 +166,7 @@ static bool open_filter(struct filter *f)
     struct compositor *const c = &f->compositor;
     int code;
 
+    f->cause.text[0] = '\0';
     memset(c, 0, sizeof *c);
     compositor_defaults(c);
     f->is_open = true;
@@ -217,10 +220,14 @@ static bool draw(struct filter *f, const struct glint_image *image,
     turn(f);
     if (compositor_draw(&f->compositor, image, elapsed_us) != GLINT_OK) {
         f->failed = true;
-        fprintf(stderr, "glint %s: no memory; pictures stay as they are\n",
-                f->tool.name);
+        tool_error(&f->tool, "no memory; pictures stay as they are");
     }
     return !f->failed;
+}
+
+const char *filter_cause(const struct filter *f)
+{
+    return f->cause.text;
 }
 
 /* Sets the locale of numbers and returns what leave() restores. */

@@ -53,6 +53,10 @@ const char *filter_word(const struct filter *filter, enum filter_word which);
  * does. */
 bool filter_open(struct filter *filter);
 
+/* Returns why the last picture was not drawn, or the lens not opened; "" where
+ * standard error alone has the reason. */
+const char *filter_cause(const struct filter *filter);
+
 /* Draws the flare on IMAGE, which comes ELAPSED_US after the last one; 0: a
  * picture by itself. Where it cannot, a line on standard error says why, once,
  * and the picture stays as it is until a parameter changes. Returns whether it

@@ -5,11 +5,14 @@
 #include "frei0r/abi.h"
 
 #include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "filter/filter.h"
 #include "glint/glint.h"
+#include "model/lens_files.h"
 
 /* A parameter: a number, or a word if IS_WORD. */
 struct parameter {
@@ -85,9 +88,27 @@ void f0r_get_param_info(struct f0r_param *info, int index)
                                .explanation = parameters[index].about};
 }
 
+static bool stop_at_first(void *ctx, const char *name)
+{
+    (void)ctx, (void)name;
+    return false;
+}
+
+/* Returns whether there are lenses. Later the host cannot be informed: its call
+ * for pictures returns nothing. */
+static bool has_lenses(void)
+{
+    if (lens_files_each(stop_at_first, NULL) > 0)
+        return true;
+    fprintf(stderr, "glint frei0r: no lenses: neither in GLINT_LENSES nor in "
+                    "lenses/ or share/glint/lenses/ above the plug-in; install "
+                    "glint, or set GLINT_LENSES to a folder of .lens files\n");
+    return false;
+}
+
 void *f0r_construct(unsigned width, unsigned height)
 {
-    struct instance *const i = calloc(1, sizeof *i);
+    struct instance *const i = has_lenses() ? calloc(1, sizeof *i) : NULL;
 
     if (i && width - 1 < GLINT_MAX_SIDE && height - 1 < GLINT_MAX_SIDE)
         i->filter = filter_create("frei0r", (int)width, (int)height);

@@ -254,8 +254,11 @@ static GstFlowReturn transform(GstVideoFilter *base, GstVideoFrame *frame)
         e->image.plane[i] = GST_VIDEO_FRAME_PLANE_DATA(frame, i);
         e->image.stride_bytes[i] = GST_VIDEO_FRAME_PLANE_STRIDE(frame, i);
     }
-    if (!filter_draw(e->filter, &e->image, elapsed_us(e, now)))
-        GST_WARNING_OBJECT(e, "no flare: standard error says why");
+    if (!filter_draw(e->filter, &e->image, elapsed_us(e, now))) {
+        GST_ELEMENT_ERROR(e, LIBRARY, FAILED,
+                          ("No flare: %s", filter_cause(e->filter)), (NULL));
+        return GST_FLOW_ERROR;
+    }
     e->last = now;
     return GST_FLOW_OK;
 }

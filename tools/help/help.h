@@ -29,4 +29,7 @@ void help_screen(const struct help *help);
  * if it has a value, a tab, and the first line of what HELP says of it. */
 void help_options(const struct help *help, const struct option *options);
 
+/* Prints the version and the kernels that this machine runs. */
+void help_version(bool is_json);
+
 #endif

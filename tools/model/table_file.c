@@ -48,11 +48,10 @@ static int print_matches(const struct tool *tool, const char *name)
     if (strlen(name) >= 3)
         lens_files_each(match, &m);
     if (m.n > 1)
-        fprintf(stderr,
-                "glint %s: %s: %d lenses have this in their names (did you "
-                "mean %.*s or %s)\n",
-                tool->name, name, m.n, (int)m.last - 2, m.text + 2,
-                m.text + m.last + 2);
+        tool_error(tool,
+                   "%s: %d lenses have this in their names (did you "
+                   "mean %.*s or %s)",
+                   name, m.n, (int)m.last - 2, m.text + 2, m.text + m.last + 2);
     return m.n;
 }
 
@@ -61,22 +60,22 @@ static void print_no_lens(const struct tool *tool, const char *name)
     struct suggest s;
 
     if (access(name, F_OK) == 0) {
-        fprintf(stderr,
-                "glint %s: %s: no lens that comes with glint has this name; "
-                "the file is ./%s\n",
-                tool->name, name, name);
+        tool_error(tool,
+                   "%s: no lens that comes with glint has this name; "
+                   "the file is ./%s",
+                   name, name);
         return;
     }
     if (print_matches(tool, name) > 1)
         return;
     suggest_begin(&s, name);
     lens_files_each(offer, &s);
-    fprintf(stderr,
-            "glint %s: %s: neither a file nor a lens that comes with glint "
-            "(%s%s)\n",
-            tool->name, name,
-            suggest_best(&s) ? "did you mean " : "glint lenses lists them",
-            suggest_best(&s) ? s.best : "");
+    tool_error(tool,
+               "%s: neither a file nor a lens that comes with glint "
+               "(%s%s)",
+               name,
+               suggest_best(&s) ? "did you mean " : "glint lenses lists them",
+               suggest_best(&s) ? s.best : "");
 }
 
 /* Returns whether NAME is of a file as glint import takes them, which there
@@ -118,16 +117,15 @@ const char *tool_lens_file(const struct tool *tool, const char *argument,
                            char *path, size_t bytes)
 {
     if (is_foreign(argument)) {
-        fprintf(stderr,
-                "glint %s: %s: a lens file of another program; glint import "
-                "makes a table of it\n",
-                tool->name, argument);
+        tool_error(tool,
+                   "%s: a lens file of another program; glint import "
+                   "makes a table of it",
+                   argument);
         return NULL;
     }
     if (tool_is_model(argument)) {
-        fprintf(stderr,
-                "glint %s: %s: a baked model; this needs the lens table\n",
-                tool->name, argument);
+        tool_error(tool, "%s: a baked model; this needs the lens table",
+                   argument);
         return NULL;
     }
     if (tool_is_file_name(argument))

@@ -28,6 +28,7 @@ struct flare {
     struct flare_settings opened; /* what it was opened with, and for */
     int width, height;
     struct opening *opening;
+    obs_source_t *source;
     uint64_t last_ns; /* of the last frame drawn; 0: none */
     bool has_warned;
 };
@@ -133,6 +134,17 @@ static void warn_once(struct flare *f, const char *text)
     f->has_warned = true;
 }
 
+/* Disables the source's filter, which its user sees, and drops what failed, so
+ * that it is opened again once the user enables it. */
+static void disable(struct flare *f)
+{
+    blog(LOG_ERROR, "glint: the filter is disabled: %s",
+         filter_cause(f->filter));
+    filter_destroy(f->filter);
+    f->filter = NULL;
+    obs_source_set_enabled(f->source, false);
+}
+
 /* Takes the filter that has been opened, if there is one, and begins to open
  * another where this one does not serve. Returns whether this one can draw. */
 static bool ready(struct flare *f, const struct flare_settings *wanted,
@@ -189,7 +201,7 @@ static struct obs_source_frame *filter_video(void *ctx,
     if (filter_draw(f->filter, &image, elapsed_us(f, frame->timestamp)))
         f->last_ns = frame->timestamp;
     else
-        warn_once(f, "no flare, standard error says why");
+        disable(f);
     return frame;
 }
 
@@ -215,9 +227,9 @@ static void *create(obs_data_t *data, obs_source_t *source)
 {
     struct flare *const f = calloc(1, sizeof *f);
 
-    (void)source;
     if (!f)
         return NULL;
+    f->source = source;
     pthread_mutex_init(&f->lock, NULL);
     update(f, data);
     return f;

@@ -21,6 +21,31 @@
 #include "posix/utf8.h"
 #include "posix/workers.h"
 
+/* Copies the message to the tool's cause, if it has one, and prints it. */
+static void print_error(const struct tool *tool, const char *format,
+                        va_list args)
+{
+    struct glint_error *const cause = tool->cause;
+    va_list again;
+
+    va_copy(again, args);
+    if (cause)
+        vsnprintf(cause->text, sizeof cause->text, format, again);
+    va_end(again);
+    vfprintf(stderr, format, args);
+}
+
+void tool_error(const struct tool *tool, const char *format, ...)
+{
+    va_list args;
+
+    fprintf(stderr, "glint %s: ", tool->name);
+    va_start(args, format);
+    print_error(tool, format, args);
+    va_end(args);
+    fputc('\n', stderr);
+}
+
 int tool_usage(const struct tool *tool, const char *format, ...)
 {
     va_list args;
@@ -29,7 +54,7 @@ int tool_usage(const struct tool *tool, const char *format, ...)
     if (tool->where)
         fprintf(stderr, "%s: ", tool->where);
     va_start(args, format);
-    vfprintf(stderr, format, args);
+    print_error(tool, format, args);
     va_end(args);
     if (tool->where) {
         fputc('\n', stderr);
@@ -69,32 +94,8 @@ int tool_fail(const struct tool *tool, enum glint_status status,
 
     if (status == GLINT_E_CLOSED) /* the reader had enough: no failure */
         return EXIT_OK;
-    fprintf(stderr, "glint %s: %s\n", tool->name,
-            text && *text ? text : glint_status_text(status));
+    tool_error(tool, "%s", text && *text ? text : glint_status_text(status));
     return code[status];
-}
-
-static int show_version(void)
-{
-    const unsigned sets = glint_system_sets();
-
-    printf("glint %s (kernels: c%s%s%s; MIT licence)\n", GLINT_VERSION,
-           sets & GLINT_SET_SSE41 ? " sse41" : "",
-           sets & GLINT_SET_AVX2 ? " avx2" : "",
-           sets & GLINT_SET_NEON ? " neon" : "");
-    return EXIT_OK;
-}
-
-static int show_version_json(void)
-{
-    const unsigned sets = glint_system_sets();
-
-    printf("{\"name\": \"glint\", \"version\": \"%s\", \"kernels\": "
-           "[\"c\"%s%s%s], \"licence\": \"MIT\"}\n",
-           GLINT_VERSION, sets & GLINT_SET_SSE41 ? ", \"sse41\"" : "",
-           sets & GLINT_SET_AVX2 ? ", \"avx2\"" : "",
-           sets & GLINT_SET_NEON ? ", \"neon\"" : "");
-    return EXIT_OK;
 }
 
 /* Sets the instruction sets that VALUE, a word of --kernels, allows. Returns
@@ -194,7 +195,8 @@ int tool_option(struct tool *tool, int option, const char *value)
         help_options(&help, taken);
         return EXIT_OK;
     case 'V':
-        return tool->json ? show_version_json() : show_version();
+        help_version(tool->json);
+        return EXIT_OK;
     case 'q':
         tool->quiet = true;
         return -1;

@@ -37,6 +37,7 @@ struct tool {
     const char *kernels;           /* argument of --kernels, or NULL */
     struct glint_workers *workers; /* made by tool_start */
     const char *written;           /* file that no scene may read, or NULL */
+    struct glint_error *cause;     /* last message of tool_error(), or NULL */
     const char *where; /* "FILE:LINE" of the option being taken, or NULL for the
                           command line */
 };
@@ -97,7 +98,10 @@ const char *tool_value_of(int argc, char **argv, const char *shorts,
 int tool_inputs(const struct tool *tool, int argc, char **argv, int n,
                 const char *text);
 
-/* Print "glint COMMAND: ..." and return an exit code: tool_usage() EXIT_USAGE,
+/* Prints "glint COMMAND: ..." and copies the message to the tool's cause. */
+void tool_error(const struct tool *tool, const char *format, ...);
+
+/* Do so and return an exit code: tool_usage() EXIT_USAGE,
  * or EXIT_INPUT if the option comes from a file; tool_fail() that of STATUS,
  * but for GLINT_E_CLOSED, a reader that went away, it prints nothing. */
 int tool_usage(const struct tool *tool, const char *format, ...);
