@@ -13,6 +13,8 @@ ELEMENT ?= $(if $(CROSS),no,$(shell pkg-config --exists gstreamer-video-1.0 2>/d
 MODELS  ?= $(if $(CROSS),no,yes)
 MANUAL  ?= $(if $(CROSS),no,yes)
 to := $(DESTDIR)$(PREFIX)
+# GStreamer looks in one folder of the system, and where GST_PLUGIN_PATH says.
+element_to := $(or $(if $(CROSS),,$(if $(filter /usr,$(PREFIX)),$(shell pkg-config --variable=pluginsdir gstreamer-1.0 2>/dev/null))),$(LIBDIR)/gstreamer-1.0)
 libdir := $(DESTDIR)$(LIBDIR)
 lib := $(LIBDIR:$(PREFIX)/%=%)
 strip_too := $(if $(filter yes,$(STRIP)),-s $(CROSS:%=--strip-program=%strip))
@@ -32,7 +34,8 @@ install: install-library install-programs $(if $(filter yes,$(PLUGIN)),build/gli
 	        @echo 'without the mesh plug-in (pkg-config, libassimp-dev): OBJ')
 	$(if $(filter yes,$(WINDOW)),install $(strip_too) -m 755 build/glint-sdl.so $(libdir)/glint)
 	$(if $(filter yes,$(FREI0R)),install -d $(to)/lib/frei0r-1 && install $(strip_too) -m 644 build/glint-frei0r.so $(to)/lib/frei0r-1/glint.so)
-	$(if $(filter yes,$(ELEMENT)),install -d $(libdir)/gstreamer-1.0 && install $(strip_too) -m 644 $(placed_gstreamer) $(libdir)/gstreamer-1.0)
+	$(if $(filter yes,$(ELEMENT)),install -d $(DESTDIR)$(element_to) && install $(strip_too) -m 644 $(placed_gstreamer) $(DESTDIR)$(element_to))
+	$(if $(filter yes-no,$(ELEMENT)-$(if $(filter /usr,$(PREFIX)),yes,no)),@echo 'for GStreamer: export GST_PLUGIN_PATH=$(element_to)')
 	install -d $(addprefix $(to)/share/,$(dir $(shells)) $(if $(filter yes,$(MANUAL)),man/man1 man/man3 man/man5))
 	for s in $(shells); do install -m 644 tools/man/$${s##*/} $(to)/share/$$s || exit 1; done
 	mv $(to)/share/bash-completion/completions/glint.bash $(to)/share/bash-completion/completions/glint
@@ -85,7 +88,7 @@ uninstall:
 	        $(patsubst %,$(libdir)/lib%.a,$(LIBRARIES) glint-published) \
 	        $(addprefix $(libdir)/,$(foreach l,$(LIBRARIES),$(call shared_names,$l))) \
 	        $(LIBRARIES:%=$(libdir)/pkgconfig/%.pc) $(headers:%=$(to)/%) \
-        $(libdir)/glint/glint-assimp.so $(libdir)/glint/glint-sdl.so $(to)/lib/frei0r-1/glint.so $(libdir)/gstreamer-1.0/libgstglint.so \
+        $(libdir)/glint/glint-assimp.so $(libdir)/glint/glint-sdl.so $(to)/lib/frei0r-1/glint.so $(DESTDIR)$(element_to)/libgstglint.so \
 	        $(to)/lib/systemd/system/glint-live.service \
 	        $(patsubst %,$(to)/share/glint/%,$(wildcard lenses/figures.md lenses/*.lens lenses/*/*.lens)) \
 	        $(addprefix $(to)/share/,$(shells:.bash=)) $(to)/share/man/man1/glint.1 $(to)/share/man/man1/glint-*.1 \
