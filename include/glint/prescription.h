@@ -207,6 +207,10 @@ enum glint_status
 glint_prescription_set_f_number(struct glint_prescription *lens,
                                 double f_number, struct glint_error *error);
 
+/* Returns the smallest f-number of three digits that
+ * glint_prescription_set_f_number() accepts, to print. */
+double glint_prescription_widest(const struct glint_prescription *lens);
+
 /* Zooms LENS, which has not been focused, to ALONG, 0 .. 1. Between columns the
  * last gap follows the focus: it differs from the back focal length by as much
  * as in the columns. GLINT_E_ARGUMENT: LENS does not zoom, ALONG is out of

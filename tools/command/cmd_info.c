@@ -52,13 +52,6 @@ struct info {
     int n_ghosts;
 };
 
-/* Returns the f-number of the stop's largest opening. */
-static double widest_of(const struct info *info)
-{
-    return info->lens.f_number * info->optics.stop_radius_mm /
-           info->lens.stop_semi_mm;
-}
-
 static void print_json(const struct info *info)
 {
     printf("{\"name\": ");
@@ -73,8 +66,9 @@ static void print_json(const struct info *info)
            "\"focal_length_across_mm\": %.6f, \"positions_mm\": ",
            info->optics.focal_mm, info->optics.back_focal_mm,
            info->optics.entrance_radius_mm, info->optics.entrance_z_mm,
-           info->optics.stop_radius_mm, info->lens.f_number, widest_of(info),
-           info->optics.length_mm, info->optics.scale_mm, info->optics.squeeze,
+           info->optics.stop_radius_mm, info->lens.f_number,
+           glint_prescription_widest(&info->lens), info->optics.length_mm,
+           info->optics.scale_mm, info->optics.squeeze,
            info->optics.focal_mm / info->optics.squeeze);
     for (int k = 0; k < info->lens.zoom.n_positions; k++)
         printf("%s%.6f", k ? ", " : "[", info->lens.zoom.focal_mm[k]);
@@ -125,7 +119,7 @@ static void print_text(const struct info *info)
     printf("entrance pupil      %10.3f mm radius, %.3f mm behind the front\n",
            o->entrance_radius_mm, o->entrance_z_mm);
     printf("stop                %10.4f mm radius at f/%g, opens to f/%.3g\n",
-           o->stop_radius_mm, l->f_number, widest_of(info));
+           o->stop_radius_mm, l->f_number, glint_prescription_widest(l));
     printf("front to sensor     %10.3f mm\n", o->length_mm);
     printf("film                %6gx%g mm\n", l->film_width_mm,
            l->film_height_mm);

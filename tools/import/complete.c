@@ -239,7 +239,7 @@ static bool settle_pupil(struct imported *lens, double focal_units)
         lens->f_number = ceil(lens->f_number * 1000) / 1000;
         lens->pupil = focal_units / lens->f_number;
         return imported_note(lens, lens->surface[stop].line,
-                             "f/%.4g taken, to which the stop opens",
+                             "f/%g taken, to which the stop opens",
                              lens->f_number);
     } else
         return imported_fail(lens, 0,
@@ -424,7 +424,7 @@ static bool check_front(struct imported *lens, double focal_units)
         return true;
     return imported_fail(lens, front->line,
                          "f/%.4g needs %.4g mm of the front, which has a "
-                         "semi-diameter of %.4g: f/%.4g is the fastest "
+                         "semi-diameter of %.4g: f/%g is the fastest "
                          "that there can be",
                          lens->f_number, lens->pupil / 2 * lens->unit_mm,
                          front->semi * lens->unit_mm,

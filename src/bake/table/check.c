@@ -242,6 +242,18 @@ enum glint_status glint_prescription_fits(const struct glint_prescription *lens,
     return GLINT_E_ARGUMENT;
 }
 
+double glint_prescription_widest(const struct glint_prescription *lens)
+{
+    struct glint_optics optics;
+    double widest, unit;
+
+    glint_optics_of(lens, &optics);
+    widest = lens->f_number * optics.stop_radius_mm / lens->stop_semi_mm;
+    unit = pow(10.0, floor(log10(widest)) - 2.0);
+    return fmax(ceil(widest / unit * (1.0 - 0.5 * STOP_SLACK)) * unit,
+                GLINT_MIN_F_NUMBER);
+}
+
 enum glint_status
 glint_prescription_set_f_number(struct glint_prescription *lens,
                                 double f_number, struct glint_error *error)
@@ -263,8 +275,7 @@ glint_prescription_set_f_number(struct glint_prescription *lens,
                  "f/%g needs a stop of %.4g mm radius; %s opens to %.4g mm, "
                  "f/%.3g",
                  f_number, optics.stop_radius_mm, lens->name,
-                 lens->stop_semi_mm,
-                 f_number * optics.stop_radius_mm / lens->stop_semi_mm);
+                 lens->stop_semi_mm, glint_prescription_widest(lens));
         return GLINT_E_ARGUMENT;
     }
     lens->f_number = f_number;

@@ -570,6 +570,31 @@ static void test_long_file_name(void **state)
     assert_memory_equal(error.text, "...ddd", 6);
 }
 
+/* Nearest roundings of these are too small. */
+static void test_printed_widest(void **state)
+{
+    static const char *const names[] = {"heliar-tronnier", "canon-zoom-long",
+                                        "itoh-zoom-mid", "nikon-zoom-short"};
+    static struct glint_prescription lens;
+    struct glint_error error;
+    char text[32];
+
+    (void)state;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        double widest;
+
+        load_lens(&lens, names[i]);
+        widest = glint_prescription_widest(&lens);
+        snprintf(text, sizeof text, "%.3g", widest);
+        assert_int_equal(
+            glint_prescription_set_f_number(&lens, strtod(text, NULL), &error),
+            GLINT_OK);
+        assert_int_equal(
+            glint_prescription_set_f_number(&lens, 0.99 * widest, &error),
+            GLINT_E_ARGUMENT);
+    }
+}
+
 static void test_set_f_number(void **state)
 {
     static struct glint_prescription lens;
@@ -587,7 +612,7 @@ static void test_set_f_number(void **state)
                      GLINT_E_ARGUMENT);
     assert_string_equal(error.text,
                         "f/2 needs a stop of 19.89 mm radius; heliar-tronnier "
-                        "opens to 11.6 mm, f/3.43");
+                        "opens to 11.6 mm, f/3.44");
     assert_int_equal(
         glint_prescription_set_f_number(&lens, (double)NAN, &error),
         GLINT_E_ARGUMENT);
@@ -696,6 +721,7 @@ int main(void)
         cmocka_unit_test(test_stated_values),
         cmocka_unit_test(test_long_file_name),
         cmocka_unit_test(test_set_f_number),
+        cmocka_unit_test(test_printed_widest),
         cmocka_unit_test(test_manual),
         cmocka_unit_test(test_corpus),
     };
