@@ -82,7 +82,8 @@ static void print_no_lens(const struct tool *tool, const char *name)
  * is. */
 static bool is_foreign(const char *name)
 {
-    static const char *const endings[] = {".zmx", ".seq", ".len", ".fx"};
+    static const char *const endings[] = {".zmx", ".seq", ".len", ".fx",
+                                          ".xml"};
     bool is = false;
 
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
@@ -149,6 +150,11 @@ int tool_lens(const struct tool *tool, const char *argument,
     status = parse_table(file, lens, &error);
     if (status == GLINT_OK)
         return EXIT_OK;
-    tool_fail(tool, status, error.text);
+    if (status == GLINT_E_LENS && !glint_ends_in(file, ".lens"))
+        tool_error(tool,
+                   "%s; a lens file of another program goes to glint import",
+                   error.text);
+    else
+        tool_fail(tool, status, error.text);
     return status == GLINT_E_MEMORY ? EXIT_RUNTIME : EXIT_LENS;
 }

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "posix/ending.h"
 #include "posix/error.h"
@@ -56,16 +57,16 @@ static enum glint_status bake(const char *path,
         tool_scene_name(path, name);
         status = glint_recording_read(baker, path, read_some, &reading, error);
         glint_input_close(&reading.in);
-        if (status == GLINT_OK) {
+        if (status == GLINT_OK)
             status =
                 glint_motion_baker_finish(baker, name, reading.key, &data,
                                           &file->bytes, &file->report, error);
-            if (status == GLINT_E_LENS) {
-                const struct glint_error cause = *error;
+    }
+    if (status != GLINT_OK && error->text[0] &&
+        strncmp(error->text, path, strlen(path)) != 0) {
+        const struct glint_error cause = *error;
 
-                glint_error_report(error, status, path, "%s", cause.text);
-            }
-        }
+        glint_error_report(error, status, path, "%s", cause.text);
     }
     glint_motion_baker_close(baker);
     file->data = data;

@@ -304,8 +304,9 @@ enum glint_status glint_motion_baker_finish(struct glint_motion_baker *baker,
 
     error->text[0] = '\0';
     if (!b->has_body)
-        return fail(error, "there is no structure: size, sensors, angle of "
-                           "view");
+        return fail(error,
+                    "there is no structure: size, sensors, angle of view; a "
+                    "lens file of another program goes to glint import");
     if (!b->n_frames)
         return fail(error, "there are no frames");
     if (b->n_intensities > 1 && b->n_intensities != b->body.n_sensors) {
