@@ -81,7 +81,7 @@ static int take(struct tool *tool, struct bake *b, int c, const char *name)
 
     switch (c) {
     case 'o':
-        b->output = optarg;
+        b->output = tool->written = optarg;
         break;
     case 'c':
         return coating_take(tool, &b->coating, optarg);
@@ -294,31 +294,63 @@ static int run(struct tool *tool, struct bake *b, const char *name)
     return code;
 }
 
-int cmd_bake(int argc, char **argv)
+static int bake_lens(struct tool *tool, int argc, char **argv)
 {
-    struct tool tool = {.name = "bake", .help = help};
-    struct bake b = {.output = NULL};
+    struct bake b = {.halfway_db = -1};
     int code;
 
-    if (render_has_scene(argc, argv))
-        return cmd_bake_scene(argc, argv);
-    for (int i = 1; i < argc; i++)
-        if (argv[i][0] != '-' && environment_file_is_source(argv[i]))
-            return cmd_bake_environment(argc, argv);
-    for (int i = 1; i < argc; i++)
-        if (argv[i][0] != '-' && motion_file_is_source(argv[i]))
-            return cmd_bake_motion(argc, argv);
-    for (int i = 1; i < argc; i++)
-        if (argv[i][0] != '-' && stone_file_is_text(argv[i]))
-            return cmd_bake_stone(argc, argv);
+    tool->help = help;
     glint_bake_defaults(&b.options);
-    b.halfway_db = -1;
-    code = parse(&tool, argc, argv, &b);
+    code = parse(tool, argc, argv, &b);
     if (code >= 0)
         return code;
-    code = tool_start(&tool);
+    code = tool_start(tool);
     if (code == EXIT_OK)
-        code = run(&tool, &b, argv[optind]);
-    tool_finish(&tool);
+        code = run(tool, &b, argv[optind]);
+    tool_finish(tool);
+    return code;
+}
+
+/* Bakes as the first input asks for whose name is of no lens. */
+static int bake_any(struct tool *tool, int argc, char **argv)
+{
+    static const struct {
+        bool (*is_one)(const char *name);
+        int (*bake)(struct tool *tool, int argc, char **argv);
+    } others[] = {{environment_file_is_source, cmd_bake_environment},
+                  {motion_file_is_source, cmd_bake_motion},
+                  {stone_file_is_text, cmd_bake_stone}};
+
+    if (render_has_scene(argc, argv))
+        return cmd_bake_scene(tool, argc, argv);
+    for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+        for (int i = 1; i < argc; i++)
+            if (argv[i][0] != '-' && others[k].is_one(argv[i]))
+                return others[k].bake(tool, argc, argv);
+    return bake_lens(tool, argc, argv);
+}
+
+/* Prints the failure of baking FILE, or NULL, with exit CODE as JSON. */
+static void print_failure(const struct tool *tool, const char *file, int code)
+{
+    printf("{\"error\": ");
+    tool_json_string(stdout, tool->cause->text);
+    printf(", \"file\": ");
+    if (file)
+        tool_json_string(stdout, file);
+    else
+        printf("null");
+    printf(", \"exit\": %d}\n", code);
+}
+
+int cmd_bake(int argc, char **argv)
+{
+    struct glint_error cause = {""};
+    struct tool tool = {.name = "bake", .cause = &cause};
+    const int code = bake_any(&tool, argc, argv);
+
+    if (code != EXIT_OK && tool.json &&
+        !(tool.written && strcmp(tool.written, "-") == 0))
+        print_failure(&tool, optind < argc ? argv[optind] : NULL, code);
     return code;
 }

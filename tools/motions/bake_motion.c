@@ -45,29 +45,30 @@ static int take(struct tool *tool, void *line, int c, const char *name)
     }
 }
 
-int cmd_bake_motion(int argc, char **argv)
+int cmd_bake_motion(struct tool *tool, int argc, char **argv)
 {
     static const struct option options[] = {
         BAKE_LINE_OPTIONS,
         {"fit", required_argument, NULL, 'f'},
         {"average", required_argument, NULL, 'a'},
         TOOL_COMMON_OPTIONS};
-    struct tool tool = {.name = "bake", .help = help, .help_end = COMMON_HELP};
     struct glint_motion_options o;
     struct motion_file file;
     int code;
 
     glint_motion_defaults(&o);
-    code = bake_line_begin(&tool, argc, argv, options, take, &o,
+    tool->help = help;
+    tool->help_end = COMMON_HELP;
+    code = bake_line_begin(tool, argc, argv, options, take, &o,
                            "takes one recording");
     if (code >= 0)
         return code;
-    code = motion_file_open(&tool, argv[optind], &o, &file);
+    code = motion_file_open(tool, argv[optind], &o, &file);
     if (code != EXIT_OK)
         return code;
-    code = bake_line_write(&tool, file.data, file.bytes);
-    if (code == EXIT_OK && bake_line_tells(&tool))
-        motion_file_print(&tool, &file);
+    code = bake_line_write(tool, file.data, file.bytes);
+    if (code == EXIT_OK && bake_line_tells(tool))
+        motion_file_print(tool, &file);
     motion_file_close(&file);
     return code;
 }

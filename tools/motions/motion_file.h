@@ -41,6 +41,6 @@ int motion_file_poses(const struct tool *tool, struct motion_file *file,
                       const char *to);
 
 /* glint bake of motions, as the commands of options/tool.h. */
-int cmd_bake_motion(int argc, char **argv);
+int cmd_bake_motion(struct tool *tool, int argc, char **argv);
 
 #endif

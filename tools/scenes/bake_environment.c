@@ -95,7 +95,7 @@ static int take(struct tool *tool, void *line, int c, const char *name)
     return ok ? -1 : tool_refuse(tool, name, optarg);
 }
 
-int cmd_bake_environment(int argc, char **argv)
+int cmd_bake_environment(struct tool *tool, int argc, char **argv)
 {
     static const struct option options[] = {
         BAKE_LINE_OPTIONS,
@@ -106,21 +106,23 @@ int cmd_bake_environment(int argc, char **argv)
         {"turn", required_argument, NULL, 't'},
         {"scale", required_argument, NULL, 'x'},
         TOOL_COMMON_OPTIONS};
-    struct tool tool = {.name = "bake", .help = help, .help_end = COMMON_HELP};
     struct line line = {
         .side_log2 = -1, .levels = -1, .code = -1, .lights = -1};
     struct environment_file file;
-    int code = bake_line_begin(&tool, argc, argv, options, take, &line,
-                               "takes one environment");
+    int code;
 
+    tool->help = help;
+    tool->help_end = COMMON_HELP;
+    code = bake_line_begin(tool, argc, argv, options, take, &line,
+                           "takes one environment");
     if (code >= 0)
         return code;
-    code = environment_file_open(&tool, argv[optind], over, &line, &file);
+    code = environment_file_open(tool, argv[optind], over, &line, &file);
     if (code != EXIT_OK)
         return code;
-    code = bake_line_write(&tool, file.data, file.bytes);
-    if (code == EXIT_OK && bake_line_tells(&tool))
-        environment_file_print(&tool, &file);
+    code = bake_line_write(tool, file.data, file.bytes);
+    if (code == EXIT_OK && bake_line_tells(tool))
+        environment_file_print(tool, &file);
     environment_file_close(&file);
     return code;
 }

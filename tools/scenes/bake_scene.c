@@ -14,23 +14,25 @@ static const char help[] =
     "\n"
     "  -o, --output OUT\n";
 
-int cmd_bake_scene(int argc, char **argv)
+int cmd_bake_scene(struct tool *tool, int argc, char **argv)
 {
     static const struct option options[] = {BAKE_LINE_OPTIONS,
                                             TOOL_COMMON_OPTIONS};
-    struct tool tool = {.name = "bake", .help = help, .help_end = COMMON_HELP};
     struct baked_scene scene = {.data = NULL};
-    int code = bake_line_begin(&tool, argc, argv, options, NULL, NULL,
-                               "takes one scene");
+    int code;
 
+    tool->help = help;
+    tool->help_end = COMMON_HELP;
+    code = bake_line_begin(tool, argc, argv, options, NULL, NULL,
+                           "takes one scene");
     if (code >= 0)
         return code;
-    code = baked_scene_open(&tool, argv[optind], &scene);
+    code = baked_scene_open(tool, argv[optind], &scene);
     if (code != EXIT_OK)
         return code;
-    code = bake_line_write(&tool, scene.data, scene.bytes);
-    if (code == EXIT_OK && bake_line_tells(&tool))
-        baked_scene_print(&tool, &scene);
+    code = bake_line_write(tool, scene.data, scene.bytes);
+    if (code == EXIT_OK && bake_line_tells(tool))
+        baked_scene_print(tool, &scene);
     baked_scene_close(&scene);
     return code;
 }

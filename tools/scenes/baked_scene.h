@@ -35,6 +35,6 @@ void baked_scene_print(const struct tool *tool,
 void baked_scene_bytes(const struct glint_scene_model *model, FILE *to);
 
 /* glint bake of scenes, as the commands of options/tool.h. */
-int cmd_bake_scene(int argc, char **argv);
+int cmd_bake_scene(struct tool *tool, int argc, char **argv);
 
 #endif

@@ -40,6 +40,6 @@ void environment_file_print(const struct tool *tool,
                             const struct environment_file *file);
 
 /* glint bake of environments, as the commands of options/tool.h. */
-int cmd_bake_environment(int argc, char **argv);
+int cmd_bake_environment(struct tool *tool, int argc, char **argv);
 
 #endif

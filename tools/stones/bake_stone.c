@@ -118,7 +118,7 @@ static int report(const struct tool *tool, const char *path, const char *folder)
     return code;
 }
 
-int cmd_bake_stone(int argc, char **argv)
+int cmd_bake_stone(struct tool *tool, int argc, char **argv)
 {
     static const struct option options[] = {
         BAKE_LINE_OPTIONS,
@@ -128,26 +128,28 @@ int cmd_bake_stone(int argc, char **argv)
         {"bits", required_argument, NULL, 'b'},
         {"report", required_argument, NULL, 'R'},
         TOOL_COMMON_OPTIONS};
-    struct tool tool = {.name = "bake", .help = help, .help_end = COMMON_HELP};
     struct line line = {
         .model = -1, .planes = -1, .rank = -1, .bits = {-1, -1}};
     struct glint_error error = {""};
     struct stone_file file;
     enum glint_status status;
-    int code = bake_line_begin(&tool, argc, argv, options, take, &line,
-                               "takes one stone");
+    int code;
 
+    tool->help = help;
+    tool->help_end = COMMON_HELP;
+    code = bake_line_begin(tool, argc, argv, options, take, &line,
+                           "takes one stone");
     if (code >= 0)
         return code;
     status =
-        stone_file_read(&tool, argv[optind], over, &line, true, &file, &error);
+        stone_file_read(tool, argv[optind], over, &line, true, &file, &error);
     if (status != GLINT_OK)
-        return tool_fail(&tool, status, error.text);
-    code = bake_line_write(&tool, file.data, file.bytes);
-    if (code == EXIT_OK && bake_line_tells(&tool))
-        stone_file_print(&tool, &file);
+        return tool_fail(tool, status, error.text);
+    code = bake_line_write(tool, file.data, file.bytes);
+    if (code == EXIT_OK && bake_line_tells(tool))
+        stone_file_print(tool, &file);
     stone_file_close(&file);
     if (code == EXIT_OK && line.report)
-        code = report(&tool, argv[optind], line.report);
+        code = report(tool, argv[optind], line.report);
     return code;
 }

@@ -54,6 +54,6 @@ enum glint_status stone_file_near(const struct glint_scatter_rows *rows,
 void stone_file_print(const struct tool *tool, const struct stone_file *file);
 
 /* glint bake of stones, as the commands of options/tool.h. */
-int cmd_bake_stone(int argc, char **argv);
+int cmd_bake_stone(struct tool *tool, int argc, char **argv);
 
 #endif
