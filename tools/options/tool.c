@@ -427,11 +427,14 @@ static void show_line(struct tool_progress *p, double now, double done)
             100 * p->most, spent, spent * (1 - done) / done);
 }
 
-/* Says how long it will take, once, if that is long. */
+/* Prints how long it will take, once, if that is long. What first steps prepare
+ * is not yet in proportion. */
 static void tell_length(struct tool_progress *p, double spent, double done)
 {
     const double all = spent / done, left = all - spent;
 
+    if (spent < 1)
+        return;
     p->told = true;
     if (all < 20)
         return;

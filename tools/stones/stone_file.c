@@ -243,13 +243,15 @@ static enum glint_status bake(const struct tool *tool, struct source *s,
                                       .ctx = &progress};
     struct glint_scatter_rows rows = {.side = 0};
     const clock_t began = clock();
+    /* fraction of the time before the fit, as measured; pictures are read */
+    const double before = s->rows.rgb ? .05 : .8;
     enum glint_status status;
 
     tool_progress_start(&progress, tool, name);
-    tool_progress_part(&progress, 0, .6);
+    tool_progress_part(&progress, 0, before);
     status = make_rows(s, &watch, &rows, error);
     if (status == GLINT_OK) {
-        tool_progress_part(&progress, .6, .4);
+        tool_progress_part(&progress, before, 1 - before);
         status = fit_rows(&rows, s, name, &watch, file, error);
         glint_scatter_close(&rows);
     }
