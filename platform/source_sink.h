@@ -46,11 +46,17 @@ struct glint_source_format {
 };
 
 struct glint_source {
-    int fd;         /* readable when there may be a frame; next may change it */
+    int fd;         /* readable when there may be a frame, once SOURCE was
+                       started; start and next may change it */
     int n_restarts; /* times that it began anew since it was opened; its format
                        may change with each */
     bool has_signal; /* false: frames show what the device makes of no signal */
 
+    /* Begins to deliver frames, after SOURCE was opened and after each restart.
+     * The caller first sets up for the format, as frames that come meanwhile
+     * would be lost. GLINT_E_DEVICE: close SOURCE. */
+    enum glint_status (*start)(struct glint_source *source,
+                               struct glint_error *error);
     /* Sets FRAME to the newest frame and gives back older ones; never waits.
      * GLINT_E_DEVICE: the device is lost; close SOURCE. GLINT_E_CLOSED: there
      * are no more frames. */

@@ -58,13 +58,23 @@ static enum glint_status make_decoder(struct glint_v4l2 *v,
                       : GLINT_OK;
 }
 
-static enum glint_status start(struct glint_v4l2 *v, struct glint_error *error)
+/* Gets buffers and a decoder for the format. */
+static enum glint_status prepare(struct glint_v4l2 *v,
+                                 struct glint_error *error)
 {
     const char *const failed = glint_v4l2_get_buffers(v);
-    int n_queued = 0;
 
     if (failed)
         return glint_ioctl_failed(error, v->device.path, failed);
+    v->is_cached = glint_v4l2_is_cached(v);
+    v->exports_dmabuf = glint_v4l2_can_export(v);
+    return make_decoder(v, error);
+}
+
+static enum glint_status begin(struct glint_v4l2 *v, struct glint_error *error)
+{
+    int n_queued = 0;
+
     for (int i = 0; i < v->n_buffers; i++)
         n_queued +=
             glint_v4l2_queue(v, i) == 0; /* Refused buffers are queued later. */
@@ -76,9 +86,27 @@ static enum glint_status start(struct glint_v4l2 *v, struct glint_error *error)
     v->n_numbered = 0;
     v->n_useless = 0;
     v->heard_us = glint_now_us();
-    v->is_cached = glint_v4l2_is_cached(v);
-    v->exports_dmabuf = glint_v4l2_can_export(v);
-    return make_decoder(v, error);
+    return GLINT_OK;
+}
+
+static bool is_patient(const struct glint_v4l2 *v)
+{
+    return v->broken_us && glint_now_us() - v->broken_us <= PATIENCE_US;
+}
+
+/* The first start fails at once; after a restart next tries again for
+ * PATIENCE_US. */
+static enum glint_status start(struct glint_source *source,
+                               struct glint_error *error)
+{
+    struct glint_v4l2 *v = (struct glint_v4l2 *)source;
+    const enum glint_status status =
+        v->streams || v->n_buffers == 0 ? GLINT_OK : begin(v, error);
+
+    if (status == GLINT_OK || !is_patient(v))
+        return status;
+    stop(v);
+    return GLINT_OK;
 }
 
 static enum glint_status gone(const struct glint_v4l2 *v,
@@ -111,8 +139,8 @@ static enum glint_status agree_anew(struct glint_v4l2 *v,
     return status;
 }
 
-/* Stops the stream and starts it with the format that the device has now. Only
- * a frame tells whether that helped: until one comes, failures are ignored for
+/* Stops the stream and prepares it for the format that the device has now. Only
+ * a frame shows whether that helped: until one comes, failures are ignored for
  * PATIENCE_US. After that the error is that of the request that fails, or WHY
  * where the stream had started. */
 static enum glint_status start_anew(struct glint_v4l2 *v, const char *why,
@@ -130,15 +158,15 @@ static enum glint_status start_anew(struct glint_v4l2 *v, const char *why,
         v->broken_us = glint_now_us();
     else {
         nanosleep(&breath, NULL);
-        is_late = glint_now_us() - v->broken_us > PATIENCE_US;
+        is_late = !is_patient(v);
     }
     if (is_late && started)
         return glint_error_report(error, GLINT_E_DEVICE, v->device.path,
                                   "%s, and starting anew does not help", why);
-    v->source.n_restarts++;
     status = agree_anew(v, error);
     if (status == GLINT_OK)
-        status = start(v, error);
+        status = prepare(v, error);
+    v->source.n_restarts += status == GLINT_OK;
     if (status == GLINT_E_UNSUPPORTED || v->device.fd < 0 || is_late)
         return status;
     if (status != GLINT_OK)
@@ -335,8 +363,14 @@ static enum glint_status take_frame(struct glint_v4l2 *v,
     struct glint_v4l2_taken newest;
 
     *frame = (struct glint_source_frame){.sequence = 0};
-    if (!v->streams)
+    if (!v->streams && v->n_buffers == 0)
         return start_anew(v, "the stream is broken", error);
+    if (!v->streams) {
+        const enum glint_status status = start(&v->source, error);
+
+        if (!v->streams)
+            return status;
+    }
     if (take_events(v))
         return start_anew(v, "the source changed", error);
     queue_idle(v);
@@ -431,6 +465,7 @@ enum glint_status glint_v4l2_open(struct glint_v4l2 *camera,
     enum glint_status status;
 
     *camera = (struct glint_v4l2){.source = {.fd = -1,
+                                             .start = start,
                                              .next = next,
                                              .done = done,
                                              .describe = describe,
@@ -440,7 +475,7 @@ enum glint_status glint_v4l2_open(struct glint_v4l2 *camera,
     status = glint_v4l2_device_open(&camera->device, wish, error);
     if (status != GLINT_OK)
         return status;
-    status = start(camera, error);
+    status = prepare(camera, error);
     if (status != GLINT_OK)
         close_camera(&camera->source);
     camera->source.fd = camera->device.fd;

@@ -3,6 +3,7 @@
  * linux/v4l2.h - a V4L2 camera as a source of live frames.
  *
  *     glint_v4l2_open(&camera, &wish, GLINT_V4L2_AUTO, 4, &error);
+ *     camera.source.start(&camera.source, &error);           when set up
  *     camera.source.next(&camera.source, &frame, &error);    when readable
  *     camera.source.done(&camera.source, &frame);
  *     camera.source.close(&camera.source);
@@ -12,10 +13,11 @@
  * shorter than a picture are counted and not shown. Buffers are mapped; else
  * the application's (USERPTR), else read(2), as the device allows.
  *
- * A stream that breaks is begun anew, with whatever format the device has then:
- * after failed requests, a fatal error of the driver, another source, 30
- * damaged frames in a row, or silence for two seconds and four frames. When
- * that does not help within a second, or the device is gone, next fails with
+ * next stops a stream that breaks and agrees on whatever format the device has
+ * then: after failed requests, a fatal error of the driver, another source, 30
+ * damaged frames in a row, or silence for two seconds and four frames. The
+ * caller starts it again; a call of next does so, too. When that does not help
+ * within a second, or the device is gone, start and next fail with
  * GLINT_E_DEVICE.
  */
 #ifndef GLINT_PLATFORM_LINUX_V4L2_H
@@ -44,7 +46,7 @@ struct glint_v4l2 {
     struct glint_source source;
     struct glint_v4l2_device device;
 
-    /* Set when the stream starts; for reports. */
+    /* Set when the buffers are there; for reports. */
     enum glint_v4l2_io io;
     int n_buffers;
     bool is_cached;      /* Buffers are read at the speed of memory. */
@@ -64,9 +66,10 @@ struct glint_v4l2 {
     int n_useless;     /* damaged frames in a row */
 };
 
-/* Opens the camera that WISH names and begins to stream by IO, with N_BUFFERS
- * buffers, 2 .. GLINT_V4L2_MAX_BUFFERS, or as many as the driver gives. On
- * failure CAMERA is closed. */
+/* Opens the camera that WISH names, agrees on a format and gets N_BUFFERS
+ * buffers for streaming by IO, 2 .. GLINT_V4L2_MAX_BUFFERS, or as many as the
+ * driver gives; from then on no other program changes the format. On failure
+ * CAMERA is closed. */
 enum glint_status glint_v4l2_open(struct glint_v4l2 *camera,
                                   const struct glint_v4l2_config *wish,
                                   enum glint_v4l2_io io, int n_buffers,

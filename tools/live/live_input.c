@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "live/live_input.h"
 
-#include <errno.h>
 #include <string.h>
-#include <unistd.h>
-
-#include "posix/error.h"
 
 static bool is_test(const char *name)
 {
@@ -15,22 +11,6 @@ static bool is_test(const char *name)
 bool live_input_is_camera(const char *name)
 {
     return !is_test(name) && !glint_y4m_is_name(name) && strcmp(name, "-") != 0;
-}
-
-enum glint_status live_input_check(const char *name, struct glint_error *error)
-{
-    struct glint_v4l2_device device;
-    enum glint_status status;
-
-    if (glint_y4m_is_name(name) && access(name, R_OK) != 0)
-        return glint_error_report(error, GLINT_E_IO, name, "%s",
-                                  strerror(errno));
-    if (!live_input_is_camera(name))
-        return GLINT_OK;
-    status = glint_v4l2_device_attach(&device, name, error);
-    if (status == GLINT_OK)
-        glint_v4l2_device_close(&device);
-    return status;
 }
 
 enum glint_status live_input_open(struct live_input *input,
@@ -62,4 +42,30 @@ void live_input_close(struct live_input *input)
     if (input->source)
         input->source->close(input->source);
     input->source = NULL;
+}
+
+/* Returns whether NAME has the extension of a file, as no device has. */
+static bool is_file_name(const char *name)
+{
+    const char *const slash = strrchr(name, '/');
+
+    return strncmp(name, "/dev/", 5) != 0 && strchr(slash ? slash : name, '.');
+}
+
+int live_input_fail(const struct live_log *log, const char *device,
+                    enum glint_status status, const struct glint_error *error)
+{
+    char text[sizeof error->text + 120];
+
+    if (status == GLINT_E_DEVICE && is_file_name(device)) {
+        snprintf(text, sizeof text,
+                 "%.160s: no camera; videos and pictures are for glint "
+                 "overlay, or 'ffmpeg -i FILE -f yuv4mpegpipe - | glint live "
+                 "-d -'",
+                 device);
+        return tool_fail(log->tool, status, text);
+    }
+    return live_log_fail(
+        log, status, error,
+        live_input_is_camera(device) ? "-d test, or a .y4m file" : NULL);
 }

@@ -9,6 +9,7 @@
 #define GLINT_TOOLS_LIVE_LIVE_INPUT_H
 
 #include "linux/v4l2.h"
+#include "live/live_log.h"
 #include "live/live_test.h"
 #include "live/live_video.h"
 
@@ -30,14 +31,15 @@ struct live_input {
 /* Returns whether NAME stands for a camera. */
 bool live_input_is_camera(const char *name);
 
-/* Checks whether the source NAME is there, before a lens is opened.
- * GLINT_E_DEVICE, GLINT_E_IO. */
-enum glint_status live_input_check(const char *name, struct glint_error *error);
-
-/* Opens the source that WISH names; SEED is for the noise of the test. */
+/* Opens the source that WISH names, which its start begins; SEED is for the
+ * noise of the test. */
 enum glint_status live_input_open(struct live_input *input,
                                   const struct live_wish *wish, uint32_t seed,
                                   struct glint_error *error);
+
+/* Reports why DEVICE cannot be opened or started. Returns an exit code. */
+int live_input_fail(const struct live_log *log, const char *device,
+                    enum glint_status status, const struct glint_error *error);
 
 /* Closes INPUT, unless it is closed already. */
 void live_input_close(struct live_input *input);

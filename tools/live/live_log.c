@@ -31,6 +31,17 @@ void live_log_say(const struct live_log *log, const char *text)
                 text);
 }
 
+int live_log_fail(const struct live_log *log, enum glint_status status,
+                  const struct glint_error *error, const char *instead)
+{
+    char text[sizeof error->text + 80];
+
+    if (status != GLINT_E_DEVICE || !instead)
+        return tool_fail(log->tool, status, error->text);
+    snprintf(text, sizeof text, "%s; without one: %s", error->text, instead);
+    return tool_fail(log->tool, status, text);
+}
+
 void live_log_short(struct live_log *log, const struct glint_flare_stats *of)
 {
     char text[160];

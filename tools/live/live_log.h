@@ -28,6 +28,11 @@ struct live_log {
 void live_log_init(struct live_log *log, const struct tool *tool,
                    enum live_report asked, bool is_piped);
 
+/* Reports ERROR, and if a device is missing what to use INSTEAD, unless NULL.
+ * Returns an exit code. */
+int live_log_fail(const struct live_log *log, enum glint_status status,
+                  const struct glint_error *error, const char *instead);
+
 /* Prints TEXT on a line of its own, unless -q is given. */
 void live_log_say(const struct live_log *log, const char *text);
 

@@ -73,49 +73,16 @@ static enum glint_status open_camera(struct live *l, struct glint_error *error)
     if (l->o->compositor.sized && l->o->compositor.has_lens)
         glint_lamp_detector_restart(&l->o->compositor.finder);
     l->had_signal = l->in.source->has_signal;
-    take_format(l);
     return GLINT_OK;
 }
 
-/* Reports ERROR, and if a device is missing what to use INSTEAD. Returns an
- * exit code. */
-static int fail_without(const struct live *l, enum glint_status status,
-                        const struct glint_error *error, const char *instead)
+static enum glint_status start_input(struct live *l, struct glint_error *error)
 {
-    char text[sizeof error->text + 80];
+    const enum glint_status status = l->in.source->start(l->in.source, error);
 
-    if (status != GLINT_E_DEVICE || !instead)
-        return tool_fail(l->tool, status, error->text);
-    snprintf(text, sizeof text, "%s; without one: %s", error->text, instead);
-    return tool_fail(l->tool, status, text);
-}
-
-/* Returns whether NAME has the extension of a file, as no device has. */
-static bool is_file_name(const char *name)
-{
-    const char *const slash = strrchr(name, '/');
-
-    return strncmp(name, "/dev/", 5) != 0 && strchr(slash ? slash : name, '.');
-}
-
-static int fail_camera(const struct live *l, enum glint_status status,
-                       const struct glint_error *error)
-{
-    const char *const device = l->o->input.camera.device;
-    char text[sizeof error->text + 120];
-
-    if (status == GLINT_E_DEVICE && device && is_file_name(device)) {
-        snprintf(text, sizeof text,
-                 "%.160s: no camera; videos and pictures are for glint "
-                 "overlay, or 'ffmpeg -i FILE -f yuv4mpegpipe - | glint live "
-                 "-d -'",
-                 device);
-        return tool_fail(l->tool, status, text);
-    }
-    return fail_without(l, status, error,
-                        device && live_input_is_camera(device)
-                            ? "-d test, or a .y4m file"
-                            : NULL);
+    if (status != GLINT_OK)
+        live_input_close(&l->in);
+    return status;
 }
 
 static int open_output(struct live *l, const struct glint_image *image)
@@ -135,10 +102,10 @@ static int open_output(struct live *l, const struct glint_image *image)
         l->retry_us = glint_now_us() + 1000 * RETRY_MS;
         return EXIT_OK;
     }
-    return fail_without(l, status, &error,
-                        l->output.kind == LIVE_OUTPUT_FB
-                            ? "-o window, or -o y4m:- into a player"
-                            : NULL);
+    return live_log_fail(&l->log, status, &error,
+                         l->output.kind == LIVE_OUTPUT_FB
+                             ? "-o window, or -o y4m:- into a player"
+                             : NULL);
 }
 
 /* Turns the dials of flare and scene to the step. Returns an exit code. */
@@ -167,6 +134,17 @@ static int take_size(struct live *l, const struct glint_image *image)
         return code;
     l->asked = compositor->frame.dials;
     return turn(l);
+}
+
+/* Sets up for the input's format: compositor and output. Returns an exit
+ * code. */
+static int set_up(struct live *l)
+{
+    int code;
+
+    take_format(l);
+    code = take_size(l, &l->format.image);
+    return code == EXIT_OK ? open_output(l, &l->format.image) : code;
 }
 
 /* ------------------------------------------------------------------- frames */
@@ -290,16 +268,24 @@ static int lose_output(struct live *l, enum glint_status status,
     return lose(l, "output", status, why);
 }
 
-static void retry_camera(struct live *l)
+/* Returns -1 to go on, or an exit code. */
+static int retry_camera(struct live *l)
 {
     struct glint_error error = {""};
 
-    if (open_camera(l, &error) == GLINT_OK)
-        return;
+    if (open_camera(l, &error) == GLINT_OK) {
+        const int code = set_up(l);
+
+        if (code != EXIT_OK)
+            return code;
+        if (start_input(l, &error) == GLINT_OK)
+            return -1;
+    }
     if (strcmp(error.text, l->why.text) != 0)
         live_log_say(&l->log, error.text);
     l->why = error;
     live_signals_wait(-1, RETRY_MS);
+    return -1;
 }
 
 /* Returns the us since the frame before, at most 10^9; 40000 for the first
@@ -369,6 +355,20 @@ static void say_signal(struct live *l)
     l->had_signal = has;
 }
 
+/* Sets up for the format that the input has agreed on again, and starts it.
+ * Returns -1 to go on, or an exit code. */
+static int restart(struct live *l)
+{
+    struct glint_error error = {""};
+    const int code = set_up(l);
+    enum glint_status status;
+
+    if (code != EXIT_OK)
+        return code;
+    status = start_input(l, &error);
+    return status == GLINT_OK ? -1 : lose_camera(l, status, error.text);
+}
+
 /* Takes and shows a frame, if there is one. Returns -1 to go on, or an exit
  * code. */
 static int step(struct live *l)
@@ -382,12 +382,10 @@ static int step(struct live *l)
 
     if (status != GLINT_OK)
         return lose_camera(l, status, error.text);
-    if (source->n_restarts != l->n_restarts)
-        take_format(l);
     say_signal(l);
     if (!frame.image.plane[0]) {
         note(l, &frame, NULL);
-        return -1;
+        return source->n_restarts != l->n_restarts ? restart(l) : -1;
     }
     if (l->o->skip > 0)
         l->o->skip--;
@@ -426,7 +424,7 @@ static int loop(struct live *l)
         if (live_signal(LIVE_RELOAD))
             reload(l);
         if (!l->in.source) {
-            retry_camera(l);
+            code = retry_camera(l);
             live_log_second(&l->log, live_signal(LIVE_REPORT_NOW));
             continue;
         }
@@ -439,6 +437,7 @@ static int loop(struct live *l)
 
 static int start(struct live *l)
 {
+    const char *const device = l->o->input.camera.device;
     struct glint_error error = {""};
     enum glint_status status;
     int code = EXIT_OK;
@@ -447,17 +446,20 @@ static int start(struct live *l)
         code = open_output(l, &(struct glint_image){.width = 0});
     if (code != EXIT_OK)
         return code;
-    status = live_input_check(l->o->input.camera.device, &error);
+    status = open_camera(l, &error);
     if (status != GLINT_OK)
-        return fail_camera(l, status, &error);
+        return live_input_fail(&l->log, device, status, &error);
     code = compositor_open(l->tool, &l->o->compositor);
     if (code != EXIT_OK)
         return code;
     live_signals_take(); /* Until here a signal kills the run at once. */
-    status = open_camera(l, &error);
-    if (status != GLINT_OK)
-        return fail_camera(l, status, &error);
-    return take_size(l, &l->format.image);
+    code = set_up(l);
+    if (code != EXIT_OK)
+        return code;
+    status = start_input(l, &error);
+    return status == GLINT_OK
+               ? EXIT_OK
+               : live_input_fail(&l->log, device, status, &error);
 }
 
 int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,

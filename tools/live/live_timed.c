@@ -20,6 +20,29 @@ static void describe(const struct glint_source *source,
     *format = ((const struct live_timed *)source)->format;
 }
 
+/* Starts the timer, unless the source has an fd of its own. */
+static enum glint_status start(struct glint_source *source,
+                               struct glint_error *error)
+{
+    struct live_timed *timed = (struct live_timed *)source;
+    const struct glint_source_format *f = &timed->format;
+    const int64_t stated = 1000000000LL * f->fps_den / f->fps_num;
+    /* 0 would stop the timer */
+    const int64_t ns = stated > 1000 ? stated : 1000;
+    const struct timespec period = {(time_t)(ns / 1000000000),
+                                    (long)(ns % 1000000000)};
+    const struct itimerspec times = {period, period};
+
+    if (source->fd >= 0)
+        return GLINT_OK;
+    timed->timer = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+    if (timed->timer < 0 || timerfd_settime(timed->timer, 0, &times, NULL) < 0)
+        return glint_error_report(error, GLINT_E_DEVICE, timed->name,
+                                  "no timer: %s", strerror(errno));
+    source->fd = timed->timer;
+    return GLINT_OK;
+}
+
 void live_timed_init(struct live_timed *timed,
                      const struct glint_source_format *format,
                      const struct glint_v4l2_config *wish, const char *card)
@@ -28,9 +51,11 @@ void live_timed_init(struct live_timed *timed,
 
     *timed = (struct live_timed){.source = {.fd = -1,
                                             .has_signal = true,
+                                            .start = start,
                                             .done = done,
                                             .describe = describe},
                                  .format = *format,
+                                 .name = wish->device,
                                  .timer = -1};
     if (f->fps_num == 0)
         f->fps_num = 30, f->fps_den = 1;
@@ -45,25 +70,6 @@ void live_timed_init(struct live_timed *timed,
     snprintf(f->text, sizeof f->text, "%.256s (%s): %dx%d, %.5g fps",
              wish->device, card, f->image.width, f->image.height,
              (double)f->fps_num / f->fps_den);
-}
-
-enum glint_status live_timed_start(struct live_timed *timed, const char *name,
-                                   struct glint_error *error)
-{
-    const struct glint_source_format *f = &timed->format;
-    const int64_t stated = 1000000000LL * f->fps_den / f->fps_num;
-    /* 0 would stop the timer */
-    const int64_t ns = stated > 1000 ? stated : 1000;
-    const struct timespec period = {(time_t)(ns / 1000000000),
-                                    (long)(ns % 1000000000)};
-    const struct itimerspec times = {period, period};
-
-    timed->timer = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
-    if (timed->timer < 0 || timerfd_settime(timed->timer, 0, &times, NULL) < 0)
-        return glint_error_report(error, GLINT_E_DEVICE, name, "no timer: %s",
-                                  strerror(errno));
-    timed->source.fd = timed->timer;
-    return GLINT_OK;
 }
 
 /* Returns how many frames are due now. The first is due at once; without a

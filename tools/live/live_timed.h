@@ -12,20 +12,17 @@
 struct live_timed {
     struct glint_source source;
     struct glint_source_format format;
-    int timer; /* -1: each frame is due when it comes */
-    int64_t n; /* number of the next frame */
+    const char *name; /* of the source, in errors */
+    int timer;        /* -1: each frame is due when it comes */
+    int64_t n;        /* number of the next frame */
 };
 
 /* Prepares TIMED for frames of FORMAT, with the rate, range and matrix of WISH
- * if it gives any. CARD says what the source is. The implementation sets next,
- * close and fd. */
+ * if it gives any. CARD says what the source is. start begins a timer and makes
+ * it the source's fd. The implementation sets next and close. */
 void live_timed_init(struct live_timed *timed,
                      const struct glint_source_format *format,
                      const struct glint_v4l2_config *wish, const char *card);
-
-/* Starts the timer and makes it the source's fd. GLINT_E_DEVICE. */
-enum glint_status live_timed_start(struct live_timed *timed, const char *name,
-                                   struct glint_error *error);
 
 /* Begins FRAME. Returns how many frames have come due since the last call, of
  * which the last is to be shown; 0 if none has. */

@@ -44,7 +44,7 @@ enum glint_status live_video_open(struct live_video *video,
                                   struct glint_error *error)
 {
     const struct glint_y4m_header *h = &video->reader.header;
-    enum glint_status status =
+    const enum glint_status status =
         glint_y4m_reader_open(&video->reader, wish->device, error);
 
     if (status != GLINT_OK)
@@ -64,9 +64,5 @@ enum glint_status live_video_open(struct live_video *video,
     video->timed.source.close = close_video;
     if (strcmp(wish->device, "-") == 0)
         video->timed.source.fd = video->reader.in.fd;
-    else
-        status = live_timed_start(&video->timed, wish->device, error);
-    if (status != GLINT_OK)
-        close_video(&video->timed.source);
-    return status;
+    return GLINT_OK;
 }

@@ -29,8 +29,16 @@ static const struct glint_v4l2_config any_camera = {
 static inline enum glint_status try_open(const struct glint_v4l2_config *wish,
                                          enum glint_v4l2_io io)
 {
+    enum glint_status status;
+
     said.text[0] = '\0';
-    return glint_v4l2_open(&v4l2, wish ? wish : &any_camera, io, 4, &said);
+    status = glint_v4l2_open(&v4l2, wish ? wish : &any_camera, io, 4, &said);
+    if (status == GLINT_OK) {
+        status = v4l2.source.start(&v4l2.source, &said);
+        if (status != GLINT_OK)
+            v4l2.source.close(&v4l2.source);
+    }
+    return status;
 }
 
 static inline void must_open(const struct glint_v4l2_config *wish)

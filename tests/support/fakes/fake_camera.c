@@ -564,6 +564,8 @@ static int stream(bool on)
 {
     if (on && camera.n_buffers == 0)
         return refuse(EINVAL);
+    if (on && camera.on_stream)
+        camera.on_stream();
     camera.n_streamons += on;
     camera.streams = on;
     if (!on) {

@@ -82,6 +82,7 @@ struct fake_camera {
     int n_frames;
     int read_errno;           /* errno with which read() fails; 0: none */
     void (*on_dequeue)(void); /* Each DQBUF calls this first, unless NULL. */
+    void (*on_stream)(void);  /* Each STREAMON calls this first, unless NULL. */
     int says_index;           /* index that DQBUF gives, plus 1; 0: the true
                                * one */
 

@@ -521,6 +521,35 @@ static void test_lent(void **state)
     must_close();
 }
 
+/* A camera that is open must not stream, but its format must be locked, until
+ * start; after a restart likewise. A call of next starts it, too. */
+static void test_streams_when_started(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    assert_int_equal(
+        glint_v4l2_open(&v4l2, &any_camera, GLINT_V4L2_AUTO, 4, &said),
+        GLINT_OK);
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(camera.n_streamons, i);
+        assert_false(camera.streams);
+        assert_int_equal(camera.n_buffers, 4);
+        assert_int_equal(camera.n_queued, 0);
+        assert_int_equal(v4l2.source.start(&v4l2.source, &said), GLINT_OK);
+        assert_int_equal(camera.n_streamons, i + 1);
+        assert_int_equal(camera.n_queued, 4);
+        assert_int_equal(v4l2.source.start(&v4l2.source, &said), GLINT_OK);
+        assert_int_equal(camera.n_streamons, i + 1);
+        camera.is_broken = true;
+        must_get_nothing();
+    }
+    assert_false(camera.streams);
+    fake_camera_deliver(0, 5);
+    must_get(5);
+    assert_int_equal(camera.n_streamons, 3);
+    must_close();
+}
+
 static int dropped(uint32_t sequence)
 {
     fake_camera_deliver(sequence, 9);
@@ -720,6 +749,7 @@ int main(void)
         cmocka_unit_test(test_newest),
         cmocka_unit_test(test_stamps),
         cmocka_unit_test(test_lent),
+        cmocka_unit_test(test_streams_when_started),
         cmocka_unit_test(test_sequence),
         cmocka_unit_test(test_gaps_add_up),
         cmocka_unit_test(test_leaps),

@@ -347,6 +347,7 @@ static void test_wrong_index(void **state)
     assert_int_equal(v4l2.source.n_restarts, 2);
     camera.says_index = 0;
     v4l2.source.done(&v4l2.source, &kept);
+    assert_int_equal(v4l2.source.start(&v4l2.source, &said), GLINT_OK);
     assert_int_equal(camera.n_queued, 4);
     fake_camera_deliver(0, 3);
     must_get(3);

@@ -147,6 +147,61 @@ static void test_frames(void **state)
     assert_int_equal(asked[149] - asked[2], 0); /* Frames take no memory. */
 }
 
+static int asked_at_stream[200], n_streams;
+
+static void count_stream(void)
+{
+    asked_at_stream[n_streams++] = fake_camera_asked();
+}
+
+/* Runs LINE with the waits of FOLLOW. Checks that STREAMON came N_STARTS times,
+ * each after all set-up: no memory is requested between it and frame WAIT + 1
+ * of the waits that follow. */
+static void must_set_up_first(const char *line, void (*follow)(int wait),
+                              const int *wait, int n_starts)
+{
+    fake_camera_reset();
+    camera.on_stream = count_stream;
+    n_streams = 0;
+    script = follow;
+    assert_int_equal(live(line), EXIT_OK);
+    must_leave_nothing();
+    assert_int_equal(n_streams, n_starts);
+    for (int i = 0; i < n_starts; i++)
+        if (asked[wait[i]] != asked_at_stream[i])
+            fail_msg("%s: %d blocks after start %d", line,
+                     asked[wait[i]] - asked_at_stream[i], i);
+}
+
+static void unplug(int wait)
+{
+    camera.is_gone = wait >= 20 && wait < 30;
+    count(wait);
+}
+
+static void change_size(int wait)
+{
+    if (wait % 10 == 5) {
+        camera.now.width = wait % 20 == 5 ? 128 : 64;
+        camera.n_events = 1;
+        camera.n_frames = 0;
+    }
+    count(wait);
+}
+
+/* The camera must stream only after all set-up, at the start, after it was
+ * unplugged, and for another size. */
+static void test_streams_last(void **state)
+{
+    static const int start[] = {10}, back[] = {10, 40},
+                     sizes[] = {4, 14, 24, 29};
+
+    (void)state;
+    must_set_up_first("--count 20", count, start, 1);
+    must_set_up_first("--count 50 --reconnect", unplug, back, 2);
+    must_set_up_first("--count 27", change_size, sizes, 4);
+}
+
 static void test_skip(void **state)
 {
     (void)state;
@@ -324,11 +379,6 @@ static void test_snapshot_waits(void **state)
 
 /* -------------------------------------------------------------- lost again */
 
-static void unplug(int wait)
-{
-    camera.is_gone = wait >= 20 && wait < 30;
-}
-
 static void test_unplugged(void **state)
 {
     (void)state;
@@ -351,16 +401,6 @@ static void test_comes_back(void **state)
         assert_int_equal(n_said("waiting for the camera"), 1);
         assert_int_equal(n_said("(Fake): YUYV 64x48 at 30 fps"), 2);
     }
-}
-
-static void change_size(int wait)
-{
-    if (wait % 10 == 5) {
-        camera.now.width = wait % 20 == 5 ? 128 : 64;
-        camera.n_events = 1;
-        camera.n_frames = 0;
-    }
-    count(wait);
 }
 
 static void test_other_sizes(void **state)
@@ -421,6 +461,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_frames),
+        cmocka_unit_test(test_streams_last),
         cmocka_unit_test(test_skip),
         cmocka_unit_test(test_reloads),
         cmocka_unit_test(test_bad_reloads),
