@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Stands in for settings_table.c and scene_file.c in programs without the
- * offline half, which take baked models and scenes only.
+ * Replaces settings_table.c, table_file.c and scene_file.c in programs without
+ * the offline half, which read baked models and scenes only.
  */
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "desk/stop_option.h"
+#include "model/table_file.h"
 #include "options/settings_table.h"
 #include "scenes/scene_file.h"
 #include "posix/ending.h"
@@ -34,6 +35,13 @@ int settings_open_table(const struct tool *tool, struct settings *settings,
                  "asked for (glint bake, on any machine)",
                  name, strerror(errno));
     return tool_fail(tool, GLINT_E_LENS, error.text);
+}
+
+int tool_lens(const struct tool *tool, const char *argument,
+              struct glint_prescription *lens)
+{
+    (void)lens;
+    return settings_open_table(tool, NULL, argument);
 }
 
 int stop_mask_read(const struct tool *tool, const char *file, uint8_t **mask,

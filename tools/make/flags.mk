@@ -37,10 +37,10 @@ PLUGGED := -O2 -g -ffile-prefix-map=$(CURDIR)=. -fPIC -fvisibility=hidden -share
 ifdef CROSS
 $(engine_o) $(platform_o) $(tools_o) $(main_o): CFLAGS += -Os -fno-asynchronous-unwind-tables -fno-unwind-tables
 endif
-# The run-time half has no library and small stack frames; --gc-sections takes
-# out what is not called.
+# The run-time half has no library, small stack frames and nothing to unwind;
+# --gc-sections takes out what is not called.
 $(core_o) $(published_o): CFLAGS += -ffreestanding -ffunction-sections -Wframe-larger-than=1024 \
-        -fno-asynchronous-unwind-tables
+        -fno-asynchronous-unwind-tables -fno-unwind-tables
 # An instruction set is a file-name suffix; nothing else may use its flags.
 $(OUT)/src/%_sse41.o: CFLAGS += -msse4.1
 $(OUT)/src/%_avx2.o: CFLAGS += -mavx2
