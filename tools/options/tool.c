@@ -401,7 +401,8 @@ void tool_progress_start(struct tool_progress *p, const struct tool *tool,
     p->what = what;
     p->less = p->besides = NULL;
     tool_progress_part(p, 0, 1);
-    p->started = tool_seconds();
+    p->clock = tool_seconds;
+    p->started = p->clock();
     p->last = 0;
     p->most = 0;
     p->shown = !tool->quiet;
@@ -450,7 +451,7 @@ static void tell_length(struct tool_progress *p, double spent, double done)
 void tool_progress_show(void *progress, double done)
 {
     struct tool_progress *p = progress;
-    const double now = tool_seconds(), spent = now - p->started;
+    const double now = p->clock(), spent = now - p->started;
     const int width = 30;
     char bar[32];
     int filled;

@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Progress on standard error, by a clock that the test sets.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "options/tool.h"
+
+static double now_s;
+
+static double clock_s(void)
+{
+    return now_s;
+}
+
+static struct tool_progress start(bool quiet, bool is_terminal)
+{
+    const struct tool tool = {.name = "bake", .quiet = quiet};
+    struct tool_progress p;
+
+    tool_progress_start(&p, &tool, "bake");
+    p.clock = clock_s;
+    p.started = 0;
+    p.is_terminal = is_terminal;
+    return p;
+}
+
+/* Returns what P prints of DONE at AT_S seconds. */
+static const char *shown(struct tool_progress *p, double at_s, double done)
+{
+    static char text[400];
+    FILE *const file = tmpfile();
+    const int err = dup(STDERR_FILENO);
+
+    assert_non_null(file);
+    now_s = at_s;
+    fflush(stderr);
+    dup2(fileno(file), STDERR_FILENO);
+    tool_progress_show(p, done);
+    fflush(stderr);
+    dup2(err, STDERR_FILENO);
+    close(err);
+    rewind(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    return text;
+}
+
+static void test_short_work(void **state)
+{
+    struct tool_progress p = start(false, false);
+
+    (void)state;
+    for (int k = 0; k <= 99; k++)
+        assert_string_equal(shown(&p, 0.1 * k, k / 100.), "");
+    assert_string_equal(shown(&p, 500, 1), ""); /* nothing is left */
+}
+
+static void test_line_every_ten_seconds(void **state)
+{
+    struct tool_progress p = start(false, false);
+
+    (void)state;
+    assert_string_equal(shown(&p, 1, 0.1), "");
+    assert_string_equal(shown(&p, 9.9, 0.2), "");
+    assert_string_equal(shown(&p, 10, 0.25),
+                        "bake: 25 % in 10 s, about 30 s left\n");
+    assert_string_equal(shown(&p, 19.9, 0.4), "");
+    /* More work than was expected takes nothing back. */
+    assert_string_equal(shown(&p, 20, 0.2),
+                        "bake: 40 % in 20 s, about 80 s left\n");
+}
+
+/* The second part of the work counts from where the first ends. */
+static void test_parts(void **state)
+{
+    struct tool_progress p = start(false, false);
+
+    (void)state;
+    tool_progress_part(&p, 0, 0.6);
+    assert_string_equal(shown(&p, 1, 0.5), "");
+    tool_progress_part(&p, 0.6, 0.4);
+    assert_string_equal(shown(&p, 20, 0.5),
+                        "bake: 80 % in 20 s, about 5 s left\n");
+}
+
+/* Work of twenty seconds or more is announced once. */
+static void test_long_work(void **state)
+{
+    struct tool_progress p = start(false, false);
+
+    (void)state;
+    assert_string_equal(shown(&p, 1, 0), "");
+    assert_string_equal(shown(&p, 1, 0.02), "bake: takes about 49 s\n");
+    assert_string_equal(shown(&p, 2, 0.02), "");
+    p = start(false, false);
+    p.less = "a larger --tolerance";
+    p.besides = ", and reports";
+    assert_string_equal(shown(&p, 6, 0.01),
+                        "bake: takes about 10 minutes, and reports; less with "
+                        "a larger --tolerance\n");
+}
+
+static void test_quiet(void **state)
+{
+    (void)state;
+    for (int is_terminal = 0; is_terminal < 2; is_terminal++) {
+        struct tool_progress p = start(true, is_terminal);
+
+        assert_string_equal(shown(&p, 1, 0.01), "");
+        assert_string_equal(shown(&p, 100, 0.5), "");
+    }
+}
+
+/* A terminal gets a bar ten times a second, and at the end. */
+static void test_bar(void **state)
+{
+    struct tool_progress p = start(false, true);
+
+    (void)state;
+    assert_string_equal(shown(&p, 5, 0.5),
+                        "\rbake [###############...............]  50 %  "
+                        "5 s left \033[K");
+    assert_string_equal(shown(&p, 5.05, 0.6), "");
+    assert_non_null(strstr(shown(&p, 5.2, 0.6), " 60 %  3 s left"));
+    assert_non_null(strstr(shown(&p, 5.15, 1), "100 %  0 s left"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_short_work),
+        cmocka_unit_test(test_line_every_ten_seconds),
+        cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_long_work),
+        cmocka_unit_test(test_quiet),
+        cmocka_unit_test(test_bar),
+    };
+
+    return cmocka_run_group_tests_name("progress", tests, NULL, NULL);
+}
