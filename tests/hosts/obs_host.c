@@ -16,7 +16,7 @@
 
 #include <obs-module.h>
 
-enum { WAIT_S = 60, FRAME_MS = 40, POLL_US = 2000, SLOW_POLLS = 5000 };
+enum { WAIT_S = 3600, FRAME_MS = 40, POLL_US = 2000, SLOW_POLLS = 100000 };
 
 /* ------------------------------------------------------------------- frames */
 
