@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * motion_table FRAMES DIR - by how much localised places miss the true ones, by
- * method and motion: tables to standard output, plots to DIR/motion-*.svg.
+ * motion_table FRAMES - prints by how much localised places miss the true ones,
+ * by method and motion.
  *
  * Methods take turns at chunks of frames, so that their times are of one run.
  */
@@ -12,7 +12,6 @@
 #include <time.h>
 
 #include "bake/motion/localise.h"
-#include "lab/plots/plot.h"
 #include "support/tracks/tracks.h"
 
 enum { CHUNK = 1000, BINS = 100, MOST_METHODS = 8, SEED = 163635 };
@@ -150,121 +149,23 @@ static void print(const struct method *method, int n, int n_frames,
     }
 }
 
-/* ------------------------------------------------------------------- plots */
-
-static void plot_lines(struct plot *p, const struct method *method, int n,
-                       const struct result *result)
-{
-    p->x.words = "share of the frames";
-    p->y.words = "error, rms of a hundredth";
-    p->y.is_log = true;
-    for (int i = 0; i < n; i++)
-        for (int k = 0; k < BINS; k++)
-            plot_stretch(p, k / (double)BINS, rms(&result[i], k, k + 1));
-    plot_frame(p);
-    for (int i = 0; i < n; i++) {
-        for (int k = 1; k + 1 < BINS; k++) {
-            const double a = rms(&result[i], k, k + 1);
-            const double b = rms(&result[i], k + 1, k + 2);
-
-            if (a > 0 && b > 0)
-                plot_line(p, k / (double)BINS, a, (k + 1) / (double)BINS, b,
-                          plot_colour(i), true);
-        }
-        plot_key(p, 's', plot_colour(i), method[i].name);
-    }
-}
-
-static FILE *plot_file(const char *dir, const char *name)
-{
-    char path[512];
-    FILE *file;
-
-    snprintf(path, sizeof path, "%s/motion-%s.svg", dir, name);
-    file = fopen(path, "w");
-    if (!file) {
-        perror(path);
-        exit(1);
-    }
-    return file;
-}
-
-/* Residuals of a baked motion, as its index has them, and its way from above.
- */
-static void plot_track(const char *dir, int n_frames)
-{
-    const struct track_options options = {1, n_frames, 5, 200, 6, SEED};
-    FILE *file = plot_file(dir, "track");
-    struct glint_localiser l;
-    struct track track;
-    struct track_frame f;
-    struct plot residual, above;
-    double *at = malloc((size_t)n_frames * 3 * sizeof *at);
-
-    if (!at)
-        exit(1);
-    plot_open(file, 2);
-    plot_init(&residual, file, 0, "residuals of a file");
-    plot_init(&above, file, 1, "the way, from above");
-    residual.x.words = "frame";
-    residual.y.words = "most of 204 frames";
-    residual.y.is_log = true;
-    above.x.words = "x";
-    above.y.words = "z";
-    glint_localiser_init(&l, GLINT_MOTION_ALL, true, GLINT_DOUBLE);
-    track_begin(&track, &options);
-    for (int i = 0; i < n_frames; i++) {
-        struct glint_located located;
-
-        track_next(&track, &f);
-        if (glint_localise(&l, 5, (const double(*)[3])f.seen, f.is_new,
-                           &located))
-            exit(1);
-        at[3 * i] = located.pose.at[0];
-        at[3 * i + 1] = located.pose.at[2];
-        at[3 * i + 2] =
-            i % 204 ? fmax(at[3 * i - 1], located.residual) : located.residual;
-        plot_stretch(&above, at[3 * i], at[3 * i + 1]);
-        if (i % 204 == 203)
-            plot_stretch(&residual, i, at[3 * i + 2]);
-    }
-    plot_frame(&residual);
-    plot_frame(&above);
-    for (int i = 203; i < n_frames; i += 204)
-        plot_mark(&residual, i, at[3 * i + 2], '.', plot_colour(0), NULL);
-    for (int i = 20; i < n_frames && i < 20000; i += 20)
-        plot_line(&above, at[3 * i - 60], at[3 * i - 59], at[3 * i],
-                  at[3 * i + 1], plot_colour(0), false);
-    plot_close(file);
-    fclose(file);
-    free(at);
-}
-
 /* ------------------------------------------------------------------ tables */
 
-static void compare(const char *dir, const char *name, int reset_every,
-                    int digits, const struct method *method, int n,
-                    int n_frames)
+static void compare(int reset_every, int digits, const struct method *method,
+                    int n, int n_frames)
 {
     static struct result result[MOST_METHODS];
-    FILE *file = plot_file(dir, name);
 
-    plot_open(file, TRACK_MOTIONS);
     printf("| motion | method | first tenth | last tenth | worst of that | "
            "correlation |\n|---|---|---|---|---|---|\n");
     for (int m = 0; m < TRACK_MOTIONS; m++) {
         const struct track_options options = {
             m, n_frames, 5, reset_every, digits, (uint32_t)(SEED + m)};
-        struct plot p;
 
         run(&options, method, n, result);
         printf("| %s | | | | | |\n", motions[m]);
         print(method, n, n_frames, result);
-        plot_init(&p, file, m, motions[m]);
-        plot_lines(&p, method, n, result);
     }
-    plot_close(file);
-    fclose(file);
 }
 
 static void time_methods(void)
@@ -292,20 +193,19 @@ static void time_methods(void)
 
 int main(int argc, char **argv)
 {
-    const int n = argc == 3 ? atoi(argv[1]) / CHUNK * CHUNK : 0;
+    const int n = argc == 2 ? atoi(argv[1]) / CHUNK * CHUNK : 0;
 
     if (n < 10 * CHUNK) {
-        fprintf(stderr, "motion_table FRAMES DIR: 10000 frames or more\n");
+        fprintf(stderr, "motion_table FRAMES: 10000 frames or more\n");
         return 2;
     }
     printf("### Foods that stay, all digits, %d frames\n\n", n);
-    compare(argv[2], "stay", 0, 0, exact_input, 8, n);
+    compare(0, 0, exact_input, 8, n);
     printf("\n### A food ends every 200 frames, %d times; text of six "
            "digits\n\n",
            (n - 1) / 200);
-    compare(argv[2], "resets", 200, 6, rounded_input, 5, n);
+    compare(200, 6, rounded_input, 5, n);
     printf("\n### Times, in those of first4 for 10000 frames\n\n");
     time_methods();
-    plot_track(argv[2], n < 200000 ? n : 200000);
     return 0;
 }

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * scene_cost BAKED [FRAMES [EDGE_SAMPLES [SHADOW_POINTS [HALF [WARD_SAMPLES
- * [NEAREST [WIDTH HEIGHT]]]]]]] - draws a baked scene onto a grey picture,
- * YUYV, of 640x360 if not told, by one thread, for
+ * scene_cost BAKED [FRAMES [EDGE_SAMPLES [SHADOW_POINTS [HALF]]]] - draws a
+ * baked scene onto a grey picture of 640x360, YUYV, by one thread, for
  * tools/report/scene-cost-table, which counts instructions. Each frame is
- * prepared anew. Prints how many pixels are covered, in thousandths of the
+ * prepared again. Prints how many pixels are covered, in thousandths of the
  * picture, what the scene's memory takes, and a hash of the last picture.
  */
 #include <stdio.h>
@@ -55,8 +54,8 @@ static int draw(const struct glint_scene_model *model, int argc, char **argv)
         &glint_scene_wards,  &glint_scene_stones,   NULL,
         &glint_scene_motions};
     struct glint_image image = {.format = GLINT_YUYV,
-                                .width = argc > 9 ? atoi(argv[8]) : 640,
-                                .height = argc > 9 ? atoi(argv[9]) : 360};
+                                .width = 640,
+                                .height = 360};
     /* Not inlined: counters look for their names. */
     void (*volatile idle)(const struct glint_image *, int) = scene_cost_idle;
     void (*volatile frame)(struct glint_scene *, const struct glint_image *) =
@@ -76,10 +75,6 @@ static int draw(const struct glint_scene_model *model, int argc, char **argv)
         cfg.shadow_points = atoi(argv[4]);
     if (argc > 5)
         cfg.half_shading = atoi(argv[5]);
-    if (argc > 6)
-        cfg.ward_samples = atoi(argv[6]);
-    if (argc > 7)
-        cfg.ward_nearest = atoi(argv[7]);
     bytes = glint_scene_bytes(&cfg, model);
     px = malloc(glint_image_bytes(image.format, image.width, image.height));
     if (!px || posix_memalign(&mem, 64, bytes) != 0 ||

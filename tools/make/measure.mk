@@ -2,8 +2,7 @@
 # tests/figures.
 
 video-report: $(OUT)/steady
-	@{ echo "revision $$(git rev-parse --short HEAD), $$(nproc)-core $$(uname -m) machine"; \
-	    echo; $(OUT)/steady --lens lenses/nikon-zoom-short.lens $(VIDEOS) || \
+	@{ $(OUT)/steady --lens lenses/nikon-zoom-short.lens $(VIDEOS) || \
 	    echo "steady: a step is larger than its bound" >&2; } | tools/report/write-figures steady
 occlusion-table: $(OUT)/occlusion
 	@$(OUT)/occlusion | tools/report/write-figures occlusion
@@ -32,7 +31,7 @@ mesh-table: all
 	@tools/report/mesh-table | tools/report/write-figures scenes/meshes
 # Ward's lobe under eight panoramas of Debian's blender-data.
 motion-table: all $(OUT)/motion_table
-	@$(OUT)/motion_table $(or $(FRAMES),200000) tests/figures/scenes | tools/report/write-figures scenes/motion
+	@$(OUT)/motion_table $(or $(FRAMES),200000) | tools/report/write-figures scenes/motion
 ward-table: all $(OUT)/ward_table
 	@tools/make/deps "pictures, and the plug-in for them" libopenimageio-dev pkg-config g++ >&2
 	@$(MAKE) --no-print-directory oiio >&2
@@ -47,31 +46,12 @@ stone-table: all $(OUT)/stone_rows $(OUT)/stone_cost
 	@$(MAKE) -s --no-print-directory TARGET=aarch64 \
 	        SYSROOT=$$(tests/arm/prepare aarch64) build/aarch64/stone_cost >&2
 	@tools/report/scenes/stone-table $(OUT) | tools/report/write-figures scenes/stone
-# What dials of stones cost and give, in pictures: some minutes.
-stone-dials: all
-	@tools/make/deps "instruction counts" valgrind >&2
-	@tools/report/scenes/stone-dials | tools/report/write-figures scenes/dials
 # Four materials under the eight panoramas.
 ward-sheet: all
 	@tools/make/deps "contact sheets, panoramas" python3-pil libopenimageio-dev pkg-config g++ >&2
 	@$(MAKE) --no-print-directory oiio >&2
 	@tools/report/scenes/ward-table true
 	@tools/report/scenes/ward-sheet tests/gallery/metals.jpg
-# What it costs, and Sunflow's Ward beside ours.
-ward-cost-table: all
-	@tools/make/deps "instruction counts on ARM, panoramas" gcc-aarch64-linux-gnu \
-	        libc6-dev-arm64-cross qemu-user libopenimageio-dev pkg-config g++ debian-archive-keyring >&2
-	@$(MAKE) --no-print-directory oiio >&2
-	@tools/report/scenes/ward-table true
-	@$(MAKE) -s --no-print-directory TARGET=aarch64 \
-	        SYSROOT=$$(tests/arm/prepare aarch64) build/aarch64/scene_cost >&2
-	@tools/report/scenes/ward-cost-table tests/figures/scenes/ward-cost.svg | tools/report/write-figures scenes/ward-cost
-sunflow-table: all
-	@tools/make/deps "scenes of another program" libsunflow-java libjanino-java default-jdk-headless >&2
-	@tests/peers/sunflow | tools/report/write-figures scenes/sunflow
-# A brushed ball that turns before a video, and flares: four processor minutes at most.
-glints-table: all $(OUT)/pan $(OUT)/twin_glints
-	@tools/report/scenes/glints-table $(OUT) tests/figures/scenes/glints.svg | tools/report/write-figures scenes/glints
 scene-cost-table: all
 	@tools/make/deps "instruction counts on ARM" gcc-aarch64-linux-gnu \
 	        libc6-dev-arm64-cross qemu-user debian-archive-keyring >&2
@@ -82,10 +62,6 @@ scene-budget-table: all
 	@tools/report/scenes/scene-budget-table | tools/report/write-figures scenes/budget
 bake-table: all $(OUT)/ray_errors
 	@tools/report/bake-table | tools/report/write-figures bake
-# LENSES="A.lens ...": these; EVERY=N: each Nth angle; OPEN=N, STOPS="...".
-wide-table: all $(OUT)/stop_costs
-	@STOP_COSTS=$(OUT)/stop_costs tools/report/wide-table $(LENSES) | tools/report/write-figures wide
-wide-table: export EVERY := $(EVERY)
 # What lenses of the library cost. LENSES="A.lens ...": these; STOP=N, LIMIT=SECONDS.
 library-table: all $(OUT)/stop_costs
 	@STOP_COSTS=$(OUT)/stop_costs tools/lens_figures/library-table $(LENSES) | \
@@ -93,10 +69,6 @@ library-table: all $(OUT)/stop_costs
 # Lenses that are not round. LENSES="A.lens ...": these; COUNT=N directions.
 azimuth-table: all
 	@tools/lens_figures/azimuth-table $(LENSES) | tools/report/write-figures shapes/azimuth
-fisheye-table: all
-	@STOP=11 DEGREES=85 tools/lens_figures/azimuth-table \
-	    $(or $(LENSES),$(addprefix lenses/wide/fisheye-,rokkor-16.lens zuiko-8.lens)) | \
-	    tools/report/write-figures shapes/fisheye
 # How far lights and ghosts move by a lens's own projection: a processor minute.
 projection-table: $(OUT)/projection_table
 	@$< lenses/*.lens lenses/*/*.lens | tools/report/write-figures shapes/projection
@@ -105,8 +77,6 @@ accuracy-table: all
 colour-table: all $(OUT)/hue_steps
 	@tools/make/deps "instruction counts" valgrind >&2
 	@HUE_STEPS=$(OUT)/hue_steps tools/report/colour-table | tools/report/write-figures colour
-coating-table: all
-	@tools/report/coating-table
 ray-table: all $(OUT)/ray_errors
 	@tools/report/ray-table build/bake | tools/report/write-figures rays
 stop-table: all
@@ -130,6 +100,9 @@ corpus:
 HALF ?= tune
 corpus-evaluate: corpus $(OUT)/corpus-found
 	@tests/corpus/evaluate --half $(HALF) --sheet build/corpus/found-$(HALF).jpg
+# Stars of two photographs by night, and ours.
+corpus-stars: corpus all
+	@tests/corpus/stars | tools/report/write-figures stars
 # All pictures beside what glint makes of them; how bright it is, lens by lens.
 corpus-sheet: corpus all
 	@tests/corpus/overlays build/corpus/sheet
@@ -138,8 +111,7 @@ MINUTES ?= 0
 corpus-report: corpus all
 	@tests/corpus/report build/corpus/report.csv \
 	    --every $(EVERY) --minutes $(MINUTES) >build/report.md
-	@{ echo "Revision $$(git rev-parse --short HEAD)."; cat build/report.md; } | \
-	    tools/report/write-figures brightness
+	@tools/report/write-figures brightness <build/report.md
 # Photographs with our flares, and with real ones beside ours.
 gallery: corpus all
 	@tests/corpus/gallery tests/gallery
@@ -159,45 +131,31 @@ bench: all
 	@build/glint bench
 bench-insn: all
 	@tools/make/deps "instruction counts" valgrind
-	@tools/report/bench-insn
+	@tools/report/bench-insn | tools/report/write-figures frame
 growth: all
 	@tools/report/growth | tools/report/write-figures growth
 size: $(OUT)/libglint.a $(example_bins)
-	@tools/report/size $(SIZE) $(OUT) $(EXAMPLES)
+	@tools/make/deps "bytes on ARM" gcc-aarch64-linux-gnu libc6-dev-arm64-cross \
+	        gcc-arm-linux-gnueabihf libc6-dev-armhf-cross >&2
+	@for t in aarch64 armv7; do $(MAKE) -s --no-print-directory TARGET=$$t \
+	        $(EXAMPLES:%=build/$$t/examples/%) >&2 || exit 1; done
+	@OUT=$(OUT) EXAMPLES='$(EXAMPLES)' tools/report/size $(ARCH) aarch64 armv7 | tools/report/write-figures size
 trade: all
 	@build/glint sweep -o build/trade $(TRADE)
 	@echo build/trade/index.html
-lights-table: $(OUT)/lights
-	@$(OUT)/lights tests/golden/lights.svg $(MODELS) | \
-	    tools/report/write-figures lights
 # MODELS="A.glint ...", VIDEOS="A.y4m ...": these, too
 reuse-table: all $(OUT)/reuse
 	@tools/make/deps "instruction counts, noise" valgrind ffmpeg >&2
 	@tools/report/reuse-table $(OUT)/reuse $(MODELS) | tools/report/write-figures videos/reuse
 reuse-table: export VIDEOS := $(VIDEOS)
-# What each of two threads does, in instructions.
-threads-table: $(OUT)/lights
-	@tools/make/deps "instruction counts" valgrind >&2
-	@tools/report/threads-table $< $(MODELS) | tools/report/write-figures night/threads
-flicker-table: $(OUT)/flicker
-	@$(OUT)/flicker $(MODELS) | tools/report/write-figures flicker
 # What bakes say of the time they will take, over what they take.
 left-table: $(OUT)/bake_left
 	@tools/report/left-table $(OUT)/bake_left | tools/report/write-figures cost/left
-# A lens stopped down through a video; MODEL: baked for its widest stop; GRID:
-# cells a side of the exact rays'.
-stopping-table: $(OUT)/stopping
-	@$(OUT)/stopping $(LENS) $(MODEL) tests/figures/shapes/stopping.svg $(GRID) | \
-	    tools/report/write-figures shapes/stopping
-hostile-table: $(OUT)/hostile_models
-	@$(OUT)/hostile_models | tools/report/write-figures hostile
 star-table: all $(OUT)/star_table
 	@tools/make/deps "instruction counts" valgrind >&2
 	@tools/report/star-table $(OUT)/star_table tests/figures/starburst.svg | tools/report/write-figures starburst
 memory-table: all
 	@tools/report/memory-table | tools/report/write-figures memory
-zoom-table: all
-	@tools/lens_figures/zoom-table $(LENS) | tools/report/write-figures shapes/zoom
 zoom-halfway-table: all
 	@tools/lens_figures/zoom-halfway $(LENS) | tools/report/write-figures shapes/zoom-halfway
 # The weights of src/engine/frame/cost.c, by random frames.
@@ -211,13 +169,14 @@ scene-cost-fit: all $(OUT)/scene_told
 budget: all
 	@tools/make/deps "instruction counts on ARM" gcc-aarch64-linux-gnu \
 	        libc6-dev-arm64-cross gcc-arm-linux-gnueabihf \
-	        libc6-dev-armhf-cross qemu-user valgrind >&2
+	        libc6-dev-armhf-cross qemu-user >&2
 	@for t in aarch64 armv7; do $(MAKE) -s --no-print-directory TARGET=$$t \
 	        build/$$t/glint >&2 || exit 1; done
 	@tools/report/budget | tools/report/write-figures arm
 
-.PHONY: glints-table hidden-table scene-budget-table occlusion-table video-report demo inputs table bake-table wide-table projection-table library-table azimuth-table fisheye-table accuracy-table colour-table coating-table ray-table power-table \
-        power-fit \
-        corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet gallery \
-        bench bench-insn growth size trade lights-table threads-table reuse-table flicker-table left-table stopping-table hostile-table star-table memory-table zoom-table zoom-halfway-table \
-        cost-fit scene-cost-fit stone-table stone-dials ward-table ward-sheet ward-cost-table sunflow-table budget
+.PHONY: video-report occlusion-table demo inputs table scene-table hidden-table mesh-table motion-table \
+        ward-table translucent-table stone-table ward-sheet scene-cost-table scene-budget-table bake-table \
+        library-table azimuth-table projection-table accuracy-table colour-table ray-table stop-table power- \
+        table power-fit corpus corpus-evaluate corpus-stars corpus-sheet corpus-report gallery lens-sheet \
+        corpus-fit bench bench-insn growth size trade reuse-table left-table star-table memory-table zoom- \
+        halfway-table cost-fit scene-cost-fit budget
