@@ -32,14 +32,13 @@
 #   make frei0r, gstreamer, obs   plug-ins for hosts of video;  check-frei0r-threads, check-gstreamer, check-obs
 #   make bench    what a frame costs;  bench-insn: in instructions
 #   make size     bytes of the run-time library, and of programs with parts of it
-#   make budget   what a frame costs on ARM, in instructions and bytes
+#   make budget   what a frame costs on ARM, in instructions
 #   make growth   how that grows, as plots;  memory-table: what it takes
 #   make video-report  how steady the flare of a video is; VIDEOS="A.y4m ..."
 #   make trade    what accuracy costs: plots, pictures and a page (glint sweep)
 #   make debian   packages, in clean systems;  check-debian: tools/debian
-#   also: oiio assimp window table stop-table scene-table scene-cost-table scene-budget-table mesh-table ward-table ward-sheet translucent-table stone-table motion-table hidden-table occlusion-table lights-table flicker-table
-#         star-table hostile-table bake-table wide-table accuracy-table colour-table projection-table
-#         coating-table ray-table inputs format golden-update fuzz-keep clean reuse-table threads-table stopping-table left-table
+#   also: oiio assimp window inputs format golden-update fuzz-keep clean ward-sheet, and the tables that
+#         tools/report/figures lists
 
 # One job a processor, unless the command line has a -j of its own.
 MAKEFLAGS += -r $(if $(filter 0,$(MAKELEVEL)),-j$(shell nproc))

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Weights of src/lamps/unclip.c. Made by make power-fit, from rendered lamps
- * and HDR panoramas: tests/figures/power.md.
+ * and HDR panoramas.
  */
 #ifndef GLINT_LAMPS_UNCLIP_WEIGHTS_H
 #define GLINT_LAMPS_UNCLIP_WEIGHTS_H

@@ -157,7 +157,7 @@ format:
 	$(Q)clang-format -i $(sources)
 libraries := $(OUT)/libglint.a $(OUT)/libglint-published.a
 lint: $(libraries) $(OUT)/libglint-engine.a $(OUT)/libglint-bake.a
-	@tools/lint/layers && tools/lint/cycles && tools/lint/tags && tools/lint/q && tools/lint/length && tools/lint/links
+	@tools/lint/layers && tools/lint/cycles && tools/lint/tags && tools/lint/q && tools/lint/length && tools/lint/links && tools/report/write-figures --check
 	@tools/lint/symbols $(NM) $^
 	@[ $(CONFIG) != release ] || \
 	        $(MAKE) -s --no-print-directory purity

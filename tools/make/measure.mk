@@ -81,9 +81,6 @@ ray-table: all $(OUT)/ray_errors
 	@tools/report/ray-table build/bake | tools/report/write-figures rays
 stop-table: all
 	@tools/report/stop-table | tools/report/write-figures shapes/stop
-power-table: $(OUT)/power_table
-	@tools/make/deps "HDR panoramas" openimageio-tools python3 npm
-	@tests/power-table $< | tools/report/write-figures power
 # The weights of src/lamps/unclip.c, from the half that is there to fit to.
 power-fit: $(OUT)/power_table
 	@tools/make/deps "HDR panoramas" openimageio-tools python3-numpy npm
@@ -151,9 +148,6 @@ reuse-table: export VIDEOS := $(VIDEOS)
 # What bakes say of the time they will take, over what they take.
 left-table: $(OUT)/bake_left
 	@tools/report/left-table $(OUT)/bake_left | tools/report/write-figures cost/left
-star-table: all $(OUT)/star_table
-	@tools/make/deps "instruction counts" valgrind >&2
-	@tools/report/star-table $(OUT)/star_table tests/figures/starburst.svg | tools/report/write-figures starburst
 memory-table: all
 	@tools/report/memory-table | tools/report/write-figures memory
 zoom-halfway-table: all
@@ -176,7 +170,7 @@ budget: all
 
 .PHONY: video-report occlusion-table demo inputs table scene-table hidden-table mesh-table motion-table \
         ward-table translucent-table stone-table ward-sheet scene-cost-table scene-budget-table bake-table \
-        library-table azimuth-table projection-table accuracy-table colour-table ray-table stop-table power- \
-        table power-fit corpus corpus-evaluate corpus-stars corpus-sheet corpus-report gallery lens-sheet \
-        corpus-fit bench bench-insn growth size trade reuse-table left-table star-table memory-table zoom- \
-        halfway-table cost-fit scene-cost-fit budget
+        library-table azimuth-table projection-table accuracy-table colour-table ray-table stop-table \
+        power-fit corpus corpus-evaluate corpus-stars corpus-sheet corpus-report gallery \
+        lens-sheet corpus-fit bench bench-insn growth size trade reuse-table left-table memory-table \
+        zoom-halfway-table cost-fit scene-cost-fit budget

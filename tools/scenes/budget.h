@@ -63,7 +63,9 @@ double scene_budget_quality(const struct scene_budget *budget);
 int scene_budget_level(double quality);
 
 /* Flares by quality: what a frame takes over that of the default, and PSNR, in
- * the mean of the lenses of the first table of tests/figures/trade.md. */
+ * the mean of heliar-tronnier, double-gauss-angenieux and nikon-zoom-mid,
+ * 640x360, one light (instructions by tools/report/sweep-insn, glint sweep
+ * --exact-grid 320, at revision a3db91ca). */
 struct scene_budget_flare {
     double quality, ratio, db;
 };

@@ -68,7 +68,7 @@ static const struct cut {
 enum { N_CUTS = sizeof cuts / sizeof *cuts, BUNDLES = 256 };
 
 /* PSNR of the levels of quality in the mean of five lenses, dB
- * (tests/figures/trade.md). */
+ * (glint sweep at revision a3db91ca). */
 static const double level_db[GLINT_QUALITY_LEVELS] = {39, 44, 49, 53.5, 54.5,
                                                       56, 59, 62, 64,   65};
 

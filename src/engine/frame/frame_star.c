@@ -28,7 +28,7 @@ static const double clipped_times = 32, white_share = 0.5;
 
 /* Light of a lamp's white spot, in white pixels for each of its own, up to
  * which it is haze, and from which it is glare. Suns in clear skies have 4 to
- * 50, glints and lit haze 0.6 to 1.2 (tests/figures/stars.md). */
+ * 50, glints and lit haze 0.6 to 1.2. */
 static const double hazy = 1, glaring = 5;
 
 /* Share of a budget that stars may take. If they would take more, their

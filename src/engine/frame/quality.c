@@ -14,18 +14,17 @@ enum { MAX_LIGHTS = 128 };
  * 2 of 9 million instructions (glint sweep --stars: a lamp of 12 stops). */
 #define STAR_CULL 2
 
-/* Levels along the front that glint sweep measures over five lenses at 1280x720
- * (tests/figures/trade.md), the coarsest first. Coarser models are not on it:
- * they save nothing and cost 6 dB. Finer models cost next to nothing but bytes
- * and time to bake, so all levels above the default have them. Dispersion has a
- * front of its own (make colour-table): levels for small boards draw three
- * wavelengths. Levels below the default draw dim ghosts with one wavelength and
- * of lights near each other as one, the more the dimmer (make lights-table):
- * half of the time of a frame of many lights. Those for small boards trace no
- * ray anew while lamps of a video move by less than a quarter of a pixel, which
- * is at 55 dB or more (make reuse-table). Levels from the default up leave
- * out ghosts below an eighth of a code: hundreds of them together are still not
- * seen. */
+/* Levels along the front that glint sweep measures over five lenses at
+ * 1280x720, the coarsest first. Coarser models are not on it: they save nothing
+ * and cost 6 dB. Finer models cost next to nothing but bytes and time to bake,
+ * so all levels above the default have them. Dispersion has a front of its own
+ * (make colour-table): levels for small boards draw three wavelengths. Levels
+ * below the default draw dim ghosts with one wavelength and of lights near each
+ * other as one, the more the dimmer: half of the time of a frame of many
+ * lights. Those for small boards trace no ray again while lamps of a video move
+ * by less than a quarter of a pixel, which is at 55 dB or more (make
+ * reuse-table). Levels from the default up leave out ghosts below an eighth of a
+ * code: hundreds of them together are still not seen. */
 /* clang-format off */
 static const struct level {
     double quality, grid, quantum, snap, cull, dim, tolerance, dispersion, points;

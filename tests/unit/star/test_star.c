@@ -245,7 +245,7 @@ static void sum_picture(int n_blades, double rotation_deg, double airy_px,
 
 /* Pictures must have at least 50 dB for three stops and three powers. In one so
  * small all pixels are near the light; in a picture of 1080p the same errors
- * would give 24 dB more (make star-table). */
+ * would give 24 dB more. */
 static void test_direct(void **state)
 {
     static const struct {

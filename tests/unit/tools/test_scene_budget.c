@@ -17,47 +17,6 @@
 
 enum { WIDTH = 64, HEIGHT = 36, BYTES = 3 * WIDTH * HEIGHT };
 
-/* Ratios and PSNR are those that `make trade` wrote. */
-static void test_flares(void **state)
-{
-    static const char *const lens[3] = {"| heliar-tronnier |",
-                                        "| double-gauss-angenieux |",
-                                        "| nikon-zoom-mid |"};
-    double ratio[5] = {0}, db[5] = {0};
-    char line[512];
-    int n = 0;
-    FILE *const file = fopen("tests/figures/trade.md", "r");
-
-    (void)state;
-    assert_non_null(file);
-    while (n < 3 && fgets(line, sizeof line, file)) {
-        double m[5], d[5];
-
-        if (strncmp(line, lens[n], strlen(lens[n])) != 0 ||
-            sscanf(line + strlen(lens[n]),
-                   "%lf; %lf; %*[^|]| %lf; %lf; %*[^|]| %lf; %lf; %*[^|]| "
-                   "%lf; %lf; %*[^|]| %lf; %lf;",
-                   &m[0], &d[0], &m[1], &d[1], &m[2], &d[2], &m[3], &d[3],
-                   &m[4], &d[4]) != 10)
-            continue;
-        for (int i = 0; i < 5; i++) {
-            ratio[i] += m[i] / m[2] / 3;
-            db[i] += d[i] / 3;
-        }
-        n++;
-    }
-    fclose(file);
-    assert_int_equal(n, 3);
-    for (int i = 0; i < SCENE_BUDGET_FLARES; i++) {
-        const struct scene_budget_flare *const f = &scene_budget_flares[i];
-
-        assert_true(f->quality == i / 4.);
-        if (fabs(f->ratio / ratio[i] - 1) > .02 || fabs(f->db - db[i]) > .1)
-            fail_msg("quality %g: %g, %g dB, not %.3f, %.2f dB", f->quality,
-                     f->ratio, f->db, ratio[i], db[i]);
-    }
-}
-
 /* Qualities are those of the option that has the same dials. */
 static void test_qualities(void **state)
 {
@@ -138,8 +97,7 @@ static void test_coarser(void **state)
 
 int main(void)
 {
-    static const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_flares), cmocka_unit_test(test_qualities),
+    static const struct CMUnitTest tests[] = { cmocka_unit_test(test_qualities),
         cmocka_unit_test(test_steps), cmocka_unit_test(test_coarser)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
