@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What the budget of a scene knows of flares, qualities of its dials, and a
- * scene that is drawn coarser while it runs, as live does to hold a rate. */
-#include <math.h>
+ * Qualities of the dials of a scene's budget, and a scene that is drawn coarser
+ * while it runs, as live does to hold a rate. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
