@@ -53,9 +53,8 @@ static int draw(const struct glint_scene_model *model, int argc, char **argv)
         &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,
         &glint_scene_wards,  &glint_scene_stones,   NULL,
         &glint_scene_motions};
-    struct glint_image image = {.format = GLINT_YUYV,
-                                .width = 640,
-                                .height = 360};
+    struct glint_image image = {
+        .format = GLINT_YUYV, .width = 640, .height = 360};
     /* Not inlined: counters look for their names. */
     void (*volatile idle)(const struct glint_image *, int) = scene_cost_idle;
     void (*volatile frame)(struct glint_scene *, const struct glint_image *) =

@@ -23,8 +23,8 @@ enum { MAX_LIGHTS = 128 };
  * other as one, the more the dimmer: half of the time of a frame of many
  * lights. Those for small boards trace no ray again while lamps of a video move
  * by less than a quarter of a pixel, which is at 55 dB or more (make
- * reuse-table). Levels from the default up leave out ghosts below an eighth of a
- * code: hundreds of them together are still not seen. */
+ * reuse-table). Levels from the default up leave out ghosts below an eighth of
+ * a code: hundreds of them together are still not seen. */
 /* clang-format off */
 static const struct level {
     double quality, grid, quantum, snap, cull, dim, tolerance, dispersion, points;

@@ -96,8 +96,9 @@ static void test_coarser(void **state)
 
 int main(void)
 {
-    static const struct CMUnitTest tests[] = { cmocka_unit_test(test_qualities),
-        cmocka_unit_test(test_steps), cmocka_unit_test(test_coarser)};
+    static const struct CMUnitTest tests[] = {cmocka_unit_test(test_qualities),
+                                              cmocka_unit_test(test_steps),
+                                              cmocka_unit_test(test_coarser)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
