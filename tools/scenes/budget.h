@@ -62,14 +62,4 @@ double scene_budget_quality(const struct scene_budget *budget);
 /* Returns the finest level that is no finer than QUALITY, as of --quality. */
 int scene_budget_level(double quality);
 
-/* Flares by quality: what a frame takes over that of the default, and PSNR, in
- * the mean of heliar-tronnier, double-gauss-angenieux and nikon-zoom-mid,
- * 640x360, one light (instructions by tools/report/sweep-insn, glint sweep
- * --exact-grid 320, at revision a3db91ca). */
-struct scene_budget_flare {
-    double quality, ratio, db;
-};
-enum { SCENE_BUDGET_FLARES = 5 };
-extern const struct scene_budget_flare scene_budget_flares[SCENE_BUDGET_FLARES];
-
 #endif
