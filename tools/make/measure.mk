@@ -130,7 +130,7 @@ bench-insn: all
 	@tools/make/deps "instruction counts" valgrind
 	@tools/report/bench-insn | tools/report/write-figures frame
 growth: all
-	@tools/report/growth | tools/report/write-figures growth
+	@tools/report/growth
 size: $(OUT)/libglint.a $(example_bins)
 	@tools/make/deps "bytes on ARM" gcc-aarch64-linux-gnu libc6-dev-arm64-cross \
 	        gcc-arm-linux-gnueabihf libc6-dev-armhf-cross >&2
@@ -162,9 +162,8 @@ scene-cost-fit: all $(OUT)/scene_told
 	@tests/scene-fit $(OUT)/scene_told $(COUNTS) | tools/report/write-figures scenes/told
 budget: all
 	@tools/make/deps "instruction counts on ARM" gcc-aarch64-linux-gnu \
-	        libc6-dev-arm64-cross gcc-arm-linux-gnueabihf \
-	        libc6-dev-armhf-cross qemu-user >&2
-	@for t in aarch64 armv7; do $(MAKE) -s --no-print-directory TARGET=$$t \
+	        libc6-dev-arm64-cross qemu-user >&2
+	@for t in $${TARGETS:-aarch64}; do $(MAKE) -s --no-print-directory TARGET=$$t \
 	        build/$$t/glint >&2 || exit 1; done
 	@tools/report/budget | tools/report/write-figures arm
 
