@@ -341,17 +341,20 @@ enum glint_status glint::open_file(struct glint_oiio_file **file,
 
 void glint::close_file(struct glint_oiio_file *file)
 {
-    delete file;
+    struct glint_error error;
+
+    guarded("a picture", GLINT_E_FORMAT, &error, [&] { delete file; });
 }
 
 int glint::is_same_type(const struct glint_oiio_file *file, const char *path)
 {
-    try {
-        const glint::call now(path);
+    struct glint_error error;
+    bool is_same = false;
+
+    guarded(path, GLINT_E_FORMAT, &error, [&] {
         const std::unique_ptr<ImageOutput> out = ImageOutput::create(path);
 
-        return out && file->type == out->format_name();
-    } catch (...) {
-        return 0;
-    }
+        is_same = out && file->type == out->format_name();
+    });
+    return is_same;
 }
