@@ -43,7 +43,7 @@ install: install-library install-programs $(if $(filter yes,$(PLUGIN)),build/gli
 # The files that programs need at run time: all that a board needs.
 install-programs: all glint-live
 	install -d $(to)/bin $(to)/share/glint/lenses $(to)/lib/systemd/system
-	install $(if $(CROSS),$(strip_too)) -m 755 \
+	install $(strip_too) -m 755 \
 	        $(program) $(OUT)/glint-live $(to)/bin
 	install -m 644 lenses/*.lens lenses/figures.md $(to)/share/glint/lenses
 	for r in $(lens_rooms); do install -d $(to)/share/glint/$$r && \
@@ -79,9 +79,10 @@ install-library: $(LIBRARIES:%=$(OUT)/lib%.a) $(OUT)/libglint-published.a $(if $
 	install -m 644 include/glint/scene/*.h $(to)/include/glint/scene
 	install -m 644 $(patsubst %,$(OUT)/lib%.a,$(LIBRARIES) glint-published) $(libdir)
 	$(if $(CROSS),,cp -P $(addprefix $(OUT)-pic/,$(foreach l,$(LIBRARIES),$(call shared_names,$l))) $(libdir))
-	for l in $(LIBRARIES); do \
-	        tools/make/pkg-config $$l $(PREFIX) $(LIBDIR) $(VERSION) '$(taken)' >$(libdir)/pkgconfig/$$l.pc && \
-	        chmod 644 $(libdir)/pkgconfig/$$l.pc || exit 1; done
+	$(if $(filter yes,$(STRIP)),$(CROSS)strip -g $(patsubst %,$(libdir)/lib%.a,$(LIBRARIES) glint-published) \
+	        $(if $(CROSS),,$(LIBRARIES:%=$(libdir)/lib%.so.$(VERSION))))
+	$(foreach l,$(LIBRARIES),tools/make/pkg-config $l $(PREFIX) $(LIBDIR) $(VERSION) '$(taken_$l)' >$(libdir)/pkgconfig/$l.pc && \
+	        chmod 644 $(libdir)/pkgconfig/$l.pc &&) :
 # What install put there, and folders that are empty then.
 uninstall:
 	rm -f $(to)/bin/glint $(to)/bin/glint-live $(libdir)/glint/glint-oiio.so \

@@ -8,8 +8,11 @@ VERSION   := $(shell sed -n 's/^.define GLINT_VERSION "\(.*\)"/\1/p' include/gli
 LIBRARIES := glint glint-engine glint-bake
 shared_names = lib$(1).so.$(VERSION) lib$(1).so.$(SOVERSION) lib$(1).so
 
-# Libraries of others that they take.
-taken := $(if $(filter yes,$(WITH_JANSSON)),$(JANSSON_LIBS)) -lm
+# Libraries of others that they take: the run-time half none, and all.
+taken_glint :=
+taken_glint-engine := -lm
+taken_glint-bake := $(if $(filter yes,$(WITH_JANSSON)),$(JANSSON_LIBS)) -lm
+taken := $(taken_glint-bake)
 # What a library shows is what public headers name of it, and for glint's other
 # libraries what these take besides.
 $(OUT)/%.map: $(LIBRARIES:%=$(OUT)/lib%.a) tools/make/exports $(wildcard include/glint/*.h include/glint/*/*.h)

@@ -2,6 +2,7 @@
  *
  * Qualities of the dials of a scene's budget, and a scene that is drawn coarser
  * while it runs, as live does to hold a rate. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
