@@ -37,6 +37,16 @@ enum glint_status live_input_open(struct live_input *input,
     return status;
 }
 
+enum glint_status live_input_start(struct live_input *input,
+                                   struct glint_error *error)
+{
+    const enum glint_status status = input->source->start(input->source, error);
+
+    if (status != GLINT_OK)
+        live_input_close(input);
+    return status;
+}
+
 void live_input_close(struct live_input *input)
 {
     if (input->source)

@@ -31,11 +31,15 @@ struct live_input {
 /* Returns whether NAME stands for a camera. */
 bool live_input_is_camera(const char *name);
 
-/* Opens the source that WISH names, which its start begins; SEED is for the
- * noise of the test. */
+/* Opens the source that WISH names, which live_input_start() starts; SEED is
+ * for the noise of the test. */
 enum glint_status live_input_open(struct live_input *input,
                                   const struct live_wish *wish, uint32_t seed,
                                   struct glint_error *error);
+
+/* Starts INPUT, or closes it on failure. */
+enum glint_status live_input_start(struct live_input *input,
+                                   struct glint_error *error);
 
 /* Reports why DEVICE cannot be opened or started. Returns an exit code. */
 int live_input_fail(const struct live_log *log, const char *device,

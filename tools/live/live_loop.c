@@ -76,15 +76,6 @@ static enum glint_status open_camera(struct live *l, struct glint_error *error)
     return GLINT_OK;
 }
 
-static enum glint_status start_input(struct live *l, struct glint_error *error)
-{
-    const enum glint_status status = l->in.source->start(l->in.source, error);
-
-    if (status != GLINT_OK)
-        live_input_close(&l->in);
-    return status;
-}
-
 static int open_output(struct live *l, const struct glint_image *image)
 {
     struct glint_error error = {""};
@@ -278,7 +269,7 @@ static int retry_camera(struct live *l)
 
         if (code != EXIT_OK)
             return code;
-        if (start_input(l, &error) == GLINT_OK)
+        if (live_input_start(&l->in, &error) == GLINT_OK)
             return -1;
     }
     if (strcmp(error.text, l->why.text) != 0)
@@ -365,7 +356,7 @@ static int restart(struct live *l)
 
     if (code != EXIT_OK)
         return code;
-    status = start_input(l, &error);
+    status = live_input_start(&l->in, &error);
     return status == GLINT_OK ? -1 : lose_camera(l, status, error.text);
 }
 
@@ -456,7 +447,7 @@ static int start(struct live *l)
     code = set_up(l);
     if (code != EXIT_OK)
         return code;
-    status = start_input(l, &error);
+    status = live_input_start(&l->in, &error);
     return status == GLINT_OK
                ? EXIT_OK
                : live_input_fail(&l->log, device, status, &error);
