@@ -15,10 +15,10 @@ tell() { # WORD...
     rmdir /tmp/.port
 }
 
-# Runs COMMAND ten times a second until it succeeds.
-wait_for() { # SECONDS COMMAND...
-    tries=$(($1 * 10))
-    shift
+# Runs COMMAND ten times a second until it succeeds; the limit of ten minutes
+# ends a hang only.
+wait_for() { # COMMAND...
+    tries=6000
     until "$@"; do
         tries=$((tries - 1))
         [ $tries -gt 0 ] || return 1
@@ -44,11 +44,23 @@ loopback() {
     insmod /lib/loop.ko devices=1 video_nr=9 exclusive_caps=1 "$@"
 }
 
+# Runs `feed` until $feeder is killed; returns when frames have gone through.
+start_feed() { # ARGUMENT...
+    rm -f /tmp/fed
+    feed "$@" &
+    feeder=$!
+    wait_for test -e /tmp/fed
+}
+stop_feed() {
+    kill $feeder
+    wait $feeder
+}
+
 # Cameras of vivid go and come back as if by the cable.
 unplug_camera() { echo vivid.0 >/sys/bus/platform/drivers/vivid/unbind; }
 plug_camera() {
     echo vivid.0 >/sys/bus/platform/drivers/vivid/bind
-    wait_for 5 test -e /dev/video0
+    wait_for test -e /dev/video0
 }
 # /dev/fb0 goes; `plug_panel` brings it back.
 unplug_panel() {
@@ -59,7 +71,7 @@ unplug_panel() {
 }
 plug_panel() {
     echo "${panel##*/}" >"$panel_driver/bind"
-    wait_for 5 test -e /dev/fb0
+    wait_for test -e /dev/fb0
 }
 
 fd_count() { # PID

@@ -14,15 +14,13 @@ build/x86_64/vm/scene -n 2 -m 3,1 YUYV 1280x720 "$out/scene" 300,250,9
 
 on_panel() { # DISPLAY
     local at=${1//:/-}
-    guest "$at" -m 512 -t 500 -d "$1" -i "build/$arch/glint-live" \
+    guest "$at" -m 512 -d "$1" -i "build/$arch/glint-live" \
         -i model="$model" -i "$out/scene" <<'END'
 loopback
-feed -r 10 /dev/video9 YUYV 1280x720 /in/scene &
-wait_for 5 test -e /dev/video9
-sleep 1
+start_feed -r 10 /dev/video9 YUYV 1280x720 /in/scene
 /in/glint-live -d 9 --lens /in/model -j 1 --stats json >stats 2>err &
 live=$!
-wait_for 60 grep -q '"lights":[12],"ghosts":[1-9]' stats
+wait_for grep -q '"lights":[12],"ghosts":[1-9]' stats
 sleep 2
 shot last
 # the most that was resident

@@ -13,12 +13,10 @@ head -c 20000 /dev/urandom >"$out/MJPG"
 
 guest frames -V '' -i "$out/YUYV" -i "$out/NV12" -i "$out/MJPG" <<'END'
 through() { # CAMERA OUTPUT FOURCC
-    feed -c "$1" "$2" "$3" 640x480 "/in/$3" &
-    wait_for 5 test -e "$1" && sleep 1
+    start_feed -c "$1" "$2" "$3" 640x480 "/in/$3"
     grab -s 4 "$1" "$3" 640x480 10 /tmp/frames "/in/$3"
     echo "$?" >"${1#/dev/}-$3"
-    kill $!
-    wait
+    stop_feed
 }
 through /dev/video0 /dev/video1 YUYV
 through /dev/video0 /dev/video1 NV12

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: MIT
 #
 # test-faults.sh - what cameras and panels do to glint live: it recovers, or
-# ends with exit code 4 within a second and one line; the console is text again,
-# nothing leaks (ASan on x86_64, files on all), and the panel never turns black.
+# ends with exit code 4 and one line; the console is text again, nothing leaks
+# (ASan on x86_64, files on all), and the panel never turns black. How soon it
+# ends is a matter of a fake clock (test_v4l2_faults).
 # arch: x86_64 aarch64 armv7
 . "$(dirname "$0")/lib.sh"
 
@@ -15,11 +16,13 @@ fi
 build/x86_64/vm/scene YUYV 640x480 "$out/scene" 200,150,9
 model=$(model heliar-tronnier)
 
-guest faults -t 400 -d bochs:640x480 -V '' "${program[@]}" -i "$model" \
+guest faults -d bochs:640x480 -V '' "${program[@]}" -i "$model" \
     -i "$out/scene" <<'END'
-now() { sed 's/\.\([0-9]*\) .*/\10/' /proc/uptime; } # ms
 lines() { grep -c frames "$name.json"; }
-more_lines() { [ "$(lines)" -ge "$((had + 2))" ]; }
+# of a second that began after the last look
+more_frames() {
+    tail -n +$((had + 2)) "$name.json" | grep -q '"frames":[1-9]'
+}
 
 camera="-i 0 -s 320x180 -r 60"
 # start NAME OPTION...: live runs and has shown frames
@@ -30,22 +33,16 @@ start() {
         --light 7,33 --exposure 4 -j 1 --stats json "$@" \
         >"$name.json" 2>"$name.err" &
     live=$!
-    wait_for 60 grep -q frames "$name.json"
+    wait_for grep -q '"frames":[1-9]' "$name.json"
 }
-# goes_on: frames come for at least a whole second more
+# goes_on: a second that begins later has frames
 goes_on() {
     had=$(lines)
-    wait_for 60 more_lines && echo goes-on >>"$name.is"
-    tail -n 1 "$name.json" | grep -q '"frames":0' || echo shows >>"$name.is"
+    wait_for more_frames && echo goes-on >>"$name.is"
 }
-# ended: how, and how long that took from now on
 ended() {
-    since=$(now)
     wait $live
     echo "code $?" >>"$name.is"
-    took=$(($(now) - since))
-    [ $took -gt 1000 ] || echo "soon" >>"$name.is"
-    echo "took $took ms" >>"$name.is"
     vt >>"$name.is"
 }
 finish() {
@@ -107,8 +104,7 @@ plug_camera
 
 start reconnect --reconnect
 unplug_camera
-sleep 1
-grep -q waiting reconnect.err && echo waits >>reconnect.is
+wait_for grep -q waiting reconnect.err && echo waits >>reconnect.is
 shot kept
 plug_camera
 goes_on; finish
@@ -120,7 +116,7 @@ plug_panel
 
 start repanel --reconnect
 unplug_panel
-sleep 1
+wait_for grep -q waiting repanel.err
 plug_panel
 goes_on
 shot again
@@ -138,14 +134,12 @@ as 1000 glint live -d 0 -o null --lens /in/heliar-tronnier.glint \
 echo "code $?" >denied.is
 
 # HDMI: the signal goes, and comes back as another mode
-feed -c /dev/video0 /dev/video1 YUYV 640x480 /in/scene &
-feeder=$!
-sleep 1
+start_feed -c /dev/video0 /dev/video1 YUYV 640x480 /in/scene
 camera="-i 3"
 start source
 ctl /dev/video0 0x00f0f03e 1
 goes_on
-kill $feeder
+stop_feed
 ctl /dev/video0 0x00f0f03f 16
 ctl /dev/video0 0x00f0f03e 4
 goes_on; finish
@@ -173,19 +167,23 @@ one_line() { # NAME REGEX - the last of what was said
 for name in flagged qbuf reqbufs streamon fatal dropped wrap busy reconnect \
     repanel source; do
     expect "$name: goes on, and ends when asked" \
-        is $name goes-on shows "code 0" text
+        is $name goes-on "code 0" text
 done
 expect "damaged buffers are counted" total flagged corrupt 1 20
 expect "a refused buffer leaks no file" is qbuf same-fds
 expect "three new starts leak no file" is fatal same-fds
 expect "lost frames are counted" total dropped drops 5 10000
-expect "a sequence that wraps loses none" total wrap drops 0 300
+# The camera makes 60 frames a second, whatever is lost; a second for rounding.
+expect "a sequence that wraps adds none" awk -F '[:,]' '{ t = $2; n = 0
+    for (i = 3; i < NF; i += 2)
+        if ($i ~ /"(frames|drops|late|corrupt)"/) n += $(i + 1)
+} END { print n, "frames in", t, "s"; exit !(n > 128 && n <= 60 * t + 60) }' \
+    "$out/faults/wrap.json"
 expect "nobody changes the format of a stream" says faults/busy.other '[Bb]usy'
 expect "a second user is told" is two "code 4"
 expect "and why" one_line two "another program"
 for name in disconnect unplugged panel; do
-    expect "$name: ends with 4, soon, console restored" \
-        is $name "code 4" soon text
+    expect "$name: ends with 4, console restored" is $name "code 4" text
 done
 expect "disconnect: one line" one_line disconnect "/dev/video0: .*gone"
 expect "unplugged: one line" one_line unplugged "/dev/video0: .*gone"

@@ -8,7 +8,7 @@
 
 formats="YUYV UYVY NV12 NV21 YU12 422P RGB3 BGR3 XR24 RGBP GREY"
 planar="NM12 NM21 YM12"
-guest formats -t 300 -d bochs:640x360 -V 'n_devs=2 multiplanar=1,2' \
+guest formats -d bochs:640x360 -V 'n_devs=2 multiplanar=1,2' \
     -i "$glint" -i model="$(model heliar-tronnier)" <<END
 bars() { # NAME OPTION...
     name=\$1
@@ -16,7 +16,7 @@ bars() { # NAME OPTION...
     glint live -s 320x180 -r 30 -i 0 --lens /in/model --light 7,33 --exposure 0 \
         --stats json "\$@" >\$name.json 2>\$name.err &
     live=\$!
-    wait_for 20 grep -q frames \$name.json
+    wait_for grep -q frames \$name.json
     shot \$name
     kill -INT \$live
     wait \$live

@@ -18,19 +18,17 @@ make -s --no-print-directory gstreamer >&2
 w=640 h=480 n=12
 caps=video/x-raw,format=YUY2,width=$w,height=$h
 build/x86_64/vm/scene YUYV ${w}x$h "$out/lamps.yuyv" 180,120,12 460,240,18
-guest camera -m 1024 -t 240 -V '' -d bochs:${w}x$h "${plugins[@]}" -l build/gstreamer-1.0/libgstglint.so \
+guest camera -m 1024 -V '' -d bochs:${w}x$h "${plugins[@]}" -l build/gstreamer-1.0/libgstglint.so \
     -l "$(command -v gst-launch-1.0)" -i "$(model heliar-tronnier)" -i "$out/lamps.yuyv" <<END
 loopback
-feed -t -r 5 /dev/video9 YUYV ${w}x$h /in/lamps.yuyv &
-wait_for 5 test -e /dev/video9 && sleep 2
+start_feed -t -r 5 /dev/video9 YUYV ${w}x$h /in/lamps.yuyv
 export GST_PLUGIN_SYSTEM_PATH= GST_PLUGIN_PATH=/in GST_REGISTRY_FORK=no GST_REGISTRY=/tmp/registry
 gst-launch-1.0 -q v4l2src device=/dev/video9 num-buffers=$n ! $caps ! tee name=both ! queue max-size-buffers=0 max-size-bytes=0 ! filesink location=in.yuyv \
     both. ! queue max-size-buffers=0 max-size-bytes=0 ! glintflare lens=/in/heliar-tronnier.glint ! filesink location=out.yuyv || exit
 kill \$!
 # Frames of vivid are the reader's alone, to be drawn on where they lie. It says sRGB
 # of their curve, which a y4m stream cannot.
-feed -c /dev/video0 -t /dev/video1 YUYV ${w}x$h /in/lamps.yuyv &
-sleep 1
+start_feed -c /dev/video0 -t /dev/video1 YUYV ${w}x$h /in/lamps.yuyv
 vt graphics
 gst-launch-1.0 -q v4l2src device=/dev/video0 num-buffers=$n ! $caps ! \
     capssetter caps=video/x-raw,colorimetry=bt601 ! glintflare lens=/in/heliar-tronnier.glint ! videoconvert ! fbdevsink sync=false || exit

@@ -50,11 +50,10 @@ scene large 640x480 200,150,9 500,380,6
 overlay panel "$in/large.jpg" "$in/large.jpg" "$in/large.jpg"
 $host/vm/expected x8r8g8b8 640x480 "$in/panel-over.y4m" "$out/expected.ppm"
 
-guest jpeg -t 300 -d bochs:640x480 -i "$glint" -i "$in" -i model="$lens" <<'END'
+guest jpeg -d bochs:640x480 -i "$glint" -i "$in" -i model="$lens" <<'END'
 loopback
 cd /in/in
 look="--exposure 4 --max-lights 4"
-uptime_ms() { sed 's/\.\([0-9]*\) .*/\10/' /proc/uptime; }
 start() { # NAME OPTION...
     name=/out/$1
     shift
@@ -72,45 +71,37 @@ live() { # NAME OPTION...
 feed_with() { # FPS WxH FILE...
     fps=$1
     shift
-    feed -t -r $fps /dev/video9 MJPG "$@" &
-    feeder=$!
-    wait_for 5 test -e /dev/video9 && sleep 1
-}
-stop() {
-    kill $feeder
-    wait $feeder
+    start_feed -t -r $fps /dev/video9 MJPG "$@"
 }
 
 feed_with 15 33x17 good-* bad-*
 live corpus --count 60 -o null --stats json
-stop
+stop_feed
 
 feed_with 10 320x180 one.jpg cut torn bad-empty two.jpg bad-garbage
 live video --count 20 --no-tracking -o y4m:/tmp/x.y4m --stats json
 mv /tmp/x.y4m /out/video.y4m
-stop
+stop_feed
 
 feed_with 30 640x480 large.jpg bad-truncated.jpg
 start panel --stats json
-wait_for 60 grep -q frames $name.json
+wait_for grep -q frames $name.json
 sleep 2
 shot panel
 kill -INT $live
 ended
-stop
+stop_feed
 
 feed_with 30 320x180 bad-garbage bad-empty bad-header
-uptime_ms >/out/garbage.from
 live garbage --stats none -q
-uptime_ms >/out/garbage.to
 start empty --reconnect -o null --stats json
-wait_for 20 grep -q waiting $name.err && echo waits >$name.is
-stop
+wait_for grep -q waiting $name.err && echo waits >$name.is
+stop_feed
 feed_with 30 320x180 one.jpg
-wait_for 30 grep -q '"frames":[1-9]' $name.json && echo shows >>$name.is
+wait_for grep -q '"frames":[1-9]' $name.json && echo shows >>$name.is
 kill -INT $live
 ended
-stop
+stop_feed
 true
 END
 expect "the guest's script" exited 0
@@ -147,8 +138,6 @@ expect "panel: lamps and ghosts" says jpeg/panel.json '"lights":2,"ghosts":[1-9]
 expect "panel: the damaged ones are counted" total panel corrupt 1 10000
 expect "garbage: ends with 4" is garbage 4
 expect "garbage: one line" one_line garbage "/dev/video9: all frames are damaged"
-expect "garbage: in three seconds" [ $(($(cat "$out/jpeg/garbage.to") - \
-    $(cat "$out/jpeg/garbage.from"))) -lt 4000 ]
 expect "reconnect: waits" says jpeg/empty.is waits
 expect "reconnect: goes on when good frames come" says jpeg/empty.is shows
 rm -rf "$in" "$out"/jpeg/*.y4m

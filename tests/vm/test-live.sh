@@ -19,11 +19,10 @@ live() { # DISPLAY LAYOUT WxH [OPTION...]
     local at=${1//[:@]/-} display=$1 layout=$2 size=$3
     shift 3
     guest "$at" -d "$display" -V '' -i "$glint" -i "$out/scene.yuyv" -i model="$lens" <<END
-feed -c /dev/video0 /dev/video1 YUYV 1280x720 /in/scene.yuyv &
-sleep 1
+start_feed -c /dev/video0 /dev/video1 YUYV 1280x720 /in/scene.yuyv
 glint live -d 0 -i 3 -f YUYV --lens /in/model ${look[*]} $* 2>err --json >stats &
 live=\$!
-wait_for 40 grep -q frames stats
+wait_for grep -q frames stats
 usleep 300000
 vt >mode
 shot panel

@@ -34,7 +34,7 @@ between() { # LOW VALUE HIGH
 play() { # SCENE FRAMES OPTION...
     local scene=$1 frames=$2
     shift 2
-    guest "$scene" -I 0 -m 512 -t 400 -d simple:480x320-r5g6b5 -i "$glint" \
+    guest "$scene" -I 0 -m 512 -d simple:480x320-r5g6b5 -i "$glint" \
         -i "$out/$scene.glint" -i "$out/pause" <<END
 cp /in/$scene.glint /tmp/scene.glint # the host's files make the clock jump
 vt graphics

@@ -26,12 +26,10 @@ $host/glint bake heliar-tronnier -q --f-number 8 --tolerance 4 -o "$stopped" &&
 tail -c $frame "$out/heliar.y4m" >"$out/planes"
 echo "frame=$frame size=$size look='${look[*]}'" >"$out/names"
 
-guest all -t 500 -m 512 -d bochs:$size -V '' -i "$glint" -i "$out/names" \
+guest all -m 512 -d bochs:$size -V '' -i "$glint" -i "$out/names" \
     -i "$out/scene" -i "$out/yuyv" -i heliar="$heliar" -i "$stopped" <<'END'
 . /in/names
-feed -c /dev/video0 /dev/video1 YUYV $size /in/scene &
-feeder=$!
-sleep 1
+start_feed -c /dev/video0 /dev/video1 YUYV $size /in/scene
 camera="-i 3 -f YUYV"
 live() { # NAME OPTION...
     name=$1
@@ -46,7 +44,7 @@ start() {
     glint live -d 0 $camera $look --stats json "$@" >$name.json \
         2>$name.err &
     live=$!
-    wait_for 60 grep -q '"frames":[1-9]' $name.json
+    wait_for grep -q '"frames":[1-9]' $name.json
 }
 ended() {
     wait $live
@@ -99,13 +97,13 @@ start signals --config /tmp/config --snapshot /tmp/shot-%d.ppm
 sleep 1
 shot heliar
 kill -USR2 $live
-wait_for 20 test -e /tmp/shot-1.ppm
+wait_for test -e /tmp/shot-1.ppm
 kill -USR2 $live
-wait_for 20 test -e /tmp/shot-2.ppm
+wait_for test -e /tmp/shot-2.ppm
 mv /tmp/shot-1.ppm snapshot.ppm
 echo 'lens = /in/stopped.glint' >/tmp/config
 kill -HUP $live
-wait_for 20 grep -q 'live: reloaded' signals.err
+wait_for grep -q 'live: reloaded' signals.err
 sleep 2
 shot stopped
 refused() { [ "$(grep -c 'not reloaded' signals.err)" -gt "$had" ]; }
@@ -113,24 +111,24 @@ for broken in 'lens = /in/none' 'lenz = /in/heliar' 'exposure = lots'; do
     had=$(grep -c 'not reloaded' signals.err)
     echo "$broken" >/tmp/config
     kill -HUP $live
-    wait_for 20 refused
+    wait_for refused
 done
 sleep 1
 shot still
 kill -INT $live
 ended
 
-kill $feeder
+stop_feed
 camera="-i 0 -s 320x180 -r 30"
 start reports $heliar -o null
 reports() { grep -c frames reports.json; }
 more() { [ "$(reports)" -gt "$had" ]; }
 for i in 1 2 3 4 5; do # each right after the one of the second
     had=$(reports)
-    wait_for 20 more
+    wait_for more
     had=$(reports)
     kill -USR1 $live
-    wait_for 20 more
+    wait_for more
 done
 kill -INT $live
 ended

@@ -18,13 +18,11 @@ build/x86_64/vm/scene -n 60 -m 3,1 YUYV $size "$out/scene" 100,150,7
 run_at() { # NAME SHIFT OPTION...
     local at=$1 shift=$2
     shift 2
-    guest "$at" -I "$shift" -m 512 -t 500 -d bochs:640x480 -i "$glint" \
+    guest "$at" -I "$shift" -m 512 -d bochs:640x480 -i "$glint" \
         -i model="$model" -i "$out/scene" <<END
 cp /in/scene /tmp/scene # what the host is asked for makes the clock jump
 loopback
-feed -r $rate /dev/video9 YUYV $size /tmp/scene &
-wait_for 5 test -e /dev/video9
-sleep 1
+start_feed -r $rate /dev/video9 YUYV $size /tmp/scene
 glint live -d 9 --lens /in/model -j 1 --count $frames --stats json $* \
     >/tmp/stats 2>/tmp/err
 echo "\$?" >/tmp/code

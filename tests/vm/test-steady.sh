@@ -19,21 +19,12 @@ $host/vm/scene y4m 320x180 "$out/scene.y4m" 80,60,6 &&
     $host/vm/jpeg encode "$out/scene.y4m" "$out/scene.jpg" || exit
 
 echo "${FRAMES:-1500}" >"$out/frames"
-guest steady -t $((300 + $(cat "$out/frames") / 15)) -m 1024 -d bochs:640x480 -V '' -i "$glint" -l "$strace" \
+guest steady -m 1024 -d bochs:640x480 -V '' -i "$glint" -l "$strace" \
     -l "$out/glint-asan" -i "$out/moving" -i "$out/scene.jpg" \
     -i model="$lens" -i "$out/frames" <<'END'
 frames=$(cat /in/frames)
 look="--lens /in/model --exposure 4 -j 1"
 loopback
-feed_with() {
-    feed "$@" &
-    feeder=$!
-    wait_for 5 test -e /dev/video9 && sleep 1
-}
-stop() {
-    kill $feeder
-    wait $feeder
-}
 calls="mmap,munmap,mremap,brk,madvise,open,openat,close,clone,clone3,ioctl"
 traced() { # NAME OPTION...
     name=$1
@@ -50,7 +41,7 @@ watched() {
     shift
     glint live $look --stats json "$@" >$name.json 2>$name.err &
     live=$!
-    wait_for 60 grep -q '"frames":[1-9]' $name.json
+    wait_for grep -q '"frames":[1-9]' $name.json
     sleep 1
     while kill -0 $live 2>/dev/null; do
         now="$(data_kb $live) $(rss_kb $live) $(fd_count $live)"
@@ -64,7 +55,7 @@ watched() {
 # else the kernel makes huge pages of small ones after ten seconds, which counts
 # as resident
 echo never >/sys/kernel/mm/transparent_hugepage/enabled
-feed_with -r 120 /dev/video9 YUYV 64x36 /in/moving
+start_feed -r 120 /dev/video9 YUYV 64x36 /in/moving
 traced trace-null -d 9 -o null
 traced trace-panel -d 9
 watched long -d 9 -o null --count $frames
@@ -74,14 +65,14 @@ for output in null fb y4m:/tmp/x.y4m; do
         --count 60 --stats json >$name.json 2>$name.err
     echo "code $?" >$name.code
 done
-stop
+stop_feed
 
-feed_with -r 60 /dev/video9 MJPG 320x180 /in/scene.jpg
+start_feed -r 60 /dev/video9 MJPG 320x180 /in/scene.jpg
 traced trace-jpeg -d 9 -o null
 ASAN_OPTIONS=detect_leaks=1 glint-asan live $look -d 9 -o null --count 30 \
     --stats json >asan-jpeg.json 2>asan-jpeg.err
 echo "code $?" >asan-jpeg.code
-stop
+stop_feed
 traced trace-camera -d 0 -i 0 -s 320x180 -r 60 -o y4m:/tmp/x.y4m
 true
 END

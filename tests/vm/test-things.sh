@@ -31,19 +31,18 @@ expect 'the ball hides a lamp' says drawn '"lamps_hidden": 1'
 
 things() { # DISPLAY LAYOUT WxH
     local at=${1//[:@]/-}
-    guest "$at" -t 200 -d "$1" -V '' -i "$glint" -i "$out/night.yuyv" -i "$out/ball.glint" \
+    guest "$at" -d "$1" -V '' -i "$glint" -i "$out/night.yuyv" -i "$out/ball.glint" \
         -i "$out/poses.csv" -i model="$lens" <<END
-feed -c /dev/video0 /dev/video1 YUYV 1280x720 /in/night.yuyv &
-sleep 1
+start_feed -c /dev/video0 /dev/video1 YUYV 1280x720 /in/night.yuyv
 mkfifo /tmp/pipe
 glint live -d 0 -i 3 -f YUYV --lens /in/model ${look[*]} --scene /in/ball.glint \
     --pose /tmp/pipe --no-adaptive 2>err --json >stats &
 live=\$!
-wait_for 60 grep -q frames stats
+wait_for grep -q frames stats
 cat /in/poses.csv >/tmp/pipe
 had=\$(wc -l <stats) # a line each second, or frame that takes longer
 more() { [ "\$(wc -l <stats)" -ge \$((had + 3)) ]; }
-wait_for 90 more
+wait_for more
 shot panel
 kill -INT \$live
 wait \$live
