@@ -7,6 +7,7 @@
 
 #include "desk/apart.h"
 #include "import/decode.h"
+#include "help/values.h"
 #include "options/takes.h"
 #include "options/tool.h"
 #include "posix/input.h"
@@ -125,7 +126,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct import *o)
         o->format = import_format_of(argv[optind]);
     if (!o->format)
         return tool_usage(tool, "%s: which --format has it: %s?", argv[optind],
-                          takes_of("import", "format"));
+                          values_of("import", "format"));
     apart_read(&files, NULL, argv[optind]);
     apart_write(&files, "-o", o->output);
     code = apart_check(tool, &files);

@@ -1,18 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * takes.h - taking options of a line, and the values that each takes, in words,
- * for error messages.
- *
- * One table for all commands, in takes.c: a new option with a value gets a line
- * there, or tests/cli/doors says that it has none.
+ * takes.h - taking options of a line, and refusing their values.
  */
 #ifndef GLINT_TOOLS_OPTIONS_TAKES_H
 #define GLINT_TOOLS_OPTIONS_TAKES_H
 
 #include "options/tool.h"
-
-/* Returns in words what OPTION, without dashes, of COMMAND takes, or NULL. */
-const char *takes_of(const char *command, const char *option);
 
 /* Prints that OPTION does not take VALUE, and what it takes. Returns the code
  * of tool_usage(). */

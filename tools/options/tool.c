@@ -2,6 +2,7 @@
 #include "options/tool.h"
 
 #include "help/help.h"
+#include "help/values.h"
 #include "options/suggest.h"
 
 #include <errno.h>
@@ -192,7 +193,9 @@ int tool_option(struct tool *tool, int option, const char *value)
         help_all(&help);
         return EXIT_OK;
     case TOOL_OPTIONS:
-        help_options(&help, taken);
+        if (!value)
+            help_options(&help, taken);
+        values_print_words(tool->name, value);
         return EXIT_OK;
     case 'V':
         help_version(tool->json);
@@ -428,8 +431,7 @@ static void show_line(struct tool_progress *p, double now, double done)
             100 * p->most, spent, spent * (1 - done) / done);
 }
 
-/* Prints how long it will take, once, if that is long. What first steps prepare
- * is not yet in proportion. */
+/* Prints, once and after a second, how long it will take if that is long. */
 static void tell_length(struct tool_progress *p, double spent, double done)
 {
     const double all = spent / done, left = all - spent;

@@ -55,7 +55,7 @@ enum { TOOL_HELP_ALL = 900, TOOL_OPTIONS };
         {"kernels", required_argument, NULL, 'K'},                             \
         {"seed", required_argument, NULL, 'S'},                                \
         {"help-all", no_argument, NULL, TOOL_HELP_ALL},                        \
-        {"options", no_argument, NULL, TOOL_OPTIONS},                          \
+        {"options", optional_argument, NULL, TOOL_OPTIONS},                    \
     {                                                                          \
         NULL, 0, NULL, 0                                                       \
     }

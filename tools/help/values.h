@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * values.h - the values that options take, in words, for error messages and for
+ * shells, which complete the fixed words among them.
+ *
+ * One table for all commands, in values.c: a new option with a value gets a
+ * line there, or tests/cli/doors says that it has none.
+ */
+#ifndef GLINT_TOOLS_HELP_VALUES_H
+#define GLINT_TOOLS_HELP_VALUES_H
+
+/* Returns in words what OPTION, without dashes, of COMMAND takes, or NULL. */
+const char *values_of(const char *command, const char *option);
+
+/* Prints the fixed words of what values_of() returns, a line each; of an OPTION
+ * of NULL none. */
+void values_print_words(const char *command, const char *option);
+
+#endif
