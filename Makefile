@@ -9,7 +9,7 @@
 #   make corpus   photographs to try it on;  corpus-evaluate, HALF=tune|held:
 #                 how well lamps are found in them
 #   make demo     ghosts on a real photograph and a video  (DEPS=no: no apt)
-#   make check    every test (VM=no: not in the emulator);  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
+#   make check    every test;  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
 #   make test TEST=NAME   one test, and all that it prints
 #   make check-arm  the run-time half's on ARM, in an emulator
 #   make check-vm   of these those on Debian's kernels in an emulator, ARM too
