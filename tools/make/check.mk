@@ -59,7 +59,7 @@ check:
 	@tools/make/deps "unit tests, lint" $(CHECK_PACKAGES)
 	@$(MAKE) --no-print-directory WERROR=-Werror run-check
 run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/ray_errors $(example_bins) $(embed_bins) \
-        $(PROGRAMS)
+        $(PROGRAMS) $(wildcard build/glint-oiio.so build/glint-assimp.so)
 	@[ $(notdir $(CC))-$(CONFIG) != gcc-release ] || { $(MAKE) --no-print-directory PIC=yes shared frei0r && $(MAKE) --no-print-directory man; }
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
 	        $(replay_bins)
