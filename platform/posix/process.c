@@ -33,10 +33,10 @@ bool glint_process_own_file(char *path, size_t bytes)
     static const char own = 0;
     const uintptr_t at = (uintptr_t)&own;
     FILE *const maps = fopen("/proc/self/maps", "re");
-    char *line = NULL, *file = NULL;
-    size_t room = 0, n = 0;
+    char line[4096 + 128], *file = NULL;
+    size_t n = 0;
 
-    while (maps && !file && getline(&line, &room, maps) > 0) {
+    while (maps && !file && fgets(line, sizeof line, maps)) {
         uintptr_t begin, end;
 
         if (sscanf(line, "%" SCNxPTR "-%" SCNxPTR, &begin, &end) == 2 &&
@@ -50,7 +50,6 @@ bool glint_process_own_file(char *path, size_t bytes)
             path[n] = '\0';
         }
     }
-    free(line);
     if (maps)
         fclose(maps);
     return n > 0 && n < bytes;
