@@ -43,11 +43,7 @@ install: install-library install-programs $(if $(filter yes,$(PLUGIN)),build/gli
 # The files that programs need at run time: all that a board needs.
 install-programs: all glint-live
 	install -d $(to)/bin $(to)/share/glint/lenses $(to)/lib/systemd/system
-<<<<<<< HEAD
 	install $(strip_too) -m 755 \
-=======
-	install $(if $(CROSS),$(strip_too)) -m 755 \
->>>>>>> e05eb3b4 (board: pack run-time files alone, not folders of the system)
 	        $(program) $(OUT)/glint-live $(to)/bin
 	install -m 644 lenses/*.lens lenses/figures.md $(to)/share/glint/lenses
 	for r in $(lens_rooms); do install -d $(to)/share/glint/$$r && \
