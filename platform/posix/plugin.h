@@ -14,7 +14,7 @@
 #include "glint/status.h"
 
 struct glint_plugin {
-    const char *file;    /* the library, with .so; its Debian package, without */
+    const char *file; /* the library, with .so; its Debian package, without */
     const char *setting; /* variable of the environment that names its place */
     const char *symbol;  /* the struct's */
     const char *noun;    /* "the image plug-in" */
@@ -27,9 +27,10 @@ struct glint_plugin {
 
 /* Returns the struct of PLUGIN. Looks at its setting, which names the file and
  * then is the only place; beside the program, or the plug-in of a host, that
- * contains this code; in ../lib/glint from there; and in GLINT_PLUGIN_DIR, where that was defined when compiling. A folder that
- * everybody may write to is none. Returns NULL if it is not found or refused,
- * with the cause in ERROR. Not for two threads at a time. */
+ * contains this code; in ../lib/glint from there; and in GLINT_PLUGIN_DIR,
+ * where that was defined when compiling. A folder that everybody may write to
+ * is none. Returns NULL if it is not found or refused, with the cause in ERROR.
+ * Not for two threads at a time. */
 const void *glint_plugin_load(const struct glint_plugin *plugin,
                               struct glint_error *error);
 
