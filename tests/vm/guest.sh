@@ -44,6 +44,16 @@ loopback() {
     insmod /lib/loop.ko devices=1 video_nr=9 exclusive_caps=1 "$@"
 }
 
+# Waits until FILE, JSON statistics, has N frames of seconds that begin later.
+wait_frames() { # FILE N
+    had=$(grep -c frames "$1")
+    wait_for has_frames "$1" $((had + 2)) "$2"
+}
+has_frames() { # FILE LINE N
+    tail -n +"$2" "$1" | awk -F '"frames":' -v most="$3" \
+        '{ n += $2 } END { exit !(n >= most) }'
+}
+
 # Runs `feed` until $feeder is killed; returns when frames have gone through.
 start_feed() { # ARGUMENT...
     rm -f /tmp/fed

@@ -21,7 +21,7 @@ start_feed -r 10 /dev/video9 YUYV 1280x720 /in/scene
 /in/glint-live -d 9 --lens /in/model -j 1 --stats json >stats 2>err &
 live=$!
 wait_for grep -q '"lights":[12],"ghosts":[1-9]' stats
-sleep 2
+wait_frames stats 3
 shot last
 # the most that was resident
 sed -n 's/^VmHWM:[[:space:]]*\([0-9]*\).*/\1/p' /proc/$live/status >most

@@ -18,12 +18,6 @@ model=$(model heliar-tronnier)
 
 guest faults -d bochs:640x480 -V '' "${program[@]}" -i "$model" \
     -i "$out/scene" <<'END'
-lines() { grep -c frames "$name.json"; }
-# of a second that began after the last look
-more_frames() {
-    tail -n +$((had + 2)) "$name.json" | grep -q '"frames":[1-9]'
-}
-
 camera="-i 0 -s 320x180 -r 60"
 # start NAME OPTION...: live runs and has shown frames
 start() {
@@ -37,8 +31,7 @@ start() {
 }
 # goes_on: a second that begins later has frames
 goes_on() {
-    had=$(lines)
-    wait_for more_frames && echo goes-on >>"$name.is"
+    wait_frames "$name.json" 1 && echo goes-on >>"$name.is"
 }
 ended() {
     wait $live

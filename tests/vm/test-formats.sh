@@ -16,7 +16,7 @@ bars() { # NAME OPTION...
     glint live -s 320x180 -r 30 -i 0 --lens /in/model --light 7,33 --exposure 0 \
         --stats json "\$@" >\$name.json 2>\$name.err &
     live=\$!
-    wait_for grep -q frames \$name.json
+    wait_for grep -q '"frames":[1-9]' \$name.json
     shot \$name
     kill -INT \$live
     wait \$live

@@ -57,7 +57,8 @@ look="--exposure 4 --max-lights 4"
 start() { # NAME OPTION...
     name=/out/$1
     shift
-    glint live -d 9 --lens /in/model $look "$@" >$name.json 2>$name.err &
+    glint live -d 9 --lens /in/model $look --no-adaptive "$@" \
+        >$name.json 2>$name.err &
     live=$!
 }
 ended() {
@@ -85,8 +86,8 @@ stop_feed
 
 feed_with 30 640x480 large.jpg bad-truncated.jpg
 start panel --stats json
-wait_for grep -q frames $name.json
-sleep 2
+wait_for grep -q '"frames":[1-9]' $name.json
+wait_frames $name.json 3
 shot panel
 kill -INT $live
 ended

@@ -20,10 +20,11 @@ live() { # DISPLAY LAYOUT WxH [OPTION...]
     shift 3
     guest "$at" -d "$display" -V '' -i "$glint" -i "$out/scene.yuyv" -i model="$lens" <<END
 start_feed -c /dev/video0 /dev/video1 YUYV 1280x720 /in/scene.yuyv
-glint live -d 0 -i 3 -f YUYV --lens /in/model ${look[*]} $* 2>err --json >stats &
+glint live -d 0 -i 3 -f YUYV --lens /in/model ${look[*]} --no-adaptive $* \
+    2>err --json >stats &
 live=\$!
-wait_for grep -q frames stats
-usleep 300000
+wait_for grep -q '"frames":[1-9]' stats
+wait_frames stats 3 # lamps rise with the first ones
 vt >mode
 shot panel
 kill -INT \$live

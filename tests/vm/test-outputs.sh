@@ -34,15 +34,15 @@ camera="-i 3 -f YUYV"
 live() { # NAME OPTION...
     name=$1
     shift
-    glint live -d 0 $camera $look "$@" 2>$name.err
+    glint live -d 0 $camera $look --no-adaptive "$@" 2>$name.err
     echo "code $?" >$name.code
 }
 # start NAME OPTION...: until frames are shown
 start() {
     name=$1
     shift
-    glint live -d 0 $camera $look --stats json "$@" >$name.json \
-        2>$name.err &
+    glint live -d 0 $camera $look --no-adaptive --stats json "$@" \
+        >$name.json 2>$name.err &
     live=$!
     wait_for grep -q '"frames":[1-9]' $name.json
 }
@@ -70,6 +70,7 @@ sleep 1000 <>/tmp/fifo &
 reader=$!
 glint live -d 0 $camera $heliar -o y4m:- --stats none >/tmp/fifo 2>twice.err &
 live=$! name=twice
+wait_for grep -q '^glint live: /dev/video0' twice.err
 sleep 4
 kill -INT $live
 sleep 1
@@ -94,7 +95,7 @@ ended
 
 echo 'lens = /in/heliar' >/tmp/config
 start signals --config /tmp/config --snapshot /tmp/shot-%d.ppm
-sleep 1
+wait_frames signals.json 3
 shot heliar
 kill -USR2 $live
 wait_for test -e /tmp/shot-1.ppm
@@ -104,7 +105,7 @@ mv /tmp/shot-1.ppm snapshot.ppm
 echo 'lens = /in/stopped.glint' >/tmp/config
 kill -HUP $live
 wait_for grep -q 'live: reloaded' signals.err
-sleep 2
+wait_frames signals.json 3
 shot stopped
 refused() { [ "$(grep -c 'not reloaded' signals.err)" -gt "$had" ]; }
 for broken in 'lens = /in/none' 'lenz = /in/heliar' 'exposure = lots'; do
@@ -113,7 +114,7 @@ for broken in 'lens = /in/none' 'lenz = /in/heliar' 'exposure = lots'; do
     kill -HUP $live
     wait_for refused
 done
-sleep 1
+wait_frames signals.json 3
 shot still
 kill -INT $live
 ended

@@ -38,11 +38,9 @@ mkfifo /tmp/pipe
 glint live -d 0 -i 3 -f YUYV --lens /in/model ${look[*]} --scene /in/ball.glint \
     --pose /tmp/pipe --no-adaptive 2>err --json >stats &
 live=\$!
-wait_for grep -q frames stats
+wait_for grep -q '"frames":[1-9]' stats
 cat /in/poses.csv >/tmp/pipe
-had=\$(wc -l <stats) # a line each second, or frame that takes longer
-more() { [ "\$(wc -l <stats)" -ge \$((had + 3)) ]; }
-wait_for more
+wait_frames stats 3
 shot panel
 kill -INT \$live
 wait \$live
