@@ -30,13 +30,15 @@ static bool find_own_directory(char dir[PATH_BYTES])
     return true;
 }
 
-/* Returns whether DIR is of an installed glint, bin/ beside share/glint/. */
+/* Returns whether DIR is not in build/ or a folder of it, beside which the
+ * sources are. */
 static bool is_installed(const char *dir)
 {
-    char share[PATH_BYTES + FILE_BYTES];
+    char up[PATH_BYTES + FILE_BYTES], up_twice[PATH_BYTES + FILE_BYTES];
 
-    snprintf(share, sizeof share, "%s../share/glint", dir);
-    return access(share, F_OK) == 0;
+    snprintf(up, sizeof up, "%s../lenses", dir);
+    snprintf(up_twice, sizeof up_twice, "%s../../lenses", dir);
+    return access(up, F_OK) != 0 && access(up_twice, F_OK) != 0;
 }
 
 static void report_missing(const struct glint_plugin *plugin, bool installed,

@@ -37,11 +37,12 @@ bool glint_process_own_file(char *path, size_t bytes)
     size_t n = 0;
 
     while (maps && !file && fgets(line, sizeof line, maps)) {
-        uintptr_t begin, end;
+        char *rest; /* a line begins with "BEGIN-END " in hexadecimal */
+        const uintmax_t begin = strtoumax(line, &rest, 16);
+        const uintmax_t end = *rest == '-' ? strtoumax(rest + 1, &rest, 16) : 0;
 
-        if (sscanf(line, "%" SCNxPTR "-%" SCNxPTR, &begin, &end) == 2 &&
-            begin <= at && at < end)
-            file = strchr(line, '/');
+        if (begin <= at && at < end)
+            file = strchr(rest, '/');
     }
     if (file) {
         n = strcspn(file, "\n");

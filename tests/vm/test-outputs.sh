@@ -70,8 +70,7 @@ sleep 1000 <>/tmp/fifo &
 reader=$!
 glint live -d 0 $camera $heliar -o y4m:- --stats none >/tmp/fifo 2>twice.err &
 live=$! name=twice
-wait_for grep -q '^glint live: /dev/video0' twice.err
-sleep 4
+wait_for grep -q pipe /proc/$live/wchan # it blocks as it writes
 kill -INT $live
 sleep 1
 kill -0 $live && echo waits >twice.first

@@ -351,6 +351,8 @@ int cmd_bake(int argc, char **argv)
 
     if (code != EXIT_OK && tool.json &&
         !(tool.written && strcmp(tool.written, "-") == 0))
-        print_failure(&tool, optind < argc ? argv[optind] : NULL, code);
+        print_failure(&tool,
+                      code != EXIT_USAGE && optind < argc ? argv[optind] : NULL,
+                      code);
     return code;
 }

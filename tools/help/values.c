@@ -195,8 +195,9 @@ static bool is_range(const char *text)
 {
     const char *const to = strstr(text, " to ");
 
-    return (to && to < item_end(text)) || strncmp(text, "above ", 6) == 0 ||
-           strncmp(text, "from ", 5) == 0;
+    return ((*text == '-' || (*text >= '0' && *text <= '9')) && to &&
+            to < item_end(text)) ||
+           strncmp(text, "above ", 6) == 0 || strncmp(text, "from ", 5) == 0;
 }
 
 /* Returns whether the item at TEXT of LENGTH is a word to type: no range, no

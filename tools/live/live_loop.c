@@ -47,9 +47,18 @@ static void take_format(struct live *l)
 
     source->describe(source, &l->format);
     l->n_restarts = source->n_restarts;
+}
+
+static enum glint_status start_input(struct live *l, struct glint_error *error)
+{
+    const enum glint_status status = live_input_start(&l->in, error);
+
+    if (status != GLINT_OK)
+        return status;
     live_log_say(&l->log, l->format.text);
     if (l->tool->verbose && l->format.detail)
         live_log_say(&l->log, l->format.detail);
+    return GLINT_OK;
 }
 
 static void say_output(const struct live *l)
@@ -269,7 +278,7 @@ static int retry_camera(struct live *l)
 
         if (code != EXIT_OK)
             return code;
-        if (live_input_start(&l->in, &error) == GLINT_OK)
+        if (start_input(l, &error) == GLINT_OK)
             return -1;
     }
     if (strcmp(error.text, l->why.text) != 0)
@@ -356,7 +365,7 @@ static int restart(struct live *l)
 
     if (code != EXIT_OK)
         return code;
-    status = live_input_start(&l->in, &error);
+    status = start_input(l, &error);
     return status == GLINT_OK ? -1 : lose_camera(l, status, error.text);
 }
 
@@ -447,7 +456,7 @@ static int start(struct live *l)
     code = set_up(l);
     if (code != EXIT_OK)
         return code;
-    status = live_input_start(&l->in, &error);
+    status = start_input(l, &error);
     return status == GLINT_OK
                ? EXIT_OK
                : live_input_fail(&l->log, device, status, &error);

@@ -68,7 +68,8 @@ run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/ray_errors $(exa
 # make test TEST=flare   TEST=cli/overlay   TEST=replay_lens
 test_bin := $(if $(TEST),$(filter %/$(TEST) %/test_$(TEST),$(test_bins)))
 replay_bin := $(if $(TEST),$(filter %/$(TEST),$(replay_bins)))
-test_script := $(if $(TEST),$(firstword $(wildcard $(patsubst tests/%,%,$(TEST:%=tests/%)) $(addsuffix $(TEST),tests/ tests/cli/ tests/cli/*/))))
+scripts := $(shell find tests/cli tests/hosts -type f -perm /1) tests/links tests/embed tests/library
+test_script := $(if $(TEST)$(test_bin)$(replay_bin),$(firstword $(filter $(TEST) tests/$(TEST) %/$(TEST),$(scripts))))
 test_script := $(if $(test_bin)$(replay_bin),,$(test_script))
 test:
 	@tools/make/deps "unit tests" $(CHECK_PACKAGES)

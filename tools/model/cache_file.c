@@ -123,7 +123,7 @@ static bool lock_name(char *name, size_t bytes, const char *path)
     return (size_t)snprintf(name, bytes, "%s.lock", path) < bytes;
 }
 
-int cache_file_lock(char *path)
+int cache_file_lock(char *path, void (*waits)(void *ctx), void *ctx)
 {
     struct flock all = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
     char name[CACHE_PATH_BYTES + 8];
@@ -136,9 +136,13 @@ int cache_file_lock(char *path)
               0600);
     if (fd < 0)
         return -1;
-    do
-        got = fcntl(fd, F_SETLKW, &all);
-    while (got < 0 && errno == EINTR);
+    got = fcntl(fd, F_SETLK, &all);
+    if (got < 0 && (errno == EAGAIN || errno == EACCES)) {
+        waits(ctx);
+        do
+            got = fcntl(fd, F_SETLKW, &all);
+        while (got < 0 && errno == EINTR);
+    }
     if (got == 0)
         return fd;
     close(fd);

@@ -38,10 +38,10 @@ uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes);
 enum glint_status cache_file_write(char *path, const void *data, size_t bytes,
                                    struct glint_error *error);
 
-/* Waits until no other process makes the file PATH, and keeps others waiting
- * until the lock is released. Returns a descriptor, or -1 if there can be no
- * lock: the file is then made without one. */
-int cache_file_lock(char *path);
+/* Keeps other processes from making the file PATH until the lock is released.
+ * Calls WAITS with CTX before it waits for one that holds it. Returns a
+ * descriptor, or -1 if there can be no lock: the file is then made without. */
+int cache_file_lock(char *path, void (*waits)(void *ctx), void *ctx);
 void cache_file_unlock(const char *path, int lock);
 
 #endif

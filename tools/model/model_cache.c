@@ -153,10 +153,25 @@ static int bake(const struct tool *tool, const struct glint_prescription *lens,
     return EXIT_OK;
 }
 
+struct wait {
+    const struct tool *tool;
+    const char *lens;
+};
+
+static void report_wait(void *ctx)
+{
+    const struct wait *const w = ctx;
+
+    if (!w->tool->quiet)
+        fprintf(stderr, "glint %s: waiting for another process that bakes %s\n",
+                w->tool->name, w->lens);
+}
+
 int model_cached(const struct tool *tool, const struct glint_prescription *lens,
                  struct glint_bake_options options, struct model_file *model)
 {
     const uint64_t key = glint_bake_key(lens, &options);
+    struct wait wait = {tool, lens->name};
     char path[CACHE_PATH_BYTES];
     int lock, code = EXIT_OK;
 
@@ -167,7 +182,7 @@ int model_cached(const struct tool *tool, const struct glint_prescription *lens,
     if (load(path, key, read_ours, model))
         return EXIT_OK;
     /* Another process may be baking the same model. */
-    lock = cache_file_lock(path);
+    lock = cache_file_lock(path, report_wait, &wait);
     if (!load(path, key, read_ours, model))
         code = bake(tool, lens, options, path, model);
     cache_file_unlock(path, lock);
