@@ -351,8 +351,9 @@ int cmd_bake(int argc, char **argv)
 
     if (code != EXIT_OK && tool.json &&
         !(tool.written && strcmp(tool.written, "-") == 0))
-        print_failure(&tool,
-                      code != EXIT_USAGE && optind < argc ? argv[optind] : NULL,
-                      code);
+        /* Options that follow were not read yet. */
+        print_failure(
+            &tool, optind < argc && *argv[optind] != '-' ? argv[optind] : NULL,
+            code);
     return code;
 }
