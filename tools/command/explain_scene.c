@@ -198,14 +198,15 @@ static int highlights_of(const struct explained_scene *s,
     const struct compositor *const c = s->compositor;
     struct glint_scene_highlight seen[GLINT_SCENE_MAX_HIGHLIGHTS];
     const int n = glint_scene_find_highlights(c->scene.frame.scene, seen);
-    const struct glint_lamp *const lamp = c->lamp + c->n_lamps - n;
 
     for (int i = 0; i < n; i++) {
         const struct glint_spot *const spot = &seen[i].spot;
-        const int at = c->has_lens && s->flare ? drawn_for(s, &lamp[i]) : -1;
+        const struct glint_lamp *const lamp =
+            c->has_lens ? &c->lamp[c->n_lamps - n + i] : NULL;
+        const int at = lamp && s->flare ? drawn_for(s, lamp) : -1;
 
         found[i] = (struct highlight){
-            c->has_lens ? word_of(s, &lamp[i]) : "no lens",
+            lamp ? word_of(s, lamp) : "no lens",
             spot->x_q8 / 256.0,
             spot->y_q8 / 256.0,
             (double)spot->power_q16 * 0x1p-16,
