@@ -46,6 +46,8 @@ inside() {
             : >"$dir/dev/$device" && mount --bind "/dev/$device" "$dir/dev/$device" || exit 1
         done
         ln -sfn /proc/self/fd "$dir/dev/fd"
+        mkdir -p "$dir/dev/pts" && mount -t devpts -o newinstance,ptmxmode=0666 none "$dir/dev/pts" &&
+            ln -sfn pts/ptmx "$dir/dev/ptmx" || exit 1
         mkdir -p "$dir/dev/shm" && mount -t tmpfs none "$dir/dev/shm" &&
             mount -t proc none "$dir/proc" && mount --bind "$archives" "$dir/var/cache/apt/archives" || exit 1
         [ -z "$CCACHE_DIR" ] || mount --bind "$CCACHE_DIR" "$dir/cache" || exit 1
