@@ -48,7 +48,7 @@ struct glint_source_format {
 struct glint_source {
     int fd;          /* readable when there may be a frame, once SOURCE was
                         started; start and next may change it */
-    int n_restarts;  /* times that it began anew since it was opened; its format
+    int n_restarts;  /* restarts of the stream since it was opened; its format
                         may change with each */
     bool has_signal; /* false: frames show what the device makes of no signal */
 
