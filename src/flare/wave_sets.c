@@ -25,7 +25,8 @@ static struct job *jobs_of(struct glint_flare *f)
     return (struct job *)(void *)f->slot;
 }
 
-int glint_wave_sets_first(const struct glint_wave_sets *sets, int set)
+/* Returns the index of the first wave of set SET. */
+static int first_wave(const struct glint_wave_sets *sets, int set)
 {
     int first = 0;
 
@@ -99,7 +100,7 @@ static int64_t apart_q8(const struct glint_plan *plan,
 /* Returns the width of set SET in 1 / wavelength^2, um^-2 in _q24. */
 static int64_t span_of(const struct glint_flare_frame *r, int set)
 {
-    const struct glint_wave *w = r->wave + glint_wave_sets_first(r->sets, set);
+    const struct glint_wave *w = r->wave + first_wave(r->sets, set);
     const int32_t span = w[r->sets->size[set] - 1].wave_q24 - w[0].wave_q24;
 
     return span < 0 ? -span : span;
@@ -153,7 +154,7 @@ static void plan_waves(struct glint_flare *f, const struct job *job, int at,
                        int set, struct glint_plan_scratch *scratch)
 {
     const struct glint_wave_sets *sets = f->plan.frame->sets;
-    const int first = glint_wave_sets_first(sets, set);
+    const int first = first_wave(sets, set);
 
     for (int i = 0; i < sets->size[set]; i++) {
         f->planned[at + i] = (struct glint_bundle_plan){

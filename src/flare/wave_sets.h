@@ -25,9 +25,6 @@ struct glint_wave_planner {
     int (*plan)(struct glint_flare *flare, int n_jobs);
 };
 
-/* Returns the index of the first wave of set SET. */
-int glint_wave_sets_first(const struct glint_wave_sets *sets, int set);
-
 /* Returns the set that wave WAVE belongs to. */
 int glint_wave_sets_of(const struct glint_wave_sets *sets, int wave);
 

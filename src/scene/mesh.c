@@ -14,10 +14,6 @@
 #include "scene/visible.h"
 #include "scene/parts.h"
 
-const struct glint_scene_meshes glint_scene_meshes = {
-    glint_mesh_project, glint_mesh_look,  glint_mesh_meet,      glint_mesh_hold,
-    glint_mesh_surface, glint_mesh_joins, glint_quick_mesh_find};
-
 /* ------------------------------------------------------------------ corners */
 
 static const struct glint_corner *corner_of(const struct glint_scene *s,
@@ -160,7 +156,8 @@ static void list(struct glint_scene *s, int facing)
     }
 }
 
-void glint_mesh_project(struct glint_scene *s, struct glint_scene_stats *stats)
+static void project_meshes(struct glint_scene *s,
+                           struct glint_scene_stats *stats)
 {
     int64_t need = 0;
 
@@ -361,7 +358,7 @@ static NEVER_INLINE void look_at_large(struct glint_scene_worker *w,
     look_at_box(w, &seen, b);
 }
 
-void glint_mesh_look(struct glint_scene_worker *w, uint32_t id)
+static void look_at_triangle(struct glint_scene_worker *w, uint32_t id)
 {
     const struct glint_scene *s = w->scene;
     const uint32_t object = id >> 20;
@@ -378,3 +375,7 @@ void glint_mesh_look(struct glint_scene_worker *w, uint32_t id)
     if (!is_small || !glint_mesh_look_small(w, id, t, line, b))
         look_at_large(w, id, t, line, b);
 }
+
+const struct glint_scene_meshes glint_scene_meshes = {
+    project_meshes,     look_at_triangle, glint_mesh_meet,      glint_mesh_hold,
+    glint_mesh_surface, glint_mesh_joins, glint_quick_mesh_find};

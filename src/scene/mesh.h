@@ -39,11 +39,6 @@ static inline void glint_mesh_vertices(const struct glint_scene *s,
         at[k] = vertex + 3 * (size_t)t->vertex[k];
 }
 
-/* mesh.c: triangles in the picture */
-void glint_mesh_project(struct glint_scene *scene,
-                        struct glint_scene_stats *stats);
-void glint_mesh_look(struct glint_scene_worker *w, uint32_t id);
-
 /* mesh_ray.c: rays through the grid */
 int glint_mesh_meet(const struct glint_scene *scene, uint32_t object,
                     uint32_t but_triangle, const struct glint_scene_ray *ray,

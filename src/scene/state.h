@@ -433,7 +433,5 @@ void glint_scene_copy_looks(struct glint_scene *scene);
 
 /* Things have moved: grids of shadows, and maps, wait for the next frame. */
 void glint_scene_forget_shadows(struct glint_scene *scene);
-/* Pixels of the tile that a worker draws in, as a pass. */
-struct glint_pass glint_scene_pass(const struct glint_scene *scene);
 
 #endif

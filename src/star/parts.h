@@ -68,8 +68,6 @@ struct glint_star {
         inverse_q31[GLINT_STAR_INVERSES + 2]; /* 2^31 / (2^15 (1 + i / n)) */
 };
 
-struct glint_pass glint_star_pass(const struct glint_star *star);
-
 glint_star_part_fn glint_star_lines, glint_star_halo, glint_star_core;
 
 /* Returns whether lines of LAMP may reach pixels of BOX. */

@@ -128,7 +128,7 @@ static enum glint_given light_rows(void *state,
     return any ? GLINT_GIVES_LIGHT : GLINT_GIVES_NOTHING;
 }
 
-struct glint_pass glint_star_pass(const struct glint_star *star)
+static struct glint_pass pass_of(const struct glint_star *star)
 {
     return (struct glint_pass){star, begin_row, go_on, light_rows};
 }
@@ -154,8 +154,7 @@ static void row_job(void *ctx, int job, int worker)
 static void draw_alone(struct glint_star *star, struct glint_flare *flare,
                        const struct glint_image *image)
 {
-    struct draw d = {flare, glint_flare_start(flare, image),
-                     glint_star_pass(star)};
+    struct draw d = {flare, glint_flare_start(flare, image), pass_of(star)};
 
     d.tiles.half = 0;
     d.tiles.quads = NULL;
@@ -169,7 +168,7 @@ struct glint_pass glint_star_pass_on(struct glint_star *star,
                                      const struct glint_image *image)
 {
     star->is_linear = image && image->format == GLINT_LINEAR_Q20;
-    return glint_star_pass(star);
+    return pass_of(star);
 }
 
 void glint_star_draw_alone(struct glint_star *star, struct glint_flare *flare,
@@ -184,7 +183,7 @@ void glint_star_draw_alone(struct glint_star *star, struct glint_flare *flare,
 void glint_star_draw(struct glint_star *star, struct glint_flare *flare,
                      const struct glint_image *image)
 {
-    const struct glint_pass pass = glint_star_pass(star);
+    const struct glint_pass pass = pass_of(star);
     const struct glint_flare_under under = {&pass, 1, &glint_blend, star->rows};
 
     star->is_linear = image && image->format == GLINT_LINEAR_Q20;

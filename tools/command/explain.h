@@ -7,10 +7,8 @@
 
 #include "engine/explain.h"
 
-/* Return the meaning of OUTCOME: a phrase for tables, and a word for
- * programs. */
+/* Returns the meaning of OUTCOME as a phrase for tables. */
 const char *explain_reason(enum glint_outcome outcome);
-const char *explain_word(enum glint_outcome outcome);
 
 /* The inputs of the frame: lens, lights as they were given, kind of picture,
  * and how ghosts are to be listed. */

@@ -33,11 +33,6 @@ const char *explain_reason(enum glint_outcome outcome)
     return outcomes[outcome].reason;
 }
 
-const char *explain_word(enum glint_outcome outcome)
-{
-    return outcomes[outcome].word;
-}
-
 static double degrees(double y, double x)
 {
     return atan2(y, x) * 180 / GLINT_PI;

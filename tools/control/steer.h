@@ -75,14 +75,9 @@ bool steer_take_environment(struct steer *steer, struct glint_scene *scene,
 void steer_apply_environment(const struct steer *steer,
                              struct glint_scene *scene);
 
-/* steer_motion.c: sets KIND to the kind of things called NAME; returns false if
- * there is none, or a thing has that name. */
-bool steer_kind_of(const struct steer *steer, const char *name,
-                   enum glint_scene_kind *kind);
-
-/* Checks, and obeys, what LINE says of a motion or a free camera; returns false
- * if it is about something else. *STATUS: as steer_check(), and
- * GLINT_E_ARGUMENT. */
+/* steer_motion.c: checks, and obeys, what LINE says of a motion or a free
+ * camera; returns false if it is about something else. *STATUS: as
+ * steer_check(), and GLINT_E_ARGUMENT. */
 bool steer_check_motion(const struct steer *steer,
                         const struct control_line *line, const char *where,
                         struct glint_error *error, enum glint_status *status);

@@ -9,8 +9,10 @@
 
 #define RADIAN 0.017453292519943295
 
-bool steer_kind_of(const struct steer *steer, const char *name,
-                   enum glint_scene_kind *kind)
+/* Sets KIND to the kind of objects called NAME; returns false if there is none,
+ * or an object has that name. */
+static bool kind_of(const struct steer *steer, const char *name,
+                    enum glint_scene_kind *kind)
 {
     static const char *const kinds[GLINT_KINDS] = {"body",   "sensors", "foods",
                                                    "shells", "lines",   "box"};
@@ -30,7 +32,7 @@ static bool names_kind(const struct steer *s, const struct control_line *line,
 {
     return (line->verb == CONTROL_SHOW || line->verb == CONTROL_HIDE ||
             line->verb == CONTROL_SIZE) &&
-           steer_kind_of(s, line->name[0], kind);
+           kind_of(s, line->name[0], kind);
 }
 
 bool steer_check_motion(const struct steer *steer,

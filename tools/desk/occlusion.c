@@ -191,7 +191,10 @@ static double share_of(const struct occlusion *o, const struct glint_view *view,
     return fmin(sum, 1);
 }
 
-double occlusion_fade(double x, double y, int width, int height, double fade_px)
+/* Returns the share of its light that a lamp at (X, Y) keeps, pixels of a
+ * picture of WIDTH x HEIGHT beyond which lamps fade within FADE_PX. */
+static double fade_outside(double x, double y, int width, int height,
+                           double fade_px)
 {
     const double dx = fmax(fmax(-x, x - width), 0);
     const double dy = fmax(fmax(-y, y - height), 0);
@@ -214,7 +217,7 @@ void occlusion_apply(struct occlusion *o, int frame,
         glint_view_to_pixel(view, focal_mm, &lamps[i], &x, &y);
         if (o->image.plane[0])
             share = share_of(o, view, focal_mm, &lamps[i]);
-        share *= occlusion_fade(x, y, view->width, view->height, o->fade_px);
+        share *= fade_outside(x, y, view->width, view->height, o->fade_px);
         lamps[i].power *= share;
         level[i] = fmax(level[i] * share, least_level);
     }

@@ -48,11 +48,6 @@ void occlusion_apply(struct occlusion *o, int frame,
                      const struct glint_view *view, double focal_mm,
                      struct glint_lamp *lamps, double *level, int n);
 
-/* Returns the share of its light that a lamp at (X, Y) keeps, pixels of a
- * picture of WIDTH x HEIGHT beyond which lamps fade within FADE_PX. */
-double occlusion_fade(double x, double y, int width, int height,
-                      double fade_px);
-
 void occlusion_close(struct occlusion *o);
 
 #endif

@@ -82,7 +82,8 @@ static bool drop_dummies(struct imported *lens)
 
 /* ------------------------------------------------------------------ stop */
 
-double imported_sag(const struct imported_surface *s, double h)
+/* Returns the sag of S at the height H, or at its equator. */
+static double sag_at(const struct imported_surface *s, double h)
 {
     const double c = curvature(s);
     const double root = 1 - (1 + s->shape.conic) * c * c * h * h;
@@ -109,7 +110,7 @@ static bool stop_beside(struct imported *lens, int k)
 {
     struct imported_surface *s = &lens->surface[k], stop = *s;
     const bool behind = strcmp(s->medium, "air") == 0;
-    const double rim = imported_sag(s, s->semi);
+    const double rim = sag_at(s, s->semi);
     double off = behind ? fmax(0, rim) : fmin(0, rim);
 
     if (behind && off > s->thickness)
@@ -313,7 +314,7 @@ static void cut_semis(struct imported *lens)
 
 double imported_gap(const struct imported_surface *s, double h)
 {
-    return s->thickness + imported_sag(s + 1, h) - imported_sag(s, h);
+    return s->thickness + sag_at(s + 1, h) - sag_at(s, h);
 }
 
 /* Cuts semi-diameters where neighbours' rims cross, as thin lenses of estimated

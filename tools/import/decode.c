@@ -58,7 +58,9 @@ static void end_lines(uint8_t *data, size_t bytes)
             data[i] = '\n';
 }
 
-void import_decode(uint8_t *data, size_t *bytes)
+/* Makes text of DATA[*BYTES] in place: UTF-16 of either order becomes ASCII,
+ * letters beyond it '?', and a byte order mark goes. */
+static void decode_text(uint8_t *data, size_t *bytes)
 {
     if (*bytes >= 2 && data[0] == 0xff && data[1] == 0xfe)
         narrow(data, bytes, 2, 1);
@@ -77,7 +79,7 @@ char *import_read(struct imported *lens, const struct import_format *format,
                   uint8_t *data, size_t *bytes)
 {
     lens->format = format->name;
-    import_decode(data, bytes);
+    decode_text(data, bytes);
     if (*bytes && memchr(data, 0, *bytes)) {
         imported_fail(lens, 0, "is no text");
         return NULL;

@@ -23,10 +23,6 @@ const struct import_format *import_format_at(int k);
  * are FlareSim's and pbrt's. */
 const struct import_format *import_format_of(const char *name);
 
-/* Makes text of DATA[*BYTES] in place: UTF-16 of either order becomes ASCII,
- * letters beyond it '?', and a byte order mark goes. */
-void import_decode(uint8_t *data, size_t *bytes);
-
 /* Reads DATA as FORMAT. Returns a table as imported_finish() does. DATA is
  * decoded in place. */
 char *import_read(struct imported *lens, const struct import_format *format,

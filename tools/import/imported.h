@@ -111,9 +111,6 @@ char *imported_finish(struct imported *lens, size_t *bytes);
 /* Tables may not overlap within this share of the semi-diameters. */
 #define IMPORT_FREE 0.9
 
-/* Returns the sag of S at the height H, or at its equator. */
-double imported_sag(const struct imported_surface *s, double h);
-
 /* Returns the distance from S to the next surface at the height H. */
 double imported_gap(const struct imported_surface *s, double h);
 

@@ -29,7 +29,9 @@ static bool is_plastic(double nd, double vd)
            vd <= fmax(least + 6.5, 35);
 }
 
-bool glass_is_known(double nd, double vd, bool moulded)
+/* Returns whether there is, or has been, a glass like that: not beyond the
+ * crowns and fluorides, nor beyond the flints; if MOULDED, also a plastic. */
+static bool is_known_glass(double nd, double vd, bool moulded)
 {
     int k = 0;
     double part;
@@ -90,7 +92,7 @@ int glass_suspect(const struct glint_prescription *lens, char *text,
 
         if (!(s->vd > 0))
             continue;
-        if (!glass_is_known(s->nd, s->vd, is_moulded(s))) {
+        if (!is_known_glass(s->nd, s->vd, is_moulded(s))) {
             snprintf(text, bytes, "no glass has nd %.6g and Vd %.4g", s->nd,
                      s->vd);
             return k;

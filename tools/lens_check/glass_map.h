@@ -10,10 +10,6 @@
 
 #include "glint/prescription.h"
 
-/* Returns whether there is, or has been, a glass like that: not beyond the
- * crowns and fluorides, nor beyond the flints; if MOULDED, also a plastic. */
-bool glass_is_known(double nd, double vd, bool moulded);
-
 /* Returns whether the glass behind surface K of LENS is another surface's, too,
  * or in the catalogue. */
 bool glass_is_listed(const struct glint_prescription *lens, int k);

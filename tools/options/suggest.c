@@ -10,7 +10,10 @@ static int least(int a, int b, int c)
     return ab < c ? ab : c;
 }
 
-int suggest_distance(const char *a, const char *b)
+/* Returns how many letters have to be inserted, left out, changed or swapped
+ * with the next one to get from A to B, or SUGGEST_CHARS if A or B has that
+ * many characters. */
+static int word_distance(const char *a, const char *b)
 {
     const int n = (int)strlen(a), m = (int)strlen(b);
     int rows[3][SUGGEST_CHARS]; /* rows i - 2, i - 1 and i */
@@ -48,7 +51,7 @@ void suggest_try(struct suggest *s, const char *candidate, size_t n)
         return;
     memcpy(text, candidate, n);
     text[n] = '\0';
-    distance = suggest_distance(s->word, text);
+    distance = word_distance(s->word, text);
     if (distance > 1 && strlen(s->word) >= 3 && strstr(text, s->word))
         distance = 1;
     if (distance >= s->distance)

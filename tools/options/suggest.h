@@ -21,11 +21,6 @@ struct suggest {
     int distance; /* distance of the best word */
 };
 
-/* Returns how many letters have to be inserted, left out, changed or swapped
- * with the next one to get from A to B, or SUGGEST_CHARS if A or B has that
- * many characters. */
-int suggest_distance(const char *a, const char *b);
-
 void suggest_begin(struct suggest *suggest, const char *word);
 
 /* Offers CANDIDATE[N]. If it contains the word, of 3 letters or more, it counts

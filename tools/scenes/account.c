@@ -42,7 +42,7 @@ const struct scene_cost_weight scene_cost_weight[GLINT_SCENE_ITEMS] = {
     {"spread", 0.00197},
     /* end weights */
 };
-const struct scene_cost_weight scene_cost_rest[SCENE_COST_RESTS] = {
+static const struct scene_cost_weight rest_weight[SCENE_COST_RESTS] = {
     /* begin rest */
     {"picture", 0.00705},
     {"things", 0.974},
@@ -139,7 +139,7 @@ double scene_cost_minsn(const struct scene_account *account)
         sum += scene_cost_layer(account, (enum glint_scene_kind)kind);
 
     for (int k = 0; k < SCENE_COST_RESTS; k++)
-        sum += 1e-3 * scene_cost_rest[k].kinsn * account->rest[k];
+        sum += 1e-3 * rest_weight[k].kinsn * account->rest[k];
     return sum;
 }
 

@@ -24,7 +24,6 @@ enum {
     SCENE_COST_AROUND,
     SCENE_COST_RESTS
 };
-extern const struct scene_cost_weight scene_cost_rest[SCENE_COST_RESTS];
 
 /* What became of the frame that was drawn last. */
 struct scene_account {

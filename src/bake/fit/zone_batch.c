@@ -3,7 +3,11 @@
 
 #include <math.h>
 
-void glint_zone_batch_scatter(int k, double x[GLINT_VARIABLES])
+/* Sets X to place number K of a low-discrepancy sequence, -1 .. 1 in each
+ * variable, which fills four dimensions evenly: the fractional parts of 1/2 +
+ * (K + 1) / g, / g^2 .. / g^4, g being the root of x^5 = x + 1, spread over -1
+ * .. 1. */
+static void scatter_in_four(int k, double x[GLINT_VARIABLES])
 {
     const double root = 1.16730397826141868426;
     double step = 1;
@@ -22,7 +26,7 @@ void glint_zone_scatter(const struct glint_zone *zone, int k,
     double step = 1;
 
     if (!zone->skew) {
-        glint_zone_batch_scatter(k, x);
+        scatter_in_four(k, x);
         x[GLINT_V] = fabs(x[GLINT_V]);
         return;
     }

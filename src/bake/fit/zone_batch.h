@@ -41,12 +41,6 @@ static inline double (*glint_zone_batch_hits(struct glint_zone_batch *batch,
     return batch->hits + k * batch->path->n_events;
 }
 
-/* Sets X to place number K of a low-discrepancy sequence, -1 .. 1 in each
- * variable, which fills four dimensions evenly: the fractional parts of 1/2 +
- * (K + 1) / g, / g^2 .. / g^4, g being the root of x^5 = x + 1, spread over -1
- * .. 1. */
-void glint_zone_batch_scatter(int k, double x[GLINT_VARIABLES]);
-
 /* Sets X to place number K of such a sequence over ZONE: of five dimensions if
  * it is skew, else with v of 0 or more. */
 void glint_zone_scatter(const struct glint_zone *zone, int k,

@@ -31,8 +31,9 @@ struct line {
                                                 half has the stack for it */
 };
 
-bool glint_openings_pass(const struct glint_openings *o,
-                         const struct glint_ray *ray)
+/* Returns whether RAY passes all of O. */
+static bool ray_passes(const struct glint_openings *o,
+                       const struct glint_ray *ray)
 {
     return ray->rel_radius <= 1 &&
            hypot(ray->stop_x_mm, ray->stop_y_mm) <= o->stop_mm &&
@@ -107,8 +108,7 @@ static bool seen_on(const struct glint_openings *o, const struct line *line,
     bool seen = false;
 
     for (int i = 0; i <= LINE; i++) {
-        if (line->status[i] != GLINT_RAY_OK ||
-            !glint_openings_pass(o, &line->ray[i]))
+        if (line->status[i] != GLINT_RAY_OK || !ray_passes(o, &line->ray[i]))
             continue;
         x_mm[0] = seen ? x_mm[0] : line->x0_mm + (i - 1) * line->step_mm;
         x_mm[1] = line->x0_mm + (i + 1) * line->step_mm;
@@ -198,7 +198,7 @@ static bool crosses(const struct glint_openings *o, double x0, double y0,
             {o->direction[0], o->direction[1], o->direction[2]}};
     glint_trace_many(o->path, n + 1, from, ray, status, NULL);
     for (int i = 0; i <= n && !any; i++)
-        any = status[i] == GLINT_RAY_OK && glint_openings_pass(o, &ray[i]);
+        any = status[i] == GLINT_RAY_OK && ray_passes(o, &ray[i]);
     return any;
 }
 

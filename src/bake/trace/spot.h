@@ -24,10 +24,6 @@ struct glint_openings {
     double stop_mm, field_mm;
 };
 
-/* Returns whether RAY passes all of O. */
-bool glint_openings_pass(const struct glint_openings *o,
-                         const struct glint_ray *ray);
-
 /* Sets X_MM to the widest range of the line from FRONT's left to its right on
  * which rays get through, and a little more; returns whether there is one. */
 bool glint_spot_find(const struct glint_openings *o,

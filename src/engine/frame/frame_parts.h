@@ -64,10 +64,6 @@ enum glint_status glint_frame_still(struct glint_frame *frame,
 /* Returns how many ghosts the N bundles of the last frame belong to. */
 int glint_frame_count_ghosts(struct glint_frame *frame, int n);
 
-/* Returns how many bundles N_LIGHTS need; with sets of wavelengths, those of
- * the first set. */
-int glint_frame_bundles(const struct glint_frame *frame, int n_lights);
-
 /* Returns whether everything fitted; if not, raises the capacities, or makes
  * grids coarser that would take more memory than a frame may. */
 bool glint_frame_is_served(struct glint_frame *frame,

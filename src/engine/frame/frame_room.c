@@ -55,7 +55,9 @@ static int bundles_within(const struct glint_frame *f, double n)
     return n < most ? (int)n : most;
 }
 
-int glint_frame_bundles(const struct glint_frame *f, int n_lights)
+/* Returns how many bundles N_LIGHTS need; with sets of wavelengths, those of
+ * the first set. */
+static int count_bundles(const struct glint_frame *f, int n_lights)
 {
     const struct glint_setup *s = f->setup;
 
@@ -277,7 +279,7 @@ static bool has_room(const struct glint_frame *f, int n)
 
 enum glint_status glint_frame_make_room(struct glint_frame *f)
 {
-    const int bundles = glint_frame_bundles(f, f->n_lights);
+    const int bundles = count_bundles(f, f->n_lights);
 
     if (f->reserved || has_room(f, bundles))
         return GLINT_OK;
@@ -303,7 +305,7 @@ enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
     /* Not all ghosts are seen, and few take the largest set. */
     f->cfg.max_bundles =
         bundles_within(f, (glint_frame_has_sets(f) ? 2. : 1) *
-                              glint_frame_bundles(f, f->dials.max_lights));
+                              count_bundles(f, f->dials.max_lights));
     if (f->cfg.reuse)
         f->cfg.reuse_lights = f->dials.max_lights;
     f->cfg.reuse_gains = f->cfg.reuse && f->dials.still_px > 0;

@@ -44,8 +44,10 @@ static struct glint_box extent_q8(const struct glint_corners *corners)
     return b;
 }
 
-struct glint_box glint_corners_box(const struct glint_corners *corners,
-                                   int width, int height)
+/* Returns the pixels of a WIDTH x HEIGHT picture whose centres CORNERS may
+ * cover. */
+static struct glint_box corners_box(const struct glint_corners *corners,
+                                    int width, int height)
 {
     const struct glint_box e = extent_q8(corners);
 
@@ -157,5 +159,5 @@ struct glint_box glint_primitive_box(const struct glint_primitive *p,
     if (p->flags & GLINT_SAMPLED)
         return glint_corners_reach(corners, width, height);
     return p->flags & GLINT_POINT ? glint_corners_pixel(corners, width, height)
-                                  : glint_corners_box(corners, width, height);
+                                  : corners_box(corners, width, height);
 }

@@ -128,11 +128,6 @@ int glint_corners_tiny(const struct glint_corners *corners, int part);
 struct glint_box glint_corners_pixel(const struct glint_corners *corners,
                                      int width, int height);
 
-/* Returns the pixels of a WIDTH x HEIGHT picture whose centres CORNERS may
- * cover. */
-struct glint_box glint_corners_box(const struct glint_corners *corners,
-                                   int width, int height);
-
 /* Returns the pixels that primitive P with CORNERS may light, by its flags. */
 struct glint_box glint_primitive_box(const struct glint_primitive *p,
                                      const struct glint_corners *corners,

@@ -439,7 +439,8 @@ static enum glint_given draw_rows(void *state,
     return any ? GLINT_GIVES_COVER : GLINT_GIVES_NOTHING;
 }
 
-struct glint_pass glint_scene_pass(const struct glint_scene *scene)
+/* Pixels of the tile that a worker draws in, as a pass. */
+static struct glint_pass pass_of(const struct glint_scene *scene)
 {
     return (struct glint_pass){scene, begin_row, go_on, draw_rows};
 }
@@ -463,7 +464,7 @@ static void row_job(void *ctx, int job, int worker)
 void glint_scene_draw(struct glint_scene *scene,
                       const struct glint_image *image)
 {
-    struct draw d = {.scene = scene, .pass = glint_scene_pass(scene)};
+    struct draw d = {.scene = scene, .pass = pass_of(scene)};
 
     glint_scene_spread(scene);
     glint_resolve_init(scene->resolve, image, scene->cfg.dither,

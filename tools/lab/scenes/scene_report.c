@@ -11,7 +11,7 @@
 #define GREY  "#bbb"
 #define FRONT "#222"
 
-const char *const scene_dial_name[SCENE_DIALS] = {
+static const char *const dial_name[SCENE_DIALS] = {
     "edge_samples", "shadow_points", "shading",    "lookups",
     "levels",       "stone_model",   "planes",     "rank",
     "code_bits",    "tap_bits",      "map_texels", "stone_frames"};
@@ -24,7 +24,7 @@ double scene_sweep_cost(const struct scene_sweep *s,
     return s->by_instructions ? 1e-6 * p->instructions : p->ratio;
 }
 
-void scene_sweep_words(const struct scene_point *p, char *text, size_t bytes)
+static void format_point(const struct scene_point *p, char *text, size_t bytes)
 {
     char stone[100] = "";
 
@@ -80,7 +80,7 @@ void scene_sweep_csv(const struct scene_sweep *s, FILE *file)
 
         fprintf(file, "%s,%d,%d,%s,%s,", s->scene.model.header->name, s->width,
                 s->height, kinds[p->kind],
-                p->dial >= 0 ? scene_dial_name[p->dial] : "");
+                p->dial >= 0 ? dial_name[p->dial] : "");
         number(file, p->quality >= 0 ? p->quality : (double)NAN, "");
         fprintf(file, ",%d,%d,%s,%d,%d", p->value[SCENE_EDGES],
                 p->value[SCENE_SHADOWED], shading[p->value[SCENE_SHADING]],
@@ -120,7 +120,7 @@ static void json_point(const struct scene_sweep *s, const struct scene_point *p,
             shading[p->value[SCENE_SHADING]], p->value[SCENE_LOOKUPS],
             p->value[SCENE_LEVELS], stone_sweep_model(p));
     for (int d = SCENE_PLANES; d < SCENE_DIALS; d++)
-        member(file, scene_dial_name[d], p->value[d]);
+        member(file, dial_name[d], p->value[d]);
     member(file, "ms", p->ms);
     member(file, "floor_ms", p->ms / p->ratio);
     member(file, "ratio", p->ratio);
@@ -228,7 +228,7 @@ static void mark(const struct scene_sweep *s, const struct plot *plot,
     const double cost = scene_sweep_cost(s, p);
     char words[160], tip[200];
 
-    scene_sweep_words(p, words, sizeof words);
+    format_point(p, words, sizeof words);
     snprintf(tip, sizeof tip, "%s: %.3g, %.1f dB", words, cost, p->psnr_db);
     plot_mark(plot, cost, p->psnr_db,
               p->kind == SCENE_STANDARD ? 's'
@@ -256,7 +256,7 @@ void scene_sweep_front(const struct scene_sweep *s, FILE *file)
     plot_key(&plot, 'D', FRONT, "--budget");
     plot_key(&plot, '.', GREY, "together");
     for (int d = 0; d < dials_of(s); d++)
-        plot_key(&plot, 'o', plot_colour(d), scene_dial_name[d]);
+        plot_key(&plot, 'o', plot_colour(d), dial_name[d]);
     for (int i = 0; i < s->n_points; i++) {
         const struct scene_point *const p = &s->point[order[i]];
 
@@ -304,7 +304,7 @@ void scene_sweep_dials(const struct scene_sweep *s, FILE *file)
     for (int d = 0; d < dials_of(s); d++) {
         struct plot plot;
 
-        open_panel(s, &plot, file, d, scene_dial_name[d]);
+        open_panel(s, &plot, file, d, dial_name[d]);
         dial_curve(s, &plot, d);
     }
     plot_close(file);
@@ -357,7 +357,7 @@ static void figure(const struct scene_sweep *s, FILE *file,
     char words[160] = "exact";
 
     if (p)
-        scene_sweep_words(p, words, sizeof words);
+        format_point(p, words, sizeof words);
     fputs("<figure><img alt=\"\" src=\"", file);
     sweep_png(file, rgb, s->shrunk_width, s->shrunk_height);
     fprintf(file, "\"><figcaption>%s%s", words, what);

@@ -30,7 +30,6 @@ enum scene_dial {
     SCENE_FRAMES,
     SCENE_DIALS
 };
-extern const char *const scene_dial_name[SCENE_DIALS];
 
 enum scene_kind {
     SCENE_STANDARD,
@@ -127,7 +126,6 @@ void scene_sweep_free(struct scene_sweep *s);
  * in millions of instructions; NAN if it was not measured. */
 double scene_sweep_cost(const struct scene_sweep *s,
                         const struct scene_point *p);
-void scene_sweep_words(const struct scene_point *p, char *text, size_t bytes);
 void scene_sweep_csv(const struct scene_sweep *s, FILE *file);
 void scene_sweep_json(const struct scene_sweep *s, FILE *file);
 void scene_sweep_front(const struct scene_sweep *s, FILE *file);
