@@ -107,7 +107,6 @@ static const struct {
     {NULL, "io", "auto, mmap, userptr or read"},
     {NULL, "keys", "the name of a file"},
     {NULL, "kernels", "c, sse41, avx2, neon or auto, as this processor has it"},
-    {NULL, "lanes", "32 alone: 16-bit lanes saved nothing, and are gone"},
     {NULL, "jpeg-quality", "a whole number, 1 to 100"},
     {NULL, "layer", "composite, flare or flare-alpha"},
     {NULL, "layers-type", "half or float"},

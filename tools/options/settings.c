@@ -33,15 +33,6 @@ void settings_defaults(struct settings *settings)
                                   .most_minsn = GLINT_FRAME_MOST_MINSN};
 }
 
-static void warn_lanes(const struct tool *tool)
-{
-    if (!tool->quiet)
-        fprintf(stderr,
-                "glint %s: --lanes has nothing to choose any more: rays are "
-                "computed with 32 bits\n",
-                tool->name);
-}
-
 int settings_option(const struct tool *tool, struct settings *settings,
                     int option, const char *value)
 {
@@ -51,11 +42,8 @@ int settings_option(const struct tool *tool, struct settings *settings,
         return -2;
     if (option == OPT_COATING)
         return coating_take(tool, &settings->coating, value);
-    if (settings_take(settings, option, value)) {
-        if (option == OPT_LANES)
-            warn_lanes(tool);
+    if (settings_take(settings, option, value))
         return -1;
-    }
     return tool_refuse(tool, names[option - OPT_F_NUMBER].name, value);
 }
 

@@ -113,7 +113,6 @@ enum settings_option {
     OPT_BUDGET,
     OPT_WORK,
     OPT_RAYS,
-    OPT_LANES,
     OPT_CULL,
     OPT_STAR_CULL,
     OPT_DIM,
@@ -164,7 +163,6 @@ enum settings_option {
         {"budget", required_argument, NULL, OPT_BUDGET},             \
         {"work", required_argument, NULL, OPT_WORK},                 \
         {"rays", required_argument, NULL, OPT_RAYS},                 \
-        {"lanes", required_argument, NULL, OPT_LANES},               \
         {"cull", required_argument, NULL, OPT_CULL},                 \
         {"star-cull", required_argument, NULL, OPT_STAR_CULL},       \
         {"dim", required_argument, NULL, OPT_DIM},                   \

@@ -307,8 +307,6 @@ static enum taken take_dial(struct settings *s, int option, const char *value)
         word = tool_word(value, rays);
         s->rays = word == 0 ? SETTINGS_RAYS_MODEL : SETTINGS_RAYS_EXACT;
         return word >= 0;
-    case OPT_LANES: /* kept for command lines of the last release */
-        return strcmp(value, "32") == 0;
     default:
         return OTHER;
     }
