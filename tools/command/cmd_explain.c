@@ -144,10 +144,9 @@ static int check(struct tool *tool, const struct explain_command *c)
     if (!c->input && !c->compositor.scene.file && c->compositor.n_hand == 0 &&
         c->compositor.at.n == 0 && !c->compositor.lights_file)
         return tool_usage(tool, "--size needs a --light or --lights FILE");
-    if (s->raster || s->mask_nodes || s->rays != SETTINGS_RAYS_MODEL)
-        return tool_usage(tool,
-                          "explains what is drawn by edges from a model, "
-                          "not --raster cells, --stop-nodes, --rays exact");
+    if (s->rays != SETTINGS_RAYS_MODEL)
+        return tool_usage(tool, "explains what is drawn from a model, not "
+                                "with --rays exact");
     return -1;
 }
 

@@ -72,7 +72,6 @@ static const struct {
     {NULL, "work", "thousand million instructions, 0 to 1e9"},
     {NULL, "budgets", "numbers of milliseconds above 0, with commas"},
     {NULL, "buffers", "a whole number, 2 to 32"},
-    {NULL, "coarse", "0, 64, 128 or 256, pixels of a side"},
     {NULL, "coating",
      "table, mixed, none, v-coat, broadband-3 or broadband-4, or films such as "
      "100/1.38"},
@@ -119,14 +118,12 @@ static const struct {
     {NULL, "matrix", "auto, 601 or 709"},
     {NULL, "max-lights", "a whole number, 1 to 1048576"},
     {NULL, "memory", "MiB, 1 to 1024"},
-    {NULL, "merge", "STEPS,GAMMA: 0 to 4 and 0 to 1"},
     {NULL, "only", "ghosts, starburst, veil or all"},
     {NULL, "picture", "codes or linear"},
     {NULL, "projection", "lens or tan"},
     {NULL, "quality", "0 to 1, or least, draft, default, high, finest, exact"},
     {NULL, "quantum", "percent, 0 to 50"},
     {NULL, "range", "auto, full or limited"},
-    {NULL, "raster", "edges or cells"},
     {NULL, "rays", "model or exact"},
     {NULL, "repeat", "a whole number, from 1"},
     {NULL, "seed", "a whole number, 0 to 2147483647"},
@@ -143,7 +140,6 @@ static const struct {
     {NULL, "still", "pixels, 0 to 16"},
     {NULL, "start-number", "a whole number, 0 to 1000000000"},
     {NULL, "stats", "auto, line, json or none"},
-    {NULL, "stop-nodes", "a whole number, 2 to 4096"},
     {NULL, "stop",
      "circle or polygon:N[,DEGREES], N 3 to 64, then ,round:R or ,soft:W, each "
      "0 to 1"},
@@ -165,7 +161,6 @@ static const struct {
      "auto, a number of 1 to 32, or wavelengths of 300 to 1100 nm; 0.55 "
      "micrometres are 550"},
     {NULL, "warm-up", "a whole number, from 0"},
-    {NULL, "weights", "wachspress or loop-derose"},
     {NULL, "whole", "codes, 0 to 100"},
     {NULL, "zoom", "mm of focal length, or 0 to 1 along the way"},
 };

@@ -31,32 +31,31 @@ static struct bench_canvas *canvas_of(struct bench *b, int width, int height)
 struct variation {
     int width, height; /* 0: as asked */
     int lights;
-    int two_threads, by_cells; /* for this case, whatever was asked for */
-    const char *kernels;       /* NULL: as asked */
-    unsigned sets;             /* instruction sets that the kernels may use */
+    int two_threads;     /* for this case, whatever was asked for */
+    const char *kernels; /* NULL: as asked */
+    unsigned sets;       /* instruction sets that the kernels may use */
     double angle;
     double star_stops; /* stars of lamps of so many stops over white, alone; 0:
                           ghosts */
 };
 
 static const struct variation variations[] = {
-    {0, 0, 1, 0, 0, NULL, ~0U, 12, 0}, /* the plain case */
-    {0, 0, 1, 0, 1, NULL, ~0U, 12, 0},
-    {0, 0, 1, 0, 0, "c", 0, 12, 0},
-    {0, 0, 1, 0, 0, "sse41", GLINT_SET_SSE41, 12, 0},
-    {0, 0, 1, 1, 0, NULL, ~0U, 12, 0},
-    {0, 0, 2, 0, 0, NULL, ~0U, 12, 0},
-    {0, 0, 8, 0, 0, NULL, ~0U, 12, 0},
-    {0, 0, 64, 0, 0, NULL, ~0U, 12, 0},
-    {0, 0, 588, 0, 0, NULL, ~0U, 12, 0},
-    {0, 0, 10000, 0, 0, NULL, ~0U, 12, 0},
-    {640, 360, 1, 0, 0, NULL, ~0U, 12, 0},
-    {1280, 720, 1, 0, 0, NULL, ~0U, 12, 0},
-    {3840, 2160, 1, 0, 0, NULL, ~0U, 12, 0},
-    {0, 0, 0, 0, 0, NULL, ~0U, 12, 0},
+    {0, 0, 1, 0, NULL, ~0U, 12, 0}, /* the plain case */
+    {0, 0, 1, 0, "c", 0, 12, 0},
+    {0, 0, 1, 0, "sse41", GLINT_SET_SSE41, 12, 0},
+    {0, 0, 1, 1, NULL, ~0U, 12, 0},
+    {0, 0, 2, 0, NULL, ~0U, 12, 0},
+    {0, 0, 8, 0, NULL, ~0U, 12, 0},
+    {0, 0, 64, 0, NULL, ~0U, 12, 0},
+    {0, 0, 588, 0, NULL, ~0U, 12, 0},
+    {0, 0, 10000, 0, NULL, ~0U, 12, 0},
+    {640, 360, 1, 0, NULL, ~0U, 12, 0},
+    {1280, 720, 1, 0, NULL, ~0U, 12, 0},
+    {3840, 2160, 1, 0, NULL, ~0U, 12, 0},
+    {0, 0, 0, 0, NULL, ~0U, 12, 0},
     {.lights = 1, .sets = ~0U, .angle = 12, .star_stops = 12},
     {.lights = 10, .sets = ~0U, .angle = 12, .star_stops = 2},
-    {0, 0, 1, 0, 0, NULL, ~0U, 75, 0}, /* a light beyond the angles of models */
+    {0, 0, 1, 0, NULL, ~0U, 75, 0}, /* a light beyond the angles of models */
 };
 
 /* Sets t->scale to the exposure at which the 99.9th percentile of the flare's
@@ -120,8 +119,6 @@ static int add_test(struct bench *b, const struct settings *settings,
     t->frame.cfg.workers = v->two_threads       ? b->two
                            : b->tool->n_threads ? b->tool->workers
                                                 : b->one;
-    if (v->by_cells)
-        t->frame.cfg.raster = &glint_raster_cells;
     t->frame.cfg.sets &= v->sets;
     canvas_lamps(t->lamp, v->lights, v->angle);
     b->n_tests++;
@@ -142,7 +139,7 @@ static int add_test(struct bench *b, const struct settings *settings,
 int bench_add_one(struct bench *b, const struct settings *settings, int width,
                   int height, int lights)
 {
-    const struct variation v = {width, height, lights, 0, 0, NULL, ~0U, 12, 0};
+    const struct variation v = {width, height, lights, 0, NULL, ~0U, 12, 0};
 
     return add_test(b, settings, &v);
 }

@@ -10,9 +10,7 @@ static const char *const stage_names[STAGES] = {
 
 static const char *raster_of(const struct test *t)
 {
-    if (t->frame.star.is_alone)
-        return "star";
-    return t->frame.cfg.raster == &glint_raster_cells ? "cells" : "edges";
+    return t->frame.star.is_alone ? "star" : "edges";
 }
 
 static double quality_of(const struct test *t)

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdlib.h>
-#include <string.h>
 
 #include "lab/sweep.h"
 
@@ -39,12 +38,11 @@ static enum glint_status add(struct sweep *s, int c,
 }
 
 /* Checks whether dial D is turned in case C. A small sweep has no time for
- * dials that need a bake, nor for cells. */
+ * dials that need a bake. */
 static bool is_swept(const struct sweep *s, const struct sweep_case *c,
                      const struct dial *d)
 {
-    return (!d->many_lights || c->n_lamps > 1) &&
-           !(s->small && (d->opens || strcmp(d->name, "raster") == 0));
+    return (!d->many_lights || c->n_lamps > 1) && !(s->small && d->opens);
 }
 
 static enum glint_status add_alone(struct sweep *s, int c)

@@ -4,8 +4,8 @@
 #include <math.h>
 
 /* Values go from the finest on. The last list of each dial has the values that
- * are combined with those of other dials. Some dials are not combined: raster,
- * apart and max_lights lose more than they save, wavelengths loses colour, each
+ * are combined with those of other dials. Some dials are not combined: apart
+ * and max_lights lose more than they save, wavelengths loses colour, each
  * tolerance takes a bake, and tile changes no picture. */
 /* clang-format off */
 const struct dial dials[] = {
@@ -25,8 +25,6 @@ const struct dial dials[] = {
      3, 0, {0.25, 1, 4}, {1}},
     {"wavelengths", "wavelengths", DIAL_WAVELENGTHS, 3, true, false,
      2, 0, {3, 1}, {3}},
-    {"raster", "by cells", DIAL_RASTER, 0, false, false,
-     2, 0, {0, 1}, {0}},
     {"tile", "log2 of a tile's side", DIAL_TILE, 6, false, false,
      3, 0, {6, 5, 4}, {6}},
     {"apart", "lights nearer are one, pixels", DIAL_APART, 0.125, false, true,
@@ -73,9 +71,6 @@ void dial_set(struct settings *s, const struct dial *dial, double value)
         s->n_wavelengths = whole;
         s->wavelength_nm[0] = whole == 1 ? 532 : 650;
         break;
-    case DIAL_RASTER:
-        s->raster = whole;
-        break;
     case DIAL_TILE:
         s->tile_log2 = whole;
         break;
@@ -107,8 +102,6 @@ double dial_get(const struct settings *s, const struct dial *dial)
         return s->tolerance;
     case DIAL_WAVELENGTHS:
         return s->n_wavelengths;
-    case DIAL_RASTER:
-        return s->raster;
     case DIAL_TILE:
         return s->tile_log2;
     case DIAL_APART:

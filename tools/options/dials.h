@@ -24,7 +24,6 @@ enum dial_id {
     DIAL_HALF,
     DIAL_TOLERANCE,
     DIAL_WAVELENGTHS,
-    DIAL_RASTER,
     DIAL_TILE,
     DIAL_APART,
     DIAL_MAX_LIGHTS

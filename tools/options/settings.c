@@ -25,11 +25,9 @@ void settings_defaults(struct settings *settings)
                                   .only_ghost = -1,
                                   .apart_px = GLINT_FRAME_APART_PX,
                                   .tile_log2 = 6,
-                                  .weights = GLINT_WEIGHTS_WACHSPRESS,
                                   .quantum = 1,
                                   .dials = glint_dials_at(1 << 14),
                                   .quality = 0.5,
-                                  .antialias = true,
                                   .most_minsn = GLINT_FRAME_MOST_MINSN};
 }
 
@@ -232,39 +230,15 @@ static int set_up(const struct tool *tool, struct settings *s)
     return EXIT_OK;
 }
 
-/* Refuses options that do not go with the way of drawing, rather than ignore
- * them in silence. */
-static int check_raster(const struct tool *tool, const struct settings *s)
-{
-    if (s->mask_nodes && s->by_edges)
-        return tool_usage(tool,
-                          "--stop-nodes is drawn by cells, not --raster edges");
-    if (s->raster && !s->mask_nodes && s->stop.iris.roundness > 0)
-        return tool_usage(tool,
-                          "--raster cells draws round blades by --stop-nodes");
-    if ((s->raster || s->mask_nodes) && stop_option_shades(&s->stop))
-        return tool_usage(tool, "dust, masks and soft edges of the stop are "
-                                "drawn by edges, not by cells");
-    if (s->merge_steps && !s->raster && !s->mask_nodes)
-        return tool_usage(tool, "--merge is for --raster cells");
-    if ((s->dials.flags & GLINT_DIAL_ALWAYS_HALF) &&
-        (s->raster || s->mask_nodes))
-        return tool_usage(tool, "--half is drawn by edges, not by cells");
-    if ((s->dials.flags & GLINT_DIAL_ALWAYS_HALF) &&
-        s->rays == SETTINGS_RAYS_EXACT)
-        return tool_usage(tool, "--half is not for exact rays");
-    return EXIT_OK;
-}
-
 int settings_open(const struct tool *tool, struct settings *settings,
                   const char *lens)
 {
-    int code;
+    int code = EXIT_OK;
 
-    if (settings->raster && !settings->mask_nodes && !settings->stop.is_asked)
-        settings->stop.iris.roundness = 0; /* cells have no arcs */
-    code = check_raster(tool, settings);
-    if (code == EXIT_OK && settings->veil_only && !settings_has_veil(settings))
+    if ((settings->dials.flags & GLINT_DIAL_ALWAYS_HALF) &&
+        settings->rays == SETTINGS_RAYS_EXACT)
+        return tool_usage(tool, "--half is not for exact rays");
+    if (settings->veil_only && !settings_has_veil(settings))
         code = tool_usage(tool, "--only veil needs a --veil, --haze or "
                                 "--front-dust to draw");
     if (code == EXIT_OK)
@@ -319,7 +293,6 @@ int settings_frame(const struct tool *tool, const struct settings *settings,
     frame->trace = settings_table_rays();
     frame->clock = tool_seconds;
     frame->dials = settings->dials;
-    frame->uniform = settings->uniform;
     frame->only_ghost = settings->only_ghost;
     frame->tints = settings->tints;
     /* A limit of work would make the grid coarser than was asked for. */
@@ -332,20 +305,7 @@ int settings_frame(const struct tool *tool, const struct settings *settings,
         frame->dials.max_lights = settings->max_lights;
     frame->asked = frame->dials;
     frame->cfg.tile_log2 = settings->tile_log2;
-    /* Coarse tiles must be larger than the small ones; else one level of tiles
-     * draws the same picture. */
-    frame->cfg.coarse_log2 =
-        settings->coarse_log2 > settings->tile_log2 ? settings->coarse_log2 : 0;
-    frame->cfg.raster = settings->raster ? &glint_raster_cells : NULL;
-    frame->cfg.weights = settings->weights;
-    frame->cfg.merge_steps = settings->merge_steps;
-    frame->cfg.merge_gamma_q16 = (int32_t)lrint(settings->merge_gamma * 65536);
-    frame->cfg.antialias = settings->antialias;
     frame->cfg.dither = settings->dither;
-    if (settings->mask_nodes &&
-        glint_frame_use_mask(frame, &glint_raster_cells,
-                             settings->mask_nodes) != GLINT_OK)
-        return tool_fail(tool, GLINT_E_MEMORY, NULL);
     if (settings->budget_ms > 0 && frame->lens) {
         glint_budget_init(&frame->budget, settings->budget_ms);
         frame->dials = glint_budget_dials(&frame->budget, &frame->dials);
@@ -390,7 +350,6 @@ void settings_json(const struct glint_frame_report *r)
            "\"ghosts\": %d, \"bundles\": %d, "
            "\"primitives\": %d, \"tiles\": %d, \"arena_bytes\": %zu, "
            "\"peak_bytes\": %zu, \"star_bytes\": %zu, \"refs\": %d, "
-           "\"merged_cells\": %d, "
            "\"dropped_bundles\": %d, \"dropped_cells\": %d, "
            "\"held_cells\": %d, \"held_samples\": %d, \"coarsened\": %s, "
            "\"plan_ms\": %.3f, \"trace_ms\": %.3f, \"bin_ms\": %.3f, "
@@ -398,8 +357,8 @@ void settings_json(const struct glint_frame_report *r)
            r->lights, r->beyond_lights, r->apart_lights, r->drawn_lights,
            r->ghosts, r->stats.bundles, r->stats.primitives, r->tiles,
            r->arena_bytes, r->peak_bytes, r->star_bytes, r->stats.refs,
-           r->stats.merged_cells, r->stats.dropped_bundles,
-           r->stats.dropped_cells, r->stats.held_cells, r->held_samples,
+           r->stats.dropped_bundles, r->stats.dropped_cells,
+           r->stats.held_cells, r->held_samples,
            r->coarsened ? "true" : "false", r->plan_ms, r->trace_ms, r->bin_ms,
            r->draw_ms);
     if (r->quality >= 0)

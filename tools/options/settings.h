@@ -62,20 +62,15 @@ struct settings {
     int max_lights;           /* 0: not given */
     int area_samples_asked;   /* 0: as many as the quality takes */
     double apart_px; /* pixels; lights whose images are nearer are one */
-
-    int merge_steps, tile_log2, coarse_log2, mask_nodes;
-    double merge_gamma;
+    int tile_log2;
     double quality;    /* quality asked for, 0.5 by default */
     double budget_ms;  /* 0: none */
     double most_minsn; /* most million instructions of a plan, for one light; 0:
                           any */
     bool has_work;
-    int raster; /* 0: by edges, 1: by cells */
-    enum glint_weights weights;
     bool has_grid;    /* --grid or a quality was given */
     bool has_quality; /* --quality was */
-    bool by_edges;    /* --raster edges was given, not only the default */
-    bool uniform, antialias, dither, has_exposure, balance;
+    bool dither, has_exposure, balance;
 };
 
 /* Long options of this file, for a command's array; all from 1000 on. */
@@ -96,14 +91,7 @@ enum settings_option {
     OPT_GHOST,
     OPT_GHOSTS,
     OPT_GRID,
-    OPT_UNIFORM,
-    OPT_MERGE,
     OPT_TILE,
-    OPT_COARSE,
-    OPT_RASTER,
-    OPT_WEIGHTS,
-    OPT_STOP_NODES,
-    OPT_NO_ANTIALIAS,
     OPT_DITHER,
     OPT_QUANTUM,
     OPT_WHOLE,
@@ -146,14 +134,7 @@ enum settings_option {
         {"ghost", required_argument, NULL, OPT_GHOST},               \
         {"ghosts", required_argument, NULL, OPT_GHOSTS},             \
         {"grid", required_argument, NULL, OPT_GRID},                 \
-        {"uniform-grid", no_argument, NULL, OPT_UNIFORM},            \
-        {"merge", required_argument, NULL, OPT_MERGE},               \
         {"tile", required_argument, NULL, OPT_TILE},                 \
-        {"coarse", required_argument, NULL, OPT_COARSE},             \
-        {"raster", required_argument, NULL, OPT_RASTER},             \
-        {"weights", required_argument, NULL, OPT_WEIGHTS},           \
-        {"stop-nodes", required_argument, NULL, OPT_STOP_NODES},     \
-        {"no-antialias", no_argument, NULL, OPT_NO_ANTIALIAS},       \
         {"dither", no_argument, NULL, OPT_DITHER},                   \
         {"quantum", required_argument, NULL, OPT_QUANTUM},           \
         {"whole", required_argument, NULL, OPT_WHOLE},               \
@@ -314,7 +295,6 @@ enum settings_option {
     "to\n"                                                                     \
     "                      4 N (default 64); the exact engine: N for all "     \
     "(512)\n"                                                                  \
-    "  --uniform-grid      N cells a side for every ghost\n"                   \
     "  --quantum P         by edges: a cell's irradiance is rounded to steps " \
     "of P\n"                                                                   \
     "                      percent, 0 (not) to 50 (default 1); edges "         \
@@ -326,19 +306,8 @@ enum settings_option {
     "  --half              of pictures in codes: ghosts with half as many "    \
     "pixels\n"                                                                 \
     "                      each way; not with exact rays\n"                    \
-    "  --merge STEPS,GAMMA blocks of 2^STEPS cells (0 to 4) may become one\n"  \
-    "                      where edges agree within GAMMA (default 0,0)\n"     \
     "  --tile N            small tiles of 8, 16, 32 or 64 pixels (default "    \
     "64)\n"                                                                    \
-    "  --coarse N          large tiles of 64, 128 or 256 to sort into first, " \
-    "or\n"                                                                     \
-    "                      0 for none (default)\n"                             \
-    "  --raster R          edges: exact areas (default); cells: pixel "        \
-    "centres,\n"                                                               \
-    "                      which --merge, --coarse and the next three need\n"  \
-    "  --weights W         wachspress | loop-derose (default wachspress)\n"    \
-    "  --stop-nodes N      look the stop up in N x N signed distances\n"       \
-    "  --no-antialias      a pixel's centre decides, as published\n"           \
     "  --dither            ordered dither when writing 8 bits\n"
 
 #define COMMON_HELP                                                           \

@@ -22,32 +22,17 @@ static bool parse_sensor(const char *text, double mm[2])
            mm[0] >= 0.1 && mm[0] <= 1000 && mm[1] >= 0.1 && mm[1] <= 1000;
 }
 
-static bool parse_merge(const char *text, struct settings *settings)
-{
-    double v[2];
-
-    if (tool_numbers(text, v, 2) != 2 || v[0] != floor(v[0]) || v[0] < 0 ||
-        v[0] > 4 || v[1] < 0 || v[1] > 1)
-        return false;
-    settings->merge_steps = (int)v[0];
-    settings->merge_gamma = v[1];
-    return true;
-}
-
-/* Sets LOG2 to the logarithm of TEXT, a power of two from 2^LOW to 2^HIGH; if
- * LOW is above 3, TEXT may be 0, for which LOG2 is 0. Returns false for other
- * texts. */
-static bool parse_side(const char *text, int low, int high, int *log2)
+/* Sets LOG2 to the logarithm of TEXT, a power of two from 2^3 to 2^6. Returns
+ * false for other texts. */
+static bool parse_side(const char *text, int *log2)
 {
     int side;
 
-    if (!tool_integer(text, 0, 1 << high, &side))
+    if (!tool_integer(text, 8, 64, &side))
         return false;
-    for (*log2 = low; *log2 <= high; ++*log2)
-        if (side == 1 << *log2)
-            return true;
-    *log2 = 0;
-    return side == 0 && low > 3;
+    for (*log2 = 3; side > 1 << *log2; ++*log2)
+        ;
+    return side == 1 << *log2;
 }
 
 static bool take_error(const char *text, struct settings *s)
@@ -235,38 +220,12 @@ static enum taken take_light(struct settings *s, int option, const char *value)
 /* Takes the options of the way from rays to pixels. */
 static enum taken take_way(struct settings *s, int option, const char *value)
 {
-    static const char *const weights[] = {"loop-derose", "wachspress", NULL};
-    static const char *const rasters[] = {"edges", "cells", NULL};
-    int word;
-
     switch (option) {
     case OPT_GRID:
         s->has_grid = true;
         return tool_integer(value, 4, GLINT_MAX_CELLS, &s->dials.fineness);
-    case OPT_UNIFORM:
-        s->uniform = true;
-        return TAKEN;
-    case OPT_MERGE:
-        return parse_merge(value, s);
     case OPT_TILE:
-        return parse_side(value, 3, 6, &s->tile_log2);
-    case OPT_COARSE:
-        return parse_side(value, 6, 8, &s->coarse_log2);
-    case OPT_WEIGHTS:
-        word = tool_word(value, weights);
-        s->weights =
-            word == 0 ? GLINT_WEIGHTS_LOOP_DEROSE : GLINT_WEIGHTS_WACHSPRESS;
-        return word >= 0;
-    case OPT_RASTER:
-        word = tool_word(value, rasters);
-        s->raster = word;
-        s->by_edges = word == 0;
-        return word >= 0;
-    case OPT_STOP_NODES:
-        return tool_integer(value, 2, 4096, &s->mask_nodes);
-    case OPT_NO_ANTIALIAS:
-        s->antialias = false;
-        return TAKEN;
+        return parse_side(value, &s->tile_log2);
     case OPT_DITHER:
         s->dither = true;
         return TAKEN;

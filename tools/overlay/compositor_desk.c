@@ -78,10 +78,6 @@ static int open_stop_keys(const struct tool *tool, struct compositor *c)
     if (c->settings.rays == SETTINGS_RAYS_EXACT)
         return tool_usage(tool, "--keys: stops that change need a model, not "
                                 "--rays exact");
-    if (is_round && c->settings.raster)
-        return tool_usage(tool, "--keys: round blades are drawn by edges");
-    if (c->settings.mask_nodes)
-        return tool_usage(tool, "--keys: --stop-nodes has one stop");
     if (is_stopped)
         ask_stop(c, 1);
     return EXIT_OK;
