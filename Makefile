@@ -54,7 +54,7 @@ include tools/make/target.mk
 # below. src/README.md says what each is for.
 CORE      := base image kernels kernels/rays kernels/ward kernels/maps lens lamps follow tile flare/edges flare star veil scene/around scene scene/frame scene/ward scene/motion scene/translucent scene/highlights scene/account reuse
 PUBLISHED := published
-ENGINE    := engine engine/frame engine/setup engine/star
+ENGINE    := engine engine/options engine/frame engine/setup engine/star
 BAKE      := bake bake/table bake/scene bake/environment bake/motion bake/translucent bake/trace bake/regress bake/visible bake/fit bake/skew bake/exact bake/published bake/published/scatter
 PLATFORM  := posix formats video panel linux jpeg oiio assimp sdl
 TOOLS     := help options control lamp_files desk model ffmpeg overlay zooms stones scenes motions synth twin lens_figures lens_check import command live lab lab/plots lab/scenes

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "options/config.h"
+#include "options/command_line.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

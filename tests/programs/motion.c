@@ -29,6 +29,7 @@
 
 #include "support/extreme.h"
 #include "support/stage.h"
+#include "options/command_line.h"
 
 enum { MAX_STEPS = 20000 };
 

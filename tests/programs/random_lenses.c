@@ -29,6 +29,7 @@
 #include "support/extreme.h"
 #include "support/random_lens.h"
 #include "support/stage.h"
+#include "options/command_line.h"
 
 enum { WIDTH = 144, HEIGHT = 96, WORST = 10, MAX_JOBS = 16, MANY_GHOSTS = 60 };
 

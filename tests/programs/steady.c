@@ -25,6 +25,7 @@
 #include "video/y4m.h"
 #include "posix/error.h"
 #include "support/night.h"
+#include "options/command_line.h"
 
 enum { WIDTH = 640, HEIGHT = 360, FRAMES = 150, FRAME_US = 40000, WINDOW = 10 };
 
@@ -398,7 +399,7 @@ int main(int argc, char **argv)
     compositor_defaults(&s.compositor);
     while ((c = getopt_long(argc, argv, "", options, NULL)) >= 0) {
         if (c == 'l')
-            s.compositor.lens = optarg;
+            s.compositor.settings.options.lens = optarg;
         else if (c == 'v')
             s.log = true;
         else if (c == 's')

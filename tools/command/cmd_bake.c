@@ -20,7 +20,7 @@
 #include "stones/stone_file.h"
 #include "command/render_scene.h"
 #include "options/tool.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 
 static const char help[] =
     "glint bake LENS -o MODEL [options]\n"

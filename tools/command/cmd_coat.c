@@ -10,7 +10,7 @@
 #include "lab/plots/plot.h"
 #include "model/table_file.h"
 #include "options/coating.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 #include "options/tool.h"
 #include "posix/ending.h"
 #include "posix/output.h"

@@ -9,7 +9,7 @@
 #include "engine/measure.h"
 #include "formats/picture.h"
 #include "options/settings.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 
 static const char help[] =
     "glint compare REFERENCE TEST [options]\n"

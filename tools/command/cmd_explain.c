@@ -14,7 +14,7 @@
 #include "overlay/compositor.h"
 #include "overlay/overlay_line.h"
 #include "engine/measure.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 #include "formats/picture.h"
 #include "posix/error.h"
 
@@ -31,7 +31,10 @@ static const char help[] =
     "what\n"
     "is left out, and why. IN is a picture as of glint overlay; with --size "
     "the\n"
-    "frame is one of glint render. Work counts instructions by rule of thumb;\n"
+    "frame is one of glint render. With --scene it reports, before the flare,\n"
+    "what became of objects (drawn, hidden, behind the camera, off-screen,\n"
+    "occluded, below a pixel) and lights; --lens none: only that. Work counts "
+    "instructions by rule of thumb;\n"
     "pixels that are lit are nobody's own and in no ghost's share.\n"
     "\n"
     "  -o, --output OUT    a picture: touched tiles shaded, ghosts outlined "
@@ -39,11 +42,6 @@ static const char help[] =
     "                      numbered, a legend; with --scene its things "
     "outlined,\n"
     "                      in colours by what a pixel of each costs\n"
-    "  --scene FILE        tells, before the flare, what became of things "
-    "(drawn,\n"
-    "                      off, behind the camera, outside, covered by "
-    "another,\n"
-    "                      below a pixel) and lights; --lens none: only that\n"
     "  --save-ghosts FILE  the ghosts, for --ghosts FILE of overlay, live and "
     "render\n"
     "  --ghost-sheet OUT   a picture of each of the --top ghosts, each exposed "
@@ -54,19 +52,12 @@ static const char help[] =
     "black);\n"
     "                      linear: to the full (default with --size)\n"
     "  --sort KEY          light (default) | work | number\n"
-    "  --top N             list and mark N ghosts and lights (default 20)\n"
-    "  --memory MIB        of the arena, 1 to 1024, as of glint live; "
-    "default:\n"
-    "                      as much as it takes\n" COMPOSITOR_HELP;
-
-static const char help_end[] = SETTINGS_HELP;
-static const char help_last[] = SPEED_HELP COMMON_HELP;
+    "  --top N             list and mark N ghosts and lights (default 20)\n";
 
 enum {
-    OPT_PICTURE = OPT_COMPOSITOR_LAST,
+    OPT_PICTURE = ENGINE_OPTIONS_END,
     OPT_SORT,
     OPT_TOP,
-    OPT_MEMORY,
     OPT_SIZE,
     OPT_SAVE_GHOSTS,
     OPT_GHOST_SHEET
@@ -82,23 +73,20 @@ struct explain_command {
     struct glint_image image; /* the input, over which the flare is drawn */
 };
 
-static const struct option options[] = {
+static const struct option own[] = {
     {"output", required_argument, NULL, 'o'},
     {"size", required_argument, NULL, OPT_SIZE},
     {"picture", required_argument, NULL, OPT_PICTURE},
     {"sort", required_argument, NULL, OPT_SORT},
     {"top", required_argument, NULL, OPT_TOP},
-    {"memory", required_argument, NULL, OPT_MEMORY},
     {"save-ghosts", required_argument, NULL, OPT_SAVE_GHOSTS},
     {"ghost-sheet", required_argument, NULL, OPT_GHOST_SHEET},
-    COMPOSITOR_OPTIONS,
-    TOOL_COMMON_OPTIONS};
+    {NULL, 0, NULL, 0}};
 
 static bool take(struct explain_command *c, int option, const char *value)
 {
     static const char *const pictures[] = {"codes", "linear", NULL};
     static const char *const orders[] = {"light", "work", "number", NULL};
-    int n;
 
     switch (option) {
     case 'o':
@@ -120,12 +108,8 @@ static bool take(struct explain_command *c, int option, const char *value)
         return c->order >= 0;
     case OPT_TOP:
         return tool_integer(value, 0, GLINT_MAX_GHOSTS, &c->top);
-    default: /* OPT_MEMORY */
-        if (!tool_integer(value, 1, 1024, &n))
-            return false;
-        c->compositor.reserve_bytes = (size_t)n << 20;
-        return true;
     }
+    return false;
 }
 
 static int check(struct tool *tool, const struct explain_command *c)
@@ -138,13 +122,14 @@ static int check(struct tool *tool, const struct explain_command *c)
         return tool_usage(tool, "--picture linear goes with --size");
     if (c->compositor.scene.file && c->picture == LINEAR)
         return tool_usage(tool, "--picture linear is not for --scene");
-    if (!c->compositor.scene.file && strcmp(c->compositor.lens, "none") == 0)
+    if (!c->compositor.scene.file &&
+        strcmp(c->compositor.settings.options.lens, "none") == 0)
         return tool_usage(tool, "--lens none leaves nothing to explain but a "
                                 "--scene");
     if (!c->input && !c->compositor.scene.file && c->compositor.n_hand == 0 &&
-        c->compositor.at.n == 0 && !c->compositor.lights_file)
+        c->compositor.at.n == 0 && !c->compositor.settings.options.lights)
         return tool_usage(tool, "--size needs a --light or --lights FILE");
-    if (s->rays != SETTINGS_RAYS_MODEL)
+    if (s->options.rays != GLINT_RAYS_MODEL)
         return tool_usage(tool, "explains what is drawn from a model, not "
                                 "with --rays exact");
     return -1;
@@ -153,6 +138,8 @@ static int check(struct tool *tool, const struct explain_command *c)
 static int parse(struct tool *tool, int argc, char **argv,
                  struct explain_command *c)
 {
+    const struct option *const options =
+        engine_getopt(tool, ENGINE_ALL, &c->compositor.settings.options, own);
     int option, index = 0;
     int code = compositor_style_of(tool, &c->compositor, argc, argv,
                                    "o:" TOOL_COMMON_SHORT, options);
@@ -162,7 +149,7 @@ static int parse(struct tool *tool, int argc, char **argv,
     while ((option = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                                  &index)) >= 0) {
         code = compositor_option(tool, &c->compositor, option, optarg);
-        if (code == -2 && (option == 'o' || option >= OPT_COMPOSITOR_LAST)) {
+        if (code == -2 && (option == 'o' || option >= ENGINE_OPTIONS_END)) {
             code = -1;
             if (!take(c, option, optarg))
                 return tool_refuse(tool, options[index].name, optarg);
@@ -221,10 +208,10 @@ static enum glint_status draw_linear(struct explain_command *c)
                                         settings_scale(&compositor->settings),
                                         light.rgb, &compositor->report);
     if (status == GLINT_OK) {
-        codes =
-            glint_measure_encode(&light, compositor->settings.has_exposure
-                                             ? 1
-                                             : glint_measure_exposure(&light));
+        codes = glint_measure_encode(
+            &light, GLINT_OPTION_GIVEN(&compositor->settings.options, exposure)
+                        ? 1
+                        : glint_measure_exposure(&light));
         if (codes)
             memcpy(c->image.plane[0], codes, 3 * n);
         else
@@ -404,11 +391,8 @@ static int run(struct tool *tool, struct explain_command *c)
 
 int cmd_explain(int argc, char **argv)
 {
-    struct tool tool = {.name = "explain",
-                        .help = help,
-                        .help_desk = DESK_HELP SCENE_HELP,
-                        .help_end = help_end,
-                        .help_last = help_last};
+    struct tool tool = {
+        .name = "explain", .help = help, .help_end = COMMON_HELP};
     struct explain_command *c = calloc(1, sizeof *c);
     int code;
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "options/coating.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 #include "model/model_file.h"
 #include "model/model_report.h"
 #include "model/table_file.h"

@@ -18,7 +18,7 @@
 #include "model/table_file.h"
 #include "posix/output.h"
 #include "options/settings_table.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 
 static const char help[] =
     "glint lenses [WORD ...] [--names | --json | --html FILE [--rays exact]]\n"
@@ -193,7 +193,7 @@ static int set_flares(struct settings *settings, const struct entry *e)
 
     if (code != EXIT_OK || e->is_baked)
         return code;
-    settings->rays = SETTINGS_RAYS_EXACT;
+    settings->options.rays = GLINT_RAYS_EXACT;
     settings_set_quality(settings, 0.25);
     return EXIT_OK;
 }

@@ -15,7 +15,7 @@
 #include "engine/measure.h"
 #include "posix/error.h"
 #include "options/settings.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 #include "command/render_scene.h"
 
 static const char help[] =
@@ -43,9 +43,6 @@ static const char help[] =
     "  --engine E          model: the integer run time (default)\n"
     "                      exact: the reference, every ray in "
     "double\n";
-
-static const char help_end[] = SETTINGS_MEMORY_HELP SETTINGS_HELP;
-static const char help_last[] = SPEED_HELP COMMON_HELP;
 
 struct render {
     struct settings settings;
@@ -81,7 +78,7 @@ static int take(struct tool *tool, struct render *r, int c)
     case 'l':
         if (r->n_lamps == SETTINGS_MAX_LAMPS)
             return tool_usage(tool, "more than %d lights", SETTINGS_MAX_LAMPS);
-        if (settings_lamp(optarg, &r->lamp[r->n_lamps++])) {
+        if (glint_option_light(optarg, &r->lamp[r->n_lamps++])) {
             r->settings.max_deg =
                 fmax(r->settings.max_deg, r->lamp[r->n_lamps - 1].theta_deg);
             return -1;
@@ -94,15 +91,11 @@ static int take(struct tool *tool, struct render *r, int c)
     case 'f':
         r->lights_file = optarg;
         return -1;
-    case 'm':
-        return settings_memory(optarg, &r->reserve_bytes)
-                   ? -1
-                   : tool_refuse(tool, "memory", optarg);
     case 'e':
         word = tool_word(optarg, engines);
         r->exact = word == 1;
         if (r->exact)
-            r->settings.rays = SETTINGS_RAYS_EXACT;
+            r->settings.options.rays = GLINT_RAYS_EXACT;
         return word >= 0 ? -1 : tool_refuse(tool, "engine", optarg);
     default:
         return tool_option(tool, c, optarg);
@@ -111,15 +104,15 @@ static int take(struct tool *tool, struct render *r, int c)
 
 static int parse(struct tool *tool, int argc, char **argv, struct render *r)
 {
-    static const struct option options[] = {
+    static const struct option own[] = {
         {"output", required_argument, NULL, 'o'},
         {"size", required_argument, NULL, 's'},
         {"light", required_argument, NULL, 'l'},
         {"lights", required_argument, NULL, 'f'},
         {"engine", required_argument, NULL, 'e'},
-        {"memory", required_argument, NULL, 'm'},
-        SETTINGS_OPTIONS,
-        TOOL_COMMON_OPTIONS};
+        {NULL, 0, NULL, 0}};
+    const struct option *const options =
+        engine_getopt(tool, ENGINE_DRAWING, &r->settings.options, own);
     int c, code;
 
     while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
@@ -137,7 +130,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct render *r)
         return tool_usage(tool, "needs -o OUT");
     if (r->n_lamps == 0 && !r->lights_file)
         return tool_usage(tool, "needs a --light or --lights");
-    if (r->reserve_bytes && r->settings.rays == SETTINGS_RAYS_EXACT)
+    r->reserve_bytes = (size_t)r->settings.options.memory << 20;
+    if (r->reserve_bytes && r->settings.options.rays == GLINT_RAYS_EXACT)
         return tool_usage(tool, "--memory is for models, not for exact rays");
     return -1;
 }
@@ -158,8 +152,8 @@ static struct glint_lamp *points_of(const struct render *r, int *n)
     int total;
     const struct glint_area_rule rule = glint_area_rule_of(
         r->lamp, r->n_lamps, pixels,
-        r->settings.area_samples_asked ? r->settings.area_samples_asked
-                                       : r->settings.dials.area_points,
+        r->settings.options.area_samples ? r->settings.options.area_samples
+                                         : r->settings.dials.area_points,
         INT_MAX, &total);
 
     *n = 0;
@@ -184,15 +178,16 @@ static int render_exact(struct tool *tool, struct render *r)
         .view = settings_view(&r->settings, r->width, r->height),
         .lamps = points,
         .n_lamps = n_points,
-        .grid = r->settings.has_grid ? (r->settings.dials.fineness + 1) / 2 * 2
-                                     : 512,
-        .only_ghost = r->settings.only_ghost,
+        .grid = settings_has_grid(&r->settings)
+                    ? (r->settings.dials.fineness + 1) / 2 * 2
+                    : 512,
+        .only_ghost = settings_only_ghost(&r->settings),
         .tints = r->settings.tints,
         .workers = tool->workers,
         .progress = tool_progress_show,
         .progress_ctx = &progress};
     const int n_ghosts =
-        r->settings.only_ghost < 0 ? r->settings.setup.n_ghosts : 1;
+        settings_only_ghost(&r->settings) < 0 ? r->settings.setup.n_ghosts : 1;
     double *rgb = malloc(n * sizeof *rgb);
     enum glint_status status = GLINT_E_MEMORY;
 
@@ -308,7 +303,7 @@ static int check_apart(const struct tool *tool, const struct render *r,
 
     apart_read(&files, NULL, lens);
     apart_read(&files, "--lights", r->lights_file);
-    apart_read(&files, "--ghosts", r->settings.ghosts_file);
+    apart_read(&files, "--ghosts", r->settings.options.ghosts);
     apart_read(&files, "--stop-mask", r->settings.stop.mask_file);
     apart_write(&files, "-o", r->output);
     return apart_check(tool, &files);
@@ -336,8 +331,9 @@ static int run(struct tool *tool, struct render *r, const char *lens)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     code = r->exact ? render_exact(tool, r) : render_model(tool, r);
     if (code == EXIT_OK)
-        code = render_file_save(tool, r->output, r->linear, &r->image,
-                                r->settings.has_exposure ? 1 : 0);
+        code = render_file_save(
+            tool, r->output, r->linear, &r->image,
+            GLINT_OPTION_GIVEN(&r->settings.options, exposure) ? 1 : 0);
     if (code == EXIT_OK && tool->json)
         printf("\"ms\": %.3f}\n", 1e3 * (tool_seconds() - start));
     if (code == EXIT_OK)
@@ -349,10 +345,8 @@ static int run(struct tool *tool, struct render *r, const char *lens)
 
 int cmd_render(int argc, char **argv)
 {
-    struct tool tool = {.name = "render",
-                        .help = help,
-                        .help_end = help_end,
-                        .help_last = help_last};
+    struct tool tool = {
+        .name = "render", .help = help, .help_end = COMMON_HELP};
     struct render *r = NULL;
     int code;
 

@@ -11,7 +11,7 @@
 #include "desk/styles.h"
 #include "formats/picture.h"
 #include "model/lens_files.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 #include "overlay/compositor.h"
 #include "posix/error.h"
 
@@ -30,17 +30,12 @@ static const char help[] =
     "that\n"
     "of every style.\n";
 
-enum {
-    OPT_WIDTH = OPT_COMPOSITOR_LAST,
-    PATH_BYTES = 4096,
-    CAPTION_BYTES = 160
-};
+enum { OPT_WIDTH = ENGINE_OPTIONS_END, PATH_BYTES = 4096, CAPTION_BYTES = 160 };
 
-static const struct option options[] = {
+static const struct option own[] = {
     {"output", required_argument, NULL, 'o'},
     {"width", required_argument, NULL, OPT_WIDTH},
-    COMPOSITOR_OPTIONS,
-    TOOL_COMMON_OPTIONS};
+    {NULL, 0, NULL, 0}};
 
 static const char shorts[] = "o:" TOOL_COMMON_SHORT;
 
@@ -57,6 +52,8 @@ struct styles_command {
 static int parse(struct tool *tool, struct styles_command *c,
                  struct compositor *compositor)
 {
+    const struct option *const options =
+        engine_getopt(tool, ENGINE_ALL, &compositor->settings.options, own);
     int option, code;
 
     optind = 0;
@@ -291,11 +288,8 @@ static int check(struct tool *tool, struct styles_command *c)
 
 int cmd_styles(int argc, char **argv)
 {
-    struct tool tool = {.name = "styles",
-                        .help = help,
-                        .help_desk = COMPOSITOR_HELP,
-                        .help_end = SETTINGS_HELP,
-                        .help_last = SCENE_HELP COMMON_HELP};
+    struct tool tool = {
+        .name = "styles", .help = help, .help_end = COMMON_HELP};
     struct styles_command c = {.argc = argc, .argv = argv, .width = 640};
     int code = check(&tool, &c);
 

@@ -8,7 +8,7 @@
 #include "posix/process.h"
 #include "posix/workers.h"
 #include "options/suggest.h"
-#include "options/tool.h"
+#include "options/command_line.h"
 
 static const char help[] =
     "glint: lens flare of real lenses, on pictures and video, without a GPU\n"

@@ -87,7 +87,7 @@ static enum glint_status open_video(struct frames *f, struct glint_error *error)
     }
     glint_image_place(&f->frame, planes);
     glint_composite_init(&f->composite, &f->frame, tool_sets(f->tool),
-                         f->c->settings.dither, f->tables,
+                         f->c->settings.options.dither, f->tables,
                          glint_composite_bytes());
     return glint_y4m_writer_open(&f->writer, r->output, &f->header, error);
 }
@@ -278,7 +278,8 @@ static int check_options(const struct tool *tool, const struct compositor *c)
     if (c->scene.file)
         return tool_usage(tool, "--scene is for overlay, live and explain; "
                                 "here the scene is the input");
-    if (c->flare_only || c->flare_alpha)
+    if (c->settings.options.layer != GLINT_LAYER_COMPOSITE ||
+        c->settings.options.layer == GLINT_LAYER_FLARE_ALPHA)
         return tool_usage(tool, "--layer is for overlay and live");
     return compositor_marks(c)
                ? tool_usage(tool, "--show lights and --preview are for "

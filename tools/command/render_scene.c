@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "desk/render_file.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 #include "overlay/overlay.h"
 #include "command/render_scene.h"
 #include "scenes/baked_scene.h"
@@ -32,14 +32,6 @@ static const char help[] =
     "  --samples N         points of a pixel at outlines: 1, 4 (default), 8 "
     "or\n"
     "                      16; of exact rays N x N, 1 to 16\n"
-    "  --shadow-points N   1, 4 or 16 of a light's disc (default 4)\n"
-    "  --shading S         full: each pixel (default); half: two by two at\n"
-    "                      once where they see one thing\n"
-    "  --ward-samples N    1 to 32 lookups of the environment for a place on\n"
-    "                      brushed metal (default 8; go in fours)\n"
-    "  --ward-nearest      each in one level of it, not two blended\n"
-    "  --highlights N      0 to 8 spots of things that glint are lights of a\n"
-    "                      flare (default: as the scene says)\n"
     "  --quality Q         0 to 1, or least ... finest: sets what of these is\n"
     "                      not given, and the flare\n"
     "  --exposure EV       stops; all light times 2^EV (default 0)\n"
@@ -61,7 +53,7 @@ enum { MOST_FRAME = 1000000000 };
     "%s: 'camera lens' needs the lens of a flare; here it takes 'camera fov'"
 
 enum {
-    OPT_FRAME = OPT_COMPOSITOR_LAST,
+    OPT_FRAME = ENGINE_OPTIONS_END,
     OPT_FRAMES,
     OPT_FPS,
     OPT_SIZE,
@@ -144,11 +136,17 @@ static int take_any(struct tool *tool, struct render_scene *r, int c)
     int code = compositor_option(tool, &r->compositor, c, optarg);
 
     if (code == -1) {
-        const bool moves = c == OPT_POSE || c == OPT_CONTROL;
+        const enum glint_option_group group =
+            glint_option(c - ENGINE_OPTION)->group;
+        const bool moves =
+            c == ENGINE_OPTION_OF(pose) || c == ENGINE_OPTION_OF(control);
+        const bool is_lens = c == ENGINE_OPTION_OF(lens);
 
-        r->is_frames = r->is_frames || moves || c == OPT_LENS;
-        r->is_lit = r->is_lit || (!moves && c != OPT_LENS && c != OPT_QUALITY &&
-                                  !compositor_is_dial(c));
+        r->is_frames = r->is_frames || moves || is_lens;
+        r->is_lit = r->is_lit ||
+                    (!is_lens && !moves && group != GLINT_OPTIONS_SHADING &&
+                     c != ENGINE_OPTION_OF(highlights) &&
+                     c != ENGINE_OPTION_OF(quality));
     }
     if (code == -2)
         code = take_moving(tool, r, c);
@@ -158,7 +156,7 @@ static int take_any(struct tool *tool, struct render_scene *r, int c)
 static int parse(struct tool *tool, int argc, char **argv,
                  struct render_scene *r)
 {
-    static const struct option options[] = {
+    static const struct option own[] = {
         {"output", required_argument, NULL, 'o'},
         {"size", required_argument, NULL, OPT_SIZE},
         {"rays", required_argument, NULL, OPT_RAYS_OF},
@@ -167,8 +165,9 @@ static int parse(struct tool *tool, int argc, char **argv,
         {"frame", required_argument, NULL, OPT_FRAME},
         {"frames", required_argument, NULL, OPT_FRAMES},
         {"fps", required_argument, NULL, OPT_FPS},
-        COMPOSITOR_OPTIONS, /* the first of a name counts */
-        TOOL_COMMON_OPTIONS};
+        {NULL, 0, NULL, 0}};
+    const struct option *const options =
+        engine_getopt(tool, ENGINE_ALL, &r->compositor.settings.options, own);
     struct scene_dials *const asked = &r->compositor.scene.asked;
     int c, code = compositor_style_of(tool, &r->compositor, argc, argv,
                                       "o:" TOOL_COMMON_SHORT, options);
@@ -190,12 +189,13 @@ static int parse(struct tool *tool, int argc, char **argv,
                           "--samples takes 1, 4, 8 or 16, not %d; of --rays "
                           "exact 1 to 16",
                           r->samples);
-    if (r->exact || !r->compositor.settings.has_quality) {
+    if (r->exact ||
+        !GLINT_OPTION_GIVEN(&r->compositor.settings.options, quality)) {
         r->samples = r->samples ? r->samples : 4;
         if (!asked->shadow_points)
             asked->shadow_points = 4;
     }
-    if (strcmp(r->compositor.lens, "none") != 0)
+    if (strcmp(r->compositor.settings.options.lens, "none") != 0)
         r->is_frames = true;
     else if (r->is_lit)
         return tool_usage(tool, "options of a flare need --lens LENS");
@@ -341,8 +341,8 @@ static int draw_model(struct tool *tool, struct render_scene *r,
     dials.width = r->width;
     dials.height = r->height;
     dials.edge_samples = r->samples;
-    if (r->compositor.settings.has_quality)
-        scene_dials_be(&dials, r->compositor.settings.quality);
+    if (GLINT_OPTION_GIVEN(&r->compositor.settings.options, quality))
+        scene_dials_be(&dials, r->compositor.settings.options.quality);
     code = scene_frame_open(&frame, tool, model, &dials);
     if (code == EXIT_OK) {
         glint_image_place(&linear, light_q20);
@@ -424,7 +424,7 @@ int cmd_render_scene(int argc, char **argv)
     r->height = 540;
     r->fps = 25;
     compositor_defaults(&r->compositor);
-    r->compositor.lens = "none";
+    r->compositor.settings.options.lens = "none";
     code = parse(&tool, argc, argv, r);
     if (code < 0) {
         code = tool_start(&tool);

@@ -26,17 +26,18 @@ void apart_compositor(struct apart *files, const struct compositor *compositor)
 {
     const struct settings *const s = &compositor->settings;
 
-    apart_read(files, "--lens", compositor->lens);
-    apart_read(files, "--lights", compositor->lights_file);
+    apart_read(files, "--lens", compositor->settings.options.lens);
+    apart_read(files, "--lights", compositor->settings.options.lights);
     apart_read(files, "--mask", compositor->occlusion.file);
     if (!compositor->keys_text)
-        apart_read(files, "--keys", compositor->keys_file);
+        apart_read(files, "--keys", compositor->settings.options.keys);
     apart_read(files, "--scene", compositor->scene.file);
     apart_read(files, "--pose", compositor->scene.pose_file);
     apart_read(files, "--control", compositor->scene.control_file);
-    apart_read(files, "--ghosts", s->ghosts_file);
+    apart_read(files, "--ghosts", s->options.ghosts);
     apart_read(files, "--stop-mask", s->stop.mask_file);
-    apart_write(files, "--save-lights", compositor->save_file);
+    apart_write(files, "--save-lights",
+                compositor->settings.options.save_lights);
 }
 
 /* Returns whether writing OUTPUT would lose INPUT. A pattern is no file, so

@@ -5,12 +5,6 @@
 
 #include "desk/stop_option.h"
 
-bool front_option_dust(struct front_option *option, const char *text)
-{
-    return stop_option_specks(text, &option->front.dust,
-                              &option->front.dust_seed);
-}
-
 int front_option_open(const struct tool *tool, struct front_option *option)
 {
     struct glint_front front = option->front;

@@ -16,9 +16,6 @@ struct front_option {
     struct glint_front_dirt *dirt; /* NULL: there is none */
 };
 
-/* Takes TEXT, "A[,SEED]". Returns false for other texts. */
-bool front_option_dust(struct front_option *option, const char *text);
-
 /* Returns whether anything was asked for. */
 static inline bool front_option_asked(const struct front_option *option)
 {

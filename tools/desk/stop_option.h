@@ -21,17 +21,6 @@ struct stop_option {
     uint8_t *mask;
 };
 
-/* Takes TEXT, "circle" or "polygon:N[,ROT]", then ",round:R" and ",soft:W".
- * Returns false for other texts. */
-bool stop_option_take(struct stop_option *stop, const char *text);
-
-/* Takes TEXT, "A[,SEED]", 0 to 0.5 and a whole number, into SHARE and SEED, 1
- * if there is none. Returns false for other texts. */
-bool stop_option_specks(const char *text, double *share, int *seed);
-
-/* The same for the stop. */
-bool stop_option_dust(struct stop_option *stop, const char *text);
-
 /* Returns whether the stop has more than an outline. */
 bool stop_option_shades(const struct stop_option *stop);
 

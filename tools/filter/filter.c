@@ -139,9 +139,9 @@ static int take_all(struct filter *f)
     static const struct {
         enum filter_word word;
         int option;
-    } words[] = {{FILTER_STYLE, OPT_STYLE},
-                 {FILTER_LENS, OPT_LENS},
-                 {FILTER_F_NUMBER, OPT_F_NUMBER}};
+    } words[] = {{FILTER_STYLE, ENGINE_OPTION_OF(style)},
+                 {FILTER_LENS, ENGINE_OPTION_OF(lens)},
+                 {FILTER_F_NUMBER, ENGINE_OPTION_OF(f_number)}};
     int code = -1;
 
     for (int i = 0; i < FILTER_WORDS && code == -1; i++)
@@ -150,13 +150,13 @@ static int take_all(struct filter *f)
     if (code == -1 && !at_default(f, FILTER_QUALITY)) {
         snprintf(f->quality, sizeof f->quality, "%.17g",
                  f->number[FILTER_QUALITY]);
-        code = take(f, OPT_QUALITY, f->quality);
+        code = take(f, ENGINE_OPTION_OF(quality), f->quality);
     }
     if (code == -1 && !is_on(f->number[FILTER_AUTO])) {
         snprintf(f->light_at, sizeof f->light_at, "%.17g,%.17g",
                  f->number[FILTER_X] * f->width,
                  f->number[FILTER_Y] * f->height);
-        code = take(f, OPT_LIGHT_AT, f->light_at);
+        code = take(f, ENGINE_OPTION_OF(light_at), f->light_at);
     }
     return code;
 }
@@ -178,8 +178,8 @@ static bool open_filter(struct filter *f)
     if (code == EXIT_OK)
         code = compositor_size(&f->tool, c, f->width, f->height);
     f->strength = c->strength.asked;
-    f->gain = c->settings.gain;
-    f->starburst = c->settings.starburst;
+    f->gain = c->settings.options.gain;
+    f->starburst = c->settings.options.starburst;
     return code == EXIT_OK;
 }
 
@@ -197,8 +197,9 @@ static void turn(struct filter *f)
     struct compositor *const c = &f->compositor;
 
     c->strength.asked = turned(f, FILTER_STRENGTH, 1, f->strength);
-    c->settings.gain = turned(f, FILTER_GAIN, 2, f->gain);
-    c->settings.starburst = turned(f, FILTER_STARBURST, 2, f->starburst);
+    c->settings.options.gain = turned(f, FILTER_GAIN, 2, f->gain);
+    c->settings.options.starburst =
+        turned(f, FILTER_STARBURST, 2, f->starburst);
     if (c->is_listed) {
         c->list.row[0].x = f->number[FILTER_X] * f->width;
         c->list.row[0].y = f->number[FILTER_Y] * f->height;

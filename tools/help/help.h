@@ -11,7 +11,7 @@
 
 enum {
     HELP_SCREEN = 42, /* lines of a help that is shown whole */
-    HELP_PARTS = 4
+    HELP_PARTS = 3
 };
 
 /* The help of COMMAND: strings one after the other; NULL ones are left out. */

@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "glint/options.h"
+
 static const struct {
     const char *command; /* NULL: any */
     const char *option, *takes;
@@ -21,6 +23,7 @@ static const struct {
     {"bake", "size", "16, 32, 64, 128, 256, 512 or 1024"},
     {"bake", "turn", "degrees, -360 to 360"},
     {"bench", "format", "yuyv, i420, nv12, rgb24, xrgb8888 or rgb565"},
+    {"compare", "exposure", "stops, -100 to 100, or auto"},
     {"coat", "angles", "up to 8 angles of 0 to below 90 degrees, with commas"},
     {"coat", "band", "two wavelengths LO,HI in nm, within 100 to 5000"},
     {"coat", "glass", "ND[,VD], an index of 1.01 to 4"},
@@ -63,115 +66,55 @@ static const struct {
     {"trace", "ghost", "a ghost's number, or -1 for the direct path"},
     {"trace", "grid", "a whole number, 1 to 4096"},
 
-    {NULL, "apart", "pixels, 0 to 1000"},
-    {NULL, "area-samples", "a whole number, 1 to 4096"},
     {NULL, "band", "two wavelengths LO,HI in nm, within 300 to 1100"},
     {NULL, "basis", "auto or sparse"},
-    {NULL, "budget", "milliseconds, above 0 and up to 1000000"},
     {"styles", "width", "a whole number, 64 to 2048"},
-    {NULL, "work", "thousand million instructions, 0 to 1e9"},
     {NULL, "budgets", "numbers of milliseconds above 0, with commas"},
     {NULL, "buffers", "a whole number, 2 to 32"},
-    {NULL, "coating",
-     "table, mixed, none, v-coat, broadband-3 or broadband-4, or films such as "
-     "100/1.38"},
     {NULL, "cost", "time or instructions"},
-    {NULL, "cull", "codes, 0 to 16"},
-    {NULL, "dim", "codes, 0 to 256"},
-    {NULL, "dispersion", "0, or 0.1 to 100 pixels"},
     {NULL, "engine", "model or exact"},
-    {NULL, "edge-samples", "1, 4, 8 or 16"},
-    {NULL, "shadow-points", "1, 4 or 16"},
-    {NULL, "shading", "full or half"},
-    {NULL, "ward-samples", "a whole number, 1 to 32"},
     {NULL, "stone-frames", "1, 2 or 4"},
-    {NULL, "highlights", "a whole number, 0 to 8"},
-    {NULL, "edge-fade", "pixels, above 0"},
-    {NULL, "error", "pixels, above 0"},
     {NULL, "exact-samples", "a whole number, 1 to 64"},
     {NULL, "exact-grid", "an even number, 4 to 1024"},
-    {NULL, "exposure", "stops, -100 to 100, or of compare also auto"},
-    {NULL, "focus", "metres from the sensor, above 0, or inf"},
-    {NULL, "f-number", "a number above 0"},
     {NULL, "field", "millimetres, above 0"},
     {NULL, "fps", "N or N/D, frames a second, from 1"},
     {NULL, "frame", "a frame's number, from 0"},
     {NULL, "frames", "FIRST-LAST, such as 0-99"},
-    {NULL, "gain", "a factor, from 0"},
-    {NULL, "ghost", "a ghost's number, from 0 (glint info lists them)"},
-    {NULL, "ghosts", "the name of a file"},
-    {NULL, "grid", "a whole number, 4 to 1024"},
-    {NULL, "headroom", "stops, 0 to 40"},
     {NULL, "input", "a number, 0 to 255"},
     {NULL, "io", "auto, mmap, userptr or read"},
-    {NULL, "keys", "the name of a file"},
     {NULL, "kernels", "c, sse41, avx2, neon or auto, as this processor has it"},
     {NULL, "jpeg-quality", "a whole number, 1 to 100"},
-    {NULL, "layer", "composite, flare or flare-alpha"},
     {NULL, "layers-type", "half or float"},
-    {NULL, "light",
-     "THETA,PHI[,POWER[,R,G,B[,SIZE]]] with THETA 0 to 89.9 degrees"},
-    {NULL, "light-at",
-     "X,Y[,EV]: pixels from the top left corner, within a million, and stops "
-     "over white, -40 to 90"},
-    {NULL, "mask", "the name of a file"},
     {NULL, "matrix", "auto, 601 or 709"},
-    {NULL, "max-lights", "a whole number, 1 to 1048576"},
-    {NULL, "memory", "MiB, 1 to 1024"},
-    {NULL, "only", "ghosts, starburst, veil or all"},
     {NULL, "picture", "codes or linear"},
-    {NULL, "projection", "lens or tan"},
-    {NULL, "quality", "0 to 1, or least, draft, default, high, finest, exact"},
-    {NULL, "quantum", "percent, 0 to 50"},
     {NULL, "range", "auto, full or limited"},
-    {NULL, "rays", "model or exact"},
     {NULL, "repeat", "a whole number, from 1"},
     {NULL, "seed", "a whole number, 0 to 2147483647"},
-    {NULL, "sensor", "WxH in mm, 0.1 to 1000 each"},
-    {NULL, "show", "lights"},
     {NULL, "size", "WxH in pixels, each from 1"},
     {NULL, "skip", "frames, from 0"},
     {NULL, "snapshot", "a file name with one %d, such as shot-%03d.ppm"},
     {NULL, "sort", "light, work or number"},
-    {NULL, "star-cull", "a factor, 0 to 256"},
-    {NULL, "veil", "a share of all light, with --haze at most 0.9"},
-    {NULL, "haze", "a share of all light, with --veil at most 0.9"},
-    {NULL, "starburst", "a factor, 0 to 1000, or off"},
-    {NULL, "still", "pixels, 0 to 16"},
     {NULL, "start-number", "a whole number, 0 to 1000000000"},
     {NULL, "stats", "auto, line, json or none"},
-    {NULL, "stop",
-     "circle or polygon:N[,DEGREES], N 3 to 64, then ,round:R or ,soft:W, each "
-     "0 to 1"},
-    {NULL, "dust",
-     "A[,SEED]: the share that is covered, 0 to 0.5, as 0.01, and a whole "
-     "number"},
-    {NULL, "front-dust",
-     "A[,SEED]: the share that is covered, 0 to 0.5, as 0.01, and a whole "
-     "number"},
     {NULL, "threads", "a whole number, from 1"},
-    {NULL, "strength", "0 to 100"},
-    {NULL, "style", "natural, clean, vintage, cinema or toy"},
-    {NULL, "threshold",
-     "EV[,EV]: stops from white, each -20 to 0, the second no higher"},
-    {NULL, "tile", "8, 16, 32 or 64, pixels of a side"},
     {NULL, "tolerance", "a factor, 0.1 to 100"},
     {NULL, "wavelength", "nm, 300 to 1100; 0.55 micrometres are 550"},
-    {NULL, "wavelengths",
-     "auto, a number of 1 to 32, or wavelengths of 300 to 1100 nm; 0.55 "
-     "micrometres are 550"},
     {NULL, "warm-up", "a whole number, from 0"},
-    {NULL, "whole", "codes, 0 to 100"},
-    {NULL, "zoom", "mm of focal length, or 0 to 1 along the way"},
 };
 
 const char *values_of(const char *command, const char *option)
 {
+    static char of_engine[256];
+    const struct glint_option *const row = glint_option_named(option);
+
     for (size_t i = 0; i < sizeof table / sizeof *table; i++)
         if (strcmp(table[i].option, option) == 0 &&
-            (!table[i].command || strcmp(table[i].command, command) == 0))
+            (table[i].command ? strcmp(table[i].command, command) == 0 : !row))
             return table[i].takes;
-    return NULL;
+    if (!row)
+        return NULL;
+    glint_option_accepts(row, of_engine, sizeof of_engine);
+    return of_engine;
 }
 
 /* Returns where the item of a list that begins at TEXT ends: before ", ", "; ",

@@ -9,7 +9,8 @@
 #ifndef GLINT_TOOLS_HELP_VALUES_H
 #define GLINT_TOOLS_HELP_VALUES_H
 
-/* Returns in words what OPTION, without dashes, of COMMAND takes, or NULL. */
+/* Returns in words what OPTION, without dashes, of COMMAND accepts, or NULL;
+ * until the next call. Options of the engine are those of glint/options.h. */
 const char *values_of(const char *command, const char *option);
 
 /* Prints the fixed words of what values_of() returns, a line each; of an OPTION

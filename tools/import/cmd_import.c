@@ -8,7 +8,7 @@
 #include "desk/apart.h"
 #include "import/decode.h"
 #include "help/values.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 #include "options/tool.h"
 #include "posix/input.h"
 #include "posix/output.h"

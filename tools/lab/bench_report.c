@@ -15,7 +15,8 @@ static const char *raster_of(const struct test *t)
 
 static double quality_of(const struct test *t)
 {
-    return t->report.quality >= 0 ? t->report.quality : t->settings->quality;
+    return t->report.quality >= 0 ? t->report.quality
+                                  : t->settings->options.quality;
 }
 
 /* Returns the width of the column of STAGE in characters. */

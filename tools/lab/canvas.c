@@ -112,7 +112,7 @@ enum glint_status canvas_exact(const struct tool *tool,
         .lamps = lamp,
         .n_lamps = n_lamps,
         .grid = grid,
-        .only_ghost = s->only_ghost,
+        .only_ghost = settings_only_ghost(s),
         .workers = tool->workers,
         .progress = tool_progress_show,
         .progress_ctx = &progress};
@@ -126,7 +126,7 @@ enum glint_status canvas_exact(const struct tool *tool,
                              s->wavelength_nm, s->n_wavelengths, &error);
     if (status == GLINT_OK)
         status = stop_option_set(&stop, setup, &dirt, &error);
-    if (status == GLINT_OK && s->balance)
+    if (status == GLINT_OK && s->options.balance)
         glint_setup_balance(setup);
     if (status == GLINT_OK)
         status = glint_exact_render(&cfg, rgb);

@@ -9,7 +9,7 @@
 #include "lab/scenes/scene_bench.h"
 #include "lab/scenes/scene_trial.h"
 #include "posix/workers.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 
 static const char help[] =
     "glint bench [LENS|MODEL]... [options]\n"
@@ -49,8 +49,6 @@ static const char help[] =
     "                  minutes\n"
     "  --format F      yuyv (default) | i420 | nv12 | rgb24 | xrgb8888 | "
     "rgb565\n";
-static const char help_end[] = SETTINGS_HELP;
-static const char help_last[] = SPEED_HELP COMMON_HELP;
 
 /* These bake in 30 s of processor time together; canon-zoom-mid alone takes
  * minutes. */
@@ -201,7 +199,7 @@ static int take(struct tool *tool, struct bench *b, int c)
 
 static int parse(struct tool *tool, int argc, char **argv, struct bench *b)
 {
-    static const struct option options[] = {
+    static const struct option own[] = {
         {"all", no_argument, NULL, 'a'},
         {"growth", no_argument, NULL, 'g'},
         {"sizes", no_argument, NULL, 'm'},
@@ -211,8 +209,9 @@ static int parse(struct tool *tool, int argc, char **argv, struct bench *b)
         {"size", required_argument, NULL, 's'},
         {"repeat", required_argument, NULL, 'r'},
         {"format", required_argument, NULL, 'F'},
-        SETTINGS_OPTIONS,
-        TOOL_COMMON_OPTIONS};
+        {NULL, 0, NULL, 0}};
+    const struct option *const options =
+        engine_getopt(tool, ENGINE_DRAWING, &b->base.options, own);
     int c, code;
 
     while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >=
@@ -223,15 +222,14 @@ static int parse(struct tool *tool, int argc, char **argv, struct bench *b)
         if (code >= 0)
             return code;
     }
-    return -1;
+    return b->base.options.memory
+               ? tool_usage(tool, "--memory is for commands that draw")
+               : -1;
 }
 
 int cmd_bench(int argc, char **argv)
 {
-    struct tool tool = {.name = "bench",
-                        .help = help,
-                        .help_end = help_end,
-                        .help_last = help_last};
+    struct tool tool = {.name = "bench", .help = help, .help_end = COMMON_HELP};
     struct bench *b;
     int code;
 

@@ -12,7 +12,7 @@
 #include "lab/report_file.h"
 #include "lab/scenes/scene_sweep.h"
 #include "lab/sweep.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 
 static const char help[] =
     "glint sweep [LENS]... -o FOLDER [options]\n"

@@ -23,6 +23,7 @@ static uint64_t key_of(const struct settings *s, const struct glint_lamp *lamp,
                        int n_lamps, int grid,
                        const struct glint_float_image *to)
 {
+    const int only_ghost = settings_only_ghost(s);
     const struct glint_view view = settings_view(s, to->width, to->height);
     const struct stop_option stop = settings_stop_shape(s);
     struct glint_bake_options options;
@@ -47,8 +48,8 @@ static uint64_t key_of(const struct settings *s, const struct glint_lamp *lamp,
     }
     hash = mix(hash, s->wavelength_nm,
                (size_t)s->n_wavelengths * sizeof *s->wavelength_nm);
-    hash = mix(hash, &s->only_ghost, sizeof s->only_ghost);
-    hash = mix(hash, &s->balance, sizeof s->balance);
+    hash = mix(hash, &only_ghost, sizeof only_ghost);
+    hash = mix(hash, &s->options.balance, sizeof s->options.balance);
     hash = mix(hash, &grid, sizeof grid);
     return mix(hash, lamp, (size_t)n_lamps * sizeof *lamp);
 }

@@ -165,8 +165,9 @@ int sweep_stars(struct sweep *s, const char *lens)
     b->s = s;
     b->exposure = 1;
     b->settings = s->base;
-    b->settings.starburst = 1;
-    b->settings.starburst_asked = b->settings.starburst_only = true;
+    b->settings.options.starburst = 1;
+    GLINT_OPTION_GIVEN(&b->settings.options, starburst) = true;
+    b->settings.options.only = GLINT_ONLY_STARBURST;
     code = settings_open(s->tool, &b->settings, lens);
     if (code == EXIT_OK)
         code = settings_frame(s->tool, &b->settings,
@@ -285,11 +286,12 @@ static int sweep_kind_of(struct sweep *s, struct bay *b, const char *lens,
 
     *b = (struct bay){.s = s, .settings = s->base, .n_lamps = 1};
     if (kind == 0)
-        stop_option_dust(&b->settings.stop, "0.05,1");
+        glint_option_dust("0.05,1", &b->settings.stop.iris.dust,
+                          &b->settings.stop.iris.dust_seed);
     else
-        b->settings.veil = 0.02;
-    b->settings.starburst = 0; /* stars have a front of their own */
-    b->settings.starburst_asked = true;
+        b->settings.options.veil = 0.02;
+    b->settings.options.starburst = 0; /* stars have a front of their own */
+    GLINT_OPTION_GIVEN(&b->settings.options, starburst) = true;
     canvas_lamps(b->lamp, 1, 12);
     b->lamp[0].power = width * height; /* a veil as its share of white */
     code = settings_open(s->tool, &b->settings, lens);

@@ -10,7 +10,7 @@
 #include "model/table_file.h"
 #include "model/zoom_option.h"
 #include "options/settings.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 #include "options/tool.h"
 #include "posix/output.h"
 

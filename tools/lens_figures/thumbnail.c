@@ -78,8 +78,7 @@ static int draw_all(const struct tool *tool, struct settings *s, FILE *file)
 
     image.rgb = calloc(n, sizeof *image.rgb);
     for (int k = 0; k < PARTS && code == EXIT_OK; k++) {
-        s->ghosts_only = k == 0;
-        s->starburst_only = k == 1;
+        s->options.only = k == 0 ? GLINT_ONLY_GHOSTS : GLINT_ONLY_STARBURST;
         code = settings_frame(
             tool, s, settings_view(s, image.width, image.height), &part[k]);
     }

@@ -11,7 +11,7 @@
 #include "options/config.h"
 #include "linux/fourcc.h"
 #include "live/live.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 
 static const char help[] =
     "glint live [-d CAMERA] [-o OUTPUT] [options]\n"
@@ -55,20 +55,13 @@ static const char help[] =
     "  --fit HOW           scale (default) | centre: a picture of another size "
     "than\n"
     "                      the panel\n"
-    "  --memory MIB        all that drawing may take, 1 to 1024 (default 32);\n"
-    "                      what does not fit is left out and counted\n"
     "  --snapshot NAME     (default glint-%03d.ppm)\n"
     "  --config FILE       these options, without dashes: lens = zoom.glint\n"
     "Signals: SIGHUP reads --config and lens again, SIGUSR1 reports, SIGUSR2 "
-    "saves.\n" SCENE_HELP;
-
-static const char help_lens[] = "Lens and lights\n" COMPOSITOR_HELP DESK_HELP;
-
-static const char help_end[] = SETTINGS_HELP;
-static const char help_last[] = SPEED_HELP COMMON_HELP;
+    "saves.\n";
 
 enum {
-    OPT_CONFIG = OPT_COMPOSITOR_LAST,
+    OPT_CONFIG = ENGINE_OPTIONS_END,
     OPT_LIST_DEVICES,
     OPT_LIST_FORMATS,
     OPT_IO,
@@ -81,13 +74,12 @@ enum {
     OPT_RECONNECT,
     OPT_STATS,
     OPT_FIT,
-    OPT_MEMORY,
     OPT_SNAPSHOT
 };
 
 #define SHORT "d:o:s:r:f:i:n:" TOOL_COMMON_SHORT
 
-static const struct option options[] = {
+static const struct option own[] = {
     {"device", required_argument, NULL, 'd'},
     {"output", required_argument, NULL, 'o'},
     {"list-devices", no_argument, NULL, OPT_LIST_DEVICES},
@@ -107,11 +99,11 @@ static const struct option options[] = {
     {"reconnect", no_argument, NULL, OPT_RECONNECT},
     {"stats", required_argument, NULL, OPT_STATS},
     {"fit", required_argument, NULL, OPT_FIT},
-    {"memory", required_argument, NULL, OPT_MEMORY},
     {"snapshot", required_argument, NULL, OPT_SNAPSHOT},
     {"config", required_argument, NULL, OPT_CONFIG},
-    COMPOSITOR_OPTIONS,
-    TOOL_COMMON_OPTIONS};
+    {NULL, 0, NULL, 0}};
+
+static const struct option *options; /* these, and those of the engine */
 
 /* The command line, which a reload parses again. */
 struct line {
@@ -219,11 +211,6 @@ static bool take_run(struct live_options *o, int option, const char *value)
         return tool_integer(value, 1, 1 << 30, &o->count);
     case OPT_SKIP:
         return tool_integer(value, 0, 1 << 30, &o->skip);
-    case OPT_MEMORY:
-        if (!tool_integer(value, 1, 1024, &word))
-            return false;
-        o->compositor.reserve_bytes = (size_t)word << 20;
-        return true;
     case OPT_SNAPSHOT:
         o->snapshot = value;
         return is_pattern(value) &&
@@ -384,21 +371,21 @@ static int list(struct tool *tool, const struct live_options *o)
 
 int cmd_live(int argc, char **argv)
 {
-    struct tool tool = {.name = "live",
-                        .help = help,
-                        .help_desk = help_lens,
-                        .help_end = help_end,
-                        .help_last = help_last};
+    struct tool tool = {.name = "live", .help = help, .help_end = COMMON_HELP};
     struct live_options *o = calloc(1, sizeof *o);
     struct line line = {.tool = &tool,
                         .argc = argc,
                         .argv = argv,
-                        .config = {&tool, options, take_from_file, &line, NULL},
+                        .config = {&tool, NULL, take_from_file, &line, NULL},
                         .into = o};
     int code;
 
     if (!o)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
+    set_defaults(o);
+    options =
+        engine_getopt(&tool, ENGINE_ALL, &o->compositor.settings.options, own);
+    line.config.options = options;
     line.again = line.config;
     code = parse(&line, &line.config, o);
     if (code < 0 && (o->list_devices || o->list_formats))

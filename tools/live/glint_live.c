@@ -4,7 +4,7 @@
  * size, as it takes baked models only (models_only.c).
  */
 #include "posix/process.h"
-#include "options/tool.h"
+#include "options/command_line.h"
 
 int main(int argc, char **argv)
 {

@@ -177,7 +177,7 @@ static bool is_adaptive(const struct live_options *o)
     return o->adaptive == LIVE_ADAPTIVE ||
            (o->adaptive == LIVE_ADAPTIVE_CAMERA &&
             live_input_is_camera(o->input.camera.device) &&
-            o->compositor.settings.budget_ms == 0);
+            o->compositor.settings.options.budget == 0);
 }
 
 static void adapt(struct live *l, int64_t busy_us, int n_missed)
@@ -478,7 +478,7 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
                ? EXIT_OK
                : tool_usage(tool, "-o: '%s' is no output", o->output);
     l->output.fit = o->fit;
-    l->output.dither = o->compositor.settings.dither;
+    l->output.dither = o->compositor.settings.options.dither;
     live_log_init(&l->log, tool, o->report,
                   l->output.kind == LIVE_OUTPUT_Y4M &&
                       strcmp(l->output.path, "-") == 0);

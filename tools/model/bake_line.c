@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "posix/output.h"
+#include "options/command_line.h"
 
 int bake_line_begin(struct tool *tool, int argc, char **argv,
                     const struct option *options, bake_line_fn *take,

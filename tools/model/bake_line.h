@@ -15,7 +15,7 @@
 #include <getopt.h>
 
 #include "options/settings.h"
-#include "options/tool.h"
+#include "options/command_line.h"
 
 /* Options that all of them have, at the begin of OPTIONS. */
 #define BAKE_LINE_OPTIONS                      \

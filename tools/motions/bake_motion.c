@@ -3,7 +3,7 @@
  * glint bake of motions: localises what a body recorded. */
 #include "model/bake_line.h"
 #include "motions/motion_file.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 
 static const char help[] =
     "glint bake NAME.json -o OUT.motion [options]\n"

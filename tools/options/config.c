@@ -12,6 +12,7 @@
 
 #include "posix/error.h"
 #include "posix/input.h"
+#include "options/command_line.h"
 
 #define MAX_BYTES   (1 << 20) /* largest file */
 #define MAX_OPTIONS 256       /* most options of a command */

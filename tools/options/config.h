@@ -25,7 +25,7 @@
 #ifndef GLINT_TOOLS_OPTIONS_CONFIG_H
 #define GLINT_TOOLS_OPTIONS_CONFIG_H
 
-#include "options/tool.h"
+#include "options/command_line.h"
 
 /* most bytes of a line, for which any build of inih has room */
 #define CONFIG_LINE 190

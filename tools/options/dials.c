@@ -45,7 +45,7 @@ void dial_set(struct settings *s, const struct dial *dial, double value)
     switch (dial->id) {
     case DIAL_GRID:
         s->dials.fineness = whole;
-        s->has_grid = true;
+        GLINT_OPTION_GIVEN(&s->options, grid) = true;
         break;
     case DIAL_QUANTUM:
         s->quantum = value;
@@ -72,13 +72,13 @@ void dial_set(struct settings *s, const struct dial *dial, double value)
         s->wavelength_nm[0] = whole == 1 ? 532 : 650;
         break;
     case DIAL_TILE:
-        s->tile_log2 = whole;
+        s->options.tile = whole - 3;
         break;
     case DIAL_APART:
-        s->apart_px = value;
+        s->options.apart = value;
         break;
     case DIAL_MAX_LIGHTS:
-        s->max_lights = whole;
+        s->options.max_lights = whole;
         break;
     }
 }
@@ -103,11 +103,11 @@ double dial_get(const struct settings *s, const struct dial *dial)
     case DIAL_WAVELENGTHS:
         return s->n_wavelengths;
     case DIAL_TILE:
-        return s->tile_log2;
+        return s->options.tile + 3;
     case DIAL_APART:
-        return s->apart_px;
+        return s->options.apart;
     case DIAL_MAX_LIGHTS:
-        return s->max_lights;
+        return s->options.max_lights;
     }
     return 0;
 }

@@ -6,61 +6,10 @@
 #include <string.h>
 
 #include "desk/ghost_file.h"
-#include "engine/frame/area.h"
-#include "lamp_files/lamp_list.h"
 #include "posix/error.h"
 #include "desk/stop_option.h"
 #include "options/settings_table.h"
-#include "options/settings_take.h"
 #include "options/settings_waves.h"
-#include "options/takes.h"
-
-void settings_defaults(struct settings *settings)
-{
-    *settings = (struct settings){.stop.n_blades = 8,
-                                  .wavelength_nm = {650, 532, 450},
-                                  .n_wavelengths = 3,
-                                  .gain = 1,
-                                  .tolerance = 1,
-                                  .only_ghost = -1,
-                                  .apart_px = GLINT_FRAME_APART_PX,
-                                  .tile_log2 = 6,
-                                  .quantum = 1,
-                                  .dials = glint_dials_at(1 << 14),
-                                  .quality = 0.5,
-                                  .most_minsn = GLINT_FRAME_MOST_MINSN};
-}
-
-int settings_option(const struct tool *tool, struct settings *settings,
-                    int option, const char *value)
-{
-    static const struct option names[] = {SETTINGS_OPTIONS};
-
-    if (option < OPT_F_NUMBER || option >= OPT_LAST)
-        return -2;
-    if (option == OPT_COATING)
-        return coating_take(tool, &settings->coating, value);
-    if (settings_take(settings, option, value))
-        return -1;
-    return tool_refuse(tool, names[option - OPT_F_NUMBER].name, value);
-}
-
-bool settings_lamp(const char *text, struct glint_lamp *lamp)
-{
-    double v[7] = {0, 0, 1, 1, 1, 1, 0};
-    const int n = tool_numbers(text, v, 7);
-
-    if ((n != 2 && n != 3 && n < 6) || v[6] < 0 || v[6] > 45 || v[0] < 0 ||
-        v[0] > 89.9 || v[3] < 0 || v[4] < 0 || v[5] < 0 ||
-        !lamp_power_ok(v[2], v + 3))
-        return false;
-    *lamp = (struct glint_lamp){.theta_deg = v[0],
-                                .phi_deg = v[1],
-                                .power = v[2],
-                                .rgb = {v[3], v[4], v[5]}};
-    glint_area_set_round(lamp, tan(v[6] * GLINT_PI / 180));
-    return true;
-}
 
 /* ------------------------------------------------------------------ opening */
 
@@ -116,7 +65,7 @@ static int open_model(const struct tool *tool, struct settings *settings,
     const struct glint_model_header *h;
     int code;
 
-    if (settings->rays == SETTINGS_RAYS_EXACT)
+    if (settings->options.rays == GLINT_RAYS_EXACT)
         return tool_usage(tool, "%s is a model: exact rays need the lens table",
                           path);
     code = coating_of_model(tool, &settings->coating, path);
@@ -159,16 +108,16 @@ static enum glint_status make_setup(struct settings *s,
                                      s->n_wavelengths, error)
             : settings_table_setup(s, error);
 
-    if (status == GLINT_OK && s->model.data && s->f_number > 0)
-        status = glint_setup_stop_down(&s->setup, &s->model.lens, s->f_number,
-                                       error);
+    if (status == GLINT_OK && s->model.data && s->options.f_number > 0)
+        status = glint_setup_stop_down(&s->setup, &s->model.lens,
+                                       s->options.f_number, error);
     if (status == GLINT_OK)
         status = stop_option_set(&stop, &s->setup, &s->stop.dirt, error);
     if (status != GLINT_OK)
         return status;
     glint_dirt_free(before);
     settings_weigh(s);
-    if (s->balance)
+    if (s->options.balance)
         glint_setup_balance(&s->setup);
     return GLINT_OK;
 }
@@ -176,7 +125,7 @@ static enum glint_status make_setup(struct settings *s,
 enum glint_status settings_stop(struct settings *settings, double f_number,
                                 struct glint_error *error)
 {
-    settings->f_number = f_number;
+    settings->options.f_number = f_number;
     return make_setup(settings, error);
 }
 
@@ -188,7 +137,7 @@ enum glint_status settings_zoom(struct settings *settings, double zoom,
     if (!settings->model.zoom)
         return glint_error_report(
             error, GLINT_E_ARGUMENT, settings->lens.name,
-            settings->rays == SETTINGS_RAYS_EXACT
+            settings->options.rays == GLINT_RAYS_EXACT
                 ? "exact rays do not zoom from frame to frame"
             : settings->lens.zoom.n_positions
                 ? "a table is baked for one position: zoom a model that "
@@ -216,17 +165,17 @@ static int set_up(const struct tool *tool, struct settings *s)
     struct glint_error error = {""};
     enum glint_status status = make_setup(s, &error);
 
-    if (status == GLINT_E_ARGUMENT && s->f_number > 0)
+    if (status == GLINT_E_ARGUMENT && s->options.f_number > 0)
         return settings_refuse_stop(tool, s, error.text);
-    if (status == GLINT_OK && s->ghosts_file)
-        status = ghost_file_read(&s->tints, s->ghosts_file, &s->setup,
+    if (status == GLINT_OK && s->options.ghosts)
+        status = ghost_file_read(&s->tints, s->options.ghosts, &s->setup,
                                  s->lens.name, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    if (s->only_ghost >= s->setup.n_ghosts - s->setup.n_parts)
+    if (settings_only_ghost(s) >= s->setup.n_ghosts - s->setup.n_parts)
         return tool_usage(tool, "%s has %d ghosts, there is no %d",
                           s->lens.name, s->setup.n_ghosts - s->setup.n_parts,
-                          s->only_ghost);
+                          s->options.ghost);
     return EXIT_OK;
 }
 
@@ -236,9 +185,10 @@ int settings_open(const struct tool *tool, struct settings *settings,
     int code = EXIT_OK;
 
     if ((settings->dials.flags & GLINT_DIAL_ALWAYS_HALF) &&
-        settings->rays == SETTINGS_RAYS_EXACT)
+        settings->options.rays == GLINT_RAYS_EXACT)
         return tool_usage(tool, "--half is not for exact rays");
-    if (settings->veil_only && !settings_has_veil(settings))
+    if (settings->options.only == GLINT_ONLY_VEIL &&
+        !settings_has_veil(settings))
         code = tool_usage(tool, "--only veil needs a --veil, --haze or "
                                 "--front-dust to draw");
     if (code == EXIT_OK)
@@ -249,7 +199,8 @@ int settings_open(const struct tool *tool, struct settings *settings,
         code = front_option_open(tool, &settings->front);
     if (code != EXIT_OK)
         return code;
-    if (settings->by_lens && tool_is_model(lens))
+    if (settings->options.projection == GLINT_PROJECTION_LENS &&
+        tool_is_model(lens))
         return tool_usage(tool, "--projection lens needs a lens table: a "
                                 "baked model has no chief rays");
     settings_choose_waves(settings);
@@ -257,7 +208,7 @@ int settings_open(const struct tool *tool, struct settings *settings,
                                : settings_open_table(tool, settings, lens);
 
     if (code == EXIT_OK && settings->model.data &&
-        settings->waves == SETTINGS_WAVES_LIST)
+        settings->waves == GLINT_WAVES_LIST)
         code = check_band(tool, settings);
     return code == EXIT_OK ? set_up(tool, settings) : code;
 }
@@ -287,36 +238,41 @@ struct glint_view settings_view(const struct settings *settings, int width,
 int settings_frame(const struct tool *tool, const struct settings *settings,
                    struct glint_view view, struct glint_frame *frame)
 {
+    const struct glint_options *const o = &settings->options;
+
     glint_frame_init(frame, &settings->setup, view, tool->workers);
     frame->cfg.sets = tool_sets(tool);
     frame->lens = settings->model.data ? &settings->model.lens : NULL;
     frame->trace = settings_table_rays();
     frame->clock = tool_seconds;
     frame->dials = settings->dials;
-    frame->only_ghost = settings->only_ghost;
+    frame->only_ghost = settings_only_ghost(settings);
     frame->tints = settings->tints;
     /* A limit of work would make the grid coarser than was asked for. */
     frame->most_minsn =
-        settings->has_grid && !settings->has_work ? 0 : settings->most_minsn;
-    frame->apart_px = settings->apart_px;
-    if (settings->area_samples_asked)
-        frame->dials.area_points = settings->area_samples_asked;
-    if (settings->max_lights)
-        frame->dials.max_lights = settings->max_lights;
+        settings_has_grid(settings) && !GLINT_OPTION_GIVEN(o, work)
+            ? 0
+            : 1000 * o->work;
+    frame->apart_px = o->apart;
+    if (o->area_samples)
+        frame->dials.area_points = o->area_samples;
+    if (o->max_lights)
+        frame->dials.max_lights = o->max_lights;
     frame->asked = frame->dials;
-    frame->cfg.tile_log2 = settings->tile_log2;
-    frame->cfg.dither = settings->dither;
-    if (settings->budget_ms > 0 && frame->lens) {
-        glint_budget_init(&frame->budget, settings->budget_ms);
+    frame->cfg.tile_log2 = 3 + o->tile;
+    frame->cfg.dither = o->dither;
+    if (o->budget > 0 && frame->lens) {
+        glint_budget_init(&frame->budget, o->budget);
         frame->dials = glint_budget_dials(&frame->budget, &frame->dials);
         if (glint_frame_calibrate(frame) != GLINT_OK)
             return tool_fail(tool, GLINT_E_MEMORY, NULL);
     }
     frame->star.share = settings_starburst(settings);
-    frame->star.is_alone = settings->starburst_only || settings->veil_only;
-    if (!settings->starburst_only && !settings->ghosts_only) {
-        frame->veil.glare = settings->veil;
-        frame->veil.haze = settings->haze;
+    frame->star.is_alone =
+        o->only == GLINT_ONLY_STARBURST || o->only == GLINT_ONLY_VEIL;
+    if (o->only == GLINT_ONLY_VEIL || o->only == GLINT_ONLY_ALL) {
+        frame->veil.glare = o->veil;
+        frame->veil.haze = o->haze;
         frame->veil.front = settings->front.dirt;
     }
     return EXIT_OK;
@@ -324,23 +280,33 @@ int settings_frame(const struct tool *tool, const struct settings *settings,
 
 bool settings_has_veil(const struct settings *settings)
 {
-    return settings->veil > 0 || settings->haze > 0 ||
+    return settings->options.veil > 0 || settings->options.haze > 0 ||
            front_option_asked(&settings->front);
 }
 
-double settings_starburst(const struct settings *s)
+double settings_starburst(const struct settings *settings)
 {
-    if (s->starburst_asked)
-        return s->ghosts_only || s->veil_only ? 0 : s->starburst;
-    if (s->starburst_only)
+    const struct glint_options *const o = &settings->options;
+
+    if (o->only == GLINT_ONLY_GHOSTS || o->only == GLINT_ONLY_VEIL)
+        return 0;
+    if (GLINT_OPTION_GIVEN(o, starburst))
+        return o->starburst;
+    if (o->only == GLINT_ONLY_STARBURST)
         return 1;
-    return s->ghosts_only || s->veil_only || s->only_ghost >= 0 ? 0
-                                                                : s->starburst;
+    return GLINT_OPTION_GIVEN(o, ghost) ? 0 : o->starburst;
+}
+
+int settings_only_ghost(const struct settings *settings)
+{
+    return GLINT_OPTION_GIVEN(&settings->options, ghost)
+               ? settings->options.ghost
+               : -1;
 }
 
 double settings_scale(const struct settings *settings)
 {
-    return settings->gain * exp2(settings->exposure_ev);
+    return settings->options.gain * exp2(settings->options.exposure);
 }
 
 void settings_json(const struct glint_frame_report *r)
@@ -377,16 +343,6 @@ void settings_lights_text(const struct glint_frame_report *r, char text[64])
                  r->drawn_lights);
     else
         snprintf(text, 64, "%d lights", r->lights);
-}
-
-bool settings_memory(const char *text, size_t *bytes)
-{
-    int mib;
-
-    if (!tool_integer(text, 1, 1024, &mib))
-        return false;
-    *bytes = (size_t)mib << 20;
-    return true;
 }
 
 void settings_warn_lights(const struct tool *tool,

@@ -87,18 +87,18 @@ int settings_open_table(const struct tool *tool, struct settings *settings,
         return code;
     coating_apply(&settings->coating, &settings->lens);
     /* A model serves all stops narrower than its own. */
-    if (settings->f_number > 0 &&
-        (settings->rays == SETTINGS_RAYS_EXACT ||
-         settings->f_number < settings->lens.f_number))
-        status = glint_prescription_set_f_number(&settings->lens,
-                                                 settings->f_number, &error);
+    if (settings->options.f_number > 0 &&
+        (settings->options.rays == GLINT_RAYS_EXACT ||
+         settings->options.f_number < settings->lens.f_number))
+        status = glint_prescription_set_f_number(
+            &settings->lens, settings->options.f_number, &error);
     if (status != GLINT_OK)
         return settings_refuse_stop(tool, settings, error.text);
-    if (settings->by_lens)
+    if (settings->options.projection == GLINT_PROJECTION_LENS)
         status = set_projection(settings, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    if (settings->rays == SETTINGS_RAYS_EXACT)
+    if (settings->options.rays == GLINT_RAYS_EXACT)
         return EXIT_OK;
     code = check_picture(tool, settings);
     return code != EXIT_OK ? code

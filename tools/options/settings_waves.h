@@ -7,10 +7,6 @@
 
 #include "options/settings.h"
 
-/* Takes TEXT: "auto", a number of wavelengths, or a list of them in nm. Returns
- * false for other texts. */
-bool settings_take_waves(struct settings *settings, const char *text);
-
 /* Chooses the wavelengths that a setup is made for, before the lens of SETTINGS
  * is opened. */
 void settings_choose_waves(struct settings *settings);

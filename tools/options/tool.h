@@ -6,7 +6,6 @@
 #ifndef GLINT_TOOLS_OPTIONS_TOOL_H
 #define GLINT_TOOLS_OPTIONS_TOOL_H
 
-#include <getopt.h>
 #include <stdbool.h>
 #include <stdio.h>
 
@@ -23,12 +22,13 @@ enum exit_code {
 };
 
 struct tool {
-    const char *name;      /* name of the command */
-    const char *help;      /* first part of the command's help */
-    const char *help_desk; /* further parts, or NULL: this one comes first */
-    const char *help_end;
-    /* Strings of C99 end at 4095 bytes. */
-    const char *help_last;
+    const char *name; /* name of the command */
+    const char *help; /* of its own options */
+    /* Groups of the engine's options that it has, a bit each by enum
+     * glint_option_group, and their defaults; NULL where there are none. */
+    unsigned groups;
+    const struct glint_options *defaults;
+    const char *help_end; /* what comes behind the help of these, or NULL */
     bool json, quiet;
     int verbose;
     int n_threads;
@@ -41,37 +41,6 @@ struct tool {
     const char *where; /* "FILE:LINE" of the option being taken, or NULL for the
                           command line */
 };
-
-/* Codes of options that no letter is for. */
-enum { TOOL_HELP_ALL = 900, TOOL_OPTIONS };
-
-/* Options that every command takes, for its struct option array. */
-#define TOOL_COMMON_SHORT "hVqvj:"
-#define TOOL_COMMON_OPTIONS                                                    \
-    {"help", no_argument, NULL, 'h'}, {"version", no_argument, NULL, 'V'},     \
-        {"quiet", no_argument, NULL, 'q'},                                     \
-        {"verbose", no_argument, NULL, 'v'}, {"json", no_argument, NULL, 'J'}, \
-        {"threads", required_argument, NULL, 'j'},                             \
-        {"kernels", required_argument, NULL, 'K'},                             \
-        {"seed", required_argument, NULL, 'S'},                                \
-        {"help-all", no_argument, NULL, TOOL_HELP_ALL},                        \
-        {"options", optional_argument, NULL, TOOL_OPTIONS},                    \
-    {                                                                          \
-        NULL, 0, NULL, 0                                                       \
-    }
-
-/* Notes the command line, so that tool_option() can suggest what an unknown
- * option may mean. */
-void tool_line(char **argv);
-
-/* Does as getopt_long(), and notes OPTIONS for --options, by which shells
- * complete. */
-int tool_getopt(int argc, char *const *argv, const char *shorts,
-                const struct option *options, int *index);
-
-/* Takes a common option. Returns -1 to go on, else the exit code to leave with
- * (EXIT_OK after --help and its like). An unknown option is a usage error. */
-int tool_option(struct tool *tool, int option, const char *value);
 
 /* Makes the workers, which tool_finish() ends. Returns an exit code. */
 int tool_start(struct tool *tool);
@@ -86,18 +55,6 @@ int tool_end(int code);
 /* Returns the instruction sets that kernels may use. */
 unsigned tool_sets(const struct tool *tool);
 
-/* Returns the value of the last option in ARGV that getopt_long() would
- * return as OPTION, or NULL. Takes no option: getopt_long() starts afresh
- * afterwards. */
-const char *tool_value_of(int argc, char **argv, const char *shorts,
-                          const struct option *options, int option);
-
-/* Checks that getopt_long() has left N words of ARGV. Returns -1, or after
- * saying TEXT the code of tool_usage(); of a line with fewer words it says
- * which one the last option took for its value. */
-int tool_inputs(const struct tool *tool, int argc, char **argv, int n,
-                const char *text);
-
 /* Prints "glint COMMAND: ..." and copies the message to the tool's cause. */
 void tool_error(const struct tool *tool, const char *format, ...);
 
@@ -107,6 +64,10 @@ void tool_error(const struct tool *tool, const char *format, ...);
 int tool_usage(const struct tool *tool, const char *format, ...);
 int tool_fail(const struct tool *tool, enum glint_status status,
               const char *text);
+
+/* Prints that OPTION does not take VALUE, and what it takes. Returns the code
+ * of tool_usage(). */
+int tool_refuse(const struct tool *tool, const char *option, const char *value);
 
 /* ------------------------------------------------------------------ numbers */
 

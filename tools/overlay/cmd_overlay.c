@@ -11,7 +11,7 @@
 #include "overlay/overlay_line.h"
 #include "overlay/overlay_y4m.h"
 #include "engine/setup/spectrum.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 #include "formats/kept.h"
 #include "posix/error.h"
 
@@ -30,7 +30,7 @@ static const char help[] =
     "copied,\n"
     "                    rate and colours are kept\n"
     "\n"
-    "  -o, --output OUT\n" COMPOSITOR_HELP
+    "  -o, --output OUT\n"
     "  --range R           auto | full | limited codes of a video\n"
     "  --matrix M          auto | 601 | 709\n"
     "  --encode OPTIONS    of ffmpeg for the pictures it writes, in place of\n"
@@ -56,9 +56,6 @@ static const char help[] =
     "  --jpeg-quality N    1 to 100, of JPEG and WebP (default: about the "
     "input's,\n"
     "                      else 95)\n";
-
-static const char help_end[] = SETTINGS_HELP;
-static const char help_last[] = SPEED_HELP COMMON_HELP;
 
 /* ------------------------------------------------------------------ options */
 
@@ -104,8 +101,6 @@ static bool take(struct overlay *o, int option, const char *value)
         o->layers.is_float = word == 1;
         o->has_layers_type = true;
         return word >= 0;
-    case 'm':
-        return settings_memory(value, &o->compositor.reserve_bytes);
     case 'F':
         return take_frames(o, value);
     case 'W':
@@ -117,7 +112,7 @@ static bool take(struct overlay *o, int option, const char *value)
     }
 }
 
-static const struct option options[] = {
+static const struct option own[] = {
     {"output", required_argument, NULL, 'o'},
     {"range", required_argument, NULL, 'r'},
     {"matrix", required_argument, NULL, 'x'},
@@ -127,14 +122,14 @@ static const struct option options[] = {
     {"warm-up", required_argument, NULL, 'W'},
     {"list-shots", no_argument, NULL, 'B'},
     {"encode", required_argument, NULL, 'e'},
-    {"memory", required_argument, NULL, 'm'},
     {"layers", required_argument, NULL, 'L'},
     {"layers-type", required_argument, NULL, 'T'},
-    COMPOSITOR_OPTIONS,
-    TOOL_COMMON_OPTIONS};
+    {NULL, 0, NULL, 0}};
 
 static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
 {
+    const struct option *const options =
+        engine_getopt(tool, ENGINE_ALL, &o->compositor.settings.options, own);
     int c, index = 0;
     int code = compositor_style_of(tool, &o->compositor, argc, argv,
                                    "o:" TOOL_COMMON_SHORT, options);
@@ -143,7 +138,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
         return code;
     while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             &index)) >= 0) {
-        if (c == OPT_ZOOM && zoom_clip_take(&o->zoom, optarg))
+        if (c == ENGINE_OPTION_OF(zoom) && zoom_clip_take(&o->zoom, optarg))
             continue;
         code = compositor_option(tool, &o->compositor, c, optarg);
         if (code >= 0)
@@ -154,7 +149,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
             o->output = optarg;
         else if (c == 'e')
             o->encode = optarg;
-        else if (strchr("rxnQmLTFWB", c)) {
+        else if (strchr("rxnQLTFWB", c)) {
             if (!take(o, c, optarg))
                 return tool_refuse(tool, options[index].name, optarg);
         } else if ((code = tool_option(tool, c, optarg)) >= 0)
@@ -178,12 +173,13 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
         o->output = "-";
     if (o->has_layers_type && !o->layers.path)
         return tool_usage(tool, "--layers-type is for --layers OUT");
-    if (o->layers.path && strcmp(o->compositor.lens, "none") == 0)
+    if (o->layers.path &&
+        strcmp(o->compositor.settings.options.lens, "none") == 0)
         return tool_usage(tool, "--layers are those of the flare of a lens, "
                                 "not of --lens none");
     o->input = argv[optind];
     if (o->compositor.reserve_bytes &&
-        o->compositor.settings.rays == SETTINGS_RAYS_EXACT)
+        o->compositor.settings.options.rays == GLINT_RAYS_EXACT)
         return tool_usage(tool, "--memory is for models, not for exact rays");
     return -1;
 }
@@ -399,7 +395,7 @@ static int check_output(struct tool *tool, struct overlay *o)
                           o->lists_shots ? "list-shots" : "frames");
     if (o->lists_shots)
         return EXIT_OK;
-    if (o->last < INT_MAX && (o->compositor.settings.budget_ms > 0 ||
+    if (o->last < INT_MAX && (o->compositor.settings.options.budget > 0 ||
                               o->compositor.settings.dials.still_px > 0))
         return tool_usage(tool, "--frames does not go with --budget and "
                                 "--still, by which frames depend on those "
@@ -446,11 +442,8 @@ static int run(struct tool *tool, struct overlay *o)
 
 int cmd_overlay(int argc, char **argv)
 {
-    struct tool tool = {.name = "overlay",
-                        .help = help,
-                        .help_desk = SETTINGS_MEMORY_HELP DESK_HELP SCENE_HELP,
-                        .help_end = help_end,
-                        .help_last = help_last};
+    struct tool tool = {
+        .name = "overlay", .help = help, .help_end = COMMON_HELP};
     struct overlay *o = calloc(1, sizeof *o);
     int code;
 

@@ -21,14 +21,15 @@ static enum glint_status open_list(struct compositor *compositor,
 {
     enum glint_status status = GLINT_OK;
 
-    if (compositor->lights_file)
-        status =
-            lamp_list_read(&compositor->list, compositor->lights_file, error);
-    if (status == GLINT_OK && compositor->interpolate)
+    if (compositor->settings.options.lights)
+        status = lamp_list_read(&compositor->list,
+                                compositor->settings.options.lights, error);
+    if (status == GLINT_OK && compositor->settings.options.interpolate)
         status = lamp_keys_link(&compositor->list);
     for (int i = 0; i < compositor->at.n && status == GLINT_OK; i++)
         status = lamp_list_add(&compositor->list, &compositor->at.row[i]);
-    compositor->is_listed = compositor->lights_file || compositor->at.n > 0;
+    compositor->is_listed =
+        compositor->settings.options.lights || compositor->at.n > 0;
     return status;
 }
 
@@ -47,7 +48,7 @@ static int open_scene(const struct tool *tool, struct compositor *compositor)
                           "%s: 'camera lens' has the field of a lens, and "
                           "--lens none is none; take 'camera fov'",
                           compositor->scene.file);
-    return compositor->flare_only
+    return compositor->settings.options.layer != GLINT_LAYER_COMPOSITE
                ? tool_usage(tool, "--layer shows the flare of a lens, not of "
                                   "--lens none")
                : EXIT_OK;
@@ -60,19 +61,22 @@ int compositor_open(const struct tool *tool, struct compositor *compositor)
     int code = compositor_desk_open_keys(tool, compositor);
     size_t n;
 
-    compositor->has_lens = strcmp(compositor->lens, "none") != 0;
+    compositor->has_lens =
+        strcmp(compositor->settings.options.lens, "none") != 0;
     if (code == EXIT_OK)
         code = compositor_zoom_begin(tool, compositor);
     if (code == EXIT_OK)
         code = open_scene(tool, compositor);
     if (code == EXIT_OK && compositor->has_lens)
-        code = settings_open(tool, &compositor->settings, compositor->lens);
+        code = settings_open(tool, &compositor->settings,
+                             compositor->settings.options.lens);
     if (code != EXIT_OK || !compositor->has_lens)
         return code;
     status = open_list(compositor, &error);
-    if (status == GLINT_OK && compositor->save_file)
+    if (status == GLINT_OK && compositor->settings.options.save_lights)
         status =
-            lamp_save_open(&compositor->save, compositor->save_file, &error);
+            lamp_save_open(&compositor->save,
+                           compositor->settings.options.save_lights, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     code = compositor_desk_open(tool, compositor);
@@ -98,7 +102,7 @@ int compositor_open(const struct tool *tool, struct compositor *compositor)
 
 int compositor_open_lens(const struct tool *tool, struct compositor *compositor)
 {
-    return strcmp(compositor->lens, "none") == 0
+    return strcmp(compositor->settings.options.lens, "none") == 0
                ? tool_usage(tool, "--lens none is for overlay and live")
                : compositor_open(tool, compositor);
 }
@@ -107,8 +111,9 @@ int compositor_open_lens(const struct tool *tool, struct compositor *compositor)
  * that hardly show. */
 static int finder_max(const struct compositor *compositor)
 {
-    const int asked =
-        compositor->settings.max_lights ? compositor->settings.max_lights : 16;
+    const int asked = compositor->settings.options.max_lights
+                          ? compositor->settings.options.max_lights
+                          : 16;
 
     return asked < GLINT_LAMP_DETECTOR_MAX ? asked : GLINT_LAMP_DETECTOR_MAX;
 }
@@ -125,13 +130,14 @@ static void unsize(struct compositor *compositor)
 static enum glint_status open_finder(struct compositor *compositor, int width,
                                      int height)
 {
+    const struct glint_options *const o = &compositor->settings.options;
     struct glint_lamp_finder_config cfg;
+    double threshold_ev[2];
 
+    glint_option_threshold(o->threshold, threshold_ev);
     glint_lamp_finder_defaults(&cfg, width, height);
-    cfg.threshold_high_q8 =
-        (int32_t)floor(256 * compositor->threshold_ev[0] + 0.5);
-    cfg.threshold_low_q8 =
-        (int32_t)floor(256 * compositor->threshold_ev[1] + 0.5);
+    cfg.threshold_high_q8 = (int32_t)floor(256 * threshold_ev[0] + 0.5);
+    cfg.threshold_low_q8 = (int32_t)floor(256 * threshold_ev[1] + 0.5);
     compositor->finder.headroom_ev = compositor->headroom_ev;
     compositor->finder.max = finder_max(compositor);
     return glint_lamp_detector_open(&compositor->finder, &cfg);
@@ -215,7 +221,7 @@ int compositor_size(const struct tool *tool, struct compositor *compositor,
         return code;
     compositor->sized = true;
     compositor->frame.cfg.reuse = &glint_reuse;
-    if (compositor->settings.rays == SETTINGS_RAYS_EXACT) {
+    if (compositor->settings.options.rays == GLINT_RAYS_EXACT) {
         if (!tool->quiet)
             fprintf(stderr,
                     "glint %s: exact rays: first how bright flares of %s are, "
@@ -232,9 +238,8 @@ int compositor_size(const struct tool *tool, struct compositor *compositor,
         status = open_finder(compositor, width, height);
     if (tool->verbose && !tool->quiet && !compositor->is_listed &&
         compositor->n_hand == 0)
-        fprintf(stderr, "%s: lamps from %g stops of white, down to %g\n",
-                tool->name, compositor->threshold_ev[0],
-                compositor->threshold_ev[1]);
+        fprintf(stderr, "%s: lamps from %s stops of white\n", tool->name,
+                compositor->settings.options.threshold);
     if (status == GLINT_OK && compositor->reserve_bytes)
         status = reserve(compositor);
     return status == GLINT_OK ? EXIT_OK : fail_sizing(tool, compositor, status);
@@ -323,12 +328,14 @@ static int set_lamps(struct compositor *compositor,
                              compositor->level + n, compositor->seen_px + n,
                              compositor->list.n);
     }
-    compositor->is_followed = elapsed_us > 0 && !compositor->no_tracking;
+    compositor->is_followed =
+        elapsed_us > 0 && !compositor->settings.options.no_tracking;
     if (compositor->is_listed || n > 0)
         return n;
-    n = glint_lamp_detector_frame(&compositor->finder, image,
-                                  compositor->no_tracking ? 0 : elapsed_us,
-                                  &compositor->view, focal, compositor->lamp);
+    n = glint_lamp_detector_frame(
+        &compositor->finder, image,
+        compositor->settings.options.no_tracking ? 0 : elapsed_us,
+        &compositor->view, focal, compositor->lamp);
     for (int i = 0; i < n; i++) {
         compositor->seen_px[i] =
             clips ? compositor->finder.track[i].size_q8 / 256.0 : 0;
@@ -368,8 +375,9 @@ static void expose_as_drawn(struct compositor *compositor)
     struct glint_response_light drawn;
     struct glint_seen seen = {0, 0};
 
-    if (compositor->settings.has_exposure || compositor->strength.scale <= 0 ||
-        compositor->settings.budget_ms > 0 ||
+    if (GLINT_OPTION_GIVEN(&compositor->settings.options, exposure) ||
+        compositor->strength.scale <= 0 ||
+        compositor->settings.options.budget > 0 ||
         glint_response_draw(&compositor->frame, compositor->lamp,
                             compositor->n_lamps, GLINT_RESPONSE_FINE,
                             compositor->ground, &drawn, &seen) != GLINT_OK)
@@ -393,9 +401,10 @@ void compositor_expose(struct compositor *compositor, int32_t elapsed_us)
             compositor->white};
 
     compositor_save_lamps(compositor);
-    compositor->strength.is_physical = compositor->settings.has_exposure;
-    compositor->strength.exposure_ev = compositor->settings.exposure_ev;
-    compositor->strength.gain = compositor->settings.gain;
+    compositor->strength.is_physical =
+        GLINT_OPTION_GIVEN(&compositor->settings.options, exposure);
+    compositor->strength.exposure_ev = compositor->settings.options.exposure;
+    compositor->strength.gain = compositor->settings.options.gain;
     glint_strength_expose(&compositor->strength, &compositor->response, &lamps,
                           is_new ? 0 : elapsed_us);
     if (elapsed_us == 0)
@@ -436,7 +445,7 @@ static enum glint_status find(struct compositor *compositor,
     }
     compositor->find_ms = 1e3 * (tool_seconds() - start);
     compositor->scene.elapsed_us = elapsed_us;
-    compositor->scene.no_tracking = compositor->no_tracking;
+    compositor->scene.no_tracking = compositor->settings.options.no_tracking;
     status = compositor_scene(compositor, image);
     return status;
 }
@@ -452,11 +461,11 @@ enum glint_status compositor_find(struct compositor *compositor,
         return status;
     /* There is time to draw a picture by itself with more points of wide
      * lamps. */
-    if (elapsed_us == 0 && settings->budget_ms == 0) {
-        if (!settings->area_samples_asked)
+    if (elapsed_us == 0 && settings->options.budget == 0) {
+        if (!settings->options.area_samples)
             compositor->frame.dials.area_points =
                 1 + GLINT_AREA_STILL * (settings->dials.area_points - 1);
-        if (!settings->max_lights)
+        if (!settings->options.max_lights)
             compositor->frame.point_room =
                 GLINT_AREA_STILL_ROOM * compositor->frame.dials.max_lights;
     }
@@ -482,7 +491,7 @@ enum glint_status compositor_draw(struct compositor *compositor,
     status = glint_frame_veil_look(&compositor->frame, image, 1);
     if (status != GLINT_OK)
         return status;
-    if (compositor->flare_only)
+    if (compositor->settings.options.layer != GLINT_LAYER_COMPOSITE)
         paint_black(image);
     status = glint_frame_draw(
         &compositor->frame, compositor->lamp,

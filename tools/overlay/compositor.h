@@ -20,29 +20,22 @@
 #include "options/settings.h"
 #include "engine/strength.h"
 #include "scenes/over_scene.h"
+#include "options/command_line.h"
 
 struct compositor {
     struct settings settings;
-    const char *lens, *lights_file; /* NULL: lamps are found */
-    const char *save_file;          /* file to save lamps to, or NULL */
-    const char *style;              /* the look that was chosen, or NULL */
-    const char *keys_file;          /* file of key frames, or NULL */
-    /* Key frames in place of those of a file, whose name keys_file is then in
+    const char *style; /* the look that was chosen, or NULL */
+    /* Key frames in place of those of a file, whose name --keys is then in
      * messages; NULL: none. */
     const char *keys_text;
     char keys_line[224]; /* "FILE:LINE" of the f-number asked for */
     struct keys keys;
     struct occlusion occlusion; /* what hides lamps */
     struct over_scene scene;    /* things over the picture */
-    bool interpolate;           /* Lamps of a file move between its rows. */
     struct lamp_list at;        /* lamps given by hand, by pixel */
-    double threshold_ev[2]; /* stops from white: that a lamp needs, and down to
-                               which it extends */
-    double headroom_ev;
-    bool flare_only, no_tracking, show_lights;
-    bool is_still;    /* pictures by themselves, for which there is time */
-    bool preview;     /* draws fast, and numbers the ghosts */
-    bool flare_alpha; /* alpha in files of the flare alone */
+    double headroom_ev;         /* below 0: estimated */
+    bool show_lights;
+    bool is_still; /* pictures by themselves, for which there is time */
     /* Bytes reserved for frames, which take no more; 0: as many as they
      * need. */
     size_t reserve_bytes;
@@ -54,8 +47,8 @@ struct compositor {
     /* what a picture by itself shows under its flare, from when its lamps are
      * found until it is exposed; else NULL */
     struct glint_ground *ground;
-    int dial; /* option that set the brightness, OPT_STRENGTH or OPT_EXPOSURE;
-                 0: none */
+    int dial; /* code of the option that set the brightness, --strength or
+                 --exposure; 0: none */
 
     /* Set by compositor_open() and compositor_size(). */
     bool has_lens;         /* false: there is only a scene */
@@ -94,203 +87,11 @@ struct compositor {
     struct glint_frame_report report;
 };
 
-/* Default power of a lamp by hand, stops over a white pixel: a street lamp in a
- * night picture. */
-#define COMPOSITOR_LIGHT_EV 16
-
-enum compositor_option_code {
-    OPT_LENS = OPT_LAST,
-    OPT_LIGHTS,
-    OPT_LIGHT,
-    OPT_THRESHOLD,
-    OPT_HEADROOM,
-    OPT_LAYER,
-    OPT_NO_TRACKING,
-    OPT_STILL,
-    OPT_SHOW,
-    OPT_STRENGTH,
-    OPT_LIGHT_AT,
-    OPT_SAVE_LIGHTS,
-    OPT_INTERPOLATE,
-    OPT_MASK,
-    OPT_EDGE_FADE,
-    OPT_KEYS,
-    OPT_STYLE,
-    OPT_PREVIEW,
-    OPT_SCENE,
-    OPT_POSE,
-    OPT_CONTROL,
-    /* Those of a scene, in the order of enum scene_choice. */
-    OPT_EDGE_SAMPLES,
-    OPT_SHADOW_POINTS,
-    OPT_SHADING,
-    OPT_WARD_SAMPLES,
-    OPT_WARD_NEAREST,
-    OPT_STONE_FRAMES,
-    OPT_HIGHLIGHTS,
-    OPT_COMPOSITOR_LAST
-};
-
-#define COMPOSITOR_OPTIONS                                             \
-    {"lens", required_argument, NULL, OPT_LENS},                       \
-        {"lights", required_argument, NULL, OPT_LIGHTS},               \
-        {"light", required_argument, NULL, OPT_LIGHT},                 \
-        {"threshold", required_argument, NULL, OPT_THRESHOLD},         \
-        {"headroom", required_argument, NULL, OPT_HEADROOM},           \
-        {"layer", required_argument, NULL, OPT_LAYER},                 \
-        {"no-tracking", no_argument, NULL, OPT_NO_TRACKING},           \
-        {"still", required_argument, NULL, OPT_STILL},                 \
-        {"show", required_argument, NULL, OPT_SHOW},                   \
-        {"strength", required_argument, NULL, OPT_STRENGTH},           \
-        {"light-at", required_argument, NULL, OPT_LIGHT_AT},           \
-        {"save-lights", required_argument, NULL, OPT_SAVE_LIGHTS},     \
-        {"interpolate", no_argument, NULL, OPT_INTERPOLATE},           \
-        {"mask", required_argument, NULL, OPT_MASK},                   \
-        {"edge-fade", required_argument, NULL, OPT_EDGE_FADE},         \
-        {"keys", required_argument, NULL, OPT_KEYS},                   \
-        {"style", required_argument, NULL, OPT_STYLE},                 \
-        {"preview", no_argument, NULL, OPT_PREVIEW},                   \
-        {"scene", required_argument, NULL, OPT_SCENE},                 \
-        {"pose", required_argument, NULL, OPT_POSE},                   \
-        {"control", required_argument, NULL, OPT_CONTROL},             \
-        {"edge-samples", required_argument, NULL, OPT_EDGE_SAMPLES},   \
-        {"shadow-points", required_argument, NULL, OPT_SHADOW_POINTS}, \
-        {"shading", required_argument, NULL, OPT_SHADING},             \
-        {"ward-samples", required_argument, NULL, OPT_WARD_SAMPLES},   \
-        {"ward-nearest", no_argument, NULL, OPT_WARD_NEAREST},         \
-        {"stone-frames", required_argument, NULL, OPT_STONE_FRAMES},   \
-        {"highlights", required_argument, NULL, OPT_HIGHLIGHTS},       \
-        SETTINGS_OPTIONS
-
-#define COMPOSITOR_HELP                                                        \
-    "  --lens LENS         table or baked model (default nikon-zoom-short)\n"  \
-    "  --lights auto|FILE  auto (default): found in each frame; FILE: CSV\n"   \
-    "                      frame,x,y,power[,r,g,b[,size]] or JSON lines "      \
-    "with\n"                                                                   \
-    "                      these keys, and id; x, y in pixels from the top\n"  \
-    "                      left, also outside; frames count from 0, * is\n"    \
-    "                      every frame; size is its RMS radius, pixels: "      \
-    "0.71\n"                                                                   \
-    "                      of a disc's\n"                                      \
-    "  --interpolate       of a FILE: lamps go from one row to their next, "   \
-    "in\n"                                                                     \
-    "                      frames that have none; the same id (a column of "   \
-    "a\n"                                                                      \
-    "                      heading), else the same place in the frame\n"       \
-    "  --light-at X,Y[,EV] a lamp at a pixel, for all frames, of EV stops\n"   \
-    "                      over a white pixel (default 16); repeatable; "      \
-    "replaces\n"                                                               \
-    "                      auto, adds to a FILE\n"                             \
-    "  --save-lights FILE  writes the lamps of each frame as --lights FILE "   \
-    "takes\n"                                                                  \
-    "                      them\n"                                             \
-    "  --light LIST        one by hand, as of glint render, for all frames;\n" \
-    "                      repeatable; replaces auto, adds to a FILE\n"        \
-    "  --threshold EV[,EV] how bright a lamp must be, and down to what it "    \
-    "extends,\n"                                                               \
-    "                      in stops from the picture's white (default "        \
-    "-0.1,-0.15)\n"                                                            \
-    "  --no-tracking       --lights auto takes each frame of a video by "      \
-    "itself,\n"                                                                \
-    "                      rather than following lamps from frame to frame\n"  \
-    "  --show lights       draws a box, number and stops over a white pixel "  \
-    "of\n"                                                                     \
-    "                      each light on top\n"                                \
-    "  --headroom EV       stops by which clipped pixels really exceed "       \
-    "white, 0 to\n"                                                            \
-    "                      40 (default: for each lamp, from its halo)\n"       \
-    "  --layer WHAT        composite | flare: the flare alone on black |\n"    \
-    "                      flare-alpha: a picture of it with alpha, to be\n"   \
-    "                      laid over others in linear light\n"                 \
-    "  --strength S        how bright the flare comes out, whatever the "      \
-    "lamps\n"                                                                  \
-    "                      and the lens: 0 none, 0.5 (default) a quarter of\n" \
-    "                      white at its brightest, 1 white; twice S is two\n"  \
-    "                      stops. Follows the lamps of a video. --exposure "   \
-    "EV\n"                                                                     \
-    "                      instead sets it by hand\n"
-
-/* The help on what an artist turns. */
-#define SCENE_HELP                                                            \
-    "\nScenes\n"                                                              \
-    "  --control FILE      lines that change the scene: [FRAME] orbit YAW "   \
-    "PITCH,\n"                                                                \
-    "                      distance D, set MATERIAL alpha X Y, show THING,\n" \
-    "                      play ...; live: also a FIFO, or - (keys of a\n"    \
-    "                      terminal)\n"                                       \
-    "  --edge-samples N    points of a pixel at outlines: 1, 4 (default), 8 " \
-    "or\n"                                                                    \
-    "                      16\n"                                              \
-    "  --shadow-points N   1, 4 (default of videos) or 16 (of stills) of a\n" \
-    "                      light's disc\n"                                    \
-    "  --shading S         full: each pixel (default); half: two by two at\n" \
-    "                      once where they see one thing\n"                   \
-    "  --ward-samples N    1 to 32 lookups of the environment for a place "   \
-    "on\n"                                                                    \
-    "                      brushed metal (default 8; in fours)\n"             \
-    "  --ward-nearest      each in one level of it, not two blended\n"        \
-    "  --stone-frames N    1 (default), 2 or 4: light below the surface of "  \
-    "stones\n"                                                                \
-    "                      follows what moves only so often\n"                \
-    "  --highlights N      0 to 8 spots of things that glint are lights of "  \
-    "the\n"                                                                   \
-    "                      flare (default: as the scene says)\n"
-
-#define DESK_HELP                                                              \
-    "The desk\n"                                                               \
-    "  --style NAME        natural | clean | vintage | cinema | toy: a lens, " \
-    "a\n"                                                                      \
-    "                      coating, a stop and a strength that go together;\n" \
-    "                      other options replace its own (glint styles)\n"     \
-    "  --preview           draws fast and coarsely, and writes onto the "      \
-    "picture\n"                                                                \
-    "                      the numbers of the 24 brightest ghosts; as "        \
-    "coarsely as\n"                                                            \
-    "                      --quality 0.25 unless --quality, --error, "         \
-    "--grid or\n"                                                              \
-    "                      --budget say otherwise\n"                           \
-    "  --mask FILE         hides lamps: white lets light through; a lamp "     \
-    "keeps the\n"                                                              \
-    "                      share of its extent that is not hidden. A "         \
-    "picture,\n"                                                               \
-    "                      a pattern or a .y4m, as large as the picture\n"     \
-    "  --scene FILE        draws the things of a .scene, or of what glint "    \
-    "bake "                                                                    \
-    "made\n"                                                                   \
-    "                      of it, over the picture: they hide lamps, throw\n"  \
-    "                      shadows, and their lights flare; --lens none: no "  \
-    "flare\n"                                                                  \
-    "  --pose FILE         moves things and camera: lines "                    \
-    "frame,object,x,y,z\n"                                                     \
-    "                      [,qw,qx,qy,qz] or JSON, object a name or camera, "  \
-    "* every\n"                                                                \
-    "                      frame; a pose holds until the next\n"               \
-    "  --edge-fade PX      lamps beside the picture fade over so many "        \
-    "pixels,\n"                                                                \
-    "                      above 0 and up to a million\n"                      \
-    "  --keys FILE         key frames, CSV: frame, and of exposure, "          \
-    "strength,\n"                                                              \
-    "                      gain, starburst, f-number, turn, round, zoom, "     \
-    "x,y[,ev];\n"                                                              \
-    "                      even between rows, empty is no key\n"               \
-    "  --still PX          of videos: while lamps move by less, ghosts are "   \
-    "drawn by\n"                                                               \
-    "                      the rays of before, with the light of now\n"        \
-    "                      (default 0: while they do not move at all)\n"       \
-    "  of --save-lights    frame,x,y,power,r,g,b,size,id,shape (minor over "   \
-    "major\n"                                                                  \
-    "                      axis),turn (degrees of the major),level (how far "  \
-    "it\n"                                                                     \
-    "                      has risen),seen (pixels, of a lamp that clips)\n"
-
 void compositor_defaults(struct compositor *compositor);
 
-/* Returns whether OPTION is a dial of scenes. */
-bool compositor_is_dial(int option);
-
-/* Takes OPTION if it is one of COMPOSITOR_OPTIONS. Returns -1, or -2 if it is
- * none of these, or an exit code after printing what is wrong. VALUE must
- * outlive COMPOSITOR. */
+/* Sets the engine's option of code OPTION. Returns -1, or -2 if it is none of
+ * these, or an exit code after printing what is wrong. VALUE must outlive
+ * COMPOSITOR. */
 int compositor_option(const struct tool *tool, struct compositor *compositor,
                       int option, const char *value);
 

@@ -28,10 +28,10 @@ static void ask_stop(struct compositor *c, int sign)
     for (int i = 1; i < c->keys.n[KEYS_F_NUMBER]; i++)
         if (sign * c->keys.key[KEYS_F_NUMBER][i].value < sign * key->value)
             key = &c->keys.key[KEYS_F_NUMBER][i];
-    snprintf(c->keys_line, sizeof c->keys_line, "%.200s:%d", c->keys_file,
-             key->line);
+    snprintf(c->keys_line, sizeof c->keys_line, "%.200s:%d",
+             c->settings.options.keys, key->line);
     c->settings.f_number_from = c->keys_line;
-    c->settings.f_number = key->value;
+    c->settings.options.f_number = key->value;
 }
 
 /* Checks that the lens, which is open, stops down as far as the key frames
@@ -39,14 +39,14 @@ static void ask_stop(struct compositor *c, int sign)
 static int check_narrowest(const struct tool *tool, struct compositor *c)
 {
     struct settings *const s = &c->settings;
-    const double widest = s->f_number;
+    const double widest = s->options.f_number;
     struct glint_error error = {""};
     int code = EXIT_OK;
 
     if (!keys_has(&c->keys, KEYS_F_NUMBER))
         return EXIT_OK;
     ask_stop(c, -1);
-    if (settings_stop(s, s->f_number, &error) != GLINT_OK)
+    if (settings_stop(s, s->options.f_number, &error) != GLINT_OK)
         code = settings_refuse_stop(tool, s, error.text);
     else
         settings_stop(s, widest, &error);
@@ -54,17 +54,20 @@ static int check_narrowest(const struct tool *tool, struct compositor *c)
     return code;
 }
 
-/* Turns down the dials that were not asked for; the model stays the same. */
+/* Lowers the quality of a preview unless one was chosen; the model stays the
+ * same. */
 static void turn_down(struct settings *s)
 {
-    const unsigned kept = s->dials.flags & GLINT_DIAL_ALWAYS_HALF;
+    struct glint_options *const o = &s->options;
+    const double tolerance = s->tolerance;
 
-    if (s->has_grid || s->budget_ms > 0)
+    if (settings_has_grid(s) || o->budget > 0)
         return;
-    s->dials = glint_quality_at(preview_quality).dials;
-    s->dials.flags |= kept;
-    if (!s->area_samples_asked)
-        s->area_samples_asked = 1;
+    settings_set_quality(s, preview_quality);
+    GLINT_OPTION_GIVEN(o, quality) = false;
+    s->tolerance = tolerance;
+    if (!o->area_samples)
+        o->area_samples = 1;
 }
 
 /* Refuses stops that change where none can. */
@@ -75,7 +78,7 @@ static int open_stop_keys(const struct tool *tool, struct compositor *c)
 
     if (!is_stopped && !is_round && !keys_has(&c->keys, KEYS_TURN))
         return EXIT_OK;
-    if (c->settings.rays == SETTINGS_RAYS_EXACT)
+    if (c->settings.options.rays == GLINT_RAYS_EXACT)
         return tool_usage(tool, "--keys: stops that change need a model, not "
                                 "--rays exact");
     if (is_stopped)
@@ -88,22 +91,23 @@ int compositor_desk_open_keys(const struct tool *tool, struct compositor *c)
     struct glint_error error = {""};
     enum glint_status status;
 
-    if (c->preview)
+    if (c->settings.options.preview)
         turn_down(&c->settings);
-    if (!c->keys_file)
+    if (!c->settings.options.keys)
         return EXIT_OK;
-    status = c->keys_text ? keys_parse(&c->keys, c->keys_file, c->keys_text,
-                                       strlen(c->keys_text), &error)
-                          : keys_read(&c->keys, c->keys_file, &error);
+    status = c->keys_text
+                 ? keys_parse(&c->keys, c->settings.options.keys, c->keys_text,
+                              strlen(c->keys_text), &error)
+                 : keys_read(&c->keys, c->settings.options.keys, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     if (keys_has(&c->keys, KEYS_EXPOSURE)) {
-        if (c->dial == OPT_STRENGTH)
+        if (c->dial == ENGINE_OPTION_OF(strength))
             return tool_usage(tool,
                               "--strength chooses the exposure; "
                               "--keys %s has one",
-                              c->keys_file);
-        c->settings.has_exposure = true;
+                              c->settings.options.keys);
+        GLINT_OPTION_GIVEN(&c->settings.options, exposure) = true;
     }
     return open_stop_keys(tool, c);
 }
@@ -134,12 +138,12 @@ static void move_lamp(struct compositor *c)
     row->x = keys_at(&c->keys, KEYS_X, c->n_frames, 0);
     row->y = keys_at(&c->keys, KEYS_Y, c->n_frames, 0);
     row->power =
-        exp2(keys_at(&c->keys, KEYS_EV, c->n_frames, COMPOSITOR_LIGHT_EV));
+        exp2(keys_at(&c->keys, KEYS_EV, c->n_frames, GLINT_LIGHT_AT_EV));
 }
 
 bool compositor_is_new(const struct compositor *c)
 {
-    return c->no_tracking ||
+    return c->settings.options.no_tracking ||
            (c->is_listed ? lamp_keys_is_cut(&c->list, c->n_frames)
                          : glint_lamp_tracker_was_cut(c->finder.tracks));
 }
@@ -152,13 +156,13 @@ static void turn_stop(struct compositor *c)
     struct stop_option *const stop = &s->stop;
     const int frame = c->n_frames;
     const double f_number =
-        keys_at(&c->keys, KEYS_F_NUMBER, frame, s->f_number);
+        keys_at(&c->keys, KEYS_F_NUMBER, frame, s->options.f_number);
     const double turn = keys_at(&c->keys, KEYS_TURN, frame, stop->rotation_deg);
     const double round =
         keys_at(&c->keys, KEYS_ROUND, frame, stop->iris.roundness);
     struct glint_error error;
 
-    if (f_number == s->f_number && turn == stop->rotation_deg &&
+    if (f_number == s->options.f_number && turn == stop->rotation_deg &&
         round == stop->iris.roundness)
         return;
     stop->rotation_deg = turn;
@@ -176,15 +180,16 @@ void compositor_desk_turn(struct compositor *c)
 
     c->scene.zoom_ctx = c;
     over_scene_obey(&c->scene, frame);
-    if (!c->keys_file)
+    if (!c->settings.options.keys)
         return;
-    s->exposure_ev = keys_at(&c->keys, KEYS_EXPOSURE, frame, s->exposure_ev);
-    s->gain = keys_at(&c->keys, KEYS_GAIN, frame, s->gain);
+    s->options.exposure =
+        keys_at(&c->keys, KEYS_EXPOSURE, frame, s->options.exposure);
+    s->options.gain = keys_at(&c->keys, KEYS_GAIN, frame, s->options.gain);
     c->strength.asked =
         keys_at(&c->keys, KEYS_STRENGTH, frame, c->strength.asked);
     if (keys_has(&c->keys, KEYS_STARBURST)) {
-        s->starburst_asked = true;
-        s->starburst = keys_at(&c->keys, KEYS_STARBURST, frame, 1);
+        GLINT_OPTION_GIVEN(&s->options, starburst) = true;
+        s->options.starburst = keys_at(&c->keys, KEYS_STARBURST, frame, 1);
     }
     compositor_zoom_turn(c);
     turn_stop(c);
@@ -240,9 +245,11 @@ int compositor_scene_size(struct compositor *c, int width, int height)
 {
     struct scene_dials dials = c->scene.asked;
 
-    if (c->settings.has_quality || c->preview)
-        scene_dials_be(&dials, c->settings.has_quality ? c->settings.quality
-                                                       : preview_quality);
+    if (GLINT_OPTION_GIVEN(&c->settings.options, quality) ||
+        c->settings.options.preview)
+        scene_dials_be(&dials, GLINT_OPTION_GIVEN(&c->settings.options, quality)
+                                   ? c->settings.options.quality
+                                   : preview_quality);
     dials.width = width;
     dials.height = height;
     if (c->has_lens)
@@ -250,8 +257,8 @@ int compositor_scene_size(struct compositor *c, int width, int height)
                                  &c->view, c->settings.setup.optics.focal_mm);
     if (!dials.shadow_points)
         dials.shadow_points = c->is_still ? STILL_POINTS : VIDEO_POINTS;
-    dials.tile_log2 = c->settings.tile_log2;
-    dials.dither = c->settings.dither;
+    dials.tile_log2 = 3 + c->settings.options.tile;
+    dials.dither = c->settings.options.dither;
     return over_scene_size(&c->scene, &dials);
 }
 
@@ -277,7 +284,7 @@ static void add_glints(struct compositor *c)
  * the flare took beyond its plan, quality does not turn. */
 static void share_budget(struct compositor *c)
 {
-    const double all_ms = c->settings.budget_ms;
+    const double all_ms = c->settings.options.budget;
     const double planned_ms = fmin(c->report.predicted_ms, c->flare_ms);
     const double fixed_ms = c->flare_ms - planned_ms;
 
@@ -304,14 +311,14 @@ enum glint_status compositor_scene(struct compositor *c,
         c->share[i] = 1;
     if (!c->scene.is_open)
         return GLINT_OK;
-    if (c->settings.budget_ms > 0)
+    if (c->settings.options.budget > 0)
         share_budget(c);
     status = over_scene_draw(&c->scene, image, c->n_frames);
     /* The flare has what the scene leaves. */
-    if (c->settings.budget_ms > 0 && c->has_lens)
+    if (c->settings.options.budget > 0 && c->has_lens)
         c->frame.budget.ms =
-            c->settings.budget_ms *
-            fmax(LEAST_SHARE, 1 - c->scene.ms / c->settings.budget_ms);
+            c->settings.options.budget *
+            fmax(LEAST_SHARE, 1 - c->scene.ms / c->settings.options.budget);
     if (status != GLINT_OK || !c->has_lens)
         return status;
     over_scene_hide(&c->scene, &c->view, focal_mm, c->lamp, c->share, n);
@@ -391,7 +398,8 @@ void compositor_mark(const struct compositor *compositor,
 {
     const bool found = is_found(compositor, 0);
 
-    if (compositor->preview) /* without memory there are no numbers */
+    if (compositor->settings.options
+            .preview) /* without memory there are no numbers */
         preview_number(&compositor->frame, compositor->lamp,
                        compositor->n_lamps, compositor_scale(compositor),
                        image);
@@ -416,6 +424,6 @@ void compositor_mark(const struct compositor *compositor,
 
 bool compositor_marks(const struct compositor *compositor)
 {
-    return compositor->show_lights || compositor->preview ||
+    return compositor->show_lights || compositor->settings.options.preview ||
            compositor->scene.has_time_line;
 }

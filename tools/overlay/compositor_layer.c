@@ -216,7 +216,9 @@ void compositor_veil(struct compositor *compositor, int32_t elapsed_us)
     const struct settings *s = &compositor->settings;
     const bool found = !compositor->is_listed && compositor->n_hand == 0;
     /* each frame anew: keys may turn a gain down to 0, and up again */
-    const bool is_on = s->gain > 0 && !s->starburst_only && !s->ghosts_only;
+    const bool is_on =
+        s->options.gain > 0 && (s->options.only == GLINT_ONLY_VEIL ||
+                                s->options.only == GLINT_ONLY_ALL);
     const size_t n = (size_t)compositor->n_lamps;
 
     for (int i = 0; i < compositor->n_lamps; i++)
@@ -232,7 +234,7 @@ void compositor_veil(struct compositor *compositor, int32_t elapsed_us)
         compositor->excess[i] *= compositor->share[i];
     veil->excess = compositor->excess;
     veil->alone_gain = 1;
-    veil->glare = is_on ? s->veil : 0;
-    veil->haze = is_on ? s->haze : 0;
+    veil->glare = is_on ? s->options.veil : 0;
+    veil->haze = is_on ? s->options.haze : 0;
     veil->front = is_on ? s->front.dirt : NULL;
 }

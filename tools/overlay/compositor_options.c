@@ -1,198 +1,71 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "desk/styles.h"
-#include "engine/frame/area.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 #include "overlay/compositor.h"
-
-/* Curvature of the blades, unless a shape is said: spikes of straight ones are
- * thinner and longer than those of lamps in photographs. */
-static const double photo_roundness = 0.2;
 
 void compositor_defaults(struct compositor *compositor)
 {
-    *compositor = (struct compositor){.lens = "nikon-zoom-short",
-                                      .headroom_ev = -1,
-                                      .threshold_ev = {-0.1, -0.15},
-                                      .white = 1};
-    settings_defaults(&compositor->settings);
-    compositor->settings.starburst = 1;
-    compositor->settings.stop.iris.roundness = photo_roundness;
-    compositor->settings.coating.kind = COATING_MIXED;
-    compositor->settings.waves = SETTINGS_WAVES_AUTO;
+    *compositor = (struct compositor){.white = 1};
+    settings_defaults_photo(&compositor->settings);
     glint_strength_defaults(&compositor->strength);
+    compositor->headroom_ev = -1;
 }
 
-/* Stops by which a lamp's region extends below its threshold, by default. */
-#define EXTENDS_EV 0.05
-
-static bool take_threshold(const char *text, double threshold_ev[2])
+/* Adds the lamp TEXT, which is valid, of --light. Returns false if it is one
+ * too many. */
+static bool add_light(struct compositor *compositor, const char *text)
 {
-    double v[2];
-    const int n = tool_numbers(text, v, 2);
+    struct glint_lamp *const lamp = &compositor->hand[compositor->n_hand];
 
-    if (n == 1)
-        v[1] = fmax(v[0] - EXTENDS_EV, -20);
-    if (n == 0 || !(v[0] <= 0) || !(v[1] >= -20 && v[1] <= v[0]))
+    if (compositor->n_hand == SETTINGS_MAX_LAMPS)
         return false;
-    memcpy(threshold_ev, v, sizeof v);
-    return true;
-}
-
-static bool take_light(struct compositor *compositor, const char *text)
-{
-    struct glint_lamp *lamp = &compositor->hand[compositor->n_hand];
-
-    if (compositor->n_hand == SETTINGS_MAX_LAMPS || !settings_lamp(text, lamp))
-        return false;
+    glint_option_light(text, lamp);
     compositor->settings.max_deg =
         fmax(compositor->settings.max_deg, lamp->theta_deg);
     compositor->n_hand++;
     return true;
 }
 
-/* Adds the lamp TEXT, "X,Y[,EV]". Returns false if it is malformed, out of
- * range, or one too many. */
-static bool take_light_at(struct compositor *compositor, const char *text)
+/* The same of --light-at. */
+static bool add_light_at(struct compositor *compositor, const char *text)
 {
-    double v[3] = {0, 0, COMPOSITOR_LIGHT_EV};
-    const int n = tool_numbers(text, v, 3);
-    const struct lamp_row row = {.frame = -1,
-                                 .x = v[0],
-                                 .y = v[1],
-                                 .power = exp2(v[2]),
-                                 .rgb = {1, 1, 1},
-                                 .shape = 1,
-                                 .level = 1,
-                                 .next = -1};
+    struct lamp_row row = {
+        .frame = -1, .rgb = {1, 1, 1}, .shape = 1, .level = 1, .next = -1};
+    double v[3];
 
-    return n >= 2 && fabs(v[0]) <= 1e6 && fabs(v[1]) <= 1e6 && v[2] >= -40 &&
-           v[2] <= 90 && compositor->at.n < SETTINGS_MAX_LAMPS &&
+    glint_option_light_at(text, v);
+    row.x = v[0];
+    row.y = v[1];
+    row.power = exp2(v[2]);
+    return compositor->at.n < SETTINGS_MAX_LAMPS &&
            lamp_list_add(&compositor->at, &row) == GLINT_OK;
 }
 
-/* Notes the file VALUE of OPTION; returns false if that names no file. */
-static bool take_file(struct compositor *compositor, int option,
-                      const char *value)
+static bool is_text(const char *text, const char *word)
 {
-    switch (option) {
-    case OPT_SAVE_LIGHTS:
-        compositor->save_file = value;
-        return true;
-    case OPT_MASK:
-        compositor->occlusion.file = value;
-        return true;
-    case OPT_KEYS:
-        compositor->keys_file = value;
-        return true;
-    case OPT_SCENE:
-        compositor->scene.file = value;
-        return true;
-    case OPT_POSE:
-        compositor->scene.pose_file = value;
-        return true;
-    case OPT_CONTROL:
-        compositor->scene.control_file = value;
-        return true;
-    default:
-        return false;
-    }
+    return text && strcmp(text, word) == 0;
 }
 
-bool compositor_is_dial(int option)
+/* Sets what follows from the options. */
+static void resolve(struct compositor *c)
 {
-    return option >= OPT_EDGE_SAMPLES && option <= OPT_HIGHLIGHTS;
-}
+    struct glint_options *const o = &c->settings.options;
 
-static bool take(struct compositor *compositor, int option, const char *value)
-{
-    static const char *const layers[] = {"composite", "flare", "flare-alpha",
-                                         NULL};
-    static const char *const shows[] = {"lights", "timeline", NULL};
-    int layer;
-
-    if (take_file(compositor, option, value))
-        return *value != '\0';
-    if (compositor_is_dial(option))
-        return scene_dials_choose(
-            &compositor->scene.asked,
-            (enum scene_choice)(option - OPT_EDGE_SAMPLES), value);
-    switch (option) {
-    case OPT_LENS:
-        compositor->lens = value;
-        return true;
-    case OPT_LIGHTS:
-        compositor->lights_file = strcmp(value, "auto") == 0 ? NULL : value;
-        return true;
-    case OPT_LIGHT:
-        return take_light(compositor, value);
-    case OPT_THRESHOLD:
-        return take_threshold(value, compositor->threshold_ev);
-    case OPT_HEADROOM:
-        return tool_number(value, &compositor->headroom_ev) &&
-               compositor->headroom_ev >= 0 && compositor->headroom_ev <= 40;
-    case OPT_NO_TRACKING:
-        return compositor->no_tracking = true;
-    case OPT_STILL:
-        return tool_number(value, &compositor->settings.dials.still_px) &&
-               compositor->settings.dials.still_px >= 0 &&
-               compositor->settings.dials.still_px <= 16;
-    case OPT_LIGHT_AT:
-        return take_light_at(compositor, value);
-    case OPT_EDGE_FADE:
-        return tool_number(value, &compositor->occlusion.fade_px) &&
-               compositor->occlusion.fade_px > 0 &&
-               compositor->occlusion.fade_px <= 1e6;
-    case OPT_PREVIEW:
-        return compositor->preview = true;
-    case OPT_INTERPOLATE:
-        return compositor->interpolate = true;
-    case OPT_SHOW:
-        layer = tool_word(value, shows);
-        compositor->show_lights |= layer == 0;
-        compositor->scene.has_time_line |= layer == 1;
-        return layer >= 0;
-    case OPT_STRENGTH:
-        compositor->settings.has_exposure = false;
-        return tool_number(value, &compositor->strength.asked) &&
-               compositor->strength.asked >= 0 &&
-               compositor->strength.asked <= 100;
-    default:
-        layer = tool_word(value, layers);
-        compositor->flare_only = layer >= 1;
-        compositor->flare_alpha = layer == 2;
-        return layer >= 0;
-    }
-}
-
-/* Notes OPTION if it is --strength or --exposure. Returns false if the other of
- * the two was given before. */
-static bool take_dial(struct compositor *compositor, int option)
-{
-    if (option != OPT_STRENGTH && option != OPT_EXPOSURE)
-        return true;
-    if (compositor->dial && compositor->dial != option)
-        return false;
-    compositor->dial = option;
-    return true;
-}
-
-void compositor_options_end(struct compositor *compositor)
-{
-    compositor->dial = 0;
-}
-
-static int option_of(const char *name)
-{
-    static const struct option all[] = {COMPOSITOR_OPTIONS, {NULL, 0, NULL, 0}};
-    const struct option *o = all;
-
-    while (o->name && strcmp(o->name, name) != 0)
-        o++;
-    return o->val;
+    if (is_text(o->lights, "auto"))
+        o->lights = NULL;
+    if (o->memory)
+        c->reserve_bytes = (size_t)o->memory << 20;
+    c->headroom_ev = GLINT_OPTION_GIVEN(o, headroom) ? o->headroom : -1;
+    c->strength.asked = o->strength;
+    c->occlusion.file = o->mask;
+    c->occlusion.fade_px = o->edge_fade;
+    c->scene.file = o->scene;
+    c->scene.pose_file = o->pose;
+    c->scene.control_file = o->control;
+    scene_dials_choose(&c->scene.asked, o);
 }
 
 int compositor_style(const struct tool *tool, struct compositor *compositor,
@@ -203,10 +76,14 @@ int compositor_style(const struct tool *tool, struct compositor *compositor,
 
     if (!style)
         return tool_refuse(tool, "style", name);
-    for (int i = 0; style->set[i].option && code == -1; i++)
-        code =
-            compositor_option(tool, compositor, option_of(style->set[i].option),
-                              style->set[i].value);
+    for (int i = 0; style->set[i].option && code == -1; i++) {
+        const struct glint_option *const row =
+            glint_option_named(style->set[i].option);
+
+        code = compositor_option(tool, compositor,
+                                 ENGINE_OPTION + (int)(row - glint_option(0)),
+                                 style->set[i].value);
+    }
     compositor_options_end(compositor);
     /* A model has its own, and is no mistake with a style. */
     compositor->settings.coating.given = false;
@@ -219,27 +96,54 @@ int compositor_style_of(const struct tool *tool, struct compositor *compositor,
                         const struct option *options)
 {
     const char *const name =
-        tool_value_of(argc, argv, shorts, options, OPT_STYLE);
+        tool_value_of(argc, argv, shorts, options, ENGINE_OPTION_OF(style));
 
     return name ? compositor_style(tool, compositor, name) : -1;
+}
+
+/* Notes OPTION if it is --strength or --exposure. Returns false if the other of
+ * the two was given before in the same place. */
+static bool note_brightness(struct compositor *compositor, int option)
+{
+    if (option != ENGINE_OPTION_OF(strength) &&
+        option != ENGINE_OPTION_OF(exposure))
+        return true;
+    if (compositor->dial && compositor->dial != option)
+        return false;
+    compositor->dial = option;
+    return true;
+}
+
+void compositor_options_end(struct compositor *compositor)
+{
+    compositor->dial = 0;
 }
 
 int compositor_option(const struct tool *tool, struct compositor *compositor,
                       int option, const char *value)
 {
-    static const struct option names[] = {COMPOSITOR_OPTIONS};
-    const int code =
-        take_dial(compositor, option)
-            ? settings_option(tool, &compositor->settings, option, value)
-            : tool_usage(tool, "--strength chooses the exposure; "
-                               "give one of it and --exposure");
+    bool is_room = true;
+    int code;
 
-    if (option == OPT_STYLE)
-        /* The command line's style was taken before its other options. */
+    if (!note_brightness(compositor, option))
+        return tool_usage(tool, "--strength chooses the exposure; "
+                                "give one of it and --exposure");
+    if (option == ENGINE_OPTION_OF(style))
+        /* The command line's style was set before its other options. */
         return tool->where ? compositor_style(tool, compositor, value) : -1;
-    if (code != -2 || option < OPT_LENS || option >= OPT_COMPOSITOR_LAST)
+    code = settings_option(tool, &compositor->settings, option, value);
+    if (code != -1)
         return code;
-    if (take(compositor, option, value))
-        return -1;
-    return tool_refuse(tool, names[option - OPT_LENS].name, value);
+    resolve(compositor);
+    if (option == ENGINE_OPTION_OF(show)) {
+        compositor->show_lights |= is_text(value, "lights");
+        compositor->scene.has_time_line |= is_text(value, "timeline");
+    }
+    if (option == ENGINE_OPTION_OF(light))
+        is_room = add_light(compositor, value);
+    if (option == ENGINE_OPTION_OF(light_at))
+        is_room = add_light_at(compositor, value);
+    return is_room
+               ? -1
+               : tool_usage(tool, "more than %d lights", SETTINGS_MAX_LAMPS);
 }

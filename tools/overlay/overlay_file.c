@@ -52,13 +52,17 @@ static enum glint_status choose_way(struct overlay_file *f,
     const bool to_float =
         takes_float(f->to) && !glint_kept_is_same_type(&f->kept, f->to);
     const bool has_own_layer =
-        compositor->flare_alpha || (compositor->flare_only && to_float);
+        compositor->settings.options.layer == GLINT_LAYER_FLARE_ALPHA ||
+        (compositor->settings.options.layer != GLINT_LAYER_COMPOSITE &&
+         to_float);
 
     f->is_direct = !to_float && !has_own_layer &&
                    glint_samples_image(&f->kept.samples, &f->image);
     if (f->is_direct)
         return GLINT_OK;
-    if (to_float && !compositor->flare_only && deepen(f) != GLINT_OK)
+    if (to_float &&
+        compositor->settings.options.layer == GLINT_LAYER_COMPOSITE &&
+        deepen(f) != GLINT_OK)
         return GLINT_E_MEMORY;
     return glint_samples_proxy(&f->kept.samples, &f->image, &f->white);
 }
@@ -300,7 +304,8 @@ static void say_grey(const struct overlay_file *file,
     const struct tool *const tool = compositor->scene.tool;
 
     if (file->kept.samples.n_colours == 1 && compositor->scene.is_open &&
-        !compositor->flare_only && !tool->quiet)
+        compositor->settings.options.layer == GLINT_LAYER_COMPOSITE &&
+        !tool->quiet)
         fprintf(stderr,
                 "glint %s: %s has one channel, so that things and flare are "
                 "grey; with three they have colours\n",
@@ -318,7 +323,7 @@ enum glint_status overlay_file_draw(struct overlay_file *file,
     compositor->is_measured = file->kept.is_float;
     say_grey(file, compositor);
     /* A thing has colours, where the file has room for them. */
-    is_grey = !compositor->flare_only &&
+    is_grey = compositor->settings.options.layer == GLINT_LAYER_COMPOSITE &&
               !(compositor->scene.is_open && drawn_on(file)->n_colours == 3) &&
               is_monochrome(&file->image);
     if (file->is_direct)
@@ -330,7 +335,8 @@ enum glint_status overlay_file_draw(struct overlay_file *file,
     if (file->kept.is_float)
         compositor_measure(compositor, &file->kept.samples, file->white);
     compositor->white = file->white;
-    if (compositor->scene.is_open && !compositor->flare_only)
+    if (compositor->scene.is_open &&
+        compositor->settings.options.layer == GLINT_LAYER_COMPOSITE)
         status = draw_scene(file, compositor, is_grey);
     if (status != GLINT_OK || !compositor->has_lens) {
         compositor->n_frames++;
@@ -344,18 +350,22 @@ enum glint_status overlay_file_draw(struct overlay_file *file,
     file->layer = calloc(n, sizeof *file->layer);
     if (!file->layer)
         return GLINT_E_MEMORY;
-    status = adds_nothing(compositor)
-                 ? GLINT_OK
-                 : compositor_draw_layer(compositor,
-                                         is_deep(drawn_on(file)) ||
-                                             compositor->flare_only,
-                                         file->layer);
+    status =
+        adds_nothing(compositor)
+            ? GLINT_OK
+            : compositor_draw_layer(compositor,
+                                    is_deep(drawn_on(file)) ||
+                                        compositor->settings.options.layer !=
+                                            GLINT_LAYER_COMPOSITE,
+                                    file->layer);
     if (status == GLINT_OK && is_grey)
         take_colour(file->layer, n / 3);
-    if (status == GLINT_OK && !compositor->flare_only &&
+    if (status == GLINT_OK &&
+        compositor->settings.options.layer == GLINT_LAYER_COMPOSITE &&
         !adds_nothing(compositor))
         glint_samples_add(drawn_on(file), file->layer);
-    if (status == GLINT_OK && !compositor->flare_only &&
+    if (status == GLINT_OK &&
+        compositor->settings.options.layer == GLINT_LAYER_COMPOSITE &&
         compositor_marks(compositor))
         status = mark(file, compositor);
     compositor->n_frames++;
@@ -375,12 +385,15 @@ static enum glint_status make_layer(const struct overlay_file *f,
     enum glint_status status;
     float *to;
 
-    if (compositor->flare_alpha || takes_float(f->to))
+    if (compositor->settings.options.layer == GLINT_LAYER_FLARE_ALPHA ||
+        takes_float(f->to))
         like.colour[0].sample = GLINT_SAMPLE_FLOAT;
-    status = glint_kept_blank(alone, &like, compositor->flare_alpha);
+    status = glint_kept_blank(alone, &like,
+                              compositor->settings.options.layer ==
+                                  GLINT_LAYER_FLARE_ALPHA);
     if (status != GLINT_OK)
         return status;
-    if (!compositor->flare_alpha) {
+    if (compositor->settings.options.layer != GLINT_LAYER_FLARE_ALPHA) {
         glint_samples_add(alone, f->layer);
         return GLINT_OK;
     }
@@ -404,11 +417,14 @@ static enum glint_status write(struct overlay_file *f,
                                struct glint_kept_options *options,
                                struct glint_error *error)
 {
-    const bool own_layer = compositor->flare_only && !f->is_direct;
+    const bool own_layer =
+        compositor->settings.options.layer != GLINT_LAYER_COMPOSITE &&
+        !f->is_direct;
     struct glint_samples alone;
     enum glint_status status;
 
-    if (adds_nothing(compositor) && !compositor->flare_only &&
+    if (adds_nothing(compositor) &&
+        compositor->settings.options.layer == GLINT_LAYER_COMPOSITE &&
         !compositor_marks(compositor) && !options->quality &&
         glint_kept_is_same_type(&f->kept, f->to))
         return glint_kept_copy(&f->kept, f->to, error);

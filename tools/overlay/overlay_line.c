@@ -19,8 +19,8 @@ static const double well_seen = 0.25;
 /* Returns whether the starburst or the veil is drawn by itself. */
 static bool is_part(const struct compositor *compositor)
 {
-    return compositor->settings.starburst_only ||
-           compositor->settings.veil_only;
+    return compositor->settings.options.only == GLINT_ONLY_STARBURST ||
+           compositor->settings.options.only == GLINT_ONLY_VEIL;
 }
 
 /* Sets LIGHT to that of the layer that was drawn last; returns false without
@@ -136,12 +136,12 @@ static void say_lights(const struct compositor *compositor, int most, FILE *to)
 
 static void say_dial(const struct compositor *compositor, FILE *to)
 {
-    if (compositor->settings.has_exposure)
-        fprintf(to, "exposure %+g EV", compositor->settings.exposure_ev);
+    if (GLINT_OPTION_GIVEN(&compositor->settings.options, exposure))
+        fprintf(to, "exposure %+g EV", compositor->settings.options.exposure);
     else
         fprintf(to, "strength %g", compositor->strength.asked);
-    if (compositor->settings.gain != 1)
-        fprintf(to, ", gain %g", compositor->settings.gain);
+    if (compositor->settings.options.gain != 1)
+        fprintf(to, ", gain %g", compositor->settings.options.gain);
 }
 
 /* Prints which option would show a flare that is as faint as LIGHT. */
@@ -150,12 +150,14 @@ static void say_faint(const struct overlay *o,
 {
     const struct compositor *compositor = &o->compositor;
     const bool is_held =
-        compositor->settings.gain <= 0 ||
-        (!compositor->settings.has_exposure && compositor->strength.asked <= 0);
+        compositor->settings.options.gain <= 0 ||
+        (!GLINT_OPTION_GIVEN(&compositor->settings.options, exposure) &&
+         compositor->strength.asked <= 0);
 
     if (is_held)
         fprintf(to, "%s: %s draws nothing, as it says\n", o->output,
-                compositor->settings.gain <= 0 ? "--gain 0" : "--strength 0");
+                compositor->settings.options.gain <= 0 ? "--gain 0"
+                                                       : "--strength 0");
     else if (light->peak <= 0 && compositor->settings.stop.mask_file)
         fprintf(to,
                 "%s: no light gets through this lens and its --stop-mask into "
@@ -166,12 +168,12 @@ static void say_faint(const struct overlay *o,
                 "%s: no light gets through this lens into the picture; "
                 "another one (--lens) may show a flare\n",
                 o->output);
-    else if (compositor->settings.has_exposure)
+    else if (GLINT_OPTION_GIVEN(&compositor->settings.options, exposure))
         fprintf(to,
                 "%s: that is %.1f stops below what can be seen; --strength "
                 "instead of --exposure, or --exposure %+.0f, shows it\n",
                 o->output, log2(least_seen / light->peak),
-                compositor->settings.exposure_ev +
+                compositor->settings.options.exposure +
                     ceil(log2(well_seen / light->peak)));
     else
         fprintf(to,
@@ -279,9 +281,11 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
     say_dial(compositor, to);
     if (light->is_known)
         fprintf(to, ": %s at %.*g %% of white, %.2g %% on average",
-                compositor->settings.starburst_only ? "the starburst peaks"
-                : compositor->settings.veil_only    ? "the veil peaks"
-                                                    : "the ghosts peak",
+                compositor->settings.options.only == GLINT_ONLY_STARBURST
+                    ? "the starburst peaks"
+                : compositor->settings.options.only == GLINT_ONLY_VEIL
+                    ? "the veil peaks"
+                    : "the ghosts peak",
                 light->peak < 1 ? 2 : 3, 100 * light->peak, 100 * light->mean);
     fprintf(to, "; %.0f ms\n", 1e3 * seconds);
     if (light->is_known && light->peak < least_seen)
@@ -304,7 +308,7 @@ void overlay_json(const struct overlay *o, const struct overlay_light *light,
     }
     fprintf(to, "\"lens\": \"%s\", \"f_number\": %g, ",
             compositor->settings.lens.name, f_number_of(&compositor->settings));
-    if (compositor->settings.has_exposure)
+    if (GLINT_OPTION_GIVEN(&compositor->settings.options, exposure))
         fprintf(to, "\"strength\": null, ");
     else
         fprintf(to, "\"strength\": %g, ", compositor->strength.asked);

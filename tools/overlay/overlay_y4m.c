@@ -62,7 +62,7 @@ static enum glint_status draw(void *ctx, struct compositor *compositor,
     status = glint_frame_veil_look(&compositor->frame, image, 1);
     if (status != GLINT_OK)
         return status;
-    if (compositor->flare_only)
+    if (compositor->settings.options.layer != GLINT_LAYER_COMPOSITE)
         glint_y4m_light_blacken(&y->light, y->planes);
     if (compositor->n_lamps == 0 && !glint_frame_has_veil(&compositor->frame))
         return GLINT_OK;

@@ -4,7 +4,7 @@
  * takes it.
  */
 #include "model/bake_line.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 #include "scenes/environment_file.h"
 
 static const char help[] =

@@ -10,43 +10,20 @@
 /* ------------------------------------------------------------------- dials
  */
 
-static bool choose_points(const char *text, bool has_eight, int *points)
+void scene_dials_choose(struct scene_dials *dials,
+                        const struct glint_options *o)
 {
-    return tool_integer(text, 1, 16, points) &&
-           (*points == 1 || *points == 4 || *points == 16 ||
-            (*points == 8 && has_eight));
-}
+    static const int edges[] = {1, 4, 8, 16}, points[] = {1, 4, 16};
 
-static bool choose_shading(const char *text, bool *half)
-{
-    static const char *const words[] = {"full", "half", NULL};
-    const int word = tool_word(text, words);
-
-    *half = word == 1;
-    return word >= 0;
-}
-
-bool scene_dials_choose(struct scene_dials *dials, enum scene_choice choice,
-                        const char *text)
-{
-    switch (choice) {
-    case SCENE_CHOOSES_EDGES:
-        return choose_points(text, true, &dials->edge_samples);
-    case SCENE_CHOOSES_POINTS:
-        return choose_points(text, false, &dials->shadow_points);
-    case SCENE_CHOOSES_SHADING:
-        return choose_shading(text, &dials->half_shading);
-    case SCENE_CHOOSES_SAMPLES:
-        return tool_integer(text, 1, 32, &dials->ward_samples);
-    case SCENE_CHOOSES_NEAREST:
-        return dials->ward_nearest = true;
-    case SCENE_CHOOSES_FRAMES:
-        return tool_integer(text, 1, 4, &dials->stone_frames) &&
-               dials->stone_frames != 3;
-    default:
-        dials->has_highlights = true;
-        return tool_integer(text, 0, 8, &dials->highlights);
-    }
+    if (GLINT_OPTION_GIVEN(o, edge_samples))
+        dials->edge_samples = edges[o->edge_samples];
+    if (GLINT_OPTION_GIVEN(o, shadow_points))
+        dials->shadow_points = points[o->shadow_points];
+    dials->half_shading = o->shading == 1;
+    if (GLINT_OPTION_GIVEN(o, ward_samples))
+        dials->ward_samples = o->ward_samples;
+    dials->has_highlights = GLINT_OPTION_GIVEN(o, highlights);
+    dials->highlights = o->highlights;
 }
 
 static void turn(struct glint_scene_config *cfg,

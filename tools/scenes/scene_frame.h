@@ -9,6 +9,7 @@
 #ifndef GLINT_TOOLS_SCENES_SCENE_FRAME_H
 #define GLINT_TOOLS_SCENES_SCENE_FRAME_H
 
+#include "glint/options.h"
 #include "glint/scene/scene.h"
 #include "options/tool.h"
 
@@ -28,21 +29,9 @@ struct scene_dials {
     bool dither;
 };
 
-/* Those that options choose. */
-enum scene_choice {
-    SCENE_CHOOSES_EDGES,
-    SCENE_CHOOSES_POINTS,
-    SCENE_CHOOSES_SHADING,
-    SCENE_CHOOSES_SAMPLES,
-    SCENE_CHOOSES_NEAREST, /* without a value */
-    SCENE_CHOOSES_FRAMES,
-    SCENE_CHOOSES_HIGHLIGHTS
-};
-
-/* Sets the dial CHOICE to what TEXT says; returns false if that is none of its
- * values. */
-bool scene_dials_choose(struct scene_dials *dials, enum scene_choice choice,
-                        const char *text);
+/* Sets the dials that options choose. */
+void scene_dials_choose(struct scene_dials *dials,
+                        const struct glint_options *options);
 
 /* Puts the things of a scene where they are. */
 typedef void scene_frame_pose_fn(void *ctx, struct glint_scene *scene);

@@ -5,7 +5,7 @@
  */
 #include "lab/scenes/stone_models.h"
 #include "model/bake_line.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 #include "stones/stone_file.h"
 
 static const char help[] =

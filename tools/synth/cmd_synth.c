@@ -8,7 +8,7 @@
 
 #include "formats/picture.h"
 #include "model/lens_files.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 #include "synth/set.h"
 
 static const char help[] =
@@ -160,11 +160,12 @@ static bool take_size(struct synth_item *item, const char *text)
 
 static bool take_quality(struct synth_item *item, const char *text)
 {
-    struct settings probe;
+    struct glint_options probe;
+    struct glint_error error;
 
-    settings_defaults(&probe);
-    if (!settings_take_quality(&probe, text) ||
-        probe.rays == SETTINGS_RAYS_EXACT)
+    glint_options_defaults(&probe);
+    if (glint_options_set_text(&probe, "quality", text, &error) != GLINT_OK ||
+        probe.rays == GLINT_RAYS_EXACT)
         return false;
     item->quality = probe.quality;
     return true;

@@ -39,6 +39,7 @@ static int open_lens(const struct tool *tool, struct synth_lens *lens,
 {
     struct settings *const s = &lens->settings;
     const struct glint_optics *const optics = &s->setup.optics;
+    const char *end;
     char quality[40];
     int code;
 
@@ -46,9 +47,9 @@ static int open_lens(const struct tool *tool, struct synth_lens *lens,
     snprintf(lens->coating, sizeof lens->coating, "%s", item->coating);
     lens->quality = item->quality;
     settings_defaults(s);
-    s->waves = SETTINGS_WAVES_AUTO;
     snprintf(quality, sizeof quality, "%.6f", item->quality);
-    settings_take_quality(s, quality);
+    settings_set_quality(s, glint_option_number(quality, &end));
+    s->waves = GLINT_WAVES_AUTO;
     code = coating_take(tool, &s->coating, item->coating);
     if (code < 0)
         code = settings_open(tool, s, item->lens);
@@ -211,15 +212,15 @@ static int draw_part(const struct tool *tool, struct settings *s,
                      const struct synth_item *item,
                      const struct glint_lamp *lamp, enum part part, float *rgb)
 {
+    static const int only[] = {GLINT_ONLY_GHOSTS, GLINT_ONLY_STARBURST,
+                               GLINT_ONLY_VEIL};
     struct glint_frame_report report;
     struct glint_frame frame;
     enum glint_status status;
     int code;
 
-    s->ghosts_only = part == GHOSTS;
-    s->starburst_only = part == STAR;
-    s->veil_only = part == HAZE;
-    s->haze = item->haze;
+    s->options.only = only[part];
+    s->options.haze = item->haze;
     code = settings_frame(
         tool, s, settings_view(s, (int)item->width, (int)item->height), &frame);
     if (code != EXIT_OK)

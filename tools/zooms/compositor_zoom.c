@@ -49,7 +49,7 @@ static int check_control(const struct tool *tool, struct compositor *c)
         return tool_usage(tool,
                           "%s is of one position: --control zooms what 'glint "
                           "bake LENS --positions N' made, or steers --scene",
-                          c->lens);
+                          c->settings.options.lens);
     for (int i = 0; (line = controls_row(&c->scene.control, i)); i++) {
         char where[CONTROL_WHERE];
 
@@ -70,8 +70,9 @@ static int refuse_key(const struct tool *tool, const struct compositor *c,
                       int line, const char *cause)
 {
     return c->keys_text
-               ? tool_usage(tool, "%.200s: %s", c->keys_file, cause)
-               : tool_usage(tool, "%.200s:%d: %s", c->keys_file, line, cause);
+               ? tool_usage(tool, "%.200s: %s", c->settings.options.keys, cause)
+               : tool_usage(tool, "%.200s:%d: %s", c->settings.options.keys,
+                            line, cause);
 }
 
 /* Checks the same of the key frames, and leaves it at the first of them. */
@@ -93,7 +94,8 @@ static int check_keys(const struct tool *tool, struct compositor *c)
 
 int compositor_zoom_begin(const struct tool *tool, struct compositor *c)
 {
-    const bool is_table = c->has_lens && !tool_is_model(c->lens);
+    const bool is_table =
+        c->has_lens && !tool_is_model(c->settings.options.lens);
     int code;
 
     if (!keys_has(&c->keys, KEYS_ZOOM)) {
@@ -105,10 +107,10 @@ int compositor_zoom_begin(const struct tool *tool, struct compositor *c)
         return tool_usage(tool,
                           "%.200s zooms the lens: --control has no "
                           "--scene to steer besides",
-                          c->keys_file);
+                          c->settings.options.keys);
     if (!is_table)
         return EXIT_OK;
-    code = tool_lens(tool, c->lens, &c->settings.lens);
+    code = tool_lens(tool, c->settings.options.lens, &c->settings.lens);
     return code == EXIT_OK ? check_keys(tool, c) : code;
 }
 

@@ -84,7 +84,7 @@ int zoom_clip_open(struct tool *tool, struct zoom_clip *clip, const char *input,
                           "--zoom %g-%g: both are mm, or both 0 to 1 along the "
                           "way",
                           clip->from, clip->to);
-    if (compositor->keys_file)
+    if (compositor->settings.options.keys)
         return tool_usage(tool, "--zoom A-B does not go with --keys: give the "
                                 "key frames a column zoom");
     if (!input || strcmp(input, "-") == 0)
@@ -101,7 +101,7 @@ int zoom_clip_open(struct tool *tool, struct zoom_clip *clip, const char *input,
     clip->keys = make_keys(clip, n);
     if (!clip->keys)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    compositor->keys_file = clip->label;
+    compositor->settings.options.keys = clip->label;
     compositor->keys_text = clip->keys;
     return EXIT_OK;
 }

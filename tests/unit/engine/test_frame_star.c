@@ -32,7 +32,7 @@ static int open_frame(void **state)
 {
     (void)state;
     settings_defaults(&settings);
-    settings.starburst = 1;
+    settings.options.starburst = 1;
     assert_int_equal(
         settings_open(&tool, &settings, "lenses/heliar-tronnier.lens"),
         EXIT_OK);

@@ -167,8 +167,8 @@ static void test_one_set(void **state)
 
     (void)state;
     settings.setup.n_sets = 1;
+    assert_true(settings_set(&list, "wavelengths", "4"));
     settings.dials.cull_codes = list.dials.cull_codes = 0;
-    assert_true(settings_take_waves(&list, "4"));
     settings_choose_waves(&list);
     assert_int_equal(list.n_wavelengths, 4);
     list.setup.n_wavelengths = 4;
@@ -332,28 +332,28 @@ static void test_words(void **state)
 
     (void)state;
     settings_defaults(&s);
-    assert_true(s.waves == SETTINGS_WAVES_LIST && s.n_wavelengths == 3);
-    assert_true(settings_take_waves(&s, "auto") &&
-                s.waves == SETTINGS_WAVES_AUTO);
-    assert_true(settings_take_waves(&s, "9") &&
-                s.waves == SETTINGS_WAVES_COUNT && s.n_wavelengths == 9);
+    assert_true(s.waves == GLINT_WAVES_LIST && s.n_wavelengths == 3);
+    assert_true(settings_set(&s, "wavelengths", "auto") &&
+                s.waves == GLINT_WAVES_AUTO);
+    assert_true(settings_set(&s, "wavelengths", "9") &&
+                s.waves == GLINT_WAVES_COUNT && s.n_wavelengths == 9);
     settings_choose_waves(&s);
     assert_true(s.wavelength_nm[0] > 400 && s.wavelength_nm[8] < 700);
-    assert_true(settings_take_waves(&s, "532") &&
-                s.waves == SETTINGS_WAVES_LIST && s.n_wavelengths == 1 &&
+    assert_true(settings_set(&s, "wavelengths", "532") &&
+                s.waves == GLINT_WAVES_LIST && s.n_wavelengths == 1 &&
                 s.wavelength_nm[0] == 532);
-    assert_true(settings_take_waves(&s, "300,1100") && s.n_wavelengths == 2);
-    assert_false(settings_take_waves(&s, "0"));
-    assert_false(settings_take_waves(&s, "33"));
-    assert_false(settings_take_waves(&s, "2.5"));
-    assert_false(settings_take_waves(&s, "0.55"));
-    assert_false(settings_take_waves(&s, "650,532,1101"));
-    assert_false(settings_take_waves(&s, "9,17"));
-    assert_false(settings_take_waves(&s, ""));
-    s.waves = SETTINGS_WAVES_AUTO;
-    s.rays = SETTINGS_RAYS_EXACT; /* Exact rays get nine. */
+    assert_true(settings_set(&s, "wavelengths", "300,1100") &&
+                s.n_wavelengths == 2);
+    assert_false(settings_set(&s, "wavelengths", "0"));
+    assert_false(settings_set(&s, "wavelengths", "33"));
+    assert_false(settings_set(&s, "wavelengths", "2.5"));
+    assert_false(settings_set(&s, "wavelengths", "0.55"));
+    assert_false(settings_set(&s, "wavelengths", "650,532,1101"));
+    assert_false(settings_set(&s, "wavelengths", "9,17"));
+    s.waves = GLINT_WAVES_AUTO;
+    s.options.rays = GLINT_RAYS_EXACT; /* Exact rays get nine. */
     settings_choose_waves(&s);
-    assert_true(s.waves == SETTINGS_WAVES_COUNT && s.n_wavelengths == 9);
+    assert_true(s.waves == GLINT_WAVES_COUNT && s.n_wavelengths == 9);
 }
 
 /* All ghosts of a white lamp must be white together behind an uncoated lens. */
@@ -367,7 +367,7 @@ static void test_white(void **state)
 
     (void)state;
     settings_defaults(&bare);
-    bare.waves = SETTINGS_WAVES_AUTO;
+    bare.waves = GLINT_WAVES_AUTO;
     assert_int_equal(coating_take(&tool, &bare.coating, "none"), -1);
     assert_int_equal(settings_open(&tool, &bare, "lenses/heliar-tronnier.lens"),
                      EXIT_OK);
@@ -389,7 +389,7 @@ static void test_white(void **state)
 static int open_settings(struct settings *settings, const char *waves)
 {
     settings_defaults(settings);
-    return settings_take_waves(settings, waves)
+    return settings_set(settings, "wavelengths", waves)
                ? settings_open(&tool, settings, "lenses/heliar-tronnier.lens")
                : 1;
 }

@@ -16,6 +16,7 @@
 
 #include "options/config.h"
 #include "support/scratch.h"
+#include "options/command_line.h"
 
 static const struct option options[] = {
     {"lens", required_argument, NULL, 'L'},

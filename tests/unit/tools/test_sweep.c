@@ -164,7 +164,7 @@ static void test_ladder(void **state)
     assert_true(settings.quantum == plain.quantum &&
                 settings.dials.cull_codes == plain.dials.cull_codes &&
                 settings.tolerance == plain.tolerance &&
-                settings.rays == plain.rays);
+                settings.options.rays == plain.rays);
     settings_defaults(&last);
     settings_set_quality(&last, 0);
     for (int i = 1; i <= 100; i++) {
@@ -180,13 +180,13 @@ static void test_ladder(void **state)
         assert_true(is_half(&settings) <= is_half(&last));
         last = settings;
     }
-    assert_true(settings_take_quality(&settings, "0.25") &&
-                settings_take_quality(&last, "draft"));
+    assert_true(settings_set(&settings, "quality", "0.25") &&
+                settings_set(&last, "quality", "draft"));
     assert_int_equal(settings.dials.fineness, last.dials.fineness);
-    assert_true(settings_take_quality(&settings, "exact"));
-    assert_int_equal(settings.rays, SETTINGS_RAYS_EXACT);
-    assert_false(settings_take_quality(&settings, "1.01"));
-    assert_false(settings_take_quality(&settings, "best"));
+    assert_true(settings_set(&settings, "quality", "exact"));
+    assert_int_equal(settings.options.rays, GLINT_RAYS_EXACT);
+    assert_false(settings_set(&settings, "quality", "1.01"));
+    assert_false(settings_set(&settings, "quality", "best"));
 }
 
 int main(void)

@@ -11,7 +11,8 @@
 #include "lab/scenes/scene_trial.h"
 #include "linux/instructions.h"
 #include "linux/sets.h"
-#include "options/takes.h"
+#include "options/engine_options.h"
+#include "options/command_line.h"
 #include "posix/workers.h"
 #include "scenes/baked_scene.h"
 
@@ -32,14 +33,7 @@ static const char help[] =
     "  --size WxH          default 1920x1080\n"
     "  --repeat N          rounds, 1 to 100 (default 15)\n"
     "  --format F          yuyv (default) | i420 | nv12 | rgb24 | xrgb8888 |\n"
-    "                      rgb565\n"
-    "  --edge-samples N    points of a pixel at outlines: 1, 4 (default), 8 "
-    "or\n"
-    "                      16\n"
-    "  --shadow-points N   1, 4 (default) or 16 of a light's disc\n"
-    "  --shading S         full (default) or half: two by two pixels at once\n"
-    "  --ward-samples N    1 to 32 lookups on brushed metal (default 8)\n"
-    "  --ward-nearest      each in one level, not two blended\n";
+    "                      rgb565\n";
 
 enum { MAX_TRIALS = 16, MAX_CANVASES = 4 };
 
@@ -332,19 +326,13 @@ static bool take_format(struct scene_bench *b, const char *text)
     return true;
 }
 
-static const struct option options[] = {
-    {"scene", required_argument, NULL, 'x'},
-    {"all", no_argument, NULL, 'a'},
-    {"sizes", no_argument, NULL, 'm'},
-    {"size", required_argument, NULL, 's'},
-    {"repeat", required_argument, NULL, 'r'},
-    {"format", required_argument, NULL, 'F'},
-    {"edge-samples", required_argument, NULL, 'e'},
-    {"shadow-points", required_argument, NULL, 'p'},
-    {"shading", required_argument, NULL, 'H'},
-    {"ward-samples", required_argument, NULL, 'w'},
-    {"ward-nearest", no_argument, NULL, 'n'},
-    TOOL_COMMON_OPTIONS};
+static const struct option own[] = {{"scene", required_argument, NULL, 'x'},
+                                    {"all", no_argument, NULL, 'a'},
+                                    {"sizes", no_argument, NULL, 'm'},
+                                    {"size", required_argument, NULL, 's'},
+                                    {"repeat", required_argument, NULL, 'r'},
+                                    {"format", required_argument, NULL, 'F'},
+                                    {NULL, 0, NULL, 0}};
 
 /* Takes option C. Returns 1, or 0 if it does not take that value, or -2 if C is
  * another option. */
@@ -364,16 +352,6 @@ static int take(struct scene_bench *b, int c)
         return tool_integer(optarg, 1, SCENE_ROUNDS, &b->rounds);
     case 'F':
         return take_format(b, optarg);
-    case 'e':
-        return scene_dials_choose(&b->dials, SCENE_CHOOSES_EDGES, optarg);
-    case 'p':
-        return scene_dials_choose(&b->dials, SCENE_CHOOSES_POINTS, optarg);
-    case 'H':
-        return scene_dials_choose(&b->dials, SCENE_CHOOSES_SHADING, optarg);
-    case 'w':
-        return scene_dials_choose(&b->dials, SCENE_CHOOSES_SAMPLES, optarg);
-    case 'n':
-        return scene_dials_choose(&b->dials, SCENE_CHOOSES_NEAREST, optarg);
     default:
         return -2;
     }
@@ -382,17 +360,25 @@ static int take(struct scene_bench *b, int c)
 static int parse(struct tool *tool, int argc, char **argv,
                  struct scene_bench *b)
 {
+    const struct option *options;
+    struct glint_options shading;
     int c, at = 0, code;
 
+    glint_options_defaults(&shading);
+    options = engine_getopt(tool, ENGINE_GROUP(SHADING), &shading, own);
     while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, &at)) >=
            0) {
         const int taken = take(b, c);
 
         if (taken == 0)
             return tool_refuse(tool, options[at].name, optarg);
-        if (taken == -2 && (code = tool_option(tool, c, optarg)) >= 0)
+        code = taken == -2 ? engine_option(tool, &shading, c, optarg) : -1;
+        if (code == -2)
+            code = tool_option(tool, c, optarg);
+        if (code >= 0)
             return code;
     }
+    scene_dials_choose(&b->dials, &shading);
     return optind == argc
                ? -1
                : tool_usage(tool, "--scene takes no lens; '%s' is too much",

@@ -12,7 +12,7 @@
 #include "lab/report_file.h"
 #include "lab/sweep.h"
 #include "linux/instructions.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 #include "posix/workers.h"
 #include "scenes/budget.h"
 

@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT */
+#include "glint/options.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_DIGITS = 100 }; /* of a number; more are malformed */
+
+static const char *digits_end(const char *at)
+{
+    while (*at >= '0' && *at <= '9')
+        at++;
+    return at;
+}
+
+/* Returns where the exponent at AT, "e-3", ends; AT if there is none. Sets
+ * EXPONENT to it. */
+static const char *exponent_end(const char *at, long *exponent)
+{
+    const bool is_signed = *at && (at[1] == '-' || at[1] == '+');
+    const char *const first = at + 1 + is_signed;
+    const char *end;
+
+    *exponent = 0;
+    if ((*at != 'e' && *at != 'E') || digits_end(first) == first)
+        return at;
+    end = digits_end(first);
+    if (end - first > 6)
+        return at;
+    *exponent = strtol(at + 1, NULL, 10);
+    return end;
+}
+
+/* strtod() reads "125e-1" for 12.5: without a decimal point its result does not
+ * depend on the locale, and it is correctly rounded all the same. */
+double glint_option_number(const char *text, const char **end)
+{
+    const char *const whole = text + (*text == '-' || *text == '+');
+    const char *const point = digits_end(whole);
+    const char *const decimals = *point == '.' ? point + 1 : point;
+    const char *const last = digits_end(decimals);
+    const int n_whole = (int)(point - whole), n = (int)(last - decimals);
+    char digits[MOST_DIGITS + 24];
+    long exponent;
+
+    *end = text;
+    if (n_whole + n == 0 || n_whole + n > MOST_DIGITS)
+        return 0;
+    *end = exponent_end(last, &exponent);
+    snprintf(digits, sizeof digits, "%s%.*s%.*se%ld", *text == '-' ? "-" : "",
+             n_whole, whole, n, decimals, exponent - n);
+    return strtod(digits, NULL);
+}
+
+int glint_option_numbers(const char *text, double *values, int max)
+{
+    for (int n = 0; n < max;) {
+        const char *end;
+
+        values[n] = glint_option_number(text, &end);
+        if (end == text || !isfinite(values[n]))
+            return 0;
+        n++;
+        if (*end == '\0')
+            return n;
+        if (*end != ',')
+            return 0;
+        text = end + 1;
+    }
+    return 0;
+}

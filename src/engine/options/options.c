@@ -1,0 +1,353 @@
+/* SPDX-License-Identifier: MIT */
+#include "glint/options.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/options/texts.h"
+#include "engine/options/values.h"
+#include "glint/dials.h"
+
+#define LAMPS      GLINT_OPTIONS_LAMPS
+#define ARTIST     GLINT_OPTIONS_ARTIST
+#define SCENE      GLINT_OPTIONS_SCENE
+#define SHADING    GLINT_OPTIONS_SHADING
+#define LENS       GLINT_OPTIONS_LENS
+#define BRIGHTNESS GLINT_OPTIONS_BRIGHTNESS
+#define SPEED      GLINT_OPTIONS_SPEED
+#define CREATE     GLINT_OPTION_CREATE
+#define RESIZE     GLINT_OPTION_RESIZE
+#define FRAME      GLINT_OPTION_FRAME
+
+static const struct glint_option table[] = {
+#define NUMBER(type, name, value, low, high, initial, unit, group, changes,  \
+               help)                                                         \
+    {name,  value,  unit, help, "", low, high, initial, GLINT_OPTION_##type, \
+     group, changes},
+#define REAL(member, ...)    NUMBER(REAL, __VA_ARGS__)
+#define INTEGER(member, ...) NUMBER(INTEGER, __VA_ARGS__)
+#define FLAG(member, name, group, changes, help) \
+    {name, "", "", help, "", 0, 1, 0, GLINT_OPTION_FLAG, group, changes},
+#define WORD(member, name, value, words, initial, group, changes, help) \
+    {name,  value,  words, help, "", 0, 0, initial, GLINT_OPTION_WORD,  \
+     group, changes},
+#define TEXT(member, name, value, initial, accepts, group, changes, help) \
+    {name, value, accepts,           help,  initial, 0,                   \
+     0,    NAN,   GLINT_OPTION_TEXT, group, changes},
+#include "glint/options.inc"
+};
+
+static const size_t offset[] = {
+#define REAL(member, ...)    offsetof(struct glint_options, member),
+#define INTEGER(member, ...) offsetof(struct glint_options, member),
+#define FLAG(member, ...)    offsetof(struct glint_options, member),
+#define WORD(member, ...)    offsetof(struct glint_options, member),
+#define TEXT(member, ...)    offsetof(struct glint_options, member),
+#include "glint/options.inc"
+};
+
+const struct glint_option *glint_option(int index)
+{
+    return index >= 0 && index < GLINT_N_OPTIONS ? &table[index] : NULL;
+}
+
+const struct glint_option *glint_option_named(const char *name)
+{
+    for (int i = 0; i < GLINT_N_OPTIONS; i++)
+        if (strcmp(table[i].name, name) == 0)
+            return &table[i];
+    return NULL;
+}
+
+/* ------------------------------------------------------------------- setting
+ */
+
+static void store(struct glint_options *options, int i, double value)
+{
+    void *const at = (char *)options + offset[i];
+
+    switch (table[i].type) {
+    case GLINT_OPTION_REAL:
+        *(double *)at = value;
+        break;
+    case GLINT_OPTION_FLAG:
+        *(bool *)at = value != 0;
+        break;
+    default:
+        *(int *)at = (int)value;
+    }
+}
+
+static void store_text(struct glint_options *options, int i, const char *text)
+{
+    *(const char **)((char *)options + offset[i]) = text;
+}
+
+void glint_options_defaults(struct glint_options *options)
+{
+    memset(options, 0, sizeof *options);
+    for (int i = 0; i < GLINT_N_OPTIONS; i++)
+        if (table[i].type == GLINT_OPTION_TEXT)
+            store_text(options, i, table[i].text[0] ? table[i].text : NULL);
+        else if (!isnan(table[i].initial))
+            store(options, i, table[i].initial);
+}
+
+/* Returns the number of words of OPTION, and the length of word INDEX. */
+static int words_of(const struct glint_option *option, int index, size_t *n,
+                    const char **word)
+{
+    const char *at = option->accepts;
+    int count = 0;
+
+    for (;; at++, count++) {
+        const size_t length = strcspn(at, "|");
+
+        if (count == index) {
+            *word = at;
+            *n = length;
+        }
+        at += length;
+        if (!*at)
+            return count + 1;
+    }
+}
+
+static int word_index(const struct glint_option *option, const char *text)
+{
+    const char *word = NULL;
+    size_t n = 0;
+
+    for (int i = 0; i < words_of(option, i, &n, &word); i++)
+        if (strlen(text) == n && memcmp(text, word, n) == 0)
+            return i;
+    return -1;
+}
+
+/* Writes "UNIT, LOW to HIGH, or WORD". */
+static void accepts_number(const struct glint_option *option, char *text,
+                           size_t bytes)
+{
+    const char *const unit = option->accepts;
+    const bool is_word = strncmp(unit, "or ", 3) == 0;
+    const char *const or = is_word ? unit : strstr(unit, ", or ");
+    const int n = (int)(or ? or -unit : (ptrdiff_t)strlen(unit));
+    char range[64];
+
+    if (option->high >= INT_MAX)
+        snprintf(range, sizeof range, "from %g", option->low);
+    else if (option->low > 0 && option->low < 1e-5)
+        snprintf(range, sizeof range, "above 0 and up to %.10g", option->high);
+    else
+        snprintf(range, sizeof range, "%.10g to %.10g", option->low,
+                 option->high);
+    snprintf(text, bytes, "%s%.*s%s%s%s%s",
+             option->type == GLINT_OPTION_INTEGER && n == 0 ? "a whole number, "
+                                                            : "",
+             n, unit, n ? ", " : "", range, is_word ? " " : "", or ? or : "");
+}
+
+void glint_option_accepts(const struct glint_option *option, char *text,
+                          size_t bytes)
+{
+    const char *word = NULL;
+    size_t n = 0;
+    int count, used = 0;
+
+    switch (option->type) {
+    case GLINT_OPTION_FLAG:
+        snprintf(text, bytes, "no value");
+        break;
+    case GLINT_OPTION_TEXT:
+        snprintf(text, bytes, "%s", option->accepts);
+        break;
+    case GLINT_OPTION_WORD:
+        count = words_of(option, 0, &n, &word);
+        for (int i = 0; i < count && used < (int)bytes; i++) {
+            words_of(option, i, &n, &word);
+            used += snprintf(text + used, bytes - (size_t)used, "%s%.*s",
+                             i == 0           ? ""
+                             : i == count - 1 ? " or "
+                                              : ", ",
+                             (int)n, word);
+        }
+        break;
+    default:
+        accepts_number(option, text, bytes);
+    }
+}
+
+static enum glint_status refuse(const struct glint_option *option,
+                                struct glint_error *error)
+{
+    glint_option_accepts(option, error->text, sizeof error->text);
+    return GLINT_E_ARGUMENT;
+}
+
+static enum glint_status unknown(const char *name, struct glint_error *error)
+{
+    snprintf(error->text, sizeof error->text, "there is no option %s", name);
+    return GLINT_E_ARGUMENT;
+}
+
+/* Of two options that exclude each other, the one that was set last counts. */
+static void note_given(struct glint_options *options, int i)
+{
+    options->given[i] = true;
+    if (i == GLINT_OPTION_OF_strength)
+        GLINT_OPTION_GIVEN(options, exposure) = false;
+    if (i == GLINT_OPTION_OF_exposure)
+        GLINT_OPTION_GIVEN(options, strength) = false;
+    if (i == GLINT_OPTION_OF_quality)
+        GLINT_OPTION_GIVEN(options, error) = false;
+    if (i == GLINT_OPTION_OF_error) {
+        GLINT_OPTION_GIVEN(options, quality) = false;
+        options->quality = glint_quality_for_error(options->error);
+    }
+}
+
+/* Returns whether option I of OPTIONS may be VALUE, which is in its range. */
+static bool goes(const struct glint_options *options, int i, double value)
+{
+    switch (i) {
+    case GLINT_OPTION_OF_dispersion:
+        return value == 0 || value >= 0.1;
+    case GLINT_OPTION_OF_veil:
+        return value + options->haze <= GLINT_MOST_VEIL;
+    case GLINT_OPTION_OF_haze:
+        return value + options->veil <= GLINT_MOST_VEIL;
+    default:
+        return true;
+    }
+}
+
+enum glint_status glint_options_set(struct glint_options *options,
+                                    const char *name, double value,
+                                    struct glint_error *error)
+{
+    const struct glint_option *const option = glint_option_named(name);
+    const int i = option ? (int)(option - table) : 0;
+    const char *word;
+    double high;
+    size_t n;
+
+    if (!option)
+        return unknown(name, error);
+    if (option->type == GLINT_OPTION_TEXT)
+        return refuse(option, error);
+    high = option->type == GLINT_OPTION_WORD
+               ? words_of(option, -1, &n, &word) - 1
+               : option->high;
+    if (!(value >= option->low && value <= high) ||
+        (option->type != GLINT_OPTION_REAL && value != floor(value)) ||
+        !goes(options, i, value))
+        return refuse(option, error);
+    store(options, i, value);
+    note_given(options, i);
+    return GLINT_OK;
+}
+
+/* ------------------------------------------------------------------- parsing
+ */
+
+/* Reads TEXT as a word that stands for a number of option I. */
+static bool named_number(struct glint_options *options, int i, const char *text,
+                         double *value)
+{
+    if (i == GLINT_OPTION_OF_starburst && strcmp(text, "off") == 0) {
+        *value = 0;
+        return true;
+    }
+    if (i != GLINT_OPTION_OF_quality)
+        return false;
+    if (strcmp(text, "exact") == 0) {
+        options->rays = GLINT_RAYS_EXACT;
+        GLINT_OPTION_GIVEN(options, rays) = true;
+        *value = 1;
+        return true;
+    }
+    for (int k = 0; k < GLINT_QUALITY_NAMES; k++)
+        if (strcmp(text, glint_quality_name[k]) == 0) {
+            *value = glint_quality_named(k);
+            return true;
+        }
+    return false;
+}
+
+static enum glint_status set_text(struct glint_options *options, int i,
+                                  const char *text, struct glint_error *error)
+{
+    const bool is_set = text && *text;
+
+    if (is_set && !glint_text_is_valid((enum glint_option_id)i, text))
+        return refuse(&table[i], error);
+    store_text(options, i, is_set ? text : NULL);
+    options->given[i] = is_set;
+    return GLINT_OK;
+}
+
+enum glint_status glint_options_set_text(struct glint_options *options,
+                                         const char *name, const char *text,
+                                         struct glint_error *error)
+{
+    const struct glint_option *const option = glint_option_named(name);
+    const int i = option ? (int)(option - table) : 0;
+    double value = 1;
+
+    error->text[0] = '\0';
+    if (!option)
+        return unknown(name, error);
+    switch (option->type) {
+    case GLINT_OPTION_TEXT:
+        return set_text(options, i, text, error);
+    case GLINT_OPTION_FLAG:
+        break;
+    case GLINT_OPTION_WORD:
+        value = word_index(option, text);
+        break;
+    default:
+        /* Without a distance the lens is focused at infinity. */
+        if (i == GLINT_OPTION_OF_focus && strcmp(text, "inf") == 0) {
+            options->focus = 0;
+            options->given[i] = true;
+            return GLINT_OK;
+        }
+        if (!named_number(options, i, text, &value) &&
+            glint_option_numbers(text, &value, 1) != 1)
+            return refuse(option, error);
+    }
+    return glint_options_set(options, name, value, error);
+}
+
+/* -------------------------------------------------------------- what follows
+ */
+
+struct glint_quality glint_options_quality(const struct glint_options *o)
+{
+    struct glint_quality q = glint_quality_at(o->quality);
+
+    if (GLINT_OPTION_GIVEN(o, grid))
+        q.dials.fineness = o->grid;
+    if (GLINT_OPTION_GIVEN(o, quantum)) {
+        q.quantum = o->quantum;
+        q.dials.irradiance_steps = glint_quality_steps(o->quantum);
+    }
+    if (GLINT_OPTION_GIVEN(o, whole))
+        q.dials.snap_codes_q8 = (int)lrint(o->whole * 256);
+    if (GLINT_OPTION_GIVEN(o, dispersion))
+        q.dials.dispersion_q8 = (int)lrint(o->dispersion * 256);
+    if (GLINT_OPTION_GIVEN(o, cull))
+        q.dials.cull_codes = o->cull;
+    if (GLINT_OPTION_GIVEN(o, star_cull))
+        q.dials.star_cull = o->star_cull;
+    if (GLINT_OPTION_GIVEN(o, dim))
+        q.dials.dim_codes = o->dim;
+    if (GLINT_OPTION_GIVEN(o, still))
+        q.dials.still_px = o->still;
+    if (o->half)
+        q.dials.flags |= GLINT_DIAL_ALWAYS_HALF;
+    return q;
+}

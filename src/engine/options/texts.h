@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Which texts the options of type TEXT accept. */
+#ifndef GLINT_ENGINE_OPTIONS_TEXTS_H
+#define GLINT_ENGINE_OPTIONS_TEXTS_H
+
+#include "glint/options.h"
+
+/* Returns whether option ID accepts TEXT, which is not empty. Names of files
+ * and lenses are not looked up, and coatings not parsed: that takes the offline
+ * half. */
+bool glint_text_is_valid(enum glint_option_id id, const char *text);
+
+#endif

@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: MIT */
+#include "options/command_line.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "help/help.h"
+#include "help/values.h"
+#include "glint/glint.h"
+#include "linux/sets.h"
+#include "posix/workers.h"
+#include "options/suggest.h"
+
+/* Sets the instruction sets that VALUE, a word of --kernels, allows. Returns
+ * false if it is no such word or this CPU lacks the set. */
+static bool take_sets(struct tool *tool, const char *value)
+{
+    static const char *const words[] = {"c",    "sse41", "avx2",
+                                        "neon", "auto",  NULL};
+    static const unsigned sets[] = {0, GLINT_SET_SSE41,
+                                    GLINT_SET_SSE41 | GLINT_SET_AVX2,
+                                    GLINT_SET_NEON, ~0U};
+    const int word = tool_word(value, words);
+
+    if (word < 0 || (word < 4 && (sets[word] & ~glint_system_sets())))
+        return false;
+    tool->sets_off = ~sets[word];
+    tool->kernels = words[word];
+    return true;
+}
+
+static char **line;
+static const struct option *taken; /* options of the command */
+
+void tool_line(char **argv)
+{
+    line = argv;
+}
+
+/* Sets NAME to the long option that getopt_long() took last, without its value.
+ * Returns false if it took none. */
+static bool last_option(char name[SUGGEST_CHARS])
+{
+    const char *text = line && optind > 0 ? line[optind - 1] : NULL;
+    size_t n;
+
+    if (!text || strncmp(text, "--", 2) != 0)
+        return false;
+    n = strcspn(text + 2, "=");
+    if (n == 0 || n >= SUGGEST_CHARS)
+        return false;
+    memcpy(name, text + 2, n);
+    name[n] = '\0';
+    return true;
+}
+
+static void suggest_option(const struct tool *tool)
+{
+    struct suggest s;
+    char name[SUGGEST_CHARS];
+
+    if (last_option(name)) {
+        suggest_begin(&s, name);
+        for (const struct option *o = taken; o && o->name; o++)
+            suggest_try(&s, o->name, strlen(o->name));
+        if (suggest_best(&s) && s.distance > 0)
+            fprintf(stderr, "Did you mean --%s? ", s.best);
+    }
+    fprintf(stderr, "Try 'glint %s --help'.\n", tool->name);
+}
+
+const struct option *engine_getopt(struct tool *tool, unsigned groups,
+                                   const struct glint_options *defaults,
+                                   const struct option *own)
+{
+    static struct glint_options initial;
+    static const struct option common[] = {TOOL_COMMON_OPTIONS};
+    static struct option all[192];
+    const struct glint_option *row;
+    int n = 0;
+
+    initial = *defaults;
+    tool->groups = groups;
+    tool->defaults = &initial;
+    for (const struct option *o = own; o->name; o++)
+        all[n++] = *o;
+    for (int i = 0; (row = glint_option(i)) != NULL; i++)
+        if (groups >> row->group & 1)
+            all[n++] = (struct option){row->name,
+                                       row->type == GLINT_OPTION_FLAG
+                                           ? no_argument
+                                           : required_argument,
+                                       NULL, ENGINE_OPTION + i};
+    memcpy(all + n, common, sizeof common);
+    return all;
+}
+
+int tool_getopt(int argc, char *const *argv, const char *shorts,
+                const struct option *options, int *index)
+{
+    taken = options;
+    return getopt_long(argc, argv, shorts, options, index);
+}
+
+int tool_option(struct tool *tool, int option, const char *value)
+{
+    static char of_engine[ENGINE_HELP_BYTES];
+    const struct help help = {tool->name,
+                              {tool->help, of_engine, tool->help_end}};
+
+    engine_help(tool, of_engine);
+
+    switch (option) {
+    case 'h':
+        help_screen(&help);
+        return EXIT_OK;
+    case TOOL_HELP_ALL:
+        help_all(&help);
+        return EXIT_OK;
+    case TOOL_OPTIONS:
+        if (!value)
+            help_options(&help, taken);
+        values_print_words(tool->name, value);
+        return EXIT_OK;
+    case 'V':
+        help_version(tool->json);
+        return EXIT_OK;
+    case 'q':
+        tool->quiet = true;
+        return -1;
+    case 'v':
+        tool->verbose++;
+        return -1;
+    case 'J':
+        tool->json = true;
+        return -1;
+    case 'j':
+        if (tool_integer(value, 1, GLINT_MAX_WORKERS, &tool->n_threads))
+            return -1;
+        return tool_usage(tool, "--threads takes 1 to %d, not '%s'",
+                          GLINT_MAX_WORKERS, value);
+    case 'K':
+        if (take_sets(tool, value))
+            return -1;
+        return tool_usage(tool,
+                          "--kernels takes c, auto or what this CPU has "
+                          "(glint --version), not '%s'",
+                          value);
+    case 'S':
+        if (tool_integer(value, 0, INT_MAX, &tool->seed))
+            return -1;
+        return tool_usage(tool, "--seed takes a whole number, not '%s'", value);
+    default: /* getopt_long has said what is wrong */
+        suggest_option(tool);
+        return EXIT_USAGE;
+    }
+}
+
+const char *tool_value_of(int argc, char **argv, const char *shorts,
+                          const struct option *options, int option)
+{
+    /* A copy, as getopt_long() moves words: an option at the end that lacks
+     * its value would take the input for it the second time. */
+    char **const words = malloc(((size_t)argc + 1) * sizeof *words);
+    const char *value = NULL;
+    int c;
+
+    if (!words)
+        return NULL;
+    memcpy(words, argv, ((size_t)argc + 1) * sizeof *words);
+    opterr = 0;
+    optind = 0; /* glibc and musl: from the start, with nothing remembered */
+    while ((c = getopt_long(argc, words, shorts, options, NULL)) >= 0)
+        if (c == option)
+            value = optarg;
+    opterr = 1;
+    optind = 0;
+    free(words);
+    return value;
+}
+
+int tool_inputs(const struct tool *tool, int argc, char **argv, int n,
+                const char *text)
+{
+    const char *const last = argv[optind - 1];
+
+    if (optind + n == argc)
+        return -1;
+    /* Inputs go behind all options, so that this is the value of one. */
+    if (optind + n < argc || optind < 3 || last[0] == '-')
+        return tool_usage(tool, "%s", text);
+    return tool_usage(tool, "%s; '%s' is the value of %s", text, last,
+                      argv[optind - 2]);
+}
+
+int tool_take(struct tool *tool, int argc, char **argv, const char *shorts,
+              const struct option *options, tool_take_fn *take, void *ctx)
+{
+    int c, code, index = 0;
+
+    while ((c = tool_getopt(argc, argv, shorts, options, &index)) >= 0) {
+        code = take(tool, ctx, c, optarg);
+        if (code == -2)
+            return tool_refuse(tool, options[index].name, optarg);
+        if (code >= 0)
+            return code;
+    }
+    return -1;
+}

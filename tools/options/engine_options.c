@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: MIT */
+#include "options/engine_options.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+static bool has_group(const struct tool *tool, enum glint_option_group group)
+{
+    return (tool->groups >> group & 1) != 0;
+}
+
+int engine_option(const struct tool *tool, struct glint_options *values,
+                  int code, const char *value)
+{
+    const struct glint_option *const row = glint_option(code - ENGINE_OPTION);
+    struct glint_error error;
+
+    if (!row)
+        return -2;
+    return glint_options_set_text(values, row->name, value, &error) == GLINT_OK
+               ? -1
+               : tool_refuse(tool, row->name, value);
+}
+
+/* ---------------------------------------------------------------------- help
+ */
+
+enum { ABOUT_COLUMN = 22, LINE = 79 };
+
+/* Text that is written in lines. */
+struct page {
+    char *at, *end;
+    int column;
+};
+
+static void put(struct page *page, const char *text, size_t n)
+{
+    for (; n > 0 && page->at < page->end; n--, text++) {
+        page->column = *text == '\n' ? 0 : page->column + 1;
+        *page->at++ = *text;
+    }
+    *page->at = '\0';
+}
+
+static void put_to_column(struct page *page, int column)
+{
+    while (page->column < column && page->at < page->end)
+        put(page, " ", 1);
+}
+
+/* Writes the words of TEXT into the column of explanations. */
+static void put_words(struct page *page, const char *text)
+{
+    while (*text) {
+        const size_t n = strcspn(text, " ");
+
+        if (page->column + 1 + (int)n > LINE)
+            put(page, "\n", 1);
+        else if (page->column > ABOUT_COLUMN)
+            put(page, " ", 1);
+        put_to_column(page, ABOUT_COLUMN);
+        put(page, text, n);
+        text += n + (text[n] == ' ');
+    }
+}
+
+/* Sets VALUE and TEXT to the default of row I, TEXT to NULL if it is a number
+ * or if there is none. */
+static void default_of(const struct glint_options *defaults, int i,
+                       double *value, const char **text)
+{
+    *value = NAN;
+    *text = NULL;
+    switch (i) {
+#define REAL(member, ...)          \
+    case GLINT_OPTION_OF_##member: \
+        *value = defaults->member; \
+        break;
+#define INTEGER(member, ...) REAL(member, )
+#define WORD(member, ...)    REAL(member, )
+#define FLAG(member, ...)
+#define TEXT(member, ...)          \
+    case GLINT_OPTION_OF_##member: \
+        *text = defaults->member;  \
+        break;
+#include "glint/options.inc"
+    }
+    if (isnan(glint_option(i)->initial))
+        *value = NAN;
+}
+
+/* Returns what a range from LOW begins with; START has room for it. */
+static const char *range_start(double low, char start[32])
+{
+    if (low > 0 && low < 1e-5)
+        return "above 0, up to ";
+    snprintf(start, 32, "%.10g to ", low);
+    return start;
+}
+
+/* Writes "(LOW to HIGH, default VALUE)" of row I, as far as its help does not
+ * have that, or "". */
+static void put_limits(struct page *page, const struct glint_options *defaults,
+                       int i)
+{
+    const struct glint_option *const row = glint_option(i);
+    const bool is_number =
+        row->type == GLINT_OPTION_REAL || row->type == GLINT_OPTION_INTEGER;
+    const char *word = row->accepts, *text;
+    char range[64] = "", all[160], start[32], text_in_brackets[164];
+    double value;
+
+    default_of(defaults, i, &value, &text);
+    if (is_number && row->high < INT_MAX)
+        snprintf(range, sizeof range, "%s%.10g", range_start(row->low, start),
+                 row->high);
+    snprintf(all, sizeof all, "%s", range);
+    if (!strstr(row->help, "default")) {
+        const char *const comma = *range ? ", " : "";
+
+        if (text)
+            snprintf(all, sizeof all, "%s%sdefault %s", range, comma, text);
+        else if (is_number && !isnan(value))
+            snprintf(all, sizeof all, "%s%sdefault %g", range, comma, value);
+        else if (row->type == GLINT_OPTION_WORD && value >= 0) {
+            for (int k = 0; k < (int)value; k++)
+                word += strcspn(word, "|") + 1;
+            snprintf(all, sizeof all, "default %.*s", (int)strcspn(word, "|"),
+                     word);
+        }
+    }
+    if (*all) {
+        snprintf(text_in_brackets, sizeof text_in_brackets, "(%s)", all);
+        put_words(page, text_in_brackets);
+    }
+}
+
+static void put_row(struct page *page, const struct tool *tool, int i)
+{
+    const struct glint_option *const row = glint_option(i);
+    char text[96];
+
+    snprintf(text, sizeof text, "  --%s%s%s", row->name, *row->value ? " " : "",
+             row->value);
+    put(page, text, strlen(text));
+    put_to_column(page, page->column < ABOUT_COLUMN - 1 ? ABOUT_COLUMN
+                                                        : page->column + 2);
+    put_words(page, row->help);
+    put_limits(page, tool->defaults, i);
+    put(page, "\n", 1);
+}
+
+void engine_help(const struct tool *tool, char text[ENGINE_HELP_BYTES])
+{
+    static const char *const headings[GLINT_OPTION_GROUPS] = {
+        "Lamps and layers\n",  "Artist controls\n", "Scenes\n",
+        "Shading of scenes\n", "The lens\n",        "Brightness\n",
+        "Speed and accuracy\n"};
+    struct page page = {text, text + ENGINE_HELP_BYTES - 1, 0};
+    const struct glint_option *row;
+    int group = -1;
+
+    text[0] = '\0';
+    for (int i = 0; (row = glint_option(i)) != NULL; i++) {
+        if (!has_group(tool, row->group))
+            continue;
+        if ((int)row->group != group)
+            put(&page, headings[row->group], strlen(headings[row->group]));
+        group = (int)row->group;
+        put_row(&page, tool, i);
+    }
+}

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * engine_options.h - the engine's options on a command line: for getopt_long(),
+ * as help and as values, all from the table of glint/options.h.
+ *
+ *     static const struct option own[] = {{"output", ...}, {NULL, 0, NULL, 0}};
+ *     options = engine_getopt(&tool, ENGINE_ALL, &values, own);
+ *     code = engine_option(&tool, &values, c, optarg);
+ */
+#ifndef GLINT_TOOLS_OPTIONS_ENGINE_OPTIONS_H
+#define GLINT_TOOLS_OPTIONS_ENGINE_OPTIONS_H
+
+#include "glint/options.h"
+#include "options/tool.h"
+
+/* Codes of getopt_long() for the engine's options. A command numbers its own
+ * from ENGINE_OPTIONS_END on. */
+enum {
+    ENGINE_OPTION = 1000,
+    ENGINE_OPTIONS_END = ENGINE_OPTION + GLINT_N_OPTIONS
+};
+#define ENGINE_OPTION_OF(member) (ENGINE_OPTION + GLINT_OPTION_OF_##member)
+
+/* Bits of tool.groups. */
+#define ENGINE_GROUP(group) (1U << GLINT_OPTIONS_##group)
+#define ENGINE_DRAWING \
+    (ENGINE_GROUP(LENS) | ENGINE_GROUP(BRIGHTNESS) | ENGINE_GROUP(SPEED))
+#define ENGINE_ALL (~0U)
+
+/* Sets in VALUES the option of CODE to VALUE, NULL of a flag. Returns -1; -2 if
+ * CODE is not one of these; or an exit code after printing what it accepts. */
+int engine_option(const struct tool *tool, struct glint_options *values,
+                  int code, const char *value);
+
+/* Writes the help of the groups of TOOL to TEXT, with the defaults of TOOL. */
+enum { ENGINE_HELP_BYTES = 24576 };
+void engine_help(const struct tool *tool, char text[ENGINE_HELP_BYTES]);
+
+#endif
