@@ -121,15 +121,6 @@ static void note_stop(struct glint_blend_stop *stop,
     }
 }
 
-struct glint_blend_output glint_blend_of(struct glint_transfer *t, int kind)
-{
-    return (struct glint_blend_output){.kind = (uint8_t)kind,
-                                       .exponent = t->exponent[kind],
-                                       .row = t->of.table[kind],
-                                       .degree_u = t->degree_u[kind],
-                                       .degree_v = t->degree_v[kind]};
-}
-
 static struct glint_blend_stop stop_of(struct glint_transfer *t)
 {
     struct glint_blend_stop stop = {0, 0, 0, 0, 0};

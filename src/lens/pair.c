@@ -22,6 +22,15 @@ enum {
     ACROSS = 3 /* of the places, in two rows */
 };
 
+struct glint_blend_output glint_blend_of(struct glint_transfer *t, int kind)
+{
+    return (struct glint_blend_output){.kind = (uint8_t)kind,
+                                       .exponent = t->exponent[kind],
+                                       .row = t->of.table[kind],
+                                       .degree_u = t->degree_u[kind],
+                                       .degree_v = t->degree_v[kind]};
+}
+
 int32_t glint_blend_value_q16(const struct glint_blend_output *o, int64_t u_q24,
                               int64_t v_q24)
 {

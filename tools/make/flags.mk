@@ -53,9 +53,9 @@ of = $(eval $(patsubst %,$(OUT)/%.o,$(1)): CFLAGS += $(2))
 
 # Run once, or once for a lamp, bundle or row: small rather than fast.
 $(call of,$(addprefix src/base/,status arena workers blob) src/image/image,-Os)
-$(call of,$(addprefix src/lens/,model model_system),-Os)
-$(call of,$(addprefix src/scene/,scene model model_mesh account/account frame/begin frame/lights frame/looks frame/uv frame/shadow_box ward/environment ward/ward_lobe translucent/translucent),-Os)
-$(call of,$(addprefix src/scene/,ward/scene_ward ward/ward phong ray shadow surface vector visible mesh mesh_ray frame/quick frame/quick_mesh frame/mesh_small frame/scene_pass translucent/spread translucent/skin_light) src/image/cover,-O3)# loops of three
+$(call of,src/lens/model,-Os)
+$(call of,$(addprefix src/scene/,scene valid model model_mesh account/account begin lights looks uv shadow_box ward/environment ward/ward_lobe translucent/translucent),-Os)
+$(call of,$(addprefix src/scene/,ward/scene_ward ward/ward phong ray shadow surface vector visible mesh mesh_ray quick quick_mesh mesh_small scene_pass translucent/spread translucent/skin_light) src/image/cover,-O3)# loops of three
 $(call of,$(addprefix src/lamps/,lamp_finder lamp_list),-Os)
 $(call of,$(addprefix src/follow/,match follow record lamp_tracker),-Os)
 $(call of,$(addprefix src/flare/,aim by_edges capacities colours lights plan plan_cells probe window wave_sets flare draw_over account),-Os)
@@ -105,7 +105,7 @@ else ifeq ($(CONFIG),fuzz) # what make fuzz builds; clang only
 SANITIZE := -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
 # What rays, polynomials and pixels compare is no word of a file, and takes two
 # thirds of the time to follow.
-$(filter-out %/model.o %/model_mesh.o %/model_system.o,$(call objects,src,base kernels kernels/rays kernels/ward kernels/maps \
+$(filter-out %/model.o %/model_mesh.o,$(call objects,src,base kernels kernels/rays kernels/ward kernels/maps \
         lens image tile flare flare/edges scene bake/trace)) $(OUT)/src/bake/table/form.o: CFLAGS += -fno-sanitize-coverage=trace-cmp
 else ifeq ($(CONFIG),analyze) # what make analyze builds; gcc only
 # as it is written: -O0 keeps functions and their messages apart
