@@ -52,7 +52,7 @@ include tools/make/target.mk
 
 # Rooms of the sources; every file in them is built, but for the alternatives
 # below. src/README.md says what each is for.
-CORE      := base image kernels kernels/rays kernels/ward kernels/maps lens lamps follow tile flare/edges flare star veil scene/around scene scene/frame scene/ward scene/motion scene/translucent scene/highlights scene/account reuse
+CORE      := base image kernels kernels/rays kernels/ward kernels/maps lens lamps follow tile flare/edges flare star veil scene scene/ward scene/motion scene/translucent scene/highlights scene/account reuse
 PUBLISHED := published
 ENGINE    := engine engine/options engine/frame engine/setup engine/star
 BAKE      := bake bake/table bake/scene bake/environment bake/motion bake/translucent bake/trace bake/regress bake/visible bake/fit bake/skew bake/exact bake/published bake/published/scatter

@@ -59,7 +59,7 @@ int glint_mesh_hold(const struct glint_scene *scene, uint32_t object,
 int glint_mesh_surface(const struct glint_scene *scene,
                        const struct glint_met *met,
                        struct glint_met_surface *surface);
-/* frame/quick_mesh.c */
+/* quick_mesh.c */
 int glint_quick_mesh_find(struct glint_scene_worker *w, uint32_t id,
                           int32_t x_q8, int32_t y_q8,
                           struct glint_met_surface *surface);
@@ -78,7 +78,7 @@ static inline int64_t glint_line_at(const struct glint_line *l, int64_t x,
     return l->across * x + l->down * y + l->at;
 }
 
-/* frame/mesh_small.c: returns whether triangle T, ID, small as below, is
+/* mesh_small.c: returns whether triangle T, ID, small as below, is
  * certain not to be seen at samples of B; at least one pixel. */
 int glint_mesh_is_hidden(const struct glint_scene_worker *w, uint32_t id,
                          const struct glint_scene_triangle *t,

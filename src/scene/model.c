@@ -34,92 +34,12 @@ STATIC_ASSERT(sizeof(struct glint_scene_header) == 268);
 /* The header begins as that of every baked file does. */
 GLINT_BLOB_HEADER(struct glint_scene_header, variant);
 
-enum {
-    ONE_Q15 = 1 << 15,
-    ONE_Q30 = 1 << 30,
-    MAX_HIGHLIGHTS = 8,
-    LEAST_ALPHA_Q24 = 1 << 14,
-    MAX_REAL_EXPONENT = 200
-};
-
-const char glint_scene_outside[] = "a table lies outside of the file";
+enum { ONE_Q15 = 1 << 15, ONE_Q30 = 1 << 30, MAX_HIGHLIGHTS = 8 };
 
 static const char *const fault_text[GLINT_BLOB_FAULTS] =
     GLINT_BLOB_FAULT_TEXT("scene", "scenes", "baked");
 
-/* ----------------------------------------------------------------- members */
-
-int glint_scene_name_fits(const char *name)
-{
-    int n = 0;
-
-    while (n < GLINT_SCENE_NAME && name[n] > ' ' && name[n] <= '~')
-        n++;
-    return n > 0 && n < GLINT_SCENE_NAME && name[n] == 0;
-}
-
-static int is_between(int64_t x, int64_t lo, int64_t hi)
-{
-    return x >= lo && x <= hi;
-}
-
-int glint_scene_within(const int32_t *v, int n, int32_t limit)
-{
-    int fits = 1;
-
-    for (int k = 0; k < n; k++)
-        fits &= is_between(v[k], -(int64_t)limit, limit);
-    return fits;
-}
-
-int glint_scene_is_unit(const int32_t *v_q30, int n)
-{
-    int64_t square_q56 = 0;
-
-    if (!glint_scene_within(v_q30, n, ONE_Q30 + (1 << 12)))
-        return 0;
-    for (int k = 0; k < n; k++) /* below 4 * 2^57 */
-        square_q56 += q_shift((int64_t)v_q30[k] * v_q30[k], 4);
-    return is_between(square_q56 - (INT64_C(1) << 56), -(INT64_C(1) << 37),
-                      INT64_C(1) << 37);
-}
-
-int glint_scene_is_light(const struct glint_real *x)
-{
-    return x->mantissa == 0 ||
-           (x->mantissa >= ONE_Q30 &&
-            is_between(x->exponent, -MAX_REAL_EXPONENT, MAX_REAL_EXPONENT));
-}
-
 /* ------------------------------------------------------------------ tables */
-
-static int is_crossed(const int32_t a_q30[3], const int32_t b_q30[3])
-{
-    int64_t dot_q56 = 0;
-
-    for (int k = 0; k < 3; k++)
-        dot_q56 += q_shift((int64_t)a_q30[k] * b_q30[k], 4);
-    return is_between(dot_q56, -(INT64_C(1) << 37), INT64_C(1) << 37);
-}
-
-const char *glint_scene_camera_fault(const struct glint_scene_camera *c)
-{
-    const int has_x = c->kind != GLINT_CAMERA_LENS;
-    const int has_y = c->kind == GLINT_CAMERA_CORNERS;
-
-    if (c->kind > GLINT_CAMERA_LENS)
-        return "the camera's kind is unknown";
-    if (!glint_scene_within(c->at, 3, GLINT_SCENE_SPAN - 1))
-        return "the camera is too far out";
-    for (int k = 0; k < 3; k++)
-        if (!glint_scene_is_unit(c->axis_q30[k], 3) ||
-            !is_crossed(c->axis_q30[k], c->axis_q30[(k + 1) % 3]))
-            return "the camera's axes are no units, or not at right angles";
-    if (!is_between(c->tan_x_q24, has_x << 12, has_x << 30) ||
-        !is_between(c->tan_y_q24, has_y << 12, has_y << 30))
-        return "the camera's field is out of range";
-    return NULL;
-}
 
 static const char *check_light(const struct glint_scene_light *light)
 {
@@ -130,7 +50,8 @@ static const char *check_light(const struct glint_scene_light *light)
     if (light->kind > GLINT_LIGHT_LAMP)
         return "a light's kind is unknown";
     if (!glint_scene_within(light->at, 3, is_sun ? 0 : GLINT_SCENE_SPAN - 1) ||
-        !is_between(light->radius, 0, is_sun ? 1 << 29 : GLINT_SCENE_SPAN))
+        !glint_scene_between(light->radius, 0,
+                             is_sun ? 1 << 29 : GLINT_SCENE_SPAN))
         return "a light is too far out, or too large";
     if (is_sun ? !glint_scene_is_unit(light->toward_q30, 3)
                : !glint_scene_within(light->toward_q30, 3, 0))
@@ -153,7 +74,7 @@ static const char *check_texture(struct glint_scene_check *c,
         texels += UINT64_C(1) << (w + h);
     return glint_blob_section(&c->blob, t->texel_at, (3 * texels + 3) / 4, 4)
                ? NULL
-               : glint_scene_outside;
+               : OUTSIDE;
 }
 
 static const char *check_material(const struct glint_scene_check *c,
@@ -166,13 +87,13 @@ static const char *check_material(const struct glint_scene_check *c,
     if (!glint_scene_name_fits(m->name))
         return "a material's name is empty, endless or not printable";
     for (size_t k = 0; k < sizeof weight / sizeof *weight; k++)
-        if (!is_between(weight[k], 0, ONE_Q15))
+        if (!glint_scene_between(weight[k], 0, ONE_Q15))
             return "a material's weight or colour is not 0 .. 1";
     if (m->ambient_q15 + m->diffuse_q15 + m->specular_q15 > ONE_Q15 ||
         m->reflect_q15 + m->pass_q15 > ONE_Q15)
         return "a material's weights sum to more than 1";
-    if (!is_between(m->power_q8, 1 << 8, 1 << 20) ||
-        !is_between(m->index_q16, 1 << 14, 1 << 18))
+    if (!glint_scene_between(m->power_q8, 1 << 8, 1 << 20) ||
+        !glint_scene_between(m->index_q16, 1 << 14, 1 << 18))
         return "a material's power or index is out of range";
     if (m->texture != GLINT_SCENE_NONE &&
         m->texture >= c->model.header->n_textures)
@@ -181,17 +102,6 @@ static const char *check_material(const struct glint_scene_check *c,
         return "a material's brushed metal is out of range";
     if (m->ward != GLINT_SCENE_NONE && m->specular_q15)
         return "a material is brushed metal and Phong's";
-    return NULL;
-}
-
-const char *glint_scene_ward_fault(const struct glint_scene_ward *w)
-{
-    for (int k = 0; k < 3; k++)
-        if (!is_between(w->specular_q15[k], 0, ONE_Q15))
-            return "a material's weight or colour is not 0 .. 1";
-    if (!is_between(w->alpha_q24[0], LEAST_ALPHA_Q24, 1 << 24) ||
-        !is_between(w->alpha_q24[1], LEAST_ALPHA_Q24, 1 << 24) || w->norm > 1)
-        return "a brushed metal's roughness or norm is out of range";
     return NULL;
 }
 
@@ -207,7 +117,7 @@ static const char *check_environment(struct glint_scene_check *c,
     return e->file_bytes % 4 == 0 && glint_blob_section(&c->blob, e->file_at,
                                                         e->file_bytes / 4, 4)
                ? NULL
-               : glint_scene_outside;
+               : OUTSIDE;
 }
 
 /* The last lights are suns, which those of environments become. */
@@ -232,7 +142,7 @@ static const char *check_motion(const struct glint_scene_header *h,
     if (!glint_scene_name_fits(m->name))
         return "a motion's name is empty, endless or not printable";
     for (int k = 0; k < 4; k++)
-        if (!is_between(length[k], 0, GLINT_SCENE_SPAN / 4))
+        if (!glint_scene_between(length[k], 0, GLINT_SCENE_SPAN / 4))
             return "a size of the motion is out of range";
     for (int k = 0; k < 3; k++)
         if (material[k] >= h->n_materials)
@@ -247,14 +157,15 @@ static const char *check_header(const struct glint_scene_header *h)
 {
     if (h->variant > GLINT_HAND_RIGHT)
         return "the scene's variant is unknown";
-    if (!is_between(h->unit_log2, -28, 60))
+    if (!glint_scene_between(h->unit_log2, -28, 60))
         return "the scene's unit is out of range";
     if (h->shadow > 1 || h->flare > 1 || h->highlights > MAX_HIGHLIGHTS ||
         h->background > GLINT_BACKGROUND_ENVIRONMENT)
         return "the scene's settings are unknown";
     for (int k = 0; k < 3; k++)
-        if (!is_between(h->background_q15[k], 0,
-                        h->background == GLINT_BACKGROUND_COLOUR ? ONE_Q30 : 0))
+        if (!glint_scene_between(
+                h->background_q15[k], 0,
+                h->background == GLINT_BACKGROUND_COLOUR ? ONE_Q30 : 0))
             return "the background's colour is out of range";
     if (h->n_lights > GLINT_SCENE_MAX_LIGHTS ||
         h->n_textures > GLINT_SCENE_MAX_TEXTURES ||
@@ -300,12 +211,12 @@ static const char *find_tables(struct glint_scene_check *c)
         if (!m->motion ||
             !glint_blob_section(b, h->motion_at + (uint32_t)sizeof *m->motion,
                                 m->motion->bytes / 4, 4))
-            return glint_scene_outside;
+            return OUTSIDE;
     }
     return m->light && m->texture && m->material && m->mesh && m->object &&
                    m->ward && m->stone && m->skin && m->environment
                ? NULL
-               : glint_scene_outside;
+               : OUTSIDE;
 }
 
 static const char *check_contents(struct glint_scene_check *c)

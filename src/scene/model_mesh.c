@@ -10,16 +10,6 @@ enum { SPAN = GLINT_SCENE_SPAN, UV_LIMIT = 1 << 24 };
 
 /* ------------------------------------------------------------------ meshes */
 
-/* Returns the length of V, rounded up; V is within +-2^30. */
-static int64_t length_of(const int32_t v[3])
-{
-    uint64_t square = 0;
-
-    for (int k = 0; k < 3; k++)
-        square += (uint64_t)((int64_t)v[k] * v[k]);
-    return (int64_t)q_root(square) + 1;
-}
-
 static const char *check_vertices(struct glint_scene_check *c,
                                   const struct glint_scene_mesh *m)
 {
@@ -28,9 +18,9 @@ static const char *check_vertices(struct glint_scene_check *c,
     const int64_t reach = (int64_t)m->radius + 2;
 
     if (!at)
-        return glint_scene_outside;
+        return OUTSIDE;
     if (!glint_scene_within(m->centre, 3, SPAN / 2) || m->radius < 0 ||
-        length_of(m->centre) + m->radius > SPAN / 2)
+        glint_scene_length(m->centre) + m->radius > SPAN / 2)
         return "a mesh is too large or too far out";
     for (size_t i = 0; i < m->n_vertices; i++) {
         int32_t off[3];
@@ -39,7 +29,7 @@ static const char *check_vertices(struct glint_scene_check *c,
             return "a vertex is too far out";
         for (int k = 0; k < 3; k++)
             off[k] = at[3 * i + (size_t)k] - m->centre[k];
-        if (length_of(off) > reach)
+        if (glint_scene_length(off) > reach)
             return "a vertex is outside of its mesh's ball";
     }
     return NULL;
@@ -53,11 +43,11 @@ static const char *check_attributes(struct glint_scene_check *c,
     if (m->uv_at &&
         !(uv_q16 = glint_blob_section(&c->blob, m->uv_at, m->n_vertices,
                                       2 * sizeof *uv_q16)))
-        return glint_scene_outside;
+        return OUTSIDE;
     if (m->normal_at &&
         !(normal_q30 = glint_blob_section(&c->blob, m->normal_at, m->n_vertices,
                                           3 * sizeof *normal_q30)))
-        return glint_scene_outside;
+        return OUTSIDE;
     for (size_t i = 0; i < m->n_vertices; i++) {
         if (uv_q16 && !glint_scene_within(uv_q16 + 2 * i, 2, UV_LIMIT))
             return "a vertex's u or v is out of range";
@@ -74,7 +64,7 @@ static const char *check_triangles(struct glint_scene_check *c,
         glint_blob_section(&c->blob, m->triangle_at, m->n_triangles, sizeof *t);
 
     if (!t)
-        return glint_scene_outside;
+        return OUTSIDE;
     for (uint32_t i = 0; i < m->n_triangles; i++) {
         for (int k = 0; k < 3; k++)
             if (t[i].vertex[k] >= m->n_vertices)
@@ -174,7 +164,7 @@ static const char *check_grid(struct glint_scene_check *c,
     }
     start = glint_blob_section(&c->blob, m->start_at, cells + 1, sizeof *start);
     if (!start)
-        return glint_scene_outside;
+        return OUTSIDE;
     if (start[0] != 0)
         return "a grid's lists do not begin at 0";
     for (uint64_t i = 0; i < cells; i++)
@@ -182,7 +172,7 @@ static const char *check_grid(struct glint_scene_check *c,
             return "a grid's lists do not rise";
     ref = glint_blob_section(&c->blob, m->ref_at, start[cells], sizeof *ref);
     if (!ref)
-        return glint_scene_outside;
+        return OUTSIDE;
     for (uint32_t i = 0; i < start[cells]; i++)
         if (ref[i] >= m->n_triangles)
             return "a grid's triangle is out of range";
@@ -202,22 +192,6 @@ const char *glint_scene_check_mesh(struct glint_scene_check *check,
 }
 
 /* ----------------------------------------------------------------- objects */
-
-int glint_scene_fits(const struct glint_scene_model *model,
-                     const struct glint_scene_object *object,
-                     const int32_t at[3])
-{
-    const struct glint_scene_mesh *mesh;
-    int64_t reach = object->radius;
-
-    if (object->kind == GLINT_OBJECT_MESH) {
-        mesh = &model->mesh[object->mesh];
-        /* Two steps for vertices on the ball, two for turning them. */
-        reach = length_of(mesh->centre) + mesh->radius + 4;
-    }
-    return reach < SPAN &&
-           glint_scene_within(at, 3, (int32_t)(SPAN - 1 - reach));
-}
 
 const char *glint_scene_check_object(const struct glint_scene_check *check,
                                      const struct glint_scene_object *o)
@@ -261,7 +235,7 @@ static const char *check_stone(struct glint_scene_check *c,
     if (s->file_bytes < sizeof(struct glint_translucent_header) ||
         s->file_bytes % 4 ||
         !glint_blob_section(&c->blob, s->file_at, s->file_bytes / 4, 4))
-        return glint_scene_outside;
+        return OUTSIDE;
     return NULL;
 }
 
@@ -288,7 +262,7 @@ static const char *check_ball_map(struct glint_scene_check *c,
         glint_blob_section(&c->blob, skin->texel_at, 3 * side, 8);
 
     if (!turn_q30)
-        return glint_scene_outside;
+        return OUTSIDE;
     for (uint32_t i = 0; i < 3 * side; i++)
         if (!glint_scene_is_unit(turn_q30 + 2 * (size_t)i, 2))
             return "a column or row of a ball's map is out of range";
@@ -304,7 +278,7 @@ static const char *check_mesh_map(struct glint_scene_check *c,
         glint_blob_section(&c->blob, skin->texel_at, side * side, 4);
 
     if (!texel)
-        return glint_scene_outside;
+        return OUTSIDE;
     if (!mesh->uv_at)
         return "a mesh of stone has no uv";
     for (uint32_t i = 0; i < side * side; i++)

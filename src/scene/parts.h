@@ -28,7 +28,7 @@ struct glint_scene_meshes {
     /* Returns whether triangles A and B, ids of one object, are of one
      * material and share a vertex, and its normal. */
     int (*joins)(const struct glint_scene *scene, uint32_t a, uint32_t b);
-    /* Surfaces in the middle of pixels, the quick way (frame/quick.h). */
+    /* Surfaces in the middle of pixels, the quick way (quick.h). */
     int (*find)(struct glint_scene_worker *w, uint32_t id, int32_t x_q8,
                 int32_t y_q8, struct glint_met_surface *surface);
 };
@@ -126,6 +126,21 @@ struct glint_scene_stones {
                    const struct glint_scene_ray *ray,
                    const struct glint_met_surface *surface, int32_t weight_q15,
                    int32_t rgb_q15[3]);
+};
+
+struct glint_highlight_state;
+
+struct glint_scene_highlights {
+    /* Takes the memory of the part; NULL while it is measured. */
+    struct glint_highlight_state *(*carve)(const struct glint_scene *scene,
+                                           struct glint_arena *arena);
+    /* Begins a picture. */
+    void (*begin)(struct glint_highlight_state *bright);
+    /* Adds light of object OBJECT in the pixel whose middle is (X, Y), pixels
+     * q8 from the top left corner: SHARE_Q4 of RGB_Q15. */
+    void (*note)(struct glint_highlight_state *bright, uint32_t object,
+                 int32_t x_q8, int32_t y_q8, const int32_t rgb_q15[3],
+                 int share_q4);
 };
 
 #endif

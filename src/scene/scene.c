@@ -6,7 +6,7 @@
 
 #include "base/compiler.h"
 #include "base/real.h"
-#include "scene/model_check.h"
+#include "scene/valid.h"
 #include "scene/parts.h"
 
 enum { ONE_Q30 = 1 << 30 };
@@ -326,14 +326,6 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
 }
 
 /* ------------------------------------------------------------------- poses */
-
-void glint_scene_forget_shadows(struct glint_scene *s)
-{
-    s->moved++;
-    for (uint32_t i = 0; i < s->model.header->n_lights; i++)
-        if (s->lit[i].shadow)
-            s->lit[i].shadow->is_ready = 0;
-}
 
 void glint_scene_turn_of(const int32_t q[4], struct glint_scene_turn *to)
 {

@@ -275,3 +275,11 @@ int glint_shadow_listed(const struct glint_scene *s,
         n += shadow->thing[ref[i]].top > below.at[2];
     return n;
 }
+
+void glint_scene_forget_shadows(struct glint_scene *s)
+{
+    s->moved++;
+    for (uint32_t i = 0; i < s->model.header->n_lights; i++)
+        if (s->lit[i].shadow)
+            s->lit[i].shadow->is_ready = 0;
+}

@@ -10,8 +10,7 @@
 #include "base/arena.h"
 #include "glint/scene/scene.h"
 #include "image/curve.h"
-#include "scene/around/around.h"
-#include "scene/highlights/part.h"
+#include "scene/around.h"
 #include "scene/ray.h"
 #include "scene/view.h"
 #include "tile/bins.h"
@@ -51,13 +50,13 @@ struct glint_placed {
      * other balls that it may overlap, else 0; and of its far side. */
     int32_t flat_depth, far_depth;
     /* Sphere: from the camera to its middle over its radius, _q OVER_UP; 0:
-     * that is not to be had (frame/quick.c). */
+     * that is not to be had (quick.c). */
     int32_t over[3];
     int over_up;
     /* Sphere: the suns, by bits of their index, from which nothing can hide a
      * place on it that faces them, as of their grids. */
     uint32_t open_to;
-    /* Which pixels of a row a ball may touch (frame/quick.c). */
+    /* Which pixels of a row a ball may touch (quick.c). */
     struct {
         int is_there;
         int32_t m_q30[3], c_q30, a_q30;
@@ -68,7 +67,7 @@ struct glint_placed {
 
 enum { GLINT_QUICK_TRIANGLES = 32 };
 
-/* A triangle that is shaded (frame/quick.c). */
+/* A triangle that is shaded (quick.c). */
 struct glint_quick_triangle {
     uint32_t id;
     int is_there, is_inside, is_smooth;

@@ -50,7 +50,7 @@ static inline void glint_put_sample(struct glint_scene_worker *w, int x, int y,
 
 /* ------------------------------------------------------------------- balls */
 
-/* Balls in the middle of pixels, the quick way (frame/quick.h). */
+/* Balls in the middle of pixels, the quick way (quick.h). */
 
 /* Prepares ball P, which is placed. */
 void glint_quick_ball(const struct glint_scene *scene, struct glint_placed *p);

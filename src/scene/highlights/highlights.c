@@ -8,7 +8,7 @@
 #include "glint/scene/highlights.h"
 
 #include "base/divide.h"
-#include "scene/state.h"
+#include "scene/parts.h"
 
 enum {
     ONE_Q15 = GLINT_SCENE_ONE_Q15,

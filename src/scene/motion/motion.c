@@ -7,7 +7,7 @@
 #include "base/blob.h"
 #include "base/compiler.h"
 #include "base/q.h"
-#include "scene/model_check.h"
+#include "scene/valid.h"
 
 /* The file is used in place: its layout is what these structs are. */
 STATIC_ASSERT(sizeof(struct glint_motion_pose) == 20);

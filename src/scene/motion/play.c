@@ -6,7 +6,7 @@
 
 #include "base/divide.h"
 
-#include "scene/model_check.h"
+#include "scene/valid.h"
 
 /* ------------------------------------------------------------------ opening */
 

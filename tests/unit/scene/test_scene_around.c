@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "scene/around/around.h"
+#include "scene/around.h"
 #include "scene/state.h"
 #include "support/models/scene_builder.h"
 #include "support/shuffle.h"

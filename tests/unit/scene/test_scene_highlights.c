@@ -17,8 +17,7 @@
 #include "glint/scene/highlights.h"
 #include "glint/view.h"
 #include "posix/workers.h"
-#include "scene/highlights/part.h"
-#include "scene/state.h"
+#include "scene/parts.h"
 #include "scenes/scene_frame.h"
 #include "twin/twin_highlights.h"
 

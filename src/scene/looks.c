@@ -2,7 +2,7 @@
  *
  * How materials look, from one frame to the next: a scene draws by its own copy
  * of the model's tables. */
-#include "scene/model_check.h"
+#include "scene/valid.h"
 #include "scene/parts.h"
 #include "scene/state.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "scene/around/around.h"
+#include "scene/around.h"
 
 #include "base/q.h"
 

@@ -210,7 +210,7 @@ static int can_shadow(const struct glint_shadow *shadow, int cell, uint32_t own,
 }
 
 /* Returns whether nothing can come between the sun and ball I. Places on it are
- * found to 2^-20 of its radius at least (frame/quick.c). */
+ * found to 2^-20 of its radius at least (quick.c). */
 static int is_open(const struct glint_scene *s,
                    const struct glint_shadow *shadow, uint32_t i)
 {

@@ -2,7 +2,7 @@
  *
  * Triangles in the middle of pixels: a few are kept as they were prepared. */
 #include "base/divide.h"
-#include "scene/frame/quick.h"
+#include "scene/quick.h"
 #include "scene/mesh.h"
 
 /* --------------------------------------------------------------- triangles */

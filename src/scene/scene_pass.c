@@ -3,7 +3,7 @@
  * The scene as a pass: a pixel is shaded once for each thing that its samples
  * see, at its middle, and at each sample of what mirrors or lets light through;
  * what of it nothing covers stays. */
-#include "scene/frame/quick.h"
+#include "scene/quick.h"
 #include "scene/visible.h"
 #include "scene/parts.h"
 

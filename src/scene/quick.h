@@ -4,8 +4,8 @@
  * by, and what all pixels of a thing share is done once.
  *
  * What is seen there has been decided exactly (visible.c). */
-#ifndef GLINT_SCENE_FRAME_QUICK_H
-#define GLINT_SCENE_FRAME_QUICK_H
+#ifndef GLINT_SCENE_QUICK_H
+#define GLINT_SCENE_QUICK_H
 
 #include "scene/visible.h"
 

@@ -2,7 +2,7 @@
  *
  * A frame is prepared: where objects are, what of them may be seen, and what
  * lights need to know. */
-#include "scene/frame/quick.h"
+#include "scene/quick.h"
 #include "scene/visible.h"
 #include "scene/parts.h"
 

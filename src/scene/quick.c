@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "scene/frame/quick.h"
+#include "scene/quick.h"
 
 #include "base/divide.h"
 #include "scene/parts.h"

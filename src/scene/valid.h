@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Ranges of the values of a scene: checked in its file, and again when a
+ * program changes them. */
+#ifndef GLINT_SCENE_VALID_H
+#define GLINT_SCENE_VALID_H
+
+#include "glint/scene/model.h"
+
+/* Returns what is wrong with a camera, or NULL. */
+const char *glint_scene_camera_fault(const struct glint_scene_camera *camera);
+
+/* The same of brushed metal. */
+const char *glint_scene_ward_fault(const struct glint_scene_ward *ward);
+
+/* Returns whether NAME is terminated and printable, and not empty. */
+int glint_scene_name_fits(const char *name);
+
+/* Returns whether X is LO .. HI. */
+static inline int glint_scene_between(int64_t x, int64_t lo, int64_t hi)
+{
+    return x >= lo && x <= hi;
+}
+
+/* Returns whether each of the N elements of V is within +-LIMIT. */
+int glint_scene_within(const int32_t *v, int n, int32_t limit);
+
+/* Returns whether X is 0 or a positive number in the form of glint_real. */
+int glint_scene_is_light(const struct glint_real *x);
+
+/* Returns whether V[N], N 1 .. 4, is a unit vector to 2^-20. */
+int glint_scene_is_unit(const int32_t *v_q30, int n);
+
+/* Returns the length of V, rounded up; V is within +-2^30. */
+int64_t glint_scene_length(const int32_t v[3]);
+
+/* Returns whether an object of this kind may be at AT, turned by any unit
+ * quaternion. */
+int glint_scene_fits(const struct glint_scene_model *model,
+                     const struct glint_scene_object *object,
+                     const int32_t at[3]);
+
+#endif
