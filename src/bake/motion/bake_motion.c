@@ -246,25 +246,6 @@ glint_motion_baker_frame(struct glint_motion_baker *baker,
 
 /* ------------------------------------------------------------------- finish */
 
-static void widen(const double at[3], double low[3], double high[3])
-{
-    for (int k = 0; k < 3; k++) {
-        low[k] = fmin(low[k], at[k]);
-        high[k] = fmax(high[k], at[k]);
-    }
-}
-
-void glint_recorded_box(const struct glint_motion_baker *baker, double low[3],
-                        double high[3])
-{
-    for (int k = 0; k < 3; k++)
-        low[k] = high[k] = 0;
-    for (uint32_t i = 0; i < baker->n_frames; i++)
-        widen(baker->pose[i].at, low, high);
-    for (uint32_t i = 0; i < baker->n_events; i++)
-        widen(baker->event[i].at, low, high);
-}
-
 static double distance(const double a[3], const double b[3])
 {
     return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +

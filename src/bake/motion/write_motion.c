@@ -148,6 +148,25 @@ static void put_intensities(struct writer *w)
     end_block(w);
 }
 
+static void widen(const double at[3], double low[3], double high[3])
+{
+    for (int k = 0; k < 3; k++) {
+        low[k] = fmin(low[k], at[k]);
+        high[k] = fmax(high[k], at[k]);
+    }
+}
+
+void glint_recorded_box(const struct glint_motion_baker *baker, double low[3],
+                        double high[3])
+{
+    for (int k = 0; k < 3; k++)
+        low[k] = high[k] = 0;
+    for (uint32_t i = 0; i < baker->n_frames; i++)
+        widen(baker->pose[i].at, low, high);
+    for (uint32_t i = 0; i < baker->n_events; i++)
+        widen(baker->event[i].at, low, high);
+}
+
 /* ------------------------------------------------------------------- header */
 
 static void set_scale(struct writer *w, const double low[3],
