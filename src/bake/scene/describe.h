@@ -84,7 +84,7 @@ bool glint_describe_triangle(struct glint_describer *d);
 bool glint_describe_plane(struct glint_describer *d);
 bool glint_describe_mesh(struct glint_describer *d);
 
-/* Makes X a unit vector; returns false if it has no direction. */
+/* describer.c: makes X a unit vector; returns false if it has no direction. */
 bool glint_describe_unit(double x[3]);
 
 /* Copies WORD, the name of a file, to NAME. */
