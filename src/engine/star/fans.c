@@ -111,9 +111,3 @@ void glint_fans_at(const struct glint_psf *p, double r, double off,
                   s * ((1 - t) * b[0][c] + t * b[1][c])) /
                  (r * r);
 }
-
-void glint_fans_light(const struct glint_psf *p, double x, double y,
-                      double rgb[3])
-{
-    glint_fans_at(p, hypot(x, y), atan2(y, x) - glint_psf_angle(p, 0), rgb);
-}

@@ -391,7 +391,7 @@ void glint_psf_far(const struct glint_psf *p, double x, double y,
         return;
     }
     if (p->fans) {
-        glint_fans_light(p, x, y, rgb);
+        glint_fans_at(p, hypot(x, y), atan2(y, x) - glint_psf_angle(p, 0), rgb);
         return;
     }
     add_edges(p, x, y, window, self, rgb, &sum);

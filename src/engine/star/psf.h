@@ -84,8 +84,6 @@ enum glint_status glint_fans_init(struct glint_psf *psf);
 void glint_fans_at(const struct glint_psf *psf, double r, double off,
                    double rgb[3]); /* R pixels away, turned by OFF from a line
                                     */
-void glint_fans_light(const struct glint_psf *psf, double x, double y,
-                      double rgb[3]);
 
 /* Returns by what a soft edge of width SOFT multiplies light at Q cycles per
  * stop radius: the square of the transform of its slope. */
