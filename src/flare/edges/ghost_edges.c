@@ -4,6 +4,7 @@
 #include "base/compiler.h"
 #include "base/q.h"
 #include "flare/edges/ghost_shade.h"
+#include "flare/edges/patch.h"
 
 enum {
     OCTAVES = GLINT_LIGHT_OCTAVES,
@@ -51,8 +52,10 @@ static void count_only(struct glint_ghost_edges *g, const int32_t a_q8[2],
         q_smaller(INT32_MAX - g->more_refs, glint_edge_span(&edge, g->bins));
 }
 
-void glint_ghost_add_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
-                          const int32_t b_q8[2], int32_t light, int32_t other)
+/* Adds the edge from A to B with LIGHT on its inner side and OTHER on its outer
+ * side, if it can change a pixel. */
+static void add_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
+                     const int32_t b_q8[2], int32_t light, int32_t other)
 {
     const int32_t right_q8 = g->width * 256, bottom_q8 = g->height * 256;
     struct glint_edge edge;
@@ -165,13 +168,119 @@ int32_t glint_ghost_step(struct glint_ghost_edges *g, int64_t irradiance_q22,
         in_steps(q_shift(irradiance_q22 * energy_q16, 18), g->rows->steps));
 }
 
-int32_t glint_ghost_light(struct glint_ghost_edges *g, int64_t area2, int frac,
+/* Returns the packed light of 2^SHARE_LOG2 cells that cover AREA2 / 2^FRAC
+ * pixels. SIGN is -1 for a mirrored cell, else 1. */
+static int32_t pack_light(struct glint_ghost_edges *g, int64_t area2, int frac,
                           int share_log2, int64_t energy_q16, int sign)
 {
     const int64_t irradiance_q22 = glint_irradiance_q22(
         g->bundle, share_log2, area2, frac, g->limit_q8, &g->n_held);
 
     return glint_ghost_step(g, irradiance_q22, energy_q16, sign);
+}
+
+/* -------------------------------------------------- cells drawn separately */
+
+/* Adds the edges of the closed outline O. */
+static void add_outline(struct glint_ghost_edges *g,
+                        const struct glint_outline *o, int32_t light)
+{
+    point_q8 first, last, here;
+
+    for (int i = 0; i < o->n; i++) {
+        here[0] = q_narrow(q_shift(o->x_q16[i], 8));
+        here[1] = q_narrow(q_shift(o->y_q16[i], 8));
+        if (i > 0)
+            add_edge(g, last, here, light, 0);
+        for (int k = 0; k < 2; k++) {
+            last[k] = here[k];
+            first[k] = i ? first[k] : here[k];
+        }
+    }
+    if (o->n > 0)
+        add_edge(g, last, first, light, 0);
+}
+
+void glint_ghost_add_alone(struct glint_ghost_edges *g,
+                           const struct glint_vertex *const *corner, int n,
+                           int share_log2)
+{
+    struct glint_outline *o = &g->rows->outline;
+    const struct glint_vertex *turned[4] = {corner[0]};
+    struct glint_corners c;
+    int32_t light;
+    int cut, thin;
+
+    glint_corners_set(&c, corner, n);
+    for (int i = 0; i < n; i++)
+        turned[i] = corner[c.area2_q16 >= 0 ? i : n - 1 - i];
+    glint_corners_set(&c, turned, n);
+    cut = glint_outline_classify(&c, g->stop);
+    if (cut < 0 ||
+        glint_box_empty(glint_corners_reach(&c, g->width, g->height)))
+        return;
+    cut |= cut && g->transfer ? GLINT_CUT_LOWERED : 0;
+    thin = glint_corners_thin(&c);
+    for (int k = 0; k < (cut ? n - 2 : 1); k++) {
+        int64_t area2 = c.area2_q16, share_q28;
+        int frac = 2 * GLINT_VERTEX_FRAC + 1, share = share_log2;
+
+        if (cut)
+            glint_outline_cut(o, &c, k, g->stop, cut);
+        else
+            glint_outline_whole(o, &c);
+        if (o->n == 0)
+            continue;
+        share_q28 = 1 << 28;
+        if (thin) {
+            share_q28 = o->share_q28;
+            share -= cut && n == 4;
+            area2 = glint_outline_widen_q32(o);
+            frac = 33;
+        }
+        light = pack_light(g, area2, frac, share,
+                           q_shift(o->energy_q16 * share_q28, 28), 1);
+        if (g->patch)
+            g->stop->shade->method->patch(g, light);
+        if (!g->patch || g->patch->clear)
+            add_outline(g, o, light);
+    }
+}
+
+/* Draws a cell that is no convex quad: as two triangles, or as the one triangle
+ * whose corners are not lost. */
+static NEVER_INLINE void add_triangles(struct glint_ghost_edges *g,
+                                       const struct glint_ghost_cell *c)
+{
+    static const int half[2][3] = {{0, 1, 2}, {0, 2, 3}};
+    const struct glint_vertex *left[4];
+    int n = 0;
+
+    for (int k = 0; k < 4; k++)
+        if (!(c->at[k].barrels & NODE_LOST))
+            left[n++] = c->corner[k];
+    g->n_dropped += n < 4;
+    if (n == 3)
+        glint_ghost_add_alone(g, left, 3, -1);
+    for (int k = 0; n == 4 && k < 2; k++) {
+        const struct glint_vertex *const t[3] = {c->corner[half[k][0]],
+                                                 c->corner[half[k][1]],
+                                                 c->corner[half[k][2]]};
+
+        glint_ghost_add_alone(g, t, 3, -1);
+    }
+}
+
+/* Draws a cell that shares no side with its neighbours. TURN is the sign of the
+ * turn at its corners, 0 if it is not convex. */
+static NEVER_INLINE void add_odd(struct glint_ghost_edges *g,
+                                 const struct glint_ghost_cell *c,
+                                 const struct glint_corners *corners, int turn)
+{
+    if (turn == 0 && !glint_corners_tiny(corners, 16))
+        add_triangles(g, c);
+    else
+        glint_ghost_add_alone(g, c->corner, 4, 0);
 }
 
 /* ------------------------------------------------------------- in the grid */
@@ -218,10 +327,10 @@ static void add_chords(struct glint_ghost_edges *g,
             next->cut[0] != GLINT_CUT_NOTHING &&
             glint_cuts_cross(g->stop, c->corner, here->cut[1], next->cut[0],
                              corner)) {
-            glint_ghost_add_edge(g, here->end_q8[1], corner, light, 0);
-            glint_ghost_add_edge(g, corner, next->end_q8[0], light, 0);
+            add_edge(g, here->end_q8[1], corner, light, 0);
+            add_edge(g, corner, next->end_q8[0], light, 0);
         } else
-            glint_ghost_add_edge(g, here->end_q8[1], next->end_q8[0], light, 0);
+            add_edge(g, here->end_q8[1], next->end_q8[0], light, 0);
     }
 }
 
@@ -288,7 +397,7 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
     if (some & NODE_LOST) {
         set_cell(g, i, j, &cell);
         dim(g, &cell, &corners, dimmed);
-        glint_ghost_add_triangles(g, &cell);
+        add_triangles(g, &cell);
         return 0;
     }
     /* The cell is cut off by one side or barrel, or none of its edges can
@@ -306,15 +415,15 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
         set_cell(g, i, j, &cell);
     if (odd) {
         dim(g, &cell, &corners, dimmed);
-        glint_ghost_add_odd(g, &cell, &corners, turn);
+        add_odd(g, &cell, &corners, turn);
         return 0;
     }
     energy_q16 = mean_energy_q16(&corners);
     if (g->stop->shade &&
         !g->stop->shade->method->cell(g, &corners, turn, cuts, &energy_q16))
         return 0;
-    light = glint_ghost_light(g, turn * corners.area2_q16,
-                              2 * GLINT_VERTEX_FRAC + 1, 0, energy_q16, turn);
+    light = pack_light(g, turn * corners.area2_q16, 2 * GLINT_VERTEX_FRAC + 1,
+                       0, energy_q16, turn);
     if (cuts)
         add_chords(g, &cell, light);
     return light;
@@ -334,12 +443,12 @@ static void add_shared(struct glint_ghost_edges *g,
     if (!(at_a.sides | at_b.sides) && !(at_a.barrels | at_b.barrels)) {
         const point_q8 from = {a->x_q8, a->y_q8}, to = {b->x_q8, b->y_q8};
 
-        glint_ghost_add_edge(g, from, to, light, other);
+        add_edge(g, from, to, light, other);
         return;
     }
     glint_cuts_part(g->stop, a, at_a, b, at_b, &part);
     if (part.visible)
-        glint_ghost_add_edge(g, part.end_q8[0], part.end_q8[1], light, other);
+        add_edge(g, part.end_q8[0], part.end_q8[1], light, other);
 }
 
 static struct glint_outside outside_at(const struct glint_ghost_edges *g, int i,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Shared by the files behind ghost_edges.h: ghost_rows.c, which fills rows of
- * nodes, ghost_edges.c, which draws cells of the grid, and ghost_alone.c, which
- * draws cells that share no side with their neighbours. */
+ * nodes, ghost_edges.c, which draws cells of the grid, and ghost_shade.c, which
+ * draws cells that show what lies in the stop. */
 #ifndef GLINT_FLARE_GHOST_PARTS_H
 #define GLINT_FLARE_GHOST_PARTS_H
 
@@ -39,16 +39,6 @@ void glint_ghost_emit_once(struct glint_ghost_edges *g);
 /* Fills row J of the nodes; it stays valid until row J + 2 is filled. */
 void glint_ghost_set_nodes(struct glint_ghost_edges *g, int j);
 
-/* Adds the edge from A to B with LIGHT on its inner side and OTHER on its outer
- * side, if it can change a pixel. */
-void glint_ghost_add_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
-                          const int32_t b_q8[2], int32_t light, int32_t other);
-
-/* Returns the packed light of 2^SHARE_LOG2 cells that cover AREA2 / 2^FRAC
- * pixels. SIGN is -1 for a mirrored cell, else 1. */
-int32_t glint_ghost_light(struct glint_ghost_edges *g, int64_t area2, int frac,
-                          int share_log2, int64_t energy_q16, int sign);
-
 /* Returns the packed light of a cell of IRRADIANCE at energy 1, in steps. */
 int32_t glint_ghost_step(struct glint_ghost_edges *g, int64_t irradiance_q22,
                          int64_t energy_q16, int sign);
@@ -59,16 +49,5 @@ int32_t glint_ghost_step(struct glint_ghost_edges *g, int64_t irradiance_q22,
 void glint_ghost_add_alone(struct glint_ghost_edges *g,
                            const struct glint_vertex *const *corner, int n,
                            int share_log2);
-
-/* Draws a cell that shares no side with its neighbours. TURN is the sign of the
- * turn at its corners, 0 if it is not convex. */
-void glint_ghost_add_odd(struct glint_ghost_edges *g,
-                         const struct glint_ghost_cell *c,
-                         const struct glint_corners *corners, int turn);
-
-/* Draws a cell that is no convex quad: as two triangles, or as the one triangle
- * whose corners are not lost. */
-void glint_ghost_add_triangles(struct glint_ghost_edges *g,
-                               const struct glint_ghost_cell *c);
 
 #endif
