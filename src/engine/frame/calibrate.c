@@ -3,25 +3,6 @@
 #include <stdlib.h>
 
 #include "engine/frame/frame_parts.h"
-#include "engine/setup/dirt.h"
-
-/* Returns the plan, also before it is drawn, so that its cost can be predicted.
- */
-struct glint_cost_plan glint_frame_plan(const struct glint_frame *f)
-{
-    return (struct glint_cost_plan){
-        .flare = f->flare,
-        .width = f->cfg.width,
-        .height = f->cfg.height,
-        .n_star = f->star.is_set ? f->star.pixels : 0,
-        .n_veil = glint_frame_veil_pixels(f),
-        .n_looked_at = f->flare ? (double)glint_flare_looked(f->flare) : 0,
-        .can_half = f->can_half,
-        .can_dim = f->dim.log2_q8 && f->setup->n_wavelengths == 3,
-        .code = f->code_light,
-        .shade = f->setup->dirt ? &f->setup->dirt->shade : NULL,
-        .dials = f->dials};
-}
 
 /* Draws a few frames; lowers *LEAST_MS to the time of the quickest. */
 static enum glint_status draw_some(struct glint_frame *frame,

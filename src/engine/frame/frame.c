@@ -122,12 +122,6 @@ static void set_waves(struct glint_frame *f)
                 glint_wave_of(s->wavelength_nm[i], s->rgb[i], s->unit_flux[i]);
 }
 
-double glint_frame_pixels_per_tangent(const struct glint_frame *f)
-{
-    return fabs(f->setup->optics.focal_mm * f->view.width /
-                f->view.sensor_width_mm);
-}
-
 /* Returns the chord of the angle that PX pixels on the axis are. */
 static int32_t near_q30(const struct glint_frame *f, double px)
 {
@@ -220,21 +214,6 @@ static enum glint_status set_lights(struct glint_frame *f,
     if (f->star.is_alone)
         f->n_lights = 0;
     return GLINT_OK;
-}
-
-static bool is_in_codes(const struct glint_frame *f,
-                        const struct glint_image *image)
-{
-    return image->format != GLINT_LINEAR_Q20 || f->for_codes;
-}
-
-double glint_frame_codes_light(const struct glint_frame *f,
-                               const struct glint_image *image, double codes)
-{
-    return !image || !is_in_codes(f, image)
-               ? 0
-               : codes / 255 /
-                     (image->transfer == GLINT_TONE_SRGB ? 12.92 : 4.5);
 }
 
 /* Returns the frame of rays for IMAGE; NULL stands for a linear picture. */

@@ -5,14 +5,6 @@
 
 #include "engine/frame/frame_parts.h"
 
-struct glint_frame_scale glint_frame_scale_of(int brightest_log2,
-                                              int together_log2)
-{
-    const int most = 23 - together_log2, likely = 5 - brightest_log2;
-
-    return (struct glint_frame_scale){likely < most ? likely : most, most};
-}
-
 /* Returns the largest magnitude of N values. */
 static uint32_t peak_of(const int32_t *linear_q20, size_t n)
 {

@@ -24,7 +24,14 @@ static inline double now(const struct glint_frame *f)
     return f->clock ? f->clock() : 0;
 }
 
-/* Returns the pixels that a tangent of 1 takes on the axis. */
+/* Returns whether light is added to codes, those of IMAGE or later ones. */
+static inline bool is_in_codes(const struct glint_frame *f,
+                               const struct glint_image *image)
+{
+    return image->format != GLINT_LINEAR_Q20 || f->for_codes;
+}
+
+/* frame_units.c: returns the pixels that a tangent of 1 takes on the axis. */
 double glint_frame_pixels_per_tangent(const struct glint_frame *frame);
 
 /* Returns whether ghosts choose among the setup's sets of wavelengths. */

@@ -432,6 +432,24 @@ static double hold_waves(struct glint_frame *f, double minsn)
     return minsn * fmin(1, WAVES * jobs / fmax(1, n));
 }
 
+/* Returns the plan, also before it is drawn, so that its cost can be predicted.
+ */
+struct glint_cost_plan glint_frame_plan(const struct glint_frame *f)
+{
+    return (struct glint_cost_plan){
+        .flare = f->flare,
+        .width = f->cfg.width,
+        .height = f->cfg.height,
+        .n_star = f->star.is_set ? f->star.pixels : 0,
+        .n_veil = glint_frame_veil_pixels(f),
+        .n_looked_at = f->flare ? (double)glint_flare_looked(f->flare) : 0,
+        .can_half = f->can_half,
+        .can_dim = f->dim.log2_q8 && f->setup->n_wavelengths == 3,
+        .code = f->code_light,
+        .shade = f->setup->dirt ? &f->setup->dirt->shade : NULL,
+        .dials = f->dials};
+}
+
 bool glint_frame_hold_work(struct glint_frame *f)
 {
     enum { MOST_PLANS = 12 };

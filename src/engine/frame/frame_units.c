@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Units of a frame: the pixels of a tangent, the light of a code, and the
+ * powers of two that light may be drawn at. */
+#include <math.h>
+
+#include "engine/frame/frame_parts.h"
+
+double glint_frame_pixels_per_tangent(const struct glint_frame *f)
+{
+    return fabs(f->setup->optics.focal_mm * f->view.width /
+                f->view.sensor_width_mm);
+}
+
+double glint_frame_codes_light(const struct glint_frame *f,
+                               const struct glint_image *image, double codes)
+{
+    return !image || !is_in_codes(f, image)
+               ? 0
+               : codes / 255 /
+                     (image->transfer == GLINT_TONE_SRGB ? 12.92 : 4.5);
+}
+
+struct glint_frame_scale glint_frame_scale_of(int brightest_log2,
+                                              int together_log2)
+{
+    const int most = 23 - together_log2, likely = 5 - brightest_log2;
+
+    return (struct glint_frame_scale){likely < most ? likely : most, most};
+}
