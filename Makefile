@@ -56,7 +56,7 @@ CORE      := base image kernels kernels/rays kernels/ward kernels/maps lens lamp
 PUBLISHED := published
 ENGINE    := engine engine/options engine/frame engine/setup engine/star
 BAKE      := bake bake/table bake/scene bake/environment bake/motion bake/translucent bake/trace bake/regress bake/visible bake/fit bake/skew bake/exact bake/published bake/published/scatter
-PLATFORM  := posix formats video panel linux jpeg oiio assimp sdl
+PLATFORM  := posix formats video panel linux jpeg assimp sdl
 TOOLS     := help options control lamp_files desk model ffmpeg overlay zooms stones scenes motions synth twin lens_figures lens_check import command live lab lab/plots lab/scenes
 c_files = $(wildcard $(2:%=$(1)/%/*.c))
 objects = $(patsubst %.c,$(OUT)/%.o,$(filter-out $(absent),$(call c_files,$(1),$(2))))
@@ -74,7 +74,7 @@ absent += $(if $(filter yes,$(WITH_JANSSON)),tools/synth/item_absent.c tools/imp
 absent += tools/import/$(if $(filter yes,$(WITH_EXPAT)),openlensflare_absent,openlensflare).c
 absent += tools/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
 # A static program has no plug-ins.
-absent += platform/oiio/$(if $(CROSS),loader,absent).c
+absent += platform/formats/oiio_$(if $(CROSS),loader,absent).c
 absent += platform/assimp/$(if $(CROSS),loader,absent).c platform/assimp/assimp.c
 absent += platform/sdl/$(if $(CROSS),window,absent).c platform/sdl/sdl.c
 absent += tools/command/glint.c tools/live/glint_live.c tools/live/models_only.c tools/lab/ray_errors.c tools/lab/projection_table.c
@@ -171,7 +171,7 @@ $(OUT)/glint-live: $(OUT)/tools/live/glint_live.o $(OUT)/tools/live/models_only.
 # The image plug-in, the only C++: PNG, JPEG, EXR ... through OpenImageIO.
 oiio: build/glint-oiio.so
 OIIO := $(wildcard platform/oiio/*.cc)
-build/glint-oiio.so: $(OIIO) $(wildcard platform/oiio/*.h) platform/formats/samples.h platform/formats/tones.h
+build/glint-oiio.so: $(OIIO) $(wildcard platform/oiio/*.h) $(addprefix platform/formats/,oiio.h samples.h tones.h)
 	@mkdir -p $(@D)
 	$(say) CXX '$(OIIO)'
 	$(Q)$(CXX) -std=c++17 -Wall -Wextra $(PLUGGED) -Iinclude -Iplatform \

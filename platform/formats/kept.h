@@ -10,7 +10,7 @@
  *
  * A file of the same type gets depth, alpha, other channels, parts, windows,
  * profile and metadata as they came. glint itself writes PPM, PGM and PFM,
- * other types go through the image plug-in (oiio/oiio.h). A file of another
+ * other types go through the image plug-in (formats/oiio.h). A file of another
  * type gets the colours, upright, with as much depth and alpha as it takes, and
  * the metadata that OpenImageIO translates.
  */
@@ -20,7 +20,7 @@
 #include <stdbool.h>
 
 #include "glint/status.h"
-#include "oiio/oiio.h"
+#include "formats/oiio.h"
 #include "formats/samples.h"
 
 enum { GLINT_KEPT_NOTES = 256 }; /* bytes */

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "oiio/oiio.h"
+#include "formats/oiio.h"
 #include "formats/pnm.h"
 #include "posix/error.h"
 #include "posix/input.h"

@@ -8,7 +8,7 @@
  *     glint_picture_free(&image);
  *
  * PPM, PGM and PFM are read and written by glint itself, everything else by
- * its image plug-in (oiio/oiio.h). Files are told apart by content when
+ * its image plug-in (formats/oiio.h). Files are told apart by content when
  * loading, by extension when saving. "-" is a pipe: PPM, PGM or PFM come in;
  * PPM goes out, or PFM where floats are saved.
  *

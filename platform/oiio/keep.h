@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * oiio/keep.h - the functions of oiio/oiio.h that keep a file as it is.
+ * oiio/keep.h - the functions of formats/oiio.h that keep a file as it is.
  */
 #ifndef GLINT_PLATFORM_OIIO_KEEP_H
 #define GLINT_PLATFORM_OIIO_KEEP_H
 
-#include "oiio/oiio.h"
+#include "formats/oiio.h"
 
 namespace glint
 {

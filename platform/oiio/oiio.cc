@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The plug-in behind oiio/oiio.h. No exception leaves it: all that OpenImageIO
- * throws or returns becomes a status and one line of text. */
-#include "oiio/oiio.h"
+ * The plug-in behind formats/oiio.h. No exception leaves it: all that
+ * OpenImageIO throws or returns becomes a status and one line of text. */
+#include "formats/oiio.h"
 
 #include <cstdio>
 #include <cstdlib>

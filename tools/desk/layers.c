@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "formats/picture.h"
-#include "oiio/oiio.h"
+#include "formats/oiio.h"
 #include "options/numbered.h"
 #include "posix/ending.h"
 #include "posix/error.h"

@@ -9,7 +9,7 @@
 
 #include "lab/plots/plot.h"
 #include "lab/sweep.h"
-#include "oiio/oiio.h"
+#include "formats/oiio.h"
 
 enum { BLOCK = 65535 }; /* most bytes of a stored block of deflate */
 

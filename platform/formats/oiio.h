@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * oiio/oiio.h - PNG, JPEG, EXR and other pictures, through OpenImageIO.
+ * formats/oiio.h - PNG, JPEG, EXR and other pictures, through OpenImageIO.
  *
  *     const struct glint_oiio *oiio;
  *     if (!glint_oiio_load(&oiio, &error))
@@ -10,8 +10,8 @@
  * plug-in, glint-oiio.so, which is loaded when a picture first needs it and
  * then stays. glint works without it; only its files (*.cc) are in C++.
  */
-#ifndef GLINT_PLATFORM_OIIO_OIIO_H
-#define GLINT_PLATFORM_OIIO_OIIO_H
+#ifndef GLINT_PLATFORM_FORMATS_OIIO_H
+#define GLINT_PLATFORM_FORMATS_OIIO_H
 
 #include <stddef.h>
 

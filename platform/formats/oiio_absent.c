@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Stands in for loader.c in static programs, which cannot load a plug-in.
+ * Stands in for oiio_loader.c in static programs, which cannot load a plug-in.
  */
-#include "oiio/oiio.h"
+#include "formats/oiio.h"
 
 #include "posix/error.h"
 

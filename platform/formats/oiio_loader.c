@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "oiio/oiio.h"
+#include "formats/oiio.h"
 
 #include <pthread.h>
 
