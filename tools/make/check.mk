@@ -153,9 +153,10 @@ sources = $(shell find include src platform tools tests -name '*.[ch]' -o -name 
 format:
 	$(Q)clang-format -i $(sources)
 libraries := $(OUT)/libglint.a $(OUT)/libglint-published.a
-lint: $(libraries) $(OUT)/libglint-engine.a $(OUT)/libglint-bake.a
-	@tools/lint/layers && tools/lint/cycles && tools/lint/tags && tools/lint/q && tools/lint/length && tools/lint/links && tools/report/write-figures --check
-	@tools/lint/symbols $(NM) $^
+all_o := $(core_o) $(published_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o)
+lint: $(libraries) $(OUT)/libglint-engine.a $(OUT)/libglint-bake.a $(all_o)
+	@tools/lint/layers && tools/lint/cycles $(NM) $(OUT) $(all_o) && tools/lint/tags && tools/lint/q && tools/lint/length && tools/lint/links && tools/report/write-figures --check
+	@tools/lint/symbols $(NM) $(filter %.a,$^)
 	@[ $(CONFIG) != release ] || \
 	        $(MAKE) -s --no-print-directory purity
 	@clang-format --dry-run -Werror $(sources)
