@@ -68,19 +68,4 @@ struct glint_cost glint_cost_of(const struct glint_cost_plan *plan,
  * counts of callgrind. */
 double glint_cost_minsn(const struct glint_cost *cost);
 
-/* The cells of a ghost that what lies in the stop shades (edges/ghost_shade.h).
- */
-struct glint_cost_cells {
-    double cells;  /* of the ghost, a side */
-    double light;  /* display white */
-    double area;   /* pixels that its light falls on */
-    double inside; /* share of its cells within the stop */
-    double view;   /* share of these in the picture */
-};
-
-/* Returns the number of parts for the shade of PLAN, of whose tables those with
- * 2^LOG2 cells a side and fewer are used. */
-double glint_cost_parts(const struct glint_cost_plan *plan,
-                        const struct glint_cost_cells *ghost, int log2);
-
 #endif
