@@ -34,11 +34,6 @@ struct glint_zone_task {
     double settled;
 };
 
-/* Returns the terms of output KIND in TASK. STEEP: energies change a lot over
- * the pupil. */
-struct glint_degrees glint_zone_degrees(const struct glint_zone_task *task,
-                                        enum glint_channel kind, bool steep);
-
 /* Moments are at most those of the degrees of a skew zone's places, 18, 16, 10,
  * 8 and 10. */
 #define GLINT_ZONE_SCRATCH                                  \
