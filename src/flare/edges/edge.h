@@ -103,6 +103,13 @@ struct glint_edge_sums {
 int glint_edge_set(struct glint_edge *edge, const int32_t a_q8[2],
                    const int32_t b_q8[2], int32_t light, int32_t other);
 
+/* Returns x of EDGE at height Y between its ends: below 2^29 pixels _q8, so
+ * below 2^61. Slopes are rounded towards 0, so x never lies beyond the ends. */
+static inline int64_t edge_x_at_q40(const struct glint_edge *e, int32_t y_q8)
+{
+    return e->x_q8 * (INT64_C(1) << 32) + e->slope_q40 * (y_q8 - e->y_q8);
+}
+
 /* Makes the light of EDGE begin at the nearest whole pixel in each row: a
  * fraction of the work, for changes that hardly show. Closed outlines still
  * cancel, as heights are unchanged. */

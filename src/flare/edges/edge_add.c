@@ -10,7 +10,6 @@
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "base/q.h"
-#include "flare/edges/edge_at.h"
 
 #define ONE_Q16 (INT32_C(1) << 16)
 #define ONE_Q40 (INT64_C(1) << 40)
