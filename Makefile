@@ -53,7 +53,6 @@ include tools/make/target.mk
 # Rooms of the sources; every file in them is built, but for the alternatives
 # below. src/README.md says what each is for.
 CORE      := base image kernels kernels/rays kernels/ward kernels/maps lens lamps follow tile flare/edges flare star veil scene scene/ward scene/motion scene/translucent scene/highlights scene/account reuse
-PUBLISHED := published
 ENGINE    := engine engine/options engine/frame engine/setup engine/star
 BAKE      := bake bake/table bake/scene bake/environment bake/motion bake/translucent bake/trace bake/regress bake/visible bake/fit bake/skew bake/exact bake/published bake/published/scatter
 PLATFORM  := posix formats video panel linux jpeg assimp sdl
@@ -80,7 +79,6 @@ absent += platform/sdl/$(if $(CROSS),window,absent).c platform/sdl/sdl.c
 absent += tools/command/glint.c tools/live/glint_live.c tools/live/models_only.c tools/lab/ray_errors.c tools/lab/projection_table.c
 
 core_o      := $(call objects,src,$(CORE))
-published_o := $(call objects,src,$(PUBLISHED))
 engine_o    := $(call objects,src,$(ENGINE))
 bake_o      := $(call objects,src,$(BAKE))
 platform_o  := $(call objects,platform,$(PLATFORM))
@@ -104,7 +102,6 @@ $(OUT)/tools/import/json_absent.o: NOTE := lens files of realflare and lentil le
 $(OUT)/src/bake/motion/absent.o: NOTE := recordings left out: no libjansson-dev
 
 $(OUT)/libglint.a: $(core_o)
-$(OUT)/libglint-published.a: $(published_o)
 $(OUT)/libglint-engine.a: $(engine_o)
 $(OUT)/libglint-bake.a: $(bake_o)
 $(OUT)/libglint-platform.a: $(platform_o)
@@ -114,9 +111,9 @@ $(OUT)/lib%.a:
 	$(Q)rm -f $@; $(AR) rcs $@ $(filter %.o,$^)
 # Archives are made anew where other files are to be in them, and what knows the
 # prefix where that is another.
-archives := $(patsubst %,$(OUT)/libglint%.a,-tools -platform -bake -engine -published) $(OUT)/libglint.a
+archives := $(patsubst %,$(OUT)/libglint%.a,-tools -platform -bake -engine) $(OUT)/libglint.a
 $(archives): $(OUT)/parts
-$(OUT)/parts: parts := $(core_o) $(published_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o)
+$(OUT)/parts: parts := $(core_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o)
 $(OUT)/prefix: parts := $(PREFIX) $(LIBDIR)
 $(OUT)/parts $(OUT)/prefix: always
 	@mkdir -p $(@D); echo '$(parts)' | cmp -s - $@ || echo '$(parts)' >$@

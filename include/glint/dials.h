@@ -19,7 +19,7 @@ extern "C" {
 #define GLINT_MOST_VEIL 0.9
 
 enum glint_dial_flag {
-    GLINT_DIAL_HALF = 1, /* pictures in codes are drawn by edges with half
+    GLINT_DIAL_HALF = 1, /* pictures in codes are drawn with half
                             as many pixels each way */
     /* GLINT_DIAL_HALF, and a budget does not change it. */
     GLINT_DIAL_ALWAYS_HALF = 2,

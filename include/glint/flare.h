@@ -117,7 +117,7 @@ struct glint_flare_frame {
      * changes by fewer codes than this are moved to whole pixels, which takes a
      * fraction of the time. 0: no edge is moved. */
     int snap_codes_q8;
-    /* Only for drawing by edges: if set, the flare has half as many pixels each
+    /* If set, the flare has half as many pixels each
      * way, and each of them stands for four of the picture. In Y'CbCr whose
      * chroma is shared by pairs of pixels, the four are lit at once, by the
      * change of their mean. NULL, or glint_half, which is linked only by a
@@ -165,61 +165,39 @@ int glint_lights_merge(struct glint_light *lights, int n_lights,
 
 /* ------------------------------------------------------------------ drawing */
 
-/* The two ways to draw. By edges: the exact area that each cell covers is drawn
- * with one irradiance per cell; folds and slivers keep their light; a primitive
- * is an edge across which light changes; stops with a mask are refused. By
- * cells: irradiance is interpolated at pixel centres [Bodonyi23]; a primitive
- * is a cell; a stop may have a mask. Only a program that names
- * glint_raster_cells links it. */
-struct glint_raster;
-extern const struct glint_raster glint_raster_edges, glint_raster_cells;
+/* The exact area that each cell covers is drawn with one irradiance per cell;
+ * folds and slivers keep their light. A primitive is an edge across which light
+ * changes. */
 
 /* Draws a frame that is planned from what the last one was planned from with
  * the edges and lists of tiles that are still there. */
 struct glint_reuse;
 extern const struct glint_reuse glint_reuse;
 
-enum glint_weights { GLINT_WEIGHTS_LOOP_DEROSE, GLINT_WEIGHTS_WACHSPRESS };
-
 struct glint_flare_config {
     struct glint_workers *workers; /* kept; NULL: serial. Changes no output */
     unsigned sets; /* instruction sets, glint_sets_here() or fewer; 0: plain C
                       (kernels.h). Changes no output */
-    int width, height; /* size of the picture, 1 .. GLINT_MAX_SIDE */
-    int tile_log2;     /* log2 of the side of a small tile in pixels, 3 .. 6 */
-    const struct glint_raster *raster; /* NULL: glint_raster_edges */
+    int width, height;      /* size of the picture, 1 .. GLINT_MAX_SIDE */
+    int tile_log2;          /* log2 of the side of a tile in pixels, 3 .. 6 */
     int dither;             /* 1: 8-bit output is dithered, deterministically */
-    struct glint_stop stop; /* copied; its mask is kept */
+    struct glint_stop stop; /* copied */
 
-    /* For drawing by edges: irradiance of a cell is rounded to this many steps
+    /* Irradiance of a cell is rounded to this many steps
      * an octave, 1 .. 4096, and to fewer for faint ghosts planned for codes.
      * Edges between cells of equal irradiance are not drawn. 0: it is not
      * rounded. */
     int irradiance_steps;
 
-    /* The members from here to antialias are for drawing by cells. */
-    int coarse_log2; /* log2 of the side of a large tile in pixels, tile_log2 +
-                        1 .. 8; 0: there are no large tiles */
-    enum glint_weights weights;
-    int merge_steps; /* log2 of the largest side, in cells, of a block of cells
-                        that may become one primitive, 0 .. 4 */
-    /* largest difference between two edges that merge, as a share of the longer
-     * one, 0 .. 1 */
-    int32_t merge_gamma_q16;
-    int antialias; /* 0: a pixel is lit or not by its centre, as published */
-
     /* Capacities. The statistics of glint_flare_bin() say what a frame needed.
      */
     int max_bundles;
-    int max_vertices;
-    int max_primitives; /* primitives of a frame. By edges each worker gets an
-                           equal share; with half as many more than needed, few
+    int max_vertices;   /* of bundles that glint_flare_add() takes in */
+    int max_primitives; /* primitives of a frame. Each worker gets an equal
+                           share; with half as many more than needed, few
                            bundles have to wait for room in another worker's
                            share. */
-    int max_refs; /* entries in the lists of all tiles; with two levels, of all
-                     large tiles */
-    int max_tile_refs; /* entries in the lists of the small tiles of one large
-                          tile; 0 with one level */
+    int max_refs;       /* entries in the lists of all tiles */
 
     /* glint_reuse: a plan of the lights, waves and dials of the plan before,
      * whose bundles were binned, keeps these. No output changes. NULL: every
@@ -233,14 +211,13 @@ struct glint_flare_config {
 
 struct glint_flare_stats {
     /* Number of each that was drawn; VERTICES counts all that were taken in. */
-    int bundles, vertices, primitives, refs, tile_refs;
+    int bundles, vertices, primitives, refs;
     /* Capacities that would have drawn everything. They are exact if
-     * max_bundles was large enough and, by cells, max_vertices, too. */
-    int need_bundles, need_vertices, need_primitives, need_refs, need_tile_refs;
+     * max_bundles was large enough. */
+    int need_bundles, need_vertices, need_primitives, need_refs;
     int dropped_bundles; /* left out for want of capacity */
     int dropped_cells; /* cells left out of bundles that were drawn: they have a
                           lost ray, a vertex out of range, or no area */
-    int merged_cells;  /* cells that became part of a larger primitive */
     int reused; /* 1: edges and lists of tiles are those of the last frame */
     int held_cells; /* cells, or halves of cells, of drawn bundles whose light
                        was clamped to what one cell may give a pixel: 2048 times
@@ -255,7 +232,7 @@ struct glint_flare; /* opaque, in the caller's memory */
 void glint_flare_defaults(struct glint_flare_config *cfg, int width,
                           int height);
 
-/* Sets the capacities for drawing by edges N_LIGHTS lights through LENS in
+/* Sets the capacities for drawing N_LIGHTS lights through LENS in
  * N_WAVES wavelengths: as many bundles as there can be, 2^20 at most, and edges
  * enough for most frames. The statistics of a frame say what would have drawn
  * everything. */
@@ -428,15 +405,15 @@ struct glint_account {
 };
 
 /* Gives the account of ghost GHOST (or part) of the lens, light LIGHT and wave
- * WAVE of the frame that was planned and binned last, by edges. It plans the
+ * WAVE of the frame that was planned and binned last. It plans the
  * bundle once more, so LIGHTS and FRAME of glint_flare_plan() must still be
  * there. It changes nothing that is drawn and costs as much as planning the
  * bundle. */
 void glint_flare_account(struct glint_flare *flare, int ghost, int light,
                          int wave, struct glint_account *account);
 
-/* Restricts drawing to some of the bundles that were planned and binned last,
- * by edges: those of GHOST with all its parts, of LIGHT and of WAVE (with sets
+/* Restricts drawing to some of the bundles that were planned and binned last:
+ * those of GHOST with all its parts, of LIGHT and of WAVE (with sets
  * of waves: all waves of set WAVE), each -1 for all. The restriction holds
  * until the next call of this function or of glint_flare_bin(). */
 void glint_flare_keep(struct glint_flare *flare, int ghost, int light,

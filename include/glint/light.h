@@ -56,13 +56,6 @@ struct glint_stop {
     /* Only for bundles of a model: the stop's radius over that of the stop that
      * the model was baked for, 2^20 .. 2^30; 0: both are equal. */
     int32_t opening_q30;
-
-    /* Unless NULL, this mask gives the opening instead of the sides: signed
-     * distance to the outline, positive inside, at the nodes of a square of
-     * mask_nodes^2 over +-mask_span_q16, row 0 at the lowest y. Kept. */
-    const int16_t *mask_q13;
-    int mask_nodes; /* 2 .. 4096 */
-    int32_t mask_span_q16;
 };
 
 /* A light as the lens sees it: parallel rays. */

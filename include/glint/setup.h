@@ -182,12 +182,6 @@ void glint_setup_balance(struct glint_setup *setup);
 /* Sets STOP to the stop of SETUP, in the form that a flare takes. */
 void glint_setup_stop(const struct glint_setup *setup, struct glint_stop *stop);
 
-/* Sets MASK to the signed distances, in stop radii, positive inside, to the
- * outline of the stop of SETUP, at the nodes of a square of NODES^2 over +-SPAN
- * stop radii, row 0 at the lowest y. */
-void glint_setup_mask(const struct glint_setup *setup, int16_t *mask_q13,
-                      int nodes, double span);
-
 #ifdef __cplusplus
 }
 #endif

@@ -3,7 +3,7 @@
  * Explains what a frame drew and what it left out: by ghost, light and
  * wavelength.
  *
- *     glint_explain_open(&explain, &frame, 1);     drawn last, and by edges
+ *     glint_explain_open(&explain, &frame, 1);     drawn last
  *     glint_explain_close(&explain);
  *
  * Counts and reasons are the flare's own (glint_flare_account); light is

@@ -108,7 +108,6 @@ static enum glint_status open_proxy(const struct glint_frame *like, int pixels,
 
     *p = (struct proxy){.view = proxy_of(like->view, pixels)};
     glint_frame_like(&p->frame, like, p->view);
-    p->frame.cfg.raster = NULL;
     p->frame.only_ghost = -1;
     p->frame.uniform = false;
     p->frame.dials.fineness = like->lens ? GRID : EXACT_GRID;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws by edges: bundles become edges, edges go into tiles, rows of tiles
+ * Draws a flare: bundles become edges, edges go into tiles, rows of tiles
  * become pixels. */
 #include "base/divide.h"
 #include "base/q.h"
@@ -17,9 +17,9 @@ static size_t most_jobs(const struct glint_flare_config *c)
     return rows > (size_t)c->max_bundles ? rows : (size_t)c->max_bundles;
 }
 
-/* carve and carve_worker run twice: once to measure, which gives NULL, and once
- * to place. */
-static void *carve(struct glint_arena *a, const struct glint_flare_config *c)
+/* Both run twice: once to measure, which gives NULL, and once to place. */
+struct glint_by_edges *glint_edges_carve(struct glint_arena *a,
+                                         const struct glint_flare_config *c)
 {
     struct glint_by_edges measured, *placed, *own;
 
@@ -31,8 +31,9 @@ static void *carve(struct glint_arena *a, const struct glint_flare_config *c)
     return placed;
 }
 
-static void *carve_worker(struct glint_arena *a,
-                          const struct glint_flare_config *c)
+struct glint_edges_worker *
+glint_edges_carve_worker(struct glint_arena *a,
+                         const struct glint_flare_config *c)
 {
     const size_t side = (size_t)1 << c->tile_log2;
     const size_t n_sums = 3 * side * (size_t)GLINT_EDGE_STRIDE(c->tile_log2);
@@ -53,8 +54,7 @@ static void *carve_worker(struct glint_arena *a,
     return placed;
 }
 
-/* Sets all sums of all workers to 0, as they must be between tiles. */
-static void begin(struct glint_flare *f)
+void glint_edges_begin(struct glint_flare *f)
 {
     const int log2 = f->cfg.tile_log2;
 
@@ -189,7 +189,6 @@ static void emit_bundle(struct glint_flare *f, int bundle, int worker,
     slot->n = ghost.n_edges;
     slot->n_dropped = ghost.n_dropped;
     slot->n_held = ghost.n_held;
-    slot->n_merged = 0;
     slot->refs = 0;
     if (ghost.n_edges > ghost.max_edges) {
         if (bins)
@@ -381,7 +380,7 @@ static void put_job(void *ctx, int job, int worker)
     }
 }
 
-static void bin(struct glint_flare *flare)
+void glint_edges_bin(struct glint_flare *flare)
 {
     struct glint_flare_stats *s = &flare->stats;
 
@@ -419,8 +418,9 @@ static void row_job(void *ctx, int job, int worker)
                     &d->flare->worker[worker].tile);
 }
 
-static void draw(struct glint_flare *flare, const struct glint_tiles *tiles,
-                 struct glint_pass *pass, int n_below)
+void glint_edges_draw(struct glint_flare *flare,
+                      const struct glint_tiles *tiles, struct glint_pass *pass,
+                      int n_below)
 {
     struct draw d = {flare, tiles, pass, n_below + 1};
 
@@ -430,13 +430,3 @@ static void draw(struct glint_flare *flare, const struct glint_tiles *tiles,
     set_order(flare, flare->bins.tiles_y, edges_in_row);
     glint_workers_run(flare->cfg.workers, flare->bins.tiles_y, row_job, &d);
 }
-
-const struct glint_raster glint_raster_edges = {.max_bundles = 1 << 20,
-                                                .arcs = 1,
-                                                .shades = 1,
-                                                .halves = 1,
-                                                .carve = carve,
-                                                .carve_worker = carve_worker,
-                                                .begin = begin,
-                                                .bin = bin,
-                                                .draw = draw};

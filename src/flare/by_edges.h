@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The state of a flare that is drawn by edges, beyond struct glint_flare. */
+ * Edges of bundles: their memory, sorting into tiles, and drawing. */
 #ifndef GLINT_FLARE_BY_EDGES_H
 #define GLINT_FLARE_BY_EDGES_H
 
@@ -33,14 +33,37 @@ struct glint_edges_worker {
 static inline struct glint_by_edges *
 glint_by_edges_of(const struct glint_flare *f)
 {
-    return f->own;
+    return f->edges;
 }
 
 static inline struct glint_edges_worker *
 glint_edges_worker_of(const struct glint_flare *f, int i)
 {
-    return f->worker[i].own;
+    return f->worker[i].edges;
 }
+
+/* Most bundles of a frame. */
+enum { GLINT_EDGES_MAX_BUNDLES = 1 << 20 };
+
+/* Carve the memory for edges of a flare and of a worker; return NULL while A
+ * only measures. */
+struct glint_by_edges *glint_edges_carve(struct glint_arena *a,
+                                         const struct glint_flare_config *c);
+struct glint_edges_worker *
+glint_edges_carve_worker(struct glint_arena *a,
+                         const struct glint_flare_config *c);
+
+/* Sets all sums of all workers to 0, as they must be between tiles. */
+void glint_edges_begin(struct glint_flare *f);
+
+/* Sorts the bundles taken in into tiles: sets n_drawn, what drawing needs, and
+ * all statistics but the numbers of bundles and vertices. */
+void glint_edges_bin(struct glint_flare *flare);
+
+/* Draws over the first N_BELOW passes of PASS, which has room for one more. */
+void glint_edges_draw(struct glint_flare *flare,
+                      const struct glint_tiles *tiles, struct glint_pass *pass,
+                      int n_below);
 
 /* Returns the pass that draws what has been binned. */
 struct glint_pass glint_edges_pass(const struct glint_flare *flare);

@@ -12,9 +12,7 @@ void glint_flare_defaults(struct glint_flare_config *cfg, int width, int height)
     *cfg = (struct glint_flare_config){.width = width,
                                        .height = height,
                                        .tile_log2 = 6,
-                                       .irradiance_steps = 69,
-                                       .weights = GLINT_WEIGHTS_WACHSPRESS,
-                                       .antialias = 1};
+                                       .irradiance_steps = 69};
 }
 
 void glint_flare_capacities(struct glint_flare_config *cfg,
@@ -29,7 +27,7 @@ void glint_flare_capacities(struct glint_flare_config *cfg,
     cfg->max_bundles = q_narrow(q_clamp_sat(n_lights * of_light, 0, 1 << 20));
     cfg->max_primitives = q_narrow(q_clamp_sat(all, 0, MOST_EDGES));
     cfg->max_refs = 2 * cfg->max_primitives;
-    cfg->max_vertices = cfg->max_tile_refs = 0;
+    cfg->max_vertices = 0;
 }
 
 void glint_flare_frame_defaults(struct glint_flare_frame *frame,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "flare/draw_over.h"
 
-#include "flare/state.h"
+#include "flare/by_edges.h"
 
 struct draw {
     struct glint_flare *flare;
@@ -32,7 +32,7 @@ void glint_flare_draw_over(struct glint_flare *flare,
     for (int i = 0; i < under->n; i++)
         pass[i] = under->pass[i];
     if (flare->stats.primitives > 0)
-        flare->cfg.raster->draw(flare, &tiles, pass, under->n);
+        glint_edges_draw(flare, &tiles, pass, under->n);
     else /* no primitives: the bins may be those of an earlier frame */
         glint_workers_run(flare->cfg.workers, glint_tiles_down(&tiles), row_job,
                           &alone);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The pass of a flare by edges: edges become sums of a tile, sums become light
+ * The pass of a flare: edges become sums of a tile, sums become light
  * of its rows. */
 #include <stddef.h>
 

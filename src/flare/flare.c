@@ -4,7 +4,7 @@
 #include "base/real.h"
 #include "flare/dim.h"
 #include "flare/edges/ghost_shade.h"
-#include "flare/state.h"
+#include "flare/by_edges.h"
 #include "flare/wave_sets.h"
 
 enum {
@@ -13,17 +13,6 @@ enum {
 };
 
 /* ------------------------------------------------------------------- memory */
-
-static const struct glint_raster *raster_of(const struct glint_flare_config *c)
-{
-    return c->raster ? c->raster : &glint_raster_edges;
-}
-
-static int first_level_log2(const struct glint_flare_config *c)
-{
-    return c->coarse_log2 && raster_of(c)->two_levels ? c->coarse_log2
-                                                      : c->tile_log2;
-}
 
 static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
                          const struct glint_flare_config *c)
@@ -35,7 +24,7 @@ static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
     t->light_q20 = glint_arena_take(a, 3 * 2 * side, sizeof *t->light_q20);
     t->codes = glint_arena_take(a, 1, sizeof *t->codes);
     w->plan = glint_arena_take(a, 1, sizeof *w->plan);
-    w->own = raster_of(c)->carve_worker(a, c);
+    w->edges = glint_edges_carve_worker(a, c);
 }
 
 /* Runs twice: once to measure, which gives NULL, and once to place. */
@@ -57,11 +46,10 @@ static struct glint_flare *carve(struct glint_arena *a,
     f->planned =
         glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->planned);
     f->vertex = glint_arena_take(a, (size_t)c->max_vertices, sizeof *f->vertex);
-    f->own = raster_of(c)->carve(a, c);
+    f->edges = glint_edges_carve(a, c);
     f->reuse = c->reuse ? c->reuse->carve(a, c) : NULL;
     f->bins.start = glint_arena_take(
-        a,
-        glint_flare_count_tiles(c->width, c->height, first_level_log2(c)) + 1,
+        a, glint_flare_count_tiles(c->width, c->height, c->tile_log2) + 1,
         sizeof *f->bins.start);
     f->bins.ref = glint_arena_take(a, (size_t)c->max_refs, sizeof *f->bins.ref);
     f->worker = glint_arena_take(a, n_workers, sizeof *f->worker);
@@ -72,22 +60,19 @@ static struct glint_flare *carve(struct glint_arena *a,
     return placed;
 }
 
-static int stop_ok(const struct glint_stop *s, const struct glint_raster *r)
+static int stop_ok(const struct glint_stop *s)
 {
     const int32_t most_q30 = (1 << 30) - 1;
 
-    if (s->round_q30 && (!r->arcs || s->n_blades == 0 || s->round_q30 < 0 ||
-                         s->round_q30 > most_q30 || s->off_q30 < 1 ||
-                         s->off_q30 - 1 > most_q30))
+    if (s->round_q30 &&
+        (s->n_blades == 0 || s->round_q30 < 0 || s->round_q30 > most_q30 ||
+         s->off_q30 < 1 || s->off_q30 - 1 > most_q30))
         return 0;
     if (s->opening_q30 && (s->opening_q30 < LEAST_OPENING_Q30 ||
                            s->opening_q30 > WHOLE_OPENING_Q30))
         return 0;
-    if (s->shade && (!r->shades || !glint_shade_ok(s->shade)))
+    if (s->shade && !glint_shade_ok(s->shade))
         return 0;
-    if (s->mask_q13)
-        return r->masks && s->mask_nodes >= 2 && s->mask_nodes <= 4096 &&
-               s->mask_span_q16 >= 1 << 15 && s->mask_span_q16 <= 1 << 18;
     return s->n_blades == 0 ||
            (s->n_blades >= 3 && s->n_blades <= GLINT_MAX_BLADES &&
             s->apothem_q16 > 0);
@@ -99,18 +84,12 @@ static int config_ok(const struct glint_flare_config *c)
 
     return c->width >= 1 && c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
            c->height <= GLINT_MAX_SIDE && c->tile_log2 >= 3 &&
-           c->tile_log2 <= 6 &&
-           (c->coarse_log2 == 0 ||
-            (c->coarse_log2 > c->tile_log2 && c->coarse_log2 <= 8)) &&
-           c->merge_steps >= 0 && c->merge_steps <= 4 &&
-           c->merge_gamma_q16 >= 0 && c->merge_gamma_q16 <= 1 << 16 &&
-           (c->weights == GLINT_WEIGHTS_LOOP_DEROSE ||
-            c->weights == GLINT_WEIGHTS_WACHSPRESS) &&
-           c->max_bundles >= 0 && c->max_bundles <= raster_of(c)->max_bundles &&
-           c->max_vertices >= 0 && c->max_primitives >= 0 && c->max_refs >= 0 &&
-           c->max_tile_refs >= 0 && c->irradiance_steps >= 0 &&
-           c->irradiance_steps <= 4096 && c->reuse_lights >= 0 &&
-           workers >= 1 && workers <= 64 && stop_ok(&c->stop, raster_of(c));
+           c->tile_log2 <= 6 && c->max_bundles >= 0 &&
+           c->max_bundles <= GLINT_EDGES_MAX_BUNDLES && c->max_vertices >= 0 &&
+           c->max_primitives >= 0 && c->max_refs >= 0 &&
+           c->irradiance_steps >= 0 && c->irradiance_steps <= 4096 &&
+           c->reuse_lights >= 0 && workers >= 1 && workers <= 64 &&
+           stop_ok(&c->stop);
 }
 
 void glint_flare_forget(struct glint_flare *flare)
@@ -146,10 +125,8 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
         return GLINT_E_MEMORY;
     f = carve(&arena, cfg);
     f->cfg = *cfg;
-    f->cfg.raster = raster_of(cfg);
     glint_flare_forget(f);
-    if (f->cfg.raster->begin)
-        f->cfg.raster->begin(f);
+    glint_edges_begin(f);
     glint_flare_begin(f);
     *flare = f;
     return GLINT_OK;
@@ -158,7 +135,7 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
 enum glint_status glint_flare_set_stop(struct glint_flare *flare,
                                        const struct glint_stop *stop)
 {
-    if (!stop_ok(stop, flare->cfg.raster))
+    if (!stop_ok(stop))
         return GLINT_E_ARGUMENT;
     flare->cfg.stop = *stop;
     flare->reusable = GLINT_REUSABLE_NOT;
@@ -175,7 +152,7 @@ static void set_size(struct glint_flare *f, int half)
     f->width = (f->cfg.width + half) >> half;
     f->height = (f->cfg.height + half) >> half;
     glint_bins_init(&f->bins, (struct glint_box){0, 0, f->width, f->height},
-                    first_level_log2(&f->cfg), f->bins.start, f->bins.ref);
+                    f->cfg.tile_log2, f->bins.start, f->bins.ref);
 }
 
 void glint_flare_begin(struct glint_flare *flare)
@@ -251,14 +228,6 @@ static void plan_job(void *ctx, int job, int worker)
     }
 }
 
-/* Returns how many vertices of the grid of B have to be stored. */
-static int stored(const struct glint_flare *f, const struct glint_bundle *b)
-{
-    const int n = b->n_cells + 1;
-
-    return f->cfg.raster->fill ? n * n : 0;
-}
-
 /* Leaves out ghosts that no pixel shows. The light of all lights is summed, for
  * each ghost and wave: together they may be seen though none is by itself. A
  * ghost is left out, in a wave, for all lights at once. Sums are integers, so
@@ -278,30 +247,18 @@ static void leave_out_faint(struct glint_flare *f, int n)
     }
 }
 
-/* Keeps the first N bundles that can be seen, without gaps, as far as their
- * vertices fit. */
+/* Keeps those of the first N bundles that can be seen, without gaps. */
 static void keep_seen(struct glint_flare *f, int n)
 {
-    struct glint_flare_stats *s = &f->stats;
-
     for (int i = 0; i < n; i++) {
-        const int vertices = stored(f, &f->bundle[i]);
-
         if (f->bundle[i].n_cells == 0)
             continue;
         f->flux = real_plus(f->flux, f->planned[i].flux);
         if (real_less(f->brightest, f->planned[i].irradiance))
             f->brightest = f->planned[i].irradiance;
-        s->need_vertices = glint_flare_add_need(s->need_vertices, vertices);
-        if (vertices > f->cfg.max_vertices - f->n_vertices) {
-            s->dropped_bundles++;
-            continue;
-        }
         f->bundle[f->n_bundles] = f->bundle[i];
         f->planned[f->n_bundles] = f->planned[i];
-        f->slot[f->n_bundles++] =
-            (struct glint_bundle_slot){.first_vertex = f->n_vertices};
-        f->n_vertices += vertices;
+        f->slot[f->n_bundles++] = (struct glint_bundle_slot){0};
     }
 }
 
@@ -337,7 +294,7 @@ void glint_flare_plan(struct glint_flare *flare,
         return;
     glint_flare_begin(flare);
     flare->quads = frame->half;
-    set_size(flare, frame->half && flare->cfg.raster->halves);
+    set_size(flare, frame->half != NULL);
     flare->plan = (struct glint_plan){
         .frame = frame,
         .light = lights,
@@ -365,8 +322,6 @@ void glint_flare_plan(struct glint_flare *flare,
     flare->flux = flare->brightest = (struct glint_real){0, 0};
     keep_seen(flare, frame->sets ? frame->sets->planner->plan(flare, n_jobs)
                                  : plan_all(flare, n_jobs));
-    if (flare->cfg.raster->fill)
-        flare->cfg.raster->fill(flare);
     if (flare->cfg.reuse)
         flare->reusable = GLINT_REUSABLE_PLANNED;
 }
@@ -426,7 +381,6 @@ static void total(struct glint_flare *f)
         s->primitives += slot->n;
         s->dropped_cells =
             glint_flare_add_need(s->dropped_cells, slot->n_dropped);
-        s->merged_cells = glint_flare_add_need(s->merged_cells, slot->n_merged);
         s->held_cells = glint_flare_add_need(s->held_cells, slot->n_held);
     }
 }
@@ -435,7 +389,7 @@ void glint_flare_bin(struct glint_flare *flare, struct glint_flare_stats *stats)
 {
     if (flare->reusable != GLINT_REUSABLE_BINNED) {
         if (flare->n_bundles > 0)
-            flare->cfg.raster->bin(flare);
+            glint_edges_bin(flare);
         total(flare);
     }
     if (flare->reusable != GLINT_REUSABLE_NOT)
@@ -470,7 +424,7 @@ void glint_flare_draw(struct glint_flare *flare,
     if (flare->stats.primitives == 0)
         return; /* the bins may be those of an earlier frame */
     tiles = glint_flare_start(flare, image);
-    flare->cfg.raster->draw(flare, &tiles, pass, 0);
+    glint_edges_draw(flare, &tiles, pass, 0);
 }
 
 int glint_flare_tiles(const struct glint_flare *flare)

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The state of a flare, and the interface of a way to draw it (by_edges.c;
- * by_cells.c of published/) to flare.c, which has what both share. Each way
- * carves a state of its own, for the flare and for each worker. */
+ * The state of a flare: bundles and plan (flare.c), their edges and tiles
+ * (by_edges.c). */
 #ifndef GLINT_FLARE_STATE_H
 #define GLINT_FLARE_STATE_H
 
@@ -13,20 +12,22 @@
 #include "tile/bins.h"
 #include "tile/pass.h"
 
+struct glint_by_edges;
+struct glint_edges_worker;
+
 /* The memory of one worker. */
 struct glint_flare_worker {
     struct glint_tile_scratch tile;
     struct glint_plan_scratch *plan;
-    void *own; /* state of the raster */
+    struct glint_edges_worker *edges;
 };
 
 struct glint_bundle_slot {
     int first_vertex;
-    int first; /* first primitive or edge; -1: there was no room for them */
-    int n, n_dropped, n_merged, n_held;
-    int worker; /* worker that made it, by edges */
-    int refs;   /* entries in the bins; by edges only set if the bundle found no
-                   room */
+    int first; /* first edge; -1: there was no room for them */
+    int n, n_dropped, n_held;
+    int worker; /* worker that made it */
+    int refs;   /* entries in the bins; only set if the bundle found no room */
 };
 
 /* What of the plan is in the bins. */
@@ -51,40 +52,13 @@ struct glint_flare {
     struct glint_bundle *bundle;
     struct glint_bundle_slot *slot;
     struct glint_vertex *vertex;
-    void *own;                    /* state of the raster */
+    struct glint_by_edges *edges;
     void *reuse;                  /* state of cfg.reuse; NULL: there is none */
     enum glint_reusable reusable; /* stays NOT without cfg.reuse */
-    struct glint_bins bins;       /* first level */
+    struct glint_bins bins;
     struct glint_flare_worker *worker;
     /* Tables for the picture that is being drawn. */
     struct glint_resolve *resolve;
-};
-
-/* A way from bundles to pixels. */
-struct glint_raster {
-    int max_bundles;
-    int masks;      /* 1: takes a stop with a mask */
-    int arcs;       /* 1: takes a stop whose sides bulge */
-    int shades;     /* 1: takes a stop with a shade */
-    int two_levels; /* 1: can sort tiles into large and small ones */
-    int halves;     /* 1: can draw half as many pixels each way */
-    /* Carve the raster's own parts of the flare and of a worker; return NULL
-     * while A only measures. */
-    void *(*carve)(struct glint_arena *a, const struct glint_flare_config *c);
-    void *(*carve_worker)(struct glint_arena *a,
-                          const struct glint_flare_config *c);
-    /* Called once after the flare is placed; NULL: there is nothing to do. */
-    void (*begin)(struct glint_flare *f);
-    /* Fills the vertices of the bundles planned; NULL: vertices are not stored.
-     */
-    void (*fill)(struct glint_flare *f);
-    /* Sorts the bundles taken in into tiles: sets n_drawn, what draw needs, and
-     * all statistics but the numbers of bundles and vertices. */
-    void (*bin)(struct glint_flare *f);
-    /* Draws over the first N_BELOW passes of PASS; has room for its own pass
-     * after them. */
-    void (*draw)(struct glint_flare *f, const struct glint_tiles *tiles,
-                 struct glint_pass *pass, int n_below);
 };
 
 /* Reuse of what was binned (reuse/). */

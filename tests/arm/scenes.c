@@ -93,8 +93,6 @@ static struct glint_flare_config make_config(struct shuffle *shuffle)
         {1 << 30, 0}, {0, 1 << 30}, {-(1 << 30), 0}, {0, -(1 << 30)}};
     struct glint_flare_config c = {.workers = &shuffle->workers,
                                    .sets = sets,
-                                   .weights = GLINT_WEIGHTS_WACHSPRESS,
-                                   .antialias = 1,
                                    .max_bundles = MAX_LIGHTS * 3 * 512,
                                    .max_primitives = 150000,
                                    .max_refs = 600000};
@@ -103,9 +101,6 @@ static struct glint_flare_config make_config(struct shuffle *shuffle)
     c.height = 1 + number(300);
     c.tile_log2 = 3 + number(4);
     shuffle_init(shuffle, 1 + (int)(seed % 4), seed);
-    c.raster = number(6) ? NULL : &glint_raster_cells;
-    if (c.raster)
-        c.max_vertices = 200000;
     c.irradiance_steps = number(3) * 30;
     c.dither = number(2);
     if (number(2)) {

@@ -24,14 +24,10 @@ struct glint_flare_config base_config(void)
     struct glint_flare_config c = {.width = WIDTH,
                                    .height = HEIGHT,
                                    .tile_log2 = 3,
-                                   .coarse_log2 = 7,
-                                   .weights = GLINT_WEIGHTS_WACHSPRESS,
-                                   .antialias = 1,
                                    .max_bundles = 64,
                                    .max_vertices = 60000,
                                    .max_primitives = 60000,
-                                   .max_refs = 400000,
-                                   .max_tile_refs = 400000};
+                                   .max_refs = 400000};
 
     c.stop.n_blades = 8;
     c.stop.apothem_q16 = 60547; /* cos 22.5 degrees */

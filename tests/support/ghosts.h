@@ -24,7 +24,7 @@ struct ghost {
 
 extern const struct ghost ghosts[N_GHOSTS];
 
-/* Returns settings with an octagonal stop and room for all ghosts, by edges. */
+/* Returns settings with an octagonal stop and room for all ghosts. */
 struct glint_flare_config base_config(void);
 
 /* Returns a flare of settings C. Its memory is *MEM, which the caller frees. */

@@ -3,9 +3,15 @@
 # What tests share; fakes answer calls of those alone that want them.
 $(OUT)/libglint-tests.a: $(patsubst %.c,$(OUT)/%.o,$(wildcard tests/support/*.c tests/support/models/*.c tests/support/stars/*.c tests/support/tracks/*.c))
 
-# Unit tests, each a program: tests/unit/ROOM/test_NAME.c is OUT/tests/unit/test_NAME.
+# Methods as the literature has them, and renderers in double precision, that tests
+# compare glint with.
+reference_a := $(OUT)/libglint-reference.a
+$(reference_a): $(patsubst %.c,$(OUT)/%.o,$(filter-out $(wildcard tests/reference/*/test_*.c),$(wildcard tests/reference/*/*.c)))
+
+# Unit tests, each a program: tests/unit/ROOM/test_NAME.c, or test_NAME.c of
+# tests/reference, is OUT/tests/unit/test_NAME.
 EXTREMES := $(patsubst tests/unit/props/test_extremes_%.c,%,$(wildcard tests/unit/props/test_extremes_*.c))
-unit_c := $(wildcard tests/unit/*/test_*.c)
+unit_c := $(wildcard tests/unit/*/test_*.c tests/reference/*/test_*.c)
 unit_c := $(filter-out %/test_mjpeg$(if $(filter yes,$(WITH_JPEG)),_absent).c \
         %/test_config$(if $(filter yes,$(WITH_INIH)),_absent).c \
         $(if $(filter yes,$(WITH_JANSSON)),,%/test_recording.c),$(unit_c))
@@ -28,6 +34,7 @@ $(OUT)/tests/unit/test_fbdev: LDFLAGS += -Wl,--wrap=open64,--wrap=ioctl \
 $(OUT)/tests/unit/test_output: LDFLAGS += -Wl,--wrap=close
 $(OUT)/tests/unit/test_output_together: LDFLAGS += -Wl,--wrap=realpath
 $(OUT)/tests/unit/test_workers: LDFLAGS += -Wl,--wrap=pthread_create
+$(OUT)/tests/unit/test_flare_room: LDFLAGS += -Wl,--wrap=glint_edges_bin
 $(OUT)/tests/unit/test_sinks: LDFLAGS += -Wl,--wrap=ioctl,--wrap=write
 FAKE_CAMERA := ioctl open64 stat64 close read mmap64 munmap malloc calloc \
         realloc posix_memalign free strdup realpath clock_gettime nanosleep glint_mjpeg_available
@@ -41,7 +48,7 @@ $(fake_bins): $(OUT)/tests/support/fakes/fake_camera.o
 $(OUT)/tests/unit/test_fbdev: $(OUT)/tests/support/fakes/fake_fb.o
 extreme_bins := $(EXTREMES:%=$(OUT)/tests/unit/test_extremes_%)
 $(foreach c,$(unit_c),$(eval $(OUT)/tests/unit/$(notdir $(basename $(c))): $(OUT)/$(c:.c=.o)))
-$(test_bins): $(OUT)/libglint-tests.a $(libs)
+$(test_bins): $(OUT)/libglint-tests.a $(reference_a) $(libs)
 	$(link)
 replay_bins := $(FUZZERS:%=$(OUT)/tests/fuzz/replay_%)
 $(replay_bins): $(OUT)/tests/fuzz/replay_%: $(OUT)/tests/fuzz/fuzz_%.o \
@@ -49,8 +56,8 @@ $(replay_bins): $(OUT)/tests/fuzz/replay_%: $(OUT)/tests/fuzz/fuzz_%.o \
 	$(link)
 # Programs of tests, for tables and long runs: tests/programs/NAME.c is OUT/NAME.
 PROGRAMS := $(patsubst tests/programs/%.c,$(OUT)/%,$(wildcard tests/programs/*.c))
-$(test_bins) $(PROGRAMS): libs := $(OUT)/libglint-tests.a $(archives)
-$(PROGRAMS): $(OUT)/%: $(OUT)/tests/programs/%.o $(OUT)/libglint-tests.a $(libs)
+$(test_bins) $(PROGRAMS): libs := $(OUT)/libglint-tests.a $(reference_a) $(archives)
+$(PROGRAMS): $(OUT)/%: $(OUT)/tests/programs/%.o $(OUT)/libglint-tests.a $(reference_a) $(libs)
 	$(link)
 
 CHECK_PACKAGES := gcc libc6-dev binutils libcmocka-dev clang clang-format pkg-config \
@@ -139,7 +146,7 @@ run-fuzz run-fuzz-keep: $(fuzz_bins)
 analyze:
 	@tools/make/deps "static analysis" gcc clang-tidy cppcheck
 	@$(MAKE) --no-print-directory CC=gcc CONFIG=analyze WERROR=-Werror run-analyze
-run-analyze: $(core_o) $(published_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o) $(frei0r_o) $(if $(filter %,$(shell pkg-config --modversion gstreamer-video-1.0 2>/dev/null)),$(gstreamer_o)) $(if $(filter %,$(shell pkg-config --modversion libobs 2>/dev/null)),$(obs_o)) $(OUT)/tools/command/glint.o
+run-analyze: $(core_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o) $(frei0r_o) $(if $(filter %,$(shell pkg-config --modversion gstreamer-video-1.0 2>/dev/null)),$(gstreamer_o)) $(if $(filter %,$(shell pkg-config --modversion libobs 2>/dev/null)),$(obs_o)) $(OUT)/tools/command/glint.o
 	$(say) CPPCHECK 'src platform tools'
 	@mkdir -p $(OUT)/cppcheck
 	$(Q)cppcheck -q --std=c99 --language=c --error-exitcode=1 \
@@ -152,8 +159,8 @@ run-analyze: $(core_o) $(published_o) $(engine_o) $(bake_o) $(platform_o) $(tool
 sources = $(shell find include src platform tools tests -name '*.[ch]' -o -name '*.inc')
 format:
 	$(Q)clang-format -i $(sources)
-libraries := $(OUT)/libglint.a $(OUT)/libglint-published.a
-all_o := $(core_o) $(published_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o)
+libraries := $(OUT)/libglint.a
+all_o := $(core_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o)
 lint: $(libraries) $(OUT)/libglint-engine.a $(OUT)/libglint-bake.a $(all_o)
 	@tools/lint/layers && tools/lint/cycles $(NM) $(OUT) $(all_o) && tools/lint/tags && tools/lint/q && tools/lint/length && tools/lint/links && tools/report/write-figures --check
 	@tools/lint/symbols $(NM) $(filter %.a,$^)

@@ -39,7 +39,7 @@ $(engine_o) $(platform_o) $(tools_o) $(main_o): CFLAGS += -Os -fno-asynchronous-
 endif
 # The run-time half has no library, small stack frames and nothing to unwind;
 # --gc-sections takes out what is not called.
-$(core_o) $(published_o): CFLAGS += -ffreestanding -ffunction-sections -Wframe-larger-than=1024 \
+$(core_o): CFLAGS += -ffreestanding -ffunction-sections -Wframe-larger-than=1024 \
         -fno-asynchronous-unwind-tables -fno-unwind-tables
 # An instruction set is a file-name suffix; nothing else may use its flags.
 $(OUT)/src/%_sse41.o: CFLAGS += -msse4.1
@@ -59,7 +59,6 @@ $(call of,$(addprefix src/scene/,ward/scene_ward ward/ward phong ray shadow surf
 $(call of,$(addprefix src/lamps/,lamp_finder lamp_list),-Os)
 $(call of,$(addprefix src/follow/,match follow record lamp_tracker),-Os)
 $(call of,$(addprefix src/flare/,aim by_edges capacities colours lights plan plan_cells probe window wave_sets flare draw_over account),-Os)
-$(call of,$(addprefix src/published/,ghost_grid by_cells clip),-Os)
 $(call of,src/tile/bins src/tile/pass src/star/star src/veil/veil $(addprefix src/image/,resolve curve mix),-Os)
 
 # Loops over doubles that a machine takes two at a time.
@@ -129,5 +128,5 @@ endif
 ifdef SANITIZE
 CPPFLAGS += -DGLINT_SANITIZED
 CFLAGS += -O1 $(SANITIZE)
-$(core_o) $(published_o): CFLAGS += -Wno-frame-larger-than
+$(core_o): CFLAGS += -Wno-frame-larger-than
 endif

@@ -73,20 +73,20 @@ board:
 	@mv -f $(board_tar).tmp $(board_tar) && echo $(board_tar)
 # What programs are built and run with; for a board archives alone.
 headers := $(wildcard include/glint/*.h include/glint/*/*.h)
-install-library: $(LIBRARIES:%=$(OUT)/lib%.a) $(OUT)/libglint-published.a $(if $(CROSS),,shared)
+install-library: $(LIBRARIES:%=$(OUT)/lib%.a) $(if $(CROSS),,shared)
 	install -d $(to)/include/glint/scene $(libdir)/pkgconfig
 	install -m 644 $(filter-out $(wildcard include/glint/*/*.h),$(headers)) $(to)/include/glint
 	install -m 644 include/glint/scene/*.h $(to)/include/glint/scene
-	install -m 644 $(patsubst %,$(OUT)/lib%.a,$(LIBRARIES) glint-published) $(libdir)
+	install -m 644 $(LIBRARIES:%=$(OUT)/lib%.a) $(libdir)
 	$(if $(CROSS),,cp -P $(addprefix $(OUT)-pic/,$(foreach l,$(LIBRARIES),$(call shared_names,$l))) $(libdir))
-	$(if $(filter yes,$(STRIP)),$(CROSS)strip -g $(patsubst %,$(libdir)/lib%.a,$(LIBRARIES) glint-published) \
+	$(if $(filter yes,$(STRIP)),$(CROSS)strip -g $(LIBRARIES:%=$(libdir)/lib%.a) \
 	        $(if $(CROSS),,$(LIBRARIES:%=$(libdir)/lib%.so.$(VERSION))))
 	$(foreach l,$(LIBRARIES),tools/make/pkg-config $l $(PREFIX) $(LIBDIR) $(VERSION) '$(taken_$l)' >$(libdir)/pkgconfig/$l.pc && \
 	        chmod 644 $(libdir)/pkgconfig/$l.pc &&) :
 # What install put there, and folders that are empty then.
 uninstall:
 	rm -f $(to)/bin/glint $(to)/bin/glint-live $(libdir)/glint/glint-oiio.so \
-	        $(patsubst %,$(libdir)/lib%.a,$(LIBRARIES) glint-published) \
+	        $(LIBRARIES:%=$(libdir)/lib%.a) \
 	        $(addprefix $(libdir)/,$(foreach l,$(LIBRARIES),$(call shared_names,$l))) \
 	        $(LIBRARIES:%=$(libdir)/pkgconfig/%.pc) $(headers:%=$(to)/%) \
         $(libdir)/glint/glint-assimp.so $(libdir)/glint/glint-sdl.so $(to)/lib/frei0r-1/glint.so $(DESTDIR)$(element_to)/libgstglint.so \

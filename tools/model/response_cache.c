@@ -82,10 +82,9 @@ static void add_dials(uint64_t *key, const struct glint_frame *like)
 {
     const struct glint_dials *d = &like->asked;
     const double value[] = {
-        d->irradiance_steps,   d->snap_codes_q8,   d->dispersion_q8,
-        d->max_lights,         d->flags,           d->cull_codes,
-        d->area_points,        like->apart_px,     like->cfg.tile_log2,
-        like->cfg.coarse_log2, like->cfg.antialias};
+        d->irradiance_steps, d->snap_codes_q8, d->dispersion_q8,
+        d->max_lights,       d->flags,         d->cull_codes,
+        d->area_points,      like->apart_px,   like->cfg.tile_log2};
 
     add_values(key, value, sizeof value / sizeof *value);
 }

@@ -290,13 +290,11 @@ static enum glint_status bin(struct glint_frame *f,
 
         glint_flare_bin(f->flare, s);
         if (s->need_primitives <= f->cfg.max_primitives &&
-            s->need_refs <= f->cfg.max_refs &&
-            s->need_tile_refs <= f->cfg.max_tile_refs)
+            s->need_refs <= f->cfg.max_refs)
             return GLINT_OK;
         f->cfg.max_primitives =
             larger(f->cfg.max_primitives, s->need_primitives);
         f->cfg.max_refs = larger(f->cfg.max_refs, s->need_refs);
-        f->cfg.max_tile_refs = larger(f->cfg.max_tile_refs, s->need_tile_refs);
         status = regrow(f, cfg);
         if (status != GLINT_OK)
             return status;

@@ -47,7 +47,7 @@ struct glint_cost_plan {
     int width, height;  /* size of the picture */
     double n_looked_at; /* rays that the plan looked at */
     int every; /* bundles of which one stands for all; 0, 1: each for itself */
-    bool can_half; /* true: the picture is in codes and drawn by edges */
+    bool can_half; /* true: the picture is in codes */
     bool can_dim;  /* true: three waves, so that ghosts may be dim */
     double code;   /* light of a code near black; 0: linear */
     double n_star; /* pixels that parts of stars give light to */

@@ -20,9 +20,7 @@ void glint_frame_init(struct glint_frame *frame,
                                   .cfg = {.workers = workers,
                                           .width = view.width,
                                           .height = view.height,
-                                          .tile_log2 = 6,
-                                          .weights = GLINT_WEIGHTS_WACHSPRESS,
-                                          .antialias = 1},
+                                          .tile_log2 = 6},
                                   .dials = glint_dials_at(1 << 14),
                                   .asked = glint_dials_at(1 << 14),
                                   .apart_px = GLINT_FRAME_APART_PX,
@@ -48,37 +46,11 @@ void glint_frame_like(struct glint_frame *frame, const struct glint_frame *like,
     frame->most_minsn = like->most_minsn;
     frame->cfg.sets = like->cfg.sets;
     frame->cfg.tile_log2 = like->cfg.tile_log2;
-    frame->cfg.coarse_log2 = like->cfg.coarse_log2;
-    frame->cfg.raster = like->mask ? NULL : like->cfg.raster;
-    frame->cfg.weights = like->cfg.weights;
-    frame->cfg.merge_steps = like->cfg.merge_steps;
-    frame->cfg.merge_gamma_q16 = like->cfg.merge_gamma_q16;
-    frame->cfg.antialias = like->cfg.antialias;
     frame->cfg.dither = like->cfg.dither;
-}
-
-enum glint_status glint_frame_use_mask(struct glint_frame *frame,
-                                       const struct glint_raster *raster,
-                                       int nodes)
-{
-    const double span = 1.25;
-
-    frame->mask = malloc((size_t)nodes * (size_t)nodes * sizeof *frame->mask);
-    if (!frame->mask)
-        return GLINT_E_MEMORY;
-    glint_setup_mask(frame->setup, frame->mask, nodes, span);
-    frame->cfg.raster = raster;
-    frame->cfg.stop.mask_q13 = frame->mask;
-    /* the mask has arcs in it */
-    frame->cfg.stop.round_q30 = frame->cfg.stop.off_q30 = 0;
-    frame->cfg.stop.mask_nodes = nodes;
-    frame->cfg.stop.mask_span_q16 = (int32_t)(span * 65536);
-    return GLINT_OK;
 }
 
 void glint_frame_finish(struct glint_frame *frame)
 {
-    free(frame->mask);
     glint_frame_star_finish(&frame->star);
     glint_frame_veil_finish(&frame->veil);
     free(frame->still.light);
@@ -294,7 +266,7 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
     const struct glint_dials asked = f->dials;
     enum glint_status status;
 
-    f->can_half = is_in_codes(f, image) && !f->cfg.raster;
+    f->can_half = is_in_codes(f, image);
     f->code_light = glint_frame_codes_light(f, image, 1);
     f->scale = scale;
     f->is_held = f->is_full = false;

@@ -92,7 +92,7 @@ struct glint_frame {
     double apart_px; /* pixels: lights whose images are nearer are merged */
     bool for_codes;  /* true: a linear picture is planned as if it were in codes
                       */
-    bool can_half; /* true: the last picture was in codes and drawn by edges */
+    bool can_half;   /* true: the last picture was in codes */
     double code_light; /* light of one of its codes near black; 0: linear */
     bool uniform;      /* true: all ghosts get the same grid */
     int only_ghost;    /* index of the only ghost drawn; -1: all are */
@@ -100,8 +100,6 @@ struct glint_frame {
      * if there were none. */
     const struct glint_tint *tints;
     struct glint_shade shade; /* the stop's, without its finest tables */
-    int16_t *mask; /* signed distances to the stop's outline; NULL: the stop has
-                      no mask */
     struct glint_frame_star star;
     struct glint_frame_veil veil;
     struct glint_still still; /* only for models that are reused */
@@ -187,8 +185,8 @@ void glint_frame_init(struct glint_frame *frame,
                       const struct glint_setup *setup, struct glint_view view,
                       struct glint_workers *workers);
 
-/* Makes a frame with the options that were asked for in LIKE, without its mask
- * and its budget. */
+/* Makes a frame with the options that were asked for in LIKE, without its
+ * budget. */
 void glint_frame_like(struct glint_frame *frame, const struct glint_frame *like,
                       struct glint_view view);
 
@@ -204,12 +202,6 @@ enum glint_status glint_frame_reserve(struct glint_frame *frame, void *mem,
 /* Returns the fewest BYTES that glint_frame_reserve() takes for as many lights
  * as it was last asked for; nothing may be drawn afterwards. */
 size_t glint_frame_least_bytes(struct glint_frame *frame);
-
-/* Takes the stop from a mask of NODES^2 distances instead of its sides; RASTER
- * must be one that takes masks. */
-enum glint_status glint_frame_use_mask(struct glint_frame *frame,
-                                       const struct glint_raster *raster,
-                                       int nodes);
 
 /* Draws a lamp a few times to measure the time of an instruction here, for the
  * budget. GLINT_E_MEMORY. */

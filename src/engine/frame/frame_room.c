@@ -9,8 +9,8 @@
 #include "engine/frame/block.h"
 #include "engine/setup/dirt.h"
 
-/* Most bundles that a frame may have by edges, and by other rasters. */
-enum { MAX_BUNDLES = 1 << 20, MAX_BUNDLES_OTHER = 65535 };
+/* Most bundles that a frame may have. */
+enum { MAX_BUNDLES = 1 << 20 };
 /* Limits do not make grids coarser than this. */
 enum { LEAST_FINENESS = 8 };
 /* Workers' shares are never quite even: room for so many times the primitives.
@@ -42,17 +42,10 @@ enum glint_status glint_frame_hold_lights(struct glint_frame *f, int n)
     return GLINT_OK;
 }
 
-static bool is_by_edges(const struct glint_frame *f)
-{
-    return !f->cfg.raster || f->cfg.raster == &glint_raster_edges;
-}
-
 /* Returns how many of N bundles a frame may take. */
-static int bundles_within(const struct glint_frame *f, double n)
+static int bundles_within(double n)
 {
-    const int most = is_by_edges(f) ? MAX_BUNDLES : MAX_BUNDLES_OTHER;
-
-    return n < most ? (int)n : most;
+    return n < MAX_BUNDLES ? (int)n : MAX_BUNDLES;
 }
 
 /* Returns how many bundles N_LIGHTS need; with sets of wavelengths, those of
@@ -62,8 +55,8 @@ static int count_bundles(const struct glint_frame *f, int n_lights)
     const struct glint_setup *s = f->setup;
 
     return bundles_within(
-        f, (double)n_lights * s->n_ghosts *
-               (glint_frame_has_sets(f) ? s->set_size[0] : s->n_wavelengths));
+        (double)n_lights * s->n_ghosts *
+        (glint_frame_has_sets(f) ? s->set_size[0] : s->n_wavelengths));
 }
 
 static size_t most_bytes(const struct glint_frame *f)
@@ -77,11 +70,10 @@ static struct glint_flare_config needed_by(const struct glint_frame *f,
 {
     struct glint_flare_config needed = f->cfg;
 
-    needed.max_bundles = bundles_within(f, s->need_bundles);
+    needed.max_bundles = bundles_within(s->need_bundles);
     needed.max_vertices = s->need_vertices;
     needed.max_primitives = s->need_primitives;
     needed.max_refs = s->need_refs;
-    needed.max_tile_refs = s->need_tile_refs;
     return needed;
 }
 
@@ -98,22 +90,16 @@ static double bytes_of(const struct glint_frame *f,
     needed.max_primitives = (int)fmin(INT_MAX, s->need_primitives * UNEVEN);
     bytes = (double)glint_flare_bytes(&needed);
     needed.max_primitives = needed.max_refs = 1;
-    needed.max_vertices = smaller(needed.max_vertices, 1);
-    needed.max_tile_refs = smaller(needed.max_tile_refs, 1);
     *fixed = (double)glint_flare_bytes(&needed);
     return bytes;
 }
 
-/* Returns the bytes for a number of primitives, with references for each and,
- * by cells, vertices: rather too many. */
+/* Returns the bytes for a number of primitives, with references for each:
+ * rather too many. */
 static size_t bytes_for(struct glint_frame *f, int primitives)
 {
-    const bool by_edges = is_by_edges(f);
-
     f->cfg.max_primitives = primitives;
     f->cfg.max_refs = 2 * primitives;
-    f->cfg.max_vertices = by_edges ? 0 : 2 * primitives;
-    f->cfg.max_tile_refs = f->cfg.coarse_log2 ? primitives : 0;
     return glint_flare_bytes(&f->cfg);
 }
 
@@ -134,13 +120,9 @@ static bool fit(struct glint_frame *f, size_t bytes)
 
 /* Returns the primitives that reserved memory would have to have room for, with
  * the shares of bytes_for(). */
-static double primitives_of(const struct glint_frame *f,
-                            const struct glint_flare_stats *s)
+static double primitives_of(const struct glint_flare_stats *s)
 {
-    const double others = fmax(s->need_refs, s->need_vertices) / 2;
-
-    return fmax(fmax(s->need_primitives * UNEVEN, others),
-                f->cfg.coarse_log2 ? s->need_tile_refs : 0);
+    return fmax(s->need_primitives * UNEVEN, s->need_refs / 2.0);
 }
 
 /* Makes grids coarser if what was binned would take more memory than a frame
@@ -154,8 +136,7 @@ static bool hold_room(struct glint_frame *f, const struct glint_flare_stats *s)
         f->reserved ? f->most_primitives : (double)most_bytes(f);
     const int fineness = f->dials.fineness;
     double fixed = 0;
-    const double need =
-        f->reserved ? primitives_of(f, s) : bytes_of(f, s, &fixed);
+    const double need = f->reserved ? primitives_of(s) : bytes_of(f, s, &fixed);
 
     if (most <= 0 || f->budget.ms > 0 || need <= most ||
         fineness <= LEAST_FINENESS ||
@@ -178,7 +159,7 @@ bool glint_frame_is_served(struct glint_frame *f,
                            const struct glint_flare_stats *s)
 {
     struct glint_flare_config *c = &f->cfg;
-    const int bundles = bundles_within(f, s->need_bundles);
+    const int bundles = bundles_within(s->need_bundles);
 
     if (f->is_full)
         return true;
@@ -186,19 +167,16 @@ bool glint_frame_is_served(struct glint_frame *f,
         return false;
     if (f->reserved)
         return true;
-    if (bundles <= c->max_bundles && s->need_vertices <= c->max_vertices &&
-        s->need_primitives <= c->max_primitives &&
-        s->need_refs <= c->max_refs && s->need_tile_refs <= c->max_tile_refs)
+    if (bundles <= c->max_bundles && s->need_primitives <= c->max_primitives &&
+        s->need_refs <= c->max_refs)
         return true;
     c->max_bundles = larger(c->max_bundles, bundles);
-    c->max_vertices = larger(c->max_vertices, s->need_vertices);
     c->max_primitives = larger(
         c->max_primitives,
         (int)fmin(INT_MAX,
                   s->need_primitives *
                       (glint_workers_count(c->workers) > 1 ? UNEVEN : 1.0)));
     c->max_refs = larger(c->max_refs, s->need_refs);
-    c->max_tile_refs = larger(c->max_tile_refs, s->need_tile_refs);
     return false;
 }
 
@@ -303,9 +281,8 @@ enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
     f->dials.max_lights =
         smaller(f->dials.max_lights, smaller(n_drawn, n_lamps));
     /* Not all ghosts are seen, and few take the largest set. */
-    f->cfg.max_bundles =
-        bundles_within(f, (glint_frame_has_sets(f) ? 2. : 1) *
-                              count_bundles(f, f->dials.max_lights));
+    f->cfg.max_bundles = bundles_within((glint_frame_has_sets(f) ? 2. : 1) *
+                                        count_bundles(f, f->dials.max_lights));
     if (f->cfg.reuse)
         f->cfg.reuse_lights = f->dials.max_lights;
     f->cfg.reuse_gains = f->cfg.reuse && f->dials.still_px > 0;
@@ -338,7 +315,6 @@ size_t glint_frame_bytes_used(const struct glint_frame *f,
     used.max_vertices = s->vertices;
     used.max_primitives = s->primitives;
     used.max_refs = s->refs;
-    used.max_tile_refs = s->tile_refs;
     return glint_flare_bytes(&used);
 }
 

@@ -36,27 +36,3 @@ void glint_dirt_free(struct glint_dirt *dirt)
     free(dirt->rough_q8);
     free(dirt);
 }
-
-void glint_setup_mask(const struct glint_setup *setup, int16_t *mask_q13,
-                      int nodes, double span)
-{
-    const double step = 2 * span / (nodes - 1);
-    struct glint_iris_sides sides;
-    struct glint_stop stop;
-
-    /* The mask has the very sides of cells that are drawn without one. */
-    glint_setup_stop(setup, &stop);
-    glint_iris_sides(&sides, setup);
-    sides.apothem = stop.apothem_q16 * 0x1p-16;
-    for (int k = 0; k < sides.n; k++)
-        for (int axis = 0; axis < 2; axis++)
-            sides.normal[k][axis] = stop.normal_q30[k][axis] * 0x1p-30;
-    for (int j = 0; j < nodes; j++)
-        for (int i = 0; i < nodes; i++) {
-            const double d =
-                glint_iris_depth(&sides, i * step - span, j * step - span);
-
-            mask_q13[j * nodes + i] =
-                (int16_t)lrint(fmax(-3.9, fmin(d, 3.9)) * 8192);
-        }
-}

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The primitives that tiles are filled with by cells: convex quads and
- * triangles over the vertices of the ray grids, each with one irradiance. By
- * edges, too, cells are measured with the functions here. */
+ * Cells of the ray grids, quads and triangles, and their irradiance. */
 #ifndef GLINT_FLARE_PRIMITIVE_H
 #define GLINT_FLARE_PRIMITIVE_H
 
@@ -15,31 +13,16 @@ enum {
     GLINT_CUT_STOP = 1,   /* the outline of the stop may cross it */
     GLINT_CUT_BARREL = 2, /* a barrel may cross it */
     /* The functions of round cuts are already lowered by their sag. */
-    GLINT_CUT_LOWERED = 16,
-    GLINT_POINT = 4,  /* far smaller than a pixel: all its light goes to the
-                         pixel that its middle lies in */
-    GLINT_SAMPLED = 8 /* the ghost has cells of a few pixels: light is taken at
-                         4 x 4 places of each pixel */
+    GLINT_CUT_LOWERED = 16
 };
 
-struct glint_primitive {
-    int32_t vertex[4]; /* indices of the corners in order, area positive; -1 at
-                          the end for a triangle */
-    int32_t irradiance_q20; /* display white, at energy 1; of a GLINT_POINT the
-                               light that it adds to its pixel */
-    uint16_t bundle;
-    int8_t share_log2; /* log2 of the number of cells whose light it has; -1:
-                          half a cell */
-    uint8_t flags;     /* GLINT_CUT_, GLINT_POINT, GLINT_SAMPLED */
-};
-
-/* Most light that a primitive may give a pixel, display white. */
+/* Most light that a cell may give a pixel, display white. */
 enum { GLINT_LIMIT_Q8 = 1 << 19 };
 
 /* Fraction bits of a vertex position. */
 enum { GLINT_VERTEX_FRAC = 8 };
 
-/* The corners of a primitive. */
+/* The corners of a cell. */
 struct glint_corners {
     int n; /* 3 or 4 */
     const struct glint_vertex *at[4];
@@ -115,27 +98,7 @@ static inline int glint_corners_thin(const struct glint_corners *corners)
            (!glint_corners_stout(corners) && glint_corners_lean(corners));
 }
 
-/* Sets CORNERS to the N vertices of V with the indices VERTEX. */
-void glint_corners_gather(struct glint_corners *corners,
-                          const struct glint_vertex *v, const int32_t *vertex,
-                          int n);
-
 /* Returns whether all corners lie in a square of 1/PART of a pixel. */
 int glint_corners_tiny(const struct glint_corners *corners, int part);
-
-/* Returns the pixel in which the mean of CORNERS lies, as a box; empty if that
- * is outside of the picture. */
-struct glint_box glint_corners_pixel(const struct glint_corners *corners,
-                                     int width, int height);
-
-/* Returns the pixels that primitive P with CORNERS may light, by its flags. */
-struct glint_box glint_primitive_box(const struct glint_primitive *p,
-                                     const struct glint_corners *corners,
-                                     int width, int height);
-
-static inline int glint_primitive_corners(const struct glint_primitive *p)
-{
-    return p->vertex[3] < 0 ? 3 : 4;
-}
 
 #endif

@@ -32,40 +32,10 @@ static void test_energy(void **state)
     /* The stop's corners lie on the rim of the barrel, so the stop alone
      * cuts. */
     c.stop.apothem_q16 = 60547;
-    for (int raster = 0; raster < 2; raster++) {
-        const double off = raster == 0 ? 0.001 : 0.005;
-
-        c.raster = raster ? &glint_raster_cells : &glint_raster_edges;
-        draw_list(c, &g, 1, pixels);
-        assert_true(total(pixels, 0) > (1 - off) * flux);
-        assert_true(total(pixels, 0) < (1 + off) * flux);
-        assert_true(total(pixels, 1) == 0 && total(pixels, 2) == 0);
-    }
-}
-
-/* A ghost that is twice as large and mirrored, with other weights or merged
- * cells, must have the same light. */
-static void test_energy_is_kept(void **state)
-{
-    struct ghost g = {16, 100, 75, 25, 0, 1, 0, 0, {16384, 0, 0}};
-    struct glint_flare_config c = base_config();
-    double first;
-
-    (void)state;
-    c.raster = &glint_raster_cells;
     draw_list(c, &g, 1, pixels);
-    first = total(pixels, 0);
-    g.size = 50;
-    g.mirror = -1;
-    draw_list(c, &g, 1, pixels);
-    assert_true(total(pixels, 0) > 0.998 * first &&
-                total(pixels, 0) < 1.002 * first);
-    c.weights = GLINT_WEIGHTS_LOOP_DEROSE;
-    c.merge_steps = 4;
-    c.merge_gamma_q16 = 66;
-    assert_true(draw_list(c, &g, 1, pixels).merged_cells > 60);
-    assert_true(total(pixels, 0) > 0.998 * first &&
-                total(pixels, 0) < 1.002 * first);
+    assert_true(total(pixels, 0) > 0.999 * flux);
+    assert_true(total(pixels, 0) < 1.001 * flux);
+    assert_true(total(pixels, 1) == 0 && total(pixels, 2) == 0);
 }
 
 /* A ghost only two pixels wide, at several places and bent or not, must keep
@@ -80,12 +50,10 @@ static void test_focused_light_arrives(void **state)
     for (int k = 0; k < 32; k++) {
         const struct ghost g = {16, 50 + k / 2, 70,           1, 4 * k, 1,
                                 0,  0,          {16384, 0, 0}};
-        const double off = k & 1 ? 0.1 : 0.001;
 
-        c.raster = k & 1 ? &glint_raster_cells : &glint_raster_edges;
         draw_list(c, &g, 1, pixels);
-        assert_true(total(pixels, 0) > (1 - off) * flux);
-        assert_true(total(pixels, 0) < (1 + off) * flux);
+        assert_true(total(pixels, 0) > 0.999 * flux);
+        assert_true(total(pixels, 0) < 1.001 * flux);
     }
 }
 
@@ -94,8 +62,8 @@ static int32_t at(const int32_t *p, int x, int y)
     return p[3 * (y * WIDTH + x)];
 }
 
-/* A flat ghost must have an even irradiance away from its rim: flux per cell
- * over the cell's area in pixels. */
+/* A flat ghost must have an even irradiance away from its rim, that of each
+ * cell: flux over the cell's area in pixels. */
 static void test_flat_inside(void **state)
 {
     struct ghost g = {16, 100, 75, 40, 0, 1, 0, 0, {16384, 0, 0}};
@@ -104,7 +72,6 @@ static void test_flat_inside(void **state)
     struct glint_flare_config c = base_config();
 
     (void)state;
-    c.raster = &glint_raster_cells;
     draw_list(c, &g, 1, pixels);
     for (int y = 65; y < 85; y++) {
         /* Energy at the pixel: 50000 + sx / 8, sx = 65536 (x - 100) / 40. */
@@ -113,56 +80,11 @@ static void test_flat_inside(void **state)
                 (50000 + (x + 0.5 - 100) / 40 * 65536 / 8) / 65536;
             const double q20 = irradiance * energy * 1048576;
 
-            assert_true(at(pixels, x, y) > 0.997 * q20 - 2 &&
-                        at(pixels, x, y) < 1.003 * q20 + 2);
+            assert_true(at(pixels, x, y) > 0.985 * q20 - 2 &&
+                        at(pixels, x, y) < 1.015 * q20 + 2);
         }
     }
     assert_int_equal(at(pixels, 100, 2), 0);
-}
-
-/* Draws G by edges into pixels and by cells into want. Adds by how much they
- * are apart to OFF, and the light by cells to ALL. */
-static void add_difference(const struct ghost *g, double *off, double *all)
-{
-    struct glint_flare_config c = base_config();
-
-    draw_list(c, g, 1, pixels);
-    c.raster = &glint_raster_cells;
-    draw_list(c, g, 1, want);
-    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
-        *off += abs(pixels[i] - want[i]);
-        *all += want[i];
-    }
-}
-
-/* By edges a cell has one irradiance, from the energy in its middle, so the
- * picture must be within 0.6 % of that by cells. */
-static void test_edges_agree_with_cells(void **state)
-{
-    const struct ghost g = {32, 100, 75, 60, 100, 1, 300, 6, {16384, 0, 0}};
-    double off = 0, all = 0;
-
-    (void)state;
-    add_difference(&g, &off, &all);
-    assert_true(off < 0.006 * all);
-    assert_true(total(pixels, 0) > 0.999 * total(want, 0));
-    assert_true(total(pixels, 0) < 1.001 * total(want, 0));
-}
-
-/* Cells of two pixels, folded and cut by stop and barrel, must give nearly the
- * light that the raster of cells samples. */
-static void test_small_cells_agree(void **state)
-{
-    double off = 0, all = 0;
-
-    (void)state;
-    for (int k = 0; k < 16; k++) {
-        const struct ghost g = {16, 100, 75, 9 + k % 4,    60 * k,
-                                1,  300, -2, {16384, 0, 0}};
-
-        add_difference(&g, &off, &all);
-    }
-    assert_true(off < 0.083 * all); /* 0.0896 by pixel centres alone */
 }
 
 /* If an outline did not close to the last bit, it would leave a streak to the
@@ -442,11 +364,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_energy),
-        cmocka_unit_test(test_energy_is_kept),
         cmocka_unit_test(test_focused_light_arrives),
         cmocka_unit_test(test_flat_inside),
-        cmocka_unit_test(test_edges_agree_with_cells),
-        cmocka_unit_test(test_small_cells_agree),
         cmocka_unit_test(test_outlines_close),
         cmocka_unit_test(test_far_corner_closes),
         cmocka_unit_test(test_steps),

@@ -5,15 +5,16 @@
  * A clip is a function over the primitive, positive inside the opening, linear
  * between the corners, and scaled to pixels: its value at a pixel's centre is
  * the distance to the cut, so that cover = value + 1/2, clamped to 0 .. 1. The
- * sides of a polygonal stop and the barrels are such functions; a circle and a
- * mask are looked up at the interpolated stop position instead, and scaled by
- * one factor. */
-#ifndef GLINT_PUBLISHED_CLIP_H
-#define GLINT_PUBLISHED_CLIP_H
+ * sides of a polygonal stop and the barrels are such functions; a circle is
+ * looked up at the interpolated stop position instead, and scaled by one
+ * factor.
+ */
+#ifndef REFERENCE_CELLS_CLIP_H
+#define REFERENCE_CELLS_CLIP_H
 
 #include <stdint.h>
 
-#include "flare/edges/primitive.h"
+#include "reference/cells/cell.h"
 #include "glint/light.h"
 
 struct glint_clip {
@@ -39,9 +40,8 @@ void glint_clip_init(struct glint_clip *clip,
                      const struct glint_corners *corners,
                      const struct glint_stop *stop, int cut);
 
-/* Returns the signed distance, in stop radii, to the outline of a circle or
- * mask at (X, Y), positive inside. */
-int32_t glint_clip_field_q16(const struct glint_stop *stop, int32_t x_q16,
-                             int32_t y_q16);
+/* Returns the signed distance, in stop radii, to the outline of a circular stop
+ * at (X, Y), positive inside. */
+int32_t glint_clip_field_q16(int32_t x_q16, int32_t y_q16);
 
 #endif

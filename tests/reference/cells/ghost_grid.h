@@ -11,18 +11,17 @@
  * that lost one corner keeps half of its light, one that lost more is dropped.
  * Cells of a ghost that is focused to a few pixels become points; other cells
  * without area lose their light. */
-#ifndef GLINT_PUBLISHED_GHOST_GRID_H
-#define GLINT_PUBLISHED_GHOST_GRID_H
+#ifndef REFERENCE_CELLS_GHOST_GRID_H
+#define REFERENCE_CELLS_GHOST_GRID_H
 
 #include <stdint.h>
 
-#include "flare/edges/primitive.h"
+#include "reference/cells/cell.h"
 #include "glint/light.h"
 
 /* A bundle while it becomes primitives, and the counts of what it gave. */
 struct glint_ghost_grid {
-    const struct glint_vertex *vertex; /* vertices of all bundles */
-    int first;                         /* first vertex of this bundle */
+    const struct glint_vertex *vertex;
     const struct glint_bundle *bundle;
     const struct glint_stop *stop;
     int width, height; /* size of the picture in pixels */
@@ -36,18 +35,13 @@ struct glint_ghost_grid {
     int n_primitives, n_dropped, n_merged;
     int n_held; /* primitives written whose light was clamped to what one may
                    give a pixel */
-
-    /* Unless NULL, called with the box of each primitive, written or not. */
-    void (*see)(void *ctx, struct glint_box box);
-    void *ctx;
 };
 
 /* Decides which blocks of cells become one primitive. */
 void glint_ghost_grid_merge(struct glint_ghost_grid *grid);
 
-/* Counts the primitives of bundle BUNDLE, and writes them to OUT unless it is
- * NULL. */
-void glint_ghost_grid_emit(struct glint_ghost_grid *grid, int bundle,
+/* Writes the primitives to OUT, at most two for each cell. */
+void glint_ghost_grid_emit(struct glint_ghost_grid *grid,
                            struct glint_primitive *out);
 
 #endif

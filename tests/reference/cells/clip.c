@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "published/clip.h"
+#include "reference/cells/clip.h"
 
 #include <stddef.h>
 
@@ -192,35 +192,13 @@ static int32_t field_scale_q16(const struct glint_corners *c)
     return q_clamp_sat((int64_t)q_root(ratio_q16), 1, INT32_MAX);
 }
 
-int32_t glint_clip_field_q16(const struct glint_stop *stop, int32_t x_q16,
-                             int32_t y_q16)
+int32_t glint_clip_field_q16(int32_t x_q16, int32_t y_q16)
 {
-    const int last = stop->mask_nodes - 1;
-    int64_t u_q16, v_q16;
-    int32_t i, j, fu, fv;
-    const int16_t *m;
-    int64_t low, high;
+    /* (1 - r^2) / 2, which is 1 - r near r = 1 */
+    const int64_t x = x_q16 / 2, y = y_q16 / 2;
 
-    if (!stop->mask_q13) { /* circle: (1 - r^2) / 2, which is 1 - r near r = 1
-                            */
-        const int64_t x = x_q16 / 2, y = y_q16 / 2;
-
-        return q_clamp_sat((INT64_C(1) << 15) - q_shift(x * x + y * y, 15),
-                           -FAR_Q8, FAR_Q8);
-    }
-    u_q16 = ((int64_t)x_q16 + stop->mask_span_q16) * last * (1 << 16) /
-            (2 * (int64_t)stop->mask_span_q16);
-    v_q16 = ((int64_t)y_q16 + stop->mask_span_q16) * last * (1 << 16) /
-            (2 * (int64_t)stop->mask_span_q16);
-    u_q16 = q_clamp_sat(u_q16, 0, last * (1 << 16) - 1);
-    v_q16 = q_clamp_sat(v_q16, 0, last * (1 << 16) - 1);
-    i = (int32_t)(u_q16 >> 16), fu = (int32_t)(u_q16 & 0xffff);
-    j = (int32_t)(v_q16 >> 16), fv = (int32_t)(v_q16 & 0xffff);
-    m = stop->mask_q13 + (ptrdiff_t)j * stop->mask_nodes + i;
-    low = m[0] * INT64_C(65536) + (int64_t)(m[1] - m[0]) * fu;
-    m += stop->mask_nodes;
-    high = m[0] * INT64_C(65536) + (int64_t)(m[1] - m[0]) * fu;
-    return q_narrow(q_shift(low * 65536 + (high - low) * fv, 29));
+    return q_clamp_sat((INT64_C(1) << 15) - q_shift(x * x + y * y, 15), -FAR_Q8,
+                       FAR_Q8);
 }
 
 /* The bounding box of the stop positions at the corners. */
@@ -253,24 +231,17 @@ static enum side circle_side(struct extent e, int64_t low, int64_t pixel_q16)
     return low > pixel_q16 ? INSIDE : CUT;
 }
 
-/* Returns on which side of a circle or mask the primitive lies: a signed
- * distance changes by no more than the distance between two points. */
-static enum side field_side(const struct glint_corners *c,
-                            const struct glint_stop *stop)
+/* Returns on which side of a circle the primitive lies. */
+static enum side field_side(const struct glint_corners *c)
 {
     const int64_t pixel_q16 = ((INT64_C(1) << 32) / field_scale_q16(c)) + 1;
     const struct extent e = stop_extent(c, pixel_q16);
-    const int64_t span = (e.x1 - e.x0) + (e.y1 - e.y0);
     int64_t value[4];
 
     for (int i = 0; i < 4; i++)
-        value[i] = glint_clip_field_q16(stop, c->at[i]->stop_x_q16,
-                                        c->at[i]->stop_y_q16);
-    if (!stop->mask_q13)
-        return circle_side(e, lowest(value), pixel_q16);
-    return lowest(value) > span     ? INSIDE
-           : highest(value) < -span ? OUTSIDE
-                                    : CUT;
+        value[i] =
+            glint_clip_field_q16(c->at[i]->stop_x_q16, c->at[i]->stop_y_q16);
+    return circle_side(e, lowest(value), pixel_q16);
 }
 
 static enum side stop_side(const struct glint_corners *c,
@@ -279,8 +250,8 @@ static enum side stop_side(const struct glint_corners *c,
     enum side all = INSIDE;
     int64_t value[4];
 
-    if (stop->mask_q13 || stop->n_blades == 0)
-        return field_side(c, stop);
+    if (stop->n_blades == 0)
+        return field_side(c);
     for (int side = 0; side < stop->n_blades; side++) {
         enum side s;
 
@@ -339,8 +310,8 @@ int glint_clip_middle(const struct glint_corners *corners,
         x[i] = corners->at[i]->stop_x_q16;
         y[i] = corners->at[i]->stop_y_q16;
     }
-    if (stop->mask_q13 || stop->n_blades == 0)
-        return glint_clip_field_q16(stop, q_narrow(mean(x, corners->n)),
+    if (stop->n_blades == 0)
+        return glint_clip_field_q16(q_narrow(mean(x, corners->n)),
                                     q_narrow(mean(y, corners->n))) >= 0;
     for (int side = 0; side < stop->n_blades; side++) {
         side_values(corners, stop, side, value);
@@ -372,7 +343,7 @@ void glint_clip_init(struct glint_clip *clip,
     }
     if (!(cut & GLINT_CUT_STOP))
         return;
-    if (stop->mask_q13 || stop->n_blades == 0) {
+    if (stop->n_blades == 0) {
         clip->field = 1;
         clip->field_q16 = field_scale_q16(corners);
         return;

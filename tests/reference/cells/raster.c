@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "published/raster.h"
+#include "reference/cells/raster.h"
 
 #include "base/compiler.h"
 #include "base/q.h"
@@ -19,7 +19,7 @@ struct edges {
 };
 
 static void edges_init(struct edges *e, const struct glint_corners *c,
-                       enum glint_weights weights, int px, int py)
+                       enum cells_weights weights, int px, int py)
 {
     const int wide = bit_length((uint64_t)c->area2_q16);
     const int32_t x_q8 = px * 256 + HALF_Q8, y_q8 = py * 256 + HALF_Q8;
@@ -38,7 +38,7 @@ static void edges_init(struct edges *e, const struct glint_corners *c,
         e->dy[i] = (int64_t)ex * 256;
         e->bias[i] = ey < 0 || (ey == 0 && ex > 0) ? 0 : -1;
         e->fan[i] = 1;
-        if (c->n == 4 && weights == GLINT_WEIGHTS_WACHSPRESS)
+        if (c->n == 4 && weights == CELLS_WACHSPRESS)
             e->fan[i] =
                 (uint64_t)((glint_turn_q16(before->x_q8, before->y_q8, a->x_q8,
                                            a->y_q8, b->x_q8, b->y_q8) >>
@@ -118,7 +118,7 @@ static int32_t cover_of(const struct glint_cell_raster *r,
                 x += (int64_t)w_q16[i] * c->at[i]->stop_x_q16;
                 y += (int64_t)w_q16[i] * c->at[i]->stop_y_q16;
             }
-            d_q8 = glint_clip_field_q16(r->stop, q_narrow(q_shift(x, 16)),
+            d_q8 = glint_clip_field_q16(q_narrow(q_shift(x, 16)),
                                         q_narrow(q_shift(y, 16)));
             d_q8 = q_shift(d_q8 * clip->field_q16, 24);
         }
@@ -142,11 +142,11 @@ static int32_t energy_of(const struct glint_corners *c, const int32_t *w_q16)
 }
 
 /* Adds light times colour at one pixel to its three sums. */
-static void add_pixel(int64_t *acc_q20, int channel_stride,
-                      const int32_t *rgb_q14, int64_t light_q20)
+static void add_pixel(int64_t *acc_q20, const int32_t *rgb_q14,
+                      int64_t light_q20)
 {
     for (int c = 0; c < 3; c++)
-        acc_q20[c * channel_stride] += q_shift(light_q20 * rgb_q14[c], 14);
+        acc_q20[c] += q_shift(light_q20 * rgb_q14[c], 14);
 }
 
 static void next_row(struct edges *e)
@@ -160,13 +160,12 @@ static void add_point(const struct glint_cell_raster *raster,
                       const struct glint_primitive *p,
                       const struct glint_corners *c, int64_t *acc_q20)
 {
-    const int side = 1 << raster->tile_log2;
     int64_t energy_q16 = 0;
 
     for (int i = 0; i < c->n; i++)
         energy_q16 += c->at[i]->energy_q16;
     energy_q16 /= c->n;
-    add_pixel(acc_q20, side * side, raster->bundle[p->bundle].rgb_q14,
+    add_pixel(acc_q20, raster->bundle->rgb_q14,
               q_shift(p->irradiance_q20 * energy_q16, 16));
 }
 
@@ -213,42 +212,38 @@ static int64_t sampled_light(const struct glint_cell_raster *raster,
 }
 
 void glint_cell_raster_primitive(const struct glint_cell_raster *raster,
-                                 int primitive, struct glint_box tile,
-                                 struct glint_clip *clip, int64_t *acc_q20)
+                                 const struct glint_primitive *p)
 {
-    const struct glint_primitive *p = &raster->primitive[primitive];
-    const int32_t *rgb_q14 = raster->bundle[p->bundle].rgb_q14;
-    const int side = 1 << raster->tile_log2;
     struct glint_corners c;
+    struct glint_clip clip;
     struct glint_box box;
     struct edges e;
 
     glint_corners_gather(&c, raster->vertex, p->vertex,
                          glint_primitive_corners(p));
-    box = glint_box_cut(
-        glint_primitive_box(p, &c, GLINT_MAX_SIDE, GLINT_MAX_SIDE), tile);
+    box = glint_primitive_box(p, &c, raster->width, raster->height);
     if (glint_box_empty(box))
         return;
     if (p->flags & GLINT_POINT) {
         add_point(raster, p, &c,
-                  acc_q20 + (box.y0 - tile.y0) * side + (box.x0 - tile.x0));
+                  raster->acc_q20 + 3 * (box.y0 * raster->width + box.x0));
         return;
     }
-    glint_clip_init(clip, &c, raster->stop, p->flags);
+    glint_clip_init(&clip, &c, raster->stop, p->flags);
     edges_init(&e, &c, raster->weights, box.x0, box.y0);
     for (int y = box.y0; y < box.y1; y++, next_row(&e)) {
-        int64_t *acc = acc_q20 + (y - tile.y0) * side + (box.x0 - tile.x0);
+        int64_t *acc = raster->acc_q20 + 3 * (y * raster->width + box.x0);
 
         for (int i = 0; i < 4; i++)
             e.at[i] = e.row[i];
-        for (int x = box.x0; x < box.x1; x++, acc++) {
+        for (int x = box.x0; x < box.x1; x++, acc += 3) {
             const int64_t light_q20 =
                 p->flags & GLINT_SAMPLED
-                    ? sampled_light(raster, p, &c, clip, &e)
-                    : light_at(raster, p, &c, clip, &e);
+                    ? sampled_light(raster, p, &c, &clip, &e)
+                    : light_at(raster, p, &c, &clip, &e);
 
             if (light_q20)
-                add_pixel(acc, side * side, rgb_q14, light_q20);
+                add_pixel(acc, raster->bundle->rgb_q14, light_q20);
             for (int i = 0; i < 4; i++)
                 e.at[i] += e.dx[i];
         }

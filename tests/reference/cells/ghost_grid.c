@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include "published/ghost_grid.h"
+#include "reference/cells/ghost_grid.h"
 
 #include <stddef.h>
 
 #include "base/compiler.h"
 #include "base/q.h"
-#include "published/clip.h"
+#include "reference/cells/clip.h"
 
 /* Marks of cells: log2 of the side of the block that starts at the cell, or
  * COVERED if the cell belongs to a block that starts at another. */
@@ -13,7 +13,7 @@ enum { COVERED = 255 };
 
 static int node(const struct glint_ghost_grid *g, int i, int j)
 {
-    return g->first + j * (g->bundle->n_cells + 1) + i;
+    return j * (g->bundle->n_cells + 1) + i;
 }
 
 static int vertex_valid(const struct glint_vertex *v)
@@ -208,12 +208,9 @@ static int emit_point(struct glint_ghost_grid *g,
         !glint_clip_middle(corners, g->stop))
         return 0;
     p->flags = GLINT_POINT;
-    if (out) {
-        p->irradiance_q20 = held_q20(glint_irradiance_q22(
-            g->bundle, p->share_log2, 1, 0, GLINT_LIMIT_Q8, &g->n_held));
-        out[g->n_primitives] = *p;
-    }
-    g->n_primitives++;
+    p->irradiance_q20 = held_q20(glint_irradiance_q22(
+        g->bundle, p->share_log2, 1, 0, GLINT_LIMIT_Q8, &g->n_held));
+    out[g->n_primitives++] = *p;
     return 0;
 }
 
@@ -235,26 +232,20 @@ static int emit_cell(struct glint_ghost_grid *g,
     cut = glint_clip_classify(corners, g->stop);
     if (cut < 0)
         return 0;
-    if (out) {
-        p->flags |= (uint8_t)cut;
-        p->irradiance_q20 = held_q20(glint_irradiance_q22(
-            g->bundle, p->share_log2, corners->area2_q16,
-            2 * GLINT_VERTEX_FRAC + 1, GLINT_LIMIT_Q8, &g->n_held));
-        out[g->n_primitives] = *p;
-    }
-    g->n_primitives++;
+    p->flags |= (uint8_t)cut;
+    p->irradiance_q20 = held_q20(glint_irradiance_q22(
+        g->bundle, p->share_log2, corners->area2_q16, 2 * GLINT_VERTEX_FRAC + 1,
+        GLINT_LIMIT_Q8, &g->n_held));
+    out[g->n_primitives++] = *p;
     return 0;
 }
 
 /* Adds one primitive with the corners Q if any of it can be seen. Returns
  * whether its light was dropped. */
-static int emit_one(struct glint_ghost_grid *g, int bundle, const int32_t *q,
-                    int n, int share_log2, struct glint_primitive *out)
+static int emit_one(struct glint_ghost_grid *g, const int32_t *q, int n,
+                    int share_log2, struct glint_primitive *out)
 {
-    const int before = g->n_primitives;
-    int dropped;
-    struct glint_primitive p = {.bundle = (uint16_t)bundle,
-                                .share_log2 = (int8_t)share_log2};
+    struct glint_primitive p = {.share_log2 = (int8_t)share_log2};
     struct glint_corners corners;
 
     glint_corners_gather(&corners, g->vertex, q, n);
@@ -263,16 +254,13 @@ static int emit_one(struct glint_ghost_grid *g, int bundle, const int32_t *q,
     if (n == 3)
         p.vertex[3] = -1;
     glint_corners_gather(&corners, g->vertex, p.vertex, n);
-    dropped = emit_cell(g, &corners, &p, out);
-    if (g->see && g->n_primitives > before)
-        g->see(g->ctx, glint_primitive_box(&p, &corners, g->width, g->height));
-    return dropped;
+    return emit_cell(g, &corners, &p, out);
 }
 
 /* Adds a cell that is no convex quad: as two triangles, or as the one triangle
  * whose corners are not lost. Returns whether light was dropped. */
-static int emit_triangles(struct glint_ghost_grid *g, int bundle,
-                          const int32_t *q, struct glint_primitive *out)
+static int emit_triangles(struct glint_ghost_grid *g, const int32_t *q,
+                          struct glint_primitive *out)
 {
     static const int half[2][3] = {{0, 1, 2}, {0, 2, 3}};
     int32_t left[4];
@@ -284,11 +272,11 @@ static int emit_triangles(struct glint_ghost_grid *g, int bundle,
     if (n < 3)
         return 1;
     if (n == 3)
-        return 1 | emit_one(g, bundle, left, 3, -1, out);
+        return 1 | emit_one(g, left, 3, -1, out);
     for (int k = 0; k < 2; k++) {
         const int32_t t[3] = {q[half[k][0]], q[half[k][1]], q[half[k][2]]};
 
-        dropped |= emit_one(g, bundle, t, 3, -1, out);
+        dropped |= emit_one(g, t, 3, -1, out);
     }
     return dropped;
 }
@@ -302,25 +290,25 @@ static int block_tiny(const struct glint_ghost_grid *g, const int32_t *q)
     return g->focused && glint_corners_tiny(&corners, 2);
 }
 
-static int emit_block(struct glint_ghost_grid *g, int bundle, int i, int j,
-                      int size_log2, struct glint_primitive *out)
+static int emit_block(struct glint_ghost_grid *g, int i, int j, int size_log2,
+                      struct glint_primitive *out)
 {
     int32_t q[4];
 
     block_corners(g, i, j, size_log2, q);
     for (int k = 0; k < 4; k++)
         if (!vertex_valid(&g->vertex[q[k]]))
-            return emit_triangles(g, bundle, q, out);
+            return emit_triangles(g, q, out);
     if (convexity(g->vertex, q) == 0 && !block_tiny(g, q))
-        return emit_triangles(g, bundle, q, out);
-    return emit_one(g, bundle, q, 4, 2 * size_log2, out);
+        return emit_triangles(g, q, out);
+    return emit_one(g, q, 4, 2 * size_log2, out);
 }
 
 /* Returns whether all rays land within four pixels of the first. */
 static int is_focused(const struct glint_ghost_grid *g)
 {
     const int n = g->bundle->n_cells;
-    const struct glint_vertex *v = g->vertex + g->first, *seen = NULL;
+    const struct glint_vertex *v = g->vertex, *seen = NULL;
 
     for (int k = 0; k < (n + 1) * (n + 1); k++) {
         if (!vertex_valid(&v[k]))
@@ -348,7 +336,7 @@ static int is_near(const struct glint_vertex *a, const struct glint_vertex *b)
 static int has_small_cells(const struct glint_ghost_grid *g)
 {
     const int n = g->bundle->n_cells;
-    const struct glint_vertex *v = g->vertex + g->first;
+    const struct glint_vertex *v = g->vertex;
 
     for (int j = 0; j <= n; j++)
         for (int i = 0; i <= n; i++, v++)
@@ -359,7 +347,7 @@ static int has_small_cells(const struct glint_ghost_grid *g)
     return 1;
 }
 
-void glint_ghost_grid_emit(struct glint_ghost_grid *grid, int bundle,
+void glint_ghost_grid_emit(struct glint_ghost_grid *grid,
                            struct glint_primitive *out)
 {
     const int n = grid->bundle->n_cells;
@@ -372,5 +360,5 @@ void glint_ghost_grid_emit(struct glint_ghost_grid *grid, int bundle,
         for (int i = 0; i < n; i++)
             if (grid->level[j * n + i] != COVERED)
                 grid->n_dropped +=
-                    emit_block(grid, bundle, i, j, grid->level[j * n + i], out);
+                    emit_block(grid, i, j, grid->level[j * n + i], out);
 }

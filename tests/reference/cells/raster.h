@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Adds primitives to one tile's accumulators.
+ * Adds primitives to the sums of a picture.
  *
  * A pixel belongs to the primitive that its centre lies in; on a shared edge,
  * to the primitive below or to the right, so that two neighbours never both
@@ -11,29 +11,29 @@
  * Formats: corners q8, edge functions q16 in 64 bits, weights q16, sums q20 in
  * 64 bits. A contribution is below 2^33, so 2^30 primitives may share a pixel.
  */
-#ifndef GLINT_PUBLISHED_RASTER_H
-#define GLINT_PUBLISHED_RASTER_H
+#ifndef REFERENCE_CELLS_RASTER_H
+#define REFERENCE_CELLS_RASTER_H
 
 #include <stdint.h>
 
-#include "glint/flare.h"
-#include "published/clip.h"
-#include "flare/edges/primitive.h"
+#include "glint/bundle.h"
+#include "reference/cells/clip.h"
+#include "reference/cells/cell.h"
+
+enum cells_weights { CELLS_WACHSPRESS, CELLS_LOOP_DEROSE };
 
 struct glint_cell_raster {
     const struct glint_vertex *vertex;
-    const struct glint_primitive *primitive;
     const struct glint_bundle *bundle;
     const struct glint_stop *stop;
-    enum glint_weights weights;
+    enum cells_weights weights;
     int antialias;
-    int tile_log2;
+    int width, height; /* pixels */
+    int64_t *acc_q20;  /* [height][width][3] */
 };
 
-/* Adds primitive PRIMITIVE to ACC_Q20, the [3][side * side] sums of the tile
- * whose pixels are TILE. CLIP is scratch. */
+/* Adds P to the sums. */
 void glint_cell_raster_primitive(const struct glint_cell_raster *raster,
-                                 int primitive, struct glint_box tile,
-                                 struct glint_clip *clip, int64_t *acc_q20);
+                                 const struct glint_primitive *p);
 
 #endif
