@@ -4,6 +4,7 @@
 # repository. Sets glint, dir (removed at the end) and status.
 glint=${GLINT:-build/glint}
 pan=${PAN:-}
+reference=${OUT:-build/x86_64-gcc-release} # programs of tests/programs
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 status=0

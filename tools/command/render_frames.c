@@ -47,9 +47,6 @@ static int check(const struct tool *tool, struct frames *f)
 
     f->is_y4m = overlay_is_video(r->output) && !ffmpeg_is_video(r->output);
     f->is_numbered = numbered_is(r->output);
-    if (r->exact)
-        return tool_usage(tool, "--rays exact draws scenes as they stand: no "
-                                "--lens, --pose, --frame or --frames");
     if (ffmpeg_is_video(r->output))
         return tool_usage(tool,
                           "frames become a .y4m or numbered pictures, of "

@@ -13,7 +13,6 @@
 #include "scenes/baked_scene.h"
 #include "scenes/budget.h"
 #include "scenes/scene_frame.h"
-#include "twin/twin.h"
 
 static const char help[] =
     "glint render NAME.scene|BAKED -o OUT [options]\n"
@@ -26,12 +25,9 @@ static const char help[] =
     "\n"
     "  -o, --output OUT\n"
     "  --size WxH          default 960x540\n"
-    "  --rays R            model: the integer run time (default)\n"
-    "                      exact: every ray in double precision, the\n"
-    "                      reference; of texts\n"
     "  --samples N         points of a pixel at outlines: 1, 4 (default), 8 "
     "or\n"
-    "                      16; of exact rays N x N, 1 to 16\n"
+    "                      16\n"
     "  --quality Q         0 to 1, or least ... finest: sets what of these is\n"
     "                      not given, and the flare\n"
     "  --exposure EV       stops; all light times 2^EV (default 0)\n"
@@ -58,7 +54,6 @@ enum {
     OPT_FPS,
     OPT_SIZE,
     OPT_SAMPLES,
-    OPT_RAYS_OF,
     OPT_EXPOSURE_OF
 };
 
@@ -100,9 +95,6 @@ static int take_moving(struct tool *tool, struct render_scene *r, int c)
 
 static int take(struct tool *tool, struct render_scene *r, int c)
 {
-    static const char *const rays[] = {"model", "exact", NULL};
-    int word;
-
     switch (c) {
     case 'o':
         r->output = optarg;
@@ -111,14 +103,10 @@ static int take(struct tool *tool, struct render_scene *r, int c)
         return tool_size(optarg, &r->width, &r->height)
                    ? -1
                    : tool_refuse(tool, "size", optarg);
-    case OPT_RAYS_OF:
-        word = tool_word(optarg, rays);
-        r->exact = word == 1;
-        return word >= 0 ? -1 : tool_refuse(tool, "rays", optarg);
     case OPT_SAMPLES:
         return tool_integer(optarg, 1, 16, &r->samples)
                    ? -1
-                   : tool_usage(tool, "--samples takes 1 to 16, not '%s'",
+                   : tool_usage(tool, "--samples takes 1, 4, 8 or 16, not '%s'",
                                 optarg);
     case OPT_EXPOSURE_OF:
         return tool_number(optarg, &r->exposure_ev) &&
@@ -159,7 +147,6 @@ static int parse(struct tool *tool, int argc, char **argv,
     static const struct option own[] = {
         {"output", required_argument, NULL, 'o'},
         {"size", required_argument, NULL, OPT_SIZE},
-        {"rays", required_argument, NULL, OPT_RAYS_OF},
         {"samples", required_argument, NULL, OPT_SAMPLES},
         {"exposure", required_argument, NULL, OPT_EXPOSURE_OF},
         {"frame", required_argument, NULL, OPT_FRAME},
@@ -183,14 +170,11 @@ static int parse(struct tool *tool, int argc, char **argv,
         return code;
     if (!r->output)
         return tool_usage(tool, "needs -o OUT");
-    if (!r->exact && r->samples && r->samples != 1 && r->samples != 4 &&
-        r->samples != 8 && r->samples != 16)
-        return tool_usage(tool,
-                          "--samples takes 1, 4, 8 or 16, not %d; of --rays "
-                          "exact 1 to 16",
+    if (r->samples && r->samples != 1 && r->samples != 4 && r->samples != 8 &&
+        r->samples != 16)
+        return tool_usage(tool, "--samples takes 1, 4, 8 or 16, not %d",
                           r->samples);
-    if (r->exact ||
-        !GLINT_OPTION_GIVEN(&r->compositor.settings.options, quality)) {
+    if (!GLINT_OPTION_GIVEN(&r->compositor.settings.options, quality)) {
         r->samples = r->samples ? r->samples : 4;
         if (!asked->shadow_points)
             asked->shadow_points = 4;
@@ -200,75 +184,6 @@ static int parse(struct tool *tool, int argc, char **argv,
     else if (r->is_lit)
         return tool_usage(tool, "options of a flare need --lens LENS");
     return -1;
-}
-
-/* ------------------------------------------------------------ exact rays */
-
-static void say_exact(const struct tool *tool,
-                      const struct glint_description *scene,
-                      const struct twin_pixel *pixels, size_t n, double ms)
-{
-    size_t covered = 0;
-
-    if (!tool->json)
-        return;
-    for (size_t i = 0; i < n; i++)
-        covered += pixels[i].cover > 0;
-    printf("{\"engine\": \"exact\", \"scene\": {\"objects\": %d, "
-           "\"triangles\": %d, \"lights\": %d, \"covered_px\": %zu}, "
-           "\"ms\": %.3f}\n",
-           scene->n_objects, scene->n_triangles, scene->n_lights, covered, ms);
-}
-
-/* Draws SCENE by its twin, over black. */
-static int draw_exact(struct tool *tool, struct render_scene *r,
-                      const struct glint_description *scene)
-{
-    const struct twin_view view = {r->width, r->height, 0, r->samples};
-    const struct scene_dials *const asked = &r->compositor.scene.asked;
-    const size_t n = (size_t)r->width * (size_t)r->height;
-    struct twin_pixel *pixels = malloc(n * sizeof *pixels);
-    const double start = tool_seconds(), scale = exp2(r->exposure_ev);
-    enum glint_status status = GLINT_E_MEMORY;
-    struct twin twin;
-
-    if (pixels)
-        status = twin_open(&twin, scene);
-    if (status == GLINT_OK) {
-        twin.shadow_points = asked->shadow_points;
-        if (asked->ward_samples)
-            twin.ward_samples = asked->ward_samples;
-        twin_render(&twin, &view, tool->workers, pixels);
-        twin_close(&twin);
-        for (size_t i = 0; i < 3 * n; i++)
-            r->image.rgb[i] = (float)(scale * (double)pixels[i / 3].rgb[i % 3]);
-        say_exact(tool, scene, pixels, n, 1e3 * (tool_seconds() - start));
-    }
-    free(pixels);
-    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
-}
-
-static int run_exact(struct tool *tool, struct render_scene *r,
-                     const char *path)
-{
-    struct glint_description *scene = calloc(1, sizeof *scene);
-    int code;
-
-    if (!scene)
-        return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    code = tool_is_scene(path)
-               ? tool_scene(tool, path, scene, NULL)
-               : tool_usage(tool, "--rays exact takes the text of a scene");
-    if (code != EXIT_OK) {
-        free(scene);
-        return code;
-    }
-    code = scene->camera.field == GLINT_DESCRIBED_LENS
-               ? tool_usage(tool, NEEDS_LENS, path)
-               : draw_exact(tool, r, scene);
-    glint_description_free(scene);
-    free(scene);
-    return code;
 }
 
 /* ---------------------------------------------------------- the run time */
@@ -393,7 +308,7 @@ static int run(struct tool *tool, struct render_scene *r, const char *path)
     if (r->is_frames)
         code = render_frames(tool, r, path);
     else
-        code = (r->exact ? run_exact : run_model)(tool, r, path);
+        code = run_model(tool, r, path);
     if (code == EXIT_OK && !r->is_frames)
         code = render_file_save(tool, r->output, r->linear, &r->image, 1);
     if (code == EXIT_OK && !r->is_frames)

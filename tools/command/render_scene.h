@@ -13,7 +13,6 @@ struct render_scene {
     const char *output;
     int width, height;
     int samples; /* 0: the default */
-    bool exact;
     double exposure_ev;
     bool linear;     /* OUT takes floats */
     bool is_frames;  /* there are poses, frames or a lens */

@@ -10,13 +10,11 @@
 #include "linux/instructions.h"
 #include "posix/workers.h"
 #include "lab/report_file.h"
-#include "lab/scenes/scene_sweep.h"
 #include "lab/sweep.h"
 #include "options/command_line.h"
 
 static const char help[] =
     "glint sweep [LENS]... -o FOLDER [options]\n"
-    "glint sweep --scene FILE ...    of a scene; --scene x --help has more\n"
     "\n"
     "Draws the same frames with every dial that trades accuracy for time "
     "turned "
@@ -467,8 +465,6 @@ int cmd_sweep(int argc, char **argv)
     struct sweep *s;
     int code;
 
-    if (scene_trial_is_asked(argc, argv))
-        return cmd_sweep_scene(argc, argv);
     s = calloc(1, sizeof *s);
     if (!s)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);

@@ -16,7 +16,7 @@ inputs:
 table: all
 	@tools/report/raster-table | tools/report/write-figures raster
 # Scenes as POV-Ray draws them.
-scene-table: all $(OUT)/scene_peer
+scene-table: all $(OUT)/scene_peer $(OUT)/scene_exact
 	@tools/make/deps "scenes of another program" povray >&2
 	@tests/peers/povray $(OUT) | tools/report/write-figures scene
 # A sun behind a ball: the light of its flare by frame.
@@ -130,6 +130,9 @@ size: $(OUT)/libglint.a $(example_bins)
 	@for t in aarch64 armv7; do $(MAKE) -s --no-print-directory TARGET=$$t \
 	        $(EXAMPLES:%=build/$$t/examples/%) >&2 || exit 1; done
 	@OUT=$(OUT) EXAMPLES='$(EXAMPLES)' tools/report/size $(ARCH) aarch64 armv7 | tools/report/write-figures size
+# Dials of a scene against the reference renderer:  make scene-sweep SCENE=NAME.scene
+scene-sweep: $(OUT)/scene_sweep
+	@$< --scene $(SCENE) -o build/scene-sweep
 trade: all
 	@build/glint sweep -o build/trade $(TRADE)
 	@echo build/trade/index.html
@@ -164,5 +167,5 @@ budget: all
         ward-table translucent-table stone-table ward-sheet scene-budget-table bake-table \
         library-table azimuth-table projection-table accuracy-table colour-table ray-table stop-table \
         power-fit corpus corpus-evaluate corpus-stars corpus-sheet corpus-report gallery \
-        lens-sheet corpus-fit bench bench-insn growth size trade reuse-table left-table memory-table \
+        lens-sheet corpus-fit bench bench-insn growth size trade scene-sweep reuse-table left-table memory-table \
         zoom-halfway-table cost-fit scene-cost-fit budget

@@ -12,7 +12,7 @@
 /* Points of light and lookups of metal go first, as edges of shadows are little
  * of a picture and 4 lookups lose less than 2 dB, then places shaded, last the
  * outlines. QUALITY: of --quality, from which on it is drawn; DB: PSNR in the
- * mean of three scenes (glint sweep --scene at revision e8a4a84c). */
+ * mean of three scenes (scene_sweep at revision e8a4a84c). */
 static const struct {
     int points, edge, samples;
     bool half, nearest;

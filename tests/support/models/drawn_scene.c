@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "twin/twin.h"
+#include "reference/scenes/twin.h"
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
 

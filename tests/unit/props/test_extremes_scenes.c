@@ -18,7 +18,7 @@
 
 #include "glint/scene/bake.h"
 #include "scenes/scene_frame.h"
-#include "twin/twin.h"
+#include "reference/scenes/twin.h"
 #include "support/extreme.h"
 
 /* Light that the run time holds: what is more is saturated. */

@@ -19,7 +19,7 @@
 #include "glint/view.h"
 #include "scenes/account.h"
 #include "support/models/drawn_scene.h"
-#include "twin/twin.h"
+#include "reference/scenes/twin.h"
 
 enum {
     SKY_WIDTH = 128,

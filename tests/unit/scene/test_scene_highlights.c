@@ -19,7 +19,7 @@
 #include "posix/workers.h"
 #include "scene/parts.h"
 #include "scenes/scene_frame.h"
-#include "twin/twin_highlights.h"
+#include "reference/scenes/twin_highlights.h"
 
 enum { SIDE = 96, PIXELS = SIDE * SIDE, MOST = GLINT_SCENE_MAX_HIGHLIGHTS };
 

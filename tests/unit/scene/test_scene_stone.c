@@ -20,7 +20,7 @@
 #include "support/models/drawn_scene.h"
 #include "support/models/stone_builder.h"
 #include "support/shuffle.h"
-#include "twin/twin.h"
+#include "reference/scenes/twin.h"
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "lab/plots/plot.h"
-#include "lab/scenes/scene_sweep.h"
+#include "reference/scenes/scene_sweep.h"
 #include "lab/sweep.h"
 
 #define GREY  "#bbb"
@@ -314,7 +314,7 @@ void scene_sweep_dials(const struct scene_sweep *s, FILE *file)
 
 static const char head[] =
     "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-    "<title>glint sweep --scene</title>\n"
+    "<title>scene_sweep</title>\n"
     "<style>body{font:15px/1.45 sans-serif;max-width:1060px;margin:2em "
     "auto;padding:0 1em;color:#222}table{border-collapse:collapse;font-size:"
     "13px}td,th{padding:2px 9px;text-align:right;border-bottom:1px solid "

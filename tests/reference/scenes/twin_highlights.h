@@ -2,10 +2,10 @@
  *
  * Highlights of a scene in double precision, by exact rays: what
  * glint/scene/highlights.h does in integers. */
-#ifndef GLINT_TOOLS_TWIN_TWIN_HIGHLIGHTS_H
-#define GLINT_TOOLS_TWIN_TWIN_HIGHLIGHTS_H
+#ifndef REFERENCE_SCENES_TWIN_HIGHLIGHTS_H
+#define REFERENCE_SCENES_TWIN_HIGHLIGHTS_H
 
-#include "twin/twin.h"
+#include "reference/scenes/twin.h"
 
 enum { TWIN_HIGHLIGHTS = 64 };
 

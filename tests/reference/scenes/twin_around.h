@@ -4,8 +4,8 @@
 #ifndef GLINT_TOOLS_SCENES_TWIN_AROUND_H
 #define GLINT_TOOLS_SCENES_TWIN_AROUND_H
 
-#include "twin/twin.h"
-#include "twin/vec.h"
+#include "reference/scenes/twin.h"
+#include "reference/scenes/vec.h"
 
 /* Adds to RGB what the environment shows a white surface of that normal. */
 void twin_irradiance(const struct twin *twin, const double shading[3],

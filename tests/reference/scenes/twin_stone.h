@@ -5,7 +5,7 @@
 #ifndef GLINT_TOOLS_SCENES_TWIN_STONE_H
 #define GLINT_TOOLS_SCENES_TWIN_STONE_H
 
-#include "twin/twin.h"
+#include "reference/scenes/twin.h"
 
 /* Makes room for the maps of all objects. GLINT_E_MEMORY. */
 enum glint_status twin_open_stones(struct twin *twin);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
  * Where rays meet things. */
-#include "twin/twin.h"
+#include "reference/scenes/twin.h"
 
 #include "glint/view.h"
-#include "twin/vec.h"
+#include "reference/scenes/vec.h"
 
 /* Parts of its distance that a ray from a mesh's triangle must go before it may
  * meet another of the mesh: neighbours share corners. */

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include "twin/twin.h"
+#include "reference/scenes/twin.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "glint/view.h"
-#include "twin/twin_around.h"
-#include "twin/twin_stone.h"
+#include "reference/scenes/twin_around.h"
+#include "reference/scenes/twin_stone.h"
 
 /* ----------------------------------------------------------------- opening */
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint sweep --scene: its options, its points, and its files.
+ * scene_sweep: its options, its points, and its files.
  */
-#include "lab/scenes/scene_sweep.h"
+#include "reference/scenes/scene_sweep.h"
 
 #include <errno.h>
 #include <math.h>
@@ -17,7 +17,7 @@
 #include "scenes/budget.h"
 
 static const char help[] =
-    "glint sweep --scene NAME.scene -o FOLDER [options]\n"
+    "scene_sweep --scene NAME.scene -o FOLDER [options]\n"
     "\n"
     "Draws the same frame of a scene with all values of its dials: points of "
     "a\n"
@@ -292,7 +292,7 @@ static int run(struct scene_sweep *s)
         return tool_usage(s->tool, "%s: exact pictures need the scene's text",
                           s->file);
     if (!s->count_only && !report_file_folder(s->folder)) {
-        fprintf(stderr, "glint sweep: %s: %s\n", s->folder, strerror(errno));
+        fprintf(stderr, "scene_sweep: %s: %s\n", s->folder, strerror(errno));
         return EXIT_OUTPUT;
     }
     s->text = calloc(1, sizeof *s->text);
@@ -391,7 +391,8 @@ static int parse(struct tool *tool, int argc, char **argv,
 
 int cmd_sweep_scene(int argc, char **argv)
 {
-    struct tool tool = {.name = "sweep", .help = help, .help_end = COMMON_HELP};
+    struct tool tool = {
+        .name = "scene_sweep", .help = help, .help_end = COMMON_HELP};
     struct scene_sweep *const s = calloc(1, sizeof *s);
     int code;
 

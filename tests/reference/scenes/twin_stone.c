@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include "twin/twin_stone.h"
+#include "reference/scenes/twin_stone.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "glint/scene/translucent.h"
 #include "glint/view.h"
-#include "twin/twin_around.h"
+#include "reference/scenes/twin_around.h"
 
 enum { CHANNELS = 3 };
 

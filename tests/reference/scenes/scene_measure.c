@@ -3,8 +3,8 @@
 #include <stdlib.h>
 
 #include "engine/measure.h"
-#include "lab/scenes/scene_sweep.h"
-#include "twin/twin.h"
+#include "reference/scenes/scene_sweep.h"
+#include "reference/scenes/twin.h"
 
 /* What scenes are compared over: light grey, on which shadows show. */
 #define BEHIND 0.25F

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * The dials of translucent things in glint sweep --scene: of each value stones
+ * The dials of translucent things in scene_sweep: of each value stones
  * are baked anew, and pictures are held against all of their rows. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "glint/view.h"
-#include "lab/scenes/scene_sweep.h"
+#include "reference/scenes/scene_sweep.h"
 #include "stones/stone_file.h"
 
 static const char *const model_name[] = {"none", "albedo", "clustered",

@@ -3,7 +3,7 @@
  * The twin of light from all around: lookups in the baked environment, and
  * Ward's lobe over it and under lights, in double precision, along the paths of
  * the run time. All that is in the axes of baked scenes, whose z runs away. */
-#include "twin/twin_around.h"
+#include "reference/scenes/twin_around.h"
 
 #include <string.h>
 

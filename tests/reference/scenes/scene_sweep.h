@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint sweep --scene: the dials of a scene, all together, against the
+ * scene_sweep: the dials of a scene, all together, against the
  * double-precision twin.
  */
-#ifndef GLINT_TOOLS_LAB_SCENES_SCENE_SWEEP_H
-#define GLINT_TOOLS_LAB_SCENES_SCENE_SWEEP_H
+#ifndef REFERENCE_SCENES_SCENE_SWEEP_H
+#define REFERENCE_SCENES_SCENE_SWEEP_H
 
 #include "glint/scene/translucent_bake.h"
 #include "lab/scenes/scene_trial.h"
@@ -87,7 +87,7 @@ struct scene_sweep {
     int n_points;
 };
 
-/* glint sweep --scene. Returns an exit code. */
+/* The program. Returns an exit code. */
 int cmd_sweep_scene(int argc, char **argv);
 
 /* Adds the point of VALUE. */

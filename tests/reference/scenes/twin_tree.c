@@ -2,11 +2,11 @@
  *
  * A tree of boxes over the triangles of each object, halved at the middle of
  * the longest side, and rays through it. */
-#include "twin/twin.h"
+#include "reference/scenes/twin.h"
 
 #include <stdlib.h>
 
-#include "twin/vec.h"
+#include "reference/scenes/vec.h"
 
 enum { LEAF = 4, DEPTH = 64 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "twin/twin_highlights.h"
+#include "reference/scenes/twin_highlights.h"
 
 #include <math.h>
 #include <stdbool.h>

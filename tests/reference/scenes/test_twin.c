@@ -13,8 +13,8 @@
 
 #include <cmocka.h>
 
-#include "twin/twin.h"
-#include "twin/vec.h"
+#include "reference/scenes/twin.h"
+#include "reference/scenes/vec.h"
 #include "support/rng.h"
 
 struct stage {
