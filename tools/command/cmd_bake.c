@@ -9,6 +9,7 @@
 
 #include "desk/apart.h"
 #include "options/coating.h"
+#include "options/json_writer.h"
 #include "zooms/zoom_bake.h"
 #include "model/zoom_option.h"
 #include "model/model_report.h"
@@ -207,15 +208,18 @@ static int bake_into(struct glint_output *out, struct tool *tool,
 static void tell_zoom(const struct tool *tool, const struct bake *b,
                       const struct zoom_baked *baked, double seconds)
 {
+    struct json_writer json = {.to = stdout};
+
     if (strcmp(b->output, "-") == 0)
         return;
     if (tool->json) {
-        printf("{\"positions\": %d, \"models\": %d, \"ghosts\": %d, ",
-               b->positions, baked->n_models, baked->n_bakes);
+        json_write(&json, "{positions: %d, models: %d, ghosts: %d",
+                   b->positions, baked->n_models, baked->n_bakes);
         if (baked->least_db > 0)
-            printf("\"halfway_db\": %.1f, \"halfway_mm\": %.3f, ",
-                   baked->least_db, baked->least_mm);
-        printf("\"bytes\": %zu, \"seconds\": %.1f}\n", baked->bytes, seconds);
+            json_write(&json, "halfway_db: %.1f, halfway_mm: %.3f",
+                       baked->least_db, baked->least_mm);
+        json_write(&json, "bytes: %zu, seconds: %.1f}\n", baked->bytes,
+                   seconds);
         return;
     }
     if (tool->quiet)
@@ -330,19 +334,6 @@ static int bake_any(struct tool *tool, int argc, char **argv)
     return bake_lens(tool, argc, argv);
 }
 
-/* Prints the failure of baking FILE, or NULL, with exit CODE as JSON. */
-static void print_failure(const struct tool *tool, const char *file, int code)
-{
-    printf("{\"error\": ");
-    tool_json_string(stdout, tool->cause->text);
-    printf(", \"file\": ");
-    if (file)
-        tool_json_string(stdout, file);
-    else
-        printf("null");
-    printf(", \"exit\": %d}\n", code);
-}
-
 int cmd_bake(int argc, char **argv)
 {
     struct glint_error cause = {""};
@@ -352,8 +343,9 @@ int cmd_bake(int argc, char **argv)
     if (code != EXIT_OK && tool.json &&
         !(tool.written && strcmp(tool.written, "-") == 0))
         /* Options that follow were not read yet. */
-        print_failure(
-            &tool, optind < argc && *argv[optind] != '-' ? argv[optind] : NULL,
-            code);
+        json_write(&(struct json_writer){.to = stdout},
+                   "{error: %s, file: %s, exit: %d}\n", cause.text,
+                   optind < argc && *argv[optind] != '-' ? argv[optind] : NULL,
+                   code);
     return code;
 }

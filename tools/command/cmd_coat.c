@@ -11,6 +11,7 @@
 #include "model/table_file.h"
 #include "options/coating.h"
 #include "options/command_line.h"
+#include "options/json_writer.h"
 #include "options/tool.h"
 #include "posix/ending.h"
 #include "posix/output.h"
@@ -98,22 +99,23 @@ static void print_text(const struct coat *c)
 
 static void print_json(const struct coat *c)
 {
-    printf("{\"coating\": ");
-    tool_json_string(stdout, c->name);
-    printf(", \"nd\": %g, \"vd\": %g, \"films\": [", c->glass[0], c->glass[1]);
+    struct json_writer json = {.to = stdout};
+
+    json_write(&json, "{coating: %s, nd: %g, vd: %g, films: [", c->name,
+               c->glass[0], c->glass[1]);
     for (int i = 0; i < c->coating.n_films; i++)
-        printf("%s[%g, %g]", i ? ", " : "", c->coating.film[i].index,
-               c->coating.film[i].quarters);
-    printf("], \"reflected\": [");
+        json_write(&json, "[%g, %g]", c->coating.film[i].index,
+                   c->coating.film[i].quarters);
+    json_write(&json, "], reflected: [");
     for (int k = 0; k <= STEPS; k++)
         for (int a = 0; a < c->n_angles; a++) {
             const struct reflected r =
                 reflected_at(c, nm_at(c, k), c->angle_deg[a]);
 
-            printf("%s{\"nm\": %g, \"deg\": %g, \"s\": %.9g, \"p\": %.9g}",
-                   k || a ? ", " : "", nm_at(c, k), c->angle_deg[a], r.s, r.p);
+            json_write(&json, "{nm: %g, deg: %g, s: %.9g, p: %.9g}",
+                       nm_at(c, k), c->angle_deg[a], r.s, r.p);
         }
-    printf("]}\n");
+    json_write(&json, "]}\n");
 }
 
 /* ------------------------------------------------------------------- plots */

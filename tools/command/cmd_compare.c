@@ -8,6 +8,7 @@
 
 #include "engine/measure.h"
 #include "formats/picture.h"
+#include "options/json_writer.h"
 #include "options/settings.h"
 #include "options/command_line.h"
 
@@ -53,14 +54,11 @@ static bool is_identical(const struct glint_float_image image[2])
 
 static void print_json(const struct glint_measure *m, bool identical)
 {
-    if (m->psnr_db == 999)
-        printf("{\"psnr_db\": null, ");
-    else
-        printf("{\"psnr_db\": %.3f, ", m->psnr_db);
-    printf("\"ssim\": %.6f, \"p99\": %g, \"flux\": %.6f, \"factor\": %.9g, "
-           "\"exposure\": %.9g, \"identical\": %s}\n",
-           m->ssim, m->p99, m->flux, m->factor, m->exposure,
-           identical ? "true" : "false");
+    json_write(&(struct json_writer){.to = stdout},
+               "{psnr_db: %.3f, ssim: %.6f, p99: %g, flux: %.6f, "
+               "factor: %.9g, exposure: %.9g, identical: %c}\n",
+               m->psnr_db == 999 ? (double)NAN : m->psnr_db, m->ssim, m->p99,
+               m->flux, m->factor, m->exposure, identical);
 }
 
 static void print(const struct glint_measure *m, bool identical)

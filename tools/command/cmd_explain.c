@@ -266,6 +266,7 @@ static int save_ghosts(struct tool *tool, const struct explain_command *c,
 static int tell_scene(struct tool *tool, const struct explain_command *c,
                       struct glint_explain *flare)
 {
+    struct json_writer json = {.to = stdout};
     struct explained_scene scene;
     int code = EXIT_OK;
     const enum glint_status status =
@@ -274,9 +275,9 @@ static int tell_scene(struct tool *tool, const struct explain_command *c,
     if (status != GLINT_OK)
         return tool_fail(tool, status, NULL);
     if (tool->json) {
-        printf("{\"scene\": ");
-        explain_scene_json(&scene);
-        printf(flare ? ", \"flare\": " : "}\n");
+        json_write(&json, "{scene: ");
+        explain_scene_json(&json, &scene);
+        json_write(&json, flare ? "flare: " : "}\n");
     } else {
         explain_scene_print(&scene);
         printf(flare ? "\n" : "");

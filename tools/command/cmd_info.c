@@ -7,6 +7,7 @@
 
 #include "options/coating.h"
 #include "options/command_line.h"
+#include "options/json_writer.h"
 #include "model/model_file.h"
 #include "model/model_report.h"
 #include "model/table_file.h"
@@ -54,32 +55,30 @@ struct info {
 
 static void print_json(const struct info *info)
 {
-    printf("{\"name\": ");
-    tool_json_string(stdout, info->lens.name);
-    printf(", \"source\": ");
-    tool_json_string(stdout, info->lens.source);
-    printf(", \"focal_length_mm\": %.6f, \"back_focal_length_mm\": %.6f, "
-           "\"entrance_pupil_radius_mm\": %.6f, \"entrance_pupil_z_mm\": %.6f, "
-           "\"stop_radius_mm\": %.6f, \"f_number\": %g, "
-           "\"widest_f_number\": %.4g, \"length_mm\": %.6f, "
-           "\"image_scale_mm\": %.6f, \"squeeze\": %.6f, "
-           "\"focal_length_across_mm\": %.6f, \"positions_mm\": ",
-           info->optics.focal_mm, info->optics.back_focal_mm,
-           info->optics.entrance_radius_mm, info->optics.entrance_z_mm,
-           info->optics.stop_radius_mm, info->lens.f_number,
-           glint_prescription_widest(&info->lens), info->optics.length_mm,
-           info->optics.scale_mm, info->optics.squeeze,
-           info->optics.focal_mm / info->optics.squeeze);
-    for (int k = 0; k < info->lens.zoom.n_positions; k++)
-        printf("%s%.6f", k ? ", " : "[", info->lens.zoom.focal_mm[k]);
-    printf("%s, \"film_mm\": [%g, %g], \"surfaces\": %d, "
-           "\"surfaces_before_stop\": %d, \"ghosts\": %d, \"ghost_pairs\": [",
-           info->lens.zoom.n_positions ? "]" : "[]", info->lens.film_width_mm,
-           info->lens.film_height_mm, info->lens.n_surfaces,
-           info->lens.stop_after, info->n_ghosts);
+    const struct glint_prescription *const l = &info->lens;
+    const struct glint_optics *const o = &info->optics;
+    struct json_writer json = {.to = stdout};
+
+    json_write(&json,
+               "{name: %s, source: %s, focal_length_mm: %.6f, "
+               "back_focal_length_mm: %.6f, entrance_pupil_radius_mm: %.6f, "
+               "entrance_pupil_z_mm: %.6f, stop_radius_mm: %.6f, f_number: %g, "
+               "widest_f_number: %.4g, length_mm: %.6f, image_scale_mm: %.6f, "
+               "squeeze: %.6f, focal_length_across_mm: %.6f, positions_mm: [",
+               l->name, l->source, o->focal_mm, o->back_focal_mm,
+               o->entrance_radius_mm, o->entrance_z_mm, o->stop_radius_mm,
+               l->f_number, glint_prescription_widest(l), o->length_mm,
+               o->scale_mm, o->squeeze, o->focal_mm / o->squeeze);
+    for (int k = 0; k < l->zoom.n_positions; k++)
+        json_write(&json, "%.6f", l->zoom.focal_mm[k]);
+    json_write(&json,
+               "], film_mm: [%g, %g], surfaces: %d, surfaces_before_stop: %d, "
+               "ghosts: %d, ghost_pairs: [",
+               l->film_width_mm, l->film_height_mm, l->n_surfaces,
+               l->stop_after, info->n_ghosts);
     for (int k = 0; k < info->n_ghosts; k++)
-        printf("%s[%d, %d]", k ? ", " : "", info->ghost[k].i, info->ghost[k].j);
-    printf("]}\n");
+        json_write(&json, "[%d, %d]", info->ghost[k].i, info->ghost[k].j);
+    json_write(&json, "]}\n");
 }
 
 /* Prints where L zooms and how it is focused. */

@@ -13,6 +13,7 @@
 #include "lens_figures/search.h"
 #include "lens_figures/thumbnail.h"
 #include "model/lens_files.h"
+#include "options/json_writer.h"
 #include "overlay/compositor.h"
 #include "model/model_cache.h"
 #include "model/table_file.h"
@@ -60,6 +61,7 @@ static const char help_end[] = COMMON_HELP;
 enum { MAX_ONLY = 64 };
 
 struct lenses {
+    struct json_writer json;
     struct tool *tool;
     const char *folder; /* folder that models are put into; NULL: none */
     const char *only[MAX_ONLY];
@@ -148,18 +150,16 @@ static double corner_deg(const struct entry *e)
 static void print_json(struct lenses *l, const char *name,
                        const struct entry *e)
 {
-    printf("%s{\"name\": ", l->n++ ? ",\n " : "{\"lenses\": [\n ");
-    tool_json_string(stdout, name);
-    printf(", \"source\": ");
-    tool_json_string(stdout, e->settings.lens.source);
-    printf(", \"character\": ");
-    tool_json_string(stdout, e->settings.lens.character);
-    printf(", \"focal_length_mm\": %.3f, \"squeeze\": %.6g, \"f_number\": %g, "
-           "\"film_mm\": [%g, %g], \"corner_deg\": %.2f, \"ghosts\": %d, "
-           "\"baked\": %s}",
-           e->optics.focal_mm, e->optics.squeeze, e->settings.lens.f_number,
-           e->settings.lens.film_width_mm, e->settings.lens.film_height_mm,
-           corner_deg(e), e->n_ghosts, e->is_baked ? "true" : "false");
+    if (l->n++ == 0)
+        json_write(&l->json, "{lenses: [");
+    json_write(&l->json,
+               "\n {name: %s, source: %s, character: %s, "
+               "focal_length_mm: %.3f, squeeze: %.6g, f_number: %g, "
+               "film_mm: [%g, %g], corner_deg: %.2f, ghosts: %d, baked: %c}",
+               name, e->settings.lens.source, e->settings.lens.character,
+               e->optics.focal_mm, e->optics.squeeze, e->settings.lens.f_number,
+               e->settings.lens.film_width_mm, e->settings.lens.film_height_mm,
+               corner_deg(e), e->n_ghosts, e->is_baked);
 }
 
 static void print_text(struct lenses *l, const char *name,
@@ -431,7 +431,7 @@ static int run(struct lenses *l)
     if (l->n == 0 && l->code == EXIT_OK)
         return tell_none(l);
     if (l->tool->json && !l->folder && !l->names && l->n > 0)
-        printf("\n]}\n");
+        json_write(&l->json, "\n]}\n");
     return l->code;
 }
 
@@ -487,7 +487,7 @@ static int parse(struct lenses *l, int argc, char **argv)
 int cmd_lenses(int argc, char **argv)
 {
     struct tool tool = {.name = "lenses", .help = help, .help_end = help_end};
-    struct lenses l = {.tool = &tool};
+    struct lenses l = {.tool = &tool, .json = {.to = stdout}};
     int code = parse(&l, argc, argv);
 
     if (code < 0) {

@@ -47,6 +47,7 @@ static const char help[] =
 struct render {
     struct settings settings;
     const char *output;
+    struct json_writer json;
     bool linear; /* the output takes floats */
     int width, height;
     bool exact;
@@ -202,11 +203,12 @@ static int render_exact(struct tool *tool, struct render *r)
     if (status != GLINT_OK)
         return tool_fail(tool, status, NULL);
     if (tool->json)
-        printf("{\"engine\": \"exact\", \"grid\": %d, \"lights\": %d, "
-               "\"ghosts\": %d, \"bundles\": %" PRId64 ", \"primitives\": 0, "
-               "\"tiles\": 0, \"arena_bytes\": 0, \"star_bytes\": 0, ",
-               cfg.grid, r->n_lamps, n_ghosts,
-               (int64_t)r->n_lamps * n_ghosts * r->settings.n_wavelengths);
+        json_write(&r->json,
+                   "{engine: %s, grid: %d, lights: %d, ghosts: %d, "
+                   "bundles: %" PRId64 ", primitives: 0, tiles: 0, "
+                   "arena_bytes: 0, star_bytes: 0",
+                   "exact", cfg.grid, r->n_lamps, n_ghosts,
+                   (int64_t)r->n_lamps * n_ghosts * r->settings.n_wavelengths);
     return EXIT_OK;
 }
 
@@ -260,9 +262,8 @@ static int render_model(struct tool *tool, struct render *r)
             code = tool_fail(tool, status, NULL);
     }
     if (code == EXIT_OK && tool->json) {
-        printf("{\"engine\": \"model\", ");
-        settings_json(&report);
-        printf(", ");
+        json_write(&r->json, "{engine: %s", "model");
+        settings_json(&r->json, &report);
     }
     if (code == EXIT_OK)
         say_lights(tool, &report);
@@ -335,7 +336,7 @@ static int run(struct tool *tool, struct render *r, const char *lens)
             tool, r->output, r->linear, &r->image,
             GLINT_OPTION_GIVEN(&r->settings.options, exposure) ? 1 : 0);
     if (code == EXIT_OK && tool->json)
-        printf("\"ms\": %.3f}\n", 1e3 * (tool_seconds() - start));
+        json_write(&r->json, "ms: %.3f}\n", 1e3 * (tool_seconds() - start));
     if (code == EXIT_OK)
         render_file_say(tool, r->output, r->width, r->height,
                         r->settings.lens.name, tool_seconds() - start);
@@ -358,6 +359,7 @@ int cmd_render(int argc, char **argv)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     }
     settings_defaults(&r->settings);
+    r->json.to = stdout;
     r->width = 960;
     r->height = 540;
     code = parse(&tool, argc, argv, r);

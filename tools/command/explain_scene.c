@@ -352,71 +352,69 @@ void explain_scene_print(const struct explained_scene *s)
 
 /* --------------------------------------------------------------------- JSON */
 
-static void highlights_json(const struct explained_scene *s)
+static void highlights_json(struct json_writer *json,
+                            const struct explained_scene *s)
 {
     struct highlight found[GLINT_SCENE_MAX_HIGHLIGHTS];
     const int n = highlights_of(s, found);
 
-    printf("\"highlights\": [");
-    for (int i = 0; i < n; i++) {
-        printf("%s{\"object\": ", i ? ", " : "");
-        tool_json_string(stdout, name_of(s, found[i].object));
-        printf(", \"x\": %.2f, \"y\": %.2f, \"power\": %.6g, "
-               "\"bundles\": %d, \"fate\": \"%s\"}",
-               found[i].x, found[i].y, found[i].power, found[i].bundles,
-               found[i].word);
-    }
-    printf("], ");
+    json_write(json, "highlights: [");
+    for (int i = 0; i < n; i++)
+        json_write(json,
+                   "{object: %s, x: %.2f, y: %.2f, power: %.6g, bundles: %d, "
+                   "fate: %s}",
+                   name_of(s, found[i].object), found[i].x, found[i].y,
+                   found[i].power, found[i].bundles, found[i].word);
+    json_write(json, "]");
 }
 
-void explain_scene_json(const struct explained_scene *s)
+static void lights_json(struct json_writer *json,
+                        const struct explained_scene *s)
 {
-    const double minsn = scene_cost_minsn(&s->account);
     struct light light[GLINT_SCENE_MAX_LIGHTS];
     const int n = lights_of(s, light);
     char name[40];
 
-    printf("{\"objects\": [");
+    json_write(json, "lights: [");
+    for (int i = 0; i < n; i++) {
+        json_write(json, "{name: %s", light_name(s, i, name));
+        if (light[i].is_ahead)
+            json_write(json, "x: %.2f, y: %.2f, seen: %.4f", light[i].x,
+                       light[i].y, light[i].share);
+        json_write(json, "fate: %s, by: %s}", light[i].word, light[i].extra);
+    }
+    json_write(json, "]");
+}
+
+void explain_scene_json(struct json_writer *json,
+                        const struct explained_scene *s)
+{
+    const double minsn = scene_cost_minsn(&s->account);
+
+    json_write(json, "{objects: [");
     for (uint32_t i = 0; i < model_of(s)->header->n_objects; i++) {
         const struct glint_scene_part *const p = &s->account.objects[i];
+        const bool is_covered = p->fate == GLINT_SCENE_COVERED && p->by >= 0;
 
-        printf("%s{\"name\": ", i ? ", " : "");
-        tool_json_string(stdout, model_of(s)->object[i].name);
-        printf(", \"fate\": \"%s\", \"by\": ", fates[p->fate].word);
-        if (p->fate == GLINT_SCENE_COVERED && p->by >= 0)
-            tool_json_string(stdout, name_of(s, p->by));
-        else
-            printf("null");
+        json_write(json, "{name: %s, fate: %s, by: %s",
+                   model_of(s)->object[i].name, fates[p->fate].word,
+                   is_covered ? name_of(s, p->by) : NULL);
         for (int k = 0; k < GLINT_SCENE_ITEMS; k++)
-            printf(", \"%s\": %" PRId64, scene_cost_weight[k].name,
-                   p->count[k]);
-        printf(", \"work_share\": %.6g}",
-               minsn > 0 ? scene_cost_part(p) / minsn : 0);
+            json_write(json, "%s: %" PRId64, scene_cost_weight[k].name,
+                       p->count[k]);
+        json_write(json, "work_share: %.6g}",
+                   minsn > 0 ? scene_cost_part(p) / minsn : 0);
     }
-    printf("], \"layers\": {");
+    json_write(json, "], layers: {");
     for (int k = 0; k < N_LAYERS; k++)
-        printf("%s\"%s\": {\"number\": %d, \"pixels\": %" PRId64
-               ", \"work_share\": %.6g}",
-               k ? ", " : "", layers[k].word,
-               s->account.layer[layers[k].kind].n,
-               s->account.layer[layers[k].kind].pixels,
-               minsn > 0 ? scene_cost_layer(&s->account, layers[k].kind) / minsn
-                         : 0);
-    printf("}, \"lights\": [");
-    for (int i = 0; i < n; i++) {
-        printf("%s{\"name\": ", i ? ", " : "");
-        tool_json_string(stdout, light_name(s, i, name));
-        if (light[i].is_ahead)
-            printf(", \"x\": %.2f, \"y\": %.2f, \"seen\": %.4f", light[i].x,
-                   light[i].y, light[i].share);
-        printf(", \"fate\": \"%s\", \"by\": ", light[i].word);
-        if (light[i].extra)
-            tool_json_string(stdout, light[i].extra);
-        else
-            printf("null");
-        printf("}");
-    }
-    printf("], ");
-    highlights_json(s);
-    printf("\"minsn\": %.4f}", minsn);
+        json_write(
+            json, "%s: {number: %d, pixels: %" PRId64 ", work_share: %.6g}",
+            layers[k].word, s->account.layer[layers[k].kind].n,
+            s->account.layer[layers[k].kind].pixels,
+            minsn > 0 ? scene_cost_layer(&s->account, layers[k].kind) / minsn
+                      : 0);
+    json_write(json, "}");
+    lights_json(json, s);
+    highlights_json(json, s);
+    json_write(json, "minsn: %.4f}", minsn);
 }

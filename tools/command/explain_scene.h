@@ -5,6 +5,7 @@
 #define GLINT_TOOLS_COMMAND_EXPLAIN_SCENE_H
 
 #include "engine/explain.h"
+#include "options/json_writer.h"
 #include "overlay/compositor.h"
 #include "scenes/account.h"
 
@@ -22,7 +23,8 @@ void explained_scene_close(struct explained_scene *scene);
 
 /* Print tables; _json an object. */
 void explain_scene_print(const struct explained_scene *scene);
-void explain_scene_json(const struct explained_scene *scene);
+void explain_scene_json(struct json_writer *json,
+                        const struct explained_scene *scene);
 
 /* Sets MARKED to a new picture, whose plane[0] the caller frees: PICTURE with
  * things outlined, in colours by what a pixel of each costs, and a legend

@@ -7,6 +7,7 @@
 
 #include "command/explain.h"
 #include "model/model_summary.h"
+#include "options/json_writer.h"
 #include "options/tool.h"
 
 enum { WIDE = 100 };
@@ -270,90 +271,92 @@ void explain_print(const struct glint_explain *e, const struct explain_title *t)
 
 /* -------------------------------------------------------------------- JSON */
 
-static void json_part(const struct glint_explain_part *p)
+static void json_part(struct json_writer *json,
+                      const struct glint_explain_part *p)
 {
-    printf("\"bundles\": %d, \"drawn\": %d, \"left_out\": {",
-           glint_explain_bundles(p), glint_explain_drawn(p));
-    for (int outcome = GLINT_OUTCOME_EMPTY, n = 0; outcome < GLINT_OUTCOMES;
-         outcome++)
+    json_write(json, "bundles: %d, drawn: %d, left_out: {",
+               glint_explain_bundles(p), glint_explain_drawn(p));
+    for (int outcome = GLINT_OUTCOME_EMPTY; outcome < GLINT_OUTCOMES; outcome++)
         if (p->of[outcome])
-            printf("%s\"%s\": %d", n++ ? ", " : "", outcomes[outcome].word,
-                   p->of[outcome]);
-    printf("}, \"cells\": %d, \"terms\": %d, \"barrels\": %d, "
-           "\"vertices\": %lld, \"edges\": %lld, \"rows\": %lld, \"refs\": "
-           "%lld, \"lit_pixels\": %d, \"tiles\": %d, \"flux\": %.6g, "
-           "\"light_share\": %.6g, \"brightest\": %.6g, \"work_share\": %.6g",
-           p->cells, p->terms, p->barrels, p->vertices, p->edges, p->rows,
-           p->refs, p->lit, p->tiles, p->flux, p->share, p->brightest, p->cost);
+            json_write(json, "%s: %d", outcomes[outcome].word, p->of[outcome]);
+    json_write(json,
+               "}, cells: %d, terms: %d, barrels: %d, vertices: %lld, "
+               "edges: %lld, rows: %lld, refs: %lld, lit_pixels: %d, "
+               "tiles: %d, flux: %.6g, light_share: %.6g, brightest: %.6g, "
+               "work_share: %.6g",
+               p->cells, p->terms, p->barrels, p->vertices, p->edges, p->rows,
+               p->refs, p->lit, p->tiles, p->flux, p->share, p->brightest,
+               p->cost);
 }
 
-static void json_lights(const struct glint_explain *e,
+static void json_lights(struct json_writer *json, const struct glint_explain *e,
                         const struct explain_title *t)
 {
-    int n = 0;
-
-    printf("\"lights\": [");
+    json_write(json, "lights: [");
     for (int i = 0; i < e->n_lights; i++) {
         const struct glint_light *b = &e->frame->light[i];
 
-        printf("%s{\"angle_deg\": %.6g, \"azimuth_deg\": %.6g, ", i ? ", " : "",
-               degrees(b->sine_q30, b->cosine_q30),
-               degrees(b->sin_q30, b->cos_q30));
-        json_part(&e->light[i]);
-        printf("}");
+        json_write(json, "{angle_deg: %.6g, azimuth_deg: %.6g",
+                   degrees(b->sine_q30, b->cosine_q30),
+                   degrees(b->sin_q30, b->cos_q30));
+        json_part(json, &e->light[i]);
+        json_write(json, "}");
     }
-    printf("], \"beyond_model_deg\": [");
+    json_write(json, "], beyond_model_deg: [");
     for (int i = 0; i < t->n_lamps; i++)
         if (glint_frame_is_beyond(e->frame, &t->lamp[i]))
-            printf("%s%.6g", n++ ? ", " : "", t->lamp[i].theta_deg);
-    printf("], \"model_max_deg\": %.6g",
-           model_degrees(e->frame->lens->header->sine_hi_q30));
+            json_write(json, "%.6g", t->lamp[i].theta_deg);
+    json_write(json, "], model_max_deg: %.6g",
+               model_degrees(e->frame->lens->header->sine_hi_q30));
+}
+
+static void json_title(struct json_writer *json, const struct glint_explain *e,
+                       const struct explain_title *t)
+{
+    json_write(json,
+               "{lens: %s, width: %d, height: %d, picture: %s, "
+               "lights_given: %d, lights_apart: %d, all_tiles: %d, "
+               "held_cells: %d, held_samples: %d, frame: {",
+               t->lens, e->frame->view.width, e->frame->view.height,
+               t->linear ? "linear" : "codes", t->n_lamps,
+               t->report->apart_lights, e->n_tiles, t->report->stats.held_cells,
+               t->report->held_samples);
+    json_part(json, &e->all);
+    json_write(json, "}, work: {instructions: %.0f", e->all.work);
+    for (int i = 0; i < GLINT_COST_KINDS; i++)
+        json_write(json, "%s: %.6g",
+                   i == GLINT_COST_LIT ? "pixels" : glint_cost_weight[i].name,
+                   e->all.work > 0 ? e->stage[i] / e->all.work : 0);
+    json_write(json, "}, barrels: [");
+    for (int n = 0; n < GLINT_EXPLAIN_BARRELS; n++)
+        json_write(json, "%d", e->barrels[n]);
+    json_write(json, "]");
 }
 
 void explain_json(const struct glint_explain *e, const struct explain_title *t)
 {
+    struct json_writer json = {.to = stdout};
     int ghosts[GLINT_MAX_GHOSTS];
 
     glint_explain_sort(e, t->order, ghosts);
-    printf("{\"lens\": ");
-    tool_json_string(stdout, t->lens);
-    printf(", \"width\": %d, \"height\": %d, \"picture\": \"%s\", "
-           "\"lights_given\": %d, \"lights_apart\": %d, \"all_tiles\": %d, "
-           "\"held_cells\": %d, \"held_samples\": %d, "
-           "\"frame\": {",
-           e->frame->view.width, e->frame->view.height,
-           t->linear ? "linear" : "codes", t->n_lamps, t->report->apart_lights,
-           e->n_tiles, t->report->stats.held_cells, t->report->held_samples);
-    json_part(&e->all);
-    printf("}, \"work\": {\"instructions\": %.0f", e->all.work);
-    for (int i = 0; i < GLINT_COST_KINDS; i++)
-        printf(", \"%s\": %.6g",
-               i == GLINT_COST_LIT ? "pixels" : glint_cost_weight[i].name,
-               e->all.work > 0 ? e->stage[i] / e->all.work : 0);
-    printf("}, \"barrels\": [");
-    for (int n = 0; n < GLINT_EXPLAIN_BARRELS; n++)
-        printf("%s%d", n ? ", " : "", e->barrels[n]);
-    printf("], ");
-    json_lights(e, t);
-    printf(", \"wavelengths\": [");
+    json_title(&json, e, t);
+    json_lights(&json, e, t);
+    json_write(&json, "wavelengths: [");
     for (int i = 0; i < e->n_waves; i++) {
         if (e->frame->rays.sets)
-            printf("%s{\"of\": %d, ", i ? ", " : "",
-                   e->frame->rays.sets->size[i]);
+            json_write(&json, "{of: %d", e->frame->rays.sets->size[i]);
         else
-            printf("%s{\"nm\": %g, ", i ? ", " : "",
-                   e->frame->setup->wavelength_nm[i]);
-        json_part(&e->wave[i]);
-        printf("}");
+            json_write(&json, "{nm: %g", e->frame->setup->wavelength_nm[i]);
+        json_part(&json, &e->wave[i]);
+        json_write(&json, "}");
     }
-    printf("], \"ghosts\": [");
+    json_write(&json, "], ghosts: [");
     for (int i = 0; i < e->n_ghosts; i++) {
         const struct glint_ghost *g = &e->frame->setup->ghost[ghosts[i]];
 
-        printf("%s{\"ghost\": %d, \"pair\": [%d, %d], ", i ? ", " : "",
-               ghosts[i], g->i, g->j);
-        json_part(&e->ghost[ghosts[i]]);
-        printf("}");
+        json_write(&json, "{ghost: %d, pair: [%d, %d]", ghosts[i], g->i, g->j);
+        json_part(&json, &e->ghost[ghosts[i]]);
+        json_write(&json, "}");
     }
-    printf("]}\n");
+    json_write(&json, "]}\n");
 }

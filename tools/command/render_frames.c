@@ -226,7 +226,7 @@ static int end_video(struct frames *f)
 static void say(const struct frames *f, double ms)
 {
     const struct render_scene *const r = f->r;
-
+    struct json_writer json = {.to = stdout};
     char what[80];
 
     snprintf(what, sizeof what, "%d frames, %d to %d", r->last - r->first + 1,
@@ -234,15 +234,14 @@ static void say(const struct frames *f, double ms)
     render_file_say(f->tool, r->output, r->width, r->height, what, 1e-3 * ms);
     if (!f->tool->json || strcmp(r->output, "-") == 0)
         return;
-    printf("{\"engine\": \"model\", \"frames\": %d, ", r->last - r->first + 1);
-    over_scene_json(&f->c->scene, stdout);
-    if (f->c->has_lens) {
-        printf("\"lens\": \"%s\", ", f->c->settings.lens.name);
-        settings_json(&f->c->report);
-        printf(", ");
-    } else
-        printf("\"lens\": null, ");
-    printf("\"ms\": %.3f}\n", ms);
+    json_write(&json, "{engine: %s, frames: %d", "model",
+               r->last - r->first + 1);
+    over_scene_json(&json, &f->c->scene);
+    json_write(&json, "lens: %s",
+               f->c->has_lens ? f->c->settings.lens.name : NULL);
+    if (f->c->has_lens)
+        settings_json(&json, &f->c->report);
+    json_write(&json, "ms: %.3f}\n", ms);
 }
 
 static int run(struct frames *f)

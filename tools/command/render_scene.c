@@ -203,20 +203,21 @@ static int hidden_lights(const struct scene_frame *frame)
 static void say_frame(const struct tool *tool, const struct scene_frame *frame,
                       const struct scene_dials *dials, double ms)
 {
+    struct json_writer json = {.to = stdout};
     struct scene_budget budget;
     double minsn;
 
     if (!tool->json)
         return;
     scene_budget_init(&budget, dials);
-    printf("{\"engine\": \"model\", \"scene\": {");
-    minsn = scene_cost_json(frame, frame->model->header->bytes, stdout);
-    printf(", \"quality\": %.3f, \"predicted_ms\": %.3f, \"lights\": %u, ",
-           scene_budget_quality(&budget), budget.ms_per_minsn * minsn,
-           frame->model->header->n_lights);
-    scene_highlights_json(frame, stdout);
-    printf(", \"lamps_hidden\": %d}, \"ms\": %.3f}\n", hidden_lights(frame),
-           ms);
+    json_write(&json, "{engine: %s, scene: {", "model");
+    minsn = scene_cost_json(&json, frame, frame->model->header->bytes);
+    json_write(&json, "quality: %.3f, predicted_ms: %.3f, lights: %u",
+               scene_budget_quality(&budget), budget.ms_per_minsn * minsn,
+               frame->model->header->n_lights);
+    scene_highlights_json(&json, frame);
+    json_write(&json, "lamps_hidden: %d}, ms: %.3f}\n", hidden_lights(frame),
+               ms);
 }
 
 /* Says, of a scene that is drawn over black, that shadows on catchers are not

@@ -9,6 +9,7 @@
 #include "import/decode.h"
 #include "help/values.h"
 #include "options/command_line.h"
+#include "options/json_writer.h"
 #include "options/tool.h"
 #include "posix/input.h"
 #include "posix/output.h"
@@ -188,21 +189,20 @@ static void print_notes(const struct tool *tool, const struct imported *lens)
 static void print_json(const struct imported *lens,
                        const struct glint_prescription *read)
 {
+    struct json_writer json = {.to = stdout};
     struct glint_optics optics;
 
     glint_optics_of(read, &optics);
-    printf("{\"name\": \"%s\", \"focal_length_mm\": %.6f, "
-           "\"back_focal_length_mm\": %.6f, \"f_number\": %g, \"film_mm\": "
-           "[%g, %g], \"surfaces\": %d, \"notes\": [",
-           read->name, optics.focal_mm, optics.back_focal_mm, read->f_number,
-           read->film_width_mm, read->film_height_mm, read->n_surfaces);
-    for (int k = 0; k < lens->n_notes && k < IMPORT_NOTES; k++) {
-        printf("%s{\"line\": %d, \"text\": ", k ? ", " : "",
-               lens->note[k].line);
-        tool_json_string(stdout, lens->note[k].text);
-        putchar('}');
-    }
-    puts("]}");
+    json_write(&json,
+               "{name: %s, focal_length_mm: %.6f, back_focal_length_mm: %.6f, "
+               "f_number: %g, film_mm: [%g, %g], surfaces: %d, notes: [",
+               read->name, optics.focal_mm, optics.back_focal_mm,
+               read->f_number, read->film_width_mm, read->film_height_mm,
+               read->n_surfaces);
+    for (int k = 0; k < lens->n_notes && k < IMPORT_NOTES; k++)
+        json_write(&json, "{line: %d, text: %s}", lens->note[k].line,
+                   lens->note[k].text);
+    json_write(&json, "]}\n");
 }
 
 static int save(const struct tool *tool, const struct import *o,

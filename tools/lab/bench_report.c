@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "lab/bench.h"
+#include "options/json_writer.h"
 
 static const char *const stage_names[STAGES] = {
     "plan", "transfer", "bin", "draw", "accumulate", "composite", "whole"};
@@ -76,46 +77,44 @@ void bench_print(const struct bench *b)
         print_test(b, &b->test[i]);
 }
 
-static void json_test(const struct bench *b, const struct test *t, bool last)
+static void json_test(struct json_writer *json, const struct bench *b,
+                      const struct test *t)
 {
     const double floor_ms = canvas_median(t->canvas->floor_ms, b->rounds);
     const double ms = canvas_median(t->ms[WHOLE], b->rounds);
 
-    printf("{\"lens\": ");
-    tool_json_string(stdout, t->settings->lens.name);
+    json_write(json, "\n{lens: %s", t->settings->lens.name);
     if (t->series)
-        printf(", \"series\": \"%s\", \"cpu_ms\": %.3f", t->series, t->cpu_ms);
-    printf(", \"width\": %d, \"height\": %d, \"format\": \"%s\", \"lights\": "
-           "%d, \"threads\": %d, \"raster\": \"%s\", "
-           "\"kernels\": \"%s\", "
-           "\"quality\": %.3f, \"ms\": %.4f, \"ratio\": %.3f, ",
-           t->canvas->of.image.width, t->canvas->of.image.height,
-           b->format_word, t->n_lamps, t->threads, raster_of(t), t->kernels,
-           quality_of(t), ms, ms / floor_ms);
+        json_write(json, "series: %s, cpu_ms: %.3f", t->series, t->cpu_ms);
+    json_write(json,
+               "width: %d, height: %d, format: %s, lights: %d, threads: %d, "
+               "raster: %s, kernels: %s, quality: %.3f, ms: %.4f, ratio: %.3f",
+               t->canvas->of.image.width, t->canvas->of.image.height,
+               b->format_word, t->n_lamps, t->threads, raster_of(t), t->kernels,
+               quality_of(t), ms, ms / floor_ms);
     for (int s = 0; s < WHOLE; s++)
-        printf("\"%s_ms\": %.4f, ", stage_names[s],
-               canvas_median(t->ms[s], b->rounds));
-    if (isnan(t->psnr_db))
-        printf("\"psnr_db\": null, ");
-    else
-        printf("\"psnr_db\": %.2f, ", t->psnr_db);
+        json_write(json, "%s_ms: %.4f", stage_names[s],
+                   canvas_median(t->ms[s], b->rounds));
+    json_write(json, "psnr_db: %.2f", t->psnr_db);
     if (t->frame.budget.ms > 0)
-        printf("\"budget_ms\": %g, \"achieved\": %.4f, "
-               "\"prediction_error\": %.4f, ",
-               t->frame.budget.ms, ms / t->frame.budget.ms, off_by(b, t));
-    printf("\"drawn_lights\": %d, \"ghosts\": %d, \"bundles\": %d, "
-           "\"primitives\": %d, \"tiles\": "
-           "%d, \"arena_bytes\": %zu, \"star_bytes\": %zu}%s\n",
-           t->report.drawn_lights, t->report.ghosts, t->report.stats.bundles,
-           t->report.stats.primitives, t->report.tiles, t->report.peak_bytes,
-           t->report.star_bytes, last ? "" : ",");
+        json_write(json,
+                   "budget_ms: %g, achieved: %.4f, prediction_error: %.4f",
+                   t->frame.budget.ms, ms / t->frame.budget.ms, off_by(b, t));
+    json_write(json,
+               "drawn_lights: %d, ghosts: %d, bundles: %d, primitives: %d, "
+               "tiles: %d, arena_bytes: %zu, star_bytes: %zu}",
+               t->report.drawn_lights, t->report.ghosts,
+               t->report.stats.bundles, t->report.stats.primitives,
+               t->report.tiles, t->report.peak_bytes, t->report.star_bytes);
 }
 
 void bench_print_json(const struct bench *b)
 {
-    printf("{\"floor_ms\": %.5f, \"rounds\": %d, \"cases\": [\n",
-           canvas_median(b->canvas[0].floor_ms, b->rounds), b->rounds);
+    struct json_writer json = {.to = stdout};
+
+    json_write(&json, "{floor_ms: %.5f, rounds: %d, cases: [",
+               canvas_median(b->canvas[0].floor_ms, b->rounds), b->rounds);
     for (int i = 0; i < b->n_tests; i++)
-        json_test(b, &b->test[i], i + 1 == b->n_tests);
-    printf("]}\n");
+        json_test(&json, b, &b->test[i]);
+    json_write(&json, "\n]}\n");
 }

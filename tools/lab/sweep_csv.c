@@ -5,17 +5,16 @@
 #include <string.h>
 
 #include "lab/sweep.h"
+#include "options/json_writer.h"
 
 static const char *const kinds[] = {"standard", "alone", "together", "quality",
                                     "growth"};
 
-/* Prints X, or NONE if it is not finite: nothing in CSV, null in JSON. */
-static void number(FILE *file, double x, const char *none)
+/* Prints X, or nothing if it is not finite. */
+static void number(FILE *file, double x)
 {
     if (isfinite(x))
         fprintf(file, "%.7g", x);
-    else
-        fputs(none, file);
 }
 
 void sweep_csv(const struct sweep *s, FILE *file)
@@ -38,14 +37,14 @@ void sweep_csv(const struct sweep *s, FILE *file)
         fprintf(file, "%s,%d,%d,%d,%g,%s,%s,", s->lens[c->lens], c->width,
                 c->height, c->n_lamps, c->angle, kinds[p->set.kind],
                 p->set.dial >= 0 ? dials[p->set.dial].name : "");
-        number(file, p->set.quality >= 0 ? p->set.quality : (double)NAN, "");
+        number(file, p->set.quality >= 0 ? p->set.quality : (double)NAN);
         for (int d = 0; d < n_dials; d++)
             fprintf(file, ",%.7g", p->set.value[d]);
         for (int k = 0; k < 4; k++)
-            fputc(',', file), number(file, measured[k], "");
+            fputc(',', file), number(file, measured[k]);
         fprintf(file, ",%zu,%zu", p->arena_bytes, p->model_bytes);
         for (int k = 0; k < 4; k++)
-            fputc(',', file), number(file, quality[k], "");
+            fputc(',', file), number(file, quality[k]);
         fprintf(file, ",%d,%d,%d,%d", p->report.ghosts, p->report.stats.bundles,
                 p->report.stats.primitives, p->report.tiles);
         for (int k = GLINT_COST_VERTICES; k < GLINT_COST_STAR; k++)
@@ -54,47 +53,36 @@ void sweep_csv(const struct sweep *s, FILE *file)
     }
 }
 
-static void member(FILE *file, const char *name, double x)
-{
-    fprintf(file, ", \"%s\": ", name);
-    number(file, x, "null");
-}
-
-static void json_point(const struct sweep *s, const struct sweep_point *p,
-                       FILE *file)
+static void json_point(struct json_writer *json, const struct sweep *s,
+                       const struct sweep_point *p)
 {
     const struct sweep_case *c = &s->scase[p->of];
 
-    fputs("{\"lens\": ", file);
-    tool_json_string(file, s->lens[c->lens]);
-    fprintf(file,
-            ", \"width\": %d, \"height\": %d, \"lights\": %d, \"angle\": %g, "
-            "\"kind\": \"%s\"",
-            c->width, c->height, c->n_lamps, c->angle, kinds[p->set.kind]);
-    member(file, "quality", p->set.quality >= 0 ? p->set.quality : (double)NAN);
+    json_write(json,
+               "\n{lens: %s, width: %d, height: %d, lights: %d, angle: %g, "
+               "kind: %s, quality: %.7g",
+               s->lens[c->lens], c->width, c->height, c->n_lamps, c->angle,
+               kinds[p->set.kind],
+               p->set.quality >= 0 ? p->set.quality : (double)NAN);
     for (int d = 0; d < n_dials; d++)
-        member(file, dials[d].name, p->set.value[d]);
-    member(file, "ms", p->ms);
-    member(file, "floor_ms", p->floor_ms);
-    member(file, "ratio", p->ratio);
-    member(file, "instructions", p->instructions);
-    member(file, "arena_bytes", (double)p->arena_bytes);
-    member(file, "model_bytes", (double)p->model_bytes);
-    member(file, "psnr_db", p->psnr_db);
-    member(file, "ssim", p->ssim);
-    member(file, "p99", p->p99);
-    member(file, "flux_error", p->flux_error);
-    fprintf(file, ", \"front\": %s}", p->front ? "true" : "false");
+        json_write(json, "%s: %.7g", dials[d].name, p->set.value[d]);
+    json_write(json,
+               "ms: %.7g, floor_ms: %.7g, ratio: %.7g, instructions: %.7g, "
+               "arena_bytes: %.7g, model_bytes: %.7g, psnr_db: %.7g, "
+               "ssim: %.7g, p99: %.7g, flux_error: %.7g, front: %c}",
+               p->ms, p->floor_ms, p->ratio, p->instructions,
+               (double)p->arena_bytes, (double)p->model_bytes, p->psnr_db,
+               p->ssim, p->p99, p->flux_error, p->front);
 }
 
 void sweep_json(const struct sweep *s, FILE *file)
 {
-    fprintf(file, "{\"rounds\": %d, \"points\": [\n", s->rounds);
-    for (int i = 0; i < s->n_points; i++) {
-        json_point(s, &s->point[i], file);
-        fputs(i + 1 < s->n_points ? ",\n" : "\n", file);
-    }
-    fputs("]}\n", file);
+    struct json_writer json = {.to = file};
+
+    json_write(&json, "{rounds: %d, points: [", s->rounds);
+    for (int i = 0; i < s->n_points; i++)
+        json_point(&json, s, &s->point[i]);
+    json_write(&json, "\n]}\n");
 }
 
 /* Prints the row of case C: its points with a named quality, the coarsest

@@ -7,6 +7,7 @@
 
 #include "lens_check/one_digit.h"
 #include "model/table_file.h"
+#include "options/json_writer.h"
 #include "options/settings.h"
 #include "options/command_line.h"
 #include "options/tool.h"
@@ -55,17 +56,16 @@ static void print_text(const char *file, const char *wrong,
 
 static void print_json(const char *wrong, const struct mend *mend, int n)
 {
-    printf("{\"wrong\": ");
-    tool_json_string(stdout, wrong);
-    printf(", \"mends\": %d, \"likeliest\": [", n);
+    struct json_writer json = {.to = stdout};
+
+    json_write(&json, "{wrong: %s, mends: %d, likeliest: [", wrong, n);
     for (int k = 0; k < n && k < MENDS; k++)
-        printf("%s{\"line\": %d, \"column\": %d, \"from\": \"%s\", \"to\": "
-               "\"%s\", \"slip\": \"%s\", \"focal_length_mm\": %.6f, "
-               "\"back_focal_length_mm\": %.6f}",
-               k ? ", " : "", mend[k].line, mend[k].column, mend[k].from,
-               mend[k].to, slip_name(mend[k].slip), mend[k].focal_mm,
-               mend[k].back_mm);
-    puts("]}");
+        json_write(&json,
+                   "{line: %d, column: %d, from: %s, to: %s, slip: %s, "
+                   "focal_length_mm: %.6f, back_focal_length_mm: %.6f}",
+                   mend[k].line, mend[k].column, mend[k].from, mend[k].to,
+                   slip_name(mend[k].slip), mend[k].focal_mm, mend[k].back_mm);
+    json_write(&json, "]}\n");
 }
 
 static int lint(const struct tool *tool, const char *name)

@@ -9,6 +9,7 @@
 #include "lens_figures/drawing.h"
 #include "model/table_file.h"
 #include "model/zoom_option.h"
+#include "options/json_writer.h"
 #include "options/settings.h"
 #include "options/command_line.h"
 #include "options/tool.h"
@@ -136,7 +137,7 @@ static int save(const struct tool *tool, const struct draw *o)
     if (shown == 0 && !tool->quiet)
         fprintf(stderr, "glint draw: no ray of these gets through\n");
     if (tool->json)
-        printf("{\"rays\": %d}\n", shown);
+        json_write(&(struct json_writer){.to = stdout}, "{rays: %d}\n", shown);
     return EXIT_OK;
 }
 

@@ -5,6 +5,7 @@
 
 #include "glint/view.h"
 #include "motions/motion_file.h"
+#include "options/json_writer.h"
 
 static const char *const fits[] = {"all", "best4", "first4", "chain"};
 
@@ -37,31 +38,31 @@ static void print_json(const struct motion_file *file, const struct counts *n)
 {
     const struct glint_motion_header *h = &file->motion.header;
     const struct glint_motion_report *r = &file->report;
+    struct json_writer json = {.to = stdout};
 
-    printf("{\"name\": ");
-    tool_json_string(stdout, h->name);
-    printf(", \"motion\": {\"fit\": \"%s\", \"frames\": %u, \"foods\": %u, "
-           "\"sensors\": %u, \"resets\": %u, \"size\": %.6g, "
-           "\"angle_deg\": %.6g, \"step\": %.6g, \"low\": [%.9g, %.9g, %.9g], "
-           "\"high\": [%.9g, %.9g, %.9g], \"residual\": %.6g, "
-           "\"residual_frame\": %u",
-           fits[h->variant], h->n_frames, h->n_foods, h->n_sensors,
-           h->n_events - h->n_foods, n->step * h->size, angle_deg(h), n->step,
-           n->step * h->low[0], n->step * h->low[1], n->step * h->low[2],
-           n->step * h->high[0], n->step * h->high[1], n->step * h->high[2],
-           n->step * h->residual, h->residual_frame);
+    json_write(&json,
+               "{name: %s, motion: {fit: %s, frames: %u, foods: %u, "
+               "sensors: %u, resets: %u, size: %.6g, angle_deg: %.6g, "
+               "step: %.6g, low: [%.9g, %.9g, %.9g], "
+               "high: [%.9g, %.9g, %.9g], residual: %.6g, residual_frame: %u",
+               h->name, fits[h->variant], h->n_frames, h->n_foods, h->n_sensors,
+               h->n_events - h->n_foods, n->step * h->size, angle_deg(h),
+               n->step, n->step * h->low[0], n->step * h->low[1],
+               n->step * h->low[2], n->step * h->high[0], n->step * h->high[1],
+               n->step * h->high[2], n->step * h->residual, h->residual_frame);
     if (file->is_baked_now)
-        printf(", \"path\": %.9g, \"span\": %.9g, \"residual_rms\": %.6g, "
-               "\"bad_frames\": %ld",
-               r->path, r->span, r->residual_rms, r->bad_frames);
+        json_write(&json,
+                   "path: %.9g, span: %.9g, residual_rms: %.6g, "
+                   "bad_frames: %ld",
+                   r->path, r->span, r->residual_rms, r->bad_frames);
     if (file->is_baked_now && r->has_senses)
-        printf(", \"senses_off\": %.6g, \"senses_most\": %.6g", r->senses_off,
-               r->senses_most);
-    printf(", \"bytes\": {\"header\": %zu, \"sensors\": %zu, \"events\": %zu, "
-           "\"index\": %zu, \"poses\": %zu, \"intensities\": %zu, "
-           "\"all\": %zu}}}\n",
-           n->header, n->sensors, n->events, n->index, n->poses, n->intensities,
-           file->bytes);
+        json_write(&json, "senses_off: %.6g, senses_most: %.6g", r->senses_off,
+                   r->senses_most);
+    json_write(&json,
+               "bytes: {header: %zu, sensors: %zu, events: %zu, index: %zu, "
+               "poses: %zu, intensities: %zu, all: %zu}}}\n",
+               n->header, n->sensors, n->events, n->index, n->poses,
+               n->intensities, file->bytes);
 }
 
 static void print_text(const struct motion_file *file, const struct counts *n)

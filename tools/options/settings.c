@@ -309,31 +309,28 @@ double settings_scale(const struct settings *settings)
     return settings->options.gain * exp2(settings->options.exposure);
 }
 
-void settings_json(const struct glint_frame_report *r)
+void settings_json(struct json_writer *json, const struct glint_frame_report *r)
 {
-    printf("\"lights\": %d, \"beyond_lights\": %d, \"apart_lights\": %d, "
-           "\"drawn_lights\": %d, "
-           "\"ghosts\": %d, \"bundles\": %d, "
-           "\"primitives\": %d, \"tiles\": %d, \"arena_bytes\": %zu, "
-           "\"peak_bytes\": %zu, \"star_bytes\": %zu, \"refs\": %d, "
-           "\"dropped_bundles\": %d, \"dropped_cells\": %d, "
-           "\"held_cells\": %d, \"held_samples\": %d, \"coarsened\": %s, "
-           "\"plan_ms\": %.3f, \"trace_ms\": %.3f, \"bin_ms\": %.3f, "
-           "\"draw_ms\": %.3f",
-           r->lights, r->beyond_lights, r->apart_lights, r->drawn_lights,
-           r->ghosts, r->stats.bundles, r->stats.primitives, r->tiles,
-           r->arena_bytes, r->peak_bytes, r->star_bytes, r->stats.refs,
-           r->stats.dropped_bundles, r->stats.dropped_cells,
-           r->stats.held_cells, r->held_samples,
-           r->coarsened ? "true" : "false", r->plan_ms, r->trace_ms, r->bin_ms,
-           r->draw_ms);
+    json_write(
+        json,
+        "lights: %d, beyond_lights: %d, apart_lights: %d, drawn_lights: %d, "
+        "ghosts: %d, bundles: %d, primitives: %d, tiles: %d, arena_bytes: %zu, "
+        "peak_bytes: %zu, star_bytes: %zu, refs: %d, "
+        "dropped_bundles: %d, dropped_cells: %d, held_cells: %d, "
+        "held_samples: %d, coarsened: %c, plan_ms: %.3f, trace_ms: %.3f, "
+        "bin_ms: %.3f, draw_ms: %.3f",
+        r->lights, r->beyond_lights, r->apart_lights, r->drawn_lights,
+        r->ghosts, r->stats.bundles, r->stats.primitives, r->tiles,
+        r->arena_bytes, r->peak_bytes, r->star_bytes, r->stats.refs,
+        r->stats.dropped_bundles, r->stats.dropped_cells, r->stats.held_cells,
+        r->held_samples, r->coarsened, r->plan_ms, r->trace_ms, r->bin_ms,
+        r->draw_ms);
     if (r->quality >= 0)
-        printf(", \"quality\": %.4f, \"predicted_ms\": %.3f, "
-               "\"calibrated_minsn\": %.4f, \"dim\": %g, "
-               "\"dust_blurred\": %s, \"veil_left_out\": %s",
-               r->quality, r->predicted_ms, r->calibrated_minsn,
-               r->dials.dim_codes, r->blurred ? "true" : "false",
-               r->unveiled ? "true" : "false");
+        json_write(json,
+                   "quality: %.4f, predicted_ms: %.3f, calibrated_minsn: %.4f, "
+                   "dim: %g, dust_blurred: %c, veil_left_out: %c",
+                   r->quality, r->predicted_ms, r->calibrated_minsn,
+                   r->dials.dim_codes, r->blurred, r->unveiled);
 }
 
 void settings_lights_text(const struct glint_frame_report *r, char text[64])

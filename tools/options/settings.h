@@ -13,6 +13,7 @@
 #include "engine/frame/quality.h"
 #include "model/model_file.h"
 #include "model/zoom_option.h"
+#include "options/json_writer.h"
 #include "options/tool.h"
 
 enum { SETTINGS_MAX_LAMPS = 1024 }; /* lamps by hand; a file may have more */
@@ -127,8 +128,9 @@ bool settings_has_veil(const struct settings *settings);
 /* Returns the factor on all light, gain * 2^EV. */
 double settings_scale(const struct settings *settings);
 
-/* Prints the report of a frame as JSON members, without braces. */
-void settings_json(const struct glint_frame_report *report);
+/* Writes the report of a frame as members of an object. */
+void settings_json(struct json_writer *json,
+                   const struct glint_frame_report *report);
 
 /* Writes as text how many lights there were and are drawn. */
 void settings_lights_text(const struct glint_frame_report *report,

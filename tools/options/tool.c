@@ -17,7 +17,6 @@
 #include "posix/ending.h"
 #include "posix/error.h"
 #include "posix/output.h"
-#include "posix/utf8.h"
 #include "posix/workers.h"
 
 /* Copies the message to the tool's cause, if it has one, and prints it. */
@@ -317,22 +316,4 @@ void tool_progress_end(struct tool_progress *p)
 {
     if (p->shown && p->is_terminal && p->last > 0)
         fputs("\r\033[K", stderr);
-}
-
-void tool_json_string(FILE *file, const char *text)
-{
-    fputc('"', file);
-    while (*text) {
-        const unsigned char c = (unsigned char)*text;
-        const size_t length = glint_utf8_length(text);
-
-        if (c == '"' || c == '\\')
-            fputc('\\', file);
-        if (length)
-            fwrite(text, 1, length, file);
-        else
-            fprintf(file, "\\u%04x", c < 0x80 ? c : 0xfffdu);
-        text += length ? length : 1;
-    }
-    fputc('"', file);
 }

@@ -127,9 +127,6 @@ void tool_progress_part(struct tool_progress *p, double from, double share);
 void tool_progress_show(void *progress, double done);
 void tool_progress_end(struct tool_progress *p);
 
-/* Writes TEXT as a JSON string. */
-void tool_json_string(FILE *file, const char *text);
-
 /* The commands. ARGV[0] is the command's name. They return exit codes. */
 int cmd_info(int argc, char **argv);
 int cmd_trace(int argc, char **argv);

@@ -334,15 +334,16 @@ static void print_json(const struct overlay *o,
 {
     const double seconds = tool_seconds() - o->started;
     const int drawn = overlay_drawn(o), n = drawn ? drawn : 1;
+    struct json_writer json = {.to = stdout};
 
-    printf("{\"frames\": %d, \"ms\": %.3f, \"fps\": %.2f, "
-           "\"find_ms\": %.3f, \"flare_ms\": %.3f, \"most_lights\": %d, "
-           "\"reused\": %d, ",
-           drawn, 1e3 * seconds, drawn / seconds, o->find_ms / n,
-           o->flare_ms / n, o->most_lights, o->n_reused);
-    overlay_json(o, light, stdout);
-    settings_json(&o->compositor.report);
-    printf("}\n");
+    json_write(&json,
+               "{frames: %d, ms: %.3f, fps: %.2f, find_ms: %.3f, "
+               "flare_ms: %.3f, most_lights: %d, reused: %d",
+               drawn, 1e3 * seconds, drawn / seconds, o->find_ms / n,
+               o->flare_ms / n, o->most_lights, o->n_reused);
+    overlay_json(&json, o, light);
+    settings_json(&json, &o->compositor.report);
+    json_write(&json, "}\n");
 }
 
 static void print_result(const struct tool *tool, struct overlay *o)

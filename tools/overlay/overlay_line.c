@@ -294,44 +294,36 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
 
 /* -------------------------------------------------------------------- JSON */
 
-void overlay_json(const struct overlay *o, const struct overlay_light *light,
-                  FILE *to)
+void overlay_json(struct json_writer *json, const struct overlay *o,
+                  const struct overlay_light *light)
 {
     const struct compositor *compositor = &o->compositor;
     const double focal = compositor->settings.setup.optics.focal_mm;
-    const double scale = compositor->strength.scale;
 
-    over_scene_json(&compositor->scene, to);
+    over_scene_json(json, &compositor->scene);
     if (!compositor->has_lens) {
-        fputs("\"lens\": null, \"found\": [], ", to);
+        json_write(json, "lens: null, found: []");
         return;
     }
-    fprintf(to, "\"lens\": \"%s\", \"f_number\": %g, ",
-            compositor->settings.lens.name, f_number_of(&compositor->settings));
-    if (GLINT_OPTION_GIVEN(&compositor->settings.options, exposure))
-        fprintf(to, "\"strength\": null, ");
-    else
-        fprintf(to, "\"strength\": %g, ", compositor->strength.asked);
-    if (scale > 0)
-        fprintf(to, "\"scale_ev\": %.3f, ", log2(scale));
-    else
-        fprintf(to, "\"scale_ev\": null, ");
-    if (light->is_known)
-        fprintf(to, "\"peak\": %.6g, \"mean\": %.6g, ", light->peak,
-                light->mean);
-    else
-        fprintf(to, "\"peak\": null, \"mean\": null, ");
-    fputs("\"found\": [", to);
+    json_write(json,
+               "lens: %s, f_number: %g, strength: %g, scale_ev: %.3f, "
+               "peak: %.6g, mean: %.6g, found: [",
+               compositor->settings.lens.name,
+               f_number_of(&compositor->settings),
+               GLINT_OPTION_GIVEN(&compositor->settings.options, exposure)
+                    ? (double)NAN
+                                                 : compositor->strength.asked,
+               log2(compositor->strength.scale),
+               light->is_known ? light->peak : (double)NAN,
+               light->is_known ? light->mean : (double)NAN);
     for (int i = 0; i < compositor->n_lamps; i++) {
         const struct glint_lamp *l = &compositor->lamp[i];
         double x, y;
 
         glint_view_to_pixel(&compositor->view, focal, l, &x, &y);
-        fprintf(to,
-                "%s{\"x\": %.2f, \"y\": %.2f, \"stops\": %.2f, "
-                "\"rgb\": [%.4g, %.4g, %.4g]}",
-                i ? ", " : "", x, y, stops_of(l), l->rgb[0], l->rgb[1],
-                l->rgb[2]);
+        json_write(json,
+                   "{x: %.2f, y: %.2f, stops: %.2f, rgb: [%.4g, %.4g, %.4g]}",
+                   x, y, stops_of(l), l->rgb[0], l->rgb[1], l->rgb[2]);
     }
-    fputs("], ", to);
+    json_write(json, "]");
 }

@@ -37,8 +37,8 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
  * candidate. */
 void overlay_say_none(const struct compositor *compositor, FILE *to);
 
-/* Prints members of a JSON object, without braces. */
-void overlay_json(const struct overlay *o, const struct overlay_light *light,
-                  FILE *to);
+/* Writes members of an object. */
+void overlay_json(struct json_writer *json, const struct overlay *o,
+                  const struct overlay_light *light);
 
 #endif

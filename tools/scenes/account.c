@@ -161,23 +161,23 @@ int scene_covered_px(const struct scene_frame *frame)
 }
 
 /* Returns the millions of instructions that it says. */
-static double counts_json(const struct scene_account *account, FILE *to)
+static double counts_json(struct json_writer *json,
+                          const struct scene_account *account)
 {
     const int64_t *const n = account->all.count;
     const double minsn = scene_cost_minsn(account);
 
-    fprintf(to,
-            "\"refs\": %" PRId64 ", \"shaded_px\": %" PRId64
-            ", \"samples\": %" PRId64 ", \"shadow_rays\": %" PRId64
-            ", \"texels\": %" PRId64 ", \"bounces\": %" PRId64
-            ", \"shells\": %d, \"lines\": %d, \"box_edges\": %d"
-            ", \"predicted_minsn\": %.4f, ",
-            n[GLINT_SCENE_TRIANGLES], n[GLINT_SCENE_SHADED],
-            n[GLINT_SCENE_SAMPLED],
-            n[GLINT_SCENE_SHADOWS] + n[GLINT_SCENE_RAYS], n[GLINT_SCENE_TEXELS],
-            n[GLINT_SCENE_BOUNCED], account->layer[GLINT_KIND_SHELLS].n,
-            account->layer[GLINT_KIND_LINES].n,
-            account->layer[GLINT_KIND_BOX].n, minsn);
+    json_write(
+        json,
+        "refs: %" PRId64 ", shaded_px: %" PRId64 ", samples: %" PRId64
+        ", shadow_rays: %" PRId64 ", texels: %" PRId64 ", bounces: %" PRId64
+        ", shells: %d, lines: %d, box_edges: %d, "
+        "predicted_minsn: %.4f",
+        n[GLINT_SCENE_TRIANGLES], n[GLINT_SCENE_SHADED], n[GLINT_SCENE_SAMPLED],
+        n[GLINT_SCENE_SHADOWS] + n[GLINT_SCENE_RAYS], n[GLINT_SCENE_TEXELS],
+        n[GLINT_SCENE_BOUNCED], account->layer[GLINT_KIND_SHELLS].n,
+        account->layer[GLINT_KIND_LINES].n, account->layer[GLINT_KIND_BOX].n,
+        minsn);
     return minsn;
 }
 
@@ -201,44 +201,43 @@ static size_t map_bytes(const struct scene_frame *frame)
     return frame->bytes - glint_scene_bytes(&frame->cfg, &without);
 }
 
-double scene_cost_json(const struct scene_frame *frame, size_t bytes, FILE *to)
+double scene_cost_json(struct json_writer *json,
+                       const struct scene_frame *frame, size_t bytes)
 {
     struct scene_account account;
     double minsn = 0;
 
-    fprintf(to, "\"objects\": %u, \"drawn\": %d, \"triangles\": %d, ",
-            frame->model->header->n_objects, frame->stats.objects,
-            frame->stats.triangles);
+    json_write(json, "objects: %u, drawn: %d, triangles: %d",
+               frame->model->header->n_objects, frame->stats.objects,
+               frame->stats.triangles);
     if (scene_account_make(&account, frame) == GLINT_OK) {
-        minsn = counts_json(&account, to);
+        minsn = counts_json(json, &account);
         scene_account_free(&account);
     }
-    fprintf(to, "\"covered_px\": %d, \"bytes\": {", scene_covered_px(frame));
-    baked_scene_bytes(frame->model, to);
-    fprintf(to,
-            ", \"scene\": %zu, \"arena\": %zu, \"highlights\": %zu, "
-            "\"maps\": %zu}, \"project_ms\": %.3f, "
-            "\"draw_ms\": %.3f, \"map_ms\": %.3f, \"map_texels\": %d",
-            bytes, frame->bytes, highlight_bytes(frame), map_bytes(frame),
-            frame->project_ms, frame->draw_ms, frame->map_ms,
-            frame->map_texels);
+    json_write(json, "covered_px: %d", scene_covered_px(frame));
+    baked_scene_bytes(json, frame->model);
+    json_write(json,
+               "scene: %zu, arena: %zu, highlights: %zu, maps: %zu}, "
+               "project_ms: %.3f, draw_ms: %.3f, map_ms: %.3f, map_texels: %d",
+               bytes, frame->bytes, highlight_bytes(frame), map_bytes(frame),
+               frame->project_ms, frame->draw_ms, frame->map_ms,
+               frame->map_texels);
     return minsn;
 }
 
-void scene_highlights_json(const struct scene_frame *frame, FILE *to)
+void scene_highlights_json(struct json_writer *json,
+                           const struct scene_frame *frame)
 {
     struct glint_scene_highlight found[GLINT_SCENE_MAX_HIGHLIGHTS];
     const int n = glint_scene_find_highlights(frame->scene, found);
 
-    fprintf(to, "\"highlights\": [");
+    json_write(json, "highlights: [");
     for (int i = 0; i < n; i++) {
         const struct glint_spot *const s = &found[i].spot;
 
-        fprintf(to, "%s{\"object\": ", i ? ", " : "");
-        tool_json_string(to, frame->model->object[found[i].object].name);
-        fprintf(to, ", \"x\": %.3f, \"y\": %.3f, \"power\": %.4f}",
-                s->x_q8 / 256.0, s->y_q8 / 256.0,
-                (double)s->power_q16 * 0x1p-16);
+        json_write(json, "{object: %s, x: %.3f, y: %.3f, power: %.4f}",
+                   frame->model->object[found[i].object].name, s->x_q8 / 256.0,
+                   s->y_q8 / 256.0, (double)s->power_q16 * 0x1p-16);
     }
-    fprintf(to, "]");
+    json_write(json, "]");
 }

@@ -5,6 +5,7 @@
 #define GLINT_TOOLS_SCENES_ACCOUNT_H
 
 #include "glint/scene/account.h"
+#include "options/json_writer.h"
 #include "scenes/scene_frame.h"
 
 /* The name of each item, and its cost in thousand instructions of a processor
@@ -54,9 +55,11 @@ int scene_covered_px(const struct scene_frame *frame);
 /* Writes members of a JSON object on the frame that was drawn last, but on its
  * lights. BYTES are those of the baked scene. Returns the millions of
  * instructions that the frame is told to cost. */
-double scene_cost_json(const struct scene_frame *frame, size_t bytes, FILE *to);
+double scene_cost_json(struct json_writer *json,
+                       const struct scene_frame *frame, size_t bytes);
 
 /* Writes "highlights": a list of those of the frame that was drawn last. */
-void scene_highlights_json(const struct scene_frame *frame, FILE *to);
+void scene_highlights_json(struct json_writer *json,
+                           const struct scene_frame *frame);
 
 #endif

@@ -110,24 +110,24 @@ static void measure(const struct glint_scene_model *model,
     }
 }
 
-/* Prints members of an object. */
-static void print_bytes(const struct scene_bytes *b, FILE *to)
+/* Begins "bytes", an object. */
+static void print_bytes(struct json_writer *json, const struct scene_bytes *b)
 {
-    fprintf(to,
-            "\"header\": %zu, \"light\": %zu, \"texture\": %zu, "
-            "\"material\": %zu, \"environment\": %zu, \"stone\": %zu, "
-            "\"object\": %zu, \"mesh\": %zu",
-            b->header, b->light, b->texture, b->material, b->environment,
-            b->stone, b->object, b->mesh);
+    json_write(json,
+               "bytes: {header: %zu, light: %zu, texture: %zu, material: %zu, "
+               "environment: %zu, stone: %zu, object: %zu, mesh: %zu",
+               b->header, b->light, b->texture, b->material, b->environment,
+               b->stone, b->object, b->mesh);
 }
 
-void baked_scene_bytes(const struct glint_scene_model *model, FILE *to)
+void baked_scene_bytes(struct json_writer *json,
+                       const struct glint_scene_model *model)
 {
     struct scene_bytes bytes;
     struct scene_counts counts;
 
     measure(model, &bytes, &counts);
-    print_bytes(&bytes, to);
+    print_bytes(json, &bytes);
 }
 
 static void print_json(const struct baked_scene *scene,
@@ -135,24 +135,22 @@ static void print_json(const struct baked_scene *scene,
                        const struct scene_counts *n)
 {
     const struct glint_scene_header *h = scene->model.header;
+    struct json_writer json = {.to = stdout};
 
-    printf("{\"name\": ");
-    tool_json_string(stdout, h->name);
-    printf(", \"scene\": {\"objects\": %u, \"spheres\": %d, \"planes\": %d, "
-           "\"catchers\": %d, \"meshes\": %d, \"lights\": %u, "
-           "\"environments\": %u, \"materials\": %u, \"textures\": %u, "
-           "\"vertices\": %u, "
-           "\"triangles\": %u, \"cells\": %u, \"refs\": %u, \"step\": %.9g",
-           h->n_objects, n->spheres, n->planes, n->catchers, n->meshes,
-           h->n_lights, h->n_environments, h->n_materials, h->n_textures,
-           n->vertices, n->triangles, n->cells, n->refs,
-           ldexp(1, -h->unit_log2));
+    json_write(&json,
+               "{name: %s, scene: {objects: %u, spheres: %d, planes: %d, "
+               "catchers: %d, meshes: %d, lights: %u, environments: %u, "
+               "materials: %u, textures: %u, vertices: %u, triangles: %u, "
+               "cells: %u, refs: %u, step: %.9g",
+               h->name, h->n_objects, n->spheres, n->planes, n->catchers,
+               n->meshes, h->n_lights, h->n_environments, h->n_materials,
+               h->n_textures, n->vertices, n->triangles, n->cells, n->refs,
+               ldexp(1, -h->unit_log2));
     if (scene->is_text)
-        printf(", \"reach\": %.9g, \"flat\": %d", scene->report.reach,
-               scene->report.flat);
-    printf(", \"bytes\": {");
-    print_bytes(b, stdout);
-    printf(", \"all\": %zu}}}\n", scene->bytes);
+        json_write(&json, "reach: %.9g, flat: %d", scene->report.reach,
+                   scene->report.flat);
+    print_bytes(&json, b);
+    json_write(&json, "all: %zu}}}\n", scene->bytes);
 }
 
 static void print_camera(const struct glint_scene_camera *c)

@@ -6,6 +6,7 @@
 
 #include "glint/scene/bake.h"
 #include "glint/scene/model.h"
+#include "options/json_writer.h"
 #include "scenes/scene_file.h"
 
 struct baked_scene {
@@ -31,8 +32,9 @@ void baked_scene_close(struct baked_scene *scene);
 void baked_scene_print(const struct tool *tool,
                        const struct baked_scene *scene);
 
-/* Prints the bytes of MODEL by what they hold, as members of a JSON object. */
-void baked_scene_bytes(const struct glint_scene_model *model, FILE *to);
+/* Begins the object "bytes": those of MODEL by what they hold. */
+void baked_scene_bytes(struct json_writer *json,
+                       const struct glint_scene_model *model);
 
 /* glint bake of scenes, as the commands of options/tool.h. */
 int cmd_bake_scene(struct tool *tool, int argc, char **argv);

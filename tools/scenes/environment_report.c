@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "glint/view.h"
+#include "options/json_writer.h"
 #include "scenes/environment_file.h"
 
 struct counts {
@@ -55,34 +56,35 @@ static void print_json(const struct environment_file *file,
 {
     const struct glint_environment_header *h = file->environment.header;
     const struct glint_environment_report *r = &file->report;
+    struct json_writer json = {.to = stdout};
 
-    printf("{\"name\": ");
-    tool_json_string(stdout, h->name);
-    printf(", \"environment\": {\"size\": %d, \"levels\": \"%s\", "
-           "\"code\": \"%s\"",
-           1 << h->side_log2, levels_of(h), code_of(h));
+    json_write(&json, "{name: %s, environment: {size: %d, levels: %s, code: %s",
+               h->name, 1 << h->side_log2, levels_of(h), code_of(h));
     if (file->is_baked_now)
-        printf(", \"picture\": [%d, %d], \"negative\": %lld, "
-               "\"not_finite\": %lld, \"mean\": %.6g, \"largest\": %.6g, "
-               "\"rest_largest\": %.6g, \"light_share\": %.6g, \"spots\": %d",
-               r->width, r->height, r->negative, r->not_finite, r->mean,
-               r->largest, r->residual_largest, r->light_share, r->spots);
-    printf(", \"texels\": %lld, \"texels_mip\": %lld, \"texels_full\": %lld, "
-           "\"lights\": [",
-           n->texels, n->mips, n->full);
+        json_write(&json,
+                   "picture: [%d, %d], negative: %lld, not_finite: %lld, "
+                   "mean: %.6g, largest: %.6g, rest_largest: %.6g, "
+                   "light_share: %.6g, spots: %d",
+                   r->width, r->height, r->negative, r->not_finite, r->mean,
+                   r->largest, r->residual_largest, r->light_share, r->spots);
+    json_write(&json,
+               "texels: %lld, texels_mip: %lld, texels_full: %lld, lights: [",
+               n->texels, n->mips, n->full);
     for (uint32_t i = 0; i < h->n_lights; i++) {
         const struct glint_environment_light *l = &file->environment.light[i];
 
-        printf("%s{\"toward\": [%.6f, %.6f, %.6f], \"radius_deg\": %.4f, "
-               "\"rgb\": [%.6g, %.6g, %.6g]}",
-               i ? ", " : "", ldexp(l->toward_q30[0], -30),
-               ldexp(l->toward_q30[1], -30), ldexp(l->toward_q30[2], -30),
-               degrees(l->radius_q30), glint_real_value(l->rgb[0]),
-               glint_real_value(l->rgb[1]), glint_real_value(l->rgb[2]));
+        json_write(&json,
+                   "{toward: [%.6f, %.6f, %.6f], radius_deg: %.4f, "
+                   "rgb: [%.6g, %.6g, %.6g]}",
+                   ldexp(l->toward_q30[0], -30), ldexp(l->toward_q30[1], -30),
+                   ldexp(l->toward_q30[2], -30), degrees(l->radius_q30),
+                   glint_real_value(l->rgb[0]), glint_real_value(l->rgb[1]),
+                   glint_real_value(l->rgb[2]));
     }
-    printf("], \"bytes\": {\"header\": %zu, \"levels\": %zu, "
-           "\"irradiance\": %zu, \"lights\": %zu, \"all\": %zu}}}\n",
-           n->header, n->levels, n->irradiance, n->lights, file->bytes);
+    json_write(&json,
+               "], bytes: {header: %zu, levels: %zu, irradiance: %zu, "
+               "lights: %zu, all: %zu}}}\n",
+               n->header, n->levels, n->irradiance, n->lights, file->bytes);
 }
 
 static void print_baking(const struct glint_environment_report *r)

@@ -432,23 +432,20 @@ void over_scene_say(const struct over_scene *over, FILE *to)
                 over->poses.n_bad == 1 ? "" : "s");
 }
 
-void over_scene_json(const struct over_scene *over, FILE *to)
+void over_scene_json(struct json_writer *json, const struct over_scene *over)
 {
     const struct scene_budget *const b = &over->budget;
     double minsn;
 
     if (!over->is_sized)
         return;
-    fprintf(to, "\"scene\": {");
-    minsn = scene_cost_json(&over->frame, over->baked.bytes, to);
-    fprintf(to, ", \"quality\": %.3f, \"predicted_ms\": %.3f, \"lights\": %d, ",
-            scene_budget_quality(b),
-            over->budget_ms > 0 ? b->predicted_ms : b->ms_per_minsn * minsn,
-            over->lights);
-    scene_highlights_json(&over->frame, to);
-    fprintf(to, ", ");
-    fprintf(to,
-            "\"lamps_hidden\": %d, \"poses_bad\": %ld, "
-            "\"control_bad\": %ld}, ",
-            over->lamps_hidden, over->poses.n_bad, over->control.n_bad);
+    json_write(json, "scene: {");
+    minsn = scene_cost_json(json, &over->frame, over->baked.bytes);
+    json_write(json, "quality: %.3f, predicted_ms: %.3f, lights: %d",
+               scene_budget_quality(b),
+               over->budget_ms > 0 ? b->predicted_ms : b->ms_per_minsn * minsn,
+               over->lights);
+    scene_highlights_json(json, &over->frame);
+    json_write(json, "lamps_hidden: %d, poses_bad: %ld, control_bad: %ld}",
+               over->lamps_hidden, over->poses.n_bad, over->control.n_bad);
 }

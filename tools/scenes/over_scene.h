@@ -164,7 +164,7 @@ size_t over_scene_bytes(const struct over_scene *over);
 void over_scene_say(const struct over_scene *over, FILE *to);
 
 /* Writes "scene": an object on the frame drawn last. */
-void over_scene_json(const struct over_scene *over, FILE *to);
+void over_scene_json(struct json_writer *json, const struct over_scene *over);
 
 void over_scene_close(struct over_scene *over);
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * What is in a baked stone, in words and in numbers. */
+#include "options/json_writer.h"
 #include "stones/stone_file.h"
 
 struct counts {
@@ -35,24 +36,25 @@ static const char *model_of(const struct glint_translucent_header *h)
 static void print_json(const struct stone_file *file, const struct counts *n)
 {
     const struct glint_translucent_header *h = file->stone.header;
+    struct json_writer json = {.to = stdout};
 
-    printf("{\"name\": ");
-    tool_json_string(stdout, h->name);
-    printf(", \"stone\": {\"model\": \"%s\", \"size\": %d, \"texel_mm\": %g, "
-           "\"kernel\": %u, \"planes\": %u, \"rank\": %u, \"index\": %.5g, "
-           "\"bits\": [%u, %u]",
-           model_of(h), 1 << h->side_log2, h->texel_um / 1000., h->kernel,
-           h->n_planes, h->rank, h->index_q16 / 65536., h->code_bits,
-           h->tap_bits);
+    json_write(&json,
+               "{name: %s, stone: {model: %s, size: %d, texel_mm: %g, "
+               "kernel: %u, planes: %u, rank: %u, index: %.5g, bits: [%u, %u]",
+               h->name, model_of(h), 1 << h->side_log2, h->texel_um / 1000.,
+               h->kernel, h->n_planes, h->rank, h->index_q16 / 65536.,
+               h->code_bits, h->tap_bits);
     if (file->is_baked_now)
-        printf(", \"fit_db\": %.2f, \"baked_db\": %.2f, \"kernel_loss\": %.6f, "
-               "\"column_bits\": %d, \"cpu_s\": %.2f",
-               file->errors.fit_db, file->errors.baked_db,
-               file->errors.kernel_loss, file->errors.tap_bits,
-               file->errors.seconds);
-    printf(", \"bytes_texel\": %g, \"bytes\": {\"codes\": %zu, \"clusters\": "
-           "%zu, \"taps\": %zu, \"all\": %zu}}}\n",
-           n->each, n->codes, n->clusters, n->taps, n->all);
+        json_write(&json,
+                   "fit_db: %.2f, baked_db: %.2f, kernel_loss: %.6f, "
+                   "column_bits: %d, cpu_s: %.2f",
+                   file->errors.fit_db, file->errors.baked_db,
+                   file->errors.kernel_loss, file->errors.tap_bits,
+                   file->errors.seconds);
+    json_write(&json,
+               "bytes_texel: %g, bytes: {codes: %zu, clusters: %zu, "
+               "taps: %zu, all: %zu}}}\n",
+               n->each, n->codes, n->clusters, n->taps, n->all);
 }
 
 static void print_text(const struct stone_file *file, const struct counts *n)

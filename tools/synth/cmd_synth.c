@@ -288,32 +288,24 @@ static char *settings_of(const struct synth *s, int seed)
 {
     char *text = NULL;
     size_t bytes = 0;
-    FILE *const file = open_memstream(&text, &bytes);
+    struct json_writer json = {.to = open_memstream(&text, &bytes)};
 
-    if (!file)
+    if (!json.to)
         return NULL;
-    fprintf(file,
-            "{\"glint\": \"%s\", \"seed\": %d, \"width\": %.0f, \"height\": "
-            "%.0f, \"quality\": %.6f, \"layout\": \"%s\", \"type\": ",
-            GLINT_VERSION, seed, s->all.width, s->all.height, s->all.quality,
-            s->set.layout->name);
-    tool_json_string(file, s->set.type);
-    fputs(", \"coating\": ", file);
-    tool_json_string(file, s->all.coating);
-    fputs(", \"lenses\": [", file);
-    for (int i = 0; i < s->n_lenses; i++) {
-        fputs(i ? ", " : "", file);
-        tool_json_string(file, s->lens[i]);
-    }
-    fputs("], \"ranges\": {", file);
-    synth_ranges_json(file, &s->ranges);
-    fputs("}, \"backgrounds\": [", file);
-    for (int i = 0; i < s->backgrounds.n; i++) {
-        fputs(i ? ", " : "", file);
-        tool_json_string(file, synth_background_name(s->backgrounds.path[i]));
-    }
-    fputs("]}\n", file);
-    if (fclose(file) == 0)
+    json_write(&json,
+               "{glint: %s, seed: %d, width: %.0f, height: %.0f, "
+               "quality: %.6f, layout: %s, type: %s, coating: %s, lenses: [",
+               GLINT_VERSION, seed, s->all.width, s->all.height, s->all.quality,
+               s->set.layout->name, s->set.type, s->all.coating);
+    for (int i = 0; i < s->n_lenses; i++)
+        json_write(&json, "%s", s->lens[i]);
+    json_write(&json, "], ranges: {");
+    synth_ranges_json(&json, &s->ranges);
+    json_write(&json, "}, backgrounds: [");
+    for (int i = 0; i < s->backgrounds.n; i++)
+        json_write(&json, "%s", synth_background_name(s->backgrounds.path[i]));
+    json_write(&json, "]}\n");
+    if (fclose(json.to) == 0)
         return text;
     free(text);
     return NULL;

@@ -143,16 +143,13 @@ void synth_ranges_print(FILE *file, const struct synth_ranges *ranges)
                     ranges->low[k], ranges->high[k], law[field_of(k)->law]);
 }
 
-void synth_ranges_json(FILE *file, const struct synth_ranges *ranges)
+void synth_ranges_json(struct json_writer *json,
+                       const struct synth_ranges *ranges)
 {
-    const char *before = "";
-
     for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++)
-        if (field_of(k)->law > SYNTH_COUNTED) {
-            fprintf(file, "%s\"%s\": [%.9g, %.9g]", before, field_of(k)->name,
-                    ranges->low[k], ranges->high[k]);
-            before = ", ";
-        }
+        if (field_of(k)->law > SYNTH_COUNTED)
+            json_write(json, "%s: [%.9g, %.9g]", field_of(k)->name,
+                       ranges->low[k], ranges->high[k]);
 }
 
 /* ------------------------------------------------------------------ drawing */
@@ -240,48 +237,47 @@ void synth_item_draw(struct synth_item *item, const struct synth_ranges *ranges,
 
 /* ----------------------------------------------------------------- printing */
 
-/* Prints X, a number of millionths or whole, with the digits that it takes. */
-static void print_exact(FILE *file, double x)
+/* Writes X, a number of millionths or whole, with the digits that it takes. */
+static void write_exact(struct json_writer *json, const char *name, double x)
 {
-    char text[40];
-    size_t n = (size_t)snprintf(text, sizeof text, "%.6f", x);
+    char text[40], format[16];
+    int n = snprintf(text, sizeof text, "%.6f", x), digits = 6;
 
-    while (text[n - 1] == '0')
-        n--;
-    if (text[n - 1] == '.')
-        n--;
-    fprintf(file, "%.*s", (int)n, text);
+    while (digits > 0 && text[--n] == '0')
+        digits--;
+    snprintf(format, sizeof format, "%%s: %%.%df", digits);
+    json_write(json, format, name, x);
 }
 
-static void print_fields(FILE *file, const struct synth_field *field, int n,
+static void write_fields(struct json_writer *json,
+                         const struct synth_field *field, int n,
                          const void *from)
 {
     for (int k = 0; k < n; k++) {
         const char *const at = (const char *)from + field[k].at;
 
-        fprintf(file, "%s\"%s\": ", k ? ", " : "", field[k].name);
         if (field[k].text_bytes)
-            tool_json_string(file, at);
+            json_write(json, "%s: %s", field[k].name, at);
         else
-            print_exact(file, *(const double *)(const void *)at);
+            write_exact(json, field[k].name, *(const double *)(const void *)at);
     }
 }
 
-static void print_result(FILE *file, const struct synth_item *item,
+static void write_result(struct json_writer *json,
+                         const struct synth_item *item,
                          const struct synth_result *r)
 {
-    fprintf(file,
-            "\"drawn\": {\"background_ev\": %.6g, \"f_number\": %.6g, "
-            "\"focal_mm\": %.6g, \"sensor_width_mm\": %.6g, "
-            "\"lights\": [",
-            r->background_ev, r->f_number, r->focal_mm, r->sensor_width_mm);
+    json_write(json,
+               "drawn: {background_ev: %.6g, f_number: %.6g, focal_mm: %.6g, "
+               "sensor_width_mm: %.6g, lights: [",
+               r->background_ev, r->f_number, r->focal_mm, r->sensor_width_mm);
     for (int i = 0; i < (int)item->n_lights; i++)
-        fprintf(file,
-                "%s{\"power\": %.6g, \"white\": %.6g, \"theta_deg\": %.6g, "
-                "\"phi_deg\": %.6g, \"rgb\": [%.6g, %.6g, %.6g]}",
-                i ? ", " : "", r->power[i], r->white[i], r->theta_deg[i],
-                r->phi_deg[i], r->rgb[i][0], r->rgb[i][1], r->rgb[i][2]);
-    fputs("]}", file);
+        json_write(json,
+                   "{power: %.6g, white: %.6g, theta_deg: %.6g, "
+                   "phi_deg: %.6g, rgb: [%.6g, %.6g, %.6g]}",
+                   r->power[i], r->white[i], r->theta_deg[i], r->phi_deg[i],
+                   r->rgb[i][0], r->rgb[i][1], r->rgb[i][2]);
+    json_write(json, "]}");
 }
 
 char *synth_item_print(const struct synth_item *item,
@@ -289,23 +285,23 @@ char *synth_item_print(const struct synth_item *item,
 {
     char *text = NULL;
     size_t bytes = 0;
-    FILE *const file = open_memstream(&text, &bytes);
+    struct json_writer json = {.to = open_memstream(&text, &bytes)};
 
-    if (!file)
+    if (!json.to)
         return NULL;
-    fputc('{', file);
-    print_fields(file, synth_field, SYNTH_FIELDS, item);
-    fputs(", \"lights\": [", file);
+    json_write(&json, "{");
+    write_fields(&json, synth_field, SYNTH_FIELDS, item);
+    json_write(&json, "lights: [");
     for (int i = 0; i < (int)item->n_lights; i++) {
-        fputs(i ? ", {" : "{", file);
-        print_fields(file, synth_light_field, SYNTH_LIGHT_FIELDS,
+        json_write(&json, "{");
+        write_fields(&json, synth_light_field, SYNTH_LIGHT_FIELDS,
                      &item->light[i]);
-        fputc('}', file);
+        json_write(&json, "}");
     }
-    fputs("], ", file);
-    print_result(file, item, result);
-    fputs("}\n", file);
-    if (fclose(file) == 0)
+    json_write(&json, "]");
+    write_result(&json, item, result);
+    json_write(&json, "}\n");
+    if (fclose(json.to) == 0)
         return text;
     free(text);
     return NULL;

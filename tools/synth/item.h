@@ -17,6 +17,7 @@
 #include <stdio.h>
 
 #include "glint/status.h"
+#include "options/json_writer.h"
 
 enum { SYNTH_MAX_LIGHTS = 4, SYNTH_NAME_BYTES = 256 };
 
@@ -86,8 +87,9 @@ bool synth_ranges_take(struct synth_ranges *ranges, const char *text,
 /* Prints every name, its range and law, a line each. */
 void synth_ranges_print(FILE *file, const struct synth_ranges *ranges);
 
-/* Prints them as members of JSON, without braces. */
-void synth_ranges_json(FILE *file, const struct synth_ranges *ranges);
+/* Writes them as members of an object. */
+void synth_ranges_json(struct json_writer *json,
+                       const struct synth_ranges *ranges);
 
 /* Draws the numbers of item NUMBER of SEED; what is no number, the size and the
  * quality stay. */

@@ -7,6 +7,7 @@
 #include "lab/plots/plot.h"
 #include "reference/scenes/scene_sweep.h"
 #include "lab/sweep.h"
+#include "options/json_writer.h"
 
 #define GREY  "#bbb"
 #define FRONT "#222"
@@ -55,13 +56,11 @@ static const char *cost_words(const struct scene_sweep *s)
 
 /* ------------------------------------------------------------------- table */
 
-/* Prints X, or NONE if it is not finite: nothing in CSV, null in JSON. */
-static void number(FILE *file, double x, const char *none)
+/* Prints X, or nothing if it is not finite. */
+static void number(FILE *file, double x)
 {
     if (isfinite(x))
         fprintf(file, "%.7g", x);
-    else
-        fputs(none, file);
 }
 
 void scene_sweep_csv(const struct scene_sweep *s, FILE *file)
@@ -81,7 +80,7 @@ void scene_sweep_csv(const struct scene_sweep *s, FILE *file)
         fprintf(file, "%s,%d,%d,%s,%s,", s->scene.model.header->name, s->width,
                 s->height, kinds[p->kind],
                 p->dial >= 0 ? dial_name[p->dial] : "");
-        number(file, p->quality >= 0 ? p->quality : (double)NAN, "");
+        number(file, p->quality >= 0 ? p->quality : (double)NAN);
         fprintf(file, ",%d,%d,%s,%d,%d", p->value[SCENE_EDGES],
                 p->value[SCENE_SHADOWED], shading[p->value[SCENE_SHADING]],
                 p->value[SCENE_LOOKUPS], p->value[SCENE_LEVELS]);
@@ -89,61 +88,48 @@ void scene_sweep_csv(const struct scene_sweep *s, FILE *file)
         for (int d = SCENE_PLANES; d < SCENE_DIALS; d++)
             fprintf(file, ",%d", p->value[d]);
         for (int k = 0; k < 4; k++)
-            fputc(',', file), number(file, measured[k], "");
+            fputc(',', file), number(file, measured[k]);
         fprintf(file, ",%zu,%zu", p->trial->frame.bytes, p->scene->bytes);
         for (int k = 0; k < 4; k++)
-            fputc(',', file), number(file, error[k], "");
+            fputc(',', file), number(file, error[k]);
         fprintf(file, ",%d,%.4g,%d\n", p->trial->covered_px,
                 p->trial->minsn_told, p->front);
     }
 }
 
-static void member(FILE *file, const char *name, double x)
+static void json_point(struct json_writer *json, const struct scene_sweep *s,
+                       const struct scene_point *p)
 {
-    fprintf(file, ", \"%s\": ", name);
-    number(file, x, "null");
-}
-
-static void json_point(const struct scene_sweep *s, const struct scene_point *p,
-                       FILE *file)
-{
-    fputs("{\"scene\": ", file);
-    tool_json_string(file, s->scene.model.header->name);
-    fprintf(file, ", \"width\": %d, \"height\": %d, \"kind\": \"%s\"", s->width,
-            s->height, kinds[p->kind]);
-    member(file, "quality", p->quality >= 0 ? p->quality : (double)NAN);
-    fprintf(file,
-            ", \"edge_samples\": %d, \"shadow_points\": %d, \"shading\": "
-            "\"%s\", \"lookups\": %d, \"levels\": %d, \"stone_model\": "
-            "\"%s\"",
-            p->value[SCENE_EDGES], p->value[SCENE_SHADOWED],
-            shading[p->value[SCENE_SHADING]], p->value[SCENE_LOOKUPS],
-            p->value[SCENE_LEVELS], stone_sweep_model(p));
+    json_write(json,
+               "\n{scene: %s, width: %d, height: %d, kind: %s, quality: %.7g, "
+               "edge_samples: %d, shadow_points: %d, shading: %s, lookups: %d, "
+               "levels: %d, stone_model: %s",
+               s->scene.model.header->name, s->width, s->height, kinds[p->kind],
+               p->quality >= 0 ? p->quality : (double)NAN,
+               p->value[SCENE_EDGES], p->value[SCENE_SHADOWED],
+               shading[p->value[SCENE_SHADING]], p->value[SCENE_LOOKUPS],
+               p->value[SCENE_LEVELS], stone_sweep_model(p));
     for (int d = SCENE_PLANES; d < SCENE_DIALS; d++)
-        member(file, dial_name[d], p->value[d]);
-    member(file, "ms", p->ms);
-    member(file, "floor_ms", p->ms / p->ratio);
-    member(file, "ratio", p->ratio);
-    member(file, "instructions", p->instructions);
-    member(file, "arena_bytes", (double)p->trial->frame.bytes);
-    member(file, "model_bytes", (double)p->scene->bytes);
-    member(file, "psnr_db", p->psnr_db);
-    member(file, "ssim", p->ssim);
-    member(file, "p99", p->p99);
-    member(file, "flux_error", p->flux_error);
-    member(file, "covered_px", p->trial->covered_px);
-    member(file, "minsn_told", p->trial->minsn_told);
-    fprintf(file, ", \"front\": %s}", p->front ? "true" : "false");
+        json_write(json, "%s: %d", dial_name[d], p->value[d]);
+    json_write(json,
+               "ms: %.7g, floor_ms: %.7g, ratio: %.7g, instructions: %.7g, "
+               "arena_bytes: %.7g, model_bytes: %.7g, psnr_db: %.7g, "
+               "ssim: %.7g, p99: %.7g, flux_error: %.7g, covered_px: %d, "
+               "minsn_told: %.7g, front: %c}",
+               p->ms, p->ms / p->ratio, p->ratio, p->instructions,
+               (double)p->trial->frame.bytes, (double)p->scene->bytes,
+               p->psnr_db, p->ssim, p->p99, p->flux_error, p->trial->covered_px,
+               p->trial->minsn_told, p->front);
 }
 
 void scene_sweep_json(const struct scene_sweep *s, FILE *file)
 {
-    fprintf(file, "{\"rounds\": %d, \"points\": [\n", s->rounds);
-    for (int i = 0; i < s->n_points; i++) {
-        json_point(s, &s->point[i], file);
-        fputs(i + 1 < s->n_points ? ",\n" : "\n", file);
-    }
-    fputs("]}\n", file);
+    struct json_writer json = {.to = file};
+
+    json_write(&json, "{rounds: %d, points: [", s->rounds);
+    for (int i = 0; i < s->n_points; i++)
+        json_point(&json, s, &s->point[i]);
+    json_write(&json, "\n]}\n");
 }
 
 /* Sets ORDER[n_points] to the points, the cheapest first. */

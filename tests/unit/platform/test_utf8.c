@@ -14,7 +14,7 @@
 
 #include "posix/error.h"
 #include "posix/utf8.h"
-#include "options/tool.h"
+#include "options/json_writer.h"
 
 static const struct {
     const char *text, *clean, *json;
@@ -69,7 +69,7 @@ static void test_json(void **state)
         char got[128];
 
         assert_non_null(file);
-        tool_json_string(file, cases[k].text);
+        json_write(&(struct json_writer){.to = file}, "%s", cases[k].text);
         rewind(file);
         got[fread(got, 1, sizeof got - 1, file)] = '\0';
         assert_string_equal(got, cases[k].json);

@@ -13,6 +13,7 @@
 #include "linux/sets.h"
 #include "options/engine_options.h"
 #include "options/command_line.h"
+#include "options/json_writer.h"
 #include "posix/workers.h"
 #include "scenes/baked_scene.h"
 
@@ -232,41 +233,39 @@ static void print(const struct scene_bench *b)
         print_trial(b, i);
 }
 
-static void json_trial(const struct scene_bench *b, int i)
+static void json_trial(struct json_writer *json, const struct scene_bench *b,
+                       int i)
 {
     const struct scene_trial *const t = b->trial[i];
     const struct glint_scene_config *const cfg = &t->frame.cfg;
     const double ms = stage_ms(b, i, SCENE_WHOLE);
 
-    printf("{\"scene\": ");
-    tool_json_string(stdout, b->scene.model.header->name);
-    printf(", \"width\": %d, \"height\": %d, \"format\": \"%s\", "
-           "\"edge_samples\": %d, \"shadow_points\": %d, \"shading\": \"%s\", "
-           "\"threads\": %d, \"kernels\": \"%s\", \"ms\": %.4f, \"ratio\": "
-           "%.3f, ",
-           cfg->width, cfg->height, b->format_word, cfg->edge_samples,
-           cfg->shadow_points, shading_of(t), t->tool.n_threads,
-           t->tool.kernels, ms,
-           ms / canvas_median(b->on[i]->floor_ms, b->rounds));
+    json_write(json,
+               "\n{scene: %s, width: %d, height: %d, format: %s, "
+               "edge_samples: %d, shadow_points: %d, shading: %s, threads: %d, "
+               "kernels: %s, ms: %.4f, ratio: %.3f",
+               b->scene.model.header->name, cfg->width, cfg->height,
+               b->format_word, cfg->edge_samples, cfg->shadow_points,
+               shading_of(t), t->tool.n_threads, t->tool.kernels, ms,
+               ms / canvas_median(b->on[i]->floor_ms, b->rounds));
     for (int s = 0; s < SCENE_STAGES; s++)
-        printf("\"%s_ms\": %.4f, ", stage_names[s], stage_ms(b, i, s));
-    if (isnan(t->instructions))
-        printf("\"instructions\": null, ");
-    else
-        printf("\"instructions\": %.0f, ", t->instructions);
-    printf("\"predicted_minsn\": %.4f, \"covered_px\": %d, \"triangles\": %d, "
-           "\"arena_bytes\": %zu, \"model_bytes\": %zu}%s\n",
-           t->minsn_told, t->covered_px, t->frame.stats.triangles,
-           t->frame.bytes, b->scene.bytes, i + 1 < b->n_trials ? "," : "");
+        json_write(json, "%s_ms: %.4f", stage_names[s], stage_ms(b, i, s));
+    json_write(json,
+               "instructions: %.0f, predicted_minsn: %.4f, covered_px: %d, "
+               "triangles: %d, arena_bytes: %zu, model_bytes: %zu}",
+               t->instructions, t->minsn_told, t->covered_px,
+               t->frame.stats.triangles, t->frame.bytes, b->scene.bytes);
 }
 
 static void print_json(const struct scene_bench *b)
 {
-    printf("{\"floor_ms\": %.5f, \"rounds\": %d, \"cases\": [\n",
-           canvas_median(b->on[0]->floor_ms, b->rounds), b->rounds);
+    struct json_writer json = {.to = stdout};
+
+    json_write(&json, "{floor_ms: %.5f, rounds: %d, cases: [",
+               canvas_median(b->on[0]->floor_ms, b->rounds), b->rounds);
     for (int i = 0; i < b->n_trials; i++)
-        json_trial(b, i);
-    printf("]}\n");
+        json_trial(&json, b, i);
+    json_write(&json, "\n]}\n");
 }
 
 /* ----------------------------------------------------------------- command */

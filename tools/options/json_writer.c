@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: MIT */
+#include "options/json_writer.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include "posix/utf8.h"
+
+static const char letters[] =
+    "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789.-";
+
+static void write_text(FILE *file, const char *text)
+{
+    fputc('"', file);
+    while (*text) {
+        const unsigned char c = (unsigned char)*text;
+        const size_t length = glint_utf8_length(text);
+
+        if (c == '"' || c == '\\')
+            fputc('\\', file);
+        if (length)
+            fwrite(text, 1, length, file);
+        else
+            fprintf(file, "\\u%04x", c < 0x80 ? c : 0xfffdu);
+        text += length ? length : 1;
+    }
+    fputc('"', file);
+}
+
+/* Writes the next of VALUES by the conversion of N characters at FORMAT. */
+static void write_value(FILE *file, const char *format, size_t n,
+                        va_list *values)
+{
+    const char kind = format[n - 1];
+    const char *text;
+    char form[16];
+    double real;
+
+    snprintf(form, sizeof form, "%.*s", (int)n, format);
+    if (kind == 's') {
+        text = va_arg(*values, const char *);
+        if (text)
+            write_text(file, text);
+        else
+            fputs("null", file);
+    } else if (kind == 'c') {
+        fputs(va_arg(*values, int) ? "true" : "false", file);
+    } else if (kind != 'd' && kind != 'u') {
+        real = va_arg(*values, double);
+        isfinite(real) ? fprintf(file, form, real) : fputs("null", file);
+    } else if (strstr(form, "ll")) {
+        fprintf(file, form, va_arg(*values, long long));
+    } else if (strchr(form, 'l')) {
+        fprintf(file, form, va_arg(*values, long));
+    } else if (strchr(form, 'z')) {
+        fprintf(file, form, va_arg(*values, size_t));
+    } else {
+        fprintf(file, form, va_arg(*values, int));
+    }
+}
+
+static void write_comma(struct json_writer *json, const char *comma)
+{
+    if (json->is_due)
+        fputs(comma, json->to);
+    json->is_due = false;
+}
+
+/* Writes the key, conversion or word AT; returns what follows it. */
+static const char *write_word(struct json_writer *json, const char *at,
+                              va_list *values)
+{
+    const bool is_value = *at == '%';
+    const size_t n =
+        is_value ? strcspn(at, "cdefgsu") + 1 : strspn(at, letters);
+    const size_t more = strspn(at + n, letters);
+
+    write_comma(json, ", ");
+    if (at[n + more] == ':') {
+        fprintf(json->to,
+                "\"%s%.*s\": ", is_value ? va_arg(*values, const char *) : "",
+                (int)(is_value ? more : n), is_value ? at + n : at);
+        return at + n + more + 1;
+    }
+    if (is_value)
+        write_value(json->to, at, n, values);
+    else
+        fwrite(at, 1, n, json->to);
+    json->is_due = true;
+    return at + n;
+}
+
+void json_write(struct json_writer *json, const char *format, ...)
+{
+    va_list values;
+    size_t n;
+
+    va_start(values, format);
+    while (*format) {
+        n = 1;
+        if (strchr("{[", *format)) {
+            write_comma(json, ", ");
+            fputc(*format, json->to);
+        } else if (strchr("]}", *format)) {
+            fputc(*format, json->to);
+            json->is_due = true;
+        } else if (*format == '\n') {
+            n += strspn(format + 1, " ");
+            if (!strchr("]}", format[n])) /* nor at the end of FORMAT */
+                write_comma(json, ",");
+            fwrite(format, 1, n, json->to);
+        } else if (*format == '%' || strchr(letters, *format)) {
+            n = (size_t)(write_word(json, format, &values) - format);
+        }
+        format += n;
+    }
+    va_end(values);
+}
