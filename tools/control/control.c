@@ -116,7 +116,6 @@ static struct reader peek(const struct reader *r)
 static enum glint_status fail_word(const struct reader *r, const char *before)
 {
     struct suggest suggest;
-    const char *best;
 
     suggest_begin(&suggest, r->word);
     for (int i = 0; i < control_n_forms; i++) {
@@ -126,11 +125,9 @@ static enum glint_status fail_word(const struct reader *r, const char *before)
         if (may && (!before || strcmp(before, f->word) == 0))
             suggest_try(&suggest, may, strlen(may));
     }
-    best = suggest_best(&suggest);
-    return control_fail(
-        r->error, r->where, r->column, "'%.24s' is no %s%s%s%s%s", r->word,
-        before ? "word of " : "command", before ? before : "",
-        best ? "; did you mean '" : "", best ? best : "", best ? "'?" : "");
+    return control_fail(r->error, r->where, r->column, "'%.24s' is no %s%s%s",
+                        r->word, before ? "word of " : "command",
+                        before ? before : "", suggest_words(&suggest));
 }
 
 /* Returns the first form that begins with WORD, from I on; NULL: none does. */

@@ -15,13 +15,13 @@
 
 #include <stdbool.h>
 
-#include "posix/error.h"
+#include "options/timed_text.h"
 
 enum {
     CONTROL_LINE = 256, /* bytes of a line with its end, at most */
     CONTROL_NAME = 32,  /* bytes of a name with its end */
     CONTROL_VALUES = 3,
-    CONTROL_MOST_FRAME = 1000000000
+    CONTROL_MOST_FRAME = TEXT_MAX_FRAME
 };
 
 enum control_verb {
@@ -74,7 +74,8 @@ extern const struct control_form control_forms[];
 extern const int control_n_forms;
 
 struct control_line {
-    int frame; /* -1: none is given */
+    int number; /* of the line in its file, from 1 */
+    int frame;  /* -1: none is given */
     enum control_verb verb;
     bool is_change; /* of a key: degrees are added to what there is, other
                        values are factors of it */

@@ -2,60 +2,34 @@
 #include "control/controls.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-enum { MOST_LINES = 1 << 20 };
+enum { MAX_BYTES = 1 << 28 };
 
-static void say_where(const struct controls *in, int number, char *where)
+static void print_where(const struct controls *in, int number, char *where)
 {
-    const char *const name = strcmp(in->name, "-") == 0 ? "control" : in->name;
+    const char *const name =
+        strcmp(in->lines.name, "-") == 0 ? "control" : in->lines.name;
 
-    if (number > 0)
-        snprintf(where, CONTROL_WHERE, "%.140s:%d", name, number);
-    else
-        snprintf(where, CONTROL_WHERE, "%.140s", name);
+    snprintf(where, CONTROL_WHERE, number > 0 ? "%.140s:%d" : "%.140s", name,
+             number);
 }
 
-/* Takes the line TEXT, which the pipe read last, into LINE. */
+/* Takes TEXT, which was read last, into LINE. */
 static enum glint_status take(const struct controls *in, const char *text,
                               struct control_line *line,
                               struct glint_error *error)
 {
     char where[CONTROL_WHERE];
+    enum glint_status status;
 
-    say_where(in, in->pipe.number, where);
-    return control_parse(text, where, line, error);
-}
-
-/* -------------------------------------------------------------------- files */
-
-static enum glint_status add(struct controls *in,
-                             const struct control_line *line)
-{
-    if (in->n == MOST_LINES)
-        return GLINT_E_MEMORY;
-    if (in->n == in->room) {
-        const size_t room = in->room ? 2 * (size_t)in->room : 64;
-        void *const row = realloc(in->row, room * sizeof *in->row);
-        void *const number =
-            row ? realloc(in->number, room * sizeof *in->number) : NULL;
-
-        if (row)
-            in->row = row;
-        if (number)
-            in->number = number;
-        if (!row || !number)
-            return GLINT_E_MEMORY;
-        in->room = (int)room;
-    }
-    in->row[in->n] = *line;
-    in->number[in->n++] = in->pipe.number;
-    return GLINT_OK;
+    print_where(in, in->lines.number, where);
+    status = control_parse(text, where, line, error);
+    line->number = in->lines.number;
+    return status;
 }
 
 /* Reads all of the file. */
@@ -63,30 +37,22 @@ static enum glint_status read_all(struct controls *in,
                                   struct glint_error *error)
 {
     enum glint_status status = GLINT_OK;
+    struct control_line line;
+    const char *text;
 
-    in->pipe.waits = true;
-    while (status == GLINT_OK && !in->pipe.has_ended) {
-        const char *text;
+    while (status == GLINT_OK && (text = text_lines_raw(&in->lines))) {
+        struct control_line *const more =
+            text_grow(in->row, in->n, sizeof *more);
 
-        line_pipe_turn(&in->pipe);
-        while (status == GLINT_OK && (text = line_pipe_next(&in->pipe))) {
-            struct control_line line;
-
-            status = take(in, text, &line, error);
-            if (status == GLINT_OK && line.verb != CONTROL_NONE)
-                status = add(in, &line);
-        }
+        if (!more)
+            return glint_error_report(error, GLINT_E_MEMORY, in->lines.name,
+                                      "%s", text_no_memory);
+        in->row = more;
+        status = take(in, text, &line, error);
+        if (status == GLINT_OK && line.verb != CONTROL_NONE)
+            more[in->n++] = line;
     }
-    return status == GLINT_E_MEMORY
-               ? glint_error_report(error, status, in->name, "no memory")
-               : status;
-}
-
-static void close_pipe(struct controls *in)
-{
-    if (in->pipe.fd > STDIN_FILENO)
-        close(in->pipe.fd);
-    in->pipe.fd = -1;
+    return status;
 }
 
 enum glint_status controls_open(struct controls *input, const char *path,
@@ -95,30 +61,21 @@ enum glint_status controls_open(struct controls *input, const char *path,
     struct controls *const in = input;
     const bool is_input = strcmp(path, "-") == 0;
     enum glint_status status;
-    struct stat st;
-    int fd = STDIN_FILENO;
-    bool comes;
 
-    *in = (struct controls){.is_open = true, .name = path, .read_at = -1};
-    line_pipe_init(&in->pipe, -1);
-    comes =
-        is_live && (is_input || (stat(path, &st) == 0 && S_ISFIFO(st.st_mode)));
-    if (is_input && isatty(fd) && comes) {
-        in->is_keys = keyboard_open(&in->keys, fd) == GLINT_OK;
+    *in = (struct controls){
+        .is_open = true, .lines = {.name = path}, .read_at = -1};
+    if (is_input && is_live && isatty(STDIN_FILENO)) {
+        in->is_keys = keyboard_open(&in->keys, STDIN_FILENO) == GLINT_OK;
         return in->is_keys ? GLINT_OK
                            : glint_error_report(error, GLINT_E_IO, path, "%s",
                                                 strerror(errno));
     }
-    if (!is_input)
-        fd = open(path, (comes ? O_NONBLOCK : 0) | O_RDONLY | O_CLOEXEC);
-    if (fd < 0)
-        return glint_error_report(error, GLINT_E_IO, path, "%s",
-                                  strerror(errno));
-    line_pipe_init(&in->pipe, fd);
-    if (comes)
-        return GLINT_OK;
-    status = read_all(in, error);
-    close_pipe(in);
+    if (is_live && (is_input || text_is_pipe(path)))
+        return text_lines_pipe(&in->lines, path, error);
+    status = text_lines_open(&in->lines, path, MAX_BYTES, error);
+    if (status == GLINT_OK)
+        status = read_all(in, error);
+    text_lines_close(&in->lines);
     if (status != GLINT_OK)
         controls_close(in);
     return status;
@@ -126,28 +83,24 @@ enum glint_status controls_open(struct controls *input, const char *path,
 
 void controls_close(struct controls *input)
 {
-    if (input->is_open) {
-        close_pipe(input);
-        if (input->is_keys)
-            keyboard_close(&input->keys);
-    }
+    text_lines_close(&input->lines);
+    if (input->is_open && input->is_keys)
+        keyboard_close(&input->keys);
     free(input->row);
-    free(input->number);
     *input = (struct controls){.is_open = false};
 }
 
 /* -------------------------------------------------------------------- lines */
 
-/* Reads the next line of the pipe that says something into in->ahead; returns
- * false if none has come. */
+/* Reads the next command of the pipe into in->ahead; returns false if none has
+ * come. */
 static bool read_ahead(struct controls *in)
 {
     const char *text;
 
-    while (in->pipe.fd >= 0 && (text = line_pipe_next(&in->pipe))) {
+    while (in->lines.is_pipe && (text = text_lines_raw(&in->lines))) {
         struct glint_error error;
 
-        in->ahead_number = in->pipe.number;
         if (take(in, text, &in->ahead, &error) != GLINT_OK)
             controls_refuse(in, &error);
         else if (in->ahead.verb != CONTROL_NONE)
@@ -167,7 +120,7 @@ const struct control_line *controls_next(struct controls *input, int picture)
     if (in->next < in->n)
         return in->row[in->next].frame > picture ? NULL : &in->row[in->next++];
     if (in->read_at != picture)
-        line_pipe_turn(&in->pipe);
+        text_lines_turn(&in->lines);
     in->read_at = picture;
     in->has_ahead = in->has_ahead || read_ahead(in);
     if (!in->has_ahead || in->ahead.frame > picture)
@@ -185,11 +138,11 @@ void controls_where(const struct controls *input, int i, char *where)
 {
     const int row = i >= 0 ? i : input->next - 1;
 
-    say_where(input,
-              input->is_keys ? 0
-              : row >= 0     ? input->number[row]
-                             : input->ahead_number,
-              where);
+    print_where(input,
+                input->is_keys ? 0
+                : row >= 0     ? input->row[row].number
+                               : input->ahead.number,
+                where);
 }
 
 void controls_refuse(struct controls *input, const struct glint_error *error)

@@ -16,7 +16,6 @@
 
 #include "control/control.h"
 #include "control/keyboard.h"
-#include "control/line_pipe.h"
 
 enum { CONTROL_WHERE = 200 }; /* bytes of a place with its end */
 
@@ -26,14 +25,11 @@ struct controls {
 
     /* Private. */
     bool is_open, is_keys, has_ahead;
-    const char *name;
+    struct text_lines lines;  /* closed at the end of a file */
     struct control_line *row; /* of a file */
-    int *number;              /* of the line of each */
-    int n, room, next;
-    struct line_pipe pipe; /* fd is -1: there is none */
-    int read_at;           /* picture at which it was read last */
+    int n, next;
+    int read_at; /* picture at which a pipe was read last */
     struct control_line ahead;
-    int ahead_number;
     struct keyboard keys;
 };
 

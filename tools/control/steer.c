@@ -97,7 +97,6 @@ static enum glint_status find(const struct steer *s,
     const char *const name = line->name[k];
     const int n = is_material ? n_materials(s) : n_objects(s);
     struct suggest suggest;
-    const char *best;
 
     *index = is_material ? glint_scene_find_material(&s->model, name)
                          : glint_scene_find(&s->model, name);
@@ -109,11 +108,9 @@ static enum glint_status find(const struct steer *s,
 
         suggest_try(&suggest, known, strlen(known));
     }
-    best = suggest_best(&suggest);
     return control_fail(
-        error, where, line->name_column[k], "the scene has no %s '%s'%s%s%s",
-        is_material ? "material" : "thing", name,
-        best ? "; did you mean '" : "", best ? best : "", best ? "'?" : "");
+        error, where, line->name_column[k], "the scene has no %s '%s'%s",
+        is_material ? "material" : "thing", name, suggest_words(&suggest));
 }
 
 /* Returns whether the first name of LINE is that of a material. */

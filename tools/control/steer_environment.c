@@ -44,7 +44,6 @@ bool steer_check_environment(const struct steer *steer,
                              enum glint_status *status)
 {
     struct suggest suggest;
-    const char *best;
 
     *status = GLINT_OK;
     if (!is_about(line))
@@ -60,11 +59,9 @@ bool steer_check_environment(const struct steer *steer,
 
             suggest_try(&suggest, name, strlen(name));
         }
-        best = suggest_best(&suggest);
         *status = control_fail(error, where, line->name_column[0],
-                               "the scene has no environment '%s'%s%s%s",
-                               line->name[0], best ? "; did you mean '" : "",
-                               best ? best : "", best ? "'?" : "");
+                               "the scene has no environment '%s'%s",
+                               line->name[0], suggest_words(&suggest));
     }
     return true;
 }

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "options/text_lines.h"
+#include "options/timed_text.h"
 #include "options/tool.h"
 #include "posix/error.h"
 

@@ -1,22 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include "desk/keys.h"
 
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "options/text_lines.h"
-#include "options/tool.h"
-#include "posix/error.h"
+#include "options/timed_text.h"
 
-enum { MOST_BYTES = 1 << 26, MOST_FRAME = 1000000000 };
+enum { MAX_BYTES = 1 << 26 };
 
-static const struct {
-    const char *name;
-    double low, high;
-    const char *takes;
-} columns[KEYS_COLUMNS] = {
-    [KEYS_FRAME] = {"frame", 0, MOST_FRAME,
+static const struct text_column columns[KEYS_COLUMNS] = {
+    [KEYS_FRAME] = {"frame", 0, TEXT_MAX_FRAME,
                     "frame must be a whole number from 0"},
     [KEYS_EXPOSURE] = {"exposure", -100, 100,
                        "exposure must be -100 to 100 stops"},
@@ -37,34 +29,18 @@ struct reading {
     struct keys *keys;
     int column[KEYS_COLUMNS], n_columns; /* of the fields of a row; 0: the
                                             heading was not read yet */
-    char cause[200];
 };
-
-static const char no_memory[] = "no memory";
 
 static const char *add(struct keys *keys, int column, struct key_value key)
 {
-    const int n = keys->n[column];
+    struct key_value *const more =
+        text_grow(keys->key[column], keys->n[column], sizeof *more);
 
-    if ((n & (n - 1)) == 0) { /* at powers of two */
-        struct key_value *const more =
-            realloc(keys->key[column], 2 * ((size_t)n + 1) * sizeof *more);
-
-        if (!more)
-            return no_memory;
-        keys->key[column] = more;
-    }
-    keys->key[column][n] = key;
-    keys->n[column]++;
+    if (!more)
+        return text_no_memory;
+    keys->key[column] = more;
+    more[keys->n[column]++] = key;
     return NULL;
-}
-
-static int column_of(const char *name)
-{
-    for (int i = 0; i < KEYS_COLUMNS; i++)
-        if (strcmp(name, columns[i].name) == 0)
-            return i;
-    return -1;
 }
 
 static const char *check_heading(unsigned seen)
@@ -79,82 +55,85 @@ static const char *check_heading(unsigned seen)
     return NULL;
 }
 
-/* Takes LINE as the heading. Returns NULL, or what is wrong with it. */
-static const char *take_heading(struct reading *r, char *line)
+static const char *take_heading(struct reading *r, struct text_lines *lines,
+                                char *line)
 {
-    char *rest = line, *name;
+    char *name[KEYS_COLUMNS];
+    const int n = text_fields(line, name, KEYS_COLUMNS);
     unsigned seen = 0;
 
-    while ((name = text_field(&rest))) {
-        const int column = column_of(name);
+    for (int i = 0; i < n && i < KEYS_COLUMNS; i++) {
+        const int column = text_column(columns, KEYS_COLUMNS, name[i]);
 
-        if (column < 0) {
-            snprintf(r->cause, sizeof r->cause,
-                     "'%.32s' is no column: the first line names frame, and of "
-                     "exposure, strength, gain, starburst, f-number, turn, "
-                     "round, x, y, ev",
-                     name);
-            return r->cause;
-        }
+        if (column < 0)
+            return text_lines_cause(
+                lines,
+                "'%.32s' is no column: the first line names frame, and of "
+                "exposure, strength, gain, starburst, f-number, turn, "
+                "round, x, y, ev",
+                name[i]);
         if (seen >> column & 1)
             return "a column is there twice";
         seen |= 1u << column;
         r->column[r->n_columns++] = column;
     }
-    return check_heading(seen);
+    return n > KEYS_COLUMNS ? "a column is there twice" : check_heading(seen);
 }
 
-/* Takes LINE, the one of that NUMBER, as a row of keys. */
-static const char *take_row(struct reading *r, char *line, int number)
+static const char *take_row(struct reading *r, struct text_lines *lines,
+                            char *line)
 {
+    struct keys *const keys = r->keys;
+    struct key_value key = {-1, lines->number, 0};
     double value[KEYS_COLUMNS] = {-1};
     bool given[KEYS_COLUMNS] = {false};
-    char *rest = line, *text;
+    char *field[KEYS_COLUMNS];
     const char *cause = NULL;
-    int n = 0, frame;
+    const int n = text_fields(line, field, r->n_columns);
 
-    for (; n < r->n_columns && (text = text_field(&rest)); n++) {
-        const int c = r->column[n];
+    for (int i = 0; i < n && i < r->n_columns && !cause; i++) {
+        const int c = r->column[i];
 
-        given[c] = *text != '\0';
-        if (given[c] && !tool_number(text, &value[c]))
-            return "expected a number, or nothing, in each column";
-        if (given[c] &&
-            !(value[c] >= columns[c].low && value[c] <= columns[c].high))
-            return columns[c].takes;
-    }
-    frame = (int)value[KEYS_FRAME];
-    if (n < r->n_columns || rest)
-        return "expected as many fields as the heading has names";
-    if (frame < 0 || frame != value[KEYS_FRAME])
-        return columns[KEYS_FRAME].takes;
-    n = r->keys->n[KEYS_FRAME];
-    if (n > 0 && frame <= r->keys->key[KEYS_FRAME][n - 1].frame)
-        return "frames must rise from line to line";
-    for (int c = 0; c < KEYS_COLUMNS && !cause; c++)
+        given[c] = *field[i] != '\0';
         if (given[c])
-            cause =
-                add(r->keys, c, (struct key_value){frame, number, value[c]});
+            cause = text_value(&columns[c], field[i],
+                               "expected a number, or nothing, in each column",
+                               &value[c]);
+    }
+    if (cause)
+        return cause;
+    if (n != r->n_columns)
+        return "expected as many fields as the heading has names";
+    key.frame = (int)value[KEYS_FRAME];
+    if (key.frame < 0 || key.frame != value[KEYS_FRAME])
+        return columns[KEYS_FRAME].range;
+    if (keys->n[KEYS_FRAME] > 0 &&
+        key.frame <= keys->key[KEYS_FRAME][keys->n[KEYS_FRAME] - 1].frame)
+        return "frames must rise from line to line";
+    for (int c = 0; c < KEYS_COLUMNS && !cause; c++) {
+        key.value = value[c];
+        cause = given[c] ? add(keys, c, key) : NULL;
+    }
     return cause;
 }
 
+static const char *take_line(void *ctx, struct text_lines *lines, char *line)
+{
+    struct reading *const r = ctx;
+
+    return (r->n_columns ? take_row : take_heading)(r, lines, line);
+}
+
+/* Reads LINES, which were opened with STATUS. */
 static enum glint_status read_lines(struct keys *keys, struct text_lines *lines,
+                                    enum glint_status status,
                                     struct glint_error *error)
 {
     struct reading r = {.keys = keys};
-    enum glint_status status = GLINT_OK;
-    char *line;
 
-    while (status == GLINT_OK && (line = text_lines_next(lines))) {
-        const char *const cause = r.n_columns
-                                      ? take_row(&r, line, lines->number)
-                                      : take_heading(&r, line);
-
-        if (cause)
-            status = text_lines_fail(lines, error, cause);
-        if (cause == no_memory)
-            status = GLINT_E_MEMORY;
-    }
+    *keys = (struct keys){.n = {0}};
+    if (status == GLINT_OK)
+        status = text_lines_each(lines, take_line, &r, error);
     if (status == GLINT_OK && keys->n[KEYS_FRAME] == 0)
         status = glint_error_report(error, GLINT_E_FORMAT, lines->name,
                                     "has no key frames");
@@ -168,27 +147,20 @@ enum glint_status keys_parse(struct keys *keys, const char *name,
                              struct glint_error *error)
 {
     struct text_lines lines;
-    enum glint_status status =
+    const enum glint_status status =
         text_lines_copy(&lines, name, text, bytes, error);
 
-    *keys = (struct keys){.n = {0}};
-    if (status == GLINT_OK)
-        status = read_lines(keys, &lines, error);
-    text_lines_close(&lines);
-    return status;
+    return read_lines(keys, &lines, status, error);
 }
 
 enum glint_status keys_read(struct keys *keys, const char *path,
                             struct glint_error *error)
 {
     struct text_lines lines;
-    enum glint_status status = text_lines_open(&lines, path, MOST_BYTES, error);
+    const enum glint_status status =
+        text_lines_open(&lines, path, MAX_BYTES, error);
 
-    *keys = (struct keys){.n = {0}};
-    if (status == GLINT_OK)
-        status = read_lines(keys, &lines, error);
-    text_lines_close(&lines);
-    return status;
+    return read_lines(keys, &lines, status, error);
 }
 
 bool keys_has(const struct keys *keys, enum key_column column)

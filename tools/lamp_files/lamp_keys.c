@@ -3,42 +3,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
-
-#include "options/text_lines.h"
-#include "options/tool.h"
-
-/* ------------------------------------------------------------------ columns */
-
-const char *lamp_columns_read(struct lamp_columns *c, const char *heading)
-{
-    static const char *const names[] = {
-        "frame", "x",  "y",     "power", "r",     "g",    "b",
-        "size",  "id", "shape", "turn",  "level", "seen", NULL};
-    char copy[256], *rest = copy, *name;
-    unsigned seen = 0;
-
-    c->n = 0;
-    if ((size_t)snprintf(copy, sizeof copy, "%s", heading) >= sizeof copy)
-        return NULL; /* too long for a heading, so a remark */
-    while ((name = text_field(&rest)) && c->n < LAMP_COLUMNS) {
-        const int field = tool_word(name, names);
-
-        c->field[c->n++] = field;
-        seen |= field >= 0 ? 1u << field : 0;
-    }
-    if (!(seen >> LAMP_ID & 1)) {
-        c->n = 0;
-        return NULL;
-    }
-    for (int i = 0; i < c->n; i++)
-        if (c->field[i] < 0)
-            return "a column is none of frame x y power r g b size id shape "
-                   "turn level seen";
-    return (seen & 0xf) == 0xf && !name
-               ? NULL
-               : "columns frame, x, y and power are needed, each once";
-}
 
 uint32_t lamp_id_of(const char *text)
 {
@@ -53,26 +17,6 @@ uint32_t lamp_id_of(const char *text)
     for (; *text; text++)
         id = (id ^ (unsigned char)*text) * 16777619u;
     return id | LAMP_ID_TEXT;
-}
-
-const char *lamp_columns_row(const struct lamp_columns *c, char *row, double *v)
-{
-    char *rest = row, *text;
-    int n = 0;
-
-    for (; n < c->n && (text = text_field(&rest)); n++) {
-        const int field = c->field[n];
-
-        if (field == LAMP_ID)
-            v[field] = *text ? lamp_id_of(text) : 0;
-        else if (field == 0 && (strcmp(text, "*") == 0 || !*text))
-            v[field] = -1;
-        else if (!tool_number(text, &v[field]))
-            return "expected numbers, as many as the heading has names";
-    }
-    return n == c->n && !rest
-               ? NULL
-               : "expected as many values as the heading has names";
 }
 
 /* -------------------------------------------------------------------- links */

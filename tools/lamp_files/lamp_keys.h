@@ -21,33 +21,6 @@
 
 #include "lamp_files/lamp_list.h"
 
-/* Numbers of the fields after the 8 of a plain list: "id", and "shape", "turn",
- * "level" and "seen", which need a heading. */
-enum {
-    LAMP_ID = 8,
-    LAMP_SHAPE,
-    LAMP_TURN,
-    LAMP_LEVEL,
-    LAMP_SEEN,
-    LAMP_COLUMNS
-};
-
-/* The number of the field in each of N columns; N is 0 without a heading that
- * has an id. */
-struct lamp_columns {
-    int n, field[LAMP_COLUMNS];
-};
-
-/* Sets COLUMNS by HEADING if that has an id. Returns NULL, or what is wrong
- * with it. */
-const char *lamp_columns_read(struct lamp_columns *columns,
-                              const char *heading);
-
-/* Reads ROW, which it changes, into the fields V, which hold defaults before.
- * Returns NULL, or what is wrong with ROW; it does not check ranges. */
-const char *lamp_columns_row(const struct lamp_columns *columns, char *row,
-                             double *v);
-
 /* Returns a number for the id TEXT, not 0: a number of 32 bits stays as it is,
  * so that a list that was saved has the ids of its source; any other text
  * becomes a hash from LAMP_ID_TEXT on. */

@@ -1,41 +1,77 @@
 /* SPDX-License-Identifier: MIT */
 #include "lamp_files/lamp_list.h"
 
-#include <ctype.h>
+#include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "engine/frame/area.h"
 #include "lamp_files/lamp_keys.h"
-#include "options/text_lines.h"
-#include "options/tool.h"
+#include "options/timed_text.h"
 
-enum { FIELDS = 8 };
+enum {
+    FRAME,
+    X,
+    Y,
+    POWER,
+    RED,
+    GREEN,
+    BLUE,
+    SIZE,
+    ID,
+    KEYS, /* of JSON; a plain list ends before ID */
+    SHAPE = KEYS,
+    TURN,
+    LEVEL,
+    SEEN,
+    COLUMNS
+};
 
-static const char *const names[FIELDS + 2] = {
-    "frame", "x", "y", "power", "r", "g", "b", "size", "id", NULL};
+#define FAR      "x and y must be within a million pixels"
+#define NEGATIVE "r, g and b must not be negative"
+#define POWERS   "power, also times r, g or b, must be 0 to 1e30"
+
+static const struct text_column columns[COLUMNS] = {
+    {"frame", -1, TEXT_MAX_FRAME - 1,
+     "frame must be a whole number from 0, or *"},
+    {"x", -1e6, 1e6, FAR},
+    {"y", -1e6, 1e6, FAR},
+    {"power", 0, LAMP_MAX_POWER, POWERS},
+    {"r", 0, DBL_MAX, NEGATIVE},
+    {"g", 0, DBL_MAX, NEGATIVE},
+    {"b", 0, DBL_MAX, NEGATIVE},
+    {"size", 0, 1e6, "size must be 0 to a million pixels"},
+    {"id", 0, UINT32_MAX, "id must be a text, or 0 to 4294967295"},
+    {"shape", 0, 1, "shape must be 0 to 1"},
+    {"turn", -DBL_MAX, DBL_MAX, ""},
+    {"level", DBL_MIN, 1, "level must be above 0 and up to 1"},
+    {"seen", 0, 1e6, "seen must be 0 to a million pixels"},
+};
+
+static const char plain[] = "expected 4, 7 or 8 numbers separated by commas";
+
+/* A list being read. */
+struct reading {
+    struct lamp_list *list;
+    int n, column[COLUMNS]; /* of a row; N is 0 without a heading that has an
+                               id: a plain list */
+};
 
 static struct lamp_row row_of(const double *v)
 {
-    return (struct lamp_row){.frame = (int)v[0],
-                             .x = v[1],
-                             .y = v[2],
-                             .power = v[3],
-                             .rgb = {v[4], v[5], v[6]},
-                             .size = v[7],
-                             .shape = v[LAMP_SHAPE],
-                             .turn = v[LAMP_TURN],
-                             .level = v[LAMP_LEVEL],
-                             .seen = v[LAMP_SEEN],
-                             .id = (uint32_t)v[LAMP_ID],
+    return (struct lamp_row){.frame = (int)v[FRAME],
+                             .x = v[X],
+                             .y = v[Y],
+                             .power = v[POWER],
+                             .rgb = {v[RED], v[GREEN], v[BLUE]},
+                             .size = v[SIZE],
+                             .shape = v[SHAPE],
+                             .turn = v[TURN],
+                             .level = v[LEVEL],
+                             .seen = v[SEEN],
+                             .id = (uint32_t)v[ID],
                              .next = -1};
-}
-
-static bool frame_ok(double frame)
-{
-    return frame == -1 || (frame >= 0 && frame < 1e9 && frame == floor(frame));
 }
 
 bool lamp_power_ok(double power, const double rgb[3])
@@ -46,179 +82,128 @@ bool lamp_power_ok(double power, const double rgb[3])
            power * most <= LAMP_MAX_POWER;
 }
 
-/* Returns NULL, or what is wrong with the values V of a row. */
-static const char *check_row(const double *v)
+/* Reads the fields that are there into V, which holds defaults. OTHER is the
+ * cause if one is not a number. */
+static const char *take_fields(char *const field[COLUMNS], bool is_object,
+                               const char *other, double *v)
 {
-    if (!frame_ok(v[0]))
-        return "frame must be a whole number from 0, or *";
-    if (fabs(v[1]) > 1e6 || fabs(v[2]) > 1e6)
-        return "x and y must be within a million pixels";
-    for (int c = 4; c < 7; c++)
-        if (v[c] < 0)
-            return "r, g and b must not be negative";
-    if (!lamp_power_ok(v[3], v + 4))
-        return "power, also times r, g or b, must be 0 to 1e30";
-    if (!(v[LAMP_LEVEL] > 0 && v[LAMP_LEVEL] <= 1))
-        return "level must be above 0 and up to 1";
-    if (!(v[LAMP_SEEN] >= 0 && v[LAMP_SEEN] <= 1e6))
-        return "seen must be 0 to a million pixels";
-    if (!(v[LAMP_SHAPE] >= 0 && v[LAMP_SHAPE] <= 1))
-        return "shape must be 0 to 1";
-    return v[7] >= 0 && v[7] <= 1e6 ? NULL
-                                    : "size must be 0 to a million pixels";
-}
+    const char *cause = NULL;
 
-/* Reads LINE, "frame,x,y,power[,r,g,b[,size]]" or as COLUMNS say, into V.
- * Returns NULL, or what is wrong with it. */
-static const char *parse_csv(char *line, const struct lamp_columns *columns,
-                             double *v)
-{
-    char *comma = strchr(line, ',');
-    int n;
+    for (int k = 0; k < COLUMNS && !cause; k++) {
+        const char *const text = field[k];
+        const bool is_text = text && (!is_object || *text == '"');
 
-    if (columns->n > 0) {
-        const char *cause = lamp_columns_row(columns, line, v);
-
-        return cause ? cause : check_row(v);
+        if (text && k == ID && is_text)
+            v[k] = *text ? lamp_id_of(text + is_object) : 0;
+        else if (text && k == FRAME && is_text &&
+                 (strcmp(text + is_object, "*") == 0 || !*text))
+            v[k] = -1;
+        else if (text)
+            cause = text_value(&columns[k], text,
+                               k == FRAME && other == plain
+                                   ? "the frame is not a number"
+                                   : other,
+                               &v[k]);
     }
-    if (!comma)
-        return "expected frame,x,y,power[,r,g,b[,size]]";
-    *comma = '\0';
-    if (strcmp(line, "*") == 0 || *line == '\0')
-        v[0] = -1;
-    else if (!tool_number(line, &v[0]))
-        return "the frame is not a number";
-    n = tool_numbers(comma + 1, v + 1, FIELDS - 1);
-    return n == 3 || n == 6 || n == 7
-               ? check_row(v)
-               : "expected 4, 7 or 8 numbers separated by commas";
+    if (cause)
+        return cause;
+    if (v[FRAME] != floor(v[FRAME]))
+        return columns[FRAME].range;
+    return lamp_power_ok(v[POWER], v + RED) ? NULL : POWERS;
 }
 
-static char *skip(char *at)
+/* Reads LINE, "frame,x,y,power[,r,g,b[,size]]" or as a heading says. */
+static const char *take_row(const struct reading *r, char *line, double *v)
 {
-    while (isspace((unsigned char)*at))
-        at++;
-    return at;
+    char *row[COLUMNS], *field[COLUMNS] = {NULL};
+    const int n = text_fields(line, row, r->n ? r->n : ID);
+
+    if (r->n ? n != r->n : n != 4 && n != 7 && n != 8)
+        return r->n     ? "expected as many values as the heading has names"
+               : n == 1 ? "expected frame,x,y,power[,r,g,b[,size]]"
+                        : plain;
+    for (int i = 0; i < n; i++)
+        field[r->n ? r->column[i] : i] = row[i];
+    return take_fields(
+        field, false,
+        r->n ? "expected numbers, as many as the heading has names" : plain, v);
 }
 
-/* Reads one "key": value at *AT into V and moves *AT past it; sets its bit in
- * GIVEN. Returns NULL, or what is wrong with it. */
-static const char *parse_member(char **at, double *v, unsigned *given)
+static const char *take_object(struct text_lines *lines, char *line, double *v)
 {
-    char *key = skip(*at), *end, *number;
-    int field;
+    char *field[COLUMNS] = {NULL};
+    const char *const cause = text_object(lines, line, columns, KEYS, field);
 
-    if (*key++ != '"' || !(end = strchr(key, '"')))
-        return "expected a \"key\"";
-    *end = '\0';
-    field = tool_word(key, names);
-    if (field < 0)
-        return "a key is none of frame x y power r g b size id";
-    number = skip(end + 1);
-    if (*number++ != ':')
-        return "expected : after a key";
-    number = skip(number);
-    if (field == LAMP_ID && *number == '"' && (end = strchr(number + 1, '"'))) {
-        *end = '\0';
-        v[LAMP_ID] = lamp_id_of(number + 1);
-        *at = end + 1;
-    } else if (field == 0 && strncmp(number, "\"*\"", 3) == 0) {
-        v[0] = -1;
-        *at = number + 3;
-    } else {
-        v[field] = strtod(number, at);
-        if (*at == number || !isfinite(v[field]))
-            return "a value is not a number";
-        if (field == LAMP_ID && (v[field] < 0 || v[field] > UINT32_MAX))
-            return "id must be a text, or 0 to 4294967295";
+    if (cause)
+        return cause;
+    if (!field[X] || !field[Y] || !field[POWER])
+        return "x, y and power are needed";
+    return take_fields(field, true, "a value is not a number", v);
+}
+
+/* Takes the names of LINE as columns if there is an id among them. */
+static const char *take_heading(struct reading *r, char *line)
+{
+    char *name[COLUMNS];
+    const int n = text_fields(line, name, COLUMNS);
+    unsigned seen = 0;
+
+    for (int i = 0; i < n && i < COLUMNS; i++) {
+        r->column[i] = text_column(columns, COLUMNS, name[i]);
+        seen |= 1u << (r->column[i] < 0 ? COLUMNS : r->column[i]);
     }
-    *given |= 1u << field;
-    return NULL;
-}
-
-/* Reads LINE, a flat JSON object, into V. Returns NULL, or what is wrong. */
-static const char *parse_json(char *line, double *v)
-{
-    unsigned given = 0;
-    char *at = line + 1; /* after the brace */
-
-    for (;;) {
-        const char *cause = parse_member(&at, v, &given);
-
-        if (cause)
-            return cause;
-        at = skip(at);
-        if (*at == '}')
-            break;
-        if (*at++ != ',')
-            return "expected , or }";
-    }
-    if (*skip(at + 1))
-        return "something follows the object";
-    return (given & 0xe) == 0xe ? check_row(v) : "x, y and power are needed";
-}
-
-static bool is_heading(const char *line)
-{
-    return strncmp(line, "frame", 5) == 0;
+    if (!(seen >> ID & 1))
+        return NULL;
+    if (seen >> COLUMNS & 1)
+        return "a column is none of frame x y power r g b size id shape "
+               "turn level seen";
+    r->n = n;
+    return (seen & 0xf) == 0xf && n <= COLUMNS
+               ? NULL
+               : "columns frame, x, y and power are needed, each once";
 }
 
 enum glint_status lamp_list_add(struct lamp_list *list,
                                 const struct lamp_row *row)
 {
-    if (list->n == list->room) {
-        const int room = list->room ? 2 * list->room : 64;
-        struct lamp_row *more = realloc(list->row, (size_t)room * sizeof *more);
+    struct lamp_row *const more = text_grow(list->row, list->n, sizeof *more);
 
-        if (!more)
-            return GLINT_E_MEMORY;
-        list->row = more;
-        list->room = room;
-    }
-    list->row[list->n++] = *row;
+    if (!more)
+        return GLINT_E_MEMORY;
+    list->row = more;
+    more[list->n++] = *row;
     return GLINT_OK;
 }
 
-static const char no_memory[] = "no memory";
-
-/* Takes LINE, which may be a heading if it is the first one, into LIST. Returns
- * NULL, or what is wrong with it. */
-static const char *take_line(struct lamp_list *list, char *line,
-                             struct lamp_columns *columns, bool is_first)
+static const char *take_line(void *ctx, struct text_lines *lines, char *line)
 {
-    double v[LAMP_COLUMNS] = {-1, 0, 0, 1, 1, 1, 1, 0, 0, 1, 0, 1};
+    double v[COLUMNS] = {-1, 0, 0, 1, 1, 1, 1, 0, 0, 1, 0, 1};
+    struct reading *const r = ctx;
     const char *cause;
     struct lamp_row row;
 
-    if (is_first && is_heading(line))
-        return lamp_columns_read(columns, line);
-    cause = *line == '{' ? parse_json(line, v) : parse_csv(line, columns, v);
+    if (lines->number == 1 && strncmp(line, "frame", 5) == 0)
+        return take_heading(r, line);
+    cause = *line == '{' ? take_object(lines, line, v) : take_row(r, line, v);
     if (cause)
         return cause;
-    if (list->n == LAMP_LIST_MAX_ROWS)
+    if (r->list->n == LAMP_LIST_MAX_ROWS)
         return "more than 1048576 lights";
     row = row_of(v);
-    return lamp_list_add(list, &row) == GLINT_OK ? NULL : no_memory;
+    return lamp_list_add(r->list, &row) == GLINT_OK ? NULL : text_no_memory;
 }
 
-static enum glint_status take_lines(struct lamp_list *list,
+/* Reads LINES, which were opened with STATUS. */
+static enum glint_status read_lines(struct lamp_list *list,
                                     struct text_lines *lines,
+                                    enum glint_status status,
                                     struct glint_error *error)
 {
-    struct lamp_columns columns = {.n = 0};
-    enum glint_status status = GLINT_OK;
-    char *line;
+    struct reading r = {.list = list};
 
-    while (status == GLINT_OK && (line = text_lines_next(lines))) {
-        const char *const cause =
-            take_line(list, line, &columns, lines->number == 1);
-
-        if (cause)
-            status = text_lines_fail(lines, error, cause);
-        if (cause == no_memory)
-            status = GLINT_E_MEMORY;
-    }
-    text_lines_close(lines);
+    *list = (struct lamp_list){NULL, 0};
+    if (status == GLINT_OK)
+        status = text_lines_each(lines, take_line, &r, error);
     if (status != GLINT_OK)
         lamp_list_free(list);
     return status;
@@ -232,8 +217,7 @@ enum glint_status lamp_list_parse(struct lamp_list *list, const char *text,
     const enum glint_status status =
         text_lines_copy(&lines, name, text, bytes, error);
 
-    *list = (struct lamp_list){NULL, 0, 0};
-    return status == GLINT_OK ? take_lines(list, &lines, error) : status;
+    return read_lines(list, &lines, status, error);
 }
 
 enum glint_status lamp_list_read(struct lamp_list *list, const char *path,
@@ -243,14 +227,13 @@ enum glint_status lamp_list_read(struct lamp_list *list, const char *path,
     const enum glint_status status =
         text_lines_open(&lines, path, 1 << 28, error);
 
-    *list = (struct lamp_list){NULL, 0, 0};
-    return status == GLINT_OK ? take_lines(list, &lines, error) : status;
+    return read_lines(list, &lines, status, error);
 }
 
 void lamp_list_free(struct lamp_list *list)
 {
     free(list->row);
-    *list = (struct lamp_list){NULL, 0, 0};
+    *list = (struct lamp_list){NULL, 0};
 }
 
 /* Sets the extent of LAMP by R: a disc if its shape is 1, else an ellipse.

@@ -35,7 +35,7 @@ struct lamp_row {
 
 struct lamp_list {
     struct lamp_row *row;
-    int n, room;
+    int n;
 };
 
 /* Reads PATH: CSV "frame,x,y,power[,r,g,b[,size]]" with an optional line of

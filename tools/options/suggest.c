@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "options/suggest.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static int least(int a, int b, int c)
@@ -65,4 +66,12 @@ const char *suggest_best(const struct suggest *s)
     const int allowed = (int)strlen(s->best) / 3;
 
     return s->distance <= (allowed > 1 ? allowed : 1) ? s->best : NULL;
+}
+
+const char *suggest_words(struct suggest *s)
+{
+    if (!suggest_best(s))
+        return "";
+    snprintf(s->words, sizeof s->words, "; did you mean '%s'?", s->best);
+    return s->words;
 }

@@ -19,6 +19,7 @@ struct suggest {
     const char *word; /* not owned */
     char best[SUGGEST_CHARS];
     int distance; /* distance of the best word */
+    char words[SUGGEST_CHARS + 20];
 };
 
 void suggest_begin(struct suggest *suggest, const char *word);
@@ -30,5 +31,8 @@ void suggest_try(struct suggest *suggest, const char *candidate, size_t n);
 /* Returns the nearest candidate if no more of its letters are wrong than a
  * third of them, or than one if that is more; else NULL. */
 const char *suggest_best(const struct suggest *suggest);
+
+/* Returns "; did you mean 'BEST'?", or "" if there is none. */
+const char *suggest_words(struct suggest *suggest);
 
 #endif

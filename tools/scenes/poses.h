@@ -25,7 +25,7 @@
 
 #include "glint/scene/model.h"
 #include "glint/status.h"
-#include "control/line_pipe.h"
+#include "options/timed_text.h"
 
 enum {
     POSES_CAMERA = -1,
@@ -33,7 +33,7 @@ enum {
 };
 
 struct pose {
-    int frame, order; /* order: of the lines of one frame */
+    int frame, order; /* order: of the lines of a file */
     int thing;        /* index of an object, n_objects + index of a light, or
                          POSES_CAMERA */
     bool has_turn;
@@ -49,11 +49,10 @@ struct poses {
     /* Private. */
     bool is_open;
     struct glint_scene_model model;
-    const char *name;
-    struct pose *row; /* by frames */
-    int n, room, next;
-    struct line_pipe pipe; /* fd is -1: there is none */
-    int read_at;           /* frame at which it was read last */
+    struct text_lines lines; /* closed at the end of a file */
+    struct pose *row;        /* by frames */
+    int n, next;
+    int read_at; /* frame at which a pipe was read last */
 };
 
 /* Opens PATH, which like what MODEL points to must outlive POSES. IS_LIVE: if
