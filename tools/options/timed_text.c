@@ -280,13 +280,13 @@ const char *text_object(struct text_lines *lines, char *line,
         value = skip(value + 1);
         end = *value == '"' ? strchr(value + 1, '"') : NULL;
         at = end ? end + 1 : value + strspn(value, numerals);
+        field[k] = value;
         if (at == value)
             return "a value is not a number";
         end = end ? end : at;
         at = skip(at);
         mark = *at;
         *end = '\0';
-        field[k] = value;
     }
     if (mark != '}')
         return "expected , or }";

@@ -127,10 +127,10 @@ static const char *split(struct text_lines *lines, char *line,
                    : "expected frame,object,x,y,z[,qw,qx,qy,qz]";
     }
     cause = text_object(lines, line, columns, COLUMNS, field);
-    if (cause)
-        return cause;
     if (field[OBJECT] && *field[OBJECT]++ != '"')
         return "object is a \"name\"";
+    if (cause)
+        return cause;
     for (int k = TURN; k < COLUMNS; k++)
         n += field[k] != NULL;
     if (!field[OBJECT] || !field[PLACE] || !field[PLACE + 1] ||
@@ -146,7 +146,8 @@ static const char *parse(const struct poses *p, struct text_lines *lines,
     const bool is_object = *line == '{';
     double v[COLUMNS] = {-1};
     char *field[COLUMNS] = {NULL};
-    const char *cause = split(lines, line, field);
+    const char *const late = split(lines, line, field);
+    const char *cause = NULL;
 
     for (int k = 0; k < COLUMNS && !cause; k++)
         if (field[k] && k != OBJECT &&
@@ -158,7 +159,9 @@ static const char *parse(const struct poses *p, struct text_lines *lines,
                                               "numbers",
                                &v[k]);
     *pose = (struct pose){.has_turn = field[TURN] != NULL};
-    return cause ? cause : make(&p->model, lines, field[OBJECT], v, pose);
+    if (cause || late)
+        return cause ? cause : late;
+    return make(&p->model, lines, field[OBJECT], v, pose);
 }
 
 static const char *check_heading(char *line)
