@@ -5,23 +5,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "lab/plots/plot.h"
 #include "lab/sweep.h"
 
 static const char head[] =
-    "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-    "<title>glint sweep</title>\n"
-    "<style>body{font:15px/1.45 sans-serif;max-width:1060px;margin:2em "
-    "auto;padding:0 "
-    "1em;color:#222}table{border-collapse:collapse;font-size:13px}td,th{"
-    "padding:"
-    "2px 9px;text-align:right;border-bottom:1px solid "
-    "#ddd}td:first-child,th:first-child{text-align:left}figure{display:inline-"
-    "block;margin:0 8px 14px "
-    "0;vertical-align:top;font-size:12px}figcaption{max-width:320px}img{"
-    "display:block;width:320px}"
-    "svg{max-width:100%;height:auto}.worse{color:"
-    "#b01e1e}</style></head><body>\n"
-    "<h1>What accuracy costs</h1>\n"
     "<p>The same frames with each dial turned by itself (coloured), with some "
     "of them together (grey), and along <code>--quality</code> (diamonds), "
     "against the exact picture: every ray in double, each cell clipped "
@@ -30,19 +17,17 @@ static const char head[] =
     "white; flux is compared before it becomes codes. The line is the front: "
     "nothing that was measured is both cheaper and better, among what keeps "
     "its flux within 2 percent; the rest is not shown in fronts. Marks say "
-    "what they are under the "
-    "pointer.</p>\n";
+    "what they are under the pointer.</p>\n";
 
 /* ------------------------------------------------------------------- table */
 
 static void table_of_names(const struct sweep *s, FILE *file)
 {
-    fprintf(file,
-            "<h2>Named qualities</h2>\n<table><tr><th>lens</th><th>size</th>"
-            "<th>quality</th><th>%s</th><th>PSNR dB</th><th>SSIM</th><th>p99 "
-            "codes</th><th>flux %%</th><th>arena KiB</th><th>model KiB</th>"
-            "</tr>\n",
-            s->by_instructions ? "million instructions" : "&times; floor");
+    fputs("<h2>Named qualities</h2>\n<table>", file);
+    html_row(file, "th",
+             "lens|size|quality|%s|PSNR dB|SSIM|p99 codes|flux %%|arena KiB|"
+             "model KiB",
+             s->by_instructions ? "million instructions" : "times floor");
     for (int i = 0; i < s->n_points; i++) {
         const struct sweep_point *p = &s->point[i];
         const struct sweep_case *c = &s->scase[p->of];
@@ -50,16 +35,12 @@ static void table_of_names(const struct sweep *s, FILE *file)
 
         if (p->set.kind != SWEEP_QUALITY || at != floor(at))
             continue;
-        fprintf(file,
-                "<tr><td>%s</td><td>%dx%d, %d</td><td>%s</td><td>%.1f</td>"
-                "<td>%.1f</td><td>%.4f</td><td>%g</td><td%s>%+.2f</td>"
-                "<td>%zu</td><td>%zu</td></tr>\n",
-                s->lens[c->lens], c->width, c->height, c->n_lamps,
-                glint_quality_name[(int)at], sweep_cost(s, p), p->psnr_db,
-                p->ssim, p->p99,
-                fabs(p->flux_error) > MAX_FLUX_ERROR ? " class=\"worse\"" : "",
-                100 * p->flux_error, p->arena_bytes / 1024,
-                p->model_bytes / 1024);
+        html_row(
+            file, "td", "%s|%dx%d, %d|%s|%.1f|%.1f|%.4f|%g|%s%+.2f|%zu|%zu",
+            s->lens[c->lens], c->width, c->height, c->n_lamps,
+            glint_quality_name[(int)at], sweep_cost(s, p), p->psnr_db, p->ssim,
+            p->p99, fabs(p->flux_error) > MAX_FLUX_ERROR ? "!" : "",
+            100 * p->flux_error, p->arena_bytes / 1024, p->model_bytes / 1024);
     }
     fputs("</table>\n", file);
 }
@@ -70,21 +51,17 @@ static void table_of_front(const struct sweep *s, FILE *file)
     struct sweep_mean *mean = malloc(((size_t)s->n_points + 1) * sizeof *mean);
     const int n = mean ? sweep_means(s, mean, s->n_points) : 0;
 
-    fputs("<h2>The front of all lenses together</h2>\n<table><tr><th>setting"
-          "</th><th>cost over default</th><th>PSNR dB, mean</th><th>least</th>"
-          "<th>flux %, worst</th></tr>\n",
-          file);
+    fputs("<h2>The front of all lenses together</h2>\n<table>", file);
+    html_row(file, "th",
+             "setting|cost over default|PSNR dB, mean|least|flux %%, worst");
     for (int i = 0; i < n; i++) {
         char words[160];
 
         if (!mean[i].front)
             continue;
         sweep_words(mean[i].set, words, sizeof words);
-        fprintf(file,
-                "<tr><td>%s</td><td>%.3f</td><td>%.1f</td><td>%.1f</td>"
-                "<td>%.2f</td></tr>\n",
-                words, mean[i].cost, mean[i].psnr_db, mean[i].least_db,
-                100 * mean[i].flux_error);
+        html_row(file, "td", "%s|%.3f|%.1f|%.1f|%.2f", words, mean[i].cost,
+                 mean[i].psnr_db, mean[i].least_db, 100 * mean[i].flux_error);
     }
     fputs("</table>\n", file);
     free(mean);
@@ -137,6 +114,8 @@ static void strips(const struct sweep *s, FILE *file)
 
 void sweep_page(const struct sweep *s, FILE *file)
 {
+    html_begin(file, "What accuracy costs",
+               "figcaption{max-width:320px}img{width:320px}");
     fputs(head, file);
     table_of_names(s, file);
     fputs("<h2>Error against time</h2>\n", file);
@@ -151,5 +130,5 @@ void sweep_page(const struct sweep *s, FILE *file)
         sweep_svg_growth(s, file);
     }
     strips(s, file);
-    fputs("</body></html>\n", file);
+    html_end(file);
 }

@@ -2,29 +2,29 @@
 #include "lens_figures/page.h"
 
 #include <math.h>
-#include <string.h>
 
+#include "lab/plots/plot.h"
 #include "lens_figures/drawing.h"
 
 /* Width of a section in units of its own, which the page scales to a card. */
 #define SECTION_PX 560
 
 static const char style[] =
-    "body{font:15px/1.4 sans-serif;margin:0 auto;padding:1.5em;"
-    "max-width:1600px;color:#222;background:#f3f3f1}"
+    "body{margin:0 auto;padding:1.5em;max-width:1600px;background:#f3f3f1}"
     "h1{margin:0;font-size:1.6em}h2{margin:0;font-size:1.1em}p{margin:.3em 0}"
     "main{display:grid;grid-template-columns:"
     "repeat(auto-fill,minmax(min(100%,430px),1fr));gap:1em;"
     "align-items:start;margin-top:1em}"
-    "figure{margin:0;padding:.8em 1em;background:#fff;border:1px solid #ddd}"
-    "svg{display:block;width:100%;height:auto;max-height:21em;margin:.4em 0}"
-    "img{width:32%;margin-right:1%}"
+    "figure{margin:0;padding:.8em 1em;background:#fff;border:1px solid #ddd;"
+    "font-size:1em;display:block}"
+    "svg{display:block;width:100%;max-height:21em;margin:.4em 0}"
+    "img{display:inline;width:32%;margin-right:1%}"
     "input,select{font:inherit;padding:.2em .4em}input{width:20em}"
     ".less{color:#666;font-size:.87em}";
 
 static const char head[] =
-    "<header><h1>Lenses</h1>\n"
-    "<p>Sections have rays from the middle of the picture, blue, 0.7 of the "
+    "<header><p>Sections have rays from the middle of the picture, blue, 0.7 "
+    "of the "
     "way to its corner, green, and nearly all of it, red. Flares are of a "
     "lamp a quarter, half and four fifths of the way. <code>glint overlay "
     "photo.jpg -o out.jpg --lens NAME</code> looks through one.</p>\n"
@@ -52,22 +52,10 @@ static const char script[] =
     "at('tools').hidden=false;show();\n"
     "</script>\n";
 
-static void print_escaped(FILE *file, const char *text)
-{
-    for (; *text; text++)
-        if (strchr("&<>\"", *text))
-            fprintf(file, "&#%d;", *text);
-        else
-            fputc(*text, file);
-}
-
 void page_begin(FILE *file)
 {
-    fprintf(file,
-            "<!DOCTYPE html><html lang=\"en\"><meta charset=\"utf-8\">"
-            "<meta name=\"viewport\" content=\"width=device-width\">"
-            "<title>lenses</title><style>%s</style>\n%s",
-            style, head);
+    html_begin(file, "Lenses", style);
+    fputs(head, file);
 }
 
 /* Writes what a photographer chooses a lens by. */
@@ -97,11 +85,11 @@ void page_card_begin(FILE *file, const struct page_card *card)
             "data-f=\"%g\" data-ghosts=\"%d\"><h2>%s</h2>\n<p>",
             card->name, card->focal_mm, card->corner_deg, card->lens->f_number,
             card->n_ghosts, card->name);
-    print_escaped(file, card->lens->source);
+    html_text(file, card->lens->source);
     fputs("</p>\n", file);
     if (*card->lens->character) {
         fputs("<p>", file);
-        print_escaped(file, card->lens->character);
+        html_text(file, card->lens->character);
         fputs("</p>\n", file);
     }
     print_numbers(file, card);
@@ -119,4 +107,5 @@ void page_card_end(FILE *file)
 void page_end(FILE *file)
 {
     fprintf(file, "</main>\n%s", script);
+    html_end(file);
 }

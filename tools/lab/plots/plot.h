@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Plots as SVG, or as pixels: panels with two axes, marks and lines.
+ * Plots as SVG, or as pixels: panels with two axes, marks and lines. Pages of
+ * HTML, with tables (html.c).
  */
 #ifndef GLINT_TOOLS_LAB_PLOTS_PLOT_H
 #define GLINT_TOOLS_LAB_PLOTS_PLOT_H
@@ -9,6 +10,7 @@
 #include <stdio.h>
 
 #include "overlay/paint.h"
+#include "posix/error.h"
 
 enum { PLOT_WIDTH = 380, PLOT_HEIGHT = 320 }; /* size of a panel, px */
 
@@ -79,5 +81,21 @@ void plot_key(struct plot *plot, char kind, const char *colour,
               const char *words);
 
 const char *plot_colour(int i);
+
+/* ------------------------------------------------------------------- pages */
+
+/* Begins a page with the heading TITLE. STYLE extends or replaces the rules
+ * that all pages share. */
+void html_begin(FILE *file, const char *title, const char *style);
+
+/* Writes TEXT, whose < > & and " are escaped. */
+void html_text(FILE *file, const char *text);
+
+/* Writes a row of cells of TAG, th or td, that | divides in the text of FORMAT,
+ * up to 1023 bytes. A cell that begins with ! is of the class worse. */
+void html_row(FILE *file, const char *tag, const char *format, ...)
+    GLINT_PRINTF(3, 4);
+
+void html_end(FILE *file);
 
 #endif
