@@ -35,4 +35,9 @@ enum glint_status explain_mark(struct glint_explain *explain,
                                const struct glint_image *picture,
                                struct glint_image *marked);
 
+/* Sets MARKED to a new picture, whose plane[0] the caller frees: PICTURE above
+ * LEGEND black rows. GLINT_E_MEMORY. */
+enum glint_status explain_copy(const struct glint_image *picture, int legend,
+                               struct glint_image *marked);
+
 #endif

@@ -234,8 +234,8 @@ static void put_entry(const struct marking *m, int k, int ghost)
 
 /* ------------------------------------------------------------------- whole */
 
-static enum glint_status make(const struct glint_image *picture, int legend,
-                              struct glint_image *marked)
+enum glint_status explain_copy(const struct glint_image *picture, int legend,
+                               struct glint_image *marked)
 {
     const size_t row = 3 * (size_t)picture->width;
     uint8_t *mem;
@@ -266,7 +266,8 @@ enum glint_status explain_mark(struct glint_explain *e,
     enum glint_status status;
     int ghosts[GLINT_MAX_GHOSTS], n = 0;
 
-    status = make(picture, (8 * legend_rows(&m, t) + 3) * m.scale, marked);
+    status =
+        explain_copy(picture, (8 * legend_rows(&m, t) + 3) * m.scale, marked);
     if (status != GLINT_OK)
         return status;
     glint_explain_sort(e, t->order, ghosts);

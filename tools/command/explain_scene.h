@@ -4,7 +4,7 @@
 #ifndef GLINT_TOOLS_COMMAND_EXPLAIN_SCENE_H
 #define GLINT_TOOLS_COMMAND_EXPLAIN_SCENE_H
 
-#include "engine/explain.h"
+#include "command/explain.h"
 #include "options/json_writer.h"
 #include "overlay/compositor.h"
 #include "scenes/account.h"

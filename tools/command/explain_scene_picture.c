@@ -179,22 +179,13 @@ enum glint_status explain_scene_mark(const struct explained_scene *scene,
                      .width = picture->width,
                      .height = picture->height,
                      .scale = 1 + picture->height / 540};
-    const size_t row = 3 * (size_t)picture->width;
     const int legend =
         ((entries_of(&h) + columns_of(&h) - 1) / columns_of(&h) * ROW + 4) *
         h.scale;
-    uint8_t *mem;
+    const enum glint_status status = explain_copy(picture, legend, marked);
 
-    *marked = (struct glint_image){.format = GLINT_RGB24,
-                                   .width = picture->width,
-                                   .height = picture->height + legend};
-    mem = calloc(row, (size_t)marked->height);
-    if (!mem)
-        return GLINT_E_MEMORY;
-    glint_image_place(marked, mem);
-    for (int y = 0; y < picture->height; y++)
-        memcpy(mem + (size_t)y * row,
-               picture->plane[0] + y * picture->stride_bytes[0], row);
+    if (status != GLINT_OK)
+        return status;
     for (int i = 0; i < n_objects(&h); i++)
         h.most = fmax(h.most, cost_of(&h, i));
     shade(&h);

@@ -98,9 +98,9 @@ struct sweep {
     struct sweep_case scase[SWEEP_CASES];
     int n_cases;
     struct sweep_point *point;
-    int n_points, max_points;
+    int n_points;
     struct sweep_picture *picture;
-    int n_pictures, max_pictures;
+    int n_pictures;
     struct sweep_star star[SWEEP_STAR_LAMPS * SWEEP_STAR_CULLS];
     int n_stars;
     struct sweep_part part[SWEEP_PARTS];

@@ -7,6 +7,7 @@
 #include "engine/measure.h"
 #include "lab/sweep.h"
 #include "lab/sweep_exact.h"
+#include "options/timed_text.h"
 
 /* Milliseconds spent on a point, after which it gets no further rounds. */
 #define MAX_POINT_MS 4000.0
@@ -275,17 +276,11 @@ static bool keep_picture(struct bay *b, struct run *r, const uint8_t *codes,
     const size_t bytes = 3 * (size_t)width * (size_t)height;
     struct sweep_picture *p;
 
-    if (s->n_pictures == s->max_pictures) {
-        const int room = s->max_pictures ? 2 * s->max_pictures : 64;
-        struct sweep_picture *more =
-            realloc(s->picture, (size_t)room * sizeof *more);
-
-        if (!more)
-            return false;
-        s->picture = more;
-        s->max_pictures = room;
-    }
-    p = &s->picture[s->n_pictures];
+    p = text_grow(s->picture, s->n_pictures, sizeof *p);
+    if (!p)
+        return false;
+    s->picture = p;
+    p += s->n_pictures;
     *p = (struct sweep_picture){.of = (int)(b->c - s->scase),
                                 .point = r ? (int)(r->point - s->point) : -1,
                                 .width = width,

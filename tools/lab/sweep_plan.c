@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "lab/sweep.h"
+#include "options/timed_text.h"
 
 enum { QUALITY_STEPS = 8 };
 
@@ -21,16 +22,12 @@ static struct sweep_setting standard(enum sweep_kind kind)
 static enum glint_status add(struct sweep *s, int c,
                              const struct sweep_setting *set)
 {
-    if (s->n_points == s->max_points) {
-        const int room = s->max_points ? 2 * s->max_points : 256;
-        struct sweep_point *point =
-            realloc(s->point, (size_t)room * sizeof *point);
+    struct sweep_point *const point =
+        text_grow(s->point, s->n_points, sizeof *point);
 
-        if (!point)
-            return GLINT_E_MEMORY;
-        s->point = point;
-        s->max_points = room;
-    }
+    if (!point)
+        return GLINT_E_MEMORY;
+    s->point = point;
     s->point[s->n_points++] =
         (struct sweep_point){.set = *set, .of = c, .picture = -1};
     s->scase[c].n++;

@@ -6,12 +6,14 @@
 #include "posix/output.h"
 #include "options/command_line.h"
 
-int bake_line_begin(struct tool *tool, int argc, char **argv,
+int bake_line_begin(struct tool *tool, const char *help, int argc, char **argv,
                     const struct option *options, bake_line_fn *take,
                     void *line, const char *text)
 {
     int c, code, index = 0;
 
+    tool->help = help;
+    tool->help_end = COMMON_HELP;
     while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             &index)) >= 0) {
         if (c == 'o') {

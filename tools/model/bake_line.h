@@ -32,7 +32,7 @@ typedef int bake_line_fn(struct tool *tool, void *line, int c,
  * TEXT says of a line with other than one input what it takes. Sets
  * TOOL->written to what -o names, where a file can be. Returns -1, or an exit
  * code. */
-int bake_line_begin(struct tool *tool, int argc, char **argv,
+int bake_line_begin(struct tool *tool, const char *help, int argc, char **argv,
                     const struct option *options, bake_line_fn *take,
                     void *line, const char *text);
 

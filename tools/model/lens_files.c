@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "options/timed_text.h"
 #include "posix/process.h"
 
 #ifndef GLINT_SHARE_DIR
@@ -88,7 +89,7 @@ bool lens_file_find(const char *name, char *path, size_t bytes)
 
 struct list {
     char (*name)[NAME_CHARS];
-    int n, room;
+    int n;
 };
 
 static bool has(const struct list *l, const char *name, size_t length)
@@ -102,17 +103,14 @@ static bool has(const struct list *l, const char *name, size_t length)
 
 static bool add(struct list *l, const char *name, size_t length)
 {
+    void *more;
+
     if (length >= NAME_CHARS || has(l, name, length))
         return true;
-    if (l->n == l->room) {
-        const int room = l->room ? 2 * l->room : 32;
-        void *more = realloc(l->name, (size_t)room * sizeof *l->name);
-
-        if (!more)
-            return false;
-        l->name = more;
-        l->room = room;
-    }
+    more = text_grow(l->name, l->n, sizeof *l->name);
+    if (!more)
+        return false;
+    l->name = more;
     memcpy(l->name[l->n], name, length);
     l->name[l->n++][length] = '\0';
     return true;
@@ -157,7 +155,7 @@ static void check_own(void)
 int lens_files_each(lens_files_fn *each, void *ctx)
 {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
-    struct list l = {NULL, 0, 0};
+    struct list l = {NULL, 0};
     char path[PATH_CHARS], room[PATH_CHARS + 16];
     bool ok = true;
 

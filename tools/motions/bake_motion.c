@@ -57,9 +57,7 @@ int cmd_bake_motion(struct tool *tool, int argc, char **argv)
     int code;
 
     glint_motion_defaults(&o);
-    tool->help = help;
-    tool->help_end = COMMON_HELP;
-    code = bake_line_begin(tool, argc, argv, options, take, &o,
+    code = bake_line_begin(tool, help, argc, argv, options, take, &o,
                            "takes one recording");
     if (code >= 0)
         return code;

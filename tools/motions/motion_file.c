@@ -9,7 +9,6 @@
 #include "posix/error.h"
 #include "posix/input.h"
 #include "posix/output.h"
-#include "posix/target.h"
 #include "scenes/names.h"
 
 #define MAX_FILE_BYTES ((size_t)1 << 31)
@@ -81,16 +80,13 @@ enum glint_status motion_file_read(const char *path, const char *written,
 {
     const char *reason = "";
     uint8_t *data = NULL;
-    enum glint_status status = GLINT_OK;
+    char self[TOOL_PATH_BYTES];
+    enum glint_status status = tool_find_input("", path, written, self, error);
 
     *file = (struct motion_file){.data = NULL};
-    if (written && glint_target_is_input(path, written))
-        return glint_error_report(
-            error, GLINT_E_ARGUMENT, path,
-            "would be lost: it is what -o names; name another file");
-    if (motion_file_is_source(path)) {
+    if (status == GLINT_OK && motion_file_is_source(path)) {
         status = bake(path, options, file, error);
-    } else {
+    } else if (status == GLINT_OK) {
         status =
             glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, error);
         file->data = data; /* malloc aligns it */

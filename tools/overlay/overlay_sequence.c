@@ -4,6 +4,7 @@
  * time passes for them.
  */
 #include "options/numbered.h"
+#include "options/timed_text.h"
 #include "overlay/overlay.h"
 
 #include <ctype.h>
@@ -18,23 +19,19 @@ enum { NAME_BYTES = NUMBERED_BYTES, FRAME_US = 1000000 / 25, RUNS_SAID = 8 };
 /* the numbers of all pictures, rising */
 struct numbers {
     int *at;
-    int n, room;
+    int n;
 };
 
 /* ----------------------------------------------------------------- numbers */
 
 static bool add(struct numbers *l, int number)
 {
-    if (l->n == l->room) {
-        const int room = l->room ? 2 * l->room : 256;
-        int *more = realloc(l->at, (size_t)room * sizeof *more);
+    int *const more = text_grow(l->at, l->n, sizeof *more);
 
-        if (!more)
-            return false;
-        l->at = more;
-        l->room = room;
-    }
-    l->at[l->n++] = number;
+    if (!more)
+        return false;
+    l->at = more;
+    more[l->n++] = number;
     return true;
 }
 
@@ -199,7 +196,7 @@ bool overlay_is_sequence(const struct overlay *o)
 int overlay_sequence(struct tool *tool, struct overlay *o)
 {
     const char *percent = strchr(o->input, '%');
-    struct numbers l = {NULL, 0, 0};
+    struct numbers l = {NULL, 0};
     char name[NAME_BYTES];
     int code;
 

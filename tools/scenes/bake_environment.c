@@ -111,9 +111,7 @@ int cmd_bake_environment(struct tool *tool, int argc, char **argv)
     struct environment_file file;
     int code;
 
-    tool->help = help;
-    tool->help_end = COMMON_HELP;
-    code = bake_line_begin(tool, argc, argv, options, take, &line,
+    code = bake_line_begin(tool, help, argc, argv, options, take, &line,
                            "takes one environment");
     if (code >= 0)
         return code;

@@ -22,9 +22,7 @@ int cmd_bake_scene(struct tool *tool, int argc, char **argv)
     struct baked_scene scene = {.data = NULL};
     int code;
 
-    tool->help = help;
-    tool->help_end = COMMON_HELP;
-    code = bake_line_begin(tool, argc, argv, options, NULL, NULL,
+    code = bake_line_begin(tool, help, argc, argv, options, NULL, NULL,
                            "takes one scene");
     if (code >= 0)
         return code;

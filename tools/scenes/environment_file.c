@@ -8,7 +8,6 @@
 #include "model/model_file.h"
 #include "posix/ending.h"
 #include "posix/input.h"
-#include "posix/target.h"
 #include "scenes/names.h"
 
 #define MAX_FILE_BYTES ((size_t)1 << 28)
@@ -28,18 +27,6 @@ bool environment_file_is_source(const char *argument)
 bool environment_file_is_baked(const char *argument)
 {
     return tool_begins_as(argument, GLINT_ENVIRONMENT_MAGIC);
-}
-
-/* Refuses to read what is to be written. */
-static enum glint_status keep(const char *path, const char *written,
-                              struct glint_error *error)
-{
-    if (!written || !glint_target_is_input(path, written))
-        return GLINT_OK;
-    snprintf(error->text, sizeof error->text,
-             "%.180s would be lost: it is what -o names; name another file",
-             path);
-    return GLINT_E_ARGUMENT;
 }
 
 static enum glint_status read_text(const char *path,
@@ -107,12 +94,8 @@ bake_source(const char *path, const char *written,
     glint_environment_defaults(&options);
     if (is_text(path)) {
         status = read_text(path, &options, source, error);
-        if (status == GLINT_OK && !tool_beside(path, source, beside)) {
-            snprintf(error->text, sizeof error->text, "the name is too long");
-            status = GLINT_E_IO;
-        }
         if (status == GLINT_OK)
-            status = keep(beside, written, error);
+            status = tool_find_input(path, source, written, beside, error);
         picture = beside;
     }
     if (over)
@@ -126,12 +109,13 @@ enum glint_status environment_file_read(
     void (*over)(void *ctx, struct glint_environment_options *), void *ctx,
     struct environment_file *file, struct glint_error *error)
 {
+    char self[TOOL_PATH_BYTES];
     const char *reason = "";
     uint8_t *data = NULL;
     enum glint_status status;
 
     *file = (struct environment_file){.data = NULL};
-    status = keep(path, written, error);
+    status = tool_find_input("", path, written, self, error);
     if (status == GLINT_OK && environment_file_is_source(path)) {
         status = bake_source(path, written, over, ctx, file, error);
     } else if (status == GLINT_OK) {

@@ -34,13 +34,26 @@ void tool_key_mix(uint64_t *key, const void *data, size_t bytes)
         *key = (*key ^ byte[i]) * UINT64_C(1099511628211);
 }
 
-bool tool_beside(const char *text, const char *name, char path[TOOL_PATH_BYTES])
+enum glint_status tool_find_input(const char *text, const char *name,
+                                  const char *written,
+                                  char path[TOOL_PATH_BYTES],
+                                  struct glint_error *error)
 {
     const char *const slash = name[0] == '/' ? NULL : strrchr(text, '/');
     const int folder = slash ? (int)(slash - text) + 1 : 0;
 
-    return snprintf(path, TOOL_PATH_BYTES, "%.*s%s", folder, text, name) <
-           TOOL_PATH_BYTES;
+    if (snprintf(path, TOOL_PATH_BYTES, "%.*s%s", folder, text, name) >=
+        TOOL_PATH_BYTES) {
+        snprintf(error->text, sizeof error->text,
+                 "the file's name is too long");
+        return GLINT_E_IO;
+    }
+    if (!written || !glint_target_is_input(path, written))
+        return GLINT_OK;
+    snprintf(error->text, sizeof error->text,
+             "%.180s would be lost: it is what -o names; name another file",
+             name);
+    return GLINT_E_ARGUMENT;
 }
 
 void tool_scene_name(const char *path, char name[64])

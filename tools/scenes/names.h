@@ -12,10 +12,12 @@ bool tool_begins_as(const char *argument, uint32_t magic);
 
 enum { TOOL_PATH_BYTES = 4096 };
 
-/* Sets PATH to NAME in the folder of the text TEXT; returns false if that is
- * too long. */
-bool tool_beside(const char *text, const char *name,
-                 char path[TOOL_PATH_BYTES]);
+/* Sets PATH to NAME in the folder of the text TEXT. GLINT_E_IO: it is too long;
+ * GLINT_E_ARGUMENT: it is the file WRITTEN, which may be NULL. */
+enum glint_status tool_find_input(const char *text, const char *name,
+                                  const char *written,
+                                  char path[TOOL_PATH_BYTES],
+                                  struct glint_error *error);
 
 /* Sets NAME to the name of the file PATH without folder and ending. */
 void tool_scene_name(const char *path, char name[64]);

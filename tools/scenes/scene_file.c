@@ -8,7 +8,6 @@
 #include "model/model_file.h"
 #include "posix/ending.h"
 #include "posix/input.h"
-#include "posix/target.h"
 #include "motions/motion_file.h"
 #include "scenes/environment_file.h"
 #include "stones/stone_file.h"
@@ -34,25 +33,6 @@ static void mix(struct reading *reading, const uint8_t *data, size_t bytes)
     tool_key_mix(&reading->key, data, bytes);
 }
 
-/* Sets PATH to NAME in the folder of the text, if that may be read. */
-static enum glint_status find(const struct reading *reading, const char *name,
-                              char path[TOOL_PATH_BYTES],
-                              struct glint_error *error)
-{
-    if (!tool_beside(reading->path, name, path)) {
-        snprintf(error->text, sizeof error->text,
-                 "the file's name is too long");
-        return GLINT_E_IO;
-    }
-    if (reading->written && glint_target_is_input(path, reading->written)) {
-        snprintf(error->text, sizeof error->text,
-                 "%.180s would be lost: it is what -o names; name another file",
-                 name);
-        return GLINT_E_ARGUMENT;
-    }
-    return GLINT_OK;
-}
-
 static bool is_obj(const char *name)
 {
     return glint_ends_in(name, ".obj");
@@ -64,7 +44,8 @@ static enum glint_status read_mesh(void *ctx, const char *name, uint8_t **data,
 {
     struct reading *reading = ctx;
     char path[TOOL_PATH_BYTES];
-    enum glint_status status = find(reading, name, path, error);
+    enum glint_status status =
+        tool_find_input(reading->path, name, reading->written, path, error);
 
     if (status != GLINT_OK)
         return status;
@@ -88,7 +69,8 @@ static enum glint_status read_picture(void *ctx, const char *name,
 {
     struct reading *reading = ctx;
     char path[TOOL_PATH_BYTES];
-    enum glint_status status = find(reading, name, path, error);
+    enum glint_status status =
+        tool_find_input(reading->path, name, reading->written, path, error);
 
     if (status == GLINT_OK)
         status = glint_picture_load(path, image, error);
@@ -106,7 +88,8 @@ static enum glint_status read_environment(void *ctx, const char *name,
     struct reading *reading = ctx;
     struct environment_file file;
     char path[TOOL_PATH_BYTES];
-    enum glint_status status = find(reading, name, path, error);
+    enum glint_status status =
+        tool_find_input(reading->path, name, reading->written, path, error);
 
     if (status == GLINT_OK)
         status = environment_file_read(path, reading->written, NULL, NULL,
@@ -126,7 +109,8 @@ static enum glint_status read_stone(void *ctx, const char *name, uint8_t **data,
     struct reading *reading = ctx;
     struct stone_file file;
     char path[TOOL_PATH_BYTES];
-    enum glint_status status = find(reading, name, path, error);
+    enum glint_status status =
+        tool_find_input(reading->path, name, reading->written, path, error);
 
     if (status == GLINT_OK)
         status = stone_file_read(reading->tool, path, NULL, NULL, false, &file,
@@ -151,7 +135,8 @@ static enum glint_status read_motion(void *ctx, const char *name,
     struct glint_motion_options options;
     struct motion_file file;
     char path[TOOL_PATH_BYTES];
-    enum glint_status status = find(reading, name, path, error);
+    enum glint_status status =
+        tool_find_input(reading->path, name, reading->written, path, error);
 
     glint_motion_defaults(&options);
     if (status == GLINT_OK)

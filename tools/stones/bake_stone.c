@@ -135,9 +135,7 @@ int cmd_bake_stone(struct tool *tool, int argc, char **argv)
     enum glint_status status;
     int code;
 
-    tool->help = help;
-    tool->help_end = COMMON_HELP;
-    code = bake_line_begin(tool, argc, argv, options, take, &line,
+    code = bake_line_begin(tool, help, argc, argv, options, take, &line,
                            "takes one stone");
     if (code >= 0)
         return code;

@@ -9,7 +9,6 @@
 #include "model/cache_file.h"
 #include "posix/ending.h"
 #include "posix/input.h"
-#include "posix/target.h"
 #include "scenes/names.h"
 
 #define MAX_FILE_BYTES ((size_t)1 << 26)
@@ -43,25 +42,6 @@ static void close_source(struct source *s)
 
 /* ------------------------------------------------------------------ reading */
 
-/* Sets PATH to NAME beside the text, if that may be read. */
-static enum glint_status find(const struct tool *tool, const char *text,
-                              const char *name, char path[TOOL_PATH_BYTES],
-                              struct glint_error *error)
-{
-    if (!tool_beside(text, name, path)) {
-        snprintf(error->text, sizeof error->text,
-                 "the file's name is too long");
-        return GLINT_E_IO;
-    }
-    if (tool->written && glint_target_is_input(path, tool->written)) {
-        snprintf(error->text, sizeof error->text,
-                 "%.180s would be lost: it is what -o names; name another file",
-                 path);
-        return GLINT_E_ARGUMENT;
-    }
-    return GLINT_OK;
-}
-
 /* Sets MASK to the means of IMAGE's codes, 1 = white, over each texel. */
 static void shrink(const struct glint_image *image, int side, double *mask)
 {
@@ -93,7 +73,8 @@ static enum glint_status read_mask(const struct tool *tool, const char *path,
     char beside[TOOL_PATH_BYTES];
     struct glint_image image = {.width = 0};
     double *mask;
-    enum glint_status status = find(tool, path, s->text.mask, beside, error);
+    enum glint_status status =
+        tool_find_input(path, s->text.mask, tool->written, beside, error);
 
     if (status == GLINT_OK)
         status = glint_picture_load(beside, &image, error);
@@ -113,7 +94,8 @@ static enum glint_status read_rows(const struct tool *tool, const char *path,
                                    struct source *s, struct glint_error *error)
 {
     char beside[TOOL_PATH_BYTES];
-    enum glint_status status = find(tool, path, s->text.rows, beside, error);
+    enum glint_status status =
+        tool_find_input(path, s->text.rows, tool->written, beside, error);
 
     if (status == GLINT_OK)
         status = glint_picture_load_float(beside, &s->rows, error);
@@ -328,7 +310,7 @@ stone_file_read(const struct tool *tool, const char *path,
     char self[TOOL_PATH_BYTES];
 
     *file = (struct stone_file){.data = NULL};
-    status = find(tool, "", path, self, error);
+    status = tool_find_input("", path, tool->written, self, error);
     if (status == GLINT_OK && stone_file_is_text(path)) {
         status = read_text(tool, path, over, ctx, anew, file, error);
     } else if (status == GLINT_OK) {
