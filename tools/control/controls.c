@@ -72,7 +72,7 @@ enum glint_status controls_open(struct controls *input, const char *path,
     }
     if (is_live && (is_input || text_is_pipe(path)))
         return text_lines_pipe(&in->lines, path, error);
-    status = text_lines_open(&in->lines, path, MAX_BYTES, error);
+    status = text_lines_open(&in->lines, path, NULL, MAX_BYTES, error);
     if (status == GLINT_OK)
         status = read_all(in, error);
     text_lines_close(&in->lines);

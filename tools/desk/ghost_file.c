@@ -20,7 +20,6 @@ struct reading {
     int n; /* number of ghosts, without parts */
     struct glint_tint *tint;
     bool *solo, *mute;
-    char cause[160]; /* room for what is wrong */
 };
 
 /* Returns the next word of *REST, which blanks end, and moves *REST past it;
@@ -111,8 +110,9 @@ static const char *take_words(struct reading *r, int ghost, char *rest)
     return cause;
 }
 
-static const char *take_line(struct reading *r, char *line)
+static const char *take_line(void *ctx, struct text_lines *lines, char *line)
 {
+    struct reading *const r = ctx;
     char *rest = line, *word;
     int ghost;
 
@@ -130,11 +130,11 @@ static const char *take_line(struct reading *r, char *line)
     ghost = ghost_of(r, word);
     if (ghost >= 0)
         return take_words(r, ghost, rest);
-    snprintf(r->cause, sizeof r->cause,
-             "no ghost '%.20s': lines begin with a number, 0 to %d, or the two "
-             "surfaces of a ghost (glint info lists them)",
-             word, r->n - 1);
-    return r->cause;
+    return text_lines_cause(
+        lines,
+        "no ghost '%.20s': lines begin with a number, 0 to %d, or the two "
+        "surfaces of a ghost (glint info lists them)",
+        word, r->n - 1);
 }
 
 /* Mutes what is not to be seen, and gives parts the tints of their ghosts. */
@@ -167,26 +167,23 @@ static bool hold(struct reading *r)
     return r->tint && r->solo && r->mute;
 }
 
-static enum glint_status read_lines(struct glint_tint **tints,
-                                    struct text_lines *lines,
-                                    const struct glint_setup *setup,
-                                    const char *lens, struct glint_error *error)
+enum glint_status ghost_file_parse(struct glint_tint **tints, const char *name,
+                                   const char *text, size_t bytes,
+                                   const struct glint_setup *setup,
+                                   const char *lens, struct glint_error *error)
 {
     struct reading r = {
         .setup = setup, .lens = lens, .n = setup->n_ghosts - setup->n_parts};
-    enum glint_status status = GLINT_OK;
-    char *line;
+    struct text_lines lines;
+    enum glint_status status =
+        text_lines_open(&lines, name, text, bytes, error);
 
-    if (hold(&r))
-        while (status == GLINT_OK && (line = text_lines_next(lines))) {
-            const char *const cause = take_line(&r, line);
-
-            if (cause)
-                status = text_lines_fail(lines, error, cause);
-        }
-    else
-        status =
-            glint_error_report(error, GLINT_E_MEMORY, lines->name, "no memory");
+    if (status == GLINT_OK && !hold(&r))
+        status = glint_error_report(error, GLINT_E_MEMORY, name, "%s",
+                                    text_no_memory);
+    if (status == GLINT_OK)
+        status = text_lines_each(&lines, take_line, &r, error);
+    text_lines_close(&lines);
     if (status == GLINT_OK)
         finish(&r);
     else {
@@ -199,34 +196,11 @@ static enum glint_status read_lines(struct glint_tint **tints,
     return status;
 }
 
-enum glint_status ghost_file_parse(struct glint_tint **tints, const char *name,
-                                   const char *text, size_t bytes,
-                                   const struct glint_setup *setup,
-                                   const char *lens, struct glint_error *error)
-{
-    struct text_lines lines;
-    enum glint_status status =
-        text_lines_copy(&lines, name, text, bytes, error);
-
-    *tints = NULL;
-    if (status == GLINT_OK)
-        status = read_lines(tints, &lines, setup, lens, error);
-    text_lines_close(&lines);
-    return status;
-}
-
 enum glint_status ghost_file_read(struct glint_tint **tints, const char *path,
                                   const struct glint_setup *setup,
                                   const char *lens, struct glint_error *error)
 {
-    struct text_lines lines;
-    enum glint_status status = text_lines_open(&lines, path, MOST_BYTES, error);
-
-    *tints = NULL;
-    if (status == GLINT_OK)
-        status = read_lines(tints, &lines, setup, lens, error);
-    text_lines_close(&lines);
-    return status;
+    return ghost_file_parse(tints, path, NULL, MOST_BYTES, setup, lens, error);
 }
 
 void ghost_file_line(char *text, size_t room, int ghost,

@@ -124,43 +124,30 @@ static const char *take_line(void *ctx, struct text_lines *lines, char *line)
     return (r->n_columns ? take_row : take_heading)(r, lines, line);
 }
 
-/* Reads LINES, which were opened with STATUS. */
-static enum glint_status read_lines(struct keys *keys, struct text_lines *lines,
-                                    enum glint_status status,
-                                    struct glint_error *error)
+enum glint_status keys_parse(struct keys *keys, const char *name,
+                             const char *text, size_t bytes,
+                             struct glint_error *error)
 {
     struct reading r = {.keys = keys};
+    struct text_lines lines;
+    enum glint_status status =
+        text_lines_open(&lines, name, text, bytes, error);
 
     *keys = (struct keys){.n = {0}};
     if (status == GLINT_OK)
-        status = text_lines_each(lines, take_line, &r, error);
+        status = text_lines_each(&lines, take_line, &r, error);
     if (status == GLINT_OK && keys->n[KEYS_FRAME] == 0)
-        status = glint_error_report(error, GLINT_E_FORMAT, lines->name,
+        status = glint_error_report(error, GLINT_E_FORMAT, name,
                                     "has no key frames");
     if (status != GLINT_OK)
         keys_free(keys);
     return status;
 }
 
-enum glint_status keys_parse(struct keys *keys, const char *name,
-                             const char *text, size_t bytes,
-                             struct glint_error *error)
-{
-    struct text_lines lines;
-    const enum glint_status status =
-        text_lines_copy(&lines, name, text, bytes, error);
-
-    return read_lines(keys, &lines, status, error);
-}
-
 enum glint_status keys_read(struct keys *keys, const char *path,
                             struct glint_error *error)
 {
-    struct text_lines lines;
-    const enum glint_status status =
-        text_lines_open(&lines, path, MAX_BYTES, error);
-
-    return read_lines(keys, &lines, status, error);
+    return keys_parse(keys, path, NULL, MAX_BYTES, error);
 }
 
 bool keys_has(const struct keys *keys, enum key_column column)

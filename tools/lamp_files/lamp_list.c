@@ -193,41 +193,27 @@ static const char *take_line(void *ctx, struct text_lines *lines, char *line)
     return lamp_list_add(r->list, &row) == GLINT_OK ? NULL : text_no_memory;
 }
 
-/* Reads LINES, which were opened with STATUS. */
-static enum glint_status read_lines(struct lamp_list *list,
-                                    struct text_lines *lines,
-                                    enum glint_status status,
-                                    struct glint_error *error)
+enum glint_status lamp_list_parse(struct lamp_list *list, const char *text,
+                                  size_t bytes, const char *name,
+                                  struct glint_error *error)
 {
     struct reading r = {.list = list};
+    struct text_lines lines;
+    enum glint_status status =
+        text_lines_open(&lines, name, text, bytes, error);
 
     *list = (struct lamp_list){NULL, 0};
     if (status == GLINT_OK)
-        status = text_lines_each(lines, take_line, &r, error);
+        status = text_lines_each(&lines, take_line, &r, error);
     if (status != GLINT_OK)
         lamp_list_free(list);
     return status;
 }
 
-enum glint_status lamp_list_parse(struct lamp_list *list, const char *text,
-                                  size_t bytes, const char *name,
-                                  struct glint_error *error)
-{
-    struct text_lines lines;
-    const enum glint_status status =
-        text_lines_copy(&lines, name, text, bytes, error);
-
-    return read_lines(list, &lines, status, error);
-}
-
 enum glint_status lamp_list_read(struct lamp_list *list, const char *path,
                                  struct glint_error *error)
 {
-    struct text_lines lines;
-    const enum glint_status status =
-        text_lines_open(&lines, path, 1 << 28, error);
-
-    return read_lines(list, &lines, status, error);
+    return lamp_list_parse(list, NULL, 1 << 28, path, error);
 }
 
 void lamp_list_free(struct lamp_list *list)

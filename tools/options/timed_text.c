@@ -24,35 +24,27 @@ static const char numerals[] = "0123456789+-.eE";
 
 /* ----------------------------------------------------------------- sources */
 
-enum glint_status text_lines_copy(struct text_lines *lines, const char *name,
+enum glint_status text_lines_open(struct text_lines *lines, const char *name,
                                   const char *text, size_t bytes,
                                   struct glint_error *error)
 {
+    enum glint_status status = GLINT_OK;
+    uint8_t *data = NULL;
+
     *lines = (struct text_lines){.name = name};
-    if (bytes && memchr(text, '\0', bytes))
-        return glint_error_report(error, GLINT_E_FORMAT, name,
-                                  "not a text file");
-    lines->mem = calloc(bytes + 1, 1);
-    if (!lines->mem)
-        return glint_error_report(error, GLINT_E_MEMORY, name, "%s",
-                                  text_no_memory);
-    if (bytes)
+    if (!text && bytes) {
+        status = glint_input_slurp(&data, &bytes, name, bytes, error);
+        text = (const char *)data;
+    }
+    if (status == GLINT_OK && bytes && memchr(text, '\0', bytes))
+        status =
+            glint_error_report(error, GLINT_E_FORMAT, name, "not a text file");
+    if (status == GLINT_OK && !(lines->mem = calloc(bytes + 1, 1)))
+        status = glint_error_report(error, GLINT_E_MEMORY, name, "%s",
+                                    text_no_memory);
+    if (lines->mem && bytes)
         memcpy(lines->mem, text, bytes);
     lines->rest = lines->mem;
-    return GLINT_OK;
-}
-
-enum glint_status text_lines_open(struct text_lines *lines, const char *path,
-                                  size_t max_bytes, struct glint_error *error)
-{
-    uint8_t *data = NULL;
-    size_t bytes = 0;
-    enum glint_status status =
-        glint_input_slurp(&data, &bytes, path, max_bytes, error);
-
-    *lines = (struct text_lines){.name = path};
-    if (status == GLINT_OK)
-        status = text_lines_copy(lines, path, (const char *)data, bytes, error);
     free(data);
     return status;
 }

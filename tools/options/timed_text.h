@@ -3,7 +3,7 @@
  * timed_text.h - text that describes frames, line by line: key frames, lists of
  * lamps, poses and lines of control.
  *
- *     text_lines_open(&lines, path, max_bytes, &error);
+ *     text_lines_open(&lines, path, NULL, max_bytes, &error);
  *     status = text_lines_each(&lines, take, ctx, &error);
  *
  * or of a pipe, which is never waited for:
@@ -45,13 +45,10 @@ struct text_lines {
 
 /* ------------------------------------------------------------------- lines */
 
-/* Reads PATH, which must outlive LINES, up to MAX_BYTES. GLINT_E_IO;
- * GLINT_E_FORMAT: it contains a zero byte; GLINT_E_MEMORY. */
-enum glint_status text_lines_open(struct text_lines *lines, const char *path,
-                                  size_t max_bytes, struct glint_error *error);
-
-/* Does as text_lines_open() with TEXT[BYTES], which is copied. */
-enum glint_status text_lines_copy(struct text_lines *lines, const char *name,
+/* Copies TEXT[BYTES]; of NULL it reads the file NAME, of up to BYTES, unless 0.
+ * NAME must outlive LINES. GLINT_E_IO; GLINT_E_FORMAT: there is a zero byte;
+ * GLINT_E_MEMORY. */
+enum glint_status text_lines_open(struct text_lines *lines, const char *name,
                                   const char *text, size_t bytes,
                                   struct glint_error *error);
 

@@ -235,7 +235,7 @@ enum glint_status poses_open(struct poses *poses, const char *path,
     *poses = (struct poses){.is_open = true, .model = *model, .read_at = -1};
     if (is_live && text_is_pipe(path))
         return text_lines_pipe(&poses->lines, path, error);
-    status = text_lines_open(&poses->lines, path, MAX_BYTES, error);
+    status = text_lines_open(&poses->lines, path, NULL, MAX_BYTES, error);
     if (status == GLINT_OK)
         status = text_lines_each(&poses->lines, take_line, poses, error);
     if (poses->n > 0)
