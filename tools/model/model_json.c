@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "model/model_json.h"
+#include "model/model_report.h"
 
 #include <math.h>
 

@@ -3,7 +3,6 @@
 
 #include <math.h>
 
-#include "model/model_json.h"
 #include "model/model_summary.h"
 
 static void print_header(const struct model_file *model)

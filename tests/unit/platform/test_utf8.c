@@ -9,6 +9,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -77,12 +78,37 @@ static void test_json(void **state)
     }
 }
 
+static void test_writer(void **state)
+{
+    FILE *file = tmpfile();
+    struct json_writer json = {.to = file};
+    char got[256];
+
+    (void)state;
+    assert_non_null(file);
+    json_write(&json, "{name: %s, none: %s, x: %.2f, y: %.2f, list: [", "a\"b",
+               NULL, 0.5, (double)NAN);
+    for (int i = 0; i < 2; i++)
+        json_write(&json, "\n {%s: %d, %s_ms: %zu, is: %c}", "n", i, "draw",
+                   (size_t)7, i == 1);
+    json_write(&json, "\n], empty: {}, zero: 0, big: %lld}\n", -(1LL << 40));
+    rewind(file);
+    got[fread(got, 1, sizeof got - 1, file)] = '\0';
+    assert_string_equal(
+        got, "{\"name\": \"a\\\"b\", \"none\": null, \"x\": 0.50, \"y\": null, "
+             "\"list\": [\n {\"n\": 0, \"draw_ms\": 7, \"is\": false},\n "
+             "{\"n\": 1, \"draw_ms\": 7, \"is\": true}\n], \"empty\": {}, "
+             "\"zero\": 0, \"big\": -1099511627776}\n");
+    fclose(file);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_clean),
         cmocka_unit_test(test_errors),
         cmocka_unit_test(test_json),
+        cmocka_unit_test(test_writer),
     };
 
     return cmocka_run_group_tests_name("utf8", tests, NULL, NULL);
