@@ -462,10 +462,9 @@ int cmd_sweep(int argc, char **argv)
 {
     struct tool tool = {.name = "sweep", .help = help, .help_end = help_end};
     struct asked asked = {.folder = NULL};
-    struct sweep *s;
+    struct sweep *const s = calloc(1, sizeof *s);
     int code;
 
-    s = calloc(1, sizeof *s);
     if (!s)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     s->tool = &tool;

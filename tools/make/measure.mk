@@ -130,9 +130,6 @@ size: $(OUT)/libglint.a $(example_bins)
 	@for t in aarch64 armv7; do $(MAKE) -s --no-print-directory TARGET=$$t \
 	        $(EXAMPLES:%=build/$$t/examples/%) >&2 || exit 1; done
 	@OUT=$(OUT) EXAMPLES='$(EXAMPLES)' tools/report/size $(ARCH) aarch64 armv7 | tools/report/write-figures size
-# Dials of a scene against the reference renderer:  make scene-sweep SCENE=NAME.scene
-scene-sweep: $(OUT)/scene_sweep
-	@$< --scene $(SCENE) -o build/scene-sweep
 trade: all
 	@build/glint sweep -o build/trade $(TRADE)
 	@echo build/trade/index.html
@@ -167,5 +164,5 @@ budget: all
         ward-table translucent-table stone-table ward-sheet scene-budget-table bake-table \
         library-table azimuth-table projection-table accuracy-table colour-table ray-table stop-table \
         power-fit corpus corpus-evaluate corpus-stars corpus-sheet corpus-report gallery \
-        lens-sheet corpus-fit bench bench-insn growth size trade scene-sweep reuse-table left-table memory-table \
+        lens-sheet corpus-fit bench bench-insn growth size trade reuse-table left-table memory-table \
         zoom-halfway-table cost-fit scene-cost-fit budget

@@ -25,7 +25,6 @@ struct reading {
     const char *path;
     const char *written; /* a file that is not to be read, or NULL */
     uint64_t key;
-    struct scene_stones *stones; /* NULL: nobody asks */
 };
 
 static void mix(struct reading *reading, const uint8_t *data, size_t bytes)
@@ -117,9 +116,6 @@ static enum glint_status read_stone(void *ctx, const char *name, uint8_t **data,
                                  error);
     if (status != GLINT_OK)
         return status;
-    if (reading->stones)
-        snprintf(reading->stones->path[reading->stones->n++], TOOL_PATH_BYTES,
-                 "%s", path);
     mix(reading, file.data, file.bytes);
     *data = file.data;
     *bytes = file.bytes;
@@ -150,12 +146,10 @@ static enum glint_status read_motion(void *ctx, const char *name,
     return GLINT_OK;
 }
 
-int tool_scene_stones(const struct tool *tool, const char *path,
-                      struct glint_description *scene, uint64_t *key,
-                      struct scene_stones *stones)
+int tool_scene(const struct tool *tool, const char *path,
+               struct glint_description *scene, uint64_t *key)
 {
-    struct reading reading = {tool, path, tool->written, TOOL_KEY_BEGIN,
-                              stones};
+    struct reading reading = {tool, path, tool->written, TOOL_KEY_BEGIN};
     const struct glint_description_files files = {
         &reading,         read_mesh,   read_picture,
         read_environment, read_motion, read_stone};
@@ -181,12 +175,6 @@ int tool_scene_stones(const struct tool *tool, const char *path,
     if (scene->warning[0] && !tool->quiet)
         fprintf(stderr, "glint %s: %s: %s\n", tool->name, path, scene->warning);
     return EXIT_OK;
-}
-
-int tool_scene(const struct tool *tool, const char *path,
-               struct glint_description *scene, uint64_t *key)
-{
-    return tool_scene_stones(tool, path, scene, key, NULL);
 }
 
 int tool_scene_bake(const struct tool *tool, const char *path, uint8_t **data,

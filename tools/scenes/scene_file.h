@@ -19,19 +19,6 @@ bool tool_is_scene(const char *argument);
 int tool_scene(const struct tool *tool, const char *path,
                struct glint_description *scene, uint64_t *key);
 
-/* The files of a text's translucent materials, in the order of
- * glint_description.
- */
-struct scene_stones {
-    int n;
-    char path[GLINT_DESCRIPTION_MAX_STONES][TOOL_PATH_BYTES];
-};
-
-/* The same; notes files of stones in STONES, of zeros, unless it is NULL. */
-int tool_scene_stones(const struct tool *tool, const char *path,
-                      struct glint_description *scene, uint64_t *key,
-                      struct scene_stones *stones);
-
 /* Reads the scene text PATH and bakes it into *DATA, malloc'ed. Returns an exit
  * code, after printing the reason on failure. */
 int tool_scene_bake(const struct tool *tool, const char *path, uint8_t **data,

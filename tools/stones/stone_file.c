@@ -137,9 +137,11 @@ read_source(const struct tool *tool, const char *path,
 
 /* ------------------------------------------------------------------- baking */
 
-enum glint_status stone_file_near(const struct glint_scatter_rows *rows,
-                                  const struct glint_translucent *stone,
-                                  double *db)
+/* Sets *DB to how near what STONE makes of lamps, shadows and a ramp is to what
+ * ROWS make of them, PSNR. GLINT_E_MEMORY. */
+static enum glint_status near_rows(const struct glint_scatter_rows *rows,
+                                   const struct glint_translucent *stone,
+                                   double *db)
 {
     const size_t n = 3 * (size_t)rows->side * (size_t)rows->side;
     double *light = malloc(3 * n * sizeof *light);
@@ -196,7 +198,7 @@ static enum glint_status fit_rows(struct glint_scatter_rows *rows,
     }
     file->errors.fit_db = fit.error.light_db;
     if (status == GLINT_OK)
-        status = stone_file_near(rows, &file->stone, &file->errors.baked_db);
+        status = near_rows(rows, &file->stone, &file->errors.baked_db);
     glint_scatter_fit_close(&fit);
     return status;
 }

@@ -44,12 +44,6 @@ enum glint_status stone_file_rows(const struct tool *tool, const char *path,
                                   struct glint_scatter_rows *rows,
                                   struct glint_error *error);
 
-/* Sets *DB to how near what STONE makes of lamps, shadows and a ramp is to what
- * ROWS make of them, PSNR. GLINT_E_MEMORY. */
-enum glint_status stone_file_near(const struct glint_scatter_rows *rows,
-                                  const struct glint_translucent *stone,
-                                  double *db);
-
 /* Prints what is in FILE; with --json, as one object. */
 void stone_file_print(const struct tool *tool, const struct stone_file *file);
 

@@ -73,8 +73,9 @@ enum glint_status scene_trial_warm(struct scene_trial *trial)
     return GLINT_OK;
 }
 
-void scene_trial_frame(struct scene_frame *frame,
-                       const struct glint_image *image, double at_s[5])
+/* Draws a frame. Notes the times at which stages begin, and the end. */
+static void draw(struct scene_frame *frame, const struct glint_image *image,
+                 double at_s[5])
 {
     struct glint_scene_lamp lamps[GLINT_SCENE_MAX_LIGHTS];
 
@@ -99,9 +100,6 @@ void scene_trial_run(struct scene_trial *trial, int counter, int round)
                  {SCENE_DRAW, 2, 3},
                  {SCENE_LIGHTS, 3, 4},
                  {SCENE_WHOLE, 0, 4}};
-    /* Not inlined: tools/report/sweep-insn looks for its name. */
-    void (*volatile draw)(struct scene_frame *, const struct glint_image *,
-                          double *) = scene_trial_frame;
     double at_s[5];
     uint64_t before;
 
@@ -118,7 +116,7 @@ void scene_trial_run(struct scene_trial *trial, int counter, int round)
     if (!trial->bare.scene)
         return;
     canvas_fresh(trial->canvas);
-    scene_trial_frame(&trial->bare, &trial->canvas->image, at_s);
+    draw(&trial->bare, &trial->canvas->image, at_s);
     trial->ms[SCENE_SHADOWS][round] =
         trial->ms[SCENE_DRAW][round] - 1e3 * (at_s[3] - at_s[2]);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * A scene that is drawn onto a canvas again and again, with dials of its own,
- * and timed by stage: what bench and sweep are made of.
+ * and timed by stage.
  *
  *     scene_trial_open(&trial, tool, &model, &bare, &dials, &canvas);
  *     scene_trial_warm(&trial);
@@ -58,11 +58,6 @@ enum glint_status scene_trial_warm(struct scene_trial *trial);
 /* Draws a frame and notes its times as those of round ROUND, and its
  * instructions by COUNTER, unless that is -1. */
 void scene_trial_run(struct scene_trial *trial, int counter, int round);
-
-/* Draws a frame: of its own so that tools/report/sweep-insn can count its
- * instructions. Notes the times at which stages begin, and the end. */
-void scene_trial_frame(struct scene_frame *frame,
-                       const struct glint_image *image, double at_s[5]);
 
 /* Returns whether "--scene" is in the line: a command that also does without a
  * scene takes other options then. */
