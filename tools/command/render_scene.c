@@ -11,6 +11,7 @@
 #include "overlay/overlay.h"
 #include "command/render_scene.h"
 #include "scenes/baked_scene.h"
+#include "scenes/account.h"
 #include "scenes/budget.h"
 #include "scenes/scene_frame.h"
 
@@ -205,16 +206,14 @@ static void say_frame(const struct tool *tool, const struct scene_frame *frame,
 {
     struct json_writer json = {.to = stdout};
     struct scene_budget budget;
-    double minsn;
 
     if (!tool->json)
         return;
     scene_budget_init(&budget, dials);
     json_write(&json, "{engine: %s, scene: {", "model");
-    minsn = scene_cost_json(&json, frame, frame->model->header->bytes);
-    json_write(&json, "quality: %.3f, predicted_ms: %.3f, lights: %u",
-               scene_budget_quality(&budget), budget.ms_per_minsn * minsn,
-               frame->model->header->n_lights);
+    scene_cost_json(&json, frame, frame->model->header->bytes);
+    json_write(&json, "quality: %.3f, lights: %u",
+               scene_budget_quality(&budget), frame->model->header->n_lights);
     scene_highlights_json(&json, frame);
     json_write(&json, "lamps_hidden: %d}, ms: %.3f}\n", hidden_lights(frame),
                ms);

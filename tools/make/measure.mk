@@ -51,8 +51,6 @@ ward-sheet: all
 	@$(MAKE) --no-print-directory oiio >&2
 	@tools/report/scenes/ward-table true
 	@tools/report/scenes/ward-sheet tests/gallery/metals.jpg
-scene-budget-table: all
-	@tools/report/scenes/scene-budget-table | tools/report/write-figures scenes/budget
 bake-table: all $(OUT)/ray_errors
 	@tools/report/bake-table | tools/report/write-figures bake
 # What lenses of the library cost. LENSES="A.lens ...": these; STOP=N, LIMIT=SECONDS.
@@ -161,7 +159,7 @@ budget: all
 	@tools/report/budget | tools/report/write-figures arm
 
 .PHONY: video-report occlusion-table demo inputs table scene-table hidden-table mesh-table motion-table \
-        ward-table translucent-table stone-table ward-sheet scene-budget-table bake-table \
+        ward-table translucent-table stone-table ward-sheet bake-table \
         library-table azimuth-table projection-table accuracy-table colour-table ray-table stop-table \
         power-fit corpus corpus-evaluate corpus-stars corpus-sheet corpus-report gallery \
         lens-sheet corpus-fit bench bench-insn growth size trade reuse-table left-table memory-table \

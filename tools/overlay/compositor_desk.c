@@ -233,9 +233,7 @@ void compositor_desk_close(struct compositor *c)
 /* Highlights of scenes, likewise. */
 #define HIGHLIGHT_IDS UINT32_C(0x7ffe0000)
 
-/* Share of a budget that a scene may take before it is known what the flare
- * takes, and that the flare has at least. */
-#define SCENE_SHARE 0.6
+/* Share of a budget that the flare has at least. */
 #define LEAST_SHARE 0.1
 
 /* Points of a light's disc that shadows are drawn by, where there is time. */
@@ -280,25 +278,6 @@ static void add_glints(struct compositor *c)
     }
 }
 
-/* Has the scene leave the flare what is best for both, by the last frame. What
- * the flare took beyond its plan, quality does not turn. */
-static void share_budget(struct compositor *c)
-{
-    const double all_ms = c->settings.options.budget;
-    const double planned_ms = fmin(c->report.predicted_ms, c->flare_ms);
-    const double fixed_ms = c->flare_ms - planned_ms;
-
-    c->scene.flare_ms = 0;
-    c->scene.budget_ms = all_ms;
-    if (!c->has_lens)
-        return;
-    c->scene.budget_ms *= SCENE_SHARE;
-    if (!(planned_ms > 0))
-        return;
-    c->scene.budget_ms = fmax(LEAST_SHARE * all_ms, all_ms - fixed_ms);
-    c->scene.flare_ms = scene_budget_flare_ms(planned_ms, c->report.quality);
-}
-
 enum glint_status compositor_scene(struct compositor *c,
                                    const struct glint_image *image)
 {
@@ -312,7 +291,11 @@ enum glint_status compositor_scene(struct compositor *c,
     if (!c->scene.is_open)
         return GLINT_OK;
     if (c->settings.options.budget > 0)
-        share_budget(c);
+        c->scene.budget_ms =
+            c->has_lens
+                ? scene_budget_limit(c->settings.options.budget, c->flare_ms,
+                                     c->report.quality)
+                : c->settings.options.budget;
     status = over_scene_draw(&c->scene, image, c->n_frames);
     /* The flare has what the scene leaves. */
     if (c->settings.options.budget > 0 && c->has_lens)

@@ -270,22 +270,6 @@ enum glint_status over_scene_coarsen(struct over_scene *over, double quality)
                : GLINT_OK;
 }
 
-/* Turns the dials so that the frame is told to take no more than the budget. */
-static enum glint_status spend(struct over_scene *over)
-{
-    struct scene_budget *const b = &over->budget;
-    enum glint_status status = GLINT_OK;
-
-    if (scene_budget_looks(b)) {
-        scene_frame_begin(&over->frame);
-        status = scene_budget_look(b, &over->frame);
-    }
-    return status == GLINT_OK &&
-                   scene_budget_choose(b, over->budget_ms, over->flare_ms)
-               ? turn(over, b->level)
-               : status;
-}
-
 enum glint_status over_scene_draw(struct over_scene *over,
                                   const struct glint_image *image, int frame)
 {
@@ -299,13 +283,13 @@ enum glint_status over_scene_draw(struct over_scene *over,
     glint_scene_seek(over->frame.scene, (uint32_t)over->shown);
     if (over->moved)
         take_poses(over, over->shown);
-    status = over->budget_ms > 0 ? spend(over) : GLINT_OK;
+    status = over->budget_ms > 0 && scene_budget_follow(&over->budget, over->ms,
+                                                        over->budget_ms)
+                 ? turn(over, over->budget.level)
+                 : GLINT_OK;
     if (status == GLINT_OK)
         status = scene_frame_try(&over->frame, image);
     over->ms = 1e3 * (tool_seconds() - start);
-    if (over->budget_ms > 0)
-        scene_budget_note(&over->budget,
-                          over->frame.project_ms + over->frame.draw_ms);
     over->lamps_hidden = over->lights = 0;
     return status;
 }
@@ -434,17 +418,12 @@ void over_scene_say(const struct over_scene *over, FILE *to)
 
 void over_scene_json(struct json_writer *json, const struct over_scene *over)
 {
-    const struct scene_budget *const b = &over->budget;
-    double minsn;
-
     if (!over->is_sized)
         return;
     json_write(json, "scene: {");
-    minsn = scene_cost_json(json, &over->frame, over->baked.bytes);
-    json_write(json, "quality: %.3f, predicted_ms: %.3f, lights: %d",
-               scene_budget_quality(b),
-               over->budget_ms > 0 ? b->predicted_ms : b->ms_per_minsn * minsn,
-               over->lights);
+    scene_cost_json(json, &over->frame, over->baked.bytes);
+    json_write(json, "quality: %.3f, lights: %d",
+               scene_budget_quality(&over->budget), over->lights);
     scene_highlights_json(json, &over->frame);
     json_write(json, "lamps_hidden: %d, poses_bad: %ld, control_bad: %ld}",
                over->lamps_hidden, over->poses.n_bad, over->control.n_bad);

@@ -50,8 +50,6 @@ struct over_scene {
     void *zoom_ctx;
 
     double budget_ms;   /* what drawing may take; 0: as long as it does */
-    double flare_ms;    /* of that for a flare of default quality; 0: there is
-                           none, or the budget is the scene's alone */
     int32_t elapsed_us; /* from the last picture to the next; 0: it is one by
                            itself */
     bool no_tracking;   /* each picture's highlights are its own */

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Qualities of the dials of a scene's budget, and a scene that is drawn coarser
- * while it runs, as live does to hold a rate. */
+ * while it runs: by live, to hold a rate, and to keep a budget. No test reads
+ * the time: frames take what tables say, and the clock is a fake one. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -95,11 +96,158 @@ static void test_coarser(void **state)
     over_scene_close(&over);
 }
 
+/* ------------------------------------------------------------------ budgets */
+
+/* Milliseconds of each level, when the machine is as fast as usual. */
+static const double level_ms[SCENE_BUDGET_LEVELS] = {40, 40, 24, 12, 8, 5};
+
+static struct scene_budget new_budget(void)
+{
+    const struct scene_dials dials = {.width = WIDTH, .height = HEIGHT};
+    struct scene_budget budget;
+
+    scene_budget_init(&budget, &dials);
+    return budget;
+}
+
+/* Draws N frames that take SLOWER times what the table says, within LIMIT_MS.
+ * Returns how many took longer. */
+static int follow(struct scene_budget *b, int n, double slower, double limit_ms)
+{
+    int late = 0;
+
+    for (int i = 0; i < n; i++) {
+        const double ms = slower * level_ms[b->level];
+
+        late += ms > limit_ms;
+        scene_budget_follow(b, ms, limit_ms);
+    }
+    return late;
+}
+
+/* The finest level that fits is found from above, and from below again. */
+static void test_follows(void **state)
+{
+    struct scene_budget b = new_budget();
+
+    (void)state;
+    assert_int_equal(follow(&b, 100, 1, 1000), 0);
+    assert_int_equal(b.level, 0);
+    follow(&b, 12, 1, 30);
+    assert_int_equal(b.level, 2);
+    assert_int_equal(follow(&b, 300, 1, 30), 0);
+    assert_int_equal(b.level, 2);
+    follow(&b, 7, 2, 30);
+    assert_int_equal(b.level, 3);
+    follow(&b, 12, 10, 30);
+    assert_int_equal(b.level, SCENE_BUDGET_LEVELS - 1);
+    follow(&b, 200, 1, 30);
+    assert_int_equal(b.level, 2);
+    follow(&b, 200, .5, 30);
+    assert_int_equal(b.level, 1); /* as dials are requested: 0 is the same */
+}
+
+/* A level that is too slow is seldom tried again. */
+static void test_rests(void **state)
+{
+    struct scene_budget b = new_budget();
+
+    (void)state;
+    follow(&b, 7, 1, 22);
+    assert_int_equal(b.level, 3);
+    assert_true(follow(&b, 1000, 1, 22) <= 14);
+}
+
+/* One slow frame changes nothing. */
+static void test_one_slow(void **state)
+{
+    struct scene_budget b = new_budget();
+
+    (void)state;
+    follow(&b, 12, 1, 30);
+    assert_int_equal(b.level, 2);
+    assert_false(scene_budget_follow(&b, 300, 30));
+    assert_int_equal(follow(&b, 100, 1, 30), 0);
+    assert_int_equal(b.level, 2);
+}
+
+/* The flare takes what the scene leaves, within LEAST and MOST milliseconds of
+ * its qualities 0 and 1. Together they keep 60 ms from some frame on. */
+static void share(double least_ms, double most_ms, int level)
+{
+    struct scene_budget b = new_budget();
+    double flare_ms = 0, quality = 0;
+    int late = 0;
+
+    for (int i = 0; i < 200; i++) {
+        const double scene_ms = level_ms[b.level], left_ms = 60 - scene_ms;
+
+        if (i > 0)
+            scene_budget_follow(&b, scene_ms,
+                                scene_budget_limit(60, flare_ms, quality));
+        flare_ms = fmax(least_ms, fmin(most_ms, left_ms));
+        quality = fmax(0, fmin(1, (left_ms - least_ms) / (most_ms - least_ms)));
+        late += i >= 20 && scene_ms + flare_ms > 60;
+    }
+    assert_int_equal(b.level, level);
+    assert_true(late <= 10); /* of tries */
+}
+
+static void test_shares(void **state)
+{
+    (void)state;
+    share(1, 2, 0);    /* a flare that takes next to nothing */
+    share(10, 200, 2); /* one that could take it all */
+    share(30, 200, 2); /* one that leaves half of it */
+    share(50, 200, 4); /* one that hardly leaves any */
+    assert_true(scene_budget_limit(60, 59, 0) == 6);
+}
+
+static double now_s, step_s;
+
+/* Each reading of the clock takes a step. */
+double __wrap_tool_seconds(void);
+double __wrap_tool_seconds(void)
+{
+    now_s += step_s;
+    return now_s;
+}
+
+/* Pictures of a scene within a budget are those of its quality. */
+static void test_draws(void **state)
+{
+    static const struct tool tool = {.name = "test", .quiet = true};
+    static uint8_t coarse[BYTES], got[BYTES];
+    struct scene_dials dials = {.width = WIDTH, .height = HEIGHT};
+    struct over_scene over = {.file = "tests/data/balls.scene"};
+
+    (void)state;
+    step_s = 1e-3;
+    assert_int_equal(over_scene_open(&over, &tool), EXIT_OK);
+    scene_dials_be(&dials, 0);
+    assert_int_equal(over_scene_size(&over, &dials), EXIT_OK);
+    draw(&over, coarse);
+    dials = (struct scene_dials){.width = WIDTH, .height = HEIGHT};
+    assert_int_equal(over_scene_size(&over, &dials), EXIT_OK);
+    over.budget_ms = 2 * over.ms;
+    for (int i = 0; i < 20; i++)
+        draw(&over, got);
+    assert_true(scene_budget_quality(&over.budget) == .5);
+    step_s = 3e-3;
+    for (int i = 0; i < 20; i++)
+        draw(&over, got);
+    assert_true(scene_budget_quality(&over.budget) == 0);
+    assert_memory_equal(got, coarse, BYTES);
+    over_scene_close(&over);
+}
+
 int main(void)
 {
-    static const struct CMUnitTest tests[] = {cmocka_unit_test(test_qualities),
-                                              cmocka_unit_test(test_steps),
-                                              cmocka_unit_test(test_coarser)};
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_qualities), cmocka_unit_test(test_steps),
+        cmocka_unit_test(test_coarser),   cmocka_unit_test(test_follows),
+        cmocka_unit_test(test_rests),     cmocka_unit_test(test_one_slow),
+        cmocka_unit_test(test_shares),    cmocka_unit_test(test_draws)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
