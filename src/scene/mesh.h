@@ -43,14 +43,6 @@ static inline void glint_mesh_vertices(const struct glint_scene *s,
 int glint_mesh_meet(const struct glint_scene *scene, uint32_t object,
                     uint32_t but_triangle, const struct glint_scene_ray *ray,
                     int any, struct glint_met *met);
-/* The same, adding to WORK what it takes (account/account.c). */
-struct glint_mesh_work {
-    int64_t cells, triangles;
-};
-int glint_mesh_count(const struct glint_scene *scene, uint32_t object,
-                     uint32_t but_triangle, const struct glint_scene_ray *ray,
-                     int any, struct glint_met *met,
-                     struct glint_mesh_work *work);
 int glint_mesh_hold(const struct glint_scene *scene, uint32_t object,
                     uint32_t triangle, const int32_t seen_q30[3],
                     struct glint_met *met);

@@ -118,37 +118,20 @@ static int go_on(const struct inside *in, struct walk *w, int64_t limit)
     return w->cell[next] >= 0 && w->cell[next] < (int32_t)m->cells[next];
 }
 
-/* Returns where the list of W's cell begins. */
-static inline const uint32_t *list_of(const struct inside *in,
-                                      const struct walk *w)
-{
-    const struct glint_scene_mesh *m = in->mesh;
-    const uint32_t *start = glint_mesh_table(in->scene, m->start_at);
-
-    return start + ((size_t)((uint32_t)w->cell[2] * m->cells[1] +
-                             (uint32_t)w->cell[1]) *
-                        m->cells[0] +
-                    (uint32_t)w->cell[0]);
-}
-
-/* Returns how many triangles that has. */
-static inline uint32_t listed(const struct inside *in, const struct walk *w)
-{
-    const uint32_t *start = list_of(in, w);
-
-    return start[1] - start[0];
-}
-
 /* Asks the triangles of the cell; sets MET to the nearest within MET->t. */
 static int ask(const struct inside *in, const struct walk *w,
                struct glint_met *met)
 {
     const struct glint_scene_mesh *m = in->mesh;
-    const uint32_t *start = list_of(in, w);
+    const size_t cell =
+        (size_t)((uint32_t)w->cell[2] * m->cells[1] + (uint32_t)w->cell[1]) *
+            m->cells[0] +
+        (uint32_t)w->cell[0];
+    const uint32_t *start = glint_mesh_table(in->scene, m->start_at);
     const uint32_t *ref = glint_mesh_table(in->scene, m->ref_at);
     int any = 0;
 
-    for (uint32_t i = start[0]; i < start[1]; i++) {
+    for (uint32_t i = start[cell]; i < start[cell + 1]; i++) {
         const int32_t *vertex[3];
         struct glint_spot_on spot;
 
@@ -166,12 +149,9 @@ static int ask(const struct inside *in, const struct walk *w,
     return any;
 }
 
-/* WORK is NULL where nobody counts. */
-static WHOLLY_INLINE int meet(const struct glint_scene *scene, uint32_t object,
-                              uint32_t but_triangle,
-                              const struct glint_scene_ray *ray, int any,
-                              struct glint_met *met,
-                              struct glint_mesh_work *work)
+int glint_mesh_meet(const struct glint_scene *scene, uint32_t object,
+                    uint32_t but_triangle, const struct glint_scene_ray *ray,
+                    int any, struct glint_met *met)
 {
     const struct glint_placed *p = &scene->placed[object];
     struct glint_chord chord;
@@ -186,28 +166,9 @@ static WHOLLY_INLINE int meet(const struct glint_scene *scene, uint32_t object,
         !begin(&in, &w))
         return 0;
     do {
-        if (work) {
-            work->cells++;
-            work->triangles += listed(&in, &w);
-        }
         found |= ask(&in, &w, met);
     } while (!(found && any) && go_on(&in, &w, (int64_t)met->t - in.start));
     return found;
-}
-
-int glint_mesh_meet(const struct glint_scene *scene, uint32_t object,
-                    uint32_t but_triangle, const struct glint_scene_ray *ray,
-                    int any, struct glint_met *met)
-{
-    return meet(scene, object, but_triangle, ray, any, met, NULL);
-}
-
-int glint_mesh_count(const struct glint_scene *scene, uint32_t object,
-                     uint32_t but_triangle, const struct glint_scene_ray *ray,
-                     int any, struct glint_met *met,
-                     struct glint_mesh_work *work)
-{
-    return meet(scene, object, but_triangle, ray, any, met, work);
 }
 
 /* Vertices are in camera coordinates once a frame. */

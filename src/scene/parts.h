@@ -110,15 +110,6 @@ struct glint_scene_stones {
     /* Brings the maps up to date with the frame that was begun; returns how
      * many texels were worked out. */
     int (*update)(struct glint_scene *scene);
-    /* Sets LIT to the texels of map I that were lit in the last frame, SPREAD
-     * to those that light has spread to, times texels of a kernel's side, ranks
-     * and planes. */
-    void (*took)(const struct glint_scene *scene, uint32_t i, int64_t *lit,
-                 int64_t *spread);
-    /* Sets SURFACE to texel TEXEL of those of map I that were lit in the last
-     * frame, or returns 0: there is none of the thing. */
-    int (*place)(const struct glint_scene *scene, uint32_t i, int texel,
-                 struct glint_met_surface *surface);
     /* Adds what comes out of SURFACE along RAY, times WEIGHT_Q15. Returns how
      * many times what it does straight ahead its coat mirrors there, q15, below
      * 2^30; 0 if its material is no stone. */

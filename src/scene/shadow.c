@@ -255,27 +255,6 @@ int32_t glint_shadow_reaches(const struct glint_scene *s,
     return share_of_points(s, shadow, surface, &below, place);
 }
 
-int glint_shadow_listed(const struct glint_scene *s,
-                        const struct glint_shadow *shadow,
-                        const struct glint_met_surface *surface,
-                        const int32_t place[3])
-{
-    const int32_t *ref = shadow->bins.ref, *start = shadow->bins.start;
-    struct below below;
-    int n = 0;
-
-    if (s->placed[surface->object].open_to >> shadow->light & 1)
-        return 0;
-    find(shadow, place, &below);
-    if (below.cell == BEYOND)
-        return -1;
-    if (below.cell == NONE)
-        return 0;
-    for (int32_t i = start[below.cell]; i < start[below.cell + 1]; i++)
-        n += shadow->thing[ref[i]].top > below.at[2];
-    return n;
-}
-
 void glint_scene_forget_shadows(struct glint_scene *s)
 {
     s->moved++;

@@ -338,13 +338,6 @@ int32_t glint_shadow_reaches(const struct glint_scene *scene,
                              const struct glint_met_surface *surface,
                              const int32_t place[3]);
 
-/* Returns how many things that grid lists above PLACE; -1: rays are asked
- * instead. */
-int glint_shadow_listed(const struct glint_scene *scene,
-                        const struct glint_shadow *shadow,
-                        const struct glint_met_surface *surface,
-                        const int32_t place[3]);
-
 /* Sets AT to where rays from SURFACE start: off that of a mesh. */
 static inline void glint_scene_leave(const struct glint_scene *scene,
                                      const struct glint_met_surface *surface,

@@ -227,7 +227,7 @@ static int count_of(const struct explained_scene *s, enum glint_scene_fate fate)
     return n;
 }
 
-static void print_title(const struct explained_scene *s, double minsn)
+static void print_title(const struct explained_scene *s)
 {
     const struct glint_scene_header *const h = model_of(s)->header;
 
@@ -239,7 +239,7 @@ static void print_title(const struct explained_scene *s, double minsn)
         if (count_of(s, (enum glint_scene_fate)k))
             printf(", %s %d", fates[k].word,
                    count_of(s, (enum glint_scene_fate)k));
-    printf("\nwork: about %.2f M instructions\n", minsn);
+    printf("\n");
 }
 
 static void print_lights(const struct explained_scene *s)
@@ -285,47 +285,32 @@ static const struct {
 
 enum { N_LAYERS = sizeof layers / sizeof *layers };
 
-static void print_layers(const struct explained_scene *s, double minsn)
+static void print_layers(const struct explained_scene *s)
 {
     if (!model_of(s)->motion)
         return;
-    printf("\n%-26s %8s %8s %*s\n", "over the motion's things", "pixels",
-           "number", 55, "work%");
+    printf("\n%-26s %8s %8s\n", "over the motion's things", "pixels", "number");
     for (int i = 0; i < N_LAYERS; i++) {
         const struct glint_scene_layered *const l =
             &s->account.layer[layers[i].kind];
 
-        printf("    %-22s %8" PRId64 " %8d %*.1f\n", layers[i].word, l->pixels,
-               l->n, 55,
-               minsn > 0
-                   ? 100 * scene_cost_layer(&s->account, layers[i].kind) / minsn
-                   : 0);
+        printf("    %-22s %8" PRId64 " %8d\n", layers[i].word, l->pixels, l->n);
     }
 }
 
 /* Light below the surface of stones. */
 static void print_maps(const struct explained_scene *s)
 {
-    const int n = s->compositor->scene.frame.map_texels;
-
     if (model_of(s)->header->n_skins > 0)
-        printf("\nmaps of stones: light has spread to %d texels, %.2f M "
-               "instructions\n",
-               n,
-               1e-3 * (scene_cost_weight[GLINT_SCENE_GATHERED].kinsn *
-                           (double)s->account.all.count[GLINT_SCENE_GATHERED] +
-                       scene_cost_weight[GLINT_SCENE_SPREAD].kinsn *
-                           (double)s->account.all.count[GLINT_SCENE_SPREAD]));
+        printf("\nmaps of stones: light has spread to %d texels\n",
+               s->compositor->scene.frame.map_texels);
 }
 
 void explain_scene_print(const struct explained_scene *s)
 {
-    const double minsn = scene_cost_minsn(&s->account);
-
-    print_title(s, minsn);
-    printf("\n%3s %-22s %8s %8s %9s %8s %8s %7s %9s %6s\n", "", "thing",
-           "pixels", "shaded", "shadows", "texels", "lookups", "bounced",
-           "triangles", "work%");
+    print_title(s);
+    printf("\n%3s %-22s %8s %8s %9s %8s %8s %7s %9s\n", "", "thing", "pixels",
+           "shaded", "shadows", "texels", "lookups", "bounced", "triangles");
     for (uint32_t i = 0; i < model_of(s)->header->n_objects; i++) {
         const struct glint_scene_part *const p = &s->account.objects[i];
         const int64_t *const n = p->count;
@@ -336,15 +321,15 @@ void explain_scene_print(const struct explained_scene *s)
                    " %8" PRId64 " %7" PRId64 " %9" PRId64,
                    n[GLINT_SCENE_COVERING], n[GLINT_SCENE_SHADED],
                    n[GLINT_SCENE_SHADOWS], n[GLINT_SCENE_TEXELS],
-                   4 * (n[GLINT_SCENE_FOURS] + n[GLINT_SCENE_NEAREST]),
-                   n[GLINT_SCENE_BOUNCED], n[GLINT_SCENE_TRIANGLES]);
+                   n[GLINT_SCENE_LOOKUPS], n[GLINT_SCENE_BOUNCED],
+                   n[GLINT_SCENE_TRIANGLES]);
         else
-            printf("%s%s%-*s", fates[p->fate].reason,
-                   p->fate == GLINT_SCENE_COVERED ? " " : "", 12,
+            printf("%s%s%s", fates[p->fate].reason,
+                   p->fate == GLINT_SCENE_COVERED ? " " : "",
                    p->fate == GLINT_SCENE_COVERED ? name_of(s, p->by) : "");
-        printf(" %6.1f\n", minsn > 0 ? 100 * scene_cost_part(p) / minsn : 0);
+        printf("\n");
     }
-    print_layers(s, minsn);
+    print_layers(s);
     print_maps(s);
     print_lights(s);
     print_highlights(s);
@@ -389,8 +374,6 @@ static void lights_json(struct json_writer *json,
 void explain_scene_json(struct json_writer *json,
                         const struct explained_scene *s)
 {
-    const double minsn = scene_cost_minsn(&s->account);
-
     json_write(json, "{objects: [");
     for (uint32_t i = 0; i < model_of(s)->header->n_objects; i++) {
         const struct glint_scene_part *const p = &s->account.objects[i];
@@ -400,21 +383,17 @@ void explain_scene_json(struct json_writer *json,
                    model_of(s)->object[i].name, fates[p->fate].word,
                    is_covered ? name_of(s, p->by) : NULL);
         for (int k = 0; k < GLINT_SCENE_ITEMS; k++)
-            json_write(json, "%s: %" PRId64, scene_cost_weight[k].name,
+            json_write(json, "%s: %" PRId64, scene_item_name[k],
                        p->count[k]);
-        json_write(json, "work_share: %.6g}",
-                   minsn > 0 ? scene_cost_part(p) / minsn : 0);
+        json_write(json, "}");
     }
     json_write(json, "], layers: {");
     for (int k = 0; k < N_LAYERS; k++)
-        json_write(
-            json, "%s: {number: %d, pixels: %" PRId64 ", work_share: %.6g}",
-            layers[k].word, s->account.layer[layers[k].kind].n,
-            s->account.layer[layers[k].kind].pixels,
-            minsn > 0 ? scene_cost_layer(&s->account, layers[k].kind) / minsn
-                      : 0);
+        json_write(json, "%s: {number: %d, pixels: %" PRId64 "}",
+                   layers[k].word, s->account.layer[layers[k].kind].n,
+                   s->account.layer[layers[k].kind].pixels);
     json_write(json, "}");
     lights_json(json, s);
     highlights_json(json, s);
-    json_write(json, "minsn: %.4f}", minsn);
+    json_write(json, "}");
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * A scene explained by a picture: things outlined and numbered, in colours by
- * what a pixel of each costs, a legend below. */
+ * the steps of a pixel of each, a legend below. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@ struct heat {
     const struct explained_scene *scene;
     const struct glint_image *image;
     int width, height, scale;
-    double most; /* instructions of a pixel of the dearest thing, thousands */
+    double most; /* steps of a pixel, of the thing that has most */
 };
 
 static int n_objects(const struct heat *h)
@@ -24,22 +24,25 @@ static int n_objects(const struct heat *h)
     return (int)h->scene->compositor->scene.baked.model.header->n_objects;
 }
 
-/* Returns what a pixel of OBJECT costs, thousand instructions. */
-static double cost_of(const struct heat *h, int object)
+/* Returns the steps of a pixel of OBJECT: places shaded, shadows, texels,
+ * lookups and rays that continue. */
+static double steps_of(const struct heat *h, int object)
 {
-    const struct glint_scene_part *const p = &h->scene->account.objects[object];
+    const int64_t *const n = h->scene->account.objects[object].count;
 
-    return p->count[GLINT_SCENE_COVERING] > 0
-               ? 1e3 * scene_cost_part(p) /
-                     (double)p->count[GLINT_SCENE_COVERING]
+    return n[GLINT_SCENE_COVERING] > 0
+               ? (double)(n[GLINT_SCENE_SHADED] + n[GLINT_SCENE_SHADOWS] +
+                          n[GLINT_SCENE_TEXELS] + n[GLINT_SCENE_LOOKUPS] +
+                          n[GLINT_SCENE_BOUNCED]) /
+                     (double)n[GLINT_SCENE_COVERING]
                : 0;
 }
 
-/* Sets RGB to the colour of OBJECT: blue, red, yellow by the root of its cost.
+/* Sets RGB to the colour of OBJECT: blue, red, yellow by the root of its steps.
  */
 static void colour_of(const struct heat *h, int object, uint8_t rgb[3])
 {
-    const double x = h->most > 0 ? sqrt(cost_of(h, object) / h->most) : 0;
+    const double x = h->most > 0 ? sqrt(steps_of(h, object) / h->most) : 0;
 
     rgb[0] = (uint8_t)(255 * fmin(1, 2 * x));
     rgb[1] = (uint8_t)(255 * fmax(0, 2 * x - 1));
@@ -162,11 +165,8 @@ static void put_entry(const struct heat *h, int i)
     paint_colour(&p, rgb[0], rgb[1], rgb[2]);
     paint_fill(&p, x, y, x + 5 * p.line, y + 5 * p.line);
     paint_colour(&p, 208, 208, 208);
-    snprintf(text, sizeof text, "%d %.16s  work %.1f%%  %.1f k a px", i,
-             object->name,
-             100 * scene_cost_part(&h->scene->account.objects[i]) /
-                 fmax(scene_cost_minsn(&h->scene->account), 1e-9),
-             cost_of(h, i));
+    snprintf(text, sizeof text, "%d %.16s  %.1f steps a px", i, object->name,
+             steps_of(h, i));
     paint_text(&p, x + 8 * p.line, y, text);
 }
 
@@ -187,7 +187,7 @@ enum glint_status explain_scene_mark(const struct explained_scene *scene,
     if (status != GLINT_OK)
         return status;
     for (int i = 0; i < n_objects(&h); i++)
-        h.most = fmax(h.most, cost_of(&h, i));
+        h.most = fmax(h.most, steps_of(&h, i));
     shade(&h);
     number(&h);
     for (int i = 0; i < entries_of(&h); i++)

@@ -211,7 +211,7 @@ static void say_frame(const struct tool *tool, const struct scene_frame *frame,
         return;
     scene_budget_init(&budget, dials);
     json_write(&json, "{engine: %s, scene: {", "model");
-    scene_cost_json(&json, frame, frame->model->header->bytes);
+    scene_account_json(&json, frame, frame->model->header->bytes);
     json_write(&json, "quality: %.3f, lights: %u",
                scene_budget_quality(&budget), frame->model->header->n_lights);
     scene_highlights_json(&json, frame);

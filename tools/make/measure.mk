@@ -147,10 +147,6 @@ zoom-halfway-table: all
 cost-fit: all $(OUT)/cost_frames
 	@tools/make/deps "instruction counts" valgrind >&2
 	@tools/report/cost-fit $(OUT)/cost_frames $(COUNTS) | tools/report/write-figures cost/plans
-# The weights of tools/scenes/account.c, likewise.
-scene-cost-fit: all $(OUT)/scene_told
-	@tools/make/deps "instruction counts" valgrind >&2
-	@tests/scene-fit $(OUT)/scene_told $(COUNTS) | tools/report/write-figures scenes/told
 budget: all
 	@tools/make/deps "instruction counts on ARM" gcc-aarch64-linux-gnu \
 	        libc6-dev-arm64-cross qemu-user >&2
@@ -163,4 +159,4 @@ budget: all
         library-table azimuth-table projection-table accuracy-table colour-table ray-table stop-table \
         power-fit corpus corpus-evaluate corpus-stars corpus-sheet corpus-report gallery \
         lens-sheet corpus-fit bench bench-insn growth size trade reuse-table left-table memory-table \
-        zoom-halfway-table cost-fit scene-cost-fit budget
+        zoom-halfway-table cost-fit budget

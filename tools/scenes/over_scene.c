@@ -421,7 +421,7 @@ void over_scene_json(struct json_writer *json, const struct over_scene *over)
     if (!over->is_sized)
         return;
     json_write(json, "scene: {");
-    scene_cost_json(json, &over->frame, over->baked.bytes);
+    scene_account_json(json, &over->frame, over->baked.bytes);
     json_write(json, "quality: %.3f, lights: %d",
                scene_budget_quality(&over->budget), over->lights);
     scene_highlights_json(json, &over->frame);

@@ -28,37 +28,16 @@ enum glint_scene_fate {
     GLINT_SCENE_FATES
 };
 
-/* Items of a frame whose number decides its cost. */
+/* What there is to do for a frame. */
 enum glint_scene_item {
     GLINT_SCENE_TRIANGLES, /* entries in the lists of tiles */
-    GLINT_SCENE_TOUCHED,   /* pixels of boxes of things, in each tile */
-    GLINT_SCENE_LOOKED,    /* samples of the boxes of planes */
-    GLINT_SCENE_ROWS,      /* of the boxes of balls, in each tile */
-    GLINT_SCENE_SAMPLED,   /* of pixels, that see it */
+    GLINT_SCENE_SAMPLED,   /* samples of pixels that see it */
     GLINT_SCENE_COVERING,  /* pixels that see it */
     GLINT_SCENE_SHADED,    /* times that a place is shaded */
-    GLINT_SCENE_MESHED,    /* of these, on meshes */
-    GLINT_SCENE_LIT,       /* places shaded, by each light in front of them */
-    GLINT_SCENE_SHADOWS,   /* points asked of suns' lists of shadows */
-    GLINT_SCENE_LISTED,    /* things that these list above the places */
-    GLINT_SCENE_RAYS,      /* rays through the scene, to other lights and on */
-    GLINT_SCENE_AIMED,     /* of these, to points of a lamp's disc */
-    GLINT_SCENE_ASKED,     /* things that these ask */
-    GLINT_SCENE_ENTERED,   /* meshes of these whose grids they enter */
-    GLINT_SCENE_WALKED,    /* cells that they walk through there */
-    GLINT_SCENE_TRIED,     /* triangles that these cells list */
+    GLINT_SCENE_SHADOWS,   /* points of lights whose shadows are looked up */
     GLINT_SCENE_TEXELS,    /* texels read */
-    GLINT_SCENE_SKIES,     /* places whose colour an environment lights */
-    GLINT_SCENE_METALS,    /* places on brushed metal that it lights */
-    GLINT_SCENE_FOURS,     /* fours of lookups of these, two levels each */
-    GLINT_SCENE_NEAREST,   /* fours of lookups, one level each */
-    GLINT_SCENE_LOBES,     /* places on brushed metal, by each light in front */
-    GLINT_SCENE_BOUNCED,   /* rays that go on from places shaded */
-    GLINT_SCENE_PASSED,    /* of these, through things */
-    GLINT_SCENE_GATHERED,  /* texels of maps of stones that were lit, by each
-                              light, and three times by what is around */
-    GLINT_SCENE_SPREAD,    /* texels that light has spread to, by each texel of
-                              a kernel's side, of all its ranks and planes */
+    GLINT_SCENE_LOOKUPS,   /* of an environment, by brushed metal */
+    GLINT_SCENE_BOUNCED,   /* rays that continue from places shaded */
     GLINT_SCENE_ITEMS
 };
 

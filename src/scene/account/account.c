@@ -23,100 +23,20 @@ struct account {
 
 /* ---------------------------------------------------------------- surfaces */
 
-/* Counts what TIMES rays like RAY, which leave SURFACE, take of mesh I. */
-static void count_mesh(const struct glint_scene *s, uint32_t i,
-                       const struct glint_scene_ray *ray,
-                       const struct glint_met_surface *surface, int any,
-                       int times, struct glint_met *met,
-                       struct glint_scene_part *part)
-{
-    struct glint_mesh_work work = {0, 0};
-
-    glint_mesh_count(s, i,
-                     i == surface->object ? surface->triangle : GLINT_NOTHING,
-                     ray, any, met, &work);
-    part->count[GLINT_SCENE_ENTERED] += work.cells > 0 ? times : 0;
-    part->count[GLINT_SCENE_WALKED] += times * work.cells;
-    part->count[GLINT_SCENE_TRIED] += times * work.triangles;
-}
-
-/* Counts TIMES rays like RAY, from a place of SURFACE, and what they ask. ANY:
- * the nearest is not needed. */
-static void count_rays(const struct glint_scene *s,
-                       const struct glint_scene_ray *ray,
-                       const struct glint_met_surface *surface, int any,
-                       int times, struct glint_scene_part *part)
-{
-    struct glint_met met = {.t = GLINT_FAR};
-
-    part->count[GLINT_SCENE_RAYS] += times;
-    for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
-        const struct glint_placed *p = &s->placed[i];
-
-        if (!p->is_shown || p->is_catcher)
-            continue;
-        part->count[GLINT_SCENE_ASKED] += times;
-        if (p->object->kind == GLINT_OBJECT_MESH)
-            count_mesh(s, i, ray, surface, any, times, &met, part);
-    }
-}
-
-/* Returns how many planes throw shadows, which lists do not have. */
-static int planes_of(const struct glint_scene *s)
-{
-    int n = 0;
-
-    for (uint32_t i = 0; i < s->model.header->n_objects; i++)
-        n += s->placed[i].is_shown && !s->placed[i].is_catcher &&
-             s->placed[i].object->kind == GLINT_OBJECT_PLANE;
-    return n;
-}
-
-/* Counts what asking a light for its share takes. */
+/* Counts the points of lights that face SURFACE. */
 static void count_shadows(const struct glint_scene *s,
                           const struct glint_met_surface *surface,
-                          const struct glint_lit *lit,
-                          const int32_t toward_q30[3],
                           struct glint_scene_part *part)
 {
-    const int n = lit->light->radius ? s->cfg.shadow_points : 1;
-    struct glint_scene_ray to;
-    int listed = -1;
-
-    glint_scene_leave(s, surface, to.at);
-    if (lit->shadow && lit->shadow->is_ready)
-        listed = glint_shadow_listed(s, lit->shadow, surface, to.at);
-    if (listed >= 0) {
-        part->count[GLINT_SCENE_SHADOWS] += n;
-        part->count[GLINT_SCENE_LISTED] += (int64_t)n * listed;
-        part->count[GLINT_SCENE_ASKED] +=
-            glint_scene_other_planes(s, surface->object)
-                ? (int64_t)n * planes_of(s)
-                : 0;
-        return;
-    }
-    for (int k = 0; k < 3; k++)
-        to.toward_q30[k] = toward_q30[k];
-    part->count[GLINT_SCENE_AIMED] += n > 1 && !lit->shadow ? n : 0;
-    count_rays(s, &to, surface, 1, n, part);
-}
-
-/* Counts the lights that face SURFACE, and what is asked about them. */
-static void count_lights(const struct glint_scene *s,
-                         const struct glint_met_surface *surface,
-                         struct glint_scene_part *part)
-{
-    for (uint32_t i = 0; i < s->n_lit; i++) {
+    for (uint32_t i = 0; s->model.header->shadow && i < s->n_lit; i++) {
         const struct glint_lit *lit = &s->lit[i];
         int32_t toward_q30[3], level_q15[3];
 
-        if (!glint_scene_light_at(s, lit, surface->place, toward_q30,
-                                  level_q15) ||
-            v3_dot(toward_q30, surface->normal_q30) <= 0)
-            continue;
-        part->count[GLINT_SCENE_LIT]++;
-        if (s->model.header->shadow)
-            count_shadows(s, surface, lit, toward_q30, part);
+        if (glint_scene_light_at(s, lit, surface->place, toward_q30,
+                                 level_q15) &&
+            v3_dot(toward_q30, surface->normal_q30) > 0)
+            part->count[GLINT_SCENE_SHADOWS] +=
+                lit->light->radius ? s->cfg.shadow_points : 1;
     }
 }
 
@@ -137,38 +57,17 @@ static void count_lit(const struct glint_scene *s,
                       const struct glint_met_surface *surface,
                       struct glint_scene_part *part)
 {
-    const int64_t before = part->count[GLINT_SCENE_LIT];
-    const struct glint_scene_material *m = surface->material;
-    const int has_sky = s->model.header->n_environments > 0;
-    const int is_metal = m->ward != GLINT_SCENE_NONE;
-    const int has_colour = m->rgb_q15[0] || m->rgb_q15[1] || m->rgb_q15[2];
+    const int is_metal = surface->material->ward != GLINT_SCENE_NONE;
 
     if (is_stone(s, surface)) {
         part->count[GLINT_SCENE_TEXELS] += MAP_TEXELS;
         if (!is_metal)
             return;
     }
-    count_lights(s, surface, part);
-    if (s->placed[surface->object].object->catcher_q15)
-        return;
-    part->count[GLINT_SCENE_LOBES] +=
-        is_metal ? part->count[GLINT_SCENE_LIT] - before : 0;
-    part->count[GLINT_SCENE_SKIES] += has_sky && m->diffuse_q15 && has_colour;
-    if (!has_sky || !is_metal)
-        return;
-    part->count[GLINT_SCENE_METALS]++;
-    part->count[s->cfg.ward_nearest ? GLINT_SCENE_NEAREST
-                                    : GLINT_SCENE_FOURS] +=
-        (s->cfg.ward_samples + 3) / 4;
-}
-
-/* Counts a place of OBJECT that is shaded. */
-static void count_place(const struct glint_scene *s, uint32_t object,
-                        struct glint_scene_part *part)
-{
-    part->count[GLINT_SCENE_SHADED]++;
-    part->count[GLINT_SCENE_MESHED] +=
-        s->placed[object].object->kind == GLINT_OBJECT_MESH;
+    count_shadows(s, surface, part);
+    if (is_metal && s->model.header->n_environments > 0 &&
+        !s->placed[surface->object].object->catcher_q15)
+        part->count[GLINT_SCENE_LOOKUPS] += s->cfg.ward_samples;
 }
 
 /* Goes on along RAY from SURFACE, and counts what is met and shaded there.
@@ -182,11 +81,10 @@ static int go_on(const struct glint_scene *s, struct glint_scene_ray *ray,
 
     part->count[GLINT_SCENE_BOUNCED]++;
     glint_scene_leave(s, &from, ray->at);
-    count_rays(s, ray, &from, 0, 1, part);
     if (!glint_scene_meet(s, ray, from.object, from.triangle, &met) ||
         !glint_scene_surface(s, ray, &met, surface))
         return 0;
-    count_place(s, met.object, part);
+    part->count[GLINT_SCENE_SHADED]++;
     count_lit(s, surface, part);
     return 1;
 }
@@ -206,11 +104,9 @@ static void count_bounces(const struct glint_scene *s,
         at = *surface;
         on = *ray;
     }
-    for (int i = 0; i < GLINT_SCENE_PASSES && at.material->pass_q15; i++) {
-        part->count[GLINT_SCENE_PASSED]++;
+    for (int i = 0; i < GLINT_SCENE_PASSES && at.material->pass_q15; i++)
         if (!go_on(s, &on, &at, part))
             return;
-    }
 }
 
 /* Counts a place of ID that is shaded, at (X, Y), q8. */
@@ -226,7 +122,7 @@ static void count_shade(const struct account *a, uint32_t id, int32_t x_q8,
     struct glint_met met;
     int32_t seen_q30[3];
 
-    count_place(s, id >> 20, part);
+    part->count[GLINT_SCENE_SHADED]++;
     glint_view_ray(&s->view, x_q8, y_q8, &ray, seen_q30);
     if (!glint_scene_meet_id(s, &ray, seen_q30, id, &met) ||
         !glint_scene_surface(s, &ray, &met, &surface))
@@ -311,28 +207,11 @@ static void count_pixel(const struct account *a,
 static void count_tile(const struct account *a, struct glint_scene_worker *w,
                        struct glint_box tile)
 {
-    const struct glint_scene *s = a->scene;
-
     if (!glint_scene_look(w, tile))
         return;
-    a->all->count[GLINT_SCENE_TOUCHED] +=
-        (int64_t)(w->touched.x1 - w->touched.x0) *
-        (w->touched.y1 - w->touched.y0);
     for (int y = w->touched.y0; y < w->touched.y1; y++)
         for (int x = w->touched.x0; x < w->touched.x1; x++)
             count_pixel(a, w, x, y);
-    for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
-        const struct glint_placed *p = &s->placed[i];
-        const struct glint_box b = glint_box_cut(tile, p->box);
-
-        if (!p->is_seen || glint_box_empty(b))
-            continue;
-        if (p->object->kind == GLINT_OBJECT_PLANE)
-            a->objects[i].count[GLINT_SCENE_LOOKED] +=
-                (int64_t)(b.x1 - b.x0) * (b.y1 - b.y0) * s->cfg.edge_samples;
-        else if (p->object->kind == GLINT_OBJECT_SPHERE)
-            a->objects[i].count[GLINT_SCENE_ROWS] += b.y1 - b.y0;
-    }
 }
 
 /* ------------------------------------------------------------------- fates */
@@ -409,43 +288,6 @@ static void clear(const struct account *a)
         a->seen[i] = -1;
 }
 
-/* Counts how many shadows were asked for LIT texels of the map of skin I: of
- * every 61st, which is in another column each time. */
-static void count_map_shadows(const struct glint_scene *s, uint32_t i, int lit,
-                              int64_t *count)
-{
-    enum { STEP = 61 };
-    struct glint_scene_part some = {.by = -1};
-
-    for (int k = 0; k < lit; k += STEP) {
-        struct glint_met_surface surface;
-
-        if (s->cfg.parts.stones->place(s, i, k, &surface))
-            count_lights(s, &surface, &some);
-    }
-    for (int k = GLINT_SCENE_SHADOWS; k <= GLINT_SCENE_TRIED; k++)
-        count[k] += STEP * some.count[k];
-}
-
-/* Counts what maps of stones took in the last frame. What is around a texel
- * costs as much as three lights. */
-static void count_maps(const struct account *a)
-{
-    const struct glint_scene *s = a->scene;
-    const struct glint_scene_header *h = s->model.header;
-
-    for (uint32_t i = 0; s->stones && i < h->n_skins; i++) {
-        int64_t *count = a->objects[s->model.skin[i].object].count;
-        int64_t lit, spread;
-
-        s->cfg.parts.stones->took(s, i, &lit, &spread);
-        count[GLINT_SCENE_GATHERED] +=
-            lit * (s->n_lit + (h->n_environments ? 3 : 0));
-        count[GLINT_SCENE_SPREAD] += spread;
-        count_map_shadows(s, i, (int)lit, count);
-    }
-}
-
 void glint_scene_account(struct glint_scene *scene,
                          struct glint_scene_part *objects,
                          struct glint_scene_part *all, int16_t *seen)
@@ -455,7 +297,6 @@ void glint_scene_account(struct glint_scene *scene,
     const int n_tiles = bins->tiles_x * bins->tiles_y;
 
     clear(&a);
-    count_maps(&a);
     for (int tile = 0; tile < n_tiles; tile++)
         count_tile(&a, &scene->worker[0], glint_bins_tile(bins, tile));
     for (int32_t i = 0; scene->has_triangles && i < bins->start[n_tiles]; i++)

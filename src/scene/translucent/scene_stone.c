@@ -281,7 +281,6 @@ static int update(struct glint_scene *scene)
         const struct glint_placed *p = &scene->placed[u.skin->of->object];
         int blocks;
 
-        u.skin->texels_lit = u.skin->texels_spread = 0;
         u.skin->most_coat_q15 = most_coat_q15(scene, u.skin);
         if (!p->is_shown || (!p->is_seen && !scene->has_split))
             continue;
@@ -294,35 +293,9 @@ static int update(struct glint_scene *scene)
         glint_workers_run(scene->cfg.workers, CHANNELS * u.skin->across,
                           spread_job, &u);
         note(u.skin);
-        u.skin->texels_lit = u.skin->n_list * BLOCK_TEXELS;
-        u.skin->texels_spread = blocks * BLOCK_TEXELS;
-        n += u.skin->texels_spread;
+        n += blocks * BLOCK_TEXELS;
     }
     return n;
-}
-
-static void took(const struct glint_scene *scene, uint32_t i, int64_t *lit,
-                 int64_t *spread)
-{
-    const struct glint_stone_skin *skin = &scene->stones->skin[i];
-    const struct glint_translucent_header *h = skin->stone.header;
-
-    *lit = skin->texels_lit;
-    *spread = (int64_t)skin->texels_spread * h->n_planes * h->rank * h->kernel;
-}
-
-static int lit_place(const struct glint_scene *scene, uint32_t i, int texel,
-                     struct glint_met_surface *surface)
-{
-    const struct glint_stone_skin *skin = &scene->stones->skin[i];
-    const int block = skin->list[texel / BLOCK_TEXELS];
-    const int within = texel % BLOCK_TEXELS;
-
-    return glint_stone_surface(
-        scene, skin,
-        block % skin->across * GLINT_BLOCK_WIDTH + within % GLINT_BLOCK_WIDTH,
-        block / skin->across * GLINT_BLOCK_HEIGHT + within / GLINT_BLOCK_WIDTH,
-        surface);
 }
 
 /* ------------------------------------------------------------------- showing
@@ -416,5 +389,5 @@ static int32_t add(const struct glint_scene *scene,
     return coat;
 }
 
-const struct glint_scene_stones glint_scene_stones = {
-    carve, open_stones, relight, update, took, lit_place, add};
+const struct glint_scene_stones glint_scene_stones = {carve, open_stones,
+                                                      relight, update, add};

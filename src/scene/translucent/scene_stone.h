@@ -36,8 +36,6 @@ struct glint_stone_skin {
     uint8_t *block;               /* [down][across] */
     uint16_t *list;               /* [down][across] blocks to be lit */
     int n_list;
-    /* Of the last frame: texels lit, and those that light has spread to. */
-    int texels_lit, texels_spread;
     int shift;      /* light, q15, is that of the map times 2^shift */
     int is_lit;     /* has been once */
     uint32_t moved; /* what the scene had when it was */
@@ -60,11 +58,6 @@ void glint_stone_expose(const struct glint_scene *scene,
                         struct glint_stone_skin *skin);
 void glint_stone_light_block(const struct glint_scene *scene,
                              const struct glint_stone_skin *skin, int i);
-
-/* Sets SURFACE to texel (X, Y); returns 0 if it is none of the thing. */
-int glint_stone_surface(const struct glint_scene *scene,
-                        const struct glint_stone_skin *skin, int x, int y,
-                        struct glint_met_surface *surface);
 
 /* Returns the most light that a surface has from the environment. */
 int32_t glint_stone_around(const struct glint_scene *scene);

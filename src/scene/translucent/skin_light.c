@@ -186,7 +186,8 @@ static void add_light(const struct glint_scene *s,
     }
 }
 
-int glint_stone_surface(const struct glint_scene *s,
+/* Sets SURFACE to texel (X, Y); returns 0 if it is none of the thing. */
+static int find_surface(const struct glint_scene *s,
                         const struct glint_stone_skin *skin, int x, int y,
                         struct glint_met_surface *surface)
 {
@@ -205,7 +206,7 @@ static void light_texel(const struct glint_scene *s,
 {
     struct glint_met_surface surface;
 
-    if (!glint_stone_surface(s, skin, x, y, &surface))
+    if (!find_surface(s, skin, x, y, &surface))
         return;
     for (uint32_t i = 0; i < s->n_lit; i++)
         add_light(s, skin, &surface, &s->lit[i], rgb_q15);

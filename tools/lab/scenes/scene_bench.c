@@ -214,7 +214,7 @@ static void print_trial(const struct scene_bench *b, int i)
            stage_ms(b, i, SCENE_WHOLE) / floor_ms);
     for (int s = 0; s < SCENE_WHOLE; s++)
         printf(" %7.2f", stage_ms(b, i, s) / floor_ms);
-    printf("  %7d %7.2f %7.2f\n", t->covered_px, t->minsn_told,
+    printf("  %7d %7.2f\n", t->covered_px,
            (double)(t->frame.bytes + b->scene.bytes) / (1 << 20));
 }
 
@@ -228,7 +228,7 @@ static void print(const struct scene_bench *b)
            "points", "shading", "th", "sets", "ms", "ratio");
     for (int s = 0; s < SCENE_WHOLE; s++)
         printf(" %7s", stage_names[s]);
-    printf("  %7s %7s %7s\n", "covers", "Minsn", "MiB");
+    printf("  %7s %7s\n", "covers", "MiB");
     for (int i = 0; i < b->n_trials; i++)
         print_trial(b, i);
 }
@@ -251,9 +251,9 @@ static void json_trial(struct json_writer *json, const struct scene_bench *b,
     for (int s = 0; s < SCENE_STAGES; s++)
         json_write(json, "%s_ms: %.4f", stage_names[s], stage_ms(b, i, s));
     json_write(json,
-               "instructions: %.0f, predicted_minsn: %.4f, covered_px: %d, "
+               "instructions: %.0f, covered_px: %d, "
                "triangles: %d, arena_bytes: %zu, model_bytes: %zu}",
-               t->instructions, t->minsn_told, t->covered_px,
+               t->instructions, t->covered_px,
                t->frame.stats.triangles, t->frame.bytes, b->scene.bytes);
 }
 

@@ -55,7 +55,6 @@ void scene_trial_close(struct scene_trial *trial)
 
 enum glint_status scene_trial_warm(struct scene_trial *trial)
 {
-    struct scene_account account;
     enum glint_status status = GLINT_OK;
 
     if (trial->bare.scene)
@@ -64,13 +63,8 @@ enum glint_status scene_trial_warm(struct scene_trial *trial)
     if (status == GLINT_OK)
         status = scene_frame_try(&trial->frame, &trial->canvas->image);
     if (status == GLINT_OK)
-        status = scene_account_make(&account, &trial->frame);
-    if (status != GLINT_OK)
-        return status;
-    trial->minsn_told = scene_cost_minsn(&account);
-    trial->covered_px = scene_covered_px(&trial->frame);
-    scene_account_free(&account);
-    return GLINT_OK;
+        trial->covered_px = scene_covered_px(&trial->frame);
+    return status;
 }
 
 /* Draws a frame. Notes the times at which stages begin, and the end. */

@@ -39,7 +39,6 @@ struct scene_trial {
 
     double ms[SCENE_STAGES][SCENE_ROUNDS];
     double instructions; /* of the last frame; NAN: they are not counted */
-    double minsn_told;
     int covered_px;
 };
 
@@ -52,7 +51,7 @@ int scene_trial_open(struct scene_trial *trial, const struct tool *tool,
                      const struct scene_dials *dials, struct canvas *canvas);
 void scene_trial_close(struct scene_trial *trial);
 
-/* Draws a frame that is not timed, and takes what it is told to cost. */
+/* Draws a frame that is not timed. */
 enum glint_status scene_trial_warm(struct scene_trial *trial);
 
 /* Draws a frame and notes its times as those of round ROUND, and its
