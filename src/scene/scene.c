@@ -21,7 +21,6 @@ void glint_scene_defaults(struct glint_scene_config *cfg, int width, int height)
                                        .edge_samples = 4,
                                        .shadow_points = 4,
                                        .ward_samples = 8,
-                                       .stone_frames = 1,
                                        .highlights = -1,
                                        .max_refs = 1 << 15};
 }
@@ -79,7 +78,6 @@ static int is_in_range(const struct glint_scene_config *c)
            c->tile_log2 <= 6 && is_one_of(c->edge_samples, 1 | 4 | 8 | 16) &&
            is_one_of(c->shadow_points, 1 | 4 | 16) && c->ward_samples >= 1 &&
            c->ward_samples <= 32 && (c->ward_nearest & ~1) == 0 &&
-           is_one_of(c->stone_frames, 1 | 2 | 4) &&
            (c->half_shading & ~1) == 0 && c->highlights >= -1 &&
            c->highlights <= 8 && c->max_refs >= 0 &&
            glint_workers_count(c->workers) <= 64;

@@ -73,7 +73,6 @@ static const struct {
     {NULL, "buffers", "a whole number, 2 to 32"},
     {NULL, "cost", "time or instructions"},
     {NULL, "engine", "model or exact"},
-    {NULL, "stone-frames", "1, 2 or 4"},
     {NULL, "exact-grid", "an even number, 4 to 1024"},
     {NULL, "field", "millimetres, above 0"},
     {NULL, "fps", "N or N/D, frames a second, from 1"},

@@ -40,8 +40,6 @@ static void turn(struct glint_scene_config *cfg,
     if (dials->has_highlights)
         cfg->highlights = dials->highlights;
     cfg->dither = dials->dither;
-    if (dials->stone_frames)
-        cfg->stone_frames = dials->stone_frames;
     if (dials->tile_log2)
         cfg->tile_log2 = dials->tile_log2;
 }

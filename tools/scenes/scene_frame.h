@@ -25,7 +25,6 @@ struct scene_dials {
     bool has_highlights;
     int highlights; /* 0 .. 8, whatever the scene says, with has_highlights */
     int tile_log2;
-    int stone_frames; /* 1, 2 or 4: maps of stones are as old as that */
     bool dither;
 };
 

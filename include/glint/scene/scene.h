@@ -77,9 +77,6 @@ struct glint_scene_config {
     int ward_samples;  /* 1 .. 32: lookups of an environment for a place on
                           brushed metal */
     int ward_nearest;  /* 1: each reads one level, not two blended */
-    int stone_frames;  /* 1, 2 or 4: light on translucent things that changes
-                          from frame to frame is followed in every one of so
-                          many; what comes into view is lit at once */
     int highlights;    /* 0 .. 8: that are found at most; -1: as many as the
                           model says */
     int dither;        /* 1: 8-bit output is dithered, deterministically */

@@ -152,13 +152,10 @@ static void forget(const struct glint_scene *s, struct glint_stone_skin *skin)
 {
     if (skin->is_lit && skin->moved == s->moved)
         return;
-    if (skin->is_lit && ++skin->waited < s->cfg.stone_frames)
-        return;
     for (int i = 0; i < skin->across * skin->down; i++)
         skin->block[i] = 0;
     skin->is_lit = 1;
     skin->moved = s->moved;
-    skin->waited = 0;
     glint_stone_expose(s, skin);
 }
 

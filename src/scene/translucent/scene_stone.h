@@ -39,7 +39,6 @@ struct glint_stone_skin {
     int shift;      /* light, q15, is that of the map times 2^shift */
     int is_lit;     /* has been once */
     uint32_t moved; /* what the scene had when it was */
-    int waited;     /* frames since, in which it moved */
 };
 
 struct glint_stone_state {

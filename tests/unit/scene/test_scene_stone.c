@@ -423,39 +423,6 @@ static void test_account(void **state)
     drawn_close(&d);
 }
 
-/* What moves is followed in every frame, or every 2 or 4. */
-static void test_frames(void **state)
-{
-    static int32_t light[3 * PIXELS];
-    struct tool tool = {.name = "test"};
-
-    (void)state;
-    for (int every = 1; every <= 4; every *= 2) {
-        struct scene_dials dials = one_sample;
-        struct drawn d;
-        int lit = 0;
-
-        dials.stone_frames = every;
-        open_text(&d, STAGE BALLS, &dials, &tool);
-        draw(&d, light);
-        assert_true(d.frame.map_texels > 0);
-        for (int k = 1; k <= 8; k++) {
-            const double angle = k * .1;
-            const int32_t to[3] = {(int32_t)lrint(0x1p30 * sin(angle)),
-                                   (int32_t)lrint(0x1p30 * cos(angle)), 0};
-
-            assert_int_equal(glint_scene_set_light(d.frame.scene, 0, to),
-                             GLINT_OK);
-            draw(&d, light);
-            lit += d.frame.map_texels > 0;
-        }
-        assert_int_equal(lit, 8 / every);
-        glint_scene_show(d.frame.scene, 1, 0);
-        draw(&d, light);
-        drawn_close(&d);
-    }
-}
-
 /* ------------------------------------------------------------------ extremes
  */
 
@@ -599,7 +566,6 @@ int main(void)
         cmocka_unit_test(test_updates),
         cmocka_unit_test(test_coat_changes),
         cmocka_unit_test(test_account),
-        cmocka_unit_test(test_frames),
         cmocka_unit_test(test_albedo_0_and_1),
         cmocka_unit_test(test_refused),
         cmocka_unit_test(test_lacks),
