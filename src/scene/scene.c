@@ -77,9 +77,8 @@ static int is_in_range(const struct glint_scene_config *c)
            c->height <= GLINT_MAX_SIDE && c->tile_log2 >= 3 &&
            c->tile_log2 <= 6 && is_one_of(c->edge_samples, 1 | 4 | 8 | 16) &&
            is_one_of(c->shadow_points, 1 | 4 | 16) && c->ward_samples >= 1 &&
-           c->ward_samples <= 32 && (c->ward_nearest & ~1) == 0 &&
-           (c->half_shading & ~1) == 0 && c->highlights >= -1 &&
-           c->highlights <= 8 && c->max_refs >= 0 &&
+           c->ward_samples <= 32 && (c->half_shading & ~1) == 0 &&
+           c->highlights >= -1 && c->highlights <= 8 && c->max_refs >= 0 &&
            glint_workers_count(c->workers) <= 64;
 }
 

@@ -15,7 +15,7 @@
 #include "glint/view.h"
 #include "support/models/ward_ball.h"
 
-enum { ALPHAS = 5, COLUMNS = 11, WAYS = 2 };
+enum { ALPHAS = 5, COLUMNS = 10, WAYS = 2 };
 
 static const double alphas[ALPHAS][2] = {
     {.05, .05}, {.1, .1}, {.2, .2}, {.05, .2}, {.02, .2}};
@@ -89,7 +89,7 @@ static void best(const struct glint_environment *e,
                  const struct glint_ward_material *material, ward_picture want,
                  ward_picture got, double db[WAYS])
 {
-    struct glint_ward_options o = {8, GLINT_WARD_PUBLISHED, 0, 0, 0};
+    struct glint_ward_options o = {8, GLINT_WARD_PUBLISHED, 0, 0};
 
     db[0] = db[1] = 0;
     for (o.bias_q8 = -512; o.bias_q8 <= 256; o.bias_q8 += 128) {
@@ -106,7 +106,7 @@ static void measure(struct map *m, int a, double db[COLUMNS][WAYS])
 {
     static const int samples[5] = {1, 4, 8, 16, 32};
     static ward_picture want, got;
-    struct glint_ward_options o = {8, GLINT_WARD_PUBLISHED, 0, 0, 0};
+    struct glint_ward_options o = {8, GLINT_WARD_PUBLISHED, 0, 0};
     struct glint_ward_material material = {{32768, 32768, 32768}, {0, 0}, 0};
 
     for (int k = 0; k < 2; k++)
@@ -121,9 +121,8 @@ static void measure(struct map *m, int a, double db[COLUMNS][WAYS])
     psnr(want, got, db[3]);
     ward_look(&m->environment[0][0], &material, &o, got);
     psnr(want, got, db[4]);
-    for (int k = 0; k < 6; k++) {
-        o.samples = k < 5 ? samples[k] : 8;
-        o.nearest = k == 5;
+    for (int k = 0; k < 5; k++) {
+        o.samples = samples[k];
         ward_look(&m->environment[0][1], &material, &o, got);
         add_lights(&m->environment[0][1], alphas[a], got);
         psnr(want, got, db[5 + k]);
@@ -134,8 +133,8 @@ static void print(double sum[ALPHAS][COLUMNS][WAYS], int way, int n)
 {
     printf("\n%s\n\n", way ? "Linear light:" : "Codes of sRGB:");
     printf("| alpha | published: mip, N 8 | mip, Gauss at its best bias | "
-           "constant, N 8: mip, Gauss | and lights: N 1, 4, 8, 16, 32 | N 8, "
-           "nearest level |\n|---|---|---|---|---|---|\n");
+           "constant, N 8: mip, Gauss | and lights: N 1, 4, 8, 16, 32 |\n"
+           "|---|---|---|---|---|\n");
     for (int a = 0; a < ALPHAS; a++) {
         printf("| %g, %g |", alphas[a][0], alphas[a][1]);
         for (int c = 0; c < COLUMNS; c++)

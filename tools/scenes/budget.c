@@ -21,12 +21,13 @@
  * 48 dB to 36 (mean of three scenes at revision e8a4a84c). */
 static const struct {
     int points, edge, samples;
-    bool half, nearest;
+    bool half;
     double quality;
-} levels[SCENE_BUDGET_LEVELS] = {
-    {16, 16, 32, false, false, 1},  {4, 4, 8, false, false, 0.5},
-    {1, 4, 4, false, false, 0.375}, {1, 4, 4, true, false, 0.25},
-    {1, 4, 4, true, true, 0.125},   {1, 1, 4, true, true, 0}};
+} levels[SCENE_BUDGET_LEVELS] = {{16, 16, 32, false, 1},
+                                 {4, 4, 8, false, 0.5},
+                                 {1, 4, 4, false, 0.375},
+                                 {1, 4, 4, true, 0.125},
+                                 {1, 1, 4, true, 0}};
 
 enum { USUAL = 1 }; /* the level of the default quality */
 
@@ -57,7 +58,6 @@ void scene_dials_be(struct scene_dials *dials, double quality)
     if (!dials->ward_samples)
         dials->ward_samples = levels[i].samples;
     dials->half_shading |= levels[i].half;
-    dials->ward_nearest |= levels[i].nearest;
 }
 
 static int least(int a, int b)
@@ -74,7 +74,6 @@ struct scene_dials scene_budget_dials(const struct scene_budget *budget,
     d.edge_samples = least(d.edge_samples, levels[level].edge);
     d.half_shading = d.half_shading || levels[level].half;
     d.ward_samples = least(d.ward_samples, levels[level].samples);
-    d.ward_nearest = d.ward_nearest || levels[level].nearest;
     return d;
 }
 
@@ -91,8 +90,7 @@ static int next_level(const struct scene_budget *budget, int by)
         if (to.shadow_points != from.shadow_points ||
             to.edge_samples != from.edge_samples ||
             to.ward_samples != from.ward_samples ||
-            to.half_shading != from.half_shading ||
-            to.ward_nearest != from.ward_nearest)
+            to.half_shading != from.half_shading)
             return i;
     }
     return budget->level;
@@ -146,8 +144,7 @@ double scene_budget_quality(const struct scene_budget *budget)
     while (i < SCENE_BUDGET_LEVELS - 1 && (levels[i].points > d.shadow_points ||
                                            levels[i].edge > d.edge_samples ||
                                            levels[i].samples > d.ward_samples ||
-                                           levels[i].half < d.half_shading ||
-                                           levels[i].nearest < d.ward_nearest))
+                                           levels[i].half < d.half_shading))
         i++;
     return levels[i].quality;
 }

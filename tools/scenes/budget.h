@@ -8,7 +8,7 @@
 #include "scenes/scene_frame.h"
 
 /* Levels from the finest, the requested dials, to the coarsest. */
-enum { SCENE_BUDGET_LEVELS = 6 };
+enum { SCENE_BUDGET_LEVELS = 5 };
 
 struct scene_budget {
     struct scene_dials asked;

@@ -36,7 +36,6 @@ static void turn(struct glint_scene_config *cfg,
     cfg->half_shading = dials->half_shading;
     if (dials->ward_samples)
         cfg->ward_samples = dials->ward_samples;
-    cfg->ward_nearest = dials->ward_nearest;
     if (dials->has_highlights)
         cfg->highlights = dials->highlights;
     cfg->dither = dials->dither;

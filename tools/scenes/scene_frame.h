@@ -21,7 +21,6 @@ struct scene_dials {
     int shadow_points; /* 1, 4 or 16 */
     bool half_shading; /* two by two pixels at once, within one thing */
     int ward_samples;  /* 1 .. 32 lookups of a place on brushed metal */
-    bool ward_nearest; /* each of one level, not two */
     bool has_highlights;
     int highlights; /* 0 .. 8, whatever the scene says, with has_highlights */
     int tile_log2;

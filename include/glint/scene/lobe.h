@@ -57,7 +57,7 @@ typedef void glint_ward_sum_fn(const struct glint_ward_lobe *lobe,
  * level 0: SPAN_Q14 2^span_log2 times the cosine from half vector to eye. */
 struct glint_ward_lobe {
     glint_ward_sum_fn *sum;
-    int n, nearest; /* samples; 1: one level each, not two blended */
+    int n; /* samples */
     enum glint_ward_norm norm;
     int32_t share_q16; /* 1 / n, times what codes count */
     int unit_log2;     /* of the light of its environment */

@@ -76,7 +76,6 @@ struct glint_scene_config {
                           are shaded once, in their middle */
     int ward_samples;  /* 1 .. 32: lookups of an environment for a place on
                           brushed metal */
-    int ward_nearest;  /* 1: each reads one level, not two blended */
     int highlights;    /* 0 .. 8: that are found at most; -1: as many as the
                           model says */
     int dither;        /* 1: 8-bit output is dithered, deterministically */

@@ -45,7 +45,6 @@ struct glint_ward_options {
     int samples; /* 1 .. GLINT_WARD_SAMPLES */
     enum glint_ward_rule rule;
     int32_t bias_q8; /* levels; added to that of the rule, -2^12 .. 2^12 */
-    int nearest;     /* 1: one level each, not two blended */
     unsigned sets;   /* of kernels, GLINT_SET_ bits (glint/kernels.h) */
 };
 
@@ -80,7 +79,7 @@ void glint_environment_irradiance(const struct glint_environment *environment,
  * any length up to 2^16, at LEVEL_Q8, held to what there is. */
 void glint_environment_look(const struct glint_environment *environment,
                             const int32_t toward[3], int32_t level_q8,
-                            int nearest, int32_t rgb[3]);
+                            int32_t rgb[3]);
 
 #ifdef __cplusplus
 }

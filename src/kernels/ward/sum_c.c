@@ -2,7 +2,7 @@
 #include "kernels/ward/texels.h"
 #include "kernels/ward/ward.h"
 
-enum { ONE_Q14 = 1 << 14, ONE_Q16 = 1 << 16, NEARER_Q8 = 85 };
+enum { ONE_Q14 = 1 << 14, ONE_Q16 = 1 << 16 };
 
 /* Returns 2^31 / X, off by 2^-14 of itself at most, of X 2^15 .. 2^16: a line
  * that is off by 1/17, then Newton's method twice. */
@@ -130,13 +130,6 @@ static int32_t level_of(const struct glint_ward_lobe *lobe, int k,
     if (level >= last)
         return last;
     *share_q8 = (uint32_t)(over_q8 - 256) * 171 >> 9; /* a third */
-    if (!lobe->nearest)
-        return level;
-    if (*share_q8 > NEARER_Q8) {
-        *share_q8 = 0;
-        return level + 1;
-    }
-    *share_q8 = 0;
     return level;
 }
 
@@ -144,8 +137,6 @@ void glint_ward_sum_c(const struct glint_ward_lobe *lobe,
                       const struct glint_texels *texels,
                       const struct glint_ward_place *place, uint64_t sum_q12[3])
 {
-    const int reads_of_one = lobe->nearest ? 4 : 8;
-
     for (int j = 0; j < 3; j++)
         sum_q12[j] = 0;
     for (int k = 0; k < lobe->n; k++) {
@@ -161,10 +152,9 @@ void glint_ward_sum_c(const struct glint_ward_lobe *lobe,
         level = level_of(lobe, k, s.ho_q14, texels->last, &share_q8);
         glint_reads_of(&texels->level[level], u_q17, v_q17, 256 - share_q8,
                        reads.at, reads.weight_q22);
-        if (!lobe->nearest)
-            glint_reads_of(&texels->level[level + 1], u_q17, v_q17, share_q8,
-                           reads.at + 4, reads.weight_q22 + 4);
-        glint_find_light(texels, level, &reads, reads_of_one, &found);
+        glint_reads_of(&texels->level[level + 1], u_q17, v_q17, share_q8,
+                       reads.at + 4, reads.weight_q22 + 4);
+        glint_find_light(texels, level, &reads, 8, &found);
         glint_count_light(&found, (uint32_t)weight_q12(lobe, k, &s, place),
                           sum_q12);
     }

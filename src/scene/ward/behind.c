@@ -70,7 +70,7 @@ void glint_ward_behind(const struct glint_scene *scene,
     glint_ward_turn(w, toward_q30, to_q30);
     for (int k = 0; k < 3; k++)
         to_q16[k] = (int32_t)q_shift(to_q30[k], 14);
-    glint_environment_look(e, to_q16, level_q8(e, seen_q40), 0, light);
+    glint_environment_look(e, to_q16, level_q8(e, seen_q40), light);
     for (int c = 0; c < 3; c++)
         rgb_q15[c] =
             (int32_t)real_integer(real_times(real_of(light[c], 0), w->unit), 15,

@@ -60,7 +60,7 @@ static uint32_t share_of(int32_t over_q8)
 
 void glint_environment_look(const struct glint_environment *environment,
                             const int32_t toward[3], int32_t level_q8,
-                            int nearest, int32_t rgb[3])
+                            int32_t rgb[3])
 {
     const struct glint_texels *texels = &environment->texels;
     const struct glint_texels_level *level;
@@ -71,8 +71,6 @@ void glint_environment_look(const struct glint_environment *environment,
 
     place(toward, &u_q17, &v_q17);
     level_q8 = q_smaller(q_larger(level_q8, 0), texels->last << 8);
-    if (nearest)
-        level_q8 = (level_q8 + 128) & ~255;
     share_q8 = share_of(level_q8 & 255);
     level = &texels->level[level_q8 >> 8];
     glint_reads_of(level, u_q17, v_q17, 256 - share_q8, reads.at,

@@ -54,7 +54,6 @@ static void set_lobe(const struct glint_scene *s, uint32_t i)
         return;
     glint_ward_defaults(&options);
     options.samples = s->cfg.ward_samples;
-    options.nearest = s->cfg.ward_nearest;
     options.sets = s->cfg.sets;
     glint_ward_prepare(lobe, &w->environment, m, &options);
     for (int k = 0; k < 3; k++)

@@ -206,7 +206,6 @@ int glint_ward_prepare(struct glint_ward_lobe *lobe,
 
     *lobe = (struct glint_ward_lobe){.sum = glint_ward_sum_of(options->sets),
                                      .n = n,
-                                     .nearest = options->nearest,
                                      .norm = material->norm,
                                      .unit_log2 = h->unit_log2,
                                      .share_q16 = (2 * codes_q15 + n / 2) / n};

@@ -86,7 +86,6 @@ static void draw_lobe(struct glint_ward_lobe *l)
 
     memset(l, 0, sizeof *l);
     l->n = 1 + below(GLINT_WARD_SAMPLES);
-    l->nearest = below(3) == 0;
     l->norm = (enum glint_ward_norm)below(2);
     for (int k = 0; k < GLINT_WARD_SAMPLES; k++) {
         const double x = alpha * 4 * (unit_double() - .5);
@@ -152,7 +151,6 @@ static void time_it(const char *name, glint_ward_sum_fn *sum,
     p.out_q14[0] = p.out_q14[1] = 0;
     p.out_q14[2] = 1 << 14;
     l->n = 8;
-    l->nearest = 0;
     l->norm = GLINT_WARD_BOUNDED;
     for (int round = 0; round < 4000; round++)
         for (int which = 0; which < 2; which++) {

@@ -21,8 +21,7 @@ enum { WIDTH = 64, HEIGHT = 36, BYTES = 3 * WIDTH * HEIGHT };
 /* Qualities are those of the option that has the same dials. */
 static void test_qualities(void **state)
 {
-    static const double quality[SCENE_BUDGET_LEVELS] = {1,   .5,   .375,
-                                                        .25, .125, 0};
+    static const double quality[SCENE_BUDGET_LEVELS] = {1, .5, .375, .125, 0};
 
     (void)state;
     for (int i = 0; i < SCENE_BUDGET_LEVELS; i++) {
@@ -99,7 +98,7 @@ static void test_coarser(void **state)
 /* ------------------------------------------------------------------ budgets */
 
 /* Milliseconds of each level, when the machine is as fast as usual. */
-static const double level_ms[SCENE_BUDGET_LEVELS] = {40, 40, 24, 12, 8, 5};
+static const double level_ms[SCENE_BUDGET_LEVELS] = {40, 40, 24, 12, 8};
 
 static struct scene_budget new_budget(void)
 {
