@@ -14,7 +14,7 @@
 #include "bake/motion/localise.h"
 #include "support/tracks/tracks.h"
 
-enum { CHUNK = 1000, BINS = 100, MOST_METHODS = 8, SEED = 163635 };
+enum { CHUNK = 1000, BINS = 100, MOST_METHODS = 6, SEED = 163635 };
 
 struct method {
     const char *name;
@@ -36,9 +36,7 @@ struct result {
 static const struct method exact_input[] = {
     {"first4, float32", GLINT_MOTION_FIRST4, false, GLINT_FLOAT32},
     {"best4, float32", GLINT_MOTION_BEST4, false, GLINT_FLOAT32},
-    {"first4, int32 q24", GLINT_MOTION_FIRST4, false, GLINT_INT32_Q24},
     {"chain, float32", GLINT_MOTION_CHAIN, false, GLINT_FLOAT32},
-    {"chain, int32 q24", GLINT_MOTION_CHAIN, false, GLINT_INT32_Q24},
     {"first4, double", GLINT_MOTION_FIRST4, false, GLINT_DOUBLE},
     {"chain, double", GLINT_MOTION_CHAIN, false, GLINT_DOUBLE},
     {"all, double", GLINT_MOTION_ALL, false, GLINT_DOUBLE}};
@@ -174,18 +172,17 @@ static void time_methods(void)
     static struct result result[MOST_METHODS];
     double first = 0;
 
-    printf("| frames | first4, float32 | chain, float32 | first4, q24 | all, "
-           "double | all, life mean |\n|---|---|---|---|---|---|\n");
+    printf("| frames | first4, float32 | chain, float32 | all, double | "
+           "all, life mean |\n|---|---|---|---|---|\n");
     for (int i = 0; i < 3; i++) {
-        const struct method method[5] = {exact_input[0], exact_input[3],
-                                         exact_input[2], rounded_input[3],
-                                         rounded_input[4]};
+        const struct method method[4] = {exact_input[0], exact_input[2],
+                                         rounded_input[3], rounded_input[4]};
         const struct track_options options = {0, lengths[i], 5, 0, 0, SEED};
 
-        run(&options, method, 5, result);
+        run(&options, method, 4, result);
         first = i ? first : result[0].seconds;
         printf("| %d |", lengths[i]);
-        for (int k = 0; k < 5; k++)
+        for (int k = 0; k < 4; k++)
             printf(" %.1f |", result[k].seconds / first);
         printf("\n");
     }
@@ -200,7 +197,7 @@ int main(int argc, char **argv)
         return 2;
     }
     printf("### Foods that stay, all digits, %d frames\n\n", n);
-    compare(0, 0, exact_input, 8, n);
+    compare(0, 0, exact_input, 6, n);
     printf("\n### A food ends every 200 frames, %d times; text of six "
            "digits\n\n",
            (n - 1) / 200);

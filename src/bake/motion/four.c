@@ -7,17 +7,8 @@
 
 double glint_rounded(enum glint_arithmetic arithmetic, double x)
 {
-    switch (arithmetic) {
-    case GLINT_FLOAT32:
-        return (double)(float)x;
-    case GLINT_INT32_Q24:
-        return rint(x * 0x1p24) * 0x1p-24;
-    default:
-        return x;
-    }
+    return arithmetic == GLINT_FLOAT32 ? (double)(float)x : x;
 }
-
-/* --------------------------------------------------- in double and float32 */
 
 struct base {
     enum glint_arithmetic arithmetic;
@@ -74,42 +65,6 @@ static void take(const struct base *b, const double (*const from[4])[3],
     }
 }
 
-/* ----------------------------------------------------------------- int32 */
-
-static bool to_q24(const double (*const point[4])[3], int32_t q24[4][3])
-{
-    for (int i = 0; i < 4; i++)
-        for (int k = 0; k < 3; k++) {
-            if (!(fabs((*point[i])[k]) < GLINT_FOUR_REACH))
-                return false;
-            q24[i][k] = (int32_t)lrint((*point[i])[k] * 0x1p24);
-        }
-    return true;
-}
-
-static bool map_q24(const double (*const from[4])[3],
-                    const double (*const to[4])[3], double map[4][3])
-{
-    int32_t from_q24[4][3], to_q24_[4][3], place[4][3];
-    static const int32_t point[4][3] = {
-        {1 << 24, 0, 0}, {0, 1 << 24, 0}, {0, 0, 1 << 24}, {0, 0, 0}};
-
-    if (!to_q24(from, from_q24) || !to_q24(to, to_q24_))
-        return false;
-    for (int i = 0; i < 4; i++)
-        if (!glint_four_place_q24((const int32_t(*)[3])from_q24,
-                                  (const int32_t(*)[3])to_q24_, point[i],
-                                  place[i]))
-            return false;
-    for (int i = 0; i < 4; i++)
-        for (int k = 0; k < 3; k++)
-            map[i][k] = 0x1p-24 * (i < 3 ? (double)place[i][k] - place[3][k]
-                                         : (double)place[3][k]);
-    return true;
-}
-
-/* -------------------------------------------------------------------- both */
-
 double glint_four_spans(const double (*const from[4])[3])
 {
     struct base b = {.arithmetic = GLINT_DOUBLE};
@@ -131,8 +86,6 @@ bool glint_four_map(enum glint_arithmetic arithmetic,
 
     if (!(glint_four_spans(from) >= GLINT_RIGID_LEAST))
         return false;
-    if (arithmetic == GLINT_INT32_Q24)
-        return map_q24(from, to, map);
     set_base(&b, from);
     if (b.det == 0)
         return false;

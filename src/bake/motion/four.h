@@ -3,19 +3,15 @@
  * The published way to localise [Bodonyi26]: a place has weights in four points
  * that are no plane, which sum to 1 and are the same wherever these move.
  *
- * It is kept as a baseline, in three arithmetics. float32 is had by rounding
- * each result of double, which gives the bits of float: double has more than
- * twice its digits. int32 solves in whole numbers of 2^-24. */
+ * It is kept as a baseline, in two arithmetics. float32 rounds each result of
+ * double, which gives the bits of float: double has more than twice its digits.
+ */
 #ifndef GLINT_BAKE_MOTION_FOUR_H
 #define GLINT_BAKE_MOTION_FOUR_H
 
 #include <stdbool.h>
-#include <stdint.h>
 
-enum glint_arithmetic { GLINT_DOUBLE, GLINT_FLOAT32, GLINT_INT32_Q24 };
-
-/* Coordinates of GLINT_INT32_Q24 are below that. */
-#define GLINT_FOUR_REACH 31.0
+enum glint_arithmetic { GLINT_DOUBLE, GLINT_FLOAT32 };
 
 /* Returns X as ARITHMETIC has it. */
 double glint_rounded(enum glint_arithmetic arithmetic, double x);
@@ -26,16 +22,9 @@ double glint_four_spans(const double (*const from[4])[3]);
 
 /* Sets MAP to how points move if FROM[4] move to TO[4]: the columns of a 3 x 4
  * matrix, where the axes go and where the origin. Returns false if
- * glint_four_spans() is below 2^-20, or, of GLINT_INT32_Q24, a coordinate is
- * out of range. */
+ * glint_four_spans() is below 2^-20. */
 bool glint_four_map(enum glint_arithmetic arithmetic,
                     const double (*const from[4])[3],
                     const double (*const to[4])[3], double map[4][3]);
-
-/* The same in whole numbers of 2^-24, each within +-31 * 2^24: where POINT
- * goes. Returns false if it cannot be told. */
-bool glint_four_place_q24(const int32_t from_q24[4][3],
-                          const int32_t to_q24[4][3],
-                          const int32_t point_q24[3], int32_t place_q24[3]);
 
 #endif

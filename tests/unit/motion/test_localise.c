@@ -84,17 +84,14 @@ static void row_d1_four_foods_do_not_drift(void **state)
         const struct track_options o = track_of(m, 0, 0);
         const struct errors f =
             errors_of(&o, GLINT_MOTION_FIRST4, false, GLINT_FLOAT32);
-        const struct errors q =
-            errors_of(&o, GLINT_MOTION_FIRST4, false, GLINT_INT32_Q24);
         const struct errors d =
             errors_of(&o, GLINT_MOTION_FIRST4, false, GLINT_DOUBLE);
 
-        print_message("  motion %d: float32 %.1e, q24 %.1e, double %.1e\n", m,
-                      f.last, q.last, d.last);
+        print_message("  motion %d: float32 %.1e, double %.1e\n", m, f.last,
+                      d.last);
         assert_int_equal(f.n, FRAMES);
         assert_true(f.last > 1e-7 && f.last < 1e-5);
         assert_true(f.last < 3 * f.first);
-        assert_true(q.last < f.last / 5);
         assert_true(d.worst < 1e-12);
     }
 }
@@ -221,95 +218,6 @@ static void flat_bases_are_refused(void **state)
     }
 }
 
-/* ----------------------------------------------------------------- integers */
-
-static void to_q24(const double from[4][3], int32_t to[4][3])
-{
-    for (int i = 0; i < 4; i++)
-        for (int k = 0; k < 3; k++)
-            to[i][k] = (int32_t)lrint(0x1p24 * from[i][k]);
-}
-
-/* Returns how far the integers are from double precision, where FOUR foods that
- * were at TO are seen at FROM. */
-static double off_of(const double from[4][3], const double to[4][3])
-{
-    const double(*const f[4])[3] = {&from[0], &from[1], &from[2], &from[3]};
-    const double(*const t[4])[3] = {&to[0], &to[1], &to[2], &to[3]};
-    double map[4][3], off = 0;
-    int32_t from_q24[4][3], to_q24_[4][3], place[3];
-    const int32_t origin[3] = {0, 0, 0};
-
-    to_q24(from, from_q24);
-    to_q24(to, to_q24_);
-    assert_true(glint_four_map(GLINT_DOUBLE, f, t, map));
-    assert_true(glint_four_place_q24((const int32_t(*)[3])from_q24,
-                                     (const int32_t(*)[3])to_q24_, origin,
-                                     place));
-    for (int k = 0; k < 3; k++)
-        off = fmax(off, fabs(0x1p-24 * place[k] - map[3][k]));
-    return off;
-}
-
-/* An older twin wrapped at 2^62.6 in frames 163635 to 163639 of motion 2: the
- * determinant of cofactors of more than 29 bits. */
-static void frames_that_once_wrapped(void **state)
-{
-    const struct track_options o = {1, 163640, 5, 0, 0, SEED};
-    struct track track;
-    struct track_frame f;
-    double first[TRACK_FOODS][3];
-
-    (void)state;
-    track_begin(&track, &o);
-    for (int i = 0; i < 163640; i++) {
-        track_next(&track, &f);
-        if (i == 0)
-            memcpy(first, f.seen, sizeof first);
-        if (i >= 163635)
-            assert_true(off_of((const double(*)[3])f.seen,
-                               (const double(*)[3])first) < 1e-6);
-    }
-}
-
-/* Corners of the range, where products are the largest. */
-static void integers_at_the_ends_of_their_range(void **state)
-{
-    uint32_t seed = 7;
-    double worst = 0;
-    int n = 0;
-
-    (void)state;
-    while (n < 20000) {
-        double from[4][3], to[4][3];
-        const double(*const f[4])[3] = {
-            (const double(*)[3]) & from[0], (const double(*)[3]) & from[1],
-            (const double(*)[3]) & from[2], (const double(*)[3]) & from[3]};
-
-        for (int i = 0; i < 4; i++)
-            for (int k = 0; k < 3; k++) {
-                const double end = GLINT_FOUR_REACH - 0x1p-20;
-                const int pick = rng_below(&seed, 4);
-
-                from[i][k] = pick == 0   ? end
-                             : pick == 1 ? -end
-                                         : 31 * (2 * rng_unit(&seed) - 1);
-            }
-        if (glint_four_spans(f) < .1)
-            continue;
-        for (int i = 0; i < 4; i++) /* a turn, and as the integers have them */
-            for (int k = 0; k < 3; k++) {
-                from[i][k] = glint_rounded(GLINT_INT32_Q24, from[i][k]);
-                to[i][(k + 1) % 3] = k ? from[i][k] : -from[i][k];
-            }
-        worst = fmax(worst,
-                     off_of((const double(*)[3])from, (const double(*)[3])to));
-        n++;
-    }
-    print_message("  worst of %d: %.1e\n", n, worst);
-    assert_true(worst < 2e-5);
-}
-
 /* float32 by rounding doubles has the bits of float. */
 static void rounded_doubles_are_floats(void **state)
 {
@@ -339,8 +247,6 @@ int main(void)
         cmocka_unit_test(row_d6_distance_of_foods),
         cmocka_unit_test(two_may_vanish_at_once),
         cmocka_unit_test(flat_bases_are_refused),
-        cmocka_unit_test(frames_that_once_wrapped),
-        cmocka_unit_test(integers_at_the_ends_of_their_range),
         cmocka_unit_test(rounded_doubles_are_floats)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
