@@ -25,10 +25,6 @@ static const char help[] =
     "                      texel (default)\n"
     "                      factored: a sum of terms, 3 bytes each\n"
     "                      albedo: one kernel, 3 bytes\n"
-    "  --planes N          kernels or terms (default 4, 5)\n"
-    "  --rank N            products that a kernel is a sum of, 1 to 8 (default "
-    "3)\n"
-    "  --bits CODES,TAPS   4 to 16, 6 to 16 (default 8,12)\n"
     "  --report DIR        these models and published ones side by side, as a "
     "page\n"
     "                      with pictures; some minutes\n";
@@ -36,7 +32,7 @@ static const char help[] =
 /* What the line says; -1: nothing. */
 struct line {
     const char *report;
-    int model, planes, rank, bits[2];
+    int model;
 };
 
 static void over(void *ctx, struct glint_stone_text *t)
@@ -49,29 +45,6 @@ static void over(void *ctx, struct glint_stone_text *t)
         glint_scatter_defaults(&t->fit, (enum glint_scatter_model)l->model);
         t->fit.rank = rank;
     }
-    if (l->planes >= 0 && t->fit.model != GLINT_SCATTER_ALBEDO)
-        t->fit.kernels = l->planes;
-    if (l->rank >= 0)
-        t->fit.rank = l->rank;
-    if (l->bits[0] >= 0) {
-        t->code_bits = l->bits[0];
-        t->tap_bits = l->bits[1];
-    }
-}
-
-static bool take_bits(const char *text, int bits[2])
-{
-    double value[2];
-
-    if (tool_numbers(text, value, 2) != 2)
-        return false;
-    for (int i = 0; i < 2; i++) {
-        bits[i] = (int)value[i];
-        if ((double)bits[i] != value[i] || bits[i] < (i ? 6 : 4) ||
-            bits[i] > 16)
-            return false;
-    }
-    return true;
 }
 
 static int take(struct tool *tool, void *line, int c, const char *name)
@@ -88,15 +61,6 @@ static int take(struct tool *tool, void *line, int c, const char *name)
     case 'm':
         l->model = tool_word(optarg, models);
         ok = l->model >= 0;
-        break;
-    case 'p':
-        ok = tool_integer(optarg, 1, GLINT_TRANSLUCENT_MOST_PLANES, &l->planes);
-        break;
-    case 'r':
-        ok = tool_integer(optarg, 1, GLINT_TRANSLUCENT_MOST_RANK, &l->rank);
-        break;
-    case 'b':
-        ok = take_bits(optarg, l->bits);
         break;
     default:
         return tool_option(tool, c, optarg);
@@ -123,13 +87,9 @@ int cmd_bake_stone(struct tool *tool, int argc, char **argv)
     static const struct option options[] = {
         BAKE_LINE_OPTIONS,
         {"model", required_argument, NULL, 'm'},
-        {"planes", required_argument, NULL, 'p'},
-        {"rank", required_argument, NULL, 'r'},
-        {"bits", required_argument, NULL, 'b'},
         {"report", required_argument, NULL, 'R'},
         TOOL_COMMON_OPTIONS};
-    struct line line = {
-        .model = -1, .planes = -1, .rank = -1, .bits = {-1, -1}};
+    struct line line = {.model = -1};
     struct glint_error error = {""};
     struct stone_file file;
     enum glint_status status;

@@ -14,8 +14,7 @@ struct reader {
     struct glint_stone_text *to;
     char name[MOST_STONES][32];
     int n_stones;
-    bool has_model, has_planes; /* lines on them were read */
-    bool is_turned;             /* the pattern has its second stone first */
+    bool is_turned; /* the pattern has its second stone first */
     struct glint_text_place pattern;
 };
 
@@ -188,16 +187,13 @@ static bool read_model(struct reader *r)
     static const char *const names[] = {"clustered", "factored", "albedo"};
     struct glint_scatter_options *fit = &r->to->fit;
     const struct glint_word word = glint_text_next_word(&r->text);
-    const int rank = fit->rank, kernels = fit->kernels;
+    const int rank = fit->rank;
     char quote[GLINT_QUOTE_BYTES];
 
-    r->has_model = true;
     for (int i = 0; i < 3; i++)
         if (glint_word_is(&word, names[i])) {
             glint_scatter_defaults(fit, (enum glint_scatter_model)i);
             fit->rank = rank;
-            if (r->has_planes)
-                fit->kernels = kernels;
             return true;
         }
     return glint_text_fail(&r->text, word.place,
@@ -205,25 +201,6 @@ static bool read_model(struct reader *r)
                            word.length ? ", not '" : "",
                            word.length ? glint_word_quote(&word, quote) : "",
                            word.length ? "'" : "");
-}
-
-static bool read_planes(struct reader *r)
-{
-    r->has_planes = true;
-    return read_integer(r, "planes", 1, GLINT_SCATTER_MAX_TERMS,
-                        &r->to->fit.kernels);
-}
-
-static bool read_rank(struct reader *r)
-{
-    return read_integer(r, "rank", 1, GLINT_TRANSLUCENT_MOST_RANK,
-                        &r->to->fit.rank);
-}
-
-static bool read_bits(struct reader *r)
-{
-    return read_integer(r, "bits", 4, 16, &r->to->code_bits) &&
-           read_integer(r, "bits", 6, 16, &r->to->tap_bits);
 }
 
 static bool read_texel(struct reader *r)
@@ -252,12 +229,13 @@ static const struct line {
     const char *word;
     bool (*read)(struct reader *);
     bool many;
-} lines[] = {{"size", read_size, false},       {"texel", read_texel, false},
-             {"kernel", read_kernel, false},   {"slab", read_slab, false},
-             {"index", read_index, false},     {"stone", read_stone, true},
-             {"pattern", read_pattern, false}, {"data", read_data, false},
-             {"model", read_model, false},     {"planes", read_planes, false},
-             {"rank", read_rank, false},       {"bits", read_bits, false}};
+} lines[] = {
+    {"size", read_size, false},       {"texel", read_texel, false},
+    {"kernel", read_kernel, false},   {"slab", read_slab, false},
+    {"index", read_index, false},     {"stone", read_stone, true},
+    {"pattern", read_pattern, false}, {"data", read_data, false},
+    {"model", read_model, false},
+};
 
 enum { N_LINES = sizeof lines / sizeof *lines };
 

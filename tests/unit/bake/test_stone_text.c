@@ -39,8 +39,7 @@ static void test_all_lines(void **state)
 
     (void)state;
     good(&t, "# a comment\nsize 64\ntexel .25\nkernel 15\nslab 12\nindex 1.3\n"
-             "\n" TWO "pattern chess 4 pale dark\nmodel factored\nplanes 7\n"
-             "rank 2\nbits 10 14\n");
+             "\n" TWO "pattern chess 4 pale dark\nmodel factored\n");
     assert_int_equal(t.stone.side, 64);
     assert_true(t.stone.texel_mm == .25 && t.stone.slab_mm == 12 &&
                 t.stone.index == 1.3);
@@ -50,10 +49,10 @@ static void test_all_lines(void **state)
     assert_true(t.stone.material[0].scatter[2] == 4 &&
                 t.stone.material[1].absorb[1] == 2);
     assert_int_equal(t.fit.model, GLINT_SCATTER_FACTORED);
-    assert_int_equal(t.fit.kernels, 7);
-    assert_int_equal(t.fit.rank, 2);
-    assert_int_equal(t.code_bits, 10);
-    assert_int_equal(t.tap_bits, 14);
+    assert_int_equal(t.fit.kernels, 5);
+    assert_int_equal(t.fit.rank, 3);
+    assert_int_equal(t.code_bits, 8);
+    assert_int_equal(t.tap_bits, 12);
 }
 
 /* What is not said is as the README has it. */
@@ -88,10 +87,10 @@ static void test_order(void **state)
     assert_string_equal(t.mask, "a.pgm");
     assert_true(t.stone.material[0].scatter[0] == .5 &&
                 t.stone.material[1].scatter[0] == 2);
-    good(&t, "planes 6\nmodel clustered\ndata rows of it.pfm\n");
+    good(&t, "model clustered\ndata rows of it.pfm\n");
     assert_string_equal(t.rows, "rows of it.pfm");
-    assert_int_equal(t.fit.kernels, 6);
-    good(&t, "data a.pfm\nmodel albedo\nplanes 6\n");
+    assert_int_equal(t.fit.kernels, 4);
+    good(&t, "data a.pfm\nmodel albedo\n");
     assert_int_equal(t.fit.kernels, 1);
 }
 
@@ -114,10 +113,6 @@ static const struct {
     {"size 32 32\n", "x:1:9: "},
     {"size 32\nsize 64\n", "x:2:1: a second size; the first is on line 1"},
     {"sizes 32\n", "x:1:1: unknown word 'sizes'; did you mean 'size'?"},
-    {"bits 3 12\n", "x:1:6: "},
-    {"bits 8 17\n", "x:1:8: "},
-    {"planes 21\n", "x:1:8: "},
-    {"rank 9\n", "x:1:6: "},
     {"model tucker\n",
      "x:1:7: model takes clustered, factored or albedo, not 'tucker'"},
     {"stone a scatter 1 1 1\n", "x:1:"},
