@@ -54,7 +54,7 @@ include tools/make/target.mk
 # below. src/README.md says what each is for.
 CORE      := base image kernels kernels/rays kernels/ward kernels/maps lens lamps follow tile flare/edges flare star veil scene scene/ward scene/motion scene/translucent scene/highlights scene/account reuse
 ENGINE    := engine engine/options engine/frame engine/setup engine/star
-BAKE      := bake bake/table bake/scene bake/environment bake/motion bake/translucent bake/trace bake/regress bake/visible bake/fit bake/skew bake/exact bake/published bake/published/scatter
+BAKE      := bake bake/table bake/scene bake/environment bake/motion bake/translucent bake/trace bake/regress bake/visible bake/fit bake/skew bake/exact
 PLATFORM  := posix formats video panel linux jpeg assimp sdl
 TOOLS     := help options control lamp_files desk model ffmpeg overlay zooms stones scenes motions synth lens_figures lens_check import command live lab lab/plots lab/scenes
 c_files = $(wildcard $(2:%=$(1)/%/*.c))

@@ -25,7 +25,6 @@ extern "C" {
 #endif
 
 struct glint_bake_options {
-    int basis;         /* enum glint_basis */
     double band_nm[2]; /* shortest and longest wavelength, 300 .. 1100 */
     double max_deg;    /* largest angle of a light, above 0, up to 89 */
     double field_mm;   /* radius about the sensor's centre within which light

@@ -13,7 +13,6 @@
 #include "bake/fit/fit.h"
 #include "bake/model_header.h"
 #include "bake/options.h"
-#include "bake/published/published.h"
 #include "bake/skew/skew_brightness.h"
 #include "bake/skew/skew_fit.h"
 #include "bake/trace/cells.h"
@@ -72,17 +71,6 @@ static enum glint_status quantise_ghost(struct bake_run *run, int ghost)
     for (int i = 0; i < f->n_systems && status == GLINT_OK; i++)
         status = glint_quantise(&f->system[i], &system[i]);
     return status;
-}
-
-static enum glint_status fit_published(struct bake_run *run, int ghost)
-{
-    struct glint_published_options options;
-
-    glint_published_defaults(&options, &run->setup);
-    options.max_deg = run->options.max_deg;
-    options.field_mm = glint_bake_field_mm(run->lens, &run->options);
-    return glint_published_fit(&run->setup, ghost, &options,
-                               &run->fitted[ghost]);
 }
 
 /* Share of a bake until all ghosts are fitted, and until they are quantised. */
@@ -158,8 +146,6 @@ static void fit_job(void *ctx, int ghost, int worker)
         glint_effort_begin(&run->effort, ghost);
     run->status[ghost] = run->options.ghosts && !run->options.ghosts[ghost]
                              ? GLINT_OK
-                         : run->options.basis == GLINT_BASIS_SPARSE
-                             ? fit_published(run, ghost)
                              : fit_auto(run, ghost, worker == 0);
     if (worker != 0)
         return;
@@ -453,14 +439,6 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
     run->options = *options;
     run->error = error;
     status = glint_bake_check(options, error);
-    if (status == GLINT_OK && options->basis == GLINT_BASIS_SPARSE &&
-        !glint_prescription_is_round(lens)) {
-        snprintf(error->text, sizeof error->text,
-                 "%s is not symmetric about its axis, which the sparse basis "
-                 "is for",
-                 lens->name);
-        status = GLINT_E_LENS;
-    }
     if (status == GLINT_OK)
         status = glint_setup_init(&run->setup, lens, 0, 0, rgb_nm, 3, error);
     if (status == GLINT_OK)

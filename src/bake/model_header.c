@@ -111,7 +111,7 @@ glint_model_header_of(const struct glint_prescription *lens,
         .magic = GLINT_MODEL_MAGIC,
         .version = GLINT_MODEL_VERSION,
         .basis = glint_prescription_is_round(lens)
-                     ? (uint32_t)options->basis
+                     ? (uint32_t)GLINT_BASIS_AUTO
                      : GLINT_BASIS_LENS + glint_skew_mirrors(lens),
         .key = {(uint32_t)key, (uint32_t)(key >> 32)},
         .focal_mm = glint_real_of(o->focal_mm),

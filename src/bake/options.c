@@ -20,10 +20,8 @@ enum {
 
 void glint_bake_defaults(struct glint_bake_options *options)
 {
-    *options = (struct glint_bake_options){.basis = GLINT_BASIS_AUTO,
-                                           .band_nm = {400, 700},
-                                           .max_deg = 60,
-                                           .tolerance = 1};
+    *options = (struct glint_bake_options){
+        .band_nm = {400, 700}, .max_deg = 60, .tolerance = 1};
 }
 
 enum glint_status glint_bake_check(const struct glint_bake_options *options,
@@ -31,16 +29,9 @@ enum glint_status glint_bake_check(const struct glint_bake_options *options,
 {
     const struct glint_bake_options *const o = options;
     const char *wrong =
-        o->basis != GLINT_BASIS_AUTO && o->basis != GLINT_BASIS_SPARSE
-            ? "the basis is unknown"
-        : !(o->band_nm[0] >= 300 && o->band_nm[1] <= 1100 &&
-            o->band_nm[0] + 1 <= o->band_nm[1])
+        !(o->band_nm[0] >= 300 && o->band_nm[1] <= 1100 &&
+          o->band_nm[0] + 1 <= o->band_nm[1])
             ? "the band must rise by 1 nm or more within 300 to 1100 nm"
-        : o->basis == GLINT_BASIS_SPARSE &&
-                (o->band_nm[0] != 400 || o->band_nm[1] != 700 ||
-                 o->tolerance != 1)
-            ? "the sparse basis is for 650, 532 and 450 nm and its own "
-              "tolerance, as published"
         : !(o->max_deg > 0 && o->max_deg <= 89)
             ? "the largest angle must be above 0 and at most 89 degrees"
         : !(o->field_mm >= 0 && o->field_mm < 1e6)
@@ -136,7 +127,7 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
 
     mix(&key, GLINT_MODEL_VERSION);
     mix(&key, lens->f_number < GLINT_WIDE ? WIDE_REVISION : REVISION);
-    mix(&key, options->basis);
+    mix(&key, GLINT_BASIS_AUTO);
     mix(&key, options->band_nm[0]);
     mix(&key, options->band_nm[1]);
     mix(&key, options->max_deg);

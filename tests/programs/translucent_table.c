@@ -11,7 +11,7 @@
 #include <time.h>
 
 #include "glint/scene/stone_bake.h"
-#include "glint/scene/translucent_report.h"
+#include "reference/scatter/translucent_report.h"
 #include "support/rng.h"
 
 enum { STONES = 4, GRID_TERMS = 5, GRID_DEGREES = 5 };

@@ -40,10 +40,6 @@ static const char help[] =
     "  -o, --output MODEL\n"
     "                    - is standard output; no report then\n"
     "  --f-number N      stop the lens to f/N first\n" ZOOM_HELP COATING_HELP
-    "  --basis B         auto: place in the ghost's own box, zones of angles "
-    "as\n"
-    "                    needed (default)\n"
-    "                    sparse: as published, 241 angles to 60 degrees\n"
     "  --band LO,HI      wavelengths, nm (default 400,700)\n"
     "  --max-angle DEG   of a light (default 60)\n"
     "  --positions N     of a zoom, 2 .. 64 along its way, in one model "
@@ -76,7 +72,6 @@ struct bake {
 
 static int take(struct tool *tool, struct bake *b, int c, const char *name)
 {
-    static const char *const bases[] = {"auto", "sparse", NULL};
     struct glint_bake_options *o = &b->options;
     bool ok = true;
 
@@ -102,10 +97,6 @@ static int take(struct tool *tool, struct bake *b, int c, const char *name)
         break;
     case 'f':
         ok = tool_number(optarg, &b->f_number) && b->f_number > 0;
-        break;
-    case 'b':
-        o->basis = tool_word(optarg, bases);
-        ok = o->basis >= 0;
         break;
     case 'w':
         ok = tool_numbers(optarg, o->band_nm, 2) == 2;
@@ -134,7 +125,6 @@ static int parse(struct tool *tool, int argc, char **argv, struct bake *b)
         ZOOM_OPTIONS('z', 'F'),
         {"positions", required_argument, NULL, 'n'},
         {"halfway", required_argument, NULL, 'H'},
-        {"basis", required_argument, NULL, 'b'},
         {"band", required_argument, NULL, 'w'},
         {"max-angle", required_argument, NULL, 'a'},
         {"field", required_argument, NULL, 'm'},

@@ -67,7 +67,6 @@ static const struct {
     {"trace", "grid", "a whole number, 1 to 4096"},
 
     {NULL, "band", "two wavelengths LO,HI in nm, within 300 to 1100"},
-    {NULL, "basis", "auto or sparse"},
     {"styles", "width", "a whole number, 64 to 2048"},
     {NULL, "budgets", "numbers of milliseconds above 0, with commas"},
     {NULL, "buffers", "a whole number, 2 to 32"},

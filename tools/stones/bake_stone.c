@@ -3,7 +3,6 @@
  * glint bake of translucent stones: writes how light spreads below a surface as
  * the run time takes it.
  */
-#include "lab/scenes/stone_models.h"
 #include "model/bake_line.h"
 #include "options/command_line.h"
 #include "stones/stone_file.h"
@@ -24,14 +23,10 @@ static const char help[] =
     "a\n"
     "                      texel (default)\n"
     "                      factored: a sum of terms, 3 bytes each\n"
-    "                      albedo: one kernel, 3 bytes\n"
-    "  --report DIR        these models and published ones side by side, as a "
-    "page\n"
-    "                      with pictures; some minutes\n";
+    "                      albedo: one kernel, 3 bytes\n";
 
 /* What the line says; -1: nothing. */
 struct line {
-    const char *report;
     int model;
 };
 
@@ -55,9 +50,6 @@ static int take(struct tool *tool, void *line, int c, const char *name)
     bool ok = true;
 
     switch (c) {
-    case 'R':
-        l->report = optarg;
-        break;
     case 'm':
         l->model = tool_word(optarg, models);
         ok = l->model >= 0;
@@ -68,26 +60,11 @@ static int take(struct tool *tool, void *line, int c, const char *name)
     return ok ? -1 : tool_refuse(tool, name, optarg);
 }
 
-static int report(const struct tool *tool, const char *path, const char *folder)
-{
-    struct glint_error error = {""};
-    struct glint_scatter_rows rows;
-    const enum glint_status status = stone_file_rows(tool, path, &rows, &error);
-    int code;
-
-    if (status != GLINT_OK)
-        return tool_fail(tool, status, error.text);
-    code = stone_models_report(tool, path, &rows, folder);
-    glint_scatter_close(&rows);
-    return code;
-}
-
 int cmd_bake_stone(struct tool *tool, int argc, char **argv)
 {
     static const struct option options[] = {
         BAKE_LINE_OPTIONS,
         {"model", required_argument, NULL, 'm'},
-        {"report", required_argument, NULL, 'R'},
         TOOL_COMMON_OPTIONS};
     struct line line = {.model = -1};
     struct glint_error error = {""};
@@ -107,7 +84,5 @@ int cmd_bake_stone(struct tool *tool, int argc, char **argv)
     if (code == EXIT_OK && bake_line_tells(tool))
         stone_file_print(tool, &file);
     stone_file_close(&file);
-    if (code == EXIT_OK && line.report)
-        code = report(tool, argv[optind], line.report);
     return code;
 }

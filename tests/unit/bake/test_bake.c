@@ -151,21 +151,15 @@ static void test_workers(void **state)
 static void test_twice(void **state)
 {
     static struct glint_prescription lens;
-    struct glint_bake_options o = options;
     struct baked b;
 
     (void)state;
     make_singlet(&lens);
-    for (int basis = GLINT_BASIS_AUTO; basis <= GLINT_BASIS_SPARSE; basis++) {
-        o.basis = basis;
-        if (basis == GLINT_BASIS_SPARSE)
-            o.tolerance = 1; /* A sparse basis has a tolerance of its own. */
-        bake(&b, &lens, &o);
-        assert_int_equal(b.lens.header->n_ghosts, 1);
-        assert_true(b.lens.header->n_systems >= 1);
-        same_bytes(&lens, &o, &b, basis == GLINT_BASIS_AUTO ? 0 : 3, 5);
-        free(b.data);
-    }
+    bake(&b, &lens, &options);
+    assert_int_equal(b.lens.header->n_ghosts, 1);
+    assert_true(b.lens.header->n_systems >= 1);
+    same_bytes(&lens, &options, &b, 0, 5);
+    free(b.data);
 }
 
 /* ------------------------------------------------------------------- header */
@@ -738,9 +732,6 @@ static void test_key(void **state)
         *of_options[k] = nextafter(*of_options[k], 1000);
         other_key(&lens, &o);
     }
-    o = options;
-    o.basis = GLINT_BASIS_SPARSE;
-    other_key(&lens, &o);
     /* The key ignores what never changes the model. */
     o = options;
     o.workers = (void *)&lens;
@@ -754,7 +745,7 @@ static void test_refusals(void **state)
     static const double numbers[] = {(double)NAN, -1, 1e9, HUGE_VAL, -HUGE_VAL};
 
     (void)state;
-    for (int k = 0; k < 5 * 5 + 3; k++) {
+    for (int k = 0; k < 5 * 5 + 2; k++) {
         struct glint_bake_options o = options;
         double *const of_options[] = {&o.band_nm[0], &o.band_nm[1], &o.max_deg,
                                       &o.field_mm, &o.tolerance};
@@ -767,10 +758,8 @@ static void test_refusals(void **state)
             *of_options[k / 5] = numbers[k % 5];
         else if (k == 25)
             o.max_deg = 0;
-        else if (k == 26)
-            o.band_nm[1] = o.band_nm[0];
         else
-            o.basis = GLINT_BASIS_SPARSE + 1;
+            o.band_nm[1] = o.band_nm[0];
         assert_int_equal(
             glint_bake(&heliar, &o, &data, &bytes, &report, &error),
             GLINT_E_ARGUMENT);

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bake/published/scatter/rebuild.h"
+#include "reference/scatter/rebuild.h"
 #include "bake/translucent/linear.h"
 
 enum {

@@ -5,11 +5,11 @@
  * Entries outside of the square are data as any other for all of them but the
  * profiles of [Song09], as published: they are 0. What a model makes of them is
  * dropped. */
-#ifndef GLINT_BAKE_PUBLISHED_SCATTER_REBUILD_H
-#define GLINT_BAKE_PUBLISHED_SCATTER_REBUILD_H
+#ifndef REFERENCE_SCATTER_REBUILD_H
+#define REFERENCE_SCATTER_REBUILD_H
 
 #include "bake/translucent/rows.h"
-#include "glint/scene/translucent_report.h"
+#include "reference/scatter/translucent_report.h"
 
 /* Sets REBUILT, which is open and 0, to what a model of O makes of ROWS.
  * GLINT_E_MEMORY, GLINT_E_CLOSED. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/scenes/stone_models.h"
+#include "reference/scatter/stone_models.h"
 
 #include <errno.h>
 #include <math.h>

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bake NAME.translucent --report DIR: models of scattering side by side,
+ * stone_models: models of scattering side by side,
  * as a page with pictures, a table and curves.
  */
-#ifndef GLINT_TOOLS_LAB_SCENES_STONE_MODELS_H
-#define GLINT_TOOLS_LAB_SCENES_STONE_MODELS_H
+#ifndef REFERENCE_SCATTER_STONE_MODELS_H
+#define REFERENCE_SCATTER_STONE_MODELS_H
 
-#include "glint/scene/translucent_report.h"
+#include "reference/scatter/translucent_report.h"
 #include "options/tool.h"
 
 enum { STONE_MODELS = 17 };

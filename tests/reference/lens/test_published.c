@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "bake/published/published.h"
+#include "reference/lens/published.h"
 #include "support/lens_check.h"
 
 enum { KINDS = GLINT_OUT_RADIUS + 1, ACROSS = 24, DOWN = 12 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/translucent_report.h - models of scattering side by side: those
+ * Models of scattering side by side: those
  * that a run time can draw and those that were published, all rebuilt from the
  * same rows, in double precision.
  *
@@ -8,8 +8,8 @@
  *     glint_scatter_judgement_close(&judgement);
  *
  * Sizes are what the sources count: 8 bytes a number. */
-#ifndef GLINT_SCENE_TRANSLUCENT_REPORT_H
-#define GLINT_SCENE_TRANSLUCENT_REPORT_H
+#ifndef REFERENCE_SCATTER_TRANSLUCENT_REPORT_H
+#define REFERENCE_SCATTER_TRANSLUCENT_REPORT_H
 
 #include "glint/scene/translucent_bake.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "bake/published/published.h"
+#include "reference/lens/published.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 
 #include "engine/setup/degrees.h"
 #include "bake/visible/visible.h"
-#include "bake/published/shared_basis.h"
+#include "reference/lens/shared_basis.h"
 
 enum {
     SEARCH_ZONES = 15, /* zones on which the basis is searched for */

@@ -3,7 +3,7 @@
  * The page of a stone: a table, curves and pictures of all models.
  */
 #include "lab/plots/plot.h"
-#include "lab/scenes/stone_models.h"
+#include "reference/scatter/stone_models.h"
 
 static const char explained[] =
     "RMSE, percentiles of texels and one-way (rms of R'(x, y) - R'(y, x)) are "

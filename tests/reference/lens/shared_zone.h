@@ -15,8 +15,8 @@
  * basis orthonormal, the gain by a candidate as one more term, or in place of
  * any one of them, takes a dot product per term. The rays are the half y > 0 of
  * a symmetric set. */
-#ifndef GLINT_BAKE_PUBLISHED_SHARED_ZONE_H
-#define GLINT_BAKE_PUBLISHED_SHARED_ZONE_H
+#ifndef REFERENCE_LENS_SHARED_ZONE_H
+#define REFERENCE_LENS_SHARED_ZONE_H
 
 #include <stdbool.h>
 #include <stdint.h>

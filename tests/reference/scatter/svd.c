@@ -3,7 +3,7 @@
  * Truncated singular value decompositions of rows, and of their logarithms
  * [Kurt14].
  */
-#include "bake/published/scatter/rebuild.h"
+#include "reference/scatter/rebuild.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
  * Non-negative factors: of rows, and of rows over a mean row, weighted
  * [Peers06].
  */
-#include "bake/published/scatter/rebuild.h"
+#include "reference/scatter/rebuild.h"
 
 #include <math.h>
 #include <stdlib.h>

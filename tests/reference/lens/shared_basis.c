@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "bake/published/shared_basis.h"
+#include "reference/lens/shared_basis.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "bake/published/shared_zone.h"
+#include "reference/lens/shared_zone.h"
 
 #include <math.h>
 #include <string.h>

@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "bake/published/scatter/rebuild.h"
+#include "reference/scatter/rebuild.h"
 #include "bake/translucent/linear.h"
 #include "support/lens_check.h"
 #include "support/rng.h"

@@ -21,8 +21,8 @@
  * between those of that search's profile. Between two knots the error is that
  * of the interpolation: where the box moves by its own size from knot to knot
  * it is much larger than at the knots. */
-#ifndef GLINT_BAKE_PUBLISHED_PUBLISHED_H
-#define GLINT_BAKE_PUBLISHED_PUBLISHED_H
+#ifndef REFERENCE_LENS_PUBLISHED_H
+#define REFERENCE_LENS_PUBLISHED_H
 
 #include "bake/fit/fitted.h"
 #include "glint/setup.h"

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "bake/published/scatter/rebuild.h"
+#include "reference/scatter/rebuild.h"
 
 #define NO_ERROR_DB 999.0
 

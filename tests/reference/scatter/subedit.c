@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bake/published/scatter/rebuild.h"
+#include "reference/scatter/rebuild.h"
 
 enum { VALUES = 12, ROUNDS = 8 };
 

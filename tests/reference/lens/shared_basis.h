@@ -14,10 +14,10 @@
  * are even in y get even powers of y only, odd outputs odd powers.
  *
  * Limits: a local search; it tries only the neighbours named above. */
-#ifndef GLINT_BAKE_PUBLISHED_SHARED_BASIS_H
-#define GLINT_BAKE_PUBLISHED_SHARED_BASIS_H
+#ifndef REFERENCE_LENS_SHARED_BASIS_H
+#define REFERENCE_LENS_SHARED_BASIS_H
 
-#include "bake/published/shared_zone.h"
+#include "reference/lens/shared_zone.h"
 
 /* Finds the basis of output KIND for RAYS[N_ZONES], N_ZONES >= 1: the smallest
  * one with at most MAX_TERMS whose root mean square error is at most
