@@ -31,9 +31,7 @@ static void use(const struct glint_environment *e)
         const size_t texels = (size_t)1 << (2 * e->level[k].side_log2);
 
         byte = e->texel[k];
-        for (size_t i = 0;
-             i < texels * (e->header->code == GLINT_ENVIRONMENT_565 ? 2 : 4);
-             i++)
+        for (size_t i = 0; i < 4 * texels; i++)
             sum += byte[i];
     }
     for (size_t i = 0; i < 1024; i++)

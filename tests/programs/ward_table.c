@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ward_table 9e5|565 PICTURE... - how near lookups of Ward's lobe come to sums
+ * ward_table PICTURE... - how near lookups of Ward's lobe come to sums
  * over all texels, by alpha, rule and number of samples: PSNR in dB of a
  * brushed ball of 32 pixels, its median at 1/4 of white, mean of all pictures;
  * of sRGB codes, and of linear light.
@@ -47,7 +47,7 @@ static void add_lights(const struct glint_environment *e, const double alpha[2],
     }
 }
 
-static int open_map(struct map *m, const char *code, const char *path)
+static int open_map(struct map *m, const char *path)
 {
     struct glint_float_image image = {0};
     struct glint_environment_options o;
@@ -59,7 +59,6 @@ static int open_map(struct map *m, const char *code, const char *path)
     if (glint_picture_load_float(path, &image, &error) != GLINT_OK)
         return 0;
     glint_environment_defaults(&o);
-    o.code = code[0] == '9' ? GLINT_ENVIRONMENT_9E5 : GLINT_ENVIRONMENT_565;
     for (int k = 0; k < 4; k++) {
         o.levels = k / 2 ? GLINT_ENVIRONMENT_MIP : GLINT_ENVIRONMENT_GAUSS;
         o.max_lights = k % 2 ? GLINT_ENVIRONMENT_MAX_LIGHTS : 0;
@@ -148,10 +147,10 @@ int main(int argc, char **argv)
 {
     static double sum[ALPHAS][COLUMNS][WAYS];
 
-    for (int i = 2; i < argc; i++) {
+    for (int i = 1; i < argc; i++) {
         struct map m;
 
-        if (!open_map(&m, argv[1], argv[i])) {
+        if (!open_map(&m, argv[i])) {
             fprintf(stderr, "ward_table: %s cannot be baked\n", argv[i]);
             return 1;
         }
@@ -168,6 +167,6 @@ int main(int argc, char **argv)
         glint_sphere_close(&m.sphere);
     }
     for (int way = 0; way < WAYS; way++)
-        print(sum, way, argc - 2);
+        print(sum, way, argc - 1);
     return 0;
 }

@@ -23,16 +23,13 @@ static const char help[] =
     "                      (default 256)\n"
     "  --levels L          gauss: blurred on the sphere (default)\n"
     "                      mip: means of 2 x 2, the baseline\n"
-    "  --code C            565: roots of 5, 6 and 5 bits\n"
-    "                      9e5: 9 bits each and an exponent, twice the bytes\n"
-    "                      (default)\n"
     "  --lights N          0 to 16 (default 16)\n"
     "  --turn DEG          about the vertical, to the right\n"
     "  --scale X           factor of all light\n";
 
 /* What the line says; -1, or has_ false: nothing. */
 struct line {
-    int side_log2, levels, code, lights;
+    int side_log2, levels, lights;
     bool has_turn, has_scale;
     double turn, scale;
 };
@@ -45,8 +42,6 @@ static void over(void *ctx, struct glint_environment_options *o)
         o->side_log2 = l->side_log2;
     if (l->levels >= 0)
         o->levels = l->levels ? GLINT_ENVIRONMENT_MIP : GLINT_ENVIRONMENT_GAUSS;
-    if (l->code >= 0)
-        o->code = l->code ? GLINT_ENVIRONMENT_9E5 : GLINT_ENVIRONMENT_565;
     if (l->lights >= 0)
         o->max_lights = l->lights;
     if (l->has_turn)
@@ -60,7 +55,6 @@ static int take(struct tool *tool, void *line, int c, const char *name)
     static const char *const sizes[] = {"16",  "32",  "64",   "128",
                                         "256", "512", "1024", NULL};
     static const char *const levels[] = {"gauss", "mip", NULL};
-    static const char *const codes[] = {"565", "9e5", NULL};
     struct line *l = line;
     bool ok = true;
 
@@ -73,10 +67,6 @@ static int take(struct tool *tool, void *line, int c, const char *name)
     case 'l':
         l->levels = tool_word(optarg, levels);
         ok = l->levels >= 0;
-        break;
-    case 'c':
-        l->code = tool_word(optarg, codes);
-        ok = l->code >= 0;
         break;
     case 'n':
         ok = tool_integer(optarg, 0, GLINT_ENVIRONMENT_MAX_LIGHTS, &l->lights);
@@ -101,13 +91,11 @@ int cmd_bake_environment(struct tool *tool, int argc, char **argv)
         BAKE_LINE_OPTIONS,
         {"size", required_argument, NULL, 's'},
         {"levels", required_argument, NULL, 'l'},
-        {"code", required_argument, NULL, 'c'},
         {"lights", required_argument, NULL, 'n'},
         {"turn", required_argument, NULL, 't'},
         {"scale", required_argument, NULL, 'x'},
         TOOL_COMMON_OPTIONS};
-    struct line line = {
-        .side_log2 = -1, .levels = -1, .code = -1, .lights = -1};
+    struct line line = {.side_log2 = -1, .levels = -1, .lights = -1};
     struct environment_file file;
     int code;
 

@@ -27,9 +27,7 @@ static struct counts count(const struct environment_file *file)
                                  << (2 * file->environment.level[k].side_log2);
 
         n.texels += texels;
-        n.levels += h->code == GLINT_ENVIRONMENT_565
-                        ? (size_t)(2 * texels + 2) / 4 * 4
-                        : 4 * (size_t)texels;
+        n.levels += 4 * (size_t)texels;
     }
     n.levels += h->n_levels * sizeof *file->environment.level;
     n.lights = h->n_lights * sizeof *file->environment.light;
@@ -46,11 +44,6 @@ static const char *levels_of(const struct glint_environment_header *h)
     return h->variant == GLINT_ENVIRONMENT_MIP ? "mip" : "gauss";
 }
 
-static const char *code_of(const struct glint_environment_header *h)
-{
-    return h->code == GLINT_ENVIRONMENT_565 ? "565" : "9e5";
-}
-
 static void print_json(const struct environment_file *file,
                        const struct counts *n)
 {
@@ -58,8 +51,8 @@ static void print_json(const struct environment_file *file,
     const struct glint_environment_report *r = &file->report;
     struct json_writer json = {.to = stdout};
 
-    json_write(&json, "{name: %s, environment: {size: %d, levels: %s, code: %s",
-               h->name, 1 << h->side_log2, levels_of(h), code_of(h));
+    json_write(&json, "{name: %s, environment: {size: %d, levels: %s", h->name,
+               1 << h->side_log2, levels_of(h));
     if (file->is_baked_now)
         json_write(&json,
                    "picture: [%d, %d], negative: %lld, not_finite: %lld, "
@@ -106,8 +99,8 @@ static void print_text(const struct environment_file *file,
 {
     const struct glint_environment_header *h = file->environment.header;
 
-    printf("%s, an environment %d wide, levels %s, code %s\n\n", h->name,
-           1 << h->side_log2, levels_of(h), code_of(h));
+    printf("%s, an environment %d wide, levels %s\n\n", h->name,
+           1 << h->side_log2, levels_of(h));
     if (file->is_baked_now)
         print_baking(&file->report);
     printf("levels       %u:", h->n_levels);

@@ -55,19 +55,15 @@ enum glint_environment_levels {
 };
 
 enum glint_environment_code {
-    /* uint16: roots of R, G, B in 5, 6 and 5 bits, R the upper ones: a code c
-     * of at most m is (c / m)^2 times the level's scale. */
-    GLINT_ENVIRONMENT_565,
     /* uint32: R, G, B of 9 bits, R the lower ones, and an exponent e of 5: a
      * mantissa m is m 2^(e - 12) units. */
-    GLINT_ENVIRONMENT_9E5
+    GLINT_ENVIRONMENT_9E5 = 1
 };
 
 struct glint_environment_level {
     uint32_t side_log2; /* glint_environment_side_log2() */
     uint32_t texel_at;  /* codes, row by row */
-    int32_t scale;      /* 565: units, 0 .. 2^28; else 0 */
-    uint32_t zero;
+    uint32_t zero[2];
 };
 
 /* A disc of even light. */

@@ -31,7 +31,6 @@ extern "C" {
 struct glint_environment_options {
     int side_log2; /* GLINT_ENVIRONMENT_LEAST_LOG2 .. MOST_LOG2 */
     enum glint_environment_levels levels;
-    enum glint_environment_code code;
     int max_lights;     /* 0 .. GLINT_ENVIRONMENT_MAX_LIGHTS */
     double light_deg;   /* rms radius above which a spot is no light, 0.1 .. 20
                          */

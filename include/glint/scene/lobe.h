@@ -28,18 +28,11 @@ struct glint_texels_level {
     uint32_t at; /* of the first code, counted in codes */
 };
 
-/* What 5:6:5 codes of a level are times: Q15 2^log2 units, Q15 0 .. 2^15. */
-struct glint_texels_scale {
-    int32_t q15, log2;
-};
-
 struct glint_texels {
-    const void *code; /* uint32_t: RGB9E5; uint16_t: 5:6:5 of roots */
-    int is_9e5;
-    int32_t last; /* level */
+    const uint32_t *code; /* RGB9E5 */
+    int32_t last;         /* level */
     /* The last one stands there twice: each has a next. */
     struct glint_texels_level level[GLINT_TEXELS_LEVELS + 1];
-    struct glint_texels_scale scale[GLINT_TEXELS_LEVELS + 1];
 };
 
 struct glint_ward_lobe;

@@ -5,27 +5,6 @@
 
 #include <math.h>
 
-static uint32_t root_code(double x, int most)
-{
-    double c = floor(most * sqrt(fmin(fmax(x, 0), 1)));
-
-    /* The next is nearer where x is beyond the mean of both squares. */
-    if (c < most && x * most * most * 2 > c * c + (c + 1) * (c + 1))
-        c++;
-    return (uint32_t)c;
-}
-
-void glint_environment_put_565(const double (*light)[3], size_t n, double scale,
-                               uint16_t *code)
-{
-    const double by = scale > 0 ? 1 / scale : 0;
-
-    for (size_t i = 0; i < n; i++)
-        code[i] = (uint16_t)(root_code(by * light[i][0], 31) << 11 |
-                             root_code(by * light[i][1], 63) << 5 |
-                             root_code(by * light[i][2], 31));
-}
-
 void glint_environment_put_9e5(const double (*light)[3], size_t n, double unit,
                                uint32_t *code)
 {

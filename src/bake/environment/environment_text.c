@@ -7,8 +7,8 @@
 #include "bake/scene/near.h"
 #include "glint/scene/environment_bake.h"
 
-static const char *const words[] = {"source", "size", "levels", "code",
-                                    "lights", "turn", "scale",  NULL};
+static const char *const words[] = {"source", "size",  "levels", "lights",
+                                    "turn",   "scale", NULL};
 
 /* Reads one of NAMES, NULL at the end, and returns its index or -1. */
 static int read_name(struct glint_text *text, const char *line,
@@ -71,7 +71,6 @@ static bool read_line(struct glint_text *text, int which,
                       struct glint_environment_options *o, char *source)
 {
     static const char *const levels[] = {"gauss", "mip", NULL};
-    static const char *const codes[] = {"565", "9e5", NULL};
     int i = 0;
 
     switch (which) {
@@ -84,12 +83,8 @@ static bool read_line(struct glint_text *text, int which,
         o->levels = i == 1 ? GLINT_ENVIRONMENT_MIP : GLINT_ENVIRONMENT_GAUSS;
         break;
     case 3:
-        i = read_name(text, "code", "565 or 9e5", codes);
-        o->code = i == 1 ? GLINT_ENVIRONMENT_9E5 : GLINT_ENVIRONMENT_565;
-        break;
-    case 4:
         return read_lights(text, o);
-    case 5:
+    case 4:
         return glint_numbers_read(text, "turn", 1, -360, 360, &o->turn_deg);
     default:
         return glint_numbers_read(text, "scale", 1, 1e-6, 1e6, &o->scale);

@@ -29,7 +29,6 @@ void glint_environment_defaults(struct glint_environment_options *options)
     *options = (struct glint_environment_options){
         .side_log2 = 8,
         .levels = GLINT_ENVIRONMENT_GAUSS,
-        .code = GLINT_ENVIRONMENT_9E5,
         .max_lights = GLINT_ENVIRONMENT_MAX_LIGHTS,
         .light_deg = 3.4,
         .light_above = 8,
@@ -40,8 +39,7 @@ static bool is_in_range(const struct glint_environment_options *o)
 {
     return o->side_log2 >= GLINT_ENVIRONMENT_LEAST_LOG2 &&
            o->side_log2 <= GLINT_ENVIRONMENT_MOST_LOG2 &&
-           (unsigned)o->levels <= GLINT_ENVIRONMENT_MIP &&
-           (unsigned)o->code <= GLINT_ENVIRONMENT_9E5 && o->max_lights >= 0 &&
+           (unsigned)o->levels <= GLINT_ENVIRONMENT_MIP && o->max_lights >= 0 &&
            o->max_lights <= GLINT_ENVIRONMENT_MAX_LIGHTS &&
            o->light_deg >= .1 && o->light_deg <= 20 && o->light_above >= 2 &&
            o->light_above <= 1000 && fabs(o->turn_deg) <= 360 &&
@@ -181,26 +179,18 @@ static double largest_of(double (*light)[3], size_t n)
 static bool write_level(struct writer *w, int k,
                         struct glint_environment_level *level)
 {
-    const bool is_root = w->options->code == GLINT_ENVIRONMENT_565;
-    const size_t n = texels_of(w, k), bytes = n * (is_root ? 2 : 4);
+    const size_t n = texels_of(w, k);
     const double unit = ldexp(1, w->header.unit_log2);
-    const double most = largest_of(w->level[k], n);
-    void *code = malloc(bytes);
+    uint32_t *code = malloc(n * sizeof *code);
 
     if (!code)
         return false;
-    if (is_root)
-        glint_environment_put_565((const double(*)[3])w->level[k], n, most,
-                                  code);
-    else
-        glint_environment_put_9e5((const double(*)[3])w->level[k], n, unit,
-                                  code);
+    glint_environment_put_9e5((const double(*)[3])w->level[k], n, unit, code);
     *level = (struct glint_environment_level){
         .side_log2 = glint_environment_side_log2(
             (uint32_t)w->options->levels, (uint32_t)w->options->side_log2,
             (uint32_t)k),
-        .texel_at = glint_draft_put(&w->draft, code, bytes),
-        .scale = is_root ? (int32_t)lrint(most / unit) : 0};
+        .texel_at = glint_draft_put(&w->draft, code, n * sizeof *code)};
     free(code);
     return true;
 }
@@ -280,7 +270,7 @@ static void set_header(struct writer *w, const char *name, uint64_t key)
     h->key[1] = (uint32_t)(key >> 32);
     glint_draft_name(h->name, name, "environment");
     h->side_log2 = (uint32_t)w->options->side_log2;
-    h->code = (uint32_t)w->options->code;
+    h->code = GLINT_ENVIRONMENT_9E5;
 }
 
 enum glint_status

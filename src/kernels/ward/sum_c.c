@@ -154,7 +154,7 @@ void glint_ward_sum_c(const struct glint_ward_lobe *lobe,
                        reads.at, reads.weight_q22);
         glint_reads_of(&texels->level[level + 1], u_q17, v_q17, share_q8,
                        reads.at + 4, reads.weight_q22 + 4);
-        glint_find_light(texels, level, &reads, 8, &found);
+        glint_find_light(texels->code, &reads, 8, &found);
         glint_count_light(&found, (uint32_t)weight_q12(lobe, k, &s, place),
                           sum_q12);
     }

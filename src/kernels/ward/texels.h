@@ -13,14 +13,11 @@ struct glint_reads {
     uint32_t at[8], weight_q22[8];
 };
 
-/* Light in units: RGB 2^(log2 - 34), RGB up to 2^31, log2 up to 31; of 5:6:5
- * codes that times GLINT_ROOTS_Q15. */
+/* Light in units: RGB 2^(log2 - 34), RGB up to 2^31, log2 up to 31. */
 struct glint_found {
     uint32_t rgb[3];
     int32_t log2;
 };
-
-enum { GLINT_ROOTS_Q15 = 33817 }; /* 2^14 / (4 * 63^2) */
 
 /* Sets four of AT and WEIGHT_Q22 to the texels of LEVEL about (U, V), 0 .. 1
  * across and down the square, which count SHARE_Q8 in all. A place beyond an
@@ -52,20 +49,10 @@ static inline void glint_reads_of(const struct glint_texels_level *level,
     }
 }
 
-/* Four times 63^2 of white. */
-static inline uint32_t glint_root5_q2(uint32_t c)
-{
-    return (c * c * 270692 + (1 << 13)) >> 14;
-}
-
-static inline uint32_t glint_root6_q2(uint32_t c)
-{
-    return c * c << 2;
-}
-
-static inline void glint_add_9e5(const uint32_t *code,
-                                 const struct glint_reads *reads, int n,
-                                 struct glint_found *found)
+/* Sets FOUND to the light of N READS of CODE. */
+static inline void glint_find_light(const uint32_t *code,
+                                    const struct glint_reads *reads, int n,
+                                    struct glint_found *found)
 {
     uint32_t most = 0;
 
@@ -82,43 +69,6 @@ static inline void glint_add_9e5(const uint32_t *code,
         for (int j = 0; j < 3; j++)
             found->rgb[j] += weight * (c >> (9 * j) & 511);
     }
-}
-
-/* Sums of weights of 2^16 times squares below 2^14; times a scale of 2^15. */
-static inline void glint_add_565(const uint16_t *code,
-                                 const struct glint_texels_scale scale[2],
-                                 const struct glint_reads *reads, int n,
-                                 struct glint_found *found)
-{
-    const int32_t most = q_larger(scale[0].log2, scale[n > 4].log2);
-
-    *found = (struct glint_found){{0, 0, 0}, most + 18};
-    for (int l = 0; l < n / 4; l++) {
-        uint32_t sum[3] = {0, 0, 0};
-
-        for (int k = 4 * l; k < 4 * l + 4; k++) {
-            const uint32_t c = code[reads->at[k]];
-            const uint32_t weight_q16 = reads->weight_q22[k] >> 6;
-
-            sum[0] += weight_q16 * glint_root5_q2(c >> 11);
-            sum[1] += weight_q16 * glint_root6_q2(c >> 5 & 63);
-            sum[2] += weight_q16 * glint_root5_q2(c & 31);
-        }
-        for (int j = 0; j < 3; j++)
-            found->rgb[j] += ((sum[j] >> 14) * (uint32_t)scale[l].q15) >>
-                             (most - scale[l].log2);
-    }
-}
-
-/* Sets FOUND to the light of the levels K and, of N = 8 reads, the next. */
-static inline void glint_find_light(const struct glint_texels *texels,
-                                    int32_t k, const struct glint_reads *reads,
-                                    int n, struct glint_found *found)
-{
-    if (texels->is_9e5)
-        glint_add_9e5(texels->code, reads, n, found);
-    else
-        glint_add_565(texels->code, &texels->scale[k], reads, n, found);
 }
 
 /* Adds FOUND, which counts WEIGHT_Q12, 0 .. 2^15. */

@@ -36,8 +36,8 @@ uint32_t glint_environment_side_log2(uint32_t levels, uint32_t side_log2,
 
 static const char *check_header(const struct glint_environment_header *h)
 {
-    if (h->variant > GLINT_ENVIRONMENT_MIP || h->code > GLINT_ENVIRONMENT_9E5)
-        return "the environment's levels or codes are unknown";
+    if (h->variant > GLINT_ENVIRONMENT_MIP || h->code != GLINT_ENVIRONMENT_9E5)
+        return "the environment's levels or codes are unknown: bake it again";
     if (h->side_log2 < GLINT_ENVIRONMENT_LEAST_LOG2 ||
         h->side_log2 > GLINT_ENVIRONMENT_MOST_LOG2 ||
         h->n_levels != h->side_log2 + 1 ||
@@ -53,18 +53,13 @@ static const char *check_level(struct glint_environment *e,
 {
     const struct glint_environment_header *h = e->header;
     const struct glint_environment_level *l = &e->level[k];
-    const int is_root = h->code == GLINT_ENVIRONMENT_565;
 
     if (l->side_log2 !=
             glint_environment_side_log2(h->variant, h->side_log2, k) ||
-        l->scale < 0 ||
-        l->scale > (is_root ? 1 << GLINT_ENVIRONMENT_BITS : 0) || l->zero)
-        return "a level's side or scale is out of range";
-    /* Two codes of 565 are one word; the side of a mip may be one. */
-    e->texel[k] = glint_blob_section(
-        blob, l->texel_at,
-        ((UINT64_C(1) << (2 * l->side_log2)) + (uint64_t)is_root) >> is_root,
-        4);
+        l->zero[0] || l->zero[1])
+        return "a level's side is out of range";
+    e->texel[k] = glint_blob_section(blob, l->texel_at,
+                                     UINT64_C(1) << (2 * l->side_log2), 4);
     return e->texel[k] ? NULL : outside;
 }
 
@@ -72,15 +67,10 @@ static const char *check_level(struct glint_environment *e,
 static void place_level(struct glint_environment *e, uint32_t k)
 {
     const struct glint_environment_level *l = &e->level[k];
-    const int bits = bit_length((uint32_t)l->scale);
 
-    e->texels.level[k] = (struct glint_texels_level){
-        (int32_t)l->side_log2, l->texel_at / (e->texels.is_9e5 ? 4 : 2)};
-    e->texels.scale[k] = (struct glint_texels_scale){
-        bits > 15 ? l->scale >> (bits - 15) : l->scale,
-        bits > 15 ? bits - 15 : 0};
+    e->texels.level[k] =
+        (struct glint_texels_level){(int32_t)l->side_log2, l->texel_at / 4};
     e->texels.level[k + 1] = e->texels.level[k];
-    e->texels.scale[k + 1] = e->texels.scale[k];
 }
 
 static const char *check_light(const struct glint_environment_light *light)
@@ -114,10 +104,8 @@ static const char *check_contents(struct glint_environment *e,
         glint_blob_section(blob, h->light_at, h->n_lights, sizeof *e->light);
     if (!e->level || !e->irradiance || !e->light)
         return outside;
-    e->texels =
-        (struct glint_texels){.code = h,
-                              .is_9e5 = h->code == GLINT_ENVIRONMENT_9E5,
-                              .last = (int32_t)h->n_levels - 1};
+    e->texels = (struct glint_texels){.code = (const uint32_t *)(const void *)h,
+                                      .last = (int32_t)h->n_levels - 1};
     for (uint32_t k = 0; !wrong && k < h->n_levels; k++) {
         wrong = check_level(e, blob, k);
         if (!wrong)

@@ -196,8 +196,6 @@ int glint_ward_prepare(struct glint_ward_lobe *lobe,
 {
     const struct glint_environment_header *h = environment->header;
     const int n = options->samples;
-    const int32_t codes_q15 =
-        environment->texels.is_9e5 ? 1 << 15 : GLINT_ROOTS_Q15;
     const int32_t f_q16 = footprint_q16(n);
     int32_t alpha_q24[2] = {material->alpha_q24[0], material->alpha_q24[1]};
     int32_t slope_q16[GLINT_WARD_SAMPLES][2];
@@ -208,7 +206,7 @@ int glint_ward_prepare(struct glint_ward_lobe *lobe,
                                      .n = n,
                                      .norm = material->norm,
                                      .unit_log2 = h->unit_log2,
-                                     .share_q16 = (2 * codes_q15 + n / 2) / n};
+                                     .share_q16 = ((1 << 16) + n / 2) / n};
     draw(n, slope_q16);
     for (int j = 0; j < 2 && options->rule == GLINT_WARD_CONSTANT; j++)
         settle(n, j, (uint32_t)spread_q16(alpha_q24[j], b_q48, f_q16) << 15,

@@ -28,15 +28,7 @@ static double decode_9e5(const struct glint_environment *e, uint32_t word,
 static double texel_of(const struct glint_environment *e, int level, int i,
                        int c)
 {
-    static const int shift[3] = {11, 5, 0}, most[3] = {31, 63, 31};
-    double root;
-
-    if (e->header->code == GLINT_ENVIRONMENT_9E5)
-        return decode_9e5(e, ((const uint32_t *)e->texel[level])[i], c);
-    root =
-        (double)(((const uint16_t *)e->texel[level])[i] >> shift[c] & most[c]) /
-        most[c];
-    return root * root * ldexp(e->level[level].scale, e->header->unit_log2);
+    return decode_9e5(e, ((const uint32_t *)e->texel[level])[i], c);
 }
 
 /* Sets PLACE, 0 .. 1 each, to that of TOWARD in the unfolded octahedron. */

@@ -134,13 +134,12 @@ static void bake(struct baked *b, const struct glint_environment_options *o)
         fail_msg("%s", reason);
 }
 
-static struct glint_environment_options options_of(int code)
+static struct glint_environment_options options_of(void)
 {
     struct glint_environment_options o;
 
     glint_environment_defaults(&o);
     o.side_log2 = SIDE_LOG2;
-    o.code = (enum glint_environment_code)code;
     return o;
 }
 
@@ -154,14 +153,7 @@ static double decode_9e5(const struct glint_environment *e, uint32_t word,
 /* Returns channel C of texel I of level K. */
 static double decode(const struct glint_environment *e, int k, size_t i, int c)
 {
-    static const int shift[3] = {11, 5, 0}, most[3] = {31, 63, 31};
-    double root;
-
-    if (e->header->code == GLINT_ENVIRONMENT_9E5)
-        return decode_9e5(e, ((const uint32_t *)e->texel[k])[i], c);
-    root = (double)(((const uint16_t *)e->texel[k])[i] >> shift[c] & most[c]) /
-           most[c];
-    return root * root * ldexp(e->level[k].scale, e->header->unit_log2);
+    return decode_9e5(e, ((const uint32_t *)e->texel[k])[i], c);
 }
 
 static double even(const double d[3])
@@ -170,31 +162,29 @@ static double even(const double d[3])
     return 12.5;
 }
 
-/* Even light stays even, to the last code: the brightest. */
+/* Even light stays even. */
 static void test_even(void **state)
 {
+    const struct glint_environment_options o = options_of();
+    struct baked b;
+
     (void)state;
     paint(even);
-    for (int code = 0; code < 2; code++) {
-        const struct glint_environment_options o = options_of(code);
-        struct baked b;
-
-        bake(&b, &o);
-        assert_string_equal(b.environment.header->name, "anight");
-        assert_int_equal(b.environment.header->key[1], 1);
-        assert_int_equal(b.environment.header->n_lights, 0);
-        assert_true(b.report.negative == 0 && b.report.not_finite == 0);
-        for (int k = 0; k <= SIDE_LOG2; k++)
-            for (size_t i = 0; i >> (2 * b.environment.level[k].side_log2) == 0;
-                 i++)
-                assert_true(fabs(decode(&b.environment, k, i, 0) - 12.5) <
-                            12.5 / (code ? 1000 : 1e6));
-        for (int i = 0; i < 1024; i++)
-            assert_true(fabs(decode_9e5(&b.environment,
-                                        b.environment.irradiance[i], 1) -
-                             6.25) < 6.25 * .003);
-        free(b.data);
-    }
+    bake(&b, &o);
+    assert_string_equal(b.environment.header->name, "anight");
+    assert_int_equal(b.environment.header->key[1], 1);
+    assert_int_equal(b.environment.header->n_lights, 0);
+    assert_true(b.report.negative == 0 && b.report.not_finite == 0);
+    for (int k = 0; k <= SIDE_LOG2; k++)
+        for (size_t i = 0; i >> (2 * b.environment.level[k].side_log2) == 0;
+             i++)
+            assert_true(fabs(decode(&b.environment, k, i, 0) - 12.5) <
+                        12.5 / 1000);
+    for (int i = 0; i < 1024; i++)
+        assert_true(
+            fabs(decode_9e5(&b.environment, b.environment.irradiance[i], 1) -
+                 6.25) < 6.25 * .003);
+    free(b.data);
 }
 
 static double slope(const double d[3])
@@ -211,7 +201,7 @@ static double ahead(const double d[3])
 
 static void test_irradiance(void **state)
 {
-    struct glint_environment_options o = options_of(GLINT_ENVIRONMENT_9E5);
+    struct glint_environment_options o = options_of();
     double worst = 0;
 
     (void)state;
@@ -250,7 +240,7 @@ static double patches(const double d[3])
  * beyond four sigma. */
 static void test_blur(void **state)
 {
-    struct glint_environment_options o = options_of(GLINT_ENVIRONMENT_9E5);
+    struct glint_environment_options o = options_of();
     struct glint_environment_report report = {0};
     struct glint_sphere s;
     struct baked b;
@@ -308,7 +298,7 @@ static void test_b5_texels(void **state)
 
 static void test_mips(void **state)
 {
-    struct glint_environment_options o = options_of(GLINT_ENVIRONMENT_9E5);
+    struct glint_environment_options o = options_of();
     struct baked b;
 
     (void)state;
@@ -348,7 +338,7 @@ static double day(const double d[3])
  * left there is as around. */
 static void test_light(void **state)
 {
-    struct glint_environment_options o = options_of(GLINT_ENVIRONMENT_565);
+    struct glint_environment_options o = options_of();
     const struct glint_environment_light *l;
     double solid = 0; /* of the pixels that are the disc */
     struct baked b;
@@ -405,7 +395,7 @@ static double window(const double d[3])
 /* Wide light stays where it is, and of two discs that touch none is lost. */
 static void test_areas_stay(void **state)
 {
-    const struct glint_environment_options o = options_of(0);
+    const struct glint_environment_options o = options_of();
     struct baked b;
 
     (void)state;
@@ -420,7 +410,7 @@ static void test_areas_stay(void **state)
 
 static void test_held(void **state)
 {
-    const struct glint_environment_options o = options_of(0);
+    const struct glint_environment_options o = options_of();
     struct glint_environment_options odd;
     struct glint_error error;
     struct glint_float_image narrow = image;
@@ -462,7 +452,7 @@ static void test_cube(void **state)
 {
     static const double middle[6][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},
                                         {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
-    struct glint_environment_options o = options_of(GLINT_ENVIRONMENT_9E5);
+    struct glint_environment_options o = options_of();
     struct glint_environment_report report = {0};
     float faces[16][24][3];
     const struct glint_float_image cube = {24, 16, (float *)faces};
@@ -488,10 +478,7 @@ static void test_codes(void **state)
 {
     enum { N = 4096 };
     static double light[N][3];
-    static uint16_t roots[N];
     static uint32_t words[N];
-    static const int shift[3] = {11, 5, 0}, most[3] = {31, 63, 31};
-
     uint32_t seed = 3;
 
     (void)state;
@@ -499,23 +486,12 @@ static void test_codes(void **state)
         for (int c = 0; c < 3; c++)
             light[i][c] = ldexp(rng_below(&seed, 65536), -rng_below(&seed, 20));
     light[0][0] = 65536;
-    glint_environment_put_565((const double(*)[3])light, N, 65536, roots);
     glint_environment_put_9e5((const double(*)[3])light, N, 0x1p-8, words);
     for (int i = 0; i < N; i++) {
         const double top = fmax(light[i][0], fmax(light[i][1], light[i][2]));
         const int e = (int)(words[i] >> 27);
 
         for (int c = 0; c < 3; c++) {
-            const double r = (roots[i] >> shift[c] & most[c]), m = most[c];
-            const double got = 65536 * r * r / (m * m);
-            /* no other code is nearer */
-            const double down = 65536 * (r - 1) * (r - 1) / (m * m);
-            const double up = 65536 * (r + 1) * (r + 1) / (m * m);
-
-            assert_true(fabs(got - light[i][c]) <=
-                        fabs(up - light[i][c]) * (1 + 1e-12));
-            assert_true(r == 0 || fabs(got - light[i][c]) <=
-                                      fabs(down - light[i][c]) * (1 + 1e-12));
             assert_true(fabs(ldexp(words[i] >> (9 * c) & 511, e - 12 - 8) -
                              light[i][c]) <= fmax(top / 510, 0x1p-21));
         }
@@ -547,7 +523,7 @@ static void refuse(const struct baked *b, size_t at, uint32_t value,
 
 static void test_refused(void **state)
 {
-    const struct glint_environment_options o = options_of(0);
+    const struct glint_environment_options o = options_of();
     struct baked b;
     const struct glint_environment_header *h;
 
@@ -569,10 +545,10 @@ static void test_refused(void **state)
     refuse(&b, AT(level_at), (uint32_t)b.bytes, "outside");
     refuse(&b, AT(irradiance_at), 8, "outside");
     refuse(&b, AT(light_at), (uint32_t)b.bytes - 4, "outside");
-    refuse(&b, h->level_at, 4, "side or scale");
+    refuse(&b, h->level_at, 4, "side");
     refuse(&b, h->level_at + 4, 2, "outside");
-    refuse(&b, h->level_at + 8, (1u << 28) + 1, "side or scale");
-    refuse(&b, h->level_at + 12, 1, "side or scale");
+    refuse(&b, h->level_at + 8, (1u << 28) + 1, "side");
+    refuse(&b, h->level_at + 12, 1, "side");
     refuse(&b, h->light_at, 0, "unit vector");
     refuse(&b, h->light_at + 12, 1u << 30, "too large");
     refuse(&b, h->light_at + 16, 5, "normalised");
@@ -608,15 +584,14 @@ static void test_text(void **state)
 
     (void)state;
     assert_int_equal(parse("# night\nsource a night.exr\nsize 128\n"
-                           "levels mip\ncode 9e5\nturn -90\nscale .5\n"
+                           "levels mip\nturn -90\nscale .5\n"
                            "lights 3 radius 2.5 above 20\n",
                            &o, source, &error),
                      GLINT_OK);
     assert_string_equal(source, "a night.exr");
     assert_true(o.side_log2 == 7 && o.levels == GLINT_ENVIRONMENT_MIP &&
-                o.code == GLINT_ENVIRONMENT_9E5 && o.turn_deg == -90 &&
-                o.scale == .5 && o.max_lights == 3 && o.light_deg == 2.5 &&
-                o.light_above == 20);
+                o.turn_deg == -90 && o.scale == .5 && o.max_lights == 3 &&
+                o.light_deg == 2.5 && o.light_above == 20);
     wrong("size 128\n", "n.environment:2:1: there is no picture: source FILE");
     wrong("source\n", "n.environment:1:7: the name of the picture is missing");
     wrong("source x\nsize 100\n",

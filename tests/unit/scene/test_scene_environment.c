@@ -48,7 +48,7 @@ static void paint(float sky[SKY_HEIGHT][SKY_WIDTH][3], bool is_dusk)
         }
 }
 
-/* NAME is that of the code: "9e5" or "565"; or "dusk". */
+/* NAME is "9e5" or "dusk". */
 static enum glint_status bake_sky(void *ctx, const char *name, uint8_t **data,
                                   size_t *bytes, struct glint_error *error)
 {
@@ -62,8 +62,6 @@ static enum glint_status bake_sky(void *ctx, const char *name, uint8_t **data,
     paint(sky, strstr(name, "dusk") != NULL);
     glint_environment_defaults(&options);
     options.side_log2 = 6;
-    options.code = strcmp(name, "565") == 0 ? GLINT_ENVIRONMENT_565
-                                            : GLINT_ENVIRONMENT_9E5;
     return glint_environment_bake(&picture, &options, "sky", 1, data, bytes,
                                   &report, error);
 }
@@ -114,11 +112,10 @@ static void test_twin(void **state)
         {"metals", STAGE "environment 9e5\n" BALLS "brushed\n"},
         {"metals, turned", STAGE "environment 9e5 turn 70 scale .6\n"
                                  "background environment\n" BALLS "white\n"},
-        {"565, left",
-         "hand left\n" STAGE "environment 565 turn -200 scale 1.7\n"
-         "background environment\nshadow on\n"
-         "sphere a at -1 .5 9 radius .5 material steel\n"
-         "sphere b at 1 .5 9 radius .5 material brushed\n"},
+        {"left", "hand left\n" STAGE "environment 9e5 turn -200 scale 1.7\n"
+                 "background environment\nshadow on\n"
+                 "sphere a at -1 .5 9 radius .5 material steel\n"
+                 "sphere b at 1 .5 9 radius .5 material brushed\n"},
         {"mirrors", STAGE "environment 9e5\nbackground environment\n"
                           "sphere a at -1 .5 0 radius .5 material mirror\n"
                           "sphere b at 1 .5 0 radius .5 material glass\n"},

@@ -40,7 +40,7 @@ static void paint(int is_even)
         }
 }
 
-static void open_map(struct map *m, int levels, int code)
+static void open_map(struct map *m, int levels)
 {
     struct glint_environment_options o;
     struct glint_environment_report report;
@@ -51,7 +51,6 @@ static void open_map(struct map *m, int levels, int code)
     glint_environment_defaults(&o);
     o.side_log2 = SIDE_LOG2;
     o.levels = (enum glint_environment_levels)levels;
-    o.code = (enum glint_environment_code)code;
     o.max_lights = 0;
     assert_int_equal(glint_environment_bake(&image, &o, "x", 0, &m->data,
                                             &bytes, &report, &error),
@@ -105,7 +104,7 @@ static void test_furnace(void **state)
 
     (void)state;
     paint(1);
-    open_map(&m, GLINT_ENVIRONMENT_GAUSS, GLINT_ENVIRONMENT_9E5);
+    open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     for (int norm = 0; norm < 2; norm++)
         for (int k = 0; k < 4; k++) {
             const double no = cosine[k];
@@ -135,17 +134,10 @@ static void test_furnace(void **state)
 static double texel_of(const struct glint_environment *e, int k, size_t i,
                        int c)
 {
-    static const int shift[3] = {11, 5, 0}, most[3] = {31, 63, 31};
-    const uint32_t word = e->header->code == GLINT_ENVIRONMENT_9E5
-                              ? ((const uint32_t *)e->texel[k])[i]
-                              : ((const uint16_t *)e->texel[k])[i];
-    double root;
+    const uint32_t word = ((const uint32_t *)e->texel[k])[i];
 
-    if (e->header->code == GLINT_ENVIRONMENT_9E5)
-        return ldexp(word >> (9 * c) & 511,
-                     (int)(word >> 27) - 12 + e->header->unit_log2);
-    root = (double)(word >> shift[c] & (uint32_t)most[c]) / most[c];
-    return root * root * ldexp(e->level[k].scale, e->header->unit_log2);
+    return ldexp(word >> (9 * c) & 511,
+                 (int)(word >> 27) - 12 + e->header->unit_log2);
 }
 
 static double look_level(const struct glint_environment *e, int k,
@@ -245,33 +237,30 @@ static void test_twin(void **state)
     static const int samples[5] = {1, 4, 8, 16, 32};
     static ward_picture want, got;
     double least = 200;
+    struct map m;
 
     (void)state;
     paint(0);
-    for (int code = 0; code < 2; code++) {
-        struct map m;
+    open_map(&m, GLINT_ENVIRONMENT_GAUSS);
+    for (int k = 0; k < 10; k++) {
+        const double alpha[2] = {.05, k / 5 ? .05 : .3};
+        const struct glint_ward_material material =
+            material_of(alpha[0], alpha[1]);
+        struct glint_ward_options o = eight;
 
-        open_map(&m, GLINT_ENVIRONMENT_GAUSS, code);
-        for (int k = 0; k < 10; k++) {
-            const double alpha[2] = {.05, k / 5 ? .05 : .3};
-            const struct glint_ward_material material =
-                material_of(alpha[0], alpha[1]);
-            struct glint_ward_options o = eight;
+        o.samples = samples[k % 5];
+        memset(want, 0, sizeof want);
+        for (int i = 0; i < WARD_PIXELS; i++) {
+            double frame[3][3];
 
-            o.samples = samples[k % 5];
-            memset(want, 0, sizeof want);
-            for (int i = 0; i < WARD_PIXELS; i++) {
-                double frame[3][3];
-
-                if (ward_frame(i, frame))
-                    twin_pixel(&m.e, alpha, o.samples,
-                               (const double(*)[3])frame, want[i]);
-            }
-            ward_look(&m.e, &material, &o, got);
-            least = fmin(least, ward_psnr(want, got));
+            if (ward_frame(i, frame))
+                twin_pixel(&m.e, alpha, o.samples, (const double(*)[3])frame,
+                           want[i]);
         }
-        free(m.data);
+        ward_look(&m.e, &material, &o, got);
+        least = fmin(least, ward_psnr(want, got));
     }
+    free(m.data);
     print_message("twin: %.1f dB at least\n", least);
     assert_true(least >= 60);
 }
@@ -338,8 +327,8 @@ static void test_b1_b4(void **state)
 
     (void)state;
     paint(0);
-    open_map(&gauss, GLINT_ENVIRONMENT_GAUSS, GLINT_ENVIRONMENT_565);
-    open_map(&mip, GLINT_ENVIRONMENT_MIP, GLINT_ENVIRONMENT_565);
+    open_map(&gauss, GLINT_ENVIRONMENT_GAUSS);
+    open_map(&mip, GLINT_ENVIRONMENT_MIP);
     for (int a = 0; a < 3; a++) {
         const struct glint_ward_material material =
             material_of(alphas[a][0], alphas[a][1]);
@@ -382,7 +371,7 @@ static void test_b2_changes(void **state)
 
     (void)state;
     paint(0);
-    open_map(&m, GLINT_ENVIRONMENT_GAUSS, GLINT_ENVIRONMENT_565);
+    open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     ward_look(&m.e, &material, &eight, white);
     material.specular_q15[0] = 1 << 14;
     material.specular_q15[1] = 0;
@@ -409,7 +398,7 @@ static void test_b8_eight(void **state)
 
     (void)state;
     paint(0);
-    open_map(&m, GLINT_ENVIRONMENT_GAUSS, GLINT_ENVIRONMENT_9E5);
+    open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     for (int a = 0; a < 3; a++) {
         const struct glint_ward_material material =
             material_of(alphas[a][0], alphas[a][1]);
@@ -438,7 +427,7 @@ static void test_b6_samples(void **state)
 
     (void)state;
     paint(0);
-    open_map(&m, GLINT_ENVIRONMENT_GAUSS, GLINT_ENVIRONMENT_9E5);
+    open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     sum_of(alpha, &r);
     for (int k = 0; k < 3; k++) {
         struct glint_ward_options o = eight;
@@ -464,20 +453,20 @@ static void test_extreme_lights(void **state)
 
     (void)state;
     memset(pixels, 0, sizeof pixels);
-    open_map(&m, GLINT_ENVIRONMENT_GAUSS, GLINT_ENVIRONMENT_9E5);
+    open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     ward_look(&m.e, &material, &eight, got);
     for (int i = 0; i < WARD_PIXELS; i++)
         assert_true(got[i][0] == 0 && got[i][1] == 0 && got[i][2] == 0);
     free(m.data);
     paint(0);
-    open_map(&m, GLINT_ENVIRONMENT_GAUSS, GLINT_ENVIRONMENT_9E5);
+    open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     ward_look(&m.e, &material, &eight, one);
     free(m.data);
     for (int power = -12; power <= 12; power += 6) {
         paint(0);
         for (int i = 0; i < HEIGHT * WIDTH * 3; i++)
             ((float *)pixels)[i] *= ldexpf(1, power);
-        open_map(&m, GLINT_ENVIRONMENT_GAUSS, GLINT_ENVIRONMENT_9E5);
+        open_map(&m, GLINT_ENVIRONMENT_GAUSS);
         ward_look(&m.e, &material, &eight, got);
         for (int i = 0; i < WARD_PIXELS; i++)
             assert_true(
@@ -487,7 +476,7 @@ static void test_extreme_lights(void **state)
     }
     memset(pixels, 0, sizeof pixels);
     pixels[HEIGHT / 2][WIDTH / 2][1] = 1e9f;
-    open_map(&m, GLINT_ENVIRONMENT_GAUSS, GLINT_ENVIRONMENT_9E5);
+    open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     ward_look(&m.e, &material, &eight, got);
     for (int i = 0; i < WARD_PIXELS; i++)
         assert_true(got[i][0] == 0 && got[i][1] >= 0 && got[i][1] <= 1 << 15);
@@ -503,7 +492,7 @@ static void test_b7_held(void **state)
 
     (void)state;
     paint(0);
-    open_map(&m, GLINT_ENVIRONMENT_GAUSS, GLINT_ENVIRONMENT_565);
+    open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     memset(&held, 0, sizeof held);
     memset(&plain, 0, sizeof plain);
     assert_int_equal(glint_ward_prepare(&held, &m.e, &material, &eight), 1);
@@ -525,7 +514,7 @@ static void test_extremes(void **state)
     (void)state;
     paint(0);
     pixels[9][9][0] = 1e9f;
-    open_map(&m, GLINT_ENVIRONMENT_MIP, GLINT_ENVIRONMENT_565);
+    open_map(&m, GLINT_ENVIRONMENT_MIP);
     for (int k = 0; k < 16 * GLINT_WARD_SAMPLES; k++) {
         struct glint_ward_material material =
             material_of(alpha[k & 3], alpha[k >> 2 & 3]);
