@@ -17,6 +17,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "glint/quality.h"
 #include "glint/setup.h"
 #include "glint/status.h"
 #include "glint/view.h"
@@ -125,6 +126,10 @@ enum glint_status glint_options_set(struct glint_options *options,
 enum glint_status glint_options_set_text(struct glint_options *options,
                                          const char *name, const char *text,
                                          struct glint_error *error);
+
+/* Returns the quality of OPTIONS, with the parameters that were set one by one,
+ * but for max_lights and area_points. */
+struct glint_quality glint_options_quality(const struct glint_options *options);
 
 /* Writes to TEXT, [BYTES], in words what OPTION accepts. */
 void glint_option_accepts(const struct glint_option *option, char *text,

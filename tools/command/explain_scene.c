@@ -383,8 +383,7 @@ void explain_scene_json(struct json_writer *json,
                    model_of(s)->object[i].name, fates[p->fate].word,
                    is_covered ? name_of(s, p->by) : NULL);
         for (int k = 0; k < GLINT_SCENE_ITEMS; k++)
-            json_write(json, "%s: %" PRId64, scene_item_name[k],
-                       p->count[k]);
+            json_write(json, "%s: %" PRId64, scene_item_name[k], p->count[k]);
         json_write(json, "}");
     }
     json_write(json, "], layers: {");

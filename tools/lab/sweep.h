@@ -8,7 +8,7 @@
 
 #include "engine/frame/cost.h"
 #include "options/dials.h"
-#include "engine/frame/quality.h"
+#include "glint/quality.h"
 #include "formats/pfm.h"
 #include "lab/canvas.h"
 

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "engine/frame/quality.h"
+#include "glint/quality.h"
 
 #define TIGHT      0.9  /* busy share of a period above which quality drops */
 #define SPARE      0.55 /* busy share below which it may rise, after a while */

@@ -10,7 +10,7 @@
 #include "desk/stop_option.h"
 #include "options/coating.h"
 #include "engine/frame/frame.h"
-#include "engine/frame/quality.h"
+#include "glint/quality.h"
 #include "model/model_file.h"
 #include "model/zoom_option.h"
 #include "options/json_writer.h"

@@ -4,8 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/options/values.h"
-
 static void resolve_waves(struct settings *s)
 {
     struct glint_waves waves = {GLINT_WAVES_AUTO, 0, {0}};

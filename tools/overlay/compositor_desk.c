@@ -292,10 +292,9 @@ enum glint_status compositor_scene(struct compositor *c,
         return GLINT_OK;
     if (c->settings.options.budget > 0)
         c->scene.budget_ms =
-            c->has_lens
-                ? scene_budget_limit(c->settings.options.budget, c->flare_ms,
-                                     c->report.quality)
-                : c->settings.options.budget;
+            c->has_lens ? scene_budget_limit(c->settings.options.budget,
+                                             c->flare_ms, c->report.quality)
+                        : c->settings.options.budget;
     status = over_scene_draw(&c->scene, image, c->n_frames);
     /* The flare has what the scene leaves. */
     if (c->settings.options.budget > 0 && c->has_lens)

@@ -311,8 +311,8 @@ void overlay_json(struct json_writer *json, const struct overlay *o,
                compositor->settings.lens.name,
                f_number_of(&compositor->settings),
                GLINT_OPTION_GIVEN(&compositor->settings.options, exposure)
-                    ? (double)NAN
-                                                 : compositor->strength.asked,
+                   ? (double)NAN
+                   : compositor->strength.asked,
                log2(compositor->strength.scale),
                light->is_known ? light->peak : (double)NAN,
                light->is_known ? light->mean : (double)NAN);

@@ -12,7 +12,7 @@
 #include <stdbool.h>
 
 #include "engine/frame/cost.h"
-#include "engine/frame/quality.h"
+#include "glint/quality.h"
 
 enum { GLINT_BUDGET_STEPS = 64 }; /* number of steps of quality */
 

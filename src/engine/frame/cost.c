@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "engine/frame/quality.h"
+#include "glint/quality.h"
 #include "glint/bake.h"
 
 #define QUAD 2 /* number of single pixels that take as long as four at once */

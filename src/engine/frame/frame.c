@@ -9,7 +9,7 @@
 #include "engine/frame/area.h"
 #include "engine/frame/frame_parts.h"
 #include "engine/frame/light.h"
-#include "engine/frame/quality.h"
+#include "glint/quality.h"
 
 void glint_frame_init(struct glint_frame *frame,
                       const struct glint_setup *setup, struct glint_view view,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "engine/frame/quality.h"
+#include "glint/quality.h"
 
 #include <math.h>
 #include <stddef.h>

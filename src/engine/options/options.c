@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "engine/options/texts.h"
-#include "engine/options/values.h"
 #include "glint/dials.h"
 
 #define LAMPS      GLINT_OPTIONS_LAMPS

@@ -14,7 +14,7 @@
 
 #include "support/rng.h"
 #include "engine/frame/cost.h"
-#include "engine/frame/quality.h"
+#include "glint/quality.h"
 #include "support/opened.h"
 
 enum { WIDTH = 160, HEIGHT = 120, SETTLED = 40 };

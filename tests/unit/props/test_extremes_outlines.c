@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "engine/frame/quality.h"
+#include "glint/quality.h"
 #include "support/extreme.h"
 #include "support/stage.h"
 

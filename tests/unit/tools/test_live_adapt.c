@@ -11,7 +11,7 @@
 
 #include <string.h>
 
-#include "engine/frame/quality.h"
+#include "glint/quality.h"
 #include "live/live_adapt.h"
 
 #define PERIOD_MS (1000. / 30)

@@ -253,8 +253,8 @@ static void json_trial(struct json_writer *json, const struct scene_bench *b,
     json_write(json,
                "instructions: %.0f, covered_px: %d, "
                "triangles: %d, arena_bytes: %zu, model_bytes: %zu}",
-               t->instructions, t->covered_px,
-               t->frame.stats.triangles, t->frame.bytes, b->scene.bytes);
+               t->instructions, t->covered_px, t->frame.stats.triangles,
+               t->frame.bytes, b->scene.bytes);
 }
 
 static void print_json(const struct scene_bench *b)

@@ -1,13 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * One dial for all: quality 0 to 1 along the measured front of accuracy over
- * time, as a table of levels. */
-#ifndef GLINT_ENGINE_FRAME_QUALITY_H
-#define GLINT_ENGINE_FRAME_QUALITY_H
+ * glint/quality.h - one parameter for all: quality 0 to 1 along the measured
+ * front of accuracy over time, as a table of levels. */
+#ifndef GLINT_QUALITY_H
+#define GLINT_QUALITY_H
 
 #include <stdbool.h>
 
 #include "glint/dials.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 /* Names of qualities, from the coarsest. */
 enum { GLINT_QUALITY_NAMES = 5, GLINT_QUALITY_LEVELS = 10 };
@@ -44,5 +48,9 @@ static inline bool glint_dials_half(const struct glint_dials *dials)
 {
     return (dials->flags & (GLINT_DIAL_HALF | GLINT_DIAL_ALWAYS_HALF)) != 0;
 }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
