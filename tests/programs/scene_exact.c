@@ -6,7 +6,7 @@
 
 #include "desk/render_file.h"
 #include "options/settings.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 #include "reference/scenes/twin.h"
 #include "scenes/scene_file.h"
 

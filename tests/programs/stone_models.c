@@ -4,7 +4,7 @@
  * published ones, side by side as a page with pictures; some minutes. */
 #include "reference/scatter/stone_models.h"
 #include "options/settings.h"
-#include "options/takes.h"
+#include "options/command_line.h"
 #include "stones/stone_file.h"
 
 static const char help[] = "stone_models NAME.translucent FOLDER\n\n";

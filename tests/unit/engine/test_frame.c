@@ -514,7 +514,7 @@ static int enter(void **state)
     settings_defaults(&settings);
     settings.max_deg = 15;
     settings_defaults(&exact_scene);
-    exact_scene.rays = GLINT_RAYS_EXACT;
+    exact_scene.options.rays = GLINT_RAYS_EXACT;
     if (tool_start(&tool) != EXIT_OK ||
         settings_open(&tool, &exact_scene, "lenses/heliar-tronnier.lens"))
         return 1;

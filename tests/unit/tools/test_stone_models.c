@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "lab/scenes/stone_models.h"
+#include "reference/scatter/stone_models.h"
 #include "support/scratch.h"
 
 static void stone(struct glint_scatter_rows *rows)

@@ -164,7 +164,7 @@ static void test_ladder(void **state)
     assert_true(settings.quantum == plain.quantum &&
                 settings.dials.cull_codes == plain.dials.cull_codes &&
                 settings.tolerance == plain.tolerance &&
-                settings.options.rays == plain.rays);
+                settings.options.rays == plain.options.rays);
     settings_defaults(&last);
     settings_set_quality(&last, 0);
     for (int i = 1; i <= 100; i++) {
