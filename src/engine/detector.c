@@ -75,6 +75,18 @@ glint_lamp_detector_open(struct glint_lamp_detector *detector,
     return status;
 }
 
+enum glint_status
+glint_lamp_detector_open_at(struct glint_lamp_detector *detector, int width,
+                            int height, const double threshold_ev[2])
+{
+    struct glint_lamp_finder_config cfg;
+
+    glint_lamp_finder_defaults(&cfg, width, height);
+    cfg.threshold_high_q8 = (int32_t)floor(256 * threshold_ev[0] + 0.5);
+    cfg.threshold_low_q8 = (int32_t)floor(256 * threshold_ev[1] + 0.5);
+    return glint_lamp_detector_open(detector, &cfg);
+}
+
 void glint_lamp_detector_close(struct glint_lamp_detector *detector)
 {
     free(detector->mem);
@@ -226,4 +238,14 @@ glint_lamp_detector_doubtful(const struct glint_lamp_detector *detector)
             return spot;
     }
     return NULL;
+}
+
+double glint_lamp_excess(const struct glint_lamp *lamp,
+                         const struct glint_lamp_track *track, double level,
+                         double share, double white)
+{
+    const double shown =
+        (double)track->flux_q16 / 65536 * level / share * white;
+
+    return fmax(lamp->power / share - shown, 0);
 }

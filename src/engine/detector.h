@@ -38,6 +38,12 @@ struct glint_lamp_detector {
 enum glint_status
 glint_lamp_detector_open(struct glint_lamp_detector *detector,
                          const struct glint_lamp_finder_config *cfg);
+
+/* The same for pictures of WIDTH x HEIGHT, with lamps that reach
+ * threshold_ev[0] stops from white and extend down to threshold_ev[1]. */
+enum glint_status
+glint_lamp_detector_open_at(struct glint_lamp_detector *detector, int width,
+                            int height, const double threshold_ev[2]);
 void glint_lamp_detector_close(struct glint_lamp_detector *detector);
 
 /* Writes the lamps of IMAGE, which comes ELAPSED_US after the last frame, to
@@ -48,6 +54,13 @@ int glint_lamp_detector_frame(struct glint_lamp_detector *detector,
                               const struct glint_image *image,
                               int32_t elapsed_us, const struct glint_view *view,
                               double focal_mm, struct glint_lamp *lamps);
+
+/* Returns the light of LAMP beyond what the picture shows of it, in white times
+ * pixels: TRACK is that of LAMP, which has risen to LEVEL, SHARE of it is not
+ * hidden, and WHITE is the light of the picture's white. */
+double glint_lamp_excess(const struct glint_lamp *lamp,
+                         const struct glint_lamp_track *track, double level,
+                         double share, double white);
 
 /* Returns the strongest spot of the last frame that was not taken for a lamp,
  * yet is within a stop of white on average and about as compact as a disc; NULL

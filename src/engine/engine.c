@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/frame/area.h"
 #include "glint/kernels.h"
 
 void glint_engine_defaults(struct glint_engine_config *cfg, int width,
@@ -109,14 +108,10 @@ static enum glint_status open_frame(struct glint_engine *e,
 static enum glint_status open_detector(struct glint_engine *e,
                                        const struct glint_engine_config *c)
 {
-    struct glint_lamp_finder_config cfg;
-
-    glint_lamp_finder_defaults(&cfg, c->width, c->height);
-    cfg.threshold_high_q8 = (int32_t)floor(256 * c->threshold_ev[0] + 0.5);
-    cfg.threshold_low_q8 = (int32_t)floor(256 * c->threshold_ev[1] + 0.5);
     e->detector.headroom_ev = c->headroom_ev;
     e->detector.max = c->max_found;
-    return glint_lamp_detector_open(&e->detector, &cfg);
+    return glint_lamp_detector_open_at(&e->detector, c->width, c->height,
+                                       c->threshold_ev);
 }
 
 static enum glint_status make(struct glint_engine *e,
@@ -290,8 +285,6 @@ static bool are_found(const struct glint_engine *e,
 static void expose_as_drawn(struct glint_engine *e, int n,
                             const struct glint_image *image)
 {
-    struct glint_response_light drawn;
-    struct glint_seen seen;
     struct glint_ground *ground = NULL;
 
     if (e->has_arena || e->strength.is_physical || !(e->strength.scale > 0))
@@ -300,9 +293,7 @@ static void expose_as_drawn(struct glint_engine *e, int n,
         ground = malloc(sizeof *ground);
     if (ground)
         glint_ground_take(ground, image);
-    if (glint_response_draw(&e->frame, e->lamp, n, GLINT_RESPONSE_FINE, ground,
-                            &drawn, &seen) == GLINT_OK)
-        glint_strength_correct(&e->strength, &drawn, ground ? &seen : NULL);
+    glint_strength_expose_still(&e->strength, &e->frame, e->lamp, n, ground, 1);
     free(ground);
 }
 
@@ -368,24 +359,14 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
     for (int i = 0; i < n && is_found; i++)
         e->seen_px[i] = e->detector.track[i].size_q8 / 256.0;
     for (int i = 0; i < n && is_found; i++)
-        e->excess[i] =
-            fmax(e->lamp[i].power - (double)e->detector.track[i].flux_q16 /
-                                        65536 * e->level[i],
-                 0);
+        e->excess[i] = glint_lamp_excess(&e->lamp[i], &e->detector.track[i],
+                                         e->level[i], 1, 1);
     f->veil.excess = is_found ? e->excess : NULL;
     f->star.seen_px =
         is_found && e->detector.headroom_ev < 0 ? e->seen_px : NULL;
     f->star.level = is_found ? e->level : NULL;
-    /* A picture by itself leaves time for more points. */
-    if (f->budget.ms <= 0) {
-        const bool is_still = e->elapsed_us == 0;
-
-        f->dials.area_points =
-            is_still ? 1 + GLINT_AREA_STILL * (f->asked.area_points - 1)
-                     : f->asked.area_points;
-        f->point_room =
-            is_still ? GLINT_AREA_STILL_ROOM * f->asked.max_lights : 0;
-    }
+    if (f->budget.ms <= 0)
+        glint_frame_set_still(f, e->elapsed_us == 0, true, true);
     status = glint_frame_draw(f, e->lamp, e->strength.scale > 0 ? n : 0,
                               e->strength.scale, image, &drawn);
     e->is_timed = e->is_searched = false;

@@ -250,6 +250,28 @@ void glint_strength_correct(struct glint_strength *strength,
     scale_light(s);
 }
 
+void glint_strength_expose_still(struct glint_strength *strength,
+                                 const struct glint_frame *frame,
+                                 const struct glint_lamp *lamps, int n,
+                                 const struct glint_ground *ground,
+                                 double white)
+{
+    struct glint_response_light drawn;
+    struct glint_seen seen = {0, 0};
+
+    if (strength->is_physical || !(strength->scale > 0) ||
+        glint_response_draw(frame, lamps, n, GLINT_RESPONSE_FINE, ground,
+                            &drawn, &seen) != GLINT_OK)
+        return;
+    seen.few /= white;
+    seen.many /= white;
+    for (int c = 0; c < 3; c++) {
+        drawn.peak[c] /= white;
+        drawn.mean[c] /= white;
+    }
+    glint_strength_correct(strength, &drawn, ground ? &seen : NULL);
+}
+
 double glint_strength_star(const struct glint_strength *s, double starburst)
 {
     const double by =

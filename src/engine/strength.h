@@ -107,6 +107,16 @@ void glint_strength_correct(struct glint_strength *strength,
                             const struct glint_response_light *drawn,
                             const struct glint_seen *seen);
 
+/* Corrects the exposure of a picture by itself, for which there is time: draws
+ * the flare of N LAMPS behind the lens of FRAME small, at scale 1. WHITE is the
+ * light of the picture's white; GROUND what the picture shows, or NULL. Changes
+ * nothing without memory. */
+void glint_strength_expose_still(struct glint_strength *strength,
+                                 const struct glint_frame *frame,
+                                 const struct glint_lamp *lamps, int n,
+                                 const struct glint_ground *ground,
+                                 double white);
+
 /* Sets LIGHT to that of the flare of LAMPS by RESPONSE, at scale 1. */
 void glint_strength_light(const struct glint_response *response,
                           const struct glint_strength_lamps *lamps,

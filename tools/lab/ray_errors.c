@@ -13,6 +13,7 @@
  * A ray that the model has no polynomials for counts as off by FAR pixels in
  * percentiles, and not at all in root mean squares.
  */
+#include <getopt.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "desk/preview.h"
-#include "engine/frame/area.h"
 #include "lamp_files/lamp_keys.h"
 #include "overlay/paint.h"
 #include "overlay/show_lights.h"
@@ -130,17 +129,14 @@ static void unsize(struct compositor *compositor)
 static enum glint_status open_finder(struct compositor *compositor, int width,
                                      int height)
 {
-    const struct glint_options *const o = &compositor->settings.options;
-    struct glint_lamp_finder_config cfg;
     double threshold_ev[2];
 
-    glint_option_threshold(o->threshold, threshold_ev);
-    glint_lamp_finder_defaults(&cfg, width, height);
-    cfg.threshold_high_q8 = (int32_t)floor(256 * threshold_ev[0] + 0.5);
-    cfg.threshold_low_q8 = (int32_t)floor(256 * threshold_ev[1] + 0.5);
+    glint_option_threshold(compositor->settings.options.threshold,
+                           threshold_ev);
     compositor->finder.headroom_ev = compositor->headroom_ev;
     compositor->finder.max = finder_max(compositor);
-    return glint_lamp_detector_open(&compositor->finder, &cfg);
+    return glint_lamp_detector_open_at(&compositor->finder, width, height,
+                                       threshold_ev);
 }
 
 static int by_hand(const struct compositor *compositor)
@@ -368,30 +364,6 @@ double compositor_scale(const struct compositor *compositor)
     return compositor->strength.scale;
 }
 
-/* Corrects the exposure of a picture by itself: draws its flare to see how
- * bright it comes out, for which there is time. */
-static void expose_as_drawn(struct compositor *compositor)
-{
-    struct glint_response_light drawn;
-    struct glint_seen seen = {0, 0};
-
-    if (GLINT_OPTION_GIVEN(&compositor->settings.options, exposure) ||
-        compositor->strength.scale <= 0 ||
-        compositor->settings.options.budget > 0 ||
-        glint_response_draw(&compositor->frame, compositor->lamp,
-                            compositor->n_lamps, GLINT_RESPONSE_FINE,
-                            compositor->ground, &drawn, &seen) != GLINT_OK)
-        return;
-    seen.few /= compositor->white;
-    seen.many /= compositor->white;
-    for (int c = 0; c < 3; c++) {
-        drawn.peak[c] /= compositor->white;
-        drawn.mean[c] /= compositor->white;
-    }
-    glint_strength_correct(&compositor->strength, &drawn,
-                           compositor->ground ? &seen : NULL);
-}
-
 void compositor_expose(struct compositor *compositor, int32_t elapsed_us)
 {
     const bool is_new = compositor_is_new(compositor);
@@ -407,8 +379,10 @@ void compositor_expose(struct compositor *compositor, int32_t elapsed_us)
     compositor->strength.gain = compositor->settings.options.gain;
     glint_strength_expose(&compositor->strength, &compositor->response, &lamps,
                           is_new ? 0 : elapsed_us);
-    if (elapsed_us == 0)
-        expose_as_drawn(compositor);
+    if (elapsed_us == 0 && compositor->settings.options.budget <= 0)
+        glint_strength_expose_still(&compositor->strength, &compositor->frame,
+                                    compositor->lamp, compositor->n_lamps,
+                                    compositor->ground, compositor->white);
     free(compositor->ground);
     compositor->ground = NULL;
     compositor->frame.star.seen_px = compositor->seen_px;
@@ -459,16 +433,10 @@ enum glint_status compositor_find(struct compositor *compositor,
 
     if (status != GLINT_OK || !compositor->has_lens)
         return status;
-    /* There is time to draw a picture by itself with more points of wide
-     * lamps. */
-    if (elapsed_us == 0 && settings->options.budget == 0) {
-        if (!settings->options.area_samples)
-            compositor->frame.dials.area_points =
-                1 + GLINT_AREA_STILL * (settings->dials.area_points - 1);
-        if (!settings->options.max_lights)
-            compositor->frame.point_room =
-                GLINT_AREA_STILL_ROOM * compositor->frame.dials.max_lights;
-    }
+    if (settings->options.budget <= 0)
+        glint_frame_set_still(&compositor->frame, elapsed_us == 0,
+                              !settings->options.area_samples,
+                              !settings->options.max_lights);
     if (elapsed_us == 0)
         keep_ground(compositor, image);
     return GLINT_OK;

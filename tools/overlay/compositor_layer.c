@@ -197,10 +197,9 @@ enum glint_status compositor_draw_layer(struct compositor *compositor,
 static double excess_found(const struct compositor *compositor, int i,
                            int32_t elapsed_us)
 {
-    const double share = compositor->share[i];
-    const double shown = (double)compositor->finder.track[i].flux_q16 / 65536 *
-                         compositor->level[i] / share * compositor->white;
-    const double excess = fmax(compositor->lamp[i].power / share - shown, 0);
+    const double excess = glint_lamp_excess(
+        &compositor->lamp[i], &compositor->finder.track[i],
+        compositor->level[i], compositor->share[i], compositor->white);
     const double k = 1 - exp(-3e-6 * elapsed_us);
 
     for (int j = 0; j < compositor->n_before && elapsed_us > 0; j++)

@@ -445,3 +445,16 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
     report->ghosts = glint_frame_count_ghosts(frame, n_drawn(frame, report));
     return GLINT_OK;
 }
+
+void glint_frame_set_still(struct glint_frame *frame, bool is_still,
+                           bool more_points, bool more_lights)
+{
+    const struct glint_dials *const asked = &frame->asked;
+
+    frame->dials.area_points =
+        is_still && more_points
+            ? 1 + GLINT_AREA_STILL * (asked->area_points - 1)
+            : asked->area_points;
+    frame->point_room =
+        is_still && more_lights ? GLINT_AREA_STILL_ROOM * asked->max_lights : 0;
+}

@@ -225,6 +225,13 @@ bool glint_frame_is_beyond(const struct glint_frame *frame,
  * exact. */
 double glint_frame_end_deg(const struct glint_frame *frame);
 
+/* Sets how finely wide lamps of the next frame are drawn: with the points and
+ * lights that were asked for, or, if it IS_STILL, a picture by itself, for
+ * which there is time, with MORE_POINTS a lamp and MORE_LIGHTS for all of them.
+ */
+void glint_frame_set_still(struct glint_frame *frame, bool is_still,
+                           bool more_points, bool more_lights);
+
 /* Applies changes of cfg since memory was taken; takes no more memory. */
 void glint_frame_retune(struct glint_frame *frame);
 
