@@ -56,7 +56,7 @@ CORE      := base image kernels kernels/rays kernels/ward kernels/maps lens lamp
 ENGINE    := engine engine/options engine/frame engine/setup engine/star
 BAKE      := bake bake/table bake/scene bake/environment bake/motion bake/translucent bake/trace bake/regress bake/visible bake/fit bake/skew bake/exact
 PLATFORM  := posix formats video panel linux jpeg assimp sdl
-TOOLS     := help options control lamp_files desk model ffmpeg overlay zooms stones scenes motions synth lens_figures lens_check import command live lab lab/plots lab/scenes
+TOOLS     := help options control lamp_files desk model ffmpeg overlay zooms stones scenes motions synth lens_figures lens_check import command live lab lab/plots
 c_files = $(wildcard $(2:%=$(1)/%/*.c))
 objects = $(patsubst %.c,$(OUT)/%.o,$(filter-out $(absent),$(call c_files,$(1),$(2))))
 

@@ -171,43 +171,6 @@ enum glint_status steer_check(const struct steer *steer,
 /* -------------------------------------------------------------------- camera
  */
 
-/* Sets FROM to where the camera is from the middle, a unit. */
-static void set_from(const struct steer_orbit *o, double from[3])
-{
-    const double yaw = o->yaw_deg * RADIAN, pitch = o->pitch_deg * RADIAN;
-
-    from[0] = cos(pitch) * sin(yaw);
-    from[1] = sin(pitch);
-    from[2] = -cos(pitch) * cos(yaw);
-}
-
-enum glint_status steer_orbit_camera(const struct steer *steer,
-                                     struct glint_scene_camera *camera)
-{
-    const struct steer *const s = steer;
-    const double yaw = s->orbit.yaw_deg * RADIAN;
-    const double x = cos(yaw), z = sin(yaw);
-    double from[3];
-
-    set_from(&s->orbit, from);
-    /* up is ahead x right, of axes whose z runs away */
-    const double axis[3][3] = {
-        {x, 0, z},
-        {-from[1] * z, from[0] * z - from[2] * x, from[1] * x},
-        {-from[0], -from[1], -from[2]},
-    };
-    for (int k = 0; k < 3; k++) {
-        const double place = s->orbit.middle[k] + s->orbit.distance * from[k];
-
-        if (!(fabs(place) < GLINT_SCENE_SPAN - 1))
-            return GLINT_E_ARGUMENT;
-        camera->at[k] = (int32_t)lround(place);
-        for (int i = 0; i < 3; i++)
-            camera->axis_q30[k][i] = (int32_t)lround(0x1p30 * axis[k][i]);
-    }
-    return GLINT_OK;
-}
-
 static enum glint_status apply_orbit(const struct steer *s,
                                      struct glint_scene *scene)
 {

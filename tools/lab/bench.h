@@ -59,8 +59,8 @@ struct bench {
     double budget_ms[MAX_BUDGETS];
 };
 
-/* Adds the cases of SETTINGS that are asked for, or the plain one. Like all
- * functions here that return int, it returns an exit code. */
+/* Adds the requested cases of SETTINGS but those of --growth, or the plain one.
+ * Like all functions here that return int, it returns an exit code. */
 int bench_add(struct bench *b, const struct settings *settings);
 
 /* Adds a case of WIDTH x HEIGHT (0: as asked for) and LIGHTS lights, if there

@@ -186,8 +186,6 @@ int bench_add(struct bench *b, const struct settings *settings)
     const int n = b->all ? (int)(sizeof variations / sizeof *variations) : 1;
     int code = EXIT_OK;
 
-    if (b->growth)
-        return bench_add_growth(b, settings);
     if (b->n_budgets)
         return add_budgets(b, settings);
     if (b->sizes)

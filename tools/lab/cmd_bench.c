@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "lab/bench.h"
-#include "lab/scenes/scene_bench.h"
-#include "lab/scenes/scene_trial.h"
+#include "lab/scene_bench.h"
+#include "lab/scene_trial.h"
 #include "posix/workers.h"
 #include "options/command_line.h"
 
@@ -113,7 +113,8 @@ static int run(struct bench *b, int n_names, const char *const *names)
     for (int i = 0; i < n_names && code == EXIT_OK; i++)
         code = open_settings(b, names[i]);
     for (int i = 0; i < b->n_settings && code == EXIT_OK; i++)
-        code = bench_add(b, &b->settings[i]);
+        code = b->growth ? bench_add_growth(b, &b->settings[i])
+                         : bench_add(b, &b->settings[i]);
     for (int i = 0; i < b->n_tests && b->psnr && code == EXIT_OK; i++)
         if (b->test[i].n_lamps == 1 && b->test[i].kernels == b->tool->kernels)
             code = bench_psnr(b, &b->test[i]);

@@ -197,7 +197,4 @@ void sweep_page(const struct sweep *s, FILE *file);
  * dial lie above --quality. */
 void sweep_names(const struct sweep *s, FILE *file);
 
-/* Prints RGB[HEIGHT][WIDTH][3] as a data: URI of a PNG. */
-void sweep_png(FILE *file, const uint8_t *rgb, int width, int height);
-
 #endif

@@ -79,7 +79,7 @@ static void figure(const struct sweep *s, FILE *file,
     if (p)
         sweep_words(&p->set, words, sizeof words);
     fputs("<figure><img alt=\"\" src=\"", file);
-    sweep_png(file, rgb, q->width, q->height);
+    html_png(file, rgb, q->width, q->height);
     fprintf(file, "\"><figcaption>%s%s", words, what);
     if (p)
         fprintf(file, "<br>%.3g, %.1f dB, flux %+.2f %%", sweep_cost(s, p),

@@ -6,7 +6,7 @@
 
 #include "engine/measure.h"
 #include "glint/glint.h"
-#include "lab/sweep.h"
+#include "lab/plots/plot.h"
 
 enum { ANGLES = 3, WIDE = 168, MOST_HIGH = 168 };
 
@@ -58,7 +58,7 @@ static enum glint_status draw(struct glint_frame part[PARTS], double theta_deg,
             "<img alt=\"lamp at %.1f degrees\" title=\"lamp at %.1f degrees\" "
             "src=\"",
             theta_deg, theta_deg);
-    sweep_png(file, codes, image->width, image->height);
+    html_png(file, codes, image->width, image->height);
     fputs("\">", file);
     free(codes);
     return GLINT_OK;

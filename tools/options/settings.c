@@ -84,17 +84,6 @@ static int open_model(const struct tool *tool, struct settings *settings,
     return EXIT_OK;
 }
 
-struct stop_option settings_stop_shape(const struct settings *settings)
-{
-    struct stop_option stop = settings->stop;
-
-    if (!stop.is_asked && settings->lens.stop_is_circle) {
-        stop.n_blades = 0;
-        stop.iris.roundness = 0;
-    }
-    return stop;
-}
-
 /* Makes the setup of S for its f-number. */
 static enum glint_status make_setup(struct settings *s,
                                     struct glint_error *error)
@@ -147,17 +136,6 @@ enum glint_status settings_zoom(struct settings *settings, double zoom,
                 : "does not zoom: its model is of one position");
     status = model_file_zoom(&settings->model, zoom, error);
     return status == GLINT_OK ? make_setup(settings, error) : status;
-}
-
-int settings_refuse_stop(const struct tool *tool, const struct settings *s,
-                         const char *text)
-{
-    struct tool there = *tool;
-
-    if (!s->f_number_from)
-        return tool_fail(tool, GLINT_E_ARGUMENT, text);
-    there.where = s->f_number_from;
-    return tool_usage(&there, "%s", text);
 }
 
 static int set_up(const struct tool *tool, struct settings *s)

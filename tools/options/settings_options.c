@@ -119,3 +119,25 @@ bool settings_has_grid(const struct settings *settings)
     return GLINT_OPTION_GIVEN(o, grid) || GLINT_OPTION_GIVEN(o, quality) ||
            GLINT_OPTION_GIVEN(o, error);
 }
+
+struct stop_option settings_stop_shape(const struct settings *settings)
+{
+    struct stop_option stop = settings->stop;
+
+    if (!stop.is_asked && settings->lens.stop_is_circle) {
+        stop.n_blades = 0;
+        stop.iris.roundness = 0;
+    }
+    return stop;
+}
+
+int settings_refuse_stop(const struct tool *tool, const struct settings *s,
+                         const char *text)
+{
+    struct tool there = *tool;
+
+    if (!s->f_number_from)
+        return tool_fail(tool, GLINT_E_ARGUMENT, text);
+    there.where = s->f_number_from;
+    return tool_usage(&there, "%s", text);
+}

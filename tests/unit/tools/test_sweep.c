@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "support/rng.h"
+#include "lab/plots/plot.h"
 #include "lab/sweep.h"
 
 /* Returns whether A beats B: it is cheaper and no worse, or better and no more
@@ -116,7 +117,7 @@ static void test_png(void **state)
 
     (void)state;
     assert_non_null(file);
-    sweep_png(file, red, 1, 1);
+    html_png(file, red, 1, 1);
     fclose(file);
     assert_string_equal(text, want);
     free(text);

@@ -96,6 +96,9 @@ void html_text(FILE *file, const char *text);
 void html_row(FILE *file, const char *tag, const char *format, ...)
     GLINT_PRINTF(3, 4);
 
+/* Writes RGB[HEIGHT][WIDTH][3] as a data: URI of a PNG (png.c). */
+void html_png(FILE *file, const uint8_t *rgb, int width, int height);
+
 void html_end(FILE *file);
 
 #endif

@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "lab/plots/plot.h"
-#include "lab/sweep.h"
 #include "formats/oiio.h"
 
 enum { BLOCK = 65535 }; /* most bytes of a stored block of deflate */
@@ -160,7 +159,7 @@ static struct bytes small_png_of(const uint8_t *rgb, int width, int height)
     return (struct bytes){data, bytes};
 }
 
-void sweep_png(FILE *file, const uint8_t *rgb, int width, int height)
+void html_png(FILE *file, const uint8_t *rgb, int width, int height)
 {
     const struct bytes stored = png_of(rgb, width, height);
     const struct bytes small = small_png_of(rgb, width, height);

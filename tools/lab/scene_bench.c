@@ -2,13 +2,13 @@
  *
  * glint bench --scene: times frames onto which a scene is drawn, by stage.
  */
-#include "lab/scenes/scene_bench.h"
+#include "lab/scene_bench.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "lab/scenes/scene_trial.h"
+#include "lab/scene_trial.h"
 #include "linux/instructions.h"
 #include "linux/sets.h"
 #include "options/engine_options.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/scenes/scene_trial.h"
+#include "lab/scene_trial.h"
 
 #include <math.h>
 #include <stdlib.h>

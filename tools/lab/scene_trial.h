@@ -10,8 +10,8 @@
  *
  * Before each frame the first thing is put anew where it is, so that lists of
  * shadows are made as if it had moved. */
-#ifndef GLINT_TOOLS_LAB_SCENES_SCENE_TRIAL_H
-#define GLINT_TOOLS_LAB_SCENES_SCENE_TRIAL_H
+#ifndef GLINT_TOOLS_LAB_SCENE_TRIAL_H
+#define GLINT_TOOLS_LAB_SCENE_TRIAL_H
 
 #include "lab/canvas.h"
 #include "scenes/baked_scene.h"
