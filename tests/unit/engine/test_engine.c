@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * The engine as programs embed it: what it refuses, what it reports, and that
- * its own memory and the caller's give the same pictures.
+ * its own memory and the caller's give the same pictures; the table of options.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "glint/engine.h"
+#include "glint/options.h"
 #include "support/opened.h"
 
 enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
@@ -245,12 +246,50 @@ static void test_refuses(void **state)
     }
 }
 
+/* Each number of the table accepts its limits alone, and counts as given only
+ * once it was set. Of strength and exposure, and of quality and error, the one
+ * that was set last counts. */
+static void test_options(void **state)
+{
+    struct glint_options o;
+    struct glint_error error;
+
+    (void)state;
+    glint_options_defaults(&o);
+    for (int i = 0; i < GLINT_N_OPTIONS; i++) {
+        const struct glint_option *const row = glint_option(i);
+
+        if (row->type != GLINT_OPTION_REAL && row->type != GLINT_OPTION_INTEGER)
+            continue;
+        *error.text = '\0';
+        assert_int_equal(glint_options_set(&o, row->name, row->low - 1, &error),
+                         GLINT_E_ARGUMENT);
+        if (isfinite(row->high))
+            assert_int_equal(
+                glint_options_set(&o, row->name, row->high + 1, &error),
+                GLINT_E_ARGUMENT);
+        assert_true(*error.text != '\0' && !o.given[i]);
+        assert_int_equal(glint_options_set(&o, row->name, row->low, &error),
+                         GLINT_OK);
+        assert_true(o.given[i]);
+    }
+    assert_int_equal(glint_options_set(&o, "strength", 1, &error), GLINT_OK);
+    assert_false(GLINT_OPTION_GIVEN(&o, exposure));
+    assert_int_equal(glint_options_set(&o, "exposure", 1, &error), GLINT_OK);
+    assert_false(GLINT_OPTION_GIVEN(&o, strength));
+    assert_int_equal(glint_options_set(&o, "quality", 1, &error), GLINT_OK);
+    assert_false(GLINT_OPTION_GIVEN(&o, error));
+    assert_int_equal(glint_options_set(&o, "error", 1, &error), GLINT_OK);
+    assert_false(GLINT_OPTION_GIVEN(&o, quality));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_draws),   cmocka_unit_test(test_arena),
         cmocka_unit_test(test_follows), cmocka_unit_test(test_stop),
-        cmocka_unit_test(test_given),   cmocka_unit_test(test_refuses)};
+        cmocka_unit_test(test_given),   cmocka_unit_test(test_refuses),
+        cmocka_unit_test(test_options)};
 
     return cmocka_run_group_tests(tests, opened_heliar, opened_close);
 }
