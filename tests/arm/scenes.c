@@ -7,8 +7,8 @@
  *
  *     240 scenes, 236 with light, 1b3f...
  *
- * Models, directions, powers, formats, sizes, tiles, rasterisers and, in every
- * second scene, stars are random, by integers alone: no libm has a say. Lamps
+ * Models, directions, powers, formats, sizes, tiles and, in every second
+ * scene, stars are random, by integers alone: no libm has a say. Lamps
  * are then found in each picture and added to the hash. With GLINT_EACH set,
  * the hash after each scene is printed, too. Exit code 3: a model is refused.
  */

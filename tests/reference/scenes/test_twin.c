@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The double-precision twin of scenes: rows A1 to A15 of the rows a scene must
+ * The reference renderer of scenes: rows A1 to A15 of the rows a scene must
  * hold, with values written by hand. */
 #include <math.h>
 #include <setjmp.h>

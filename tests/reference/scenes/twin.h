@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The double-precision twin of the integer scene: the same light along the same
- * paths, ray by ray, as the reference that pictures are held against.
+ * The reference renderer of scenes, in double precision: the same light along
+ * the same paths, ray by ray, for comparison with pictures of the integer
+ * scene.
  *
  *     twin_open(&twin, &scene);
  *     twin_render(&twin, &view, workers, pixels);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Light from all around in the twin of scenes (twin.h). */
-#ifndef GLINT_TOOLS_SCENES_TWIN_AROUND_H
-#define GLINT_TOOLS_SCENES_TWIN_AROUND_H
+ * Environments in the reference renderer (twin.h). */
+#ifndef REFERENCE_SCENES_TWIN_AROUND_H
+#define REFERENCE_SCENES_TWIN_AROUND_H
 
 #include "reference/scenes/twin.h"
 #include "reference/scenes/vec.h"

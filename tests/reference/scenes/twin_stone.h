@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Translucent things in the twin of scenes (twin.h): maps as the run time has
- * them, by the same codes and taps, in double precision. */
-#ifndef GLINT_TOOLS_SCENES_TWIN_STONE_H
-#define GLINT_TOOLS_SCENES_TWIN_STONE_H
+ * Translucent objects in the reference renderer (twin.h): maps as the run time
+ * has them, by the same codes and taps, in double precision. */
+#ifndef REFERENCE_SCENES_TWIN_STONE_H
+#define REFERENCE_SCENES_TWIN_STONE_H
 
 #include "reference/scenes/twin.h"
 

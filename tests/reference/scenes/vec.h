@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Vectors of three doubles. */
-#ifndef GLINT_TOOLS_SCENES_VEC_H
-#define GLINT_TOOLS_SCENES_VEC_H
+#ifndef REFERENCE_SCENES_VEC_H
+#define REFERENCE_SCENES_VEC_H
 
 #include <math.h>
 

@@ -53,7 +53,7 @@ void drawn_draw(struct drawn *d, int width, int height, int32_t *light_q20)
     assert_int_equal(scene_frame_draw(&d->frame, &image), EXIT_OK);
 }
 
-/* Returns whether pixel I of the twin's is like those about it. */
+/* Returns whether pixel I of the reference is like those about it. */
 static int is_inside(const struct twin_pixel *p, int i)
 {
     const int x = i % WIDTH, y = i / WIDTH;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Scene texts as integers draw them, for tests, and how near that is to the
- * twin in double precision. */
+ * reference renderer. */
 #ifndef GLINT_TESTS_SUPPORT_MODELS_DRAWN_SCENE_H
 #define GLINT_TESTS_SUPPORT_MODELS_DRAWN_SCENE_H
 
@@ -26,9 +26,9 @@ void drawn_close(struct drawn *d);
 /* Draws over black: LIGHT_Q20[HEIGHT][WIDTH][3]. */
 void drawn_draw(struct drawn *d, int width, int height, int32_t *light_q20);
 
-/* Returns the PSNR of TEXT, drawn with one point of a pixel, to the twin, of
- * light up to 1, where neighbours are alike; that must be a third of 160 x 90
- * pixels. */
+/* Returns the PSNR of TEXT, drawn with one point of a pixel, to the reference,
+ * of light up to 1, where neighbours are alike; that must be a third of 160 x
+ * 90 pixels. */
 double drawn_near_twin(const char *text,
                        const struct glint_description_files *files);
 

@@ -2,7 +2,7 @@
  *
  * Extremes of scenes: what grazes, sizes from 1e-6 to 1e6, lights from 1e-6 to
  * 1e9, what is behind and around the camera, pictures of one pixel and 8192
- * wide. Integers against the double-precision twin, a point a pixel, off
+ * wide. Integers against the reference renderer, a point a pixel, off
  * silhouettes and edges of shadows.
  */
 #include <math.h>
@@ -72,7 +72,7 @@ static void draw(const struct glint_description *scene, int width, int height,
     free(data);
 }
 
-/* Returns whether pixel X, Y of the twin's is like those about it. */
+/* Returns whether pixel X, Y of the reference is like those about it. */
 static int is_inside(const struct twin_pixel *p, int width, int height, int x,
                      int y)
 {
@@ -164,7 +164,7 @@ static void test_grazing(void **state)
         compare(text, 96, 54, &worst);
     }
     assert_true(extreme_at_least("scenes: floors and balls that graze, to "
-                                 "1e-5, against the twin",
+                                 "1e-5, against the reference",
                                  worst.db, 60, "dB"));
     assert_true(extreme_at_most("scenes: floors and balls that graze, other "
                                 "things seen",
@@ -193,8 +193,9 @@ static void test_sizes(void **state)
             break;
         compare(text, 96, 54, &worst);
     }
-    assert_true(extreme_at_least("scenes: sizes 1e-6 to 1e3, against the twin",
-                                 worst.db, 60, "dB"));
+    assert_true(
+        extreme_at_least("scenes: sizes 1e-6 to 1e3, against the reference",
+                         worst.db, 60, "dB"));
     assert_true(extreme_at_most("scenes: sizes 1e-6 to 1e3, other things seen",
                                 100 * worst.wrong, 1, "%"));
 }
@@ -217,8 +218,8 @@ static void test_large(void **state)
                  r / 2, 2 * r, -r / 4, r / 2, r / 3, r / 3, r / 2, r / 5);
         compare(text, 96, 54, &worst);
     }
-    assert_true(extreme_at_least("scenes: sizes 1e3 to 5e5, against the twin",
-                                 worst.db, 60, "dB"));
+    assert_true(extreme_at_least(
+        "scenes: sizes 1e3 to 5e5, against the reference", worst.db, 60, "dB"));
 }
 
 /* Lamps and suns of any power: what a thing shows is that, as far as light is
@@ -277,7 +278,7 @@ static void test_behind(void **state)
         compare(text, 96, 54, &worst);
     }
     assert_true(extreme_at_least("scenes: behind, around and across the "
-                                 "camera, against the twin",
+                                 "camera, against the reference",
                                  worst.db, 60, "dB"));
     assert_true(extreme_at_most("scenes: behind, around and across the camera, "
                                 "other things seen",
@@ -300,7 +301,7 @@ static void test_pictures(void **state)
                 "plane floor at 0 0 0 normal 0 1 0 material m\nshadow on\n",
                 size[i][0], size[i][1], &worst);
     assert_true(extreme_at_least("scenes: one pixel to 8192 wide and 4096 "
-                                 "high, against the twin",
+                                 "high, against the reference",
                                  worst.db, 60, "dB"));
     assert_true(extreme_at_most("scenes: one pixel to 8192 wide and 4096 high, "
                                 "other things seen",
@@ -340,7 +341,7 @@ static void test_surfaces(void **state)
         compare(text, 160, 90, &worst);
     }
     assert_true(extreme_at_least("scenes: powers 1 to 4096, glass 1/4 to 4, "
-                                 "also from within, against the twin",
+                                 "also from within, against the reference",
                                  worst.db, 60, "dB"));
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Environments and brushed metal in scenes: integers against the twin in double
- * precision, what a scene says of them, and what a highlight sums to. */
+ * Environments and brushed metal in scenes: integers against the reference in
+ * double precision, what a scene says of them, and what a highlight sums to. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -86,7 +86,7 @@ static void open_text(struct drawn *d, const char *text,
     drawn_open(d, text, &files, dials, &tool);
 }
 
-/* -------------------------------------------------------------------- twin */
+/* --------------------------------------------------------------- reference */
 
 #define STAGE                                                     \
     "camera fov 50 at 0 1 4 toward 0 .3 0\n"                      \

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Highlights: against the twin in double precision, over parts of a pixel,
+ * Highlights: against the reference in double precision, over parts of a pixel,
  * tiles and workers; what is none; what is one; extremes. */
 #include <math.h>
 #include <setjmp.h>
@@ -87,7 +87,7 @@ static double power(int i)
 #define BRIGHT "light sun direction .5 .6 1 colour 2e6 2e6 1e6\n"
 #define BALL   "sphere s at 0 0 0 radius .44 material m\n"
 
-/* -------------------------------------------------------------------- twin */
+/* --------------------------------------------------------------- reference */
 
 static void test_twin(void **state)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Translucent things in scenes: integers against the twin in double precision,
- * the same bits whoever draws, what is worked out when, extremes, and what is
- * refused. */
+ * Translucent things in scenes: integers against the reference in double
+ * precision, the same bits whoever draws, what is worked out when, extremes,
+ * and what is refused. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -150,7 +150,7 @@ static const struct scene_dials one_sample = {
     "sphere c at 1.1 .5 .2 radius .5 turn 0 1 0 -100 material a\n" \
     "plane p at 0 0 0 normal 0 1 0 material grey\n"
 
-/* -------------------------------------------------------------------- twin */
+/* --------------------------------------------------------------- reference */
 
 /* A coat that would mirror more than all towards the rim. */
 #define BRIGHT(specular)                                                 \

@@ -129,7 +129,7 @@ static void test_furnace(void **state)
     free(m.data);
 }
 
-/* -------------------------------------------------------------------- twin */
+/* --------------------------------------------------------------- reference */
 
 static double texel_of(const struct glint_environment *e, int k, size_t i,
                        int c)
@@ -261,7 +261,7 @@ static void test_twin(void **state)
         least = fmin(least, ward_psnr(want, got));
     }
     free(m.data);
-    print_message("twin: %.1f dB at least\n", least);
+    print_message("reference: %.1f dB at least\n", least);
     assert_true(least >= 60);
 }
 
