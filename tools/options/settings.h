@@ -105,10 +105,12 @@ struct glint_view settings_view(const struct settings *settings, int width,
 int settings_frame(const struct tool *tool, const struct settings *settings,
                    struct glint_view view, struct glint_frame *frame);
 
-/* Sets the option NAME. Returns false, and changes nothing, if it does not
- * accept TEXT. */
+/* Set the option NAME. Return false, and change nothing, if it does not accept
+ * TEXT, or VALUE: a number, the index of a word, or 0 or 1. */
 bool settings_set(struct settings *settings, const char *name,
                   const char *text);
+bool settings_set_number(struct settings *settings, const char *name,
+                         double value);
 
 /* The same of --quality. */
 void settings_set_quality(struct settings *settings, double quality);

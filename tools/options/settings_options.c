@@ -104,12 +104,20 @@ bool settings_set(struct settings *settings, const char *name, const char *text)
     return true;
 }
 
-void settings_set_quality(struct settings *settings, double quality)
+bool settings_set_number(struct settings *settings, const char *name,
+                         double value)
 {
     struct glint_error error;
 
-    glint_options_set(&settings->options, "quality", quality, &error);
+    if (glint_options_set(&settings->options, name, value, &error) != GLINT_OK)
+        return false;
     resolve(settings);
+    return true;
+}
+
+void settings_set_quality(struct settings *settings, double quality)
+{
+    settings_set_number(settings, "quality", quality);
 }
 
 bool settings_has_grid(const struct settings *settings)

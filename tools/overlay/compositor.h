@@ -95,6 +95,20 @@ void compositor_defaults(struct compositor *compositor);
 int compositor_option(const struct tool *tool, struct compositor *compositor,
                       int option, const char *value);
 
+/* Set the engine's option NAME, which exists, to a text as compositor_option()
+ * does, or to a number as glint_options_set() does. Return -1 or an exit code
+ * after printing what the option accepts. */
+int compositor_set_text(const struct tool *tool, struct compositor *compositor,
+                        const char *name, const char *text);
+int compositor_set_number(const struct tool *tool,
+                          struct compositor *compositor, const char *name,
+                          double value);
+
+/* Adds a lamp at a pixel of all frames, EV stops over white, as --light-at.
+ * Returns false without memory, or if it is one too many. */
+bool compositor_add_light(struct compositor *compositor, double x, double y,
+                          double ev);
+
 /* Takes the options of the style NAME. Returns -1 or an exit code. */
 int compositor_style(const struct tool *tool, struct compositor *compositor,
                      const char *name);

@@ -29,19 +29,29 @@ static bool add_light(struct compositor *compositor, const char *text)
     return true;
 }
 
+bool compositor_add_light(struct compositor *compositor, double x, double y,
+                          double ev)
+{
+    const struct lamp_row row = {.frame = -1,
+                                 .x = x,
+                                 .y = y,
+                                 .power = exp2(ev),
+                                 .rgb = {1, 1, 1},
+                                 .shape = 1,
+                                 .level = 1,
+                                 .next = -1};
+
+    return compositor->at.n < SETTINGS_MAX_LAMPS &&
+           lamp_list_add(&compositor->at, &row) == GLINT_OK;
+}
+
 /* The same of --light-at. */
 static bool add_light_at(struct compositor *compositor, const char *text)
 {
-    struct lamp_row row = {
-        .frame = -1, .rgb = {1, 1, 1}, .shape = 1, .level = 1, .next = -1};
     double v[3];
 
     glint_option_light_at(text, v);
-    row.x = v[0];
-    row.y = v[1];
-    row.power = exp2(v[2]);
-    return compositor->at.n < SETTINGS_MAX_LAMPS &&
-           lamp_list_add(&compositor->at, &row) == GLINT_OK;
+    return compositor_add_light(compositor, v[0], v[1], v[2]);
 }
 
 static bool is_text(const char *text, const char *word)
@@ -76,14 +86,9 @@ int compositor_style(const struct tool *tool, struct compositor *compositor,
 
     if (!style)
         return tool_refuse(tool, "style", name);
-    for (int i = 0; style->set[i].option && code == -1; i++) {
-        const struct glint_option *const row =
-            glint_option_named(style->set[i].option);
-
-        code = compositor_option(tool, compositor,
-                                 ENGINE_OPTION + (int)(row - glint_option(0)),
-                                 style->set[i].value);
-    }
+    for (int i = 0; style->set[i].option && code == -1; i++)
+        code = compositor_set_text(tool, compositor, style->set[i].option,
+                                   style->set[i].value);
     compositor_options_end(compositor);
     /* A model has its own, and is no mistake with a style. */
     compositor->settings.coating.given = false;
@@ -146,4 +151,27 @@ int compositor_option(const struct tool *tool, struct compositor *compositor,
     return is_room
                ? -1
                : tool_usage(tool, "more than %d lights", SETTINGS_MAX_LAMPS);
+}
+
+int compositor_set_text(const struct tool *tool, struct compositor *compositor,
+                        const char *name, const char *text)
+{
+    const struct glint_option *const row = glint_option_named(name);
+
+    return compositor_option(
+        tool, compositor, ENGINE_OPTION + (int)(row - glint_option(0)), text);
+}
+
+int compositor_set_number(const struct tool *tool,
+                          struct compositor *compositor, const char *name,
+                          double value)
+{
+    char text[32];
+
+    if (!settings_set_number(&compositor->settings, name, value)) {
+        snprintf(text, sizeof text, "%g", value);
+        return tool_refuse(tool, name, text);
+    }
+    resolve(compositor);
+    return -1;
 }
