@@ -5,9 +5,10 @@
  * A small host of frei0r plug-ins: BGRA frames of 1/25 s go through INSTANCES
  * of the plug-in at once, a thread each; the frames of the first are written.
  * Fails if another's differ. NAME@FRAME=VALUE sets a parameter before that
- * frame.
+ * frame. Numbers have the decimal point of the locale.
  */
 #include <dlfcn.h>
+#include <locale.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -145,6 +146,7 @@ int main(int argc, char **argv)
     n_frames = fread(input, 1, (size_t)256 << 20, stdin) / frame_bytes;
     for (int i = 4; i < argc; i++)
         take_setting(argv[i]);
+    setlocale(LC_ALL, ""); /* as hosts with windows do */
     load(argv[1]);
     bytes = n_frames * frame_bytes;
     for (int i = 0; i < n; i++)

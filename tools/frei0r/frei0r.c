@@ -14,51 +14,28 @@
 #include "glint/glint.h"
 #include "model/lens_files.h"
 
-/* A parameter: a number, or a word if IS_WORD. */
-struct parameter {
-    const char *name, *about;
-    enum f0r_type type;
-    int which; /* a filter_number or a filter_word */
-};
+enum { FRAME_US = 40000, HELP_BYTES = 512 };
 
-static const struct parameter parameters[] = {
-    {"lens",
-     "Lens by name, or a .lens or .glint file; empty: the style's, or "
-     "nikon-zoom-short",
-     F0R_STRING, FILTER_LENS},
-    {"strength",
-     "How bright the flare comes out: 0 none, 0.5 a quarter of "
-     "white at its brightest, 1 white",
-     F0R_DOUBLE, FILTER_STRENGTH},
-    {"gain", "Factor on all light of the flare: 0.5 is 1, 1 is 2", F0R_DOUBLE,
-     FILTER_GAIN},
-    {"starburst",
-     "Star around each lamp: 0 none, 0.5 as a lens has it, 1 twice "
-     "that",
-     F0R_DOUBLE, FILTER_STARBURST},
-    {"quality", "0 fast, 0.5 as overlay draws, 1 fine", F0R_DOUBLE,
-     FILTER_QUALITY},
-    {"auto", "Lamps are found and followed; else there is one, at x, y",
-     F0R_BOOL, FILTER_AUTO},
-    {"x", "Lamp without auto: 0 left, 1 right", F0R_DOUBLE, FILTER_X},
-    {"y", "Lamp without auto: 0 top, 1 bottom", F0R_DOUBLE, FILTER_Y},
-    {"f-number", "How far the lens is stopped down, as 5.6; empty: open",
-     F0R_STRING, FILTER_F_NUMBER},
-    {"style", "natural, clean, vintage, cinema or toy; empty: none", F0R_STRING,
-     FILTER_STYLE},
-};
-
-enum { N_PARAMETERS = sizeof parameters / sizeof *parameters };
-enum { FRAME_US = 40000 };
+static char help[FILTER_MAX][HELP_BYTES];
 
 struct instance {
     struct filter *filter;
+    struct filter_values values;
     struct glint_image image;
     double seconds; /* moment of the last picture; NAN: there was none */
 };
 
+/* Numbers of frei0r are 0 .. 1. */
 int f0r_init(void)
 {
+    struct filter_parameter p;
+
+    for (int i = 0; filter_parameter(i, &p); i++)
+        if (p.type == FILTER_NUMBER && (p.low != 0 || p.high != 1))
+            snprintf(help[i], HELP_BYTES, "%s (0 to 1 stands for %g to %g)",
+                     p.help, p.low, p.high);
+        else
+            snprintf(help[i], HELP_BYTES, "%s", p.help);
     return 1;
 }
 
@@ -68,6 +45,11 @@ void f0r_deinit(void)
 
 void f0r_get_plugin_info(struct f0r_plugin *info)
 {
+    struct filter_parameter p;
+    int n = 0;
+
+    while (filter_parameter(n, &p))
+        n++;
     *info = (struct f0r_plugin){
         .name = "glint",
         .author = "glint",
@@ -75,17 +57,21 @@ void f0r_get_plugin_info(struct f0r_plugin *info)
         .colour_model = F0R_BGRA,
         .frei0r_version = F0R_MAJOR,
         .minor_version = 1,
-        .n_params = N_PARAMETERS,
+        .n_params = n,
         .explanation = "Lens flare: ghosts and stars of a real lens"};
 }
 
 void f0r_get_param_info(struct f0r_param *info, int index)
 {
-    if (index < 0 || index >= N_PARAMETERS)
-        return;
-    *info = (struct f0r_param){.name = parameters[index].name,
-                               .type = (int)parameters[index].type,
-                               .explanation = parameters[index].about};
+    static const enum f0r_type types[] = {[FILTER_NUMBER] = F0R_DOUBLE,
+                                          [FILTER_SWITCH] = F0R_BOOL,
+                                          [FILTER_TEXT] = F0R_STRING};
+    struct filter_parameter p;
+
+    if (filter_parameter(index, &p))
+        *info = (struct f0r_param){.name = p.name,
+                                   .type = (int)types[p.type],
+                                   .explanation = help[index]};
 }
 
 static bool stop_at_first(void *ctx, const char *name)
@@ -116,6 +102,7 @@ void *f0r_construct(unsigned width, unsigned height)
         free(i);
         return NULL;
     }
+    filter_values_init(&i->values);
     i->image = (struct glint_image){
         .format = GLINT_XRGB8888, .width = (int)width, .height = (int)height};
     i->seconds = NAN;
@@ -126,37 +113,39 @@ void f0r_destruct(void *instance)
 {
     struct instance *const i = instance;
 
-    if (i)
+    if (i) {
         filter_destroy(i->filter);
+        filter_values_free(&i->values);
+    }
     free(i);
 }
 
 void f0r_set_param_value(void *instance, void *value, int index)
 {
-    struct filter *const f = ((struct instance *)instance)->filter;
+    struct filter_values *const values = &((struct instance *)instance)->values;
+    struct filter_parameter p;
 
-    if (index < 0 || index >= N_PARAMETERS || !value)
+    if (!value || !filter_parameter(index, &p))
         return;
-    if (parameters[index].type == F0R_STRING)
-        filter_set_word(f, (enum filter_word)parameters[index].which,
-                        *(char **)value);
+    if (p.type == FILTER_TEXT)
+        filter_set_text(values, index, *(char **)value);
     else
-        filter_set_number(f, (enum filter_number)parameters[index].which,
-                          *(double *)value);
+        filter_set_number(values, index,
+                          p.low + *(double *)value * (p.high - p.low));
 }
 
 void f0r_get_param_value(void *instance, void *value, int index)
 {
-    const struct filter *const f = ((struct instance *)instance)->filter;
+    const struct filter_values *const values =
+        &((struct instance *)instance)->values;
+    struct filter_parameter p;
 
-    if (index < 0 || index >= N_PARAMETERS || !value)
+    if (!value || !filter_parameter(index, &p))
         return;
-    if (parameters[index].type == F0R_STRING)
-        *(const char **)value =
-            filter_word(f, (enum filter_word)parameters[index].which);
+    if (p.type == FILTER_TEXT)
+        *(const char **)value = values->text[index] ? values->text[index] : "";
     else
-        *(double *)value =
-            filter_number(f, (enum filter_number)parameters[index].which);
+        *(double *)value = (values->number[index] - p.low) / (p.high - p.low);
 }
 
 /* Returns the microseconds since the last picture. The first, and one of before
@@ -181,6 +170,7 @@ void f0r_update(void *instance, double seconds, const uint32_t *in,
             out, in,
             glint_image_bytes(GLINT_XRGB8888, i->image.width, i->image.height));
     glint_image_place(&i->image, out);
+    filter_set(i->filter, &i->values);
     if (filter_draw(i->filter, &i->image, elapsed(i, seconds)))
         i->seconds = seconds;
 }

@@ -3,9 +3,6 @@
  * The GStreamer element glintflare: a flare over the frames of a pipeline, in
  * place, as glint overlay draws it.
  */
-#include <math.h>
-#include <string.h>
-
 #include <gst/video/gstvideofilter.h>
 #include <gst/video/video.h>
 
@@ -21,14 +18,11 @@
 G_DECLARE_FINAL_TYPE(GlintFlareElement, glint_flare_element, GLINT, FLARE,
                      GstVideoFilter)
 
-enum { N_PARAMETERS = FILTER_WORDS + FILTER_NUMBERS };
-
 struct _GlintFlareElement {
     GstVideoFilter parent;
-    /* What properties say, by the object's lock; handed to the filter, which
-     * the streaming thread alone uses, before each frame. */
-    gdouble number[FILTER_NUMBERS];
-    gchar *word[FILTER_WORDS];
+    /* Of the properties, under the object's lock; set in the filter, which the
+     * streaming thread alone uses, before each frame. */
+    struct filter_values values;
     struct filter *filter;
     struct glint_image image; /* format, size and colours of frames */
     gint32 frame_us;          /* nominal; 0: pictures by themselves */
@@ -39,55 +33,20 @@ G_DEFINE_TYPE(GlintFlareElement, glint_flare_element, GST_TYPE_VIDEO_FILTER)
 
 /* --------------------------------------------------------------- properties */
 
-/* A property; a number is FACTOR times the filter's, and at most that. */
-struct property {
-    const gchar *name, *about;
-    gboolean is_word;
-    int which;
-    gdouble factor;
-};
-
-static const struct property properties[] = {
-    {"lens",
-     "Lens by name, or a .lens or .glint file; none: the style's, or "
-     "nikon-zoom-short",
-     TRUE, FILTER_LENS, 0},
-    {"style", "natural, clean, vintage, cinema or toy", TRUE, FILTER_STYLE, 0},
-    {"f-number", "How far the lens is stopped down, as 5.6; none: open", TRUE,
-     FILTER_F_NUMBER, 0},
-    {"strength",
-     "How bright the flare comes out: 0 none, 0.5 a quarter of white at its "
-     "brightest, 1 white",
-     FALSE, FILTER_STRENGTH, 1},
-    {"gain", "Factor on all light of the flare", FALSE, FILTER_GAIN, 2},
-    {"starburst", "Star around each lamp: 0 none, 1 as a lens has it", FALSE,
-     FILTER_STARBURST, 2},
-    {"quality", "0 fast, 0.5 as overlay draws, 1 fine", FALSE, FILTER_QUALITY,
-     1},
-    {"auto", "Lamps are found and followed; else there is one, at x, y", FALSE,
-     FILTER_AUTO, 0},
-    {"x", "Lamp without auto: 0 left, 1 right", FALSE, FILTER_X, 1},
-    {"y", "Lamp without auto: 0 top, 1 bottom", FALSE, FILTER_Y, 1},
-};
-
-G_STATIC_ASSERT(G_N_ELEMENTS(properties) == N_PARAMETERS);
-
+/* Property ID is parameter ID - 1 of the filter. */
 static void set_property(GObject *object, guint id, const GValue *value,
                          GParamSpec *spec)
 {
     GlintFlareElement *const e = GLINT_FLARE(object);
-    const struct property *const p = &properties[id - 1];
+    const int i = (int)id - 1;
 
-    (void)spec;
     GST_OBJECT_LOCK(e);
-    if (p->is_word) {
-        g_free(e->word[p->which]);
-        e->word[p->which] = g_value_dup_string(value);
-    } else if (p->factor > 0) {
-        e->number[p->which] = g_value_get_double(value) / p->factor;
-    } else {
-        e->number[p->which] = g_value_get_boolean(value);
-    }
+    if (G_IS_PARAM_SPEC_STRING(spec))
+        filter_set_text(&e->values, i, g_value_get_string(value));
+    else if (G_IS_PARAM_SPEC_DOUBLE(spec))
+        filter_set_number(&e->values, i, g_value_get_double(value));
+    else
+        filter_set_number(&e->values, i, g_value_get_boolean(value));
     GST_OBJECT_UNLOCK(e);
 }
 
@@ -95,33 +54,32 @@ static void get_property(GObject *object, guint id, GValue *value,
                          GParamSpec *spec)
 {
     GlintFlareElement *const e = GLINT_FLARE(object);
-    const struct property *const p = &properties[id - 1];
+    const int i = (int)id - 1;
 
-    (void)spec;
     GST_OBJECT_LOCK(e);
-    if (p->is_word)
-        g_value_set_string(value, e->word[p->which]);
-    else if (p->factor > 0)
-        g_value_set_double(value, e->number[p->which] * p->factor);
+    if (G_IS_PARAM_SPEC_STRING(spec))
+        g_value_set_string(value, e->values.text[i]);
+    else if (G_IS_PARAM_SPEC_DOUBLE(spec))
+        g_value_set_double(value, e->values.number[i]);
     else
-        g_value_set_boolean(value, e->number[p->which] >= 0.5);
+        g_value_set_boolean(value, e->values.number[i] > 0);
     GST_OBJECT_UNLOCK(e);
 }
 
-static GParamSpec *spec_of(const struct property *p)
+static GParamSpec *spec_of(const struct filter_parameter *p)
 {
     const GParamFlags flags =
         (GParamFlags)(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
                       GST_PARAM_MUTABLE_PLAYING |
-                      (p->is_word ? 0 : GST_PARAM_CONTROLLABLE));
+                      (p->type == FILTER_TEXT ? 0 : GST_PARAM_CONTROLLABLE));
 
-    if (p->is_word)
-        return g_param_spec_string(p->name, p->name, p->about, NULL, flags);
-    if (p->factor > 0)
-        return g_param_spec_double(p->name, p->name, p->about, 0, p->factor,
-                                   filter_default[p->which] * p->factor, flags);
-    return g_param_spec_boolean(p->name, p->name, p->about,
-                                filter_default[p->which] >= 0.5, flags);
+    if (p->type == FILTER_TEXT)
+        return g_param_spec_string(p->name, p->label, p->help, NULL, flags);
+    if (p->type == FILTER_NUMBER)
+        return g_param_spec_double(p->name, p->label, p->help, p->low, p->high,
+                                   p->initial, flags);
+    return g_param_spec_boolean(p->name, p->label, p->help, p->initial > 0,
+                                flags);
 }
 
 /* ------------------------------------------------------------------- frames */
@@ -216,18 +174,6 @@ static gint32 elapsed_us(const GlintFlareElement *e, GstClockTime now)
                : (gint32)MIN(us, 1000000000);
 }
 
-/* Hands the properties to the filter, which does nothing where they are as they
- * were. */
-static void turn(GlintFlareElement *e)
-{
-    GST_OBJECT_LOCK(e);
-    for (int i = 0; i < FILTER_WORDS; i++)
-        filter_set_word(e->filter, (enum filter_word)i, e->word[i]);
-    for (int i = 0; i < FILTER_NUMBERS; i++)
-        filter_set_number(e->filter, (enum filter_number)i, e->number[i]);
-    GST_OBJECT_UNLOCK(e);
-}
-
 static GstFlowReturn transform(GstVideoFilter *base, GstVideoFrame *frame)
 {
     GlintFlareElement *const e = GLINT_FLARE(base);
@@ -249,7 +195,9 @@ static GstFlowReturn transform(GstVideoFilter *base, GstVideoFrame *frame)
         GST_ELEMENT_ERROR(e, RESOURCE, NO_SPACE_LEFT, (NULL), ("no memory"));
         return GST_FLOW_ERROR;
     }
-    turn(e);
+    GST_OBJECT_LOCK(e);
+    filter_set(e->filter, &e->values);
+    GST_OBJECT_UNLOCK(e);
     for (int i = 0; i < planes; i++) {
         e->image.plane[i] = GST_VIDEO_FRAME_PLANE_DATA(frame, i);
         e->image.stride_bytes[i] = GST_VIDEO_FRAME_PLANE_STRIDE(frame, i);
@@ -276,14 +224,13 @@ static void finalize(GObject *object)
     GlintFlareElement *const e = GLINT_FLARE(object);
 
     drop_filter(e);
-    for (int i = 0; i < FILTER_WORDS; i++)
-        g_free(e->word[i]);
+    filter_values_free(&e->values);
     G_OBJECT_CLASS(glint_flare_element_parent_class)->finalize(object);
 }
 
 static void glint_flare_element_init(GlintFlareElement *e)
 {
-    memcpy(e->number, filter_default, sizeof e->number);
+    filter_values_init(&e->values);
     e->last = GST_CLOCK_TIME_NONE;
     gst_base_transform_set_in_place(GST_BASE_TRANSFORM(e), TRUE);
     gst_base_transform_set_qos_enabled(GST_BASE_TRANSFORM(e), TRUE);
@@ -302,12 +249,13 @@ static void add_pad(GstElementClass *class, const gchar *name,
 static void glint_flare_element_class_init(GlintFlareElementClass *class)
 {
     GObjectClass *const object = G_OBJECT_CLASS(class);
+    struct filter_parameter p;
 
     object->set_property = set_property;
     object->get_property = get_property;
     object->finalize = finalize;
-    for (guint i = 0; i < N_PARAMETERS; i++)
-        g_object_class_install_property(object, i + 1, spec_of(&properties[i]));
+    for (int i = 0; filter_parameter(i, &p); i++)
+        g_object_class_install_property(object, (guint)i + 1, spec_of(&p));
     gst_element_class_set_static_metadata(
         GST_ELEMENT_CLASS(class), "Lens flare", "Filter/Effect/Video",
         "Draws the ghosts and stars of a real lens on frames, in place",

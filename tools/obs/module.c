@@ -22,11 +22,9 @@ enum { FRAME_US = 40000, LONGEST_US = 10000000 };
 
 struct flare {
     pthread_mutex_t lock; /* of what the user set last */
-    struct flare_settings wanted;
+    struct filter_values wanted;
     /* The graphics thread's alone: */
     struct filter *filter;
-    struct flare_settings opened; /* what it was opened with, and for */
-    int width, height;
     struct opening *opening;
     obs_source_t *source;
     uint64_t last_ns; /* of the last frame drawn; 0: none */
@@ -35,50 +33,30 @@ struct flare {
 
 /* --------------------------------------------------------------- properties */
 
-/* A setting; a number is FACTOR times the filter's, and at most that. */
-static const struct number_setting {
-    const char *key, *label;
-    enum filter_number which;
-    double factor;
-} number_settings[] = {
-    {"strength", "Strength", FILTER_STRENGTH, 1},
-    {"gain", "Gain", FILTER_GAIN, 2},
-    {"starburst", "Starburst", FILTER_STARBURST, 2},
-    {"quality", "Quality", FILTER_QUALITY, 1},
-    {"x", "Lamp from the left", FILTER_X, 1},
-    {"y", "Lamp from the top", FILTER_Y, 1},
-};
-
-static const char *const word_key[FILTER_WORDS] = {[FILTER_LENS] = "lens",
-                                                   [FILTER_STYLE] = "style",
-                                                   [FILTER_F_NUMBER] =
-                                                       "f-number"};
-
-enum { N_NUMBERS = sizeof number_settings / sizeof *number_settings };
-
 static void get_defaults(obs_data_t *data)
 {
-    for (int i = 0; i < N_NUMBERS; i++)
-        obs_data_set_default_double(
-            data, number_settings[i].key,
-            number_settings[i].factor *
-                filter_default[number_settings[i].which]);
-    obs_data_set_default_bool(data, "auto", filter_default[FILTER_AUTO] >= 0.5);
+    struct filter_parameter p;
+
+    for (int i = 0; filter_parameter(i, &p); i++)
+        if (p.type == FILTER_NUMBER)
+            obs_data_set_default_double(data, p.name, p.initial);
+        else if (p.type == FILTER_SWITCH)
+            obs_data_set_default_bool(data, p.name, p.initial > 0);
 }
 
 static void update(void *ctx, obs_data_t *data)
 {
     struct flare *const f = ctx;
+    struct filter_parameter p;
 
     pthread_mutex_lock(&f->lock);
-    for (int i = 0; i < N_NUMBERS; i++)
-        f->wanted.number[number_settings[i].which] =
-            obs_data_get_double(data, number_settings[i].key) /
-            number_settings[i].factor;
-    f->wanted.number[FILTER_AUTO] = obs_data_get_bool(data, "auto");
-    for (int i = 0; i < FILTER_WORDS; i++)
-        snprintf(f->wanted.word[i], WORD_BYTES, "%s",
-                 obs_data_get_string(data, word_key[i]));
+    for (int i = 0; filter_parameter(i, &p); i++)
+        if (p.type == FILTER_NUMBER)
+            filter_set_number(&f->wanted, i, obs_data_get_double(data, p.name));
+        else if (p.type == FILTER_SWITCH)
+            filter_set_number(&f->wanted, i, obs_data_get_bool(data, p.name));
+        else
+            filter_set_text(&f->wanted, i, obs_data_get_string(data, p.name));
     pthread_mutex_unlock(&f->lock);
 }
 
@@ -88,7 +66,7 @@ static bool add_lens(void *list, const char *name)
     return true;
 }
 
-/* The place of a lamp is asked for where none are looked for. */
+/* Shows the place of a lamp unless lamps are found. */
 static bool show_place(obs_properties_t *all, obs_property_t *changed,
                        obs_data_t *data)
 {
@@ -100,28 +78,48 @@ static bool show_place(obs_properties_t *all, obs_property_t *changed,
     return true;
 }
 
+static obs_property_t *add_text(obs_properties_t *all,
+                                const struct filter_parameter *p)
+{
+    const bool is_lens = strcmp(p->name, "lens") == 0;
+    obs_property_t *list;
+
+    if (!is_lens && strcmp(p->name, "style") != 0)
+        return obs_properties_add_text(all, p->name, p->label,
+                                       OBS_TEXT_DEFAULT);
+    list = obs_properties_add_list(all, p->name, p->label,
+                                   is_lens ? OBS_COMBO_TYPE_EDITABLE
+                                           : OBS_COMBO_TYPE_LIST,
+                                   OBS_COMBO_FORMAT_STRING);
+    if (is_lens) {
+        lens_files_each(add_lens, list);
+        return list;
+    }
+    obs_property_list_add_string(list, "none", "");
+    for (const struct style *s = styles; s->name; s++)
+        obs_property_list_add_string(list, s->name, s->name);
+    return list;
+}
+
 static obs_properties_t *get_properties(void *ctx)
 {
     obs_properties_t *const all = obs_properties_create();
-    obs_property_t *const lens = obs_properties_add_list(
-        all, "lens", "Lens, or a file of one", OBS_COMBO_TYPE_EDITABLE,
-        OBS_COMBO_FORMAT_STRING);
-    obs_property_t *const style = obs_properties_add_list(
-        all, "style", "Style", OBS_COMBO_TYPE_LIST, OBS_COMBO_FORMAT_STRING);
+    obs_property_t *property;
+    struct filter_parameter p;
 
     (void)ctx;
-    lens_files_each(add_lens, lens);
-    obs_property_list_add_string(style, "none", "");
-    for (const struct style *s = styles; s->name; s++)
-        obs_property_list_add_string(style, s->name, s->name);
-    obs_properties_add_text(all, "f-number", "F-number, as 5.6",
-                            OBS_TEXT_DEFAULT);
-    obs_property_set_modified_callback(
-        obs_properties_add_bool(all, "auto", "Find lamps"), show_place);
-    for (int i = 0; i < N_NUMBERS; i++)
-        obs_properties_add_float_slider(all, number_settings[i].key,
-                                        number_settings[i].label, 0,
-                                        number_settings[i].factor, 0.01);
+    for (int i = 0; filter_parameter(i, &p); i++) {
+        if (p.type == FILTER_TEXT)
+            property = add_text(all, &p);
+        else if (p.type == FILTER_NUMBER)
+            property = obs_properties_add_float_slider(all, p.name, p.label,
+                                                       p.low, p.high, 0.01);
+        else
+            property = obs_properties_add_bool(all, p.name, p.label);
+        obs_property_set_long_description(property, p.help);
+    }
+    obs_property_set_modified_callback(obs_properties_get(all, "auto"),
+                                       show_place);
     return all;
 }
 
@@ -145,15 +143,15 @@ static void disable(struct flare *f)
     obs_source_set_enabled(f->source, false);
 }
 
-/* Takes the filter that has been opened, if there is one, and begins to open
- * another where this one does not serve. Returns whether this one can draw. */
-static bool ready(struct flare *f, const struct flare_settings *wanted,
-                  const struct glint_image *image)
+/* Takes the filter that has been opened, if there is one, begins to open
+ * another if it does not fit, and sets what is live. Returns whether the filter
+ * can draw. */
+static bool ready(struct flare *f, const struct glint_image *image)
 {
+    const int w = image->width, h = image->height;
     struct filter *opened;
 
-    if (f->opening &&
-        opening_end(f->opening, &opened, &f->opened, &f->width, &f->height)) {
+    if (f->opening && opening_end(f->opening, &opened)) {
         filter_destroy(f->filter);
         f->filter = opened;
         f->opening = NULL;
@@ -161,13 +159,14 @@ static bool ready(struct flare *f, const struct flare_settings *wanted,
         f->has_warned = false;
     }
     if (!f->opening &&
-        !(f->filter && f->width == image->width && f->height == image->height &&
-          flare_settings_serve(&f->opened, wanted))) {
-        f->opening = opening_begin(wanted, image->width, image->height);
+        !(f->filter && filter_fits(f->filter, &f->wanted, w, h))) {
+        f->opening = opening_begin(&f->wanted, w, h);
         if (!f->opening)
             warn_once(f, "no memory");
     }
-    return f->filter && f->width == image->width && f->height == image->height;
+    if (f->filter)
+        filter_set_live(f->filter, &f->wanted);
+    return f->filter && filter_has_size(f->filter, w, h);
 }
 
 /* Returns the microseconds since the last frame drawn. The first, and one of
@@ -186,18 +185,17 @@ static struct obs_source_frame *filter_video(void *ctx,
 {
     struct flare *const f = ctx;
     struct glint_image image;
-    struct flare_settings wanted;
+    bool is_ready;
 
     if (!frame_image(frame, &image)) {
         warn_once(f, "no flare on frames of this kind");
         return frame;
     }
     pthread_mutex_lock(&f->lock);
-    wanted = f->wanted;
+    is_ready = ready(f, &image);
     pthread_mutex_unlock(&f->lock);
-    if (!ready(f, &wanted, &image))
+    if (!is_ready)
         return frame;
-    flare_settings_turn(&wanted, f->filter);
     if (filter_draw(f->filter, &image, elapsed_us(f, frame->timestamp)))
         f->last_ns = frame->timestamp;
     else
@@ -219,6 +217,7 @@ static void destroy(void *ctx)
 
     opening_leave(f->opening);
     filter_destroy(f->filter);
+    filter_values_free(&f->wanted);
     pthread_mutex_destroy(&f->lock);
     free(f);
 }
@@ -230,6 +229,7 @@ static void *create(obs_data_t *data, obs_source_t *source)
     if (!f)
         return NULL;
     f->source = source;
+    filter_values_init(&f->wanted);
     pthread_mutex_init(&f->lock, NULL);
     update(f, data);
     return f;

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * values.h - what the filter does with the values of its parameters.
+ */
+#ifndef GLINT_TOOLS_FILTER_VALUES_H
+#define GLINT_TOOLS_FILTER_VALUES_H
+
+#include "filter/filter.h"
+
+/* Indices of the parameters that are not options. */
+enum { FILTER_AUTO = 5, FILTER_X, FILTER_Y };
+
+/* Returns whether NUMBER is the default of PARAMETER. */
+bool filter_is_default(const struct filter_parameter *parameter, double number);
+
+/* Copies FROM to TO, whose texts are not freed. */
+void filter_values_copy(struct filter_values *to,
+                        const struct filter_values *from);
+
+/* Returns whether all values but live ones are the same in A and B. */
+bool filter_values_serve(const struct filter_values *a,
+                         const struct filter_values *b);
+
+#endif
