@@ -72,7 +72,7 @@ board:
 	        tar --owner=0 --group=0 --numeric-owner --mode=u=rwX,go=rX --no-recursion -T - -czf $(CURDIR)/$(board_tar).tmp
 	@mv -f $(board_tar).tmp $(board_tar) && echo $(board_tar)
 # What programs are built and run with; for a board archives alone.
-headers := $(wildcard include/glint/*.h include/glint/*/*.h)
+headers := $(wildcard include/glint/*.h include/glint/*.inc include/glint/*/*.h)
 install-library: $(LIBRARIES:%=$(OUT)/lib%.a) $(if $(CROSS),,shared)
 	install -d $(to)/include/glint/scene $(libdir)/pkgconfig
 	install -m 644 $(filter-out $(wildcard include/glint/*/*.h),$(headers)) $(to)/include/glint
