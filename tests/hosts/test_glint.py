@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The Python package against the command: the same bytes. Run by tests/hosts/python, from the root."""
+import inspect
 import json
 import os
 import pathlib
@@ -50,6 +51,11 @@ class Package(unittest.TestCase):
             ({"lens": LENS, "strength": 0.8, "veil": 0.02, "lights_at": [(300, 200, 6), (20, 9, 15), (-30, 100)]},
              ["--lens", LENS, "--strength", ".8", "--veil", ".02", "--light-at", "300,200,6", "--light-at", "20,9,15",
               "--light-at=-30,100"]),
+            ({"lens": LENS, "quality": "draft", "stop": "polygon:7,20,round:.3,soft:.2", "headroom": 3, "haze": 0.01},
+             ["--lens", LENS, "--quality", "draft", "--stop", "polygon:7,20,round:.3,soft:.2", "--headroom", "3",
+              "--haze", ".01"]),
+            ({"lens": LENS, "threshold": "-0.5,-0.6", "whole": 0, "cull": 1, "half": True, "sensor": "24x16"},
+             ["--lens", LENS, "--threshold=-0.5,-0.6", "--whole", "0", "--cull", "1", "--half", "--sensor", "24x16"]),
         ]:
             with self.subTest(options=options):
                 got = self.photo.copy()
@@ -156,6 +162,9 @@ class Package(unittest.TestCase):
             ("side by side", lambda: glint.overlay(picture[:, ::2], LENS)),
             ("384x256", lambda: glint.Engine(LENS, 9, 9).overlay(picture)),
             ("quality is 0 to 1", lambda: glint.overlay(picture, LENS, quality=2)),
+            ("stop is circle or polygon", lambda: glint.overlay(picture, LENS, stop="round")),
+            ("does not support rays yet", lambda: glint.overlay(picture, LENS, quality="exact")),
+            ("does not support balance yet", lambda: glint.overlay(picture, LENS, balance=True)),
             ("f-number|f/", lambda: glint.overlay(picture, LENS, f_number=0.1)),
             ("at most", lambda: glint.overlay(picture, LENS, [glint.Lamp(1, 1)] * 2000)),
         ]:
@@ -164,6 +173,16 @@ class Package(unittest.TestCase):
         picture.setflags(write=False)
         with self.assertRaisesRegex(ValueError, "read-only"):
             glint.overlay(picture, LENS)
+
+    def test_keywords_are_the_options(self):
+        with self.assertRaisesRegex(TypeError, "keyword argument strenght"):
+            glint.overlay(self.photo, LENS, strenght=1)
+        listed = {line.split()[0].rstrip("=") for line in command("overlay", "--options").decode().splitlines()}
+        for function in glint.Engine, glint.overlay, glint.render:
+            keywords = inspect.signature(function).parameters
+            self.assertEqual(keywords["strength"].default, 0.5)
+            self.assertLessEqual({"--" + name.replace("_", "-") for name in glint.Options.__annotations__}, listed)
+            self.assertLessEqual(glint.Options.__annotations__.keys(), keywords.keys())
 
     def test_examples(self):
         run = lambda *words: subprocess.run([sys.executable, *words], check=True, stdout=subprocess.PIPE, text=True).stdout

@@ -66,11 +66,17 @@ struct glint_view glint_view_fit(int width, int height, double film_width_mm, do
 void glint_view_to_angles(const struct glint_view *view, double focal_mm, double x, double y, struct glint_lamp *lamp);
 void glint_view_to_pixel(const struct glint_view *view, double focal_mm, const struct glint_lamp *lamp, double *x, double *y);
 
-struct glint_dials { ...; };
-struct glint_dials glint_dials_at(int quality_q15);
+struct glint_option { const char *name; ...; };
+struct glint_options { double f_number; const char *coating; _Bool given[...]; ...; };
+struct glint_stop_shape { int n_blades; double rotation_deg, roundness, softness; };
+const struct glint_option *glint_option(int index);
+void glint_options_defaults(struct glint_options *options);
+enum glint_status glint_options_set(struct glint_options *options, const char *name, double value, struct glint_error *error);
+enum glint_status glint_options_set_text(struct glint_options *options, const char *name, const char *text, struct glint_error *error);
+_Bool glint_option_stop(const char *text, struct glint_stop_shape *stop);
 struct glint_engine_config { int width, height; const struct glint_lens *model; struct glint_workers *workers; unsigned sets;
-    int n_blades; double blade_rotation_deg, f_number; double strength, exposure_ev, gain; int by_hand; double starburst;
-    double veil, haze; struct glint_dials dials; ...; };
+    int n_blades; double blade_rotation_deg, sensor_width_mm, sensor_height_mm; ...; };
+void glint_configure_(struct glint_engine_config *cfg, const struct glint_options *options);
 struct glint_engine_report { int lamps, lamps_beyond, lights, ghosts, bundles, dropped_bundles; size_t bytes; double scale; ...; };
 struct glint_engine;
 struct glint_iris { double roundness, softness; ...; };
@@ -90,6 +96,7 @@ objects, taken = archives()
 ffi.set_source("glint._engine", r"""
 #include <stdlib.h>
 #include "glint/glint.h"
+#include "glint/options.h"
 #include "linux/sets.h"
 #include "posix/workers.h"
 
@@ -111,6 +118,28 @@ static int glint_coatings_parse_(struct glint_coating *coatings, int *n, const c
 static void glint_coat_(struct glint_prescription *lens, const struct glint_coating *coatings, int n)
 {
     glint_prescription_coat(lens, coatings, n);
+}
+/* Sets the options that an engine has. */
+static void glint_configure_(struct glint_engine_config *cfg, const struct glint_options *o)
+{
+    double mm[2] = {0, 0};
+
+    cfg->strength = o->strength;
+    cfg->by_hand = GLINT_OPTION_GIVEN(o, exposure);
+    cfg->exposure_ev = o->exposure;
+    cfg->gain = o->gain;
+    cfg->starburst = o->starburst;
+    cfg->veil = o->veil;
+    cfg->haze = o->haze;
+    cfg->f_number = o->f_number;
+    if (o->sensor)
+        glint_option_sensor(o->sensor, mm);
+    cfg->sensor_width_mm = mm[0];
+    cfg->sensor_height_mm = mm[1];
+    glint_option_threshold(o->threshold, cfg->threshold_ev);
+    if (GLINT_OPTION_GIVEN(o, headroom))
+        cfg->headroom_ev = o->headroom;
+    cfg->dials = glint_options_quality(o).dials;
 }
 static double glint_focal_mm_(const struct glint_lens *lens)
 {

@@ -3,6 +3,8 @@
 import pathlib
 import re
 import shutil
+import subprocess
+import sys
 
 import setuptools
 from setuptools.command.build_py import build_py
@@ -12,10 +14,12 @@ TREE = HERE.parent.parent
 
 
 class Build(build_py):
-    """Takes the lens tables along."""
+    """Adds the options of the engine, and the lens tables."""
 
     def run(self):
         super().run()
+        options = subprocess.run([sys.executable, str(HERE / "options.py")], check=True, stdout=subprocess.PIPE).stdout
+        (pathlib.Path(self.build_lib) / "glint" / "_options.py").write_bytes(options)
         for table in sorted((TREE / "lenses").rglob("*.lens")):
             to = pathlib.Path(self.build_lib) / "glint" / table.relative_to(TREE)
             to.parent.mkdir(parents=True, exist_ok=True)

@@ -11,16 +11,21 @@ they draw. Errors of lenses and arguments are ValueError, with the text that the
 """
 from __future__ import annotations
 
+import inspect
 import os
 import pathlib
 from dataclasses import dataclass
-from typing import List, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Callable, Dict, List, Optional, Sequence, Tuple, Union, get_type_hints
 
 import numpy as np
 
 from ._engine import ffi as _ffi, lib as _lib
+from ._options import DEFAULTS as _DEFAULTS, Options
 
-__all__ = ["Engine", "Lamp", "Report", "bake", "lenses", "overlay", "render"]
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+__all__ = ["Engine", "EngineOptions", "Lamp", "Options", "Report", "bake", "lenses", "overlay", "render"]
 __version__ = "0.1.0"
 
 MOST_LAMPS = 1024
@@ -152,6 +157,52 @@ def _cached(lens: str, coating: str, f_number: float, pool: _Pool) -> bytes:
     return model
 
 
+# --------------------------------------------------------------------- options
+
+# Options that the engine has. Others of the table are for glint overlay alone; to set one is an error.
+_DRAWN = {"coating", "cull", "dim", "dispersion", "error", "exposure", "f-number", "gain", "grid", "half", "haze",
+          "headroom", "quality", "quantum", "sensor", "star-cull", "starburst", "stop", "strength", "threshold", "veil",
+          "whole"}
+_Stop = Union[str, Tuple[int, float], None]
+
+
+class EngineOptions(Options, total=False):
+    """Keyword arguments of Engine but exposure."""
+
+    stop: _Stop
+    rotation: float
+    threads: int
+
+
+def _options(values: Dict[str, object]):
+    """Returns struct glint_options with VALUES, and the texts that it points to. None or "": the default."""
+    options, error, texts = _ffi.new("struct glint_options *"), _ffi.new("struct glint_error *"), []
+    _lib.glint_options_defaults(options)
+    for key, value in values.items():
+        name = key.replace("_", "-").encode()
+        if value is None or value == "":
+            continue
+        if isinstance(value, str):
+            texts.append(_ffi.new("char[]", value.encode()))
+            status = _lib.glint_options_set_text(options, name, texts[-1], error)
+        else:
+            status = _lib.glint_options_set(options, name, value, error)
+        if status != _lib.GLINT_OK:
+            raise ValueError(f"{key} is {_ffi.string(error.text).decode()}, not {value}")
+    for i, is_given in enumerate(options.given):
+        name = _ffi.string(_lib.glint_option(i).name).decode() if is_given else ""
+        if is_given and name not in _DRAWN:
+            raise ValueError(f"the engine does not support {name} yet: use glint overlay --{name}")
+    return options, texts
+
+
+def _shown(function: Callable[..., object], more: List[inspect.Parameter]) -> None:
+    """Adds MORE keyword arguments to the signature of FUNCTION that help() prints, in place of **options."""
+    own = inspect.signature(function)
+    kept = [p for p in own.parameters.values() if p.kind is not p.VAR_KEYWORD]
+    setattr(function, "__signature__", own.replace(parameters=kept + [p for p in more if p.name not in own.parameters]))
+
+
 # --------------------------------------------------------------------- drawing
 
 
@@ -159,21 +210,33 @@ class Engine:
     """Draws the flares of one lens on pictures of one size.
 
     lens      a name, a .lens or .glint file, or the bytes of a model
-    strength  how bright flares come out: 0 none, 0.5 a quarter of white at their brightest, 1 white
+    stop      as --stop, or blades and roundness, 0 blades a circle; None: (8, 0.2), or the circle of the table
+    rotation  degrees of the first corner of such blades
     exposure  stops, instead of strength: 0 is physical
-    stop      blades and roundness, 0 blades a circle; None: (8, 0.2), or the circle of the table
-    Others are as the options of glint overlay of the same names.
+    threads   0: one a processor
+    Others are the options of glint overlay of the same names, with their ranges and defaults (class Options): numbers,
+    or texts as on the command line. None: the default. A ValueError names those that the engine does not support yet.
     """
 
-    def __init__(self, lens: Union[str, bytes], height: int, width: int, *, strength: float = 0.5,
-                 exposure: Optional[float] = None, gain: float = 1.0, starburst: float = 1.0, veil: float = 0.0,
-                 haze: float = 0.0, quality: float = 0.5, f_number: float = 0.0, stop: Optional[Tuple[int, float]] = None,
-                 rotation: float = 0.0, coating: str = "mixed", threads: int = 0) -> None:
+    def __init__(self, lens: Union[str, bytes], height: int, width: int, *, stop: _Stop = None, rotation: float = 0.0,
+                 exposure: Optional[float] = None, threads: int = 0, **options: Unpack[Options]) -> None:
         self._engine = None
+        for key in options.keys() - _DEFAULTS.keys():
+            raise TypeError(f"there is no keyword argument {key}")
+        if options.get("f_number") == 0:
+            options["f_number"] = None
+        stop = stop or None
+        set_, texts = _options({**options, "exposure": exposure, "stop": stop if isinstance(stop, str) else None})
+        coating, f_number = _ffi.string(set_.coating).decode(), set_.f_number
         self._pool = _Pool(threads)
         if stop is None:
-            of_table = isinstance(lens, str) and not lens.endswith(".glint")
-            stop = (0, 0.0) if of_table and _prescription(lens, coating).stop_is_circle else (8, 0.2)
+            is_circle = isinstance(lens, str) and not lens.endswith(".glint") and _prescription(lens, coating).stop_is_circle
+            stop = (0, 0.0) if is_circle else (8, 0.2)
+        shape = _ffi.new("struct glint_stop_shape *")
+        if isinstance(stop, str):
+            _lib.glint_option_stop(stop.encode(), shape)
+        else:
+            shape.n_blades, shape.roundness, shape.rotation_deg = stop[0], stop[1], rotation
         if isinstance(lens, str):
             lens = pathlib.Path(lens).read_bytes() if lens.endswith(".glint") else _cached(lens, coating, f_number, self._pool)
         # words of 32 bits: memory of C is aligned, that of bytes need not be
@@ -182,26 +245,23 @@ class Engine:
         self._lens, reason = _ffi.new("struct glint_lens *"), _ffi.new("const char **")
         if _lib.glint_lens_open(self._lens, self._model, len(lens), reason) != _lib.GLINT_OK:
             raise ValueError("not a model: " + _ffi.string(reason[0]).decode())
-        if not 0 <= quality <= 1:
-            raise ValueError(f"quality is 0 to 1, not {quality:g}")
         cfg, error = _ffi.new("struct glint_engine_config *"), _ffi.new("struct glint_error *")
         _lib.glint_engine_defaults(cfg, width, height)
         cfg.model, cfg.workers, cfg.sets = self._lens, self._pool.workers, _lib.glint_system_sets()
-        cfg.strength, cfg.gain, cfg.starburst, cfg.veil, cfg.haze = strength, gain, starburst, veil, haze
-        cfg.f_number, cfg.n_blades, cfg.blade_rotation_deg = f_number, stop[0], rotation
-        cfg.dials = _lib.glint_dials_at(round(quality * 32768))
-        if exposure is not None:
-            cfg.by_hand, cfg.exposure_ev = 1, exposure
+        cfg.n_blades, cfg.blade_rotation_deg = shape.n_blades, shape.rotation_deg
+        _lib.glint_configure_(cfg, set_)
         at = _ffi.new("struct glint_engine **")
         _check(_lib.glint_engine_create(at, cfg, error), error)
         self._engine = _ffi.gc(at[0], _lib.glint_engine_destroy)
-        if stop[0] and stop[1] > 0:
-            iris = _ffi.new("struct glint_iris *", {"roundness": stop[1]})
-            _check(_lib.glint_engine_iris(self._engine, stop[0], rotation, iris, error), error)
+        if (shape.n_blades and shape.roundness > 0) or shape.softness > 0:
+            iris = _ffi.new("struct glint_iris *", {"roundness": shape.roundness, "softness": shape.softness})
+            _check(_lib.glint_engine_iris(self._engine, shape.n_blades, shape.rotation_deg, iris, error), error)
             if exposure is None:  # videos are exposed by what is measured through this stop
                 _check(_lib.glint_engine_stop(self._engine, f_number, error), error)
         film = _ffi.new("double[2]")
         _lib.glint_film_mm_(self._lens, film)
+        if cfg.sensor_width_mm > 0:
+            film[0], film[1] = cfg.sensor_width_mm, cfg.sensor_height_mm
         self._view = _ffi.new("struct glint_view *", _lib.glint_view_fit(width, height, film[0], film[1]))
         self._focal_mm = _lib.glint_focal_mm_(self._lens)
         self.height, self.width = height, width
@@ -278,18 +338,26 @@ class Engine:
 
 
 def overlay(array: np.ndarray, lens: Union[str, bytes] = "nikon-zoom-short", lamps: Optional[Sequence[Lamp]] = None, *,
-            lights_at: Sequence[Sequence[float]] = (), order: str = "RGB", **options) -> Report:
+            lights_at: Sequence[Sequence[float]] = (), order: str = "RGB", exposure: Optional[float] = None,
+            **options: Unpack[EngineOptions]) -> Report:
     """Adds the flare of the lamps in ARRAY to it, in place, as glint overlay does. LIGHTS_AT: lamps by pixel,
     (x, y) or (x, y, stops over white). OPTIONS are those of Engine."""
     if array.ndim < 2:
         raise ValueError("takes a picture, [height, width] or [height, width, channels]")
-    engine = Engine(lens, array.shape[0], array.shape[1], **options)
+    engine = Engine(lens, array.shape[0], array.shape[1], exposure=exposure, **options)
     if lights_at:
         lamps = list(lamps or []) + [engine.lamp_at(*at) for at in lights_at]
     return engine.overlay(array, lamps, order=order)
 
 
 def render(lens: Union[str, bytes], shape: Tuple[int, int], lamps: Sequence[Lamp], *, exposure: float = 0.0,
-           **options) -> np.ndarray:
+           **options: Unpack[EngineOptions]) -> np.ndarray:
     """The flare of LAMPS alone as linear light, float32 [height, width, 3]. SHAPE is (height, width)."""
     return Engine(lens, shape[0], shape[1], exposure=exposure, **options).render(lamps)
+
+
+_shown(Engine.__init__, [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=_DEFAULTS[name], annotation=hint)
+                         for name, hint in get_type_hints(Options).items()])
+_keywords = [p for p in inspect.signature(Engine).parameters.values() if p.kind is p.KEYWORD_ONLY]
+_shown(overlay, _keywords)
+_shown(render, _keywords)
