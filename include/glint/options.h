@@ -81,11 +81,11 @@ struct glint_option {
 
 /* Identifiers GLINT_OPTION_OF_f_number ..., in the order of the table. */
 enum glint_option_id {
-#define REAL(member, ...)    GLINT_OPTION_OF_##member,
-#define INTEGER(member, ...) GLINT_OPTION_OF_##member,
-#define FLAG(member, ...)    GLINT_OPTION_OF_##member,
-#define WORD(member, ...)    GLINT_OPTION_OF_##member,
-#define TEXT(member, ...)    GLINT_OPTION_OF_##member,
+#define GLINT_ROW_REAL(member, ...)    GLINT_OPTION_OF_##member,
+#define GLINT_ROW_INTEGER(member, ...) GLINT_OPTION_OF_##member,
+#define GLINT_ROW_FLAG(member, ...)    GLINT_OPTION_OF_##member,
+#define GLINT_ROW_WORD(member, ...)    GLINT_OPTION_OF_##member,
+#define GLINT_ROW_TEXT(member, ...)    GLINT_OPTION_OF_##member,
 #include "glint/options.inc"
     GLINT_N_OPTIONS
 };
@@ -95,11 +95,11 @@ enum glint_option_id {
  * programs that are to work with other versions of the library set options by
  * name. */
 struct glint_options {
-#define REAL(member, ...)    double member;
-#define INTEGER(member, ...) int member;
-#define FLAG(member, ...)    bool member;
-#define WORD(member, ...)    int member;
-#define TEXT(member, ...)    const char *member; /* not copied */
+#define GLINT_ROW_REAL(member, ...)    double member;
+#define GLINT_ROW_INTEGER(member, ...) int member;
+#define GLINT_ROW_FLAG(member, ...)    bool member;
+#define GLINT_ROW_WORD(member, ...)    int member;
+#define GLINT_ROW_TEXT(member, ...)    const char *member; /* not copied */
 #include "glint/options.inc"
     bool given[GLINT_N_OPTIONS];
 };
@@ -117,9 +117,10 @@ void glint_options_defaults(struct glint_options *options);
 
 /* Set option NAME. Of --quality and --error, the one that is set last counts.
  * VALUE: a number, the index of a word, or 0 or 1. TEXT: as on a command line;
- * of an option of type TEXT it is kept, not copied, and NULL or "" unsets it.
- * GLINT_E_ARGUMENT with ERROR: there is no such option, or it does not accept
- * that; the value stays. */
+ * of a flag yes, no, 1, 0, or "" or NULL for yes; of an option of type TEXT it
+ * is kept, not copied, and NULL or "" restores the default. GLINT_E_ARGUMENT
+ * with ERROR: there is no such option, or it does not accept that; the value
+ * stays. */
 enum glint_status glint_options_set(struct glint_options *options,
                                     const char *name, double value,
                                     struct glint_error *error);

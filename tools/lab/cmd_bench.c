@@ -224,7 +224,9 @@ static int parse(struct tool *tool, int argc, char **argv, struct bench *b)
             return code;
     }
     return b->base.options.memory
-               ? tool_usage(tool, "--memory is for commands that draw")
+               ? tool_usage(tool,
+                            "bench does not limit memory: --memory is for the "
+                            "other commands that draw")
                : -1;
 }
 

@@ -70,6 +70,13 @@ static void suggest_option(const struct tool *tool)
     fprintf(stderr, "Try 'glint %s --help'.\n", tool->name);
 }
 
+static bool has_name(const struct option *options, const char *name)
+{
+    while (options->name && strcmp(options->name, name) != 0)
+        options++;
+    return options->name != NULL;
+}
+
 const struct option *engine_getopt(struct tool *tool, unsigned groups,
                                    const struct glint_options *defaults,
                                    const struct option *own)
@@ -86,7 +93,7 @@ const struct option *engine_getopt(struct tool *tool, unsigned groups,
     for (const struct option *o = own; o->name; o++)
         all[n++] = *o;
     for (int i = 0; (row = glint_option(i)) != NULL; i++)
-        if (groups >> row->group & 1)
+        if (groups >> row->group & 1 && !has_name(own, row->name))
             all[n++] = (struct option){row->name,
                                        row->type == GLINT_OPTION_FLAG
                                            ? no_argument

@@ -45,7 +45,9 @@ void dial_set(struct settings *s, const struct dial *dial, double value)
     switch (dial->id) {
     case DIAL_GRID:
         s->dials.fineness = whole;
-        GLINT_OPTION_GIVEN(&s->options, grid) = true;
+        /* no limit of work, which would make grids coarser */
+        s->options.work = 0;
+        GLINT_OPTION_GIVEN(&s->options, work) = true;
         break;
     case DIAL_QUANTUM:
         s->quantum = value;

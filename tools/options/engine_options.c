@@ -18,6 +18,8 @@ int engine_option(const struct tool *tool, struct glint_options *values,
 
     if (!row)
         return -2;
+    if (row->type != GLINT_OPTION_FLAG && !*value)
+        return tool_refuse(tool, row->name, value);
     return glint_options_set_text(values, row->name, value, &error) == GLINT_OK
                ? -1
                : tool_refuse(tool, row->name, value);
@@ -73,16 +75,16 @@ static void default_of(const struct glint_options *defaults, int i,
     *value = NAN;
     *text = NULL;
     switch (i) {
-#define REAL(member, ...)          \
-    case GLINT_OPTION_OF_##member: \
-        *value = defaults->member; \
+#define GLINT_ROW_REAL(member, ...) \
+    case GLINT_OPTION_OF_##member:  \
+        *value = defaults->member;  \
         break;
-#define INTEGER(member, ...) REAL(member, )
-#define WORD(member, ...)    REAL(member, )
-#define FLAG(member, ...)
-#define TEXT(member, ...)          \
-    case GLINT_OPTION_OF_##member: \
-        *text = defaults->member;  \
+#define GLINT_ROW_INTEGER(member, ...) GLINT_ROW_REAL(member, )
+#define GLINT_ROW_WORD(member, ...)    GLINT_ROW_REAL(member, )
+#define GLINT_ROW_FLAG(member, ...)
+#define GLINT_ROW_TEXT(member, ...) \
+    case GLINT_OPTION_OF_##member:  \
+        *text = defaults->member;   \
         break;
 #include "glint/options.inc"
     }

@@ -21,7 +21,9 @@ enum { SETTINGS_MAX_LAMPS = 1024 }; /* lamps by hand; a file may have more */
 struct settings {
     struct glint_options options; /* as set */
 
-    /* What follows from options; settings_option() sets it. */
+    double roundness; /* of the blades, unless --stop has a shape */
+
+    /* What follows from options. Setting one overwrites all of these. */
     struct coating coating;
     struct zoom_option zoom;
     struct stop_option stop;

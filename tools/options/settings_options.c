@@ -21,15 +21,14 @@ static void resolve_stop(struct settings *s)
 {
     const struct glint_options *const o = &s->options;
     struct stop_option *const stop = &s->stop;
-    struct glint_stop_shape shape;
+    struct glint_stop_shape shape = {8, 0, s->roundness, 0};
 
     stop->is_asked = o->stop && glint_option_stop(o->stop, &shape);
-    if (stop->is_asked) {
-        stop->n_blades = shape.n_blades;
-        stop->rotation_deg = shape.rotation_deg;
-        stop->iris.roundness = shape.roundness;
-        stop->iris.softness = shape.softness;
-    }
+    stop->n_blades = shape.n_blades;
+    stop->rotation_deg = shape.rotation_deg;
+    stop->iris.roundness = shape.roundness;
+    stop->iris.softness = shape.softness;
+    stop->iris.dust = s->front.front.dust = 0;
     stop->mask_file = o->stop_mask;
     if (o->dust)
         glint_option_dust(o->dust, &stop->iris.dust, &stop->iris.dust_seed);
@@ -51,6 +50,7 @@ static void resolve(struct settings *s)
     s->zoom =
         (struct zoom_option){o->zoom, o->focus, GLINT_OPTION_GIVEN(o, zoom),
                              GLINT_OPTION_GIVEN(o, focus)};
+    s->sensor_mm[0] = s->sensor_mm[1] = 0;
     if (o->sensor)
         glint_option_sensor(o->sensor, s->sensor_mm);
     resolve_waves(s);
@@ -77,7 +77,7 @@ void settings_defaults_photo(struct settings *settings)
     settings_defaults(settings);
     glint_options_defaults(&settings->options);
     settings->coating.kind = COATING_MIXED;
-    settings->stop.iris.roundness = PHOTO_ROUNDNESS;
+    settings->roundness = PHOTO_ROUNDNESS;
     resolve(settings);
 }
 

@@ -129,14 +129,10 @@ static void unsize(struct compositor *compositor)
 static enum glint_status open_finder(struct compositor *compositor, int width,
                                      int height)
 {
-    double threshold_ev[2];
-
-    glint_option_threshold(compositor->settings.options.threshold,
-                           threshold_ev);
     compositor->finder.headroom_ev = compositor->headroom_ev;
     compositor->finder.max = finder_max(compositor);
     return glint_lamp_detector_open_at(&compositor->finder, width, height,
-                                       threshold_ev);
+                                       compositor->threshold_ev);
 }
 
 static int by_hand(const struct compositor *compositor)
@@ -234,8 +230,9 @@ int compositor_size(const struct tool *tool, struct compositor *compositor,
         status = open_finder(compositor, width, height);
     if (tool->verbose && !tool->quiet && !compositor->is_listed &&
         compositor->n_hand == 0)
-        fprintf(stderr, "%s: lamps from %s stops of white\n", tool->name,
-                compositor->settings.options.threshold);
+        fprintf(stderr, "%s: lamps from %g stops of white, down to %g\n",
+                tool->name, compositor->threshold_ev[0],
+                compositor->threshold_ev[1]);
     if (status == GLINT_OK && compositor->reserve_bytes)
         status = reserve(compositor);
     return status == GLINT_OK ? EXIT_OK : fail_sizing(tool, compositor, status);

@@ -33,6 +33,7 @@ struct compositor {
     struct occlusion occlusion; /* what hides lamps */
     struct over_scene scene;    /* things over the picture */
     struct lamp_list at;        /* lamps given by hand, by pixel */
+    double threshold_ev[2];     /* of --threshold */
     double headroom_ev;         /* below 0: estimated */
     bool show_lights;
     bool is_still; /* pictures by themselves, for which there is time */

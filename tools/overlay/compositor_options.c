@@ -6,14 +6,6 @@
 #include "options/command_line.h"
 #include "overlay/compositor.h"
 
-void compositor_defaults(struct compositor *compositor)
-{
-    *compositor = (struct compositor){.white = 1};
-    settings_defaults_photo(&compositor->settings);
-    glint_strength_defaults(&compositor->strength);
-    compositor->headroom_ev = -1;
-}
-
 /* Adds the lamp TEXT, which is valid, of --light. Returns false if it is one
  * too many. */
 static bool add_light(struct compositor *compositor, const char *text)
@@ -68,6 +60,7 @@ static void resolve(struct compositor *c)
         o->lights = NULL;
     if (o->memory)
         c->reserve_bytes = (size_t)o->memory << 20;
+    glint_option_threshold(o->threshold, c->threshold_ev);
     c->headroom_ev = GLINT_OPTION_GIVEN(o, headroom) ? o->headroom : -1;
     c->strength.asked = o->strength;
     c->occlusion.file = o->mask;
@@ -76,6 +69,14 @@ static void resolve(struct compositor *c)
     c->scene.pose_file = o->pose;
     c->scene.control_file = o->control;
     scene_dials_choose(&c->scene.asked, o);
+}
+
+void compositor_defaults(struct compositor *compositor)
+{
+    *compositor = (struct compositor){.white = 1};
+    settings_defaults_photo(&compositor->settings);
+    glint_strength_defaults(&compositor->strength);
+    resolve(compositor);
 }
 
 int compositor_style(const struct tool *tool, struct compositor *compositor,

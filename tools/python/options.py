@@ -14,12 +14,12 @@ INCLUDE = pathlib.Path(__file__).resolve().parent.parent.parent / "include"
 MACROS = """
 #define NUMBER(type, member, name, value, low, high, initial, unit, group, changes, help) \\
     (#member, name, #type, initial, unit, #group, help),
-#define REAL(...) NUMBER(float, __VA_ARGS__)
-#define INTEGER(...) NUMBER(int, __VA_ARGS__)
-#define FLAG(member, name, group, changes, help) (#member, name, "bool", False, "", #group, help),
-#define WORD(member, name, value, words, initial, group, changes, help) \\
-    (#member, name, "Literal", words.split("|")[initial] if initial >= 0 else None, words, #group, help),
-#define TEXT(member, name, value, initial, accepts, group, changes, help) \\
+#define GLINT_ROW_REAL(...) NUMBER(float, __VA_ARGS__)
+#define GLINT_ROW_INTEGER(...) NUMBER(int, __VA_ARGS__)
+#define GLINT_ROW_FLAG(member, name, group, changes, help) (#member, name, "bool", False, "", #group, help),
+#define GLINT_ROW_WORD(member, name, value, words, initial, group, changes, help) \\
+    (#member, name, "Literal", words.split("|")[initial] if initial is not None else None, words, #group, help),
+#define GLINT_ROW_TEXT(member, name, value, initial, accepts, group, changes, help) \\
     (#member, name, "str", initial or None, "", #group, help),
 #include "glint/options.inc"
 """

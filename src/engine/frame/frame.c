@@ -451,6 +451,10 @@ void glint_frame_set_still(struct glint_frame *frame, bool is_still,
 {
     const struct glint_dials *const asked = &frame->asked;
 
+    /* Whoever draws videos may have lowered the points. */
+    if (!is_still && !frame->is_still)
+        return;
+    frame->is_still = is_still;
     frame->dials.area_points =
         is_still && more_points
             ? 1 + GLINT_AREA_STILL * (asked->area_points - 1)

@@ -89,6 +89,7 @@ struct glint_frame {
     int point_room; /* most lights that points of wide lamps may become, if that
                        is more than max_lights and there are no more lamps than
                        max_lights */
+    bool is_still;  /* true: glint_frame_set_still() raised the points */
     double apart_px; /* pixels: lights whose images are nearer are merged */
     bool for_codes;  /* true: a linear picture is planned as if it were in codes
                       */
@@ -225,10 +226,9 @@ bool glint_frame_is_beyond(const struct glint_frame *frame,
  * exact. */
 double glint_frame_end_deg(const struct glint_frame *frame);
 
-/* Sets how finely wide lamps of the next frame are drawn: with the points and
- * lights that were asked for, or, if it IS_STILL, a picture by itself, for
- * which there is time, with MORE_POINTS a lamp and MORE_LIGHTS for all of them.
- */
+/* Sets the sampling of area lamps of the next frame. IS_STILL, for a picture by
+ * itself: more points a lamp (if MORE_POINTS) and a larger total (if
+ * MORE_LIGHTS); the first other frame after it: those of frame->asked. */
 void glint_frame_set_still(struct glint_frame *frame, bool is_still,
                            bool more_points, bool more_lights);
 

@@ -35,8 +35,9 @@ static const char *exponent_end(const char *at, long *exponent)
 
 /* strtod() reads "125e-1" for 12.5: without a decimal point its result does not
  * depend on the locale, and it is correctly rounded all the same. */
-double glint_option_number(const char *text, const char **end)
+double glint_option_number(const char *from, const char **end)
 {
+    const char *const text = from + strspn(from, " \t");
     const char *const whole = text + (*text == '-' || *text == '+');
     const char *const point = digits_end(whole);
     const char *const decimals = *point == '.' ? point + 1 : point;
@@ -45,7 +46,7 @@ double glint_option_number(const char *text, const char **end)
     char digits[MOST_DIGITS + 24];
     long exponent;
 
-    *end = text;
+    *end = from;
     if (n_whole + n == 0 || n_whole + n > MOST_DIGITS)
         return 0;
     *end = exponent_end(last, &exponent);

@@ -26,25 +26,27 @@ static const struct glint_option table[] = {
                help)                                                         \
     {name,  value,  unit, help, "", low, high, initial, GLINT_OPTION_##type, \
      group, changes},
-#define REAL(member, ...)    NUMBER(REAL, __VA_ARGS__)
-#define INTEGER(member, ...) NUMBER(INTEGER, __VA_ARGS__)
-#define FLAG(member, name, group, changes, help) \
+#define GLINT_ROW_REAL(member, ...)    NUMBER(REAL, __VA_ARGS__)
+#define GLINT_ROW_INTEGER(member, ...) NUMBER(INTEGER, __VA_ARGS__)
+#define GLINT_ROW_FLAG(member, name, group, changes, help) \
     {name, "", "", help, "", 0, 1, 0, GLINT_OPTION_FLAG, group, changes},
-#define WORD(member, name, value, words, initial, group, changes, help) \
-    {name,  value,  words, help, "", 0, 0, initial, GLINT_OPTION_WORD,  \
+#define GLINT_ROW_WORD(member, name, value, words, initial, group, changes, \
+                       help)                                                \
+    {name,  value,  words, help, "", 0, 0, initial, GLINT_OPTION_WORD,      \
      group, changes},
-#define TEXT(member, name, value, initial, accepts, group, changes, help) \
-    {name, value, accepts,           help,  initial, 0,                   \
+#define GLINT_ROW_TEXT(member, name, value, initial, accepts, group, changes, \
+                       help)                                                  \
+    {name, value, accepts,           help,  initial, 0,                       \
      0,    NAN,   GLINT_OPTION_TEXT, group, changes},
 #include "glint/options.inc"
 };
 
 static const size_t offset[] = {
-#define REAL(member, ...)    offsetof(struct glint_options, member),
-#define INTEGER(member, ...) offsetof(struct glint_options, member),
-#define FLAG(member, ...)    offsetof(struct glint_options, member),
-#define WORD(member, ...)    offsetof(struct glint_options, member),
-#define TEXT(member, ...)    offsetof(struct glint_options, member),
+#define GLINT_ROW_REAL(member, ...)    offsetof(struct glint_options, member),
+#define GLINT_ROW_INTEGER(member, ...) offsetof(struct glint_options, member),
+#define GLINT_ROW_FLAG(member, ...)    offsetof(struct glint_options, member),
+#define GLINT_ROW_WORD(member, ...)    offsetof(struct glint_options, member),
+#define GLINT_ROW_TEXT(member, ...)    offsetof(struct glint_options, member),
 #include "glint/options.inc"
 };
 
@@ -240,7 +242,7 @@ enum glint_status glint_options_set(struct glint_options *options,
     high = option->type == GLINT_OPTION_WORD
                ? words_of(option, -1, &n, &word) - 1
                : option->high;
-    if (!(value >= option->low && value <= high) ||
+    if (!(value >= option->low && value <= high) || isinf(value) ||
         (option->type != GLINT_OPTION_REAL && value != floor(value)) ||
         !goes(options, i, value))
         return refuse(option, error);
@@ -276,6 +278,22 @@ static bool named_number(struct glint_options *options, int i, const char *text,
     return false;
 }
 
+/* Reads TEXT, NULL or "" as of a flag on a command line. */
+static bool flag_value(const char *text, double *value)
+{
+    static const char *const words[] = {"no", "yes", "0", "1"};
+
+    *value = 1;
+    if (!text || !*text)
+        return true;
+    for (int i = 0; i < 4; i++)
+        if (strcmp(text, words[i]) == 0) {
+            *value = i & 1;
+            return true;
+        }
+    return false;
+}
+
 static enum glint_status set_text(struct glint_options *options, int i,
                                   const char *text, struct glint_error *error)
 {
@@ -283,7 +301,10 @@ static enum glint_status set_text(struct glint_options *options, int i,
 
     if (is_set && !glint_text_is_valid((enum glint_option_id)i, text))
         return refuse(&table[i], error);
-    store_text(options, i, is_set ? text : NULL);
+    store_text(options, i,
+               is_set             ? text
+               : table[i].text[0] ? table[i].text
+                                  : NULL);
     options->given[i] = is_set;
     return GLINT_OK;
 }
@@ -303,11 +324,15 @@ enum glint_status glint_options_set_text(struct glint_options *options,
     case GLINT_OPTION_TEXT:
         return set_text(options, i, text, error);
     case GLINT_OPTION_FLAG:
+        if (!flag_value(text, &value))
+            return refuse(option, error);
         break;
     case GLINT_OPTION_WORD:
-        value = word_index(option, text);
+        value = text ? word_index(option, text) : -1;
         break;
     default:
+        if (!text)
+            return refuse(option, error);
         /* Without a distance the lens is focused at infinity. */
         if (i == GLINT_OPTION_OF_focus && strcmp(text, "inf") == 0) {
             options->focus = 0;

@@ -283,13 +283,67 @@ static void test_options(void **state)
     assert_false(GLINT_OPTION_GIVEN(&o, quality));
 }
 
+static bool accepts(struct glint_options *o, const char *name, const char *text)
+{
+    struct glint_error error = {""};
+    const bool is_set =
+        glint_options_set_text(o, name, text, &error) == GLINT_OK;
+
+    assert_true(is_set || *error.text);
+    return is_set;
+}
+
+/* Every default can be set again; numbers are finite; an empty text restores
+ * the default; a flag knows yes from no; blanks may stand before numbers. */
+static void test_option_values(void **state)
+{
+    struct glint_options o, initial;
+    struct glint_error error;
+    double v[3];
+
+    (void)state;
+    glint_options_defaults(&o);
+    initial = o;
+    for (int i = 0; i < GLINT_N_OPTIONS; i++) {
+        const struct glint_option *const row = glint_option(i);
+
+        if (row->type == GLINT_OPTION_TEXT) {
+            assert_true(!*row->text || accepts(&o, row->name, row->text));
+            assert_true(accepts(&o, row->name, "") && !o.given[i]);
+            continue;
+        }
+        assert_true(isnan(row->initial) ||
+                    glint_options_set(&o, row->name, row->initial, &error) ==
+                        GLINT_OK);
+        assert_int_equal(glint_options_set(&o, row->name, INFINITY, &error),
+                         GLINT_E_ARGUMENT);
+        assert_int_equal(glint_options_set(&o, row->name, NAN, &error),
+                         GLINT_E_ARGUMENT);
+        assert_true(row->type == GLINT_OPTION_FLAG ||
+                    !accepts(&o, row->name, NULL));
+    }
+    assert_string_equal(o.wavelengths, initial.wavelengths);
+    assert_string_equal(o.threshold, initial.threshold);
+    assert_true(accepts(&o, "half", "yes") && o.half);
+    assert_true(accepts(&o, "half", "no") && !o.half);
+    assert_false(accepts(&o, "half", "maybe"));
+    assert_true(accepts(&o, "strength", " 1.5e0") && o.strength == 1.5);
+    assert_false(accepts(&o, "strength", "1,5"));
+    assert_false(accepts(&o, "no-such-option", "1"));
+    assert_int_equal(glint_option_numbers("-1.25, 3", v, 3), 2);
+    assert_true(v[0] == -1.25 && v[1] == 3);
+    assert_int_equal(glint_options_set(&o, "veil", 0.5, &error), GLINT_OK);
+    assert_int_equal(glint_options_set(&o, "haze", 0.5, &error),
+                     GLINT_E_ARGUMENT);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_draws),   cmocka_unit_test(test_arena),
         cmocka_unit_test(test_follows), cmocka_unit_test(test_stop),
         cmocka_unit_test(test_given),   cmocka_unit_test(test_refuses),
-        cmocka_unit_test(test_options)};
+        cmocka_unit_test(test_options), cmocka_unit_test(test_option_values)};
 
     return cmocka_run_group_tests(tests, opened_heliar, opened_close);
 }

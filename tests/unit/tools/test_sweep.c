@@ -166,6 +166,11 @@ static void test_ladder(void **state)
                 settings.dials.cull_codes == plain.dials.cull_codes &&
                 settings.tolerance == plain.tolerance &&
                 settings.options.rays == plain.options.rays);
+    for (int d = 0; d < n_dials; d++)
+        dial_set(&settings, &dials[d], dials[d].standard);
+    settings_set_quality(&settings, 1);
+    assert_int_equal(settings.dials.fineness, 256);
+    settings_defaults(&settings);
     settings_defaults(&last);
     settings_set_quality(&last, 0);
     for (int i = 1; i <= 100; i++) {
