@@ -70,7 +70,7 @@ static const char *take_heading(struct reading *r, struct text_lines *lines,
                 lines,
                 "'%.32s' is no column: the first line names frame, and of "
                 "exposure, strength, gain, starburst, f-number, turn, "
-                "round, x, y, ev",
+                "round, zoom, x, y, ev",
                 name[i]);
         if (seen >> column & 1)
             return "a column is there twice";
