@@ -151,5 +151,5 @@ static void glint_film_mm_(const struct glint_lens *lens, double mm[2])
     mm[1] = glint_real_value(lens->header->film_height_mm);
 }
 """, include_dirs=[str(TREE / "include"), str(TREE / "platform")],
-    extra_objects=objects, libraries=["pthread"], extra_compile_args=["-D_POSIX_C_SOURCE=200809L"],
+    extra_objects=objects, depends=objects, libraries=["pthread"], extra_compile_args=["-D_POSIX_C_SOURCE=200809L"],
     extra_link_args=taken + ["-Wl,--exclude-libs,ALL"])
