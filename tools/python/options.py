@@ -18,7 +18,7 @@ MACROS = """
 #define GLINT_ROW_INTEGER(...) NUMBER(int, __VA_ARGS__)
 #define GLINT_ROW_FLAG(member, name, group, changes, help) (#member, name, "bool", False, "", #group, help),
 #define GLINT_ROW_WORD(member, name, value, words, initial, group, changes, help) \\
-    (#member, name, "Literal", words.split("|")[initial] if initial is not None else None, words, #group, help),
+    (#member, name, "Literal", None if initial == None else words.split("|")[initial], words, #group, help),
 #define GLINT_ROW_TEXT(member, name, value, initial, accepts, group, changes, help) \\
     (#member, name, "str", initial or None, "", #group, help),
 #include "glint/options.inc"
