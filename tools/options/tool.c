@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "options/tool.h"
 
+#include "glint/options.h"
 #include "help/values.h"
 
 #include <errno.h>
@@ -144,28 +145,12 @@ unsigned tool_sets(const struct tool *tool)
 
 bool tool_number(const char *text, double *value)
 {
-    char *end;
-
-    *value = strtod(text, &end);
-    return end != text && *end == '\0' && isfinite(*value);
+    return glint_option_numbers(text, value, 1) == 1;
 }
 
 int tool_numbers(const char *text, double *values, int max)
 {
-    for (int n = 0; n < max;) {
-        char *end;
-
-        values[n] = strtod(text, &end);
-        if (end == text || !isfinite(values[n]))
-            return 0;
-        n++;
-        if (*end == '\0')
-            return n;
-        if (*end != ',')
-            return 0;
-        text = end + 1;
-    }
-    return 0;
+    return glint_option_numbers(text, values, max);
 }
 
 bool tool_integer(const char *text, int low, int high, int *value)
