@@ -35,10 +35,10 @@ static const char *exponent_end(const char *at, long *exponent)
 
 /* strtod() reads "125e-1" for 12.5: without a decimal point its result does not
  * depend on the locale, and it is correctly rounded all the same. */
-double glint_option_number(const char *from, const char **end)
+double glint_option_number(const char *text, const char **end)
 {
-    const char *const text = from + strspn(from, " \t");
-    const char *const whole = text + (*text == '-' || *text == '+');
+    const char *const first = text + strspn(text, " \t");
+    const char *const whole = first + (*first == '-' || *first == '+');
     const char *const point = digits_end(whole);
     const char *const decimals = *point == '.' ? point + 1 : point;
     const char *const last = digits_end(decimals);
@@ -46,11 +46,11 @@ double glint_option_number(const char *from, const char **end)
     char digits[MOST_DIGITS + 24];
     long exponent;
 
-    *end = from;
+    *end = text;
     if (n_whole + n == 0 || n_whole + n > MOST_DIGITS)
         return 0;
     *end = exponent_end(last, &exponent);
-    snprintf(digits, sizeof digits, "%s%.*s%.*se%ld", *text == '-' ? "-" : "",
+    snprintf(digits, sizeof digits, "%s%.*s%.*se%ld", *first == '-' ? "-" : "",
              n_whole, whole, n, decimals, exponent - n);
     return strtod(digits, NULL);
 }
