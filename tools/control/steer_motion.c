@@ -121,7 +121,7 @@ static enum glint_status take_free(struct steer *s, struct glint_scene *scene,
 {
     const struct steer before = *s;
     struct glint_scene_camera *const c = &s->camera;
-    double axis[3][3];
+    double axis[3][3] = {{0}};
     enum glint_status status = GLINT_OK;
 
     if (s->orbit.is_there)

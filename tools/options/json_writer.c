@@ -28,6 +28,21 @@ static void write_text(FILE *file, const char *text)
     fputc('"', file);
 }
 
+/* Writes the next of VALUES, an integer of the size that FORM names. */
+static void write_integer(FILE *file, const char *form, va_list *values)
+{
+    const char *const size = form + strcspn(form, "lz");
+
+    if (*size == 'z')
+        fprintf(file, form, va_arg(*values, size_t));
+    if (*size == 'l' && size[1] == 'l')
+        fprintf(file, form, va_arg(*values, long long));
+    if (*size == 'l' && size[1] != 'l')
+        fprintf(file, form, va_arg(*values, long));
+    if (*size == '\0')
+        fprintf(file, form, va_arg(*values, int));
+}
+
 /* Writes the next of VALUES by the conversion of N characters at FORMAT. */
 static void write_value(FILE *file, const char *format, size_t n,
                         va_list *values)
@@ -49,14 +64,8 @@ static void write_value(FILE *file, const char *format, size_t n,
     } else if (kind != 'd' && kind != 'u') {
         real = va_arg(*values, double);
         isfinite(real) ? fprintf(file, form, real) : fputs("null", file);
-    } else if (strstr(form, "ll")) {
-        fprintf(file, form, va_arg(*values, long long));
-    } else if (strchr(form, 'l')) {
-        fprintf(file, form, va_arg(*values, long));
-    } else if (strchr(form, 'z')) {
-        fprintf(file, form, va_arg(*values, size_t));
     } else {
-        fprintf(file, form, va_arg(*values, int));
+        write_integer(file, form, values);
     }
 }
 
