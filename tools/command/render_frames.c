@@ -274,8 +274,7 @@ static int check_options(const struct tool *tool, const struct compositor *c)
     if (c->scene.file)
         return tool_usage(tool, "--scene is for overlay, live and explain; "
                                 "here the scene is the input");
-    if (c->settings.options.layer != GLINT_LAYER_COMPOSITE ||
-        c->settings.options.layer == GLINT_LAYER_FLARE_ALPHA)
+    if (c->settings.options.layer != GLINT_LAYER_COMPOSITE)
         return tool_usage(tool, "--layer is for overlay and live");
     return compositor_marks(c)
                ? tool_usage(tool, "--show lights and --preview are for "
