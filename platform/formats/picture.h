@@ -8,8 +8,8 @@
  *     glint_picture_free(&image);
  *
  * PPM, PGM and PFM are read and written by glint itself, everything else by
- * its image plug-in (formats/oiio.h). Files are told apart by content when
- * loading, by extension when saving. "-" is a pipe: PPM, PGM or PFM come in;
+ * its image plug-in (formats/oiio.h). Loading detects the format by
+ * content, saving by extension. "-" is a pipe: PPM, PGM or PFM come in;
  * PPM goes out, or PFM where floats are saved.
  *
  * Two kinds of picture. Loading turns one into the other where it has to, by

@@ -107,10 +107,10 @@ void glint_strength_correct(struct glint_strength *strength,
                             const struct glint_response_light *drawn,
                             const struct glint_seen *seen);
 
-/* Corrects the exposure of a picture by itself, for which there is time: draws
- * the flare of N LAMPS behind the lens of FRAME small, at scale 1. WHITE is the
- * light of the picture's white; GROUND what the picture shows, or NULL. Changes
- * nothing without memory. */
+/* Corrects the exposure of a still: draws the flare of N LAMPS behind the lens
+ * of FRAME at low resolution and scale 1, and measures it. WHITE: light of the
+ * picture's white. GROUND: the picture below the flare, or NULL. No-op without
+ * memory. */
 void glint_strength_expose_still(struct glint_strength *strength,
                                  const struct glint_frame *frame,
                                  const struct glint_lamp *lamps, int n,

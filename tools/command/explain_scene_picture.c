@@ -16,7 +16,7 @@ struct heat {
     const struct explained_scene *scene;
     const struct glint_image *image;
     int width, height, scale;
-    double most; /* steps of a pixel, of the thing that has most */
+    double most; /* max steps per pixel over all objects */
 };
 
 static int n_objects(const struct heat *h)

@@ -117,7 +117,7 @@ bool settings_set_number(struct settings *settings, const char *name,
 /* The same of --quality. */
 void settings_set_quality(struct settings *settings, double quality);
 
-/* Returns whether the fineness of grids was chosen, by itself or by quality. */
+/* Returns whether --grid, --quality or --error was given. */
 bool settings_has_grid(const struct settings *settings);
 
 /* Returns the factor on the physical starburst that is drawn; 0: none. */

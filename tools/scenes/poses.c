@@ -26,7 +26,7 @@ static const struct text_column columns[COLUMNS] = {
 
 /* --------------------------------------------------------------------- line */
 
-/* Returns the index of the thing NAME, or -2 with a cause in LINES. */
+/* Returns the index of the object NAME, or -2 with a cause in LINES. */
 static int find_thing(const struct glint_scene_model *m, const char *name,
                       struct text_lines *lines)
 {
