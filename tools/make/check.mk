@@ -103,7 +103,10 @@ check-files:
 extremes: $(extreme_bins) $(OUT)/random_lenses $(OUT)/motion
 	@tests/extremes $(SEED:%=--seed %) $(COUNT:%=--count %)
 # Faults planted in copies of the tree: MUTANTS=names, or all.
-mutants: $(test_bins)
+mutants:
+	@tools/make/deps "unit tests" $(CHECK_PACKAGES)
+	@$(MAKE) --no-print-directory run-mutants
+run-mutants: $(test_bins)
 	@tests/mutants/run $(OUT) $(MUTANTS)
 # What valgrind says of memory that was never written, which no sanitizer of
 # gcc's does: the run-time half, what reads files, and the fuzzers' corpora.
@@ -182,5 +185,5 @@ purity: $(libraries) $(board_o)
 	@tools/lint/purity --calls '$(board_calls)' $(NM) $(OBJDUMP) $(board_o) $(OUT)/libglint.a
 
 
-.PHONY: check run-check test run-test check-files check-all extremes mutants check-valgrind run-valgrind golden-update \
+.PHONY: check run-check test run-test check-files check-all extremes mutants run-mutants check-valgrind run-valgrind golden-update \
         fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format lint purity
