@@ -413,6 +413,8 @@ static int run(struct tool *tool, struct overlay *o)
 {
     int code = check_output(tool, o);
 
+    if (code == EXIT_OK && o->is_video)
+        code = overlay_video_check(tool, o);
     if (code == EXIT_OK)
         code = overlay_check_input(tool, o);
     if (code == EXIT_OK)

@@ -98,6 +98,10 @@ bool overlay_is_video(const char *name);
  * video. */
 int overlay_check_gif(struct tool *tool, const struct overlay *o, bool *video);
 
+/* Refuses, before there is work, a video that ffmpeg would have to read or
+ * write and that is not installed. Returns an exit code. */
+int overlay_video_check(const struct tool *tool, const struct overlay *o);
+
 /* Draws a video from o->input to o->output. */
 int overlay_video(struct tool *tool, struct overlay *o);
 

@@ -352,6 +352,14 @@ static void close_all(struct video *v)
     glint_y4m_reader_close(&v->in);
 }
 
+int overlay_video_check(const struct tool *tool, const struct overlay *o)
+{
+    if ((is_y4m(o->input) && is_y4m(o->output)) || child_exists("ffmpeg"))
+        return EXIT_OK;
+    ffmpeg_by_hand(tool, o->input, o->output);
+    return EXIT_INPUT;
+}
+
 int overlay_video(struct tool *tool, struct overlay *o)
 {
     struct video v = {.tool = tool,
@@ -363,13 +371,8 @@ int overlay_video(struct tool *tool, struct overlay *o)
                       .file = {.fd = -1},
                       .in = {.in = {.fd = -1}},
                       .out = {.out = {.fd = -1}}};
-    int code;
+    const int code = run(&v);
 
-    if ((v.reads || v.writes) && !child_exists("ffmpeg")) {
-        ffmpeg_by_hand(tool, o->input, o->output);
-        return EXIT_INPUT;
-    }
-    code = run(&v);
     close_all(&v);
     return code;
 }
