@@ -36,6 +36,10 @@ struct glint_exact_config {
 enum glint_status glint_exact_render(const struct glint_exact_config *cfg,
                                      double *rgb);
 
+/* Rays that are traced for each picture: for struct glint_engine_camera. */
+struct glint_frame_rays;
+extern const struct glint_frame_rays glint_frame_traces;
+
 #ifdef __cplusplus
 }
 #endif

@@ -33,6 +33,9 @@ extern "C" {
 void glint_spectrum(int n, double *wavelength_nm, double (*rgb)[3],
                     double *share);
 
+/* Returns the largest of three channels. */
+double glint_largest_channel(const double rgb[3]);
+
 /* What makes an aperture stop differ from clean, straight blades. All 0:
  * nothing does. */
 struct glint_iris {

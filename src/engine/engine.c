@@ -1,49 +1,63 @@
-/* SPDX-License-Identifier: MIT */
-#include "engine/engine_parts.h"
-
+/* SPDX-License-Identifier: MIT
+ *
+ * Makes engines, and changes them between pictures. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/engine_parts.h"
 #include "glint/kernels.h"
 
 void glint_engine_defaults(struct glint_engine_config *cfg, int width,
                            int height)
 {
-    *cfg = (struct glint_engine_config){.width = width,
-                                        .height = height,
-                                        .sets = glint_sets_here(),
-                                        .n_blades = 8,
-                                        .threshold_ev = {-0.1, -0.15},
-                                        .headroom_ev = -1,
-                                        .max_found = 16,
-                                        .strength = 0.5,
-                                        .gain = 1,
-                                        .starburst = 1,
-                                        .dials = glint_dials_at(1 << 14)};
+    *cfg = (struct glint_engine_config){
+        .size = sizeof *cfg,
+        .width = width,
+        .height = height,
+        .sets = glint_sets_here(),
+        .camera = {.n_blades = 8},
+        .search = {.threshold_ev = {-0.1, -0.15},
+                   .headroom_ev = -1,
+                   .max_found = 16},
+        .light = {.strength = 0.5, .gain = 1, .starburst = 1},
+        .drawing = {.dials = glint_dials_at(1 << 14),
+                    .most_minsn = GLINT_FRAME_MOST_MINSN,
+                    .apart_px = GLINT_FRAME_APART_PX,
+                    .tile_log2 = 6,
+                    .parts = GLINT_ENGINE_ALL,
+                    .only_ghost = -1}};
 }
 
 /* Returns a text that says what is out of range in C, or NULL. */
 static const char *check(const struct glint_engine_config *c)
 {
+    const struct glint_engine_light *l = &c->light;
+    const struct glint_engine_search *s = &c->search;
+
+    if (c->size != sizeof *c)
+        return "the program is of another version than the library";
     if (c->width < 1 || c->width > GLINT_MAX_SIDE || c->height < 1 ||
         c->height > GLINT_MAX_SIDE)
         return "pictures have 1 to 32768 pixels a side";
-    if (!c->model)
+    if (!c->model &&
+        !(c->camera.setup && c->camera.rays && c->camera.sensor_width_mm > 0))
         return "there is no model";
-    if (c->max_found < 1 || c->max_found > GLINT_ENGINE_MAX_LAMPS / 2)
-        return "1 to 512 lamps can be looked for";
-    if (!(c->strength >= 0 && c->strength <= 100) || !(c->gain >= 0) ||
-        !(fabs(c->exposure_ev) <= 100))
+    if (s->max_found < 0 || s->max_found > GLINT_ENGINE_MAX_LAMPS)
+        return "0 to 1024 lamps can be looked for";
+    if (s->more_lamps < 0 || s->more_lamps > 1 << 24)
+        return "the number of lamps is out of range";
+    if (!(l->strength >= 0 && l->strength <= 100) || !(l->gain >= 0) ||
+        !(fabs(l->exposure_ev) <= 100))
         return "the exposure is out of range";
-    if (!(c->starburst >= 0 && c->starburst <= 1000))
+    if (!(l->starburst >= 0 && l->starburst <= 1000))
         return "the starburst is out of range";
-    if (!(c->veil >= 0 && c->haze >= 0 && c->veil + c->haze <= GLINT_MOST_VEIL))
+    if (!(l->veil >= 0 && l->haze >= 0 && l->veil + l->haze <= GLINT_MOST_VEIL))
         return "the veil is out of range";
-    if (!(c->threshold_ev[0] <= 0 && c->threshold_ev[0] >= -20 &&
-          c->threshold_ev[1] >= -20 &&
-          c->threshold_ev[1] <= c->threshold_ev[0]))
+    if (!(s->threshold_ev[0] <= 0 && s->threshold_ev[0] >= -20 &&
+          s->threshold_ev[1] >= -20 &&
+          s->threshold_ev[1] <= s->threshold_ev[0]))
         return "the thresholds are out of range";
     return NULL;
 }
@@ -76,31 +90,47 @@ static enum glint_status set_up(struct glint_setup *setup,
 
 static struct glint_view view_of(const struct glint_engine_config *c)
 {
-    const struct glint_model_header *h = c->model->header;
-    const double width_mm = c->sensor_width_mm > 0
-                                ? c->sensor_width_mm
-                                : glint_real_value(h->film_width_mm);
-    const double height_mm = c->sensor_height_mm > 0
-                                 ? c->sensor_height_mm
-                                 : glint_real_value(h->film_height_mm);
+    const struct glint_engine_camera *camera = &c->camera;
+    double mm[2] = {camera->sensor_width_mm, camera->sensor_height_mm};
+    struct glint_view view;
 
-    return glint_view_fit(c->width, c->height, width_mm, height_mm);
+    if (!(mm[0] > 0))
+        mm[0] = glint_real_value(c->model->header->film_width_mm);
+    if (!(mm[1] > 0))
+        mm[1] = glint_real_value(c->model->header->film_height_mm);
+    view = glint_view_fit(c->width, c->height, mm[0], mm[1]);
+    if (camera->projection)
+        view.projection = *camera->projection;
+    return view;
 }
 
 static enum glint_status open_frame(struct glint_engine *e,
                                     const struct glint_engine_config *c)
 {
-    struct glint_frame *f = &e->frame;
+    const struct glint_engine_drawing *d = &c->drawing;
+    struct glint_frame *f = &e->paint.frame;
 
-    glint_frame_init(f, &e->setup, view_of(c), c->workers);
+    glint_frame_init(f, e->optics.setup, view_of(c), c->workers);
     f->lens = c->model;
+    f->trace = c->camera.rays;
+    f->progress = d->progress;
+    f->progress_ctx = d->progress_ctx;
     f->clock = c->clock;
+    f->only_ghost = d->only_ghost;
+    f->tints = c->camera.tints;
+    f->most_minsn = d->most_minsn;
+    f->apart_px = d->apart_px;
     f->cfg.sets = c->sets;
     f->cfg.reuse = &glint_reuse;
-    f->dials = f->asked = c->dials;
-    if (c->budget_ms <= 0 || !c->clock)
+    f->cfg.tile_log2 = d->tile_log2;
+    f->cfg.dither = d->dither != 0;
+    f->dials = f->asked = d->dials;
+    e->paint.parts = d->parts;
+    e->paint.keep_points = d->keep_points != 0;
+    e->paint.keep_lights = d->keep_lights != 0;
+    if (d->budget_ms <= 0 || !c->clock || !f->lens)
         return GLINT_OK;
-    glint_budget_init(&f->budget, c->budget_ms);
+    glint_budget_init(&f->budget, d->budget_ms);
     f->dials = glint_budget_dials(&f->budget, &f->dials);
     return glint_frame_calibrate(f);
 }
@@ -108,51 +138,100 @@ static enum glint_status open_frame(struct glint_engine *e,
 static enum glint_status open_detector(struct glint_engine *e,
                                        const struct glint_engine_config *c)
 {
-    e->detector.headroom_ev = c->headroom_ev;
-    e->detector.max = c->max_found;
-    return glint_lamp_detector_open_at(&e->detector, c->width, c->height,
-                                       c->threshold_ev);
+    struct glint_lamp_detector *const d = &e->find.detector;
+
+    if (c->search.max_found == 0)
+        return GLINT_OK;
+    d->headroom_ev = c->search.headroom_ev;
+    d->max = c->search.max_found;
+    return glint_lamp_detector_open_at(d, c->width, c->height,
+                                       c->search.threshold_ev);
+}
+
+/* Takes the memory that C gives for drawing. */
+static enum glint_status reserve(struct glint_engine *e,
+                                 const struct glint_engine_config *c)
+{
+    const struct glint_engine_search *s = &c->search;
+    struct glint_frame *f = &e->paint.frame;
+    const int drawn =
+        s->max_drawn ? s->max_drawn : 2 * s->max_found + s->more_lamps;
+    enum glint_status status = GLINT_OK;
+    size_t bytes = c->arena_bytes;
+
+    if (bytes && !c->arena_has_all)
+        status = glint_frame_reserve(f, c->arena, bytes, e->most_lamps, drawn);
+    if (status == GLINT_OK && (bytes || !c->arena_has_all))
+        status = glint_frame_star_hold(f, drawn);
+    if (status == GLINT_OK && (bytes || !c->arena_has_all))
+        status = glint_frame_veil_hold(f);
+    if (status != GLINT_OK || !bytes || !c->arena_has_all)
+        return status;
+    if (glint_frame_star_bytes(f) >= bytes)
+        return GLINT_E_MEMORY;
+    return glint_frame_reserve(f, NULL, bytes - glint_frame_star_bytes(f),
+                               e->most_lamps, drawn);
+}
+
+/* Says why an engine could not be made: with too little memory, how much it
+ * takes at least. */
+static void say(struct glint_engine *e, const struct glint_engine_config *c,
+                enum glint_status status, struct glint_error *error)
+{
+    struct glint_frame *const f = &e->paint.frame;
+    const size_t mib = (size_t)1 << 20;
+
+    snprintf(error->text, sizeof error->text, "%s", glint_status_text(status));
+    if (status == GLINT_E_MEMORY && c->arena_bytes)
+        snprintf(
+            error->text, sizeof error->text,
+            "pictures of %dx%d with this lens take %zu MiB at least", c->width,
+            c->height,
+            (glint_frame_star_bytes(f) + glint_frame_least_bytes(f) + mib - 1) /
+                mib);
 }
 
 static enum glint_status make(struct glint_engine *e,
                               const struct glint_engine_config *c,
                               struct glint_error *error)
 {
-    enum glint_status status;
+    struct glint_engine_optics *const o = &e->optics;
+    enum glint_status status = GLINT_OK;
 
-    e->shape =
-        (struct glint_engine_shape){.n_blades = c->n_blades,
-                                    .rotation_deg = c->blade_rotation_deg,
-                                    .f_number = c->f_number};
-    status = set_up(&e->setup, c->model, &e->shape, &e->dirt, error);
+    o->shape = (struct glint_engine_shape){.n_blades = c->camera.n_blades,
+                                           .rotation_deg =
+                                               c->camera.blade_rotation_deg,
+                                           .f_number = c->camera.f_number};
+    o->setup = c->camera.setup ? c->camera.setup : &o->own;
+    if (!c->camera.setup)
+        status = set_up(&o->own, c->model, &o->shape, &o->dirt, error);
     if (status != GLINT_OK)
         return status;
-    glint_strength_defaults(&e->strength);
-    e->strength.asked = c->strength;
-    e->strength.is_physical = c->by_hand != 0;
-    e->strength.exposure_ev = c->exposure_ev;
-    e->strength.gain = c->gain;
-    e->starburst = c->starburst;
-    e->has_arena = c->arena_bytes > 0;
-    status = open_frame(e, c);
-    if (status == GLINT_OK && !c->by_hand)
-        status =
-            glint_response_measure(&e->frame, c->arena_bytes, &e->response);
+    o->front = c->camera.front;
+    e->most_lamps = c->search.more_lamps +
+                    (c->search.max_found ? GLINT_ENGINE_MAX_LAMPS : 0);
+    e->paint.lamp = malloc(((size_t)e->most_lamps + 1) * sizeof *e->paint.lamp);
+    e->expose.before =
+        malloc(((size_t)e->most_lamps + 1) * sizeof *e->expose.before);
+    e->expose.by_drawing = !c->arena_bytes || c->arena_has_all;
+    glint_strength_defaults(&e->expose.strength);
+    glint_engine_shine(e, &c->light);
+    if (!e->paint.lamp || !e->expose.before)
+        status = GLINT_E_MEMORY;
+    if (status == GLINT_OK)
+        status = open_frame(e, c);
+    /* by hand it only tells how bright the flare is, to who keeps it */
+    if (status == GLINT_OK && (!c->light.by_hand || c->cache))
+        status = glint_response_obtain(&e->paint.frame, c->arena_bytes,
+                                       c->cache, &e->expose.response);
     if (status == GLINT_OK)
         status = open_detector(e, c);
-    if (status == GLINT_OK && c->arena_bytes)
-        status = glint_frame_reserve(&e->frame, c->arena, c->arena_bytes,
-                                     GLINT_ENGINE_MAX_LAMPS, 2 * c->max_found);
-    e->frame.star.share = e->starburst;
-    e->frame.veil.glare = c->gain > 0 ? c->veil : 0;
-    e->frame.veil.haze = c->gain > 0 ? c->haze : 0;
+    glint_engine_choose(e, e->paint.parts, c->light.starburst,
+                        c->light.gain > 0);
     if (status == GLINT_OK)
-        status = glint_frame_star_hold(&e->frame, 2 * c->max_found);
-    if (status == GLINT_OK)
-        status = glint_frame_veil_hold(&e->frame);
+        status = reserve(e, c);
     if (status != GLINT_OK)
-        snprintf(error->text, sizeof error->text, "%s",
-                 glint_status_text(status));
+        say(e, c, status, error);
     return status;
 }
 
@@ -184,49 +263,102 @@ enum glint_status glint_engine_create(struct glint_engine **engine,
 
 void glint_engine_destroy(struct glint_engine *engine)
 {
+    struct glint_engine_optics *o;
+
     if (!engine)
         return;
-    glint_lamp_detector_close(&engine->detector);
-    glint_frame_finish(&engine->frame);
-    glint_dirt_free(engine->dirt);
-    if (engine->free_front)
-        engine->free_front(engine->front);
+    o = &engine->optics;
+    glint_lamp_detector_close(&engine->find.detector);
+    glint_frame_finish(&engine->paint.frame);
+    glint_dirt_free(o->dirt);
+    if (o->free_front)
+        o->free_front(o->own_front);
+    free(engine->paint.lamp);
+    free(engine->expose.before);
     free(engine);
+}
+
+/* ------------------------------------------------------------------ changing
+ */
+
+const struct glint_view *glint_engine_view(const struct glint_engine *engine)
+{
+    return &engine->paint.frame.view;
+}
+
+void glint_engine_shine(struct glint_engine *engine,
+                        const struct glint_engine_light *light)
+{
+    struct glint_strength *const s = &engine->expose.strength;
+
+    engine->expose.light = *light;
+    s->asked = light->strength;
+    s->is_physical = light->by_hand != 0;
+    s->exposure_ev = light->exposure_ev;
+    s->gain = light->gain;
 }
 
 void glint_engine_turn(struct glint_engine *engine, struct glint_dials dials)
 {
-    struct glint_frame *f = &engine->frame;
+    struct glint_frame *f = &engine->paint.frame;
 
     f->dials = f->asked = dials;
     if (f->budget.ms > 0)
         f->dials = glint_budget_dials(&f->budget, &dials);
 }
 
+struct glint_dials glint_engine_dials(const struct glint_engine *engine)
+{
+    return engine->paint.frame.dials;
+}
+
+void glint_engine_solo(struct glint_engine *engine, int ghost)
+{
+    engine->paint.frame.only_ghost = ghost;
+}
+
+void glint_engine_budget(struct glint_engine *engine, double budget_ms)
+{
+    if (engine->paint.frame.budget.ms > 0)
+        engine->paint.frame.budget.ms = budget_ms;
+}
+
+void glint_engine_restop(struct glint_engine *engine)
+{
+    struct glint_frame *f = &engine->paint.frame;
+
+    glint_setup_stop(engine->optics.setup, &f->cfg.stop);
+    glint_frame_retune(f);
+}
+
 enum glint_status glint_engine_reshape(struct glint_engine *engine,
                                        const struct glint_engine_shape *shape,
                                        bool measure, struct glint_error *error)
 {
-    struct glint_engine *e = engine;
-    struct glint_frame *f = &e->frame;
+    struct glint_engine_optics *const o = &engine->optics;
+    struct glint_frame *f = &engine->paint.frame;
     struct glint_setup setup;
-    struct glint_dirt *dirt;
-    enum glint_status status = set_up(&setup, f->lens, shape, &dirt, error);
+    struct glint_dirt *dirt = NULL;
+    enum glint_status status = GLINT_E_ARGUMENT;
 
+    if (o->setup == &o->own)
+        status = set_up(&setup, f->lens, shape, &dirt, error);
+    else
+        snprintf(error->text, sizeof error->text,
+                 "the setup is not the engine's own");
     if (status != GLINT_OK) {
         glint_dirt_free(dirt);
         return status;
     }
-    e->setup = setup;
-    e->shape = *shape;
-    glint_setup_stop(&e->setup, &f->cfg.stop);
-    glint_frame_retune(f);
-    glint_dirt_free(e->dirt);
-    e->dirt = dirt;
-    if (!measure || e->strength.is_physical)
+    o->own = setup;
+    o->shape = *shape;
+    glint_engine_restop(engine);
+    glint_dirt_free(o->dirt);
+    o->dirt = dirt;
+    if (!measure || engine->expose.light.by_hand)
         return GLINT_OK;
-    status =
-        glint_response_measure(f, f->reserved ? f->bytes : 0, &e->response);
+    status = glint_response_measure(f, f->reserved ? f->bytes : 0,
+                                    &engine->expose.response);
     if (status != GLINT_OK)
         snprintf(error->text, sizeof error->text, "%s",
                  glint_status_text(status));
@@ -236,141 +368,8 @@ enum glint_status glint_engine_reshape(struct glint_engine *engine,
 enum glint_status glint_engine_stop(struct glint_engine *engine,
                                     double f_number, struct glint_error *error)
 {
-    struct glint_engine_shape shape = engine->shape;
+    struct glint_engine_shape shape = engine->optics.shape;
 
     shape.f_number = f_number;
     return glint_engine_reshape(engine, &shape, true, error);
-}
-
-/* ----------------------------------------------------------------- pictures */
-
-void glint_engine_elapsed(struct glint_engine *engine, int32_t elapsed_us)
-{
-    engine->elapsed_us = elapsed_us;
-    engine->is_timed = true;
-}
-
-int glint_engine_find(struct glint_engine *engine,
-                      const struct glint_image *image, int32_t elapsed_us,
-                      struct glint_lamp *lamps, int max)
-{
-    struct glint_engine *e = engine;
-    const int n = glint_lamp_detector_frame(&e->detector, image, elapsed_us,
-                                            &e->frame.view,
-                                            e->setup.optics.focal_mm, e->lamp);
-
-    glint_engine_elapsed(e, elapsed_us);
-    e->is_searched = true;
-    e->n_found = n < max ? n : max;
-    for (int i = 0; i < e->n_found; i++)
-        e->level[i] = e->detector.track[i].level_q15 / 32768.0;
-    memcpy(lamps, e->lamp, (size_t)e->n_found * sizeof *lamps);
-    return e->n_found;
-}
-
-/* Returns whether LAMPS are at the places of the lamps found last; their powers
- * may differ. */
-static bool are_found(const struct glint_engine *e,
-                      const struct glint_lamp *lamps, int n)
-{
-    for (int i = 0; i < n && n == e->n_found; i++)
-        if (lamps[i].theta_deg != e->lamp[i].theta_deg ||
-            lamps[i].phi_deg != e->lamp[i].phi_deg)
-            return false;
-    return n == e->n_found;
-}
-
-/* Exposes a picture by itself, for which there is time, by drawing its flare
- * small. */
-static void expose_as_drawn(struct glint_engine *e, int n,
-                            const struct glint_image *image)
-{
-    struct glint_ground *ground = NULL;
-
-    if (e->has_arena || e->strength.is_physical || !(e->strength.scale > 0))
-        return;
-    if (image->format != GLINT_LINEAR_Q20)
-        ground = malloc(sizeof *ground);
-    if (ground)
-        glint_ground_take(ground, image);
-    glint_strength_expose_still(&e->strength, &e->frame, e->lamp, n, ground, 1);
-    free(ground);
-}
-
-/* Sets the factor on the powers of N lamps, and lowers those that are still too
- * bright for it. */
-static void expose(struct glint_engine *e, int n, bool is_found,
-                   const struct glint_image *image)
-{
-    const double pixels = (double)e->frame.view.width * e->frame.view.height;
-    const struct glint_strength_lamps lamps = {
-        e->lamp, is_found ? e->level : NULL, n, pixels};
-    const bool is_new = (is_found || e->is_searched) &&
-                        glint_lamp_tracker_was_cut(e->detector.tracks);
-
-    glint_strength_expose(&e->strength, &e->response, &lamps,
-                          is_new ? 0 : e->elapsed_us);
-    if (e->elapsed_us == 0 && e->frame.budget.ms <= 0)
-        expose_as_drawn(e, n, image);
-}
-
-static void set_report(const struct glint_engine *e,
-                       const struct glint_frame_report *r,
-                       struct glint_engine_report *report)
-{
-    *report = (struct glint_engine_report){
-        .lamps = r->lights,
-        .lamps_beyond = r->beyond_lights,
-        .lights = r->drawn_lights,
-        .ghosts = r->ghosts,
-        .bundles = r->stats.bundles,
-        .dropped_bundles = r->stats.dropped_bundles,
-        .dropped_cells = r->stats.dropped_cells,
-        .bytes = r->arena_bytes,
-        .need_bytes = r->need_bytes,
-        .scale = e->strength.scale,
-        .plan_ms = r->plan_ms,
-        .bin_ms = r->bin_ms,
-        .draw_ms = r->draw_ms,
-        .quality = r->quality};
-}
-
-enum glint_status glint_engine_draw(struct glint_engine *engine,
-                                    const struct glint_lamp *lamps, int n,
-                                    const struct glint_image *image,
-                                    struct glint_engine_report *report)
-{
-    struct glint_engine *e = engine;
-    struct glint_frame *f = &e->frame;
-    struct glint_frame_report drawn;
-    enum glint_status status;
-    bool is_found;
-
-    if (image->width != f->view.width || image->height != f->view.height ||
-        n < 0 || n > GLINT_ENGINE_MAX_LAMPS)
-        return GLINT_E_ARGUMENT;
-    is_found = are_found(e, lamps, n);
-    e->n_found = is_found ? n : 0;
-    if (!is_found && !e->is_timed)
-        e->elapsed_us = 0;
-    memcpy(e->lamp, lamps, (size_t)n * sizeof *lamps);
-    expose(e, n, is_found, image);
-    f->star.share = glint_strength_star(&e->strength, e->starburst);
-    for (int i = 0; i < n && is_found; i++)
-        e->seen_px[i] = e->detector.track[i].size_q8 / 256.0;
-    for (int i = 0; i < n && is_found; i++)
-        e->excess[i] = glint_lamp_excess(&e->lamp[i], &e->detector.track[i],
-                                         e->level[i], 1, 1);
-    f->veil.excess = is_found ? e->excess : NULL;
-    f->star.seen_px =
-        is_found && e->detector.headroom_ev < 0 ? e->seen_px : NULL;
-    f->star.level = is_found ? e->level : NULL;
-    if (f->budget.ms <= 0)
-        glint_frame_set_still(f, e->elapsed_us == 0, true, true);
-    status = glint_frame_draw(f, e->lamp, e->strength.scale > 0 ? n : 0,
-                              e->strength.scale, image, &drawn);
-    e->is_timed = e->is_searched = false;
-    drawn.lights = n;
-    set_report(e, &drawn, report);
-    return status;
 }

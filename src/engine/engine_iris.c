@@ -6,7 +6,7 @@ enum glint_status glint_engine_iris(struct glint_engine *engine, int n_blades,
                                     const struct glint_iris *iris,
                                     struct glint_error *error)
 {
-    struct glint_engine_shape shape = engine->shape;
+    struct glint_engine_shape shape = engine->optics.shape;
 
     shape.n_blades = n_blades;
     shape.rotation_deg = rotation_deg;

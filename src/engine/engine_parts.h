@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * State of an engine; shared by engine.c and engine_iris.c. */
+ * State of an engine, by stage; shared by the files of engine*.c. */
 #ifndef GLINT_ENGINE_ENGINE_PARTS_H
 #define GLINT_ENGINE_ENGINE_PARTS_H
 
@@ -27,36 +27,73 @@ struct glint_engine_shape {
     glint_setup_iris_fn *set_iris;
 };
 
-struct glint_engine {
-    struct glint_setup setup;
-    struct glint_engine_shape shape; /* what SETUP was made for */
-    struct glint_dirt *dirt;         /* that of SETUP, or NULL */
-    /* Frees what lies on the frame's front element; NULL: nothing does. A
-     * program that asks for none does not link it. */
+struct glint_engine_optics {
+    const struct glint_setup *setup; /* OWN, or the caller's */
+    struct glint_setup own;
+    struct glint_engine_shape shape; /* what OWN was made for */
+    struct glint_dirt *dirt;         /* that of OWN, or NULL */
+    /* What lies on the front element: OWN_FRONT, or the caller's; or NULL. */
+    const struct glint_front_dirt *front;
+    struct glint_front_dirt *own_front;
+    /* Frees OWN_FRONT; a program that sets none does not link it. */
     void (*free_front)(struct glint_front_dirt *dirt);
-    struct glint_front_dirt *front;
-    struct glint_frame frame;
-    struct glint_lamp_detector detector;
-    struct glint_response response;
-    struct glint_strength strength;
-    double starburst;
-    double excess[GLINT_LAMP_DETECTOR_MAX];  /* what each lamp found has above
-                                                the light that is seen of it */
-    double seen_px[GLINT_LAMP_DETECTOR_MAX]; /* extent, in pixels, of each lamp
-                                                found */
-    bool has_arena; /* true: drawing takes no memory of its own */
-    int n_found;
-    int32_t elapsed_us; /* between the last two pictures; 0: not known */
-    bool is_timed;      /* true: between the next picture and the last */
-    bool is_searched;   /* true: lamps were looked for in the next picture */
-    struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
-    double level[GLINT_LAMP_DETECTOR_MAX]; /* level of each lamp found */
 };
 
-/* Gives ENGINE another stop; with MEASURE, measures anew how bright flares are.
- * After a failure the stop stays as it is. */
+struct glint_engine_finding {
+    struct glint_lamp_detector detector;
+    struct glint_lamp found[GLINT_LAMP_DETECTOR_MAX];
+    int32_t elapsed_us; /* between the next picture and the last; 0: not known
+                         */
+    bool is_searched;   /* lamps were looked for in the next picture */
+    bool is_cut;        /* the next picture begins anew */
+};
+
+/* What a lamp of the last picture had above what it showed of it. */
+struct glint_engine_before {
+    uint32_t id;
+    double excess;
+};
+
+struct glint_engine_exposing {
+    struct glint_engine_light light;
+    struct glint_response response;
+    struct glint_strength strength;
+    struct glint_engine_exposure last;
+    bool by_drawing; /* stills are exposed by their flare drawn small */
+    bool is_done;    /* the next picture is exposed */
+    struct glint_engine_before *before;
+    int n_before;
+};
+
+struct glint_engine_painting {
+    struct glint_frame frame;
+    struct glint_lamp *lamp; /* [most_lamps]: those of the picture */
+    unsigned parts;
+    bool keep_points, keep_lights;
+};
+
+struct glint_engine {
+    struct glint_engine_optics optics;
+    struct glint_engine_finding find;
+    struct glint_engine_exposing expose;
+    struct glint_engine_painting paint;
+    int most_lamps; /* that a picture may have */
+};
+
+/* Gives ENGINE, which makes its own setup, another stop; with MEASURE, measures
+ * anew how bright flares are. After a failure the stop stays as it is. */
 enum glint_status glint_engine_reshape(struct glint_engine *engine,
                                        const struct glint_engine_shape *shape,
                                        bool measure, struct glint_error *error);
+
+/* Turns PARTS of the flare on, of the light that is set and with VEIL, and all
+ * others off. */
+void glint_engine_choose(struct glint_engine *engine, unsigned parts,
+                         double star, bool veil);
+
+/* Copies N LAMPS to where they are drawn from; returns these. */
+const struct glint_lamp *
+glint_engine_plain(struct glint_engine *engine,
+                   const struct glint_engine_lamp *lamps, int n);
 
 #endif

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include "engine/explain.h"
+#include "glint/explain.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/engine_parts.h"
+#include "engine/explain_frame.h"
 #include "engine/frame/frame_parts.h"
 
 /* Returns the instructions that N items of a kind take. */
@@ -197,19 +199,27 @@ static int tiles_of(const struct glint_frame *f)
            ((f->view.height + side - 1) / side);
 }
 
-enum glint_status glint_explain_open(struct glint_explain *e,
-                                     struct glint_frame *frame, double unit)
+enum glint_status glint_explain_frame(struct glint_explain *e,
+                                      struct glint_frame *frame, double unit)
 {
     const size_t n_all = (size_t)frame->setup->n_ghosts + 1;
     const struct glint_cost_plan plan = glint_frame_plan(frame);
 
-    *e = (struct glint_explain){.frame = frame,
-                                .n_lights = frame->n_lights,
-                                .n_waves = frame->rays.sets
-                                               ? frame->rays.sets->n_sets
-                                               : frame->rays.n_waves,
-                                .unit = unit,
-                                .n_tiles = tiles_of(frame)};
+    *e = (struct glint_explain){
+        .frame = frame,
+        .view = &frame->view,
+        .setup = frame->setup,
+        .lens = frame->lens,
+        .tints = frame->tints,
+        .lights = frame->light,
+        .sets = frame->rays.sets,
+        .dim_codes = frame->rays.dimmest.mantissa ? frame->dials.dim_codes : 0,
+        .n_lights = frame->n_lights,
+        .n_waves =
+            frame->rays.sets ? frame->rays.sets->n_sets : frame->rays.n_waves,
+        .unit = unit,
+        .tile_log2 = frame->cfg.tile_log2,
+        .n_tiles = tiles_of(frame)};
     e->ghost_of = malloc(n_all * sizeof *e->ghost_of);
     e->ghost = calloc(n_all, sizeof *e->ghost);
     e->light = calloc((size_t)e->n_lights + 1, sizeof *e->light);
@@ -242,13 +252,71 @@ enum glint_status glint_explain_open(struct glint_explain *e,
     return GLINT_OK;
 }
 
+enum glint_status glint_explain_open(struct glint_explain *explain,
+                                     struct glint_engine *engine, double gain)
+{
+    struct glint_frame *const f = &engine->paint.frame;
+
+    return glint_explain_frame(explain, f,
+                               gain > 0 && f->scale > 0 ? gain / f->scale : 1);
+}
+
+enum glint_status glint_explain_at(struct glint_explain *explain,
+                                   struct glint_engine *engine,
+                                   const struct glint_engine_lamp *lamps, int n,
+                                   double scale, int width, int height)
+{
+    struct glint_frame *const own = calloc(1, sizeof *own);
+    struct glint_image codes = {
+        .format = GLINT_RGB24, .width = width, .height = height};
+    uint8_t *const mem =
+        calloc(glint_image_bytes(GLINT_RGB24, width, height), 1);
+    struct glint_view view = engine->paint.frame.view;
+    struct glint_engine_report report;
+    enum glint_status status = GLINT_E_MEMORY;
+
+    *explain = (struct glint_explain){.own = own};
+    view.width = width;
+    view.height = height;
+    if (own && mem) {
+        glint_frame_like(own, &engine->paint.frame, view);
+        own->tints = engine->paint.frame.tints;
+        own->dials = own->asked = engine->paint.frame.dials;
+        own->dials.dispersion_q8 = 0;
+        glint_image_place(&codes, mem);
+        status = GLINT_OK;
+    }
+    if (status == GLINT_OK && own->lens)
+        status = glint_frame_draw(own, glint_engine_plain(engine, lamps, n), n,
+                                  scale, &codes, &report);
+    free(mem);
+    if (status == GLINT_OK && own->n_lights > 0)
+        status = glint_explain_frame(explain, own, 1);
+    explain->own = own;
+    return status;
+}
+
 void glint_explain_close(struct glint_explain *e)
 {
+    if (e->own)
+        glint_frame_finish(e->own);
+    free(e->own);
     free(e->ghost_of);
     free(e->ghost);
     free(e->light);
     free(e->wave);
     free(e->linear_q20);
+}
+
+int glint_explain_listed(const struct glint_explain *explain, int tile)
+{
+    return glint_flare_listed(explain->frame->flare, tile);
+}
+
+int glint_explain_is_beyond(const struct glint_explain *explain,
+                            const struct glint_lamp *lamp)
+{
+    return glint_frame_is_beyond(explain->frame, lamp);
 }
 
 /* ------------------------------------------------------------------- order */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "engine/measure.h"
+#include "glint/measure.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/frame/area.h"
+#include "glint/area.h"
 #include "engine/setup/spectrum.h"
 
 /* Most pixels that find_top() is asked for. */
@@ -140,7 +140,7 @@ static enum glint_status draw_once(struct proxy *p,
                                 .width = p->view.width,
                                 .height = p->view.height};
     const double unit = exp2(-20 - by);
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     enum glint_status status;
 
     glint_image_place(&layer, p->linear_q20);

@@ -30,13 +30,6 @@ enum {
     GLINT_RESPONSE_FINE = 640 * 360
 };
 
-/* Light of a layer that has only the flare, as linear R, G, B. */
-struct glint_response_light {
-    double peak[3]; /* mean of the brightest 1/1000 of the pixels, of 46 pixels
-                       at most */
-    double mean[3]; /* mean of all pixels */
-};
-
 struct glint_response {
     int n; /* number of angles, 1 .. GLINT_RESPONSE_ANGLES; 0: nothing was
               measured */
@@ -49,10 +42,6 @@ struct glint_response {
         softened_log2[GLINT_RESPONSE_EXTENTS];
     double ms; /* milliseconds that measuring took */
 };
-
-/* Sets LIGHT to the peak and mean of N pixels. */
-void glint_response_around(const float *rgb, size_t n,
-                           struct glint_response_light *light);
 
 /* Sets LIGHT to that of N lamps behind the lens of LIKE, drawn in a small
  * picture of about PIXELS. Powers are those in the view of LIKE. The peak is
@@ -72,6 +61,14 @@ enum glint_status glint_response_draw(const struct glint_frame *like,
 enum glint_status glint_response_measure(const struct glint_frame *like,
                                          size_t bytes,
                                          struct glint_response *response);
+
+/* Does as glint_response_measure(), but reads from CACHE what it has, and
+ * writes there what it has not. CACHE may be NULL. What a lens without a model
+ * does is not kept. */
+enum glint_status glint_response_obtain(const struct glint_frame *like,
+                                        size_t bytes,
+                                        const struct glint_engine_cache *cache,
+                                        struct glint_response *response);
 
 /* Returns the brightest part of the flare of LAMP over that of a point: at most
  * 1, as its ghosts spread over themselves. */

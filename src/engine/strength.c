@@ -47,9 +47,8 @@ static void light_of(const struct glint_response *response,
                      const struct glint_strength_lamps *lamps, int i,
                      struct glint_response_light *light)
 {
-    const struct glint_lamp *l = &lamps->lamp[i];
-    const double power =
-        l->power / lamps->pixels / (lamps->level ? lamps->level[i] : 1);
+    const struct glint_lamp *l = &lamps->lamp[i].lamp;
+    const double power = l->power / lamps->pixels / lamps->lamp[i].level;
     const double softening = glint_response_softening(response, l);
 
     glint_response_at(response, l->theta_deg, light);
@@ -83,7 +82,7 @@ void glint_strength_light(const struct glint_response *response,
         struct glint_response_light one;
 
         light_of(response, lamps, i, &one);
-        add(light, &one, lamps->level ? lamps->level[i] : 1);
+        add(light, &one, lamps->lamp[i].level);
     }
     finish(light);
 }
@@ -133,7 +132,7 @@ static void hold(const struct glint_strength *s,
     const double times = exp2(s->factor_log2 - target_log2(s, light));
     const double by = held(times);
 
-    lamps->lamp[i].power *= by;
+    lamps->lamp[i].lamp.power *= by;
     for (int c = 0; c < 3; c++) {
         light->peak[c] *= by;
         light->mean[c] *= by;
@@ -177,7 +176,7 @@ static void expose(struct glint_strength *s,
 
         light_of(response, lamps, i, &one);
         hold(s, lamps, i, &one);
-        add(&s->light, &one, lamps->level ? lamps->level[i] : 1);
+        add(&s->light, &one, lamps->lamp[i].level);
     }
     finish(&s->light);
     s->scale = s->gain * exp2(s->factor_log2);

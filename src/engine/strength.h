@@ -53,11 +53,9 @@
 
 /* The lamps of a frame. */
 struct glint_strength_lamps {
-    /* [n]; power includes level but not scale; powers of new lamps that are too
-     * bright are lowered in place */
-    struct glint_lamp *lamp;
-    const double *level; /* [n], above 0, at most 1: how far each lamp has
-                            risen, which its power includes. NULL: all 1 */
+    /* [n]; powers include levels but not scale; powers of new lamps that are
+     * too bright are lowered in place */
+    struct glint_engine_lamp *lamp;
     int n;
     double pixels; /* number of pixels of the picture, times the light of its
                       white */

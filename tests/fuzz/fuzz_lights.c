@@ -37,14 +37,13 @@ static void check_lamps(const struct lamp_list *list, int frame)
 {
     const struct glint_view view = {
         .width = 640, .height = 360, .sensor_width_mm = 36};
-    struct glint_lamp lamp[ROWS];
-    const int n =
-        lamp_list_frame(list, frame, &view, 50, lamp, NULL, NULL, ROWS);
+    struct glint_engine_lamp lamp[ROWS];
+    const int n = lamp_list_frame(list, frame, &view, 50, lamp, ROWS);
 
     require(n >= 0 && n <= list->n && n <= ROWS);
     for (int i = 0; i < n; i++) {
-        require(lamp[i].theta_deg >= 0 && lamp[i].theta_deg < 90);
-        require(fabs(lamp[i].phi_deg) <= 360);
+        require(lamp[i].lamp.theta_deg >= 0 && lamp[i].lamp.theta_deg < 90);
+        require(fabs(lamp[i].lamp.phi_deg) <= 360);
     }
 }
 

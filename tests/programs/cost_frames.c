@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/measure.h"
+#include "glint/measure.h"
 #include "lab/sweep.h"
 #include "support/rng.h"
 
@@ -105,7 +105,7 @@ static enum glint_status expose(struct stage *s)
         3 * (size_t)s->frame.view.width * (size_t)s->frame.view.height;
     struct glint_float_image light = {s->frame.view.width, s->frame.view.height,
                                       malloc(n * sizeof *light.rgb)};
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     enum glint_status status = GLINT_E_MEMORY;
 
     if (light.rgb)
@@ -146,7 +146,7 @@ static void close_stage(struct stage *s)
 /* Draws the frame twice, so that the second has its memory. */
 static void draw(struct stage *s, const struct shape *shape)
 {
-    struct glint_frame_report report;
+    struct glint_engine_report report;
 
     for (int i = 0; i < shape->n_lamps; i++)
         s->lamp[i].power *= s->exposure * exp2(shape->stops);

@@ -20,7 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/setup/spectrum.h"
+#include "engine/engine_parts.h"
 #include "overlay/compositor.h"
 #include "video/y4m.h"
 #include "posix/error.h"
@@ -46,12 +46,14 @@ struct steady {
 
 /* ------------------------------------------------------------------- steps */
 
-static double light_of(struct steady *s, const struct glint_lamp *lamps)
+static double light_of(struct steady *s)
 {
+    const struct compositor *const c = &s->compositor;
     struct glint_response_light light;
 
-    if (glint_response_draw(&s->compositor.frame, lamps, s->compositor.n_lamps,
-                            GLINT_RESPONSE_COARSE, NULL, &light,
+    if (glint_response_draw(&c->engine->paint.frame,
+                            glint_engine_plain(c->engine, c->lamp, c->n_lamps),
+                            c->n_lamps, GLINT_RESPONSE_COARSE, NULL, &light,
                             NULL) != GLINT_OK)
         exit(EXIT_RUNTIME);
     return glint_largest_channel(light.mean);
@@ -81,7 +83,7 @@ static double true_span(const struct steady *s)
 
 static void note(struct steady *s, double total, double own)
 {
-    const bool is_cut = glint_lamp_tracker_was_cut(s->compositor.finder.tracks);
+    const bool is_cut = compositor_is_new(&s->compositor);
     /* A fainter flare is unseen, so it does not step when it appears. */
     const double least = 1e-6;
 
@@ -113,9 +115,9 @@ static void log_frame(const struct steady *s, double own, double drawn)
 
     fprintf(stderr, "%d own %.4g drawn %.4g total %.4g%s\n", s->frames, own,
             drawn, drawn * compositor_scale(c),
-            glint_lamp_tracker_was_cut(c->finder.tracks) ? " cut" : "");
+            compositor_is_new(c) ? " cut" : "");
     for (int i = 0; i < c->n_lamps; i++) {
-        const struct glint_lamp_track *t = &c->finder.track[i];
+        const struct glint_lamp_track *t = &c->lamp[i].track;
 
         fprintf(stderr,
                 "    %u state %d at %.1f,%.1f size %.1f level %.2f "
@@ -132,15 +134,19 @@ static void note_stars(struct steady *s, const struct glint_image *image,
                        double lamps)
 {
     struct compositor *c = &s->compositor;
+    struct glint_frame *const f = &c->engine->paint.frame;
     double stars = 0;
 
-    if (glint_frame_star_set(&c->frame, c->lamp, c->n_lamps,
-                             compositor_scale(c), image) != GLINT_OK)
+    f->known = c->lamp;
+    if (glint_frame_star_set(
+            f, glint_engine_plain(c->engine, c->lamp, c->n_lamps), c->n_lamps,
+            compositor_scale(c), image) != GLINT_OK)
         exit(EXIT_RUNTIME);
-    for (int i = 0; i < c->frame.star.n_lights && c->n_lamps; i++)
-        stars += glint_real_value(c->frame.star.light[i].power);
-    if (!glint_lamp_tracker_was_cut(c->finder.tracks) && s->stars > 0 &&
-        stars > 0 && s->lamps > 0 && lamps > 0) {
+    f->known = NULL;
+    for (int i = 0; i < f->star.n_lights && c->n_lamps; i++)
+        stars += glint_real_value(f->star.light[i].power);
+    if (!compositor_is_new(c) && s->stars > 0 && stars > 0 && s->lamps > 0 &&
+        lamps > 0) {
         const double step = log(stars / s->stars);
 
         s->star_largest = fmax(s->star_largest, exp(fabs(step)) - 1);
@@ -160,14 +166,14 @@ static void frame(struct steady *s, const struct glint_image *image,
     double own, drawn, power = 0, held = 0;
 
     compositor_find(compositor, image, elapsed_us);
-    own = drawn = light_of(s, compositor->lamp);
+    own = drawn = light_of(s);
     for (int i = 0; i < compositor->n_lamps; i++)
-        power += compositor->lamp[i].power;
-    compositor_expose(compositor, elapsed_us);
+        power += compositor->lamp[i].lamp.power;
+    compositor_expose(compositor, image);
     for (int i = 0; i < compositor->n_lamps; i++)
-        held += compositor->lamp[i].power;
+        held += compositor->lamp[i].lamp.power;
     if (held < power) /* where lamps are too bright */
-        drawn = light_of(s, compositor->lamp);
+        drawn = light_of(s);
     if (s->log)
         log_frame(s, own, drawn);
     note(s, drawn * compositor_scale(compositor), own);
@@ -327,20 +333,20 @@ static void note_truth(struct steady *s, const struct night *night,
                        const struct night_lamp *lamp, int n)
 {
     const struct compositor *c = &s->compositor;
-    struct glint_lamp all[16];
-    const struct glint_strength_lamps lamps = {all, NULL, n,
-                                               (double)WIDTH * HEIGHT};
+    struct glint_engine_lamp all[16];
+    const struct glint_strength_lamps lamps = {all, n, (double)WIDTH * HEIGHT};
     struct glint_response_light light;
 
     for (int i = 0; i < n; i++) {
         double at[2];
+        struct glint_lamp one = {.rgb = {1, 1, 1}};
 
-        all[i] = (struct glint_lamp){.rgb = {1, 1, 1}};
-        all[i].power = seen_of(night, &lamp[i], at);
+        one.power = seen_of(night, &lamp[i], at);
         glint_view_to_angles(&c->view, c->settings.setup.optics.focal_mm, at[0],
-                             at[1], &all[i]);
+                             at[1], &one);
+        all[i] = glint_engine_lamp_of(&one, 1);
     }
-    glint_strength_light(&c->response, &lamps, &light);
+    glint_strength_light(&c->engine->expose.response, &lamps, &light);
     memmove(s->truth + 1, s->truth, WINDOW * sizeof *s->truth);
     s->truth[0] = glint_largest_channel(light.mean);
 }

@@ -15,7 +15,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "engine/explain.h"
+#include "engine/explain_frame.h"
 #include "options/tool.h"
 #include "support/stage.h"
 
@@ -51,7 +51,7 @@ static double lit_pixels(void)
     struct glint_explain explain;
     double lit = 0;
 
-    if (glint_explain_open(&explain, &stage.frame, 1) != GLINT_OK)
+    if (glint_explain_frame(&explain, &stage.frame, 1) != GLINT_OK)
         exit(1);
     for (int k = 0; k < explain.n_ghosts; k++)
         lit += explain.ghost[k].lit;

@@ -18,7 +18,7 @@
 #include <stdbool.h>
 
 #include "engine/frame/frame.h"
-#include "engine/measure.h"
+#include "glint/measure.h"
 #include "model/model_file.h"
 
 struct stage {
@@ -30,7 +30,7 @@ struct stage {
     struct glint_view view;
     struct glint_frame frame;
     bool framed;
-    struct glint_frame_report drawn; /* filled by the last picture */
+    struct glint_engine_report drawn; /* filled by the last picture */
 };
 
 /* Reads lenses/NAME.lens; the program must run from the root of the tree. */

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/measure.h"
+#include "glint/measure.h"
 #include "formats/picture.h"
 #include "options/json_writer.h"
 #include "options/settings.h"

@@ -13,7 +13,7 @@
 #include "desk/ghost_sheet.h"
 #include "overlay/compositor.h"
 #include "overlay/overlay_line.h"
-#include "engine/measure.h"
+#include "glint/measure.h"
 #include "options/command_line.h"
 #include "formats/picture.h"
 #include "posix/error.h"
@@ -198,15 +198,20 @@ static enum glint_status draw_linear(struct explain_command *c)
     const size_t n = (size_t)c->width * (size_t)c->height;
     struct glint_float_image light = {.width = c->width, .height = c->height};
     enum glint_status status = GLINT_E_MEMORY;
+    struct glint_lamp *plain;
     uint8_t *codes;
 
     compositor_lamps(compositor, &c->image, 0);
+    plain = malloc(((size_t)compositor->n_lamps + 1) * sizeof *plain);
+    for (int i = 0; i < compositor->n_lamps && plain; i++)
+        plain[i] = compositor->lamp[i].lamp;
     light.rgb = calloc(3 * n, sizeof *light.rgb);
-    if (light.rgb)
-        status = glint_frame_draw_alone(&compositor->frame, compositor->lamp,
-                                        compositor->n_lamps,
-                                        settings_scale(&compositor->settings),
-                                        light.rgb, &compositor->report);
+    if (light.rgb && plain)
+        status = glint_engine_render(
+            compositor->engine, plain, compositor->n_lamps,
+            settings_scale(&compositor->settings), GLINT_ENGINE_ALL, light.rgb,
+            &compositor->report);
+    free(plain);
     if (status == GLINT_OK) {
         codes = glint_measure_encode(
             &light, GLINT_OPTION_GIVEN(&compositor->settings.options, exposure)
@@ -299,13 +304,10 @@ static int tell(struct tool *tool, struct explain_command *c, bool linear)
                                             (enum glint_explain_order)c->order,
                                         .top = c->top,
                                         .report = &compositor->report};
-    const double unit =
-        linear && compositor->frame.scale > 0
-            ? settings_scale(&compositor->settings) / compositor->frame.scale
-            : 1;
     struct glint_explain e;
     const enum glint_status status =
-        glint_explain_open(&e, &compositor->frame, unit);
+        glint_explain_open(&e, compositor->engine,
+                           linear ? settings_scale(&compositor->settings) : 0);
     int code = EXIT_OK;
 
     if (status == GLINT_OK && compositor->scene.is_open)

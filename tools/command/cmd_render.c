@@ -10,9 +10,9 @@
 
 #include "desk/apart.h"
 #include "desk/render_file.h"
-#include "engine/frame/area.h"
+#include "glint/area.h"
 #include "lamp_files/lamp_list.h"
-#include "engine/measure.h"
+#include "glint/measure.h"
 #include "posix/error.h"
 #include "options/settings.h"
 #include "options/command_line.h"
@@ -51,9 +51,6 @@ struct render {
     bool linear; /* the output takes floats */
     int width, height;
     bool exact;
-    /* Bytes reserved for the flare's memory, which does not grow then; 0: it
-     * takes what it needs. */
-    size_t reserve_bytes;
     const char *lights_file;
     int n_lamps;
     struct glint_lamp *lamp; /* lamps by hand, at most SETTINGS_MAX_LAMPS, then
@@ -131,8 +128,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct render *r)
         return tool_usage(tool, "needs -o OUT");
     if (r->n_lamps == 0 && !r->lights_file)
         return tool_usage(tool, "needs a --light or --lights");
-    r->reserve_bytes = (size_t)r->settings.options.memory << 20;
-    if (r->reserve_bytes && r->settings.options.rays == GLINT_RAYS_EXACT)
+    if (r->settings.options.memory &&
+        r->settings.options.rays == GLINT_RAYS_EXACT)
         return tool_usage(tool, "--memory is for models, not for exact rays");
     return -1;
 }
@@ -213,7 +210,7 @@ static int render_exact(struct tool *tool, struct render *r)
 }
 
 static void say_lights(const struct tool *tool,
-                       const struct glint_frame_report *report)
+                       const struct glint_engine_report *report)
 {
     char lights[64];
 
@@ -226,49 +223,33 @@ static void say_lights(const struct tool *tool,
             report->arena_bytes + report->star_bytes);
 }
 
-/* Takes the bytes of --memory: what stars and a veil take, and for ghosts what
- * that leaves. */
-static enum glint_status reserve(const struct render *r,
-                                 struct glint_frame *frame)
-{
-    const enum glint_status status = glint_frame_star_hold(frame, r->n_lamps);
-    const enum glint_status veiled = glint_frame_veil_hold(frame);
-    const size_t star = glint_frame_star_bytes(frame);
-
-    if (status != GLINT_OK || veiled != GLINT_OK || star >= r->reserve_bytes)
-        return GLINT_E_MEMORY;
-    return glint_frame_reserve(frame, NULL, r->reserve_bytes - star, r->n_lamps,
-                               frame->dials.max_lights);
-}
-
 static int render_model(struct tool *tool, struct render *r)
 {
-    struct glint_frame_report report = {.lights = 0};
+    struct glint_engine_report report = {.lights = 0};
+    struct glint_engine_config cfg;
+    struct glint_engine *engine;
+    struct glint_error error = {""};
     enum glint_status status;
-    struct glint_frame frame;
-    int code = settings_frame(tool, &r->settings,
-                              settings_view(&r->settings, r->width, r->height),
-                              &frame);
 
-    frame.star.is_bare = true;
-    if (code == EXIT_OK) {
-        status =
-            r->reserve_bytes && r->n_lamps > 0 ? reserve(r, &frame) : GLINT_OK;
-        if (status == GLINT_OK)
-            status = glint_frame_draw_alone(&frame, r->lamp, r->n_lamps,
-                                            settings_scale(&r->settings),
-                                            r->image.rgb, &report);
-        if (status != GLINT_OK)
-            code = tool_fail(tool, status, NULL);
-    }
-    if (code == EXIT_OK && tool->json) {
+    settings_engine(tool, &r->settings, r->width, r->height, &cfg);
+    cfg.light.by_hand = 1;
+    cfg.search.max_found = 0;
+    cfg.search.more_lamps = r->n_lamps;
+    cfg.search.max_drawn = cfg.drawing.dials.max_lights;
+    status = glint_engine_create(&engine, &cfg, &error);
+    if (status == GLINT_OK)
+        status = glint_engine_render(
+            engine, r->lamp, r->n_lamps, settings_scale(&r->settings),
+            GLINT_ENGINE_ALL | GLINT_ENGINE_CORES, r->image.rgb, &report);
+    glint_engine_destroy(engine);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    if (tool->json) {
         json_write(&r->json, "{engine: %s", "model");
         settings_json(&r->json, &report);
     }
-    if (code == EXIT_OK)
-        say_lights(tool, &report);
-    glint_frame_finish(&frame);
-    return code;
+    say_lights(tool, &report);
+    return EXIT_OK;
 }
 
 /* Adds the lamps of frame 0 of the file to those by hand. */
@@ -280,20 +261,27 @@ static int read_lamps(struct tool *tool, struct render *r)
     struct lamp_list list;
     const enum glint_status status =
         lamp_list_read(&list, r->lights_file, &error);
+    struct glint_engine_lamp *read;
     struct glint_lamp *all;
+    int code;
 
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     all = realloc(r->lamp,
                   ((size_t)r->n_lamps + (size_t)list.n + 1) * sizeof *all);
-    if (all) {
-        r->lamp = all;
-        r->n_lamps +=
-            lamp_list_frame(&list, 0, &view, r->settings.setup.optics.focal_mm,
-                            all + r->n_lamps, NULL, NULL, list.n);
+    r->lamp = all ? all : r->lamp;
+    read = malloc(((size_t)list.n + 1) * sizeof *read);
+    if (all && read) {
+        const int n = lamp_list_frame(
+            &list, 0, &view, r->settings.setup.optics.focal_mm, read, list.n);
+
+        for (int i = 0; i < n; i++)
+            r->lamp[r->n_lamps++] = read[i].lamp;
     }
+    code = all && read ? EXIT_OK : tool_fail(tool, GLINT_E_MEMORY, NULL);
+    free(read);
     lamp_list_free(&list);
-    return all ? EXIT_OK : tool_fail(tool, GLINT_E_MEMORY, NULL);
+    return code;
 }
 
 /* Refuses an output over LENS or a file of an option. */

@@ -5,7 +5,7 @@
 #ifndef GLINT_TOOLS_COMMAND_EXPLAIN_H
 #define GLINT_TOOLS_COMMAND_EXPLAIN_H
 
-#include "engine/explain.h"
+#include "glint/explain.h"
 
 /* Returns the meaning of OUTCOME as a phrase for tables. */
 const char *explain_reason(enum glint_outcome outcome);
@@ -14,12 +14,12 @@ const char *explain_reason(enum glint_outcome outcome);
  * and how ghosts are to be listed. */
 struct explain_title {
     const char *lens;
-    const struct glint_lamp *lamp;
+    const struct glint_engine_lamp *lamp;
     int n_lamps;
     bool linear;
     enum glint_explain_order order;
     int top; /* most ghosts and lights to list, and ghosts to mark */
-    const struct glint_frame_report *report;
+    const struct glint_engine_report *report;
 };
 
 void explain_print(const struct glint_explain *explain,

@@ -77,8 +77,7 @@ static void shade(const struct marking *m, int x0, int y0, int side,
 
 static void shade_tiles(struct marking *m)
 {
-    const struct glint_frame *f = m->explain->frame;
-    const int side = 1 << f->cfg.tile_log2;
+    const int side = 1 << m->explain->tile_log2;
     int tile = 0;
 
     if (m->explain->n_lights)
@@ -87,7 +86,7 @@ static void shade_tiles(struct marking *m)
         for (int x = 0; x < m->width; x += side, tile++)
             shade(m, x, y, side,
                   m->explain->n_lights &&
-                      (glint_flare_listed(f->flare, tile) > 0 ||
+                      (glint_explain_listed(m->explain, tile) > 0 ||
                        is_lit(m, x, y, side)));
 }
 

@@ -60,14 +60,13 @@ struct light {
 static int drawn_for(const struct explained_scene *s,
                      const struct glint_lamp *lamp)
 {
-    const struct glint_frame *const f = s->flare->frame;
     const double focal = s->compositor->settings.setup.optics.focal_mm;
     const double px = glint_view_pixel_tangent(&s->compositor->view, focal);
     double best = px + 2 * lamp->axis[0];
     int found = -1;
 
     for (int i = 0; i < s->flare->n_lights; i++) {
-        const struct glint_light *const l = &f->light[i];
+        const struct glint_light *const l = &s->flare->lights[i];
         const double t = tan(lamp->theta_deg * GLINT_PI / 180);
         const double u =
             l->cosine_q30 > 0 ? (double)l->sine_q30 / l->cosine_q30 : HUGE_VAL;
@@ -94,7 +93,7 @@ static const char *word_of(const struct explained_scene *s,
         return "no lens";
     if (!(lamp->power > 0))
         return "no power";
-    if (glint_frame_is_beyond(s->flare->frame, lamp))
+    if (glint_explain_is_beyond(s->flare, lamp))
         return "beyond the model";
     at = drawn_for(s, lamp);
     if (at < 0)
@@ -117,7 +116,7 @@ static struct light light_of(const struct explained_scene *s, int i,
 {
     const struct compositor *const c = s->compositor;
     struct light light = {.word = "behind the camera"};
-    const struct glint_lamp *lamp = c->lamp + c->n_own;
+    const struct glint_engine_lamp *lamp = c->lamp + c->n_own;
 
     if (!model_of(s)->header->flare) {
         light.word = "only lights things ('flare lights' shows it to the lens)";
@@ -139,7 +138,7 @@ static struct light light_of(const struct explained_scene *s, int i,
                 light.extra =
                     name_of(s, glint_scene_hider(c->scene.frame.scene, i));
             } else if (has_light)
-                light.word = c->has_lens ? word_of(s, lamp) : "no lens";
+                light.word = c->has_lens ? word_of(s, &lamp->lamp) : "no lens";
             return light;
         }
         lamp += has_light;
@@ -202,7 +201,7 @@ static int highlights_of(const struct explained_scene *s,
     for (int i = 0; i < n; i++) {
         const struct glint_spot *const spot = &seen[i].spot;
         const struct glint_lamp *const lamp =
-            c->has_lens ? &c->lamp[c->n_lamps - n + i] : NULL;
+            c->has_lens ? &c->lamp[c->n_lamps - n + i].lamp : NULL;
         const int at = lamp && s->flare ? drawn_for(s, lamp) : -1;
 
         found[i] = (struct highlight){

@@ -88,8 +88,7 @@ static void print_price(const struct glint_explain *e,
 /* Says which bundles are not drawn by themselves, as they are dim. */
 static void print_dim(const struct glint_explain *e)
 {
-    const double dim =
-        e->frame->rays.dimmest.mantissa ? e->frame->dials.dim_codes : 0;
+    const double dim = e->dim_codes;
 
     if (dim > 0)
         printf("dim: ghosts below %.3g codes share rays, %d bundles with those "
@@ -102,8 +101,8 @@ static void print_title(const struct glint_explain *e,
 {
     const struct glint_explain_part *all = &e->all;
 
-    printf("%s, %dx%d, %s\n", t->lens, e->frame->view.width,
-           e->frame->view.height, t->linear ? "linear light" : "codes");
+    printf("%s, %dx%d, %s\n", t->lens, e->view->width, e->view->height,
+           t->linear ? "linear light" : "codes");
     /* A lamp of visible extent is drawn as several points. */
     printf(e->n_lights > t->n_lamps ? "drawn: %d points of %d lights"
                                     : "drawn: lights %d of %d",
@@ -134,7 +133,7 @@ static void print_lights(const struct glint_explain *e,
 {
     print_head("light    angle azimuth bundles");
     for (int i = 0; i < e->n_lights && i < t->top; i++) {
-        const struct glint_light *b = &e->frame->light[i];
+        const struct glint_light *b = &e->lights[i];
 
         printf(
             "%5d %8.3f %7.1f %7d", i + 1, degrees(b->sine_q30, b->cosine_q30),
@@ -149,11 +148,11 @@ static void print_waves(const struct glint_explain *e)
 {
     print_head("wavelength             bundles");
     for (int i = 0; i < e->n_waves; i++) {
-        if (e->frame->rays.sets)
-            printf("%-3d for a ghost %14d", e->frame->rays.sets->size[i],
+        if (e->sets)
+            printf("%-3d for a ghost %14d", e->sets->size[i],
                    glint_explain_drawn(&e->wave[i]));
         else
-            printf("%7.1f nm %19d", e->frame->setup->wavelength_nm[i],
+            printf("%7.1f nm %19d", e->setup->wavelength_nm[i],
                    glint_explain_drawn(&e->wave[i]));
         print_costs(&e->wave[i]);
     }
@@ -167,7 +166,7 @@ static void print_ghosts(const struct glint_explain *e,
     print_head("ghost   pair bundles terms cut");
     for (int i = 0; i < e->n_ghosts; i++) {
         const struct glint_explain_part *p = &e->ghost[ghosts[i]];
-        const struct glint_ghost *g = &e->frame->setup->ghost[ghosts[i]];
+        const struct glint_ghost *g = &e->setup->ghost[ghosts[i]];
         char pair[32], bundles[32];
 
         if (glint_explain_drawn(p) == 0 || n++ >= t->top)
@@ -224,18 +223,18 @@ static void print_left_out(const struct glint_explain *e)
 static void print_lost_lights(const struct glint_explain *e,
                               const struct explain_title *t)
 {
-    const struct glint_frame_report *r = t->report;
-    const double most = model_degrees(e->frame->lens->header->sine_hi_q30);
+    const struct glint_engine_report *r = t->report;
+    const double most = model_degrees(e->lens->header->sine_hi_q30);
     int n = 0, dark = 0;
 
     for (int i = 0; i < t->n_lamps; i++) {
-        if (glint_frame_is_beyond(e->frame, &t->lamp[i])) {
+        if (glint_explain_is_beyond(e, &t->lamp[i].lamp)) {
             if (n++ < t->top)
                 printf("light at %.3f degrees: beyond the model, which ends at "
                        "%.1f (bake --max-angle)\n",
-                       t->lamp[i].theta_deg, most);
+                       t->lamp[i].lamp.theta_deg, most);
         } else
-            dark += !(t->lamp[i].power > 0);
+            dark += !(t->lamp[i].lamp.power > 0);
     }
     if (n > t->top)
         printf("and %d more beyond the model (--top)\n", n - t->top);
@@ -294,7 +293,7 @@ static void json_lights(struct json_writer *json, const struct glint_explain *e,
 {
     json_write(json, "lights: [");
     for (int i = 0; i < e->n_lights; i++) {
-        const struct glint_light *b = &e->frame->light[i];
+        const struct glint_light *b = &e->lights[i];
 
         json_write(json, "{angle_deg: %.6g, azimuth_deg: %.6g",
                    degrees(b->sine_q30, b->cosine_q30),
@@ -304,10 +303,10 @@ static void json_lights(struct json_writer *json, const struct glint_explain *e,
     }
     json_write(json, "], beyond_model_deg: [");
     for (int i = 0; i < t->n_lamps; i++)
-        if (glint_frame_is_beyond(e->frame, &t->lamp[i]))
-            json_write(json, "%.6g", t->lamp[i].theta_deg);
+        if (glint_explain_is_beyond(e, &t->lamp[i].lamp))
+            json_write(json, "%.6g", t->lamp[i].lamp.theta_deg);
     json_write(json, "], model_max_deg: %.6g",
-               model_degrees(e->frame->lens->header->sine_hi_q30));
+               model_degrees(e->lens->header->sine_hi_q30));
 }
 
 static void json_title(struct json_writer *json, const struct glint_explain *e,
@@ -317,7 +316,7 @@ static void json_title(struct json_writer *json, const struct glint_explain *e,
                "{lens: %s, width: %d, height: %d, picture: %s, "
                "lights_given: %d, lights_apart: %d, all_tiles: %d, "
                "held_cells: %d, held_samples: %d, frame: {",
-               t->lens, e->frame->view.width, e->frame->view.height,
+               t->lens, e->view->width, e->view->height,
                t->linear ? "linear" : "codes", t->n_lamps,
                t->report->apart_lights, e->n_tiles, t->report->stats.held_cells,
                t->report->held_samples);
@@ -343,16 +342,16 @@ void explain_json(const struct glint_explain *e, const struct explain_title *t)
     json_lights(&json, e, t);
     json_write(&json, "wavelengths: [");
     for (int i = 0; i < e->n_waves; i++) {
-        if (e->frame->rays.sets)
-            json_write(&json, "{of: %d", e->frame->rays.sets->size[i]);
+        if (e->sets)
+            json_write(&json, "{of: %d", e->sets->size[i]);
         else
-            json_write(&json, "{nm: %g", e->frame->setup->wavelength_nm[i]);
+            json_write(&json, "{nm: %g", e->setup->wavelength_nm[i]);
         json_part(&json, &e->wave[i]);
         json_write(&json, "}");
     }
     json_write(&json, "], ghosts: [");
     for (int i = 0; i < e->n_ghosts; i++) {
-        const struct glint_ghost *g = &e->frame->setup->ghost[ghosts[i]];
+        const struct glint_ghost *g = &e->setup->ghost[ghosts[i]];
 
         json_write(&json, "{ghost: %d, pair: [%d, %d]", ghosts[i], g->i, g->j);
         json_part(&json, &e->ghost[ghosts[i]]);

@@ -134,11 +134,10 @@ static enum glint_status add_flare(struct frames *f)
     const size_t n = 3 * (size_t)f->r->width * (size_t)f->r->height;
     enum glint_status status;
 
-    compositor_expose(c, f->elapsed_us);
-    status = glint_frame_veil_look(&c->frame, &f->seen, 1);
+    status = compositor_expose(c, &f->seen);
     if (status != GLINT_OK ||
         ((c->n_lamps == 0 || !(compositor_scale(c) > 0)) &&
-         !glint_frame_has_veil(&c->frame)))
+         !glint_engine_has_veil(c->engine)))
         return status;
     status = compositor_draw_layer(c, true, f->flare);
     for (size_t i = 0; status == GLINT_OK && i < n; i++)

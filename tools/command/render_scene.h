@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-#include "engine/measure.h"
+#include "glint/measure.h"
 #include "overlay/compositor.h"
 
 struct render_scene {

@@ -8,7 +8,7 @@
 
 #include "desk/ghost_file.h"
 #include "desk/sheet.h"
-#include "engine/measure.h"
+#include "glint/measure.h"
 #include "formats/picture.h"
 #include "posix/output.h"
 
@@ -20,7 +20,7 @@ static const double shown = 0.7;
 
 static bool is_muted(const struct ghost_list *l, int ghost)
 {
-    const struct glint_tint *tints = l->explain->frame->tints;
+    const struct glint_tint *tints = l->explain->tints;
 
     return tints && tints[ghost].gain.mantissa == 0;
 }
@@ -31,7 +31,6 @@ static bool is_muted(const struct ghost_list *l, int ghost)
 enum glint_status ghost_list_write(const struct ghost_list *l, const char *path,
                                    struct glint_error *error)
 {
-    const struct glint_frame *f = l->explain->frame;
     struct glint_output out;
     enum glint_status status =
         glint_output_open(&out, path, GLINT_OUTPUT_TEXT, error);
@@ -49,12 +48,12 @@ enum glint_status ghost_list_write(const struct ghost_list *l, const char *path,
     for (int i = 0; i < l->explain->n_ghosts && status == GLINT_OK; i++) {
         const int ghost = l->ghosts[i];
         const struct glint_explain_part *part = &l->explain->ghost[ghost];
-        const struct glint_ghost *g = &f->setup->ghost[ghost];
+        const struct glint_ghost *g = &l->explain->setup->ghost[ghost];
 
         if (glint_explain_drawn(part) == 0 && !is_muted(l, ghost))
             continue;
         ghost_file_line(text, sizeof text, ghost,
-                        f->tints ? &f->tints[ghost] : NULL);
+                        l->explain->tints ? &l->explain->tints[ghost] : NULL);
         n = (int)strlen(text);
         n += snprintf(text + n, sizeof text - (size_t)n,
                       "   # surfaces %d-%d, %.2f %% of the light\n", g->i, g->j,
@@ -75,7 +74,7 @@ enum glint_status ghost_list_write(const struct ghost_list *l, const char *path,
 static void reduce(const struct glint_explain *e, int width, int height,
                    float *light)
 {
-    const int w = e->frame->view.width, h = e->frame->view.height;
+    const int w = e->view->width, h = e->view->height;
 
     for (int j = 0; j < height; j++)
         for (int i = 0; i < width; i++, light += 3) {
@@ -140,7 +139,7 @@ static void put_ghost(const struct ghost_list *l, const struct sheet *sheet,
 {
     const size_t n = 3 * (size_t)small->width * (size_t)small->height;
     const struct glint_image to = sheet_picture(sheet, k);
-    const struct glint_ghost *g = &l->explain->frame->setup->ghost[ghost];
+    const struct glint_ghost *g = &l->explain->setup->ghost[ghost];
     char text[64];
 
     glint_explain_draw(l->explain, ghost);

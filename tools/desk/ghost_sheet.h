@@ -6,7 +6,7 @@
 #ifndef GLINT_TOOLS_DESK_GHOST_SHEET_H
 #define GLINT_TOOLS_DESK_GHOST_SHEET_H
 
-#include "engine/explain.h"
+#include "glint/explain.h"
 
 /* The ghosts of a frame in the order to be listed in, and the picture under
  * them. */

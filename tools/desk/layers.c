@@ -111,60 +111,24 @@ int layers_check_apart(const struct tool *tool, const struct layers *layers,
 /* ------------------------------------------------------------------- drawing
  */
 
-/* Draws the veil alone into RGB, as it was set for the frame. */
-static enum glint_status draw_veil(struct compositor *c, float *rgb)
-{
-    const size_t n = 3 * (size_t)c->view.width * (size_t)c->view.height;
-    int32_t *const linear_q20 = malloc(n * sizeof *linear_q20);
-
-    if (!linear_q20)
-        return GLINT_E_MEMORY;
-    glint_frame_veil_add(&c->frame, 1, linear_q20, rgb);
-    free(linear_q20);
-    return GLINT_OK;
-}
-
-/* Draws ghosts or star alone into RGB. */
-static enum glint_status draw(struct compositor *c, int layer, float *rgb)
-{
-    struct glint_frame *const f = &c->frame;
-    const struct glint_frame_star star = f->star;
-    const double glare = f->veil.glare, haze = f->veil.haze;
-    const struct glint_front_dirt *front = f->veil.front;
-    const double scale = compositor_scale(c);
-    struct glint_frame_report report;
-    enum glint_status status;
-
-    if (c->n_lamps == 0 || !(scale > 0) ||
-        (layer == GHOSTS ? star.is_alone : !(star.share > 0)))
-        return GLINT_OK;
-    f->star.is_alone = layer == STARBURST;
-    f->star.share = layer == STARBURST ? star.share : 0;
-    f->veil.glare = f->veil.haze = 0;
-    f->veil.front = NULL;
-    status =
-        glint_frame_draw_alone(f, c->lamp, c->n_lamps, scale, rgb, &report);
-    f->star.is_alone = star.is_alone;
-    f->star.share = star.share;
-    f->veil.glare = glare;
-    f->veil.haze = haze;
-    f->veil.front = front;
-    return status;
-}
-
 /* Draws N_LAYERS layers of N samples into RGB: the parts, and their sum as the
  * first. */
 static enum glint_status draw_all(struct compositor *c, int n_layers, size_t n,
                                   float *rgb)
 {
+    static const unsigned part[] = {[GHOSTS] = GLINT_ENGINE_GHOSTS,
+                                    [STARBURST] = GLINT_ENGINE_STAR,
+                                    [VEIL] = GLINT_ENGINE_VEIL};
+    const bool is_lit = c->n_lamps > 0 && compositor_scale(c) > 0;
     enum glint_status status = GLINT_OK;
+    struct glint_engine_report report;
 
     memset(rgb, 0, (size_t)n_layers * n * sizeof *rgb);
-    /* first of all, as drawing the others forgets what the veil is of */
-    if (n_layers > VEIL)
-        status = draw_veil(c, rgb + VEIL * n);
-    for (int k = GHOSTS; k <= STARBURST && status == GLINT_OK; k++)
-        status = draw(c, k, rgb + (size_t)k * n);
+    /* the veil first, as drawing the others forgets what it is of */
+    for (int k = n_layers - 1; k >= GHOSTS && status == GLINT_OK; k--)
+        if (is_lit || k == VEIL)
+            status = glint_engine_layer(c->engine, c->lamp, c->n_lamps, part[k],
+                                        rgb + (size_t)k * n, &report);
     for (int k = GHOSTS; k < n_layers; k++)
         for (size_t i = 0; i < n; i++)
             rgb[i] += rgb[(size_t)k * n + i];

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "engine/frame/area.h"
+#include "glint/area.h"
 #include "options/numbered.h"
 #include "posix/error.h"
 
@@ -205,20 +205,21 @@ static double fade_outside(double x, double y, int width, int height,
 
 void occlusion_apply(struct occlusion *o, int frame,
                      const struct glint_view *view, double focal_mm,
-                     struct glint_lamp *lamps, double *level, int n)
+                     struct glint_engine_lamp *lamps, int n)
 {
     if (!o->file && !(o->fade_px > 0))
         return;
     if (o->file)
         go_to(o, frame);
     for (int i = 0; i < n; i++) {
+        struct glint_lamp *const lamp = &lamps[i].lamp;
         double x, y, share = 1;
 
-        glint_view_to_pixel(view, focal_mm, &lamps[i], &x, &y);
+        glint_view_to_pixel(view, focal_mm, lamp, &x, &y);
         if (o->image.plane[0])
-            share = share_of(o, view, focal_mm, &lamps[i]);
+            share = share_of(o, view, focal_mm, lamp);
         share *= fade_outside(x, y, view->width, view->height, o->fade_px);
-        lamps[i].power *= share;
-        level[i] = fmax(level[i] * share, least_level);
+        lamp->power *= share;
+        lamps[i].level = fmax(lamps[i].level * share, least_level);
     }
 }

@@ -4,7 +4,7 @@
  * white, and the distance from the picture.
  *
  *     occlusion_open(&o, &error);                          once
- *     occlusion_apply(&o, frame, &view, focal_mm, lamps, level, n);
+ *     occlusion_apply(&o, frame, &view, focal_mm, lamps, n);
  *     occlusion_close(&o);
  *
  * A mask is a picture, a pattern of numbered pictures or a video in y4m. It is
@@ -17,8 +17,7 @@
 #define GLINT_TOOLS_DESK_OCCLUSION_H
 
 #include "formats/picture.h"
-#include "glint/setup.h"
-#include "glint/view.h"
+#include "glint/engine.h"
 #include "video/y4m.h"
 
 struct occlusion {
@@ -41,12 +40,12 @@ struct occlusion {
 enum glint_status occlusion_open(struct occlusion *o,
                                  struct glint_error *error);
 
-/* Scales powers, and LEVEL, of N LAMPS by the share of each that is in view in
+/* Scales powers and levels of N LAMPS by the share of each that is in view in
  * frame FRAME. Frames rise; a mask that ends earlier stays as it was last, and
  * one that cannot be read is said once. */
 void occlusion_apply(struct occlusion *o, int frame,
                      const struct glint_view *view, double focal_mm,
-                     struct glint_lamp *lamps, double *level, int n);
+                     struct glint_engine_lamp *lamps, int n);
 
 void occlusion_close(struct occlusion *o);
 

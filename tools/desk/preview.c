@@ -2,9 +2,8 @@
 #include "desk/preview.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
-#include "engine/explain.h"
+#include "glint/explain.h"
 #include "overlay/paint.h"
 
 enum { SMALL = 320, MOST = 24 };
@@ -19,7 +18,7 @@ struct labels {
  * false if it has no light. */
 static bool find_brightest(const struct glint_explain *e, int *x, int *y)
 {
-    const int width = e->frame->view.width, height = e->frame->view.height;
+    const int width = e->view->width, height = e->view->height;
     const int32_t *px = e->linear_q20;
     int64_t most = 0;
 
@@ -74,15 +73,22 @@ static void put(struct labels *l, int number, int x, int y)
     paint_text(p, x + 2 * p->line, y + 2 * p->line, text);
 }
 
-static enum glint_status put_all(struct glint_frame *small,
-                                 const struct glint_image *image)
+enum glint_status preview_number(struct glint_engine *engine,
+                                 const struct glint_engine_lamp *lamps, int n,
+                                 double scale, const struct glint_image *image)
 {
+    const int width = image->width < SMALL ? image->width : SMALL;
+    const int height = (int)((int64_t)image->height * width / image->width);
     struct labels l = {
         .paint = {.image = image, .line = 1 + image->height / 540}};
     int ghosts[GLINT_MAX_GHOSTS], x = 0, y = 0;
     struct glint_explain e;
-    const enum glint_status status = glint_explain_open(&e, small, 1);
+    enum glint_status status;
 
+    if (n == 0 || !(scale > 0))
+        return GLINT_OK;
+    status = glint_explain_at(&e, engine, lamps, n, scale, width,
+                              height > 0 ? height : 1);
     if (status == GLINT_OK)
         glint_explain_sort(&e, GLINT_EXPLAIN_LIGHT, ghosts);
     for (int i = 0; status == GLINT_OK && i < e.n_ghosts && l.n < MOST; i++) {
@@ -90,45 +96,9 @@ static enum glint_status put_all(struct glint_frame *small,
             continue;
         glint_explain_draw(&e, ghosts[i]);
         if (find_brightest(&e, &x, &y))
-            put(&l, ghosts[i],
-                (int)((int64_t)x * image->width / small->view.width),
-                (int)((int64_t)y * image->height / small->view.height));
+            put(&l, ghosts[i], (int)((int64_t)x * image->width / e.view->width),
+                (int)((int64_t)y * image->height / e.view->height));
     }
     glint_explain_close(&e);
-    return status;
-}
-
-enum glint_status preview_number(const struct glint_frame *frame,
-                                 const struct glint_lamp *lamps, int n,
-                                 double scale, const struct glint_image *image)
-{
-    struct glint_view view = frame->view;
-    struct glint_image codes = {.format = GLINT_RGB24};
-    struct glint_frame_report report;
-    struct glint_frame small;
-    enum glint_status status = GLINT_E_MEMORY;
-    uint8_t *mem;
-
-    if (!frame->lens || n == 0 || !(scale > 0))
-        return GLINT_OK;
-    view.width = view.width < SMALL ? view.width : SMALL;
-    view.height =
-        (int)((int64_t)frame->view.height * view.width / frame->view.width);
-    view.height = view.height > 0 ? view.height : 1;
-    codes.width = view.width;
-    codes.height = view.height;
-    glint_frame_like(&small, frame, view);
-    small.tints = frame->tints;
-    small.dials = small.asked = frame->dials;
-    small.dials.dispersion_q8 = 0;
-    mem = calloc(3 * (size_t)view.width, (size_t)view.height);
-    if (mem) {
-        glint_image_place(&codes, mem);
-        status = glint_frame_draw(&small, lamps, n, scale, &codes, &report);
-    }
-    if (status == GLINT_OK && small.n_lights > 0)
-        status = put_all(&small, image);
-    glint_frame_finish(&small);
-    free(mem);
     return status;
 }

@@ -5,7 +5,7 @@
 #ifndef GLINT_TOOLS_DESK_RENDER_FILE_H
 #define GLINT_TOOLS_DESK_RENDER_FILE_H
 
-#include "engine/measure.h"
+#include "glint/measure.h"
 #include "options/tool.h"
 
 /* Checks, before there is much work, whether PATH can be written. Sets

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/measure.h"
+#include "glint/measure.h"
 #include "overlay/paint.h"
 
 enum { GAP = 8, GROUND = 32 };

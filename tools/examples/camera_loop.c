@@ -47,7 +47,7 @@ int main(int argc, char **argv)
     struct glint_error error = {"no model, no camera, or not of 640x480"};
     struct glint_engine *engine = NULL;
     struct glint_lens lens;
-    struct glint_lamp lamps[16];
+    struct glint_engine_lamp lamps[16];
     const char *reason = "";
     int left = argc == 4 ? atoi(argv[3]) : 0;
 

@@ -23,7 +23,7 @@ static unsigned char *read_all(const char *path, size_t *bytes)
 
 int main(int argc, char **argv)
 {
-    static struct glint_lamp lamps[64];
+    static struct glint_engine_lamp lamps[64];
     static struct glint_image image;
     struct glint_engine_config cfg;
     struct glint_engine_report report;

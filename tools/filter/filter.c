@@ -164,7 +164,6 @@ static void set_live_options(struct filter *f)
         if (p.is_live && glint_option_named(p.name) &&
             !filter_is_default(&p, v->number[i]))
             glint_options_set(o, p.name, v->number[i], &error);
-    c->strength.asked = o->strength;
     if (c->is_listed) {
         c->list.row[0].x = v->number[FILTER_X] * f->width;
         c->list.row[0].y = v->number[FILTER_Y] * f->height;

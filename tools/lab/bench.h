@@ -37,7 +37,7 @@ struct test {
      * NULL: the whole lens is used. */
     struct glint_lens some;
     struct glint_model_ghost *some_ghosts;
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     double cpu_ms; /* growth: least time of a frame, of all threads; else 0 */
     double ms[STAGES][MAX_ROUNDS];
     double wrong[MAX_ROUNDS]; /* budgets: predicted over measured - 1 */

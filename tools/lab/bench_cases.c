@@ -6,7 +6,7 @@
 
 #include "lab/bench.h"
 #include "linux/sets.h"
-#include "engine/measure.h"
+#include "glint/measure.h"
 
 /* ------------------------------------------------------------------ canvas */
 

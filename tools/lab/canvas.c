@@ -142,7 +142,7 @@ enum glint_status canvas_exact(const struct tool *tool,
 enum glint_status canvas_codes(struct glint_frame *frame,
                                const struct glint_lamp *lamp, int n_lamps,
                                double exposure, uint8_t *codes,
-                               struct glint_frame_report *report)
+                               struct glint_engine_report *report)
 {
     struct glint_image layer = {.format = GLINT_RGB24,
                                 .width = frame->cfg.width,

@@ -7,7 +7,7 @@
 #define GLINT_TOOLS_LAB_CANVAS_H
 
 #include "formats/pfm.h"
-#include "options/settings.h"
+#include "lab/settings_frame.h"
 
 /* A picture to draw on, in mem, and its pixels before drawing, fresh. */
 struct canvas {
@@ -46,7 +46,7 @@ enum glint_status canvas_exact(const struct tool *tool,
 enum glint_status canvas_codes(struct glint_frame *frame,
                                const struct glint_lamp *lamp, int n_lamps,
                                double exposure, uint8_t *codes,
-                               struct glint_frame_report *report);
+                               struct glint_engine_report *report);
 
 /* Returns the median of N values, 1 .. CANVAS_MAX, and leaves VALUES as they
  * are. */

@@ -41,7 +41,7 @@ struct sweep_point {
     double ms, floor_ms, ratio, instructions;
     size_t arena_bytes, model_bytes;
     double psnr_db, ssim, p99, flux_error;
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     struct glint_cost cost; /* cost that the plan predicts */
     bool front; /* no other of its case is both cheaper and better */
     int picture;
@@ -69,7 +69,7 @@ struct sweep_picture {
 /* A frame against all of its light, in codes that are not rounded. */
 struct sweep_shot {
     double psnr_db, most_codes, instructions, ms;
-    struct glint_frame_report report;
+    struct glint_engine_report report;
 };
 
 /* The stars of some lamps, drawn alone with one value of the dial star_cull. */
@@ -134,7 +134,7 @@ int sweep_parts(struct sweep *s, const char *lens);
 enum glint_status sweep_frame(struct glint_frame *frame,
                               const struct glint_lamp *lamp, int n,
                               double exposure, const struct glint_image *image,
-                              struct glint_frame_report *report);
+                              struct glint_engine_report *report);
 
 /* Returns the cost of a frame of P: in memory floors, or with by_instructions
  * in millions of instructions; NAN if it was not measured. */

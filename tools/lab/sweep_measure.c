@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "linux/instructions.h"
-#include "engine/measure.h"
+#include "glint/measure.h"
 #include "lab/sweep.h"
 #include "lab/sweep_exact.h"
 #include "options/timed_text.h"
@@ -97,7 +97,7 @@ static int make_run(struct bay *b, struct run *r)
  * luminance, as drawn by default, is white. */
 static enum glint_status expose(struct bay *b)
 {
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     const enum glint_status status = glint_frame_draw_alone(
         &b->run[0].frame, b->lamp, b->c->n_lamps, 1, b->got.rgb, &report);
 
@@ -223,7 +223,7 @@ static enum glint_status measure_flux(struct bay *b, struct run *r)
                                 .width = b->c->width,
                                 .height = b->c->height};
     int32_t *linear_q20 = calloc(n, sizeof *linear_q20);
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     enum glint_status status = GLINT_E_MEMORY;
     double sum = 0;
 
@@ -322,7 +322,7 @@ static enum glint_status measure_point(struct bay *b, struct run *r,
                                        const uint8_t *exact_codes,
                                        double exposure, uint8_t *codes)
 {
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     struct glint_measure m;
     const enum glint_status status = canvas_codes(
         &r->frame, b->lamp, b->c->n_lamps, exposure, codes, &report);

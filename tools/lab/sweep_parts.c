@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/measure.h"
+#include "glint/measure.h"
 #include "engine/frame/cost.h"
 #include "engine/setup/dirt.h"
 #include "lab/plots/plot.h"
@@ -45,7 +45,7 @@ struct bay {
 };
 
 static enum glint_status draw(struct bay *b, enum glint_pixel_format format,
-                              void *mem, struct glint_frame_report *report)
+                              void *mem, struct glint_engine_report *report)
 {
     struct glint_image image = {.format = format,
                                 .width = b->frame.view.width,
@@ -64,7 +64,7 @@ static enum glint_status set_exact(struct bay *b)
     const size_t n =
         3 * (size_t)b->frame.view.width * (size_t)b->frame.view.height;
     int32_t *linear_q20 = malloc(n * sizeof *linear_q20);
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     enum glint_status status = GLINT_E_MEMORY;
 
     b->exact = malloc(n * sizeof *b->exact);
@@ -221,7 +221,7 @@ static enum glint_status expose(struct bay *b)
     struct glint_float_image got = {
         width, height,
         malloc(3 * (size_t)width * (size_t)height * sizeof(float))};
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     enum glint_status status = GLINT_E_MEMORY;
 
     if (got.rgb)

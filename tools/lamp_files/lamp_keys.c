@@ -113,36 +113,20 @@ bool lamp_keys_at(const struct lamp_list *list, int i, int frame,
 
 /* Lists the ids of the lamps at FRAME. Returns how many. */
 static int ids_of(const struct lamp_list *list, int frame,
-                  uint32_t id[GLINT_LAMP_DETECTOR_MAX])
+                  uint32_t id[GLINT_ENGINE_MAX_LAMPS])
 {
     struct lamp_row row;
     int n = 0;
 
-    for (int i = 0; i < list->n && n < GLINT_LAMP_DETECTOR_MAX; i++)
+    for (int i = 0; i < list->n && n < GLINT_ENGINE_MAX_LAMPS; i++)
         if (list->row[i].id && lamp_keys_at(list, i, frame, &row))
             id[n++] = row.id;
     return n;
 }
 
-void lamp_keys_ids(const struct lamp_list *list, int frame, uint32_t *id)
-{
-    struct lamp_row row;
-    uint32_t largest = 0;
-    int n = 0;
-
-    for (int i = 0; i < list->n; i++)
-        if (list->row[i].id < LAMP_ID_TEXT && list->row[i].id > largest)
-            largest = list->row[i].id;
-    for (int i = 0; i < list->n; i++)
-        if (lamp_keys_at(list, i, frame, &row)) {
-            id[n] = row.id ? row.id : largest + 1 + (uint32_t)n;
-            n++;
-        }
-}
-
 bool lamp_keys_is_cut(const struct lamp_list *list, int frame)
 {
-    uint32_t now[GLINT_LAMP_DETECTOR_MAX], before[GLINT_LAMP_DETECTOR_MAX];
+    uint32_t now[GLINT_ENGINE_MAX_LAMPS], before[GLINT_ENGINE_MAX_LAMPS];
     const int n = ids_of(list, frame, now);
     const int m = n && frame > 0 ? ids_of(list, frame - 1, before) : 0;
 

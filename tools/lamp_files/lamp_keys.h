@@ -37,13 +37,8 @@ enum glint_status lamp_keys_link(struct lamp_list *list);
 bool lamp_keys_at(const struct lamp_list *list, int i, int frame,
                   struct lamp_row *row);
 
-/* Sets ID to the ids of the lamps at FRAME, in the order of lamp_list_frame().
- * Lamps without an id get numbers above all ids of the list that are below
- * LAMP_ID_TEXT, by their places. */
-void lamp_keys_ids(const struct lamp_list *list, int frame, uint32_t *id);
-
 /* Returns whether FRAME and the frame before it both have lamps with ids and
- * share none, as after a cut. It compares GLINT_LAMP_DETECTOR_MAX of each at
+ * share none, as after a cut. It compares GLINT_ENGINE_MAX_LAMPS of each at
  * most. */
 bool lamp_keys_is_cut(const struct lamp_list *list, int frame);
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/frame/area.h"
+#include "glint/area.h"
 #include "lamp_files/lamp_keys.h"
 #include "options/timed_text.h"
 
@@ -239,24 +239,28 @@ static void set_shape(struct glint_lamp *lamp, const struct lamp_row *r,
 
 int lamp_list_frame(const struct lamp_list *list, int frame,
                     const struct glint_view *view, double focal_mm,
-                    struct glint_lamp *lamps, double *level, double *seen_px,
-                    int max)
+                    struct glint_engine_lamp *lamps, int max)
 {
+    uint32_t largest = 0;
     int n = 0;
 
+    for (int i = 0; i < list->n; i++)
+        if (list->row[i].id < LAMP_ID_TEXT && list->row[i].id > largest)
+            largest = list->row[i].id;
     for (int i = 0; i < list->n && n < max; i++) {
+        struct glint_lamp lamp = {.power = 0};
         struct lamp_row r;
 
         if (!lamp_keys_at(list, i, frame, &r))
             continue;
-        glint_view_to_angles(view, focal_mm, r.x, r.y, &lamps[n]);
-        lamps[n].power = r.power;
-        memcpy(lamps[n].rgb, r.rgb, sizeof r.rgb);
-        set_shape(&lamps[n], &r, glint_view_pixel_tangent(view, focal_mm));
-        if (level)
-            level[n] = r.level;
-        if (seen_px)
-            seen_px[n] = r.seen;
+        glint_view_to_angles(view, focal_mm, r.x, r.y, &lamp);
+        lamp.power = r.power;
+        memcpy(lamp.rgb, r.rgb, sizeof r.rgb);
+        set_shape(&lamp, &r, glint_view_pixel_tangent(view, focal_mm));
+        lamps[n] = glint_engine_lamp_of(
+            &lamp, r.id ? r.id : largest + 1 + (uint32_t)n);
+        lamps[n].level = r.level;
+        lamps[n].seen_px = r.seen;
         n++;
     }
     return n;

@@ -7,7 +7,6 @@
 
 #include <stdbool.h>
 
-#include "engine/detector.h"
 #include "glint/glint.h"
 
 enum { LAMP_LIST_MAX_ROWS = 1 << 20 };
@@ -56,12 +55,11 @@ enum glint_status lamp_list_add(struct lamp_list *list,
                                 const struct lamp_row *row);
 
 /* Sets LAMPS to the lamps of FRAME, at most MAX; if the list is linked, also to
- * those that move from an earlier row to a later one. Returns how many. LEVEL
- * and SEEN_PX, unless NULL, get the members level and seen of each lamp's
- * row. */
+ * those that move from an earlier row to a later one. Returns how many. Lamps
+ * without an id get numbers above all ids of the list that are below
+ * LAMP_ID_TEXT, by their places. */
 int lamp_list_frame(const struct lamp_list *list, int frame,
                     const struct glint_view *view, double focal_mm,
-                    struct glint_lamp *lamps, double *level, double *seen_px,
-                    int max);
+                    struct glint_engine_lamp *lamps, int max);
 
 #endif

@@ -79,8 +79,8 @@ static enum glint_status open_camera(struct live *l, struct glint_error *error)
     if (status != GLINT_OK)
         return status;
     l->time_us = 0;
-    if (l->o->compositor.sized && l->o->compositor.has_lens)
-        glint_lamp_detector_restart(&l->o->compositor.finder);
+    if (l->o->compositor.engine)
+        glint_engine_restart(l->o->compositor.engine);
     l->had_signal = l->in.source->has_signal;
     return GLINT_OK;
 }
@@ -115,7 +115,9 @@ static int turn(struct live *l)
     const enum glint_status status =
         over_scene_coarsen(&compositor->scene, live_adapt_quality(&l->adapt));
 
-    compositor->frame.dials = live_adapt_dials(&l->adapt, l->asked);
+    if (compositor->engine)
+        glint_engine_turn(compositor->engine,
+                          live_adapt_dials(&l->adapt, l->asked));
     return status == GLINT_OK ? EXIT_OK : tool_fail(l->tool, status, NULL);
 }
 
@@ -132,7 +134,8 @@ static int take_size(struct live *l, const struct glint_image *image)
     code = compositor_size(l->tool, compositor, image->width, image->height);
     if (code != EXIT_OK)
         return code;
-    l->asked = compositor->frame.dials;
+    if (compositor->engine)
+        l->asked = glint_engine_dials(compositor->engine);
     return turn(l);
 }
 

@@ -1,242 +1,57 @@
 /* SPDX-License-Identifier: MIT */
 #include "model/response_cache.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "model/cache_file.h"
 
-/* Revision of the figures. It is to be raised when glint_response_measure()
- * gives other figures for the same scene, because frames are drawn or measured
- * in another way. */
-enum { REVISION = 2 };
-
-enum {
-    VALUES = 7 * GLINT_RESPONSE_ANGLES + 2 * GLINT_RESPONSE_EXTENTS,
-    MAX_BYTES = 4096
-};
-
-/* The file of an entry, in the byte order of the machine, without padding. */
-struct entry {
-    char magic[8];
-    uint64_t key;
-    int32_t n;
-    uint32_t crc32; /* checksum of value */
-    double value[VALUES];
-};
-
-static const char magic[8] = "glintRS";
-
-/* ---------------------------------------------------------------------- key */
-
-/* Adds the bytes of WORD, the lowest first, to KEY by FNV-1a. */
-static void add_word(uint64_t *key, uint64_t word)
-{
-    for (int shift = 0; shift < 64; shift += 8)
-        *key = (*key ^ (word >> shift & 255)) * UINT64_C(0x100000001b3);
-}
-
-static void add_values(uint64_t *key, const double *value, size_t n)
-{
-    for (size_t i = 0; i < n; i++) {
-        uint64_t word;
-
-        memcpy(&word, &value[i], sizeof word);
-        add_word(key, word);
-    }
-}
-
-/* Adds the stop and the colours of a setup; all else in it follows from the
- * model. */
-static void add_setup(uint64_t *key, const struct glint_setup *s)
-{
-    const size_t n = (size_t)s->n_wavelengths;
-    const double stop[] = {s->n_blades, s->blade_rotation_deg, s->opening,
-                           s->n_wavelengths, s->n_sets};
-    const struct glint_iris *own = &s->iris;
-    const double iris[] = {own->roundness, own->softness, own->dust,
-                           own->dust_seed, s->clear};
-    const struct glint_set_wave *w = s->set_wave;
-
-    add_values(key, stop, sizeof stop / sizeof *stop);
-    if (own->roundness > 0 || s->dirt)
-        add_values(key, iris, sizeof iris / sizeof *iris);
-    add_values(key, s->wavelength_nm, n);
-    add_values(key, s->rgb[0], 3 * n);
-    add_values(key, s->unit_flux, n);
-    for (int i = 0; i < s->n_sets; i++) {
-        const double size = s->set_size[i];
-
-        add_values(key, &size, 1);
-        for (int j = 0; j < s->set_size[i]; j++, w++) {
-            add_values(key, &w->nm, 1);
-            add_values(key, w->rgb, 3);
-            add_values(key, &w->unit_flux, 1);
-        }
-    }
-}
-
-/* Adds the dials that glint_response_measure() does not set itself. */
-static void add_dials(uint64_t *key, const struct glint_frame *like)
-{
-    const struct glint_dials *d = &like->asked;
-    const double value[] = {
-        d->irradiance_steps, d->snap_codes_q8, d->dispersion_q8,
-        d->max_lights,       d->flags,         d->cull_codes,
-        d->area_points,      like->apart_px,   like->cfg.tile_log2};
-
-    add_values(key, value, sizeof value / sizeof *value);
-}
-
-/* Returns the key of a scene. It depends on the shape of the picture, not on
- * its size, and on BYTES, as too little memory makes grids coarser or leaves
- * parts of the flare out. */
-static uint64_t key_of(const struct glint_frame *like, size_t bytes)
-{
-    const struct glint_model_header *h = like->lens->header;
-    const double shape[] = {(double)like->view.width / like->view.height,
-                            like->view.sensor_width_mm, (double)bytes};
-    const uint32_t model[] = {h->key[0], h->key[1], h->crc32, h->bytes,
-                              REVISION};
-    uint64_t key = UINT64_C(0xcbf29ce484222325);
-
-    for (size_t i = 0; i < sizeof model / sizeof *model; i++)
-        add_word(&key, model[i]);
-    for (const char *c = GLINT_VERSION; *c; c++)
-        add_word(&key, (unsigned char)*c);
-    add_values(&key, shape, sizeof shape / sizeof *shape);
-    add_setup(&key, like->setup);
-    add_dials(&key, like);
-    return key;
-}
-
-/* -------------------------------------------------------------------- entry */
-
-/* Lists the places of R's values in the order of an entry. */
-static void list_values(struct glint_response *r, double *at[VALUES])
-{
-    int n = 0;
-
-    for (int i = 0; i < GLINT_RESPONSE_ANGLES; i++) {
-        at[n++] = &r->theta_deg[i];
-        for (int c = 0; c < 3; c++) {
-            at[n++] = &r->log2_of[i].peak[c];
-            at[n++] = &r->log2_of[i].mean[c];
-        }
-    }
-    for (int i = 0; i < GLINT_RESPONSE_EXTENTS; i++) {
-        at[n++] = &r->extent[i];
-        at[n++] = &r->softened_log2[i];
-    }
-}
-
-static struct entry entry_of(struct glint_response *r, uint64_t key)
-{
-    struct entry e = {.key = key, .n = r->n};
-    double *at[VALUES];
-
-    memcpy(e.magic, magic, sizeof magic);
-    list_values(r, at);
-    for (int i = 0; i < VALUES; i++)
-        e.value[i] = *at[i];
-    e.crc32 = glint_model_crc32(e.value, sizeof e.value);
-    return e;
-}
-
-/* Checks whether R has figures that glint_response_measure() could have
- * given. */
-static bool is_sound(const struct glint_response *r)
-{
-    if (r->n < 1 || r->n > GLINT_RESPONSE_ANGLES || r->theta_deg[0] != 0)
-        return false;
-    for (int i = 0; i < r->n; i++)
-        if (!(r->theta_deg[i] <= 90) ||
-            (i > 0 && !(r->theta_deg[i] > r->theta_deg[i - 1])))
-            return false;
-    for (int i = 0; i < GLINT_RESPONSE_EXTENTS; i++)
-        if (!(r->extent[i] <= 100) || !(r->softened_log2[i] <= 0) ||
-            !(r->softened_log2[i] >= -200) ||
-            (i > 0 && !(r->extent[i] > r->extent[i - 1])))
-            return false;
-    return true;
-}
-
-static bool take_entry(const struct entry *e, uint64_t key,
-                       struct glint_response *r)
-{
-    double *at[VALUES];
-
-    if (memcmp(e->magic, magic, sizeof magic) != 0 || e->key != key ||
-        e->crc32 != glint_model_crc32(e->value, sizeof e->value))
-        return false;
-    *r = (struct glint_response){.n = e->n};
-    list_values(r, at);
-    for (int i = 0; i < VALUES; i++) {
-        if (!(fabs(e->value[i]) <= 1000))
-            return false;
-        *at[i] = e->value[i];
-    }
-    return is_sound(r);
-}
-
-static bool read_entry(const char *path, uint64_t key, struct glint_response *r)
-{
-    size_t bytes;
-    uint8_t *data = cache_file_read(path, MAX_BYTES, &bytes);
-    struct entry e;
-    bool is_good = data && bytes == sizeof e;
-
-    if (is_good) {
-        memcpy(&e, data, sizeof e);
-        is_good = take_entry(&e, key, r);
-    }
-    free(data);
-    return is_good;
-}
-
-/* --------------------------------------------------------------------- both */
-
-static void tell(const struct tool *tool, const char *lens,
-                 const struct glint_response *r, const char *what,
+static void tell(const struct tool *tool, const char *lens, const char *what,
                  const char *where)
 {
     if (tool->verbose && !tool->quiet)
-        fprintf(stderr, "glint %s: response of %s, %d angles: %s%s\n",
-                tool->name, lens, r->n, what, where);
+        fprintf(stderr, "glint %s: response of %s: %s%s\n", tool->name, lens,
+                what, where);
 }
 
-static void keep(const struct tool *tool, const char *lens, char *path,
-                 uint64_t key, struct glint_response *r)
+static bool path_of(char path[CACHE_PATH_BYTES], const char *lens, uint64_t key)
 {
-    const struct entry e = entry_of(r, key);
+    return cache_file_folder(path, CACHE_PATH_BYTES) &&
+           cache_file_name(path, CACHE_PATH_BYTES, lens, key, "response");
+}
+
+static int read_entry(void *ctx, const char *lens, uint64_t key, void *data,
+                      size_t bytes)
+{
+    char path[CACHE_PATH_BYTES];
+    size_t got = 0;
+    uint8_t *const file =
+        path_of(path, lens, key) ? cache_file_read(path, bytes, &got) : NULL;
+    const bool is_read = file && got == bytes;
+
+    if (is_read) {
+        memcpy(data, file, bytes);
+        tell(ctx, lens, "read from ", path);
+    }
+    free(file);
+    return is_read;
+}
+
+static void write_entry(void *ctx, const char *lens, uint64_t key,
+                        const void *data, size_t bytes)
+{
+    char path[CACHE_PATH_BYTES];
     struct glint_error error = {""};
 
-    if (cache_file_write(path, &e, sizeof e, &error) == GLINT_OK)
-        tell(tool, lens, r, "measured, kept in ", path);
+    if (!path_of(path, lens, key))
+        tell(ctx, lens, "measured", "");
+    else if (cache_file_write(path, data, bytes, &error) == GLINT_OK)
+        tell(ctx, lens, "measured, kept in ", path);
     else
-        tell(tool, lens, r, "measured, not kept: ", error.text);
+        tell(ctx, lens, "measured, not kept: ", error.text);
 }
 
-enum glint_status response_cached(const struct tool *tool, const char *lens,
-                                  const struct glint_frame *like, size_t bytes,
-                                  struct glint_response *response)
+struct glint_engine_cache response_cache(const struct tool *tool)
 {
-    const uint64_t key = like->lens ? key_of(like, bytes) : 0;
-    char path[CACHE_PATH_BYTES];
-    const bool kept = like->lens && cache_file_folder(path, sizeof path) &&
-                      cache_file_name(path, sizeof path, lens, key, "response");
-    enum glint_status status;
-
-    *response = (struct glint_response){.n = 0};
-    if (kept && read_entry(path, key, response)) {
-        tell(tool, lens, response, "read from ", path);
-        return GLINT_OK;
-    }
-    status = glint_response_measure(like, bytes, response);
-    if (status == GLINT_OK && kept)
-        keep(tool, lens, path, key, response);
-    else if (status == GLINT_OK)
-        tell(tool, lens, response, "measured", "");
-    return status;
+    return (struct glint_engine_cache){read_entry, write_entry, (void *)tool};
 }

@@ -213,66 +213,30 @@ struct glint_view settings_view(const struct settings *settings, int width,
     return view;
 }
 
-int settings_frame(const struct tool *tool, const struct settings *settings,
-                   struct glint_view view, struct glint_frame *frame)
+void settings_engine(const struct tool *tool, const struct settings *settings,
+                     int width, int height, struct glint_engine_config *cfg)
 {
-    const struct glint_options *const o = &settings->options;
-
-    glint_frame_init(frame, &settings->setup, view, tool->workers);
-    frame->cfg.sets = tool_sets(tool);
-    frame->lens = settings->model.data ? &settings->model.lens : NULL;
-    frame->trace = settings_table_rays();
-    frame->clock = tool_seconds;
-    frame->dials = settings->dials;
-    frame->only_ghost = settings_only_ghost(settings);
-    frame->tints = settings->tints;
-    /* A limit of work would make the grid coarser than was asked for. */
-    frame->most_minsn =
-        settings_has_grid(settings) && !GLINT_OPTION_GIVEN(o, work)
-            ? 0
-            : 1000 * o->work;
-    frame->apart_px = o->apart;
-    if (o->area_samples)
-        frame->dials.area_points = o->area_samples;
-    if (o->max_lights)
-        frame->dials.max_lights = o->max_lights;
-    frame->asked = frame->dials;
-    frame->cfg.tile_log2 = 3 + o->tile;
-    frame->cfg.dither = o->dither;
-    if (o->budget > 0 && frame->lens) {
-        glint_budget_init(&frame->budget, o->budget);
-        frame->dials = glint_budget_dials(&frame->budget, &frame->dials);
-        if (glint_frame_calibrate(frame) != GLINT_OK)
-            return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    }
-    frame->star.share = settings_starburst(settings);
-    frame->star.is_alone =
-        o->only == GLINT_ONLY_STARBURST || o->only == GLINT_ONLY_VEIL;
-    if (o->only == GLINT_ONLY_VEIL || o->only == GLINT_ONLY_ALL) {
-        frame->veil.glare = o->veil;
-        frame->veil.haze = o->haze;
-        frame->veil.front = settings->front.dirt;
-    }
-    return EXIT_OK;
+    glint_engine_defaults(cfg, width, height);
+    glint_engine_configure(cfg, &settings->options);
+    cfg->model = settings->model.data ? &settings->model.lens : NULL;
+    cfg->workers = tool->workers;
+    cfg->sets = tool_sets(tool);
+    cfg->clock = tool_seconds;
+    cfg->camera.setup = &settings->setup;
+    cfg->camera.rays = settings_table_rays();
+    cfg->camera.tints = settings->tints;
+    cfg->camera.front = settings->front.dirt;
+    cfg->camera.projection = &settings->projection;
+    if (cfg->camera.sensor_width_mm > 0)
+        return;
+    cfg->camera.sensor_width_mm = settings->lens.film_width_mm;
+    cfg->camera.sensor_height_mm = settings->lens.film_height_mm;
 }
 
 bool settings_has_veil(const struct settings *settings)
 {
     return settings->options.veil > 0 || settings->options.haze > 0 ||
            front_option_asked(&settings->front);
-}
-
-double settings_starburst(const struct settings *settings)
-{
-    const struct glint_options *const o = &settings->options;
-
-    if (o->only == GLINT_ONLY_GHOSTS || o->only == GLINT_ONLY_VEIL)
-        return 0;
-    if (GLINT_OPTION_GIVEN(o, starburst))
-        return o->starburst;
-    if (o->only == GLINT_ONLY_STARBURST)
-        return 1;
-    return GLINT_OPTION_GIVEN(o, ghost) ? 0 : o->starburst;
 }
 
 int settings_only_ghost(const struct settings *settings)
@@ -287,7 +251,8 @@ double settings_scale(const struct settings *settings)
     return settings->options.gain * exp2(settings->options.exposure);
 }
 
-void settings_json(struct json_writer *json, const struct glint_frame_report *r)
+void settings_json(struct json_writer *json,
+                   const struct glint_engine_report *r)
 {
     json_write(
         json,
@@ -311,7 +276,7 @@ void settings_json(struct json_writer *json, const struct glint_frame_report *r)
                    r->dials.dim_codes, r->blurred, r->unveiled);
 }
 
-void settings_lights_text(const struct glint_frame_report *r, char text[64])
+void settings_lights_text(const struct glint_engine_report *r, char text[64])
 {
     if (r->drawn_lights < r->lights - r->beyond_lights)
         snprintf(text, 64, "%d lights, %d after merging", r->lights,
@@ -321,7 +286,7 @@ void settings_lights_text(const struct glint_frame_report *r, char text[64])
 }
 
 void settings_warn_lights(const struct tool *tool,
-                          const struct glint_frame_report *r)
+                          const struct glint_engine_report *r)
 {
     if (r->tight)
         fprintf(stderr,

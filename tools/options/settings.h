@@ -9,7 +9,7 @@
 #include "desk/front_option.h"
 #include "desk/stop_option.h"
 #include "options/coating.h"
-#include "engine/frame/frame.h"
+#include "glint/engine.h"
 #include "glint/quality.h"
 #include "model/model_file.h"
 #include "model/zoom_option.h"
@@ -103,9 +103,10 @@ void settings_close(struct settings *settings);
 struct glint_view settings_view(const struct settings *settings, int width,
                                 int height);
 
-/* Makes FRAME as the options say. Returns an exit code. */
-int settings_frame(const struct tool *tool, const struct settings *settings,
-                   struct glint_view view, struct glint_frame *frame);
+/* Sets CFG to what SETTINGS, which are open, say of an engine for pictures of
+ * WIDTH x HEIGHT. */
+void settings_engine(const struct tool *tool, const struct settings *settings,
+                     int width, int height, struct glint_engine_config *cfg);
 
 /* Set the option NAME. Return false, and change nothing, if it does not accept
  * TEXT, or VALUE: a number, the index of a word, or 0 or 1. */
@@ -120,9 +121,6 @@ void settings_set_quality(struct settings *settings, double quality);
 /* Returns whether --grid, --quality or --error was given. */
 bool settings_has_grid(const struct settings *settings);
 
-/* Returns the factor on the physical starburst that is drawn; 0: none. */
-double settings_starburst(const struct settings *settings);
-
 /* Returns the index of the only ghost that is drawn; -1: all are. */
 int settings_only_ghost(const struct settings *settings);
 
@@ -134,16 +132,16 @@ double settings_scale(const struct settings *settings);
 
 /* Writes the report of a frame as members of an object. */
 void settings_json(struct json_writer *json,
-                   const struct glint_frame_report *report);
+                   const struct glint_engine_report *report);
 
 /* Writes as text how many lights there were and are drawn. */
-void settings_lights_text(const struct glint_frame_report *report,
+void settings_lights_text(const struct glint_engine_report *report,
                           char text[64]);
 
 /* Warns on standard error of lights that lie beyond the model or were merged
  * because they were too many; even with -q, if bundles are missing or the frame
  * is drawn coarser; with -v, of cells that give no light. */
 void settings_warn_lights(const struct tool *tool,
-                          const struct glint_frame_report *report);
+                          const struct glint_engine_report *report);
 
 #endif

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "formats/kept.h"
+#include "glint/exact.h"
 #include "model/model_cache.h"
 #include "model/table_file.h"
 #include "options/settings_table.h"

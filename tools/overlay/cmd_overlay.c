@@ -10,7 +10,7 @@
 
 #include "overlay/overlay_line.h"
 #include "overlay/overlay_y4m.h"
-#include "engine/setup/spectrum.h"
+#include "glint/setup.h"
 #include "options/command_line.h"
 #include "formats/kept.h"
 #include "posix/error.h"
@@ -196,8 +196,8 @@ static void say_frame(const struct overlay *o)
             o->compositor.report.stats.primitives);
 }
 
-static void note_worst(struct glint_frame_report *worst,
-                       const struct glint_frame_report *report)
+static void note_worst(struct glint_engine_report *worst,
+                       const struct glint_engine_report *report)
 {
     const int dropped =
         worst->stats.dropped_bundles > report->stats.dropped_bundles
@@ -251,7 +251,7 @@ int overlay_look(struct tool *tool, struct overlay *o,
     if (o->first - compositor->n_frames <= o->warm_up) {
         status = compositor_find(compositor, image, o->elapsed_us);
         if (status == GLINT_OK && compositor->has_lens)
-            compositor_expose(compositor, o->elapsed_us);
+            status = compositor_expose(compositor, image);
     }
     o->is_cut = compositor_is_new(compositor);
     compositor->n_frames++;
@@ -279,9 +279,13 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
         return code;
     o->find_ms += compositor->find_ms;
     o->flare_ms += compositor->flare_ms;
-    o->peak =
-        fmax(o->peak, glint_largest_channel(compositor->strength.light.peak));
-    o->mean_sum += glint_largest_channel(compositor->strength.light.mean);
+    if (compositor->engine) {
+        const struct glint_response_light *const light =
+            &glint_engine_exposed(compositor->engine)->light;
+
+        o->peak = fmax(o->peak, glint_largest_channel(light->peak));
+        o->mean_sum += glint_largest_channel(light->mean);
+    }
     if (compositor->n_lamps > o->most_lights)
         o->most_lights = compositor->n_lamps;
     o->n_reused += compositor->report.stats.reused;

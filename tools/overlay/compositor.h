@@ -18,7 +18,6 @@
 #include "lamp_files/lamp_save.h"
 #include "lamp_files/lamp_list.h"
 #include "options/settings.h"
-#include "engine/strength.h"
 #include "scenes/over_scene.h"
 #include "options/command_line.h"
 
@@ -33,8 +32,6 @@ struct compositor {
     struct occlusion occlusion; /* what hides lamps */
     struct over_scene scene;    /* things over the picture */
     struct lamp_list at;        /* lamps given by hand, by pixel */
-    double threshold_ev[2];     /* of --threshold */
-    double headroom_ev;         /* below 0: estimated */
     bool show_lights;
     bool is_still; /* pictures by themselves, for which there is time */
     /* Bytes reserved for frames, which take no more; 0: as many as they
@@ -42,12 +39,6 @@ struct compositor {
     size_t reserve_bytes;
     int n_hand;
     struct glint_lamp hand[SETTINGS_MAX_LAMPS];
-    /* How bright flares are to be, and the factor on the lamps' powers that
-     * this gives for each frame. */
-    struct glint_strength strength;
-    /* what a picture by itself shows under its flare, from when its lamps are
-     * found until it is exposed; else NULL */
-    struct glint_ground *ground;
     int dial; /* code of the option that set the brightness, --strength or
                  --exposure; 0: none */
 
@@ -56,36 +47,23 @@ struct compositor {
     bool is_listed;        /* Lamps come from a list, by file or by pixel. */
     struct lamp_list list; /* lamps of the file and those by pixel */
     struct lamp_save save;
-    struct glint_lamp_detector finder;
-    struct glint_lamp *lamp; /* lamps of the frame, with room for all by hand
-                                and all found or read */
-    double *level;  /* share of its power that each lamp has, as in struct
-                       glint_strength_lamps */
-    double *share;  /* share of each lamp that the scene does not hide */
-    double *excess; /* what each lamp has above the light that the picture
-                       shows of it */
-    /* [n_before]: the same of the last frame, as if no scene hid anything, and
-     * the lamps it was of. */
-    double *excess_before;
-    uint32_t *id_before;
-    int n_before;
-    double *seen_px; /* extent of each lamp that the picture clips, or 0 */
-    uint32_t *id;    /* number that each lamp is saved under */
-    struct glint_response response;
+    struct glint_engine_lamp *lamp; /* lamps of the frame, with room for all by
+                                       hand and all found or read */
     double white; /* light of the picture's white; 1, or as overlay_file.c sets
                      it */
     bool is_measured; /* the picture has the light of lamps beyond white */
     struct glint_view view;
-    struct glint_frame frame;
+    struct glint_engine_cache cache;
+    struct glint_engine *engine;   /* NULL: there is no lens, or no size yet */
     struct tool_progress progress; /* of the first frame by exact rays */
-    bool sized;
+    bool is_progressing, sized;
 
     /* These are of the last frame. */
     bool is_followed; /* The frame is of a video whose lamps are tracked. */
     int n_frames;
     int n_lamps, n_own; /* all lamps; of these that are not the scene's */
     double find_ms, flare_ms;
-    struct glint_frame_report report;
+    struct glint_engine_report report;
 };
 
 void compositor_defaults(struct compositor *compositor);
@@ -150,13 +128,14 @@ enum glint_status compositor_draw(struct compositor *compositor,
 
 /* The parts of compositor_draw(), for compositor_layer.h: _find sets the lamps
  * of IMAGE and draws the scene over it; _expose saves them, which may have been
- * measured since, and sets the exposure; _scale returns the factor on their
- * light; _drawn ends what is shown of the progress of a frame; _mark marks them
- * on IMAGE. */
+ * measured since, and sets the exposure on IMAGE; _scale returns the factor on
+ * their light; _drawn ends what is shown of the progress of a frame; _mark
+ * marks them on IMAGE. */
 enum glint_status compositor_find(struct compositor *compositor,
                                   const struct glint_image *image,
                                   int32_t elapsed_us);
-void compositor_expose(struct compositor *compositor, int32_t elapsed_us);
+enum glint_status compositor_expose(struct compositor *compositor,
+                                    const struct glint_image *image);
 double compositor_scale(const struct compositor *compositor);
 /* Returns whether lamps and exposure begin anew in the frame that _find looked
  * at, as after a cut. */

@@ -141,13 +141,6 @@ static void move_lamp(struct compositor *c)
         exp2(keys_at(&c->keys, KEYS_EV, c->n_frames, GLINT_LIGHT_AT_EV));
 }
 
-bool compositor_is_new(const struct compositor *c)
-{
-    return c->settings.options.no_tracking ||
-           (c->is_listed ? lamp_keys_is_cut(&c->list, c->n_frames)
-                         : glint_lamp_tracker_was_cut(c->finder.tracks));
-}
-
 /* Stops the lens as the key frames say; the exposure stays that of the widest
  * stop. */
 static void turn_stop(struct compositor *c)
@@ -169,8 +162,7 @@ static void turn_stop(struct compositor *c)
     stop->iris.roundness = round;
     if (settings_stop(s, f_number, &error) != GLINT_OK)
         return;
-    glint_setup_stop(&c->settings.setup, &c->frame.cfg.stop);
-    glint_frame_retune(&c->frame);
+    glint_engine_restop(c->engine);
 }
 
 void compositor_desk_turn(struct compositor *c)
@@ -185,8 +177,8 @@ void compositor_desk_turn(struct compositor *c)
     s->options.exposure =
         keys_at(&c->keys, KEYS_EXPOSURE, frame, s->options.exposure);
     s->options.gain = keys_at(&c->keys, KEYS_GAIN, frame, s->options.gain);
-    c->strength.asked =
-        keys_at(&c->keys, KEYS_STRENGTH, frame, c->strength.asked);
+    s->options.strength =
+        keys_at(&c->keys, KEYS_STRENGTH, frame, s->options.strength);
     if (keys_has(&c->keys, KEYS_STARBURST)) {
         GLINT_OPTION_GIVEN(&s->options, starburst) = true;
         s->options.starburst = keys_at(&c->keys, KEYS_STARBURST, frame, 1);
@@ -216,7 +208,7 @@ int compositor_desk_open(const struct tool *tool, struct compositor *c)
 void compositor_desk_hide(struct compositor *c, int n)
 {
     occlusion_apply(&c->occlusion, c->n_frames, &c->view,
-                    c->settings.setup.optics.focal_mm, c->lamp, c->level, n);
+                    c->settings.setup.optics.focal_mm, c->lamp, n);
 }
 
 void compositor_desk_close(struct compositor *c)
@@ -227,11 +219,6 @@ void compositor_desk_close(struct compositor *c)
 
 /* --------------------------------------------------------------------- scene
  */
-
-/* From here on lights of scenes are numbered, beyond hashes of most texts. */
-#define SCENE_IDS UINT32_C(0x7fffff00)
-/* Highlights of scenes, likewise. */
-#define HIGHLIGHT_IDS UINT32_C(0x7ffe0000)
 
 /* Share of a budget that the flare has at least. */
 #define LEAST_SHARE 0.1
@@ -260,82 +247,54 @@ int compositor_scene_size(struct compositor *c, int width, int height)
     return over_scene_size(&c->scene, &dials);
 }
 
-/* Adds the highlights of the scene. The picture shows them, as it does lamps.
- */
-static void add_glints(struct compositor *c)
-{
-    struct over_scene_glint glint[GLINTS_MAX];
-    const int n = c->n_lamps;
-
-    c->n_lamps += over_scene_glints(&c->scene, &c->view,
-                                    c->settings.setup.optics.focal_mm,
-                                    c->lamp + n, glint);
-    for (int i = n; i < c->n_lamps; i++) {
-        c->share[i] = 1;
-        c->level[i] = glint[i - n].level;
-        c->seen_px[i] = glint[i - n].size_px;
-        c->id[i] = LAMP_ID_TEXT + HIGHLIGHT_IDS + glint[i - n].id % 65536;
-    }
-}
-
 enum glint_status compositor_scene(struct compositor *c,
                                    const struct glint_image *image)
 {
     const double focal_mm = c->settings.setup.optics.focal_mm;
+    const double budget_ms = c->settings.options.budget;
     const int n = c->n_lamps;
     enum glint_status status;
 
     c->n_own = n;
-    for (int i = 0; i < n; i++)
-        c->share[i] = 1;
     if (!c->scene.is_open)
         return GLINT_OK;
-    if (c->settings.options.budget > 0)
+    if (budget_ms > 0)
         c->scene.budget_ms =
-            c->has_lens ? scene_budget_limit(c->settings.options.budget,
-                                             c->flare_ms, c->report.quality)
-                        : c->settings.options.budget;
+            c->has_lens
+                ? scene_budget_limit(budget_ms, c->flare_ms, c->report.quality)
+                : budget_ms;
     status = over_scene_draw(&c->scene, image, c->n_frames);
     /* The flare has what the scene leaves. */
-    if (c->settings.options.budget > 0 && c->has_lens)
-        c->frame.budget.ms =
-            c->settings.options.budget *
-            fmax(LEAST_SHARE, 1 - c->scene.ms / c->settings.options.budget);
+    if (budget_ms > 0 && c->has_lens)
+        glint_engine_budget(c->engine,
+                            budget_ms *
+                                fmax(LEAST_SHARE, 1 - c->scene.ms / budget_ms));
     if (status != GLINT_OK || !c->has_lens)
         return status;
-    over_scene_hide(&c->scene, &c->view, focal_mm, c->lamp, c->share, n);
-    c->n_lamps += over_scene_lights(&c->scene, &c->view, focal_mm, c->lamp + n,
-                                    c->share + n);
-    for (int i = n; i < c->n_lamps; i++) {
-        c->level[i] = 1;
-        c->seen_px[i] = -1; /* the picture does not show it */
-        c->id[i] = LAMP_ID_TEXT + SCENE_IDS + (uint32_t)(i - n);
-    }
-    add_glints(c);
-    for (int i = 0; i < c->n_lamps; i++)
-        if (c->share[i] > OVER_SCENE_HIDDEN || !c->is_still)
-            c->level[i] *= c->share[i];
+    over_scene_hide(&c->scene, &c->view, focal_mm, c->lamp, n);
+    c->n_lamps += over_scene_lights(&c->scene, &c->view, focal_mm, c->lamp + n);
+    c->n_lamps +=
+        over_scene_glints(&c->scene, &c->view, focal_mm, c->lamp + c->n_lamps);
+    for (int i = 0; i < c->n_lamps; i++) {
+        struct glint_engine_lamp *const lamp = &c->lamp[i];
+
+        if (lamp->share > OVER_SCENE_HIDDEN || !c->is_still)
+            lamp->level *= lamp->share;
         else /* the exposure of a picture by itself lifts what is left */
-            c->lamp[i].power = 0;
+            lamp->lamp.power = 0;
+    }
     return GLINT_OK;
 }
 
 /* --------------------------------------------------------------------- lamps
  */
 
-/* Returns whether lamp I was found in the picture. */
-static bool is_found(const struct compositor *compositor, int i)
-{
-    return !compositor->is_listed && compositor->n_hand == 0 &&
-           i < compositor->n_own;
-}
-
 /* Returns the row that lamp I is saved as: where it was found, or where a list
  * or option puts it. */
 static struct lamp_row row_of(const struct compositor *compositor, int i)
 {
-    const bool found = is_found(compositor, i);
-    const struct glint_lamp *lamp = &compositor->lamp[i];
+    const struct glint_engine_lamp *const known = &compositor->lamp[i];
+    const struct glint_lamp *lamp = &known->lamp;
     const double *axis = lamp->axis;
     const double focal = compositor->settings.setup.optics.focal_mm;
     const double pixels =
@@ -346,21 +305,17 @@ static struct lamp_row row_of(const struct compositor *compositor, int i)
                            .size = pixels * hypot(axis[0], axis[1]),
                            .shape = axis[0] > 0 ? axis[1] / axis[0] : 1,
                            .turn = lamp->turn_deg,
-                           .level = compositor->level[i],
-                           .seen = fmax(compositor->seen_px[i], 0),
-                           .id = compositor->id[i],
+                           .level = known->level,
+                           .seen = fmax(known->seen_px, 0),
+                           .id = known->id,
                            .next = -1};
 
     memcpy(row.rgb, lamp->rgb, sizeof row.rgb);
-    if (found) {
-        const struct glint_lamp_track *track = &compositor->finder.track[i];
-
-        row.x = track->x_q8 / 256.0;
-        row.y = track->y_q8 / 256.0;
+    if (known->is_found) {
+        row.x = known->track.x_q8 / 256.0;
+        row.y = known->track.y_q8 / 256.0;
     } else
-        glint_view_to_pixel(&compositor->view,
-                            compositor->settings.setup.optics.focal_mm, lamp,
-                            &row.x, &row.y);
+        glint_view_to_pixel(&compositor->view, focal, lamp, &row.x, &row.y);
     return row;
 }
 
@@ -378,11 +333,12 @@ void compositor_save_lamps(struct compositor *compositor)
 void compositor_mark(const struct compositor *compositor,
                      const struct glint_image *image)
 {
-    const bool found = is_found(compositor, 0);
+    const bool found = !compositor->is_listed && compositor->n_hand == 0 &&
+                       compositor->n_own > 0;
 
     if (compositor->settings.options
             .preview) /* without memory there are no numbers */
-        preview_number(&compositor->frame, compositor->lamp,
+        preview_number(compositor->engine, compositor->lamp,
                        compositor->n_lamps, compositor_scale(compositor),
                        image);
     over_scene_mark(&compositor->scene, image);
@@ -395,8 +351,8 @@ void compositor_mark(const struct compositor *compositor,
 
         if (!(fabs(row.x) < 1 << 20 && fabs(row.y) < 1 << 20))
             continue;
-        if (is_found(compositor, i))
-            track = compositor->finder.track[i];
+        if (compositor->lamp[i].is_found)
+            track = compositor->lamp[i].track;
         track.x_q8 = (int32_t)(row.x * 256);
         track.y_q8 = (int32_t)(row.y * 256);
         show_light_of(image, &track, row.power);

@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* --------------------------------------------------------------- measuring */
 
@@ -103,11 +102,10 @@ static struct sum seen_of(const struct glint_lamp_track *track, double white)
     return sum;
 }
 
-static void set_lamp(struct compositor *compositor, int i,
-                     const struct sum *sum)
+static void set_lamp(const struct compositor *compositor,
+                     struct glint_engine_lamp *lamp, const struct sum *sum)
 {
-    struct glint_lamp *const lamp = &compositor->lamp[i];
-    struct glint_lamp_track *const track = &compositor->finder.track[i];
+    struct glint_lamp_track *const track = &lamp->track;
     const double focal = compositor->settings.setup.optics.focal_mm;
 
     if (!(sum->luminance > 0))
@@ -115,15 +113,16 @@ static void set_lamp(struct compositor *compositor, int i,
     track->x_q8 = (int32_t)lrint(256 * sum->x / sum->luminance);
     track->y_q8 = (int32_t)lrint(256 * sum->y / sum->luminance);
     glint_view_to_angles(&compositor->view, focal, track->x_q8 / 256.0,
-                         track->y_q8 / 256.0, lamp);
-    lamp->power = fmin(sum->luminance, LAMP_MAX_POWER) * compositor->level[i];
+                         track->y_q8 / 256.0, &lamp->lamp);
+    lamp->lamp.power = fmin(sum->luminance, LAMP_MAX_POWER) * lamp->level;
     for (int c = 0; c < 3; c++)
-        lamp->rgb[c] = sum->rgb[c] / sum->luminance;
+        lamp->lamp.rgb[c] = sum->rgb[c] / sum->luminance;
 }
 
 void compositor_measure(struct compositor *compositor,
                         const struct glint_samples *samples, double white)
 {
+    struct glint_engine_lamp *const lamp = compositor->lamp;
     const int n = compositor->n_own;
     struct reach *all;
 
@@ -131,109 +130,29 @@ void compositor_measure(struct compositor *compositor,
         return;
     all = malloc((size_t)n * sizeof *all);
     for (int i = 0; i < n && all; i++)
-        all[i] = reach_of(&compositor->finder.track[i], compositor->view.width,
+        all[i] = reach_of(&lamp[i].track, compositor->view.width,
                           compositor->view.height);
     for (int i = 0; i < n && all; i++) {
-        struct sum sum = seen_of(&compositor->finder.track[i], white);
+        struct sum sum = seen_of(&lamp[i].track, white);
 
         add_excess(&sum, samples, all, n, i, white);
-        set_lamp(compositor, i, &sum);
+        set_lamp(compositor, &lamp[i], &sum);
     }
     free(all);
 }
 
 /* ------------------------------------------------------------------ drawing */
 
-static enum glint_status draw_as_for_codes(struct compositor *compositor,
-                                           float *rgb)
-{
-    const size_t n =
-        3 * (size_t)compositor->view.width * (size_t)compositor->view.height;
-    struct glint_image layer = {.format = GLINT_LINEAR_Q20,
-                                .width = compositor->view.width,
-                                .height = compositor->view.height};
-    enum glint_status status;
-
-    memset(rgb, 0, n * sizeof *rgb);
-    /* RGB holds integers until they are converted. */
-    glint_image_place(&layer, rgb);
-    compositor->frame.for_codes = true;
-    status = glint_frame_draw(&compositor->frame, compositor->lamp,
-                              compositor->n_lamps, compositor_scale(compositor),
-                              &layer, &compositor->report);
-    compositor->frame.for_codes = false;
-    for (size_t i = 0; i < n; i++) {
-        int32_t light_q20;
-
-        memcpy(&light_q20, &rgb[i], sizeof light_q20);
-        rgb[i] = (float)light_q20 * 0x1p-20F;
-    }
-    return status;
-}
-
 enum glint_status compositor_draw_layer(struct compositor *compositor,
                                         bool is_deep, float *rgb)
 {
     const double start = tool_seconds();
-    enum glint_status status;
+    const enum glint_status status = glint_engine_layer(
+        compositor->engine, compositor->lamp, compositor->n_lamps,
+        is_deep ? GLINT_ENGINE_ALL : GLINT_ENGINE_ALL | GLINT_ENGINE_CODES, rgb,
+        &compositor->report);
 
-    if (is_deep && compositor->n_lamps > 0)
-        status = glint_frame_draw_alone(
-            &compositor->frame, compositor->lamp, compositor->n_lamps,
-            compositor_scale(compositor), rgb, &compositor->report);
-    else
-        status = draw_as_for_codes(compositor, rgb);
     compositor_drawn(compositor);
     compositor->flare_ms = 1e3 * (tool_seconds() - start);
     return status;
-}
-
-/* -------------------------------------------------------------------- veil */
-
-/* Returns what lamp I, which the finder found, has over what the picture shows
- * of it where nothing of the scene hides it, of a video followed from the last
- * frame by a third of a second: what is estimated of a lamp that clips may jump
- * for a frame. */
-static double excess_found(const struct compositor *compositor, int i,
-                           int32_t elapsed_us)
-{
-    const double excess = glint_lamp_excess(
-        &compositor->lamp[i], &compositor->finder.track[i],
-        compositor->level[i], compositor->share[i], compositor->white);
-    const double k = 1 - exp(-3e-6 * elapsed_us);
-
-    for (int j = 0; j < compositor->n_before && elapsed_us > 0; j++)
-        if (compositor->id_before[j] == compositor->id[i])
-            return compositor->excess_before[j] +
-                   k * (excess - compositor->excess_before[j]);
-    return excess;
-}
-
-void compositor_veil(struct compositor *compositor, int32_t elapsed_us)
-{
-    struct glint_frame_veil *veil = &compositor->frame.veil;
-    const struct settings *s = &compositor->settings;
-    const bool found = !compositor->is_listed && compositor->n_hand == 0;
-    /* each frame anew: keys may turn a gain down to 0, and up again */
-    const bool is_on =
-        s->options.gain > 0 && (s->options.only == GLINT_ONLY_VEIL ||
-                                s->options.only == GLINT_ONLY_ALL);
-    const size_t n = (size_t)compositor->n_lamps;
-
-    for (int i = 0; i < compositor->n_lamps; i++)
-        compositor->excess[i] =
-            found && i < compositor->n_own
-                ? excess_found(compositor, i, elapsed_us)
-                : compositor->lamp[i].power / compositor->share[i];
-    memcpy(compositor->excess_before, compositor->excess,
-           n * sizeof *compositor->excess);
-    memcpy(compositor->id_before, compositor->id, n * sizeof *compositor->id);
-    compositor->n_before = compositor->n_lamps;
-    for (int i = 0; i < compositor->n_lamps; i++)
-        compositor->excess[i] *= compositor->share[i];
-    veil->excess = compositor->excess;
-    veil->alone_gain = 1;
-    veil->glare = is_on ? s->options.veil : 0;
-    veil->haze = is_on ? s->options.haze : 0;
-    veil->front = is_on ? s->front.dirt : NULL;
 }

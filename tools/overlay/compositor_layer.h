@@ -21,8 +21,4 @@ void compositor_measure(struct compositor *compositor,
 enum glint_status compositor_draw_layer(struct compositor *compositor,
                                         bool is_deep, float *rgb);
 
-/* Sets the veil of the frame; of a video ELAPSED microseconds after the last
- * one, else 0. What pictures show of lamps is light of the picture. */
-void compositor_veil(struct compositor *compositor, int32_t elapsed_us);
-
 #endif

@@ -60,9 +60,6 @@ static void resolve(struct compositor *c)
         o->lights = NULL;
     if (o->memory)
         c->reserve_bytes = (size_t)o->memory << 20;
-    glint_option_threshold(o->threshold, c->threshold_ev);
-    c->headroom_ev = GLINT_OPTION_GIVEN(o, headroom) ? o->headroom : -1;
-    c->strength.asked = o->strength;
     c->occlusion.file = o->mask;
     c->occlusion.fade_px = o->edge_fade;
     c->scene.file = o->scene;
@@ -75,7 +72,6 @@ void compositor_defaults(struct compositor *compositor)
 {
     *compositor = (struct compositor){.white = 1};
     settings_defaults_photo(&compositor->settings);
-    glint_strength_defaults(&compositor->strength);
     resolve(compositor);
 }
 

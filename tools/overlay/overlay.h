@@ -36,7 +36,7 @@ struct overlay {
     /* Figures for warnings: those of the frame of which most lights were
      * merged, but with the most lights, lights beyond the model, and dropped
      * bundles and cells of all frames. */
-    struct glint_frame_report worst;
+    struct glint_engine_report worst;
     int most_lights;
     int n_reused; /* frames that were drawn with the edges of the last */
     /* find_ms, flare_ms: ms in all frames; started, reported: times of the

@@ -212,7 +212,7 @@ static struct glint_samples *drawn_on(struct overlay_file *f)
 static bool adds_nothing(const struct compositor *compositor)
 {
     return !compositor->scene.is_open &&
-           !glint_frame_has_veil(&compositor->frame) &&
+           !glint_engine_has_veil(compositor->engine) &&
            (compositor->n_lamps == 0 || !(compositor_scale(compositor) > 0));
 }
 
@@ -342,9 +342,7 @@ enum glint_status overlay_file_draw(struct overlay_file *file,
         compositor->n_frames++;
         return status;
     }
-    compositor_expose(compositor, elapsed_us);
-    status =
-        glint_frame_veil_look(&compositor->frame, &file->image, file->white);
+    status = compositor_expose(compositor, &file->image);
     if (status != GLINT_OK)
         return status;
     file->layer = calloc(n, sizeof *file->layer);

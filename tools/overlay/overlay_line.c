@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "engine/setup/spectrum.h"
+#include "glint/setup.h"
 #include "overlay/compositor_layer.h"
 
 /* Linear light, 1 = white, of code 2 of 255 in sRGB, whose slope near black is
@@ -30,7 +30,7 @@ static bool measure_layer(struct compositor *compositor,
 {
     const size_t n =
         (size_t)compositor->view.width * (size_t)compositor->view.height;
-    const struct glint_frame_report report = compositor->report;
+    const struct glint_engine_report report = compositor->report;
     float *rgb = malloc(3 * n * sizeof *rgb);
     const bool is_drawn =
         rgb && compositor_draw_layer(compositor, true, rgb) == GLINT_OK;
@@ -62,7 +62,7 @@ struct overlay_light overlay_light(struct overlay *o)
     struct glint_response_light drawn;
 
     if (is_part(compositor) && compositor->n_lamps > 0 &&
-        compositor->strength.scale > 0) {
+        compositor_scale(compositor) > 0) {
         light.is_known =
             compositor->n_frames == 1 && measure_layer(compositor, &drawn);
         if (light.is_known) {
@@ -71,11 +71,11 @@ struct overlay_light overlay_light(struct overlay *o)
         }
         return light;
     }
-    if (n != 1 || compositor->n_lamps == 0 || compositor->strength.scale <= 0 ||
-        compositor->strength.is_drawn ||
-        glint_response_draw(&compositor->frame, compositor->lamp,
-                            compositor->n_lamps, GLINT_RESPONSE_FINE, NULL,
-                            &drawn, NULL) != GLINT_OK)
+    if (n != 1 || compositor->n_lamps == 0 ||
+        compositor_scale(compositor) <= 0 ||
+        glint_engine_exposed(compositor->engine)->is_drawn ||
+        glint_engine_measure(compositor->engine, compositor->lamp,
+                             compositor->n_lamps, &drawn) != GLINT_OK)
         return light;
     light.peak = compositor_scale(compositor) / compositor->white *
                  glint_largest_channel(drawn.peak);
@@ -85,9 +85,9 @@ struct overlay_light overlay_light(struct overlay *o)
 }
 
 /* Returns the power of LAMP in stops over a white pixel. */
-static double stops_of(const struct glint_lamp *lamp)
+static double stops_of(const struct glint_engine_lamp *lamp)
 {
-    return log2(fmax(lamp->power, 1e-30));
+    return log2(fmax(lamp->lamp.power, 1e-30));
 }
 
 static double f_number_of(const struct settings *s)
@@ -99,13 +99,13 @@ static double f_number_of(const struct settings *s)
 
 /* ---------------------------------------------------------------- the line */
 
-static const struct glint_lamp *
+static const struct glint_engine_lamp *
 brightest_of(const struct compositor *compositor)
 {
-    const struct glint_lamp *best = compositor->lamp;
+    const struct glint_engine_lamp *best = compositor->lamp;
 
     for (int i = 1; i < compositor->n_lamps; i++)
-        if (compositor->lamp[i].power > best->power)
+        if (compositor->lamp[i].lamp.power > best->lamp.power)
             best = &compositor->lamp[i];
     return best;
 }
@@ -118,7 +118,7 @@ static double whole(double x)
 
 static void say_lights(const struct compositor *compositor, int most, FILE *to)
 {
-    const struct glint_lamp *lamp;
+    const struct glint_engine_lamp *lamp;
     double x, y;
 
     fprintf(to, "%s%d light%s", compositor->n_frames == 1 ? "" : "at most ",
@@ -127,8 +127,8 @@ static void say_lights(const struct compositor *compositor, int most, FILE *to)
         return;
     lamp = brightest_of(compositor);
     glint_view_to_pixel(&compositor->view,
-                        compositor->settings.setup.optics.focal_mm, lamp, &x,
-                        &y);
+                        compositor->settings.setup.optics.focal_mm, &lamp->lamp,
+                        &x, &y);
     fprintf(to, " (%s%.0f stops over a white pixel, at %.0f,%.0f)",
             most == 1 ? "" : "the brightest ", stops_of(lamp), whole(x),
             whole(y));
@@ -139,7 +139,7 @@ static void say_dial(const struct compositor *compositor, FILE *to)
     if (GLINT_OPTION_GIVEN(&compositor->settings.options, exposure))
         fprintf(to, "exposure %+g EV", compositor->settings.options.exposure);
     else
-        fprintf(to, "strength %g", compositor->strength.asked);
+        fprintf(to, "strength %g", compositor->settings.options.strength);
     if (compositor->settings.options.gain != 1)
         fprintf(to, ", gain %g", compositor->settings.options.gain);
 }
@@ -152,7 +152,7 @@ static void say_faint(const struct overlay *o,
     const bool is_held =
         compositor->settings.options.gain <= 0 ||
         (!GLINT_OPTION_GIVEN(&compositor->settings.options, exposure) &&
-         compositor->strength.asked <= 0);
+         compositor->settings.options.strength <= 0);
 
     if (is_held)
         fprintf(to, "%s: %s draws nothing, as it says\n", o->output,
@@ -180,17 +180,15 @@ static void say_faint(const struct overlay *o,
                 "%s: that is %.1f stops below what can be seen; --strength "
                 "%.2g shows it\n",
                 o->output, log2(least_seen / light->peak),
-                compositor->strength.asked * sqrt(well_seen / light->peak));
+                compositor->settings.options.strength *
+                    sqrt(well_seen / light->peak));
 }
 
 /* Returns what the picture has where no lamp gives light. */
 static const char *rest_of(const struct compositor *compositor)
 {
-    const bool is_veiled = compositor->frame.veil.glare > 0 ||
-                           compositor->frame.veil.haze > 0 ||
-                           compositor->frame.veil.front;
-
-    return is_veiled                   ? "only the veil"
+    return compositor->engine && glint_engine_has_veil(compositor->engine)
+               ? "only the veil"
            : compositor->scene.is_open ? "no flare"
                                        : "nothing";
 }
@@ -206,7 +204,7 @@ static bool is_hidden(const struct compositor *compositor,
         (compositor->n_frames > 1 && light->peak > 0))
         return false;
     for (int i = 0; i < compositor->n_lamps; i++)
-        if (compositor->lamp[i].power > 0)
+        if (compositor->lamp[i].lamp.power > 0)
             return false;
     return true;
 }
@@ -229,14 +227,15 @@ static void say_hidden(const struct compositor *compositor, int most, FILE *to)
 void overlay_say_none(const struct compositor *compositor, FILE *to)
 {
     const bool is_found = !compositor->is_listed && compositor->n_hand == 0;
-    const struct glint_spot *next = NULL;
+    struct glint_spot next;
+    const bool is_next = compositor->engine && is_found &&
+                         compositor->n_frames <= 1 &&
+                         glint_engine_doubtful(compositor->engine, &next);
 
-    if (compositor->sized && is_found && compositor->n_frames <= 1)
-        next = glint_lamp_detector_doubtful(&compositor->finder);
     fprintf(to, "no light was found, so %s was drawn; ", rest_of(compositor));
-    if (next)
+    if (is_next)
         fprintf(to, "brightest candidate: --light-at %.0f,%.0f",
-                next->x_q8 / 256.0, next->y_q8 / 256.0);
+                next.x_q8 / 256.0, next.y_q8 / 256.0);
     else
         fputs("see --threshold, or give one with --light-at X,Y", to);
     if (over_scene_keeps_lights(&compositor->scene))
@@ -312,18 +311,19 @@ void overlay_json(struct json_writer *json, const struct overlay *o,
                f_number_of(&compositor->settings),
                GLINT_OPTION_GIVEN(&compositor->settings.options, exposure)
                    ? (double)NAN
-                   : compositor->strength.asked,
-               log2(compositor->strength.scale),
+                   : compositor->settings.options.strength,
+               log2(compositor_scale(compositor)),
                light->is_known ? light->peak : (double)NAN,
                light->is_known ? light->mean : (double)NAN);
     for (int i = 0; i < compositor->n_lamps; i++) {
-        const struct glint_lamp *l = &compositor->lamp[i];
+        const struct glint_engine_lamp *known = &compositor->lamp[i];
+        const struct glint_lamp *l = &known->lamp;
         double x, y;
 
         glint_view_to_pixel(&compositor->view, focal, l, &x, &y);
         json_write(json,
                    "{x: %.2f, y: %.2f, stops: %.2f, rgb: [%.4g, %.4g, %.4g]}",
-                   x, y, stops_of(l), l->rgb[0], l->rgb[1], l->rgb[2]);
+                   x, y, stops_of(known), l->rgb[0], l->rgb[1], l->rgb[2]);
     }
     json_write(json, "]");
 }

@@ -57,19 +57,18 @@ static enum glint_status draw(void *ctx, struct compositor *compositor,
         compositor->n_frames++;
         return status;
     }
-    compositor_expose(compositor, elapsed_us);
+    status = compositor_expose(compositor, image);
     compositor->n_frames++;
-    status = glint_frame_veil_look(&compositor->frame, image, 1);
     if (status != GLINT_OK)
         return status;
     if (compositor->settings.options.layer != GLINT_LAYER_COMPOSITE)
         glint_y4m_light_blacken(&y->light, y->planes);
-    if (compositor->n_lamps == 0 && !glint_frame_has_veil(&compositor->frame))
+    if (compositor->n_lamps == 0 && !glint_engine_has_veil(compositor->engine))
         return GLINT_OK;
     status =
         compositor_draw_layer(compositor, y->light.layout.bits > 12, y->layer);
     if (status == GLINT_OK && (compositor_scale(compositor) > 0 ||
-                               glint_frame_has_veil(&compositor->frame)))
+                               glint_engine_has_veil(compositor->engine)))
         glint_y4m_light_add(&y->light, y->planes, y->layer);
     return status;
 }

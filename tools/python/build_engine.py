@@ -74,10 +74,13 @@ void glint_options_defaults(struct glint_options *options);
 enum glint_status glint_options_set(struct glint_options *options, const char *name, double value, struct glint_error *error);
 enum glint_status glint_options_set_text(struct glint_options *options, const char *name, const char *text, struct glint_error *error);
 _Bool glint_option_stop(const char *text, struct glint_stop_shape *stop);
+struct glint_engine_camera { int n_blades; double blade_rotation_deg, sensor_width_mm, sensor_height_mm; ...; };
 struct glint_engine_config { int width, height; const struct glint_lens *model; struct glint_workers *workers; unsigned sets;
-    int n_blades; double blade_rotation_deg, sensor_width_mm, sensor_height_mm; ...; };
-void glint_configure_(struct glint_engine_config *cfg, const struct glint_options *options);
-struct glint_engine_report { int lamps, lamps_beyond, lights, ghosts, bundles, dropped_bundles; size_t bytes; double scale; ...; };
+    struct glint_engine_camera camera; size_t arena_bytes; int arena_has_all; ...; };
+struct glint_engine_lamp { struct glint_lamp lamp; ...; };
+struct glint_engine_lamp glint_engine_lamp_of(const struct glint_lamp *lamp, uint32_t id);
+void glint_engine_configure(struct glint_engine_config *cfg, const struct glint_options *options);
+struct glint_engine_report { int drawn_lights, ghosts; size_t arena_bytes; double scale; ...; };
 struct glint_engine;
 struct glint_iris { double roundness, softness; ...; };
 void glint_engine_defaults(struct glint_engine_config *cfg, int width, int height);
@@ -85,10 +88,11 @@ enum glint_status glint_engine_create(struct glint_engine **engine, const struct
 void glint_engine_destroy(struct glint_engine *engine);
 enum glint_status glint_engine_iris(struct glint_engine *engine, int n_blades, double rotation_deg, const struct glint_iris *iris,
     struct glint_error *error);
-int glint_engine_find(struct glint_engine *engine, const struct glint_image *image, int32_t elapsed_us, struct glint_lamp *lamps, int max);
+int glint_engine_find(struct glint_engine *engine, const struct glint_image *image, int32_t elapsed_us, struct glint_engine_lamp *lamps,
+    int max);
 enum glint_status glint_engine_stop(struct glint_engine *engine, double f_number, struct glint_error *error);
 void glint_engine_elapsed(struct glint_engine *engine, int32_t elapsed_us);
-enum glint_status glint_engine_draw(struct glint_engine *engine, const struct glint_lamp *lamps, int n, const struct glint_image *image,
+enum glint_status glint_engine_draw(struct glint_engine *engine, struct glint_engine_lamp *lamps, int n, const struct glint_image *image,
     struct glint_engine_report *report);
 """)
 
@@ -118,28 +122,6 @@ static int glint_coatings_parse_(struct glint_coating *coatings, int *n, const c
 static void glint_coat_(struct glint_prescription *lens, const struct glint_coating *coatings, int n)
 {
     glint_prescription_coat(lens, coatings, n);
-}
-/* Sets the options that an engine has. */
-static void glint_configure_(struct glint_engine_config *cfg, const struct glint_options *o)
-{
-    double mm[2] = {0, 0};
-
-    cfg->strength = o->strength;
-    cfg->by_hand = GLINT_OPTION_GIVEN(o, exposure);
-    cfg->exposure_ev = o->exposure;
-    cfg->gain = o->gain;
-    cfg->starburst = o->starburst;
-    cfg->veil = o->veil;
-    cfg->haze = o->haze;
-    cfg->f_number = o->f_number;
-    if (o->sensor)
-        glint_option_sensor(o->sensor, mm);
-    cfg->sensor_width_mm = mm[0];
-    cfg->sensor_height_mm = mm[1];
-    glint_option_threshold(o->threshold, cfg->threshold_ev);
-    if (GLINT_OPTION_GIVEN(o, headroom))
-        cfg->headroom_ev = o->headroom;
-    cfg->dials = glint_options_quality(o).dials;
 }
 static double glint_focal_mm_(const struct glint_lens *lens)
 {

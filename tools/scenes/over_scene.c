@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/frame/area.h"
+#include "glint/area.h"
+#include "lamp_files/lamp_keys.h"
 #include "motions/time_line.h"
 #include "scenes/account.h"
 
@@ -306,6 +307,11 @@ void over_scene_mark(const struct over_scene *over,
 /* --------------------------------------------------------------------- lamps
  */
 
+/* From here on lights of scenes are numbered, beyond hashes of most texts, and
+ * highlights. */
+#define SCENE_IDS     UINT32_C(0x7fffff00)
+#define HIGHLIGHT_IDS UINT32_C(0x7ffe0000)
+
 /* Leaves of LAMP the share SEEN of its light. Returns that. */
 static double leave(struct over_scene *over, struct glint_lamp *lamp,
                     double seen)
@@ -318,24 +324,23 @@ static double leave(struct over_scene *over, struct glint_lamp *lamp,
 }
 
 void over_scene_hide(struct over_scene *over, const struct glint_view *view,
-                     double focal_mm, struct glint_lamp *lamps, double *share,
-                     int n)
+                     double focal_mm, struct glint_engine_lamp *lamps, int n)
 {
     const double pixels = 1 / glint_view_pixel_tangent(view, focal_mm);
 
     for (int i = 0; i < n; i++) {
         /* An even disc has twice its RMS semi-axis as radius. */
-        const double radius = 2 * pixels * lamps[i].axis[0];
+        const double radius = 2 * pixels * lamps[i].lamp.axis[0];
         double x, y;
         int cover;
 
-        glint_view_to_pixel(view, focal_mm, &lamps[i], &x, &y);
+        glint_view_to_pixel(view, focal_mm, &lamps[i].lamp, &x, &y);
         if (!(x >= 0 && y >= 0 && x < view->width && y < view->height))
             continue;
         cover = glint_scene_cover(over->frame.scene, (int32_t)(256 * x),
                                   (int32_t)(256 * y),
                                   (int32_t)(256 * fmin(radius, 1 << 14)));
-        share[i] = leave(over, &lamps[i], 1 - cover / 256.0);
+        lamps[i].share = leave(over, &lamps[i].lamp, 1 - cover / 256.0);
     }
 }
 
@@ -364,16 +369,21 @@ static bool set_lamp(const struct glint_scene_lamp *from,
 }
 
 int over_scene_lights(struct over_scene *over, const struct glint_view *view,
-                      double focal_mm, struct glint_lamp *lamps, double *share)
+                      double focal_mm, struct glint_engine_lamp *lamps)
 {
     struct glint_scene_lamp light[GLINT_SCENE_MAX_LIGHTS];
     const int all = glint_scene_lights(over->frame.scene, light);
     int n = 0;
 
     for (int i = 0; i < all; i++) {
-        if (!set_lamp(&light[i], view, focal_mm, &lamps[n]))
+        struct glint_lamp lamp = {.power = 0};
+
+        if (!set_lamp(&light[i], view, focal_mm, &lamp))
             continue;
-        share[n] = leave(over, &lamps[n], light[i].share / 16.0);
+        lamps[n] =
+            glint_engine_lamp_of(&lamp, LAMP_ID_TEXT + SCENE_IDS + (uint32_t)n);
+        lamps[n].share = leave(over, &lamps[n].lamp, light[i].share / 16.0);
+        lamps[n].seen_px = -1; /* the picture does not show it */
         n++;
     }
     over->lights = n;
@@ -381,17 +391,20 @@ int over_scene_lights(struct over_scene *over, const struct glint_view *view,
 }
 
 int over_scene_glints(struct over_scene *over, const struct glint_view *view,
-                      double focal_mm, struct glint_lamp *lamps,
-                      struct over_scene_glint *glints)
+                      double focal_mm, struct glint_engine_lamp *lamps)
 {
     struct glints *const g = &over->glints;
     const int n = glints_frame(g, over->frame.scene,
                                over->no_tracking ? 0 : over->elapsed_us);
 
     for (int i = 0; i < n; i++) {
-        glints[i].level = glints_lamp(g, i, view, focal_mm, &lamps[i]);
-        glints[i].size_px = g->track[i].size_q8 / 256.0;
-        glints[i].id = g->track[i].id;
+        struct glint_lamp lamp = {.power = 0};
+        const double level = glints_lamp(g, i, view, focal_mm, &lamp);
+
+        lamps[i] = glint_engine_lamp_of(&lamp, LAMP_ID_TEXT + HIGHLIGHT_IDS +
+                                                   g->track[i].id % 65536);
+        lamps[i].level = level;
+        lamps[i].seen_px = g->track[i].size_q8 / 256.0;
     }
     return n;
 }

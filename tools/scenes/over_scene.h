@@ -6,8 +6,8 @@
  *     over_scene_open(&over, tool);                   scene and poses
  *     over_scene_size(&over, &dials);                 when the size changes
  *     over_scene_draw(&over, &image, frame);          each picture
- *     over_scene_hide(&over, &view, focal_mm, lamps, share, n);
- *     n = over_scene_lights(&over, &view, focal_mm, lamps, share);
+ *     over_scene_hide(&over, &view, focal_mm, lamps, n);
+ *     n = over_scene_lights(&over, &view, focal_mm, lamps);
  *     over_scene_close(&over);
  *
  * Frames of a video rise. Moving things bakes nothing.
@@ -128,32 +128,24 @@ enum glint_status over_scene_layer(struct over_scene *over,
                                    struct over_scene_layer *layer);
 void over_scene_layer_free(struct over_scene_layer *layer);
 
-/* Takes from N LAMPS, and their SHARE, what the scene drawn last hides. */
+/* Takes from N LAMPS, and their shares, what the scene drawn last hides. */
 void over_scene_hide(struct over_scene *over, const struct glint_view *view,
-                     double focal_mm, struct glint_lamp *lamps, double *share,
-                     int n);
+                     double focal_mm, struct glint_engine_lamp *lamps, int n);
 
-/* Sets LAMPS and SHARE, [GLINT_SCENE_MAX_LIGHTS], to the lights of the scene
- * drawn last, as a lens of FOCAL_MM sees them, and what is seen of each.
- * Returns how many there are. */
+/* Sets LAMPS, [GLINT_SCENE_MAX_LIGHTS], to the lights of the scene drawn last,
+ * as a lens of FOCAL_MM sees them, and what is seen of each. Returns how many
+ * there are. */
 int over_scene_lights(struct over_scene *over, const struct glint_view *view,
-                      double focal_mm, struct glint_lamp *lamps, double *share);
+                      double focal_mm, struct glint_engine_lamp *lamps);
 
 /* Most lamps that a scene gives. */
 enum { OVER_SCENE_LAMPS = GLINT_SCENE_MAX_LIGHTS + GLINTS_MAX };
 
-/* A highlight of the scene drawn last. */
-struct over_scene_glint {
-    double level;   /* how far it has risen or faded, 0 .. 1 */
-    double size_px; /* RMS radius */
-    uint32_t id;    /* from picture to picture, counts from 1 */
-};
-
-/* Sets LAMPS and GLINTS, [GLINTS_MAX], to the highlights of the scene drawn
- * last, as a lens of FOCAL_MM sees them. Returns how many there are. */
+/* Sets LAMPS, [GLINTS_MAX], to the highlights of the scene drawn last, as a
+ * lens of FOCAL_MM sees them; the picture shows them, as it does lamps. Returns
+ * how many there are. */
 int over_scene_glints(struct over_scene *over, const struct glint_view *view,
-                      double focal_mm, struct glint_lamp *lamps,
-                      struct over_scene_glint *glints);
+                      double focal_mm, struct glint_engine_lamp *lamps);
 
 /* Returns the memory that drawing takes. */
 size_t over_scene_bytes(const struct over_scene *over);

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/frame/area.h"
-#include "engine/measure.h"
+#include "glint/area.h"
+#include "glint/measure.h"
 
 enum glint_status synth_drawing_init(struct synth_drawing *d, int width,
                                      int height)
@@ -205,32 +205,29 @@ static void draw_sources(const struct synth_item *item,
 
 /* ------------------------------------------------------------------- flares */
 
-/* What of a flare is drawn. */
-enum part { GHOSTS, STAR, HAZE };
-
+/* Draws a part of the flare, of enum glint_engine_part. */
 static int draw_part(const struct tool *tool, struct settings *s,
                      const struct synth_item *item,
-                     const struct glint_lamp *lamp, enum part part, float *rgb)
+                     const struct glint_lamp *lamp, unsigned part, float *rgb)
 {
-    static const int only[] = {GLINT_ONLY_GHOSTS, GLINT_ONLY_STARBURST,
-                               GLINT_ONLY_VEIL};
-    struct glint_frame_report report;
-    struct glint_frame frame;
+    struct glint_engine_report report;
+    struct glint_engine_config cfg;
+    struct glint_engine *engine;
+    struct glint_error error = {""};
     enum glint_status status;
-    int code;
 
-    s->options.only = only[part];
-    s->options.haze = item->haze;
-    code = settings_frame(
-        tool, s, settings_view(s, (int)item->width, (int)item->height), &frame);
-    if (code != EXIT_OK)
-        return code;
-    memset(rgb, 0,
-           3 * (size_t)item->width * (size_t)item->height * sizeof *rgb);
-    status = glint_frame_draw_alone(&frame, lamp, (int)item->n_lights, 1, rgb,
-                                    &report);
-    glint_frame_finish(&frame);
-    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
+    settings_engine(tool, s, (int)item->width, (int)item->height, &cfg);
+    cfg.drawing.parts = part;
+    cfg.light.haze = item->haze;
+    cfg.light.starburst = 1;
+    cfg.light.by_hand = 1;
+    cfg.search.max_found = 0;
+    status = glint_engine_create(&engine, &cfg, &error);
+    if (status == GLINT_OK)
+        status = glint_engine_render(engine, lamp, (int)item->n_lights, 1, part,
+                                     rgb, &report);
+    glint_engine_destroy(engine);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
 /* Returns how bright the lights are whose ghosts IMAGE shows for a power of 1:
@@ -269,7 +266,7 @@ static int draw_flare(const struct tool *tool, struct settings *s,
     int code;
 
     set_lamps(item, s, lamp, result);
-    code = draw_part(tool, s, item, lamp, GHOSTS, ghosts);
+    code = draw_part(tool, s, item, lamp, GLINT_ENGINE_GHOSTS, ghosts);
     if (code != EXIT_OK)
         return code;
     power = power_of(&image, item->ghost_level);
@@ -280,10 +277,10 @@ static int draw_flare(const struct tool *tool, struct settings *s,
         lamp[i].power *= power;
     memset(glare, 0, n * sizeof *glare);
     if (item->star > 0)
-        code = draw_part(tool, s, item, lamp, STAR, glare);
+        code = draw_part(tool, s, item, lamp, GLINT_ENGINE_STAR, glare);
     times(glare, n, item->star);
     if (code == EXIT_OK && (item->haze > 0 || item->front_dust > 0)) {
-        code = draw_part(tool, s, item, lamp, HAZE, spare);
+        code = draw_part(tool, s, item, lamp, GLINT_ENGINE_VEIL, spare);
         for (size_t i = 0; i < n && code == EXIT_OK; i++)
             glare[i] += spare[i];
     }

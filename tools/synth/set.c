@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "desk/sheet.h"
-#include "engine/measure.h"
+#include "glint/measure.h"
 #include "formats/picture.h"
 #include "posix/error.h"
 #include "posix/input.h"

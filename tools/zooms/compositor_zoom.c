@@ -15,8 +15,8 @@ static enum glint_status zoom_to(struct compositor *c, double zoom,
     if (status != GLINT_OK)
         return status;
     s->zoom.zoom = zoom;
-    glint_setup_stop(&s->setup, &c->frame.cfg.stop);
-    glint_frame_retune(&c->frame);
+    if (c->engine)
+        glint_engine_restop(c->engine);
     return GLINT_OK;
 }
 

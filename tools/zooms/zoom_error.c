@@ -4,8 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "engine/frame/frame.h"
-#include "engine/measure.h"
+#include "glint/engine.h"
+#include "glint/exact.h"
+#include "glint/measure.h"
 #include "glint/glint.h"
 #include "glint/transfer.h"
 
@@ -63,7 +64,7 @@ static double angle_deg(const struct measuring *m, int angle)
 /* Pictures of one light: all as the zoom has it, and one ghost of that and of
  * exact rays, which are grey, as they have one wavelength. */
 struct pictures {
-    struct glint_frame model, exact;
+    struct glint_engine *model, *exact;
     struct glint_float_image all, mixed, traced;
     double exposure;
 };
@@ -96,14 +97,15 @@ static int find_error(const struct pictures *p, double *error)
 }
 
 /* Draws GHOST, or all if it is below 0. */
-static enum glint_status draw(struct glint_frame *frame,
+static enum glint_status draw(struct glint_engine *engine,
                               const struct glint_lamp *lamp, int ghost,
                               struct glint_float_image *image)
 {
-    struct glint_frame_report report;
+    struct glint_engine_report report;
 
-    frame->only_ghost = ghost;
-    return glint_frame_draw_alone(frame, lamp, 1, 1, image->rgb, &report);
+    glint_engine_solo(engine, ghost);
+    return glint_engine_render(engine, lamp, 1, 1, GLINT_ENGINE_GHOSTS,
+                               image->rgb, &report);
 }
 
 /* Sets the errors of ghosts that are wanted at ANGLE. */
@@ -114,15 +116,15 @@ static enum glint_status measure_angle(const struct measuring *m,
                                     .phi_deg = AZIMUTH_DEG,
                                     .power = 1,
                                     .rgb = {1, 1, 1}};
-    enum glint_status status = draw(&p->model, &lamp, -1, &p->all);
+    enum glint_status status = draw(p->model, &lamp, -1, &p->all);
 
     p->exposure = glint_measure_exposure(&p->all);
     for (int g = 0; g < m->n && status == GLINT_OK; g++) {
         if (!(m->known[g][angle] & WANTED))
             continue;
-        status = draw(&p->model, &lamp, g, &p->mixed);
+        status = draw(p->model, &lamp, g, &p->mixed);
         if (status == GLINT_OK)
-            status = draw(&p->exact, &lamp, g, &p->traced);
+            status = draw(p->exact, &lamp, g, &p->traced);
         m->known[g][angle] =
             (unsigned char)((m->known[g][angle] & IN_RANGE) | MEASURED |
                             find_error(p, &m->error[g].of[angle]));
@@ -140,6 +142,29 @@ static bool take_image(struct glint_float_image *image,
     return image->rgb != NULL;
 }
 
+static enum glint_status open_engines(const struct measuring *m,
+                                      struct pictures *p)
+{
+    struct glint_engine_config cfg;
+    struct glint_error error;
+    enum glint_status status;
+
+    glint_engine_defaults(&cfg, m->view.width, m->view.height);
+    cfg.sets = 0;
+    cfg.camera.setup = m->setup;
+    cfg.camera.sensor_width_mm = m->view.sensor_width_mm;
+    cfg.camera.sensor_height_mm = /* more than enough for that width */
+        2 * m->view.sensor_width_mm * m->view.height / m->view.width;
+    cfg.light.by_hand = 1;
+    cfg.search.max_found = 0;
+    cfg.model = &m->zoom->lens;
+    status = glint_engine_create(&p->model, &cfg, &error);
+    cfg.model = NULL;
+    cfg.camera.rays = &glint_frame_traces;
+    return status == GLINT_OK ? glint_engine_create(&p->exact, &cfg, &error)
+                              : status;
+}
+
 static void angle_job(void *ctx, int angle, int worker)
 {
     struct measuring *const m = ctx;
@@ -151,17 +176,15 @@ static void angle_job(void *ctx, int angle, int worker)
         any |= m->known[g][angle] & WANTED;
     if (!any)
         return;
-    glint_frame_init(&p.model, m->setup, m->view, NULL);
-    p.model.lens = &m->zoom->lens;
-    glint_frame_init(&p.exact, m->setup, m->view, NULL);
-    p.exact.trace = &glint_frame_traces;
     m->status[angle] = take_image(&p.all, &m->view) &&
                                take_image(&p.mixed, &m->view) &&
                                take_image(&p.traced, &m->view)
-                           ? measure_angle(m, &p, angle)
+                           ? open_engines(m, &p)
                            : GLINT_E_MEMORY;
-    glint_frame_finish(&p.model);
-    glint_frame_finish(&p.exact);
+    if (m->status[angle] == GLINT_OK)
+        m->status[angle] = measure_angle(m, &p, angle);
+    glint_engine_destroy(p.model);
+    glint_engine_destroy(p.exact);
     free(p.all.rgb);
     free(p.mixed.rgb);
     free(p.traced.rgb);

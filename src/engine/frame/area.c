@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "engine/frame/area.h"
+#include "glint/area.h"
 
 #include <math.h>
 

@@ -7,7 +7,7 @@
 /* Draws a few frames; lowers *LEAST_MS to the time of the quickest. */
 static enum glint_status draw_some(struct glint_frame *frame,
                                    const struct glint_image *image,
-                                   struct glint_frame_report *report,
+                                   struct glint_engine_report *report,
                                    double *least_ms)
 {
     const struct glint_lamp lamp = {
@@ -31,7 +31,7 @@ enum glint_status glint_frame_calibrate(struct glint_frame *frame)
     void *mem =
         calloc(1, glint_image_bytes(GLINT_YUYV, image.width, image.height));
     struct glint_budget *b = &frame->budget;
-    struct glint_frame_report report = {.lights = 0};
+    struct glint_engine_report report = {.lights = 0};
     double least_ms = 1e9;
     struct glint_frame plain;
     enum glint_status status = GLINT_E_MEMORY;

@@ -8,34 +8,8 @@
 #include <stdbool.h>
 
 #include "glint/dials.h"
+#include "glint/explain.h"
 #include "glint/flare.h"
-
-/* Kinds of items whose number decides the cost: of a plan, before anything is
- * drawn, or of a frame that was drawn (engine/explain.h). */
-enum glint_cost_kind {
-    GLINT_COST_LOOKED_AT, /* bundles that a plan looks at, or for a drawn frame
-                             the rays that it traced for them */
-    GLINT_COST_BUNDLES,  /* bundles drawn: a few rays each, and a polynomial for
-                            each row */
-    GLINT_COST_VERTICES, /* vertices of grids */
-    GLINT_COST_EDGES,    /* edges across which light changes */
-    GLINT_COST_ROWS,     /* rows of pixels that edges cross */
-    GLINT_COST_PARTS,    /* parts of cells that dust or a mask shades */
-    GLINT_COST_LIT,      /* pixels with any light */
-    GLINT_COST_STAR,     /* pixels that parts of stars give light to */
-    GLINT_COST_VEIL,     /* pixels under a veil, and what spreads it as such */
-    GLINT_COST_KINDS
-};
-
-/* The cost of one item, in thousand instructions of a processor with 8 lanes of
- * 32 bits. */
-struct glint_cost_weight {
-    const char *name;
-    double planned; /* weight for counts that glint_cost_of() predicts from a
-                       plan */
-    double counted; /* weight for counts of a frame that was drawn */
-};
-extern const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS];
 
 struct glint_cost {
     double count[GLINT_COST_KINDS];

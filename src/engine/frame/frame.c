@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/frame/area.h"
+#include "glint/area.h"
 #include "engine/frame/frame_parts.h"
 #include "engine/frame/light.h"
 #include "glint/quality.h"
@@ -380,7 +380,7 @@ enum glint_status glint_frame_plan_scale(struct glint_frame *frame,
 
 /* Returns the number of bundles whose ghosts are known. */
 static int n_drawn(const struct glint_frame *f,
-                   const struct glint_frame_report *r)
+                   const struct glint_engine_report *r)
 {
     return f->lens ? r->stats.bundles : f->trace->n_bundles(f);
 }
@@ -389,13 +389,13 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
                                    const struct glint_lamp *lamps, int n_lamps,
                                    double scale,
                                    const struct glint_image *image,
-                                   struct glint_frame_report *report)
+                                   struct glint_engine_report *report)
 {
     double times[5] = {0, 0, 0, 0, 0};
     const size_t bytes = frame->bytes;
     enum glint_status status;
 
-    *report = (struct glint_frame_report){
+    *report = (struct glint_engine_report){
         .lights = n_lamps, .quality = -1, .arena_bytes = frame->bytes};
     /* without a veil the picture need not even be read */
     if (n_lamps == 0 && !glint_frame_has_veil(frame))

@@ -68,9 +68,6 @@ struct glint_frame_rays {
     void (*finish)(struct glint_frame *frame);
 };
 
-/* Rays traced for each frame; only programs that link libglint-bake have it. */
-extern const struct glint_frame_rays glint_frame_traces;
-
 struct glint_frame {
     const struct glint_setup *setup;
     /* Model of the lens; NULL: rays come from TRACE. */
@@ -103,6 +100,9 @@ struct glint_frame {
     struct glint_shade shade; /* the stop's, without its finest tables */
     struct glint_frame_star star;
     struct glint_frame_veil veil;
+    /* What is known of the lamps that are drawn; NULL: nothing but what they
+     * are themselves. */
+    const struct glint_engine_lamp *known;
     struct glint_still still; /* only for models that are reused */
     /* Factors on the lights of the frame; NULL: none. */
     const int32_t (*gain_q14)[3];
@@ -153,35 +153,6 @@ struct glint_frame {
     size_t bytes;      /* bytes of the block */
 };
 
-struct glint_frame_report {
-    struct glint_flare_stats stats;
-    int lights;        /* lights given */
-    int beyond_lights; /* lights of these beyond the model */
-    int apart_lights;  /* lights that can be told apart */
-    int drawn_lights;  /* lights drawn, after merging because of their number */
-    int ghosts, tiles;
-    int held_samples;   /* samples of a linear picture that saturated */
-    size_t arena_bytes; /* bytes that the run-time half was given */
-    size_t peak_bytes;  /* bytes of these that this frame used */
-    size_t need_bytes;  /* bytes that would have drawn everything, exactly, and
-                           not coarser because of memory */
-    size_t star_bytes;  /* bytes besides that stars hold, for their tables and
-                           lamps, and a veil */
-    bool coarsened;     /* true: the plan passed a limit and was made coarser */
-    bool tight;         /* true: that was the limit of memory */
-    int plans, binned;  /* number of plans until one was within the limits and
-                           had room, and of those that were binned */
-    long long looked;   /* number of rays that the plans looked at */
-    double plan_ms, trace_ms, bin_ms, draw_ms;
-    /* Prediction and quality with a budget; else 0 and -1. */
-    double predicted_ms, quality;
-    struct glint_dials dials; /* dials that the budget chose */
-    bool blurred;  /* true: dust or a mask was drawn from coarser tables */
-    bool unveiled; /* true: the budget left out the veil */
-    double calibrated_minsn; /* millions of instructions of the frame that
-                                predictions are based on, or 0 */
-};
-
 void glint_frame_init(struct glint_frame *frame,
                       const struct glint_setup *setup, struct glint_view view,
                       struct glint_workers *workers);
@@ -213,7 +184,7 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
                                    const struct glint_lamp *lamps, int n_lamps,
                                    double scale,
                                    const struct glint_image *image,
-                                   struct glint_frame_report *report);
+                                   struct glint_engine_report *report);
 
 /* Returns the last plan of FRAME, for glint_cost_of(). */
 struct glint_cost_plan glint_frame_plan(const struct glint_frame *frame);
@@ -243,7 +214,7 @@ void glint_frame_retune(struct glint_frame *frame);
 enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
                                          const struct glint_lamp *lamps,
                                          int n_lamps, double gain, float *rgb,
-                                         struct glint_frame_report *report);
+                                         struct glint_engine_report *report);
 
 void glint_frame_finish(struct glint_frame *frame);
 

@@ -38,7 +38,7 @@ static int octaves_up(uint32_t peak, struct glint_frame_scale scale)
 enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
                                          const struct glint_lamp *lamps,
                                          int n_lamps, double gain, float *rgb,
-                                         struct glint_frame_report *report)
+                                         struct glint_engine_report *report)
 {
     const int width = frame->view.width, height = frame->view.height;
     const size_t n = 3 * (size_t)width * (size_t)height;

@@ -158,13 +158,14 @@ struct seen {
     bool is_bare; /* the picture does not show it at all */
 };
 
-static struct seen seen_of(const struct glint_frame_star *s, int i)
+static struct seen seen_of(const struct glint_frame *f, int i)
 {
-    const double size_px = s->seen_px ? fmax(s->seen_px[i], 0) : 0;
+    const struct glint_engine_lamp *lamp = f->known ? &f->known[i] : NULL;
+    const double size_px = lamp ? fmax(lamp->seen_px, 0) : 0;
 
     return (struct seen){sqrt(2) * size_px, floor(256 / 6. * size_px) / 128,
-                         s->seen_px && s->level ? s->level[i] : 1,
-                         s->is_bare || (s->seen_px && s->seen_px[i] < 0)};
+                         lamp ? lamp->level : 1,
+                         f->star.is_bare || (lamp && lamp->seen_px < 0)};
 }
 
 /* Returns the POWER of a lamp, in white pixels of its brightest channel; if the
@@ -287,7 +288,7 @@ enum glint_status glint_frame_star_set(struct glint_frame *f,
     if (status != GLINT_OK || (s->smear_mark && !s->smear.sum))
         return status;
     for (int i = 0; i < n; i++) {
-        const struct seen seen = seen_of(s, i);
+        const struct seen seen = seen_of(f, i);
 
         n_lights += set_light(f, &lamps[i], scale * s->share, &seen,
                               &s->light[n_lights]);

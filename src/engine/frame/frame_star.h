@@ -16,14 +16,10 @@ struct glint_frame_star {
     /* Factor on the star: lamps' powers are multiplied by the frame's scale and
      * by this. 0: there is no star. */
     double share;
-    /* [n]: RMS radius, pixels, of the white spot of each lamp that the picture
-     * clips, glare included; its power is then an estimate, which the star may
-     * raise. 0, or NULL for all lamps: extent and power are the lamp's own
-     * members; below 0 these, and the picture does not show the lamp, so that
-     * its core is drawn, too. */
-    const double *seen_px;
-    /* [n]: level of each lamp, which its power includes; NULL: 1. */
-    const double *level;
+    /* The lamps' extent and power are their own members, unless seen_px of
+     * frame->known is above 0, the white spot with its glare: the power is then
+     * an estimate, which the star may raise. Below 0 their cores are drawn,
+     * too. */
     bool is_bare; /* true: no picture shows the lamps, so their cores are drawn,
                      too */
     bool is_alone; /* true: the star is drawn without ghosts */

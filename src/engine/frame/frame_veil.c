@@ -300,7 +300,7 @@ enum glint_status glint_frame_veil_set(struct glint_frame *f,
     if (status != GLINT_OK)
         return status;
     for (int i = 0; i < n; i++)
-        add_lamp(f, &lamps[i], v->excess ? v->excess[i] : lamps[i].power);
+        add_lamp(f, &lamps[i], f->known ? f->known[i].excess : lamps[i].power);
     glint_veil_spread(v->veil, spreads, set_spreads(f, spreads));
     spread_front(f);
     v->is_set = true;

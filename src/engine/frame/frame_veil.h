@@ -21,9 +21,6 @@ struct glint_frame_veil {
     /* What lies on the front element, which spreads light as haze is, but in
      * discs; the caller's. NULL: nothing. */
     const struct glint_front_dirt *front;
-    /* [n]: what each lamp has above the light that the picture shows of it, in
-     * white times pixels; NULL: all of its power. */
-    const double *excess;
     /* Factor on the veil where it is drawn alone, rather than that on the
      * flare; 0: the same. */
     double alone_gain;

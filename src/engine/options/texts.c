@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/frame/area.h"
+#include "glint/area.h"
 
 /* Reads a number LOW .. HIGH after NAME from *AT, and what follows it up to the
  * next comma. Returns false, and leaves *AT, if it does not begin with NAME. */

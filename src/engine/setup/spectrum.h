@@ -9,7 +9,4 @@
  * where the light is more saturated than any mixture of the primaries. */
 void glint_observer_rgb(double nm, double rgb[3]);
 
-/* Returns the largest of three channels. */
-double glint_largest_channel(const double rgb[3]);
-
 #endif

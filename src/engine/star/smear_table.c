@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "engine/setup/spectrum.h"
+#include "glint/setup.h"
 
 enum {
     RINGS = GLINT_STAR_SMEAR_RINGS,

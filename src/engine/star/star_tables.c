@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "engine/setup/spectrum.h"
+#include "glint/setup.h"
 #include "engine/star/core_table.h"
 #include "engine/star/psf.h"
 #include "engine/star/smear_table.h"

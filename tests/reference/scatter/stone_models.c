@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/measure.h"
+#include "glint/measure.h"
 #include "lab/plots/plot.h"
 #include "lab/report_file.h"
 

@@ -445,7 +445,7 @@ static double rows_of(const struct glint_flare *flare)
  * looked at, vertices and edges of each binning, and the rows and pixels drawn
  * once, times their weights. */
 static double work_of(const struct glint_frame *f,
-                      const struct glint_frame_report *r)
+                      const struct glint_engine_report *r)
 {
     double count[GLINT_COST_KINDS] = {
         [GLINT_COST_LOOKED_AT] = (double)r->looked,
@@ -492,7 +492,7 @@ static bool draw(const struct hostile_scene *scene, struct glint_frame *frame,
                                 .height = H,
                                 .range = GLINT_RANGE_FULL};
     void *pixels = calloc((size_t)W * H, 12);
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     bool drawn;
 
     glint_image_place(&image, pixels);

@@ -14,7 +14,7 @@
 #include <cmocka.h>
 
 #include "engine/frame/frame.h"
-#include "engine/measure.h"
+#include "glint/measure.h"
 #include "formats/pfm.h"
 #include "posix/input.h"
 #include "posix/workers.h"
@@ -263,7 +263,7 @@ static void test_threads_do_not_matter(void **state)
 
 static void integers(struct glint_view view, const struct glint_lamp *lamps,
                      int n_lamps, double *out,
-                     struct glint_frame_report *report)
+                     struct glint_engine_report *report)
 {
     static float linear[3 * MAX_PIXELS];
     struct glint_frame frame;
@@ -289,7 +289,7 @@ static void test_integers_match(void **state)
 
     (void)state;
     for (int i = 0; i < 2; i++) {
-        struct glint_frame_report report;
+        struct glint_engine_report report;
         double db;
 
         load_setup(&setup, &lens, names[i]);
@@ -313,7 +313,7 @@ static void test_faint_colour_keeps_steps(void **state)
         .width = 480, .height = 270, .sensor_width_mm = 36};
     const struct glint_lamp green = {5.3, 33, 0.01, {0, 1, 0}, {0, 0}, 0};
     const struct glint_lamp reddish = {5.3, 33, 1, {1, 0.01, 0}, {0, 0}, 0};
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     double apart = 0, sum = 0;
 
     (void)state;
@@ -358,7 +358,7 @@ static void test_torics_that_are_spheres(void **state)
     const struct glint_view view = {
         .width = 180, .height = 120, .sensor_width_mm = 36};
     const struct glint_lamp lamp = lamp_at(7, 37);
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     double db, flux;
 
     (void)state;

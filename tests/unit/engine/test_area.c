@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "engine/frame/area.h"
+#include "glint/area.h"
 
 static const double degree = 3.14159265358979323846 / 180;
 

@@ -53,13 +53,13 @@ double __wrap_tool_seconds(void)
 }
 
 /* Draws N frames under a budget and returns the report of the last. */
-static struct glint_frame_report run(struct glint_frame *frame,
-                                     double budget_ms, int n)
+static struct glint_engine_report run(struct glint_frame *frame,
+                                      double budget_ms, int n)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
     struct glint_image image = {
         .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
-    struct glint_frame_report report;
+    struct glint_engine_report report;
 
     glint_image_place(&image, px);
     glint_budget_init(&frame->budget, budget_ms);
@@ -96,7 +96,7 @@ static void test_keeps_to_it(void **state)
         double last = 0;
 
         for (size_t i = 0; i < 4; i++) {
-            struct glint_frame_report report;
+            struct glint_engine_report report;
             struct glint_frame frame;
             double took;
 
@@ -126,7 +126,7 @@ static int draw_whole(double ms, int from, double octaves, int n, bool *last)
     static uint8_t px[2 * WIDTH * HEIGHT];
     struct glint_image image = {
         .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     struct glint_frame frame;
     int n_whole = 0;
 
@@ -217,7 +217,7 @@ static void test_new_lights(void **state)
     static uint8_t px[2 * WIDTH * HEIGHT];
     struct glint_image image = {
         .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
-    struct glint_frame_report one, three;
+    struct glint_engine_report one, three;
     struct glint_frame frame;
 
     (void)state;
@@ -245,7 +245,7 @@ static void test_counts(void **state)
     static uint8_t px[2 * WIDTH * HEIGHT];
     struct glint_image image = {
         .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     struct glint_cost coarse, fine, predicted;
     struct glint_frame frame;
     struct glint_dials then;

@@ -53,7 +53,7 @@ static struct glint_engine *make(void *arena, size_t bytes)
 static int run(struct glint_engine *engine, int32_t us, uint8_t *px,
                struct glint_engine_report *report)
 {
-    struct glint_lamp lamps[8];
+    struct glint_engine_lamp lamps[8];
     const struct glint_image image = picture(px);
     const int n = glint_engine_find(engine, &image, us, lamps, 8);
 
@@ -71,10 +71,12 @@ static void test_draws(void **state)
     (void)state;
     picture(plain);
     assert_int_equal(run(engine, 0, px, &report), 2);
-    assert_int_equal(report.lamps, 2);
-    assert_true(report.ghosts > 0 && report.bundles > 0 && report.scale > 0);
-    assert_int_equal(report.dropped_bundles, 0);
-    assert_true(report.need_bytes > 0 && report.need_bytes <= report.bytes);
+    assert_int_equal(report.lights, 2);
+    assert_true(report.ghosts > 0 && report.stats.bundles > 0 &&
+                report.scale > 0);
+    assert_int_equal(report.stats.dropped_bundles, 0);
+    assert_true(report.need_bytes > 0 &&
+                report.need_bytes <= report.arena_bytes);
     assert_memory_not_equal(px, plain, BYTES);
     glint_engine_destroy(engine);
 }
@@ -96,11 +98,11 @@ static void test_arena(void **state)
     run(engine, 0, got, &report);
     glint_engine_destroy(engine);
     assert_memory_equal(got, want, BYTES);
-    assert_int_equal(report.dropped_bundles, 0);
+    assert_int_equal(report.stats.dropped_bundles, 0);
     engine = make(mem, 1100 << 10);
     run(engine, 0, got, &little);
     glint_engine_destroy(engine);
-    assert_true(little.dropped_bundles > 0);
+    assert_true(little.stats.dropped_bundles > 0);
     assert_int_equal(little.need_bytes, full.need_bytes);
     free(mem);
 }
@@ -118,11 +120,11 @@ static void test_follows(void **state)
     for (int i = 0; i < 30; i++)
         n = run(engine, 40000, px, &report);
     assert_int_equal(n, 2);
-    bundles = report.bundles;
+    bundles = report.stats.bundles;
     glint_engine_turn(engine, glint_dials_coarser(glint_dials_at(1 << 14),
                                                   glint_dials_at(1 << 12)));
     run(engine, 40000, px, &report);
-    assert_in_range(report.bundles, 1, bundles - 1);
+    assert_in_range(report.stats.bundles, 1, bundles - 1);
     glint_engine_destroy(engine);
 }
 
@@ -131,13 +133,14 @@ static void test_follows(void **state)
 static double given(struct glint_engine *engine, const struct glint_lamp *lamp,
                     int32_t us, uint8_t *px)
 {
+    struct glint_engine_lamp one = glint_engine_lamp_of(lamp, 1);
     struct glint_engine_report report;
     const struct glint_image image = picture(px);
 
     memset(px, 40, BYTES);
     if (us >= 0)
         glint_engine_elapsed(engine, us);
-    assert_int_equal(glint_engine_draw(engine, lamp, 1, &image, &report),
+    assert_int_equal(glint_engine_draw(engine, &one, 1, &image, &report),
                      GLINT_OK);
     return report.scale;
 }
@@ -153,7 +156,7 @@ static void test_given(void **state)
     const struct glint_lamp lit = {12, 0, 2e6, {1, 1, 1}, {0, 0}, 0};
     struct glint_engine *engine = make(NULL, 0);
     struct glint_engine_report report;
-    struct glint_lamp lamps[8];
+    struct glint_engine_lamp lamps[8];
     double alone, scale;
     int n;
 
@@ -161,7 +164,7 @@ static void test_given(void **state)
     memcpy(found, px, BYTES);
     n = glint_engine_find(engine, &image, 0, lamps, 8);
     for (int i = 0; i < n; i++)
-        lamps[i].theta_deg += 1e-9; /* no longer those found */
+        lamps[i] = glint_engine_lamp_of(&lamps[i].lamp, 1); /* not found */
     assert_int_equal(glint_engine_draw(engine, lamps, n, &image, &report),
                      GLINT_OK);
     scale = report.scale;
@@ -205,7 +208,7 @@ static void test_stop(void **state)
     assert_memory_not_equal(set, open, BYTES);
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
     cfg.model = &settings.model.lens;
-    cfg.f_number = 3 * f;
+    cfg.camera.f_number = 3 * f;
     assert_int_equal(glint_engine_create(&engine, &cfg, &error), GLINT_OK);
     run(engine, 0, made, &report);
     assert_memory_equal(set, made, BYTES);
@@ -221,7 +224,8 @@ static void test_refuses(void **state)
     struct glint_engine *engine = make(NULL, 0);
     struct glint_engine_config cfg;
     struct glint_engine_report report;
-    struct glint_lamp lamp = {5, 0, 1, {1, 1, 1}, {0, 0}, 0};
+    const struct glint_lamp place = {5, 0, 1, {1, 1, 1}, {0, 0}, 0};
+    struct glint_engine_lamp lamp = glint_engine_lamp_of(&place, 1);
     struct glint_image image = picture(px);
     struct glint_error error;
 
@@ -231,13 +235,14 @@ static void test_refuses(void **state)
                      GLINT_E_ARGUMENT);
     glint_engine_destroy(engine);
     glint_engine_destroy(NULL);
-    for (int k = 0; k < 6; k++) {
+    for (int k = 0; k < 7; k++) {
         glint_engine_defaults(&cfg, k == 0 ? 0 : WIDTH, HEIGHT);
         cfg.model = k == 1 ? NULL : &settings.model.lens;
-        cfg.max_found = k == 2 ? 513 : cfg.max_found;
-        cfg.strength = k == 3 ? -1 : cfg.strength;
-        cfg.threshold_ev[1] = k == 4 ? 0 : cfg.threshold_ev[1];
-        cfg.n_blades = k == 5 ? 2 : cfg.n_blades;
+        cfg.search.max_found = k == 2 ? 1025 : cfg.search.max_found;
+        cfg.light.strength = k == 3 ? -1 : cfg.light.strength;
+        cfg.search.threshold_ev[1] = k == 4 ? 0 : cfg.search.threshold_ev[1];
+        cfg.camera.n_blades = k == 5 ? 2 : cfg.camera.n_blades;
+        cfg.size -= k == 6;
         *error.text = '\0';
         assert_int_equal(glint_engine_create(&engine, &cfg, &error),
                          GLINT_E_ARGUMENT);

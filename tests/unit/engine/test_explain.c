@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "command/explain.h"
+#include "engine/explain_frame.h"
 #include "support/opened.h"
 
 enum { WIDTH = 320, HEIGHT = 200, BYTES = 3 * WIDTH * HEIGHT, SIDE = 16 };
@@ -41,7 +42,7 @@ static void make(struct glint_frame *frame)
 }
 
 static void draw(struct glint_frame *frame, const struct glint_lamp *lamp,
-                 int n, struct glint_frame_report *report)
+                 int n, struct glint_engine_report *report)
 {
     memset(rgb, 0, sizeof rgb);
     assert_int_equal(glint_frame_draw(frame, lamp, n, 1, &image, report),
@@ -69,7 +70,7 @@ static int ghosts_drawn(const struct glint_explain *e)
 /* Checks what must be true of any frame: E agrees with REPORT, and its parts by
  * ghost, light and wavelength each add up to the whole. */
 static void assert_agrees(const struct glint_explain *e,
-                          const struct glint_frame_report *report)
+                          const struct glint_engine_report *report)
 {
     const double pixels = e->stage[GLINT_COST_LIT] / e->all.work;
     const struct glint_explain_part *parts[3] = {e->ghost, e->light, e->wave};
@@ -107,14 +108,14 @@ static void assert_agrees(const struct glint_explain *e,
  * without some ghosts. */
 static void test_frame(void **state)
 {
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     struct glint_frame frame;
     struct glint_explain e;
 
     (void)state;
     make(&frame);
     draw(&frame, lamps, N_LAMPS, &report);
-    assert_int_equal(glint_explain_open(&e, &frame, 1), GLINT_OK);
+    assert_int_equal(glint_explain_frame(&e, &frame, 1), GLINT_OK);
     assert_agrees(&e, &report);
     assert_int_equal(e.n_lights, 2);
     assert_int_equal(glint_explain_bundles(&e.all), 2 * 13 * 3);
@@ -134,7 +135,7 @@ static void test_frame(void **state)
  * be linear in UNIT. */
 static void test_light(void **state)
 {
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     struct glint_explain e, twice;
     struct glint_frame frame;
     int most = 0;
@@ -149,8 +150,8 @@ static void test_light(void **state)
                    ? rgb[i] + rgb[i + 1] + rgb[i + 2]
                    : most;
     assert_true(most > 60);
-    assert_int_equal(glint_explain_open(&e, &frame, 1), GLINT_OK);
-    assert_int_equal(glint_explain_open(&twice, &frame, 2), GLINT_OK);
+    assert_int_equal(glint_explain_frame(&e, &frame, 1), GLINT_OK);
+    assert_int_equal(glint_explain_frame(&twice, &frame, 2), GLINT_OK);
     assert_true(e.all.brightest > 0.001 && e.all.brightest < 0.2);
     assert_true(fabs(twice.all.brightest - 2 * e.all.brightest) < 1e-12);
     assert_true(fabs(twice.all.flux - 2 * e.all.flux) < 1e-6 * e.all.flux);
@@ -177,7 +178,7 @@ static void test_reasons(void **state)
         {{12, 20, 1e5, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_OUTCOME_FAINT},
         {{25, 20, 1e7, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_OUTCOME_OUTSIDE},
     };
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     struct glint_frame frame;
     struct glint_explain e;
 
@@ -186,7 +187,7 @@ static void test_reasons(void **state)
         make(&frame);
         frame.only_ghost = cases[i].only_ghost;
         draw(&frame, &cases[i].lamp, 1, &report);
-        assert_int_equal(glint_explain_open(&e, &frame, 1), GLINT_OK);
+        assert_int_equal(glint_explain_frame(&e, &frame, 1), GLINT_OK);
         assert_true(e.all.of[cases[i].outcome] > 0);
         if (e.all.edges)
             assert_agrees(&e, &report);
@@ -195,7 +196,7 @@ static void test_reasons(void **state)
     }
     make(&frame);
     draw(&frame, &lamps[2], 1, &report);
-    assert_int_equal(glint_explain_open(&e, &frame, 1), GLINT_OK);
+    assert_int_equal(glint_explain_frame(&e, &frame, 1), GLINT_OK);
     assert_int_equal(glint_explain_bundles(&e.all), 0);
     assert_true(e.all.flux == 0);
     glint_explain_close(&e);
@@ -204,7 +205,7 @@ static void test_reasons(void **state)
 
 static void test_room(void **state)
 {
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     struct glint_frame frame;
     struct glint_explain e;
     size_t need;
@@ -220,7 +221,7 @@ static void test_room(void **state)
         GLINT_OK);
     draw(&frame, lamps, N_LAMPS, &report);
     assert_true(report.stats.dropped_bundles > 0);
-    assert_int_equal(glint_explain_open(&e, &frame, 1), GLINT_OK);
+    assert_int_equal(glint_explain_frame(&e, &frame, 1), GLINT_OK);
     assert_agrees(&e, &report);
     glint_explain_close(&e);
     glint_frame_finish(&frame);
@@ -229,14 +230,14 @@ static void test_room(void **state)
 static void test_order(void **state)
 {
     int at[3][GLINT_MAX_GHOSTS];
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     struct glint_frame frame;
     struct glint_explain e;
 
     (void)state;
     make(&frame);
     draw(&frame, lamps, N_LAMPS, &report);
-    assert_int_equal(glint_explain_open(&e, &frame, 1), GLINT_OK);
+    assert_int_equal(glint_explain_frame(&e, &frame, 1), GLINT_OK);
     glint_explain_sort(&e, GLINT_EXPLAIN_LIGHT, at[0]);
     glint_explain_sort(&e, GLINT_EXPLAIN_WORK, at[1]);
     glint_explain_sort(&e, GLINT_EXPLAIN_NUMBER, at[2]);
@@ -268,7 +269,7 @@ static void test_picture(void **state)
 {
     struct explain_title title = {.lens = "heliar", .top = 20};
     struct glint_image marked, unmarked;
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     struct glint_frame frame;
     struct glint_explain e;
     int n = 0, outlined = 0;
@@ -279,7 +280,7 @@ static void test_picture(void **state)
     draw(&frame, (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}, {0, 0}, 0}}, 1,
          &report);
     assert_true(report.tiles > 10 && report.tiles < 200);
-    assert_int_equal(glint_explain_open(&e, &frame, 1), GLINT_OK);
+    assert_int_equal(glint_explain_frame(&e, &frame, 1), GLINT_OK);
     memset(rgb, 0, sizeof rgb);
     assert_int_equal(explain_mark(&e, &title, &image, &marked), GLINT_OK);
     assert_int_equal(marked.width, WIDTH);

@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "engine/frame/frame.h"
-#include "options/settings.h"
+#include "lab/settings_frame.h"
 #include "options/tool.h"
 #include "support/fakes/wrapped.h"
 #include "support/shuffle.h"
@@ -91,7 +91,7 @@ static void make_even(struct glint_frame *frame, int fineness)
 }
 
 static void draw(struct glint_frame *frame, int n, uint8_t rgb[BYTES],
-                 struct glint_frame_report *report)
+                 struct glint_engine_report *report)
 {
     struct glint_image image = {.format = GLINT_RGB24,
                                 .width = WIDTH,
@@ -128,7 +128,7 @@ static void test_same_as_grown(void **state)
     static const int n_of[] = {1, 5, 0, 2, 5, 3};
     static uint8_t want[BYTES], got[BYTES];
     struct glint_frame reserved, grown;
-    struct glint_frame_report report, other;
+    struct glint_engine_report report, other;
 
     (void)state;
     make(&reserved);
@@ -165,7 +165,7 @@ static void test_too_little(void **state)
 {
     static uint8_t full[BYTES], got[BYTES];
     struct glint_frame frame;
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     int n_lost = 0, n_darker = 0;
 
     (void)state;
@@ -205,7 +205,7 @@ static void test_bounds(void **state)
 {
     static uint8_t want[BYTES], got[BYTES];
     struct glint_frame frame;
-    struct glint_frame_report full, held;
+    struct glint_engine_report full, held;
 
     (void)state;
     make(&frame);
@@ -240,7 +240,7 @@ static void test_tight(void **state)
 {
     static uint8_t want[BYTES], got[BYTES], coarse[BYTES];
     struct glint_frame frame;
-    struct glint_frame_report full, held;
+    struct glint_engine_report full, held;
 
     (void)state;
     make_even(&frame, 64);
@@ -269,7 +269,7 @@ static void test_tight(void **state)
 
 /* Draws a frame whose memory is limited to BYTES with N workers. */
 static bool is_tight(int n, size_t bytes, uint8_t rgb[BYTES],
-                     struct glint_frame_report *report)
+                     struct glint_engine_report *report)
 {
     struct shuffle shuffle;
     struct glint_frame frame;
@@ -289,7 +289,7 @@ static bool is_tight(int n, size_t bytes, uint8_t rgb[BYTES],
 static void test_tight_edge(void **state)
 {
     static uint8_t want[BYTES], got[BYTES];
-    struct glint_frame_report full, held;
+    struct glint_engine_report full, held;
     size_t low, high;
 
     (void)state;
@@ -321,7 +321,7 @@ static void test_tight_reserved(void **state)
 
     (void)state;
     for (int n = 1; n <= 5; n += 2) {
-        struct glint_frame_report report;
+        struct glint_engine_report report;
         struct glint_frame frame;
         struct shuffle shuffle;
 
@@ -345,7 +345,7 @@ static void test_more_lamps(void **state)
 {
     static uint8_t got[BYTES];
     struct glint_frame frame;
-    struct glint_frame_report report;
+    struct glint_engine_report report;
 
     (void)state;
     make(&frame);
@@ -373,7 +373,7 @@ static void test_retune(void **state)
                    {16, 0, 5, 0},
                    {16, 69, 128, .125}};
     static uint8_t want[BYTES], got[BYTES];
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     struct glint_frame frame, fresh;
     int n_changed = 0;
 
@@ -413,7 +413,7 @@ static void test_no_memory(void **state)
     static float want[BYTES], got[BYTES];
     (void)state;
     for (int exact = 0; exact < 2; exact++) {
-        struct glint_frame_report report;
+        struct glint_engine_report report;
         struct glint_frame frame;
         int n_refused = 0;
 
@@ -448,7 +448,7 @@ static void test_too_many_feeds(void **state)
     struct glint_lamp *many = malloc(N * sizeof *many);
     static float rgb[BYTES];
     struct glint_setup crowd;
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     struct glint_frame frame;
 
     (void)state;
@@ -483,7 +483,7 @@ static void test_room_for_points(void **state)
     };
     static float rgb[BYTES];
     struct glint_lamp wide[3];
-    struct glint_frame_report report;
+    struct glint_engine_report report;
 
     (void)state;
     for (int i = 0; i < 3; i++) {

@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "engine/frame/frame.h"
-#include "options/settings.h"
+#include "lab/settings_frame.h"
 #include "options/tool.h"
 #include "support/night.h"
 
@@ -59,11 +59,14 @@ static double power_of(double power, double seen_px, double level)
 {
     const struct glint_lamp lamp = {5, 30, power, {1, .5, 0}, {0, 0}, 0};
 
-    frame.star.seen_px = seen_px > 0 ? &seen_px : NULL;
-    frame.star.level = &level;
+    struct glint_engine_lamp known = glint_engine_lamp_of(&lamp, 1);
+
+    known.seen_px = seen_px;
+    known.level = level;
+    frame.known = &known;
     assert_int_equal(glint_frame_star_set(&frame, &lamp, 1, 1, &image),
                      GLINT_OK);
-    frame.star.seen_px = frame.star.level = NULL;
+    frame.known = NULL;
     return glint_real_value(frame.star.light[0].power);
 }
 
@@ -119,6 +122,9 @@ static void test_extent(void **state)
     assert_true(radius_of(1e7, 2) == hidden_of(2));
     assert_true(radius_of(1e9, 6) < 0.6 * sqrt(2) * 6);
     assert_true(radius_of(10, 6) > 0.8 * sqrt(2) * 6);
+    /* Of a spot without glare the part that its star would make white must not
+     * count. */
+    assert_true(radius_of(GLINT_PI * 2 * 6 * 6, 6) < 0.95 * sqrt(2) * 6);
 }
 
 /* A spot that is wide by the glare of a lamp far over white must throw spikes

@@ -12,6 +12,7 @@
 
 #include <cmocka.h>
 
+#include "engine/detector.h"
 #include "lamp_files/lamp_list.h"
 #include "support/canvas.h"
 #include "support/lens_check.h"
@@ -190,22 +191,21 @@ static void test_lists(void **state)
     (void)state;
     for (int k = 0; k < 2; k++) {
         struct lamp_list list;
-        struct glint_lamp lamp[4];
+        struct glint_engine_lamp lamp[4];
         double x, y;
 
         read_text(&list, texts[k]);
         assert_int_equal(list.n, 3);
-        assert_int_equal(
-            lamp_list_frame(&list, 1, &view, 50, lamp, NULL, NULL, 4), 1);
-        glint_view_to_pixel(&view, 50, &lamp[0], &x, &y);
+        assert_int_equal(lamp_list_frame(&list, 1, &view, 50, lamp, 4), 1);
+        glint_view_to_pixel(&view, 50, &lamp[0].lamp, &x, &y);
         assert_near(x, -30, 1e-9);
         assert_near(y, 40, 1e-9);
-        assert_true(lamp[0].power == 6 && lamp[0].rgb[1] == 0.5);
-        assert_int_equal(
-            lamp_list_frame(&list, 2, &view, 50, lamp, NULL, NULL, 4), 2);
-        assert_true(lamp[1].power == 3 && list.row[2].size == 4);
-        assert_true(lamp[1].axis[0] > 0 && lamp[1].axis[0] == lamp[1].axis[1]);
-        assert_true(lamp[0].axis[0] == 0);
+        assert_true(lamp[0].lamp.power == 6 && lamp[0].lamp.rgb[1] == 0.5);
+        assert_int_equal(lamp_list_frame(&list, 2, &view, 50, lamp, 4), 2);
+        assert_true(lamp[1].lamp.power == 3 && list.row[2].size == 4);
+        assert_true(lamp[1].lamp.axis[0] > 0 &&
+                    lamp[1].lamp.axis[0] == lamp[1].lamp.axis[1]);
+        assert_true(lamp[0].lamp.axis[0] == 0);
         lamp_list_free(&list);
     }
 }

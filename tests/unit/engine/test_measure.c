@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "engine/measure.h"
+#include "glint/measure.h"
 
 enum { SIDE = 64, N = 3 * SIDE * SIDE };
 

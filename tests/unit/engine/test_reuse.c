@@ -25,7 +25,7 @@ static struct stage stage;
 static struct glint_frame reusing, fresh;
 static struct glint_lamp lamps[LIGHTS];
 static uint8_t got[BYTES], want[BYTES];
-static struct glint_frame_report of_reusing, of_fresh;
+static struct glint_engine_report of_reusing, of_fresh;
 
 static int open_stage(void **state)
 {
@@ -57,7 +57,7 @@ static void close_frames(void)
 }
 
 static void draw_one(struct glint_frame *frame, int n, double scale,
-                     uint8_t *codes, struct glint_frame_report *report)
+                     uint8_t *codes, struct glint_engine_report *report)
 {
     struct glint_image image = {.format = GLINT_RGB24, .width = W, .height = H};
 

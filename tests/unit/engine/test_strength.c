@@ -14,7 +14,7 @@
 
 #include "engine/setup/spectrum.h"
 #include "engine/strength.h"
-#include "options/settings.h"
+#include "lab/settings_frame.h"
 
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 
@@ -38,19 +38,23 @@ static struct glint_response response_of(double slope, double mean)
     return r;
 }
 
-static struct glint_lamp lamp_of(double theta_deg, double power)
+static struct glint_engine_lamp lamp_of(double theta_deg, double power)
 {
-    return (struct glint_lamp){theta_deg, 30, power, {1, 1, 1}, {0, 0}, 0};
+    const struct glint_lamp lamp = {theta_deg, 30, power, {1, 1, 1}, {0, 0}, 0};
+
+    return glint_engine_lamp_of(&lamp, 1);
 }
 
 /* Returns the peak that the exposure gives the flare of N lamps, each at its
  * LEVEL, US after the last frame. */
 static double peak_of(struct glint_strength *s, const struct glint_response *r,
-                      struct glint_lamp *lamps, const double *level, int n,
-                      int us)
+                      struct glint_engine_lamp *lamps, const double *level,
+                      int n, int us)
 {
-    const struct glint_strength_lamps all = {lamps, level, n, PIXELS};
+    const struct glint_strength_lamps all = {lamps, n, PIXELS};
 
+    for (int i = 0; i < n; i++)
+        lamps[i].level = level ? level[i] : 1;
     glint_strength_expose(s, r, &all, us);
     return glint_largest_channel(s->light.peak);
 }
@@ -58,7 +62,7 @@ static double peak_of(struct glint_strength *s, const struct glint_response *r,
 static double still(double asked, const struct glint_response *r, double theta,
                     double power)
 {
-    struct glint_lamp lamp = lamp_of(theta, power);
+    struct glint_engine_lamp lamp = lamp_of(theta, power);
     struct glint_strength s;
 
     glint_strength_defaults(&s);
@@ -113,8 +117,8 @@ static void test_any_power_is_seen(void **state)
 static void test_a_veil_is_held_by_its_mean(void **state)
 {
     const struct glint_response r = response_of(0, 0.5);
-    struct glint_lamp lamp = lamp_of(5, PIXELS);
-    const struct glint_strength_lamps all = {&lamp, NULL, 1, PIXELS};
+    struct glint_engine_lamp lamp = lamp_of(5, PIXELS);
+    const struct glint_strength_lamps all = {&lamp, 1, PIXELS};
     struct glint_strength s;
 
     (void)state;
@@ -127,20 +131,20 @@ static void test_a_veil_is_held_by_its_mean(void **state)
 static void test_ratios_between_lamps_stay(void **state)
 {
     const struct glint_response r = response_of(5, 7);
-    struct glint_lamp lamps[2] = {lamp_of(5, 1e6), lamp_of(9, 1e3)};
-    const struct glint_strength_lamps all = {lamps, NULL, 2, PIXELS};
+    struct glint_engine_lamp lamps[2] = {lamp_of(5, 1e6), lamp_of(9, 1e3)};
+    const struct glint_strength_lamps all = {lamps, 2, PIXELS};
     struct glint_strength s;
 
     (void)state;
     glint_strength_defaults(&s);
     glint_strength_expose(&s, &r, &all, 0);
-    assert_true(lamps[0].power == 1e6 && lamps[1].power == 1e3);
+    assert_true(lamps[0].lamp.power == 1e6 && lamps[1].lamp.power == 1e3);
 }
 
 static void test_many_equal_lamps_share(void **state)
 {
     const struct glint_response r = response_of(0, 9);
-    struct glint_lamp lamps[16];
+    struct glint_engine_lamp lamps[16];
     struct glint_strength s;
     double one, each;
 
@@ -156,8 +160,8 @@ static void test_many_equal_lamps_share(void **state)
 static void test_by_hand(void **state)
 {
     const struct glint_response r = response_of(0, 7);
-    struct glint_lamp lamp = lamp_of(5, common);
-    const struct glint_strength_lamps all = {&lamp, NULL, 1, PIXELS};
+    struct glint_engine_lamp lamp = lamp_of(5, common);
+    const struct glint_strength_lamps all = {&lamp, 1, PIXELS};
     struct glint_strength s;
 
     (void)state;
@@ -179,9 +183,9 @@ static void test_by_hand(void **state)
 static void test_lamps_without_light(void **state)
 {
     const struct glint_response r = response_of(0, 7);
-    struct glint_lamp lamp = lamp_of(5, 0);
-    const struct glint_strength_lamps all = {&lamp, NULL, 1, PIXELS};
-    const struct glint_strength_lamps none = {NULL, NULL, 0, PIXELS};
+    struct glint_engine_lamp lamp = lamp_of(5, 0);
+    const struct glint_strength_lamps all = {&lamp, 1, PIXELS};
+    const struct glint_strength_lamps none = {NULL, 0, PIXELS};
     struct glint_strength s;
 
     (void)state;
@@ -200,7 +204,7 @@ static double corrected(double asked, double stops, double mean_stops)
     const struct glint_response r = response_of(0, 7);
     struct glint_response_light drawn = {{0}, {0}};
     struct glint_strength s;
-    struct glint_lamp lamp = lamp_of(5, common);
+    struct glint_engine_lamp lamp = lamp_of(5, common);
 
     glint_strength_defaults(&s);
     s.asked = asked;
@@ -235,7 +239,7 @@ static void test_not_as_it_was_drawn(void **state)
     const struct glint_response_light bright = {{9, 9, 9}, {1, 1, 1}};
     const struct glint_response_light none = {{0}, {0}};
     const struct glint_response r = response_of(0, 7);
-    struct glint_lamp lamp = lamp_of(5, common);
+    struct glint_engine_lamp lamp = lamp_of(5, common);
     struct glint_strength s;
     double scale;
 
@@ -263,7 +267,7 @@ static void test_a_lamp_that_crosses(void **state)
     (void)state;
     glint_strength_defaults(&s);
     for (int i = 0; i <= 200; i++) {
-        struct glint_lamp lamp = lamp_of(fabs(20 - i * 0.2), 1e5);
+        struct glint_engine_lamp lamp = lamp_of(fabs(20 - i * 0.2), 1e5);
         const double peak = peak_of(&s, &r, &lamp, NULL, 1, FRAME_US);
 
         assert_true(peak > 0.1 && peak < 0.5);
@@ -284,7 +288,7 @@ static void test_a_lamp_that_rises(void **state)
     (void)state;
     glint_strength_defaults(&s);
     for (int i = 0; i < 250; i++) {
-        struct glint_lamp lamps[2] = {lamp_of(5, 1e3), lamp_of(8, 1e6)};
+        struct glint_engine_lamp lamps[2] = {lamp_of(5, 1e3), lamp_of(8, 1e6)};
         const double level[2] = {1, fmin(1, (i - 49) / 5.0)};
         const double peak =
             peak_of(&s, &r, lamps, level, i < 50 ? 1 : 2, FRAME_US);
@@ -294,9 +298,9 @@ static void test_a_lamp_that_rises(void **state)
             assert_true(fabs(log2(s.scale / scale)) < 0.126);
         scale = s.scale;
         if (i == 50) /* The sun is limited to a hundredth of its power. */
-            assert_true(lamps[1].power < 1e6 / 100);
+            assert_true(lamps[1].lamp.power < 1e6 / 100);
         if (i == 249)
-            assert_true(lamps[1].power > 0.99e6);
+            assert_true(lamps[1].lamp.power > 0.99e6);
     }
 }
 
@@ -310,13 +314,13 @@ static void test_a_lamp_that_leaves(void **state)
     (void)state;
     glint_strength_defaults(&s);
     {
-        struct glint_lamp lamps[2] = {lamp_of(5, 1e3), lamp_of(8, 1e6)};
+        struct glint_engine_lamp lamps[2] = {lamp_of(5, 1e3), lamp_of(8, 1e6)};
 
         peak_of(&s, &r, lamps, NULL, 2, 0);
         first = scale = s.scale;
     }
     for (int i = 0; i < 250; i++) {
-        struct glint_lamp lamp = lamp_of(5, 1e3);
+        struct glint_engine_lamp lamp = lamp_of(5, 1e3);
 
         peak_of(&s, &r, &lamp, NULL, 1, FRAME_US);
         assert_true(s.scale >= scale && s.scale / scale < exp2(0.081));
@@ -337,7 +341,7 @@ static void test_rising_alone(void **state)
     glint_strength_defaults(&s);
     for (int i = 1; i <= 8; i++) {
         const double level = i / 8.0;
-        struct glint_lamp lamp = lamp_of(5, level * common);
+        struct glint_engine_lamp lamp = lamp_of(5, level * common);
         const double peak = peak_of(&s, &r, &lamp, &level, 1, FRAME_US);
 
         assert_true(fabs(peak - 0.25 * level) < 0.01);
@@ -351,14 +355,15 @@ static void test_rising_alone(void **state)
 static void test_begins_anew(void **state)
 {
     const struct glint_response r = response_of(0, 7);
-    struct glint_lamp faint = lamp_of(5, 10), bright = lamp_of(5, common);
+    struct glint_engine_lamp faint = lamp_of(5, 10),
+                             bright = lamp_of(5, common);
     struct glint_strength s;
 
     (void)state;
     glint_strength_defaults(&s);
     peak_of(&s, &r, &faint, NULL, 1, FRAME_US);
     assert_true(peak_of(&s, &r, &bright, NULL, 1, FRAME_US) > 0.3);
-    assert_true(bright.power < common);
+    assert_true(bright.lamp.power < common);
     bright = lamp_of(5, common);
     assert_true(fabs(peak_of(&s, &r, &bright, NULL, 1, 0) - 0.25) < 1e-4);
     peak_of(&s, &r, &faint, NULL, 0, FRAME_US);
@@ -383,16 +388,16 @@ static void check_lens(const char *lens, double corner_deg)
     assert_int_equal(glint_response_measure(&frame, 0, &r), GLINT_OK);
     assert_true(r.n == GLINT_RESPONSE_ANGLES);
     for (int i = 0; i < 6; i++) {
-        struct glint_lamp lamp =
+        struct glint_engine_lamp lamp =
             lamp_of(corner_deg * i / 6, exp2(5 * i - 4) * 100);
-        const struct glint_strength_lamps all = {&lamp, NULL, 1, 640 * 360};
+        const struct glint_strength_lamps all = {&lamp, 1, 640 * 360};
         struct glint_response_light drawn;
         struct glint_strength s;
 
-        lamp.phi_deg = 29 + 180 * (i % 2); /* stays within the picture */
+        lamp.lamp.phi_deg = 29 + 180 * (i % 2); /* stays within the picture */
         glint_strength_defaults(&s);
         glint_strength_expose(&s, &r, &all, 0);
-        assert_int_equal(glint_response_draw(&frame, &lamp, 1,
+        assert_int_equal(glint_response_draw(&frame, &lamp.lamp, 1,
                                              GLINT_RESPONSE_FINE, NULL, &drawn,
                                              NULL),
                          GLINT_OK);

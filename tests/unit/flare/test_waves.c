@@ -15,6 +15,7 @@
 #include <cmocka.h>
 
 #include "engine/frame/frame.h"
+#include "lab/settings_frame.h"
 #include "options/settings_waves.h"
 
 enum { WIDTH = 640, HEIGHT = 360, SAMPLES = 3 * WIDTH * HEIGHT };
@@ -24,16 +25,16 @@ static struct settings chosen, three, all;
 static const struct glint_lamp lamp = {
     .theta_deg = 12, .phi_deg = 33, .power = 3e6, .rgb = {1, 1, 1}};
 
-static struct glint_frame_report drawn(struct glint_frame *frame,
-                                       const struct settings *settings,
-                                       int width, double power, uint8_t *rgb)
+static struct glint_engine_report drawn(struct glint_frame *frame,
+                                        const struct settings *settings,
+                                        int width, double power, uint8_t *rgb)
 {
     struct glint_lamp light = lamp;
     struct glint_image image = {.format = GLINT_RGB24,
                                 .width = width,
                                 .height = width * 9 / 16,
                                 .range = GLINT_RANGE_FULL};
-    struct glint_frame_report report;
+    struct glint_engine_report report;
 
     light.power *= power;
     assert_int_equal(
@@ -90,7 +91,7 @@ static void test_small_picture(void **state)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles;
     struct glint_frame frame;
-    struct glint_frame_report report;
+    struct glint_engine_report report;
 
     (void)state; /* 32 pixels are too few for an outline to move by a pixel. */
     report = drawn(&frame, &chosen, 32, 1, picture);
@@ -105,7 +106,7 @@ static void test_large_picture(void **state)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles, more;
     struct glint_frame frame;
-    struct glint_frame_report report;
+    struct glint_engine_report report;
 
     (void)state;
     report = drawn(&frame, &chosen, WIDTH, 100, picture);
@@ -238,7 +239,7 @@ static void test_same_bits(void **state)
                                     .width = WIDTH,
                                     .height = HEIGHT,
                                     .range = GLINT_RANGE_FULL};
-        struct glint_frame_report report;
+        struct glint_engine_report report;
         struct glint_frame frame;
 
         tool.workers = i ? NULL : pool;
@@ -362,7 +363,7 @@ static void test_white(void **state)
     static float rgb[SAMPLES];
     static struct settings bare;
     double sum[3] = {0, 0, 0};
-    struct glint_frame_report report;
+    struct glint_engine_report report;
     struct glint_frame frame;
 
     (void)state;

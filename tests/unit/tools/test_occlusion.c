@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "desk/occlusion.h"
-#include "engine/frame/area.h"
+#include "glint/area.h"
 
 enum { SIDE = 64 };
 
@@ -38,14 +38,17 @@ static struct occlusion mask_of(int column)
 static double left(struct occlusion *o, double x, double y, double radius)
 {
     struct glint_lamp lamp = {.power = 8, .rgb = {1, 1, 1}};
-    double level = 0.5;
+    struct glint_engine_lamp known;
 
     glint_view_to_angles(&view, focal_mm, x, y, &lamp);
     glint_area_set_round(&lamp, radius / sqrt(2) *
                                     glint_view_pixel_tangent(&view, focal_mm));
-    occlusion_apply(o, 0, &view, focal_mm, &lamp, &level, 1);
-    assert_true(fabs(level - fmax(0.5 * lamp.power / 8, 1e-6)) < 1e-12);
-    return lamp.power / 8;
+    known = glint_engine_lamp_of(&lamp, 1);
+    known.level = 0.5;
+    occlusion_apply(o, 0, &view, focal_mm, &known, 1);
+    assert_true(fabs(known.level - fmax(0.5 * known.lamp.power / 8, 1e-6)) <
+                1e-12);
+    return known.lamp.power / 8;
 }
 
 static void test_share(void **state)

@@ -160,9 +160,9 @@ def _cached(lens: str, coating: str, f_number: float, pool: _Pool) -> bytes:
 # --------------------------------------------------------------------- options
 
 # Options that the engine has. Others of the table are for glint overlay alone; to set one is an error.
-_DRAWN = {"coating", "cull", "dim", "dispersion", "error", "exposure", "f-number", "gain", "grid", "half", "haze",
-          "headroom", "quality", "quantum", "sensor", "star-cull", "starburst", "stop", "strength", "threshold", "veil",
-          "whole"}
+_DRAWN = {"apart", "area-samples", "coating", "cull", "dim", "dispersion", "dither", "error", "exposure", "f-number", "gain",
+          "ghost", "grid", "half", "haze", "headroom", "max-lights", "memory", "only", "quality", "quantum", "sensor",
+          "star-cull", "starburst", "stop", "strength", "threshold", "tile", "veil", "whole", "work"}
 _Stop = Union[str, Tuple[int, float], None]
 
 
@@ -248,8 +248,8 @@ class Engine:
         cfg, error = _ffi.new("struct glint_engine_config *"), _ffi.new("struct glint_error *")
         _lib.glint_engine_defaults(cfg, width, height)
         cfg.model, cfg.workers, cfg.sets = self._lens, self._pool.workers, _lib.glint_system_sets()
-        cfg.n_blades, cfg.blade_rotation_deg = shape.n_blades, shape.rotation_deg
-        _lib.glint_configure_(cfg, set_)
+        cfg.camera.n_blades, cfg.camera.blade_rotation_deg = shape.n_blades, shape.rotation_deg
+        _lib.glint_engine_configure(cfg, set_)
         at = _ffi.new("struct glint_engine **")
         _check(_lib.glint_engine_create(at, cfg, error), error)
         self._engine = _ffi.gc(at[0], _lib.glint_engine_destroy)
@@ -260,12 +260,12 @@ class Engine:
                 _check(_lib.glint_engine_stop(self._engine, f_number, error), error)
         film = _ffi.new("double[2]")
         _lib.glint_film_mm_(self._lens, film)
-        if cfg.sensor_width_mm > 0:
-            film[0], film[1] = cfg.sensor_width_mm, cfg.sensor_height_mm
+        if cfg.camera.sensor_width_mm > 0:
+            film[0], film[1] = cfg.camera.sensor_width_mm, cfg.camera.sensor_height_mm
         self._view = _ffi.new("struct glint_view *", _lib.glint_view_fit(width, height, film[0], film[1]))
         self._focal_mm = _lib.glint_focal_mm_(self._lens)
         self.height, self.width = height, width
-        self._lamps = _ffi.new("struct glint_lamp[]", MOST_LAMPS)
+        self._lamps = _ffi.new("struct glint_engine_lamp[]", MOST_LAMPS)
 
     def _image(self, array: np.ndarray, kind: int, channels: int, item: int):
         if array.shape[:2] != (self.height, self.width):
@@ -293,17 +293,17 @@ class Engine:
     def _put(self, lamps: Sequence[Lamp]) -> int:
         if len(lamps) > MOST_LAMPS:
             raise ValueError(f"at most {MOST_LAMPS} lamps")
-        for to, lamp in zip(self._lamps, lamps):
-            to.theta_deg, to.phi_deg, to.power, to.turn_deg = lamp.theta, lamp.phi, lamp.power, lamp.turn
-            to.rgb, to.axis = list(lamp.rgb), list(lamp.axis)
+        for i, lamp in enumerate(lamps):
+            to = _ffi.new("struct glint_lamp *", [lamp.theta, lamp.phi, lamp.power, lamp.rgb, lamp.axis, lamp.turn])
+            self._lamps[i] = _lib.glint_engine_lamp_of(to, i + 1)
         return len(lamps)
 
     def _draw(self, n: int, image) -> Report:
         report = _ffi.new("struct glint_engine_report *")
         _check(_lib.glint_engine_draw(self._engine, self._lamps, n, image, report))
         lamps = [Lamp(l.theta_deg, l.phi_deg, l.power, tuple(l.rgb), tuple(l.axis), l.turn_deg)
-                 for l in self._lamps[0:n]]
-        return Report(lamps, report.lights, report.ghosts, report.bytes, report.scale)
+                 for l in (known.lamp for known in self._lamps[0:n])]
+        return Report(lamps, report.drawn_lights, report.ghosts, report.arena_bytes, report.scale)
 
     def lamp_at(self, x: float, y: float, ev: float = 16.0) -> Lamp:
         """A lamp at a pixel from the top left, EV stops over white."""

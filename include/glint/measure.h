@@ -1,18 +1,22 @@
 /* SPDX-License-Identifier: MIT
  *
- * Measures how far two pictures in linear light are apart.
+ * glint/measure.h - measures how far two pictures in linear light are apart.
  *
  * Both are exposed by the reference (its 99.9th percentile of luminance over
  * all pixels becomes 1) or by a given factor, clipped, sRGB-encoded and rounded
  * to 8 bits. Metrics are taken on the codes; if all codes are equal, PSNR is
  * taken on the values before rounding. Flux is compared before clipping. */
-#ifndef GLINT_ENGINE_MEASURE_H
-#define GLINT_ENGINE_MEASURE_H
+#ifndef GLINT_MEASURE_H
+#define GLINT_MEASURE_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
 #include "glint/image.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 struct glint_measure {
     double psnr_db; /* over the three channels; 999 if nothing differs, even
@@ -55,5 +59,9 @@ bool glint_measure_compare(const struct glint_float_image *reference,
 bool glint_measure_at(const struct glint_float_image *reference,
                       const struct glint_float_image *test, bool fit,
                       double exposure, struct glint_measure *result);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -1,16 +1,21 @@
 /* SPDX-License-Identifier: MIT
  *
- * Divides lamps of visible extent into points, spread evenly over an ellipse.
+ * glint/area.h - divides lamps of visible extent into points, spread evenly
+ * over an ellipse.
  *
  * Ghosts of an area lamp are those of its points, each shifted by as much as
  * the ghost moves with the lamp, so that their outlines are softened. The
  * number of points follows from the lamp's area in pixels and is a real number:
  * the last point has only a fraction of the power, and all move smoothly as the
  * lamp grows. Nothing steps in a video. */
-#ifndef GLINT_ENGINE_FRAME_AREA_H
-#define GLINT_ENGINE_FRAME_AREA_H
+#ifndef GLINT_AREA_H
+#define GLINT_AREA_H
 
-#include "glint/glint.h"
+#include "glint/view.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 enum {
     GLINT_AREA_SAMPLES = 7, /* points of the brightest lamp, unless another
@@ -71,5 +76,9 @@ struct glint_lamp glint_area_point(const struct glint_area *area, int i);
 
 /* Makes LAMP round, with an RMS radius of TANGENT. */
 void glint_area_set_round(struct glint_lamp *lamp, double tangent);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What the table of options says of an engine. */
+#include "glint/engine.h"
+#include "glint/options.h"
+
+/* Lamps that are looked for: most pictures have many that hardly show. */
+enum { FOUND = 16 };
+
+static unsigned parts_of(int only)
+{
+    switch (only) {
+    case GLINT_ONLY_GHOSTS:
+        return GLINT_ENGINE_GHOSTS;
+    case GLINT_ONLY_STARBURST:
+        return GLINT_ENGINE_STAR;
+    case GLINT_ONLY_VEIL:
+        return GLINT_ENGINE_VEIL;
+    default:
+        return GLINT_ENGINE_ALL;
+    }
+}
+
+/* Returns the factor on the star: off with a single ghost, unless given. */
+static double starburst_of(const struct glint_options *o)
+{
+    if (GLINT_OPTION_GIVEN(o, starburst))
+        return o->starburst;
+    if (o->only == GLINT_ONLY_STARBURST)
+        return 1;
+    return GLINT_OPTION_GIVEN(o, ghost) ? 0 : o->starburst;
+}
+
+static struct glint_engine_drawing drawing_of(const struct glint_options *o)
+{
+    const bool has_grid = GLINT_OPTION_GIVEN(o, grid) ||
+                          GLINT_OPTION_GIVEN(o, quality) ||
+                          GLINT_OPTION_GIVEN(o, error);
+    struct glint_engine_drawing d = {
+        .dials = glint_options_quality(o).dials,
+        .budget_ms = o->budget,
+        /* A limit of work would make the grid coarser than was asked for. */
+        .most_minsn =
+            has_grid && !GLINT_OPTION_GIVEN(o, work) ? 0 : 1000 * o->work,
+        .apart_px = o->apart,
+        .tile_log2 = 3 + o->tile,
+        .dither = o->dither,
+        .parts = parts_of(o->only),
+        .only_ghost = GLINT_OPTION_GIVEN(o, ghost) ? o->ghost : -1,
+        .keep_points = o->area_samples != 0,
+        .keep_lights = o->max_lights != 0};
+
+    if (o->area_samples)
+        d.dials.area_points = o->area_samples;
+    if (o->max_lights)
+        d.dials.max_lights = o->max_lights;
+    return d;
+}
+
+void glint_engine_configure(struct glint_engine_config *cfg,
+                            const struct glint_options *options)
+{
+    const struct glint_options *const o = options;
+    const int found = o->max_lights ? o->max_lights : FOUND;
+    double mm[2] = {0, 0};
+
+    cfg->light =
+        (struct glint_engine_light){.strength = o->strength,
+                                    .exposure_ev = o->exposure,
+                                    .gain = o->gain,
+                                    .by_hand = GLINT_OPTION_GIVEN(o, exposure),
+                                    .starburst = starburst_of(o),
+                                    .veil = o->veil,
+                                    .haze = o->haze};
+    glint_option_threshold(o->threshold, cfg->search.threshold_ev);
+    cfg->search.headroom_ev =
+        GLINT_OPTION_GIVEN(o, headroom) ? o->headroom : -1;
+    cfg->search.max_found =
+        found < GLINT_ENGINE_MAX_LAMPS ? found : GLINT_ENGINE_MAX_LAMPS;
+    cfg->drawing = drawing_of(o);
+    cfg->camera.f_number = o->f_number;
+    if (o->sensor)
+        glint_option_sensor(o->sensor, mm);
+    cfg->camera.sensor_width_mm = mm[0];
+    cfg->camera.sensor_height_mm = mm[1];
+    cfg->arena_bytes = (size_t)o->memory << 20;
+    cfg->arena_has_all = 1;
+}

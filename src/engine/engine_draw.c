@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Draws the flare of a picture, and parts of it as layers. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/engine_parts.h"
+
+enum glint_status glint_engine_draw(struct glint_engine *engine,
+                                    struct glint_engine_lamp *lamps, int n,
+                                    const struct glint_image *image,
+                                    struct glint_engine_report *report)
+{
+    struct glint_frame *const f = &engine->paint.frame;
+    enum glint_status status = GLINT_OK;
+    double scale;
+
+    if (!engine->expose.is_done)
+        status = glint_engine_expose(engine, lamps, n, image, 1);
+    if (status != GLINT_OK)
+        return status;
+    engine->expose.is_done = false;
+    scale = engine->expose.last.scale;
+    f->known = lamps;
+    status = glint_frame_draw(f, glint_engine_plain(engine, lamps, n),
+                              scale > 0 ? n : 0, scale, image, report);
+    f->known = NULL;
+    f->progress = NULL;
+    report->lights = n;
+    report->scale = scale;
+    return status;
+}
+
+/* Draws what is chosen as it is planned for pictures of 8 bits. */
+static enum glint_status draw_as_for_codes(struct glint_frame *f,
+                                           const struct glint_lamp *lamps,
+                                           int n, double scale, float *rgb,
+                                           struct glint_engine_report *report)
+{
+    const size_t samples = 3 * (size_t)f->view.width * (size_t)f->view.height;
+    struct glint_image layer = {.format = GLINT_LINEAR_Q20,
+                                .width = f->view.width,
+                                .height = f->view.height};
+    enum glint_status status;
+
+    /* RGB holds integers until they are converted. */
+    glint_image_place(&layer, rgb);
+    f->for_codes = true;
+    status = glint_frame_draw(f, lamps, n, scale, &layer, report);
+    f->for_codes = false;
+    for (size_t i = 0; i < samples; i++) {
+        int32_t light_q20;
+
+        memcpy(&light_q20, &rgb[i], sizeof light_q20);
+        rgb[i] = (float)light_q20 * 0x1p-20F;
+    }
+    return status;
+}
+
+/* Draws the veil that was set for the last picture. */
+static enum glint_status draw_veil(struct glint_frame *f, float *rgb)
+{
+    const size_t samples = 3 * (size_t)f->view.width * (size_t)f->view.height;
+    int32_t *const linear_q20 = malloc(samples * sizeof *linear_q20);
+
+    if (!linear_q20)
+        return GLINT_E_MEMORY;
+    glint_frame_veil_add(f, 1, linear_q20, rgb);
+    free(linear_q20);
+    return GLINT_OK;
+}
+
+enum glint_status glint_engine_layer(struct glint_engine *engine,
+                                     const struct glint_engine_lamp *lamps,
+                                     int n, unsigned parts, float *rgb,
+                                     struct glint_engine_report *report)
+{
+    struct glint_frame *const f = &engine->paint.frame;
+    const double star = f->star.share, scale = engine->expose.last.scale;
+    const struct glint_lamp *const plain = glint_engine_plain(engine, lamps, n);
+    const unsigned drawn = parts & engine->paint.parts;
+    enum glint_status status = GLINT_OK;
+
+    memset(rgb, 0,
+           3 * (size_t)f->view.width * (size_t)f->view.height * sizeof *rgb);
+    *report = (struct glint_engine_report){.lights = n, .scale = scale};
+    if (drawn == GLINT_ENGINE_VEIL)
+        return draw_veil(f, rgb);
+    if ((drawn & GLINT_ENGINE_ALL) == 0)
+        return GLINT_OK;
+    glint_engine_choose(engine, drawn | (parts & GLINT_ENGINE_CORES), star,
+                        engine->expose.light.gain > 0);
+    f->known = lamps;
+    if (parts & GLINT_ENGINE_CODES || n == 0)
+        status = draw_as_for_codes(f, plain, n, scale, rgb, report);
+    else if (drawn & (GLINT_ENGINE_GHOSTS | GLINT_ENGINE_VEIL) || star > 0)
+        status = glint_frame_draw_alone(f, plain, n, scale, rgb, report);
+    f->known = NULL;
+    f->progress = NULL;
+    glint_engine_choose(engine, engine->paint.parts, star,
+                        engine->expose.light.gain > 0);
+    report->lights = n;
+    report->scale = scale;
+    return status;
+}
+
+enum glint_status glint_engine_render(struct glint_engine *engine,
+                                      const struct glint_lamp *lamps, int n,
+                                      double gain, unsigned parts, float *rgb,
+                                      struct glint_engine_report *report)
+{
+    struct glint_frame *const f = &engine->paint.frame;
+    enum glint_status status;
+
+    glint_engine_choose(engine,
+                        parts & (engine->paint.parts | GLINT_ENGINE_CORES),
+                        engine->expose.light.starburst, true);
+    f->veil.alone_gain = 0;
+    status = glint_frame_draw_alone(f, lamps, n, gain, rgb, report);
+    f->progress = NULL;
+    report->scale = gain;
+    return status;
+}
+
+enum glint_status glint_engine_measure(const struct glint_engine *engine,
+                                       const struct glint_engine_lamp *lamps,
+                                       int n,
+                                       struct glint_response_light *light)
+{
+    struct glint_lamp *const plain = malloc(((size_t)n + 1) * sizeof *plain);
+    enum glint_status status = GLINT_E_MEMORY;
+
+    for (int i = 0; i < n && plain; i++)
+        plain[i] = lamps[i].lamp;
+    if (plain)
+        status = glint_response_draw(&engine->paint.frame, plain, n,
+                                     GLINT_RESPONSE_FINE, NULL, light, NULL);
+    free(plain);
+    return status;
+}
+
+int glint_engine_is_beyond(const struct glint_engine *engine,
+                           const struct glint_lamp *lamp)
+{
+    return engine->paint.frame.lens &&
+           glint_frame_is_beyond(&engine->paint.frame, lamp);
+}

@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * How bright the flare of a picture is. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/engine_parts.h"
+
+const struct glint_engine_exposure *
+glint_engine_exposed(const struct glint_engine *engine)
+{
+    return &engine->expose.last;
+}
+
+int glint_engine_has_veil(const struct glint_engine *engine)
+{
+    return glint_frame_has_veil(&engine->paint.frame);
+}
+
+const struct glint_lamp *
+glint_engine_plain(struct glint_engine *engine,
+                   const struct glint_engine_lamp *lamps, int n)
+{
+    for (int i = 0; i < n; i++)
+        engine->paint.lamp[i] = lamps[i].lamp;
+    return engine->paint.lamp;
+}
+
+void glint_engine_choose(struct glint_engine *engine, unsigned parts,
+                         double star, bool veil)
+{
+    const struct glint_engine_light *const light = &engine->expose.light;
+    struct glint_frame *const f = &engine->paint.frame;
+
+    veil = veil && parts & GLINT_ENGINE_VEIL;
+    f->star.is_alone = !(parts & GLINT_ENGINE_GHOSTS);
+    f->star.is_bare = (parts & GLINT_ENGINE_CORES) != 0;
+    f->star.share = parts & GLINT_ENGINE_STAR ? star : 0;
+    f->veil.glare = veil ? light->veil : 0;
+    f->veil.haze = veil ? light->haze : 0;
+    f->veil.front = veil ? engine->optics.front : NULL;
+}
+
+/* Exposes a picture by itself, for which there is time, by drawing its flare
+ * small. */
+static void expose_as_drawn(struct glint_engine *e, int n,
+                            const struct glint_image *image, double white)
+{
+    struct glint_engine_exposing *const x = &e->expose;
+    struct glint_ground *ground = NULL;
+
+    if (x->strength.is_physical || !(x->strength.scale > 0))
+        return;
+    if (image->format != GLINT_LINEAR_Q20)
+        ground = malloc(sizeof *ground);
+    if (ground)
+        glint_ground_take(ground, image);
+    glint_strength_expose_still(&x->strength, &e->paint.frame, e->paint.lamp, n,
+                                ground, white);
+    free(ground);
+}
+
+/* Returns what LAMP, which was found, has over what the picture shows of it
+ * where nothing hides it, of a video followed from the last picture by a third
+ * of a second: what is estimated of a lamp that clips may jump for a picture.
+ */
+static double excess_found(const struct glint_engine_exposing *x,
+                           const struct glint_engine_lamp *lamp, double white,
+                           int32_t elapsed_us)
+{
+    const double excess = glint_lamp_excess(&lamp->lamp, &lamp->track,
+                                            lamp->level, lamp->share, white);
+    const double k = 1 - exp(-3e-6 * elapsed_us);
+
+    for (int j = 0; j < x->n_before && elapsed_us > 0; j++)
+        if (x->before[j].id == lamp->id)
+            return x->before[j].excess + k * (excess - x->before[j].excess);
+    return excess;
+}
+
+static void set_excess(struct glint_engine_exposing *x,
+                       struct glint_engine_lamp *lamps, int n, double white,
+                       int32_t elapsed_us)
+{
+    for (int i = 0; i < n; i++)
+        lamps[i].excess = lamps[i].is_found
+                              ? excess_found(x, &lamps[i], white, elapsed_us)
+                              : lamps[i].lamp.power / lamps[i].share;
+    for (int i = 0; i < n; i++) {
+        x->before[i] =
+            (struct glint_engine_before){lamps[i].id, lamps[i].excess};
+        lamps[i].excess *= lamps[i].share;
+    }
+    x->n_before = n;
+}
+
+enum glint_status glint_engine_expose(struct glint_engine *engine,
+                                      struct glint_engine_lamp *lamps, int n,
+                                      const struct glint_image *image,
+                                      double white)
+{
+    struct glint_engine_finding *const find = &engine->find;
+    struct glint_engine_exposing *const x = &engine->expose;
+    struct glint_frame *const f = &engine->paint.frame;
+    const struct glint_strength_lamps all = {
+        lamps, n, (double)f->view.width * f->view.height * white};
+    const int32_t elapsed_us = find->elapsed_us;
+    const bool is_new =
+        find->is_cut || (find->is_searched &&
+                         glint_lamp_tracker_was_cut(find->detector.tracks));
+
+    if (image->width != f->view.width || image->height != f->view.height ||
+        n < 0 || n > engine->most_lamps)
+        return GLINT_E_ARGUMENT;
+    glint_strength_expose(&x->strength, &x->response, &all,
+                          is_new ? 0 : elapsed_us);
+    glint_engine_plain(engine, lamps, n);
+    if (elapsed_us == 0 && f->budget.ms <= 0 && x->by_drawing)
+        expose_as_drawn(engine, n, image, white);
+    set_excess(x, lamps, n, white, is_new ? 0 : elapsed_us);
+    glint_engine_choose(engine, engine->paint.parts,
+                        glint_strength_star(&x->strength, x->light.starburst),
+                        x->light.gain > 0);
+    f->veil.alone_gain = 1;
+    if (f->budget.ms <= 0)
+        glint_frame_set_still(f, elapsed_us == 0, !engine->paint.keep_points,
+                              !engine->paint.keep_lights);
+    x->last = (struct glint_engine_exposure){.scale = x->strength.scale,
+                                             .light = x->strength.light,
+                                             .is_drawn = x->strength.is_drawn,
+                                             .is_new = is_new};
+    x->is_done = true;
+    find->elapsed_us = 0;
+    find->is_searched = find->is_cut = false;
+    return glint_frame_veil_look(f, image, white);
+}

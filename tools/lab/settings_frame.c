@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+#include "lab/settings_frame.h"
+
+#include "options/settings_table.h"
+
+static double settings_starburst(const struct settings *settings)
+{
+    const struct glint_options *const o = &settings->options;
+
+    if (o->only == GLINT_ONLY_GHOSTS || o->only == GLINT_ONLY_VEIL)
+        return 0;
+    if (GLINT_OPTION_GIVEN(o, starburst))
+        return o->starburst;
+    if (o->only == GLINT_ONLY_STARBURST)
+        return 1;
+    return GLINT_OPTION_GIVEN(o, ghost) ? 0 : o->starburst;
+}
+
+int settings_frame(const struct tool *tool, const struct settings *settings,
+                   struct glint_view view, struct glint_frame *frame)
+{
+    const struct glint_options *const o = &settings->options;
+
+    glint_frame_init(frame, &settings->setup, view, tool->workers);
+    frame->cfg.sets = tool_sets(tool);
+    frame->lens = settings->model.data ? &settings->model.lens : NULL;
+    frame->trace = settings_table_rays();
+    frame->clock = tool_seconds;
+    frame->dials = settings->dials;
+    frame->only_ghost = settings_only_ghost(settings);
+    frame->tints = settings->tints;
+    /* A limit of work would make the grid coarser than was asked for. */
+    frame->most_minsn =
+        settings_has_grid(settings) && !GLINT_OPTION_GIVEN(o, work)
+            ? 0
+            : 1000 * o->work;
+    frame->apart_px = o->apart;
+    if (o->area_samples)
+        frame->dials.area_points = o->area_samples;
+    if (o->max_lights)
+        frame->dials.max_lights = o->max_lights;
+    frame->asked = frame->dials;
+    frame->cfg.tile_log2 = 3 + o->tile;
+    frame->cfg.dither = o->dither;
+    if (o->budget > 0 && frame->lens) {
+        glint_budget_init(&frame->budget, o->budget);
+        frame->dials = glint_budget_dials(&frame->budget, &frame->dials);
+        if (glint_frame_calibrate(frame) != GLINT_OK)
+            return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    }
+    frame->star.share = settings_starburst(settings);
+    frame->star.is_alone =
+        o->only == GLINT_ONLY_STARBURST || o->only == GLINT_ONLY_VEIL;
+    if (o->only == GLINT_ONLY_VEIL || o->only == GLINT_ONLY_ALL) {
+        frame->veil.glare = o->veil;
+        frame->veil.haze = o->haze;
+        frame->veil.front = settings->front.dirt;
+    }
+    return EXIT_OK;
+}
