@@ -102,7 +102,7 @@ synth-baseline: all
 
 # Every command that READMEs and manual pages name, those that take minutes, too.
 check-commands:
-	@tools/make/deps "the commands that READMEs name" gcc g++ pkg-config libopenimageio-dev ffmpeg
+	@tools/make/deps "the commands that READMEs name" gcc g++ pkg-config libopenimageio-dev libassimp-dev ffmpeg
 	@$(MAKE) --no-print-directory all oiio frei0r man
 	@tests/hosts/commands --all
 .PHONY: check-commands
