@@ -146,17 +146,20 @@ $(example_bins): $(OUT)/examples/%: $(OUT)/tools/examples/%.o $(OUT)/libglint.a
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -Wl,--gc-sections,-Map=$@.map $^ -lm -o $@
 
 # Programs that embed the engine: for lens tables and models; for models alone,
-# without the offline half; and the first of these as C++.
-embed_bins := $(addprefix $(OUT)/examples/,embed embed_models embed_cxx)
+# without the offline half; the first of these as C++; and with a scene.
+embed_bins := $(addprefix $(OUT)/examples/,embed embed_models embed_cxx embed_scene)
 embed_libs := $(OUT)/libglint-engine.a $(OUT)/libglint.a
 $(OUT)/examples/embed $(OUT)/examples/embed_cxx: $(OUT)/libglint-bake.a
-$(embed_bins): tools/examples/embed.c $(embed_libs)
+$(embed_bins): $(OUT)/examples/%: $(embed_libs)
+$(filter-out %_scene,$(embed_bins)): tools/examples/embed.c
+$(OUT)/examples/embed_scene: tools/examples/embed_scene.c
 	@mkdir -p $(@D)
 	$(say) LD $@
 	$(Q)$(embed_$(@F)) $(CPPFLAGS) $(filter-out -std=% -Wstrict-prototypes -Wmissing-prototypes,$(CFLAGS)) \
-	        $< -x none $(LDFLAGS) $(filter %-bake.a,$^) $(embed_libs) -lm -o $@
+	        $(filter %.c,$^) -x none $(LDFLAGS) $(filter %-bake.a,$^) $(embed_libs) -lm -o $@
 embed_embed        = $(CC) -std=c99
 embed_embed_models = $(CC) -std=c99 -DEMBED_MODELS
+embed_embed_scene  = $(CC) -std=c99 -D_POSIX_C_SOURCE=200809L
 embed_embed_cxx    = $(if $(findstring clang,$(CC)),clang++,$(CXX)) -std=c++17 -x c++
 
 # The live command alone, for baked models, stripped.

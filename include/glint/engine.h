@@ -353,6 +353,28 @@ void glint_engine_restart(struct glint_engine *engine);
 int glint_engine_doubtful(const struct glint_engine *engine,
                           struct glint_spot *spot);
 
+/* Share of a lamp that is hidden whole: as good as none, but the exposure still
+ * knows what it was. */
+#define GLINT_ENGINE_HIDDEN 1e-18
+
+/* Takes from N LAMPS, and their share, what SCENE, as it was drawn last, hides
+ * of them, and appends the lights that it shows the lens, at most
+ * GLINT_SCENE_MAX_LIGHTS. Returns how many lamps there are then; *HIDDEN
+ * receives how many of them are hidden whole. A program that does not name this
+ * links no scene. */
+struct glint_scene;
+int glint_engine_scene(const struct glint_engine *engine,
+                       const struct glint_scene *scene,
+                       struct glint_engine_lamp *lamps, int n, int *hidden);
+
+/* Makes the exposure follow what hides N LAMPS, once all are there: levels fall
+ * with shares. IS_STILL: a picture by itself, whose hidden lamps have no light.
+ */
+void glint_engine_settle(struct glint_engine_lamp *lamps, int n, int is_still);
+
+/* Returns the focal length in pixels, for scenes whose camera is the lens. */
+double glint_engine_focal_px(const struct glint_engine *engine);
+
 /* ------------------------------------------------------------ expose and draw
  */
 

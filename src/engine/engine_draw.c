@@ -84,7 +84,7 @@ enum glint_status glint_engine_layer(struct glint_engine *engine,
     memset(rgb, 0,
            3 * (size_t)f->view.width * (size_t)f->view.height * sizeof *rgb);
     *report = (struct glint_engine_report){.lights = n, .scale = scale};
-    if (drawn == GLINT_ENGINE_VEIL)
+    if (parts == GLINT_ENGINE_VEIL && f->veil.is_set)
         return draw_veil(f, rgb);
     if ((drawn & GLINT_ENGINE_ALL) == 0)
         return GLINT_OK;

@@ -271,18 +271,12 @@ enum glint_status compositor_scene(struct compositor *c,
                                 fmax(LEAST_SHARE, 1 - c->scene.ms / budget_ms));
     if (status != GLINT_OK || !c->has_lens)
         return status;
-    over_scene_hide(&c->scene, &c->view, focal_mm, c->lamp, n);
-    c->n_lamps += over_scene_lights(&c->scene, &c->view, focal_mm, c->lamp + n);
+    c->n_lamps = glint_engine_scene(c->engine, c->scene.frame.scene, c->lamp, n,
+                                    &c->scene.lamps_hidden);
+    c->scene.lights = c->n_lamps - n;
     c->n_lamps +=
         over_scene_glints(&c->scene, &c->view, focal_mm, c->lamp + c->n_lamps);
-    for (int i = 0; i < c->n_lamps; i++) {
-        struct glint_engine_lamp *const lamp = &c->lamp[i];
-
-        if (lamp->share > OVER_SCENE_HIDDEN || !c->is_still)
-            lamp->level *= lamp->share;
-        else /* the exposure of a picture by itself lifts what is left */
-            lamp->lamp.power = 0;
-    }
+    glint_engine_settle(c->lamp, c->n_lamps, c->is_still);
     return GLINT_OK;
 }
 

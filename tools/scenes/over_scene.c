@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "glint/area.h"
 #include "lamp_files/lamp_keys.h"
 #include "motions/time_line.h"
 #include "scenes/account.h"
@@ -307,88 +306,8 @@ void over_scene_mark(const struct over_scene *over,
 /* --------------------------------------------------------------------- lamps
  */
 
-/* From here on lights of scenes are numbered, beyond hashes of most texts, and
- * highlights. */
-#define SCENE_IDS     UINT32_C(0x7fffff00)
+/* From here on highlights are numbered, beyond hashes of most texts. */
 #define HIGHLIGHT_IDS UINT32_C(0x7ffe0000)
-
-/* Leaves of LAMP the share SEEN of its light. Returns that. */
-static double leave(struct over_scene *over, struct glint_lamp *lamp,
-                    double seen)
-{
-    const double share = fmax(seen, OVER_SCENE_HIDDEN);
-
-    over->lamps_hidden += seen <= 0;
-    lamp->power *= share;
-    return share;
-}
-
-void over_scene_hide(struct over_scene *over, const struct glint_view *view,
-                     double focal_mm, struct glint_engine_lamp *lamps, int n)
-{
-    const double pixels = 1 / glint_view_pixel_tangent(view, focal_mm);
-
-    for (int i = 0; i < n; i++) {
-        /* An even disc has twice its RMS semi-axis as radius. */
-        const double radius = 2 * pixels * lamps[i].lamp.axis[0];
-        double x, y;
-        int cover;
-
-        glint_view_to_pixel(view, focal_mm, &lamps[i].lamp, &x, &y);
-        if (!(x >= 0 && y >= 0 && x < view->width && y < view->height))
-            continue;
-        cover = glint_scene_cover(over->frame.scene, (int32_t)(256 * x),
-                                  (int32_t)(256 * y),
-                                  (int32_t)(256 * fmin(radius, 1 << 14)));
-        lamps[i].share = leave(over, &lamps[i].lamp, 1 - cover / 256.0);
-    }
-}
-
-/* Sets LAMP to FROM; returns false if that has no light. */
-static bool set_lamp(const struct glint_scene_lamp *from,
-                     const struct glint_view *view, double focal_mm,
-                     struct glint_lamp *lamp)
-{
-    static const double weight[3] = {0.2126, 0.7152, 0.0722};
-    double rgb[3], luminance = 0;
-
-    for (int c = 0; c < 3; c++) {
-        rgb[c] = glint_real_value(from->rgb[c]);
-        luminance += weight[c] * rgb[c];
-    }
-    if (!(luminance > 0))
-        return false;
-    glint_view_to_angles(view, focal_mm, from->x_q8 / 256.0, from->y_q8 / 256.0,
-                         lamp);
-    glint_area_set_round(lamp, from->radius_q8 / 256.0 / sqrt(2) *
-                                   glint_view_pixel_tangent(view, focal_mm));
-    lamp->power = fmin(luminance, 1e30);
-    for (int c = 0; c < 3; c++)
-        lamp->rgb[c] = rgb[c] / luminance;
-    return true;
-}
-
-int over_scene_lights(struct over_scene *over, const struct glint_view *view,
-                      double focal_mm, struct glint_engine_lamp *lamps)
-{
-    struct glint_scene_lamp light[GLINT_SCENE_MAX_LIGHTS];
-    const int all = glint_scene_lights(over->frame.scene, light);
-    int n = 0;
-
-    for (int i = 0; i < all; i++) {
-        struct glint_lamp lamp = {.power = 0};
-
-        if (!set_lamp(&light[i], view, focal_mm, &lamp))
-            continue;
-        lamps[n] =
-            glint_engine_lamp_of(&lamp, LAMP_ID_TEXT + SCENE_IDS + (uint32_t)n);
-        lamps[n].share = leave(over, &lamps[n].lamp, light[i].share / 16.0);
-        lamps[n].seen_px = -1; /* the picture does not show it */
-        n++;
-    }
-    over->lights = n;
-    return n;
-}
 
 int over_scene_glints(struct over_scene *over, const struct glint_view *view,
                       double focal_mm, struct glint_engine_lamp *lamps)

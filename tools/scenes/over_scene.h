@@ -6,8 +6,6 @@
  *     over_scene_open(&over, tool);                   scene and poses
  *     over_scene_size(&over, &dials);                 when the size changes
  *     over_scene_draw(&over, &image, frame);          each picture
- *     over_scene_hide(&over, &view, focal_mm, lamps, n);
- *     n = over_scene_lights(&over, &view, focal_mm, lamps);
  *     over_scene_close(&over);
  *
  * Frames of a video rise. Moving things bakes nothing.
@@ -25,10 +23,6 @@
 #include "scenes/glints.h"
 #include "scenes/scene_frame.h"
 #include "control/steer.h"
-
-/* Share of a lamp that is hidden: as good as none, but the exposure still
- * knows what it was. */
-#define OVER_SCENE_HIDDEN 1e-18
 
 /* Where a thing was moved to. */
 struct scene_moved {
@@ -127,16 +121,6 @@ struct over_scene_layer {
 enum glint_status over_scene_layer(struct over_scene *over,
                                    struct over_scene_layer *layer);
 void over_scene_layer_free(struct over_scene_layer *layer);
-
-/* Takes from N LAMPS, and their shares, what the scene drawn last hides. */
-void over_scene_hide(struct over_scene *over, const struct glint_view *view,
-                     double focal_mm, struct glint_engine_lamp *lamps, int n);
-
-/* Sets LAMPS, [GLINT_SCENE_MAX_LIGHTS], to the lights of the scene drawn last,
- * as a lens of FOCAL_MM sees them, and what is seen of each. Returns how many
- * there are. */
-int over_scene_lights(struct over_scene *over, const struct glint_view *view,
-                      double focal_mm, struct glint_engine_lamp *lamps);
 
 /* Most lamps that a scene gives. */
 enum { OVER_SCENE_LAMPS = GLINT_SCENE_MAX_LIGHTS + GLINTS_MAX };

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a scene over a picture does to the lamps of its flare. */
+#include <math.h>
+
+#include "engine/engine_parts.h"
+#include "glint/area.h"
+#include "glint/scene/scene.h"
+
+/* Lights of scenes are numbered from here on. */
+#define SCENE_IDS UINT32_C(0xffffff00)
+
+/* Leaves of LAMP the share SEEN of its light; notes in HIDDEN whether that is
+ * none. */
+static void leave(struct glint_engine_lamp *lamp, double seen, int *hidden)
+{
+    lamp->share = fmax(seen, GLINT_ENGINE_HIDDEN);
+    lamp->lamp.power *= lamp->share;
+    *hidden += seen <= 0;
+}
+
+static int hide(const struct glint_engine *e, const struct glint_scene *scene,
+                struct glint_engine_lamp *lamps, int n)
+{
+    const struct glint_view *const view = &e->paint.frame.view;
+    const double focal_mm = e->optics.setup->optics.focal_mm;
+    const double pixels = 1 / glint_view_pixel_tangent(view, focal_mm);
+    int hidden = 0;
+
+    for (int i = 0; i < n; i++) {
+        /* An even disc has twice its RMS semi-axis as radius. */
+        const double radius = 2 * pixels * lamps[i].lamp.axis[0];
+        double x, y;
+        int cover;
+
+        glint_view_to_pixel(view, focal_mm, &lamps[i].lamp, &x, &y);
+        if (!(x >= 0 && y >= 0 && x < view->width && y < view->height))
+            continue;
+        cover = glint_scene_cover(scene, (int32_t)(256 * x), (int32_t)(256 * y),
+                                  (int32_t)(256 * fmin(radius, 1 << 14)));
+        leave(&lamps[i], 1 - cover / 256.0, &hidden);
+    }
+    return hidden;
+}
+
+/* Sets LAMP to FROM; returns false if that has no light. */
+static bool set_lamp(const struct glint_engine *e,
+                     const struct glint_scene_lamp *from,
+                     struct glint_lamp *lamp)
+{
+    static const double weight[3] = {0.2126, 0.7152, 0.0722};
+    const struct glint_view *const view = &e->paint.frame.view;
+    const double focal_mm = e->optics.setup->optics.focal_mm;
+    double rgb[3], luminance = 0;
+
+    for (int c = 0; c < 3; c++) {
+        rgb[c] = glint_real_value(from->rgb[c]);
+        luminance += weight[c] * rgb[c];
+    }
+    if (!(luminance > 0))
+        return false;
+    *lamp = (struct glint_lamp){.power = fmin(luminance, 1e30)};
+    glint_view_to_angles(view, focal_mm, from->x_q8 / 256.0, from->y_q8 / 256.0,
+                         lamp);
+    glint_area_set_round(lamp, from->radius_q8 / 256.0 / sqrt(2) *
+                                   glint_view_pixel_tangent(view, focal_mm));
+    for (int c = 0; c < 3; c++)
+        lamp->rgb[c] = rgb[c] / luminance;
+    return true;
+}
+
+int glint_engine_scene(const struct glint_engine *engine,
+                       const struct glint_scene *scene,
+                       struct glint_engine_lamp *lamps, int n, int *hidden)
+{
+    struct glint_scene_lamp light[GLINT_SCENE_MAX_LIGHTS];
+    const int n_lights = glint_scene_lights(scene, light);
+    const int before = n;
+
+    *hidden = hide(engine, scene, lamps, n);
+    for (int i = 0; i < n_lights; i++) {
+        struct glint_lamp lamp;
+
+        if (!set_lamp(engine, &light[i], &lamp))
+            continue;
+        lamps[n] =
+            glint_engine_lamp_of(&lamp, SCENE_IDS + (uint32_t)(n - before));
+        lamps[n].seen_px = -1;
+        leave(&lamps[n++], light[i].share / 16.0, hidden);
+    }
+    return n;
+}
+
+void glint_engine_settle(struct glint_engine_lamp *lamps, int n, int is_still)
+{
+    for (int i = 0; i < n; i++)
+        if (lamps[i].share > GLINT_ENGINE_HIDDEN || !is_still)
+            lamps[i].level *= lamps[i].share;
+        else /* the exposure of a picture by itself lifts what is left */
+            lamps[i].lamp.power = 0;
+}
+
+double glint_engine_focal_px(const struct glint_engine *engine)
+{
+    return 1 / glint_view_pixel_tangent(&engine->paint.frame.view,
+                                        engine->optics.setup->optics.focal_mm);
+}

@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * embed_scene LENS SCENE IN.ppm >OUT.ppm - the objects of a scene over a
+ * picture, and the flare of the lamps that they leave and of the scene's own,
+ * as glint overlay --scene --stop polygon:8 draws them; both are baked.
+ */
+#include "glint/engine.h"
+#include "glint/kernels.h"
+#include "glint/scene/scene.h"
+#include "ppm.h"
+
+enum { LIMIT = 1 << 24, LAMPS = 64 };
+
+static void *read_all(const char *path, size_t *bytes)
+{
+    FILE *file = fopen(path, "rb");
+    void *data = calloc(1, LIMIT);
+
+    *bytes = file && data ? fread(data, 1, LIMIT, file) : 0;
+    if (file)
+        fclose(file);
+    return data;
+}
+
+static struct glint_scene *make_scene(const struct glint_engine *engine,
+                                      const struct glint_scene_model *model,
+                                      const struct glint_image *image)
+{
+    struct glint_scene *scene = NULL;
+    struct glint_scene_config cfg;
+    void *mem;
+
+    glint_scene_defaults(&cfg, image->width, image->height);
+    cfg.parts = (struct glint_scene_parts){&glint_scene_meshes,
+                                           &glint_scene_textures,
+                                           &glint_scene_bounces,
+                                           &glint_scene_wards,
+                                           &glint_scene_stones,
+                                           NULL,
+                                           NULL};
+    cfg.sets = glint_sets_here();
+    cfg.focal_q16 = (int64_t)(65536 * glint_engine_focal_px(engine));
+    cfg.shadow_points = 16;
+    if (posix_memalign(&mem, 64, glint_scene_bytes(&cfg, model)) == 0)
+        glint_scene_init(&scene, &cfg, model, mem,
+                         glint_scene_bytes(&cfg, model));
+    return scene;
+}
+
+int main(int argc, char **argv)
+{
+    static struct glint_engine_lamp lamp[LAMPS + GLINT_SCENE_MAX_LIGHTS];
+    struct glint_engine_config cfg;
+    struct glint_engine_report report;
+    struct glint_error error = {"no lens, no scene, or no memory"};
+    struct glint_engine *engine = NULL;
+    struct glint_scene_model model;
+    struct glint_scene_stats stats;
+    struct glint_scene *scene = NULL;
+    struct glint_image image;
+    struct glint_lens lens;
+    const char *reason;
+    size_t lens_bytes, bytes;
+    int n, hidden, bad = 1;
+    void *baked = read_all(argc == 4 ? argv[1] : "", &lens_bytes);
+    void *objects = read_all(argc == 4 ? argv[2] : "", &bytes);
+
+    if (argc == 4 && ppm_read(argv[3], &image) == 0 &&
+        glint_lens_open(&lens, baked, lens_bytes, &reason) == GLINT_OK &&
+        glint_scene_open(&model, objects, bytes, &reason) == GLINT_OK) {
+        glint_engine_defaults(&cfg, image.width, image.height);
+        cfg.model = &lens;
+        cfg.search.more_lamps = GLINT_SCENE_MAX_LIGHTS;
+        if (glint_engine_create(&engine, &cfg, &error) == GLINT_OK)
+            scene = make_scene(engine, &model, &image);
+        if (scene) {
+            n = glint_engine_find(engine, &image, 0, lamp, LAMPS);
+            glint_scene_begin(scene, &stats);
+            glint_scene_draw(scene, &image);
+            n = glint_engine_scene(engine, scene, lamp, n, &hidden);
+            glint_engine_settle(lamp, n, 1);
+            bad = !!glint_engine_draw(engine, lamp, n, &image, &report);
+        }
+    }
+    glint_engine_destroy(engine);
+    if (bad || ppm_write(&image) != 0)
+        fprintf(stderr, "embed_scene: %s\n", error.text);
+    return bad;
+}
