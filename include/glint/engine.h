@@ -153,7 +153,6 @@ struct glint_engine_drawing {
     int tile_log2;     /* log2 of the side of tiles, 3 .. 6 */
     int dither;        /* not 0: ordered dither in pictures of 8 bits */
     unsigned parts;    /* of enum glint_engine_part: what is drawn */
-    double saturation; /* of the ghosts: 1 as it is .. 0 grey */
     int only_ghost;    /* index of the only ghost drawn; -1: all are */
     /* Pictures by themselves have more points of lamps of visible extent and
      * more lights, unless these are not 0. */

@@ -26,7 +26,6 @@ void glint_engine_defaults(struct glint_engine_config *cfg, int width,
                     .most_minsn = GLINT_FRAME_MOST_MINSN,
                     .apart_px = GLINT_FRAME_APART_PX,
                     .tile_log2 = 6,
-                    .saturation = 1,
                     .parts = GLINT_ENGINE_ALL,
                     .only_ghost = -1}};
 }
@@ -118,7 +117,6 @@ static enum glint_status open_frame(struct glint_engine *e,
     f->progress_ctx = d->progress_ctx;
     f->clock = c->clock;
     f->only_ghost = d->only_ghost;
-    f->saturation = d->saturation;
     f->tints = c->camera.tints;
     f->most_minsn = d->most_minsn;
     f->apart_px = d->apart_px;

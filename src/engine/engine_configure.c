@@ -45,7 +45,6 @@ static struct glint_engine_drawing drawing_of(const struct glint_options *o)
         .apart_px = o->apart,
         .tile_log2 = 3 + o->tile,
         .dither = o->dither,
-        .saturation = o->ghost_saturation,
         .parts = parts_of(o->only),
         .only_ghost = GLINT_OPTION_GIVEN(o, ghost) ? o->ghost : -1,
         .keep_points = o->area_samples != 0,

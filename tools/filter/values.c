@@ -28,7 +28,6 @@ static const struct row rows[FILTER_MAX] = {
     [FILTER_Y] = {"y", 1, "Lamp without auto, from top to bottom"},
     {"f-number", 0, "F-number, as 5.6"},
     {"style", 0, "Style"},
-    {"ghost-saturation"},
 };
 
 /* A number without a default, as the f-number, is a text in hosts: "" leaves it

@@ -24,7 +24,6 @@ void glint_frame_init(struct glint_frame *frame,
                                   .dials = glint_dials_at(1 << 14),
                                   .asked = glint_dials_at(1 << 14),
                                   .apart_px = GLINT_FRAME_APART_PX,
-                                  .saturation = 1,
                                   .most_bytes = GLINT_FRAME_MOST_BYTES,
                                   .most_minsn = GLINT_FRAME_MOST_MINSN,
                                   .only_ghost = -1};
@@ -43,7 +42,6 @@ void glint_frame_like(struct glint_frame *frame, const struct glint_frame *like,
     frame->for_codes = like->for_codes;
     frame->uniform = like->uniform;
     frame->only_ghost = like->only_ghost;
-    frame->saturation = like->saturation;
     frame->most_bytes = like->most_bytes;
     frame->most_minsn = like->most_minsn;
     frame->cfg.sets = like->cfg.sets;
@@ -77,19 +75,6 @@ static int all_waves(const struct glint_setup *s)
     return n;
 }
 
-/* Returns the wave of NM, its colour by F's saturation. */
-static struct glint_wave wave_of(const struct glint_frame *f, double nm,
-                                 const double rgb[3], double flux)
-{
-    const double grey = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
-    double mixed[3];
-
-    for (int c = 0; c < 3; c++)
-        mixed[c] = f->saturation == 1 ? rgb[c]
-                                      : grey + f->saturation * (rgb[c] - grey);
-    return glint_wave_of(nm, mixed, flux);
-}
-
 static void set_waves(struct glint_frame *f)
 {
     const struct glint_setup *s = f->setup;
@@ -102,11 +87,11 @@ static void set_waves(struct glint_frame *f)
         f->sets.size[i] = s->set_size[i];
     if (glint_frame_has_sets(f))
         for (int i = 0; i < all_waves(s); i++)
-            f->wave[i] = wave_of(f, w[i].nm, w[i].rgb, w[i].unit_flux);
+            f->wave[i] = glint_wave_of(w[i].nm, w[i].rgb, w[i].unit_flux);
     else
         for (int i = 0; i < s->n_wavelengths; i++)
             f->wave[i] =
-                wave_of(f, s->wavelength_nm[i], s->rgb[i], s->unit_flux[i]);
+                glint_wave_of(s->wavelength_nm[i], s->rgb[i], s->unit_flux[i]);
 }
 
 /* Returns the chord of the angle that PX pixels on the axis are. */

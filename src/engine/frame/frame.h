@@ -92,7 +92,6 @@ struct glint_frame {
                       */
     bool can_half;   /* true: the last picture was in codes */
     double code_light; /* light of one of its codes near black; 0: linear */
-    double saturation; /* factor on the colour of wavelengths */
     bool uniform;      /* true: all ghosts get the same grid */
     int only_ghost;    /* index of the only ghost drawn; -1: all are */
     /* As in struct glint_flare_frame; the caller's. The exposure is chosen as

@@ -161,7 +161,7 @@ def _cached(lens: str, coating: str, f_number: float, pool: _Pool) -> bytes:
 
 # Options that the engine has. Others of the table are for glint overlay alone; to set one is an error.
 _DRAWN = {"apart", "area-samples", "coating", "cull", "dim", "dispersion", "dither", "error", "exposure", "f-number", "gain",
-          "ghost", "ghost-saturation", "grid", "half", "haze", "headroom", "max-lights", "memory", "only", "quality", "quantum", "sensor",
+          "ghost", "grid", "half", "haze", "headroom", "max-lights", "memory", "only", "quality", "quantum", "sensor",
           "star-cull", "starburst", "stop", "strength", "threshold", "tile", "veil", "whole", "work"}
 _Stop = Union[str, Tuple[int, float], None]
 
