@@ -76,14 +76,14 @@ absent += tools/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
 absent += platform/formats/oiio_$(if $(CROSS),loader,absent).c
 absent += platform/assimp/$(if $(CROSS),loader,absent).c platform/assimp/assimp.c
 absent += platform/sdl/$(if $(CROSS),window,absent).c platform/sdl/sdl.c
-absent += tools/command/glint.c tools/live/glint_live.c tools/live/models_only.c tools/lab/ray_errors.c tools/lab/projection_table.c
+absent += tools/command/glint.c tools/live/glint_live.c tools/model/models_only.c tools/scenes/scenes_only.c tools/lab/ray_errors.c tools/lab/projection_table.c
 
 core_o      := $(call objects,src,$(CORE))
 engine_o    := $(call objects,src,$(ENGINE))
 bake_o      := $(call objects,src,$(BAKE))
 platform_o  := $(call objects,platform,$(PLATFORM))
 tools_o     := $(call objects,tools,$(TOOLS))
-main_o      := $(patsubst %,$(OUT)/tools/%.o,command/glint live/glint_live live/models_only)
+main_o      := $(patsubst %,$(OUT)/tools/%.o,command/glint live/glint_live model/models_only scenes/scenes_only)
 LDLIBS := $(if $(filter yes,$(WITH_JPEG)),$(JPEG_LIBS)) \
         $(if $(filter yes,$(WITH_INIH)),$(INIH_LIBS)) \
         $(if $(filter yes,$(WITH_JANSSON)),$(JANSSON_LIBS)) $(if $(filter yes,$(WITH_EXPAT)),$(EXPAT_LIBS)) -lm -lpthread -ldl
@@ -165,7 +165,7 @@ embed_embed_cxx    = $(if $(findstring clang,$(CC)),clang++,$(CXX)) -std=c++17 -
 # The live command alone, for baked models, stripped.
 glint-live: $(OUT)/glint-live
 $(OUT)/glint-live: LDFLAGS += $(if $(filter yes,$(STRIP)),-s) -Wl,--gc-sections
-$(OUT)/glint-live: $(OUT)/tools/live/glint_live.o $(OUT)/tools/live/models_only.o $(libs)
+$(OUT)/glint-live: $(OUT)/tools/live/glint_live.o $(OUT)/tools/model/models_only.o $(OUT)/tools/scenes/scenes_only.o $(libs)
 	$(link)
 
 # The image plug-in, the only C++: PNG, JPEG, EXR ... through OpenImageIO.

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "desk/render_file.h"
-#include "options/settings.h"
+#include "model/settings.h"
 #include "options/command_line.h"
 #include "reference/scenes/twin.h"
 #include "scenes/scene_file.h"

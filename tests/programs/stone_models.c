@@ -3,7 +3,7 @@
  * stone_models NAME.translucent FOLDER - models of scattering, glint's and
  * published ones, side by side as a page with pictures; some minutes. */
 #include "reference/scatter/stone_models.h"
-#include "options/settings.h"
+#include "model/settings.h"
 #include "options/command_line.h"
 #include "stones/stone_file.h"
 

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "desk/apart.h"
-#include "options/coating.h"
+#include "overlay/apart.h"
+#include "model/coating.h"
 #include "options/json_writer.h"
 #include "zooms/zoom_bake.h"
 #include "model/zoom_option.h"

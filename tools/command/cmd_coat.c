@@ -6,10 +6,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "desk/apart.h"
+#include "overlay/apart.h"
 #include "lab/plots/plot.h"
 #include "model/table_file.h"
-#include "options/coating.h"
+#include "model/coating.h"
 #include "options/command_line.h"
 #include "options/json_writer.h"
 #include "options/tool.h"

@@ -9,7 +9,7 @@
 #include "glint/measure.h"
 #include "formats/picture.h"
 #include "options/json_writer.h"
-#include "options/settings.h"
+#include "model/settings.h"
 #include "options/command_line.h"
 
 static const char help[] =

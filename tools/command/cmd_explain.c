@@ -9,7 +9,7 @@
 
 #include "command/explain.h"
 #include "command/explain_scene.h"
-#include "desk/apart.h"
+#include "overlay/apart.h"
 #include "desk/ghost_sheet.h"
 #include "overlay/compositor.h"
 #include "overlay/overlay_line.h"

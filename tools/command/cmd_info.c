@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "options/coating.h"
+#include "model/coating.h"
 #include "options/command_line.h"
 #include "options/json_writer.h"
 #include "model/model_file.h"

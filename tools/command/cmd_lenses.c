@@ -18,7 +18,7 @@
 #include "model/model_cache.h"
 #include "model/table_file.h"
 #include "posix/output.h"
-#include "options/settings_table.h"
+#include "model/settings_table.h"
 #include "options/command_line.h"
 
 static const char help[] =

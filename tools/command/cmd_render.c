@@ -8,13 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "desk/apart.h"
+#include "overlay/apart.h"
 #include "desk/render_file.h"
 #include "glint/area.h"
 #include "lamp_files/lamp_list.h"
 #include "glint/measure.h"
 #include "posix/error.h"
-#include "options/settings.h"
+#include "model/settings.h"
 #include "options/command_line.h"
 #include "command/render_scene.h"
 

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "desk/apart.h"
+#include "overlay/apart.h"
 #include "desk/sheet.h"
 #include "desk/styles.h"
 #include "formats/picture.h"

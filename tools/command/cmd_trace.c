@@ -6,7 +6,7 @@
 #include <string.h>
 #include <math.h>
 
-#include "options/coating.h"
+#include "model/coating.h"
 #include "model/model_file.h"
 #include "model/table_file.h"
 #include "model/zoom_option.h"

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "command/explain.h"
-#include "overlay/paint.h"
+#include "formats/paint.h"
 
 enum { PALETTE = 14, MOST_LABELS = 256, COLUMN = 152 };
 

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "command/explain_scene.h"
-#include "overlay/paint.h"
+#include "formats/paint.h"
 
 enum { COLUMN = 170, ROW = 8, MOST_ENTRIES = 64 };
 

@@ -6,14 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "desk/apart.h"
+#include "overlay/apart.h"
 #include "desk/render_file.h"
 #include "glint/composite.h"
 #include "options/numbered.h"
 #include "overlay/compositor_layer.h"
 #include "ffmpeg/ffmpeg.h"
 #include "overlay/overlay.h"
-#include "overlay/paint.h"
+#include "formats/paint.h"
 #include "command/render_scene.h"
 #include "video/y4m.h"
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "desk/ghost_file.h"
+#include "model/ghost_file.h"
 #include "desk/sheet.h"
 #include "glint/measure.h"
 #include "formats/picture.h"

@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 #include "glint/explain.h"
-#include "overlay/paint.h"
+#include "formats/paint.h"
 
 enum { SMALL = 320, MOST = 24 };
 

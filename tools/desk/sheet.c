@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "glint/measure.h"
-#include "overlay/paint.h"
+#include "formats/paint.h"
 
 enum { GAP = 8, GROUND = 32 };
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "desk/apart.h"
+#include "overlay/apart.h"
 #include "import/decode.h"
 #include "help/values.h"
 #include "options/command_line.h"

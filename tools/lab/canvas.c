@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "desk/stop_option.h"
+#include "model/stop_option.h"
 
 /* ------------------------------------------------------------------ canvas */
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "lab/settings_frame.h"
 
-#include "options/settings_table.h"
+#include "model/settings_table.h"
 
 static double settings_starburst(const struct settings *settings)
 {

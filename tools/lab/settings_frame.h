@@ -6,7 +6,7 @@
 #define GLINT_TOOLS_LAB_SETTINGS_FRAME_H
 
 #include "engine/frame/frame.h"
-#include "options/settings.h"
+#include "model/settings.h"
 
 /* Makes FRAME as the options say. Returns an exit code. */
 int settings_frame(const struct tool *tool, const struct settings *settings,

@@ -7,7 +7,7 @@
 #define GLINT_TOOLS_LAB_SWEEP_H
 
 #include "engine/frame/cost.h"
-#include "options/dials.h"
+#include "lab/dials.h"
 #include "glint/quality.h"
 #include "formats/pfm.h"
 #include "lab/canvas.h"

@@ -8,7 +8,7 @@
 #include "lens_check/one_digit.h"
 #include "model/table_file.h"
 #include "options/json_writer.h"
-#include "options/settings.h"
+#include "model/settings.h"
 #include "options/command_line.h"
 #include "options/tool.h"
 #include "posix/input.h"

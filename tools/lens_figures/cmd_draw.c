@@ -5,12 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "desk/apart.h"
+#include "overlay/apart.h"
 #include "lens_figures/drawing.h"
 #include "model/table_file.h"
 #include "model/zoom_option.h"
 #include "options/json_writer.h"
-#include "options/settings.h"
+#include "model/settings.h"
 #include "options/command_line.h"
 #include "options/tool.h"
 #include "posix/output.h"

@@ -7,7 +7,7 @@
 
 #include <stdio.h>
 
-#include "options/settings.h"
+#include "model/settings.h"
 
 /* Writes to FILE an <img> each of the flare of a lamp at 0.25, 0.5 and 0.8 of
  * the way to the film's corner. SETTINGS are those of a run without options,

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "desk/apart.h"
+#include "overlay/apart.h"
 #include "options/config.h"
 #include "linux/fourcc.h"
 #include "live/live.h"

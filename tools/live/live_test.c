@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "overlay/paint.h"
+#include "formats/paint.h"
 #include "posix/error.h"
 
 enum { HOUSES = 14, DARKEST = 22, BRIGHTEST = 235 };

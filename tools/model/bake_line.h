@@ -14,7 +14,7 @@
 
 #include <getopt.h>
 
-#include "options/settings.h"
+#include "model/settings.h"
 #include "options/command_line.h"
 
 /* Options that all of them have, at the begin of OPTIONS. */

@@ -9,7 +9,7 @@
 #include "posix/error.h"
 #include "posix/input.h"
 #include "posix/output.h"
-#include "scenes/names.h"
+#include "model/names.h"
 
 #define MAX_FILE_BYTES ((size_t)1 << 31)
 

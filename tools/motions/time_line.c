@@ -3,7 +3,7 @@
 
 #include <stdio.h>
 
-#include "overlay/paint.h"
+#include "formats/paint.h"
 
 /* Events that are shown one by one; of more, blocks of the index. */
 enum { MOST_EVENTS = 4096 };

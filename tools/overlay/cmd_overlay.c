@@ -2,16 +2,17 @@
  *
  * glint overlay: adds the flare of the lamps in a picture or video to it.
  */
+#include <errno.h>
 #include <limits.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "overlay/overlay_line.h"
 #include "overlay/overlay_y4m.h"
-#include "glint/setup.h"
 #include "options/command_line.h"
+#include "options/numbered.h"
 #include "formats/kept.h"
 #include "posix/error.h"
 
@@ -184,140 +185,6 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
     return -1;
 }
 
-/* -------------------------------------------------------------------- frame */
-
-static void say_frame(const struct overlay *o)
-{
-    char lights[64];
-
-    settings_lights_text(&o->compositor.report, lights);
-    fprintf(stderr, "frame %d: %s, %d ghosts, %d primitives\n",
-            o->compositor.n_frames - 1, lights, o->compositor.report.ghosts,
-            o->compositor.report.stats.primitives);
-}
-
-static void note_worst(struct glint_engine_report *worst,
-                       const struct glint_engine_report *report)
-{
-    const int dropped =
-        worst->stats.dropped_bundles > report->stats.dropped_bundles
-            ? worst->stats.dropped_bundles
-            : report->stats.dropped_bundles;
-    const int cells = worst->stats.dropped_cells > report->stats.dropped_cells
-                          ? worst->stats.dropped_cells
-                          : report->stats.dropped_cells;
-    const int beyond = worst->beyond_lights > report->beyond_lights
-                           ? worst->beyond_lights
-                           : report->beyond_lights;
-    const int lights =
-        worst->lights > report->lights ? worst->lights : report->lights;
-    const bool tight = worst->tight || report->tight;
-
-    if (report->apart_lights - report->drawn_lights >
-        worst->apart_lights - worst->drawn_lights)
-        *worst = *report;
-    worst->stats.dropped_bundles = dropped;
-    worst->stats.dropped_cells = cells;
-    worst->lights = lights;
-    worst->beyond_lights = beyond;
-    worst->tight = tight;
-}
-
-static enum glint_status draw_in_place(void *ctx, struct compositor *compositor,
-                                       const struct glint_image *image,
-                                       int32_t elapsed_us)
-{
-    (void)ctx;
-    return compositor_draw(compositor, image, elapsed_us);
-}
-
-int overlay_draw(struct tool *tool, struct overlay *o,
-                 const struct glint_image *image)
-{
-    return overlay_draw_by(tool, o, image, draw_in_place, NULL);
-}
-
-int overlay_look(struct tool *tool, struct overlay *o,
-                 const struct glint_image *image)
-{
-    struct compositor *const compositor = &o->compositor;
-    enum glint_status status = GLINT_OK;
-    int code = EXIT_OK;
-
-    if (!compositor->sized)
-        code = compositor_size(tool, compositor, image->width, image->height);
-    if (code != EXIT_OK)
-        return code;
-    if (o->first - compositor->n_frames <= o->warm_up) {
-        status = compositor_find(compositor, image, o->elapsed_us);
-        if (status == GLINT_OK && compositor->has_lens)
-            status = compositor_expose(compositor, image);
-    }
-    o->is_cut = compositor_is_new(compositor);
-    compositor->n_frames++;
-    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
-}
-
-int overlay_draw_by(struct tool *tool, struct overlay *o,
-                    const struct glint_image *image, overlay_draw_fn *draw,
-                    void *ctx)
-{
-    struct compositor *compositor = &o->compositor;
-    enum glint_status status;
-    int code = EXIT_OK;
-
-    compositor->is_still = o->elapsed_us == 0;
-    if (!compositor->sized)
-        code = compositor_size(tool, compositor, image->width, image->height);
-    if (code != EXIT_OK)
-        return code;
-    status = draw(ctx, compositor, image, o->elapsed_us);
-    if (status != GLINT_OK)
-        return tool_fail(tool, status, NULL);
-    code = layers_write(tool, &o->layers, compositor);
-    if (code != EXIT_OK)
-        return code;
-    o->find_ms += compositor->find_ms;
-    o->flare_ms += compositor->flare_ms;
-    if (compositor->engine) {
-        const struct glint_response_light *const light =
-            &glint_engine_exposed(compositor->engine)->light;
-
-        o->peak = fmax(o->peak, glint_largest_channel(light->peak));
-        o->mean_sum += glint_largest_channel(light->mean);
-    }
-    if (compositor->n_lamps > o->most_lights)
-        o->most_lights = compositor->n_lamps;
-    o->n_reused += compositor->report.stats.reused;
-    if (compositor->report.peak_bytes + compositor->report.star_bytes >
-        o->peak_bytes)
-        o->peak_bytes =
-            compositor->report.peak_bytes + compositor->report.star_bytes;
-    note_worst(&o->worst, &compositor->report);
-    if (tool->verbose && !tool->quiet)
-        say_frame(o);
-    return EXIT_OK;
-}
-
-void overlay_progress(const struct tool *tool, struct overlay *o)
-{
-    const double now = tool_seconds(), spent = now - o->started;
-    const bool is_terminal = isatty(STDERR_FILENO);
-
-    if (tool->quiet || tool->verbose)
-        return;
-    if (!is_terminal && now - fmax(o->started, o->reported) < 5)
-        return;
-    o->reported = now;
-    fprintf(stderr,
-            is_terminal ? "\rframe %d  %.1f fps  %d lights \033[K"
-                        : "glint overlay: frame %d, %.1f fps, %d "
-                          "lights\n",
-            o->compositor.n_frames, o->compositor.n_frames / spent,
-            o->compositor.report.lights);
-    fflush(stderr);
-}
-
 /* ------------------------------------------------------------------- result */
 
 static void print_figures(const struct overlay *o)
@@ -369,15 +236,35 @@ static void print_result(const struct tool *tool, struct overlay *o)
         print_figures(o);
 }
 
-int overlay_check_apart(const struct tool *tool, const struct overlay *o,
-                        const char *from, const char *to)
+/* Refuses an input that is not there, or empty, before a lens is baked; a
+ * picture is to be one before that, too. Returns an exit code. */
+static int check_input(struct tool *tool, struct overlay *o)
 {
-    struct apart files = {.n_read = 0};
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_OK;
+    char pattern[NUMBERED_BYTES];
+    struct stat file;
 
-    apart_read(&files, NULL, from);
-    apart_write(&files, "-o", to);
-    apart_compositor(&files, &o->compositor);
-    return layers_check_apart(tool, &o->layers, &files);
+    if (strcmp(o->input, "-") == 0 && o->compositor.scene.control_file &&
+        strcmp(o->compositor.scene.control_file, "-") == 0)
+        return tool_usage(tool, "pictures and --control cannot both come from "
+                                "standard input");
+    if (strcmp(o->input, "-") == 0 || overlay_is_sequence(o))
+        return EXIT_OK;
+    if (access(o->input, F_OK) != 0 && numbered_from_hashes(pattern, o->input))
+        status =
+            glint_error_report(&error, GLINT_E_IO, o->input,
+                               "is not there; a sequence is named %s", pattern);
+    else if (stat(o->input, &file) != 0 ||
+             (S_ISREG(file.st_mode) && access(o->input, R_OK) != 0))
+        status = glint_error_report(&error, GLINT_E_IO, o->input, "%s",
+                                    strerror(errno));
+    else if (S_ISREG(file.st_mode) && file.st_size == 0)
+        status =
+            glint_error_report(&error, GLINT_E_FORMAT, o->input, "is empty");
+    else if (S_ISREG(file.st_mode) && !o->is_video)
+        o->compositor.settings.picture = o->input;
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
 /* Refuses, before there is work, an output that does not go with the input or
@@ -420,7 +307,7 @@ static int run(struct tool *tool, struct overlay *o)
     if (code == EXIT_OK && o->is_video)
         code = overlay_video_check(tool, o);
     if (code == EXIT_OK)
-        code = overlay_check_input(tool, o);
+        code = check_input(tool, o);
     if (code == EXIT_OK)
         code = layers_check(tool, &o->layers,
                             o->is_video || overlay_is_sequence(o));

@@ -7,7 +7,7 @@
 
 #include "desk/preview.h"
 #include "lamp_files/lamp_keys.h"
-#include "overlay/paint.h"
+#include "formats/paint.h"
 #include "overlay/show_lights.h"
 #include "model/response_cache.h"
 

@@ -17,8 +17,8 @@
 #include "desk/occlusion.h"
 #include "lamp_files/lamp_save.h"
 #include "lamp_files/lamp_list.h"
-#include "options/settings.h"
-#include "scenes/over_scene.h"
+#include "model/settings.h"
+#include "overlay/over_scene.h"
 #include "options/command_line.h"
 
 struct compositor {

@@ -6,9 +6,9 @@
 #ifndef GLINT_TOOLS_OVERLAY_OVERLAY_H
 #define GLINT_TOOLS_OVERLAY_OVERLAY_H
 
-#include "desk/layers.h"
+#include "overlay/layers.h"
 #include "overlay/compositor.h"
-#include "zooms/zoom_clip.h"
+#include "overlay/zoom_clip.h"
 
 struct overlay_y4m;
 
@@ -74,10 +74,6 @@ void overlay_progress(const struct tool *tool, struct overlay *o);
  * where the picture FROM becomes the picture TO. */
 int overlay_check_apart(const struct tool *tool, const struct overlay *o,
                         const char *from, const char *to);
-
-/* Refuses an input that is not there, or empty, before a lens is baked; a
- * picture is to be one before that, too. Returns an exit code. */
-int overlay_check_input(struct tool *tool, struct overlay *o);
 
 /* Draws one picture from file FROM to file TO. */
 int overlay_picture(struct tool *tool, struct overlay *o, const char *from,

@@ -2,15 +2,8 @@
  *
  * One picture file, with all that it holds, and whether an input can be read.
  */
-#include <errno.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include "options/numbered.h"
 #include "overlay/overlay.h"
 #include "overlay/overlay_file.h"
-#include "posix/error.h"
 
 static enum glint_status draw(void *ctx, struct compositor *compositor,
                               const struct glint_image *image,
@@ -42,33 +35,4 @@ int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
         code = overlay_file_save(tool, &file, &o->compositor, o->quality);
     overlay_file_close(&file);
     return code;
-}
-
-int overlay_check_input(struct tool *tool, struct overlay *o)
-{
-    struct glint_error error = {""};
-    enum glint_status status = GLINT_OK;
-    char pattern[NUMBERED_BYTES];
-    struct stat file;
-
-    if (strcmp(o->input, "-") == 0 && o->compositor.scene.control_file &&
-        strcmp(o->compositor.scene.control_file, "-") == 0)
-        return tool_usage(tool, "pictures and --control cannot both come from "
-                                "standard input");
-    if (strcmp(o->input, "-") == 0 || overlay_is_sequence(o))
-        return EXIT_OK;
-    if (access(o->input, F_OK) != 0 && numbered_from_hashes(pattern, o->input))
-        status =
-            glint_error_report(&error, GLINT_E_IO, o->input,
-                               "is not there; a sequence is named %s", pattern);
-    else if (stat(o->input, &file) != 0 ||
-             (S_ISREG(file.st_mode) && access(o->input, R_OK) != 0))
-        status = glint_error_report(&error, GLINT_E_IO, o->input, "%s",
-                                    strerror(errno));
-    else if (S_ISREG(file.st_mode) && file.st_size == 0)
-        status =
-            glint_error_report(&error, GLINT_E_FORMAT, o->input, "is empty");
-    else if (S_ISREG(file.st_mode) && !o->is_video)
-        o->compositor.settings.picture = o->input;
-    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "overlay/paint.h"
+#include "formats/paint.h"
 
 static void set_state(struct paint *p, enum glint_lamp_state state)
 {

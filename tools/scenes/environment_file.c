@@ -8,7 +8,7 @@
 #include "model/model_file.h"
 #include "posix/ending.h"
 #include "posix/input.h"
-#include "scenes/names.h"
+#include "model/names.h"
 
 #define MAX_FILE_BYTES ((size_t)1 << 28)
 

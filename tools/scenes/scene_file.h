@@ -6,7 +6,7 @@
 
 #include "glint/scene/bake.h"
 #include "options/tool.h"
-#include "scenes/names.h"
+#include "model/names.h"
 
 /* Returns whether ARGUMENT is the name of a scene text: NAME.scene. */
 bool tool_is_scene(const char *argument);

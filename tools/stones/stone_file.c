@@ -9,7 +9,7 @@
 #include "model/cache_file.h"
 #include "posix/ending.h"
 #include "posix/input.h"
-#include "scenes/names.h"
+#include "model/names.h"
 
 #define MAX_FILE_BYTES ((size_t)1 << 26)
 /* Changes where the same text would give another stone. */

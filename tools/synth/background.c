@@ -13,7 +13,7 @@
 #include "formats/picture.h"
 #include "posix/error.h"
 #include "posix/input.h"
-#include "scenes/names.h"
+#include "model/names.h"
 
 /* ------------------------------------------------------------------ listing */
 

@@ -9,7 +9,7 @@
 #ifndef GLINT_TOOLS_SYNTH_DRAW_H
 #define GLINT_TOOLS_SYNTH_DRAW_H
 
-#include "options/settings.h"
+#include "model/settings.h"
 #include "synth/background.h"
 #include "synth/item.h"
 

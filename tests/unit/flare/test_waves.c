@@ -16,7 +16,6 @@
 
 #include "engine/frame/frame.h"
 #include "lab/settings_frame.h"
-#include "options/settings_waves.h"
 
 enum { WIDTH = 640, HEIGHT = 360, SAMPLES = 3 * WIDTH * HEIGHT };
 

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "desk/ghost_file.h"
+#include "model/ghost_file.h"
 
 /* Three ghosts, and a part of the second. */
 static struct glint_setup *setup_of(void)

@@ -14,7 +14,7 @@
 #include <cmocka.h>
 
 #include "live/live_adapt.h"
-#include "scenes/over_scene.h"
+#include "overlay/over_scene.h"
 
 enum { WIDTH = 64, HEIGHT = 36, BYTES = 3 * WIDTH * HEIGHT };
 

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "overlay/paint.h"
+#include "formats/paint.h"
 #include "posix/error.h"
 
 enum { PLOT_WIDTH = 380, PLOT_HEIGHT = 320 }; /* size of a panel, px */

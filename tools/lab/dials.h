@@ -6,7 +6,7 @@
 #ifndef GLINT_TOOLS_OPTIONS_DIALS_H
 #define GLINT_TOOLS_OPTIONS_DIALS_H
 
-#include "options/settings.h"
+#include "model/settings.h"
 
 enum {
     MAX_DIALS = 16,

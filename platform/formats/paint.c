@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "overlay/paint.h"
+#include "formats/paint.h"
 
 #include <stdbool.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "scenes/names.h"
+#include "model/names.h"
 
 #include <string.h>
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "desk/apart.h"
+#include "overlay/apart.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "options/dials.h"
+#include "lab/dials.h"
 
 #include <math.h>
 

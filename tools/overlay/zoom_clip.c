@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "zooms/zoom_clip.h"
+#include "overlay/zoom_clip.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,17 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Replaces settings_table.c, table_file.c and scene_file.c in programs without
- * the offline half, which read baked models and scenes only.
+ * Replaces settings_table.c, table_file.c and stop_mask.c in programs without
+ * the offline half, which read baked models only.
  */
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "desk/stop_option.h"
+#include "model/stop_option.h"
 #include "model/table_file.h"
-#include "options/settings_table.h"
-#include "scenes/scene_file.h"
-#include "posix/ending.h"
+#include "model/settings_table.h"
 
 int settings_open_table(const struct tool *tool, struct settings *settings,
                         const char *name)
@@ -61,29 +59,12 @@ int stop_option_open(const struct tool *tool, struct stop_option *stop)
 /* Reports that there is no model. It is not reached, as all settings that were
  * opened have one. */
 enum glint_status settings_table_setup(struct settings *settings,
+                                       const struct stop_option *stop,
                                        struct glint_error *error)
 {
-    (void)settings;
+    (void)settings, (void)stop;
     snprintf(error->text, sizeof error->text, "there is no model");
     return GLINT_E_LENS;
-}
-
-bool tool_is_scene(const char *argument)
-{
-    return glint_ends_in(argument, ".scene");
-}
-
-int tool_scene_bake(const struct tool *tool, const char *path, uint8_t **data,
-                    size_t *bytes, struct glint_scene_bake_report *report)
-{
-    struct glint_error error;
-
-    (void)data, (void)bytes, (void)report;
-    snprintf(error.text, sizeof error.text,
-             "%.120s is a text; this program takes baked scenes only (glint "
-             "bake, on any machine)",
-             path);
-    return tool_fail(tool, GLINT_E_LENS, error.text);
 }
 
 const struct glint_frame_rays *settings_table_rays(void)

@@ -6,7 +6,7 @@
 #ifndef GLINT_TOOLS_OPTIONS_SETTINGS_TABLE_H
 #define GLINT_TOOLS_OPTIONS_SETTINGS_TABLE_H
 
-#include "options/settings.h"
+#include "model/settings.h"
 
 /* Reads lens NAME and finds or bakes its model, unless rays are exact. Returns
  * an exit code, after printing the reason on failure. */
@@ -18,8 +18,9 @@ int settings_open_table(const struct tool *tool, struct settings *settings,
 struct glint_bake_options
 settings_bake_options(const struct settings *settings);
 
-/* Makes the setup of SETTINGS that have no model. */
+/* Makes the setup of SETTINGS that have no model, for STOP. */
 enum glint_status settings_table_setup(struct settings *settings,
+                                       const struct stop_option *stop,
                                        struct glint_error *error);
 
 /* Returns the functions that trace the rays of a frame without a model. */

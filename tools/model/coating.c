@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "options/coating.h"
+#include "model/coating.h"
 
 #include "glint/bake.h"
 

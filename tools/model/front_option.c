@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "desk/front_option.h"
+#include "model/front_option.h"
 
 #include <stdlib.h>
 
-#include "desk/stop_option.h"
+#include "model/stop_option.h"
 
 int front_option_open(const struct tool *tool, struct front_option *option)
 {

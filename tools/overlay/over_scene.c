@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "scenes/over_scene.h"
+#include "overlay/over_scene.h"
 
 #include <math.h>
 #include <stdlib.h>

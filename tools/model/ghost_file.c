@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "desk/ghost_file.h"
+#include "model/ghost_file.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "scenes/over_scene.h"
+#include "overlay/over_scene.h"
 
 void over_scene_layer_free(struct over_scene_layer *layer)
 {

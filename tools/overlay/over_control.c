@@ -4,7 +4,7 @@
  * before it. */
 #include <stdio.h>
 
-#include "scenes/over_scene.h"
+#include "overlay/over_scene.h"
 
 /* Returns whether LINE can be obeyed. Whether the lens zooms so far is not
  * asked here. */

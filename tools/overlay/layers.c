@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "desk/layers.h"
+#include "overlay/layers.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "desk/stop_option.h"
+#include "model/stop_option.h"
 
 #include <stdlib.h>
 

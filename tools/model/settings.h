@@ -6,9 +6,9 @@
 #define GLINT_TOOLS_OPTIONS_SETTINGS_H
 
 #include "options/engine_options.h"
-#include "desk/front_option.h"
-#include "desk/stop_option.h"
-#include "options/coating.h"
+#include "model/front_option.h"
+#include "model/stop_option.h"
+#include "model/coating.h"
 #include "glint/engine.h"
 #include "glint/quality.h"
 #include "model/model_file.h"
@@ -81,8 +81,17 @@ int settings_open(const struct tool *tool, struct settings *settings,
 
 /* Says by TEXT why the f-number of S cannot be had, and which line of a file
  * asks for it. Returns an exit code. */
-int settings_refuse_stop(const struct tool *tool, const struct settings *s,
-                         const char *text);
+static inline int settings_refuse_stop(const struct tool *tool,
+                                       const struct settings *s,
+                                       const char *text)
+{
+    struct tool there = *tool;
+
+    if (!s->f_number_from)
+        return tool_fail(tool, GLINT_E_ARGUMENT, text);
+    there.where = s->f_number_from;
+    return tool_usage(&there, "%s", text);
+}
 
 /* Zooms settings whose model is that of a zoom, as model_file_zoom().
  * GLINT_E_ARGUMENT: ERROR says why not. */
@@ -97,6 +106,10 @@ struct stop_option settings_stop_shape(const struct settings *settings);
  * GLINT_E_ARGUMENT with ERROR: the model was not baked for so wide a stop. */
 enum glint_status settings_stop(struct settings *settings, double f_number,
                                 struct glint_error *error);
+
+/* Chooses the wavelengths that a setup is made for, before the lens of SETTINGS
+ * is opened. */
+void settings_choose_waves(struct settings *settings);
 
 void settings_close(struct settings *settings);
 

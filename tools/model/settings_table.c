@@ -8,7 +8,7 @@
 #include "glint/exact.h"
 #include "model/model_cache.h"
 #include "model/table_file.h"
-#include "options/settings_table.h"
+#include "model/settings_table.h"
 
 struct glint_bake_options settings_bake_options(const struct settings *settings)
 {
@@ -114,11 +114,10 @@ const struct glint_frame_rays *settings_table_rays(void)
 }
 
 enum glint_status settings_table_setup(struct settings *s,
+                                       const struct stop_option *stop,
                                        struct glint_error *error)
 {
-    const struct stop_option stop = settings_stop_shape(s);
-
-    return glint_setup_init(&s->setup, &s->lens, stop.n_blades,
-                            stop.rotation_deg, s->wavelength_nm,
+    return glint_setup_init(&s->setup, &s->lens, stop->n_blades,
+                            stop->rotation_deg, s->wavelength_nm,
                             s->n_wavelengths, error);
 }

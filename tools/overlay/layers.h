@@ -10,7 +10,7 @@
 #ifndef GLINT_TOOLS_DESK_LAYERS_H
 #define GLINT_TOOLS_DESK_LAYERS_H
 
-#include "desk/apart.h"
+#include "overlay/apart.h"
 #include "overlay/compositor.h"
 
 struct layers {

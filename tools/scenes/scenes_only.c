@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Replaces scene_file.c in programs without the offline half, which read baked
+ * scenes only.
+ */
+#include "posix/ending.h"
+#include "scenes/scene_file.h"
+
+bool tool_is_scene(const char *argument)
+{
+    return glint_ends_in(argument, ".scene");
+}
+
+int tool_scene_bake(const struct tool *tool, const char *path, uint8_t **data,
+                    size_t *bytes, struct glint_scene_bake_report *report)
+{
+    struct glint_error error;
+
+    (void)data, (void)bytes, (void)report;
+    snprintf(error.text, sizeof error.text,
+             "%.120s is a text; this program takes baked scenes only (glint "
+             "bake, on any machine)",
+             path);
+    return tool_fail(tool, GLINT_E_LENS, error.text);
+}
