@@ -15,8 +15,408 @@
  * grid answers for. */
 #include "base/compiler.h"
 #include "base/divide.h"
-#include "scene/shadow_grid.h"
 #include "scene/mesh.h"
+#include "scene/state.h"
+
+enum {
+    CELLS = 1 << GLINT_SHADOW_CELLS_LOG2,
+    SLACK = 4,  /* steps, for rounding */
+    SORTED = 64 /* things of a list that is sorted, at most */
+};
+
+/* Returns how far rays lean over a height, below 2^32. */
+static inline int64_t lean_of(const struct glint_shadow *shadow, int64_t height)
+{
+    return q_shift(height * shadow->lean_q30, 30);
+}
+
+/* Returns where X, within +-2^33, is along AXIS of the grid, in 256ths of a
+ * cell, which is SLACK steps at least; within +-2^15. */
+static inline int32_t across_q8(const struct glint_shadow *shadow, int64_t x,
+                                int axis)
+{
+    return q_clamp_sat((x - shadow->lo[axis]) * shadow->cells_q32[axis] >> 24,
+                       INT16_MIN, INT16_MAX);
+}
+
+static int throws(const struct glint_placed *p)
+{
+    return p->is_shown && p->object->kind != GLINT_OBJECT_PLANE;
+}
+
+/* ------------------------------------------------------------------ extents */
+
+static void grow(struct glint_shadow *shadow, const int32_t at[3],
+                 int32_t reach)
+{
+    for (int k = 0; k < 3; k++) {
+        shadow->lo[k] = q_smaller(shadow->lo[k], at[k] - reach);
+        shadow->hi[k] = q_larger(shadow->hi[k], at[k] + reach);
+    }
+}
+
+/* Sets the box of all that throws shadows; returns 0 if nothing does. */
+static int enclose(const struct glint_scene *s, struct glint_shadow *shadow)
+{
+    for (int k = 0; k < 3; k++) {
+        shadow->lo[k] = INT32_MAX;
+        shadow->hi[k] = INT32_MIN;
+    }
+    for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
+        const struct glint_placed *p = &s->placed[i];
+        int32_t at[3];
+
+        if (!throws(p))
+            continue;
+        v3_turn(&shadow->turn, p->centre, at);
+        grow(shadow, at, p->reach + SLACK);
+    }
+    return shadow->lo[0] <= shadow->hi[0];
+}
+
+/* Makes room for rays that lean: the grid answers for places as far below
+ * things as these are large. */
+static void widen(struct glint_shadow *shadow)
+{
+    const int32_t side =
+        q_larger(shadow->hi[0] - shadow->lo[0], shadow->hi[1] - shadow->lo[1]);
+    int64_t lean;
+
+    shadow->lowest = -GLINT_FAR;
+    if (shadow->lean_q30 == 0)
+        return;
+    shadow->lowest = q_larger(shadow->lo[2] - side, -GLINT_FAR);
+    lean = lean_of(shadow, (int64_t)shadow->hi[2] - shadow->lowest) + SLACK;
+    for (int k = 0; k < 2; k++) {
+        shadow->lo[k] =
+            q_clamp_sat(shadow->lo[k] - lean, -GLINT_FAR, GLINT_FAR);
+        shadow->hi[k] =
+            q_clamp_sat(shadow->hi[k] + lean, -GLINT_FAR, GLINT_FAR);
+    }
+}
+
+/* ------------------------------------------------------------------- lists */
+
+/* Returns the cells of a thing. */
+static struct glint_box cells_of(const struct glint_shadow_thing *t)
+{
+    return glint_box_cut((struct glint_box){0, 0, CELLS, CELLS},
+                         (struct glint_box){t->lo[0] >> 8, t->lo[1] >> 8,
+                                            (t->hi[0] >> 8) + 1,
+                                            (t->hi[1] >> 8) + 1});
+}
+
+/* Sets T to what a thing within LO .. HI can shadow. */
+static void set_thing(const struct glint_shadow *shadow, const int32_t lo[3],
+                      const int32_t hi[3], uint32_t id,
+                      struct glint_shadow_thing *t)
+{
+    const int64_t lean =
+        SLACK + (shadow->lean_q30
+                     ? lean_of(shadow, (int64_t)hi[2] - shadow->lowest)
+                     : 0);
+
+    t->id = id;
+    t->top = hi[2];
+    for (int k = 0; k < 2; k++) {
+        t->lo[k] = (int16_t)across_q8(shadow, lo[k] - lean, k);
+        t->hi[k] = (int16_t)across_q8(shadow, hi[k] + lean, k);
+    }
+}
+
+/* Sets the things of mesh I from T on; returns how many. */
+static int set_triangles(const struct glint_scene *s,
+                         const struct glint_shadow *shadow, uint32_t i,
+                         struct glint_shadow_thing *thing)
+{
+    const struct glint_scene_mesh *mesh = glint_mesh_of(s, i);
+    const struct glint_scene_triangle *t = glint_mesh_triangle(s, mesh, 0);
+    int32_t(*const at)[3] = shadow->vertex + s->placed[i].first_vertex;
+
+    for (uint32_t n = 0; n < mesh->n_triangles; n++, t++) {
+        int32_t lo[3], hi[3];
+
+        for (int k = 0; k < 3; k++) {
+            const int32_t a = at[t->vertex[0]][k], b = at[t->vertex[1]][k];
+            const int32_t c = at[t->vertex[2]][k];
+
+            lo[k] = q_smaller(a, q_smaller(b, c));
+            hi[k] = q_larger(a, q_larger(b, c));
+        }
+        set_thing(shadow, lo, hi, glint_id(i, n), thing++);
+    }
+    return (int)mesh->n_triangles;
+}
+
+/* Sets all things; returns how many entries they have in all cells. */
+static int64_t set_things(const struct glint_scene *s,
+                          struct glint_shadow *shadow)
+{
+    int64_t n = 0;
+
+    shadow->n_things = 0;
+    for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
+        const struct glint_placed *p = &s->placed[i];
+        struct glint_shadow_thing *t = &shadow->thing[shadow->n_things];
+        int32_t at[3], lo[3], hi[3];
+
+        if (!throws(p))
+            continue;
+        if (p->object->kind == GLINT_OBJECT_MESH) {
+            shadow->n_things += set_triangles(s, shadow, i, t);
+            continue;
+        }
+        v3_turn(&shadow->turn, p->at, at);
+        for (int k = 0; k < 3; k++) {
+            lo[k] = at[k] - p->radius;
+            hi[k] = at[k] + p->radius;
+        }
+        set_thing(shadow, lo, hi, glint_id(i, 0), t);
+        shadow->n_things++;
+    }
+    for (int i = 0; i < shadow->n_things; i++) {
+        const struct glint_box b = cells_of(&shadow->thing[i]);
+
+        if (!glint_box_empty(b))
+            n += (int64_t)(b.x1 - b.x0) * (b.y1 - b.y0);
+    }
+    return n;
+}
+
+static void list(struct glint_shadow *shadow)
+{
+    glint_bins_open(&shadow->bins);
+    for (int i = 0; i < shadow->n_things; i++) {
+        const struct glint_box b = cells_of(&shadow->thing[i]);
+
+        if (!glint_box_empty(b))
+            glint_bins_count(&shadow->bins, b);
+    }
+    glint_bins_sum(&shadow->bins);
+    for (int i = 0; i < shadow->n_things; i++) {
+        const struct glint_box b = cells_of(&shadow->thing[i]);
+
+        for (int y = b.y0; y < b.y1; y++)
+            for (int x = b.x0; x < b.x1; x++)
+                shadow->bins.ref[shadow->bins.start[y * CELLS + x]++] = i;
+    }
+    glint_bins_close(&shadow->bins);
+}
+
+/* Puts the highest things of each list first, but of long lists. */
+static void sort_lists(struct glint_shadow *shadow)
+{
+    for (int i = 0; i < CELLS * CELLS; i++) {
+        int32_t *ref = shadow->bins.ref + shadow->bins.start[i];
+        const int n = shadow->bins.start[i + 1] - shadow->bins.start[i];
+
+        for (int k = 1; k < n && n <= SORTED; k++) {
+            const int32_t own = ref[k], top = shadow->thing[own].top;
+            int to = k;
+
+            for (; to > 0 && shadow->thing[ref[to - 1]].top < top; to--)
+                ref[to] = ref[to - 1];
+            ref[to] = own;
+        }
+    }
+}
+
+/* Returns whether a list has a thing but OWN that is above LOWEST and can
+ * shadow places within LO .. HI. */
+static int can_shadow(const struct glint_shadow *shadow, int cell, uint32_t own,
+                      int32_t lowest, const int32_t lo_q8[2],
+                      const int32_t hi_q8[2])
+{
+    for (int i = shadow->bins.start[cell]; i < shadow->bins.start[cell + 1];
+         i++) {
+        const struct glint_shadow_thing *t =
+            &shadow->thing[shadow->bins.ref[i]];
+
+        if (t->id != own && t->top > lowest && t->lo[0] <= hi_q8[0] &&
+            t->hi[0] >= lo_q8[0] && t->lo[1] <= hi_q8[1] &&
+            t->hi[1] >= lo_q8[1])
+            return 1;
+    }
+    return 0;
+}
+
+/* Returns whether nothing can come between the sun and ball I. Places on it are
+ * found to 2^-20 of its radius at least (quick.c). */
+static int is_open(const struct glint_scene *s,
+                   const struct glint_shadow *shadow, uint32_t i)
+{
+    const struct glint_placed *p = &s->placed[i];
+    const int32_t reach = p->radius + (p->radius >> 20) + SLACK;
+    int32_t at[3], lo_q8[2], hi_q8[2];
+
+    v3_turn(&shadow->turn, p->at, at);
+    for (int k = 0; k < 2; k++) {
+        lo_q8[k] = across_q8(shadow, (int64_t)at[k] - reach, k);
+        hi_q8[k] = across_q8(shadow, (int64_t)at[k] + reach, k);
+        if (lo_q8[k] < 0 || hi_q8[k] >= CELLS << 8)
+            return 0;
+    }
+    for (int y = lo_q8[1] >> 8; y <= hi_q8[1] >> 8; y++)
+        for (int x = lo_q8[0] >> 8; x <= hi_q8[0] >> 8; x++)
+            if (can_shadow(shadow, y * CELLS + x, glint_id(i, 0), at[2] - reach,
+                           lo_q8, hi_q8))
+                return 0;
+    return 1;
+}
+
+/* Marks the balls that nothing can come before. */
+static void mark_open(const struct glint_scene *s,
+                      const struct glint_shadow *shadow)
+{
+    const uint32_t bit = UINT32_C(1) << shadow->light;
+
+    for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
+        struct glint_placed *p = &s->placed[i];
+
+        p->open_to &= ~bit;
+        if (p->is_shown && p->object->kind == GLINT_OBJECT_SPHERE &&
+            is_open(s, shadow, i))
+            p->open_to |= bit;
+    }
+}
+
+static void turn_vertices(const struct glint_scene *s,
+                          struct glint_shadow *shadow)
+{
+    for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
+        const struct glint_placed *p = &s->placed[i];
+        const struct glint_scene_mesh *mesh;
+        const int32_t *vertex;
+
+        if (!throws(p) || p->object->kind != GLINT_OBJECT_MESH)
+            continue;
+        mesh = glint_mesh_of(s, i);
+        vertex = glint_mesh_table(s, mesh->vertex_at);
+        for (uint32_t k = 0; k < mesh->n_vertices; k++) {
+            int32_t place[3];
+
+            v3_turn(&p->turn, vertex + 3 * (size_t)k, place);
+            for (int j = 0; j < 3; j++)
+                place[j] += p->at[j];
+            v3_turn(&shadow->turn, place, shadow->vertex[p->first_vertex + k]);
+        }
+    }
+}
+
+/* Sets the points of the disc: how their rays lean. */
+static void set_points(const struct glint_scene *s, const struct glint_lit *lit,
+                       struct glint_shadow *shadow)
+{
+    shadow->n_points = lit->light->radius ? s->cfg.shadow_points : 1;
+    for (int i = 0; i < shadow->n_points; i++) {
+        struct glint_shadow_point *p = &shadow->point[i];
+        struct glint_scene_ray to = {.at = {0}};
+        int32_t at_q30[3];
+
+        for (int k = 0; k < 3; k++)
+            to.toward_q30[k] = lit->toward_q30[k];
+        glint_scene_point(&to, GLINT_FAR, lit->light->radius, i,
+                          shadow->n_points);
+        v3_turn(&shadow->turn, to.toward_q30, at_q30);
+        for (int k = 0; k < 3; k++)
+            p->toward_q30[k] = to.toward_q30[k];
+        for (int k = 0; k < 2; k++)
+            p->lean_q30[k] = (int32_t)q_divide(at_q30[k] * (INT64_C(1) << 30),
+                                               q_larger(at_q30[2], 1 << 28));
+        shadow->lean_q30 = q_larger(
+            shadow->lean_q30,
+            q_larger(p->lean_q30[0] < 0 ? -p->lean_q30[0] : p->lean_q30[0],
+                     p->lean_q30[1] < 0 ? -p->lean_q30[1] : p->lean_q30[1]));
+    }
+}
+
+void glint_shadow_prepare(const struct glint_scene *s,
+                          const struct glint_lit *lit,
+                          struct glint_shadow *shadow)
+{
+    int32_t *row_q30[3] = {shadow->turn.row_q30[0], shadow->turn.row_q30[1],
+                           shadow->turn.row_q30[2]};
+
+    shadow->is_ready = 0;
+    shadow->lean_q30 = 0;
+    for (int k = 0; k < 3; k++)
+        row_q30[2][k] = lit->toward_q30[k];
+    glint_scene_frame_of(row_q30[2], row_q30[0], row_q30[1]);
+    set_points(s, lit, shadow);
+    shadow->is_empty = !enclose(s, shadow);
+    shadow->is_ready = 1;
+    if (shadow->is_empty)
+        return;
+    widen(shadow);
+    for (int k = 0; k < 2; k++)
+        shadow->cells_q32[k] = (int32_t)q_divide(
+            INT64_C(1) << (32 + GLINT_SHADOW_CELLS_LOG2),
+            (int64_t)shadow->hi[k] - shadow->lo[k] + CELLS * SLACK);
+    glint_bins_init(&shadow->bins, (struct glint_box){0, 0, CELLS, CELLS}, 0,
+                    shadow->bins.start, shadow->bins.ref);
+    turn_vertices(s, shadow);
+    while (set_things(s, shadow) > shadow->max_refs)
+        for (int k = 0; k < 2; k++)
+            shadow->cells_q32[k] -= (shadow->cells_q32[k] + 3) / 4;
+    list(shadow);
+    sort_lists(shadow);
+    mark_open(s, shadow);
+}
+
+/* Finds the place of plane P that the sun sees at (U, V); returns 0 if it is
+ * out of the grid's reach. */
+static int plane_place(const struct glint_shadow *shadow,
+                       const struct glint_placed *p, int32_t u, int32_t v,
+                       int32_t place[3])
+{
+    int32_t at[3], n_q30[3], to[3] = {u, v, 0};
+    int64_t off_q30, h;
+
+    v3_turn(&shadow->turn, p->at, at);
+    v3_turn(&shadow->turn, p->centre, n_q30);
+    if (q_magnitude(n_q30[2]) < 1 << 20)
+        return 0;
+    off_q30 = ((int64_t)u - at[0]) * n_q30[0] + ((int64_t)v - at[1]) * n_q30[1];
+    h = at[2] - q_divide(off_q30, n_q30[2]);
+    if (h < shadow->lowest || h <= -(1 << 29) || h >= 1 << 29 ||
+        q_magnitude(u) >= 1 << 29 || q_magnitude(v) >= 1 << 29)
+        return 0;
+    to[2] = (int32_t)h;
+    v3_turn_back(&shadow->turn, to, place);
+    return 1;
+}
+
+struct glint_box glint_shadow_box(const struct glint_scene *s,
+                                  const struct glint_shadow *shadow,
+                                  const struct glint_placed *p)
+{
+    const struct glint_box all = {0, 0, s->view.width, s->view.height};
+    int32_t lo[2] = {INT32_MAX, INT32_MAX}, hi[2] = {INT32_MIN, INT32_MIN};
+
+    if (shadow->is_empty)
+        return (struct glint_box){0, 0, 0, 0};
+    for (int k = 0; k < 4; k++) {
+        int32_t place[3], seen[3];
+        struct glint_corner c;
+
+        if (!plane_place(shadow, p, k & 1 ? shadow->lo[0] : shadow->hi[0],
+                         k & 2 ? shadow->lo[1] : shadow->hi[1], place))
+            return all;
+        glint_view_seen(&s->view, place, seen);
+        c = glint_view_corner(&s->view, seen);
+        if (seen[2] <= 0 || c.w != 1)
+            return all;
+        lo[0] = q_smaller(lo[0], c.x);
+        lo[1] = q_smaller(lo[1], c.y);
+        hi[0] = q_larger(hi[0], c.x);
+        hi[1] = q_larger(hi[1], c.y);
+    }
+    return glint_box_cut(
+        all, (struct glint_box){((lo[0] + 128 * (all.x1 - 1)) >> 8) - 1,
+                                ((lo[1] + 128 * (all.y1 - 1)) >> 8) - 1,
+                                ((hi[0] + 128 * (all.x1 - 1)) >> 8) + 2,
+                                ((hi[1] + 128 * (all.y1 - 1)) >> 8) + 2});
+}
 
 /* in place of a cell: nothing is above; the grid does not answer */
 enum { NONE = -1, BEYOND = -2 };
@@ -109,7 +509,7 @@ is_blocked(const struct glint_scene *s, const struct glint_shadow *shadow,
     const int32_t *end = shadow->bins.ref + shadow->bins.start[below->cell + 1];
     const int32_t u = below->across_q8[0], v = below->across_q8[1];
     const int32_t height = below->at[2];
-    const int is_sorted = end - ref <= GLINT_SHADOW_SORTED;
+    const int is_sorted = end - ref <= SORTED;
 
     for (; ref < end; ref++) {
         const struct glint_shadow_thing *thing = &shadow->thing[*ref];
@@ -153,8 +553,7 @@ static WHOLLY_INLINE void find(const struct glint_shadow *shadow,
         return;
     v3_turn(&shadow->turn, place, at);
     if (at[2] < shadow->lowest)
-        lean = glint_shadow_lean(shadow, (int64_t)shadow->lowest - at[2]) +
-               GLINT_SHADOW_SLACK;
+        lean = lean_of(shadow, (int64_t)shadow->lowest - at[2]) + SLACK;
     if (at[2] > shadow->hi[2] || at[0] < shadow->lo[0] - lean ||
         at[0] > shadow->hi[0] + lean || at[1] < shadow->lo[1] - lean ||
         at[1] > shadow->hi[1] + lean)
@@ -163,9 +562,9 @@ static WHOLLY_INLINE void find(const struct glint_shadow *shadow,
     if (lean)
         return;
     for (int k = 0; k < 2; k++)
-        below->across_q8[k] = glint_shadow_across_q8(shadow, at[k], k);
-    below->cell = (below->across_q8[1] >> 8) * GLINT_SHADOW_CELLS +
-                  (below->across_q8[0] >> 8);
+        below->across_q8[k] = across_q8(shadow, at[k], k);
+    below->cell =
+        (below->across_q8[1] >> 8) * CELLS + (below->across_q8[0] >> 8);
     if (shadow->bins.start[below->cell] == shadow->bins.start[below->cell + 1])
         below->cell = NONE;
 }
