@@ -81,8 +81,8 @@ bool glint_sphere_blur(const struct glint_sphere *from, double sigma,
 void glint_sphere_irradiance(const struct glint_sphere *from, int side_log2,
                              double (*light)[3]);
 
-/* codes.c: writes N texels as codes, which a decoder takes for units. UNIT is
- * one unit; nothing is brighter than 511 * 2^19 of them. */
+/* Writes N texels as codes, which a decoder takes for units: what is nearest in
+ * light. UNIT is one unit; nothing is brighter than 511 * 2^19 of them. */
 void glint_environment_put_9e5(const double (*light)[3], size_t n, double unit,
                                uint32_t *code);
 

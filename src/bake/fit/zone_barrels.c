@@ -4,7 +4,6 @@
  * any other barrel. */
 #include <math.h>
 
-#include "bake/fit/zone_batch.h"
 #include "bake/fit/zone_rays.h"
 
 /* Relative radius: of a barrel at which rays differ by less, what gets past it

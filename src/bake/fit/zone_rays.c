@@ -3,7 +3,6 @@
 
 #include <math.h>
 
-#include "bake/fit/zone_batch.h"
 #include "engine/setup/degrees.h"
 
 /* Returns the largest relative radius of RAY at any surface and at the stop. */

@@ -6,6 +6,11 @@
 
 enum { MOST = GLINT_MOTION_MAX_FOODS };
 
+double glint_rounded(enum glint_arithmetic arithmetic, double x)
+{
+    return arithmetic == GLINT_FLOAT32 ? (double)(float)x : x;
+}
+
 void glint_localiser_init(struct glint_localiser *localiser,
                           enum glint_motion_fit fit, bool average,
                           enum glint_arithmetic arithmetic)
@@ -62,6 +67,100 @@ static void learn(struct glint_localiser *l, int n, const double (*seen)[3],
 
 /* ------------------------------------------------------------- as published */
 
+/* [Bodonyi26]: a place has weights in four points that are no plane, which sum
+ * to 1 and are the same wherever these move. */
+struct base {
+    enum glint_arithmetic arithmetic;
+    double edge[3][3], normal[3][3], det; /* normal i is of the other edges */
+};
+
+static double keep(const struct base *b, double x)
+{
+    return glint_rounded(b->arithmetic, x);
+}
+
+static double dot(const struct base *b, const double x[3], const double y[3])
+{
+    return keep(b, keep(b, keep(b, x[0] * y[0]) + keep(b, x[1] * y[1])) +
+                       keep(b, x[2] * y[2]));
+}
+
+static void set_base(struct base *b, const double (*const from[4])[3])
+{
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            b->edge[i][k] = keep(b, (*from[i])[k] - (*from[3])[k]);
+    for (int i = 0; i < 3; i++) {
+        const double *x = b->edge[(i + 1) % 3], *y = b->edge[(i + 2) % 3];
+
+        for (int k = 0; k < 3; k++) {
+            const int l = (k + 1) % 3, m = (k + 2) % 3;
+
+            b->normal[i][k] =
+                keep(b, keep(b, x[l] * y[m]) - keep(b, x[m] * y[l]));
+        }
+    }
+    b->det = dot(b, b->edge[0], b->normal[0]);
+}
+
+/* Sets PLACE to where POINT goes, from the base of FROM to TO. */
+static void carry(const struct base *b, const double (*const from[4])[3],
+                  const double (*const to[4])[3], const double point[3],
+                  double place[3])
+{
+    double off[3], weight[4], sum = 0;
+
+    for (int k = 0; k < 3; k++)
+        off[k] = keep(b, point[k] - (*from[3])[k]);
+    for (int i = 0; i < 3; i++) {
+        weight[i] = keep(b, dot(b, off, b->normal[i]) / b->det);
+        sum = keep(b, sum + weight[i]);
+    }
+    weight[3] = keep(b, 1 - sum);
+    for (int k = 0; k < 3; k++) {
+        place[k] = 0;
+        for (int i = 0; i < 4; i++)
+            place[k] = keep(b, place[k] + keep(b, weight[i] * (*to[i])[k]));
+    }
+}
+
+/* Returns the determinant of FROM[4] as edges from the last, over the product
+ * of their lengths, in double precision: 0 .. 1. */
+static double four_spans(const double (*const from[4])[3])
+{
+    struct base b = {.arithmetic = GLINT_DOUBLE};
+    double bound = 1;
+
+    set_base(&b, from);
+    for (int i = 0; i < 3; i++)
+        bound *= sqrt(dot(&b, b.edge[i], b.edge[i]));
+    return bound > 0 ? fabs(b.det) / bound : 0;
+}
+
+/* Sets MAP to how points move if FROM[4] move to TO[4]: the columns of a 3 x 4
+ * matrix, where the axes go and where the origin. Returns false if
+ * four_spans() is below 2^-20. */
+static bool four_map(enum glint_arithmetic arithmetic,
+                     const double (*const from[4])[3],
+                     const double (*const to[4])[3], double map[4][3])
+{
+    static const double point[4][3] = {
+        {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
+    struct base b = {.arithmetic = arithmetic};
+
+    if (!(four_spans(from) >= GLINT_RIGID_LEAST))
+        return false;
+    set_base(&b, from);
+    if (b.det == 0)
+        return false;
+    for (int i = 0; i < 4; i++)
+        carry(&b, from, to, point[i], map[i]);
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            map[i][k] = keep(&b, map[i][k] - map[3][k]);
+    return true;
+}
+
 /* Sets FOUR to the foods, of those that are not new, that FIT takes; returns
  * false if there are fewer. */
 static bool choose(const struct glint_localiser *l, int n,
@@ -86,7 +185,7 @@ static bool choose(const struct glint_localiser *l, int n,
                     const double(*const from[4])[3] = {
                         &seen[pick[0]], &seen[pick[1]], &seen[pick[2]],
                         &seen[pick[3]]};
-                    const double spans = glint_four_spans(from);
+                    const double spans = four_spans(from);
 
                     if (spans > best) {
                         best = spans;
@@ -133,7 +232,7 @@ static const char *map_four(struct glint_localiser *l, int n,
         from[i] = &seen[four[i]];
         to[i] = &places[four[i]];
     }
-    if (!glint_four_map(l->arithmetic, from, to, map))
+    if (!four_map(l->arithmetic, from, to, map))
         return "the four foods lie in a plane, or out of range";
     if (l->fit == GLINT_MOTION_CHAIN)
         lengthen(l, map);

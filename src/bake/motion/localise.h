@@ -12,9 +12,15 @@
 #ifndef GLINT_BAKE_MOTION_LOCALISE_H
 #define GLINT_BAKE_MOTION_LOCALISE_H
 
-#include "bake/motion/four.h"
 #include "bake/motion/rigid.h"
 #include "glint/scene/motion.h"
+
+/* Of the published ways. float32 rounds each result of double, which gives the
+ * bits of float: double has more than twice its digits. */
+enum glint_arithmetic { GLINT_DOUBLE, GLINT_FLOAT32 };
+
+/* Returns X as ARITHMETIC has it. */
+double glint_rounded(enum glint_arithmetic arithmetic, double x);
 
 struct glint_localiser {
     enum glint_motion_fit fit;
@@ -27,7 +33,7 @@ struct glint_localiser {
     /* Private. */
     bool has_begun;
     double last[GLINT_MOTION_MAX_FOODS][3]; /* seen one frame ago */
-    double chain[4][3];                     /* as of glint_four_map() */
+    double chain[4][3];                     /* of the frames so far, columns */
 };
 
 struct glint_located {

@@ -1,30 +1,211 @@
 /* SPDX-License-Identifier: MIT
  *
- * A recording in JSON, in the words of two spellings, one frame at a time by
- * jansson. */
+ * A recording in JSON, in the words of two spellings. A long text is split
+ * while it is read: jansson gets each frame by itself, without commas that
+ * trail. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <jansson.h>
 
-#include "bake/motion/split.h"
+#include "glint/scene/motion_bake.h"
 
-/* What the pieces of a recording are handed to. */
+enum { CHUNK = 1 << 16, MOST_BYTES = 1 << 20, MOST_DEEP = 64, NAME_BYTES = 32 };
+
+/* The values that are read. */
+enum { STRUCTURE, SZERKEZET, FRAMES, KEYS };
+
+static const char *const keys[KEYS] = {"structure", "szerkezet", "frames"};
+
 struct recording {
     const char *file_name;
     struct glint_motion_baker *baker;
-    const struct glint_split_piece *piece;
+    glint_recording_read_fn *read;
+    void *ctx;
     struct glint_error *error;
+    enum glint_status status;
+    char chunk[CHUNK];
+    size_t at, n;
+    int c; /* the next byte, or -1 at the end */
+    int line, column;
+    int key;                      /* of the value that is read */
+    int piece_line, piece_column; /* of its first byte, from 1 */
+    long number;                  /* of its frame; -1: none */
+    bool is_kept;                 /* what is passed goes to TEXT */
+    char *text;                   /* malloc'ed */
+    size_t bytes, room;
 };
 
-enum { STRUCTURE, SZERKEZET, FRAMES };
+/* --------------------------------------------------------------------- bytes
+ */
 
-static const struct glint_split_key keys[] = {{"structure", false},
-                                              {"szerkezet", false},
-                                              {"frames", true},
-                                              {NULL, false}};
+static bool fail(struct recording *r, const char *format, ...)
+{
+    char cause[128];
+    va_list args;
+
+    if (r->status != GLINT_OK)
+        return false;
+    va_start(args, format);
+    vsnprintf(cause, sizeof cause, format, args);
+    va_end(args);
+    snprintf(r->error->text, sizeof r->error->text, "%.80s:%d:%d: %s",
+             r->file_name, r->line, r->column, cause);
+    r->status = GLINT_E_LENS;
+    return false;
+}
+
+/* Sets C to the next byte. */
+static void load(struct recording *r)
+{
+    if (r->at == r->n && r->status == GLINT_OK) {
+        const long n = r->read(r->ctx, r->chunk, sizeof r->chunk);
+
+        r->at = 0;
+        r->n = n > 0 ? (size_t)n : 0;
+        if (n < 0) {
+            snprintf(r->error->text, sizeof r->error->text,
+                     "%.120s: cannot be read", r->file_name);
+            r->status = GLINT_E_IO;
+        }
+    }
+    r->c = r->at < r->n ? (unsigned char)r->chunk[r->at] : -1;
+}
+
+static bool ends(struct recording *r)
+{
+    if (r->number >= 0)
+        return fail(r, "the text ends within frame %ld", r->number);
+    return fail(r, "the text ends within the recording");
+}
+
+static bool keep(struct recording *r, char c)
+{
+    if (r->bytes == MOST_BYTES)
+        return fail(r, "the recording takes more than 1 MiB");
+    if (r->bytes == r->room) {
+        const size_t room = r->room ? 2 * r->room : 4096;
+        char *const text = realloc(r->text, room);
+
+        if (!text) {
+            r->status = GLINT_E_MEMORY;
+            return false;
+        }
+        r->text = text;
+        r->room = room;
+    }
+    r->text[r->bytes++] = c;
+    return true;
+}
+
+/* Passes the next byte. */
+static bool pass(struct recording *r)
+{
+    if (r->c < 0)
+        return ends(r);
+    if (r->is_kept && !keep(r, (char)r->c))
+        return false;
+    if (r->c == '\n') {
+        r->line++;
+        r->column = 1;
+    } else {
+        r->column++;
+    }
+    r->at++;
+    load(r);
+    return r->status == GLINT_OK;
+}
+
+static bool pass_space(struct recording *r)
+{
+    while (r->c == ' ' || r->c == '\t' || r->c == '\n' || r->c == '\r')
+        if (!pass(r))
+            return false;
+    return r->status == GLINT_OK;
+}
+
+static bool expect(struct recording *r, char c)
+{
+    if (r->c < 0)
+        return ends(r);
+    if (r->c != c)
+        return fail(r, "'%c' is expected here, in the recording", c);
+    return pass(r);
+}
+
+/* --------------------------------------------------------------------- values
+ */
+
+/* Passes a string, and sets NAME[NAME_BYTES] to its beginning, unless NULL. */
+static bool pass_string(struct recording *r, char *name)
+{
+    size_t n = 0;
+
+    if (!expect(r, '"'))
+        return false;
+    while (r->c != '"') {
+        if (r->c >= 0 && r->c < ' ')
+            return fail(r, "a string ends on its line, with '\"'");
+        if (name && n + 1 < NAME_BYTES && r->c >= 0)
+            name[n++] = (char)r->c;
+        if ((r->c == '\\' && !pass(r)) || !pass(r))
+            return false;
+    }
+    if (name)
+        name[n] = '\0';
+    return pass(r);
+}
+
+/* Takes a comma that nothing follows out of the text. */
+static void drop_comma(struct recording *r)
+{
+    size_t i = r->bytes;
+
+    while (r->is_kept && i > 0 && (unsigned char)r->text[i - 1] <= ' ')
+        i--;
+    if (r->is_kept && i > 0 && r->text[i - 1] == ',')
+        r->text[i - 1] = ' ';
+}
+
+/* Passes any value; what it is made of is left to who reads it, but brackets.
+ */
+static bool pass_value(struct recording *r)
+{
+    char close[MOST_DEEP];
+    int deep = 0;
+
+    if (!pass_space(r))
+        return false;
+    if (r->c == ',' || r->c == '}' || r->c == ']')
+        return fail(r, "a value is expected here, in the recording");
+    do {
+        if (r->c == '"') {
+            if (!pass_string(r, NULL))
+                return false;
+            continue;
+        }
+        if (r->c == '{' || r->c == '[') {
+            if (deep == MOST_DEEP)
+                return fail(r, "brackets are more than %d deep", MOST_DEEP);
+            close[deep++] = r->c == '{' ? '}' : ']';
+        } else if (r->c == '}' || r->c == ']') {
+            if (deep == 0)
+                return true; /* of a number: that of what it is in */
+            if (r->c != close[--deep])
+                return fail(r, "'%c' closes what '%c' opened", r->c,
+                            close[deep] == '}' ? '{' : '[');
+            drop_comma(r);
+        } else if (deep == 0 && (r->c == ',' || r->c <= ' ')) {
+            return r->c >= 0 || ends(r);
+        }
+        if (!pass(r))
+            return false;
+    } while (deep > 0 || (r->c != ',' && r->c > ' ' && r->c != ':'));
+    return true;
+}
 
 /* Writes that the piece, its frame if it is one, is wrong at a line and column
  * of its text; 1, 1: at its beginning. */
@@ -37,11 +218,11 @@ static bool fail_at(const struct recording *r, int line, int column,
     va_start(args, format);
     vsnprintf(cause, sizeof cause, format, args);
     va_end(args);
-    if (r->piece->key == FRAMES)
-        snprintf(frame, sizeof frame, "frame %ld: ", r->piece->number);
+    if (r->key == FRAMES)
+        snprintf(frame, sizeof frame, "frame %ld: ", r->number);
     snprintf(r->error->text, sizeof r->error->text, "%.80s:%d:%d: %s%s",
-             r->file_name, r->piece->line + line - 1,
-             line > 1 ? column : r->piece->column + column - 1, frame, cause);
+             r->file_name, r->piece_line + line - 1,
+             line > 1 ? column : r->piece_column + column - 1, frame, cause);
     for (char *c = r->error->text; *c; c++) /* what jansson quotes of a file */
         *c = (unsigned char)*c < ' ' ? '?' : *c;
     return false;
@@ -206,26 +387,103 @@ static enum glint_status take_frame(const struct recording *r,
     return status;
 }
 
-static enum glint_status take(void *ctx, const struct glint_split_piece *piece,
-                              struct glint_error *error)
-{
-    struct recording *r = ctx;
-    json_error_t wrong;
-    json_t *value =
-        json_loadb(piece->text, piece->bytes, JSON_DECODE_ANY, &wrong);
-    enum glint_status status = GLINT_E_LENS;
+/* ---------------------------------------------------------------------- keys
+ */
 
-    r->piece = piece;
-    r->error = error;
+/* Reads value KEY, or an element of it: at most 1 MiB. */
+static bool read_value(struct recording *r, int key)
+{
+    json_error_t wrong;
+    json_t *value;
+
+    if (!pass_space(r))
+        return false;
+    r->key = key;
+    r->piece_line = r->line;
+    r->piece_column = r->column;
+    r->is_kept = true;
+    r->bytes = 0;
+    if (!pass_value(r))
+        return false;
+    r->is_kept = false;
+    value = json_loadb(r->text, r->bytes, JSON_DECODE_ANY, &wrong);
+    r->status = GLINT_E_LENS;
     if (!value)
         fail_at(r, wrong.line > 0 ? wrong.line : 1,
                 wrong.column > 0 ? wrong.column : 1, "%.100s", wrong.text);
-    else if (piece->key == FRAMES)
-        status = take_frame(r, value);
+    else if (key == FRAMES)
+        r->status = take_frame(r, value);
     else if (take_body(r, value))
-        status = GLINT_OK;
+        r->status = GLINT_OK;
     json_decref(value);
-    return status;
+    return r->status == GLINT_OK;
+}
+
+/* Passes what separates values; sets DONE to whether CLOSE follows. */
+static bool go_on(struct recording *r, char close, bool *done)
+{
+    if (!pass_space(r))
+        return false;
+    *done = r->c == close;
+    if (*done)
+        return true;
+    if (r->c >= 0 && r->c != ',')
+        return fail(r, "',' or '%c' is expected here, in the recording", close);
+    if (!pass(r) || !pass_space(r))
+        return false;
+    *done = r->c == close;
+    return true;
+}
+
+static bool read_frames(struct recording *r)
+{
+    bool done;
+
+    if (!expect(r, '[') || !pass_space(r))
+        return false;
+    done = r->c == ']';
+    for (r->number = 0; !done; r->number++)
+        if (!read_value(r, FRAMES) || !go_on(r, ']', &done))
+            return false;
+    r->number = -1;
+    return pass(r);
+}
+
+static bool read_member(struct recording *r, unsigned *seen)
+{
+    char name[NAME_BYTES];
+    int key = 0;
+
+    if (!pass_string(r, name) || !pass_space(r) || !expect(r, ':') ||
+        !pass_space(r))
+        return false;
+    while (key < KEYS && strcmp(keys[key], name) != 0)
+        key++;
+    if (key == KEYS)
+        return pass_value(r);
+    if (*seen >> key & 1)
+        return fail(r, "a second '%s'", name);
+    *seen |= 1u << key;
+    return key == FRAMES ? read_frames(r) : read_value(r, key);
+}
+
+static bool read_all(struct recording *r)
+{
+    unsigned seen = 0;
+    bool done;
+
+    if (!pass_space(r) || !expect(r, '{') || !pass_space(r))
+        return false;
+    done = r->c == '}';
+    while (!done)
+        if (!read_member(r, &seen) || !go_on(r, '}', &done))
+            return false;
+    r->at++;
+    r->column++;
+    load(r);
+    if (!pass_space(r))
+        return false;
+    return r->c < 0 || fail(r, "the recording has ended before this");
 }
 
 enum glint_status glint_recording_read(struct glint_motion_baker *baker,
@@ -233,7 +491,23 @@ enum glint_status glint_recording_read(struct glint_motion_baker *baker,
                                        glint_recording_read_fn *read, void *ctx,
                                        struct glint_error *error)
 {
-    struct recording r = {.file_name = file_name, .baker = baker};
+    struct recording *r = calloc(1, sizeof *r);
+    enum glint_status status;
 
-    return glint_split(file_name, read, ctx, keys, take, &r, error);
+    error->text[0] = '\0';
+    if (!r)
+        return GLINT_E_MEMORY;
+    r->file_name = file_name;
+    r->baker = baker;
+    r->read = read;
+    r->ctx = ctx;
+    r->error = error;
+    r->line = r->column = 1;
+    r->number = -1;
+    load(r);
+    read_all(r);
+    status = r->status;
+    free(r->text);
+    free(r);
+    return status;
 }

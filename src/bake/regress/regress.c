@@ -5,7 +5,101 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "bake/regress/vectors.h"
+#include "base/compiler.h"
+
+enum { VECTORS = 4 }; /* columns that are multiplied by another at once */
+
+/* Number of sums of a dot product. */
+enum { LANES = 4 };
+
+/* Returns the dot product of A and B. Four sums at once make shorter chains of
+ * dependent additions. */
+static WIDE_VECTORS double dot(const double *a, const double *b, int n)
+{
+    double s[LANES] = {0, 0, 0, 0};
+    int i = 0;
+
+    for (; i + LANES <= n; i += LANES)
+        for (int k = 0; k < LANES; k++)
+            s[k] += a[i + k] * b[i + k];
+    for (; i < n; i++)
+        s[0] += a[i] * b[i];
+    return (s[0] + s[1]) + (s[2] + s[3]);
+}
+
+/* Sets SUM to the dot products of A and four columns, each with the bits of
+ * dot(). A is read once for all of them, and their sums do not
+ * wait for each other. */
+static WIDE_VECTORS void dots(const double *a, const double *const b[VECTORS],
+                              int n, double sum[VECTORS])
+{
+    const double *const b0 = b[0], *const b1 = b[1], *const b2 = b[2],
+                        *const b3 = b[3];
+    double s0[LANES] = {0, 0, 0, 0}, s1[LANES] = {0, 0, 0, 0};
+    double s2[LANES] = {0, 0, 0, 0}, s3[LANES] = {0, 0, 0, 0};
+    int i = 0;
+
+    for (; i + LANES <= n; i += LANES) {
+        for (int k = 0; k < LANES; k++) {
+            s0[k] += a[i + k] * b0[i + k];
+            s1[k] += a[i + k] * b1[i + k];
+            s2[k] += a[i + k] * b2[i + k];
+            s3[k] += a[i + k] * b3[i + k];
+        }
+    }
+    for (; i < n; i++) {
+        s0[0] += a[i] * b0[i];
+        s1[0] += a[i] * b1[i];
+        s2[0] += a[i] * b2[i];
+        s3[0] += a[i] * b3[i];
+    }
+    sum[0] = (s0[0] + s0[1]) + (s0[2] + s0[3]);
+    sum[1] = (s1[0] + s1[1]) + (s1[2] + s1[3]);
+    sum[2] = (s2[0] + s2[1]) + (s2[2] + s2[3]);
+    sum[3] = (s3[0] + s3[1]) + (s3[2] + s3[3]);
+}
+
+/* Subtracts K times B from A. */
+static WIDE_VECTORS void subtract(double *restrict a, double k,
+                                  const double *restrict b, int n)
+{
+    int i = 0;
+
+    for (; i + LANES <= n; i += LANES)
+        for (int m = 0; m < LANES; m++)
+            a[i + m] -= k * b[i + m];
+    for (; i < n; i++)
+        a[i] -= k * b[i];
+}
+
+/* Multiplies A by X, POWER times. */
+static WIDE_VECTORS void multiply(double *restrict a, const double *restrict x,
+                                  int power, int n)
+{
+    for (int p = 0; p < power; p++) {
+        int i = 0;
+
+        for (; i + LANES <= n; i += LANES)
+            for (int k = 0; k < LANES; k++)
+                a[i + k] *= x[i + k];
+        for (; i < n; i++)
+            a[i] *= x[i];
+    }
+}
+
+/* Returns the largest magnitude of A. */
+static WIDE_VECTORS double largest(const double *a, int n)
+{
+    double most[LANES] = {0, 0, 0, 0};
+    int i = 0;
+
+    for (; i + LANES <= n; i += LANES)
+        for (int k = 0; k < LANES; k++)
+            most[k] = fabs(a[i + k]) > most[k] ? fabs(a[i + k]) : most[k];
+    for (; i < n; i++)
+        most[0] = fmax(most[0], fabs(a[i]));
+    return fmax(fmax(most[0], most[1]), fmax(most[2], most[3]));
+}
 
 /* Share of its first length: a shorter column is a combination of others. */
 #define DEPENDENT 1e-9
@@ -80,13 +174,13 @@ static double *moment_of(const struct search *s, const struct column *a,
 }
 
 /* Works out what is not known yet of the products of CHOSEN and N columns, at
- * most GLINT_VECTORS. */
+ * most VECTORS. */
 static void find_moments(const struct search *s, const struct column *chosen,
                          struct column *const column[], int n)
 {
-    const struct column *missing[GLINT_VECTORS];
-    const double *at[GLINT_VECTORS];
-    double product[GLINT_VECTORS];
+    const struct column *missing[VECTORS];
+    const double *at[VECTORS];
+    double product[VECTORS];
     int n_missing = 0;
 
     for (int k = 0; k < n; k++)
@@ -94,14 +188,14 @@ static void find_moments(const struct search *s, const struct column *chosen,
             missing[n_missing++] = column[k];
     if (n_missing == 0)
         return;
-    for (int k = 0; k < GLINT_VECTORS; k++)
+    for (int k = 0; k < VECTORS; k++)
         at[k] = missing[k < n_missing ? k : 0]->at;
-    glint_vector_dots(chosen->at, at, s->s->n, product);
+    dots(chosen->at, at, s->s->n, product);
     for (int k = 0; k < n_missing; k++)
         *moment_of(s, chosen, missing[k]) = product[k];
 }
 
-/* Notes the shares of N columns, at most GLINT_VECTORS, along the chosen
+/* Notes the shares of N columns, at most VECTORS, along the chosen
  * direction of rank RANK. */
 static void note_shares(const struct search *s, struct column *const column[],
                         int n, int rank)
@@ -110,10 +204,9 @@ static void note_shares(const struct search *s, struct column *const column[],
 
     find_moments(s, chosen, column, n);
     for (int k = 0; k < n; k++) {
-        const double share =
-            (*moment_of(s, chosen, column[k]) -
-             glint_vector_dot(chosen->on, column[k]->on, rank)) /
-            chosen->on[rank];
+        const double share = (*moment_of(s, chosen, column[k]) -
+                              dot(chosen->on, column[k]->on, rank)) /
+                             chosen->on[rank];
 
         column[k]->on[rank] = share;
         column[k]->left2 -= share * share;
@@ -125,14 +218,14 @@ static void note_shares(const struct search *s, struct column *const column[],
 static void add_products(const struct search *s, const double *a, int first,
                          int m, double sum[GLINT_MAX_TERMS])
 {
-    for (int k = 0; k < s->n_chosen; k += GLINT_VECTORS) {
-        const double *at[GLINT_VECTORS];
-        double product[GLINT_VECTORS];
+    for (int k = 0; k < s->n_chosen; k += VECTORS) {
+        const double *at[VECTORS];
+        double product[VECTORS];
 
-        for (int j = 0; j < GLINT_VECTORS; j++)
+        for (int j = 0; j < VECTORS; j++)
             at[j] = direction(s, k + j < s->n_chosen ? k + j : k) + first;
-        glint_vector_dots(a + first, at, m, product);
-        for (int j = 0; j < GLINT_VECTORS && k + j < s->n_chosen; j++)
+        dots(a + first, at, m, product);
+        for (int j = 0; j < VECTORS && k + j < s->n_chosen; j++)
             sum[k + j] += product[j];
     }
 }
@@ -143,7 +236,7 @@ static void subtract_all(const struct search *s, double *a, int first, int m,
                          const double share[GLINT_MAX_TERMS])
 {
     for (int k = 0; k < s->n_chosen; k++)
-        glint_vector_subtract(a + first, share[k], direction(s, k) + first, m);
+        subtract(a + first, share[k], direction(s, k) + first, m);
 }
 
 /* Sets the direction that is next to be chosen to what COLUMN has beside all
@@ -164,8 +257,8 @@ static void make_orthogonal(const struct search *s, struct column *column)
         subtract_all(s, q, i, block(n, i), again);
     for (int k = 0; k < s->n_chosen; k++)
         column->on[k] += again[k];
-    column->was2 = column->left2 = glint_vector_dot(q, q, n);
-    column->pull = glint_vector_dot(q, s->residual, n);
+    column->was2 = column->left2 = dot(q, q, n);
+    column->pull = dot(q, s->residual, n);
 }
 
 /* Sets COLUMN's values AT, [n]: from those of PARENT, of which its term is a
@@ -182,14 +275,13 @@ static void fill(const struct search *s, struct column *column,
         memcpy(at + i, from + i, (size_t)n * sizeof *at);
         for (int k = 0; k < GLINT_VARIABLES; k++)
             if (column->power[k])
-                glint_vector_multiply(
-                    at + i, v->x[k] + i,
-                    column->power[k] - (parent ? parent->power[k] : 0), n);
+                multiply(at + i, v->x[k] + i,
+                         column->power[k] - (parent ? parent->power[k] : 0), n);
     }
     column->at = at;
-    column->was2 = column->left2 = glint_vector_dot(at, at, v->n);
+    column->was2 = column->left2 = dot(at, at, v->n);
     column->length = sqrt(column->left2);
-    column->pull = glint_vector_dot(at, s->residual, v->n);
+    column->pull = dot(at, s->residual, v->n);
 }
 
 /* Returns the place of the term POWER among moments: that of a product is the
@@ -245,9 +337,8 @@ static void add_neighbours(struct search *s, const struct column *column)
         n += added[n] != NULL;
     }
     for (int rank = 0; n > 0 && rank < s->n_chosen; rank++)
-        for (int k = 0; k < n; k += GLINT_VECTORS)
-            note_shares(s, added + k,
-                        n - k < GLINT_VECTORS ? n - k : GLINT_VECTORS, rank);
+        for (int k = 0; k < n; k += VECTORS)
+            note_shares(s, added + k, n - k < VECTORS ? n - k : VECTORS, rank);
 }
 
 /* Returns the candidate that explains most of the residual, or -1. */
@@ -277,7 +368,7 @@ static void choose(struct search *s, int index)
 {
     struct column *c = &s->column[index];
     const int n = s->s->n, rank = s->n_chosen;
-    struct column *group[GLINT_VECTORS];
+    struct column *group[VECTORS];
     int grouped = 0;
     double *const q = direction(s, rank);
     double share;
@@ -289,12 +380,11 @@ static void choose(struct search *s, int index)
     c->chosen = true;
     s->chosen[s->n_chosen++] = index;
     share = c->pull / c->on[rank];
-    glint_vector_subtract(s->residual, share, q, n);
+    subtract(s->residual, share, q, n);
     for (int i = 0; i < s->n_columns; i++) {
         if (!s->column[i].dead && !s->column[i].chosen)
             group[grouped++] = &s->column[i];
-        if (grouped == GLINT_VECTORS ||
-            (grouped > 0 && i + 1 == s->n_columns)) {
+        if (grouped == VECTORS || (grouped > 0 && i + 1 == s->n_columns)) {
             note_shares(s, group, grouped, rank);
             for (int k = 0; k < grouped; k++)
                 group[k]->pull -= share * group[k]->on[rank];
@@ -314,10 +404,10 @@ static bool is_hopeless(const struct search *s, double left)
 /* Returns the residual over its limit: the larger ratio of RMS and of peak. */
 static double excess(const struct search *s, double rms, double peak)
 {
-    const double sum2 = glint_vector_dot(s->residual, s->residual, s->s->n);
+    const double sum2 = dot(s->residual, s->residual, s->s->n);
 
     return fmax(sqrt(sum2 / s->s->n) / rms,
-                glint_vector_largest(s->residual, s->s->n) / peak);
+                largest(s->residual, s->s->n) / peak);
 }
 
 /* Works out the coefficients of the terms from the shares of orthogonal

@@ -332,7 +332,7 @@ void glint_sights_zone(const struct glint_sights *sights,
                        const struct glint_directions *patch,
                        struct glint_zone *zone)
 {
-    /* As in zone_box.c: what is enough, and by how much a box of a higher
+    /* As in zone.c: what is enough, and by how much a box of a higher
      * degree has to be fuller. */
     const double enough = 0.6, fuller = 1.6;
 

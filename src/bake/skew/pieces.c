@@ -3,8 +3,6 @@
 
 #include <math.h>
 
-#include "bake/fit/zone_batch.h"
-
 /* ------------------------------------------------------------------- halves */
 
 /* Replaces s, p or w in SIDE by AT + x / 2. */

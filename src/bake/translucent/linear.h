@@ -43,4 +43,19 @@ void glint_jacobi(double *a, int rows, int n, double *turn, int m);
  * determine becomes 0. Changes A. */
 void glint_solve(double *a, int n, double *b);
 
+/* A kernel as a sum of products of a column and a row, so that what both make
+ * of light differs least. Light on a surface changes slowly, so that errors of
+ * entries beside each other add up: rows and columns are weighted by how light
+ * is correlated, and the products are the largest singular values of that. */
+struct glint_separated {
+    double *column, *row; /* [rank][n]; product r is column[r][v] row[r][u] */
+    double all, lost;     /* squares of all weighted entries, and of what the
+                             products leave out, summed */
+};
+
+/* Sets TO to RANK products for KERNEL[N][N], N at most
+ * GLINT_SCATTER_MAX_KERNEL; those beyond N are 0. */
+void glint_separate(const double *kernel, int n, int rank,
+                    struct glint_separated *to);
+
 #endif

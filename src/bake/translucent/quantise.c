@@ -18,7 +18,7 @@
 #include <string.h>
 
 #include "bake/table/draft.h"
-#include "bake/translucent/separate.h"
+#include "bake/translucent/linear.h"
 #include "base/blob.h"
 
 enum { CHANNELS = 3 };

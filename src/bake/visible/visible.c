@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "bake/table/form.h"
+#include "bake/trace/spot.h"
 #include "engine/setup/degrees.h"
 
 const int glint_visible_colour[GLINT_VISIBLE_COLOURS] = {
@@ -92,4 +93,509 @@ void glint_visible_join(struct glint_pupil *a, const struct glint_pupil *b)
     a->x0_mm = fmin(a->x0_mm, b->x0_mm);
     a->x1_mm = fmax(a->x1_mm, b->x1_mm);
     a->y1_mm = fmax(a->y1_mm, b->y1_mm);
+}
+
+enum { ACROSS = 64 /* cells of the finest grid */ };
+
+/* Columns and rows of a grid that hold rays which get through. */
+struct extent {
+    int i0, i1, j1;
+};
+
+static bool sample_box(const struct glint_visible *h,
+                       const struct glint_path *path, double sine, int across,
+                       int down, const struct glint_pupil *box,
+                       struct extent *extent)
+{
+    struct glint_row row = {across + 1,
+                            box->x0_mm,
+                            (box->x1_mm - box->x0_mm) / across,
+                            0,
+                            {sine, 0, sqrt(1 - sine * sine)}};
+    struct glint_ray ray[ACROSS + 1];
+    enum glint_ray_status status[ACROSS + 1];
+
+    *extent = (struct extent){across + 1, -1, -1};
+    for (int j = 0; j <= down; j++) {
+        row.y_mm = box->y1_mm * j / down;
+        glint_trace_row(path, &row, ray, status, NULL);
+        for (int i = 0; i <= across; i++) {
+            if (status[i] != GLINT_RAY_OK || !glint_visible_passes(h, &ray[i]))
+                continue;
+            extent->i0 = i < extent->i0 ? i : extent->i0;
+            extent->i1 = i > extent->i1 ? i : extent->i1;
+            extent->j1 = j;
+        }
+    }
+    return extent->i1 >= 0;
+}
+
+/* Shrinks BOX to those rays of a grid that get through, and a cell around them.
+ * Returns whether there are any. */
+static bool shrink(const struct glint_visible *h, const struct glint_path *path,
+                   double sine, int across, int down, struct glint_pupil *box)
+{
+    const double dx = (box->x1_mm - box->x0_mm) / across;
+    const double dy = box->y1_mm / down, x0 = box->x0_mm;
+    struct extent e;
+
+    if (!sample_box(h, path, sine, across, down, box, &e))
+        return false;
+    box->x0_mm = x0 + fmax(e.i0 - 1, 0) * dx;
+    box->x1_mm = x0 + fmin(e.i1 + 1, across) * dx;
+    box->y1_mm = fmin(e.j1 + 1, down) * dy;
+    return true;
+}
+
+/* Grows BOX on every side at which light still comes through, until none does.
+ */
+static bool enclose(const struct glint_visible *h,
+                    const struct glint_path *path, double sine,
+                    struct glint_pupil *box)
+{
+    enum { COARSE = 16, DOWN = 8, ROUNDS = 8 };
+
+    for (int round = 0; round < ROUNDS; round++) {
+        const double more = 0.5 * (box->x1_mm - box->x0_mm);
+        struct extent e;
+
+        if (!sample_box(h, path, sine, COARSE, DOWN, box, &e))
+            return false;
+        if (e.i0 > 0 && e.i1 < COARSE && e.j1 < DOWN)
+            return true;
+        box->x0_mm -= e.i0 == 0 ? more : 0;
+        box->x1_mm += e.i1 == COARSE ? more : 0;
+        box->y1_mm *= e.j1 == DOWN ? 1.5 : 1;
+    }
+    return false;
+}
+
+/* Moves the sides of BOX past which rays get through, as tips of crescents that
+ * are thinner than its cells do. */
+static void grow(const struct glint_visible *h, const struct glint_path *path,
+                 double sine, struct glint_pupil *box)
+{
+    const struct glint_openings openings = {
+        .path = path,
+        .direction = {sine, 0, sqrt(1 - sine * sine)},
+        .stop_mm = h->setup->optics.stop_radius_mm,
+        .field_mm = h->field_mm};
+
+    box->y0_mm = 0;
+    box->mirrored = true;
+    glint_spot_grow(&openings, box);
+}
+
+/* Shrinks BOX, which holds all rays that get through, to the box of these. */
+static bool tighten(const struct glint_visible *h,
+                    const struct glint_path *path, double sine,
+                    struct glint_pupil *box)
+{
+    bool found = shrink(h, path, sine, 24, 12, box) ||
+                 shrink(h, path, sine, ACROSS, 32, box);
+
+    for (int round = 0; round < 5 && found; round++) {
+        const double before = (box->x1_mm - box->x0_mm) * box->y1_mm;
+
+        if (!shrink(h, path, sine, 24, 12, box) ||
+            (box->x1_mm - box->x0_mm) * box->y1_mm > 0.8 * before)
+            break;
+    }
+    if (found && h->far)
+        grow(h, path, sine, box);
+    return found;
+}
+
+/* Returns by how much RAY misses: 1 or less is visible. */
+static double miss_of(const struct glint_visible *h,
+                      const struct glint_ray *ray)
+{
+    const double stop =
+        hypot(ray->stop_x_mm, ray->stop_y_mm) / h->setup->optics.stop_radius_mm;
+    const double field =
+        hypot(ray->sensor_x_mm, ray->sensor_y_mm) / h->field_mm;
+
+    return fmax(ray->rel_radius, fmax(stop, field));
+}
+
+/* Shrinks BOX to a cell and a half around the ray of a grid that misses by
+ * least. Returns its miss; HUGE_VAL if all rays are lost. */
+static double close_in(const struct glint_visible *h,
+                       const struct glint_path *path, double sine,
+                       struct glint_pupil *box)
+{
+    enum { DOWN = 32 };
+    const double dx = (box->x1_mm - box->x0_mm) / ACROSS;
+    const double dy = box->y1_mm / DOWN, x0 = box->x0_mm;
+    struct glint_row row = {
+        ACROSS + 1, x0, dx, 0, {sine, 0, sqrt(1 - sine * sine)}};
+    struct glint_ray ray[ACROSS + 1];
+    enum glint_ray_status status[ACROSS + 1];
+    double least = HUGE_VAL;
+
+    for (int j = 0; j <= DOWN; j++) {
+        row.y_mm = dy * j;
+        glint_trace_row(path, &row, ray, status, NULL);
+        for (int i = 0; i <= ACROSS; i++) {
+            if (status[i] != GLINT_RAY_OK || miss_of(h, &ray[i]) >= least)
+                continue;
+            least = miss_of(h, &ray[i]);
+            box->x0_mm = x0 + (i - 1.5) * dx;
+            box->x1_mm = x0 + (i + 1.5) * dx;
+            box->y1_mm = (j + 1.5) * dy;
+        }
+    }
+    return least;
+}
+
+/* Finds a part of the pupil that a grid over BOX misses: if the field is far
+ * smaller than the front, so is the part of the pupil through which it is seen.
+ */
+static bool seek(const struct glint_visible *h, const struct glint_path *path,
+                 double sine, struct glint_pupil *box)
+{
+    enum { ROUNDS = 4 };
+
+    if (h->field_mm > 0.1 * h->setup->lens->surface[0].semi_mm)
+        return false;
+    for (int round = 0; round < ROUNDS; round++)
+        if (close_in(h, path, sine, box) <= 1)
+            return enclose(h, path, sine, box);
+    return false;
+}
+
+static double degrees_of(double sine)
+{
+    return asin(sine) * (180 / GLINT_PI);
+}
+
+/* Finds the box at SINE wherever it is; returns whether there is one. */
+static bool find_box(const struct glint_visible *h,
+                     const struct glint_path *path, double sine,
+                     struct glint_pupil *box)
+{
+    struct glint_pupil spot;
+
+    if (!glint_pupil_find_within(box, path, degrees_of(sine),
+                                 h->setup->optics.stop_radius_mm, h->field_mm,
+                                 NULL))
+        return false;
+    spot = *box;
+    if (tighten(h, path, sine, box))
+        return true;
+    *box = spot;
+    return seek(h, path, sine, box) && tighten(h, path, sine, box);
+}
+
+/* Returns NEAR and what lies around it. */
+static struct glint_pupil grown(const struct glint_pupil *near)
+{
+    const double more = 0.2 * (near->x1_mm - near->x0_mm);
+    struct glint_pupil box = *near;
+
+    box.x0_mm -= more;
+    box.x1_mm += more;
+    box.y1_mm *= 1.25;
+    return box;
+}
+
+/* Finds the box at SINE, looking around NEAR first. */
+static bool follow(const struct glint_visible *h, const struct glint_path *path,
+                   double sine, const struct glint_pupil *near,
+                   struct glint_pupil *box)
+{
+    *box = grown(near);
+    return (enclose(h, path, sine, box) && tighten(h, path, sine, box)) ||
+           find_box(h, path, sine, box);
+}
+
+enum {
+    AFRESH = 4, /* angles after which boxes are looked for everywhere again */
+    AFRESH_SHAPED = 12 /* the same of shaped lenses, whose rays take long */
+};
+
+/* Returns BOX moved on by RATIO times the way from BEFORE to BOX. */
+static struct glint_pupil predict(const struct glint_pupil *before,
+                                  const struct glint_pupil *box, double ratio)
+{
+    const double step =
+        0.5 * ratio * (box->x0_mm + box->x1_mm - before->x0_mm - before->x1_mm);
+    struct glint_pupil p = *box;
+
+    p.x0_mm += step;
+    p.x1_mm += step;
+    return p;
+}
+
+/* The boxes of visible light, by angle and wavelength. */
+struct box_samples {
+    bool seen[GLINT_PROFILE][GLINT_VISIBLE_WAVES];
+    struct glint_pupil box[GLINT_PROFILE][GLINT_VISIBLE_WAVES];
+};
+
+/* Finds the boxes of one wavelength at the angles that WANTED marks. */
+static void look(const struct glint_visible *h, const double *sine,
+                 const bool *wanted, int wave, struct box_samples *g)
+{
+    const struct glint_path *path = &h->position_path[wave];
+    struct glint_pupil box = {.y1_mm = 0}, before = box;
+    int have = 0; /* number of angles in a row with a box */
+
+    for (int k = 0; k < GLINT_PROFILE; k++) {
+        const double *s = sine + k;
+        struct glint_pupil near = box;
+        bool now;
+
+        if (!wanted[k]) {
+            have = 0;
+            continue;
+        }
+        if (have > 1)
+            near = predict(&before, &box, (s[0] - s[-1]) / (s[-1] - s[-2]));
+        before = box;
+        now = have ? follow(h, path, *s, &near, &box)
+                   : find_box(h, path, *s, &box);
+        if (have && k % (h->shaped ? AFRESH_SHAPED : AFRESH) == 0 &&
+            find_box(h, path, *s, &near)) {
+            if (now)
+                glint_visible_join(&near, &box);
+            box = near;
+            now = true;
+        }
+        have = now ? have + 1 : 0;
+        g->seen[k][wave] = now;
+        g->box[k][wave] = box;
+    }
+}
+
+static void add_angle(struct glint_visible_profile *p, double sine,
+                      const struct box_samples *g, int k)
+{
+    const int first = p->n_samples;
+
+    for (int wave = 0; wave < GLINT_VISIBLE_WAVES; wave++)
+        if (g->seen[k][wave])
+            p->sample[p->n_samples++] = (struct glint_box_sample){
+                sine, -cos(GLINT_PI * wave / (GLINT_VISIBLE_WAVES - 1)),
+                g->box[k][wave]};
+    if (p->n_samples == first)
+        return;
+    p->sine[p->n] = sine;
+    p->box[p->n] = p->sample[first].box;
+    for (int i = first + 1; i < p->n_samples; i++)
+        glint_visible_join(&p->box[p->n], &p->sample[i].box);
+    p->n++;
+}
+
+/* Finds the boxes of one ghost at the angles SINE. If it is ALONE it is seen at
+ * all of them in some colour, so that all wavelengths are tried where three are
+ * not; one of several beside each other may be dark. */
+static void find_boxes(const struct glint_visible *h, bool alone,
+                       const double *sine, struct box_samples *g)
+{
+    bool wanted[GLINT_PROFILE];
+
+    *g = (struct box_samples){.seen = {{false}}};
+    for (int k = 0; k < GLINT_PROFILE; k++)
+        wanted[k] = true;
+    for (int i = 0; i < 3; i++)
+        look(h, sine, wanted, glint_visible_colour[i], g);
+    /* Where only some of the three colours get through, boxes of others may lie
+     * between them. */
+    for (int k = 0; k < GLINT_PROFILE; k++) {
+        const int n = g->seen[k][glint_visible_colour[0]] +
+                      g->seen[k][glint_visible_colour[1]] +
+                      g->seen[k][glint_visible_colour[2]];
+
+        wanted[k] = n < 3 && (n > 0 || alone);
+    }
+    for (int wave = 1; wave < GLINT_VISIBLE_WAVES - 1; wave++)
+        if (wave != GLINT_VISIBLE_WAVES / 2)
+            look(h, sine, wanted, wave, g);
+}
+
+/* Widens the boxes A to contain B. */
+static void join_boxes(struct box_samples *a, const struct box_samples *b)
+{
+    for (int k = 0; k < GLINT_PROFILE; k++)
+        for (int wave = 0; wave < GLINT_VISIBLE_WAVES; wave++) {
+            if (a->seen[k][wave] && b->seen[k][wave])
+                glint_visible_join(&a->box[k][wave], &b->box[k][wave]);
+            else if (b->seen[k][wave])
+                a->box[k][wave] = b->box[k][wave];
+            a->seen[k][wave] |= b->seen[k][wave];
+        }
+}
+
+void glint_visible_profile_find(const struct glint_visible *visible,
+                                const double range[2],
+                                struct glint_visible_profile *profile)
+{
+    struct box_samples g, other;
+    double sine[GLINT_PROFILE];
+
+    for (int k = 0; k < GLINT_PROFILE; k++) {
+        const double t = sin(0.5 * GLINT_PI * k / (GLINT_PROFILE - 1));
+
+        sine[k] = range[0] + t * (range[1] - range[0]);
+    }
+    find_boxes(visible, visible->n_beside == 0, sine, &g);
+    for (int k = 0; k < visible->n_beside; k++) {
+        find_boxes(&visible->beside[k], false, sine, &other);
+        join_boxes(&g, &other);
+    }
+    profile->n = profile->n_samples = 0;
+    for (int k = 0; k < GLINT_PROFILE; k++)
+        add_angle(profile, sine[k], &g, k);
+}
+
+enum {
+    SCAN_DEG = 1,
+    BISECTIONS = 8,
+    /* steps of the scan by which a range of angles is widened at most, on each
+     * side, where only the ends of the band get through */
+    FARTHER = 4
+};
+
+/* Returns whether light gets through at one of the first N of these
+ * wavelengths, and its BOX. */
+static bool passes_in(const struct glint_visible *h, double sine, int n,
+                      struct glint_pupil *box)
+{
+    for (int k = 0; k < n; k++)
+        if (find_box(h, &h->position_path[glint_visible_colour[k]], sine, box))
+            return true;
+    return false;
+}
+
+static bool passes(const struct glint_visible *h, double sine, int n)
+{
+    struct glint_pupil box;
+
+    return passes_in(h, sine, n, &box);
+}
+
+/* Returns whether light of the middle of the band gets through; of shaped
+ * lenses, whose rays take long, looks where it did a step before first. BOX is
+ * that of the step before if INSIDE, and becomes this one's. */
+static bool still_passes(const struct glint_visible *h, double sine,
+                         bool inside, struct glint_pupil *box)
+{
+    if (h->shaped && inside) {
+        struct glint_pupil near = grown(box);
+
+        if (shrink(h, &h->position_path[glint_visible_colour[0]], sine, 24, 12,
+                   &near)) {
+            *box = near;
+            return true;
+        }
+    }
+    return passes_in(h, sine, 1, box);
+}
+
+/* Returns the last sine at which light of any of the three wavelengths gets
+ * through, from WITH, where it does in the middle of the band, towards WITHOUT,
+ * where it does not. */
+static double edge(const struct glint_visible *h, double with, double without)
+{
+    for (int k = 0; k < FARTHER && without > 0 && without < 1; k++) {
+        const double next = without + (without - with);
+
+        if (!passes(h, without, 3))
+            break;
+        with = without;
+        without = fmin(1, fmax(0, next));
+    }
+    for (int k = 0; k < BISECTIONS; k++) {
+        const double middle = 0.5 * (with + without);
+
+        if (passes(h, middle, 3))
+            with = middle;
+        else
+            without = middle;
+    }
+    return with;
+}
+
+/* Ends range N - 1 of N at HI. Returns how many ranges there are then: an empty
+ * range is dropped, and one that begins before the last one has ended is joined
+ * to that. */
+static int end_range(double (*range)[2], int n, double hi)
+{
+    double *last = range[n - 1];
+
+    last[1] = hi;
+    if (last[1] <= last[0])
+        return n - 1;
+    if (n == 1 || last[0] > range[n - 2][1])
+        return n;
+    range[n - 2][1] = last[1];
+    return n - 1;
+}
+
+static int ranges_of(const struct glint_visible *visible, double max_deg,
+                     double (*range)[2])
+{
+    const int steps = (int)ceil(max_deg / SCAN_DEG);
+    struct glint_pupil box;
+    double before = 0;
+    bool inside = false;
+    int n = 0;
+
+    for (int k = 0; k <= steps; k++) {
+        const double sine = glint_sin_deg(fmin(k * SCAN_DEG, max_deg));
+        const bool now = still_passes(visible, sine, inside, &box);
+
+        if (now && !inside && n == GLINT_MAX_RANGES)
+            break;
+        if (now && !inside)
+            range[n++][0] = k ? edge(visible, sine, before) : 0;
+        if (!now && inside)
+            n = end_range(range, n, edge(visible, before, sine));
+        inside = now;
+        before = sine;
+    }
+    return inside ? end_range(range, n, before) : n;
+}
+
+int glint_visible_add_range(double (*range)[2], int n, const double more[2])
+{
+    double lo = more[0], hi = more[1];
+    int kept = 0, at;
+
+    for (int k = 0; k < n; k++) {
+        const double from = range[k][0], to = range[k][1];
+
+        if (to < lo || from > hi) {
+            range[kept][0] = from;
+            range[kept++][1] = to;
+        } else {
+            lo = fmin(lo, from);
+            hi = fmax(hi, to);
+        }
+    }
+    if (kept == GLINT_MAX_RANGES)
+        return kept;
+    for (at = kept; at > 0 && range[at - 1][0] > lo; at--) {
+        range[at][0] = range[at - 1][0];
+        range[at][1] = range[at - 1][1];
+    }
+    range[at][0] = lo;
+    range[at][1] = hi;
+    return kept + 1;
+}
+
+int glint_visible_ranges(const struct glint_visible *visible, double max_deg,
+                         double (*range)[2])
+{
+    int n = ranges_of(visible, max_deg, range);
+
+    for (int k = 0; k < visible->n_beside; k++) {
+        double other[GLINT_MAX_RANGES][2];
+        const int n_other = ranges_of(&visible->beside[k], max_deg, other);
+
+        for (int i = 0; i < n_other; i++)
+            n = glint_visible_add_range(range, n, other[i]);
+    }
+    return n;
 }

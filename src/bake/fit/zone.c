@@ -241,3 +241,144 @@ void glint_zone_cut(struct glint_zone *zone, const struct glint_zone_part *part)
     narrow(zone->half_y, part->w0, part->w1);
     zone->annulus = part->annulus;
 }
+
+/* Sets X to place number K of a low-discrepancy sequence, -1 .. 1 in each
+ * variable, which fills four dimensions evenly: the fractional parts of 1/2 +
+ * (K + 1) / g, / g^2 .. / g^4, g being the root of x^5 = x + 1, spread over -1
+ * .. 1. */
+static void scatter_in_four(int k, double x[GLINT_VARIABLES])
+{
+    const double root = 1.16730397826141868426;
+    double step = 1;
+
+    for (int i = 0; i < GLINT_P; i++) {
+        step /= root;
+        x[i] = 2 * fmod(0.5 + (k + 1) * step, 1) - 1;
+    }
+    x[GLINT_P] = 0;
+}
+
+void glint_zone_scatter(const struct glint_zone *zone, int k,
+                        double x[GLINT_VARIABLES])
+{
+    const double root = 1.13472413840151949260;
+    double step = 1;
+
+    if (!zone->skew) {
+        scatter_in_four(k, x);
+        x[GLINT_V] = fabs(x[GLINT_V]);
+        return;
+    }
+    for (int i = 0; i < GLINT_VARIABLES; i++) {
+        step /= root;
+        x[i] = 2 * fmod(0.5 + (k + 1) * step, 1) - 1;
+    }
+}
+
+static void direction_of(const struct glint_zone *z,
+                         const double x[GLINT_VARIABLES], double d[3])
+{
+    d[0] = 0.5 * (z->lo + z->hi) + 0.5 * x[GLINT_S] * (z->hi - z->lo);
+    d[1] = z->skew ? 0.5 * (z->y_lo + z->y_hi) +
+                         0.5 * x[GLINT_P] * (z->y_hi - z->y_lo)
+                   : 0;
+    d[2] = sqrt(fmax(1e-6, 1 - d[0] * d[0] - d[1] * d[1]));
+}
+
+void glint_zone_batch_add(struct glint_zone_batch *batch,
+                          const struct glint_zone *zone,
+                          const double x[GLINT_VARIABLES])
+{
+    const double rim = glint_zone_rim(zone->annulus);
+    struct glint_launch *from = &batch->from[batch->n];
+
+    for (int k = 0; k < GLINT_VARIABLES; k++)
+        batch->x[batch->n][k] = x[k];
+    batch->x[batch->n][1] = rim + (1 - rim) * x[1];
+    from->x_mm = glint_zone_side(zone, zone->middle, x) +
+                 x[0] * glint_zone_side(zone, zone->half_x, x);
+    from->y_mm = batch->x[batch->n][1] * glint_zone_side(zone, zone->half_y, x);
+    if (zone->skew)
+        from->y_mm += glint_zone_side(zone, zone->middle_y, x);
+    direction_of(zone, x, from->direction);
+    batch->n++;
+}
+
+void glint_zone_batch_trace(struct glint_zone_batch *batch)
+{
+    for (int k = 0; k < batch->n * batch->path->n_events; k++)
+        batch->hits[k][0] = batch->hits[k][1] = -1;
+    glint_trace_many(batch->path, batch->n, batch->from, batch->ray,
+                     batch->status, batch->hits);
+}
+
+/* Reduces *FROM .. *TO to LOW .. HIGH of it, where -1 .. 1 is the whole. */
+static void reduce(double low, double high, double *from, double *to)
+{
+    const double middle = 0.5 * (*from + *to), half = 0.5 * (*to - *from);
+
+    *from = middle + fmax(-1, low) * half;
+    *to = middle + fmin(1, high) * half;
+}
+
+/* Bounds of the visible rays in u, v, s and w. */
+struct sighting {
+    double low[GLINT_VARIABLES], high[GLINT_VARIABLES];
+};
+
+/* Traces T at wavelength WAVE of the ghost and of those beside it. */
+static void sight(const struct glint_visible *visible, int wave,
+                  struct glint_zone_batch *t, struct sighting *seen)
+{
+    for (int m = 0; m <= visible->n_beside; m++) {
+        const struct glint_visible *const h = glint_visible_member(visible, m);
+
+        t->path = &h->position_path[wave];
+        glint_zone_batch_trace(t);
+        for (int i = 0; i < t->n; i++)
+            if (t->status[i] == GLINT_RAY_OK &&
+                glint_visible_passes(h, &t->ray[i]))
+                for (int k = 0; k < GLINT_VARIABLES; k++) {
+                    seen->low[k] = fmin(seen->low[k], t->x[i][k]);
+                    seen->high[k] = fmax(seen->high[k], t->x[i][k]);
+                }
+    }
+}
+
+double glint_zone_crop(const struct glint_zone *zone,
+                       const struct glint_visible *visible,
+                       struct glint_zone_part *part)
+{
+    enum { ANGLES = 5, COLUMNS = GLINT_ZONE_BATCH, ROWS = 12 };
+    /* Rays of shaped lenses take long; few of their colours go apart. */
+    const int stride = visible->shaped ? (GLINT_VISIBLE_WAVES - 1) / 2 : 1;
+    const double margin = 3.0 / COLUMNS;
+    const struct glint_zone_part before = *part;
+    struct sighting seen = {{9, 9, 9, 9}, {-9, -9, -9, -9}};
+    struct glint_zone_batch t;
+
+    for (int k = 0; k < ANGLES * GLINT_VISIBLE_WAVES * (ROWS + 1); k++) {
+        const int row = k % (ROWS + 1), wave = k / (ROWS + 1) / ANGLES;
+
+        if (wave % stride)
+            continue;
+        for (t.n = 0; t.n < COLUMNS;) {
+            const double x[GLINT_VARIABLES] = {
+                2.0 * t.n / (COLUMNS - 1) - 1, (double)row / ROWS,
+                2.0 * (k / (ROWS + 1) % ANGLES) / (ANGLES - 1) - 1,
+                glint_zone_node(wave, GLINT_VISIBLE_WAVES)};
+
+            glint_zone_batch_add(&t, zone, x);
+        }
+        sight(visible, wave, &t, &seen);
+    }
+    if (seen.high[0] < seen.low[0])
+        return 0;
+    reduce(seen.low[0] - margin, seen.high[0] + margin, &part->u0, &part->u1);
+    reduce(seen.low[3] - 0.3, seen.high[3] + 0.3, &part->w0, &part->w1);
+    if (!part->annulus)
+        part->top *= fmin(1, seen.high[1] + 1.5 / ROWS);
+    return (part->u1 - part->u0) / (before.u1 - before.u0) *
+           (part->w1 - part->w0) / (before.w1 - before.w0) * part->top /
+           before.top;
+}
