@@ -8,32 +8,16 @@
 
 enum { ONE_Q30 = 1 << 30 };
 
-/* The pixels that a ball may touch: those of a box about it; all if that comes
- * too near to the camera. */
+/* The pixels that a ball may touch: those of a box about it. */
 static struct glint_box ball_box(const struct glint_scene *s,
                                  const int32_t seen[3], int32_t reach)
 {
-    const struct glint_box all = {0, 0, s->view.width, s->view.height};
-    int32_t lo[2] = {INT32_MAX, INT32_MAX}, hi[2] = {INT32_MIN, INT32_MIN};
+    int32_t v[8][3];
 
-    for (int k = 0; k < 8; k++) {
-        const int32_t v[3] = {seen[0] + (k & 1 ? reach : -reach),
-                              seen[1] + (k & 2 ? reach : -reach),
-                              seen[2] + (k & 4 ? reach : -reach)};
-        const struct glint_corner c = glint_view_corner(&s->view, v);
-
-        if (v[2] <= 0 || c.w != 1)
-            return all;
-        lo[0] = q_smaller(lo[0], c.x);
-        lo[1] = q_smaller(lo[1], c.y);
-        hi[0] = q_larger(hi[0], c.x);
-        hi[1] = q_larger(hi[1], c.y);
-    }
-    return glint_box_cut(
-        all, (struct glint_box){((lo[0] + 128 * (all.x1 - 1)) >> 8) - 1,
-                                ((lo[1] + 128 * (all.y1 - 1)) >> 8) - 1,
-                                ((hi[0] + 128 * (all.x1 - 1)) >> 8) + 2,
-                                ((hi[1] + 128 * (all.y1 - 1)) >> 8) + 2});
+    for (int k = 0; k < 8; k++)
+        for (int i = 0; i < 3; i++)
+            v[k][i] = seen[i] + (k >> i & 1 ? reach : -reach);
+    return glint_view_box(&s->view, (const int32_t(*)[3])v, 8);
 }
 
 /* How far apart rays of one pixel are at the far side of a ball: a little more

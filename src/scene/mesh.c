@@ -11,8 +11,318 @@
  * edge's own direction, which two neighbours see the other way round. */
 #include "scene/mesh.h"
 
-#include "scene/visible.h"
+#include "base/compiler.h"
+#include "base/divide.h"
+#include "base/log2.h"
 #include "scene/parts.h"
+#include "scene/visible.h"
+
+/* --------------------------------------------------------------------- rays */
+
+/* Rays through a mesh's grid, in the mesh's own space.
+ *
+ * A ray starts where it comes near the mesh, so that what is subtracted stays
+ * below 2^29, and goes from cell to cell by comparing products: which side of
+ * the cell it leaves first, dx / |d.x| < dy / |d.y|, takes no division. Lists
+ * hold triangles 16 steps beyond their cells, so that rounding of the start
+ * loses none. */
+
+/* A ray in a mesh's space. */
+struct inside {
+    const struct glint_scene *scene;
+    const struct glint_scene_mesh *mesh;
+    struct glint_scene_ray ray;
+    struct glint_sheared sheared;
+    int32_t start; /* how far along the ray in space it begins */
+    uint32_t but;  /* triangle that is not asked */
+};
+
+/* Turns RAY into the space of OBJECT; T from where on. */
+static int enter(const struct glint_scene *s, uint32_t object,
+                 const struct glint_scene_ray *ray, int32_t t,
+                 struct inside *in)
+{
+    const struct glint_placed *p = &s->placed[object];
+    int32_t place[3], off[3];
+
+    in->scene = s;
+    in->mesh = glint_mesh_of(s, object);
+    in->start = t;
+    if (!glint_ray_go(ray, t, place))
+        return 0;
+    v3_minus(place, p->at, off);
+    v3_turn_back(&p->turn, off, in->ray.at);
+    v3_turn_back(&p->turn, ray->toward_q30, in->ray.toward_q30);
+    glint_shear(&in->ray, &in->sheared);
+    return 1;
+}
+
+/* --------------------------------------------------------------------- grid */
+
+/* Where a ray is in the grid. */
+struct walk {
+    int32_t cell[3], step[3];
+    int64_t away[3];  /* steps to the side of the cell that it leaves by */
+    int64_t speed[3]; /* |direction|, q30 */
+};
+
+/* Sets up a walk from where the ray enters the grid; returns 0 if it does not.
+ * A start that rounding has put beside the grid counts as in the cell next to
+ * it. */
+static int begin(struct inside *in, struct walk *w)
+{
+    enum { SLACK = GLINT_SCENE_MARGIN / 2 };
+    const struct glint_scene_mesh *m = in->mesh;
+    const int32_t *d_q30 = in->ray.toward_q30;
+    int32_t t = 0, at[3];
+
+    for (int k = 0; k < 3; k++) {
+        const int64_t far =
+            m->origin[k] + ((int64_t)m->cells[k] << m->cell_log2);
+        const int64_t below = m->origin[k] - (int64_t)in->ray.at[k];
+        const int64_t above = in->ray.at[k] - far;
+        const int64_t off = below > 0 ? below : above;
+
+        w->speed[k] = (int64_t)q_magnitude(d_q30[k]);
+        if (off <= 0)
+            continue;
+        if (below > 0 ? d_q30[k] <= 0 : d_q30[k] >= 0)
+            return 0;
+        t = q_larger(t,
+                     glint_ratio((uint64_t)off << 30, (uint64_t)w->speed[k]));
+    }
+    if (t == GLINT_FAR || !glint_ray_go(&in->ray, t, at))
+        return 0;
+    for (int k = 0; k < 3; k++) {
+        const int64_t from = at[k] - (int64_t)m->origin[k];
+        const int64_t length = (int64_t)m->cells[k] << m->cell_log2;
+
+        if (from < -SLACK || from > length + SLACK)
+            return 0;
+        w->cell[k] =
+            q_clamp_sat(from >> m->cell_log2, 0, (int32_t)m->cells[k] - 1);
+        w->step[k] = d_q30[k] < 0 ? -1 : 1;
+        w->away[k] = d_q30[k] < 0
+                         ? from - ((int64_t)w->cell[k] << m->cell_log2)
+                         : (((int64_t)w->cell[k] + 1) << m->cell_log2) - from;
+    }
+    in->start += t;
+    for (int k = 0; k < 3; k++)
+        in->ray.at[k] = in->sheared.at[k] = at[k];
+    return 1;
+}
+
+/* Goes on to the next cell. Returns 0 where the grid ends, or nothing nearer
+ * than LIMIT, counted from where the walk began, can follow. */
+static int go_on(const struct inside *in, struct walk *w, int64_t limit)
+{
+    const struct glint_scene_mesh *m = in->mesh;
+    int next = 0;
+
+    for (int k = 1; k < 3; k++) /* the fastest is not 0 */
+        next = w->speed[k] > w->speed[next] ? k : next;
+    for (int k = 0; k < 3; k++)
+        if (w->away[k] * w->speed[next] < w->away[next] * w->speed[k])
+            next = k;
+    /* away / speed > limit; away is below 2^30, and so are the others; it may
+     * be a few steps below 0 */
+    if (w->away[next] * (INT64_C(1) << 30) > limit * w->speed[next])
+        return 0;
+    w->away[next] += INT64_C(1) << m->cell_log2;
+    w->cell[next] += w->step[next];
+    return w->cell[next] >= 0 && w->cell[next] < (int32_t)m->cells[next];
+}
+
+/* Asks the triangles of the cell; sets MET to the nearest within MET->t. */
+static int ask(const struct inside *in, const struct walk *w,
+               struct glint_met *met)
+{
+    const struct glint_scene_mesh *m = in->mesh;
+    const size_t cell =
+        (size_t)((uint32_t)w->cell[2] * m->cells[1] + (uint32_t)w->cell[1]) *
+            m->cells[0] +
+        (uint32_t)w->cell[0];
+    const uint32_t *start = glint_mesh_table(in->scene, m->start_at);
+    const uint32_t *ref = glint_mesh_table(in->scene, m->ref_at);
+    int any = 0;
+
+    for (uint32_t i = start[cell]; i < start[cell + 1]; i++) {
+        const int32_t *vertex[3];
+        struct glint_spot_on spot;
+
+        if (ref[i] == in->but)
+            continue;
+        glint_mesh_vertices(in->scene, m, ref[i], vertex);
+        if (!glint_ray_triangle(&in->sheared, vertex, &spot) ||
+            (int64_t)spot.t + in->start >= met->t)
+            continue;
+        met->t = spot.t + in->start;
+        met->triangle = ref[i];
+        met->spot = spot;
+        any = 1;
+    }
+    return any;
+}
+
+static int meet(const struct glint_scene *scene, uint32_t object,
+                uint32_t but_triangle, const struct glint_scene_ray *ray,
+                int any, struct glint_met *met)
+{
+    const struct glint_placed *p = &scene->placed[object];
+    struct glint_chord chord;
+    struct inside in = {.but = but_triangle};
+    struct walk w;
+    int found = 0;
+
+    met->object = object;
+    if (!glint_ray_sphere(ray, p->centre, p->reach, &chord) ||
+        chord.t[1] <= 0 || chord.t[0] >= met->t ||
+        !enter(scene, object, ray, q_larger(0, chord.t[0]), &in) ||
+        !begin(&in, &w))
+        return 0;
+    do {
+        found |= ask(&in, &w, met);
+    } while (!(found && any) && go_on(&in, &w, (int64_t)met->t - in.start));
+    return found;
+}
+
+/* Vertices are in camera coordinates once a frame. */
+static int hold(const struct glint_scene *scene, uint32_t object,
+                uint32_t triangle, const int32_t seen_q30[3],
+                struct glint_met *met)
+{
+    const struct glint_scene_triangle *t =
+        glint_mesh_triangle(scene, glint_mesh_of(scene, object), triangle);
+    struct glint_scene_ray ray = {.at = {0}};
+    struct glint_sheared sheared;
+    const int32_t *vertex[3];
+
+    for (int k = 0; k < 3; k++) {
+        ray.toward_q30[k] = seen_q30[k];
+        vertex[k] =
+            scene->seen[scene->placed[object].first_vertex + t->vertex[k]];
+    }
+    glint_shear(&ray, &sheared);
+    if (!glint_ray_hold(&sheared, vertex, &met->spot))
+        return 0;
+    met->object = object;
+    met->triangle = triangle;
+    met->t = q_clamp_sat(met->spot.t, 1, GLINT_FAR - 1);
+    return 1;
+}
+
+/* ----------------------------------------------------------------- surfaces */
+
+/* Returns the mean of three rows of N numbers by weights that sum to 1. */
+static void mean(const struct glint_spot_on *spot, const int32_t *const row[3],
+                 int n, int32_t *to)
+{
+    for (int k = 0; k < n; k++) {
+        int64_t sum = 0;
+
+        for (int i = 0; i < 3; i++)
+            sum += (int64_t)spot->part_q30[i] * row[i][k];
+        to[k] = q_narrow(q_shift(sum, 30));
+    }
+}
+
+static void rows_of(const struct glint_scene *s,
+                    const struct glint_scene_triangle *t, uint32_t at, int n,
+                    const int32_t *row[3])
+{
+    for (int k = 0; k < 3; k++)
+        row[k] =
+            (const int32_t *)glint_mesh_table(s, at) + (size_t)n * t->vertex[k];
+}
+
+/* Returns log2 of the length of V, q16, -2^24 if it is 0. */
+static int32_t log2_length_q16(const int64_t v[3])
+{
+    const uint64_t any =
+        q_magnitude(v[0]) | q_magnitude(v[1]) | q_magnitude(v[2]);
+    const int down = q_larger(0, bit_length(any) - 31);
+    uint64_t square = 0;
+
+    for (int k = 0; k < 3; k++)
+        square += (uint64_t)((v[k] >> down) * (v[k] >> down));
+    return square ? q_log2_q16(square) / 2 + down * 65536 : -(1 << 24);
+}
+
+/* Sets u, v, and how large the triangle is in them. */
+static void map(const struct glint_scene *s, const struct glint_scene_mesh *m,
+                const struct glint_scene_triangle *t,
+                const int32_t *const vertex[3], const struct glint_met *met,
+                struct glint_met_surface *surface)
+{
+    const int32_t *uv_q16[3];
+    int32_t first[3] = {0}, second[3] = {0}, uv[2][3] = {{0}};
+    int64_t area[3], uv_area[3];
+
+    rows_of(s, t, m->uv_at, 2, uv_q16);
+    mean(&met->spot, uv_q16, 2, surface->uv_q16);
+    v3_minus(vertex[1], vertex[0], first);
+    v3_minus(vertex[2], vertex[0], second);
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < 2; i++)
+            uv[i][k] = uv_q16[i + 1][k] - uv_q16[0][k];
+    v3_cross(first, second, area);
+    v3_cross(uv[0], uv[1], uv_area);
+    surface->uv_log2_q16 =
+        log2_length_q16(uv_area) - (32 << 16) - log2_length_q16(area);
+}
+
+static int surface_of(const struct glint_scene *scene,
+                      const struct glint_met *met,
+                      struct glint_met_surface *surface)
+{
+    const struct glint_placed *p = &scene->placed[met->object];
+    const struct glint_scene_mesh *m = glint_mesh_of(scene, met->object);
+    const struct glint_scene_triangle *t =
+        glint_mesh_triangle(scene, m, met->triangle);
+    const int32_t *vertex[3], *row[3];
+    int32_t place[3], normal_q30[3];
+
+    glint_mesh_vertices(scene, m, met->triangle, vertex);
+    mean(&met->spot, vertex, 3, place);
+    v3_turn(&p->turn, place, surface->place);
+    for (int k = 0; k < 3; k++)
+        surface->place[k] += p->at[k];
+    if (!glint_triangle_normal(vertex, normal_q30))
+        return 0;
+    v3_turn(&p->turn, normal_q30, surface->face_q30);
+    if (m->normal_at) {
+        int64_t sum[3];
+
+        rows_of(scene, t, m->normal_at, 3, row);
+        mean(&met->spot, row, 3, normal_q30);
+        for (int k = 0; k < 3; k++)
+            sum[k] = normal_q30[k];
+        if (!glint_unit(sum, normal_q30))
+            return 0;
+    }
+    v3_turn(&p->turn, normal_q30, surface->normal_q30);
+    if (t->material != GLINT_SCENE_NONE)
+        surface->material = &scene->model.material[t->material];
+    if (m->uv_at &&
+        (surface->material->texture != GLINT_SCENE_NONE || p->skin >= 0))
+        map(scene, m, t, vertex, met, surface);
+    return 1;
+}
+
+static int joins(const struct glint_scene *scene, uint32_t a, uint32_t b)
+{
+    const struct glint_scene_mesh *m = glint_mesh_of(scene, a >> 20);
+    const struct glint_scene_triangle *t =
+        glint_mesh_triangle(scene, m, a & 0xfffff);
+    const struct glint_scene_triangle *u =
+        glint_mesh_triangle(scene, m, b & 0xfffff);
+    int shared = 0;
+
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            shared |= t->vertex[i] == u->vertex[k];
+    return shared && m->normal_at && t->material == u->material;
+}
 
 /* ------------------------------------------------------------------ corners */
 
@@ -377,5 +687,5 @@ static void look_at_triangle(struct glint_scene_worker *w, uint32_t id)
 }
 
 const struct glint_scene_meshes glint_scene_meshes = {
-    project_meshes,     look_at_triangle, glint_mesh_meet,      glint_mesh_hold,
-    glint_mesh_surface, glint_mesh_joins, glint_quick_mesh_find};
+    project_meshes, look_at_triangle,     meet, hold, surface_of,
+    joins,          glint_quick_mesh_find};

@@ -39,24 +39,10 @@ static inline void glint_mesh_vertices(const struct glint_scene *s,
         at[k] = vertex + 3 * (size_t)t->vertex[k];
 }
 
-/* mesh_ray.c: rays through the grid */
-int glint_mesh_meet(const struct glint_scene *scene, uint32_t object,
-                    uint32_t but_triangle, const struct glint_scene_ray *ray,
-                    int any, struct glint_met *met);
-int glint_mesh_hold(const struct glint_scene *scene, uint32_t object,
-                    uint32_t triangle, const int32_t seen_q30[3],
-                    struct glint_met *met);
-
-/* mesh_surface.c */
-int glint_mesh_surface(const struct glint_scene *scene,
-                       const struct glint_met *met,
-                       struct glint_met_surface *surface);
 /* quick_mesh.c */
 int glint_quick_mesh_find(struct glint_scene_worker *w, uint32_t id,
                           int32_t x_q8, int32_t y_q8,
                           struct glint_met_surface *surface);
-
-int glint_mesh_joins(const struct glint_scene *scene, uint32_t a, uint32_t b);
 
 /* The line through two corners: at place (x, y) it is across x + down y + at,
  * above 0 on one side. */

@@ -39,6 +39,8 @@ static inline int32_t across_q8(const struct glint_shadow *shadow, int64_t x,
                        INT16_MIN, INT16_MAX);
 }
 
+/* --------------------------------------------------------------------- grid */
+
 static int throws(const struct glint_placed *p)
 {
     return p->is_shown && p->object->kind != GLINT_OBJECT_PLANE;
@@ -363,6 +365,8 @@ void glint_shadow_prepare(const struct glint_scene *s,
     mark_open(s, shadow);
 }
 
+/* -------------------------------------------------------------------- boxes */
+
 /* Finds the place of plane P that the sun sees at (U, V); returns 0 if it is
  * out of the grid's reach. */
 static int plane_place(const struct glint_shadow *shadow,
@@ -390,32 +394,19 @@ struct glint_box glint_shadow_box(const struct glint_scene *s,
                                   const struct glint_shadow *shadow,
                                   const struct glint_placed *p)
 {
-    const struct glint_box all = {0, 0, s->view.width, s->view.height};
-    int32_t lo[2] = {INT32_MAX, INT32_MAX}, hi[2] = {INT32_MIN, INT32_MIN};
+    int32_t seen[4][3];
 
     if (shadow->is_empty)
         return (struct glint_box){0, 0, 0, 0};
     for (int k = 0; k < 4; k++) {
-        int32_t place[3], seen[3];
-        struct glint_corner c;
+        int32_t place[3];
 
         if (!plane_place(shadow, p, k & 1 ? shadow->lo[0] : shadow->hi[0],
                          k & 2 ? shadow->lo[1] : shadow->hi[1], place))
-            return all;
-        glint_view_seen(&s->view, place, seen);
-        c = glint_view_corner(&s->view, seen);
-        if (seen[2] <= 0 || c.w != 1)
-            return all;
-        lo[0] = q_smaller(lo[0], c.x);
-        lo[1] = q_smaller(lo[1], c.y);
-        hi[0] = q_larger(hi[0], c.x);
-        hi[1] = q_larger(hi[1], c.y);
+            return (struct glint_box){0, 0, s->view.width, s->view.height};
+        glint_view_seen(&s->view, place, seen[k]);
     }
-    return glint_box_cut(
-        all, (struct glint_box){((lo[0] + 128 * (all.x1 - 1)) >> 8) - 1,
-                                ((lo[1] + 128 * (all.y1 - 1)) >> 8) - 1,
-                                ((hi[0] + 128 * (all.x1 - 1)) >> 8) + 2,
-                                ((hi[1] + 128 * (all.y1 - 1)) >> 8) + 2});
+    return glint_view_box(&s->view, (const int32_t(*)[3])seen, 4);
 }
 
 /* in place of a cell: nothing is above; the grid does not answer */

@@ -140,6 +140,29 @@ struct glint_corner glint_view_corner(const struct glint_scene_view *view,
     return fits ? c : direction(view, v);
 }
 
+struct glint_box glint_view_box(const struct glint_scene_view *view,
+                                const int32_t (*v)[3], int n)
+{
+    const struct glint_box all = {0, 0, view->width, view->height};
+    int32_t lo[2] = {INT32_MAX, INT32_MAX}, hi[2] = {INT32_MIN, INT32_MIN};
+
+    for (int k = 0; k < n; k++) {
+        const struct glint_corner c = glint_view_corner(view, v[k]);
+
+        if (v[k][2] <= 0 || c.w != 1)
+            return all;
+        lo[0] = q_smaller(lo[0], c.x);
+        lo[1] = q_smaller(lo[1], c.y);
+        hi[0] = q_larger(hi[0], c.x);
+        hi[1] = q_larger(hi[1], c.y);
+    }
+    return glint_box_cut(
+        all, (struct glint_box){((lo[0] + 128 * (all.x1 - 1)) >> 8) - 1,
+                                ((lo[1] + 128 * (all.y1 - 1)) >> 8) - 1,
+                                ((hi[0] + 128 * (all.x1 - 1)) >> 8) + 2,
+                                ((hi[1] + 128 * (all.y1 - 1)) >> 8) + 2});
+}
+
 /* ------------------------------------------------------------------ depths */
 
 /* 1 / z = (n . r) / (n . v) for the ray r = (x step, -y step, 1). Coefficients

@@ -11,6 +11,7 @@
 
 #include "glint/scene/model.h"
 #include "scene/ray.h"
+#include "tile/box.h"
 
 struct glint_scene_view {
     int32_t at[3];
@@ -58,6 +59,11 @@ void glint_view_seen(const struct glint_scene_view *view,
 /* Returns where camera coordinates V are in the picture. */
 struct glint_corner glint_view_corner(const struct glint_scene_view *view,
                                       const int32_t v[3]);
+
+/* Returns the pixels that the N places V may touch together, each in camera
+ * coordinates; all if one is too near or behind. */
+struct glint_box glint_view_box(const struct glint_scene_view *view,
+                                const int32_t (*v)[3], int n);
 
 /* Sets DEPTH to that of the plane of NORMAL_Q30 through V, both in camera
  * coordinates; returns 0 if the camera is in it. NEAREST is the least z. */

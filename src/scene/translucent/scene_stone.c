@@ -2,16 +2,470 @@
  *
  * The maps of translucent things: memory, what is to be done in a frame, and
  * what a place shows. */
-#include "scene/translucent/scene_stone.h"
-
 #include "base/compiler.h"
+#include "base/divide.h"
+#include "scene/mesh.h"
 #include "scene/parts.h"
+#include "scene/state.h"
+#include "scene/translucent/spread.h"
+
+enum {
+    GLINT_BLOCK_WIDTH = GLINT_STRIP,
+    GLINT_BLOCK_HEIGHT = 16,
+    /* Blocks */
+    GLINT_BLOCK_SEEN = 1,  /* may be seen in this frame */
+    GLINT_BLOCK_LIT = 2,   /* has its light */
+    GLINT_BLOCK_READY = 4, /* light has spread */
+    GLINT_BLOCK_WANTED = 8 /* is to be lit, or spread, now */
+};
+
+/* The map of an object. */
+struct glint_stone_skin {
+    const struct glint_scene_skin *of;
+    uint32_t material;
+    int fresnel;
+    int32_t most_coat_q15; /* of what its coat mirrors straight ahead, where it
+                              mirrors all; 0: there is no coat */
+    struct glint_translucent stone;
+    struct glint_spread spread;
+    const uint32_t *triangle;     /* mesh: [height][width] */
+    const int32_t (*turn_q30)[2]; /* ball: of columns, then of rows */
+    int across, down;             /* blocks */
+    uint8_t *block;               /* [down][across] */
+    uint16_t *list;               /* [down][across] blocks to be lit */
+    int n_list;
+    int shift;      /* light, q15, is that of the map times 2^shift */
+    int is_lit;     /* has been once */
+    uint32_t moved; /* what the scene had when it was */
+};
+
+struct glint_stone_state {
+    struct glint_stone_skin *skin;        /* [n_skins] */
+    struct glint_spread_scratch *scratch; /* [workers] */
+    int32_t around_q15; /* no surface has more from the environment */
+};
+
+/* Returns the share of light that passes the surface at a cosine, q15. */
+static inline int32_t glint_stone_passes(const struct glint_stone_skin *skin,
+                                         int32_t cosine_q30)
+{
+    enum { LOW = 23 }; /* 2^30 over GLINT_TRANSLUCENT_COSINES */
+    const int32_t c_q30 = q_smaller(cosine_q30, 1 << 30);
+    const uint16_t *at_q15;
+    int i;
+
+    if (!skin->fresnel)
+        return 1 << 15;
+    if (c_q30 <= 0)
+        return 0;
+    i = q_smaller(c_q30 >> LOW, GLINT_TRANSLUCENT_COSINES - 1);
+    at_q15 = skin->stone.transmit_q15 + i;
+    return at_q15[0] + q_mul(at_q15[1] - at_q15[0], c_q30 - (i << LOW), LOW);
+}
 
 enum {
     CHANNELS = 3,
+    ONE_Q30 = 1 << 30,
+    MOST_VALUE = 32767,
     BLOCK_TEXELS = GLINT_BLOCK_WIDTH * GLINT_BLOCK_HEIGHT,
     ONE_Q15 = GLINT_SCENE_ONE_Q15
 };
+
+/* --------------------------------------------------------------------- seen */
+
+static void see_all(struct glint_stone_skin *skin)
+{
+    for (int i = 0; i < skin->across * skin->down; i++)
+        skin->block[i] |= GLINT_BLOCK_SEEN;
+}
+
+/* --------------------------------------------------------------------- balls
+ */
+
+/* A quarter of a block of a ball's map reaches 12.6 degrees from its middle
+ * where that is 256 wide, 25.2 where it is 128, and in both a texel more. */
+struct reach {
+    int32_t cosine_q30, sine_q30;
+};
+
+static struct reach reach_of(const struct glint_stone_skin *skin)
+{
+    const struct reach wide = {Q_CONST(.88, 30), Q_CONST(.475, 30)};
+    const struct reach less = {Q_CONST(.97, 30), Q_CONST(.244, 30)};
+
+    return skin->spread.width < 256 ? wide : less;
+}
+
+/* Returns whether the texel at (X, Y) of ball P has a cosine above LIMIT to the
+ * camera. */
+static int faces(const struct glint_placed *p,
+                 const struct glint_stone_skin *skin, int x, int y,
+                 const int32_t toward_q30[3], int32_t limit_q30)
+{
+    const int32_t *round_q30 = skin->turn_q30[x];
+    const int32_t *down_q30 = skin->turn_q30[skin->spread.width + y];
+    const int32_t n_q30[3] = {q_mul(round_q30[1], down_q30[1], 30), down_q30[0],
+                              -q_mul(round_q30[0], down_q30[1], 30)};
+    int32_t turned_q30[3];
+
+    v3_turn(&p->turn, n_q30, turned_q30);
+    return v3_cosine_q30(turned_q30, toward_q30) > limit_q30;
+}
+
+/* Sees the blocks of which a place faces the camera: n.d > R / D, of a unit
+ * vector d to the camera, D away. Seen from within all are. */
+static void see_ball(const struct glint_scene *s, const struct glint_placed *p,
+                     struct glint_stone_skin *skin)
+{
+    const struct reach reach = reach_of(skin);
+    int32_t off[3], toward_q30[3], limit_q30;
+    int64_t wide[3];
+    uint32_t away;
+
+    v3_minus(s->view.at, p->at, off);
+    away = glint_root((uint64_t)v3_dot(off, off));
+    for (int k = 0; k < 3; k++)
+        wide[k] = off[k];
+    if (skin->spread.width < 128 || away <= (uint32_t)p->radius ||
+        !glint_unit(wide, toward_q30)) {
+        see_all(skin);
+        return;
+    }
+    limit_q30 =
+        q_mul(q_part_q30((uint64_t)p->radius, away), reach.cosine_q30, 30) -
+        reach.sine_q30 - (1 << 20);
+    for (int i = 0; i < skin->across * skin->down; i++)
+        for (int k = 0; k < 4; k++)
+            if (faces(p, skin,
+                      i % skin->across * GLINT_BLOCK_WIDTH +
+                          (k & 1 ? 3 : 1) * GLINT_BLOCK_WIDTH / 4,
+                      i / skin->across * GLINT_BLOCK_HEIGHT +
+                          (k & 2 ? 3 : 1) * GLINT_BLOCK_HEIGHT / 4,
+                      toward_q30, limit_q30))
+                skin->block[i] |= GLINT_BLOCK_SEEN;
+}
+
+/* -------------------------------------------------------------------- meshes
+ */
+
+/* Returns whether triangle T may be seen: it reaches into the picture, and does
+ * not show its back. */
+static int is_seen(const struct glint_scene *s, const struct glint_placed *p,
+                   const struct glint_stone_skin *skin,
+                   const struct glint_scene_triangle *t)
+{
+    const struct glint_box all = {-128 * s->view.width, -128 * s->view.height,
+                                  128 * s->view.width, 128 * s->view.height};
+    int32_t lo[2] = {INT32_MAX, INT32_MAX}, hi[2] = {INT32_MIN, INT32_MIN};
+    const struct glint_corner *c[3];
+    int64_t area;
+
+    for (int k = 0; k < 3; k++) {
+        c[k] = &s->corner[p->first_vertex + t->vertex[k]];
+        if (c[k]->w != 1)
+            return 1;
+        lo[0] = q_smaller(lo[0], c[k]->x);
+        lo[1] = q_smaller(lo[1], c[k]->y);
+        hi[0] = q_larger(hi[0], c[k]->x);
+        hi[1] = q_larger(hi[1], c[k]->y);
+    }
+    area = ((int64_t)c[1]->x - c[0]->x) * ((int64_t)c[2]->y - c[0]->y) -
+           ((int64_t)c[1]->y - c[0]->y) * ((int64_t)c[2]->x - c[0]->x);
+    return (area >= 0 || !skin->of->closed) && hi[0] >= all.x0 - 512 &&
+           lo[0] <= all.x1 + 512 && hi[1] >= all.y0 - 512 &&
+           lo[1] <= all.y1 + 512;
+}
+
+/* Sees the blocks that the triangle of UV touches, and a texel more. */
+static void see_uv(struct glint_stone_skin *skin,
+                   const int32_t *const uv_q16[3])
+{
+    const int size_log2[2] = {bit_length(GLINT_BLOCK_WIDTH) - 1,
+                              bit_length(GLINT_BLOCK_HEIGHT) - 1};
+    const int n[2] = {skin->across, skin->down};
+    const int log2 = (int)skin->stone.header->side_log2;
+    int lo[2], hi[2];
+
+    for (int i = 0; i < 2; i++) {
+        const int32_t a = uv_q16[0][i], b = uv_q16[1][i], c = uv_q16[2][i];
+        const int64_t least = q_smaller(a, q_smaller(b, c));
+        const int64_t most = q_larger(a, q_larger(b, c));
+
+        lo[i] = q_clamp_sat(((least << log2 >> 16) - 1) >> size_log2[i], 0,
+                            n[i] - 1);
+        hi[i] = q_clamp_sat(((most << log2 >> 16) + 1) >> size_log2[i], 0,
+                            n[i] - 1);
+    }
+    for (int y = lo[1]; y <= hi[1]; y++)
+        for (int x = lo[0]; x <= hi[0]; x++)
+            skin->block[y * skin->across + x] |= GLINT_BLOCK_SEEN;
+}
+
+static void see_mesh(const struct glint_scene *s, const struct glint_placed *p,
+                     struct glint_stone_skin *skin)
+{
+    const struct glint_scene_mesh *m = glint_mesh_of(s, skin->of->object);
+    const int32_t *uv_q16 = glint_mesh_table(s, m->uv_at);
+
+    for (uint32_t i = 0; i < m->n_triangles; i++) {
+        const struct glint_scene_triangle *t = glint_mesh_triangle(s, m, i);
+        const int32_t *corner_q16[3];
+
+        if (!is_seen(s, p, skin, t))
+            continue;
+        for (int k = 0; k < 3; k++)
+            corner_q16[k] = uv_q16 + 2 * (size_t)t->vertex[k];
+        see_uv(skin, corner_q16);
+    }
+}
+
+/* Marks the blocks of SKIN that may be seen: more of them cost time, fewer
+ * would show as black. */
+static void see(const struct glint_scene *scene, struct glint_stone_skin *skin)
+{
+    const struct glint_placed *p = &scene->placed[skin->of->object];
+
+    for (int i = 0; i < skin->across * skin->down; i++)
+        skin->block[i] &= (uint8_t)~GLINT_BLOCK_SEEN;
+    if (scene->has_split) /* mirrors show what the camera does not see */
+        see_all(skin);
+    else if (!p->is_seen)
+        return;
+    else if (skin->spread.is_ball)
+        see_ball(scene, p, skin);
+    else
+        see_mesh(scene, p, skin);
+}
+
+/* ------------------------------------------------------------------- around */
+
+/* Adds to RGB_Q15 what the environment shows a white surface of NORMAL_Q30. */
+static void add_around(const struct glint_scene *s, const int32_t normal_q30[3],
+                       int32_t weight_q15, int32_t rgb_q15[3])
+{
+    static const int32_t white_q15[3] = {1 << 15, 1 << 15, 1 << 15};
+    static const struct glint_scene_material even = {.diffuse_q15 = 1 << 15};
+    const struct glint_scene_ray ray = {.at = {0}};
+    struct glint_met_surface surface = {.material = &even};
+
+    for (int k = 0; k < 3; k++)
+        surface.normal_q30[k] = normal_q30[k];
+    s->cfg.parts.wards->reflect(s, &ray, &surface, NULL, white_q15, weight_q15,
+                                rgb_q15);
+}
+
+/* Normals over the faces of a cube; between them irradiance is below an eighth
+ * more. */
+static int32_t most_around(const struct glint_scene *scene)
+{
+    enum { STEPS = 8 };
+    int32_t most = 0;
+
+    if (!scene->wards)
+        return 0;
+    for (int i = 0; i < 6 * STEPS * STEPS; i++) {
+        const int face = i / (STEPS * STEPS), axis = face / 2;
+        int64_t to[3];
+        int32_t n_q30[3], rgb_q15[3] = {0, 0, 0};
+
+        to[axis] = face & 1 ? -STEPS : STEPS;
+        to[(axis + 1) % 3] = 2 * (i % STEPS) + 1 - STEPS;
+        to[(axis + 2) % 3] = 2 * (i / STEPS % STEPS) + 1 - STEPS;
+        glint_unit(to, n_q30);
+        add_around(scene, n_q30, 1 << 15, rgb_q15);
+        for (int c = 0; c < CHANNELS; c++)
+            most = q_larger(most, rgb_q15[c]);
+    }
+    return q_clamp_sat((int64_t)most + most / 8, 0, GLINT_SCENE_MOST_LIGHT);
+}
+
+/* ----------------------------------------------------------------- exposure */
+
+/* Returns the most that LIT makes of a white surface on object P: of a lamp at
+ * the nearest place, but a sixteenth of the object's size away at least. */
+static int32_t most_of(const struct glint_scene *s, const struct glint_lit *lit,
+                       const struct glint_placed *p)
+{
+    int32_t toward_q30[3] = {0}, level_q15[3] = {0}, place[3], off[3];
+    int64_t away;
+
+    v3_minus(lit->at, p->centre, off);
+    away = (int64_t)glint_root((uint64_t)v3_dot(off, off)) - p->reach;
+    away = away > p->reach / 16 + 1 ? away : p->reach / 16 + 1;
+    for (int k = 0; k < 3; k++)
+        place[k] = lit->at[k];
+    place[0] -= q_clamp_sat(away, 1, (1 << 29) - 1);
+    glint_scene_light_at(s, lit, place, toward_q30, level_q15);
+    return q_larger(level_q15[0], q_larger(level_q15[1], level_q15[2]));
+}
+
+/* Sets the shift of SKIN by the most light that may fall on it. */
+static void expose(const struct glint_scene *scene,
+                   struct glint_stone_skin *skin)
+{
+    const struct glint_placed *p = &scene->placed[skin->of->object];
+    int64_t most = scene->stones->around_q15;
+
+    for (uint32_t i = 0; i < scene->n_lit; i++)
+        most += most_of(scene, &scene->lit[i], p);
+    skin->shift = 0;
+    while (most >> skin->shift > MOST_VALUE && skin->shift < 15)
+        skin->shift++;
+}
+
+/* ------------------------------------------------------------------ surfaces
+ */
+
+/* Sets SURFACE to texel (X, Y) of a ball. */
+static void ball_surface(const struct glint_scene *s,
+                         const struct glint_stone_skin *skin, int x, int y,
+                         struct glint_met_surface *surface)
+{
+    const struct glint_placed *p = &s->placed[skin->of->object];
+    const int32_t *round_q30 = skin->turn_q30[x];
+    const int32_t *down_q30 = skin->turn_q30[skin->spread.width + y];
+    const int32_t n_q30[3] = {q_mul(round_q30[1], down_q30[1], 30), down_q30[0],
+                              -q_mul(round_q30[0], down_q30[1], 30)};
+
+    v3_turn(&p->turn, n_q30, surface->normal_q30);
+    surface->triangle = 0;
+    for (int k = 0; k < 3; k++) {
+        surface->face_q30[k] = surface->normal_q30[k];
+        surface->place[k] =
+            p->at[k] + q_mul(surface->normal_q30[k], p->radius, 30);
+    }
+}
+
+/* Sets weights of the corners of the triangle of UV at texel (X, Y), held
+ * inside; returns 0 if it has no area. Elements of UV are within +-2^24. */
+static int weigh_texel(const int32_t *const uv_q16[3], int32_t u_q16,
+                       int32_t v_q16, int32_t part_q30[3])
+{
+    int64_t edge[3], sum = 0, all = 0;
+
+    for (int k = 0; k < 3; k++) {
+        const int32_t *a = uv_q16[(k + 1) % 3], *b = uv_q16[(k + 2) % 3];
+
+        edge[k] = ((int64_t)a[0] - u_q16) * ((int64_t)b[1] - v_q16) -
+                  ((int64_t)a[1] - v_q16) * ((int64_t)b[0] - u_q16);
+        all += edge[k];
+    }
+    for (int k = 0; k < 3; k++) {
+        edge[k] = all < 0 ? -edge[k] : edge[k];
+        edge[k] = edge[k] > 0 ? edge[k] : 0;
+        sum += edge[k];
+    }
+    if (all == 0 || sum == 0)
+        return 0;
+    glint_weigh(edge, sum, part_q30);
+    return 1;
+}
+
+/* The same of a mesh; returns 0 if the texel is none of it. */
+static int mesh_surface(const struct glint_scene *s,
+                        const struct glint_stone_skin *skin, int x, int y,
+                        struct glint_met_surface *surface)
+{
+    const struct glint_scene_object *o = s->placed[skin->of->object].object;
+    const struct glint_scene_mesh *m = &s->model.mesh[o->mesh];
+    const unsigned char *file = (const unsigned char *)s->model.header;
+    const struct glint_scene_triangle *t;
+    const int32_t *uv_q16[3];
+    struct glint_met met = {.object = skin->of->object, .t = 1};
+    const int down = 15 - (int)skin->stone.header->side_log2;
+
+    met.triangle = skin->triangle[y * skin->spread.width + x];
+    if (met.triangle == GLINT_SCENE_NONE)
+        return 0;
+    t = (const struct glint_scene_triangle *)(const void *)(file +
+                                                            m->triangle_at) +
+        met.triangle;
+    for (int k = 0; k < 3; k++)
+        uv_q16[k] = (const int32_t *)(const void *)(file + m->uv_at) +
+                    2 * (size_t)t->vertex[k];
+    if (!weigh_texel(uv_q16, (2 * x + 1) << down, (2 * y + 1) << down,
+                     met.spot.part_q30))
+        return 0;
+    return s->cfg.parts.meshes->surface(s, &met, surface);
+}
+
+/* -------------------------------------------------------------------- light */
+
+/* Adds to RGB_Q15 what of LIT gets in at SURFACE. */
+static void add_light(const struct glint_scene *s,
+                      const struct glint_stone_skin *skin,
+                      const struct glint_met_surface *surface,
+                      const struct glint_lit *lit, int32_t rgb_q15[3])
+{
+    int32_t toward_q30[3] = {0}, level_q15[3] = {0}, cosine_q30, share_q15;
+
+    if (!glint_scene_light_at(s, lit, surface->place, toward_q30, level_q15))
+        return;
+    cosine_q30 = v3_cosine_q30(toward_q30, surface->normal_q30);
+    if (cosine_q30 <= 0)
+        return;
+    share_q15 = glint_scene_reaches(s, surface, lit);
+    if (share_q15 == 0)
+        return;
+    share_q15 = q_mul(share_q15, glint_stone_passes(skin, cosine_q30), 15);
+    for (int c = 0; c < CHANNELS; c++) {
+        const int64_t light_q15 =
+            ((int64_t)level_q15[c] * cosine_q30 >> 30) * share_q15 >> 15;
+
+        rgb_q15[c] =
+            q_clamp_sat(rgb_q15[c] + light_q15, 0, GLINT_SCENE_MOST_LIGHT);
+    }
+}
+
+/* Sets SURFACE to texel (X, Y); returns 0 if it is none of the thing. */
+static int find_surface(const struct glint_scene *s,
+                        const struct glint_stone_skin *skin, int x, int y,
+                        struct glint_met_surface *surface)
+{
+    *surface = (struct glint_met_surface){
+        .material = &s->model.material[skin->material],
+        .object = skin->of->object};
+    if (!skin->spread.is_ball)
+        return mesh_surface(s, skin, x, y, surface);
+    ball_surface(s, skin, x, y, surface);
+    return 1;
+}
+
+static void light_texel(const struct glint_scene *s,
+                        const struct glint_stone_skin *skin, int x, int y,
+                        int32_t rgb_q15[3])
+{
+    struct glint_met_surface surface;
+
+    if (!find_surface(s, skin, x, y, &surface))
+        return;
+    for (uint32_t i = 0; i < s->n_lit; i++)
+        add_light(s, skin, &surface, &s->lit[i], rgb_q15);
+    if (s->wards)
+        add_around(s, surface.normal_q30,
+                   skin->fresnel ? skin->stone.header->mean_transmit_q15
+                                 : 1 << 15,
+                   rgb_q15);
+}
+
+/* Lights block I of SKIN. */
+static void light_block(const struct glint_scene *scene,
+                        const struct glint_stone_skin *skin, int i)
+{
+    const int x0 = i % skin->across * GLINT_BLOCK_WIDTH;
+    const int y0 = i / skin->across * GLINT_BLOCK_HEIGHT;
+
+    for (int y = y0; y < y0 + GLINT_BLOCK_HEIGHT; y++)
+        for (int x = x0; x < x0 + GLINT_BLOCK_WIDTH; x++) {
+            int32_t rgb_q15[3] = {0, 0, 0};
+
+            light_texel(scene, skin, x, y, rgb_q15);
+            for (int c = 0; c < CHANNELS; c++)
+                skin->spread.light[c][y * skin->spread.width + x] =
+                    (int16_t)q_clamp_sat(q_shift(rgb_q15[c], skin->shift), 0,
+                                         MOST_VALUE);
+        }
+}
 
 /* ------------------------------------------------------------------ opening */
 
@@ -132,7 +586,7 @@ static enum glint_status open_skin(const struct glint_scene *s,
 
 static void relight(struct glint_scene *scene)
 {
-    scene->stones->around_q15 = glint_stone_around(scene);
+    scene->stones->around_q15 = most_around(scene);
 }
 
 static enum glint_status open_stones(struct glint_scene *scene)
@@ -156,7 +610,7 @@ static void forget(const struct glint_scene *s, struct glint_stone_skin *skin)
         skin->block[i] = 0;
     skin->is_lit = 1;
     skin->moved = s->moved;
-    glint_stone_expose(s, skin);
+    expose(s, skin);
 }
 
 /* Wants block (X, Y), which may lie outside of the map, lit. */
@@ -214,7 +668,7 @@ static void light_job(void *ctx, int job, int worker)
     const struct update *u = ctx;
 
     (void)worker;
-    glint_stone_light_block(u->scene, u->skin, u->skin->list[job]);
+    light_block(u->scene, u->skin, u->skin->list[job]);
 }
 
 /* Spreads one channel of a column of blocks, run by run. */
@@ -282,7 +736,7 @@ static int update(struct glint_scene *scene)
         if (!p->is_shown || (!p->is_seen && !scene->has_split))
             continue;
         forget(scene, u.skin);
-        glint_stone_see(scene, u.skin);
+        see(scene, u.skin);
         blocks = list_blocks(u.skin);
         if (blocks == 0)
             continue;

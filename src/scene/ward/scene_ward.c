@@ -2,12 +2,252 @@
  *
  * Light from all around on the surfaces of a scene: what the irradiance map
  * shows of diffuse colour, and Ward's lobe of brushed metal. */
-#include "scene/ward/scene_ward.h"
-
+#include "base/log2.h"
 #include "base/real.h"
+#include "glint/scene/ward.h"
 #include "scene/mesh.h"
 #include "scene/parts.h"
+#include "scene/state.h"
 #include "scene/ward/send.h"
+
+struct glint_ward_state {
+    struct glint_environment *opened; /* [n_environments] */
+    struct glint_scene_light *sun;    /* [n_environment_lights] */
+    int has_environment;
+    struct glint_environment environment; /* that is shown */
+    int32_t turn_q30[2];                  /* cosine and sine, to the right */
+    struct glint_real scale;              /* of all its light */
+    struct glint_real unit;               /* of its texels, with that scale */
+    struct glint_ward_material *material; /* [n_wards], ratios held */
+    struct glint_ward_lobe *lobe;         /* [n_wards] */
+};
+
+/* Sets TO to direction V, _q30, in the directions of the environment. */
+static inline void glint_ward_turn(const struct glint_ward_state *w,
+                                   const int32_t v[3], int32_t to[3])
+{
+    const int64_t c = w->turn_q30[0], s = w->turn_q30[1];
+
+    to[0] = (int32_t)q_shift(c * v[0] - s * v[2], 30);
+    to[1] = v[1];
+    to[2] = (int32_t)q_shift(c * v[2] + s * v[0], 30);
+}
+
+/* ------------------------------------------------------------------- behind */
+
+/* An environment as it is seen itself, behind things and in mirrors: its levels
+ * and the discs of its bright lights, blurred as far as a pixel sees. */
+enum {
+    LOG2_PI_Q16 = 108232,
+    LEAST_SPREAD_Q40 = 1 << 14 /* the lights that are points have a disc */
+};
+
+/* Level l has a variance of 4^l pi / side^2. */
+static int32_t level_q8(const struct glint_environment *e, int64_t spread_q40)
+{
+    const int32_t octaves_q16 = q_log2_q16((uint64_t)spread_q40) - (40 << 16) +
+                                (int32_t)(e->header->side_log2 << 17) -
+                                LOG2_PI_Q16;
+
+    return (int32_t)q_shift(octaves_q16, 9);
+}
+
+/* Adds a disc of R, at least as large as the spot that is seen: within half of
+ * that of its rim it fades. */
+static void add_disc(const struct glint_ward_state *w,
+                     const struct glint_environment_light *light,
+                     const int32_t toward_q30[3], int64_t spread_q40,
+                     int32_t rgb_q15[3])
+{
+    const int32_t width_q30 = (int32_t)glint_root((uint64_t)spread_q40 << 22);
+    const int32_t r_q30 = q_larger(light->radius_q30, width_q30);
+    const struct glint_real r = real_of(r_q30, -30);
+    int32_t off_q29[3], away_q30, share_q15;
+    struct glint_real per_disc;
+
+    for (int k = 0; k < 3; k++)
+        off_q29[k] = toward_q30[k] / 2 - light->toward_q30[k] / 2;
+    away_q30 = 2 * (int32_t)q_smaller(
+                       (int32_t)glint_root((uint64_t)v3_dot(off_q29, off_q29)),
+                       (1 << 30) - 1);
+    if (away_q30 >= r_q30 + width_q30 / 2)
+        return;
+    share_q15 = away_q30 <= r_q30 - width_q30 / 2
+                    ? GLINT_SCENE_ONE_Q15
+                    : q_part_q30((uint64_t)(r_q30 + width_q30 / 2 - away_q30),
+                                 (uint64_t)width_q30) >>
+                          15;
+    per_disc = real_over(real_times(w->scale, real_of(share_q15, -15)),
+                         real_times(r, r));
+    for (int c = 0; c < 3; c++)
+        rgb_q15[c] = q_clamp_sat(
+            rgb_q15[c] + real_integer(real_times(light->rgb[c], per_disc), 15,
+                                      GLINT_SCENE_MOST_LIGHT),
+            0, GLINT_SCENE_MOST_LIGHT);
+}
+
+static void behind(const struct glint_scene *scene, const int32_t toward_q30[3],
+                   int64_t spread_q40, int32_t rgb_q15[3])
+{
+    const struct glint_ward_state *w = scene->wards;
+    const struct glint_environment *e = &w->environment;
+    const int64_t seen_q40 =
+        q_clamp_sat(spread_q40 >> 10, LEAST_SPREAD_Q40 >> 10, 1 << 28) *
+        INT64_C(1024);
+    int32_t to_q30[3], to_q16[3], light[3];
+
+    glint_ward_turn(w, toward_q30, to_q30);
+    for (int k = 0; k < 3; k++)
+        to_q16[k] = (int32_t)q_shift(to_q30[k], 14);
+    glint_environment_look(e, to_q16, level_q8(e, seen_q40), light);
+    for (int c = 0; c < 3; c++)
+        rgb_q15[c] =
+            (int32_t)real_integer(real_times(real_of(light[c], 0), w->unit), 15,
+                                  GLINT_SCENE_MOST_LIGHT);
+    for (uint32_t i = 0; i < e->header->n_lights; i++)
+        add_disc(w, &e->light[i], to_q30, seen_q40, rgb_q15);
+}
+
+/* ------------------------------------------------------------------ shining */
+
+/* What brushed metal shows of one light: Ward's lobe, as wide as the metal is
+ * rough, the light's disc large and the surface bent within a pixel. Without
+ * the last the highlight of a small ball would come and go between its pixels.
+ *
+ * Variances of slopes add up: alpha^2 / 2 of the metal, r^2 / 16 of the half
+ * vector to a disc of angular radius r, and that of the normal within a pixel.
+ * With h the half vector and o to the eye the light is
+ *
+ *     level weight exp(-slope) / (4 ax ay (h.o) (h.n)^3)
+ *
+ * with the weight of ward.c, held to 8. */
+enum { MOST_SLOPE = 16, LOG2_E_Q16 = 94548 };
+
+/* The half vector and what it is to the surface; all q30 but slopes. */
+struct half {
+    int32_t ho_q30, hn_q30, ni_q30, no_q30;
+    uint64_t slope_q52[2]; /* squares of slopes along the two axes, to 2^60 */
+};
+
+/* Returns whether ALONG_Q30 over HN_Q30 is surely so much that the lobe of the
+ * square of alpha ALPHA_Q40, below 2^42, is nothing there: before there is a
+ * root or a ratio. The left side is rounded down, to 2^56, the right one up, to
+ * 2^63, and has 1/512 more, which is more than what ratios are off. */
+static int is_beyond(uint32_t along_q30, int32_t hn_q30, int64_t alpha_q40)
+{
+    const uint64_t along_q28 = along_q30 >> 2;
+    const uint64_t hn_q28 = ((uint64_t)hn_q30 >> 2) + 1;
+    const uint64_t most_q56 = ((hn_q28 * hn_q28 >> 24) + 1) *
+                              (((uint64_t)alpha_q40 * MOST_SLOPE >> 16) + 1);
+
+    return along_q28 * along_q28 > most_q56 + (most_q56 >> 9);
+}
+
+/* Returns 0 if the light or the eye is behind the surface, or the lobe of
+ * ALPHA_Q40, squares, is nothing there. */
+static int find_half(const struct glint_scene_ray *ray,
+                     const struct glint_brushed *brushed,
+                     const int32_t toward_q30[3], const int64_t alpha_q40[2],
+                     struct half *h)
+{
+    const int32_t *n_q30 = brushed->frame_q30[2];
+    int32_t half_q30[3], hn_q30;
+    uint32_t along_q30[2];
+
+    for (int k = 0; k < 3; k++)
+        half_q30[k] = (int32_t)(((int64_t)toward_q30[k] - ray->toward_q30[k]) /
+                                2); /* (i + o) / 2 = (h.o) h */
+    hn_q30 = v3_cosine_q30(half_q30, n_q30);
+    if (hn_q30 <= 0)
+        return 0;
+    for (int k = 0; k < 2; k++) {
+        along_q30[k] = (uint32_t)q_magnitude(
+            v3_cosine_q30(half_q30, brushed->frame_q30[k]));
+        if (is_beyond(along_q30[k], hn_q30, alpha_q40[k]))
+            return 0;
+    }
+    h->ni_q30 = v3_cosine_q30(toward_q30, n_q30);
+    h->no_q30 = -v3_cosine_q30(ray->toward_q30, n_q30);
+    if (h->ni_q30 <= 0 || h->no_q30 <= 0)
+        return 0;
+    h->ho_q30 = (int32_t)glint_root((uint64_t)v3_dot(half_q30, half_q30));
+    if (h->ho_q30 < hn_q30)
+        h->ho_q30 = hn_q30;
+    h->hn_q30 = q_part_q30((uint64_t)hn_q30, (uint64_t)h->ho_q30);
+    for (int k = 0; k < 2; k++) {
+        const uint64_t slope_q26 = (uint64_t)glint_ratio(
+            (uint64_t)along_q30[k] << 26, (uint64_t)hn_q30);
+
+        h->slope_q52[k] = slope_q26 * slope_q26;
+    }
+    return 1;
+}
+
+/* Returns what the lobe counts by the norm, 0 .. 8, before its density. */
+static struct glint_real weight_of(enum glint_ward_norm norm,
+                                   const struct half *h)
+{
+    const struct glint_real most = real_of(8, 0);
+    const struct glint_real ho = real_of(h->ho_q30, -30);
+    const struct glint_real hn = real_of(h->hn_q30, -30);
+    struct glint_real weight;
+
+    if (norm == GLINT_WARD_BOUNDED)
+        weight = real_over(real_of(h->ni_q30, -30), real_times(ho, hn));
+    else
+        weight = real_over(
+            real_times(real_times(real_times(ho, hn), real_times(hn, hn)),
+                       real_of(glint_root((uint64_t)h->ni_q30 << 30), -30)),
+            real_of(glint_root((uint64_t)h->no_q30 << 30), -30));
+    return real_less(weight, most) ? weight : most;
+}
+
+static int shine(const struct glint_scene *scene,
+                 const struct glint_scene_ray *ray,
+                 const struct glint_met_surface *surface,
+                 const struct glint_brushed *brushed,
+                 const int32_t toward_q30[3], const int32_t level_q15[3],
+                 int32_t radius_q30, int32_t rgb_q15[3])
+{
+    const struct glint_ward_material *m =
+        &scene->wards->material[surface->material->ward];
+    const int64_t wider_q40 =
+        ((int64_t)radius_q30 * radius_q30 >> 23) +
+        (int64_t)brushed->spread_q30 * 1024; /* r^2 / 8, and the normal's */
+    struct glint_real area = real_of(4, 0), gain;
+    int64_t alpha_q40[2];
+    int32_t slope_q16 = 0;
+    struct half h;
+
+    for (int k = 0; k < 2; k++)
+        alpha_q40[k] =
+            ((int64_t)m->alpha_q24[k] * m->alpha_q24[k] >> 8) + wider_q40;
+    if (!find_half(ray, brushed, toward_q30, alpha_q40, &h))
+        return 0;
+    for (int k = 0; k < 2; k++) {
+        if ((h.slope_q52[k] >> 12) >= (uint64_t)alpha_q40[k] * MOST_SLOPE)
+            return 0;
+        slope_q16 += glint_ratio(h.slope_q52[k] << 4, (uint64_t)alpha_q40[k]);
+        area = real_times(
+            area, real_of(glint_root((uint64_t)alpha_q40[k] << 20), -30));
+    }
+    if (slope_q16 >= MOST_SLOPE << 16)
+        return 0;
+    area = real_times(
+        area, real_times(real_of(h.ho_q30, -30), real_of(h.hn_q30, -30)));
+    area = real_times(
+        area, real_times(real_of(h.hn_q30, -30), real_of(h.hn_q30, -30)));
+    gain = real_of(q_exp2_q16((14 << 16) -
+                              (int32_t)((int64_t)slope_q16 * LOG2_E_Q16 >> 16)),
+                   -30);
+    gain = real_over(real_times(gain, weight_of(m->norm, &h)), area);
+    for (int c = 0; c < 3; c++)
+        rgb_q15[c] = (int32_t)real_integer(
+            real_times(real_of((int64_t)level_q15[c] * m->specular_q15[c], -30),
+                       gain),
+            15, GLINT_SCENE_MOST_LIGHT);
+    return 1;
+}
 
 enum {
     ONE_Q30 = 1 << 30,
@@ -358,14 +598,6 @@ static void reflect(const struct glint_scene *scene,
         add(&rgb_q15[c], light[c], weight_q15);
 }
 
-const struct glint_scene_wards glint_scene_wards = {carve,
-                                                    open_wards,
-                                                    set_lobe,
-                                                    show,
-                                                    scale,
-                                                    turn,
-                                                    spread_q30,
-                                                    lie,
-                                                    reflect,
-                                                    glint_ward_shine,
-                                                    glint_ward_behind};
+const struct glint_scene_wards glint_scene_wards = {
+    carve,      open_wards, set_lobe, show,  scale, turn,
+    spread_q30, lie,        reflect,  shine, behind};
