@@ -11,6 +11,172 @@
 #define FULL_Q30     (INT32_C(1) << 30)
 #define ONE_Q15      (1 << 15)
 
+/* ---------------------------------------------------------------- one number
+ */
+
+/* Follows one number of a lamp over time: noise is averaged, change is
+ * followed.
+ *
+ *   in   the number as each picture shows it, at any rate
+ *   out  a number that does not scatter, lag or jump
+ *
+ * Method: errors of the number are averaged with their signs (drift) and
+ * without (spread). Noise drifts nowhere, so its drift is a small part of the
+ * spread, and the number moves a small part of the way, as an average over the
+ * pace's time does. A change drifts all one way, or is far larger than the
+ * spread, and the number follows it at once. So the filter adapts to the noise
+ * of each lamp, and lags behind steady change by no more than five times an
+ * error that does no harm (floor).
+ *
+ * A change that must not be seen at once is blended: the number has it, and the
+ * shown number goes there at a bounded speed.
+ *
+ * A number that repeats bit for bit has no noise; it is reached soon and
+ * exactly.
+ *
+ * Limits: numbers are below 2^43 in magnitude, times below 2^26 us. */
+#define SETTLE_US 60000
+
+/* Ratios of drift to spread up to which an error is noise, and from which it is
+ * change. Noise of a bell curve passes the first in one picture of 100, and
+ * exceeds SUDDEN times the spread in one of 1000. */
+#define NOISE_Q15  Q_CONST(0.8, 15)
+#define CHANGE_Q15 Q_CONST(0.95, 15)
+#define SUDDEN     6
+
+/* Returns X times GAIN, rounded away from 0, so that a remainder ends in 0. */
+static int64_t part_of(int64_t x, int32_t gain_q15)
+{
+    return x < 0 ? -((-x * gain_q15 + ONE_Q15 - 1) >> 15)
+                 : (x * gain_q15 + ONE_Q15 - 1) >> 15;
+}
+
+static int64_t size_of(int64_t x)
+{
+    return x < 0 ? -x : x;
+}
+
+enum follow_as {
+    FOLLOW_JUDGED,   /* noise or change is told by the errors so far */
+    FOLLOW_REPEATED, /* all members of the lamp are as they were */
+    FOLLOW_CHANGED
+};
+
+int32_t glint_pace_part_q15(int32_t elapsed_us, int32_t time_us)
+{
+    const int64_t sum = (int64_t)elapsed_us + time_us;
+
+    return (int32_t)((((int64_t)elapsed_us << 15) + sum / 2) / sum);
+}
+
+/* Returns ELAPSED_US / TIME_US, 1 at most: the part of the way at a steady
+ * speed. */
+static int32_t pace_share_q15(int32_t elapsed_us, int32_t time_us)
+{
+    return q_clamp_sat(((int64_t)elapsed_us << 15) / time_us, 0, ONE_Q15);
+}
+
+struct glint_pace glint_pace_of(int32_t elapsed_us, int32_t smooth_us)
+{
+    return (struct glint_pace){
+        .elapsed_us = elapsed_us,
+        .smooth_q15 = glint_pace_part_q15(elapsed_us, smooth_us),
+        .settle_q15 = glint_pace_part_q15(elapsed_us, SETTLE_US)};
+}
+
+/* Begins at VALUE; its errors are assumed to be SPREAD until they are known. */
+static void follow_start(struct glint_follow *f, int64_t value, int64_t spread)
+{
+    *f = (struct glint_follow){.value = value, .spread = spread};
+}
+
+/* Moves the shown number towards the value for ELAPSED_US; a whole stride takes
+ * TIME_US. */
+static void follow_blend(struct glint_follow *f, int32_t elapsed_us,
+                         int32_t time_us)
+{
+    const int64_t step =
+        part_of(f->stride, pace_share_q15(elapsed_us, time_us));
+
+    if (size_of(f->offset) <= step)
+        f->offset = f->stride = 0;
+    else
+        f->offset -= f->offset < 0 ? -step : step;
+}
+
+/* Returns whether the errors so far are noise, 0, or a change, 1, or between.
+ */
+static int32_t judge_q15(const struct glint_follow *f, int64_t floor)
+{
+    const int64_t one_way_q15 = (size_of(f->drift) << 15) / (f->spread + floor);
+
+    return q_clamp_sat((one_way_q15 - NOISE_Q15) * ONE_Q15 /
+                           (CHANGE_Q15 - NOISE_Q15),
+                       0, ONE_Q15);
+}
+
+/* Takes ERROR into drift and spread; returns how much of a change it is, 0 ..
+ * 1. */
+static int32_t learn_q15(struct glint_follow *f, int64_t error, int64_t floor,
+                         int32_t smooth_q15, enum follow_as as)
+{
+    if (as == FOLLOW_CHANGED || size_of(error) > SUDDEN * (f->spread + floor)) {
+        f->drift = error / 2; /* Earlier errors are of no use after a change. */
+        f->spread = size_of(error / 2);
+        return ONE_Q15;
+    }
+    f->drift += part_of(error - f->drift, smooth_q15);
+    f->spread += part_of(size_of(error) - f->spread, smooth_q15);
+    return judge_q15(f, floor);
+}
+
+/* Follows TARGET; FLOOR is an error that does no harm, >= 1. Returns how much
+ * of a change it was, 0 .. 1. */
+static int32_t follow_step_q15(struct glint_follow *f, int64_t target,
+                               int64_t floor, const struct glint_pace *pace,
+                               enum follow_as as)
+{
+    const int64_t error = target - f->value;
+    const int32_t change_q15 = learn_q15(f, error, floor, pace->smooth_q15, as);
+    int32_t gain_q15 =
+        pace->smooth_q15 + q_mul(ONE_Q15 - pace->smooth_q15, change_q15, 15);
+
+    if (as == FOLLOW_REPEATED && gain_q15 < pace->settle_q15)
+        gain_q15 = pace->settle_q15;
+    f->value = size_of(error) <= floor / 4
+                   ? target
+                   : f->value + part_of(error, gain_q15);
+    return change_q15;
+}
+
+/* Goes from AHEAD towards TARGET as for noise, and assumes noise of at least
+ * SPREAD until more is known. */
+static void follow_doubt(struct glint_follow *f, int64_t ahead, int64_t target,
+                         int64_t spread, const struct glint_pace *pace)
+{
+    f->drift = 0;
+    if (f->spread < spread)
+        f->spread = spread;
+    f->value = ahead + part_of(target - ahead, pace->smooth_q15);
+}
+
+static int64_t follow_shown(const struct glint_follow *f)
+{
+    return f->value + f->offset;
+}
+
+/* Sets the value, but goes on showing SHOWN; blends then move from there to the
+ * value, within their time unless more changes follow. */
+static void follow_jump(struct glint_follow *f, int64_t value, int64_t shown)
+{
+    f->value = value;
+    f->offset = shown - value;
+    if (f->stride < size_of(f->offset))
+        f->stride = size_of(f->offset);
+}
+
+/* ----------------------------------------------------------------- one lamp */
+
 /* Repetitions in a row that count; a single one may be chance. */
 enum { REPEATS = 2 };
 
@@ -23,11 +189,6 @@ enum {
 static int64_t clamp(int64_t x, int64_t low, int64_t high)
 {
     return x < low ? low : x > high ? high : x;
-}
-
-static int64_t size_of(int64_t x)
-{
-    return x < 0 ? -x : x;
 }
 
 /* ------------------------------------------------------------- what is seen */
@@ -167,20 +328,19 @@ static void doubt_place(struct glint_record *r,
     const int64_t extent_q16 = r->of[SIZE].value * 256;
 
     if (size_of(target_q16 - ahead_q16) <= extent_q16 / 2)
-        glint_follow_doubt(f, ahead_q16, target_q16, extent_q16 / 4,
-                           &step->pace);
+        follow_doubt(f, ahead_q16, target_q16, extent_q16 / 4, &step->pace);
     else
-        glint_follow_jump(f, target_q16, ahead_q16 + f->offset);
+        follow_jump(f, target_q16, ahead_q16 + f->offset);
 }
 
 /* Returns how to follow a place: an error of more than three quarters of the
  * lamp's radius is change, not noise. */
-static enum glint_follow_as judge_place(const struct glint_record *r,
-                                        int64_t error_q16, int is_repeat)
+static enum follow_as judge_place(const struct glint_record *r,
+                                  int64_t error_q16, int is_repeat)
 {
     if (size_of(error_q16) > r->of[SIZE].value * 192 + 65536 / 8)
-        return GLINT_FOLLOW_CHANGED;
-    return is_repeat ? GLINT_FOLLOW_REPEATED : GLINT_FOLLOW_JUDGED;
+        return FOLLOW_CHANGED;
+    return is_repeat ? FOLLOW_REPEATED : FOLLOW_JUDGED;
 }
 
 /* Returns whether TARGET is too far for the lamp's motion: twice its radius and
@@ -201,7 +361,7 @@ static void leap(struct glint_record *r, const struct glint_record_step *step,
     struct glint_follow *f = &r->of[X + axis];
     const int64_t before_q16 = f->value;
 
-    glint_follow_jump(f, target_q16, r->ahead_q16[axis] + f->offset);
+    follow_jump(f, target_q16, r->ahead_q16[axis] + f->offset);
     learn_velocity(r, step, axis, before_q16, ONE_Q15);
 }
 
@@ -211,9 +371,9 @@ static void follow_place(struct glint_record *r,
 {
     struct glint_follow *f = &r->of[X + axis];
     const int64_t before_q16 = f->value;
-    const int32_t change_q15 = glint_follow_step_q15(
-        f, target_q16, floor_of(X, 0), &step->pace,
-        judge_place(r, target_q16 - before_q16, is_repeat));
+    const int32_t change_q15 =
+        follow_step_q15(f, target_q16, floor_of(X, 0), &step->pace,
+                        judge_place(r, target_q16 - before_q16, is_repeat));
 
     learn_velocity(r, step, axis, before_q16, change_q15);
 }
@@ -257,14 +417,13 @@ static int is_leaving(const struct glint_record *r,
 /* Returns how to follow light of CHANNEL. What a clipped core hides is guessed
  * from its rim, and may be half or twice as much in noise, so that powers are
  * judged by the errors so far, but where pictures repeat. */
-static enum glint_follow_as judge_light(int channel, int64_t change,
-                                        int64_t larger, int64_t floor,
-                                        int is_repeat)
+static enum follow_as judge_light(int channel, int64_t change, int64_t larger,
+                                  int64_t floor, int is_repeat)
 {
     if ((channel != GLINT_CHANNEL_POWER || is_repeat) &&
         size_of(change) > larger / 4 + 4 * floor)
-        return GLINT_FOLLOW_CHANGED;
-    return is_repeat ? GLINT_FOLLOW_REPEATED : GLINT_FOLLOW_JUDGED;
+        return FOLLOW_CHANGED;
+    return is_repeat ? FOLLOW_REPEATED : FOLLOW_JUDGED;
 }
 
 /* Returns the time in us in which all of a lamp may appear or vanish. */
@@ -281,7 +440,7 @@ static void follow_light(struct glint_record *r,
                          int64_t target, int is_repeat)
 {
     struct glint_follow *f = &r->of[channel];
-    const int64_t before = f->value, shown = glint_follow_shown(f);
+    const int64_t before = f->value, shown = follow_shown(f);
     const int64_t larger =
         channel == GLINT_CHANNEL_COS2 || channel == GLINT_CHANNEL_SIN2
             ? ONE_Q15 /* in units of a full axis, whichever way it lies */
@@ -291,14 +450,14 @@ static void follow_light(struct glint_record *r,
     int32_t share_q15;
     int64_t change;
 
-    glint_follow_step_q15(
+    follow_step_q15(
         f, target, floor, &step->pace,
         judge_light(channel, target - before, larger, floor, is_repeat));
     change = f->value - before;
-    share_q15 = glint_pace_share_q15(step->pace.elapsed_us,
-                                     blend_us(step->cfg, change));
+    share_q15 =
+        pace_share_q15(step->pace.elapsed_us, blend_us(step->cfg, change));
     if (f->offset != 0 || size_of(change) > (larger * share_q15) >> 15)
-        glint_follow_jump(f, f->value, shown);
+        follow_jump(f, f->value, shown);
 }
 
 static void start(struct glint_record *r, const struct glint_spot *s)
@@ -307,7 +466,7 @@ static void start(struct glint_record *r, const struct glint_spot *s)
 
     list_targets(s, target);
     for (int c = 0; c < GLINT_CHANNELS; c++)
-        glint_follow_start(&r->of[c], target[c], 2 * floor_of(c, target[c]));
+        follow_start(&r->of[c], target[c], 2 * floor_of(c, target[c]));
 }
 
 void glint_record_begin(struct glint_record *r, uint32_t id,
@@ -329,8 +488,8 @@ static int count_same(struct glint_record *r, const struct glint_spot *spot)
 static void blend(struct glint_record *r, const struct glint_record_step *step)
 {
     for (int c = 0; c < GLINT_CHANNELS; c++)
-        glint_follow_blend(&r->of[c], step->pace.elapsed_us,
-                           blend_us(step->cfg, -r->of[c].offset));
+        follow_blend(&r->of[c], step->pace.elapsed_us,
+                     blend_us(step->cfg, -r->of[c].offset));
 }
 
 void glint_record_see(struct glint_record *r,
@@ -454,20 +613,18 @@ struct glint_lamp_track glint_record_track(const struct glint_record *r)
     struct glint_lamp_track track = {
         .id = r->id,
         .state = r->state,
-        .x_q8 = q_narrow(q_shift(glint_follow_shown(&of[X]), 8)),
-        .y_q8 = q_narrow(q_shift(glint_follow_shown(&of[X + 1]), 8)),
-        .size_q8 = q_narrow(glint_follow_shown(&of[SIZE])),
+        .x_q8 = q_narrow(q_shift(follow_shown(&of[X]), 8)),
+        .y_q8 = q_narrow(q_shift(follow_shown(&of[X + 1]), 8)),
+        .size_q8 = q_narrow(follow_shown(&of[SIZE])),
         .level_q15 = q_narrow(q_shift(r->level_q30, 30 - 15)),
-        .flux_q16 = glint_follow_shown(&of[FLUX]),
-        .power_q16 = glint_follow_shown(&of[GLINT_CHANNEL_POWER])};
+        .flux_q16 = follow_shown(&of[FLUX]),
+        .power_q16 = follow_shown(&of[GLINT_CHANNEL_POWER])};
 
     for (int i = 0; i < 2; i++)
-        track.axis_q8[i] =
-            q_narrow(glint_follow_shown(&of[GLINT_CHANNEL_MAJOR + i]));
-    set_axis(&track, glint_follow_shown(&of[GLINT_CHANNEL_COS2]),
-             glint_follow_shown(&of[GLINT_CHANNEL_SIN2]));
+        track.axis_q8[i] = q_narrow(follow_shown(&of[GLINT_CHANNEL_MAJOR + i]));
+    set_axis(&track, follow_shown(&of[GLINT_CHANNEL_COS2]),
+             follow_shown(&of[GLINT_CHANNEL_SIN2]));
     for (int i = 0; i < 3; i++)
-        track.rgb_q15[i] =
-            q_narrow(glint_follow_shown(&of[GLINT_CHANNEL_RED + i]));
+        track.rgb_q15[i] = q_narrow(follow_shown(&of[GLINT_CHANNEL_RED + i]));
     return track;
 }

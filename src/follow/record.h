@@ -10,8 +10,29 @@
 #ifndef GLINT_FOLLOW_RECORD_H
 #define GLINT_FOLLOW_RECORD_H
 
-#include "follow/follow.h"
 #include "glint/lamp_tracker.h"
+
+/* One number of a lamp that is followed (record.c). */
+struct glint_follow {
+    int64_t value;
+    /* Means of errors with their signs, and of their magnitudes. */
+    int64_t drift, spread;
+    int64_t offset; /* value + offset is shown */
+    int64_t stride; /* distance that the offset moves in the time of a blend */
+};
+
+/* The filter's parameters for the time between two pictures. */
+struct glint_pace {
+    int32_t elapsed_us;
+    int32_t smooth_q15; /* part of the way for noise */
+    int32_t settle_q15; /* part of the way for change that repeats */
+};
+
+struct glint_pace glint_pace_of(int32_t elapsed_us, int32_t smooth_us);
+
+/* Returns ELAPSED_US / (ELAPSED_US + TIME_US): the part of the way that an
+ * average over that time goes; TIME_US >= 1. */
+int32_t glint_pace_part_q15(int32_t elapsed_us, int32_t time_us);
 
 /* The channels that are followed: places in _q16, all others as in struct
  * glint_spot. */
