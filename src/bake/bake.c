@@ -12,8 +12,6 @@
 #include "bake/effort.h"
 #include "bake/fit/fit.h"
 #include "bake/model_header.h"
-#include "bake/options.h"
-#include "bake/skew/skew_brightness.h"
 #include "bake/skew/skew_fit.h"
 #include "bake/trace/cells.h"
 #include "bake/write_model.h"
@@ -341,19 +339,6 @@ static enum glint_status check_draft(const struct bake_run *run)
     return GLINT_E_LENS;
 }
 
-static enum glint_status find_brightness(struct bake_run *run)
-{
-    const struct glint_bake_options *o = &run->options;
-    const double field_mm = glint_bake_field_mm(run->lens, o);
-
-    return glint_prescription_is_round(run->lens)
-               ? glint_brightness_find(&run->brightness, &run->setup, field_mm,
-                                       o->max_deg, o->band_nm, o->workers)
-               : glint_skew_brightness_find(&run->brightness, &run->setup,
-                                            field_mm, o->max_deg, o->band_nm,
-                                            o->workers);
-}
-
 static enum glint_status bake_run(struct bake_run *run)
 {
     struct glint_model_header header;
@@ -363,7 +348,10 @@ static enum glint_status bake_run(struct bake_run *run)
         status = glint_model_header_of(run->lens, &run->options, &run->setup,
                                        &header);
     if (status == GLINT_OK)
-        status = find_brightness(run);
+        status = glint_brightness_find(
+            &run->brightness, &run->setup,
+            glint_bake_field_mm(run->lens, &run->options), run->options.max_deg,
+            run->options.band_nm, run->options.workers);
     if (status == GLINT_OK)
         status = fit_ghosts(run);
     if (status == GLINT_OK)
@@ -380,7 +368,7 @@ static enum glint_status bake_run(struct bake_run *run)
     status = for_ghosts(run, measure_job, QUANTISED, 1);
     if (status != GLINT_OK)
         return status;
-    glint_draft_close(&run->draft);
+    glint_blob_seal(run->draft.data, run->draft.bytes);
     return check_draft(run);
 }
 

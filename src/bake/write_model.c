@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/blob.h"
 #include "base/compiler.h"
 
 STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
@@ -231,9 +230,4 @@ void glint_draft_note(struct glint_draft *draft, int system,
         o->p99 = to_error(e->p99);
         o->max = to_error(e->max);
     }
-}
-
-void glint_draft_close(struct glint_draft *draft)
-{
-    glint_blob_seal(draft->data, draft->bytes);
 }

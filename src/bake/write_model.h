@@ -25,7 +25,4 @@ struct glint_lens glint_draft_lens(const struct glint_draft *draft);
 void glint_draft_note(struct glint_draft *draft, int system,
                       const struct glint_measured *measured);
 
-/* Sets size and checksum, which completes the model. */
-void glint_draft_close(struct glint_draft *draft);
-
 #endif

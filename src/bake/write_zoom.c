@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/blob.h"
 #include "bake/table/draft.h"
 #include "glint/bake.h"
 #include "glint/model.h"
@@ -47,15 +46,15 @@ static void put_models(struct glint_draft *d, uint32_t list_at,
 }
 
 /* Checks that readers will accept the file. */
-static enum glint_status check(const struct glint_draft *d,
+static enum glint_status check(const unsigned char *data, size_t bytes,
                                struct glint_error *error)
 {
     struct glint_zoom_lens *const zoom = malloc(sizeof *zoom);
     enum glint_status status = GLINT_E_MEMORY;
     const char *reason;
 
-    if (zoom && (status = glint_zoom_open(zoom, d->data, d->bytes, &reason)) !=
-                    GLINT_OK)
+    if (zoom &&
+        (status = glint_zoom_open(zoom, data, bytes, &reason)) != GLINT_OK)
         snprintf(error->text, sizeof error->text, "%s", reason);
     free(zoom);
     return status;
@@ -70,6 +69,7 @@ enum glint_status glint_bake_zoom(const struct glint_bake_model *model, int n,
                                        .version = GLINT_ZOOM_VERSION,
                                        .n_models = (uint32_t)n};
     struct glint_draft draft = {0};
+    unsigned char *data;
     enum glint_status status;
 
     error->text[0] = 0;
@@ -84,17 +84,12 @@ enum glint_status glint_bake_zoom(const struct glint_bake_model *model, int n,
     header.model_at = glint_draft_put(
         &draft, NULL, (size_t)n * sizeof(struct glint_zoom_model));
     put_models(&draft, header.model_at, model, n);
-    glint_draft_amend(&draft, 0, &header, sizeof header);
-    status = draft.out_of_memory ? GLINT_E_MEMORY : GLINT_OK;
-    if (status == GLINT_OK) {
-        glint_blob_seal(draft.data, draft.bytes);
-        status = check(&draft, error);
-    }
-    if (status != GLINT_OK) {
-        free(draft.data);
-        return status;
-    }
-    *zoom = draft.data;
-    *bytes = draft.bytes;
-    return GLINT_OK;
+    if (!glint_draft_finish(&draft, &header, sizeof header, true, &data, bytes))
+        return GLINT_E_MEMORY;
+    status = check(data, *bytes, error);
+    if (status == GLINT_OK)
+        *zoom = data;
+    else
+        free(data);
+    return status;
 }

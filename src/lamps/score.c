@@ -440,6 +440,10 @@ void glint_score_all(const struct glint_score *score,
     }
 }
 
+/* ------------------------------------------------------------------- choice */
+
+/* Chooses which regions are lamps, by their scores, and which one of regions
+ * that lie within each other stands for the lamp. */
 enum { SURE_Q8 = 384 }; /* higher scores count as this one */
 
 static int by_rank(const void *ctx, int32_t a, int32_t b)

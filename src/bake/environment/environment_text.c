@@ -4,28 +4,13 @@
 #include <string.h>
 
 #include "bake/scene/clauses.h"
-#include "bake/scene/near.h"
 #include "glint/scene/environment_bake.h"
 
-static const char *const words[] = {"source", "size",  "levels", "lights",
-                                    "turn",   "scale", NULL};
+static const struct glint_text_line lines[] = {
+    {"source", false}, {"size", false}, {"levels", false},
+    {"lights", false}, {"turn", false}, {"scale", false}};
 
-/* Reads one of NAMES, NULL at the end, and returns its index or -1. */
-static int read_name(struct glint_text *text, const char *line,
-                     const char *list, const char *const *names)
-{
-    const struct glint_word word = glint_text_next_word(text);
-    char quote[GLINT_QUOTE_BYTES];
-
-    for (int i = 0; names[i]; i++)
-        if (glint_word_is(&word, names[i]))
-            return i;
-    glint_text_fail(text, word.place, "%s takes %s%s%s%s", line, list,
-                    word.length ? ", not '" : "",
-                    word.length ? glint_word_quote(&word, quote) : "",
-                    word.length ? "'" : "");
-    return -1;
-}
+enum { N_LINES = sizeof lines / sizeof *lines };
 
 static bool read_source(struct glint_text *text, char *source)
 {
@@ -60,8 +45,8 @@ static bool read_size(struct glint_text *text,
 {
     static const char *const sizes[] = {"16",  "32",  "64",   "128",
                                         "256", "512", "1024", NULL};
-    const int i =
-        read_name(text, "size", "16, 32, 64, 128, 256, 512 or 1024", sizes);
+    const int i = glint_choice_read(text, "size",
+                                    "16, 32, 64, 128, 256, 512 or 1024", sizes);
 
     o->side_log2 = GLINT_ENVIRONMENT_LEAST_LOG2 + i;
     return i >= 0;
@@ -79,7 +64,7 @@ static bool read_line(struct glint_text *text, int which,
     case 1:
         return read_size(text, o);
     case 2:
-        i = read_name(text, "levels", "gauss or mip", levels);
+        i = glint_choice_read(text, "levels", "gauss or mip", levels);
         o->levels = i == 1 ? GLINT_ENVIRONMENT_MIP : GLINT_ENVIRONMENT_GAUSS;
         break;
     case 3:
@@ -92,18 +77,6 @@ static bool read_line(struct glint_text *text, int which,
     return i >= 0;
 }
 
-static bool unknown(struct glint_text *text, const struct glint_word *word)
-{
-    struct glint_near near = glint_near_begin(*word);
-    char quote[GLINT_QUOTE_BYTES], mean[GLINT_NEAR_BYTES];
-
-    for (int i = 0; words[i]; i++)
-        glint_near_offer(&near, words[i]);
-    return glint_text_fail(text, word->place, "unknown word '%s'%s",
-                           glint_word_quote(word, quote),
-                           glint_near_text(&near, mean));
-}
-
 enum glint_status
 glint_environment_parse(struct glint_environment_options *options,
                         char source[GLINT_ENVIRONMENT_FILE_BYTES],
@@ -111,30 +84,18 @@ glint_environment_parse(struct glint_environment_options *options,
                         struct glint_error *error)
 {
     struct glint_text text;
-    int first[sizeof words / sizeof *words] = {0};
+    int first[N_LINES] = {0};
     bool good;
 
     glint_environment_defaults(options);
     source[0] = '\0';
     good = glint_text_open(&text, data, bytes, file_name, error);
     while (good && glint_text_next_line(&text)) {
-        const struct glint_word word = glint_text_next_word(&text);
-        int i = 0;
+        int i;
 
-        if (!word.length)
-            continue;
-        while (words[i] && !glint_word_is(&word, words[i]))
-            i++;
-        if (!words[i])
-            good = unknown(&text, &word);
-        else if (first[i])
-            good = glint_text_fail(&text, word.place,
-                                   "a second %s; the first is on line %d",
-                                   words[i], first[i]);
-        else
-            good = read_line(&text, i, options, source) &&
-                   glint_line_ends(&text, words[i]);
-        first[i] = word.place.line;
+        good = glint_line_begin(&text, lines, N_LINES, first, &i) &&
+               (i < 0 || (read_line(&text, i, options, source) &&
+                          glint_line_ends(&text, lines[i].word)));
     }
     if (good && !source[0])
         good = glint_text_fail(&text, glint_text_end(&text),

@@ -8,7 +8,6 @@
 
 #include "bake/environment/sphere.h"
 #include "bake/table/draft.h"
-#include "base/blob.h"
 #include "glint/view.h"
 
 void glint_environment_put_9e5(const double (*light)[3], size_t n, double unit,
@@ -281,14 +280,12 @@ static bool write_tables(struct writer *w)
 
 static void set_header(struct writer *w, const char *name, uint64_t key)
 {
+    static const struct glint_blob_kind kind = {
+        .magic = GLINT_ENVIRONMENT_MAGIC, .version = GLINT_ENVIRONMENT_VERSION};
     struct glint_environment_header *h = &w->header;
 
-    h->magic = GLINT_ENVIRONMENT_MAGIC;
-    h->version = GLINT_ENVIRONMENT_VERSION;
-    h->variant = (uint32_t)w->options->levels;
-    h->key[0] = (uint32_t)key;
-    h->key[1] = (uint32_t)(key >> 32);
-    glint_draft_name(h->name, name, "environment");
+    glint_draft_begin(h, &kind, (uint32_t)w->options->levels, key, name,
+                      "environment");
     h->side_log2 = (uint32_t)w->options->side_log2;
     h->code = GLINT_ENVIRONMENT_9E5;
 }
@@ -310,16 +307,11 @@ glint_environment_bake(const struct glint_float_image *picture,
     glint_draft_put(&w.draft, NULL, sizeof w.header);
     good = gather(&w, picture, error) && make_levels(&w) && write_tables(&w);
     set_header(&w, name, key);
-    glint_draft_amend(&w.draft, 0, &w.header, sizeof w.header);
     for (int k = 0; k < GLINT_ENVIRONMENT_MAX_LEVELS; k++)
         free(w.level[k]);
     glint_sphere_close(&w.sphere);
-    if (!good || w.draft.out_of_memory) {
-        free(w.draft.data);
-        return error->text[0] ? GLINT_E_UNSUPPORTED : GLINT_E_MEMORY;
-    }
-    glint_blob_seal(w.draft.data, w.draft.bytes);
-    *data = w.draft.data;
-    *bytes = w.draft.bytes;
-    return GLINT_OK;
+    if (glint_draft_finish(&w.draft, &w.header, sizeof w.header, good, data,
+                           bytes))
+        return GLINT_OK;
+    return error->text[0] ? GLINT_E_UNSUPPORTED : GLINT_E_MEMORY;
 }

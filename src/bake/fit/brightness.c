@@ -5,12 +5,15 @@
 #include <stdlib.h>
 
 #include "engine/setup/degrees.h"
+#include "glint/model.h"
 #include "glint/trace.h"
 
-enum { ACROSS = 24, DOWN = 12, CELLS = ACROSS * DOWN };
+/* Cells of a grid over the pupil, of which lenses that are not round have as
+ * many down as across. */
+enum { ACROSS = 24, DOWN = 12, CELLS = ACROSS * DOWN, WAVES = 3 };
 
-/* The light of a cell of the grid on the sensor. Its mirror image at -y counts,
- * too. */
+/* The light of a cell of the grid on the sensor. Of round lenses its mirror
+ * image at -y counts, too. */
 struct patch {
     double irradiance, area_mm2, x_mm, y_mm;
 };
@@ -18,16 +21,39 @@ struct patch {
 struct task {
     struct glint_brightness *out;
     const struct glint_setup *setup;
-    double field_mm, nm;
+    double field_mm;
+    /* The first is the middle of the band. Of lenses that are not round the
+     * mean of all stands for that over the nodes of zones, as coatings let ten
+     * times as much light into some colours as into others. */
+    double nm[WAVES];
     double half_mm[2]; /* half the width and height of the picture */
+    double pixel_mm;   /* of a picture 1920 wide */
+    /* Azimuths of lenses that are not round, in turns: a quarter of one, with
+     * both ends, if the lens has two planes of symmetry; else all around. */
+    int n_azimuths;
+    double turns;
     enum glint_status status[GLINT_BRIGHTNESS_ANGLES];
 };
 
+static bool passes(const struct task *t, const struct glint_ray *ray)
+{
+    return ray->rel_radius <= 1 && hypot(ray->stop_x_mm, ray->stop_y_mm) <=
+                                       t->setup->optics.stop_radius_mm;
+}
+
+static int brighter_first(const void *a, const void *b)
+{
+    const double x = ((const struct patch *)a)->irradiance;
+    const double y = ((const struct patch *)b)->irradiance;
+
+    return (x < y) - (x > y);
+}
+
+/* ------------------------------------------------------------------- round */
+
 static bool is_seen(const struct task *t, const struct glint_ray *ray)
 {
-    return ray->rel_radius <= 1 &&
-           hypot(ray->stop_x_mm, ray->stop_y_mm) <=
-               t->setup->optics.stop_radius_mm &&
+    return passes(t, ray) &&
            hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= t->field_mm;
 }
 
@@ -56,7 +82,7 @@ static int add_ghost(const struct task *t, int ghost, double sine,
     double dy;
     int n = 0;
 
-    glint_path_init(&path, t->setup->lens, &t->setup->ghost[ghost], t->nm);
+    glint_path_init(&path, t->setup->lens, &t->setup->ghost[ghost], t->nm[0]);
     path.places_only = true;
     if (!glint_pupil_find_within(&p, &path, asin(sine) * (180 / GLINT_PI),
                                  t->setup->optics.stop_radius_mm, t->field_mm,
@@ -79,14 +105,6 @@ static int add_ghost(const struct task *t, int ghost, double sine,
                                       row.step_mm * dy);
     }
     return n;
-}
-
-static int brighter_first(const void *a, const void *b)
-{
-    const double x = ((const struct patch *)a)->irradiance;
-    const double y = ((const struct patch *)b)->irradiance;
-
-    return (x < y) - (x > y);
 }
 
 /* Returns whether (X, Y) lies in the picture if the light's azimuth is PHI. */
@@ -143,6 +161,147 @@ static void angle_job(void *ctx, int job, int worker)
     free(patch);
 }
 
+/* --------------------------------------------------------------- not round */
+
+/* A lens that is not round has no picture that only turns with the light: light
+ * comes from several azimuths, and what lies across less than a pixel counts as
+ * spread over one. A streak is bright by that, not by how thin it is. */
+static bool is_in_picture(const struct task *t, const struct glint_ray *ray)
+{
+    return passes(t, ray) && fabs(ray->sensor_x_mm) <= t->half_mm[0] &&
+           fabs(ray->sensor_y_mm) <= t->half_mm[1];
+}
+
+/* Returns the light between ray A and its neighbours B and C; its area is that
+ * of their ellipse of inertia, blurred by a pixel. */
+static struct patch skew_patch_of(const struct task *t,
+                                  const struct glint_ray *a,
+                                  const struct glint_ray *b,
+                                  const struct glint_ray *c, double pupil_mm2)
+{
+    const double bx = b->sensor_x_mm - a->sensor_x_mm;
+    const double by = b->sensor_y_mm - a->sensor_y_mm;
+    const double cx = c->sensor_x_mm - a->sensor_x_mm;
+    const double cy = c->sensor_y_mm - a->sensor_y_mm;
+    /* A pixel in all cells of a row. */
+    const double blur = t->pixel_mm * t->pixel_mm / (ACROSS * ACROSS);
+    const double xx = bx * bx + cx * cx + blur, yy = by * by + cy * cy + blur;
+    const double xy = bx * by + cx * cy;
+    const double area = sqrt(xx * yy - xy * xy);
+
+    return (struct patch){.irradiance = a->energy * pupil_mm2 / area,
+                          .area_mm2 = area};
+}
+
+/* Rays of a row, with their mean energies. */
+struct rays {
+    struct glint_ray at[ACROSS + 1];
+    enum glint_ray_status status[ACROSS + 1];
+};
+
+static void trace_row(const struct glint_path path[WAVES],
+                      const struct glint_row *row, struct rays *rays)
+{
+    struct rays other = {.at = {{0}}};
+
+    glint_trace_row(&path[0], row, rays->at, rays->status, NULL);
+    for (int k = 1; k < WAVES; k++) {
+        glint_trace_row(&path[k], row, other.at, other.status, NULL);
+        for (int i = 0; i <= ACROSS; i++)
+            if (other.status[i] == GLINT_RAY_OK)
+                rays->at[i].energy += other.at[i].energy;
+    }
+    for (int i = 0; i <= ACROSS; i++)
+        rays->at[i].energy /= WAVES;
+}
+
+/* Adds the light of one ghost from DIRECTION; returns how many cells of it. */
+static int add_skew_ghost(const struct task *t, int ghost,
+                          const double direction[3], struct patch *patch)
+{
+    struct glint_row row = {
+        .n = ACROSS + 1,
+        .direction = {direction[0], direction[1], direction[2]}};
+    struct glint_path path[WAVES];
+    struct rays rays[2];
+    struct glint_pupil p;
+    double dy;
+    int n = 0;
+
+    for (int k = 0; k < WAVES; k++)
+        glint_path_init(&path[k], t->setup->lens, &t->setup->ghost[ghost],
+                        t->nm[k]);
+    path[0].places_only = true;
+    if (!glint_pupil_find_towards(&p, &path[0], direction,
+                                  t->setup->optics.stop_radius_mm, t->field_mm,
+                                  NULL))
+        return 0;
+    path[0].places_only = false;
+    row.x0_mm = p.x0_mm;
+    row.step_mm = (p.x1_mm - p.x0_mm) / ACROSS;
+    dy = (p.y1_mm - p.y0_mm) / ACROSS;
+    for (int j = 0; j <= ACROSS; j++) {
+        const struct rays *const below = &rays[~j & 1], *const here =
+                                                            &rays[j & 1];
+
+        row.y_mm = p.y0_mm + j * dy;
+        trace_row(path, &row, &rays[j & 1]);
+        for (int i = 0; i < ACROSS && j > 0; i++)
+            if (below->status[i] == GLINT_RAY_OK &&
+                below->status[i + 1] == GLINT_RAY_OK &&
+                here->status[i] == GLINT_RAY_OK &&
+                is_in_picture(t, &below->at[i]))
+                patch[n++] = skew_patch_of(t, &below->at[i], &below->at[i + 1],
+                                           &here->at[i], row.step_mm * dy);
+    }
+    return n;
+}
+
+/* Returns the irradiance that 1/1000 of the picture exceeds; if less of it has
+ * light, the least. */
+static double skew_level_of(const struct task *t, struct patch *patch, int n)
+{
+    double left = 0.001 * 4 * t->half_mm[0] * t->half_mm[1];
+    int k = 0;
+
+    qsort(patch, (size_t)n, sizeof *patch, brighter_first);
+    while (k + 1 < n && (left -= patch[k].area_mm2) > 0)
+        k++;
+    return patch[k].irradiance;
+}
+
+/* Finds the level of one angle: the least over the azimuths that have light,
+ * HUGE_VAL if none has. */
+static void skew_angle_job(void *ctx, int job, int worker)
+{
+    struct task *t = ctx;
+    const int ghosts = t->setup->n_ghosts;
+    const double sine = t->out->sine[job];
+    struct patch *patch =
+        malloc(((size_t)ghosts * ACROSS * ACROSS + 1) * sizeof *patch);
+    double level = HUGE_VAL;
+
+    (void)worker;
+    t->status[job] = patch ? GLINT_OK : GLINT_E_MEMORY;
+    if (!patch)
+        return;
+    for (int a = 0; a < (job ? t->n_azimuths : 1); a++) {
+        const double phi = 2 * GLINT_PI * t->turns * a;
+        const double direction[3] = {sine * cos(phi), sine * sin(phi),
+                                     sqrt(1 - sine * sine)};
+        int n = 0;
+
+        for (int k = 0; k < ghosts; k++)
+            n += add_skew_ghost(t, k, direction, patch + n);
+        if (n > 0)
+            level = fmin(level, skew_level_of(t, patch, n));
+    }
+    t->out->level[job] = level;
+    free(patch);
+}
+
+/* --------------------------------------------------------------------- both */
+
 static const double degrees[GLINT_BRIGHTNESS_ANGLES] = {0,  3,  6,  9,  12, 15,
                                                         18, 22, 27, 34, 45};
 
@@ -157,14 +316,20 @@ int glint_brightness_angles(struct glint_brightness *brightness, double max_deg)
     return n;
 }
 
-void glint_brightness_picture(const struct glint_prescription *lens,
-                              double field_mm, double half_mm[2])
+uint32_t glint_skew_mirrors(const struct glint_prescription *lens)
 {
-    const double scale =
-        field_mm / (1.1 * hypot(lens->film_width_mm, lens->film_height_mm));
+    uint32_t mirrors = GLINT_MIRRORS_X | GLINT_MIRRORS_Y;
 
-    half_mm[0] = scale * lens->film_width_mm;
-    half_mm[1] = scale * lens->film_height_mm;
+    for (int k = 0; k < lens->n_surfaces; k++) {
+        const struct glint_shape *const a = &lens->surface[k].shape;
+
+        /* A turn about the y axis moves what lies at x. */
+        if (a->decentre_mm[0] != 0.0 || a->tilt_deg[1] != 0.0)
+            mirrors &= ~(uint32_t)GLINT_MIRRORS_X;
+        if (a->decentre_mm[1] != 0.0 || a->tilt_deg[0] != 0.0)
+            mirrors &= ~(uint32_t)GLINT_MIRRORS_Y;
+    }
+    return mirrors;
 }
 
 enum glint_status glint_brightness_find(struct glint_brightness *brightness,
@@ -173,16 +338,32 @@ enum glint_status glint_brightness_find(struct glint_brightness *brightness,
                                         const double band_nm[2],
                                         struct glint_workers *workers)
 {
-    const int n = glint_brightness_angles(brightness, max_deg);
+    const bool round = glint_prescription_is_round(setup->lens);
+    const bool quarter =
+        glint_skew_mirrors(setup->lens) == (GLINT_MIRRORS_X | GLINT_MIRRORS_Y);
+    const double scale = field_mm / (1.1 * hypot(setup->lens->film_width_mm,
+                                                 setup->lens->film_height_mm));
     struct task t = {.out = brightness,
                      .setup = setup,
                      .field_mm = field_mm,
-                     .nm = 0.5 * (band_nm[0] + band_nm[1])};
+                     .half_mm = {scale * setup->lens->film_width_mm,
+                                 scale * setup->lens->film_height_mm},
+                     .nm = {0.5 * (band_nm[0] + band_nm[1])},
+                     .n_azimuths = quarter ? 3 : 6,
+                     .turns = quarter ? 0.125 : 1 / 6.0};
+    const int n = glint_brightness_angles(brightness, max_deg);
 
-    glint_brightness_picture(setup->lens, field_mm, t.half_mm);
+    t.pixel_mm = 2 * t.half_mm[0] / 1920;
+    for (int k = 0; k < WAVES && !round; k++) {
+        /* The middle one first. */
+        const double node = (k + 1) % WAVES - 1.0;
+        const double lo = pow(band_nm[1], -2), hi = pow(band_nm[0], -2);
+
+        t.nm[k] = pow(0.5 * (lo + hi) + 0.433 * node * (hi - lo), -0.5);
+    }
     for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++)
-        brightness->level[k] = 0;
-    glint_workers_run(workers, n, angle_job, &t);
+        brightness->level[k] = round ? 0 : HUGE_VAL;
+    glint_workers_run(workers, n, round ? angle_job : skew_angle_job, &t);
     for (int k = 0; k < n; k++)
         if (t.status[k] != GLINT_OK)
             return t.status[k];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds how bright a ghost must be to count.
+ * Finds how bright a ghost must be to count; the tolerances that follow.
  *
  *   in   a lens, the field, the band
  *   out  for a few angles: the irradiance that 1/1000 of the picture reaches or
@@ -29,10 +29,9 @@ struct glint_brightness {
 int glint_brightness_angles(struct glint_brightness *brightness,
                             double max_deg);
 
-/* Sets HALF_MM to half the width and height of the picture that a field of
- * FIELD_MM holds. */
-void glint_brightness_picture(const struct glint_prescription *lens,
-                              double field_mm, double half_mm[2]);
+/* Returns the planes of symmetry of a lens: GLINT_MIRRORS_X, GLINT_MIRRORS_Y.
+ */
+uint32_t glint_skew_mirrors(const struct glint_prescription *lens);
 
 /* Finds the levels that angles up to MAX_DEG need; they do not depend on
  * WORKERS. GLINT_E_MEMORY. */
@@ -45,5 +44,35 @@ enum glint_status glint_brightness_find(struct glint_brightness *brightness,
 /* Returns the lower level of the two angles around SINE. */
 double glint_brightness_at(const struct glint_brightness *brightness,
                            double sine);
+
+/* Most times that a zone's box may be halved: in general, of shaped lenses, and
+ * at the axis for fine tolerances. */
+enum { GLINT_PART_DEPTH = 4, GLINT_SHAPED_DEPTH = 6, GLINT_MAX_AXIS_DEPTH = 8 };
+
+/* Root mean squares that are aimed at; single rays may be off by five times as
+ * much. Positions in the stop and at barrels draw the outline: EDGE_MM is how
+ * far they may shift it on the sensor. From that follow their own tolerances:
+ * STOP_LEAST to STOP, in stop radii, and 0.06 BARREL to BARREL, in radii of the
+ * barrel. The lower limits are needed as the outline of a ghost that is larger
+ * than the picture may lie outside of it, but moves in when the stop closes.
+ *
+ * The values are for ghosts of the level above. sRGB shows an error
+ * in a ghost of v times that level by v^0.42 as much, so edges and energy
+ * of fainter ghosts may be off by more, up to EASE times. */
+struct glint_tolerance {
+    double sensor_mm, edge_mm, stop, stop_least, barrel, energy;
+    double faint_sensor_mm; /* mm; sensor_mm of fainter ghosts is eased up to
+                               this, no further */
+    double escape; /* relative radius that a ray may get past a barrel that is
+                      left out */
+    double ease;
+    double pixel_mm; /* of a picture 1920 wide */
+    /* Factor for zones at the axis, where light folds into rings: on how narrow
+     * they may become, and on the tolerance of places. */
+    double axis;
+    int axis_depth; /* times that boxes of zones at the axis may be halved,
+                       GLINT_PART_DEPTH to GLINT_MAX_AXIS_DEPTH */
+    const struct glint_brightness *brightness;
+};
 
 #endif

@@ -28,6 +28,7 @@ enum {
 struct fitter {
     const struct glint_visible *visible;
     const struct glint_tolerance *tolerance;
+    struct glint_next_rules rules; /* of both */
     struct glint_fitted_ghost *out;
     struct glint_zone_buffers buffers;
     glint_zone_sampling sampling;
@@ -142,8 +143,8 @@ fit_zone(struct fitter *f, const struct glint_zone_piece *p,
         return GLINT_OK;
     status = set_box(system, zone);
     a->aim = glint_zone_aim_of(f->tolerance, zone, &buffers->rays);
-    task.hopeless = glint_next_hopeless(f->visible, f->tolerance, p, &a->aim);
-    task.settled = glint_next_settled(f->visible, f->tolerance, p, &a->aim);
+    task.hopeless = glint_next_hopeless(&f->rules, p, &a->aim);
+    task.settled = glint_next_settled(&f->rules, p, &a->aim);
     if (status == GLINT_OK)
         status = glint_zone_fit(&task, &a->aim, buffers, system, &a->errors);
     system->met = a->errors.worst <= 1;
@@ -244,9 +245,8 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
 
         status = try_zone(f, &p, &system, &attempt);
         if (status == GLINT_OK)
-            next = n + 2 > DEEP
-                       ? GLINT_KEEP
-                       : glint_next(f->visible, f->tolerance, &p, &attempt);
+            next =
+                n + 2 > DEEP ? GLINT_KEEP : glint_next(&f->rules, &p, &attempt);
         tell(f, &p, next == GLINT_KEEP);
         if (p.depth == 0 && p.w0 <= -1)
             f->n_parts = 0;
@@ -283,6 +283,7 @@ enum glint_status glint_fit_ghost(const struct glint_visible *visible,
         return status;
     f->visible = visible;
     f->tolerance = tolerance;
+    f->rules = (struct glint_next_rules){visible, tolerance};
     f->in_band.beside = f->beside_band;
     f->in_part.beside = f->beside_part;
     /* There is no profile of a part of the band yet. */

@@ -16,7 +16,7 @@
 #define GLINT_BAKE_FIT_FIT_H
 
 #include "bake/fit/fitted.h"
-#include "bake/fit/tolerance.h"
+#include "bake/fit/brightness.h"
 #include "bake/visible/visible.h"
 #include "glint/status.h"
 

@@ -40,13 +40,6 @@
 #define NOT_FAINT 1.5
 #define FAINT     6.0
 
-/* The ghost, and what its zones are fitted to. */
-struct rules {
-    const struct glint_visible *visible;
-    const struct glint_tolerance *tolerance;
-};
-
-/* Returns whether a coating of several films reflects the ghost. */
 bool glint_next_stacks(const struct glint_visible *visible)
 {
     const struct glint_setup *setup = visible->setup;
@@ -68,7 +61,7 @@ static double bearable(const struct glint_zone_aim *aim)
 }
 
 /* Returns up to which error, in tolerances, P is kept at once. */
-static double acceptable(const struct rules *f,
+static double acceptable(const struct glint_next_rules *f,
                          const struct glint_zone_aim *aim)
 {
     const double faint =
@@ -79,7 +72,8 @@ static double acceptable(const struct rules *f,
 
 /* Returns up to which error, in tolerances, a zone of any width is not halved
  * if that gained nothing; 0: a wide zone always is. */
-static double endured(const struct rules *f, const struct glint_zone_aim *aim)
+static double endured(const struct glint_next_rules *f,
+                      const struct glint_zone_aim *aim)
 {
     return f->visible->wide ? bearable(aim) : 0;
 }
@@ -87,7 +81,7 @@ static double endured(const struct rules *f, const struct glint_zone_aim *aim)
 /* Returns STUCK_DEG, or for wide stops more. Where their rays turn around in
  * the stop, halving angles gains nothing, but parts of the box do, and narrower
  * zones need as many parts each. */
-static double stuck_deg(const struct rules *f)
+static double stuck_deg(const struct glint_next_rules *f)
 {
     return f->visible->shaped || f->visible->far ? SHAPED_STUCK * STUCK_DEG
            : f->visible->wide                    ? WIDE_STUCK * STUCK_DEG
@@ -95,7 +89,8 @@ static double stuck_deg(const struct rules *f)
 }
 
 /* Returns how many times P's box may be halved. */
-static int most_depth(const struct rules *f, const struct glint_zone_piece *p)
+static int most_depth(const struct glint_next_rules *f,
+                      const struct glint_zone_piece *p)
 {
     const int off_axis =
         f->visible->shaped ? GLINT_SHAPED_DEPTH : GLINT_PART_DEPTH;
@@ -105,11 +100,9 @@ static int most_depth(const struct rules *f, const struct glint_zone_piece *p)
                : off_axis;
 }
 
-/* Returns the error, in tolerances, beyond which P will be halved or divided
- * anyway, so that its fit may stop early; 0: there is none. Narrow zones may be
- * at the end of halving, where the error has to be known. */
-static double hopeless(const struct rules *f, const struct glint_zone_piece *p,
-                       const struct glint_zone_aim *aim)
+double glint_next_hopeless(const struct glint_next_rules *f,
+                           const struct glint_zone_piece *p,
+                           const struct glint_zone_aim *aim)
 {
     if (p->thorough)
         return p->depth < most_depth(f, p) ? HOPELESS * bearable(aim) : 0;
@@ -127,16 +120,15 @@ static double width_of(const struct glint_zone_piece *p,
 }
 
 /* Returns the factor on LEAST_DEG and STUCK_DEG for P. */
-static double least_of(const struct rules *f, const struct glint_zone_piece *p)
+static double least_of(const struct glint_next_rules *f,
+                       const struct glint_zone_piece *p)
 {
     return p->lo <= 0 ? f->tolerance->axis : 1;
 }
 
-/* Returns the error, in tolerances, above which next_step() decides the same
- * for P, and later for its halves, however large the error is; 0: there is
- * none. */
-static double settled(const struct rules *f, const struct glint_zone_piece *p,
-                      const struct glint_zone_aim *aim)
+double glint_next_settled(const struct glint_next_rules *f,
+                          const struct glint_zone_piece *p,
+                          const struct glint_zone_aim *aim)
 {
     const double least = least_of(f, p), width = width_of(p, aim);
     const double kept = acceptable(f, aim);
@@ -146,18 +138,16 @@ static double settled(const struct rules *f, const struct glint_zone_piece *p,
     if (width >= least * stuck_deg(f) && endured(f, aim) > 0)
         return fmax(endured(f, aim), kept);
     /* The lower half is the narrower one in degrees. If even that is too wide
-     * to be stuck, next_step() does not ask what halving gained. */
+     * to be stuck, glint_next() does not ask what halving gained. */
     if (glint_next_degrees(p->lo, 0.5 * (p->lo + p->hi)) >= stuck_deg(f) ||
         width < least * LEAST_DEG)
         return kept;
     return width < least * stuck_deg(f) ? fmax(kept, STUCK * p->before) : 0;
 }
 
-/* The next step for a zone after attempt A. For bright ghosts zones are halved
- * further. */
-static enum glint_next next_step(const struct rules *f,
-                                 const struct glint_zone_piece *p,
-                                 const struct glint_attempt *a)
+enum glint_next glint_next(const struct glint_next_rules *f,
+                           const struct glint_zone_piece *p,
+                           const struct glint_attempt *a)
 {
     const double left = a->errors.worst;
     const bool helped = left <= STUCK * p->before;
@@ -183,34 +173,4 @@ static enum glint_next next_step(const struct rules *f,
     if (left <= acceptable(f, &a->aim))
         return GLINT_KEEP;
     return stuck && left < HUGE_VAL ? GLINT_THOROUGH : GLINT_HALVE;
-}
-
-double glint_next_hopeless(const struct glint_visible *visible,
-                           const struct glint_tolerance *tolerance,
-                           const struct glint_zone_piece *p,
-                           const struct glint_zone_aim *aim)
-{
-    const struct rules rules = {visible, tolerance};
-
-    return hopeless(&rules, p, aim);
-}
-
-double glint_next_settled(const struct glint_visible *visible,
-                          const struct glint_tolerance *tolerance,
-                          const struct glint_zone_piece *p,
-                          const struct glint_zone_aim *aim)
-{
-    const struct rules rules = {visible, tolerance};
-
-    return settled(&rules, p, aim);
-}
-
-enum glint_next glint_next(const struct glint_visible *visible,
-                           const struct glint_tolerance *tolerance,
-                           const struct glint_zone_piece *p,
-                           const struct glint_attempt *a)
-{
-    const struct rules rules = {visible, tolerance};
-
-    return next_step(&rules, p, a);
 }

@@ -11,7 +11,7 @@
 #ifndef GLINT_BAKE_FIT_NEXT_H
 #define GLINT_BAKE_FIT_NEXT_H
 
-#include "bake/fit/tolerance.h"
+#include "bake/fit/brightness.h"
 #include "bake/visible/visible.h"
 #include "bake/fit/zone_fit.h"
 
@@ -50,25 +50,29 @@ double glint_next_degrees(double lo, double hi);
 /* Returns whether a coating of several films reflects the ghost. */
 bool glint_next_stacks(const struct glint_visible *visible);
 
+/* The ghost, and what its zones are fitted to. */
+struct glint_next_rules {
+    const struct glint_visible *visible;
+    const struct glint_tolerance *tolerance;
+};
+
 /* Returns the error, in tolerances, beyond which P will be halved or divided
- * anyway, so that its fit may stop early; 0: there is none. */
-double glint_next_hopeless(const struct glint_visible *visible,
-                           const struct glint_tolerance *tolerance,
+ * anyway, so that its fit may stop early; 0: there is none. Narrow zones may be
+ * at the end of halving, where the error has to be known. */
+double glint_next_hopeless(const struct glint_next_rules *rules,
                            const struct glint_zone_piece *p,
                            const struct glint_zone_aim *aim);
 
 /* Returns the error, in tolerances, above which glint_next() decides the same
  * for P, and later for its halves, however large the error is; 0: there is
  * none. */
-double glint_next_settled(const struct glint_visible *visible,
-                          const struct glint_tolerance *tolerance,
+double glint_next_settled(const struct glint_next_rules *rules,
                           const struct glint_zone_piece *p,
                           const struct glint_zone_aim *aim);
 
 /* Returns what to do with P after attempt A. For bright ghosts zones are halved
  * further. */
-enum glint_next glint_next(const struct glint_visible *visible,
-                           const struct glint_tolerance *tolerance,
+enum glint_next glint_next(const struct glint_next_rules *rules,
                            const struct glint_zone_piece *p,
                            const struct glint_attempt *a);
 

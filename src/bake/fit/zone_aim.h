@@ -8,7 +8,7 @@
 #define GLINT_BAKE_FIT_ZONE_AIM_H
 
 #include "bake/fit/fitted.h"
-#include "bake/fit/tolerance.h"
+#include "bake/fit/brightness.h"
 #include "bake/fit/zone_rays.h"
 
 struct glint_zone_aim {

@@ -6,7 +6,6 @@
 
 #include "bake/motion/localise.h"
 #include "bake/table/draft.h"
-#include "base/blob.h"
 #include "base/q.h"
 #include "glint/scene/motion_bake.h"
 #include "glint/view.h"
@@ -218,17 +217,16 @@ static void set_scale(struct writer *w, const double low[3],
     w->scale = ldexp(1, log2);
 }
 
-static void set_header(struct writer *w, const char *name)
+static void set_header(struct writer *w, const char *name, uint64_t key)
 {
+    static const struct glint_blob_kind kind = {
+        .magic = GLINT_MOTION_MAGIC, .version = GLINT_MOTION_VERSION};
     const struct glint_motion_baker *b = w->baker;
     struct glint_motion_header *h = &w->header;
     const double half = b->body.angle_deg * GLINT_PI / 360;
     double low[3], high[3];
 
-    h->magic = GLINT_MOTION_MAGIC;
-    h->version = GLINT_MOTION_VERSION;
-    h->variant = (uint32_t)b->options.fit;
-    glint_draft_name(h->name, name, "motion");
+    glint_draft_begin(h, &kind, (uint32_t)b->options.fit, key, name, "motion");
     box_of(b, low, high);
     set_scale(w, low, high);
     h->n_frames = b->n_frames;
@@ -257,9 +255,7 @@ static bool write_motion(const struct glint_motion_baker *baker,
     struct writer w = {.baker = baker, .report = report};
     uint32_t sum;
 
-    set_header(&w, name);
-    w.header.key[0] = (uint32_t)key;
-    w.header.key[1] = (uint32_t)(key >> 32);
+    set_header(&w, name, key);
     put(&w, &w.header, sizeof w.header);
     end_block(&w);
     put_sensors(&w);
@@ -267,18 +263,12 @@ static bool write_motion(const struct glint_motion_baker *baker,
     put_index(&w);
     put_poses(&w);
     put_intensities(&w);
-    if (w.draft.out_of_memory) {
-        free(w.draft.data);
-        return false;
-    }
     w.header.bytes = (uint32_t)w.draft.bytes;
     glint_draft_amend(&w.draft, 0, &w.header, sizeof w.header);
-    sum = glint_motion_sum(w.draft.data, 0);
+    sum = w.draft.out_of_memory ? 0 : glint_motion_sum(w.draft.data, 0);
     glint_draft_amend(&w.draft, GLINT_MOTION_ROOM + 4, &sum, sizeof sum);
-    glint_blob_seal(w.draft.data, w.draft.bytes);
-    *data = w.draft.data;
-    *bytes = w.draft.bytes;
-    return true;
+    return glint_draft_finish(&w.draft, &w.header, sizeof w.header, true, data,
+                              bytes);
 }
 
 /* What is warned of, of the span. */

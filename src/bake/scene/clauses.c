@@ -4,7 +4,80 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "bake/scene/near.h"
+/* ------------------------------------------------------------ mistyped words
+ */
+
+/* letters of the words that are compared, and bytes of a hint */
+enum { NEAR_CHARS = 32, NEAR_BYTES = 64 };
+
+/* Finds the word that a mistyped one may have meant. */
+struct near {
+    struct glint_word word;
+    const char *best; /* nearest candidate so far, or NULL */
+    int distance;
+};
+
+static int least(int a, int b, int c)
+{
+    const int ab = a < b ? a : b;
+
+    return ab < c ? ab : c;
+}
+
+/* Returns how many letters have to be inserted, left out or changed to get from
+ * WORD to CANDIDATE; NEAR_CHARS if either has that many. */
+static int distance(const struct glint_word *word, const char *candidate)
+{
+    const int m = (int)strlen(candidate);
+    int row[NEAR_CHARS];
+
+    if (word->length >= NEAR_CHARS || m >= NEAR_CHARS)
+        return NEAR_CHARS;
+    for (int k = 0; k <= m; k++)
+        row[k] = k;
+    for (int i = 1; i <= word->length; i++) {
+        int corner = row[0]; /* of the row before, one letter back */
+
+        row[0] = i;
+        for (int k = 1; k <= m; k++) {
+            const int above = row[k];
+
+            row[k] = least(above + 1, row[k - 1] + 1,
+                           corner + (word->start[i - 1] != candidate[k - 1]));
+            corner = above;
+        }
+    }
+    return row[m];
+}
+
+static struct near near_begin(const struct glint_word *word)
+{
+    return (struct near){*word, NULL, NEAR_CHARS};
+}
+
+static void near_offer(struct near *near, const char *candidate)
+{
+    const int d = distance(&near->word, candidate);
+    const int most = (int)strlen(candidate) / 3;
+
+    if (d < near->distance && d <= (most > 1 ? most : 1)) {
+        near->distance = d;
+        near->best = candidate;
+    }
+}
+
+/* Writes "; did you mean 'BEST'?" to TEXT, or nothing if no candidate is near:
+ * at most a third of its letters are inserted, left out or changed. */
+static const char *near_text(const struct near *near, char text[NEAR_BYTES])
+{
+    text[0] = '\0';
+    if (near->best)
+        snprintf(text, NEAR_BYTES, "; did you mean '%s'?", near->best);
+    return text;
+}
+
+/* ------------------------------------------------------------------- clauses
+ */
 
 /* Lists the words of CLAUSE: "at, radius and material". */
 static void list(const struct glint_clause *clause, char *text, size_t bytes)
@@ -23,13 +96,13 @@ static bool refuse(struct glint_text *text, const char *line,
                    const struct glint_clause *clause,
                    const struct glint_word *word)
 {
-    struct glint_near near = glint_near_begin(*word);
-    char quote[GLINT_QUOTE_BYTES], mean[GLINT_NEAR_BYTES], words[120];
+    struct near near = near_begin(word);
+    char quote[GLINT_QUOTE_BYTES], mean[NEAR_BYTES], words[120];
 
     glint_word_quote(word, quote);
     for (int i = 0; clause[i].word; i++)
-        glint_near_offer(&near, clause[i].word);
-    glint_near_text(&near, mean);
+        near_offer(&near, clause[i].word);
+    near_text(&near, mean);
     list(clause, words, sizeof words);
     return glint_text_fail(text, word->place, "%s takes %s, not '%s'%s", line,
                            words, quote, mean);
@@ -91,6 +164,69 @@ bool glint_clauses_read(struct glint_text *text, const char *line,
             return glint_text_fail(text, word.place, "%s needs '%s'", line,
                                    c->word);
     return true;
+}
+
+/* --------------------------------------------------------------------- lines
+ */
+
+bool glint_line_begin(struct glint_text *text,
+                      const struct glint_text_line *lines, int n, int *first,
+                      int *index)
+{
+    const struct glint_word word = glint_text_next_word(text);
+    char quote[GLINT_QUOTE_BYTES], mean[NEAR_BYTES];
+    struct near near = near_begin(&word);
+    int i = 0;
+
+    *index = -1;
+    if (!word.length)
+        return true;
+    while (i < n && !glint_word_is(&word, lines[i].word))
+        near_offer(&near, lines[i++].word);
+    if (i == n)
+        return glint_text_fail(text, word.place, "unknown word '%s'%s",
+                               glint_word_quote(&word, quote),
+                               near_text(&near, mean));
+    if (first[i] && !lines[i].many)
+        return glint_text_fail(text, word.place,
+                               "a second %s; the first is on line %d",
+                               lines[i].word, first[i]);
+    first[i] = word.place.line;
+    *index = i;
+    return true;
+}
+
+bool glint_name_find(struct glint_text *text, const struct glint_word *word,
+                     const char *what, const char *names, size_t stride, int n,
+                     int *index)
+{
+    struct near near = near_begin(word);
+    char quote[GLINT_QUOTE_BYTES], mean[NEAR_BYTES];
+
+    for (*index = 0; *index < n; ++*index, names += stride) {
+        if (glint_word_is(word, names))
+            return true;
+        near_offer(&near, names);
+    }
+    return glint_text_fail(
+        text, word->place, "no %s '%s' is defined above this line%s", what,
+        glint_word_quote(word, quote), near_text(&near, mean));
+}
+
+int glint_choice_read(struct glint_text *text, const char *line,
+                      const char *list, const char *const *names)
+{
+    const struct glint_word word = glint_text_next_word(text);
+    char quote[GLINT_QUOTE_BYTES];
+
+    for (int i = 0; names[i]; i++)
+        if (glint_word_is(&word, names[i]))
+            return i;
+    glint_text_fail(text, word.place, "%s takes %s%s%s%s", line, list,
+                    word.length ? ", not '" : "",
+                    word.length ? glint_word_quote(&word, quote) : "",
+                    word.length ? "'" : "");
+    return -1;
 }
 
 bool glint_name_read(struct glint_text *text, const char *what, char *name,

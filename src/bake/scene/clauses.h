@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads a line of a scene text behind its first words: clauses in any order,
- * each a word and its values.
+ * Reads a line of a scene text: its first word, and behind that clauses in any
+ * order, each a word and its values.
  *
  *     struct glint_clause clause[] = {
  *         {"at", 3, -REACH, REACH, at, .required = true},
@@ -36,6 +36,30 @@ bool glint_numbers_read(struct glint_text *text, const char *what, int n,
 /* Reads a name into NAME: a letter, then letters, digits, - and _. */
 bool glint_name_read(struct glint_text *text, const char *what, char *name,
                      int bytes);
+
+/* Sets INDEX to the one of N names that WORD is; the first name stands in
+ * NAMES, the next ones every STRIDE bytes. Refuses the word if it is none. */
+bool glint_name_find(struct glint_text *text, const struct glint_word *word,
+                     const char *what, const char *names, size_t stride, int n,
+                     int *index);
+
+/* Reads one of NAMES, NULL at the end, which LIST lists and LINE takes; returns
+ * its index, or -1. */
+int glint_choice_read(struct glint_text *text, const char *line,
+                      const char *list, const char *const *names);
+
+/* A line of a text, by its first word. */
+struct glint_text_line {
+    const char *word;
+    bool many; /* it may stand more than once */
+};
+
+/* Reads the first word of the line and sets INDEX to the one of N LINES that it
+ * is; -1: the line is empty. FIRST[n], 0 at first, has the number of the line
+ * that each was seen on. */
+bool glint_line_begin(struct glint_text *text,
+                      const struct glint_text_line *lines, int n, int *first,
+                      int *index);
 
 /* Checks that nothing is left of the line. */
 bool glint_line_ends(struct glint_text *text, const char *line);

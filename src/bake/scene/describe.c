@@ -6,63 +6,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bake/scene/near.h"
-
-static const struct line {
-    const char *word;
-    bool (*read)(struct glint_describer *);
-    bool once;
-} lines[] = {
-    {"hand", glint_describe_hand, true},
-    {"camera", glint_describe_camera, true},
-    {"background", glint_describe_background, true},
-    {"environment", glint_describe_environment, false},
-    {"light", glint_describe_light, false},
-    {"texture", glint_describe_texture, false},
-    {"material", glint_describe_material, false},
-    {"sphere", glint_describe_sphere, false},
-    {"triangle", glint_describe_triangle, false},
-    {"plane", glint_describe_plane, false},
-    {"mesh", glint_describe_mesh, false},
-    {"motion", glint_describe_motion, true},
-    {"shadow", glint_describe_shadow, true},
-    {"flare", glint_describe_flare, true},
-};
+static const struct glint_text_line lines[] = {
+    {"hand", false},       {"camera", false}, {"background", false},
+    {"environment", true}, {"light", true},   {"texture", true},
+    {"material", true},    {"sphere", true},  {"triangle", true},
+    {"plane", true},       {"mesh", true},    {"motion", false},
+    {"shadow", false},     {"flare", false}};
 
 enum { N_LINES = sizeof lines / sizeof *lines };
 
-static bool unknown(struct glint_describer *d, const struct glint_word *word)
-{
-    struct glint_near near = glint_near_begin(*word);
-    char quote[GLINT_QUOTE_BYTES], mean[GLINT_NEAR_BYTES];
-
-    glint_word_quote(word, quote);
-    for (int i = 0; i < N_LINES; i++)
-        glint_near_offer(&near, lines[i].word);
-    return glint_text_fail(&d->text, word->place, "unknown word '%s'%s", quote,
-                           glint_near_text(&near, mean));
-}
-
-/* Reads the line; FIRST has the number of the line on which each word that may
- * stand once was seen, or 0. */
-static bool read_line(struct glint_describer *d, int first[N_LINES])
-{
-    const struct glint_word word = glint_text_next_word(&d->text);
-    int i = 0;
-
-    if (!word.length)
-        return true;
-    while (i < N_LINES && !glint_word_is(&word, lines[i].word))
-        i++;
-    if (i == N_LINES)
-        return unknown(d, &word);
-    if (lines[i].once && first[i])
-        return glint_text_fail(&d->text, word.place,
-                               "a second %s; the first is on line %d",
-                               lines[i].word, first[i]);
-    first[i] = word.place.line;
-    return lines[i].read(d);
-}
+static bool (*const read[N_LINES])(struct glint_describer *) = {
+    glint_describe_hand,       glint_describe_camera,
+    glint_describe_background, glint_describe_environment,
+    glint_describe_light,      glint_describe_texture,
+    glint_describe_material,   glint_describe_sphere,
+    glint_describe_triangle,   glint_describe_plane,
+    glint_describe_mesh,       glint_describe_motion,
+    glint_describe_shadow,     glint_describe_flare};
 
 enum glint_status
 glint_description_parse(struct glint_description *scene, const char *text,
@@ -82,8 +42,12 @@ glint_description_parse(struct glint_description *scene, const char *text,
     scene->camera.fov_deg = 53.0;
     scene->motion.camera = -1;
     good = glint_text_open(&d.text, text, bytes, file_name, error);
-    while (good && glint_text_next_line(&d.text))
-        good = read_line(&d, first);
+    while (good && glint_text_next_line(&d.text)) {
+        int i;
+
+        good = glint_line_begin(&d.text, lines, N_LINES, first, &i) &&
+               (i < 0 || read[i](&d));
+    }
     good = good && glint_describe_axes(&d) && glint_describe_around(&d) &&
            glint_describe_sensors(&d);
     if (good && !scene->n_objects)

@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bake/scene/near.h"
 #include "bake/scene/texels.h"
 #include "glint/view.h"
 
@@ -161,32 +160,13 @@ bool glint_describe_texture(struct glint_describer *d)
 
 /* ---------------------------------------------------------------- material */
 
-/* Sets INDEX to the one of N names that WORD is; the first name stands in
- * NAMES, the next ones every STRIDE bytes. Refuses the word if it is none. */
-static bool find(struct glint_describer *d, const struct glint_word *word,
-                 const char *what, const char *names, size_t stride, int n,
-                 int *index)
-{
-    struct glint_near near = glint_near_begin(*word);
-    char quote[GLINT_QUOTE_BYTES], mean[GLINT_NEAR_BYTES];
-
-    for (*index = 0; *index < n; ++*index, names += stride) {
-        if (glint_word_is(word, names))
-            return true;
-        glint_near_offer(&near, names);
-    }
-    return glint_text_fail(
-        &d->text, word->place, "no %s '%s' is defined above this line%s", what,
-        glint_word_quote(word, quote), glint_near_text(&near, mean));
-}
-
 static bool find_texture(struct glint_describer *d,
                          const struct glint_word *word, int *index)
 {
     const struct glint_description *s = d->scene;
 
-    return find(d, word, "texture", s->texture[0].name, sizeof *s->texture,
-                s->n_textures, index);
+    return glint_name_find(&d->text, word, "texture", s->texture[0].name,
+                           sizeof *s->texture, s->n_textures, index);
 }
 
 bool glint_describe_find(struct glint_describer *d,
@@ -194,8 +174,8 @@ bool glint_describe_find(struct glint_describer *d,
 {
     const struct glint_description *s = d->scene;
 
-    return find(d, word, "material", s->material[0].name, sizeof *s->material,
-                s->n_materials, index);
+    return glint_name_find(&d->text, word, "material", s->material[0].name,
+                           sizeof *s->material, s->n_materials, index);
 }
 
 /* Checks what the parts of a material give together. */

@@ -12,7 +12,6 @@
 #include "bake/scene/grid.h"
 #include "bake/scene/skin.h"
 #include "bake/scene/texels.h"
-#include "base/blob.h"
 #include "glint/scene/ward.h"
 #include "glint/view.h"
 
@@ -431,15 +430,14 @@ static void set_motion(struct writer *w)
 
 static void set_header(struct writer *w, const char *name, uint64_t key)
 {
+    static const struct glint_blob_kind kind = {.magic = GLINT_SCENE_MAGIC,
+                                                .version = GLINT_SCENE_VERSION};
     const struct glint_description *s = w->scene;
     struct glint_scene_header *h = &w->header;
 
-    h->magic = GLINT_SCENE_MAGIC;
-    h->version = GLINT_SCENE_VERSION;
-    h->variant = w->scene->left_handed ? GLINT_HAND_LEFT : GLINT_HAND_RIGHT;
-    h->key[0] = (uint32_t)key;
-    h->key[1] = (uint32_t)(key >> 32);
-    glint_draft_name(h->name, name, "scene");
+    glint_draft_begin(h, &kind,
+                      s->left_handed ? GLINT_HAND_LEFT : GLINT_HAND_RIGHT, key,
+                      name, "scene");
     h->unit_log2 = w->steps.unit_log2;
     h->shadow = s->has_shadows;
     h->background = s->background == GLINT_BEHIND_ENVIRONMENT
@@ -479,13 +477,8 @@ enum glint_status glint_scene_bake(const struct glint_description *scene,
     write_environments(&w);
     set_motion(&w);
     set_header(&w, name, key);
-    glint_draft_amend(&w.draft, 0, &w.header, sizeof w.header);
-    if (!good || w.draft.out_of_memory) {
-        free(w.draft.data);
-        return error->text[0] ? GLINT_E_LENS : GLINT_E_MEMORY;
-    }
-    glint_blob_seal(w.draft.data, w.draft.bytes);
-    *data = w.draft.data;
-    *bytes = w.draft.bytes;
-    return GLINT_OK;
+    if (glint_draft_finish(&w.draft, &w.header, sizeof w.header, good, data,
+                           bytes))
+        return GLINT_OK;
+    return error->text[0] ? GLINT_E_LENS : GLINT_E_MEMORY;
 }

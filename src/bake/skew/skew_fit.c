@@ -77,22 +77,6 @@ struct attempt {
     bool dark;
 };
 
-uint32_t glint_skew_mirrors(const struct glint_prescription *lens)
-{
-    uint32_t mirrors = GLINT_MIRRORS_X | GLINT_MIRRORS_Y;
-
-    for (int k = 0; k < lens->n_surfaces; k++) {
-        const struct glint_shape *const a = &lens->surface[k].shape;
-
-        /* A turn about the y axis moves what lies at x. */
-        if (a->decentre_mm[0] != 0.0 || a->tilt_deg[1] != 0.0)
-            mirrors &= ~(uint32_t)GLINT_MIRRORS_X;
-        if (a->decentre_mm[1] != 0.0 || a->tilt_deg[0] != 0.0)
-            mirrors &= ~(uint32_t)GLINT_MIRRORS_Y;
-    }
-    return mirrors;
-}
-
 void glint_skew_work(const struct glint_prescription *lens, int n_ghosts,
                      double max_deg, double tolerance, double *head,
                      double *typical)

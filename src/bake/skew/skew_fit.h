@@ -14,9 +14,6 @@
 
 #include "bake/fit/fit.h"
 
-/* Planes of symmetry of a lens: GLINT_MIRRORS_X and GLINT_MIRRORS_Y. */
-uint32_t glint_skew_mirrors(const struct glint_prescription *lens);
-
 /* Sets how much work a bake will be, in fits: HEAD before any ghost, TYPICAL a
  * ghost, by the area of directions and the number of surfaces. Limits: what
  * folds takes ten times as long as what does not. */

@@ -37,15 +37,38 @@ void glint_draft_amend(struct glint_draft *d, uint32_t where, const void *data,
         memcpy(d->data + where, data, bytes);
 }
 
-void glint_draft_name(char to[64], const char *from, const char *instead)
+void glint_draft_begin(void *header, const struct glint_blob_kind *kind,
+                       uint32_t variant, uint64_t key, const char *name,
+                       const char *instead)
 {
-    int n = 0;
+    struct glint_blob_header *h = header;
+    size_t n = 0;
 
-    for (; *from && n < 63; from++)
-        if ((*from >= 'a' && *from <= 'z') || (*from >= 'A' && *from <= 'Z') ||
-            (*from >= '0' && *from <= '9') || *from == '-' || *from == '_')
-            to[n++] = *from;
-    to[n] = '\0';
+    h->magic = kind->magic;
+    h->version = kind->version;
+    h->variant = variant;
+    h->key[0] = (uint32_t)key;
+    h->key[1] = (uint32_t)(key >> 32);
+    for (const char *c = name; *c && n + 1 < sizeof h->name; c++)
+        if ((*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') ||
+            (*c >= '0' && *c <= '9') || *c == '-' || *c == '_')
+            h->name[n++] = *c;
+    h->name[n] = '\0';
     if (!n)
-        memcpy(to, instead, strlen(instead) + 1);
+        memcpy(h->name, instead, strlen(instead) + 1);
+}
+
+bool glint_draft_finish(struct glint_draft *d, const void *header,
+                        size_t header_bytes, bool good, unsigned char **data,
+                        size_t *bytes)
+{
+    glint_draft_amend(d, 0, header, header_bytes);
+    if (!good || d->out_of_memory) {
+        free(d->data);
+        return false;
+    }
+    glint_blob_seal(d->data, d->bytes);
+    *data = d->data;
+    *bytes = d->bytes;
+    return true;
 }

@@ -8,6 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/blob.h"
+
 /* Owned: DATA is malloc'ed. Begins as zeros. */
 struct glint_draft {
     unsigned char *data;
@@ -24,8 +26,18 @@ uint32_t glint_draft_put(struct glint_draft *draft, const void *data,
 void glint_draft_amend(struct glint_draft *draft, uint32_t where,
                        const void *data, size_t bytes);
 
-/* Copies the first 63 characters of FROM that a baked file's name may have,
- * a-z, A-Z, 0-9, '-' and '_', to TO; INSTEAD if there are none. */
-void glint_draft_name(char to[64], const char *from, const char *instead);
+/* Sets what the HEADER of every baked file begins with, but size and checksum.
+ * Its name has the first 63 characters of NAME that such a name may have, a-z,
+ * A-Z, 0-9, '-' and '_', or is INSTEAD if there are none. */
+void glint_draft_begin(void *header, const struct glint_blob_kind *kind,
+                       uint32_t variant, uint64_t key, const char *name,
+                       const char *instead);
+
+/* Writes HEADER to the front of the file, of which all is GOOD, and sets size,
+ * checksum, DATA and BYTES. Returns false if it is not good, or without memory;
+ * DRAFT is freed then. */
+bool glint_draft_finish(struct glint_draft *draft, const void *header,
+                        size_t header_bytes, bool good, unsigned char **data,
+                        size_t *bytes);
 
 #endif

@@ -19,7 +19,6 @@
 
 #include "bake/table/draft.h"
 #include "bake/translucent/linear.h"
-#include "base/blob.h"
 
 enum { CHANNELS = 3 };
 
@@ -328,6 +327,8 @@ static bool is_in_range(const struct glint_scatter_fit *fit,
 
 static bool set_header(struct writer *w, const char *name, uint64_t key)
 {
+    static const struct glint_blob_kind kind = {
+        .magic = GLINT_TRANSLUCENT_MAGIC, .version = GLINT_TRANSLUCENT_VERSION};
     struct glint_translucent_header *h = &w->header;
     int log2 = 0;
 
@@ -340,15 +341,12 @@ static bool set_header(struct writer *w, const char *name, uint64_t key)
                  w->fit->side);
         return false;
     }
-    h->magic = GLINT_TRANSLUCENT_MAGIC;
-    h->version = GLINT_TRANSLUCENT_VERSION;
-    h->variant =
+    glint_draft_begin(
+        h, &kind,
         w->fit->model == GLINT_SCATTER_FACTORED    ? GLINT_TRANSLUCENT_FACTORED
         : w->fit->model == GLINT_SCATTER_CLUSTERED ? GLINT_TRANSLUCENT_CLUSTERED
-                                                   : GLINT_TRANSLUCENT_ALBEDO;
-    h->key[0] = (uint32_t)key;
-    h->key[1] = (uint32_t)(key >> 32);
-    glint_draft_name(h->name, name, "stone");
+                                                   : GLINT_TRANSLUCENT_ALBEDO,
+        key, name, "stone");
     h->side_log2 = (uint32_t)log2;
     h->kernel = (uint32_t)w->fit->kernel;
     h->n_planes = (uint32_t)w->fit->kernels;
@@ -384,16 +382,11 @@ enum glint_status glint_stone_bake(const struct glint_scatter_fit *fit,
     good = w.largest && set_header(&w, name, key) && separate(&w) &&
            write_codes(&w) && write_taps(&w);
     write_surface(&w);
-    glint_draft_amend(&w.draft, 0, &w.header, sizeof w.header);
     free(w.column);
     free(w.row);
     free(w.largest);
-    if (!good || w.draft.out_of_memory) {
-        free(w.draft.data);
-        return error->text[0] ? GLINT_E_UNSUPPORTED : GLINT_E_MEMORY;
-    }
-    glint_blob_seal(w.draft.data, w.draft.bytes);
-    *data = w.draft.data;
-    *bytes = w.draft.bytes;
-    return GLINT_OK;
+    if (glint_draft_finish(&w.draft, &w.header, sizeof w.header, good, data,
+                           bytes))
+        return GLINT_OK;
+    return error->text[0] ? GLINT_E_UNSUPPORTED : GLINT_E_MEMORY;
 }

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "bake/scene/clauses.h"
-#include "bake/scene/near.h"
 #include "glint/scene/stone_bake.h"
 
 enum { MOST_STONES = 2 };
@@ -77,20 +76,11 @@ static bool read_kernel(struct reader *r)
 static bool find_stone(struct reader *r, const struct glint_word *word,
                        int *index)
 {
-    struct glint_near near = glint_near_begin(*word);
-    char quote[GLINT_QUOTE_BYTES], mean[GLINT_NEAR_BYTES];
-
     if (!word->length)
         return glint_text_fail(&r->text, word->place,
                                "the name of a stone is missing");
-    for (*index = 0; *index < r->n_stones; ++*index) {
-        if (glint_word_is(word, r->name[*index]))
-            return true;
-        glint_near_offer(&near, r->name[*index]);
-    }
-    return glint_text_fail(
-        &r->text, word->place, "no stone '%s' is defined above this line%s",
-        glint_word_quote(word, quote), glint_near_text(&near, mean));
+    return glint_name_find(&r->text, word, "stone", r->name[0],
+                           sizeof r->name[0], r->n_stones, index);
 }
 
 static bool read_stone(struct reader *r)
@@ -184,23 +174,18 @@ static bool read_pattern(struct reader *r)
 
 static bool read_model(struct reader *r)
 {
-    static const char *const names[] = {"clustered", "factored", "albedo"};
+    static const char *const names[] = {"clustered", "factored", "albedo",
+                                        NULL};
     struct glint_scatter_options *fit = &r->to->fit;
-    const struct glint_word word = glint_text_next_word(&r->text);
     const int rank = fit->rank;
-    char quote[GLINT_QUOTE_BYTES];
+    const int i = glint_choice_read(&r->text, "model",
+                                    "clustered, factored or albedo", names);
 
-    for (int i = 0; i < 3; i++)
-        if (glint_word_is(&word, names[i])) {
-            glint_scatter_defaults(fit, (enum glint_scatter_model)i);
-            fit->rank = rank;
-            return true;
-        }
-    return glint_text_fail(&r->text, word.place,
-                           "model takes clustered, factored or albedo%s%s%s",
-                           word.length ? ", not '" : "",
-                           word.length ? glint_word_quote(&word, quote) : "",
-                           word.length ? "'" : "");
+    if (i < 0)
+        return false;
+    glint_scatter_defaults(fit, (enum glint_scatter_model)i);
+    fit->rank = rank;
+    return true;
 }
 
 static bool read_texel(struct reader *r)
@@ -225,50 +210,16 @@ static bool read_data(struct reader *r)
     return read_file(r, "rows", &word, r->to->rows);
 }
 
-static const struct line {
-    const char *word;
-    bool (*read)(struct reader *);
-    bool many;
-} lines[] = {
-    {"size", read_size, false},       {"texel", read_texel, false},
-    {"kernel", read_kernel, false},   {"slab", read_slab, false},
-    {"index", read_index, false},     {"stone", read_stone, true},
-    {"pattern", read_pattern, false}, {"data", read_data, false},
-    {"model", read_model, false},
-};
+static const struct glint_text_line lines[] = {
+    {"size", false},    {"texel", false}, {"kernel", false},
+    {"slab", false},    {"index", false}, {"stone", true},
+    {"pattern", false}, {"data", false},  {"model", false}};
 
 enum { N_LINES = sizeof lines / sizeof *lines };
 
-static bool unknown(struct reader *r, const struct glint_word *word)
-{
-    struct glint_near near = glint_near_begin(*word);
-    char quote[GLINT_QUOTE_BYTES], mean[GLINT_NEAR_BYTES];
-
-    for (int i = 0; i < N_LINES; i++)
-        glint_near_offer(&near, lines[i].word);
-    return glint_text_fail(&r->text, word->place, "unknown word '%s'%s",
-                           glint_word_quote(word, quote),
-                           glint_near_text(&near, mean));
-}
-
-static bool read_line(struct reader *r, int first[N_LINES])
-{
-    const struct glint_word word = glint_text_next_word(&r->text);
-    int i = 0;
-
-    if (!word.length)
-        return true;
-    while (i < N_LINES && !glint_word_is(&word, lines[i].word))
-        i++;
-    if (i == N_LINES)
-        return unknown(r, &word);
-    if (first[i] && !lines[i].many)
-        return glint_text_fail(&r->text, word.place,
-                               "a second %s; the first is on line %d",
-                               lines[i].word, first[i]);
-    first[i] = word.place.line;
-    return lines[i].read(r) && glint_line_ends(&r->text, lines[i].word);
-}
+static bool (*const read[N_LINES])(struct reader *) = {
+    read_size,  read_texel,   read_kernel, read_slab, read_index,
+    read_stone, read_pattern, read_data,   read_model};
 
 /* Checks what lines say together. */
 static bool check(struct reader *r)
@@ -307,8 +258,13 @@ enum glint_status glint_stone_parse(struct glint_stone_text *text,
 
     glint_stone_text_defaults(text);
     good = glint_text_open(&r.text, data, bytes, file_name, error);
-    while (good && glint_text_next_line(&r.text))
-        good = read_line(&r, first);
+    while (good && glint_text_next_line(&r.text)) {
+        int i;
+
+        good =
+            glint_line_begin(&r.text, lines, N_LINES, first, &i) &&
+            (i < 0 || (read[i](&r) && glint_line_ends(&r.text, lines[i].word)));
+    }
     good = good && check(&r);
     if (good && r.is_turned) {
         const struct glint_stone_material m = text->stone.material[0];

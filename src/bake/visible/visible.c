@@ -95,6 +95,8 @@ void glint_visible_join(struct glint_pupil *a, const struct glint_pupil *b)
     a->y1_mm = fmax(a->y1_mm, b->y1_mm);
 }
 
+/* -------------------------------------------------------------------- boxes */
+
 enum { ACROSS = 64 /* cells of the finest grid */ };
 
 /* Columns and rows of a grid that hold rays which get through. */
@@ -309,6 +311,8 @@ static bool follow(const struct glint_visible *h, const struct glint_path *path,
            find_box(h, path, sine, box);
 }
 
+/* ------------------------------------------------------------------ profile */
+
 enum {
     AFRESH = 4, /* angles after which boxes are looked for everywhere again */
     AFRESH_SHAPED = 12 /* the same of shaped lenses, whose rays take long */
@@ -448,6 +452,8 @@ void glint_visible_profile_find(const struct glint_visible *visible,
     for (int k = 0; k < GLINT_PROFILE; k++)
         add_angle(profile, sine[k], &g, k);
 }
+
+/* ------------------------------------------------------------------- ranges */
 
 enum {
     SCAN_DEG = 1,

@@ -171,7 +171,7 @@ static void make_model(struct made *m, enum glint_basis basis)
     assert_int_equal(
         glint_draft_write(&m->draft, &setup, &header, &m->fitted, &quantised),
         GLINT_OK);
-    glint_draft_close(&m->draft);
+    glint_blob_seal(m->draft.data, m->draft.bytes);
     if (glint_lens_open(&m->lens, m->draft.data, m->draft.bytes, &reason))
         fail_msg("%s", reason);
 }

@@ -70,6 +70,7 @@ static enum glint_next next_of(const struct attempted *c)
     static struct glint_visible visible;
     const struct glint_tolerance tolerance = {.axis = 1,
                                               .axis_depth = c->axis_depth};
+    const struct glint_next_rules rules = {&visible, &tolerance};
     const struct glint_zone_piece piece = {.lo = glint_sin_deg(c->from),
                                            .hi = glint_sin_deg(c->to),
                                            .before = 10,
@@ -88,7 +89,7 @@ static enum glint_next next_of(const struct attempted *c)
     visible.wide = true;
     visible.shaped = c->shaped;
     visible.far = c->far;
-    return glint_next(&visible, &tolerance, &piece, &attempt);
+    return glint_next(&rules, &piece, &attempt);
 }
 
 /* Parts of wide zones of aspheric lenses do not meet, so that their zones are
