@@ -91,11 +91,6 @@ void glint_bright_go(struct glint_bright *b, int y)
         b->code[1].first = b->code[0].first + 1;
 }
 
-int glint_bright_value_at(const struct glint_bright *b, int x)
-{
-    return bright_value_at(b, x);
-}
-
 /* -------------------------------------------------------------------- light */
 
 void glint_bright_read(const struct glint_bright *b, int x, int32_t rgb_q20[3])
@@ -118,17 +113,4 @@ int32_t glint_bright_step_q20(const struct glint_bright *b, int c,
             code_q7 += bit;
     return curve_decode(b->curve, code_q7 + step_q7) -
            curve_decode(b->curve, code_q7);
-}
-
-int glint_bright_same(const struct glint_bright *b, int x, int end)
-{
-    int code[3];
-
-    for (int i = 0; i < b->n_codes; i++)
-        code[i] = code_at(b, i, x);
-    for (x++; x < end; x++)
-        for (int i = 0; i < b->n_codes; i++)
-            if (code_at(b, i, x) != code[i])
-                return x;
-    return end;
 }

@@ -89,10 +89,6 @@ void glint_bright_set_low(struct glint_bright *b, int low);
  * of it is below low. */
 int glint_bright_scan(struct glint_bright *b, int y);
 
-/* Sets block[i] to whether block i may have a pixel of low or above, except for
- * a last block that is not whole. Returns 0 if none may. Part of the scan. */
-int glint_bright_mark(struct glint_bright *b);
-
 /* Sets RGB to the linear light, 0 .. white, of pixel X of the row scanned last.
  */
 void glint_bright_read(const struct glint_bright *b, int x, int32_t rgb_q20[3]);
@@ -102,14 +98,7 @@ void glint_bright_read(const struct glint_bright *b, int x, int32_t rgb_q20[3]);
 int32_t glint_bright_step_q20(const struct glint_bright *b, int c,
                               int32_t light_q20);
 
-/* Returns the first of pixels X + 1 .. END - 1 whose codes differ from those of
- * X, or END: lamps and skies are white over many pixels on end. */
-int glint_bright_same(const struct glint_bright *b, int x, int end);
-
-/* Goes to row Y without a scan, for read and value_at. */
+/* Goes to row Y without a scan, for reads. */
 void glint_bright_go(struct glint_bright *b, int y);
-
-/* Returns the brightness of pixel X of the row gone to. */
-int glint_bright_value_at(const struct glint_bright *b, int x);
 
 #endif

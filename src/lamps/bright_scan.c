@@ -2,8 +2,479 @@
  *
  * Reads the brightness of the blocks of a row. */
 #include "base/compiler.h"
+
+#include "base/bytes.h"
 #include "lamps/bright.h"
 #include "lamps/bright_code.h"
+
+/* ------------------------------------------------------------ one threshold */
+
+/* Returns the OR, over N words at P, of the high bits of those bytes that are
+ * CODE or more. */
+static WHOLLY_INLINE uint64_t high_codes(const uint8_t *p, int n, int code,
+                                         int is_above_128)
+{
+    uint64_t found = 0;
+
+    for (int i = 0; i < n; i++)
+        found |= bytes_reach(bytes_load(p + 8 * i), code, is_above_128);
+    return found;
+}
+
+/* Returns the least number of N_BITS bits that becomes CODE or more when its
+ * highest bits are repeated below it. */
+static int least_of_565(int code, int n_bits)
+{
+    int v = 0;
+
+    while (v < (1 << n_bits) - 1 &&
+           (v << (8 - n_bits) | v >> (2 * n_bits - 8)) < code)
+        v++;
+    return v;
+}
+
+/* Returns the OR, over N words of four pixels at P, of a bit for each pixel
+ * that has a sample of CODE or more. */
+static uint64_t high_565(const uint8_t *p, int n, int code)
+{
+    const uint64_t each = UINT64_C(0x0001000100010001);
+    const uint64_t add_5 = (uint64_t)(32 - least_of_565(code, 5)) * each;
+    const uint64_t add_6 = (uint64_t)(64 - least_of_565(code, 6)) * each;
+    uint64_t found = 0;
+
+    for (int i = 0; i < n; i++) {
+        const uint64_t v = bytes_load(p + 8 * i);
+
+        found |= ((v >> 11 & 31 * each) + add_5) & 32 * each;
+        found |= (((v & 31 * each) + add_5) & 32 * each);
+        found |= ((v >> 5 & 63 * each) + add_6) >> 1 & 32 * each;
+    }
+    return found;
+}
+
+/* Returns a mask of the bytes of a word that are samples of a colour. */
+static uint64_t bytes_of_light(const struct glint_layout *layout)
+{
+    const struct glint_layout_sample *s = &layout->sample[0];
+
+    if (layout->kind == GLINT_LAYOUT_RGB && s->step == 4)
+        return UINT64_C(0x00ffffff00ffffff);
+    return UINT64_MAX;
+}
+
+static WHOLLY_INLINE uint64_t high_of(const uint8_t *p, int n, int code)
+{
+    return code > 128 ? high_codes(p, n, code, 1) : high_codes(p, n, code, 0);
+}
+
+/* Returns a mask of bits of each byte of which at least one is set where the
+ * byte is CODE or more. */
+static uint64_t bits_of_code(int code)
+{
+    const int highest = (1 << bit_length((uint64_t)code)) >> 1;
+
+    return (uint64_t)(256 - (highest < 128 ? highest : 128)) * BYTES_EACH;
+}
+
+/* Returns the OR of N words at P. If load and OR were one expression, gcc would
+ * make single bytes of it. */
+static WHOLLY_INLINE uint64_t bits_of(const uint8_t *p, int n)
+{
+    uint64_t bits = 0;
+
+    for (int i = 0; i < n; i++) {
+        uint64_t word = bytes_load(p + 8 * i);
+
+        FORGET(word);
+        bits |= word;
+    }
+    return bits;
+}
+
+/* Marks the whole blocks of a row at PX without chroma, STEP bytes a pixel.
+ * Most blocks are dark, which the OR of their bytes shows. */
+static WHOLLY_INLINE int mark_blocks(struct glint_bright *b, const uint8_t *px,
+                                     int step)
+{
+    const uint64_t bytes = bytes_of_light(b->layout);
+    const int n = b->width / BRIGHT_BLOCK, code = b->low_code;
+    const uint64_t bits = bits_of_code(code) & bytes;
+    const int n_words = BRIGHT_BLOCK / 8 * step;
+    int any = 0;
+
+    for (int i = 0; i < n; i++) {
+        b->block[i] = (bits_of(px, n_words) & bits) &&
+                      (high_of(px, n_words, code) & bytes);
+        any |= b->block[i];
+        px += BRIGHT_BLOCK * step;
+    }
+    return any;
+}
+
+/* Marks whole blocks as mark_blocks() does, with constant steps so that its
+ * inner loops have constant ends. */
+static int mark_row(struct glint_bright *b, const uint8_t *px)
+{
+    switch (b->layout->sample[0].step) {
+    case 1:
+        return mark_blocks(b, px, 1);
+    case 3:
+        return mark_blocks(b, px, 3);
+    default:
+        return mark_blocks(b, px, 4);
+    }
+}
+
+static int mark_row_565(struct glint_bright *b, const uint8_t *px)
+{
+    int any = 0;
+
+    for (int i = 0; i < b->width / BRIGHT_BLOCK; i++) {
+        b->block[i] = high_565(px + i * 2 * BRIGHT_BLOCK, BRIGHT_BLOCK / 4,
+                               b->low_code) != 0;
+        any |= b->block[i];
+    }
+    return any;
+}
+
+/* ------------------------------------------------------------- Y, Cb and Cr */
+
+/* The greatest and the least of bytes, by their index modulo 4. */
+struct extremes {
+    uint8_t most[4], least[4];
+};
+
+static WHOLLY_INLINE uint8_t larger(uint8_t a, uint8_t b)
+{
+    return a > b ? a : b;
+}
+
+static WHOLLY_INLINE uint8_t smaller(uint8_t a, uint8_t b)
+{
+    return a < b ? a : b;
+}
+
+/* Sets HALF[0 .. 7] to the greatest byte v, by its index modulo 8, of 16 N
+ * bytes at P, and HALF[8 .. 15] to the greatest 255 - v. N is 1, 2 or 4; with
+ * less than 4 some bytes are read twice. Compilers vectorize these loops as
+ * long as no other loop is around them. */
+static NEVER_INLINE void find_halves(uint8_t half[16], const uint8_t *p, int n)
+{
+    const uint8_t *q = n > 1 ? p + 16 : p;
+    const uint8_t *r = n > 2 ? p + 32 : p, *s = n > 2 ? p + 48 : q;
+    uint8_t most[32];
+
+    for (int i = 0; i < 16; i++)
+        most[i] = larger(larger(p[i], q[i]), larger(r[i], s[i]));
+    for (int i = 0; i < 16; i++)
+        most[16 + i] =
+            (uint8_t)(255 - smaller(smaller(p[i], q[i]), smaller(r[i], s[i])));
+    for (int i = 0; i < 8; i++)
+        half[i] = larger(most[i], most[i + 8]);
+    for (int i = 0; i < 8; i++)
+        half[8 + i] = larger(most[16 + i], most[24 + i]);
+}
+
+static WHOLLY_INLINE void unite_halves(struct extremes *e,
+                                       const uint8_t half[16])
+{
+    for (int i = 0; i < 4; i++)
+        e->most[i] = larger(half[i], half[i + 4]);
+    for (int i = 0; i < 4; i++)
+        e->least[i] = (uint8_t)(255 - larger(half[8 + i], half[12 + i]));
+}
+
+static WHOLLY_INLINE void find_extremes(struct extremes *e, const uint8_t *p,
+                                        int n)
+{
+    uint8_t half[16];
+
+    find_halves(half, p, n);
+    unite_halves(e, half);
+}
+
+/* Returns the greatest byte at all four places. */
+static WHOLLY_INLINE int most_of(const struct extremes *e)
+{
+    return bright_larger(bright_larger(e->most[0], e->most[1]),
+                         bright_larger(e->most[2], e->most[3]));
+}
+
+static WHOLLY_INLINE int least_of(const struct extremes *e)
+{
+    return smaller(smaller(e->least[0], e->least[1]),
+                   smaller(e->least[2], e->least[3]));
+}
+
+/* Returns the most that chroma in LEAST .. MOST adds to the largest channel. */
+static WHOLLY_INLINE int32_t most_added_q16(const struct glint_bright *b,
+                                            const int most[2],
+                                            const int least[2])
+{
+    const int32_t(*m_q16)[3] = b->ycc.to_rgb_q16;
+    const int32_t red_q16 = (most[1] - 128) * m_q16[0][2];
+    const int32_t green_q16 =
+        (least[0] - 128) * m_q16[1][1] + (least[1] - 128) * m_q16[1][2];
+    const int32_t blue_q16 = (most[0] - 128) * m_q16[2][1];
+
+    return bright_larger(red_q16, bright_larger(green_q16, blue_q16));
+}
+
+/* Returns whether a pixel may be bright whose luma is at most LUMA and whose
+ * chroma is in LEAST .. MOST: no channel in the block can exceed those of this
+ * extreme. One code is left for rounding. */
+static WHOLLY_INLINE int may_be_bright(const struct glint_bright *b, int luma,
+                                       const int most[2], const int least[2])
+{
+    return (luma - b->ycc.black) * b->ycc.to_rgb_q16[0][0] +
+               most_added_q16(b, most, least) >=
+           b->low_sum_q16;
+}
+
+/* Returns whether a block of YUYV or UYVY may be bright, by all its extremes.
+ */
+static int may_be_bright_packed(const struct glint_bright *b,
+                                const uint8_t half[16])
+{
+    const int y = b->layout->sample[0].offset;
+    const int cb = b->layout->sample[1].offset;
+    const int cr = b->layout->sample[2].offset;
+    struct extremes e;
+
+    unite_halves(&e, half);
+    return may_be_bright(b, bright_larger(e.most[y], e.most[y + 2]),
+                         (const int[]){e.most[cb], e.most[cr]},
+                         (const int[]){e.least[cb], e.least[cr]});
+}
+
+/* distance of chroma from grey, in codes, that most blocks stay within */
+enum { QUIET_CHROMA = 24 };
+
+/* Returns the least luma code from which a pixel of quiet chroma may be bright,
+ * 0 .. 256. */
+static int loud_luma(const struct glint_bright *b)
+{
+    const int most[2] = {128 + QUIET_CHROMA, 128 + QUIET_CHROMA};
+    const int least[2] = {127 - QUIET_CHROMA, 127 - QUIET_CHROMA};
+    const int32_t left_q16 = b->low_sum_q16 - most_added_q16(b, most, least);
+    const int luma = b->ycc.black + left_q16 / b->ycc.to_rgb_q16[0][0];
+
+    return q_clamp_sat(left_q16 > 0 ? luma : 0, 0, 256);
+}
+
+/* Returns the number that carries into the ninth bit of each 16 bits when it is
+ * added to a byte of CODE or more. */
+static uint64_t carry_from(int code)
+{
+    return (uint64_t)(256 - code) * UINT64_C(0x0001000100010001);
+}
+
+/* Returns whether some luma is loud, or some chroma in MOST or INVERSE. Luma is
+ * in the low bytes of pairs if Y is 0, else in the high ones. */
+static WHOLLY_INLINE int is_loud(uint64_t most, uint64_t inverse, int y,
+                                 uint64_t luma_carry, uint64_t chroma_carry)
+{
+    const uint64_t low = UINT64_C(0x00ff00ff00ff00ff);
+    const uint64_t luma = (y ? most >> 8 : most) & low;
+    const uint64_t chroma = (y ? most : most >> 8) & low;
+    const uint64_t less = (y ? inverse : inverse >> 8) & low;
+    const uint64_t sum =
+        (luma + luma_carry) | (chroma + chroma_carry) | (less + chroma_carry);
+
+    return (sum & ~low) != 0;
+}
+
+/* Number of blocks of YUYV or UYVY that are checked together at first. */
+enum { TOGETHER = 4 };
+
+/* By index modulo 16: the greatest byte v, and the greatest 255 - v, of pixels
+ * of quiet chroma that are below loud luma. */
+struct quiet {
+    uint8_t most[16], inverse[16];
+};
+
+static void set_quiet(struct quiet *quiet, int y, int loud)
+{
+    for (int i = 0; i < 16; i++) {
+        const int is_luma = (i & 1) == y;
+
+        quiet->most[i] = (uint8_t)(is_luma ? loud - 1 : 128 + QUIET_CHROMA);
+        quiet->inverse[i] = (uint8_t)(is_luma ? 255 : 128 + QUIET_CHROMA);
+    }
+}
+
+static WHOLLY_INLINE uint8_t most_of_8(const uint8_t *p)
+{
+    return larger(larger(larger(p[0], p[16]), larger(p[32], p[48])),
+                  larger(larger(p[64], p[80]), larger(p[96], p[112])));
+}
+
+static WHOLLY_INLINE uint8_t least_of_8(const uint8_t *p)
+{
+    return smaller(smaller(smaller(p[0], p[16]), smaller(p[32], p[48])),
+                   smaller(smaller(p[64], p[80]), smaller(p[96], p[112])));
+}
+
+/* Sets ABOVE to nonzero at places, by index modulo 16, where some byte of
+ * TOGETHER blocks at P exceeds QUIET. Compilers vectorize it as find_halves().
+ */
+static NEVER_INLINE void find_above(uint8_t above[restrict 16],
+                                    const uint8_t *restrict p,
+                                    const struct quiet *restrict quiet)
+{
+    uint8_t most[16], inverse[16];
+
+    for (int i = 0; i < 16; i++)
+        most[i] = larger(most_of_8(p + i), most_of_8(p + 128 + i));
+    for (int i = 0; i < 16; i++)
+        inverse[i] = (uint8_t)(255 - smaller(least_of_8(p + i),
+                                             least_of_8(p + 128 + i)));
+    for (int i = 0; i < 16; i++)
+        above[i] =
+            (uint8_t)((larger(most[i], quiet->most[i]) ^ quiet->most[i]) |
+                      (larger(inverse[i], quiet->inverse[i]) ^
+                       quiet->inverse[i]));
+}
+
+static WHOLLY_INLINE int are_quiet(const uint8_t *p, const struct quiet *quiet)
+{
+    uint8_t above[16];
+
+    find_above(above, p, quiet);
+    return bits_of(above, 2) == 0;
+}
+
+/* Marks the whole blocks of a row of YUYV or UYVY at PX; Y is the place of the
+ * first luma. Most blocks are quiet: neither bright nor strongly coloured. This
+ * is tested for TOGETHER blocks at once, else for one block, by the greatest
+ * luma and the extremes of all chroma; only a loud block is then tested by its
+ * extremes of Cb and of Cr. After a loud block the next ones are mostly loud,
+ * too, and so are tested one by one. If loud_luma() is 0, no block is quiet. */
+static WHOLLY_INLINE int mark_pairs(struct glint_bright *b, const uint8_t *px,
+                                    int y)
+{
+    const int n = b->width / BRIGHT_BLOCK, loud_from = loud_luma(b);
+    const uint64_t luma_carry = carry_from(loud_from);
+    const uint64_t chroma_carry = carry_from(129 + QUIET_CHROMA);
+    struct quiet quiet;
+    int any = 0, loud = loud_from == 0;
+
+    set_quiet(&quiet, y, loud_from > 0 ? loud_from : 1);
+    for (int i = 0; i < n;) {
+        const int end = i + TOGETHER < n ? i + TOGETHER : n;
+
+        if (!loud && end - i == TOGETHER &&
+            are_quiet(px + i * 2 * BRIGHT_BLOCK, &quiet)) {
+            for (; i < end; i++)
+                b->block[i] = 0;
+            continue;
+        }
+        loud = 0;
+        for (; i < end; i++) {
+            uint8_t half[16];
+            int is_one;
+
+            find_halves(half, px + i * 2 * BRIGHT_BLOCK, BRIGHT_BLOCK / 8);
+            is_one = is_loud(bytes_load(half), bytes_load(half + 8), y,
+                             luma_carry, chroma_carry);
+            b->block[i] = is_one && may_be_bright_packed(b, half);
+            loud |= is_one;
+            any |= b->block[i];
+        }
+    }
+    return any;
+}
+
+static int mark_row_packed(struct glint_bright *b, const uint8_t *px)
+{
+    return b->layout->sample[0].offset ? mark_pairs(b, px, 1)
+                                       : mark_pairs(b, px, 0);
+}
+
+/* Returns whether a block of planes may be bright: Y at PX, 16 N bytes of
+ * chroma at each of C. */
+static WHOLLY_INLINE int may_be_bright_in_planes(const struct glint_bright *b,
+                                                 const uint8_t *px,
+                                                 const uint8_t *const c[2],
+                                                 int n)
+{
+    struct extremes luma, cb, cr;
+
+    find_extremes(&luma, px, BRIGHT_BLOCK / 16);
+    find_extremes(&cb, c[0], n);
+    find_extremes(&cr, c[1], n);
+    return may_be_bright(b, most_of(&luma),
+                         (const int[]){most_of(&cb), most_of(&cr)},
+                         (const int[]){least_of(&cb), least_of(&cr)});
+}
+
+/* Returns whether a block may be bright whose chroma shares a plane, at C; CB
+ * is the place of the first Cb, 0 or 1. */
+static WHOLLY_INLINE int may_be_bright_shared(const struct glint_bright *b,
+                                              const uint8_t *px,
+                                              const uint8_t *c, int cb)
+{
+    struct extremes luma, e;
+    const int cr = 1 - cb;
+
+    find_extremes(&luma, px, BRIGHT_BLOCK / 16);
+    find_extremes(&e, c, BRIGHT_BLOCK / 16);
+    return may_be_bright(
+        b, most_of(&luma),
+        (const int[]){bright_larger(e.most[cb], e.most[cb + 2]),
+                      bright_larger(e.most[cr], e.most[cr + 2])},
+        (const int[]){smaller(e.least[cb], e.least[cb + 2]),
+                      smaller(e.least[cr], e.least[cr + 2])});
+}
+
+static int mark_row_shared(struct glint_bright *b)
+{
+    const struct glint_bright_code *code = b->code;
+    const int cb = code[2].first < code[1].first;
+    const uint8_t *first = cb ? code[2].first : code[1].first;
+    int any = 0;
+
+    for (int i = 0; i < b->width / BRIGHT_BLOCK; i++) {
+        b->block[i] = (uint8_t)may_be_bright_shared(
+            b, code[0].first + i * BRIGHT_BLOCK, first + i * BRIGHT_BLOCK, cb);
+        any |= b->block[i];
+    }
+    return any;
+}
+
+static int mark_row_planes(struct glint_bright *b)
+{
+    const struct glint_bright_code *code = b->code;
+    const int bytes = BRIGHT_BLOCK >> code[1].shift;
+    int any = 0;
+
+    for (int i = 0; i < b->width / BRIGHT_BLOCK; i++) {
+        const uint8_t *const c[2] = {code[1].first + i * bytes,
+                                     code[2].first + i * bytes};
+        const uint8_t *px = code[0].first + i * BRIGHT_BLOCK;
+
+        b->block[i] =
+            (uint8_t)(bytes == 16 ? may_be_bright_in_planes(b, px, c, 1)
+                                  : may_be_bright_in_planes(b, px, c, 2));
+        any |= b->block[i];
+    }
+    return any;
+}
+
+/* Sets block[i] to whether block i may have a pixel of low or above, except for
+ * a last block that is not whole. Returns 0 if none may. */
+static int mark(struct glint_bright *b)
+{
+    const uint8_t *first = b->code[0].first;
+
+    if (b->layout->kind == GLINT_LAYOUT_565)
+        return mark_row_565(b, first);
+    if (b->layout->kind != GLINT_LAYOUT_YCC)
+        return mark_row(b, first - b->layout->sample[0].offset);
+    if (glint_layout_is_packed(b->layout))
+        return mark_row_packed(b, first - b->layout->sample[0].offset);
+    return b->layout->planes == 2 ? mark_row_shared(b) : mark_row_planes(b);
+}
 
 /* --------------------------------------------------------------- R, G and B */
 
@@ -227,7 +698,7 @@ int glint_bright_scan(struct glint_bright *b, int y)
 
     b->n_marked = 0;
     glint_bright_go(b, y);
-    any = glint_bright_mark(b);
+    any = mark(b);
     /* a last block that is not whole is always read. */
     if (n_blocks * BRIGHT_BLOCK > b->width)
         any = b->block[n_blocks - 1] = 1;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Shared by the parts of the finder of lamps: light_rows.c makes candidates
- * from a picture; lamp_list.c keeps, sorts and merges them. */
+ * The finder of lamps (lamp_finder.c), whose candidates a corpus lists. */
 #ifndef GLINT_LAMPS_LAMP_FINDER_H
 #define GLINT_LAMPS_LAMP_FINDER_H
 
@@ -43,20 +42,5 @@ struct glint_lamp_finder {
 /* Replaces the candidates by those of IMAGE. */
 void glint_lamps_collect(struct glint_lamp_finder *f,
                          const struct glint_image *image);
-
-/* Adds CANDIDATE; if there are LIGHT_CANDIDATES already, drops the faintest. */
-void glint_lamps_hold(struct glint_lamp_finder *f,
-                      const struct glint_candidate *candidate);
-
-/* Removes candidates that are gone from the order. */
-void glint_lamps_compact(struct glint_lamp_finder *f);
-
-/* Sorts the candidates by falling flux and merges lamps that are nearer than
- * the merge distance, until none are. Faint ones are not merged. */
-void glint_lamps_merge(struct glint_lamp_finder *f);
-
-/* Leaves at most MAX candidates: each lamp in excess joins the nearest that is
- * kept, if that is within reach, or is dropped. */
-void glint_lamps_cap(struct glint_lamp_finder *f, int max);
 
 #endif

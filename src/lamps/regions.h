@@ -92,12 +92,6 @@ static inline int64_t region_squares_below(int64_t n)
     return (n - 1) * n * (2 * n - 1) / 6;
 }
 
-/* Adds pixels X0 .. X1 - 1 of row Y, all of the same light, to the moments and
- * the colour. */
-void glint_region_add_pixels(struct glint_region *sum,
-                             const struct glint_region_light *light, int x0,
-                             int x1, int y);
-
 /* Adds the pixels of a run of row Y to the area and the box. */
 void glint_region_add_run(struct glint_region *sum, int x0, int x1, int y);
 

@@ -5,7 +5,7 @@
  */
 #include "support/canvas.h"
 #include "support/rng.h"
-#include "lamps/bright.h"
+#include "lamps/bright_code.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -196,7 +196,7 @@ static void check_scan(struct glint_bright *b, const struct glint_image *image,
                 assert_true(least < low);
             if (is_marked)
                 assert_in_range(b->block[x / BRIGHT_BLOCK], b->value[x], 255);
-            assert_in_range(glint_bright_value_at(b, x), least, most);
+            assert_in_range(bright_value_at(b, x), least, most);
         }
     }
     if (n_bright == 0)
@@ -290,56 +290,12 @@ static void test_no_colour_is_missed(void **state)
     }
 }
 
-/* A span of equal codes must end where the light changes, or sooner where other
- * codes have the same light. */
-static void test_same_pixels(void **state)
-{
-    (void)state;
-    for (int round = 0; round < N_FORMATS * 20; round++) {
-        struct glint_image image =
-            canvas_new(formats[round % N_FORMATS], 70, HEIGHT);
-        struct glint_bright *b;
-        int n_long = 0;
-        void *mem;
-
-        b = new_bright(image.width, &mem);
-        memset(image.plane[0], 255,
-               glint_image_bytes(image.format, image.width, HEIGHT));
-        for (int i = 0; i < 8; i++)
-            image.plane[0][rng_below(
-                &seed, (int)glint_image_bytes(image.format, image.width,
-                                              HEIGHT))] = 77;
-        glint_bright_begin(b, &image);
-        glint_bright_set_low(b, 1);
-        for (int y = 0; y < HEIGHT; y++) {
-            glint_bright_scan(b, y);
-            for (int x = 0, end; x < 70; x = end) {
-                int32_t here[3], there[3];
-
-                end = glint_bright_same(b, x, 70);
-                assert_in_range(end, x + 1, 70);
-                n_long += end > x + 20;
-                glint_bright_read(b, x, here);
-                for (int i = x; i < end; i++) {
-                    glint_bright_read(b, i, there);
-                    assert_memory_equal(here, there, sizeof here);
-                }
-            }
-        }
-        assert_true(n_long > 0);
-        free(b);
-        free(mem);
-        free(image.plane[0]);
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_scan_against_every_pixel),
         cmocka_unit_test(test_no_pixel_is_missed),
         cmocka_unit_test(test_no_colour_is_missed),
-        cmocka_unit_test(test_same_pixels),
     };
 
     return cmocka_run_group_tests_name("bright", tests, NULL, NULL);

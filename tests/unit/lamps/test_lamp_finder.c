@@ -17,6 +17,7 @@
 #include "lamps/regions.h"
 #include "support/canvas.h"
 #include "support/finder.h"
+#include "support/region_pixels.h"
 #include "support/rng.h"
 
 /* Returns noise of standard deviation SIGMA, nearly normal: a sum of eight
@@ -347,7 +348,7 @@ static struct glint_region region_of(int x0, int y0, int x1, int y1)
         .first = y0 * GLINT_MAX_SIDE + x0, .x0 = x0, .y0 = y0, .x1 = x0};
 
     for (int y = y0; y < y1; y++) {
-        glint_region_add_pixels(&r, &white, x0, x1, y);
+        region_add_pixels(&r, &white, x0, x1, y);
         glint_region_add_run(&r, x0, x1, y);
     }
     return r;

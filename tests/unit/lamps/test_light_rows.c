@@ -4,6 +4,7 @@
  * differences of sums against pixel by pixel, and scores without a look around
  * against scores with one.
  */
+#include "support/region_pixels.h"
 #include "support/rng.h"
 #include "lamps/row_light.h"
 
@@ -94,7 +95,7 @@ static void add_plainly(const struct fixture *f, struct glint_region *region,
         glint_bright_read(&f->bright, x, rgb_q20);
         light = region_light_of(rgb_q20);
         if (x >= x0 && x < x1)
-            glint_region_add_pixels(region, &light, x, x + 1, y);
+            region_add_pixels(region, &light, x, x + 1, y);
         for (int i = 0; i < 3; i++)
             is_clipped |= rgb_q20[i] >= clipped_q20;
         for (int i = 0; i < 3 && !is_clipped; i++)
@@ -167,7 +168,7 @@ static struct glint_candidate draw_candidate(void)
 
     for (int y = y0; y < y1; y++) {
         glint_region_add_run(&c.sum, x0, x1, y);
-        glint_region_add_pixels(&c.sum, &light, x0, x1, y);
+        region_add_pixels(&c.sum, &light, x0, x1, y);
     }
     if (rng_below(&seed, 2)) { /* Some fill most of their box, as lamps do. */
         c.sum.area -= rng_below(&seed, c.sum.area) / 8;
