@@ -44,29 +44,4 @@ int glint_quick_mesh_find(struct glint_scene_worker *w, uint32_t id,
                           int32_t x_q8, int32_t y_q8,
                           struct glint_met_surface *surface);
 
-/* The line through two corners: at place (x, y) it is across x + down y + at,
- * above 0 on one side. */
-struct glint_line {
-    int64_t across, down, at;
-};
-
-static inline int64_t glint_line_at(const struct glint_line *l, int64_t x,
-                                    int64_t y)
-{
-    return l->across * x + l->down * y + l->at;
-}
-
-/* mesh_small.c: returns whether triangle T, ID, small as below, is
- * certain not to be seen at samples of B; at least one pixel. */
-int glint_mesh_is_hidden(const struct glint_scene_worker *w, uint32_t id,
-                         const struct glint_scene_triangle *t,
-                         struct glint_box b);
-
-/* Draws triangle T, ID, whose corners are all in the
- * picture or near it and whose lines are below 2^30 at places of B, in 32 bits;
- * returns 0 if its depths need more. */
-int glint_mesh_look_small(struct glint_scene_worker *w, uint32_t id,
-                          const struct glint_scene_triangle *t,
-                          const struct glint_line line[3], struct glint_box b);
-
 #endif

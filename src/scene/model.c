@@ -637,28 +637,32 @@ static int is_same(const char *a, const char *b)
     return *a == *b;
 }
 
-int glint_scene_find(const struct glint_scene_model *model, const char *name)
+/* Returns which of N names, STRIDE bytes apart from NAMES on, is NAME, or -1.
+ */
+static int find(const char *names, size_t stride, uint32_t n, const char *name)
 {
-    for (uint32_t k = 0; k < model->header->n_objects; k++)
-        if (is_same(model->object[k].name, name))
+    for (uint32_t k = 0; k < n; k++, names += stride)
+        if (is_same(names, name))
             return (int)k;
     return -1;
+}
+
+int glint_scene_find(const struct glint_scene_model *model, const char *name)
+{
+    return find(model->object->name, sizeof *model->object,
+                model->header->n_objects, name);
 }
 
 int glint_scene_find_material(const struct glint_scene_model *model,
                               const char *name)
 {
-    for (uint32_t k = 0; k < model->header->n_materials; k++)
-        if (is_same(model->material[k].name, name))
-            return (int)k;
-    return -1;
+    return find(model->material->name, sizeof *model->material,
+                model->header->n_materials, name);
 }
 
 int glint_scene_find_environment(const struct glint_scene_model *model,
                                  const char *name)
 {
-    for (uint32_t k = 0; k < model->header->n_environments; k++)
-        if (is_same(model->environment[k].name, name))
-            return (int)k;
-    return -1;
+    return find(model->environment->name, sizeof *model->environment,
+                model->header->n_environments, name);
 }
