@@ -16,9 +16,4 @@ void model_report_info(const struct tool *tool, const struct model_file *model);
 void model_report_bake(const struct tool *tool, const struct glint_lens *lens,
                        double seconds, const struct glint_bake_report *report);
 
-/* The same as JSON objects (model_json.c). */
-void model_json_info(const struct tool *tool, const struct model_file *model);
-void model_json_bake(const struct glint_lens *lens, double seconds,
-                     const struct glint_bake_report *report);
-
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "bake/scene/skin.h"
+#include "bake/scene/write_scene.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "bake/scene/steps.h"
+#include "bake/scene/write_scene.h"
 
 #include <math.h>
 

@@ -9,8 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bake/scene/grid.h"
-#include "bake/scene/skin.h"
+#include "bake/scene/write_scene.h"
 #include "bake/scene/texels.h"
 #include "glint/scene/ward.h"
 #include "glint/view.h"

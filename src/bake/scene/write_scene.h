@@ -39,9 +39,9 @@ void glint_steps_turn(const struct glint_steps *steps, const double turn[4],
 void glint_turn_after(const double a[4], const double b[4], double turn[4]);
 
 /* Meshes of a baked scene: vertices in steps, each kept once, and a grid over
- * the triangles that says which of them a ray can meet. Writes the tables of the
- * triangles of OBJECT behind what is in DRAFT and sets
- * MESH to where they are. Adds to REPORT. Returns false without memory. */
+ * the triangles that says which of them a ray can meet. Writes the tables of
+ * the triangles of OBJECT behind what is in DRAFT and sets MESH to where they
+ * are. Adds to REPORT. Returns false without memory. */
 bool glint_grid_write(struct glint_draft *draft,
                       const struct glint_description *scene,
                       const struct glint_described_object *object,
@@ -53,9 +53,10 @@ bool glint_grid_write(struct glint_draft *draft,
 int glint_skin_material(const struct glint_description *scene,
                         const struct glint_described_object *object);
 
-/* Writes the table of SKIN, which place of it each texel is, of OBJECT, whose triangles are MESH in DRAFT (of a
- * ball NULL) and whose material is MATERIAL. Returns false without memory, or
- * with an ERROR: two places of a mesh have one texel, or none has any. */
+/* Writes the table of SKIN, which place of it each texel is, of OBJECT, whose
+ * triangles are MESH in DRAFT (of a ball NULL) and whose material is MATERIAL.
+ * Returns false without memory, or with an ERROR: two places of a mesh have one
+ * texel, or none has any. */
 bool glint_skin_write(struct glint_draft *draft,
                       const struct glint_description *scene,
                       const struct glint_described_object *object,

@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "bake/table/form.h"
-#include "bake/table/moves.h"
+#include "bake/table/elements.h"
 #include "engine/setup/degrees.h"
 
 /* largest relative error of a stated focal length */

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "bake/table/moves.h"
+#include "bake/table/elements.h"
 
 /* Least change of a zoom's focal length from column to column, as a share. */
 #define LEAST_ZOOM 1e-3

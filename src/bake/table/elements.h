@@ -54,4 +54,21 @@ static inline double element_curvature(const struct glint_prescription *lens,
                : 1.0 / lens->surface[k].radius_mm;
 }
 
+/* Returns where that gap is stored. */
+static inline double *glint_gap_of(struct glint_prescription *lens, int e)
+{
+    const int k = element_surface(lens, e);
+
+    return k < 0 ? &lens->stop_thickness_mm : &lens->surface[k].thickness_mm;
+}
+
+/* Returns how far behind the last surface paraxial rays meet that come from the
+ * axis OBJECT_MM before the front vertex. */
+double glint_image_mm(const struct glint_prescription *lens, double object_mm);
+
+/* Checks that elements do not collide and that the stop opens wide enough.
+ * GLINT_E_ARGUMENT: they do, or it does not; ERROR says where. */
+enum glint_status glint_prescription_fits(const struct glint_prescription *lens,
+                                          struct glint_error *error);
+
 #endif

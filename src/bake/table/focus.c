@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "bake/table/moves.h"
+#include "bake/table/elements.h"
 
 /* Share of the focal length that the group is moved in one step of the search.
  */

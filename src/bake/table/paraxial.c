@@ -5,7 +5,7 @@
  * Paraxial rays (y, n u) meet all elements in turn: n u loses y times the power
  * of a surface, y gains n u times the reduced gap. A lens without power has
  * infinite focal lengths; glint_prescription_parse() accepts none of these. */
-#include "bake/table/moves.h"
+#include "bake/table/elements.h"
 
 #include <stddef.h>
 

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "bake/table/moves.h"
+#include "bake/table/elements.h"
 
 /* Share by which a focal length may lie beyond the ends of the zoom, as they
  * are rounded on barrels. */

@@ -7,7 +7,7 @@
  * how much of material 0 is about a texel, where rows are measured by how much
  * light they scatter: left to themselves they would part the rim from the rest.
  */
-#include "bake/translucent/fits.h"
+#include "bake/translucent/rows.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -95,65 +95,49 @@ static void set_out(const struct clusters *p)
         }
 }
 
-static void clear(const struct clusters *p, size_t n)
+/* Sets N scales, of entries of kernels or of what gets IN, to the ratios of
+ * their sums of least squares. */
+static void set_scales(const struct clusters *p, bool in_scales, double *scale,
+                       size_t n)
 {
+    const int side = p->fit->side;
+
     memset(p->above, 0, n * sizeof *p->above);
     memset(p->below, 0, n * sizeof *p->below);
+    for (int i = 0; i < 3 * side * side; i++) {
+        const int x = i / 3, c = i % 3;
+        const struct glint_scatter_inside in =
+            glint_scatter_inside(side, p->fit->kernel, x);
+
+        for (int v = in.v_from; v < in.v_to; v++) {
+            const struct span s = span_of(p, &in, x, c, p->fit->cluster[x], v);
+
+            for (int u = s.u_from; u < s.u_to; u++) {
+                const double *lit = s.in + 3 * (ptrdiff_t)(u - s.u_from);
+                const ptrdiff_t at = (in_scales ? lit : s.kernel + u) - scale;
+                const double b =
+                    p->fit->out[i] * (in_scales ? s.kernel[u] : *lit);
+
+                p->above[at] += (double)s.data[u] * b;
+                p->below[at] += b * b;
+            }
+        }
+    }
+    for (size_t i = 0; i < n; i++)
+        scale[i] = ratio(p->above[i], p->below[i]);
 }
 
 static void set_in(const struct clusters *p)
 {
-    const int side = p->fit->side, n = p->fit->kernel;
-
-    clear(p, 3 * (size_t)side * (size_t)side);
-    for (int x = 0; x < side * side; x++) {
-        const struct glint_scatter_inside in = glint_scatter_inside(side, n, x);
-
-        for (int c = 0; c < 3; c++)
-            for (int v = in.v_from; v < in.v_to; v++) {
-                const struct span s =
-                    span_of(p, &in, x, c, p->fit->cluster[x], v);
-                const size_t to = (size_t)(s.in - p->fit->in);
-
-                for (int u = s.u_from; u < s.u_to; u++) {
-                    const size_t at = to + 3 * (size_t)(u - s.u_from);
-                    const double b = s.kernel[u] * p->fit->out[3 * x + c];
-
-                    p->above[at] += (double)s.data[u] * b;
-                    p->below[at] += b * b;
-                }
-            }
-    }
-    for (int i = 0; i < 3 * side * side; i++)
-        p->fit->in[i] = ratio(p->above[i], p->below[i]);
+    set_scales(p, true, p->fit->in,
+               3 * (size_t)p->fit->side * (size_t)p->fit->side);
 }
 
 static void set_kernels(const struct clusters *p)
 {
-    const int side = p->fit->side, n = p->fit->kernel;
-    const size_t all = (size_t)p->fit->kernels * 3 * (size_t)(n * n);
-
-    clear(p, all);
-    for (int x = 0; x < side * side; x++) {
-        const struct glint_scatter_inside in = glint_scatter_inside(side, n, x);
-
-        for (int c = 0; c < 3; c++)
-            for (int v = in.v_from; v < in.v_to; v++) {
-                const struct span s =
-                    span_of(p, &in, x, c, p->fit->cluster[x], v);
-                const size_t to = (size_t)(s.kernel - p->fit->h);
-
-                for (int u = s.u_from; u < s.u_to; u++) {
-                    const double b =
-                        p->fit->out[3 * x + c] * s.in[3 * (u - s.u_from)];
-
-                    p->above[to + (size_t)u] += (double)s.data[u] * b;
-                    p->below[to + (size_t)u] += b * b;
-                }
-            }
-    }
-    for (size_t i = 0; i < all; i++)
-        p->fit->h[i] = ratio(p->above[i], p->below[i]);
+    set_scales(p, false, p->fit->h,
+               3 * (size_t)p->fit->kernels *
+                   (size_t)glint_scatter_kernel2(p->fit->kernel));
 }
 
 /* Gives each texel the kernel that explains most of its row. */

@@ -6,7 +6,7 @@
  * and kernels then follow in turn by least squares, kernels cut to their rank
  * each time, so that weights make up for what that takes away.
  */
-#include "bake/translucent/fits.h"
+#include "bake/translucent/rows.h"
 
 #include <math.h>
 #include <stdlib.h>

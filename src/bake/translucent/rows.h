@@ -54,4 +54,17 @@ struct glint_watch_part {
 /* Returns a watch of PART, which must outlive it. */
 struct glint_watch glint_watch_of(struct glint_watch_part *part);
 
+/* The fits that a run time can draw, beside albedo: least squares over the
+ * entries inside of the square, as what lies outside is lost anyway, and if it
+ * counted, rows at the rim would be a kind of their own. Each fills the parts
+ * of FIT, all 0, that are its model's, but for the energy; albedo is set. Of
+ * ROWS, and of h that they set, texel x is where light leaves, and offsets lead
+ * to where it came from. */
+enum glint_status glint_scatter_clusters(const struct glint_scatter_rows *rows,
+                                         const struct glint_watch *watch,
+                                         struct glint_scatter_fit *fit);
+enum glint_status glint_scatter_factors(const struct glint_scatter_rows *rows,
+                                        const struct glint_watch *watch,
+                                        struct glint_scatter_fit *fit);
+
 #endif
