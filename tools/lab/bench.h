@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The cases that glint bench times in turn: each a lens, a picture and options.
+ * glint bench: cases that are drawn in turns and timed by stage. What is drawn
+ * is the bench's subject: flares (bench_flare.c) or a scene (bench_scene.c).
  */
 #ifndef GLINT_TOOLS_LAB_BENCH_H
 #define GLINT_TOOLS_LAB_BENCH_H
@@ -8,80 +9,125 @@
 #include "lab/canvas.h"
 
 enum {
-    MAX_CASES = 256,
-    MAX_ROUNDS = CANVAS_MAX,
-    MAX_LENSES = 16,
-    MAX_BUDGETS = 16
+    BENCH_CASES = 256,
+    BENCH_ROUNDS = CANVAS_MAX,
+    BENCH_STAGES = 7,
+    BENCH_CANVASES = 8,
+    BENCH_LENSES = 16,
+    BENCH_BUDGETS = 16
 };
 
-/* DRAW has two parts: ACCUMULATE, which sums up the light of all pixels and is
- * timed by itself, and COMPOSITE, which adds that light to the picture and is
- * the difference. */
-enum stage { PLAN, TRANSFER, BIN, DRAW, ACCUMULATE, COMPOSITE, WHOLE, STAGES };
-
-struct bench_canvas {
-    struct canvas of;
-    double floor_ms[MAX_ROUNDS];
-};
-
-struct test {
-    const struct settings *settings;
-    struct bench_canvas *canvas;
-    struct glint_frame frame;
-    struct glint_lamp *lamp;
-    int n_lamps, threads;
+/* A case. Each subject has a struct of its own that begins with one. */
+struct bench_case {
+    const char *name; /* of the lens or scene */
+    struct canvas *canvas;
+    struct glint_workers *workers;
+    int threads;
     const char *kernels;
-    double scale, psnr_db; /* psnr_db: NAN if not measured */
-    const char *series;    /* growth: name of the series, or NULL */
-    /* growth: a lens with some of the ghosts only, and the memory of these;
-     * NULL: the whole lens is used. */
-    struct glint_lens some;
-    struct glint_model_ghost *some_ghosts;
-    struct glint_engine_report report;
-    double cpu_ms; /* growth: least time of a frame, of all threads; else 0 */
-    double ms[STAGES][MAX_ROUNDS];
-    double wrong[MAX_ROUNDS]; /* budgets: predicted over measured - 1 */
+    double ms[BENCH_STAGES][BENCH_ROUNDS];
 };
+
+/* How a case differs from the plain one; 0 or NULL: in nothing. */
+struct bench_variation {
+    const char *series; /* of --growth */
+    int width, height;
+    bool two_threads;
+    const char *kernels;
+    unsigned sets;      /* instruction sets that KERNELS may use */
+    const char *option; /* of the engine, and its value */
+    double value;
+    int lights;
+    double angle;      /* degrees off the axis; 0: 12 */
+    double star_stops; /* stars alone, of lamps of so many stops over white */
+};
+
+struct bench;
+struct json_writer;
+
+struct bench_subject {
+    const char *word; /* of it in JSON */
+    const char *help;
+    const struct option *own;
+    unsigned groups; /* of the engine's options that it has */
+    int max_rounds;
+    /* Stages by name. The last one is the whole frame. */
+    int n_stages;
+    const char *stage[BENCH_STAGES];
+    const char *heads; /* of the columns before and behind the times */
+    const char *tail;
+    size_t case_bytes;
+
+    /* Takes an option of its own. Returns 1; 0: not that value; -2: another
+     * option. */
+    int (*take)(struct bench *bench, int c, const char *value);
+    /* Opens NAME[N] and adds all cases. Returns an exit code. */
+    int (*open)(struct bench *bench, int n, const char *const *name);
+    enum glint_status (*draw)(struct bench *bench, struct bench_case *c,
+                              int round);
+    /* Print the columns before and behind the times of C. */
+    void (*print_case)(const struct bench *bench, const struct bench_case *c);
+    void (*print_result)(const struct bench *bench, const struct bench_case *c);
+    /* Writes all members of C's object but the name, by bench_json_format() and
+     * bench_json_times(). */
+    void (*json)(struct json_writer *json, const struct bench *bench,
+                 const struct bench_case *c);
+    void (*close_case)(struct bench_case *c);
+    void (*close)(struct bench *bench);
+};
+extern const struct bench_subject bench_flare, bench_scene;
 
 struct bench {
+    const struct bench_subject *subject;
     struct tool *tool;
-    struct settings base, settings[MAX_LENSES];
-    int n_settings, n_canvases, n_tests, rounds;
-    struct bench_canvas canvas[8];
-    struct test *test;
-    struct glint_workers *one, *two;
-    enum glint_pixel_format format;
-    const char *format_word;
-    int width, height;
+    struct settings base;            /* as the line says */
+    int width, height, rounds, word; /* word: index of the format */
     bool all, sizes, growth, psnr;
     bool moving; /* The first light moves from round to round. */
     int n_budgets;
-    double budget_ms[MAX_BUDGETS];
+    double budget_ms[BENCH_BUDGETS];
+    struct glint_workers *one, *two;
+    struct canvas canvas[BENCH_CANVASES];
+    int n_canvases;
+    struct bench_case *cases[BENCH_CASES];
+    int n_cases;
+    void *opened; /* private to the subject */
 };
 
-/* Adds the requested cases of SETTINGS but those of --growth, or the plain one.
- * Like all functions here that return int, it returns an exit code. */
-int bench_add(struct bench *b, const struct settings *settings);
+extern const char *const bench_format[]; /* words; the last is NULL */
 
-/* Adds a case of WIDTH x HEIGHT (0: as asked for) and LIGHTS lights, if there
- * is room for one. */
-int bench_add_one(struct bench *b, const struct settings *settings, int width,
-                  int height, int lights);
+/* Opens NAME[N] and measures and prints all cases. Returns an exit code. */
+int bench_run_all(struct bench *bench, int n, const char *const *name);
 
-/* Adds the cases of --growth. */
-int bench_add_growth(struct bench *b, const struct settings *settings);
+/* Frees BENCH and what it has opened. */
+void bench_close(struct bench *bench);
 
-/* Moves the first light of T to its place in round ROUND of N. */
-void bench_move(struct test *t, int round, int n);
+/* Adds a case of V, with its canvas, threads and kernels. Returns NULL without
+ * memory, or if there are too many. */
+struct bench_case *bench_add(struct bench *bench, const char *name,
+                             const struct bench_variation *v);
 
-/* Draws a frame of T and notes its times as those of round ROUND. */
-enum glint_status bench_run(struct test *t, int round);
+/* Returns whether this processor has what V needs. */
+bool bench_is_possible(const struct bench_variation *v);
 
-/* Sets t->psnr_db: T's flare alone against exact rays of the lens's table. */
-int bench_psnr(struct bench *b, struct test *t);
+void bench_json_format(struct json_writer *json, const struct bench *bench,
+                       const struct bench_case *c);
+void bench_json_times(struct json_writer *json, const struct bench *bench,
+                      const struct bench_case *c);
 
-/* Print the medians of all cases, as a table or as JSON. */
-void bench_print(const struct bench *b);
-void bench_print_json(const struct bench *b);
+/* Returns the median time of STAGE of C, or of the memory floor, ms. */
+double bench_ms(const struct bench *bench, const struct bench_case *c,
+                int stage);
+double bench_floor_ms(const struct bench *bench, const struct bench_case *c);
+
+/* Options of both subjects. */
+enum { BENCH_OWN = 'A' }; /* subjects number their own from here on */
+#define BENCH_OPTIONS                                                   \
+    {"all", no_argument, NULL, 'a'}, {"sizes", no_argument, NULL, 'm'}, \
+        {"size", required_argument, NULL, 's'},                         \
+        {"repeat", required_argument, NULL, 'r'},                       \
+        {"format", required_argument, NULL, 'F'},                       \
+    {                                                                   \
+        NULL, 0, NULL, 0                                                \
+    }
 
 #endif

@@ -4,8 +4,12 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "model/stop_option.h"
+#include "glint/measure.h"
+#include "formats/picture.h"
+#include "model/model_cache.h"
 
 /* ------------------------------------------------------------------ canvas */
 
@@ -63,7 +67,7 @@ static void add_layer(uint8_t *restrict px, const uint8_t *restrict layer,
         }
 }
 
-double canvas_floor_ms(struct canvas *c)
+void canvas_time_floor(struct canvas *c, int round)
 {
     static uint8_t layer[256];
     double t0;
@@ -72,7 +76,7 @@ double canvas_floor_ms(struct canvas *c)
     canvas_fresh(c);
     t0 = tool_seconds();
     add_layer(c->mem, layer, c->bytes);
-    return 1e3 * (tool_seconds() - t0);
+    c->floor_ms[round] = 1e3 * (tool_seconds() - t0);
 }
 
 /* ------------------------------------------------------------------- lamps */
@@ -95,10 +99,43 @@ void canvas_lamps(struct glint_lamp *lamp, int n, double angle)
 
 /* ---------------------------------------------------------------- pictures */
 
-enum glint_status canvas_exact(const struct tool *tool,
-                               const struct settings *s,
-                               const struct glint_lamp *lamp, int n_lamps,
-                               int grid, struct glint_float_image *to)
+int canvas_frame(const struct tool *tool, const struct settings *open,
+                 const struct settings *asked, int width, int height,
+                 struct glint_frame *frame)
+{
+    const int code =
+        settings_frame(tool, asked, settings_view(asked, width, height), frame);
+
+    frame->setup = &open->setup;
+    if (frame->lens)
+        frame->lens = &open->model.lens;
+    return code;
+}
+
+enum glint_status canvas_exposure(struct glint_frame *frame,
+                                  const struct glint_lamp *lamp, int n_lamps,
+                                  double *exposure)
+{
+    const int width = frame->view.width, height = frame->view.height;
+    struct glint_float_image flare = {
+        width, height,
+        malloc(3 * (size_t)width * (size_t)height * sizeof(float))};
+    struct glint_engine_report report;
+    enum glint_status status = GLINT_E_MEMORY;
+
+    if (flare.rgb)
+        status =
+            glint_frame_draw_alone(frame, lamp, n_lamps, 1, flare.rgb, &report);
+    if (status == GLINT_OK)
+        *exposure = glint_measure_exposure(&flare);
+    free(flare.rgb);
+    return status;
+}
+
+static enum glint_status draw_exact(const struct tool *tool,
+                                    const struct settings *s,
+                                    const struct glint_lamp *lamp, int n_lamps,
+                                    int grid, struct glint_float_image *to)
 {
     const size_t n = 3 * (size_t)to->width * (size_t)to->height;
     struct glint_setup *setup = malloc(sizeof *setup);
@@ -139,6 +176,93 @@ enum glint_status canvas_exact(const struct tool *tool,
     return status;
 }
 
+static uint64_t mix(uint64_t hash, const void *data, size_t bytes)
+{
+    const uint8_t *p = data;
+
+    for (size_t i = 0; i < bytes; i++)
+        hash = (hash ^ p[i]) * UINT64_C(0x100000001b3);
+    return hash;
+}
+
+/* Returns a key of all that the picture depends on, but for the tracer
+ * itself. */
+static uint64_t key_of(const struct settings *s, const struct glint_lamp *lamp,
+                       int n_lamps, int grid,
+                       const struct glint_float_image *to)
+{
+    const int only_ghost = settings_only_ghost(s);
+    const struct glint_view view = settings_view(s, to->width, to->height);
+    const struct stop_option stop = settings_stop_shape(s);
+    struct glint_bake_options options;
+    uint64_t hash;
+
+    glint_bake_defaults(&options);
+    hash = glint_bake_key(&s->lens, &options);
+    hash = mix(hash, &to->width, sizeof to->width);
+    hash = mix(hash, &to->height, sizeof to->height);
+    hash = mix(hash, &view.sensor_width_mm, sizeof view.sensor_width_mm);
+    hash = mix(hash, &stop.n_blades, sizeof stop.n_blades);
+    hash = mix(hash, &stop.rotation_deg, sizeof stop.rotation_deg);
+    if (stop.iris.roundness > 0 || stop_option_shades(&stop)) {
+        const struct glint_iris *i = &stop.iris;
+        const double iris[] = {i->roundness, i->softness, i->dust,
+                               i->dust_seed};
+
+        hash = mix(hash, iris, sizeof iris);
+        hash = i->mask ? mix(hash, i->mask,
+                             (size_t)i->mask_width * (size_t)i->mask_height)
+                       : hash;
+    }
+    hash = mix(hash, s->wavelength_nm,
+               (size_t)s->n_wavelengths * sizeof *s->wavelength_nm);
+    hash = mix(hash, &only_ghost, sizeof only_ghost);
+    hash = mix(hash, &s->options.balance, sizeof s->options.balance);
+    hash = mix(hash, &grid, sizeof grid);
+    return mix(hash, lamp, (size_t)n_lamps * sizeof *lamp);
+}
+
+static bool load(const char *path, struct glint_float_image *to)
+{
+    struct glint_float_image kept = {0, 0, NULL};
+    struct glint_error error = {""};
+    bool same;
+
+    if (access(path, R_OK) != 0 ||
+        glint_picture_load_float(path, &kept, &error) != GLINT_OK)
+        return false;
+    same = kept.width == to->width && kept.height == to->height;
+    if (same)
+        memcpy(to->rgb, kept.rgb,
+               3 * (size_t)to->width * (size_t)to->height * sizeof(float));
+    free(kept.rgb);
+    return same;
+}
+
+enum glint_status canvas_exact(const struct tool *tool,
+                               const struct settings *settings,
+                               const struct glint_lamp *lamp, int n_lamps,
+                               int grid, struct glint_float_image *to)
+{
+    const uint64_t key = key_of(settings, lamp, n_lamps, grid, to);
+    struct glint_error error = {""};
+    char file[64], path[1024];
+    enum glint_status status;
+    bool kept;
+
+    snprintf(file, sizeof file, "exact-%08lx%08lx.pfm",
+             (unsigned long)(key >> 32), (unsigned long)(key & 0xffffffff));
+    kept = model_cache_path(path, sizeof path, file);
+    if (kept && load(path, to))
+        return GLINT_OK;
+    status = draw_exact(tool, settings, lamp, n_lamps, grid, to);
+    if (status == GLINT_OK && kept &&
+        glint_picture_save_float(path, to, &error) != GLINT_OK && !tool->quiet)
+        fprintf(stderr, "glint %s: the exact picture is not kept: %s\n",
+                tool->name, error.text);
+    return status;
+}
+
 enum glint_status canvas_codes(struct glint_frame *frame,
                                const struct glint_lamp *lamp, int n_lamps,
                                double exposure, uint8_t *codes,
@@ -151,6 +275,14 @@ enum glint_status canvas_codes(struct glint_frame *frame,
     memset(codes, 0, 3 * (size_t)layer.width * (size_t)layer.height);
     glint_image_place(&layer, codes);
     return glint_frame_draw(frame, lamp, n_lamps, exposure, &layer, report);
+}
+
+enum glint_status sweep_frame(struct glint_frame *frame,
+                              const struct glint_lamp *lamp, int n,
+                              double exposure, const struct glint_image *image,
+                              struct glint_engine_report *report)
+{
+    return glint_frame_draw(frame, lamp, n, exposure, image, report);
 }
 
 static int by_size(const void *a, const void *b)

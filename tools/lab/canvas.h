@@ -9,11 +9,14 @@
 #include "formats/pfm.h"
 #include "lab/settings_frame.h"
 
+enum { CANVAS_MAX = 1000 }; /* largest number of rounds, and of medians */
+
 /* A picture to draw on, in mem, and its pixels before drawing, fresh. */
 struct canvas {
     struct glint_image image; /* lies in mem */
     uint8_t *fresh, *mem;
     size_t bytes;
+    double floor_ms[CANVAS_MAX]; /* by round, as canvas_time_floor() sets it */
 };
 
 /* Makes a dim picture of FORMAT and size. GLINT_E_MEMORY. */
@@ -23,18 +26,31 @@ enum glint_status canvas_init(struct canvas *canvas,
 void canvas_fresh(struct canvas *canvas); /* undoes all drawing */
 void canvas_finish(struct canvas *canvas);
 
-/* Returns the memory floor, in ms: the time of a saturating addition of a small
- * constant layer to a fresh canvas. */
-double canvas_floor_ms(struct canvas *canvas);
+/* Measures the memory floor of ROUND: the time of a saturating addition of a
+ * small constant layer to a fresh canvas. */
+void canvas_time_floor(struct canvas *canvas, int round);
 
 /* Sets LAMP to N lamps, the first ANGLE degrees off the axis, the others on a
  * spiral around the axis. Up to 64 lamps share a power of 1 equally; of more
  * lamps the kth, counted from 1, has 1 / k. */
 void canvas_lamps(struct glint_lamp *lamp, int n, double angle);
 
+/* Makes FRAME, WIDTH x HEIGHT, as ASKED says: a copy of OPEN, which FRAME
+ * keeps, with options set. Returns an exit code. */
+int canvas_frame(const struct tool *tool, const struct settings *open,
+                 const struct settings *asked, int width, int height,
+                 struct glint_frame *frame);
+
+/* Sets EXPOSURE to that at which the 99.9th percentile of the luminance of the
+ * flare is white. GLINT_E_MEMORY. */
+enum glint_status canvas_exposure(struct glint_frame *frame,
+                                  const struct glint_lamp *lamp, int n_lamps,
+                                  double *exposure);
+
 /* Draws the flare of LAMP by exact rays in double, GRID cells a side, with the
  * lens, stop and wavelengths of SETTINGS, opened from a table, to TO, whose
- * memory the caller has taken. GLINT_E_MEMORY. */
+ * memory the caller has taken; or loads it where a picture drawn before is
+ * cached. GLINT_E_MEMORY. */
 enum glint_status canvas_exact(const struct tool *tool,
                                const struct settings *settings,
                                const struct glint_lamp *lamp, int n_lamps,
@@ -48,9 +64,15 @@ enum glint_status canvas_codes(struct glint_frame *frame,
                                double exposure, uint8_t *codes,
                                struct glint_engine_report *report);
 
+/* Calls glint_frame_draw(), as a function of its own, whose instructions
+ * tools/report/sweep-insn and cost-fit count. */
+enum glint_status sweep_frame(struct glint_frame *frame,
+                              const struct glint_lamp *lamp, int n,
+                              double exposure, const struct glint_image *image,
+                              struct glint_engine_report *report);
+
 /* Returns the median of N values, 1 .. CANVAS_MAX, and leaves VALUES as they
  * are. */
-enum { CANVAS_MAX = 1000 };
 double canvas_median(const double *values, int n);
 
 #endif

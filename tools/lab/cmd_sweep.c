@@ -12,6 +12,7 @@
 #include "lab/report_file.h"
 #include "lab/sweep.h"
 #include "options/command_line.h"
+#include "options/timed_text.h"
 
 static const char help[] =
     "glint sweep [LENS]... -o FOLDER [options]\n"
@@ -27,9 +28,7 @@ static const char help[] =
     "percentile of the differences in codes, and flux. FOLDER gets\n"
     "  sweep.csv     all of it\n"
     "  front.svg     error against time, and what nothing else is better than\n"
-    "  trade.svg     the same of all lenses together, small\n"
     "  dials.svg     each dial by itself\n"
-    "  growth.svg    time against pixels, lights and ghosts\n"
     "  star.csv, star.svg  what --star-cull leaves of stars, and what that "
     "costs\n"
     "  parts.csv     what coarser tables of dust and no veil cost and save\n"
@@ -48,7 +47,6 @@ static const char help[] =
     "  --small             one lens, one small picture, fewer values, in "
     "seconds\n"
     "  --stars             instead: star.csv, star.svg, parts.csv alone\n"
-    "  --no-growth         without pixels, lights and ghosts\n"
     "  --repeat N          rounds, 1 to 100 (default 7)\n"
     "  --exact-grid N      cells a side of the exact picture (default 128)\n"
     "  --count             only say which points there are, drawing each once\n"
@@ -70,7 +68,6 @@ struct asked {
     int n_lights, lights[MAX_LIST];
     int n_angles;
     double angle[MAX_LIST];
-    bool no_growth;
     bool stars; /* stars alone */
     bool plain; /* no --size, --lights, --angle or --small */
 };
@@ -81,36 +78,6 @@ static void add_case(struct sweep *s, struct sweep_case c)
 {
     if (s->n_cases < SWEEP_CASES)
         s->scase[s->n_cases++] = c;
-}
-
-/* Adds cases for the plots of growth, which differ from the first one of these
- * in size, number of lights or angle. */
-static void add_growth(struct sweep *s, int lens)
-{
-    static const int size[][2] = {{640, 360}, {1920, 1080}, {3840, 2160}};
-    static const int lights[] = {4, 16, 64};
-    struct sweep_case c = {
-        .lens = lens, .width = 1280, .height = 720, .n_lamps = 1, .angle = 12};
-
-    c.growth = true;
-    add_case(s, c);
-    for (int i = 0; i < 3; i++) {
-        struct sweep_case other = c;
-
-        other.width = size[i][0];
-        other.height = size[i][1];
-        add_case(s, other);
-        other = c;
-        other.n_lamps = lights[i];
-        add_case(s, other);
-    }
-    /* Other angles show other numbers of ghosts. */
-    for (int angle = 0; angle < 20; angle += 5) {
-        struct sweep_case other = c;
-
-        other.angle = angle;
-        add_case(s, other);
-    }
 }
 
 /* Adds, for the first lens, a smaller picture with one light and with 16 that
@@ -141,17 +108,27 @@ static void add_cases(struct sweep *s, const struct asked *a)
                                     .together = i == 0 && k == 0 && m == 0});
         if (lens == 0 && a->plain)
             add_more(s);
-        if (!a->no_growth)
-            add_growth(s, lens);
     }
 }
 
 /* ------------------------------------------------------------------ output */
 
-typedef void write_fn(const struct sweep *s, FILE *file);
+struct file {
+    const char *name;
+    void (*write)(const struct sweep *s, FILE *file);
+    bool alone; /* saved with --stars, too */
+};
 
-static int save(const struct sweep *s, const char *folder, const char *name,
-                write_fn *write)
+static const struct file files[] = {{"sweep.csv", sweep_csv, false},
+                                    {"front.svg", sweep_svg_front, false},
+                                    {"dials.svg", sweep_svg_dials, false},
+                                    {"table.md", sweep_names, false},
+                                    {"star.csv", sweep_star_csv, true},
+                                    {"star.svg", sweep_star_svg, true},
+                                    {"parts.csv", sweep_parts_csv, true},
+                                    {"index.html", sweep_page, false}};
+
+static int save(const struct sweep *s, const char *folder, const struct file *f)
 {
     char *text = NULL;
     size_t bytes = 0;
@@ -159,42 +136,21 @@ static int save(const struct sweep *s, const char *folder, const char *name,
 
     if (!file)
         return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
-    write(s, file);
-    return report_file_save(s->tool, folder, name, file, &text, &bytes);
+    f->write(s, file);
+    return report_file_save(s->tool, folder, f->name, file, &text, &bytes);
 }
 
-/* Removes the file NAME of an earlier sweep, which would be taken for one of
- * this sweep. */
-static void leave_out(const char *folder, const char *name)
+/* Saves all files, or with STARS those of stars, dust and veil. */
+static int save_all(const struct sweep *s, const char *folder, bool stars)
 {
-    char path[1024];
-
-    if ((size_t)snprintf(path, sizeof path, "%s/%s", folder, name) <
-        sizeof path)
-        remove(path);
-}
-
-static int save_all(const struct sweep *s, const char *folder)
-{
-    static const struct {
-        const char *name;
-        write_fn *write;
-    } files[] = {
-        {"sweep.csv", sweep_csv},         {"front.svg", sweep_svg_front},
-        {"trade.svg", sweep_svg_trade},   {"dials.svg", sweep_svg_dials},
-        {"growth.svg", sweep_svg_growth}, {"table.md", sweep_names},
-        {"star.csv", sweep_star_csv},     {"star.svg", sweep_star_svg},
-        {"parts.csv", sweep_parts_csv},   {"index.html", sweep_page}};
     int code = EXIT_OK;
 
     for (size_t i = 0; i < sizeof files / sizeof *files && code == EXIT_OK; i++)
-        if (files[i].write == sweep_svg_growth && !sweep_has_growth(s))
-            leave_out(folder, files[i].name);
-        else
-            code = save(s, folder, files[i].name, files[i].write);
-    if (code == EXIT_OK && s->tool->json)
+        if (!stars || files[i].alone)
+            code = save(s, folder, &files[i]);
+    if (code == EXIT_OK && s->tool->json && !stars)
         sweep_json(s, stdout);
-    else if (code == EXIT_OK && !s->tool->quiet)
+    else if (code == EXIT_OK && !s->tool->quiet && !stars)
         sweep_names(s, stdout);
     return code;
 }
@@ -227,38 +183,35 @@ static int measure(struct sweep *s)
     return code;
 }
 
-static int read_counts(struct sweep *s)
+static const char *take_count(void *ctx, struct text_lines *lines, char *line)
 {
-    double *const instructions =
-        malloc((size_t)s->n_points * sizeof *instructions);
-    int code;
+    struct sweep *const s = ctx;
+    double v[2];
+    char *const space = strchr(line, ' ');
 
-    if (!instructions)
-        return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
-    for (int i = 0; i < s->n_points; i++)
-        instructions[i] = s->point[i].instructions;
-    code = sweep_read_counts(s->counts, s->n_points, instructions);
-    for (int i = 0; i < s->n_points; i++)
-        s->point[i].instructions = instructions[i];
-    free(instructions);
-    return code;
+    if (space)
+        *space = ',';
+    if (tool_numbers(line, v, 2) != 2 || v[0] != floor(v[0]) || v[0] < 0 ||
+        v[0] >= s->n_points || v[1] < 0)
+        return text_lines_cause(
+            lines, "not a point of this sweep and its instructions");
+    s->point[(int)v[0]].metric[SWEEP_INSTRUCTIONS] = v[1];
+    return NULL;
 }
 
-/* Measures stars, dust and veil alone, and saves what is said of them. */
-static int run_stars(struct sweep *s, const char *folder)
+/* Reads the instructions of points from the file of --counts, whose lines are
+ * "POINT INSTRUCTIONS"; points without one stay. Returns an exit code. */
+static int read_counts(struct sweep *s)
 {
-    int code;
+    struct text_lines lines;
+    struct glint_error error;
+    enum glint_status status =
+        text_lines_open(&lines, s->counts, NULL, 1 << 24, &error);
 
-    s->counter = glint_instructions_open();
-    code = sweep_stars(s, s->lens[0]);
-    if (code == EXIT_OK)
-        code = sweep_parts(s, s->lens[0]);
-    glint_instructions_close(s->counter);
-    if (code == EXIT_OK)
-        code = save(s, folder, "star.csv", sweep_star_csv);
-    if (code == EXIT_OK)
-        code = save(s, folder, "parts.csv", sweep_parts_csv);
-    return code == EXIT_OK ? save(s, folder, "star.svg", sweep_star_svg) : code;
+    if (status == GLINT_OK)
+        status = text_lines_each(&lines, take_count, s, &error);
+    return status == GLINT_OK ? EXIT_OK
+                              : tool_fail(s->tool, status, error.text);
 }
 
 static int run(struct sweep *s, const struct asked *a)
@@ -276,15 +229,13 @@ static int run(struct sweep *s, const struct asked *a)
     }
     if (glint_pool_create(&s->one, 1) != GLINT_OK)
         return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
-    if (a->stars)
-        return run_stars(s, a->folder);
-    add_cases(s, a);
-    if (sweep_plan(s) != GLINT_OK)
-        return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
+    if (!a->stars) {
+        add_cases(s, a);
+        if (sweep_plan(s) != GLINT_OK)
+            return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
+    }
     s->counter = glint_instructions_open();
     code = measure(s);
-    if (code == EXIT_OK && !s->count_only)
-        code = sweep_stars(s, s->lens[0]);
     if (code == EXIT_OK && !s->count_only)
         code = sweep_parts(s, s->lens[0]);
     glint_instructions_close(s->counter);
@@ -293,7 +244,7 @@ static int run(struct sweep *s, const struct asked *a)
     if (code != EXIT_OK || s->count_only)
         return code;
     sweep_mark_fronts(s);
-    return save_all(s, a->folder);
+    return save_all(s, a->folder, a->stars);
 }
 
 static bool take_sizes(const char *text, struct asked *a)
@@ -340,13 +291,7 @@ static bool take_cost(const char *text, struct sweep *s)
     return word >= 0;
 }
 
-enum option_code {
-    OPT_SMALL = 1,
-    OPT_STARS,
-    OPT_NO_GROWTH,
-    OPT_COUNT,
-    OPT_COUNTS
-};
+enum option_code { OPT_SMALL = 1, OPT_STARS, OPT_COUNT, OPT_COUNTS };
 
 static const struct option options[] = {
     {"output", required_argument, NULL, 'o'},
@@ -358,7 +303,6 @@ static const struct option options[] = {
     {"cost", required_argument, NULL, 'c'},
     {"small", no_argument, NULL, OPT_SMALL},
     {"stars", no_argument, NULL, OPT_STARS},
-    {"no-growth", no_argument, NULL, OPT_NO_GROWTH},
     {"count", no_argument, NULL, OPT_COUNT},
     {"counts", required_argument, NULL, OPT_COUNTS},
     TOOL_COMMON_OPTIONS};
@@ -387,8 +331,6 @@ static int take(struct sweep *s, struct asked *a, int c)
         return s->small = true;
     case OPT_STARS:
         return a->stars = true;
-    case OPT_NO_GROWTH:
-        return a->no_growth = true;
     case OPT_COUNT:
         return s->count_only = true;
     case OPT_COUNTS:
@@ -441,7 +383,6 @@ static void fill_in(struct sweep *s, struct asked *a)
         a->lights[a->n_lights++] = 1;
     if (a->n_angles == 0)
         a->angle[a->n_angles++] = 12;
-    a->no_growth |= s->small;
     s->rounds = s->rounds ? s->rounds : s->small ? 1 : 7;
     s->grid = s->grid ? s->grid : s->small ? 64 : 128;
 }

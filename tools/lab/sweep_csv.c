@@ -1,5 +1,7 @@
-/* SPDX-License-Identifier: MIT */
-#include <errno.h>
+/* SPDX-License-Identifier: MIT
+ *
+ * All points as CSV and JSON, and the named qualities as Markdown.
+ */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,12 +9,17 @@
 #include "lab/sweep.h"
 #include "options/json_writer.h"
 
-static const char *const kinds[] = {"standard", "alone", "together", "quality",
-                                    "growth"};
+static const char *const kinds[] = {"standard", "alone", "together", "quality"};
 
-/* Prints X, or nothing if it is not finite. */
-static void number(FILE *file, double x)
+static const char *const metrics[SWEEP_METRICS] = {
+    "ms",          "floor_ms", "ratio", "instructions", "arena_bytes",
+    "model_bytes", "psnr_db",  "ssim",  "p99",          "flux_error",
+    "ghosts",      "bundles",  "edges", "tiles"};
+
+/* Prints a comma and X, or nothing behind it if X is not finite. */
+static void print_number(FILE *file, double x)
 {
+    fputc(',', file);
     if (isfinite(x))
         fprintf(file, "%.7g", x);
 }
@@ -20,59 +27,26 @@ static void number(FILE *file, double x)
 void sweep_csv(const struct sweep *s, FILE *file)
 {
     fputs("lens,width,height,lights,angle,kind,dial,quality", file);
-    for (int d = 0; d < n_dials; d++)
-        fprintf(file, ",%s", dials[d].name);
-    fputs(
-        ",ms,floor_ms,ratio,instructions,arena_bytes,model_bytes,psnr_db,"
-        "ssim,p99,flux_error,ghosts,bundles,edges,tiles,"
-        "vertices,edges_told,rows_told,parts_told,lit_told,minsn_told,front\n",
-        file);
+    for (int d = 0; d < n_sweep_parameters; d++)
+        fprintf(file, ",%s", sweep_parameter[d].name);
+    for (int k = 0; k < SWEEP_METRICS; k++)
+        fprintf(file, ",%s", metrics[k]);
+    fputs(",front\n", file);
     for (int i = 0; i < s->n_points; i++) {
-        const struct sweep_point *p = &s->point[i];
-        const struct sweep_case *c = &s->scase[p->of];
-        const double measured[] = {p->ms, p->floor_ms, p->ratio,
-                                   p->instructions};
-        const double quality[] = {p->psnr_db, p->ssim, p->p99, p->flux_error};
+        const struct sweep_point *const p = &s->point[i];
+        const struct sweep_setting *const set = &p->set;
+        const struct sweep_case *const c = &s->scase[p->of];
 
-        fprintf(file, "%s,%d,%d,%d,%g,%s,%s,", s->lens[c->lens], c->width,
-                c->height, c->n_lamps, c->angle, kinds[p->set.kind],
-                p->set.dial >= 0 ? dials[p->set.dial].name : "");
-        number(file, p->set.quality >= 0 ? p->set.quality : (double)NAN);
-        for (int d = 0; d < n_dials; d++)
-            fprintf(file, ",%.7g", p->set.value[d]);
-        for (int k = 0; k < 4; k++)
-            fputc(',', file), number(file, measured[k]);
-        fprintf(file, ",%zu,%zu", p->arena_bytes, p->model_bytes);
-        for (int k = 0; k < 4; k++)
-            fputc(',', file), number(file, quality[k]);
-        fprintf(file, ",%d,%d,%d,%d", p->report.ghosts, p->report.stats.bundles,
-                p->report.stats.primitives, p->report.tiles);
-        for (int k = GLINT_COST_VERTICES; k < GLINT_COST_STAR; k++)
-            fprintf(file, ",%.0f", p->cost.count[k]);
-        fprintf(file, ",%.4g,%d\n", glint_cost_minsn(&p->cost), p->front);
+        fprintf(file, "%s,%d,%d,%d,%g,%s,%s", s->lens[c->lens], c->width,
+                c->height, c->n_lamps, c->angle, kinds[set->kind],
+                set->alone >= 0 ? sweep_parameter[set->alone].name : "");
+        print_number(file, set->quality >= 0 ? set->quality : (double)NAN);
+        for (int d = 0; d < n_sweep_parameters; d++)
+            print_number(file, set->value[d]);
+        for (int k = 0; k < SWEEP_METRICS; k++)
+            print_number(file, p->metric[k]);
+        fprintf(file, ",%d\n", p->front);
     }
-}
-
-static void json_point(struct json_writer *json, const struct sweep *s,
-                       const struct sweep_point *p)
-{
-    const struct sweep_case *c = &s->scase[p->of];
-
-    json_write(json,
-               "\n{lens: %s, width: %d, height: %d, lights: %d, angle: %g, "
-               "kind: %s, quality: %.7g",
-               s->lens[c->lens], c->width, c->height, c->n_lamps, c->angle,
-               kinds[p->set.kind],
-               p->set.quality >= 0 ? p->set.quality : (double)NAN);
-    for (int d = 0; d < n_dials; d++)
-        json_write(json, "%s: %.7g", dials[d].name, p->set.value[d]);
-    json_write(json,
-               "ms: %.7g, floor_ms: %.7g, ratio: %.7g, instructions: %.7g, "
-               "arena_bytes: %.7g, model_bytes: %.7g, psnr_db: %.7g, "
-               "ssim: %.7g, p99: %.7g, flux_error: %.7g, front: %c}",
-               p->ms, p->floor_ms, p->ratio, p->instructions,
-               (double)p->arena_bytes, (double)p->model_bytes, p->psnr_db,
-               p->ssim, p->p99, p->flux_error, p->front);
 }
 
 void sweep_json(const struct sweep *s, FILE *file)
@@ -80,36 +54,32 @@ void sweep_json(const struct sweep *s, FILE *file)
     struct json_writer json = {.to = file};
 
     json_write(&json, "{rounds: %d, points: [", s->rounds);
-    for (int i = 0; i < s->n_points; i++)
-        json_point(&json, s, &s->point[i]);
+    for (int i = 0; i < s->n_points; i++) {
+        const struct sweep_point *const p = &s->point[i];
+        const struct sweep_case *const c = &s->scase[p->of];
+
+        json_write(&json,
+                   "\n{lens: %s, width: %d, height: %d, lights: %d, angle: %g, "
+                   "kind: %s, quality: %.7g",
+                   s->lens[c->lens], c->width, c->height, c->n_lamps, c->angle,
+                   kinds[p->set.kind],
+                   p->set.quality >= 0 ? p->set.quality : (double)NAN);
+        for (int d = 0; d < n_sweep_parameters; d++)
+            json_write(&json, "%s: %.7g", sweep_parameter[d].name,
+                       p->set.value[d]);
+        for (int k = 0; k < SWEEP_METRICS; k++)
+            json_write(&json, "%s: %.7g", metrics[k], p->metric[k]);
+        json_write(&json, "front: %c}", p->front);
+    }
     json_write(&json, "\n]}\n");
 }
 
-/* Prints the row of case C: its points with a named quality, the coarsest
- * first. */
-static void names_row(const struct sweep *s, int c, FILE *file)
+/* Prints the settings of one parameter that lie at least 0.1 dB above
+ * --quality. */
+static void print_above(const struct sweep *s, FILE *file)
 {
-    const struct sweep_case *k = &s->scase[c];
-
-    fprintf(file, "| %s, %dx%d, %d |", s->lens[k->lens], k->width, k->height,
-            k->n_lamps);
-    for (int i = 0; i < k->n; i++) {
-        const struct sweep_point *p = &s->point[k->first + i];
-        const double at = p->set.quality * (GLINT_QUALITY_NAMES - 1);
-
-        if (p->set.kind == SWEEP_QUALITY && at == floor(at))
-            fprintf(file, " %.1f; %.1f; %zu + %zu |", sweep_cost(s, p),
-                    p->psnr_db, p->arena_bytes / 1024, p->model_bytes / 1024);
-    }
-    fputc('\n', file);
-}
-
-/* Prints the settings of one dial that lie at least 0.1 dB above --quality. */
-static void beyond_ladder(const struct sweep *s, FILE *file)
-{
-    struct sweep_mean *mean = malloc(((size_t)s->n_points + 1) * sizeof *mean);
-    const int n = mean ? sweep_means(s, mean, s->n_points) : 0;
-    int n_alone = 0, n_above = 0;
+    int n, n_alone = 0, n_above = 0;
+    struct sweep_mean *const mean = sweep_means(s, &n);
 
     for (int i = 0; i < n; i++) {
         const double above = sweep_above(mean, n, i);
@@ -121,7 +91,7 @@ static void beyond_ladder(const struct sweep *s, FILE *file)
         n_alone++;
         if (above < 0.1)
             continue;
-        sweep_words(mean[i].set, words, sizeof words);
+        sweep_words(mean[i].set, words);
         fprintf(file, "%s%s by %.1f dB",
                 n_above++ ? ", " : "\nAbove --quality: ", words, above);
     }
@@ -139,41 +109,21 @@ void sweep_names(const struct sweep *s, FILE *file)
     for (int i = 0; i < GLINT_QUALITY_NAMES; i++)
         fprintf(file, " %s |", glint_quality_name[i]);
     fputs("\n|---|---|---|---|---|---|\n", file);
-    for (int c = 0; c < s->n_cases; c++)
-        if (!s->scase[c].growth)
-            names_row(s, c, file);
-    beyond_ladder(s, file);
-}
+    for (int c = 0; c < s->n_cases; c++) {
+        const struct sweep_case *const k = &s->scase[c];
 
-int sweep_read_counts(const char *path, int n_points, double *instructions)
-{
-    FILE *file = fopen(path, "r");
-    char line[80];
-    int n = 0;
+        fprintf(file, "| %s, %dx%d, %d |", s->lens[k->lens], k->width,
+                k->height, k->n_lamps);
+        for (int i = k->first; i < k->first + k->n; i++) {
+            const struct sweep_point *const p = &s->point[i];
 
-    if (!file) {
-        fprintf(stderr, "glint sweep: %s: %s\n", path, strerror(errno));
-        return EXIT_INPUT;
-    }
-    while (fgets(line, sizeof line, file)) {
-        double v[2];
-        char *space = strchr(line, ' ');
-
-        line[strcspn(line, "\n")] = '\0';
-        n++;
-        if (space)
-            *space = ',';
-        if (tool_numbers(line, v, 2) != 2 || v[0] != floor(v[0]) || v[0] < 0 ||
-            v[0] >= n_points || v[1] < 0) {
-            fclose(file);
-            fprintf(stderr,
-                    "glint sweep: %s:%d: not a point of this sweep and its "
-                    "instructions\n",
-                    path, n);
-            return EXIT_INPUT;
+            if (sweep_named(p) >= 0)
+                fprintf(file, " %.1f; %.1f; %.0f + %.0f |", sweep_cost(s, p),
+                        p->metric[SWEEP_PSNR_DB],
+                        floor(p->metric[SWEEP_ARENA_BYTES] / 1024),
+                        floor(p->metric[SWEEP_MODEL_BYTES] / 1024));
         }
-        instructions[(int)v[0]] = v[1];
+        fputc('\n', file);
     }
-    fclose(file);
-    return EXIT_OK;
+    print_above(s, file);
 }

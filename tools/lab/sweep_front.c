@@ -7,10 +7,16 @@
 
 double sweep_cost(const struct sweep *s, const struct sweep_point *p)
 {
-    return s->by_instructions ? 1e-6 * p->instructions : p->ratio;
+    return s->by_instructions ? 1e-6 * p->metric[SWEEP_INSTRUCTIONS]
+                              : p->metric[SWEEP_RATIO];
 }
 
 /* ------------------------------------------------------------------- front */
+
+static bool is_true(double flux_error)
+{
+    return fabs(flux_error) <= MAX_FLUX_ERROR;
+}
 
 struct entry {
     double cost, quality;
@@ -48,33 +54,27 @@ int sweep_front(const double *cost, const double *quality, int n, int *front)
     return n_front;
 }
 
-static void mark_case(struct sweep *s, const struct sweep_case *c, double *cost,
-                      double *quality, int *front)
-{
-    int n;
-
-    for (int i = 0; i < c->n; i++) {
-        const struct sweep_point *p = &s->point[c->first + i];
-
-        cost[i] = fabs(p->flux_error) <= MAX_FLUX_ERROR ? sweep_cost(s, p)
-                                                        : (double)NAN;
-        quality[i] = p->psnr_db;
-    }
-    n = sweep_front(cost, quality, c->n, front);
-    for (int i = 0; i < n; i++)
-        s->point[c->first + front[i]].front = true;
-}
-
 void sweep_mark_fronts(struct sweep *s)
 {
-    double *cost = malloc((size_t)s->n_points * sizeof *cost);
-    double *quality = malloc((size_t)s->n_points * sizeof *quality);
-    int *front = malloc((size_t)s->n_points * sizeof *front);
+    const size_t n = (size_t)s->n_points + 1;
+    double *cost = malloc(2 * n * sizeof *cost), *quality = cost + n;
+    int *front = malloc(n * sizeof *front), n_front;
 
-    for (int c = 0; c < s->n_cases && cost && quality && front; c++)
-        mark_case(s, &s->scase[c], cost, quality, front);
+    for (int i = 0; i < s->n_points && cost && front; i++) {
+        const struct sweep_point *p = &s->point[i];
+
+        cost[i] = is_true(p->metric[SWEEP_FLUX_ERROR]) ? sweep_cost(s, p)
+                                                       : (double)NAN;
+        quality[i] = p->metric[SWEEP_PSNR_DB];
+    }
+    for (int c = 0; c < s->n_cases && cost && front; c++) {
+        const struct sweep_case *k = &s->scase[c];
+
+        n_front = sweep_front(cost + k->first, quality + k->first, k->n, front);
+        for (int i = 0; i < n_front; i++)
+            s->point[k->first + front[i]].front = true;
+    }
     free(cost);
-    free(quality);
     free(front);
 }
 
@@ -84,7 +84,8 @@ static bool is_same(const struct sweep_setting *a,
                     const struct sweep_setting *b)
 {
     return a->kind == b->kind && a->quality == b->quality &&
-           memcmp(a->value, b->value, (size_t)n_dials * sizeof *a->value) == 0;
+           memcmp(a->value, b->value,
+                  (size_t)n_sweep_parameters * sizeof *a->value) == 0;
 }
 
 static const struct sweep_point *find(const struct sweep *s,
@@ -111,12 +112,12 @@ static bool mean_of(const struct sweep *s, const struct sweep_setting *set,
 
         if (!c->together)
             continue;
-        if (!p || isnan(p->psnr_db))
+        if (!p || isnan(p->metric[SWEEP_PSNR_DB]))
             return false;
         m->cost += log(sweep_cost(s, p) / sweep_cost(s, &s->point[c->first]));
-        m->psnr_db += p->psnr_db;
-        m->least_db = fmin(m->least_db, p->psnr_db);
-        m->flux_error = fmax(m->flux_error, fabs(p->flux_error));
+        m->psnr_db += p->metric[SWEEP_PSNR_DB];
+        m->least_db = fmin(m->least_db, p->metric[SWEEP_PSNR_DB]);
+        m->flux_error = fmax(m->flux_error, fabs(p->metric[SWEEP_FLUX_ERROR]));
         n++;
     }
     m->cost = exp(m->cost / n);
@@ -124,53 +125,56 @@ static bool mean_of(const struct sweep *s, const struct sweep_setting *set,
     return n > 0 && isfinite(m->cost);
 }
 
-static void mark_means(struct sweep_mean *mean, int n)
-{
-    double *cost = malloc((size_t)(n + 1) * sizeof *cost);
-    double *quality = malloc((size_t)(n + 1) * sizeof *quality);
-    int *front = malloc((size_t)(n + 1) * sizeof *front), n_front = 0;
-
-    for (int i = 0; i < n && cost && quality; i++) {
-        cost[i] =
-            mean[i].flux_error <= MAX_FLUX_ERROR ? mean[i].cost : (double)NAN;
-        quality[i] = mean[i].psnr_db;
-    }
-    if (cost && quality && front)
-        n_front = sweep_front(cost, quality, n, front);
-    for (int i = 0; i < n_front; i++)
-        mean[front[i]].front = true;
-    free(cost);
-    free(quality);
-    free(front);
-}
-
+/* Orders means by cost, the cheapest first, and equal ones by PSNR, the best
+ * first. */
 static int by_mean_cost(const void *a, const void *b)
 {
     const struct sweep_mean *x = a, *y = b;
 
-    return (x->cost > y->cost) - (x->cost < y->cost);
+    if (x->cost != y->cost)
+        return x->cost < y->cost ? -1 : 1;
+    return (x->psnr_db < y->psnr_db) - (x->psnr_db > y->psnr_db);
 }
 
-int sweep_means(const struct sweep *s, struct sweep_mean *mean, int max)
+void sweep_sort(struct sweep_mean *mean, int n)
 {
-    int first = 0, n = 0;
+    if (n > 0)
+        qsort(mean, (size_t)n, sizeof *mean, by_mean_cost);
+}
 
+/* The cheapest comes first, so the front rises along MEAN[N]. */
+static void mark_means(struct sweep_mean *mean, int n)
+{
+    double best = -HUGE_VAL;
+
+    for (int i = 0; i < n; i++) {
+        mean[i].front = is_true(mean[i].flux_error) && mean[i].psnr_db > best;
+        if (mean[i].front)
+            best = mean[i].psnr_db;
+    }
+}
+
+struct sweep_mean *sweep_means(const struct sweep *s, int *n)
+{
+    struct sweep_mean *mean = malloc(((size_t)s->n_points + 1) * sizeof *mean);
+    int first = 0;
+
+    *n = 0;
     while (first < s->n_cases && !s->scase[first].together)
         first++;
-    for (int i = 0; first < s->n_cases && i < s->scase[first].n && n < max; i++)
-        if (mean_of(s, &s->point[s->scase[first].first + i].set, &mean[n]))
-            n++;
-    mark_means(mean, n);
-    qsort(mean, (size_t)n, sizeof *mean, by_mean_cost);
-    return n;
+    for (int i = 0; mean && first < s->n_cases && i < s->scase[first].n; i++)
+        *n += mean_of(s, &s->point[s->scase[first].first + i].set, &mean[*n]);
+    sweep_sort(mean, *n);
+    mark_means(mean, *n);
+    return mean;
 }
 
 /* ----------------------------------------------------------------- quality */
 
 static bool same_pixels(const struct sweep_mean *a, const struct sweep_mean *b)
 {
-    for (int d = 0; d < n_dials; d++)
-        if (strcmp(dials[d].name, "half") == 0)
+    for (int d = 0; d < n_sweep_parameters; d++)
+        if (strcmp(sweep_parameter[d].name, "half") == 0)
             return a->set->value[d] == b->set->value[d];
     return true;
 }

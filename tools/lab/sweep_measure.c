@@ -6,7 +6,6 @@
 #include "linux/instructions.h"
 #include "glint/measure.h"
 #include "lab/sweep.h"
-#include "lab/sweep_exact.h"
 #include "options/timed_text.h"
 
 /* Milliseconds spent on a point, after which it gets no further rounds. */
@@ -19,6 +18,7 @@ struct run {
     struct sweep_point *point;
     const struct settings *settings;
     struct glint_frame frame;
+    struct glint_engine_report report;
     double ms[SWEEP_ROUNDS];
     int n;
     double spent_ms;
@@ -33,9 +33,8 @@ struct bay {
     struct run *run;
     struct canvas canvas;
     struct glint_lamp *lamp;
-    double exposure, floor_ms[SWEEP_ROUNDS];
+    double exposure;
     struct glint_float_image exact; /* rgb is NULL before it is drawn. */
-    struct glint_float_image got;
 };
 
 /* ------------------------------------------------------------------ making */
@@ -53,9 +52,7 @@ settings_for(struct bay *b, const struct sweep_setting *set, int *code)
 {
     struct settings asked = b->s->base;
 
-    for (int d = 0; d < n_dials; d++)
-        if (dials[d].opens)
-            dial_set(&asked, &dials[d], set->value[d]);
+    sweep_set(&asked, set, true);
     for (int i = 0; i < b->n_open; i++)
         if (is_same(&b->open[i], &asked))
             return &b->open[i];
@@ -71,7 +68,6 @@ settings_for(struct bay *b, const struct sweep_setting *set, int *code)
 
 static int make_run(struct bay *b, struct run *r)
 {
-    const struct sweep_case *c = b->c;
     struct settings asked;
     int code = EXIT_OK;
 
@@ -79,45 +75,24 @@ static int make_run(struct bay *b, struct run *r)
     if (!r->settings)
         return code;
     asked = *r->settings;
-    for (int d = 0; d < n_dials; d++)
-        dial_set(&asked, &dials[d], r->point->set.value[d]);
-    code =
-        settings_frame(b->s->tool, &asked,
-                       settings_view(&asked, c->width, c->height), &r->frame);
-    /* The frame outlives ASKED. */
-    r->frame.setup = &r->settings->setup;
-    r->frame.lens = &r->settings->model.lens;
+    sweep_set(&asked, &r->point->set, false);
+    code = canvas_frame(b->s->tool, r->settings, &asked, b->c->width,
+                        b->c->height, &r->frame);
     r->frame.cfg.workers =
         b->s->tool->n_threads ? b->s->tool->workers : b->s->one;
-    r->point->model_bytes = r->settings->model.bytes;
+    r->point->metric[SWEEP_MODEL_BYTES] = (double)r->settings->model.bytes;
     return code;
-}
-
-/* Sets b->exposure to that at which the 99.9th percentile of the flare's
- * luminance, as drawn by default, is white. */
-static enum glint_status expose(struct bay *b)
-{
-    struct glint_engine_report report;
-    const enum glint_status status = glint_frame_draw_alone(
-        &b->run[0].frame, b->lamp, b->c->n_lamps, 1, b->got.rgb, &report);
-
-    if (status == GLINT_OK)
-        b->exposure = glint_measure_exposure(&b->got);
-    return status;
 }
 
 static int make_bay(struct bay *b)
 {
     const struct sweep_case *c = b->c;
-    const size_t n = 3 * (size_t)c->width * (size_t)c->height;
     int code = EXIT_OK;
 
     b->run = calloc((size_t)c->n, sizeof *b->run);
     b->lamp = calloc((size_t)c->n_lamps, sizeof *b->lamp);
-    b->got = (struct glint_float_image){c->width, c->height,
-                                        malloc(n * sizeof(float))};
     b->exact = (struct glint_float_image){c->width, c->height, NULL};
-    if (!b->run || !b->lamp || !b->got.rgb ||
+    if (!b->run || !b->lamp ||
         canvas_init(&b->canvas, GLINT_YUYV, c->width, c->height) != GLINT_OK)
         return tool_fail(b->s->tool, GLINT_E_MEMORY, NULL);
     canvas_lamps(b->lamp, c->n_lamps, c->angle);
@@ -125,7 +100,9 @@ static int make_bay(struct bay *b)
         b->run[i].point = &b->s->point[c->first + i];
         code = make_run(b, &b->run[i]);
     }
-    if (code == EXIT_OK && expose(b) != GLINT_OK)
+    if (code == EXIT_OK &&
+        canvas_exposure(&b->run[0].frame, b->lamp, c->n_lamps, &b->exposure) !=
+            GLINT_OK)
         code = tool_fail(b->s->tool, GLINT_E_MEMORY, NULL);
     return code;
 }
@@ -140,34 +117,44 @@ static void free_bay(struct bay *b)
     free(b->run);
     free(b->lamp);
     free(b->exact.rgb);
-    free(b->got.rgb);
 }
 
 /* ------------------------------------------------------------------ timing */
+
+enum glint_status sweep_time(const struct sweep *s, struct glint_frame *frame,
+                             const struct glint_lamp *lamp, int n,
+                             double exposure, const struct glint_image *image,
+                             struct glint_engine_report *report, double *ms,
+                             double *instructions)
+{
+    const uint64_t n0 =
+        s->counter >= 0 ? glint_instructions_read(s->counter) : 0;
+    const double t0 = tool_seconds();
+    const enum glint_status status =
+        sweep_frame(frame, lamp, n, exposure, image, report);
+
+    *ms = 1e3 * (tool_seconds() - t0);
+    if (s->counter >= 0)
+        *instructions = (double)(glint_instructions_read(s->counter) - n0);
+    return status;
+}
 
 /* Draws R's frame and notes time and instructions. In ROUND -1 it is only
  * drawn, so that its memory is taken. */
 static enum glint_status draw(struct bay *b, struct run *r, int round)
 {
-    struct sweep_point *p = r->point;
     enum glint_status status;
-    uint64_t n0 = 0;
-    double t0, ms;
+    double ms;
 
     canvas_fresh(&b->canvas);
     if (round < 0)
         return glint_frame_draw(&r->frame, b->lamp, b->c->n_lamps, b->exposure,
-                                &b->canvas.image, &p->report);
-    if (b->s->counter >= 0)
-        n0 = glint_instructions_read(b->s->counter);
+                                &b->canvas.image, &r->report);
     if (b->s->count_only)
-        printf("%d\n", (int)(p - b->s->point));
-    t0 = tool_seconds();
-    status = sweep_frame(&r->frame, b->lamp, b->c->n_lamps, b->exposure,
-                         &b->canvas.image, &p->report);
-    ms = 1e3 * (tool_seconds() - t0);
-    if (b->s->counter >= 0)
-        p->instructions = (double)(glint_instructions_read(b->s->counter) - n0);
+        printf("%d\n", (int)(r->point - b->s->point));
+    status = sweep_time(b->s, &r->frame, b->lamp, b->c->n_lamps, b->exposure,
+                        &b->canvas.image, &r->report, &ms,
+                        &r->point->metric[SWEEP_INSTRUCTIONS]);
     r->ms[r->n++] = ms;
     r->spent_ms += ms;
     return status;
@@ -182,7 +169,7 @@ static enum glint_status time_all(struct bay *b, struct tool_progress *progress,
     enum glint_status status = GLINT_OK;
 
     for (int round = -1; round < n && status == GLINT_OK; round++) {
-        b->floor_ms[round < 0 ? 0 : round] = canvas_floor_ms(&b->canvas);
+        canvas_time_floor(&b->canvas, round < 0 ? 0 : round);
         for (int i = 0; i < b->c->n && status == GLINT_OK; i++)
             if (round < 1 || b->run[i].spent_ms < MAX_POINT_MS)
                 status = draw(b, &b->run[i], round);
@@ -190,14 +177,17 @@ static enum glint_status time_all(struct bay *b, struct tool_progress *progress,
                            from + (to - from) * (round + 2) / (n + 1));
     }
     for (int i = 0; i < b->c->n && status == GLINT_OK; i++) {
-        struct run *r = &b->run[i];
-        const struct glint_cost_plan plan = glint_frame_plan(&r->frame);
+        const struct run *const r = &b->run[i];
+        double *const m = r->point->metric;
 
-        r->point->ms = canvas_median(r->ms, r->n);
-        r->point->floor_ms = canvas_median(b->floor_ms, n);
-        r->point->ratio = r->point->ms / r->point->floor_ms;
-        r->point->arena_bytes = r->point->report.peak_bytes;
-        r->point->cost = glint_cost_of(&plan, &plan.dials);
+        m[SWEEP_MS] = canvas_median(r->ms, r->n);
+        m[SWEEP_FLOOR_MS] = canvas_median(b->canvas.floor_ms, n);
+        m[SWEEP_RATIO] = m[SWEEP_MS] / m[SWEEP_FLOOR_MS];
+        m[SWEEP_ARENA_BYTES] = (double)r->report.peak_bytes;
+        m[SWEEP_GHOSTS] = r->report.ghosts;
+        m[SWEEP_BUNDLES] = r->report.stats.bundles;
+        m[SWEEP_EDGES] = r->report.stats.primitives;
+        m[SWEEP_TILES] = r->report.tiles;
     }
     return status;
 }
@@ -237,15 +227,9 @@ static enum glint_status measure_flux(struct bay *b, struct run *r)
             sum += linear_q20[i] * 0x1p-20;
     }
     free(linear_q20);
-    r->point->flux_error = sum / (b->exposure * sum_of(&b->exact)) - 1;
+    r->point->metric[SWEEP_FLUX_ERROR] =
+        sum / (b->exposure * sum_of(&b->exact)) - 1;
     return status;
-}
-
-static int pick_shrink(int width)
-{
-    const int by = width / PICTURE_WIDTH;
-
-    return by > 1 ? by : 1;
 }
 
 /* Sets TO, WIDTH x HEIGHT pixels, to the means of BY x BY pixels of CODES,
@@ -271,7 +255,8 @@ static bool keep_picture(struct bay *b, struct run *r, const uint8_t *codes,
                          const uint8_t *exact_codes)
 {
     struct sweep *s = b->s;
-    const int by = pick_shrink(b->c->width);
+    const int by =
+        b->c->width < 2 * PICTURE_WIDTH ? 1 : b->c->width / PICTURE_WIDTH;
     const int width = b->c->width / by, height = b->c->height / by;
     const size_t bytes = 3 * (size_t)width * (size_t)height;
     struct sweep_picture *p;
@@ -303,18 +288,9 @@ static bool keep_picture(struct bay *b, struct run *r, const uint8_t *codes,
         if (far)
             shrink(far, 3 * b->c->width, by, p->difference, width, height);
         free(far);
-        r->point->picture = s->n_pictures - 1;
         return far != NULL;
     }
     return true;
-}
-
-/* Checks whether the page shows P: it is of a named quality. */
-static bool is_pictured(const struct sweep_point *p)
-{
-    const double named = p->set.quality * (GLINT_QUALITY_NAMES - 1);
-
-    return p->set.kind == SWEEP_QUALITY && named == floor(named);
 }
 
 /* Measures R against EXACT_CODES. CODES is room for its own codes. */
@@ -330,10 +306,10 @@ static enum glint_status measure_point(struct bay *b, struct run *r,
     if (status != GLINT_OK)
         return status;
     glint_measure_codes(exact_codes, codes, b->c->width, b->c->height, &m);
-    r->point->psnr_db = m.psnr_db;
-    r->point->ssim = m.ssim;
-    r->point->p99 = m.p99;
-    if (is_pictured(r->point) && !keep_picture(b, r, codes, exact_codes))
+    r->point->metric[SWEEP_PSNR_DB] = m.psnr_db;
+    r->point->metric[SWEEP_SSIM] = m.ssim;
+    r->point->metric[SWEEP_P99] = m.p99;
+    if (sweep_named(r->point) >= 0 && !keep_picture(b, r, codes, exact_codes))
         return GLINT_E_MEMORY;
     return measure_flux(b, r);
 }
@@ -348,8 +324,8 @@ static enum glint_status measure_all(struct bay *b,
 
     b->exact.rgb = malloc(n * sizeof(float));
     if (b->exact.rgb && codes)
-        status = sweep_exact(b->s->tool, &b->open[0], b->lamp, b->c->n_lamps,
-                             b->s->grid, &b->exact);
+        status = canvas_exact(b->s->tool, &b->open[0], b->lamp, b->c->n_lamps,
+                              b->s->grid, &b->exact);
     if (status == GLINT_OK) {
         const double exposure = glint_measure_exposure(&b->exact);
 
@@ -367,12 +343,6 @@ static enum glint_status measure_all(struct bay *b,
     return status;
 }
 
-static void clear(struct sweep_point *p)
-{
-    p->ms = p->floor_ms = p->ratio = p->instructions = (double)NAN;
-    p->psnr_db = p->ssim = p->p99 = p->flux_error = (double)NAN;
-}
-
 int sweep_measure(struct sweep *s, int c, struct tool_progress *progress)
 {
     const double from = (double)s->scase[c].first / s->n_points;
@@ -385,13 +355,10 @@ int sweep_measure(struct sweep *s, int c, struct tool_progress *progress)
         return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
     b->s = s;
     b->c = &s->scase[c];
-    for (int i = 0; i < b->c->n; i++)
-        clear(&s->point[b->c->first + i]);
     code = make_bay(b);
     if (code == EXIT_OK)
         status = time_all(b, progress, from, (from + to) / 2);
-    if (code == EXIT_OK && status == GLINT_OK && !b->c->growth &&
-        !s->count_only)
+    if (code == EXIT_OK && status == GLINT_OK && !s->count_only)
         status = measure_all(b, progress, (from + to) / 2, to);
     if (code == EXIT_OK && status != GLINT_OK)
         code = tool_fail(s->tool, status, NULL);

@@ -31,16 +31,19 @@ static void table_of_names(const struct sweep *s, FILE *file)
     for (int i = 0; i < s->n_points; i++) {
         const struct sweep_point *p = &s->point[i];
         const struct sweep_case *c = &s->scase[p->of];
-        const double at = p->set.quality * (GLINT_QUALITY_NAMES - 1);
+        const double *m = p->metric;
+        const int name = sweep_named(p);
 
-        if (p->set.kind != SWEEP_QUALITY || at != floor(at))
-            continue;
-        html_row(
-            file, "td", "%s|%dx%d, %d|%s|%.1f|%.1f|%.4f|%g|%s%+.2f|%zu|%zu",
-            s->lens[c->lens], c->width, c->height, c->n_lamps,
-            glint_quality_name[(int)at], sweep_cost(s, p), p->psnr_db, p->ssim,
-            p->p99, fabs(p->flux_error) > MAX_FLUX_ERROR ? "!" : "",
-            100 * p->flux_error, p->arena_bytes / 1024, p->model_bytes / 1024);
+        if (name >= 0)
+            html_row(file, "td",
+                     "%s|%dx%d, %d|%s|%.1f|%.1f|%.4f|%g|%s%+.2f|%.0f|%.0f",
+                     s->lens[c->lens], c->width, c->height, c->n_lamps,
+                     glint_quality_name[name], sweep_cost(s, p),
+                     m[SWEEP_PSNR_DB], m[SWEEP_SSIM], m[SWEEP_P99],
+                     fabs(m[SWEEP_FLUX_ERROR]) > MAX_FLUX_ERROR ? "!" : "",
+                     100 * m[SWEEP_FLUX_ERROR],
+                     floor(m[SWEEP_ARENA_BYTES] / 1024),
+                     floor(m[SWEEP_MODEL_BYTES] / 1024));
     }
     fputs("</table>\n", file);
 }
@@ -48,8 +51,8 @@ static void table_of_names(const struct sweep *s, FILE *file)
 /* Prints the front of the means, which --quality should follow. */
 static void table_of_front(const struct sweep *s, FILE *file)
 {
-    struct sweep_mean *mean = malloc(((size_t)s->n_points + 1) * sizeof *mean);
-    const int n = mean ? sweep_means(s, mean, s->n_points) : 0;
+    int n;
+    struct sweep_mean *const mean = sweep_means(s, &n);
 
     fputs("<h2>The front of all lenses together</h2>\n<table>", file);
     html_row(file, "th",
@@ -59,7 +62,7 @@ static void table_of_front(const struct sweep *s, FILE *file)
 
         if (!mean[i].front)
             continue;
-        sweep_words(mean[i].set, words, sizeof words);
+        sweep_words(mean[i].set, words);
         html_row(file, "td", "%s|%.3f|%.1f|%.1f|%.2f", words, mean[i].cost,
                  mean[i].psnr_db, mean[i].least_db, 100 * mean[i].flux_error);
     }
@@ -77,13 +80,13 @@ static void figure(const struct sweep *s, FILE *file,
     char words[160] = "exact";
 
     if (p)
-        sweep_words(&p->set, words, sizeof words);
+        sweep_words(&p->set, words);
     fputs("<figure><img alt=\"\" src=\"", file);
     html_png(file, rgb, q->width, q->height);
     fprintf(file, "\"><figcaption>%s%s", words, what);
     if (p)
         fprintf(file, "<br>%.3g, %.1f dB, flux %+.2f %%", sweep_cost(s, p),
-                p->psnr_db, 100 * p->flux_error);
+                p->metric[SWEEP_PSNR_DB], 100 * p->metric[SWEEP_FLUX_ERROR]);
     fputs("</figcaption></figure>\n", file);
 }
 
@@ -125,10 +128,6 @@ void sweep_page(const struct sweep *s, FILE *file)
     sweep_svg_dials(s, file);
     fputs("<h2>Stars</h2>\n", file);
     sweep_star_svg(s, file);
-    if (sweep_has_growth(s)) {
-        fputs("<h2>Growth</h2>\n", file);
-        sweep_svg_growth(s, file);
-    }
     strips(s, file);
     html_end(file);
 }

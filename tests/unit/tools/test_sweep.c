@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The parts of glint sweep that measure nothing: fronts, PNG, dials and
- * levels.
+ * The parts of glint sweep that measure nothing: fronts, PNG, parameters
+ * and levels.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -57,8 +57,8 @@ static void test_above_the_ladder(void **state)
     const int n = sizeof mean / sizeof *mean;
 
     (void)state;
-    for (int d = 0; d < n_dials; d++)
-        halves.value[d] = strcmp(dials[d].name, "half") == 0;
+    for (int d = 0; d < n_sweep_parameters; d++)
+        halves.value[d] = strcmp(sweep_parameter[d].name, "half") == 0;
     assert_true(isinf(sweep_above(mean, n, 0)));
     assert_true(fabs(sweep_above(mean, n, 2) - 2) < 1e-9);
     assert_true(fabs(sweep_above(mean, n, 4) -
@@ -123,26 +123,60 @@ static void test_png(void **state)
     free(text);
 }
 
-static void test_dials(void **state)
+/* Returns what S says of the parameters by their names, but of one. */
+static uint64_t settings_without(const struct settings *s, const char *name)
 {
-    struct settings settings, other;
+    const double all[] = {
+        strcmp(name, "grid") ? s->dials.fineness : 0,
+        strcmp(name, "quantum") ? s->dials.irradiance_steps : 0,
+        strcmp(name, "cull") ? s->dials.cull_codes : 0,
+        strcmp(name, "dim") ? s->dials.dim_codes : 0,
+        strcmp(name, "whole") ? s->dials.snap_codes_q8 : 0,
+        strcmp(name, "half") ? s->dials.flags : 0,
+        strcmp(name, "tolerance") ? s->tolerance : 0,
+        strcmp(name, "wavelengths") ? s->wavelength_nm[0] : 0,
+        strcmp(name, "tile") ? s->options.tile : 0,
+        strcmp(name, "apart") ? s->options.apart : 0,
+        strcmp(name, "max_lights") ? s->options.max_lights : 0,
+    };
+    uint64_t hash = 0;
+
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        hash = hash * 1000003 + (uint64_t)(all[i] * 4096);
+    return hash;
+}
+
+/* Each value of a parameter that is not its standard one must change the
+ * settings by itself, and no other parameter. */
+static void test_parameters(void **state)
+{
+    struct sweep_setting standard = {.alone = -1, .quality = -1};
+    struct settings plain;
 
     (void)state;
-    for (int d = 0; d < n_dials; d++) {
+    for (int d = 0; d < n_sweep_parameters; d++)
+        standard.value[d] = sweep_parameter[d].standard;
+    settings_defaults(&plain);
+    sweep_set(&plain, &standard, false);
+    for (int d = 0; d < n_sweep_parameters; d++) {
+        const struct sweep_parameter *const p = &sweep_parameter[d];
         int has_standard = 0;
 
-        settings_defaults(&settings);
-        other = settings;
-        for (int i = 0; i < dials[d].n_values; i++) {
-            has_standard |= dials[d].value[i] == dials[d].standard;
-            dial_set(&other, &dials[d], dials[d].value[i]);
-            assert_true(dial_get(&other, &dials[d]) == dials[d].value[i]);
+        for (int i = 0; i < p->n_values; i++) {
+            struct sweep_setting set = standard;
+            struct settings other;
+
+            settings_defaults(&other);
+            set.value[d] = p->value[i];
+            sweep_set(&other, &set, false);
+            has_standard |= p->value[i] == p->standard;
+            assert_true(settings_without(&other, p->name) ==
+                        settings_without(&plain, p->name));
+            assert_true((settings_without(&other, "") ==
+                         settings_without(&plain, "")) ==
+                        (p->value[i] == p->standard));
         }
         assert_true(has_standard);
-        for (int e = 0; e < n_dials; e++) /* No other dial may have moved. */
-            if (e != d)
-                assert_true(dial_get(&other, &dials[e]) ==
-                            dial_get(&settings, &dials[e]));
     }
 }
 
@@ -166,8 +200,6 @@ static void test_ladder(void **state)
                 settings.dials.cull_codes == plain.dials.cull_codes &&
                 settings.tolerance == plain.tolerance &&
                 settings.options.rays == plain.options.rays);
-    for (int d = 0; d < n_dials; d++)
-        dial_set(&settings, &dials[d], dials[d].standard);
     settings_set_quality(&settings, 1);
     assert_int_equal(settings.dials.fineness, 256);
     settings_defaults(&settings);
@@ -202,7 +234,7 @@ int main(void)
         cmocka_unit_test(test_above_the_ladder),
         cmocka_unit_test(test_front_of_many),
         cmocka_unit_test(test_png),
-        cmocka_unit_test(test_dials),
+        cmocka_unit_test(test_parameters),
         cmocka_unit_test(test_ladder),
     };
 
