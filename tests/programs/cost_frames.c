@@ -15,8 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "glint/measure.h"
-#include "lab/sweep.h"
+#include "engine/frame/cost.h"
+#include "lab/canvas.h"
 #include "support/rng.h"
 
 enum { FIT = 36, HELD = 18, LAMPS = 4 };
@@ -97,24 +97,6 @@ static void set(struct settings *to, const struct shape *s)
     to->options.work = 0;
     GLINT_OPTION_GIVEN(&to->options, work) = true;
     to->tolerance = 1;
-}
-
-static enum glint_status expose(struct stage *s)
-{
-    const size_t n =
-        3 * (size_t)s->frame.view.width * (size_t)s->frame.view.height;
-    struct glint_float_image light = {s->frame.view.width, s->frame.view.height,
-                                      malloc(n * sizeof *light.rgb)};
-    struct glint_engine_report report;
-    enum glint_status status = GLINT_E_MEMORY;
-
-    if (light.rgb)
-        status = glint_frame_draw_alone(&s->frame, s->lamp, 1, 1, light.rgb,
-                                        &report);
-    if (status == GLINT_OK)
-        s->exposure = glint_measure_exposure(&light);
-    free(light.rgb);
-    return status;
 }
 
 static void fail(const char *what)
@@ -249,7 +231,8 @@ int main(int argc, char **argv)
             continue;
         open_stage(s, &shape);
         s->exposure = exposure;
-        if (!from && expose(s) != GLINT_OK)
+        if (!from &&
+            canvas_exposure(&s->frame, s->lamp, 1, &s->exposure) != GLINT_OK)
             fail("no memory");
         draw(s, &shape);
         if (to) {

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * power_table [--features] [--coarse] [PANORAMA.pfm ...] - prints how well the
- * power of clipped lamps is known. Lamps that are rendered or in HDR panoramas
- * are exposed ten times, each time half as bright, to codes of 8 bits, and
- * measured as those of any picture. The table has errors in stops by kind, for
- * the half of the lamps to which constants were fitted and for the other half.
- * --features prints what tests/power-fit fits to instead, of more lamps and
- * views of the first half: group, power, light seen and of the core, features.
- * --coarse makes all pictures RGB565.
+ * power_table [PANORAMA.pfm ...] - prints what tests/power-fit fits to: a line
+ * of group, power, light seen and of the core, and features, for each picture
+ * of a clipped lamp. Lamps that are rendered or in HDR panoramas are exposed
+ * ten times, each time half as bright, to codes of 8 bits, every fourth picture
+ * to RGB565, and measured as those of any picture. Every second lamp and
+ * panorama is left out: the fit can be tried on it.
  */
 #include <math.h>
 #include <stdio.h>
@@ -22,23 +20,11 @@
 
 enum {
     EXPOSURES = 10,
-    LAMPS = 240,
-    VIEWS = 16,
-    MORE_LAMPS = 3, /* factor by which --features takes more lamps, and views */
-    MORE_VIEWS = 3,
+    LAMPS = 720,
+    VIEWS = 48,
     PANORAMA = 10000, /* group of the first panorama */
-    MAX_ROWS = 1 << 17,
     MAX_SPOTS = 64
 };
-
-struct row {
-    char kind[32];
-    int held; /* 1: this row is kept from the fit; 0: the fit used it */
-    double error;
-};
-
-static struct row row[MAX_ROWS];
-static int n_rows, features, coarse;
 
 /* ------------------------------------------------------------------ measure */
 
@@ -175,8 +161,8 @@ static void print_features(struct camera *c, int id, double power,
     printf("\n");
 }
 
-/* Takes a picture of SCENE times GAIN with noise of SIGMA codes. For the fit,
- * every fourth picture, by its number K, is RGB565. */
+/* Takes a picture of SCENE times GAIN with noise of SIGMA codes. Every fourth
+ * picture, by its number K, is RGB565. */
 static void expose(struct camera *c, const struct power_picture *scene,
                    double gain, double sigma, int k, uint32_t *seed)
 {
@@ -184,7 +170,7 @@ static void expose(struct camera *c, const struct power_picture *scene,
 
     power_expose(px, scene, gain, sigma, seed);
     c->seen = &c->image;
-    if (!coarse && !(features && k % 4 == 3))
+    if (k % 4 != 3)
         return;
     c->seen = &c->coarse;
     for (int i = 0; i < scene->width * scene->height; i++) {
@@ -194,20 +180,6 @@ static void expose(struct camera *c, const struct power_picture *scene,
         to[2 * i] = (uint8_t)(bits & 255);
         to[2 * i + 1] = (uint8_t)(bits >> 8);
     }
-}
-
-static void note(struct camera *c, const char *kind, int held, double power,
-                 struct glint_spot *spot, int id)
-{
-    if (features) {
-        print_features(c, id, power, spot);
-        return;
-    }
-    snprintf(row[n_rows].kind, sizeof row[n_rows].kind, "%s", kind);
-    row[n_rows].held = held;
-    row[n_rows].error = log2((double)spot->power_q16 / 65536 / power);
-    if (n_rows < MAX_ROWS - 1)
-        n_rows++;
 }
 
 /* ----------------------------------------------------------------- rendered */
@@ -257,7 +229,6 @@ static int is_held(int i)
 
 static void rendered(int i)
 {
-    static const char *const names[POWER_SHAPES] = {"disc", "square", "tube"};
     enum { W = 288, H = 224 };
     struct power_picture scene = {W, H, malloc(sizeof(double) * 3 * W * H)};
     double *light = malloc(sizeof *light * W * H);
@@ -277,7 +248,7 @@ static void rendered(int i)
     power_draw(light, W, H, &lamp);
     open_camera(&c, W, H);
     for (int k = 0; k < EXPOSURES; k++) {
-        const double gain = exp2(-k - (features ? rng_unit(&seed) : 0));
+        const double gain = exp2(-k - rng_unit(&seed));
 
         /* The background keeps its exposure, as lamps are seen by day and by
          * night. */
@@ -291,7 +262,7 @@ static void rendered(int i)
             c.spot->area >= 2 && c.spot->area < W * H / 5) {
             c.n = 1;
             glint_profile_measure(c.profile, c.seen, c.spot, c.n);
-            note(&c, names[lamp.shape], is_held(i), power * gain, c.spot, i);
+            print_features(&c, i, power * gain, c.spot);
         }
     }
     close_camera(&c);
@@ -393,8 +364,7 @@ static void see_view(struct power_picture *s, double over, uint32_t *seed)
 
 /* Takes one view of panorama P in all exposures and notes the lamps found.
  * TRUTH is the light that enters the lens, without its glare. */
-static void view(const struct panorama *p, const char *kind, int held, int id,
-                 double yaw, double pitch)
+static void view(const struct panorama *p, int id, double yaw, double pitch)
 {
     const int width = p->width * 2 / 9, height = width * 9 / 16;
     const size_t bytes = sizeof(double) * 3 * (size_t)(width * height);
@@ -412,8 +382,7 @@ static void view(const struct panorama *p, const char *kind, int held, int id,
     for (int k = 0; k < EXPOSURES; k++) {
         const double gain = base * exp2(-k);
 
-        expose(&c, &scene, gain, features ? between(0, 3, &seed) : 1.5, k,
-               &seed);
+        expose(&c, &scene, gain, between(0, 3, &seed), k, &seed);
         c.n = glint_lamp_finder_find(c.finder, c.seen, c.spot, MAX_SPOTS);
         glint_profile_measure(c.profile, c.seen, c.spot, c.n);
         for (int i = 0; i < c.n; i++) {
@@ -423,7 +392,7 @@ static void view(const struct panorama *p, const char *kind, int held, int id,
                           c.spot[i].y_q8 >> 8, &ideal);
 
             if (power > 0 && !c.spot[i].faint)
-                note(&c, kind, held, power, &c.spot[i], PANORAMA + id / 100);
+                print_features(&c, PANORAMA + id / 100, power, &c.spot[i]);
         }
     }
     close_camera(&c);
@@ -434,85 +403,23 @@ static void view(const struct panorama *p, const char *kind, int held, int id,
 static void panorama(const char *path, int id)
 {
     struct panorama p;
-    const char *name = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
-    char kind[40];
-    double most = 0;
 
     if (!read_pfm(&p, path)) {
         fprintf(stderr, "power_table: %s: no panorama\n", path);
         return;
     }
-    for (int i = 0; i < 3 * p.width * p.height; i++)
-        most = fmax(most, p.rgb[i]);
-    snprintf(kind, sizeof kind, "hdr-%.*s", (int)strcspn(name, "."), name);
-    for (int k = 0; k < VIEWS * (features ? MORE_VIEWS : 1); k++)
-        view(&p, kind, id & 1, 100 * id + k,
-             (k % 8 + k / 16 / 3.0) * 3.14159265 / 4, (k / 8 % 2 - 0.3) * 0.6);
+    for (int k = 0; k < VIEWS; k++)
+        view(&p, 100 * id + k, (k % 8 + k / 16 / 3.0) * 3.14159265 / 4,
+             (k / 8 % 2 - 0.3) * 0.6);
     free(p.rgb);
-}
-
-/* ------------------------------------------------------------------- report */
-
-static int by_size(const void *a, const void *b)
-{
-    const double p = fabs(((const struct row *)a)->error),
-                 q = fabs(((const struct row *)b)->error);
-
-    return (p > q) - (p < q);
-}
-
-static void report(const char *kind, int held)
-{
-    static struct row pick[MAX_ROWS];
-    int n = 0;
-    double sum = 0;
-
-    for (int i = 0; i < n_rows; i++)
-        if (strncmp(row[i].kind, kind, strlen(kind)) == 0 &&
-            row[i].held == held)
-            pick[n++] = row[i], sum += row[i].error;
-    if (!n)
-        return;
-    qsort(pick, (size_t)n, sizeof *pick, by_size);
-    printf("%-16s %-6s %6d %8.2f %8.2f %8.2f\n", *kind ? kind : "all",
-           held ? "held" : "fitted", n, fabs(pick[n / 2].error),
-           fabs(pick[n * 9 / 10].error), sum / n);
 }
 
 int main(int argc, char **argv)
 {
-    int first = 1;
-
-    if (argc > 1 && strcmp(argv[1], "--features") == 0)
-        features = first++;
-    else if (argc > 1 && strcmp(argv[1], "--coarse") == 0)
-        coarse = first++;
-    for (int i = 0; i < LAMPS * (features ? MORE_LAMPS : 1); i++)
-        if (!features || !is_held(i))
+    for (int i = 0; i < LAMPS; i++)
+        if (!is_held(i))
             rendered(i);
-    /* Every other panorama is kept from the fit, the first one included. */
-    for (int i = first; i < argc; i++)
-        if (!features || (i - first) % 2)
-            panorama(argv[i], i - first + 1);
-    if (features)
-        return 0;
-    printf("kind             half        n   median     p90     bias\n");
-    for (int held = 0; held < 2; held++) {
-        static const char *const kinds[] = {"disc", "square", "tube", "hdr",
-                                            ""};
-
-        for (int k = 0; k < 5; k++)
-            report(kinds[k], held);
-    }
-    for (int i = 0; i < n_rows; i++) {
-        int j = 0;
-
-        while (strcmp(row[j].kind, row[i].kind))
-            j++;
-        if (j == i && strncmp(row[i].kind, "hdr", 3) == 0) {
-            report(row[i].kind, 0);
-            report(row[i].kind, 1);
-        }
-    }
+    for (int i = 2; i < argc; i += 2)
+        panorama(argv[i], i);
     return 0;
 }

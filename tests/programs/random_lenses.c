@@ -7,9 +7,8 @@
  * pictures of their models, in linear light and in codes, with the exact
  * picture. Each lens has a process and a number of CPU seconds of its own: a
  * trap ends this lens only, and is counted. DIR gets the tables of the ten
- * worst lenses and a contact sheet of them: from left to right the exact
- * picture, the model's, and their difference times eight. After SIGINT no lens
- * is begun, and the finished ones are reported.
+ * worst lenses. After SIGINT no lens is begun, and the finished ones are
+ * reported.
  * Exit code 1: a trap, no lens that was drawn, or one below 20 dB.
  */
 #define _GNU_SOURCE
@@ -25,7 +24,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "formats/picture.h"
 #include "support/extreme.h"
 #include "support/random_lens.h"
 #include "support/stage.h"
@@ -39,7 +37,6 @@ struct outcome {
     int state, tries, n_surfaces, n_ghosts, grid, seconds;
     double focal_mm, f_number, theta_deg, psnr_db, flux, p99;
     char why[200];
-    uint8_t exact[3 * WIDTH * HEIGHT], model[3 * WIDTH * HEIGHT];
 };
 
 struct options {
@@ -69,29 +66,6 @@ static bool is_dark(const struct stage *s, const float *rgb)
     return stage_flux(s, rgb) <= 0;
 }
 
-/* Keeps both pictures in codes, at the exposure that suits the exact one. */
-static void keep_pictures(struct outcome *o, const struct stage *s,
-                          const float *exact, const float *model)
-{
-    float copy[3 * WIDTH * HEIGHT];
-    const struct glint_float_image image = {WIDTH, HEIGHT, copy};
-    double exposure;
-    uint8_t *codes;
-
-    memcpy(copy, exact, sizeof copy);
-    exposure = glint_measure_exposure(&image);
-    codes = glint_measure_encode(&image, exposure);
-    if (codes)
-        memcpy(o->exact, codes, sizeof o->exact);
-    free(codes);
-    memcpy(copy, model, sizeof copy);
-    codes = glint_measure_encode(&image, exposure);
-    if (codes)
-        memcpy(o->model, codes, sizeof o->model);
-    free(codes);
-    (void)s;
-}
-
 static void compare(struct outcome *o, struct stage *s,
                     const struct glint_lamp *lamp, const float *model)
 {
@@ -110,7 +84,6 @@ static void compare(struct outcome *o, struct stage *s,
     o->flux = m.flux;
     o->p99 = m.p99;
     o->state = is_dark(s, exact) && is_dark(s, model) ? DARK : DRAWN;
-    keep_pictures(o, s, exact, model);
 }
 
 static void run_one(struct outcome *o, const struct options *options,
@@ -237,24 +210,6 @@ static int by_psnr(const void *a, const void *b)
     return ((*x)->psnr_db > (*y)->psnr_db) - ((*x)->psnr_db < (*y)->psnr_db);
 }
 
-static void put_row(uint8_t *sheet, int row, const struct outcome *o)
-{
-    for (int y = 0; y < HEIGHT; y++)
-        for (int x = 0; x < 3 * WIDTH; x++) {
-            const int at = 3 * (y * WIDTH + x % WIDTH) + 0;
-            uint8_t *to = sheet + 3 * ((row * HEIGHT + y) * 3 * WIDTH + x);
-
-            for (int c = 0; c < 3; c++) {
-                const int d = 8 * abs(o->exact[at + c] - o->model[at + c]);
-
-                to[c] = x < WIDTH       ? o->exact[at + c]
-                        : x < 2 * WIDTH ? o->model[at + c]
-                        : d < 255       ? (uint8_t)d
-                                        : 255;
-            }
-        }
-}
-
 static void write_table(const struct options *options, int rank, int number)
 {
     static struct glint_prescription lens;
@@ -270,28 +225,6 @@ static void write_table(const struct options *options, int rank, int number)
     fprintf(file, "# seed %llu, lens %d\n%s", (unsigned long long)options->seed,
             number, text);
     fclose(file);
-}
-
-static void write_sheet(const struct options *options,
-                        struct outcome *const *ranked, int n,
-                        const struct outcome *first)
-{
-    static uint8_t sheet[WORST * HEIGHT * 9 * WIDTH];
-    struct glint_image image = {
-        .format = GLINT_RGB24, .width = 3 * WIDTH, .height = n * HEIGHT};
-    struct glint_error error;
-    char path[512];
-
-    if (mkdir(options->out, 0777) && errno != EEXIST)
-        return;
-    for (int i = 0; i < n; i++) {
-        put_row(sheet, i, ranked[i]);
-        write_table(options, i + 1, options->first + (int)(ranked[i] - first));
-    }
-    glint_image_place(&image, sheet);
-    snprintf(path, sizeof path, "%s/worst.ppm", options->out);
-    if (glint_picture_save(path, &image, &error) != GLINT_OK)
-        fprintf(stderr, "%s\n", error.text);
 }
 
 static void print_one(const struct outcome *o, int number)
@@ -331,8 +264,10 @@ static int report(struct outcome *o, const struct options *options)
         print_one(ranked[i], options->first + (int)(ranked[i] - o));
     printf("  median %.1f dB, a tenth below %.1f dB\n", ranked[n / 2]->psnr_db,
            ranked[n / 10]->psnr_db);
-    if (options->out)
-        write_sheet(options, ranked, n_worst, o);
+    if (options->out && mkdir(options->out, 0777) && errno != EEXIST)
+        return 1;
+    for (int i = 0; i < n_worst && options->out; i++)
+        write_table(options, i + 1, options->first + (int)(ranked[i] - o));
     extreme_at_most("random lenses: traps", count[TRAP + 2], 0, "lenses");
     /* The median is 54 dB. A few are far below: large, straight ghosts get 8
      * cells a side, by which a round stop has corners. */

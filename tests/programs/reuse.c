@@ -16,7 +16,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "options/tool.h"
 #include "support/models/street.h"
 
 enum { W = 1920, H = 1080, BYTES = 3 * W * H, MOST = 128 };
@@ -92,22 +91,11 @@ static double scale_for(int n)
     return exp2(low);
 }
 
-static double psnr(void)
-{
-    double sum = 0;
-
-    for (int i = 0; i < BYTES; i++) {
-        const double d = (double)want[i] - got[i];
-
-        sum += d * d;
-    }
-    return sum > 0 ? 10 * log10(255. * 255 * BYTES / sum) : 99;
-}
-
 /* Returns the least PSNR of frames whose lights stand up to PX pixels off. */
 static double error_of(int n, double scale, double px)
 {
     uint64_t noise = 1;
+    struct glint_measure m;
     double least = 99;
 
     for (int i = 0; i < 3; i++) {
@@ -118,7 +106,8 @@ static double error_of(int n, double scale, double px)
         if (!stage.drawn.stats.reused)
             exit(1);
         draw(n, scale, -1, want);
-        least = fmin(least, psnr());
+        glint_measure_codes(want, got, W, H, &m);
+        least = fmin(least, m.psnr_db);
     }
     return least;
 }
@@ -151,19 +140,8 @@ static void draw_all(int n, double scale)
 
 static bool open_model(const char *path)
 {
-    static const double nm[3] = {650, 532, 450};
-    static const struct tool tool = {.name = "reuse", .n_threads = 1};
-    struct glint_error error;
-
-    if (tool_model(&tool, path, &stage.file) != EXIT_OK ||
-        glint_setup_from_model(&stage.of_model, &stage.file.lens, 8, 0, nm, 3,
-                               &error) != GLINT_OK)
+    if (!stage_read(&stage, path, W, H))
         return false;
-    stage.lens.film_width_mm =
-        glint_real_value(stage.file.lens.header->film_width_mm);
-    stage.lens.film_height_mm =
-        glint_real_value(stage.file.lens.header->film_height_mm);
-    stage_view(&stage, W, H, 0);
     stage.frame.dials = glint_dials_at(1 << 14);
     stage.frame.dials.dispersion_q8 = 0;
     stage.frame.asked = stage.frame.dials;

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * steady [--lens LENS] [--most SHARE] [--log] [--scene NAME] [VIDEO.y4m...] -
- * prints how steady the flare is over drawn scenes (all, or the one called
- * NAME; none for an unknown NAME) and over videos.
+ * steady [--lens LENS] [VIDEO.y4m...] - prints how steady the flare is over
+ * drawn scenes and over videos.
  *
  * From frame to frame the total light of the drawn flare changes because of the
  * lamps, which move, rise, fade or are hidden, and because of the exposure. The
@@ -11,8 +10,7 @@
  * not counted. In drawn scenes the lamps are known, too: there a step is due to
  * them as far as their true light, through the lens, spans as much within the
  * last WINDOW frames, as a tracked lamp rises and fades in six. Exit code 1: by
- * either measure a step of glint's own is larger than SHARE (default 0.1).
- * --log prints every frame to stderr.
+ * either measure a step of glint's own is larger than MOST.
  */
 #include <getopt.h>
 #include <math.h>
@@ -27,13 +25,14 @@
 #include "support/night.h"
 #include "options/command_line.h"
 
+#define MOST 0.1
+
 enum { WIDTH = 640, HEIGHT = 360, FRAMES = 150, FRAME_US = 40000, WINDOW = 10 };
 
 struct steady {
     struct tool tool;
     struct compositor compositor;
-    double total, own; /* last frame's light after and before exposure */
-    bool log;
+    double total, own;        /* last frame's light after and before exposure */
     double truth[WINDOW + 1]; /* true light, the last frame first; -1:
                                * unknown */
     double worst, largest;    /* largest step of glint's own; largest of all */
@@ -108,26 +107,6 @@ static void note(struct steady *s, double total, double own)
     s->own = own;
 }
 
-/* Prints the light of a frame and its lamps, which tell what made a step. */
-static void log_frame(const struct steady *s, double own, double drawn)
-{
-    const struct compositor *c = &s->compositor;
-
-    fprintf(stderr, "%d own %.4g drawn %.4g total %.4g%s\n", s->frames, own,
-            drawn, drawn * compositor_scale(c),
-            compositor_is_new(c) ? " cut" : "");
-    for (int i = 0; i < c->n_lamps; i++) {
-        const struct glint_lamp_track *t = &c->lamp[i].track;
-
-        fprintf(stderr,
-                "    %u state %d at %.1f,%.1f size %.1f level %.2f "
-                "flux %.4g power %.4g\n",
-                (unsigned)t->id, (int)t->state, t->x_q8 / 256.0,
-                t->y_q8 / 256.0, t->size_q8 / 256.0, t->level_q15 / 32768.0,
-                (double)t->flux_q16 / 65536, (double)t->power_q16 / 65536);
-    }
-}
-
 /* Notes by how much the light of all stars steps, and by how much more than the
  * powers that their lamps were found with. */
 static void note_stars(struct steady *s, const struct glint_image *image,
@@ -153,8 +132,6 @@ static void note_stars(struct steady *s, const struct glint_image *image,
         s->star_worst =
             fmax(s->star_worst, exp(beyond(step, log(lamps / s->lamps))) - 1);
     }
-    if (s->log)
-        fprintf(stderr, "    stars %.4g of lamps %.4g\n", stars, lamps);
     s->stars = stars;
     s->lamps = lamps;
 }
@@ -174,8 +151,6 @@ static void frame(struct steady *s, const struct glint_image *image,
         held += compositor->lamp[i].lamp.power;
     if (held < power) /* where lamps are too bright */
         drawn = light_of(s);
-    if (s->log)
-        log_frame(s, own, drawn);
     note(s, drawn * compositor_scale(compositor), own);
     note_stars(s, image, power);
     if (compositor->n_lamps > s->most_lights)
@@ -193,7 +168,7 @@ static void begin(struct steady *s, int width, int height)
         exit(EXIT_RUNTIME);
 }
 
-static bool end(const struct steady *s, const char *name, double most)
+static bool end(const struct steady *s, const char *name)
 {
     printf("| %s | %d | %d | %d | %.1f | %.1f | %d |", name, s->frames,
            s->most_lights, s->cuts, 100 * s->largest, 100 * s->worst,
@@ -204,7 +179,7 @@ static bool end(const struct steady *s, const char *name, double most)
         printf(" | |");
     printf(" %.1f | %.1f |\n", 100 * s->star_largest, 100 * s->star_worst);
     fflush(stdout);
-    return s->worst <= most && (s->truth[0] < 0 || s->unmade <= most);
+    return s->worst <= MOST && (s->truth[0] < 0 || s->unmade <= MOST);
 }
 
 /* ------------------------------------------------------------------ scenes */
@@ -351,7 +326,7 @@ static void note_truth(struct steady *s, const struct night *night,
     s->truth[0] = glint_largest_channel(light.mean);
 }
 
-static bool run_scene(struct steady *s, int k, double most)
+static bool run_scene(struct steady *s, int k)
 {
     struct night night;
     struct night_lamp lamp[16];
@@ -367,10 +342,10 @@ static bool run_scene(struct steady *s, int k, double most)
         frame(s, &night.image, FRAME_US);
     }
     night_close(&night);
-    return end(s, scenes[k].name, most);
+    return end(s, scenes[k].name);
 }
 
-static bool run_video(struct steady *s, const char *path, double most)
+static bool run_video(struct steady *s, const char *path)
 {
     struct glint_error error = {""};
     struct glint_y4m_reader in;
@@ -385,33 +360,22 @@ static bool run_video(struct steady *s, const char *path, double most)
     while (glint_y4m_reader_next(&in, &image, &error) == GLINT_OK && image)
         frame(s, image, FRAME_US);
     glint_y4m_reader_close(&in);
-    return end(s, path, most);
+    return end(s, path);
 }
 
 int main(int argc, char **argv)
 {
     static const struct option options[] = {
-        {"lens", required_argument, NULL, 'l'},
-        {"most", required_argument, NULL, 'm'},
-        {"log", no_argument, NULL, 'v'},
-        {"scene", required_argument, NULL, 's'},
-        {NULL, 0, NULL, 0}};
+        {"lens", required_argument, NULL, 'l'}, {NULL, 0, NULL, 0}};
     static struct steady s = {.tool = {.name = "steady", .quiet = true}};
     bool good = true;
-    const char *only = NULL;
-    double most = 0.1;
     int c;
 
     compositor_defaults(&s.compositor);
     while ((c = getopt_long(argc, argv, "", options, NULL)) >= 0) {
-        if (c == 'l')
-            s.compositor.settings.options.lens = optarg;
-        else if (c == 'v')
-            s.log = true;
-        else if (c == 's')
-            only = optarg;
-        else if (c != 'm' || !tool_number(optarg, &most))
+        if (c != 'l')
             return EXIT_USAGE;
+        s.compositor.settings.options.lens = optarg;
     }
     if (tool_start(&s.tool) != EXIT_OK ||
         compositor_open(&s.tool, &s.compositor) != EXIT_OK)
@@ -422,10 +386,9 @@ int main(int argc, char **argv)
          "largest step, % | beside the lamps' powers, % |\n"
          "|---|---|---|---|---|---|---|---|---|---|---|");
     for (int k = 0; k < (int)(sizeof scenes / sizeof *scenes); k++)
-        if (!only || strcmp(only, scenes[k].name) == 0)
-            good = run_scene(&s, k, most) && good;
+        good = run_scene(&s, k) && good;
     for (int i = optind; i < argc; i++)
-        good = run_video(&s, argv[i], most) && good;
+        good = run_video(&s, argv[i]) && good;
     compositor_close(&s.compositor);
     tool_finish(&s.tool);
     return good ? 0 : 1;

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * ray_errors [-n NM,...] [-s STEP] [-g GHOST] [-r | -w] LENS MODEL: prints how
- * far a model is from exact rays, as a row of a Markdown table; with -w also
- * the ghosts that miss the target, and at which angles; with -r root mean
- * squares instead, one for each output.
+ * ray_errors [-n NM,...] [-s STEP] [-r] LENS MODEL: prints how far a model is
+ * from exact rays, as a row of a Markdown table; with -r root mean squares
+ * instead, one for each output.
  *
  * It compares every ghost at the angles of the accuracy table and every STEP
  * degrees up to the model's largest, at every wavelength. Rays start on a grid
@@ -52,14 +51,14 @@ struct task {
     struct model_file model;
     const struct glint_model_header *header;
     struct glint_ghost ghost[GLINT_MAX_GHOSTS];
-    int n_ghosts, only;
+    int n_ghosts;
     double nm[GLINT_MAX_WAVELENGTHS];
     int n_nm;
     double angle[MOST_ANGLES];
     int n_angles;
     double picture_mm; /* half the picture's diagonal, or the field if that is
                           less */
-    bool worst, squares;
+    bool squares;
 };
 
 /* ------------------------------------------------------------------ tallies */
@@ -254,16 +253,6 @@ static void compare_bundle(const struct task *t, int ghost, double angle_deg,
 
 /* ------------------------------------------------------------------- tables */
 
-static void print_angle(double angle_deg, const struct tally *t)
-{
-    printf("    %5.1f deg: %6.0f rays, sensor p99 %.2g px, stop RMS %.2g",
-           angle_deg, t->rays, sensor_p99(t), stop_rms(t));
-    if (t->lost > 0)
-        printf(", not there %.2g (%.2g of its light)", t->lost / t->rays,
-               t->light_lost / t->light);
-    printf("\n");
-}
-
 static void print_squares(const struct tally *t)
 {
     static const int kind[] = {GLINT_OUT_STOP_X, GLINT_OUT_STOP_Y,
@@ -286,25 +275,17 @@ struct light {
 static void compare_ghost(const struct task *t, int ghost, struct tally *sum,
                           int angles[2], struct light *light)
 {
-    static struct tally by_angle[MOST_ANGLES];
-
     for (int k = 0; k < t->n_angles; k++) {
-        by_angle[k] = (struct tally){0};
+        struct tally here = {0};
+
         for (int w = 0; w < t->n_nm; w++)
-            compare_bundle(t, ghost, t->angle[k], t->nm[w], &by_angle[k]);
-        tally_join(sum, &by_angle[k], 1);
-        angles[0] += by_angle[k].rays > 0;
-        angles[1] += misses(&by_angle[k]);
-        light[k].all += by_angle[k].light;
-        light[k].lost += by_angle[k].light_lost;
+            compare_bundle(t, ghost, t->angle[k], t->nm[w], &here);
+        tally_join(sum, &here, 1);
+        angles[0] += here.rays > 0;
+        angles[1] += misses(&here);
+        light[k].all += here.light;
+        light[k].lost += here.light_lost;
     }
-    if (!t->worst || !misses(sum))
-        return;
-    printf("  ghost %d: sensor p99 %.2g px, stop RMS %.2g, not there %.2g\n",
-           ghost, sensor_p99(sum), stop_rms(sum), sum->lost / sum->rays);
-    for (int k = 0; k < t->n_angles; k++)
-        if (misses(&by_angle[k]))
-            print_angle(t->angle[k], &by_angle[k]);
 }
 
 static void compare_all(const struct task *t)
@@ -317,8 +298,6 @@ static void compare_all(const struct task *t)
     for (int g = 0; g < t->n_ghosts; g++) {
         struct tally sum = {0};
 
-        if (t->only >= 0 && g != t->only)
-            continue;
         compare_ghost(t, g, &sum, angles, light);
         if (sum.rays == 0)
             continue;
@@ -367,9 +346,7 @@ static int check_pair(const struct tool *tool, const struct task *t)
             return tool_usage(tool, "%g nm is outside of the model's band",
                               t->nm[i]);
     }
-    return t->only < t->n_ghosts
-               ? EXIT_OK
-               : tool_usage(tool, "there are %d ghosts", t->n_ghosts);
+    return EXIT_OK;
 }
 
 static int by_size(const void *a, const void *b)
@@ -392,32 +369,23 @@ static void set_angles(struct task *t, double step_deg)
 
 int main(int argc, char **argv)
 {
-    static struct task t = {.only = -1, .nm = {650, 532, 450}, .n_nm = 3};
+    static struct task t = {.nm = {650, 532, 450}, .n_nm = 3};
     const struct tool tool = {.name = "ray_errors"};
     double step_deg = 0.7;
+    bool ok = true;
     int c, code;
 
-    while ((c = getopt(argc, argv, "n:s:g:rw")) >= 0) {
-        bool ok;
-
+    while ((c = getopt(argc, argv, "n:s:r")) >= 0 && ok) {
         if (c == 'n')
             ok = (t.n_nm = tool_numbers(optarg, t.nm, GLINT_MAX_WAVELENGTHS)) >
                  0;
         else if (c == 's')
             ok = tool_number(optarg, &step_deg) && step_deg > 0.01;
-        else if (c == 'g')
-            ok = tool_integer(optarg, 0, GLINT_MAX_GHOSTS, &t.only);
-        else if (c == 'r')
-            ok = t.squares = true;
         else
-            ok = t.worst = c == 'w';
-        if (!ok)
-            return tool_usage(&tool, "takes [-n NM,...] [-s STEP] [-g GHOST] "
-                                     "[-r | -w] LENS MODEL");
+            ok = t.squares = c == 'r';
     }
-    if (argc != optind + 2 || (t.squares && t.worst))
-        return tool_usage(&tool, "takes [-n NM,...] [-s STEP] [-g GHOST] "
-                                 "[-r | -w] LENS MODEL");
+    if (!ok || argc != optind + 2)
+        return tool_usage(&tool, "takes [-n NM,...] [-s STEP] [-r] LENS MODEL");
     code = tool_lens(&tool, argv[optind], &t.lens);
     if (code == EXIT_OK)
         code = tool_model(&tool, argv[optind + 1], &t.model);

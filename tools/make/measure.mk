@@ -16,8 +16,8 @@ inputs:
 table: all
 	@tools/report/raster-table | tools/report/write-figures raster
 # Scenes as POV-Ray draws them.
-scene-table: all $(OUT)/scene_peer $(OUT)/scene_exact
-	@tools/make/deps "scenes of another program" povray >&2
+scene-table: all $(OUT)/scene_exact
+	@tools/make/deps "scenes of another program" povray python3-numpy >&2
 	@tests/peers/povray $(OUT) | tools/report/write-figures scene
 # A sun behind a ball: the light of its flare by frame.
 hidden-table: all
@@ -65,9 +65,9 @@ projection-table: $(OUT)/projection_table
 	@$< lenses/*.lens lenses/*/*.lens | tools/report/write-figures shapes/projection
 accuracy-table: all
 	@tools/report/accuracy-table | tools/report/write-figures accuracy
-colour-table: all $(OUT)/hue_steps
-	@tools/make/deps "instruction counts" valgrind >&2
-	@HUE_STEPS=$(OUT)/hue_steps tools/report/colour-table | tools/report/write-figures colour
+colour-table: all
+	@tools/make/deps "instruction counts" valgrind python3-numpy >&2
+	@tools/report/colour-table | tools/report/write-figures colour
 ray-table: all $(OUT)/ray_errors
 	@tools/report/ray-table build/bake | tools/report/write-figures rays
 stop-table: all
@@ -75,7 +75,7 @@ stop-table: all
 # The weights of src/lamps/unclip.c, from the half that is there to fit to.
 power-fit: $(OUT)/power_table
 	@tools/make/deps "HDR panoramas" openimageio-tools python3-numpy npm
-	@tests/power-table $< --features >build/features.txt
+	@tests/power-table $< >build/features.txt
 	@tests/power-fit build/features.txt
 $(OUT)/ray_errors $(OUT)/projection_table: $(OUT)/%: $(OUT)/tools/lab/%.o $(libs)
 	$(link)

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * insncount.so - counts the instructions that a program executes, by function,
- * in QEMU's emulators of other machines: the same counts on every run.
+ * insncount.so - counts the instructions that frames of a program execute, by
+ * stage, in QEMU's emulators of other machines: the same counts on every run.
  *
- *     qemu-aarch64 -plugin ./insncount.so,top=20 -d plugin PROGRAM ...
+ *     qemu-aarch64 -plugin \
+ *         ./insncount.so,frame=F,idle=G,skip=N,at=H:NAME,at=... -d plugin
+ * PROGRAM
  *
- * A block of instructions counts for the function that it begins in.
- *
- * By stages of a frame:  frame=F,idle=G,skip=N,at=H:NAME,at=...
  * A frame begins when function F is entered after G has run. Within it, each
  * function H begins the stage NAME, and F begins stage 0, "rest". Functions not
  * listed belong to the stage that calls them; so a function that goes on after
  * calling a stage must be listed, too. The first N frames are left out, and the
- * mean of the others is printed. Only one thread may run.
+ * mean of the others is printed. Only one thread may run. A block of
+ * instructions counts for the function that it begins in.
  *
  * QEMU ships no header for plug-ins; the part of its interface that is used is
  * declared here.
@@ -37,8 +37,6 @@ size_t qemu_plugin_tb_n_insns(const struct qemu_plugin_tb *tb);
 struct qemu_plugin_insn *
 qemu_plugin_tb_get_insn(const struct qemu_plugin_tb *tb, size_t i);
 const char *qemu_plugin_insn_symbol(const struct qemu_plugin_insn *insn);
-void qemu_plugin_register_vcpu_tb_exec_inline(struct qemu_plugin_tb *tb, int op,
-                                              void *counter, uint64_t by);
 void qemu_plugin_register_vcpu_tb_exec_cb(struct qemu_plugin_tb *tb,
                                           void (*fn)(unsigned cpu, void *ctx),
                                           int flags, void *ctx);
@@ -47,20 +45,6 @@ int qemu_plugin_install(uint64_t id, const struct qemu_info *info, int argc,
                         char **argv);
 
 EXPORTED int qemu_plugin_version = 1;
-
-enum { ADD_U64 = 0, MAX_FUNCTIONS = 16384, SLOTS = 65536 };
-
-struct function {
-    const char *name;
-    uint64_t n;
-};
-
-static struct function function[MAX_FUNCTIONS];
-/* index in function[] plus 1, by hash of the name; 0: free */
-static uint16_t slot[SLOTS];
-static int n_functions, n_top = 30;
-
-/* ------------------------------------------------------------------ stages */
 
 enum { MAX_MARKS = 32, ASLEEP = -2, IDLE = -1, REST = 0, INHERIT = -3 };
 
@@ -73,13 +57,13 @@ static struct {
     const char *function, *name;
 } mark[MAX_MARKS];
 static int n_marks = 1; /* mark[0] is that of the frame. */
-static const char *idle;
+static const char *idle = "";
 static int stage = ASLEEP, n_frames, n_skipped;
 static uint64_t spent[MAX_MARKS];
 
 static int stage_of(const char *function)
 {
-    if (idle && strcmp(function, idle) == 0)
+    if (strcmp(function, idle) == 0)
         return ASLEEP;
     for (int i = 0; i < n_marks; i++)
         if (mark[i].function && strcmp(function, mark[i].function) == 0)
@@ -105,11 +89,13 @@ static void enter(unsigned cpu, void *ctx)
 
 /* Prints the mean instructions of each stage. Several functions may have the
  * same stage name. */
-static void report_stages(void)
+static void report(uint64_t id, void *ctx)
 {
     const int n = n_frames > n_skipped ? n_frames - n_skipped : 1;
     char line[256];
 
+    (void)id;
+    (void)ctx;
     for (int i = 0; i < n_marks; i++) {
         uint64_t sum = 0;
         int first = n_marks;
@@ -140,73 +126,17 @@ static void take_mark(char *text)
     mark[n_marks++].name = colon + 1;
 }
 
-/* --------------------------------------------------------------- functions */
-
-static struct function *function_of(const char *name)
-{
-    uint32_t hash = 2166136261u;
-
-    for (const char *c = name; *c; c++)
-        hash = (hash ^ (uint8_t)*c) * 16777619u;
-    for (hash %= SLOTS; slot[hash]; hash = (hash + 1) % SLOTS)
-        if (strcmp(function[slot[hash] - 1].name, name) == 0)
-            return &function[slot[hash] - 1];
-    if (n_functions == MAX_FUNCTIONS)
-        return &function[0];
-    function[n_functions].name = strdup(name);
-    slot[hash] = (uint16_t)++n_functions;
-    return &function[n_functions - 1];
-}
-
 static void count(uint64_t id, struct qemu_plugin_tb *tb)
 {
     const char *name = qemu_plugin_insn_symbol(qemu_plugin_tb_get_insn(tb, 0));
+    struct block *b = malloc(sizeof *b); /* never freed, as code is not */
 
     (void)id;
-    if (idle) {
-        struct block *b = malloc(sizeof *b); /* never freed, as code is not */
-
-        if (!b)
-            abort();
-        b->n = (int)qemu_plugin_tb_n_insns(tb);
-        b->stage = stage_of(name ? name : "?");
-        qemu_plugin_register_vcpu_tb_exec_cb(tb, enter, 0, b);
-        return;
-    }
-    qemu_plugin_register_vcpu_tb_exec_inline(tb, ADD_U64,
-                                             &function_of(name ? name : "?")->n,
-                                             qemu_plugin_tb_n_insns(tb));
-}
-
-static int by_count(const void *a, const void *b)
-{
-    const uint64_t x = ((const struct function *)a)->n;
-    const uint64_t y = ((const struct function *)b)->n;
-
-    return x < y ? 1 : x > y ? -1 : 0;
-}
-
-static void report(uint64_t id, void *ctx)
-{
-    uint64_t total = 0;
-    char line[256];
-
-    (void)id;
-    (void)ctx;
-    if (idle) {
-        report_stages();
-        return;
-    }
-    qsort(function, (size_t)n_functions, sizeof *function, by_count);
-    for (int i = 0; i < n_functions; i++)
-        total += function[i].n;
-    snprintf(line, sizeof line, "%14llu TOTAL\n", (unsigned long long)total);
-    qemu_plugin_outs(line);
-    for (int i = 0; i < n_functions && i < n_top && function[i].n; i++) {
-        snprintf(line, sizeof line, "%14llu %s\n",
-                 (unsigned long long)function[i].n, function[i].name);
-        qemu_plugin_outs(line);
-    }
+    if (!b)
+        abort();
+    b->n = (int)qemu_plugin_tb_n_insns(tb);
+    b->stage = stage_of(name ? name : "?");
+    qemu_plugin_register_vcpu_tb_exec_cb(tb, enter, 0, b);
 }
 
 EXPORTED int qemu_plugin_install(uint64_t id, const struct qemu_info *info,
@@ -221,9 +151,7 @@ EXPORTED int qemu_plugin_install(uint64_t id, const struct qemu_info *info,
         if (!value)
             return -1;
         *value++ = '\0';
-        if (strcmp(text, "top") == 0)
-            n_top = atoi(value);
-        else if (strcmp(text, "frame") == 0)
+        if (strcmp(text, "frame") == 0)
             mark[0].function = value;
         else if (strcmp(text, "idle") == 0)
             idle = value;
