@@ -10,6 +10,7 @@
 #include <time.h>
 
 #include "glint/bake.h"
+#include "model/table_file.h"
 
 enum { MOST = 1 << 18 };
 
@@ -54,24 +55,18 @@ int main(int argc, char **argv)
 {
     static const double shares[] = {0.1, 0.25, 0.5, 0.75, 0.9};
     static struct glint_prescription lens;
-    static char text[65536];
+    static const struct tool tool = {.name = "bake_left"};
     struct glint_bake_options options;
     struct glint_bake_report report;
     struct glint_error error;
     unsigned char *model;
     size_t bytes;
     double took;
-    FILE *file = argc > 2 ? fopen(argv[1], "rb") : NULL;
 
-    if (!file)
+    if (argc != 3 || tool_lens(&tool, argv[1], &lens) != EXIT_OK)
         return 2;
-    bytes = fread(text, 1, sizeof text - 1, file);
-    fclose(file);
-    text[bytes] = 0;
-    if (glint_prescription_parse(&lens, text, bytes, argv[1], &error) !=
-            GLINT_OK ||
-        glint_prescription_set_f_number(&lens, strtod(argv[2], NULL), &error) !=
-            GLINT_OK)
+    if (glint_prescription_set_f_number(&lens, strtod(argv[2], NULL), &error) !=
+        GLINT_OK)
         return 1;
     glint_bake_defaults(&options);
     options.progress = note;

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "formats/picture.h"
 #include "lamps/profile.h"
 #include "lamps/unclip.h"
 #include "glint/glint.h"
@@ -272,39 +273,7 @@ static void rendered(int i)
 
 /* ---------------------------------------------------------------- panoramas */
 
-struct panorama {
-    int width, height;
-    double *rgb;
-};
-
-static int read_pfm(struct panorama *p, const char *path)
-{
-    FILE *f = fopen(path, "rb");
-    char kind[3];
-    double scale;
-
-    if (!f ||
-        fscanf(f, "%2s %d %d %lf", kind, &p->width, &p->height, &scale) != 4 ||
-        scale >= 0)
-        return 0;
-    p->rgb = malloc(sizeof *p->rgb * 3 * (size_t)(p->width * p->height));
-    fgetc(f);
-    for (int y = p->height - 1; y >= 0; y--)
-        for (int i = 0; i < 3 * p->width; i++) {
-            float light;
-
-            if (fread(&light, sizeof light, 1, f) != 1)
-                return 0;
-            p->rgb[3 * y * p->width + i] = (double)light;
-        }
-    fclose(f);
-    for (int i = 0; i < 3 * p->width * p->height; i++)
-        if (!(p->rgb[i] > 0))
-            p->rgb[i] = 0;
-    return 1;
-}
-
-static void cut_view(struct power_picture *s, const struct panorama *p,
+static void cut_view(struct power_picture *s, const struct glint_float_image *p,
                      double yaw, double pitch)
 {
     const double half = tan(30 * 3.14159265 / 180), pi = 3.14159265358979;
@@ -364,7 +333,8 @@ static void see_view(struct power_picture *s, double over, uint32_t *seed)
 
 /* Takes one view of panorama P in all exposures and notes the lamps found.
  * TRUTH is the light that enters the lens, without its glare. */
-static void view(const struct panorama *p, int id, double yaw, double pitch)
+static void view(const struct glint_float_image *p, int id, double yaw,
+                 double pitch)
 {
     const int width = p->width * 2 / 9, height = width * 9 / 16;
     const size_t bytes = sizeof(double) * 3 * (size_t)(width * height);
@@ -402,12 +372,16 @@ static void view(const struct panorama *p, int id, double yaw, double pitch)
 
 static void panorama(const char *path, int id)
 {
-    struct panorama p;
+    struct glint_float_image p = {0};
+    struct glint_error error = {""};
 
-    if (!read_pfm(&p, path)) {
-        fprintf(stderr, "power_table: %s: no panorama\n", path);
+    if (glint_picture_load_float(path, &p, &error) != GLINT_OK) {
+        fprintf(stderr, "power_table: %s\n", error.text);
         return;
     }
+    for (int i = 0; i < 3 * p.width * p.height; i++)
+        if (!(p.rgb[i] > 0))
+            p.rgb[i] = 0;
     for (int k = 0; k < VIEWS; k++)
         view(&p, 100 * id + k, (k % 8 + k / 16 / 3.0) * 3.14159265 / 4,
              (k / 8 % 2 - 0.3) * 0.6);

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * translucent_table [SIDE KERNEL] - models of scattering side by side on four
- * stones, as Markdown: the tables of [Kurt14], its figures beside ours, and
- * whether each of its claims holds. Stones of 48 texels and kernels of 21
- * unless told otherwise. */
+ * translucent_table - models of scattering side by side on four stones of 48
+ * texels with kernels of 21, as Markdown: the tables of [Kurt14], and its
+ * figures beside ours. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -61,17 +60,7 @@ static const struct {
     {"SubEdit", GLINT_CANDIDATE_SUBEDIT, 1, 1},
 };
 
-/* What verdicts are by. */
-struct findings {
-    double gain, clean;       /* C3 */
-    int by_terms, by_degrees; /* C5: steps that came nearer, of 20 each */
-    double negative;          /* C6 */
-    double faster;            /* C11 */
-    double by_terms_s, by_rows_s, by_integers_s; /* C12 */
-};
-
 struct table {
-    struct findings found;
     int side, kernel;
     double seconds[STONES]; /* processor time of the rows */
     struct glint_scatter_rows rows[STONES];
@@ -243,7 +232,6 @@ static void turned_rows(struct table *t)
     static const int terms[] = {1, 2, 5, 15};
     static const char *const columns[] = {"T = 1", "T = 2", "T = 5", "T = 15"};
     struct glint_scatter_rows off;
-    double rmse[4][4];
 
     shift(&t->rows[0], &off);
     printf("\n### Turned rows (C3): RMSE, P = 4, chess 4 x 4\n");
@@ -257,13 +245,10 @@ static void turned_rows(struct table *t)
 
             o.terms = terms[k];
             o.turned = way & 1;
-            rmse[way][k] = judge(way & 2 ? &off : &t->rows[0], &o).rmse;
-            printf(" %.5f |", rmse[way][k]);
+            printf(" %.5f |", judge(way & 2 ? &off : &t->rows[0], &o).rmse);
         }
         printf("\n");
     }
-    t->found.clean = rmse[1][2] / rmse[0][2];
-    t->found.gain = rmse[2][0] / rmse[3][0];
     printf("\nSource's prototype: T = 5 .00449, turned .00102.\n");
     free(off.r);
 }
@@ -274,7 +259,6 @@ static void polynomials(struct table *t)
     static const int terms[GRID_TERMS] = {1, 2, 5, 10, 15};
     static const char *const columns[] = {"P = 1", "P = 2", "P = 3", "P = 4",
                                           "P = 5"};
-    double rmse[GRID_TERMS][GRID_DEGREES];
 
     printf("\n### Terms and degrees (C5, figure 4.6): RMSE, and how much "
            "smaller than 8-byte rows, veins\n");
@@ -288,9 +272,6 @@ static void polynomials(struct table *t)
             o.terms = terms[k];
             o.degree = p;
             j = judge(&t->rows[2], &o);
-            t->found.by_degrees += p > 1 && j.rmse < rmse[k][p - 2];
-            t->found.by_terms += k > 0 && j.rmse < rmse[k - 1][p - 1];
-            rmse[k][p - 1] = j.rmse;
             printf(" %.5f, %.0f x |", j.rmse, j.compression);
         }
         printf("\n");
@@ -319,7 +300,6 @@ static void logarithms(struct table *t)
 
             o.a = as[k];
             j = judge(&t->rows[i], &o);
-            t->found.negative = fmax(t->found.negative, j.negative);
             printf(" %.5f, %.2f %% |", j.rmse, 100 * j.negative);
         }
         printf(" %.5f: %g, %g |\n", found->rmse, found->candidate.a,
@@ -374,7 +354,6 @@ static void sums(struct table *t)
            first, second, first / second,
            glint_scatter_candidate_sums(&svd, texels, k2, false) /
                glint_scatter_candidate_sums(&svd, texels, k2, true));
-    t->found.faster = first / second;
 }
 
 /* Returns processor seconds of a picture by FIT, entry by entry. */
@@ -427,17 +406,16 @@ static double light_by_integers(struct glint_scatter_rows *rows,
 }
 
 /* C12: processor seconds of a picture of 64 x 64 texels. */
-static void pictures(struct table *t)
+static void pictures(void)
 {
     enum { SIDE = 64, N = 3 * SIDE * SIDE };
     static double light[N], out[N];
     const struct glint_scatter_options svd = {GLINT_SCATTER_FACTORED, 5, 3};
-    struct findings *const f = &t->found;
     struct glint_scatter_rows rows;
     struct glint_scatter_fit fit;
     struct glint_error error;
     struct glint_stone stone;
-    double start;
+    double start, by_rows_s, by_terms_s, by_integers_s;
 
     glint_stone_defaults(&stone);
     stone.side = SIDE;
@@ -449,137 +427,23 @@ static void pictures(struct table *t)
     start = now();
     for (int i = 0; i < 5; i++)
         glint_scatter_light_rows(&rows, light, out);
-    f->by_rows_s = (now() - start) / 5;
-    f->by_terms_s = light_by_entries(&fit, light, out);
-    f->by_integers_s = light_by_integers(&rows, light, out);
+    by_rows_s = (now() - start) / 5;
+    by_terms_s = light_by_entries(&fit, light, out);
+    by_integers_s = light_by_integers(&rows, light, out);
     printf("\n### One picture (C12)\n\n64 x 64 texels, RGB, kernels of 21, "
            "one thread: %.1f ms by all rows, %.1f ms by five terms entry by "
            "entry, %.2f ms by the integers of four kernels of rank 3, in plain "
            "C. Source: 12.7 to 14.0 minutes raw, 14.3 to 17.5 by SubEdit, 14.5 "
            "to 21.7 by SVD.\n",
-           1e3 * f->by_rows_s, 1e3 * f->by_terms_s, 1e3 * f->by_integers_s);
+           1e3 * by_rows_s, 1e3 * by_terms_s, 1e3 * by_integers_s);
     glint_scatter_fit_close(&fit);
     glint_scatter_close(&rows);
 }
 
-static void verdict(const char *row, const char *claim, const char *what,
-                    const char *why)
+int main(void)
 {
-    printf("| %s | %s | %s | %s |\n", row, claim, what, why);
-}
+    static struct table t = {.side = 48, .kernel = 21};
 
-/* In how many stones run A is nearer than run B. */
-static int nearer(const struct table *t, enum run a, enum run b)
-{
-    int n = 0;
-
-    for (int i = 0; i < STONES; i++)
-        n += t->j[i][a].rmse < t->j[i][b].rmse;
-    return n;
-}
-
-static const char *holds(int n)
-{
-    return n == STONES ? "holds" : n > 0 ? "holds in kind" : "does not";
-}
-
-static void verdicts(const struct table *t)
-{
-    const struct findings *f = &t->found;
-    char why[200];
-
-    printf("\n### Verdicts\n\n| row | claim | verdict | by |\n"
-           "|---|---|---|---|\n");
-    verdict("C1", "R_d is reciprocal, not below 0, below 1", "does not",
-            "of the published models SubEdit alone is reciprocal, and does "
-            "not go below 0; sums of rows stay below 1 in all");
-    verdict("C2", "rows as R'(x_i, d) keep all of R_d within a kernel", "holds",
-            "exact inside, 0 outside (test_c2_places, test_c2_light)");
-    snprintf(why, sizeof why,
-             "one term: %.1f times nearer; five terms on clean rows: %.2f "
-             "times as far; a second term mends the same",
-             f->gain, f->clean);
-    verdict("C3", "turned rows save fits of rows that are off",
-            f->gain > 2 ? "holds in kind" : "does not", why);
-    verdict("C4", "rank-1 fits of the running error are the truncated SVD",
-            "holds", "five terms, to five digits (test_c4_tucker)");
-    snprintf(why, sizeof why,
-             "nearer by a higher degree in %d of 20 steps, by more terms in %d "
-             "of 20: few terms leave to the polynomial what it does well",
-             f->by_degrees, f->by_terms);
-    verdict("C5", "more terms and higher degrees are nearer",
-            f->by_degrees + f->by_terms == 40 ? "holds" : "holds in kind", why);
-    snprintf(why, sizeof why, "largest share below 0 for b = 1: %.2f %%",
-             100 * f->negative);
-    verdict("C6", "logarithms are never negative",
-            f->negative > 0 ? "does not" : "holds", why);
-    snprintf(why, sizeof why, "nearer than the linear SVD in %d of %d",
-             nearer(t, LOG5, SVD5), STONES);
-    verdict("C6", "logarithms are nearer", holds(nearer(t, LOG5, SVD5)), why);
-    snprintf(why, sizeof why, "further off in %d of %d", nearer(t, SVD5, ALS5),
-             STONES);
-    verdict("C7", "non-negative factors are further off",
-            holds(nearer(t, SVD5, ALS5)), why);
-}
-
-static void more_verdicts(const struct table *t)
-{
-    char why[200];
-
-    verdict(
-        "C8", "sizes are those printed", "holds in kind",
-        "seven of SVD and SubEdit at one square of texels each, to the "
-        "digit (test_scatter_published); T and P of Tucker's are not known");
-    snprintf(why, sizeof why,
-             "S = 10 is nearer in %d of %d, by %.0f %% of the bytes",
-             nearer(t, SVD10, SUBEDIT), STONES,
-             100 * t->j[0][SVD10].bytes / t->j[0][SUBEDIT].bytes);
-    verdict("C9", "nearer than SubEdit", holds(nearer(t, SVD10, SUBEDIT)), why);
-    snprintf(why, sizeof why, "5, 10, 20 terms: nearer in %d, %d, %d of %d",
-             nearer(t, SVD5, PEERS5), nearer(t, SVD10, PEERS10),
-             nearer(t, SVD20, PEERS20), STONES);
-    verdict("C10", "SVD is nearer than Peers, size by size",
-            holds(nearer(t, SVD20, PEERS20)), why);
-    snprintf(why, sizeof why,
-             "T = 15 and 10 terms: nearer in %d of %d, by "
-             "%.0f %% of the bytes",
-             nearer(t, TUCKER15, PEERS10), STONES,
-             100 * t->j[0][TUCKER15].bytes / t->j[0][PEERS10].bytes);
-    verdict("C10", "Tucker is nearer than Peers",
-            holds(nearer(t, TUCKER15, PEERS10)), why);
-    snprintf(why, sizeof why, "%.0f times, where h is kept summed",
-             t->found.faster);
-    verdict("C11", "sums of rows are many times faster",
-            t->found.faster > 50 ? "holds" : "does not", why);
-    snprintf(why, sizeof why,
-             "terms take %.1f times as long as rows, as in the source; "
-             "integers %.0f times less",
-             t->found.by_terms_s / t->found.by_rows_s,
-             t->found.by_rows_s / t->found.by_integers_s);
-    verdict("C12", "pictures by terms are real-time",
-            t->found.by_terms_s > t->found.by_rows_s ? "does not" : "holds",
-            why);
-    snprintf(why, sizeof why,
-             "worst texel over median, S = 5: %.1f to %.1f "
-             "times",
-             fmin(t->j[0][SVD5].largest / t->j[0][SVD5].p50,
-                  t->j[1][SVD5].largest / t->j[1][SVD5].p50),
-             fmax(t->j[2][SVD5].largest / t->j[2][SVD5].p50,
-                  t->j[3][SVD5].largest / t->j[3][SVD5].p50));
-    verdict("C13", "errors are spread over the sample", "holds", why);
-    verdict("C9", "RMSE of some hundredths", "holds in kind",
-            "our stones are synthetic and its units others: ours are 3 to 10 "
-            "times less, in the same order");
-}
-
-int main(int argc, char **argv)
-{
-    static struct table t;
-
-    t.side = argc > 2 ? (int)strtol(argv[1], NULL, 10) : 48;
-    t.kernel = argc > 2 ? (int)strtol(argv[2], NULL, 10) : 21;
-    if (t.side < 8)
-        fail("stones have 8 texels or more");
     for (int i = 0; i < STONES; i++)
         open_stone(&t, i);
     source_tables(&t);
@@ -587,9 +451,7 @@ int main(int argc, char **argv)
     polynomials(&t);
     logarithms(&t);
     sums(&t);
-    pictures(&t);
-    verdicts(&t);
-    more_verdicts(&t);
+    pictures();
     all_models(&t);
     for (int i = 0; i < STONES; i++)
         glint_scatter_close(&t.rows[i]);

@@ -260,26 +260,29 @@ static bool take_sizes(const char *text, struct asked *a)
     return a->n_sizes > 0;
 }
 
+/* Takes up to MAX_LIST numbers of LOW to HIGH. Returns how many; 0: it is not
+ * that. */
+static int take_numbers(const char *text, double low, double high, double *to)
+{
+    const int n = tool_numbers(text, to, MAX_LIST);
+
+    for (int i = 0; i < n; i++)
+        if (to[i] < low || to[i] > high)
+            return 0;
+    return n;
+}
+
 static bool take_lights(const char *text, struct asked *a)
 {
     double v[MAX_LIST];
 
-    a->n_lights = tool_numbers(text, v, MAX_LIST);
+    a->n_lights = take_numbers(text, 1, 10000, v);
     for (int i = 0; i < a->n_lights; i++) {
-        if (v[i] != floor(v[i]) || v[i] < 1 || v[i] > 10000)
+        if (v[i] != floor(v[i]))
             return false;
         a->lights[i] = (int)v[i];
     }
     return a->n_lights > 0;
-}
-
-static bool take_angles(const char *text, struct asked *a)
-{
-    a->n_angles = tool_numbers(text, a->angle, MAX_LIST);
-    for (int i = 0; i < a->n_angles; i++)
-        if (a->angle[i] < 0 || a->angle[i] > 60)
-            return false;
-    return a->n_angles > 0;
 }
 
 static bool take_cost(const char *text, struct sweep *s)
@@ -320,7 +323,7 @@ static int take(struct sweep *s, struct asked *a, int c)
     case 'l':
         return take_lights(optarg, a);
     case 'a':
-        return take_angles(optarg, a);
+        return (a->n_angles = take_numbers(optarg, 0, 60, a->angle)) > 0;
     case 'r':
         return tool_integer(optarg, 1, SWEEP_ROUNDS, &s->rounds);
     case 'g':
@@ -389,10 +392,8 @@ static void fill_in(struct sweep *s, struct asked *a)
 
 static void close_sweep(struct sweep *s)
 {
-    for (int i = 0; i < s->n_pictures; i++) {
+    for (int i = 0; i < s->n_pictures; i++)
         free(s->picture[i].rgb);
-        free(s->picture[i].difference);
-    }
     glint_pool_destroy(s->one);
     free(s->picture);
     free(s->point);

@@ -11,6 +11,7 @@
 
 #include "engine/setup/degrees.h"
 #include "glint/bake.h"
+#include "model/table_file.h"
 
 enum {
     RAYS = 24, /* of a ghost, across and down */
@@ -30,25 +31,6 @@ struct row {
 struct ghost {
     double x_mm, light;
 };
-
-static bool parse(struct glint_prescription *lens, const char *path)
-{
-    static char text[65536];
-    struct glint_error error = {""};
-    FILE *file = fopen(path, "rb");
-    size_t bytes;
-
-    if (!file) {
-        fprintf(stderr, "projection_table: %s: cannot be read\n", path);
-        return false;
-    }
-    bytes = fread(text, 1, sizeof text, file);
-    fclose(file);
-    if (glint_prescription_parse(lens, text, bytes, path, &error) == GLINT_OK)
-        return true;
-    fprintf(stderr, "projection_table: %s\n", error.text);
-    return false;
-}
 
 /* Finds GHOST of light at THETA_DEG; without light it is nowhere. */
 static struct ghost find(const struct row *r, int ghost, double theta_deg)
@@ -119,10 +101,11 @@ static void print_place(const struct row *r, double mm)
 static bool print_row(struct row *r, const char *path)
 {
     static const double nm[] = {588};
+    static const struct tool tool = {.name = "projection_table"};
     struct glint_error error = {""};
     double corner;
 
-    if (!parse(&r->lens, path))
+    if (tool_lens(&tool, path, &r->lens) != EXIT_OK)
         return false;
     /* Lenses that are not round have no projection. */
     if (!glint_prescription_is_round(&r->lens))

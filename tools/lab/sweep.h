@@ -78,9 +78,7 @@ struct sweep_case {
 struct sweep_picture {
     int of, point; /* indices of case and point; point -1: the exact picture */
     int width, height;
-    /* difference: 16 times that to the exact picture, about grey; NULL for the
-     * exact picture */
-    uint8_t *rgb, *difference;
+    uint8_t *rgb;
 };
 
 /* A frame with stars, dust or a veil, with one value of its parameter, against

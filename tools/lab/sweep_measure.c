@@ -248,48 +248,30 @@ static void shrink(const uint8_t *codes, int stride, int by, uint8_t *to,
         }
 }
 
-/* Keeps for the page CODES, the picture of R, shrunk, and 16 times its
- * difference from EXACT_CODES. If R is NULL, CODES is the exact picture and has
- * no difference. Returns false without memory. */
-static bool keep_picture(struct bay *b, struct run *r, const uint8_t *codes,
-                         const uint8_t *exact_codes)
+/* Keeps CODES, the picture of point POINT of the case, shrunk, for the page; of
+ * point -1 it is the exact picture. Returns false without memory. */
+static bool keep_picture(struct bay *b, int point, const uint8_t *codes)
 {
-    struct sweep *s = b->s;
+    struct sweep *const s = b->s;
     const int by =
         b->c->width < 2 * PICTURE_WIDTH ? 1 : b->c->width / PICTURE_WIDTH;
-    const int width = b->c->width / by, height = b->c->height / by;
-    const size_t bytes = 3 * (size_t)width * (size_t)height;
+    struct sweep_picture *const all =
+        text_grow(s->picture, s->n_pictures, sizeof *all);
     struct sweep_picture *p;
 
-    p = text_grow(s->picture, s->n_pictures, sizeof *p);
-    if (!p)
+    if (!all)
         return false;
-    s->picture = p;
-    p += s->n_pictures;
+    s->picture = all;
+    p = all + s->n_pictures;
     *p = (struct sweep_picture){.of = (int)(b->c - s->scase),
-                                .point = r ? (int)(r->point - s->point) : -1,
-                                .width = width,
-                                .height = height};
-    s->n_pictures++;
-    p->rgb = malloc(bytes);
-    p->difference = r ? malloc(bytes) : NULL;
-    if (!p->rgb || (r && !p->difference))
+                                .point = point,
+                                .width = b->c->width / by,
+                                .height = b->c->height / by};
+    p->rgb = malloc(3 * (size_t)p->width * (size_t)p->height);
+    if (!p->rgb)
         return false;
-    shrink(codes, 3 * b->c->width, by, p->rgb, width, height);
-    if (r) {
-        const size_t n = 3 * (size_t)b->c->width * (size_t)b->c->height;
-        uint8_t *far = malloc(n);
-
-        for (size_t i = 0; far && i < n; i++) {
-            const int d = 128 + 16 * (codes[i] - exact_codes[i]);
-
-            far[i] = (uint8_t)(d < 0 ? 0 : d > 255 ? 255 : d);
-        }
-        if (far)
-            shrink(far, 3 * b->c->width, by, p->difference, width, height);
-        free(far);
-        return far != NULL;
-    }
+    s->n_pictures++;
+    shrink(codes, 3 * b->c->width, by, p->rgb, p->width, p->height);
     return true;
 }
 
@@ -309,7 +291,8 @@ static enum glint_status measure_point(struct bay *b, struct run *r,
     r->point->metric[SWEEP_PSNR_DB] = m.psnr_db;
     r->point->metric[SWEEP_SSIM] = m.ssim;
     r->point->metric[SWEEP_P99] = m.p99;
-    if (sweep_named(r->point) >= 0 && !keep_picture(b, r, codes, exact_codes))
+    if (sweep_named(r->point) >= 0 &&
+        !keep_picture(b, (int)(r->point - b->s->point), codes))
         return GLINT_E_MEMORY;
     return measure_flux(b, r);
 }
@@ -330,7 +313,7 @@ static enum glint_status measure_all(struct bay *b,
         const double exposure = glint_measure_exposure(&b->exact);
 
         exact_codes = glint_measure_encode(&b->exact, exposure);
-        if (!exact_codes || !keep_picture(b, NULL, exact_codes, NULL))
+        if (!exact_codes || !keep_picture(b, -1, exact_codes))
             status = GLINT_E_MEMORY;
         for (int i = 0; i < b->c->n && status == GLINT_OK; i++) {
             status = measure_point(b, &b->run[i], exact_codes, exposure, codes);

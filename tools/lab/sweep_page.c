@@ -90,9 +90,27 @@ static void figure(const struct sweep *s, FILE *file,
     fputs("</figcaption></figure>\n", file);
 }
 
+/* Writes 16 times the difference of Q from EXACT, about grey. */
+static void difference(const struct sweep *s, FILE *file,
+                       const struct sweep_picture *q,
+                       const struct sweep_picture *exact)
+{
+    const size_t n = 3 * (size_t)q->width * (size_t)q->height;
+    uint8_t *const far = malloc(n);
+
+    for (size_t i = 0; far && i < n; i++) {
+        const int d = 128 + 16 * (q->rgb[i] - exact->rgb[i]);
+
+        far[i] = (uint8_t)(d < 0 ? 0 : d > 255 ? 255 : d);
+    }
+    if (far)
+        figure(s, file, q, far, ", difference");
+    free(far);
+}
+
 static void strips(const struct sweep *s, FILE *file)
 {
-    int of = -1;
+    const struct sweep_picture *exact = NULL;
 
     fputs("<h2>Pictures</h2>\n<p>Each beside its difference from the exact "
           "one, 16 times, about grey.</p>\n",
@@ -101,16 +119,17 @@ static void strips(const struct sweep *s, FILE *file)
         const struct sweep_picture *q = &s->picture[i];
         const struct sweep_case *c = &s->scase[q->of];
 
-        if (q->of != of)
+        if (q->point < 0) {
+            exact = q;
             fprintf(file,
                     "<h3>%s, %dx%d, %d light%s, %g degrees off the axis</h3>\n",
                     s->lens[c->lens], c->width, c->height, c->n_lamps,
                     c->n_lamps > 1 ? "s" : "", c->angle);
-        of = q->of;
+        }
         fputs("<div>", file); /* two side by side */
         figure(s, file, q, q->rgb, "");
-        if (q->difference)
-            figure(s, file, q, q->difference, ", difference");
+        if (q != exact)
+            difference(s, file, q, exact);
         fputs("</div>\n", file);
     }
 }
