@@ -76,7 +76,7 @@ absent += tools/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
 absent += platform/formats/oiio_$(if $(CROSS),loader,absent).c
 absent += platform/assimp/$(if $(CROSS),loader,absent).c platform/assimp/assimp.c
 absent += platform/sdl/$(if $(CROSS),window,absent).c platform/sdl/sdl.c
-absent += tools/command/glint.c tools/live/glint_live.c tools/model/models_only.c tools/scenes/scenes_only.c tools/lab/ray_errors.c tools/lab/projection_table.c
+absent += tools/command/glint.c tools/live/glint_live.c tools/model/models_only.c tools/scenes/scenes_only.c
 
 core_o      := $(call objects,src,$(CORE))
 engine_o    := $(call objects,src,$(ENGINE))

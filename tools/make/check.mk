@@ -66,7 +66,7 @@ CHECK_PACKAGES := gcc libc6-dev binutils libcmocka-dev clang clang-format pkg-co
 check:
 	@tools/make/deps "unit tests, lint" $(CHECK_PACKAGES)
 	@$(MAKE) --no-print-directory WERROR=-Werror run-check
-run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/ray_errors $(example_bins) $(embed_bins) \
+run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(example_bins) $(embed_bins) \
         $(PROGRAMS) $(wildcard build/glint-oiio.so build/glint-assimp.so)
 	@[ $(notdir $(CC))-$(CONFIG) != gcc-release ] || { $(MAKE) --no-print-directory PIC=yes shared frei0r && $(MAKE) --no-print-directory man; }
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \

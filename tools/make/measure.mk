@@ -77,8 +77,6 @@ power-fit: $(OUT)/power_table
 	@tools/make/deps "HDR panoramas" openimageio-tools python3-numpy npm
 	@tests/power-table $< >build/features.txt
 	@tests/power-fit build/features.txt
-$(OUT)/ray_errors $(OUT)/projection_table: $(OUT)/%: $(OUT)/tools/lab/%.o $(libs)
-	$(link)
 
 # Photographs of Debian packages with their lamps marked: tests/corpus/README.md.
 corpus:
