@@ -153,8 +153,11 @@ static void print_json(const struct bench *b)
 {
     struct json_writer json = {.to = stdout};
 
-    json_write(&json, "{floor_ms: %.5f, rounds: %d, cases: [",
-               bench_floor_ms(b, b->cases[0]), b->rounds);
+    json_write(&json,
+               "{floor_ms: %.5f, rounds: %d, version: %s, machine: %s, "
+               "cases: [",
+               bench_floor_ms(b, b->cases[0]), b->rounds, GLINT_VERSION,
+               canvas_machine());
     for (int i = 0; i < b->n_cases; i++) {
         json_write(&json, "\n{%s: %s", b->subject->word, b->cases[i]->name);
         b->subject->json(&json, b, b->cases[i]);

@@ -285,6 +285,22 @@ enum glint_status sweep_frame(struct glint_frame *frame,
     return glint_frame_draw(frame, lamp, n, exposure, image, report);
 }
 
+const char *canvas_machine(void)
+{
+    static char line[128];
+    FILE *const file = fopen("/proc/cpuinfo", "r");
+    const char *name = NULL;
+
+    while (file && !name && fgets(line, sizeof line, file))
+        if (strncmp(line, "model name", 10) == 0)
+            name = strchr(line, ':');
+    if (file)
+        fclose(file);
+    for (char *c = line; *c; c++)
+        *c = (char)(*c == ',' ? ' ' : *c == '\n' ? '\0' : *c);
+    return name ? name + 2 : "unknown";
+}
+
 static int by_size(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;

@@ -71,6 +71,10 @@ enum glint_status sweep_frame(struct glint_frame *frame,
                               double exposure, const struct glint_image *image,
                               struct glint_engine_report *report);
 
+/* Returns what a processor is called, without commas, for tables of what was
+ * measured on it; "unknown" if the system does not say. */
+const char *canvas_machine(void);
+
 /* Returns the median of N values, 1 .. CANVAS_MAX, and leaves VALUES as they
  * are. */
 double canvas_median(const double *values, int n);

@@ -26,7 +26,7 @@ static const char help[] =
     "instructions where the processor counts them, memory, PSNR, SSIM, the "
     "99th\n"
     "percentile of the differences in codes, and flux. FOLDER gets\n"
-    "  sweep.csv     all of it\n"
+    "  sweep.csv     all of it, with version and machine\n"
     "  front.svg     error against time, and what nothing else is better than\n"
     "  dials.svg     each dial by itself\n"
     "  star.csv, star.svg  what --star-cull leaves of stars, and what that "

@@ -186,6 +186,11 @@ void sweep_words(const struct sweep_setting *set, char text[160]);
 /* Returns the index of the name of P's quality, or -1. */
 int sweep_named(const struct sweep_point *p);
 
+/* Ends a row of a table by the conditions of the measurement, whose columns
+ * SWEEP_CSV_END names. */
+#define SWEEP_CSV_END ",rounds,version,machine\n"
+void sweep_csv_end(const struct sweep *s, FILE *file);
+
 void sweep_csv(const struct sweep *s, FILE *file);
 void sweep_json(const struct sweep *s, FILE *file);
 void sweep_svg_front(const struct sweep *s, FILE *file);

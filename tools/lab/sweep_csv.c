@@ -24,6 +24,11 @@ static void print_number(FILE *file, double x)
         fprintf(file, "%.7g", x);
 }
 
+void sweep_csv_end(const struct sweep *s, FILE *file)
+{
+    fprintf(file, ",%d,%s,%s\n", s->rounds, GLINT_VERSION, canvas_machine());
+}
+
 void sweep_csv(const struct sweep *s, FILE *file)
 {
     fputs("lens,width,height,lights,angle,kind,dial,quality", file);
@@ -31,7 +36,7 @@ void sweep_csv(const struct sweep *s, FILE *file)
         fprintf(file, ",%s", sweep_parameter[d].name);
     for (int k = 0; k < SWEEP_METRICS; k++)
         fprintf(file, ",%s", metrics[k]);
-    fputs(",front\n", file);
+    fputs(",front" SWEEP_CSV_END, file);
     for (int i = 0; i < s->n_points; i++) {
         const struct sweep_point *const p = &s->point[i];
         const struct sweep_setting *const set = &p->set;
@@ -45,7 +50,8 @@ void sweep_csv(const struct sweep *s, FILE *file)
             print_number(file, set->value[d]);
         for (int k = 0; k < SWEEP_METRICS; k++)
             print_number(file, p->metric[k]);
-        fprintf(file, ",%d\n", p->front);
+        fprintf(file, ",%d", p->front);
+        sweep_csv_end(s, file);
     }
 }
 
@@ -53,7 +59,8 @@ void sweep_json(const struct sweep *s, FILE *file)
 {
     struct json_writer json = {.to = file};
 
-    json_write(&json, "{rounds: %d, points: [", s->rounds);
+    json_write(&json, "{rounds: %d, version: %s, machine: %s, points: [",
+               s->rounds, GLINT_VERSION, canvas_machine());
     for (int i = 0; i < s->n_points; i++) {
         const struct sweep_point *const p = &s->point[i];
         const struct sweep_case *const c = &s->scase[p->of];

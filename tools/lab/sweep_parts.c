@@ -311,14 +311,16 @@ static void print_csv(const struct sweep *s, bool stars, FILE *file)
         if (isfinite(p->instructions))
             fprintf(file, "%.0f", p->instructions);
         fprintf(file, ",%.3f,%zu", p->ms, p->bytes);
-        fprintf(file, stars ? "\n" : ",%d\n", p->front);
+        if (!stars)
+            fprintf(file, ",%d", p->front);
+        sweep_csv_end(s, file);
     }
 }
 
 void sweep_parts_csv(const struct sweep *s, FILE *file)
 {
     fputs("part,dial,value,psnr_db,most_codes,minsn_told,instructions,ms,"
-          "bytes,front\n",
+          "bytes,front" SWEEP_CSV_END,
           file);
     print_csv(s, false, file);
 }
@@ -326,7 +328,7 @@ void sweep_parts_csv(const struct sweep *s, FILE *file)
 void sweep_star_csv(const struct sweep *s, FILE *file)
 {
     fputs("lamps,star_cull,psnr_db,most_codes,pixels,minsn_told,instructions,"
-          "ms,star_bytes\n",
+          "ms,star_bytes" SWEEP_CSV_END,
           file);
     print_csv(s, true, file);
 }
