@@ -38,9 +38,6 @@ struct steady {
     double worst, largest;    /* largest step of glint's own; largest of all */
     double unmade;            /* largest step beyond what true lamps explain */
     int worst_frame, unmade_frame, cuts, frames, most_lights;
-    /* Stars: power of all in the last frame, of all lamps, and the largest step
-     * of theirs, and of it beyond the lamps'. */
-    double stars, lamps, star_largest, star_worst;
 };
 
 /* ------------------------------------------------------------------- steps */
@@ -107,35 +104,6 @@ static void note(struct steady *s, double total, double own)
     s->own = own;
 }
 
-/* Notes by how much the light of all stars steps, and by how much more than the
- * powers that their lamps were found with. */
-static void note_stars(struct steady *s, const struct glint_image *image,
-                       double lamps)
-{
-    struct compositor *c = &s->compositor;
-    struct glint_frame *const f = &c->engine->paint.frame;
-    double stars = 0;
-
-    f->known = c->lamp;
-    if (glint_frame_star_set(
-            f, glint_engine_plain(c->engine, c->lamp, c->n_lamps), c->n_lamps,
-            compositor_scale(c), image) != GLINT_OK)
-        exit(EXIT_RUNTIME);
-    f->known = NULL;
-    for (int i = 0; i < f->star.n_lights && c->n_lamps; i++)
-        stars += glint_real_value(f->star.light[i].power);
-    if (!compositor_is_new(c) && s->stars > 0 && stars > 0 && s->lamps > 0 &&
-        lamps > 0) {
-        const double step = log(stars / s->stars);
-
-        s->star_largest = fmax(s->star_largest, exp(fabs(step)) - 1);
-        s->star_worst =
-            fmax(s->star_worst, exp(beyond(step, log(lamps / s->lamps))) - 1);
-    }
-    s->stars = stars;
-    s->lamps = lamps;
-}
-
 static void frame(struct steady *s, const struct glint_image *image,
                   int32_t elapsed_us)
 {
@@ -152,7 +120,6 @@ static void frame(struct steady *s, const struct glint_image *image,
     if (held < power) /* where lamps are too bright */
         drawn = light_of(s);
     note(s, drawn * compositor_scale(compositor), own);
-    note_stars(s, image, power);
     if (compositor->n_lamps > s->most_lights)
         s->most_lights = compositor->n_lamps;
     s->frames++;
@@ -161,8 +128,7 @@ static void frame(struct steady *s, const struct glint_image *image,
 static void begin(struct steady *s, int width, int height)
 {
     s->total = s->own = s->worst = s->largest = 0;
-    s->unmade = s->stars = s->star_largest = s->star_worst = 0;
-    s->unmade_frame = 0;
+    s->unmade = s->unmade_frame = 0;
     s->worst_frame = s->cuts = s->frames = s->most_lights = 0;
     if (compositor_size(&s->tool, &s->compositor, width, height) != EXIT_OK)
         exit(EXIT_RUNTIME);
@@ -177,7 +143,7 @@ static bool end(const struct steady *s, const char *name)
         printf(" %.1f | %d |", 100 * s->unmade, s->unmade_frame);
     else
         printf(" | |");
-    printf(" %.1f | %.1f |\n", 100 * s->star_largest, 100 * s->star_worst);
+    printf("\n");
     fflush(stdout);
     return s->worst <= MOST && (s->truth[0] < 0 || s->unmade <= MOST);
 }
@@ -381,10 +347,8 @@ int main(int argc, char **argv)
         compositor_open(&s.tool, &s.compositor) != EXIT_OK)
         return EXIT_RUNTIME;
     puts("| scene | frames | lights | cuts | largest step, % | beside the "
-         "lamps' own, % | at frame | that no lamp made, % | at frame | of the "
-         "star, "
-         "largest step, % | beside the lamps' powers, % |\n"
-         "|---|---|---|---|---|---|---|---|---|---|---|");
+         "lamps' own, % | at frame | that no lamp made, % | at frame |\n"
+         "|---|---|---|---|---|---|---|---|---|");
     for (int k = 0; k < (int)(sizeof scenes / sizeof *scenes); k++)
         good = run_scene(&s, k) && good;
     for (int i = optind; i < argc; i++)

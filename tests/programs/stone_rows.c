@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * stone_rows DIR [SIDE KERNEL] - bakes two stones, chess and veins, by all
+ * stone_rows DIR - bakes two stones, chess and veins, by all
  * models that a frame can draw and by numbers of bits, for
  * tools/report/scenes/stone-table. Prints a line each: stone, model, bits of
  * codes and taps, decibels of the fit and of the integers to the light of all
  * rows, and processor seconds of the fit. Those of the first stone with 8 and
- * 12 bits are written to DIR/MODEL.glint. Stones of 128 texels and kernels of
- * 29 unless told otherwise. */
+ * 12 bits are written to DIR/MODEL.glint. Stones have 128 texels,
+ * kernels 29. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -119,13 +119,12 @@ static void fit_and_bake(struct glint_scatter_rows *rows, int stone, int model,
 
 int main(int argc, char **argv)
 {
-    const int side = argc > 3 ? atoi(argv[2]) : 128;
-    const int kernel = argc > 3 ? atoi(argv[3]) : 29;
+    const int side = 128, kernel = 29;
     const size_t n = 3 * (size_t)(side * side);
     double *light = calloc(3 * n, sizeof *light);
 
     if (argc < 2 || !light)
-        fail("DIR [SIDE KERNEL]");
+        fail("DIR");
     for (int i = 0; i < STONES; i++) {
         struct glint_scatter_rows rows;
         struct glint_stone stone;

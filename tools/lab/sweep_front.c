@@ -56,67 +56,53 @@ int sweep_front(const double *cost, const double *quality, int n, int *front)
 
 void sweep_mark_fronts(struct sweep *s)
 {
-    const size_t n = (size_t)s->n_points + 1;
-    double *cost = malloc(2 * n * sizeof *cost), *quality = cost + n;
-    int *front = malloc(n * sizeof *front), n_front;
+    for (int c = 0; c < s->n_cases; c++) {
+        const struct sweep_case *const k = &s->scase[c];
+        struct sweep_point *const point = s->point + k->first;
+        double *const cost = malloc((size_t)k->n * sizeof *cost);
+        double *const quality = malloc((size_t)k->n * sizeof *quality);
+        int *const front = malloc((size_t)k->n * sizeof *front), n = 0;
 
-    for (int i = 0; i < s->n_points && cost && front; i++) {
-        const struct sweep_point *p = &s->point[i];
-
-        cost[i] = is_true(p->metric[SWEEP_FLUX_ERROR]) ? sweep_cost(s, p)
-                                                       : (double)NAN;
-        quality[i] = p->metric[SWEEP_PSNR_DB];
+        for (int i = 0; i < k->n && cost && quality; i++) {
+            cost[i] = is_true(point[i].metric[SWEEP_FLUX_ERROR])
+                          ? sweep_cost(s, &point[i])
+                          : (double)NAN;
+            quality[i] = point[i].metric[SWEEP_PSNR_DB];
+        }
+        if (cost && quality && front)
+            n = sweep_front(cost, quality, k->n, front);
+        for (int i = 0; i < n; i++)
+            point[front[i]].front = true;
+        free(cost);
+        free(quality);
+        free(front);
     }
-    for (int c = 0; c < s->n_cases && cost && front; c++) {
-        const struct sweep_case *k = &s->scase[c];
-
-        n_front = sweep_front(cost + k->first, quality + k->first, k->n, front);
-        for (int i = 0; i < n_front; i++)
-            s->point[k->first + front[i]].front = true;
-    }
-    free(cost);
-    free(front);
 }
 
 /* ------------------------------------------------------------------- means */
 
-static bool is_same(const struct sweep_setting *a,
-                    const struct sweep_setting *b)
-{
-    return a->kind == b->kind && a->quality == b->quality &&
-           memcmp(a->value, b->value,
-                  (size_t)n_sweep_parameters * sizeof *a->value) == 0;
-}
-
-static const struct sweep_point *find(const struct sweep *s,
-                                      const struct sweep_case *c,
-                                      const struct sweep_setting *set)
-{
-    for (int i = 0; i < c->n; i++)
-        if (is_same(&s->point[c->first + i].set, set))
-            return &s->point[c->first + i];
-    return NULL;
-}
-
-/* Sets M to the means of SET over all cases that are swept together. Returns
- * false if one of these has not measured it. */
-static bool mean_of(const struct sweep *s, const struct sweep_setting *set,
-                    struct sweep_mean *m)
+/* Sets M to the means of setting I over all cases in which parameters are
+ * combined, which have the same settings. Returns false if one of these has not
+ * measured it. */
+static bool mean_of(const struct sweep *s, int i, struct sweep_mean *m)
 {
     int n = 0;
 
-    *m = (struct sweep_mean){.set = set, .least_db = 999};
+    *m = (struct sweep_mean){.least_db = 999};
     for (int k = 0; k < s->n_cases; k++) {
         const struct sweep_case *c = &s->scase[k];
-        const struct sweep_point *p = c->together ? find(s, c, set) : NULL;
+        const struct sweep_point *const p =
+            c->together ? &s->point[c->first + i] : NULL;
+        const double db = p ? p->metric[SWEEP_PSNR_DB] : 0;
 
-        if (!c->together)
-            continue;
-        if (!p || isnan(p->metric[SWEEP_PSNR_DB]))
+        if (isnan(db))
             return false;
+        if (!p)
+            continue;
+        m->set = &p->set;
         m->cost += log(sweep_cost(s, p) / sweep_cost(s, &s->point[c->first]));
-        m->psnr_db += p->metric[SWEEP_PSNR_DB];
-        m->least_db = fmin(m->least_db, p->metric[SWEEP_PSNR_DB]);
+        m->psnr_db += db;
+        m->least_db = fmin(m->least_db, db);
         m->flux_error = fmax(m->flux_error, fabs(p->metric[SWEEP_FLUX_ERROR]));
         n++;
     }
@@ -163,7 +149,7 @@ struct sweep_mean *sweep_means(const struct sweep *s, int *n)
     while (first < s->n_cases && !s->scase[first].together)
         first++;
     for (int i = 0; mean && first < s->n_cases && i < s->scase[first].n; i++)
-        *n += mean_of(s, &s->point[s->scase[first].first + i].set, &mean[*n]);
+        *n += mean_of(s, i, &mean[*n]);
     sweep_sort(mean, *n);
     mark_means(mean, *n);
     return mean;
