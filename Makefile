@@ -38,7 +38,7 @@
 #   make trade    what accuracy costs: plots, pictures and a page (glint sweep)
 #   make debian   packages, in clean systems;  check-debian: tools/debian
 #   also: oiio assimp window inputs format golden-update fuzz-keep clean ward-sheet, and the tables that
-#         tools/report/figures lists
+#         tools/report/figures lists, all by make figures
 
 # One job a processor, unless the command line has a -j of its own.
 MAKEFLAGS += -r $(if $(filter 0,$(MAKELEVEL)),-j$(shell nproc))

@@ -1,5 +1,9 @@
 # What is looked at and what is measured. Tables go into the files of
-# tests/figures.
+# tests/figures; all of them, for hours, but for fits, which write weights into
+# src: make figures.
+figures:
+	@for target in $$(sed -n '/-fit /d; s/^[^#][^ ]* \([^ ]*\) .*/\1/p' tools/report/figures | sort -u); do \
+	        $(MAKE) --no-print-directory $$target || exit 1; done
 
 video-report: $(OUT)/steady
 	@$(OUT)/steady --lens lenses/nikon-zoom-short.lens $(VIDEOS)
@@ -129,8 +133,10 @@ size: $(OUT)/libglint.a $(example_bins)
 trade: all
 	@build/glint sweep -o build/trade $(TRADE)
 	@echo build/trade/index.html
-# MODELS="A.glint ...", VIDEOS="A.y4m ...": these, too
+# MODELS="A.glint ...": these; VIDEOS="A.y4m ...": these, too
+reuse-table: MODELS = $(patsubst %,build/models/%.glint,double-gauss-angenieux canon-zoom-mid)
 reuse-table: all $(OUT)/reuse
+	@$(MAKE) -s --no-print-directory $(filter build/models/%,$(MODELS)) >&2
 	@tools/make/deps "instruction counts, noise" valgrind ffmpeg >&2
 	@tools/report/reuse-table $(OUT)/reuse $(MODELS) | tools/report/write-figures videos/reuse
 reuse-table: export VIDEOS := $(VIDEOS)
@@ -152,7 +158,7 @@ budget: all
 	        build/$$t/glint >&2 || exit 1; done
 	@tools/report/budget | tools/report/write-figures arm
 
-.PHONY: video-report occlusion-table demo inputs table scene-table hidden-table mesh-table motion-table \
+.PHONY: figures video-report occlusion-table demo inputs table scene-table hidden-table mesh-table motion-table \
         ward-table translucent-table stone-table ward-sheet bake-table \
         library-table azimuth-table projection-table accuracy-table colour-table ray-table stop-table \
         power-fit corpus corpus-evaluate corpus-stars corpus-sheet corpus-report gallery \
