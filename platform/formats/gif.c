@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "formats/gif.h"
 
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 

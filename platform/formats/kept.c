@@ -1,25 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "formats/kept.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-#include "formats/kept_colours.h"
-#include "formats/kept_types.h"
-#include "formats/pfm.h"
 #include "formats/picture.h"
-#include "formats/pnm.h"
 #include "posix/error.h"
-#include "posix/input.h"
-#include "posix/output.h"
-
-#define MAX_FILE_BYTES                                             \
-    (SIZE_MAX / 4 < UINT64_C(12) * GLINT_MAX_SIDE * GLINT_MAX_SIDE \
-         ? SIZE_MAX / 4                                            \
-         : (size_t)(UINT64_C(12) * GLINT_MAX_SIDE * GLINT_MAX_SIDE + 4096))
 
 static enum glint_status report_memory(struct glint_error *error,
                                        const char *path,
@@ -95,9 +83,11 @@ static void swap_rows(uint8_t *to, const uint8_t *from,
                 from[(size_t)(s->height - 1 - y) * row + i];
 }
 
-static enum glint_status open_pnm(struct glint_kept *k,
-                                  struct glint_error *error)
+/* Opens the PNM or PFM in k->native. */
+static enum glint_status open_native(struct glint_kept *k,
+                                     struct glint_error *error)
 {
+    struct glint_samples *const s = &k->samples;
     struct glint_pnm_header h;
     enum glint_status status =
         glint_pnm_header_read(&h, k->native, k->native_bytes, k->path, error);
@@ -105,38 +95,26 @@ static enum glint_status open_pnm(struct glint_kept *k,
     if (status)
         return status;
     k->header_bytes = h.bytes;
-    lay_out(&k->samples, h.width, h.height,
-            h.maximum > 255 ? GLINT_SAMPLE_U16 : GLINT_SAMPLE_U8, h.channels);
-    k->samples.maximum = (uint32_t)h.maximum;
-    k->samples.mem = k->native + h.bytes;
-    if (h.maximum <= 255)
-        return GLINT_OK;
-    k->own = malloc(samples_bytes(&k->samples));
-    if (!k->own)
-        return report_memory(error, k->path, &k->samples);
-    swap_shorts(k->own, k->native + h.bytes, samples_bytes(&k->samples));
-    k->samples.mem = k->own;
-    return GLINT_OK;
-}
-
-static enum glint_status open_pfm(struct glint_kept *k,
-                                  struct glint_error *error)
-{
-    struct glint_pfm_header h;
-    enum glint_status status =
-        glint_pfm_header_read(&h, k->native, k->native_bytes, k->path, error);
-
-    if (status)
-        return status;
-    k->header_bytes = h.bytes;
-    k->is_pfm = true;
+    k->is_pfm = k->is_float = h.maximum == 0;
     k->is_little = h.little;
-    lay_out(&k->samples, h.width, h.height, GLINT_SAMPLE_FLOAT, h.channels);
-    k->own = malloc(samples_bytes(&k->samples));
+    lay_out(s, h.width, h.height,
+            k->is_pfm         ? GLINT_SAMPLE_FLOAT
+            : h.maximum > 255 ? GLINT_SAMPLE_U16
+                              : GLINT_SAMPLE_U8,
+            h.channels);
+    s->mem = k->native + h.bytes;
+    if (!k->is_pfm)
+        s->maximum = (uint32_t)h.maximum;
+    if (!k->is_pfm && h.maximum <= 255)
+        return GLINT_OK;
+    k->own = malloc(samples_bytes(s));
     if (!k->own)
-        return report_memory(error, k->path, &k->samples);
-    swap_rows(k->own, k->native + h.bytes, &k->samples, h.little);
-    k->samples.mem = k->own;
+        return report_memory(error, k->path, s);
+    if (k->is_pfm)
+        swap_rows(k->own, s->mem, s, h.little);
+    else
+        swap_shorts(k->own, s->mem, samples_bytes(s));
+    s->mem = k->own;
     return GLINT_OK;
 }
 
@@ -150,6 +128,102 @@ static void refill_native(struct glint_kept *k)
         swap_rows(at, k->own, &k->samples, k->is_little);
     else if (k->own)
         swap_shorts(at, k->own, samples_bytes(&k->samples));
+}
+
+/* ----------------------------------------------------------------- colours */
+
+/* Appends TEXT to NOTES, after "; " if NOTES is not empty. */
+static void add_note(char notes[GLINT_KEPT_NOTES], const char *text)
+{
+    const size_t used = strlen(notes);
+
+    snprintf(notes + used, GLINT_KEPT_NOTES - used, "%s%s", used ? "; " : "",
+             text);
+}
+
+/* Sets C by CICP, the numbers of primaries and transfer in ITU-T H.273. Returns
+ * false if it does not know the transfer. */
+static bool set_by_cicp(struct glint_colours *c, const int cicp[2])
+{
+    static const double p3[4][2] = {
+        {0.68, 0.32}, {0.265, 0.69}, {0.15, 0.06}, {0.3127, 0.329}};
+    static const double bt2020[4][2] = {
+        {0.708, 0.292}, {0.17, 0.797}, {0.131, 0.046}, {0.3127, 0.329}};
+
+    if (cicp[1] == 13)
+        glint_colours_set(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
+    else if (cicp[1] == 8)
+        glint_colours_set(c, GLINT_TONE_IS_LINEAR, 0, "linear");
+    else if (cicp[1] == 4 || cicp[1] == 5)
+        glint_colours_set(c, GLINT_TONE_IS_GAMMA, cicp[1] == 4 ? 2.2 : 2.8,
+                          "gamma");
+    else if (cicp[1] == 1 || cicp[1] == 6 || cicp[1] == 14 || cicp[1] == 15)
+        glint_colours_set(c, GLINT_TONE_IS_BT709, 0, "BT.709");
+    else
+        return false;
+    if (cicp[0] == 9)
+        return glint_colours_primaries(c, bt2020);
+    return cicp[0] != 12 || glint_colours_primaries(c, p3);
+}
+
+/* Sets C by NAME, OpenImageIO's name of a colour space. Returns false if it
+ * does not know NAME. */
+static bool set_by_name(struct glint_colours *c, const char *name)
+{
+    static const double adobe[4][2] = {
+        {0.64, 0.33}, {0.21, 0.71}, {0.15, 0.06}, {0.3127, 0.329}};
+    double gamma;
+
+    if (strcasecmp(name, "sRGB") == 0)
+        glint_colours_set(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
+    else if (strcasecmp(name, "linear") == 0 ||
+             strncasecmp(name, "lin_", 4) == 0)
+        glint_colours_set(c, GLINT_TONE_IS_LINEAR, 0, "linear");
+    else if (strcasecmp(name, "Rec709") == 0)
+        glint_colours_set(c, GLINT_TONE_IS_BT709, 0, "BT.709");
+    else if (strcasecmp(name, "AdobeRGB") == 0) {
+        glint_colours_set(c, GLINT_TONE_IS_GAMMA, 563 / 256.0, "Adobe RGB");
+        return glint_colours_primaries(c, adobe);
+    } else if (strncmp(name, "Gamma", 5) == 0 &&
+               (gamma = strtod(name + 5, NULL)) > 0.1 && gamma < 10)
+        glint_colours_set(c, GLINT_TONE_IS_GAMMA, gamma, "gamma");
+    else
+        return false;
+    return true;
+}
+
+/* Sets the colours of K's samples as FACTS say. Colours that glint does not
+ * know are taken as linear or sRGB, and K's note says so. */
+static void set_colours(struct glint_kept *k,
+                        const struct glint_oiio_facts *facts)
+{
+    struct glint_samples *const s = &k->samples;
+    struct glint_colours *const c = &s->colours;
+    char text[96];
+    bool known = true;
+
+    if (k->is_float)
+        glint_colours_set(c, GLINT_TONE_IS_LINEAR, 0, "linear");
+    else
+        glint_colours_set(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
+    if (facts->cicp[1])
+        known = set_by_cicp(c, facts->cicp);
+    else if (facts->icc)
+        known = glint_icc_read(c, facts->icc, facts->icc_bytes);
+    else if (facts->gamma > 0.1 && facts->gamma < 10)
+        glint_colours_set(c, GLINT_TONE_IS_GAMMA, facts->gamma, "gamma");
+    else if (*facts->colour_space && !k->is_float)
+        known = set_by_name(c, facts->colour_space);
+    if (!facts->icc && !facts->cicp[1] && facts->has_primaries)
+        glint_colours_primaries(c, (const double(*)[2])facts->primaries);
+    if (known)
+        return;
+    snprintf(text, sizeof text, "%.24s is not known here; taken as %s",
+             facts->cicp[1] ? "the transfer of its cICP"
+             : facts->icc   ? "what its profile says"
+                            : facts->colour_space,
+             k->is_float ? "linear" : "sRGB");
+    add_note(k->note, text);
 }
 
 /* --------------------------------------------------------------- plug-in */
@@ -170,64 +244,31 @@ static enum glint_status open_by_plugin(struct glint_kept *k, const char *type,
     k->has_icc = facts.icc != NULL;
     k->is_float = glint_sample_is_float(k->samples.colour[0].sample);
     if (*facts.note)
-        glint_kept_note(k->note, facts.note);
-    glint_kept_set_colours(k, &facts);
+        add_note(k->note, facts.note);
+    set_colours(k, &facts);
     return GLINT_OK;
 }
 
 /* ----------------------------------------------------------------- opening */
 
-/* Reads a PNM or PFM whole into k->native; of other files the first 12
- * bytes. */
-static enum glint_status read_native(struct glint_kept *k,
-                                     struct glint_error *error)
-{
-    struct glint_input in;
-    enum glint_status status = glint_input_open(&in, k->path, error);
-    ptrdiff_t n = 1;
-
-    if (status)
-        return status;
-    k->native = malloc(12);
-    if (!k->native)
-        status = glint_error_report(error, GLINT_E_MEMORY, k->path,
-                                    "no memory for a buffer");
-    while (!status && n > 0 && k->native_bytes < 12) {
-        n = glint_input_some(&in, k->native + k->native_bytes,
-                             12 - k->native_bytes);
-        k->native_bytes += n > 0 ? (size_t)n : 0;
-    }
-    if (n < 0)
-        status = glint_error_report(error, GLINT_E_IO, k->path, "%s",
-                                    strerror(errno));
-    if (!status && k->native_bytes == 0)
-        status = glint_error_report(error, GLINT_E_FORMAT, k->path, "is empty");
-    if (!status && (glint_pnm_matches(k->native, k->native_bytes) ||
-                    glint_pfm_matches(k->native, k->native_bytes)))
-        status = glint_input_append(&in, &k->native, &k->native_bytes,
-                                    MAX_FILE_BYTES, error);
-    glint_input_close(&in);
-    return status;
-}
-
 static enum glint_status open_any(struct glint_kept *k,
                                   struct glint_error *error)
 {
-    enum glint_status status = read_native(k, error);
+    struct glint_input in;
+    enum glint_status status = glint_input_open(&in, k->path, error);
 
     if (status)
         return status;
-    if (glint_pnm_matches(k->native, k->native_bytes))
-        return open_pnm(k, error);
-    if (glint_pfm_matches(k->native, k->native_bytes)) {
-        k->is_float = true;
-        return open_pfm(k, error);
-    }
-    if (k->native_bytes >= 9 && !memcmp(k->native, "YUV4MPEG2", 9))
-        return glint_error_report(error, GLINT_E_UNSUPPORTED, k->path,
-                                  "is a video, not a picture");
-    return open_by_plugin(k, glint_picture_type(k->native, k->native_bytes),
-                          error);
+    status =
+        glint_picture_read(&in, k->path, &k->native, &k->native_bytes, error);
+    glint_input_close(&in);
+    if (status)
+        return status;
+    return glint_pnm_matches(k->native, k->native_bytes) ||
+                   glint_pfm_matches(k->native, k->native_bytes)
+               ? open_native(k, error)
+               : open_by_plugin(
+                     k, glint_picture_type(k->native, k->native_bytes), error);
 }
 
 enum glint_status glint_kept_open(struct glint_kept *kept, const char *path,
@@ -323,20 +364,38 @@ static void say_losses(struct glint_kept_options *options,
     const bool was_float = glint_sample_is_float(from->colour[0].sample);
 
     if (from->has_alpha && !to->has_alpha)
-        glint_kept_note(
-            options->said,
-            "the file type has no alpha: what is seen over black is "
-            "written");
+        add_note(options->said,
+                 "the file type has no alpha: what is seen over black is "
+                 "written");
     if (was_float && !glint_sample_is_float(to->colour[0].sample))
-        glint_kept_note(
-            options->said,
-            to->colour[0].sample == GLINT_SAMPLE_U8
-                ? "light above white is clipped, and 8 bits are left"
-                : "light above white is clipped, and 16 bits are "
-                  "left");
+        add_note(options->said,
+                 to->colour[0].sample == GLINT_SAMPLE_U8
+                     ? "light above white is clipped, and 8 bits are left"
+                     : "light above white is clipped, and 16 bits are "
+                       "left");
     else if (glint_sample_bytes(from->colour[0].sample) > 1 &&
              to->colour[0].sample == GLINT_SAMPLE_U8)
-        glint_kept_note(options->said, "8 bits are left");
+        add_note(options->said, "8 bits are left");
+}
+
+/* Returns the kind of sample, among those that TYPE takes, closest to
+ * SAMPLE. */
+static enum glint_sample sample_for(const struct glint_file_type *type,
+                                    enum glint_sample sample)
+{
+    const bool is_float = glint_sample_is_float(sample);
+
+    if (sample == GLINT_SAMPLE_U8 && type->takes_u8)
+        return GLINT_SAMPLE_U8;
+    if (sample == GLINT_SAMPLE_HALF && type->takes_half)
+        return GLINT_SAMPLE_HALF;
+    if (is_float && type->takes_float)
+        return GLINT_SAMPLE_FLOAT;
+    if (sample == GLINT_SAMPLE_U8 && type->takes_half)
+        return GLINT_SAMPLE_HALF;
+    if (sample != GLINT_SAMPLE_U8 && type->takes_u16)
+        return GLINT_SAMPLE_U16;
+    return type->takes_u8 ? GLINT_SAMPLE_U8 : GLINT_SAMPLE_FLOAT;
 }
 
 /* Converts FROM to samples that TYPE takes, in TO, whose memory the caller
@@ -351,7 +410,7 @@ static enum glint_status convert(struct glint_samples *to,
                          (from->n_colours == 1 && type->takes_float);
 
     lay_out(to, glint_samples_width(from), glint_samples_height(from),
-            glint_file_type_sample(type, from->colour[0].sample),
+            sample_for(type, from->colour[0].sample),
             (is_grey ? 1 : 3) + has_alpha);
     to->is_premultiplied = type->alpha != GLINT_ALPHA_STRAIGHT;
     to->mem = malloc(samples_bytes(to));
@@ -464,8 +523,5 @@ enum glint_status glint_kept_save(struct glint_kept *kept, const char *path,
         status =
             glint_output_write(&out, kept->native, kept->native_bytes, error);
     }
-    if (!status)
-        return glint_output_commit(&out, error);
-    glint_output_abort(&out);
-    return status;
+    return glint_output_end(&out, status, error);
 }

@@ -17,11 +17,7 @@
 #ifndef GLINT_PLATFORM_FORMATS_KEPT_H
 #define GLINT_PLATFORM_FORMATS_KEPT_H
 
-#include <stdbool.h>
-
-#include "glint/status.h"
 #include "formats/oiio.h"
-#include "formats/samples.h"
 
 enum { GLINT_KEPT_NOTES = 256 }; /* bytes */
 

@@ -13,9 +13,6 @@
 #ifndef GLINT_PLATFORM_FORMATS_OIIO_H
 #define GLINT_PLATFORM_FORMATS_OIIO_H
 
-#include <stddef.h>
-
-#include "glint/status.h"
 #include "formats/samples.h"
 
 /* Number of this interface. A plug-in with another number is refused. */

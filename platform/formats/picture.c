@@ -3,16 +3,12 @@
 
 #include <errno.h>
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "formats/oiio.h"
-#include "formats/pnm.h"
 #include "posix/error.h"
-#include "posix/input.h"
-#include "posix/output.h"
 
 /* Bytes of the largest file read: a PFM with its header. PNM files are
  * smaller. */
@@ -92,30 +88,32 @@ static enum glint_status load_by_plugin(struct loaded *loaded, const char *path,
     return GLINT_OK;
 }
 
-/* Reads the first HEAD_BYTES of IN, or as many as it has, into *DATA, which the
- * caller frees. */
-static enum glint_status read_head(struct glint_input *in, uint8_t **data,
-                                   size_t *bytes, struct glint_error *error)
+enum glint_status glint_picture_read(struct glint_input *in, const char *name,
+                                     uint8_t **data, size_t *bytes,
+                                     struct glint_error *error)
 {
     ptrdiff_t n = 1;
 
     *bytes = 0;
     *data = malloc(HEAD_BYTES);
-    if (!*data) {
-        (void)glint_error_report(error, GLINT_E_MEMORY, in->name,
-                                 "no memory for a buffer");
-        return GLINT_E_MEMORY;
-    }
+    if (!*data)
+        return glint_error_report(error, GLINT_E_MEMORY, name,
+                                  "no memory for a buffer");
     while (n > 0 && *bytes < HEAD_BYTES) {
         n = glint_input_some(in, *data + *bytes, HEAD_BYTES - *bytes);
         *bytes += n > 0 ? (size_t)n : 0;
     }
     if (n < 0)
-        return glint_error_report(error, GLINT_E_IO, in->name, "%s",
+        return glint_error_report(error, GLINT_E_IO, name, "%s",
                                   strerror(errno));
     if (*bytes == 0)
-        return glint_error_report(error, GLINT_E_FORMAT, in->name, "is empty");
-    return GLINT_OK;
+        return glint_error_report(error, GLINT_E_FORMAT, name, "is empty");
+    if (*bytes >= 9 && !memcmp(*data, "YUV4MPEG2", 9))
+        return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
+                                  "is a video, not a picture");
+    return glint_pnm_matches(*data, *bytes) || glint_pfm_matches(*data, *bytes)
+               ? glint_input_append(in, data, bytes, MAX_FILE_BYTES, error)
+               : GLINT_OK;
 }
 
 static enum glint_status load_opened(struct loaded *loaded,
@@ -123,23 +121,15 @@ static enum glint_status load_opened(struct loaded *loaded,
                                      struct glint_error *error)
 {
     size_t bytes;
-    enum glint_status status = read_head(in, data, &bytes, error);
+    enum glint_status status =
+        glint_picture_read(in, in->name, data, &bytes, error);
 
     if (status)
         return status;
-    if (bytes >= 9 && !memcmp(*data, "YUV4MPEG2", 9))
-        return glint_error_report(error, GLINT_E_UNSUPPORTED, in->name,
-                                  "is a video, not a picture");
-    if (glint_pnm_matches(*data, bytes) || glint_pfm_matches(*data, bytes)) {
-        status = glint_input_append(in, data, &bytes, MAX_FILE_BYTES, error);
-        if (status)
-            return status;
-        return glint_pnm_matches(*data, bytes)
-                   ? glint_pnm_read(&loaded->image, *data, bytes, in->name,
-                                    error)
-                   : glint_pfm_read(&loaded->floats, *data, bytes, in->name,
-                                    error);
-    }
+    if (glint_pnm_matches(*data, bytes))
+        return glint_pnm_read(&loaded->image, *data, bytes, in->name, error);
+    if (glint_pfm_matches(*data, bytes))
+        return glint_pfm_read(&loaded->floats, *data, bytes, in->name, error);
     glint_input_close(in);
     if (!strcmp(in->name, "standard input"))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, in->name,
@@ -285,62 +275,75 @@ enum glint_status glint_picture_load_float(const char *path,
 
 /* ------------------------------------------------------------------ saving */
 
-static const struct file_type {
-    const char *extension;
-    bool is_native, takes_8bit, takes_float;
-} file_types[] = {
-    {".ppm", true, true, false},   {".pnm", true, true, false},
-    {".pfm", true, false, true},   {".png", false, true, false},
-    {".jpg", false, true, false},  {".jpeg", false, true, false},
-    {".exr", false, false, true},  {".hdr", false, false, true},
-    {".tif", false, true, true},   {".tiff", false, true, true},
-    {".bmp", false, true, false},  {".tga", false, true, false},
-    {".webp", false, true, false},
+/* clang-format off */
+static const struct glint_file_type types[] = {
+    /* extension, native, grey, alpha; takes 8 bits, 16, half, float */
+    {".ppm",  true,  false, GLINT_ALPHA_NONE,          true,  true,  false, false},
+    {".pnm",  true,  false, GLINT_ALPHA_NONE,          true,  true,  false, false},
+    {".pgm",  true,  true,  GLINT_ALPHA_NONE,          true,  true,  false, false},
+    {".pfm",  true,  false, GLINT_ALPHA_NONE,          false, false, false, true},
+    {".png",  false, false, GLINT_ALPHA_STRAIGHT,      true,  true,  false, false},
+    {".jpg",  false, false, GLINT_ALPHA_NONE,          true,  false, false, false},
+    {".jpeg", false, false, GLINT_ALPHA_NONE,          true,  false, false, false},
+    {".exr",  false, false, GLINT_ALPHA_PREMULTIPLIED, false, false, true,  true},
+    {".hdr",  false, false, GLINT_ALPHA_NONE,          false, false, false, true},
+    {".tif",  false, false, GLINT_ALPHA_STRAIGHT,      true,  true,  true,  true},
+    {".tiff", false, false, GLINT_ALPHA_STRAIGHT,      true,  true,  true,  true},
+    {".bmp",  false, false, GLINT_ALPHA_NONE,          true,  false, false, false},
+    {".tga",  false, false, GLINT_ALPHA_STRAIGHT,      true,  false, false, false},
+    {".webp", false, false, GLINT_ALPHA_STRAIGHT,      true,  false, false, false},
 };
+/* clang-format on */
+
+const struct glint_file_type *glint_file_type_of(const char *path)
+{
+    const char *const slash = strrchr(path, '/');
+    const char *const extension = strrchr(slash ? slash : path, '.');
+
+    for (size_t i = 0; extension && i < sizeof types / sizeof *types; i++)
+        if (strcasecmp(extension, types[i].extension) == 0)
+            return &types[i];
+    return NULL;
+}
 
 /* Returns the type that PATH's extension names, or NULL if it is unknown. The
  * pipe "-" has the type that glint itself writes for KIND. */
-static const struct file_type *find_type(const char *path,
-                                         enum glint_picture_kind kind)
+static const struct glint_file_type *find_type(const char *path,
+                                               enum glint_picture_kind kind)
 {
-    const char *const slash = strrchr(path, '/');
-    const char *extension = strrchr(slash ? slash : path, '.');
-
     if (!strcmp(path, "-"))
-        extension = kind == GLINT_PICTURE_FLOAT ? ".pfm" : ".ppm";
-    for (size_t i = 0; i < sizeof file_types / sizeof *file_types; i++)
-        if (extension && !strcasecmp(extension, file_types[i].extension))
-            return &file_types[i];
-    return NULL;
+        path = kind == GLINT_PICTURE_FLOAT ? "-.pfm" : "-.ppm";
+    return glint_file_type_of(path);
 }
 
 static bool is_native(const char *path, enum glint_picture_kind kind)
 {
-    const struct file_type *const type = find_type(path, kind);
+    const struct glint_file_type *const type = find_type(path, kind);
 
     return type && type->is_native;
 }
 
 bool glint_picture_is_float(const char *path)
 {
-    const struct file_type *const type = find_type(path, GLINT_PICTURE_8BIT);
+    const struct glint_file_type *const type =
+        find_type(path, GLINT_PICTURE_8BIT);
 
-    return type && !type->takes_8bit;
+    return type && !type->takes_u8;
 }
 
 enum glint_status glint_picture_check(const char *path,
                                       enum glint_picture_kind kind,
                                       struct glint_error *error)
 {
-    const struct file_type *const type = find_type(path, kind);
+    const struct glint_file_type *const type = find_type(path, kind);
     const struct glint_oiio *oiio;
 
-    if (!type)
+    if (!type || type->is_grey)
         return glint_error_report(
             error, GLINT_E_UNSUPPORTED, path,
             "unknown extension; pictures are .ppm .png .jpg .tif .bmp .tga "
             ".webp, linear light is .pfm .exr .hdr .tif");
-    if (kind == GLINT_PICTURE_8BIT && !type->takes_8bit)
+    if (kind == GLINT_PICTURE_8BIT && !type->takes_u8)
         return glint_error_report(error, GLINT_E_UNSUPPORTED, path,
                                   "%s holds linear light in floats, and this "
                                   "picture has 8-bit codes",
@@ -375,16 +378,6 @@ static enum glint_status write_by_plugin(struct glint_output *out,
     return status;
 }
 
-static enum glint_status finish(struct glint_output *out,
-                                enum glint_status status,
-                                struct glint_error *error)
-{
-    if (!status)
-        return glint_output_commit(out, error);
-    glint_output_abort(out);
-    return status;
-}
-
 enum glint_status glint_picture_save(const char *path,
                                      const struct glint_image *image,
                                      struct glint_error *error)
@@ -403,7 +396,7 @@ enum glint_status glint_picture_save(const char *path,
         status = glint_pnm_write(&out, image, error);
     else
         status = write_by_plugin(&out, &pixels, image->stride_bytes[0], error);
-    return finish(&out, status, error);
+    return glint_output_end(&out, status, error);
 }
 
 enum glint_status
@@ -426,5 +419,5 @@ glint_picture_save_float(const char *path,
         status = glint_pfm_write(&out, floats, error);
     else
         status = write_by_plugin(&out, &pixels, (ptrdiff_t)row_bytes, error);
-    return finish(&out, status, error);
+    return glint_output_end(&out, status, error);
 }

@@ -20,13 +20,26 @@
 #ifndef GLINT_PLATFORM_FORMATS_PICTURE_H
 #define GLINT_PLATFORM_FORMATS_PICTURE_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "formats/pnm.h"
+#include "posix/input.h"
 
-#include "glint/image.h"
-#include "glint/status.h"
-#include "formats/pfm.h"
+enum glint_type_alpha {
+    GLINT_ALPHA_NONE,
+    GLINT_ALPHA_STRAIGHT,
+    GLINT_ALPHA_PREMULTIPLIED
+};
+
+struct glint_file_type {
+    const char *extension;
+    bool is_native; /* written by glint itself */
+    bool is_grey;   /* holds no colours */
+    enum glint_type_alpha alpha;
+    bool takes_u8, takes_u16, takes_half, takes_float;
+};
+
+/* Returns the type that PATH's extension stands for, or NULL if it is
+ * unknown. */
+const struct glint_file_type *glint_file_type_of(const char *path);
 
 enum glint_picture_kind { GLINT_PICTURE_8BIT, GLINT_PICTURE_FLOAT };
 
@@ -51,6 +64,14 @@ void glint_picture_free(struct glint_image *image);
 enum glint_status glint_picture_load_float(const char *path,
                                            struct glint_float_image *floats,
                                            struct glint_error *error);
+
+/* For formats/kept.c: reads of IN a PNM or PFM whole, of other files the first
+ * 12 bytes, into *DATA, which the caller frees also on failure. NAME is for
+ * errors. GLINT_E_FORMAT: it is empty. GLINT_E_UNSUPPORTED: a video, or too
+ * large. GLINT_E_IO, GLINT_E_MEMORY. */
+enum glint_status glint_picture_read(struct glint_input *in, const char *name,
+                                     uint8_t **data, size_t *bytes,
+                                     struct glint_error *error);
 
 /* For formats/kept.c: returns the name of the file type that HEAD, the first
  * BYTES of a file, shows; reports in ERROR that a file of TYPE needs the

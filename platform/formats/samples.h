@@ -16,10 +16,6 @@
 #ifndef GLINT_PLATFORM_FORMATS_SAMPLES_H
 #define GLINT_PLATFORM_FORMATS_SAMPLES_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 #include "glint/image.h"
 #include "glint/status.h"
 #include "formats/tones.h"

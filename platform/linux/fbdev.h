@@ -32,7 +32,7 @@
 
 struct glint_fbdev_options {
     enum glint_panel_fit fit;
-    bool dither;  /* panel/row_pack.h */
+    bool dither;  /* panel/panel.h */
     bool vsync;   /* With one screen of memory, wait for the panel's refresh if
                      the driver can: less tearing, up to one refresh of time a
                      frame. */

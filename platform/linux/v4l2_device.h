@@ -10,8 +10,6 @@
 #define GLINT_PLATFORM_LINUX_V4L2_DEVICE_H
 
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 
 #include "glint/image.h"
@@ -88,16 +86,8 @@ void glint_v4l2_format_text(const struct glint_v4l2_format *format,
 /* Print all cameras, or the formats, sizes and rates of DEVICE, as JSON if
  * JSON. */
 enum glint_status glint_v4l2_list_devices(FILE *out, bool json);
+
 enum glint_status glint_v4l2_list_formats(FILE *out, const char *device,
                                           bool json, struct glint_error *error);
-
-/* Returns whether glint can read frames in FOURCC. */
-bool glint_v4l2_is_read(uint32_t fourcc);
-
-/* Opens NAME and reads its capabilities and name, without any settings. On
- * failure DEVICE is closed. GLINT_E_DEVICE. */
-enum glint_status glint_v4l2_device_attach(struct glint_v4l2_device *device,
-                                           const char *name,
-                                           struct glint_error *error);
 
 #endif

@@ -15,9 +15,6 @@
 #ifndef GLINT_PLATFORM_LINUX_V4L2_SINK_H
 #define GLINT_PLATFORM_LINUX_V4L2_SINK_H
 
-#include <stddef.h>
-#include <stdint.h>
-
 #include "source_sink.h"
 
 struct glint_v4l2_sink {

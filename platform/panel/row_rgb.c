@@ -5,7 +5,63 @@
  */
 #include "panel/row_rgb.h"
 
-#include "panel/split.h"
+void glint_split_pairs(uint8_t *restrict a, uint8_t *restrict b,
+                       const uint8_t *restrict from, int n)
+{
+    for (int i = 0; i < n; i++) {
+        a[i] = from[2 * i];
+        b[i] = from[2 * i + 1];
+    }
+}
+
+/* Splits N pairs of pixels whose first luma is byte LUMA_AT, 0 or 1. */
+static inline void split_packed(uint8_t *restrict luma, uint8_t *restrict cb,
+                                uint8_t *restrict cr,
+                                const uint8_t *restrict from, int n,
+                                int luma_at)
+{
+    for (int i = 0; i < n; i++) {
+        luma[2 * i] = from[4 * i + luma_at];
+        luma[2 * i + 1] = from[4 * i + 2 + luma_at];
+        cb[i] = from[4 * i + 1 - luma_at];
+        cr[i] = from[4 * i + 3 - luma_at];
+    }
+}
+
+void glint_split_packed(enum glint_pixel_format format, uint8_t *luma,
+                        uint8_t *cb, uint8_t *cr, const uint8_t *from, int n)
+{
+    if (format == GLINT_YUYV)
+        split_packed(luma, cb, cr, from, n, 0);
+    else
+        split_packed(luma, cb, cr, from, n, 1);
+}
+
+/* Splits N groups of BYTES, the first three of which are taken. */
+static inline void split_groups(uint8_t *restrict a, uint8_t *restrict b,
+                                uint8_t *restrict c,
+                                const uint8_t *restrict from, int n, int bytes)
+{
+    for (int i = 0; i < n; i++) {
+        a[i] = from[bytes * i];
+        b[i] = from[bytes * i + 1];
+        c[i] = from[bytes * i + 2];
+    }
+}
+
+/* Splits N pixels of GLINT_RGB565 into codes of 8 bits. */
+static void split_565(uint8_t *restrict r, uint8_t *restrict g,
+                      uint8_t *restrict b, const uint8_t *restrict from, int n)
+{
+    for (int i = 0; i < n; i++) {
+        const uint8_t low = from[2 * i], high = from[2 * i + 1];
+        const uint8_t green = (uint8_t)((high & 7) << 3 | low >> 5);
+
+        r[i] = (uint8_t)((high & 0xf8) | high >> 5);
+        g[i] = (uint8_t)(green << 2 | green >> 4);
+        b[i] = (uint8_t)(low << 3 | (low >> 2 & 7));
+    }
+}
 
 enum { HALF_Q13 = 1 << 12 };
 
@@ -141,12 +197,9 @@ static struct samples find_samples(struct glint_row_rgb *row,
 
     switch (image->format) {
     case GLINT_YUYV:
-        glint_split_yuyv(row->luma, row->cb, row->cr,
-                         row_at(image, 0, y) + 2 * x, half);
-        return moved;
     case GLINT_UYVY:
-        glint_split_uyvy(row->luma, row->cb, row->cr,
-                         row_at(image, 0, y) + 2 * x, half);
+        glint_split_packed(image->format, row->luma, row->cb, row->cr,
+                           row_at(image, 0, y) + 2 * x, half);
         return moved;
     case GLINT_NV12:
         glint_split_pairs(row->cb, row->cr, row_at(image, 1, cy) + x, half);
@@ -194,19 +247,19 @@ void glint_row_rgb_read(struct glint_row_rgb *row,
         row->channel[1] = row->channel[2] = c[0];
         return;
     case GLINT_RGB24:
-        glint_split_threes(c[0], c[1], c[2], from + 3 * x, n);
+        split_groups(c[0], c[1], c[2], from + 3 * x, n, 3);
         return;
     case GLINT_BGR24:
-        glint_split_threes(c[2], c[1], c[0], from + 3 * x, n);
+        split_groups(c[2], c[1], c[0], from + 3 * x, n, 3);
         return;
     case GLINT_XRGB8888:
-        glint_split_fours(c[2], c[1], c[0], from + 4 * x, n);
+        split_groups(c[2], c[1], c[0], from + 4 * x, n, 4);
         return;
     case GLINT_XBGR8888:
-        glint_split_fours(c[0], c[1], c[2], from + 4 * x, n);
+        split_groups(c[0], c[1], c[2], from + 4 * x, n, 4);
         return;
     case GLINT_RGB565:
-        glint_split_565(c[0], c[1], c[2], from + 2 * x, n);
+        split_565(c[0], c[1], c[2], from + 2 * x, n);
         return;
     default:
         read_ycc(row, image, x, y, n);

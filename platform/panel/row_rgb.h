@@ -16,9 +16,6 @@
 #ifndef GLINT_PLATFORM_PANEL_ROW_RGB_H
 #define GLINT_PLATFORM_PANEL_ROW_RGB_H
 
-#include <stddef.h>
-#include <stdint.h>
-
 #include "glint/image.h"
 
 struct glint_row_rgb {
@@ -27,6 +24,15 @@ struct glint_row_rgb {
     /* Private. */
     uint8_t *rgb[3], *luma, *cb, *cr; /* rows in the caller's memory */
 };
+
+/* Splits N pairs of bytes. Arrays do not overlap. */
+void glint_split_pairs(uint8_t *restrict a, uint8_t *restrict b,
+                       const uint8_t *restrict from, int n);
+
+/* Splits N pairs of pixels of FORMAT, GLINT_YUYV or GLINT_UYVY, each with two
+ * samples of luma and one of Cb and Cr. */
+void glint_split_packed(enum glint_pixel_format format, uint8_t *luma,
+                        uint8_t *cb, uint8_t *cr, const uint8_t *from, int n);
 
 /* Returns the bytes of memory that rows of up to WIDTH pixels take. */
 size_t glint_row_rgb_bytes(int width);

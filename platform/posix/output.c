@@ -330,15 +330,20 @@ void glint_output_abort(struct glint_output *out)
     out->used = 0;
 }
 
-enum glint_status glint_output_finish(struct glint_output *out,
-                                      const void *data, size_t bytes,
-                                      struct glint_error *error)
+enum glint_status glint_output_end(struct glint_output *out,
+                                   enum glint_status status,
+                                   struct glint_error *error)
 {
-    const enum glint_status status =
-        glint_output_write(out, data, bytes, error);
-
     if (status == GLINT_OK)
         return glint_output_commit(out, error);
     glint_output_abort(out);
     return status;
+}
+
+enum glint_status glint_output_finish(struct glint_output *out,
+                                      const void *data, size_t bytes,
+                                      struct glint_error *error)
+{
+    return glint_output_end(out, glint_output_write(out, data, bytes, error),
+                            error);
 }

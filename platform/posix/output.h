@@ -71,6 +71,11 @@ enum glint_status glint_output_flush(struct glint_output *out,
 enum glint_status glint_output_commit(struct glint_output *out,
                                       struct glint_error *error);
 
+/* Commits OUT if STATUS is GLINT_OK, else aborts it and returns STATUS. */
+enum glint_status glint_output_end(struct glint_output *out,
+                                   enum glint_status status,
+                                   struct glint_error *error);
+
 /* Writes DATA[BYTES] and commits OUT, or aborts it on failure. */
 enum glint_status glint_output_finish(struct glint_output *out,
                                       const void *data, size_t bytes,

@@ -14,10 +14,10 @@
  * ffmpeg -f yuv4mpegpipe writes and reads such streams: one header line and
  * then, for each frame, a line FRAME and the planes Y, Cb, Cr without padding.
  * Chroma of subsampled formats has (side + 1) / 2 samples, as everywhere in
- * glint. video/y4m_layout.h lists the layouts that are handled; the siting of
+ * glint. The layouts that are handled are listed below; the siting of
  * the chroma samples of 4:2:0 makes no difference here. Of frames of more than
  * 8 bits, and of 4:1:1, the reader gives a copy of 8 bits to look at; the
- * frames themselves are planes that video/y4m_light.h adds light to and
+ * frames themselves are planes that glint_y4m_light adds light to and
  * glint_y4m_writer_put_planes() writes, with the alpha plane if they have one.
  * Interlaced frames are taken as they come, both fields in one.
  *
@@ -31,22 +31,35 @@
  *
  * Tags that glint does not use, of the stream and of each frame, are carried
  * over as they are. Frames are counted from 0.
+ *
+ * Layouts of a frame by the tag C:
+ *
+ *     C420 420jpeg 420mpeg2 420paldv 411 422 444 444alpha mono
+ *     and 420 422 444 with p9 p10 p12 p14 p16, mono with 9 10 12 14 16
+ *
+ * A sample of more than 8 bits takes two bytes, the low one first.
  */
 #ifndef GLINT_PLATFORM_VIDEO_Y4M_H
 #define GLINT_PLATFORM_VIDEO_Y4M_H
 
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
 #include "glint/image.h"
-#include "glint/status.h"
-#include "video/y4m_layout.h"
 #include "posix/input.h"
 #include "posix/output.h"
 
-#define GLINT_Y4M_LINE       512  /* bytes of the longest line that is read */
-#define GLINT_Y4M_PRINTED    1024 /* bytes of the longest line printed */
+struct glint_y4m_layout {
+    enum glint_pixel_format format; /* _GREY, _I420, _I422 or _I444; of 411 that
+                                       of its copy, _I422 */
+    int bits;                       /* bits a sample, 8 .. 16 */
+    bool has_alpha; /* a fourth plane of full size, which is passed on */
+    bool is_411;    /* chroma is a quarter as wide */
+};
+
+#define GLINT_Y4M_LINE 512 /* bytes of the longest line that is read */
+
+#define GLINT_Y4M_PRINTED 1024 /* bytes of the longest line printed */
+
 #define GLINT_Y4M_FRAME_TAGS 128
 
 /* Parameters of a stream, as its first line states them. */
@@ -68,30 +81,6 @@ struct glint_y4m_header {
                                    again while range is line_range */
     enum glint_range line_range;
 };
-
-/* Returns whether NAME is that of such a file: it ends in .y4m. */
-bool glint_y4m_is_name(const char *name);
-
-/* Sets HEADER for a new stream: progressive, square pixels, limited range.
- * FORMAT is GLINT_GREY, _I420, _I422 or _I444. FPS_NUM and FPS_DEN >= 1, or 0
- * and 0: not known. */
-void glint_y4m_header_init(struct glint_y4m_header *header, int width,
-                           int height, enum glint_pixel_format format,
-                           int fps_num, int fps_den);
-
-/* Sets HEADER by LINE, which has no line feed and is shorter than
- * GLINT_Y4M_LINE. NAME is for errors. GLINT_E_FORMAT: malformed.
- * GLINT_E_UNSUPPORTED: a layout that is not handled, or a side above
- * GLINT_MAX_SIDE. */
-enum glint_status glint_y4m_header_parse(struct glint_y4m_header *header,
-                                         const char *line, const char *name,
-                                         struct glint_error *error);
-
-/* Writes HEADER to LINE, with a line feed: as it was read, or in the order W H
- * F I A C, extra tags, XCOLORRANGE, which is stated if it was stated or is
- * FULL. Returns the length. */
-size_t glint_y4m_header_print(char line[GLINT_Y4M_PRINTED],
-                              const struct glint_y4m_header *header);
 
 /* ----------------------------------------------------------------- reading */
 
@@ -118,6 +107,58 @@ struct glint_y4m_reader {
     size_t ahead_at, ahead_end;
 };
 
+/* ----------------------------------------------------------------- writing */
+
+struct glint_y4m_writer {
+    struct glint_output out;
+    long n_frames; /* frames written so far */
+};
+
+/* Sets LAYOUT by TAG, "" being 420jpeg. Returns false if there is no such
+ * tag. */
+bool glint_y4m_layout_parse(struct glint_y4m_layout *layout, const char *tag);
+
+/* Returns the tag that glint writes for FORMAT: _GREY, _I420, _I422 or
+ * _I444. */
+const char *glint_y4m_layout_tag(enum glint_pixel_format format);
+
+/* Returns whether a stored frame, but for an alpha plane, is a struct
+ * glint_image as it is. */
+bool glint_y4m_layout_is_plain(const struct glint_y4m_layout *layout);
+
+/* Sets SIZE to the samples across and down PLANE, 0 .. 3, or to 0 and 0 if
+ * there is no such plane. */
+void glint_y4m_layout_size(const struct glint_y4m_layout *layout, int plane,
+                           int width, int height, int size[2]);
+
+/* Returns the bytes of all planes of a frame. */
+size_t glint_y4m_layout_bytes(const struct glint_y4m_layout *layout, int width,
+                              int height);
+
+/* Returns whether NAME is that of such a file: it ends in .y4m. */
+bool glint_y4m_is_name(const char *name);
+
+/* Sets HEADER for a new stream: progressive, square pixels, limited range.
+ * FORMAT is GLINT_GREY, _I420, _I422 or _I444. FPS_NUM and FPS_DEN >= 1, or 0
+ * and 0: not known. */
+void glint_y4m_header_init(struct glint_y4m_header *header, int width,
+                           int height, enum glint_pixel_format format,
+                           int fps_num, int fps_den);
+
+/* Sets HEADER by LINE, which has no line feed and is shorter than
+ * GLINT_Y4M_LINE. NAME is for errors. GLINT_E_FORMAT: malformed.
+ * GLINT_E_UNSUPPORTED: a layout that is not handled, or a side above
+ * GLINT_MAX_SIDE. */
+enum glint_status glint_y4m_header_parse(struct glint_y4m_header *header,
+                                         const char *line, const char *name,
+                                         struct glint_error *error);
+
+/* Writes HEADER to LINE, with a line feed: as it was read, or in the order W H
+ * F I A C, extra tags, XCOLORRANGE, which is stated if it was stated or is
+ * FULL. Returns the length. */
+size_t glint_y4m_header_print(char line[GLINT_Y4M_PRINTED],
+                              const struct glint_y4m_header *header);
+
 /* Opens PATH ("-": standard input), which must outlive READER, and reads the
  * header. On failure READER is closed. Errors are those of
  * glint_y4m_header_parse() and GLINT_E_IO. */
@@ -142,13 +183,6 @@ enum glint_status glint_y4m_reader_next(struct glint_y4m_reader *reader,
 
 /* Closes READER, unless it is closed already. */
 void glint_y4m_reader_close(struct glint_y4m_reader *reader);
-
-/* ----------------------------------------------------------------- writing */
-
-struct glint_y4m_writer {
-    struct glint_output out;
-    long n_frames; /* frames written so far */
-};
 
 /* Opens PATH ("-": standard output; posix/output.h says what happens to files),
  * which must outlive WRITER, and writes HEADER. On failure WRITER is closed. */
@@ -179,5 +213,51 @@ enum glint_status glint_y4m_writer_commit(struct glint_y4m_writer *writer,
 /* Closes WRITER, unless it is closed already, and removes the file. Bytes that
  * went into a pipe stay written. */
 void glint_y4m_writer_abort(struct glint_y4m_writer *writer);
+
+/* -------------------------------------------------------------------- light
+ *
+ * Light on frames of any depth and layout. Codes become R', G', B' and these
+ * linear light by BT.709. Light is added, and codes are changed by the
+ * difference that it makes, chroma by the mean over its pixels. All is integers
+ * and tables of integers, so that results are the same on every machine; codes
+ * that no light falls on stay as they are. */
+
+enum {
+    GLINT_Y4M_STEPS = 4096,   /* steps of R'G'B' from black to white */
+    GLINT_Y4M_OCTAVES = 25,   /* octaves of light, from 2^-24 to white */
+    GLINT_Y4M_IN_OCTAVE = 128 /* entries of an octave */
+};
+
+struct glint_y4m_light {
+    struct glint_y4m_layout layout;
+    int width, height;
+    int32_t black, most;    /* codes of Y' = 0, and the largest there is */
+    int32_t y_span, c_span; /* codes of Y' = 1, and from Cb = -1/2 to 1/2 */
+    int32_t kr_q16, kg_q16, kb_q16; /* shares of R', G', B' in Y' */
+    int64_t y_factor, c_factor;     /* factors of the spans, y4m_divide.h */
+    int64_t cb_factor, cr_factor,
+        /* factors of 1 - kb, 1 - kr and kg */
+        g_factor;
+    int32_t decode_q24[GLINT_Y4M_STEPS + 1]; /* light of each step */
+    /* R'G'B' of light, by octave and entry */
+    int32_t encode_q20[GLINT_Y4M_OCTAVES][GLINT_Y4M_IN_OCTAVE + 1];
+};
+
+/* Prepares LIGHT for the frames of HEADER. */
+void glint_y4m_light_init(struct glint_y4m_light *light,
+                          const struct glint_y4m_header *header);
+
+/* Sets all codes of PLANES to black; alpha stays. */
+void glint_y4m_light_blacken(const struct glint_y4m_light *light,
+                             uint8_t *planes);
+
+/* Adds LAYER, [height][width][3], linear light, 1 = white, to PLANES. */
+void glint_y4m_light_add(const struct glint_y4m_light *light, uint8_t *planes,
+                         const float *layer);
+
+/* Does as glint_y4m_light_add() after hiding of each pixel the share COVER_Q8,
+ * [height][width], 0 .. 256. */
+void glint_y4m_light_cover(const struct glint_y4m_light *light, uint8_t *planes,
+                           const float *layer, const uint16_t *cover_q8);
 
 #endif

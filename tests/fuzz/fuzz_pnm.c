@@ -10,7 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "formats/pfm.h"
 #include "formats/pnm.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

@@ -58,38 +58,8 @@ struct steer {
 /* MODEL is copied; what it points into is kept. GLINT_E_MEMORY. */
 enum glint_status steer_open(struct steer *steer,
                              const struct glint_scene_model *model);
+
 void steer_close(struct steer *steer);
-
-/* steer_environment.c: environments as MODEL has them. */
-void steer_open_environments(struct steer *steer);
-
-/* Checks, and obeys, what LINE says of environments; returns false if it is
- * about something else. *STATUS: as steer_check(). */
-bool steer_check_environment(const struct steer *steer,
-                             const struct control_line *line, const char *where,
-                             struct glint_error *error,
-                             enum glint_status *status);
-bool steer_take_environment(struct steer *steer, struct glint_scene *scene,
-                            const struct control_line *line,
-                            enum glint_status *status);
-void steer_apply_environment(const struct steer *steer,
-                             struct glint_scene *scene);
-
-/* steer_motion.c: checks, and obeys, what LINE says of a motion or a free
- * camera; returns false if it is about something else. *STATUS: as
- * steer_check(), and GLINT_E_ARGUMENT. */
-bool steer_check_motion(const struct steer *steer,
-                        const struct control_line *line, const char *where,
-                        struct glint_error *error, enum glint_status *status);
-bool steer_take_motion(struct steer *steer, struct glint_scene *scene,
-                       const struct control_line *line,
-                       enum glint_status *status);
-void steer_apply_motion(const struct steer *steer, struct glint_scene *scene);
-
-/* Sets at and axes of CAMERA to where the orbit has it. GLINT_E_ARGUMENT: out
- * of range. */
-enum glint_status steer_orbit_camera(const struct steer *steer,
-                                     struct glint_scene_camera *camera);
 
 /* Notes that the camera was moved to AT, AXIS_Q30, by others. Returns false if
  * it goes about a point, and stays there. */

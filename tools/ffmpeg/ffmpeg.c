@@ -1,15 +1,270 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ *
+ * What an encoder has written: whether it decodes, and which properties of the
+ * input it lacks.
+ */
+#define _GNU_SOURCE /* pipe2, memfd_create, fallocate */
 #include "ffmpeg/ffmpeg.h"
 
 #include <ctype.h>
 #include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "ffmpeg/pixels.h"
+#include "posix/at_death.h"
 #include "posix/error.h"
+
+enum { MAX_CHILDREN = 4, NOT_FOUND = 127 };
+
+/* processes to kill at death; atomic, 0: free */
+static pid_t running[MAX_CHILDREN];
+
+static void kill_all(void)
+{
+    const int saved = errno;
+
+    for (int i = 0; i < MAX_CHILDREN; i++) {
+        const pid_t pid = __atomic_load_n(&running[i], __ATOMIC_SEQ_CST);
+
+        if (pid > 0)
+            kill(pid, SIGKILL);
+    }
+    errno = saved;
+}
+
+static void replace(pid_t old, pid_t fresh)
+{
+    for (int i = 0; i < MAX_CHILDREN; i++) {
+        pid_t expected = old;
+
+        if (__atomic_compare_exchange_n(&running[i], &expected, fresh, 0,
+                                        __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
+            return;
+    }
+}
+
+bool child_exists(const char *name)
+{
+    const char *path = getenv("PATH");
+    char file[4096];
+
+    for (; path && *path; path += strcspn(path, ":"), path += *path == ':') {
+        const int n = (int)strcspn(path, ":");
+
+        if (n > 0 &&
+            (size_t)snprintf(file, sizeof file, "%.*s/%s", n, path, name) <
+                sizeof file &&
+            access(file, X_OK) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* ----------------------------------------------------------------- starting */
+
+/* Runs ARGV in the child, with IN, OUT and SAID, unless that is -1, as its
+ * streams. If it cannot be run, sends errno through FAILED. Makes system calls
+ * only. */
+static void become(const char *const *argv, int in, int out, int said,
+                   int failed)
+{
+    sigset_t none;
+    int number;
+
+    sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, NULL);
+    signal(SIGPIPE, SIG_DFL);
+    signal(SIGXFSZ, SIG_DFL);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (dup2(in, STDIN_FILENO) >= 0 && dup2(out, STDOUT_FILENO) >= 0 &&
+        (said < 0 || dup2(said, STDERR_FILENO) >= 0))
+        execvp(argv[0], (char *const *)argv);
+    number = errno;
+    if (write(failed, &number, sizeof number) < 0)
+        _exit(NOT_FOUND);
+    _exit(NOT_FOUND);
+}
+
+/* Returns the errno that kept the child from running, or 0. */
+static int read_failure(int fd)
+{
+    int number = 0;
+    ssize_t n;
+
+    do
+        n = read(fd, &number, sizeof number);
+    while (n < 0 && errno == EINTR);
+    return n == (ssize_t)sizeof number ? number : 0;
+}
+
+/* Opens two pipes, DATA and FAILED, whose ends are closed by exec. */
+static bool open_pipes(int data[2], int failed[2])
+{
+    if (pipe2(data, O_CLOEXEC) < 0)
+        return false;
+    if (pipe2(failed, O_CLOEXEC) == 0)
+        return true;
+    close(data[0]);
+    close(data[1]);
+    return false;
+}
+
+static enum glint_status refuse(const char *name, int number,
+                                struct glint_error *error)
+{
+    return glint_error_report(
+        error, number == ENOENT ? GLINT_E_UNSUPPORTED : GLINT_E_IO, name, "%s",
+        number == ENOENT ? "is not installed" : strerror(number));
+}
+
+static enum glint_status start(struct child *child, const char *const *argv,
+                               enum child_pipe kind, struct glint_error *error)
+{
+    const int mine = kind == CHILD_READS ? 1 : 0;
+    int data[2], failed[2], number;
+    const int null = open("/dev/null", O_RDWR | O_CLOEXEC);
+
+    glint_at_death(kill_all);
+    if (null < 0 || !open_pipes(data, failed)) {
+        number = errno;
+        if (null >= 0)
+            close(null);
+        return refuse(argv[0], number, error);
+    }
+    child->pid = fork();
+    if (child->pid == 0)
+        become(argv, mine == 0 ? null : data[0], mine == 0 ? data[1] : null,
+               kind == CHILD_PRINTS ? data[1] : child->said, failed[1]);
+    number = errno;
+    close(null);
+    close(data[1 - mine]);
+    close(failed[1]);
+    if (child->pid > 0) {
+        replace(0, child->pid);
+        number = read_failure(failed[0]);
+    }
+    close(failed[0]);
+    child->fd = data[mine];
+    if (child->pid > 0 && number == 0)
+        return GLINT_OK;
+    if (child->pid < 0)
+        child->pid = 0;
+    child_end(child);
+    return refuse(argv[0], number, error);
+}
+
+/* Starts ARGV[0] of $PATH with ARGV, which ends with NULL. GLINT_E_UNSUPPORTED:
+ * it is not there. GLINT_E_IO: the system gives no process or descriptor. */
+static enum glint_status child_start(struct child *child,
+                                     const char *const *argv,
+                                     enum child_pipe kind,
+                                     struct glint_error *error)
+{
+    *child = CHILD_NONE;
+    return start(child, argv, kind, error);
+}
+
+/* Like child_start(), of a child that WORDS, which end with NULL, are listened
+ * for in what it says; child_hear() passes that on. */
+static enum glint_status child_start_heard(struct child *child,
+                                           const char *const *argv,
+                                           enum child_pipe kind,
+                                           const char *const *words,
+                                           struct glint_error *error)
+{
+    enum glint_status status;
+
+    *child = CHILD_NONE;
+    child->listening = words;
+    /* A file, not a pipe: nobody has to read it for the child to go on. */
+    child->said = memfd_create("said", MFD_CLOEXEC);
+    if (child->said >= 0)
+        fcntl(child->said, F_SETFL, O_APPEND);
+    status = start(child, argv, kind, error);
+    if (status != GLINT_OK)
+        child_kill(child);
+    return status;
+}
+
+/* ------------------------------------------------------------------ hearing */
+
+/* Passes on whole lines, or if ALL what is left. */
+static void pass_on(struct child *child, bool all)
+{
+    char text[4096];
+    ssize_t n;
+
+    while (child->said >= 0 &&
+           (n = pread(child->said, text, sizeof text - 1, child->told)) > 0) {
+        const char *const end = memrchr(text, '\n', (size_t)n);
+
+        if (end)
+            n = end - text + 1;
+        else if (!all && n < (ssize_t)sizeof text - 1)
+            return;
+        text[n] = '\0';
+        for (int i = 0; child->listening[i]; i++)
+            child->heard |= strstr(text, child->listening[i]) != NULL;
+        fwrite(text, 1, (size_t)n, stderr);
+        child->told += n;
+        /* Its memory is given back; where that cannot be, it stays. */
+        (void)fallocate(child->said, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
+                        0, child->told);
+    }
+}
+
+void child_hear(struct child *child)
+{
+    pass_on(child, false);
+}
+
+static void end_hearing(struct child *child)
+{
+    pass_on(child, true);
+    if (child->said >= 0)
+        close(child->said);
+    child->said = -1;
+}
+
+/* ------------------------------------------------------------------- ending */
+
+int child_end(struct child *child)
+{
+    int status = 0;
+    pid_t pid;
+
+    if (child->fd >= 0)
+        close(child->fd);
+    child->fd = -1;
+    if (child->pid <= 0) {
+        end_hearing(child);
+        return 0;
+    }
+    do
+        pid = waitpid(child->pid, &status, 0);
+    while (pid < 0 && errno == EINTR);
+    replace(child->pid, 0);
+    child->pid = 0;
+    end_hearing(child);
+    if (pid < 0)
+        return NOT_FOUND;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+void child_kill(struct child *child)
+{
+    if (child->pid > 0)
+        kill(child->pid, SIGKILL);
+    child_end(child);
+}
 
 enum { MAX_WORDS = 96, PROBE_BYTES = 1 << 14 };
 
@@ -37,7 +292,9 @@ bool ffmpeg_is_video(const char *name)
     return is_one_of(extension(name), extensions);
 }
 
-bool ffmpeg_url(char url[FFMPEG_URL], const char *name)
+/* Sets URL to "file:NAME", which ffmpeg opens as a file whatever NAME looks
+ * like. Returns false if it is too long. */
+static bool ffmpeg_url(char url[FFMPEG_URL], const char *name)
 {
     return (size_t)snprintf(url, FFMPEG_URL, "file:%s", name) < FFMPEG_URL;
 }
@@ -191,7 +448,9 @@ static enum glint_status end(struct words *w, struct glint_error *error)
     return GLINT_OK;
 }
 
-const char *const ffmpeg_cut_words[] = {
+/* Messages of ffmpeg 5 on files that are cut off, at which it exits with 0;
+ * ends with NULL. */
+static const char *const ffmpeg_cut_words[] = {
     "File ended prematurely" /* .mkv, .webm */, "partial file" /* .mp4, .mov */,
     NULL};
 
@@ -407,4 +666,135 @@ void ffmpeg_by_hand(const struct tool *tool, const char *in, const char *out)
                 coded ? in : "", coded ? "' -map 0:v -map 1:a? -c:a copy" : "",
                 out);
     fputc('\n', stderr);
+}
+
+enum { LINE = 512, CAUSE = 48 };
+
+/* The frames to decode: the first one, those from a second before the end on,
+ * or all. */
+enum piece { FIRST, LAST, ALL };
+
+/* Sets CAUSE to LINE, a message of ffmpeg, without the context before it:
+ * "[h264 @ 0x55d0] " or URL and ": ". */
+static void set_cause(char cause[CAUSE], const char *line, const char *url)
+{
+    const char *const context = *line == '[' ? strstr(line, "] ") : NULL;
+    const size_t n = strlen(url);
+
+    if (context)
+        line = context + 2;
+    else if (strncmp(line, url, n) == 0 && line[n] == ':')
+        line += n + 1 + (line[n + 1] == ' ');
+    snprintf(cause, CAUSE, "%.*s", (int)strcspn(line, "\r\n"), line);
+}
+
+/* Reads from FROM what ffmpeg prints: a line that begins with a digit for each
+ * frame, lines with '#', and messages, the first of which becomes CAUSE.
+ * Returns the number of frames, or 0 if the file is cut off. */
+static long count_frames(FILE *from, const char *url, char cause[CAUSE])
+{
+    char line[LINE];
+    bool is_cut = false;
+    long n = 0;
+
+    while (fgets(line, sizeof line, from)) {
+        n += isdigit((unsigned char)*line) != 0;
+        if (!*cause && *line != '#' && !isdigit((unsigned char)*line))
+            set_cause(cause, line, url);
+        for (int i = 0; ffmpeg_cut_words[i]; i++)
+            is_cut |= strstr(line, ffmpeg_cut_words[i]) != NULL;
+    }
+    return is_cut ? 0 : n;
+}
+
+/* Decodes PIECE of URL. Returns false if that fails or yields no frame, with
+ * the reason in CAUSE. */
+static bool decode(const char *url, enum piece piece, char cause[CAUSE])
+{
+    /* Packets from the key frame before the place on give frames only with the
+     * time stamps that they have in the file. */
+    static const char *const from_end[] = {"-copyts", "-noaccurate_seek",
+                                           "-sseof", "-1", NULL};
+    const char *argv[24] = {"ffmpeg", "-nostdin", "-hide_banner", "-loglevel",
+                            "error",  "-xerror",  "-err_detect",  "explode"};
+    const char *const rest[] = {
+        "-i", url,        "-map",      "0:v:0",
+        "-f", "framecrc", "-frames:v", piece == FIRST ? "1" : "999999999",
+        "-",  NULL};
+    struct glint_error error;
+    struct child child;
+    FILE *from;
+    long n = 0;
+    int k = 8;
+
+    for (int i = 0; piece == LAST && from_end[i]; i++)
+        argv[k++] = from_end[i];
+    for (int i = 0; rest[i]; i++)
+        argv[k++] = rest[i];
+    *cause = '\0';
+    if (child_start(&child, argv, CHILD_PRINTS, &error) != GLINT_OK) {
+        snprintf(cause, CAUSE, "%.*s", CAUSE - 1, error.text);
+        return false;
+    }
+    from = fdopen(child.fd, "r");
+    if (from) {
+        n = count_frames(from, url, cause);
+        fclose(from);
+        child.fd = -1;
+    }
+    if (child_end(&child) == 0 && n > 0)
+        return true;
+    if (!*cause)
+        snprintf(cause, CAUSE, "ffmpeg decodes no frame");
+    return false;
+}
+
+enum glint_status ffmpeg_check(const char *file, const char *name,
+                               struct glint_error *error)
+{
+    char url[FFMPEG_URL], cause[CAUSE];
+    bool has_first;
+
+    if (!ffmpeg_url(url, file))
+        return glint_error_report(error, GLINT_E_OUTPUT, name,
+                                  "the name is too long");
+    has_first = decode(url, FIRST, cause);
+    /* Files without an index, as .ts, are not found a way into from their end;
+     * all of their frames are decoded. */
+    if (has_first && (decode(url, LAST, cause) || decode(url, ALL, cause)))
+        return GLINT_OK;
+    return glint_error_report(
+        error, GLINT_E_OUTPUT, name,
+        "the %s frame does not decode (%s); choose another encoder "
+        "(--encode) or type of file",
+        has_first ? "last" : "first", cause);
+}
+
+void ffmpeg_report_losses(const char *file, const char *name,
+                          const char *pixels)
+{
+    struct ffmpeg_video made;
+    char text[160] = "";
+    size_t n = 0;
+
+    ffmpeg_probe(&made, file);
+    if (!*made.pixels || !*pixels)
+        return;
+    if (pixels_bits(made.pixels) < pixels_bits(pixels))
+        n += (size_t)snprintf(text, sizeof text, ", %d bits in place of %d",
+                              pixels_bits(made.pixels), pixels_bits(pixels));
+    if (strcmp(pixels_chroma(pixels), "gray") != 0 &&
+        strcmp(pixels_chroma(made.pixels), "444") != 0 &&
+        strcmp(pixels_chroma(made.pixels), pixels_chroma(pixels)) != 0)
+        n += (size_t)snprintf(
+            text + n, sizeof text - n, ", chroma %s in place of %s",
+            pixels_chroma(made.pixels),
+            pixels_are_rgb(pixels) ? "RGB" : pixels_chroma(pixels));
+    if (pixels_have_alpha(pixels) && !pixels_have_alpha(made.pixels))
+        snprintf(text + n, sizeof text - n, ", no alpha");
+    if (*text)
+        fprintf(stderr,
+                "glint overlay: %s: has %s; see --encode for encoders that "
+                "keep more\n",
+                name, text + 2);
 }

@@ -12,14 +12,37 @@
  * copied from the input as it is if the type of the output takes it, else it is
  * encoded anew, with a message. Frame rate, range, matrix, primaries, transfer,
  * titles and chapters are kept; subtitles and further pictures are not.
+ *
+ * A child is a program that glint runs at the end of a pipe. No shell takes
+ * part, so names need no quotes. The program shares glint's standard error, or
+ * is heard there. It is killed when glint dies or gives it up, and its status
+ * is always taken.
  */
 #ifndef GLINT_TOOLS_FFMPEG_FFMPEG_H
 #define GLINT_TOOLS_FFMPEG_FFMPEG_H
 
-#include "ffmpeg/child.h"
-#include "glint/image.h"
-#include "posix/output.h"
+#include <sys/types.h>
+
 #include "options/tool.h"
+#include "posix/output.h"
+
+enum child_pipe {
+    CHILD_WRITES, /* The child's standard output is FD, its input is empty. */
+    CHILD_PRINTS, /* So are its standard output and standard error. */
+    CHILD_READS /* The child's standard input is FD, its output goes nowhere. */
+};
+
+struct child {
+    pid_t pid;  /* 0: none */
+    int fd;     /* glint's end of the pipe; -1: closed */
+    int said;   /* file of its standard error; -1: that is glint's own */
+    off_t told; /* bytes of SAID that were passed on */
+    const char *const *listening; /* ends with NULL, not owned */
+    bool heard;                   /* it has said one of those */
+};
+
+/* A child that is none. */
+#define CHILD_NONE ((struct child){.fd = -1, .said = -1})
 
 enum { FFMPEG_WORD = 32, FFMPEG_URL = 4096 };
 
@@ -32,17 +55,35 @@ struct ffmpeg_video {
     int width, height;       /* 0: not known */
 };
 
-/* Messages of ffmpeg 5 on files that are cut off, at which it exits with 0;
- * ends with NULL. */
-extern const char *const ffmpeg_cut_words[];
+/* The output, and the facts that its encoder needs. */
+struct ffmpeg_target {
+    const char *name;  /* name of the output */
+    const char *file;  /* temporary file to write, of the same extension */
+    const char *sound; /* file to take sound and titles from, or NULL */
+    /* Options for the encoder, words with blanks, or NULL. */
+    const char *options;
+    int width, height;
+    bool is_444; /* each pixel has chroma of its own */
+    enum glint_range range;
+    bool quiet;
+};
+
+/* Returns whether NAME is a program of $PATH. */
+bool child_exists(const char *name);
+
+/* Passes on to standard error the lines that a child has said since. */
+void child_hear(struct child *child);
+
+/* Closes the pipe and waits until the child has ended. Returns its exit status,
+ * or 128 plus the signal that killed it, or 0 if there is no child. */
+int child_end(struct child *child);
+
+/* Kills the child, if there is one, and takes its status. */
+void child_kill(struct child *child);
 
 /* Returns whether the extension is a video's: .mp4 .mkv .mov .webm .avi .mpg
  * and their like. */
 bool ffmpeg_is_video(const char *name);
-
-/* Sets URL to "file:NAME", which ffmpeg opens as a file whatever NAME looks
- * like. Returns false if it is too long. */
-bool ffmpeg_url(char url[FFMPEG_URL], const char *name);
 
 /* Sets VIDEO to what ffprobe knows of NAME; all is empty if it knows
  * nothing. */
@@ -61,19 +102,6 @@ bool ffmpeg_matrix(const struct ffmpeg_video *video, enum glint_matrix *matrix);
 enum glint_status ffmpeg_read(struct child *child, const char *name,
                               const struct ffmpeg_video *video,
                               struct glint_error *error);
-
-/* The output, and the facts that its encoder needs. */
-struct ffmpeg_target {
-    const char *name;  /* name of the output */
-    const char *file;  /* temporary file to write, of the same extension */
-    const char *sound; /* file to take sound and titles from, or NULL */
-    /* Options for the encoder, words with blanks, or NULL. */
-    const char *options;
-    int width, height;
-    bool is_444; /* each pixel has chroma of its own */
-    enum glint_range range;
-    bool quiet;
-};
 
 /* Starts ffmpeg as CHILD, which reads y4m from child->fd and writes TARGET.
  * VIDEO is that of the input, empty where it is not known. Errors are those of

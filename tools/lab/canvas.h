@@ -6,10 +6,8 @@
 #ifndef GLINT_TOOLS_LAB_CANVAS_H
 #define GLINT_TOOLS_LAB_CANVAS_H
 
-#include "formats/pfm.h"
-#include "lab/settings_frame.h"
-
-enum { CANVAS_MAX = 1000 }; /* largest number of rounds, and of medians */
+#include "formats/pnm.h"
+#include "model/settings.h"
 
 /* A picture to draw on, in mem, and its pixels before drawing, fresh. */
 struct canvas {

@@ -2,16 +2,351 @@
  *
  * glint lint: what patents and copies misprint.
  */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "lens_check/one_digit.h"
 #include "model/table_file.h"
-#include "options/json_writer.h"
-#include "model/settings.h"
 #include "options/command_line.h"
-#include "options/tool.h"
+#include "model/settings.h"
 #include "posix/input.h"
+
+enum slip { SLIP_SIGN, SLIP_SWAP, SLIP_DIGIT, SLIP_POINT };
+
+struct mend {
+    int line, column; /* of the number */
+    enum slip slip;
+    char from[24], to[24];
+    double focal_mm, back_mm; /* then */
+    bool listed; /* the glass is the catalogue's, or another surface's */
+    double off;  /* how far these are from the stated ones, relative */
+};
+
+enum { MENDS = 8, LENS_TEXT = 1 << 16 };
+
+/* Ends of the map of glasses: the least and the largest Vd at an nd. Makers'
+ * maps from fluorite and fluor crowns over the lanthanum crowns to the densest,
+ * and down the flints, with lead and without; two widths of a label beyond. */
+static const struct {
+    double nd, least, most;
+} ends[] = {{1.42, 60.0, 97.5}, {1.45, 56.0, 96.0}, {1.50, 48.0, 84.0},
+            {1.55, 40.0, 77.5}, {1.60, 33.5, 70.0}, {1.65, 29.0, 63.0},
+            {1.70, 26.0, 59.0}, {1.75, 23.5, 55.0}, {1.80, 21.0, 50.0},
+            {1.85, 19.0, 46.0}, {1.90, 17.5, 41.0}, {2.00, 15.5, 33.0},
+            {2.20, 14.0, 26.0}};
+
+enum { N_ENDS = sizeof ends / sizeof *ends };
+
+/* Plastics of phone lenses have a lower Vd than flints of their nd: from 1.529,
+ * 45.4 by polycarbonate, 1.585, 29.9, to the densest, 1.705, 14.0. */
+static bool is_plastic(double nd, double vd)
+{
+    const double slope = nd < 1.585 ? 270 : 125;
+    const double least = 28.5 - (nd - 1.585) * slope;
+
+    return nd >= 1.525 && nd <= 1.71 && vd >= least &&
+           vd <= fmax(least + 6.5, 35);
+}
+
+/* Returns whether there is, or has been, a glass like that: not beyond the
+ * crowns and fluorides, nor beyond the flints; if MOULDED, also a plastic. */
+static bool is_known_glass(double nd, double vd, bool moulded)
+{
+    int k = 0;
+    double part;
+
+    if (moulded && is_plastic(nd, vd))
+        return true;
+    if (!(nd >= ends[0].nd && nd <= ends[N_ENDS - 1].nd))
+        return false;
+    while (k < N_ENDS - 2 && nd > ends[k + 1].nd)
+        k++;
+    part = (nd - ends[k].nd) / (ends[k + 1].nd - ends[k].nd);
+    return vd >= ends[k].least + part * (ends[k + 1].least - ends[k].least) &&
+           vd <= ends[k].most + part * (ends[k + 1].most - ends[k].most);
+}
+
+/* Returns whether the glass behind surface K of LENS is another surface's, too,
+ * or in the catalogue. */
+static bool glass_is_listed(const struct glint_prescription *lens, int k)
+{
+    const struct glint_surface *s = &lens->surface[k];
+    const struct glint_glass *glass;
+
+    for (int i = 0; i < lens->n_surfaces; i++)
+        if (i != k && fabs(lens->surface[i].nd - s->nd) < 2e-6 &&
+            fabs(lens->surface[i].vd - s->vd) < 0.05)
+            return true;
+    for (int i = 0; (glass = glint_glass_at(i)) != NULL; i++) {
+        struct glint_surface known = {.nd = 1};
+        double nd, spread;
+
+        memcpy(known.sellmeier, glass->sellmeier, sizeof known.sellmeier);
+        nd = glint_surface_index(&known, 587.5618);
+        spread = glint_surface_index(&known, 486.1327) -
+                 glint_surface_index(&known, 656.2725);
+        if (fabs(nd - s->nd) < 2e-5 && fabs((nd - 1) / spread - s->vd) < 0.3)
+            return true;
+    }
+    return false;
+}
+
+/* Returns whether the glass behind S, which is not the last surface, has a side
+ * that is ground by nobody. */
+static bool is_moulded(const struct glint_surface *s)
+{
+    return glint_surface_is_shaped(&s[0]) || glint_surface_is_shaped(&s[1]);
+}
+
+/* Returns whether ND has more than three decimals: rounder ones are shared, as
+ * 1.755 is by a lanthanum crown and a flint. */
+static bool is_precise(double nd)
+{
+    return fabs(1e3 * nd - nearbyint(1e3 * nd)) > 1e-6;
+}
+
+/* Returns the first surface of LENS whose glass is none, or has the nd of
+ * another in the table, of four decimals or more, at a Vd that is apart, -1 if
+ * all are well. TEXT[BYTES] says why. */
+static int glass_suspect(const struct glint_prescription *lens, char *text,
+                         size_t bytes)
+{
+    for (int k = 0; k < lens->n_surfaces; k++) {
+        const struct glint_surface *s = &lens->surface[k];
+
+        if (!(s->vd > 0))
+            continue;
+        if (!is_known_glass(s->nd, s->vd, is_moulded(s))) {
+            snprintf(text, bytes, "no glass has nd %.6g and Vd %.4g", s->nd,
+                     s->vd);
+            return k;
+        }
+        for (int i = 0; i < k && is_precise(s->nd); i++)
+            if (fabs(lens->surface[i].nd - s->nd) < 2e-6 &&
+                fabs(lens->surface[i].vd - s->vd) > 1.5) {
+                snprintf(text, bytes,
+                         "nd %.6g has Vd %.4g here and %.4g at surface %d",
+                         s->nd, s->vd, lens->surface[i].vd, i);
+                return k;
+            }
+    }
+    return -1;
+}
+
+/* A number of the table, and what is tried for it. */
+struct search {
+    const char *text;
+    size_t bytes;
+    size_t at, length; /* the number */
+    int line, column;
+    int surface; /* of the line, -1: the stop */
+    int glass;   /* surface whose glass alone is wrong; -1: more is */
+    struct mend *mend;
+    int n;
+    char edited[LENS_TEXT + 32];
+};
+
+/* Returns whether TEXT[BYTES] is a table without fault, which it reads into
+ * LENS; else ERROR says what is wrong. */
+static bool table_is_right(const char *text, size_t bytes, const char *file,
+                           struct glint_prescription *lens,
+                           struct glint_error *error)
+{
+    char why[120];
+    int k;
+
+    if (glint_prescription_parse(lens, text, bytes, file, error) != GLINT_OK)
+        return false;
+    k = glass_suspect(lens, why, sizeof why);
+    if (k >= 0)
+        snprintf(error->text, sizeof error->text, "%s: surface %d: %s", file, k,
+                 why);
+    return k < 0;
+}
+
+static double off_by(double got, double stated)
+{
+    return stated > 0 ? fabs(got / stated - 1) : 0;
+}
+
+/* Returns whether A is likelier than B: a glass that there is, a sign or a swap
+ * before a digit, then what meets the stated values better. */
+static bool is_likelier(const struct mend *a, const struct mend *b)
+{
+    const bool first = a->slip <= SLIP_SWAP, second = b->slip <= SLIP_SWAP;
+
+    return a->listed != b->listed ? a->listed
+           : first != second      ? first
+                                  : a->off < b->off;
+}
+
+static void keep(struct search *s, const struct mend *found)
+{
+    int k = s->n < MENDS ? s->n : MENDS;
+
+    s->n++;
+    for (; k > 0 && is_likelier(found, &s->mend[k - 1]); k--)
+        if (k < MENDS)
+            s->mend[k] = s->mend[k - 1];
+    if (k < MENDS)
+        s->mend[k] = *found;
+}
+
+/* Tries NUMBER in place of the number. */
+static void try(struct search *s, const char *number, enum slip slip)
+{
+    static struct glint_prescription lens;
+    struct glint_error error = {""};
+    struct glint_optics optics;
+    const size_t n = strlen(number), tail = s->at + s->length;
+    struct mend found = {.line = s->line, .column = s->column, .slip = slip};
+
+    if (s->bytes + n > sizeof s->edited || n >= sizeof found.to ||
+        s->length >= sizeof found.from)
+        return;
+    memcpy(s->edited, s->text, s->at);
+    memcpy(s->edited + s->at, number, n);
+    memcpy(s->edited + s->at + n, s->text + tail, s->bytes - tail);
+    if (!table_is_right(s->edited, s->bytes - s->length + n, "t", &lens,
+                        &error))
+        return;
+    glint_optics_of(&lens, &optics);
+    memcpy(found.from, s->text + s->at, s->length);
+    memcpy(found.to, number, n);
+    found.listed = s->glass >= 0 && glass_is_listed(&lens, s->glass);
+    found.focal_mm = optics.focal_mm;
+    found.back_mm = optics.back_focal_mm;
+    found.off = fmax(off_by(optics.focal_mm, lens.check_focal_mm),
+                     off_by(optics.back_focal_mm, lens.check_back_mm));
+    keep(s, &found);
+}
+
+static bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
+static void try_digits(struct search *s, char number[24])
+{
+    for (size_t i = 0; i < s->length; i++) {
+        const char was = number[i];
+        size_t next = i + 1 + (number[i + 1] == '.');
+
+        if (!is_digit(was))
+            continue;
+        for (int digit = 0; digit < 10; digit++) {
+            number[i] = (char)('0' + digit);
+            if (number[i] != was)
+                try(s, number, SLIP_DIGIT);
+        }
+        number[i] = was;
+        if (next >= s->length || !is_digit(number[next]) || number[next] == was)
+            continue;
+        number[i] = number[next];
+        number[next] = was;
+        try(s, number, SLIP_SWAP);
+        number[next] = number[i];
+        number[i] = was;
+    }
+}
+
+static void try_point(struct search *s, const char number[24])
+{
+    const char *point = strchr(number, '.');
+    char moved[24];
+
+    for (int way = -1; way <= 1; way += 2) {
+        const ptrdiff_t i = point ? point - number : -1;
+
+        if (i < 0 || i + way < 0 || !is_digit(number[i + way]))
+            continue;
+        memcpy(moved, number, sizeof moved);
+        moved[i] = number[i + way];
+        moved[i + way] = '.';
+        try(s, moved, SLIP_POINT);
+    }
+}
+
+/* Tries all slips of the number at S->at. */
+static void try_number(struct search *s)
+{
+    char number[24] = "", flipped[24];
+
+    if (s->length >= sizeof number - 2)
+        return;
+    memcpy(number, s->text + s->at, s->length);
+    if (number[0] == '-')
+        try(s, number + 1, SLIP_SIGN);
+    else {
+        snprintf(flipped, sizeof flipped, "-%.21s", number);
+        try(s, flipped, SLIP_SIGN);
+    }
+    try_digits(s, number);
+    try_point(s, number);
+}
+
+/* Tries the numbers of the line at START. */
+static void try_line(struct search *s, size_t start, size_t end)
+{
+    size_t at = start;
+
+    for (int word = 0; at < end && word < 6; word++) {
+        while (at < end && (s->text[at] == ' ' || s->text[at] == '\t'))
+            at++;
+        s->at = at;
+        while (at < end && s->text[at] != ' ' && s->text[at] != '\t' &&
+               s->text[at] != '\r')
+            at++;
+        s->length = at - s->at;
+        s->column = (int)(s->at - start) + 1;
+        if (s->length == 0 || s->text[s->at] == '#')
+            return;
+        if (word > (s->glass < 0 ? 0 : 3) &&
+            (is_digit(s->text[s->at]) || s->text[s->at] == '-' ||
+             s->text[s->at] == '.'))
+            try_number(s);
+    }
+}
+
+/* Tries all slips of one number of surfaces and the stop: a sign, two digits
+ * that changed places, a wrong digit, a decimal point. If all but a glass is
+ * right, only its nd and Vd are tried. Fills MEND with those
+ * after which TEXT is right, the likeliest first, MENDS at most; returns how
+ * many there are. */
+static int find_mends(const char *text, size_t bytes, struct mend mend[MENDS])
+{
+    static struct search s;
+    static struct glint_prescription lens;
+    struct glint_error error = {""};
+    char why[120];
+    int surface = 0;
+
+    if (bytes > LENS_TEXT)
+        return 0;
+    memset(&s, 0, sizeof s);
+    s.text = text;
+    s.bytes = bytes;
+    s.mend = mend;
+    s.glass =
+        glint_prescription_parse(&lens, text, bytes, "t", &error) == GLINT_OK
+            ? glass_suspect(&lens, why, sizeof why)
+            : -1;
+    for (size_t at = 0; at < bytes;) {
+        size_t end = at;
+
+        while (end < bytes && text[end] != '\n')
+            end++;
+        s.line++;
+        if (end - at > 7 && (memcmp(text + at, "surface", 7) == 0 ||
+                             memcmp(text + at, "stop", 4) == 0)) {
+            s.surface = text[at + 1] == 'u' ? surface++ : -1;
+            if (s.glass < 0 || s.surface == s.glass)
+                try_line(&s, at, end);
+        }
+        at = end + 1;
+    }
+    return s.n;
+}
 
 static const char help[] =
     "glint lint LENS\n"

@@ -9,7 +9,23 @@
 
 #include <stdio.h>
 
-#include "lens_figures/figure.h"
+#include "glint/trace.h"
+
+enum { DRAWING_MAX_RAYS = 41 };
+
+struct lens_drawing {
+    const struct glint_prescription *lens;
+    int ghost;        /* number of the ghost whose path is drawn; -1: rays to
+                         the sensor */
+    double angle_deg; /* angle of a ghost's light; below 0: half the field */
+    double plane_deg; /* of the section, about the axis from x to y; 0 or 90 */
+    int rays;         /* rays of a fan, 1 .. DRAWING_MAX_RAYS */
+    bool spots;       /* spot diagrams below the section */
+    bool title;       /* words above it */
+    double focus_m;   /* the lens is focused there, which the title says; 0:
+                         infinity. Light is from afar in any case. */
+    double width_px;
+};
 
 void drawing_defaults(struct lens_drawing *drawing,
                       const struct glint_prescription *lens);

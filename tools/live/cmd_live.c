@@ -11,7 +11,6 @@
 #include "options/config.h"
 #include "linux/fourcc.h"
 #include "live/live.h"
-#include "options/command_line.h"
 
 static const char help[] =
     "glint live [-d CAMERA] [-o OUTPUT] [options]\n"

@@ -12,9 +12,7 @@
 
 #include "live/live_adapt.h"
 #include "live/live_input.h"
-#include "live/live_log.h"
 #include "live/live_output.h"
-#include "overlay/compositor.h"
 
 enum { LIVE_NAME_BYTES = 1024 }; /* bytes of the name of a snapshot */
 

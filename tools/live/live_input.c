@@ -1,7 +1,388 @@
 /* SPDX-License-Identifier: MIT */
 #include "live/live_input.h"
 
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/timerfd.h>
+#include <unistd.h>
+
+#include "formats/paint.h"
+#include "posix/clock.h"
+
+static void no_done(struct glint_source *source,
+                    struct glint_source_frame *frame)
+{
+    (void)source, (void)frame;
+}
+
+static void describe(const struct glint_source *source,
+                     struct glint_source_format *format)
+{
+    *format = ((const struct live_timed *)source)->format;
+}
+
+/* Starts the timer, unless the source has an fd of its own. */
+static enum glint_status start_timer(struct glint_source *source,
+                                     struct glint_error *error)
+{
+    struct live_timed *timed = (struct live_timed *)source;
+    const struct glint_source_format *f = &timed->format;
+    const int64_t stated = 1000000000LL * f->fps_den / f->fps_num;
+    /* 0 would stop the timer */
+    const int64_t ns = stated > 1000 ? stated : 1000;
+    const struct timespec period = {(time_t)(ns / 1000000000),
+                                    (long)(ns % 1000000000)};
+    const struct itimerspec times = {period, period};
+
+    if (source->fd >= 0)
+        return GLINT_OK;
+    timed->timer = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+    if (timed->timer < 0 || timerfd_settime(timed->timer, 0, &times, NULL) < 0)
+        return glint_error_report(error, GLINT_E_DEVICE, timed->name,
+                                  "no timer: %s", strerror(errno));
+    source->fd = timed->timer;
+    return GLINT_OK;
+}
+
+/* Prepares TIMED for frames of FORMAT, with the rate, range and matrix of WISH
+ * if it gives any. CARD says what the source is. start begins a timer and makes
+ * it the source's fd. The implementation sets next and close. */
+static void live_timed_init(struct live_timed *timed,
+                            const struct glint_source_format *format,
+                            const struct glint_v4l2_config *wish,
+                            const char *card)
+{
+    struct glint_source_format *f = &timed->format;
+
+    timed->source = (struct glint_source){.fd = -1,
+                                          .has_signal = true,
+                                          .start = start_timer,
+                                          .done = no_done,
+                                          .describe = describe};
+    timed->format = *format;
+    timed->name = wish->device;
+    timed->timer = -1;
+    timed->n = 0;
+    if (f->fps_num == 0)
+        f->fps_num = 30, f->fps_den = 1;
+    if (wish->fps_num) {
+        f->fps_num = wish->fps_num;
+        f->fps_den = wish->fps_den;
+    }
+    if (wish->range >= 0)
+        f->image.range = (enum glint_range)wish->range;
+    if (wish->matrix >= 0)
+        f->image.matrix = (enum glint_matrix)wish->matrix;
+    snprintf(f->text, sizeof f->text, "%.256s (%s): %dx%d, %.5g fps",
+             wish->device, card, f->image.width, f->image.height,
+             (double)f->fps_num / f->fps_den);
+}
+
+/* Returns how many frames are due now. The first is due at once; without a
+ * timer one is due at every call. */
+static uint64_t count_due(struct live_timed *timed)
+{
+    uint64_t n = 0;
+
+    if (timed->timer < 0 || timed->n == 0)
+        return 1;
+    return read(timed->timer, &n, sizeof n) == (ssize_t)sizeof n ? n : 0;
+}
+
+/* Begins FRAME. Returns how many frames have come due since the last call, of
+ * which the last is to be shown; 0 if none has. */
+static uint64_t live_timed_due(struct live_timed *timed,
+                               struct glint_source_frame *frame)
+{
+    const uint64_t n = count_due(timed);
+
+    *frame = (struct glint_source_frame){.is_drawable = true};
+    if (n > 0)
+        frame->time_us = glint_now_us();
+    return n;
+}
+
+/* Completes FRAME with IMAGE, the last of N frames that were due. */
+static void live_timed_show(struct live_timed *timed,
+                            struct glint_source_frame *frame,
+                            const struct glint_image *image, uint64_t n)
+{
+    frame->image = *image;
+    frame->image.range = timed->format.image.range;
+    frame->image.matrix = timed->format.image.matrix;
+    frame->sequence = (uint32_t)timed->n;
+    frame->n_late = (int)(n - 1);
+}
+
+static void live_timed_stop(struct live_timed *timed)
+{
+    if (timed->timer >= 0)
+        close(timed->timer);
+    timed->timer = -1;
+    timed->source.fd = -1;
+}
+
+enum { HOUSES = 14, DARKEST = 22, BRIGHTEST = 235 };
+
+/* Returns a hash of X. */
+static uint32_t mixed(uint32_t x)
+{
+    x = (x ^ x >> 16) * 0x7feb352du;
+    x = (x ^ x >> 15) * 0x846ca68bu;
+    return x ^ x >> 16;
+}
+
+/* Draws house number HOUSE from the bottom up, some of its windows lit, none so
+ * bright that it would count as a lamp. */
+static void build_house(struct live_timed *s, int house)
+{
+    const int w = s->image.width, h = s->image.height;
+    const int left = house * w / HOUSES, right = (house + 1) * w / HOUSES;
+    const int tall = h / 5 + (int)(mixed((uint32_t)house + 7) % 100) * h / 400;
+    const int pane = 2 + h / 120;
+
+    for (int y = h - tall; y < h; y++)
+        for (int x = left; x < right; x++) {
+            const int column = (x - left) / (2 * pane),
+                      row = (y - h + tall) / (3 * pane);
+            const uint32_t bits =
+                mixed((uint32_t)(house * 997 + column * 31 + row * 7));
+            const int is_pane = (x - left) % (2 * pane) < pane &&
+                                (y - h + tall) % (3 * pane) < 2 * pane;
+
+            s->still[y * w + x] =
+                (uint8_t)(is_pane && bits % 5 == 0 ? 70 + bits % 40 : 30);
+        }
+}
+
+static void build(struct live_timed *s)
+{
+    const int w = s->image.width, h = s->image.height;
+
+    for (int y = 0; y < h; y++)
+        memset(s->still + (size_t)y * (size_t)w, DARKEST + 14 * y / h,
+               (size_t)w);
+    for (int house = 0; house < HOUSES; house++)
+        build_house(s, house);
+}
+
+/* Copies the still picture to the frame and adds noise of -1 to 2 codes, by the
+ * seed and N. */
+static void expose(struct live_timed *s, int64_t n)
+{
+    const int w = s->image.width;
+    uint32_t bits = mixed(s->seed * 2654435761u + (uint32_t)n) | 1;
+
+    for (int y = 0; y < s->image.height; y++) {
+        uint8_t *row = s->image.plane[0] + y * s->image.stride_bytes[0];
+        const uint8_t *from = s->still + (size_t)y * (size_t)w;
+
+        for (int x = 0; x < w; x++) {
+            bits ^= bits << 13; /* [Marsaglia03] */
+            bits ^= bits >> 17;
+            bits ^= bits << 5;
+            row[x] = (uint8_t)(from[x] + (bits >> 8 & 3) - 1);
+        }
+    }
+}
+
+/* Adds a disc of RADIUS at CX, CY, with a halo that falls with the square of
+ * the distance. */
+static void light(struct live_timed *s, double cx, double cy, double radius)
+{
+    const int reach = (int)(12 * radius) + 1;
+
+    for (int y = (int)cy - reach; y <= (int)cy + reach; y++)
+        for (int x = (int)cx - reach; x <= (int)cx + reach; x++) {
+            const double r = hypot(x - cx, y - cy) / radius;
+            const double halo = 60 / (1 + r * r) - 60 / 145.0;
+            const double add = r < 1 ? 255 : r < 2 ? 255 * (2 - r) : 0;
+            uint8_t *at;
+            double code;
+
+            if (x < 0 || y < 0 || x >= s->image.width || y >= s->image.height)
+                continue;
+            at = s->image.plane[0] + y * s->image.stride_bytes[0] + x;
+            code = *at + fmax(halo, 0) + add;
+            *at = (uint8_t)(code < BRIGHTEST ? code : BRIGHTEST);
+        }
+}
+
+/* Draws frame N. */
+static void draw_test(struct live_timed *s, int64_t n)
+{
+    const struct glint_image *i = &s->image;
+    const double per_second = (double)s->format.fps_num / s->format.fps_den;
+    const double turn = fmod((double)n / (8 * per_second), 1);
+    const double angle = 6.283185307179586 * turn;
+
+    if (s->is_black) {
+        paint_black(i);
+        return;
+    }
+    expose(s, n);
+    for (int p = 1; p < 3; p++) /* a bluish night */
+        for (int y = 0; y < glint_image_plane_height(i->format, p, i->height);
+             y++)
+            memset(i->plane[p] + y * i->stride_bytes[p], p == 1 ? 134 : 125,
+                   glint_image_row_bytes(i->format, p, i->width));
+    light(s, i->width * (0.5 + 0.32 * cos(angle)),
+          i->height * (0.38 + 0.25 * sin(angle)), fmax(1.5, i->height / 120.0));
+}
+
+/* ------------------------------------------------------------------- source */
+
+static enum glint_status next_test(struct glint_source *source,
+                                   struct glint_source_frame *frame,
+                                   struct glint_error *error)
+{
+    struct live_timed *s = (struct live_timed *)source;
+    const uint64_t n = live_timed_due(s, frame);
+
+    (void)error;
+    if (n == 0)
+        return GLINT_OK;
+    s->n += (int64_t)n;
+    draw_test(s, s->n - 1);
+    live_timed_show(s, frame, &s->image, n);
+    return GLINT_OK;
+}
+
+static void close_test(struct glint_source *source)
+{
+    struct live_timed *s = (struct live_timed *)source;
+
+    live_timed_stop(s);
+    free(s->mem);
+    s->mem = NULL;
+}
+
+/* Returns the picture of frames, of limited range and without memory, in the
+ * size of WISH or 640 x 360. */
+static struct glint_image lay_out(const struct glint_v4l2_config *wish)
+{
+    const int width = wish->width ? wish->width : 640;
+    const int height = wish->width ? wish->height : 360;
+
+    return (struct glint_image){.format = GLINT_I420,
+                                .width = width,
+                                .height = height,
+                                .range = GLINT_RANGE_LIMITED,
+                                .matrix = height < 720 ? GLINT_MATRIX_BT601
+                                                       : GLINT_MATRIX_BT709,
+                                .transfer = GLINT_TONE_BT709};
+}
+
+static enum glint_status place(struct live_timed *s)
+{
+    const int w = s->image.width, h = s->image.height;
+    const size_t luma = (size_t)w * (size_t)h;
+
+    s->mem = malloc(glint_image_bytes(GLINT_I420, w, h) + luma);
+    if (!s->mem)
+        return GLINT_E_MEMORY;
+    s->still = s->mem;
+    glint_image_place(&s->image, s->still + luma);
+    build(s);
+    return GLINT_OK;
+}
+
+/* Opens the test picture. WISH may give a size of 16 to GLINT_PANEL_SIDE pixels
+ * a side, rate, range and matrix. SEED is for the noise; IS_BLACK: there is
+ * nothing. The lamp goes round in eight seconds. On failure TEST is closed.
+ * GLINT_E_UNSUPPORTED, GLINT_E_MEMORY, GLINT_E_DEVICE. */
+static enum glint_status live_test_open(struct live_timed *test,
+                                        const struct glint_v4l2_config *wish,
+                                        uint32_t seed, bool is_black,
+                                        struct glint_error *error)
+{
+    const struct glint_image image = lay_out(wish);
+
+    if (image.width < 16 || image.height < 16 ||
+        image.width > GLINT_PANEL_SIDE || image.height > GLINT_PANEL_SIDE)
+        return glint_error_report(error, GLINT_E_UNSUPPORTED, "test",
+                                  "has sides of 16 to %d pixels",
+                                  GLINT_PANEL_SIDE);
+    *test =
+        (struct live_timed){.image = image, .seed = seed, .is_black = is_black};
+    if (place(test) != GLINT_OK)
+        return glint_error_report(error, GLINT_E_MEMORY, "test",
+                                  "no memory for %d x %d pixels", image.width,
+                                  image.height);
+    live_timed_init(test, &(struct glint_source_format){.image = image}, wish,
+                    is_black ? "black" : "a lamp over a night street");
+    test->source.next = next_test;
+    test->source.close = close_test;
+    return GLINT_OK;
+}
+
+/* Of the frames that are due the last that there is is shown, also where the
+ * video ends before; those before it are late. */
+static enum glint_status next_video(struct glint_source *source,
+                                    struct glint_source_frame *frame,
+                                    struct glint_error *error)
+{
+    struct live_timed *v = (struct live_timed *)source;
+    const uint64_t n = live_timed_due(v, frame);
+    const struct glint_image *image = NULL, *after = NULL;
+    uint64_t n_read = 0;
+
+    while (n_read < n) {
+        const enum glint_status status =
+            glint_y4m_reader_next(&v->reader, &after, error);
+
+        if (status != GLINT_OK)
+            return status;
+        if (!after)
+            break;
+        image = after;
+        n_read++;
+    }
+    v->n += (int64_t)n_read;
+    if (image)
+        live_timed_show(v, frame, image, n_read);
+    return n > 0 && !image ? GLINT_E_CLOSED : GLINT_OK;
+}
+
+static void close_video(struct glint_source *source)
+{
+    struct live_timed *v = (struct live_timed *)source;
+
+    live_timed_stop(v);
+    glint_y4m_reader_close(&v->reader);
+}
+
+/* Opens the video that is the device of WISH, FILE.y4m or "-". WISH may
+ * overrule rate, range and matrix. On failure VIDEO is closed. */
+static enum glint_status live_video_open(struct live_timed *video,
+                                         const struct glint_v4l2_config *wish,
+                                         struct glint_error *error)
+{
+    const struct glint_y4m_header *h = &video->reader.header;
+    const enum glint_status status =
+        glint_y4m_reader_open(&video->reader, wish->device, error);
+
+    if (status != GLINT_OK)
+        return status;
+    live_timed_init(
+        video,
+        &(struct glint_source_format){.image = {.format = h->format,
+                                                .width = h->width,
+                                                .height = h->height,
+                                                .range = h->range,
+                                                .matrix = h->matrix,
+                                                .transfer = GLINT_TONE_BT709},
+                                      .fps_num = h->fps_num,
+                                      .fps_den = h->fps_den},
+        wish, "a video");
+    video->source.next = next_video;
+    video->source.close = close_video;
+    if (strcmp(wish->device, "-") == 0)
+        video->source.fd = video->reader.in.fd;
+    return GLINT_OK;
+}
 
 static bool is_test(const char *name)
 {
@@ -26,12 +407,12 @@ enum glint_status live_input_open(struct live_input *input,
         status = glint_v4l2_open(&input->as.camera, &wish->camera, wish->io,
                                  wish->n_buffers, error);
     } else if (is_test(name)) {
-        source = &input->as.test.timed.source;
-        status = live_test_open(&input->as.test, &wish->camera, seed,
+        source = &input->as.timed.source;
+        status = live_test_open(&input->as.timed, &wish->camera, seed,
                                 strcmp(name, "none") == 0, error);
     } else {
-        source = &input->as.video.timed.source;
-        status = live_video_open(&input->as.video, &wish->camera, error);
+        source = &input->as.timed.source;
+        status = live_video_open(&input->as.timed, &wish->camera, error);
     }
     input->source = status == GLINT_OK ? source : NULL;
     return status;

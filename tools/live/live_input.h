@@ -2,16 +2,39 @@
  *
  * live_input.h - where live frames come from, by name:
  *   /dev/videoN, N   a camera (linux/v4l2.h)
- *   FILE.y4m, -      a video, or a pipe of one (live_video.h)
- *   test             a lamp over a night street (live_test.h)
+ *   FILE.y4m, -      a video, or a pipe of one
+ *   test             a lamp over a night street
+ *
+ * A video is shown at its own rate, with late frames left out as from a camera;
+ * of a pipe each frame is shown as it comes. After the last frame next fails
+ * with GLINT_E_CLOSED. The test picture has a night street, a lamp with a halo
+ * that goes round in eight seconds, and sensor noise; frame N of a seed and
+ * size is the same picture anywhere. "none" is black, for scenes that are drawn
+ * over it.
  */
 #ifndef GLINT_TOOLS_LIVE_LIVE_INPUT_H
 #define GLINT_TOOLS_LIVE_LIVE_INPUT_H
 
 #include "linux/v4l2.h"
 #include "live/live_log.h"
-#include "live/live_test.h"
-#include "live/live_video.h"
+
+/* A source without a device: frames that are due by a clock, of a format that
+ * is known when it is opened. */
+struct live_timed {
+    struct glint_source source;
+    struct glint_source_format format;
+    const char *name; /* of the source, in errors */
+    int timer;        /* -1: each frame is due when it comes */
+    int64_t n;        /* number of the next frame */
+
+    struct glint_y4m_reader reader; /* of a video */
+    /* Of the test picture: */
+    struct glint_image image; /* the last frame, I420 of limited range */
+    uint32_t seed;
+    bool is_black;
+    uint8_t *still; /* luma without lamp and noise */
+    void *mem;
+};
 
 struct live_wish {
     struct glint_v4l2_config camera; /* device, size and rate of any source */
@@ -23,8 +46,7 @@ struct live_input {
     struct glint_source *source; /* NULL: closed */
     union {
         struct glint_v4l2 camera;
-        struct live_video video;
-        struct live_test test;
+        struct live_timed timed;
     } as;
 };
 

@@ -1,10 +1,248 @@
 /* SPDX-License-Identifier: MIT */
 #include "live/live_log.h"
 
-#include <stdio.h>
+#include <inttypes.h>
+#include <stdarg.h>
+#include <string.h>
 #include <unistd.h>
 
 #include "posix/clock.h"
+
+#define SECOND_US 1000000
+#define COLUMNS   79 /* columns of a terminal, but one for the cursor */
+
+static const char *const stage_names[LIVE_N_STAGES] = {
+    [LIVE_CONVERT] = "convert", [LIVE_FIND] = "find", [LIVE_PLAN] = "plan",
+    [LIVE_BIN] = "bin",         [LIVE_DRAW] = "draw", [LIVE_SHOW] = "show",
+    [LIVE_SCENE] = "scene"};
+
+/* ---------------------------------------------------------------- counting */
+
+static void start_sums(struct live_sums *sums, int64_t now_us)
+{
+    memset(sums, 0, sizeof *sums);
+    sums->began_us = now_us;
+}
+
+void live_stats_start(struct live_stats *stats, int64_t now_us)
+{
+    start_sums(&stats->second, now_us);
+    start_sums(&stats->total, now_us);
+}
+
+bool live_stats_due(const struct live_stats *stats, int64_t now_us)
+{
+    return now_us - stats->second.began_us >= SECOND_US;
+}
+
+void live_stats_next(struct live_stats *stats, int64_t now_us)
+{
+    start_sums(&stats->second, now_us);
+}
+
+/* Counts a latency of US. When a bin is full, all bins are halved: shares stay,
+ * and none becomes 0. */
+static void count_latency(struct live_sums *s, int64_t us)
+{
+    const int64_t at = us < 0 ? 0 : us / LIVE_BIN_US;
+    uint32_t *const bin = &s->bin[at < LIVE_BINS ? at : LIVE_BINS];
+
+    if (*bin == UINT32_MAX)
+        for (int i = 0; i <= LIVE_BINS; i++)
+            s->bin[i] -= s->bin[i] / 2;
+    ++*bin;
+    s->longest_us = us > s->longest_us ? us : s->longest_us;
+}
+
+static void add_frame(struct live_sums *s, const struct live_frame_times *t)
+{
+    s->frames++;
+    for (int i = 0; i < LIVE_N_STAGES; i++)
+        s->stage_us[i] += (uint64_t)(t->stage_us[i] > 0 ? t->stage_us[i] : 0);
+    count_latency(s, t->shown_us - t->captured_us);
+    s->most_lights = t->lights > s->most_lights ? t->lights : s->most_lights;
+    s->most_ghosts = t->ghosts > s->most_ghosts ? t->ghosts : s->most_ghosts;
+    s->most_bytes = t->bytes > s->most_bytes ? t->bytes : s->most_bytes;
+    s->quality += t->quality;
+    s->reused += t->reused;
+}
+
+static void add(struct live_sums *s, const struct live_frame_times *t)
+{
+    s->drops += (unsigned)t->n_dropped;
+    s->late += (unsigned)t->n_late;
+    s->corrupt += (unsigned)t->n_corrupt;
+    if (t->shown)
+        add_frame(s, t);
+}
+
+void live_stats_add(struct live_stats *stats,
+                    const struct live_frame_times *times)
+{
+    add(&stats->second, times);
+    add(&stats->total, times);
+}
+
+/* --------------------------------------------------------------- evaluating */
+
+double live_stats_latency_ms(const struct live_sums *sums, int percent)
+{
+    uint64_t all = 0, below = 0, rank;
+    int at = 0;
+
+    for (int i = 0; i <= LIVE_BINS; i++)
+        all += sums->bin[i];
+    if (all == 0)
+        return -1;
+    rank = (all * (unsigned)percent + 99) / 100; /* all < 2^46 */
+    while ((below += sums->bin[at]) < rank)
+        at++;
+    return (double)(at == LIVE_BINS ? sums->longest_us
+                                    : at * LIVE_BIN_US + LIVE_BIN_US / 2) /
+           1e3;
+}
+
+static double seconds_since(int64_t began_us, int64_t now_us)
+{
+    return 1e-6 * (double)(now_us - began_us);
+}
+
+static double fps(const struct live_sums *s, int64_t now_us)
+{
+    const double seconds = seconds_since(s->began_us, now_us);
+
+    return seconds > 0 ? (double)s->frames / seconds : 0;
+}
+
+/* ------------------------------------------------------------------ writing */
+
+/* Text that grows; what does not fit is left out. */
+struct writer {
+    char *text;
+    size_t used, room;
+};
+
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+static void
+put(struct writer *w, const char *format, ...)
+{
+    va_list args;
+    int n;
+
+    va_start(args, format);
+    n = vsnprintf(w->text + w->used, w->room - w->used, format, args);
+    va_end(args);
+    w->used += n > 0 ? (size_t)n : 0;
+    w->used = w->used < w->room ? w->used : w->room - 1;
+}
+
+/* Writes SUM over the number of frames, with DIGITS after the point, or null if
+ * there are none. */
+static void put_mean(struct writer *w, const struct live_sums *s, double sum,
+                     int digits)
+{
+    if (s->frames)
+        put(w, "%.*f", digits, sum / (double)s->frames);
+    else
+        put(w, "null");
+}
+
+static void put_latency(struct writer *w, const struct live_sums *s,
+                        int percent)
+{
+    if (s->frames)
+        put(w, "%.2f", live_stats_latency_ms(s, percent));
+    else
+        put(w, "null");
+}
+
+/* Returns whether there is anything to say of STAGE: a run without a scene has
+ * none to draw. */
+static bool is_said(const struct live_stats *stats, int stage)
+{
+    return stage != LIVE_SCENE || stats->total.stage_us[LIVE_SCENE] > 0;
+}
+
+char *live_stats_json(const struct live_stats *stats, int64_t now_us,
+                      bool total, char text[LIVE_STATS_TEXT])
+{
+    const struct live_sums *const s = total ? &stats->total : &stats->second;
+    struct writer w = {text, 0, LIVE_STATS_TEXT};
+
+    put(&w,
+        "{\"t\":%.3f,\"fps\":%.2f,\"frames\":%" PRIu64 ",\"drops\":%" PRIu64
+        ",\"late\":%" PRIu64 ",\"corrupt\":%" PRIu64 ",\"latency_ms_p50\":",
+        seconds_since(stats->total.began_us, now_us), fps(s, now_us), s->frames,
+        s->drops, s->late, s->corrupt);
+    put_latency(&w, s, 50);
+    put(&w, ",\"latency_ms_p99\":");
+    put_latency(&w, s, 99);
+    put(&w, ",\"ms\":{");
+    for (int i = 0; i < LIVE_N_STAGES; i++) {
+        if (!is_said(stats, i))
+            continue;
+        put(&w, "%s\"%s\":", i ? "," : "", stage_names[i]);
+        put_mean(&w, s, 1e-3 * (double)s->stage_us[i], 3);
+    }
+    put(&w, "},\"lights\":%d,\"ghosts\":%d,\"bytes\":%zu,\"quality\":",
+        s->most_lights, s->most_ghosts, s->most_bytes);
+    put_mean(&w, s, s->quality, 3);
+    put(&w, ",\"reused\":%" PRIu64, s->reused);
+    put(&w, "%s}", total ? ",\"total\":true" : "");
+    return text;
+}
+
+static void put_summary(struct writer *w, const struct live_stats *stats,
+                        int64_t now_us)
+{
+    const struct live_sums *const s = &stats->second;
+    const struct live_sums *const t = &stats->total;
+
+    put(w, "%.1f fps", fps(s, now_us));
+    if (s->frames)
+        put(w, "  %.1f ms, p99 %.1f", live_stats_latency_ms(s, 50),
+            live_stats_latency_ms(s, 99));
+    put(w,
+        "  %" PRIu64 " dropped %" PRIu64 " late %" PRIu64
+        " bad  %d lights %d ghosts",
+        t->drops, t->late, t->corrupt, s->most_lights, s->most_ghosts);
+    if (s->frames)
+        put(w, "  q %.2f", s->quality / (double)s->frames);
+}
+
+static void put_stages(struct writer *w, const struct live_stats *stats)
+{
+    const struct live_sums *const s = &stats->second;
+
+    put(w, "  ms:");
+    for (int i = 0; i < LIVE_N_STAGES; i++) {
+        if (!is_said(stats, i))
+            continue;
+        put(w, " %s ", stage_names[i]);
+        put_mean(w, s, 1e-3 * (double)s->stage_us[i], 2);
+    }
+    put(w, "  %zu bytes\n", s->most_bytes);
+}
+
+char *live_stats_line(const struct live_stats *stats, int64_t now_us,
+                      bool terminal, char text[LIVE_STATS_TEXT])
+{
+    struct writer w = {text, 0, LIVE_STATS_TEXT};
+
+    if (!terminal) {
+        put_summary(&w, stats, now_us);
+        put_stages(&w, stats);
+        return text;
+    }
+    put(&w, "\r");
+    w.room = 1 + COLUMNS + 1; /* A line that wraps cannot be overwritten. */
+    put_summary(&w, stats, now_us);
+    w.room = LIVE_STATS_TEXT;
+    put(&w, "\033[K");
+    return text;
+}
 
 void live_log_init(struct live_log *log, const struct tool *tool,
                    enum live_report asked, bool is_piped)

@@ -12,8 +12,7 @@
 
 #include "linux/fbdev.h"
 #include "linux/v4l2_sink.h"
-#include "panel/null.h"
-#include "panel/y4m_sink.h"
+#include "panel/sinks.h"
 #include "sdl/sdl.h"
 #include "options/tool.h"
 

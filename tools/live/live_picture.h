@@ -6,8 +6,6 @@
 #ifndef GLINT_TOOLS_LIVE_LIVE_PICTURE_H
 #define GLINT_TOOLS_LIVE_LIVE_PICTURE_H
 
-#include <stddef.h>
-
 #include "glint/image.h"
 #include "glint/status.h"
 

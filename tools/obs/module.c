@@ -3,17 +3,178 @@
  * The filter of OBS: a flare over the frames of a camera, a video or another
  * source whose frames are in memory, where they lie, as glint overlay draws it.
  */
+#include <math.h>
+#include <obs-module.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <obs-module.h>
-
 #include "desk/styles.h"
+#include "filter/filter.h"
 #include "glint/glint.h"
 #include "model/lens_files.h"
-#include "obs/frame.h"
-#include "obs/opening.h"
+
+static bool format_of(enum video_format from, enum glint_pixel_format *to)
+{
+    static const struct {
+        enum video_format from;
+        enum glint_pixel_format to;
+    } pairs[] = {
+        {VIDEO_FORMAT_I420, GLINT_I420},
+        {VIDEO_FORMAT_NV12, GLINT_NV12},
+        {VIDEO_FORMAT_YUY2, GLINT_YUYV},
+        {VIDEO_FORMAT_UYVY, GLINT_UYVY},
+        {VIDEO_FORMAT_I422, GLINT_I422},
+        {VIDEO_FORMAT_I444, GLINT_I444},
+        {VIDEO_FORMAT_RGBA, GLINT_XBGR8888},
+        {VIDEO_FORMAT_BGRA, GLINT_XRGB8888},
+        {VIDEO_FORMAT_BGRX, GLINT_XRGB8888},
+        {VIDEO_FORMAT_BGR3, GLINT_BGR24},
+        {VIDEO_FORMAT_Y800, GLINT_GREY},
+    };
+
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
+        if (pairs[i].from == from) {
+            *to = pairs[i].to;
+            return true;
+        }
+    return false;
+}
+
+/* Returns the matrix of luma that FRAME's own, from codes to R, G, B, is
+ * nearest to: what Cr gives to R is 1.40 of BT.601 and 1.57 of BT.709 at full
+ * range. A source that says nothing has zeros there. */
+static enum glint_matrix matrix_of(const struct obs_source_frame *frame)
+{
+    const float cr = frame->color_matrix[2];
+    const float between = frame->full_range ? 1.488F : 1.694F;
+
+    return cr > between ? GLINT_MATRIX_BT709 : GLINT_MATRIX_BT601;
+}
+
+/* Returns the curve from codes to light: that of the frame, else what is usual
+ * for R, G, B and for luma. */
+static enum glint_tone tone_of(const struct obs_source_frame *frame,
+                               bool is_rgb)
+{
+    return frame->trc == VIDEO_TRC_SRGB ||
+                   (frame->trc == VIDEO_TRC_DEFAULT && is_rgb)
+               ? GLINT_TONE_SRGB
+               : GLINT_TONE_BT709;
+}
+
+/* Sets IMAGE to the pixels of FRAME where they lie, upside down where OBS will
+ * turn them. Returns false for frames that glint does not draw on: of more than
+ * 8 bits, of HDR curves, of a format or size that it does not have. */
+static bool frame_image(const struct obs_source_frame *frame,
+                        struct glint_image *image)
+{
+    enum glint_pixel_format format;
+
+    if (!format_of(frame->format, &format) || frame->trc == VIDEO_TRC_PQ ||
+        frame->trc == VIDEO_TRC_HLG || frame->width - 1 >= GLINT_MAX_SIDE ||
+        frame->height - 1 >= GLINT_MAX_SIDE)
+        return false;
+    *image = (struct glint_image){
+        .format = format,
+        .width = (int)frame->width,
+        .height = (int)frame->height,
+        .range = frame->full_range ? GLINT_RANGE_FULL : GLINT_RANGE_LIMITED,
+        .matrix = matrix_of(frame),
+        .transfer = tone_of(frame, glint_image_is_rgb(format))};
+    for (int i = 0; i < glint_image_planes(format); i++) {
+        const ptrdiff_t stride = (ptrdiff_t)frame->linesize[i];
+        const int rows = glint_image_plane_height(format, i, image->height);
+
+        image->plane[i] =
+            frame->data[i] + (frame->flip ? (rows - 1) * stride : 0);
+        image->stride_bytes[i] = frame->flip ? -stride : stride;
+    }
+    return true;
+}
+
+struct opening {
+    struct filter *filter; /* the thread's until it is done */
+    pthread_mutex_t lock;  /* of these: */
+    bool is_done, is_left;
+};
+
+static void free_opening(struct opening *o)
+{
+    filter_destroy(o->filter);
+    pthread_mutex_destroy(&o->lock);
+    free(o);
+}
+
+static void *open_filter(void *arg)
+{
+    struct opening *const o = arg;
+    bool is_left;
+
+    filter_open(o->filter); /* if it cannot, drawing will not, either */
+    pthread_mutex_lock(&o->lock);
+    o->is_done = true;
+    is_left = o->is_left;
+    pthread_mutex_unlock(&o->lock);
+    if (is_left)
+        free_opening(o);
+    return NULL;
+}
+
+/* Begins to open a filter with VALUES for frames of WIDTH x HEIGHT. Returns
+ * NULL without memory or threads. */
+static struct opening *opening_begin(const struct filter_values *values,
+                                     int width, int height)
+{
+    struct opening *const o = calloc(1, sizeof *o);
+    pthread_t thread;
+
+    if (!o)
+        return NULL;
+    pthread_mutex_init(&o->lock, NULL);
+    o->filter = filter_create("obs", width, height);
+    if (o->filter)
+        filter_set(o->filter, values);
+    if (!o->filter || pthread_create(&thread, NULL, open_filter, o) != 0) {
+        free_opening(o);
+        return NULL;
+    }
+    pthread_detach(thread);
+    return o;
+}
+
+/* Returns whether the filter is open, or has failed to open; if so it is the
+ * caller's, and O is freed. */
+static bool opening_end(struct opening *o, struct filter **filter)
+{
+    bool is_done;
+
+    pthread_mutex_lock(&o->lock);
+    is_done = o->is_done;
+    pthread_mutex_unlock(&o->lock);
+    if (!is_done)
+        return false;
+    *filter = o->filter;
+    o->filter = NULL;
+    free_opening(o);
+    return true;
+}
+
+/* Leaves an opening, or NULL, to itself: it frees what it has when it is done.
+ */
+static void opening_leave(struct opening *o)
+{
+    bool is_done;
+
+    if (!o)
+        return;
+    pthread_mutex_lock(&o->lock);
+    is_done = o->is_done;
+    o->is_left = true;
+    pthread_mutex_unlock(&o->lock);
+    if (is_done)
+        free_opening(o);
+}
 
 /* cppcheck-suppress unknownMacro ; of OBS's headers */
 OBS_DECLARE_MODULE()

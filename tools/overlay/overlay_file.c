@@ -5,18 +5,10 @@
 #include <string.h>
 
 #include "overlay/compositor_layer.h"
-#include "formats/kept_types.h"
 
 static bool is_deep(const struct glint_samples *s)
 {
     return s->colour[0].sample != GLINT_SAMPLE_U8;
-}
-
-static bool takes_float(const char *path)
-{
-    const struct glint_file_type *const type = glint_file_type_of(path);
-
-    return type && type->takes_float && !type->takes_u8;
 }
 
 static int fail(const struct tool *tool, const struct overlay_file *f,
@@ -49,8 +41,8 @@ static enum glint_status deepen(struct overlay_file *f)
 static enum glint_status choose_way(struct overlay_file *f,
                                     const struct compositor *compositor)
 {
-    const bool to_float =
-        takes_float(f->to) && !glint_kept_is_same_type(&f->kept, f->to);
+    const bool to_float = glint_picture_is_float(f->to) &&
+                          !glint_kept_is_same_type(&f->kept, f->to);
     const bool has_own_layer =
         compositor->settings.options.layer == GLINT_LAYER_FLARE_ALPHA ||
         (compositor->settings.options.layer != GLINT_LAYER_COMPOSITE &&
@@ -384,7 +376,7 @@ static enum glint_status make_layer(const struct overlay_file *f,
     float *to;
 
     if (compositor->settings.options.layer == GLINT_LAYER_FLARE_ALPHA ||
-        takes_float(f->to))
+        glint_picture_is_float(f->to))
         like.colour[0].sample = GLINT_SAMPLE_FLOAT;
     status = glint_kept_blank(alone, &like,
                               compositor->settings.options.layer ==

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "overlay/compositor_layer.h"
-#include "video/y4m_light.h"
 
 /* Memory that all frames of a stream share. */
 struct overlay_y4m {

@@ -4,7 +4,6 @@
 #ifndef GLINT_TOOLS_SCENES_ACCOUNT_H
 #define GLINT_TOOLS_SCENES_ACCOUNT_H
 
-#include "glint/scene/account.h"
 #include "options/json_writer.h"
 #include "scenes/scene_frame.h"
 

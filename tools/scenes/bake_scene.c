@@ -4,7 +4,6 @@
  */
 #include "model/bake_line.h"
 #include "scenes/baked_scene.h"
-#include "options/command_line.h"
 
 static const char help[] =
     "glint bake NAME.scene -o OUT.glint [--json]\n"

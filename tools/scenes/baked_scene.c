@@ -1,8 +1,13 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ *
+ * What is in a baked scene, in words and in numbers.
+ */
 #include "scenes/baked_scene.h"
 
+#include <math.h>
 #include <stdlib.h>
 
+#include "glint/scene/translucent.h"
 #include "posix/input.h"
 
 #define MAX_SCENE_BYTES ((size_t)1 << 30)
@@ -54,4 +59,217 @@ void baked_scene_close(struct baked_scene *scene)
 {
     free(scene->data);
     *scene = (struct baked_scene){.data = NULL};
+}
+
+/* Bytes of a baked scene by what they hold; the keywords of its text. */
+struct scene_bytes {
+    size_t header, light, texture, material, environment, stone, object;
+    size_t mesh;                                   /* all of these: */
+    size_t vertices, normals, uv, triangles, grid; /* and their headers */
+};
+
+struct scene_counts {
+    int spheres, planes, catchers, meshes;
+    unsigned vertices, triangles, cells, refs;
+};
+
+static size_t texture_bytes(const struct glint_scene_texture *t)
+{
+    uint32_t w = t->width_log2, h = t->height_log2;
+    size_t texels = 1;
+
+    for (; w || h; w -= w > 0, h -= h > 0)
+        texels += (size_t)1 << (w + h);
+    return (3 * texels + 3) / 4 * 4 + sizeof *t;
+}
+
+static void measure_mesh(const struct glint_scene_model *model,
+                         const struct glint_scene_mesh *m,
+                         struct scene_bytes *b, struct scene_counts *n)
+{
+    const unsigned cells = m->cells[0] * m->cells[1] * m->cells[2];
+    const uint32_t *start =
+        (const void *)((const unsigned char *)model->header + m->start_at);
+
+    n->vertices += m->n_vertices;
+    n->triangles += m->n_triangles;
+    n->cells += cells;
+    n->refs += start[cells];
+    b->vertices += 12 * (size_t)m->n_vertices;
+    b->normals += m->normal_at ? 12 * (size_t)m->n_vertices : 0;
+    b->uv += m->uv_at ? 8 * (size_t)m->n_vertices : 0;
+    b->triangles += 16 * (size_t)m->n_triangles;
+    b->grid += 4 * ((size_t)cells + 1 + start[cells]);
+    b->mesh += sizeof *m;
+}
+
+/* Returns the bytes of stones, and of the maps of what is of them. */
+static size_t stone_bytes(const struct glint_scene_model *model)
+{
+    const struct glint_scene_header *h = model->header;
+    size_t bytes =
+        h->n_stones * sizeof *model->stone + h->n_skins * sizeof *model->skin;
+
+    for (uint32_t i = 0; i < h->n_stones; i++)
+        bytes += model->stone[i].file_bytes;
+    for (uint32_t i = 0; i < h->n_skins; i++) {
+        const struct glint_scene_stone *stone =
+            &model->stone[model->skin[i].stone];
+        const struct glint_translucent_header *t =
+            (const void *)((const unsigned char *)h + stone->file_at);
+        const size_t side = (size_t)1 << t->side_log2;
+
+        bytes +=
+            model->object[model->skin[i].object].kind == GLINT_OBJECT_SPHERE
+                ? 3 * side * 8
+                : side * side * 4;
+    }
+    return bytes;
+}
+
+/* Returns the bytes of all environments. */
+static size_t environment_bytes(const struct glint_scene_model *model)
+{
+    size_t bytes = 0;
+
+    for (uint32_t i = 0; i < model->header->n_environments; i++)
+        bytes += sizeof *model->environment + model->environment[i].file_bytes;
+    return bytes;
+}
+
+static void measure(const struct glint_scene_model *model,
+                    struct scene_bytes *b, struct scene_counts *n)
+{
+    const struct glint_scene_header *h = model->header;
+
+    *b = (struct scene_bytes){.header = sizeof *h,
+                              .light = h->n_lights * sizeof *model->light,
+                              .material =
+                                  h->n_materials * sizeof *model->material +
+                                  h->n_wards * sizeof *model->ward,
+                              .environment = environment_bytes(model),
+                              .stone = stone_bytes(model),
+                              .object = h->n_objects * sizeof *model->object};
+    *n = (struct scene_counts){.spheres = 0};
+    for (uint32_t i = 0; i < h->n_textures; i++)
+        b->texture += texture_bytes(&model->texture[i]);
+    for (uint32_t i = 0; i < h->n_meshes; i++)
+        measure_mesh(model, &model->mesh[i], b, n);
+    b->mesh += b->vertices + b->normals + b->uv + b->triangles + b->grid;
+    for (uint32_t i = 0; i < h->n_objects; i++) {
+        n->spheres += model->object[i].kind == GLINT_OBJECT_SPHERE;
+        n->planes += model->object[i].kind == GLINT_OBJECT_PLANE;
+        n->meshes += model->object[i].kind == GLINT_OBJECT_MESH;
+        n->catchers += model->object[i].catcher_q15 > 0;
+    }
+}
+
+/* Begins "bytes", an object. */
+static void print_bytes(struct json_writer *json, const struct scene_bytes *b)
+{
+    json_write(json,
+               "bytes: {header: %zu, light: %zu, texture: %zu, material: %zu, "
+               "environment: %zu, stone: %zu, object: %zu, mesh: %zu",
+               b->header, b->light, b->texture, b->material, b->environment,
+               b->stone, b->object, b->mesh);
+}
+
+void baked_scene_bytes(struct json_writer *json,
+                       const struct glint_scene_model *model)
+{
+    struct scene_bytes bytes;
+    struct scene_counts counts;
+
+    measure(model, &bytes, &counts);
+    print_bytes(json, &bytes);
+}
+
+static void print_json(const struct baked_scene *scene,
+                       const struct scene_bytes *b,
+                       const struct scene_counts *n)
+{
+    const struct glint_scene_header *h = scene->model.header;
+    struct json_writer json = {.to = stdout};
+
+    json_write(&json,
+               "{name: %s, scene: {objects: %u, spheres: %d, planes: %d, "
+               "catchers: %d, meshes: %d, lights: %u, environments: %u, "
+               "materials: %u, textures: %u, vertices: %u, triangles: %u, "
+               "cells: %u, refs: %u, step: %.9g",
+               h->name, h->n_objects, n->spheres, n->planes, n->catchers,
+               n->meshes, h->n_lights, h->n_environments, h->n_materials,
+               h->n_textures, n->vertices, n->triangles, n->cells, n->refs,
+               ldexp(1, -h->unit_log2));
+    if (scene->is_text)
+        json_write(&json, "reach: %.9g, flat: %d", scene->report.reach,
+                   scene->report.flat);
+    print_bytes(&json, b);
+    json_write(&json, "all: %zu}}}\n", scene->bytes);
+}
+
+static void print_camera(const struct glint_scene_camera *c)
+{
+    if (c->kind == GLINT_CAMERA_FIELD)
+        printf("camera       %.4g degrees across the picture\n",
+               360 / GLINT_PI * atan(ldexp(c->tan_x_q24, -24)));
+    else
+        printf("camera       %s\n", c->kind == GLINT_CAMERA_LENS
+                                        ? "the field of the flare's lens"
+                                        : "16 x 9 at a distance of 10");
+}
+
+static void print_text(const struct baked_scene *scene,
+                       const struct scene_bytes *b,
+                       const struct scene_counts *n)
+{
+    const struct glint_scene_header *h = scene->model.header;
+    const struct {
+        const char *what;
+        size_t bytes;
+    } row[] = {{"header", b->header},
+               {"light", b->light},
+               {"texture", b->texture},
+               {"material", b->material},
+               {"environment", b->environment},
+               {"stone", b->stone},
+               {"object", b->object},
+               {"mesh", b->mesh},
+               {"  vertices", b->vertices},
+               {"  normals", b->normals},
+               {"  uv", b->uv},
+               {"  triangles", b->triangles},
+               {"  grid", b->grid}};
+
+    printf("%s, a %sscene\n\n", h->name, scene->is_text ? "" : "baked ");
+    print_camera(&h->camera);
+    printf("things       %u: spheres %d, planes %d (catchers %d), meshes %d\n",
+           h->n_objects, n->spheres, n->planes, n->catchers, n->meshes);
+    printf("lights       %u%s\n", h->n_lights,
+           h->shadow ? ", with shadows" : "");
+    for (uint32_t i = 0; i < h->n_environments; i++)
+        printf("%s %s\n", i ? "            " : "environment ",
+               scene->model.environment[i].name);
+    printf("materials    %u, textures %u\n", h->n_materials, h->n_textures);
+    printf("triangles    %u on %u vertices, %u cells with %u entries\n",
+           n->triangles, n->vertices, n->cells, n->refs);
+    if (scene->report.flat)
+        printf("left out     %d triangles without area\n", scene->report.flat);
+    printf("step         %.3g units; places are within half of one, each way\n",
+           ldexp(1, -h->unit_log2));
+    if (scene->is_text)
+        printf("reach        %.4g units from the origin; poses, to %.4g\n",
+               scene->report.reach, ldexp(1, 28 - h->unit_log2));
+    printf("bytes        %zu\n", scene->bytes);
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+        if (row[i].bytes)
+            printf("  %-12s %8zu\n", row[i].what, row[i].bytes);
+}
+
+void baked_scene_print(const struct tool *tool, const struct baked_scene *scene)
+{
+    struct scene_bytes bytes;
+    struct scene_counts counts;
+
+    measure(&scene->model, &bytes, &counts);
+    (tool->json ? print_json : print_text)(scene, &bytes, &counts);
 }

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Baked scenes: from their texts, and from files. */
+ * Baked scenes: from their texts, and from files.
+ */
 #ifndef GLINT_TOOLS_SCENES_BAKED_SCENE_H
 #define GLINT_TOOLS_SCENES_BAKED_SCENE_H
 
-#include "glint/scene/bake.h"
-#include "glint/scene/model.h"
 #include "options/json_writer.h"
 #include "scenes/scene_file.h"
 
@@ -25,6 +24,7 @@ bool baked_scene_is(const char *argument);
  * code, after printing the reason on failure. */
 int baked_scene_open(const struct tool *tool, const char *path,
                      struct baked_scene *scene);
+
 void baked_scene_close(struct baked_scene *scene);
 
 /* Prints what is in SCENE, and its bytes by what they hold; with --json, as one

@@ -1,11 +1,15 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ *
+ * What is in a baked environment, in words and in numbers.
+ */
 #include "scenes/environment_file.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "formats/picture.h"
-#include "model/model_file.h"
+#include "model/bake_line.h"
 #include "posix/ending.h"
 #include "posix/input.h"
 #include "model/names.h"
@@ -152,4 +156,238 @@ void environment_file_close(struct environment_file *file)
 {
     free(file->data);
     *file = (struct environment_file){.data = NULL};
+}
+
+struct counts {
+    long long texels, mips, full; /* these; of mips; of all levels as fine as
+                                     the first */
+    size_t levels, irradiance, lights, header; /* bytes */
+};
+
+static struct counts count(const struct environment_file *file)
+{
+    const struct glint_environment_header *h = file->environment.header;
+    const long long first = 1LL << (2 * h->side_log2);
+    struct counts n = {.mips = (4 * first - 1) / 3,
+                       .full = (long long)h->n_levels * first,
+                       .irradiance = 4096,
+                       .header = sizeof *h};
+
+    for (uint32_t k = 0; k < h->n_levels; k++) {
+        const long long texels = 1LL
+                                 << (2 * file->environment.level[k].side_log2);
+
+        n.texels += texels;
+        n.levels += 4 * (size_t)texels;
+    }
+    n.levels += h->n_levels * sizeof *file->environment.level;
+    n.lights = h->n_lights * sizeof *file->environment.light;
+    return n;
+}
+
+static double degrees(int32_t sine_q30)
+{
+    return 180 / GLINT_PI * asin(ldexp(sine_q30, -30));
+}
+
+static const char *levels_of(const struct glint_environment_header *h)
+{
+    return h->variant == GLINT_ENVIRONMENT_MIP ? "mip" : "gauss";
+}
+
+static void print_json(const struct environment_file *file,
+                       const struct counts *n)
+{
+    const struct glint_environment_header *h = file->environment.header;
+    const struct glint_environment_report *r = &file->report;
+    struct json_writer json = {.to = stdout};
+
+    json_write(&json, "{name: %s, environment: {size: %d, levels: %s", h->name,
+               1 << h->side_log2, levels_of(h));
+    if (file->is_baked_now)
+        json_write(&json,
+                   "picture: [%d, %d], negative: %lld, not_finite: %lld, "
+                   "mean: %.6g, largest: %.6g, rest_largest: %.6g, "
+                   "light_share: %.6g, spots: %d",
+                   r->width, r->height, r->negative, r->not_finite, r->mean,
+                   r->largest, r->residual_largest, r->light_share, r->spots);
+    json_write(&json,
+               "texels: %lld, texels_mip: %lld, texels_full: %lld, lights: [",
+               n->texels, n->mips, n->full);
+    for (uint32_t i = 0; i < h->n_lights; i++) {
+        const struct glint_environment_light *l = &file->environment.light[i];
+
+        json_write(&json,
+                   "{toward: [%.6f, %.6f, %.6f], radius_deg: %.4f, "
+                   "rgb: [%.6g, %.6g, %.6g]}",
+                   ldexp(l->toward_q30[0], -30), ldexp(l->toward_q30[1], -30),
+                   ldexp(l->toward_q30[2], -30), degrees(l->radius_q30),
+                   glint_real_value(l->rgb[0]), glint_real_value(l->rgb[1]),
+                   glint_real_value(l->rgb[2]));
+    }
+    json_write(&json,
+               "], bytes: {header: %zu, levels: %zu, irradiance: %zu, "
+               "lights: %zu, all: %zu}}}\n",
+               n->header, n->levels, n->irradiance, n->lights, file->bytes);
+}
+
+static void print_baking(const struct glint_environment_report *r)
+{
+    printf("picture      %dx%d", r->width, r->height);
+    if (r->negative || r->not_finite)
+        printf("; held: %lld pixels below 0, %lld not finite", r->negative,
+               r->not_finite);
+    printf("\nlight        mean %.4g, largest %.4g, without the lights %.4g\n",
+           r->mean, r->largest, r->residual_largest);
+    printf("lights have  %.3g %% of it", 100 * r->light_share);
+    if (r->spots > 0)
+        printf(", of %d spots", r->spots);
+    printf("\n");
+}
+
+static void print_text(const struct environment_file *file,
+                       const struct counts *n)
+{
+    const struct glint_environment_header *h = file->environment.header;
+
+    printf("%s, an environment %d wide, levels %s\n\n", h->name,
+           1 << h->side_log2, levels_of(h));
+    if (file->is_baked_now)
+        print_baking(&file->report);
+    printf("levels       %u:", h->n_levels);
+    for (uint32_t k = 0; k < h->n_levels; k++)
+        printf(" %d", 1 << file->environment.level[k].side_log2);
+    printf("\ntexels       %lld; of mips %lld, of levels all as fine as the "
+           "first %lld\n",
+           n->texels, n->mips, n->full);
+    printf("lights       %u\n", h->n_lights);
+    for (uint32_t i = 0; i < h->n_lights; i++) {
+        const struct glint_environment_light *l = &file->environment.light[i];
+
+        printf("  toward %7.4f %7.4f %7.4f  radius %5.2f  white in it %.4g "
+               "%.4g %.4g\n",
+               ldexp(l->toward_q30[0], -30), ldexp(l->toward_q30[1], -30),
+               ldexp(l->toward_q30[2], -30), degrees(l->radius_q30),
+               glint_real_value(l->rgb[0]), glint_real_value(l->rgb[1]),
+               glint_real_value(l->rgb[2]));
+    }
+    printf("bytes        %zu\n  header       %8zu\n  levels       %8zu\n"
+           "  irradiance   %8zu\n",
+           file->bytes, n->header, n->levels, n->irradiance);
+    if (n->lights)
+        printf("  lights       %8zu\n", n->lights);
+}
+
+void environment_file_print(const struct tool *tool,
+                            const struct environment_file *file)
+{
+    const struct counts n = count(file);
+
+    (tool->json ? print_json : print_text)(file, &n);
+}
+
+static const char bake_help[] =
+    "glint bake PICTURE|NAME.environment -o OUT.env [options]\n"
+    "\n"
+    "Turns a picture of all around, .exr, .hdr, .dds (by the image plug-in) "
+    "or\n"
+    ".pfm, twice as wide as high or 3 x 2 faces of a cube, into one file for\n"
+    "scenes: the light blurred to several levels, what it lights, and its\n"
+    "brightest spots as lights. Negative and not finite pixels are held and\n"
+    "counted. A text (tools/examples/scenes/README.md) names the picture and\n"
+    "has the same options; those of the line come before.\n"
+    "\n"
+    "  -o, --output OUT\n"
+    "  --size N            texels along a side: 16 to 1024, a power of two\n"
+    "                      (default 256)\n"
+    "  --levels L          gauss: blurred on the sphere (default)\n"
+    "                      mip: means of 2 x 2, the baseline\n"
+    "  --lights N          0 to 16 (default 16)\n"
+    "  --turn DEG          about the vertical, to the right\n"
+    "  --scale X           factor of all light\n";
+
+/* What the line says; -1, or has_ false: nothing. */
+struct line {
+    int side_log2, levels, lights;
+    bool has_turn, has_scale;
+    double turn, scale;
+};
+
+static void over(void *ctx, struct glint_environment_options *o)
+{
+    const struct line *l = ctx;
+
+    if (l->side_log2 >= 0)
+        o->side_log2 = l->side_log2;
+    if (l->levels >= 0)
+        o->levels = l->levels ? GLINT_ENVIRONMENT_MIP : GLINT_ENVIRONMENT_GAUSS;
+    if (l->lights >= 0)
+        o->max_lights = l->lights;
+    if (l->has_turn)
+        o->turn_deg = l->turn;
+    if (l->has_scale)
+        o->scale = l->scale;
+}
+
+static int take_option(struct tool *tool, void *line, int c, const char *name)
+{
+    static const char *const sizes[] = {"16",  "32",  "64",   "128",
+                                        "256", "512", "1024", NULL};
+    static const char *const levels[] = {"gauss", "mip", NULL};
+    struct line *l = line;
+    bool ok = true;
+
+    switch (c) {
+    case 's':
+        l->side_log2 = tool_word(optarg, sizes);
+        ok = l->side_log2 >= 0;
+        l->side_log2 += GLINT_ENVIRONMENT_LEAST_LOG2;
+        break;
+    case 'l':
+        l->levels = tool_word(optarg, levels);
+        ok = l->levels >= 0;
+        break;
+    case 'n':
+        ok = tool_integer(optarg, 0, GLINT_ENVIRONMENT_MAX_LIGHTS, &l->lights);
+        break;
+    case 't':
+        ok = l->has_turn =
+            tool_number(optarg, &l->turn) && l->turn >= -360 && l->turn <= 360;
+        break;
+    case 'x':
+        ok = l->has_scale = tool_number(optarg, &l->scale) &&
+                            l->scale >= 1e-6 && l->scale <= 1e6;
+        break;
+    default:
+        return tool_option(tool, c, optarg);
+    }
+    return ok ? -1 : tool_refuse(tool, name, optarg);
+}
+
+int cmd_bake_environment(struct tool *tool, int argc, char **argv)
+{
+    static const struct option options[] = {
+        BAKE_LINE_OPTIONS,
+        {"size", required_argument, NULL, 's'},
+        {"levels", required_argument, NULL, 'l'},
+        {"lights", required_argument, NULL, 'n'},
+        {"turn", required_argument, NULL, 't'},
+        {"scale", required_argument, NULL, 'x'},
+        TOOL_COMMON_OPTIONS};
+    struct line line = {.side_log2 = -1, .levels = -1, .lights = -1};
+    struct environment_file file;
+    int code;
+
+    code = bake_line_begin(tool, bake_help, argc, argv, options, take_option,
+                           &line, "takes one environment");
+    if (code >= 0)
+        return code;
+    code = environment_file_open(tool, argv[optind], over, &line, &file);
+    if (code != EXIT_OK)
+        return code;
+    code = bake_line_write(tool, file.data, file.bytes);
+    if (code == EXIT_OK && bake_line_tells(tool))
+        environment_file_print(tool, &file);
+    environment_file_close(&file);
+    return code;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Baked environments: from pictures and texts, and from files. */
+ * Baked environments: from pictures and texts, and from files.
+ */
 #ifndef GLINT_TOOLS_SCENES_ENVIRONMENT_FILE_H
 #define GLINT_TOOLS_SCENES_ENVIRONMENT_FILE_H
 
@@ -29,10 +30,12 @@ enum glint_status environment_file_read(
     const char *path, const char *written,
     void (*over)(void *ctx, struct glint_environment_options *), void *ctx,
     struct environment_file *file, struct glint_error *error);
+
 int environment_file_open(const struct tool *tool, const char *path,
                           void (*over)(void *ctx,
                                        struct glint_environment_options *),
                           void *ctx, struct environment_file *file);
+
 void environment_file_close(struct environment_file *file);
 
 /* Prints what is in FILE; with --json, as one object. */

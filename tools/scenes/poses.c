@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "options/suggest.h"
-#include "options/timed_text.h"
 
 enum { MAX_BYTES = 1 << 28, FRAME = 0, OBJECT, PLACE, TURN = 5, COLUMNS = 9 };
 

@@ -19,12 +19,7 @@
 #ifndef GLINT_TOOLS_SCENES_POSES_H
 #define GLINT_TOOLS_SCENES_POSES_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 #include "glint/scene/model.h"
-#include "glint/status.h"
 #include "options/timed_text.h"
 
 enum {

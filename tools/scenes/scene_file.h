@@ -5,7 +5,6 @@
 #define GLINT_TOOLS_SCENES_SCENE_FILE_H
 
 #include "glint/scene/bake.h"
-#include "options/tool.h"
 #include "model/names.h"
 
 /* Returns whether ARGUMENT is the name of a scene text: NAME.scene. */

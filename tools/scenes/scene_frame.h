@@ -9,8 +9,6 @@
 #ifndef GLINT_TOOLS_SCENES_SCENE_FRAME_H
 #define GLINT_TOOLS_SCENES_SCENE_FRAME_H
 
-#include "glint/options.h"
-#include "glint/scene/scene.h"
 #include "options/tool.h"
 
 /* What a picture is drawn with. 0 is as the run time likes it. */

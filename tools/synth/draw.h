@@ -5,13 +5,18 @@
  *
  * The ghosts are exposed: ghost_level says what the brightest of them come to,
  * and with that how bright the lights are. Their own light, the star and the
- * haze follow by physics, but for the star's factor. */
+ * haze follow by physics, but for the star's factor.
+ */
 #ifndef GLINT_TOOLS_SYNTH_DRAW_H
 #define GLINT_TOOLS_SYNTH_DRAW_H
 
 #include "model/settings.h"
-#include "synth/background.h"
 #include "synth/item.h"
+
+struct synth_backgrounds {
+    int n;
+    char **path; /* [n], by the names behind the last slash */
+};
 
 enum synth_layer {
     SYNTH_BASE,   /* the background */
@@ -26,10 +31,6 @@ struct synth_drawing {
     float *layer[SYNTH_LAYERS]; /* [height][width][3] linear light */
     float *cover; /* [height][width][3]: share that lights cover */
 };
-
-enum glint_status synth_drawing_init(struct synth_drawing *d, int width,
-                                     int height);
-void synth_drawing_finish(struct synth_drawing *d);
 
 /* Mean light of ghosts whose level is 1, at most. */
 #define SYNTH_MOST_MEAN 0.2
@@ -49,9 +50,29 @@ struct synth_lenses {
     struct synth_lens *lens[SYNTH_MAX_LENSES];
 };
 
+/* Lists the pictures of WORDS[N], files, or folders whose pictures are told by
+ * their endings, sorted by name. Returns an exit code: names have to differ. */
+int synth_backgrounds_open(const struct tool *tool,
+                           struct synth_backgrounds *list, char **words, int n);
+
+void synth_backgrounds_close(struct synth_backgrounds *list);
+
+/* Returns the name of PATH behind its last slash. */
+const char *synth_background_name(const char *path);
+
+/* Sets KEY to that of the bytes of the file PATH. */
+enum glint_status synth_background_key(char key[20], const char *path,
+                                       struct glint_error *error);
+
+enum glint_status synth_drawing_init(struct synth_drawing *d, int width,
+                                     int height);
+
+void synth_drawing_finish(struct synth_drawing *d);
+
 /* Sets *LENS to the lens of ITEM, opened. Returns an exit code. */
 int synth_lens_open(const struct tool *tool, struct synth_lenses *lenses,
                     const struct synth_item *item, struct synth_lens **lens);
+
 void synth_lenses_close(struct synth_lenses *lenses);
 
 /* Draws the layers of ITEM into D, of its size, and says what came out. Returns

@@ -15,7 +15,7 @@
 
 #include "engine/frame/frame.h"
 #include "glint/measure.h"
-#include "formats/pfm.h"
+#include "formats/pnm.h"
 #include "posix/input.h"
 #include "posix/workers.h"
 #include "support/lens_check.h"

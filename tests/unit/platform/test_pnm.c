@@ -15,7 +15,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "formats/pfm.h"
 #include "formats/pnm.h"
 #include "posix/input.h"
 #include "support/scratch.h"

@@ -22,9 +22,7 @@
 
 #include "linux/fourcc.h"
 #include "linux/v4l2_sink.h"
-#include "panel/null.h"
-#include "panel/planar.h"
-#include "panel/y4m_sink.h"
+#include "panel/sinks.h"
 #include "support/fakes/wrapped.h"
 #include "support/scratch.h"
 

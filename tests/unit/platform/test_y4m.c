@@ -16,7 +16,6 @@
 
 #include "support/scratch.h"
 #include "video/y4m.h"
-#include "video/y4m_light.h"
 
 /* Two frames of 9 bytes of luma and 4 and 4 of chroma, 17 in all. */
 #define SMALL                  \

@@ -14,7 +14,7 @@
 #include <string.h>
 
 #include "support/rng.h"
-#include "live/live_stats.h"
+#include "live/live_log.h"
 
 static struct live_stats stats;
 static char text[LIVE_STATS_TEXT];

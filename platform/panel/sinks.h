@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * panel/sinks.h - frames as YUV4MPEG2 (video/y4m.h), as a sink; a sink that
+ * shows nothing, to measure all that comes before.
+ *
+ * The stream is opened with the first frame; all frames must have its size,
+ * format and range. Formats that Y4M does not know are written as planes; RGB
+ * is of limited range then, as most readers expect. The matrix is not stated,
+ * as Y4M has no tag for it: readers take BT.601 below 720 lines, else BT.709,
+ * and RGB is written so.
+ *
+ * While the reader of a pipe has not taken the last frame, new ones are dropped
+ * and counted: live frames do not queue. A frame that is begun is finished.
+ *
+ * Planes are any 8-bit picture as Y', Cb, Cr, for files. Samples of packed and
+ * half-packed formats are moved, not computed. RGB becomes GLINT_I444 by the
+ * matrix and range of the result, rounded to the nearest code.
+ */
+#ifndef GLINT_PLATFORM_PANEL_SINKS_H
+#define GLINT_PLATFORM_PANEL_SINKS_H
+
+#include "panel/row_rgb.h"
+#include "source_sink.h"
+#include "video/y4m.h"
+
+struct glint_null_sink {
+    struct glint_sink sink;
+    long n_frames; /* frames put so far */
+};
+
+struct glint_y4m_sink {
+    struct glint_sink sink; /* Closing it puts a file in place. */
+    long n_frames;          /* frames written */
+    long n_dropped;         /* frames that the reader was too slow for */
+
+    /* Private. */
+    const char *path; /* not owned */
+    int fps_num, fps_den;
+    bool is_open;
+    struct glint_image like; /* the first frame, without its memory */
+    struct glint_image planes;
+    struct glint_row_rgb row;
+    void *mem; /* memory of planes and row; NULL: none is needed */
+    struct glint_y4m_writer writer;
+};
+
+void glint_null_sink_open(struct glint_null_sink *null);
+
+/* Returns the format of planes that keeps all samples of FORMAT, which is not
+ * GLINT_LINEAR_Q20: GLINT_GREY, _I420, _I422 or _I444. */
+enum glint_pixel_format glint_planar_format(enum glint_pixel_format format);
+
+/* Fills the planes of TO, which has FROM's size and glint_planar_format(), from
+ * FROM. ROW is work memory for that width. */
+void glint_planar_write(const struct glint_image *to,
+                        const struct glint_image *from,
+                        struct glint_row_rgb *row);
+
+/* Prepares Y4M to write to PATH, which must outlive it; "-" is standard
+ * output. The rate is as in video/y4m.h. Only the first frame opens PATH and
+ * can fail. */
+void glint_y4m_sink_open(struct glint_y4m_sink *y4m, const char *path,
+                         int fps_num, int fps_den);
+
+/* Closes Y4M. GLINT_E_OUTPUT, GLINT_E_CLOSED: not all was written. */
+enum glint_status glint_y4m_sink_finish(struct glint_y4m_sink *y4m,
+                                        struct glint_error *error);
+
+#endif
