@@ -73,10 +73,8 @@ absent += $(if $(filter yes,$(WITH_JANSSON)),tools/synth/item_absent.c tools/imp
 absent += tools/import/$(if $(filter yes,$(WITH_EXPAT)),openlensflare_absent,openlensflare).c
 absent += tools/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
 # A static program has no plug-ins.
-absent += platform/formats/oiio_$(if $(CROSS),loader,absent).c
-absent += platform/assimp/$(if $(CROSS),loader,absent).c platform/assimp/assimp.c
-absent += platform/sdl/$(if $(CROSS),window,absent).c platform/sdl/sdl.c
-absent += tools/command/glint.c tools/live/glint_live.c tools/model/models_only.c tools/scenes/scenes_only.c
+absent += platform/posix/$(if $(CROSS),plugin,plugin_absent).c platform/assimp/assimp.c platform/sdl/sdl.c
+absent += tools/command/glint.c tools/live/glint_live.c tools/live/models_only.c tools/lab/ray_errors.c tools/lab/projection_table.c
 
 core_o      := $(call objects,src,$(CORE))
 engine_o    := $(call objects,src,$(ENGINE))

@@ -37,11 +37,15 @@ struct glint_file_type {
     bool takes_u8, takes_u16, takes_half, takes_float;
 };
 
+enum glint_picture_kind { GLINT_PICTURE_8BIT, GLINT_PICTURE_FLOAT };
+
+/* Returns the number of frames of the GIF NAME, which it reads; 0 if NAME is no
+ * GIF. */
+int glint_gif_frames(const char *name);
+
 /* Returns the type that PATH's extension stands for, or NULL if it is
  * unknown. */
 const struct glint_file_type *glint_file_type_of(const char *path);
-
-enum glint_picture_kind { GLINT_PICTURE_8BIT, GLINT_PICTURE_FLOAT };
 
 /* Checks whether the extension of PATH is of a type that holds floats only.
  * TIFF, which takes floats and codes, and "-" count as 8 bits. */
@@ -77,6 +81,7 @@ enum glint_status glint_picture_read(struct glint_input *in, const char *name,
  * BYTES of a file, shows; reports in ERROR that a file of TYPE needs the
  * plug-in, with the reason that ERROR gives for its absence. */
 const char *glint_picture_type(const uint8_t *head, size_t bytes);
+
 enum glint_status glint_picture_needs_plugin(const char *path, const char *type,
                                              struct glint_error *error);
 

@@ -16,9 +16,9 @@
 #ifndef GLINT_PLATFORM_FORMATS_SAMPLES_H
 #define GLINT_PLATFORM_FORMATS_SAMPLES_H
 
+#include "formats/tones.h"
 #include "glint/image.h"
 #include "glint/status.h"
-#include "formats/tones.h"
 
 enum glint_sample {
     GLINT_SAMPLE_U8,
@@ -50,12 +50,21 @@ struct glint_samples {
     uint8_t *mem; /* [height][width] pixels, in the machine's byte order */
 };
 
+/* Decodes HALF without rounding. */
+float glint_half_decode(uint16_t half);
+
+/* Encodes VALUE to the nearest half, ties to even; from 65520 on to
+ * infinity. */
+uint16_t glint_half_encode(float value);
+
 /* Return the bytes of a sample, and whether it is a float. */
 size_t glint_sample_bytes(enum glint_sample sample);
+
 bool glint_sample_is_float(enum glint_sample sample);
 
 /* Return the size of the picture as it is seen, in pixels. */
 int glint_samples_width(const struct glint_samples *samples);
+
 int glint_samples_height(const struct glint_samples *samples);
 
 /* Checks whether the pixels are those of a GLINT_RGB24: opaque sRGB of 8 bits,

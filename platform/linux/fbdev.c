@@ -3,6 +3,8 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/kd.h>
+#include <linux/vt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +15,107 @@
 #include "linux/request.h"
 #include "posix/at_death.h"
 #include "posix/error.h"
+
+/* put_back() reads these when the process dies, so that all are atomic. */
+static int held_fd = -1;
+static int held_mode; /* mode of the console before */
+/* process that took the console; its children leave it alone */
+static pid_t holder;
+
+/* Puts the console back into its mode. Async-signal-safe, as ioctl() is only a
+ * system call in Linux. */
+static void put_back(void)
+{
+    const int saved = errno;
+    const int fd = __atomic_load_n(&held_fd, __ATOMIC_SEQ_CST);
+
+    if (fd >= 0 && getpid() == __atomic_load_n(&holder, __ATOMIC_SEQ_CST))
+        ioctl(fd, KDSETMODE, __atomic_load_n(&held_mode, __ATOMIC_SEQ_CST));
+    errno = saved;
+}
+
+/* Adds the return of the console's mode to the functions of
+ * posix/at_death.h, as take_console() does. They run from the newest
+ * to the oldest: a function that must run before the console returns is
+ * added after this call. */
+static void watch_console(void)
+{
+    glint_at_death(put_back);
+}
+
+/* Opens PATH as *FD. Returns the mode to put it back into later, or -1 with
+ * errno set. */
+static int open_console(const char *path, int *fd)
+{
+    struct vt_mode switching;
+    int mode = KD_TEXT, saved;
+
+    *fd = open(path, O_RDWR | O_NOCTTY | O_CLOEXEC);
+    if (*fd < 0)
+        return -1;
+    if (ioctl(*fd, KDGETMODE, &mode) < 0) {
+        saved = errno;
+        close(*fd);
+        *fd = -1;
+        errno = saved;
+        return -1;
+    }
+    /* A program that draws has the kernel ask it before it switches. Graphics
+     * mode without that (VT_AUTO) was left by a program that was killed. */
+    if (mode == KD_GRAPHICS && ioctl(*fd, VT_GETMODE, &switching) == 0 &&
+        switching.mode == VT_AUTO)
+        mode = KD_TEXT;
+    return mode;
+}
+
+static bool refuse_console(int *fd, struct glint_error *note, const char *cause)
+{
+    if (*fd >= 0)
+        close(*fd);
+    *fd = -1;
+    glint_error_report(note, GLINT_E_DEVICE, "console",
+                       "%s; text and cursor may show in the picture", cause);
+    return false;
+}
+
+/* Sets the console to graphics mode; one console at a time in a process.
+ * Returns false, with the reason in NOTE, if there is none, permission is
+ * missing or another program draws on it. */
+static bool take_console(int *fd, struct glint_error *note)
+{
+    int mode = open_console("/dev/tty", fd);
+
+    if (mode < 0)
+        mode = open_console("/dev/tty0", fd);
+    if (mode < 0)
+        return refuse_console(fd, note,
+                              errno == ENOENT || errno == ENXIO ||
+                                      errno == ENODEV
+                                  ? "there is none"
+                                  : strerror(errno));
+    if (mode == KD_GRAPHICS)
+        return refuse_console(fd, note, "another program draws on it");
+    __atomic_store_n(&held_mode, mode, __ATOMIC_SEQ_CST);
+    __atomic_store_n(&holder, getpid(), __ATOMIC_SEQ_CST);
+    __atomic_store_n(&held_fd, *fd, __ATOMIC_SEQ_CST);
+    watch_console();
+    if (ioctl(*fd, KDSETMODE, KD_GRAPHICS) < 0) {
+        __atomic_store_n(&held_fd, -1, __ATOMIC_SEQ_CST);
+        return refuse_console(fd, note, strerror(errno));
+    }
+    return true;
+}
+
+/* Puts the console back into its mode, if it was taken. */
+static void release_console(int *fd)
+{
+    if (*fd < 0)
+        return;
+    put_back();
+    __atomic_store_n(&held_fd, -1, __ATOMIC_SEQ_CST);
+    close(*fd);
+    *fd = -1;
+}
 
 #ifndef FBIO_WAITFORVSYNC
 #define FBIO_WAITFORVSYNC _IOW('F', 0x20, uint32_t)
@@ -55,7 +158,7 @@ static void watch_pan(const struct glint_fbdev *fb)
     panned_home = fb->home;
     __atomic_store_n(&panner, getpid(), __ATOMIC_SEQ_CST);
     __atomic_store_n(&panned_fd, fb->fd, __ATOMIC_SEQ_CST);
-    glint_console_watch();
+    watch_console();
     glint_at_death(pan_home);
 }
 
@@ -360,7 +463,7 @@ static void close_fb(struct glint_sink *sink)
     struct glint_fbdev *const fb = (struct glint_fbdev *)sink;
 
     end_pan(fb);
-    glint_console_release(&fb->console_held);
+    release_console(&fb->console_fd);
     unmap(fb);
     glint_panel_close(&fb->panel);
     if (fb->fd >= 0)
@@ -402,11 +505,11 @@ enum glint_status glint_fbdev_open(struct glint_fbdev *fb, const char *path,
         .name = path ? path : default_path(),
         .fd = -1,
         .has_vsync = options->vsync,
-        .console_held = {.fd = -1},
+        .console_fd = -1,
     };
     status = open_device(fb, error);
     if (!status && options->console) {
-        fb->has_note = !glint_console_take(&fb->console_held, &fb->note);
+        fb->has_note = !take_console(&fb->console_fd, &fb->note);
         /* Taking the console may have changed the offset of the screen
          * shown. */
         if (glint_ioctl(fb->fd, FBIOGET_VSCREENINFO, &fb->var) < 0)

@@ -16,19 +16,21 @@
  * it, and the picture follows; or the framebuffer may be gone, which its memory
  * does not show, as it stays mapped. Only a frame of a new size takes new
  * memory.
+ *
+ * Meanwhile the console, the terminal of the process or the one in the
+ * foreground, is in graphics mode, in which it draws neither text nor cursor.
+ * Closing puts its mode back, as do exit() and the deaths that posix/at_death.h
+ * lists; then the kernel paints the text again. After kill -9 the console stays
+ * dark, and cannot be switched away from, as graphics mode is for programs that
+ * switch by themselves. The next run brings the text back; so does SysRq + K,
+ * or echo k > /proc/sysrq-trigger from another terminal.
  */
 #ifndef GLINT_PLATFORM_LINUX_FBDEV_H
 #define GLINT_PLATFORM_LINUX_FBDEV_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 #include <linux/fb.h>
 
-#include "linux/console.h"
 #include "panel/panel.h"
-#include "source_sink.h"
 
 struct glint_fbdev_options {
     enum glint_panel_fit fit;
@@ -36,7 +38,7 @@ struct glint_fbdev_options {
     bool vsync;   /* With one screen of memory, wait for the panel's refresh if
                      the driver can: less tearing, up to one refresh of time a
                      frame. */
-    bool console; /* take the console (linux/console.h) */
+    bool console; /* keep the console in graphics mode */
 };
 
 struct glint_fbdev {
@@ -59,7 +61,7 @@ struct glint_fbdev {
     const uint8_t *cleared[2]; /* screens already black around the picture */
     bool has_vsync;
     struct glint_panel panel;
-    struct glint_console console_held;
+    int console_fd; /* -1: the console is not taken */
 };
 
 /* Opens the framebuffer PATH; the string must outlive FB. NULL stands for

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "oiio/carry.h"
+#include "oiio/keep.h"
 
 #include <cstdint>
 #include <cstdlib>

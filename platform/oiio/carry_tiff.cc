@@ -3,7 +3,7 @@
  * Tags of TIFF. The file that OpenImageIO has written keeps its tags on how
  * pixels lie in it; all other tags, with the directories of Exif and GPS, come
  * from the file that was read, whose byte order may be the other one. */
-#include "oiio/carry.h"
+#include "oiio/keep.h"
 
 #include <cstdint>
 #include <cstring>

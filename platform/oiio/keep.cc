@@ -5,17 +5,18 @@
 #include "oiio/keep.h"
 
 #include <cctype>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <OpenImageIO/imageio.h>
 
-#include "oiio/carry.h"
 #include "oiio/guard.h"
-#include "oiio/keep_file.h"
-#include "oiio/webp.h"
 
 using glint::bytes;
 using glint::check_spec;
@@ -43,6 +44,38 @@ bytes glint::read_whole(const char *path)
         all.insert(all.end(), block, block + n);
     std::fclose(f);
     return all;
+}
+
+void glint::give(void **data, size_t *n_bytes, const bytes &encoded)
+{
+    void *const block = std::malloc(encoded.size() + 1);
+
+    if (!block)
+        throw std::bad_alloc();
+    std::memcpy(block, encoded.data(), encoded.size());
+    *data = block;
+    *n_bytes = encoded.size();
+}
+
+glint::memory_file::memory_file() : fd(memfd_create("parts", MFD_CLOEXEC))
+{
+    if (fd < 0)
+        throw std::bad_alloc();
+}
+
+glint::memory_file::~memory_file()
+{
+    close(fd);
+}
+
+std::string glint::memory_file::name() const
+{
+    return "/proc/self/fd/" + std::to_string(fd);
+}
+
+bytes glint::memory_file::contents() const
+{
+    return read_whole(name().c_str());
 }
 
 namespace

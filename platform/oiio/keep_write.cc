@@ -5,22 +5,15 @@
 #include "oiio/keep.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include <stdlib.h>
-#include <unistd.h>
-
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-#include "oiio/carry.h"
 #include "oiio/guard.h"
-#include "oiio/keep_file.h"
-#include "oiio/webp.h"
 
 using glint::bytes;
 using glint::failure;
@@ -232,40 +225,20 @@ bool is_carried_from(const struct glint_oiio_file &file)
            (file.type != "tiff" || glint::is_classic_tiff(file.whole));
 }
 
-/* A temporary folder with one file in it; both are removed with the object. */
-struct scratch {
-    std::string folder, path;
-
-    scratch()
-    {
-        const char *const tmp = std::getenv("TMPDIR");
-
-        folder = std::string(tmp && *tmp ? tmp : "/tmp") + "/glint-XXXXXX";
-        if (!mkdtemp(&folder[0]))
-            throw failure{GLINT_E_OUTPUT, "no temporary folder " + folder};
-        path = folder + "/parts.exr";
-    }
-    ~scratch()
-    {
-        std::remove(path.c_str());
-        std::remove(folder.c_str());
-    }
-};
-
 /* Encodes an EXR of parts by way of a file: OpenImageIO 2.4 cannot write it
  * into memory, though it claims to. */
 bytes encode_by_file(ImageOutput &out, std::vector<ImageSpec> &specs,
                      const std::vector<kept_part> &parts)
 {
-    const scratch scratch;
+    const glint::memory_file file;
+    const std::unique_ptr<ImageInput> check = ImageInput::create("exr");
+    ImageSpec first;
 
-    write_parts(out, scratch.path.c_str(), specs, parts);
-    const bytes encoded = glint::read_whole(scratch.path.c_str());
-    const std::unique_ptr<ImageInput> check = ImageInput::open(scratch.path);
-    if (!check || !check->seek_subimage(static_cast<int>(parts.size()) - 1, 0))
-        throw failure{GLINT_E_OUTPUT,
-                      "could not be written to " + scratch.path};
-    return encoded;
+    write_parts(out, file.name().c_str(), specs, parts);
+    if (!check || !check->open(file.name(), first) ||
+        !check->seek_subimage(static_cast<int>(parts.size()) - 1, 0))
+        throw failure{GLINT_E_OUTPUT, "could not be written into memory"};
+    return file.contents();
 }
 
 bytes encode_by_oiio(ImageOutput &out, const char *path,
@@ -356,12 +329,7 @@ enum glint_status glint::encode_file(void **data, size_t *n_bytes,
             made.push_back(part_of(*pixels, file));
         const bytes encoded = encode_parts(path, pixels ? made : file->parts,
                                            file, same, *options);
-        void *const block = std::malloc(encoded.size() + 1);
 
-        if (!block)
-            throw std::bad_alloc();
-        std::memcpy(block, encoded.data(), encoded.size());
-        *data = block;
-        *n_bytes = encoded.size();
+        give(data, n_bytes, encoded);
     });
 }

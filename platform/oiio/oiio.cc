@@ -13,9 +13,6 @@
 #include <string>
 #include <vector>
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
@@ -132,49 +129,13 @@ OIIO::ImageSpec layer_spec(const struct glint_oiio_layers *layers, int k)
     return spec;
 }
 
-/* A file in memory, for writers that take no other. */
-class memory_file
-{
-    int fd = memfd_create("layers", MFD_CLOEXEC);
-
-public:
-    memory_file()
-    {
-        if (fd < 0)
-            throw std::bad_alloc();
-    }
-    ~memory_file() { close(fd); }
-    memory_file(const memory_file &) = delete;
-    memory_file &operator=(const memory_file &) = delete;
-
-    std::string name() const { return "/proc/self/fd/" + std::to_string(fd); }
-
-    std::vector<unsigned char> bytes() const
-    {
-        const off_t size = lseek(fd, 0, SEEK_END);
-        std::vector<unsigned char> all(
-            size > 0 ? static_cast<std::size_t>(size) : 0);
-        std::size_t at = 0;
-
-        while (at < all.size()) {
-            const ssize_t n = pread(fd, all.data() + at, all.size() - at,
-                                    static_cast<off_t>(at));
-
-            if (n <= 0)
-                throw failure{GLINT_E_OUTPUT, "cannot be read back"};
-            at += static_cast<std::size_t>(n);
-        }
-        return all;
-    }
-};
-
 /* OpenImageIO 2.4 writes files of several parts by name only. */
-std::vector<unsigned char>
-encode_parts(const char *path, const struct glint_oiio_layers *layers)
+std::vector<unsigned char> encode_parts(const char *path,
+                                        const struct glint_oiio_layers *layers)
 {
     const std::unique_ptr<OIIO::ImageOutput> out =
         OIIO::ImageOutput::create(path);
-    const memory_file file;
+    const glint::memory_file file;
     std::vector<OIIO::ImageSpec> specs;
 
     if (!out)
@@ -195,19 +156,7 @@ encode_parts(const char *path, const struct glint_oiio_layers *layers)
             throw failure{GLINT_E_OUTPUT, out->geterror()};
     if (!out->close())
         throw failure{GLINT_E_OUTPUT, out->geterror()};
-    return file.bytes();
-}
-
-/* Sets DATA[BYTES] to a malloc'ed copy of ENCODED. */
-void give(void **data, size_t *bytes, const std::vector<unsigned char> &encoded)
-{
-    void *const block = std::malloc(encoded.size() + 1);
-
-    if (!block)
-        throw std::bad_alloc();
-    std::memcpy(block, encoded.data(), encoded.size());
-    *data = block;
-    *bytes = encoded.size();
+    return file.contents();
 }
 
 enum glint_status face_encode_layers(void **data, size_t *bytes,
@@ -215,8 +164,9 @@ enum glint_status face_encode_layers(void **data, size_t *bytes,
                                      const struct glint_oiio_layers *layers,
                                      struct glint_error *error)
 {
-    return guarded(path, GLINT_E_OUTPUT, error,
-                   [&] { give(data, bytes, encode_parts(path, layers)); });
+    return guarded(path, GLINT_E_OUTPUT, error, [&] {
+        glint::give(data, bytes, encode_parts(path, layers));
+    });
 }
 
 enum glint_status face_read(struct glint_oiio_pixels *pixels, const char *path,
@@ -231,7 +181,7 @@ enum glint_status face_encode(void **data, size_t *bytes, const char *path,
                               ptrdiff_t stride_bytes, struct glint_error *error)
 {
     return guarded(path, GLINT_E_OUTPUT, error, [&] {
-        give(data, bytes, encode_pixels(path, pixels, stride_bytes));
+        glint::give(data, bytes, encode_pixels(path, pixels, stride_bytes));
     });
 }
 

@@ -2,7 +2,7 @@
  *
  * WebP by its own library: OpenImageIO 2.4 multiplies colours by alpha when it
  * reads one, and does not divide when it writes. */
-#include "oiio/webp.h"
+#include "oiio/keep.h"
 
 #include "oiio/guard.h"
 

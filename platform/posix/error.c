@@ -2,10 +2,53 @@
 #include "posix/error.h"
 
 #include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "posix/utf8.h"
+/* Returns the length of a character by its FIRST byte, or 0 if no character
+ * that prints begins so. */
+static size_t stated_length(unsigned char first)
+{
+    if (first < 0x80)
+        return first >= ' ' && first != 0x7f;
+    if (first < 0xc2)
+        return 0;
+    return first < 0xe0 ? 2 : first < 0xf0 ? 3 : first < 0xf5 ? 4 : 0;
+}
+
+size_t glint_utf8_length(const char *text)
+{
+    static const uint32_t smallest[] = {0, 0, 0xa0, 0x800, 0x10000};
+    const unsigned char *const byte = (const unsigned char *)text;
+    const size_t length = stated_length(byte[0]);
+    uint32_t code;
+
+    if (length < 2)
+        return length;
+    code = byte[0] & (0x7fu >> length);
+    for (size_t i = 1; i < length; i++) {
+        if ((byte[i] & 0xc0) != 0x80) /* also at the end of TEXT */
+            return 0;
+        code = code << 6 | (byte[i] & 0x3fu);
+    }
+    return code < smallest[length] || code > 0x10ffff ||
+                   (code >= 0xd800 && code < 0xe000)
+               ? 0
+               : length;
+}
+
+void glint_utf8_clean(char *text)
+{
+    while (*text) {
+        const size_t length = glint_utf8_length(text);
+
+        if (!length)
+            *text = '?';
+        text += length ? length : 1;
+    }
+}
 
 /* characters shown of a file name, to leave room for the cause */
 #define FILE_CHARS 120

@@ -5,6 +5,8 @@
 #ifndef GLINT_PLATFORM_POSIX_ERROR_H
 #define GLINT_PLATFORM_POSIX_ERROR_H
 
+#include <stddef.h>
+
 #include "glint/status.h"
 
 #if defined(__GNUC__)
@@ -12,6 +14,15 @@
 #else
 #define GLINT_PRINTF(text, first)
 #endif
+
+/* Returns the bytes of the character that TEXT begins with, 1 .. 4, or 0 for a
+ * control character (C1, too: U+009B begins a command to a terminal), malformed
+ * UTF-8 or the end of TEXT. */
+size_t glint_utf8_length(const char *text);
+
+/* Replaces every byte of TEXT that glint_utf8_length() does not accept by
+ * '?'. */
+void glint_utf8_clean(char *text);
 
 /* Sets ERROR to "FILE: cause" and returns STATUS, so that a refusal is one
  * statement. A long FILE loses its beginning, to leave room for the cause.

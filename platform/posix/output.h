@@ -25,6 +25,7 @@
 #ifndef GLINT_PLATFORM_POSIX_OUTPUT_H
 #define GLINT_PLATFORM_POSIX_OUTPUT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -44,6 +45,15 @@ struct glint_output {
     size_t used;      /* bytes in buffer */
     int failed;       /* errno of the first write that failed, or 0 */
 };
+
+/* Returns whether INPUT and OUTPUT are the same regular file; "-" is the
+ * standard stream. */
+bool glint_target_is_input(const char *input, const char *output);
+
+/* Returns whether A and B, which need not be there, name one place: the same
+ * name in the same folder. What is there and no regular file, as /dev/null, is
+ * no place. */
+bool glint_target_is_same(const char *a, const char *b);
 
 /* Opens PATH, which must outlive OUT. On failure OUT is closed. GLINT_E_OUTPUT:
  * it cannot be written; GLINT_E_MEMORY. */

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "control/keyboard.h"
+#include "control/controls.h"
 #include "control/playback.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

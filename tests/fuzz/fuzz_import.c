@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "import/decode.h"
+#include "import/imported.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -8,10 +8,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "lens_figures/measured.h"
 #include "lens_figures/page.h"
 #include "lens_figures/search.h"
-#include "lens_figures/thumbnail.h"
 #include "model/lens_files.h"
 #include "options/json_writer.h"
 #include "overlay/compositor.h"

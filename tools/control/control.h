@@ -13,8 +13,6 @@
 #ifndef GLINT_TOOLS_CONTROL_CONTROL_H
 #define GLINT_TOOLS_CONTROL_CONTROL_H
 
-#include <stdbool.h>
-
 #include "options/timed_text.h"
 
 enum {

@@ -10,12 +10,25 @@
  *
  * Lines are obeyed in their order; one that begins with a frame waits for the
  * picture of that number, and those behind it with it.
+ *
+ * The terminal gives keys at once and shows none of them; however the process
+ * ends it is as it was. While the process is in the background no key is read.
  */
 #ifndef GLINT_TOOLS_CONTROL_CONTROLS_H
 #define GLINT_TOOLS_CONTROL_CONTROLS_H
 
 #include "control/control.h"
-#include "control/keyboard.h"
+
+struct keyboard {
+    int fd; /* -1: closed */
+
+    /* Private. */
+    char bytes[64];
+    int at, n;
+};
+
+/* What the keys do, lines for people. */
+extern const char keyboard_help[];
 
 enum { CONTROL_WHERE = 200 }; /* bytes of a place with its end */
 
@@ -32,6 +45,18 @@ struct controls {
     struct control_line ahead;
     struct keyboard keys;
 };
+
+/* Takes the keys of terminal FD. GLINT_E_IO: it is none. */
+enum glint_status keyboard_open(struct keyboard *k, int fd);
+
+/* Sets LINE to what the next key that was pressed does; returns false if there
+ * is none. Other keys are passed over; q asks the process to end. */
+bool keyboard_next(struct keyboard *k, struct control_line *line);
+void keyboard_close(struct keyboard *k);
+
+/* Sets LINE to what the first key of TEXT[N] does, and returns how many bytes
+ * that has; its verb is CONTROL_NONE if it does nothing. */
+int keyboard_take(const char *text, int n, struct control_line *line);
 
 /* Opens PATH, which must outlive INPUT; - is standard input. IS_LIVE: of a FIFO
  * and of standard input lines are taken as they come, and keys if that is a

@@ -19,7 +19,7 @@ static int n_environments(const struct steer *s)
     return (int)s->model.header->n_environments;
 }
 
-static void steer_open_environments(struct steer *steer)
+static void open_environments(struct steer *steer)
 {
     for (int i = 0; i < n_environments(steer); i++) {
         const struct glint_scene_environment *const e =
@@ -31,41 +31,29 @@ static void steer_open_environments(struct steer *steer)
     }
 }
 
-static bool is_about(const struct control_line *line)
-{
-    return line->verb == CONTROL_TURN || line->verb == CONTROL_SCALE ||
-           line->verb == CONTROL_MAP || line->verb == CONTROL_NEXT_MAP;
-}
-
-/* Checks, and obeys, what LINE says of environments; returns false if it is
- * about something else. *STATUS: as steer_check(). */
-static bool steer_check_environment(const struct steer *steer,
-                                    const struct control_line *line,
-                                    const char *where,
-                                    struct glint_error *error,
-                                    enum glint_status *status)
+/* Checks LINE, which is about environments. */
+static enum glint_status check_environment(const struct steer *steer,
+                                           const struct control_line *line,
+                                           const char *where,
+                                           struct glint_error *error)
 {
     struct suggest suggest;
 
-    *status = GLINT_OK;
-    if (!is_about(line))
-        return false;
     if (n_environments(steer) == 0)
-        *status = control_fail(error, where, line->column,
-                               "the scene has no environment");
-    else if (line->verb == CONTROL_MAP &&
-             glint_scene_find_environment(&steer->model, line->name[0]) < 0) {
-        suggest_begin(&suggest, line->name[0]);
-        for (int i = 0; i < n_environments(steer); i++) {
-            const char *const name = steer->model.environment[i].name;
+        return control_fail(error, where, line->column,
+                            "the scene has no environment");
+    if (line->verb != CONTROL_MAP ||
+        glint_scene_find_environment(&steer->model, line->name[0]) >= 0)
+        return GLINT_OK;
+    suggest_begin(&suggest, line->name[0]);
+    for (int i = 0; i < n_environments(steer); i++) {
+        const char *const name = steer->model.environment[i].name;
 
-            suggest_try(&suggest, name, strlen(name));
-        }
-        *status = control_fail(error, where, line->name_column[0],
-                               "the scene has no environment '%s'%s",
-                               line->name[0], suggest_words(&suggest));
+        suggest_try(&suggest, name, strlen(name));
     }
-    return true;
+    return control_fail(error, where, line->name_column[0],
+                        "the scene has no environment '%s'%s", line->name[0],
+                        suggest_words(&suggest));
 }
 
 /* Shows environment I as lines have left it. */
@@ -85,16 +73,13 @@ static enum glint_status show_environment(const struct steer *s,
     return status;
 }
 
-static bool steer_take_environment(struct steer *steer,
-                                   struct glint_scene *scene,
-                                   const struct control_line *line,
-                                   enum glint_status *status)
+static enum glint_status take_environment(struct steer *steer,
+                                          struct glint_scene *scene,
+                                          const struct control_line *line)
 {
     struct steer_map *const m = &steer->environment[steer->shown];
     const double v = line->v[0];
 
-    if (!is_about(line))
-        return false;
     if (line->verb == CONTROL_TURN)
         m->turn_deg = v + (line->is_change ? m->turn_deg : 0);
     else if (line->verb == CONTROL_SCALE)
@@ -105,15 +90,7 @@ static bool steer_take_environment(struct steer *steer,
             glint_scene_find_environment(&steer->model, line->name[0]);
     else
         steer->shown = (steer->shown + 1) % n_environments(steer);
-    *status = show_environment(steer, scene);
-    return true;
-}
-
-static void steer_apply_environment(const struct steer *steer,
-                                    struct glint_scene *scene)
-{
-    if (n_environments(steer) > 0)
-        show_environment(steer, scene);
+    return show_environment(steer, scene);
 }
 
 /* Sets KIND to the kind of objects called NAME; returns false if there is none,
@@ -142,28 +119,20 @@ static bool names_kind(const struct steer *s, const struct control_line *line,
            kind_of(s, line->name[0], kind);
 }
 
-/* Checks, and obeys, what LINE says of a motion or a free
- * camera; returns false if it is about something else. *STATUS: as
- * steer_check(), and GLINT_E_ARGUMENT. */
-static bool steer_check_motion(const struct steer *steer,
-                               const struct control_line *line,
-                               const char *where, struct glint_error *error,
-                               enum glint_status *status)
+static enum glint_status check_sensor(const struct steer *steer,
+                                      const struct control_line *line,
+                                      const char *where,
+                                      struct glint_error *error)
 {
     const struct glint_scene_motion *const m = steer->model.motion;
-    enum glint_scene_kind kind;
     int n = 0;
 
-    *status = GLINT_OK;
     if (m)
         n = (int)((const struct glint_motion_header *)(const void *)(m + 1))
                 ->n_sensors;
-    if (line->verb == CONTROL_SENSOR && line->v[0] > n)
-        *status = control_fail(error, where, line->column,
-                               "the scene's motion has %d sensors", n);
-    return line->verb == CONTROL_SENSOR || line->verb == CONTROL_SCENE ||
-           line->verb == CONTROL_WALK || line->verb == CONTROL_LOOK ||
-           names_kind(steer, line, &kind);
+    return line->v[0] > n ? control_fail(error, where, line->column,
+                                         "the scene's motion has %d sensors", n)
+                          : GLINT_OK;
 }
 
 /* -------------------------------------------------------------------- camera
@@ -201,8 +170,8 @@ static void set_from(const struct steer_orbit *o, double from[3])
 
 /* Sets at and axes of CAMERA to where the orbit has it. GLINT_E_ARGUMENT: out
  * of range. */
-static enum glint_status steer_orbit_camera(const struct steer *steer,
-                                            struct glint_scene_camera *camera)
+static enum glint_status orbit_camera(const struct steer *steer,
+                                      struct glint_scene_camera *camera)
 {
     const struct steer *const s = steer;
     const double yaw = s->orbit.yaw_deg * RADIAN;
@@ -238,7 +207,7 @@ static enum glint_status take_free(struct steer *s, struct glint_scene *scene,
     enum glint_status status = GLINT_OK;
 
     if (s->orbit.is_there)
-        status = steer_orbit_camera(s, c);
+        status = orbit_camera(s, c);
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < 3; i++)
             axis[k][i] = c->axis_q30[k][i] * 0x1p-30;
@@ -312,25 +281,7 @@ static enum glint_status take_kind(struct steer *s, struct glint_scene *scene,
     return status;
 }
 
-static bool steer_take_motion(struct steer *steer, struct glint_scene *scene,
-                              const struct control_line *line,
-                              enum glint_status *status)
-{
-    enum glint_scene_kind kind;
-
-    if (line->verb == CONTROL_SENSOR || line->verb == CONTROL_SCENE)
-        *status = take_sensor(steer, scene, line);
-    else if (line->verb == CONTROL_WALK || line->verb == CONTROL_LOOK)
-        *status = take_free(steer, scene, line);
-    else if (names_kind(steer, line, &kind))
-        *status = take_kind(steer, scene, line, kind);
-    else
-        return false;
-    return true;
-}
-
-static void steer_apply_motion(const struct steer *steer,
-                               struct glint_scene *scene)
+static void apply_motion(const struct steer *steer, struct glint_scene *scene)
 {
     for (int i = 0; steer->model.motion && i < GLINT_KINDS; i++) {
         const struct steer_kind *const k = &steer->kind[i];
@@ -398,7 +349,7 @@ enum glint_status steer_open(struct steer *steer,
         steer_close(steer);
         return GLINT_E_MEMORY;
     }
-    steer_open_environments(steer);
+    open_environments(steer);
     for (int i = 0; i < n_objects(steer); i++)
         steer->thing[i] = (struct steer_thing){!model->object[i].hidden,
                                                (int)model->object[i].material,
@@ -484,12 +435,23 @@ enum glint_status steer_check(const struct steer *steer,
                               const char *where, struct glint_error *error)
 {
     const bool is_set = is_of_material(line) && *line->name[0];
-    int index[2];
+    enum glint_scene_kind kind;
     enum glint_status status;
+    int index[2];
 
-    if (steer_check_motion(steer, line, where, error, &status) ||
-        steer_check_environment(steer, line, where, error, &status))
-        return status;
+    switch (line->verb) {
+    case CONTROL_SENSOR:
+        return check_sensor(steer, line, where, error);
+    case CONTROL_TURN:
+    case CONTROL_SCALE:
+    case CONTROL_MAP:
+    case CONTROL_NEXT_MAP:
+        return check_environment(steer, line, where, error);
+    default:
+        break;
+    }
+    if (names_kind(steer, line, &kind))
+        return GLINT_OK;
     status = find_all(steer, line, where, error, index);
     if (status != GLINT_OK)
         return status;
@@ -512,7 +474,7 @@ static enum glint_status apply_orbit(const struct steer *s,
                                      struct glint_scene *scene)
 {
     struct glint_scene_camera c;
-    const enum glint_status status = steer_orbit_camera(s, &c);
+    const enum glint_status status = orbit_camera(s, &c);
 
     return status == GLINT_OK
                ? glint_scene_set_camera(scene, c.at,
@@ -710,12 +672,36 @@ static enum glint_status take_size(struct steer *s, struct glint_scene *scene,
 
 static enum glint_status obey(struct steer *s, struct glint_scene *scene,
                               const struct control_line *line,
-                              const int index[2])
+                              const char *where, struct glint_error *error)
 {
+    enum glint_scene_kind kind;
+    enum glint_status status;
+    int index[2];
+
     switch (line->verb) {
+    case CONTROL_SENSOR:
+    case CONTROL_SCENE:
+        return take_sensor(s, scene, line);
+    case CONTROL_WALK:
+    case CONTROL_LOOK:
+        return take_free(s, scene, line);
+    case CONTROL_TURN:
+    case CONTROL_SCALE:
+    case CONTROL_MAP:
+    case CONTROL_NEXT_MAP:
+        return take_environment(s, scene, line);
     case CONTROL_ORBIT:
     case CONTROL_DISTANCE:
         return take_camera(s, scene, line);
+    default:
+        break;
+    }
+    if (names_kind(s, line, &kind))
+        return take_kind(s, scene, line, kind);
+    status = find_all(s, line, where, error, index);
+    if (status != GLINT_OK)
+        return status;
+    switch (line->verb) {
     case CONTROL_ALPHA:
     case CONTROL_COLOUR:
     case CONTROL_DIFFUSE:
@@ -738,17 +724,11 @@ enum glint_status steer_take(struct steer *steer, struct glint_scene *scene,
                              const struct control_line *line, const char *where,
                              struct glint_error *error)
 {
-    int index[2];
     enum glint_status status = steer_check(steer, line, where, error);
 
     if (status != GLINT_OK)
         return line->is_change ? GLINT_OK : status;
-    if (!steer_take_motion(steer, scene, line, &status) &&
-        !steer_take_environment(steer, scene, line, &status)) {
-        status = find_all(steer, line, where, error, index);
-        if (status == GLINT_OK)
-            status = obey(steer, scene, line, index);
-    }
+    status = obey(steer, scene, line, where, error);
     if (line->is_change)
         return GLINT_OK;
     if (status == GLINT_E_ARGUMENT)
@@ -772,8 +752,9 @@ void steer_apply(const struct steer *steer, struct glint_scene *scene)
     }
     for (int i = 0; i < n_materials(steer); i++)
         glint_scene_set_look(scene, i, &steer->look[i]);
-    steer_apply_environment(steer, scene);
-    steer_apply_motion(steer, scene);
+    if (n_environments(steer) > 0)
+        show_environment(steer, scene);
+    apply_motion(steer, scene);
     if (steer->orbit.is_there)
         apply_orbit(steer, scene);
 }

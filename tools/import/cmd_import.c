@@ -6,13 +6,8 @@
 #include <string.h>
 
 #include "overlay/apart.h"
-#include "import/decode.h"
+#include "import/imported.h"
 #include "help/values.h"
-#include "options/command_line.h"
-#include "options/json_writer.h"
-#include "options/tool.h"
-#include "posix/input.h"
-#include "posix/output.h"
 
 static const char help[] =
     "glint import FILE -o NAME.lens [--strict] [--format F]\n"

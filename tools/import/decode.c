@@ -1,8 +1,11 @@
-/* SPDX-License-Identifier: MIT */
-#include "import/decode.h"
-
+/* SPDX-License-Identifier: MIT
+ *
+ * Which format a file has, and its bytes as text.
+ */
 #include <string.h>
 #include <strings.h>
+
+#include "import/imported.h"
 
 static const struct import_format formats[] = {
     {"zmx", ".zmx", import_zmx},

@@ -33,11 +33,11 @@ static bool take_row(struct imported *lens, const struct lines *l)
     if (!s)
         return false;
     s->stop = lines_is(l, "stop");
-    if ((!s->stop && !lines_number(lens, l, 0, "radius", &s->radius)) ||
-        !lines_number(lens, l, 1, "thickness", &s->thickness) ||
-        !lines_number(lens, l, 2, "index", &s->nd) ||
-        !lines_number(lens, l, 3, "Abbe number", &s->vd) ||
-        !lines_number(lens, l, 4, "semi-diameter", &s->semi))
+    if ((!s->stop && !lines_number(l, 0, "radius", &s->radius)) ||
+        !lines_number(l, 1, "thickness", &s->thickness) ||
+        !lines_number(l, 2, "index", &s->nd) ||
+        !lines_number(l, 3, "Abbe number", &s->vd) ||
+        !lines_number(l, 4, "semi-diameter", &s->semi))
         return false;
     if (s->nd == 1)
         s->vd = 0;
@@ -91,8 +91,7 @@ bool import_flaresim(struct imported *lens, const char *text, size_t bytes)
         else if (lines_is(&lines, "name:"))
             snprintf(lens->title, sizeof lens->title, "%.230s", lines.rest);
         else if (lines_is(&lines, "focal_length:"))
-            good =
-                lines_number(lens, &lines, 1, "focal length", &lens->nominal);
+            good = lines_number(&lines, 1, "focal length", &lens->nominal);
         else if (lines_is(&lines, "squeeze:"))
             good = true;
         else if (lines_is(&lines, "surfaces:"))

@@ -3,18 +3,17 @@
  * imported.h - a lens as another program's file has it, before it is a table.
  *
  *     imported_begin(&lens, "x.zmx", strict);
- *     import_zmx(&lens, text, bytes);                    or another reader
- *     text = imported_finish(&lens, &bytes);             a .lens table
+ *     text = import_read(&lens, import_format_of("x.zmx"), data, &bytes);
  *
- * Readers write down what the file says, in its own units; imported_finish()
- * completes it. Whatever is guessed or left out is told by a note with its line
- * number; STRICT refuses at the end, so that one run tells all of it.
+ * Readers write down what the file says, in its own units, which is then
+ * completed to a .lens table. Whatever is guessed or left out is told by a note
+ * with its line number; STRICT refuses at the end, so that one run tells all of
+ * it.
  */
 #ifndef GLINT_TOOLS_IMPORT_IMPORTED_H
 #define GLINT_TOOLS_IMPORT_IMPORTED_H
 
-#include <stdbool.h>
-#include <stddef.h>
+#include <stdint.h>
 
 #include "glint/prescription.h"
 
@@ -65,6 +64,21 @@ struct imported {
     struct imported_note note[IMPORT_NOTES];
 };
 
+/* Tables may not overlap within this share of the semi-diameters. */
+#define IMPORT_FREE 0.9
+
+/* Reads TEXT[BYTES] into LENS, in the file's own units. Returns false after an
+ * error. */
+typedef bool import_read_fn(struct imported *lens, const char *text,
+                            size_t bytes);
+
+/* A format: its name for --format, the end of its files' names, with the dot,
+ * if it is known by that, and its reader. */
+struct import_format {
+    const char *name, *end;
+    import_read_fn *read;
+};
+
 void imported_begin(struct imported *lens, const char *file, bool strict);
 
 /* Sets the error unless there is one, and returns false. LINE 0 is the whole
@@ -104,37 +118,32 @@ bool imported_choose(struct imported *lens, int line, int n, int *at);
 /* Adds a surface of air; NULL, after an error, if there are too many. */
 struct imported_surface *imported_add(struct imported *lens, int line);
 
-/* Completes LENS and returns it as a table, in memory of malloc(); NULL after
- * an error. */
-char *imported_finish(struct imported *lens, size_t *bytes);
-
-/* Tables may not overlap within this share of the semi-diameters. */
-#define IMPORT_FREE 0.9
-
 /* Returns the distance from S to the next surface at the height H. */
 double imported_gap(const struct imported_surface *s, double h);
-
-/* Sets the medium behind all surfaces and its index, by names and numbers. */
-bool imported_settle_media(struct imported *lens);
 
 /* Sorts notes by their lines; those of the whole file come last. */
 void imported_sort_notes(struct imported *lens);
 
-/* Does what there is to do to LENS before it can be written down. */
-bool imported_complete(struct imported *lens);
+/* Completes LENS and returns it as a table, in memory of malloc(); NULL after
+ * an error. */
+char *imported_finish(struct imported *lens, size_t *bytes);
 
 /* ------------------------------------------------------------------ readers */
 
-bool import_zmx(struct imported *lens, const char *text, size_t bytes);
-bool import_pbrt(struct imported *lens, const char *text, size_t bytes);
-bool import_flaresim(struct imported *lens, const char *text, size_t bytes);
-bool import_seq(struct imported *lens, const char *text, size_t bytes);
-bool import_oslo(struct imported *lens, const char *text, size_t bytes);
-bool import_openlensflare(struct imported *lens, const char *text,
-                          size_t bytes);
-bool import_polyflare(struct imported *lens, const char *text, size_t bytes);
-bool import_opticalbench(struct imported *lens, const char *text, size_t bytes);
-bool import_realflare(struct imported *lens, const char *text, size_t bytes);
-bool import_lentil(struct imported *lens, const char *text, size_t bytes);
+import_read_fn import_zmx, import_pbrt, import_flaresim, import_seq,
+    import_oslo, import_openlensflare, import_polyflare, import_opticalbench,
+    import_realflare, import_lentil;
+
+/* Returns the Kth format, from 0, or NULL if there are no more. */
+const struct import_format *import_format_at(int k);
+
+/* Returns the format of the file NAME by its end, or NULL. A .lens and a .dat
+ * are FlareSim's and pbrt's. */
+const struct import_format *import_format_of(const char *name);
+
+/* Reads DATA as FORMAT, completes it and returns it as a table, in memory of
+ * malloc(); NULL after an error. DATA is decoded in place. */
+char *import_read(struct imported *lens, const struct import_format *format,
+                  uint8_t *data, size_t *bytes);
 
 #endif

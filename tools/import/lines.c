@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "import/lines.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "options/tool.h"
@@ -120,14 +121,14 @@ bool lines_next(struct lines *l, char comment)
     return false;
 }
 
-bool lines_number(struct imported *lens, const struct lines *l, int k,
-                  const char *what, double *value)
+bool lines_number(const struct lines *l, int k, const char *what, double *value)
 {
     if (k >= l->n)
-        return imported_fail(lens, l->number, "%s is missing", what);
+        return imported_fail(l->lens, l->number, "%s is missing", what);
     if (!tool_number(l->word[k], value))
         return imported_fail(
-            lens, l->number, "%s '%.40s' is not a number%s", what, l->word[k],
+            l->lens, l->number, "%s '%.40s' is not a number%s", what,
+            l->word[k],
             strchr(l->word[k], ',') ? ": decimals follow a point" : "");
     return true;
 }
@@ -135,4 +136,30 @@ bool lines_number(struct imported *lens, const struct lines *l, int k,
 bool lines_is(const struct lines *l, const char *word)
 {
     return strcmp(l->word[0], word) == 0;
+}
+
+bool lines_curvature(const struct lines *l, int k, double *radius)
+{
+    if (!lines_number(l, k, "curvature", radius))
+        return false;
+    *radius = *radius == 0 ? 0 : 1 / *radius;
+    return true;
+}
+
+bool lines_fields(const struct lines *l, double *most)
+{
+    double value;
+
+    for (int k = 1; k < l->n; k++) {
+        if (!lines_number(l, k, "field", &value))
+            return false;
+        *most = fmax(*most, fabs(value));
+    }
+    return true;
+}
+
+bool lines_mirror(const struct lines *l)
+{
+    return imported_fail(l->lens, l->number,
+                         "a mirror: glint has lenses alone");
 }

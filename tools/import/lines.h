@@ -35,10 +35,20 @@ bool lines_next(struct lines *lines, char comment);
 
 /* Sets VALUE to word K. Returns false, after an error that says WHAT it is, if
  * there is none or it is no number. */
-bool lines_number(struct imported *lens, const struct lines *lines, int k,
-                  const char *what, double *value);
+bool lines_number(const struct lines *lines, int k, const char *what,
+                  double *value);
 
 /* Returns whether the first word is WORD. */
 bool lines_is(const struct lines *lines, const char *word);
+
+/* Sets RADIUS to that of the curvature in word K. */
+bool lines_curvature(const struct lines *lines, int k, double *radius);
+
+/* Sets MOST to the largest of it and the sizes of the numbers behind the first
+ * word. */
+bool lines_fields(const struct lines *lines, double *most);
+
+/* Refuses a mirror. */
+bool lines_mirror(const struct lines *lines);
 
 #endif

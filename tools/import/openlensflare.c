@@ -8,7 +8,6 @@
  */
 #include <expat.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "import/imported.h"

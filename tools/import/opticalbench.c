@@ -12,7 +12,6 @@
  * are like them are passed over.
  */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -124,7 +123,7 @@ static bool take_diameter(struct optical_bench *b, int k, double *value)
     if (!*text || strcasecmp(text, "Infinity") == 0 ||
         strcasecmp(text, "undefined") == 0)
         return true;
-    if (!lines_number(b->lens, &b->lines, k, "diameter", value))
+    if (!lines_number(&b->lines, k, "diameter", value))
         return false;
     *value /= 2;
     return true;
@@ -157,14 +156,13 @@ static bool take_row(struct optical_bench *b)
     s->stop = strcasecmp(radius, "AS") == 0;
     if (!s->stop && strcasecmp(radius, "CG") != 0 &&
         strcasecmp(radius, "FS") != 0 && strcasecmp(radius, "Infinity") != 0 &&
-        !lines_number(b->lens, &b->lines, 1, "radius", &s->radius))
+        !lines_number(&b->lines, 1, "radius", &s->radius))
         return false;
     if (!take_thickness(b, s) || !take_diameter(b, 4, &s->semi))
         return false;
     if (*word(b, 3)) {
-        if (!lines_number(b->lens, &b->lines, 3, "index", &s->nd) ||
-            (*word(b, 5) &&
-             !lines_number(b->lens, &b->lines, 5, "Abbe number", &s->vd)))
+        if (!lines_number(&b->lines, 3, "index", &s->nd) ||
+            (*word(b, 5) && !lines_number(&b->lines, 5, "Abbe number", &s->vd)))
             return false;
     } else if (*word(b, 6))
         snprintf(s->glass, sizeof s->glass, "%.31s", word(b, 6));
@@ -175,8 +173,7 @@ static bool take_row(struct optical_bench *b)
 static bool take_constant(struct optical_bench *b)
 {
     if (strcasecmp(word(b, 0), "AsphericalOddCount") == 0)
-        return lines_number(b->lens, &b->lines, 1, "number of odd terms",
-                            &b->odd);
+        return lines_number(&b->lines, 1, "number of odd terms", &b->odd);
     if (strcasecmp(word(b, 0), "AsphericalA2") == 0)
         b->a2 = 1;
     return true;
@@ -190,7 +187,7 @@ static bool take_term(struct optical_bench *b, struct imported_surface *s,
 
     if (!*word(b, k))
         return true;
-    if (!lines_number(b->lens, &b->lines, k, "aspheric term", &value))
+    if (!lines_number(&b->lines, k, "aspheric term", &value))
         return false;
     if (value == 0)
         return true;
@@ -220,14 +217,13 @@ static bool take_asphere(struct optical_bench *b)
                              "%g odd terms: only even ones are read", b->odd);
     if (strcasecmp(word(b, 1), "Infinity") == 0)
         radius = 0;
-    else if (!lines_number(b->lens, &b->lines, 1, "radius", &radius))
+    else if (!lines_number(&b->lines, 1, "radius", &radius))
         return false;
     if (fabs(radius - s->radius) > 1e-3 * fabs(s->radius))
         imported_note(b->lens, b->lines.number,
                       "radius %g, but %g in [lens data], which is taken",
                       radius, s->radius);
-    if (*word(b, 2) &&
-        !lines_number(b->lens, &b->lines, 2, "conic", &s->shape.conic))
+    if (*word(b, 2) && !lines_number(&b->lines, 2, "conic", &s->shape.conic))
         return false;
     for (int k = 3; k < b->lines.n; k++)
         if (!take_term(b, s, k, k - 3 + first))

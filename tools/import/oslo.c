@@ -15,7 +15,6 @@ struct oslo {
     struct imported *lens;
     struct lines lines;
     struct imported_surface *s;
-    int surfaces; /* that have begun, with the object */
     bool ended;
 };
 
@@ -26,8 +25,7 @@ static bool take_glass(struct oslo *o)
     if (l->n < 2)
         return imported_fail(o->lens, l->number, "the glass has no name");
     if (strncmp(l->word[1], "REFL", 4) == 0)
-        return imported_fail(o->lens, l->number,
-                             "a mirror: glint has lenses alone");
+        return lines_mirror(l);
     if (strcmp(l->word[1], "AIR") != 0)
         snprintf(o->s->glass, sizeof o->s->glass, "%s", l->word[1]);
     /* A glass of one's own has its indices behind its name. */
@@ -35,7 +33,7 @@ static bool take_glass(struct oslo *o)
         double n[3];
 
         for (int i = 0; i < 3; i++)
-            if (!lines_number(o->lens, l, 2 + i, "index", &n[i]))
+            if (!lines_number(l, 2 + i, "index", &n[i]))
                 return false;
         o->s->nd = n[0];
         o->s->vd = n[1] != n[2] ? (n[0] - 1) / (n[1] - n[2]) : 0;
@@ -53,8 +51,7 @@ static bool take_other(struct oslo *o)
     const struct lines *l = &o->lines;
 
     if (lines_is(l, "RFL") || lines_is(l, "RFH"))
-        return imported_fail(o->lens, l->number,
-                             "a mirror: glint has lenses alone");
+        return lines_mirror(l);
     for (size_t i = 0; i < sizeof shaping / sizeof *shaping; i++)
         if (lines_is(l, shaping[i]))
             return imported_fail(o->lens, l->number,
@@ -71,18 +68,13 @@ static bool take_surface(struct oslo *o)
     struct glint_shape *shape = &o->s->shape;
 
     if (lines_is(l, "RD"))
-        return lines_number(o->lens, l, 1, "radius", &o->s->radius);
-    if (lines_is(l, "CV")) {
-        if (!lines_number(o->lens, l, 1, "curvature", &o->s->radius))
-            return false;
-        o->s->radius = o->s->radius == 0 ? 0 : 1 / o->s->radius;
-        return true;
-    }
+        return lines_number(l, 1, "radius", &o->s->radius);
+    if (lines_is(l, "CV"))
+        return lines_curvature(l, 1, &o->s->radius);
     if (lines_is(l, "TH"))
-        return lines_number(o->lens, l, 1, "thickness", &o->s->thickness);
+        return lines_number(l, 1, "thickness", &o->s->thickness);
     if (lines_is(l, "AP"))
-        return lines_number(o->lens, l, l->n > 2 ? 2 : 1, "semi-diameter",
-                            &o->s->semi);
+        return lines_number(l, l->n > 2 ? 2 : 1, "semi-diameter", &o->s->semi);
     if (lines_is(l, "GLA"))
         return take_glass(o);
     if (lines_is(l, "AIR"))
@@ -90,10 +82,10 @@ static bool take_surface(struct oslo *o)
     if (lines_is(l, "AST"))
         return o->s->stop = true;
     if (lines_is(l, "CC"))
-        return lines_number(o->lens, l, 1, "conic", &shape->conic);
+        return lines_number(l, 1, "conic", &shape->conic);
     if (strlen(l->word[0]) == 2 && l->word[0][0] == 'A' &&
         l->word[0][1] >= 'D' && l->word[0][1] <= 'H')
-        return lines_number(o->lens, l, 1, "aspheric term",
+        return lines_number(l, 1, "aspheric term",
                             &shape->term[l->word[0][1] - 'D']);
     return take_other(o);
 }
@@ -106,16 +98,16 @@ static bool take_head(struct oslo *o)
     if (lines_is(l, "LEN") && l->n > 2)
         snprintf(o->lens->title, sizeof o->lens->title, "%s", l->word[2]);
     if (lines_is(l, "UNI"))
-        return lines_number(o->lens, l, 1, "unit", &value) &&
+        return lines_number(l, 1, "unit", &value) &&
                imported_unit(o->lens, l->number, value);
     if (lines_is(l, "EBR")) {
-        if (!lines_number(o->lens, l, 1, "beam radius", &o->lens->pupil))
+        if (!lines_number(l, 1, "beam radius", &o->lens->pupil))
             return false;
         o->lens->pupil *= 2;
         return true;
     }
     if (lines_is(l, "ANG"))
-        return lines_number(o->lens, l, 1, "field", &o->lens->field_deg);
+        return lines_number(l, 1, "field", &o->lens->field_deg);
     return true;
 }
 
@@ -133,7 +125,7 @@ static bool take(struct oslo *o)
     if (!o->s && lines_is(l, "TH")) {
         double object;
 
-        if (!lines_number(o->lens, l, 1, "distance of the object", &object))
+        if (!lines_number(l, 1, "distance of the object", &object))
             return false;
         imported_object(o->lens, l->number, object);
         return true;

@@ -19,10 +19,10 @@ static bool take(struct imported *lens, const struct lines *l)
                              "'%.40s' is more than radius, distance, index and "
                              "diameter",
                              l->word[4]);
-    if (!lines_number(lens, l, 0, "radius", &s->radius) ||
-        !lines_number(lens, l, 1, "distance", &s->thickness) ||
-        !lines_number(lens, l, 2, "index", &index) ||
-        !lines_number(lens, l, 3, "diameter", &diameter))
+    if (!lines_number(l, 0, "radius", &s->radius) ||
+        !lines_number(l, 1, "distance", &s->thickness) ||
+        !lines_number(l, 2, "index", &index) ||
+        !lines_number(l, 3, "diameter", &diameter))
         return false;
     s->stop = s->radius == 0 && index == 0;
     s->nd = index == 0 ? 1 : index;

@@ -13,7 +13,6 @@
  * '#' at the start of a line.
  */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -65,7 +64,7 @@ static bool take_head(struct polyflare *p)
         if (l->n > 1 + POSITIONS)
             return too_many(p);
         for (int k = 1; k < l->n; k++)
-            if (!lines_number(p->lens, l, k, l->word[0] + 1,
+            if (!lines_number(l, k, l->word[0] + 1,
                               focal ? &p->focal[k - 1] : &p->field[k - 1]))
                 return false;
         return true;
@@ -73,7 +72,7 @@ static bool take_head(struct polyflare *p)
     if (!lines_is(l, "#!scale"))
         return strncmp(l->word[0], "#!", 2) != 0 ||
                imported_unread(p->lens, l->number, l->word[0]);
-    return lines_number(p->lens, l, 1, "scale", &p->lens->unit_mm) &&
+    return lines_number(l, 1, "scale", &p->lens->unit_mm) &&
            (p->lens->unit_mm > 0 ||
             imported_fail(p->lens, l->number, "scale %g is no size",
                           p->lens->unit_mm));
@@ -159,13 +158,13 @@ static bool take_medium(struct polyflare *p, struct imported_surface *s)
         s->nd = before->nd;
         s->vd = before->vd;
     } else if (!s->stop && strcasecmp(medium, "air") != 0) {
-        if (!lines_number(p->lens, l, 3, "index", &s->nd) ||
-            !lines_number(p->lens, l, 4, "Abbe number", &s->vd))
+        if (!lines_number(l, 3, "index", &s->nd) ||
+            !lines_number(l, 4, "Abbe number", &s->vd))
             return false;
         k = 5;
     }
     if (k < l->n && *l->word[k] != '#' &&
-        !lines_number(p->lens, l, k++, "semi-diameter", &s->semi))
+        !lines_number(l, k++, "semi-diameter", &s->semi))
         return false;
     for (; k < l->n; k++)
         if (strncmp(l->word[k], "#!aspheric=", 11) == 0)
@@ -177,7 +176,7 @@ static bool take_row(struct polyflare *p)
 {
     struct imported_surface *s = imported_add(p->lens, p->lines.number);
 
-    return s && lines_number(p->lens, &p->lines, 0, "radius", &s->radius) &&
+    return s && lines_number(&p->lines, 0, "radius", &s->radius) &&
            take_thickness(p, s) && take_medium(p, s);
 }
 

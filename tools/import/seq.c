@@ -53,8 +53,7 @@ static bool take_glass(struct seq *q, const char *word)
     if (strcasecmp(word, "AIR") == 0)
         return true;
     if (strncasecmp(word, "REFL", 4) == 0)
-        return imported_fail(q->lens, q->lines.number,
-                             "a mirror: glint has lenses alone");
+        return lines_mirror(&q->lines);
     if (!numbered_glass(q->s, word))
         snprintf(q->s->glass, sizeof q->s->glass, "%s", word);
     return true;
@@ -63,13 +62,8 @@ static bool take_glass(struct seq *q, const char *word)
 /* Sets the radius of the surface to word K, a curvature if that is said. */
 static bool take_radius(struct seq *q, int k, bool curvature)
 {
-    double value;
-
-    if (!lines_number(q->lens, &q->lines, k, curvature ? "curvature" : "radius",
-                      &value))
-        return false;
-    q->s->radius = value == 0 || !curvature ? value : 1 / value;
-    return true;
+    return curvature ? lines_curvature(&q->lines, k, &q->s->radius)
+                     : lines_number(&q->lines, k, "radius", &q->s->radius);
 }
 
 /* The thickness behind the image says by how much it is out of focus. */
@@ -80,8 +74,8 @@ static bool take_image(struct seq *q)
 
     q->image = true;
     if (q->lens->n == 0 ||
-        (l->n > 1 && !lines_number(q->lens, l, 1, "curvature", &bend)) ||
-        (l->n > 2 && !lines_number(q->lens, l, 2, "defocus", &defocus)))
+        (l->n > 1 && !lines_number(l, 1, "curvature", &bend)) ||
+        (l->n > 2 && !lines_number(l, 2, "defocus", &defocus)))
         return q->lens->n == 0;
     imported_image(q->lens, l->number,
                    bend == 0 || !q->curvatures ? bend : 1 / bend, defocus);
@@ -99,14 +93,14 @@ static bool start_surface(struct seq *q)
             return take_image(q);
         if (l->n < 3)
             return true;
-        if (!lines_number(q->lens, l, 2, "distance of the object", &object))
+        if (!lines_number(l, 2, "distance of the object", &object))
             return false;
         imported_object(q->lens, l->number, object);
         return true;
     }
     q->s = imported_add(q->lens, l->number);
     return q->s && take_radius(q, 1, q->curvatures) &&
-           lines_number(q->lens, l, 2, "thickness", &q->s->thickness) &&
+           lines_number(l, 2, "thickness", &q->s->thickness) &&
            (l->n < 4 || take_glass(q, l->word[3]));
 }
 
@@ -124,7 +118,7 @@ static bool take_aperture(struct seq *q)
                              l->word[0], l->word[1]);
     if (l->n > 1 && strcasecmp(l->word[1], "EDG") == 0 && q->s->semi > 0)
         return true;
-    if (!lines_number(q->lens, l, k, "semi-diameter", &value))
+    if (!lines_number(l, k, "semi-diameter", &value))
         return false;
     q->s->semi = value;
     return true;
@@ -141,15 +135,15 @@ static bool take_number(struct seq *q, bool *done)
     if (strcmp(word, "CUY") == 0 || strcmp(word, "RDY") == 0)
         return take_radius(q, 1, *word == 'C');
     if (strcmp(word, "THI") == 0)
-        return lines_number(q->lens, l, 1, "thickness", &q->s->thickness);
+        return lines_number(l, 1, "thickness", &q->s->thickness);
     if (strcmp(word, "GLA") == 0)
         return l->n > 1
                    ? take_glass(q, l->word[1])
                    : imported_fail(q->lens, l->number, "the glass has no name");
     if (strcmp(word, "K") == 0)
-        return lines_number(q->lens, l, 1, "conic", &q->s->shape.conic);
+        return lines_number(l, 1, "conic", &q->s->shape.conic);
     if (*word && !word[1] && strchr(terms, *word))
-        return lines_number(q->lens, l, 1, "aspheric term",
+        return lines_number(l, 1, "aspheric term",
                             &q->s->shape.term[strchr(terms, *word) - terms]);
     *done = false;
     return true;
@@ -202,18 +196,6 @@ static bool take_dimension(struct seq *q)
                                        : 1);
 }
 
-static bool take_fields(struct seq *q, double *most)
-{
-    double value;
-
-    for (int k = 1; k < q->lines.n; k++) {
-        if (!lines_number(q->lens, &q->lines, k, "field", &value))
-            return false;
-        *most = fmax(*most, fabs(value));
-    }
-    return true;
-}
-
 static bool take_head(struct seq *q)
 {
     const struct lines *l = &q->lines;
@@ -230,13 +212,13 @@ static bool take_head(struct seq *q)
     if (lines_is(l, "DIM"))
         return take_dimension(q);
     if (lines_is(l, "EPD"))
-        return lines_number(q->lens, l, 1, "entrance pupil", &q->lens->pupil);
+        return lines_number(l, 1, "entrance pupil", &q->lens->pupil);
     if (lines_is(l, "FNO"))
-        return lines_number(q->lens, l, 1, "f-number", &q->lens->f_number);
+        return lines_number(l, 1, "f-number", &q->lens->f_number);
     if (lines_is(l, "YAN") || lines_is(l, "XAN"))
-        return take_fields(q, &q->lens->field_deg);
+        return lines_fields(l, &q->lens->field_deg);
     if (lines_is(l, "YIM") || lines_is(l, "YRI") || lines_is(l, "XIM"))
-        return take_fields(q, &q->lens->height);
+        return lines_fields(l, &q->lens->height);
     if (lines_is(l, "PRV"))
         return imported_note(q->lens, l->number,
                              "glasses of the file's own (PRV) are not read: "

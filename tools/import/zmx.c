@@ -43,10 +43,9 @@ static bool take_glass(struct zmx *z)
     if (l->n < 2)
         return imported_fail(z->lens, l->number, "the glass has no name");
     if (strcmp(l->word[1], "MIRROR") == 0)
-        return imported_fail(z->lens, l->number,
-                             "a mirror: glint has lenses alone");
-    if (l->n > 5 && (!lines_number(z->lens, l, 4, "index", &nd) ||
-                     !lines_number(z->lens, l, 5, "Abbe number", &vd)))
+        return lines_mirror(l);
+    if (l->n > 5 && (!lines_number(l, 4, "index", &nd) ||
+                     !lines_number(l, 5, "Abbe number", &vd)))
         return false;
     if (strncmp(l->word[1], "___", 3) != 0) {
         snprintf(z->s->glass, sizeof z->s->glass, "%s", l->word[1]);
@@ -65,8 +64,8 @@ static bool take_parameter(struct zmx *z)
 
     if (!z->even)
         return true;
-    if (!lines_number(z->lens, &z->lines, 1, "number of the term", &k) ||
-        !lines_number(z->lens, &z->lines, 2, "aspheric term", &value))
+    if (!lines_number(&z->lines, 1, "number of the term", &k) ||
+        !lines_number(&z->lines, 2, "aspheric term", &value))
         return false;
     if (value == 0)
         return true;
@@ -84,31 +83,26 @@ static bool take_surface(struct zmx *z)
     static const char *const ignored[] = {"HIDE", "MIRR", "SLAB", "POPS",
                                           "FIMP", "MEMA", "FLAP", "COMM"};
     const struct lines *l = &z->lines;
-    double value;
 
     if (lines_is(l, "TYPE"))
         return take_type(z);
     if (lines_is(l, "STOP"))
         return z->s->stop = true;
-    if (lines_is(l, "CURV")) {
-        if (!lines_number(z->lens, l, 1, "curvature", &value))
-            return false;
-        z->s->radius = value == 0 ? 0 : 1 / value;
-        return true;
-    }
+    if (lines_is(l, "CURV"))
+        return lines_curvature(l, 1, &z->s->radius);
     if (lines_is(l, "DISZ")) {
         if (l->n > 1 && strcmp(l->word[1], "INFINITY") == 0) {
             z->s->thickness = (double)INFINITY;
             return true;
         }
-        return lines_number(z->lens, l, 1, "thickness", &z->s->thickness);
+        return lines_number(l, 1, "thickness", &z->s->thickness);
     }
     if (lines_is(l, "GLAS"))
         return take_glass(z);
     if (lines_is(l, "DIAM"))
-        return lines_number(z->lens, l, 1, "semi-diameter", &z->s->semi);
+        return lines_number(l, 1, "semi-diameter", &z->s->semi);
     if (lines_is(l, "CONI"))
-        return lines_number(z->lens, l, 1, "conic", &z->s->shape.conic);
+        return lines_number(l, 1, "conic", &z->s->shape.conic);
     if (lines_is(l, "PARM"))
         return take_parameter(z);
     for (size_t i = 0; i < sizeof ignored / sizeof *ignored; i++)
@@ -133,18 +127,6 @@ static bool take_unit(struct zmx *z)
                          "unit '%s' is none of MM, CM, IN, METER", word);
 }
 
-static bool take_fields(struct zmx *z)
-{
-    double value;
-
-    for (int k = 1; k < z->lines.n; k++) {
-        if (!lines_number(z->lens, &z->lines, k, "field", &value))
-            return false;
-        z->field = fmax(z->field, fabs(value));
-    }
-    return true;
-}
-
 static bool take_head(struct zmx *z)
 {
     const struct lines *l = &z->lines;
@@ -161,16 +143,17 @@ static bool take_head(struct zmx *z)
     if (lines_is(l, "UNIT"))
         return take_unit(z);
     if (lines_is(l, "ENPD"))
-        return lines_number(z->lens, l, 1, "entrance pupil", &z->lens->pupil);
+        return lines_number(l, 1, "entrance pupil", &z->lens->pupil);
     if (lines_is(l, "FNUM"))
-        return lines_number(z->lens, l, 1, "f-number", &z->lens->f_number);
+        return lines_number(l, 1, "f-number", &z->lens->f_number);
     if (lines_is(l, "FTYP")) {
-        if (!lines_number(z->lens, l, 1, "type of field", &value))
+        if (!lines_number(l, 1, "type of field", &value))
             return false;
         z->field_type = value >= 0 && value < 10 ? (int)value : 9;
         return true;
     }
-    return !(lines_is(l, "XFLN") || lines_is(l, "YFLN")) || take_fields(z);
+    return !(lines_is(l, "XFLN") || lines_is(l, "YFLN")) ||
+           lines_fields(l, &z->field);
 }
 
 /* Starts a surface; the object is not one. */

@@ -8,12 +8,6 @@
 #include "overlay/apart.h"
 #include "lens_figures/drawing.h"
 #include "model/table_file.h"
-#include "model/zoom_option.h"
-#include "options/json_writer.h"
-#include "model/settings.h"
-#include "options/command_line.h"
-#include "options/tool.h"
-#include "posix/output.h"
 
 static const char help[] =
     "glint draw LENS -o FILE.svg [--ghost K [--angle DEG]] [--rays N]\n"

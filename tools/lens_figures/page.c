@@ -2,9 +2,169 @@
 #include "lens_figures/page.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
+#include "glint/measure.h"
 #include "lab/plots/plot.h"
 #include "lens_figures/drawing.h"
+#include "model/lens_files.h"
+
+enum { LINE_CHARS = 200, PATH_CHARS = 1024 };
+
+/* Copies the cell at *AT, which is after a '|', to CELL without the blanks
+ * about it, and moves *AT behind the next '|'. Returns false if there is none
+ * or it is too long. */
+static bool take_cell(const char **at, char *cell, size_t bytes)
+{
+    const char *from = *at + strspn(*at, " "), *end = strchr(*at, '|');
+    size_t n;
+
+    if (!end)
+        return false;
+    *at = end + 1;
+    if (from > end)
+        from = end;
+    while (end > from && end[-1] == ' ')
+        end--;
+    n = (size_t)(end - from);
+    if (n >= bytes)
+        return false;
+    memcpy(cell, from, n);
+    cell[n] = '\0';
+    return true;
+}
+
+static bool take_row(const char *line, const char *name,
+                     struct measured *measured)
+{
+    char lens[64];
+
+    return *line++ == '|' && take_cell(&line, lens, sizeof lens) &&
+           strcmp(lens, name) == 0 &&
+           take_cell(&line, measured->f_number, sizeof measured->f_number) &&
+           take_cell(&line, measured->seconds, sizeof measured->seconds) &&
+           take_cell(&line, measured->kb, sizeof measured->kb) &&
+           take_cell(&line, measured->ms, sizeof measured->ms);
+}
+
+bool measured_find(const char *name, struct measured *measured)
+{
+    static const char file_name[] = "/figures.md";
+    char path[PATH_CHARS], line[LINE_CHARS];
+    bool found = false;
+
+    for (int i = 0; !found && lens_folder(i, "lenses", path,
+                                          sizeof path - sizeof file_name);
+         i++) {
+        FILE *file = *path ? fopen(strcat(path, file_name), "r") : NULL;
+
+        while (file && !found && fgets(line, sizeof line, file))
+            found = take_row(line, name, measured);
+        if (file)
+            fclose(file);
+    }
+    return found;
+}
+
+enum { ANGLES = 3, WIDE = 168, MOST_HIGH = 168 };
+
+static const double share[ANGLES] = {0.25, 0.5, 0.8};
+
+/* Ghosts are exposed as pictures of them alone are, but no more than so many
+ * times what would show the star beside them: where ghosts are faint it would
+ * fill the picture. */
+#define BRIGHTER 40.0
+
+/* The ghosts, and the star. */
+enum { PARTS = 2 };
+
+/* Returns the angle at SHARE of the half diagonal, by f tan T, which places
+ * lamps in pictures. */
+static double angle_deg(const struct settings *s, double at)
+{
+    const double half =
+        0.5 * hypot(s->lens.film_width_mm, s->lens.film_height_mm);
+
+    return atan(at * half / s->setup.optics.focal_mm) * 180 / GLINT_PI;
+}
+
+static enum glint_status draw(struct glint_frame part[PARTS], double theta_deg,
+                              struct glint_float_image *image, float *star,
+                              FILE *file)
+{
+    const struct glint_lamp lamp = {
+        .theta_deg = theta_deg, .phi_deg = 33, .power = 1, .rgb = {1, 1, 1}};
+    const size_t n = 3 * (size_t)image->width * (size_t)image->height;
+    struct glint_engine_report report;
+    uint8_t *codes;
+    double exposure;
+    enum glint_status status =
+        glint_frame_draw_alone(&part[0], &lamp, 1, 1, image->rgb, &report);
+
+    if (status == GLINT_OK)
+        status = glint_frame_draw_alone(&part[1], &lamp, 1, 1, star, &report);
+    if (status != GLINT_OK)
+        return status;
+    exposure = glint_measure_exposure(image);
+    for (size_t i = 0; i < n; i++)
+        image->rgb[i] += star[i];
+    codes = glint_measure_encode(
+        image, fmin(exposure, BRIGHTER * glint_measure_exposure(image)));
+    if (!codes)
+        return GLINT_E_MEMORY;
+    fprintf(file,
+            "<img alt=\"lamp at %.1f degrees\" title=\"lamp at %.1f degrees\" "
+            "src=\"",
+            theta_deg, theta_deg);
+    html_png(file, codes, image->width, image->height);
+    fputs("\">", file);
+    free(codes);
+    return GLINT_OK;
+}
+
+static int draw_all(const struct tool *tool, struct settings *s, FILE *file)
+{
+    const double tall =
+        ceil(WIDE * s->lens.film_height_mm / s->lens.film_width_mm);
+    struct glint_float_image image = {
+        .width = WIDE, .height = (int)fmin(fmax(tall, 8), MOST_HIGH)};
+    const size_t n = 3 * (size_t)image.width * (size_t)image.height;
+    enum glint_status status = GLINT_E_MEMORY;
+    struct glint_frame part[PARTS] = {{.lens = NULL}, {.lens = NULL}};
+    float *star = calloc(n, sizeof *star);
+    int code = EXIT_OK;
+
+    image.rgb = calloc(n, sizeof *image.rgb);
+    for (int k = 0; k < PARTS && code == EXIT_OK; k++) {
+        s->options.only = k == 0 ? GLINT_ONLY_GHOSTS : GLINT_ONLY_STARBURST;
+        code = settings_frame(
+            tool, s, settings_view(s, image.width, image.height), &part[k]);
+    }
+    if (code == EXIT_OK && image.rgb && star)
+        status = GLINT_OK;
+    for (int i = 0; i < ANGLES && status == GLINT_OK; i++)
+        status = draw(part, angle_deg(s, share[i]), &image, star, file);
+    for (int k = 0; k < PARTS; k++)
+        glint_frame_finish(&part[k]);
+    free(star);
+    free(image.rgb);
+    return code != EXIT_OK || status == GLINT_OK
+               ? code
+               : tool_fail(tool, status, NULL);
+}
+
+int thumbnails_write(const struct tool *tool, struct settings *settings,
+                     const char *name, FILE *file, size_t *model_bytes)
+{
+    int code = settings_open(tool, settings, name);
+
+    *model_bytes = settings->model.bytes;
+    if (code == EXIT_OK)
+        code = draw_all(tool, settings, file);
+    settings_close(settings);
+    return code;
+}
 
 /* Width of a section in units of its own, which the page scales to a card. */
 #define SECTION_PX 560

@@ -6,9 +6,15 @@
 #ifndef GLINT_TOOLS_LENS_FIGURES_PAGE_H
 #define GLINT_TOOLS_LENS_FIGURES_PAGE_H
 
-#include <stdio.h>
+#include "model/settings.h"
 
-#include "glint/bake.h"
+/* Cells of a row of figures.md, which lies beside the tables. */
+struct measured {
+    char f_number[24]; /* that the lens was baked for */
+    char seconds[24];  /* of a processor; "over N" of a bake given up */
+    char kb[24];       /* of the model; "" without one */
+    char ms[24];       /* of a processor, a frame of 1080p; "" without */
+};
 
 struct page_card {
     const char *name;
@@ -18,6 +24,17 @@ struct page_card {
     double corner_deg; /* off the axis, at a corner of the film */
     int n_ghosts;
 };
+
+/* Reads the figures of lens NAME. Returns false if none were measured. */
+bool measured_find(const char *name, struct measured *measured);
+
+/* Writes to FILE an <img> each of the flare of a lamp at 0.25, 0.5 and 0.8 of
+ * the way to the film's corner. SETTINGS are those of a run without options,
+ * NAME is the lens; its model should be baked, or rays are exact. MODEL_BYTES
+ * receives how large that is, 0 if there is none. Returns an exit code, after
+ * printing the reason on failure. */
+int thumbnails_write(const struct tool *tool, struct settings *settings,
+                     const char *name, FILE *file, size_t *model_bytes);
 
 void page_begin(FILE *file);
 

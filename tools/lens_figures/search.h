@@ -5,9 +5,6 @@
 #ifndef GLINT_TOOLS_LENS_FIGURES_SEARCH_H
 #define GLINT_TOOLS_LENS_FIGURES_SEARCH_H
 
-#include <stdbool.h>
-
-#include "glint/bake.h"
 #include "options/tool.h"
 
 /* Returns whether the lens NAME has all N WORDS, in any case of letters. */

@@ -144,17 +144,6 @@ static bool take_rate(const char *text, int *num, int *den)
            (!slash || tool_integer(slash + 1, 1, 1000000, den));
 }
 
-/* Sets VALUE to the place of TEXT in WORDS, counted from FIRST. Returns false
- * if it is none of them. */
-static bool take_word(const char *text, const char *const *words, int first,
-                      int *value)
-{
-    const int word = tool_word(text, words);
-
-    *value = word + first;
-    return word >= 0;
-}
-
 /* Checks whether TEXT has exactly one conversion, that of an int. */
 static bool is_pattern(const char *text)
 {
@@ -164,102 +153,101 @@ static bool is_pattern(const char *text)
     return at && digits < 3 && at[1 + digits] == 'd' && !strchr(at + 1, '%');
 }
 
-static bool take_camera(struct glint_v4l2_config *c, int option,
-                        const char *value)
+/* Takes an option of the camera. Returns -1, or -2 if it is none of these, or
+ * -3 if VALUE is bad. */
+static int take_camera(struct live_wish *wish, int option, const char *value)
 {
     static const char *const ranges[] = {"auto", "full", "limited", NULL};
     static const char *const matrices[] = {"auto", "601", "709", NULL};
+    static const char *const ios[] = {"auto", "mmap", "userptr", "read", NULL};
+    struct glint_v4l2_config *const c = &wish->camera;
+    bool good = true;
+    int word = 0;
 
     switch (option) {
     case 'd':
         c->device = value;
-        return *value != '\0';
+        good = *value != '\0';
+        break;
     case 's':
-        return tool_size(value, &c->width, &c->height);
+        good = tool_size(value, &c->width, &c->height);
+        break;
     case 'r':
-        return take_rate(value, &c->fps_num, &c->fps_den);
+        good = take_rate(value, &c->fps_num, &c->fps_den);
+        break;
     case 'f':
-        return glint_fourcc_parse(value, &c->fourcc);
+        good = glint_fourcc_parse(value, &c->fourcc);
+        break;
     case 'i':
-        return tool_integer(value, 0, 255, &c->input);
-    case OPT_RANGE:
-        return take_word(value, ranges, -1, &c->range);
-    default:
-        return take_word(value, matrices, -1, &c->matrix);
-    }
-}
-
-static bool take_run(struct live_options *o, int option, const char *value)
-{
-    static const char *const ios[] = {"auto", "mmap", "userptr", "read", NULL};
-    static const char *const stats[] = {"auto", "line", "json", "none", NULL};
-    static const char *const fits[] = {"scale", "centre", NULL};
-    int word;
-
-    switch (option) {
-    case OPT_IO:
-        o->input.io = (enum glint_v4l2_io)(word = tool_word(value, ios));
-        return word >= 0;
-    case OPT_STATS:
-        o->report = (enum live_report)(word = tool_word(value, stats));
-        return word >= 0;
-    case OPT_FIT:
-        o->fit = (enum glint_panel_fit)(word = tool_word(value, fits));
-        return word >= 0;
-    case OPT_COUNT:
-        return tool_integer(value, 1, 1 << 30, &o->count);
-    case OPT_SKIP:
-        return tool_integer(value, 0, 1 << 30, &o->skip);
-    case OPT_SNAPSHOT:
-        o->snapshot = value;
-        return is_pattern(value) &&
-               snprintf(NULL, 0, value, INT_MAX) < LIVE_NAME_BYTES;
+        good = tool_integer(value, 0, 255, &c->input);
+        break;
     case 'n':
-        return tool_integer(value, 2, GLINT_V4L2_MAX_BUFFERS,
-                            &o->input.n_buffers);
-    default: /* 'o' */
-        o->output = value;
-        return live_output_parse(&(struct live_output){.path = NULL}, value);
+        good = tool_integer(value, 2, GLINT_V4L2_MAX_BUFFERS, &wish->n_buffers);
+        break;
+    case OPT_IO:
+        wish->io = (enum glint_v4l2_io)(word = tool_word(value, ios));
+        break;
+    case OPT_RANGE:
+        c->range = (word = tool_word(value, ranges)) - 1;
+        break;
+    case OPT_MATRIX:
+        c->matrix = (word = tool_word(value, matrices)) - 1;
+        break;
+    default:
+        return -2;
     }
+    return good && word >= 0 ? -1 : -3;
 }
 
-/* Takes an option of live alone. Returns -1, or -2 if it is none of these, or
- * -3 if VALUE is bad. */
+/* Takes any option of live alone, as take_camera(). */
 static int take(struct live_options *o, int option, const char *value)
 {
+    static const char *const stats[] = {"auto", "line", "json", "none", NULL};
+    static const char *const fits[] = {"scale", "centre", NULL};
+    bool good = true;
+    int word = 0;
+
     switch (option) {
     case OPT_LIST_DEVICES:
         o->list_devices = true;
-        return -1;
+        break;
     case OPT_LIST_FORMATS:
         o->list_formats = true;
-        return -1;
+        break;
     case OPT_ADAPTIVE:
-        o->adaptive = LIVE_ADAPTIVE;
-        return -1;
     case OPT_NO_ADAPTIVE:
-        o->adaptive = LIVE_FIXED;
-        return -1;
+        o->adaptive = option == OPT_ADAPTIVE ? LIVE_ADAPTIVE : LIVE_FIXED;
+        break;
     case OPT_RECONNECT:
         o->reconnect = true;
-        return -1;
-    case OPT_CONFIG:
-        return -1; /* was read before */
-    case 'd':
-    case 's':
-    case 'r':
-    case 'f':
-    case 'i':
-    case OPT_RANGE:
-    case OPT_MATRIX:
-        return take_camera(&o->input.camera, option, value) ? -1 : -3;
-    case 'n':
+        break;
+    case OPT_CONFIG: /* was read before */
+        break;
+    case OPT_STATS:
+        o->report = (enum live_report)(word = tool_word(value, stats));
+        break;
+    case OPT_FIT:
+        o->fit = (enum glint_panel_fit)(word = tool_word(value, fits));
+        break;
+    case OPT_COUNT:
+        good = tool_integer(value, 1, 1 << 30, &o->count);
+        break;
+    case OPT_SKIP:
+        good = tool_integer(value, 0, 1 << 30, &o->skip);
+        break;
+    case OPT_SNAPSHOT:
+        o->snapshot = value;
+        good = is_pattern(value) &&
+               snprintf(NULL, 0, value, INT_MAX) < LIVE_NAME_BYTES;
+        break;
     case 'o':
-        return take_run(o, option, value) ? -1 : -3;
+        o->output = value;
+        good = live_output_parse(&(struct live_output){.path = NULL}, value);
+        break;
+    default:
+        return take_camera(&o->input, option, value);
     }
-    if (option < OPT_CONFIG || option > OPT_SNAPSHOT)
-        return -2;
-    return take_run(o, option, value) ? -1 : -3;
+    return good && word >= 0 ? -1 : -3;
 }
 
 static const char *name_of(int option)

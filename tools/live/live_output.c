@@ -31,59 +31,34 @@ bool live_output_is_flexible(const struct live_output *o)
            o->kind == LIVE_OUTPUT_WINDOW;
 }
 
-static enum glint_status open_fb(struct live_output *o,
-                                 struct glint_error *error)
-{
-    const struct glint_fbdev_options options = {
-        .fit = o->fit, .dither = o->dither, .console = true};
-    const enum glint_status status =
-        glint_fbdev_open(&o->as.fb, o->path, &options, error);
-
-    o->sink = status == GLINT_OK ? &o->as.fb.sink : NULL;
-    return status;
-}
-
-static enum glint_status open_v4l2(struct live_output *o,
-                                   const struct glint_image *image, int fps_num,
-                                   int fps_den, struct glint_error *error)
-{
-    const enum glint_status status = glint_v4l2_sink_open(
-        &o->as.v4l2, o->path, image, fps_num, fps_den, error);
-
-    o->sink = status == GLINT_OK ? &o->as.v4l2.sink : NULL;
-    return status;
-}
-
-static enum glint_status open_window(struct live_output *o,
-                                     struct glint_error *error)
-{
-    const enum glint_status status =
-        glint_window_open(&o->as.window, "glint live", error);
-
-    o->sink = status == GLINT_OK ? &o->as.window.sink : NULL;
-    return status;
-}
-
 enum glint_status live_output_open(struct live_output *o,
                                    const struct glint_image *image, int fps_num,
                                    int fps_den, struct glint_error *error)
 {
+    const struct glint_fbdev_options panel = {
+        .fit = o->fit, .dither = o->dither, .console = true};
+    enum glint_status status = GLINT_OK;
+
     switch (o->kind) {
     case LIVE_OUTPUT_FB:
-        return open_fb(o, error);
+        status = glint_fbdev_open(&o->as.fb, o->path, &panel, error);
+        break;
     case LIVE_OUTPUT_V4L2:
-        return open_v4l2(o, image, fps_num, fps_den, error);
+        status = glint_v4l2_sink_open(&o->as.v4l2, o->path, image, fps_num,
+                                      fps_den, error);
+        break;
     case LIVE_OUTPUT_Y4M:
         glint_y4m_sink_open(&o->as.y4m, o->path, fps_num, fps_den);
-        o->sink = &o->as.y4m.sink;
-        return GLINT_OK;
+        break;
     case LIVE_OUTPUT_WINDOW:
-        return open_window(o, error);
+        status = glint_window_open(&o->as.window, "glint live", error);
+        break;
     default:
         glint_null_sink_open(&o->as.null);
-        o->sink = &o->as.null.sink;
-        return GLINT_OK;
+        break;
     }
+    o->sink = status == GLINT_OK ? &o->as.sink : NULL;
+    return status;
 }
 
 const char *live_output_text(const struct live_output *o, char *text,

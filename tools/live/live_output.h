@@ -31,6 +31,7 @@ struct live_output {
     bool dither;             /* dither on panels with 16 bits a pixel */
     struct glint_sink *sink; /* NULL: closed */
     union {
+        struct glint_sink sink; /* the first member of all of these */
         struct glint_fbdev fb;
         struct glint_y4m_sink y4m;
         struct glint_v4l2_sink v4l2;

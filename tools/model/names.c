@@ -5,7 +5,7 @@
 #include <sys/stat.h>
 
 #include "model/model_file.h"
-#include "posix/target.h"
+#include "posix/output.h"
 
 bool tool_begins_as(const char *argument, uint32_t magic)
 {

@@ -5,7 +5,7 @@
 #include <stdarg.h>
 #include <string.h>
 
-#include "posix/utf8.h"
+#include "posix/error.h"
 
 static const char letters[] =
     "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789.-";

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "posix/target.h"
+#include "posix/output.h"
 
 static void add(struct apart_file *files, int *n, const char *option,
                 const char *path)

@@ -2,7 +2,6 @@
  *
  * Lines of control: those that steer a scene, and those that zoom the lens
  * before it. */
-#include <stdio.h>
 
 #include "overlay/over_scene.h"
 

@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "formats/gif.h"
+#include "formats/picture.h"
 #include "ffmpeg/ffmpeg.h"
 #include "ffmpeg/pixels.h"
 #include "video/y4m.h"

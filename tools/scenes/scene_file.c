@@ -27,9 +27,26 @@ struct reading {
     uint64_t key;
 };
 
-static void mix(struct reading *reading, const uint8_t *data, size_t bytes)
+/* Sets PATH to the file NAME, beside the text. Errors of tool_find_input(). */
+static enum glint_status find(const struct reading *reading, const char *name,
+                              char path[TOOL_PATH_BYTES],
+                              struct glint_error *error)
 {
-    tool_key_mix(&reading->key, data, bytes);
+    return tool_find_input(reading->path, name, reading->written, path, error);
+}
+
+/* Passes FROM[N] on if STATUS is GLINT_OK, and mixes it into the key. Returns
+ * STATUS. */
+static enum glint_status pass(struct reading *reading, enum glint_status status,
+                              void *from, size_t n, uint8_t **data,
+                              size_t *bytes)
+{
+    if (status != GLINT_OK)
+        return status;
+    tool_key_mix(&reading->key, from, n);
+    *data = from;
+    *bytes = n;
+    return GLINT_OK;
 }
 
 static bool is_obj(const char *name)
@@ -43,8 +60,7 @@ static enum glint_status read_mesh(void *ctx, const char *name, uint8_t **data,
 {
     struct reading *reading = ctx;
     char path[TOOL_PATH_BYTES];
-    enum glint_status status =
-        tool_find_input(reading->path, name, reading->written, path, error);
+    enum glint_status status = find(reading, name, path, error);
 
     if (status != GLINT_OK)
         return status;
@@ -58,7 +74,7 @@ static enum glint_status read_mesh(void *ctx, const char *name, uint8_t **data,
     if (status == GLINT_E_FORMAT) /* as a mistake in an OBJ file is */
         status = GLINT_E_LENS;
     if (status == GLINT_OK)
-        mix(reading, *data, *bytes);
+        tool_key_mix(&reading->key, *data, *bytes);
     return status;
 }
 
@@ -68,14 +84,13 @@ static enum glint_status read_picture(void *ctx, const char *name,
 {
     struct reading *reading = ctx;
     char path[TOOL_PATH_BYTES];
-    enum glint_status status =
-        tool_find_input(reading->path, name, reading->written, path, error);
+    enum glint_status status = find(reading, name, path, error);
 
     if (status == GLINT_OK)
         status = glint_picture_load(path, image, error);
     if (status == GLINT_OK)
-        mix(reading, image->plane[0],
-            3 * (size_t)image->width * (size_t)image->height);
+        tool_key_mix(&reading->key, image->plane[0],
+                     3 * (size_t)image->width * (size_t)image->height);
     return status;
 }
 
@@ -85,20 +100,14 @@ static enum glint_status read_environment(void *ctx, const char *name,
                                           struct glint_error *error)
 {
     struct reading *reading = ctx;
-    struct environment_file file;
+    struct environment_file file = {.data = NULL};
     char path[TOOL_PATH_BYTES];
-    enum glint_status status =
-        tool_find_input(reading->path, name, reading->written, path, error);
+    enum glint_status status = find(reading, name, path, error);
 
     if (status == GLINT_OK)
         status = environment_file_read(path, reading->written, NULL, NULL,
                                        &file, error);
-    if (status != GLINT_OK)
-        return status;
-    mix(reading, file.data, file.bytes);
-    *data = file.data;
-    *bytes = file.bytes;
-    return GLINT_OK;
+    return pass(reading, status, file.data, file.bytes, data, bytes);
 }
 
 /* The same of a stone. */
@@ -106,20 +115,14 @@ static enum glint_status read_stone(void *ctx, const char *name, uint8_t **data,
                                     size_t *bytes, struct glint_error *error)
 {
     struct reading *reading = ctx;
-    struct stone_file file;
+    struct stone_file file = {.data = NULL};
     char path[TOOL_PATH_BYTES];
-    enum glint_status status =
-        tool_find_input(reading->path, name, reading->written, path, error);
+    enum glint_status status = find(reading, name, path, error);
 
     if (status == GLINT_OK)
         status = stone_file_read(reading->tool, path, NULL, NULL, false, &file,
                                  error);
-    if (status != GLINT_OK)
-        return status;
-    mix(reading, file.data, file.bytes);
-    *data = file.data;
-    *bytes = file.bytes;
-    return GLINT_OK;
+    return pass(reading, status, file.data, file.bytes, data, bytes);
 }
 
 /* The same of a motion. */
@@ -129,21 +132,15 @@ static enum glint_status read_motion(void *ctx, const char *name,
 {
     struct reading *reading = ctx;
     struct glint_motion_options options;
-    struct motion_file file;
+    struct motion_file file = {.data = NULL};
     char path[TOOL_PATH_BYTES];
-    enum glint_status status =
-        tool_find_input(reading->path, name, reading->written, path, error);
+    enum glint_status status = find(reading, name, path, error);
 
     glint_motion_defaults(&options);
     if (status == GLINT_OK)
         status =
             motion_file_read(path, reading->written, &options, &file, error);
-    if (status != GLINT_OK)
-        return status;
-    mix(reading, file.data, file.bytes);
-    *data = file.data;
-    *bytes = file.bytes;
-    return GLINT_OK;
+    return pass(reading, status, file.data, file.bytes, data, bytes);
 }
 
 int tool_scene(const struct tool *tool, const char *path,
@@ -163,7 +160,7 @@ int tool_scene(const struct tool *tool, const char *path,
         return code;
     status = glint_input_slurp(&text, &bytes, path, TEXT_BYTES, &error);
     if (status == GLINT_OK) {
-        mix(&reading, text, bytes);
+        tool_key_mix(&reading.key, text, bytes);
         status = glint_description_parse(scene, (const char *)text, bytes, path,
                                          &files, &error);
     }

@@ -660,48 +660,51 @@ static int take_range(const struct tool *tool, struct synth *s,
                : tool_usage(tool, "--range: %s", why.text);
 }
 
-static int take(struct tool *tool, struct synth *s, int c)
+static int take(struct tool *tool, void *ctx, int c, const char *value)
 {
+    struct synth *const s = ctx;
+    bool good = true;
+
     switch (c) {
     case 'o':
-        s->set.folder = optarg;
-        return -1;
+        s->set.folder = value;
+        break;
     case OPT_COUNT:
-        return tool_integer(optarg, 0, MAX_COUNT, &s->set.count)
-                   ? -1
-                   : tool_refuse(tool, "count", optarg);
+        good = tool_integer(value, 0, MAX_COUNT, &s->set.count);
+        break;
     case OPT_SHARD:
-        return take_shard(&s->set, optarg) ? -1
-                                           : tool_refuse(tool, "shard", optarg);
+        good = take_shard(&s->set, value);
+        break;
     case OPT_SIZE:
-        return take_size(&s->all, optarg) ? -1
-                                          : tool_refuse(tool, "size", optarg);
+        good = take_size(&s->all, value);
+        break;
     case OPT_LENSES:
-        return take_lenses(s, optarg) ? -1
-                                      : tool_refuse(tool, "lenses", optarg);
+        good = take_lenses(s, value);
+        break;
     case OPT_COATING_OF:
-        return take_coating(tool, s, optarg);
+        return take_coating(tool, s, value);
     case OPT_RANGE:
-        return take_range(tool, s, optarg);
+        return take_range(tool, s, value);
     case OPT_LAYOUT:
-        s->set.layout = synth_layout_named(optarg);
-        return s->set.layout ? -1 : tool_refuse(tool, "layout", optarg);
+        s->set.layout = synth_layout_named(value);
+        good = s->set.layout != NULL;
+        break;
     case OPT_TYPE:
-        s->set.type = optarg;
-        return -1;
+        s->set.type = value;
+        break;
     case OPT_ITEM:
-        s->line = optarg;
-        return -1;
+        s->line = value;
+        break;
     case OPT_SHEET:
-        s->sheet = optarg;
-        return -1;
+        s->sheet = value;
+        break;
     case OPT_QUALITY_OF:
-        return take_quality(&s->all, optarg)
-                   ? -1
-                   : tool_refuse(tool, "quality", optarg);
+        good = take_quality(&s->all, value);
+        break;
     default:
-        return tool_option(tool, c, optarg);
+        return tool_option(tool, c, value);
     }
+    return good ? -1 : -2;
 }
 
 /* Takes the layout's type if none was asked for, and checks whether pictures of
@@ -727,14 +730,11 @@ static int take_type(const struct tool *tool, struct synth *s)
 
 static int parse(struct tool *tool, int argc, char **argv, struct synth *s)
 {
-    int c, code;
+    int code =
+        tool_take(tool, argc, argv, "o:" TOOL_COMMON_SHORT, options, take, s);
 
-    while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
-                            NULL)) >= 0) {
-        code = take(tool, s, c);
-        if (code >= 0)
-            return code;
-    }
+    if (code >= 0)
+        return code;
     if (optind == argc)
         return tool_usage(tool, "needs backgrounds, pictures or folders of "
                                 "such");

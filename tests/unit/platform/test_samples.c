@@ -13,7 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "formats/half.h"
 #include "formats/samples.h"
 
 /* Returns WIDTH x HEIGHT pixels over MEM, of three channels of SAMPLE, or of

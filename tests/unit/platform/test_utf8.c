@@ -14,7 +14,6 @@
 #include <string.h>
 
 #include "posix/error.h"
-#include "posix/utf8.h"
 #include "options/json_writer.h"
 
 static const struct {

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Stands in for plugin.c in static programs, which cannot load a plug-in.
+ */
+#include "posix/error.h"
+#include "posix/plugin.h"
+
+const void *glint_plugin_load(const struct glint_plugin *plugin,
+                              struct glint_error *error)
+{
+    glint_error_report(error, GLINT_E_UNSUPPORTED, plugin->file,
+                       "a static glint loads no plug-ins%s", plugin->without);
+    return NULL;
+}
