@@ -241,7 +241,6 @@ static enum glint_status open_by_plugin(struct glint_kept *k, const char *type,
     if (status)
         return status;
     k->oiio = oiio;
-    k->has_icc = facts.icc != NULL;
     k->is_float = glint_sample_is_float(k->samples.colour[0].sample);
     if (*facts.note)
         add_note(k->note, facts.note);

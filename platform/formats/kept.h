@@ -32,7 +32,6 @@ struct glint_kept {
     const char *path;
     const struct glint_oiio *oiio; /* NULL: PNM or PFM */
     struct glint_oiio_file *file;
-    bool has_icc;
     /* all bytes of a PNM or PFM; of other files the first 12 */
     uint8_t *native;
     size_t native_bytes, header_bytes;

@@ -365,13 +365,6 @@ static const struct glint_file_type *find_type(const char *path,
     return glint_file_type_of(path);
 }
 
-static bool is_native(const char *path, enum glint_picture_kind kind)
-{
-    const struct glint_file_type *const type = find_type(path, kind);
-
-    return type && type->is_native;
-}
-
 bool glint_picture_is_float(const char *path)
 {
     const struct glint_file_type *const type =
@@ -427,25 +420,44 @@ static enum glint_status write_by_plugin(struct glint_output *out,
     return status;
 }
 
-enum glint_status glint_picture_save(const char *path,
-                                     const struct glint_image *image,
-                                     struct glint_error *error)
+/* Saves PIXELS, whose rows are STRIDE_BYTES apart, of floats without gaps. */
+static enum glint_status save(const char *path,
+                              const struct glint_oiio_pixels *pixels,
+                              ptrdiff_t stride_bytes, struct glint_error *error)
 {
-    const struct glint_oiio_pixels pixels = {image->width, image->height, 0,
-                                             image->plane[0]};
+    const enum glint_picture_kind kind =
+        pixels->is_float ? GLINT_PICTURE_FLOAT : GLINT_PICTURE_8BIT;
+    const struct glint_image image = {.format = GLINT_RGB24,
+                                      .width = pixels->width,
+                                      .height = pixels->height,
+                                      .plane = {pixels->rgb},
+                                      .stride_bytes = {stride_bytes}};
+    const struct glint_float_image floats = {pixels->width, pixels->height,
+                                             pixels->rgb};
     struct glint_output out;
-    enum glint_status status =
-        glint_picture_check(path, GLINT_PICTURE_8BIT, error);
+    enum glint_status status = glint_picture_check(path, kind, error);
 
     if (!status)
         status = glint_output_open(&out, path, GLINT_OUTPUT_BINARY, error);
     if (status)
         return status;
-    if (is_native(path, GLINT_PICTURE_8BIT))
-        status = glint_pnm_write(&out, image, error);
+    if (!find_type(path, kind)->is_native)
+        status = write_by_plugin(&out, pixels, stride_bytes, error);
+    else if (pixels->is_float)
+        status = glint_pfm_write(&out, &floats, error);
     else
-        status = write_by_plugin(&out, &pixels, image->stride_bytes[0], error);
+        status = glint_pnm_write(&out, &image, error);
     return glint_output_end(&out, status, error);
+}
+
+enum glint_status glint_picture_save(const char *path,
+                                     const struct glint_image *image,
+                                     struct glint_error *error)
+{
+    return save(path,
+                &(struct glint_oiio_pixels){image->width, image->height, 0,
+                                            image->plane[0]},
+                image->stride_bytes[0], error);
 }
 
 enum glint_status
@@ -453,20 +465,8 @@ glint_picture_save_float(const char *path,
                          const struct glint_float_image *floats,
                          struct glint_error *error)
 {
-    const struct glint_oiio_pixels pixels = {floats->width, floats->height, 1,
-                                             floats->rgb};
-    const size_t row_bytes = 3 * sizeof *floats->rgb * (size_t)floats->width;
-    struct glint_output out;
-    enum glint_status status =
-        glint_picture_check(path, GLINT_PICTURE_FLOAT, error);
-
-    if (!status)
-        status = glint_output_open(&out, path, GLINT_OUTPUT_BINARY, error);
-    if (status)
-        return status;
-    if (is_native(path, GLINT_PICTURE_FLOAT))
-        status = glint_pfm_write(&out, floats, error);
-    else
-        status = write_by_plugin(&out, &pixels, (ptrdiff_t)row_bytes, error);
-    return glint_output_end(&out, status, error);
+    return save(path,
+                &(struct glint_oiio_pixels){floats->width, floats->height, 1,
+                                            floats->rgb},
+                3 * (ptrdiff_t)sizeof *floats->rgb * floats->width, error);
 }

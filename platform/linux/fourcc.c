@@ -75,14 +75,6 @@ uint32_t glint_fourcc_of(enum glint_pixel_format format)
     return 0;
 }
 
-int glint_fourcc_memory_planes(uint32_t fourcc)
-{
-    for (size_t i = 0; i < N_FORMATS; i++)
-        if (formats[i].fourcc == fourcc)
-            return formats[i].memory_planes;
-    return 1;
-}
-
 static bool prints(uint32_t character)
 {
     return character >= ' ' && character <= '~';

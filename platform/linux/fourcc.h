@@ -23,10 +23,6 @@ bool glint_fourcc_to_format(uint32_t fourcc, enum glint_pixel_format *format);
  * as for GLINT_LINEAR_Q20 and for GLINT_I444, which exists as YM24 only. */
 uint32_t glint_fourcc_of(enum glint_pixel_format format);
 
-/* Returns the number of blocks of memory, 1 .. 3, that a picture in FOURCC lies
- * in; 1 if FOURCC is unknown. */
-int glint_fourcc_memory_planes(uint32_t fourcc);
-
 /* Writes FOURCC as text, such as "YUYV", with '?' for characters that do not
  * print. */
 void glint_fourcc_text(uint32_t fourcc, char text[5]);

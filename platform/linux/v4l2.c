@@ -14,7 +14,7 @@
 #include "posix/clock.h"
 #include "posix/error.h"
 
-/* outcome of glint_v4l2_take() */
+/* outcome of take_buffer() */
 enum glint_v4l2_outcome {
     GLINT_V4L2_TAKEN,
     GLINT_V4L2_NOTHING,
@@ -61,7 +61,7 @@ static struct v4l2_buffer describe_buffer(const struct glint_v4l2 *v, int index,
 }
 
 /* Gives buffer INDEX to the driver. Returns 0, or -1 with errno set. */
-static int glint_v4l2_queue(struct glint_v4l2 *v, int index)
+static int queue_buffer(struct glint_v4l2 *v, int index)
 {
     struct glint_v4l2_buffer *buffer = &v->buffer[index];
     struct v4l2_plane planes[3];
@@ -155,8 +155,8 @@ static enum glint_v4l2_outcome read_frame(struct glint_v4l2 *v,
 }
 
 /* Takes a filled buffer from the driver and describes it in T. */
-static enum glint_v4l2_outcome glint_v4l2_take(struct glint_v4l2 *v,
-                                               struct glint_v4l2_taken *t)
+static enum glint_v4l2_outcome take_buffer(struct glint_v4l2 *v,
+                                           struct glint_v4l2_taken *t)
 {
     return v->io == GLINT_V4L2_READ ? read_frame(v, t) : dequeue(v, t);
 }
@@ -177,7 +177,7 @@ static uint32_t request_buffers(struct glint_v4l2 *v, enum v4l2_memory memory,
     return r.count < GLINT_V4L2_MAX_BUFFERS ? r.count : GLINT_V4L2_MAX_BUFFERS;
 }
 
-static void glint_v4l2_release_buffers(struct glint_v4l2 *v)
+static void release_buffers(struct glint_v4l2 *v)
 {
     for (int i = 0; i < GLINT_V4L2_MAX_BUFFERS; i++)
         for (int k = 0; k < 3; k++) {
@@ -250,7 +250,7 @@ static const char *own_buffer(struct glint_v4l2 *v, int index)
 
 /* Returns whether buffers could be handed on without a copy; for reports
  * only. */
-static bool glint_v4l2_can_export(const struct glint_v4l2 *v)
+static bool can_export(const struct glint_v4l2 *v)
 {
     struct v4l2_exportbuffer e = {.type = v->device.type};
 
@@ -276,7 +276,7 @@ static int64_t read_time_us(const void *mem, size_t bytes)
 
 /* Measures whether buffers are read about as fast as other memory, as no driver
  * says it. */
-static bool glint_v4l2_is_cached(const struct glint_v4l2 *v)
+static bool is_cached(const struct glint_v4l2 *v)
 {
     static uint64_t own[8192];
     size_t bytes = v->buffer[0].bytes[0];
@@ -326,7 +326,7 @@ static const char *try_io(struct glint_v4l2 *v, enum glint_v4l2_io io)
     if (failed) {
         const int number = errno;
 
-        glint_v4l2_release_buffers(v);
+        release_buffers(v);
         errno = number;
     }
     return failed;
@@ -341,7 +341,7 @@ static bool is_lacking(const struct glint_v4l2 *v)
 
 /* Gets buffers of the first kind that wish and device allow. Returns NULL, or
  * the call that failed, as text. */
-static const char *glint_v4l2_get_buffers(struct glint_v4l2 *v)
+static const char *get_buffers(struct glint_v4l2 *v)
 {
     const uint32_t caps = v->device.caps;
     const enum glint_v4l2_io wish = v->wish_io;
@@ -382,7 +382,7 @@ static void stop(struct glint_v4l2 *v)
     if (v->streams && v->io != GLINT_V4L2_READ)
         glint_ioctl(v->device.fd, VIDIOC_STREAMOFF, &type);
     v->streams = false;
-    glint_v4l2_release_buffers(v);
+    release_buffers(v);
 }
 
 static int stream_on(struct glint_v4l2 *v)
@@ -412,12 +412,12 @@ static enum glint_status make_decoder(struct glint_v4l2 *v,
 static enum glint_status prepare(struct glint_v4l2 *v,
                                  struct glint_error *error)
 {
-    const char *const failed = glint_v4l2_get_buffers(v);
+    const char *const failed = get_buffers(v);
 
     if (failed)
         return glint_ioctl_failed(error, v->device.path, failed);
-    v->is_cached = glint_v4l2_is_cached(v);
-    v->exports_dmabuf = glint_v4l2_can_export(v);
+    v->is_cached = is_cached(v);
+    v->exports_dmabuf = can_export(v);
     return make_decoder(v, error);
 }
 
@@ -427,7 +427,7 @@ static enum glint_status begin(struct glint_v4l2 *v, struct glint_error *error)
 
     for (int i = 0; i < v->n_buffers; i++)
         n_queued +=
-            glint_v4l2_queue(v, i) == 0; /* Refused buffers are queued later. */
+            queue_buffer(v, i) == 0; /* Refused buffers are queued later. */
     if (n_queued == 0)
         return glint_ioctl_failed(error, v->device.path, "VIDIOC_QBUF");
     if (stream_on(v) < 0)
@@ -573,14 +573,14 @@ static bool is_whole(const struct glint_v4l2 *v,
 static void give_back(struct glint_v4l2 *v, int index)
 {
     v->buffer[index].lent = false;
-    glint_v4l2_queue(v, index); /* A failure shows in the next call. */
+    queue_buffer(v, index); /* A failure shows in the next call. */
 }
 
 static void queue_idle(struct glint_v4l2 *v)
 {
     for (int i = 0; i < v->n_buffers; i++)
         if (!v->buffer[i].queued && !v->buffer[i].lent)
-            glint_v4l2_queue(v, i);
+            queue_buffer(v, i);
 }
 
 /* Returns the number of frames lost before frame SEQUENCE. It is 0 where
@@ -608,7 +608,7 @@ static enum glint_v4l2_outcome take_newest(struct glint_v4l2 *v,
 
     newest->index = -1;
     for (int k = 0; k <= v->n_buffers; k++) {
-        outcome = glint_v4l2_take(v, &t);
+        outcome = take_buffer(v, &t);
         if (outcome != GLINT_V4L2_TAKEN)
             break;
         v->heard_us = glint_now_us();

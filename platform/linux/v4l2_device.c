@@ -35,7 +35,7 @@ static bool is_jpeg(uint32_t fourcc)
 }
 
 /* Returns whether glint can read frames in FOURCC. */
-static bool glint_v4l2_is_read(uint32_t fourcc)
+static bool can_read(uint32_t fourcc)
 {
     enum glint_pixel_format unused;
 
@@ -105,8 +105,7 @@ static uint32_t offered(const struct glint_v4l2_device *d)
 
     for (; glint_ioctl(d->fd, VIDIOC_ENUM_FMT, &f) == 0; f.index++)
         for (int i = 0; i < N_PREFERRED; i++)
-            if (f.pixelformat == preferred[i] &&
-                glint_v4l2_is_read(f.pixelformat))
+            if (f.pixelformat == preferred[i] && can_read(f.pixelformat))
                 have |= UINT32_C(1) << i;
     return have;
 }
@@ -268,8 +267,8 @@ static enum glint_status take_format(struct glint_v4l2_device *d,
 
 /* Sets the format wished for and takes over the one that the device answers.
  * Errors are those of glint_v4l2_device_open(). */
-static enum glint_status glint_v4l2_set_format(struct glint_v4l2_device *d,
-                                               struct glint_error *error)
+static enum glint_status set_format(struct glint_v4l2_device *d,
+                                    struct glint_error *error)
 {
     const bool multiplanar = is_multiplanar(d);
     struct v4l2_format f = {.type = d->type};
@@ -310,7 +309,7 @@ static bool is_count(uint32_t n)
 
 /* Asks for the rate wished for, if any, and notes the rate that the device has;
  * some inputs have one of their own. */
-static void glint_v4l2_set_rate(struct glint_v4l2_device *d)
+static void set_rate(struct glint_v4l2_device *d)
 {
     struct v4l2_streamparm parm = {.type = d->type};
     struct v4l2_fract *t = &parm.parm.capture.timeperframe;
@@ -363,9 +362,8 @@ static enum glint_status open_node(struct glint_v4l2_device *d,
 
 /* Opens NAME and reads its capabilities and name, without any settings. On
  * failure D is closed. GLINT_E_DEVICE. */
-static enum glint_status glint_v4l2_device_attach(struct glint_v4l2_device *d,
-                                                  const char *name,
-                                                  struct glint_error *error)
+static enum glint_status attach(struct glint_v4l2_device *d, const char *name,
+                                struct glint_error *error)
 {
     struct v4l2_capability cap = {.driver = ""};
     enum glint_status status;
@@ -488,9 +486,9 @@ enum glint_status glint_v4l2_device_negotiate(struct glint_v4l2_device *d,
     enum glint_status status = follow_timings(d, error);
 
     if (status == GLINT_OK)
-        status = glint_v4l2_set_format(d, error);
+        status = set_format(d, error);
     if (status == GLINT_OK)
-        glint_v4l2_set_rate(d);
+        set_rate(d);
     return status;
 }
 
@@ -498,7 +496,7 @@ enum glint_status glint_v4l2_device_open(struct glint_v4l2_device *d,
                                          const struct glint_v4l2_config *wish,
                                          struct glint_error *error)
 {
-    enum glint_status status = glint_v4l2_device_attach(d, wish->device, error);
+    enum glint_status status = attach(d, wish->device, error);
 
     if (status != GLINT_OK)
         return status;
@@ -598,7 +596,7 @@ enum glint_status glint_v4l2_list_devices(FILE *out, bool json)
         char name[16];
 
         snprintf(name, sizeof name, "%d", number[i]);
-        if (glint_v4l2_device_attach(&d, name, &error) != GLINT_OK) {
+        if (attach(&d, name, &error) != GLINT_OK) {
             n_refused++;
             why = error;
             continue;
@@ -683,7 +681,7 @@ static void print_sizes(FILE *out, const struct glint_v4l2_device *d,
 static void print_format(FILE *out, const struct glint_v4l2_device *d,
                          const struct v4l2_fmtdesc *f, bool json)
 {
-    const bool is_read = glint_v4l2_is_read(f->pixelformat);
+    const bool is_read = can_read(f->pixelformat);
     char name[5];
 
     glint_fourcc_text(f->pixelformat, name);
@@ -704,8 +702,7 @@ enum glint_status glint_v4l2_list_formats(FILE *out, const char *device,
                                           bool json, struct glint_error *error)
 {
     struct glint_v4l2_device d;
-    const enum glint_status status =
-        glint_v4l2_device_attach(&d, device, error);
+    const enum glint_status status = attach(&d, device, error);
     struct v4l2_fmtdesc f = {.type = d.type};
 
     if (status != GLINT_OK)

@@ -113,7 +113,7 @@ static char *new_target(const char *path)
  * link. Returns NULL with errno set: EACCES for a dangling link that the kernel
  * would not follow, ESTALE if PATH leads to another file than ST now, or an
  * error of the system. */
-static char *glint_target_of(const char *path, const struct stat *st)
+static char *target_of(const char *path, const struct stat *st)
 {
     struct stat now;
     char *target;
@@ -167,7 +167,7 @@ bool glint_target_is_same(const char *a, const char *b)
 
 /* Returns the temporary name DIR/.glint-PID-N.EXT for the target DIR/NAME.EXT,
  * malloc'ed, or NULL without memory. */
-static char *glint_target_beside(const char *target, unsigned n)
+static char *name_beside(const char *target, unsigned n)
 {
     const char *const base = target + folder_length(target);
     const char *ext = strrchr(base, '.');
@@ -229,7 +229,7 @@ static void clean_one(int folder, const char *name)
 /* Removes temporary files beside TARGET that killed runs have left: files of
  * this user's, whose process is gone, and locked by nobody on any machine. Does
  * nothing in the folder that it has cleaned last. */
-static void glint_target_clean(const char *target)
+static void clean_folder(const char *target)
 {
     /* Hash of inode and device of the folder cleaned last, which is not
      * cleaned again. */
@@ -346,9 +346,9 @@ static enum glint_status open_beside(struct glint_output *out, mode_t mode,
     const bool keep = mode != (mode_t)-1;
     int number = 0;
 
-    glint_target_clean(out->target);
+    clean_folder(out->target);
     for (int i = 0; i < MAX_TRIES; i++) {
-        out->tmp = glint_target_beside(
+        out->tmp = name_beside(
             out->target, __atomic_fetch_add(&counter, 1, __ATOMIC_RELAXED));
         if (!out->tmp)
             return glint_error_report(error, GLINT_E_MEMORY, out->name,
@@ -366,7 +366,7 @@ static enum glint_status open_beside(struct glint_output *out, mode_t mode,
         return glint_error_report(error, GLINT_E_OUTPUT, out->name,
                                   "cannot create a file beside it: %s",
                                   strerror(number));
-    /* The lock tells glint_target_clean() that this process lives. */
+    /* The lock tells clean_folder() that this process lives. */
     flock(out->fd, LOCK_EX | LOCK_NB);
     if (keep && fchmod(out->fd, mode) < 0)
         return refuse(out, error, errno);
@@ -388,7 +388,7 @@ static int find_target(struct glint_output *out, struct stat *st,
             return 0;
         if (*is_there && access(out->name, W_OK) < 0)
             return errno;
-        out->target = glint_target_of(out->name, *is_there ? st : NULL);
+        out->target = target_of(out->name, *is_there ? st : NULL);
         if (out->target)
             return 0;
         if (errno != ESTALE)

@@ -194,9 +194,8 @@ static void put_code(const struct plane *p, int x, int y, int32_t code)
 }
 
 /* Fills IMAGE, of LAYOUT's format, with PLANES cut to 8 bits. */
-static void glint_y4m_light_proxy(const struct glint_y4m_layout *layout,
-                                  const struct glint_image *image,
-                                  const uint8_t *planes)
+static void fill_proxy(const struct glint_y4m_layout *layout,
+                       const struct glint_image *image, const uint8_t *planes)
 {
     const int down = layout->bits - 8;
     struct plane plane[4];
@@ -879,7 +878,7 @@ enum glint_status glint_y4m_reader_next(struct glint_y4m_reader *reader,
                                   "frame %ld: ends after %zu of %zu bytes",
                                   reader->n_frames, (size_t)got, bytes);
     if (!glint_y4m_layout_is_plain(&h->layout))
-        glint_y4m_light_proxy(&h->layout, &reader->frame, reader->planes);
+        fill_proxy(&h->layout, &reader->frame, reader->planes);
     reader->n_frames++;
     *frame = &reader->frame;
     return GLINT_OK;

@@ -163,7 +163,7 @@ static enum glint_status start(struct child *child, const char *const *argv,
 
 /* Starts ARGV[0] of $PATH with ARGV, which ends with NULL. GLINT_E_UNSUPPORTED:
  * it is not there. GLINT_E_IO: the system gives no process or descriptor. */
-static enum glint_status child_start(struct child *child,
+static enum glint_status start_child(struct child *child,
                                      const char *const *argv,
                                      enum child_pipe kind,
                                      struct glint_error *error)
@@ -172,13 +172,11 @@ static enum glint_status child_start(struct child *child,
     return start(child, argv, kind, error);
 }
 
-/* Like child_start(), of a child that WORDS, which end with NULL, are listened
+/* Like start_child(), of a child that WORDS, which end with NULL, are listened
  * for in what it says; child_hear() passes that on. */
-static enum glint_status child_start_heard(struct child *child,
-                                           const char *const *argv,
-                                           enum child_pipe kind,
-                                           const char *const *words,
-                                           struct glint_error *error)
+static enum glint_status
+start_heard(struct child *child, const char *const *argv, enum child_pipe kind,
+            const char *const *words, struct glint_error *error)
 {
     enum glint_status status;
 
@@ -294,7 +292,7 @@ bool ffmpeg_is_video(const char *name)
 
 /* Sets URL to "file:NAME", which ffmpeg opens as a file whatever NAME looks
  * like. Returns false if it is too long. */
-static bool ffmpeg_url(char url[FFMPEG_URL], const char *name)
+static bool set_url(char url[FFMPEG_URL], const char *name)
 {
     return (size_t)snprintf(url, FFMPEG_URL, "file:%s", name) < FFMPEG_URL;
 }
@@ -359,7 +357,7 @@ static bool ask(const char *url, const char *kind, const char *entries,
     struct child child;
 
     *text = '\0';
-    if (child_start(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
+    if (start_child(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
         return false;
     read_all(&child, text);
     return child_end(&child) == 0;
@@ -370,7 +368,7 @@ void ffmpeg_probe(struct ffmpeg_video *video, const char *name)
     char url[FFMPEG_URL], text[PROBE_BYTES], *line, *rest = text;
 
     *video = (struct ffmpeg_video){.width = 0};
-    if (!ffmpeg_url(url, name))
+    if (!set_url(url, name))
         return;
     ask(url, "v:0",
         "stream=width,height,pix_fmt,color_range,color_space,color_transfer,"
@@ -388,7 +386,7 @@ long ffmpeg_count_frames(const char *name)
 {
     char url[FFMPEG_URL], text[PROBE_BYTES], n[FFMPEG_WORD] = "";
 
-    if (!ffmpeg_url(url, name) ||
+    if (!set_url(url, name) ||
         !ask(url, "v:0", "stream=nb_read_packets", "-count_packets", text))
         return 0;
     text[strcspn(text, "\r\n")] = '\0';
@@ -471,7 +469,7 @@ enum glint_status ffmpeg_read(struct child *child, const char *name,
     struct words w;
 
     *child = CHILD_NONE;
-    if (!ffmpeg_url(url, name))
+    if (!set_url(url, name))
         return too_long(name, error);
     begin(&w);
     add_two(&w, "-i", url);
@@ -481,8 +479,8 @@ enum glint_status ffmpeg_read(struct child *child, const char *name,
     add_two(&w, "-f", "yuv4mpegpipe");
     add(&w, "-");
     status = end(&w, error);
-    return status == GLINT_OK ? child_start_heard(child, w.word, CHILD_WRITES,
-                                                  ffmpeg_cut_words, error)
+    return status == GLINT_OK ? start_heard(child, w.word, CHILD_WRITES,
+                                            ffmpeg_cut_words, error)
                               : status;
 }
 
@@ -626,8 +624,7 @@ enum glint_status ffmpeg_write(struct child *child,
     struct words w;
 
     *child = CHILD_NONE;
-    if (!ffmpeg_url(out, t->file) ||
-        (t->sound && !ffmpeg_url(sound, t->sound)) ||
+    if (!set_url(out, t->file) || (t->sound && !set_url(sound, t->sound)) ||
         (t->options && strlen(t->options) >= sizeof options))
         return too_long(t->name, error);
     begin(&w);
@@ -644,7 +641,7 @@ enum glint_status ffmpeg_write(struct child *child,
         add_pictures(&w, t, video);
     add(&w, out);
     status = end(&w, error);
-    return status == GLINT_OK ? child_start(child, w.word, CHILD_READS, error)
+    return status == GLINT_OK ? start_child(child, w.word, CHILD_READS, error)
                               : status;
 }
 
@@ -732,7 +729,7 @@ static bool decode(const char *url, enum piece piece, char cause[CAUSE])
     for (int i = 0; rest[i]; i++)
         argv[k++] = rest[i];
     *cause = '\0';
-    if (child_start(&child, argv, CHILD_PRINTS, &error) != GLINT_OK) {
+    if (start_child(&child, argv, CHILD_PRINTS, &error) != GLINT_OK) {
         snprintf(cause, CAUSE, "%.*s", CAUSE - 1, error.text);
         return false;
     }
@@ -755,7 +752,7 @@ enum glint_status ffmpeg_check(const char *file, const char *name,
     char url[FFMPEG_URL], cause[CAUSE];
     bool has_first;
 
-    if (!ffmpeg_url(url, file))
+    if (!set_url(url, file))
         return glint_error_report(error, GLINT_E_OUTPUT, name,
                                   "the name is too long");
     has_first = decode(url, FIRST, cause);

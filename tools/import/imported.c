@@ -348,7 +348,7 @@ static bool settle_medium(struct imported *lens, struct imported_surface *s)
 }
 
 /* Sets the medium behind all surfaces and its index, by names and numbers. */
-static bool imported_settle_media(struct imported *lens)
+static bool settle_media(struct imported *lens)
 {
     for (int k = 0; k < lens->n; k++)
         if (!settle_medium(lens, &lens->surface[k]))
@@ -785,11 +785,11 @@ static bool check_front(struct imported *lens, double focal_units)
 }
 
 /* Does what there is to do to LENS before it can be written down. */
-static bool imported_complete(struct imported *lens)
+static bool complete(struct imported *lens)
 {
     double f;
 
-    if (!imported_settle_media(lens) || !drop_dummies(lens) ||
+    if (!settle_media(lens) || !drop_dummies(lens) ||
         !check_thicknesses(lens) || !check_end(lens))
         return false;
     tell_object(lens);
@@ -906,7 +906,7 @@ char *imported_finish(struct imported *lens, size_t *bytes)
     char *text = NULL;
     FILE *file;
 
-    if (!imported_complete(lens))
+    if (!complete(lens))
         return NULL;
     imported_sort_notes(lens);
     if (lens->strict && lens->n_guesses > 0) {

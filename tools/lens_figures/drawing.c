@@ -188,21 +188,21 @@ static void spots_gather(struct spots *s, const struct glint_prescription *lens,
  * within it. */
 #define FIELD_ENDS 0.995
 
-static const char *const figure_field_colour[DRAWING_FIELDS] = {
-    "#1f5fa8", "#2f8a3c", "#c0392b"};
+static const char *const field_colour[DRAWING_FIELDS] = {"#1f5fa8", "#2f8a3c",
+                                                         "#c0392b"};
 
-static double figure_px(const struct figure *f, double z)
+static double px(const struct figure *f, double z)
 {
     return f->left + f->scale * z;
 }
 
-static double figure_py(const struct figure *f, double x)
+static double py(const struct figure *f, double x)
 {
     return f->middle - f->scale * x;
 }
 
 /* Returns 1, 2 or 5 times a power of ten, at least VALUE. */
-static double figure_round_up(double value)
+static double round_up(double value)
 {
     const double power = pow(10, floor(log10(fmax(value, 1e-9))));
     const double share = value / power;
@@ -228,7 +228,7 @@ static double image_height_mm(const struct figure *f, double theta_deg)
 /* Returns the angle, in degrees, of the light that the lens images at HEIGHT_MM
  * from the picture's centre, by rays through the middle of the pupil; the
  * widest that still gets through the lens if none goes so far. */
-static double figure_angle_deg(const struct figure *f, double height_mm)
+static double angle_of(const struct figure *f, double height_mm)
 {
     double low = 0, high = 89;
 
@@ -245,11 +245,11 @@ static double figure_angle_deg(const struct figure *f, double height_mm)
 }
 
 /* Returns that of FIELD, 0 .. DRAWING_FIELDS - 1. */
-static double figure_field_deg(const struct figure *f, int field)
+static double field_deg(const struct figure *f, int field)
 {
     static const double share[DRAWING_FIELDS] = {0, 0.7, 1};
 
-    return figure_angle_deg(f, FIELD_ENDS * share[field] * f->film_mm);
+    return angle_of(f, FIELD_ENDS * share[field] * f->film_mm);
 }
 
 enum { PROFILE = 24 };
@@ -273,9 +273,9 @@ static void rim_point(const struct figure *f, int k, double x, double at[3])
 }
 
 /* Sets AT to z and x of the place that HIT, as of glint_trace(), is. */
-static void figure_meeting(const struct figure *f,
-                           const struct glint_event *event, const double hit[2],
-                           double at[2])
+static void find_meeting(const struct figure *f,
+                         const struct glint_event *event, const double hit[2],
+                         double at[2])
 {
     const struct glint_prescription *lens = f->drawing->lens;
     double point[3] = {hit[0], hit[1], 0};
@@ -328,7 +328,7 @@ static void set_film(struct figure *f)
 }
 
 /* Sets places and scale of F, whose drawing and file are set. */
-static void figure_begin(struct figure *f)
+static void begin(struct figure *f)
 {
     const struct glint_prescription *lens = f->drawing->lens;
     const double width = f->drawing->width_px - 2 * FIGURE_MARGIN_PX;
@@ -362,15 +362,14 @@ static void figure_begin(struct figure *f)
 
 /* Writes the points of surface K from its lower to its upper rim; from the
  * upper one if SENSE is -1. */
-static void figure_profile(const struct figure *f, int k, int sense)
+static void write_profile(const struct figure *f, int k, int sense)
 {
     const double semi = f->drawing->lens->surface[k].semi_mm;
     double at[3];
 
     for (int i = -PROFILE; i <= PROFILE; i++) {
         rim_point(f, k, sense * semi * i / PROFILE, at);
-        fprintf(f->file, "%.2f,%.2f ", figure_px(f, at[2]),
-                figure_py(f, at[0]));
+        fprintf(f->file, "%.2f,%.2f ", px(f, at[2]), py(f, at[0]));
     }
 }
 
@@ -385,11 +384,11 @@ static void write_edge(const struct figure *f, int k, int side)
     rim_point(f, k + 1, side * s[1].semi_mm, b);
     out = side * fmax(side * a[0], side * b[0]);
     if (side > 0)
-        fprintf(f->file, "%.2f,%.2f %.2f,%.2f ", figure_px(f, a[2]),
-                figure_py(f, out), figure_px(f, b[2]), figure_py(f, out));
+        fprintf(f->file, "%.2f,%.2f %.2f,%.2f ", px(f, a[2]), py(f, out),
+                px(f, b[2]), py(f, out));
     else
-        fprintf(f->file, "%.2f,%.2f %.2f,%.2f", figure_px(f, b[2]),
-                figure_py(f, out), figure_px(f, a[2]), figure_py(f, out));
+        fprintf(f->file, "%.2f,%.2f %.2f,%.2f", px(f, b[2]), py(f, out),
+                px(f, a[2]), py(f, out));
 }
 
 /* Draws the glass behind surface K: the denser, the darker. */
@@ -403,9 +402,9 @@ static void draw_glass(const struct figure *f, int k)
             "stroke-width=\"0.9\" stroke-linejoin=\"round\" points=\"",
             (unsigned)(232 - 62 * shade), (unsigned)(241 - 46 * shade),
             (unsigned)(250 - 26 * shade));
-    figure_profile(f, k, 1);
+    write_profile(f, k, 1);
     write_edge(f, k, 1);
-    figure_profile(f, k + 1, -1);
+    write_profile(f, k + 1, -1);
     write_edge(f, k, -1);
     fprintf(f->file,
             "\"><title>surface %d; nd %.5g, Vd %.4g</title></polygon>\n", k,
@@ -431,12 +430,11 @@ static void draw_barrel(const struct figure *f, int first, int last)
                 "<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.1f\" "
                 "fill=\"url(#hatch-%s)\" stroke=\"#777\" "
                 "stroke-width=\"0.5\"/>\n",
-                figure_px(f, a),
-                side ? figure_py(f, semi[1]) - wall : figure_py(f, -semi[0]),
+                px(f, a), side ? py(f, semi[1]) - wall : py(f, -semi[0]),
                 f->scale * (b - a), wall, lens->name);
 }
 
-static void figure_draw_glasses(const struct figure *f)
+static void draw_glasses(const struct figure *f)
 {
     const struct glint_prescription *lens = f->drawing->lens;
     int first = -1;
@@ -452,7 +450,7 @@ static void figure_draw_glasses(const struct figure *f)
     }
 }
 
-static void figure_draw_stop(const struct figure *f, double radius)
+static void draw_stop(const struct figure *f, double radius)
 {
     const double end =
         fmax(f->drawing->lens->stop_semi_mm * 1.18, radius + 9 / f->scale);
@@ -461,13 +459,12 @@ static void figure_draw_stop(const struct figure *f, double radius)
         fprintf(f->file,
                 "<path d=\"M%.2f %.2f V%.2f M%.2f %.2f h6\" stroke=\"#111\" "
                 "stroke-width=\"2.2\" fill=\"none\"/>\n",
-                figure_px(f, f->stop_z), figure_py(f, side * radius),
-                figure_py(f, side * end), figure_px(f, f->stop_z) - 3,
-                figure_py(f, side * radius));
+                px(f, f->stop_z), py(f, side * radius), py(f, side * end),
+                px(f, f->stop_z) - 3, py(f, side * radius));
 }
 
 /* Writes the number of surface K above its rim. */
-static void figure_draw_number(const struct figure *f, int k)
+static void draw_number(const struct figure *f, int k)
 {
     double at[3];
 
@@ -475,10 +472,10 @@ static void figure_draw_number(const struct figure *f, int k)
     fprintf(f->file,
             "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\" "
             "fill=\"#a2640c\">%d</text>\n",
-            figure_px(f, at[2]), figure_py(f, at[0]) - 7, k);
+            px(f, at[2]), py(f, at[0]) - 7, k);
 }
 
-static void figure_draw_axis_and_sensor(const struct figure *f)
+static void draw_axis_and_sensor(const struct figure *f)
 {
     const double film = f->film_mm / f->widen;
 
@@ -487,8 +484,8 @@ static void figure_draw_axis_and_sensor(const struct figure *f)
             "stroke-dasharray=\"12 3 2 3\"/>\n"
             "<path d=\"M%.2f %.2f V%.2f\" stroke=\"#111\" "
             "stroke-width=\"2\"/>\n",
-            figure_px(f, f->z0), figure_py(f, 0), figure_px(f, f->z1),
-            figure_px(f, f->sensor_z), figure_py(f, film), figure_py(f, -film));
+            px(f, f->z0), py(f, 0), px(f, f->z1), px(f, f->sensor_z),
+            py(f, film), py(f, -film));
 }
 
 enum { SPOT_PX = 170 };
@@ -499,7 +496,7 @@ static const char *const spot_colour[SPOT_COLOURS] = {"#2a52d0", "#2f9a3c",
                                                       "#d0342a"};
 
 /* Pixels that they take. */
-static double figure_spots_px(const struct figure *f)
+static double spots_px(const struct figure *f)
 {
     return f->drawing->spots ? BELOW_PX + SPOT_PX + LEGEND_PX : 0;
 }
@@ -537,7 +534,7 @@ static void draw_one(const struct figure *f, const struct spots *s, int field,
         (f->drawing->width_px - 2 * FIGURE_MARGIN_PX) / DRAWING_FIELDS;
     const double cx = FIGURE_MARGIN_PX + step * (field + 0.5);
     const double cy = top_px(f) + 0.5 * SPOT_PX;
-    const double half_mm = figure_round_up(s->radius_mm);
+    const double half_mm = round_up(s->radius_mm);
     const double scale = 0.5 * SPOT_PX / half_mm;
 
     draw_box(f, cx - 0.5 * SPOT_PX, cy - 0.5 * SPOT_PX);
@@ -555,7 +552,7 @@ static void draw_one(const struct figure *f, const struct spots *s, int field,
             "fill=\"%s\">%.1f°, RMS %.3g %s</text>\n"
             "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\" "
             "fill=\"#444\">side %.4g %s</text>\n",
-            cx, cy - 0.5 * SPOT_PX - 7, figure_field_colour[field], theta,
+            cx, cy - 0.5 * SPOT_PX - 7, field_colour[field], theta,
             per_mm(s->rms_mm) * s->rms_mm, unit(s->rms_mm), cx,
             cy + 0.5 * SPOT_PX + 15, per_mm(half_mm) * 2 * half_mm,
             unit(half_mm));
@@ -578,12 +575,12 @@ static void draw_legend(const struct figure *f)
 }
 
 /* Writes a spot diagram for each field below the section. */
-static void figure_draw_spots(const struct figure *f)
+static void draw_spots(const struct figure *f)
 {
     struct spots s;
 
     for (int i = 0; i < DRAWING_FIELDS; i++) {
-        const double theta = figure_field_deg(f, i);
+        const double theta = field_deg(f, i);
 
         spots_gather(&s, f->drawing->lens, f->drawing->plane_deg, theta);
         draw_one(f, &s, i, theta);
@@ -618,7 +615,7 @@ static void draw_ray(struct figure *f, const struct fan *fan, double x,
     fprintf(f->file,
             "<path fill=\"none\" stroke=\"%s\" stroke-width=\"0.7\" "
             "stroke-linejoin=\"round\" d=\"M%.2f %.2f ",
-            colour, figure_px(f, back), figure_py(f, x + slope * back));
+            colour, px(f, back), py(f, x + slope * back));
     for (int e = 0; e < fan->path.n_events; e++) {
         const bool stop = fan->path.event[e].kind == GLINT_STOP;
         double at[2];
@@ -628,12 +625,11 @@ static void draw_ray(struct figure *f, const struct fan *fan, double x,
         if (stop && f->drawing->lens->stop_after == 0 &&
             f->drawing->lens->stop_thickness_mm < 0)
             continue;
-        figure_meeting(f, &fan->path.event[e], hits[e], at);
-        fprintf(f->file, "L%.2f %.2f ", figure_px(f, at[0]),
-                figure_py(f, at[1]));
+        find_meeting(f, &fan->path.event[e], hits[e], at);
+        fprintf(f->file, "L%.2f %.2f ", px(f, at[0]), py(f, at[1]));
     }
-    fprintf(f->file, "L%.2f %.2f\"/>\n", figure_px(f, f->sensor_z),
-            figure_py(f, ray->sensor_x_mm / f->widen));
+    fprintf(f->file, "L%.2f %.2f\"/>\n", px(f, f->sensor_z),
+            py(f, ray->sensor_x_mm / f->widen));
     f->shown++;
 }
 
@@ -661,8 +657,8 @@ static void draw_rays(struct figure *f)
 
     for (int i = DRAWING_FIELDS - 1; i >= 0; i--)
         if (fan_init(&fan, f->drawing->lens, NULL, FIGURE_NM,
-                     f->drawing->plane_deg, figure_field_deg(f, i)))
-            draw_fan(f, &fan, figure_field_colour[i]);
+                     f->drawing->plane_deg, field_deg(f, i)))
+            draw_fan(f, &fan, field_colour[i]);
 }
 
 static void draw_ghost(struct figure *f, const struct glint_ghost *ghost,
@@ -678,7 +674,7 @@ static void draw_ghost(struct figure *f, const struct glint_ghost *ghost,
 
         fprintf(f->file, "<polyline fill=\"none\" stroke=\"#d0881b\" "
                          "stroke-width=\"2.4\" points=\"");
-        figure_profile(f, k, 1);
+        write_profile(f, k, 1);
         fprintf(f->file, "\"/>\n");
     }
 }
@@ -723,7 +719,7 @@ static void draw_title(const struct figure *f, const struct glint_optics *o,
 
 static void draw_scale_bar(const struct figure *f)
 {
-    const double mm = figure_round_up(40 / f->scale);
+    const double mm = round_up(40 / f->scale);
     const double y = f->middle + 0.5 * f->height_px + 10;
 
     fprintf(f->file,
@@ -740,7 +736,7 @@ static void open_svg(const struct figure *f)
 {
     const double width = f->drawing->width_px;
     const double height =
-        f->middle + 0.5 * f->height_px + FIGURE_MARGIN_PX + figure_spots_px(f);
+        f->middle + 0.5 * f->height_px + FIGURE_MARGIN_PX + spots_px(f);
 
     fprintf(f->file,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" "
@@ -753,7 +749,7 @@ static void open_svg(const struct figure *f)
             "width=\"%.1f\" height=\"%.1f\"/></clipPath></defs>\n"
             "<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
             width, height, width, height, f->drawing->lens->name,
-            f->drawing->lens->name, figure_px(f, f->z0),
+            f->drawing->lens->name, px(f, f->z0),
             f->middle - 0.5 * f->height_px, f->scale * (f->z1 - f->z0),
             f->height_px);
 }
@@ -771,12 +767,12 @@ static void draw_light(struct figure *f, char *path, size_t bytes)
     }
     glint_ghost_list(d->lens, ghost, GLINT_MAX_GHOSTS);
     if (theta < 0)
-        theta = figure_angle_deg(f, 0.5 * f->film_mm);
+        theta = angle_of(f, 0.5 * f->film_mm);
     draw_ghost(f, &ghost[d->ghost], theta);
     snprintf(path, bytes, "; ghost %d, surfaces %d and %d, light at %.3g°",
              d->ghost, ghost[d->ghost].i, ghost[d->ghost].j, theta);
-    figure_draw_number(f, ghost[d->ghost].i);
-    figure_draw_number(f, ghost[d->ghost].j);
+    draw_number(f, ghost[d->ghost].i);
+    draw_number(f, ghost[d->ghost].j);
 }
 
 int drawing_write(const struct lens_drawing *drawing, FILE *file)
@@ -786,20 +782,20 @@ int drawing_write(const struct lens_drawing *drawing, FILE *file)
     char path[96] = "";
 
     glint_optics_of(drawing->lens, &optics);
-    figure_begin(&f);
+    begin(&f);
     open_svg(&f);
-    figure_draw_axis_and_sensor(&f);
-    figure_draw_glasses(&f);
+    draw_axis_and_sensor(&f);
+    draw_glasses(&f);
     fprintf(file, "<g clip-path=\"url(#view-%s)\">\n", drawing->lens->name);
     draw_light(&f, path, sizeof path);
     fputs("</g>\n", file);
-    figure_draw_stop(&f, optics.stop_radius_mm);
+    draw_stop(&f, optics.stop_radius_mm);
     if (drawing->title) {
         draw_title(&f, &optics, path);
         draw_scale_bar(&f);
     }
     if (drawing->spots)
-        figure_draw_spots(&f);
+        draw_spots(&f);
     fputs("</svg>\n", file);
     return f.shown;
 }

@@ -49,10 +49,9 @@ static enum glint_status start_timer(struct glint_source *source,
 /* Prepares TIMED for frames of FORMAT, with the rate, range and matrix of WISH
  * if it gives any. CARD says what the source is. start begins a timer and makes
  * it the source's fd. The implementation sets next and close. */
-static void live_timed_init(struct live_timed *timed,
-                            const struct glint_source_format *format,
-                            const struct glint_v4l2_config *wish,
-                            const char *card)
+static void init_timed(struct live_timed *timed,
+                       const struct glint_source_format *format,
+                       const struct glint_v4l2_config *wish, const char *card)
 {
     struct glint_source_format *f = &timed->format;
 
@@ -93,8 +92,8 @@ static uint64_t count_due(struct live_timed *timed)
 
 /* Begins FRAME. Returns how many frames have come due since the last call, of
  * which the last is to be shown; 0 if none has. */
-static uint64_t live_timed_due(struct live_timed *timed,
-                               struct glint_source_frame *frame)
+static uint64_t begin_frame(struct live_timed *timed,
+                            struct glint_source_frame *frame)
 {
     const uint64_t n = count_due(timed);
 
@@ -105,9 +104,8 @@ static uint64_t live_timed_due(struct live_timed *timed,
 }
 
 /* Completes FRAME with IMAGE, the last of N frames that were due. */
-static void live_timed_show(struct live_timed *timed,
-                            struct glint_source_frame *frame,
-                            const struct glint_image *image, uint64_t n)
+static void show(struct live_timed *timed, struct glint_source_frame *frame,
+                 const struct glint_image *image, uint64_t n)
 {
     frame->image = *image;
     frame->image.range = timed->format.image.range;
@@ -116,7 +114,7 @@ static void live_timed_show(struct live_timed *timed,
     frame->n_late = (int)(n - 1);
 }
 
-static void live_timed_stop(struct live_timed *timed)
+static void stop_timer(struct live_timed *timed)
 {
     if (timed->timer >= 0)
         close(timed->timer);
@@ -239,14 +237,14 @@ static enum glint_status next_test(struct glint_source *source,
                                    struct glint_error *error)
 {
     struct live_timed *s = (struct live_timed *)source;
-    const uint64_t n = live_timed_due(s, frame);
+    const uint64_t n = begin_frame(s, frame);
 
     (void)error;
     if (n == 0)
         return GLINT_OK;
     s->n += (int64_t)n;
     draw_test(s, s->n - 1);
-    live_timed_show(s, frame, &s->image, n);
+    show(s, frame, &s->image, n);
     return GLINT_OK;
 }
 
@@ -254,7 +252,7 @@ static void close_test(struct glint_source *source)
 {
     struct live_timed *s = (struct live_timed *)source;
 
-    live_timed_stop(s);
+    stop_timer(s);
     free(s->mem);
     s->mem = NULL;
 }
@@ -293,10 +291,10 @@ static enum glint_status place(struct live_timed *s)
  * a side, rate, range and matrix. SEED is for the noise; IS_BLACK: there is
  * nothing. The lamp goes round in eight seconds. On failure TEST is closed.
  * GLINT_E_UNSUPPORTED, GLINT_E_MEMORY, GLINT_E_DEVICE. */
-static enum glint_status live_test_open(struct live_timed *test,
-                                        const struct glint_v4l2_config *wish,
-                                        uint32_t seed, bool is_black,
-                                        struct glint_error *error)
+static enum glint_status open_test(struct live_timed *test,
+                                   const struct glint_v4l2_config *wish,
+                                   uint32_t seed, bool is_black,
+                                   struct glint_error *error)
 {
     const struct glint_image image = lay_out(wish);
 
@@ -311,8 +309,8 @@ static enum glint_status live_test_open(struct live_timed *test,
         return glint_error_report(error, GLINT_E_MEMORY, "test",
                                   "no memory for %d x %d pixels", image.width,
                                   image.height);
-    live_timed_init(test, &(struct glint_source_format){.image = image}, wish,
-                    is_black ? "black" : "a lamp over a night street");
+    init_timed(test, &(struct glint_source_format){.image = image}, wish,
+               is_black ? "black" : "a lamp over a night street");
     test->source.next = next_test;
     test->source.close = close_test;
     return GLINT_OK;
@@ -325,7 +323,7 @@ static enum glint_status next_video(struct glint_source *source,
                                     struct glint_error *error)
 {
     struct live_timed *v = (struct live_timed *)source;
-    const uint64_t n = live_timed_due(v, frame);
+    const uint64_t n = begin_frame(v, frame);
     const struct glint_image *image = NULL, *after = NULL;
     uint64_t n_read = 0;
 
@@ -342,7 +340,7 @@ static enum glint_status next_video(struct glint_source *source,
     }
     v->n += (int64_t)n_read;
     if (image)
-        live_timed_show(v, frame, image, n_read);
+        show(v, frame, image, n_read);
     return n > 0 && !image ? GLINT_E_CLOSED : GLINT_OK;
 }
 
@@ -350,15 +348,15 @@ static void close_video(struct glint_source *source)
 {
     struct live_timed *v = (struct live_timed *)source;
 
-    live_timed_stop(v);
+    stop_timer(v);
     glint_y4m_reader_close(&v->reader);
 }
 
 /* Opens the video that is the device of WISH, FILE.y4m or "-". WISH may
  * overrule rate, range and matrix. On failure VIDEO is closed. */
-static enum glint_status live_video_open(struct live_timed *video,
-                                         const struct glint_v4l2_config *wish,
-                                         struct glint_error *error)
+static enum glint_status open_video(struct live_timed *video,
+                                    const struct glint_v4l2_config *wish,
+                                    struct glint_error *error)
 {
     const struct glint_y4m_header *h = &video->reader.header;
     const enum glint_status status =
@@ -366,7 +364,7 @@ static enum glint_status live_video_open(struct live_timed *video,
 
     if (status != GLINT_OK)
         return status;
-    live_timed_init(
+    init_timed(
         video,
         &(struct glint_source_format){.image = {.format = h->format,
                                                 .width = h->width,
@@ -408,11 +406,11 @@ enum glint_status live_input_open(struct live_input *input,
                                  wish->n_buffers, error);
     } else if (is_test(name)) {
         source = &input->as.timed.source;
-        status = live_test_open(&input->as.timed, &wish->camera, seed,
-                                strcmp(name, "none") == 0, error);
+        status = open_test(&input->as.timed, &wish->camera, seed,
+                           strcmp(name, "none") == 0, error);
     } else {
         source = &input->as.timed.source;
-        status = live_video_open(&input->as.timed, &wish->camera, error);
+        status = open_video(&input->as.timed, &wish->camera, error);
     }
     input->source = status == GLINT_OK ? source : NULL;
     return status;

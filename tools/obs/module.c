@@ -123,7 +123,7 @@ static void *open_filter(void *arg)
 
 /* Begins to open a filter with VALUES for frames of WIDTH x HEIGHT. Returns
  * NULL without memory or threads. */
-static struct opening *opening_begin(const struct filter_values *values,
+static struct opening *begin_opening(const struct filter_values *values,
                                      int width, int height)
 {
     struct opening *const o = calloc(1, sizeof *o);
@@ -145,7 +145,7 @@ static struct opening *opening_begin(const struct filter_values *values,
 
 /* Returns whether the filter is open, or has failed to open; if so it is the
  * caller's, and O is freed. */
-static bool opening_end(struct opening *o, struct filter **filter)
+static bool end_opening(struct opening *o, struct filter **filter)
 {
     bool is_done;
 
@@ -162,7 +162,7 @@ static bool opening_end(struct opening *o, struct filter **filter)
 
 /* Leaves an opening, or NULL, to itself: it frees what it has when it is done.
  */
-static void opening_leave(struct opening *o)
+static void leave_opening(struct opening *o)
 {
     bool is_done;
 
@@ -312,7 +312,7 @@ static bool ready(struct flare *f, const struct glint_image *image)
     const int w = image->width, h = image->height;
     struct filter *opened;
 
-    if (f->opening && opening_end(f->opening, &opened)) {
+    if (f->opening && end_opening(f->opening, &opened)) {
         filter_destroy(f->filter);
         f->filter = opened;
         f->opening = NULL;
@@ -321,7 +321,7 @@ static bool ready(struct flare *f, const struct glint_image *image)
     }
     if (!f->opening &&
         !(f->filter && filter_fits(f->filter, &f->wanted, w, h))) {
-        f->opening = opening_begin(&f->wanted, w, h);
+        f->opening = begin_opening(&f->wanted, w, h);
         if (!f->opening)
             warn_once(f, "no memory");
     }
@@ -376,7 +376,7 @@ static void destroy(void *ctx)
 {
     struct flare *const f = ctx;
 
-    opening_leave(f->opening);
+    leave_opening(f->opening);
     filter_destroy(f->filter);
     filter_values_free(&f->wanted);
     pthread_mutex_destroy(&f->lock);

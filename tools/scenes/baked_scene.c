@@ -61,14 +61,31 @@ void baked_scene_close(struct baked_scene *scene)
     *scene = (struct baked_scene){.data = NULL};
 }
 
-/* Bytes of a baked scene by what they hold; the keywords of its text. */
-struct scene_bytes {
-    size_t header, light, texture, material, environment, stone, object;
-    size_t mesh;                                   /* all of these: */
-    size_t vertices, normals, uv, triangles, grid; /* and their headers */
+/* What the bytes of a baked scene hold. */
+enum {
+    HEADER,
+    LIGHT,
+    TEXTURE,
+    MATERIAL,
+    ENVIRONMENT,
+    STONE,
+    OBJECT,
+    MESH, /* all that follow, and their headers */
+    VERTICES,
+    NORMALS,
+    UV,
+    TRIANGLES,
+    GRID,
+    N_PARTS
 };
 
+static const char *const part_names[N_PARTS] = {
+    "header", "light",     "texture", "material", "environment",
+    "stone",  "object",    "mesh",    "vertices", "normals",
+    "uv",     "triangles", "grid"};
+
 struct scene_counts {
+    size_t bytes[N_PARTS];
     int spheres, planes, catchers, meshes;
     unsigned vertices, triangles, cells, refs;
 };
@@ -85,8 +102,9 @@ static size_t texture_bytes(const struct glint_scene_texture *t)
 
 static void measure_mesh(const struct glint_scene_model *model,
                          const struct glint_scene_mesh *m,
-                         struct scene_bytes *b, struct scene_counts *n)
+                         struct scene_counts *n)
 {
+    size_t *const b = n->bytes;
     const unsigned cells = m->cells[0] * m->cells[1] * m->cells[2];
     const uint32_t *start =
         (const void *)((const unsigned char *)model->header + m->start_at);
@@ -95,12 +113,12 @@ static void measure_mesh(const struct glint_scene_model *model,
     n->triangles += m->n_triangles;
     n->cells += cells;
     n->refs += start[cells];
-    b->vertices += 12 * (size_t)m->n_vertices;
-    b->normals += m->normal_at ? 12 * (size_t)m->n_vertices : 0;
-    b->uv += m->uv_at ? 8 * (size_t)m->n_vertices : 0;
-    b->triangles += 16 * (size_t)m->n_triangles;
-    b->grid += 4 * ((size_t)cells + 1 + start[cells]);
-    b->mesh += sizeof *m;
+    b[VERTICES] += 12 * (size_t)m->n_vertices;
+    b[NORMALS] += m->normal_at ? 12 * (size_t)m->n_vertices : 0;
+    b[UV] += m->uv_at ? 8 * (size_t)m->n_vertices : 0;
+    b[TRIANGLES] += 16 * (size_t)m->n_triangles;
+    b[GRID] += 4 * ((size_t)cells + 1 + start[cells]);
+    b[MESH] += sizeof *m;
 }
 
 /* Returns the bytes of stones, and of the maps of what is of them. */
@@ -137,55 +155,44 @@ static size_t environment_bytes(const struct glint_scene_model *model)
     return bytes;
 }
 
-static void measure(const struct glint_scene_model *model,
-                    struct scene_bytes *b, struct scene_counts *n)
+static struct scene_counts measure(const struct glint_scene_model *model)
 {
     const struct glint_scene_header *h = model->header;
+    struct scene_counts n = {
+        .bytes = {[HEADER] = sizeof *h,
+                  [LIGHT] = h->n_lights * sizeof *model->light,
+                  [MATERIAL] = h->n_materials * sizeof *model->material +
+                               h->n_wards * sizeof *model->ward,
+                  [ENVIRONMENT] = environment_bytes(model),
+                  [STONE] = stone_bytes(model),
+                  [OBJECT] = h->n_objects * sizeof *model->object}};
 
-    *b = (struct scene_bytes){.header = sizeof *h,
-                              .light = h->n_lights * sizeof *model->light,
-                              .material =
-                                  h->n_materials * sizeof *model->material +
-                                  h->n_wards * sizeof *model->ward,
-                              .environment = environment_bytes(model),
-                              .stone = stone_bytes(model),
-                              .object = h->n_objects * sizeof *model->object};
-    *n = (struct scene_counts){.spheres = 0};
     for (uint32_t i = 0; i < h->n_textures; i++)
-        b->texture += texture_bytes(&model->texture[i]);
+        n.bytes[TEXTURE] += texture_bytes(&model->texture[i]);
     for (uint32_t i = 0; i < h->n_meshes; i++)
-        measure_mesh(model, &model->mesh[i], b, n);
-    b->mesh += b->vertices + b->normals + b->uv + b->triangles + b->grid;
+        measure_mesh(model, &model->mesh[i], &n);
+    for (int k = MESH + 1; k < N_PARTS; k++)
+        n.bytes[MESH] += n.bytes[k];
     for (uint32_t i = 0; i < h->n_objects; i++) {
-        n->spheres += model->object[i].kind == GLINT_OBJECT_SPHERE;
-        n->planes += model->object[i].kind == GLINT_OBJECT_PLANE;
-        n->meshes += model->object[i].kind == GLINT_OBJECT_MESH;
-        n->catchers += model->object[i].catcher_q15 > 0;
+        n.spheres += model->object[i].kind == GLINT_OBJECT_SPHERE;
+        n.planes += model->object[i].kind == GLINT_OBJECT_PLANE;
+        n.meshes += model->object[i].kind == GLINT_OBJECT_MESH;
+        n.catchers += model->object[i].catcher_q15 > 0;
     }
-}
-
-/* Begins "bytes", an object. */
-static void print_bytes(struct json_writer *json, const struct scene_bytes *b)
-{
-    json_write(json,
-               "bytes: {header: %zu, light: %zu, texture: %zu, material: %zu, "
-               "environment: %zu, stone: %zu, object: %zu, mesh: %zu",
-               b->header, b->light, b->texture, b->material, b->environment,
-               b->stone, b->object, b->mesh);
+    return n;
 }
 
 void baked_scene_bytes(struct json_writer *json,
                        const struct glint_scene_model *model)
 {
-    struct scene_bytes bytes;
-    struct scene_counts counts;
+    const struct scene_counts n = measure(model);
 
-    measure(model, &bytes, &counts);
-    print_bytes(json, &bytes);
+    json_write(json, "bytes: {");
+    for (int k = 0; k <= MESH; k++)
+        json_write(json, "%s: %zu", part_names[k], n.bytes[k]);
 }
 
 static void print_json(const struct baked_scene *scene,
-                       const struct scene_bytes *b,
                        const struct scene_counts *n)
 {
     const struct glint_scene_header *h = scene->model.header;
@@ -203,7 +210,7 @@ static void print_json(const struct baked_scene *scene,
     if (scene->is_text)
         json_write(&json, "reach: %.9g, flat: %d", scene->report.reach,
                    scene->report.flat);
-    print_bytes(&json, b);
+    baked_scene_bytes(&json, &scene->model);
     json_write(&json, "all: %zu}}}\n", scene->bytes);
 }
 
@@ -219,26 +226,9 @@ static void print_camera(const struct glint_scene_camera *c)
 }
 
 static void print_text(const struct baked_scene *scene,
-                       const struct scene_bytes *b,
                        const struct scene_counts *n)
 {
     const struct glint_scene_header *h = scene->model.header;
-    const struct {
-        const char *what;
-        size_t bytes;
-    } row[] = {{"header", b->header},
-               {"light", b->light},
-               {"texture", b->texture},
-               {"material", b->material},
-               {"environment", b->environment},
-               {"stone", b->stone},
-               {"object", b->object},
-               {"mesh", b->mesh},
-               {"  vertices", b->vertices},
-               {"  normals", b->normals},
-               {"  uv", b->uv},
-               {"  triangles", b->triangles},
-               {"  grid", b->grid}};
 
     printf("%s, a %sscene\n\n", h->name, scene->is_text ? "" : "baked ");
     print_camera(&h->camera);
@@ -260,16 +250,15 @@ static void print_text(const struct baked_scene *scene,
         printf("reach        %.4g units from the origin; poses, to %.4g\n",
                scene->report.reach, ldexp(1, 28 - h->unit_log2));
     printf("bytes        %zu\n", scene->bytes);
-    for (size_t i = 0; i < sizeof row / sizeof *row; i++)
-        if (row[i].bytes)
-            printf("  %-12s %8zu\n", row[i].what, row[i].bytes);
+    for (int k = 0; k < N_PARTS; k++)
+        if (n->bytes[k])
+            printf("  %s%-*s %8zu\n", k > MESH ? "  " : "", k > MESH ? 10 : 12,
+                   part_names[k], n->bytes[k]);
 }
 
 void baked_scene_print(const struct tool *tool, const struct baked_scene *scene)
 {
-    struct scene_bytes bytes;
-    struct scene_counts counts;
+    const struct scene_counts counts = measure(&scene->model);
 
-    measure(&scene->model, &bytes, &counts);
-    (tool->json ? print_json : print_text)(scene, &bytes, &counts);
+    (tool->json ? print_json : print_text)(scene, &counts);
 }

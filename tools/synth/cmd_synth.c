@@ -85,7 +85,7 @@ static const struct synth_layout layouts[] = {
 };
 
 /* Returns the layout NAME, or NULL. */
-static const struct synth_layout *synth_layout_named(const char *name)
+static const struct synth_layout *layout_named(const char *name)
 {
     for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++)
         if (strcmp(layouts[i].name, name) == 0)
@@ -95,9 +95,9 @@ static const struct synth_layout *synth_layout_named(const char *name)
 
 /* Sets PATH to FILE of item NUMBER in FOLDER. Returns false if that is too
  * long. */
-static bool synth_layout_path(char path[SYNTH_PATH_BYTES], const char *folder,
-                              const struct synth_file *file, int number,
-                              const char *type)
+static bool file_path(char path[SYNTH_PATH_BYTES], const char *folder,
+                      const struct synth_file *file, int number,
+                      const char *type)
 {
     return snprintf(path, SYNTH_PATH_BYTES, "%s/%s%s%06d.%s", folder,
                     file->folder, file->prefix, number,
@@ -114,7 +114,7 @@ static bool line_path(char path[SYNTH_PATH_BYTES], const struct synth_set *set,
 {
     static const struct synth_file lines = {"items/", "", 0, false};
 
-    return synth_layout_path(path, set->folder, &lines, number, "json");
+    return file_path(path, set->folder, &lines, number, "json");
 }
 
 /* Writes TEXT as the file PATH, whole. */
@@ -151,8 +151,7 @@ static int make_folder(const struct tool *tool, char *path)
 }
 
 /* Makes the folders of SET alone. */
-static int synth_set_folders(const struct tool *tool,
-                             const struct synth_set *set)
+static int make_folders(const struct tool *tool, const struct synth_set *set)
 {
     char path[SYNTH_PATH_BYTES];
     int code = EXIT_OK;
@@ -160,8 +159,7 @@ static int synth_set_folders(const struct tool *tool,
     for (int i = 0;
          i < SYNTH_MAX_FILES && set->layout->file[i].folder && code == EXIT_OK;
          i++) {
-        if (!synth_layout_path(path, set->folder, &set->layout->file[i], 0,
-                               set->type))
+        if (!file_path(path, set->folder, &set->layout->file[i], 0, set->type))
             return too_long(tool, set);
         code = make_folder(tool, path);
     }
@@ -173,7 +171,7 @@ static int synth_set_folders(const struct tool *tool,
 
 /* Refuses a folder where a set was begun: a line's item would take the place of
  * one of its own. */
-static int synth_set_apart(const struct tool *tool, const struct synth_set *set)
+static int check_apart(const struct tool *tool, const struct synth_set *set)
 {
     char path[SYNTH_PATH_BYTES];
 
@@ -217,8 +215,8 @@ static int check_count(const struct tool *tool, const struct synth_set *set)
 /* Makes the folders of SET. SETTINGS, a line, says what all items are drawn
  * with. Returns an exit code: EXIT_USAGE if the folder was begun with others,
  * or has items beyond SET's count. */
-static int synth_set_begin(const struct tool *tool, const struct synth_set *set,
-                           const char *settings)
+static int begin_set(const struct tool *tool, const struct synth_set *set,
+                     const char *settings)
 {
     enum { MOST_BYTES = 1 << 26 };
     char path[SYNTH_PATH_BYTES];
@@ -227,7 +225,7 @@ static int synth_set_begin(const struct tool *tool, const struct synth_set *set,
     uint8_t *kept = NULL;
     size_t bytes = 0;
     bool is_same;
-    int code = synth_set_folders(tool, set);
+    int code = make_folders(tool, set);
 
     snprintf(path, sizeof path, "%s/synth.json", set->folder);
     if (code != EXIT_OK)
@@ -249,8 +247,8 @@ static int synth_set_begin(const struct tool *tool, const struct synth_set *set,
 }
 
 /* Writes SETTINGS to synth.json, once nothing is wrong with them. */
-static int synth_set_keep(const struct tool *tool, const struct synth_set *set,
-                          const char *settings)
+static int keep_settings(const struct tool *tool, const struct synth_set *set,
+                         const char *settings)
 {
     char path[SYNTH_PATH_BYTES];
 
@@ -263,16 +261,15 @@ static int synth_set_keep(const struct tool *tool, const struct synth_set *set,
 /* -------------------------------------------------------------------- items */
 
 /* Returns whether item NUMBER is there, whole. */
-static bool synth_set_has(const struct synth_set *set, int number)
+static bool has_item(const struct synth_set *set, int number)
 {
     const struct synth_file *const file = set->layout->file;
     char path[SYNTH_PATH_BYTES];
     bool is_there = line_path(path, set, number) && access(path, F_OK) == 0;
 
     for (int i = 0; i < SYNTH_MAX_FILES && file[i].folder && is_there; i++)
-        is_there =
-            synth_layout_path(path, set->folder, &file[i], number, set->type) &&
-            access(path, F_OK) == 0;
+        is_there = file_path(path, set->folder, &file[i], number, set->type) &&
+                   access(path, F_OK) == 0;
     return is_there;
 }
 
@@ -291,7 +288,7 @@ static enum glint_status put_file(const struct synth_set *set,
     enum glint_status status;
     uint8_t *codes;
 
-    synth_layout_path(path, set->folder, file, (int)item->number, set->type);
+    file_path(path, set->folder, file, (int)item->number, set->type);
     if (file->layers)
         synth_sum(d, file->layers, rgb);
     if (file->is_noisy)
@@ -311,10 +308,10 @@ static enum glint_status put_file(const struct synth_set *set,
 }
 
 /* Writes the files of ITEM, and its line. Returns an exit code. */
-static int synth_set_put(const struct tool *tool, const struct synth_set *set,
-                         const struct synth_item *item,
-                         const struct synth_result *result,
-                         const struct synth_drawing *drawing)
+static int put_item(const struct tool *tool, const struct synth_set *set,
+                    const struct synth_item *item,
+                    const struct synth_result *result,
+                    const struct synth_drawing *drawing)
 {
     const size_t n = 3 * (size_t)drawing->width * (size_t)drawing->height;
     const struct synth_file *const file = set->layout->file;
@@ -371,7 +368,7 @@ static int write_lines(const struct tool *tool, const struct synth_set *set,
 
     *is_whole = true;
     for (int i = first; i < set->count && *is_whole; i += step)
-        *is_whole = synth_set_has(set, i);
+        *is_whole = has_item(set, i);
     if (!*is_whole)
         return EXIT_OK;
     snprintf(path, sizeof path, "%s/%s", set->folder, name);
@@ -403,8 +400,8 @@ static void remove_parts(const struct synth_set *set)
 /* Writes the manifest of a shard whose items are all there, and that of all
  * once all are; the shards' are gone then. Sets IS_WHOLE to whether they are.
  * Returns an exit code. */
-static int synth_set_end(const struct tool *tool, const struct synth_set *set,
-                         bool *is_whole)
+static int end_set(const struct tool *tool, const struct synth_set *set,
+                   bool *is_whole)
 {
     char name[64];
     bool is_done = true;
@@ -443,9 +440,8 @@ static enum glint_status paste(const char *path, const struct glint_image *to,
 
 /* Writes to PATH a contact sheet of the first N items, which have the size of
  * SIZE. Returns an exit code. */
-static int synth_set_sheet(const struct tool *tool, const struct synth_set *set,
-                           const struct synth_item *size, const char *path,
-                           int n)
+static int write_sheet(const struct tool *tool, const struct synth_set *set,
+                       const struct synth_item *size, const char *path, int n)
 {
     const int width = (int)size->width;
     char file[SYNTH_PATH_BYTES], caption[16];
@@ -461,8 +457,7 @@ static int synth_set_sheet(const struct tool *tool, const struct synth_set *set,
         const struct glint_image to = sheet_picture(&sheet, k);
 
         for (int i = 0; i < columns && status == GLINT_OK; i++) {
-            synth_layout_path(file, set->folder, &set->layout->file[i], k,
-                              set->type);
+            file_path(file, set->folder, &set->layout->file[i], k, set->type);
             status = paste(file, &to, i * width, &error);
         }
         snprintf(caption, sizeof caption, "%06d", k);
@@ -686,7 +681,7 @@ static int take(struct tool *tool, void *ctx, int c, const char *value)
     case OPT_RANGE:
         return take_range(tool, s, value);
     case OPT_LAYOUT:
-        s->set.layout = synth_layout_named(value);
+        s->set.layout = layout_named(value);
         good = s->set.layout != NULL;
         break;
     case OPT_TYPE:
@@ -803,9 +798,8 @@ static int make(const struct tool *tool, struct synth *s,
     const int code = synth_draw(tool, &s->lenses, &s->backgrounds, item,
                                 &s->drawing, &result);
 
-    return code == EXIT_OK
-               ? synth_set_put(tool, &s->set, item, &result, &s->drawing)
-               : code;
+    return code == EXIT_OK ? put_item(tool, &s->set, item, &result, &s->drawing)
+                           : code;
 }
 
 static int start_drawing(const struct tool *tool, struct synth *s,
@@ -833,9 +827,9 @@ static int run_line(const struct tool *tool, struct synth *s)
                 "draw it a little differently\n",
                 item.glint, GLINT_VERSION);
     if (code == EXIT_OK)
-        code = synth_set_apart(tool, &s->set);
+        code = check_apart(tool, &s->set);
     if (code == EXIT_OK)
-        code = synth_set_folders(tool, &s->set);
+        code = make_folders(tool, &s->set);
     if (code == EXIT_OK)
         code = start_drawing(tool, s, &item);
     return code == EXIT_OK ? make(tool, s, &item) : code;
@@ -866,11 +860,11 @@ static int run_items(const struct tool *tool, struct synth *s)
     int code = EXIT_OK, left = 0, done = 0;
 
     for (int i = set->shard; i < set->count; i += set->shards)
-        left += !synth_set_has(set, i);
+        left += !has_item(set, i);
     tool_progress_start(&progress, tool, "synth");
     for (int i = set->shard; i < set->count && code == EXIT_OK;
          i += set->shards) {
-        if (synth_set_has(set, i))
+        if (has_item(set, i))
             continue;
         code = choose(tool, s, i, &item);
         if (code == EXIT_OK)
@@ -890,25 +884,25 @@ static int run_set(const struct tool *tool, struct synth *s)
     settings = settings_of(s, tool->seed);
     if (!settings)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    code = synth_set_begin(tool, &s->set, settings);
+    code = begin_set(tool, &s->set, settings);
     if (code == EXIT_OK)
         code = open_lenses(tool, s);
     if (code == EXIT_OK)
-        code = synth_set_keep(tool, &s->set, settings);
+        code = keep_settings(tool, &s->set, settings);
     free(settings);
     if (code == EXIT_OK)
         code = start_drawing(tool, s, &s->all);
     if (code == EXIT_OK)
         code = run_items(tool, s);
     if (code == EXIT_OK && s->set.count > 0)
-        code = synth_set_end(tool, &s->set, &is_whole);
+        code = end_set(tool, &s->set, &is_whole);
     if (code == EXIT_OK && !tool->quiet && s->set.count > 0)
         fprintf(stderr, "glint synth: %s: %s %d items\n", s->set.folder,
                 is_whole ? "all" : "this shard, not yet all, of", s->set.count);
     if (code == EXIT_OK && s->sheet && is_whole)
-        code = synth_set_sheet(tool, &s->set, &s->all, s->sheet,
-                               s->set.count < SHEET_ITEMS ? s->set.count
-                                                          : SHEET_ITEMS);
+        code = write_sheet(tool, &s->set, &s->all, s->sheet,
+                           s->set.count < SHEET_ITEMS ? s->set.count
+                                                      : SHEET_ITEMS);
     return code;
 }
 
@@ -930,7 +924,7 @@ int cmd_synth(int argc, char **argv)
     if (!s)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     s->set = (struct synth_set){
-        .layout = synth_layout_named("plain"), .count = 100, .shards = 1};
+        .layout = layout_named("plain"), .count = 100, .shards = 1};
     s->all = (struct synth_item){.width = 512,
                                  .height = 512,
                                  .quality = 0.5,

@@ -235,10 +235,10 @@ static const char *find(const struct synth_backgrounds *list,
  * that ITEM takes, and EV to the stops by which that was brought to ITEM's
  * level. GLINT_E_IO with ERROR: there is no such background, or its bytes are
  * not those of ITEM's key. Errors of glint_picture_load_float(). */
-static enum glint_status
-synth_background_load(const struct synth_backgrounds *list,
-                      const struct synth_item *item, float *rgb, double *ev,
-                      struct glint_error *error)
+static enum glint_status load_background(const struct synth_backgrounds *list,
+                                         const struct synth_item *item,
+                                         float *rgb, double *ev,
+                                         struct glint_error *error)
 {
     const char *const path = find(list, item);
     struct glint_float_image image = {.rgb = NULL};
@@ -565,8 +565,8 @@ int synth_draw(const struct tool *tool, struct synth_lenses *lenses,
         code = draw_flare(tool, &lens->settings, item, d, result);
     if (code != EXIT_OK)
         return code;
-    status = synth_background_load(backgrounds, item, d->layer[SYNTH_BASE],
-                                   &result->background_ev, &error);
+    status = load_background(backgrounds, item, d->layer[SYNTH_BASE],
+                             &result->background_ev, &error);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 

@@ -78,15 +78,11 @@ static void test_there_and_back(void **state)
 
         if (i == GLINT_I444 || i == GLINT_LINEAR_Q20)
             continue;
-        assert_int_equal(glint_fourcc_memory_planes(fourcc), 1);
         assert_true(glint_fourcc_to_format(fourcc, &format));
         assert_int_equal(format, i);
         glint_fourcc_text(fourcc, text);
         assert_int_equal(parsed(text), fourcc);
     }
-    assert_int_equal(glint_fourcc_memory_planes(parsed("NM12")), 2);
-    assert_int_equal(glint_fourcc_memory_planes(parsed("YM12")), 3);
-    assert_int_equal(glint_fourcc_memory_planes(parsed("MJPG")), 1);
 }
 
 static void test_refuses(void **state)
