@@ -12,27 +12,42 @@
  * centred as it is, and its sides are cut off where they do not fit. Draw does
  * not touch the parts of the panel beside the picture.
  *
- * Each row is made in cached memory (panel/row_rgb.h) and
- * then copied, so the panel's own memory is only written, and in order: it may
- * be write-combining. Rows that show the same row of the picture are made once.
+ * Each row is made in cached memory and then copied, so the panel's own memory
+ * is only written, and in order: it may be write-combining. Rows that show the
+ * same row of the picture are made once.
  *
  * Packed pixels of any true-colour layout (glint_row_pack):
  *
- *     in   R', G', B' bytes, an array each (panel/row_rgb.h)
+ *     in   R', G', B' bytes, an array each
  *     out  words of 16, 24 or 32 bits, in the order of the machine's bytes,
  *          as Linux describes framebuffers: offset and length of each channel
  *
  * A channel of n bits gets code c as (c (2^n - 1) + 127) / 255: the nearest,
- * and for 16 bits the inverse of what panel/row_rgb.h reads. Transparency is
+ * and for 16 bits the inverse of what glint_row_rgb reads. Transparency is
  * written opaque; unused bits are zero. With dithering the 127 becomes one of
  * 64 thresholds by the place of the pixel (8 x 8, the same in all channels):
  * bands of smooth gradients turn to grain.
+ *
+ * A stretch of a row as R', G', B' bytes (glint_row_rgb), of a picture of 8-bit
+ * codes, any format but GLINT_LINEAR_Q20: R' = Y' ky + Cr k and so on, in
+ * integers. Constants have 13 fraction bits (_q13), one rounding to the nearest
+ * code, ties up, then a clamp to 0 .. 255. Over all codes that is within 1 of
+ * the same sum in exact arithmetic, equal to it for 99.6 % of them and for all
+ * greys. Chroma of subsampled formats is repeated, as where flares are drawn
+ * (src/image/codes.c). Channels may point into the picture itself where nothing
+ * has to be computed.
  */
 #ifndef GLINT_PLATFORM_PANEL_PANEL_H
 #define GLINT_PLATFORM_PANEL_PANEL_H
 
-#include "panel/row_rgb.h"
 #include "source_sink.h"
+
+struct glint_row_rgb {
+    const uint8_t *channel[3]; /* R', G', B' of the last read */
+
+    /* Private. */
+    uint8_t *rgb[3], *luma, *cb, *cr; /* rows in the caller's memory */
+};
 
 /* Bits of a pixel's word that hold a channel; length 0: it has none. */
 struct glint_pixel_field {
@@ -89,6 +104,27 @@ struct glint_panel {
     uint8_t *scaled;  /* a row as it is shown, packed */
     void *mem;        /* memory of all private arrays; NULL: closed */
 };
+
+/* Splits N pairs of bytes. Arrays do not overlap. */
+void glint_split_pairs(uint8_t *restrict a, uint8_t *restrict b,
+                       const uint8_t *restrict from, int n);
+
+/* Splits N pairs of pixels of FORMAT, GLINT_YUYV or GLINT_UYVY, each with two
+ * samples of luma and one of Cb and Cr. */
+void glint_split_packed(enum glint_pixel_format format, uint8_t *luma,
+                        uint8_t *cb, uint8_t *cr, const uint8_t *from, int n);
+
+/* Returns the bytes of memory that rows of up to WIDTH pixels take. */
+size_t glint_row_rgb_bytes(int width);
+
+/* Prepares ROW for up to WIDTH pixels. It keeps using
+ * MEM[glint_row_rgb_bytes(width)]. */
+void glint_row_rgb_init(struct glint_row_rgb *row, void *mem, int width);
+
+/* Sets row->channel to the pixels X .. X + N - 1 of row Y of IMAGE. X is
+ * even. */
+void glint_row_rgb_read(struct glint_row_rgb *row,
+                        const struct glint_image *image, int x, int y, int n);
 
 /* Returns whether LAYOUT can be written: whole bytes, fields that fit and do
  * not overlap, and all three colours. */

@@ -19,8 +19,7 @@
 #ifndef GLINT_PLATFORM_PANEL_SINKS_H
 #define GLINT_PLATFORM_PANEL_SINKS_H
 
-#include "panel/row_rgb.h"
-#include "source_sink.h"
+#include "panel/panel.h"
 #include "video/y4m.h"
 
 struct glint_null_sink {

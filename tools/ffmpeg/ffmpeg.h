@@ -68,6 +68,10 @@ struct ffmpeg_target {
     bool quiet;
 };
 
+/* Returns the format of planes with CHROMA, "420", "422", "444" or "gray", and
+ * BITS. */
+const char *pixels_named(const char *chroma, int bits);
+
 /* Returns whether NAME is a program of $PATH. */
 bool child_exists(const char *name);
 

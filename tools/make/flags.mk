@@ -76,7 +76,7 @@ $(call of,$(addprefix src/flare/edges/,edge edge_add),-O3 -fno-tree-vectorize)# 
 $(call of,$(addprefix src/image/,codes quads) src/veil/veil_pass src/veil/veil_front src/tile/blend $(addprefix src/flare/,edges/sums edges_pass) \
 	$(addprefix src/lens/,transfer transfer_rays transfer_grid),-ftree-vectorize)
 # Every frame of a camera goes through these on its way to a panel.
-$(call of,$(addprefix platform/panel/,row_rgb panel sinks),-O3)
+$(call of,$(addprefix platform/panel/,panel sinks),-O3)
 # The floor that frames are measured by is as fast as can be.
 $(call of,tools/lab/canvas,-O3)
 # Rays in eights: errno and traps are all that these give away.

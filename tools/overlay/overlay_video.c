@@ -14,7 +14,6 @@
 
 #include "formats/picture.h"
 #include "ffmpeg/ffmpeg.h"
-#include "ffmpeg/pixels.h"
 #include "video/y4m.h"
 #include "posix/ending.h"
 #include "posix/error.h"
