@@ -3,13 +3,14 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-#include "formats/oiio.h"
 #include "posix/ending.h"
 #include "posix/error.h"
+#include "posix/input.h"
 
 /* Returns where the sub-blocks that begin at AT end, or the end of the data. */
 static size_t skip_blocks(const uint8_t *d, size_t n, size_t at)
@@ -67,6 +68,38 @@ int glint_gif_frames(const char *name)
          : (size_t)(UINT64_C(12) * GLINT_MAX_SIDE * GLINT_MAX_SIDE + 4096))
 #define HEAD_BYTES 12 /* first bytes, which tell file types apart */
 
+/* ------------------------------------------------------------------- types */
+
+enum type_alpha { ALPHA_NONE, ALPHA_STRAIGHT, ALPHA_PREMULTIPLIED };
+
+struct file_type {
+    const char *extension;
+    bool is_native; /* written by glint itself */
+    bool is_grey;   /* holds no colours */
+    enum type_alpha alpha;
+    bool takes_u8, takes_u16, takes_half, takes_float;
+};
+
+/* clang-format off */
+static const struct file_type types[] = {
+    /* extension, native, grey, alpha; takes 8 bits, 16, half, float */
+    {".ppm",  true,  false, ALPHA_NONE,          true,  true,  false, false},
+    {".pnm",  true,  false, ALPHA_NONE,          true,  true,  false, false},
+    {".pgm",  true,  true,  ALPHA_NONE,          true,  true,  false, false},
+    {".pfm",  true,  false, ALPHA_NONE,          false, false, false, true},
+    {".png",  false, false, ALPHA_STRAIGHT,      true,  true,  false, false},
+    {".jpg",  false, false, ALPHA_NONE,          true,  false, false, false},
+    {".jpeg", false, false, ALPHA_NONE,          true,  false, false, false},
+    {".exr",  false, false, ALPHA_PREMULTIPLIED, false, false, true,  true},
+    {".hdr",  false, false, ALPHA_NONE,          false, false, false, true},
+    {".tif",  false, false, ALPHA_STRAIGHT,      true,  true,  true,  true},
+    {".tiff", false, false, ALPHA_STRAIGHT,      true,  true,  true,  true},
+    {".bmp",  false, false, ALPHA_NONE,          true,  false, false, false},
+    {".tga",  false, false, ALPHA_STRAIGHT,      true,  false, false, false},
+    {".webp", false, false, ALPHA_STRAIGHT,      true,  false, false, false},
+};
+/* clang-format on */
+
 /* ----------------------------------------------------------------- loading */
 
 /* A picture that was loaded, of 8 bits or of floats; the other member is
@@ -92,7 +125,10 @@ static const struct magic {
     {"RIFF", 4, "WebP"},
 };
 
-const char *glint_picture_type(const uint8_t *head, size_t bytes)
+/* Returns the name of the file type that HEAD, the first
+ * BYTES of a file, shows; reports in ERROR that a file of TYPE needs the
+ * plug-in, with the reason that ERROR gives for its absence. */
+static const char *type_name(const uint8_t *head, size_t bytes)
 {
     for (size_t i = 0; i < sizeof magics / sizeof *magics; i++)
         if (bytes >= magics[i].n && !memcmp(head, magics[i].bytes, magics[i].n))
@@ -100,8 +136,8 @@ const char *glint_picture_type(const uint8_t *head, size_t bytes)
     return "any file but PPM, PGM and PFM";
 }
 
-enum glint_status glint_picture_needs_plugin(const char *path, const char *type,
-                                             struct glint_error *error)
+static enum glint_status needs_plugin(const char *path, const char *type,
+                                      struct glint_error *error)
 {
     const struct glint_error cause = *error;
 
@@ -119,7 +155,7 @@ static enum glint_status load_by_plugin(struct loaded *loaded, const char *path,
     enum glint_status status = glint_oiio_load(&oiio, error);
 
     if (status)
-        return glint_picture_needs_plugin(path, type, error);
+        return needs_plugin(path, type, error);
     status = oiio->read(&pixels, path, error);
     if (status)
         return status;
@@ -137,9 +173,13 @@ static enum glint_status load_by_plugin(struct loaded *loaded, const char *path,
     return GLINT_OK;
 }
 
-enum glint_status glint_picture_read(struct glint_input *in, const char *name,
-                                     uint8_t **data, size_t *bytes,
-                                     struct glint_error *error)
+/* Reads of IN a PNM or PFM whole, of other files the first
+ * 12 bytes, into *DATA, which the caller frees also on failure. NAME is for
+ * errors. GLINT_E_FORMAT: it is empty. GLINT_E_UNSUPPORTED: a video, or too
+ * large. GLINT_E_IO, GLINT_E_MEMORY. */
+static enum glint_status read_file(struct glint_input *in, const char *name,
+                                   uint8_t **data, size_t *bytes,
+                                   struct glint_error *error)
 {
     ptrdiff_t n = 1;
 
@@ -170,8 +210,7 @@ static enum glint_status load_opened(struct loaded *loaded,
                                      struct glint_error *error)
 {
     size_t bytes;
-    enum glint_status status =
-        glint_picture_read(in, in->name, data, &bytes, error);
+    enum glint_status status = read_file(in, in->name, data, &bytes, error);
 
     if (status)
         return status;
@@ -183,8 +222,7 @@ static enum glint_status load_opened(struct loaded *loaded,
     if (!strcmp(in->name, "standard input"))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, in->name,
                                   "only PPM, PGM and PFM come through a pipe");
-    return load_by_plugin(loaded, in->name, glint_picture_type(*data, bytes),
-                          error);
+    return load_by_plugin(loaded, in->name, type_name(*data, bytes), error);
 }
 
 static enum glint_status load(struct loaded *loaded, const char *path,
@@ -324,27 +362,9 @@ enum glint_status glint_picture_load_float(const char *path,
 
 /* ------------------------------------------------------------------ saving */
 
-/* clang-format off */
-static const struct glint_file_type types[] = {
-    /* extension, native, grey, alpha; takes 8 bits, 16, half, float */
-    {".ppm",  true,  false, GLINT_ALPHA_NONE,          true,  true,  false, false},
-    {".pnm",  true,  false, GLINT_ALPHA_NONE,          true,  true,  false, false},
-    {".pgm",  true,  true,  GLINT_ALPHA_NONE,          true,  true,  false, false},
-    {".pfm",  true,  false, GLINT_ALPHA_NONE,          false, false, false, true},
-    {".png",  false, false, GLINT_ALPHA_STRAIGHT,      true,  true,  false, false},
-    {".jpg",  false, false, GLINT_ALPHA_NONE,          true,  false, false, false},
-    {".jpeg", false, false, GLINT_ALPHA_NONE,          true,  false, false, false},
-    {".exr",  false, false, GLINT_ALPHA_PREMULTIPLIED, false, false, true,  true},
-    {".hdr",  false, false, GLINT_ALPHA_NONE,          false, false, false, true},
-    {".tif",  false, false, GLINT_ALPHA_STRAIGHT,      true,  true,  true,  true},
-    {".tiff", false, false, GLINT_ALPHA_STRAIGHT,      true,  true,  true,  true},
-    {".bmp",  false, false, GLINT_ALPHA_NONE,          true,  false, false, false},
-    {".tga",  false, false, GLINT_ALPHA_STRAIGHT,      true,  false, false, false},
-    {".webp", false, false, GLINT_ALPHA_STRAIGHT,      true,  false, false, false},
-};
-/* clang-format on */
-
-const struct glint_file_type *glint_file_type_of(const char *path)
+/* Returns the type that PATH's extension stands for, or NULL if it is
+ * unknown. */
+static const struct file_type *type_of(const char *path)
 {
     const char *const slash = strrchr(path, '/');
     const char *const extension = strrchr(slash ? slash : path, '.');
@@ -357,18 +377,17 @@ const struct glint_file_type *glint_file_type_of(const char *path)
 
 /* Returns the type that PATH's extension names, or NULL if it is unknown. The
  * pipe "-" has the type that glint itself writes for KIND. */
-static const struct glint_file_type *find_type(const char *path,
-                                               enum glint_picture_kind kind)
+static const struct file_type *find_type(const char *path,
+                                         enum glint_picture_kind kind)
 {
     if (!strcmp(path, "-"))
         path = kind == GLINT_PICTURE_FLOAT ? "-.pfm" : "-.ppm";
-    return glint_file_type_of(path);
+    return type_of(path);
 }
 
 bool glint_picture_is_float(const char *path)
 {
-    const struct glint_file_type *const type =
-        find_type(path, GLINT_PICTURE_8BIT);
+    const struct file_type *const type = find_type(path, GLINT_PICTURE_8BIT);
 
     return type && !type->takes_u8;
 }
@@ -377,7 +396,7 @@ enum glint_status glint_picture_check(const char *path,
                                       enum glint_picture_kind kind,
                                       struct glint_error *error)
 {
-    const struct glint_file_type *const type = find_type(path, kind);
+    const struct file_type *const type = find_type(path, kind);
     const struct glint_oiio *oiio;
 
     if (!type || type->is_grey)
@@ -396,7 +415,7 @@ enum glint_status glint_picture_check(const char *path,
                                   "linear light in floats",
                                   type->extension);
     if (!type->is_native && glint_oiio_load(&oiio, error))
-        return glint_picture_needs_plugin(path, type->extension, error);
+        return needs_plugin(path, type->extension, error);
     return GLINT_OK;
 }
 
@@ -469,4 +488,510 @@ glint_picture_save_float(const char *path,
                 &(struct glint_oiio_pixels){floats->width, floats->height, 1,
                                             floats->rgb},
                 3 * (ptrdiff_t)sizeof *floats->rgb * floats->width, error);
+}
+
+/* Sets S up for WIDTH x HEIGHT pixels of CHANNELS samples, 1 .. 4, one after
+ * the other; of 2 or 4 the last is alpha. Leaves its memory NULL. */
+static void lay_out(struct glint_samples *s, int width, int height,
+                    enum glint_sample sample, int channels)
+{
+    const size_t bytes = glint_sample_bytes(sample);
+
+    *s = (struct glint_samples){
+        .width = width,
+        .height = height,
+        .window_width = width,
+        .window_height = height,
+        .orientation = 1,
+        .pixel_bytes = bytes * (size_t)channels,
+        .n_colours = channels < 3 ? 1 : 3,
+        .has_alpha = channels % 2 == 0,
+        .is_premultiplied = true,
+        .alpha = {sample, bytes * (size_t)(channels - 1)}};
+    for (int c = 0; c < 3; c++)
+        s->colour[c] = (struct glint_sample_place){
+            sample, channels < 3 ? 0 : bytes * (size_t)c};
+    s->maximum = sample == GLINT_SAMPLE_U8    ? UINT8_MAX
+                 : sample == GLINT_SAMPLE_U16 ? UINT16_MAX
+                                              : UINT32_MAX;
+    if (glint_sample_is_float(sample))
+        glint_colours_set(&s->colours, GLINT_TONE_IS_LINEAR, 0, "linear");
+    else
+        glint_colours_set(&s->colours, GLINT_TONE_IS_SRGB, 0, "sRGB");
+}
+
+static size_t samples_bytes(const struct glint_samples *s)
+{
+    return (size_t)s->width * (size_t)s->height * s->pixel_bytes;
+}
+
+/* -------------------------------------------------------------- PNM and PFM */
+
+/* Copies BYTES of 16-bit samples, from big-endian order to this machine's or
+ * back. */
+static void swap_shorts(uint8_t *to, const uint8_t *from, size_t bytes)
+{
+    const uint16_t one = 1;
+    const bool swap = *(const uint8_t *)&one == 1;
+
+    for (size_t i = 0; i < bytes; i += 2) {
+        to[i] = from[i + swap];
+        to[i + 1] = from[i + !swap];
+    }
+}
+
+/* Copies the rows of S, which are floats, in reversed order, between
+ * little-endian (LITTLE) or big-endian order and this machine's. */
+static void swap_rows(uint8_t *to, const uint8_t *from,
+                      const struct glint_samples *s, bool little)
+{
+    const uint16_t one = 1;
+    const bool swap = (*(const uint8_t *)&one == 1) != little;
+    const size_t row = (size_t)s->width * s->pixel_bytes;
+
+    for (int y = 0; y < s->height; y++)
+        for (size_t i = 0; i < row; i++)
+            to[(size_t)y * row + (swap ? i ^ 3 : i)] =
+                from[(size_t)(s->height - 1 - y) * row + i];
+}
+
+/* Opens the PNM or PFM in k->native. */
+static enum glint_status open_native(struct glint_kept *k,
+                                     struct glint_error *error)
+{
+    struct glint_samples *const s = &k->samples;
+    struct glint_pnm_header h;
+    enum glint_status status =
+        glint_pnm_header_read(&h, k->native, k->native_bytes, k->path, error);
+
+    if (status)
+        return status;
+    k->header_bytes = h.bytes;
+    k->is_pfm = k->is_float = h.maximum == 0;
+    k->is_little = h.little;
+    lay_out(s, h.width, h.height,
+            k->is_pfm         ? GLINT_SAMPLE_FLOAT
+            : h.maximum > 255 ? GLINT_SAMPLE_U16
+                              : GLINT_SAMPLE_U8,
+            h.channels);
+    s->mem = k->native + h.bytes;
+    if (!k->is_pfm)
+        s->maximum = (uint32_t)h.maximum;
+    if (!k->is_pfm && h.maximum <= 255)
+        return GLINT_OK;
+    k->own = malloc(samples_bytes(s));
+    if (!k->own)
+        return report_memory(error, k->path, s->width, s->height);
+    if (k->is_pfm)
+        swap_rows(k->own, s->mem, s, h.little);
+    else
+        swap_shorts(k->own, s->mem, samples_bytes(s));
+    s->mem = k->own;
+    return GLINT_OK;
+}
+
+/* Copies the samples of K back into its PNM or PFM file, in the file's order.
+ * Where K has no copy of its own they are there already. */
+static void refill_native(struct glint_kept *k)
+{
+    uint8_t *const at = k->native + k->header_bytes;
+
+    if (k->is_pfm)
+        swap_rows(at, k->own, &k->samples, k->is_little);
+    else if (k->own)
+        swap_shorts(at, k->own, samples_bytes(&k->samples));
+}
+
+/* ----------------------------------------------------------------- colours */
+
+/* Appends TEXT to NOTES, after "; " if NOTES is not empty. */
+static void add_note(char notes[GLINT_KEPT_NOTES], const char *text)
+{
+    const size_t used = strlen(notes);
+
+    snprintf(notes + used, GLINT_KEPT_NOTES - used, "%s%s", used ? "; " : "",
+             text);
+}
+
+/* Sets C by CICP, the numbers of primaries and transfer in ITU-T H.273. Returns
+ * false if it does not know the transfer. */
+static bool set_by_cicp(struct glint_colours *c, const int cicp[2])
+{
+    static const double p3[4][2] = {
+        {0.68, 0.32}, {0.265, 0.69}, {0.15, 0.06}, {0.3127, 0.329}};
+    static const double bt2020[4][2] = {
+        {0.708, 0.292}, {0.17, 0.797}, {0.131, 0.046}, {0.3127, 0.329}};
+
+    if (cicp[1] == 13)
+        glint_colours_set(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
+    else if (cicp[1] == 8)
+        glint_colours_set(c, GLINT_TONE_IS_LINEAR, 0, "linear");
+    else if (cicp[1] == 4 || cicp[1] == 5)
+        glint_colours_set(c, GLINT_TONE_IS_GAMMA, cicp[1] == 4 ? 2.2 : 2.8,
+                          "gamma");
+    else if (cicp[1] == 1 || cicp[1] == 6 || cicp[1] == 14 || cicp[1] == 15)
+        glint_colours_set(c, GLINT_TONE_IS_BT709, 0, "BT.709");
+    else
+        return false;
+    if (cicp[0] == 9)
+        return glint_colours_primaries(c, bt2020);
+    return cicp[0] != 12 || glint_colours_primaries(c, p3);
+}
+
+/* Sets C by NAME, OpenImageIO's name of a colour space. Returns false if it
+ * does not know NAME. */
+static bool set_by_name(struct glint_colours *c, const char *name)
+{
+    static const double adobe[4][2] = {
+        {0.64, 0.33}, {0.21, 0.71}, {0.15, 0.06}, {0.3127, 0.329}};
+    double gamma;
+
+    if (strcasecmp(name, "sRGB") == 0)
+        glint_colours_set(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
+    else if (strcasecmp(name, "linear") == 0 ||
+             strncasecmp(name, "lin_", 4) == 0)
+        glint_colours_set(c, GLINT_TONE_IS_LINEAR, 0, "linear");
+    else if (strcasecmp(name, "Rec709") == 0)
+        glint_colours_set(c, GLINT_TONE_IS_BT709, 0, "BT.709");
+    else if (strcasecmp(name, "AdobeRGB") == 0) {
+        glint_colours_set(c, GLINT_TONE_IS_GAMMA, 563 / 256.0, "Adobe RGB");
+        return glint_colours_primaries(c, adobe);
+    } else if (strncmp(name, "Gamma", 5) == 0 &&
+               (gamma = strtod(name + 5, NULL)) > 0.1 && gamma < 10)
+        glint_colours_set(c, GLINT_TONE_IS_GAMMA, gamma, "gamma");
+    else
+        return false;
+    return true;
+}
+
+/* Sets the colours of K's samples as FACTS say. Colours that glint does not
+ * know are taken as linear or sRGB, and K's note says so. */
+static void set_colours(struct glint_kept *k,
+                        const struct glint_oiio_facts *facts)
+{
+    struct glint_samples *const s = &k->samples;
+    struct glint_colours *const c = &s->colours;
+    char text[96];
+    bool known = true;
+
+    if (k->is_float)
+        glint_colours_set(c, GLINT_TONE_IS_LINEAR, 0, "linear");
+    else
+        glint_colours_set(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
+    if (facts->cicp[1])
+        known = set_by_cicp(c, facts->cicp);
+    else if (facts->icc)
+        known = glint_icc_read(c, facts->icc, facts->icc_bytes);
+    else if (facts->gamma > 0.1 && facts->gamma < 10)
+        glint_colours_set(c, GLINT_TONE_IS_GAMMA, facts->gamma, "gamma");
+    else if (*facts->colour_space && !k->is_float)
+        known = set_by_name(c, facts->colour_space);
+    if (!facts->icc && !facts->cicp[1] && facts->has_primaries)
+        glint_colours_primaries(c, (const double(*)[2])facts->primaries);
+    if (known)
+        return;
+    snprintf(text, sizeof text, "%.24s is not known here; taken as %s",
+             facts->cicp[1] ? "the transfer of its cICP"
+             : facts->icc   ? "what its profile says"
+                            : facts->colour_space,
+             k->is_float ? "linear" : "sRGB");
+    add_note(k->note, text);
+}
+
+/* --------------------------------------------------------------- plug-in */
+
+static enum glint_status open_by_plugin(struct glint_kept *k, const char *type,
+                                        struct glint_error *error)
+{
+    struct glint_oiio_facts facts;
+    const struct glint_oiio *oiio;
+    enum glint_status status = glint_oiio_load(&oiio, error);
+
+    if (status)
+        return needs_plugin(k->path, type, error);
+    status = oiio->open(&k->file, &k->samples, &facts, k->path, error);
+    if (status)
+        return status;
+    k->oiio = oiio;
+    k->is_float = glint_sample_is_float(k->samples.colour[0].sample);
+    if (*facts.note)
+        add_note(k->note, facts.note);
+    set_colours(k, &facts);
+    return GLINT_OK;
+}
+
+/* ----------------------------------------------------------------- opening */
+
+static enum glint_status open_any(struct glint_kept *k,
+                                  struct glint_error *error)
+{
+    struct glint_input in;
+    enum glint_status status = glint_input_open(&in, k->path, error);
+
+    if (status)
+        return status;
+    status = read_file(&in, k->path, &k->native, &k->native_bytes, error);
+    glint_input_close(&in);
+    if (status)
+        return status;
+    return glint_pnm_matches(k->native, k->native_bytes) ||
+                   glint_pfm_matches(k->native, k->native_bytes)
+               ? open_native(k, error)
+               : open_by_plugin(k, type_name(k->native, k->native_bytes),
+                                error);
+}
+
+enum glint_status glint_kept_open(struct glint_kept *kept, const char *path,
+                                  struct glint_error *error)
+{
+    enum glint_status status;
+
+    memset(kept, 0, sizeof *kept);
+    kept->path = path;
+    status = open_any(kept, error);
+    if (status)
+        glint_kept_close(kept);
+    return status;
+}
+
+void glint_kept_close(struct glint_kept *kept)
+{
+    if (kept->oiio)
+        kept->oiio->close(kept->file);
+    free(kept->native);
+    free(kept->own);
+    kept->oiio = NULL;
+    kept->native = kept->own = NULL;
+}
+
+/* ------------------------------------------------------------------ saving */
+
+enum glint_status glint_kept_check(const char *path, struct glint_error *error)
+{
+    const struct file_type *const type = type_of(path);
+    const struct glint_oiio *oiio;
+
+    if (!type)
+        return glint_error_report(
+            error, GLINT_E_UNSUPPORTED, path,
+            "unknown extension; pictures are .ppm .pgm .png .jpg .tif .bmp "
+            ".tga .webp, linear light is .pfm .exr .hdr .tif");
+    if (!type->is_native && glint_oiio_load(&oiio, error))
+        return needs_plugin(path, type->extension, error);
+    return GLINT_OK;
+}
+
+bool glint_kept_is_same_type(const struct glint_kept *kept, const char *path)
+{
+    const struct file_type *const type = type_of(path);
+
+    if (!type)
+        return false;
+    if (kept->oiio)
+        return !type->is_native && kept->oiio->is_same_type(kept->file, path);
+    return type->is_native && kept->is_pfm == type->takes_float &&
+           (kept->is_pfm || type->is_grey == (kept->samples.n_colours == 1) ||
+            strcasecmp(type->extension, ".pnm") == 0);
+}
+
+enum glint_status glint_kept_copy(const struct glint_kept *kept,
+                                  const char *path, struct glint_error *error)
+{
+    struct glint_output out;
+    uint8_t *data;
+    size_t bytes;
+    enum glint_status status =
+        glint_input_slurp(&data, &bytes, kept->path, SIZE_MAX / 2, error);
+
+    if (status)
+        return status;
+    status = glint_output_open(&out, path, GLINT_OUTPUT_BINARY, error);
+    if (!status)
+        status = glint_output_finish(&out, data, bytes, error);
+    free(data);
+    return status;
+}
+
+enum glint_status glint_kept_blank(struct glint_samples *blank,
+                                   const struct glint_samples *from,
+                                   bool has_alpha)
+{
+    const enum glint_sample sample = from->colour[0].sample == GLINT_SAMPLE_U32
+                                         ? GLINT_SAMPLE_FLOAT
+                                         : from->colour[0].sample;
+
+    lay_out(blank, glint_samples_width(from), glint_samples_height(from),
+            sample, has_alpha ? 4 : 3);
+    blank->mem = calloc((size_t)blank->width * (size_t)blank->height,
+                        blank->pixel_bytes);
+    return blank->mem ? GLINT_OK : GLINT_E_MEMORY;
+}
+
+static void say_losses(struct glint_kept_options *options,
+                       const struct glint_samples *to,
+                       const struct glint_samples *from)
+{
+    const bool was_float = glint_sample_is_float(from->colour[0].sample);
+
+    if (from->has_alpha && !to->has_alpha)
+        add_note(options->said,
+                 "the file type has no alpha: what is seen over black is "
+                 "written");
+    if (was_float && !glint_sample_is_float(to->colour[0].sample))
+        add_note(options->said,
+                 to->colour[0].sample == GLINT_SAMPLE_U8
+                     ? "light above white is clipped, and 8 bits are left"
+                     : "light above white is clipped, and 16 bits are "
+                       "left");
+    else if (glint_sample_bytes(from->colour[0].sample) > 1 &&
+             to->colour[0].sample == GLINT_SAMPLE_U8)
+        add_note(options->said, "8 bits are left");
+}
+
+/* Returns the kind of sample, among those that TYPE takes, closest to
+ * SAMPLE. */
+static enum glint_sample sample_for(const struct file_type *type,
+                                    enum glint_sample sample)
+{
+    const bool is_float = glint_sample_is_float(sample);
+
+    if (sample == GLINT_SAMPLE_U8 && type->takes_u8)
+        return GLINT_SAMPLE_U8;
+    if (sample == GLINT_SAMPLE_HALF && type->takes_half)
+        return GLINT_SAMPLE_HALF;
+    if (is_float && type->takes_float)
+        return GLINT_SAMPLE_FLOAT;
+    if (sample == GLINT_SAMPLE_U8 && type->takes_half)
+        return GLINT_SAMPLE_HALF;
+    if (sample != GLINT_SAMPLE_U8 && type->takes_u16)
+        return GLINT_SAMPLE_U16;
+    return type->takes_u8 ? GLINT_SAMPLE_U8 : GLINT_SAMPLE_FLOAT;
+}
+
+/* Converts FROM to samples that TYPE takes, in TO, whose memory the caller
+ * frees. */
+static enum glint_status convert(struct glint_samples *to,
+                                 const struct glint_samples *from,
+                                 const struct file_type *type)
+{
+    const bool has_alpha = from->has_alpha && type->alpha != ALPHA_NONE;
+    const bool is_grey = type->is_grey ||
+                         (from->n_colours == 1 && !type->is_native) ||
+                         (from->n_colours == 1 && type->takes_float);
+
+    lay_out(to, glint_samples_width(from), glint_samples_height(from),
+            sample_for(type, from->colour[0].sample),
+            (is_grey ? 1 : 3) + has_alpha);
+    to->is_premultiplied = type->alpha != ALPHA_STRAIGHT;
+    to->mem = malloc(samples_bytes(to));
+    if (!to->mem)
+        return GLINT_E_MEMORY;
+    glint_samples_convert(to, from);
+    return GLINT_OK;
+}
+
+static enum glint_status write_native(struct glint_output *out,
+                                      struct glint_samples *s,
+                                      const struct file_type *type,
+                                      struct glint_error *error)
+{
+    const size_t bytes = samples_bytes(s);
+    const bool is_wide = s->colour[0].sample == GLINT_SAMPLE_U16;
+    const char *const kind = type->takes_float
+                                 ? (s->n_colours == 1 ? "Pf" : "PF")
+                                 : (s->n_colours == 1 ? "P5" : "P6");
+    uint8_t *const data = malloc(bytes);
+    enum glint_status status;
+    char header[64];
+    int n;
+
+    if (!data)
+        return report_memory(error, out->name, s->width, s->height);
+    if (type->takes_float)
+        swap_rows(data, s->mem, s, true);
+    else if (is_wide)
+        swap_shorts(data, s->mem, bytes);
+    else
+        memcpy(data, s->mem, bytes);
+    n = snprintf(header, sizeof header, "%s\n%d %d\n%s\n", kind, s->width,
+                 s->height,
+                 type->takes_float ? "-1.0"
+                 : is_wide         ? "65535"
+                                   : "255");
+    status = glint_output_write(out, header, (size_t)n, error);
+    if (!status)
+        status = glint_output_write(out, data, bytes, error);
+    free(data);
+    return status;
+}
+
+static enum glint_status write_kept(struct glint_kept *k,
+                                    struct glint_output *out,
+                                    const struct glint_samples *pixels,
+                                    const struct glint_kept_options *options,
+                                    struct glint_error *error)
+{
+    const struct glint_oiio_options how = {.quality = options->quality,
+                                           .drop_icc = pixels != NULL &&
+                                                       pixels != &k->samples};
+    const struct glint_oiio *oiio;
+    enum glint_status status = glint_oiio_load(&oiio, error);
+    void *data;
+    size_t bytes;
+
+    if (!status)
+        status = oiio->encode_file(&data, &bytes, out->name, k->file, pixels,
+                                   &how, error);
+    if (status)
+        return status;
+    status = glint_output_write(out, data, bytes, error);
+    free(data);
+    return status;
+}
+
+/* Writes FROM to OUT, converted to the type that OUT's name stands for, and
+ * notes in OPTIONS what that loses. K has the metadata. */
+static enum glint_status save_converted(struct glint_kept *k,
+                                        struct glint_output *out,
+                                        const struct glint_samples *from,
+                                        struct glint_kept_options *options,
+                                        struct glint_error *error)
+{
+    const struct file_type *const type = type_of(out->name);
+    struct glint_samples to;
+    enum glint_status status = convert(&to, from, type);
+
+    if (status)
+        return report_memory(error, out->name, to.width, to.height);
+    say_losses(options, &to, from);
+    status = type->is_native ? write_native(out, &to, type, error)
+                             : write_kept(k, out, &to, options, error);
+    free(to.mem);
+    return status;
+}
+
+enum glint_status glint_kept_save(struct glint_kept *kept, const char *path,
+                                  const struct glint_samples *alone,
+                                  struct glint_kept_options *options,
+                                  struct glint_error *error)
+{
+    struct glint_output out;
+    enum glint_status status = glint_kept_check(path, error);
+
+    options->said[0] = '\0';
+    if (!status)
+        status = glint_output_open(&out, path, GLINT_OUTPUT_BINARY, error);
+    if (status)
+        return status;
+    if (alone || !glint_kept_is_same_type(kept, path)) {
+        status = save_converted(kept, &out, alone ? alone : &kept->samples,
+                                options, error);
+    } else if (kept->oiio) {
+        status = write_kept(kept, &out, NULL, options, error);
+    } else {
+        refill_native(kept);
+        status =
+            glint_output_write(&out, kept->native, kept->native_bytes, error);
+    }
+    return glint_output_end(&out, status, error);
 }

@@ -4,8 +4,7 @@
  */
 #include <math.h>
 
-#include "formats/kept.h"
-#include "glint/exact.h"
+#include "formats/picture.h"
 #include "model/model_cache.h"
 #include "model/table_file.h"
 #include "model/settings_table.h"

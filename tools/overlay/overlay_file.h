@@ -17,7 +17,7 @@
 #define GLINT_TOOLS_OVERLAY_OVERLAY_FILE_H
 
 #include "overlay/compositor.h"
-#include "formats/kept.h"
+#include "formats/picture.h"
 
 struct overlay_file {
     /* Picture in which lamps are found; its size is for compositor_size(). */

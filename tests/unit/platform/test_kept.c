@@ -14,7 +14,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "formats/kept.h"
+#include "formats/picture.h"
 #include "support/scratch.h"
 
 static struct glint_error error;
