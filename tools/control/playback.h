@@ -12,7 +12,7 @@
 #ifndef GLINT_TOOLS_CONTROL_PLAYBACK_H
 #define GLINT_TOOLS_CONTROL_PLAYBACK_H
 
-#include "control/control.h"
+#include "control/controls.h"
 
 struct playback {
     bool is_paused;

@@ -12,7 +12,7 @@
 #ifndef GLINT_TOOLS_CONTROL_STEER_H
 #define GLINT_TOOLS_CONTROL_STEER_H
 
-#include "control/control.h"
+#include "control/controls.h"
 #include "glint/scene/scene.h"
 
 /* An object as it was changed. */

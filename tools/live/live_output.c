@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "live/live_output.h"
+#include "live/live.h"
 
 #include <string.h>
 
