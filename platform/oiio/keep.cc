@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
  * Reads whole files: each part's pixels in the types they are stored in, and
- * metadata. */
+ * metadata. Writes them: parts as they came, or other pixels with the metadata
+ * of the file. */
 #include "oiio/keep.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,25 +17,61 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include "oiio/guard.h"
 
+#if __has_include(<webp/encode.h>)
+#include <webp/decode.h>
+#include <webp/encode.h>
+#endif
+
 using glint::bytes;
 using glint::check_spec;
 using glint::failure;
-using glint::kept_part;
 using OIIO::ImageInput;
 using OIIO::ImageOutput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-bool glint::is_carried(const std::string &type)
+namespace glint
+{
+
+struct kept_part {
+    OIIO::ImageSpec spec; /* the part as it is stored */
+    std::vector<unsigned char> pixels;
+};
+
+/* Returns whether each channel of a part has a type of its own. */
+inline bool is_mixed(const OIIO::ImageSpec &spec)
+{
+    return !spec.channelformats.empty();
+}
+
+} // namespace glint
+
+using glint::kept_part;
+
+struct glint_oiio_file {
+    std::string type;   /* OpenImageIO's name of the file type */
+    glint::bytes whole; /* bytes of the file if is_carried(type) */
+    std::vector<glint::kept_part> parts;
+    std::vector<unsigned char> icc;
+};
+
+namespace
+{
+
+/* Returns whether metadata of files of TYPE, OpenImageIO's name of it, are
+ * copied byte for byte. */
+bool is_carried(const std::string &type)
 {
     return type == "png" || type == "jpeg" || type == "webp" || type == "tiff";
 }
 
-bytes glint::read_whole(const char *path)
+/* Returns all bytes of the file PATH; throws failure. */
+bytes read_whole(const char *path)
 {
     FILE *const f = std::fopen(path, "rb");
     unsigned char block[65536];
@@ -46,67 +85,116 @@ bytes glint::read_whole(const char *path)
     return all;
 }
 
-void glint::give(void **data, size_t *n_bytes, const bytes &encoded)
-{
-    void *const block = std::malloc(encoded.size() + 1);
+/* WebP by its own library: OpenImageIO 2.4 multiplies colours by alpha when it
+ * reads one, and does not divide when it writes. */
+#if __has_include(<webp/encode.h>)
 
-    if (!block)
-        throw std::bad_alloc();
-    std::memcpy(block, encoded.data(), encoded.size());
-    *data = block;
-    *n_bytes = encoded.size();
+/* Returns whether webp_decode() can decode FILE: a WebP without animation, if
+ * this was built with libwebp. */
+bool webp_takes(const bytes &file)
+{
+    WebPBitstreamFeatures is;
+
+    return WebPGetFeatures(file.data(), file.size(), &is) == VP8_STATUS_OK &&
+           !is.has_animation;
 }
 
-glint::memory_file::memory_file() : fd(memfd_create("parts", MFD_CLOEXEC))
+/* Returns the pixels of FILE in 8 bits: R G B A if CHANNELS is 4, else R G B.
+ * Throws failure. */
+bytes webp_decode(const bytes &file, int channels)
 {
-    if (fd < 0)
-        throw std::bad_alloc();
+    int width = 0, height = 0;
+    if (!WebPGetInfo(file.data(), file.size(), &width, &height))
+        throw failure{GLINT_E_FORMAT, "is not a WebP"};
+    const size_t row = static_cast<size_t>(channels) * size_t(width);
+    bytes pixels(row * size_t(height));
+    const auto *const done =
+        channels == 4
+            ? WebPDecodeRGBAInto(file.data(), file.size(), pixels.data(),
+                                 pixels.size(), static_cast<int>(row))
+            : WebPDecodeRGBInto(file.data(), file.size(), pixels.data(),
+                                pixels.size(), static_cast<int>(row));
+
+    if (!done)
+        throw failure{GLINT_E_FORMAT, "is cut off or damaged"};
+    return pixels;
 }
 
-glint::memory_file::~memory_file()
+/* Returns PIXELS, 8 bits, as a WebP of QUALITY 1 .. 100, or 0: without loss.
+ * Throws failure. */
+bytes webp_encode(const unsigned char *pixels, int width, int height,
+                  int channels, int quality)
 {
-    close(fd);
+    WebPConfig config;
+    WebPPicture picture;
+    WebPMemoryWriter writer;
+
+    if (!WebPConfigPreset(&config, WEBP_PRESET_PHOTO,
+                          static_cast<float>(quality ? quality : 100)) ||
+        !WebPPictureInit(&picture))
+        throw failure{GLINT_E_OUTPUT, "libwebp is of another version"};
+    if (width > WEBP_MAX_DIMENSION || height > WEBP_MAX_DIMENSION)
+        throw failure{GLINT_E_OUTPUT, "WebP has at most 16383 pixels a side"};
+    if (!quality)
+        WebPConfigLosslessPreset(&config, 6);
+    config.exact = 1; /* keeps colours where alpha is 0 */
+    config.thread_level = 1;
+    picture.use_argb = quality == 0;
+    picture.width = width;
+    picture.height = height;
+    picture.writer = WebPMemoryWrite;
+    picture.custom_ptr = &writer;
+    WebPMemoryWriterInit(&writer);
+    const bool done =
+        (channels == 4 ? WebPPictureImportRGBA(&picture, pixels, 4 * width)
+                       : WebPPictureImportRGB(&picture, pixels, 3 * width)) &&
+        WebPEncode(&config, &picture);
+    const int code = picture.error_code;
+    const bytes made(writer.mem, writer.mem + (done ? writer.size : 0));
+    WebPPictureFree(&picture);
+    WebPMemoryWriterClear(&writer);
+    if (!done)
+        throw failure{code == VP8_ENC_ERROR_OUT_OF_MEMORY ? GLINT_E_MEMORY
+                                                          : GLINT_E_OUTPUT,
+                      "libwebp gives up, error " + std::to_string(code)};
+    return made;
 }
 
-std::string glint::memory_file::name() const
+#else
+
+bool webp_takes(const bytes &)
 {
-    return "/proc/self/fd/" + std::to_string(fd);
+    return false;
 }
 
-bytes glint::memory_file::contents() const
+bytes webp_decode(const bytes &, int)
 {
-    return read_whole(name().c_str());
+    return {};
 }
 
-namespace
+bytes webp_encode(const unsigned char *, int, int, int, int)
 {
+    throw failure{GLINT_E_UNSUPPORTED,
+                  "this plug-in was built without libwebp-dev"};
+}
+
+#endif
 
 /* ----------------------------------------------------------------- reading */
 
+constexpr TypeDesc::BASETYPE types[] = {/* by enum glint_sample */
+                                        TypeDesc::UINT8,  TypeDesc::UINT16,
+                                        TypeDesc::UINT32, TypeDesc::HALF,
+                                        TypeDesc::FLOAT,  TypeDesc::DOUBLE};
+
 bool to_sample(TypeDesc type, enum glint_sample &sample)
 {
-    switch (type.basetype) {
-    case TypeDesc::UINT8:
-        sample = GLINT_SAMPLE_U8;
-        return true;
-    case TypeDesc::UINT16:
-        sample = GLINT_SAMPLE_U16;
-        return true;
-    case TypeDesc::UINT32:
-        sample = GLINT_SAMPLE_U32;
-        return true;
-    case TypeDesc::HALF:
-        sample = GLINT_SAMPLE_HALF;
-        return true;
-    case TypeDesc::FLOAT:
-        sample = GLINT_SAMPLE_FLOAT;
-        return true;
-    case TypeDesc::DOUBLE:
-        sample = GLINT_SAMPLE_DOUBLE;
-        return true;
-    default:
-        return false;
-    }
+    for (size_t i = 0; i < std::size(types); i++)
+        if (type.basetype == types[i]) {
+            sample = static_cast<enum glint_sample>(i);
+            return true;
+        }
+    return false;
 }
 
 /* Has a part read as floats if glint has no arithmetic for one of its types. */
@@ -128,8 +216,8 @@ void read_part(ImageInput &in, int index, const bytes &whole, kept_part &part)
         throw failure{GLINT_E_FORMAT, in.geterror()};
     check_spec(part.spec);
     choose_types(part.spec);
-    if (in.format_name() == std::string("webp") && glint::webp_takes(whole)) {
-        part.pixels = glint::webp_decode(whole, part.spec.nchannels);
+    if (in.format_name() == std::string("webp") && webp_takes(whole)) {
+        part.pixels = webp_decode(whole, part.spec.nchannels);
         part.spec.attribute("oiio:UnassociatedAlpha", 1);
         return;
     }
@@ -163,8 +251,8 @@ void read_file(struct glint_oiio_file &file, const char *path)
         throw failure{GLINT_E_FORMAT, OIIO::geterror()};
     check_spec(in->spec());
     file.type = in->format_name();
-    if (glint::is_carried(file.type))
-        file.whole = glint::read_whole(path);
+    if (is_carried(file.type))
+        file.whole = read_whole(path);
     check_whole(file);
     for (int i = 0; i < 64 && in->seek_subimage(i, 0); i++) {
         file.parts.emplace_back();
@@ -347,6 +435,38 @@ void fill_facts(struct glint_oiio_facts &facts, struct glint_oiio_file &file,
 
 } // namespace
 
+void glint::give(void **data, size_t *n_bytes, const bytes &encoded)
+{
+    void *const block = std::malloc(encoded.size() + 1);
+
+    if (!block)
+        throw std::bad_alloc();
+    std::memcpy(block, encoded.data(), encoded.size());
+    *data = block;
+    *n_bytes = encoded.size();
+}
+
+glint::memory_file::memory_file() : fd(memfd_create("parts", MFD_CLOEXEC))
+{
+    if (fd < 0)
+        throw std::bad_alloc();
+}
+
+glint::memory_file::~memory_file()
+{
+    close(fd);
+}
+
+std::string glint::memory_file::name() const
+{
+    return "/proc/self/fd/" + std::to_string(fd);
+}
+
+bytes glint::memory_file::contents() const
+{
+    return read_whole(name().c_str());
+}
+
 enum glint_status glint::open_file(struct glint_oiio_file **file,
                                    struct glint_samples *samples,
                                    struct glint_oiio_facts *facts,
@@ -390,4 +510,307 @@ int glint::is_same_type(const struct glint_oiio_file *file, const char *path)
         is_same = out && file->type == out->format_name();
     });
     return is_same;
+}
+
+/* ----------------------------------------------------------------- writing */
+
+namespace
+{
+
+/* A file in memory. TIFF also reads what it has written. */
+class memory : public OIIO::Filesystem::IOProxy
+{
+  public:
+    explicit memory(bytes &to) : IOProxy("", Write), data(to)
+    {
+    }
+    const char *proxytype() const override
+    {
+        return "glint";
+    }
+    size_t write(const void *buf, size_t size) override
+    {
+        size = pwrite(buf, size, m_pos);
+        m_pos += static_cast<int64_t>(size);
+        return size;
+    }
+    size_t pwrite(const void *buf, size_t size, int64_t offset) override
+    {
+        const size_t end = static_cast<size_t>(offset) + size;
+
+        if (data.size() < end)
+            data.resize(end);
+        std::memcpy(data.data() + offset, buf, size);
+        return size;
+    }
+    size_t read(void *buf, size_t size) override
+    {
+        size = pread(buf, size, m_pos);
+        m_pos += static_cast<int64_t>(size);
+        return size;
+    }
+    size_t pread(void *buf, size_t size, int64_t offset) override
+    {
+        const size_t at = static_cast<size_t>(offset);
+
+        size = at < data.size() ? std::min(size, data.size() - at) : 0;
+        std::memcpy(buf, data.data() + (size ? at : 0), size);
+        return size;
+    }
+    size_t size() const override
+    {
+        return data.size();
+    }
+
+  private:
+    bytes &data;
+};
+
+/* Removes the attributes that describe how the input was coded and not what it
+ * shows. */
+void clear_coding(ImageSpec &spec)
+{
+    for (const char *name : {"compression",
+                             "oiio:BitsPerSample",
+                             "tiff:Compression",
+                             "tiff:PhotometricInterpretation",
+                             "tiff:PlanarConfiguration",
+                             "planarconfig",
+                             "tiff:RowsPerStrip",
+                             "tiff:Predictor",
+                             "tiff:PageNumber",
+                             "openexr:lineOrder",
+                             "png:compressionLevel",
+                             "oiio:ColorSpace",
+                             "oiio:Gamma",
+                             "Exif:PixelXDimension",
+                             "Exif:PixelYDimension",
+                             "oiio:subimages",
+                             "thumbnail_width",
+                             "thumbnail_height",
+                             "thumbnail_nchannels",
+                             "thumbnail_image",
+                             "jpeg:subsampling"})
+        spec.erase_attribute(name);
+    spec.tile_width = spec.tile_height = spec.tile_depth = 0;
+}
+
+ImageSpec bare(const ImageSpec &spec)
+{
+    ImageSpec to(spec.width, spec.height, spec.nchannels, spec.format);
+
+    to.channelnames = spec.channelnames;
+    to.alpha_channel = spec.alpha_channel;
+    to.tile_width = spec.tile_width;
+    to.tile_height = spec.tile_height;
+    for (const char *name :
+         {"oiio:UnassociatedAlpha", "jpeg:subsampling", "compression",
+          "oiio:BitsPerSample", "planarconfig", "tiff:PlanarConfiguration",
+          "tiff:Compression", "tiff:PhotometricInterpretation",
+          "tiff:RowsPerStrip", "tiff:Predictor", "tiff:ColorSpace",
+          "tiff:zipquality"})
+        if (const OIIO::ParamValue *const p = spec.find_attribute(name))
+            to.extra_attribs.push_back(*p);
+    return to;
+}
+
+/* Removes the attributes for which OpenImageIO 2.4 writes a TIFF's Exif
+ * directory, which it spoils in memory. */
+void clear_exif(ImageSpec &spec)
+{
+    const auto is_exif = [](const OIIO::ParamValue &p) {
+        return OIIO::Strutil::starts_with(p.name(), "Exif:") ||
+               OIIO::Strutil::starts_with(p.name(), "GPS:") ||
+               p.name() == "ExposureTime" || p.name() == "FNumber" ||
+               p.name() == "oiio:ColorSpace";
+    };
+
+    spec.extra_attribs.erase(std::remove_if(spec.extra_attribs.begin(),
+                                            spec.extra_attribs.end(), is_exif),
+                             spec.extra_attribs.end());
+}
+
+/* Returns the quality for a file of TYPE, 1 .. 100, or 0: without loss. It is
+ * that of OPTIONS, else FILE's own if that is of TYPE, else 95. */
+int quality_of(const std::string &type, const struct glint_oiio_file *file,
+               const struct glint_oiio_options &options)
+{
+    const bool same = file && file->type == type;
+
+    if (options.quality)
+        return options.quality;
+    if (same && type == "webp" && glint::is_lossless(file->whole))
+        return 0;
+    const int own =
+        same && type == "jpeg" ? glint::quality_of_jpeg(file->whole) : 0;
+    return own ? own : 95;
+}
+
+/* Returns SAMPLES as a part, with the metadata of FILE unless that is NULL. */
+kept_part part_of(const struct glint_samples &samples,
+                  const struct glint_oiio_file *file)
+{
+    const int n = samples.n_colours + (samples.has_alpha ? 1 : 0);
+    kept_part made;
+
+    made.spec = ImageSpec(samples.width, samples.height, n,
+                          types[samples.colour[0].sample]);
+    if (file) {
+        ImageSpec own = file->parts[0].spec;
+
+        clear_coding(own);
+        made.spec.extra_attribs = own.extra_attribs;
+        made.spec.attribute("Orientation", 1);
+    }
+    made.spec.erase_attribute("oiio:UnassociatedAlpha");
+    if (samples.n_colours == 1)
+        made.spec.channelnames[0] = "Y";
+    made.spec.alpha_channel = samples.has_alpha ? n - 1 : -1;
+    if (samples.has_alpha) {
+        made.spec.channelnames[n - 1] = "A";
+        if (!samples.is_premultiplied)
+            made.spec.attribute("oiio:UnassociatedAlpha", 1);
+    }
+    made.pixels.assign(samples.mem, samples.mem + made.spec.image_bytes(true));
+    return made;
+}
+
+void write_parts(ImageOutput &out, const char *path,
+                 std::vector<ImageSpec> &specs,
+                 const std::vector<kept_part> &parts)
+{
+    const bool announced =
+        parts.size() > 1 && out.format_name() == std::string("openexr");
+    bool done = true;
+
+    for (size_t i = 0; i < parts.size() && done; i++) {
+        if (announced && i == 0)
+            done = out.open(path, static_cast<int>(parts.size()), specs.data());
+        else
+            done = out.open(path, specs[i],
+                            i == 0 ? ImageOutput::Create
+                                   : ImageOutput::AppendSubimage);
+        done = done &&
+               out.write_image(glint::is_mixed(specs[i]) ? TypeDesc::UNKNOWN
+                                                         : specs[i].format,
+                               parts[i].pixels.data());
+    }
+    if (!done || !out.close())
+        throw failure{GLINT_E_OUTPUT, out.geterror()};
+}
+
+/* Checks whether FILE's metadata are copied byte for byte. Those of BigTIFF are
+ * not; OpenImageIO passes on what it knows of them. */
+bool is_carried_from(const struct glint_oiio_file &file)
+{
+    return is_carried(file.type) &&
+           (file.type != "tiff" || glint::is_classic_tiff(file.whole));
+}
+
+/* Encodes an EXR of parts by way of a file: OpenImageIO 2.4 cannot write it
+ * into memory, though it claims to. */
+bytes encode_by_file(ImageOutput &out, std::vector<ImageSpec> &specs,
+                     const std::vector<kept_part> &parts)
+{
+    const glint::memory_file file;
+    const std::unique_ptr<ImageInput> check = ImageInput::create("exr");
+    ImageSpec first;
+
+    write_parts(out, file.name().c_str(), specs, parts);
+    if (!check || !check->open(file.name(), first) ||
+        !check->seek_subimage(static_cast<int>(parts.size()) - 1, 0))
+        throw failure{GLINT_E_OUTPUT, "could not be written into memory"};
+    return file.contents();
+}
+
+bytes encode_by_oiio(ImageOutput &out, const char *path,
+                     std::vector<ImageSpec> specs,
+                     const std::vector<kept_part> &parts)
+{
+    bytes encoded;
+    memory to(encoded);
+
+    if (parts.size() > 1 && out.format_name() == std::string("openexr"))
+        return encode_by_file(out, specs, parts);
+    if (!out.supports("ioproxy") || !out.set_ioproxy(&to))
+        throw failure{GLINT_E_UNSUPPORTED, "OpenImageIO cannot write this "
+                                           "type into memory"};
+    write_parts(out, path, specs, parts);
+    if (encoded.empty())
+        throw failure{GLINT_E_OUTPUT, "OpenImageIO wrote nothing"};
+    return encoded;
+}
+
+/* Removes empty texts: OpenImageIO 2.4 aborts on an empty one that it copies
+ * into the IPTC block of a JPEG or TIFF. */
+void clear_empty(ImageSpec &spec)
+{
+    auto &all = spec.extra_attribs;
+
+    for (size_t i = all.size(); i-- > 0;)
+        if (all[i].type() == TypeDesc::STRING && all[i].get_string().empty())
+            all.erase(all.begin() + static_cast<std::ptrdiff_t>(i));
+}
+
+bytes encode_parts(const char *path, const std::vector<kept_part> &parts,
+                   const struct glint_oiio_file *file, bool same,
+                   const struct glint_oiio_options &options)
+{
+    const std::unique_ptr<ImageOutput> out = ImageOutput::create(path);
+    const bool drop = options.drop_icc;
+    std::vector<ImageSpec> specs;
+    bytes encoded;
+
+    if (!out)
+        throw failure{GLINT_E_UNSUPPORTED, OIIO::geterror()};
+    const std::string type = out->format_name();
+    const int quality = quality_of(type, file, options);
+    for (const kept_part &p : parts) {
+        specs.push_back(same && is_carried_from(*file) ? bare(p.spec) : p.spec);
+        if (type == "tiff")
+            clear_exif(specs.back());
+        if (type == "tiff" || type == "jpeg")
+            clear_empty(specs.back());
+        if (drop)
+            specs.back().erase_attribute("ICCProfile");
+        if (type == "jpeg")
+            specs.back().attribute("Compression",
+                                   "jpeg:" + std::to_string(quality));
+        if (same && type == "jpeg" && glint::is_progressive(file->whole))
+            specs.back().attribute("jpeg:progressive", 1);
+    }
+    if (type == "webp" && specs[0].nchannels >= 3)
+        encoded = webp_encode(parts[0].pixels.data(), specs[0].width,
+                              specs[0].height, specs[0].nchannels, quality);
+    else
+        encoded = encode_by_oiio(*out, path, specs, parts);
+    if (!same)
+        return encoded;
+    return type == "png"    ? glint::carry_png(encoded, file->whole, drop)
+           : type == "jpeg" ? glint::carry_jpeg(encoded, file->whole, drop)
+           : type == "webp" ? glint::carry_webp(encoded, file->whole, drop)
+           : type == "tiff" ? glint::carry_tiff(encoded, file->whole, drop)
+                            : encoded;
+}
+
+} // namespace
+
+enum glint_status glint::encode_file(void **data, size_t *n_bytes,
+                                     const char *path,
+                                     struct glint_oiio_file *file,
+                                     const struct glint_samples *pixels,
+                                     const struct glint_oiio_options *options,
+                                     struct glint_error *error)
+{
+    return guarded(path, GLINT_E_OUTPUT, error, [&] {
+        const bool same = file && is_same_type(file, path);
+        std::vector<kept_part> made;
+
+        if (pixels)
+            made.push_back(part_of(*pixels, file));
+        const bytes encoded = encode_parts(path, pixels ? made : file->parts,
+                                           file, same, *options);
+
+        give(data, n_bytes, encoded);
+    });
 }

@@ -53,40 +53,7 @@ bytes chunk_of_png(const bytes &file, const char *name);
 /* Returns whether WEBP is coded without loss. */
 bool is_lossless(const bytes &webp);
 
-/* -------------------------------------------------------------------- WebP */
-
-/* Returns whether webp_decode() can decode FILE: a WebP without animation, if
- * this was built with libwebp. */
-bool webp_takes(const bytes &file);
-
-/* Returns the pixels of FILE in 8 bits: R G B A if CHANNELS is 4, else R G B.
- * Throws failure. */
-bytes webp_decode(const bytes &file, int channels);
-
-/* Returns PIXELS, 8 bits, as a WebP of QUALITY 1 .. 100, or 0: without loss.
- * Throws failure. */
-bytes webp_encode(const unsigned char *pixels, int width, int height,
-                  int channels, int quality);
-
 /* ------------------------------------------------------------------- files */
-
-struct kept_part {
-    OIIO::ImageSpec spec; /* the part as it is stored */
-    std::vector<unsigned char> pixels;
-};
-
-/* Returns whether each channel of a part has a type of its own. */
-inline bool is_mixed(const OIIO::ImageSpec &spec)
-{
-    return !spec.channelformats.empty();
-}
-
-/* Returns whether metadata of files of TYPE, OpenImageIO's name of it, are
- * copied byte for byte. */
-bool is_carried(const std::string &type);
-
-/* Returns all bytes of the file PATH; throws failure. */
-bytes read_whole(const char *path);
 
 /* Sets DATA[N_BYTES] to a malloc'ed copy of ENCODED. */
 void give(void **data, size_t *n_bytes, const bytes &encoded);
@@ -121,12 +88,5 @@ enum glint_status encode_file(void **data, size_t *bytes, const char *path,
                               struct glint_error *error);
 
 } // namespace glint
-
-struct glint_oiio_file {
-    std::string type;   /* OpenImageIO's name of the file type */
-    glint::bytes whole; /* bytes of the file if is_carried(type) */
-    std::vector<glint::kept_part> parts;
-    std::vector<unsigned char> icc;
-};
 
 #endif
