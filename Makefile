@@ -74,7 +74,7 @@ absent += tools/import/$(if $(filter yes,$(WITH_EXPAT)),openlensflare_absent,ope
 absent += tools/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
 # A static program has no plug-ins.
 absent += platform/posix/$(if $(CROSS),plugin,plugin_absent).c platform/assimp/assimp.c platform/sdl/sdl.c
-absent += tools/command/glint.c tools/live/glint_live.c tools/live/models_only.c tools/lab/ray_errors.c tools/lab/projection_table.c
+absent += tools/command/glint.c tools/live/glint_live.c tools/model/models_only.c tools/scenes/scenes_only.c
 
 core_o      := $(call objects,src,$(CORE))
 engine_o    := $(call objects,src,$(ENGINE))

@@ -7,7 +7,9 @@
 #define GLINT_TOOLS_LAB_CANVAS_H
 
 #include "formats/pnm.h"
-#include "model/settings.h"
+#include "lab/settings_frame.h"
+
+enum { CANVAS_MAX = 1000 }; /* largest number of rounds, and of medians */
 
 /* A picture to draw on, in mem, and its pixels before drawing, fresh. */
 struct canvas {

@@ -7,10 +7,6 @@
 #ifndef GLINT_TOOLS_LAB_SWEEP_H
 #define GLINT_TOOLS_LAB_SWEEP_H
 
-#include "engine/frame/cost.h"
-#include "lab/dials.h"
-#include "glint/quality.h"
-#include "formats/pnm.h"
 #include "lab/canvas.h"
 
 enum { SWEEP_LENSES = 16, SWEEP_CASES = 128, SWEEP_ROUNDS = 100 };

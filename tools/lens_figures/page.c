@@ -76,9 +76,6 @@ static const double share[ANGLES] = {0.25, 0.5, 0.8};
  * fill the picture. */
 #define BRIGHTER 40.0
 
-/* The ghosts, and the star. */
-enum { PARTS = 2 };
-
 /* Returns the angle at SHARE of the half diagonal, by f tan T, which places
  * lamps in pictures. */
 static double angle_deg(const struct settings *s, double at)
@@ -89,7 +86,7 @@ static double angle_deg(const struct settings *s, double at)
     return atan(at * half / s->setup.optics.focal_mm) * 180 / GLINT_PI;
 }
 
-static enum glint_status draw(struct glint_frame part[PARTS], double theta_deg,
+static enum glint_status draw(struct glint_engine *engine, double theta_deg,
                               struct glint_float_image *image, float *star,
                               FILE *file)
 {
@@ -99,11 +96,12 @@ static enum glint_status draw(struct glint_frame part[PARTS], double theta_deg,
     struct glint_engine_report report;
     uint8_t *codes;
     double exposure;
-    enum glint_status status =
-        glint_frame_draw_alone(&part[0], &lamp, 1, 1, image->rgb, &report);
+    enum glint_status status = glint_engine_render(
+        engine, &lamp, 1, 1, GLINT_ENGINE_GHOSTS, image->rgb, &report);
 
     if (status == GLINT_OK)
-        status = glint_frame_draw_alone(&part[1], &lamp, 1, 1, star, &report);
+        status = glint_engine_render(engine, &lamp, 1, 1, GLINT_ENGINE_STAR,
+                                     star, &report);
     if (status != GLINT_OK)
         return status;
     exposure = glint_measure_exposure(image);
@@ -131,27 +129,24 @@ static int draw_all(const struct tool *tool, struct settings *s, FILE *file)
         .width = WIDE, .height = (int)fmin(fmax(tall, 8), MOST_HIGH)};
     const size_t n = 3 * (size_t)image.width * (size_t)image.height;
     enum glint_status status = GLINT_E_MEMORY;
-    struct glint_frame part[PARTS] = {{.lens = NULL}, {.lens = NULL}};
+    struct glint_engine_config cfg;
+    struct glint_engine *engine = NULL;
+    struct glint_error error = {""};
     float *star = calloc(n, sizeof *star);
-    int code = EXIT_OK;
 
     image.rgb = calloc(n, sizeof *image.rgb);
-    for (int k = 0; k < PARTS && code == EXIT_OK; k++) {
-        s->options.only = k == 0 ? GLINT_ONLY_GHOSTS : GLINT_ONLY_STARBURST;
-        code = settings_frame(
-            tool, s, settings_view(s, image.width, image.height), &part[k]);
-    }
-    if (code == EXIT_OK && image.rgb && star)
-        status = GLINT_OK;
+    settings_engine(tool, s, image.width, image.height, &cfg);
+    cfg.light.by_hand = 1;
+    cfg.light.starburst = 1;
+    cfg.search.max_found = 0;
+    if (image.rgb && star)
+        status = glint_engine_create(&engine, &cfg, &error);
     for (int i = 0; i < ANGLES && status == GLINT_OK; i++)
-        status = draw(part, angle_deg(s, share[i]), &image, star, file);
-    for (int k = 0; k < PARTS; k++)
-        glint_frame_finish(&part[k]);
+        status = draw(engine, angle_deg(s, share[i]), &image, star, file);
+    glint_engine_destroy(engine);
     free(star);
     free(image.rgb);
-    return code != EXIT_OK || status == GLINT_OK
-               ? code
-               : tool_fail(tool, status, NULL);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
 int thumbnails_write(const struct tool *tool, struct settings *settings,

@@ -12,6 +12,7 @@
 #include "overlay/overlay_line.h"
 #include "overlay/overlay_y4m.h"
 #include "options/command_line.h"
+#include "options/numbered.h"
 #include "formats/picture.h"
 #include "posix/error.h"
 
