@@ -9,7 +9,7 @@
 #include "lab/canvas.h"
 
 enum {
-    BENCH_CASES = 256,
+    BENCH_CASES = 1024, /* more than 16 lenses have with --growth */
     BENCH_ROUNDS = CANVAS_MAX,
     BENCH_STAGES = 7,
     BENCH_CANVASES = 8,
