@@ -409,6 +409,14 @@ enum glint_status glint_engine_layer(struct glint_engine *engine,
                                      int n, unsigned parts, float *rgb,
                                      struct glint_engine_report *report);
 
+/* Adds the flare of N LAMPS, times SCALE, to IMAGE, whatever the exposure.
+ * GLINT_E_MEMORY. */
+enum glint_status glint_engine_add(struct glint_engine *engine,
+                                   const struct glint_lamp *lamps, int n,
+                                   double scale,
+                                   const struct glint_image *image,
+                                   struct glint_engine_report *report);
+
 /* Draws PARTS of the flare of N LAMPS, which no picture shows, times GAIN into
  * RGB as glint_engine_layer() does, whatever the exposure. GLINT_E_MEMORY. */
 enum glint_status glint_engine_render(struct glint_engine *engine,

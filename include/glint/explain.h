@@ -118,6 +118,12 @@ void glint_explain_draw(struct glint_explain *explain, int ghost);
 int glint_explain_bundles(const struct glint_explain_part *part);
 int glint_explain_drawn(const struct glint_explain_part *part);
 
+/* Returns the millions of instructions that the plan of the picture that ENGINE
+ * drew last predicted for KIND, GLINT_COST_STAR; or GLINT_COST_KINDS: for all.
+ */
+double glint_explain_planned(const struct glint_engine *engine,
+                             enum glint_cost_kind kind);
+
 /* Returns how many primitives of the flare lie in tile TILE. */
 int glint_explain_listed(const struct glint_explain *explain, int tile);
 

@@ -104,6 +104,23 @@ enum glint_status glint_engine_layer(struct glint_engine *engine,
     return status;
 }
 
+enum glint_status glint_engine_add(struct glint_engine *engine,
+                                   const struct glint_lamp *lamps, int n,
+                                   double scale,
+                                   const struct glint_image *image,
+                                   struct glint_engine_report *report)
+{
+    struct glint_frame *const f = &engine->paint.frame;
+    enum glint_status status;
+
+    glint_engine_choose(engine, engine->paint.parts,
+                        engine->expose.light.starburst, true);
+    status = glint_frame_draw(f, lamps, n, scale, image, report);
+    f->progress = NULL;
+    report->scale = scale;
+    return status;
+}
+
 enum glint_status glint_engine_render(struct glint_engine *engine,
                                       const struct glint_lamp *lamps, int n,
                                       double gain, unsigned parts, float *rgb,
@@ -116,7 +133,13 @@ enum glint_status glint_engine_render(struct glint_engine *engine,
                         parts & (engine->paint.parts | GLINT_ENGINE_CORES),
                         engine->expose.light.starburst, true);
     f->veil.alone_gain = 0;
-    status = glint_frame_draw_alone(f, lamps, n, gain, rgb, report);
+    if (parts & GLINT_ENGINE_CODES) {
+        memset(rgb, 0,
+               3 * (size_t)f->view.width * (size_t)f->view.height *
+                   sizeof *rgb);
+        status = draw_as_for_codes(f, lamps, n, gain, rgb, report);
+    } else
+        status = glint_frame_draw_alone(f, lamps, n, gain, rgb, report);
     f->progress = NULL;
     report->scale = gain;
     return status;

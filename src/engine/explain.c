@@ -308,6 +308,18 @@ void glint_explain_close(struct glint_explain *e)
     free(e->linear_q20);
 }
 
+double glint_explain_planned(const struct glint_engine *engine,
+                             enum glint_cost_kind kind)
+{
+    const struct glint_frame *const f = &engine->paint.frame;
+    const struct glint_cost_plan plan = glint_frame_plan(f);
+    const struct glint_cost cost = glint_cost_of(&plan, &plan.dials);
+
+    return kind == GLINT_COST_STAR
+               ? 1e-3 * glint_cost_weight[kind].planned * f->star.pixels
+               : glint_cost_minsn(&cost);
+}
+
 int glint_explain_listed(const struct glint_explain *explain, int tile)
 {
     return glint_flare_listed(explain->frame->flare, tile);

@@ -16,7 +16,9 @@
 #include <string.h>
 
 #include "engine/frame/cost.h"
+#include "glint/measure.h"
 #include "lab/canvas.h"
+#include "support/settings_frame.h"
 #include "support/rng.h"
 
 enum { FIT = 36, HELD = 18, LAMPS = 4 };
@@ -125,6 +127,37 @@ static void close_stage(struct stage *s)
     settings_close(&s->settings);
 }
 
+/* Calls glint_frame_draw(), as a function of its own, whose instructions
+ * tools/report/cost-fit counts. */
+enum glint_status cost_frame(struct glint_frame *frame,
+                             const struct glint_lamp *lamp, int n,
+                             const struct glint_image *image,
+                             struct glint_engine_report *report);
+enum glint_status cost_frame(struct glint_frame *frame,
+                             const struct glint_lamp *lamp, int n,
+                             const struct glint_image *image,
+                             struct glint_engine_report *report)
+{
+    return glint_frame_draw(frame, lamp, n, 1, image, report);
+}
+
+static enum glint_status expose(struct glint_frame *frame,
+                                const struct glint_lamp *lamp, double *exposure)
+{
+    const int width = frame->view.width, height = frame->view.height;
+    const size_t n = 3 * (size_t)width * (size_t)height;
+    struct glint_float_image flare = {width, height, malloc(n * sizeof(float))};
+    struct glint_engine_report report;
+    enum glint_status status = GLINT_E_MEMORY;
+
+    if (flare.rgb)
+        status = glint_frame_draw_alone(frame, lamp, 1, 1, flare.rgb, &report);
+    if (status == GLINT_OK)
+        *exposure = glint_measure_exposure(&flare);
+    free(flare.rgb);
+    return status;
+}
+
 /* Draws the frame twice, so that the second has its memory. */
 static void draw(struct stage *s, const struct shape *shape)
 {
@@ -140,8 +173,8 @@ static void draw(struct stage *s, const struct shape *shape)
                          &s->canvas.image, &report) != GLINT_OK)
         fail("no memory");
     canvas_fresh(&s->canvas);
-    if (sweep_frame(&s->frame, s->lamp, shape->n_lamps, 1, &s->canvas.image,
-                    &report) != GLINT_OK)
+    if (cost_frame(&s->frame, s->lamp, shape->n_lamps, &s->canvas.image,
+                   &report) != GLINT_OK)
         fail("no memory");
 }
 
@@ -231,8 +264,7 @@ int main(int argc, char **argv)
             continue;
         open_stage(s, &shape);
         s->exposure = exposure;
-        if (!from &&
-            canvas_exposure(&s->frame, s->lamp, 1, &s->exposure) != GLINT_OK)
+        if (!from && expose(&s->frame, s->lamp, &s->exposure) != GLINT_OK)
             fail("no memory");
         draw(s, &shape);
         if (to) {

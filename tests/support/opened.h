@@ -8,7 +8,7 @@
 #ifndef GLINT_TESTS_OPENED_H
 #define GLINT_TESTS_OPENED_H
 
-#include "lab/settings_frame.h"
+#include "support/settings_frame.h"
 #include "options/tool.h"
 
 static struct settings settings;

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "glint/explain.h"
 #include "glint/measure.h"
 #include "lab/bench.h"
 #include "linux/sets.h"
@@ -28,8 +29,6 @@ static const char help[] =
     "spiral around it. Without lenses: heliar-tronnier, "
     "double-gauss-angenieux\n"
     "and itoh-zoom-short.\n"
-    "Of drawing, accumulate is the light of all pixels, timed by itself, and\n"
-    "composite the rest: codes read, light added, codes written.\n"
     "\n"
     "  --all           also: all kernels, 2 threads, 2 to 10000\n"
     "                  lights, 360p to 2160p, no light, a light far outside,\n"
@@ -57,10 +56,7 @@ static const char help[] =
 static const char *const default_lenses[] = {
     "heliar-tronnier", "double-gauss-angenieux", "itoh-zoom-short"};
 
-/* DRAW has two parts: ACCUMULATE, which sums up the light of all pixels and is
- * timed by itself, and COMPOSITE, which adds that light to the picture and is
- * the difference. */
-enum { PLAN, TRANSFER, BIN, DRAW, ACCUMULATE, COMPOSITE, WHOLE };
+enum { PLAN, TRANSFER, BIN, DRAW, WHOLE };
 
 struct lenses {
     struct settings settings[BENCH_LENSES];
@@ -70,15 +66,14 @@ struct lenses {
 struct flare_case {
     struct bench_case base;
     const struct settings *settings;
-    struct glint_frame frame;
+    struct glint_engine *engine;
     struct glint_lamp *lamp;
     int n_lamps;
-    double scale, psnr_db; /* psnr_db: NAN if not measured */
-    const char *series;    /* growth: name of the series, or NULL */
-    /* growth: a lens with some of the ghosts only, and the memory of these;
-     * NULL: the whole lens is used. */
-    struct glint_lens some;
-    struct glint_model_ghost *some_ghosts;
+    bool is_star;             /* stars alone */
+    double budget_ms;         /* 0: none */
+    double scale, psnr_db;    /* psnr_db: NAN if not measured */
+    const char *series;       /* growth: name of the series, or NULL */
+    struct glint_tint *tints; /* growth: mute all ghosts but some; or NULL */
     struct glint_engine_report report;
     double cpu_ms; /* growth: least time of a frame, of all threads; else 0 */
     double wrong[BENCH_ROUNDS]; /* budgets: predicted over measured - 1 */
@@ -148,30 +143,38 @@ static const struct bench_variation growth[] = {
 static enum glint_status expose(struct flare_case *t,
                                 const struct bench_variation *v)
 {
-    enum glint_status status;
+    enum glint_status status = GLINT_OK;
 
     canvas_lamps(t->lamp, t->n_lamps, 12);
-    status = canvas_exposure(&t->frame, t->lamp, t->n_lamps, &t->scale);
+    if (!t->is_star)
+        status = canvas_exposure(t->engine, t->lamp, t->n_lamps, &t->scale);
     if (v->angle > 0)
         canvas_lamps(t->lamp, t->n_lamps, v->angle);
     if (v->star_stops > 0) {
         for (int i = 0; i < t->n_lamps; i++)
             t->lamp[i].power = exp2(v->star_stops);
-        t->scale = t->frame.star.share = 1;
-        t->frame.star.is_alone = t->frame.star.is_bare = true;
+        t->scale = 1;
     }
     return status;
 }
 
-/* Adds the case V of SETTINGS. Returns an exit code. */
-static int add(struct bench *b, const struct settings *settings,
-               const struct bench_variation *v)
+/* Adds the case V of SETTINGS, held to BUDGET_MS if that is above 0; TINTS,
+ * which the case frees, may be NULL. Returns an exit code. */
+static int add_more(struct bench *b, const struct settings *settings,
+                    const struct bench_variation *v, double budget_ms,
+                    struct glint_tint *tints)
 {
     struct flare_case *const t =
         (struct flare_case *)bench_add(b, settings->lens.name, v);
     struct settings asked = *settings;
-    int code;
+    struct glint_engine_config cfg;
+    struct glint_error error = {""};
+    enum glint_status status;
 
+    if (t)
+        t->tints = tints;
+    else
+        free(tints);
     if (!t || !(t->lamp = calloc((size_t)v->lights + 1, sizeof *t->lamp)))
         return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
     t->settings = settings;
@@ -180,15 +183,32 @@ static int add(struct bench *b, const struct settings *settings,
     t->psnr_db = (double)NAN;
     if (v->option)
         settings_set_number(&asked, v->option, v->value);
-    code = canvas_frame(b->tool, settings, &asked, t->base.canvas->image.width,
-                        t->base.canvas->image.height, &t->frame);
-    if (code != EXIT_OK)
-        return code;
-    t->frame.cfg.workers = t->base.workers;
+    canvas_engine(b->tool, settings, &asked, t->base.canvas->image.width,
+                  t->base.canvas->image.height, &cfg);
+    cfg.workers = t->base.workers;
     if (v->kernels)
-        t->frame.cfg.sets &= v->sets;
-    return expose(t, v) == GLINT_OK ? EXIT_OK
-                                    : tool_fail(b->tool, GLINT_E_MEMORY, NULL);
+        cfg.sets &= v->sets;
+    if (tints)
+        cfg.camera.tints = tints;
+    t->is_star = v->star_stops > 0;
+    if (t->is_star) {
+        cfg.drawing.parts = GLINT_ENGINE_STAR | GLINT_ENGINE_CORES;
+        cfg.light.starburst = 1;
+    }
+    if (budget_ms > 0)
+        cfg.drawing.budget_ms = budget_ms;
+    t->budget_ms = cfg.model ? cfg.drawing.budget_ms : 0;
+    status = glint_engine_create(&t->engine, &cfg, &error);
+    if (status == GLINT_OK)
+        status = expose(t, v);
+    return status == GLINT_OK ? EXIT_OK
+                              : tool_fail(b->tool, status, error.text);
+}
+
+static int add(struct bench *b, const struct settings *settings,
+               const struct bench_variation *v)
+{
+    return add_more(b, settings, v, 0, NULL);
 }
 
 /* Adds those of V[N] that are possible here. */
@@ -210,16 +230,6 @@ static struct flare_case *last_of(const struct bench *b)
 
 /* ------------------------------------------------------------------ rounds */
 
-/* Returns the ms of drawing the last frame once more without a picture. */
-static double accumulate_ms(const struct flare_case *t)
-{
-    const double t0 = tool_seconds();
-
-    if (t->n_lamps > 0)
-        glint_flare_draw(t->frame.flare, NULL);
-    return 1e3 * (tool_seconds() - t0);
-}
-
 /* By its name tools/report/budget tells frames that are timed. */
 enum glint_status bench_run(struct bench *b, struct bench_case *c, int round);
 enum glint_status bench_run(struct bench *b, struct bench_case *c, int round)
@@ -236,7 +246,7 @@ enum glint_status bench_run(struct bench *b, struct bench_case *c, int round)
                       small frames */
         cpu0 = clock();
     t0 = tool_seconds();
-    status = glint_frame_draw(&t->frame, t->lamp, t->n_lamps, t->scale,
+    status = glint_engine_add(t->engine, t->lamp, t->n_lamps, t->scale,
                               &c->canvas->image, &t->report);
     c->ms[WHOLE][round] = 1e3 * (tool_seconds() - t0);
     cpu_ms = t->series ? 1e3 * (double)(clock() - cpu0) / CLOCKS_PER_SEC : 0;
@@ -248,8 +258,6 @@ enum glint_status bench_run(struct bench *b, struct bench_case *c, int round)
     c->ms[TRANSFER][round] = r->trace_ms;
     c->ms[BIN][round] = r->bin_ms;
     c->ms[DRAW][round] = r->draw_ms;
-    c->ms[ACCUMULATE][round] = accumulate_ms(t);
-    c->ms[COMPOSITE][round] = c->ms[DRAW][round] - c->ms[ACCUMULATE][round];
     return status;
 }
 
@@ -262,15 +270,13 @@ static int add_budgets(struct bench *b, const struct settings *settings)
     int code = EXIT_OK;
 
     for (int i = 0; i < b->n_budgets && code == EXIT_OK; i++) {
+        enum glint_status status = GLINT_OK;
         struct flare_case *t;
-        enum glint_status status;
 
-        code = add(b, settings, &plain);
+        code = add_more(b, settings, &plain, b->budget_ms[i], NULL);
         if (code != EXIT_OK)
             break;
         t = last_of(b);
-        glint_budget_init(&t->frame.budget, b->budget_ms[i]);
-        status = glint_frame_calibrate(&t->frame);
         for (int k = 0; k < SETTLING && status == GLINT_OK; k++) {
             canvas_fresh(t->base.canvas);
             status = bench_run(b, &t->base, 0);
@@ -283,35 +289,22 @@ static int add_budgets(struct bench *b, const struct settings *settings)
 
 /* ------------------------------------------------------------------ ghosts */
 
-/* Has T draw N_KEPT ghosts only: those of LIST[N] from FIRST on, then from its
- * start. All other ghosts lose their polynomials and are not seen. */
-static enum glint_status keep_ghosts(struct flare_case *t, const int *list,
-                                     int n, int first, int n_kept)
+/* Returns tints, malloc'ed, that mute all of N_GHOSTS ghosts but those that
+ * belong to N_KEPT pairs of surfaces: those of LIST[N] from FIRST on, then from
+ * its start. PAIR_OF is the pair of each ghost. */
+static struct glint_tint *keep_ghosts(const int *pair_of, int n_ghosts,
+                                      const int *list, int n, int first,
+                                      int n_kept)
 {
-    const struct glint_lens *whole = t->frame.lens;
-    const size_t n_ghosts = whole->header->n_ghosts;
-    struct glint_model_ghost *ghost = malloc(n_ghosts * sizeof *ghost);
+    struct glint_tint *tints =
+        calloc((size_t)n_ghosts + 1, sizeof *tints); /* muted */
 
-    if (!ghost)
-        return GLINT_E_MEMORY;
-    for (size_t k = 0; k < n_ghosts; k++) {
-        int kept = 0;
-
-        for (int i = 0; i < n_kept; i++) {
-            const struct glint_model_ghost *g =
-                &whole->ghost[list[(first + i) % n]];
-
-            kept |= g->i == whole->ghost[k].i && g->j == whole->ghost[k].j;
-        }
-        ghost[k] = whole->ghost[k];
-        if (!kept)
-            ghost[k].n_systems = 0;
-    }
-    t->some_ghosts = ghost;
-    t->some = *whole;
-    t->some.ghost = ghost;
-    t->frame.lens = &t->some;
-    return GLINT_OK;
+    for (int k = 0; k < n_ghosts && tints; k++)
+        for (int i = 0; i < n_kept; i++)
+            if (pair_of[k] == list[(first + i) % n])
+                tints[k] = (struct glint_tint){{1 << 14, 1 << 14, 1 << 14},
+                                               glint_real_of(1)};
+    return tints;
 }
 
 /* Adds cases of all ghosts that PLAIN_CASE shows, and of half of them, a
@@ -321,21 +314,26 @@ static int add_ghosts(struct bench *b, const struct settings *settings,
                       struct flare_case *plain_case)
 {
     static const struct bench_variation v = {"ghosts", .lights = 1};
-    static int list[GLINT_MAX_GHOSTS];
-    int code = EXIT_OK, n = 0;
+    struct glint_explain e = {.n_ghosts = 0};
+    int list[GLINT_MAX_GHOSTS], code = EXIT_OK, n = 0;
 
-    if (plain_case->frame.lens &&
-        bench_run(b, &plain_case->base, 0) == GLINT_OK)
-        for (int k = 0; k < plain_case->frame.setup->n_ghosts; k++)
-            if (plain_case->frame.seen[k])
-                list[n++] = k;
+    if (!settings->model.data)
+        return EXIT_OK;
+    if (bench_run(b, &plain_case->base, 0) != GLINT_OK ||
+        glint_explain_open(&e, plain_case->engine, 0) != GLINT_OK)
+        code = tool_fail(b->tool, GLINT_E_MEMORY, NULL);
+    for (int k = 0; k < e.n_ghosts && code == EXIT_OK; k++)
+        if (glint_explain_drawn(&e.ghost[k]) > 0)
+            list[n++] = k;
     for (int part = n, depth = 0; part > 0 && depth < 5; part /= 2, depth++)
         for (int k = 0; k < (part < n ? 4 : 1) && code == EXIT_OK; k++) {
-            code = add(b, settings, &v);
-            if (code == EXIT_OK &&
-                keep_ghosts(last_of(b), list, n, k * n / 4, part) != GLINT_OK)
-                code = tool_fail(b->tool, GLINT_E_MEMORY, NULL);
+            struct glint_tint *const tints = keep_ghosts(
+                e.ghost_of, settings->setup.n_ghosts, list, n, k * n / 4, part);
+
+            code = tints ? add_more(b, settings, &v, 0, tints)
+                         : tool_fail(b->tool, GLINT_E_MEMORY, NULL);
         }
+    glint_explain_close(&e);
     return code;
 }
 
@@ -344,7 +342,7 @@ static int add_ghosts(struct bench *b, const struct settings *settings,
 /* Sets t->psnr_db: T's flare alone against exact rays of the lens's table. */
 static int measure_psnr(struct bench *b, struct flare_case *t)
 {
-    const int w = t->frame.view.width, h = t->frame.view.height;
+    const int w = t->base.canvas->image.width, h = t->base.canvas->image.height;
     const size_t n = 3 * (size_t)w * (size_t)h;
     struct glint_float_image want = {w, h, malloc(n * sizeof(float))};
     uint8_t *want_codes = NULL, *got = malloc(n);
@@ -358,7 +356,7 @@ static int measure_psnr(struct bench *b, struct flare_case *t)
     if (status == GLINT_OK) {
         exposure = glint_measure_exposure(&want);
         want_codes = glint_measure_encode(&want, exposure);
-        status = want_codes ? canvas_codes(&t->frame, t->lamp, t->n_lamps,
+        status = want_codes ? canvas_codes(t->engine, t->lamp, t->n_lamps,
                                            exposure, got, &t->report)
                             : GLINT_E_MEMORY;
     }
@@ -433,9 +431,9 @@ static void close_case(struct bench_case *c)
 {
     struct flare_case *const t = (struct flare_case *)c;
 
-    glint_frame_finish(&t->frame);
+    glint_engine_destroy(t->engine);
     free(t->lamp);
-    free(t->some_ghosts);
+    free(t->tints);
 }
 
 static void close_flares(struct bench *b)
@@ -451,7 +449,7 @@ static void close_flares(struct bench *b)
 
 static const char *raster_of(const struct flare_case *t)
 {
-    return t->frame.star.is_alone ? "star" : "edges";
+    return t->is_star ? "star" : "edges";
 }
 
 /* Returns the median size of the relative errors of T's predictions. */
@@ -483,11 +481,11 @@ static void print_result(const struct bench *b, const struct bench_case *c)
            (double)(r->peak_bytes + r->star_bytes) / (1 << 20));
     if (!isnan(t->psnr_db))
         printf("  %.1f", t->psnr_db);
-    if (t->frame.budget.ms > 0)
+    if (t->budget_ms > 0)
         printf(
             "  budget %g: %.2f of it, quality %.2f, predicted within %.0f %%",
-            t->frame.budget.ms, bench_ms(b, c, WHOLE) / t->frame.budget.ms,
-            r->quality, 100 * off_by(b, t));
+            t->budget_ms, bench_ms(b, c, WHOLE) / t->budget_ms, r->quality,
+            100 * off_by(b, t));
     printf("%s%s", t->series ? "  " : "", t->series ? t->series : "");
 }
 
@@ -507,10 +505,10 @@ static void json(struct json_writer *to, const struct bench *b,
                r->quality >= 0 ? r->quality : t->settings->options.quality);
     bench_json_times(to, b, c);
     json_write(to, "psnr_db: %.2f", t->psnr_db);
-    if (t->frame.budget.ms > 0)
+    if (t->budget_ms > 0)
         json_write(to, "budget_ms: %g, achieved: %.4f, prediction_error: %.4f",
-                   t->frame.budget.ms,
-                   bench_ms(b, c, WHOLE) / t->frame.budget.ms, off_by(b, t));
+                   t->budget_ms, bench_ms(b, c, WHOLE) / t->budget_ms,
+                   off_by(b, t));
     json_write(to,
                "drawn_lights: %d, ghosts: %d, bundles: %d, primitives: %d, "
                "tiles: %d, arena_bytes: %zu, star_bytes: %zu",
@@ -556,8 +554,7 @@ const struct bench_subject bench_flare = {
     .groups = ENGINE_DRAWING,
     .max_rounds = BENCH_ROUNDS,
     .n_stages = WHOLE + 1,
-    .stage = {"plan", "transfer", "bin", "draw", "accumulate", "composite",
-              "whole"},
+    .stage = {"plan", "transfer", "bin", "draw", "whole"},
     .heads = "lens                        size light th by    sets ",
     .tail = "  prims    MiB",
     .case_bytes = sizeof(struct flare_case),

@@ -99,33 +99,32 @@ void canvas_lamps(struct glint_lamp *lamp, int n, double angle)
 
 /* ---------------------------------------------------------------- pictures */
 
-int canvas_frame(const struct tool *tool, const struct settings *open,
-                 const struct settings *asked, int width, int height,
-                 struct glint_frame *frame)
+void canvas_engine(const struct tool *tool, const struct settings *open,
+                   const struct settings *asked, int width, int height,
+                   struct glint_engine_config *cfg)
 {
-    const int code =
-        settings_frame(tool, asked, settings_view(asked, width, height), frame);
-
-    frame->setup = &open->setup;
-    if (frame->lens)
-        frame->lens = &open->model.lens;
-    return code;
+    settings_engine(tool, asked, width, height, cfg);
+    cfg->camera.setup = &open->setup;
+    if (cfg->model)
+        cfg->model = &open->model.lens;
+    cfg->light.by_hand = 1;
+    cfg->search.max_found = 0;
 }
 
-enum glint_status canvas_exposure(struct glint_frame *frame,
+enum glint_status canvas_exposure(struct glint_engine *engine,
                                   const struct glint_lamp *lamp, int n_lamps,
                                   double *exposure)
 {
-    const int width = frame->view.width, height = frame->view.height;
-    struct glint_float_image flare = {
-        width, height,
-        malloc(3 * (size_t)width * (size_t)height * sizeof(float))};
+    const struct glint_view *const view = glint_engine_view(engine);
+    const size_t n = 3 * (size_t)view->width * (size_t)view->height;
+    struct glint_float_image flare = {view->width, view->height,
+                                      malloc(n * sizeof(float))};
     struct glint_engine_report report;
     enum glint_status status = GLINT_E_MEMORY;
 
     if (flare.rgb)
-        status =
-            glint_frame_draw_alone(frame, lamp, n_lamps, 1, flare.rgb, &report);
+        status = glint_engine_render(engine, lamp, n_lamps, 1, GLINT_ENGINE_ALL,
+                                     flare.rgb, &report);
     if (status == GLINT_OK)
         *exposure = glint_measure_exposure(&flare);
     free(flare.rgb);
@@ -263,26 +262,26 @@ enum glint_status canvas_exact(const struct tool *tool,
     return status;
 }
 
-enum glint_status canvas_codes(struct glint_frame *frame,
+enum glint_status canvas_codes(struct glint_engine *engine,
                                const struct glint_lamp *lamp, int n_lamps,
                                double exposure, uint8_t *codes,
                                struct glint_engine_report *report)
 {
-    struct glint_image layer = {.format = GLINT_RGB24,
-                                .width = frame->cfg.width,
-                                .height = frame->cfg.height};
+    const struct glint_view *const view = glint_engine_view(engine);
+    struct glint_image layer = {
+        .format = GLINT_RGB24, .width = view->width, .height = view->height};
 
     memset(codes, 0, 3 * (size_t)layer.width * (size_t)layer.height);
     glint_image_place(&layer, codes);
-    return glint_frame_draw(frame, lamp, n_lamps, exposure, &layer, report);
+    return glint_engine_add(engine, lamp, n_lamps, exposure, &layer, report);
 }
 
-enum glint_status sweep_frame(struct glint_frame *frame,
+enum glint_status sweep_frame(struct glint_engine *engine,
                               const struct glint_lamp *lamp, int n,
                               double exposure, const struct glint_image *image,
                               struct glint_engine_report *report)
 {
-    return glint_frame_draw(frame, lamp, n, exposure, image, report);
+    return glint_engine_add(engine, lamp, n, exposure, image, report);
 }
 
 const char *canvas_machine(void)

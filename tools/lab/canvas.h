@@ -7,7 +7,7 @@
 #define GLINT_TOOLS_LAB_CANVAS_H
 
 #include "formats/pnm.h"
-#include "lab/settings_frame.h"
+#include "model/settings.h"
 
 enum { CANVAS_MAX = 1000 }; /* largest number of rounds, and of medians */
 
@@ -35,15 +35,16 @@ void canvas_time_floor(struct canvas *canvas, int round);
  * lamps the kth, counted from 1, has 1 / k. */
 void canvas_lamps(struct glint_lamp *lamp, int n, double angle);
 
-/* Makes FRAME, WIDTH x HEIGHT, as ASKED says: a copy of OPEN, which FRAME
- * keeps, with options set. Returns an exit code. */
-int canvas_frame(const struct tool *tool, const struct settings *open,
-                 const struct settings *asked, int width, int height,
-                 struct glint_frame *frame);
+/* Sets CFG to what an engine of WIDTH x HEIGHT takes that draws lamps by
+ * glint_engine_add() and looks for none, as ASKED says: a copy of OPEN, which
+ * the engine keeps, with options set. */
+void canvas_engine(const struct tool *tool, const struct settings *open,
+                   const struct settings *asked, int width, int height,
+                   struct glint_engine_config *cfg);
 
 /* Sets EXPOSURE to that at which the 99.9th percentile of the luminance of the
  * flare is white. GLINT_E_MEMORY. */
-enum glint_status canvas_exposure(struct glint_frame *frame,
+enum glint_status canvas_exposure(struct glint_engine *engine,
                                   const struct glint_lamp *lamp, int n_lamps,
                                   double *exposure);
 
@@ -57,16 +58,16 @@ enum glint_status canvas_exact(const struct tool *tool,
                                int grid, struct glint_float_image *to);
 
 /* Draws the flare alone, times EXPOSURE, as codes on black,
- * CODES[height][width][3]. A frame draws less for codes than in linear
+ * CODES[height][width][3]. An engine draws less for codes than in linear
  * light. */
-enum glint_status canvas_codes(struct glint_frame *frame,
+enum glint_status canvas_codes(struct glint_engine *engine,
                                const struct glint_lamp *lamp, int n_lamps,
                                double exposure, uint8_t *codes,
                                struct glint_engine_report *report);
 
-/* Calls glint_frame_draw(), as a function of its own, whose instructions
- * tools/report/sweep-insn and cost-fit count. */
-enum glint_status sweep_frame(struct glint_frame *frame,
+/* Calls glint_engine_add(), as a function of its own, whose instructions
+ * tools/report/sweep-insn counts. */
+enum glint_status sweep_frame(struct glint_engine *engine,
                               const struct glint_lamp *lamp, int n,
                               double exposure, const struct glint_image *image,
                               struct glint_engine_report *report);

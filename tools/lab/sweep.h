@@ -126,7 +126,7 @@ int sweep_measure(struct sweep *s, int c, struct tool_progress *progress);
 
 /* Draws a frame by sweep_frame(). Sets MS and, if they are counted,
  * INSTRUCTIONS. */
-enum glint_status sweep_time(const struct sweep *s, struct glint_frame *frame,
+enum glint_status sweep_time(const struct sweep *s, struct glint_engine *engine,
                              const struct glint_lamp *lamp, int n,
                              double exposure, const struct glint_image *image,
                              struct glint_engine_report *report, double *ms,

@@ -17,7 +17,7 @@ enum { MAX_OPEN = 12, PICTURE_WIDTH = 320 };
 struct run {
     struct sweep_point *point;
     const struct settings *settings;
-    struct glint_frame frame;
+    struct glint_engine *engine;
     struct glint_engine_report report;
     double ms[SWEEP_ROUNDS];
     int n;
@@ -68,7 +68,10 @@ settings_for(struct bay *b, const struct sweep_setting *set, int *code)
 
 static int make_run(struct bay *b, struct run *r)
 {
+    struct glint_engine_config cfg;
+    struct glint_error error = {""};
     struct settings asked;
+    enum glint_status status;
     int code = EXIT_OK;
 
     r->settings = settings_for(b, &r->point->set, &code);
@@ -76,12 +79,13 @@ static int make_run(struct bay *b, struct run *r)
         return code;
     asked = *r->settings;
     sweep_set(&asked, &r->point->set, false);
-    code = canvas_frame(b->s->tool, r->settings, &asked, b->c->width,
-                        b->c->height, &r->frame);
-    r->frame.cfg.workers =
-        b->s->tool->n_threads ? b->s->tool->workers : b->s->one;
+    canvas_engine(b->s->tool, r->settings, &asked, b->c->width, b->c->height,
+                  &cfg);
+    cfg.workers = b->s->tool->n_threads ? b->s->tool->workers : b->s->one;
+    status = glint_engine_create(&r->engine, &cfg, &error);
     r->point->metric[SWEEP_MODEL_BYTES] = (double)r->settings->model.bytes;
-    return code;
+    return status == GLINT_OK ? EXIT_OK
+                              : tool_fail(b->s->tool, status, error.text);
 }
 
 static int make_bay(struct bay *b)
@@ -101,7 +105,7 @@ static int make_bay(struct bay *b)
         code = make_run(b, &b->run[i]);
     }
     if (code == EXIT_OK &&
-        canvas_exposure(&b->run[0].frame, b->lamp, c->n_lamps, &b->exposure) !=
+        canvas_exposure(b->run[0].engine, b->lamp, c->n_lamps, &b->exposure) !=
             GLINT_OK)
         code = tool_fail(b->s->tool, GLINT_E_MEMORY, NULL);
     return code;
@@ -110,7 +114,7 @@ static int make_bay(struct bay *b)
 static void free_bay(struct bay *b)
 {
     for (int i = 0; b->run && i < b->c->n; i++)
-        glint_frame_finish(&b->run[i].frame);
+        glint_engine_destroy(b->run[i].engine);
     for (int i = 0; i < b->n_open; i++)
         settings_close(&b->open[i]);
     canvas_finish(&b->canvas);
@@ -121,7 +125,7 @@ static void free_bay(struct bay *b)
 
 /* ------------------------------------------------------------------ timing */
 
-enum glint_status sweep_time(const struct sweep *s, struct glint_frame *frame,
+enum glint_status sweep_time(const struct sweep *s, struct glint_engine *engine,
                              const struct glint_lamp *lamp, int n,
                              double exposure, const struct glint_image *image,
                              struct glint_engine_report *report, double *ms,
@@ -131,7 +135,7 @@ enum glint_status sweep_time(const struct sweep *s, struct glint_frame *frame,
         s->counter >= 0 ? glint_instructions_read(s->counter) : 0;
     const double t0 = tool_seconds();
     const enum glint_status status =
-        sweep_frame(frame, lamp, n, exposure, image, report);
+        sweep_frame(engine, lamp, n, exposure, image, report);
 
     *ms = 1e3 * (tool_seconds() - t0);
     if (s->counter >= 0)
@@ -148,11 +152,11 @@ static enum glint_status draw(struct bay *b, struct run *r, int round)
 
     canvas_fresh(&b->canvas);
     if (round < 0)
-        return glint_frame_draw(&r->frame, b->lamp, b->c->n_lamps, b->exposure,
+        return glint_engine_add(r->engine, b->lamp, b->c->n_lamps, b->exposure,
                                 &b->canvas.image, &r->report);
     if (b->s->count_only)
         printf("%d\n", (int)(r->point - b->s->point));
-    status = sweep_time(b->s, &r->frame, b->lamp, b->c->n_lamps, b->exposure,
+    status = sweep_time(b->s, r->engine, b->lamp, b->c->n_lamps, b->exposure,
                         &b->canvas.image, &r->report, &ms,
                         &r->point->metric[SWEEP_INSTRUCTIONS]);
     r->ms[r->n++] = ms;
@@ -209,26 +213,19 @@ static double sum_of(const struct glint_float_image *image)
 static enum glint_status measure_flux(struct bay *b, struct run *r)
 {
     const size_t n = 3 * (size_t)b->c->width * (size_t)b->c->height;
-    struct glint_image layer = {.format = GLINT_LINEAR_Q20,
-                                .width = b->c->width,
-                                .height = b->c->height};
-    int32_t *linear_q20 = calloc(n, sizeof *linear_q20);
+    struct glint_float_image layer = {b->c->width, b->c->height,
+                                      malloc(n * sizeof(float))};
     struct glint_engine_report report;
     enum glint_status status = GLINT_E_MEMORY;
-    double sum = 0;
 
-    if (linear_q20) {
-        glint_image_place(&layer, linear_q20);
-        r->frame.for_codes = true;
-        status = glint_frame_draw(&r->frame, b->lamp, b->c->n_lamps,
-                                  b->exposure, &layer, &report);
-        r->frame.for_codes = false;
-        for (size_t i = 0; i < n; i++)
-            sum += linear_q20[i] * 0x1p-20;
-    }
-    free(linear_q20);
-    r->point->metric[SWEEP_FLUX_ERROR] =
-        sum / (b->exposure * sum_of(&b->exact)) - 1;
+    if (layer.rgb)
+        status = glint_engine_render(
+            r->engine, b->lamp, b->c->n_lamps, b->exposure,
+            GLINT_ENGINE_ALL | GLINT_ENGINE_CODES, layer.rgb, &report);
+    if (status == GLINT_OK)
+        r->point->metric[SWEEP_FLUX_ERROR] =
+            sum_of(&layer) / (b->exposure * sum_of(&b->exact)) - 1;
+    free(layer.rgb);
     return status;
 }
 
@@ -283,7 +280,7 @@ static enum glint_status measure_point(struct bay *b, struct run *r,
     struct glint_engine_report report;
     struct glint_measure m;
     const enum glint_status status = canvas_codes(
-        &r->frame, b->lamp, b->c->n_lamps, exposure, codes, &report);
+        r->engine, b->lamp, b->c->n_lamps, exposure, codes, &report);
 
     if (status != GLINT_OK)
         return status;

@@ -7,9 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/frame/cost.h"
+#include "glint/explain.h"
 #include "glint/measure.h"
-#include "engine/setup/dirt.h"
 #include "lab/plots/plot.h"
 #include "lab/sweep.h"
 
@@ -74,9 +73,11 @@ struct bay {
     struct sweep *s;
     const struct subject *subject;
     struct settings settings;
-    struct glint_frame frame;
+    struct glint_engine *engine;
+    struct glint_dials dials;
     struct glint_lamp lamp[10];
     double exposure;
+    int width, height;
     size_t n;       /* samples of a picture */
     uint8_t *codes; /* [n] */
     float *exact;   /* [n], codes with nothing left out, not rounded */
@@ -107,8 +108,8 @@ static struct glint_image black(const struct bay *b,
                                 enum glint_pixel_format format, void *mem)
 {
     struct glint_image image = {.format = format,
-                                .width = b->frame.view.width,
-                                .height = b->frame.view.height,
+                                .width = b->width,
+                                .height = b->height,
                                 .range = GLINT_RANGE_FULL};
 
     memset(mem, 0, glint_image_bytes(format, image.width, image.height));
@@ -119,64 +120,60 @@ static struct glint_image black(const struct bay *b,
 /* Sets b->exact: all light, with the finest value. */
 static enum glint_status draw_exact(struct bay *b)
 {
-    const struct glint_dials asked = b->frame.dials;
+    struct glint_dials dials = b->dials;
     int32_t *linear_q20 = malloc(b->n * sizeof *linear_q20);
     struct glint_engine_report report;
     enum glint_status status = GLINT_E_MEMORY;
 
     if (!is_star(b->subject)) {
-        b->frame.dials.irradiance_steps = b->frame.dials.snap_codes_q8 = 0;
-        b->frame.dials.cull_codes = b->frame.dials.dim_codes = 0;
+        dials.irradiance_steps = dials.snap_codes_q8 = 0;
+        dials.cull_codes = dials.dim_codes = 0;
     }
-    set_parameter(&b->frame.dials, b->subject->parameter, b->subject->finest);
+    set_parameter(&dials, b->subject->parameter, b->subject->finest);
+    glint_engine_turn(b->engine, dials);
     if (linear_q20) {
         const struct glint_image image = black(b, GLINT_LINEAR_Q20, linear_q20);
 
-        status = glint_frame_draw(&b->frame, b->lamp, b->subject->n_lamps,
+        status = glint_engine_add(b->engine, b->lamp, b->subject->n_lamps,
                                   b->exposure, &image, &report);
     }
     for (size_t i = 0; i < b->n && status == GLINT_OK; i++)
         b->exact[i] = (float)glint_measure_code(linear_q20[i] * 0x1p-20);
     free(linear_q20);
-    b->frame.dials = asked;
     return status;
 }
 
 /* Returns the bytes of tables of 2^LOG2 cells a side and coarser. */
-static size_t shade_bytes(const struct glint_shade *shade, int log2)
+static size_t shade_bytes(int log2)
 {
     size_t bytes = 0;
 
-    for (int k = 1; k <= log2 && k <= shade->log2; k++)
+    for (int k = 1; k <= log2; k++)
         bytes += 3 * ((size_t)1 << k | 1) * ((size_t)1 << k | 1);
     return bytes;
 }
 
 /* Sets what is known of P but by its picture: bytes and planned cost. */
-static void note_plan(struct bay *b, struct sweep_part *p,
+static void note_plan(const struct bay *b, struct sweep_part *p,
                       const struct glint_engine_report *report)
 {
-    const struct glint_cost_plan plan = glint_frame_plan(&b->frame);
-    const struct glint_cost cost = glint_cost_of(&plan, &plan.dials);
+    const bool star = is_star(b->subject);
 
-    p->pixels = b->frame.star.pixels;
-    if (is_star(b->subject)) {
-        p->planned_minsn =
-            1e-3 * glint_cost_weight[GLINT_COST_STAR].planned * p->pixels;
-        p->bytes = glint_frame_star_bytes(&b->frame);
-        return;
-    }
-    p->planned_minsn = glint_cost_minsn(&cost);
-    p->bytes = report->peak_bytes + report->star_bytes;
-    if (b->frame.setup->dirt)
-        p->bytes +=
-            shade_bytes(&b->frame.setup->dirt->shade, b->frame.dials.dust_log2);
+    p->planned_minsn = glint_explain_planned(
+        b->engine, star ? GLINT_COST_STAR : GLINT_COST_KINDS);
+    if (star)
+        p->pixels =
+            1e3 * p->planned_minsn / glint_cost_weight[GLINT_COST_STAR].planned;
+    p->bytes = report->star_bytes + (star ? 0 : report->peak_bytes);
+    if (b->subject->parameter == DUST_LOG2)
+        p->bytes += shade_bytes((int)p->value);
 }
 
 /* Draws and times frames with VALUE, and compares the last one. */
 static enum glint_status measure(struct bay *b, double value)
 {
     struct sweep_part *const p = &b->s->part[b->s->n_parts++];
+    struct glint_dials dials = b->dials;
     struct glint_engine_report report;
     enum glint_status status = GLINT_OK;
     double square = 0;
@@ -185,13 +182,14 @@ static enum glint_status measure(struct bay *b, double value)
                              .value = value,
                              .ms = HUGE_VAL,
                              .instructions = (double)NAN};
-    set_parameter(&b->frame.dials, b->subject->parameter, value);
+    set_parameter(&dials, b->subject->parameter, value);
+    glint_engine_turn(b->engine, dials);
     for (int i = 0; i < b->s->rounds && status == GLINT_OK; i++) {
         const struct glint_image image = black(b, GLINT_RGB24, b->codes);
         double ms;
 
         status =
-            sweep_time(b->s, &b->frame, b->lamp, b->subject->n_lamps,
+            sweep_time(b->s, b->engine, b->lamp, b->subject->n_lamps,
                        b->exposure, &image, &report, &ms, &p->instructions);
         p->ms = fmin(p->ms, ms);
     }
@@ -237,10 +235,9 @@ static enum glint_status set_lamps(struct bay *b)
         b->lamp[i].power =
             is_star(subject) ? exp2(subject->stops) : (double)b->n / 3;
     b->exposure = 1;
-    b->frame.star.is_bare = is_star(subject);
     return is_star(subject)
                ? GLINT_OK
-               : canvas_exposure(&b->frame, b->lamp, 1, &b->exposure);
+               : canvas_exposure(b->engine, b->lamp, 1, &b->exposure);
 }
 
 static int measure_subject(struct bay *b, const char *lens)
@@ -248,6 +245,8 @@ static int measure_subject(struct bay *b, const char *lens)
     const struct tool *const tool = b->s->tool;
     const int height = b->s->small ? 180 : is_star(b->subject) ? 1080 : 720;
     const int width = height * 16 / 9;
+    struct glint_engine_config cfg;
+    struct glint_error error = {""};
     enum glint_status status = GLINT_E_MEMORY;
     int code;
 
@@ -257,18 +256,23 @@ static int measure_subject(struct bay *b, const char *lens)
     b->codes = calloc(b->n, 1);
     b->exact = malloc(b->n * sizeof *b->exact);
     code = settings_open(tool, &b->settings, lens);
-    if (code == EXIT_OK)
-        code = settings_frame(tool, &b->settings,
-                              settings_view(&b->settings, width, height),
-                              &b->frame);
+    b->width = width;
+    b->height = height;
     if (code == EXIT_OK) {
-        b->frame.cfg.workers = b->s->one;
+        canvas_engine(tool, &b->settings, &b->settings, width, height, &cfg);
+        cfg.workers = b->s->one;
+        if (is_star(b->subject))
+            cfg.drawing.parts |= GLINT_ENGINE_CORES;
+        b->dials = cfg.drawing.dials;
         if (b->codes && b->exact)
+            status = glint_engine_create(&b->engine, &cfg, &error);
+        if (status == GLINT_OK)
             status = set_lamps(b);
         if (status == GLINT_OK)
             status = measure_all(b);
-        code = status == GLINT_OK ? code : tool_fail(tool, status, NULL);
-        glint_frame_finish(&b->frame);
+        glint_engine_destroy(b->engine);
+        if (status != GLINT_OK)
+            code = tool_fail(tool, status, error.text);
     }
     settings_close(&b->settings);
     free(b->codes);

@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "engine/frame/frame.h"
-#include "lab/settings_frame.h"
+#include "support/settings_frame.h"
 #include "options/tool.h"
 #include "support/fakes/wrapped.h"
 #include "support/shuffle.h"

@@ -14,7 +14,7 @@
 
 #include "engine/setup/spectrum.h"
 #include "engine/strength.h"
-#include "lab/settings_frame.h"
+#include "support/settings_frame.h"
 
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 

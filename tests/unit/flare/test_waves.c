@@ -15,7 +15,7 @@
 #include <cmocka.h>
 
 #include "engine/frame/frame.h"
-#include "lab/settings_frame.h"
+#include "support/settings_frame.h"
 
 enum { WIDTH = 640, HEIGHT = 360, SAMPLES = 3 * WIDTH * HEIGHT };
 

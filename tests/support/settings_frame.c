@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/settings_frame.h"
+#include "support/settings_frame.h"
 
 #include "model/settings_table.h"
 

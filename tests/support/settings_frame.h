@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * A frame by itself, for measurements of what engines are made of.
+ * A frame by itself, as commands set it up, for tests of what engines are made
+ * of.
  */
-#ifndef GLINT_TOOLS_LAB_SETTINGS_FRAME_H
-#define GLINT_TOOLS_LAB_SETTINGS_FRAME_H
+#ifndef GLINT_TESTS_SUPPORT_SETTINGS_FRAME_H
+#define GLINT_TESTS_SUPPORT_SETTINGS_FRAME_H
 
 #include "engine/frame/frame.h"
 #include "model/settings.h"
