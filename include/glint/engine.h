@@ -154,6 +154,8 @@ struct glint_engine_drawing {
     int dither;        /* not 0: ordered dither in pictures of 8 bits */
     unsigned parts;    /* of enum glint_engine_part: what is drawn */
     int only_ghost;    /* index of the only ghost drawn; -1: all are */
+    int is_fresh; /* not 0: rays are looked for anew in each picture, even where
+                     lamps stay where they were */
     /* Pictures by themselves have more points of lamps of visible extent and
      * more lights, unless these are not 0. */
     int keep_points, keep_lights;

@@ -121,7 +121,7 @@ static enum glint_status open_frame(struct glint_engine *e,
     f->most_minsn = d->most_minsn;
     f->apart_px = d->apart_px;
     f->cfg.sets = c->sets;
-    f->cfg.reuse = &glint_reuse;
+    f->cfg.reuse = d->is_fresh ? NULL : &glint_reuse;
     f->cfg.tile_log2 = d->tile_log2;
     f->cfg.dither = d->dither != 0;
     f->dials = f->asked = d->dials;

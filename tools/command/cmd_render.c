@@ -234,6 +234,7 @@ static int render_model(struct tool *tool, struct render *r)
     settings_engine(tool, &r->settings, r->width, r->height, &cfg);
     cfg.light.by_hand = 1;
     cfg.search.max_found = 0;
+    cfg.drawing.is_fresh = 1;
     cfg.search.more_lamps = r->n_lamps;
     cfg.search.max_drawn = cfg.drawing.dials.max_lights;
     status = glint_engine_create(&engine, &cfg, &error);

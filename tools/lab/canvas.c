@@ -109,6 +109,7 @@ void canvas_engine(const struct tool *tool, const struct settings *open,
         cfg->model = &open->model.lens;
     cfg->light.by_hand = 1;
     cfg->search.max_found = 0;
+    cfg->drawing.is_fresh = 1;
 }
 
 enum glint_status canvas_exposure(struct glint_engine *engine,

@@ -143,12 +143,13 @@ static enum glint_status draw_exact(struct bay *b)
     return status;
 }
 
-/* Returns the bytes of tables of 2^LOG2 cells a side and coarser. */
-static size_t shade_bytes(int log2)
+/* Returns the bytes of tables of 2^LOG2 cells a side and coarser, as far as
+ * DIRT has them. */
+static size_t shade_bytes(const struct glint_dirt *dirt, int log2)
 {
     size_t bytes = 0;
 
-    for (int k = 1; k <= log2; k++)
+    for (int k = 1; k <= log2 && k <= glint_dirt_log2(dirt); k++)
         bytes += 3 * ((size_t)1 << k | 1) * ((size_t)1 << k | 1);
     return bytes;
 }
@@ -166,7 +167,7 @@ static void note_plan(const struct bay *b, struct sweep_part *p,
             1e3 * p->planned_minsn / glint_cost_weight[GLINT_COST_STAR].planned;
     p->bytes = report->star_bytes + (star ? 0 : report->peak_bytes);
     if (b->subject->parameter == DUST_LOG2)
-        p->bytes += shade_bytes((int)p->value);
+        p->bytes += shade_bytes(b->settings.setup.dirt, (int)p->value);
 }
 
 /* Draws and times frames with VALUE, and compares the last one. */

@@ -139,6 +139,7 @@ static int draw_all(const struct tool *tool, struct settings *s, FILE *file)
     cfg.light.by_hand = 1;
     cfg.light.starburst = 1;
     cfg.search.max_found = 0;
+    cfg.drawing.is_fresh = 1;
     if (image.rgb && star)
         status = glint_engine_create(&engine, &cfg, &error);
     for (int i = 0; i < ANGLES && status == GLINT_OK; i++)

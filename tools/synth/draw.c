@@ -479,6 +479,7 @@ static int draw_part(const struct tool *tool, struct settings *s,
     cfg.light.starburst = 1;
     cfg.light.by_hand = 1;
     cfg.search.max_found = 0;
+    cfg.drawing.is_fresh = 1;
     status = glint_engine_create(&engine, &cfg, &error);
     if (status == GLINT_OK)
         status = glint_engine_render(engine, lamp, (int)item->n_lights, 1, part,

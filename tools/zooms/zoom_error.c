@@ -157,6 +157,7 @@ static enum glint_status open_engines(const struct measuring *m,
         2 * m->view.sensor_width_mm * m->view.height / m->view.width;
     cfg.light.by_hand = 1;
     cfg.search.max_found = 0;
+    cfg.drawing.is_fresh = 1;
     cfg.model = &m->zoom->lens;
     status = glint_engine_create(&p->model, &cfg, &error);
     cfg.model = NULL;
