@@ -53,21 +53,6 @@ bool glint_describe_material(struct glint_describer *d);
 bool glint_describe_find(struct glint_describer *d,
                          const struct glint_word *word, int *index);
 
-/* describe_metal.c: a material's line from 'ward' on; TEXTURE becomes the name
- * of its texture, if there is one. */
-bool glint_describe_metal(struct glint_describer *d,
-                          struct glint_described_material *m,
-                          struct glint_word *texture);
-
-/* Reads what NORM says of metal, and holds the ratio of its alphas. */
-bool glint_describe_lobe(struct glint_describer *d,
-                         struct glint_described_material *m,
-                         const struct glint_word *norm);
-
-/* describe_stone.c: the same from 'translucent' on. */
-bool glint_describe_stone(struct glint_describer *d,
-                          struct glint_described_material *m,
-                          struct glint_word *texture);
 /* Refuses the object O, defined last, if what of it is of stone has no place of
  * its own on a map; PLACE is that of its material. Warns of stretch. */
 bool glint_describe_skin(struct glint_describer *d,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lines on light and on how surfaces look. */
+ * Lines on light and on how surfaces look: brushed metal and translucent stone
+ * first, whose parts a material's line names. */
 #include "bake/scene/describe.h"
 
 #include <math.h>
@@ -9,14 +10,300 @@
 #include <string.h>
 
 #include "bake/scene/texels.h"
+#include "glint/scene/translucent.h"
 #include "glint/view.h"
+
+/* What rounding may add to colours and weights that sum to 1. */
+#define SLACK 1e-9
+
+/* ------------------------------------------------------------------- metal */
+
+static bool read_norm(struct glint_describer *d, const struct glint_word *word,
+                      struct glint_described_material *m)
+{
+    char quote[GLINT_QUOTE_BYTES];
+
+    m->norm = glint_word_is(word, "1992") ? GLINT_DESCRIBED_1992
+                                          : GLINT_DESCRIBED_BOUNDED;
+    return glint_word_is(word, "1992") || glint_word_is(word, "bounded") ||
+           glint_text_fail(&d->text, word->place,
+                           "a norm is bounded or 1992, not '%s'",
+                           glint_word_quote(word, quote));
+}
+
+/* Holds the smaller alpha at a tenth of the other, with a warning. */
+static void hold_ratio(struct glint_describer *d,
+                       struct glint_described_material *m)
+{
+    const int smaller = m->alpha[0] > m->alpha[1];
+    const double least = m->alpha[1 - smaller] / GLINT_DESCRIPTION_MAX_RATIO;
+
+    if (m->alpha[smaller] >= least * (1 - SLACK))
+        return;
+    if (!d->scene->warning[0])
+        snprintf(d->scene->warning, sizeof d->scene->warning,
+                 "material %s: alphas of %.4g and %.4g are held to a ratio of "
+                 "%d: the smaller is %.4g",
+                 m->name, m->alpha[0], m->alpha[1], GLINT_DESCRIPTION_MAX_RATIO,
+                 least);
+    m->alpha[smaller] = least;
+}
+
+/* Reads what NORM says of metal, and holds the ratio of its alphas. */
+static bool read_lobe(struct glint_describer *d,
+                      struct glint_described_material *m,
+                      const struct glint_word *norm)
+{
+    if (norm->length && !read_norm(d, norm, m))
+        return false;
+    hold_ratio(d, m);
+    return true;
+}
+
+/* Reads a material's line from 'ward' on; TEXTURE becomes the name of its
+ * texture, if there is one. */
+static bool read_metal(struct glint_describer *d,
+                       struct glint_described_material *m,
+                       struct glint_word *texture)
+{
+    struct glint_word norm = {0};
+    struct glint_clause clause[] = {
+        {"ward", .n = 0},
+        {"specular", 3, 0, 1, .value = m->metal, .required = true},
+        {"alpha", 2, .001, 1, .value = m->alpha, .required = true},
+        {"diffuse", 3, 0, 1, .value = m->colour},
+        {"norm", .name = &norm},
+        {"texture", .name = texture},
+        {0}};
+
+    m->is_metal = true;
+    m->diffuse = 1;
+    for (int c = 0; c < 3; c++)
+        m->colour[c] = 0;
+    if (!glint_clauses_read(&d->text, "material", clause))
+        return false;
+    for (int c = 0; c < 3; c++)
+        if (m->colour[c] + m->metal[c] > 1 + SLACK)
+            return glint_text_fail(&d->text, clause[1].place,
+                                   "'diffuse' and 'specular' sum to %.6g; more "
+                                   "than 1 would make light",
+                                   m->colour[c] + m->metal[c]);
+    return read_lobe(d, m, &norm);
+}
+
+/* A texel may be as much longer or shorter than in the mean, and this share of
+ * the surface more, before that is warned of. */
+#define MOST_STRETCH   1.5
+#define STRETCHED_AREA .02
+
+/* ------------------------------------------------------------------- stone */
+
+/* Reads the stone WORD names. */
+static bool read_file(struct glint_describer *d, const struct glint_word *word,
+                      struct glint_described_material *m)
+{
+    struct glint_description *s = d->scene;
+    struct glint_described_stone *stone = &s->stone[s->n_stones];
+    struct glint_translucent opened;
+    char name[GLINT_FILE_BYTES];
+    const char *reason = "";
+    enum glint_status status;
+
+    if (s->n_stones == GLINT_DESCRIPTION_MAX_STONES)
+        return glint_text_fail(&d->text, word->place,
+                               "more than %d translucent materials",
+                               GLINT_DESCRIPTION_MAX_STONES);
+    if (!d->files->stone)
+        return glint_text_fail(&d->text, word->place, "no stone is read here");
+    glint_describe_file(word, name);
+    status = d->files->stone(d->files->ctx, name, &stone->data, &stone->bytes,
+                             d->error);
+    if (status != GLINT_OK)
+        return glint_describe_refuse(d, word->place, status);
+    m->stone = s->n_stones++;
+    return glint_translucent_open(&opened, stone->data, stone->bytes,
+                                  &reason) == GLINT_OK ||
+           glint_text_fail(&d->text, word->place, "%s", reason);
+}
+
+static bool read_fresnel(struct glint_describer *d,
+                         const struct glint_word *word,
+                         struct glint_described_material *m)
+{
+    char quote[GLINT_QUOTE_BYTES];
+
+    m->fresnel = !glint_word_is(word, "off");
+    return glint_word_is(word, "on") || glint_word_is(word, "off") ||
+           glint_text_fail(&d->text, word->place,
+                           "fresnel is on or off, not '%s'",
+                           glint_word_quote(word, quote));
+}
+
+/* The same from 'translucent' on. */
+static bool read_stone(struct glint_describer *d,
+                       struct glint_described_material *m,
+                       struct glint_word *texture)
+{
+    struct glint_word coat = {0}, norm = {0}, fresnel = {0}, file;
+    struct glint_clause clause[] = {{"coat", .name = &coat},
+                                    {"specular", 3, 0, 1, .value = m->metal},
+                                    {"alpha", 2, .001, 1, .value = m->alpha},
+                                    {"norm", .name = &norm},
+                                    {"fresnel", .name = &fresnel},
+                                    {"colour", 3, 0, 1, .value = m->colour},
+                                    {0}};
+    char quote[GLINT_QUOTE_BYTES];
+
+    (void)texture; /* the stone has its own pattern */
+    m->is_stone = m->fresnel = true;
+    glint_text_next_word(&d->text); /* translucent */
+    file = glint_text_next_word(&d->text);
+    if (!file.length)
+        return glint_text_fail(&d->text, file.place,
+                               "the stone's file is missing");
+    if (!glint_clauses_read(&d->text, "material", clause) ||
+        (fresnel.length && !read_fresnel(d, &fresnel, m)) ||
+        !read_file(d, &file, m))
+        return false;
+    m->is_metal = coat.length > 0;
+    if (m->is_metal && !glint_word_is(&coat, "ward"))
+        return glint_text_fail(&d->text, coat.place, "a coat is ward, not '%s'",
+                               glint_word_quote(&coat, quote));
+    for (int i = 1; i <= 3; i++)
+        if (clause[i].place.line && !m->is_metal)
+            return glint_text_fail(&d->text, clause[i].place,
+                                   "'%s' needs 'coat ward'", clause[i].word);
+    for (int i = 1; i <= 2; i++)
+        if (!clause[i].place.line && m->is_metal)
+            return glint_text_fail(&d->text, coat.place, "a coat needs '%s'",
+                                   clause[i].word);
+    return !m->is_metal || read_lobe(d, m, &norm);
+}
+
+/* ------------------------------------------------------------------ objects */
+
+/* Sets SHORT and LONG to how long a step of one in the square of u and v is on
+ * triangle T, at least and at most; returns its area, 0 if it has none there.
+ */
+static double stretch_of(const struct glint_described_triangle *t,
+                         double *shortest, double *longest)
+{
+    const double du[2] = {t->uv[1][0] - t->uv[0][0], t->uv[2][0] - t->uv[0][0]};
+    const double dv[2] = {t->uv[1][1] - t->uv[0][1], t->uv[2][1] - t->uv[0][1]};
+    const double det = du[0] * dv[1] - du[1] * dv[0];
+    double uu = 0, uv = 0, vv = 0, mean, off;
+
+    if (!(fabs(det) > 1e-12))
+        return 0;
+    for (int k = 0; k < 3; k++) {
+        const double a = t->place[1][k] - t->place[0][k];
+        const double b = t->place[2][k] - t->place[0][k];
+        const double along_u = (a * dv[1] - b * dv[0]) / det;
+        const double along_v = (b * du[0] - a * du[1]) / det;
+
+        uu += along_u * along_u;
+        uv += along_u * along_v;
+        vv += along_v * along_v;
+    }
+    mean = (uu + vv) / 2;
+    off = hypot((uu - vv) / 2, uv);
+    *longest = sqrt(mean + off);
+    *shortest = sqrt(fmax(mean - off, 0));
+    return *longest * *shortest * fabs(det) / 2;
+}
+
+/* Warns where texels of the mesh have other sizes than in the mean. */
+static void check_stretch(struct glint_describer *d,
+                          const struct glint_described_object *o, int material)
+{
+    const struct glint_description *s = d->scene;
+    const struct glint_described_triangle *t = s->triangle + o->first_triangle;
+    double area = 0, square = 0, worst = 1, stretched = 0, mean;
+
+    for (int pass = 0; pass < 2; pass++) {
+        mean = pass && square > 0 ? sqrt(area / square) : 1;
+        for (int i = 0; i < o->n_triangles; i++) {
+            double shortest = 1, longest = 1, of, here;
+
+            if (t[i].material != material)
+                continue;
+            of = stretch_of(&t[i], &shortest, &longest);
+            here = fmax(longest / mean, mean / fmax(shortest, 1e-30));
+            if (!pass && of > 0) {
+                area += of;
+                square += of / (longest * shortest);
+            } else if (of > 0 && here > MOST_STRETCH) {
+                worst = fmax(worst, here);
+                stretched += of;
+            }
+        }
+    }
+    if (stretched > STRETCHED_AREA * area && !d->scene->warning[0])
+        snprintf(d->scene->warning, sizeof d->scene->warning,
+                 "mesh %s: its texels are stretched up to %.3g times, over 1.5 "
+                 "on %.0f %% of the stone: light spreads as much farther there",
+                 o->name, worst, 100 * stretched / area);
+}
+
+/* Checks triangle T of stone; FIRST is the stone of those before, or -1. */
+static bool check_triangle(struct glint_describer *d,
+                           const struct glint_described_triangle *t,
+                           struct glint_text_place place, int *first)
+{
+    const struct glint_described_material *m = &d->scene->material[t->material];
+
+    if (!t->has_uv)
+        return glint_text_fail(&d->text, place,
+                               "material %s is translucent, but a face has no "
+                               "places on its map (uv, vt)",
+                               m->name);
+    if (*first >= 0 && *first != t->material)
+        return glint_text_fail(&d->text, place,
+                               "materials %s and %s are both translucent: a "
+                               "mesh has one map",
+                               d->scene->material[*first].name, m->name);
+    *first = t->material;
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 2; i++)
+            if (t->uv[k][i] < -1e-6 || t->uv[k][i] > 1 + 1e-6)
+                return glint_text_fail(&d->text, place,
+                                       "u and v of what is translucent are 0 "
+                                       "to 1, not %.4g: each place has a texel "
+                                       "of its own",
+                                       t->uv[k][i]);
+    return true;
+}
+
+bool glint_describe_skin(struct glint_describer *d,
+                         const struct glint_described_object *o,
+                         struct glint_text_place place)
+{
+    const struct glint_description *s = d->scene;
+    int first = -1;
+
+    if (o->kind == GLINT_DESCRIBED_PLANE && s->material[o->material].is_stone)
+        return glint_text_fail(&d->text, place,
+                               "a plane has no end, and so no map: what is "
+                               "translucent is a sphere or has uv");
+    for (int i = 0; i < o->n_triangles; i++) {
+        const struct glint_described_triangle *t =
+            &s->triangle[o->first_triangle + i];
+
+        if (s->material[t->material].is_stone &&
+            !check_triangle(d, t, place, &first))
+            return false;
+    }
+    if (first >= 0)
+        check_stretch(d, o, first);
+    return true;
+}
+
+/* ------------------------------------------------------------------- light */
 
 #define MAX_LIGHT 1e9
 #define REACH     GLINT_DESCRIPTION_REACH
 /* Half of the sun's angle in the sky. */
 #define SUN_DEG 0.267
-/* What rounding may add to weights that sum to 1. */
-#define SLACK 1e-9
 
 /* Warns of a sun whose COLOUR was taken for the light that falls on things: no
  * code of 8 bits would show it. */
@@ -207,7 +494,7 @@ static bool check_shares(struct glint_describer *d,
     return true;
 }
 
-/* Reads a material's line from 'phong' on, as glint_describe_metal() does from
+/* Reads a material's line from 'phong' on, as read_metal() does from
  * 'ward' on. */
 static bool read_phong(struct glint_describer *d,
                        struct glint_described_material *m,
@@ -253,8 +540,8 @@ bool glint_describe_material(struct glint_describer *d)
             return glint_text_fail(&d->text, place,
                                    "a material of this name is already "
                                    "defined");
-    if (!(glint_word_is(&kind, "ward")          ? glint_describe_metal
-          : glint_word_is(&kind, "translucent") ? glint_describe_stone
+    if (!(glint_word_is(&kind, "ward")          ? read_metal
+          : glint_word_is(&kind, "translucent") ? read_stone
                                                 : read_phong)(d, m, &texture) ||
         (texture.length && !find_texture(d, &texture, &m->texture)))
         return false;

@@ -5,17 +5,304 @@
  *
  * Reading stores values that are in range, one word at a time; the lens as a
  * whole is checked by check.h when all is read. */
-#include "bake/table/elements.h"
-
+#include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "bake/table/catalogue.h"
 #include "bake/table/check.h"
 #include "bake/table/coatings.h"
-#include "bake/table/columns.h"
-#include "bake/table/shapes.h"
+#include "bake/table/elements.h"
 #include "bake/table/text.h"
 #include "base/compiler.h"
+#include "glint/prescription.h"
+
+static const struct glint_text_range radius_range = {"radius", 0.01, 1e9};
+static const struct glint_text_range conic_range = {"conic", -1e4, 1e4};
+static const struct glint_text_range term_range = {"aspheric term", -1e18,
+                                                   1e18};
+static const struct glint_text_range shift_range = {"decentre", -1e3, 1e3};
+static const struct glint_text_range tilt_range = {"tilt", -45, 45};
+
+/* Reads a radius, or "flat" as 0. */
+static bool read_radius(struct glint_text *text, double *radius_mm)
+{
+    const struct glint_word word = glint_text_next_word(text);
+
+    *radius_mm = 0.0;
+    if (glint_word_is(&word, "flat"))
+        return true;
+    if (!glint_text_number_of(text, &word, radius_range.name, radius_mm))
+        return false;
+    if (*radius_mm == 0.0)
+        return glint_text_fail(text, word.place,
+                               "radius must not be 0; a plane is flat");
+    return glint_text_in_range(text, word.place, &radius_range,
+                               fabs(*radius_mm));
+}
+
+/* Returns the number of the term that WORD names, A4 being 0, or -1. */
+static int term_of(const struct glint_word *word)
+{
+    char name[8];
+
+    for (int k = 0; k < GLINT_SHAPE_TERMS; k++) {
+        snprintf(name, sizeof name, "A%d", 4 + 2 * k);
+        if (glint_word_is(word, name))
+            return k;
+    }
+    return -1;
+}
+
+static bool is_twice(struct glint_text *text, const struct glint_word *word)
+{
+    char quote[GLINT_QUOTE_BYTES];
+
+    return glint_text_fail(text, word->place, "a second '%s' of this surface",
+                           glint_word_quote(word, quote));
+}
+
+/* Reads x or y, and the radius across unless CYLINDER. */
+static bool read_bend(struct glint_text *text, struct glint_shape *shape,
+                      bool cylinder)
+{
+    const struct glint_word word = glint_text_next_word(text);
+
+    if (!glint_word_is(&word, "x") && !glint_word_is(&word, "y"))
+        return glint_text_fail(text, word.place,
+                               "the plane of the profile must be x or y");
+    shape->bend = glint_word_is(&word, "x") ? GLINT_BEND_X : GLINT_BEND_Y;
+    return cylinder || read_radius(text, &shape->across_mm);
+}
+
+/* Reads what WORD says of a shape. */
+static bool read_word(struct glint_text *text, struct glint_shape *shape,
+                      const struct glint_word *word)
+{
+    const bool cylinder = glint_word_is(word, "cylinder");
+    const int term = term_of(word);
+    char quote[GLINT_QUOTE_BYTES];
+
+    if (cylinder || glint_word_is(word, "toric"))
+        return shape->bend != GLINT_BEND_ROUND
+                   ? is_twice(text, word)
+                   : read_bend(text, shape, cylinder);
+    if (glint_word_is(word, "conic"))
+        return shape->conic != 0.0
+                   ? is_twice(text, word)
+                   : glint_text_value(text, &conic_range, &shape->conic, NULL);
+    if (term >= 0)
+        return shape->term[term] != 0.0
+                   ? is_twice(text, word)
+                   : glint_text_value(text, &term_range, &shape->term[term],
+                                      NULL);
+    return glint_text_fail(text, word->place,
+                           "'%s' is none of conic, A4, A6 .. A20, cylinder "
+                           "and toric",
+                           glint_word_quote(word, quote));
+}
+
+/* Reads the rest of a line "shape [conic K] [A4 V] .. [A20 V]
+ * [cylinder AXIS | toric AXIS RADIUS]" into SHAPE, whose other members stay.
+ * Returns false with the error of TEXT, also if something is given twice. */
+static bool read_shape_words(struct glint_text *text, struct glint_shape *shape)
+{
+    struct glint_word word = glint_text_next_word(text);
+
+    if (!word.length)
+        return glint_text_fail(text, word.place, "shape is missing");
+    for (; word.length; word = glint_text_next_word(text))
+        if (!read_word(text, shape, &word))
+            return false;
+    return true;
+}
+
+/* Reads the rest of a line "group [decentre X Y] [tilt X Y]" likewise. */
+static bool read_group_words(struct glint_text *text, struct glint_shape *shape)
+{
+    struct glint_word word = glint_text_next_word(text);
+    char quote[GLINT_QUOTE_BYTES];
+
+    if (!word.length)
+        return glint_text_fail(text, word.place, "decentre or tilt is missing");
+    for (; word.length; word = glint_text_next_word(text)) {
+        const bool tilt = glint_word_is(&word, "tilt");
+        const struct glint_text_range *const range =
+            tilt ? &tilt_range : &shift_range;
+        double *const to = tilt ? shape->tilt_deg : shape->decentre_mm;
+
+        if (!tilt && !glint_word_is(&word, "decentre"))
+            return glint_text_fail(text, word.place,
+                                   "'%s' is neither decentre nor tilt",
+                                   glint_word_quote(&word, quote));
+        if (to[0] != 0.0 || to[1] != 0.0)
+            return is_twice(text, &word);
+        if (!glint_text_value(text, range, &to[0], NULL) ||
+            !glint_text_value(text, range, &to[1], NULL))
+            return false;
+    }
+    return true;
+}
+
+/* Least change of a zoom's focal length from column to column, as a share. */
+#define LEAST_ZOOM 1e-3
+
+/* Cuts what stands before the next slash off REST. */
+static struct glint_word cut(struct glint_word *rest)
+{
+    const char *slash = memchr(rest->start, '/', (size_t)rest->length);
+    struct glint_word word = *rest;
+
+    word.length = slash ? (int)(slash - rest->start) : rest->length;
+    rest->start += word.length + (slash ? 1 : 0);
+    rest->length -= word.length + (slash ? 1 : 0);
+    rest->place.column += word.length + 1;
+    return word;
+}
+
+static int slashes(const struct glint_word *word)
+{
+    int n = 0;
+
+    for (int i = 0; i < word->length; i++)
+        n += word->start[i] == '/';
+    return n;
+}
+
+/* Reads as read_columns() does; sets N to how many numbers there are. */
+static bool read(struct glint_text *text, const struct glint_text_range *range,
+                 struct glint_zoom *zoom, double column[GLINT_MAX_POSITIONS],
+                 struct glint_text_place *place, int *n)
+{
+    struct glint_word word = glint_text_next_word(text);
+
+    *n = slashes(&word) + 1;
+    if (place)
+        *place = word.place;
+    if (*n > GLINT_MAX_POSITIONS)
+        return glint_text_fail(text, word.place, "more than %d positions",
+                               GLINT_MAX_POSITIONS);
+    if (*n > 1 && zoom->n_positions && *n != zoom->n_positions)
+        return glint_text_fail(
+            text, word.place,
+            "%s has %d positions, but what stands above has %d", range->name,
+            *n, zoom->n_positions);
+    for (int k = 0; k < *n; k++) {
+        const struct glint_word one = cut(&word);
+
+        if (!glint_text_value_of(text, &one, range, &column[k]))
+            return false;
+    }
+    if (*n > 1)
+        zoom->n_positions = *n;
+    for (int k = *n; k < GLINT_MAX_POSITIONS; k++)
+        column[k] = column[*n - 1];
+    return true;
+}
+
+/* Reads a number in RANGE, or one for each position of ZOOM, into COLUMN; a
+ * single one holds for all of them. PLACE receives its place. Returns false,
+ * with the error written, if it is none, or not as many as those before. */
+static bool read_columns(struct glint_text *text,
+                         const struct glint_text_range *range,
+                         struct glint_zoom *zoom,
+                         double column[GLINT_MAX_POSITIONS],
+                         struct glint_text_place *place)
+{
+    int n;
+
+    return read(text, range, zoom, column, place, &n);
+}
+
+/* The same for the gap behind ELEMENT. GAP_MM receives the first. */
+static bool read_gap(struct glint_text *text,
+                     const struct glint_text_range *range,
+                     struct glint_zoom *zoom, int element, double *gap_mm,
+                     struct glint_text_place *place)
+{
+    double column[GLINT_MAX_POSITIONS] = {0};
+    const int k = zoom->n_moves;
+    int n;
+
+    if (!read(text, range, zoom, column, place, &n))
+        return false;
+    *gap_mm = column[0];
+    if (n == 1)
+        return true;
+    if (k == GLINT_MAX_MOVES)
+        return glint_text_fail(text, *place, "more than %d gaps that change",
+                               GLINT_MAX_MOVES);
+    zoom->move[k] = element;
+    memcpy(zoom->gap_mm[k], column, sizeof column);
+    zoom->n_moves++;
+    return true;
+}
+
+/* ------------------------------------------------------------------- check */
+
+/* Puts LENS at column K, with what the table states there. */
+static void put_at(struct glint_prescription *lens, int k)
+{
+    const struct glint_zoom *const z = &lens->zoom;
+
+    for (int m = 0; m < z->n_moves; m++)
+        *glint_gap_of(lens, z->move[m]) = z->gap_mm[m][k];
+    lens->f_number = z->f_number[k];
+    lens->check_focal_mm = z->check_focal_mm[k];
+    lens->check_back_mm = z->check_back_mm[k];
+}
+
+/* Checks that focal lengths only rise or only fall, and says how far along the
+ * zoom each column is. */
+static bool set_along(struct glint_zoom *z, const struct glint_text *text,
+                      const struct glint_places *places)
+{
+    const int last = z->n_positions - 1;
+    const double whole = log(z->focal_mm[last] / z->focal_mm[0]);
+
+    for (int k = 1; k <= last; k++) {
+        const double step = log(z->focal_mm[k] / z->focal_mm[k - 1]);
+
+        if (!(step * (whole < 0 ? -1 : 1) > LEAST_ZOOM))
+            return glint_text_fail(
+                text, places->focal.line ? places->focal : glint_text_end(text),
+                "focal lengths must only rise or only fall from position to "
+                "position, not %.6g mm, %.6g mm",
+                z->focal_mm[k - 1], z->focal_mm[k]);
+        z->along[k] = log(z->focal_mm[k] / z->focal_mm[0]) / whole;
+    }
+    z->along[last] = 1.0;
+    return true;
+}
+
+/* Checks LENS at each of its positions, and leaves it at the first. Its
+ * surfaces and values are read; returns false if not all are good, with the
+ * error written. */
+static bool check_columns(struct glint_prescription *lens,
+                          const struct glint_text *text,
+                          const struct glint_places *places)
+{
+    struct glint_zoom *const z = &lens->zoom;
+
+    if (z->n_positions && !z->n_moves)
+        return glint_text_fail(text, glint_text_end(text),
+                               "there are %d positions, but no thickness "
+                               "changes",
+                               z->n_positions);
+    for (int k = 0; k < (z->n_positions ? z->n_positions : 1); k++) {
+        struct glint_optics optics;
+
+        put_at(lens, k);
+        if (!glint_prescription_check(lens, text, places))
+            return false;
+        glint_optics_of(lens, &optics);
+        z->focal_mm[k] = optics.focal_mm;
+        z->back_mm[k] = optics.back_focal_mm;
+        z->last_gap_mm[k] = element_gap_mm(lens, element_count(lens) - 1);
+    }
+    put_at(lens, 0);
+    return !z->n_positions || set_along(z, text, places);
+}
 
 #define MAX_GLASSES      64
 #define GLASS_NAME_BYTES 24
@@ -143,8 +430,8 @@ static bool read_character(struct parser *p)
 
 static bool read_f_number(struct parser *p)
 {
-    return glint_columns_read(&p->text, &f_number_range, &p->lens.zoom,
-                              p->lens.zoom.f_number, &p->places.f_number);
+    return read_columns(&p->text, &f_number_range, &p->lens.zoom,
+                        p->lens.zoom.f_number, &p->places.f_number);
 }
 
 static bool read_film(struct parser *p)
@@ -157,15 +444,14 @@ static bool read_film(struct parser *p)
 
 static bool read_focal(struct parser *p)
 {
-    return glint_columns_read(&p->text, &stated_range, &p->lens.zoom,
-                              p->lens.zoom.check_focal_mm, &p->places.focal);
+    return read_columns(&p->text, &stated_range, &p->lens.zoom,
+                        p->lens.zoom.check_focal_mm, &p->places.focal);
 }
 
 static bool read_back_focal(struct parser *p)
 {
-    return glint_columns_read(&p->text, &stated_range, &p->lens.zoom,
-                              p->lens.zoom.check_back_mm,
-                              &p->places.back_focal);
+    return read_columns(&p->text, &stated_range, &p->lens.zoom,
+                        p->lens.zoom.check_back_mm, &p->places.back_focal);
 }
 
 static bool read_coating(struct parser *p)
@@ -286,8 +572,8 @@ static bool read_gap_and_semi(struct parser *p,
 {
     const int e = p->n_elements++;
 
-    return glint_columns_gap(&p->text, gap, &p->lens.zoom, e, thickness_mm,
-                             &p->places.thickness[e]) &&
+    return read_gap(&p->text, gap, &p->lens.zoom, e, thickness_mm,
+                    &p->places.thickness[e]) &&
            glint_text_value(&p->text, &semi_range, semi_mm, semi);
 }
 
@@ -322,7 +608,7 @@ static bool read_surface(struct parser *p)
     if (k == GLINT_MAX_SURFACES)
         return glint_text_fail(&p->text, p->word[SURFACE],
                                "more than %d surfaces", GLINT_MAX_SURFACES);
-    if (!glint_radius_read(&p->text, &s->radius_mm) ||
+    if (!read_radius(&p->text, &s->radius_mm) ||
         !read_gap_and_semi(p, &thickness_range, &s->thickness_mm, &s->semi_mm,
                            &p->places.semi[k]))
         return false;
@@ -349,7 +635,7 @@ static bool read_shape(struct parser *p)
     if (!p->is_surface)
         return glint_text_fail(&p->text, p->word[SHAPE],
                                "a shape stands below its surface");
-    return glint_shape_read(&p->text,
+    return read_shape_words(&p->text,
                             &p->lens.surface[p->lens.n_surfaces - 1].shape);
 }
 
@@ -359,7 +645,7 @@ static bool read_group(struct parser *p)
         return glint_text_fail(&p->text, p->word[GROUP],
                                "the group above has no end");
     p->in_group = true;
-    return glint_group_read(&p->text, &p->group);
+    return read_group_words(&p->text, &p->group);
 }
 
 static bool read_focus(struct parser *p)
@@ -492,7 +778,7 @@ enum glint_status glint_prescription_parse(struct glint_prescription *lens,
     memset(&p, 0, sizeof(p));
     glint_coating_single(&p.coating, 550);
     if (!glint_text_open(&p.text, text, bytes, file_name, error) ||
-        !read_lines(&p) || !glint_columns_check(&p.lens, &p.text, &p.places))
+        !read_lines(&p) || !check_columns(&p.lens, &p.text, &p.places))
         return GLINT_E_LENS;
     coat(&p);
     *lens = p.lens;

@@ -54,24 +54,4 @@ bool glint_slab_lattice(const struct glint_slab *slab, int kernel,
 /* The share of material 0 by texel, [side * side]. */
 void glint_stone_shares(const struct glint_stone *stone, double *share);
 
-/* A symmetric positive matrix of BLOCKS x BLOCKS blocks of SIDE x SIDE, of
- * which those on the diagonal are tridiagonal and those beside them diagonal:
- * a grid whose nodes are joined to four neighbours. */
-struct glint_blocks {
-    int side;            /* and number of blocks */
-    const double *own;   /* [side][side] diagonal, by block */
-    const double *right; /* joint of a node with the next one, >= 0 */
-    const double *down;  /* with that in the next block, >= 0 */
-};
-
-/* Takes block (J, L), L = J .. J + reach, of the inverse: [side][side]. */
-typedef void glint_blocks_fn(void *ctx, int j, int l, const double *block);
-
-/* Calls TAKE for all blocks of the inverse of BLOCKS that are at most REACH
- * apart. Takes side^3 doubles. GLINT_E_MEMORY, GLINT_E_CLOSED. */
-enum glint_status glint_blocks_inverse(const struct glint_blocks *blocks,
-                                       int reach,
-                                       const struct glint_watch *watch,
-                                       glint_blocks_fn *take, void *ctx);
-
 #endif
