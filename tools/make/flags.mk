@@ -54,10 +54,10 @@ of = $(eval $(patsubst %,$(OUT)/%.o,$(1)): CFLAGS += $(2))
 # Run once, or once for a lamp, bundle or row: small rather than fast.
 $(call of,$(addprefix src/base/,status arena workers blob) src/image/image,-Os)
 $(call of,src/lens/model,-Os)
-$(call of,$(addprefix src/scene/,scene valid model model_mesh account/account begin lights looks uv shadow_box ward/environment ward/ward_lobe translucent/translucent),-Os)
-$(call of,$(addprefix src/scene/,ward/scene_ward ward/ward phong ray shadow surface vector visible mesh mesh_ray quick quick_mesh mesh_small scene_pass translucent/spread translucent/skin_light) src/image/cover,-O3)# loops of three
-$(call of,$(addprefix src/lamps/,lamp_finder lamp_list),-Os)
-$(call of,$(addprefix src/follow/,match follow record lamp_tracker),-Os)
+$(call of,$(addprefix src/scene/,scene valid model account/account begin lights looks uv ward/environment ward/ward_lobe translucent/translucent),-Os)
+$(call of,$(addprefix src/scene/,ward/scene_ward ward/ward phong ray shadow surface vector visible mesh quick quick_mesh scene_pass translucent/spread translucent/scene_stone) src/image/cover,-O3)# loops of three
+$(call of,src/lamps/lamp_finder,-Os)
+$(call of,$(addprefix src/follow/,match record lamp_tracker),-Os)
 $(call of,$(addprefix src/flare/,aim by_edges capacities colours lights plan plan_cells probe window wave_sets flare draw_over account),-Os)
 $(call of,src/tile/bins src/tile/pass src/star/star src/veil/veil $(addprefix src/image/,resolve curve mix),-Os)
 
@@ -69,7 +69,7 @@ $(call of,src/bake/translucent/quantise,-O2)
 # Hot loops are unrolled.
 $(call of,src/kernels/%,-O3)
 $(call of,src/kernels/ward/sum_avx2,-Wframe-larger-than=2048)# 16 vectors of texels
-$(call of,$(addprefix src/lamps/,bright_mark bright_scan row_light),-O3)
+$(call of,$(addprefix src/lamps/,bright_scan row_light),-O3)
 $(call of,$(addprefix src/flare/edges/,ghost_edges ghost_rows),-O3)
 $(call of,$(addprefix src/flare/edges/,edge edge_add),-O3 -fno-tree-vectorize)# their loops are short
 # Unrolling these buys nothing but bytes.
@@ -104,7 +104,7 @@ else ifeq ($(CONFIG),fuzz) # what make fuzz builds; clang only
 SANITIZE := -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
 # What rays, polynomials and pixels compare is no word of a file, and takes two
 # thirds of the time to follow.
-$(filter-out %/model.o %/model_mesh.o,$(call objects,src,base kernels kernels/rays kernels/ward kernels/maps \
+$(filter-out %/model.o,$(call objects,src,base kernels kernels/rays kernels/ward kernels/maps \
         lens image tile flare flare/edges scene bake/trace)) $(OUT)/src/bake/table/form.o: CFLAGS += -fno-sanitize-coverage=trace-cmp
 else ifeq ($(CONFIG),analyze) # what make analyze builds; gcc only
 # as it is written: -O0 keeps functions and their messages apart
