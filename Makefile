@@ -148,9 +148,9 @@ $(example_bins): $(OUT)/examples/%: $(OUT)/tools/examples/%.o $(OUT)/libglint.a
 embed_bins := $(addprefix $(OUT)/examples/,embed embed_models embed_cxx embed_scene)
 embed_libs := $(OUT)/libglint-engine.a $(OUT)/libglint.a
 $(OUT)/examples/embed $(OUT)/examples/embed_cxx: $(OUT)/libglint-bake.a
-$(embed_bins): $(OUT)/examples/%: $(embed_libs)
 $(filter-out %_scene,$(embed_bins)): tools/examples/embed.c
 $(OUT)/examples/embed_scene: tools/examples/embed_scene.c
+$(embed_bins): $(embed_libs)
 	@mkdir -p $(@D)
 	$(say) LD $@
 	$(Q)$(embed_$(@F)) $(CPPFLAGS) $(filter-out -std=% -Wstrict-prototypes -Wmissing-prototypes,$(CFLAGS)) \
