@@ -53,7 +53,8 @@ struct glint_engine_lamp {
     /* How far it has risen, above 0, at most 1: rises and fades with the track,
      * and falls with what hides it. */
     double level;
-    double share;   /* part of it that nothing in front hides, 0 .. 1 */
+    double share;   /* fraction of it that nothing in front hides, above 0:
+                       GLINT_ENGINE_HIDDEN if all is hidden */
     double seen_px; /* RMS radius, pixels, of the spot of a lamp that the
                        picture clips; 0: the picture does not clip it; -1: the
                        picture does not show it at all */
@@ -82,8 +83,8 @@ struct glint_engine_camera {
                                                 */
     const struct glint_projection *projection; /* copied; NULL: a pinhole's */
     /* A lens that the caller has made ready, instead of the stop above; kept,
-     * and called up by glint_engine_restop() when it changes. NULL: the engine
-     * makes one of the model. */
+     * and called up by glint_engine_update_stop() when it changes. NULL: the
+     * engine makes one of the model. */
     const struct glint_setup *setup;
     /* What draws without a model, from the lens of SETUP: glint_frame_traces of
      * libglint-bake.a. NULL: there has to be a model. */
@@ -154,8 +155,8 @@ struct glint_engine_drawing {
     int dither;        /* not 0: ordered dither in pictures of 8 bits */
     unsigned parts;    /* of enum glint_engine_part: what is drawn */
     int only_ghost;    /* index of the only ghost drawn; -1: all are */
-    int is_fresh; /* not 0: rays are looked for anew in each picture, even where
-                     lamps stay where they were */
+    int is_fresh; /* not 0: plans of the picture before are never reused, even
+                     if no lamp has moved */
     /* Pictures by themselves have more points of lamps of visible extent and
      * more lights, unless these are not 0. */
     int keep_points, keep_lights;
@@ -176,8 +177,8 @@ struct glint_engine_cache {
 };
 
 struct glint_engine_config {
-    size_t size;       /* bytes of this struct, set by glint_engine_defaults(),
-                          so that members can be added to its end */
+    size_t size;       /* bytes of this struct, set by glint_engine_defaults():
+                          an engine of another version refuses it */
     int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
     const struct glint_lens *model; /* kept; the caller sets it */
     struct glint_workers *workers;  /* kept; NULL: serial. Changes no output */
@@ -211,8 +212,9 @@ struct glint_engine_config {
 void glint_engine_defaults(struct glint_engine_config *cfg, int width,
                            int height);
 
-/* Sets what OPTIONS, of glint/options.h, say of light, search and drawing, and
- * f-number and sensor of the camera. */
+/* Sets what OPTIONS, of glint/options.h, say of light, drawing, search,
+ * f-number, sensor and memory. All of light and drawing is set, also what no
+ * option says. */
 struct glint_options;
 void glint_engine_configure(struct glint_engine_config *cfg,
                             const struct glint_options *options);
@@ -282,24 +284,26 @@ void glint_engine_destroy(struct glint_engine *engine);
 /* Returns where the pictures lie on the sensor. */
 const struct glint_view *glint_engine_view(const struct glint_engine *engine);
 
-/* Changes the light of the pictures to come. */
-void glint_engine_shine(struct glint_engine *engine,
-                        const struct glint_engine_light *light);
+/* Sets the light of the pictures to come. */
+void glint_engine_set_light(struct glint_engine *engine,
+                            const struct glint_engine_light *light);
 
 /* Changes the dials for the pictures to come, and returns those that are set:
  * with a budget, what it chose. */
-void glint_engine_turn(struct glint_engine *engine, struct glint_dials dials);
+void glint_engine_set_dials(struct glint_engine *engine,
+                            struct glint_dials dials);
 struct glint_dials glint_engine_dials(const struct glint_engine *engine);
 
 /* Draws in the pictures to come ghost GHOST alone, by its index; -1: all. */
-void glint_engine_solo(struct glint_engine *engine, int ghost);
+void glint_engine_set_only_ghost(struct glint_engine *engine, int ghost);
 
 /* Changes the budget of an engine that has one. */
-void glint_engine_budget(struct glint_engine *engine, double budget_ms);
+void glint_engine_set_budget(struct glint_engine *engine, double budget_ms);
 
 /* Sets the f-number of the pictures to come, at least that which the model was
- * baked for, and measures anew how bright flares of the lens are.
- * GLINT_E_ARGUMENT with ERROR: the stop stays as it is. GLINT_E_MEMORY. Not for
+ * baked for, and, unless the exposure is by hand, measures anew how bright
+ * flares of the lens are. GLINT_E_ARGUMENT with ERROR: the stop stays as it is.
+ * GLINT_E_MEMORY. Not for
  * an engine with a setup of the caller's. */
 enum glint_status glint_engine_stop(struct glint_engine *engine,
                                     double f_number, struct glint_error *error);
@@ -316,9 +320,9 @@ enum glint_status glint_engine_iris(struct glint_engine *engine, int n_blades,
                                     const struct glint_iris *iris,
                                     struct glint_error *error);
 
-/* Says that the caller's setup has changed, its stop or its model's zoom, for
- * the pictures to come; the exposure stays. */
-void glint_engine_restop(struct glint_engine *engine);
+/* Has the pictures to come drawn with the caller's setup as it is now, after
+ * its stop or its model's zoom changed; the exposure stays. */
+void glint_engine_update_stop(struct glint_engine *engine);
 
 /* Sets what lies on the front element in the pictures to come: dust, scratches
  * and smudges, or a mask, which is copied. It spreads light as haze does.
@@ -334,45 +338,46 @@ enum glint_status glint_engine_front(struct glint_engine *engine,
  * ELAPSED_US after the last picture: lamps are followed from picture to
  * picture, and rise and fade. If ELAPSED_US is 0, IMAGE is a picture by itself;
  * glint_engine_expose() then draws its flare small first, to see how bright it
- * is, unless there is an arena or a budget. Writes at most MAX lamps, the
- * strongest first; returns how many. */
+ * is, unless there is a budget or an arena that has not all. Writes at most MAX
+ * lamps, the strongest first; returns how many. */
 int glint_engine_find(struct glint_engine *engine,
                       const struct glint_image *image, int32_t elapsed_us,
                       struct glint_engine_lamp *lamps, int max);
 
-/* Says that the next picture, on which no lamps are looked for, comes
- * ELAPSED_US after the last one, as to glint_engine_find(). */
+/* Begins a picture without glint_engine_find(): it comes ELAPSED_US after the
+ * last one. */
 void glint_engine_elapsed(struct glint_engine *engine, int32_t elapsed_us);
 
-/* Says that the next picture begins anew: its exposure does not follow. */
-void glint_engine_cut(struct glint_engine *engine);
+/* Declares a cut before the next picture: its exposure does not follow. */
+void glint_engine_mark_cut(struct glint_engine *engine);
 
 /* Forgets the lamps that were followed. */
-void glint_engine_restart(struct glint_engine *engine);
+void glint_engine_forget_lamps(struct glint_engine *engine);
 
 /* Sets SPOT to the brightest that was not taken for a lamp in the last picture
  * that was searched, though it may be one; returns 0 if there is none. */
 int glint_engine_doubtful(const struct glint_engine *engine,
                           struct glint_spot *spot);
 
-/* Share of a lamp that is hidden whole: as good as none, but the exposure still
- * knows what it was. */
+/* Share of a lamp that is hidden completely: not 0, so that power over share is
+ * still the power of the lamp. */
 #define GLINT_ENGINE_HIDDEN 1e-18
 
-/* Takes from N LAMPS, and their share, what SCENE, as it was drawn last, hides
- * of them, and appends the lights that it shows the lens, at most
- * GLINT_SCENE_MAX_LIGHTS. Returns how many lamps there are then; *HIDDEN
- * receives how many of them are hidden whole. A program that does not name this
- * links no scene. */
+/* Multiplies power and share of each of N LAMPS by the fraction that SCENE, as
+ * drawn last, leaves visible, and appends the lights of SCENE that flare, at
+ * most GLINT_SCENE_MAX_LIGHTS. Returns the number of lamps; *HIDDEN receives
+ * how many of them are hidden completely. Only programs that call this link the
+ * scene library. */
 struct glint_scene;
-int glint_engine_scene(const struct glint_engine *engine,
-                       const struct glint_scene *scene,
-                       struct glint_engine_lamp *lamps, int n, int *hidden);
+int glint_engine_add_scene(const struct glint_engine *engine,
+                           const struct glint_scene *scene,
+                           struct glint_engine_lamp *lamps, int n, int *hidden);
 
-/* Makes the exposure follow what hides N LAMPS, once all are there: levels fall
- * with shares. IS_STILL: a picture by itself, whose hidden lamps have no light.
- */
-void glint_engine_settle(struct glint_engine_lamp *lamps, int n, int is_still);
+/* Multiplies the level of each of N LAMPS by its share, so that the exposure
+ * does not brighten what is left of hidden lamps. IS_STILL: a picture by
+ * itself, where lamps that are hidden completely get power 0. */
+void glint_engine_apply_shares(struct glint_engine_lamp *lamps, int n,
+                               int is_still);
 
 /* Returns the focal length in pixels, for scenes whose camera is the lens. */
 double glint_engine_focal_px(const struct glint_engine *engine);
@@ -405,22 +410,26 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
                                     struct glint_engine_report *report);
 
 /* Draws PARTS of the flare of the lamps that were exposed last into RGB,
- * [height][width][3], linear light, row 0 on top. GLINT_E_MEMORY. */
-enum glint_status glint_engine_layer(struct glint_engine *engine,
-                                     const struct glint_engine_lamp *lamps,
-                                     int n, unsigned parts, float *rgb,
-                                     struct glint_engine_report *report);
+ * [height][width][3], linear light, row 0 on top. The veil alone is that of the
+ * picture that glint_engine_draw() drew, and has to be the first layer.
+ * GLINT_E_ARGUMENT, GLINT_E_MEMORY. */
+enum glint_status glint_engine_draw_layer(struct glint_engine *engine,
+                                          const struct glint_engine_lamp *lamps,
+                                          int n, unsigned parts, float *rgb,
+                                          struct glint_engine_report *report);
 
-/* Adds the flare of N LAMPS, times SCALE, to IMAGE, whatever the exposure.
- * GLINT_E_MEMORY. */
-enum glint_status glint_engine_add(struct glint_engine *engine,
-                                   const struct glint_lamp *lamps, int n,
-                                   double scale,
-                                   const struct glint_image *image,
-                                   struct glint_engine_report *report);
+/* Adds the flare of N LAMPS, times SCALE, to IMAGE, whatever the exposure. This
+ * and glint_engine_render() are not for between the stages of a picture.
+ * GLINT_E_ARGUMENT, GLINT_E_MEMORY. */
+enum glint_status glint_engine_draw_at(struct glint_engine *engine,
+                                       const struct glint_lamp *lamps, int n,
+                                       double scale,
+                                       const struct glint_image *image,
+                                       struct glint_engine_report *report);
 
 /* Draws PARTS of the flare of N LAMPS, which no picture shows, times GAIN into
- * RGB as glint_engine_layer() does, whatever the exposure. GLINT_E_MEMORY. */
+ * RGB as glint_engine_draw_layer() does, whatever the exposure. GLINT_E_MEMORY.
+ */
 enum glint_status glint_engine_render(struct glint_engine *engine,
                                       const struct glint_lamp *lamps, int n,
                                       double gain, unsigned parts, float *rgb,

@@ -96,8 +96,9 @@ struct glint_explain {
     int32_t *linear_q20;    /* [height][width][3]: light of one part */
 };
 
-/* Explains the picture that ENGINE drew last from a model. GAIN: that of a
- * glint_engine_render(), else 0. GLINT_E_MEMORY. */
+/* Explains the picture that ENGINE, which has a model, drew last, with one lamp
+ * or more. GAIN: that of a glint_engine_render(), else 0. To be closed after a
+ * failure, too. GLINT_E_MEMORY. */
 enum glint_status glint_explain_open(struct glint_explain *explain,
                                      struct glint_engine *engine, double gain);
 
@@ -119,8 +120,7 @@ int glint_explain_bundles(const struct glint_explain_part *part);
 int glint_explain_drawn(const struct glint_explain_part *part);
 
 /* Returns the millions of instructions that the plan of the picture that ENGINE
- * drew last predicted for KIND, GLINT_COST_STAR; or GLINT_COST_KINDS: for all.
- */
+ * drew last predicted: for stars if KIND is GLINT_COST_STAR, else for all. */
 double glint_explain_planned(const struct glint_engine *engine,
                              enum glint_cost_kind kind);
 

@@ -136,12 +136,12 @@ enum glint_status glint_setup_iris(struct glint_setup *setup,
                                    struct glint_dirt **dirt,
                                    struct glint_error *error);
 
-/* Frees DIRT, which may be NULL, after all setups and flares that refer to it.
- */
-/* Returns log2 of the cells a side of the finest table of DIRT; 0: it has none.
- */
+/* Returns log2 of the cells a side of the finest table of DIRT, which is not
+ * NULL; 0: it has none. */
 int glint_dirt_log2(const struct glint_dirt *dirt);
 
+/* Frees DIRT, which may be NULL, after all setups and flares that refer to it.
+ */
 void glint_dirt_free(struct glint_dirt *dirt);
 
 /* Returns the share of light that DIRT lets through at (X, Y) in the stop, in

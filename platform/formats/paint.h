@@ -8,8 +8,8 @@
  *
  * Parts outside of the picture are left out.
  */
-#ifndef GLINT_TOOLS_OVERLAY_PAINT_H
-#define GLINT_TOOLS_OVERLAY_PAINT_H
+#ifndef GLINT_FORMATS_PAINT_H
+#define GLINT_FORMATS_PAINT_H
 
 #include <stdint.h>
 

@@ -35,6 +35,7 @@ static const char *check(const struct glint_engine_config *c)
 {
     const struct glint_engine_light *l = &c->light;
     const struct glint_engine_search *s = &c->search;
+    const struct glint_engine_drawing *d = &c->drawing;
 
     if (c->size != sizeof *c)
         return "the program is of another version than the library";
@@ -46,11 +47,16 @@ static const char *check(const struct glint_engine_config *c)
         return "there is no model";
     if (s->max_found < 0 || s->max_found > GLINT_ENGINE_MAX_LAMPS)
         return "0 to 1024 lamps can be looked for";
-    if (s->more_lamps < 0 || s->more_lamps > 1 << 24)
+    if (s->more_lamps < 0 || s->more_lamps > 1 << 24 || s->max_drawn < 0 ||
+        isnan(s->headroom_ev))
         return "the number of lamps is out of range";
-    if (!(l->strength >= 0 && l->strength <= 100) || !(l->gain >= 0) ||
-        !(fabs(l->exposure_ev) <= 100))
+    if (!(l->strength >= 0 && l->strength <= 100) ||
+        !(l->gain >= 0 && isfinite(l->gain)) || !(fabs(l->exposure_ev) <= 100))
         return "the exposure is out of range";
+    if (d->tile_log2 < 3 || d->tile_log2 > 6 || !(d->apart_px >= 0))
+        return "the tiles or the merging of lights are out of range";
+    if (c->arena && c->arena_has_all)
+        return "an arena of the caller's is for ghosts alone";
     if (!(l->starburst >= 0 && l->starburst <= 1000))
         return "the starburst is out of range";
     if (!(l->veil >= 0 && l->haze >= 0 && l->veil + l->haze <= GLINT_MOST_VEIL))
@@ -205,6 +211,12 @@ static enum glint_status make(struct glint_engine *e,
     o->setup = c->camera.setup ? c->camera.setup : &o->own;
     if (!c->camera.setup)
         status = set_up(&o->own, c->model, &o->shape, &o->dirt, error);
+    if (status == GLINT_OK &&
+        c->drawing.only_ghost >= o->setup->n_ghosts - o->setup->n_parts) {
+        snprintf(error->text, sizeof error->text, "the lens has %d ghosts",
+                 o->setup->n_ghosts - o->setup->n_parts);
+        status = GLINT_E_ARGUMENT;
+    }
     if (status != GLINT_OK)
         return status;
     o->front = c->camera.front;
@@ -215,12 +227,12 @@ static enum glint_status make(struct glint_engine *e,
         malloc(((size_t)e->most_lamps + 1) * sizeof *e->expose.before);
     e->expose.by_drawing = !c->arena_bytes || c->arena_has_all;
     glint_strength_defaults(&e->expose.strength);
-    glint_engine_shine(e, &c->light);
+    glint_engine_set_light(e, &c->light);
     if (!e->paint.lamp || !e->expose.before)
         status = GLINT_E_MEMORY;
     if (status == GLINT_OK)
         status = open_frame(e, c);
-    /* by hand it only tells how bright the flare is, to who keeps it */
+    /* by hand the response is only for glint_engine_exposed() */
     if (status == GLINT_OK && (!c->light.by_hand || c->cache))
         status = glint_response_obtain(&e->paint.frame, c->arena_bytes,
                                        c->cache, &e->expose.response);
@@ -286,8 +298,8 @@ const struct glint_view *glint_engine_view(const struct glint_engine *engine)
     return &engine->paint.frame.view;
 }
 
-void glint_engine_shine(struct glint_engine *engine,
-                        const struct glint_engine_light *light)
+void glint_engine_set_light(struct glint_engine *engine,
+                            const struct glint_engine_light *light)
 {
     struct glint_strength *const s = &engine->expose.strength;
 
@@ -298,7 +310,8 @@ void glint_engine_shine(struct glint_engine *engine,
     s->gain = light->gain;
 }
 
-void glint_engine_turn(struct glint_engine *engine, struct glint_dials dials)
+void glint_engine_set_dials(struct glint_engine *engine,
+                            struct glint_dials dials)
 {
     struct glint_frame *f = &engine->paint.frame;
 
@@ -312,18 +325,18 @@ struct glint_dials glint_engine_dials(const struct glint_engine *engine)
     return engine->paint.frame.dials;
 }
 
-void glint_engine_solo(struct glint_engine *engine, int ghost)
+void glint_engine_set_only_ghost(struct glint_engine *engine, int ghost)
 {
     engine->paint.frame.only_ghost = ghost;
 }
 
-void glint_engine_budget(struct glint_engine *engine, double budget_ms)
+void glint_engine_set_budget(struct glint_engine *engine, double budget_ms)
 {
     if (engine->paint.frame.budget.ms > 0)
         engine->paint.frame.budget.ms = budget_ms;
 }
 
-void glint_engine_restop(struct glint_engine *engine)
+void glint_engine_update_stop(struct glint_engine *engine)
 {
     struct glint_frame *f = &engine->paint.frame;
 
@@ -352,11 +365,14 @@ enum glint_status glint_engine_reshape(struct glint_engine *engine,
     }
     o->own = setup;
     o->shape = *shape;
-    glint_engine_restop(engine);
+    glint_engine_update_stop(engine);
     glint_dirt_free(o->dirt);
     o->dirt = dirt;
-    if (!measure || engine->expose.light.by_hand)
+    if (!measure || engine->expose.light.by_hand) {
+        if (measure)
+            engine->expose.response.n = 0; /* of another stop */
         return GLINT_OK;
+    }
     status = glint_response_measure(f, f->reserved ? f->bytes : 0,
                                     &engine->expose.response);
     if (status != GLINT_OK)

@@ -15,6 +15,8 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
     enum glint_status status = GLINT_OK;
     double scale;
 
+    if (!glint_engine_fits(engine, image, n))
+        return GLINT_E_ARGUMENT;
     if (!engine->expose.is_done)
         status = glint_engine_expose(engine, lamps, n, image, 1);
     if (status != GLINT_OK)
@@ -70,17 +72,20 @@ static enum glint_status draw_veil(struct glint_frame *f, float *rgb)
     return GLINT_OK;
 }
 
-enum glint_status glint_engine_layer(struct glint_engine *engine,
-                                     const struct glint_engine_lamp *lamps,
-                                     int n, unsigned parts, float *rgb,
-                                     struct glint_engine_report *report)
+enum glint_status glint_engine_draw_layer(struct glint_engine *engine,
+                                          const struct glint_engine_lamp *lamps,
+                                          int n, unsigned parts, float *rgb,
+                                          struct glint_engine_report *report)
 {
     struct glint_frame *const f = &engine->paint.frame;
     const double star = f->star.share, scale = engine->expose.last.scale;
-    const struct glint_lamp *const plain = glint_engine_plain(engine, lamps, n);
     const unsigned drawn = parts & engine->paint.parts;
+    const struct glint_lamp *plain;
     enum glint_status status = GLINT_OK;
 
+    if (n < 0 || n > engine->most_lamps)
+        return GLINT_E_ARGUMENT;
+    plain = glint_engine_plain(engine, lamps, n);
     memset(rgb, 0,
            3 * (size_t)f->view.width * (size_t)f->view.height * sizeof *rgb);
     *report = (struct glint_engine_report){.lights = n, .scale = scale};
@@ -104,15 +109,17 @@ enum glint_status glint_engine_layer(struct glint_engine *engine,
     return status;
 }
 
-enum glint_status glint_engine_add(struct glint_engine *engine,
-                                   const struct glint_lamp *lamps, int n,
-                                   double scale,
-                                   const struct glint_image *image,
-                                   struct glint_engine_report *report)
+enum glint_status glint_engine_draw_at(struct glint_engine *engine,
+                                       const struct glint_lamp *lamps, int n,
+                                       double scale,
+                                       const struct glint_image *image,
+                                       struct glint_engine_report *report)
 {
     struct glint_frame *const f = &engine->paint.frame;
     enum glint_status status;
 
+    if (!glint_engine_fits(engine, image, 0))
+        return GLINT_E_ARGUMENT;
     glint_engine_choose(engine, engine->paint.parts,
                         engine->expose.light.starburst, true);
     status = glint_frame_draw(f, lamps, n, scale, image, report);

@@ -18,6 +18,15 @@ int glint_engine_has_veil(const struct glint_engine *engine)
     return glint_frame_has_veil(&engine->paint.frame);
 }
 
+bool glint_engine_fits(const struct glint_engine *engine,
+                       const struct glint_image *image, int n)
+{
+    const struct glint_view *const view = &engine->paint.frame.view;
+
+    return image->width == view->width && image->height == view->height &&
+           n >= 0 && n <= engine->most_lamps;
+}
+
 const struct glint_lamp *
 glint_engine_plain(struct glint_engine *engine,
                    const struct glint_engine_lamp *lamps, int n)
@@ -86,7 +95,8 @@ static void set_excess(struct glint_engine_exposing *x,
     for (int i = 0; i < n; i++)
         lamps[i].excess = lamps[i].is_found
                               ? excess_found(x, &lamps[i], white, elapsed_us)
-                              : lamps[i].lamp.power / lamps[i].share;
+                              : lamps[i].lamp.power /
+                                    fmax(lamps[i].share, GLINT_ENGINE_HIDDEN);
     for (int i = 0; i < n; i++) {
         x->before[i] =
             (struct glint_engine_before){lamps[i].id, lamps[i].excess};
@@ -107,12 +117,16 @@ enum glint_status glint_engine_expose(struct glint_engine *engine,
         lamps, n, (double)f->view.width * f->view.height * white};
     const int32_t elapsed_us = find->elapsed_us;
     const bool is_new =
-        find->is_cut || (find->is_searched &&
+        find->is_cut || (find->is_searched && elapsed_us > 0 &&
                          glint_lamp_tracker_was_cut(find->detector.tracks));
+    enum glint_status status = GLINT_OK;
 
-    if (image->width != f->view.width || image->height != f->view.height ||
-        n < 0 || n > engine->most_lamps)
+    if (!glint_engine_fits(engine, image, n))
         return GLINT_E_ARGUMENT;
+    if (!x->light.by_hand && x->response.n == 0)
+        status = glint_response_measure(f, 0, &x->response);
+    if (status != GLINT_OK)
+        return status;
     glint_strength_expose(&x->strength, &x->response, &all,
                           is_new ? 0 : elapsed_us);
     glint_engine_plain(engine, lamps, n);

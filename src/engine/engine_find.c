@@ -16,12 +16,12 @@ void glint_engine_elapsed(struct glint_engine *engine, int32_t elapsed_us)
     engine->expose.is_done = false;
 }
 
-void glint_engine_cut(struct glint_engine *engine)
+void glint_engine_mark_cut(struct glint_engine *engine)
 {
     engine->find.is_cut = true;
 }
 
-void glint_engine_restart(struct glint_engine *engine)
+void glint_engine_forget_lamps(struct glint_engine *engine)
 {
     if (engine->find.detector.max > 0)
         glint_lamp_detector_restart(&engine->find.detector);

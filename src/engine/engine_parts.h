@@ -81,7 +81,7 @@ struct glint_engine {
 };
 
 /* Gives ENGINE, which makes its own setup, another stop; with MEASURE, measures
- * anew how bright flares are. After a failure the stop stays as it is. */
+ * anew how bright flares are. The stop stays as it is if it cannot be had. */
 enum glint_status glint_engine_reshape(struct glint_engine *engine,
                                        const struct glint_engine_shape *shape,
                                        bool measure, struct glint_error *error);
@@ -90,6 +90,10 @@ enum glint_status glint_engine_reshape(struct glint_engine *engine,
  * others off. */
 void glint_engine_choose(struct glint_engine *engine, unsigned parts,
                          double star, bool veil);
+
+/* Returns whether ENGINE can draw N lamps on IMAGE. */
+bool glint_engine_fits(const struct glint_engine *engine,
+                       const struct glint_image *image, int n);
 
 /* Copies N LAMPS to where they are drawn from; returns these. */
 const struct glint_lamp *

@@ -69,9 +69,9 @@ static bool set_lamp(const struct glint_engine *e,
     return true;
 }
 
-int glint_engine_scene(const struct glint_engine *engine,
-                       const struct glint_scene *scene,
-                       struct glint_engine_lamp *lamps, int n, int *hidden)
+int glint_engine_add_scene(const struct glint_engine *engine,
+                           const struct glint_scene *scene,
+                           struct glint_engine_lamp *lamps, int n, int *hidden)
 {
     struct glint_scene_lamp light[GLINT_SCENE_MAX_LIGHTS];
     const int n_lights = glint_scene_lights(scene, light);
@@ -91,7 +91,8 @@ int glint_engine_scene(const struct glint_engine *engine,
     return n;
 }
 
-void glint_engine_settle(struct glint_engine_lamp *lamps, int n, int is_still)
+void glint_engine_apply_shares(struct glint_engine_lamp *lamps, int n,
+                               int is_still)
 {
     for (int i = 0; i < n; i++)
         if (lamps[i].share > GLINT_ENGINE_HIDDEN || !is_still)

@@ -276,6 +276,10 @@ enum glint_status glint_explain_at(struct glint_explain *explain,
     enum glint_status status = GLINT_E_MEMORY;
 
     *explain = (struct glint_explain){.own = own};
+    if (n < 0 || n > engine->most_lamps) {
+        free(mem);
+        return GLINT_E_ARGUMENT;
+    }
     view.width = width;
     view.height = height;
     if (own && mem) {
@@ -328,7 +332,7 @@ int glint_explain_listed(const struct glint_explain *explain, int tile)
 int glint_explain_is_beyond(const struct glint_explain *explain,
                             const struct glint_lamp *lamp)
 {
-    return glint_frame_is_beyond(explain->frame, lamp);
+    return explain->frame && glint_frame_is_beyond(explain->frame, lamp);
 }
 
 /* ------------------------------------------------------------------- order */

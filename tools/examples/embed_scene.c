@@ -77,8 +77,8 @@ int main(int argc, char **argv)
             n = glint_engine_find(engine, &image, 0, lamp, LAMPS);
             glint_scene_begin(scene, &stats);
             glint_scene_draw(scene, &image);
-            n = glint_engine_scene(engine, scene, lamp, n, &hidden);
-            glint_engine_settle(lamp, n, 1);
+            n = glint_engine_add_scene(engine, scene, lamp, n, &hidden);
+            glint_engine_apply_shares(lamp, n, 1);
             bad = !!glint_engine_draw(engine, lamp, n, &image, &report);
         }
     }

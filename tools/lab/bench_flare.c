@@ -246,8 +246,8 @@ enum glint_status bench_run(struct bench *b, struct bench_case *c, int round)
                       small frames */
         cpu0 = clock();
     t0 = tool_seconds();
-    status = glint_engine_add(t->engine, t->lamp, t->n_lamps, t->scale,
-                              &c->canvas->image, &t->report);
+    status = glint_engine_draw_at(t->engine, t->lamp, t->n_lamps, t->scale,
+                                  &c->canvas->image, &t->report);
     c->ms[WHOLE][round] = 1e3 * (tool_seconds() - t0);
     cpu_ms = t->series ? 1e3 * (double)(clock() - cpu0) / CLOCKS_PER_SEC : 0;
     if (t->cpu_ms == 0 || cpu_ms < t->cpu_ms)

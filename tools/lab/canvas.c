@@ -274,7 +274,8 @@ enum glint_status canvas_codes(struct glint_engine *engine,
 
     memset(codes, 0, 3 * (size_t)layer.width * (size_t)layer.height);
     glint_image_place(&layer, codes);
-    return glint_engine_add(engine, lamp, n_lamps, exposure, &layer, report);
+    return glint_engine_draw_at(engine, lamp, n_lamps, exposure, &layer,
+                                report);
 }
 
 enum glint_status sweep_frame(struct glint_engine *engine,
@@ -282,7 +283,7 @@ enum glint_status sweep_frame(struct glint_engine *engine,
                               double exposure, const struct glint_image *image,
                               struct glint_engine_report *report)
 {
-    return glint_engine_add(engine, lamp, n, exposure, image, report);
+    return glint_engine_draw_at(engine, lamp, n, exposure, image, report);
 }
 
 const char *canvas_machine(void)

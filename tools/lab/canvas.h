@@ -36,8 +36,8 @@ void canvas_time_floor(struct canvas *canvas, int round);
 void canvas_lamps(struct glint_lamp *lamp, int n, double angle);
 
 /* Sets CFG to what an engine of WIDTH x HEIGHT takes that draws lamps by
- * glint_engine_add() and looks for none, as ASKED says: a copy of OPEN, which
- * the engine keeps, with options set. */
+ * glint_engine_draw_at() and looks for none, as ASKED says: a copy of OPEN,
+ * which the engine keeps, with options set. */
 void canvas_engine(const struct tool *tool, const struct settings *open,
                    const struct settings *asked, int width, int height,
                    struct glint_engine_config *cfg);
@@ -65,7 +65,7 @@ enum glint_status canvas_codes(struct glint_engine *engine,
                                double exposure, uint8_t *codes,
                                struct glint_engine_report *report);
 
-/* Calls glint_engine_add(), as a function of its own, whose instructions
+/* Calls glint_engine_draw_at(), as a function of its own, whose instructions
  * tools/report/sweep-insn counts. */
 enum glint_status sweep_frame(struct glint_engine *engine,
                               const struct glint_lamp *lamp, int n,

@@ -152,8 +152,8 @@ static enum glint_status draw(struct bay *b, struct run *r, int round)
 
     canvas_fresh(&b->canvas);
     if (round < 0)
-        return glint_engine_add(r->engine, b->lamp, b->c->n_lamps, b->exposure,
-                                &b->canvas.image, &r->report);
+        return glint_engine_draw_at(r->engine, b->lamp, b->c->n_lamps,
+                                    b->exposure, &b->canvas.image, &r->report);
     if (b->s->count_only)
         printf("%d\n", (int)(r->point - b->s->point));
     status = sweep_time(b->s, r->engine, b->lamp, b->c->n_lamps, b->exposure,

@@ -130,12 +130,12 @@ static enum glint_status draw_exact(struct bay *b)
         dials.cull_codes = dials.dim_codes = 0;
     }
     set_parameter(&dials, b->subject->parameter, b->subject->finest);
-    glint_engine_turn(b->engine, dials);
+    glint_engine_set_dials(b->engine, dials);
     if (linear_q20) {
         const struct glint_image image = black(b, GLINT_LINEAR_Q20, linear_q20);
 
-        status = glint_engine_add(b->engine, b->lamp, b->subject->n_lamps,
-                                  b->exposure, &image, &report);
+        status = glint_engine_draw_at(b->engine, b->lamp, b->subject->n_lamps,
+                                      b->exposure, &image, &report);
     }
     for (size_t i = 0; i < b->n && status == GLINT_OK; i++)
         b->exact[i] = (float)glint_measure_code(linear_q20[i] * 0x1p-20);
@@ -184,7 +184,7 @@ static enum glint_status measure(struct bay *b, double value)
                              .ms = HUGE_VAL,
                              .instructions = (double)NAN};
     set_parameter(&dials, b->subject->parameter, value);
-    glint_engine_turn(b->engine, dials);
+    glint_engine_set_dials(b->engine, dials);
     for (int i = 0; i < b->s->rounds && status == GLINT_OK; i++) {
         const struct glint_image image = black(b, GLINT_RGB24, b->codes);
         double ms;

@@ -80,7 +80,7 @@ static enum glint_status open_camera(struct live *l, struct glint_error *error)
         return status;
     l->time_us = 0;
     if (l->o->compositor.engine)
-        glint_engine_restart(l->o->compositor.engine);
+        glint_engine_forget_lamps(l->o->compositor.engine);
     l->had_signal = l->in.source->has_signal;
     return GLINT_OK;
 }
@@ -116,8 +116,8 @@ static int turn(struct live *l)
         over_scene_coarsen(&compositor->scene, live_adapt_quality(&l->adapt));
 
     if (compositor->engine)
-        glint_engine_turn(compositor->engine,
-                          live_adapt_dials(&l->adapt, l->asked));
+        glint_engine_set_dials(compositor->engine,
+                               live_adapt_dials(&l->adapt, l->asked));
     return status == GLINT_OK ? EXIT_OK : tool_fail(l->tool, status, NULL);
 }
 

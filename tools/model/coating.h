@@ -2,8 +2,8 @@
  *
  * --coating: the films on the surfaces of a lens table between air and glass.
  */
-#ifndef GLINT_TOOLS_OPTIONS_COATING_H
-#define GLINT_TOOLS_OPTIONS_COATING_H
+#ifndef GLINT_TOOLS_MODEL_COATING_H
+#define GLINT_TOOLS_MODEL_COATING_H
 
 #include "options/tool.h"
 

@@ -2,8 +2,8 @@
  *
  * --front-dust and --front-mask: what lies on the front element.
  */
-#ifndef GLINT_TOOLS_DESK_FRONT_OPTION_H
-#define GLINT_TOOLS_DESK_FRONT_OPTION_H
+#ifndef GLINT_TOOLS_MODEL_FRONT_OPTION_H
+#define GLINT_TOOLS_MODEL_FRONT_OPTION_H
 
 #include <stdbool.h>
 

@@ -12,8 +12,8 @@
  * solo, too. Gains are 0 to 1000, tints R,G,B 0 to 4. The line with the lens
  * may be left out; # begins a remark.
  */
-#ifndef GLINT_TOOLS_DESK_GHOST_FILE_H
-#define GLINT_TOOLS_DESK_GHOST_FILE_H
+#ifndef GLINT_TOOLS_MODEL_GHOST_FILE_H
+#define GLINT_TOOLS_MODEL_GHOST_FILE_H
 
 #include "glint/light.h"
 #include "glint/setup.h"

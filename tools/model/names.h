@@ -2,8 +2,8 @@
  *
  * Names of the files of scenes and environments, and keys of what is in them.
  */
-#ifndef GLINT_TOOLS_SCENES_NAMES_H
-#define GLINT_TOOLS_SCENES_NAMES_H
+#ifndef GLINT_TOOLS_MODEL_NAMES_H
+#define GLINT_TOOLS_MODEL_NAMES_H
 
 #include "options/tool.h"
 

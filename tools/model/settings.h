@@ -2,8 +2,8 @@
  *
  * The options that set what is drawn and how, for all commands that draw.
  */
-#ifndef GLINT_TOOLS_OPTIONS_SETTINGS_H
-#define GLINT_TOOLS_OPTIONS_SETTINGS_H
+#ifndef GLINT_TOOLS_MODEL_SETTINGS_H
+#define GLINT_TOOLS_MODEL_SETTINGS_H
 
 #include "options/engine_options.h"
 #include "model/front_option.h"

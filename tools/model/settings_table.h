@@ -3,8 +3,8 @@
  * The part of the settings that needs the offline half: a lens given as a
  * table. Programs that take baked models only have models_only.c instead.
  */
-#ifndef GLINT_TOOLS_OPTIONS_SETTINGS_TABLE_H
-#define GLINT_TOOLS_OPTIONS_SETTINGS_TABLE_H
+#ifndef GLINT_TOOLS_MODEL_SETTINGS_TABLE_H
+#define GLINT_TOOLS_MODEL_SETTINGS_TABLE_H
 
 #include "model/settings.h"
 

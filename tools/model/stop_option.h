@@ -2,8 +2,8 @@
  *
  * --stop, --stop-mask and --dust: the stop that lights are seen through.
  */
-#ifndef GLINT_TOOLS_DESK_STOP_OPTION_H
-#define GLINT_TOOLS_DESK_STOP_OPTION_H
+#ifndef GLINT_TOOLS_MODEL_STOP_OPTION_H
+#define GLINT_TOOLS_MODEL_STOP_OPTION_H
 
 #include <stdbool.h>
 #include <stdint.h>

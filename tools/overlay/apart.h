@@ -11,8 +11,8 @@
  *
  * Patterns of sequences are compared as they are spelled.
  */
-#ifndef GLINT_TOOLS_DESK_APART_H
-#define GLINT_TOOLS_DESK_APART_H
+#ifndef GLINT_TOOLS_OVERLAY_APART_H
+#define GLINT_TOOLS_OVERLAY_APART_H
 
 #include "overlay/compositor.h"
 

@@ -259,7 +259,7 @@ static int set_lamps(struct compositor *compositor,
     glint_engine_elapsed(compositor->engine, elapsed_us);
     if (!follows || (compositor->is_listed &&
                      lamp_keys_is_cut(&compositor->list, compositor->n_frames)))
-        glint_engine_cut(compositor->engine);
+        glint_engine_mark_cut(compositor->engine);
     return n;
 }
 
@@ -268,6 +268,7 @@ int compositor_lamps(struct compositor *compositor,
 {
     compositor_desk_turn(compositor);
     compositor->n_lamps = set_lamps(compositor, image, elapsed_us);
+    compositor->n_own = compositor->n_lamps;
     compositor_desk_hide(compositor, compositor->n_lamps);
     compositor_save_lamps(compositor);
     return compositor->n_lamps;
@@ -298,7 +299,7 @@ enum glint_status compositor_expose(struct compositor *compositor,
 
     compositor_save_lamps(compositor);
     glint_engine_configure(&cfg, &compositor->settings.options);
-    glint_engine_shine(compositor->engine, &cfg.light);
+    glint_engine_set_light(compositor->engine, &cfg.light);
     return glint_engine_expose(compositor->engine, compositor->lamp,
                                compositor->n_lamps, image, compositor->white);
 }

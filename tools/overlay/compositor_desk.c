@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * What changes a compositor from frame to frame: key frames, masks, the
- * distance from the picture, and scenes; and where its lamps are written and
- * shown. */
+ * distance from the picture, and scenes. */
 #include "overlay/compositor.h"
 
 #include <math.h>
@@ -160,7 +159,7 @@ static void turn_stop(struct compositor *c)
     stop->iris.roundness = round;
     if (settings_stop(s, f_number, &error) != GLINT_OK)
         return;
-    glint_engine_restop(c->engine);
+    glint_engine_update_stop(c->engine);
 }
 
 void compositor_desk_turn(struct compositor *c)
@@ -264,16 +263,16 @@ enum glint_status compositor_scene(struct compositor *c,
     status = over_scene_draw(&c->scene, image, c->n_frames);
     /* The flare has what the scene leaves. */
     if (budget_ms > 0 && c->has_lens)
-        glint_engine_budget(c->engine,
-                            budget_ms *
-                                fmax(LEAST_SHARE, 1 - c->scene.ms / budget_ms));
+        glint_engine_set_budget(
+            c->engine,
+            budget_ms * fmax(LEAST_SHARE, 1 - c->scene.ms / budget_ms));
     if (status != GLINT_OK || !c->has_lens)
         return status;
-    c->n_lamps = glint_engine_scene(c->engine, c->scene.frame.scene, c->lamp, n,
-                                    &c->scene.lamps_hidden);
+    c->n_lamps = glint_engine_add_scene(c->engine, c->scene.frame.scene,
+                                        c->lamp, n, &c->scene.lamps_hidden);
     c->scene.lights = c->n_lamps - n;
     c->n_lamps +=
         over_scene_glints(&c->scene, &c->view, focal_mm, c->lamp + c->n_lamps);
-    glint_engine_settle(c->lamp, c->n_lamps, c->is_still);
+    glint_engine_apply_shares(c->lamp, c->n_lamps, c->is_still);
     return GLINT_OK;
 }

@@ -147,7 +147,7 @@ enum glint_status compositor_draw_layer(struct compositor *compositor,
                                         bool is_deep, float *rgb)
 {
     const double start = tool_seconds();
-    const enum glint_status status = glint_engine_layer(
+    const enum glint_status status = glint_engine_draw_layer(
         compositor->engine, compositor->lamp, compositor->n_lamps,
         is_deep ? GLINT_ENGINE_ALL : GLINT_ENGINE_ALL | GLINT_ENGINE_CODES, rgb,
         &compositor->report);

@@ -16,7 +16,7 @@ static enum glint_status zoom_to(struct compositor *c, double zoom,
         return status;
     s->zoom.zoom = zoom;
     if (c->engine)
-        glint_engine_restop(c->engine);
+        glint_engine_update_stop(c->engine);
     return GLINT_OK;
 }
 

@@ -127,7 +127,8 @@ static enum glint_status draw_all(struct compositor *c, int n_layers, size_t n,
     /* the veil first, as drawing the others forgets what it is of */
     for (int k = n_layers - 1; k >= GHOSTS && status == GLINT_OK; k--)
         if (is_lit || k == VEIL)
-            status = glint_engine_layer(c->engine, c->lamp, c->n_lamps, part[k],
+            status =
+                glint_engine_draw_layer(c->engine, c->lamp, c->n_lamps, part[k],
                                         rgb + (size_t)k * n, &report);
     for (int k = GHOSTS; k < n_layers; k++)
         for (size_t i = 0; i < n; i++)

@@ -7,8 +7,8 @@
  * All in one file with a part for each, flare.exr, or a file for each where the
  * name has a %s, flare-%s.exr. A %d or %04d stands for the frame, from 0.
  */
-#ifndef GLINT_TOOLS_DESK_LAYERS_H
-#define GLINT_TOOLS_DESK_LAYERS_H
+#ifndef GLINT_TOOLS_OVERLAY_LAYERS_H
+#define GLINT_TOOLS_OVERLAY_LAYERS_H
 
 #include "overlay/apart.h"
 #include "overlay/compositor.h"

@@ -10,8 +10,8 @@
  *
  * Frames of a video rise. Moving things bakes nothing.
  */
-#ifndef GLINT_TOOLS_SCENES_OVER_SCENE_H
-#define GLINT_TOOLS_SCENES_OVER_SCENE_H
+#ifndef GLINT_TOOLS_OVERLAY_OVER_SCENE_H
+#define GLINT_TOOLS_OVERLAY_OVER_SCENE_H
 
 #include "glint/scene/motion.h"
 #include "glint/view.h"

@@ -313,6 +313,7 @@ enum glint_status overlay_file_draw(struct overlay_file *file,
     bool is_grey;
 
     compositor->is_measured = file->kept.is_float;
+    compositor->white = file->white;
     say_grey(file, compositor);
     /* A thing has colours, where the file has room for them. */
     is_grey = compositor->settings.options.layer == GLINT_LAYER_COMPOSITE &&
@@ -326,7 +327,6 @@ enum glint_status overlay_file_draw(struct overlay_file *file,
         return status;
     if (file->kept.is_float)
         compositor_measure(compositor, &file->kept.samples, file->white);
-    compositor->white = file->white;
     if (compositor->scene.is_open &&
         compositor->settings.options.layer == GLINT_LAYER_COMPOSITE)
         status = draw_scene(file, compositor, is_grey);

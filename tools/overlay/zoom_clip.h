@@ -7,8 +7,8 @@
  *
  * Of focal lengths each frame's is the same number of times the one before's,
  * as by a zoom ring that turns evenly. They become key frames. */
-#ifndef GLINT_TOOLS_ZOOMS_ZOOM_CLIP_H
-#define GLINT_TOOLS_ZOOMS_ZOOM_CLIP_H
+#ifndef GLINT_TOOLS_OVERLAY_ZOOM_CLIP_H
+#define GLINT_TOOLS_OVERLAY_ZOOM_CLIP_H
 
 #include "overlay/compositor.h"
 

@@ -103,7 +103,7 @@ static enum glint_status draw(struct glint_engine *engine,
 {
     struct glint_engine_report report;
 
-    glint_engine_solo(engine, ghost);
+    glint_engine_set_only_ghost(engine, ghost);
     return glint_engine_render(engine, lamp, 1, 1, GLINT_ENGINE_GHOSTS,
                                image->rgb, &report);
 }

@@ -106,6 +106,7 @@ enum glint_status glint_frame_veil_look(struct glint_frame *f,
         glint_veil_look(f->veil.veil, image, glint_real_of(white),
                         f->cfg.workers);
     f->veil.has_look = status == GLINT_OK;
+    f->veil.is_set = false;
     return status;
 }
 

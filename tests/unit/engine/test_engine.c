@@ -121,8 +121,9 @@ static void test_follows(void **state)
         n = run(engine, 40000, px, &report);
     assert_int_equal(n, 2);
     bundles = report.stats.bundles;
-    glint_engine_turn(engine, glint_dials_coarser(glint_dials_at(1 << 14),
-                                                  glint_dials_at(1 << 12)));
+    glint_engine_set_dials(
+        engine,
+        glint_dials_coarser(glint_dials_at(1 << 14), glint_dials_at(1 << 12)));
     run(engine, 40000, px, &report);
     assert_in_range(report.stats.bundles, 1, bundles - 1);
     glint_engine_destroy(engine);
@@ -218,6 +219,91 @@ static void test_stop(void **state)
     glint_engine_destroy(engine);
 }
 
+/* A picture of another size, or more lamps than there is room for, must be
+ * refused at each stage, also of a picture that is exposed. */
+static void test_refuses_pictures(void **state)
+{
+    static uint8_t px[BYTES];
+    static float rgb[BYTES];
+    struct glint_engine *engine = make(NULL, 0);
+    struct glint_engine_report report;
+    struct glint_engine_lamp lamps[8];
+    struct glint_image image = picture(px);
+    const int n = glint_engine_find(engine, &image, 0, lamps, 8);
+    const int many = GLINT_ENGINE_MAX_LAMPS + 1;
+
+    (void)state;
+    assert_int_equal(glint_engine_expose(engine, lamps, n, &image, 1),
+                     GLINT_OK);
+    assert_int_equal(glint_engine_draw(engine, lamps, many, &image, &report),
+                     GLINT_E_ARGUMENT);
+    assert_int_equal(glint_engine_draw_layer(engine, lamps, many,
+                                             GLINT_ENGINE_ALL, rgb, &report),
+                     GLINT_E_ARGUMENT);
+    image.width--;
+    assert_int_equal(glint_engine_draw(engine, lamps, n, &image, &report),
+                     GLINT_E_ARGUMENT);
+    assert_int_equal(
+        glint_engine_draw_at(engine, &lamps[0].lamp, 1, 1, &image, &report),
+        GLINT_E_ARGUMENT);
+    glint_engine_destroy(engine);
+}
+
+/* Layers must add up to all parts drawn together; a lamp that is given, none
+ * being looked for, must give a render its light, twice as much at twice the
+ * gain; and light set by hand must count from the next picture on. */
+static void test_layers(void **state)
+{
+    static uint8_t px[BYTES];
+    static float part[BYTES], all[BYTES], sum[BYTES];
+    const struct glint_lamp lamp = {12, 30, 1e5, {1, 1, 1}, {0, 0}, 0};
+    const struct glint_image image = picture(px);
+    struct glint_engine_lamp known = glint_engine_lamp_of(&lamp, 1);
+    struct glint_engine_report report;
+    struct glint_engine_config cfg;
+    struct glint_engine *engine;
+    struct glint_error error;
+    double once = 0, twice = 0;
+
+    (void)state;
+    glint_engine_defaults(&cfg, WIDTH, HEIGHT);
+    cfg.model = &settings.model.lens;
+    cfg.search.max_found = 0;
+    cfg.search.more_lamps = 1;
+    assert_int_equal(glint_engine_create(&engine, &cfg, &error), GLINT_OK);
+    assert_int_equal(glint_engine_find(engine, &image, 0, &known, 1), 0);
+    assert_int_equal(glint_engine_expose(engine, &known, 1, &image, 1),
+                     GLINT_OK);
+    assert_int_equal(glint_engine_draw_layer(engine, &known, 1,
+                                             GLINT_ENGINE_ALL, all, &report),
+                     GLINT_OK);
+    for (unsigned k = GLINT_ENGINE_GHOSTS; k <= GLINT_ENGINE_STAR; k *= 2) {
+        assert_int_equal(
+            glint_engine_draw_layer(engine, &known, 1, k, part, &report),
+            GLINT_OK);
+        for (int i = 0; i < BYTES; i++)
+            sum[i] += part[i];
+    }
+    for (int i = 0; i < BYTES; i++)
+        assert_true(fabsf(sum[i] - all[i]) <= 1e-4F * (1 + fabsf(all[i])));
+    for (int k = 1; k <= 2; k++) {
+        assert_int_equal(glint_engine_render(engine, &lamp, 1, k,
+                                             GLINT_ENGINE_GHOSTS, part,
+                                             &report),
+                         GLINT_OK);
+        for (int i = 0; i < BYTES; i++)
+            *(k == 1 ? &once : &twice) += (double)part[i];
+    }
+    assert_true(once > 0 && fabs(twice / once - 2) < 1e-6);
+    cfg.light.by_hand = 1;
+    cfg.light.exposure_ev = 3;
+    glint_engine_set_light(engine, &cfg.light);
+    assert_int_equal(glint_engine_expose(engine, &known, 1, &image, 1),
+                     GLINT_OK);
+    assert_true(glint_engine_exposed(engine)->scale == 8);
+    glint_engine_destroy(engine);
+}
+
 static void test_refuses(void **state)
 {
     static uint8_t px[BYTES];
@@ -235,7 +321,7 @@ static void test_refuses(void **state)
                      GLINT_E_ARGUMENT);
     glint_engine_destroy(engine);
     glint_engine_destroy(NULL);
-    for (int k = 0; k < 7; k++) {
+    for (int k = 0; k < 11; k++) {
         glint_engine_defaults(&cfg, k == 0 ? 0 : WIDTH, HEIGHT);
         cfg.model = k == 1 ? NULL : &settings.model.lens;
         cfg.search.max_found = k == 2 ? 1025 : cfg.search.max_found;
@@ -243,6 +329,10 @@ static void test_refuses(void **state)
         cfg.search.threshold_ev[1] = k == 4 ? 0 : cfg.search.threshold_ev[1];
         cfg.camera.n_blades = k == 5 ? 2 : cfg.camera.n_blades;
         cfg.size -= k == 6;
+        cfg.drawing.tile_log2 = k == 7 ? 2 : cfg.drawing.tile_log2;
+        cfg.drawing.only_ghost = k == 8 ? 1000 : -1;
+        cfg.light.gain = k == 9 ? (double)INFINITY : 1;
+        cfg.search.max_drawn = k == 10 ? -1 : 0;
         *error.text = '\0';
         assert_int_equal(glint_engine_create(&engine, &cfg, &error),
                          GLINT_E_ARGUMENT);
@@ -348,6 +438,7 @@ int main(void)
         cmocka_unit_test(test_draws),   cmocka_unit_test(test_arena),
         cmocka_unit_test(test_follows), cmocka_unit_test(test_stop),
         cmocka_unit_test(test_given),   cmocka_unit_test(test_refuses),
+        cmocka_unit_test(test_layers),  cmocka_unit_test(test_refuses_pictures),
         cmocka_unit_test(test_options), cmocka_unit_test(test_option_values)};
 
     return cmocka_run_group_tests(tests, opened_heliar, opened_close);
