@@ -124,7 +124,7 @@ static enum glint_status open_frame(struct glint_engine *e,
     f->clock = c->clock;
     f->only_ghost = d->only_ghost;
     f->tints = c->camera.tints;
-    f->most_minsn = d->most_minsn;
+    f->limits.most_minsn = d->most_minsn;
     f->apart_px = d->apart_px;
     f->cfg.sets = c->sets;
     f->cfg.reuse = d->is_fresh ? NULL : &glint_reuse;
@@ -373,7 +373,7 @@ enum glint_status glint_engine_reshape(struct glint_engine *engine,
             engine->expose.response.n = 0; /* of another stop */
         return GLINT_OK;
     }
-    status = glint_response_measure(f, f->reserved ? f->bytes : 0,
+    status = glint_response_measure(f, f->limits.reserved ? f->memory.bytes : 0,
                                     &engine->expose.response);
     if (status != GLINT_OK)
         snprintf(error->text, sizeof error->text, "%s",

@@ -47,9 +47,9 @@ static enum glint_status draw_as_for_codes(struct glint_frame *f,
 
     /* RGB holds integers until they are converted. */
     glint_image_place(&layer, rgb);
-    f->for_codes = true;
+    f->picture.for_codes = true;
     status = glint_frame_draw(f, lamps, n, scale, &layer, report);
-    f->for_codes = false;
+    f->picture.for_codes = false;
     for (size_t i = 0; i < samples; i++) {
         int32_t light_q20;
 

@@ -72,7 +72,7 @@ static void add(struct glint_explain_part *p, const struct glint_account *a)
  */
 static int part_of(const struct glint_explain *e, int wave)
 {
-    const struct glint_wave_sets *sets = e->frame->rays.sets;
+    const struct glint_wave_sets *sets = e->frame->plan.rays.sets;
     int part = wave;
 
     if (sets)
@@ -84,14 +84,15 @@ static int part_of(const struct glint_explain *e, int wave)
 static void take_accounts(struct glint_explain *e)
 {
     const int n_ghosts = (int)e->frame->lens->header->n_ghosts;
-    const int n_waves = e->frame->rays.n_waves;
+    const int n_waves = e->frame->plan.rays.n_waves;
 
     for (int light = 0; light < e->n_lights; light++)
         for (int ghost = 0; ghost < n_ghosts; ghost++)
             for (int wave = 0; wave < n_waves; wave++) {
                 struct glint_account a;
 
-                glint_flare_account(e->frame->flare, ghost, light, wave, &a);
+                glint_flare_account(e->frame->memory.flare, ghost, light, wave,
+                                    &a);
                 add(&e->all, &a);
                 /* NOLINTNEXTLINE: set_numbers() has set all of them */
                 add(&e->ghost[e->ghost_of[ghost]], &a);
@@ -116,8 +117,8 @@ static void draw(struct glint_explain *e, int ghost, int light, int wave)
            3 * (size_t)view->width * (size_t)view->height *
                sizeof *e->linear_q20);
     glint_image_place(&image, e->linear_q20);
-    glint_flare_keep(e->frame->flare, ghost, light, wave);
-    glint_flare_draw(e->frame->flare, &image);
+    glint_flare_keep(e->frame->memory.flare, ghost, light, wave);
+    glint_flare_draw(e->frame->memory.flare, &image);
 }
 
 void glint_explain_draw(struct glint_explain *explain, int ghost)
@@ -140,7 +141,7 @@ static void measure(struct glint_explain *e, struct glint_explain_part *part)
         sum += here;
         most = here > most ? here : most;
     }
-    part->tiles = glint_flare_tiles(e->frame->flare);
+    part->tiles = glint_flare_tiles(e->frame->memory.flare);
     part->flux = (double)sum / 3 * 0x1p-20 * e->unit;
     part->brightest = (double)most / 3 * 0x1p-20 * e->unit;
 }
@@ -211,12 +212,13 @@ enum glint_status glint_explain_frame(struct glint_explain *e,
         .setup = frame->setup,
         .lens = frame->lens,
         .tints = frame->tints,
-        .lights = frame->light,
-        .sets = frame->rays.sets,
-        .dim_codes = frame->rays.dimmest.mantissa ? frame->dials.dim_codes : 0,
-        .n_lights = frame->n_lights,
-        .n_waves =
-            frame->rays.sets ? frame->rays.sets->n_sets : frame->rays.n_waves,
+        .lights = frame->lights.light,
+        .sets = frame->plan.rays.sets,
+        .dim_codes =
+            frame->plan.rays.dimmest.mantissa ? frame->dials.dim_codes : 0,
+        .n_lights = frame->lights.n,
+        .n_waves = frame->plan.rays.sets ? frame->plan.rays.sets->n_sets
+                                         : frame->plan.rays.n_waves,
         .unit = unit,
         .tile_log2 = frame->cfg.tile_log2,
         .n_tiles = tiles_of(frame)};
@@ -257,8 +259,8 @@ enum glint_status glint_explain_open(struct glint_explain *explain,
 {
     struct glint_frame *const f = &engine->paint.frame;
 
-    return glint_explain_frame(explain, f,
-                               gain > 0 && f->scale > 0 ? gain / f->scale : 1);
+    return glint_explain_frame(
+        explain, f, gain > 0 && f->plan.scale > 0 ? gain / f->plan.scale : 1);
 }
 
 enum glint_status glint_explain_at(struct glint_explain *explain,
@@ -294,7 +296,7 @@ enum glint_status glint_explain_at(struct glint_explain *explain,
         status = glint_frame_draw(own, glint_engine_plain(engine, lamps, n), n,
                                   scale, &codes, &report);
     free(mem);
-    if (status == GLINT_OK && own->n_lights > 0)
+    if (status == GLINT_OK && own->lights.n > 0)
         status = glint_explain_frame(explain, own, 1);
     explain->own = own;
     return status;
@@ -326,7 +328,7 @@ double glint_explain_planned(const struct glint_engine *engine,
 
 int glint_explain_listed(const struct glint_explain *explain, int tile)
 {
-    return glint_flare_listed(explain->frame->flare, tile);
+    return glint_flare_listed(explain->frame->memory.flare, tile);
 }
 
 int glint_explain_is_beyond(const struct glint_explain *explain,

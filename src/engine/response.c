@@ -109,9 +109,9 @@ static enum glint_status open_proxy(const struct glint_frame *like, int pixels,
     *p = (struct proxy){.view = proxy_of(like->view, pixels)};
     glint_frame_like(&p->frame, like, p->view);
     p->frame.only_ghost = -1;
-    p->frame.uniform = false;
+    p->frame.picture.uniform = false;
     p->frame.dials.fineness = like->lens ? GRID : EXACT_GRID;
-    p->frame.for_codes = true;
+    p->frame.picture.for_codes = true;
     samples = 3 * (size_t)p->view.width * (size_t)p->view.height;
     p->rgb = malloc(samples * sizeof *p->rgb);
     p->linear_q20 = malloc(samples * sizeof *p->linear_q20);

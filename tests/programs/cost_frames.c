@@ -184,10 +184,11 @@ static void count(const struct stage *s, double *counted)
 
     for (int k = 0; k < GLINT_COST_KINDS; k++)
         counted[k] = 0;
-    for (int i = 0; glint_flare_planned(s->frame.flare, i, &b); i++) {
+    for (int i = 0; glint_flare_planned(s->frame.memory.flare, i, &b); i++) {
         struct glint_account a;
 
-        glint_flare_account(s->frame.flare, b.ghost, b.light, b.wave, &a);
+        glint_flare_account(s->frame.memory.flare, b.ghost, b.light, b.wave,
+                            &a);
         counted[GLINT_COST_LOOKED_AT] += a.probed;
         counted[GLINT_COST_BUNDLES]++;
         counted[GLINT_COST_VERTICES] += a.vertices;
@@ -210,7 +211,7 @@ static double lit_pixels(const struct stage *s)
     if (!px)
         fail("no memory");
     glint_image_place(&image, px);
-    glint_flare_draw(s->frame.flare, &image);
+    glint_flare_draw(s->frame.memory.flare, &image);
     for (size_t i = 0; i < n; i += 3)
         lit += (px[i] | px[i + 1] | px[i + 2]) != 0;
     free(px);

@@ -60,14 +60,15 @@ static struct glint_traced_bundle_config
 traced_config(const struct glint_frame *f, double scale)
 {
     return (struct glint_traced_bundle_config){
-        f->setup, f->view, scale, f->dials.fineness, f->uniform, f->tints};
+        f->setup,           f->view, scale, f->dials.fineness,
+        f->picture.uniform, f->tints};
 }
 
 /* Plans all wavelengths of one ghost and lamp. */
 static void plan_job(void *ctx, int job, int worker)
 {
     struct job *j = ctx;
-    const struct traced *const t = j->frame->traced;
+    const struct traced *const t = j->frame->memory.traced;
     const int waves = j->frame->setup->n_wavelengths, middle = waves / 2;
     struct glint_traced_bundle *traced = &t->bundle[(j->first + job) * waves];
 
@@ -81,7 +82,7 @@ static void plan_job(void *ctx, int job, int worker)
 /* Makes room for N bundles to be planned, at most MAX_PLANNED. */
 static enum glint_status reserve_feeds(struct glint_frame *f, uint64_t n)
 {
-    struct traced *const t = f->traced;
+    struct traced *const t = f->memory.traced;
     struct glint_traced_bundle *traced;
     struct glint_vertex **vertices;
 
@@ -103,9 +104,9 @@ static enum glint_status reserve_feeds(struct glint_frame *f, uint64_t n)
 
 static bool begin(struct glint_frame *f)
 {
-    if (!f->traced)
-        f->traced = calloc(1, sizeof(struct traced));
-    return f->traced;
+    if (!f->memory.traced)
+        f->memory.traced = calloc(1, sizeof(struct traced));
+    return f->memory.traced;
 }
 
 /* Returns whether ghost or part GHOST is to be drawn. */
@@ -120,7 +121,7 @@ static bool is_wanted(const struct glint_frame *f, int ghost)
 static enum glint_status plan(struct glint_frame *f,
                               const struct glint_lamp *lamps, int n_lamps)
 {
-    struct traced *const t = f->traced;
+    struct traced *const t = f->memory.traced;
     const struct glint_setup *s = f->setup;
     struct job job = {f, traced_config(f, 1), 0};
     const enum glint_status status =
@@ -177,7 +178,7 @@ static enum glint_status set_scale(struct glint_frame *frame,
 {
     const enum glint_status status =
         begin(frame) ? plan(frame, lamps, n_lamps) : GLINT_E_MEMORY;
-    const struct traced *const t = frame->traced;
+    const struct traced *const t = frame->memory.traced;
     double brightest = 0, together = 0;
 
     *scale = (struct glint_frame_scale){0, 0};
@@ -202,7 +203,7 @@ static enum glint_status set_scale(struct glint_frame *frame,
 static enum glint_status regrow(struct glint_frame *f,
                                 const struct glint_traced_bundle_config *cfg)
 {
-    struct traced *const t = f->traced;
+    struct traced *const t = f->memory.traced;
     const size_t bytes = glint_flare_bytes(&f->cfg);
     struct glint_flare *flare;
     enum glint_status status;
@@ -223,11 +224,11 @@ static enum glint_status regrow(struct glint_frame *f,
                    (size_t)nodes * (size_t)nodes * sizeof *to);
         t->vertices[i] = to;
     }
-    free(f->mem);
-    f->mem = mem;
-    f->block = block;
-    f->bytes = bytes;
-    f->flare = flare;
+    free(f->memory.mem);
+    f->memory.mem = mem;
+    f->memory.block = block;
+    f->memory.bytes = bytes;
+    f->memory.flare = flare;
     return status;
 }
 
@@ -236,7 +237,7 @@ static enum glint_status regrow(struct glint_frame *f,
 static void trace_job(void *ctx, int job, int worker)
 {
     struct job *j = ctx;
-    const struct traced *const t = j->frame->traced;
+    const struct traced *const t = j->frame->memory.traced;
 
     (void)worker;
     job += j->first;
@@ -247,7 +248,7 @@ static void trace_job(void *ctx, int job, int worker)
 static enum glint_status
 add_bundles(struct glint_frame *f, const struct glint_traced_bundle_config *cfg)
 {
-    struct traced *const t = f->traced;
+    struct traced *const t = f->memory.traced;
     int vertices = 0;
 
     t->n_dropped = 0;
@@ -264,18 +265,18 @@ add_bundles(struct glint_frame *f, const struct glint_traced_bundle_config *cfg)
         t->vertices[i] = NULL;
         vertices += n * n;
     }
-    if (!f->block || t->n_bundles > f->cfg.max_bundles ||
+    if (!f->memory.block || t->n_bundles > f->cfg.max_bundles ||
         vertices > f->cfg.max_vertices) {
         f->cfg.max_bundles = larger(f->cfg.max_bundles, t->n_bundles);
         f->cfg.max_vertices = larger(f->cfg.max_vertices, vertices);
         return regrow(f, cfg);
     }
-    glint_flare_begin(f->flare);
+    glint_flare_begin(f->memory.flare);
     for (int i = 0; i < t->n_bundles; i++) {
         struct glint_bundle bundle;
 
         glint_traced_bundle_make(cfg, &t->bundle[i], &bundle);
-        t->vertices[i] = glint_flare_add(f->flare, &bundle);
+        t->vertices[i] = glint_flare_add(f->memory.flare, &bundle);
     }
     return GLINT_OK;
 }
@@ -288,7 +289,7 @@ static enum glint_status bin(struct glint_frame *f,
     for (;;) {
         enum glint_status status;
 
-        glint_flare_bin(f->flare, s);
+        glint_flare_bin(f->memory.flare, s);
         if (s->need_primitives <= f->cfg.max_primitives &&
             s->need_refs <= f->cfg.max_refs)
             return GLINT_OK;
@@ -314,7 +315,7 @@ static enum glint_status draw(struct glint_frame *frame,
 
     times[0] = now(frame);
     status = begin(frame) ? plan(frame, lamps, n_lamps) : GLINT_E_MEMORY;
-    t = frame->traced;
+    t = frame->memory.traced;
     if (status == GLINT_OK)
         status = add_bundles(frame, &job.cfg);
     if (status != GLINT_OK)
@@ -334,28 +335,28 @@ static enum glint_status draw(struct glint_frame *frame,
 
 static int n_bundles(const struct glint_frame *frame)
 {
-    const struct traced *const t = frame->traced;
+    const struct traced *const t = frame->memory.traced;
 
     return t->n_bundles;
 }
 
 static int ghost(const struct glint_frame *frame, int bundle)
 {
-    const struct traced *const t = frame->traced;
+    const struct traced *const t = frame->memory.traced;
 
     return t->bundle[bundle].ghost;
 }
 
 static void finish(struct glint_frame *frame)
 {
-    struct traced *const t = frame->traced;
+    struct traced *const t = frame->memory.traced;
 
     if (t) {
         free(t->bundle);
         free(t->vertices);
     }
     free(t);
-    frame->traced = NULL;
+    frame->memory.traced = NULL;
 }
 
 const struct glint_frame_rays glint_frame_traces = {draw, set_scale, n_bundles,

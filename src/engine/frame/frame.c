@@ -24,8 +24,8 @@ void glint_frame_init(struct glint_frame *frame,
                                   .dials = glint_dials_at(1 << 14),
                                   .asked = glint_dials_at(1 << 14),
                                   .apart_px = GLINT_FRAME_APART_PX,
-                                  .most_bytes = GLINT_FRAME_MOST_BYTES,
-                                  .most_minsn = GLINT_FRAME_MOST_MINSN,
+                                  .limits.most_bytes = GLINT_FRAME_MOST_BYTES,
+                                  .limits.most_minsn = GLINT_FRAME_MOST_MINSN,
                                   .only_ghost = -1};
     glint_setup_stop(setup, &frame->cfg.stop);
 }
@@ -39,11 +39,11 @@ void glint_frame_like(struct glint_frame *frame, const struct glint_frame *like,
     frame->clock = like->clock;
     frame->dials = frame->asked = like->asked;
     frame->apart_px = like->apart_px;
-    frame->for_codes = like->for_codes;
-    frame->uniform = like->uniform;
+    frame->picture.for_codes = like->picture.for_codes;
+    frame->picture.uniform = like->picture.uniform;
     frame->only_ghost = like->only_ghost;
-    frame->most_bytes = like->most_bytes;
-    frame->most_minsn = like->most_minsn;
+    frame->limits.most_bytes = like->limits.most_bytes;
+    frame->limits.most_minsn = like->limits.most_minsn;
     frame->cfg.sets = like->cfg.sets;
     frame->cfg.tile_log2 = like->cfg.tile_log2;
     frame->cfg.dither = like->cfg.dither;
@@ -58,11 +58,11 @@ void glint_frame_finish(struct glint_frame *frame)
     free(frame->still.sum_q20);
     if (frame->trace)
         frame->trace->finish(frame);
-    free(frame->light);
-    free(frame->merged);
-    free(frame->seen);
-    free(frame->dim.log2_q8);
-    free(frame->mem);
+    free(frame->lights.light);
+    free(frame->lights.merged);
+    free(frame->lights.seen);
+    free(frame->dim.table.log2_q8);
+    free(frame->memory.mem);
 }
 
 /* Returns the number of waves of all sets together. */
@@ -80,17 +80,19 @@ static void set_waves(struct glint_frame *f)
     const struct glint_setup *s = f->setup;
     const struct glint_set_wave *w = s->set_wave;
 
-    f->sets = (struct glint_wave_sets){.planner = &glint_wave_planner,
-                                       .n_sets = s->n_sets,
-                                       .apart_q8 = f->dials.dispersion_q8};
+    f->lights.sets =
+        (struct glint_wave_sets){.planner = &glint_wave_planner,
+                                 .n_sets = s->n_sets,
+                                 .apart_q8 = f->dials.dispersion_q8};
     for (int i = 0; i < s->n_sets; i++)
-        f->sets.size[i] = s->set_size[i];
+        f->lights.sets.size[i] = s->set_size[i];
     if (glint_frame_has_sets(f))
         for (int i = 0; i < all_waves(s); i++)
-            f->wave[i] = glint_wave_of(w[i].nm, w[i].rgb, w[i].unit_flux);
+            f->lights.wave[i] =
+                glint_wave_of(w[i].nm, w[i].rgb, w[i].unit_flux);
     else
         for (int i = 0; i < s->n_wavelengths; i++)
-            f->wave[i] =
+            f->lights.wave[i] =
                 glint_wave_of(s->wavelength_nm[i], s->rgb[i], s->unit_flux[i]);
 }
 
@@ -136,9 +138,9 @@ static int add_lights(struct glint_frame *f, const struct glint_lamp *lamp,
     for (int i = 0; i < n; i++) {
         const struct glint_lamp point = glint_area_point(&area, i);
 
-        f->light[within] = glint_light_of(&point, scale);
-        f->light[within].apart_q30 = (int32_t)lrint(apart * 0x1p30);
-        within += !glint_light_is_beyond(f->lens, &f->light[within]);
+        f->lights.light[within] = glint_light_of(&point, scale);
+        f->lights.light[within].apart_q30 = (int32_t)lrint(apart * 0x1p30);
+        within += !glint_light_is_beyond(f->lens, &f->lights.light[within]);
     }
     return within;
 }
@@ -149,9 +151,9 @@ static int room_for(const struct glint_frame *f, int n)
 {
     const int most = f->dials.max_lights;
 
-    if (f->reserved)
-        return smaller(most, f->light_capacity);
-    return n <= most ? larger(most, f->point_room) : most;
+    if (f->limits.reserved)
+        return smaller(most, f->lights.capacity);
+    return n <= most ? larger(most, f->picture.point_room) : most;
 }
 
 /* Makes F's lights of LAMPS; merges those that are too near or too many. */
@@ -167,24 +169,24 @@ static enum glint_status set_lights(struct glint_frame *f,
 
     if (glint_frame_hold_lights(f, total) != GLINT_OK)
         return GLINT_E_MEMORY;
-    f->n_beyond = 0;
-    f->gain_q14 = NULL;
+    f->lights.n_beyond = 0;
+    f->lights.gain_q14 = NULL;
     for (int i = 0; i < n; i++) {
         const int before = within;
 
         within = add_lights(f, &lamps[i], &rule, scale, within);
-        f->n_beyond += within == before;
+        f->lights.n_beyond += within == before;
     }
-    f->n_more = within - (n - f->n_beyond);
-    f->n_lights =
-        glint_lights_merge(f->light, within, near_q30(f, f->apart_px),
-                           larger(room, f->dials.max_lights), &f->n_apart);
-    if (!f->is_held) /* after a limit was met, fewer lights keep the share of
-                        all */
-        f->share =
-            1 + larger(f->n_lights - 1, 0) / (double)GLINT_FRAME_PER_LIGHT;
+    f->lights.n_more = within - (n - f->lights.n_beyond);
+    f->lights.n = glint_lights_merge(
+        f->lights.light, within, near_q30(f, f->apart_px),
+        larger(room, f->dials.max_lights), &f->lights.n_apart);
+    if (!f->limits.is_held) /* after a limit was met, fewer lights keep the
+                        share of all */
+        f->limits.share =
+            1 + larger(f->lights.n - 1, 0) / (double)GLINT_FRAME_PER_LIGHT;
     if (f->star.is_alone)
-        f->n_lights = 0;
+        f->lights.n = 0;
     return GLINT_OK;
 }
 
@@ -194,34 +196,36 @@ static struct glint_flare_frame rays_of(struct glint_frame *f,
 {
     set_waves(f);
     glint_frame_check_dim(f);
-    f->sets.step = glint_real_of(
+    f->lights.sets.step = glint_real_of(
         glint_frame_codes_light(f, image, GLINT_FRAME_STEP_CODES));
     return (struct glint_flare_frame){
         .lens = f->lens,
-        .wave = f->wave,
+        .wave = f->lights.wave,
         .n_waves = glint_frame_has_sets(f) ? all_waves(f->setup)
                                            : f->setup->n_wavelengths,
-        .sets = glint_frame_has_sets(f) ? &f->sets : NULL,
+        .sets = glint_frame_has_sets(f) ? &f->lights.sets : NULL,
         .pixels_per_mm = glint_real_of(f->view.width / f->view.sensor_width_mm),
         .fineness = f->dials.fineness,
-        .uniform = f->uniform,
+        .uniform = f->picture.uniform,
         .only_ghost = f->only_ghost,
         .tints = f->tints,
         .faintest = glint_real_of(
             glint_frame_codes_light(f, image, f->dials.cull_codes)),
-        .dim = f->dim.log2_q8 ? &f->dim : NULL,
+        .dim = f->dim.table.log2_q8 ? &f->dim.table : NULL,
         .dimmest = glint_real_of(
             glint_frame_codes_light(f, image, f->dials.dim_codes)),
         .snap_codes_q8 = f->dials.snap_codes_q8,
-        .half = glint_dials_half(&f->dials) && f->can_half ? &glint_half : NULL,
-        .gain_q14 = f->gain_q14};
+        .half = glint_dials_half(&f->dials) && f->picture.can_half ? &glint_half
+                                                                   : NULL,
+        .gain_q14 = f->lights.gain_q14};
 }
 
 void glint_frame_retune(struct glint_frame *f)
 {
     f->cfg.irradiance_steps = f->dials.irradiance_steps;
-    if (f->block)
-        glint_flare_init(&f->flare, &f->cfg, f->block, f->bytes);
+    if (f->memory.block)
+        glint_flare_init(&f->memory.flare, &f->cfg, f->memory.block,
+                         f->memory.bytes);
 }
 
 /* Gives the flare the steps of irradiance and the shade of the dials. */
@@ -243,9 +247,9 @@ static enum glint_status plan(struct glint_frame *f,
     status = glint_frame_make_room(f);
     if (status != GLINT_OK)
         return status;
-    glint_flare_plan(f->flare, rays, f->light, f->n_lights);
-    f->n_plans++;
-    f->n_looked += glint_flare_looked(f->flare);
+    glint_flare_plan(f->memory.flare, rays, f->lights.light, f->lights.n);
+    f->plan.n_plans++;
+    f->plan.n_looked += glint_flare_looked(f->memory.flare);
     return GLINT_OK;
 }
 
@@ -266,13 +270,13 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
     const struct glint_dials asked = f->dials;
     enum glint_status status;
 
-    f->can_half = is_in_codes(f, image);
-    f->code_light = glint_frame_codes_light(f, image, 1);
-    f->scale = scale;
-    f->is_held = f->is_full = false;
-    f->tight = 0;
-    f->n_plans = f->n_binned = 0;
-    f->n_looked = 0;
+    f->picture.can_half = is_in_codes(f, image);
+    f->picture.code_light = glint_frame_codes_light(f, image, 1);
+    f->plan.scale = scale;
+    f->limits.is_held = f->limits.is_full = false;
+    f->limits.tight = 0;
+    f->plan.n_plans = f->plan.n_binned = 0;
+    f->plan.n_looked = 0;
     glint_budget_begin(&f->budget, &f->asked);
     times[0] = now(f);
     status = set_lights(f, lamps, n_lamps, scale);
@@ -281,8 +285,8 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
     if (status == GLINT_OK)
         status = glint_frame_still(f, near_q30(f, f->dials.still_px));
     while (status == GLINT_OK) {
-        f->rays = rays_of(f, image);
-        status = plan(f, &f->rays);
+        f->plan.rays = rays_of(f, image);
+        status = plan(f, &f->plan.rays);
         if (status != GLINT_OK)
             break;
         if (f->budget.ms > 0 && choose(f))
@@ -292,13 +296,13 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
             continue;
         }
         times[1] = times[2] = now(f);
-        glint_flare_bin(f->flare, stats);
-        f->n_binned++;
+        glint_flare_bin(f->memory.flare, stats);
+        f->plan.n_binned++;
         if (glint_frame_is_served(f, stats))
             break;
-        status = f->reserved ? GLINT_OK : glint_frame_regrow(f);
+        status = f->limits.reserved ? GLINT_OK : glint_frame_regrow(f);
     }
-    if (f->is_held)
+    if (f->limits.is_held)
         f->dials = asked;
     if (status != GLINT_OK)
         return status;
@@ -317,15 +321,15 @@ merged_lamps(struct glint_frame *f, const struct glint_lamp *lamps, int *n)
 
     if (set_lights(f, lamps, *n, 1) != GLINT_OK)
         return NULL;
-    if (f->n_lights == *n && f->n_more == 0)
+    if (f->lights.n == *n && f->lights.n_more == 0)
         return lamps;
-    *n = f->n_lights;
-    merged = realloc(f->merged, ((size_t)*n + 1) * sizeof *merged);
+    *n = f->lights.n;
+    merged = realloc(f->lights.merged, ((size_t)*n + 1) * sizeof *merged);
     if (!merged)
         return NULL;
-    f->merged = merged;
+    f->lights.merged = merged;
     for (int i = 0; i < *n; i++)
-        merged[i] = glint_lamp_of(&f->light[i]);
+        merged[i] = glint_lamp_of(&f->lights.light[i]);
     return merged;
 }
 
@@ -351,14 +355,14 @@ static enum glint_status model_scale(struct glint_frame *frame,
     struct glint_flare_frame rays;
     enum glint_status status;
 
-    frame->is_held = frame->can_half = false;
+    frame->limits.is_held = frame->picture.can_half = false;
     status = set_lights(frame, lamps, n_lamps, 1);
     rays = rays_of(frame, NULL);
     if (status == GLINT_OK)
         status = plan(frame, &rays);
     if (status != GLINT_OK)
         return status;
-    glint_flare_light(frame->flare, &brightest, &together);
+    glint_flare_light(frame->memory.flare, &brightest, &together);
     if (brightest.mantissa)
         *scale = glint_frame_scale_of(brightest.exponent + 31,
                                       together.exponent + 31);
@@ -392,11 +396,11 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
                                    struct glint_engine_report *report)
 {
     double times[5] = {0, 0, 0, 0, 0};
-    const size_t bytes = frame->bytes;
+    const size_t bytes = frame->memory.bytes;
     enum glint_status status;
 
     *report = (struct glint_engine_report){
-        .lights = n_lamps, .quality = -1, .arena_bytes = frame->bytes};
+        .lights = n_lamps, .quality = -1, .arena_bytes = frame->memory.bytes};
     /* without a veil the picture need not even be read */
     if (n_lamps == 0 && !glint_frame_has_veil(frame))
         return GLINT_OK;
@@ -422,23 +426,24 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
         report->unveiled = glint_frame_has_veil(frame) &&
                            frame->dials.flags & GLINT_DIAL_NO_VEIL;
         /* one that took memory, or reused the last, tells nothing of others */
-        if (frame->bytes == bytes && !report->stats.reused)
+        if (frame->memory.bytes == bytes && !report->stats.reused)
             glint_budget_note(&frame->budget, 1e3 * (times[4] - times[0]));
     }
-    report->beyond_lights = frame->n_beyond;
-    report->apart_lights = larger(frame->n_apart - frame->n_more, 1);
-    report->coarsened = frame->is_held;
-    report->tight = frame->tight > 0;
+    report->beyond_lights = frame->lights.n_beyond;
+    report->apart_lights =
+        larger(frame->lights.n_apart - frame->lights.n_more, 1);
+    report->coarsened = frame->limits.is_held;
+    report->tight = frame->limits.tight > 0;
     report->blurred = frame->cfg.stop.shade == &frame->shade;
-    report->plans = frame->n_plans;
-    report->binned = frame->n_binned;
-    report->looked = frame->n_looked;
+    report->plans = frame->plan.n_plans;
+    report->binned = frame->plan.n_binned;
+    report->looked = frame->plan.n_looked;
     report->drawn_lights =
-        larger(frame->n_lights - frame->n_more,
+        larger(frame->lights.n - frame->lights.n_more,
                frame->star.is_alone ? report->apart_lights : 1);
-    report->tiles = glint_flare_tiles(frame->flare);
-    report->held_samples = glint_flare_held(frame->flare);
-    report->arena_bytes = frame->bytes;
+    report->tiles = glint_flare_tiles(frame->memory.flare);
+    report->held_samples = glint_flare_held(frame->memory.flare);
+    report->arena_bytes = frame->memory.bytes;
     report->peak_bytes = glint_frame_bytes_used(frame, &report->stats);
     report->need_bytes = glint_frame_bytes_needed(frame, &report->stats);
     report->star_bytes = glint_frame_star_bytes(frame);
@@ -452,13 +457,13 @@ void glint_frame_set_still(struct glint_frame *frame, bool is_still,
     const struct glint_dials *const asked = &frame->asked;
 
     /* Whoever draws videos may have lowered the points. */
-    if (!is_still && !frame->is_still)
+    if (!is_still && !frame->picture.is_still)
         return;
-    frame->is_still = is_still;
+    frame->picture.is_still = is_still;
     frame->dials.area_points =
         is_still && more_points
             ? 1 + GLINT_AREA_STILL * (asked->area_points - 1)
             : asked->area_points;
-    frame->point_room =
+    frame->picture.point_room =
         is_still && more_lights ? GLINT_AREA_STILL_ROOM * asked->max_lights : 0;
 }

@@ -68,6 +68,79 @@ struct glint_frame_rays {
     void (*finish)(struct glint_frame *frame);
 };
 
+/* How the next picture is planned. */
+struct glint_frame_picture {
+    bool for_codes; /* true: a linear picture is planned as if it were in codes
+                     */
+    bool can_half;  /* true: the last picture was in codes */
+    bool is_still;  /* true: glint_frame_set_still() raised the points */
+    bool uniform;   /* true: all ghosts get the same grid */
+    double code_light; /* light of one of its codes near black; 0: linear */
+    int point_room; /* most lights that points of wide lamps may become, if that
+                       is more than max_lights and there are no more lamps than
+                       max_lights */
+};
+
+/* What a frame may take. */
+struct glint_frame_limits {
+    bool reserved;       /* true: memory must not grow */
+    bool is_full;        /* true: the block has reached its limit */
+    bool is_held;        /* true: the last frame was drawn coarser because of
+                            most_minsn */
+    int most_primitives; /* primitives that reserved memory has room for with
+                            one worker */
+    size_t most_bytes;   /* limit of the block for one light, if it is not
+                            reserved; 0: there is none */
+    double most_minsn;   /* limit of a plan for one light; 0: there is none */
+    double share;        /* factor on the limits of one light for all lights */
+    double tight; /* what grids of the last frame would have taken that were
+                     made coarser so that it does not, in bytes, or reserved in
+                     primitives; 0: none */
+    size_t tight_bytes; /* bytes that would have drawn these as they were */
+};
+
+/* The lights and wavelengths of the last frame. */
+struct glint_frame_lights {
+    struct glint_wave wave[GLINT_SET_WAVES];
+    struct glint_wave_sets sets;
+    struct glint_light *light; /* [capacity] */
+    int n, capacity;
+    int n_apart;  /* lights that can be told apart */
+    int n_beyond; /* lights left out before that, as they are beyond the model
+                   */
+    int n_more;   /* lights that are further points of a lamp */
+    /* Factors on the lights; NULL: none. */
+    const int32_t (*gain_q14)[3];
+    struct glint_lamp *merged; /* [n]: lamps to be traced, if some merged */
+    bool *seen; /* [GLINT_MAX_GHOSTS]: true for ghosts in the last frame */
+};
+
+/* What was planned last from a model. */
+struct glint_frame_plan {
+    struct glint_flare_frame rays;
+    double scale; /* factor on the lights */
+    /* Numbers of plans and of those that were binned, and of the rays that all
+     * plans looked at. */
+    int n_plans, n_binned;
+    long long n_looked;
+};
+
+/* How bright ghosts are, for an opening, pixels per mm, and three waves; no
+ * memory is taken before the dial asks for it. */
+struct glint_frame_dim {
+    struct glint_dim table;
+    double opening, size;
+    struct glint_wave wave[3];
+};
+
+struct glint_frame_memory {
+    struct glint_flare *flare;
+    void *traced;      /* state of the trace; NULL: there is none */
+    void *mem, *block; /* memory taken, or NULL; its aligned part, or the block
+                          that was given */
+    size_t bytes;      /* bytes of the block */
+};
+
 struct glint_frame {
     const struct glint_setup *setup;
     /* Model of the lens; NULL: rays come from TRACE. */
@@ -77,80 +150,29 @@ struct glint_frame {
     void *progress_ctx;
     glint_clock_fn *clock; /* NULL: nothing is timed */
     struct glint_view view;
-    struct glint_flare_config
-        cfg;                  /* sizes, tiles, weights, merging, stop,
-                                 reuse; the frame sets the capacities itself
-                               */
-    struct glint_dials dials; /* may be turned between frames */
-    struct glint_dials asked; /* the dials before a budget turned them */
-    int point_room; /* most lights that points of wide lamps may become, if that
-                       is more than max_lights and there are no more lamps than
-                       max_lights */
-    bool is_still;  /* true: glint_frame_set_still() raised the points */
+    struct glint_flare_config cfg; /* sizes, tiles, stop, reuse; the frame sets
+                                      the capacities itself */
+    struct glint_dials dials;      /* may be turned between frames */
+    struct glint_dials asked;      /* the dials before a budget turned them */
     double apart_px; /* pixels: lights whose images are nearer are merged */
-    bool for_codes;  /* true: a linear picture is planned as if it were in codes
-                      */
-    bool can_half;   /* true: the last picture was in codes */
-    double code_light; /* light of one of its codes near black; 0: linear */
-    bool uniform;      /* true: all ghosts get the same grid */
-    int only_ghost;    /* index of the only ghost drawn; -1: all are */
+    int only_ghost;  /* index of the only ghost drawn; -1: all are */
     /* As in struct glint_flare_frame; the caller's. The exposure is chosen as
      * if there were none. */
     const struct glint_tint *tints;
-    struct glint_shade shade; /* the stop's, without its finest tables */
-    struct glint_frame_star star;
-    struct glint_frame_veil veil;
     /* What is known of the lamps that are drawn; NULL: nothing but what they
      * are themselves. */
     const struct glint_engine_lamp *known;
-    struct glint_still still; /* only for models that are reused */
-    /* Factors on the lights of the frame; NULL: none. */
-    const int32_t (*gain_q14)[3];
+    struct glint_shade shade; /* the stop's, without its finest tables */
+    struct glint_frame_picture picture;
+    struct glint_frame_star star;
+    struct glint_frame_veil veil;
+    struct glint_still still;   /* only for models that are reused */
     struct glint_budget budget; /* turns the dials; only for models */
-    bool reserved;              /* true: memory must not grow */
-    int most_primitives; /* primitives that reserved memory has room for with
-                            one worker */
-    size_t most_bytes;   /* limit of the block for one light, if it is not
-                            reserved; 0: there is none */
-    double share;        /* factor on the limits of one light for all lights */
-    bool is_full;        /* true: the block has reached its limit */
-    double tight; /* what grids of the last frame would have taken that were
-                     made coarser so that it does not, in bytes, or reserved in
-                     primitives; 0: none */
-    size_t tight_bytes; /* bytes that would have drawn these as they were */
-    double most_minsn;  /* limit of a plan for one light; 0: there is none */
-    bool is_held; /* true: the last frame was drawn coarser because of that
-                     limit */
-    /* Numbers of plans of the last frame and of those that were binned, and of
-     * the rays that all plans looked at. */
-    int n_plans, n_binned;
-    long long n_looked;
-
-    struct glint_wave wave[GLINT_SET_WAVES];
-    struct glint_wave_sets sets;
-    struct glint_light *light;
-    int n_lights, light_capacity;
-    int n_apart;  /* lights that can be told apart */
-    int n_beyond; /* lights left out before that, as they are beyond the model
-                   */
-    int n_more;   /* lights that are further points of a lamp */
-    /* Frame that was planned last from a model. */
-    struct glint_flare_frame rays;
-    double scale; /* factor on the lights of the last frame */
-    /* How bright ghosts are, for an opening, pixels per mm, and three waves; no
-     * memory is taken before the dial asks for it. */
-    struct glint_dim dim;
-    double dim_opening, dim_size;
-    struct glint_wave dim_wave[3];
-    bool *seen; /* [GLINT_MAX_GHOSTS]: true for ghosts in the last frame */
-
-    /* [n_lights]: lamps to be traced, if some merged. */
-    struct glint_lamp *merged;
-    void *traced; /* state of the trace; NULL: there is none */
-    struct glint_flare *flare;
-    void *mem, *block; /* memory taken, or NULL; its aligned part, or the block
-                          that was given */
-    size_t bytes;      /* bytes of the block */
+    struct glint_frame_limits limits;
+    struct glint_frame_lights lights;
+    struct glint_frame_plan plan;
+    struct glint_frame_dim dim;
+    struct glint_frame_memory memory;
 };
 
 void glint_frame_init(struct glint_frame *frame,

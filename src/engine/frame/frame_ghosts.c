@@ -26,32 +26,33 @@ static bool note_ghost(struct glint_frame *frame, int ghost)
 {
     const int number = glint_frame_number(frame->setup, ghost);
 
-    if (frame->seen[number])
+    if (frame->lights.seen[number])
         return false;
-    return frame->seen[number] = true;
+    return frame->lights.seen[number] = true;
 }
 
 int glint_frame_count_ghosts(struct glint_frame *frame, int n)
 {
     int n_ghosts = 0;
 
-    memset(frame->seen, 0,
-           (size_t)frame->setup->n_ghosts * sizeof *frame->seen);
+    memset(frame->lights.seen, 0,
+           (size_t)frame->setup->n_ghosts * sizeof *frame->lights.seen);
     for (int i = 0; i < n; i++)
-        n_ghosts +=
-            note_ghost(frame, frame->lens ? glint_flare_ghost(frame->flare, i)
-                                          : frame->trace->ghost(frame, i));
+        n_ghosts += note_ghost(
+            frame, frame->lens ? glint_flare_ghost(frame->memory.flare, i)
+                               : frame->trace->ghost(frame, i));
     return n_ghosts;
 }
 
 enum glint_status glint_frame_hold_dim(struct glint_frame *f)
 {
-    f->dim.method = &glint_dim_method;
-    if (!f->dim.log2_q8)
-        f->dim.log2_q8 = calloc((size_t)GLINT_DIM_NODES * GLINT_DIM_VALUES *
-                                    ((size_t)f->setup->n_ghosts + 1),
-                                sizeof *f->dim.log2_q8);
-    return f->dim.log2_q8 ? GLINT_OK : GLINT_E_MEMORY;
+    f->dim.table.method = &glint_dim_method;
+    if (!f->dim.table.log2_q8)
+        f->dim.table.log2_q8 =
+            calloc((size_t)GLINT_DIM_NODES * GLINT_DIM_VALUES *
+                       ((size_t)f->setup->n_ghosts + 1),
+                   sizeof *f->dim.table.log2_q8);
+    return f->dim.table.log2_q8 ? GLINT_OK : GLINT_E_MEMORY;
 }
 
 static bool is_same_wave(const struct glint_wave *a, const struct glint_wave *b)
@@ -65,23 +66,23 @@ static bool is_same_wave(const struct glint_wave *a, const struct glint_wave *b)
 void glint_frame_check_dim(struct glint_frame *f)
 {
     const double size = f->view.width / f->view.sensor_width_mm;
-    bool same = f->dim_opening == f->setup->opening && f->dim_size == size;
+    bool same = f->dim.opening == f->setup->opening && f->dim.size == size;
 
     for (int i = 0; i < 3; i++)
-        same = same && is_same_wave(&f->dim_wave[i], &f->wave[i]);
+        same = same && is_same_wave(&f->dim.wave[i], &f->lights.wave[i]);
     if (same)
         return;
-    memset(f->dim.done, 0, sizeof f->dim.done);
-    memcpy(f->dim_wave, f->wave, sizeof f->dim_wave);
-    f->dim_opening = f->setup->opening;
-    f->dim_size = size;
+    memset(f->dim.table.done, 0, sizeof f->dim.table.done);
+    memcpy(f->dim.wave, f->lights.wave, sizeof f->dim.wave);
+    f->dim.opening = f->setup->opening;
+    f->dim.size = size;
 }
 
 enum glint_status glint_frame_hold_ghosts(struct glint_frame *f)
 {
-    if (!f->seen)
-        f->seen = calloc(GLINT_MAX_GHOSTS, sizeof *f->seen);
-    if (f->seen && f->lens && f->dials.dim_codes > 0)
+    if (!f->lights.seen)
+        f->lights.seen = calloc(GLINT_MAX_GHOSTS, sizeof *f->lights.seen);
+    if (f->lights.seen && f->lens && f->dials.dim_codes > 0)
         return glint_frame_hold_dim(f);
-    return f->seen ? GLINT_OK : GLINT_E_MEMORY;
+    return f->lights.seen ? GLINT_OK : GLINT_E_MEMORY;
 }

@@ -28,7 +28,7 @@ static inline double now(const struct glint_frame *f)
 static inline bool is_in_codes(const struct glint_frame *f,
                                const struct glint_image *image)
 {
-    return image->format != GLINT_LINEAR_Q20 || f->for_codes;
+    return image->format != GLINT_LINEAR_Q20 || f->picture.for_codes;
 }
 
 /* frame_units.c: returns the pixels that a tangent of 1 takes on the axis. */

@@ -32,13 +32,13 @@ enum glint_status glint_frame_hold_lights(struct glint_frame *f, int n)
 {
     struct glint_light *light;
 
-    if (n <= f->light_capacity)
+    if (n <= f->lights.capacity)
         return GLINT_OK;
-    light = realloc(f->light, (size_t)n * sizeof *f->light);
+    light = realloc(f->lights.light, (size_t)n * sizeof *f->lights.light);
     if (!light)
         return GLINT_E_MEMORY;
-    f->light = light;
-    f->light_capacity = n;
+    f->lights.light = light;
+    f->lights.capacity = n;
     return GLINT_OK;
 }
 
@@ -61,7 +61,7 @@ static int count_bundles(const struct glint_frame *f, int n_lights)
 
 static size_t most_bytes(const struct glint_frame *f)
 {
-    return (size_t)((double)f->most_bytes * f->share);
+    return (size_t)((double)f->limits.most_bytes * f->limits.share);
 }
 
 /* Returns a configuration in which what was binned finds room. */
@@ -133,26 +133,27 @@ static double primitives_of(const struct glint_flare_stats *s)
 static bool hold_room(struct glint_frame *f, const struct glint_flare_stats *s)
 {
     const double most =
-        f->reserved ? f->most_primitives : (double)most_bytes(f);
+        f->limits.reserved ? f->limits.most_primitives : (double)most_bytes(f);
     const int fineness = f->dials.fineness;
     double fixed = 0;
-    const double need = f->reserved ? primitives_of(s) : bytes_of(f, s, &fixed);
+    const double need =
+        f->limits.reserved ? primitives_of(s) : bytes_of(f, s, &fixed);
 
     if (most <= 0 || f->budget.ms > 0 || need <= most ||
         fineness <= LEAST_FINENESS ||
-        (f->tight > 0 && need > NO_GAIN * f->tight))
+        (f->limits.tight > 0 && need > NO_GAIN * f->limits.tight))
         return false;
-    if (f->tight <= 0)
-        f->tight_bytes = glint_frame_bytes_needed(f, s);
-    f->tight = need;
+    if (f->limits.tight <= 0)
+        f->limits.tight_bytes = glint_frame_bytes_needed(f, s);
+    f->limits.tight = need;
     f->dials.fineness = larger(
         LEAST_FINENESS,
         smaller(fineness - 1,
                 (int)(fineness * sqrt(fmax(0, (ROOM_SHARE * most - fixed) /
                                                   (need - fixed))))));
-    if (!f->reserved)
+    if (!f->limits.reserved)
         fit(f, (size_t)most);
-    return f->is_held = true;
+    return f->limits.is_held = true;
 }
 
 bool glint_frame_is_served(struct glint_frame *f,
@@ -161,11 +162,11 @@ bool glint_frame_is_served(struct glint_frame *f,
     struct glint_flare_config *c = &f->cfg;
     const int bundles = bundles_within(s->need_bundles);
 
-    if (f->is_full)
+    if (f->limits.is_full)
         return true;
     if (hold_room(f, s))
         return false;
-    if (f->reserved)
+    if (f->limits.reserved)
         return true;
     if (bundles <= c->max_bundles && s->need_primitives <= c->max_primitives &&
         s->need_refs <= c->max_refs)
@@ -185,23 +186,23 @@ enum glint_status glint_frame_regrow(struct glint_frame *f)
     const size_t most = most_bytes(f);
     size_t bytes = glint_flare_bytes(&f->cfg);
 
-    if (f->lens && !f->reserved && most && bytes > most) {
+    if (f->lens && !f->limits.reserved && most && bytes > most) {
         if (!fit(f, most))
             return GLINT_E_MEMORY;
-        f->is_full = true;
+        f->limits.is_full = true;
         bytes = glint_flare_bytes(&f->cfg);
     }
 
     /* Frames of a video that are all drawn coarser keep theirs. */
-    if (!f->block || f->bytes != bytes) {
-        free(f->mem);
-        f->bytes = 0;
-        f->block = glint_block_take(bytes, &f->mem);
-        if (!f->block)
+    if (!f->memory.block || f->memory.bytes != bytes) {
+        free(f->memory.mem);
+        f->memory.bytes = 0;
+        f->memory.block = glint_block_take(bytes, &f->memory.mem);
+        if (!f->memory.block)
             return GLINT_E_MEMORY;
-        f->bytes = bytes;
+        f->memory.bytes = bytes;
     }
-    return glint_flare_init(&f->flare, &f->cfg, f->block, bytes);
+    return glint_flare_init(&f->memory.flare, &f->cfg, f->memory.block, bytes);
 }
 
 /* Takes room for N lights that stand still. */
@@ -230,19 +231,19 @@ enum glint_status glint_frame_still(struct glint_frame *f, int32_t near_q30)
     int n;
 
     if (!f->cfg.reuse || f->dials.still_px <= 0 ||
-        (f->reserved && !f->cfg.reuse_gains))
+        (f->limits.reserved && !f->cfg.reuse_gains))
         return GLINT_OK;
-    if (!f->reserved && hold_still(f, f->light_capacity) != GLINT_OK)
+    if (!f->limits.reserved && hold_still(f, f->lights.capacity) != GLINT_OK)
         return GLINT_E_MEMORY;
-    if (s->n > larger(f->n_lights, f->dials.max_lights))
+    if (s->n > larger(f->lights.n, f->dials.max_lights))
         s->n = 0;
-    n = glint_lights_still(s, f->light, f->n_lights, near_q30);
+    n = glint_lights_still(s, f->lights.light, f->lights.n, near_q30);
     if (n == 0)
         return GLINT_OK;
-    memcpy(f->light, s->light, (size_t)n * sizeof *s->light);
-    f->n_more += n - f->n_lights;
-    f->n_lights = n;
-    f->gain_q14 = (const int32_t(*)[3])s->gain_q14;
+    memcpy(f->lights.light, s->light, (size_t)n * sizeof *s->light);
+    f->lights.n_more += n - f->lights.n;
+    f->lights.n = n;
+    f->lights.gain_q14 = (const int32_t(*)[3])s->gain_q14;
     return GLINT_OK;
 }
 
@@ -250,21 +251,21 @@ enum glint_status glint_frame_still(struct glint_frame *f, int32_t near_q30)
  */
 static bool has_room(const struct glint_frame *f, int n)
 {
-    return f->block && n <= f->cfg.max_bundles &&
-           (!f->cfg.reuse || f->n_lights <= f->cfg.reuse_lights) &&
-           (!f->gain_q14 || f->cfg.reuse_gains);
+    return f->memory.block && n <= f->cfg.max_bundles &&
+           (!f->cfg.reuse || f->lights.n <= f->cfg.reuse_lights) &&
+           (!f->lights.gain_q14 || f->cfg.reuse_gains);
 }
 
 enum glint_status glint_frame_make_room(struct glint_frame *f)
 {
-    const int bundles = count_bundles(f, f->n_lights);
+    const int bundles = count_bundles(f, f->lights.n);
 
-    if (f->reserved || has_room(f, bundles))
+    if (f->limits.reserved || has_room(f, bundles))
         return GLINT_OK;
     f->cfg.max_bundles = larger(bundles, f->cfg.max_bundles);
     if (f->cfg.reuse)
-        f->cfg.reuse_lights = larger(f->n_lights, f->cfg.reuse_lights);
-    f->cfg.reuse_gains |= f->gain_q14 != NULL;
+        f->cfg.reuse_lights = larger(f->lights.n, f->cfg.reuse_lights);
+    f->cfg.reuse_gains |= f->lights.gain_q14 != NULL;
     return glint_frame_regrow(f);
 }
 
@@ -288,7 +289,7 @@ enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
     f->cfg.reuse_gains = f->cfg.reuse && f->dials.still_px > 0;
     f->cfg.workers = NULL;
     fit(f, bytes);
-    f->most_primitives = f->cfg.max_primitives;
+    f->limits.most_primitives = f->cfg.max_primitives;
     f->cfg.workers = workers;
     if (!fit(f, bytes))
         return GLINT_E_MEMORY;
@@ -298,12 +299,12 @@ enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
         glint_frame_hold_lights(f, n_lamps) != GLINT_OK ||
         (f->cfg.reuse_gains && hold_still(f, f->cfg.reuse_lights) != GLINT_OK))
         return GLINT_E_MEMORY;
-    f->reserved = true;
+    f->limits.reserved = true;
     if (!mem)
         return glint_frame_regrow(f);
-    f->block = mem;
-    f->bytes = bytes;
-    return glint_flare_init(&f->flare, &f->cfg, mem, bytes);
+    f->memory.block = mem;
+    f->memory.bytes = bytes;
+    return glint_flare_init(&f->memory.flare, &f->cfg, mem, bytes);
 }
 
 size_t glint_frame_bytes_used(const struct glint_frame *f,
@@ -323,7 +324,8 @@ size_t glint_frame_bytes_needed(const struct glint_frame *f,
 {
     const struct glint_flare_config needed = needed_by(f, s);
 
-    return f->tight > 0 ? f->tight_bytes : glint_flare_bytes(&needed);
+    return f->limits.tight > 0 ? f->limits.tight_bytes
+                               : glint_flare_bytes(&needed);
 }
 
 /* Returns the millions of instructions that a plan takes for looking at N rays.
@@ -335,7 +337,7 @@ static double looking_minsn(double n)
 
 static double bound_of(const struct glint_frame *f)
 {
-    return f->most_minsn * f->share;
+    return f->limits.most_minsn * f->limits.share;
 }
 
 bool glint_frame_hold_looking(struct glint_frame *f)
@@ -345,16 +347,16 @@ bool glint_frame_hold_looking(struct glint_frame *f)
                                               : f->setup->n_wavelengths;
     const double light =
         looking_minsn((double)RAYS * f->setup->n_ghosts * waves);
-    const int n = f->n_lights;
+    const int n = f->lights.n;
 
-    if (f->most_minsn <= 0)
+    if (f->limits.most_minsn <= 0)
         return false;
-    while (f->n_lights > 1 && f->n_lights * light > bound_of(f) / 2)
-        f->n_lights--;
-    if (f->n_lights == n)
+    while (f->lights.n > 1 && f->lights.n * light > bound_of(f) / 2)
+        f->lights.n--;
+    if (f->lights.n == n)
         return false;
-    f->dials.max_lights = f->n_lights;
-    return f->is_held = true;
+    f->dials.max_lights = f->lights.n;
+    return f->limits.is_held = true;
 }
 
 /* Returns whether dust can be blurred further, and is most of COST. */
@@ -398,11 +400,11 @@ static double hold_grids(struct glint_frame *f,
 static double hold_waves(struct glint_frame *f, double minsn)
 {
     enum { WAVES = 3 };
-    const double jobs = (double)f->n_lights * f->setup->n_ghosts;
+    const double jobs = (double)f->lights.n * f->setup->n_ghosts;
     struct glint_planned planned;
     int n = 0;
 
-    while (glint_flare_planned(f->flare, n, &planned))
+    while (glint_flare_planned(f->memory.flare, n, &planned))
         n++;
     f->dials.dispersion_q8 = 0;
     return minsn * fmin(1, WAVES * jobs / fmax(1, n));
@@ -413,15 +415,16 @@ static double hold_waves(struct glint_frame *f, double minsn)
 struct glint_cost_plan glint_frame_plan(const struct glint_frame *f)
 {
     return (struct glint_cost_plan){
-        .flare = f->flare,
+        .flare = f->memory.flare,
         .width = f->cfg.width,
         .height = f->cfg.height,
         .n_star = f->star.is_set ? f->star.pixels : 0,
         .n_veil = glint_frame_veil_pixels(f),
-        .n_looked_at = f->flare ? (double)glint_flare_looked(f->flare) : 0,
-        .can_half = f->can_half,
-        .can_dim = f->dim.log2_q8 && f->setup->n_wavelengths == 3,
-        .code = f->code_light,
+        .n_looked_at =
+            f->memory.flare ? (double)glint_flare_looked(f->memory.flare) : 0,
+        .can_half = f->picture.can_half,
+        .can_dim = f->dim.table.log2_q8 && f->setup->n_wavelengths == 3,
+        .code = f->picture.code_light,
         .shade = f->setup->dirt ? &f->setup->dirt->shade : NULL,
         .dials = f->dials};
 }
@@ -431,27 +434,27 @@ bool glint_frame_hold_work(struct glint_frame *f)
     enum { MOST_PLANS = 12 };
     const struct glint_cost_plan plan = glint_frame_plan(f);
     const struct glint_cost cost = glint_cost_of(&plan, &f->dials);
-    const double spent = looking_minsn((double)f->n_looked);
-    const double again = spent / f->n_plans;
+    const double spent = looking_minsn((double)f->plan.n_looked);
+    const double again = spent / f->plan.n_plans;
     const double left = bound_of(f) - spent;
     const struct glint_dials before = f->dials;
     double then;
 
-    if (f->most_minsn <= 0 || f->n_plans >= MOST_PLANS ||
+    if (f->limits.most_minsn <= 0 || f->plan.n_plans >= MOST_PLANS ||
         glint_cost_minsn(&cost) <= left)
         return false;
     then = hold_grids(f, &plan, left - again);
     if (then > left - again && glint_frame_has_sets(f))
         then = hold_waves(f, then);
-    if (then > left - again && f->n_lights > 1)
+    if (then > left - again && f->lights.n > 1)
         f->dials.max_lights = larger(
-            1, (int)(f->n_lights * fmin(0.75, fmax(0, left / (then + again)))));
+            1, (int)(f->lights.n * fmin(0.75, fmax(0, left / (then + again)))));
     if (f->dials.fineness == before.fineness &&
         f->dials.dust_log2 == before.dust_log2 &&
         f->dials.dispersion_q8 == before.dispersion_q8 &&
         f->dials.max_lights == before.max_lights)
         return false;
-    return f->is_held = true;
+    return f->limits.is_held = true;
 }
 
 /* ------------------------------------------------------------------- dust */

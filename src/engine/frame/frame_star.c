@@ -310,13 +310,13 @@ void glint_frame_paint(struct glint_frame *frame,
         const struct glint_pass star =
             glint_star_pass_on(frame->star.star, image);
 
-        glint_veil_draw(frame->veil.veil, &star, frame->flare, image);
+        glint_veil_draw(frame->veil.veil, &star, frame->memory.flare, image);
     } else if (frame->veil.is_set)
-        glint_veil_draw(frame->veil.veil, NULL, frame->flare, image);
+        glint_veil_draw(frame->veil.veil, NULL, frame->memory.flare, image);
     else if (frame->star.is_set)
-        glint_star_draw(frame->star.star, frame->flare, image);
+        glint_star_draw(frame->star.star, frame->memory.flare, image);
     else
-        glint_flare_draw(frame->flare, image);
+        glint_flare_draw(frame->memory.flare, image);
 }
 
 /* Returns the largest channel of the powers of all lamps. */
@@ -349,7 +349,7 @@ enum glint_status glint_frame_star_alone(struct glint_frame *frame,
     status = glint_frame_star_set(frame, lamps, n, scale, &layer);
     if (status != GLINT_OK || !frame->star.is_set)
         return status;
-    glint_star_draw_alone(frame->star.star, frame->flare, &layer);
+    glint_star_draw_alone(frame->star.star, frame->memory.flare, &layer);
     for (size_t i = 0; i < samples; i++)
         rgb[i] += (float)(linear_q20[i] * 0x1p-20 / scale * gain);
     return GLINT_OK;

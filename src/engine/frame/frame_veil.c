@@ -320,7 +320,7 @@ void glint_frame_veil_add(struct glint_frame *f, double times,
         return;
     glint_image_place(&layer, linear_q20);
     memset(linear_q20, 0, samples * sizeof *linear_q20);
-    glint_veil_draw_alone(f->veil.veil, f->flare, &layer);
+    glint_veil_draw_alone(f->veil.veil, f->memory.flare, &layer);
     for (size_t i = 0; i < samples; i++)
         rgb[i] += (float)(linear_q20[i] * 0x1p-20 * times);
 }

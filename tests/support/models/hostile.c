@@ -449,14 +449,14 @@ static double work_of(const struct glint_frame *f,
 {
     double count[GLINT_COST_KINDS] = {
         [GLINT_COST_LOOKED_AT] = (double)r->looked,
-        [GLINT_COST_BUNDLES] = (double)f->flare->n_bundles * r->binned,
+        [GLINT_COST_BUNDLES] = (double)f->memory.flare->n_bundles * r->binned,
         [GLINT_COST_EDGES] = (double)r->stats.need_primitives * r->binned,
-        [GLINT_COST_ROWS] = rows_of(f->flare),
+        [GLINT_COST_ROWS] = rows_of(f->memory.flare),
         [GLINT_COST_LIT] = (double)r->tiles * (1 << 2 * f->cfg.tile_log2)};
     double work = 0;
 
-    for (int i = 0; i < f->flare->n_bundles; i++) {
-        const double n = f->flare->bundle[i].n_cells + 1.;
+    for (int i = 0; i < f->memory.flare->n_bundles; i++) {
+        const double n = f->memory.flare->bundle[i].n_cells + 1.;
 
         count[GLINT_COST_VERTICES] += n * n * r->binned;
     }
@@ -507,9 +507,9 @@ static bool draw(const struct hostile_scene *scene, struct glint_frame *frame,
                    : report.stats.primitives    ? HOSTILE_DRAWN
                                                 : HOSTILE_EMPTY,
         .minsn = work_of(frame, &report),
-        .most_minsn = frame->most_minsn * frame->share,
+        .most_minsn = frame->limits.most_minsn * frame->limits.share,
         .bytes = (double)report.arena_bytes,
-        .most_bytes = (double)frame->most_bytes * frame->share,
+        .most_bytes = (double)frame->limits.most_bytes * frame->limits.share,
         .plans = report.plans};
     return true;
 }

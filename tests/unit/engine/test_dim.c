@@ -143,13 +143,13 @@ static double light_of(double codes)
 
     stage.frame.dials.dim_codes = codes;
     stage.frame.dials.cull_codes = 1e-3;
-    stage.frame.for_codes = true;
+    stage.frame.picture.for_codes = true;
     memset(light_q20, 0, sizeof light_q20);
     glint_image_place(&image, light_q20);
     assert_int_equal(
         glint_frame_draw(&stage.frame, lamps, LIGHTS, 1, &image, &stage.drawn),
         GLINT_OK);
-    stage.frame.for_codes = false;
+    stage.frame.picture.for_codes = false;
     for (int i = 0; i < 3 * W * H; i++)
         sum += light_q20[i];
     return sum;
@@ -192,8 +192,8 @@ static void test_shared_rays(void **state)
     for (int light = 0; light < LIGHTS; light++)
         for (int ghost = 0; ghost < stage.of_model.n_ghosts; ghost++)
             for (int wave = 0; wave < 3; wave++) {
-                glint_flare_account(stage.frame.flare, ghost, light, wave,
-                                    &account);
+                glint_flare_account(stage.frame.memory.flare, ghost, light,
+                                    wave, &account);
                 of[account.outcome]++;
             }
     assert_int_equal(of[GLINT_OUTCOME_DRAWN] + of[GLINT_OUTCOME_EMPTY],

@@ -86,7 +86,7 @@ static void make(struct glint_frame *frame)
 static void make_even(struct glint_frame *frame, int fineness)
 {
     make(frame);
-    frame->uniform = true;
+    frame->picture.uniform = true;
     frame->dials.fineness = fineness;
 }
 
@@ -135,7 +135,7 @@ static void test_same_as_grown(void **state)
     assert_int_equal(
         glint_frame_reserve(&reserved, NULL, 8 << 20, N_LAMPS, N_LAMPS),
         GLINT_OK);
-    assert_true(reserved.bytes <= 8 << 20);
+    assert_true(reserved.memory.bytes <= 8 << 20);
     for (size_t i = 0; i < sizeof n_of / sizeof *n_of; i++) {
         n_asked = 0;
         draw(&reserved, n_of[i], got, &report);
@@ -150,7 +150,7 @@ static void test_same_as_grown(void **state)
         assert_int_equal(report.stats.dropped_cells, 0);
         assert_int_equal(report.ghosts, other.ghosts);
         if (n_of[i])
-            assert_true(report.peak_bytes <= reserved.bytes);
+            assert_true(report.peak_bytes <= reserved.memory.bytes);
         glint_frame_finish(&grown);
     }
     draw(&reserved, 0, want, &report);
@@ -181,7 +181,7 @@ static void test_too_little(void **state)
             glint_frame_finish(&frame);
             break;
         }
-        assert_true(frame.bytes <= bytes);
+        assert_true(frame.memory.bytes <= bytes);
         n_asked = 0;
         draw(&frame, N_LAMPS, got, &report);
         assert_int_equal(n_asked, 0);
@@ -211,23 +211,24 @@ static void test_bounds(void **state)
     make(&frame);
     draw(&frame, N_LAMPS, want, &full);
     assert_false(full.coarsened);
-    frame.most_minsn = 1;
+    frame.limits.most_minsn = 1;
     draw(&frame, N_LAMPS, got, &held);
     assert_true(held.coarsened);
     assert_int_equal(held.drawn_lights, 1);
     assert_true(held.stats.primitives < full.stats.primitives);
-    frame.most_minsn = 0;
+    frame.limits.most_minsn = 0;
     draw(&frame, N_LAMPS, got, &held);
     assert_false(held.coarsened);
     assert_memory_equal(got, want, BYTES);
     glint_frame_finish(&frame);
     make(&frame);
-    frame.most_bytes = full.need_bytes * 3 / 4; /* the arena is 1.25 of it */
+    frame.limits.most_bytes =
+        full.need_bytes * 3 / 4; /* the arena is 1.25 of it */
     draw(&frame, N_LAMPS, got, &held);
-    assert_true(held.arena_bytes <= frame.most_bytes * 5 / 4);
+    assert_true(held.arena_bytes <= frame.limits.most_bytes * 5 / 4);
     assert_true(held.stats.dropped_bundles > 0 && held.stats.bundles > 0);
     assert_int_equal(held.need_bytes, full.need_bytes);
-    frame.most_bytes = 0;
+    frame.limits.most_bytes = 0;
     draw(&frame, N_LAMPS, got, &held);
     assert_int_equal(held.stats.dropped_bundles, 0);
     assert_memory_equal(got, want, BYTES);
@@ -248,10 +249,10 @@ static void test_tight(void **state)
     assert_false(full.tight);
     glint_frame_finish(&frame);
     make_even(&frame, 64);
-    frame.most_bytes = full.need_bytes * 3 / 4;
+    frame.limits.most_bytes = full.need_bytes * 3 / 4;
     draw(&frame, N_LAMPS, coarse, &held);
     assert_true(held.coarsened && held.tight);
-    assert_true(held.arena_bytes <= frame.most_bytes * 5 / 4);
+    assert_true(held.arena_bytes <= frame.limits.most_bytes * 5 / 4);
     assert_int_equal(held.stats.dropped_bundles, 0);
     assert_int_equal(held.ghosts, full.ghosts);
     assert_true(held.stats.primitives < full.stats.primitives);
@@ -260,7 +261,7 @@ static void test_tight(void **state)
     draw(&frame, N_LAMPS, got, &held);
     assert_int_equal(n_asked, 0);
     assert_memory_equal(got, coarse, BYTES);
-    frame.most_bytes = 0;
+    frame.limits.most_bytes = 0;
     draw(&frame, N_LAMPS, got, &held);
     assert_false(held.coarsened || held.tight);
     assert_memory_equal(got, want, BYTES);
@@ -277,7 +278,7 @@ static bool is_tight(int n, size_t bytes, uint8_t rgb[BYTES],
     shuffle_init(&shuffle, n, 7);
     make_even(&frame, 192);
     frame.cfg.workers = &shuffle.workers;
-    frame.most_bytes = bytes;
+    frame.limits.most_bytes = bytes;
     draw(&frame, N_LAMPS, rgb, report);
     glint_frame_finish(&frame);
     return report->tight;
@@ -496,14 +497,14 @@ static void test_room_for_points(void **state)
         make(&frame);
         frame.dials.max_lights = setting[k].max_lights;
         frame.dials.area_points = 61;
-        frame.point_room = setting[k].point_room;
+        frame.picture.point_room = setting[k].point_room;
         if (setting[k].reserved)
             assert_int_equal(glint_frame_reserve(&frame, NULL, 16 << 20, 100,
                                                  setting[k].max_lights),
                              GLINT_OK);
         assert_int_equal(
             glint_frame_draw_alone(&frame, wide, 3, 1, rgb, &report), GLINT_OK);
-        assert_in_range(frame.n_lights, setting[k].least, setting[k].most);
+        assert_in_range(frame.lights.n, setting[k].least, setting[k].most);
         glint_frame_finish(&frame);
     }
 }

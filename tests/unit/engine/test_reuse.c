@@ -201,7 +201,7 @@ static bool turn(int k)
         reusing.dials.dim_codes = fresh.dials.dim_codes = 1;
         return true;
     case 12:
-        reusing.uniform = fresh.uniform = true;
+        reusing.picture.uniform = fresh.picture.uniform = true;
         return true;
     case 13:
         reusing.tints = fresh.tints = NULL;
@@ -240,7 +240,7 @@ static void test_restricted(void **state)
     open_frames(0);
     draw(3);
     assert_true(draw(3));
-    glint_flare_keep(reusing.flare, -1, 1, -1);
+    glint_flare_keep(reusing.memory.flare, -1, 1, -1);
     assert_false(draw(3));
     assert_true(draw(3));
     close_frames();
@@ -388,7 +388,7 @@ static void test_moves(void **state)
     /* fewer lights than stand */
     reusing.dials.max_lights = fresh.dials.max_lights = 2;
     assert_false(draw_still(2, 1));
-    assert_int_equal(reusing.n_lights, 2);
+    assert_int_equal(reusing.lights.n, 2);
     close_frames();
 }
 

@@ -54,10 +54,10 @@ static int waves_of(struct glint_frame *frame, int ghost, int *n_drawn)
     int n = 0;
 
     *n_drawn = 0;
-    for (int wave = 0; wave < frame->rays.n_waves; wave++) {
+    for (int wave = 0; wave < frame->plan.rays.n_waves; wave++) {
         struct glint_account a;
 
-        glint_flare_account(frame->flare, ghost, 0, wave, &a);
+        glint_flare_account(frame->memory.flare, ghost, 0, wave, &a);
         n += a.outcome != GLINT_OUTCOME_OTHER_SET;
         *n_drawn += a.outcome == GLINT_OUTCOME_DRAWN ||
                     a.outcome == GLINT_OUTCOME_EMPTY;
@@ -205,13 +205,15 @@ static void test_little_room(void **state)
     assert_true(most > frame.cfg.max_bundles);
     bytes = glint_flare_bytes(&frame.cfg);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-    free(frame.mem);
-    frame.mem = mem;
-    frame.bytes = bytes;
-    assert_int_equal(glint_flare_init(&frame.flare, &frame.cfg, mem, bytes),
-                     GLINT_OK);
-    glint_flare_plan(frame.flare, &frame.rays, frame.light, frame.n_lights);
-    glint_flare_bin(frame.flare, &stats);
+    free(frame.memory.mem);
+    frame.memory.mem = mem;
+    frame.memory.bytes = bytes;
+    assert_int_equal(
+        glint_flare_init(&frame.memory.flare, &frame.cfg, mem, bytes),
+        GLINT_OK);
+    glint_flare_plan(frame.memory.flare, &frame.plan.rays, frame.lights.light,
+                     frame.lights.n);
+    glint_flare_bin(frame.memory.flare, &stats);
     assert_int_equal(stats.need_bundles, most);
     assert_int_equal(stats.dropped_bundles, 0);
     assert_true(stats.bundles <= 4 * frame.setup->n_ghosts);

@@ -176,7 +176,7 @@ static void test_barrels(void **state)
     open_text(narrow, 8);
     assert_true(stage_model(&stage, 1, 8));
     stage_view(&stage, WIDE, HIGH, 0);
-    stage.frame.uniform = true;
+    stage.frame.picture.uniform = true;
     stage.frame.dials.fineness = 128;
     assert_true(stage_linear(&stage, &lamp, 1, want));
     stage.frame.dials.fineness = 8;

@@ -104,13 +104,13 @@ static void add_angle(double theta_deg, struct offsets *o)
 
     for (int ghost = 0; ghost < stage.of_model.n_ghosts; ghost++) {
         f->only_ghost = ghost;
-        f->uniform = true;
+        f->picture.uniform = true;
         f->dials.fineness = 256;
         f->dials.irradiance_steps = 0;
         assert_true(stage_linear(&stage, &lamp, 1, finest));
         if (stage.drawn.stats.primitives == 0)
             continue;
-        f->uniform = false;
+        f->picture.uniform = false;
         for (int k = 0; k < ERRORS; k++) {
             f->dials =
                 glint_quality_at(glint_quality_for_error(error_px[k])).dials;

@@ -80,7 +80,7 @@ static void test_round_and_round(void **state)
             first[k] = hash;
         differ += hash != first[k % ROUND];
         if (k == 2 * ROUND - 1) {
-            bytes = heliar.frame.bytes;
+            bytes = heliar.frame.memory.bytes;
             resident = resident_kib();
         }
         if (extreme_long() && k % 1000 == 0)
@@ -96,7 +96,7 @@ static void test_round_and_round(void **state)
                                     : "runs: 600 frames, that differ from the "
                                       "first round's",
                                 differ, 0, "frames"));
-    assert_int_equal(heliar.frame.bytes, bytes);
+    assert_int_equal(heliar.frame.memory.bytes, bytes);
 #ifndef GLINT_SANITIZED
     /* stdio and the allocator may take this once, for any number of frames. */
     assert_true(extreme_at_most("runs: memory at the end, above the second "
