@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * embed LENS IN.ppm >OUT.ppm - the flare of the lamps in a picture, as glint
- * overlay --stop polygon:8 draws it. LENS is a baked model or, unless
- * EMBED_MODELS is defined, a lens table.
+ * overlay --stop polygon:8 --coating table draws it. LENS is a baked model or,
+ * unless EMBED_MODELS is defined, a lens table.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,8 +40,8 @@ int main(int argc, char **argv)
     struct glint_bake_options options;
     struct glint_bake_report baked;
 
-    if (glint_prescription_parse(&table, (char *)model, lens_bytes, argv[1],
-                                 &error) == GLINT_OK) {
+    if (argc == 3 && glint_prescription_parse(&table, (char *)model, lens_bytes,
+                                              argv[1], &error) == GLINT_OK) {
         glint_bake_defaults(&options);
         free(model);
         glint_bake(&table, &options, &model, &lens_bytes, &baked, &error);
