@@ -389,6 +389,33 @@ static int n_drawn(const struct glint_frame *f,
     return f->lens ? r->stats.bundles : f->trace->n_bundles(f);
 }
 
+/* Sets what REPORT says of lights, plans and memory of the frame that was
+ * drawn.
+ */
+static void report_on(struct glint_frame *frame,
+                      struct glint_engine_report *report)
+{
+    report->beyond_lights = frame->lights.n_beyond;
+    report->apart_lights =
+        larger(frame->lights.n_apart - frame->lights.n_more, 1);
+    report->coarsened = frame->limits.is_held;
+    report->tight = frame->limits.tight > 0;
+    report->blurred = frame->cfg.stop.shade == &frame->shade;
+    report->plans = frame->plan.n_plans;
+    report->binned = frame->plan.n_binned;
+    report->looked = frame->plan.n_looked;
+    report->drawn_lights =
+        larger(frame->lights.n - frame->lights.n_more,
+               frame->star.is_alone ? report->apart_lights : 1);
+    report->tiles = glint_flare_tiles(frame->memory.flare);
+    report->held_samples = glint_flare_held(frame->memory.flare);
+    report->arena_bytes = frame->memory.bytes;
+    report->peak_bytes = glint_frame_bytes_used(frame, &report->stats);
+    report->need_bytes = glint_frame_bytes_needed(frame, &report->stats);
+    report->star_bytes = glint_frame_star_bytes(frame);
+    report->ghosts = glint_frame_count_ghosts(frame, n_drawn(frame, report));
+}
+
 enum glint_status glint_frame_draw(struct glint_frame *frame,
                                    const struct glint_lamp *lamps, int n_lamps,
                                    double scale,
@@ -429,25 +456,7 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
         if (frame->memory.bytes == bytes && !report->stats.reused)
             glint_budget_note(&frame->budget, 1e3 * (times[4] - times[0]));
     }
-    report->beyond_lights = frame->lights.n_beyond;
-    report->apart_lights =
-        larger(frame->lights.n_apart - frame->lights.n_more, 1);
-    report->coarsened = frame->limits.is_held;
-    report->tight = frame->limits.tight > 0;
-    report->blurred = frame->cfg.stop.shade == &frame->shade;
-    report->plans = frame->plan.n_plans;
-    report->binned = frame->plan.n_binned;
-    report->looked = frame->plan.n_looked;
-    report->drawn_lights =
-        larger(frame->lights.n - frame->lights.n_more,
-               frame->star.is_alone ? report->apart_lights : 1);
-    report->tiles = glint_flare_tiles(frame->memory.flare);
-    report->held_samples = glint_flare_held(frame->memory.flare);
-    report->arena_bytes = frame->memory.bytes;
-    report->peak_bytes = glint_frame_bytes_used(frame, &report->stats);
-    report->need_bytes = glint_frame_bytes_needed(frame, &report->stats);
-    report->star_bytes = glint_frame_star_bytes(frame);
-    report->ghosts = glint_frame_count_ghosts(frame, n_drawn(frame, report));
+    report_on(frame, report);
     return GLINT_OK;
 }
 
