@@ -959,8 +959,12 @@ static enum glint_status save_converted(struct glint_kept *k,
 {
     const struct file_type *const type = type_of(out->name);
     struct glint_samples to;
-    enum glint_status status = convert(&to, from, type);
+    enum glint_status status;
 
+    if (!type)
+        return glint_error_report(error, GLINT_E_UNSUPPORTED, out->name,
+                                  "is of no type that is written");
+    status = convert(&to, from, type);
     if (status)
         return report_memory(error, out->name, to.width, to.height);
     say_losses(options, &to, from);

@@ -135,7 +135,7 @@ static enum glint_status add_flare(struct frames *f)
     enum glint_status status;
 
     status = compositor_expose(c, &f->seen);
-    if (status != GLINT_OK ||
+    if (status != GLINT_OK || !f->flare ||
         ((c->n_lamps == 0 || !(compositor_scale(c) > 0)) &&
          !glint_engine_has_veil(c->engine)))
         return status;

@@ -440,7 +440,7 @@ static enum glint_status read_all(struct controls *in,
                                   struct glint_error *error)
 {
     enum glint_status status = GLINT_OK;
-    struct control_line line;
+    struct control_line line = {.verb = CONTROL_NONE};
     const char *text;
 
     while (status == GLINT_OK && (text = text_lines_raw(&in->lines))) {

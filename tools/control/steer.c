@@ -88,7 +88,7 @@ static enum glint_status take_environment(struct steer *steer,
     else if (line->verb == CONTROL_MAP)
         steer->shown =
             glint_scene_find_environment(&steer->model, line->name[0]);
-    else
+    else if (n_environments(steer) > 0)
         steer->shown = (steer->shown + 1) % n_environments(steer);
     return show_environment(steer, scene);
 }

@@ -345,6 +345,7 @@ static int find_mends(const char *text, size_t bytes, struct mend mend[MENDS])
         }
         at = end + 1;
     }
+    s.mend = NULL; /* it is the caller's */
     return s.n;
 }
 

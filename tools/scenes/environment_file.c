@@ -281,8 +281,11 @@ static void print_text(const struct environment_file *file,
 void environment_file_print(const struct tool *tool,
                             const struct environment_file *file)
 {
-    const struct counts n = count(file);
+    struct counts n;
 
+    if (!file->environment.header)
+        return;
+    n = count(file);
     (tool->json ? print_json : print_text)(file, &n);
 }
 

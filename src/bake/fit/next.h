@@ -59,20 +59,20 @@ struct glint_next_rules {
 /* Returns the error, in tolerances, beyond which P will be halved or divided
  * anyway, so that its fit may stop early; 0: there is none. Narrow zones may be
  * at the end of halving, where the error has to be known. */
-double glint_next_hopeless(const struct glint_next_rules *rules,
+double glint_next_hopeless(const struct glint_next_rules *f,
                            const struct glint_zone_piece *p,
                            const struct glint_zone_aim *aim);
 
 /* Returns the error, in tolerances, above which glint_next() decides the same
  * for P, and later for its halves, however large the error is; 0: there is
  * none. */
-double glint_next_settled(const struct glint_next_rules *rules,
+double glint_next_settled(const struct glint_next_rules *f,
                           const struct glint_zone_piece *p,
                           const struct glint_zone_aim *aim);
 
 /* Returns what to do with P after attempt A. For bright ghosts zones are halved
  * further. */
-enum glint_next glint_next(const struct glint_next_rules *rules,
+enum glint_next glint_next(const struct glint_next_rules *f,
                            const struct glint_zone_piece *p,
                            const struct glint_attempt *a);
 
