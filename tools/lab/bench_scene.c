@@ -223,14 +223,16 @@ static enum glint_status draw(struct bench *b, struct bench_case *c, int round)
 /* Sets o->bare to the scene without shadows. GLINT_E_MEMORY. */
 static enum glint_status make_bare(struct opened *o)
 {
+    struct glint_scene_header *header;
     const char *unsaid;
-    struct glint_scene_header *header = malloc(o->scene.bytes);
 
-    if (!header)
+    o->bare = (struct baked_scene){.data = malloc(o->scene.bytes),
+                                   .bytes = o->scene.bytes};
+    if (!o->bare.data)
         return GLINT_E_MEMORY;
-    o->bare = (struct baked_scene){.data = header, .bytes = o->scene.bytes};
-    memcpy(header, o->scene.data, o->scene.bytes);
-    glint_scene_open(&o->bare.model, header, o->scene.bytes, &unsaid);
+    memcpy(o->bare.data, o->scene.data, o->scene.bytes);
+    glint_scene_open(&o->bare.model, o->bare.data, o->scene.bytes, &unsaid);
+    header = (struct glint_scene_header *)(void *)o->bare.data;
     header->shadow = 0; /* after its checksum was asked for */
     return GLINT_OK;
 }

@@ -182,7 +182,7 @@ static enum glint_status time_all(struct bay *b, struct tool_progress *progress,
     }
     for (int i = 0; i < b->c->n && status == GLINT_OK; i++) {
         const struct run *const r = &b->run[i];
-        double *const m = r->point->metric;
+        double *const m = b->s->point[b->c->first + i].metric;
 
         m[SWEEP_MS] = canvas_median(r->ms, r->n);
         m[SWEEP_FLOOR_MS] = canvas_median(b->canvas.floor_ms, n);

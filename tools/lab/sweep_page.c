@@ -98,7 +98,7 @@ static void difference(const struct sweep *s, FILE *file,
     const size_t n = 3 * (size_t)q->width * (size_t)q->height;
     uint8_t *const far = malloc(n);
 
-    for (size_t i = 0; far && i < n; i++) {
+    for (size_t i = 0; far && exact && i < n; i++) {
         const int d = 128 + 16 * (q->rgb[i] - exact->rgb[i]);
 
         far[i] = (uint8_t)(d < 0 ? 0 : d > 255 ? 255 : d);

@@ -175,7 +175,7 @@ static enum glint_status measure(struct bay *b, double value)
 {
     struct sweep_part *const p = &b->s->part[b->s->n_parts++];
     struct glint_dials dials = b->dials;
-    struct glint_engine_report report;
+    struct glint_engine_report report = {.lights = 0};
     enum glint_status status = GLINT_OK;
     double square = 0;
 
@@ -284,8 +284,10 @@ static int measure_subject(struct bay *b, const char *lens)
 int sweep_parts(struct sweep *s, const char *lens)
 {
     struct bay *const b = malloc(sizeof *b);
-    int code = b ? EXIT_OK : tool_fail(s->tool, GLINT_E_MEMORY, NULL);
+    int code = EXIT_OK;
 
+    if (!b)
+        return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
     for (size_t i = 0; i < sizeof subjects / sizeof *subjects; i++)
         if (code == EXIT_OK) {
             *b = (struct bay){
