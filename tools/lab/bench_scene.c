@@ -220,21 +220,14 @@ static enum glint_status draw(struct bench *b, struct bench_case *c, int round)
 
 /* ----------------------------------------------------------------- opening */
 
-/* Sets o->bare to the scene without shadows. GLINT_E_MEMORY. */
-static enum glint_status make_bare(struct opened *o)
+/* Sets o->bare to the scene without shadows. Returns an exit code. */
+static int open_bare(struct bench *b, struct opened *o)
 {
-    struct glint_scene_header *header;
-    const char *unsaid;
+    const int code = baked_scene_open(b->tool, o->file, &o->bare);
 
-    o->bare = (struct baked_scene){.data = malloc(o->scene.bytes),
-                                   .bytes = o->scene.bytes};
-    if (!o->bare.data)
-        return GLINT_E_MEMORY;
-    memcpy(o->bare.data, o->scene.data, o->scene.bytes);
-    glint_scene_open(&o->bare.model, o->bare.data, o->scene.bytes, &unsaid);
-    header = (struct glint_scene_header *)(void *)o->bare.data;
-    header->shadow = 0; /* after its checksum was asked for */
-    return GLINT_OK;
+    if (code == EXIT_OK) /* its checksum has been asked for */
+        ((struct glint_scene_header *)o->bare.data)->shadow = 0;
+    return code;
 }
 
 static int open_scene(struct bench *b, int n, const char *const *name)
@@ -253,8 +246,10 @@ static int open_scene(struct bench *b, int n, const char *const *name)
                           "%s: 'camera lens' needs the lens of a flare; here "
                           "it takes 'camera fov'",
                           o->file);
-    if (o->scene.model.header->shadow && make_bare(o) != GLINT_OK)
-        return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
+    if (o->scene.model.header->shadow)
+        code = open_bare(b, o);
+    if (code != EXIT_OK)
+        return code;
     o->counter = glint_instructions_open();
     return add_cases(b);
 }
