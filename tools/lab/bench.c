@@ -49,7 +49,8 @@ struct bench_case *bench_add(struct bench *b, const char *name,
                  : b->tool->n_threads ? b->tool->n_threads
                                       : 1;
     c->kernels = v->kernels ? v->kernels : b->tool->kernels;
-    return b->cases[b->n_cases++] = c;
+    b->cases[b->n_cases] = c;
+    return b->cases[b->n_cases++];
 }
 
 bool bench_is_possible(const struct bench_variation *v)
