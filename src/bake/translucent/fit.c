@@ -33,12 +33,12 @@ static const double *kernel_of(const struct glint_scatter_fit *fit, int j,
 static double weight_of(const struct glint_scatter_fit *fit, int j, int c,
                         int x)
 {
-    if (fit->f) /* of the factored model alone */
+    if (fit->model == GLINT_SCATTER_FACTORED && fit->f)
         return fit->f[(size_t)(j * 3 + c) * (size_t)(fit->side * fit->side) +
                       (size_t)x];
     if (fit->model == GLINT_SCATTER_CLUSTERED && fit->cluster[x] != j)
         return 0;
-    return fit->out[3 * x + c];
+    return fit->out ? fit->out[3 * x + c] : 0;
 }
 
 double glint_scatter_entry(const struct glint_scatter_fit *fit, int x, int c,
@@ -173,7 +173,7 @@ static void keep_albedo(struct glint_scatter_fit *fit)
 {
     const int texels = fit->side * fit->side;
 
-    for (int x = 0; fit->out && x < texels; x++)
+    for (int x = 0; x < texels; x++)
         for (int c = 0; c < 3; c++) {
             const double sum = even_light(fit, x, c);
             const double want = fit->albedo[3 * x + c];
