@@ -15,6 +15,8 @@ enum glint_status glint_engine_front(struct glint_engine *engine,
     if (status != GLINT_OK)
         return status;
     o->front = dirt;
+    /* an address may be that of what was freed before */
+    engine->paint.frame.veil.table_of = NULL;
     glint_engine_choose(engine, engine->paint.parts,
                         engine->paint.frame.star.share,
                         engine->expose.light.gain > 0);
