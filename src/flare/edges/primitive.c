@@ -29,10 +29,10 @@ static struct glint_box extent_q8(const struct glint_corners *corners)
 
 int glint_corners_tiny(const struct glint_corners *corners, int part)
 {
-    const int size = (1 << GLINT_VERTEX_FRAC) / part;
     const struct glint_box e = extent_q8(corners);
+    const int64_t x = e.x1 - e.x0, y = e.y1 - e.y0;
 
-    return e.x1 - e.x0 <= size && e.y1 - e.y0 <= size;
+    return (x > y ? x : y) * part <= 1 << GLINT_VERTEX_FRAC;
 }
 
 int glint_corners_lean(const struct glint_corners *corners)
