@@ -13,7 +13,7 @@
  * This is what glint overlay and glint live draw with, for programs on machines
  * with floating point and malloc: libglint-engine.a over libglint.a. It needs
  * neither an operating system nor libglint-bake.a; the caller passes a clock.
- * Where there is no malloc, glint/flare.h draws by itself.
+ * Without malloc, use glint/flare.h alone.
  *
  * A picture goes through three stages: find (lamps of the picture), expose (how
  * bright their flare is) and draw. A program may change the lamps between the
@@ -221,7 +221,8 @@ void glint_engine_configure(struct glint_engine_config *cfg,
 
 /* ------------------------------------------------------------------ reports */
 
-/* Light of a flare by itself, linear R, G, B, 1 = display white. */
+/* Light of a flare alone, without the picture: linear R, G, B, 1 = display
+ * white. */
 struct glint_response_light {
     double peak[3]; /* mean of the brightest 1/1000 of the pixels, of 46 pixels
                        at most */
@@ -233,7 +234,7 @@ struct glint_engine_exposure {
     double scale; /* factor on the powers of lamps; 0: nothing is drawn */
     struct glint_response_light light; /* of the flare, with that factor */
     int is_drawn; /* not 0: the light was measured in a drawn flare */
-    int is_new;   /* not 0: lamps and exposure begin anew, as after a cut */
+    int is_new;   /* not 0: lamps and exposure restart, as after a cut */
 };
 
 struct glint_engine_report {
@@ -241,7 +242,7 @@ struct glint_engine_report {
     int lights;        /* lamps given */
     int beyond_lights; /* lamps of these farther off the axis than the model
                           goes */
-    int apart_lights;  /* lights that can be told apart */
+    int apart_lights;  /* distinct lights, at least apart_px from each other */
     int drawn_lights;  /* lights drawn, after merging because of their number */
     int ghosts, tiles; /* ghosts seen, and tiles of the picture */
     int held_samples;  /* samples of a linear picture that saturated */
