@@ -38,7 +38,7 @@
 #   make trade    what accuracy costs: plots, pictures and a page (glint sweep)
 #   make debian   packages, in clean systems;  check-debian: tools/debian
 #   also: oiio assimp window inputs format golden-update fuzz-keep clean ward-sheet, and the tables that
-#         tools/report/figures lists, all by make figures
+#         tools/measure/figures lists, all by make figures
 
 # One job a processor, unless the command line has a -j of its own.
 MAKEFLAGS += -r $(if $(filter 0,$(MAKELEVEL)),-j$(shell nproc))
@@ -56,7 +56,7 @@ CORE      := base image kernels kernels/rays kernels/ward kernels/maps lens lamp
 ENGINE    := engine engine/options engine/frame engine/setup engine/star
 BAKE      := bake bake/table bake/scene bake/environment bake/motion bake/translucent bake/trace bake/regress bake/visible bake/fit bake/skew bake/exact
 PLATFORM  := posix formats video panel linux jpeg assimp sdl
-TOOLS     := help options control lamp_files desk model ffmpeg overlay zooms stones scenes motions synth lens_figures lens_check import command live lab lab/plots
+TOOLS     := measure measure/plots import synth glint $(addprefix glint/,help options control lamp_files desk model ffmpeg overlay zooms stones scenes motions lens_pages explain render live)
 c_files = $(wildcard $(2:%=$(1)/%/*.c))
 objects = $(patsubst %.c,$(OUT)/%.o,$(filter-out $(absent),$(call c_files,$(1),$(2))))
 
@@ -71,17 +71,17 @@ absent += platform/jpeg/$(if $(filter yes,$(WITH_JPEG)),absent,mjpeg).c
 absent += src/bake/motion/$(if $(filter yes,$(WITH_JANSSON)),absent,recording).c
 absent += $(if $(filter yes,$(WITH_JANSSON)),tools/synth/item_absent.c tools/import/json_absent.c,tools/synth/item_json.c tools/import/json.c)
 absent += tools/import/$(if $(filter yes,$(WITH_EXPAT)),openlensflare_absent,openlensflare).c
-absent += tools/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
+absent += tools/glint/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
 # A static program has no plug-ins.
 absent += platform/posix/$(if $(CROSS),plugin,plugin_absent).c platform/assimp/assimp.c platform/sdl/sdl.c
-absent += tools/command/glint.c tools/live/glint_live.c tools/model/models_only.c tools/scenes/scenes_only.c
+absent += tools/glint/glint.c tools/glint/live/glint_live.c tools/glint/model/models_only.c tools/glint/scenes/scenes_only.c
 
 core_o      := $(call objects,src,$(CORE))
 engine_o    := $(call objects,src,$(ENGINE))
 bake_o      := $(call objects,src,$(BAKE))
 platform_o  := $(call objects,platform,$(PLATFORM))
 tools_o     := $(call objects,tools,$(TOOLS))
-main_o      := $(patsubst %,$(OUT)/tools/%.o,command/glint live/glint_live model/models_only scenes/scenes_only)
+main_o      := $(patsubst %,$(OUT)/tools/glint/%.o,glint live/glint_live model/models_only scenes/scenes_only)
 LDLIBS := $(if $(filter yes,$(WITH_JPEG)),$(JPEG_LIBS)) \
         $(if $(filter yes,$(WITH_INIH)),$(INIH_LIBS)) \
         $(if $(filter yes,$(WITH_JANSSON)),$(JANSSON_LIBS)) $(if $(filter yes,$(WITH_EXPAT)),$(EXPAT_LIBS)) -lm -lpthread -ldl
@@ -94,7 +94,7 @@ $(OUT)/%.o: %.c
 	$(TIDY)
 	$(Q)$(CC) $(CPPFLAGS) -MMD -MP $(CFLAGS) $(ANALYZER) -c $< -o $@
 $(OUT)/platform/jpeg/absent.o: NOTE := MJPEG left out: no libjpeg62-turbo-dev
-$(OUT)/tools/options/config_absent.o: NOTE := --config left out: no libinih-dev
+$(OUT)/tools/glint/options/config_absent.o: NOTE := --config left out: no libinih-dev
 $(OUT)/tools/synth/item_absent.o: NOTE := synth --item left out: no libjansson-dev
 $(OUT)/tools/import/json_absent.o: NOTE := lens files of realflare and lentil left out: no libjansson-dev
 $(OUT)/src/bake/motion/absent.o: NOTE := recordings left out: no libjansson-dev
@@ -115,7 +115,7 @@ $(OUT)/parts: parts := $(core_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o)
 $(OUT)/prefix: parts := $(PREFIX) $(LIBDIR)
 $(OUT)/parts $(OUT)/prefix: always
 	@mkdir -p $(@D); echo '$(parts)' | cmp -s - $@ || echo '$(parts)' >$@
-$(OUT)/tools/model/lens_files.o $(OUT)/platform/posix/plugin.o: $(OUT)/prefix
+$(OUT)/tools/glint/model/lens_files.o $(OUT)/platform/posix/plugin.o: $(OUT)/prefix
 libs := $(archives)
 
 define link
@@ -132,7 +132,7 @@ all: $(if $(CROSS),$(OUT)/glint,build/glint)
 build/glint: $(OUT)/glint always
 	$(Q)cmp -s $< $@ || { cp -f $< $@.tmp && mv -f $@.tmp $@; }
 always:
-$(OUT)/glint: $(OUT)/tools/command/glint.o $(libs)
+$(OUT)/glint: $(OUT)/tools/glint/glint.o $(libs)
 	$(link)
 
 # Programs that take one part of the run-time library, and no other half.
@@ -163,7 +163,7 @@ embed_embed_cxx    = $(if $(findstring clang,$(CC)),clang++,$(CXX)) -std=c++17 -
 # The live command alone, for baked models, stripped.
 glint-live: $(OUT)/glint-live
 $(OUT)/glint-live: LDFLAGS += $(if $(filter yes,$(STRIP)),-s) -Wl,--gc-sections
-$(OUT)/glint-live: $(OUT)/tools/live/glint_live.o $(OUT)/tools/model/models_only.o $(OUT)/tools/scenes/scenes_only.o $(libs)
+$(OUT)/glint-live: $(OUT)/tools/glint/live/glint_live.o $(OUT)/tools/glint/model/models_only.o $(OUT)/tools/glint/scenes/scenes_only.o $(libs)
 	$(link)
 
 # The image plug-in, the only C++: PNG, JPEG, EXR ... through OpenImageIO.

@@ -13,7 +13,7 @@ import unittest
 import glint
 import numpy as np
 
-sys.path.insert(0, "tools/python/examples")
+sys.path.insert(0, "tools/hosts/python/examples")
 from ppm import read, write  # noqa: E402
 
 GLINT = os.environ["GLINT"]
@@ -186,7 +186,7 @@ class Package(unittest.TestCase):
 
     def test_examples(self):
         run = lambda *words: subprocess.run([sys.executable, *words], check=True, stdout=subprocess.PIPE, text=True).stdout
-        examples = "tools/python/examples/"
+        examples = "tools/hosts/python/examples/"
         self.assertIn("ghosts drawn", run(examples + "photograph.py", PHOTO, self.path("a.ppm")))
         np.testing.assert_array_equal(read(self.path("a.ppm")), self.by_command("--lens", LENS))
         self.assertIn("25 degrees", run(examples + "sweep.py", self.path("b.ppm")))

@@ -4,7 +4,7 @@
  * to, a third of which through lenses that are held out, and writes a line for
  * each into FILE: 1 if it is held out, what it is, the counts that its plan
  * predicts, and those that were drawn. If FILE is there, only the frames are
- * drawn, from number N on: tools/report/cost-fit counts their instructions by
+ * drawn, from number N on: tools/measure/cost-fit counts their instructions by
  * callgrind.
  *
  * Lights, sizes, qualities, stops and parts are random, the same ones each
@@ -17,7 +17,7 @@
 
 #include "engine/frame/cost.h"
 #include "glint/measure.h"
-#include "lab/canvas.h"
+#include "measure/canvas.h"
 #include "support/settings_frame.h"
 #include "support/rng.h"
 
@@ -128,7 +128,7 @@ static void close_stage(struct stage *s)
 }
 
 /* Calls glint_frame_draw(), as a function of its own, whose instructions
- * tools/report/cost-fit counts. */
+ * tools/measure/cost-fit counts. */
 enum glint_status cost_frame(struct glint_frame *frame,
                              const struct glint_lamp *lamp, int n,
                              const struct glint_image *image,

@@ -2,7 +2,7 @@
  *
  * stone_rows DIR - bakes two stones, chess and veins, by all
  * models that a frame can draw and by numbers of bits, for
- * tools/report/scenes/stone-table. Prints a line each: stone, model, bits of
+ * tools/measure/scenes/stone-table. Prints a line each: stone, model, bits of
  * codes and taps, decibels of the fit and of the integers to the light of all
  * rows, and processor seconds of the fit. Those of the first stone with 8 and
  * 12 bits are written to DIR/MODEL.glint. Stones have 128 texels,

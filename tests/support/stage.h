@@ -43,7 +43,7 @@ bool stage_prepare(struct stage *stage, int n_blades);
 
 /* Make the model for lights up to MAX_DEG degrees: stage_bake() anew,
  * stage_model() from the cache if another test baked it
- * (tools/model/model_cache.h). */
+ * (tools/glint/model/model_cache.h). */
 bool stage_bake(struct stage *stage, double tolerance, double max_deg);
 bool stage_model(struct stage *stage, double tolerance, double max_deg);
 

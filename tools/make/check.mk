@@ -150,13 +150,13 @@ run-fuzz run-fuzz-keep: $(fuzz_bins)
 analyze:
 	@tools/make/deps "static analysis" gcc clang-tidy cppcheck
 	@$(MAKE) --no-print-directory CC=gcc CONFIG=analyze WERROR=-Werror run-analyze
-run-analyze: $(core_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o) $(frei0r_o) $(if $(filter %,$(shell pkg-config --modversion gstreamer-video-1.0 2>/dev/null)),$(gstreamer_o)) $(if $(filter %,$(shell pkg-config --modversion libobs 2>/dev/null)),$(obs_o)) $(OUT)/tools/command/glint.o
+run-analyze: $(core_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o) $(frei0r_o) $(if $(filter %,$(shell pkg-config --modversion gstreamer-video-1.0 2>/dev/null)),$(gstreamer_o)) $(if $(filter %,$(shell pkg-config --modversion libobs 2>/dev/null)),$(obs_o)) $(OUT)/tools/glint/glint.o
 	$(say) CPPCHECK 'src platform tools'
 	@mkdir -p $(OUT)/cppcheck
 	$(Q)cppcheck -q --std=c99 --language=c --error-exitcode=1 \
 	        --enable=warning,performance,portability,style --inline-suppr \
 	        --suppressions-list=tools/lint/cppcheck-suppressions \
-	        --cppcheck-build-dir=$(OUT)/cppcheck -Iinclude -Isrc -Iplatform -Itools \
+	        --cppcheck-build-dir=$(OUT)/cppcheck -Iinclude -Isrc -Iplatform -Itools -Itools/glint -Itools/hosts \
 	        -D__x86_64__ -D__GNUC__ -D_POSIX_C_SOURCE=200809L \
 	        $(patsubst $(OUT)/%.o,%.c,$(filter %.o,$^))
 
@@ -166,7 +166,7 @@ format:
 libraries := $(OUT)/libglint.a
 all_o := $(core_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o)
 lint: $(libraries) $(OUT)/libglint-engine.a $(OUT)/libglint-bake.a $(all_o)
-	@tools/lint/layers && tools/lint/cycles $(NM) $(OUT) $(all_o) && tools/lint/tags && tools/lint/q && tools/lint/length && tools/lint/links && tools/report/write-figures --check
+	@tools/lint/layers && tools/lint/cycles $(NM) $(OUT) $(all_o) && tools/lint/tags && tools/lint/q && tools/lint/length && tools/lint/links && tools/measure/write-figures --check
 	@tools/lint/symbols $(NM) $(filter %.a,$^)
 	@[ $(CONFIG) != release ] || \
 	        $(MAKE) -s --no-print-directory purity

@@ -6,11 +6,11 @@ CFLAGS := $(MACHINE_$(TARGET)) $(SECTIONS) -std=c99 -O2 -g -ffile-prefix-map=$(C
 $(OUT)/src/%.o $(OUT)/tests/%.o: CPPFLAGS += -Isrc
 $(OUT)/tests/%.o: CPPFLAGS += -Itests
 $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
-        -Isrc -Iplatform -Itools -D_POSIX_C_SOURCE=200809L \
+        -Isrc -Iplatform -Itools -Itools/glint -Itools/hosts -D_POSIX_C_SOURCE=200809L \
         -DGLINT_SHARE_DIR='"$(PREFIX)/share/glint"' \
         -DGLINT_PLUGIN_DIR='"$(LIBDIR)/glint"'
 $(OUT)/platform/jpeg/mjpeg.o $(OUT)/tests/%_mjpeg.o: CPPFLAGS += $(JPEG_CPPFLAGS)
-$(OUT)/tools/options/config.o: CPPFLAGS += $(INIH_CPPFLAGS)
+$(OUT)/tools/glint/options/config.o: CPPFLAGS += $(INIH_CPPFLAGS)
 $(OUT)/src/bake/motion/recording.o: CPPFLAGS += $(JANSSON_CPPFLAGS)
 $(OUT)/tools/import/openlensflare.o: CPPFLAGS += $(EXPAT_CPPFLAGS)
 $(OUT)/tools/import/openlensflare_absent.o: NOTE := lens files of OpenLensFlare left out: no libexpat1-dev
@@ -78,7 +78,7 @@ $(call of,$(addprefix src/image/,codes quads) src/veil/veil_pass src/veil/veil_f
 # Every frame of a camera goes through these on its way to a panel.
 $(call of,$(addprefix platform/panel/,panel sinks),-O3)
 # The floor that frames are measured by is as fast as can be.
-$(call of,tools/lab/canvas,-O3)
+$(call of,tools/measure/canvas,-O3)
 # Rays in eights: errno and traps are all that these give away.
 $(call of,src/bake/trace/trace src/bake/trace/forms src/bake/table/form,-O3 -fno-math-errno -fno-trapping-math)
 
@@ -118,7 +118,7 @@ $(OUT)/src/bake/exact/frame_rays.o: ANALYZER += -Wno-analyzer-malloc-leak
 # nor that systems in an array of the run's are the run's,
 $(OUT)/src/bake/bake.o: ANALYZER += -Wno-analyzer-malloc-leak
 # nor that a picture in an array of the sweep's is the sweep's.
-$(OUT)/tools/lab/sweep_measure.o: ANALYZER += -Wno-analyzer-malloc-leak
+$(OUT)/tools/measure/sweep_measure.o: ANALYZER += -Wno-analyzer-malloc-leak
 TIDY = $(Q)clang-tidy --quiet $< -- $(CPPFLAGS) $(filter-out $(WARN),$(CFLAGS))
 else ifeq ($(CONFIG),qcheck)
 CPPFLAGS += -DGLINT_Q_CHECK

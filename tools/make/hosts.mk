@@ -1,10 +1,10 @@
 # Plug-ins for hosts of others. Like shared libraries they are made of objects in
 # a folder of their own, and contain all that they take of glint.
 
-filter_o := $(patsubst %.c,$(OUT)/%.o,$(wildcard tools/filter/*.c))
-frei0r_o := $(patsubst %.c,$(OUT)/%.o,$(wildcard tools/frei0r/*.c)) $(filter_o)
-gstreamer_o := $(patsubst %.c,$(OUT)/%.o,$(wildcard tools/gstreamer/*.c)) $(filter_o)
-obs_o := $(patsubst %.c,$(OUT)/%.o,$(wildcard tools/obs/*.c)) $(filter_o)
+filter_o := $(patsubst %.c,$(OUT)/%.o,$(wildcard tools/hosts/filter/*.c))
+frei0r_o := $(patsubst %.c,$(OUT)/%.o,$(wildcard tools/hosts/frei0r/*.c)) $(filter_o)
+gstreamer_o := $(patsubst %.c,$(OUT)/%.o,$(wildcard tools/hosts/gstreamer/*.c)) $(filter_o)
+obs_o := $(patsubst %.c,$(OUT)/%.o,$(wildcard tools/hosts/obs/*.c)) $(filter_o)
 plugins := frei0r gstreamer obs
 placed_frei0r    := build/glint-frei0r.so
 placed_gstreamer := build/gstreamer-1.0/libgstglint.so
@@ -14,16 +14,16 @@ GSTREAMER := gstreamer-video-1.0 gstreamer-1.0
 $(OUT)/glint-gstreamer.so: $(gstreamer_o)
 $(OUT)/glint-gstreamer.so: EXTRA = $$(pkg-config --libs $(GSTREAMER))
 # Headers of others do not keep to our warnings.
-$(OUT)/tools/gstreamer/%.o: CPPFLAGS += $(shell pkg-config --cflags $(GSTREAMER) 2>/dev/null | sed 's/-I/-isystem /g')
+$(OUT)/tools/hosts/gstreamer/%.o: CPPFLAGS += $(shell pkg-config --cflags $(GSTREAMER) 2>/dev/null | sed 's/-I/-isystem /g')
 $(OUT)/glint-obs.so: $(obs_o)
 $(OUT)/glint-obs.so: EXTRA = $$(pkg-config --libs libobs)
-$(OUT)/tools/obs/%.o: CPPFLAGS += $(shell pkg-config --cflags libobs 2>/dev/null | sed 's/-I/-isystem /g')
+$(OUT)/tools/hosts/obs/%.o: CPPFLAGS += $(shell pkg-config --cflags libobs 2>/dev/null | sed 's/-I/-isystem /g')
 # A host may drop the plug-in while a signal's action still points into it.
 $(plugins:%=$(OUT)/glint-%.so): $(archives)
 	@mkdir -p $(@D)
 	$(say) LD $@
 	$(Q)$(CC) $(CFLAGS) -shared $(filter -Wl%,$(LINKED)) $(LDFLAGS) -Wl,--exclude-libs,ALL \
-	        -Wl,--version-script=tools/$(@:$(OUT)/glint-%.so=%)/exports.map -Wl,-z,defs,-z,nodelete -Wl,--gc-sections \
+	        -Wl,--version-script=tools/hosts/$(@:$(OUT)/glint-%.so=%)/exports.map -Wl,-z,defs,-z,nodelete -Wl,--gc-sections \
 	        $(filter %.o,$^) $(libs) $(EXTRA) $(LDLIBS) -o $@
 ifdef PIC
 $(plugins): %: $(OUT)/glint-%.so
@@ -74,7 +74,7 @@ check-obs:
 	@tests/hosts/obs $(OUT)
 .PHONY: check-obs
 
-# For tools/python: what its module is linked with, and the folder of archives.
+# For tools/hosts/python: what its module is linked with, and the folder of archives.
 print-out:
 	@echo '$(taken)' $(OUT)
 # The Python package, in an environment of its own.
@@ -92,12 +92,12 @@ check-spread: build/glint $(OUT)/pan
 
 # What items of data sets cost, and their bytes; COUNT=10000 takes a day of a processor.
 synth-table: all
-	@tools/report/synth/synth-table $(or $(COUNT),100) | tools/report/write-figures synth/items
+	@tools/measure/synth/synth-table $(or $(COUNT),100) | tools/measure/write-figures synth/items
 # A remover of ghosts that learns from a data set: some twenty minutes of a processor.
 synth-baseline: all
 	@tools/make/deps "photographs, and a network that learns" imagemagick python3-pil python3-numpy npm \
 	        python3-torch >&2
-	@tools/synth/baseline/all | tools/report/write-figures synth/baseline
+	@tools/synth/baseline/all | tools/measure/write-figures synth/baseline
 .PHONY: synth-table synth-baseline
 
 # Every command that READMEs and manual pages name, those that take minutes, too.

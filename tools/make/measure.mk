@@ -2,13 +2,13 @@
 # tests/figures; all of them, for hours, but for fits, which write weights into
 # src: make figures.
 figures:
-	@for target in $$(sed -n '/-fit /d; s/^[^#][^ ]* \([^ ]*\) .*/\1/p' tools/report/figures | sort -u); do \
+	@for target in $$(sed -n '/-fit /d; s/^[^#][^ ]* \([^ ]*\) .*/\1/p' tools/measure/figures | sort -u); do \
 	        $(MAKE) --no-print-directory $$target || exit 1; done
 
 video-report: $(OUT)/steady
 	@$(OUT)/steady --lens lenses/nikon-zoom-short.lens $(VIDEOS)
 occlusion-table: $(OUT)/occlusion
-	@$(OUT)/occlusion | tools/report/write-figures occlusion
+	@$(OUT)/occlusion | tools/measure/write-figures occlusion
 demo:
 	@tools/make/deps "PNG and JPEG pictures, and video to look at" gcc libc6-dev g++ pkg-config \
 	        libopenimageio-dev libwebp-dev ffmpeg
@@ -18,64 +18,64 @@ demo:
 inputs:
 	@tools/make/inputs
 table: all
-	@tools/report/raster-table | tools/report/write-figures raster
+	@tools/measure/raster-table | tools/measure/write-figures raster
 # Scenes as POV-Ray draws them.
 scene-table: all $(OUT)/scene_exact
 	@tools/make/deps "scenes of another program" povray python3-numpy >&2
-	@tests/peers/povray $(OUT) | tools/report/write-figures scene
+	@tests/peers/povray $(OUT) | tools/measure/write-figures scene
 # A sun behind a ball: the light of its flare by frame.
 hidden-table: all
-	@tools/report/hidden-table tests/figures/scenes/hidden.svg | tools/report/write-figures scenes/hidden
+	@tools/measure/hidden-table tests/figures/scenes/hidden.svg | tools/measure/write-figures scenes/hidden
 # Meshes of Debian packages; pictures of some go to build/meshes.
 mesh-table: all
 	@tools/make/deps "meshes, and the plug-in for them" libassimp-dev pkg-config \
 	        assimp-testmodels libcgal-demo >&2
 	@$(MAKE) --no-print-directory assimp >&2
-	@tools/report/mesh-table | tools/report/write-figures scenes/meshes
+	@tools/measure/mesh-table | tools/measure/write-figures scenes/meshes
 # Ward's lobe under eight panoramas of Debian's blender-data.
 motion-table: all $(OUT)/motion_table
-	@$(OUT)/motion_table $(or $(FRAMES),200000) | tools/report/write-figures scenes/motion
+	@$(OUT)/motion_table $(or $(FRAMES),200000) | tools/measure/write-figures scenes/motion
 ward-table: all $(OUT)/ward_table
 	@tools/make/deps "pictures, and the plug-in for them" libopenimageio-dev pkg-config g++ >&2
 	@$(MAKE) --no-print-directory oiio >&2
-	@tools/report/scenes/ward-table $(OUT)/ward_table | tools/report/write-figures scenes/ward
+	@tools/measure/scenes/ward-table $(OUT)/ward_table | tools/measure/write-figures scenes/ward
 # Models of scattering side by side, on synthetic stones: three processor minutes.
 translucent-table: $(OUT)/translucent_table
-	@$(OUT)/translucent_table | tools/report/write-figures scenes/translucent
+	@$(OUT)/translucent_table | tools/measure/write-figures scenes/translucent
 # What maps of stones cost, and how near they are.
 stone-table: all $(OUT)/stone_rows $(OUT)/stone_cost
 	@tools/make/deps "instruction counts, and those on ARM" valgrind gcc-aarch64-linux-gnu \
 	        libc6-dev-arm64-cross qemu-user debian-archive-keyring >&2
 	@$(MAKE) -s --no-print-directory TARGET=aarch64 \
 	        SYSROOT=$$(tests/arm/prepare aarch64) build/aarch64/stone_cost >&2
-	@tools/report/scenes/stone-table $(OUT) | tools/report/write-figures scenes/stone
+	@tools/measure/scenes/stone-table $(OUT) | tools/measure/write-figures scenes/stone
 # Four materials under the eight panoramas.
 ward-sheet: all
 	@tools/make/deps "contact sheets, panoramas" python3-pil libopenimageio-dev pkg-config g++ >&2
 	@$(MAKE) --no-print-directory oiio >&2
-	@tools/report/scenes/ward-table true
-	@tools/report/scenes/ward-sheet tests/gallery/metals.jpg
+	@tools/measure/scenes/ward-table true
+	@tools/measure/scenes/ward-sheet tests/gallery/metals.jpg
 bake-table: all $(OUT)/ray_errors
-	@tools/report/bake-table | tools/report/write-figures bake
+	@tools/measure/bake-table | tools/measure/write-figures bake
 # What lenses of the library cost. LENSES="A.lens ...": these; STOP=N, LIMIT=SECONDS.
 library-table: all $(OUT)/stop_costs
-	@STOP_COSTS=$(OUT)/stop_costs tools/lens_figures/library-table $(LENSES) | \
-	    tools/report/write-figures ../../lenses/figures
+	@STOP_COSTS=$(OUT)/stop_costs tools/measure/library-table $(LENSES) | \
+	    tools/measure/write-figures ../../lenses/figures
 # Lenses that are not round. LENSES="A.lens ...": these; COUNT=N directions.
 azimuth-table: all
-	@tools/lens_figures/azimuth-table $(LENSES) | tools/report/write-figures shapes/azimuth
+	@tools/measure/azimuth-table $(LENSES) | tools/measure/write-figures shapes/azimuth
 # How far lights and ghosts move by a lens's own projection: a processor minute.
 projection-table: $(OUT)/projection_table
-	@$< lenses/*.lens lenses/*/*.lens | tools/report/write-figures shapes/projection
+	@$< lenses/*.lens lenses/*/*.lens | tools/measure/write-figures shapes/projection
 accuracy-table: all
-	@tools/report/accuracy-table | tools/report/write-figures accuracy
+	@tools/measure/accuracy-table | tools/measure/write-figures accuracy
 colour-table: all
 	@tools/make/deps "instruction counts" valgrind python3-numpy >&2
-	@tools/report/colour-table | tools/report/write-figures colour
+	@tools/measure/colour-table | tools/measure/write-figures colour
 ray-table: all $(OUT)/ray_errors
-	@tools/report/ray-table build/bake | tools/report/write-figures rays
+	@tools/measure/ray-table build/bake | tools/measure/write-figures rays
 stop-table: all
-	@tools/report/stop-table | tools/report/write-figures shapes/stop
+	@tools/measure/stop-table | tools/measure/write-figures shapes/stop
 # The weights of src/lamps/unclip.c, from the half that is there to fit to.
 power-fit: $(OUT)/power_table
 	@tools/make/deps "HDR panoramas" openimageio-tools python3-numpy npm
@@ -92,7 +92,7 @@ corpus-evaluate: corpus $(OUT)/corpus-found
 	@tests/corpus/evaluate --half $(HALF) --sheet build/corpus/found-$(HALF).jpg
 # Stars of two photographs by night, and ours.
 corpus-stars: corpus all
-	@tests/corpus/stars | tools/report/write-figures stars
+	@tests/corpus/stars | tools/measure/write-figures stars
 # All pictures beside what glint makes of them; how bright it is, lens by lens.
 corpus-sheet: corpus all
 	@tests/corpus/overlays build/corpus/sheet
@@ -101,7 +101,7 @@ MINUTES ?= 0
 corpus-report: corpus all
 	@tests/corpus/report build/corpus/report.csv \
 	    --every $(EVERY) --minutes $(MINUTES) >build/report.md
-	@tools/report/write-figures brightness <build/report.md
+	@tools/measure/write-figures brightness <build/report.md
 # Photographs with our flares, and with real ones beside ours.
 gallery: corpus all
 	@tests/corpus/gallery tests/gallery
@@ -112,7 +112,7 @@ lens-sheet: all oiio
 # The weights of src/lamps/score.c, from the pictures that are there to tune on.
 corpus-fit: corpus $(OUT)/corpus-features
 	@OUT=$(OUT) tests/corpus/fit
-	@OUT=$(OUT) tests/corpus/fit --alone | tools/report/write-figures finder
+	@OUT=$(OUT) tests/corpus/fit --alone | tools/measure/write-figures finder
 $(OUT)/tests/corpus/%.o: CPPFLAGS += -Itools/examples
 $(OUT)/corpus-%: $(OUT)/tests/corpus/%.o $(libs)
 	$(link)
@@ -121,15 +121,15 @@ bench: all
 	@build/glint bench
 bench-insn: all
 	@tools/make/deps "instruction counts" valgrind
-	@tools/report/bench-insn | tools/report/write-figures frame
+	@tools/measure/bench-insn | tools/measure/write-figures frame
 growth: all
-	@tools/report/growth
+	@tools/measure/growth
 size: $(OUT)/libglint.a $(example_bins)
 	@tools/make/deps "bytes on ARM" gcc-aarch64-linux-gnu libc6-dev-arm64-cross \
 	        gcc-arm-linux-gnueabihf libc6-dev-armhf-cross >&2
 	@for t in aarch64 armv7; do $(MAKE) -s --no-print-directory TARGET=$$t \
 	        $(EXAMPLES:%=build/$$t/examples/%) >&2 || exit 1; done
-	@OUT=$(OUT) EXAMPLES='$(EXAMPLES)' tools/report/size $(ARCH) aarch64 armv7 | tools/report/write-figures size
+	@OUT=$(OUT) EXAMPLES='$(EXAMPLES)' tools/measure/size $(ARCH) aarch64 armv7 | tools/measure/write-figures size
 trade: all
 	@build/glint sweep -o build/trade $(TRADE)
 	@echo build/trade/index.html
@@ -138,25 +138,25 @@ reuse-table: MODELS = $(patsubst %,build/models/%.glint,double-gauss-angenieux c
 reuse-table: all $(OUT)/reuse
 	@$(MAKE) -s --no-print-directory $(filter build/models/%,$(MODELS)) >&2
 	@tools/make/deps "instruction counts, noise" valgrind ffmpeg >&2
-	@tools/report/reuse-table $(OUT)/reuse $(MODELS) | tools/report/write-figures videos/reuse
+	@tools/measure/reuse-table $(OUT)/reuse $(MODELS) | tools/measure/write-figures videos/reuse
 reuse-table: export VIDEOS := $(VIDEOS)
 # What bakes say of the time they will take, over what they take.
 left-table: $(OUT)/bake_left
-	@tools/report/left-table $(OUT)/bake_left | tools/report/write-figures cost/left
+	@tools/measure/left-table $(OUT)/bake_left | tools/measure/write-figures cost/left
 memory-table: all
-	@tools/report/memory-table | tools/report/write-figures memory
+	@tools/measure/memory-table | tools/measure/write-figures memory
 zoom-halfway-table: all
-	@tools/lens_figures/zoom-halfway $(LENS) | tools/report/write-figures shapes/zoom-halfway
+	@tools/measure/zoom-halfway $(LENS) | tools/measure/write-figures shapes/zoom-halfway
 # The weights of src/engine/frame/cost.c, by random frames.
 cost-fit: all $(OUT)/cost_frames
 	@tools/make/deps "instruction counts" valgrind >&2
-	@tools/report/cost-fit $(OUT)/cost_frames $(COUNTS) | tools/report/write-figures cost/plans
+	@tools/measure/cost-fit $(OUT)/cost_frames $(COUNTS) | tools/measure/write-figures cost/plans
 budget: all
 	@tools/make/deps "instruction counts on ARM" gcc-aarch64-linux-gnu \
 	        libc6-dev-arm64-cross qemu-user >&2
 	@for t in $${TARGETS:-aarch64}; do $(MAKE) -s --no-print-directory TARGET=$$t \
 	        build/$$t/glint >&2 || exit 1; done
-	@tools/report/budget | tools/report/write-figures arm
+	@tools/measure/budget | tools/measure/write-figures arm
 
 .PHONY: figures video-report occlusion-table demo inputs table scene-table hidden-table mesh-table motion-table \
         ward-table translucent-table stone-table ward-sheet bake-table \

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "glint/measure.h"
-#include "lab/plots/plot.h"
-#include "lab/report_file.h"
+#include "measure/plots/plot.h"
+#include "measure/report_file.h"
 
 enum {
     GAIN = 16,  /* of differences in pictures */

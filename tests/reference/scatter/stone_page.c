@@ -2,7 +2,7 @@
  *
  * The page of a stone: a table, curves and pictures of all models.
  */
-#include "lab/plots/plot.h"
+#include "measure/plots/plot.h"
 #include "reference/scatter/stone_models.h"
 
 static const char explained[] =

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "command/explain.h"
+#include "explain/explain.h"
 #include "engine/explain_frame.h"
 #include "support/opened.h"
 

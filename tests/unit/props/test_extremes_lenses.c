@@ -192,7 +192,7 @@ static void test_barrels(void **state)
 /* ----------------------------------------------------------------- lengths */
 
 /* A model is good for its film and a tenth more, so a larger sensor needs
- * another, as tools/model/settings.c bakes it. */
+ * another, as tools/glint/model/settings.c bakes it. */
 static void test_sensors(void **state)
 {
     static const double mm[] = {1, 2.5, 6.4, 36, 100};

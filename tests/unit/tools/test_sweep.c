@@ -14,8 +14,8 @@
 #include <string.h>
 
 #include "support/rng.h"
-#include "lab/plots/plot.h"
-#include "lab/sweep.h"
+#include "measure/plots/plot.h"
+#include "measure/sweep.h"
 
 /* Returns whether A beats B: it is cheaper and no worse, or better and no more
  * costly. */

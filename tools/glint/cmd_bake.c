@@ -1,0 +1,341 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint bake: turns a lens table into a model; scenes, environments and motions
+ * have commands of their own.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "overlay/apart.h"
+#include "model/coating.h"
+#include "options/json_writer.h"
+#include "zooms/zoom_bake.h"
+#include "model/zoom_option.h"
+#include "model/model_report.h"
+#include "model/table_file.h"
+#include "posix/output.h"
+#include "scenes/baked_scene.h"
+#include "scenes/environment_file.h"
+#include "motions/motion_file.h"
+#include "stones/stone_file.h"
+#include "render/render_scene.h"
+#include "options/tool.h"
+#include "options/command_line.h"
+
+static const char help[] =
+    "glint bake LENS -o MODEL [options]\n"
+    "\n"
+    "Fits polynomials to the rays of every ghost of LENS, turns them into\n"
+    "integers, proves that these cannot overflow, measures the errors with "
+    "the\n"
+    "run-time arithmetic, and writes one file for render, overlay and trace.\n"
+    "The same lens and options give the same bytes. NAME.scene, "
+    "NAME.translucent,\n"
+    "pictures of all around, .exr .hdr .dds .pfm .environment, and "
+    "recordings,\n"
+    ".json, have other options:\n"
+    "glint bake NAME.scene --help.\n"
+    "\n"
+    "  -o, --output MODEL\n"
+    "                    - is standard output; no report then\n"
+    "  --f-number N      stop the lens to f/N first\n" ZOOM_HELP COATING_HELP
+    "  --band LO,HI      wavelengths, nm (default 400,700)\n"
+    "  --max-angle DEG   of a light (default 60)\n"
+    "  --positions N     of a zoom, 2 .. 64 along its way, in one model "
+    "between\n"
+    "                    which it zooms\n"
+    "  --halfway DB      of these: ghosts that need it are baked between them, "
+    "too,\n"
+    "                    until pictures half-way are so near to exact ones "
+    "(default\n"
+    "                    45); 0: nothing is baked between, nor its error "
+    "measured\n"
+    "  --field MM        radius on the sensor within which light counts\n"
+    "                    (default: a tenth more than the film's corners)\n"
+    "  --tolerance T     scale of the errors aimed at (default 1)\n"
+    "  -j, --threads N   default: all processors; never changes the model\n"
+    "  --json   -q   -v   --help   --help-all   --version\n";
+
+enum { MOST_POSITIONS = 64 };
+
+struct bake {
+    const char *output;
+    struct coating coating;
+    struct zoom_option zoom;
+    double f_number;
+    int positions;     /* of a zoom; 0: one model */
+    double halfway_db; /* below 0: not asked for */
+    struct glint_bake_options options;
+    struct tool_progress progress;
+};
+
+static int take(struct tool *tool, struct bake *b, int c, const char *name)
+{
+    struct glint_bake_options *o = &b->options;
+    bool ok = true;
+
+    switch (c) {
+    case 'o':
+        b->output = tool->written = optarg;
+        break;
+    case 'c':
+        return coating_take(tool, &b->coating, optarg);
+    case 'n':
+        ok = tool_integer(optarg, 2, MOST_POSITIONS, &b->positions);
+        break;
+    case 'H':
+        ok = tool_number(optarg, &b->halfway_db) &&
+             (b->halfway_db == 0.0 ||
+              (b->halfway_db >= 20 && b->halfway_db <= 60));
+        break;
+    case 'z':
+        ok = zoom_option_take(&b->zoom, optarg);
+        break;
+    case 'F':
+        ok = zoom_option_focus(&b->zoom, optarg);
+        break;
+    case 'f':
+        ok = tool_number(optarg, &b->f_number) && b->f_number > 0;
+        break;
+    case 'w':
+        ok = tool_numbers(optarg, o->band_nm, 2) == 2;
+        break;
+    case 'a':
+        ok = tool_number(optarg, &o->max_deg);
+        break;
+    case 'm':
+        ok = tool_number(optarg, &o->field_mm) && o->field_mm > 0;
+        break;
+    case 't':
+        ok = tool_number(optarg, &o->tolerance);
+        break;
+    default:
+        return tool_option(tool, c, optarg);
+    }
+    return ok ? -1 : tool_refuse(tool, name, optarg);
+}
+
+static int parse(struct tool *tool, int argc, char **argv, struct bake *b)
+{
+    static const struct option options[] = {
+        {"output", required_argument, NULL, 'o'},
+        {"coating", required_argument, NULL, 'c'},
+        {"f-number", required_argument, NULL, 'f'},
+        ZOOM_OPTIONS('z', 'F'),
+        {"positions", required_argument, NULL, 'n'},
+        {"halfway", required_argument, NULL, 'H'},
+        {"band", required_argument, NULL, 'w'},
+        {"max-angle", required_argument, NULL, 'a'},
+        {"field", required_argument, NULL, 'm'},
+        {"tolerance", required_argument, NULL, 't'},
+        TOOL_COMMON_OPTIONS};
+    int c, code, index = 0;
+
+    while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+                            &index)) >= 0)
+        if ((code = take(tool, b, c, options[index].name)) >= 0)
+            return code;
+    code = tool_inputs(tool, argc, argv, 1, "takes one lens");
+    if (code >= 0)
+        return code;
+    if (!b->output)
+        return tool_usage(tool, "needs -o MODEL");
+    if (b->positions && b->zoom.is_zoomed)
+        return tool_usage(tool, "--positions are of the whole zoom: leave out "
+                                "--zoom");
+    if (!b->positions && b->halfway_db >= 0)
+        return tool_usage(tool, "--halfway goes with --positions");
+    if (b->halfway_db < 0)
+        b->halfway_db = ZOOM_BAKE_DB;
+    return -1;
+}
+
+static int report(const struct tool *tool, const void *model, size_t bytes,
+                  double seconds, const struct glint_bake_report *r)
+{
+    const char *reason;
+    struct glint_lens lens;
+
+    if (glint_lens_open(&lens, model, bytes, &reason) != GLINT_OK)
+        return tool_fail(tool, GLINT_E_LENS, reason);
+    model_report_bake(tool, &lens, seconds, r);
+    return EXIT_OK;
+}
+
+/* Bakes LENS into OUT and finishes it, or aborts it. Returns an exit code. */
+static int bake_into(struct glint_output *out, struct tool *tool,
+                     struct bake *b, const struct glint_prescription *lens)
+{
+    struct glint_error error = {""};
+    struct glint_bake_report r;
+    unsigned char *model = NULL;
+    const double start = tool_seconds();
+    size_t bytes = 0;
+    enum glint_status status;
+    int code = EXIT_OK;
+
+    b->options.workers = tool->workers;
+    b->options.progress = tool_progress_show;
+    b->options.progress_ctx = &b->progress;
+    tool_progress_start(&b->progress, tool, "bake");
+    b->progress.less = "a smaller --max-angle or a larger --tolerance";
+    status = glint_bake(lens, &b->options, &model, &bytes, &r, &error);
+    tool_progress_end(&b->progress);
+    if (status == GLINT_OK)
+        status = glint_output_finish(out, model, bytes, &error);
+    else
+        glint_output_abort(out);
+    if (status != GLINT_OK)
+        code = tool_fail(tool, status, error.text[0] ? error.text : NULL);
+    else if (strcmp(b->output, "-") != 0)
+        code = report(tool, model, bytes, tool_seconds() - start, &r);
+    free(model);
+    return code;
+}
+
+/* Says what was baked, unless that went to the standard output. */
+static void tell_zoom(const struct tool *tool, const struct bake *b,
+                      const struct zoom_baked *baked, double seconds)
+{
+    struct json_writer json = {.to = stdout};
+
+    if (strcmp(b->output, "-") == 0)
+        return;
+    if (tool->json) {
+        json_write(&json, "{positions: %d, models: %d, ghosts: %d",
+                   b->positions, baked->n_models, baked->n_bakes);
+        if (baked->least_db > 0)
+            json_write(&json, "halfway_db: %.1f, halfway_mm: %.3f",
+                       baked->least_db, baked->least_mm);
+        json_write(&json, "bytes: %zu, seconds: %.1f}\n", baked->bytes,
+                   seconds);
+        return;
+    }
+    if (tool->quiet)
+        return;
+    printf("%d positions, and single ghosts at %d places between them, %zu "
+           "bytes, %.0f s\n",
+           b->positions, baked->n_models - b->positions, baked->bytes, seconds);
+    if (baked->least_db > 0)
+        printf("half-way between positions pictures are %.1f dB from exact "
+               "ones at least, at %.2f mm\n",
+               baked->least_db, baked->least_mm);
+    if (baked->least_db > 0 && baked->least_db < b->halfway_db)
+        printf("that is less than %g dB: bake more --positions\n",
+               b->halfway_db);
+}
+
+/* Bakes LENS, which is as read, at all positions into OUT. */
+static int bake_positions(struct glint_output *out, struct tool *tool,
+                          struct bake *b, const struct glint_prescription *lens)
+{
+    const struct zoom_bake zoom = {.lens = lens,
+                                   .options = &b->options,
+                                   .focus_m = b->zoom.focus_m,
+                                   .f_number = b->f_number,
+                                   .positions = b->positions,
+                                   .halfway_db = b->halfway_db};
+    const double start = tool_seconds();
+    struct glint_error error = {""};
+    struct zoom_baked baked;
+    enum glint_status status = zoom_bake_run(tool, &zoom, &baked, &error);
+
+    if (status == GLINT_OK)
+        status = glint_output_finish(out, baked.data, baked.bytes, &error);
+    else
+        glint_output_abort(out);
+    free(baked.data);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text[0] ? error.text : NULL);
+    tell_zoom(tool, b, &baked, tool_seconds() - start);
+    return EXIT_OK;
+}
+
+/* Bakes the lens NAME. The output is opened before, as baking can take
+ * minutes. */
+static int run(struct tool *tool, struct bake *b, const char *name)
+{
+    struct glint_prescription *lens = malloc(sizeof *lens);
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_OK;
+    struct apart files = {.n_read = 0};
+    struct glint_output out;
+    int code;
+
+    if (!lens)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    apart_read(&files, NULL, name);
+    apart_write(&files, "-o", b->output);
+    code = apart_check(tool, &files);
+    if (code == EXIT_OK)
+        code = tool_lens(tool, name, lens);
+    if (code == EXIT_OK)
+        code = b->positions ? EXIT_OK : zoom_option_apply(tool, &b->zoom, lens);
+    if (code == EXIT_OK)
+        coating_apply(&b->coating, lens);
+    if (code == EXIT_OK && b->f_number > 0 && !b->positions)
+        status = glint_prescription_set_f_number(lens, b->f_number, &error);
+    if (code == EXIT_OK && status == GLINT_OK)
+        status =
+            glint_output_open(&out, b->output, GLINT_OUTPUT_BINARY, &error);
+    if (status != GLINT_OK)
+        code = tool_fail(tool, status, error.text);
+    if (code == EXIT_OK)
+        code = b->positions ? bake_positions(&out, tool, b, lens)
+                            : bake_into(&out, tool, b, lens);
+    free(lens);
+    return code;
+}
+
+static int bake_lens(struct tool *tool, int argc, char **argv)
+{
+    struct bake b = {.halfway_db = -1};
+    int code;
+
+    tool->help = help;
+    glint_bake_defaults(&b.options);
+    code = parse(tool, argc, argv, &b);
+    if (code >= 0)
+        return code;
+    code = tool_start(tool);
+    if (code == EXIT_OK)
+        code = run(tool, &b, argv[optind]);
+    tool_finish(tool);
+    return code;
+}
+
+/* Bakes as the first input asks for whose name is of no lens. */
+static int bake_any(struct tool *tool, int argc, char **argv)
+{
+    static const struct {
+        bool (*is_one)(const char *name);
+        int (*bake)(struct tool *tool, int argc, char **argv);
+    } others[] = {{environment_file_is_source, cmd_bake_environment},
+                  {motion_file_is_source, cmd_bake_motion},
+                  {stone_file_is_text, cmd_bake_stone}};
+
+    if (render_has_scene(argc, argv))
+        return cmd_bake_scene(tool, argc, argv);
+    for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+        for (int i = 1; i < argc; i++)
+            if (argv[i][0] != '-' && others[k].is_one(argv[i]))
+                return others[k].bake(tool, argc, argv);
+    return bake_lens(tool, argc, argv);
+}
+
+int cmd_bake(int argc, char **argv)
+{
+    struct glint_error cause = {""};
+    struct tool tool = {.name = "bake", .cause = &cause};
+    const int code = bake_any(&tool, argc, argv);
+
+    if (code != EXIT_OK && tool.json &&
+        !(tool.written && strcmp(tool.written, "-") == 0))
+        /* Options that follow were not read yet. */
+        json_write(&(struct json_writer){.to = stdout},
+                   "{error: %s, file: %s, exit: %d}\n", cause.text,
+                   optind < argc && *argv[optind] != '-' ? argv[optind] : NULL,
+                   code);
+    return code;
+}

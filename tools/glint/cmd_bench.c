@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint bench: times frames, and compares them with touching their memory.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "measure/bench.h"
+#include "options/command_line.h"
+
+/* Takes option C. Returns 1; 0: not that value; -2: another option. */
+static int take(struct bench *b, int c)
+{
+    switch (c) {
+    case 'a':
+        return b->all = true;
+    case 'm':
+        return b->sizes = true;
+    case 's':
+        return tool_size(optarg, &b->width, &b->height);
+    case 'r':
+        return tool_integer(optarg, 1, b->subject->max_rounds, &b->rounds);
+    case 'F':
+        c = tool_word(optarg, bench_format);
+        b->word = c < 0 ? b->word : c;
+        return c >= 0;
+    default:
+        return b->subject->take(b, c, optarg);
+    }
+}
+
+static int parse(struct bench *b, int argc, char **argv)
+{
+    const struct option *const options = engine_getopt(
+        b->tool, b->subject->groups, &b->base.options, b->subject->own);
+    int c, at = 0, code;
+
+    while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, &at)) >=
+           0) {
+        const int taken = take(b, c);
+
+        if (taken == 0)
+            return tool_refuse(b->tool, options[at].name, optarg);
+        if (taken != -2)
+            continue;
+        code = settings_option(b->tool, &b->base, c, optarg);
+        if (code == -2)
+            code = tool_option(b->tool, c, optarg);
+        if (code >= 0)
+            return code;
+    }
+    return -1;
+}
+
+/* Returns whether the line has --scene: then it is another bench, with other
+ * options. */
+static bool has_scene(int argc, char **argv)
+{
+    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
+        if (strcmp(argv[i], "--scene") == 0 ||
+            strncmp(argv[i], "--scene=", 8) == 0)
+            return true;
+    return false;
+}
+
+int cmd_bench(int argc, char **argv)
+{
+    struct tool tool = {
+        .name = "bench", .help_end = COMMON_HELP, .kernels = "auto"};
+    struct bench *const b = calloc(1, sizeof *b);
+    int code;
+
+    if (!b)
+        return tool_fail(&tool, GLINT_E_MEMORY, NULL);
+    b->subject = has_scene(argc, argv) ? &bench_scene : &bench_flare;
+    tool.help = b->subject->help;
+    b->tool = &tool;
+    b->rounds = 15;
+    b->width = 1920;
+    b->height = 1080;
+    settings_defaults(&b->base);
+    code = parse(b, argc, argv);
+    if (code < 0)
+        code = tool_start(&tool);
+    if (code == EXIT_OK && tool.workers)
+        code =
+            bench_run_all(b, argc - optind, (const char *const *)argv + optind);
+    bench_close(b);
+    tool_finish(&tool);
+    return code;
+}

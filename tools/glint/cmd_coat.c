@@ -1,0 +1,392 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint coat: what a coating reflects, by wavelength and angle.
+ */
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "overlay/apart.h"
+#include "measure/plots/plot.h"
+#include "model/table_file.h"
+#include "model/coating.h"
+#include "options/command_line.h"
+#include "options/json_writer.h"
+#include "options/tool.h"
+#include "posix/ending.h"
+#include "posix/output.h"
+
+static const char help[] =
+    "glint coat COATING [--glass ND,VD] [-o PLOT.svg|PLOT.png] [options]\n"
+    "glint coat LENS --surface K [--coating C] [-o PLOT.svg|PLOT.png]\n"
+    "\n"
+    "What a coating reflects of light from the air, by wavelength and angle: "
+    "a\n"
+    "table in percent of unpolarised light, and plots. Films absorb nothing, "
+    "so\n"
+    "that light from the glass loses as much at the angle behind it, and what "
+    "is\n"
+    "not reflected passes.\n"
+    "\n"
+    "COATING is none, v-coat[/NM], broadband-3[/NM], broadband-4[/NM] or\n"
+    "NM[/INDEX[:QUARTERS]]..., films from the air on.\n"
+    "\n"
+    "  --glass ND[,VD]     what the coating is on (default 1.5168,64.17)\n"
+    "  --surface K         that surface of a lens, counted from 0 at the "
+    "front\n"
+    "  --coating C         what is on the lens, as of overlay\n"
+    "  --angles A[,...]    degrees, up to 8 (default 0,15,30,45,60)\n"
+    "  --band NM,NM        default 380,780\n"
+    "  -o, --output FILE   plots: unpolarised light by wavelength, and s and p "
+    "by\n"
+    "                      angle at 450, 550, 650 nm\n"
+    "  --json              one JSON object, with s and p\n";
+
+enum { MAX_ANGLES = 8, STEPS = 40, MAX_TEXT = 160 };
+
+struct coat {
+    const char *output;
+    int surface; /* -1: a coating by itself */
+    struct coating on_lens;
+    double glass[2]; /* nd and Vd */
+    int n_angles;
+    double angle_deg[MAX_ANGLES];
+    double band_nm[2];
+    struct glint_coating coating;
+    char name[MAX_TEXT]; /* for titles */
+};
+
+/* Shares reflected. */
+struct reflected {
+    double s, p, both;
+};
+
+static struct reflected reflected_at(const struct coat *c, double nm,
+                                     double degrees)
+{
+    struct glint_film_at film[GLINT_MAX_FILMS];
+    const int n = glint_coating_at(&c->coating, nm, film);
+    struct reflected r;
+
+    glint_reflectance_sp(1, glint_index(c->glass[0], c->glass[1], nm),
+                         cos(degrees * GLINT_PI / 180), film, n, &r.s, &r.p);
+    r.both = 0.5 * (r.s + r.p);
+    return r;
+}
+
+/* Returns the Kth wavelength of the table, 0 .. STEPS. */
+static double nm_at(const struct coat *c, int k)
+{
+    return c->band_nm[0] + (c->band_nm[1] - c->band_nm[0]) * k / STEPS;
+}
+
+/* ------------------------------------------------------------------- words */
+
+static void print_text(const struct coat *c)
+{
+    printf("%s, on index %g\n\n      nm", c->name, c->glass[0]);
+    for (int a = 0; a < c->n_angles; a++)
+        printf("  %5g deg", c->angle_deg[a]);
+    printf("\n");
+    for (int k = 0; k <= STEPS; k += 2) {
+        printf("%8.1f", nm_at(c, k));
+        for (int a = 0; a < c->n_angles; a++)
+            printf("  %7.3f %%",
+                   100 * reflected_at(c, nm_at(c, k), c->angle_deg[a]).both);
+        printf("\n");
+    }
+}
+
+static void print_json(const struct coat *c)
+{
+    struct json_writer json = {.to = stdout};
+
+    json_write(&json, "{coating: %s, nd: %g, vd: %g, films: [", c->name,
+               c->glass[0], c->glass[1]);
+    for (int i = 0; i < c->coating.n_films; i++)
+        json_write(&json, "[%g, %g]", c->coating.film[i].index,
+                   c->coating.film[i].quarters);
+    json_write(&json, "], reflected: [");
+    for (int k = 0; k <= STEPS; k++)
+        for (int a = 0; a < c->n_angles; a++) {
+            const struct reflected r =
+                reflected_at(c, nm_at(c, k), c->angle_deg[a]);
+
+            json_write(&json, "{nm: %g, deg: %g, s: %.9g, p: %.9g}",
+                       nm_at(c, k), c->angle_deg[a], r.s, r.p);
+        }
+    json_write(&json, "]}\n");
+}
+
+/* ------------------------------------------------------------------- plots */
+
+/* A curve of a panel: percent of X. */
+struct curve {
+    const struct coat *c;
+    double fixed; /* angle or wavelength */
+    int kind;     /* 0: by wavelength; 1: s, 2: p by angle */
+    double lo, hi;
+};
+
+static double percent_of(const struct curve *v, double x)
+{
+    const struct reflected r = v->kind ? reflected_at(v->c, v->fixed, x)
+                                       : reflected_at(v->c, x, v->fixed);
+
+    return 100 * (v->kind == 0 ? r.both : v->kind == 1 ? r.s : r.p);
+}
+
+static void stretch_by(struct plot *plot, const struct curve *v)
+{
+    for (int i = 0; i <= 2 * STEPS; i++) {
+        const double x = v->lo + (v->hi - v->lo) * i / (2 * STEPS);
+
+        plot_stretch(plot, x, percent_of(v, x));
+    }
+}
+
+static void draw(const struct plot *plot, const struct curve *v,
+                 const char *colour)
+{
+    enum { N = 200 };
+
+    for (int i = 0; i < N; i++) {
+        const double x0 = v->lo + (v->hi - v->lo) * i / N;
+        const double x1 = v->lo + (v->hi - v->lo) * (i + 1) / N;
+
+        plot_line(plot, x0, percent_of(v, x0), x1, percent_of(v, x1), colour,
+                  v->kind != 2);
+    }
+}
+
+static void by_wavelength(const struct coat *c, struct plot *plot)
+{
+    struct curve v = {c, 0, 0, c->band_nm[0], c->band_nm[1]};
+    char words[32];
+
+    plot->x.words = "nm";
+    plot->y.words = "% reflected, unpolarised";
+    plot_stretch(plot, v.lo, 0);
+    for (int a = 0; a < c->n_angles; a++) {
+        v.fixed = c->angle_deg[a];
+        stretch_by(plot, &v);
+    }
+    plot_frame(plot);
+    for (int a = 0; a < c->n_angles; a++) {
+        v.fixed = c->angle_deg[a];
+        draw(plot, &v, plot_colour(a));
+        snprintf(words, sizeof words, "%g degrees", v.fixed);
+        plot_key(plot, 's', plot_colour(a), words);
+    }
+}
+
+static void by_angle(const struct coat *c, struct plot *plot)
+{
+    static const double nm[3] = {450, 550, 650};
+    static const char *const colour[3] = {"#1f6fb2", "#3a8f3a", "#c0281a"};
+    char words[32];
+
+    plot->x.words = "degrees";
+    plot->y.words = "% reflected, s thick, p thin";
+    for (int k = 0; k < 6; k++)
+        stretch_by(plot, &(struct curve){c, nm[k / 2], 1 + k % 2, 0, 75});
+    plot_frame(plot);
+    for (int k = 0; k < 6; k++)
+        draw(plot, &(struct curve){c, nm[k / 2], 1 + k % 2, 0, 75},
+             colour[k / 2]);
+    for (int k = 0; k < 3; k++) {
+        snprintf(words, sizeof words, "%g nm", nm[k]);
+        plot_key(plot, 's', colour[k], words);
+    }
+}
+
+static void draw_panels(const struct coat *c, FILE *file,
+                        struct plot_pixels *pixels)
+{
+    struct plot plot;
+
+    plot_init(&plot, file, 0, c->name);
+    plot.pixels = pixels;
+    by_wavelength(c, &plot);
+    plot_init(&plot, file, 1, "by angle");
+    plot.pixels = pixels;
+    by_angle(c, &plot);
+}
+
+/* Writes the plot to FILE; returns false if memory is short. */
+static bool write_plot(const struct coat *c, FILE *file, bool is_png)
+{
+    struct plot_pixels pixels;
+    bool fine;
+
+    if (!is_png) {
+        plot_open(file, 2);
+        draw_panels(c, file, NULL);
+        plot_close(file);
+        return true;
+    }
+    if (!plot_pixels_open(&pixels, 2))
+        return false;
+    draw_panels(c, NULL, &pixels);
+    fine = plot_png(file, &pixels);
+    plot_pixels_close(&pixels);
+    return fine;
+}
+
+static int save(const struct tool *tool, const struct coat *c)
+{
+    const bool is_png = glint_ends_in(c->output, ".png");
+    struct glint_output out;
+    struct glint_error error;
+    enum glint_status status = GLINT_E_MEMORY;
+    char *text = NULL;
+    size_t bytes = 0;
+    FILE *file = open_memstream(&text, &bytes);
+
+    error.text[0] = 0;
+    if (file) {
+        const bool fine = write_plot(c, file, is_png);
+
+        if (fclose(file) == 0 && fine)
+            status = glint_output_open(
+                &out, c->output,
+                is_png ? GLINT_OUTPUT_BINARY : GLINT_OUTPUT_TEXT, &error);
+        if (status == GLINT_OK)
+            status = glint_output_finish(&out, text, bytes, &error);
+    }
+    free(text);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
+/* ----------------------------------------------------------------- options */
+
+static int take(struct tool *tool, void *ctx, int c, const char *value)
+{
+    struct coat *o = ctx;
+    bool good = true;
+
+    if (c == 'o')
+        o->output = value;
+    else if (c == 's')
+        good = tool_integer(value, 0, GLINT_MAX_SURFACES - 1, &o->surface);
+    else if (c == 'C')
+        return coating_take(tool, &o->on_lens, value);
+    else if (c == 'b')
+        good = tool_numbers(value, o->band_nm, 2) == 2 &&
+               o->band_nm[0] >= 100 && o->band_nm[0] < o->band_nm[1] &&
+               o->band_nm[1] <= 5000;
+    else if (c == 'g')
+        good = tool_numbers(value, o->glass, 2) > 0 && o->glass[0] >= 1.01 &&
+               o->glass[0] <= 4 && o->glass[1] >= 0;
+    else if (c == 'a') {
+        o->n_angles = tool_numbers(value, o->angle_deg, MAX_ANGLES);
+        good = o->n_angles > 0;
+        for (int k = 0; k < o->n_angles; k++)
+            good = good && o->angle_deg[k] >= 0 && o->angle_deg[k] < 90;
+    } else
+        return tool_option(tool, c, value);
+    return good ? -1 : -2;
+}
+
+static int parse(struct tool *tool, int argc, char **argv, struct coat *o)
+{
+    static const struct option options[] = {
+        {"output", required_argument, NULL, 'o'},
+        {"surface", required_argument, NULL, 's'},
+        {"coating", required_argument, NULL, 'C'},
+        {"glass", required_argument, NULL, 'g'},
+        {"angles", required_argument, NULL, 'a'},
+        {"band", required_argument, NULL, 'b'},
+        TOOL_COMMON_OPTIONS};
+    struct apart files = {.n_read = 0};
+    int code =
+        tool_take(tool, argc, argv, TOOL_COMMON_SHORT "o:", options, take, o);
+
+    if (code < 0)
+        code =
+            tool_inputs(tool, argc, argv, 1, "takes one coating, or one lens");
+    if (code >= 0)
+        return code;
+    if (o->output && !glint_ends_in(o->output, ".svg") &&
+        !glint_ends_in(o->output, ".png"))
+        return tool_usage(tool, "a plot is a .svg or a .png, not '%s'",
+                          o->output);
+    if (o->output && o->surface >= 0)
+        apart_read(&files, NULL, argv[optind]);
+    apart_write(&files, "-o", o->output);
+    code = apart_check(tool, &files);
+    if (code == EXIT_OK && o->output)
+        code = tool_check_output(tool, o->output);
+    return code == EXIT_OK ? -1 : code;
+}
+
+/* ------------------------------------------------------------------ coating */
+
+static int of_lens(const struct tool *tool, const char *name, struct coat *c)
+{
+    struct glint_prescription *lens = calloc(1, sizeof *lens);
+    int code;
+
+    if (!lens)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    code = tool_lens(tool, name, lens);
+    if (code == EXIT_OK && c->surface >= lens->n_surfaces)
+        code = tool_usage(tool, "%s has surfaces 0 to %d", name,
+                          lens->n_surfaces - 1);
+    if (code == EXIT_OK) {
+        const struct glint_surface *s;
+
+        coating_apply(&c->on_lens, lens);
+        s = &lens->surface[c->surface];
+        c->coating = s->coating;
+        snprintf(c->name, sizeof c->name, "%.60s, surface %d", lens->name,
+                 c->surface);
+        if (s->vd <= 0 && c->surface > 0) /* the glass is before it */
+            s--;
+        else if (c->surface > 0 && s[-1].vd > 0)
+            code = tool_usage(tool, "surface %d of %s is cemented", c->surface,
+                              name);
+        c->glass[0] = s->nd;
+        c->glass[1] = s->vd;
+    }
+    free(lens);
+    return code;
+}
+
+static int of_coating(const struct tool *tool, const char *text, struct coat *c)
+{
+    struct glint_coating read[GLINT_MAX_COATINGS];
+    struct glint_error error;
+    int n = 0;
+
+    if (glint_coatings_parse(read, &n, text, &error) != GLINT_OK)
+        return tool_usage(tool, "%s (a lens takes --surface K)", error.text);
+    if (n != 1)
+        return tool_usage(tool, "takes one coating, not %d", n);
+    c->coating = read[0];
+    snprintf(c->name, sizeof c->name, "%.150s", text);
+    return EXIT_OK;
+}
+
+int cmd_coat(int argc, char **argv)
+{
+    struct tool tool = {.name = "coat", .help = help};
+    struct coat c = {.surface = -1,
+                     .glass = {1.5168, 64.17},
+                     .n_angles = 5,
+                     .angle_deg = {0, 15, 30, 45, 60},
+                     .band_nm = {380, 780}};
+    int code = parse(&tool, argc, argv, &c);
+
+    if (code >= 0)
+        return code;
+    code = c.surface < 0 ? of_coating(&tool, argv[optind], &c)
+                         : of_lens(&tool, argv[optind], &c);
+    if (code != EXIT_OK)
+        return code;
+    if (tool.json)
+        print_json(&c);
+    else if (!tool.quiet)
+        print_text(&c);
+    return c.output ? save(&tool, &c) : EXIT_OK;
+}

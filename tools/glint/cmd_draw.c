@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint draw: a lens as an SVG figure.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "overlay/apart.h"
+#include "lens_pages/drawing.h"
+#include "model/table_file.h"
+
+static const char help[] =
+    "glint draw LENS -o FILE.svg [--ghost K [--angle DEG]] [--rays N]\n"
+    "           [--plane x|y] [--no-spots] [--f-number N] [--zoom Z] [--focus "
+    "M]\n"
+    "\n"
+    "A section through the lens, for a browser or a paper: glasses, barrels,\n"
+    "stop, sensor, and rays of the d line from the middle, 0.7 and all of the\n"
+    "field; below, where rays of 450, 546 and 650 nm meet the sensor. Light "
+    "is\n"
+    "from afar, however the lens is focused.\n"
+    "\n"
+    "  -o, --output FILE   the .svg, or - for standard output\n"
+    "  --ghost K           the path of ghost K, numbered as glint info -v "
+    "does,\n"
+    "                      its two mirrors marked, instead of the rays\n"
+    "  --angle DEG         of the ghost's light, 0 .. 89 (default: that of "
+    "the\n"
+    "                      half of the field)\n"
+    "  --rays N            of each fan, 1 .. 41 (default 7)\n"
+    "  --plane x|y         the section of a lens that is not round (default "
+    "x)\n"
+    "  --no-spots          no spot diagrams\n"
+    "  --f-number N        another than the table's\n" ZOOM_HELP;
+
+static const char help_end[] = COMMON_HELP;
+
+struct draw {
+    struct glint_prescription lens;
+    struct lens_drawing drawing;
+    const char *output;
+    struct zoom_option zoom;
+    double f_number; /* 0: the table's */
+};
+
+static int take(struct tool *tool, void *ctx, int c, const char *value)
+{
+    struct draw *o = ctx;
+    bool good = true;
+
+    if (c == 'o')
+        o->output = value;
+    else if (c == 'g')
+        good = tool_integer(value, 0, GLINT_MAX_GHOSTS - 1, &o->drawing.ghost);
+    else if (c == 'a')
+        good = tool_number(value, &o->drawing.angle_deg) &&
+               o->drawing.angle_deg >= 0 && o->drawing.angle_deg <= 89;
+    else if (c == 'r')
+        good = tool_integer(value, 1, DRAWING_MAX_RAYS, &o->drawing.rays);
+    else if (c == 'p') {
+        good = strcmp(value, "x") == 0 || strcmp(value, "y") == 0;
+        o->drawing.plane_deg = *value == 'y' ? 90 : 0;
+    } else if (c == 's')
+        o->drawing.spots = false;
+    else if (c == 'z')
+        good = zoom_option_take(&o->zoom, value);
+    else if (c == 'F')
+        good = zoom_option_focus(&o->zoom, value);
+    else if (c == 'f')
+        good = tool_number(value, &o->f_number) && o->f_number > 0;
+    else
+        return tool_option(tool, c, value);
+    return good ? -1 : -2;
+}
+
+static int parse(struct tool *tool, int argc, char **argv, struct draw *o)
+{
+    static const struct option options[] = {
+        {"output", required_argument, NULL, 'o'},
+        {"ghost", required_argument, NULL, 'g'},
+        {"angle", required_argument, NULL, 'a'},
+        {"rays", required_argument, NULL, 'r'},
+        {"plane", required_argument, NULL, 'p'},
+        {"no-spots", no_argument, NULL, 's'},
+        {"f-number", required_argument, NULL, 'f'},
+        ZOOM_OPTIONS('z', 'F'),
+        TOOL_COMMON_OPTIONS};
+    struct apart files = {.n_read = 0};
+    int code =
+        tool_take(tool, argc, argv, TOOL_COMMON_SHORT "o:", options, take, o);
+
+    if (code < 0)
+        code = tool_inputs(tool, argc, argv, 1, "takes one lens");
+    if (code >= 0)
+        return code;
+    if (!o->output)
+        return tool_usage(tool, "needs -o, a .svg");
+    if (o->drawing.angle_deg >= 0 && o->drawing.ghost < 0)
+        return tool_usage(tool, "--angle is of the light of a --ghost");
+    apart_read(&files, NULL, argv[optind]);
+    apart_write(&files, "-o", o->output);
+    code = apart_check(tool, &files);
+    if (code == EXIT_OK)
+        code = tool_check_ending(tool, o->output, ".svg", "a figure");
+    if (code == EXIT_OK)
+        code = tool_check_output(tool, o->output);
+    return code == EXIT_OK ? -1 : code;
+}
+
+static int save(const struct tool *tool, const struct draw *o)
+{
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_E_MEMORY;
+    struct glint_output out;
+    char *text = NULL;
+    size_t bytes = 0;
+    int shown = 0;
+    FILE *file = open_memstream(&text, &bytes);
+
+    if (file) {
+        shown = drawing_write(&o->drawing, file);
+        if (fclose(file) == 0)
+            status =
+                glint_output_open(&out, o->output, GLINT_OUTPUT_TEXT, &error);
+        if (status == GLINT_OK)
+            status = glint_output_finish(&out, text, bytes, &error);
+    }
+    free(text);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    if (shown == 0 && !tool->quiet)
+        fprintf(stderr, "glint draw: no ray of these gets through\n");
+    if (tool->json)
+        json_write(&(struct json_writer){.to = stdout}, "{rays: %d}\n", shown);
+    return EXIT_OK;
+}
+
+static int draw(struct tool *tool, struct draw *o, const char *name)
+{
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_OK;
+    int code = tool_lens(tool, name, &o->lens), n;
+
+    if (code == EXIT_OK)
+        code = zoom_option_apply(tool, &o->zoom, &o->lens);
+    if (code != EXIT_OK)
+        return code;
+    if (o->f_number > 0)
+        status = glint_prescription_set_f_number(&o->lens, o->f_number, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    o->drawing.focus_m = o->zoom.focus_m;
+    n = glint_ghost_list(&o->lens, NULL, 0);
+    if (o->drawing.ghost >= n)
+        return tool_usage(tool, "%s has %d ghosts, 0 .. %d", o->lens.name, n,
+                          n - 1);
+    return save(tool, o);
+}
+
+int cmd_draw(int argc, char **argv)
+{
+    struct tool tool = {.name = "draw", .help = help, .help_end = help_end};
+    struct draw o = {.output = NULL};
+    int code;
+
+    drawing_defaults(&o.drawing, &o.lens);
+    code = parse(&tool, argc, argv, &o);
+    if (code >= 0)
+        return code;
+    code = tool_start(&tool);
+    if (code == EXIT_OK)
+        code = draw(&tool, &o, argv[optind]);
+    tool_finish(&tool);
+    return code;
+}

@@ -1,0 +1,418 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint explain: tells what one frame models, what it leaves out and why, and
+ * what each part of it costs and gives.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "explain/explain.h"
+#include "explain/explain_scene.h"
+#include "overlay/apart.h"
+#include "desk/ghost_sheet.h"
+#include "overlay/compositor.h"
+#include "overlay/overlay_line.h"
+#include "glint/measure.h"
+#include "options/command_line.h"
+#include "formats/picture.h"
+#include "posix/error.h"
+
+static const char help[] =
+    "glint explain IN [-o OUT] [options]\n"
+    "glint explain --size WxH --light THETA,PHI[,POWER[,R,G,B[,SIZE]]]... [-o "
+    "OUT] "
+    "[options]\n"
+    "\n"
+    "Says of one frame which lights, wavelengths and ghosts are drawn, with\n"
+    "which barrels and terms, what each takes (vertices, edges, rows of\n"
+    "pixels, lit pixels, tiles; of the frame's work) and gives (share of the\n"
+    "light that reaches the picture; its brightest pixel, white = 1), and "
+    "what\n"
+    "is left out, and why. IN is a picture as of glint overlay; with --size "
+    "the\n"
+    "frame is one of glint render. With --scene it reports, before the flare,\n"
+    "what became of objects (drawn, hidden, behind the camera, off-screen,\n"
+    "occluded, below a pixel) and lights; --lens none: only that. Work counts "
+    "instructions by rule of thumb;\n"
+    "pixels that are lit are nobody's own and in no ghost's share.\n"
+    "\n"
+    "  -o, --output OUT    a picture: touched tiles shaded, ghosts outlined "
+    "and\n"
+    "                      numbered, a legend; with --scene its things "
+    "outlined,\n"
+    "                      in colours by what a pixel of each costs\n"
+    "  --save-ghosts FILE  the ghosts, for --ghosts FILE of overlay, live and "
+    "render\n"
+    "  --ghost-sheet OUT   a picture of each of the --top ghosts, each exposed "
+    "so\n"
+    "                      that it shows, with number, surfaces and share\n"
+    "  --size WxH          without IN: of the frame\n"
+    "  --picture P         codes: as drawn over 8 bits (with IN, or on "
+    "black);\n"
+    "                      linear: to the full (default with --size)\n"
+    "  --sort KEY          light (default) | work | number\n"
+    "  --top N             list and mark N ghosts and lights (default 20)\n";
+
+enum {
+    OPT_PICTURE = ENGINE_OPTIONS_END,
+    OPT_SORT,
+    OPT_TOP,
+    OPT_SIZE,
+    OPT_SAVE_GHOSTS,
+    OPT_GHOST_SHEET
+};
+
+enum { AUTO, CODES, LINEAR };
+
+struct explain_command {
+    struct compositor compositor;
+    const char *input, *output, *ghosts, *sheet;
+    int width, height; /* 0: those of the input */
+    int picture, order, top;
+    struct glint_image image; /* the input, over which the flare is drawn */
+};
+
+static const struct option own[] = {
+    {"output", required_argument, NULL, 'o'},
+    {"size", required_argument, NULL, OPT_SIZE},
+    {"picture", required_argument, NULL, OPT_PICTURE},
+    {"sort", required_argument, NULL, OPT_SORT},
+    {"top", required_argument, NULL, OPT_TOP},
+    {"save-ghosts", required_argument, NULL, OPT_SAVE_GHOSTS},
+    {"ghost-sheet", required_argument, NULL, OPT_GHOST_SHEET},
+    {NULL, 0, NULL, 0}};
+
+static bool take(struct explain_command *c, int option, const char *value)
+{
+    static const char *const pictures[] = {"codes", "linear", NULL};
+    static const char *const orders[] = {"light", "work", "number", NULL};
+
+    switch (option) {
+    case 'o':
+        c->output = value;
+        return true;
+    case OPT_SAVE_GHOSTS:
+        c->ghosts = value;
+        return *value != '\0';
+    case OPT_GHOST_SHEET:
+        c->sheet = value;
+        return *value != '\0';
+    case OPT_SIZE:
+        return tool_size(value, &c->width, &c->height);
+    case OPT_PICTURE:
+        c->picture = tool_word(value, pictures) + 1;
+        return c->picture > 0;
+    case OPT_SORT:
+        c->order = tool_word(value, orders);
+        return c->order >= 0;
+    case OPT_TOP:
+        return tool_integer(value, 0, GLINT_MAX_GHOSTS, &c->top);
+    }
+    return false;
+}
+
+static int check(struct tool *tool, const struct explain_command *c)
+{
+    const struct settings *s = &c->compositor.settings;
+
+    if (c->input && c->width)
+        return tool_usage(tool, "takes one picture, or --size");
+    if (c->input && c->picture == LINEAR)
+        return tool_usage(tool, "--picture linear goes with --size");
+    if (c->compositor.scene.file && c->picture == LINEAR)
+        return tool_usage(tool, "--picture linear is not for --scene");
+    if (!c->compositor.scene.file &&
+        strcmp(c->compositor.settings.options.lens, "none") == 0)
+        return tool_usage(tool, "--lens none leaves nothing to explain but a "
+                                "--scene");
+    if (!c->input && !c->compositor.scene.file && c->compositor.n_hand == 0 &&
+        c->compositor.at.n == 0 && !c->compositor.settings.options.lights)
+        return tool_usage(tool, "--size needs a --light or --lights FILE");
+    if (s->options.rays != GLINT_RAYS_MODEL)
+        return tool_usage(tool, "explains what is drawn from a model, not "
+                                "with --rays exact");
+    return -1;
+}
+
+static int parse(struct tool *tool, int argc, char **argv,
+                 struct explain_command *c)
+{
+    const struct option *const options =
+        engine_getopt(tool, ENGINE_ALL, &c->compositor.settings.options, own);
+    int option, index = 0;
+    int code = compositor_style_of(tool, &c->compositor, argc, argv,
+                                   "o:" TOOL_COMMON_SHORT, options);
+
+    if (code >= 0)
+        return code;
+    while ((option = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+                                 &index)) >= 0) {
+        code = compositor_option(tool, &c->compositor, option, optarg);
+        if (code == -2 && (option == 'o' || option >= ENGINE_OPTIONS_END)) {
+            code = -1;
+            if (!take(c, option, optarg))
+                return tool_refuse(tool, options[index].name, optarg);
+        } else if (code == -2)
+            code = tool_option(tool, option, optarg);
+        if (code >= 0)
+            return code;
+    }
+    code =
+        c->width && optind == argc
+            ? -1
+            : tool_inputs(tool, argc, argv, 1, "takes one picture, or --size");
+    if (code >= 0)
+        return code;
+    c->input = argv[optind]; /* or NULL at the end */
+    return check(tool, c);
+}
+
+/* ------------------------------------------------------------------- frame */
+
+static int load(struct tool *tool, struct explain_command *c)
+{
+    struct glint_error error = {""};
+    enum glint_status status;
+    uint8_t *mem;
+
+    if (c->input) {
+        status = glint_picture_load(c->input, &c->image, &error);
+        return status == GLINT_OK ? EXIT_OK
+                                  : tool_fail(tool, status, error.text);
+    }
+    c->image = (struct glint_image){
+        .format = GLINT_RGB24, .width = c->width, .height = c->height};
+    mem = calloc(3 * (size_t)c->width, (size_t)c->height);
+    if (!mem)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    glint_image_place(&c->image, mem);
+    return EXIT_OK;
+}
+
+/* Draws the flare as glint render does, and sets c->image to the picture of 8
+ * bits that glint render would save. */
+static enum glint_status draw_linear(struct explain_command *c)
+{
+    struct compositor *compositor = &c->compositor;
+    const size_t n = (size_t)c->width * (size_t)c->height;
+    struct glint_float_image light = {.width = c->width, .height = c->height};
+    enum glint_status status = GLINT_E_MEMORY;
+    struct glint_lamp *plain;
+    uint8_t *codes;
+
+    compositor_lamps(compositor, &c->image, 0);
+    plain = malloc(((size_t)compositor->n_lamps + 1) * sizeof *plain);
+    for (int i = 0; i < compositor->n_lamps && plain; i++)
+        plain[i] = compositor->lamp[i].lamp;
+    light.rgb = calloc(3 * n, sizeof *light.rgb);
+    if (light.rgb && plain)
+        status = glint_engine_render(
+            compositor->engine, plain, compositor->n_lamps,
+            settings_scale(&compositor->settings), GLINT_ENGINE_ALL, light.rgb,
+            &compositor->report);
+    free(plain);
+    if (status == GLINT_OK) {
+        codes = glint_measure_encode(
+            &light, GLINT_OPTION_GIVEN(&compositor->settings.options, exposure)
+                        ? 1
+                        : glint_measure_exposure(&light));
+        if (codes)
+            memcpy(c->image.plane[0], codes, 3 * n);
+        else
+            status = GLINT_E_MEMORY;
+        free(codes);
+    }
+    free(light.rgb);
+    return status;
+}
+
+/* ------------------------------------------------------------------ result */
+
+/* Saves the picture of SCENE, or if that is NULL of the flare. */
+static int save(struct tool *tool, const struct explain_command *c,
+                struct glint_explain *e, const struct explain_title *title,
+                const struct explained_scene *scene)
+{
+    struct glint_error error = {""};
+    struct glint_image marked = {.plane = {NULL}};
+    enum glint_status status =
+        scene ? explain_scene_mark(scene, &c->image, &marked)
+              : explain_mark(e, title, &c->image, &marked);
+
+    if (status == GLINT_OK)
+        status = glint_picture_save(c->output, &marked, &error);
+    free(marked.plane[0]);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
+/* Writes the files of single ghosts that were asked for. */
+static int save_ghosts(struct tool *tool, const struct explain_command *c,
+                       struct glint_explain *e)
+{
+    struct glint_error error = {""};
+    int ghosts[GLINT_MAX_GHOSTS];
+    const struct ghost_list list = {.explain = e,
+                                    .lens = c->compositor.settings.lens.name,
+                                    .ghosts = ghosts,
+                                    .top = c->top,
+                                    .picture = &c->image};
+    enum glint_status status = GLINT_OK;
+
+    glint_explain_sort(e, (enum glint_explain_order)c->order, ghosts);
+    if (c->ghosts)
+        status = ghost_list_write(&list, c->ghosts, &error);
+    if (c->sheet && status == GLINT_OK)
+        status = ghost_list_sheet(&list, c->sheet, &error);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
+/* Tells of the scene, before the FLARE if there is one. */
+static int tell_scene(struct tool *tool, const struct explain_command *c,
+                      struct glint_explain *flare)
+{
+    struct json_writer json = {.to = stdout};
+    struct explained_scene scene;
+    int code = EXIT_OK;
+    const enum glint_status status =
+        explained_scene_open(&scene, &c->compositor, flare);
+
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, NULL);
+    if (tool->json) {
+        json_write(&json, "{scene: ");
+        explain_scene_json(&json, &scene);
+        json_write(&json, flare ? "flare: " : "}\n");
+    } else {
+        explain_scene_print(&scene);
+        printf(flare ? "\n" : "");
+    }
+    if (c->output)
+        code = save(tool, c, NULL, NULL, &scene);
+    explained_scene_close(&scene);
+    return code;
+}
+
+static int tell(struct tool *tool, struct explain_command *c, bool linear)
+{
+    struct compositor *compositor = &c->compositor;
+    const struct explain_title title = {.lens = compositor->settings.lens.name,
+                                        .lamp = compositor->lamp,
+                                        .n_lamps = compositor->n_lamps,
+                                        .linear = linear,
+                                        .order =
+                                            (enum glint_explain_order)c->order,
+                                        .top = c->top,
+                                        .report = &compositor->report};
+    struct glint_explain e;
+    const enum glint_status status =
+        glint_explain_open(&e, compositor->engine,
+                           linear ? settings_scale(&compositor->settings) : 0);
+    int code = EXIT_OK;
+
+    if (status == GLINT_OK && compositor->scene.is_open)
+        code = tell_scene(tool, c, &e);
+    if (status != GLINT_OK)
+        code = tool_fail(tool, status, NULL);
+    else if (tool->json)
+        explain_json(&e, &title);
+    else
+        explain_print(&e, &title);
+    if (code == EXIT_OK && tool->json && compositor->scene.is_open)
+        printf("}\n");
+    if (status == GLINT_OK && compositor->n_lamps == 0 && !tool->quiet) {
+        fflush(stdout); /* It comes after what was told. */
+        overlay_say_none(compositor, stderr);
+    }
+    if (code == EXIT_OK && c->output && !compositor->scene.is_open)
+        code = save(tool, c, &e, &title, NULL);
+    if (code == EXIT_OK && (c->ghosts || c->sheet))
+        code = save_ghosts(tool, c, &e);
+    glint_explain_close(&e);
+    return code;
+}
+
+/* Refuses, before there is work, a picture that cannot be written. */
+static int check_picture(const struct tool *tool, const char *path)
+{
+    struct glint_error error = {""};
+
+    if (!path)
+        return EXIT_OK;
+    if (tool_check_output(tool, path) != EXIT_OK)
+        return EXIT_OUTPUT;
+    if (glint_picture_check(path, GLINT_PICTURE_8BIT, &error) == GLINT_OK)
+        return EXIT_OK;
+    tool_fail(tool, GLINT_E_OUTPUT, error.text);
+    return EXIT_OUTPUT;
+}
+
+static int check_apart(const struct tool *tool, const struct explain_command *c)
+{
+    struct apart files = {.n_read = 0};
+
+    apart_read(&files, NULL, c->input);
+    apart_write(&files, "-o", c->output);
+    apart_write(&files, "--save-ghosts", c->ghosts);
+    apart_write(&files, "--ghost-sheet", c->sheet);
+    apart_compositor(&files, &c->compositor);
+    return apart_check(tool, &files);
+}
+
+static int run(struct tool *tool, struct explain_command *c)
+{
+    const bool linear =
+        c->picture == LINEAR ||
+        (c->picture == AUTO && c->width && !c->compositor.scene.file);
+    enum glint_status status;
+    int code;
+
+    if (check_picture(tool, c->output) != EXIT_OK ||
+        check_picture(tool, c->sheet) != EXIT_OK ||
+        (c->ghosts && tool_check_output(tool, c->ghosts) != EXIT_OK))
+        return EXIT_OUTPUT;
+    code = check_apart(tool, c);
+    if (code == EXIT_OK)
+        code = compositor_open(tool, &c->compositor);
+    if (code == EXIT_OK)
+        code = load(tool, c);
+    if (code == EXIT_OK)
+        code = compositor_size(tool, &c->compositor, c->image.width,
+                               c->image.height);
+    if (code != EXIT_OK)
+        return code;
+    status =
+        linear ? draw_linear(c) : compositor_draw(&c->compositor, &c->image, 0);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, NULL);
+    code = compositor_finish(tool, &c->compositor);
+    if (code == EXIT_OK)
+        code = c->compositor.has_lens ? tell(tool, c, linear)
+                                      : tell_scene(tool, c, NULL);
+    return code;
+}
+
+int cmd_explain(int argc, char **argv)
+{
+    struct tool tool = {
+        .name = "explain", .help = help, .help_end = COMMON_HELP};
+    struct explain_command *c = calloc(1, sizeof *c);
+    int code;
+
+    if (!c)
+        return tool_fail(&tool, GLINT_E_MEMORY, NULL);
+    compositor_defaults(&c->compositor);
+    c->compositor.is_still = true;
+    c->top = 20;
+    code = parse(&tool, argc, argv, c);
+    if (code < 0) {
+        code = tool_start(&tool);
+        if (code == EXIT_OK)
+            code = run(&tool, c);
+        tool_finish(&tool);
+    }
+    compositor_close(&c->compositor);
+    free(c->image.plane[0]);
+    free(c);
+    return code;
+}

@@ -1,0 +1,498 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint lenses: lists the lenses that come with glint, or bakes all of them.
+ */
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "lens_pages/page.h"
+#include "lens_pages/search.h"
+#include "model/lens_files.h"
+#include "options/json_writer.h"
+#include "overlay/compositor.h"
+#include "model/model_cache.h"
+#include "model/table_file.h"
+#include "posix/output.h"
+#include "model/settings_table.h"
+#include "options/command_line.h"
+
+static const char help[] =
+    "glint lenses [WORD ...] [--names | --json | --html FILE [--rays exact]]\n"
+    "             [--models FOLDER]\n"
+    "\n"
+    "The lenses that come with glint: the name that --lens takes, focal "
+    "length\n"
+    "and angle off the axis at a corner of the film (90+: 90 degrees or "
+    "more),\n"
+    "f-number, film, ghosts, and whether a model is baked already, which else "
+    "is\n"
+    "done when a lens is first drawn: seconds to minutes for narrow stops, "
+    "minutes\n"
+    "to an hour for wide ones, hours for anamorphic lenses. A lens of your own "
+    "is\n"
+    "a .lens file (lenses/README.md); those in the folder $GLINT_LENSES are "
+    "listed,\n"
+    "too.\n"
+    "\n"
+    "  --names           their names alone, a line each\n"
+    "  WORD              lenses that have all of these words in their name,\n"
+    "                    source or character, in any case of letters\n"
+    "  --html FILE       a page with their drawings, and of those that are "
+    "baked\n"
+    "                    the flare of a lamp at three angles and the model's "
+    "bytes;\n"
+    "                    with what bakes and frames took, by figures.md "
+    "beside\n"
+    "                    the tables; it finds by words, and sorts\n"
+    "  --rays exact      that page has flares of lenses that are not baked, "
+    "too,\n"
+    "                    traced for each: seconds to a minute a lens\n"
+    "  --models FOLDER   bake what is missing and put all models there, of\n"
+    "                    overlay and of render, as make install does\n"
+    "  -o, --only NAME   this lens; repeatable\n";
+
+static const char help_end[] = COMMON_HELP;
+
+enum { MAX_ONLY = 64 };
+
+struct lenses {
+    struct json_writer json;
+    struct tool *tool;
+    const char *folder; /* folder that models are put into; NULL: none */
+    const char *only[MAX_ONLY];
+    int n_only, n, code;
+    bool names; /* lists no more than names */
+    bool exact; /* flares of lenses without a model are traced */
+    char **words;
+    int n_words;
+    const char *html; /* page to write, or NULL */
+    FILE *page;
+    struct tool_progress progress; /* of a page */
+    int n_files, n_looked;         /* of all lenses, and those looked at */
+};
+
+struct entry {
+    struct settings settings; /* settings of a run without options */
+    struct glint_optics optics;
+    struct glint_ghost ghost[GLINT_MAX_GHOSTS];
+    int n_ghosts;
+    struct glint_bake_options options;
+    bool is_baked;
+};
+
+/* Sets SETTINGS to those that overlay, live and explain have without options,
+ * or if PLAIN to those of render. Returns an exit code. */
+static int set_settings(struct settings *settings, bool plain)
+{
+    struct compositor *compositor =
+        plain ? NULL : calloc(1, sizeof *compositor);
+
+    if (plain) {
+        settings_defaults(settings);
+        return EXIT_OK;
+    }
+    if (!compositor)
+        return EXIT_RUNTIME;
+    compositor_defaults(compositor);
+    *settings = compositor->settings;
+    free(compositor);
+    return EXIT_OK;
+}
+
+static int set_entry(const struct tool *tool, const char *name, struct entry *e,
+                     bool plain)
+{
+    int code = set_settings(&e->settings, plain);
+
+    if (code != EXIT_OK)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    code = tool_lens(tool, name, &e->settings.lens);
+    if (code != EXIT_OK)
+        return code;
+    coating_apply(&e->settings.coating, &e->settings.lens);
+    glint_optics_of(&e->settings.lens, &e->optics);
+    e->n_ghosts =
+        glint_ghost_list(&e->settings.lens, e->ghost, GLINT_MAX_GHOSTS);
+    e->options = settings_bake_options(&e->settings);
+    e->is_baked = model_is_cached(&e->settings.lens, &e->options);
+    return EXIT_OK;
+}
+
+/* ------------------------------------------------------------------ tables */
+
+/* Degrees: lenses whose corner is wider by the tangent have it by their own
+ * projection, for which 85 chief rays are traced, instead. */
+#define WIDE_DEG 40.0
+/* Degrees: the widest angle that a light of a picture has. */
+#define WIDEST_DEG 89.9
+
+static double corner_deg(const struct entry *e)
+{
+    const struct glint_prescription *l = &e->settings.lens;
+    const double rho =
+        0.5 * hypot(l->film_width_mm, l->film_height_mm) / e->optics.focal_mm;
+    const double deg = 45 / atan(1) * atan(rho);
+    struct glint_projection projection;
+    struct glint_error error;
+    double miss_deg;
+
+    return deg > WIDE_DEG && glint_projection_of(&projection, l, &miss_deg,
+                                                 &error) == GLINT_OK
+               ? glint_projection_deg(&projection, rho)
+               : deg;
+}
+
+static void print_json(struct lenses *l, const char *name,
+                       const struct entry *e)
+{
+    if (l->n++ == 0)
+        json_write(&l->json, "{lenses: [");
+    json_write(&l->json,
+               "\n {name: %s, source: %s, character: %s, "
+               "focal_length_mm: %.3f, squeeze: %.6g, f_number: %g, "
+               "film_mm: [%g, %g], corner_deg: %.2f, ghosts: %d, baked: %c}",
+               name, e->settings.lens.source, e->settings.lens.character,
+               e->optics.focal_mm, e->optics.squeeze, e->settings.lens.f_number,
+               e->settings.lens.film_width_mm, e->settings.lens.film_height_mm,
+               corner_deg(e), e->n_ghosts, e->is_baked);
+}
+
+static void print_text(struct lenses *l, const char *name,
+                       const struct entry *e)
+{
+    const double corner = corner_deg(e);
+    char film[32];
+
+    if (l->n++ == 0)
+        printf("%-24s %9s %7s %6s  %-9s %6s  %s\n", "lens", "focal mm",
+               "corner", "f/", "film mm", "ghosts", "model");
+    snprintf(film, sizeof film, "%.4gx%.4g", e->settings.lens.film_width_mm,
+             e->settings.lens.film_height_mm);
+    printf("%-24s %9.1f %4.0f%cdeg %5.3g  %-9s %6d  %s\n", name,
+           e->optics.focal_mm, corner, corner < WIDEST_DEG ? ' ' : '+',
+           e->settings.lens.f_number, film, e->n_ghosts,
+           e->is_baked ? "baked" : "not yet");
+    if (l->tool->verbose || l->n_words)
+        printf("    %s%s%s\n", e->settings.lens.source,
+               *e->settings.lens.character ? "\n    " : "",
+               e->settings.lens.character);
+}
+
+/* ------------------------------------------------------------------ a page */
+
+/* Sets SETTINGS to those by which thumbnails of E are drawn. Three wavelengths
+ * and coarse grids do for pictures that small. Returns an exit code. */
+static int set_flares(struct settings *settings, const struct entry *e)
+{
+    const int code = set_settings(settings, false);
+
+    if (code != EXIT_OK || e->is_baked)
+        return code;
+    settings->options.rays = GLINT_RAYS_EXACT;
+    settings_set_quality(settings, 0.25);
+    return EXIT_OK;
+}
+
+/* Writes thumbnails of the flare, if there is a model to draw them by, or rays
+ * are exact. */
+static void print_flares(struct lenses *l, const char *name,
+                         const struct entry *e)
+{
+    struct settings *settings = calloc(1, sizeof *settings);
+    size_t bytes = 0;
+
+    if (!e->is_baked && !l->exact)
+        fputs("<p class=\"less\">no model yet: one is baked when the lens is "
+              "first drawn</p>",
+              l->page);
+    else if (settings && set_flares(settings, e) == EXIT_OK) {
+        fputs("<p>", l->page);
+        if (thumbnails_write(l->tool, settings, name, l->page, &bytes) !=
+            EXIT_OK)
+            l->code = EXIT_RUNTIME;
+        else if (e->is_baked)
+            fprintf(l->page, "</p><p class=\"less\">model of %zu bytes</p>",
+                    bytes);
+        else
+            fputs("</p><p class=\"less\">exact rays, as there is no model "
+                  "yet</p>",
+                  l->page);
+    }
+    free(settings);
+}
+
+static void print_measured(FILE *page, const char *name)
+{
+    struct measured m;
+
+    if (!measured_find(name, &m))
+        fputs("<p class=\"less\">bake and frame not measured yet</p>", page);
+    else if (!*m.kb)
+        fprintf(page, "<p class=\"less\">measured for f/%s: bake %s s</p>",
+                m.f_number, m.seconds);
+    else
+        fprintf(page,
+                "<p class=\"less\">measured for f/%s: bake %s s, model %s "
+                "KB%s%s%s</p>",
+                m.f_number, m.seconds, m.kb, *m.ms ? ", a frame of 1080p " : "",
+                m.ms, *m.ms ? " ms" : "");
+}
+
+static void print_html(struct lenses *l, const char *name,
+                       const struct entry *e)
+{
+    const struct page_card card = {.name = name,
+                                   .lens = &e->settings.lens,
+                                   .focal_mm = e->optics.focal_mm,
+                                   .squeeze = e->optics.squeeze,
+                                   .corner_deg = corner_deg(e),
+                                   .n_ghosts = e->n_ghosts};
+
+    if (l->n++ == 0)
+        page_begin(l->page);
+    page_card_begin(l->page, &card);
+    print_flares(l, name, e);
+    print_measured(l->page, name);
+    page_card_end(l->page);
+}
+
+/* ------------------------------------------------------------------ models */
+
+static int save_model(const struct tool *tool, const char *path,
+                      const struct model_file *model)
+{
+    struct glint_error error = {""};
+    struct glint_output out;
+    enum glint_status status =
+        glint_output_open(&out, path, GLINT_OUTPUT_BINARY, &error);
+
+    if (status == GLINT_OK)
+        status = glint_output_finish(&out, model->data, model->bytes, &error);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
+/* Puts the model of E into the folder, unless it is there already. It is copied
+ * from where models are kept, or baked. */
+static int put_model(const struct lenses *l, const struct entry *e)
+{
+    const uint64_t key = glint_bake_key(&e->settings.lens, &e->options);
+    struct model_file model = {.data = NULL};
+    char path[1024];
+    struct stat st;
+    int code;
+
+    if ((size_t)snprintf(path, sizeof path, "%s", l->folder) >= sizeof path ||
+        !model_cache_name(path, sizeof path, e->settings.lens.name, key))
+        return tool_usage(l->tool, "%s: the name is too long", l->folder);
+    if (stat(path, &st) == 0)
+        return EXIT_OK;
+    code = model_cached(l->tool, &e->settings.lens, e->options, &model);
+    if (code == EXIT_OK)
+        code = save_model(l->tool, path, &model);
+    if (code == EXIT_OK && !l->tool->quiet)
+        fprintf(stderr, "%s: %zu bytes\n", path, model.bytes);
+    model_file_close(&model);
+    return code;
+}
+
+/* ----------------------------------------------------------------- command */
+
+static bool is_wanted(const struct lenses *l, const char *name)
+{
+    for (int i = 0; i < l->n_only; i++)
+        if (strcmp(l->only[i], name) == 0)
+            return true;
+    return l->n_only == 0;
+}
+
+static bool print_name(struct lenses *l, const char *name)
+{
+    l->n++;
+    puts(name);
+    return true;
+}
+
+/* Lists the lens NAME, or puts its models into the folder. Returns whether to
+ * go on: a mistake in a table is reported and does not end the list. */
+static bool one(void *ctx, const char *name)
+{
+    struct lenses *l = ctx;
+    struct entry *e;
+    int code;
+
+    if (l->page)
+        tool_progress_show(&l->progress, (double)l->n_looked++ / l->n_files);
+    if (!is_wanted(l, name))
+        return true;
+    if (l->names && l->n_words == 0)
+        return print_name(l, name);
+    e = calloc(1, sizeof *e);
+    if (!e) {
+        l->code = tool_fail(l->tool, GLINT_E_MEMORY, NULL);
+        return true;
+    }
+    code = set_entry(l->tool, name, e, false);
+    if (code == EXIT_OK &&
+        !lens_has_words(name, &e->settings.lens, l->words, l->n_words)) {
+        free(e);
+        return true;
+    }
+    if (code == EXIT_OK && l->names)
+        print_name(l, name);
+    else if (code == EXIT_OK && l->folder) {
+        code = put_model(l, e);
+        if (code == EXIT_OK)
+            code = set_entry(l->tool, name, e, true);
+        if (code == EXIT_OK)
+            code = put_model(l, e);
+        l->n++;
+    } else if (code == EXIT_OK)
+        (l->page         ? print_html
+         : l->tool->json ? print_json
+                         : print_text)(l, name, e);
+    free(e);
+    if (code != EXIT_OK)
+        l->code = code;
+    return code == EXIT_OK || code == EXIT_LENS;
+}
+
+static bool stop_looking(void *ctx, const char *name)
+{
+    (void)ctx;
+    (void)name;
+    return false;
+}
+
+/* Says that no lens is wanted. Returns an exit code. */
+static int tell_none(const struct lenses *l)
+{
+    if (l->n_words)
+        return lens_words_missed(l->tool, l->words, l->n_words);
+    fprintf(stderr, "glint lenses: there are none; $GLINT_LENSES names a "
+                    "folder of them\n");
+    return EXIT_LENS;
+}
+
+/* Lists into the page L->html, which stays as it was if there is nothing to
+ * list. */
+static int run_page(struct lenses *l)
+{
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_E_MEMORY;
+    struct glint_output out;
+    char *text = NULL;
+    size_t bytes = 0;
+
+    l->page = open_memstream(&text, &bytes);
+    if (l->page) {
+        int n;
+
+        l->n_files = lens_files_each(stop_looking, l);
+        tool_progress_start(&l->progress, l->tool, "lenses");
+        n = lens_files_each(one, l);
+        tool_progress_end(&l->progress);
+        page_end(l->page);
+        if (fclose(l->page) == 0 && n >= 0)
+            status = GLINT_OK;
+        if (status == GLINT_OK && l->n == 0) {
+            free(text);
+            return l->code == EXIT_OK ? tell_none(l) : l->code;
+        }
+        if (status == GLINT_OK)
+            status =
+                glint_output_open(&out, l->html, GLINT_OUTPUT_TEXT, &error);
+        if (status == GLINT_OK)
+            status = glint_output_finish(&out, text, bytes, &error);
+    }
+    free(text);
+    return status == GLINT_OK ? l->code
+                              : tool_fail(l->tool, status, error.text);
+}
+
+static int run(struct lenses *l)
+{
+    const int code = lens_names_check(l->only, l->n_only);
+
+    if (code != EXIT_OK)
+        return code;
+    if (l->html)
+        return run_page(l);
+    if (l->folder && mkdir(l->folder, 0777) != 0 && errno != EEXIST) {
+        fprintf(stderr, "glint lenses: %s: %s\n", l->folder, strerror(errno));
+        return EXIT_OUTPUT;
+    }
+    if (lens_files_each(one, l) < 0)
+        return tool_fail(l->tool, GLINT_E_MEMORY, NULL);
+    if (l->n == 0 && l->code == EXIT_OK)
+        return tell_none(l);
+    if (l->tool->json && !l->folder && !l->names && l->n > 0)
+        json_write(&l->json, "\n]}\n");
+    return l->code;
+}
+
+static int parse(struct lenses *l, int argc, char **argv)
+{
+    static const struct option options[] = {
+        {"models", required_argument, NULL, 'm'},
+        {"only", required_argument, NULL, 'o'},
+        {"names", no_argument, NULL, 'n'},
+        {"html", required_argument, NULL, 'H'},
+        {"rays", required_argument, NULL, 'r'},
+        TOOL_COMMON_OPTIONS};
+    static const char *const rays[] = {"model", "exact", NULL};
+    int c, code;
+
+    while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+                            NULL)) >= 0) {
+        if (c == 'n')
+            l->names = true;
+        else if (c == 'm')
+            l->folder = optarg;
+        else if (c == 'H')
+            l->html = optarg;
+        else if (c == 'r' && tool_word(optarg, rays) < 0)
+            return tool_refuse(l->tool, "rays", optarg);
+        else if (c == 'r')
+            l->exact = tool_word(optarg, rays) == 1;
+        else if (c == 'o' && l->n_only == MAX_ONLY)
+            return tool_usage(l->tool, "more than %d lenses", MAX_ONLY);
+        else if (c == 'o')
+            l->only[l->n_only++] = optarg;
+        else if ((code = tool_option(l->tool, c, optarg)) >= 0)
+            return code;
+    }
+    l->words = argv + optind;
+    l->n_words = argc - optind;
+    if (l->exact && !l->html)
+        return tool_usage(l->tool, "--rays exact goes with --html");
+    if (l->html && (l->tool->json || l->folder || l->names))
+        return tool_usage(l->tool, "--html goes with neither --json, --models "
+                                   "nor --names");
+    if (l->names && (l->tool->json || l->folder))
+        return tool_usage(l->tool, "--names goes with neither --json nor "
+                                   "--models");
+    if (!l->html)
+        return -1;
+    code = tool_check_ending(l->tool, l->html, ".html", "a page");
+    if (code == EXIT_OK)
+        code = tool_check_output(l->tool, l->html);
+    return code == EXIT_OK ? -1 : code;
+}
+
+int cmd_lenses(int argc, char **argv)
+{
+    struct tool tool = {.name = "lenses", .help = help, .help_end = help_end};
+    struct lenses l = {.tool = &tool, .json = {.to = stdout}};
+    int code = parse(&l, argc, argv);
+
+    if (code < 0) {
+        code = tool_start(&tool);
+        if (code == EXIT_OK)
+            code = run(&l);
+        tool_finish(&tool);
+    }
+    return code;
+}

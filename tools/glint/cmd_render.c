@@ -1,0 +1,365 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint render: draws the flare alone, in linear light.
+ */
+#include <inttypes.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "overlay/apart.h"
+#include "desk/render_file.h"
+#include "glint/area.h"
+#include "lamp_files/lamp_list.h"
+#include "glint/measure.h"
+#include "posix/error.h"
+#include "model/settings.h"
+#include "options/command_line.h"
+#include "render/render_scene.h"
+
+static const char help[] =
+    "glint render LENS|MODEL -o OUT --light "
+    "THETA,PHI[,POWER[,R,G,B[,SIZE]]]... "
+    "[options]\n"
+    "glint render LENS|MODEL -o OUT --lights FILE [options]\n"
+    "glint render NAME.scene|BAKED -o OUT; --help behind it has the rest\n"
+    "\n"
+    "Draws the ghosts of a lens alone, from its table or its baked model; a\n"
+    "table is baked when it is first drawn (see 'glint bake'). Values are\n"
+    "linear: 1 is what a light of POWER 1 would give if its in-focus image\n"
+    "fell on one pixel. OUT is .pfm,\n"
+    "or with the image plug-in .exr, .hdr: linear as it stands. A .ppm, .png\n"
+    "or .jpg is for the eye: sRGB, the 99.9th percentile of luminance at 1\n"
+    "unless --exposure says otherwise.\n"
+    "\n"
+    "  -o, --output OUT\n"
+    "  --size WxH          default 960x540\n"
+    "  --light LIST        degrees off the axis, degrees about it (0 = right,\n"
+    "                      90 = up), power (default 1), colour; repeatable\n"
+    "  --lights FILE       those of frame 0 of a list as of glint overlay, up "
+    "to a\n"
+    "                      million\n"
+    "  --engine E          model: the integer run time (default)\n"
+    "                      exact: the reference, every ray in "
+    "double\n";
+
+struct render {
+    struct settings settings;
+    const char *output;
+    struct json_writer json;
+    bool linear; /* the output takes floats */
+    int width, height;
+    bool exact;
+    const char *lights_file;
+    int n_lamps;
+    struct glint_lamp *lamp; /* lamps by hand, at most SETTINGS_MAX_LAMPS, then
+                                those of the file */
+    struct glint_float_image image;
+    double ms;
+};
+
+static int take(struct tool *tool, struct render *r, int c)
+{
+    static const char *const engines[] = {"model", "exact", NULL};
+    int word;
+
+    switch (c) {
+    case 'o':
+        r->output = optarg;
+        return -1;
+    case 's':
+        if (tool_size(optarg, &r->width, &r->height))
+            return -1;
+        return tool_usage(tool, "--size takes WxH of 1 to %d pixels, not '%s'",
+                          GLINT_MAX_SIDE, optarg);
+    case 'l':
+        if (r->n_lamps == SETTINGS_MAX_LAMPS)
+            return tool_usage(tool, "more than %d lights", SETTINGS_MAX_LAMPS);
+        if (glint_option_light(optarg, &r->lamp[r->n_lamps++])) {
+            r->settings.max_deg =
+                fmax(r->settings.max_deg, r->lamp[r->n_lamps - 1].theta_deg);
+            return -1;
+        }
+        return tool_usage(
+            tool,
+            "--light takes THETA,PHI[,POWER[,R,G,B[,SIZE]]] with THETA "
+            "0 to 89.9, not '%s'",
+            optarg);
+    case 'f':
+        r->lights_file = optarg;
+        return -1;
+    case 'e':
+        word = tool_word(optarg, engines);
+        r->exact = word == 1;
+        if (r->exact)
+            r->settings.options.rays = GLINT_RAYS_EXACT;
+        return word >= 0 ? -1 : tool_refuse(tool, "engine", optarg);
+    default:
+        return tool_option(tool, c, optarg);
+    }
+}
+
+static int parse(struct tool *tool, int argc, char **argv, struct render *r)
+{
+    static const struct option own[] = {
+        {"output", required_argument, NULL, 'o'},
+        {"size", required_argument, NULL, 's'},
+        {"light", required_argument, NULL, 'l'},
+        {"lights", required_argument, NULL, 'f'},
+        {"engine", required_argument, NULL, 'e'},
+        {NULL, 0, NULL, 0}};
+    const struct option *const options =
+        engine_getopt(tool, ENGINE_DRAWING, &r->settings.options, own);
+    int c, code;
+
+    while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+                            NULL)) >= 0) {
+        code = settings_option(tool, &r->settings, c, optarg);
+        if (code == -2)
+            code = take(tool, r, c);
+        if (code >= 0)
+            return code;
+    }
+    code = tool_inputs(tool, argc, argv, 1, "takes one lens");
+    if (code >= 0)
+        return code;
+    if (!r->output)
+        return tool_usage(tool, "needs -o OUT");
+    if (r->n_lamps == 0 && !r->lights_file)
+        return tool_usage(tool, "needs a --light or --lights");
+    if (r->settings.options.memory &&
+        r->settings.options.rays == GLINT_RAYS_EXACT)
+        return tool_usage(tool, "--memory is for models, not for exact rays");
+    return -1;
+}
+
+/* ------------------------------------------------------------------ engines */
+
+/* Returns the points that the lamps are drawn as, several for a lamp of visible
+ * extent, malloc'ed, and sets *N to their number. Returns NULL without
+ * memory. */
+static struct glint_lamp *points_of(const struct render *r, int *n)
+{
+    const struct glint_view view =
+        settings_view(&r->settings, r->width, r->height);
+    const double pixels = fabs(r->settings.setup.optics.focal_mm) * view.width /
+                          view.sensor_width_mm;
+    struct glint_lamp *points;
+    struct glint_area area;
+    int total;
+    const struct glint_area_rule rule = glint_area_rule_of(
+        r->lamp, r->n_lamps, pixels,
+        r->settings.options.area_samples ? r->settings.options.area_samples
+                                         : r->settings.dials.area_points,
+        INT_MAX, &total);
+
+    *n = 0;
+    points = malloc(((size_t)total + 1) * sizeof *points);
+    for (int lamp = 0; points && lamp < r->n_lamps; lamp++) {
+        const int more = glint_area_plan(&area, &r->lamp[lamp], &rule);
+
+        for (int i = 0; i < more; i++)
+            points[(*n)++] = glint_area_point(&area, i);
+    }
+    return points;
+}
+
+static int render_exact(struct tool *tool, struct render *r)
+{
+    const size_t n = 3 * (size_t)r->width * (size_t)r->height;
+    struct tool_progress progress;
+    int n_points = 0;
+    struct glint_lamp *points = points_of(r, &n_points);
+    struct glint_exact_config cfg = {
+        .setup = &r->settings.setup,
+        .view = settings_view(&r->settings, r->width, r->height),
+        .lamps = points,
+        .n_lamps = n_points,
+        .grid = settings_has_grid(&r->settings)
+                    ? (r->settings.dials.fineness + 1) / 2 * 2
+                    : 512,
+        .only_ghost = settings_only_ghost(&r->settings),
+        .tints = r->settings.tints,
+        .workers = tool->workers,
+        .progress = tool_progress_show,
+        .progress_ctx = &progress};
+    const int n_ghosts =
+        settings_only_ghost(&r->settings) < 0 ? r->settings.setup.n_ghosts : 1;
+    double *rgb = malloc(n * sizeof *rgb);
+    enum glint_status status = GLINT_E_MEMORY;
+
+    tool_progress_start(&progress, tool, "exact");
+    if (rgb && points)
+        status = glint_exact_render(&cfg, rgb);
+    tool_progress_end(&progress);
+    for (size_t i = 0; status == GLINT_OK && i < n; i++)
+        r->image.rgb[i] = (float)(rgb[i] * settings_scale(&r->settings));
+    free(rgb);
+    free(points);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, NULL);
+    if (tool->json)
+        json_write(&r->json,
+                   "{engine: %s, grid: %d, lights: %d, ghosts: %d, "
+                   "bundles: %" PRId64 ", primitives: 0, tiles: 0, "
+                   "arena_bytes: 0, star_bytes: 0",
+                   "exact", cfg.grid, r->n_lamps, n_ghosts,
+                   (int64_t)r->n_lamps * n_ghosts * r->settings.n_wavelengths);
+    return EXIT_OK;
+}
+
+static void say_lights(const struct tool *tool,
+                       const struct glint_engine_report *report)
+{
+    char lights[64];
+
+    settings_warn_lights(tool, report);
+    if (!tool->verbose || tool->quiet)
+        return;
+    settings_lights_text(report, lights);
+    fprintf(stderr, "%s, %d ghosts, %d primitives; flare memory %zu bytes\n",
+            lights, report->ghosts, report->stats.primitives,
+            report->arena_bytes + report->star_bytes);
+}
+
+static int render_model(struct tool *tool, struct render *r)
+{
+    struct glint_engine_report report = {.lights = 0};
+    struct glint_engine_config cfg;
+    struct glint_engine *engine;
+    struct glint_error error = {""};
+    enum glint_status status;
+
+    settings_engine(tool, &r->settings, r->width, r->height, &cfg);
+    cfg.light.by_hand = 1;
+    cfg.search.max_found = 0;
+    cfg.drawing.is_fresh = 1;
+    cfg.search.more_lamps = r->n_lamps;
+    cfg.search.max_drawn = cfg.drawing.dials.max_lights;
+    status = glint_engine_create(&engine, &cfg, &error);
+    if (status == GLINT_OK)
+        status = glint_engine_render(
+            engine, r->lamp, r->n_lamps, settings_scale(&r->settings),
+            GLINT_ENGINE_ALL | GLINT_ENGINE_CORES, r->image.rgb, &report);
+    glint_engine_destroy(engine);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    if (tool->json) {
+        json_write(&r->json, "{engine: %s", "model");
+        settings_json(&r->json, &report);
+    }
+    say_lights(tool, &report);
+    return EXIT_OK;
+}
+
+/* Adds the lamps of frame 0 of the file to those by hand. */
+static int read_lamps(struct tool *tool, struct render *r)
+{
+    const struct glint_view view =
+        settings_view(&r->settings, r->width, r->height);
+    struct glint_error error = {""};
+    struct lamp_list list;
+    const enum glint_status status =
+        lamp_list_read(&list, r->lights_file, &error);
+    struct glint_engine_lamp *read;
+    struct glint_lamp *all;
+    int code;
+
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    all = realloc(r->lamp,
+                  ((size_t)r->n_lamps + (size_t)list.n + 1) * sizeof *all);
+    r->lamp = all ? all : r->lamp;
+    read = malloc(((size_t)list.n + 1) * sizeof *read);
+    if (all && read) {
+        const int n = lamp_list_frame(
+            &list, 0, &view, r->settings.setup.optics.focal_mm, read, list.n);
+
+        for (int i = 0; i < n; i++)
+            r->lamp[r->n_lamps++] = read[i].lamp;
+    }
+    code = all && read ? EXIT_OK : tool_fail(tool, GLINT_E_MEMORY, NULL);
+    free(read);
+    lamp_list_free(&list);
+    return code;
+}
+
+/* Refuses an output over LENS or a file of an option. */
+static int check_apart(const struct tool *tool, const struct render *r,
+                       const char *lens)
+{
+    struct apart files = {.n_read = 0};
+
+    apart_read(&files, NULL, lens);
+    apart_read(&files, "--lights", r->lights_file);
+    apart_read(&files, "--ghosts", r->settings.options.ghosts);
+    apart_read(&files, "--stop-mask", r->settings.stop.mask_file);
+    apart_write(&files, "-o", r->output);
+    return apart_check(tool, &files);
+}
+
+static int run(struct tool *tool, struct render *r, const char *lens)
+{
+    int code = check_apart(tool, r, lens);
+    double start;
+
+    if (code == EXIT_OK)
+        code = render_file_check(tool, r->output, &r->linear);
+    if (code == EXIT_OK)
+        code = settings_open(tool, &r->settings, lens);
+    if (code == EXIT_OK && r->lights_file)
+        code = read_lamps(tool, r);
+    if (code != EXIT_OK)
+        return code;
+    start = tool_seconds();
+    r->image.width = r->width;
+    r->image.height = r->height;
+    r->image.rgb =
+        calloc(3 * (size_t)r->width * (size_t)r->height, sizeof(float));
+    if (!r->image.rgb)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    code = r->exact ? render_exact(tool, r) : render_model(tool, r);
+    if (code == EXIT_OK)
+        code = render_file_save(
+            tool, r->output, r->linear, &r->image,
+            GLINT_OPTION_GIVEN(&r->settings.options, exposure) ? 1 : 0);
+    if (code == EXIT_OK && tool->json)
+        json_write(&r->json, "ms: %.3f}\n", 1e3 * (tool_seconds() - start));
+    if (code == EXIT_OK)
+        render_file_say(tool, r->output, r->width, r->height,
+                        r->settings.lens.name, tool_seconds() - start);
+    free(r->image.rgb);
+    return code;
+}
+
+int cmd_render(int argc, char **argv)
+{
+    struct tool tool = {
+        .name = "render", .help = help, .help_end = COMMON_HELP};
+    struct render *r = NULL;
+    int code;
+
+    if (render_has_scene(argc, argv))
+        return cmd_render_scene(argc, argv);
+    r = calloc(1, sizeof *r);
+    if (!r || !(r->lamp = malloc(SETTINGS_MAX_LAMPS * sizeof *r->lamp))) {
+        free(r);
+        return tool_fail(&tool, GLINT_E_MEMORY, NULL);
+    }
+    settings_defaults(&r->settings);
+    r->json.to = stdout;
+    r->width = 960;
+    r->height = 540;
+    code = parse(&tool, argc, argv, r);
+    if (code < 0) {
+        code = tool_start(&tool);
+        if (code == EXIT_OK)
+            code = run(&tool, r, argv[optind]);
+        tool_finish(&tool);
+    }
+    settings_close(&r->settings);
+    free(r->lamp);
+    free(r);
+    return code;
+}

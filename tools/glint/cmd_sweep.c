@@ -1,0 +1,425 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint sweep: measures what accuracy costs, dial by dial and together.
+ */
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "linux/instructions.h"
+#include "posix/workers.h"
+#include "measure/report_file.h"
+#include "measure/sweep.h"
+#include "options/command_line.h"
+#include "options/timed_text.h"
+
+static const char help[] =
+    "glint sweep [LENS]... -o FOLDER [options]\n"
+    "\n"
+    "Draws the same frames with every dial that trades accuracy for time "
+    "turned "
+    "by\n"
+    "itself, with some of them together, and along --quality, and measures "
+    "each\n"
+    "against the exact picture: time (as glint bench does, all taking turns),\n"
+    "instructions where the processor counts them, memory, PSNR, SSIM, the "
+    "99th\n"
+    "percentile of the differences in codes, and flux. FOLDER gets\n"
+    "  sweep.csv     all of it, with version and machine\n"
+    "  front.svg     error against time, and what nothing else is better than\n"
+    "  dials.svg     each dial by itself\n"
+    "  star.csv, star.svg  what --star-cull leaves of stars, and what that "
+    "costs\n"
+    "  parts.csv     what coarser tables of dust and no veil cost and save\n"
+    "  table.md      the named qualities\n"
+    "  index.html    these, tables, and pictures to judge by; one file\n"
+    "Exact pictures and models are kept where models are, so that a second "
+    "time\n"
+    "goes faster. Without lenses: one of each kind that comes with glint.\n"
+    "\n"
+    "  -o, --output FOLDER\n"
+    "  --size WxH[,...]    where dials are turned (default 1280x720; of the\n"
+    "                      first lens also 640x360, with one light and 16)\n"
+    "  --lights N[,...]    how many (default 1)\n"
+    "  --angle A[,...]     degrees off the axis of the first light (default "
+    "12)\n"
+    "  --small             one lens, one small picture, fewer values, in "
+    "seconds\n"
+    "  --stars             instead: star.csv, star.svg, parts.csv alone\n"
+    "  --repeat N          rounds, 1 to 100 (default 7)\n"
+    "  --exact-grid N      cells a side of the exact picture (default 128)\n"
+    "  --count             only say which points there are, drawing each once\n"
+    "  --counts FILE       instructions of points from "
+    "tools/measure/sweep-insn\n"
+    "  --cost WHAT         time (default) | instructions: what fronts go by\n"
+    "  --json              prints all points on standard output, too\n";
+static const char help_end[] = COMMON_HELP;
+
+static const char *const default_lenses[] = {
+    "heliar-tronnier", "double-gauss-angenieux", "itoh-zoom-long",
+    "nikon-zoom-mid", "canon-zoom-mid"};
+
+enum { MAX_LIST = 8 };
+
+struct asked {
+    const char *folder;
+    int n_sizes, size[MAX_LIST][2];
+    int n_lights, lights[MAX_LIST];
+    int n_angles;
+    double angle[MAX_LIST];
+    bool stars; /* stars alone */
+    bool plain; /* no --size, --lights, --angle or --small */
+};
+
+/* ------------------------------------------------------------------- cases */
+
+static void add_case(struct sweep *s, struct sweep_case c)
+{
+    if (s->n_cases < SWEEP_CASES)
+        s->scase[s->n_cases++] = c;
+}
+
+/* Adds, for the first lens, a smaller picture with one light and with 16 that
+ * can merge: exact pictures take time in proportion to lights. */
+static void add_more(struct sweep *s)
+{
+    const struct sweep_case c = {
+        .width = 640, .height = 360, .n_lamps = 1, .angle = 12};
+    struct sweep_case many = c;
+
+    many.n_lamps = 16;
+    add_case(s, c);
+    add_case(s, many);
+}
+
+static void add_cases(struct sweep *s, const struct asked *a)
+{
+    for (int lens = 0; lens < s->n_lenses; lens++) {
+        for (int i = 0; i < a->n_sizes; i++)
+            for (int k = 0; k < a->n_lights; k++)
+                for (int m = 0; m < a->n_angles; m++)
+                    add_case(s, (struct sweep_case){
+                                    .lens = lens,
+                                    .width = a->size[i][0],
+                                    .height = a->size[i][1],
+                                    .n_lamps = a->lights[k],
+                                    .angle = a->angle[m],
+                                    .together = i == 0 && k == 0 && m == 0});
+        if (lens == 0 && a->plain)
+            add_more(s);
+    }
+}
+
+/* ------------------------------------------------------------------ output */
+
+struct file {
+    const char *name;
+    void (*write)(const struct sweep *s, FILE *file);
+    bool alone; /* saved with --stars, too */
+};
+
+static const struct file files[] = {{"sweep.csv", sweep_csv, false},
+                                    {"front.svg", sweep_svg_front, false},
+                                    {"dials.svg", sweep_svg_dials, false},
+                                    {"table.md", sweep_names, false},
+                                    {"star.csv", sweep_star_csv, true},
+                                    {"star.svg", sweep_star_svg, true},
+                                    {"parts.csv", sweep_parts_csv, true},
+                                    {"index.html", sweep_page, false}};
+
+static int save(const struct sweep *s, const char *folder, const struct file *f)
+{
+    char *text = NULL;
+    size_t bytes = 0;
+    FILE *file = open_memstream(&text, &bytes);
+
+    if (!file)
+        return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
+    f->write(s, file);
+    return report_file_save(s->tool, folder, f->name, file, &text, &bytes);
+}
+
+/* Saves all files, or with STARS those of stars, dust and veil. */
+static int save_all(const struct sweep *s, const char *folder, bool stars)
+{
+    int code = EXIT_OK;
+
+    for (size_t i = 0; i < sizeof files / sizeof *files && code == EXIT_OK; i++)
+        if (!stars || files[i].alone)
+            code = save(s, folder, &files[i]);
+    if (code == EXIT_OK && s->tool->json && !stars)
+        sweep_json(s, stdout);
+    else if (code == EXIT_OK && !s->tool->quiet && !stars)
+        sweep_names(s, stdout);
+    return code;
+}
+
+/* ----------------------------------------------------------------- command */
+
+static void say_case(const struct sweep *s, int c)
+{
+    const struct sweep_case *k = &s->scase[c];
+
+    if (!s->tool->quiet)
+        fprintf(stderr,
+                "glint sweep: %d of %d: %s, %dx%d, %d light%s, %g "
+                "degrees: %d points\n",
+                c + 1, s->n_cases, s->lens[k->lens], k->width, k->height,
+                k->n_lamps, k->n_lamps > 1 ? "s" : "", k->angle, k->n);
+}
+
+static int measure(struct sweep *s)
+{
+    struct tool_progress progress;
+    int code = EXIT_OK;
+
+    for (int c = 0; c < s->n_cases && code == EXIT_OK; c++) {
+        say_case(s, c);
+        tool_progress_start(&progress, s->tool, "sweep");
+        code = sweep_measure(s, c, &progress);
+        tool_progress_end(&progress);
+    }
+    return code;
+}
+
+static const char *take_count(void *ctx, struct text_lines *lines, char *line)
+{
+    struct sweep *const s = ctx;
+    double v[2];
+    char *const space = strchr(line, ' ');
+
+    if (space)
+        *space = ',';
+    if (tool_numbers(line, v, 2) != 2 || v[0] != floor(v[0]) || v[0] < 0 ||
+        v[0] >= s->n_points || v[1] < 0)
+        return text_lines_cause(
+            lines, "not a point of this sweep and its instructions");
+    s->point[(int)v[0]].metric[SWEEP_INSTRUCTIONS] = v[1];
+    return NULL;
+}
+
+/* Reads the instructions of points from the file of --counts, whose lines are
+ * "POINT INSTRUCTIONS"; points without one stay. Returns an exit code. */
+static int read_counts(struct sweep *s)
+{
+    struct text_lines lines;
+    struct glint_error error;
+    enum glint_status status =
+        text_lines_open(&lines, s->counts, NULL, 1 << 24, &error);
+
+    if (status == GLINT_OK)
+        status = text_lines_each(&lines, take_count, s, &error);
+    return status == GLINT_OK ? EXIT_OK
+                              : tool_fail(s->tool, status, error.text);
+}
+
+static int run(struct sweep *s, const struct asked *a)
+{
+    int code = EXIT_OK;
+
+    for (int i = 0; i < s->n_lenses; i++)
+        if (tool_is_model(s->lens[i]))
+            return tool_usage(s->tool,
+                              "%s is a model: exact pictures need the table",
+                              s->lens[i]);
+    if (!s->count_only && !report_file_folder(a->folder)) {
+        fprintf(stderr, "glint sweep: %s: %s\n", a->folder, strerror(errno));
+        return EXIT_OUTPUT;
+    }
+    if (glint_pool_create(&s->one, 1) != GLINT_OK)
+        return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
+    if (!a->stars) {
+        add_cases(s, a);
+        if (sweep_plan(s) != GLINT_OK)
+            return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
+    }
+    s->counter = glint_instructions_open();
+    code = measure(s);
+    if (code == EXIT_OK && !s->count_only)
+        code = sweep_parts(s, s->lens[0]);
+    glint_instructions_close(s->counter);
+    if (code == EXIT_OK && s->counts)
+        code = read_counts(s);
+    if (code != EXIT_OK || s->count_only)
+        return code;
+    sweep_mark_fronts(s);
+    return save_all(s, a->folder, a->stars);
+}
+
+static bool take_sizes(const char *text, struct asked *a)
+{
+    char copy[128], *word, *rest = copy;
+
+    if ((size_t)snprintf(copy, sizeof copy, "%s", text) >= sizeof copy)
+        return false;
+    for (a->n_sizes = 0; (word = strtok_r(rest, ",", &rest)); a->n_sizes++)
+        if (a->n_sizes == MAX_LIST ||
+            !tool_size(word, &a->size[a->n_sizes][0], &a->size[a->n_sizes][1]))
+            return false;
+    return a->n_sizes > 0;
+}
+
+/* Takes up to MAX_LIST numbers of LOW to HIGH. Returns how many; 0: it is not
+ * that. */
+static int take_numbers(const char *text, double low, double high, double *to)
+{
+    const int n = tool_numbers(text, to, MAX_LIST);
+
+    for (int i = 0; i < n; i++)
+        if (to[i] < low || to[i] > high)
+            return 0;
+    return n;
+}
+
+static bool take_lights(const char *text, struct asked *a)
+{
+    double v[MAX_LIST];
+
+    a->n_lights = take_numbers(text, 1, 10000, v);
+    for (int i = 0; i < a->n_lights; i++) {
+        if (v[i] != floor(v[i]))
+            return false;
+        a->lights[i] = (int)v[i];
+    }
+    return a->n_lights > 0;
+}
+
+static bool take_cost(const char *text, struct sweep *s)
+{
+    static const char *const words[] = {"time", "instructions", NULL};
+    const int word = tool_word(text, words);
+
+    s->by_instructions = word == 1;
+    return word >= 0;
+}
+
+enum option_code { OPT_SMALL = 1, OPT_STARS, OPT_COUNT, OPT_COUNTS };
+
+static const struct option options[] = {
+    {"output", required_argument, NULL, 'o'},
+    {"size", required_argument, NULL, 's'},
+    {"lights", required_argument, NULL, 'l'},
+    {"angle", required_argument, NULL, 'a'},
+    {"repeat", required_argument, NULL, 'r'},
+    {"exact-grid", required_argument, NULL, 'g'},
+    {"cost", required_argument, NULL, 'c'},
+    {"small", no_argument, NULL, OPT_SMALL},
+    {"stars", no_argument, NULL, OPT_STARS},
+    {"count", no_argument, NULL, OPT_COUNT},
+    {"counts", required_argument, NULL, OPT_COUNTS},
+    TOOL_COMMON_OPTIONS};
+
+/* Takes option C with the value optarg. Returns 1, or 0 if the option does not
+ * take that value, or -2 if C is another option. */
+static int take(struct sweep *s, struct asked *a, int c)
+{
+    switch (c) {
+    case 'o':
+        a->folder = optarg;
+        return 1;
+    case 's':
+        return take_sizes(optarg, a);
+    case 'l':
+        return take_lights(optarg, a);
+    case 'a':
+        return (a->n_angles = take_numbers(optarg, 0, 60, a->angle)) > 0;
+    case 'r':
+        return tool_integer(optarg, 1, SWEEP_ROUNDS, &s->rounds);
+    case 'g':
+        return tool_integer(optarg, 4, 1024, &s->grid) && s->grid % 2 == 0;
+    case 'c':
+        return take_cost(optarg, s);
+    case OPT_SMALL:
+        return s->small = true;
+    case OPT_STARS:
+        return a->stars = true;
+    case OPT_COUNT:
+        return s->count_only = true;
+    case OPT_COUNTS:
+        s->counts = optarg;
+        return 1;
+    default:
+        return -2;
+    }
+}
+
+static int parse(struct tool *tool, int argc, char **argv, struct sweep *s,
+                 struct asked *a)
+{
+    int c, at = 0, code;
+
+    while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+                            &at)) >= 0) {
+        const int taken = take(s, a, c);
+
+        if (taken == 0)
+            return tool_refuse(tool, options[at].name, optarg);
+        if (taken == -2 && (code = tool_option(tool, c, optarg)) >= 0)
+            return code;
+    }
+    if (!a->folder && !s->count_only)
+        return tool_usage(tool, "needs -o FOLDER");
+    if (argc - optind > SWEEP_LENSES)
+        return tool_usage(tool, "takes %d lenses at most", SWEEP_LENSES);
+    for (; optind < argc; optind++)
+        s->lens[s->n_lenses++] = argv[optind];
+    return -1;
+}
+
+/* Sets the lenses, sizes, numbers of lights, angles, rounds and grid that no
+ * option has set. */
+static void fill_in(struct sweep *s, struct asked *a)
+{
+    const int n =
+        s->small ? 1 : (int)(sizeof default_lenses / sizeof *default_lenses);
+
+    for (int i = 0; s->lens[0] == NULL || (i > 0 && i < n); i++)
+        s->lens[s->n_lenses++] = default_lenses[i];
+    a->plain = !s->small && a->n_sizes + a->n_lights + a->n_angles == 0;
+    if (a->n_sizes == 0) {
+        a->size[0][0] = s->small ? 160 : 1280;
+        a->size[0][1] = s->small ? 90 : 720;
+        a->n_sizes = 1;
+    }
+    if (a->n_lights == 0)
+        a->lights[a->n_lights++] = 1;
+    if (a->n_angles == 0)
+        a->angle[a->n_angles++] = 12;
+    s->rounds = s->rounds ? s->rounds : s->small ? 1 : 7;
+    s->grid = s->grid ? s->grid : s->small ? 64 : 128;
+}
+
+static void close_sweep(struct sweep *s)
+{
+    for (int i = 0; i < s->n_pictures; i++)
+        free(s->picture[i].rgb);
+    glint_pool_destroy(s->one);
+    free(s->picture);
+    free(s->point);
+    free(s);
+}
+
+int cmd_sweep(int argc, char **argv)
+{
+    struct tool tool = {.name = "sweep", .help = help, .help_end = help_end};
+    struct asked asked = {.folder = NULL};
+    struct sweep *const s = calloc(1, sizeof *s);
+    int code;
+
+    if (!s)
+        return tool_fail(&tool, GLINT_E_MEMORY, NULL);
+    s->tool = &tool;
+    s->counter = -1;
+    settings_defaults(&s->base);
+    code = parse(&tool, argc, argv, s, &asked);
+    if (code < 0)
+        code = tool_start(&tool);
+    if (code == EXIT_OK && tool.workers) {
+        fill_in(s, &asked);
+        code = run(s, &asked);
+    }
+    close_sweep(s);
+    tool_finish(&tool);
+    return code;
+}

@@ -1,0 +1,290 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A frame explained by a picture: the frame dimmed, touched tiles shaded,
+ * ghosts outlined and numbered, a legend below.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "explain/explain.h"
+#include "formats/paint.h"
+
+enum { PALETTE = 14, MOST_LABELS = 256, COLUMN = 152 };
+
+static const uint8_t palette[PALETTE][3] = {
+    {255, 96, 80},   {96, 224, 96},   {112, 160, 255}, {255, 208, 64},
+    {80, 224, 224},  {255, 112, 224}, {255, 160, 64},  {176, 240, 80},
+    {184, 144, 255}, {255, 255, 255}, {192, 128, 96},  {128, 192, 160},
+    {255, 176, 176}, {160, 160, 160}};
+
+struct label {
+    int x0, y0, x1, y1;
+};
+
+struct marking {
+    struct glint_explain *explain;
+    const struct glint_image *image; /* the picture being marked */
+    /* Size of the frame in pixels; the legend lies below it. */
+    int width, height;
+    int scale; /* thickness of strokes of labels and legend, pixels */
+    int n_labels;
+    struct label label[MOST_LABELS];
+};
+
+static void set_palette(struct paint *p, int k)
+{
+    const uint8_t *c = palette[k % PALETTE];
+
+    paint_colour(p, c[0], c[1], c[2]);
+}
+
+/* ------------------------------------------------------------------- tiles */
+
+/* Checks whether any pixel of the tile at (X0, Y0), SIDE pixels wide, has
+ * light. */
+static bool is_lit(const struct marking *m, int x0, int y0, int side)
+{
+    for (int y = y0; y < y0 + side && y < m->height; y++)
+        for (int x = x0; x < x0 + side && x < m->width; x++) {
+            const int32_t *px = m->explain->linear_q20 +
+                                3 * ((size_t)y * (size_t)m->width + (size_t)x);
+
+            if (px[0] | px[1] | px[2])
+                return true;
+        }
+    return false;
+}
+
+/* Shades a tile: bluish, with a brighter line at its left and top, if TOUCHED,
+ * else darker. */
+static void shade(const struct marking *m, int x0, int y0, int side,
+                  bool touched)
+{
+    static const int tint[3] = {6, 12, 34};
+
+    for (int y = y0; y < y0 + side && y < m->height; y++)
+        for (int x = x0; x < x0 + side && x < m->width; x++) {
+            uint8_t *px = m->image->plane[0] + y * m->image->stride_bytes[0] +
+                          3 * (ptrdiff_t)x;
+            const int rim = x == x0 || y == y0 ? 2 : 1;
+
+            for (int c = 0; c < 3; c++)
+                px[c] =
+                    (uint8_t)(touched ? px[c] / 2 + rim * tint[c] : px[c] / 4);
+        }
+}
+
+static void shade_tiles(struct marking *m)
+{
+    const int side = 1 << m->explain->tile_log2;
+    int tile = 0;
+
+    if (m->explain->n_lights)
+        glint_explain_draw(m->explain, -1);
+    for (int y = 0; y < m->height; y += side)
+        for (int x = 0; x < m->width; x += side, tile++)
+            shade(m, x, y, side,
+                  m->explain->n_lights &&
+                      (glint_explain_listed(m->explain, tile) > 0 ||
+                       is_lit(m, x, y, side)));
+}
+
+/* ------------------------------------------------------------------ ghosts */
+
+static bool lit_at(const struct marking *m, int x, int y)
+{
+    const int32_t *px;
+
+    if (x < 0 || y < 0 || x >= m->width || y >= m->height)
+        return true; /* The picture's sides are no outline. */
+    px =
+        m->explain->linear_q20 + 3 * ((size_t)y * (size_t)m->width + (size_t)x);
+    return (px[0] | px[1] | px[2]) != 0;
+}
+
+static bool is_rim(const struct marking *m, int x, int y)
+{
+    return lit_at(m, x, y) && !(lit_at(m, x - 1, y) && lit_at(m, x + 1, y) &&
+                                lit_at(m, x, y - 1) && lit_at(m, x, y + 1));
+}
+
+static bool is_free(const struct marking *m, const struct label *l)
+{
+    if (l->x0 < 0 || l->y0 < 0 || l->x1 > m->width || l->y1 > m->height)
+        return false;
+    for (int i = 0; i < m->n_labels; i++)
+        if (l->x0 < m->label[i].x1 && l->x1 > m->label[i].x0 &&
+            l->y0 < m->label[i].y1 && l->y1 > m->label[i].y0)
+            return false;
+    return true;
+}
+
+/* Finds a place L for a label of W x H at the ghost's rim, else in its light:
+ * the first free one from row START down, then from the top. Returns false if
+ * there is none. */
+static bool find_place(const struct marking *m, int start, int w, int h,
+                       struct label *l)
+{
+    for (int rim = 1; rim >= 0; rim--)
+        for (int k = 0; k < m->height; k += rim ? 1 : h)
+            for (int x = 0; x < m->width; x += rim ? 1 : w) {
+                const int y = (start + k) % m->height;
+
+                if (rim ? !is_rim(m, x, y) : !lit_at(m, x, y))
+                    continue;
+                *l = (struct label){x - w / 2, y - h / 2, x - w / 2 + w,
+                                    y - h / 2 + h};
+                if (is_free(m, l))
+                    return true;
+            }
+    return false;
+}
+
+static void put_label(struct marking *m, int k, int number)
+{
+    struct paint p = {.image = m->image, .line = m->scale};
+    const int start = k * 5 % 16 * m->height / 16; /* spread over the picture */
+    struct label l;
+    char text[16];
+
+    snprintf(text, sizeof text, "%d", number);
+    if (m->n_labels == MOST_LABELS ||
+        !find_place(m, start, paint_text_width(&p, text) + 4 * p.line,
+                    9 * p.line, &l))
+        return;
+    m->label[m->n_labels++] = l;
+    paint_colour(&p, 0, 0, 0);
+    paint_fill(&p, l.x0, l.y0, l.x1, l.y1);
+    set_palette(&p, k);
+    paint_text(&p, l.x0 + 2 * p.line, l.y0 + 2 * p.line, text);
+}
+
+static void outline(const struct marking *m, int k)
+{
+    struct paint p = {.image = m->image, .line = 1};
+    const int wide = (m->scale + 1) / 2;
+
+    set_palette(&p, k);
+    for (int y = 0; y < m->height; y++)
+        for (int x = 0; x < m->width; x++)
+            if (is_rim(m, x, y))
+                paint_fill(&p, x, y, x + wide,
+                           y + wide < m->height ? y + wide : m->height);
+}
+
+/* ------------------------------------------------------------------ legend */
+
+static int n_marked(const struct glint_explain *e,
+                    const struct explain_title *t)
+{
+    int n = 0;
+
+    for (int i = 0; i < e->n_ghosts; i++)
+        n += glint_explain_drawn(&e->ghost[i]) > 0;
+    return n < t->top ? n : t->top;
+}
+
+static int columns(const struct marking *m)
+{
+    const int n = m->width / (COLUMN * m->scale);
+
+    return n > 0 ? n : 1;
+}
+
+static int legend_rows(const struct marking *m, const struct explain_title *t)
+{
+    return 1 + (n_marked(m->explain, t) + columns(m) - 1) / columns(m);
+}
+
+static void put_title(const struct marking *m, const struct explain_title *t)
+{
+    struct paint p = {.image = m->image, .line = m->scale};
+    char text[160];
+    const int y = m->height + 3 * p.line;
+
+    paint_colour(&p, 64, 76, 120);
+    paint_fill(&p, 4 * p.line, y, 9 * p.line, y + 5 * p.line);
+    snprintf(text, sizeof text, "%d of %d tiles  %d of %d ghosts  %s",
+             m->explain->all.tiles, m->explain->n_tiles,
+             n_marked(m->explain, t), m->explain->n_ghosts, t->lens);
+    paint_colour(&p, 208, 208, 208);
+    paint_text(&p, 12 * p.line, y, text);
+}
+
+/* Draws entry K of the legend: the number of GHOST, its shares of light and
+ * work. */
+static void put_entry(const struct marking *m, int k, int ghost)
+{
+    struct paint p = {.image = m->image, .line = m->scale};
+    const struct glint_explain_part *part = &m->explain->ghost[ghost];
+    const int x = k % columns(m) * COLUMN * p.line + 4 * p.line;
+    const int y = m->height + (3 + 8 * (1 + k / columns(m))) * p.line;
+    char text[64];
+
+    set_palette(&p, k);
+    paint_fill(&p, x, y, x + 5 * p.line, y + 5 * p.line);
+    snprintf(text, sizeof text, "%d", ghost);
+    paint_text(&p, x + 8 * p.line, y, text);
+    snprintf(text, sizeof text, "light %.1f%%  work %.1f%%", 100 * part->share,
+             100 * part->cost);
+    paint_text(&p, x + 24 * p.line, y, text);
+}
+
+/* ------------------------------------------------------------------- whole */
+
+enum glint_status explain_copy(const struct glint_image *picture, int legend,
+                               struct glint_image *marked)
+{
+    const size_t row = 3 * (size_t)picture->width;
+    uint8_t *mem;
+
+    *marked = (struct glint_image){.format = GLINT_RGB24,
+                                   .width = picture->width,
+                                   .height = picture->height + legend};
+    mem = calloc(row, (size_t)marked->height);
+    if (!mem)
+        return GLINT_E_MEMORY;
+    glint_image_place(marked, mem);
+    for (int y = 0; y < picture->height; y++)
+        memcpy(mem + (size_t)y * row,
+               picture->plane[0] + y * picture->stride_bytes[0], row);
+    return GLINT_OK;
+}
+
+enum glint_status explain_mark(struct glint_explain *e,
+                               const struct explain_title *t,
+                               const struct glint_image *picture,
+                               struct glint_image *marked)
+{
+    struct marking m = {.explain = e,
+                        .image = marked,
+                        .width = picture->width,
+                        .height = picture->height,
+                        .scale = 1 + picture->height / 540};
+    enum glint_status status;
+    int ghosts[GLINT_MAX_GHOSTS], n = 0;
+
+    status =
+        explain_copy(picture, (8 * legend_rows(&m, t) + 3) * m.scale, marked);
+    if (status != GLINT_OK)
+        return status;
+    glint_explain_sort(e, t->order, ghosts);
+    shade_tiles(&m);
+    put_title(&m, t);
+    for (int i = 0; i < e->n_ghosts && n < t->top; i++) {
+        if (glint_explain_drawn(&e->ghost[ghosts[i]]) == 0)
+            continue;
+        glint_explain_draw(e, ghosts[i]);
+        outline(&m, n);
+        put_entry(&m, n++, ghosts[i]);
+    }
+    n = 0;
+    for (int i = 0; i < e->n_ghosts && n < t->top; i++) {
+        if (glint_explain_drawn(&e->ghost[ghosts[i]]) == 0)
+            continue;
+        glint_explain_draw(e, ghosts[i]);
+        put_label(&m, n++, ghosts[i]);
+    }
+    return GLINT_OK;
+}

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The scene of a frame explained: what became of its things and lights. */
+#ifndef GLINT_TOOLS_COMMAND_EXPLAIN_SCENE_H
+#define GLINT_TOOLS_COMMAND_EXPLAIN_SCENE_H
+
+#include "explain/explain.h"
+#include "options/json_writer.h"
+#include "overlay/compositor.h"
+#include "scenes/account.h"
+
+struct explained_scene {
+    const struct compositor *compositor; /* drew the frame last */
+    const struct glint_explain *flare;   /* NULL: there is no lens */
+    struct scene_account account;
+};
+
+/* Sets SCENE; explained_scene_close() ends it. GLINT_E_MEMORY. */
+enum glint_status explained_scene_open(struct explained_scene *scene,
+                                       const struct compositor *compositor,
+                                       const struct glint_explain *flare);
+void explained_scene_close(struct explained_scene *scene);
+
+/* Print tables; _json an object. */
+void explain_scene_print(const struct explained_scene *scene);
+void explain_scene_json(struct json_writer *json,
+                        const struct explained_scene *scene);
+
+/* Sets MARKED to a new picture, whose plane[0] the caller frees: PICTURE with
+ * things outlined, in colours by what a pixel of each costs, and a legend
+ * below. GLINT_E_MEMORY. */
+enum glint_status explain_scene_mark(const struct explained_scene *scene,
+                                     const struct glint_image *picture,
+                                     struct glint_image *marked);
+
+#endif

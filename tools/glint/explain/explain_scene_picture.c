@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A scene explained by a picture: things outlined and numbered, in colours by
+ * the steps of a pixel of each, a legend below. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "explain/explain_scene.h"
+#include "formats/paint.h"
+
+enum { COLUMN = 170, ROW = 8, MOST_ENTRIES = 64 };
+
+struct heat {
+    const struct explained_scene *scene;
+    const struct glint_image *image;
+    int width, height, scale;
+    double most; /* max steps per pixel over all objects */
+};
+
+static int n_objects(const struct heat *h)
+{
+    return (int)h->scene->compositor->scene.baked.model.header->n_objects;
+}
+
+/* Returns the steps of a pixel of OBJECT: places shaded, shadows, texels,
+ * lookups and rays that continue. */
+static double steps_of(const struct heat *h, int object)
+{
+    const int64_t *const n = h->scene->account.objects[object].count;
+
+    return n[GLINT_SCENE_COVERING] > 0
+               ? (double)(n[GLINT_SCENE_SHADED] + n[GLINT_SCENE_SHADOWS] +
+                          n[GLINT_SCENE_TEXELS] + n[GLINT_SCENE_LOOKUPS] +
+                          n[GLINT_SCENE_BOUNCED]) /
+                     (double)n[GLINT_SCENE_COVERING]
+               : 0;
+}
+
+/* Sets RGB to the colour of OBJECT: blue, red, yellow by the root of its steps.
+ */
+static void colour_of(const struct heat *h, int object, uint8_t rgb[3])
+{
+    const double x = h->most > 0 ? sqrt(steps_of(h, object) / h->most) : 0;
+
+    rgb[0] = (uint8_t)(255 * fmin(1, 2 * x));
+    rgb[1] = (uint8_t)(255 * fmax(0, 2 * x - 1));
+    rgb[2] = (uint8_t)(255 * fmax(0, 1 - 1.5 * x));
+}
+
+static int seen_at(const struct heat *h, int x, int y)
+{
+    return x < 0 || y < 0 ? -1
+                          : h->scene->account.seen[(ptrdiff_t)y * h->width + x];
+}
+
+/* Returns whether OBJECT, or -1, only takes shadows: the picture is seen
+ * through it, and stays to be seen. */
+static bool is_catcher(const struct heat *h, int object)
+{
+    return object >= 0 &&
+           h->scene->compositor->scene.baked.model.object[object].catcher_q15;
+}
+
+static void shade(const struct heat *h)
+{
+    for (int y = 0; y < h->height; y++) {
+        uint8_t *px = h->image->plane[0] + y * h->image->stride_bytes[0];
+
+        for (int x = 0; x < h->width; x++, px += 3) {
+            const int object = seen_at(h, x, y);
+            const bool rim = (x > 0 && object != seen_at(h, x - 1, y)) ||
+                             (y > 0 && object != seen_at(h, x, y - 1));
+            uint8_t rgb[3] = {0, 0, 0};
+
+            if (object >= 0)
+                colour_of(h, object, rgb);
+            for (int c = 0; c < 3; c++)
+                px[c] = rim ? 255
+                        : is_catcher(h, object)
+                            ? (uint8_t)(px[c] / 2 + rgb[c] / 6)
+                            : (uint8_t)(px[c] / 3 + rgb[c] / 2);
+        }
+    }
+}
+
+/* Sets X and Y to the pixel nearest to AT that sees OBJECT; there is one. */
+static void nearest(const struct heat *h, int object, const double at[2],
+                    int *x, int *y)
+{
+    double best = HUGE_VAL;
+
+    for (int j = 0; j < h->height; j++)
+        for (int i = 0; i < h->width; i++) {
+            const double away = hypot(i - at[0], j - at[1]);
+
+            if (seen_at(h, i, j) == object && away < best) {
+                best = away;
+                *x = i;
+                *y = j;
+            }
+        }
+}
+
+/* Writes the number of each thing at the middle of the pixels that see it. */
+static void number(const struct heat *h)
+{
+    struct paint p = {.image = h->image, .line = h->scale};
+
+    for (int i = 0; i < n_objects(h); i++) {
+        double sum[2] = {0, 0}, n = 0;
+        char text[16];
+        int x0 = 0, y0 = 0, wide;
+
+        for (int y = 0; y < h->height; y++)
+            for (int x = 0; x < h->width; x++)
+                if (seen_at(h, x, y) == i) {
+                    sum[0] += x;
+                    sum[1] += y;
+                    n++;
+                }
+        if (n < 64)
+            continue;
+        snprintf(text, sizeof text, "%d", i);
+        wide = paint_text_width(&p, text);
+        sum[0] /= n;
+        sum[1] /= n;
+        nearest(h, i, sum, &x0, &y0);
+        x0 -= wide / 2;
+        y0 -= 2 * p.line;
+        paint_colour(&p, 0, 0, 0);
+        paint_fill(&p, x0 - 2 * p.line, y0 - 2 * p.line, x0 + wide + 2 * p.line,
+                   y0 + 7 * p.line);
+        paint_colour(&p, 255, 255, 255);
+        paint_text(&p, x0, y0, text);
+    }
+}
+
+/* ------------------------------------------------------------------- legend */
+
+static int columns_of(const struct heat *h)
+{
+    const int n = h->width / (COLUMN * h->scale);
+
+    return n > 0 ? n : 1;
+}
+
+static int entries_of(const struct heat *h)
+{
+    return n_objects(h) < MOST_ENTRIES ? n_objects(h) : MOST_ENTRIES;
+}
+
+static void put_entry(const struct heat *h, int i)
+{
+    const struct glint_scene_object *const object =
+        &h->scene->compositor->scene.baked.model.object[i];
+    struct paint p = {.image = h->image, .line = h->scale};
+    const int x = i % columns_of(h) * COLUMN * p.line + 4 * p.line;
+    const int y = h->height + (3 + ROW * (i / columns_of(h))) * p.line;
+    char text[96];
+    uint8_t rgb[3];
+
+    colour_of(h, i, rgb);
+    paint_colour(&p, rgb[0], rgb[1], rgb[2]);
+    paint_fill(&p, x, y, x + 5 * p.line, y + 5 * p.line);
+    paint_colour(&p, 208, 208, 208);
+    snprintf(text, sizeof text, "%d %.16s  %.1f steps a px", i, object->name,
+             steps_of(h, i));
+    paint_text(&p, x + 8 * p.line, y, text);
+}
+
+enum glint_status explain_scene_mark(const struct explained_scene *scene,
+                                     const struct glint_image *picture,
+                                     struct glint_image *marked)
+{
+    struct heat h = {.scene = scene,
+                     .image = marked,
+                     .width = picture->width,
+                     .height = picture->height,
+                     .scale = 1 + picture->height / 540};
+    const int legend =
+        ((entries_of(&h) + columns_of(&h) - 1) / columns_of(&h) * ROW + 4) *
+        h.scale;
+    const enum glint_status status = explain_copy(picture, legend, marked);
+
+    if (status != GLINT_OK)
+        return status;
+    for (int i = 0; i < n_objects(&h); i++)
+        h.most = fmax(h.most, steps_of(&h, i));
+    shade(&h);
+    number(&h);
+    for (int i = 0; i < entries_of(&h); i++)
+        put_entry(&h, i);
+    return GLINT_OK;
+}

@@ -1,0 +1,361 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A frame explained by tables of at most 100 columns, and by JSON.
+ */
+#include <math.h>
+#include <stdio.h>
+
+#include "explain/explain.h"
+#include "model/model_summary.h"
+#include "options/json_writer.h"
+#include "options/tool.h"
+
+enum { WIDE = 100 };
+
+static const struct {
+    const char *word, *reason;
+} outcomes[GLINT_OUTCOMES] = {
+    [GLINT_OUTCOME_DRAWN] = {"drawn", "drawn"},
+    [GLINT_OUTCOME_EMPTY] = {"empty", "no edge of its grid changes a pixel"},
+    [GLINT_OUTCOME_OTHER] = {"other", "not asked for, or muted"},
+    [GLINT_OUTCOME_BEYOND] = {"beyond", "light beyond the model's angles"},
+    [GLINT_OUTCOME_CLOSED] = {"closed", "no light gets through at this angle"},
+    [GLINT_OUTCOME_BLOCKED] = {"blocked", "stop and barrels take all of it"},
+    [GLINT_OUTCOME_DARK] = {"dark", "the light has no such colour"},
+    [GLINT_OUTCOME_OUTSIDE] = {"outside", "outside the picture"},
+    [GLINT_OUTCOME_FAINT] = {"faint", "too faint for any code"},
+    [GLINT_OUTCOME_NO_ROOM] = {"no_room", "no room left in the arena"},
+    [GLINT_OUTCOME_OTHER_SET] = {"other_set", "another set of wavelengths"},
+    [GLINT_OUTCOME_SHARED] = {"shared", "dim, drawn with a brighter light's"},
+};
+
+const char *explain_reason(enum glint_outcome outcome)
+{
+    return outcomes[outcome].reason;
+}
+
+static double degrees(double y, double x)
+{
+    return atan2(y, x) * 180 / GLINT_PI;
+}
+
+/* Returns the number of ghosts of which something is drawn. */
+static int ghosts_drawn(const struct glint_explain *e)
+{
+    int n = 0;
+
+    for (int i = 0; i < e->n_ghosts; i++)
+        n += glint_explain_drawn(&e->ghost[i]) > 0;
+    return n;
+}
+
+/* ------------------------------------------------------------------- table */
+
+static void print_percent(double x)
+{
+    if (x != 0 && fabs(x) < 0.0005)
+        printf("%8s", "<0.05");
+    else
+        printf("%8.1f", 100 * x);
+}
+
+/* Prints the columns that all tables end with. */
+static void print_costs(const struct glint_explain_part *p)
+{
+    printf(" %9lld %8lld %9lld %8d %5d", p->vertices, p->edges, p->rows, p->lit,
+           p->tiles);
+    print_percent(p->share);
+    printf(" %9.3g", p->brightest);
+    print_percent(p->cost);
+    printf("\n");
+}
+
+static void print_head(const char *what)
+{
+    printf("\n%-30s %9s %8s %9s %8s %5s %7s %9s %7s\n", what, "vertices",
+           "edges", "rows", "lit px", "tiles", "light%", "brightest", "work%");
+}
+
+/* Prints what a kind takes that few frames have. */
+static void print_price(const struct glint_explain *e,
+                        enum glint_cost_kind kind)
+{
+    if (e->stage[kind] > 0)
+        printf(",\n      %s %.1f (%.1f M)", glint_cost_weight[kind].name,
+               100 * e->stage[kind] / e->all.work, 1e-6 * e->stage[kind]);
+}
+
+/* Says which bundles are not drawn by themselves, as they are dim. */
+static void print_dim(const struct glint_explain *e)
+{
+    const double dim = e->dim_codes;
+
+    if (dim > 0)
+        printf("dim: ghosts below %.3g codes share rays, %d bundles with those "
+               "of a brighter light\n",
+               dim, e->all.of[GLINT_OUTCOME_SHARED]);
+}
+
+static void print_title(const struct glint_explain *e,
+                        const struct explain_title *t)
+{
+    const struct glint_explain_part *all = &e->all;
+
+    printf("%s, %dx%d, %s\n", t->lens, e->view->width, e->view->height,
+           t->linear ? "linear light" : "codes");
+    /* A lamp of visible extent is drawn as several points. */
+    printf(e->n_lights > t->n_lamps ? "drawn: %d points of %d lights"
+                                    : "drawn: lights %d of %d",
+           e->n_lights, t->n_lamps);
+    printf(", ghosts %d of %d, bundles %d of %d, tiles %d of %d\n",
+           ghosts_drawn(e), e->n_ghosts, glint_explain_drawn(all),
+           glint_explain_bundles(all), all->tiles, e->n_tiles);
+    printf("barrels that cut: ");
+    for (int k = 0, some = 0; k < GLINT_EXPLAIN_BARRELS; k++)
+        if (e->barrels[k])
+            printf("%s%d in %d bundles", some++ ? ", " : "", k, e->barrels[k]);
+    printf("\nterms of a ray: %.1f in the mean\n",
+           all->vertices ? (double)all->all_terms / (double)all->vertices : 0);
+    printf("work: about %.1f M instructions, of these %%\n     ",
+           1e-6 * all->work);
+    for (int i = 0; i < GLINT_COST_KINDS && all->work > 0; i++)
+        if (i < GLINT_COST_PARTS || i == GLINT_COST_LIT || i == GLINT_COST_STAR)
+            printf("%s %s %.1f", i ? "," : "", glint_cost_weight[i].name,
+                   100 * e->stage[i] / all->work);
+    print_price(e, GLINT_COST_PARTS);
+    print_price(e, GLINT_COST_VEIL);
+    printf("\n");
+    print_dim(e);
+}
+
+static void print_lights(const struct glint_explain *e,
+                         const struct explain_title *t)
+{
+    print_head("light    angle azimuth bundles");
+    for (int i = 0; i < e->n_lights && i < t->top; i++) {
+        const struct glint_light *b = &e->lights[i];
+
+        printf(
+            "%5d %8.3f %7.1f %7d", i + 1, degrees(b->sine_q30, b->cosine_q30),
+            degrees(b->sin_q30, b->cos_q30), glint_explain_drawn(&e->light[i]));
+        print_costs(&e->light[i]);
+    }
+    if (e->n_lights > t->top)
+        printf("      and %d more (--top)\n", e->n_lights - t->top);
+}
+
+static void print_waves(const struct glint_explain *e)
+{
+    print_head("wavelength             bundles");
+    for (int i = 0; i < e->n_waves; i++) {
+        if (e->sets)
+            printf("%-3d for a ghost %14d", e->sets->size[i],
+                   glint_explain_drawn(&e->wave[i]));
+        else
+            printf("%7.1f nm %19d", e->setup->wavelength_nm[i],
+                   glint_explain_drawn(&e->wave[i]));
+        print_costs(&e->wave[i]);
+    }
+}
+
+static void print_ghosts(const struct glint_explain *e,
+                         const struct explain_title *t, const int *ghosts)
+{
+    int n = 0;
+
+    print_head("ghost   pair bundles terms cut");
+    for (int i = 0; i < e->n_ghosts; i++) {
+        const struct glint_explain_part *p = &e->ghost[ghosts[i]];
+        const struct glint_ghost *g = &e->setup->ghost[ghosts[i]];
+        char pair[32], bundles[32];
+
+        if (glint_explain_drawn(p) == 0 || n++ >= t->top)
+            continue;
+        snprintf(pair, sizeof pair, "%d-%d", g->i, g->j);
+        snprintf(bundles, sizeof bundles, "%d/%d", glint_explain_drawn(p),
+                 glint_explain_bundles(p));
+        printf("%5d %6s %7s %5d %3d", ghosts[i], pair, bundles, p->terms,
+               p->barrels);
+        print_costs(p);
+    }
+    if (n > t->top)
+        printf("      and %d more (--top)\n", n - t->top);
+}
+
+/* Prints the numbers of the ghosts that have OUTCOME, as many as fit ROOM
+ * characters, and ends the line. */
+static void print_numbers(const struct glint_explain *e,
+                          enum glint_outcome outcome, int room)
+{
+    for (int i = 0; i < e->n_ghosts; i++) {
+        char number[16];
+        const int n = snprintf(number, sizeof number, " %d", i);
+
+        if (e->ghost[i].of[outcome] == 0)
+            continue;
+        if (n + 4 > room) {
+            printf(" ...");
+            break;
+        }
+        fputs(number, stdout);
+        room -= n;
+    }
+    printf("\n");
+}
+
+static void print_left_out(const struct glint_explain *e)
+{
+    printf("\n%-41s %7s %7s\n", "left out", "bundles", "ghosts");
+    for (int outcome = GLINT_OUTCOME_EMPTY; outcome < GLINT_OUTCOMES;
+         outcome++) {
+        int n = 0;
+
+        for (int i = 0; i < e->n_ghosts; i++)
+            n += e->ghost[i].of[outcome] > 0;
+        if (e->all.of[outcome] == 0)
+            continue;
+        printf("%-41s %7d %7d ", outcomes[outcome].reason, e->all.of[outcome],
+               n);
+        print_numbers(e, (enum glint_outcome)outcome, WIDE - 58);
+    }
+}
+
+static void print_lost_lights(const struct glint_explain *e,
+                              const struct explain_title *t)
+{
+    const struct glint_engine_report *r = t->report;
+    const double most = model_degrees(e->lens->header->sine_hi_q30);
+    int n = 0, dark = 0;
+
+    for (int i = 0; i < t->n_lamps; i++) {
+        if (glint_explain_is_beyond(e, &t->lamp[i].lamp)) {
+            if (n++ < t->top)
+                printf("light at %.3f degrees: beyond the model, which ends at "
+                       "%.1f (bake --max-angle)\n",
+                       t->lamp[i].lamp.theta_deg, most);
+        } else
+            dark += !(t->lamp[i].lamp.power > 0);
+    }
+    if (n > t->top)
+        printf("and %d more beyond the model (--top)\n", n - t->top);
+    if (dark)
+        printf("%d light%s no power\n", dark, dark == 1 ? " has" : "s have");
+    n = t->n_lamps - r->beyond_lights - dark;
+    if (t->n_lamps && r->apart_lights < n)
+        printf("%d lights are %d as they cannot be told apart (--apart)\n", n,
+               r->apart_lights);
+    if (r->stats.held_cells)
+        printf("%d cells are so bright that they were cut down to what one may "
+               "give a pixel\n",
+               r->stats.held_cells);
+    if (r->drawn_lights < r->apart_lights)
+        printf("%d lights were merged into %d (--max-lights)\n",
+               r->apart_lights, r->drawn_lights);
+}
+
+void explain_print(const struct glint_explain *e, const struct explain_title *t)
+{
+    int ghosts[GLINT_MAX_GHOSTS];
+
+    glint_explain_sort(e, t->order, ghosts);
+    print_title(e, t);
+    if (e->n_lights) {
+        print_lights(e, t);
+        print_waves(e);
+        print_ghosts(e, t, ghosts);
+        print_left_out(e);
+    }
+    print_lost_lights(e, t);
+}
+
+/* -------------------------------------------------------------------- JSON */
+
+static void json_part(struct json_writer *json,
+                      const struct glint_explain_part *p)
+{
+    json_write(json, "bundles: %d, drawn: %d, left_out: {",
+               glint_explain_bundles(p), glint_explain_drawn(p));
+    for (int outcome = GLINT_OUTCOME_EMPTY; outcome < GLINT_OUTCOMES; outcome++)
+        if (p->of[outcome])
+            json_write(json, "%s: %d", outcomes[outcome].word, p->of[outcome]);
+    json_write(json,
+               "}, cells: %d, terms: %d, barrels: %d, vertices: %lld, "
+               "edges: %lld, rows: %lld, refs: %lld, lit_pixels: %d, "
+               "tiles: %d, flux: %.6g, light_share: %.6g, brightest: %.6g, "
+               "work_share: %.6g",
+               p->cells, p->terms, p->barrels, p->vertices, p->edges, p->rows,
+               p->refs, p->lit, p->tiles, p->flux, p->share, p->brightest,
+               p->cost);
+}
+
+static void json_lights(struct json_writer *json, const struct glint_explain *e,
+                        const struct explain_title *t)
+{
+    json_write(json, "lights: [");
+    for (int i = 0; i < e->n_lights; i++) {
+        const struct glint_light *b = &e->lights[i];
+
+        json_write(json, "{angle_deg: %.6g, azimuth_deg: %.6g",
+                   degrees(b->sine_q30, b->cosine_q30),
+                   degrees(b->sin_q30, b->cos_q30));
+        json_part(json, &e->light[i]);
+        json_write(json, "}");
+    }
+    json_write(json, "], beyond_model_deg: [");
+    for (int i = 0; i < t->n_lamps; i++)
+        if (glint_explain_is_beyond(e, &t->lamp[i].lamp))
+            json_write(json, "%.6g", t->lamp[i].lamp.theta_deg);
+    json_write(json, "], model_max_deg: %.6g",
+               model_degrees(e->lens->header->sine_hi_q30));
+}
+
+static void json_title(struct json_writer *json, const struct glint_explain *e,
+                       const struct explain_title *t)
+{
+    json_write(json,
+               "{lens: %s, width: %d, height: %d, picture: %s, "
+               "lights_given: %d, lights_apart: %d, all_tiles: %d, "
+               "held_cells: %d, held_samples: %d, frame: {",
+               t->lens, e->view->width, e->view->height,
+               t->linear ? "linear" : "codes", t->n_lamps,
+               t->report->apart_lights, e->n_tiles, t->report->stats.held_cells,
+               t->report->held_samples);
+    json_part(json, &e->all);
+    json_write(json, "}, work: {instructions: %.0f", e->all.work);
+    for (int i = 0; i < GLINT_COST_KINDS; i++)
+        json_write(json, "%s: %.6g",
+                   i == GLINT_COST_LIT ? "pixels" : glint_cost_weight[i].name,
+                   e->all.work > 0 ? e->stage[i] / e->all.work : 0);
+    json_write(json, "}, barrels: [");
+    for (int n = 0; n < GLINT_EXPLAIN_BARRELS; n++)
+        json_write(json, "%d", e->barrels[n]);
+    json_write(json, "]");
+}
+
+void explain_json(const struct glint_explain *e, const struct explain_title *t)
+{
+    struct json_writer json = {.to = stdout};
+    int ghosts[GLINT_MAX_GHOSTS];
+
+    glint_explain_sort(e, t->order, ghosts);
+    json_title(&json, e, t);
+    json_lights(&json, e, t);
+    json_write(&json, "wavelengths: [");
+    for (int i = 0; i < e->n_waves; i++) {
+        if (e->sets)
+            json_write(&json, "{of: %d", e->sets->size[i]);
+        else
+            json_write(&json, "{nm: %g", e->setup->wavelength_nm[i]);
+        json_part(&json, &e->wave[i]);
+        json_write(&json, "}");
+    }
+    json_write(&json, "], ghosts: [");
+    for (int i = 0; i < e->n_ghosts; i++) {
+        const struct glint_ghost *g = &e->setup->ghost[ghosts[i]];
+
+        json_write(&json, "{ghost: %d, pair: [%d, %d]", ghosts[i], g->i, g->j);
+        json_part(&json, &e->ghost[ghosts[i]]);
+        json_write(&json, "}");
+    }
+    json_write(&json, "]}\n");
+}

@@ -1,0 +1,801 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Millimetres of the lens: z runs along the axis from the front vertex, x up in
+ * the plane of the section.
+ */
+#include "lens_pages/drawing.h"
+
+#include <math.h>
+
+#include "glint/glint.h"
+
+/* A path, and its light at one angle. */
+struct fan {
+    struct glint_path path;
+    struct glint_pupil pupil;
+    double direction[3];
+    double stop_radius_mm;
+};
+
+/* Rays start in rings about the pupil's middle, six more in each than in the
+ * one within. */
+enum {
+    SPOT_COLOURS = 3,
+    SPOT_RINGS = 16,
+    SPOT_RAYS = 1 + 3 * SPOT_RINGS * (SPOT_RINGS + 1)
+};
+
+struct spots {
+    int n;
+    double at[SPOT_COLOURS * SPOT_RAYS][2]; /* mm */
+    int colour[SPOT_COLOURS * SPOT_RAYS];
+    double middle[2]; /* their mean, mm */
+    double rms_mm;    /* root mean square distance from it */
+    double radius_mm; /* largest */
+};
+
+enum { DRAWING_FIELDS = 3 };
+
+#define FIGURE_MARGIN_PX 24.0
+
+#define FIGURE_NM 587.5618 /* of rays: the d line */
+
+struct figure {
+    const struct lens_drawing *drawing;
+    FILE *file;
+    double z0, z1, x1;   /* what the section shows: z0 .. z1, -x1 .. x1 */
+    double scale;        /* pixels of a millimetre */
+    double left, middle; /* pixels of z = 0 and x = 0 */
+    double height_px;    /* of the section */
+    double vertex[GLINT_MAX_SURFACES], stop_z, sensor_z;
+    double film_mm; /* half of the picture as it is shown, in the plane */
+    double widen;   /* how much wider that is than on the sensor */
+    int shown;
+};
+
+/* Prepares FAN for light at THETA_DEG in the plane at PHI_DEG, which is the x-z
+ * plane of its rays; GHOST is NULL for the direct path. Returns false if
+ * nothing gets through. */
+static bool fan_init(struct fan *fan, const struct glint_prescription *lens,
+                     const struct glint_ghost *ghost, double nm, double phi_deg,
+                     double theta_deg)
+{
+    const double theta = theta_deg * GLINT_PI / 180;
+    struct glint_optics optics;
+
+    glint_optics_of(lens, &optics);
+    glint_path_init_at(&fan->path, lens, ghost, nm, phi_deg);
+    fan->path.places_only = true;
+    fan->direction[0] = sin(theta);
+    fan->direction[1] = 0;
+    fan->direction[2] = cos(theta);
+    fan->stop_radius_mm = optics.stop_radius_mm;
+    return glint_pupil_find(&fan->pupil, &fan->path, theta_deg,
+                            optics.stop_radius_mm, NULL);
+}
+
+/* Returns the x at which the ray (U, 0) starts. */
+static double fan_start_mm(const struct fan *fan, double u)
+{
+    const struct glint_pupil *p = &fan->pupil;
+
+    return 0.5 * (p->x0_mm + p->x1_mm) + 0.5 * u * (p->x1_mm - p->x0_mm);
+}
+
+/* Traces the ray that starts at U, V of the pupil, -1 .. 1 each. HITS is as of
+ * glint_trace(). Returns whether it passes. */
+static bool fan_ray(const struct fan *fan, double u, double v,
+                    struct glint_ray *ray, double (*hits)[2])
+{
+    return glint_trace(&fan->path, fan_start_mm(fan, u), v * fan->pupil.y1_mm,
+                       fan->direction, ray, hits) == GLINT_RAY_OK &&
+           ray->rel_radius <= 1 &&
+           hypot(ray->stop_x_mm, ray->stop_y_mm) <=
+               fan->stop_radius_mm * (1 + 1e-9);
+}
+
+/* Sets U to the lowest and the highest U of a ray (U, 0) that passes. Returns
+ * false if none does. */
+static bool fan_edges(const struct fan *fan, double u[2])
+{
+    enum { STEPS = 100, HALVINGS = 12 };
+    double hits[GLINT_MAX_EVENTS + 1][2];
+    struct glint_ray ray;
+    bool any = false;
+
+    for (int i = -STEPS; i <= STEPS; i++) {
+        const double at = (double)i / STEPS;
+
+        if (!fan_ray(fan, at, 0, &ray, hits))
+            continue;
+        if (!any)
+            u[0] = at;
+        u[1] = at;
+        any = true;
+    }
+    for (int side = 0; any && side < 2; side++) {
+        double out = (side ? 1.0 : -1.0) / STEPS;
+
+        for (int i = 0; i < HALVINGS; i++) {
+            out *= 0.5;
+            if (fan_ray(fan, u[side] + out, 0, &ray, hits))
+                u[side] += out;
+        }
+    }
+    return any;
+}
+
+static const double spot_nm[SPOT_COLOURS] = {450, 546, 650};
+
+/* Adds the rays of one ring that pass. The pupil's box is a square of -1 .. 1
+ * here, and its corners are as far as the outermost ring. */
+static void gather_ring(struct spots *s, const struct fan *fan, int colour,
+                        int ring)
+{
+    const int n = ring == 0 ? 1 : 6 * ring;
+    const double radius = sqrt(2) * ring / SPOT_RINGS;
+    double hits[GLINT_MAX_EVENTS + 1][2];
+    struct glint_ray ray;
+
+    for (int i = 0; i < n; i++) {
+        const double turn = 2 * GLINT_PI * i / n;
+        const double u = radius * cos(turn), v = radius * sin(turn);
+
+        if (fabs(u) > 1 || fabs(v) > 1 || !fan_ray(fan, u, v, &ray, hits))
+            continue;
+        s->colour[s->n] = colour;
+        s->at[s->n][0] = ray.sensor_x_mm;
+        s->at[s->n++][1] = ray.sensor_y_mm;
+    }
+}
+
+static void measure(struct spots *s)
+{
+    double sum[2] = {0, 0}, square = 0;
+
+    for (int i = 0; i < s->n; i++)
+        for (int k = 0; k < 2; k++)
+            sum[k] += s->at[i][k];
+    for (int k = 0; k < 2; k++)
+        s->middle[k] = s->n ? sum[k] / s->n : 0;
+    s->radius_mm = 0;
+    for (int i = 0; i < s->n; i++) {
+        const double r =
+            hypot(s->at[i][0] - s->middle[0], s->at[i][1] - s->middle[1]);
+
+        square += r * r;
+        s->radius_mm = fmax(s->radius_mm, r);
+    }
+    s->rms_mm = s->n ? sqrt(square / s->n) : 0;
+}
+
+/* Fills S with the rays that light at THETA_DEG in the plane at PHI_DEG
+ * sends through LENS, evenly over its pupil. */
+static void spots_gather(struct spots *s, const struct glint_prescription *lens,
+                         double phi_deg, double theta_deg)
+{
+    struct fan fan;
+
+    s->n = 0;
+    for (int c = 0; c < SPOT_COLOURS; c++)
+        if (fan_init(&fan, lens, NULL, spot_nm[c], phi_deg, theta_deg))
+            for (int ring = 0; ring <= SPOT_RINGS; ring++)
+                gather_ring(s, &fan, c, ring);
+    measure(s);
+}
+
+/* Share of the film's end at which the outermost field is, so that rays end
+ * within it. */
+#define FIELD_ENDS 0.995
+
+static const char *const field_colour[DRAWING_FIELDS] = {"#1f5fa8", "#2f8a3c",
+                                                         "#c0392b"};
+
+static double px(const struct figure *f, double z)
+{
+    return f->left + f->scale * z;
+}
+
+static double py(const struct figure *f, double x)
+{
+    return f->middle - f->scale * x;
+}
+
+/* Returns 1, 2 or 5 times a power of ten, at least VALUE. */
+static double round_up(double value)
+{
+    const double power = pow(10, floor(log10(fmax(value, 1e-9))));
+    const double share = value / power;
+
+    return power * (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10);
+}
+
+/* Returns how far from the centre the picture has the light of THETA_DEG, below
+ * 0 if it gets none. */
+static double image_height_mm(const struct figure *f, double theta_deg)
+{
+    double hits[GLINT_MAX_EVENTS + 1][2];
+    struct fan fan;
+    struct glint_ray ray;
+
+    if (!fan_init(&fan, f->drawing->lens, NULL, FIGURE_NM,
+                  f->drawing->plane_deg, theta_deg) ||
+        !fan_ray(&fan, 0, 0, &ray, hits))
+        return -1;
+    return fabs(ray.sensor_x_mm);
+}
+
+/* Returns the angle, in degrees, of the light that the lens images at HEIGHT_MM
+ * from the picture's centre, by rays through the middle of the pupil; the
+ * widest that still gets through the lens if none goes so far. */
+static double angle_of(const struct figure *f, double height_mm)
+{
+    double low = 0, high = 89;
+
+    for (int i = 0; i < 18; i++) {
+        const double middle = 0.5 * (low + high);
+        const double found = image_height_mm(f, middle);
+
+        if (found >= 0 && found < height_mm)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* Returns that of FIELD, 0 .. DRAWING_FIELDS - 1. */
+static double field_deg(const struct figure *f, int field)
+{
+    static const double share[DRAWING_FIELDS] = {0, 0.7, 1};
+
+    return angle_of(f, FIELD_ENDS * share[field] * f->film_mm);
+}
+
+enum { PROFILE = 24 };
+#define TITLE_PX  52.0
+#define HEIGHT_PX 400.0 /* most that the section takes */
+
+/* ------------------------------------------------------------------ places */
+
+/* Sets AT to the point of surface K at the height X of the section's plane. */
+static void rim_point(const struct figure *f, int k, double x, double at[3])
+{
+    const double phi = f->drawing->plane_deg;
+    const double angle = phi * GLINT_PI / 180;
+
+    if (!glint_surface_point(&f->drawing->lens->surface[k], phi, x * cos(angle),
+                             x * sin(angle), at)) {
+        at[0] = x;
+        at[1] = at[2] = 0;
+    }
+    at[2] += f->vertex[k];
+}
+
+/* Sets AT to z and x of the place that HIT, as of glint_trace(), is. */
+static void find_meeting(const struct figure *f,
+                         const struct glint_event *event, const double hit[2],
+                         double at[2])
+{
+    const struct glint_prescription *lens = f->drawing->lens;
+    double point[3] = {hit[0], hit[1], 0};
+
+    if (event->kind == GLINT_STOP)
+        at[0] = f->stop_z;
+    else {
+        /* A hit of a shaped surface is in its own frame, as X and Y are. */
+        if (!glint_surface_point(&lens->surface[event->surface],
+                                 event->shaped ? f->drawing->plane_deg : 0,
+                                 hit[0], hit[1], point))
+            point[2] = 0;
+        at[0] = f->vertex[event->surface] + point[2];
+    }
+    at[1] = point[0];
+}
+
+static void place_vertices(struct figure *f)
+{
+    const struct glint_prescription *lens = f->drawing->lens;
+    double z = lens->stop_after == 0 ? -lens->stop_thickness_mm : 0;
+
+    for (int k = 0; k <= lens->n_surfaces; k++) {
+        if (k == lens->stop_after) {
+            f->stop_z = z;
+            z += lens->stop_thickness_mm;
+        }
+        if (k == lens->n_surfaces)
+            break;
+        f->vertex[k] = z;
+        z += lens->surface[k].thickness_mm;
+    }
+    f->sensor_z = z;
+}
+
+/* Sets what of the picture lies in the section's plane: all of its diagonal,
+ * unless the lens tells its planes apart. */
+static void set_film(struct figure *f)
+{
+    const struct glint_prescription *lens = f->drawing->lens;
+    const bool along_x = f->drawing->plane_deg == 0;
+    struct glint_optics optics;
+
+    glint_optics_of(lens, &optics);
+    f->widen = along_x ? optics.squeeze : 1;
+    f->film_mm =
+        glint_prescription_is_round(lens)
+            ? 0.5 * hypot(lens->film_width_mm, lens->film_height_mm)
+            : 0.5 * (along_x ? lens->film_width_mm : lens->film_height_mm);
+}
+
+/* Sets places and scale of F, whose drawing and file are set. */
+static void begin(struct figure *f)
+{
+    const struct glint_prescription *lens = f->drawing->lens;
+    const double width = f->drawing->width_px - 2 * FIGURE_MARGIN_PX;
+    double length, least, at[3];
+
+    place_vertices(f);
+    set_film(f);
+    least = fmin(0, f->stop_z);
+    f->x1 = fmax(f->film_mm / f->widen, lens->stop_semi_mm);
+    for (int k = 0; k < lens->n_surfaces; k++)
+        for (int side = -1; side <= 1; side += 2) {
+            rim_point(f, k, side * lens->surface[k].semi_mm, at);
+            f->x1 = fmax(f->x1, fabs(at[0]));
+            least = fmin(least, at[2]);
+        }
+    length = f->sensor_z - least;
+    f->x1 *= 1.12;
+    f->z0 = least - 0.16 * length;
+    f->z1 = f->sensor_z + 0.02 * length;
+    f->scale = fmin(width / (f->z1 - f->z0), HEIGHT_PX / (2 * f->x1));
+    /* What is left of the width shows more of the way to the lens. */
+    f->z0 = fmax(f->z1 - width / f->scale, least - 0.6 * length);
+    f->height_px = 2 * f->x1 * f->scale;
+    f->left = 0.5 * (f->drawing->width_px - f->scale * (f->z1 - f->z0)) -
+              f->scale * f->z0;
+    f->middle =
+        (f->drawing->title ? TITLE_PX : FIGURE_MARGIN_PX) + 0.5 * f->height_px;
+}
+
+/* ---------------------------------------------------------------- the lens */
+
+/* Writes the points of surface K from its lower to its upper rim; from the
+ * upper one if SENSE is -1. */
+static void write_profile(const struct figure *f, int k, int sense)
+{
+    const double semi = f->drawing->lens->surface[k].semi_mm;
+    double at[3];
+
+    for (int i = -PROFILE; i <= PROFILE; i++) {
+        rim_point(f, k, sense * semi * i / PROFILE, at);
+        fprintf(f->file, "%.2f,%.2f ", px(f, at[2]), py(f, at[0]));
+    }
+}
+
+/* Writes the edge of the glass between surfaces K and K + 1, at the upper side
+ * or the lower: out to the wider of the two, and along. */
+static void write_edge(const struct figure *f, int k, int side)
+{
+    const struct glint_surface *s = &f->drawing->lens->surface[k];
+    double a[3], b[3], out;
+
+    rim_point(f, k, side * s[0].semi_mm, a);
+    rim_point(f, k + 1, side * s[1].semi_mm, b);
+    out = side * fmax(side * a[0], side * b[0]);
+    if (side > 0)
+        fprintf(f->file, "%.2f,%.2f %.2f,%.2f ", px(f, a[2]), py(f, out),
+                px(f, b[2]), py(f, out));
+    else
+        fprintf(f->file, "%.2f,%.2f %.2f,%.2f", px(f, b[2]), py(f, out),
+                px(f, a[2]), py(f, out));
+}
+
+/* Draws the glass behind surface K: the denser, the darker. */
+static void draw_glass(const struct figure *f, int k)
+{
+    const struct glint_surface *s = &f->drawing->lens->surface[k];
+    const double shade = fmin(1, fmax(0, (s->nd - 1.4) / 0.6));
+
+    fprintf(f->file,
+            "<polygon fill=\"#%02x%02x%02x\" stroke=\"#26323f\" "
+            "stroke-width=\"0.9\" stroke-linejoin=\"round\" points=\"",
+            (unsigned)(232 - 62 * shade), (unsigned)(241 - 46 * shade),
+            (unsigned)(250 - 26 * shade));
+    write_profile(f, k, 1);
+    write_edge(f, k, 1);
+    write_profile(f, k + 1, -1);
+    write_edge(f, k, -1);
+    fprintf(f->file,
+            "\"><title>surface %d; nd %.5g, Vd %.4g</title></polygon>\n", k,
+            s->nd, s->vd);
+}
+
+/* Draws the barrel that holds the glass from surface FIRST to LAST. */
+static void draw_barrel(const struct figure *f, int first, int last)
+{
+    const struct glint_prescription *lens = f->drawing->lens;
+    const double wall = 3.5;
+    double semi[2] = {0, 0}, a = 1e30, b = -1e30, at[3];
+
+    for (int k = first; k <= last; k++)
+        for (int side = 0; side < 2; side++) {
+            rim_point(f, k, (side ? 1 : -1) * lens->surface[k].semi_mm, at);
+            semi[side] = fmax(semi[side], fabs(at[0]));
+            a = fmin(a, fmin(f->vertex[k], at[2]));
+            b = fmax(b, fmax(f->vertex[k], at[2]));
+        }
+    for (int side = 0; side < 2; side++)
+        fprintf(f->file,
+                "<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.1f\" "
+                "fill=\"url(#hatch-%s)\" stroke=\"#777\" "
+                "stroke-width=\"0.5\"/>\n",
+                px(f, a), side ? py(f, semi[1]) - wall : py(f, -semi[0]),
+                f->scale * (b - a), wall, lens->name);
+}
+
+static void draw_glasses(const struct figure *f)
+{
+    const struct glint_prescription *lens = f->drawing->lens;
+    int first = -1;
+
+    for (int k = 0; k < lens->n_surfaces; k++) {
+        if (lens->surface[k].vd > 0) {
+            first = first < 0 ? k : first;
+            draw_glass(f, k);
+        } else if (first >= 0) {
+            draw_barrel(f, first, k);
+            first = -1;
+        }
+    }
+}
+
+static void draw_stop(const struct figure *f, double radius)
+{
+    const double end =
+        fmax(f->drawing->lens->stop_semi_mm * 1.18, radius + 9 / f->scale);
+
+    for (int side = -1; side <= 1; side += 2)
+        fprintf(f->file,
+                "<path d=\"M%.2f %.2f V%.2f M%.2f %.2f h6\" stroke=\"#111\" "
+                "stroke-width=\"2.2\" fill=\"none\"/>\n",
+                px(f, f->stop_z), py(f, side * radius), py(f, side * end),
+                px(f, f->stop_z) - 3, py(f, side * radius));
+}
+
+/* Writes the number of surface K above its rim. */
+static void draw_number(const struct figure *f, int k)
+{
+    double at[3];
+
+    rim_point(f, k, f->drawing->lens->surface[k].semi_mm, at);
+    fprintf(f->file,
+            "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\" "
+            "fill=\"#a2640c\">%d</text>\n",
+            px(f, at[2]), py(f, at[0]) - 7, k);
+}
+
+static void draw_axis_and_sensor(const struct figure *f)
+{
+    const double film = f->film_mm / f->widen;
+
+    fprintf(f->file,
+            "<path d=\"M%.2f %.2f H%.2f\" stroke=\"#888\" stroke-width=\"0.6\" "
+            "stroke-dasharray=\"12 3 2 3\"/>\n"
+            "<path d=\"M%.2f %.2f V%.2f\" stroke=\"#111\" "
+            "stroke-width=\"2\"/>\n",
+            px(f, f->z0), py(f, 0), px(f, f->z1), px(f, f->sensor_z),
+            py(f, film), py(f, -film));
+}
+
+enum { SPOT_PX = 170 };
+#define BELOW_PX  40.0 /* from the section to the boxes */
+#define LEGEND_PX 48.0 /* below them */
+
+static const char *const spot_colour[SPOT_COLOURS] = {"#2a52d0", "#2f9a3c",
+                                                      "#d0342a"};
+
+/* Pixels that they take. */
+static double spots_px(const struct figure *f)
+{
+    return f->drawing->spots ? BELOW_PX + SPOT_PX + LEGEND_PX : 0;
+}
+
+static double top_px(const struct figure *f)
+{
+    return f->middle + 0.5 * f->height_px + BELOW_PX;
+}
+
+static double per_mm(double mm)
+{
+    return mm < 1 ? 1e3 : 1;
+}
+
+static const char *unit(double mm)
+{
+    return mm < 1 ? "µm" : "mm";
+}
+
+static void draw_box(const struct figure *f, double x, double y)
+{
+    fprintf(f->file,
+            "<rect x=\"%.1f\" y=\"%.1f\" width=\"%d\" height=\"%d\" "
+            "fill=\"#fff\" stroke=\"#888\" stroke-width=\"0.7\"/>\n"
+            "<path d=\"M%.1f %.1f h%d M%.1f %.1f v%d\" stroke=\"#ddd\" "
+            "stroke-width=\"0.6\"/>\n",
+            x, y, SPOT_PX, SPOT_PX, x, y + 0.5 * SPOT_PX, SPOT_PX,
+            x + 0.5 * SPOT_PX, y, SPOT_PX);
+}
+
+static void draw_one(const struct figure *f, const struct spots *s, int field,
+                     double theta)
+{
+    const double step =
+        (f->drawing->width_px - 2 * FIGURE_MARGIN_PX) / DRAWING_FIELDS;
+    const double cx = FIGURE_MARGIN_PX + step * (field + 0.5);
+    const double cy = top_px(f) + 0.5 * SPOT_PX;
+    const double half_mm = round_up(s->radius_mm);
+    const double scale = 0.5 * SPOT_PX / half_mm;
+
+    draw_box(f, cx - 0.5 * SPOT_PX, cy - 0.5 * SPOT_PX);
+    for (int c = 0; c < SPOT_COLOURS; c++) {
+        fprintf(f->file, "<g fill=\"%s\">\n", spot_colour[c]);
+        for (int k = 0; k < s->n; k++)
+            if (s->colour[k] == c)
+                fprintf(f->file, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\".8\"/>\n",
+                        cx + scale * (s->at[k][1] - s->middle[1]),
+                        cy - scale * (s->at[k][0] - s->middle[0]));
+        fputs("</g>\n", f->file);
+    }
+    fprintf(f->file,
+            "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\" "
+            "fill=\"%s\">%.1f°, RMS %.3g %s</text>\n"
+            "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\" "
+            "fill=\"#444\">side %.4g %s</text>\n",
+            cx, cy - 0.5 * SPOT_PX - 7, field_colour[field], theta,
+            per_mm(s->rms_mm) * s->rms_mm, unit(s->rms_mm), cx,
+            cy + 0.5 * SPOT_PX + 15, per_mm(half_mm) * 2 * half_mm,
+            unit(half_mm));
+}
+
+/* Says what the colours are, to the right below the boxes. */
+static void draw_legend(const struct figure *f)
+{
+    const double y = top_px(f) + SPOT_PX + 34;
+    const double end = f->drawing->width_px - FIGURE_MARGIN_PX;
+
+    for (int c = 0; c < SPOT_COLOURS; c++) {
+        const double x = end - 66 * (SPOT_COLOURS - c);
+
+        fprintf(f->file,
+                "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"%s\"/>"
+                "<text x=\"%.1f\" y=\"%.1f\" fill=\"#444\">%.0f nm</text>\n",
+                x, y - 4, spot_colour[c], x + 7, y, spot_nm[c]);
+    }
+}
+
+/* Writes a spot diagram for each field below the section. */
+static void draw_spots(const struct figure *f)
+{
+    struct spots s;
+
+    for (int i = 0; i < DRAWING_FIELDS; i++) {
+        const double theta = field_deg(f, i);
+
+        spots_gather(&s, f->drawing->lens, f->drawing->plane_deg, theta);
+        draw_one(f, &s, i, theta);
+    }
+    draw_legend(f);
+}
+
+void drawing_defaults(struct lens_drawing *d,
+                      const struct glint_prescription *lens)
+{
+    *d = (struct lens_drawing){.lens = lens,
+                               .ghost = -1,
+                               .angle_deg = -1,
+                               .rays = 7,
+                               .spots = true,
+                               .title = true,
+                               .width_px = 960};
+}
+
+/* -------------------------------------------------------------------- rays */
+
+/* Writes the path of a ray that starts at X mm in the front vertex plane. */
+static void draw_ray(struct figure *f, const struct fan *fan, double x,
+                     const struct glint_ray *ray, double (*hits)[2],
+                     const char *colour)
+{
+    const double slope = fan->direction[0] / fan->direction[2];
+    double back = f->z0;
+
+    if (fabs(slope * back) > 4 * f->x1)
+        back = -4 * f->x1 / fabs(slope);
+    fprintf(f->file,
+            "<path fill=\"none\" stroke=\"%s\" stroke-width=\"0.7\" "
+            "stroke-linejoin=\"round\" d=\"M%.2f %.2f ",
+            colour, px(f, back), py(f, x + slope * back));
+    for (int e = 0; e < fan->path.n_events; e++) {
+        const bool stop = fan->path.event[e].kind == GLINT_STOP;
+        double at[2];
+
+        /* A stop behind the front vertex is met before the glass by the line
+         * of the light, not by the light. */
+        if (stop && f->drawing->lens->stop_after == 0 &&
+            f->drawing->lens->stop_thickness_mm < 0)
+            continue;
+        find_meeting(f, &fan->path.event[e], hits[e], at);
+        fprintf(f->file, "L%.2f %.2f ", px(f, at[0]), py(f, at[1]));
+    }
+    fprintf(f->file, "L%.2f %.2f\"/>\n", px(f, f->sensor_z),
+            py(f, ray->sensor_x_mm / f->widen));
+    f->shown++;
+}
+
+static void draw_fan(struct figure *f, const struct fan *fan,
+                     const char *colour)
+{
+    const int n = f->drawing->rays;
+    double hits[GLINT_MAX_EVENTS + 1][2], edge[2];
+    struct glint_ray ray;
+
+    if (!fan_edges(fan, edge))
+        return;
+    for (int i = 0; i < n; i++) {
+        const double share = n > 1 ? (double)i / (n - 1) : 0.5;
+        const double u = edge[0] + share * (edge[1] - edge[0]);
+
+        if (fan_ray(fan, u, 0, &ray, hits))
+            draw_ray(f, fan, fan_start_mm(fan, u), &ray, hits, colour);
+    }
+}
+
+static void draw_rays(struct figure *f)
+{
+    struct fan fan;
+
+    for (int i = DRAWING_FIELDS - 1; i >= 0; i--)
+        if (fan_init(&fan, f->drawing->lens, NULL, FIGURE_NM,
+                     f->drawing->plane_deg, field_deg(f, i)))
+            draw_fan(f, &fan, field_colour[i]);
+}
+
+static void draw_ghost(struct figure *f, const struct glint_ghost *ghost,
+                       double theta)
+{
+    struct fan fan;
+
+    if (fan_init(&fan, f->drawing->lens, ghost, FIGURE_NM,
+                 f->drawing->plane_deg, theta))
+        draw_fan(f, &fan, "#c0392b");
+    for (int i = 0; i < 2; i++) {
+        const int k = i ? ghost->j : ghost->i;
+
+        fprintf(f->file, "<polyline fill=\"none\" stroke=\"#d0881b\" "
+                         "stroke-width=\"2.4\" points=\"");
+        write_profile(f, k, 1);
+        fprintf(f->file, "\"/>\n");
+    }
+}
+
+/* ------------------------------------------------------------------- words */
+
+static void write_words(FILE *file, const char *text)
+{
+    for (; *text; text++)
+        if (*text == '&' || *text == '<' || *text == '>')
+            fprintf(file, "&#%d;", *text);
+        else
+            fputc(*text, file);
+}
+
+static void draw_title(const struct figure *f, const struct glint_optics *o,
+                       const char *path)
+{
+    const struct glint_prescription *lens = f->drawing->lens;
+    char focus[64] = "", across[48] = "";
+
+    if (fabs(o->squeeze - 1) > 1e-6)
+        snprintf(across, sizeof across, " up and down, %.2f across",
+                 o->focal_mm / o->squeeze);
+    if (f->drawing->focus_m > 0)
+        snprintf(focus, sizeof focus, ", focused at %.4g m, light from afar",
+                 f->drawing->focus_m);
+    fprintf(f->file,
+            "<text x=\"%.0f\" y=\"22\" font-size=\"15\" "
+            "font-weight=\"bold\">",
+            FIGURE_MARGIN_PX);
+    write_words(f->file, lens->name);
+    fprintf(f->file,
+            "<tspan dx=\"10\" font-weight=\"normal\" font-size=\"12\">"
+            "f = %.2f mm%s, f/%.3g%s%s</tspan></text>\n",
+            o->focal_mm, across, lens->f_number, focus, path);
+    fprintf(f->file, "<text x=\"%.0f\" y=\"40\" fill=\"#555\">",
+            FIGURE_MARGIN_PX);
+    write_words(f->file, lens->source);
+    fputs("</text>\n", f->file);
+}
+
+static void draw_scale_bar(const struct figure *f)
+{
+    const double mm = round_up(40 / f->scale);
+    const double y = f->middle + 0.5 * f->height_px + 10;
+
+    fprintf(f->file,
+            "<path d=\"M%.1f %.1f h%.2f m0 -3 v6 m-%.2f -6 v6\" "
+            "stroke=\"#333\" fill=\"none\" stroke-width=\"0.9\"/>\n"
+            "<text x=\"%.1f\" y=\"%.1f\" fill=\"#333\">%g mm</text>\n",
+            FIGURE_MARGIN_PX, y, mm * f->scale, mm * f->scale,
+            FIGURE_MARGIN_PX + mm * f->scale + 6, y + 4, mm);
+}
+
+/* --------------------------------------------------------------------- all */
+
+static void open_svg(const struct figure *f)
+{
+    const double width = f->drawing->width_px;
+    const double height =
+        f->middle + 0.5 * f->height_px + FIGURE_MARGIN_PX + spots_px(f);
+
+    fprintf(f->file,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" "
+            "height=\"%.0f\" viewBox=\"0 0 %.0f %.0f\" "
+            "font-family=\"Helvetica,Arial,sans-serif\" font-size=\"11\">\n"
+            "<defs><pattern id=\"hatch-%s\" width=\"4\" height=\"4\" "
+            "patternUnits=\"userSpaceOnUse\"><path d=\"M0 4 L4 0\" "
+            "stroke=\"#777\" stroke-width=\"0.7\"/></pattern>\n"
+            "<clipPath id=\"view-%s\"><rect x=\"%.1f\" y=\"%.1f\" "
+            "width=\"%.1f\" height=\"%.1f\"/></clipPath></defs>\n"
+            "<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
+            width, height, width, height, f->drawing->lens->name,
+            f->drawing->lens->name, px(f, f->z0),
+            f->middle - 0.5 * f->height_px, f->scale * (f->z1 - f->z0),
+            f->height_px);
+}
+
+/* Draws the rays, or those of the ghost; PATH receives what of the latter. */
+static void draw_light(struct figure *f, char *path, size_t bytes)
+{
+    const struct lens_drawing *d = f->drawing;
+    struct glint_ghost ghost[GLINT_MAX_GHOSTS];
+    double theta = d->angle_deg;
+
+    if (d->ghost < 0) {
+        draw_rays(f);
+        return;
+    }
+    glint_ghost_list(d->lens, ghost, GLINT_MAX_GHOSTS);
+    if (theta < 0)
+        theta = angle_of(f, 0.5 * f->film_mm);
+    draw_ghost(f, &ghost[d->ghost], theta);
+    snprintf(path, bytes, "; ghost %d, surfaces %d and %d, light at %.3g°",
+             d->ghost, ghost[d->ghost].i, ghost[d->ghost].j, theta);
+    draw_number(f, ghost[d->ghost].i);
+    draw_number(f, ghost[d->ghost].j);
+}
+
+int drawing_write(const struct lens_drawing *drawing, FILE *file)
+{
+    struct figure f = {.drawing = drawing, .file = file};
+    struct glint_optics optics;
+    char path[96] = "";
+
+    glint_optics_of(drawing->lens, &optics);
+    begin(&f);
+    open_svg(&f);
+    draw_axis_and_sensor(&f);
+    draw_glasses(&f);
+    fprintf(file, "<g clip-path=\"url(#view-%s)\">\n", drawing->lens->name);
+    draw_light(&f, path, sizeof path);
+    fputs("</g>\n", file);
+    draw_stop(&f, optics.stop_radius_mm);
+    if (drawing->title) {
+        draw_title(&f, &optics, path);
+        draw_scale_bar(&f);
+    }
+    if (drawing->spots)
+        draw_spots(&f);
+    fputs("</svg>\n", file);
+    return f.shown;
+}

@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: MIT */
+#include "lens_pages/page.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "glint/measure.h"
+#include "measure/plots/plot.h"
+#include "lens_pages/drawing.h"
+#include "model/lens_files.h"
+
+enum { LINE_CHARS = 200, PATH_CHARS = 1024 };
+
+/* Copies the cell at *AT, which is after a '|', to CELL without the blanks
+ * about it, and moves *AT behind the next '|'. Returns false if there is none
+ * or it is too long. */
+static bool take_cell(const char **at, char *cell, size_t bytes)
+{
+    const char *from = *at + strspn(*at, " "), *end = strchr(*at, '|');
+    size_t n;
+
+    if (!end)
+        return false;
+    *at = end + 1;
+    if (from > end)
+        from = end;
+    while (end > from && end[-1] == ' ')
+        end--;
+    n = (size_t)(end - from);
+    if (n >= bytes)
+        return false;
+    memcpy(cell, from, n);
+    cell[n] = '\0';
+    return true;
+}
+
+static bool take_row(const char *line, const char *name,
+                     struct measured *measured)
+{
+    char lens[64];
+
+    return *line++ == '|' && take_cell(&line, lens, sizeof lens) &&
+           strcmp(lens, name) == 0 &&
+           take_cell(&line, measured->f_number, sizeof measured->f_number) &&
+           take_cell(&line, measured->seconds, sizeof measured->seconds) &&
+           take_cell(&line, measured->kb, sizeof measured->kb) &&
+           take_cell(&line, measured->ms, sizeof measured->ms);
+}
+
+bool measured_find(const char *name, struct measured *measured)
+{
+    static const char file_name[] = "/figures.md";
+    char path[PATH_CHARS], line[LINE_CHARS];
+    bool found = false;
+
+    for (int i = 0; !found && lens_folder(i, "lenses", path,
+                                          sizeof path - sizeof file_name);
+         i++) {
+        FILE *file = *path ? fopen(strcat(path, file_name), "r") : NULL;
+
+        while (file && !found && fgets(line, sizeof line, file))
+            found = take_row(line, name, measured);
+        if (file)
+            fclose(file);
+    }
+    return found;
+}
+
+enum { ANGLES = 3, WIDE = 168, MOST_HIGH = 168 };
+
+static const double share[ANGLES] = {0.25, 0.5, 0.8};
+
+/* Ghosts are exposed as pictures of them alone are, but no more than so many
+ * times what would show the star beside them: where ghosts are faint it would
+ * fill the picture. */
+#define BRIGHTER 40.0
+
+/* Returns the angle at SHARE of the half diagonal, by f tan T, which places
+ * lamps in pictures. */
+static double angle_deg(const struct settings *s, double at)
+{
+    const double half =
+        0.5 * hypot(s->lens.film_width_mm, s->lens.film_height_mm);
+
+    return atan(at * half / s->setup.optics.focal_mm) * 180 / GLINT_PI;
+}
+
+static enum glint_status draw(struct glint_engine *engine, double theta_deg,
+                              struct glint_float_image *image, float *star,
+                              FILE *file)
+{
+    const struct glint_lamp lamp = {
+        .theta_deg = theta_deg, .phi_deg = 33, .power = 1, .rgb = {1, 1, 1}};
+    const size_t n = 3 * (size_t)image->width * (size_t)image->height;
+    struct glint_engine_report report;
+    uint8_t *codes;
+    double exposure;
+    enum glint_status status = glint_engine_render(
+        engine, &lamp, 1, 1, GLINT_ENGINE_GHOSTS, image->rgb, &report);
+
+    if (status == GLINT_OK)
+        status = glint_engine_render(engine, &lamp, 1, 1, GLINT_ENGINE_STAR,
+                                     star, &report);
+    if (status != GLINT_OK)
+        return status;
+    exposure = glint_measure_exposure(image);
+    for (size_t i = 0; i < n; i++)
+        image->rgb[i] += star[i];
+    codes = glint_measure_encode(
+        image, fmin(exposure, BRIGHTER * glint_measure_exposure(image)));
+    if (!codes)
+        return GLINT_E_MEMORY;
+    fprintf(file,
+            "<img alt=\"lamp at %.1f degrees\" title=\"lamp at %.1f degrees\" "
+            "src=\"",
+            theta_deg, theta_deg);
+    html_png(file, codes, image->width, image->height);
+    fputs("\">", file);
+    free(codes);
+    return GLINT_OK;
+}
+
+static int draw_all(const struct tool *tool, struct settings *s, FILE *file)
+{
+    const double tall =
+        ceil(WIDE * s->lens.film_height_mm / s->lens.film_width_mm);
+    struct glint_float_image image = {
+        .width = WIDE, .height = (int)fmin(fmax(tall, 8), MOST_HIGH)};
+    const size_t n = 3 * (size_t)image.width * (size_t)image.height;
+    enum glint_status status = GLINT_E_MEMORY;
+    struct glint_engine_config cfg;
+    struct glint_engine *engine = NULL;
+    struct glint_error error = {""};
+    float *star = calloc(n, sizeof *star);
+
+    image.rgb = calloc(n, sizeof *image.rgb);
+    settings_engine(tool, s, image.width, image.height, &cfg);
+    cfg.light.by_hand = 1;
+    cfg.light.starburst = 1;
+    cfg.search.max_found = 0;
+    cfg.drawing.is_fresh = 1;
+    if (image.rgb && star)
+        status = glint_engine_create(&engine, &cfg, &error);
+    for (int i = 0; i < ANGLES && status == GLINT_OK; i++)
+        status = draw(engine, angle_deg(s, share[i]), &image, star, file);
+    glint_engine_destroy(engine);
+    free(star);
+    free(image.rgb);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
+int thumbnails_write(const struct tool *tool, struct settings *settings,
+                     const char *name, FILE *file, size_t *model_bytes)
+{
+    int code = settings_open(tool, settings, name);
+
+    *model_bytes = settings->model.bytes;
+    if (code == EXIT_OK)
+        code = draw_all(tool, settings, file);
+    settings_close(settings);
+    return code;
+}
+
+/* Width of a section in units of its own, which the page scales to a card. */
+#define SECTION_PX 560
+
+static const char style[] =
+    "body{margin:0 auto;padding:1.5em;max-width:1600px;background:#f3f3f1}"
+    "h1{margin:0;font-size:1.6em}h2{margin:0;font-size:1.1em}p{margin:.3em 0}"
+    "main{display:grid;grid-template-columns:"
+    "repeat(auto-fill,minmax(min(100%,430px),1fr));gap:1em;"
+    "align-items:start;margin-top:1em}"
+    "figure{margin:0;padding:.8em 1em;background:#fff;border:1px solid #ddd;"
+    "font-size:1em;display:block}"
+    "svg{display:block;width:100%;max-height:21em;margin:.4em 0}"
+    "img{display:inline;width:32%;margin-right:1%}"
+    "input,select{font:inherit;padding:.2em .4em}input{width:20em}"
+    ".less{color:#666;font-size:.87em}";
+
+static const char head[] =
+    "<header><p>Sections have rays from the middle of the picture, blue, 0.7 "
+    "of the "
+    "way to its corner, green, and nearly all of it, red. Flares are of a "
+    "lamp a quarter, half and four fifths of the way. <code>glint overlay "
+    "photo.jpg -o out.jpg --lens NAME</code> looks through one.</p>\n"
+    "<p hidden id=\"tools\"><input id=\"find\" type=\"search\" "
+    "placeholder=\"words: zoom, zeiss, 1935, streak\"> <select id=\"by\">"
+    "<option value=\"\">by name<option value=\"focal\">by focal length"
+    "<option value=\"angle\">by angle<option value=\"f\">by f-number"
+    "<option value=\"ghosts\">by ghosts</select> <output id=\"n\"></output>"
+    "</p></header>\n<main>\n";
+
+/* A card is found by words of its text, but not by glasses of its section. */
+static const char script[] =
+    "<script>\n"
+    "const at=id=>document.getElementById(id),main=document.querySelector("
+    "'main'),all=[...main.children];\n"
+    "function show(){const words=at('find').value.toLowerCase().split(/\\s+/);"
+    "let n=0;for(const c of all){const "
+    "text=[...c.querySelectorAll('h2,p')].map("
+    "p=>p.textContent).join(' ').toLowerCase();"
+    "c.hidden=!words.every(w=>text.includes(w));n+=!c.hidden}"
+    "at('n').textContent=n+' of '+all.length}\n"
+    "at('find').oninput=show;at('by').onchange=()=>{const by=at('by').value;"
+    "main.append(...(by?[...all].sort((a,b)=>a.dataset[by]-b.dataset[by]):all"
+    "))};\n"
+    "at('tools').hidden=false;show();\n"
+    "</script>\n";
+
+void page_begin(FILE *file)
+{
+    html_begin(file, "Lenses", style);
+    fputs(head, file);
+}
+
+/* Writes what a photographer chooses a lens by. */
+static void print_numbers(FILE *file, const struct page_card *card)
+{
+    const struct glint_prescription *lens = card->lens;
+
+    fprintf(file, "<p>%.4g mm", card->focal_mm);
+    if (fabs(card->squeeze - 1) > 1e-6)
+        fprintf(file, " up and down, %.4g across",
+                card->focal_mm / card->squeeze);
+    fprintf(file, ", f/%.3g, ", lens->f_number);
+    if (card->corner_deg < 89.5)
+        fprintf(file, "%.0f&deg; from corner to corner", 2 * card->corner_deg);
+    else
+        fputs("180&deg; or more", file);
+    fprintf(file, " of %.4g x %.4g mm, %d ghosts</p>\n", lens->film_width_mm,
+            lens->film_height_mm, card->n_ghosts);
+}
+
+void page_card_begin(FILE *file, const struct page_card *card)
+{
+    struct lens_drawing drawing;
+
+    fprintf(file,
+            "<figure id=\"%s\" data-focal=\"%.6g\" data-angle=\"%.4g\" "
+            "data-f=\"%g\" data-ghosts=\"%d\"><h2>%s</h2>\n<p>",
+            card->name, card->focal_mm, card->corner_deg, card->lens->f_number,
+            card->n_ghosts, card->name);
+    html_text(file, card->lens->source);
+    fputs("</p>\n", file);
+    if (*card->lens->character) {
+        fputs("<p>", file);
+        html_text(file, card->lens->character);
+        fputs("</p>\n", file);
+    }
+    print_numbers(file, card);
+    drawing_defaults(&drawing, card->lens);
+    drawing.spots = drawing.title = false;
+    drawing.width_px = SECTION_PX;
+    drawing_write(&drawing, file);
+}
+
+void page_card_end(FILE *file)
+{
+    fputs("</figure>\n", file);
+}
+
+void page_end(FILE *file)
+{
+    fprintf(file, "</main>\n%s", script);
+    html_end(file);
+}

@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: MIT */
+#include "lens_pages/search.h"
+
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "model/lens_files.h"
+#include "model/table_file.h"
+#include "options/suggest.h"
+
+static bool holds(const char *text, const char *word)
+{
+    const size_t n = strlen(word);
+
+    for (; *text; text++)
+        if (strncasecmp(text, word, n) == 0)
+            return true;
+    return false;
+}
+
+static bool has(const char *name, const struct glint_prescription *lens,
+                const char *word)
+{
+    return holds(name, word) || holds(lens->source, word) ||
+           holds(lens->character, word);
+}
+
+bool lens_has_words(const char *name, const struct glint_prescription *lens,
+                    char **words, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (!has(name, lens, words[i]))
+            return false;
+    return true;
+}
+
+/* Where words are, the more telling first: of two that are as near, that of a
+ * name is meant rather than one of a sentence. */
+enum { OF_NAME, OF_SOURCE, OF_CHARACTER, N_PLACES };
+
+struct search {
+    const struct tool *tool;
+    struct glint_prescription *lens; /* room for a table */
+    const char *word;
+    char small[SUGGEST_CHARS]; /* the word in small letters */
+    struct suggest near[N_PLACES];
+    bool found; /* a lens has the word */
+};
+
+/* Offers words of TEXT, of four letters or digits and more, and TEXT whole. */
+static void offer_words(struct suggest *suggest, const char *text)
+{
+    char small[SUGGEST_CHARS];
+    size_t n = 0;
+
+    suggest_try(suggest, text, strlen(text));
+    for (;; text++) {
+        const int c = tolower((unsigned char)*text);
+
+        if (isalnum(c) && n < sizeof small)
+            small[n++] = (char)c;
+        else if (!isalnum(c)) {
+            if (n > 3)
+                suggest_try(suggest, small, n);
+            n = 0;
+        }
+        if (!c)
+            return;
+    }
+}
+
+static bool look(void *ctx, const char *name)
+{
+    struct search *s = ctx;
+
+    if (tool_lens(s->tool, name, s->lens) != EXIT_OK)
+        return true;
+    s->found = has(name, s->lens, s->word);
+    offer_words(&s->near[OF_NAME], name);
+    offer_words(&s->near[OF_SOURCE], s->lens->source);
+    offer_words(&s->near[OF_CHARACTER], s->lens->character);
+    return !s->found;
+}
+
+/* Returns the word that may have been meant, or NULL. */
+static const char *meant(const struct search *s)
+{
+    const struct suggest *best = &s->near[0];
+
+    for (int i = 1; i < N_PLACES; i++)
+        if (s->near[i].distance < best->distance)
+            best = &s->near[i];
+    return suggest_best(best);
+}
+
+int lens_words_missed(const struct tool *tool, char **words, int n)
+{
+    struct search s = {
+        .tool = tool, .lens = malloc(sizeof *s.lens), .found = true};
+    const char *best;
+
+    if (!s.lens)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    for (int i = 0; i < n && s.found; i++) {
+        s.word = words[i];
+        s.found = false;
+        snprintf(s.small, sizeof s.small, "%s", s.word);
+        for (char *c = s.small; *c; c++)
+            *c = (char)tolower((unsigned char)*c);
+        for (int k = 0; k < N_PLACES; k++)
+            suggest_begin(&s.near[k], s.small);
+        lens_files_each(look, &s);
+    }
+    free(s.lens);
+    best = meant(&s);
+    if (s.found)
+        fprintf(stderr, "glint lenses: no lens has all of these words in its "
+                        "name, source or character\n");
+    else
+        fprintf(stderr,
+                "glint lenses: no lens has '%s' in its name, source or "
+                "character%s%s\n",
+                s.word, best ? "; did you mean " : "", best ? best : "");
+    return EXIT_LENS;
+}
+
+struct wanted {
+    const char *name;
+    struct suggest near;
+    bool found;
+};
+
+static bool compare(void *ctx, const char *name)
+{
+    struct wanted *w = ctx;
+
+    w->found = strcmp(name, w->name) == 0;
+    suggest_try(&w->near, name, strlen(name));
+    return !w->found;
+}
+
+int lens_names_check(const char *const *names, int n)
+{
+    for (int i = 0; i < n; i++) {
+        struct wanted w = {.name = names[i]};
+        const char *best;
+
+        suggest_begin(&w.near, w.name);
+        lens_files_each(compare, &w);
+        if (w.found)
+            continue;
+        best = suggest_best(&w.near);
+        fprintf(stderr,
+                "glint lenses: -o, --only: no lens has the name '%s'; %s%s\n",
+                w.name,
+                best ? "did you mean " : "glint lenses --names lists them",
+                best ? best : "");
+        return EXIT_LENS;
+    }
+    return EXIT_OK;
+}

@@ -1,0 +1,313 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Frames of a scene that moves, in linear light, and the flare that a lens
+ * makes of its lights. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "overlay/apart.h"
+#include "desk/render_file.h"
+#include "glint/composite.h"
+#include "options/numbered.h"
+#include "overlay/compositor_layer.h"
+#include "ffmpeg/ffmpeg.h"
+#include "overlay/overlay.h"
+#include "formats/paint.h"
+#include "render/render_scene.h"
+#include "video/y4m.h"
+
+/* As arenas of the run time ask for. */
+#define ALIGNMENT 64
+
+struct frames {
+    struct tool *tool;
+    struct render_scene *r;
+    struct compositor *c;
+    bool is_y4m, is_numbered;
+    int32_t elapsed_us;      /* between frames; 0: there is one */
+    struct glint_image seen; /* the scene in codes, for exposure and veil */
+    int32_t *light_q20;      /* the scene, [height][width][3] */
+    float *flare;            /* of the lens, likewise; NULL: there is none */
+
+    /* y4m */
+    struct glint_y4m_header header;
+    struct glint_y4m_writer writer;
+    struct glint_image frame;
+    struct glint_composite *composite;
+    void *tables;
+    uint16_t *rgb_q16; /* three planes */
+};
+
+/* ------------------------------------------------------------------ opening */
+
+static int check(const struct tool *tool, struct frames *f)
+{
+    const struct render_scene *r = f->r;
+
+    f->is_y4m = overlay_is_video(r->output) && !ffmpeg_is_video(r->output);
+    f->is_numbered = numbered_is(r->output);
+    if (ffmpeg_is_video(r->output))
+        return tool_usage(tool,
+                          "frames become a .y4m or numbered pictures, of "
+                          "which ffmpeg -i OUT.y4m makes %s",
+                          r->output);
+    if (r->is_video && !f->is_y4m && !f->is_numbered)
+        return tool_usage(tool, "--frames needs -o OUT.y4m, or %%04d in OUT "
+                                "for a picture of each");
+    return EXIT_OK;
+}
+
+/* The tables that put light onto frames of a video. */
+static enum glint_status open_video(struct frames *f, struct glint_error *error)
+{
+    const struct render_scene *r = f->r;
+    const size_t n = (size_t)r->width * (size_t)r->height;
+    const size_t bytes = glint_image_bytes(GLINT_I420, r->width, r->height);
+    const double fps = r->fps;
+    const int den = fps == rint(fps) ? 1 : 1000;
+    uint8_t *const planes = malloc(bytes);
+
+    glint_y4m_header_init(&f->header, r->width, r->height, GLINT_I420,
+                          (int)lrint(fps * den), den);
+    f->frame = (struct glint_image){.format = GLINT_I420,
+                                    .width = r->width,
+                                    .height = r->height,
+                                    .range = f->header.range,
+                                    .matrix = f->header.matrix,
+                                    .transfer = GLINT_TONE_BT709};
+    f->rgb_q16 = malloc(3 * n * sizeof *f->rgb_q16);
+    if (!planes || !f->rgb_q16 ||
+        posix_memalign(&f->tables, ALIGNMENT, glint_composite_bytes())) {
+        free(planes);
+        return GLINT_E_MEMORY;
+    }
+    glint_image_place(&f->frame, planes);
+    glint_composite_init(&f->composite, &f->frame, tool_sets(f->tool),
+                         f->c->settings.options.dither, f->tables,
+                         glint_composite_bytes());
+    return glint_y4m_writer_open(&f->writer, r->output, &f->header, error);
+}
+
+static int open_frames(struct frames *f)
+{
+    const struct render_scene *r = f->r;
+    const size_t n = 3 * (size_t)r->width * (size_t)r->height;
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_OK;
+    uint8_t *const codes = calloc(n, 1);
+
+    f->light_q20 = malloc(n * sizeof *f->light_q20);
+    if (f->c->has_lens)
+        f->flare = malloc(n * sizeof *f->flare);
+    f->seen = (struct glint_image){
+        .format = GLINT_RGB24, .width = r->width, .height = r->height};
+    if (codes)
+        glint_image_place(&f->seen, codes);
+    if (!codes || !f->light_q20 || (f->c->has_lens && !f->flare))
+        return tool_fail(f->tool, GLINT_E_MEMORY, NULL);
+    if (f->is_y4m)
+        status = open_video(f, &error);
+    return status == GLINT_OK ? EXIT_OK
+                              : tool_fail(f->tool, status, error.text);
+}
+
+static void close_frames(struct frames *f)
+{
+    if (f->writer.out.fd >= 0)
+        glint_y4m_writer_abort(&f->writer);
+    free(f->seen.plane[0]);
+    free(f->frame.plane[0]);
+    free(f->light_q20);
+    free(f->flare);
+    free(f->tables);
+    free(f->rgb_q16);
+}
+
+/* ------------------------------------------------------------------ drawing */
+
+/* Adds what the lens makes of the lights, with those that the scene over black
+ * hides, to the picture. */
+static enum glint_status add_flare(struct frames *f)
+{
+    struct compositor *const c = f->c;
+    const size_t n = 3 * (size_t)f->r->width * (size_t)f->r->height;
+    enum glint_status status;
+
+    status = compositor_expose(c, &f->seen);
+    if (status != GLINT_OK || !f->flare ||
+        ((c->n_lamps == 0 || !(compositor_scale(c) > 0)) &&
+         !glint_engine_has_veil(c->engine)))
+        return status;
+    status = compositor_draw_layer(c, true, f->flare);
+    for (size_t i = 0; status == GLINT_OK && i < n; i++)
+        f->r->image.rgb[i] += f->flare[i];
+    return status;
+}
+
+/* Draws frame c->n_frames into r->image. */
+static enum glint_status draw(struct frames *f)
+{
+    struct render_scene *const r = f->r;
+    const size_t n = 3 * (size_t)r->width * (size_t)r->height;
+    struct glint_image linear = {
+        .format = GLINT_LINEAR_Q20, .width = r->width, .height = r->height};
+    enum glint_status status = GLINT_OK;
+
+    memset(f->light_q20, 0, n * sizeof *f->light_q20);
+    glint_image_place(&linear, f->light_q20);
+    if (f->c->has_lens && f->seen.plane[0]) {
+        memset(f->seen.plane[0], 0, n);
+        status = compositor_find(f->c, &f->seen, f->elapsed_us);
+        if (status == GLINT_OK)
+            over_scene_again(&f->c->scene, &linear);
+    } else {
+        f->c->scene.elapsed_us = f->elapsed_us;
+        status = over_scene_draw(&f->c->scene, &linear, f->c->n_frames);
+    }
+    for (size_t i = 0; status == GLINT_OK && i < n; i++)
+        r->image.rgb[i] = (float)ldexp(f->light_q20[i], -20);
+    if (status == GLINT_OK && f->c->has_lens)
+        status = add_flare(f);
+    for (size_t i = 0; status == GLINT_OK && i < n && r->exposure_ev != 0; i++)
+        r->image.rgb[i] *= (float)exp2(r->exposure_ev);
+    return status;
+}
+
+/* ------------------------------------------------------------------ writing */
+
+static enum glint_status put_video(struct frames *f, struct glint_error *error)
+{
+    const size_t n = (size_t)f->r->width * (size_t)f->r->height;
+    const struct glint_layer layer = {
+        {f->rgb_q16, f->rgb_q16 + n, f->rgb_q16 + 2 * n}, f->r->width};
+
+    for (size_t i = 0; i < 3 * n; i++)
+        f->rgb_q16[i % 3 * n + i / 3] =
+            (uint16_t)lrintf(65535 * fminf(fmaxf(f->r->image.rgb[i], 0), 1));
+    paint_black(&f->frame);
+    glint_composite_add(f->composite, &f->frame, &layer);
+    return glint_y4m_writer_put(&f->writer, &f->frame, "", error);
+}
+
+/* Writes r->image as frame NUMBER. Returns an exit code. */
+static int put(struct frames *f, int number)
+{
+    struct glint_error error = {""};
+    char name[NUMBERED_BYTES];
+    enum glint_status status;
+
+    if (f->is_y4m) {
+        status = put_video(f, &error);
+        return status == GLINT_OK ? EXIT_OK
+                                  : tool_fail(f->tool, status, error.text);
+    }
+    if (f->is_numbered && !numbered_name(name, f->r->output, number))
+        return tool_usage(f->tool, "-o: the name of frame %d is too long",
+                          number);
+    return render_file_save(f->tool, f->is_numbered ? name : f->r->output,
+                            f->r->linear, &f->r->image, 1);
+}
+
+static int end_video(struct frames *f)
+{
+    struct glint_error error = {""};
+    const enum glint_status status =
+        f->is_y4m ? glint_y4m_writer_commit(&f->writer, &error) : GLINT_OK;
+
+    return status == GLINT_OK || status == GLINT_E_CLOSED
+               ? EXIT_OK
+               : tool_fail(f->tool, status, error.text);
+}
+
+/* ------------------------------------------------------------------- whole */
+
+static void say(const struct frames *f, double ms)
+{
+    const struct render_scene *const r = f->r;
+    struct json_writer json = {.to = stdout};
+    char what[80];
+
+    snprintf(what, sizeof what, "%d frames, %d to %d", r->last - r->first + 1,
+             r->first, r->last);
+    render_file_say(f->tool, r->output, r->width, r->height, what, 1e-3 * ms);
+    if (!f->tool->json || strcmp(r->output, "-") == 0)
+        return;
+    json_write(&json, "{engine: %s, frames: %d", "model",
+               r->last - r->first + 1);
+    over_scene_json(&json, &f->c->scene);
+    json_write(&json, "lens: %s",
+               f->c->has_lens ? f->c->settings.lens.name : NULL);
+    if (f->c->has_lens)
+        settings_json(&json, &f->c->report);
+    json_write(&json, "ms: %.3f}\n", ms);
+}
+
+static int run(struct frames *f)
+{
+    struct render_scene *const r = f->r;
+    const double start = tool_seconds();
+    int code = open_frames(f);
+
+    for (int i = r->first; code == EXIT_OK && i <= r->last; i++) {
+        enum glint_status status;
+
+        f->c->n_frames = i;
+        status = draw(f);
+        code =
+            status == GLINT_OK ? put(f, i) : tool_fail(f->tool, status, NULL);
+    }
+    if (code == EXIT_OK)
+        code = end_video(f);
+    if (code == EXIT_OK)
+        code = compositor_finish(f->tool, f->c);
+    if (code == EXIT_OK)
+        say(f, 1e3 * (tool_seconds() - start));
+    return code;
+}
+
+/* Returns an exit code for what of the compositor's options is not for renders.
+ */
+static int check_options(const struct tool *tool, const struct compositor *c)
+{
+    if (c->scene.file)
+        return tool_usage(tool, "--scene is for overlay, live and explain; "
+                                "here the scene is the input");
+    if (c->settings.options.layer != GLINT_LAYER_COMPOSITE)
+        return tool_usage(tool, "--layer is for overlay and live");
+    return compositor_marks(c)
+               ? tool_usage(tool, "--show lights and --preview are for "
+                                  "overlay and live")
+               : EXIT_OK;
+}
+
+int render_frames(struct tool *tool, struct render_scene *r, const char *path)
+{
+    struct compositor *const c = &r->compositor;
+    struct frames f = {.tool = tool, .r = r, .c = c, .writer.out.fd = -1};
+    struct apart files = {.n_read = 0};
+    int code = check(tool, &f);
+
+    if (code == EXIT_OK)
+        code = check_options(tool, c);
+    if (code != EXIT_OK)
+        return code;
+    c->scene.file = path;
+    apart_compositor(&files, c);
+    apart_write(&files, "-o", r->output);
+    code = apart_check(tool, &files);
+    if (code != EXIT_OK)
+        return code;
+    c->scene.asked.edge_samples = r->samples;
+    c->is_still = !r->is_video;
+    if (r->is_video)
+        f.elapsed_us = (int32_t)lrint(1e6 / r->fps);
+    code = compositor_open(tool, c);
+    c->is_listed = true; /* there is no picture to find lamps in */
+    if (code == EXIT_OK)
+        code = compositor_size(tool, c, r->width, r->height);
+    if (code == EXIT_OK)
+        code = run(&f);
+    close_frames(&f);
+    return code;
+}

@@ -1,0 +1,353 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint render of scenes: draws their things, in linear light.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "desk/render_file.h"
+#include "options/command_line.h"
+#include "overlay/overlay.h"
+#include "render/render_scene.h"
+#include "scenes/baked_scene.h"
+#include "scenes/account.h"
+#include "scenes/budget.h"
+#include "scenes/scene_frame.h"
+
+static const char help[] =
+    "glint render NAME.scene|BAKED -o OUT [options]\n"
+    "\n"
+    "Draws the things of a scene (tools/examples/scenes/README.md has the\n"
+    "format) over black, by the integer run time. Values are linear: 1 is\n"
+    "display white. OUT is .pfm, or with the image plug-in .exr, .hdr: linear\n"
+    "as it stands. A .ppm, .png or .jpg is for the eye: sRGB, 1 and above\n"
+    "white. A baked scene is that of glint bake; a text is baked first.\n"
+    "\n"
+    "  -o, --output OUT\n"
+    "  --size WxH          default 960x540\n"
+    "  --samples N         points of a pixel at outlines: 1, 4 (default), 8 "
+    "or\n"
+    "                      16\n"
+    "  --quality Q         0 to 1, or least ... finest: sets what of these is\n"
+    "                      not given, and the flare\n"
+    "  --exposure EV       stops; all light times 2^EV (default 0)\n"
+    "  --pose FILE         moves things and camera, as of glint overlay\n"
+    "  --control FILE      lines that change the scene, likewise\n"
+    "  --frame N           the frame of these to draw (default 0)\n"
+    "  --frames A-B        all of these; OUT is .y4m, - or has a %04d\n"
+    "  --fps N             of .y4m, and of how fast a lens follows (default "
+    "25)\n"
+    "  --lens LENS|none    adds the flare that LENS makes of the lights of a\n"
+    "                      scene with 'flare lights' (default none), as glint\n"
+    "                      overlay does; its options choose the flare: "
+    "--strength,\n"
+    "                      --coating, --stop, --quality, --light-at ...\n";
+
+enum { MOST_FRAME = 1000000000 };
+
+#define NEEDS_LENS \
+    "%s: 'camera lens' needs the lens of a flare; here it takes 'camera fov'"
+
+enum {
+    OPT_FRAME = ENGINE_OPTIONS_END,
+    OPT_FRAMES,
+    OPT_FPS,
+    OPT_SIZE,
+    OPT_SAMPLES,
+    OPT_EXPOSURE_OF
+};
+
+/* Takes "A-B". */
+static bool take_frames(struct render_scene *r, const char *text)
+{
+    const char *const dash = strchr(text, '-');
+    char first[16];
+
+    if (!dash || dash - text >= (ptrdiff_t)sizeof first)
+        return false;
+    snprintf(first, sizeof first, "%.*s", (int)(dash - text), text);
+    r->is_video = r->is_frames = true;
+    return tool_integer(first, 0, MOST_FRAME, &r->first) &&
+           tool_integer(dash + 1, r->first, MOST_FRAME, &r->last);
+}
+
+/* Takes what is of frames that change. Returns -1, or -2 if it is not. */
+static int take_moving(struct tool *tool, struct render_scene *r, int c)
+{
+    switch (c) {
+    case OPT_FRAME:
+        r->is_frames = true;
+        if (!tool_integer(optarg, 0, MOST_FRAME, &r->first))
+            return tool_refuse(tool, "frame", optarg);
+        r->last = r->first;
+        return -1;
+    case OPT_FRAMES:
+        return take_frames(r, optarg) ? -1
+                                      : tool_refuse(tool, "frames", optarg);
+    case OPT_FPS:
+        return tool_number(optarg, &r->fps) && r->fps >= 1 && r->fps <= 1000
+                   ? -1
+                   : tool_refuse(tool, "fps", optarg);
+    default:
+        return -2;
+    }
+}
+
+static int take(struct tool *tool, struct render_scene *r, int c)
+{
+    switch (c) {
+    case 'o':
+        r->output = optarg;
+        return -1;
+    case OPT_SIZE:
+        return tool_size(optarg, &r->width, &r->height)
+                   ? -1
+                   : tool_refuse(tool, "size", optarg);
+    case OPT_SAMPLES:
+        return tool_integer(optarg, 1, 16, &r->samples)
+                   ? -1
+                   : tool_usage(tool, "--samples takes 1, 4, 8 or 16, not '%s'",
+                                optarg);
+    case OPT_EXPOSURE_OF:
+        return tool_number(optarg, &r->exposure_ev) &&
+                       fabs(r->exposure_ev) <= 100
+                   ? -1
+                   : tool_refuse(tool, "exposure", optarg);
+    default:
+        return tool_option(tool, c, optarg);
+    }
+}
+
+/* Takes option C, of scenes or of the flare. Returns -1 or an exit code. */
+static int take_any(struct tool *tool, struct render_scene *r, int c)
+{
+    int code = compositor_option(tool, &r->compositor, c, optarg);
+
+    if (code == -1) {
+        const enum glint_option_group group =
+            glint_option(c - ENGINE_OPTION)->group;
+        const bool moves =
+            c == ENGINE_OPTION_OF(pose) || c == ENGINE_OPTION_OF(control);
+        const bool is_lens = c == ENGINE_OPTION_OF(lens);
+
+        r->is_frames = r->is_frames || moves || is_lens;
+        r->is_lit = r->is_lit ||
+                    (!is_lens && !moves && group != GLINT_OPTIONS_SHADING &&
+                     c != ENGINE_OPTION_OF(highlights) &&
+                     c != ENGINE_OPTION_OF(quality));
+    }
+    if (code == -2)
+        code = take_moving(tool, r, c);
+    return code == -2 ? take(tool, r, c) : code;
+}
+
+static int parse(struct tool *tool, int argc, char **argv,
+                 struct render_scene *r)
+{
+    static const struct option own[] = {
+        {"output", required_argument, NULL, 'o'},
+        {"size", required_argument, NULL, OPT_SIZE},
+        {"samples", required_argument, NULL, OPT_SAMPLES},
+        {"exposure", required_argument, NULL, OPT_EXPOSURE_OF},
+        {"frame", required_argument, NULL, OPT_FRAME},
+        {"frames", required_argument, NULL, OPT_FRAMES},
+        {"fps", required_argument, NULL, OPT_FPS},
+        {NULL, 0, NULL, 0}};
+    const struct option *const options =
+        engine_getopt(tool, ENGINE_ALL, &r->compositor.settings.options, own);
+    struct scene_dials *const asked = &r->compositor.scene.asked;
+    int c, code = compositor_style_of(tool, &r->compositor, argc, argv,
+                                      "o:" TOOL_COMMON_SHORT, options);
+
+    if (code >= 0)
+        return code;
+    while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+                            NULL)) >= 0)
+        if ((code = take_any(tool, r, c)) >= 0)
+            return code;
+    code = tool_inputs(tool, argc, argv, 1, "takes one scene");
+    if (code >= 0)
+        return code;
+    if (!r->output)
+        return tool_usage(tool, "needs -o OUT");
+    if (r->samples && r->samples != 1 && r->samples != 4 && r->samples != 8 &&
+        r->samples != 16)
+        return tool_usage(tool, "--samples takes 1, 4, 8 or 16, not %d",
+                          r->samples);
+    if (!GLINT_OPTION_GIVEN(&r->compositor.settings.options, quality)) {
+        r->samples = r->samples ? r->samples : 4;
+        if (!asked->shadow_points)
+            asked->shadow_points = 4;
+    }
+    if (strcmp(r->compositor.settings.options.lens, "none") != 0)
+        r->is_frames = true;
+    else if (r->is_lit)
+        return tool_usage(tool, "options of a flare need --lens LENS");
+    return -1;
+}
+
+/* ---------------------------------------------------------- the run time */
+
+/* Returns how many of the lights that the scene shows to lenses are hidden. */
+static int hidden_lights(const struct scene_frame *frame)
+{
+    struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
+    const int n = glint_scene_lights(frame->scene, lamp);
+    int hidden = 0;
+
+    for (int i = 0; i < n; i++)
+        hidden += lamp[i].share == 0;
+    return hidden;
+}
+
+static void say_frame(const struct tool *tool, const struct scene_frame *frame,
+                      const struct scene_dials *dials, double ms)
+{
+    struct json_writer json = {.to = stdout};
+    struct scene_budget budget;
+
+    if (!tool->json)
+        return;
+    scene_budget_init(&budget, dials);
+    json_write(&json, "{engine: %s, scene: {", "model");
+    scene_account_json(&json, frame, frame->model->header->bytes);
+    json_write(&json, "quality: %.3f, lights: %u",
+               scene_budget_quality(&budget), frame->model->header->n_lights);
+    scene_highlights_json(&json, frame);
+    json_write(&json, "lamps_hidden: %d}, ms: %.3f}\n", hidden_lights(frame),
+               ms);
+}
+
+/* Says, of a scene that is drawn over black, that shadows on catchers are not
+ * to be seen. */
+static void say_catchers(const struct tool *tool,
+                         const struct glint_scene_model *model)
+{
+    const struct glint_scene_object *catcher = NULL;
+
+    for (uint32_t i = 0; i < model->header->n_objects; i++)
+        if (model->object[i].catcher_q15)
+            catcher = &model->object[i];
+    if (catcher && model->header->background == GLINT_BACKGROUND_CAMERA &&
+        !tool->quiet)
+        fprintf(stderr,
+                "glint render: '%s' only takes shadows, and over black there "
+                "are none to see; glint overlay PHOTO --scene shows them\n",
+                catcher->name);
+}
+
+/* Draws MODEL over black, in linear light. */
+static int draw_model(struct tool *tool, struct render_scene *r,
+                      const struct glint_scene_model *model)
+{
+    struct scene_dials dials = r->compositor.scene.asked;
+    const size_t n = 3 * (size_t)r->width * (size_t)r->height;
+    struct glint_image linear = {
+        .format = GLINT_LINEAR_Q20, .width = r->width, .height = r->height};
+    int32_t *light_q20 = calloc(n, sizeof *light_q20);
+    const double start = tool_seconds();
+    struct scene_frame frame;
+    int code;
+
+    if (!light_q20)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    say_catchers(tool, model);
+    dials.width = r->width;
+    dials.height = r->height;
+    dials.edge_samples = r->samples;
+    if (GLINT_OPTION_GIVEN(&r->compositor.settings.options, quality))
+        scene_dials_be(&dials, r->compositor.settings.options.quality);
+    code = scene_frame_open(&frame, tool, model, &dials);
+    if (code == EXIT_OK) {
+        glint_image_place(&linear, light_q20);
+        code = scene_frame_draw(&frame, &linear);
+        if (code == EXIT_OK)
+            say_frame(tool, &frame, &dials, 1e3 * (tool_seconds() - start));
+        scene_frame_close(&frame);
+    }
+    for (size_t i = 0; code == EXIT_OK && i < n; i++)
+        r->image.rgb[i] =
+            (float)ldexp(exp2(r->exposure_ev) * light_q20[i], -20);
+    free(light_q20);
+    return code;
+}
+
+static int run_model(struct tool *tool, struct render_scene *r,
+                     const char *path)
+{
+    struct baked_scene scene;
+    int code = baked_scene_open(tool, path, &scene);
+
+    if (code != EXIT_OK)
+        return code;
+    code = scene.model.header->camera.kind == GLINT_CAMERA_LENS
+               ? tool_usage(tool, NEEDS_LENS, path)
+               : draw_model(tool, r, &scene.model);
+    baked_scene_close(&scene);
+    return code;
+}
+
+/* ----------------------------------------------------------- the command */
+
+static int run(struct tool *tool, struct render_scene *r, const char *path)
+{
+    const double start = tool_seconds();
+    int code = r->is_frames && overlay_is_video(r->output)
+                   ? EXIT_OK
+                   : render_file_check(tool, r->output, &r->linear);
+
+    tool->written = r->output;
+    if (code != EXIT_OK)
+        return code;
+    r->image = (struct glint_float_image){
+        r->width, r->height,
+        malloc(3 * (size_t)r->width * (size_t)r->height * sizeof(float))};
+    if (!r->image.rgb)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    if (r->is_frames)
+        code = render_frames(tool, r, path);
+    else
+        code = run_model(tool, r, path);
+    if (code == EXIT_OK && !r->is_frames)
+        code = render_file_save(tool, r->output, r->linear, &r->image, 1);
+    if (code == EXIT_OK && !r->is_frames)
+        render_file_say(tool, r->output, r->width, r->height, path,
+                        tool_seconds() - start);
+    free(r->image.rgb);
+    return code;
+}
+
+bool render_has_scene(int argc, char **argv)
+{
+    for (int i = 1; i < argc; i++)
+        if (argv[i][0] != '-' && baked_scene_is(argv[i]))
+            return true;
+    return false;
+}
+
+int cmd_render_scene(int argc, char **argv)
+{
+    struct tool tool = {
+        .name = "render", .help = help, .help_end = COMMON_HELP};
+    struct render_scene *const r = calloc(1, sizeof *r);
+    int code;
+
+    if (!r)
+        return tool_fail(&tool, GLINT_E_MEMORY, NULL);
+    r->width = 960;
+    r->height = 540;
+    r->fps = 25;
+    compositor_defaults(&r->compositor);
+    r->compositor.settings.options.lens = "none";
+    code = parse(&tool, argc, argv, r);
+    if (code < 0) {
+        code = tool_start(&tool);
+        if (code == EXIT_OK)
+            code = run(&tool, r, argv[optind]);
+        tool_finish(&tool);
+    }
+    compositor_close(&r->compositor);
+    free(r);
+    return code;
+}

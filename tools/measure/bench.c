@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdlib.h>
+#include <string.h>
+
+#include "measure/bench.h"
+#include "linux/sets.h"
+#include "options/json_writer.h"
+#include "posix/workers.h"
+
+const char *const bench_format[] = {"yuyv",     "i420",   "nv12", "rgb24",
+                                    "xrgb8888", "rgb565", NULL};
+static const enum glint_pixel_format formats[] = {GLINT_YUYV,     GLINT_I420,
+                                                  GLINT_NV12,     GLINT_RGB24,
+                                                  GLINT_XRGB8888, GLINT_RGB565};
+
+/* ------------------------------------------------------------------- cases */
+
+static struct canvas *canvas_of(struct bench *b, int width, int height)
+{
+    struct canvas *c = &b->canvas[b->n_canvases];
+
+    for (int i = 0; i < b->n_canvases; i++)
+        if (b->canvas[i].image.width == width &&
+            b->canvas[i].image.height == height)
+            return &b->canvas[i];
+    if (b->n_canvases == BENCH_CANVASES ||
+        canvas_init(c, formats[b->word], width, height) != GLINT_OK)
+        return NULL;
+    b->n_canvases++;
+    return c;
+}
+
+struct bench_case *bench_add(struct bench *b, const char *name,
+                             const struct bench_variation *v)
+{
+    struct canvas *const canvas = canvas_of(b, v->width ? v->width : b->width,
+                                            v->height ? v->height : b->height);
+    struct bench_case *c;
+
+    if (!canvas || b->n_cases == BENCH_CASES ||
+        !(c = calloc(1, b->subject->case_bytes)))
+        return NULL;
+    c->name = name;
+    c->canvas = canvas;
+    c->workers = v->two_threads       ? b->two
+                 : b->tool->n_threads ? b->tool->workers
+                                      : b->one;
+    c->threads = v->two_threads       ? 2
+                 : b->tool->n_threads ? b->tool->n_threads
+                                      : 1;
+    c->kernels = v->kernels ? v->kernels : b->tool->kernels;
+    b->cases[b->n_cases] = c;
+    return b->cases[b->n_cases++];
+}
+
+bool bench_is_possible(const struct bench_variation *v)
+{
+    return (v->sets & ~glint_system_sets()) == 0;
+}
+
+static int run_rounds(struct bench *b)
+{
+    const int warm = b->moving ? b->rounds : 1;
+    struct tool_progress progress;
+    enum glint_status status = GLINT_OK;
+
+    tool_progress_start(&progress, b->tool, "bench");
+    /* The first rounds only warm up: one, or one for each place of a moving
+     * light. */
+    for (int round = -warm; round < b->rounds && status == GLINT_OK; round++) {
+        const int at = round < 0 ? round + warm : round;
+
+        for (int i = 0; i < b->n_canvases; i++)
+            canvas_time_floor(&b->canvas[i], at);
+        for (int i = 0; i < b->n_cases && status == GLINT_OK; i++) {
+            canvas_fresh(b->cases[i]->canvas);
+            status = b->subject->draw(b, b->cases[i], at);
+        }
+        tool_progress_show(&progress,
+                           (round + warm + 1.0) / (b->rounds + warm));
+    }
+    tool_progress_end(&progress);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(b->tool, status, NULL);
+}
+
+/* ------------------------------------------------------------------ output */
+
+double bench_ms(const struct bench *b, const struct bench_case *c, int stage)
+{
+    return canvas_median(c->ms[stage], b->rounds);
+}
+
+double bench_floor_ms(const struct bench *b, const struct bench_case *c)
+{
+    return canvas_median(c->canvas->floor_ms, b->rounds);
+}
+
+/* Returns the width of the column of STAGE in characters. */
+static int column(const char *stage)
+{
+    const int n = (int)strlen(stage);
+
+    return n > 7 ? n : 7;
+}
+
+static void print(const struct bench *b)
+{
+    const struct bench_subject *const s = b->subject;
+    const int whole = s->n_stages - 1;
+
+    printf("floor %.3f ms (%dx%d %s, %d rounds); stages are ratios to it\n",
+           bench_floor_ms(b, b->cases[0]), b->cases[0]->canvas->image.width,
+           b->cases[0]->canvas->image.height, bench_format[b->word], b->rounds);
+    printf("%s %8s %7s ", s->heads, "ms", "ratio");
+    for (int k = 0; k < whole; k++)
+        printf(" %*s", column(s->stage[k]), s->stage[k]);
+    printf("  %s%s\n", s->tail, b->psnr ? "  dB" : "");
+    for (int i = 0; i < b->n_cases; i++) {
+        const struct bench_case *const c = b->cases[i];
+        const double floor_ms = bench_floor_ms(b, c);
+
+        s->print_case(b, c);
+        printf(" %8.3f %7.1f ", bench_ms(b, c, whole),
+               bench_ms(b, c, whole) / floor_ms);
+        for (int k = 0; k < whole; k++)
+            printf(" %*.2f", column(s->stage[k]), bench_ms(b, c, k) / floor_ms);
+        printf("  ");
+        s->print_result(b, c);
+        printf("\n");
+    }
+}
+
+void bench_json_format(struct json_writer *json, const struct bench *b,
+                       const struct bench_case *c)
+{
+    json_write(json, "width: %d, height: %d, format: %s",
+               c->canvas->image.width, c->canvas->image.height,
+               bench_format[b->word]);
+}
+
+void bench_json_times(struct json_writer *json, const struct bench *b,
+                      const struct bench_case *c)
+{
+    const struct bench_subject *const s = b->subject;
+    const int whole = s->n_stages - 1;
+    const double ms = bench_ms(b, c, whole);
+
+    json_write(json, "ms: %.4f, ratio: %.3f", ms, ms / bench_floor_ms(b, c));
+    for (int k = 0; k < whole; k++)
+        json_write(json, "%s_ms: %.4f", s->stage[k], bench_ms(b, c, k));
+}
+
+static void print_json(const struct bench *b)
+{
+    struct json_writer json = {.to = stdout};
+
+    json_write(&json,
+               "{floor_ms: %.5f, rounds: %d, version: %s, machine: %s, "
+               "cases: [",
+               bench_floor_ms(b, b->cases[0]), b->rounds, GLINT_VERSION,
+               canvas_machine());
+    for (int i = 0; i < b->n_cases; i++) {
+        json_write(&json, "\n{%s: %s", b->subject->word, b->cases[i]->name);
+        b->subject->json(&json, b, b->cases[i]);
+        json_write(&json, "}");
+    }
+    json_write(&json, "\n]}\n");
+}
+
+/* ----------------------------------------------------------------- running */
+
+int bench_run_all(struct bench *b, int n_names, const char *const *names)
+{
+    int code;
+
+    if (glint_pool_create(&b->one, 1) != GLINT_OK ||
+        glint_pool_create(&b->two, 2) != GLINT_OK || b->two->n != 2)
+        return tool_fail(b->tool, GLINT_E_MEMORY, "no threads to be had");
+    code = b->subject->open(b, n_names, names);
+    if (code == EXIT_OK)
+        code = run_rounds(b);
+    if (code == EXIT_OK)
+        (b->tool->json ? print_json : print)(b);
+    return code;
+}
+
+void bench_close(struct bench *b)
+{
+    for (int i = 0; i < b->n_cases; i++) {
+        b->subject->close_case(b->cases[i]);
+        free(b->cases[i]);
+    }
+    for (int i = 0; i < b->n_canvases; i++)
+        canvas_finish(&b->canvas[i]);
+    b->subject->close(b);
+    glint_pool_destroy(b->one);
+    glint_pool_destroy(b->two);
+    free(b);
+}

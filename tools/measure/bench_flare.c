@@ -1,0 +1,568 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint bench of flares: lenses, pictures and options that are timed.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "glint/explain.h"
+#include "glint/measure.h"
+#include "measure/bench.h"
+#include "linux/sets.h"
+#include "options/command_line.h"
+#include "options/json_writer.h"
+
+static const char help[] =
+    "glint bench [LENS|MODEL]... [options]\n"
+    "glint bench --scene FILE ...    of a scene; --scene x --help has more\n"
+    "\n"
+    "Times frames of 8-bit video with flares drawn in place, and what it "
+    "takes\n"
+    "to touch that memory at all: a saturating addition of a small constant\n"
+    "layer to the same frame, the floor. All cases take turns, so that what\n"
+    "else the machine does falls on all of them; medians are shown, and "
+    "ratios\n"
+    "to the floor. One light 12 degrees off the axis, exposed so that the\n"
+    "99.9th percentile of the flare is display white; further lights lie on a\n"
+    "spiral around it. Without lenses: heliar-tronnier, "
+    "double-gauss-angenieux\n"
+    "and itoh-zoom-short.\n"
+    "\n"
+    "  --all           also: all kernels, 2 threads, 2 to 10000\n"
+    "                  lights, 360p to 2160p, no light, a light far outside,\n"
+    "                  and, alone, the star of one light of 12 stops over "
+    "white\n"
+    "                  and those of ten of 2 stops\n"
+    "  --sizes         instead: 360p, 720p, 1080p and 2160p\n"
+    "  --growth        instead: 1 to 64 lights, 360p to 2160p, some of the\n"
+    "                  ghosts, other quanta and grids; tools/measure/growth "
+    "draws "
+    "them\n"
+    "  --budgets LIST  instead: held to so many milliseconds each, and how far "
+    "what\n"
+    "                  was predicted is off\n"
+    "  --size WxH      default 1920x1080\n"
+    "  --repeat N      rounds (default 15)\n"
+    "  --moving        the first light goes from 8 to 16 degrees meanwhile\n"
+    "  --psnr          also draw each lens exactly and compare, which takes\n"
+    "                  minutes\n"
+    "  --format F      yuyv (default) | i420 | nv12 | rgb24 | xrgb8888 | "
+    "rgb565\n";
+
+/* These bake in 30 s of processor time together; canon-zoom-mid alone takes
+ * minutes. */
+static const char *const default_lenses[] = {
+    "heliar-tronnier", "double-gauss-angenieux", "itoh-zoom-short"};
+
+enum { PLAN, TRANSFER, BIN, DRAW, WHOLE };
+
+struct lenses {
+    struct settings settings[BENCH_LENSES];
+    int n;
+};
+
+struct flare_case {
+    struct bench_case base;
+    const struct settings *settings;
+    struct glint_engine *engine;
+    struct glint_lamp *lamp;
+    int n_lamps;
+    bool is_star;             /* stars alone */
+    double budget_ms;         /* 0: none */
+    double scale, psnr_db;    /* psnr_db: NAN if not measured */
+    const char *series;       /* growth: name of the series, or NULL */
+    struct glint_tint *tints; /* growth: mute all ghosts but some; or NULL */
+    struct glint_engine_report report;
+    double cpu_ms; /* growth: least time of a frame, of all threads; else 0 */
+    double wrong[BENCH_ROUNDS]; /* budgets: predicted over measured - 1 */
+};
+
+/* ------------------------------------------------------------------- cases */
+
+static const struct bench_variation plain = {.lights = 1};
+
+static const struct bench_variation all[] = {
+    {.lights = 1},
+    {.lights = 1, .kernels = "c"},
+    {.lights = 1, .kernels = "sse41", .sets = GLINT_SET_SSE41},
+    {.lights = 1, .two_threads = true},
+    {.lights = 2},
+    {.lights = 8},
+    {.lights = 64},
+    {.lights = 588},
+    {.lights = 10000},
+    {.lights = 1, .width = 640, .height = 360},
+    {.lights = 1, .width = 1280, .height = 720},
+    {.lights = 1, .width = 3840, .height = 2160},
+    {.lights = 0},
+    {.lights = 1, .star_stops = 12},
+    {.lights = 10, .star_stops = 2},
+    {.lights = 1, .angle = 75}, /* beyond the angles of models */
+};
+
+static const struct bench_variation sizes[] = {
+    {.lights = 1, .width = 640, .height = 360},
+    {.lights = 1, .width = 1280, .height = 720},
+    {.lights = 1, .width = 1920, .height = 1080},
+    {.lights = 1, .width = 3840, .height = 2160},
+};
+
+/* Cases that differ from the plain one in one parameter each. Steps of
+ * irradiance have the same rays and fewer edges. Ghosts are added beside. */
+static const struct bench_variation growth[] = {
+    {"lights", .lights = 1},
+    {"lights", .lights = 2},
+    {"lights", .lights = 4},
+    {"lights", .lights = 8},
+    {"lights", .lights = 16},
+    {"lights", .lights = 32},
+    {"lights", .lights = 64},
+    {"pixels", 640, 360, .lights = 1},
+    {"pixels", 960, 540, .lights = 1},
+    {"pixels", 1280, 720, .lights = 1},
+    {"pixels", 1920, 1080, .lights = 1},
+    {"pixels", 2560, 1440, .lights = 1},
+    {"pixels", 3840, 2160, .lights = 1},
+    {"quantum", .lights = 1, .option = "quantum", .value = 0.25},
+    {"quantum", .lights = 1, .option = "quantum", .value = 0.5},
+    {"quantum", .lights = 1, .option = "quantum", .value = 1},
+    {"quantum", .lights = 1, .option = "quantum", .value = 2},
+    {"quantum", .lights = 1, .option = "quantum", .value = 5},
+    {"quantum", .lights = 1, .option = "quantum", .value = 10},
+    {"grid", .lights = 1, .option = "grid", .value = 16},
+    {"grid", .lights = 1, .option = "grid", .value = 32},
+    {"grid", .lights = 1, .option = "grid", .value = 64},
+    {"grid", .lights = 1, .option = "grid", .value = 128},
+    {"grid", .lights = 1, .option = "grid", .value = 256},
+};
+
+/* Sets the exposure of T. A light far outside is exposed as if it were in the
+ * picture. */
+static enum glint_status expose(struct flare_case *t,
+                                const struct bench_variation *v)
+{
+    enum glint_status status = GLINT_OK;
+
+    canvas_lamps(t->lamp, t->n_lamps, 12);
+    if (!t->is_star)
+        status = canvas_exposure(t->engine, t->lamp, t->n_lamps, &t->scale);
+    if (v->angle > 0)
+        canvas_lamps(t->lamp, t->n_lamps, v->angle);
+    if (v->star_stops > 0) {
+        for (int i = 0; i < t->n_lamps; i++)
+            t->lamp[i].power = exp2(v->star_stops);
+        t->scale = 1;
+    }
+    return status;
+}
+
+/* Adds the case V of SETTINGS, held to BUDGET_MS if that is above 0; TINTS,
+ * which the case frees, may be NULL. Returns an exit code. */
+static int add_more(struct bench *b, const struct settings *settings,
+                    const struct bench_variation *v, double budget_ms,
+                    struct glint_tint *tints)
+{
+    struct flare_case *const t =
+        (struct flare_case *)bench_add(b, settings->lens.name, v);
+    struct settings asked = *settings;
+    struct glint_engine_config cfg;
+    struct glint_error error = {""};
+    enum glint_status status;
+
+    if (t)
+        t->tints = tints;
+    else
+        free(tints);
+    if (!t || !(t->lamp = calloc((size_t)v->lights + 1, sizeof *t->lamp)))
+        return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
+    t->settings = settings;
+    t->n_lamps = v->lights;
+    t->series = v->series;
+    t->psnr_db = (double)NAN;
+    if (v->option)
+        settings_set_number(&asked, v->option, v->value);
+    canvas_engine(b->tool, settings, &asked, t->base.canvas->image.width,
+                  t->base.canvas->image.height, &cfg);
+    cfg.workers = t->base.workers;
+    if (v->kernels)
+        cfg.sets &= v->sets;
+    if (tints)
+        cfg.camera.tints = tints;
+    t->is_star = v->star_stops > 0;
+    if (t->is_star) {
+        cfg.drawing.parts = GLINT_ENGINE_STAR | GLINT_ENGINE_CORES;
+        cfg.light.starburst = 1;
+    }
+    if (budget_ms > 0)
+        cfg.drawing.budget_ms = budget_ms;
+    t->budget_ms = cfg.model ? cfg.drawing.budget_ms : 0;
+    status = glint_engine_create(&t->engine, &cfg, &error);
+    if (status == GLINT_OK)
+        status = expose(t, v);
+    return status == GLINT_OK ? EXIT_OK
+                              : tool_fail(b->tool, status, error.text);
+}
+
+static int add(struct bench *b, const struct settings *settings,
+               const struct bench_variation *v)
+{
+    return add_more(b, settings, v, 0, NULL);
+}
+
+/* Adds those of V[N] that are possible here. */
+static int add_list(struct bench *b, const struct settings *settings,
+                    const struct bench_variation *v, size_t n)
+{
+    int code = EXIT_OK;
+
+    for (size_t i = 0; i < n && code == EXIT_OK; i++)
+        if (bench_is_possible(&v[i]))
+            code = add(b, settings, &v[i]);
+    return code;
+}
+
+static struct flare_case *last_of(const struct bench *b)
+{
+    return (struct flare_case *)b->cases[b->n_cases - 1];
+}
+
+/* ------------------------------------------------------------------ rounds */
+
+/* By its name tools/measure/budget tells frames that are timed. */
+enum glint_status bench_run(struct bench *b, struct bench_case *c, int round);
+enum glint_status bench_run(struct bench *b, struct bench_case *c, int round)
+{
+    struct flare_case *const t = (struct flare_case *)c;
+    const struct glint_engine_report *const r = &t->report;
+    enum glint_status status;
+    clock_t cpu0 = 0;
+    double t0, cpu_ms;
+
+    if (b->moving && t->n_lamps > 0)
+        t->lamp[0].theta_deg = 8 + 8 * (round + 0.5) / b->rounds;
+    if (t->series) /* only for a series: the system call cools the caches of
+                      small frames */
+        cpu0 = clock();
+    t0 = tool_seconds();
+    status = glint_engine_draw_at(t->engine, t->lamp, t->n_lamps, t->scale,
+                                  &c->canvas->image, &t->report);
+    c->ms[WHOLE][round] = 1e3 * (tool_seconds() - t0);
+    cpu_ms = t->series ? 1e3 * (double)(clock() - cpu0) / CLOCKS_PER_SEC : 0;
+    if (t->cpu_ms == 0 || cpu_ms < t->cpu_ms)
+        t->cpu_ms = cpu_ms;
+    t->wrong[round] =
+        r->predicted_ms / (r->plan_ms + r->bin_ms + r->draw_ms) - 1;
+    c->ms[PLAN][round] = r->plan_ms;
+    c->ms[TRANSFER][round] = r->trace_ms;
+    c->ms[BIN][round] = r->bin_ms;
+    c->ms[DRAW][round] = r->draw_ms;
+    return status;
+}
+
+/* Frames in which a budget may settle before it is timed. */
+enum { SETTLING = 12 };
+
+/* Adds the plain case for each budget, held to that budget. */
+static int add_budgets(struct bench *b, const struct settings *settings)
+{
+    int code = EXIT_OK;
+
+    for (int i = 0; i < b->n_budgets && code == EXIT_OK; i++) {
+        enum glint_status status = GLINT_OK;
+        struct flare_case *t;
+
+        code = add_more(b, settings, &plain, b->budget_ms[i], NULL);
+        if (code != EXIT_OK)
+            break;
+        t = last_of(b);
+        for (int k = 0; k < SETTLING && status == GLINT_OK; k++) {
+            canvas_fresh(t->base.canvas);
+            status = bench_run(b, &t->base, 0);
+        }
+        if (status != GLINT_OK)
+            code = tool_fail(b->tool, GLINT_E_MEMORY, NULL);
+    }
+    return code;
+}
+
+/* ------------------------------------------------------------------ ghosts */
+
+/* Returns tints, malloc'ed, that mute all of N_GHOSTS ghosts but those that
+ * belong to N_KEPT pairs of surfaces: those of LIST[N] from FIRST on, then from
+ * its start. PAIR_OF is the pair of each ghost. */
+static struct glint_tint *keep_ghosts(const int *pair_of, int n_ghosts,
+                                      const int *list, int n, int first,
+                                      int n_kept)
+{
+    struct glint_tint *tints =
+        calloc((size_t)n_ghosts + 1, sizeof *tints); /* muted */
+
+    for (int k = 0; k < n_ghosts && tints; k++)
+        for (int i = 0; i < n_kept; i++)
+            if (pair_of[k] == list[(first + i) % n])
+                tints[k] = (struct glint_tint){{1 << 14, 1 << 14, 1 << 14},
+                                               glint_real_of(1)};
+    return tints;
+}
+
+/* Adds cases of all ghosts that PLAIN_CASE shows, and of half of them, a
+ * quarter ... each taken from four places of the list, as some ghosts are large
+ * and some are small. */
+static int add_ghosts(struct bench *b, const struct settings *settings,
+                      struct flare_case *plain_case)
+{
+    static const struct bench_variation v = {"ghosts", .lights = 1};
+    struct glint_explain e = {.n_ghosts = 0};
+    int list[GLINT_MAX_GHOSTS], code = EXIT_OK, n = 0;
+
+    if (!settings->model.data)
+        return EXIT_OK;
+    if (bench_run(b, &plain_case->base, 0) != GLINT_OK ||
+        glint_explain_open(&e, plain_case->engine, 0) != GLINT_OK)
+        code = tool_fail(b->tool, GLINT_E_MEMORY, NULL);
+    for (int k = 0; k < e.n_ghosts && code == EXIT_OK; k++)
+        if (glint_explain_drawn(&e.ghost[k]) > 0)
+            list[n++] = k;
+    for (int part = n, depth = 0; part > 0 && depth < 5; part /= 2, depth++)
+        for (int k = 0; k < (part < n ? 4 : 1) && code == EXIT_OK; k++) {
+            struct glint_tint *const tints = keep_ghosts(
+                e.ghost_of, settings->setup.n_ghosts, list, n, k * n / 4, part);
+
+            code = tints ? add_more(b, settings, &v, 0, tints)
+                         : tool_fail(b->tool, GLINT_E_MEMORY, NULL);
+        }
+    glint_explain_close(&e);
+    return code;
+}
+
+/* ----------------------------------------------------------------- opening */
+
+/* Sets t->psnr_db: T's flare alone against exact rays of the lens's table. */
+static int measure_psnr(struct bench *b, struct flare_case *t)
+{
+    const int w = t->base.canvas->image.width, h = t->base.canvas->image.height;
+    const size_t n = 3 * (size_t)w * (size_t)h;
+    struct glint_float_image want = {w, h, malloc(n * sizeof(float))};
+    uint8_t *want_codes = NULL, *got = malloc(n);
+    enum glint_status status = GLINT_E_MEMORY;
+    double exposure;
+    struct glint_measure m;
+
+    if (want.rgb && got)
+        status =
+            canvas_exact(b->tool, t->settings, t->lamp, t->n_lamps, 128, &want);
+    if (status == GLINT_OK) {
+        exposure = glint_measure_exposure(&want);
+        want_codes = glint_measure_encode(&want, exposure);
+        status = want_codes ? canvas_codes(t->engine, t->lamp, t->n_lamps,
+                                           exposure, got, &t->report)
+                            : GLINT_E_MEMORY;
+    }
+    if (status == GLINT_OK) {
+        glint_measure_codes(want_codes, got, w, h, &m);
+        t->psnr_db = m.psnr_db;
+    }
+    free(want.rgb);
+    free(want_codes);
+    free(got);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(b->tool, status, NULL);
+}
+
+static int add_cases(struct bench *b, const struct settings *s)
+{
+    const int first = b->n_cases;
+    int code;
+
+    if (b->growth) {
+        code = add_list(b, s, growth, sizeof growth / sizeof *growth);
+        return code == EXIT_OK
+                   ? add_ghosts(b, s, (struct flare_case *)b->cases[first])
+                   : code;
+    }
+    if (b->n_budgets)
+        return add_budgets(b, s);
+    if (b->sizes)
+        return add_list(b, s, sizes, sizeof sizes / sizeof *sizes);
+    return b->all ? add_list(b, s, all, sizeof all / sizeof *all)
+                  : add(b, s, &plain);
+}
+
+static int open_lens(struct bench *b, struct lenses *lenses, const char *name)
+{
+    if (lenses->n == BENCH_LENSES)
+        return tool_usage(b->tool, "takes %d lenses at most", BENCH_LENSES);
+    if (b->psnr && tool_is_model(name))
+        return tool_usage(b->tool, "%s is a model: --psnr needs the lens table",
+                          name);
+    lenses->settings[lenses->n] = b->base;
+    return settings_open(b->tool, &lenses->settings[lenses->n++], name);
+}
+
+static int open_flares(struct bench *b, int n, const char *const *name)
+{
+    struct lenses *const lenses = b->opened = calloc(1, sizeof *lenses);
+    int code = EXIT_OK;
+
+    if (!lenses)
+        return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
+    if (b->base.options.memory)
+        return tool_usage(b->tool, "bench does not limit memory: --memory is "
+                                   "for the other commands that draw");
+    if (n == 0) {
+        name = default_lenses;
+        n = sizeof default_lenses / sizeof *default_lenses;
+    }
+    for (int i = 0; i < n && code == EXIT_OK; i++)
+        code = open_lens(b, lenses, name[i]);
+    for (int i = 0; i < n && code == EXIT_OK; i++)
+        code = add_cases(b, &lenses->settings[i]);
+    for (int i = 0; i < b->n_cases && b->psnr && code == EXIT_OK; i++) {
+        struct flare_case *const t = (struct flare_case *)b->cases[i];
+
+        if (t->n_lamps == 1 && t->base.kernels == b->tool->kernels)
+            code = measure_psnr(b, t);
+    }
+    return code;
+}
+
+static void close_case(struct bench_case *c)
+{
+    struct flare_case *const t = (struct flare_case *)c;
+
+    glint_engine_destroy(t->engine);
+    free(t->lamp);
+    free(t->tints);
+}
+
+static void close_flares(struct bench *b)
+{
+    struct lenses *const lenses = b->opened;
+
+    for (int i = 0; lenses && i < lenses->n; i++)
+        settings_close(&lenses->settings[i]);
+    free(lenses);
+}
+
+/* ------------------------------------------------------------------ output */
+
+static const char *raster_of(const struct flare_case *t)
+{
+    return t->is_star ? "star" : "edges";
+}
+
+/* Returns the median size of the relative errors of T's predictions. */
+static double off_by(const struct bench *b, const struct flare_case *t)
+{
+    double size[BENCH_ROUNDS];
+
+    for (int i = 0; i < b->rounds; i++)
+        size[i] = fabs(t->wrong[i]);
+    return canvas_median(size, b->rounds);
+}
+
+static void print_case(const struct bench *b, const struct bench_case *c)
+{
+    const struct flare_case *const t = (const struct flare_case *)c;
+
+    (void)b;
+    printf("%-22s %4dx%-4d %5d %2d %-5s %-5s", c->name, c->canvas->image.width,
+           c->canvas->image.height, t->n_lamps, c->threads, raster_of(t),
+           c->kernels);
+}
+
+static void print_result(const struct bench *b, const struct bench_case *c)
+{
+    const struct flare_case *const t = (const struct flare_case *)c;
+    const struct glint_engine_report *const r = &t->report;
+
+    printf("%7d %6.2f", r->stats.primitives,
+           (double)(r->peak_bytes + r->star_bytes) / (1 << 20));
+    if (!isnan(t->psnr_db))
+        printf("  %.1f", t->psnr_db);
+    if (t->budget_ms > 0)
+        printf(
+            "  budget %g: %.2f of it, quality %.2f, predicted within %.0f %%",
+            t->budget_ms, bench_ms(b, c, WHOLE) / t->budget_ms, r->quality,
+            100 * off_by(b, t));
+    printf("%s%s", t->series ? "  " : "", t->series ? t->series : "");
+}
+
+static void json(struct json_writer *to, const struct bench *b,
+                 const struct bench_case *c)
+{
+    const struct flare_case *const t = (const struct flare_case *)c;
+    const struct glint_engine_report *const r = &t->report;
+
+    if (t->series)
+        json_write(to, "series: %s, cpu_ms: %.3f", t->series, t->cpu_ms);
+    bench_json_format(to, b, c);
+    json_write(to,
+               "lights: %d, threads: %d, raster: %s, kernels: %s, "
+               "quality: %.3f",
+               t->n_lamps, c->threads, raster_of(t), c->kernels,
+               r->quality >= 0 ? r->quality : t->settings->options.quality);
+    bench_json_times(to, b, c);
+    json_write(to, "psnr_db: %.2f", t->psnr_db);
+    if (t->budget_ms > 0)
+        json_write(to, "budget_ms: %g, achieved: %.4f, prediction_error: %.4f",
+                   t->budget_ms, bench_ms(b, c, WHOLE) / t->budget_ms,
+                   off_by(b, t));
+    json_write(to,
+               "drawn_lights: %d, ghosts: %d, bundles: %d, primitives: %d, "
+               "tiles: %d, arena_bytes: %zu, star_bytes: %zu",
+               r->drawn_lights, r->ghosts, r->stats.bundles,
+               r->stats.primitives, r->tiles, r->peak_bytes, r->star_bytes);
+}
+
+/* ----------------------------------------------------------------- options */
+
+enum { OPT_GROWTH = BENCH_OWN, OPT_MOVING, OPT_PSNR, OPT_BUDGETS };
+
+static const struct option own[] = {
+    {"growth", no_argument, NULL, OPT_GROWTH},
+    {"moving", no_argument, NULL, OPT_MOVING},
+    {"psnr", no_argument, NULL, OPT_PSNR},
+    {"budgets", required_argument, NULL, OPT_BUDGETS},
+    BENCH_OPTIONS};
+
+static int take(struct bench *b, int c, const char *value)
+{
+    switch (c) {
+    case OPT_GROWTH:
+        return b->growth = true;
+    case OPT_MOVING:
+        return b->moving = true;
+    case OPT_PSNR:
+        return b->psnr = true;
+    case OPT_BUDGETS:
+        b->n_budgets = tool_numbers(value, b->budget_ms, BENCH_BUDGETS);
+        for (int i = 0; i < b->n_budgets; i++)
+            if (b->budget_ms[i] <= 0)
+                return 0;
+        return b->n_budgets > 0;
+    default:
+        return -2;
+    }
+}
+
+const struct bench_subject bench_flare = {
+    .word = "lens",
+    .help = help,
+    .own = own,
+    .groups = ENGINE_DRAWING,
+    .max_rounds = BENCH_ROUNDS,
+    .n_stages = WHOLE + 1,
+    .stage = {"plan", "transfer", "bin", "draw", "whole"},
+    .heads = "lens                        size light th by    sets ",
+    .tail = "  prims    MiB",
+    .case_bytes = sizeof(struct flare_case),
+    .take = take,
+    .open = open_flares,
+    .draw = bench_run,
+    .print_case = print_case,
+    .print_result = print_result,
+    .json = json,
+    .close_case = close_case,
+    .close = close_flares};

@@ -1,0 +1,364 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint bench --scene: frames onto which a scene is drawn, by stage.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "measure/bench.h"
+#include "linux/instructions.h"
+#include "linux/sets.h"
+#include "options/command_line.h"
+#include "options/json_writer.h"
+#include "scenes/account.h"
+#include "scenes/baked_scene.h"
+#include "scenes/scene_frame.h"
+
+static const char help[] =
+    "glint bench --scene NAME.scene|BAKED [options]\n"
+    "\n"
+    "Times frames of 8-bit video onto which a scene is drawn, by stage, and\n"
+    "compares them with touching their memory, as glint bench does for\n"
+    "flares. All cases take turns; medians are shown, and ratios to the\n"
+    "floor. Stages: prepare finds what may be seen and makes lists of\n"
+    "shadows, as if a thing had moved; around keeps the picture, small, for\n"
+    "mirrors and glass; draw; of that shadows, what the scene without them\n"
+    "does not take; lights, what a lens is told of the scene's lights.\n"
+    "\n"
+    "  --all               also: every value of each dial, all kernels, 2\n"
+    "                      threads, 360p to 2160p\n"
+    "  --sizes             instead: 360p, 720p, 1080p and 2160p\n"
+    "  --size WxH          default 1920x1080\n"
+    "  --repeat N          rounds, 1 to 100 (default 15)\n"
+    "  --format F          yuyv (default) | i420 | nv12 | rgb24 | xrgb8888 |\n"
+    "                      rgb565\n";
+
+/* SHADOWS is a part of DRAW: what a scene without them does not take. WHOLE is
+ * the sum of the others. */
+enum { PREPARE, AROUND, DRAW, SHADOWS, LIGHTS, WHOLE };
+
+struct opened {
+    const char *file;
+    struct baked_scene scene, bare; /* bare: without shadows, if it has any */
+    int counter;                    /* of instructions, or -1 */
+};
+
+struct scene_case {
+    struct bench_case base;
+    struct tool tool; /* the command's, with other threads and sets */
+    struct scene_frame frame, bare;
+    double instructions; /* of the last frame; NAN: they are not counted */
+    int covered_px;
+};
+
+/* ------------------------------------------------------------------- cases */
+
+static const struct bench_variation all[] = {
+    {.option = "edge-samples", .value = 1},
+    {.option = "edge-samples", .value = 8},
+    {.option = "edge-samples", .value = 16},
+    {.option = "shadow-points", .value = 1},
+    {.option = "shadow-points", .value = 16},
+    {.option = "shading", .value = 1},
+    {.kernels = "c"},
+    {.kernels = "sse41", .sets = GLINT_SET_SSE41},
+    {.two_threads = true},
+    {.width = 640, .height = 360},
+    {.width = 1280, .height = 720},
+    {.width = 3840, .height = 2160},
+};
+
+/* Puts the first object where it is, so that lists of shadows are made as if it
+ * had moved. */
+static void stir(void *ctx, struct glint_scene *scene)
+{
+    const struct scene_frame *const frame = ctx;
+    const struct glint_scene_model *const model = frame->model;
+
+    if (model->header->n_objects > 0)
+        glint_scene_set_pose(scene, 0, model->object[0].at,
+                             model->object[0].turn_q30);
+}
+
+/* Opens FRAME of MODEL and draws it once, so that it has its memory. */
+static int open_frame(struct scene_case *t, struct scene_frame *frame,
+                      const struct glint_scene_model *model,
+                      const struct scene_dials *dials)
+{
+    int code = scene_frame_open(frame, &t->tool, model, dials);
+
+    frame->pose = stir;
+    frame->pose_ctx = frame;
+    canvas_fresh(t->base.canvas);
+    return code == EXIT_OK ? scene_frame_draw(frame, &t->base.canvas->image)
+                           : code;
+}
+
+/* Sets DIALS to those of the line, with the option of V. Returns false if V
+ * says the same as the line. */
+static bool choose(const struct bench *b, const struct bench_variation *v,
+                   struct scene_dials *dials)
+{
+    struct glint_options options = b->base.options;
+    struct scene_dials plain = {.width = b->width,
+                                .height = b->height,
+                                .edge_samples = 4,
+                                .shadow_points = 4};
+    struct glint_error error;
+    char text[16];
+
+    scene_dials_choose(&plain, &options);
+    *dials = plain;
+    if (v->option && strcmp(v->option, "shading") == 0)
+        glint_options_set(&options, v->option, v->value, &error);
+    else if (v->option) {
+        snprintf(text, sizeof text, "%g", v->value);
+        glint_options_set_text(&options, v->option, text, &error);
+    }
+    scene_dials_choose(dials, &options);
+    if (v->width) {
+        dials->width = v->width;
+        dials->height = v->height;
+    }
+    return !(v->option || v->width) ||
+           dials->edge_samples != plain.edge_samples ||
+           dials->shadow_points != plain.shadow_points ||
+           dials->half_shading != plain.half_shading ||
+           dials->width != plain.width || dials->height != plain.height;
+}
+
+static int add(struct bench *b, const struct bench_variation *v)
+{
+    struct opened *const o = b->opened;
+    struct scene_dials dials;
+    struct scene_case *t;
+    int code;
+
+    if (!choose(b, v, &dials) || !bench_is_possible(v))
+        return EXIT_OK;
+    t = (struct scene_case *)bench_add(b, o->scene.model.header->name, v);
+    if (!t)
+        return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
+    t->tool = *b->tool;
+    t->tool.workers = t->base.workers;
+    t->tool.n_threads = t->base.threads;
+    t->tool.sets_off |= v->kernels ? ~v->sets : 0;
+    t->instructions = (double)NAN;
+    code = open_frame(t, &t->frame, &o->scene.model, &dials);
+    if (code == EXIT_OK && o->bare.data)
+        code = open_frame(t, &t->bare, &o->bare.model, &dials);
+    if (code == EXIT_OK)
+        t->covered_px = scene_covered_px(&t->frame);
+    return code;
+}
+
+static int add_cases(struct bench *b)
+{
+    static const struct bench_variation plain = {0},
+                                        full = {.width = 1920, .height = 1080};
+    int code = b->sizes ? EXIT_OK : add(b, &plain);
+
+    for (size_t i = 0; i < sizeof all / sizeof *all && code == EXIT_OK; i++) {
+        if (!(b->sizes ? all[i].width > 0 : b->all))
+            continue;
+        if (b->sizes && all[i].width > full.width)
+            code = add(b, &full);
+        if (code == EXIT_OK)
+            code = add(b, &all[i]);
+    }
+    return code;
+}
+
+/* ------------------------------------------------------------------ rounds */
+
+/* Draws a frame. Notes the times at which stages begin, and the end. */
+static void time_stages(struct scene_frame *frame,
+                        const struct glint_image *image, double at_s[5])
+{
+    struct glint_scene_lamp lamps[GLINT_SCENE_MAX_LIGHTS];
+
+    at_s[0] = tool_seconds();
+    scene_frame_begin(frame);
+    at_s[1] = tool_seconds();
+    glint_scene_look_around(frame->scene, image);
+    at_s[2] = tool_seconds();
+    glint_scene_draw(frame->scene, image);
+    at_s[3] = tool_seconds();
+    glint_scene_lights(frame->scene, lamps);
+    at_s[4] = tool_seconds();
+}
+
+static enum glint_status draw(struct bench *b, struct bench_case *c, int round)
+{
+    static const int span[][3] = {{PREPARE, 0, 1},
+                                  {AROUND, 1, 2},
+                                  {DRAW, 2, 3},
+                                  {LIGHTS, 3, 4},
+                                  {WHOLE, 0, 4}};
+    const struct opened *const o = b->opened;
+    struct scene_case *const t = (struct scene_case *)c;
+    double at_s[5];
+    uint64_t before = 0;
+
+    if (o->counter >= 0)
+        before = glint_instructions_read(o->counter);
+    time_stages(&t->frame, &c->canvas->image, at_s);
+    if (o->counter >= 0)
+        t->instructions =
+            (double)(glint_instructions_read(o->counter) - before);
+    for (size_t i = 0; i < sizeof span / sizeof *span; i++)
+        c->ms[span[i][0]][round] = 1e3 * (at_s[span[i][2]] - at_s[span[i][1]]);
+    c->ms[SHADOWS][round] = 0;
+    if (t->bare.scene) {
+        canvas_fresh(c->canvas);
+        time_stages(&t->bare, &c->canvas->image, at_s);
+        c->ms[SHADOWS][round] = c->ms[DRAW][round] - 1e3 * (at_s[3] - at_s[2]);
+    }
+    return GLINT_OK;
+}
+
+/* ----------------------------------------------------------------- opening */
+
+/* Sets o->bare to the scene without shadows. Returns an exit code. */
+static int open_bare(struct bench *b, struct opened *o)
+{
+    const int code = baked_scene_open(b->tool, o->file, &o->bare);
+
+    if (code == EXIT_OK) /* its checksum has been asked for */
+        ((struct glint_scene_header *)o->bare.data)->shadow = 0;
+    return code;
+}
+
+static int open_scene(struct bench *b, int n, const char *const *name)
+{
+    struct opened *const o = b->opened;
+    int code;
+
+    if (n > 0)
+        return tool_usage(b->tool, "--scene takes no lens; '%s' is too much",
+                          *name);
+    code = baked_scene_open(b->tool, o->file, &o->scene);
+    if (code != EXIT_OK)
+        return code;
+    if (o->scene.model.header->camera.kind == GLINT_CAMERA_LENS)
+        return tool_usage(b->tool,
+                          "%s: 'camera lens' needs the lens of a flare; here "
+                          "it takes 'camera fov'",
+                          o->file);
+    if (o->scene.model.header->shadow)
+        code = open_bare(b, o);
+    if (code != EXIT_OK)
+        return code;
+    o->counter = glint_instructions_open();
+    return add_cases(b);
+}
+
+static void close_case(struct bench_case *c)
+{
+    struct scene_case *const t = (struct scene_case *)c;
+
+    scene_frame_close(&t->frame);
+    scene_frame_close(&t->bare);
+}
+
+static void close_scene(struct bench *b)
+{
+    struct opened *const o = b->opened;
+
+    if (!o)
+        return;
+    baked_scene_close(&o->scene);
+    baked_scene_close(&o->bare);
+    glint_instructions_close(o->counter);
+    free(o);
+}
+
+/* ------------------------------------------------------------------ output */
+
+static const char *shading_of(const struct scene_case *t)
+{
+    return t->frame.cfg.half_shading ? "half" : "full";
+}
+
+static void print_case(const struct bench *b, const struct bench_case *c)
+{
+    const struct scene_case *const t = (const struct scene_case *)c;
+    const struct glint_scene_config *const cfg = &t->frame.cfg;
+
+    (void)b;
+    printf("%-16.16s %4dx%-4d %5d %6d %-7s %2d %-5s", c->name, cfg->width,
+           cfg->height, cfg->edge_samples, cfg->shadow_points, shading_of(t),
+           c->threads, c->kernels);
+}
+
+static void print_result(const struct bench *b, const struct bench_case *c)
+{
+    const struct scene_case *const t = (const struct scene_case *)c;
+    const struct opened *const o = b->opened;
+
+    printf("%7d %7.2f", t->covered_px,
+           (double)(t->frame.bytes + o->scene.bytes) / (1 << 20));
+}
+
+static void json(struct json_writer *to, const struct bench *b,
+                 const struct bench_case *c)
+{
+    const struct scene_case *const t = (const struct scene_case *)c;
+    const struct glint_scene_config *const cfg = &t->frame.cfg;
+    const struct opened *const o = b->opened;
+
+    bench_json_format(to, b, c);
+    json_write(to,
+               "edge_samples: %d, shadow_points: %d, shading: %s, threads: %d, "
+               "kernels: %s",
+               cfg->edge_samples, cfg->shadow_points, shading_of(t), c->threads,
+               c->kernels);
+    bench_json_times(to, b, c);
+    json_write(to,
+               "whole_ms: %.4f, instructions: %.0f, covered_px: %d, "
+               "triangles: %d, arena_bytes: %zu, model_bytes: %zu",
+               bench_ms(b, c, WHOLE), t->instructions, t->covered_px,
+               t->frame.stats.triangles, t->frame.bytes, o->scene.bytes);
+}
+
+/* ----------------------------------------------------------------- options */
+
+static const struct option own[] = {
+    {"scene", required_argument, NULL, BENCH_OWN}, BENCH_OPTIONS};
+
+static int take(struct bench *b, int c, const char *value)
+{
+    struct opened *o = b->opened;
+
+    if (c != BENCH_OWN)
+        return -2;
+    if (!o) {
+        o = b->opened = calloc(1, sizeof *o);
+        if (!o)
+            return 0;
+        o->counter = -1;
+    }
+    o->file = value;
+    return *value != '\0';
+}
+
+const struct bench_subject bench_scene = {
+    .word = "scene",
+    .help = help,
+    .own = own,
+    .groups = ENGINE_GROUP(SHADING),
+    .max_rounds = 100,
+    .n_stages = WHOLE + 1,
+    .stage = {"prepare", "around", "draw", "shadows", "lights", "whole"},
+    .heads = "scene                 size edges points shading th sets ",
+    .tail = " covers     MiB",
+    .case_bytes = sizeof(struct scene_case),
+    .take = take,
+    .open = open_scene,
+    .draw = draw,
+    .print_case = print_case,
+    .print_result = print_result,
+    .json = json,
+    .close_case = close_case,
+    .close = close_scene};

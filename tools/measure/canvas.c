@@ -1,0 +1,319 @@
+/* SPDX-License-Identifier: MIT */
+#include "measure/canvas.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "model/stop_option.h"
+#include "glint/measure.h"
+#include "formats/picture.h"
+#include "model/model_cache.h"
+
+/* ------------------------------------------------------------------ canvas */
+
+/* Fills the fresh picture with a pattern of dim codes, 16 .. 87. */
+static void paint(struct canvas *c)
+{
+    for (size_t i = 0; i < c->bytes; i++)
+        c->fresh[i] = (uint8_t)(16 + i % 97 / 3 + (i >> 12) % 40);
+}
+
+enum glint_status canvas_init(struct canvas *c, enum glint_pixel_format format,
+                              int width, int height)
+{
+    *c = (struct canvas){.image = {.format = format,
+                                   .width = width,
+                                   .height = height,
+                                   .range = GLINT_RANGE_LIMITED,
+                                   .matrix = GLINT_MATRIX_BT709,
+                                   .transfer = GLINT_TONE_BT709},
+                         .bytes = glint_image_bytes(format, width, height)};
+    c->fresh = malloc(c->bytes);
+    c->mem = malloc(c->bytes);
+    if (!c->fresh || !c->mem) {
+        canvas_finish(c);
+        return GLINT_E_MEMORY;
+    }
+    glint_image_place(&c->image, c->mem);
+    paint(c);
+    canvas_fresh(c);
+    return GLINT_OK;
+}
+
+void canvas_fresh(struct canvas *c)
+{
+    memcpy(c->mem, c->fresh, c->bytes);
+}
+
+void canvas_finish(struct canvas *c)
+{
+    free(c->fresh);
+    free(c->mem);
+    c->fresh = c->mem = NULL;
+}
+
+/* Adds LAYER[256], which stays in the cache, to every 256 bytes of PX,
+ * saturating, in a loop that compilers vectorise. */
+static void add_layer(uint8_t *restrict px, const uint8_t *restrict layer,
+                      size_t bytes)
+{
+    for (size_t i = 0; i + 256 <= bytes; i += 256)
+        for (size_t k = 0; k < 256; k++) {
+            const uint8_t sum = (uint8_t)(px[i + k] + layer[k]);
+
+            px[i + k] = sum < layer[k] ? 255 : sum;
+        }
+}
+
+void canvas_time_floor(struct canvas *c, int round)
+{
+    static uint8_t layer[256];
+    double t0;
+
+    layer[1]++;
+    canvas_fresh(c);
+    t0 = tool_seconds();
+    add_layer(c->mem, layer, c->bytes);
+    c->floor_ms[round] = 1e3 * (tool_seconds() - t0);
+}
+
+/* ------------------------------------------------------------------- lamps */
+
+static double power_of(int i, int n)
+{
+    return 1.0 / (n > 64 ? 1 + i : n);
+}
+
+void canvas_lamps(struct glint_lamp *lamp, int n, double angle)
+{
+    for (int i = 0; i < n; i++)
+        lamp[i] = (struct glint_lamp){i ? fmod(angle + 2.39 * i, 24) : angle,
+                                      fmod(33 + 137.5 * i, 360),
+                                      power_of(i, n),
+                                      {1, 1, 1},
+                                      {0, 0},
+                                      0};
+}
+
+/* ---------------------------------------------------------------- pictures */
+
+void canvas_engine(const struct tool *tool, const struct settings *open,
+                   const struct settings *asked, int width, int height,
+                   struct glint_engine_config *cfg)
+{
+    settings_engine(tool, asked, width, height, cfg);
+    cfg->camera.setup = &open->setup;
+    if (cfg->model)
+        cfg->model = &open->model.lens;
+    cfg->light.by_hand = 1;
+    cfg->search.max_found = 0;
+    cfg->drawing.is_fresh = 1;
+}
+
+enum glint_status canvas_exposure(struct glint_engine *engine,
+                                  const struct glint_lamp *lamp, int n_lamps,
+                                  double *exposure)
+{
+    const struct glint_view *const view = glint_engine_view(engine);
+    const size_t n = 3 * (size_t)view->width * (size_t)view->height;
+    struct glint_float_image flare = {view->width, view->height,
+                                      malloc(n * sizeof(float))};
+    struct glint_engine_report report;
+    enum glint_status status = GLINT_E_MEMORY;
+
+    if (flare.rgb)
+        status = glint_engine_render(engine, lamp, n_lamps, 1, GLINT_ENGINE_ALL,
+                                     flare.rgb, &report);
+    if (status == GLINT_OK)
+        *exposure = glint_measure_exposure(&flare);
+    free(flare.rgb);
+    return status;
+}
+
+static enum glint_status draw_exact(const struct tool *tool,
+                                    const struct settings *s,
+                                    const struct glint_lamp *lamp, int n_lamps,
+                                    int grid, struct glint_float_image *to)
+{
+    const size_t n = 3 * (size_t)to->width * (size_t)to->height;
+    struct glint_setup *setup = malloc(sizeof *setup);
+    const struct stop_option stop = settings_stop_shape(s);
+    struct glint_dirt *dirt = NULL;
+    double *rgb = malloc(n * sizeof *rgb);
+    struct tool_progress progress;
+    struct glint_exact_config cfg = {
+        .setup = setup,
+        .view = settings_view(s, to->width, to->height),
+        .lamps = lamp,
+        .n_lamps = n_lamps,
+        .grid = grid,
+        .only_ghost = settings_only_ghost(s),
+        .workers = tool->workers,
+        .progress = tool_progress_show,
+        .progress_ctx = &progress};
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_E_MEMORY;
+
+    tool_progress_start(&progress, tool, "exact");
+    if (setup && rgb)
+        status =
+            glint_setup_init(setup, &s->lens, stop.n_blades, stop.rotation_deg,
+                             s->wavelength_nm, s->n_wavelengths, &error);
+    if (status == GLINT_OK)
+        status = stop_option_set(&stop, setup, &dirt, &error);
+    if (status == GLINT_OK && s->options.balance)
+        glint_setup_balance(setup);
+    if (status == GLINT_OK)
+        status = glint_exact_render(&cfg, rgb);
+    for (size_t i = 0; i < n && status == GLINT_OK; i++)
+        to->rgb[i] = (float)rgb[i];
+    tool_progress_end(&progress);
+    glint_dirt_free(dirt);
+    free(setup);
+    free(rgb);
+    return status;
+}
+
+static uint64_t mix(uint64_t hash, const void *data, size_t bytes)
+{
+    const uint8_t *p = data;
+
+    for (size_t i = 0; i < bytes; i++)
+        hash = (hash ^ p[i]) * UINT64_C(0x100000001b3);
+    return hash;
+}
+
+/* Returns a key of all that the picture depends on, but for the tracer
+ * itself. */
+static uint64_t key_of(const struct settings *s, const struct glint_lamp *lamp,
+                       int n_lamps, int grid,
+                       const struct glint_float_image *to)
+{
+    const int only_ghost = settings_only_ghost(s);
+    const struct glint_view view = settings_view(s, to->width, to->height);
+    const struct stop_option stop = settings_stop_shape(s);
+    struct glint_bake_options options;
+    uint64_t hash;
+
+    glint_bake_defaults(&options);
+    hash = glint_bake_key(&s->lens, &options);
+    hash = mix(hash, &to->width, sizeof to->width);
+    hash = mix(hash, &to->height, sizeof to->height);
+    hash = mix(hash, &view.sensor_width_mm, sizeof view.sensor_width_mm);
+    hash = mix(hash, &stop.n_blades, sizeof stop.n_blades);
+    hash = mix(hash, &stop.rotation_deg, sizeof stop.rotation_deg);
+    if (stop.iris.roundness > 0 || stop_option_shades(&stop)) {
+        const struct glint_iris *i = &stop.iris;
+        const double iris[] = {i->roundness, i->softness, i->dust,
+                               i->dust_seed};
+
+        hash = mix(hash, iris, sizeof iris);
+        hash = i->mask ? mix(hash, i->mask,
+                             (size_t)i->mask_width * (size_t)i->mask_height)
+                       : hash;
+    }
+    hash = mix(hash, s->wavelength_nm,
+               (size_t)s->n_wavelengths * sizeof *s->wavelength_nm);
+    hash = mix(hash, &only_ghost, sizeof only_ghost);
+    hash = mix(hash, &s->options.balance, sizeof s->options.balance);
+    hash = mix(hash, &grid, sizeof grid);
+    return mix(hash, lamp, (size_t)n_lamps * sizeof *lamp);
+}
+
+static bool load(const char *path, struct glint_float_image *to)
+{
+    struct glint_float_image kept = {0, 0, NULL};
+    struct glint_error error = {""};
+    bool same;
+
+    if (access(path, R_OK) != 0 ||
+        glint_picture_load_float(path, &kept, &error) != GLINT_OK)
+        return false;
+    same = kept.width == to->width && kept.height == to->height;
+    if (same)
+        memcpy(to->rgb, kept.rgb,
+               3 * (size_t)to->width * (size_t)to->height * sizeof(float));
+    free(kept.rgb);
+    return same;
+}
+
+enum glint_status canvas_exact(const struct tool *tool,
+                               const struct settings *settings,
+                               const struct glint_lamp *lamp, int n_lamps,
+                               int grid, struct glint_float_image *to)
+{
+    const uint64_t key = key_of(settings, lamp, n_lamps, grid, to);
+    struct glint_error error = {""};
+    char file[64], path[1024];
+    enum glint_status status;
+    bool kept;
+
+    snprintf(file, sizeof file, "exact-%08lx%08lx.pfm",
+             (unsigned long)(key >> 32), (unsigned long)(key & 0xffffffff));
+    kept = model_cache_path(path, sizeof path, file);
+    if (kept && load(path, to))
+        return GLINT_OK;
+    status = draw_exact(tool, settings, lamp, n_lamps, grid, to);
+    if (status == GLINT_OK && kept &&
+        glint_picture_save_float(path, to, &error) != GLINT_OK && !tool->quiet)
+        fprintf(stderr, "glint %s: the exact picture is not kept: %s\n",
+                tool->name, error.text);
+    return status;
+}
+
+enum glint_status canvas_codes(struct glint_engine *engine,
+                               const struct glint_lamp *lamp, int n_lamps,
+                               double exposure, uint8_t *codes,
+                               struct glint_engine_report *report)
+{
+    const struct glint_view *const view = glint_engine_view(engine);
+    struct glint_image layer = {
+        .format = GLINT_RGB24, .width = view->width, .height = view->height};
+
+    memset(codes, 0, 3 * (size_t)layer.width * (size_t)layer.height);
+    glint_image_place(&layer, codes);
+    return glint_engine_draw_at(engine, lamp, n_lamps, exposure, &layer,
+                                report);
+}
+
+enum glint_status sweep_frame(struct glint_engine *engine,
+                              const struct glint_lamp *lamp, int n,
+                              double exposure, const struct glint_image *image,
+                              struct glint_engine_report *report)
+{
+    return glint_engine_draw_at(engine, lamp, n, exposure, image, report);
+}
+
+const char *canvas_machine(void)
+{
+    static char line[128];
+    FILE *const file = fopen("/proc/cpuinfo", "r");
+    const char *name = NULL;
+
+    while (file && !name && fgets(line, sizeof line, file))
+        if (strncmp(line, "model name", 10) == 0)
+            name = strchr(line, ':');
+    if (file)
+        fclose(file);
+    for (char *c = line; *c; c++)
+        *c = (char)(*c == ',' ? ' ' : *c == '\n' ? '\0' : *c);
+    return name ? name + 2 : "unknown";
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+
+    return (x > y) - (x < y);
+}
+
+double canvas_median(const double *values, int n)
+{
+    double sorted[CANVAS_MAX];
+
+    memcpy(sorted, values, (size_t)n * sizeof *values);
+    qsort(sorted, (size_t)n, sizeof *sorted, by_size);
+    return 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]);
+}

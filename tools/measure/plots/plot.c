@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: MIT */
+#include "measure/plots/plot.h"
+
+#include <ctype.h>
+#include <math.h>
+
+enum { LEFT = 48, RIGHT = 14, TOP = 78, BOTTOM = 40, KEYS = 3 };
+
+void plot_open(FILE *file, int n_panels)
+{
+    const int columns = n_panels > 1 ? 2 : 1;
+    const int width = columns * PLOT_WIDTH;
+    const int height = (n_panels + columns - 1) / columns * PLOT_HEIGHT;
+
+    fprintf(file,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" "
+            "width=\"%d\" height=\"%d\" font-family=\"sans-serif\" "
+            "font-size=\"11\">\n<rect width=\"%d\" height=\"%d\" "
+            "fill=\"#fff\"/>\n",
+            width, height, width, height, width, height);
+}
+
+void plot_close(FILE *file)
+{
+    fputs("</svg>\n", file);
+}
+
+void plot_init(struct plot *p, FILE *file, int number, const char *title)
+{
+    *p = (struct plot){.file = file,
+                       .title = title,
+                       .x = {"", false, 1, 0, 1},
+                       .y = {"", false, 1, 0, 1},
+                       .left = number % 2 * PLOT_WIDTH,
+                       .top = number / 2 * PLOT_HEIGHT};
+}
+
+static bool is_there(const struct plot_axis *a, double v)
+{
+    return isfinite(v) && (!a->is_log || v > 0);
+}
+
+static void stretch(struct plot_axis *a, double v)
+{
+    if (a->lo > a->hi)
+        a->lo = a->hi = v;
+    a->lo = fmin(a->lo, v);
+    a->hi = fmax(a->hi, v);
+}
+
+void plot_stretch(struct plot *p, double x, double y)
+{
+    if (is_there(&p->x, x) && is_there(&p->y, y)) {
+        stretch(&p->x, x);
+        stretch(&p->y, y);
+    }
+}
+
+/* Returns how far along the axis V is, 0 to 1. */
+static double along(const struct plot_axis *a, double v)
+{
+    return a->is_log ? log(v / a->lo) / log(a->hi / a->lo)
+                     : (v - a->lo) / (a->hi - a->lo);
+}
+
+static double at_x(const struct plot *p, double x)
+{
+    return p->left + LEFT + along(&p->x, x) * (PLOT_WIDTH - LEFT - RIGHT);
+}
+
+static double at_y(const struct plot *p, double y)
+{
+    return p->top + PLOT_HEIGHT - BOTTOM -
+           along(&p->y, y) * (PLOT_HEIGHT - TOP - BOTTOM);
+}
+
+static void text(const struct plot *p, double x, double y, const char *anchor,
+                 const char *more, const char *words)
+{
+    if (p->pixels)
+        plot_pixels_words(p->pixels, x, y, anchor, words);
+    else
+        fprintf(p->file,
+                "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\"%s>%s</text>\n",
+                x, y, anchor, more, words);
+}
+
+static void stroke(const struct plot *p, double x0, double y0, double x1,
+                   double y1, const char *colour, double width)
+{
+    if (p->pixels)
+        plot_pixels_line(p->pixels, x0, y0, x1, y1, colour, width);
+    else
+        fprintf(p->file,
+                "<path d=\"M%.1f %.1fL%.1f %.1f\" fill=\"none\" stroke=\"%s\" "
+                "stroke-width=\"%.1f\"/>\n",
+                x0, y0, x1, y1, colour, width);
+}
+
+/* Widens the axis by a little room beside its outermost points. */
+static void widen(struct plot_axis *a)
+{
+    if (a->lo > a->hi)
+        a->lo = a->is_log ? 1 : 0, a->hi = 1;
+    if (a->is_log) {
+        const double room = fmax(0.05 * log(a->hi / a->lo), 0.05);
+
+        a->lo *= exp(-room);
+        a->hi *= exp(room);
+    } else {
+        const double room =
+            fmax(0.05 * (a->hi - a->lo), (a->least_span - (a->hi - a->lo)) / 2);
+
+        a->lo -= room;
+        a->hi += room;
+    }
+}
+
+static void tick(const struct plot *p, bool is_x, double v)
+{
+    const double bottom = p->top + PLOT_HEIGHT - BOTTOM;
+    const double left = p->left + LEFT;
+    char words[32];
+
+    snprintf(words, sizeof words, "%.6g", v);
+    if (is_x) {
+        stroke(p, at_x(p, v), p->top + TOP, at_x(p, v), bottom, "#ddd", 1);
+        text(p, at_x(p, v), bottom + 14, "middle", "", words);
+    } else {
+        stroke(p, left, at_y(p, v), p->left + PLOT_WIDTH - RIGHT, at_y(p, v),
+               "#ddd", 1);
+        text(p, left - 5, at_y(p, v) + 4, "end", "", words);
+    }
+}
+
+/* Draws the ticks of axis A: on a logarithmic one 1, 2 and 5 times powers of
+ * ten, more if it spans less than a factor of 12, and if it spans four decades
+ * or more some powers alone; else every 1, 2 or 5 times a power of ten. */
+static void ticks(const struct plot *p, const struct plot_axis *a, bool is_x)
+{
+    static const double mantissa[] = {1, 2, 5, 0.7, 1.5, 3};
+    const int every = a->is_log ? 1 + (int)log10(a->hi / a->lo) / 8 : 1;
+    const int n = a->hi / a->lo < 12 ? 6 : a->hi / a->lo < 1e4 ? 3 : 1;
+    double step = pow(10, floor(log10((a->hi - a->lo) / 4)));
+
+    if (a->is_log) {
+        for (int e = -24; e <= 9; e += every)
+            for (int k = 0; k < n; k++) {
+                const double v = mantissa[k] * pow(10, e);
+
+                if (v >= a->lo && v <= a->hi)
+                    tick(p, is_x, v);
+            }
+        return;
+    }
+    step *= (a->hi - a->lo) / step > 15  ? 5
+            : (a->hi - a->lo) / step > 7 ? 2
+                                         : 1;
+    for (int k = (int)ceil(a->lo / step); k * step <= a->hi; k++)
+        tick(p, is_x, k * step);
+}
+
+void plot_frame(struct plot *p)
+{
+    const double middle = p->top + (TOP + PLOT_HEIGHT - BOTTOM) / 2.0;
+    char turn[64];
+
+    widen(&p->x);
+    widen(&p->y);
+    ticks(p, &p->x, true);
+    ticks(p, &p->y, false);
+    text(p, p->left + LEFT, p->top + 15, "start", " font-weight=\"bold\"",
+         p->title);
+    text(p, p->left + (LEFT + PLOT_WIDTH - RIGHT) / 2.0,
+         p->top + PLOT_HEIGHT - 8, "middle", "", p->x.words);
+    if (p->pixels) { /* letters of pixels do not turn */
+        text(p, p->left + LEFT, p->top + TOP - 6, "start", "", p->y.words);
+        return;
+    }
+    snprintf(turn, sizeof turn, " transform=\"rotate(-90 %d %.1f)\"",
+             p->left + 13, middle);
+    text(p, p->left + 13, middle, "middle", turn, p->y.words);
+}
+
+static void mark(const struct plot *p, double x, double y, char kind,
+                 const char *colour, const char *tip)
+{
+    const bool hollow = isupper((unsigned char)kind);
+    const double r = kind == '.' ? 1.6 : 3.3;
+    char ink[64];
+
+    if (p->pixels) {
+        plot_pixels_mark(p->pixels, x, y, r, colour);
+        return;
+    }
+    snprintf(ink, sizeof ink,
+             hollow ? "fill=\"#fff\" stroke=\"%s\"" : "fill=\"%s\"", colour);
+    kind = (char)tolower((unsigned char)kind);
+    if (kind == 's')
+        fprintf(p->file,
+                "<rect x=\"%.1f\" y=\"%.1f\" width=\"6\" height=\"6\" %s>",
+                x - 3, y - 3, ink);
+    else if (kind == 'd')
+        fprintf(p->file,
+                "<path d=\"M%.1f %.1fl4.5 4.5l-4.5 4.5l-4.5 -4.5z\" %s>", x,
+                y - 4.5, ink);
+    else
+        fprintf(p->file, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" %s>", x, y,
+                r, ink);
+    if (tip)
+        fprintf(p->file, "<title>%s</title>", tip);
+    fputs(kind == 's'   ? "</rect>\n"
+          : kind == 'd' ? "</path>\n"
+                        : "</circle>\n",
+          p->file);
+}
+
+void plot_mark(const struct plot *p, double x, double y, char kind,
+               const char *colour, const char *tip)
+{
+    if (is_there(&p->x, x) && is_there(&p->y, y))
+        mark(p, at_x(p, x), at_y(p, y), kind, colour, tip);
+}
+
+void plot_line(const struct plot *p, double x0, double y0, double x1, double y1,
+               const char *colour, bool thick)
+{
+    if (is_there(&p->x, x0) && is_there(&p->x, x1) && is_there(&p->y, y0) &&
+        is_there(&p->y, y1))
+        stroke(p, at_x(p, x0), at_y(p, y0), at_x(p, x1), at_y(p, y1), colour,
+               thick ? 2 : 1);
+}
+
+void plot_words(const struct plot *p, double x, double y, const char *words)
+{
+    if (is_there(&p->x, x) && is_there(&p->y, y))
+        text(p, at_x(p, x) + 5, at_y(p, y) + 11, "start",
+             " font-size=\"9\" fill=\"#555\"", words);
+}
+
+void plot_key(struct plot *p, char kind, const char *colour, const char *words)
+{
+    const int column = p->n_keys % KEYS, row = p->n_keys / KEYS;
+    const double x =
+        p->left + LEFT + 6 + column * (PLOT_WIDTH - LEFT) / (double)KEYS;
+    const double y = p->top + 29 + 14 * row;
+
+    mark(p, x, y, kind, colour, NULL);
+    text(p, x + 8, y + 4, "start", "", words);
+    p->n_keys++;
+}
+
+const char *plot_colour(int i)
+{
+    static const char *const colours[] = {
+        "#1f6fb2", "#c2571a", "#3a8f3a", "#7a4fa3", "#b01e5a",
+        "#8a6d00", "#008a8a", "#555555", "#d07aa8", "#6a8f1f"};
+
+    return colours[i % 10];
+}

@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * PNG, also as a data: URI. Its pixels are stored, not compressed, so that no
+ * library is needed; pages, which have many, take the image plug-in where it
+ * is.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "measure/plots/plot.h"
+#include "formats/oiio.h"
+
+enum { BLOCK = 65535 }; /* most bytes of a stored block of deflate */
+
+struct bytes {
+    uint8_t *at;
+    size_t n;
+};
+
+static void put(struct bytes *b, const void *data, size_t n)
+{
+    memcpy(b->at + b->n, data, n);
+    b->n += n;
+}
+
+static void put_u32(struct bytes *b, uint32_t v)
+{
+    const uint8_t big[4] = {(uint8_t)(v >> 24), (uint8_t)(v >> 16),
+                            (uint8_t)(v >> 8), (uint8_t)v};
+
+    put(b, big, 4);
+}
+
+static uint32_t crc_of(const uint8_t *data, size_t n)
+{
+    uint32_t crc = UINT32_MAX;
+
+    for (size_t i = 0; i < n; i++) {
+        crc ^= data[i];
+        for (int k = 0; k < 8; k++)
+            crc = crc >> 1 ^ (crc & 1 ? UINT32_C(0xedb88320) : 0);
+    }
+    return ~crc;
+}
+
+/* Begins a chunk and returns its place; contents follow, then end_chunk(). */
+static size_t begin_chunk(struct bytes *b, const char *type)
+{
+    const size_t start = b->n;
+
+    put_u32(b, 0);
+    put(b, type, 4);
+    return start;
+}
+
+static void end_chunk(struct bytes *b, size_t start)
+{
+    const size_t length = b->n - start - 8, end = b->n;
+
+    b->n = start;
+    put_u32(b, (uint32_t)length);
+    b->n = end;
+    put_u32(b, crc_of(b->at + start + 4, length + 4));
+}
+
+/* Puts ROWS[N], each row after its filter byte 0, as zlib without
+ * compression. */
+static void put_pixels(struct bytes *b, const uint8_t *rows, size_t n)
+{
+    uint32_t a = 1, c = 0;
+
+    put(b, "\x78\x01", 2);
+    for (size_t at = 0; at < n; at += BLOCK) {
+        const size_t part = n - at < BLOCK ? n - at : BLOCK;
+        const uint8_t header[5] = {at + part == n, (uint8_t)part,
+                                   (uint8_t)(part >> 8), (uint8_t)~part,
+                                   (uint8_t)(~part >> 8)};
+
+        put(b, header, 5);
+        put(b, rows + at, part);
+    }
+    for (size_t i = 0; i < n; i++) {
+        a = (a + rows[i]) % 65521; /* NOLINT: N of them are there */
+        c = (c + a) % 65521;
+    }
+    put_u32(b, c << 16 | a);
+}
+
+static void base64(FILE *file, const uint8_t *data, size_t n)
+{
+    static const char digit[] =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+    for (size_t i = 0; i < n; i += 3) {
+        const uint32_t v = (uint32_t)data[i] << 16 |
+                           (uint32_t)(i + 1 < n ? data[i + 1] : 0) << 8 |
+                           (uint32_t)(i + 2 < n ? data[i + 2] : 0);
+
+        fputc(digit[v >> 18], file);
+        fputc(digit[v >> 12 & 63], file);
+        fputc(i + 1 < n ? digit[v >> 6 & 63] : '=', file);
+        fputc(i + 2 < n ? digit[v & 63] : '=', file);
+    }
+}
+
+/* Makes the file of a picture. Returns its bytes, to be freed, at NULL if
+ * memory is short. */
+static struct bytes png_of(const uint8_t *rgb, int width, int height)
+{
+    const size_t row = 3 * (size_t)width, n = (row + 1) * (size_t)height;
+    uint8_t *rows = malloc(n);
+    struct bytes b = {malloc(n + n / BLOCK * 5 + 100), 0};
+    size_t start;
+
+    if (!rows || !b.at) {
+        free(rows);
+        free(b.at);
+        return (struct bytes){NULL, 0};
+    }
+    for (int y = 0; y < height; y++) {
+        rows[(size_t)y * (row + 1)] = 0;
+        memcpy(rows + (size_t)y * (row + 1) + 1, rgb + (size_t)y * row, row);
+    }
+    put(&b, "\x89PNG\r\n\x1a\n", 8);
+    start = begin_chunk(&b, "IHDR");
+    put_u32(&b, (uint32_t)width);
+    put_u32(&b, (uint32_t)height);
+    put(&b, "\x08\x02\0\0", 5); /* 8 bits, RGB, and the string's own end */
+    end_chunk(&b, start);
+    start = begin_chunk(&b, "IDAT");
+    put_pixels(&b, rows, n);
+    end_chunk(&b, start);
+    end_chunk(&b, begin_chunk(&b, "IEND"));
+    free(rows);
+    return b;
+}
+
+/* Makes the file of a picture by the image plug-in, compressed; at NULL if it
+ * is not there, or cannot. */
+static struct bytes small_png_of(const uint8_t *rgb, int width, int height)
+{
+    const size_t row = 3 * (size_t)width, n = row * (size_t)height;
+    struct glint_oiio_pixels pixels = {.width = width, .height = height};
+    const struct glint_oiio *oiio;
+    struct glint_error error;
+    void *data = NULL;
+    size_t bytes = 0;
+
+    if (glint_oiio_load(&oiio, &error) != GLINT_OK)
+        return (struct bytes){NULL, 0};
+    pixels.rgb = malloc(n);
+    if (pixels.rgb) {
+        memcpy(pixels.rgb, rgb, n);
+        if (oiio->encode(&data, &bytes, "x.png", &pixels, (ptrdiff_t)row,
+                         &error) != GLINT_OK)
+            data = NULL;
+    }
+    free(pixels.rgb);
+    return (struct bytes){data, bytes};
+}
+
+void html_png(FILE *file, const uint8_t *rgb, int width, int height)
+{
+    const struct bytes stored = png_of(rgb, width, height);
+    const struct bytes small = small_png_of(rgb, width, height);
+    const bool is_small = small.at && (!stored.at || small.n < stored.n);
+    const struct bytes b = is_small ? small : stored;
+
+    if (b.at) {
+        fputs("data:image/png;base64,", file);
+        base64(file, b.at, b.n);
+    }
+    free(stored.at);
+    free(small.at);
+}
+
+bool plot_png(FILE *file, const struct plot_pixels *pixels)
+{
+    const struct bytes b = png_of(pixels->image.plane[0], pixels->image.width,
+                                  pixels->image.height);
+
+    if (!b.at)
+        return false;
+    fwrite(b.at, 1, b.n, file);
+    free(b.at);
+    return true;
+}

@@ -1,0 +1,348 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "linux/instructions.h"
+#include "glint/measure.h"
+#include "measure/sweep.h"
+#include "options/timed_text.h"
+
+/* Milliseconds spent on a point, after which it gets no further rounds. */
+#define MAX_POINT_MS 4000.0
+
+enum { MAX_OPEN = 12, PICTURE_WIDTH = 320 };
+
+/* A point being measured. */
+struct run {
+    struct sweep_point *point;
+    const struct settings *settings;
+    struct glint_engine *engine;
+    struct glint_engine_report report;
+    double ms[SWEEP_ROUNDS];
+    int n;
+    double spent_ms;
+};
+
+/* All that one case is measured with. */
+struct bay {
+    struct sweep *s;
+    const struct sweep_case *c;
+    struct settings open[MAX_OPEN];
+    int n_open;
+    struct run *run;
+    struct canvas canvas;
+    struct glint_lamp *lamp;
+    double exposure;
+    struct glint_float_image exact; /* rgb is NULL before it is drawn. */
+};
+
+/* ------------------------------------------------------------------ making */
+
+static bool is_same(const struct settings *a, const struct settings *b)
+{
+    return a->tolerance == b->tolerance && a->n_wavelengths == b->n_wavelengths;
+}
+
+/* Returns settings that are opened for SET, and shared by all sets that need
+ * the same to be opened. Returns NULL after reporting a failure, with its exit
+ * code in *CODE. */
+static const struct settings *
+settings_for(struct bay *b, const struct sweep_setting *set, int *code)
+{
+    struct settings asked = b->s->base;
+
+    sweep_set(&asked, set, true);
+    for (int i = 0; i < b->n_open; i++)
+        if (is_same(&b->open[i], &asked))
+            return &b->open[i];
+    if (b->n_open == MAX_OPEN) {
+        *code = tool_usage(b->s->tool, "more than %d scenes", MAX_OPEN);
+        return NULL;
+    }
+    b->open[b->n_open] = asked;
+    *code = settings_open(b->s->tool, &b->open[b->n_open++],
+                          b->s->lens[b->c->lens]);
+    return *code == EXIT_OK ? &b->open[b->n_open - 1] : NULL;
+}
+
+static int make_run(struct bay *b, struct run *r)
+{
+    struct glint_engine_config cfg;
+    struct glint_error error = {""};
+    struct settings asked;
+    enum glint_status status;
+    int code = EXIT_OK;
+
+    r->settings = settings_for(b, &r->point->set, &code);
+    if (!r->settings)
+        return code;
+    asked = *r->settings;
+    sweep_set(&asked, &r->point->set, false);
+    canvas_engine(b->s->tool, r->settings, &asked, b->c->width, b->c->height,
+                  &cfg);
+    cfg.workers = b->s->tool->n_threads ? b->s->tool->workers : b->s->one;
+    status = glint_engine_create(&r->engine, &cfg, &error);
+    r->point->metric[SWEEP_MODEL_BYTES] = (double)r->settings->model.bytes;
+    return status == GLINT_OK ? EXIT_OK
+                              : tool_fail(b->s->tool, status, error.text);
+}
+
+static int make_bay(struct bay *b)
+{
+    const struct sweep_case *c = b->c;
+    int code = EXIT_OK;
+
+    b->run = calloc((size_t)c->n, sizeof *b->run);
+    b->lamp = calloc((size_t)c->n_lamps, sizeof *b->lamp);
+    b->exact = (struct glint_float_image){c->width, c->height, NULL};
+    if (!b->run || !b->lamp ||
+        canvas_init(&b->canvas, GLINT_YUYV, c->width, c->height) != GLINT_OK)
+        return tool_fail(b->s->tool, GLINT_E_MEMORY, NULL);
+    canvas_lamps(b->lamp, c->n_lamps, c->angle);
+    for (int i = 0; i < c->n && code == EXIT_OK; i++) {
+        b->run[i].point = &b->s->point[c->first + i];
+        code = make_run(b, &b->run[i]);
+    }
+    if (code == EXIT_OK &&
+        canvas_exposure(b->run[0].engine, b->lamp, c->n_lamps, &b->exposure) !=
+            GLINT_OK)
+        code = tool_fail(b->s->tool, GLINT_E_MEMORY, NULL);
+    return code;
+}
+
+static void free_bay(struct bay *b)
+{
+    for (int i = 0; b->run && i < b->c->n; i++)
+        glint_engine_destroy(b->run[i].engine);
+    for (int i = 0; i < b->n_open; i++)
+        settings_close(&b->open[i]);
+    canvas_finish(&b->canvas);
+    free(b->run);
+    free(b->lamp);
+    free(b->exact.rgb);
+}
+
+/* ------------------------------------------------------------------ timing */
+
+enum glint_status sweep_time(const struct sweep *s, struct glint_engine *engine,
+                             const struct glint_lamp *lamp, int n,
+                             double exposure, const struct glint_image *image,
+                             struct glint_engine_report *report, double *ms,
+                             double *instructions)
+{
+    const uint64_t n0 =
+        s->counter >= 0 ? glint_instructions_read(s->counter) : 0;
+    const double t0 = tool_seconds();
+    const enum glint_status status =
+        sweep_frame(engine, lamp, n, exposure, image, report);
+
+    *ms = 1e3 * (tool_seconds() - t0);
+    if (s->counter >= 0)
+        *instructions = (double)(glint_instructions_read(s->counter) - n0);
+    return status;
+}
+
+/* Draws R's frame and notes time and instructions. In ROUND -1 it is only
+ * drawn, so that its memory is taken. */
+static enum glint_status draw(struct bay *b, struct run *r, int round)
+{
+    enum glint_status status;
+    double ms;
+
+    canvas_fresh(&b->canvas);
+    if (round < 0)
+        return glint_engine_draw_at(r->engine, b->lamp, b->c->n_lamps,
+                                    b->exposure, &b->canvas.image, &r->report);
+    if (b->s->count_only)
+        printf("%d\n", (int)(r->point - b->s->point));
+    status = sweep_time(b->s, r->engine, b->lamp, b->c->n_lamps, b->exposure,
+                        &b->canvas.image, &r->report, &ms,
+                        &r->point->metric[SWEEP_INSTRUCTIONS]);
+    r->ms[r->n++] = ms;
+    r->spent_ms += ms;
+    return status;
+}
+
+/* Times all points, in turns with the memory floor. Progress goes from FROM to
+ * TO meanwhile. */
+static enum glint_status time_all(struct bay *b, struct tool_progress *progress,
+                                  double from, double to)
+{
+    const int n = b->s->count_only ? 1 : b->s->rounds;
+    enum glint_status status = GLINT_OK;
+
+    for (int round = -1; round < n && status == GLINT_OK; round++) {
+        canvas_time_floor(&b->canvas, round < 0 ? 0 : round);
+        for (int i = 0; i < b->c->n && status == GLINT_OK; i++)
+            if (round < 1 || b->run[i].spent_ms < MAX_POINT_MS)
+                status = draw(b, &b->run[i], round);
+        tool_progress_show(progress,
+                           from + (to - from) * (round + 2) / (n + 1));
+    }
+    for (int i = 0; i < b->c->n && status == GLINT_OK; i++) {
+        const struct run *const r = &b->run[i];
+        double *const m = b->s->point[b->c->first + i].metric;
+
+        m[SWEEP_MS] = canvas_median(r->ms, r->n);
+        m[SWEEP_FLOOR_MS] = canvas_median(b->canvas.floor_ms, n);
+        m[SWEEP_RATIO] = m[SWEEP_MS] / m[SWEEP_FLOOR_MS];
+        m[SWEEP_ARENA_BYTES] = (double)r->report.peak_bytes;
+        m[SWEEP_GHOSTS] = r->report.ghosts;
+        m[SWEEP_BUNDLES] = r->report.stats.bundles;
+        m[SWEEP_EDGES] = r->report.stats.primitives;
+        m[SWEEP_TILES] = r->report.tiles;
+    }
+    return status;
+}
+
+/* ---------------------------------------------------------------- pictures */
+
+static double sum_of(const struct glint_float_image *image)
+{
+    double sum = 0;
+
+    for (size_t i = 0; i < 3 * (size_t)image->width * (size_t)image->height;
+         i++)
+        sum += (double)image->rgb[i];
+    return sum;
+}
+
+/* Sets flux_error of R: its light, planned as for codes but drawn linear, over
+ * that of the exact picture, less 1. */
+static enum glint_status measure_flux(struct bay *b, struct run *r)
+{
+    const size_t n = 3 * (size_t)b->c->width * (size_t)b->c->height;
+    struct glint_float_image layer = {b->c->width, b->c->height,
+                                      malloc(n * sizeof(float))};
+    struct glint_engine_report report;
+    enum glint_status status = GLINT_E_MEMORY;
+
+    if (layer.rgb)
+        status = glint_engine_render(
+            r->engine, b->lamp, b->c->n_lamps, b->exposure,
+            GLINT_ENGINE_ALL | GLINT_ENGINE_CODES, layer.rgb, &report);
+    if (status == GLINT_OK)
+        r->point->metric[SWEEP_FLUX_ERROR] =
+            sum_of(&layer) / (b->exposure * sum_of(&b->exact)) - 1;
+    free(layer.rgb);
+    return status;
+}
+
+/* Sets TO, WIDTH x HEIGHT pixels, to the means of BY x BY pixels of CODES,
+ * whose rows are STRIDE bytes apart. */
+static void shrink(const uint8_t *codes, int stride, int by, uint8_t *to,
+                   int width, int height)
+{
+    for (int y = 0; y < height; y++)
+        for (int i = 0; i < 3 * width; i++) {
+            const int x = i / 3 * by * 3 + i % 3;
+            int sum = by * by / 2;
+
+            for (int k = 0; k < by * by; k++)
+                sum += codes[(y * by + k / by) * stride + x + k % by * 3];
+            to[y * 3 * width + i] = (uint8_t)(sum / (by * by));
+        }
+}
+
+/* Keeps CODES, the picture of point POINT of the case, shrunk, for the page; of
+ * point -1 it is the exact picture. Returns false without memory. */
+static bool keep_picture(struct bay *b, int point, const uint8_t *codes)
+{
+    struct sweep *const s = b->s;
+    const int by =
+        b->c->width < 2 * PICTURE_WIDTH ? 1 : b->c->width / PICTURE_WIDTH;
+    struct sweep_picture *const all =
+        text_grow(s->picture, s->n_pictures, sizeof *all);
+    struct sweep_picture *p;
+
+    if (!all)
+        return false;
+    s->picture = all;
+    p = all + s->n_pictures;
+    *p = (struct sweep_picture){.of = (int)(b->c - s->scase),
+                                .point = point,
+                                .width = b->c->width / by,
+                                .height = b->c->height / by};
+    p->rgb = malloc(3 * (size_t)p->width * (size_t)p->height);
+    if (!p->rgb)
+        return false;
+    s->n_pictures++;
+    shrink(codes, 3 * b->c->width, by, p->rgb, p->width, p->height);
+    return true;
+}
+
+/* Measures R against EXACT_CODES. CODES is room for its own codes. */
+static enum glint_status measure_point(struct bay *b, struct run *r,
+                                       const uint8_t *exact_codes,
+                                       double exposure, uint8_t *codes)
+{
+    struct glint_engine_report report;
+    struct glint_measure m;
+    const enum glint_status status = canvas_codes(
+        r->engine, b->lamp, b->c->n_lamps, exposure, codes, &report);
+
+    if (status != GLINT_OK)
+        return status;
+    glint_measure_codes(exact_codes, codes, b->c->width, b->c->height, &m);
+    r->point->metric[SWEEP_PSNR_DB] = m.psnr_db;
+    r->point->metric[SWEEP_SSIM] = m.ssim;
+    r->point->metric[SWEEP_P99] = m.p99;
+    if (sweep_named(r->point) >= 0 &&
+        !keep_picture(b, (int)(r->point - b->s->point), codes))
+        return GLINT_E_MEMORY;
+    return measure_flux(b, r);
+}
+
+static enum glint_status measure_all(struct bay *b,
+                                     struct tool_progress *progress,
+                                     double from, double to)
+{
+    const size_t n = 3 * (size_t)b->c->width * (size_t)b->c->height;
+    enum glint_status status = GLINT_E_MEMORY;
+    uint8_t *exact_codes = NULL, *codes = malloc(n);
+
+    b->exact.rgb = malloc(n * sizeof(float));
+    if (b->exact.rgb && codes)
+        status = canvas_exact(b->s->tool, &b->open[0], b->lamp, b->c->n_lamps,
+                              b->s->grid, &b->exact);
+    if (status == GLINT_OK) {
+        const double exposure = glint_measure_exposure(&b->exact);
+
+        exact_codes = glint_measure_encode(&b->exact, exposure);
+        if (!exact_codes || !keep_picture(b, -1, exact_codes))
+            status = GLINT_E_MEMORY;
+        for (int i = 0; i < b->c->n && status == GLINT_OK; i++) {
+            status = measure_point(b, &b->run[i], exact_codes, exposure, codes);
+            tool_progress_show(progress,
+                               from + (to - from) * (i + 1) / b->c->n);
+        }
+    }
+    free(exact_codes);
+    free(codes);
+    return status;
+}
+
+int sweep_measure(struct sweep *s, int c, struct tool_progress *progress)
+{
+    const double from = (double)s->scase[c].first / s->n_points;
+    const double to = from + (double)s->scase[c].n / s->n_points;
+    struct bay *b = calloc(1, sizeof *b);
+    enum glint_status status = GLINT_OK;
+    int code;
+
+    if (!b)
+        return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
+    b->s = s;
+    b->c = &s->scase[c];
+    code = make_bay(b);
+    if (code == EXIT_OK)
+        status = time_all(b, progress, from, (from + to) / 2);
+    if (code == EXIT_OK && status == GLINT_OK && !s->count_only)
+        status = measure_all(b, progress, (from + to) / 2, to);
+    if (code == EXIT_OK && status != GLINT_OK)
+        code = tool_fail(s->tool, status, NULL);
+    free_bay(b);
+    free(b);
+    return code;
+}

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The page of a sweep: tables, plots and pictures in one file.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "measure/plots/plot.h"
+#include "measure/sweep.h"
+
+static const char head[] =
+    "<p>The same frames with each dial turned by itself (coloured), with some "
+    "of them together (grey), and along <code>--quality</code> (diamonds), "
+    "against the exact picture: every ray in double, each cell clipped "
+    "exactly. PSNR, SSIM and the 99th percentile of differences are of sRGB "
+    "codes, 8 bits, exposed so that the exact picture's 99.9th percentile is "
+    "white; flux is compared before it becomes codes. The line is the front: "
+    "nothing that was measured is both cheaper and better, among what keeps "
+    "its flux within 2 percent; the rest is not shown in fronts. Marks say "
+    "what they are under the pointer.</p>\n";
+
+/* ------------------------------------------------------------------- table */
+
+static void table_of_names(const struct sweep *s, FILE *file)
+{
+    fputs("<h2>Named qualities</h2>\n<table>", file);
+    html_row(file, "th",
+             "lens|size|quality|%s|PSNR dB|SSIM|p99 codes|flux %%|arena KiB|"
+             "model KiB",
+             s->by_instructions ? "million instructions" : "times floor");
+    for (int i = 0; i < s->n_points; i++) {
+        const struct sweep_point *p = &s->point[i];
+        const struct sweep_case *c = &s->scase[p->of];
+        const double *m = p->metric;
+        const int name = sweep_named(p);
+
+        if (name >= 0)
+            html_row(file, "td",
+                     "%s|%dx%d, %d|%s|%.1f|%.1f|%.4f|%g|%s%+.2f|%.0f|%.0f",
+                     s->lens[c->lens], c->width, c->height, c->n_lamps,
+                     glint_quality_name[name], sweep_cost(s, p),
+                     m[SWEEP_PSNR_DB], m[SWEEP_SSIM], m[SWEEP_P99],
+                     fabs(m[SWEEP_FLUX_ERROR]) > MAX_FLUX_ERROR ? "!" : "",
+                     100 * m[SWEEP_FLUX_ERROR],
+                     floor(m[SWEEP_ARENA_BYTES] / 1024),
+                     floor(m[SWEEP_MODEL_BYTES] / 1024));
+    }
+    fputs("</table>\n", file);
+}
+
+/* Prints the front of the means, which --quality should follow. */
+static void table_of_front(const struct sweep *s, FILE *file)
+{
+    int n;
+    struct sweep_mean *const mean = sweep_means(s, &n);
+
+    fputs("<h2>The front of all lenses together</h2>\n<table>", file);
+    html_row(file, "th",
+             "setting|cost over default|PSNR dB, mean|least|flux %%, worst");
+    for (int i = 0; i < n; i++) {
+        char words[160];
+
+        if (!mean[i].front)
+            continue;
+        sweep_words(mean[i].set, words);
+        html_row(file, "td", "%s|%.3f|%.1f|%.1f|%.2f", words, mean[i].cost,
+                 mean[i].psnr_db, mean[i].least_db, 100 * mean[i].flux_error);
+    }
+    fputs("</table>\n", file);
+    free(mean);
+}
+
+/* ---------------------------------------------------------------- pictures */
+
+static void figure(const struct sweep *s, FILE *file,
+                   const struct sweep_picture *q, const uint8_t *rgb,
+                   const char *what)
+{
+    const struct sweep_point *p = q->point >= 0 ? &s->point[q->point] : NULL;
+    char words[160] = "exact";
+
+    if (p)
+        sweep_words(&p->set, words);
+    fputs("<figure><img alt=\"\" src=\"", file);
+    html_png(file, rgb, q->width, q->height);
+    fprintf(file, "\"><figcaption>%s%s", words, what);
+    if (p)
+        fprintf(file, "<br>%.3g, %.1f dB, flux %+.2f %%", sweep_cost(s, p),
+                p->metric[SWEEP_PSNR_DB], 100 * p->metric[SWEEP_FLUX_ERROR]);
+    fputs("</figcaption></figure>\n", file);
+}
+
+/* Writes 16 times the difference of Q from EXACT, about grey. */
+static void difference(const struct sweep *s, FILE *file,
+                       const struct sweep_picture *q,
+                       const struct sweep_picture *exact)
+{
+    const size_t n = 3 * (size_t)q->width * (size_t)q->height;
+    uint8_t *const far = malloc(n);
+
+    for (size_t i = 0; far && exact && i < n; i++) {
+        const int d = 128 + 16 * (q->rgb[i] - exact->rgb[i]);
+
+        far[i] = (uint8_t)(d < 0 ? 0 : d > 255 ? 255 : d);
+    }
+    if (far)
+        figure(s, file, q, far, ", difference");
+    free(far);
+}
+
+static void strips(const struct sweep *s, FILE *file)
+{
+    const struct sweep_picture *exact = NULL;
+
+    fputs("<h2>Pictures</h2>\n<p>Each beside its difference from the exact "
+          "one, 16 times, about grey.</p>\n",
+          file);
+    for (int i = 0; i < s->n_pictures; i++) {
+        const struct sweep_picture *q = &s->picture[i];
+        const struct sweep_case *c = &s->scase[q->of];
+
+        if (q->point < 0) {
+            exact = q;
+            fprintf(file,
+                    "<h3>%s, %dx%d, %d light%s, %g degrees off the axis</h3>\n",
+                    s->lens[c->lens], c->width, c->height, c->n_lamps,
+                    c->n_lamps > 1 ? "s" : "", c->angle);
+        }
+        fputs("<div>", file); /* two side by side */
+        figure(s, file, q, q->rgb, "");
+        if (q != exact)
+            difference(s, file, q, exact);
+        fputs("</div>\n", file);
+    }
+}
+
+void sweep_page(const struct sweep *s, FILE *file)
+{
+    html_begin(file, "What accuracy costs",
+               "figcaption{max-width:320px}img{width:320px}");
+    fputs(head, file);
+    table_of_names(s, file);
+    fputs("<h2>Error against time</h2>\n", file);
+    sweep_svg_front(s, file);
+    table_of_front(s, file);
+    fputs("<h2>Each dial by itself</h2>\n", file);
+    sweep_svg_dials(s, file);
+    fputs("<h2>Stars</h2>\n", file);
+    sweep_star_svg(s, file);
+    strips(s, file);
+    html_end(file);
+}
