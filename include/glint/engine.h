@@ -176,9 +176,11 @@ struct glint_engine_cache {
     void *ctx;
 };
 
+/* Members are added at its end alone: a program made for an older library has
+ * the defaults of those that it does not know. */
 struct glint_engine_config {
-    size_t size;       /* bytes of this struct, set by glint_engine_defaults():
-                          an engine of another version refuses it */
+    size_t size;       /* bytes of this struct in the program, set by
+                          glint_engine_defaults() */
     int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
     const struct glint_lens *model; /* kept; the caller sets it */
     struct glint_workers *workers;  /* kept; NULL: serial. Changes no output */
@@ -206,11 +208,19 @@ struct glint_engine_config {
     const struct glint_engine_cache *cache; /* NULL: nothing is kept */
 };
 
+/* The first SIZE bytes of what glint_engine_defaults() sets, which programs
+ * call. */
+void glint_engine_defaults_sized(struct glint_engine_config *cfg, size_t size,
+                                 int width, int height);
+
 /* Sets CFG to the values that glint overlay draws with, but for straight
  * blades: its own have a roundness of 0.2, which glint_engine_iris() gives. The
  * caller still sets the model and the workers. */
-void glint_engine_defaults(struct glint_engine_config *cfg, int width,
-                           int height);
+static inline void glint_engine_defaults(struct glint_engine_config *cfg,
+                                         int width, int height)
+{
+    glint_engine_defaults_sized(cfg, sizeof *cfg, width, height);
+}
 
 /* Sets what OPTIONS, of glint/options.h, say of light, drawing, search,
  * f-number, sensor and memory. All of light and drawing is set, also what no
@@ -274,8 +284,8 @@ struct glint_engine_report {
 struct glint_engine; /* opaque */
 
 /* Makes an engine; CFG is copied. Draws small pictures to measure how bright
- * flares of the lens are. With ERROR: GLINT_E_ARGUMENT, GLINT_E_LENS,
- * GLINT_E_MEMORY. */
+ * flares of the lens are. With ERROR: GLINT_E_ARGUMENT, also if CFG is of a
+ * newer library than this one; GLINT_E_LENS, GLINT_E_MEMORY. */
 enum glint_status glint_engine_create(struct glint_engine **engine,
                                       const struct glint_engine_config *cfg,
                                       struct glint_error *error);

@@ -2,6 +2,7 @@
  *
  * Makes engines, and changes them between pictures. */
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,11 +10,14 @@
 #include "engine/engine_parts.h"
 #include "glint/kernels.h"
 
-void glint_engine_defaults(struct glint_engine_config *cfg, int width,
-                           int height)
+/* Size of the configuration of the first programs. */
+#define FIRST_SIZE offsetof(struct glint_engine_config, cache)
+
+void glint_engine_defaults_sized(struct glint_engine_config *cfg, size_t size,
+                                 int width, int height)
 {
-    *cfg = (struct glint_engine_config){
-        .size = sizeof *cfg,
+    const struct glint_engine_config all = {
+        .size = size,
         .width = width,
         .height = height,
         .sets = glint_sets_here(),
@@ -28,6 +32,8 @@ void glint_engine_defaults(struct glint_engine_config *cfg, int width,
                     .tile_log2 = 6,
                     .parts = GLINT_ENGINE_ALL,
                     .only_ghost = -1}};
+
+    memcpy(cfg, &all, size < sizeof all ? size : sizeof all);
 }
 
 /* Returns a text that says what is out of range in C, or NULL. */
@@ -37,8 +43,6 @@ static const char *check(const struct glint_engine_config *c)
     const struct glint_engine_search *s = &c->search;
     const struct glint_engine_drawing *d = &c->drawing;
 
-    if (c->size != sizeof *c)
-        return "the program is of another version than the library";
     if (c->width < 1 || c->width > GLINT_MAX_SIDE || c->height < 1 ||
         c->height > GLINT_MAX_SIDE)
         return "pictures have 1 to 32768 pixels a side";
@@ -251,11 +255,21 @@ enum glint_status glint_engine_create(struct glint_engine **engine,
                                       const struct glint_engine_config *cfg,
                                       struct glint_error *error)
 {
-    const char *const wrong = check(cfg);
+    struct glint_engine_config whole;
+    const char *wrong;
     struct glint_engine *e;
     enum glint_status status;
 
     *engine = NULL;
+    if (cfg->size < FIRST_SIZE || cfg->size > sizeof whole) {
+        snprintf(error->text, sizeof error->text,
+                 "the program needs another version of the library, or its "
+                 "configuration is not of glint_engine_defaults()");
+        return GLINT_E_ARGUMENT;
+    }
+    glint_engine_defaults(&whole, cfg->width, cfg->height);
+    memcpy(&whole, cfg, cfg->size);
+    wrong = check(&whole);
     if (wrong) {
         snprintf(error->text, sizeof error->text, "%s", wrong);
         return GLINT_E_ARGUMENT;
@@ -265,7 +279,7 @@ enum glint_status glint_engine_create(struct glint_engine **engine,
         snprintf(error->text, sizeof error->text, "no memory");
         return GLINT_E_MEMORY;
     }
-    status = make(e, cfg, error);
+    status = make(e, &whole, error);
     if (status == GLINT_OK)
         *engine = e;
     else

@@ -321,14 +321,14 @@ static void test_refuses(void **state)
                      GLINT_E_ARGUMENT);
     glint_engine_destroy(engine);
     glint_engine_destroy(NULL);
-    for (int k = 0; k < 11; k++) {
+    for (int k = 0; k < 12; k++) {
         glint_engine_defaults(&cfg, k == 0 ? 0 : WIDTH, HEIGHT);
         cfg.model = k == 1 ? NULL : &settings.model.lens;
         cfg.search.max_found = k == 2 ? 1025 : cfg.search.max_found;
         cfg.light.strength = k == 3 ? -1 : cfg.light.strength;
         cfg.search.threshold_ev[1] = k == 4 ? 0 : cfg.search.threshold_ev[1];
         cfg.camera.n_blades = k == 5 ? 2 : cfg.camera.n_blades;
-        cfg.size -= k == 6;
+        cfg.size = k == 6 ? 8 : k == 11 ? cfg.size + 1 : cfg.size;
         cfg.drawing.tile_log2 = k == 7 ? 2 : cfg.drawing.tile_log2;
         cfg.drawing.only_ghost = k == 8 ? 1000 : -1;
         cfg.light.gain = k == 9 ? (double)INFINITY : 1;
@@ -339,6 +339,24 @@ static void test_refuses(void **state)
         assert_null(engine);
         assert_true(*error.text != '\0');
     }
+}
+
+/* A program of an older library, whose configuration ends earlier, must have
+ * the defaults of what follows, whatever lies there. */
+static void test_older_program(void **state)
+{
+    struct glint_engine *engine = NULL;
+    struct glint_engine_config cfg;
+    struct glint_error error;
+    const size_t bytes = offsetof(struct glint_engine_config, cache);
+
+    (void)state;
+    memset(&cfg, 0x55, sizeof cfg);
+    glint_engine_defaults_sized(&cfg, bytes, WIDTH, HEIGHT);
+    assert_int_equal(((unsigned char *)&cfg)[bytes], 0x55);
+    cfg.model = &settings.model.lens;
+    assert_int_equal(glint_engine_create(&engine, &cfg, &error), GLINT_OK);
+    glint_engine_destroy(engine);
 }
 
 /* Each number of the table accepts its limits alone, and counts as given only
@@ -434,12 +452,17 @@ static void test_option_values(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_draws),   cmocka_unit_test(test_arena),
-        cmocka_unit_test(test_follows), cmocka_unit_test(test_stop),
-        cmocka_unit_test(test_given),   cmocka_unit_test(test_refuses),
-        cmocka_unit_test(test_layers),  cmocka_unit_test(test_refuses_pictures),
-        cmocka_unit_test(test_options), cmocka_unit_test(test_option_values)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_draws),
+                                       cmocka_unit_test(test_arena),
+                                       cmocka_unit_test(test_follows),
+                                       cmocka_unit_test(test_stop),
+                                       cmocka_unit_test(test_given),
+                                       cmocka_unit_test(test_refuses),
+                                       cmocka_unit_test(test_older_program),
+                                       cmocka_unit_test(test_layers),
+                                       cmocka_unit_test(test_refuses_pictures),
+                                       cmocka_unit_test(test_options),
+                                       cmocka_unit_test(test_option_values)};
 
     return cmocka_run_group_tests(tests, opened_heliar, opened_close);
 }
