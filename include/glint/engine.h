@@ -295,6 +295,18 @@ void glint_engine_destroy(struct glint_engine *engine);
 /* Returns where the pictures lie on the sensor. */
 const struct glint_view *glint_engine_view(const struct glint_engine *engine);
 
+/* Set option NAME of glint/options.h for the pictures to come, to a number or
+ * to a text as on a command line: strength or exposure, of which the last one
+ * counts, gain, starburst, f-number as glint_engine_stop(). GLINT_E_ARGUMENT
+ * with ERROR: there is no such option, it does not accept the value, or it is
+ * fixed when an engine is made; the engine stays as it is. GLINT_E_MEMORY. */
+enum glint_status glint_engine_set(struct glint_engine *engine,
+                                   const char *name, double value,
+                                   struct glint_error *error);
+enum glint_status glint_engine_set_text(struct glint_engine *engine,
+                                        const char *name, const char *text,
+                                        struct glint_error *error);
+
 /* Sets the light of the pictures to come. */
 void glint_engine_set_light(struct glint_engine *engine,
                             const struct glint_engine_light *light);

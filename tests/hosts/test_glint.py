@@ -174,6 +174,17 @@ class Package(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "read-only"):
             glint.overlay(picture, LENS)
 
+    def test_options_set_by_name(self):
+        made, turned = self.photo.copy(), self.photo.copy()
+        glint.Engine(LENS, 256, 384, f_number=16, exposure=2, gain=2).overlay(made)
+        engine = glint.Engine(LENS, 256, 384)
+        engine.set(f_number=16, exposure=2, gain=2)
+        engine.overlay(turned)
+        self.assertTrue((made == turned).all())
+        for text, options in [("fixed", {"veil": 0.1}), ("no option", {"strenght": 1}), ("gain is a factor, from 0", {"gain": -1})]:
+            with self.subTest(text=text), self.assertRaisesRegex(ValueError, text):
+                engine.set(**options)
+
     def test_keywords_are_the_options(self):
         with self.assertRaisesRegex(TypeError, "keyword argument strenght"):
             glint.overlay(self.photo, LENS, strenght=1)

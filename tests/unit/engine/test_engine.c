@@ -359,6 +359,39 @@ static void test_older_program(void **state)
     glint_engine_destroy(engine);
 }
 
+/* Options set by name must draw what the same configuration draws, and those
+ * that are fixed, unknown or out of range must change nothing. */
+static void test_set_by_name(void **state)
+{
+    static uint8_t set[BYTES], made[BYTES];
+    const char *const bad[] = {"veil", "strengt", "gain"};
+    struct glint_engine_config cfg;
+    struct glint_engine_report report;
+    struct glint_engine *engine = make(NULL, 0);
+    struct glint_error error;
+
+    (void)state;
+    assert_int_equal(glint_engine_set(engine, "exposure", 3, &error), GLINT_OK);
+    assert_int_equal(glint_engine_set_text(engine, "gain", "2", &error),
+                     GLINT_OK);
+    for (int k = 0; k < 3; k++) {
+        assert_int_equal(glint_engine_set(engine, bad[k], -1, &error),
+                         GLINT_E_ARGUMENT);
+        assert_true(error.text[0] != '\0');
+    }
+    run(engine, 0, set, &report);
+    glint_engine_destroy(engine);
+    glint_engine_defaults(&cfg, WIDTH, HEIGHT);
+    cfg.model = &settings.model.lens;
+    cfg.light.by_hand = 1;
+    cfg.light.exposure_ev = 3;
+    cfg.light.gain = 2;
+    assert_int_equal(glint_engine_create(&engine, &cfg, &error), GLINT_OK);
+    run(engine, 0, made, &report);
+    glint_engine_destroy(engine);
+    assert_memory_equal(set, made, BYTES);
+}
+
 /* Each number of the table accepts its limits alone, and counts as given only
  * once it was set. Of strength and exposure, and of quality and error, the one
  * that was set last counts. */
@@ -459,6 +492,7 @@ int main(void)
                                        cmocka_unit_test(test_given),
                                        cmocka_unit_test(test_refuses),
                                        cmocka_unit_test(test_older_program),
+                                       cmocka_unit_test(test_set_by_name),
                                        cmocka_unit_test(test_layers),
                                        cmocka_unit_test(test_refuses_pictures),
                                        cmocka_unit_test(test_options),

@@ -90,6 +90,7 @@ enum glint_status glint_engine_iris(struct glint_engine *engine, int n_blades, d
     struct glint_error *error);
 int glint_engine_find(struct glint_engine *engine, const struct glint_image *image, int32_t elapsed_us, struct glint_engine_lamp *lamps,
     int max);
+enum glint_status glint_engine_set(struct glint_engine *engine, const char *name, double value, struct glint_error *error);
 enum glint_status glint_engine_stop(struct glint_engine *engine, double f_number, struct glint_error *error);
 void glint_engine_elapsed(struct glint_engine *engine, int32_t elapsed_us);
 enum glint_status glint_engine_draw(struct glint_engine *engine, struct glint_engine_lamp *lamps, int n, const struct glint_image *image,

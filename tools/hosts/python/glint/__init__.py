@@ -267,6 +267,13 @@ class Engine:
         self.height, self.width = height, width
         self._lamps = _ffi.new("struct glint_engine_lamp[]", MOST_LAMPS)
 
+    def set(self, **options: float) -> None:
+        """Changes options of the pictures to come: strength or exposure, of which the last one counts, gain,
+        starburst, f_number. ValueError: an option that is fixed, or a value out of its range."""
+        error = _ffi.new("struct glint_error *")
+        for name, value in options.items():
+            _check(_lib.glint_engine_set(self._engine, name.replace("_", "-").encode(), value, error), error)
+
     def _image(self, array: np.ndarray, kind: int, channels: int, item: int):
         if array.shape[:2] != (self.height, self.width):
             raise ValueError(f"a picture of {array.shape[1]}x{array.shape[0]}, and the engine is for "

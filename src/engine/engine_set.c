@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Options of an engine that change between pictures, by name. */
+#include <stdio.h>
+
+#include "engine/engine_parts.h"
+#include "glint/options.h"
+
+/* Sets what OPTION of O is, which is valid, for the pictures to come. */
+static enum glint_status apply(struct glint_engine *engine,
+                               const struct glint_option *option,
+                               const struct glint_options *o,
+                               struct glint_error *error)
+{
+    struct glint_engine_light light = engine->expose.light;
+
+    switch ((int)(option - glint_option(0))) {
+    case GLINT_OPTION_OF_strength:
+        light.strength = o->strength;
+        light.by_hand = 0;
+        break;
+    case GLINT_OPTION_OF_exposure:
+        light.exposure_ev = o->exposure;
+        light.by_hand = 1;
+        break;
+    case GLINT_OPTION_OF_gain:
+        light.gain = o->gain;
+        break;
+    case GLINT_OPTION_OF_starburst:
+        light.starburst = o->starburst;
+        break;
+    case GLINT_OPTION_OF_f_number:
+        return glint_engine_stop(engine, o->f_number, error);
+    default:
+        snprintf(error->text, sizeof error->text,
+                 "%s is fixed when the engine is made", option->name);
+        return GLINT_E_ARGUMENT;
+    }
+    glint_engine_set_light(engine, &light);
+    return GLINT_OK;
+}
+
+/* Sets NAME to TEXT, or to VALUE if it is NULL. */
+static enum glint_status set(struct glint_engine *engine, const char *name,
+                             const char *text, double value,
+                             struct glint_error *error)
+{
+    const struct glint_option *const option = glint_option_named(name);
+    struct glint_options o;
+    enum glint_status status;
+    char accepts[160];
+
+    glint_options_defaults(&o);
+    status = text ? glint_options_set_text(&o, name, text, error)
+                  : glint_options_set(&o, name, value, error);
+    if (status == GLINT_OK)
+        return apply(engine, option, &o, error);
+    if (option) {
+        glint_option_accepts(option, accepts, sizeof accepts);
+        snprintf(error->text, sizeof error->text, "%s is %s", name, accepts);
+    }
+    return status;
+}
+
+enum glint_status glint_engine_set(struct glint_engine *engine,
+                                   const char *name, double value,
+                                   struct glint_error *error)
+{
+    return set(engine, name, NULL, value, error);
+}
+
+enum glint_status glint_engine_set_text(struct glint_engine *engine,
+                                        const char *name, const char *text,
+                                        struct glint_error *error)
+{
+    return set(engine, name, text ? text : "", 0, error);
+}
