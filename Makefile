@@ -33,7 +33,7 @@
 #   make bench    what a frame costs;  bench-insn: in instructions
 #   make size     bytes of the run-time library, and of programs with parts of it
 #   make budget   what a frame costs on ARM, in instructions
-#   make growth   how that grows, as plots in build/growth;  memory-table: what it takes
+#   make memory-table   the memory that a frame takes
 #   make video-report  how steady the flare of a video is; VIDEOS="A.y4m ..."
 #   make trade    what accuracy costs: plots, pictures and a page (glint sweep)
 #   make debian   packages, in clean systems;  check-debian: tools/debian

@@ -12,7 +12,6 @@
 #include "measure/report_file.h"
 #include "measure/sweep.h"
 #include "options/command_line.h"
-#include "options/timed_text.h"
 
 static const char help[] =
     "glint sweep [LENS]... -o FOLDER [options]\n"
@@ -49,10 +48,6 @@ static const char help[] =
     "  --stars             instead: star.csv, star.svg, parts.csv alone\n"
     "  --repeat N          rounds, 1 to 100 (default 7)\n"
     "  --exact-grid N      cells a side of the exact picture (default 128)\n"
-    "  --count             only say which points there are, drawing each once\n"
-    "  --counts FILE       instructions of points from "
-    "tools/measure/sweep-insn\n"
-    "  --cost WHAT         time (default) | instructions: what fronts go by\n"
     "  --json              prints all points on standard output, too\n";
 static const char help_end[] = COMMON_HELP;
 
@@ -183,37 +178,6 @@ static int measure(struct sweep *s)
     return code;
 }
 
-static const char *take_count(void *ctx, struct text_lines *lines, char *line)
-{
-    struct sweep *const s = ctx;
-    double v[2];
-    char *const space = strchr(line, ' ');
-
-    if (space)
-        *space = ',';
-    if (tool_numbers(line, v, 2) != 2 || v[0] != floor(v[0]) || v[0] < 0 ||
-        v[0] >= s->n_points || v[1] < 0)
-        return text_lines_cause(
-            lines, "not a point of this sweep and its instructions");
-    s->point[(int)v[0]].metric[SWEEP_INSTRUCTIONS] = v[1];
-    return NULL;
-}
-
-/* Reads the instructions of points from the file of --counts, whose lines are
- * "POINT INSTRUCTIONS"; points without one stay. Returns an exit code. */
-static int read_counts(struct sweep *s)
-{
-    struct text_lines lines;
-    struct glint_error error;
-    enum glint_status status =
-        text_lines_open(&lines, s->counts, NULL, 1 << 24, &error);
-
-    if (status == GLINT_OK)
-        status = text_lines_each(&lines, take_count, s, &error);
-    return status == GLINT_OK ? EXIT_OK
-                              : tool_fail(s->tool, status, error.text);
-}
-
 static int run(struct sweep *s, const struct asked *a)
 {
     int code = EXIT_OK;
@@ -223,7 +187,7 @@ static int run(struct sweep *s, const struct asked *a)
             return tool_usage(s->tool,
                               "%s is a model: exact pictures need the table",
                               s->lens[i]);
-    if (!s->count_only && !report_file_folder(a->folder)) {
+    if (!report_file_folder(a->folder)) {
         fprintf(stderr, "glint sweep: %s: %s\n", a->folder, strerror(errno));
         return EXIT_OUTPUT;
     }
@@ -236,12 +200,10 @@ static int run(struct sweep *s, const struct asked *a)
     }
     s->counter = glint_instructions_open();
     code = measure(s);
-    if (code == EXIT_OK && !s->count_only)
+    if (code == EXIT_OK)
         code = sweep_parts(s, s->lens[0]);
     glint_instructions_close(s->counter);
-    if (code == EXIT_OK && s->counts)
-        code = read_counts(s);
-    if (code != EXIT_OK || s->count_only)
+    if (code != EXIT_OK)
         return code;
     sweep_mark_fronts(s);
     return save_all(s, a->folder, a->stars);
@@ -285,16 +247,7 @@ static bool take_lights(const char *text, struct asked *a)
     return a->n_lights > 0;
 }
 
-static bool take_cost(const char *text, struct sweep *s)
-{
-    static const char *const words[] = {"time", "instructions", NULL};
-    const int word = tool_word(text, words);
-
-    s->by_instructions = word == 1;
-    return word >= 0;
-}
-
-enum option_code { OPT_SMALL = 1, OPT_STARS, OPT_COUNT, OPT_COUNTS };
+enum option_code { OPT_SMALL = 1, OPT_STARS };
 
 static const struct option options[] = {
     {"output", required_argument, NULL, 'o'},
@@ -303,11 +256,8 @@ static const struct option options[] = {
     {"angle", required_argument, NULL, 'a'},
     {"repeat", required_argument, NULL, 'r'},
     {"exact-grid", required_argument, NULL, 'g'},
-    {"cost", required_argument, NULL, 'c'},
     {"small", no_argument, NULL, OPT_SMALL},
     {"stars", no_argument, NULL, OPT_STARS},
-    {"count", no_argument, NULL, OPT_COUNT},
-    {"counts", required_argument, NULL, OPT_COUNTS},
     TOOL_COMMON_OPTIONS};
 
 /* Takes option C with the value optarg. Returns 1, or 0 if the option does not
@@ -328,17 +278,10 @@ static int take(struct sweep *s, struct asked *a, int c)
         return tool_integer(optarg, 1, SWEEP_ROUNDS, &s->rounds);
     case 'g':
         return tool_integer(optarg, 4, 1024, &s->grid) && s->grid % 2 == 0;
-    case 'c':
-        return take_cost(optarg, s);
     case OPT_SMALL:
         return s->small = true;
     case OPT_STARS:
         return a->stars = true;
-    case OPT_COUNT:
-        return s->count_only = true;
-    case OPT_COUNTS:
-        s->counts = optarg;
-        return 1;
     default:
         return -2;
     }
@@ -358,7 +301,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct sweep *s,
         if (taken == -2 && (code = tool_option(tool, c, optarg)) >= 0)
             return code;
     }
-    if (!a->folder && !s->count_only)
+    if (!a->folder)
         return tool_usage(tool, "needs -o FOLDER");
     if (argc - optind > SWEEP_LENSES)
         return tool_usage(tool, "takes %d lenses at most", SWEEP_LENSES);

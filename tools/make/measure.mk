@@ -122,8 +122,6 @@ bench: all
 bench-insn: all
 	@tools/make/deps "instruction counts" valgrind
 	@tools/measure/bench-insn | tools/measure/write-figures frame
-growth: all
-	@tools/measure/growth
 size: $(OUT)/libglint.a $(example_bins)
 	@tools/make/deps "bytes on ARM" gcc-aarch64-linux-gnu libc6-dev-arm64-cross \
 	        gcc-arm-linux-gnueabihf libc6-dev-armhf-cross >&2
@@ -140,9 +138,6 @@ reuse-table: all $(OUT)/reuse
 	@tools/make/deps "instruction counts, noise" valgrind ffmpeg >&2
 	@tools/measure/reuse-table $(OUT)/reuse $(MODELS) | tools/measure/write-figures videos/reuse
 reuse-table: export VIDEOS := $(VIDEOS)
-# What bakes say of the time they will take, over what they take.
-left-table: $(OUT)/bake_left
-	@tools/measure/left-table $(OUT)/bake_left | tools/measure/write-figures cost/left
 memory-table: all
 	@tools/measure/memory-table | tools/measure/write-figures memory
 zoom-halfway-table: all
@@ -162,5 +157,5 @@ budget: all
         ward-table translucent-table stone-table ward-sheet bake-table \
         library-table azimuth-table projection-table accuracy-table colour-table ray-table stop-table \
         power-fit corpus corpus-evaluate corpus-stars corpus-sheet corpus-report gallery \
-        lens-sheet corpus-fit bench bench-insn growth size trade reuse-table left-table memory-table \
+        lens-sheet corpus-fit bench bench-insn size trade reuse-table memory-table \
         zoom-halfway-table cost-fit budget

@@ -9,7 +9,7 @@
 #include "measure/canvas.h"
 
 enum {
-    BENCH_CASES = 1024, /* more than 16 lenses have with --growth */
+    BENCH_CASES = 256, /* more than 16 lenses have with --all */
     BENCH_ROUNDS = CANVAS_MAX,
     BENCH_STAGES = 7,
     BENCH_CANVASES = 8,
@@ -29,7 +29,6 @@ struct bench_case {
 
 /* How a case differs from the plain one; 0 or NULL: in nothing. */
 struct bench_variation {
-    const char *series; /* of --growth */
     int width, height;
     bool two_threads;
     const char *kernels;
@@ -81,7 +80,7 @@ struct bench {
     struct tool *tool;
     struct settings base;            /* as the line says */
     int width, height, rounds, word; /* word: index of the format */
-    bool all, sizes, growth, psnr;
+    bool all, sizes, psnr;
     bool moving; /* The first light moves from round to round. */
     int n_budgets;
     double budget_ms[BENCH_BUDGETS];

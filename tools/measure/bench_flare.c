@@ -5,9 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
-#include "glint/explain.h"
 #include "glint/measure.h"
 #include "measure/bench.h"
 #include "linux/sets.h"
@@ -36,10 +34,6 @@ static const char help[] =
     "white\n"
     "                  and those of ten of 2 stops\n"
     "  --sizes         instead: 360p, 720p, 1080p and 2160p\n"
-    "  --growth        instead: 1 to 64 lights, 360p to 2160p, some of the\n"
-    "                  ghosts, other quanta and grids; tools/measure/growth "
-    "draws "
-    "them\n"
     "  --budgets LIST  instead: held to so many milliseconds each, and how far "
     "what\n"
     "                  was predicted is off\n"
@@ -69,13 +63,10 @@ struct flare_case {
     struct glint_engine *engine;
     struct glint_lamp *lamp;
     int n_lamps;
-    bool is_star;             /* stars alone */
-    double budget_ms;         /* 0: none */
-    double scale, psnr_db;    /* psnr_db: NAN if not measured */
-    const char *series;       /* growth: name of the series, or NULL */
-    struct glint_tint *tints; /* growth: mute all ghosts but some; or NULL */
+    bool is_star;          /* stars alone */
+    double budget_ms;      /* 0: none */
+    double scale, psnr_db; /* psnr_db: NAN if not measured */
     struct glint_engine_report report;
-    double cpu_ms; /* growth: least time of a frame, of all threads; else 0 */
     double wrong[BENCH_ROUNDS]; /* budgets: predicted over measured - 1 */
 };
 
@@ -109,35 +100,6 @@ static const struct bench_variation sizes[] = {
     {.lights = 1, .width = 3840, .height = 2160},
 };
 
-/* Cases that differ from the plain one in one parameter each. Steps of
- * irradiance have the same rays and fewer edges. Ghosts are added beside. */
-static const struct bench_variation growth[] = {
-    {"lights", .lights = 1},
-    {"lights", .lights = 2},
-    {"lights", .lights = 4},
-    {"lights", .lights = 8},
-    {"lights", .lights = 16},
-    {"lights", .lights = 32},
-    {"lights", .lights = 64},
-    {"pixels", 640, 360, .lights = 1},
-    {"pixels", 960, 540, .lights = 1},
-    {"pixels", 1280, 720, .lights = 1},
-    {"pixels", 1920, 1080, .lights = 1},
-    {"pixels", 2560, 1440, .lights = 1},
-    {"pixels", 3840, 2160, .lights = 1},
-    {"quantum", .lights = 1, .option = "quantum", .value = 0.25},
-    {"quantum", .lights = 1, .option = "quantum", .value = 0.5},
-    {"quantum", .lights = 1, .option = "quantum", .value = 1},
-    {"quantum", .lights = 1, .option = "quantum", .value = 2},
-    {"quantum", .lights = 1, .option = "quantum", .value = 5},
-    {"quantum", .lights = 1, .option = "quantum", .value = 10},
-    {"grid", .lights = 1, .option = "grid", .value = 16},
-    {"grid", .lights = 1, .option = "grid", .value = 32},
-    {"grid", .lights = 1, .option = "grid", .value = 64},
-    {"grid", .lights = 1, .option = "grid", .value = 128},
-    {"grid", .lights = 1, .option = "grid", .value = 256},
-};
-
 /* Sets the exposure of T. A light far outside is exposed as if it were in the
  * picture. */
 static enum glint_status expose(struct flare_case *t,
@@ -158,38 +120,27 @@ static enum glint_status expose(struct flare_case *t,
     return status;
 }
 
-/* Adds the case V of SETTINGS, held to BUDGET_MS if that is above 0; TINTS,
- * which the case frees, may be NULL. Returns an exit code. */
+/* Adds the case V of SETTINGS, held to BUDGET_MS if that is above 0. Returns an
+ * exit code. */
 static int add_more(struct bench *b, const struct settings *settings,
-                    const struct bench_variation *v, double budget_ms,
-                    struct glint_tint *tints)
+                    const struct bench_variation *v, double budget_ms)
 {
     struct flare_case *const t =
         (struct flare_case *)bench_add(b, settings->lens.name, v);
-    struct settings asked = *settings;
     struct glint_engine_config cfg;
     struct glint_error error = {""};
     enum glint_status status;
 
-    if (t)
-        t->tints = tints;
-    else
-        free(tints);
     if (!t || !(t->lamp = calloc((size_t)v->lights + 1, sizeof *t->lamp)))
         return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
     t->settings = settings;
     t->n_lamps = v->lights;
-    t->series = v->series;
     t->psnr_db = (double)NAN;
-    if (v->option)
-        settings_set_number(&asked, v->option, v->value);
-    canvas_engine(b->tool, settings, &asked, t->base.canvas->image.width,
+    canvas_engine(b->tool, settings, settings, t->base.canvas->image.width,
                   t->base.canvas->image.height, &cfg);
     cfg.workers = t->base.workers;
     if (v->kernels)
         cfg.sets &= v->sets;
-    if (tints)
-        cfg.camera.tints = tints;
     t->is_star = v->star_stops > 0;
     if (t->is_star) {
         cfg.drawing.parts = GLINT_ENGINE_STAR | GLINT_ENGINE_CORES;
@@ -208,7 +159,7 @@ static int add_more(struct bench *b, const struct settings *settings,
 static int add(struct bench *b, const struct settings *settings,
                const struct bench_variation *v)
 {
-    return add_more(b, settings, v, 0, NULL);
+    return add_more(b, settings, v, 0);
 }
 
 /* Adds those of V[N] that are possible here. */
@@ -237,21 +188,14 @@ enum glint_status bench_run(struct bench *b, struct bench_case *c, int round)
     struct flare_case *const t = (struct flare_case *)c;
     const struct glint_engine_report *const r = &t->report;
     enum glint_status status;
-    clock_t cpu0 = 0;
-    double t0, cpu_ms;
+    double t0;
 
     if (b->moving && t->n_lamps > 0)
         t->lamp[0].theta_deg = 8 + 8 * (round + 0.5) / b->rounds;
-    if (t->series) /* only for a series: the system call cools the caches of
-                      small frames */
-        cpu0 = clock();
     t0 = tool_seconds();
     status = glint_engine_draw_at(t->engine, t->lamp, t->n_lamps, t->scale,
                                   &c->canvas->image, &t->report);
     c->ms[WHOLE][round] = 1e3 * (tool_seconds() - t0);
-    cpu_ms = t->series ? 1e3 * (double)(clock() - cpu0) / CLOCKS_PER_SEC : 0;
-    if (t->cpu_ms == 0 || cpu_ms < t->cpu_ms)
-        t->cpu_ms = cpu_ms;
     t->wrong[round] =
         r->predicted_ms / (r->plan_ms + r->bin_ms + r->draw_ms) - 1;
     c->ms[PLAN][round] = r->plan_ms;
@@ -273,7 +217,7 @@ static int add_budgets(struct bench *b, const struct settings *settings)
         enum glint_status status = GLINT_OK;
         struct flare_case *t;
 
-        code = add_more(b, settings, &plain, b->budget_ms[i], NULL);
+        code = add_more(b, settings, &plain, b->budget_ms[i]);
         if (code != EXIT_OK)
             break;
         t = last_of(b);
@@ -284,56 +228,6 @@ static int add_budgets(struct bench *b, const struct settings *settings)
         if (status != GLINT_OK)
             code = tool_fail(b->tool, GLINT_E_MEMORY, NULL);
     }
-    return code;
-}
-
-/* ------------------------------------------------------------------ ghosts */
-
-/* Returns tints, malloc'ed, that mute all of N_GHOSTS ghosts but those that
- * belong to N_KEPT pairs of surfaces: those of LIST[N] from FIRST on, then from
- * its start. PAIR_OF is the pair of each ghost. */
-static struct glint_tint *keep_ghosts(const int *pair_of, int n_ghosts,
-                                      const int *list, int n, int first,
-                                      int n_kept)
-{
-    struct glint_tint *tints =
-        calloc((size_t)n_ghosts + 1, sizeof *tints); /* muted */
-
-    for (int k = 0; k < n_ghosts && tints; k++)
-        for (int i = 0; i < n_kept; i++)
-            if (pair_of[k] == list[(first + i) % n])
-                tints[k] = (struct glint_tint){{1 << 14, 1 << 14, 1 << 14},
-                                               glint_real_of(1)};
-    return tints;
-}
-
-/* Adds cases of all ghosts that PLAIN_CASE shows, and of half of them, a
- * quarter ... each taken from four places of the list, as some ghosts are large
- * and some are small. */
-static int add_ghosts(struct bench *b, const struct settings *settings,
-                      struct flare_case *plain_case)
-{
-    static const struct bench_variation v = {"ghosts", .lights = 1};
-    struct glint_explain e = {.n_ghosts = 0};
-    int list[GLINT_MAX_GHOSTS], code = EXIT_OK, n = 0;
-
-    if (!settings->model.data)
-        return EXIT_OK;
-    if (bench_run(b, &plain_case->base, 0) != GLINT_OK ||
-        glint_explain_open(&e, plain_case->engine, 0) != GLINT_OK)
-        code = tool_fail(b->tool, GLINT_E_MEMORY, NULL);
-    for (int k = 0; k < e.n_ghosts && code == EXIT_OK; k++)
-        if (glint_explain_drawn(&e.ghost[k]) > 0)
-            list[n++] = k;
-    for (int part = n, depth = 0; part > 0 && depth < 5; part /= 2, depth++)
-        for (int k = 0; k < (part < n ? 4 : 1) && code == EXIT_OK; k++) {
-            struct glint_tint *const tints = keep_ghosts(
-                e.ghost_of, settings->setup.n_ghosts, list, n, k * n / 4, part);
-
-            code = tints ? add_more(b, settings, &v, 0, tints)
-                         : tool_fail(b->tool, GLINT_E_MEMORY, NULL);
-        }
-    glint_explain_close(&e);
     return code;
 }
 
@@ -372,15 +266,6 @@ static int measure_psnr(struct bench *b, struct flare_case *t)
 
 static int add_cases(struct bench *b, const struct settings *s)
 {
-    const int first = b->n_cases;
-    int code;
-
-    if (b->growth) {
-        code = add_list(b, s, growth, sizeof growth / sizeof *growth);
-        return code == EXIT_OK
-                   ? add_ghosts(b, s, (struct flare_case *)b->cases[first])
-                   : code;
-    }
     if (b->n_budgets)
         return add_budgets(b, s);
     if (b->sizes)
@@ -433,7 +318,6 @@ static void close_case(struct bench_case *c)
 
     glint_engine_destroy(t->engine);
     free(t->lamp);
-    free(t->tints);
 }
 
 static void close_flares(struct bench *b)
@@ -486,7 +370,6 @@ static void print_result(const struct bench *b, const struct bench_case *c)
             "  budget %g: %.2f of it, quality %.2f, predicted within %.0f %%",
             t->budget_ms, bench_ms(b, c, WHOLE) / t->budget_ms, r->quality,
             100 * off_by(b, t));
-    printf("%s%s", t->series ? "  " : "", t->series ? t->series : "");
 }
 
 static void json(struct json_writer *to, const struct bench *b,
@@ -495,8 +378,6 @@ static void json(struct json_writer *to, const struct bench *b,
     const struct flare_case *const t = (const struct flare_case *)c;
     const struct glint_engine_report *const r = &t->report;
 
-    if (t->series)
-        json_write(to, "series: %s, cpu_ms: %.3f", t->series, t->cpu_ms);
     bench_json_format(to, b, c);
     json_write(to,
                "lights: %d, threads: %d, raster: %s, kernels: %s, "
@@ -518,10 +399,9 @@ static void json(struct json_writer *to, const struct bench *b,
 
 /* ----------------------------------------------------------------- options */
 
-enum { OPT_GROWTH = BENCH_OWN, OPT_MOVING, OPT_PSNR, OPT_BUDGETS };
+enum { OPT_MOVING = BENCH_OWN, OPT_PSNR, OPT_BUDGETS };
 
 static const struct option own[] = {
-    {"growth", no_argument, NULL, OPT_GROWTH},
     {"moving", no_argument, NULL, OPT_MOVING},
     {"psnr", no_argument, NULL, OPT_PSNR},
     {"budgets", required_argument, NULL, OPT_BUDGETS},
@@ -530,8 +410,6 @@ static const struct option own[] = {
 static int take(struct bench *b, int c, const char *value)
 {
     switch (c) {
-    case OPT_GROWTH:
-        return b->growth = true;
     case OPT_MOVING:
         return b->moving = true;
     case OPT_PSNR:

@@ -278,14 +278,6 @@ enum glint_status canvas_codes(struct glint_engine *engine,
                                 report);
 }
 
-enum glint_status sweep_frame(struct glint_engine *engine,
-                              const struct glint_lamp *lamp, int n,
-                              double exposure, const struct glint_image *image,
-                              struct glint_engine_report *report)
-{
-    return glint_engine_draw_at(engine, lamp, n, exposure, image, report);
-}
-
 const char *canvas_machine(void)
 {
     static char line[128];

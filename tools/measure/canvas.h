@@ -65,13 +65,6 @@ enum glint_status canvas_codes(struct glint_engine *engine,
                                double exposure, uint8_t *codes,
                                struct glint_engine_report *report);
 
-/* Calls glint_engine_draw_at(), as a function of its own, whose instructions
- * tools/measure/sweep-insn counts. */
-enum glint_status sweep_frame(struct glint_engine *engine,
-                              const struct glint_lamp *lamp, int n,
-                              double exposure, const struct glint_image *image,
-                              struct glint_engine_report *report);
-
 /* Returns what a processor is called, without commas, for tables of what was
  * measured on it; "unknown" if the system does not say. */
 const char *canvas_machine(void);

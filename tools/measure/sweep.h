@@ -107,10 +107,8 @@ struct sweep {
     /* Rounds of timing, 1 .. SWEEP_ROUNDS; cells a side of the grid of rays
      * that draws the exact picture, 4 .. 1024, even. */
     int rounds, grid;
-    bool small, count_only;
-    const char *counts; /* file of instructions, or NULL */
-    int counter;        /* descriptor that counts instructions, or -1 */
-    bool by_instructions;
+    bool small;
+    int counter; /* descriptor that counts instructions, or -1 */
     struct glint_workers *one;
 };
 
@@ -124,7 +122,7 @@ enum glint_status sweep_plan(struct sweep *s);
 /* Measures case C. Returns an exit code. */
 int sweep_measure(struct sweep *s, int c, struct tool_progress *progress);
 
-/* Draws a frame by sweep_frame(). Sets MS and, if they are counted,
+/* Draws a frame. Sets MS and, if they are counted,
  * INSTRUCTIONS. */
 enum glint_status sweep_time(const struct sweep *s, struct glint_engine *engine,
                              const struct glint_lamp *lamp, int n,
@@ -140,10 +138,6 @@ void sweep_star_svg(const struct sweep *s, FILE *file);
 void sweep_parts_csv(const struct sweep *s, FILE *file);
 
 /* ------------------------------------------------------------------- fronts */
-
-/* Returns the cost of a frame of P: in memory floors, or with by_instructions
- * in millions of instructions; NAN if it was not measured. */
-double sweep_cost(const struct sweep *s, const struct sweep_point *p);
 
 /* Marks the front of each case. */
 void sweep_mark_fronts(struct sweep *s);

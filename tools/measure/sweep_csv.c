@@ -110,9 +110,9 @@ static void print_above(const struct sweep *s, FILE *file)
 
 void sweep_names(const struct sweep *s, FILE *file)
 {
-    fprintf(file,
-            "%s; PSNR, dB; KiB of arena + model\n\n| lens, size, lights |",
-            s->by_instructions ? "Million instructions" : "Times memory floor");
+    fputs("Times memory floor; PSNR, dB; KiB of arena + model\n\n"
+          "| lens, size, lights |",
+          file);
     for (int i = 0; i < GLINT_QUALITY_NAMES; i++)
         fprintf(file, " %s |", glint_quality_name[i]);
     fputs("\n|---|---|---|---|---|---|\n", file);
@@ -125,8 +125,8 @@ void sweep_names(const struct sweep *s, FILE *file)
             const struct sweep_point *const p = &s->point[i];
 
             if (sweep_named(p) >= 0)
-                fprintf(file, " %.1f; %.1f; %.0f + %.0f |", sweep_cost(s, p),
-                        p->metric[SWEEP_PSNR_DB],
+                fprintf(file, " %.1f; %.1f; %.0f + %.0f |",
+                        p->metric[SWEEP_RATIO], p->metric[SWEEP_PSNR_DB],
                         floor(p->metric[SWEEP_ARENA_BYTES] / 1024),
                         floor(p->metric[SWEEP_MODEL_BYTES] / 1024));
         }

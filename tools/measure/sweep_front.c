@@ -5,12 +5,6 @@
 
 #include "measure/sweep.h"
 
-double sweep_cost(const struct sweep *s, const struct sweep_point *p)
-{
-    return s->by_instructions ? 1e-6 * p->metric[SWEEP_INSTRUCTIONS]
-                              : p->metric[SWEEP_RATIO];
-}
-
 /* ------------------------------------------------------------------- front */
 
 static bool is_true(double flux_error)
@@ -65,7 +59,7 @@ void sweep_mark_fronts(struct sweep *s)
 
         for (int i = 0; i < k->n && cost && quality; i++) {
             cost[i] = is_true(point[i].metric[SWEEP_FLUX_ERROR])
-                          ? sweep_cost(s, &point[i])
+                          ? point[i].metric[SWEEP_RATIO]
                           : (double)NAN;
             quality[i] = point[i].metric[SWEEP_PSNR_DB];
         }
@@ -100,7 +94,8 @@ static bool mean_of(const struct sweep *s, int i, struct sweep_mean *m)
         if (!p)
             continue;
         m->set = &p->set;
-        m->cost += log(sweep_cost(s, p) / sweep_cost(s, &s->point[c->first]));
+        m->cost += log(p->metric[SWEEP_RATIO] /
+                       s->point[c->first].metric[SWEEP_RATIO]);
         m->psnr_db += db;
         m->least_db = fmin(m->least_db, db);
         m->flux_error = fmax(m->flux_error, fabs(p->metric[SWEEP_FLUX_ERROR]));

@@ -135,7 +135,7 @@ enum glint_status sweep_time(const struct sweep *s, struct glint_engine *engine,
         s->counter >= 0 ? glint_instructions_read(s->counter) : 0;
     const double t0 = tool_seconds();
     const enum glint_status status =
-        sweep_frame(engine, lamp, n, exposure, image, report);
+        glint_engine_draw_at(engine, lamp, n, exposure, image, report);
 
     *ms = 1e3 * (tool_seconds() - t0);
     if (s->counter >= 0)
@@ -154,8 +154,6 @@ static enum glint_status draw(struct bay *b, struct run *r, int round)
     if (round < 0)
         return glint_engine_draw_at(r->engine, b->lamp, b->c->n_lamps,
                                     b->exposure, &b->canvas.image, &r->report);
-    if (b->s->count_only)
-        printf("%d\n", (int)(r->point - b->s->point));
     status = sweep_time(b->s, r->engine, b->lamp, b->c->n_lamps, b->exposure,
                         &b->canvas.image, &r->report, &ms,
                         &r->point->metric[SWEEP_INSTRUCTIONS]);
@@ -169,7 +167,7 @@ static enum glint_status draw(struct bay *b, struct run *r, int round)
 static enum glint_status time_all(struct bay *b, struct tool_progress *progress,
                                   double from, double to)
 {
-    const int n = b->s->count_only ? 1 : b->s->rounds;
+    const int n = b->s->rounds;
     enum glint_status status = GLINT_OK;
 
     for (int round = -1; round < n && status == GLINT_OK; round++) {
@@ -338,7 +336,7 @@ int sweep_measure(struct sweep *s, int c, struct tool_progress *progress)
     code = make_bay(b);
     if (code == EXIT_OK)
         status = time_all(b, progress, from, (from + to) / 2);
-    if (code == EXIT_OK && status == GLINT_OK && !s->count_only)
+    if (code == EXIT_OK && status == GLINT_OK)
         status = measure_all(b, progress, (from + to) / 2, to);
     if (code == EXIT_OK && status != GLINT_OK)
         code = tool_fail(s->tool, status, NULL);

@@ -25,9 +25,8 @@ static void table_of_names(const struct sweep *s, FILE *file)
 {
     fputs("<h2>Named qualities</h2>\n<table>", file);
     html_row(file, "th",
-             "lens|size|quality|%s|PSNR dB|SSIM|p99 codes|flux %%|arena KiB|"
-             "model KiB",
-             s->by_instructions ? "million instructions" : "times floor");
+             "lens|size|quality|times floor|PSNR dB|SSIM|p99 codes|flux %%|"
+             "arena KiB|model KiB");
     for (int i = 0; i < s->n_points; i++) {
         const struct sweep_point *p = &s->point[i];
         const struct sweep_case *c = &s->scase[p->of];
@@ -38,7 +37,7 @@ static void table_of_names(const struct sweep *s, FILE *file)
             html_row(file, "td",
                      "%s|%dx%d, %d|%s|%.1f|%.1f|%.4f|%g|%s%+.2f|%.0f|%.0f",
                      s->lens[c->lens], c->width, c->height, c->n_lamps,
-                     glint_quality_name[name], sweep_cost(s, p),
+                     glint_quality_name[name], p->metric[SWEEP_RATIO],
                      m[SWEEP_PSNR_DB], m[SWEEP_SSIM], m[SWEEP_P99],
                      fabs(m[SWEEP_FLUX_ERROR]) > MAX_FLUX_ERROR ? "!" : "",
                      100 * m[SWEEP_FLUX_ERROR],
@@ -85,8 +84,9 @@ static void figure(const struct sweep *s, FILE *file,
     html_png(file, rgb, q->width, q->height);
     fprintf(file, "\"><figcaption>%s%s", words, what);
     if (p)
-        fprintf(file, "<br>%.3g, %.1f dB, flux %+.2f %%", sweep_cost(s, p),
-                p->metric[SWEEP_PSNR_DB], 100 * p->metric[SWEEP_FLUX_ERROR]);
+        fprintf(file, "<br>%.3g, %.1f dB, flux %+.2f %%",
+                p->metric[SWEEP_RATIO], p->metric[SWEEP_PSNR_DB],
+                100 * p->metric[SWEEP_FLUX_ERROR]);
     fputs("</figcaption></figure>\n", file);
 }
 

@@ -215,7 +215,7 @@ static enum glint_status measure_all(struct bay *b)
 
     while (n < b->subject->n_values && status == GLINT_OK) {
         status = measure(b, b->subject->value[n]);
-        cost[n] = b->s->by_instructions ? first[n].instructions : first[n].ms;
+        cost[n] = first[n].ms;
         db[n] = first[n].psnr_db;
         n++;
     }

@@ -8,11 +8,7 @@
 
 #define GREY  "#bbb"
 #define FRONT "#222"
-
-static const char *cost_words(const struct sweep *s)
-{
-    return s->by_instructions ? "million instructions" : "times memory floor";
-}
+#define COST  "times memory floor"
 
 static struct plot begin_panel(FILE *file, int number, const char *title,
                                const char *words)
@@ -111,14 +107,14 @@ void sweep_svg_front(const struct sweep *s, FILE *file)
             if (fabs(q->metric[SWEEP_FLUX_ERROR]) < MAX_FLUX_ERROR)
                 dot[n_dots++] =
                     (struct sweep_mean){.set = &q->set,
-                                        .cost = sweep_cost(s, q),
+                                        .cost = q->metric[SWEEP_RATIO],
                                         .psnr_db = q->metric[SWEEP_PSNR_DB],
                                         .front = q->front};
         }
         sweep_sort(dot, n_dots);
         snprintf(title, sizeof title, "%s, %dx%d", s->lens[k->lens], k->width,
                  k->height);
-        p = begin_panel(file, n_panels++, title, cost_words(s));
+        p = begin_panel(file, n_panels++, title, COST);
         draw_panel(&p, dot, n_dots);
     }
     plot_close(file);
@@ -142,7 +138,8 @@ static void draw_curve(const struct sweep *s, const struct plot *p,
     for (int v = 0; v < parameter->n_values; v++)
         for (int i = k->first; i < k->first + k->n; i++) {
             const struct sweep_point *const q = &s->point[i];
-            const double cost = sweep_cost(s, q), db = q->metric[SWEEP_PSNR_DB];
+            const double cost = q->metric[SWEEP_RATIO],
+                         db = q->metric[SWEEP_PSNR_DB];
             char words[32];
 
             if (!is_of(q, d) || q->set.value[d] != parameter->value[v])
@@ -159,12 +156,11 @@ static void draw_curve(const struct sweep *s, const struct plot *p,
 
 static void draw_parameter(const struct sweep *s, FILE *file, int number, int d)
 {
-    struct plot p =
-        begin_panel(file, number, sweep_parameter[d].name, cost_words(s));
+    struct plot p = begin_panel(file, number, sweep_parameter[d].name, COST);
 
     for (int i = 0; i < s->n_points; i++)
         if (is_of(&s->point[i], d))
-            plot_stretch(&p, sweep_cost(s, &s->point[i]),
+            plot_stretch(&p, s->point[i].metric[SWEEP_RATIO],
                          s->point[i].metric[SWEEP_PSNR_DB]);
     plot_frame(&p);
     for (int c = 0; c < s->n_cases; c++)
