@@ -6,6 +6,7 @@
  *
  *     make fuzz FUZZ=control SECONDS=60
  */
+#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,6 +25,16 @@ static void require(int condition)
 
 static const struct control_form *form_of(enum control_verb verb)
 {
+    static const struct control_form option = {.verb = CONTROL_OPTION,
+                                               .word = "",
+                                               .names = 1,
+                                               .least = 1,
+                                               .most = 1,
+                                               .lowest = -HUGE_VAL,
+                                               .highest = HUGE_VAL};
+
+    if (verb == CONTROL_OPTION)
+        return &option;
     for (int i = 0; i < control_n_forms; i++)
         if (control_forms[i].verb == verb)
             return &control_forms[i];

@@ -64,11 +64,15 @@ const struct control_form control_forms[] = {
      "pause"},
     {CONTROL_STOP,     "stop",        NULL,       0, 0, 0, 0, 0, 0, false,
      "stop"},
-    {CONTROL_ZOOM,     "zoom",        NULL,       0, 0, 1, 1, 0, 1e5, false,
-     "zoom Z"},
 };
 /* clang-format on */
 const int control_n_forms = sizeof control_forms / sizeof *control_forms;
+
+bool control_changes(const struct glint_option *option)
+{
+    return option->changes == GLINT_OPTION_FRAME &&
+           option->type == GLINT_OPTION_REAL;
+}
 
 static const char blanks[] = " \t\r\n";
 
@@ -131,6 +135,10 @@ static enum glint_status fail_word(const struct reader *r, const char *before)
         if (may && (!before || strcmp(before, f->word) == 0))
             suggest_try(&suggest, may, strlen(may));
     }
+    for (int i = 0; !before && i < GLINT_N_OPTIONS; i++)
+        if (control_changes(glint_option(i)))
+            suggest_try(&suggest, glint_option(i)->name,
+                        strlen(glint_option(i)->name));
     return control_fail(r->error, r->where, r->column, "'%.24s' is no %s%s%s",
                         r->word, before ? "word of " : "command",
                         before ? before : "", suggest_words(&suggest));
@@ -230,11 +238,38 @@ static enum glint_status read_frame(struct reader *r, struct control_line *line)
     return GLINT_OK;
 }
 
+/* Reads the value of OPTION, whose form is FORM. */
+static enum glint_status read_option(struct reader *r,
+                                     const struct glint_option *option,
+                                     const struct control_form *form,
+                                     struct control_line *line)
+{
+    struct glint_options options;
+    struct glint_error error;
+    char accepts[CONTROL_WHERE];
+    enum glint_status status;
+
+    snprintf(line->name[0], CONTROL_NAME, "%s", option->name);
+    line->name_column[0] = r->column;
+    status = read_numbers(r, form, line);
+    glint_options_defaults(&options);
+    if (status != GLINT_OK || glint_options_set(&options, option->name,
+                                                line->v[0], &error) == GLINT_OK)
+        return status;
+    glint_option_accepts(option, accepts, sizeof accepts);
+    return control_fail(r->error, r->where, line->column, "%s is %s, not %.9g",
+                        option->name, accepts, line->v[0]);
+}
+
 /* Reads what follows the number of the frame. */
 static enum glint_status read_command(struct reader *r,
                                       struct control_line *line)
 {
-    const struct control_form *form;
+    struct control_form set = {CONTROL_OPTION, NULL,     NULL,  0,   0, 1, 1,
+                               -HUGE_VAL,      HUGE_VAL, false, NULL};
+    const struct control_form *form = &set;
+    const struct glint_option *option;
+    char usage[CONTROL_LINE];
     enum glint_status status;
 
     if (!next_word(r))
@@ -242,16 +277,23 @@ static enum glint_status read_command(struct reader *r,
                    ? GLINT_OK
                    : control_fail(r->error, r->where, r->column,
                                   "a command has to follow the frame");
-    form = form_of(r->word, 0);
-    if (!form)
-        return fail_word(r, NULL);
-    status = read_names(r, form, form->names, line);
-    if (status == GLINT_OK)
-        status = read_clause(r, &form);
-    if (status == GLINT_OK)
-        status = read_names(r, form, form->behind, line);
-    if (status == GLINT_OK)
-        status = read_numbers(r, form, line);
+    option = glint_option_named(r->word);
+    if (option && control_changes(option)) {
+        snprintf(usage, sizeof usage, "%s %s", option->name, option->value);
+        set.usage = usage;
+        status = read_option(r, option, form, line);
+    } else {
+        form = form_of(r->word, 0);
+        if (!form)
+            return fail_word(r, NULL);
+        status = read_names(r, form, form->names, line);
+        if (status == GLINT_OK)
+            status = read_clause(r, &form);
+        if (status == GLINT_OK)
+            status = read_names(r, form, form->behind, line);
+        if (status == GLINT_OK)
+            status = read_numbers(r, form, line);
+    }
     if (status == GLINT_OK && next_word(r))
         status = control_fail(r->error, r->where, r->column,
                               "'%.24s' is too much; expected %s", r->word,

@@ -21,12 +21,15 @@
  *     [FRAME] play 25
  *
  * Words, then numbers, divided by blanks; a # begins a comment. Every command
- * is a row of one table, control_forms, which says what it takes: another
- * command is another row and another case where commands are obeyed.
+ * that changes a scene is a row of one table, control_forms, which states what
+ * it accepts: another command is another row and another case where commands
+ * are obeyed. Those that change a flare are the rows of glint/options.inc that
+ * take effect with the next frame and have a number: strength 0.4.
  */
 #ifndef GLINT_TOOLS_CONTROL_CONTROLS_H
 #define GLINT_TOOLS_CONTROL_CONTROLS_H
 
+#include "glint/options.h"
 #include "options/timed_text.h"
 
 enum {
@@ -65,8 +68,9 @@ enum control_verb {
     CONTROL_PLAY, /* frames a second; none given: one a picture */
     CONTROL_PAUSE,
     CONTROL_STOP, /* pauses at frame 0 */
-    /* The lens. */
-    CONTROL_ZOOM, /* mm of focal length, or how far along, 0 .. 1 */
+    /* The flare: name[0] is an option of the engine that changes with the next
+     * frame, the value its new one. */
+    CONTROL_OPTION,
     CONTROL_VERBS
 };
 
@@ -86,6 +90,10 @@ struct control_form {
 extern const struct control_form control_forms[];
 
 extern const int control_n_forms;
+
+/* Returns whether OPTION can be changed by lines of control and by key frames.
+ */
+bool control_changes(const struct glint_option *option);
 
 struct control_line {
     int number; /* of the line in its file, from 1 */

@@ -1,27 +1,29 @@
 /* SPDX-License-Identifier: MIT */
 #include "desk/keys.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
+#include "glint/options.h"
 #include "options/timed_text.h"
 
 enum { MAX_BYTES = 1 << 26 };
 
+/* Columns without limits are options of these names, which have them. */
 static const struct text_column columns[KEYS_COLUMNS] = {
     [KEYS_FRAME] = {"frame", 0, TEXT_MAX_FRAME,
                     "frame must be a whole number from 0"},
-    [KEYS_EXPOSURE] = {"exposure", -100, 100,
-                       "exposure must be -100 to 100 stops"},
-    [KEYS_STRENGTH] = {"strength", 0, 100, "strength must be 0 to 100"},
-    [KEYS_GAIN] = {"gain", 0, 1e30, "gain must be a factor from 0"},
-    [KEYS_STARBURST] = {"starburst", 0, 1000, "starburst must be 0 to 1000"},
-    [KEYS_F_NUMBER] = {"f-number", 0.1, 1e5, "f-number must be 0.1 to 100000"},
+    [KEYS_EXPOSURE] = {.name = "exposure"},
+    [KEYS_STRENGTH] = {.name = "strength"},
+    [KEYS_GAIN] = {.name = "gain"},
+    [KEYS_STARBURST] = {.name = "starburst"},
+    [KEYS_F_NUMBER] = {.name = "f-number"},
     [KEYS_TURN] = {"turn", -1e6, 1e6, "turn must be within a million degrees"},
     [KEYS_ROUND] = {"round", 0, 1, "round must be 0 to 1"},
     [KEYS_X] = {"x", -1e6, 1e6, "x and y must be within a million pixels"},
     [KEYS_Y] = {"y", -1e6, 1e6, "x and y must be within a million pixels"},
     [KEYS_EV] = {"ev", -40, 90, "ev must be -40 to 90 stops"},
-    [KEYS_ZOOM] = {"zoom", 0, 1e5, "zoom must be mm, or 0 to 1"},
+    [KEYS_ZOOM] = {.name = "zoom"},
 };
 
 /* A file being read. */
@@ -29,7 +31,27 @@ struct reading {
     struct keys *keys;
     int column[KEYS_COLUMNS], n_columns; /* of the fields of a row; 0: the
                                             heading was not read yet */
+    char range[160]; /* cause if the value of an option is out of range */
 };
+
+/* Reads FIELD of column C. Returns NULL or the cause of a failure. */
+static const char *read_value(struct reading *r, int c, const char *field,
+                              double *value)
+{
+    const struct glint_option *const option =
+        columns[c].range ? NULL : glint_option_named(columns[c].name);
+    struct text_column column = columns[c];
+    int n;
+
+    if (option) {
+        n = snprintf(r->range, sizeof r->range, "%s must be ", option->name);
+        glint_option_accepts(option, r->range + n, sizeof r->range - (size_t)n);
+        column = (struct text_column){option->name, option->low, option->high,
+                                      r->range};
+    }
+    return text_value(&column, field,
+                      "expected a number, or nothing, in each column", value);
+}
 
 static const char *add(struct keys *keys, int column, struct key_value key)
 {
@@ -96,9 +118,7 @@ static const char *take_row(struct reading *r, struct text_lines *lines,
 
         given[c] = *field[i] != '\0';
         if (given[c])
-            cause = text_value(&columns[c], field[i],
-                               "expected a number, or nothing, in each column",
-                               &value[c]);
+            cause = read_value(r, c, field[i], &value[c]);
     }
     if (cause)
         return cause;
@@ -148,6 +168,11 @@ enum glint_status keys_read(struct keys *keys, const char *path,
                             struct glint_error *error)
 {
     return keys_parse(keys, path, NULL, MAX_BYTES, error);
+}
+
+int keys_column(const char *name)
+{
+    return text_column(columns, KEYS_COLUMNS, name);
 }
 
 bool keys_has(const struct keys *keys, enum key_column column)

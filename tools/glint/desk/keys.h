@@ -7,11 +7,12 @@
  *     50,,11,600,80,
  *     75,0,,,,
  *
- * The heading names the columns, in any order: frame, exposure, strength, gain,
- * starburst and f-number as the options of these names take them, turn and
- * round: the rotation in degrees and the curvature of --stop's blades, and x,
- * y, ev: a lamp as of --light-at. An empty field is no key. Between two keys of
- * a column values change evenly; before the first and after the last they stay.
+ * The heading names the columns, in any order: frame; exposure, strength, gain,
+ * starburst, f-number and zoom as the options of these names accept them; turn
+ * and round: the rotation in degrees and the curvature of --stop's blades, and
+ * x, y, ev: a lamp as of --light-at. An empty field is no key. Between two keys
+ * of a column values change evenly; before the first and after the last they
+ * stay.
  */
 #ifndef GLINT_TOOLS_DESK_KEYS_H
 #define GLINT_TOOLS_DESK_KEYS_H
@@ -57,6 +58,9 @@ enum glint_status keys_read(struct keys *keys, const char *path,
 enum glint_status keys_parse(struct keys *keys, const char *name,
                              const char *text, size_t bytes,
                              struct glint_error *error);
+
+/* Returns the column NAME; -1: there is none. */
+int keys_column(const char *name);
 
 /* Returns whether COLUMN has keys. */
 bool keys_has(const struct keys *keys, enum key_column column);

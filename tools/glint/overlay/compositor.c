@@ -67,6 +67,8 @@ int compositor_open(const struct tool *tool, struct compositor *compositor)
     if (code == EXIT_OK)
         code = open_scene(tool, compositor);
     if (code == EXIT_OK && compositor->has_lens)
+        code = compositor_zoom_lines(tool, compositor);
+    if (code == EXIT_OK && compositor->has_lens)
         code = settings_open(tool, &compositor->settings,
                              compositor->settings.options.lens);
     if (code != EXIT_OK || !compositor->has_lens)

@@ -157,12 +157,16 @@ void compositor_desk_turn(struct compositor *compositor);
 void compositor_desk_hide(struct compositor *compositor, int n);
 void compositor_desk_close(struct compositor *compositor);
 
-/* Before scene and lens are opened: lets lines of control zoom the lens if they
- * may, as key frames do not and its model is given; refuses lines that would
- * have nothing to do beside key frames, and key frames that zoom a table, which
- * would be baked for one position. Returns an exit code. */
+/* Before scene and lens are opened: lets lines of control change the flare;
+ * refuses key frames that zoom a table, which would be baked for one position.
+ * Returns an exit code. */
 int compositor_zoom_begin(const struct tool *tool,
                           struct compositor *compositor);
+
+/* Before the lens is opened, which may be baked for that: refuses lines of
+ * control that zoom a table. Returns an exit code. */
+int compositor_zoom_lines(const struct tool *tool,
+                          const struct compositor *compositor);
 
 /* Checks that the lens, which is open, zooms as far as lines of control and key
  * frames say, and leaves it at the first of these. Returns an exit code. */

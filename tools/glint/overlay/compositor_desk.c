@@ -167,7 +167,7 @@ void compositor_desk_turn(struct compositor *c)
     const int frame = c->n_frames;
     struct settings *const s = &c->settings;
 
-    c->scene.zoom_ctx = c;
+    c->scene.set_ctx = c;
     over_scene_obey(&c->scene, frame);
     if (!c->settings.options.keys)
         return;

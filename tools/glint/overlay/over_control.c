@@ -1,22 +1,23 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lines of control: those that steer a scene, and those that zoom the lens
- * before it. */
+ * Lines of control: those that steer a scene, and those that change the flare.
+ */
 
 #include "overlay/over_scene.h"
 
-/* Returns whether LINE can be obeyed. Whether the lens zooms so far is not
- * asked here. */
+/* Returns whether LINE can be obeyed, but not whether the flare can have the
+ * value. */
 static enum glint_status check_line(const struct over_scene *over,
                                     const struct control_line *line,
                                     const char *where,
                                     struct glint_error *error)
 {
-    if (line->verb == CONTROL_ZOOM)
-        return over->zoom ? GLINT_OK
-                          : control_fail(error, where, 1,
-                                         "no baked zoom is there for that, or "
-                                         "key frames zoom it");
+    if (line->verb == CONTROL_OPTION)
+        return over->set_option
+                   ? GLINT_OK
+                   : control_fail(error, where, 1,
+                                  "that changes a flare, and --lens none has "
+                                  "none");
     return over->is_open
                ? steer_check(&over->steer, line, where, error)
                : control_fail(error, where, 1,
@@ -54,13 +55,14 @@ static enum glint_status obey(struct over_scene *over,
     enum glint_status status;
 
     controls_where(&over->control, -1, where);
-    if (line->verb == CONTROL_ZOOM && over->zoom) {
-        status = over->zoom(over->zoom_ctx, line->v[0], &cause);
+    if (line->verb == CONTROL_OPTION && over->set_option) {
+        status =
+            over->set_option(over->set_ctx, line->name[0], line->v[0], &cause);
         return status == GLINT_OK ? status
                                   : control_fail(error, where, line->column,
                                                  "%.120s", cause.text);
     }
-    if (line->verb == CONTROL_ZOOM || !over->is_open)
+    if (line->verb == CONTROL_OPTION || !over->is_open)
         return line->is_change ? GLINT_OK
                                : check_line(over, line, where, error);
     return playback_take(&over->playback, line)

@@ -52,10 +52,9 @@ int over_scene_open(struct over_scene *over, const struct tool *tool)
     int code;
 
     over->tool = tool;
-    if (!over->file && over->control_file && !over->zoom)
-        return tool_usage(tool, "--control steers --scene or zooms what 'glint "
-                                "bake LENS --positions N' made, and there is "
-                                "neither");
+    if (!over->file && over->control_file && !over->set_option)
+        return tool_usage(tool, "--control changes a flare or steers --scene, "
+                                "and there is neither");
     if (!over->file && over->pose_file)
         return tool_usage(tool, "--pose moves the things of --scene, of which "
                                 "there is none");

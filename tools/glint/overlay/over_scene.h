@@ -37,11 +37,12 @@ struct over_scene {
     const char *control_file; /* or NULL; "-": standard input */
     bool is_live;             /* a FIFO of poses or control is not waited for */
     struct scene_dials asked; /* by options; of size and camera nothing */
-    /* Zooms the lens, for lines of control; GLINT_E_ARGUMENT: ERROR says why it
-     * does not go there. NULL: there is none. */
-    enum glint_status (*zoom)(void *ctx, double zoom,
-                              struct glint_error *error);
-    void *zoom_ctx;
+    /* Sets the option NAME of the flare, for lines of control;
+     * GLINT_E_ARGUMENT: ERROR states why it stays as it was. NULL: there is no
+     * flare. */
+    enum glint_status (*set_option)(void *ctx, const char *name, double value,
+                                    struct glint_error *error);
+    void *set_ctx;
 
     double budget_ms;   /* what drawing may take; 0: as long as it does */
     int32_t elapsed_us; /* from the last picture to the next; 0: it is one by
