@@ -32,7 +32,11 @@ enum glint_pixel_format {
 };
 
 enum glint_range { GLINT_RANGE_FULL, GLINT_RANGE_LIMITED };
-enum glint_matrix { GLINT_MATRIX_BT601, GLINT_MATRIX_BT709 };
+enum glint_matrix {
+    GLINT_MATRIX_BT601,
+    GLINT_MATRIX_BT709,
+    GLINT_MATRIX_BT2020 /* of non-constant luminance */
+};
 enum glint_tone { GLINT_TONE_SRGB, GLINT_TONE_BT709 };
 
 /* A picture. Chroma planes of subsampled formats have (side + 1) / 2 samples,

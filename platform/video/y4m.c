@@ -84,9 +84,11 @@ const char *glint_y4m_layout_tag(enum glint_pixel_format format)
     return colours[i].tag;
 }
 
-bool glint_y4m_layout_is_plain(const struct glint_y4m_layout *layout)
+bool glint_y4m_is_plain(const struct glint_y4m_header *header)
 {
-    return layout->bits == 8 && !layout->is_411;
+    return header->layout.bits == 8 && !header->layout.is_411 &&
+           header->transfer == GLINT_TRANSFER_BT709 &&
+           header->primaries == GLINT_PRIMARIES_BT709;
 }
 
 void glint_y4m_layout_size(const struct glint_y4m_layout *layout, int plane,
@@ -385,6 +387,14 @@ size_t glint_y4m_header_print(char line[GLINT_Y4M_PRINTED],
 
 /* ----------------------------------------------------------------- reading */
 
+/* The light of a stream that is not BT.709, and of the copy of its frames,
+ * which is. */
+struct glint_y4m_seen {
+    struct glint_y4m_light from, to;
+};
+
+static void fill_seen(const struct glint_y4m_reader *r);
+
 static ptrdiff_t read_some(struct glint_y4m_reader *r, void *dst, size_t bytes)
 {
     return r->source ? r->source(r->ctx, dst, bytes)
@@ -499,6 +509,28 @@ enum glint_status glint_y4m_reader_open(struct glint_y4m_reader *reader,
     return status;
 }
 
+/* Returns whether the codes of H do not mean what those of BT.709 do. */
+static bool is_graded(const struct glint_y4m_header *h)
+{
+    return h->transfer != GLINT_TRANSFER_BT709 ||
+           h->primaries != GLINT_PRIMARIES_BT709;
+}
+
+static struct glint_y4m_seen *make_seen(const struct glint_y4m_header *h)
+{
+    struct glint_y4m_seen *const seen = malloc(sizeof *seen);
+    struct glint_y4m_header to = *h;
+
+    if (!seen)
+        return NULL;
+    to.transfer = GLINT_TRANSFER_BT709;
+    to.primaries = GLINT_PRIMARIES_BT709;
+    to.layout = (struct glint_y4m_layout){.format = h->format, .bits = 8};
+    glint_y4m_light_init(&seen->from, h);
+    glint_y4m_light_init(&seen->to, &to);
+    return seen;
+}
+
 /* Prepares r->frame. Its memory is taken with the first frame, so that a header
  * alone costs none. */
 static enum glint_status place_frame(struct glint_y4m_reader *r,
@@ -506,7 +538,7 @@ static enum glint_status place_frame(struct glint_y4m_reader *r,
 {
     const struct glint_y4m_header *const h = &r->header;
 
-    const bool is_plain = glint_y4m_layout_is_plain(&h->layout);
+    const bool is_plain = glint_y4m_is_plain(h);
     const size_t bytes =
         glint_y4m_layout_bytes(&h->layout, h->width, h->height);
 
@@ -514,7 +546,8 @@ static enum glint_status place_frame(struct glint_y4m_reader *r,
         r->mem = malloc(
             bytes +
             (is_plain ? 0 : glint_image_bytes(h->format, h->width, h->height)));
-        if (!r->mem)
+        r->seen = r->mem && is_graded(h) ? make_seen(h) : NULL;
+        if (!r->mem || (is_graded(h) && !r->seen))
             return glint_error_report(error, GLINT_E_MEMORY, r->name,
                                       "no memory for a %d x %d frame", h->width,
                                       h->height);
@@ -582,7 +615,9 @@ enum glint_status glint_y4m_reader_next(struct glint_y4m_reader *reader,
         return glint_error_report(error, GLINT_E_FORMAT, reader->name,
                                   "frame %ld: ends after %zu of %zu bytes",
                                   reader->n_frames, (size_t)got, bytes);
-    if (!glint_y4m_layout_is_plain(&h->layout))
+    if (reader->seen)
+        fill_seen(reader);
+    else if (!glint_y4m_is_plain(h))
         fill_proxy(&h->layout, &reader->frame, reader->planes);
     reader->n_frames++;
     *frame = &reader->frame;
@@ -593,7 +628,9 @@ void glint_y4m_reader_close(struct glint_y4m_reader *reader)
 {
     glint_input_close(&reader->in);
     free(reader->mem);
+    free(reader->seen);
     reader->mem = NULL;
+    reader->seen = NULL;
 }
 
 enum glint_status glint_y4m_writer_open(struct glint_y4m_writer *writer,
@@ -690,50 +727,6 @@ void glint_y4m_writer_abort(struct glint_y4m_writer *writer)
 #define WHITE_Q24 (INT32_C(1) << 24)
 #define WHITE_Q20 (INT32_C(1) << 20)
 
-static uint64_t mul_q30(uint64_t a_q30, uint64_t b_q30)
-{
-    return (a_q30 * b_q30 + (UINT64_C(1) << 29)) >> 30;
-}
-
-/* Returns x^9, 0 <= x <= 1. */
-static uint64_t power_q30(uint64_t x_q30)
-{
-    const uint64_t x2_q30 = mul_q30(x_q30, x_q30);
-    const uint64_t x4_q30 = mul_q30(x2_q30, x2_q30);
-
-    return mul_q30(mul_q30(x4_q30, x4_q30), x_q30);
-}
-
-/* Returns the largest r with r^9 <= x, 0 <= x <= 1. */
-static uint64_t root_q30(uint64_t x_q30)
-{
-    uint64_t r_q30 = 0;
-
-    for (uint64_t bit = UINT64_C(1) << 30; bit; bit >>= 1)
-        if ((r_q30 | bit) <= UINT64_C(1) << 30 &&
-            power_q30(r_q30 | bit) <= x_q30)
-            r_q30 |= bit;
-    return r_q30;
-}
-
-/* Returns the light of v = STEP / 4096 by BT.709: v / 4.5 below 0.081, else
- * u^(20/9), u = (v + 0.099) / 1.099. */
-static int32_t light_q24(int step)
-{
-    const uint64_t divisor = UINT64_C(1099) * GLINT_Y4M_STEPS;
-    uint64_t u_q30, u2_q30;
-
-    if (step * 1000 < 81 * GLINT_Y4M_STEPS)
-        return (
-            int32_t)(((uint64_t)step * 20 * WHITE_Q24 + 45 * GLINT_Y4M_STEPS) /
-                     (90 * GLINT_Y4M_STEPS));
-    u_q30 =
-        (((uint64_t)(1000 * step + 99 * GLINT_Y4M_STEPS) << 30) + divisor / 2) /
-        divisor;
-    u2_q30 = mul_q30(u_q30, u_q30);
-    return (int32_t)((mul_q30(u2_q30, root_q30(u2_q30)) + (1 << 5)) >> 6);
-}
-
 /* Returns the R'G'B' code, _q20, at which the straight lines between the
  * entries of DECODE reach LIGHT, _q24. */
 static int32_t place_q20(const int32_t *decode_q24, int32_t light)
@@ -754,18 +747,20 @@ static int32_t place_q20(const int32_t *decode_q24, int32_t light)
     return (int32_t)(((int64_t)low << 8) + ((over << 8) + step / 2) / step);
 }
 
-static void fill_tables(struct glint_y4m_light *l)
+static void fill_tables(struct glint_y4m_light *l,
+                        enum glint_transfer_curve curve)
 {
     for (int i = 0; i <= GLINT_Y4M_STEPS; i++)
-        l->decode_q24[i] = light_q24(i);
+        l->decode_q24[i] = glint_transfer_light_q24(curve, i, GLINT_Y4M_STEPS);
     for (int o = 0; o < GLINT_Y4M_OCTAVES; o++)
         for (int i = 0; i <= GLINT_Y4M_IN_OCTAVE; i++) {
             const int64_t light =
                 ((int64_t)(GLINT_Y4M_IN_OCTAVE + i) << o) / GLINT_Y4M_IN_OCTAVE;
 
             l->encode_q20[o][i] =
-                light >= WHITE_Q24 ? WHITE_Q20
-                                   : place_q20(l->decode_q24, (int32_t)light);
+                light >= l->decode_q24[GLINT_Y4M_STEPS]
+                    ? WHITE_Q20
+                    : place_q20(l->decode_q24, (int32_t)light);
         }
 }
 
@@ -775,7 +770,10 @@ void glint_y4m_light_init(struct glint_y4m_light *light,
     struct glint_y4m_light *const l = light;
     const int up = header->layout.bits - 8;
     const bool full = header->range == GLINT_RANGE_FULL;
-    const bool is_709 = header->matrix == GLINT_MATRIX_BT709;
+    /* Kr and Kb [ITU-R BT.601, BT.709, BT.2020] */
+    static const int32_t k_q16[][2] = {[GLINT_MATRIX_BT601] = {19595, 7471},
+                                       [GLINT_MATRIX_BT709] = {13933, 4732},
+                                       [GLINT_MATRIX_BT2020] = {17216, 3886}};
 
     l->layout = header->layout;
     l->width = header->width;
@@ -784,15 +782,16 @@ void glint_y4m_light_init(struct glint_y4m_light *light,
     l->black = full ? 0 : 16 << up;
     l->y_span = full ? l->most : 219 << up;
     l->c_span = full ? l->most : 224 << up;
-    l->kr_q16 = is_709 ? 13933 : 19595;
-    l->kb_q16 = is_709 ? 4732 : 7471;
+    l->kr_q16 = k_q16[header->matrix][0];
+    l->kb_q16 = k_q16[header->matrix][1];
     l->kg_q16 = 65536 - l->kr_q16 - l->kb_q16;
     l->y_factor = y4m_share_factor(20, l->y_span);
     l->c_factor = y4m_share_factor(20, l->c_span);
     l->cb_factor = y4m_share_factor(15, 65536 - l->kb_q16);
     l->cr_factor = y4m_share_factor(15, 65536 - l->kr_q16);
     l->g_factor = y4m_part_factor(l->kg_q16);
-    fill_tables(l);
+    l->primaries = header->primaries;
+    fill_tables(l, header->transfer);
 }
 
 static int32_t decode(const struct glint_y4m_light *l, int32_t v_q20)
@@ -800,7 +799,7 @@ static int32_t decode(const struct glint_y4m_light *l, int32_t v_q20)
     const int32_t *const at = l->decode_q24 + (v_q20 >> 8);
 
     if (v_q20 >= WHITE_Q20)
-        return WHITE_Q24;
+        return l->decode_q24[GLINT_Y4M_STEPS];
     return at[0] +
            (int32_t)(((int64_t)(at[1] - at[0]) * (v_q20 & 255) + 128) >> 8);
 }
@@ -811,12 +810,13 @@ static int32_t encode(const struct glint_y4m_light *l, int64_t light)
     int64_t place; /* place in the octave, with 16 fraction bits of an entry */
     const int32_t *at;
 
-    if (light >= WHITE_Q24)
+    if (light >= l->decode_q24[GLINT_Y4M_STEPS])
         return WHITE_Q20;
     if (light < 1)
         return 0;
-    while (light >> (octave + 1))
-        octave++;
+    for (int up = 16; up; up >>= 1)
+        if (light >> (octave + up))
+            octave += up;
     place = ((light - (INT64_C(1) << octave)) * GLINT_Y4M_IN_OCTAVE << 16) >>
             octave;
     at = l->encode_q20[octave] + (place >> 16);
@@ -861,30 +861,57 @@ static void to_rgb(const struct glint_y4m_light *l, const int32_t ycc[3],
     rgb_q20[2] = held(b, WHITE_Q20);
 }
 
+/* Multiplies LIGHT by M, whose rows sum up to 65536. */
+static void multiply(const int32_t m_q16[3][3], int64_t light[3])
+{
+    const int64_t r = light[0], g = light[1], b = light[2];
+
+    for (int c = 0; c < 3; c++)
+        light[c] =
+            y4m_halve(m_q16[c][0] * r + m_q16[c][1] * g + m_q16[c][2] * b, 16);
+}
+
+/* Sets Y', Cb and Cr, _q20, by R', G' and B'. */
+static void to_ycc(const struct glint_y4m_light *l, const int64_t rgb_q20[3],
+                   int64_t ycc_q20[3])
+{
+    const int64_t y =
+        y4m_halve(l->kr_q16 * rgb_q20[0] + l->kg_q16 * rgb_q20[1] +
+                      l->kb_q16 * rgb_q20[2],
+                  16);
+
+    ycc_q20[0] = y;
+    ycc_q20[1] = y4m_share((int32_t)(rgb_q20[2] - y), l->cb_factor);
+    ycc_q20[2] = y4m_share((int32_t)(rgb_q20[0] - y), l->cr_factor);
+}
+
 /* Sets the changes of Y', Cb and Cr, _q20, that the light of LAYER makes on a
  * pixel of YCC of which COVER_Q8 is hidden. */
 static void change_of(const struct glint_y4m_light *l, const int32_t ycc[3],
                       const float *layer, int cover_q8, int64_t change_q20[3])
 {
     int32_t rgb_q20[3];
-    int64_t d[3], y;
+    int64_t d[3], light[3];
 
     to_rgb(l, ycc, rgb_q20);
     for (int c = 0; c < 3; c++) {
-        const float light = layer[c] > 4 ? 4 : layer[c] > 0 ? layer[c] : 0;
+        const float most = 64;
+        const float held = layer[c] > most ? most : layer[c] > 0 ? layer[c] : 0;
 
+        light[c] = (int64_t)(held * WHITE_Q24);
+    }
+    if (l->primaries != GLINT_PRIMARIES_BT709)
+        multiply(glint_primaries_from_bt709_q16[l->primaries], light);
+    for (int c = 0; c < 3; c++) {
         const int32_t own = decode(l, rgb_q20[c]);
         const int64_t left =
             cover_q8 ? ((int64_t)own * (256 - cover_q8) + 128) >> 8 : own;
 
-        d[c] = encode(l, left + (int64_t)(light * WHITE_Q24)) - rgb_q20[c];
-        if (!cover_q8 && (d[c] < 0 || !(light > 0)))
+        d[c] = encode(l, left + light[c]) - rgb_q20[c];
+        if (!cover_q8 && (d[c] < 0 || light[c] == 0))
             d[c] = 0;
     }
-    y = y4m_halve(l->kr_q16 * d[0] + l->kg_q16 * d[1] + l->kb_q16 * d[2], 16);
-    change_q20[0] = y;
-    change_q20[1] = y4m_share((int32_t)(d[2] - y), l->cb_factor);
-    change_q20[2] = y4m_share((int32_t)(d[0] - y), l->cr_factor);
+    to_ycc(l, d, change_q20);
 }
 
 static bool is_lit(const float *layer)
@@ -951,6 +978,90 @@ static int least(int a, int b)
     return a < b ? a : b;
 }
 
+/* Sets ACROSS and DOWN to the pixels that share a chroma sample. */
+static void block_size(const struct glint_y4m_layout *layout, int *across,
+                       int *down)
+{
+    const bool is_grey = layout->format == GLINT_GREY;
+
+    *across = layout->is_411                            ? 4
+              : layout->format == GLINT_I444 || is_grey ? 1
+                                                        : 2;
+    *down = layout->format == GLINT_I420 ? 2 : 1;
+}
+
+/* Sets YCC_Q20 to the codes of TO for YCC, codes of FROM; light above white is
+ * cut off. */
+static void regrade(const struct glint_y4m_light *from,
+                    const struct glint_y4m_light *to, const int32_t ycc[3],
+                    int64_t ycc_q20[3])
+{
+    int32_t rgb_q20[3];
+    int64_t rgb[3];
+
+    to_rgb(from, ycc, rgb_q20);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = decode(from, rgb_q20[c]);
+    if (from->primaries != GLINT_PRIMARIES_BT709)
+        multiply(glint_primaries_to_bt709_q16[from->primaries], rgb);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = encode(to, rgb[c]);
+    to_ycc(to, rgb, ycc_q20);
+}
+
+static void regrade_block(const struct glint_y4m_seen *seen,
+                          const struct plane from[4], const struct plane to[4],
+                          const struct block *b)
+{
+    const struct glint_y4m_light *const f = &seen->from, *const t = &seen->to;
+    const int32_t middle = 1 << (f->layout.bits - 1);
+    const bool is_grey = from[1].size[0] == 0;
+    const int count = (b->x1 - b->x0) * (b->y1 - b->y0);
+    int32_t ycc[3] = {0, 0, 0};
+    int64_t made[3], sum[2] = {0, 0};
+
+    for (int c = 1; c < 3 && !is_grey; c++)
+        ycc[c] = take_code(&from[c], b->x, b->y) - middle;
+    for (int y = b->y0; y < b->y1; y++)
+        for (int x = b->x0; x < b->x1; x++) {
+            ycc[0] = take_code(&from[0], x, y);
+            regrade(f, t, ycc, made);
+            put_code(&to[0], x, y,
+                     held(t->black + y4m_halve(made[0] * t->y_span, 20), 255));
+            sum[0] += made[1];
+            sum[1] += made[2];
+        }
+    /* The copy of 4:1:1 is 4:2:2. */
+    for (int c = 1; c < 3 && !is_grey; c++)
+        for (int x = b->x0; x < b->x1; x += 2)
+            put_code(&to[c], f->layout.is_411 ? x / 2 : b->x, b->y,
+                     held(128 + mean_of(sum[c - 1] * t->c_span, count), 255));
+}
+
+/* Fills the copy of the last frame of R as BT.709 has it. */
+static void fill_seen(const struct glint_y4m_reader *r)
+{
+    const struct glint_y4m_light *const f = &r->seen->from, *const t =
+                                                                &r->seen->to;
+    struct plane from[4], to[4];
+    int across, down;
+
+    block_size(&f->layout, &across, &down);
+    find_planes(&f->layout, f->width, f->height, r->planes, from);
+    find_planes(&t->layout, t->width, t->height, r->frame.plane[0], to);
+    for (int y = 0; y < f->height; y += down)
+        for (int x = 0; x < f->width; x += across) {
+            const struct block block = {x / across,
+                                        y / down,
+                                        x,
+                                        y,
+                                        least(x + across, f->width),
+                                        least(y + down, f->height)};
+
+            regrade_block(r->seen, from, to, &block);
+        }
+}
+
 void glint_y4m_light_add(const struct glint_y4m_light *light, uint8_t *planes,
                          const float *layer)
 {
@@ -961,13 +1072,10 @@ void glint_y4m_light_cover(const struct glint_y4m_light *light, uint8_t *planes,
                            const float *layer, const uint16_t *cover_q8)
 {
     const struct glint_y4m_light *const l = light;
-    const bool is_grey = l->layout.format == GLINT_GREY;
-    const int across = l->layout.is_411                            ? 4
-                       : l->layout.format == GLINT_I444 || is_grey ? 1
-                                                                   : 2;
-    const int down = l->layout.format == GLINT_I420 ? 2 : 1;
     struct plane plane[4];
+    int across, down;
 
+    block_size(&l->layout, &across, &down);
     find_planes(&l->layout, l->width, l->height, planes, plane);
     for (int y = 0; y < l->height; y += down)
         for (int x = 0; x < l->width; x += across) {

@@ -16,10 +16,11 @@
  * Chroma of subsampled formats has (side + 1) / 2 samples, as everywhere in
  * glint. The layouts that are handled are listed below; the siting of
  * the chroma samples of 4:2:0 makes no difference here. Of frames of more than
- * 8 bits, and of 4:1:1, the reader gives a copy of 8 bits to look at; the
- * frames themselves are planes that glint_y4m_light adds light to and
- * glint_y4m_writer_put_planes() writes, with the alpha plane if they have one.
- * Interlaced frames are taken as they come, both fields in one.
+ * 8 bits, of 4:1:1, and of a transfer or primaries other than BT.709, the
+ * reader gives a copy of 8 bits in BT.709 to look at; the frames themselves are
+ * planes that glint_y4m_light adds light to and glint_y4m_writer_put_planes()
+ * writes, with the alpha plane if they have one. Interlaced frames are taken as
+ * they come, both fields in one.
  *
  * Meaning of the codes, unless the caller changes it in the header after open:
  *   range     limited; full only by the tag XCOLORRANGE=FULL. C420jpeg by
@@ -27,7 +28,7 @@
  *   matrix    BT.601 below 720 lines, BT.709 from there on; there is no tag.
  *             Full range as C420jpeg or without a C tag is BT.601 in any size,
  *             as JPEG pictures are
- *   transfer  BT.709
+ *   transfer, primaries  BT.709; there are no tags
  *
  * Tags that glint does not use, of the stream and of each frame, are carried
  * over as they are. Frames are counted from 0.
@@ -47,6 +48,9 @@
 #include "glint/image.h"
 #include "posix/input.h"
 #include "posix/output.h"
+#include "video/transfer.h"
+
+struct glint_y4m_seen;
 
 struct glint_y4m_layout {
     enum glint_pixel_format format; /* _GREY, _I420, _I422 or _I444; of 411 that
@@ -69,6 +73,8 @@ struct glint_y4m_header {
     struct glint_y4m_layout layout; /* layout of a stored frame */
     enum glint_range range;
     enum glint_matrix matrix;
+    enum glint_transfer_curve transfer;
+    enum glint_primaries primaries;
     int fps_num, fps_den;       /* frames a second; 0, 0: not known */
     char interlace;             /* the tag I: p progressive, t or b
                                    top or bottom field first, m mixed,
@@ -89,7 +95,9 @@ struct glint_y4m_header {
 typedef ptrdiff_t glint_y4m_source_fn(void *ctx, void *dst, size_t bytes);
 
 struct glint_y4m_reader {
-    struct glint_y4m_header header; /* range and matrix may be overruled */
+    /* Range, matrix, transfer and primaries may be overruled before the first
+     * frame. */
+    struct glint_y4m_header header;
     char frame_tags[GLINT_Y4M_FRAME_TAGS]; /* tags of the last frame: "", or all
                                               that follows FRAME */
     long n_frames;                         /* frames delivered so far */
@@ -102,6 +110,7 @@ struct glint_y4m_reader {
     struct glint_image frame;
     uint8_t *planes; /* planes of the last frame, as they were stored */
     uint8_t *mem;    /* memory of the frame and, before it, of its planes */
+    struct glint_y4m_seen *seen; /* NULL: codes mean what BT.709 says */
     uint8_t ahead[4096];
     /* bytes ahead_at .. ahead_end - 1 are not used yet */
     size_t ahead_at, ahead_end;
@@ -123,8 +132,8 @@ bool glint_y4m_layout_parse(struct glint_y4m_layout *layout, const char *tag);
 const char *glint_y4m_layout_tag(enum glint_pixel_format format);
 
 /* Returns whether a stored frame, but for an alpha plane, is a struct
- * glint_image as it is. */
-bool glint_y4m_layout_is_plain(const struct glint_y4m_layout *layout);
+ * glint_image as it is: 8 bits of BT.709. */
+bool glint_y4m_is_plain(const struct glint_y4m_header *header);
 
 /* Sets SIZE to the samples across and down PLANE, 0 .. 3, or to 0 and 0 if
  * there is no such plane. */
@@ -216,15 +225,15 @@ void glint_y4m_writer_abort(struct glint_y4m_writer *writer);
 
 /* -------------------------------------------------------------------- light
  *
- * Light on frames of any depth and layout. Codes become R', G', B' and these
- * linear light by BT.709. Light is added, and codes are changed by the
- * difference that it makes, chroma by the mean over its pixels. All is integers
- * and tables of integers, so that results are the same on every machine; codes
- * that no light falls on stay as they are. */
+ * Light on frames of any depth, layout and transfer. Codes become R', G', B'
+ * and these linear light (video/transfer.h). Light is added, and codes are
+ * changed by the difference that it makes, chroma by the mean over its pixels.
+ * All is integers and tables of integers, so that results are the same on every
+ * machine; codes that no light falls on stay as they are. */
 
 enum {
     GLINT_Y4M_STEPS = 4096,   /* steps of R'G'B' from black to white */
-    GLINT_Y4M_OCTAVES = 25,   /* octaves of light, from 2^-24 to white */
+    GLINT_Y4M_OCTAVES = 30,   /* octaves of light, from 2^-24 to 64 */
     GLINT_Y4M_IN_OCTAVE = 128 /* entries of an octave */
 };
 
@@ -238,6 +247,7 @@ struct glint_y4m_light {
     int64_t cb_factor, cr_factor,
         /* factors of 1 - kb, 1 - kr and kg */
         g_factor;
+    enum glint_primaries primaries;
     int32_t decode_q24[GLINT_Y4M_STEPS + 1]; /* light of each step */
     /* R'G'B' of light, by octave and entry */
     int32_t encode_q20[GLINT_Y4M_OCTAVES][GLINT_Y4M_IN_OCTAVE + 1];

@@ -117,8 +117,10 @@ static void fill_to_ycc(struct glint_ycc *ycc, int64_t kr, int64_t kb,
 void glint_ycc_init(struct glint_ycc *ycc, enum glint_matrix matrix,
                     enum glint_range range)
 {
-    const int64_t kr = matrix == GLINT_MATRIX_BT601 ? 2990 : 2126;
-    const int64_t kb = matrix == GLINT_MATRIX_BT601 ? 1140 : 722;
+    static const int64_t k[][2] = {[GLINT_MATRIX_BT601] = {2990, 1140},
+                                   [GLINT_MATRIX_BT709] = {2126, 722},
+                                   [GLINT_MATRIX_BT2020] = {2627, 593}};
+    const int64_t kr = k[matrix][0], kb = k[matrix][1];
     const int y_steps = range == GLINT_RANGE_FULL ? 255 : 219;
     const int c_steps = range == GLINT_RANGE_FULL ? 255 : 224;
 

@@ -15,6 +15,7 @@
 #include "options/numbered.h"
 #include "formats/picture.h"
 #include "posix/error.h"
+#include "video/transfer.h"
 
 static const char help[] =
     "glint overlay IN -o OUT [options]\n"
@@ -33,7 +34,12 @@ static const char help[] =
     "\n"
     "  -o, --output OUT\n"
     "  --range R           auto | full | limited codes of a video\n"
-    "  --matrix M          auto | 601 | 709\n"
+    "  --matrix M          auto | 601 | 709 | 2020\n"
+    "  --transfer T        auto | 709 | srgb | linear | gamma22 | gamma28 | "
+    "240m | pq |\n"
+    "                      hlg | log100 | log316: the curve from codes to "
+    "light;\n"
+    "                      auto: the file's tag, else 709\n"
     "  --encode OPTIONS    of ffmpeg for the pictures it writes, in place of\n"
     "                      glint's (H.264: -crf 18): '-c:v libx265 -crf 20'\n"
     "  --start-number N    first of a sequence (default: 0 or 1, as "
@@ -83,7 +89,7 @@ static bool take_frames(struct overlay *o, const char *text)
 static bool take(struct overlay *o, int option, const char *value)
 {
     static const char *const ranges[] = {"auto", "full", "limited", NULL};
-    static const char *const matrices[] = {"auto", "601", "709", NULL};
+    static const char *const matrices[] = {"auto", "601", "709", "2020", NULL};
     static const char *const types[] = {"half", "float", NULL};
     int word;
 
@@ -92,6 +98,9 @@ static bool take(struct overlay *o, int option, const char *value)
         return take_word(value, ranges, &o->range);
     case 'x':
         return take_word(value, matrices, &o->matrix);
+    case 'C':
+        o->transfer = tool_word(value, glint_transfer_words);
+        return o->transfer >= 0 || strcmp(value, "auto") == 0;
     case 'Q':
         return tool_integer(value, 1, 100, &o->quality);
     case 'L':
@@ -117,6 +126,7 @@ static const struct option own[] = {
     {"output", required_argument, NULL, 'o'},
     {"range", required_argument, NULL, 'r'},
     {"matrix", required_argument, NULL, 'x'},
+    {"transfer", required_argument, NULL, 'C'},
     {"start-number", required_argument, NULL, 'n'},
     {"jpeg-quality", required_argument, NULL, 'Q'},
     {"frames", required_argument, NULL, 'F'},
@@ -150,7 +160,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
             o->output = optarg;
         else if (c == 'e')
             o->encode = optarg;
-        else if (strchr("rxnQLTFWB", c)) {
+        else if (strchr("rxCnQLTFWB", c)) {
             if (!take(o, c, optarg))
                 return tool_refuse(tool, options[index].name, optarg);
         } else if ((code = tool_option(tool, c, optarg)) >= 0)
@@ -344,7 +354,7 @@ int cmd_overlay(int argc, char **argv)
     if (!o)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     compositor_defaults(&o->compositor);
-    o->start_number = -1;
+    o->start_number = o->transfer = -1;
     o->last = o->warm_up = INT_MAX;
     code = parse(&tool, argc, argv, o);
     if (code < 0) {

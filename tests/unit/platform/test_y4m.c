@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -525,6 +526,166 @@ static void test_light_stays(void **state)
     assert_in_range(planes[0], 170, 176);
 }
 
+/* Returns the light of code V by the formulas of the standards, 1 = diffuse
+ * white: 203 cd/m2 of PQ, the light of code 0.75 of HLG [BT.2408]. */
+static double reference(enum glint_transfer_curve curve, double v)
+{
+    const double a = 0.17883277, b = 1 - 4 * a, c = 0.5 - a * log(4 * a);
+    double p;
+
+    switch (curve) {
+    case GLINT_TRANSFER_SRGB:
+        return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+    case GLINT_TRANSFER_LINEAR:
+        return v;
+    case GLINT_TRANSFER_GAMMA22:
+        return pow(v, 2.2);
+    case GLINT_TRANSFER_GAMMA28:
+        return pow(v, 2.8);
+    case GLINT_TRANSFER_240M:
+        return v < 0.0912 ? v / 4 : pow((v + 0.1115) / 1.1115, 1 / 0.45);
+    case GLINT_TRANSFER_PQ:
+        p = pow(v, 32 / 2523.0);
+        return 10000 / 203.0 *
+               pow(fmax(p - 3424 / 4096.0, 0) /
+                       (2413 / 128.0 - 2392 / 128.0 * p),
+                   8192 / 1305.0);
+    case GLINT_TRANSFER_HLG:
+        return (v <= 0.5 ? v * v / 3 : (exp((v - c) / a) + b) / 12) /
+               ((exp((0.75 - c) / a) + b) / 12);
+    case GLINT_TRANSFER_LOG100:
+        return v > 0 ? pow(10, 2 * (v - 1)) : 0;
+    case GLINT_TRANSFER_LOG316:
+        return v > 0 ? pow(10, 2.5 * (v - 1)) : 0;
+    default:
+        return v < 0.081 ? v / 4.5 : pow((v + 0.099) / 1.099, 1 / 0.45);
+    }
+}
+
+/* The tables must be those of the formulas. */
+static void test_transfers(void **state)
+{
+    (void)state;
+    for (int t = 0; t < GLINT_TRANSFERS; t++)
+        for (int i = 0; i <= GLINT_Y4M_STEPS; i++) {
+            const double want =
+                reference((enum glint_transfer_curve)t, i / 4096.0);
+            const int32_t light_q24 = glint_transfer_light_q24(
+                (enum glint_transfer_curve)t, i, GLINT_Y4M_STEPS);
+
+            assert_true(fabs(ldexp(light_q24, -24) - want) <=
+                        2e-5 * want + 1e-7);
+        }
+    assert_int_equal(glint_transfer_of_tag("arib-std-b67"), GLINT_TRANSFER_HLG);
+    assert_int_equal(glint_transfer_of_tag("hlg"), -1);
+    assert_int_equal(glint_primaries_of_tag("bt2020"), GLINT_PRIMARIES_BT2020);
+    assert_int_equal(glint_primaries_of_tag("film"), -1);
+}
+
+/* Returns the code V, 0 .. 1, of LIGHT. */
+static double reference_code(enum glint_transfer_curve curve, double light)
+{
+    double low = 0, high = 1;
+
+    for (int i = 0; i < 60; i++) {
+        const double middle = (low + high) / 2;
+
+        *(reference(curve, middle) < light ? &low : &high) = middle;
+    }
+    return high;
+}
+
+/* Adds LIGHT, of BT.709's red if IS_RED, to grounds of 0.001 to 4 times white
+ * of CURVE, in 16 bits, and compares what is added with LIGHT. */
+static void check_added(enum glint_transfer_curve curve,
+                        enum glint_primaries primaries, double light,
+                        bool is_red)
+{
+    static const double red_2020[] = {0.627404, 0.069097, 0.016391};
+    static struct glint_y4m_light y4m;
+    struct glint_y4m_header h;
+    const double most = fmin(4, reference(curve, 1) - light);
+    float layer[3] = {(float)light, is_red ? 0 : (float)light,
+                      is_red ? 0 : (float)light};
+
+    assert_int_equal(parse(&h, "YUV4MPEG2 W1 H1 C444p16 XCOLORRANGE=FULL"),
+                     GLINT_OK);
+    h.matrix = GLINT_MATRIX_BT2020;
+    h.transfer = curve;
+    h.primaries = primaries;
+    glint_y4m_light_init(&y4m, &h);
+    /* Codes of the logarithms begin above 0. */
+    for (double ground = fmax(0.001, 2 * reference(curve, 1e-5)); ground < most;
+         ground *= 1.7) {
+        const int code = (int)(65535 * reference_code(curve, ground) + 0.5);
+        uint8_t planes[6] = {
+            (uint8_t)code, (uint8_t)(code >> 8), 0, 128, 0, 128};
+        double y, cb, cr, rgb[3];
+
+        glint_y4m_light_add(&y4m, planes, layer);
+        y = wide_at(planes, 0) / 65535.0;
+        cb = (wide_at(planes, 1) - 32768) / 65535.0;
+        cr = (wide_at(planes, 2) - 32768) / 65535.0;
+        rgb[0] = y + 2 * (1 - 0.2627) * cr;
+        rgb[2] = y + 2 * (1 - 0.0593) * cb;
+        rgb[1] = (y - 0.2627 * rgb[0] - 0.0593 * rgb[2]) / 0.678;
+        for (int c = 0; c < 3; c++) {
+            const double want = light * (is_red ? red_2020[c] : 1);
+            const double got =
+                reference(curve, rgb[c]) - reference(curve, code / 65535.0);
+
+            assert_true(fabs(got - want) <=
+                        0.02 * want + 2e-4 * (ground + light));
+        }
+    }
+}
+
+/* Light must be added in the light of the stated transfer and primaries, within
+ * 2 % and the steps of 16 bits. */
+static void test_light_of_transfers(void **state)
+{
+    (void)state;
+    for (int t = 0; t < GLINT_TRANSFERS; t++)
+        for (double light = 0.02; light < 1; light *= 3) {
+            check_added((enum glint_transfer_curve)t, GLINT_PRIMARIES_BT709,
+                        light, false);
+            check_added((enum glint_transfer_curve)t, GLINT_PRIMARIES_BT2020,
+                        light, false);
+            check_added((enum glint_transfer_curve)t, GLINT_PRIMARIES_BT2020,
+                        light, true);
+        }
+}
+
+/* Writes a stream of PQ to a file and compares the copy that is seen: white of
+ * 203 cd/m2 and all above must be white of BT.709, of 8 bits too. */
+static void test_graded_copy(void **state)
+{
+    static const double nits[] = {0, 20.3, 203, 4000};
+    static const int want[] = {16, 80, 235, 235};
+    struct glint_y4m_reader in;
+    const struct glint_image *frame;
+    char bytes[64] = "YUV4MPEG2 W4 H1 Cmono10\nFRAME\n";
+    const size_t at = strlen(bytes);
+    struct memory memory = {bytes, at + 8, 0, 7, false};
+
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        const int code = (int)(64.5 + 876 * reference_code(GLINT_TRANSFER_PQ,
+                                                           nits[i] / 203));
+
+        bytes[at + 2 * (size_t)i] = (char)code;
+        bytes[at + 2 * (size_t)i + 1] = (char)(code >> 8);
+    }
+    assert_int_equal(glint_y4m_reader_start(&in, pull, &memory, "pq", &error),
+                     GLINT_OK);
+    in.header.transfer = GLINT_TRANSFER_PQ;
+    in.header.primaries = GLINT_PRIMARIES_BT2020;
+    assert_int_equal(glint_y4m_reader_next(&in, &frame, &error), GLINT_OK);
+    for (int i = 0; i < 4; i++)
+        assert_in_range(frame->plane[0][i], want[i] - 1, want[i] + 1);
+    glint_y4m_reader_close(&in);
+}
+
 /* 720 x 405 pixels as ffmpeg writes them, with 203 rows of chroma, must be
  * copied. */
 static void test_odd_video(void **state)
@@ -621,6 +782,9 @@ int main(void)
         cmocka_unit_test(test_deep_frames),
         cmocka_unit_test(test_light),
         cmocka_unit_test(test_light_stays),
+        cmocka_unit_test(test_transfers),
+        cmocka_unit_test(test_light_of_transfers),
+        cmocka_unit_test(test_graded_copy),
         cmocka_unit_test(test_odd_video),
         cmocka_unit_test(test_strides),
         cmocka_unit_test(test_full_device),

@@ -483,15 +483,41 @@ long ffmpeg_count_frames(const char *name)
     return strtol(n, NULL, 10);
 }
 
-bool ffmpeg_matrix(const struct ffmpeg_video *video, enum glint_matrix *matrix)
+/* Adds KIND and TAG to REPORT, ", KIND TAG", if they are unknown. */
+static int note_tag(int value, const char *kind, const char *tag,
+                    char report[FFMPEG_REPORT])
+{
+    const size_t n = strlen(report);
+
+    if (value < 0 && *tag)
+        snprintf(report + n, FFMPEG_REPORT - n, ", %s %s", kind, tag);
+    return value;
+}
+
+void ffmpeg_colours(const struct ffmpeg_video *video,
+                    struct glint_y4m_header *header, char report[FFMPEG_REPORT])
 {
     static const char *const sd[] = {"smpte170m", "bt470bg", "fcc", NULL};
-    const bool is_sd = is_one_of(video->space, sd);
+    static const char *const rgb[] = {"gbr", "rgb", NULL};
+    const char *const space = video->space;
+    const int matrix = is_one_of(space, sd)             ? GLINT_MATRIX_BT601
+                       : strcmp(space, "bt709") == 0    ? GLINT_MATRIX_BT709
+                       : strcmp(space, "bt2020nc") == 0 ? GLINT_MATRIX_BT2020
+                                                        : -1;
+    const int transfer = glint_transfer_of_tag(video->transfer);
+    const int primaries = glint_primaries_of_tag(video->primaries);
 
-    if (!is_sd && strcmp(video->space, "bt709") != 0)
-        return false;
-    *matrix = is_sd ? GLINT_MATRIX_BT601 : GLINT_MATRIX_BT709;
-    return true;
+    *report = '\0';
+    if (!is_one_of(space, rgb))
+        note_tag(matrix, "matrix", space, report);
+    note_tag(transfer, "transfer", video->transfer, report);
+    note_tag(primaries, "primaries", video->primaries, report);
+    if (matrix >= 0)
+        header->matrix = (enum glint_matrix)matrix;
+    if (transfer >= 0)
+        header->transfer = (enum glint_transfer_curve)transfer;
+    if (primaries >= 0)
+        header->primaries = (enum glint_primaries)primaries;
 }
 
 /* ------------------------------------------------------------------- words */

@@ -25,6 +25,7 @@
 
 #include "options/tool.h"
 #include "posix/output.h"
+#include "video/y4m.h"
 
 enum child_pipe {
     CHILD_WRITES, /* The child's standard output is FD, its input is empty. */
@@ -44,7 +45,7 @@ struct child {
 /* A child that is none. */
 #define CHILD_NONE ((struct child){.fd = -1, .said = -1})
 
-enum { FFMPEG_WORD = 32, FFMPEG_URL = 4096 };
+enum { FFMPEG_WORD = 32, FFMPEG_URL = 4096, FFMPEG_REPORT = 256 };
 
 /* A video in words of ffmpeg's, "" if unknown. */
 struct ffmpeg_video {
@@ -97,8 +98,12 @@ void ffmpeg_probe(struct ffmpeg_video *video, const char *name);
  * reads; 0 if it cannot. */
 long ffmpeg_count_frames(const char *name);
 
-/* Sets MATRIX to that of VIDEO's codes. Returns false if it is not stated. */
-bool ffmpeg_matrix(const struct ffmpeg_video *video, enum glint_matrix *matrix);
+/* Sets what HEADER says of the meaning of codes to what VIDEO's tags state.
+ * REPORT becomes the tags that glint does not know, ", matrix ictcp", and of
+ * which HEADER keeps what it had. */
+void ffmpeg_colours(const struct ffmpeg_video *video,
+                    struct glint_y4m_header *header,
+                    char report[FFMPEG_REPORT]);
 
 /* Starts ffmpeg as CHILD, which writes NAME as y4m to child->fd.
  * GLINT_E_UNSUPPORTED: there is no ffmpeg, or NAME has more than some 4000

@@ -25,6 +25,7 @@ struct overlay {
     int32_t elapsed_us; /* microseconds from frame to frame; 0: pictures by
                            themselves */
     int range, matrix;  /* 0: auto */
+    int transfer;       /* enum glint_transfer_curve; -1: auto */
     int quality;        /* quality of JPEG and WebP; 0: the input's */
     bool is_video;
     bool lists_shots; /* Prints the frames from cut to cut, draws nothing. */

@@ -82,6 +82,29 @@ static ptrdiff_t read_child(void *ctx, void *dst, size_t bytes)
     return n;
 }
 
+/* Sets the meaning of the input's codes by its tags, and prints a warning of
+ * tags that are not known, or that are missing though the video is of 2020's
+ * primaries. */
+static void take_colours(struct video *v)
+{
+    static const char *const matrices[] = {"601", "709", "2020"};
+    struct glint_y4m_header *const h = &v->in.header;
+    char unknown[FFMPEG_REPORT];
+
+    ffmpeg_colours(&v->about, h, unknown);
+    if (!*unknown && !*v->about.transfer &&
+        h->primaries != GLINT_PRIMARIES_BT709)
+        snprintf(unknown, sizeof unknown, ", no transfer");
+    if (*unknown && !v->tool->quiet)
+        fprintf(stderr,
+                "glint overlay: %s: tagged with %s; read with matrix %s and "
+                "transfer %s, see --matrix and --transfer\n",
+                v->o->input, unknown + 2,
+                matrices[v->o->matrix ? v->o->matrix - 1 : (int)h->matrix],
+                glint_transfer_words[v->o->transfer >= 0 ? v->o->transfer
+                                                         : (int)h->transfer]);
+}
+
 /* Opens the input through ffmpeg, which itself prints what it cannot read.
  * Returns an exit code. */
 static int open_coded(struct video *v)
@@ -98,7 +121,7 @@ static int open_coded(struct video *v)
     status = glint_y4m_reader_start(&v->in, read_child, &v->reader, v->o->input,
                                     &v->error);
     if (status == GLINT_OK) {
-        ffmpeg_matrix(&v->about, &v->in.header.matrix);
+        take_colours(v);
         return EXIT_OK;
     }
     if (child_end(&v->reader) != 0)
@@ -140,7 +163,9 @@ static int open_input(struct video *v)
     if (code == EXIT_OK && o->range)
         h->range = o->range == 1 ? GLINT_RANGE_FULL : GLINT_RANGE_LIMITED;
     if (code == EXIT_OK && o->matrix)
-        h->matrix = o->matrix == 1 ? GLINT_MATRIX_BT601 : GLINT_MATRIX_BT709;
+        h->matrix = (enum glint_matrix)(o->matrix - 1);
+    if (code == EXIT_OK && o->transfer >= 0)
+        h->transfer = (enum glint_transfer_curve)o->transfer;
     return code;
 }
 

@@ -91,13 +91,14 @@ int overlay_y4m_draw(struct tool *tool, struct overlay *o,
                      struct glint_y4m_reader *in,
                      const struct glint_image *image)
 {
-    if (glint_y4m_layout_is_plain(&in->header.layout))
+    if (glint_y4m_is_plain(&in->header))
         return overlay_draw(tool, o, image);
     if (compositor_marks(&o->compositor))
         return tool_usage(tool,
-                          "--show lights marks frames of 8 bits, and "
-                          "these are C%s",
-                          in->header.colour);
+                          "--show lights marks frames of 8 bits in BT.709, "
+                          "and these are C%s, transfer %s",
+                          *in->header.colour ? in->header.colour : "420jpeg",
+                          glint_transfer_words[in->header.transfer]);
     if (!o->y4m)
         o->y4m = make(&in->header);
     if (!o->y4m)

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * video/transfer.h - the transfer curves and primaries that a video's tags name
+ * [ITU-T H.273], as tables of integers, which are the same on every CPU.
+ *
+ * Light 1 is diffuse white: code 1, but 203 cd/m2 by PQ and 0.265 of the peak
+ * of the scene light by HLG [ITU-R BT.2408], so that these have room for light
+ * up to 49.3 and 3.77.
+ */
+#ifndef GLINT_PLATFORM_VIDEO_TRANSFER_H
+#define GLINT_PLATFORM_VIDEO_TRANSFER_H
+
+#include <stdint.h>
+
+enum glint_transfer_curve {
+    GLINT_TRANSFER_BT709, /* also BT.601 and BT.2020 */
+    GLINT_TRANSFER_SRGB,
+    GLINT_TRANSFER_LINEAR,
+    GLINT_TRANSFER_GAMMA22,
+    GLINT_TRANSFER_GAMMA28,
+    GLINT_TRANSFER_240M,
+    GLINT_TRANSFER_PQ,
+    GLINT_TRANSFER_HLG,
+    GLINT_TRANSFER_LOG100,
+    GLINT_TRANSFER_LOG316,
+    GLINT_TRANSFERS
+};
+
+enum glint_primaries {
+    GLINT_PRIMARIES_BT709, /* also BT.601, whose differences are ignored */
+    GLINT_PRIMARIES_BT2020,
+    GLINT_PRIMARIES_P3,
+    GLINT_PRIMARIES
+};
+
+/* Each word of these lists, which end with NULL, is that of an option. */
+extern const char *const glint_transfer_words[];
+
+/* Return the curve and the primaries of TAG, ffmpeg's name of them; -1 if there
+ * are none such. */
+int glint_transfer_of_tag(const char *tag);
+int glint_primaries_of_tag(const char *tag);
+
+/* Returns the light of code V = STEP / STEPS, 0 <= STEP <= STEPS <= 2^16; 2^24
+ * is white. It rises with STEP; light below 2^-24 is 0. The relative error is
+ * below 1e-5 plus rounding. */
+int32_t glint_transfer_light_q24(enum glint_transfer_curve curve, int step,
+                                 int steps);
+
+/* from linear light of BT.709's primaries to that of others, and back; 65536 is
+ * 1. The rows sum up to that, so white stays white. */
+extern const int32_t glint_primaries_from_bt709_q16[GLINT_PRIMARIES][3][3];
+extern const int32_t glint_primaries_to_bt709_q16[GLINT_PRIMARIES][3][3];
+
+#endif
