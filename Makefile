@@ -192,7 +192,7 @@ build/glint-sdl.so: platform/sdl/sdl.c platform/sdl/sdl.h
 	$(Q)$(CC) -std=c99 $(filter-out -Wundef,$(WARN)) $(PLUGGED) -Iinclude -Iplatform \
 	        $< -o $@ $$(pkg-config --cflags --libs sdl2)
 
-include tools/make/hosts.mk tools/make/man.mk tools/make/check.mk tools/make/emulated.mk tools/make/measure.mk tools/make/shared.mk tools/make/install.mk tools/make/debian.mk
+include tools/make/hosts.mk tools/make/web.mk tools/make/man.mk tools/make/check.mk tools/make/emulated.mk tools/make/measure.mk tools/make/shared.mk tools/make/install.mk tools/make/debian.mk
 clean:
 	rm -rf build
 .PHONY: all help always oiio assimp window glint-live clean

@@ -25,7 +25,7 @@ else ifeq ($(filter -static,$(LDFLAGS)),)
 CFLAGS += -fPIE
 LINKED += -pie
 endif
-ifneq ($(filter release qcheck,$(CONFIG)),)
+ifneq ($(and $(filter release qcheck,$(CONFIG)),$(filter-out wasm32,$(ARCH))),)
 $(engine_o) $(bake_o) $(platform_o) $(tools_o) $(main_o): CFLAGS += \
         -fstack-protector-strong -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2
 endif

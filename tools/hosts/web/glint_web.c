@@ -1,0 +1,519 @@
+/* SPDX-License-Identifier: MIT */
+#include "web/glint_web.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "glint/area.h"
+#include "glint/bake.h"
+#include "glint/engine.h"
+#include "glint/options.h"
+
+/* Roundness of the blades unless --stop has a shape, as of glint overlay. */
+#define PHOTO_ROUNDNESS 0.2
+
+/* Wavelengths of exact rays for "auto". */
+enum { EXACT_WAVES = 9 };
+
+static struct {
+    struct glint_error error;
+    struct glint_options options;
+    char *text[GLINT_N_OPTIONS]; /* values of options of type TEXT */
+
+    struct glint_prescription table;
+    bool is_open, is_model; /* IS_MODEL: opened for a WIDEST f-number */
+    char name[GLINT_NAME_BYTES + 32];
+    unsigned char *data;
+    size_t bytes;
+    struct glint_lens lens;
+    struct glint_dirt *dirt;
+    struct glint_front_dirt *front;
+    struct glint_setup setup;
+    struct glint_projection projection;
+
+    struct glint_engine *engine;
+    int width, height;
+    struct glint_engine_lamp found[GLINT_ENGINE_MAX_LAMPS];
+    struct glint_engine_lamp lamp[GLINT_ENGINE_MAX_LAMPS];
+    int n_found;
+    double row[GLINT_ENGINE_MAX_LAMPS][WEB_COLUMNS];
+} web;
+
+/* Sets the reason of a failure; returns 0. */
+static int fail(const char *reason)
+{
+    snprintf(web.error.text, sizeof web.error.text, "%s", reason);
+    return 0;
+}
+
+static int check(enum glint_status status)
+{
+    if (status != GLINT_OK && !web.error.text[0])
+        fail(glint_status_text(status));
+    return status == GLINT_OK;
+}
+
+void *web_take(size_t bytes)
+{
+    return malloc(bytes);
+}
+
+void web_free(void *mem)
+{
+    free(mem);
+}
+
+const char *web_error(void)
+{
+    return web.error.text;
+}
+
+/* ------------------------------------------------------------------ options */
+
+void web_reset(void)
+{
+    for (int i = 0; i < GLINT_N_OPTIONS; i++) {
+        free(web.text[i]);
+        web.text[i] = NULL;
+    }
+    glint_options_defaults(&web.options);
+}
+
+/* Returns whether option ROW is for the command alone: files, scenes, videos,
+ * and what the page itself does. */
+static bool is_foreign(const struct glint_option *row)
+{
+    static const char *const names[] = {
+        "lights",      "interpolate", "light-at", "save-lights", "light",
+        "no-tracking", "show",        "layer",    "style",       "preview",
+        "mask",        "edge-fade",   "keys",     "still",       "stop-mask",
+        "ghosts",      "front-mask",  "budget"};
+    bool is = row->group == GLINT_OPTIONS_SCENE ||
+              row->group == GLINT_OPTIONS_SHADING;
+
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        is = is || strcmp(row->name, names[i]) == 0;
+    return is;
+}
+
+int web_set(const char *name, const char *text)
+{
+    const struct glint_option *const row = glint_option_named(name);
+    struct glint_error why = {""};
+    char *copy;
+
+    web.error.text[0] = '\0';
+    if (!row || is_foreign(row)) {
+        snprintf(web.error.text, sizeof web.error.text, "no option %s", name);
+        return 0;
+    }
+    copy = strdup(text);
+    if (!copy)
+        return fail("no memory");
+    if (glint_options_set_text(&web.options, name, copy, &why) != GLINT_OK) {
+        snprintf(web.error.text, sizeof web.error.text, "%s is %.160s, not %s",
+                 name, why.text, text);
+        free(copy);
+        return 0;
+    }
+    free(web.text[row - glint_option(0)]);
+    web.text[row - glint_option(0)] = copy;
+    return 1;
+}
+
+/* --------------------------------------------------------------------- lens */
+
+static void close_engine(void)
+{
+    glint_engine_destroy(web.engine);
+    web.engine = NULL;
+    web.n_found = 0;
+    glint_dirt_free(web.dirt);
+    web.dirt = NULL;
+    glint_front_free(web.front);
+    web.front = NULL;
+}
+
+static void close_lens(void)
+{
+    close_engine();
+    free(web.data);
+    web.data = NULL;
+    web.bytes = 0;
+    web.is_open = false;
+}
+
+/* Puts the films of --coating on the table. */
+static int coat(void)
+{
+    struct glint_coating coating[GLINT_MAX_COATINGS];
+    const char *const text = web.options.coating;
+    int n;
+
+    if (strcmp(text, "table") == 0)
+        return 1;
+    if (strcmp(text, "mixed") != 0) {
+        if (!check(glint_coatings_parse(coating, &n, text, &web.error)))
+            return 0;
+        glint_prescription_coat(&web.table, coating, n);
+    } else if (web.table.n_mixed) {
+        glint_prescription_coat(&web.table, web.table.mixed, web.table.n_mixed);
+    } else {
+        n = glint_coatings_mixed(coating);
+        glint_prescription_coat(&web.table, coating, n);
+    }
+    return 1;
+}
+
+static int move_groups(void)
+{
+    const struct glint_options *const o = &web.options;
+    enum glint_status status = GLINT_OK;
+    double along = o->zoom;
+
+    if (GLINT_OPTION_GIVEN(o, zoom) && along > 1)
+        status =
+            glint_prescription_zoom_to(&web.table, o->zoom, &along, &web.error);
+    if (status == GLINT_OK && GLINT_OPTION_GIVEN(o, zoom))
+        status = glint_prescription_zoom(&web.table, along, &web.error);
+    if (status == GLINT_OK && o->focus > 0)
+        status = glint_prescription_focus(&web.table, o->focus, &web.error);
+    return check(status);
+}
+
+/* Returns what the model is baked with, as glint overlay chooses it; a model
+ * that was asked for by itself has the defaults of glint bake. */
+static struct glint_bake_options bake_options(void)
+{
+    const struct glint_options *const o = &web.options;
+    const struct glint_prescription *const l = &web.table;
+    struct glint_waves waves = {GLINT_WAVES_AUTO, 0, {0}};
+    struct glint_bake_options b;
+    double mm[2];
+
+    glint_bake_defaults(&b);
+    if (web.is_model)
+        return b;
+    b.tolerance = glint_options_quality(o).tolerance;
+    glint_option_waves(o->wavelengths, &waves);
+    for (int i = 0; waves.kind == GLINT_WAVES_LIST && i < waves.n; i++) {
+        b.band_nm[0] =
+            fmin(b.band_nm[0], fmax(300, 10 * floor(waves.nm[i] / 10)));
+        b.band_nm[1] =
+            fmax(b.band_nm[1], fmin(1100, 10 * ceil(waves.nm[i] / 10)));
+    }
+    if (o->sensor && glint_option_sensor(o->sensor, mm) &&
+        hypot(mm[0], mm[1]) > hypot(l->film_width_mm, l->film_height_mm))
+        b.field_mm = 0.55 * hypot(mm[0], mm[1]);
+    return b;
+}
+
+const char *web_open(double widest)
+{
+    const struct glint_options *const o = &web.options;
+    const struct web_lens *from = web_lens;
+    struct glint_bake_options b;
+    double f = 0;
+
+    close_lens();
+    web.error.text[0] = '\0';
+    while (from->name && strcmp(from->name, o->lens) != 0)
+        from++;
+    if (!from->name)
+        return fail("there is no such lens"), NULL;
+    if (!check(glint_prescription_parse(&web.table, from->text,
+                                        strlen(from->text), from->name,
+                                        &web.error)) ||
+        !move_groups() || !coat())
+        return NULL;
+    web.is_model = widest > 0;
+    if (web.is_model)
+        f = widest;
+    else if (o->f_number > 0 &&
+             (o->rays == GLINT_RAYS_EXACT || o->f_number < web.table.f_number))
+        f = o->f_number;
+    if (f > 0 &&
+        !check(glint_prescription_set_f_number(&web.table, f, &web.error)))
+        return NULL;
+    b = bake_options();
+    snprintf(web.name, sizeof web.name, "%s-%016llx.glint", web.table.name,
+             (unsigned long long)glint_bake_key(&web.table, &b));
+    web.is_open = true;
+    return web.name;
+}
+
+int web_model(void *data, size_t bytes)
+{
+    const char *reason = "no lens is open";
+
+    close_engine();
+    free(web.data);
+    web.data = data;
+    web.bytes = bytes;
+    if (web.is_open &&
+        glint_lens_open(&web.lens, data, bytes, &reason) == GLINT_OK)
+        return 1;
+    free(web.data);
+    web.data = NULL;
+    web.bytes = 0;
+    return fail(reason);
+}
+
+int web_bake(void)
+{
+    const struct glint_bake_options b = bake_options();
+    struct glint_bake_report report;
+    unsigned char *data;
+    size_t bytes;
+
+    if (!web.is_open)
+        return fail("no lens is open");
+    web.error.text[0] = '\0';
+    return check(glint_bake(&web.table, &b, &data, &bytes, &report,
+                            &web.error)) &&
+           web_model(data, bytes);
+}
+
+const void *web_model_data(void)
+{
+    return web.data;
+}
+
+size_t web_model_bytes(void)
+{
+    return web.bytes;
+}
+
+/* ------------------------------------------------------------------- engine */
+
+/* Returns the stop of the options, or that of photographs. */
+static struct glint_stop_shape stop_shape(void)
+{
+    struct glint_stop_shape shape = {8, 0, PHOTO_ROUNDNESS, 0};
+
+    if (web.options.stop)
+        glint_option_stop(web.options.stop, &shape);
+    else if (!web.is_model && web.table.stop_is_circle)
+        shape = (struct glint_stop_shape){0, 0, 0, 0};
+    return shape;
+}
+
+static int set_up(bool exact)
+{
+    const struct glint_options *const o = &web.options;
+    const struct glint_stop_shape shape = stop_shape();
+    struct glint_waves waves = {GLINT_WAVES_AUTO, 0, {0}};
+    double nm[GLINT_MAX_WAVELENGTHS] = {650, 532, 450};
+    double rgb[GLINT_MAX_WAVELENGTHS][3], share[GLINT_MAX_WAVELENGTHS];
+    struct glint_iris iris = {.roundness = shape.roundness,
+                              .softness = shape.softness};
+    struct glint_setup *const s = &web.setup;
+    enum glint_status status;
+    int n = 3;
+
+    glint_option_waves(o->wavelengths, &waves);
+    if (waves.kind == GLINT_WAVES_AUTO && exact) {
+        waves.kind = GLINT_WAVES_COUNT;
+        waves.n = EXACT_WAVES;
+    }
+    if (waves.kind != GLINT_WAVES_AUTO)
+        n = waves.n;
+    if (waves.kind == GLINT_WAVES_COUNT)
+        glint_spectrum(n, nm, rgb, share);
+    else if (waves.kind == GLINT_WAVES_LIST)
+        memcpy(nm, waves.nm, sizeof nm);
+    if (o->dust)
+        glint_option_dust(o->dust, &iris.dust, &iris.dust_seed);
+    status =
+        exact ? glint_setup_init(s, &web.table, shape.n_blades,
+                                 shape.rotation_deg, nm, n, &web.error)
+              : glint_setup_from_model(s, &web.lens, shape.n_blades,
+                                       shape.rotation_deg, nm, n, &web.error);
+    if (status == GLINT_OK && !exact && o->f_number > 0)
+        status = glint_setup_stop_down(s, &web.lens, o->f_number, &web.error);
+    if (status == GLINT_OK &&
+        (iris.roundness > 0 || iris.softness > 0 || iris.dust > 0))
+        status = glint_setup_iris(s, &iris, &web.dirt, &web.error);
+    if (status != GLINT_OK)
+        return check(status);
+    if (waves.kind == GLINT_WAVES_COUNT)
+        glint_setup_weigh(s);
+    else if (waves.kind == GLINT_WAVES_AUTO &&
+             web.lens.header->basis != GLINT_BASIS_SPARSE)
+        glint_setup_spread(s, &web.lens);
+    if (o->balance)
+        glint_setup_balance(s);
+    return 1;
+}
+
+static int make_front(void)
+{
+    struct glint_front front = {.dust = 0};
+
+    if (web.options.front_dust)
+        glint_option_dust(web.options.front_dust, &front.dust,
+                          &front.dust_seed);
+    return check(glint_front_make(&web.front, &front, &web.error));
+}
+
+int web_size(int width, int height)
+{
+    const struct glint_options *const o = &web.options;
+    const bool exact = o->rays == GLINT_RAYS_EXACT;
+    struct glint_engine_config cfg;
+    double miss_deg;
+
+    web.error.text[0] = '\0';
+    close_engine();
+    if (!web.is_open || (!exact && !web.data))
+        return fail("there is no model of the lens");
+    web.projection = (struct glint_projection){0, {0}};
+    if (o->projection == GLINT_PROJECTION_LENS &&
+        !check(glint_projection_of(&web.projection, &web.table, &miss_deg,
+                                   &web.error)))
+        return 0;
+    if (!set_up(exact) || !make_front())
+        return 0;
+    glint_engine_defaults(&cfg, width, height);
+    glint_engine_configure(&cfg, o);
+    cfg.model = exact ? NULL : &web.lens;
+    cfg.search.more_lamps = GLINT_ENGINE_MAX_LAMPS;
+    cfg.camera.setup = &web.setup;
+    cfg.camera.rays = &glint_frame_traces;
+    cfg.camera.front = web.front;
+    cfg.camera.projection = &web.projection;
+    if (!(cfg.camera.sensor_width_mm > 0)) {
+        cfg.camera.sensor_width_mm = web.table.film_width_mm;
+        cfg.camera.sensor_height_mm = web.table.film_height_mm;
+    }
+    web.width = width;
+    web.height = height;
+    return check(glint_engine_create(&web.engine, &cfg, &web.error));
+}
+
+static struct glint_image image_of(uint8_t *pixels)
+{
+    struct glint_image image = {
+        .format = GLINT_XBGR8888, .width = web.width, .height = web.height};
+
+    glint_image_place(&image, pixels);
+    return image;
+}
+
+double *web_lamps(void)
+{
+    return web.row[0];
+}
+
+/* Writes the row that glint overlay --save-lights would save of LAMP. */
+static void set_row(double row[WEB_COLUMNS],
+                    const struct glint_engine_lamp *lamp)
+{
+    const struct glint_view *const view = glint_engine_view(web.engine);
+    const double *const axis = lamp->lamp.axis;
+    const double pixels = view->width * fabs(web.setup.optics.focal_mm) /
+                          view->sensor_width_mm; /* per tangent */
+
+    row[WEB_X] = lamp->track.x_q8 / 256.0;
+    row[WEB_Y] = lamp->track.y_q8 / 256.0;
+    row[WEB_POWER] = lamp->lamp.power;
+    memcpy(row + WEB_RED, lamp->lamp.rgb, sizeof lamp->lamp.rgb);
+    row[WEB_SIZE] = pixels * hypot(axis[0], axis[1]);
+    row[WEB_SHAPE] = axis[0] > 0 ? axis[1] / axis[0] : 1;
+    row[WEB_TURN] = lamp->lamp.turn_deg;
+    row[WEB_LEVEL] = lamp->level;
+    row[WEB_SEEN] = fmax(lamp->seen_px, 0);
+}
+
+/* Returns the lamp that glint overlay --lights makes of ROW. */
+static struct glint_engine_lamp lamp_of(const double row[WEB_COLUMNS],
+                                        uint32_t id)
+{
+    const struct glint_view *const view = glint_engine_view(web.engine);
+    const double focal_mm = web.setup.optics.focal_mm;
+    const double size =
+        row[WEB_SIZE] * glint_view_pixel_tangent(view, focal_mm);
+    struct glint_lamp lamp = {.power = row[WEB_POWER]};
+    struct glint_engine_lamp known;
+
+    glint_view_to_angles(view, focal_mm, row[WEB_X], row[WEB_Y], &lamp);
+    memcpy(lamp.rgb, row + WEB_RED, sizeof lamp.rgb);
+    glint_area_set_round(&lamp, size);
+    if (row[WEB_SHAPE] != 1) {
+        lamp.axis[0] = row[WEB_SIZE] *
+                       glint_view_pixel_tangent(view, focal_mm) /
+                       sqrt(1 + row[WEB_SHAPE] * row[WEB_SHAPE]);
+        lamp.axis[1] = row[WEB_SHAPE] * lamp.axis[0];
+        lamp.turn_deg = row[WEB_TURN];
+    }
+    known = glint_engine_lamp_of(&lamp, id);
+    known.level = row[WEB_LEVEL];
+    known.seen_px = row[WEB_SEEN];
+    return known;
+}
+
+int web_find(uint8_t *pixels)
+{
+    struct glint_image image;
+
+    if (!web.engine)
+        return 0;
+    image = image_of(pixels);
+    web.n_found = glint_engine_find(web.engine, &image, 0, web.found,
+                                    GLINT_ENGINE_MAX_LAMPS);
+    for (int i = 0; i < web.n_found; i++)
+        set_row(web.row[i], &web.found[i]);
+    return web.n_found;
+}
+
+int web_doubtful(double xy[2])
+{
+    struct glint_spot spot;
+
+    if (!web.engine || !glint_engine_doubtful(web.engine, &spot))
+        return 0;
+    xy[0] = spot.x_q8 / 256.0;
+    xy[1] = spot.y_q8 / 256.0;
+    return 1;
+}
+
+/* Returns whether ROW is one that glint overlay --lights accepts. */
+static bool is_row(const double row[WEB_COLUMNS])
+{
+    return fabs(row[WEB_X]) <= 1e6 && fabs(row[WEB_Y]) <= 1e6 &&
+           glint_lamp_power_is_valid(row[WEB_POWER], row + WEB_RED) &&
+           fmin(row[WEB_RED], fmin(row[WEB_GREEN], row[WEB_BLUE])) >= 0 &&
+           row[WEB_SIZE] >= 0 && row[WEB_SIZE] <= 1e6 && row[WEB_SHAPE] >= 0 &&
+           row[WEB_SHAPE] <= 1 && row[WEB_LEVEL] > 0 && row[WEB_LEVEL] <= 1 &&
+           row[WEB_SEEN] >= 0 && row[WEB_SEEN] <= 1e6 &&
+           isfinite(row[WEB_TURN]);
+}
+
+int web_draw(uint8_t *pixels, int n)
+{
+    struct glint_engine_config cfg;
+    struct glint_engine_report report;
+    struct glint_image image;
+
+    if (!web.engine)
+        return fail("there is no engine");
+    if (n > GLINT_ENGINE_MAX_LAMPS)
+        return fail("more than 1024 lamps");
+    web.error.text[0] = '\0';
+    image = image_of(pixels);
+    if (n == WEB_FOUND) {
+        n = web.n_found;
+        memcpy(web.lamp, web.found, (size_t)n * sizeof *web.lamp);
+    } else
+        for (int i = 0; i < n; i++) {
+            if (!is_row(web.row[i]))
+                return fail("a lamp is out of range");
+            web.lamp[i] = lamp_of(web.row[i], (uint32_t)i + 1);
+        }
+    glint_engine_configure(&cfg, &web.options);
+    glint_engine_set_light(web.engine, &cfg.light);
+    glint_engine_elapsed(web.engine, 0);
+    return check(glint_engine_draw(web.engine, web.lamp, n, &image, &report));
+}

@@ -1,0 +1,31 @@
+# The page of tools/hosts/web: glint as a WebAssembly module, by Debian's clang, lld
+# and WASI, and the files that a web server serves, in build/web.
+
+WEB_PACKAGES := clang lld llvm wasi-libc libclang-rt-dev-wasm32
+wasm := build/wasm32/glint.wasm
+web_files := $(filter-out %.c %.h %/lens_tables %.md,$(wildcard tools/hosts/web/*)) $(wildcard tools/hosts/web/sample/*)
+web:
+	@tools/make/deps "the page" $(WEB_PACKAGES)
+	@$(MAKE) --no-print-directory wasm build/glint
+	@mkdir -p build/web/models
+	$(Q)cp $(wasm) $(filter-out %/README.md,$(wildcard tools/hosts/web/*.html tools/hosts/web/*.css tools/hosts/web/*.js)) build/web
+	@echo "build/web/glint.wasm: $$(wc -c <build/web/glint.wasm) bytes, $$(gzip -9c build/web/glint.wasm | wc -c) by gzip"
+# The module alone. Objects of another machine, as those of boards.
+wasm:
+	@$(MAKE) --no-print-directory CC='clang --target=wasm32-wasi' OUT=build/wasm32 LDFLAGS=-static \
+	        WITH_JPEG=no WITH_INIH=no WITH_JANSSON=no WITH_EXPAT=no $(wasm)
+.PHONY: web wasm
+web_o := $(patsubst %,$(OUT)/%.o,tools/hosts/web/glint_web tools/hosts/web/tables tools/glint/desk/styles web_lens)
+$(OUT)/web_lens.c: tools/hosts/web/lens_tables $(wildcard lenses/*.lens lenses/*/*.lens)
+	@mkdir -p $(@D)
+	$(Q)$^ >$@
+$(OUT)/web_lens.o: $(OUT)/web_lens.c
+	$(say) CC $<
+	$(Q)$(CC) -Itools/hosts -Os -c $< -o $@
+$(wasm): $(core_o) $(engine_o) $(bake_o) $(web_o)
+	$(say) LD $@
+	$(Q)$(CC) -mexec-model=reactor -Wl,-s,--gc-sections,-z,stack-size=1048576 $(filter %.o,$^) -o $@
+ifeq ($(ARCH),wasm32)
+# NAN of this C library is a float.
+$(engine_o): CFLAGS += -Wno-double-promotion
+endif
