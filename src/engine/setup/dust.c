@@ -87,9 +87,13 @@ void glint_dust_strew(struct glint_dust *dust, double amount, int seed)
         return;
     for (int i = 0; i < n_lines; i++)
         add_scratch(dust, &d);
-    for (int i = 0; i < n_smudges; i++)
-        add_disc(dust, &d, between(&d, 0.15, 0.4), 0.9,
-                 fmin(amount * between(&d, 0.5, 2), 0.5));
+    for (int i = 0; i < n_smudges; i++) {
+        /* One draw a statement: compilers differ in the order of arguments. */
+        const double opacity = fmin(amount * between(&d, 0.5, 2), 0.5);
+        const double radius = between(&d, 0.15, 0.4);
+
+        add_disc(dust, &d, radius, 0.9, opacity);
+    }
     while (left > 0 && dust->n < GLINT_DUST_MOST) {
         const double radius =
             least_radius * pow(most_radius / least_radius, pow(next(&d), 1.5));
