@@ -3,12 +3,15 @@
 
 WEB_PACKAGES := clang lld llvm wasi-libc libclang-rt-dev-wasm32
 wasm := build/wasm32/glint.wasm
-web_files := $(filter-out %.c %.h %/lens_tables %.md,$(wildcard tools/hosts/web/*)) $(wildcard tools/hosts/web/sample/*)
+web_files := $(wildcard $(addprefix tools/hosts/web/*.,html css js svg))
+# The models of the styles' lenses come with the page; it bakes those of others.
 web:
 	@tools/make/deps "the page" $(WEB_PACKAGES)
 	@$(MAKE) --no-print-directory wasm build/glint
 	@mkdir -p build/web/models
-	$(Q)cp $(wasm) $(filter-out %/README.md,$(wildcard tools/hosts/web/*.html tools/hosts/web/*.css tools/hosts/web/*.js)) build/web
+	$(Q)cp $(wasm) $(web_files) build/web && cp tests/data/bridge.jpg build/web/sample.jpg
+	$(Q)XDG_CACHE_HOME=$(CURDIR)/build/web-cache build/glint styles tests/data/bridge.ppm -o build/web-cache.ppm -q
+	$(Q)cp build/web-cache/glint/*.glint build/web/models
 	@echo "build/web/glint.wasm: $$(wc -c <build/web/glint.wasm) bytes, $$(gzip -9c build/web/glint.wasm | wc -c) by gzip"
 # The module alone. Objects of another machine, as those of boards.
 wasm:
