@@ -19,7 +19,7 @@
 #include <string.h>
 
 #include "engine/engine_parts.h"
-#include "overlay/compositor.h"
+#include "overlay/drawing.h"
 #include "video/y4m.h"
 #include "posix/error.h"
 #include "support/night.h"
@@ -31,7 +31,7 @@ enum { WIDTH = 640, HEIGHT = 360, FRAMES = 150, FRAME_US = 40000, WINDOW = 10 };
 
 struct steady {
     struct tool tool;
-    struct compositor compositor;
+    struct drawing drawing;
     double total, own;        /* last frame's light after and before exposure */
     double truth[WINDOW + 1]; /* true light, the last frame first; -1:
                                * unknown */
@@ -44,13 +44,14 @@ struct steady {
 
 static double light_of(struct steady *s)
 {
-    const struct compositor *const c = &s->compositor;
+    const struct drawing *const c = &s->drawing;
     struct glint_response_light light;
 
-    if (glint_response_draw(&c->engine->paint.frame,
-                            glint_engine_plain(c->engine, c->lamp, c->n_lamps),
-                            c->n_lamps, GLINT_RESPONSE_COARSE, NULL, &light,
-                            NULL) != GLINT_OK)
+    if (glint_response_draw(
+            &c->run.engine->paint.frame,
+            glint_engine_plain(c->run.engine, c->run.lamp, c->run.n_lamps),
+            c->run.n_lamps, GLINT_RESPONSE_COARSE, NULL, &light,
+            NULL) != GLINT_OK)
         exit(EXIT_RUNTIME);
     return glint_largest_channel(light.mean);
 }
@@ -79,7 +80,7 @@ static double true_span(const struct steady *s)
 
 static void note(struct steady *s, double total, double own)
 {
-    const bool is_cut = compositor_is_new(&s->compositor);
+    const bool is_cut = drawing_is_new(&s->drawing);
     /* A fainter flare is unseen, so it does not step when it appears. */
     const double least = 1e-6;
 
@@ -107,21 +108,21 @@ static void note(struct steady *s, double total, double own)
 static void frame(struct steady *s, const struct glint_image *image,
                   int32_t elapsed_us)
 {
-    struct compositor *compositor = &s->compositor;
+    struct drawing *drawing = &s->drawing;
     double own, drawn, power = 0, held = 0;
 
-    compositor_find(compositor, image, elapsed_us);
+    drawing_find(drawing, image, elapsed_us);
     own = drawn = light_of(s);
-    for (int i = 0; i < compositor->n_lamps; i++)
-        power += compositor->lamp[i].lamp.power;
-    compositor_expose(compositor, image);
-    for (int i = 0; i < compositor->n_lamps; i++)
-        held += compositor->lamp[i].lamp.power;
+    for (int i = 0; i < drawing->run.n_lamps; i++)
+        power += drawing->run.lamp[i].lamp.power;
+    drawing_expose(drawing, image);
+    for (int i = 0; i < drawing->run.n_lamps; i++)
+        held += drawing->run.lamp[i].lamp.power;
     if (held < power) /* where lamps are too bright */
         drawn = light_of(s);
-    note(s, drawn * compositor_scale(compositor), own);
-    if (compositor->n_lamps > s->most_lights)
-        s->most_lights = compositor->n_lamps;
+    note(s, drawn * drawing_scale(&drawing->run), own);
+    if (drawing->run.n_lamps > s->most_lights)
+        s->most_lights = drawing->run.n_lamps;
     s->frames++;
 }
 
@@ -130,7 +131,7 @@ static void begin(struct steady *s, int width, int height)
     s->total = s->own = s->worst = s->largest = 0;
     s->unmade = s->unmade_frame = 0;
     s->worst_frame = s->cuts = s->frames = s->most_lights = 0;
-    if (compositor_size(&s->tool, &s->compositor, width, height) != EXIT_OK)
+    if (drawing_size(&s->tool, &s->drawing, width, height) != EXIT_OK)
         exit(EXIT_RUNTIME);
 }
 
@@ -273,7 +274,7 @@ static double seen_of(const struct night *night, const struct night_lamp *lamp,
 static void note_truth(struct steady *s, const struct night *night,
                        const struct night_lamp *lamp, int n)
 {
-    const struct compositor *c = &s->compositor;
+    const struct drawing *c = &s->drawing;
     struct glint_engine_lamp all[16];
     const struct glint_strength_lamps lamps = {all, n, (double)WIDTH * HEIGHT};
     struct glint_response_light light;
@@ -283,11 +284,12 @@ static void note_truth(struct steady *s, const struct night *night,
         struct glint_lamp one = {.rgb = {1, 1, 1}};
 
         one.power = seen_of(night, &lamp[i], at);
-        glint_view_to_angles(&c->view, c->settings.setup.optics.focal_mm, at[0],
+        glint_view_to_angles(&c->run.view,
+                             c->line.settings.setup.optics.focal_mm, at[0],
                              at[1], &one);
         all[i] = glint_engine_lamp_of(&one, 1);
     }
-    glint_strength_light(&c->engine->expose.response, &lamps, &light);
+    glint_strength_light(&c->run.engine->expose.response, &lamps, &light);
     memmove(s->truth + 1, s->truth, WINDOW * sizeof *s->truth);
     s->truth[0] = glint_largest_channel(light.mean);
 }
@@ -337,14 +339,14 @@ int main(int argc, char **argv)
     bool good = true;
     int c;
 
-    compositor_defaults(&s.compositor);
+    drawing_line_defaults(&s.drawing.line);
     while ((c = getopt_long(argc, argv, "", options, NULL)) >= 0) {
         if (c != 'l')
             return EXIT_USAGE;
-        s.compositor.settings.options.lens = optarg;
+        s.drawing.line.settings.options.lens = optarg;
     }
     if (tool_start(&s.tool) != EXIT_OK ||
-        compositor_open(&s.tool, &s.compositor) != EXIT_OK)
+        drawing_open(&s.tool, &s.drawing) != EXIT_OK)
         return EXIT_RUNTIME;
     puts("| scene | frames | lights | cuts | largest step, % | beside the "
          "lamps' own, % | at frame | that no lamp made, % | at frame |\n"
@@ -353,7 +355,7 @@ int main(int argc, char **argv)
         good = run_scene(&s, k) && good;
     for (int i = optind; i < argc; i++)
         good = run_video(&s, argv[i]) && good;
-    compositor_close(&s.compositor);
+    drawing_close(&s.drawing);
     tool_finish(&s.tool);
     return good ? 0 : 1;
 }

@@ -8,6 +8,7 @@
 #include "overlay/apart.h"
 #include "lens_pages/drawing.h"
 #include "model/table_file.h"
+#include "posix/output.h"
 
 static const char help[] =
     "glint draw LENS -o FILE.svg [--ghost K [--angle DEG]] [--rays N]\n"
@@ -118,7 +119,7 @@ static int save(const struct tool *tool, const struct draw *o)
     FILE *file = open_memstream(&text, &bytes);
 
     if (file) {
-        shown = drawing_write(&o->drawing, file);
+        shown = lens_drawing_write(&o->drawing, file);
         if (fclose(file) == 0)
             status =
                 glint_output_open(&out, o->output, GLINT_OUTPUT_TEXT, &error);
@@ -163,7 +164,7 @@ int cmd_draw(int argc, char **argv)
     struct draw o = {.output = NULL};
     int code;
 
-    drawing_defaults(&o.drawing, &o.lens);
+    lens_drawing_defaults(&o.drawing, &o.lens);
     code = parse(&tool, argc, argv, &o);
     if (code >= 0)
         return code;

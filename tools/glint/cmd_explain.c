@@ -11,7 +11,7 @@
 #include "explain/explain_scene.h"
 #include "overlay/apart.h"
 #include "desk/ghost_sheet.h"
-#include "overlay/compositor.h"
+#include "overlay/drawing.h"
 #include "overlay/overlay_line.h"
 #include "glint/measure.h"
 #include "options/command_line.h"
@@ -66,7 +66,7 @@ enum {
 enum { AUTO, CODES, LINEAR };
 
 struct explain_command {
-    struct compositor compositor;
+    struct drawing drawing;
     const char *input, *output, *ghosts, *sheet;
     int width, height; /* 0: those of the input */
     int picture, order, top;
@@ -114,20 +114,21 @@ static bool take(struct explain_command *c, int option, const char *value)
 
 static int check(struct tool *tool, const struct explain_command *c)
 {
-    const struct settings *s = &c->compositor.settings;
+    const struct settings *s = &c->drawing.line.settings;
 
     if (c->input && c->width)
         return tool_usage(tool, "takes one picture, or --size");
     if (c->input && c->picture == LINEAR)
         return tool_usage(tool, "--picture linear goes with --size");
-    if (c->compositor.scene.file && c->picture == LINEAR)
+    if (c->drawing.line.settings.options.scene && c->picture == LINEAR)
         return tool_usage(tool, "--picture linear is not for --scene");
-    if (!c->compositor.scene.file &&
-        strcmp(c->compositor.settings.options.lens, "none") == 0)
+    if (!c->drawing.line.settings.options.scene &&
+        strcmp(c->drawing.line.settings.options.lens, "none") == 0)
         return tool_usage(tool, "--lens none leaves nothing to explain but a "
                                 "--scene");
-    if (!c->input && !c->compositor.scene.file && c->compositor.n_hand == 0 &&
-        c->compositor.at.n == 0 && !c->compositor.settings.options.lights)
+    if (!c->input && !c->drawing.line.settings.options.scene &&
+        c->drawing.line.n_hand == 0 && c->drawing.line.at.n == 0 &&
+        !c->drawing.line.settings.options.lights)
         return tool_usage(tool, "--size needs a --light or --lights FILE");
     if (s->options.rays != GLINT_RAYS_MODEL)
         return tool_usage(tool, "explains what is drawn from a model, not "
@@ -139,16 +140,16 @@ static int parse(struct tool *tool, int argc, char **argv,
                  struct explain_command *c)
 {
     const struct option *const options =
-        engine_getopt(tool, ENGINE_ALL, &c->compositor.settings.options, own);
+        engine_getopt(tool, ENGINE_ALL, &c->drawing.line.settings.options, own);
     int option, index = 0;
-    int code = compositor_style_of(tool, &c->compositor, argc, argv,
-                                   "o:" TOOL_COMMON_SHORT, options);
+    int code = drawing_line_style_of(tool, &c->drawing.line, argc, argv,
+                                     "o:" TOOL_COMMON_SHORT, options);
 
     if (code >= 0)
         return code;
     while ((option = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                                  &index)) >= 0) {
-        code = compositor_option(tool, &c->compositor, option, optarg);
+        code = drawing_line_option(tool, &c->drawing.line, option, optarg);
         if (code == -2 && (option == 'o' || option >= ENGINE_OPTIONS_END)) {
             code = -1;
             if (!take(c, option, optarg))
@@ -194,29 +195,30 @@ static int load(struct tool *tool, struct explain_command *c)
  * bits that glint render would save. */
 static enum glint_status draw_linear(struct explain_command *c)
 {
-    struct compositor *compositor = &c->compositor;
+    struct drawing *drawing = &c->drawing;
     const size_t n = (size_t)c->width * (size_t)c->height;
     struct glint_float_image light = {.width = c->width, .height = c->height};
     enum glint_status status = GLINT_E_MEMORY;
     struct glint_lamp *plain;
     uint8_t *codes;
 
-    compositor_lamps(compositor, &c->image, 0);
-    plain = malloc(((size_t)compositor->n_lamps + 1) * sizeof *plain);
-    for (int i = 0; i < compositor->n_lamps && plain; i++)
-        plain[i] = compositor->lamp[i].lamp;
+    drawing_find_lamps(drawing, &c->image, 0);
+    plain = malloc(((size_t)drawing->run.n_lamps + 1) * sizeof *plain);
+    for (int i = 0; i < drawing->run.n_lamps && plain; i++)
+        plain[i] = drawing->run.lamp[i].lamp;
     light.rgb = calloc(3 * n, sizeof *light.rgb);
     if (light.rgb && plain)
         status = glint_engine_render(
-            compositor->engine, plain, compositor->n_lamps,
-            settings_scale(&compositor->settings), GLINT_ENGINE_ALL, light.rgb,
-            &compositor->report);
+            drawing->run.engine, plain, drawing->run.n_lamps,
+            settings_scale(&drawing->line.settings), GLINT_ENGINE_ALL,
+            light.rgb, &drawing->run.report);
     free(plain);
     if (status == GLINT_OK) {
         codes = glint_measure_encode(
-            &light, GLINT_OPTION_GIVEN(&compositor->settings.options, exposure)
-                        ? 1
-                        : glint_measure_exposure(&light));
+            &light,
+            GLINT_OPTION_GIVEN(&drawing->line.settings.options, exposure)
+                ? 1
+                : glint_measure_exposure(&light));
         if (codes)
             memcpy(c->image.plane[0], codes, 3 * n);
         else
@@ -253,7 +255,7 @@ static int save_ghosts(struct tool *tool, const struct explain_command *c,
     struct glint_error error = {""};
     int ghosts[GLINT_MAX_GHOSTS];
     const struct ghost_list list = {.explain = e,
-                                    .lens = c->compositor.settings.lens.name,
+                                    .lens = c->drawing.line.settings.lens.name,
                                     .ghosts = ghosts,
                                     .top = c->top,
                                     .picture = &c->image};
@@ -275,7 +277,7 @@ static int tell_scene(struct tool *tool, const struct explain_command *c,
     struct explained_scene scene;
     int code = EXIT_OK;
     const enum glint_status status =
-        explained_scene_open(&scene, &c->compositor, flare);
+        explained_scene_open(&scene, &c->drawing, flare);
 
     if (status != GLINT_OK)
         return tool_fail(tool, status, NULL);
@@ -295,22 +297,22 @@ static int tell_scene(struct tool *tool, const struct explain_command *c,
 
 static int tell(struct tool *tool, struct explain_command *c, bool linear)
 {
-    struct compositor *compositor = &c->compositor;
-    const struct explain_title title = {.lens = compositor->settings.lens.name,
-                                        .lamp = compositor->lamp,
-                                        .n_lamps = compositor->n_lamps,
-                                        .linear = linear,
-                                        .order =
-                                            (enum glint_explain_order)c->order,
-                                        .top = c->top,
-                                        .report = &compositor->report};
+    struct drawing *drawing = &c->drawing;
+    const struct explain_title title = {
+        .lens = drawing->line.settings.lens.name,
+        .lamp = drawing->run.lamp,
+        .n_lamps = drawing->run.n_lamps,
+        .linear = linear,
+        .order = (enum glint_explain_order)c->order,
+        .top = c->top,
+        .report = &drawing->run.report};
     struct glint_explain e;
-    const enum glint_status status =
-        glint_explain_open(&e, compositor->engine,
-                           linear ? settings_scale(&compositor->settings) : 0);
+    const enum glint_status status = glint_explain_open(
+        &e, drawing->run.engine,
+        linear ? settings_scale(&drawing->line.settings) : 0);
     int code = EXIT_OK;
 
-    if (status == GLINT_OK && compositor->scene.is_open)
+    if (status == GLINT_OK && drawing->files.scene.is_open)
         code = tell_scene(tool, c, &e);
     if (status != GLINT_OK)
         code = tool_fail(tool, status, NULL);
@@ -318,13 +320,13 @@ static int tell(struct tool *tool, struct explain_command *c, bool linear)
         explain_json(&e, &title);
     else
         explain_print(&e, &title);
-    if (code == EXIT_OK && tool->json && compositor->scene.is_open)
+    if (code == EXIT_OK && tool->json && drawing->files.scene.is_open)
         printf("}\n");
-    if (status == GLINT_OK && compositor->n_lamps == 0 && !tool->quiet) {
+    if (status == GLINT_OK && drawing->run.n_lamps == 0 && !tool->quiet) {
         fflush(stdout); /* It comes after what was told. */
-        overlay_say_none(compositor, stderr);
+        overlay_say_none(drawing, stderr);
     }
-    if (code == EXIT_OK && c->output && !compositor->scene.is_open)
+    if (code == EXIT_OK && c->output && !drawing->files.scene.is_open)
         code = save(tool, c, &e, &title, NULL);
     if (code == EXIT_OK && (c->ghosts || c->sheet))
         code = save_ghosts(tool, c, &e);
@@ -355,15 +357,15 @@ static int check_apart(const struct tool *tool, const struct explain_command *c)
     apart_write(&files, "-o", c->output);
     apart_write(&files, "--save-ghosts", c->ghosts);
     apart_write(&files, "--ghost-sheet", c->sheet);
-    apart_compositor(&files, &c->compositor);
+    apart_line(&files, &c->drawing.line);
     return apart_check(tool, &files);
 }
 
 static int run(struct tool *tool, struct explain_command *c)
 {
     const bool linear =
-        c->picture == LINEAR ||
-        (c->picture == AUTO && c->width && !c->compositor.scene.file);
+        c->picture == LINEAR || (c->picture == AUTO && c->width &&
+                                 !c->drawing.line.settings.options.scene);
     enum glint_status status;
     int code;
 
@@ -373,22 +375,20 @@ static int run(struct tool *tool, struct explain_command *c)
         return EXIT_OUTPUT;
     code = check_apart(tool, c);
     if (code == EXIT_OK)
-        code = compositor_open(tool, &c->compositor);
+        code = drawing_open(tool, &c->drawing);
     if (code == EXIT_OK)
         code = load(tool, c);
     if (code == EXIT_OK)
-        code = compositor_size(tool, &c->compositor, c->image.width,
-                               c->image.height);
+        code = drawing_size(tool, &c->drawing, c->image.width, c->image.height);
     if (code != EXIT_OK)
         return code;
-    status =
-        linear ? draw_linear(c) : compositor_draw(&c->compositor, &c->image, 0);
+    status = linear ? draw_linear(c) : drawing_draw(&c->drawing, &c->image, 0);
     if (status != GLINT_OK)
         return tool_fail(tool, status, NULL);
-    code = compositor_finish(tool, &c->compositor);
+    code = drawing_finish(tool, &c->drawing);
     if (code == EXIT_OK)
-        code = c->compositor.has_lens ? tell(tool, c, linear)
-                                      : tell_scene(tool, c, NULL);
+        code = c->drawing.files.has_lens ? tell(tool, c, linear)
+                                         : tell_scene(tool, c, NULL);
     return code;
 }
 
@@ -401,8 +401,8 @@ int cmd_explain(int argc, char **argv)
 
     if (!c)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
-    compositor_defaults(&c->compositor);
-    c->compositor.is_still = true;
+    drawing_line_defaults(&c->drawing.line);
+    c->drawing.line.is_still = true;
     c->top = 20;
     code = parse(&tool, argc, argv, c);
     if (code < 0) {
@@ -411,7 +411,7 @@ int cmd_explain(int argc, char **argv)
             code = run(&tool, c);
         tool_finish(&tool);
     }
-    compositor_close(&c->compositor);
+    drawing_close(&c->drawing);
     free(c->image.plane[0]);
     free(c);
     return code;

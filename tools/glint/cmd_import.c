@@ -8,6 +8,8 @@
 #include "overlay/apart.h"
 #include "import/imported.h"
 #include "help/values.h"
+#include "posix/input.h"
+#include "posix/output.h"
 
 static const char help[] =
     "glint import FILE -o NAME.lens [--strict] [--format F]\n"

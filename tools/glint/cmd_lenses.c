@@ -12,7 +12,7 @@
 #include "lens_pages/search.h"
 #include "model/lens_files.h"
 #include "options/json_writer.h"
-#include "overlay/compositor.h"
+#include "overlay/drawing.h"
 #include "model/model_cache.h"
 #include "model/table_file.h"
 #include "posix/output.h"
@@ -87,18 +87,17 @@ struct entry {
  * or if PLAIN to those of render. Returns an exit code. */
 static int set_settings(struct settings *settings, bool plain)
 {
-    struct compositor *compositor =
-        plain ? NULL : calloc(1, sizeof *compositor);
+    struct drawing *drawing = plain ? NULL : calloc(1, sizeof *drawing);
 
     if (plain) {
         settings_defaults(settings);
         return EXIT_OK;
     }
-    if (!compositor)
+    if (!drawing)
         return EXIT_RUNTIME;
-    compositor_defaults(compositor);
-    *settings = compositor->settings;
-    free(compositor);
+    drawing_line_defaults(&drawing->line);
+    *settings = drawing->line.settings;
+    free(drawing);
     return EXIT_OK;
 }
 

@@ -123,9 +123,9 @@ static void set_defaults(struct live_options *o)
                                          .n_buffers = 4},
                                .output = "fb",
                                .snapshot = "glint-%03d.ppm"};
-    compositor_defaults(&o->compositor);
-    o->compositor.reserve_bytes = 32 << 20;
-    o->compositor.scene.is_live = true;
+    drawing_line_defaults(&o->drawing.line);
+    o->drawing.line.reserve_bytes = 32 << 20;
+    o->drawing.line.is_live = true;
 }
 
 /* Reads TEXT, "30" or "30000/1001", as a rate. */
@@ -261,8 +261,8 @@ static const char *name_of(int option)
 
 static int take_any(struct line *line, int option, const char *value)
 {
-    int code =
-        compositor_option(line->tool, &line->into->compositor, option, value);
+    int code = drawing_line_option(line->tool, &line->into->drawing.line,
+                                   option, value);
 
     if (code == -2)
         code = take(line->into, option, value);
@@ -304,7 +304,7 @@ static int check_apart(const struct tool *tool, const struct live_options *o,
     if (live_output_parse(&output, o->output) && output.kind == LIVE_OUTPUT_Y4M)
         apart_write(&files, "-o", output.path);
     apart_write(&files, "--snapshot", o->snapshot);
-    apart_compositor(&files, &o->compositor);
+    apart_line(&files, &o->drawing.line);
     code = apart_check(tool, &files);
     return code == EXIT_OK ? -1 : code;
 }
@@ -325,10 +325,10 @@ static int parse(struct line *line, struct config *config,
         code = config_read(config, path);
         if (code != EXIT_OK)
             return code;
-        compositor_options_end(&into->compositor);
+        drawing_line_end(&into->drawing.line);
     }
-    code = compositor_style_of(line->tool, &into->compositor, line->argc,
-                               line->argv, SHORT, options);
+    code = drawing_line_style_of(line->tool, &into->drawing.line, line->argc,
+                                 line->argv, SHORT, options);
     if (code < 0)
         code = parse_line(line);
     return code < 0 ? check_apart(line->tool, into, path) : code;
@@ -339,7 +339,7 @@ static int reread(void *ctx, struct tool *tool, struct live_options *into)
     struct line *line = ctx;
 
     (void)tool;
-    /* An open compositor uses none of its strings. */
+    /* An open drawing uses none of its strings. */
     config_free(&line->again);
     return parse(line, &line->again, into);
 }
@@ -370,8 +370,8 @@ int cmd_live(int argc, char **argv)
     if (!o)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     set_defaults(o);
-    options =
-        engine_getopt(&tool, ENGINE_ALL, &o->compositor.settings.options, own);
+    options = engine_getopt(&tool, ENGINE_ALL,
+                            &o->drawing.line.settings.options, own);
     line.config.options = options;
     line.again = line.config;
     code = parse(&line, &line.config, o);
@@ -383,7 +383,7 @@ int cmd_live(int argc, char **argv)
             code = live_run(&tool, o, reread, &line);
         tool_finish(&tool);
     }
-    compositor_close(&o->compositor);
+    drawing_close(&o->drawing);
     config_free(&line.config);
     config_free(&line.again);
     free(o);

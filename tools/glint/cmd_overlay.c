@@ -140,10 +140,10 @@ static const struct option own[] = {
 static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
 {
     const struct option *const options =
-        engine_getopt(tool, ENGINE_ALL, &o->compositor.settings.options, own);
+        engine_getopt(tool, ENGINE_ALL, &o->drawing.line.settings.options, own);
     int c, index = 0;
-    int code = compositor_style_of(tool, &o->compositor, argc, argv,
-                                   "o:" TOOL_COMMON_SHORT, options);
+    int code = drawing_line_style_of(tool, &o->drawing.line, argc, argv,
+                                     "o:" TOOL_COMMON_SHORT, options);
 
     if (code >= 0)
         return code;
@@ -151,7 +151,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
                             &index)) >= 0) {
         if (c == ENGINE_OPTION_OF(zoom) && zoom_clip_take(&o->zoom, optarg))
             continue;
-        code = compositor_option(tool, &o->compositor, c, optarg);
+        code = drawing_line_option(tool, &o->drawing.line, c, optarg);
         if (code >= 0)
             return code;
         if (code == -1)
@@ -185,12 +185,12 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
     if (o->has_layers_type && !o->layers.path)
         return tool_usage(tool, "--layers-type is for --layers OUT");
     if (o->layers.path &&
-        strcmp(o->compositor.settings.options.lens, "none") == 0)
+        strcmp(o->drawing.line.settings.options.lens, "none") == 0)
         return tool_usage(tool, "--layers are those of the flare of a lens, "
                                 "not of --lens none");
     o->input = argv[optind];
-    if (o->compositor.reserve_bytes &&
-        o->compositor.settings.options.rays == GLINT_RAYS_EXACT)
+    if (o->drawing.line.reserve_bytes &&
+        o->drawing.line.settings.options.rays == GLINT_RAYS_EXACT)
         return tool_usage(tool, "--memory is for models, not for exact rays");
     return -1;
 }
@@ -204,9 +204,10 @@ static void print_figures(const struct overlay *o)
     fprintf(stderr,
             "%dx%d (find %.1f ms, flare %.1f ms), %d ghosts; flare memory %zu "
             "bytes, peak %zu\n",
-            o->compositor.view.width, o->compositor.view.height, o->find_ms / n,
-            o->flare_ms / n, o->compositor.report.ghosts,
-            o->compositor.report.arena_bytes + o->compositor.report.star_bytes,
+            o->drawing.run.view.width, o->drawing.run.view.height,
+            o->find_ms / n, o->flare_ms / n, o->drawing.run.report.ghosts,
+            o->drawing.run.report.arena_bytes +
+                o->drawing.run.report.star_bytes,
             o->peak_bytes);
 }
 
@@ -223,7 +224,7 @@ static void print_json(const struct overlay *o,
                drawn, 1e3 * seconds, drawn / seconds, o->find_ms / n,
                o->flare_ms / n, o->most_lights, o->n_reused);
     overlay_json(&json, o, light);
-    settings_json(&json, &o->compositor.report);
+    settings_json(&json, &o->drawing.run.report);
     json_write(&json, "}\n");
 }
 
@@ -255,8 +256,9 @@ static int check_input(struct tool *tool, struct overlay *o)
     char pattern[NUMBERED_BYTES];
     struct stat file;
 
-    if (strcmp(o->input, "-") == 0 && o->compositor.scene.control_file &&
-        strcmp(o->compositor.scene.control_file, "-") == 0)
+    if (strcmp(o->input, "-") == 0 &&
+        o->drawing.line.settings.options.control &&
+        strcmp(o->drawing.line.settings.options.control, "-") == 0)
         return tool_usage(tool, "pictures and --control cannot both come from "
                                 "standard input");
     if (strcmp(o->input, "-") == 0 || overlay_is_sequence(o))
@@ -273,7 +275,7 @@ static int check_input(struct tool *tool, struct overlay *o)
         status =
             glint_error_report(&error, GLINT_E_FORMAT, o->input, "is empty");
     else if (S_ISREG(file.st_mode) && !o->is_video)
-        o->compositor.settings.picture = o->input;
+        o->drawing.line.settings.picture = o->input;
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
@@ -297,8 +299,8 @@ static int check_output(struct tool *tool, struct overlay *o)
                           o->lists_shots ? "list-shots" : "frames");
     if (o->lists_shots)
         return EXIT_OK;
-    if (o->last < INT_MAX && (o->compositor.settings.options.budget > 0 ||
-                              o->compositor.settings.dials.still_px > 0))
+    if (o->last < INT_MAX && (o->drawing.line.settings.options.budget > 0 ||
+                              o->drawing.line.settings.dials.still_px > 0))
         return tool_usage(tool, "--frames does not go with --budget and "
                                 "--still, by which frames depend on those "
                                 "drawn before");
@@ -325,9 +327,9 @@ static int run(struct tool *tool, struct overlay *o)
         code = overlay_check_apart(tool, o, o->input, o->output);
     if (code == EXIT_OK)
         code = zoom_clip_open(tool, &o->zoom, o->is_video ? o->input : NULL,
-                              &o->compositor);
+                              &o->drawing.line);
     if (code == EXIT_OK)
-        code = compositor_open(tool, &o->compositor);
+        code = drawing_open(tool, &o->drawing);
     if (code != EXIT_OK)
         return code;
     o->started = tool_seconds();
@@ -338,7 +340,7 @@ static int run(struct tool *tool, struct overlay *o)
     else
         code = overlay_picture(tool, o, o->input, o->output);
     if (code == EXIT_OK)
-        code = compositor_finish(tool, &o->compositor);
+        code = drawing_finish(tool, &o->drawing);
     if (code == EXIT_OK && !o->lists_shots)
         print_result(tool, o);
     return code;
@@ -353,7 +355,7 @@ int cmd_overlay(int argc, char **argv)
 
     if (!o)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
-    compositor_defaults(&o->compositor);
+    drawing_line_defaults(&o->drawing.line);
     o->start_number = o->transfer = -1;
     o->last = o->warm_up = INT_MAX;
     code = parse(&tool, argc, argv, o);
@@ -364,7 +366,7 @@ int cmd_overlay(int argc, char **argv)
         tool_finish(&tool);
     }
     overlay_y4m_close(o);
-    compositor_close(&o->compositor);
+    drawing_close(&o->drawing);
     zoom_clip_close(&o->zoom);
     free(o);
     return code;

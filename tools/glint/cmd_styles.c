@@ -12,7 +12,7 @@
 #include "formats/picture.h"
 #include "model/lens_files.h"
 #include "options/command_line.h"
-#include "overlay/compositor.h"
+#include "overlay/drawing.h"
 #include "posix/error.h"
 
 static const char help[] =
@@ -48,18 +48,18 @@ struct styles_command {
     struct glint_image drawn;
 };
 
-/* Takes the options of the line into C; COMPOSITOR gets those of overlay. */
+/* Takes the options of the line into C; DRAWING gets those of overlay. */
 static int parse(struct tool *tool, struct styles_command *c,
-                 struct compositor *compositor)
+                 struct drawing *drawing)
 {
     const struct option *const options =
-        engine_getopt(tool, ENGINE_ALL, &compositor->settings.options, own);
+        engine_getopt(tool, ENGINE_ALL, &drawing->line.settings.options, own);
     int option, code;
 
     optind = 0;
     while ((option = tool_getopt(c->argc, c->argv, shorts, options, NULL)) >=
            0) {
-        code = compositor_option(tool, compositor, option, optarg);
+        code = drawing_line_option(tool, &drawing->line, option, optarg);
         if (code == -2 && option == 'o') {
             c->output = optarg;
             code = -1;
@@ -156,19 +156,18 @@ static void copy_rows(const struct glint_image *to,
 /* Draws the input in STYLE as the picture K of SHEET, which the first one
  * opens. */
 static int put(struct tool *tool, struct styles_command *c,
-               struct compositor *compositor, const struct style *style,
+               struct drawing *drawing, const struct style *style,
                struct sheet *sheet, int k, int n)
 {
     struct glint_image small = {.plane = {NULL}};
     enum glint_status status;
     char text[CAPTION_BYTES];
-    int code =
-        compositor_size(tool, compositor, c->image.width, c->image.height);
+    int code = drawing_size(tool, drawing, c->image.width, c->image.height);
 
     if (code != EXIT_OK)
         return code;
     copy_rows(&c->drawn, &c->image);
-    status = compositor_draw(compositor, &c->drawn, 0);
+    status = drawing_draw(drawing, &c->drawn, 0);
     if (status == GLINT_OK)
         status = sheet_reduce(&small, &c->drawn, c->width);
     if (status == GLINT_OK && k == 0)
@@ -187,21 +186,21 @@ static int put(struct tool *tool, struct styles_command *c,
 static int draw(struct tool *tool, struct styles_command *c,
                 const struct style *style, struct sheet *sheet, int k, int n)
 {
-    struct compositor *const compositor = calloc(1, sizeof *compositor);
+    struct drawing *const drawing = calloc(1, sizeof *drawing);
     int code;
 
-    if (!compositor)
+    if (!drawing)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    compositor_defaults(compositor);
-    code = compositor_style(tool, compositor, style->name);
+    drawing_line_defaults(&drawing->line);
+    code = drawing_line_style(tool, &drawing->line, style->name);
     if (code < 0)
-        code = parse(tool, c, compositor);
+        code = parse(tool, c, drawing);
     if (code < 0)
-        code = compositor_open_lens(tool, compositor);
+        code = drawing_open_lens(tool, drawing);
     if (code == EXIT_OK)
-        code = put(tool, c, compositor, style, sheet, k, n);
-    compositor_close(compositor);
-    free(compositor);
+        code = put(tool, c, drawing, style, sheet, k, n);
+    drawing_close(drawing);
+    free(drawing);
     return code;
 }
 
@@ -253,32 +252,32 @@ static int check_output(const struct tool *tool, const struct styles_command *c)
 }
 
 static int check_apart(const struct tool *tool, const struct styles_command *c,
-                       const struct compositor *compositor)
+                       const struct drawing *drawing)
 {
     struct apart files = {.n_read = 0};
 
     apart_read(&files, NULL, c->input);
     apart_write(&files, "-o", c->output);
-    apart_compositor(&files, compositor);
+    apart_line(&files, &drawing->line);
     return apart_check(tool, &files);
 }
 
 /* Checks the line before a lens is baked for it. */
 static int check(struct tool *tool, struct styles_command *c)
 {
-    struct compositor *const compositor = calloc(1, sizeof *compositor);
+    struct drawing *const drawing = calloc(1, sizeof *drawing);
     int code;
 
-    if (!compositor)
+    if (!drawing)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    compositor_defaults(compositor);
-    code = parse(tool, c, compositor);
-    if (code < 0 && compositor->style)
+    drawing_line_defaults(&drawing->line);
+    code = parse(tool, c, drawing);
+    if (code < 0 && drawing->line.style)
         code = tool_usage(tool, "draws every style; --style is for overlay");
-    if (code < 0 && check_apart(tool, c, compositor) != EXIT_OK)
+    if (code < 0 && check_apart(tool, c, drawing) != EXIT_OK)
         code = EXIT_USAGE;
-    compositor_close(compositor);
-    free(compositor);
+    drawing_close(drawing);
+    free(drawing);
     if (code >= 0)
         return code;
     if (c->output)

@@ -20,7 +20,7 @@ static const struct {
 
 static const struct glint_scene_model *model_of(const struct explained_scene *s)
 {
-    return &s->compositor->scene.baked.model;
+    return &s->drawing->files.scene.baked.model;
 }
 
 static const char *name_of(const struct explained_scene *s, int object)
@@ -32,11 +32,11 @@ static const char *name_of(const struct explained_scene *s, int object)
 }
 
 enum glint_status explained_scene_open(struct explained_scene *scene,
-                                       const struct compositor *compositor,
+                                       const struct drawing *drawing,
                                        const struct glint_explain *flare)
 {
-    *scene = (struct explained_scene){.compositor = compositor, .flare = flare};
-    return scene_account_make(&scene->account, &compositor->scene.frame);
+    *scene = (struct explained_scene){.drawing = drawing, .flare = flare};
+    return scene_account_make(&scene->account, &drawing->files.scene.frame);
 }
 
 void explained_scene_close(struct explained_scene *scene)
@@ -60,8 +60,8 @@ struct light {
 static int drawn_for(const struct explained_scene *s,
                      const struct glint_lamp *lamp)
 {
-    const double focal = s->compositor->settings.setup.optics.focal_mm;
-    const double px = glint_view_pixel_tangent(&s->compositor->view, focal);
+    const double focal = s->drawing->line.settings.setup.optics.focal_mm;
+    const double px = glint_view_pixel_tangent(&s->drawing->run.view, focal);
     double best = px + 2 * lamp->axis[0];
     int found = -1;
 
@@ -114,9 +114,9 @@ static const char *word_of(const struct explained_scene *s,
 static struct light light_of(const struct explained_scene *s, int i,
                              const struct glint_scene_lamp *seen, int n)
 {
-    const struct compositor *const c = s->compositor;
+    const struct drawing *const c = s->drawing;
     struct light light = {.word = "behind the camera"};
-    const struct glint_engine_lamp *lamp = c->lamp + c->n_own;
+    const struct glint_engine_lamp *lamp = c->run.lamp + c->run.n_own;
 
     if (!model_of(s)->header->flare) {
         light.word = "only lights things ('flare lights' shows it to the lens)";
@@ -135,10 +135,11 @@ static struct light light_of(const struct explained_scene *s, int i,
                                    .is_ahead = true};
             if (seen[k].share == 0) {
                 light.word = "hidden by";
-                light.extra =
-                    name_of(s, glint_scene_hider(c->scene.frame.scene, i));
+                light.extra = name_of(
+                    s, glint_scene_hider(c->files.scene.frame.scene, i));
             } else if (has_light)
-                light.word = c->has_lens ? word_of(s, &lamp->lamp) : "no lens";
+                light.word =
+                    c->files.has_lens ? word_of(s, &lamp->lamp) : "no lens";
             return light;
         }
         lamp += has_light;
@@ -155,7 +156,7 @@ static bool is_bright(const struct glint_scene_light *light)
 static int lights_of(const struct explained_scene *s, struct light *light)
 {
     struct glint_scene_lamp seen[GLINT_SCENE_MAX_LIGHTS];
-    const int n = glint_scene_lights(s->compositor->scene.frame.scene, seen);
+    const int n = glint_scene_lights(s->drawing->files.scene.frame.scene, seen);
     const struct glint_scene_header *const h = model_of(s)->header;
     const int own = (int)(h->n_lights - h->n_environment_lights);
     int all = (int)h->n_lights;
@@ -190,18 +191,19 @@ struct highlight {
 };
 
 /* Sets FOUND[GLINT_SCENE_MAX_HIGHLIGHTS]; returns how many there are. They are
- * the last lamps of the compositor, in this order. */
+ * the last lamps of the drawing, in this order. */
 static int highlights_of(const struct explained_scene *s,
                          struct highlight *found)
 {
-    const struct compositor *const c = s->compositor;
+    const struct drawing *const c = s->drawing;
     struct glint_scene_highlight seen[GLINT_SCENE_MAX_HIGHLIGHTS];
-    const int n = glint_scene_find_highlights(c->scene.frame.scene, seen);
+    const int n = glint_scene_find_highlights(c->files.scene.frame.scene, seen);
 
     for (int i = 0; i < n; i++) {
         const struct glint_spot *const spot = &seen[i].spot;
         const struct glint_lamp *const lamp =
-            c->has_lens ? &c->lamp[c->n_lamps - n + i].lamp : NULL;
+            c->files.has_lens ? &c->run.lamp[c->run.n_lamps - n + i].lamp
+                              : NULL;
         const int at = lamp && s->flare ? drawn_for(s, lamp) : -1;
 
         found[i] = (struct highlight){
@@ -231,8 +233,8 @@ static void print_title(const struct explained_scene *s)
     const struct glint_scene_header *const h = model_of(s)->header;
 
     printf("scene %s, %dx%d: %u things, drawn %d", h->name,
-           s->compositor->scene.frame.cfg.width,
-           s->compositor->scene.frame.cfg.height, h->n_objects,
+           s->drawing->files.scene.frame.cfg.width,
+           s->drawing->files.scene.frame.cfg.height, h->n_objects,
            count_of(s, GLINT_SCENE_DRAWN));
     for (int k = GLINT_SCENE_OFF; k < GLINT_SCENE_FATES; k++)
         if (count_of(s, (enum glint_scene_fate)k))
@@ -302,7 +304,7 @@ static void print_maps(const struct explained_scene *s)
 {
     if (model_of(s)->header->n_skins > 0)
         printf("\nmaps of stones: light has spread to %d texels\n",
-               s->compositor->scene.frame.map_texels);
+               s->drawing->files.scene.frame.map_texels);
 }
 
 void explain_scene_print(const struct explained_scene *s)

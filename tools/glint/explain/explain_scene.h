@@ -6,18 +6,18 @@
 
 #include "explain/explain.h"
 #include "options/json_writer.h"
-#include "overlay/compositor.h"
+#include "overlay/drawing.h"
 #include "scenes/account.h"
 
 struct explained_scene {
-    const struct compositor *compositor; /* drew the frame last */
-    const struct glint_explain *flare;   /* NULL: there is no lens */
+    const struct drawing *drawing;     /* drew the frame last */
+    const struct glint_explain *flare; /* NULL: there is no lens */
     struct scene_account account;
 };
 
 /* Sets SCENE; explained_scene_close() ends it. GLINT_E_MEMORY. */
 enum glint_status explained_scene_open(struct explained_scene *scene,
-                                       const struct compositor *compositor,
+                                       const struct drawing *drawing,
                                        const struct glint_explain *flare);
 void explained_scene_close(struct explained_scene *scene);
 

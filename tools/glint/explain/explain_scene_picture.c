@@ -21,7 +21,7 @@ struct heat {
 
 static int n_objects(const struct heat *h)
 {
-    return (int)h->scene->compositor->scene.baked.model.header->n_objects;
+    return (int)h->scene->drawing->files.scene.baked.model.header->n_objects;
 }
 
 /* Returns the steps of a pixel of OBJECT: places shaded, shadows, texels,
@@ -60,7 +60,8 @@ static int seen_at(const struct heat *h, int x, int y)
 static bool is_catcher(const struct heat *h, int object)
 {
     return object >= 0 &&
-           h->scene->compositor->scene.baked.model.object[object].catcher_q15;
+           h->scene->drawing->files.scene.baked.model.object[object]
+               .catcher_q15;
 }
 
 static void shade(const struct heat *h)
@@ -154,7 +155,7 @@ static int entries_of(const struct heat *h)
 static void put_entry(const struct heat *h, int i)
 {
     const struct glint_scene_object *const object =
-        &h->scene->compositor->scene.baked.model.object[i];
+        &h->scene->drawing->files.scene.baked.model.object[i];
     struct paint p = {.image = h->image, .line = h->scale};
     const int x = i % columns_of(h) * COLUMN * p.line + 4 * p.line;
     const int y = h->height + (3 + ROW * (i / columns_of(h))) * p.line;

@@ -588,8 +588,8 @@ static void draw_spots(const struct figure *f)
     draw_legend(f);
 }
 
-void drawing_defaults(struct lens_drawing *d,
-                      const struct glint_prescription *lens)
+void lens_drawing_defaults(struct lens_drawing *d,
+                           const struct glint_prescription *lens)
 {
     *d = (struct lens_drawing){.lens = lens,
                                .ghost = -1,
@@ -775,7 +775,7 @@ static void draw_light(struct figure *f, char *path, size_t bytes)
     draw_number(f, ghost[d->ghost].j);
 }
 
-int drawing_write(const struct lens_drawing *drawing, FILE *file)
+int lens_drawing_write(const struct lens_drawing *drawing, FILE *file)
 {
     struct figure f = {.drawing = drawing, .file = file};
     struct glint_optics optics;

@@ -27,10 +27,10 @@ struct lens_drawing {
     double width_px;
 };
 
-void drawing_defaults(struct lens_drawing *drawing,
-                      const struct glint_prescription *lens);
+void lens_drawing_defaults(struct lens_drawing *drawing,
+                           const struct glint_prescription *lens);
 
 /* Writes the figure to FILE. Returns how many rays it shows. */
-int drawing_write(const struct lens_drawing *drawing, FILE *file);
+int lens_drawing_write(const struct lens_drawing *drawing, FILE *file);
 
 #endif

@@ -249,10 +249,10 @@ void page_card_begin(FILE *file, const struct page_card *card)
         fputs("</p>\n", file);
     }
     print_numbers(file, card);
-    drawing_defaults(&drawing, card->lens);
+    lens_drawing_defaults(&drawing, card->lens);
     drawing.spots = drawing.title = false;
     drawing.width_px = SECTION_PX;
-    drawing_write(&drawing, file);
+    lens_drawing_write(&drawing, file);
 }
 
 void page_card_end(FILE *file)

@@ -91,7 +91,7 @@ enum live_adaptive {
 
 struct live_options {
     /* Only its options are set before it is opened. */
-    struct compositor compositor;
+    struct drawing drawing;
     struct live_wish input;
     const char *output, *snapshot;
     enum glint_panel_fit fit;

@@ -20,7 +20,7 @@
 #ifndef GLINT_TOOLS_LIVE_LIVE_LOG_H
 #define GLINT_TOOLS_LIVE_LIVE_LOG_H
 
-#include "overlay/compositor.h"
+#include "overlay/drawing.h"
 
 enum live_stage {
     LIVE_CONVERT, /* conversion of frames into a format that can be drawn into

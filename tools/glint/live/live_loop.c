@@ -79,8 +79,8 @@ static enum glint_status open_camera(struct live *l, struct glint_error *error)
     if (status != GLINT_OK)
         return status;
     l->time_us = 0;
-    if (l->o->compositor.engine)
-        glint_engine_forget_lamps(l->o->compositor.engine);
+    if (l->o->drawing.run.engine)
+        glint_engine_forget_lamps(l->o->drawing.run.engine);
     l->had_signal = l->in.source->has_signal;
     return GLINT_OK;
 }
@@ -111,35 +111,35 @@ static int open_output(struct live *l, const struct glint_image *image)
 /* Turns the dials of flare and scene to the step. Returns an exit code. */
 static int turn(struct live *l)
 {
-    struct compositor *compositor = &l->o->compositor;
-    const enum glint_status status =
-        over_scene_coarsen(&compositor->scene, live_adapt_quality(&l->adapt));
+    struct drawing *drawing = &l->o->drawing;
+    const enum glint_status status = over_scene_coarsen(
+        &drawing->files.scene, live_adapt_quality(&l->adapt));
 
-    if (compositor->engine)
-        glint_engine_set_dials(compositor->engine,
+    if (drawing->run.engine)
+        glint_engine_set_dials(drawing->run.engine,
                                live_adapt_dials(&l->adapt, l->asked));
     return status == GLINT_OK ? EXIT_OK : tool_fail(l->tool, status, NULL);
 }
 
-/* Prepares the compositor for pictures of IMAGE's size. Returns an exit
+/* Prepares the drawing for pictures of IMAGE's size. Returns an exit
  * code. */
 static int take_size(struct live *l, const struct glint_image *image)
 {
-    struct compositor *compositor = &l->o->compositor;
+    struct drawing *drawing = &l->o->drawing;
     int code;
 
-    if (compositor->sized && image->width == compositor->view.width &&
-        image->height == compositor->view.height)
+    if (drawing->run.is_sized && image->width == drawing->run.view.width &&
+        image->height == drawing->run.view.height)
         return EXIT_OK;
-    code = compositor_size(l->tool, compositor, image->width, image->height);
+    code = drawing_size(l->tool, drawing, image->width, image->height);
     if (code != EXIT_OK)
         return code;
-    if (compositor->engine)
-        l->asked = glint_engine_dials(compositor->engine);
+    if (drawing->run.engine)
+        l->asked = glint_engine_dials(drawing->run.engine);
     return turn(l);
 }
 
-/* Sets up for the input's format: compositor and output. Returns an exit
+/* Sets up for the input's format: drawing and output. Returns an exit
  * code. */
 static int set_up(struct live *l)
 {
@@ -180,7 +180,7 @@ static bool is_adaptive(const struct live_options *o)
     return o->adaptive == LIVE_ADAPTIVE ||
            (o->adaptive == LIVE_ADAPTIVE_CAMERA &&
             live_input_is_camera(o->input.camera.device) &&
-            o->compositor.settings.options.budget == 0);
+            o->drawing.line.settings.options.budget == 0);
 }
 
 static void adapt(struct live *l, int64_t busy_us, int n_missed)
@@ -210,7 +210,7 @@ static int64_t us(double ms)
 static void note(struct live *l, const struct glint_source_frame *frame,
                  const int64_t *at_us)
 {
-    const struct compositor *compositor = &l->o->compositor;
+    const struct drawing *drawing = &l->o->drawing;
     struct live_frame_times t = {.shown = at_us != NULL,
                                  .n_dropped = frame->n_dropped,
                                  .n_late = frame->n_late,
@@ -220,18 +220,18 @@ static void note(struct live *l, const struct glint_source_frame *frame,
         t.captured_us = frame->time_us;
         t.shown_us = at_us[3];
         t.stage_us[LIVE_CONVERT] = at_us[1] - at_us[0];
-        t.stage_us[LIVE_FIND] = us(compositor->find_ms);
-        t.stage_us[LIVE_SCENE] = us(compositor->scene.ms);
-        t.stage_us[LIVE_PLAN] = us(compositor->report.plan_ms);
-        t.stage_us[LIVE_BIN] = us(compositor->report.bin_ms);
-        t.stage_us[LIVE_DRAW] = us(compositor->report.draw_ms);
+        t.stage_us[LIVE_FIND] = us(drawing->run.find_ms);
+        t.stage_us[LIVE_SCENE] = us(drawing->files.scene.ms);
+        t.stage_us[LIVE_PLAN] = us(drawing->run.report.plan_ms);
+        t.stage_us[LIVE_BIN] = us(drawing->run.report.bin_ms);
+        t.stage_us[LIVE_DRAW] = us(drawing->run.report.draw_ms);
         t.stage_us[LIVE_SHOW] = at_us[3] - at_us[2];
-        t.lights = compositor->report.drawn_lights;
-        t.ghosts = compositor->report.ghosts;
-        t.bytes = compositor->report.peak_bytes +
-                  compositor->report.star_bytes +
-                  over_scene_bytes(&compositor->scene);
-        t.reused = compositor->report.stats.reused != 0;
+        t.lights = drawing->run.report.drawn_lights;
+        t.ghosts = drawing->run.report.ghosts;
+        t.bytes = drawing->run.report.peak_bytes +
+                  drawing->run.report.star_bytes +
+                  over_scene_bytes(&drawing->files.scene);
+        t.reused = drawing->run.report.stats.reused != 0;
         t.quality = 1 - (double)l->adapt.step / LIVE_MAX_STEP;
     }
     live_stats_add(&l->log.stats, &t);
@@ -309,7 +309,7 @@ static int32_t elapsed_us(struct live *l, int64_t time_us)
 static int show(struct live *l, const struct glint_source_frame *frame,
                 int64_t taken_us)
 {
-    struct compositor *compositor = &l->o->compositor;
+    struct drawing *drawing = &l->o->drawing;
     const struct glint_image *image = &frame->image;
     struct glint_error error = {""};
     enum glint_status status;
@@ -323,10 +323,10 @@ static int show(struct live *l, const struct glint_source_frame *frame,
     if (code != EXIT_OK)
         return code;
     at_us[1] = glint_now_us();
-    status = compositor_draw(compositor, image, elapsed_us(l, frame->time_us));
+    status = drawing_draw(drawing, image, elapsed_us(l, frame->time_us));
     if (status != GLINT_OK)
         return tool_fail(l->tool, status, NULL);
-    live_log_short(&l->log, &compositor->report.stats);
+    live_log_short(&l->log, &drawing->run.report.stats);
     if (live_signal(LIVE_SNAPSHOT))
         snapshot(l, image);
     code = open_output(l, image);
@@ -407,12 +407,12 @@ static void reload(struct live *l)
     if (!fresh)
         return;
     if (l->reread(l->ctx, l->tool, fresh) < 0 &&
-        compositor_open(l->tool, &fresh->compositor) == EXIT_OK) {
-        compositor_replace(&l->o->compositor, &fresh->compositor);
+        drawing_open(l->tool, &fresh->drawing) == EXIT_OK) {
+        drawing_replace(&l->o->drawing, &fresh->drawing);
         live_adapt_init(&l->adapt);
         live_log_say(&l->log, "reloaded");
     } else {
-        compositor_close(&fresh->compositor);
+        drawing_close(&fresh->drawing);
         live_log_say(&l->log, "not reloaded: all stays as it was");
     }
     free(fresh);
@@ -452,7 +452,7 @@ static int start(struct live *l)
     status = open_camera(l, &error);
     if (status != GLINT_OK)
         return live_input_fail(&l->log, device, status, &error);
-    code = compositor_open(l->tool, &l->o->compositor);
+    code = drawing_open(l->tool, &l->o->drawing);
     if (code != EXIT_OK)
         return code;
     live_signals_take(); /* Until here a signal kills the run at once. */
@@ -481,7 +481,7 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
                ? EXIT_OK
                : tool_usage(tool, "-o: '%s' is no output", o->output);
     l->output.fit = o->fit;
-    l->output.dither = o->compositor.settings.options.dither;
+    l->output.dither = o->drawing.line.settings.options.dither;
     live_log_init(&l->log, tool, o->report,
                   l->output.kind == LIVE_OUTPUT_Y4M &&
                       strcmp(l->output.path, "-") == 0);
@@ -491,7 +491,7 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
         live_stats_start(&l->log.stats, glint_now_us());
         code = loop(l);
         if (code == EXIT_OK)
-            code = compositor_finish(tool, &o->compositor);
+            code = drawing_finish(tool, &o->drawing);
         live_log_conclude(&l->log, code == EXIT_OK, l->n_shown,
                           live_output_dropped(&l->output));
     }

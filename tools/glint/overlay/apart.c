@@ -22,22 +22,21 @@ void apart_write(struct apart *files, const char *option, const char *path)
     add(files->written, &files->n_written, option, path);
 }
 
-void apart_compositor(struct apart *files, const struct compositor *compositor)
+void apart_line(struct apart *files, const struct drawing_line *line)
 {
-    const struct settings *const s = &compositor->settings;
+    const struct glint_options *const o = &line->settings.options;
 
-    apart_read(files, "--lens", compositor->settings.options.lens);
-    apart_read(files, "--lights", compositor->settings.options.lights);
-    apart_read(files, "--mask", compositor->occlusion.file);
-    if (!compositor->keys_text)
-        apart_read(files, "--keys", compositor->settings.options.keys);
-    apart_read(files, "--scene", compositor->scene.file);
-    apart_read(files, "--pose", compositor->scene.pose_file);
-    apart_read(files, "--control", compositor->scene.control_file);
-    apart_read(files, "--ghosts", s->options.ghosts);
-    apart_read(files, "--stop-mask", s->stop.mask_file);
-    apart_write(files, "--save-lights",
-                compositor->settings.options.save_lights);
+    apart_read(files, "--lens", o->lens);
+    apart_read(files, "--lights", o->lights);
+    apart_read(files, "--mask", o->mask);
+    if (!line->keys_text)
+        apart_read(files, "--keys", o->keys);
+    apart_read(files, "--scene", o->scene);
+    apart_read(files, "--pose", o->pose);
+    apart_read(files, "--control", o->control);
+    apart_read(files, "--ghosts", o->ghosts);
+    apart_read(files, "--stop-mask", o->stop_mask);
+    apart_write(files, "--save-lights", o->save_lights);
 }
 
 /* Returns whether writing OUTPUT would lose INPUT. A pattern is no file, so

@@ -4,7 +4,7 @@
  * one that is read, or another that is written.
  *
  *     struct apart files = {.n_read = 0};
- *     apart_compositor(&files, &compositor);      what its options name
+ *     apart_line(&files, &drawing.line);      what its options name
  *     apart_read(&files, NULL, "in.png");         the input
  *     apart_write(&files, "-o", "out.png");
  *     code = apart_check(&tool, &files);
@@ -14,7 +14,7 @@
 #ifndef GLINT_TOOLS_OVERLAY_APART_H
 #define GLINT_TOOLS_OVERLAY_APART_H
 
-#include "overlay/compositor.h"
+#include "overlay/drawing_line.h"
 
 enum { APART_FILES = 16 };
 
@@ -31,8 +31,8 @@ struct apart {
 void apart_read(struct apart *files, const char *option, const char *path);
 void apart_write(struct apart *files, const char *option, const char *path);
 
-/* Adds the files that COMPOSITOR's options name. */
-void apart_compositor(struct apart *files, const struct compositor *compositor);
+/* Adds the files that DRAWING's options name. */
+void apart_line(struct apart *files, const struct drawing_line *line);
 
 /* Refuses a file that is written over one that is read, which would be lost, or
  * over another that is written. Returns an exit code. */

@@ -113,13 +113,13 @@ int layers_check_apart(const struct tool *tool, const struct layers *layers,
 
 /* Draws N_LAYERS layers of N samples into RGB: the parts, and their sum as the
  * first. */
-static enum glint_status draw_all(struct compositor *c, int n_layers, size_t n,
+static enum glint_status draw_all(struct drawing *c, int n_layers, size_t n,
                                   float *rgb)
 {
     static const unsigned part[] = {[GHOSTS] = GLINT_ENGINE_GHOSTS,
                                     [STARBURST] = GLINT_ENGINE_STAR,
                                     [VEIL] = GLINT_ENGINE_VEIL};
-    const bool is_lit = c->n_lamps > 0 && compositor_scale(c) > 0;
+    const bool is_lit = c->run.n_lamps > 0 && drawing_scale(&c->run) > 0;
     enum glint_status status = GLINT_OK;
     struct glint_engine_report report;
 
@@ -127,9 +127,9 @@ static enum glint_status draw_all(struct compositor *c, int n_layers, size_t n,
     /* the veil first, as drawing the others forgets what it is of */
     for (int k = n_layers - 1; k >= GHOSTS && status == GLINT_OK; k--)
         if (is_lit || k == VEIL)
-            status =
-                glint_engine_draw_layer(c->engine, c->lamp, c->n_lamps, part[k],
-                                        rgb + (size_t)k * n, &report);
+            status = glint_engine_draw_layer(c->run.engine, c->run.lamp,
+                                             c->run.n_lamps, part[k],
+                                             rgb + (size_t)k * n, &report);
     for (int k = GHOSTS; k < n_layers; k++)
         for (size_t i = 0; i < n; i++)
             rgb[i] += rgb[(size_t)k * n + i];
@@ -187,13 +187,13 @@ static enum glint_status save_all(const struct layers *layers,
 }
 
 int layers_write(const struct tool *tool, const struct layers *layers,
-                 struct compositor *c)
+                 struct drawing *c)
 {
-    const struct settings *const s = &c->settings;
-    const size_t n = 3 * (size_t)c->view.width * (size_t)c->view.height;
+    const struct settings *const s = &c->line.settings;
+    const size_t n = 3 * (size_t)c->run.view.width * (size_t)c->run.view.height;
     struct glint_oiio_layer layer[LAYERS];
-    struct glint_oiio_layers all = {.width = c->view.width,
-                                    .height = c->view.height,
+    struct glint_oiio_layers all = {.width = c->run.view.width,
+                                    .height = c->run.view.height,
                                     .n = settings_has_veil(s) ? LAYERS : VEIL,
                                     .is_half = !layers->is_float,
                                     .layer = layer};
@@ -209,7 +209,7 @@ int layers_write(const struct tool *tool, const struct layers *layers,
     if (rgb)
         status = draw_all(c, all.n, n, rgb);
     if (status == GLINT_OK)
-        status = save_all(layers, &all, c->n_frames - 1, &error);
+        status = save_all(layers, &all, c->run.n_frames - 1, &error);
     free(rgb);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }

@@ -11,7 +11,7 @@
 #define GLINT_TOOLS_OVERLAY_LAYERS_H
 
 #include "overlay/apart.h"
-#include "overlay/compositor.h"
+#include "overlay/drawing.h"
 
 struct layers {
     const char *path; /* NULL: no layers are asked for */
@@ -28,9 +28,9 @@ int layers_check(const struct tool *tool, const struct layers *layers,
 int layers_check_apart(const struct tool *tool, const struct layers *layers,
                        const struct apart *files);
 
-/* Draws the layers of COMPOSITOR's frame, whose lamps and exposure are set, and
+/* Draws the layers of DRAWING's frame, whose lamps and exposure are set, and
  * writes them. Does nothing if none are asked for. Returns an exit code. */
 int layers_write(const struct tool *tool, const struct layers *layers,
-                 struct compositor *compositor);
+                 struct drawing *drawing);
 
 #endif

@@ -36,7 +36,6 @@ struct over_scene {
     const char *pose_file;    /* or NULL */
     const char *control_file; /* or NULL; "-": standard input */
     bool is_live;             /* a FIFO of poses or control is not waited for */
-    struct scene_dials asked; /* by options; of size and camera nothing */
     /* Sets the option NAME of the flare, for lines of control;
      * GLINT_E_ARGUMENT: ERROR states why it stays as it was. NULL: there is no
      * flare. */

@@ -7,13 +7,13 @@
 #define GLINT_TOOLS_OVERLAY_OVERLAY_H
 
 #include "overlay/layers.h"
-#include "overlay/compositor.h"
+#include "overlay/drawing.h"
 #include "overlay/zoom_clip.h"
 
 struct overlay_y4m;
 
 struct overlay {
-    struct compositor compositor;
+    struct drawing drawing;
     /* Memory for a video that is not plain 8 bits; NULL: none. */
     struct overlay_y4m *y4m;
     const char *input, *output;
@@ -60,8 +60,7 @@ int overlay_look(struct tool *tool, struct overlay *o,
 
 /* Does as overlay_draw() for frames that are not drawn in place: DRAW draws
  * them with CTX. */
-typedef enum glint_status overlay_draw_fn(void *ctx,
-                                          struct compositor *compositor,
+typedef enum glint_status overlay_draw_fn(void *ctx, struct drawing *drawing,
                                           const struct glint_image *image,
                                           int32_t elapsed_us);
 int overlay_draw_by(struct tool *tool, struct overlay *o,

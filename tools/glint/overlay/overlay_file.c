@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "overlay/compositor_layer.h"
+#include "overlay/drawing.h"
 
 static bool is_deep(const struct glint_samples *s)
 {
@@ -39,13 +39,13 @@ static enum glint_status deepen(struct overlay_file *f)
 }
 
 static enum glint_status choose_way(struct overlay_file *f,
-                                    const struct compositor *compositor)
+                                    const struct drawing *drawing)
 {
     const bool to_float = glint_picture_is_float(f->to) &&
                           !glint_kept_is_same_type(&f->kept, f->to);
     const bool has_own_layer =
-        compositor->settings.options.layer == GLINT_LAYER_FLARE_ALPHA ||
-        (compositor->settings.options.layer != GLINT_LAYER_COMPOSITE &&
+        drawing->line.settings.options.layer == GLINT_LAYER_FLARE_ALPHA ||
+        (drawing->line.settings.options.layer != GLINT_LAYER_COMPOSITE &&
          to_float);
 
     f->is_direct = !to_float && !has_own_layer &&
@@ -53,14 +53,14 @@ static enum glint_status choose_way(struct overlay_file *f,
     if (f->is_direct)
         return GLINT_OK;
     if (to_float &&
-        compositor->settings.options.layer == GLINT_LAYER_COMPOSITE &&
+        drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
         deepen(f) != GLINT_OK)
         return GLINT_E_MEMORY;
     return glint_samples_proxy(&f->kept.samples, &f->image, &f->white);
 }
 
 int overlay_file_open(const struct tool *tool, struct overlay_file *file,
-                      const struct compositor *compositor, const char *from,
+                      const struct drawing *drawing, const char *from,
                       const char *to)
 {
     struct glint_error error = {""};
@@ -73,7 +73,7 @@ int overlay_file_open(const struct tool *tool, struct overlay_file *file,
     if (*file->kept.note && !tool->quiet)
         fprintf(stderr, "glint %s: %s: %s\n", tool->name, from,
                 file->kept.note);
-    status = choose_way(file, compositor);
+    status = choose_way(file, drawing);
     if (status == GLINT_OK)
         return EXIT_OK;
     overlay_file_close(file);
@@ -166,8 +166,7 @@ static void add_grey(const struct glint_image *image,
 /* Draws on a picture without colour as on a grey one, which gets the luminance
  * of the flare. */
 static enum glint_status draw_grey(struct overlay_file *f,
-                                   struct compositor *compositor,
-                                   int32_t elapsed_us)
+                                   struct drawing *drawing, int32_t elapsed_us)
 {
     struct glint_image grey = {.format = GLINT_GREY,
                                .transfer = f->image.transfer,
@@ -182,7 +181,7 @@ static enum glint_status draw_grey(struct overlay_file *f,
     glint_image_place(&grey, mem);
     grey.range = GLINT_RANGE_FULL;
     copy_green(&grey, &f->image);
-    status = compositor_draw(compositor, &grey, elapsed_us);
+    status = drawing_draw(drawing, &grey, elapsed_us);
     add_grey(&f->image, &grey);
     free(mem);
     return status;
@@ -201,11 +200,11 @@ static struct glint_samples *drawn_on(struct overlay_file *f)
     return f->is_copied ? &f->work : &f->kept.samples;
 }
 
-static bool adds_nothing(const struct compositor *compositor)
+static bool adds_nothing(const struct drawing *drawing)
 {
-    return !compositor->scene.is_open &&
-           !glint_engine_has_veil(compositor->engine) &&
-           (compositor->n_lamps == 0 || !(compositor_scale(compositor) > 0));
+    return !drawing->files.scene.is_open &&
+           !glint_engine_has_veil(drawing->run.engine) &&
+           (drawing->run.n_lamps == 0 || !(drawing_scale(&drawing->run) > 0));
 }
 
 /* Replaces the upright pixels of S at which DRAWN differs from BEFORE, its
@@ -230,8 +229,7 @@ static void put_marks(struct glint_samples *s, const struct glint_image *drawn,
 }
 
 /* Marks the lights on the proxy, and copies the marks to the samples. */
-static enum glint_status mark(struct overlay_file *f,
-                              struct compositor *compositor)
+static enum glint_status mark(struct overlay_file *f, struct drawing *drawing)
 {
     const size_t bytes =
         glint_image_bytes(GLINT_RGB24, f->image.width, f->image.height);
@@ -240,7 +238,7 @@ static enum glint_status mark(struct overlay_file *f,
     if (!before)
         return GLINT_E_MEMORY;
     memcpy(before, f->image.plane[0], bytes);
-    compositor_mark(compositor, &f->image);
+    drawing_mark(drawing, &f->image);
     put_marks(drawn_on(f), &f->image, before);
     free(before);
     return GLINT_OK;
@@ -263,13 +261,13 @@ static void cover_pixel(struct glint_samples *s, int x, int y, double hidden,
 /* Draws the scene on the samples, as it was drawn on their proxy, of which
  * white is file->white. */
 static enum glint_status draw_scene(struct overlay_file *file,
-                                    struct compositor *compositor, bool is_grey)
+                                    struct drawing *drawing, bool is_grey)
 {
     const size_t width = (size_t)file->image.width;
     const size_t n = width * (size_t)file->image.height;
     struct over_scene_layer layer;
     const enum glint_status status =
-        over_scene_layer(&compositor->scene, &layer);
+        over_scene_layer(&drawing->files.scene, &layer);
 
     if (status != GLINT_OK)
         return status;
@@ -291,12 +289,12 @@ static enum glint_status draw_scene(struct overlay_file *file,
 
 /* Says that what is drawn has no colours, as the file has no room for them. */
 static void say_grey(const struct overlay_file *file,
-                     const struct compositor *compositor)
+                     const struct drawing *drawing)
 {
-    const struct tool *const tool = compositor->scene.tool;
+    const struct tool *const tool = drawing->files.scene.tool;
 
-    if (file->kept.samples.n_colours == 1 && compositor->scene.is_open &&
-        compositor->settings.options.layer == GLINT_LAYER_COMPOSITE &&
+    if (file->kept.samples.n_colours == 1 && drawing->files.scene.is_open &&
+        drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
         !tool->quiet)
         fprintf(stderr,
                 "glint %s: %s has one channel, so that things and flare are "
@@ -305,60 +303,59 @@ static void say_grey(const struct overlay_file *file,
 }
 
 enum glint_status overlay_file_draw(struct overlay_file *file,
-                                    struct compositor *compositor,
-                                    int32_t elapsed_us)
+                                    struct drawing *drawing, int32_t elapsed_us)
 {
     const size_t n = 3 * (size_t)file->image.width * (size_t)file->image.height;
     enum glint_status status;
     bool is_grey;
 
-    compositor->is_measured = file->kept.is_float;
-    compositor->white = file->white;
-    say_grey(file, compositor);
+    drawing->run.is_measured = file->kept.is_float;
+    drawing->run.white = file->white;
+    say_grey(file, drawing);
     /* A thing has colours, where the file has room for them. */
-    is_grey = compositor->settings.options.layer == GLINT_LAYER_COMPOSITE &&
-              !(compositor->scene.is_open && drawn_on(file)->n_colours == 3) &&
-              is_monochrome(&file->image);
+    is_grey =
+        drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
+        !(drawing->files.scene.is_open && drawn_on(file)->n_colours == 3) &&
+        is_monochrome(&file->image);
     if (file->is_direct)
-        return is_grey ? draw_grey(file, compositor, elapsed_us)
-                       : compositor_draw(compositor, &file->image, elapsed_us);
-    status = compositor_find(compositor, &file->image, elapsed_us);
+        return is_grey ? draw_grey(file, drawing, elapsed_us)
+                       : drawing_draw(drawing, &file->image, elapsed_us);
+    status = drawing_find(drawing, &file->image, elapsed_us);
     if (status != GLINT_OK)
         return status;
     if (file->kept.is_float)
-        compositor_measure(compositor, &file->kept.samples, file->white);
-    if (compositor->scene.is_open &&
-        compositor->settings.options.layer == GLINT_LAYER_COMPOSITE)
-        status = draw_scene(file, compositor, is_grey);
-    if (status != GLINT_OK || !compositor->has_lens) {
-        compositor->n_frames++;
+        drawing_measure(drawing, &file->kept.samples);
+    if (drawing->files.scene.is_open &&
+        drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE)
+        status = draw_scene(file, drawing, is_grey);
+    if (status != GLINT_OK || !drawing->files.has_lens) {
+        drawing->run.n_frames++;
         return status;
     }
-    status = compositor_expose(compositor, &file->image);
+    status = drawing_expose(drawing, &file->image);
     if (status != GLINT_OK)
         return status;
     file->layer = calloc(n, sizeof *file->layer);
     if (!file->layer)
         return GLINT_E_MEMORY;
-    status =
-        adds_nothing(compositor)
-            ? GLINT_OK
-            : compositor_draw_layer(compositor,
-                                    is_deep(drawn_on(file)) ||
-                                        compositor->settings.options.layer !=
-                                            GLINT_LAYER_COMPOSITE,
-                                    file->layer);
+    status = adds_nothing(drawing)
+                 ? GLINT_OK
+                 : drawing_layer(&drawing->run,
+                                 is_deep(drawn_on(file)) ||
+                                     drawing->line.settings.options.layer !=
+                                         GLINT_LAYER_COMPOSITE,
+                                 file->layer);
     if (status == GLINT_OK && is_grey)
         take_colour(file->layer, n / 3);
     if (status == GLINT_OK &&
-        compositor->settings.options.layer == GLINT_LAYER_COMPOSITE &&
-        !adds_nothing(compositor))
+        drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
+        !adds_nothing(drawing))
         glint_samples_add(drawn_on(file), file->layer);
     if (status == GLINT_OK &&
-        compositor->settings.options.layer == GLINT_LAYER_COMPOSITE &&
-        compositor_marks(compositor))
-        status = mark(file, compositor);
-    compositor->n_frames++;
+        drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
+        drawing_has_marks(&drawing->line))
+        status = mark(file, drawing);
+    drawing->run.n_frames++;
     return status;
 }
 
@@ -367,7 +364,7 @@ enum glint_status overlay_file_draw(struct overlay_file *file,
 /* Makes ALONE, a picture of the flare by itself, with the input's depth or
  * more. */
 static enum glint_status make_layer(const struct overlay_file *f,
-                                    const struct compositor *compositor,
+                                    const struct drawing *drawing,
                                     struct glint_samples *alone)
 {
     struct glint_samples like = f->kept.samples;
@@ -375,15 +372,15 @@ static enum glint_status make_layer(const struct overlay_file *f,
     enum glint_status status;
     float *to;
 
-    if (compositor->settings.options.layer == GLINT_LAYER_FLARE_ALPHA ||
+    if (drawing->line.settings.options.layer == GLINT_LAYER_FLARE_ALPHA ||
         glint_picture_is_float(f->to))
         like.colour[0].sample = GLINT_SAMPLE_FLOAT;
     status = glint_kept_blank(alone, &like,
-                              compositor->settings.options.layer ==
+                              drawing->line.settings.options.layer ==
                                   GLINT_LAYER_FLARE_ALPHA);
     if (status != GLINT_OK)
         return status;
-    if (compositor->settings.options.layer != GLINT_LAYER_FLARE_ALPHA) {
+    if (drawing->line.settings.options.layer != GLINT_LAYER_FLARE_ALPHA) {
         glint_samples_add(alone, f->layer);
         return GLINT_OK;
     }
@@ -403,25 +400,25 @@ static enum glint_status make_layer(const struct overlay_file *f,
 }
 
 static enum glint_status write(struct overlay_file *f,
-                               const struct compositor *compositor,
+                               const struct drawing *drawing,
                                struct glint_kept_options *options,
                                struct glint_error *error)
 {
     const bool own_layer =
-        compositor->settings.options.layer != GLINT_LAYER_COMPOSITE &&
+        drawing->line.settings.options.layer != GLINT_LAYER_COMPOSITE &&
         !f->is_direct;
     struct glint_samples alone;
     enum glint_status status;
 
-    if (adds_nothing(compositor) &&
-        compositor->settings.options.layer == GLINT_LAYER_COMPOSITE &&
-        !compositor_marks(compositor) && !options->quality &&
+    if (adds_nothing(drawing) &&
+        drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
+        !drawing_has_marks(&drawing->line) && !options->quality &&
         glint_kept_is_same_type(&f->kept, f->to))
         return glint_kept_copy(&f->kept, f->to, error);
     if (!own_layer)
         return glint_kept_save(&f->kept, f->to, f->is_copied ? &f->work : NULL,
                                options, error);
-    status = make_layer(f, compositor, &alone);
+    status = make_layer(f, drawing, &alone);
     if (status != GLINT_OK)
         return status;
     status = glint_kept_save(&f->kept, f->to, &alone, options, error);
@@ -430,11 +427,11 @@ static enum glint_status write(struct overlay_file *f,
 }
 
 int overlay_file_save(const struct tool *tool, struct overlay_file *file,
-                      const struct compositor *compositor, int quality)
+                      const struct drawing *drawing, int quality)
 {
     struct glint_kept_options options = {.quality = quality};
     struct glint_error error = {""};
-    const enum glint_status status = write(file, compositor, &options, &error);
+    const enum glint_status status = write(file, drawing, &options, &error);
 
     if (status != GLINT_OK)
         return *error.text ? tool_fail(tool, status, error.text)

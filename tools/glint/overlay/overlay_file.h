@@ -2,9 +2,9 @@
  *
  * A picture file on its way through overlay: opened, lit, and written.
  *
- *     overlay_file_open(&tool, &file, &compositor, "in.exr", "out.exr");
- *     overlay_file_draw(&file, &compositor, elapsed_us);
- *     overlay_file_save(&tool, &file, &compositor, quality);
+ *     overlay_file_open(&tool, &file, &drawing, "in.exr", "out.exr");
+ *     overlay_file_draw(&file, &drawing, elapsed_us);
+ *     overlay_file_save(&tool, &file, &drawing, quality);
  *     overlay_file_close(&file);
  *
  * Opaque sRGB of 8 bits is drawn on as it is, in integers. Of all other
@@ -16,11 +16,11 @@
 #ifndef GLINT_TOOLS_OVERLAY_OVERLAY_FILE_H
 #define GLINT_TOOLS_OVERLAY_OVERLAY_FILE_H
 
-#include "overlay/compositor.h"
+#include "overlay/drawing.h"
 #include "formats/picture.h"
 
 struct overlay_file {
-    /* Picture in which lamps are found; its size is for compositor_size(). */
+    /* Picture in which lamps are found; its size is for drawing_size(). */
     struct glint_image image;
 
     /* Private. */
@@ -37,19 +37,19 @@ struct overlay_file {
 /* Opens FROM, which is to be written to TO. Both strings must outlive FILE.
  * Returns an exit code. */
 int overlay_file_open(const struct tool *tool, struct overlay_file *file,
-                      const struct compositor *compositor, const char *from,
+                      const struct drawing *drawing, const char *from,
                       const char *to);
 
 /* Adds the flare to a picture that comes ELAPSED_US after the one before.
  * GLINT_E_MEMORY. */
 enum glint_status overlay_file_draw(struct overlay_file *file,
-                                    struct compositor *compositor,
+                                    struct drawing *drawing,
                                     int32_t elapsed_us);
 
 /* Writes the picture to its output, with QUALITY as in glint_kept_options.
  * Returns an exit code. */
 int overlay_file_save(const struct tool *tool, struct overlay_file *file,
-                      const struct compositor *compositor, int quality);
+                      const struct drawing *drawing, int quality);
 
 /* Closes FILE, unless it is closed already. */
 void overlay_file_close(struct overlay_file *file);

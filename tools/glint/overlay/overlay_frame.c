@@ -14,10 +14,10 @@ static void say_frame(const struct overlay *o)
 {
     char lights[64];
 
-    settings_lights_text(&o->compositor.report, lights);
+    settings_lights_text(&o->drawing.run.report, lights);
     fprintf(stderr, "frame %d: %s, %d ghosts, %d primitives\n",
-            o->compositor.n_frames - 1, lights, o->compositor.report.ghosts,
-            o->compositor.report.stats.primitives);
+            o->drawing.run.n_frames - 1, lights, o->drawing.run.report.ghosts,
+            o->drawing.run.report.stats.primitives);
 }
 
 static void note_worst(struct glint_engine_report *worst,
@@ -47,12 +47,12 @@ static void note_worst(struct glint_engine_report *worst,
     worst->tight = tight;
 }
 
-static enum glint_status draw_in_place(void *ctx, struct compositor *compositor,
+static enum glint_status draw_in_place(void *ctx, struct drawing *drawing,
                                        const struct glint_image *image,
                                        int32_t elapsed_us)
 {
     (void)ctx;
-    return compositor_draw(compositor, image, elapsed_us);
+    return drawing_draw(drawing, image, elapsed_us);
 }
 
 int overlay_draw(struct tool *tool, struct overlay *o,
@@ -64,21 +64,21 @@ int overlay_draw(struct tool *tool, struct overlay *o,
 int overlay_look(struct tool *tool, struct overlay *o,
                  const struct glint_image *image)
 {
-    struct compositor *const compositor = &o->compositor;
+    struct drawing *const drawing = &o->drawing;
     enum glint_status status = GLINT_OK;
     int code = EXIT_OK;
 
-    if (!compositor->sized)
-        code = compositor_size(tool, compositor, image->width, image->height);
+    if (!drawing->run.is_sized)
+        code = drawing_size(tool, drawing, image->width, image->height);
     if (code != EXIT_OK)
         return code;
-    if (o->first - compositor->n_frames <= o->warm_up) {
-        status = compositor_find(compositor, image, o->elapsed_us);
-        if (status == GLINT_OK && compositor->has_lens)
-            status = compositor_expose(compositor, image);
+    if (o->first - drawing->run.n_frames <= o->warm_up) {
+        status = drawing_find(drawing, image, o->elapsed_us);
+        if (status == GLINT_OK && drawing->files.has_lens)
+            status = drawing_expose(drawing, image);
     }
-    o->is_cut = compositor_is_new(compositor);
-    compositor->n_frames++;
+    o->is_cut = drawing_is_new(drawing);
+    drawing->run.n_frames++;
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
 
@@ -86,38 +86,38 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
                     const struct glint_image *image, overlay_draw_fn *draw,
                     void *ctx)
 {
-    struct compositor *compositor = &o->compositor;
+    struct drawing *drawing = &o->drawing;
     enum glint_status status;
     int code = EXIT_OK;
 
-    compositor->is_still = o->elapsed_us == 0;
-    if (!compositor->sized)
-        code = compositor_size(tool, compositor, image->width, image->height);
+    drawing->line.is_still = o->elapsed_us == 0;
+    if (!drawing->run.is_sized)
+        code = drawing_size(tool, drawing, image->width, image->height);
     if (code != EXIT_OK)
         return code;
-    status = draw(ctx, compositor, image, o->elapsed_us);
+    status = draw(ctx, drawing, image, o->elapsed_us);
     if (status != GLINT_OK)
         return tool_fail(tool, status, NULL);
-    code = layers_write(tool, &o->layers, compositor);
+    code = layers_write(tool, &o->layers, drawing);
     if (code != EXIT_OK)
         return code;
-    o->find_ms += compositor->find_ms;
-    o->flare_ms += compositor->flare_ms;
-    if (compositor->engine) {
+    o->find_ms += drawing->run.find_ms;
+    o->flare_ms += drawing->run.flare_ms;
+    if (drawing->run.engine) {
         const struct glint_response_light *const light =
-            &glint_engine_exposed(compositor->engine)->light;
+            &glint_engine_exposed(drawing->run.engine)->light;
 
         o->peak = fmax(o->peak, glint_largest_channel(light->peak));
         o->mean_sum += glint_largest_channel(light->mean);
     }
-    if (compositor->n_lamps > o->most_lights)
-        o->most_lights = compositor->n_lamps;
-    o->n_reused += compositor->report.stats.reused;
-    if (compositor->report.peak_bytes + compositor->report.star_bytes >
+    if (drawing->run.n_lamps > o->most_lights)
+        o->most_lights = drawing->run.n_lamps;
+    o->n_reused += drawing->run.report.stats.reused;
+    if (drawing->run.report.peak_bytes + drawing->run.report.star_bytes >
         o->peak_bytes)
         o->peak_bytes =
-            compositor->report.peak_bytes + compositor->report.star_bytes;
-    note_worst(&o->worst, &compositor->report);
+            drawing->run.report.peak_bytes + drawing->run.report.star_bytes;
+    note_worst(&o->worst, &drawing->run.report);
     if (tool->verbose && !tool->quiet)
         say_frame(o);
     return EXIT_OK;
@@ -137,8 +137,8 @@ void overlay_progress(const struct tool *tool, struct overlay *o)
             is_terminal ? "\rframe %d  %.1f fps  %d lights \033[K"
                         : "glint overlay: frame %d, %.1f fps, %d "
                           "lights\n",
-            o->compositor.n_frames, o->compositor.n_frames / spent,
-            o->compositor.report.lights);
+            o->drawing.run.n_frames, o->drawing.run.n_frames / spent,
+            o->drawing.run.report.lights);
     fflush(stderr);
 }
 
@@ -149,6 +149,6 @@ int overlay_check_apart(const struct tool *tool, const struct overlay *o,
 
     apart_read(&files, NULL, from);
     apart_write(&files, "-o", to);
-    apart_compositor(&files, &o->compositor);
+    apart_line(&files, &o->drawing.line);
     return layers_check_apart(tool, &o->layers, &files);
 }

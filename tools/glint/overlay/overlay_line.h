@@ -35,7 +35,7 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
 
 /* Prints that no lamp was found; of a picture by itself also the brightest
  * candidate. */
-void overlay_say_none(const struct compositor *compositor, FILE *to);
+void overlay_say_none(const struct drawing *drawing, FILE *to);
 
 /* Writes members of an object. */
 void overlay_json(struct json_writer *json, const struct overlay *o,

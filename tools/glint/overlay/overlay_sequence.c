@@ -151,7 +151,7 @@ static int one(struct tool *tool, struct overlay *o, const struct numbers *l,
     o->elapsed_us = l->n == 1                     ? 0
                     : gap > 1000000000 / FRAME_US ? 1000000000
                                                   : (int32_t)(gap * FRAME_US);
-    o->compositor.n_frames +=
+    o->drawing.run.n_frames +=
         (int)(gap - 1); /* lists of lamps count all numbers */
     code = overlay_check_apart(tool, o, from, to);
     if (code == EXIT_OK)
@@ -184,7 +184,7 @@ static int all(struct tool *tool, struct overlay *o, const struct numbers *l)
     for (int i = 0; i < l->n && code == EXIT_OK; i++)
         code = one(tool, o, l, i);
     if (code == EXIT_OK)
-        o->compositor.n_frames = l->n; /* without the missing ones */
+        o->drawing.run.n_frames = l->n; /* without the missing ones */
     return code;
 }
 

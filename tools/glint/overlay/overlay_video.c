@@ -236,7 +236,7 @@ static int draw_frame(struct video *v, const struct glint_image *image)
 
 static int frames(struct video *v)
 {
-    const int *const at = &v->o->compositor.n_frames;
+    const int *const at = &v->o->drawing.run.n_frames;
     const struct glint_image *image;
     int code = EXIT_OK;
 
@@ -268,7 +268,7 @@ static int frames(struct video *v)
  * shot, with what comes after them. */
 static int shots(struct video *v)
 {
-    const int *const at = &v->o->compositor.n_frames;
+    const int *const at = &v->o->drawing.run.n_frames;
     const struct glint_image *image;
     bool was_cut = true;
     int code = EXIT_OK, first = 0;
@@ -321,7 +321,7 @@ static int end_reader(struct video *v)
         fprintf(stderr,
                 "glint overlay: %s is cut off after frame %d; 'ffmpeg -i IN "
                 "-c copy OUT' makes a whole video of what is there\n",
-                v->o->input, v->o->compositor.n_frames - 1);
+                v->o->input, v->o->drawing.run.n_frames - 1);
     return EXIT_INPUT;
 }
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "overlay/compositor_layer.h"
+#include "overlay/drawing.h"
 
 /* Memory that all frames of a stream share. */
 struct overlay_y4m {
@@ -28,14 +28,14 @@ void overlay_y4m_close(struct overlay *o)
 }
 
 static enum glint_status draw_scene(struct overlay_y4m *y,
-                                    struct compositor *compositor)
+                                    struct drawing *drawing)
 {
     struct over_scene_layer layer;
     enum glint_status status;
 
-    if (!compositor->scene.is_open)
+    if (!drawing->files.scene.is_open)
         return GLINT_OK;
-    status = over_scene_layer(&compositor->scene, &layer);
+    status = over_scene_layer(&drawing->files.scene, &layer);
     if (status != GLINT_OK)
         return status;
     glint_y4m_light_cover(&y->light, y->planes, layer.rgb, layer.cover_q8);
@@ -43,31 +43,31 @@ static enum glint_status draw_scene(struct overlay_y4m *y,
     return GLINT_OK;
 }
 
-static enum glint_status draw(void *ctx, struct compositor *compositor,
+static enum glint_status draw(void *ctx, struct drawing *drawing,
                               const struct glint_image *image,
                               int32_t elapsed_us)
 {
     struct overlay_y4m *const y = ctx;
-    enum glint_status status = compositor_find(compositor, image, elapsed_us);
+    enum glint_status status = drawing_find(drawing, image, elapsed_us);
 
     if (status == GLINT_OK)
-        status = draw_scene(y, compositor);
-    if (status != GLINT_OK || !compositor->has_lens) {
-        compositor->n_frames++;
+        status = draw_scene(y, drawing);
+    if (status != GLINT_OK || !drawing->files.has_lens) {
+        drawing->run.n_frames++;
         return status;
     }
-    status = compositor_expose(compositor, image);
-    compositor->n_frames++;
+    status = drawing_expose(drawing, image);
+    drawing->run.n_frames++;
     if (status != GLINT_OK)
         return status;
-    if (compositor->settings.options.layer != GLINT_LAYER_COMPOSITE)
+    if (drawing->line.settings.options.layer != GLINT_LAYER_COMPOSITE)
         glint_y4m_light_blacken(&y->light, y->planes);
-    if (compositor->n_lamps == 0 && !glint_engine_has_veil(compositor->engine))
+    if (drawing->run.n_lamps == 0 &&
+        !glint_engine_has_veil(drawing->run.engine))
         return GLINT_OK;
-    status =
-        compositor_draw_layer(compositor, y->light.layout.bits > 12, y->layer);
-    if (status == GLINT_OK && (compositor_scale(compositor) > 0 ||
-                               glint_engine_has_veil(compositor->engine)))
+    status = drawing_layer(&drawing->run, y->light.layout.bits > 12, y->layer);
+    if (status == GLINT_OK && (drawing_scale(&drawing->run) > 0 ||
+                               glint_engine_has_veil(drawing->run.engine)))
         glint_y4m_light_add(&y->light, y->planes, y->layer);
     return status;
 }
@@ -93,7 +93,7 @@ int overlay_y4m_draw(struct tool *tool, struct overlay *o,
 {
     if (glint_y4m_is_plain(&in->header))
         return overlay_draw(tool, o, image);
-    if (compositor_marks(&o->compositor))
+    if (drawing_has_marks(&o->drawing.line))
         return tool_usage(tool,
                           "--show lights marks frames of 8 bits in BT.709, "
                           "and these are C%s, transfer %s",

@@ -72,7 +72,7 @@ static char *make_keys(const struct zoom_clip *clip, long n)
 }
 
 int zoom_clip_open(struct tool *tool, struct zoom_clip *clip, const char *input,
-                   struct compositor *compositor)
+                   struct drawing_line *line)
 {
     struct glint_error error = {""};
     long n;
@@ -84,7 +84,7 @@ int zoom_clip_open(struct tool *tool, struct zoom_clip *clip, const char *input,
                           "--zoom %g-%g: both are mm, or both 0 to 1 along the "
                           "way",
                           clip->from, clip->to);
-    if (compositor->settings.options.keys)
+    if (line->settings.options.keys)
         return tool_usage(tool, "--zoom A-B does not go with --keys: give the "
                                 "key frames a column zoom");
     if (!input || strcmp(input, "-") == 0)
@@ -101,8 +101,8 @@ int zoom_clip_open(struct tool *tool, struct zoom_clip *clip, const char *input,
     clip->keys = make_keys(clip, n);
     if (!clip->keys)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    compositor->settings.options.keys = clip->label;
-    compositor->keys_text = clip->keys;
+    line->settings.options.keys = clip->label;
+    line->keys_text = clip->keys;
     return EXIT_OK;
 }
 

@@ -10,7 +10,7 @@
 #include "desk/render_file.h"
 #include "glint/composite.h"
 #include "options/numbered.h"
-#include "overlay/compositor_layer.h"
+#include "overlay/drawing.h"
 #include "ffmpeg/ffmpeg.h"
 #include "overlay/overlay.h"
 #include "formats/paint.h"
@@ -23,7 +23,7 @@
 struct frames {
     struct tool *tool;
     struct render_scene *r;
-    struct compositor *c;
+    struct drawing *c;
     bool is_y4m, is_numbered;
     int32_t elapsed_us;      /* between frames; 0: there is one */
     struct glint_image seen; /* the scene in codes, for exposure and veil */
@@ -84,7 +84,7 @@ static enum glint_status open_video(struct frames *f, struct glint_error *error)
     }
     glint_image_place(&f->frame, planes);
     glint_composite_init(&f->composite, &f->frame, tool_sets(f->tool),
-                         f->c->settings.options.dither, f->tables,
+                         f->c->line.settings.options.dither, f->tables,
                          glint_composite_bytes());
     return glint_y4m_writer_open(&f->writer, r->output, &f->header, error);
 }
@@ -98,13 +98,13 @@ static int open_frames(struct frames *f)
     uint8_t *const codes = calloc(n, 1);
 
     f->light_q20 = malloc(n * sizeof *f->light_q20);
-    if (f->c->has_lens)
+    if (f->c->files.has_lens)
         f->flare = malloc(n * sizeof *f->flare);
     f->seen = (struct glint_image){
         .format = GLINT_RGB24, .width = r->width, .height = r->height};
     if (codes)
         glint_image_place(&f->seen, codes);
-    if (!codes || !f->light_q20 || (f->c->has_lens && !f->flare))
+    if (!codes || !f->light_q20 || (f->c->files.has_lens && !f->flare))
         return tool_fail(f->tool, GLINT_E_MEMORY, NULL);
     if (f->is_y4m)
         status = open_video(f, &error);
@@ -130,22 +130,22 @@ static void close_frames(struct frames *f)
  * hides, to the picture. */
 static enum glint_status add_flare(struct frames *f)
 {
-    struct compositor *const c = f->c;
+    struct drawing *const c = f->c;
     const size_t n = 3 * (size_t)f->r->width * (size_t)f->r->height;
     enum glint_status status;
 
-    status = compositor_expose(c, &f->seen);
+    status = drawing_expose(c, &f->seen);
     if (status != GLINT_OK || !f->flare ||
-        ((c->n_lamps == 0 || !(compositor_scale(c) > 0)) &&
-         !glint_engine_has_veil(c->engine)))
+        ((c->run.n_lamps == 0 || !(drawing_scale(&c->run) > 0)) &&
+         !glint_engine_has_veil(c->run.engine)))
         return status;
-    status = compositor_draw_layer(c, true, f->flare);
+    status = drawing_layer(&c->run, true, f->flare);
     for (size_t i = 0; status == GLINT_OK && i < n; i++)
         f->r->image.rgb[i] += f->flare[i];
     return status;
 }
 
-/* Draws frame c->n_frames into r->image. */
+/* Draws frame c->run.n_frames into r->image. */
 static enum glint_status draw(struct frames *f)
 {
     struct render_scene *const r = f->r;
@@ -156,18 +156,19 @@ static enum glint_status draw(struct frames *f)
 
     memset(f->light_q20, 0, n * sizeof *f->light_q20);
     glint_image_place(&linear, f->light_q20);
-    if (f->c->has_lens && f->seen.plane[0]) {
+    if (f->c->files.has_lens && f->seen.plane[0]) {
         memset(f->seen.plane[0], 0, n);
-        status = compositor_find(f->c, &f->seen, f->elapsed_us);
+        status = drawing_find(f->c, &f->seen, f->elapsed_us);
         if (status == GLINT_OK)
-            over_scene_again(&f->c->scene, &linear);
+            over_scene_again(&f->c->files.scene, &linear);
     } else {
-        f->c->scene.elapsed_us = f->elapsed_us;
-        status = over_scene_draw(&f->c->scene, &linear, f->c->n_frames);
+        f->c->files.scene.elapsed_us = f->elapsed_us;
+        status =
+            over_scene_draw(&f->c->files.scene, &linear, f->c->run.n_frames);
     }
     for (size_t i = 0; status == GLINT_OK && i < n; i++)
         r->image.rgb[i] = (float)ldexp(f->light_q20[i], -20);
-    if (status == GLINT_OK && f->c->has_lens)
+    if (status == GLINT_OK && f->c->files.has_lens)
         status = add_flare(f);
     for (size_t i = 0; status == GLINT_OK && i < n && r->exposure_ev != 0; i++)
         r->image.rgb[i] *= (float)exp2(r->exposure_ev);
@@ -235,11 +236,11 @@ static void say(const struct frames *f, double ms)
         return;
     json_write(&json, "{engine: %s, frames: %d", "model",
                r->last - r->first + 1);
-    over_scene_json(&json, &f->c->scene);
+    over_scene_json(&json, &f->c->files.scene);
     json_write(&json, "lens: %s",
-               f->c->has_lens ? f->c->settings.lens.name : NULL);
-    if (f->c->has_lens)
-        settings_json(&json, &f->c->report);
+               f->c->files.has_lens ? f->c->line.settings.lens.name : NULL);
+    if (f->c->files.has_lens)
+        settings_json(&json, &f->c->run.report);
     json_write(&json, "ms: %.3f}\n", ms);
 }
 
@@ -252,7 +253,7 @@ static int run(struct frames *f)
     for (int i = r->first; code == EXIT_OK && i <= r->last; i++) {
         enum glint_status status;
 
-        f->c->n_frames = i;
+        f->c->run.n_frames = i;
         status = draw(f);
         code =
             status == GLINT_OK ? put(f, i) : tool_fail(f->tool, status, NULL);
@@ -260,22 +261,22 @@ static int run(struct frames *f)
     if (code == EXIT_OK)
         code = end_video(f);
     if (code == EXIT_OK)
-        code = compositor_finish(f->tool, f->c);
+        code = drawing_finish(f->tool, f->c);
     if (code == EXIT_OK)
         say(f, 1e3 * (tool_seconds() - start));
     return code;
 }
 
-/* Returns an exit code for what of the compositor's options is not for renders.
+/* Returns an exit code for what of the drawing's options is not for renders.
  */
-static int check_options(const struct tool *tool, const struct compositor *c)
+static int check_options(const struct tool *tool, const struct drawing *c)
 {
-    if (c->scene.file)
+    if (c->line.settings.options.scene)
         return tool_usage(tool, "--scene is for overlay, live and explain; "
                                 "here the scene is the input");
-    if (c->settings.options.layer != GLINT_LAYER_COMPOSITE)
+    if (c->line.settings.options.layer != GLINT_LAYER_COMPOSITE)
         return tool_usage(tool, "--layer is for overlay and live");
-    return compositor_marks(c)
+    return drawing_has_marks(&c->line)
                ? tool_usage(tool, "--show lights and --preview are for "
                                   "overlay and live")
                : EXIT_OK;
@@ -283,7 +284,7 @@ static int check_options(const struct tool *tool, const struct compositor *c)
 
 int render_frames(struct tool *tool, struct render_scene *r, const char *path)
 {
-    struct compositor *const c = &r->compositor;
+    struct drawing *const c = &r->drawing;
     struct frames f = {.tool = tool, .r = r, .c = c, .writer.out.fd = -1};
     struct apart files = {.n_read = 0};
     int code = check(tool, &f);
@@ -292,20 +293,20 @@ int render_frames(struct tool *tool, struct render_scene *r, const char *path)
         code = check_options(tool, c);
     if (code != EXIT_OK)
         return code;
-    c->scene.file = path;
-    apart_compositor(&files, c);
+    c->line.settings.options.scene = path;
+    apart_line(&files, &c->line);
     apart_write(&files, "-o", r->output);
     code = apart_check(tool, &files);
     if (code != EXIT_OK)
         return code;
-    c->scene.asked.edge_samples = r->samples;
-    c->is_still = !r->is_video;
+    c->line.scene_dials.edge_samples = r->samples;
+    c->line.is_still = !r->is_video;
     if (r->is_video)
         f.elapsed_us = (int32_t)lrint(1e6 / r->fps);
-    code = compositor_open(tool, c);
-    c->is_listed = true; /* there is no picture to find lamps in */
+    code = drawing_open(tool, c);
+    c->files.is_listed = true; /* there is no picture to find lamps in */
     if (code == EXIT_OK)
-        code = compositor_size(tool, c, r->width, r->height);
+        code = drawing_size(tool, c, r->width, r->height);
     if (code == EXIT_OK)
         code = run(&f);
     close_frames(&f);

@@ -122,7 +122,7 @@ static int take(struct tool *tool, struct render_scene *r, int c)
 /* Takes option C, of scenes or of the flare. Returns -1 or an exit code. */
 static int take_any(struct tool *tool, struct render_scene *r, int c)
 {
-    int code = compositor_option(tool, &r->compositor, c, optarg);
+    int code = drawing_line_option(tool, &r->drawing.line, c, optarg);
 
     if (code == -1) {
         const enum glint_option_group group =
@@ -155,10 +155,10 @@ static int parse(struct tool *tool, int argc, char **argv,
         {"fps", required_argument, NULL, OPT_FPS},
         {NULL, 0, NULL, 0}};
     const struct option *const options =
-        engine_getopt(tool, ENGINE_ALL, &r->compositor.settings.options, own);
-    struct scene_dials *const asked = &r->compositor.scene.asked;
-    int c, code = compositor_style_of(tool, &r->compositor, argc, argv,
-                                      "o:" TOOL_COMMON_SHORT, options);
+        engine_getopt(tool, ENGINE_ALL, &r->drawing.line.settings.options, own);
+    struct scene_dials *const asked = &r->drawing.line.scene_dials;
+    int c, code = drawing_line_style_of(tool, &r->drawing.line, argc, argv,
+                                        "o:" TOOL_COMMON_SHORT, options);
 
     if (code >= 0)
         return code;
@@ -175,12 +175,12 @@ static int parse(struct tool *tool, int argc, char **argv,
         r->samples != 16)
         return tool_usage(tool, "--samples takes 1, 4, 8 or 16, not %d",
                           r->samples);
-    if (!GLINT_OPTION_GIVEN(&r->compositor.settings.options, quality)) {
+    if (!GLINT_OPTION_GIVEN(&r->drawing.line.settings.options, quality)) {
         r->samples = r->samples ? r->samples : 4;
         if (!asked->shadow_points)
             asked->shadow_points = 4;
     }
-    if (strcmp(r->compositor.settings.options.lens, "none") != 0)
+    if (strcmp(r->drawing.line.settings.options.lens, "none") != 0)
         r->is_frames = true;
     else if (r->is_lit)
         return tool_usage(tool, "options of a flare need --lens LENS");
@@ -241,7 +241,7 @@ static void say_catchers(const struct tool *tool,
 static int draw_model(struct tool *tool, struct render_scene *r,
                       const struct glint_scene_model *model)
 {
-    struct scene_dials dials = r->compositor.scene.asked;
+    struct scene_dials dials = r->drawing.line.scene_dials;
     const size_t n = 3 * (size_t)r->width * (size_t)r->height;
     struct glint_image linear = {
         .format = GLINT_LINEAR_Q20, .width = r->width, .height = r->height};
@@ -256,8 +256,8 @@ static int draw_model(struct tool *tool, struct render_scene *r,
     dials.width = r->width;
     dials.height = r->height;
     dials.edge_samples = r->samples;
-    if (GLINT_OPTION_GIVEN(&r->compositor.settings.options, quality))
-        scene_dials_be(&dials, r->compositor.settings.options.quality);
+    if (GLINT_OPTION_GIVEN(&r->drawing.line.settings.options, quality))
+        scene_dials_be(&dials, r->drawing.line.settings.options.quality);
     code = scene_frame_open(&frame, tool, model, &dials);
     if (code == EXIT_OK) {
         glint_image_place(&linear, light_q20);
@@ -338,8 +338,8 @@ int cmd_render_scene(int argc, char **argv)
     r->width = 960;
     r->height = 540;
     r->fps = 25;
-    compositor_defaults(&r->compositor);
-    r->compositor.settings.options.lens = "none";
+    drawing_line_defaults(&r->drawing.line);
+    r->drawing.line.settings.options.lens = "none";
     code = parse(&tool, argc, argv, r);
     if (code < 0) {
         code = tool_start(&tool);
@@ -347,7 +347,7 @@ int cmd_render_scene(int argc, char **argv)
             code = run(&tool, r, argv[optind]);
         tool_finish(&tool);
     }
-    compositor_close(&r->compositor);
+    drawing_close(&r->drawing);
     free(r);
     return code;
 }

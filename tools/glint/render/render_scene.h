@@ -7,7 +7,7 @@
 #include <stdbool.h>
 
 #include "glint/measure.h"
-#include "overlay/compositor.h"
+#include "overlay/drawing.h"
 
 struct render_scene {
     const char *output;
@@ -20,7 +20,7 @@ struct render_scene {
     bool is_video;   /* --frames FIRST-LAST */
     int first, last; /* frames */
     double fps;
-    struct compositor compositor;
+    struct drawing drawing;
     struct glint_float_image image;
 };
 

@@ -6,12 +6,12 @@
 #include <string.h>
 
 #include "filter/values.h"
-#include "overlay/compositor.h"
+#include "overlay/drawing.h"
 
 struct filter {
     struct tool tool;
     struct glint_error cause; /* of a failure, as hosts show it */
-    struct compositor compositor;
+    struct drawing drawing;
     int width, height;
     struct filter_values values;
     struct glint_options opened; /* those of values that are not live */
@@ -35,7 +35,7 @@ struct filter *filter_create(const char *host, int width, int height)
 static void shut(struct filter *f)
 {
     if (f->is_open)
-        compositor_close(&f->compositor);
+        drawing_close(&f->drawing);
     tool_finish(&f->tool);
     f->is_open = false;
 }
@@ -91,14 +91,14 @@ static int set_option(struct filter *f, const struct filter_parameter *p, int i)
     const struct filter_values *const v = &f->values;
 
     if (p->type == FILTER_TEXT)
-        return v->text[i] ? compositor_set_text(&f->tool, &f->compositor,
-                                                p->name, v->text[i])
+        return v->text[i] ? drawing_line_set_text(&f->tool, &f->drawing.line,
+                                                  p->name, v->text[i])
                           : -1;
     return p->is_live || !glint_option_named(p->name) ||
                    filter_is_default(p, v->number[i])
                ? -1
-               : compositor_set_number(&f->tool, &f->compositor, p->name,
-                                       v->number[i]);
+               : drawing_line_set_number(&f->tool, &f->drawing.line, p->name,
+                                         v->number[i]);
 }
 
 /* Sets the options that are not live; returns -1 or an exit code. The style
@@ -114,30 +114,30 @@ static int set_options(struct filter *f)
             if ((pass == 0) == (strcmp(p.name, "style") == 0))
                 code = set_option(f, &p, i);
     if (code == -1 && v->number[FILTER_AUTO] < 0.5 &&
-        !compositor_add_light(&f->compositor, v->number[FILTER_X] * f->width,
-                              v->number[FILTER_Y] * f->height,
-                              GLINT_LIGHT_AT_EV))
+        !drawing_line_add_light(
+            &f->drawing.line, v->number[FILTER_X] * f->width,
+            v->number[FILTER_Y] * f->height, GLINT_LIGHT_AT_EV))
         code = tool_fail(&f->tool, GLINT_E_MEMORY, NULL);
     return code;
 }
 
 static bool open_filter(struct filter *f)
 {
-    struct compositor *const c = &f->compositor;
+    struct drawing *const c = &f->drawing;
     int code;
 
     f->cause.text[0] = '\0';
     memset(c, 0, sizeof *c);
-    compositor_defaults(c);
+    drawing_line_defaults(&c->line);
     f->is_open = true;
     code = set_options(f);
     if (code == -1)
         code = tool_start(&f->tool);
     if (code == EXIT_OK)
-        code = compositor_open(&f->tool, c);
+        code = drawing_open(&f->tool, c);
     if (code == EXIT_OK)
-        code = compositor_size(&f->tool, c, f->width, f->height);
-    f->opened = c->settings.options;
+        code = drawing_size(&f->tool, c, f->width, f->height);
+    f->opened = c->line.settings.options;
     return code == EXIT_OK;
 }
 
@@ -154,8 +154,8 @@ bool filter_open(struct filter *f)
 static void set_live_options(struct filter *f)
 {
     const struct filter_values *const v = &f->values;
-    struct compositor *const c = &f->compositor;
-    struct glint_options *const o = &c->settings.options;
+    struct drawing *const c = &f->drawing;
+    struct glint_options *const o = &c->line.settings.options;
     struct filter_parameter p;
     struct glint_error error;
 
@@ -164,9 +164,9 @@ static void set_live_options(struct filter *f)
         if (p.is_live && glint_option_named(p.name) &&
             !filter_is_default(&p, v->number[i]))
             glint_options_set(o, p.name, v->number[i], &error);
-    if (c->is_listed) {
-        c->list.row[0].x = v->number[FILTER_X] * f->width;
-        c->list.row[0].y = v->number[FILTER_Y] * f->height;
+    if (c->files.is_listed) {
+        c->files.list.row[0].x = v->number[FILTER_X] * f->width;
+        c->files.list.row[0].y = v->number[FILTER_Y] * f->height;
     }
 }
 
@@ -181,7 +181,7 @@ bool filter_draw(struct filter *f, const struct glint_image *image,
     if (!filter_open(f))
         return false;
     set_live_options(f);
-    if (compositor_draw(&f->compositor, image, elapsed_us) != GLINT_OK) {
+    if (drawing_draw(&f->drawing, image, elapsed_us) != GLINT_OK) {
         f->failed = true;
         tool_error(&f->tool, "no memory; pictures stay as they are");
     }

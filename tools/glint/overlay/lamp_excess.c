@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "overlay/compositor_layer.h"
+#include "overlay/lamp_excess.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-/* --------------------------------------------------------------- measuring */
 
 /* The pixels around a lamp whose light above white is counted as its own. */
 struct reach {
@@ -102,57 +100,35 @@ static struct sum seen_of(const struct glint_lamp_track *track, double white)
     return sum;
 }
 
-static void set_lamp(const struct compositor *compositor,
-                     struct glint_engine_lamp *lamp, const struct sum *sum)
+static void set_lamp(struct glint_engine_lamp *lamp, const struct sum *sum,
+                     const struct glint_view *view, double focal_mm)
 {
     struct glint_lamp_track *const track = &lamp->track;
-    const double focal = compositor->settings.setup.optics.focal_mm;
 
     if (!(sum->luminance > 0))
         return;
     track->x_q8 = (int32_t)lrint(256 * sum->x / sum->luminance);
     track->y_q8 = (int32_t)lrint(256 * sum->y / sum->luminance);
-    glint_view_to_angles(&compositor->view, focal, track->x_q8 / 256.0,
+    glint_view_to_angles(view, focal_mm, track->x_q8 / 256.0,
                          track->y_q8 / 256.0, &lamp->lamp);
     lamp->lamp.power = fmin(sum->luminance, LAMP_MAX_POWER) * lamp->level;
     for (int c = 0; c < 3; c++)
         lamp->lamp.rgb[c] = sum->rgb[c] / sum->luminance;
 }
 
-void compositor_measure(struct compositor *compositor,
-                        const struct glint_samples *samples, double white)
+void add_lamp_excess(struct glint_engine_lamp *lamp, int n,
+                     const struct glint_samples *samples, double white,
+                     const struct glint_view *view, double focal_mm)
 {
-    struct glint_engine_lamp *const lamp = compositor->lamp;
-    const int n = compositor->n_own;
-    struct reach *all;
+    struct reach *const all = n > 0 ? malloc((size_t)n * sizeof *all) : NULL;
 
-    if (compositor->is_listed || compositor->n_hand || n == 0)
-        return;
-    all = malloc((size_t)n * sizeof *all);
     for (int i = 0; i < n && all; i++)
-        all[i] = reach_of(&lamp[i].track, compositor->view.width,
-                          compositor->view.height);
+        all[i] = reach_of(&lamp[i].track, view->width, view->height);
     for (int i = 0; i < n && all; i++) {
         struct sum sum = seen_of(&lamp[i].track, white);
 
         add_excess(&sum, samples, all, n, i, white);
-        set_lamp(compositor, &lamp[i], &sum);
+        set_lamp(&lamp[i], &sum, view, focal_mm);
     }
     free(all);
-}
-
-/* ------------------------------------------------------------------ drawing */
-
-enum glint_status compositor_draw_layer(struct compositor *compositor,
-                                        bool is_deep, float *rgb)
-{
-    const double start = tool_seconds();
-    const enum glint_status status = glint_engine_draw_layer(
-        compositor->engine, compositor->lamp, compositor->n_lamps,
-        is_deep ? GLINT_ENGINE_ALL : GLINT_ENGINE_ALL | GLINT_ENGINE_CODES, rgb,
-        &compositor->report);
-
-    compositor_drawn(compositor);
-    compositor->flare_ms = 1e3 * (tool_seconds() - start);
-    return status;
 }

@@ -1,0 +1,631 @@
+/* SPDX-License-Identifier: MIT */
+#include "overlay/drawing.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "desk/preview.h"
+#include "formats/paint.h"
+#include "lamp_files/lamp_keys.h"
+#include "model/response_cache.h"
+#include "overlay/lamp_excess.h"
+#include "overlay/show_lights.h"
+
+/* Quality of a preview, as of draft. */
+static const double preview_quality = 0.25;
+
+/* ------------------------------------------------------------------ opening */
+
+/* Lowers the quality of a preview unless one was chosen; the model stays the
+ * same. */
+static void lower_quality(struct settings *s)
+{
+    struct glint_options *const o = &s->options;
+    const double tolerance = s->tolerance;
+
+    if (settings_has_grid(s) || o->budget > 0)
+        return;
+    settings_set_quality(s, preview_quality);
+    GLINT_OPTION_GIVEN(o, quality) = false;
+    s->tolerance = tolerance;
+    if (!o->area_samples)
+        o->area_samples = 1;
+}
+
+/* Zooms to ZOOM; GLINT_E_ARGUMENT: it stays where it was. */
+static enum glint_status zoom_to(struct drawing *d, double zoom,
+                                 struct glint_error *error)
+{
+    struct settings *const s = &d->line.settings;
+    const enum glint_status status = settings_zoom(s, zoom, error);
+
+    if (status != GLINT_OK)
+        return status;
+    s->zoom.zoom = zoom;
+    if (d->run.engine)
+        glint_engine_update_stop(d->run.engine);
+    return GLINT_OK;
+}
+
+/* Sets an option by a line of control. */
+static enum glint_status set_option(void *ctx, const char *name, double value,
+                                    struct glint_error *error)
+{
+    struct drawing *const d = ctx;
+    struct settings *const s = &d->line.settings;
+    const int column = keys_column(name);
+    const double before = s->options.f_number;
+    struct glint_error unused;
+    enum glint_status status;
+
+    if (column >= 0 && keys_has(&d->files.keys, column)) {
+        snprintf(error->text, sizeof error->text, "key frames set %s", name);
+        return GLINT_E_ARGUMENT;
+    }
+    if (column == KEYS_ZOOM)
+        return zoom_to(d, value, error);
+    if (column != KEYS_F_NUMBER)
+        return glint_options_set(&s->options, name, value, error);
+    if (s->options.rays == GLINT_RAYS_EXACT) {
+        snprintf(error->text, sizeof error->text,
+                 "a stop that changes needs a model, not --rays exact");
+        return GLINT_E_ARGUMENT;
+    }
+    status = settings_stop(s, value, error);
+    if (status != GLINT_OK)
+        settings_stop(s, before, &unused);
+    else if (d->run.engine)
+        glint_engine_update_stop(d->run.engine);
+    return status;
+}
+
+/* Returns the most lamps besides those that are found. */
+static int more_lamps(const struct drawing *d)
+{
+    return d->line.n_hand + d->files.list.n +
+           (d->files.scene.is_open ? OVER_SCENE_LAMPS : 0);
+}
+
+int drawing_open(const struct tool *tool, struct drawing *drawing)
+{
+    struct drawing_run *const run = &drawing->run;
+    int code;
+
+    run->white = 1;
+    if (drawing->line.settings.options.preview)
+        lower_quality(&drawing->line.settings);
+    drawing->files.scene.set_option = set_option;
+    drawing->files.scene.set_ctx = drawing;
+    code = drawing_files_open(tool, &drawing->line, &drawing->files);
+    if (code != EXIT_OK || !drawing->files.has_lens)
+        return code;
+    run->lamp = malloc((size_t)(more_lamps(drawing) + GLINT_ENGINE_MAX_LAMPS) *
+                       sizeof *run->lamp);
+    return run->lamp ? EXIT_OK : tool_fail(tool, GLINT_E_MEMORY, NULL);
+}
+
+int drawing_open_lens(const struct tool *tool, struct drawing *drawing)
+{
+    return strcmp(drawing->line.settings.options.lens, "none") == 0
+               ? tool_usage(tool, "--lens none is for overlay and live")
+               : drawing_open(tool, drawing);
+}
+
+static void unsize(struct drawing_run *run)
+{
+    glint_engine_destroy(run->engine);
+    run->engine = NULL;
+    run->is_sized = false;
+}
+
+void drawing_close(struct drawing *drawing)
+{
+    unsize(&drawing->run);
+    drawing_files_close(&drawing->files);
+    lamp_list_free(&drawing->line.at);
+    free(drawing->run.lamp);
+    drawing->run.lamp = NULL;
+    settings_close(&drawing->line.settings);
+}
+
+void drawing_replace(struct drawing *drawing, const struct drawing *fresh)
+{
+    const struct lamp_save save = drawing->files.save;
+    const int n_frames = drawing->run.n_frames;
+    struct settings *const s = &drawing->line.settings;
+
+    /* drawing_close() leaves the file of saved lamps open, which SAVE has */
+    drawing->files.save.is_open = false;
+    drawing_close(drawing);
+    *drawing = *fresh;
+    if (save.is_open) {
+        lamp_save_abort(&drawing->files.save);
+        drawing->files.save = save;
+        drawing->run.n_frames = n_frames;
+    }
+    /* A setup from a table points to the lens, which has moved. */
+    if (s->setup.lens)
+        s->setup.lens = &s->lens;
+}
+
+int drawing_finish(const struct tool *tool, struct drawing *drawing)
+{
+    struct glint_error error = {""};
+    const enum glint_status status =
+        lamp_save_finish(&drawing->files.save, &error);
+
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
+/* ------------------------------------------------------------------- sizing */
+
+/* Points of a light's disc that shadows are drawn by, where there is time. */
+enum { STILL_POINTS = 16, VIDEO_POINTS = 4 };
+
+static int size_scene(struct drawing *d, int width, int height)
+{
+    const struct settings *const s = &d->line.settings;
+    const struct glint_options *const o = &s->options;
+    struct scene_dials dials = d->line.scene_dials;
+
+    if (GLINT_OPTION_GIVEN(o, quality) || o->preview)
+        scene_dials_be(&dials, GLINT_OPTION_GIVEN(o, quality)
+                                   ? o->quality
+                                   : preview_quality);
+    dials.width = width;
+    dials.height = height;
+    if (d->files.has_lens)
+        dials.focal_px = 1 / glint_view_pixel_tangent(&d->run.view,
+                                                      s->setup.optics.focal_mm);
+    if (!dials.shadow_points)
+        dials.shadow_points = d->line.is_still ? STILL_POINTS : VIDEO_POINTS;
+    dials.tile_log2 = 3 + o->tile;
+    dials.dither = o->dither;
+    return over_scene_size(&d->files.scene, &dials);
+}
+
+/* Shows progress while rays are exact. */
+static void watch(const struct tool *tool, struct drawing *d,
+                  struct glint_engine_config *cfg)
+{
+    if (!tool->quiet)
+        fprintf(stderr,
+                "glint %s: exact rays: first how bright flares of %s are, "
+                "a minute or more for a zoom, then each frame anew\n",
+                tool->name, d->line.settings.lens.name);
+    tool_progress_start(&d->run.progress, tool, "exact rays");
+    d->run.is_progressing = true;
+    cfg->drawing.progress = tool_progress_show;
+    cfg->drawing.progress_ctx = &d->run.progress;
+}
+
+/* Prints how much memory a picture takes at least if --memory is too little. */
+static int fail_sizing(const struct tool *tool, const struct drawing *d,
+                       enum glint_status status,
+                       const struct glint_error *error)
+{
+    const size_t mib = (size_t)1 << 20;
+    const size_t scene = over_scene_bytes(&d->files.scene);
+    char text[400], more[64] = "";
+
+    if (status != GLINT_E_MEMORY || !d->line.reserve_bytes)
+        return tool_fail(tool, status, error->text);
+    if (scene)
+        snprintf(more, sizeof more, ", and the scene %zu",
+                 (scene + mib - 1) / mib);
+    snprintf(text, sizeof text, "--memory %zu is too little: %s%s",
+             d->line.reserve_bytes / mib, error->text, more);
+    return tool_fail(tool, status, text);
+}
+
+static int size_engine(const struct tool *tool, struct drawing *d)
+{
+    const struct drawing_line *const line = &d->line;
+    const size_t scene = over_scene_bytes(&d->files.scene);
+    struct drawing_run *const run = &d->run;
+    struct glint_engine_config cfg;
+    struct glint_error error = {""};
+    enum glint_status status;
+
+    settings_engine(tool, &line->settings, run->view.width, run->view.height,
+                    &cfg);
+    cfg.search.more_lamps = more_lamps(d);
+    /* what the scene leaves */
+    if (line->reserve_bytes)
+        cfg.arena_bytes =
+            line->reserve_bytes > scene ? line->reserve_bytes - scene : 1;
+    run->cache = response_cache(tool);
+    cfg.cache = &run->cache;
+    if (line->settings.options.rays == GLINT_RAYS_EXACT)
+        watch(tool, d, &cfg);
+    status = glint_engine_create(&run->engine, &cfg, &error);
+    if (status != GLINT_OK)
+        return fail_sizing(tool, d, status, &error);
+    if (tool->verbose && !tool->quiet && !d->files.is_listed &&
+        line->n_hand == 0)
+        fprintf(stderr, "%s: lamps from %g stops of white, down to %g\n",
+                tool->name, cfg.search.threshold_ev[0],
+                cfg.search.threshold_ev[1]);
+    return EXIT_OK;
+}
+
+int drawing_size(const struct tool *tool, struct drawing *drawing, int width,
+                 int height)
+{
+    struct drawing_run *const run = &drawing->run;
+    int code;
+
+    unsize(run);
+    run->view = drawing->files.has_lens
+                    ? settings_view(&drawing->line.settings, width, height)
+                    : (struct glint_view){width, height, 1, {0, {0}}};
+    code = size_scene(drawing, width, height);
+    if (code == EXIT_OK && drawing->files.has_lens)
+        code = size_engine(tool, drawing);
+    run->is_sized = code == EXIT_OK;
+    return code;
+}
+
+/* --------------------------------------------------------------- key frames */
+
+/* Zooms as the key frames say. Where the lens does not zoom so far it stays
+ * where the frame before was, which opening rules out. */
+static void zoom_by_keys(struct drawing *d, int frame)
+{
+    const double before = d->line.settings.zoom.zoom;
+    const double zoom = keys_at(&d->files.keys, KEYS_ZOOM, frame, before);
+    struct glint_error error;
+
+    if (keys_has(&d->files.keys, KEYS_ZOOM) && zoom != before)
+        zoom_to(d, zoom, &error);
+}
+
+/* Stops the lens as KEYS say; the exposure stays that of the widest stop. */
+static void stop_by_keys(struct settings *s, const struct keys *keys, int frame,
+                         struct glint_engine *engine)
+{
+    struct stop_option *const stop = &s->stop;
+    const double f_number =
+        keys_at(keys, KEYS_F_NUMBER, frame, s->options.f_number);
+    const double turn = keys_at(keys, KEYS_TURN, frame, stop->rotation_deg);
+    const double round = keys_at(keys, KEYS_ROUND, frame, stop->iris.roundness);
+    struct glint_error error;
+
+    if (f_number == s->options.f_number && turn == stop->rotation_deg &&
+        round == stop->iris.roundness)
+        return;
+    stop->rotation_deg = turn;
+    stop->iris.roundness = round;
+    if (settings_stop(s, f_number, &error) == GLINT_OK)
+        glint_engine_update_stop(engine);
+}
+
+/* Moves the lamp of KEYS, the last of LIST. */
+static void move_by_keys(struct lamp_list *list, const struct keys *keys,
+                         int frame)
+{
+    struct lamp_row *row;
+
+    if (!keys_has(keys, KEYS_X) || !keys_has(keys, KEYS_Y))
+        return;
+    row = &list->row[list->n - 1];
+    row->x = keys_at(keys, KEYS_X, frame, 0);
+    row->y = keys_at(keys, KEYS_Y, frame, 0);
+    row->power = exp2(keys_at(keys, KEYS_EV, frame, GLINT_LIGHT_AT_EV));
+}
+
+/* Sets lens and brightness to those of the next frame: lines of control, then
+ * key frames. */
+static void steer(struct drawing *d)
+{
+    struct glint_options *const o = &d->line.settings.options;
+    const struct keys *const keys = &d->files.keys;
+    const int frame = d->run.n_frames;
+
+    d->files.scene.set_ctx = d;
+    over_scene_obey(&d->files.scene, frame);
+    if (!o->keys)
+        return;
+    o->exposure = keys_at(keys, KEYS_EXPOSURE, frame, o->exposure);
+    o->gain = keys_at(keys, KEYS_GAIN, frame, o->gain);
+    o->strength = keys_at(keys, KEYS_STRENGTH, frame, o->strength);
+    if (keys_has(keys, KEYS_STARBURST)) {
+        GLINT_OPTION_GIVEN(o, starburst) = true;
+        o->starburst = keys_at(keys, KEYS_STARBURST, frame, 1);
+    }
+    zoom_by_keys(d, frame);
+    stop_by_keys(&d->line.settings, keys, frame, d->run.engine);
+    move_by_keys(&d->files.list, keys, frame);
+}
+
+/* -------------------------------------------------------------------- lamps */
+
+/* Sets the lamps of IMAGE: given by hand or by a list, or found. */
+static void set_lamps(struct drawing *d, const struct glint_image *image,
+                      int32_t elapsed_us)
+{
+    const struct drawing_line *const line = &d->line;
+    const struct lamp_list *const list = &d->files.list;
+    const bool is_listed = d->files.is_listed;
+    const bool follows = !line->settings.options.no_tracking;
+    struct drawing_run *const run = &d->run;
+    struct glint_engine_lamp *const lamp = run->lamp;
+    int n = line->n_hand;
+
+    for (int i = 0; i < n; i++)
+        lamp[i] = glint_engine_lamp_of(
+            &line->hand[i], (is_listed ? LAMP_ID_TEXT : 1) + (uint32_t)i);
+    if (is_listed)
+        n += lamp_list_frame(list, run->n_frames, &run->view,
+                             line->settings.setup.optics.focal_mm, lamp + n,
+                             list->n);
+    run->is_followed = elapsed_us > 0 && follows;
+    if (!is_listed && n == 0)
+        n = glint_engine_find(run->engine, image, follows ? elapsed_us : 0,
+                              lamp, GLINT_ENGINE_MAX_LAMPS);
+    for (int i = 0; i < n && run->is_measured; i++)
+        if (lamp[i].is_found)
+            lamp[i].seen_px = 0;
+    glint_engine_elapsed(run->engine, elapsed_us);
+    if (!follows || (is_listed && lamp_keys_is_cut(list, run->n_frames)))
+        glint_engine_mark_cut(run->engine);
+    run->n_lamps = run->n_own = n;
+}
+
+/* Sets the lamps of IMAGE, with the light that masks and fades leave them. */
+static void find_lamps(struct drawing *d, const struct glint_image *image,
+                       int32_t elapsed_us)
+{
+    steer(d);
+    set_lamps(d, image, elapsed_us);
+    occlusion_apply(&d->files.occlusion, d->run.n_frames, &d->run.view,
+                    d->line.settings.setup.optics.focal_mm, d->run.lamp,
+                    d->run.n_lamps);
+}
+
+void drawing_measure(struct drawing *drawing,
+                     const struct glint_samples *samples)
+{
+    const struct drawing_run *const run = &drawing->run;
+
+    if (!drawing->files.is_listed && !drawing->line.n_hand)
+        add_lamp_excess(run->lamp, run->n_own, samples, run->white, &run->view,
+                        drawing->line.settings.setup.optics.focal_mm);
+}
+
+/* Returns the row that lamp I is saved as: where it was found, or where a list
+ * or option puts it. */
+static struct lamp_row row_of(const struct drawing_run *run, double focal_mm,
+                              int i)
+{
+    const struct glint_engine_lamp *const known = &run->lamp[i];
+    const struct glint_lamp *lamp = &known->lamp;
+    const double *axis = lamp->axis;
+    const double pixels = run->view.width * fabs(focal_mm) /
+                          run->view.sensor_width_mm; /* pixels per tangent */
+    struct lamp_row row = {.frame = run->n_frames,
+                           .power = lamp->power,
+                           .size = pixels * hypot(axis[0], axis[1]),
+                           .shape = axis[0] > 0 ? axis[1] / axis[0] : 1,
+                           .turn = lamp->turn_deg,
+                           .level = known->level,
+                           .seen = fmax(known->seen_px, 0),
+                           .id = known->id,
+                           .next = -1};
+
+    memcpy(row.rgb, lamp->rgb, sizeof row.rgb);
+    if (known->is_found) {
+        row.x = known->track.x_q8 / 256.0;
+        row.y = known->track.y_q8 / 256.0;
+    } else
+        glint_view_to_pixel(&run->view, focal_mm, lamp, &row.x, &row.y);
+    return row;
+}
+
+static void save_lamps(struct lamp_save *save, const struct drawing_run *run,
+                       double focal_mm)
+{
+    for (int i = 0; save->is_open && i < run->n_lamps; i++) {
+        const struct lamp_row row = row_of(run, focal_mm, i);
+
+        lamp_save_row(save, &row);
+    }
+}
+
+void drawing_find_lamps(struct drawing *drawing,
+                        const struct glint_image *image, int32_t elapsed_us)
+{
+    find_lamps(drawing, image, elapsed_us);
+    save_lamps(&drawing->files.save, &drawing->run,
+               drawing->line.settings.setup.optics.focal_mm);
+}
+
+/* -------------------------------------------------------------------- scene */
+
+/* Fraction of a budget that the flare has at least. */
+#define LEAST_SHARE 0.1
+
+/* Adds the lamps that the scene shows to those of RUN, less what it hides. */
+static void add_scene_lamps(struct over_scene *scene, struct drawing_run *run,
+                            double focal_mm, bool is_still)
+{
+    const int n = run->n_lamps;
+
+    run->n_lamps = glint_engine_add_scene(run->engine, scene->frame.scene,
+                                          run->lamp, n, &scene->lamps_hidden);
+    scene->lights = run->n_lamps - n;
+    run->n_lamps += over_scene_glints(scene, &run->view, focal_mm,
+                                      run->lamp + run->n_lamps);
+    glint_engine_apply_shares(run->lamp, run->n_lamps, is_still);
+}
+
+/* Draws the scene over IMAGE within the budget, of which the flare has what the
+ * scene leaves. */
+static enum glint_status draw_scene(struct drawing *d,
+                                    const struct glint_image *image)
+{
+    const double budget_ms = d->line.settings.options.budget;
+    struct over_scene *const scene = &d->files.scene;
+    struct drawing_run *const run = &d->run;
+    enum glint_status status;
+
+    if (budget_ms > 0)
+        scene->budget_ms = d->files.has_lens
+                               ? scene_budget_limit(budget_ms, run->flare_ms,
+                                                    run->report.quality)
+                               : budget_ms;
+    status = over_scene_draw(scene, image, run->n_frames);
+    if (budget_ms > 0 && d->files.has_lens)
+        glint_engine_set_budget(
+            run->engine,
+            budget_ms * fmax(LEAST_SHARE, 1 - scene->ms / budget_ms));
+    if (status == GLINT_OK && d->files.has_lens)
+        add_scene_lamps(scene, run, d->line.settings.setup.optics.focal_mm,
+                        d->line.is_still);
+    return status;
+}
+
+/* ------------------------------------------------------------------- frames */
+
+enum glint_status drawing_find(struct drawing *drawing,
+                               const struct glint_image *image,
+                               int32_t elapsed_us)
+{
+    struct over_scene *const scene = &drawing->files.scene;
+    struct drawing_run *const run = &drawing->run;
+    const double start = tool_seconds();
+
+    run->n_lamps = run->n_own = 0;
+    if (drawing->files.has_lens)
+        find_lamps(drawing, image, elapsed_us);
+    run->find_ms = 1e3 * (tool_seconds() - start);
+    scene->elapsed_us = elapsed_us;
+    scene->no_tracking = drawing->line.settings.options.no_tracking;
+    return scene->is_open ? draw_scene(drawing, image) : GLINT_OK;
+}
+
+enum glint_status drawing_expose(struct drawing *drawing,
+                                 const struct glint_image *image)
+{
+    const struct settings *const s = &drawing->line.settings;
+    struct drawing_run *const run = &drawing->run;
+    struct glint_engine_config cfg;
+
+    save_lamps(&drawing->files.save, run, s->setup.optics.focal_mm);
+    glint_engine_configure(&cfg, &s->options);
+    glint_engine_set_light(run->engine, &cfg.light);
+    return glint_engine_expose(run->engine, run->lamp, run->n_lamps, image,
+                               run->white);
+}
+
+/* Ends the flare of a frame that was begun at START, in seconds. */
+static void end_flare(struct drawing_run *run, double start)
+{
+    if (run->is_progressing)
+        tool_progress_end(&run->progress);
+    run->is_progressing = false;
+    run->flare_ms = 1e3 * (tool_seconds() - start);
+}
+
+enum glint_status drawing_layer(struct drawing_run *run, bool is_deep,
+                                float *rgb)
+{
+    const double start = tool_seconds();
+    const enum glint_status status = glint_engine_draw_layer(
+        run->engine, run->lamp, run->n_lamps,
+        is_deep ? GLINT_ENGINE_ALL : GLINT_ENGINE_ALL | GLINT_ENGINE_CODES, rgb,
+        &run->report);
+
+    end_flare(run, start);
+    return status;
+}
+
+/* Exposes and draws the flare on IMAGE. */
+static enum glint_status draw_flare(struct drawing *d,
+                                    const struct glint_image *image)
+{
+    struct drawing_run *const run = &d->run;
+    const double start = tool_seconds();
+    enum glint_status status = drawing_expose(d, image);
+
+    if (status != GLINT_OK)
+        return status;
+    if (d->line.settings.options.layer != GLINT_LAYER_COMPOSITE)
+        paint_black(image);
+    status = glint_engine_draw(run->engine, run->lamp, run->n_lamps, image,
+                               &run->report);
+    end_flare(run, start);
+    return status;
+}
+
+enum glint_status drawing_draw(struct drawing *drawing,
+                               const struct glint_image *image,
+                               int32_t elapsed_us)
+{
+    enum glint_status status = drawing_find(drawing, image, elapsed_us);
+
+    if (status == GLINT_OK && drawing->files.has_lens)
+        status = draw_flare(drawing, image);
+    drawing_mark(drawing, image);
+    drawing->run.n_frames++;
+    return status;
+}
+
+/* -------------------------------------------------------------------- marks */
+
+/* Marks lamp I as it is tracked, or with its place and number. */
+static void mark_lamp(const struct drawing_run *run, double focal_mm, int i,
+                      const struct glint_image *image)
+{
+    const struct lamp_row row = row_of(run, focal_mm, i);
+    const uint32_t id = row.id < LAMP_ID_TEXT ? row.id : (uint32_t)i + 1;
+    struct glint_lamp_track track = {.id = id, .state = GLINT_LAMP_STEADY};
+
+    if (!(fabs(row.x) < 1 << 20 && fabs(row.y) < 1 << 20))
+        return;
+    if (run->lamp[i].is_found)
+        track = run->lamp[i].track;
+    track.x_q8 = (int32_t)(row.x * 256);
+    track.y_q8 = (int32_t)(row.y * 256);
+    show_light_of(image, &track, row.power);
+}
+
+void drawing_mark(const struct drawing *drawing,
+                  const struct glint_image *image)
+{
+    const struct drawing_line *const line = &drawing->line;
+    const struct drawing_run *const run = &drawing->run;
+    const bool is_found =
+        !drawing->files.is_listed && line->n_hand == 0 && run->n_own > 0;
+
+    if (run->engine && line->settings.options.preview)
+        /* without memory there are no numbers */
+        preview_number(run->engine, run->lamp, run->n_lamps, drawing_scale(run),
+                       image);
+    over_scene_mark(&drawing->files.scene, image);
+    if (!line->show_lights || !run->engine)
+        return;
+    for (int i = 0; i < run->n_lamps; i++)
+        mark_lamp(run, line->settings.setup.optics.focal_mm, i, image);
+    show_legend(image, is_found && run->is_followed);
+}
+
+bool drawing_has_marks(const struct drawing_line *line)
+{
+    return line->show_lights || line->settings.options.preview ||
+           line->show_time_line;
+}
+
+/* ------------------------------------------------------------------ results */
+
+double drawing_scale(const struct drawing_run *run)
+{
+    return glint_engine_exposed(run->engine)->scale;
+}
+
+bool drawing_is_new(const struct drawing *drawing)
+{
+    return !drawing->files.has_lens ||
+           glint_engine_exposed(drawing->run.engine)->is_new;
+}

@@ -1,0 +1,318 @@
+/* SPDX-License-Identifier: MIT */
+#include "overlay/drawing_files.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "lamp_files/lamp_keys.h"
+#include "model/table_file.h"
+
+/* --------------------------------------------------------------- key frames */
+
+/* Requests the least f-number of the key frames, if SIGN is 1, which the model
+ * has to serve, or the largest, if it is -1. */
+static void request_stop(struct settings *s, struct drawing_files *f, int sign)
+{
+    const struct key_value *key = f->keys.key[KEYS_F_NUMBER];
+
+    for (int i = 1; i < f->keys.n[KEYS_F_NUMBER]; i++)
+        if (sign * f->keys.key[KEYS_F_NUMBER][i].value < sign * key->value)
+            key = &f->keys.key[KEYS_F_NUMBER][i];
+    snprintf(f->keys_line, sizeof f->keys_line, "%.200s:%d", s->options.keys,
+             key->line);
+    s->f_number_from = f->keys_line;
+    s->options.f_number = key->value;
+}
+
+/* Refuses stops that change where none can. */
+static int open_stop_keys(const struct tool *tool, struct settings *s,
+                          struct drawing_files *f)
+{
+    const bool is_stopped = keys_has(&f->keys, KEYS_F_NUMBER);
+    const bool is_round = keys_has(&f->keys, KEYS_ROUND);
+
+    if (!is_stopped && !is_round && !keys_has(&f->keys, KEYS_TURN))
+        return EXIT_OK;
+    if (s->options.rays == GLINT_RAYS_EXACT)
+        return tool_usage(tool, "--keys: stops that change need a model, not "
+                                "--rays exact");
+    if (is_stopped)
+        request_stop(s, f, 1);
+    return EXIT_OK;
+}
+
+static int open_keys(const struct tool *tool, struct drawing_line *line,
+                     struct drawing_files *f)
+{
+    struct glint_options *const o = &line->settings.options;
+    struct glint_error error = {""};
+    enum glint_status status;
+
+    if (!o->keys)
+        return EXIT_OK;
+    status = line->keys_text ? keys_parse(&f->keys, o->keys, line->keys_text,
+                                          strlen(line->keys_text), &error)
+                             : keys_read(&f->keys, o->keys, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    if (keys_has(&f->keys, KEYS_EXPOSURE)) {
+        if (line->dial == ENGINE_OPTION_OF(strength))
+            return tool_usage(tool,
+                              "--strength chooses the exposure; "
+                              "--keys %s has one",
+                              o->keys);
+        GLINT_OPTION_GIVEN(o, exposure) = true;
+    }
+    return open_stop_keys(tool, &line->settings, f);
+}
+
+/* Checks that the lens, which is open, stops down as far as the key frames
+ * say. */
+static int check_narrowest(const struct tool *tool, struct settings *s,
+                           struct drawing_files *f)
+{
+    const double widest = s->options.f_number;
+    struct glint_error error = {""};
+    int code = EXIT_OK;
+
+    if (!keys_has(&f->keys, KEYS_F_NUMBER))
+        return EXIT_OK;
+    request_stop(s, f, -1);
+    if (settings_stop(s, s->options.f_number, &error) != GLINT_OK)
+        code = settings_refuse_stop(tool, s, error.text);
+    else
+        settings_stop(s, widest, &error);
+    s->f_number_from = NULL;
+    return code;
+}
+
+/* --------------------------------------------------------------------- zoom */
+
+/* Returns the key column of the option that LINE sets; -1: it sets none. */
+static int column_of(const struct control_line *line)
+{
+    return line->verb == CONTROL_OPTION ? keys_column(line->name[0]) : -1;
+}
+
+/* Prints what is wrong with line I of control. Returns an exit code. */
+static int refuse_line(const struct tool *tool, const struct over_scene *scene,
+                       int i, const char *cause)
+{
+    struct glint_error shown = {""};
+    char where[CONTROL_WHERE];
+
+    controls_where(&scene->control, i, where);
+    control_fail(&shown, where, controls_row(&scene->control, i)->column, "%s",
+                 cause);
+    return tool_fail(tool, GLINT_E_FORMAT, shown.text);
+}
+
+/* Checks that the lens can do what the lines of control say, and leaves it as
+ * it was. */
+static int check_control(const struct tool *tool, struct settings *s,
+                         const struct over_scene *scene)
+{
+    const double zoom = s->zoom.zoom, f_number = s->options.f_number;
+    const struct control_line *line;
+    struct glint_error error = {""};
+    int code = EXIT_OK;
+
+    for (int i = 0;
+         code == EXIT_OK && (line = controls_row(&scene->control, i)); i++) {
+        const int column = column_of(line);
+
+        if ((column == KEYS_ZOOM || column == KEYS_F_NUMBER) &&
+            scene->set_option(scene->set_ctx, line->name[0], line->v[0],
+                              &error) != GLINT_OK)
+            code = refuse_line(tool, scene, i, error.text);
+    }
+    if (s->model.zoom)
+        settings_zoom(s, zoom, &error);
+    s->zoom.zoom = zoom;
+    if (s->options.f_number != f_number)
+        settings_stop(s, f_number, &error);
+    return code;
+}
+
+/* Before the lens is opened, which may be baked for that: refuses lines of
+ * control that zoom a table. */
+static int refuse_zoom_lines(const struct tool *tool, const struct settings *s,
+                             const struct over_scene *scene)
+{
+    const struct control_line *line;
+
+    if (tool_is_model(s->options.lens))
+        return EXIT_OK;
+    for (int i = 0; (line = controls_row(&scene->control, i)); i++)
+        if (column_of(line) == KEYS_ZOOM)
+            return refuse_line(tool, scene, i,
+                               "lines of control zoom a model that 'glint bake "
+                               "LENS --positions N' made, not a table");
+    return EXIT_OK;
+}
+
+/* Checks that the lens zooms as far as the key frames say, and leaves it at the
+ * first of them. A text that glint wrote has no line to name. */
+static int check_zoom_keys(const struct tool *tool, struct drawing_line *line,
+                           const struct keys *keys)
+{
+    struct settings *const s = &line->settings;
+    const struct key_value *const key = keys->key[KEYS_ZOOM];
+    struct glint_error error = {""};
+
+    for (int i = keys->n[KEYS_ZOOM] - 1; i >= 0; i--) {
+        if (settings_zoom(s, key[i].value, &error) != GLINT_OK)
+            return line->keys_text
+                       ? tool_usage(tool, "%.200s: %s", s->options.keys,
+                                    error.text)
+                       : tool_usage(tool, "%.200s:%d: %s", s->options.keys,
+                                    key[i].line, error.text);
+        s->zoom.zoom = key[i].value;
+    }
+    return EXIT_OK;
+}
+
+/* Before scene and lens are opened: rejects key frames that zoom a table, which
+ * would be baked for one position. */
+static int prepare_zoom(const struct tool *tool, struct drawing_line *line,
+                        struct drawing_files *f)
+{
+    struct settings *const s = &line->settings;
+    int code;
+
+    if (!f->has_lens)
+        f->scene.set_option = NULL;
+    if (!keys_has(&f->keys, KEYS_ZOOM) || !f->has_lens ||
+        tool_is_model(s->options.lens))
+        return EXIT_OK;
+    code = tool_lens(tool, s->options.lens, &s->lens);
+    return code == EXIT_OK ? check_zoom_keys(tool, line, &f->keys) : code;
+}
+
+/* -------------------------------------------------------------------- lamps */
+
+/* Lists the lamps of the file, linked if lamps move between its rows, and the
+ * lamps by pixel. */
+static enum glint_status open_list(const struct drawing_line *line,
+                                   struct drawing_files *f,
+                                   struct glint_error *error)
+{
+    const struct glint_options *const o = &line->settings.options;
+    enum glint_status status = GLINT_OK;
+
+    if (o->lights)
+        status = lamp_list_read(&f->list, o->lights, error);
+    if (status == GLINT_OK && o->interpolate)
+        status = lamp_keys_link(&f->list);
+    for (int i = 0; i < line->at.n && status == GLINT_OK; i++)
+        status = lamp_list_add(&f->list, &line->at.row[i]);
+    f->is_listed = o->lights || line->at.n > 0;
+    return status;
+}
+
+/* Lists the lamp of the key frames. */
+static enum glint_status add_key_lamp(struct drawing_files *f)
+{
+    const struct lamp_row row = {.frame = -1,
+                                 .power = 1,
+                                 .rgb = {1, 1, 1},
+                                 .shape = 1,
+                                 .level = 1,
+                                 .next = -1};
+
+    if (!keys_has(&f->keys, KEYS_X) || !keys_has(&f->keys, KEYS_Y))
+        return GLINT_OK;
+    f->is_listed = true;
+    return lamp_list_add(&f->list, &row);
+}
+
+static enum glint_status open_lamps(const struct drawing_line *line,
+                                    struct drawing_files *f,
+                                    struct glint_error *error)
+{
+    const char *const save = line->settings.options.save_lights;
+    enum glint_status status = open_list(line, f, error);
+
+    if (status == GLINT_OK && save)
+        status = lamp_save_open(&f->save, save, error);
+    if (status == GLINT_OK)
+        status = occlusion_open(&f->occlusion, error);
+    return status == GLINT_OK ? add_key_lamp(f) : status;
+}
+
+/* ---------------------------------------------------------------------- all */
+
+/* Opens the scene; without a lens there has to be one that needs none. */
+static int open_scene(const struct tool *tool, const struct glint_options *o,
+                      struct drawing_files *f)
+{
+    const int code = over_scene_open(&f->scene, tool);
+
+    if (code != EXIT_OK || f->has_lens)
+        return code;
+    if (!f->scene.is_open)
+        return tool_usage(tool, "--lens none draws no flare, and there is no "
+                                "--scene to draw");
+    if (over_scene_needs_lens(&f->scene))
+        return tool_usage(tool,
+                          "%s: 'camera lens' has the field of a lens, and "
+                          "--lens none is none; take 'camera fov'",
+                          f->scene.file);
+    return o->layer != GLINT_LAYER_COMPOSITE
+               ? tool_usage(tool, "--layer shows the flare of a lens, not of "
+                                  "--lens none")
+               : EXIT_OK;
+}
+
+/* Sets the names of the files of F. */
+static void name_files(const struct drawing_line *line, struct drawing_files *f)
+{
+    const struct glint_options *const o = &line->settings.options;
+
+    f->has_lens = strcmp(o->lens, "none") != 0;
+    f->occlusion.file = o->mask;
+    f->occlusion.fade_px = o->edge_fade;
+    f->scene.file = o->scene;
+    f->scene.pose_file = o->pose;
+    f->scene.control_file = o->control;
+    f->scene.is_live = line->is_live;
+    f->scene.has_time_line = line->show_time_line;
+}
+
+int drawing_files_open(const struct tool *tool, struct drawing_line *line,
+                       struct drawing_files *files)
+{
+    struct settings *const s = &line->settings;
+    struct glint_error error = {""};
+    enum glint_status status;
+    int code;
+
+    name_files(line, files);
+    code = open_keys(tool, line, files);
+    if (code == EXIT_OK)
+        code = prepare_zoom(tool, line, files);
+    if (code == EXIT_OK)
+        code = open_scene(tool, &s->options, files);
+    if (code == EXIT_OK && files->has_lens)
+        code = refuse_zoom_lines(tool, s, &files->scene);
+    if (code == EXIT_OK && files->has_lens)
+        code = settings_open(tool, s, s->options.lens);
+    if (code != EXIT_OK || !files->has_lens)
+        return code;
+    status = open_lamps(line, files, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    code = check_control(tool, s, &files->scene);
+    if (code == EXIT_OK)
+        code = check_zoom_keys(tool, line, &files->keys);
+    return code == EXIT_OK ? check_narrowest(tool, s, files) : code;
+}
+
+void drawing_files_close(struct drawing_files *files)
+{
+    keys_free(&files->keys);
+    occlusion_close(&files->occlusion);
+    over_scene_close(&files->scene);
+    lamp_save_abort(&files->save);
+    lamp_list_free(&files->list);
+}

@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <string.h>
+
+#include "desk/styles.h"
+#include "overlay/drawing_line.h"
+
+/* Adds the lamp TEXT, which is valid, of --light. Returns false if it is one
+ * too many. */
+static bool add_light(struct drawing_line *line, const char *text)
+{
+    struct glint_lamp *const lamp = &line->hand[line->n_hand];
+
+    if (line->n_hand == SETTINGS_MAX_LAMPS)
+        return false;
+    glint_option_light(text, lamp);
+    line->settings.max_deg = fmax(line->settings.max_deg, lamp->theta_deg);
+    line->n_hand++;
+    return true;
+}
+
+bool drawing_line_add_light(struct drawing_line *line, double x, double y,
+                            double ev)
+{
+    const struct lamp_row row = {.frame = -1,
+                                 .x = x,
+                                 .y = y,
+                                 .power = exp2(ev),
+                                 .rgb = {1, 1, 1},
+                                 .shape = 1,
+                                 .level = 1,
+                                 .next = -1};
+
+    return line->at.n < SETTINGS_MAX_LAMPS &&
+           lamp_list_add(&line->at, &row) == GLINT_OK;
+}
+
+/* The same of --light-at. */
+static bool add_light_at(struct drawing_line *line, const char *text)
+{
+    double v[3];
+
+    glint_option_light_at(text, v);
+    return drawing_line_add_light(line, v[0], v[1], v[2]);
+}
+
+static bool is_text(const char *text, const char *word)
+{
+    return text && strcmp(text, word) == 0;
+}
+
+/* Sets what follows from the options. */
+static void resolve(struct drawing_line *line)
+{
+    struct glint_options *const o = &line->settings.options;
+
+    if (is_text(o->lights, "auto"))
+        o->lights = NULL;
+    if (o->memory)
+        line->reserve_bytes = (size_t)o->memory << 20;
+    scene_dials_choose(&line->scene_dials, o);
+}
+
+void drawing_line_defaults(struct drawing_line *line)
+{
+    *line = (struct drawing_line){.n_hand = 0};
+    settings_defaults_photo(&line->settings);
+    resolve(line);
+}
+
+int drawing_line_style(const struct tool *tool, struct drawing_line *line,
+                       const char *name)
+{
+    const struct style *const style = style_of(name);
+    int code = -1;
+
+    if (!style)
+        return tool_refuse(tool, "style", name);
+    for (int i = 0; style->set[i].option && code == -1; i++)
+        code = drawing_line_set_text(tool, line, style->set[i].option,
+                                     style->set[i].value);
+    drawing_line_end(line);
+    /* A model has its own, and is no mistake with a style. */
+    line->settings.coating.given = false;
+    line->style = style->name;
+    return code;
+}
+
+int drawing_line_style_of(const struct tool *tool, struct drawing_line *line,
+                          int argc, char **argv, const char *shorts,
+                          const struct option *options)
+{
+    const char *const name =
+        tool_value_of(argc, argv, shorts, options, ENGINE_OPTION_OF(style));
+
+    return name ? drawing_line_style(tool, line, name) : -1;
+}
+
+/* Notes OPTION if it is --strength or --exposure. Returns false if the other of
+ * the two was given before in the same place. */
+static bool note_brightness(struct drawing_line *line, int option)
+{
+    if (option != ENGINE_OPTION_OF(strength) &&
+        option != ENGINE_OPTION_OF(exposure))
+        return true;
+    if (line->dial && line->dial != option)
+        return false;
+    line->dial = option;
+    return true;
+}
+
+void drawing_line_end(struct drawing_line *line)
+{
+    line->dial = 0;
+}
+
+int drawing_line_option(const struct tool *tool, struct drawing_line *line,
+                        int option, const char *value)
+{
+    bool is_room = true;
+    int code;
+
+    if (!note_brightness(line, option))
+        return tool_usage(tool, "--strength chooses the exposure; "
+                                "give one of it and --exposure");
+    if (option == ENGINE_OPTION_OF(style))
+        /* The command line's style was set before its other options. */
+        return tool->where ? drawing_line_style(tool, line, value) : -1;
+    code = settings_option(tool, &line->settings, option, value);
+    if (code != -1)
+        return code;
+    resolve(line);
+    if (option == ENGINE_OPTION_OF(show)) {
+        line->show_lights |= is_text(value, "lights");
+        line->show_time_line |= is_text(value, "timeline");
+    }
+    if (option == ENGINE_OPTION_OF(light))
+        is_room = add_light(line, value);
+    if (option == ENGINE_OPTION_OF(light_at))
+        is_room = add_light_at(line, value);
+    return is_room
+               ? -1
+               : tool_usage(tool, "more than %d lights", SETTINGS_MAX_LAMPS);
+}
+
+int drawing_line_set_text(const struct tool *tool, struct drawing_line *line,
+                          const char *name, const char *text)
+{
+    const struct glint_option *const row = glint_option_named(name);
+
+    return drawing_line_option(
+        tool, line, ENGINE_OPTION + (int)(row - glint_option(0)), text);
+}
+
+int drawing_line_set_number(const struct tool *tool, struct drawing_line *line,
+                            const char *name, double value)
+{
+    char text[32];
+
+    if (!settings_set_number(&line->settings, name, value)) {
+        snprintf(text, sizeof text, "%g", value);
+        return tool_refuse(tool, name, text);
+    }
+    resolve(line);
+    return -1;
+}
