@@ -30,15 +30,15 @@
 #                 abi REF=REVISION: what has changed of them since, by abidiff
 #   make man      manual pages, into build/man
 #   make frei0r, gstreamer, obs   plug-ins for hosts of video;  check-frei0r-threads, check-gstreamer, check-obs
-#   make bench    what a frame costs;  bench-insn: in instructions
+#   make bench    what a frame costs;  figure NAME=frame: in instructions
 #   make size     bytes of the run-time library, and of programs with parts of it
 #   make budget   what a frame costs on ARM, in instructions
-#   make memory-table   the memory that a frame takes
+#   make figure NAME=accuracy   a table of tests/figures measured again; figures-quick: some rows compared
 #   make video-report  how steady the flare of a video is; VIDEOS="A.y4m ..."
 #   make trade    what accuracy costs: plots, pictures and a page (glint sweep)
 #   make debian   packages, in clean systems;  check-debian: tools/debian
 #   also: oiio assimp window inputs format golden-update fuzz-keep clean ward-sheet, and the tables that
-#         tools/measure/figures lists, all by make figures
+#         tools/measure/recipes lists, all by make figures
 
 # One job a processor, unless the command line has a -j of its own.
 MAKEFLAGS += -r $(if $(filter 0,$(MAKELEVEL)),-j$(shell nproc))
@@ -81,6 +81,7 @@ engine_o    := $(call objects,src,$(ENGINE))
 bake_o      := $(call objects,src,$(BAKE))
 platform_o  := $(call objects,platform,$(PLATFORM))
 tools_o     := $(call objects,tools,$(TOOLS))
+measure_o   := $(call objects,tools,measure/glint-measure)
 main_o      := $(patsubst %,$(OUT)/tools/glint/%.o,glint live/glint_live model/models_only scenes/scenes_only)
 LDLIBS := $(if $(filter yes,$(WITH_JPEG)),$(JPEG_LIBS)) \
         $(if $(filter yes,$(WITH_INIH)),$(INIH_LIBS)) \
@@ -133,6 +134,10 @@ build/glint: $(OUT)/glint always
 	$(Q)cmp -s $< $@ || { cp -f $< $@.tmp && mv -f $@.tmp $@; }
 always:
 $(OUT)/glint: $(OUT)/tools/glint/glint.o $(libs)
+	$(link)
+
+# The program that measures figures; not installed.
+$(OUT)/glint-measure: $(measure_o) $(libs)
 	$(link)
 
 # Programs that take one part of the run-time library, and no other half.

@@ -66,7 +66,7 @@ CHECK_PACKAGES := gcc libc6-dev binutils libcmocka-dev clang clang-format pkg-co
 check:
 	@tools/make/deps "unit tests, lint" $(CHECK_PACKAGES)
 	@$(MAKE) --no-print-directory WERROR=-Werror run-check
-run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(example_bins) $(embed_bins) \
+run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/glint-measure $(example_bins) $(embed_bins) \
         $(PROGRAMS) $(wildcard build/glint-oiio.so build/glint-assimp.so)
 	@[ $(notdir $(CC))-$(CONFIG) != gcc-release ] || { $(MAKE) --no-print-directory PIC=yes shared frei0r && $(MAKE) --no-print-directory man; }
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
@@ -82,7 +82,7 @@ test_script := $(if $(test_bin)$(replay_bin),,$(test_script))
 test:
 	@tools/make/deps "unit tests" $(CHECK_PACKAGES)
 	@$(MAKE) --no-print-directory run-test
-run-test: $(test_bin) $(replay_bin) $(if $(test_script),$(OUT)/glint $(OUT)/ray_errors $(OUT)/pan $(OUT)/scene_exact $(OUT)/stone_models $(example_bins) $(embed_bins))
+run-test: $(test_bin) $(replay_bin) $(if $(test_script),$(OUT)/glint $(OUT)/glint-measure $(OUT)/pan $(OUT)/scene_exact $(OUT)/stone_models $(example_bins) $(embed_bins))
 	@[ -n "$^" ] || { echo 'TEST is one of these, or a file in tests/cli or tests/hosts:' $(UNIT) $(notdir $(replay_bins)) >&2; exit 2; }
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run -v $(test_bin) -- $(replay_bin) -- $(test_script)
 # What a release must pass; durations stand in tests/README.md.
@@ -150,7 +150,7 @@ run-fuzz run-fuzz-keep: $(fuzz_bins)
 analyze:
 	@tools/make/deps "static analysis" gcc clang-tidy cppcheck
 	@$(MAKE) --no-print-directory CC=gcc CONFIG=analyze WERROR=-Werror run-analyze
-run-analyze: $(core_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o) $(frei0r_o) $(if $(filter %,$(shell pkg-config --modversion gstreamer-video-1.0 2>/dev/null)),$(gstreamer_o)) $(if $(filter %,$(shell pkg-config --modversion libobs 2>/dev/null)),$(obs_o)) $(OUT)/tools/glint/glint.o
+run-analyze: $(core_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o) $(measure_o) $(frei0r_o) $(if $(filter %,$(shell pkg-config --modversion gstreamer-video-1.0 2>/dev/null)),$(gstreamer_o)) $(if $(filter %,$(shell pkg-config --modversion libobs 2>/dev/null)),$(obs_o)) $(OUT)/tools/glint/glint.o
 	$(say) CPPCHECK 'src platform tools'
 	@mkdir -p $(OUT)/cppcheck
 	$(Q)cppcheck -q --std=c99 --language=c --error-exitcode=1 \

@@ -1,10 +1,15 @@
 # What is looked at and what is measured. Tables go into the files of
 # tests/figures; all of them, for hours, but for fits, which write weights into
-# src: make figures.
-figures:
-	@for target in $$(sed -n '/-fit /d; s/^[^#][^ ]* \([^ ]*\) .*/\1/p' tools/measure/figures | sort -u); do \
+# src: make figures. One of glint-measure: make figure NAME=accuracy, with
+# ROWS="lens=heliar-tronnier" some of its rows.
+figures: all
+	@tools/measure/write-figures --targets | grep -v -e -fit | while read -r target; do \
 	        $(MAKE) --no-print-directory $$target || exit 1; done
-
+figure: all $(OUT)/glint-measure
+	@$(OUT)/glint-measure $(NAME) $(ROWS) | tools/measure/write-figures $(NAME)
+# Some rows, a processor minute: fails where they are not the committed ones.
+figures-quick: $(OUT)/glint-measure
+	@$(OUT)/glint-measure --quick
 video-report: $(OUT)/steady
 	@$(OUT)/steady --lens lenses/nikon-zoom-short.lens $(VIDEOS)
 occlusion-table: $(OUT)/occlusion
@@ -17,8 +22,6 @@ demo:
 	@tools/make/demo
 inputs:
 	@tools/make/inputs
-table: all
-	@tools/measure/raster-table | tools/measure/write-figures raster
 # Scenes as POV-Ray draws them.
 scene-table: all $(OUT)/scene_exact
 	@tools/make/deps "scenes of another program" povray python3-numpy >&2
@@ -55,27 +58,9 @@ ward-sheet: all
 	@$(MAKE) --no-print-directory oiio >&2
 	@tools/measure/scenes/ward-table true
 	@tools/measure/scenes/ward-sheet tests/gallery/metals.jpg
-bake-table: all $(OUT)/ray_errors
-	@tools/measure/bake-table | tools/measure/write-figures bake
-# What lenses of the library cost. LENSES="A.lens ...": these; STOP=N, LIMIT=SECONDS.
-library-table: all $(OUT)/stop_costs
-	@STOP_COSTS=$(OUT)/stop_costs tools/measure/library-table $(LENSES) | \
-	    tools/measure/write-figures ../../lenses/figures
-# Lenses that are not round. LENSES="A.lens ...": these; COUNT=N directions.
-azimuth-table: all
-	@tools/measure/azimuth-table $(LENSES) | tools/measure/write-figures shapes/azimuth
-# How far lights and ghosts move by a lens's own projection: a processor minute.
-projection-table: $(OUT)/projection_table
-	@$< lenses/*.lens lenses/*/*.lens | tools/measure/write-figures shapes/projection
-accuracy-table: all
-	@tools/measure/accuracy-table | tools/measure/write-figures accuracy
 colour-table: all
 	@tools/make/deps "instruction counts" valgrind python3-numpy >&2
 	@tools/measure/colour-table | tools/measure/write-figures colour
-ray-table: all $(OUT)/ray_errors
-	@tools/measure/ray-table build/bake | tools/measure/write-figures rays
-stop-table: all
-	@tools/measure/stop-table | tools/measure/write-figures shapes/stop
 # The weights of src/lamps/unclip.c, from the half that is there to fit to.
 power-fit: $(OUT)/power_table
 	@tools/make/deps "HDR panoramas" openimageio-tools python3-numpy npm
@@ -119,9 +104,6 @@ $(OUT)/corpus-%: $(OUT)/tests/corpus/%.o $(libs)
 
 bench: all
 	@build/glint bench
-bench-insn: all
-	@tools/make/deps "instruction counts" valgrind
-	@tools/measure/bench-insn | tools/measure/write-figures frame
 size: $(OUT)/libglint.a $(example_bins)
 	@tools/make/deps "bytes on ARM" gcc-aarch64-linux-gnu libc6-dev-arm64-cross \
 	        gcc-arm-linux-gnueabihf libc6-dev-armhf-cross >&2
@@ -138,8 +120,6 @@ reuse-table: all $(OUT)/reuse
 	@tools/make/deps "instruction counts, noise" valgrind ffmpeg >&2
 	@tools/measure/reuse-table $(OUT)/reuse $(MODELS) | tools/measure/write-figures videos/reuse
 reuse-table: export VIDEOS := $(VIDEOS)
-memory-table: all
-	@tools/measure/memory-table | tools/measure/write-figures memory
 zoom-halfway-table: all
 	@tools/measure/zoom-halfway $(LENS) | tools/measure/write-figures shapes/zoom-halfway
 # The weights of src/engine/frame/cost.c, by random frames.
@@ -153,9 +133,7 @@ budget: all
 	        build/$$t/glint >&2 || exit 1; done
 	@tools/measure/budget | tools/measure/write-figures arm
 
-.PHONY: figures video-report occlusion-table demo inputs table scene-table hidden-table mesh-table motion-table \
-        ward-table translucent-table stone-table ward-sheet bake-table \
-        library-table azimuth-table projection-table accuracy-table colour-table ray-table stop-table \
-        power-fit corpus corpus-evaluate corpus-stars corpus-sheet corpus-report gallery \
-        lens-sheet corpus-fit bench bench-insn size trade reuse-table memory-table \
+.PHONY: figures figure figures-quick video-report occlusion-table demo inputs scene-table hidden-table mesh-table \
+        motion-table ward-table translucent-table stone-table ward-sheet colour-table power-fit corpus corpus-evaluate \
+        corpus-stars corpus-sheet corpus-report gallery lens-sheet corpus-fit bench size trade reuse-table \
         zoom-halfway-table cost-fit budget

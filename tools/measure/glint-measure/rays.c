@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ray_errors [-n NM,...] [-s STEP] [-r] LENS MODEL: prints how far a model is
- * from exact rays, as a row of a Markdown table; with -r root mean squares
- * instead, one for each output.
+ * How far a model is from exact rays.
  *
  * It compares every ghost at the angles of the accuracy table and every STEP
  * degrees up to the model's largest, at every wavelength. Rays start on a grid
@@ -12,14 +10,11 @@
  * A ray that the model has no polynomials for counts as off by FAR pixels in
  * percentiles, and not at all in root mean squares.
  */
-#include <getopt.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/model_file.h"
-#include "model/table_file.h"
-#include "options/tool.h"
+#include "measure/glint-measure/row.h"
 
 #define FAR       1e3
 #define SENSOR_PX 0.25 /* error in pixels that 99 of 100 rays may have */
@@ -46,19 +41,16 @@ struct tally {
 };
 
 struct task {
-    struct glint_prescription lens;
+    const struct figure_row *row;
     struct glint_optics optics;
-    struct model_file model;
+    const struct glint_lens *model;
     const struct glint_model_header *header;
     struct glint_ghost ghost[GLINT_MAX_GHOSTS];
     int n_ghosts;
-    double nm[GLINT_MAX_WAVELENGTHS];
-    int n_nm;
     double angle[MOST_ANGLES];
     int n_angles;
     double picture_mm; /* half the picture's diagonal, or the field if that is
                           less */
-    bool squares;
 };
 
 /* ------------------------------------------------------------------ tallies */
@@ -156,7 +148,7 @@ static void find_parts(const struct task *t, int ghost, double angle_deg,
     const int32_t sine_q30 =
         (int32_t)lrint(ldexp(sin(angle_deg * GLINT_PI / 180), 30));
     const int32_t wave_q24 = (int32_t)lrint(ldexp(1e6 / (nm * nm), 24));
-    const struct glint_lens *l = &t->model.lens;
+    const struct glint_lens *l = t->model;
 
     parts->n = 0;
     for (int k = ghost; k < (int)t->header->n_ghosts && parts->n < MOST_PARTS;
@@ -201,7 +193,7 @@ static void compare_ray(const struct task *t, const struct parts *parts,
                         double x_mm, double y_mm, const struct glint_ray *ray,
                         double light, struct tally *tally)
 {
-    const double px = 1920 / t->lens.film_width_mm;
+    const double px = 1920 / t->row->table.film_width_mm;
     const double stop = t->optics.stop_radius_mm;
     double at[GLINT_OUT_KINDS];
 
@@ -230,7 +222,7 @@ static void compare_bundle(const struct task *t, int ghost, double angle_deg,
     struct glint_path path;
     double cell;
 
-    glint_path_init(&path, &t->lens, &t->ghost[ghost], nm);
+    glint_path_init(&path, &t->row->table, &t->ghost[ghost], nm);
     path.places_only = true;
     if (!glint_pupil_find_within(&box, &path, angle_deg,
                                  t->optics.stop_radius_mm,
@@ -251,18 +243,7 @@ static void compare_bundle(const struct task *t, int ghost, double angle_deg,
     }
 }
 
-/* ------------------------------------------------------------------- tables */
-
-static void print_squares(const struct tally *t)
-{
-    static const int kind[] = {GLINT_OUT_STOP_X, GLINT_OUT_STOP_Y,
-                               GLINT_OUT_SENSOR_X, GLINT_OUT_SENSOR_Y,
-                               GLINT_OUT_ENERGY};
-
-    for (int k = 0; k < 5; k++)
-        printf("%s%.2g", k ? " | " : "", rms_of(t, kind[k]));
-    printf("\n");
-}
+/* ------------------------------------------------------------------- ghosts */
 
 /* light of all ghosts at one angle, and the part of it that is lost */
 struct light {
@@ -278,8 +259,8 @@ static void compare_ghost(const struct task *t, int ghost, struct tally *sum,
     for (int k = 0; k < t->n_angles; k++) {
         struct tally here = {0};
 
-        for (int w = 0; w < t->n_nm; w++)
-            compare_bundle(t, ghost, t->angle[k], t->nm[w], &here);
+        for (int w = 0; w < t->row->n_nm; w++)
+            compare_bundle(t, ghost, t->angle[k], t->row->nm[w], &here);
         tally_join(sum, &here, 1);
         angles[0] += here.rays > 0;
         angles[1] += misses(&here);
@@ -288,7 +269,17 @@ static void compare_ghost(const struct task *t, int ghost, struct tally *sum,
     }
 }
 
-static void compare_all(const struct task *t)
+static void write_rms(struct figure_row *row, const struct tally *t)
+{
+    json_write(&row->json,
+               "stop_x_rms: %.6g, stop_y_rms: %.6g, sensor_x_rms: %.6g, "
+               "sensor_y_rms: %.6g, energy_rms: %.6g",
+               rms_of(t, GLINT_OUT_STOP_X), rms_of(t, GLINT_OUT_STOP_Y),
+               rms_of(t, GLINT_OUT_SENSOR_X), rms_of(t, GLINT_OUT_SENSOR_Y),
+               rms_of(t, GLINT_OUT_ENERGY));
+}
+
+static void compare_all(struct figure_row *row, const struct task *t)
 {
     static struct tally all, equally;
     static struct light light[MOST_ANGLES];
@@ -308,19 +299,21 @@ static void compare_all(const struct task *t)
     }
     for (int k = 0; k < t->n_angles; k++)
         lost = fmax(lost, light[k].lost / fmax(1e-30, light[k].all));
-    if (t->squares) {
-        print_squares(&all);
-        return;
-    }
-    printf("| %s | %.0f | %.2g, %.2g | %.2g, %.2g | %.2g, %.2g | %.1g, %.1g | "
-           "%d of %d | %d of %d |\n",
-           t->lens.name, all.rays, sensor_p99(&all), sensor_p99(&equally),
-           stop_rms(&all), stop_rms(&equally), p99_of(all.energy, all.rays),
-           p99_of(equally.energy, equally.rays), all.lost / fmax(1, all.rays),
-           lost, missing, ghosts, angles[1], angles[0]);
+    json_write(&row->json,
+               "rays: %.0f, sensor_p99: %.6g, sensor_p99_ghosts: %.6g, "
+               "stop_rms: %.6g, stop_rms_ghosts: %.6g, energy_p99: %.6g, "
+               "energy_p99_ghosts: %.6g, lost: %.6g, lost_light: %.6g, "
+               "ghosts_seen: %d, ghosts_miss: %d, angles_seen: %d, "
+               "angles_miss: %d",
+               all.rays, sensor_p99(&all), sensor_p99(&equally), stop_rms(&all),
+               stop_rms(&equally), p99_of(all.energy, all.rays),
+               p99_of(equally.energy, equally.rays),
+               all.lost / fmax(1, all.rays), lost, ghosts, missing, angles[0],
+               angles[1]);
+    write_rms(row, &all);
 }
 
-/* ------------------------------------------------------------------ options */
+/* ------------------------------------------------------------------- angles */
 
 static void add_angle(struct task *t, double angle_deg)
 {
@@ -329,24 +322,6 @@ static void add_angle(struct task *t, double angle_deg)
 
     if (angle_deg <= most && t->n_angles < MOST_ANGLES)
         t->angle[t->n_angles++] = angle_deg;
-}
-
-/* Checks whether the model is of the lens, and was baked for the wavelengths.
- * Returns an exit code. */
-static int check_pair(const struct tool *tool, const struct task *t)
-{
-    const struct glint_model_header *h = t->header;
-
-    if (strcmp(h->name, t->lens.name) != 0 || (int)h->n_ghosts < t->n_ghosts)
-        return tool_fail(tool, GLINT_E_LENS, "the model is of another lens");
-    for (int i = 0; i < t->n_nm; i++) {
-        const double wave_q24 = ldexp(1e6 / (t->nm[i] * t->nm[i]), 24);
-
-        if (wave_q24 < h->wave_lo_q24 - 1 || wave_q24 > h->wave_hi_q24 + 1)
-            return tool_usage(tool, "%g nm is outside of the model's band",
-                              t->nm[i]);
-    }
-    return EXIT_OK;
 }
 
 static int by_size(const void *a, const void *b)
@@ -367,41 +342,29 @@ static void set_angles(struct task *t, double step_deg)
     qsort(t->angle, (size_t)t->n_angles, sizeof *t->angle, by_size);
 }
 
-int main(int argc, char **argv)
+int row_rays(struct figure_row *row)
 {
-    static struct task t = {.nm = {650, 532, 450}, .n_nm = 3};
-    const struct tool tool = {.name = "ray_errors"};
-    double step_deg = 0.7;
-    bool ok = true;
-    int c, code;
+    struct task *const t = calloc(1, sizeof *t);
+    const struct glint_model_header *h;
 
-    while ((c = getopt(argc, argv, "n:s:r")) >= 0 && ok) {
-        if (c == 'n')
-            ok = (t.n_nm = tool_numbers(optarg, t.nm, GLINT_MAX_WAVELENGTHS)) >
-                 0;
-        else if (c == 's')
-            ok = tool_number(optarg, &step_deg) && step_deg > 0.01;
-        else
-            ok = t.squares = c == 'r';
+    if (!t)
+        return tool_fail(row->tool, GLINT_E_MEMORY, NULL);
+    t->row = row;
+    t->model = &row->settings.model.lens;
+    h = t->header = t->model->header;
+    t->n_ghosts = glint_ghost_list(&row->table, t->ghost, GLINT_MAX_GHOSTS);
+    if (strcmp(h->name, row->table.name) != 0 ||
+        (int)h->n_ghosts < t->n_ghosts) {
+        free(t);
+        return tool_fail(row->tool, GLINT_E_LENS,
+                         "the model is of another lens");
     }
-    if (!ok || argc != optind + 2)
-        return tool_usage(&tool, "takes [-n NM,...] [-s STEP] [-r] LENS MODEL");
-    code = tool_lens(&tool, argv[optind], &t.lens);
-    if (code == EXIT_OK)
-        code = tool_model(&tool, argv[optind + 1], &t.model);
-    if (code != EXIT_OK)
-        return code;
-    t.header = t.model.lens.header;
-    t.picture_mm =
-        fmin(model_real_of(t.header->field_mm),
-             0.5 * hypot(t.lens.film_width_mm, t.lens.film_height_mm));
-    t.n_ghosts = glint_ghost_list(&t.lens, t.ghost, GLINT_MAX_GHOSTS);
-    glint_optics_of(&t.lens, &t.optics);
-    code = check_pair(&tool, &t);
-    if (code == EXIT_OK) {
-        set_angles(&t, step_deg);
-        compare_all(&t);
-    }
-    model_file_close(&t.model);
-    return code;
+    t->picture_mm =
+        fmin(model_real_of(h->field_mm),
+             0.5 * hypot(row->table.film_width_mm, row->table.film_height_mm));
+    glint_optics_of(&row->table, &t->optics);
+    set_angles(t, row->step_deg);
+    compare_all(row, t);
+    free(t);
+    return EXIT_OK;
 }

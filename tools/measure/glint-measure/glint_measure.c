@@ -1,0 +1,481 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint-measure FIGURE [PARAMETER=VALUE...] - measures the rows of a figure of
+ * tools/measure/recipes, and prints its table: rows of its file in
+ * tests/figures that were not measured now stay. A PARAMETER=VALUE that some
+ * rows have selects these; another one is set in all rows.
+ *
+ * glint-measure --quick - measures the rows that recipes name for it, and fails
+ * where a cell of the table is farther off than its tolerance.
+ *
+ * glint-measure --row metrics=NAME,... lens=LENS PARAMETER=VALUE... - measures
+ * one row and prints its metrics as JSON.
+ *
+ * All metrics are appended to build/measure.csv. Run it in the root of the
+ * tree.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+
+#include "measure/canvas.h"
+#include "measure/glint-measure/recipes.h"
+#include "measure/glint-measure/row.h"
+
+#define RECIPES "tools/measure/recipes"
+#define CSV     "build/measure.csv"
+#define CALLGRIND                                               \
+    "valgrind --tool=callgrind --callgrind-out-file=/dev/null " \
+    "--toggle-collect=measured_frame "
+
+enum { TEXT = 1 << 14, TABLE_ROWS = 2 * RECIPE_ROWS };
+
+/* A table of cells, "| a | b |". */
+struct table {
+    char *line[TABLE_ROWS];
+    int n;
+};
+
+/* --------------------------------------------------------------------- row */
+
+static int measure_row(int n, char **assignments)
+{
+    static struct figure_row row;
+    struct tool tool = {.name = "measure", .quiet = true};
+    int code = row_open(&row, &tool, n, assignments);
+
+    if (code == EXIT_OK)
+        code = tool_start(&tool);
+    if (code == EXIT_OK)
+        code = row_measure(&row);
+    settings_close(&row.settings);
+    tool_finish(&tool);
+    return code;
+}
+
+/* Runs a row in a process of its own; COUNTED: under callgrind. Sets TEXT to
+ * its JSON, or to what callgrind counted. Returns an exit code; -1: it reached
+ * the limit of processor seconds. */
+static int run_row(const struct recipe *r, const struct recipe_row *row,
+                   const char *self, bool counted, char text[TEXT])
+{
+    char line[TEXT], limit[32] = "";
+    size_t used, bytes;
+    FILE *pipe;
+    int status;
+
+    if (r->limit_s)
+        snprintf(limit, sizeof limit, "ulimit -St %d; ", r->limit_s);
+    used = (size_t)snprintf(line, sizeof line, "%sexec %s'%s' --row metrics=%s",
+                            limit, counted ? CALLGRIND : "", self,
+                            counted ? "minsn rounds=2" : r->metrics);
+    for (int i = 0; i < row->n && used < sizeof line; i++)
+        if (strncmp(row->set[i], "label=", 6) != 0)
+            used += (size_t)snprintf(line + used, sizeof line - used, " '%s'",
+                                     row->set[i]);
+    if (counted && used < sizeof line)
+        snprintf(line + used, sizeof line - used, " 2>&1");
+    pipe = popen(line, "r");
+    if (!pipe)
+        return EXIT_RUNTIME;
+    bytes = fread(text, 1, TEXT - 1, pipe);
+    text[bytes] = '\0';
+    status = pclose(pipe);
+    if (WIFSIGNALED(status) || WEXITSTATUS(status) > 128)
+        return r->limit_s ? -1 : EXIT_RUNTIME;
+    return WEXITSTATUS(status);
+}
+
+/* Returns the metric NAME of JSON; NAN: it is not there. */
+static double metric_of(const char *json, const char *name, size_t length)
+{
+    for (const char *at = strchr(json, '"'); at; at = strchr(at + 1, '"'))
+        if (strncmp(at + 1, name, length) == 0 &&
+            strncmp(at + 1 + length, "\": ", 3) == 0 &&
+            strncmp(at + 4 + length, "null", 4) != 0)
+            return strtod(at + 4 + length, NULL);
+    return (double)NAN;
+}
+
+/* Measures ROW to JSON, with instructions where they are a metric. */
+static int measure(const struct recipe *r, const struct recipe_row *row,
+                   const char *self, char json[TEXT])
+{
+    static char counted[TEXT];
+    int code = run_row(r, row, self, false, json);
+    const char *count;
+
+    if (code != EXIT_OK || !strstr(r->metrics, "minsn"))
+        return code;
+    code = run_row(r, row, self, true, counted);
+    count = strstr(counted, "Collected : ");
+    if (code == EXIT_OK && count) {
+        const size_t used = strlen(json);
+
+        snprintf(json + used, TEXT - used, "\"minsn\": %.6f",
+                 1e-6 * strtod(count + 12, NULL));
+    }
+    return code != EXIT_OK || count ? code : EXIT_RUNTIME;
+}
+
+/* --------------------------------------------------------------------- csv */
+
+static void first_line(const char *command, char text[128])
+{
+    FILE *const pipe = popen(command, "r");
+
+    text[0] = '\0';
+    if (pipe && fgets(text, 128, pipe))
+        text[strcspn(text, "\n")] = '\0';
+    if (pipe)
+        pclose(pipe);
+}
+
+/* Appends the metrics of ROW. */
+static void append_csv(const struct recipe *r, const struct recipe_row *row,
+                       const char *json)
+{
+    static char conditions[2][128];
+    FILE *const file = fopen(CSV, "a");
+
+    if (!file)
+        return;
+    if (!conditions[0][0])
+        first_line("git describe --always --dirty --abbrev=8", conditions[0]);
+    first_line("cut -d ' ' -f 1 /proc/loadavg", conditions[1]);
+    if (fseek(file, 0, SEEK_END) == 0 && ftell(file) == 0)
+        fputs("figure,parameters,metric,value,revision,machine,load\n", file);
+    for (const char *at = r->metrics; at; at = strchr(at, ',')) {
+        const size_t length = strcspn(at += *at == ',', ",");
+
+        fprintf(file, "%s,", r->name);
+        for (int i = 0; i < row->n; i++) {
+            fprintf(file, "%s", i ? ";" : "");
+            for (const char *c = row->set[i]; *c; c++)
+                fputc(*c == ',' ? ' ' : *c, file);
+        }
+        fprintf(file, ",%.*s,%.9g,%s,%s,%s\n", (int)length, at,
+                metric_of(json, at, length), conditions[0], canvas_machine(),
+                conditions[1]);
+    }
+    fclose(file);
+}
+
+/* ------------------------------------------------------------------- table */
+
+/* Writes the value of {NAME%FORMAT~TOLERANCE} at AT to TO. Returns false if the
+ * row has no such metric. */
+static bool write_value(const char *at, const struct recipe_row *row,
+                        const char *json, char *to, size_t bytes)
+{
+    const size_t length = strcspn(at, "%}");
+    const char *value;
+    char name[64], format[16];
+    double x;
+
+    snprintf(name, sizeof name, "%.*s", (int)length, at);
+    if (at[length] != '%') {
+        value = recipe_value(row, name);
+        if (value && strcmp(name, "lens") == 0) {
+            const char *const slash = strrchr(value, '/');
+
+            value = slash ? slash + 1 : value;
+            snprintf(to, bytes, "%.*s", (int)strcspn(value, "."), value);
+        } else {
+            snprintf(to, bytes, "%s", value ? value : "");
+        }
+        return true;
+    }
+    snprintf(format, sizeof format, "%.*s", (int)strcspn(at + length, "~}"),
+             at + length);
+    x = metric_of(json, name, length);
+    if (!isfinite(x))
+        return false;
+    /* The format is of our own recipes. */
+    switch (format[strlen(format) - 1]) {
+    case 'f':
+        snprintf(to, bytes, "%.*f", format[1] == '.' ? atoi(format + 2) : 6, x);
+        return true;
+    default:
+        snprintf(to, bytes, "%.*g", format[1] == '.' ? atoi(format + 2) : 6, x);
+        return true;
+    }
+}
+
+/* Writes the cell of COLUMN; nothing if it lacks a metric. */
+static void write_cell(const struct recipe_column *column,
+                       const struct recipe_row *row, const char *json, char *to,
+                       size_t bytes)
+{
+    const char *at = column->cell;
+    size_t used = 0;
+
+    *to = '\0';
+    for (; *at && used + 1 < bytes; at++) {
+        if (*at != '{') {
+            to[used++] = *at;
+            to[used] = '\0';
+            continue;
+        }
+        if (!write_value(at + 1, row, json, to + used, bytes - used)) {
+            *to = '\0';
+            return;
+        }
+        used = strlen(to);
+        at += strcspn(at, "}");
+    }
+}
+
+/* Returns ROW as a line, malloc'ed; NULL: it has no metric, as of a lens that
+ * is not round its projection. OVER: it reached its limit. */
+static char *line_of(const struct recipe *r, const struct recipe_row *row,
+                     const char *json, bool over)
+{
+    static char line[TEXT];
+    size_t used = 1;
+    bool is_empty = true;
+
+    strcpy(line, "|");
+    for (int i = 0; i < r->n_columns; i++) {
+        char cell[256];
+
+        write_cell(&r->column[i], row, json, cell, sizeof cell);
+        if (over && strncmp(r->column[i].cell, "{bake_s", 7) == 0)
+            snprintf(cell, sizeof cell, "over %d", r->limit_s);
+        is_empty = is_empty && (r->column[i].is_key || !*cell);
+        used += (size_t)snprintf(line + used, sizeof line - used, "%s%s |",
+                                 *cell ? " " : "", cell);
+    }
+    return is_empty ? NULL : strdup(line);
+}
+
+/* Sets CELL to cell NUMBER of LINE. */
+static void cell_of(const char *line, int number, char cell[256])
+{
+    size_t length;
+
+    for (int i = 0; i <= number && line; i++)
+        line = strchr(line + (i > 0), '|');
+    line = line ? line + 1 : "";
+    line += strspn(line, " ");
+    length = strcspn(line, "|");
+    while (length > 0 && line[length - 1] == ' ')
+        length--;
+    snprintf(cell, 256, "%.*s", (int)length, line);
+}
+
+static bool same_keys(const struct recipe *r, const char *a, const char *b)
+{
+    char cell[2][256];
+
+    for (int i = 0; i < r->n_columns; i++) {
+        cell_of(a, i, cell[0]);
+        cell_of(b, i, cell[1]);
+        if (r->column[i].is_key && strcmp(cell[0], cell[1]) != 0)
+            return false;
+    }
+    return true;
+}
+
+/* Reads the rows of the figure's file. */
+static void read_table(const struct recipe *r, struct table *t)
+{
+    static char line[TEXT];
+    char path[256];
+    bool inside = false;
+    FILE *file;
+
+    snprintf(path, sizeof path, "tests/figures/%s.md", r->name);
+    file = fopen(path, "r");
+    while (file && fgets(line, sizeof line, file)) {
+        line[strcspn(line, "\n")] = '\0';
+        if (strncmp(line, "<!-- end", 8) == 0)
+            inside = false;
+        if (inside && *line == '|' && t->n < TABLE_ROWS)
+            t->line[t->n++] = strdup(line);
+        if (strncmp(line, "|---", 4) == 0)
+            inside = true;
+    }
+    if (file)
+        fclose(file);
+}
+
+static void print_table(const struct recipe *r, const struct table *t)
+{
+    for (int i = 0; i < r->n_columns; i++)
+        printf("%s %s |", i ? "" : "|", r->column[i].title);
+    printf("\n|");
+    for (int i = 0; i < r->n_columns; i++)
+        printf("---|");
+    printf("\n");
+    for (int i = 0; i < t->n; i++)
+        puts(t->line[i]);
+}
+
+/* Puts LINE in place of the row with its keys, or at the end; NULL: nowhere. */
+static void put_line(const struct recipe *r, struct table *t, char *line)
+{
+    for (int i = 0; i < t->n && line; i++)
+        if (same_keys(r, t->line[i], line)) {
+            t->line[i] = line;
+            return;
+        }
+    if (line && t->n < TABLE_ROWS)
+        t->line[t->n++] = line;
+}
+
+/* ------------------------------------------------------------------- quick */
+
+/* Compares the numbers of CELL with those of the row, which have a tolerance.
+ * Returns whether all are within. */
+static bool compare_cell(const struct recipe *r,
+                         const struct recipe_column *column, const char *cell,
+                         const char *json)
+{
+    bool fine = true;
+
+    for (const char *at = strchr(column->cell, '{'); at;
+         at = strchr(at + 1, '{')) {
+        const size_t length = strcspn(at + 1, "%}");
+        const char *const tilde = at + strcspn(at, "~}");
+        const double x = metric_of(json, at + 1, length);
+        char *end;
+        double was;
+
+        cell += strcspn(cell, "0123456789-");
+        was = strtod(cell, &end);
+        if (*tilde == '~' && !(fabs(x - was) <= strtod(tilde + 1, NULL))) {
+            fprintf(stderr,
+                    "glint-measure: %s: %.*s is %g, in the table %g, "
+                    "tolerance %g\n",
+                    r->name, (int)length, at + 1, x, was,
+                    strtod(tilde + 1, NULL));
+            fine = false;
+        }
+        cell = end;
+    }
+    return fine;
+}
+
+/* Compares the row of JSON with that of the table. */
+static bool compare_row(const struct recipe *r, const struct recipe_row *row,
+                        const struct table *t, const char *json)
+{
+    char *const line = line_of(r, row, json, false);
+    char cell[256];
+    bool fine = true;
+
+    for (int i = 0; i < t->n; i++) {
+        if (!line || !same_keys(r, t->line[i], line))
+            continue;
+        for (int k = 0; k < r->n_columns; k++) {
+            cell_of(t->line[i], k, cell);
+            fine = compare_cell(r, &r->column[k], cell, json) && fine;
+        }
+        printf("%s %s: %s\n", fine ? "ok" : "FAIL", r->name, line);
+        free(line);
+        return fine;
+    }
+    printf("FAIL %s: not in the table: %s\n", r->name, line ? line : "");
+    free(line);
+    return false;
+}
+
+static bool is_quick(const struct recipe *r, const struct recipe_row *row)
+{
+    for (int i = 0; i < r->n_quick; i++)
+        if (recipe_row_has(row, r->quick[i]))
+            return true;
+    return false;
+}
+
+/* ----------------------------------------------------------------- running */
+
+/* Sets ASSIGNMENT in all rows, or takes all rows away that have another
+ * value, if some have it. */
+static void choose(struct recipe *r, const char *assignment)
+{
+    int n = 0;
+
+    for (int i = 0; i < r->n_rows; i++)
+        n += recipe_row_has(&r->row[i], assignment);
+    for (int i = 0; i < r->n_rows && n == 0; i++)
+        if (r->row[i].n < ROW_PARAMETERS)
+            r->row[i].set[r->row[i].n++] = assignment;
+    for (int i = 0, kept = 0; i < r->n_rows && n > 0; i++)
+        if (recipe_row_has(&r->row[i], assignment))
+            r->row[kept++] = r->row[i];
+    r->n_rows = n > 0 ? n : r->n_rows;
+}
+
+/* Measures all rows of R, or those of --quick. */
+static int run(struct recipe *r, const char *self, bool quick)
+{
+    static char json[TEXT];
+    struct table t = {.n = 0};
+    int code = EXIT_OK, bad = 0;
+
+    read_table(r, &t);
+    for (int i = 0; i < r->n_rows && code == EXIT_OK; i++) {
+        if (quick && !is_quick(r, &r->row[i]))
+            continue;
+        code = measure(r, &r->row[i], self, json);
+        if (code > EXIT_OK)
+            break;
+        append_csv(r, &r->row[i], json);
+        if (quick)
+            bad += !compare_row(r, &r->row[i], &t, json);
+        else
+            put_line(r, &t, line_of(r, &r->row[i], json, code == -1));
+        code = EXIT_OK;
+    }
+    if (code == EXIT_OK && !quick)
+        print_table(r, &t);
+    for (int i = 0; i < t.n; i++)
+        free(t.line[i]);
+    return code == EXIT_OK && bad ? EXIT_RUNTIME : code;
+}
+
+static char *read_recipes(void)
+{
+    FILE *const file = fopen(RECIPES, "r");
+    char *const text = calloc(1, 1 << 16);
+
+    if (!file || !text || fread(text, 1, (1 << 16) - 1, file) == 0)
+        fprintf(stderr, "glint-measure: cannot read %s\n", RECIPES);
+    if (file)
+        fclose(file);
+    return text;
+}
+
+int main(int argc, char **argv)
+{
+    static struct recipe r;
+    char *text;
+    int code = EXIT_OK;
+
+    if (argc > 1 && strcmp(argv[1], "--row") == 0)
+        return measure_row(argc - 2, argv + 2);
+    if (argc < 2 || !(text = read_recipes())) {
+        fprintf(stderr, "usage: glint-measure FIGURE [PARAMETER=VALUE...] | "
+                        "--quick | --row PARAMETER=VALUE...\n");
+        return EXIT_USAGE;
+    }
+    if (strcmp(argv[1], "--quick") == 0) {
+        for (char *at = text; (at = recipe_read(&r, at, NULL));) {
+            const int one = run(&r, argv[0], true);
+
+            code = code == EXIT_OK ? one : code;
+        }
+        return code;
+    }
+    if (!recipe_read(&r, text, argv[1])) {
+        fprintf(stderr, "glint-measure: no rows of %s in %s\n", argv[1],
+                RECIPES);
+        return EXIT_USAGE;
+    }
+    for (int i = 2; i < argc; i++)
+        choose(&r, argv[i]);
+    return run(&r, argv[0], false);
+}

@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: MIT */
+#include "measure/glint-measure/recipes.h"
+
+#include <glob.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What a recipe says before its rows are made. */
+struct recipe_lines {
+    const char *lens[RECIPE_LINES], *vary[RECIPE_LINES], *label[RECIPE_LINES];
+    int n_lenses, n_vary, n_labels;
+    const char *set[ROW_PARAMETERS];
+    int n_set;
+};
+
+/* Adds the words of TEXT to ROW; texts that it makes are never freed. */
+static void add_words(struct recipe_row *row, const char *text)
+{
+    char *copy = strdup(text), *word, *rest = copy;
+
+    while (copy && (word = strtok_r(rest, " ", &rest)))
+        if (row->n < ROW_PARAMETERS)
+            row->set[row->n++] = word;
+}
+
+const char *recipe_value(const struct recipe_row *row, const char *parameter)
+{
+    const size_t length = strlen(parameter);
+
+    for (int i = row->n - 1; i >= 0; i--)
+        if (strncmp(row->set[i], parameter, length) == 0 &&
+            row->set[i][length] == '=')
+            return row->set[i] + length + 1;
+    return NULL;
+}
+
+bool recipe_row_has(const struct recipe_row *row, const char *words)
+{
+    struct recipe_row wanted = {.n = 0};
+
+    add_words(&wanted, words);
+    for (int i = 0; i < wanted.n; i++) {
+        const size_t length = strcspn(wanted.set[i], "=");
+        char name[64];
+        const char *value;
+
+        if (length >= sizeof name || wanted.set[i][length] != '=')
+            return false;
+        memcpy(name, wanted.set[i], length);
+        name[length] = '\0';
+        value = recipe_value(row, name);
+        if (!value || strcmp(value, wanted.set[i] + length + 1) != 0)
+            return false;
+    }
+    return true;
+}
+
+/* -------------------------------------------------------------------- rows */
+
+/* Makes a row of each of N rows from FIRST on for each value of VARY, "NAME
+ * VALUE VALUE...", behind them, and takes the first ones away. */
+static void multiply(struct recipe *r, const char *vary)
+{
+    const int n = r->n_rows;
+    char *copy = strdup(vary), *rest = copy, *name, *value;
+
+    name = copy ? strtok_r(rest, " ", &rest) : NULL;
+    if (!name || n == 0)
+        return;
+    for (int i = 0; i < n; i++) {
+        char *values = strdup(rest), *at = values;
+
+        while (values && (value = strtok_r(at, " ", &at)) &&
+               r->n_rows < RECIPE_ROWS) {
+            struct recipe_row row = r->row[i];
+            char text[512];
+
+            snprintf(text, sizeof text, "%s=%s", name, value);
+            add_words(&row, text);
+            r->row[r->n_rows++] = row;
+        }
+        free(values);
+    }
+    memmove(r->row, r->row + n, (size_t)(r->n_rows - n) * sizeof *r->row);
+    r->n_rows -= n;
+}
+
+/* Makes a row of each row for each label, "LABEL: NAME=VALUE ...". */
+static void label_rows(struct recipe *r, const struct recipe_lines *l)
+{
+    const int n = r->n_rows;
+
+    for (int i = 0; i < n && l->n_labels; i++)
+        for (int k = 0; k < l->n_labels && r->n_rows < RECIPE_ROWS; k++) {
+            const char *const colon = strchr(l->label[k], ':');
+            struct recipe_row row = r->row[i];
+            char *const text = malloc(strlen(l->label[k]) + 8);
+
+            if (!colon || !text || row.n == ROW_PARAMETERS)
+                continue;
+            sprintf(text, "label=%.*s", (int)(colon - l->label[k]),
+                    l->label[k]);
+            row.set[row.n++] = text;
+            add_words(&row, colon + 1);
+            r->row[r->n_rows++] = row;
+        }
+    if (l->n_labels) {
+        memmove(r->row, r->row + n, (size_t)(r->n_rows - n) * sizeof *r->row);
+        r->n_rows -= n;
+    }
+}
+
+/* Adds the rows of the files that PATTERN, a name or a pattern, is of, with
+ * what is set in all rows and in those of LINE. */
+static void add_files(struct recipe *r, const struct recipe_lines *l,
+                      const char *pattern, const char *line)
+{
+    char text[512];
+    glob_t files;
+
+    if (glob(pattern, GLOB_NOCHECK, NULL, &files) != 0)
+        return;
+    for (size_t i = 0; i < files.gl_pathc && r->n_rows < RECIPE_ROWS; i++) {
+        struct recipe_row *const row = &r->row[r->n_rows++];
+
+        row->n = 0;
+        for (int k = 0; k < l->n_set; k++)
+            add_words(row, l->set[k]);
+        snprintf(text, sizeof text, "lens=%s %s", files.gl_pathv[i], line);
+        add_words(row, text);
+    }
+    globfree(&files);
+}
+
+/* Adds the rows of LINE: lenses, then PARAMETER=VALUE of theirs. */
+static void add_lenses(struct recipe *r, const struct recipe_lines *l,
+                       const char *line)
+{
+    char *const copy = strdup(line);
+    char *rest = copy, *word;
+    const char *set = line;
+
+    for (; *set && strcspn(set, "=") >= strcspn(set, " ");
+         set += strspn(set, " "))
+        set += strcspn(set, " ");
+    while (copy && (word = strtok_r(rest, " ", &rest)) && !strchr(word, '='))
+        add_files(r, l, word, set);
+    free(copy);
+}
+
+static void make_rows(struct recipe *r, const struct recipe_lines *l)
+{
+    for (int i = 0; i < l->n_lenses; i++)
+        add_lenses(r, l, l->lens[i]);
+    for (int i = 0; i < l->n_vary; i++)
+        multiply(r, l->vary[i]);
+    label_rows(r, l);
+}
+
+/* ------------------------------------------------------------------ reading */
+
+/* Notes the metrics of a column, and whether it has none. */
+static void note_column(struct recipe *r, struct recipe_column *c)
+{
+    c->is_key = true;
+    for (const char *at = strchr(c->cell, '{'); at; at = strchr(at + 1, '{')) {
+        const size_t length = strcspn(at + 1, "%}");
+        const size_t used = strlen(r->metrics);
+
+        if (at[1 + length] != '%')
+            continue;
+        c->is_key = false;
+        snprintf(r->metrics + used, sizeof r->metrics - used, "%s%.*s",
+                 used ? "," : "", (int)length, at + 1);
+    }
+}
+
+/* Takes "TITLE = CELL | TITLE = CELL ...". */
+static void take_columns(struct recipe *r, char *text)
+{
+    for (char *next; text && r->n_columns < RECIPE_LINES; text = next) {
+        char *const equals = strstr(text, " = ");
+
+        next = strstr(text, " | ");
+        if (next) {
+            *next = '\0';
+            next += 3;
+        }
+        if (!equals)
+            return;
+        *equals = '\0';
+        r->column[r->n_columns] = (struct recipe_column){text, equals + 3, 0};
+        note_column(r, &r->column[r->n_columns++]);
+    }
+}
+
+static void take_line(struct recipe *r, struct recipe_lines *l, char *line)
+{
+    static const char *const words[] = {"lens",   "vary",  "case", "set",
+                                        "column", "quick", "limit"};
+    const size_t length = strcspn(line, " ");
+    char *rest = line + length + strspn(line + length, " ");
+    int word = 0;
+
+    while (word < 7 && (strncmp(line, words[word], length) != 0 ||
+                        words[word][length] != '\0'))
+        word++;
+    if (word == 0 && l->n_lenses < RECIPE_LINES)
+        l->lens[l->n_lenses++] = rest;
+    else if (word == 1 && l->n_vary < RECIPE_LINES)
+        l->vary[l->n_vary++] = rest;
+    else if (word == 2 && l->n_labels < RECIPE_LINES)
+        l->label[l->n_labels++] = rest;
+    else if (word == 3 && l->n_set < ROW_PARAMETERS)
+        l->set[l->n_set++] = rest;
+    else if (word == 4)
+        take_columns(r, rest);
+    else if (word == 5 && r->n_quick < RECIPE_LINES)
+        r->quick[r->n_quick++] = rest;
+    else if (word == 6)
+        r->limit_s = atoi(rest);
+    else
+        fprintf(stderr, "glint-measure: %s: no such line: %s\n", r->name, line);
+}
+
+char *recipe_read(struct recipe *r, char *text, const char *name)
+{
+    struct recipe_lines l = {.n_set = 0};
+    char *line, *rest = text, *next = text;
+    bool is_it = false;
+
+    *r = (struct recipe){.name = NULL};
+    while ((line = strtok_r(rest, "\n", &rest))) {
+        if (*line == '#')
+            continue;
+        if (*line != ' ') {
+            if (is_it && (l.n_lenses || name)) {
+                line[strlen(line)] = '\n'; /* it is read again */
+                break;
+            }
+            line[strcspn(line, " ")] = '\0';
+            is_it = !name || strcmp(line, name) == 0;
+            r->name = line;
+        } else if (is_it) {
+            take_line(r, &l, line + strspn(line, " "));
+        }
+        next = rest;
+    }
+    if (!is_it || !l.n_lenses)
+        return NULL;
+    make_rows(r, &l);
+    return next;
+}

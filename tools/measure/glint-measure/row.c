@@ -1,0 +1,483 @@
+/* SPDX-License-Identifier: MIT */
+#include "measure/glint-measure/row.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "glint/measure.h"
+#include "measure/canvas.h"
+#include "model/model_cache.h"
+#include "model/model_summary.h"
+#include "model/table_file.h"
+#include "posix/workers.h"
+
+#define ROW_BAKE \
+    "bake_s,model_kib,mean_terms,barrel_rms,f_number,focal_mm,table_ghosts"
+#define ROW_PICTURE "psnr_db,ssim,flux"
+#define ROW_FRAME                                                           \
+    "edges,refs,bundles,ghosts,arena_kib,arena_mib,plan_ms,bin_ms,draw_ms," \
+    "cpu_ms,minsn"
+
+/* A name with external linkage that is not inlined, by which callgrind counts
+ * the instructions of the last frame alone. */
+enum glint_status measured_frame(struct glint_engine *engine,
+                                 const struct glint_lamp *lamps, int n,
+                                 double scale, const struct glint_image *image,
+                                 struct glint_engine_report *report);
+static enum glint_status (*volatile measured)(
+    struct glint_engine *, const struct glint_lamp *, int, double,
+    const struct glint_image *, struct glint_engine_report *) = measured_frame;
+
+enum glint_status measured_frame(struct glint_engine *engine,
+                                 const struct glint_lamp *lamps, int n,
+                                 double scale, const struct glint_image *image,
+                                 struct glint_engine_report *report)
+{
+    return glint_engine_draw_at(engine, lamps, n, scale, image, report);
+}
+
+static bool has_word(const char *words, const char *word, size_t length)
+{
+    for (const char *at = words; at; at = strchr(at, ',')) {
+        at += *at == ',';
+        if (strncmp(at, word, length) == 0 &&
+            (at[length] == ',' || at[length] == '\0'))
+            return true;
+    }
+    return false;
+}
+
+bool row_wants(const struct figure_row *row, const char *names)
+{
+    for (const char *at = names; at; at = strchr(at, ',')) {
+        at += *at == ',';
+        if (has_word(row->metrics, at, strcspn(at, ",")))
+            return true;
+    }
+    return false;
+}
+
+static double cpu_seconds(void)
+{
+    struct timespec t;
+
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* --------------------------------------------------------------- parameters */
+
+static bool take_own(struct figure_row *r, const char *name, const char *value)
+{
+    const struct {
+        const char *name;
+        int *to, low, high;
+    } integers[] = {{"lights", &r->n_lights, 0, 10000},
+                    {"exact-grid", &r->grid, 4, 1024},
+                    {"rounds", &r->rounds, 1, 1000},
+                    {"dust-log2", &r->dust_log2, 0, 16}};
+    const struct {
+        const char *name;
+        double *to;
+    } numbers[] = {{"theta", &r->theta},
+                   {"phi", &r->phi},
+                   {"stops", &r->stops},
+                   {"bake-stop", &r->bake_stop},
+                   {"step", &r->step_deg}};
+    const struct {
+        const char *name, **to;
+    } words[] = {{"lens", &r->lens},
+                 {"metrics", &r->metrics},
+                 {"picture", &r->picture},
+                 {"reference", &r->reference}};
+
+    for (size_t i = 0; i < sizeof integers / sizeof *integers; i++)
+        if (strcmp(name, integers[i].name) == 0)
+            return tool_integer(value, integers[i].low, integers[i].high,
+                                integers[i].to);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        if (strcmp(name, numbers[i].name) == 0)
+            return tool_number(value, numbers[i].to);
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+        if (strcmp(name, words[i].name) == 0) {
+            *words[i].to = value;
+            return true;
+        }
+    if (strcmp(name, "size") == 0)
+        return tool_size(value, &r->width, &r->height);
+    if (strcmp(name, "nm") == 0)
+        return (r->n_nm = tool_numbers(value, r->nm, GLINT_MAX_WAVELENGTHS)) >
+               0;
+    if (strcmp(name, "coating") == 0 &&
+        coating_take(r->tool, &r->settings.coating, value) != -1)
+        return false;
+    return settings_set(&r->settings, name, value);
+}
+
+static int take(struct figure_row *row, const char *assignment)
+{
+    const size_t length = strcspn(assignment, "=");
+    char name[32];
+
+    if (assignment[length] != '=' || length >= sizeof name)
+        return tool_usage(row->tool, "'%s' is not PARAMETER=VALUE", assignment);
+    memcpy(name, assignment, length);
+    name[length] = '\0';
+    return take_own(row, name, assignment + length + 1)
+               ? EXIT_OK
+               : tool_usage(row->tool, "no parameter, or not a value of it: %s",
+                            assignment);
+}
+
+int row_open(struct figure_row *row, struct tool *tool, int n,
+             char **assignment)
+{
+    int code = EXIT_OK;
+
+    *row = (struct figure_row){.tool = tool,
+                               .n = n,
+                               .assignment = assignment,
+                               .json = {.to = stdout},
+                               .metrics = "",
+                               .width = 1920,
+                               .height = 1080,
+                               .n_lights = 1,
+                               .theta = 12,
+                               .phi = 33,
+                               .stops = (double)NAN,
+                               .grid = 128,
+                               .rounds = 1,
+                               .picture = "linear",
+                               .bake_stop = -1,
+                               .nm = {650, 532, 450},
+                               .n_nm = 3,
+                               .step_deg = 0.7};
+    settings_defaults(&row->settings);
+    for (int i = 0; i < n && code == EXIT_OK; i++)
+        code = take(row, assignment[i]);
+    return code == EXIT_OK && !row->lens
+               ? tool_usage(tool, "--row needs lens=LENS")
+               : code;
+}
+
+/* ------------------------------------------------------------------- lenses */
+
+/* Bakes the table as 'glint bake' does and opens the model; writes processor
+ * seconds. */
+static int bake(struct figure_row *r)
+{
+    struct settings *const s = &r->settings;
+    struct glint_bake_options options;
+    struct glint_bake_report report;
+    struct glint_error error = {""};
+    unsigned char *model = NULL;
+    enum glint_status status = GLINT_OK;
+    const double from = cpu_seconds();
+    char path[1024];
+    FILE *file;
+
+    if (r->bake_stop > r->table.f_number)
+        status =
+            glint_prescription_set_f_number(&r->table, r->bake_stop, &error);
+    glint_bake_defaults(&options);
+    options.workers = r->tool->workers;
+    if (status == GLINT_OK)
+        status = glint_bake(&r->table, &options, &model, &s->model.bytes,
+                            &report, &error);
+    if (status != GLINT_OK)
+        return tool_fail(r->tool, status, error.text);
+    json_write(&r->json, "bake_s: %.3f", cpu_seconds() - from);
+    if (!model_cache_path(path, sizeof path, "measured.glint") ||
+        !(file = fopen(path, "wb"))) {
+        free(model);
+        return tool_fail(r->tool, GLINT_E_IO, "no cache for a model");
+    }
+    status = fwrite(model, 1, s->model.bytes, file) == s->model.bytes
+                 ? GLINT_OK
+                 : GLINT_E_IO;
+    free(model);
+    if (fclose(file) != 0 || status != GLINT_OK)
+        return tool_fail(r->tool, GLINT_E_IO, path);
+    return settings_open(r->tool, s, path);
+}
+
+static int open_lens(struct figure_row *r)
+{
+    int code = EXIT_OK;
+
+    if (!tool_is_model(r->lens))
+        code = tool_lens(r->tool, r->lens, &r->table);
+    if (code != EXIT_OK)
+        return code;
+    r->settings.max_deg = fmax(r->settings.max_deg, r->theta);
+    if (r->bake_stop >= 0 && r->table.n_surfaces)
+        return bake(r);
+    if (!row_wants(r, ROW_BAKE "," ROW_PICTURE "," ROW_FRAME "," ROW_RAYS))
+        return EXIT_OK;
+    return settings_open(r->tool, &r->settings, r->lens);
+}
+
+static void write_model(struct figure_row *r)
+{
+    const struct model_file *const model = &r->settings.model;
+    struct model_summary sum;
+
+    json_write(&r->json, "f_number: %g, focal_mm: %.2f", r->table.f_number,
+               r->settings.setup.optics.focal_mm);
+    if (!model->data)
+        return;
+    sum = model_summary_of(&model->lens, model_span_of_all(&model->lens));
+    json_write(&r->json, "model_kib: %.4f, mean_terms: %.4f, table_ghosts: %u",
+               (double)model->bytes / 1024, model_mean_terms(&sum),
+               model_ghost_count(&model->lens));
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+        if (strcmp(model_output_names[kind], "barrel_0") == 0)
+            json_write(&r->json, "barrel_rms: %.6g", sqrt(sum.of[kind].mean2));
+}
+
+/* ------------------------------------------------------------------- frames */
+
+struct frame {
+    struct glint_engine *engine;
+    struct glint_workers *one; /* a frame is drawn by one thread */
+    struct glint_lamp *lamp;
+    struct canvas canvas;
+    struct glint_float_image exact, got; /* linear light */
+    uint8_t *exact_codes, *codes;
+    double exposure;
+    struct glint_engine_report report, least;
+    double cpu_ms;
+    struct glint_measure measure;
+};
+
+static bool is_linear(const struct figure_row *r)
+{
+    return strcmp(r->picture, "linear") == 0;
+}
+
+static bool is_on_canvas(const struct figure_row *r)
+{
+    return strcmp(r->picture, "frame") == 0;
+}
+
+static enum glint_status make_engine(struct figure_row *r, struct frame *f,
+                                     struct glint_error *error)
+{
+    struct glint_engine_config cfg;
+
+    canvas_engine(r->tool, &r->settings, &r->settings, r->width, r->height,
+                  &cfg);
+    cfg.workers = f->one;
+    if (r->settings.options.starburst > 0)
+        cfg.drawing.parts |= GLINT_ENGINE_CORES;
+    if (r->dust_log2)
+        cfg.drawing.dials.dust_log2 = r->dust_log2;
+    if (is_linear(r)) {
+        cfg.search.more_lamps = r->n_lights;
+        cfg.search.max_drawn = cfg.drawing.dials.max_lights;
+    }
+    return glint_engine_create(&f->engine, &cfg, error);
+}
+
+static enum glint_status draw(struct figure_row *r, struct frame *f,
+                              bool is_last)
+{
+    struct glint_image layer = {
+        .format = GLINT_RGB24, .width = r->width, .height = r->height};
+    const struct glint_image *to = &layer;
+
+    if (is_linear(r))
+        return glint_engine_render(
+            f->engine, f->lamp, r->n_lights, settings_scale(&r->settings),
+            GLINT_ENGINE_ALL | GLINT_ENGINE_CORES, f->got.rgb, &f->report);
+    if (is_on_canvas(r)) {
+        canvas_fresh(&f->canvas);
+        to = &f->canvas.image;
+    } else {
+        memset(f->codes, 0, 3 * (size_t)r->width * (size_t)r->height);
+        glint_image_place(&layer, f->codes);
+    }
+    return (is_last ? measured : glint_engine_draw_at)(
+        f->engine, f->lamp, r->n_lights, f->exposure, to, &f->report);
+}
+
+/* Draws all rounds, and one before where there are several. */
+static enum glint_status draw_rounds(struct figure_row *r, struct frame *f)
+{
+    enum glint_status status = GLINT_OK;
+
+    f->cpu_ms = HUGE_VAL;
+    f->least.bin_ms = f->least.draw_ms = f->least.plan_ms = HUGE_VAL;
+    for (int i = r->rounds > 1 ? -1 : 0; i < r->rounds && status == GLINT_OK;
+         i++) {
+        const double from = cpu_seconds();
+
+        status = draw(r, f, i + 1 == r->rounds);
+        if (i < 0)
+            continue;
+        f->cpu_ms = fmin(f->cpu_ms, 1e3 * (cpu_seconds() - from));
+        f->least.plan_ms = fmin(f->least.plan_ms, f->report.plan_ms);
+        f->least.bin_ms = fmin(f->least.bin_ms, f->report.bin_ms);
+        f->least.draw_ms = fmin(f->least.draw_ms, f->report.draw_ms);
+    }
+    return status;
+}
+
+static enum glint_status make_frame(struct figure_row *r, struct frame *f)
+{
+    const size_t n = 3 * (size_t)r->width * (size_t)r->height;
+
+    f->lamp = calloc((size_t)r->n_lights + 1, sizeof *f->lamp);
+    f->exact = f->got = (struct glint_float_image){r->width, r->height, NULL};
+    f->exact.rgb = malloc(n * sizeof(float));
+    f->got.rgb = malloc(n * sizeof(float));
+    f->codes = malloc(n);
+    if (!f->lamp || !f->exact.rgb || !f->got.rgb || !f->codes ||
+        glint_pool_create(&f->one, 1) != GLINT_OK)
+        return GLINT_E_MEMORY;
+    canvas_lamps(f->lamp, r->n_lights, r->theta);
+    f->lamp[0].phi_deg = r->phi;
+    for (int i = 0; i < r->n_lights && !isnan(r->stops); i++)
+        f->lamp[i].power = exp2(r->stops);
+    return canvas_init(&f->canvas, GLINT_YUYV, r->width, r->height);
+}
+
+static void free_frame(struct frame *f)
+{
+    glint_engine_destroy(f->engine);
+    glint_pool_destroy(f->one);
+    canvas_finish(&f->canvas);
+    free(f->lamp);
+    free(f->exact.rgb);
+    free(f->got.rgb);
+    free(f->exact_codes);
+    free(f->codes);
+}
+
+/* Draws the reference: the same row but for what it sets. */
+static enum glint_status draw_reference(struct figure_row *r, struct frame *f)
+{
+    struct figure_row *const other = malloc(sizeof *other);
+    struct frame g = {.exposure = f->exposure};
+    struct glint_error error = {""};
+    char *const copy = strdup(r->reference);
+    char *rest = copy, *word;
+    enum glint_status status = GLINT_E_ARGUMENT;
+    int code = EXIT_RUNTIME;
+
+    if (other && copy)
+        code = row_open(other, r->tool, r->n, r->assignment);
+    while (code == EXIT_OK && (word = strtok_r(rest, ";", &rest)))
+        code = take(other, word);
+    if (code == EXIT_OK)
+        code = open_lens(other);
+    if (code == EXIT_OK)
+        status = make_frame(other, &g);
+    if (code == EXIT_OK && status == GLINT_OK)
+        status = make_engine(other, &g, &error);
+    if (code == EXIT_OK && status == GLINT_OK)
+        status = draw(other, &g, false);
+    if (code == EXIT_OK && status == GLINT_OK) {
+        f->exact_codes = g.codes;
+        g.codes = NULL;
+    }
+    free_frame(&g);
+    if (other)
+        settings_close(&other->settings);
+    free(other);
+    free(copy);
+    return status;
+}
+
+/* Finds the exposure and draws what is compared with: the reference, or the
+ * exact picture. */
+static enum glint_status expose(struct figure_row *r, struct frame *f)
+{
+    enum glint_status status = GLINT_OK;
+
+    if (!isnan(r->stops) || (is_linear(r) && !row_wants(r, ROW_PICTURE)))
+        f->exposure = 1;
+    else if (!row_wants(r, ROW_PICTURE) || r->reference)
+        status = canvas_exposure(f->engine, f->lamp, r->n_lights, &f->exposure);
+    if (status != GLINT_OK || !row_wants(r, ROW_PICTURE))
+        return status;
+    if (r->reference)
+        return draw_reference(r, f);
+    status = canvas_exact(r->tool, &r->settings, f->lamp, r->n_lights, r->grid,
+                          &f->exact);
+    if (status != GLINT_OK || is_linear(r))
+        return status;
+    f->exposure = glint_measure_exposure(&f->exact);
+    f->exact_codes = glint_measure_encode(&f->exact, f->exposure);
+    return f->exact_codes ? GLINT_OK : GLINT_E_MEMORY;
+}
+
+static enum glint_status compare(struct figure_row *r, struct frame *f)
+{
+    if (!row_wants(r, ROW_PICTURE))
+        return GLINT_OK;
+    if (is_linear(r))
+        return glint_measure_compare(&f->exact, &f->got, false, &f->measure)
+                   ? GLINT_OK
+                   : GLINT_E_MEMORY;
+    glint_measure_codes(f->exact_codes, f->codes, r->width, r->height,
+                        &f->measure);
+    return GLINT_OK;
+}
+
+static void write_frame(struct figure_row *r, const struct frame *f)
+{
+    const struct glint_engine_report *const p = &f->report;
+
+    if (row_wants(r, ROW_PICTURE))
+        json_write(&r->json, "psnr_db: %.4f, ssim: %.6f, flux: %.6f",
+                   f->measure.psnr_db, f->measure.ssim, f->measure.flux);
+    json_write(&r->json,
+               "edges: %d, refs: %d, bundles: %d, ghosts: %d, "
+               "arena_kib: %.4f, arena_mib: %.6f, plan_ms: %.4f, "
+               "bin_ms: %.4f, draw_ms: %.4f, cpu_ms: %.4f",
+               p->stats.primitives, p->stats.refs, p->stats.bundles, p->ghosts,
+               (double)p->peak_bytes / 1024, (double)p->peak_bytes / (1 << 20),
+               f->least.plan_ms, f->least.bin_ms, f->least.draw_ms, f->cpu_ms);
+}
+
+static int measure_frame(struct figure_row *r)
+{
+    struct frame f = {.exposure = 1};
+    struct glint_error error = {""};
+    enum glint_status status = make_frame(r, &f);
+
+    if (status == GLINT_OK)
+        status = make_engine(r, &f, &error);
+    if (status == GLINT_OK)
+        status = expose(r, &f);
+    if (status == GLINT_OK)
+        status = draw_rounds(r, &f);
+    if (status == GLINT_OK)
+        status = compare(r, &f);
+    if (status == GLINT_OK)
+        write_frame(r, &f);
+    free_frame(&f);
+    return status == GLINT_OK ? EXIT_OK
+                              : tool_fail(r->tool, status, error.text);
+}
+
+int row_measure(struct figure_row *row)
+{
+    int code;
+
+    json_write(&row->json, "{");
+    code = open_lens(row);
+    if (code == EXIT_OK && row_wants(row, ROW_BAKE))
+        write_model(row);
+    if (code == EXIT_OK && row_wants(row, ROW_PICTURE "," ROW_FRAME))
+        code = measure_frame(row);
+    if (code == EXIT_OK && row_wants(row, ROW_RAYS))
+        code = row_rays(row);
+    if (code == EXIT_OK && row_wants(row, ROW_PLACES))
+        code = row_places(row);
+    json_write(&row->json, "}\n");
+    return code;
+}
