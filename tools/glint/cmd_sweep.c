@@ -28,9 +28,6 @@ static const char help[] =
     "  sweep.csv     all of it, with version and machine\n"
     "  front.svg     error against time, and what nothing else is better than\n"
     "  dials.svg     each dial by itself\n"
-    "  star.csv, star.svg  what --star-cull leaves of stars, and what that "
-    "costs\n"
-    "  parts.csv     what coarser tables of dust and no veil cost and save\n"
     "  table.md      the named qualities\n"
     "  index.html    these, tables, and pictures to judge by; one file\n"
     "Exact pictures and models are kept where models are, so that a second "
@@ -45,7 +42,6 @@ static const char help[] =
     "12)\n"
     "  --small             one lens, one small picture, fewer values, in "
     "seconds\n"
-    "  --stars             instead: star.csv, star.svg, parts.csv alone\n"
     "  --repeat N          rounds, 1 to 100 (default 7)\n"
     "  --exact-grid N      cells a side of the exact picture (default 128)\n"
     "  --json              prints all points on standard output, too\n";
@@ -63,7 +59,6 @@ struct asked {
     int n_lights, lights[MAX_LIST];
     int n_angles;
     double angle[MAX_LIST];
-    bool stars; /* stars alone */
     bool plain; /* no --size, --lights, --angle or --small */
 };
 
@@ -111,17 +106,13 @@ static void add_cases(struct sweep *s, const struct asked *a)
 struct file {
     const char *name;
     void (*write)(const struct sweep *s, FILE *file);
-    bool alone; /* saved with --stars, too */
 };
 
-static const struct file files[] = {{"sweep.csv", sweep_csv, false},
-                                    {"front.svg", sweep_svg_front, false},
-                                    {"dials.svg", sweep_svg_dials, false},
-                                    {"table.md", sweep_names, false},
-                                    {"star.csv", sweep_star_csv, true},
-                                    {"star.svg", sweep_star_svg, true},
-                                    {"parts.csv", sweep_parts_csv, true},
-                                    {"index.html", sweep_page, false}};
+static const struct file files[] = {{"sweep.csv", sweep_csv},
+                                    {"front.svg", sweep_svg_front},
+                                    {"dials.svg", sweep_svg_dials},
+                                    {"table.md", sweep_names},
+                                    {"index.html", sweep_page}};
 
 static int save(const struct sweep *s, const char *folder, const struct file *f)
 {
@@ -135,17 +126,15 @@ static int save(const struct sweep *s, const char *folder, const struct file *f)
     return report_file_save(s->tool, folder, f->name, file, &text, &bytes);
 }
 
-/* Saves all files, or with STARS those of stars, dust and veil. */
-static int save_all(const struct sweep *s, const char *folder, bool stars)
+static int save_all(const struct sweep *s, const char *folder)
 {
     int code = EXIT_OK;
 
     for (size_t i = 0; i < sizeof files / sizeof *files && code == EXIT_OK; i++)
-        if (!stars || files[i].alone)
-            code = save(s, folder, &files[i]);
-    if (code == EXIT_OK && s->tool->json && !stars)
+        code = save(s, folder, &files[i]);
+    if (code == EXIT_OK && s->tool->json)
         sweep_json(s, stdout);
-    else if (code == EXIT_OK && !s->tool->quiet && !stars)
+    else if (code == EXIT_OK && !s->tool->quiet)
         sweep_names(s, stdout);
     return code;
 }
@@ -193,20 +182,16 @@ static int run(struct sweep *s, const struct asked *a)
     }
     if (glint_pool_create(&s->one, 1) != GLINT_OK)
         return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
-    if (!a->stars) {
-        add_cases(s, a);
-        if (sweep_plan(s) != GLINT_OK)
-            return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
-    }
+    add_cases(s, a);
+    if (sweep_plan(s) != GLINT_OK)
+        return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
     s->counter = glint_instructions_open();
     code = measure(s);
-    if (code == EXIT_OK)
-        code = sweep_parts(s, s->lens[0]);
     glint_instructions_close(s->counter);
     if (code != EXIT_OK)
         return code;
     sweep_mark_fronts(s);
-    return save_all(s, a->folder, a->stars);
+    return save_all(s, a->folder);
 }
 
 static bool take_sizes(const char *text, struct asked *a)
@@ -247,7 +232,7 @@ static bool take_lights(const char *text, struct asked *a)
     return a->n_lights > 0;
 }
 
-enum option_code { OPT_SMALL = 1, OPT_STARS };
+enum option_code { OPT_SMALL = 1 };
 
 static const struct option options[] = {
     {"output", required_argument, NULL, 'o'},
@@ -257,7 +242,6 @@ static const struct option options[] = {
     {"repeat", required_argument, NULL, 'r'},
     {"exact-grid", required_argument, NULL, 'g'},
     {"small", no_argument, NULL, OPT_SMALL},
-    {"stars", no_argument, NULL, OPT_STARS},
     TOOL_COMMON_OPTIONS};
 
 /* Takes option C with the value optarg. Returns 1, or 0 if the option does not
@@ -280,8 +264,6 @@ static int take(struct sweep *s, struct asked *a, int c)
         return tool_integer(optarg, 4, 1024, &s->grid) && s->grid % 2 == 0;
     case OPT_SMALL:
         return s->small = true;
-    case OPT_STARS:
-        return a->stars = true;
     default:
         return -2;
     }

@@ -81,16 +81,6 @@ struct sweep_picture {
     uint8_t *rgb;
 };
 
-/* A frame with stars, dust or a veil, with one value of its parameter, against
- * all of its light in codes that are not rounded. */
-struct sweep_part {
-    int subject; /* index of what is drawn */
-    double value;
-    double psnr_db, most_codes, pixels, planned_minsn, instructions, ms;
-    size_t bytes; /* that the frame used, with tables */
-    bool front;   /* no other value is both cheaper and better */
-};
-
 struct sweep {
     struct tool *tool;
     struct settings base;
@@ -102,8 +92,6 @@ struct sweep {
     int n_points;
     struct sweep_picture *picture;
     int n_pictures;
-    struct sweep_part part[5 * MAX_VALUES];
-    int n_parts;
     /* Rounds of timing, 1 .. SWEEP_ROUNDS; cells a side of the grid of rays
      * that draws the exact picture, 4 .. 1024, even. */
     int rounds, grid;
@@ -121,21 +109,6 @@ enum glint_status sweep_plan(struct sweep *s);
 
 /* Measures case C. Returns an exit code. */
 int sweep_measure(struct sweep *s, int c, struct tool_progress *progress);
-
-/* Draws a frame. Sets MS and, if they are counted,
- * INSTRUCTIONS. */
-enum glint_status sweep_time(const struct sweep *s, struct glint_engine *engine,
-                             const struct glint_lamp *lamp, int n,
-                             double exposure, const struct glint_image *image,
-                             struct glint_engine_report *report, double *ms,
-                             double *instructions);
-
-/* Measures stars, dust and a veil through LENS for each value of their
- * parameters. Returns an exit code. */
-int sweep_parts(struct sweep *s, const char *lens);
-void sweep_star_csv(const struct sweep *s, FILE *file);
-void sweep_star_svg(const struct sweep *s, FILE *file);
-void sweep_parts_csv(const struct sweep *s, FILE *file);
 
 /* ------------------------------------------------------------------- fronts */
 
@@ -179,11 +152,6 @@ void sweep_words(const struct sweep_setting *set, char text[160]);
 
 /* Returns the index of the name of P's quality, or -1. */
 int sweep_named(const struct sweep_point *p);
-
-/* Ends a row of a table by the conditions of the measurement, whose columns
- * SWEEP_CSV_END names. */
-#define SWEEP_CSV_END ",rounds,version,machine\n"
-void sweep_csv_end(const struct sweep *s, FILE *file);
 
 void sweep_csv(const struct sweep *s, FILE *file);
 void sweep_json(const struct sweep *s, FILE *file);

@@ -24,11 +24,6 @@ static void print_number(FILE *file, double x)
         fprintf(file, "%.7g", x);
 }
 
-void sweep_csv_end(const struct sweep *s, FILE *file)
-{
-    fprintf(file, ",%d,%s,%s\n", s->rounds, GLINT_VERSION, canvas_machine());
-}
-
 void sweep_csv(const struct sweep *s, FILE *file)
 {
     fputs("lens,width,height,lights,angle,kind,dial,quality", file);
@@ -36,7 +31,7 @@ void sweep_csv(const struct sweep *s, FILE *file)
         fprintf(file, ",%s", sweep_parameter[d].name);
     for (int k = 0; k < SWEEP_METRICS; k++)
         fprintf(file, ",%s", metrics[k]);
-    fputs(",front" SWEEP_CSV_END, file);
+    fputs(",front,rounds,version,machine\n", file);
     for (int i = 0; i < s->n_points; i++) {
         const struct sweep_point *const p = &s->point[i];
         const struct sweep_setting *const set = &p->set;
@@ -50,8 +45,8 @@ void sweep_csv(const struct sweep *s, FILE *file)
             print_number(file, set->value[d]);
         for (int k = 0; k < SWEEP_METRICS; k++)
             print_number(file, p->metric[k]);
-        fprintf(file, ",%d", p->front);
-        sweep_csv_end(s, file);
+        fprintf(file, ",%d,%d,%s,%s\n", p->front, s->rounds, GLINT_VERSION,
+                canvas_machine());
     }
 }
 

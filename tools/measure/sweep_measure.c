@@ -125,40 +125,27 @@ static void free_bay(struct bay *b)
 
 /* ------------------------------------------------------------------ timing */
 
-enum glint_status sweep_time(const struct sweep *s, struct glint_engine *engine,
-                             const struct glint_lamp *lamp, int n,
-                             double exposure, const struct glint_image *image,
-                             struct glint_engine_report *report, double *ms,
-                             double *instructions)
-{
-    const uint64_t n0 =
-        s->counter >= 0 ? glint_instructions_read(s->counter) : 0;
-    const double t0 = tool_seconds();
-    const enum glint_status status =
-        glint_engine_draw_at(engine, lamp, n, exposure, image, report);
-
-    *ms = 1e3 * (tool_seconds() - t0);
-    if (s->counter >= 0)
-        *instructions = (double)(glint_instructions_read(s->counter) - n0);
-    return status;
-}
-
 /* Draws R's frame and notes time and instructions. In ROUND -1 it is only
  * drawn, so that its memory is taken. */
 static enum glint_status draw(struct bay *b, struct run *r, int round)
 {
+    const int counter = b->s->counter;
     enum glint_status status;
-    double ms;
+    uint64_t n0;
+    double t0;
 
     canvas_fresh(&b->canvas);
+    n0 = counter >= 0 ? glint_instructions_read(counter) : 0;
+    t0 = tool_seconds();
+    status = glint_engine_draw_at(r->engine, b->lamp, b->c->n_lamps,
+                                  b->exposure, &b->canvas.image, &r->report);
     if (round < 0)
-        return glint_engine_draw_at(r->engine, b->lamp, b->c->n_lamps,
-                                    b->exposure, &b->canvas.image, &r->report);
-    status = sweep_time(b->s, r->engine, b->lamp, b->c->n_lamps, b->exposure,
-                        &b->canvas.image, &r->report, &ms,
-                        &r->point->metric[SWEEP_INSTRUCTIONS]);
-    r->ms[r->n++] = ms;
-    r->spent_ms += ms;
+        return status;
+    r->ms[r->n] = 1e3 * (tool_seconds() - t0);
+    r->spent_ms += r->ms[r->n++];
+    if (counter >= 0)
+        r->point->metric[SWEEP_INSTRUCTIONS] =
+            (double)(glint_instructions_read(counter) - n0);
     return status;
 }
 

@@ -145,8 +145,6 @@ void sweep_page(const struct sweep *s, FILE *file)
     table_of_front(s, file);
     fputs("<h2>Each dial by itself</h2>\n", file);
     sweep_svg_dials(s, file);
-    fputs("<h2>Stars</h2>\n", file);
-    sweep_star_svg(s, file);
     strips(s, file);
     html_end(file);
 }

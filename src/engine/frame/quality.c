@@ -11,7 +11,8 @@ enum { MAX_LIGHTS = 128 };
 
 /* Stars end at a quarter of a code by default: as near to all of their light as
  * one half or an eighth as much, and four times as much costs 0.2 dB and saves
- * 2 of 9 million instructions (glint sweep --stars: a lamp of 12 stops). */
+ * 2 of 9 million instructions (tests/figures/cost/stars.md: a lamp of 12
+ * stops). */
 #define STAR_CULL 2
 
 /* Levels along the front that glint sweep measures over five lenses at
