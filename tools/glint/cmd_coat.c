@@ -17,8 +17,8 @@
 #include "posix/output.h"
 
 static const char help[] =
-    "glint coat COATING [--glass ND,VD] [-o PLOT.svg|PLOT.png] [options]\n"
-    "glint coat LENS --surface K [--coating C] [-o PLOT.svg|PLOT.png]\n"
+    "glint coat COATING [--glass ND,VD] [-o PLOT.svg] [options]\n"
+    "glint coat LENS --surface K [--coating C] [-o PLOT.svg]\n"
     "\n"
     "What a coating reflects of light from the air, by wavelength and angle: "
     "a\n"
@@ -200,42 +200,20 @@ static void by_angle(const struct coat *c, struct plot *plot)
     }
 }
 
-static void draw_panels(const struct coat *c, FILE *file,
-                        struct plot_pixels *pixels)
+static void write_plot(const struct coat *c, FILE *file)
 {
     struct plot plot;
 
+    plot_open(file, 2);
     plot_init(&plot, file, 0, c->name);
-    plot.pixels = pixels;
     by_wavelength(c, &plot);
     plot_init(&plot, file, 1, "by angle");
-    plot.pixels = pixels;
     by_angle(c, &plot);
-}
-
-/* Writes the plot to FILE; returns false if memory is short. */
-static bool write_plot(const struct coat *c, FILE *file, bool is_png)
-{
-    struct plot_pixels pixels;
-    bool fine;
-
-    if (!is_png) {
-        plot_open(file, 2);
-        draw_panels(c, file, NULL);
-        plot_close(file);
-        return true;
-    }
-    if (!plot_pixels_open(&pixels, 2))
-        return false;
-    draw_panels(c, NULL, &pixels);
-    fine = plot_png(file, &pixels);
-    plot_pixels_close(&pixels);
-    return fine;
+    plot_close(file);
 }
 
 static int save(const struct tool *tool, const struct coat *c)
 {
-    const bool is_png = glint_ends_in(c->output, ".png");
     struct glint_output out;
     struct glint_error error;
     enum glint_status status = GLINT_E_MEMORY;
@@ -245,12 +223,10 @@ static int save(const struct tool *tool, const struct coat *c)
 
     error.text[0] = 0;
     if (file) {
-        const bool fine = write_plot(c, file, is_png);
-
-        if (fclose(file) == 0 && fine)
-            status = glint_output_open(
-                &out, c->output,
-                is_png ? GLINT_OUTPUT_BINARY : GLINT_OUTPUT_TEXT, &error);
+        write_plot(c, file);
+        if (fclose(file) == 0)
+            status =
+                glint_output_open(&out, c->output, GLINT_OUTPUT_TEXT, &error);
         if (status == GLINT_OK)
             status = glint_output_finish(&out, text, bytes, &error);
     }
@@ -307,10 +283,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct coat *o)
             tool_inputs(tool, argc, argv, 1, "takes one coating, or one lens");
     if (code >= 0)
         return code;
-    if (o->output && !glint_ends_in(o->output, ".svg") &&
-        !glint_ends_in(o->output, ".png"))
-        return tool_usage(tool, "a plot is a .svg or a .png, not '%s'",
-                          o->output);
+    if (o->output && !glint_ends_in(o->output, ".svg"))
+        return tool_usage(tool, "a plot is a .svg, not '%s'", o->output);
     if (o->output && o->surface >= 0)
         apart_read(&files, NULL, argv[optind]);
     apart_write(&files, "-o", o->output);

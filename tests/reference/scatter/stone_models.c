@@ -115,15 +115,13 @@ static bool picture(const struct stone_models *m,
     const int zoom = m->side < LEAST ? (LEAST + m->side - 1) / m->side : 1;
     const int high = m->side * zoom, wide = PANELS * high;
     uint8_t *rgb = malloc(3 * (size_t)wide * (size_t)high);
-    const struct plot_pixels pixels = {
-        .image = {.width = wide, .height = high, .plane = {rgb}}};
     bool good = rgb && j->light && j->error;
 
     for (int y = 0; good && y < high; y++)
         for (int x = 0; x < wide; x++)
             pixel(m, j, x / high, y / zoom * m->side + x % high / zoom,
                   rgb + 3 * (y * wide + x));
-    good = good && plot_png(file, &pixels);
+    good = good && plot_png(file, rgb, wide, high);
     free(rgb);
     return good;
 }

@@ -77,24 +77,18 @@ static double at_y(const struct plot *p, double y)
 static void text(const struct plot *p, double x, double y, const char *anchor,
                  const char *more, const char *words)
 {
-    if (p->pixels)
-        plot_pixels_words(p->pixels, x, y, anchor, words);
-    else
-        fprintf(p->file,
-                "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\"%s>%s</text>\n",
-                x, y, anchor, more, words);
+    fprintf(p->file,
+            "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\"%s>%s</text>\n", x,
+            y, anchor, more, words);
 }
 
 static void stroke(const struct plot *p, double x0, double y0, double x1,
                    double y1, const char *colour, double width)
 {
-    if (p->pixels)
-        plot_pixels_line(p->pixels, x0, y0, x1, y1, colour, width);
-    else
-        fprintf(p->file,
-                "<path d=\"M%.1f %.1fL%.1f %.1f\" fill=\"none\" stroke=\"%s\" "
-                "stroke-width=\"%.1f\"/>\n",
-                x0, y0, x1, y1, colour, width);
+    fprintf(p->file,
+            "<path d=\"M%.1f %.1fL%.1f %.1f\" fill=\"none\" stroke=\"%s\" "
+            "stroke-width=\"%.1f\"/>\n",
+            x0, y0, x1, y1, colour, width);
 }
 
 /* Widens the axis by a little room beside its outermost points. */
@@ -173,10 +167,6 @@ void plot_frame(struct plot *p)
          p->title);
     text(p, p->left + (LEFT + PLOT_WIDTH - RIGHT) / 2.0,
          p->top + PLOT_HEIGHT - 8, "middle", "", p->x.words);
-    if (p->pixels) { /* letters of pixels do not turn */
-        text(p, p->left + LEFT, p->top + TOP - 6, "start", "", p->y.words);
-        return;
-    }
     snprintf(turn, sizeof turn, " transform=\"rotate(-90 %d %.1f)\"",
              p->left + 13, middle);
     text(p, p->left + 13, middle, "middle", turn, p->y.words);
@@ -189,10 +179,6 @@ static void mark(const struct plot *p, double x, double y, char kind,
     const double r = kind == '.' ? 1.6 : 3.3;
     char ink[64];
 
-    if (p->pixels) {
-        plot_pixels_mark(p->pixels, x, y, r, colour);
-        return;
-    }
     snprintf(ink, sizeof ink,
              hollow ? "fill=\"#fff\" stroke=\"%s\"" : "fill=\"%s\"", colour);
     kind = (char)tolower((unsigned char)kind);

@@ -174,10 +174,9 @@ void html_png(FILE *file, const uint8_t *rgb, int width, int height)
     free(small.at);
 }
 
-bool plot_png(FILE *file, const struct plot_pixels *pixels)
+bool plot_png(FILE *file, const uint8_t *rgb, int width, int height)
 {
-    const struct bytes b = png_of(pixels->image.plane[0], pixels->image.width,
-                                  pixels->image.height);
+    const struct bytes b = png_of(rgb, width, height);
 
     if (!b.at)
         return false;
