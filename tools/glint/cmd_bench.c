@@ -14,8 +14,6 @@ static int take(struct bench *b, int c)
     switch (c) {
     case 'a':
         return b->all = true;
-    case 'm':
-        return b->sizes = true;
     case 's':
         return tool_size(optarg, &b->width, &b->height);
     case 'r':

@@ -114,7 +114,7 @@ static void print(const struct bench *b)
     printf("%s %8s %7s ", s->heads, "ms", "ratio");
     for (int k = 0; k < whole; k++)
         printf(" %*s", column(s->stage[k]), s->stage[k]);
-    printf("  %s%s\n", s->tail, b->psnr ? "  dB" : "");
+    printf("  %s\n", s->tail);
     for (int i = 0; i < b->n_cases; i++) {
         const struct bench_case *const c = b->cases[i];
         const double floor_ms = bench_floor_ms(b, c);

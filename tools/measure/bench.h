@@ -13,8 +13,7 @@ enum {
     BENCH_ROUNDS = CANVAS_MAX,
     BENCH_STAGES = 7,
     BENCH_CANVASES = 8,
-    BENCH_LENSES = 16,
-    BENCH_BUDGETS = 16
+    BENCH_LENSES = 16
 };
 
 /* A case. Each subject has a struct of its own that begins with one. */
@@ -80,10 +79,8 @@ struct bench {
     struct tool *tool;
     struct settings base;            /* as the line says */
     int width, height, rounds, word; /* word: index of the format */
-    bool all, sizes, psnr;
+    bool all;
     bool moving; /* The first light moves from round to round. */
-    int n_budgets;
-    double budget_ms[BENCH_BUDGETS];
     struct glint_workers *one, *two;
     struct canvas canvas[BENCH_CANVASES];
     int n_canvases;
@@ -120,13 +117,12 @@ double bench_floor_ms(const struct bench *bench, const struct bench_case *c);
 
 /* Options of both subjects. */
 enum { BENCH_OWN = 'A' }; /* subjects number their own from here on */
-#define BENCH_OPTIONS                                                   \
-    {"all", no_argument, NULL, 'a'}, {"sizes", no_argument, NULL, 'm'}, \
-        {"size", required_argument, NULL, 's'},                         \
-        {"repeat", required_argument, NULL, 'r'},                       \
-        {"format", required_argument, NULL, 'F'},                       \
-    {                                                                   \
-        NULL, 0, NULL, 0                                                \
+#define BENCH_OPTIONS                                                        \
+    {"all", no_argument, NULL, 'a'}, {"size", required_argument, NULL, 's'}, \
+        {"repeat", required_argument, NULL, 'r'},                            \
+        {"format", required_argument, NULL, 'F'},                            \
+    {                                                                        \
+        NULL, 0, NULL, 0                                                     \
     }
 
 #endif

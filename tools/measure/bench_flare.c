@@ -33,15 +33,9 @@ static const char help[] =
     "                  and, alone, the star of one light of 12 stops over "
     "white\n"
     "                  and those of ten of 2 stops\n"
-    "  --sizes         instead: 360p, 720p, 1080p and 2160p\n"
-    "  --budgets LIST  instead: held to so many milliseconds each, and how far "
-    "what\n"
-    "                  was predicted is off\n"
     "  --size WxH      default 1920x1080\n"
     "  --repeat N      rounds (default 15)\n"
     "  --moving        the first light goes from 8 to 16 degrees meanwhile\n"
-    "  --psnr          also draw each lens exactly and compare, which takes\n"
-    "                  minutes\n"
     "  --format F      yuyv (default) | i420 | nv12 | rgb24 | xrgb8888 | "
     "rgb565\n";
 
@@ -63,11 +57,9 @@ struct flare_case {
     struct glint_engine *engine;
     struct glint_lamp *lamp;
     int n_lamps;
-    bool is_star;          /* stars alone */
-    double budget_ms;      /* 0: none */
-    double scale, psnr_db; /* psnr_db: NAN if not measured */
+    bool is_star; /* stars alone */
+    double scale;
     struct glint_engine_report report;
-    double wrong[BENCH_ROUNDS]; /* budgets: predicted over measured - 1 */
 };
 
 /* ------------------------------------------------------------------- cases */
@@ -93,13 +85,6 @@ static const struct bench_variation all[] = {
     {.lights = 1, .angle = 75}, /* beyond the angles of models */
 };
 
-static const struct bench_variation sizes[] = {
-    {.lights = 1, .width = 640, .height = 360},
-    {.lights = 1, .width = 1280, .height = 720},
-    {.lights = 1, .width = 1920, .height = 1080},
-    {.lights = 1, .width = 3840, .height = 2160},
-};
-
 /* Sets the exposure of T. A light far outside is exposed as if it were in the
  * picture. */
 static enum glint_status expose(struct flare_case *t,
@@ -120,10 +105,9 @@ static enum glint_status expose(struct flare_case *t,
     return status;
 }
 
-/* Adds the case V of SETTINGS, held to BUDGET_MS if that is above 0. Returns an
- * exit code. */
-static int add_more(struct bench *b, const struct settings *settings,
-                    const struct bench_variation *v, double budget_ms)
+/* Adds the case V of SETTINGS. Returns an exit code. */
+static int add(struct bench *b, const struct settings *settings,
+               const struct bench_variation *v)
 {
     struct flare_case *const t =
         (struct flare_case *)bench_add(b, settings->lens.name, v);
@@ -135,7 +119,6 @@ static int add_more(struct bench *b, const struct settings *settings,
         return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
     t->settings = settings;
     t->n_lamps = v->lights;
-    t->psnr_db = (double)NAN;
     canvas_engine(b->tool, settings, settings, t->base.canvas->image.width,
                   t->base.canvas->image.height, &cfg);
     cfg.workers = t->base.workers;
@@ -146,20 +129,11 @@ static int add_more(struct bench *b, const struct settings *settings,
         cfg.drawing.parts = GLINT_ENGINE_STAR | GLINT_ENGINE_CORES;
         cfg.light.starburst = 1;
     }
-    if (budget_ms > 0)
-        cfg.drawing.budget_ms = budget_ms;
-    t->budget_ms = cfg.model ? cfg.drawing.budget_ms : 0;
     status = glint_engine_create(&t->engine, &cfg, &error);
     if (status == GLINT_OK)
         status = expose(t, v);
     return status == GLINT_OK ? EXIT_OK
                               : tool_fail(b->tool, status, error.text);
-}
-
-static int add(struct bench *b, const struct settings *settings,
-               const struct bench_variation *v)
-{
-    return add_more(b, settings, v, 0);
 }
 
 /* Adds those of V[N] that are possible here. */
@@ -172,11 +146,6 @@ static int add_list(struct bench *b, const struct settings *settings,
         if (bench_is_possible(&v[i]))
             code = add(b, settings, &v[i]);
     return code;
-}
-
-static struct flare_case *last_of(const struct bench *b)
-{
-    return (struct flare_case *)b->cases[b->n_cases - 1];
 }
 
 /* ------------------------------------------------------------------ rounds */
@@ -196,8 +165,6 @@ enum glint_status bench_run(struct bench *b, struct bench_case *c, int round)
     status = glint_engine_draw_at(t->engine, t->lamp, t->n_lamps, t->scale,
                                   &c->canvas->image, &t->report);
     c->ms[WHOLE][round] = 1e3 * (tool_seconds() - t0);
-    t->wrong[round] =
-        r->predicted_ms / (r->plan_ms + r->bin_ms + r->draw_ms) - 1;
     c->ms[PLAN][round] = r->plan_ms;
     c->ms[TRANSFER][round] = r->trace_ms;
     c->ms[BIN][round] = r->bin_ms;
@@ -205,71 +172,10 @@ enum glint_status bench_run(struct bench *b, struct bench_case *c, int round)
     return status;
 }
 
-/* Frames in which a budget may settle before it is timed. */
-enum { SETTLING = 12 };
-
-/* Adds the plain case for each budget, held to that budget. */
-static int add_budgets(struct bench *b, const struct settings *settings)
-{
-    int code = EXIT_OK;
-
-    for (int i = 0; i < b->n_budgets && code == EXIT_OK; i++) {
-        enum glint_status status = GLINT_OK;
-        struct flare_case *t;
-
-        code = add_more(b, settings, &plain, b->budget_ms[i]);
-        if (code != EXIT_OK)
-            break;
-        t = last_of(b);
-        for (int k = 0; k < SETTLING && status == GLINT_OK; k++) {
-            canvas_fresh(t->base.canvas);
-            status = bench_run(b, &t->base, 0);
-        }
-        if (status != GLINT_OK)
-            code = tool_fail(b->tool, GLINT_E_MEMORY, NULL);
-    }
-    return code;
-}
-
 /* ----------------------------------------------------------------- opening */
-
-/* Sets t->psnr_db: T's flare alone against exact rays of the lens's table. */
-static int measure_psnr(struct bench *b, struct flare_case *t)
-{
-    const int w = t->base.canvas->image.width, h = t->base.canvas->image.height;
-    const size_t n = 3 * (size_t)w * (size_t)h;
-    struct glint_float_image want = {w, h, malloc(n * sizeof(float))};
-    uint8_t *want_codes = NULL, *got = malloc(n);
-    enum glint_status status = GLINT_E_MEMORY;
-    double exposure;
-    struct glint_measure m;
-
-    if (want.rgb && got)
-        status =
-            canvas_exact(b->tool, t->settings, t->lamp, t->n_lamps, 128, &want);
-    if (status == GLINT_OK) {
-        exposure = glint_measure_exposure(&want);
-        want_codes = glint_measure_encode(&want, exposure);
-        status = want_codes ? canvas_codes(t->engine, t->lamp, t->n_lamps,
-                                           exposure, got, &t->report)
-                            : GLINT_E_MEMORY;
-    }
-    if (status == GLINT_OK) {
-        glint_measure_codes(want_codes, got, w, h, &m);
-        t->psnr_db = m.psnr_db;
-    }
-    free(want.rgb);
-    free(want_codes);
-    free(got);
-    return status == GLINT_OK ? EXIT_OK : tool_fail(b->tool, status, NULL);
-}
 
 static int add_cases(struct bench *b, const struct settings *s)
 {
-    if (b->n_budgets)
-        return add_budgets(b, s);
-    if (b->sizes)
-        return add_list(b, s, sizes, sizeof sizes / sizeof *sizes);
     return b->all ? add_list(b, s, all, sizeof all / sizeof *all)
                   : add(b, s, &plain);
 }
@@ -278,9 +184,6 @@ static int open_lens(struct bench *b, struct lenses *lenses, const char *name)
 {
     if (lenses->n == BENCH_LENSES)
         return tool_usage(b->tool, "takes %d lenses at most", BENCH_LENSES);
-    if (b->psnr && tool_is_model(name))
-        return tool_usage(b->tool, "%s is a model: --psnr needs the lens table",
-                          name);
     lenses->settings[lenses->n] = b->base;
     return settings_open(b->tool, &lenses->settings[lenses->n++], name);
 }
@@ -303,12 +206,6 @@ static int open_flares(struct bench *b, int n, const char *const *name)
         code = open_lens(b, lenses, name[i]);
     for (int i = 0; i < n && code == EXIT_OK; i++)
         code = add_cases(b, &lenses->settings[i]);
-    for (int i = 0; i < b->n_cases && b->psnr && code == EXIT_OK; i++) {
-        struct flare_case *const t = (struct flare_case *)b->cases[i];
-
-        if (t->n_lamps == 1 && t->base.kernels == b->tool->kernels)
-            code = measure_psnr(b, t);
-    }
     return code;
 }
 
@@ -336,16 +233,6 @@ static const char *raster_of(const struct flare_case *t)
     return t->is_star ? "star" : "edges";
 }
 
-/* Returns the median size of the relative errors of T's predictions. */
-static double off_by(const struct bench *b, const struct flare_case *t)
-{
-    double size[BENCH_ROUNDS];
-
-    for (int i = 0; i < b->rounds; i++)
-        size[i] = fabs(t->wrong[i]);
-    return canvas_median(size, b->rounds);
-}
-
 static void print_case(const struct bench *b, const struct bench_case *c)
 {
     const struct flare_case *const t = (const struct flare_case *)c;
@@ -361,15 +248,9 @@ static void print_result(const struct bench *b, const struct bench_case *c)
     const struct flare_case *const t = (const struct flare_case *)c;
     const struct glint_engine_report *const r = &t->report;
 
+    (void)b;
     printf("%7d %6.2f", r->stats.primitives,
            (double)(r->peak_bytes + r->star_bytes) / (1 << 20));
-    if (!isnan(t->psnr_db))
-        printf("  %.1f", t->psnr_db);
-    if (t->budget_ms > 0)
-        printf(
-            "  budget %g: %.2f of it, quality %.2f, predicted within %.0f %%",
-            t->budget_ms, bench_ms(b, c, WHOLE) / t->budget_ms, r->quality,
-            100 * off_by(b, t));
 }
 
 static void json(struct json_writer *to, const struct bench *b,
@@ -385,11 +266,6 @@ static void json(struct json_writer *to, const struct bench *b,
                t->n_lamps, c->threads, raster_of(t), c->kernels,
                r->quality >= 0 ? r->quality : t->settings->options.quality);
     bench_json_times(to, b, c);
-    json_write(to, "psnr_db: %.2f", t->psnr_db);
-    if (t->budget_ms > 0)
-        json_write(to, "budget_ms: %g, achieved: %.4f, prediction_error: %.4f",
-                   t->budget_ms, bench_ms(b, c, WHOLE) / t->budget_ms,
-                   off_by(b, t));
     json_write(to,
                "drawn_lights: %d, ghosts: %d, bundles: %d, primitives: %d, "
                "tiles: %d, arena_bytes: %zu, star_bytes: %zu",
@@ -399,30 +275,17 @@ static void json(struct json_writer *to, const struct bench *b,
 
 /* ----------------------------------------------------------------- options */
 
-enum { OPT_MOVING = BENCH_OWN, OPT_PSNR, OPT_BUDGETS };
+enum { OPT_MOVING = BENCH_OWN };
 
-static const struct option own[] = {
-    {"moving", no_argument, NULL, OPT_MOVING},
-    {"psnr", no_argument, NULL, OPT_PSNR},
-    {"budgets", required_argument, NULL, OPT_BUDGETS},
-    BENCH_OPTIONS};
+static const struct option own[] = {{"moving", no_argument, NULL, OPT_MOVING},
+                                    BENCH_OPTIONS};
 
 static int take(struct bench *b, int c, const char *value)
 {
-    switch (c) {
-    case OPT_MOVING:
-        return b->moving = true;
-    case OPT_PSNR:
-        return b->psnr = true;
-    case OPT_BUDGETS:
-        b->n_budgets = tool_numbers(value, b->budget_ms, BENCH_BUDGETS);
-        for (int i = 0; i < b->n_budgets; i++)
-            if (b->budget_ms[i] <= 0)
-                return 0;
-        return b->n_budgets > 0;
-    default:
+    (void)value;
+    if (c != OPT_MOVING)
         return -2;
-    }
+    return b->moving = true;
 }
 
 const struct bench_subject bench_flare = {

@@ -28,7 +28,6 @@ static const char help[] =
     "\n"
     "  --all               also: every value of each dial, all kernels, 2\n"
     "                      threads, 360p to 2160p\n"
-    "  --sizes             instead: 360p, 720p, 1080p and 2160p\n"
     "  --size WxH          default 1920x1080\n"
     "  --repeat N          rounds, 1 to 100 (default 15)\n"
     "  --format F          yuyv (default) | i420 | nv12 | rgb24 | xrgb8888 |\n"
@@ -155,18 +154,12 @@ static int add(struct bench *b, const struct bench_variation *v)
 
 static int add_cases(struct bench *b)
 {
-    static const struct bench_variation plain = {0},
-                                        full = {.width = 1920, .height = 1080};
-    int code = b->sizes ? EXIT_OK : add(b, &plain);
+    static const struct bench_variation plain = {0};
+    int code = add(b, &plain);
 
-    for (size_t i = 0; i < sizeof all / sizeof *all && code == EXIT_OK; i++) {
-        if (!(b->sizes ? all[i].width > 0 : b->all))
-            continue;
-        if (b->sizes && all[i].width > full.width)
-            code = add(b, &full);
-        if (code == EXIT_OK)
-            code = add(b, &all[i]);
-    }
+    for (size_t i = 0;
+         i < sizeof all / sizeof *all && b->all && code == EXIT_OK; i++)
+        code = add(b, &all[i]);
     return code;
 }
 

@@ -21,7 +21,7 @@ static const struct {
                "quality "},
     {"explain", " output scene size save-ghosts ghost-sheet sort top lens "
                 "light-at quality "},
-    {"bench", " all sizes budgets size repeat quality rays "},
+    {"bench", " all size repeat quality rays "},
     {"styles", " output width lens light-at strength gain quality "},
 };
 
