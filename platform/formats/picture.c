@@ -230,7 +230,7 @@ static enum glint_status load(struct loaded *loaded, const char *path,
 {
     struct glint_input in;
     uint8_t *data = NULL;
-    enum glint_status status = glint_input_open(&in, path, error);
+    enum glint_status status = glint_input_open_file(&in, path, error);
 
     memset(loaded, 0, sizeof *loaded);
     if (status)
@@ -726,7 +726,7 @@ static enum glint_status open_any(struct glint_kept *k,
                                   struct glint_error *error)
 {
     struct glint_input in;
-    enum glint_status status = glint_input_open(&in, k->path, error);
+    enum glint_status status = glint_input_open_file(&in, k->path, error);
 
     if (status)
         return status;

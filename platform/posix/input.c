@@ -13,8 +13,8 @@
 
 #define FIRST_BYTES 65536 /* bytes of room where the size is unknown */
 
-enum glint_status glint_input_open(struct glint_input *in, const char *path,
-                                   struct glint_error *error)
+static enum glint_status open_by(struct glint_input *in, const char *path,
+                                 int flags, struct glint_error *error)
 {
     const int is_stdin = !strcmp(path, "-");
 
@@ -22,7 +22,7 @@ enum glint_status glint_input_open(struct glint_input *in, const char *path,
     if (is_stdin)
         in->fd = dup(STDIN_FILENO);
     else
-        in->fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
+        in->fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | flags);
     if (in->fd < 0)
         return glint_error_report(error, GLINT_E_IO, in->name, "%s",
                                   strerror(errno));
@@ -32,6 +32,47 @@ enum glint_status glint_input_open(struct glint_input *in, const char *path,
                                   "is a terminal; pipe a file into it");
     }
     return GLINT_OK;
+}
+
+enum glint_status glint_input_open(struct glint_input *in, const char *path,
+                                   struct glint_error *error)
+{
+    return open_by(in, path, 0, error);
+}
+
+/* Returns what keeps PATH, of status ST, from being a file, or NULL. */
+static const char *not_a_file(const char *path, const struct stat *st)
+{
+    struct stat null;
+
+    if (S_ISFIFO(st->st_mode))
+        return strncmp(path, "/dev/", 5) == 0 || strncmp(path, "/proc/", 6) == 0
+                   ? NULL
+                   : "is a FIFO, not a file";
+    if (!S_ISCHR(st->st_mode) && !S_ISBLK(st->st_mode))
+        return NULL;
+    return stat("/dev/null", &null) == 0 && S_ISCHR(null.st_mode) &&
+                   st->st_rdev == null.st_rdev
+               ? NULL
+               : "is a device, not a file";
+}
+
+enum glint_status glint_input_open_file(struct glint_input *in,
+                                        const char *path,
+                                        struct glint_error *error)
+{
+    struct stat st;
+    const char *cause;
+    /* so that a FIFO is opened at once */
+    enum glint_status status = open_by(in, path, O_NONBLOCK, error);
+
+    if (status != GLINT_OK || !strcmp(path, "-"))
+        return status;
+    cause = fstat(in->fd, &st) < 0 ? strerror(errno) : not_a_file(path, &st);
+    if (!cause)
+        return GLINT_OK;
+    glint_input_close(in);
+    return glint_error_report(error, GLINT_E_IO, in->name, "%s", cause);
 }
 
 /* Returns whether a failed read is worth repeating; waits until FD is readable
@@ -118,7 +159,7 @@ enum glint_status glint_input_slurp(uint8_t **data, size_t *bytes,
     uint8_t *block = NULL;
     size_t n = 0;
     struct glint_input in;
-    enum glint_status status = glint_input_open(&in, path, error);
+    enum glint_status status = glint_input_open_file(&in, path, error);
 
     if (status)
         return status;

@@ -22,9 +22,17 @@ struct glint_input {
     const char *name; /* name for errors; not owned */
 };
 
-/* Opens PATH, which must outlive IN. GLINT_E_IO: it cannot be opened. */
+/* Opens PATH, which must outlive IN, as a stream: a file, a device or a FIFO,
+ * whose writer it waits for. GLINT_E_IO: it cannot be opened. */
 enum glint_status glint_input_open(struct glint_input *in, const char *path,
                                    struct glint_error *error);
+
+/* Like glint_input_open(), of input that ends: a regular file, "-", /dev/null,
+ * or a pipe that is open already (/dev/fd/N). Never waits for a writer.
+ * GLINT_E_IO: PATH is a FIFO or another device. */
+enum glint_status glint_input_open_file(struct glint_input *in,
+                                        const char *path,
+                                        struct glint_error *error);
 
 /* Reads what is there now, at most BYTES (>= 1), and waits if there is nothing
  * yet. Returns how many bytes came, 0 at the end, -1 with errno set. */
@@ -41,8 +49,9 @@ enum glint_status glint_input_append(struct glint_input *in, uint8_t **data,
 /* Closes IN, unless it is closed already. */
 void glint_input_close(struct glint_input *in);
 
-/* Reads all of PATH into a malloc'ed block, which the caller frees; it is not
- * NULL even for an empty file. Errors are those of the functions above. */
+/* Reads all of PATH, as glint_input_open_file() opens it, into a malloc'ed
+ * block, which the caller frees; it is not NULL even for an empty file. Errors
+ * are those of the functions above. */
 enum glint_status glint_input_slurp(uint8_t **data, size_t *bytes,
                                     const char *path, size_t max,
                                     struct glint_error *error);

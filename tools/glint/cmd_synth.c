@@ -343,7 +343,7 @@ static enum glint_status append(struct glint_output *out, const char *path,
 {
     uint8_t part[4096]; /* a line of three lights has 1.5 KiB */
     struct glint_input in;
-    enum glint_status status = glint_input_open(&in, path, error);
+    enum glint_status status = glint_input_open_file(&in, path, error);
     ptrdiff_t n = 0;
 
     while (status == GLINT_OK &&
