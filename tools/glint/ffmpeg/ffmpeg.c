@@ -20,6 +20,7 @@
 
 #include "posix/at_death.h"
 #include "posix/error.h"
+#include "posix/input.h"
 
 static bool has_one_of(const char *text, const char *const *words)
 {
@@ -386,6 +387,15 @@ static bool set_url(char url[FFMPEG_URL], const char *name)
     return (size_t)snprintf(url, FFMPEG_URL, "file:%s", name) < FFMPEG_URL;
 }
 
+/* The containers that an input may have, whatever its name. They refer to no
+ * other file, unlike playlists (HLS, concat, DASH), and nothing but files is
+ * opened for them. */
+#define CONTAINERS                                                  \
+    "mov,matroska,avi,mpeg,mpegvideo,mpegts,m4v,h264,hevc,asf,flv," \
+    "ogg,mxf,mxf_opatom"
+static const char *const input_limits[] = {"-format_whitelist", CONTAINERS,
+                                           "-protocol_whitelist", "file", NULL};
+
 /* -------------------------------------------------------------------- probe */
 
 /* Sets WORD by LINE, "NAME=value", unless WORD is set already or the value is
@@ -438,10 +448,22 @@ static void read_all(struct child *child, char text[PROBE_BYTES])
 static bool ask(const char *url, const char *kind, const char *entries,
                 const char *option, char text[PROBE_BYTES])
 {
-    const char *const argv[] = {
-        "ffprobe",       "-v",    "quiet", "-select_streams", kind,
-        "-show_entries", entries, "-of",   "default=nw=1",    url,
-        option,          NULL};
+    const char *const argv[] = {"ffprobe",
+                                "-v",
+                                "quiet",
+                                "-select_streams",
+                                kind,
+                                "-show_entries",
+                                entries,
+                                "-of",
+                                "default=nw=1",
+                                input_limits[0],
+                                input_limits[1],
+                                input_limits[2],
+                                input_limits[3],
+                                url,
+                                option,
+                                NULL};
     struct glint_error error;
     struct child child;
 
@@ -474,7 +496,12 @@ void ffmpeg_probe(struct ffmpeg_video *video, const char *name)
 long ffmpeg_count_frames(const char *name)
 {
     char url[FFMPEG_URL], text[PROBE_BYTES], n[FFMPEG_WORD] = "";
+    struct glint_error error;
+    struct glint_input file;
 
+    if (glint_input_open_file(&file, name, &error) != GLINT_OK)
+        return 0;
+    glint_input_close(&file);
     if (!set_url(url, name) ||
         !ask(url, "v:0", "stream=nb_read_packets", "-count_packets", text))
         return 0;
@@ -541,6 +568,14 @@ static void add_two(struct words *w, const char *a, const char *b)
     add(w, b);
 }
 
+/* Adds the input URL. */
+static void add_input(struct words *w, const char *url)
+{
+    for (int i = 0; input_limits[i]; i++)
+        add(w, input_limits[i]);
+    add_two(w, "-i", url);
+}
+
 static void begin(struct words *w)
 {
     static const char *const first[] = {"ffmpeg",    "-nostdin", "-hide_banner",
@@ -587,7 +622,7 @@ enum glint_status ffmpeg_read(struct child *child, const char *name,
     if (!set_url(url, name))
         return too_long(name, error);
     begin(&w);
-    add_two(&w, "-i", url);
+    add_input(&w, url);
     add_two(&w, "-map", "0:v:0");
     add_two(&w, "-pix_fmt", pixels_of_y4m(video->pixels));
     add_two(&w, "-strict", "-1");
@@ -632,7 +667,7 @@ static void add_sound(struct words *w, const struct ffmpeg_target *t,
 {
     if (!t->sound)
         return;
-    add_two(w, "-i", url);
+    add_input(w, url);
     add_two(w, "-map", "0:v:0");
     add_two(w, "-map", "1:a?");
     add_two(w, "-map_metadata", "1");

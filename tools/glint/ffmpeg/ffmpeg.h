@@ -17,6 +17,9 @@
  * part, so names need no quotes. The program shares glint's standard error, or
  * is heard there. It is killed when glint dies or gives it up, and its status
  * is always taken.
+ *
+ * An input is a container of pictures and sound, which refers to no other file:
+ * a playlist named .mp4 is refused.
  */
 #ifndef GLINT_TOOLS_FFMPEG_FFMPEG_H
 #define GLINT_TOOLS_FFMPEG_FFMPEG_H

@@ -109,11 +109,13 @@ static void take_colours(struct video *v)
  * Returns an exit code. */
 static int open_coded(struct video *v)
 {
-    enum glint_status status;
+    struct glint_input file;
+    enum glint_status status =
+        glint_input_open_file(&file, v->o->input, &v->error);
 
-    if (access(v->o->input, R_OK) != 0)
-        return fail(v, glint_error_report(&v->error, GLINT_E_IO, v->o->input,
-                                          "%s", strerror(errno)));
+    if (status != GLINT_OK)
+        return fail(v, status);
+    glint_input_close(&file);
     ffmpeg_probe(&v->about, v->o->input);
     status = ffmpeg_read(&v->reader, v->o->input, &v->about, &v->error);
     if (status != GLINT_OK)
