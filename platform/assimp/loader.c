@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#define _GNU_SOURCE /* memmem */
 #include "assimp/assimp.h"
 
 #include <errno.h>
@@ -7,8 +8,10 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,8 +21,18 @@
 
 enum {
     SECONDS = 60, /* of the processor that a mesh may take */
-    SIGNALS = 64  /* that a system has, at most */
+    SIGNALS = 64, /* that a system has, at most */
+    /* of memory, beyond what glint has mapped. An .stl of 2^20 triangles, the
+     * most that a scene takes, needs 2.1 GB. */
+    MIB = 3072,
+    GLB_HEAD = 20,      /* bytes before the text of a binary glTF */
+    MAX_TEXT = 1 << 26, /* bytes of a glTF that are checked */
+    MAX_NODES = 1 << 22
 };
+
+#define TOO_MUCH                                                          \
+    "takes more than 60 s or 3 GiB to read: too large, or made to be so " \
+    "(parts that contain each other many times)"
 
 static const struct glint_assimp *load(struct glint_error *error)
 {
@@ -40,6 +53,20 @@ static const struct glint_assimp *load(struct glint_error *error)
     return face;
 }
 
+/* Returns the bytes of addresses that this process has; 0 if unknown. */
+static rlim_t mapped_bytes(void)
+{
+    char text[32] = "";
+    const int fd = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+    const ssize_t n = fd < 0 ? -1 : read(fd, text, sizeof text - 1);
+
+    if (fd >= 0)
+        close(fd);
+    return n > 0 ? (rlim_t)strtoull(text, NULL, 10) *
+                       (rlim_t)sysconf(_SC_PAGESIZE)
+                 : 0;
+}
+
 /* The other process, until it exits. Signals, which are all blocked, are taken
  * as a process takes them by itself: glint's handlers would clean up after a
  * glint that lives on. */
@@ -47,6 +74,8 @@ static void be_the_child(const struct glint_assimp *face, int fd,
                          const char *path, unsigned max_triangles)
 {
     const struct rlimit time = {SECONDS, SECONDS}, core = {0, 0};
+    const struct rlimit memory = {mapped_bytes() + (rlim_t)MIB * 1048576,
+                                  RLIM_INFINITY};
     const int null = open("/dev/null", O_WRONLY | O_CLOEXEC);
     sigset_t all;
 
@@ -57,6 +86,7 @@ static void be_the_child(const struct glint_assimp *face, int fd,
     sigprocmask(SIG_UNBLOCK, &all, NULL);
     setrlimit(RLIMIT_CPU, &time);
     setrlimit(RLIMIT_CORE, &core);
+    setrlimit(RLIMIT_AS, &memory);
     if (null >= 0)
         dup2(null, 2); /* what is said of an exception that nobody takes */
     face->write(fd, path, max_triangles);
@@ -93,7 +123,7 @@ static const char *end(pid_t child, int is_wanted)
         ;
     if (WIFSIGNALED(status))
         return WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL
-                   ? "takes too long, or too much memory, to read"
+                   ? TOO_MUCH
                    : "is damaged: Assimp, which reads it, aborted; convert it "
                      "to .obj";
     return WEXITSTATUS(status) ? "cannot be read" : NULL;
@@ -108,12 +138,111 @@ static enum glint_status judge(uint8_t *data, size_t *bytes, const char *path,
     if (failure)
         return glint_error_report(error, GLINT_E_FORMAT, path, "%s", failure);
     --*bytes;
+    if (data[0] != 'm' && *bytes && memmem(data + 1, *bytes, "bad_alloc", 9))
+        return glint_error_report(error, GLINT_E_UNSUPPORTED, path, "%s",
+                                  TOO_MUCH);
     if (data[0] != 'm')
         return glint_error_report(error, GLINT_E_FORMAT, path, "%.*s",
                                   (int)(*bytes < 200 ? *bytes : 200),
                                   (const char *)data + 1);
     memmove(data, data + 1, *bytes);
     return GLINT_OK;
+}
+
+static size_t length_at(const uint8_t *b)
+{
+    return b[0] | (size_t)b[1] << 8 | (size_t)b[2] << 16 | (size_t)b[3] << 24;
+}
+
+/* Returns whether a node of the glTF in TEXT[BYTES] is the child of two, which
+ * the format forbids: ten such levels of ten are 10^10 nodes for Assimp, which
+ * copies each. */
+static int has_shared_node(const char *text, size_t bytes)
+{
+    static const char word[] = "\"children\"";
+    uint8_t *const seen = calloc(MAX_NODES, 1);
+    const char *const end = text + bytes;
+    int is_shared = 0;
+
+    while (seen &&
+           (text = memmem(text, (size_t)(end - text), word, sizeof word - 1))) {
+        text += sizeof word - 1;
+        while (text < end && strchr(" \t\r\n:[", *text) && *text)
+            text++;
+        while (text < end && *text && strchr("0123456789 \t\r\n,", *text)) {
+            size_t node = 0;
+            int is_number = 0;
+
+            for (; text < end && *text >= '0' && *text <= '9'; text++) {
+                is_number = 1;
+                node = node < MAX_NODES ? node * 10 + (size_t)(*text - '0')
+                                        : MAX_NODES;
+            }
+            if (is_number && node < MAX_NODES)
+                is_shared |= seen[node]++;
+            text += !is_number;
+        }
+    }
+    free(seen);
+    return is_shared;
+}
+
+/* Returns what is wrong with the glTF TEXT[BYTES], the beginning of a file of
+ * ALL bytes, or NULL. A binary one begins with a magic number, a version, the
+ * length of all, and length and type of the part that is the text. */
+static const char *check_gltf(const uint8_t *text, size_t bytes, uintmax_t all)
+{
+    if (bytes >= 4 && memcmp(text, "glTF", 4) == 0) {
+        if (bytes < GLB_HEAD || all < length_at(text + 8) ||
+            all - GLB_HEAD < length_at(text + 12))
+            return "is cut off: shorter than the length at its beginning";
+        text += GLB_HEAD;
+        bytes -= GLB_HEAD;
+        if (length_at(text - 8) < bytes)
+            bytes = length_at(text - 8);
+    }
+    return has_shared_node((const char *)text, bytes)
+               ? "has a node that is the child of two others, which glTF "
+                 "forbids"
+               : NULL;
+}
+
+/* Checks, before a library trusts it, that PATH is a file, and of a glTF what
+ * would cost most. */
+static enum glint_status check_file(const char *path, struct glint_error *error)
+{
+    const char *const dot = strrchr(path, '.'), *cause = NULL;
+    struct glint_input in;
+    struct stat st;
+    uint8_t *text;
+    size_t n = 0;
+    ptrdiff_t got = 1;
+    enum glint_status status = glint_input_open_file(&in, path, error);
+
+    if (status != GLINT_OK)
+        return status;
+    if (fstat(in.fd, &st) < 0 || !S_ISREG(st.st_mode)) {
+        glint_input_close(&in);
+        return glint_error_report(error, GLINT_E_IO, path, "is not a file");
+    }
+    if (dot && (!strcasecmp(dot, ".gltf") || !strcasecmp(dot, ".glb"))) {
+        const size_t most =
+            st.st_size < MAX_TEXT ? (size_t)st.st_size : MAX_TEXT;
+
+        text = malloc(most + 1);
+        while (text && got > 0 && n < most) {
+            got = glint_input_some(&in, text + n, most - n);
+            n += got > 0 ? (size_t)got : 0;
+        }
+        cause = text ? check_gltf(text, n, (uintmax_t)st.st_size) : NULL;
+        if (!text)
+            status = glint_error_report(error, GLINT_E_MEMORY, path,
+                                        "no memory for %zu bytes", most);
+        free(text);
+    }
+    glint_input_close(&in);
+    return cause ? glint_error_report(error, GLINT_E_FORMAT, path, "%s", cause)
+                 : status;
 }
 
 enum glint_status glint_assimp_read(uint8_t **data, size_t *bytes,
@@ -132,7 +261,10 @@ enum glint_status glint_assimp_read(uint8_t **data, size_t *bytes,
     *bytes = 0;
     if (!face)
         return GLINT_E_UNSUPPORTED;
-    if (access(path, R_OK) < 0 || pipe(pipe_fd) < 0)
+    status = check_file(path, error);
+    if (status != GLINT_OK)
+        return status;
+    if (pipe(pipe_fd) < 0)
         return glint_error_report(error, GLINT_E_IO, path, "%s",
                                   strerror(errno));
     child = start(face, pipe_fd, path, max_triangles);
