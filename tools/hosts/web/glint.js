@@ -139,11 +139,11 @@ export class Glint {
         return xy;
     }
 
-    // Draws the flare of LAMPS, or of those that find() found, into RGBA.
-    draw(rgba, lamps = null) {
+    // Draws the flare of LAMPS, or of those that find() found, into RGBA. QUICK: about.
+    draw(rgba, lamps = null, quick = false) {
         if (lamps)
             this.rows(lamps.length).set(lamps.flatMap(lamp => COLUMNS.map(name => lamp[name])));
-        this.with(rgba, true, at => this.check(this.c.web_draw(at, lamps ? lamps.length : FOUND)));
+        this.with(rgba, true, at => this.check(this.c.web_draw(at, lamps ? lamps.length : FOUND, Number(quick))));
     }
 }
 

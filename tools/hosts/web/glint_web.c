@@ -14,6 +14,9 @@
 /* Roundness of the blades unless --stop has a shape, as of glint overlay. */
 #define PHOTO_ROUNDNESS 0.2
 
+/* Microseconds since the picture before, of quick pictures. */
+enum { QUICK_US = 1000000 };
+
 /* Wavelengths of exact rays for "auto". */
 enum { EXACT_WAVES = 9 };
 
@@ -491,7 +494,7 @@ static bool is_row(const double row[WEB_COLUMNS])
            isfinite(row[WEB_TURN]);
 }
 
-int web_draw(uint8_t *pixels, int n)
+int web_draw(uint8_t *pixels, int n, int quick)
 {
     struct glint_engine_config cfg;
     struct glint_engine_report report;
@@ -514,6 +517,8 @@ int web_draw(uint8_t *pixels, int n)
         }
     glint_engine_configure(&cfg, &web.options);
     glint_engine_set_light(web.engine, &cfg.light);
-    glint_engine_elapsed(web.engine, 0);
+    glint_engine_elapsed(web.engine, quick ? QUICK_US : 0);
+    if (quick)
+        glint_engine_mark_cut(web.engine);
     return check(glint_engine_draw(web.engine, web.lamp, n, &image, &report));
 }

@@ -7,7 +7,7 @@
  *     web_model(data, bytes);  or  web_bake();
  *     web_size(width, height);
  *     n = web_find(pixels);                rows of lamps in web_lamps()
- *     web_draw(pixels, WEB_FOUND);
+ *     web_draw(pixels, WEB_FOUND, 0);
  *
  * One lens and one engine a module. Functions that return int return 0 on
  * failure, those that return pointers NULL; web_error() then has the reason.
@@ -92,8 +92,10 @@ WEB_EXPORT(web_lamps) double *web_lamps(void);
 WEB_EXPORT(web_doubtful) int web_doubtful(double xy[2]);
 
 /* Draws into PIXELS the flare of N rows of web_lamps(), 0 .. 1024, or of the
- * lamps as web_find() found them. Options that take effect with each frame may
- * have changed: strength, exposure, gain, starburst. */
-WEB_EXPORT(web_draw) int web_draw(uint8_t *pixels, int n);
+ * lamps as web_find() found them. QUICK, not 0: as a frame of a video, whose
+ * brightness is estimated and whose wide lamps have fewer points. Options that
+ * take effect with each frame may have changed: strength, exposure, gain,
+ * starburst. */
+WEB_EXPORT(web_draw) int web_draw(uint8_t *pixels, int n, int quick);
 
 #endif

@@ -7,7 +7,7 @@ import {drawSection, makeOptions} from "./widgets.js";
 const $ = id => document.getElementById(id);
 const MAX_PIXELS = 40e6;
 const MAX_BYTES = 200e6;
-const DRAFT_SIDE = 800; // pixels of the longer side of coarse pictures
+const DRAFT_SIDE = 640; // pixels of the longer side of coarse pictures
 const FULL_DELAY_MS = 250; // without a change, before the whole picture is drawn
 const NEW_LAMP_POWER = 2 ** 16; // that of glint overlay --light-at
 const FIRST_LENS = "nikon-zoom-short";
@@ -397,6 +397,13 @@ function makeLenses() {
     }
 }
 
+// Scrolls the list of lenses to the chosen one.
+function showChosen() {
+    const list = $("lenses"), button = [...list.children].find(one => one.dataset.name === values().lens);
+    if (button)
+        list.scrollTop = button.offsetTop - list.offsetTop;
+}
+
 function makeStyles() {
     for (const style of tables.styles) {
         const button = document.createElement("button");
@@ -406,6 +413,7 @@ function makeStyles() {
         button.onclick = () => {
             change({values: {...style.set}, style: style.name});
             options.forEach(option => option.show());
+            showChosen();
         };
         $("styles").append(button);
     }
@@ -417,6 +425,7 @@ function start(read) {
     makeLenses();
     options = makeOptions(tables.options, $("main-options"), $("more-options"), {
         value: name => values()[name], set: setOption, lens: () => lensOf(values().lens)});
+    showChosen();
     report("Open a photograph, or take the sample");
     document.body.dataset.loaded = Math.round(performance.now());
     render();

@@ -84,7 +84,7 @@ async function draw(message) {
         sized = key;
     }
     const rgba = picture.rgba.slice();
-    g.draw(rgba, lamps);
+    g.draw(rgba, lamps, draft);
     postMessage({kind: "drawn", id, rgba, width: picture.width, height: picture.height, found, doubtful, model,
         ms: performance.now() - started, clipped: clippedShare(rgba), memory: g.c.memory.buffer.byteLength}, [rgba.buffer]);
 }
