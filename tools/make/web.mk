@@ -17,7 +17,11 @@ web:
 wasm:
 	@$(MAKE) --no-print-directory CC='clang --target=wasm32-wasi' OUT=build/wasm32 LDFLAGS=-static \
 	        WITH_JPEG=no WITH_INIH=no WITH_JANSSON=no WITH_EXPAT=no $(wasm)
-.PHONY: web wasm
+# Pictures of the module are those of the program.
+check-web: build/glint
+	@tools/make/deps "the page's module" $(WEB_PACKAGES) nodejs
+	@XDG_CACHE_HOME=$(CURDIR)/build/cache GLINT=build/glint tests/hosts/web --all
+.PHONY: web wasm check-web
 web_o := $(patsubst %,$(OUT)/%.o,tools/hosts/web/glint_web tools/hosts/web/tables tools/glint/desk/styles web_lens)
 $(OUT)/web_lens.c: tools/hosts/web/lens_tables $(wildcard lenses/*.lens lenses/*/*.lens)
 	@mkdir -p $(@D)

@@ -24,10 +24,15 @@ let renderMark = 0;
 
 // ------------------------------------------------------------------- workers
 
+// Workers of a blob have the Content-Security-Policy of the page; those of a file have
+// that of the server, which may be none.
+const workerFile = URL.createObjectURL(new Blob([`import ${JSON.stringify(new URL("worker.js", location.href).href)};`],
+    {type: "text/javascript"}));
+
 // A worker that draws the latest state; requests in between are left out.
 class Painter {
     constructor(draft) {
-        this.worker = new Worker("worker.js", {type: "module"});
+        this.worker = new Worker(workerFile, {type: "module"});
         this.draft = draft;
         this.busy = this.waiting = false;
         this.worker.onmessage = ({data}) => this.take(data);
@@ -451,6 +456,7 @@ $("remove").onclick = () => removeLamp(selected);
 $("power").oninput = event => changeLamp(selected, {power: 2 ** event.target.value}, "power" + selected);
 $("search").oninput = showLenses;
 $("divider").oninput = setDivider;
+$("show").onchange = event => $("lamps").className = event.target.checked ? "" : "none";
 $("in").onclick = () => setZoom(zoom * 1.5);
 $("out").onclick = () => setZoom(zoom / 1.5);
 $("fit").onclick = () => setZoom(1);

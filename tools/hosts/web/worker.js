@@ -16,26 +16,26 @@ const LIGHT = ["strength", "exposure", "gain", "starburst"];
 // Options that choose the model.
 const LENS = ["lens", "coating", "zoom", "focus", "f-number", "wavelengths", "sensor", "quality", "error"];
 
-const glint = WebAssembly.compileStreaming(fetch("glint.wasm")).catch(async () =>
-    WebAssembly.compile(await (await fetch("glint.wasm")).arrayBuffer())).then(module => Glint.make(module));
+const urlOf = path => new URL(path, import.meta.url);
+const glint = fetch(urlOf("glint.wasm")).then(answer => answer.arrayBuffer()).then(bytes => Glint.make(bytes));
 let picture = null;
 let opened = "", sized = "", last = {name: ""};
 let found = [], doubtful = null;
 
 async function keptModel(name) {
     try {
-        const kept = await caches.match(new URL("models/" + name, location.href));
+        const kept = await caches.match(urlOf("models/" + name));
         if (kept)
             return new Uint8Array(await kept.arrayBuffer());
     } catch { /* no storage: as if nothing was kept */ }
-    const answer = await fetch("models/" + name).catch(() => null);
+    const answer = await fetch(urlOf("models/" + name)).catch(() => null);
     return answer && answer.ok ? new Uint8Array(await answer.arrayBuffer()) : null;
 }
 
 async function keepModel(name, bytes) {
     try {
         const cache = await caches.open("glint-models");
-        await cache.put(new URL("models/" + name, location.href), new Response(bytes));
+        await cache.put(urlOf("models/" + name), new Response(bytes));
     } catch { /* baked again on the next visit */ }
 }
 
