@@ -16,7 +16,6 @@
 #include "glint/setup.h"
 #include "glint/status.h"
 #include "glint/trace.h"
-#include "glint/traced_bundle.h"
 #include "glint/view.h"
 #include "glint/workers.h"
 

@@ -45,6 +45,20 @@ struct glint_bundle {
                            linear BT.709, -4 .. 4 */
 };
 
+/* Computes the vertices of bundles while they are binned, in place of vertices
+ * that are stored. Bundles are numbered in the order in which they were added.
+ * Both functions are called by any worker, with its number, and return the same
+ * each time. */
+struct glint_flare_rays {
+    /* Begins bundle I; returns 0 if no part of it lies in the pixel rows Y0 ..
+     * Y1 - 1. */
+    int (*open)(void *ctx, int worker, int i, int y0, int y1);
+    /* Sets ROW to row J, 0 .. n_cells, of the vertices of the bundle that
+     * WORKER has opened; rows come in this order. */
+    void (*row)(void *ctx, int worker, int j, struct glint_vertex *row);
+    void *ctx;
+};
+
 #ifdef __cplusplus
 }
 #endif

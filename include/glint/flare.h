@@ -287,6 +287,18 @@ enum glint_status glint_flare_set_stop(struct glint_flare *flare,
 /* Forgets all bundles. */
 void glint_flare_begin(struct glint_flare *flare);
 
+/* Does as glint_flare_begin(). RAYS, kept, gives the vertices of all bundles
+ * to come, for which glint_flare_add() takes no vertices and returns NULL. */
+void glint_flare_begin_rays(struct glint_flare *flare,
+                            const struct glint_flare_rays *rays);
+
+/* Limits what glint_flare_bin() and glint_flare_draw() do to rows Y0 .. Y1 - 1
+ * of pixels, from now to the next begin or plan: 0 <= Y0 < Y1 <= height, Y0 a
+ * multiple of the side of a tile, and Y1 one or the height. A picture that is
+ * drawn part by part gets the same bits, with less memory. Bundles may be
+ * binned again after each call. Not at half resolution. */
+void glint_flare_set_rows(struct glint_flare *flare, int y0, int y1);
+
 /* Takes BUNDLE in and returns its vertices, which the caller fills before
  * glint_flare_bin(): row by row, [n_cells + 1][n_cells + 1]. Returns NULL if
  * there is no room; the bundle is then counted and left out. */

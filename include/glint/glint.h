@@ -47,7 +47,6 @@
 #include "glint/setup.h"
 #include "glint/status.h"
 #include "glint/trace.h"
-#include "glint/traced_bundle.h"
 #include "glint/transfer.h"
 #include "glint/view.h"
 #include "glint/workers.h"

@@ -177,7 +177,8 @@ void glint_front_free(struct glint_front_dirt *dirt);
 void glint_setup_weigh(struct glint_setup *setup);
 
 /* Gives SETUP, made from LENS, the sets of wavelengths from which each ghost
- * chooses. */
+ * chooses. LENS is NULL if SETUP is made from a lens table, for at least three
+ * different wavelengths. */
 void glint_setup_spread(struct glint_setup *setup,
                         const struct glint_lens *lens);
 

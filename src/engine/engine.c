@@ -236,8 +236,10 @@ static enum glint_status make(struct glint_engine *e,
         status = GLINT_E_MEMORY;
     if (status == GLINT_OK)
         status = open_frame(e, c);
-    /* by hand the response is only for glint_engine_exposed() */
-    if (status == GLINT_OK && (!c->light.by_hand || c->cache))
+    /* By hand the response is only for glint_engine_exposed(). Without a model
+     * it is measured when a video needs it. */
+    if (status == GLINT_OK && e->paint.frame.lens &&
+        (!c->light.by_hand || c->cache))
         status = glint_response_obtain(&e->paint.frame, c->arena_bytes,
                                        c->cache, &e->expose.response);
     if (status == GLINT_OK)

@@ -119,18 +119,21 @@ enum glint_status glint_engine_expose(struct glint_engine *engine,
     const bool is_new =
         find->is_cut || (find->is_searched && elapsed_us > 0 &&
                          glint_lamp_tracker_was_cut(find->detector.tracks));
+    const bool is_drawn = elapsed_us == 0 && f->budget.ms <= 0 && x->by_drawing;
+    /* Stands for the response where the flare is drawn: that replaces it. */
+    const struct glint_response any = {.n = 1};
     enum glint_status status = GLINT_OK;
 
     if (!glint_engine_fits(engine, image, n))
         return GLINT_E_ARGUMENT;
-    if (!x->light.by_hand && x->response.n == 0)
+    if (!x->light.by_hand && x->response.n == 0 && n > 0 && !is_drawn)
         status = glint_response_measure(f, 0, &x->response);
     if (status != GLINT_OK)
         return status;
-    glint_strength_expose(&x->strength, &x->response, &all,
-                          is_new ? 0 : elapsed_us);
+    glint_strength_expose(&x->strength, x->response.n ? &x->response : &any,
+                          &all, is_new ? 0 : elapsed_us);
     glint_engine_plain(engine, lamps, n);
-    if (elapsed_us == 0 && f->budget.ms <= 0 && x->by_drawing)
+    if (is_drawn)
         expose_as_drawn(engine, n, image, white);
     set_excess(x, lamps, n, white, is_new ? 0 : elapsed_us);
     glint_engine_choose(engine, engine->paint.parts,

@@ -164,8 +164,11 @@ static void emit_bundle(struct glint_flare *f, int bundle, int worker,
                                       .bundle = &f->bundle[bundle],
                                       .number = (uint32_t)bundle,
                                       .stop = &f->cfg.stop,
+                                      .rays = f->rays,
+                                      .worker = worker,
                                       .width = f->width,
-                                      .height = f->height,
+                                      .top = f->bins.region.y0,
+                                      .height = f->bins.region.y1,
                                       .limit_q8 = own->limit_q8,
                                       .steps = f->cfg.irradiance_steps,
                                       .rows = w->rows,
@@ -184,7 +187,9 @@ static void emit_bundle(struct glint_flare *f, int bundle, int worker,
         ghost.flux = f->planned[bundle].flux;
         ghost.irradiance = f->planned[bundle].irradiance;
     }
-    glint_ghost_edges_emit(&ghost);
+    if (!f->rays ||
+        f->rays->open(f->rays->ctx, worker, bundle, ghost.top, ghost.height))
+        glint_ghost_edges_emit(&ghost);
     slot->first = -1;
     slot->n = ghost.n_edges;
     slot->n_dropped = ghost.n_dropped;

@@ -25,7 +25,8 @@ void glint_flare_draw_over(struct glint_flare *flare,
     struct draw alone = {flare, &tiles, under};
     struct glint_pass pass[GLINT_MAX_PASSES];
 
-    glint_flare_forget(flare);
+    if (flare->bins.region.y0 == 0)
+        glint_flare_forget(flare);
     tiles.blend = under->blend;
     for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
         flare->worker[i].tile.blend = &under->rows[i];

@@ -39,7 +39,7 @@ static void *begin_row(const void *self, struct glint_box row, int worker)
     struct glint_edge_sums *s = &w->sums;
 
     w->flare = f;
-    w->at_tile = (row.y0 >> log2) * f->bins.tiles_x;
+    w->at_tile = ((row.y0 - f->bins.region.y0) >> log2) * f->bins.tiles_x;
     s->shade = f->cfg.stop.shade;
     s->patch = s->shade ? s->shade->method->draw : NULL;
     s->scratch = w->rows; /* of no use while pixels are drawn */

@@ -160,16 +160,36 @@ void glint_flare_begin(struct glint_flare *flare)
     set_size(flare, 0);
     flare->n_bundles = flare->n_vertices = flare->n_drawn = 0;
     flare->plan.frame = NULL;
+    flare->rays = NULL;
     flare->reusable = GLINT_REUSABLE_NOT;
     for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
         flare->worker[i].plan->n_rays = 0;
     flare->stats = (struct glint_flare_stats){0};
 }
 
+void glint_flare_begin_rays(struct glint_flare *flare,
+                            const struct glint_flare_rays *rays)
+{
+    glint_flare_begin(flare);
+    flare->rays = rays;
+}
+
+void glint_flare_set_rows(struct glint_flare *flare, int y0, int y1)
+{
+    struct glint_flare_stats *s = &flare->stats;
+
+    glint_bins_init(&flare->bins, (struct glint_box){0, y0, flare->width, y1},
+                    flare->cfg.tile_log2, flare->bins.start, flare->bins.ref);
+    s->bundles = s->primitives = s->refs = 0;
+    s->need_primitives = s->need_refs = 0;
+    s->dropped_cells = s->held_cells = 0;
+}
+
 struct glint_vertex *glint_flare_add(struct glint_flare *flare,
                                      const struct glint_bundle *bundle)
 {
-    const int n = (bundle->n_cells + 1) * (bundle->n_cells + 1);
+    const int n =
+        flare->rays ? 0 : (bundle->n_cells + 1) * (bundle->n_cells + 1);
     struct glint_flare_stats *s = &flare->stats;
     struct glint_vertex *vertices;
 
@@ -186,7 +206,7 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
     flare->slot[flare->n_bundles++] =
         (struct glint_bundle_slot){.first_vertex = flare->n_vertices};
     flare->n_vertices += n;
-    return vertices;
+    return flare->rays ? NULL : vertices;
 }
 
 /* -------------------------------------------------------------------- plan */
@@ -420,7 +440,8 @@ void glint_flare_draw(struct glint_flare *flare,
     struct glint_pass pass[1];
     struct glint_tiles tiles;
 
-    glint_flare_forget(flare);
+    if (flare->bins.region.y0 == 0)
+        glint_flare_forget(flare);
     if (flare->stats.primitives == 0)
         return; /* the bins may be those of an earlier frame */
     tiles = glint_flare_start(flare, image);

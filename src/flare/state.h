@@ -44,6 +44,8 @@ struct glint_flare {
     int half, width, height;
     const struct glint_half *quads; /* set only at half resolution */
     int n_bundles, n_vertices;      /* bundles and vertices taken in so far */
+    /* What computes vertices; NULL: they are stored, or planned. */
+    const struct glint_flare_rays *rays;
     struct glint_plan plan; /* plan for a lens, unless plan.frame is NULL */
     struct glint_bundle_plan *planned; /* plan of each bundle planned */
     struct glint_real flux, brightest; /* flux of all bundles planned, and the

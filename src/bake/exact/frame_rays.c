@@ -1,113 +1,302 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws a frame of exact rays: plans, traces and adds bundle by bundle. */
+ * Draws a frame of exact rays.
+ *
+ * Directions of lamps, and of the points of wide lamps, are gathered in
+ * patches; each ghost has a field of rays over each patch (ray_field.h). Every
+ * field takes as many wavelengths as its colours lie apart, and one that no
+ * pixel shows is skipped. Vertices are computed from the fields while edges are
+ * made of them. Memory is bounded: a field that finds no room is traced again
+ * whenever it is needed, and a picture whose edges find none is drawn in parts,
+ * from top to bottom. Neither changes a bit. */
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "bake/exact/ray_field.h"
 #include "engine/frame/block.h"
 #include "engine/frame/frame_parts.h"
+#include "engine/setup/degrees.h"
 
-/* Most bundles of a frame, and most vertices, 0.94 GB. */
-enum { MAX_BUNDLES = 65535, MAX_VERTICES = 1 << 25 };
+/* Most bundles of a frame. */
+enum { MAX_BUNDLES = 1 << 20 };
 
-/* Most bundles that are planned, 2.3 GB, before most turn out to miss the
- * picture. */
-enum { MAX_PLANNED = 1 << 24 };
+/* Most memory of fields and of edges, each, unless the frame has a lower
+ * limit. */
+#define MOST_BYTES ((size_t)128 << 20)
+
+/* Largest span of a patch, degrees: positions are then off by less than 0.1
+ * pixel. */
+#define SPAN_DEG 1.0
 
 /* Parts of the work between which progress is told, and jobs of one at least.
  */
-enum { PARTS = 100, LEAST_PART = 16 };
+enum { PARTS = 100, LEAST_PART = 4 };
 
-/* Share of planning in the work of a frame, about. */
-#define PLAN_SHARE 0.5
+/* Shares of looking and of tracing in the work of a frame, about. */
+#define LOOK_SHARE  0.4
+#define TRACE_SHARE 0.7
 
-/* --------------------------------------------------------------------- plan */
+/* A lamp, in the patch that holds its direction. */
+struct point {
+    const struct glint_lamp *lamp;
+    double at[2];
+    int patch;
+};
+
+/* Wavelengths that stand for all light. */
+struct wave_set {
+    int n;
+    double nm[GLINT_MAX_WAVELENGTHS];
+    const double *rgb[GLINT_MAX_WAVELENGTHS];
+    double unit_flux[GLINT_MAX_WAVELENGTHS];
+};
+
+/* The rays of one field, one direction and one wavelength. */
+struct ray_bundle {
+    int field, point, wave;
+    float low, high; /* range of pixel rows; low > high: not known yet */
+};
+
+/* Where a worker is. */
+struct at_work {
+    struct ray_place place;
+    struct ray_bundle *bundle;
+    float low, high;
+    int in_mem; /* field whose rays are in MEM, or -1 */
+    void *mem;  /* room for the largest field that is not kept */
+};
 
 struct traced {
-    struct glint_traced_bundle *bundle;
-    int n_bundles, max_bundles;
-    int n_dropped; /* number of bundles beyond what a frame may take */
-    /* Vertices of each traced bundle, in the flare's block. */
-    struct glint_vertex **vertices;
+    struct ray_field_config cfg;
+    struct wave_set set[GLINT_MAX_WAVE_SETS];
+    int n_sets;
+    struct point *point;
+    struct ray_patch *patch;
+    struct ray_field *field;
+    int *set_of; /* [fields]: index of its set; -1: no pixel shows the field */
+    void **mem;  /* [fields]: its rays; NULL: they are traced when needed */
+    struct ray_bundle *bundle;
+    struct at_work *worker;
+    struct glint_lamp *lamp; /* [n_points]: those that fields were found for */
+    double stop_mm;
+    int only_ghost;
+    int n_points, n_patches, n_fields, n_bundles, n_workers;
+    struct glint_flare_rays rays;
 };
 
 struct job {
     struct glint_frame *frame;
-    struct glint_traced_bundle_config cfg;
     int first; /* number of the first job of a part */
 };
 
+static struct traced *state_of(const struct glint_frame *f)
+{
+    return f->memory.traced;
+}
+
+/* Frees all but the fields. */
+static void forget_plan(struct traced *t)
+{
+    for (int i = 0; i < t->n_fields && t->mem; i++)
+        free(t->mem[i]);
+    for (int i = 0; i < t->n_workers && t->worker; i++)
+        free(t->worker[i].mem);
+    free(t->set_of);
+    free(t->mem);
+    free(t->bundle);
+    free(t->worker);
+    t->set_of = NULL;
+    t->mem = NULL;
+    t->bundle = NULL;
+    t->worker = NULL;
+    t->n_bundles = t->n_workers = 0;
+}
+
+static void forget(struct traced *t)
+{
+    forget_plan(t);
+    free(t->lamp);
+    free(t->point);
+    free(t->patch);
+    free(t->field);
+    t->lamp = NULL;
+    t->point = NULL;
+    t->patch = NULL;
+    t->field = NULL;
+    t->n_points = t->n_patches = t->n_fields = 0;
+}
+
 /* Runs N jobs, in parts after each of which progress is told: FROM and TO,
  * shares of the frame's work. */
-static void run(struct job *job, int n, glint_job_fn *each, double from,
+static void run(struct glint_frame *f, int n, glint_job_fn *each, double from,
                 double to)
 {
-    const struct glint_frame *f = job->frame;
+    struct job job = {f, 0};
     const int part = f->progress ? larger(n / PARTS, LEAST_PART) : n;
 
-    for (job->first = 0; job->first < n; job->first += part) {
-        const int left = n - job->first;
-
-        glint_workers_run(f->cfg.workers, smaller(part, left), each, job);
+    for (job.first = 0; job.first < n; job.first += part) {
+        glint_workers_run(f->cfg.workers, smaller(part, n - job.first), each,
+                          &job);
         if (f->progress)
             f->progress(f->progress_ctx,
-                        from + (to - from) * smaller(job->first + part, n) / n);
+                        from + (to - from) * smaller(job.first + part, n) / n);
     }
 }
 
-static struct glint_traced_bundle_config
-traced_config(const struct glint_frame *f, double scale)
+/* -------------------------------------------------------------- wavelengths */
+
+static void add_wave(struct wave_set *set, double nm, const double *rgb,
+                     double unit_flux)
 {
-    return (struct glint_traced_bundle_config){
-        f->setup,           f->view, scale, f->dials.fineness,
-        f->picture.uniform, f->tints};
+    int i = set->n++;
+
+    for (; i > 0 && set->nm[i - 1] > nm; i--) {
+        set->nm[i] = set->nm[i - 1];
+        set->rgb[i] = set->rgb[i - 1];
+        set->unit_flux[i] = set->unit_flux[i - 1];
+    }
+    set->nm[i] = nm;
+    set->rgb[i] = rgb;
+    set->unit_flux[i] = unit_flux;
 }
 
-/* Plans all wavelengths of one ghost and lamp. */
-static void plan_job(void *ctx, int job, int worker)
+/* Sets the wavelengths, sorted: the setup's sets, or its only list. */
+static void set_waves(struct traced *t, const struct glint_setup *s,
+                      struct ray_field_config *cfg)
 {
-    struct job *j = ctx;
-    const struct traced *const t = j->frame->memory.traced;
-    const int waves = j->frame->setup->n_wavelengths, middle = waves / 2;
-    struct glint_traced_bundle *traced = &t->bundle[(j->first + job) * waves];
+    const struct glint_set_wave *w = s->set_wave;
+    const struct wave_set *widest;
 
-    (void)worker;
-    glint_traced_bundle_plan(&j->cfg, &traced[middle], NULL);
-    for (int wave = 0; wave < waves; wave++)
-        if (wave != middle)
-            glint_traced_bundle_plan(&j->cfg, &traced[wave], &traced[middle]);
+    memset(t->set, 0, sizeof t->set);
+    t->n_sets = larger(s->n_sets, 1);
+    for (int k = 0; k < s->n_sets; w += s->set_size[k++])
+        for (int i = 0; i < s->set_size[k]; i++)
+            add_wave(&t->set[k], w[i].nm, w[i].rgb, w[i].unit_flux);
+    for (int i = 0; i < s->n_wavelengths && s->n_sets == 0; i++)
+        add_wave(&t->set[0], s->wavelength_nm[i], s->rgb[i], s->unit_flux[i]);
+    widest = &t->set[t->n_sets - 1];
+    cfg->wave_nm[0] = widest->nm[0];
+    cfg->wave_nm[1] = widest->nm[widest->n / 2];
+    cfg->wave_nm[2] = widest->nm[widest->n - 1];
 }
 
-/* Makes room for N bundles to be planned, at most MAX_PLANNED. */
-static enum glint_status reserve_feeds(struct glint_frame *f, uint64_t n)
+static double span_of(const struct wave_set *set)
 {
-    struct traced *const t = f->memory.traced;
-    struct glint_traced_bundle *traced;
-    struct glint_vertex **vertices;
+    const double a = set->nm[0], b = set->nm[set->n - 1];
 
-    if (n <= (uint64_t)t->max_bundles)
-        return GLINT_OK;
-    if (n > MAX_PLANNED)
-        return GLINT_E_MEMORY;
-    traced = realloc(t->bundle, (size_t)n * sizeof *traced);
-    if (!traced)
-        return GLINT_E_MEMORY;
-    t->bundle = traced;
-    vertices = realloc(t->vertices, (size_t)n * sizeof *vertices);
-    if (!vertices)
-        return GLINT_E_MEMORY;
-    t->vertices = vertices;
-    t->max_bundles = (int)n;
-    return GLINT_OK;
+    return 1 / (a * a) - 1 / (b * b);
 }
 
-static bool begin(struct glint_frame *f)
+/* Returns the smallest set whose steps from wavelength to wavelength do not
+ * show in FIELD, a point of which gives LIGHT, display white in the mean: each
+ * is below STEP or less than APART pixels wide. Compare wave_sets.c. */
+static int choose_set(const struct glint_frame *f,
+                      const struct ray_field *field, double light, double step)
 {
-    if (!f->memory.traced)
-        f->memory.traced = calloc(1, sizeof(struct traced));
-    return f->memory.traced;
+    const struct traced *t = state_of(f);
+    const double apart =
+                     field->apart_mm * f->view.width / f->view.sensor_width_mm,
+                 most = f->dials.dispersion_q8 / 256.0;
+    int k = 0;
+
+    for (; k < t->n_sets - 1 && f->dials.dispersion_q8 > 0; k++)
+        if (light / (2 * t->set[k].n) < step ||
+            apart * span_of(&t->set[k]) <=
+                most * (t->set[k].n - 1) * span_of(&t->set[0]))
+            break;
+    return k;
 }
+
+/* ------------------------------------------------------------------ patches */
+
+static int by_angle(const void *a, const void *b)
+{
+    const struct point *p = a, *q = b;
+
+    return (p->at[0] > q->at[0]) - (p->at[0] < q->at[0]);
+}
+
+/* Puts points FIRST .. LAST - 1 into a new patch. */
+static void close_patch(struct traced *t, int first, int last, double phi_deg)
+{
+    struct ray_patch *p = &t->patch[t->n_patches];
+    double low[2], high[2];
+
+    for (int k = 0; k < 2; k++) {
+        low[k] = high[k] = t->point[first].at[k];
+        for (int i = first + 1; i < last; i++) {
+            low[k] = fmin(low[k], t->point[i].at[k]);
+            high[k] = fmax(high[k], t->point[i].at[k]);
+        }
+        p->middle[k] = 0.5 * (low[k] + high[k]);
+        p->half[k] = 0.5 * (high[k] - low[k]);
+    }
+    /* Both components or none, so that cross terms are known. */
+    if (!t->cfg.round && (p->half[0] > 0 || p->half[1] > 0))
+        for (int k = 0; k < 2; k++)
+            p->half[k] = fmax(p->half[k], 1e-4);
+    p->phi_deg = phi_deg;
+    for (int i = first; i < last; i++)
+        t->point[i].patch = t->n_patches;
+    t->n_patches++;
+}
+
+/* Sorts the points of a round lens by their angle, into patches. */
+static void gather_round(struct traced *t)
+{
+    int first = 0;
+
+    for (int i = 0; i < t->n_points; i++) {
+        t->point[i].at[0] = t->point[i].lamp->theta_deg;
+        t->point[i].at[1] = 0;
+    }
+    qsort(t->point, (size_t)t->n_points, sizeof *t->point, by_angle);
+    for (int i = 1; i <= t->n_points; i++)
+        if (i == t->n_points ||
+            t->point[i].at[0] - t->point[first].at[0] > SPAN_DEG) {
+            close_patch(t, first, i, 0);
+            first = i;
+        }
+}
+
+/* Sets the coordinates of P in the frame of azimuth PHI_DEG. */
+static void set_at(struct point *p, double phi_deg)
+{
+    const double sine = glint_sin_deg(p->lamp->theta_deg);
+
+    p->at[0] = sine * glint_cos_deg(p->lamp->phi_deg - phi_deg);
+    p->at[1] = sine * glint_sin_deg(p->lamp->phi_deg - phi_deg);
+}
+
+/* Puts each point that is in no patch yet, and all those near it, into one. */
+static void gather_others(struct traced *t)
+{
+    const double near = 0.5 * SPAN_DEG * GLINT_PI / 180;
+    int last;
+
+    for (int first = 0; first < t->n_points; first = last) {
+        const double phi_deg = t->point[first].lamp->phi_deg;
+        struct point *seed = &t->point[first];
+
+        set_at(seed, phi_deg);
+        last = first + 1;
+        for (int i = first + 1; i < t->n_points; i++) {
+            struct point p = t->point[i];
+
+            set_at(&p, phi_deg);
+            if (fabs(p.at[0] - seed->at[0]) > near ||
+                fabs(p.at[1] - seed->at[1]) > near)
+                continue;
+            t->point[i] = t->point[last];
+            t->point[last++] = p;
+        }
+        close_patch(t, first, last, phi_deg);
+    }
+}
+
+/* --------------------------------------------------------------------- plan */
 
 /* Returns whether ghost or part GHOST is to be drawn. */
 static bool is_wanted(const struct glint_frame *f, int ghost)
@@ -117,78 +306,262 @@ static bool is_wanted(const struct glint_frame *f, int ghost)
            (!f->tints || f->tints[ghost].gain.mantissa > 0);
 }
 
-/* Plans all bundles, and keeps those that reach the picture. */
-static enum glint_status plan(struct glint_frame *f,
-                              const struct glint_lamp *lamps, int n_lamps)
+static void look_job(void *ctx, int job, int worker)
 {
-    struct traced *const t = f->memory.traced;
-    const struct glint_setup *s = f->setup;
-    struct job job = {f, traced_config(f, 1), 0};
-    const enum glint_status status =
-        reserve_feeds(f, (uint64_t)n_lamps * (uint64_t)s->n_ghosts *
-                             (uint64_t)s->n_wavelengths);
-    int n = 0, kept = 0;
+    const struct job *j = ctx;
+    struct traced *t = state_of(j->frame);
 
-    t->n_bundles = 0;
-    if (status != GLINT_OK || !t->bundle)
-        return status;
-    for (int lamp = 0; lamp < n_lamps; lamp++)
-        for (int ghost = 0; ghost < s->n_ghosts; ghost++)
-            for (int wave = 0; wave < s->n_wavelengths; wave++)
-                if (is_wanted(f, ghost))
-                    t->bundle[n++] =
-                        (struct glint_traced_bundle){.lamp = &lamps[lamp],
-                                                     .ghost = ghost,
-                                                     .wavelength = wave};
-    run(&job, n / s->n_wavelengths, plan_job, 0, PLAN_SHARE);
-    for (int i = 0; i < n; i++)
-        if (t->bundle[i].n_cells > 0)
-            t->bundle[kept++] = t->bundle[i];
-    t->n_bundles = kept;
-    return GLINT_OK;
+    (void)worker;
+    glint_ray_field_look(&t->cfg, &t->field[j->first + job]);
 }
 
-/* Returns the flux that a traced bundle's pupil sends, display white times
- * pixels at scale 1. */
-static double flux_of(const struct glint_frame *f,
-                      const struct glint_traced_bundle *traced)
+/* Returns whether the box of FIELD on the sensor, turned by PHI_DEG, meets the
+ * picture. */
+static bool in_view(const struct glint_frame *f, const struct ray_field *field,
+                    double phi_deg)
 {
-    const struct glint_pupil *p = &traced->pupil;
-    const double area = (p->x1_mm - p->x0_mm) * glint_pupil_height(p);
-    const double gain =
-        f->tints ? glint_real_value(f->tints[traced->ghost].gain) : 1;
+    const double *s = field->pupil.sensor_mm;
+    const double half_w = 0.5 * f->view.sensor_width_mm;
+    const double half_h = half_w * f->view.height / f->view.width;
+    const double c = glint_cos_deg(phi_deg), d = glint_sin_deg(phi_deg);
+    const double x = 0.5 * (s[0] + s[1]), y = 0.5 * (s[2] + s[3]);
+    const double w = 0.5 * (s[1] - s[0]), h = 0.5 * (s[3] - s[2]);
 
-    return traced->lamp->power * p->energy * area * gain /
-           f->setup->unit_flux[traced->wavelength];
+    return fabs(x * c - y * d) - fabs(c) * w - fabs(d) * h < half_w &&
+           fabs(x * d + y * c) - fabs(d) * w - fabs(c) * h < half_h;
 }
 
-/* Returns the size in pixels of the box that the bundle's light falls in. */
+/* Returns the azimuth by which FIELD is turned for point P. */
+static double turn_of(const struct traced *t, const struct point *p)
+{
+    return t->cfg.round ? p->lamp->phi_deg : t->patch[p->patch].phi_deg;
+}
+
+/* Returns the light of P, largest channel, per mm^2 of the pupil's flux. */
+static double light_of(const struct glint_frame *f, const struct point *p,
+                       int ghost)
+{
+    const struct traced *t = state_of(f);
+    const double gain = f->tints ? glint_real_value(f->tints[ghost].gain) : 1;
+
+    return p->lamp->power * glint_largest_channel(p->lamp->rgb) * gain *
+           glint_cos_deg(p->lamp->theta_deg) / t->set[0].unit_flux[0];
+}
+
+/* Returns the size in pixels of the box that the light of FIELD falls in. */
 static double pixels_of(const struct glint_frame *f,
-                        const struct glint_traced_bundle *traced)
+                        const struct ray_field *field)
 {
-    const double *s = traced->pupil.sensor_mm;
+    const double *s = field->pupil.sensor_mm;
     const double pixel = f->view.sensor_width_mm / f->view.width;
 
     return (s[1] - s[0]) * (s[3] - s[2]) / (pixel * pixel) + 1;
+}
+
+/* Returns the flux of FIELD if all of its pupil were open, mm^2. */
+static double box_flux(const struct ray_field *field)
+{
+    const struct glint_pupil *p = &field->pupil;
+
+    return (p->x1_mm - p->x0_mm) * glint_pupil_height(p) * field->energy_unit;
+}
+
+/* Sets the light that all points of FIELD give, and the most that one does. */
+static void sum_light(const struct glint_frame *f, int field, double *all,
+                      double *most)
+{
+    const struct traced *t = state_of(f);
+    const struct ray_field *r = &t->field[field];
+
+    *all = *most = 0;
+    for (int i = 0; i < t->n_points; i++)
+        if (&t->patch[t->point[i].patch] == r->patch) {
+            const double light = light_of(f, &t->point[i], r->ghost);
+
+            *all += light;
+            *most = fmax(*most, light);
+        }
+}
+
+static bool is_same_view(const struct glint_view *a, const struct glint_view *b)
+{
+    return a->width == b->width && a->height == b->height &&
+           a->sensor_width_mm == b->sensor_width_mm;
+}
+
+/* Returns whether the fields of CFG and LAMPS are there. */
+static bool is_looked(const struct glint_frame *f,
+                      const struct ray_field_config *cfg,
+                      const struct glint_lamp *lamps, int n)
+{
+    const struct traced *t = state_of(f);
+    const struct ray_field_config *had = &t->cfg;
+    bool same = t->n_points == n && n > 0 && !f->tints &&
+                had->setup == cfg->setup && had->max_cells == cfg->max_cells &&
+                had->uniform == cfg->uniform &&
+                is_same_view(&had->view, &cfg->view) &&
+                t->only_ghost == f->only_ghost &&
+                t->stop_mm == cfg->setup->optics.stop_radius_mm;
+
+    for (int k = 0; k < 3; k++)
+        same = same && had->wave_nm[k] == cfg->wave_nm[k];
+    for (int i = 0; i < n && same; i++)
+        same = t->lamp[i].theta_deg == lamps[i].theta_deg &&
+               t->lamp[i].phi_deg == lamps[i].phi_deg;
+    return same;
+}
+
+/* Gathers LAMPS in patches. */
+static enum glint_status gather(struct traced *t,
+                                const struct glint_lamp *lamps, int n)
+{
+    const size_t size = (size_t)n;
+
+    t->lamp = calloc(size, sizeof *t->lamp);
+    t->point = calloc(size, sizeof *t->point);
+    t->patch = calloc(size, sizeof *t->patch);
+    if (!t->lamp || !t->point || !t->patch)
+        return GLINT_E_MEMORY;
+    memcpy(t->lamp, lamps, size * sizeof *t->lamp);
+    t->n_points = n;
+    for (int i = 0; i < n; i++)
+        t->point[i].lamp = &t->lamp[i];
+    if (t->cfg.round)
+        gather_round(t);
+    else
+        gather_others(t);
+    return GLINT_OK;
+}
+
+/* Finds the fields of LAMPS, unless they are those of the last frame. */
+static enum glint_status look(struct glint_frame *f,
+                              const struct glint_lamp *lamps, int n)
+{
+    struct traced *const t = state_of(f);
+    const struct glint_setup *s = f->setup;
+    struct ray_field_config cfg = {.setup = s,
+                                   .view = f->view,
+                                   .round =
+                                       glint_prescription_is_round(s->lens),
+                                   .max_cells = f->dials.fineness,
+                                   .uniform = f->picture.uniform};
+    enum glint_status status;
+    int kept = 0;
+
+    set_waves(t, s, &cfg);
+    if (is_looked(f, &cfg, lamps, n)) {
+        memcpy(t->lamp, lamps, (size_t)n * sizeof *t->lamp);
+        forget_plan(t);
+        return GLINT_OK;
+    }
+    forget(t);
+    t->cfg = cfg;
+    t->only_ghost = f->only_ghost;
+    t->stop_mm = s->optics.stop_radius_mm;
+    if (n == 0)
+        return GLINT_OK;
+    status = gather(t, lamps, n);
+    if (status != GLINT_OK)
+        return status;
+    if ((size_t)t->n_patches * (size_t)s->n_ghosts > INT_MAX / 2)
+        return GLINT_E_MEMORY;
+    t->field = calloc((size_t)t->n_patches * (size_t)s->n_ghosts + 1,
+                      sizeof *t->field);
+    if (!t->field)
+        return GLINT_E_MEMORY;
+    for (int patch = 0; patch < t->n_patches; patch++)
+        for (int ghost = 0; ghost < s->n_ghosts; ghost++)
+            if (is_wanted(f, ghost))
+                t->field[t->n_fields++] = (struct ray_field){
+                    .ghost = ghost, .patch = &t->patch[patch]};
+    run(f, t->n_fields, look_job, 0, LOOK_SHARE);
+    for (int i = 0; i < t->n_fields; i++)
+        if (t->field[i].n_cells > 0)
+            t->field[kept++] = t->field[i];
+    t->n_fields = kept;
+    return GLINT_OK;
+}
+
+/* Skips ghosts that no pixel shows: by the most light that all points may give
+ * a pixel together. */
+static enum glint_status skip_faint(struct glint_frame *f, double scale,
+                                    double faintest)
+{
+    struct traced *const t = state_of(f);
+    const double pixel = f->view.sensor_width_mm / f->view.width;
+    double *peak;
+
+    if (!(faintest > 0))
+        return GLINT_OK;
+    peak = calloc((size_t)f->setup->n_ghosts, sizeof *peak);
+    if (!peak)
+        return GLINT_E_MEMORY;
+    for (int i = 0; i < t->n_fields; i++) {
+        double all, most;
+
+        sum_light(f, i, &all, &most);
+        peak[t->field[i].ghost] +=
+            scale * all * t->field[i].peak_mm2 * pixel * pixel;
+    }
+    for (int i = 0; i < t->n_fields; i++)
+        if (peak[t->field[i].ghost] < faintest)
+            t->set_of[i] = -1;
+    free(peak);
+    return GLINT_OK;
+}
+
+/* Lists the bundles that reach the picture: of each field by wavelength. */
+static enum glint_status list_bundles(struct glint_frame *f)
+{
+    struct traced *const t = state_of(f);
+    size_t n = 0;
+
+    for (int pass = 0; pass < 2; pass++) {
+        n = 0;
+        for (int i = 0; i < t->n_fields; i++)
+            for (int w = 0; t->set_of[i] >= 0 && w < t->set[t->set_of[i]].n;
+                 w++)
+                for (int p = 0; p < t->n_points; p++) {
+                    if (&t->patch[t->point[p].patch] != t->field[i].patch ||
+                        !in_view(f, &t->field[i], turn_of(t, &t->point[p])))
+                        continue;
+                    if (pass)
+                        t->bundle[n] = (struct ray_bundle){i, p, w, 1, 0};
+                    n++;
+                }
+        if (n > MAX_BUNDLES)
+            return GLINT_E_MEMORY;
+        if (pass == 0)
+            t->bundle = malloc((n + 1) * sizeof *t->bundle);
+        if (!t->bundle)
+            return GLINT_E_MEMORY;
+    }
+    t->n_bundles = (int)n;
+    return GLINT_OK;
 }
 
 static enum glint_status set_scale(struct glint_frame *frame,
                                    const struct glint_lamp *lamps, int n_lamps,
                                    struct glint_frame_scale *scale)
 {
-    const enum glint_status status =
-        begin(frame) ? plan(frame, lamps, n_lamps) : GLINT_E_MEMORY;
-    const struct traced *const t = frame->memory.traced;
+    enum glint_status status = GLINT_OK;
     double brightest = 0, together = 0;
+    const struct traced *t;
 
     *scale = (struct glint_frame_scale){0, 0};
+    if (!frame->memory.traced)
+        frame->memory.traced = calloc(1, sizeof *t);
+    t = frame->memory.traced;
+    status = t ? look(frame, lamps, n_lamps) : GLINT_E_MEMORY;
     if (status != GLINT_OK)
         return status;
-    for (int i = 0; i < t->n_bundles; i++) {
-        const double flux = flux_of(frame, &t->bundle[i]);
+    for (int i = 0; i < t->n_fields; i++) {
+        double all, most;
 
-        brightest = fmax(brightest, flux / pixels_of(frame, &t->bundle[i]));
-        together += flux;
+        sum_light(frame, i, &all, &most);
+        brightest = fmax(brightest, most * t->field[i].flux /
+                                        pixels_of(frame, &t->field[i]));
+        together += all * box_flux(&t->field[i]) * t->set[0].n;
     }
     if (brightest > 0)
         *scale = glint_frame_scale_of((int)ceil(log2(brightest)),
@@ -196,166 +569,350 @@ static enum glint_status set_scale(struct glint_frame *frame,
     return GLINT_OK;
 }
 
-/* ------------------------------------------------------------------- memory */
+/* -------------------------------------------------------------------- trace */
 
-/* Moves the flare to a new block for the capacities needed so far, with its
- * vertices. */
-static enum glint_status regrow(struct glint_frame *f,
-                                const struct glint_traced_bundle_config *cfg)
+static size_t most_bytes(const struct glint_frame *f)
 {
-    struct traced *const t = f->memory.traced;
-    const size_t bytes = glint_flare_bytes(&f->cfg);
-    struct glint_flare *flare;
-    enum glint_status status;
-    void *mem, *const block = glint_block_take(bytes, &mem);
+    const size_t most = f->limits.most_bytes / 2;
 
-    if (!block)
-        return GLINT_E_MEMORY;
-    status = glint_flare_init(&flare, &f->cfg, block, bytes);
-    for (int i = 0; i < t->n_bundles && status == GLINT_OK; i++) {
-        const int nodes = t->bundle[i].n_cells + 1;
-        struct glint_bundle bundle;
-        struct glint_vertex *to;
-
-        glint_traced_bundle_make(cfg, &t->bundle[i], &bundle);
-        to = glint_flare_add(flare, &bundle);
-        if (t->vertices[i])
-            memcpy(to, t->vertices[i],
-                   (size_t)nodes * (size_t)nodes * sizeof *to);
-        t->vertices[i] = to;
-    }
-    free(f->memory.mem);
-    f->memory.mem = mem;
-    f->memory.block = block;
-    f->memory.bytes = bytes;
-    f->memory.flare = flare;
-    return status;
+    return most && most < MOST_BYTES ? most : MOST_BYTES;
 }
-
-/* -------------------------------------------------------------------- frame */
 
 static void trace_job(void *ctx, int job, int worker)
 {
-    struct job *j = ctx;
-    const struct traced *const t = j->frame->memory.traced;
+    const struct job *j = ctx;
+    struct traced *t = state_of(j->frame);
+    const int i = j->first + job;
 
     (void)worker;
-    job += j->first;
-    glint_traced_bundle_trace(&j->cfg, &t->bundle[job], t->vertices[job]);
+    if (t->mem[i])
+        glint_ray_field_trace(&t->cfg, &t->field[i], t->mem[i]);
 }
 
-/* Adds all bundles to the flare; makes room first if there is too little. */
-static enum glint_status
-add_bundles(struct glint_frame *f, const struct glint_traced_bundle_config *cfg)
+/* Takes memory for as many fields as have room, and for workers. */
+static enum glint_status hold_fields(struct glint_frame *f)
 {
-    struct traced *const t = f->memory.traced;
-    int vertices = 0;
+    struct traced *const t = state_of(f);
+    size_t left = most_bytes(f), largest = 0;
 
-    t->n_dropped = 0;
-    for (int i = 0; i < t->n_bundles; i++) {
-        const int n = t->bundle[i].n_cells + 1;
+    t->n_workers = glint_workers_count(f->cfg.workers);
+    t->worker = calloc((size_t)t->n_workers, sizeof *t->worker);
+    if (!t->worker)
+        return GLINT_E_MEMORY;
+    for (int i = 0; i < t->n_fields; i++) {
+        const size_t bytes = t->set_of[i] >= 0
+                                 ? glint_ray_field_bytes(&t->cfg, &t->field[i])
+                                 : 0;
 
-        if (i == MAX_BUNDLES || n * n > MAX_VERTICES - vertices) {
-            /* These are of the faintest lamps, if lamps come as they were found
-             * or merged. */
-            t->n_dropped = t->n_bundles - i;
-            t->n_bundles = i;
-            break;
-        }
-        t->vertices[i] = NULL;
-        vertices += n * n;
+        if (bytes == 0)
+            continue;
+        if (bytes <= left) {
+            t->mem[i] = malloc(bytes);
+            if (!t->mem[i])
+                return GLINT_E_MEMORY;
+            left -= bytes;
+        } else if (bytes > largest)
+            largest = bytes;
     }
-    if (!f->memory.block || t->n_bundles > f->cfg.max_bundles ||
-        vertices > f->cfg.max_vertices) {
-        f->cfg.max_bundles = larger(f->cfg.max_bundles, t->n_bundles);
-        f->cfg.max_vertices = larger(f->cfg.max_vertices, vertices);
-        return regrow(f, cfg);
-    }
-    glint_flare_begin(f->memory.flare);
-    for (int i = 0; i < t->n_bundles; i++) {
-        struct glint_bundle bundle;
-
-        glint_traced_bundle_make(cfg, &t->bundle[i], &bundle);
-        t->vertices[i] = glint_flare_add(f->memory.flare, &bundle);
+    for (int i = 0; i < t->n_workers; i++) {
+        t->worker[i].in_mem = -1;
+        t->worker[i].mem = largest ? malloc(largest) : NULL;
+        if (largest && !t->worker[i].mem)
+            return GLINT_E_MEMORY;
     }
     return GLINT_OK;
 }
 
-/* Bins, and repeats that with more room as long as something does not fit. */
-static enum glint_status bin(struct glint_frame *f,
-                             const struct glint_traced_bundle_config *cfg,
-                             struct glint_flare_stats *s)
+/* Plans a frame of LAMPS times SCALE for IMAGE, and traces its rays. */
+static enum glint_status plan(struct glint_frame *f,
+                              const struct glint_lamp *lamps, int n,
+                              double scale, const struct glint_image *image)
 {
-    for (;;) {
-        enum glint_status status;
+    struct traced *const t = state_of(f);
+    const double step =
+        glint_frame_codes_light(f, image, GLINT_FRAME_STEP_CODES);
+    enum glint_status status = look(f, lamps, n);
 
-        glint_flare_bin(f->memory.flare, s);
-        if (s->need_primitives <= f->cfg.max_primitives &&
-            s->need_refs <= f->cfg.max_refs)
-            return GLINT_OK;
-        f->cfg.max_primitives =
-            larger(f->cfg.max_primitives, s->need_primitives);
-        f->cfg.max_refs = larger(f->cfg.max_refs, s->need_refs);
-        status = regrow(f, cfg);
-        if (status != GLINT_OK)
-            return status;
+    if (status != GLINT_OK)
+        return status;
+    t->set_of = calloc((size_t)t->n_fields + 1, sizeof *t->set_of);
+    t->mem = calloc((size_t)t->n_fields + 1, sizeof *t->mem);
+    if (!t->set_of || !t->mem)
+        return GLINT_E_MEMORY;
+    status = skip_faint(f, scale,
+                        glint_frame_codes_light(f, image, f->dials.cull_codes));
+    if (status != GLINT_OK)
+        return status;
+    for (int i = 0; i < t->n_fields; i++) {
+        struct ray_field *r = &t->field[i];
+        double all, most;
+
+        if (t->set_of[i] < 0)
+            continue;
+        sum_light(f, i, &all, &most);
+        t->set_of[i] =
+            choose_set(f, r, scale * most * r->flux / pixels_of(f, r), step);
+        glint_ray_field_choose(r, t->set[t->set_of[i]].nm,
+                               t->set[t->set_of[i]].n);
+    }
+    status = list_bundles(f);
+    return status == GLINT_OK ? hold_fields(f) : status;
+}
+
+/* Begins bundle I: for struct glint_flare_rays. */
+static int open_bundle(void *ctx, int worker, int i, int y0, int y1)
+{
+    const struct glint_frame *f = ctx;
+    struct traced *t = state_of(f);
+    struct at_work *w = &t->worker[worker];
+    struct ray_bundle *b = &t->bundle[i];
+    const struct point *p = &t->point[b->point];
+    const void *mem = t->mem[b->field];
+
+    if (b->low <= b->high && (b->high < (float)y0 || b->low > (float)y1))
+        return 0;
+    if (!mem && w->in_mem != b->field) {
+        glint_ray_field_trace(&t->cfg, &t->field[b->field], w->mem);
+        w->in_mem = b->field;
+    }
+    w->bundle = b;
+    w->low = HUGE_VALF;
+    w->high = -HUGE_VALF;
+    glint_ray_place_set(&w->place, &t->field[b->field], mem ? mem : w->mem,
+                        p->at, t->set[t->set_of[b->field]].nm[b->wave],
+                        turn_of(t, p));
+    return 1;
+}
+
+static void row_of(void *ctx, int worker, int j, struct glint_vertex *row)
+{
+    const struct glint_frame *f = ctx;
+    struct traced *t = state_of(f);
+    struct at_work *w = &t->worker[worker];
+    const int n = w->place.field->n_cells;
+
+    glint_ray_place_row(&t->cfg, &w->place, j, row);
+    for (int i = 0; i <= n; i++)
+        if (row[i].energy_q16 >= 0) {
+            const float y = (float)row[i].y_q8 / 256;
+
+            w->low = y < w->low ? y : w->low;
+            w->high = y > w->high ? y : w->high;
+        }
+    if (j == n) { /* cells may reach a pixel farther than their corners */
+        w->bundle->low = w->low - 2;
+        w->bundle->high = w->high + 2;
     }
 }
 
+/* Fills BUNDLE from bundle B of the frame, whose light is multiplied by
+ * SCALE. */
+static void make_bundle(const struct glint_frame *f, const struct ray_bundle *b,
+                        double scale, struct glint_bundle *bundle)
+{
+    const struct traced *t = state_of(f);
+    const struct ray_field *r = &t->field[b->field];
+    const struct wave_set *set = &t->set[t->set_of[b->field]];
+    const struct glint_lamp *lamp = t->point[b->point].lamp;
+    const struct glint_pupil *p = &r->pupil;
+    const double n = r->n_cells;
+    const double area = (p->x1_mm - p->x0_mm) / n * (glint_pupil_height(p) / n);
+    double rgb[3], largest = 0, flux, mantissa;
+    int exponent = 0;
+
+    for (int c = 0; c < 3; c++) {
+        rgb[c] = set->rgb[b->wave][c] * lamp->rgb[c];
+        if (f->tints)
+            rgb[c] *= glint_tint_factor(&f->tints[r->ghost], c);
+        largest = fmax(largest, fabs(rgb[c]));
+    }
+    flux = largest * scale * lamp->power * glint_cos_deg(lamp->theta_deg) *
+           area * r->energy_unit / set->unit_flux[b->wave];
+    mantissa = flux > 0 && isfinite(flux) ? frexp(flux, &exponent) : 0;
+    bundle->n_cells = r->n_cells;
+    bundle->flux_q31 = (int32_t)floor(mantissa * 0x1p31);
+    bundle->flux_exponent = exponent;
+    for (int c = 0; c < 3; c++)
+        bundle->rgb_q14[c] =
+            largest > 0 ? (int32_t)lrint(rgb[c] / largest * 16384) : 0;
+}
+
 /* -------------------------------------------------------------------- frame */
+
+/* Takes a block for the capacities of F and adds all bundles to it. */
+static enum glint_status begin_flare(struct glint_frame *f, double scale)
+{
+    struct traced *const t = state_of(f);
+    const size_t bytes = glint_flare_bytes(&f->cfg);
+    enum glint_status status;
+
+    if (!f->memory.block || f->memory.bytes != bytes) {
+        free(f->memory.mem);
+        f->memory.bytes = 0;
+        f->memory.block = glint_block_take(bytes, &f->memory.mem);
+        if (!f->memory.block)
+            return GLINT_E_MEMORY;
+        f->memory.bytes = bytes;
+    }
+    status =
+        glint_flare_init(&f->memory.flare, &f->cfg, f->memory.block, bytes);
+    if (status != GLINT_OK)
+        return status;
+    t->rays = (struct glint_flare_rays){open_bundle, row_of, f};
+    glint_flare_begin_rays(f->memory.flare, &t->rays);
+    for (int i = 0; i < t->n_bundles; i++) {
+        struct glint_bundle bundle;
+
+        make_bundle(f, &t->bundle[i], scale, &bundle);
+        glint_flare_add(f->memory.flare, &bundle);
+    }
+    return GLINT_OK;
+}
+
+/* Sets the capacities for N edges and REFS references. */
+static size_t bytes_for(struct glint_frame *f, double n, double refs)
+{
+    f->cfg.max_primitives = (int)fmin(INT_MAX, n + 1024);
+    f->cfg.max_refs = (int)fmin(INT_MAX, refs + 1024);
+    return glint_flare_bytes(&f->cfg);
+}
+
+static bool is_served(const struct glint_frame *f,
+                      const struct glint_flare_stats *s)
+{
+    return s->need_primitives <= f->cfg.max_primitives &&
+           s->need_refs <= f->cfg.max_refs && s->dropped_bundles == 0;
+}
+
+/* Gives the flare more room for what S needs, as much as it may take unless
+ * ANYWAY. Returns whether there is more than before. */
+static bool widen(struct glint_frame *f, const struct glint_flare_stats *s,
+                  bool anyway)
+{
+    const int had = f->cfg.max_primitives, refs_had = f->cfg.max_refs;
+    /* Workers' shares are never quite even. */
+    const double uneven = glint_workers_count(f->cfg.workers) > 1 ? 1.5 : 1;
+    double part = 1;
+
+    while (bytes_for(f, fmax(had, part * uneven * s->need_primitives),
+                     fmax(refs_had, part * s->need_refs)) > most_bytes(f) &&
+           !anyway && part > 1e-3)
+        part *= 0.9;
+    return f->cfg.max_primitives > had || f->cfg.max_refs > refs_had;
+}
+
+/* Bins rows Y0 .. Y1 - 1. */
+static void bin_rows(struct glint_frame *f, int y0, int y1,
+                     struct glint_flare_stats *s)
+{
+    glint_flare_set_rows(f->memory.flare, y0, y1);
+    glint_flare_bin(f->memory.flare, s);
+}
+
+/* Returns how many rows, whole tiles, to draw from Y0 on, where N rows need
+ * what S says. */
+static int fewer_rows(const struct glint_frame *f, int n,
+                      const struct glint_flare_stats *s)
+{
+    const int side = 1 << f->cfg.tile_log2;
+    const double part =
+        fmin((double)f->cfg.max_primitives / larger(s->need_primitives, 1),
+             (double)f->cfg.max_refs / larger(s->need_refs, 1));
+
+    return larger(smaller((int)(0.8 * part * n), n - 1) / side, 1) * side;
+}
+
+static void add_stats(struct glint_flare_stats *all,
+                      const struct glint_flare_stats *s)
+{
+    all->bundles = larger(all->bundles, s->bundles);
+    all->need_bundles = s->need_bundles;
+    all->primitives += s->primitives;
+    all->refs += s->refs;
+    all->need_primitives = larger(all->need_primitives, s->need_primitives);
+    all->need_refs = larger(all->need_refs, s->need_refs);
+    all->dropped_cells = larger(all->dropped_cells, s->dropped_cells);
+    all->held_cells = larger(all->held_cells, s->held_cells);
+}
+
+/* Bins and draws all rows of IMAGE, as many at a time as have room. */
+static enum glint_status draw_rows(struct glint_frame *f, double scale,
+                                   const struct glint_image *image,
+                                   struct glint_flare_stats *stats)
+{
+    const int height = f->view.height, side = 1 << f->cfg.tile_log2;
+    enum glint_status status = GLINT_OK;
+    int rows = height;
+
+    for (int y0 = 0; y0 < height && status == GLINT_OK;) {
+        const int n = smaller(rows, height - y0);
+        struct glint_flare_stats s;
+
+        bin_rows(f, y0, y0 + n, &s);
+        if (!is_served(f, &s)) {
+            if (widen(f, &s, n <= side))
+                status = begin_flare(f, scale);
+            else
+                rows = fewer_rows(f, n, &s);
+            continue;
+        }
+        glint_frame_paint(f, image);
+        add_stats(stats, &s);
+        y0 += n;
+        if (f->progress)
+            f->progress(f->progress_ctx,
+                        TRACE_SHARE + (1 - TRACE_SHARE) * y0 / height);
+    }
+    return status;
+}
 
 static enum glint_status draw(struct glint_frame *frame,
                               const struct glint_lamp *lamps, int n_lamps,
                               double scale, const struct glint_image *image,
                               struct glint_flare_stats *stats, double times[5])
 {
-    struct job job = {frame, traced_config(frame, scale), 0};
     enum glint_status status;
-    const struct traced *t;
+    struct traced *t;
 
     times[0] = now(frame);
-    status = begin(frame) ? plan(frame, lamps, n_lamps) : GLINT_E_MEMORY;
+    if (!frame->memory.traced)
+        frame->memory.traced = calloc(1, sizeof *t);
     t = frame->memory.traced;
-    if (status == GLINT_OK)
-        status = add_bundles(frame, &job.cfg);
+    status = t ? plan(frame, lamps, n_lamps, scale, image) : GLINT_E_MEMORY;
     if (status != GLINT_OK)
         return status;
     times[1] = now(frame);
-    run(&job, t->n_bundles, trace_job, PLAN_SHARE, 1);
-    times[2] = now(frame);
-    status = bin(frame, &job.cfg, stats);
-    if (status != GLINT_OK)
-        return status;
-    times[3] = now(frame);
-    glint_frame_paint(frame, image);
+    run(frame, t->n_fields, trace_job, LOOK_SHARE, TRACE_SHARE);
+    times[2] = times[3] = now(frame);
+    *stats = (struct glint_flare_stats){0};
+    frame->cfg.max_bundles = larger(t->n_bundles, 1);
+    frame->cfg.max_vertices = 0;
+    frame->cfg.max_primitives = larger(frame->cfg.max_primitives, 1 << 13);
+    frame->cfg.max_refs = larger(frame->cfg.max_refs, 1 << 14);
+    status = begin_flare(frame, scale);
+    if (status == GLINT_OK)
+        status = draw_rows(frame, scale, image, stats);
     times[4] = now(frame);
-    stats->dropped_bundles += t->n_dropped;
-    return GLINT_OK;
+    return status;
 }
 
 static int n_bundles(const struct glint_frame *frame)
 {
-    const struct traced *const t = frame->memory.traced;
-
-    return t->n_bundles;
+    return state_of(frame)->n_bundles;
 }
 
 static int ghost(const struct glint_frame *frame, int bundle)
 {
-    const struct traced *const t = frame->memory.traced;
+    const struct traced *const t = state_of(frame);
 
-    return t->bundle[bundle].ghost;
+    return t->field[t->bundle[bundle].field].ghost;
 }
 
 static void finish(struct glint_frame *frame)
 {
-    struct traced *const t = frame->memory.traced;
-
-    if (t) {
-        free(t->bundle);
-        free(t->vertices);
-    }
-    free(t);
+    if (frame->memory.traced)
+        forget(frame->memory.traced);
+    free(frame->memory.traced);
     frame->memory.traced = NULL;
 }
 

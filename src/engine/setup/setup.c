@@ -209,6 +209,31 @@ void glint_setup_weigh(struct glint_setup *setup)
         setup->unit_flux[i] = mean;
 }
 
+/* Returns the flux of the direct image at NM, between those at the wavelengths
+ * of SETUP, as a parabola of 1 / wavelength^2 through three of them. */
+static double flux_between(const struct glint_setup *s, double nm)
+{
+    const int at[3] = {0, s->n_wavelengths / 2, s->n_wavelengths - 1};
+    double sum = 0;
+
+    if (s->n_wavelengths < 3)
+        return s->direct_flux[0];
+    for (int k = 0; k < 3; k++) {
+        double part = s->direct_flux[at[k]];
+
+        for (int i = 0; i < 3; i++) {
+            const double node = s->wavelength_nm[at[i]];
+            const double here = s->wavelength_nm[at[k]];
+
+            if (i != k)
+                part *= (1 / (nm * nm) - 1 / (node * node)) /
+                        (1 / (here * here) - 1 / (node * node));
+        }
+        sum += part;
+    }
+    return sum;
+}
+
 void glint_setup_spread(struct glint_setup *setup,
                         const struct glint_lens *lens)
 {
@@ -227,8 +252,9 @@ void glint_setup_spread(struct glint_setup *setup,
             wave[i].nm = nm[i];
             memcpy(wave[i].rgb, rgb[i], sizeof rgb[i]);
             wave[i].direct_flux =
-                glint_iris_share(setup) *
-                model_flux(lens->header, setup->opening, nm[i]);
+                lens ? glint_iris_share(setup) *
+                           model_flux(lens->header, setup->opening, nm[i])
+                     : flux_between(setup, nm[i]);
             mean += share[i] * wave[i].direct_flux;
         }
         for (int i = 0; i < sizes[s]; i++)

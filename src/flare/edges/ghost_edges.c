@@ -58,9 +58,10 @@ static void add_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
                      const int32_t b_q8[2], int32_t light, int32_t other)
 {
     const int32_t right_q8 = g->width * 256, bottom_q8 = g->height * 256;
+    const int32_t top_q8 = g->top * 256;
     struct glint_edge edge;
 
-    if (light == other || (a_q8[1] <= 0 && b_q8[1] <= 0) ||
+    if (light == other || (a_q8[1] <= top_q8 && b_q8[1] <= top_q8) ||
         (a_q8[1] >= bottom_q8 && b_q8[1] >= bottom_q8) ||
         (a_q8[0] >= right_q8 && b_q8[0] >= right_q8) || a_q8[1] == b_q8[1])
         return;
@@ -219,7 +220,7 @@ void glint_ghost_add_alone(struct glint_ghost_edges *g,
     if (cut < 0 ||
         glint_box_empty(glint_corners_reach(&c, g->width, g->height)))
         return;
-    cut |= cut && g->transfer ? GLINT_CUT_LOWERED : 0;
+    cut |= cut && (g->transfer || g->rays) ? GLINT_CUT_LOWERED : 0;
     thin = glint_corners_thin(&c);
     for (int k = 0; k < (cut ? n - 2 : 1); k++) {
         int64_t area2 = c.area2_q16, share_q28;
@@ -408,7 +409,7 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
     turn = convexity(&corners);
     cuts = any.sides || any.barrels ? glint_cuts_count(any) : 0;
     odd = turn == 0 || cuts > 2 ||
-          (cuts && !g->transfer &&
+          (cuts && !g->transfer && !g->rays &&
            (g->stop->n_blades == 0 || g->stop->round_q30)) ||
           glint_corners_thin(&corners);
     if (odd || cuts)

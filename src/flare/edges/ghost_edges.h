@@ -24,6 +24,7 @@
 
 #include <stdint.h>
 
+#include "glint/bundle.h"
 #include "glint/light.h"
 #include "glint/transfer.h"
 #include "flare/edges/edge.h"
@@ -57,10 +58,12 @@ struct glint_ghost_rows {
 
 struct glint_patch;
 struct glint_ghost_edges {
-    /* [n_cells + 1][n_cells + 1]; not used if TRANSFER is set: vertices are
-     * then computed, row by row */
+    /* [n_cells + 1][n_cells + 1]; not used if TRANSFER or RAYS is set: vertices
+     * are then computed, row by row */
     const struct glint_vertex *vertex;
     struct glint_transfer *transfer;
+    const struct glint_flare_rays *rays;
+    int worker; /* number of the worker, for RAYS */
     struct glint_place place;
     const uint16_t *sag_q16; /* see struct glint_bundle_plan */
     const struct glint_bundle *bundle;
@@ -69,10 +72,11 @@ struct glint_ghost_edges {
      */
     struct glint_real flux, irradiance;
     const struct glint_stop *stop;
-    int width, height; /* size of the picture */
-    int32_t limit_q8;  /* most light that a cell may give a pixel at energy 1,
-                          display white */
-    int steps;         /* per octave of irradiance; 0: not rounded */
+    int width, top, height; /* pixels that are drawn: 0 .. width - 1 and top ..
+                               height - 1 */
+    int32_t limit_q8; /* most light that a cell may give a pixel at energy 1,
+                         display white */
+    int steps;        /* per octave of irradiance; 0: not rounded */
     int coded; /* 1: the picture is in codes, which resolve faint light more
                   coarsely */
     int snap_codes_q8; /* see struct glint_flare_frame */

@@ -43,6 +43,10 @@ static const struct glint_vertex *row_of(struct glint_ghost_edges *g, int j)
     struct glint_ghost_rows *r = g->rows;
     struct glint_vertex *row = r->vertex[j & 1];
 
+    if (g->rays) {
+        g->rays->row(g->rays->ctx, g->worker, j, row);
+        return row;
+    }
     if (!g->transfer)
         return g->vertex + (ptrdiff_t)j * (n + 1);
     if (n > GLINT_HELD_CELLS || 2 * j == n)
@@ -59,7 +63,8 @@ void glint_ghost_set_nodes(struct glint_ghost_edges *g, int j)
     const int n = g->bundle->n_cells;
     uint64_t *sides = g->rows->sides[j & 1];
     uint8_t *barrels = g->rows->barrels[j & 1];
-    const int32_t floor = g->height * 256, right = g->width * 256;
+    const int32_t top = g->top * 256, floor = g->height * 256;
+    const int32_t right = g->width * 256;
 
     g->row[j & 1] = row_of(g, j);
     glint_cuts_row(g->stop, g->row[j & 1], n + 1, sides, barrels);
@@ -70,7 +75,7 @@ void glint_ghost_set_nodes(struct glint_ghost_edges *g, int j)
             sides[i] = 0;
             barrels[i] = NODE_LOST;
         } else
-            barrels[i] |= (uint8_t)(NODE_ABOVE * (v->y_q8 <= 0) +
+            barrels[i] |= (uint8_t)(NODE_ABOVE * (v->y_q8 <= top) +
                                     NODE_BELOW * (v->y_q8 >= floor) +
                                     NODE_RIGHT * (v->x_q8 >= right));
     }

@@ -1,0 +1,747 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/exact/ray_field.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "bake/trace/sampling.h"
+#include "engine/setup/degrees.h"
+#include "lens/grid.h"
+
+/* cells a side of the sampling that decides on barrels and grid, and of the one
+ * that tells how bright a ghost is */
+enum { SAMPLING = 24, LOOKS = 16 };
+/* If fewer rays than FEW_INSIDE get through, sampling tells too little to
+ * choose the grid, which then gets CELLS_A_RADIUS cells per stop radius. */
+enum { FEW_INSIDE = 6, CELLS_A_RADIUS = 4 };
+/* rays that are traced at a time */
+enum { SOME = 8 };
+/* Channels of a node: place in pixels and stop radii in the light's frame,
+ * barrels as of a vertex, energy in the field's unit. */
+enum { X, Y, STOP_X, STOP_Y, BARREL_0, BARREL_1, ENERGY, CHANNELS };
+enum { MOST_SIDE = GLINT_MAX_CELLS + 1 };
+
+void glint_ray_direction(const struct ray_field_config *cfg, const double at[2],
+                         double direction[3])
+{
+    direction[0] = cfg->round ? glint_sin_deg(at[0]) : at[0];
+    direction[1] = cfg->round ? 0 : at[1];
+    direction[2] = cfg->round
+                       ? glint_cos_deg(at[0])
+                       : sqrt(fmax(0, 1 - at[0] * at[0] - at[1] * at[1]));
+}
+
+static void init_path(const struct ray_field_config *cfg,
+                      const struct ray_field *field, double nm,
+                      struct glint_path *path)
+{
+    const struct glint_setup *s = cfg->setup;
+
+    glint_path_init_at(path, s->lens, &s->ghost[field->ghost], nm,
+                       field->patch->phi_deg);
+}
+
+/* --------------------------------------------------------------------- look */
+
+/* Returns the cells a side by the rule of lens/grid.h, but not so few that they
+ * could step over the stop. If a rim next to total reflection comes through,
+ * too, the pupil is the whole front, of which the opening may be a hundredth.
+ */
+static int cells_of(const struct ray_field_config *cfg,
+                    const struct glint_sampling *s)
+{
+    const double pixels = cfg->view.width / cfg->view.sensor_width_mm;
+    const double curvature =
+        cfg->setup->n_blades == 0 ? 1 : cfg->setup->iris.roundness;
+    const double round = curvature * s->round_mm;
+    const double outline = fmax(s->outline_mm, round);
+    const double bend = fmax(s->bend_mm, 0.1 * outline);
+    const double finer = cfg->max_cells / 64.0;
+    const double most = glint_grid_most(cfg->max_cells, s->folds);
+    const double n = fmin(most, finer * sqrt(bend * pixels / (8 * 0.01)));
+    const double least =
+        s->n_inside < FEW_INSIDE
+            ? fmin(4 * cfg->max_cells, CELLS_A_RADIUS * s->step)
+            : GLINT_LEAST_CELLS;
+
+    if (cfg->uniform)
+        return cfg->max_cells;
+    return glint_grid_fours((int)ceil(
+        fmin(GLINT_MAX_CELLS, fmax(fmax(GLINT_LEAST_CELLS, least), n))));
+}
+
+/* Chooses the barrels that cut. The one that makes up most of the outline comes
+ * first, as the maximum over the others may have kinks. */
+static void choose_cuts(struct ray_field *field,
+                        struct glint_sampling *sampling)
+{
+    for (field->n_cuts = 0; field->n_cuts < RAY_FIELD_CUTS; field->n_cuts++) {
+        int most = 0;
+
+        for (int k = 1; k < sampling->n_cuts; k++)
+            if (sampling->cut_weight[k] > sampling->cut_weight[most])
+                most = k;
+        if (sampling->n_cuts == 0 || sampling->cut_weight[most] == 0)
+            break;
+        sampling->cut_weight[most] = 0;
+        field->cut_event[field->n_cuts] = sampling->cut_event[most];
+    }
+}
+
+/* Adds what SAMPLING of another direction found to ALL. */
+static void add_sampling(struct glint_sampling *all,
+                         const struct glint_sampling *more)
+{
+    for (int k = 0; k < more->n_cuts; k++) {
+        int i = 0;
+
+        while (i < all->n_cuts && all->cut_event[i] != more->cut_event[k])
+            i++;
+        if (i == all->n_cuts) {
+            if (i == GLINT_MAX_EVENTS)
+                continue;
+            all->cut_event[all->n_cuts] = more->cut_event[k];
+            all->cut_weight[all->n_cuts++] = 0;
+        }
+        all->cut_weight[i] += more->cut_weight[k];
+    }
+    all->bend_mm = fmax(all->bend_mm, more->bend_mm);
+    all->outline_mm = fmax(all->outline_mm, more->outline_mm);
+    all->round_mm = fmax(all->round_mm, more->round_mm);
+    if (more->n_inside > all->n_inside) {
+        all->n_inside = more->n_inside;
+        all->step = more->step;
+    }
+    all->folds |= more->folds;
+}
+
+static void unite(struct glint_pupil *all, const struct glint_pupil *p)
+{
+    all->x0_mm = fmin(all->x0_mm, p->x0_mm);
+    all->x1_mm = fmax(all->x1_mm, p->x1_mm);
+    all->y0_mm = fmin(all->y0_mm, p->y0_mm);
+    all->y1_mm = fmax(all->y1_mm, p->y1_mm);
+    all->energy = fmax(all->energy, p->energy);
+    for (int k = 0; k < 4; k += 2) {
+        all->sensor_mm[k] = fmin(all->sensor_mm[k], p->sensor_mm[k]);
+        all->sensor_mm[k + 1] =
+            fmax(all->sensor_mm[k + 1], p->sensor_mm[k + 1]);
+    }
+}
+
+/* Sets AT to corner K, 0 .. 3, of the directions of PATCH; returns false if
+ * there is no such corner. */
+static bool corner_of(const struct ray_field_config *cfg,
+                      const struct ray_patch *patch, int k, double at[2])
+{
+    at[0] = patch->middle[0] + (k == 0 ? -1 : k == 1) * patch->half[0];
+    at[1] = patch->middle[1] + (k == 2 ? -1 : k == 3) * patch->half[1];
+    return k < (cfg->round ? 2 : 4) && patch->half[k / 2] > 0;
+}
+
+/* Grows the pupil by a pixel on each side: a pixel whose centre lies just
+ * outside of the ghost still gets the light on its inner half. */
+static void add_rim(const struct ray_field_config *cfg, struct glint_pupil *p)
+{
+    double *s = p->sensor_mm;
+    const double pixel = cfg->view.sensor_width_mm / cfg->view.width;
+    const double x = fmin(0.5, pixel / (s[1] - s[0] + 1e-9));
+    const double y = fmin(0.5, pixel / (s[3] - s[2] + 1e-9));
+    const double wide = x * (p->x1_mm - p->x0_mm), across = x * (s[1] - s[0]);
+    const double high = y * (s[3] - s[2]);
+
+    p->x0_mm -= wide;
+    p->x1_mm += wide;
+    if (p->mirrored) {
+        p->y1_mm *= 1 + 2 * y;
+        s[2] *= 1 + 2 * y;
+        s[3] *= 1 + 2 * y;
+    } else {
+        const double more = y * (p->y1_mm - p->y0_mm);
+
+        p->y0_mm -= more;
+        p->y1_mm += more;
+        s[2] -= high;
+        s[3] += high;
+    }
+    s[0] -= across;
+    s[1] += across;
+}
+
+/* A coarse grid of rays over the pupil. */
+struct looks {
+    int rows;
+    double cell_mm2;
+    struct glint_ray ray[LOOKS + 1][LOOKS + 1];
+    bool traced[LOOKS + 1][LOOKS + 1], inside[LOOKS + 1][LOOKS + 1];
+    double barrel[LOOKS + 1][LOOKS + 1][2]; /* as of a vertex */
+};
+
+/* Returns (1 + r^2) / 2 at the barrel of event K. */
+static double barrel_value(const struct glint_path *path, int k,
+                           double (*hits)[2])
+{
+    const double semi = path->event[k].semi_mm;
+    const double x = hits[k][0] / semi, y = hits[k][1] / semi;
+
+    return 0.5 * (1 + x * x + y * y);
+}
+
+/* Sets VALUE to those of the first barrel that cuts and the largest of the
+ * others; 0: there is none. */
+static void barrel_values(const struct ray_field *field,
+                          const struct glint_path *path, double (*hits)[2],
+                          double value[2])
+{
+    value[0] = value[1] = 0;
+    for (int k = 0; k < field->n_cuts; k++) {
+        double *into = &value[k > 0];
+
+        *into = fmax(*into, barrel_value(path, field->cut_event[k], hits));
+    }
+}
+
+static void look_through(const struct ray_field_config *cfg,
+                         const struct ray_field *field, double nm,
+                         struct looks *looks)
+{
+    const struct glint_pupil *p = &field->pupil;
+    const double stop_mm = cfg->setup->optics.stop_radius_mm;
+    double hits[(LOOKS + 1) * (GLINT_MAX_EVENTS + 1)][2];
+    struct glint_path path;
+    double d[3];
+
+    init_path(cfg, field, nm, &path);
+    glint_ray_direction(cfg, field->patch->middle, d);
+    looks->rows = p->mirrored ? LOOKS / 2 + 1 : LOOKS + 1;
+    looks->cell_mm2 = (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm) /
+                      (LOOKS * (looks->rows - 1));
+    for (int j = 0; j < looks->rows; j++) {
+        enum glint_ray_status status[LOOKS + 1];
+        const struct glint_row row = {LOOKS + 1,
+                                      p->x0_mm,
+                                      (p->x1_mm - p->x0_mm) / LOOKS,
+                                      p->y0_mm + (p->y1_mm - p->y0_mm) * j /
+                                                     (looks->rows - 1),
+                                      {d[0], d[1], d[2]}};
+
+        glint_trace_row(&path, &row, looks->ray[j], status, hits);
+        for (int i = 0; i <= LOOKS; i++) {
+            const struct glint_ray *r = &looks->ray[j][i];
+
+            looks->traced[j][i] = status[i] == GLINT_RAY_OK;
+            if (looks->traced[j][i])
+                barrel_values(field, &path, hits + i * path.n_events,
+                              looks->barrel[j][i]);
+            looks->inside[j][i] = looks->traced[j][i] && r->rel_radius <= 1 &&
+                                  hypot(r->stop_x_mm, r->stop_y_mm) <= stop_mm;
+        }
+    }
+}
+
+/* Adds cell (I, J): its flux, and how bright it is where it lands. */
+static void add_look(const struct looks *l, int i, int j, double pixel_mm2,
+                     double *flux, double *peak)
+{
+    const struct glint_ray *a = &l->ray[j][i], *b = a + 1;
+    const struct glint_ray *c = &l->ray[j + 1][i], *d = c + 1;
+    const int n = l->inside[j][i] + l->inside[j][i + 1] + l->inside[j + 1][i] +
+                  l->inside[j + 1][i + 1];
+    double energy, area;
+
+    if (n == 0)
+        return;
+    energy = fmax(l->inside[j][i] ? a->energy : 0,
+                  l->inside[j][i + 1] ? b->energy : 0);
+    energy = fmax(energy, l->inside[j + 1][i] ? c->energy : 0);
+    energy = fmax(energy, l->inside[j + 1][i + 1] ? d->energy : 0);
+    *flux += energy * l->cell_mm2 * n / 4;
+    if (!(l->traced[j][i] && l->traced[j][i + 1] && l->traced[j + 1][i] &&
+          l->traced[j + 1][i + 1])) {
+        *peak = HUGE_VAL;
+        return;
+    }
+    area = 0.5 * fabs((d->sensor_x_mm - a->sensor_x_mm) *
+                          (c->sensor_y_mm - b->sensor_y_mm) -
+                      (d->sensor_y_mm - a->sensor_y_mm) *
+                          (c->sensor_x_mm - b->sensor_x_mm));
+    *peak = fmax(*peak, energy * l->cell_mm2 / fmax(area, pixel_mm2));
+}
+
+/* Sums of squares and second differences along the lines of a grid. */
+struct bowls {
+    int n_steps, n_bends;
+    double step2, bend[2];
+};
+
+/* Adds the step from (I, J) by (DI, DJ) and how the barrels bend there. */
+static void add_bowl(const struct looks *l, int i, int j, int di, int dj,
+                     double stop_mm, struct bowls *b)
+{
+    const struct glint_ray *here = &l->ray[j][i], *next;
+
+    if (i + di > LOOKS || j + dj >= l->rows || !l->inside[j][i] ||
+        !l->traced[j + dj][i + di])
+        return;
+    next = &l->ray[j + dj][i + di];
+    b->step2 += ((next->stop_x_mm - here->stop_x_mm) *
+                     (next->stop_x_mm - here->stop_x_mm) +
+                 (next->stop_y_mm - here->stop_y_mm) *
+                     (next->stop_y_mm - here->stop_y_mm)) /
+                (stop_mm * stop_mm);
+    b->n_steps++;
+    if (i < di || j < dj || !l->traced[j - dj][i - di])
+        return;
+    for (int k = 0; k < 2; k++)
+        b->bend[k] += l->barrel[j + dj][i + di][k] - 2 * l->barrel[j][i][k] +
+                      l->barrel[j - dj][i - di][k];
+    b->n_bends++;
+}
+
+/* Sets the sags of FIELD: if a cell bends by D across and E down, they are
+ * (D + E) / 12. */
+static void set_sags(const struct ray_field_config *cfg,
+                     struct ray_field *field, const struct looks *l)
+{
+    const double by = (double)LOOKS / field->n_cells;
+    const double curved =
+        cfg->setup->n_blades == 0 ? 1 : cfg->setup->iris.roundness;
+
+    field->sag[0] = field->sag[1] = field->sag[2] = 0;
+    for (int way = 0; way < 2; way++) {
+        struct bowls b = {0, 0, 0, {0, 0}};
+
+        for (int j = 0; j < l->rows; j++)
+            for (int i = 0; i <= LOOKS; i++)
+                add_bowl(l, i, j, !way, way, cfg->setup->optics.stop_radius_mm,
+                         &b);
+        for (int k = 0; k < 2 && b.n_bends; k++)
+            field->sag[k] += b.bend[k] / b.n_bends * by * by / 12;
+        if (b.n_steps)
+            field->sag[2] += curved * b.step2 / b.n_steps * by * by / 12;
+    }
+    for (int k = 0; k < 3; k++)
+        field->sag[k] = fmin(fmax(field->sag[k], 0), 1.0 / 16);
+}
+
+/* Sets how bright FIELD is and how far its wavelengths are apart. */
+static void measure(const struct ray_field_config *cfg, struct ray_field *field,
+                    bool folds)
+{
+    const double pixel = cfg->view.sensor_width_mm / cfg->view.width;
+    const double both = field->pupil.mirrored ? 2 : 1;
+    struct looks look[3];
+    double most = field->pupil.energy, squares = 0;
+    int n = 0;
+
+    field->flux = field->peak_mm2 = 0;
+    for (int w = 0; w < 3; w++) {
+        double flux = 0, peak = 0;
+
+        look_through(cfg, field, cfg->wave_nm[w], &look[w]);
+        for (int j = 0; j + 1 < look[w].rows; j++)
+            for (int i = 0; i < LOOKS; i++)
+                add_look(&look[w], i, j, pixel * pixel, &flux, &peak);
+        for (int j = 0; j < look[w].rows; j++)
+            for (int i = 0; i <= LOOKS; i++)
+                if (look[w].inside[j][i])
+                    most = fmax(most, look[w].ray[j][i].energy);
+        field->flux = fmax(field->flux, both * flux);
+        field->peak_mm2 = fmax(field->peak_mm2, peak);
+    }
+    for (int j = 0; j < look[0].rows; j++)
+        for (int i = 0; i <= LOOKS; i++)
+            if (look[0].traced[j][i] && look[2].traced[j][i] &&
+                (look[0].inside[j][i] || look[2].inside[j][i])) {
+                const double x = look[0].ray[j][i].sensor_x_mm -
+                                 look[2].ray[j][i].sensor_x_mm;
+                const double y = look[0].ray[j][i].sensor_y_mm -
+                                 look[2].ray[j][i].sensor_y_mm;
+
+                squares += x * x + y * y;
+                n++;
+            }
+    field->apart_mm = n ? sqrt(squares / n) : HUGE_VAL;
+    set_sags(cfg, field, &look[1]);
+    field->energy_unit = 1.5 * most;
+    if (field->flux == 0) { /* the opening lies between the rays */
+        field->flux = field->pupil.energy *
+                      (field->pupil.x1_mm - field->pupil.x0_mm) *
+                      glint_pupil_height(&field->pupil);
+        field->peak_mm2 = HUGE_VAL;
+    }
+    if (folds)
+        field->peak_mm2 *= 8;
+}
+
+static bool find_pupil(const struct ray_field_config *cfg,
+                       const struct ray_field *field, double nm,
+                       const double at[2], const struct glint_pupil *near,
+                       struct glint_pupil *pupil, struct glint_path *path)
+{
+    double d[3];
+
+    init_path(cfg, field, nm, path);
+    glint_ray_direction(cfg, at, d);
+    return glint_pupil_find_towards(
+        pupil, path, d, cfg->setup->optics.stop_radius_mm, HUGE_VAL, near);
+}
+
+/* Finds the part of the pupil that all directions and wavelengths need. */
+static bool find_all(const struct ray_field_config *cfg,
+                     struct ray_field *field, struct glint_path *path)
+{
+    const struct ray_patch *patch = field->patch;
+    struct glint_pupil p, *all = &field->pupil;
+    bool found = false;
+    double at[2];
+
+    for (int k = 0; k < 7; k++) {
+        const double nm = cfg->wave_nm[k == 1 ? 0 : k == 2 ? 2 : 1];
+
+        memcpy(at, patch->middle, sizeof at);
+        if (k > 2 && !corner_of(cfg, patch, k - 3, at))
+            continue;
+        /* Where nothing comes through in the middle, corners of a single
+         * direction are not searched. */
+        if (!find_pupil(cfg, field, nm, at, found ? all : NULL, &p, path))
+            continue;
+        if (found)
+            unite(all, &p);
+        else
+            *all = p;
+        found = true;
+    }
+    return found;
+}
+
+void glint_ray_field_look(const struct ray_field_config *cfg,
+                          struct ray_field *field)
+{
+    const struct ray_patch *patch = field->patch;
+    const double stop_mm = cfg->setup->optics.stop_radius_mm;
+    struct glint_sampling sampling, more;
+    struct glint_path path;
+    double at[2], d[3];
+
+    field->n_cells = 0;
+    if (!find_all(cfg, field, &path))
+        return;
+    init_path(cfg, field, cfg->wave_nm[1], &path);
+    glint_ray_direction(cfg, patch->middle, d);
+    glint_sampling_run(&sampling, &path, &field->pupil, d, stop_mm, SAMPLING);
+    for (int k = 0; k < 4; k++)
+        if (corner_of(cfg, patch, k, at)) {
+            glint_ray_direction(cfg, at, d);
+            glint_sampling_run(&more, &path, &field->pupil, d, stop_mm,
+                               SAMPLING);
+            add_sampling(&sampling, &more);
+        }
+    choose_cuts(field, &sampling);
+    field->n_cells = cells_of(cfg, &sampling);
+    measure(cfg, field, sampling.folds);
+    add_rim(cfg, &field->pupil);
+}
+
+/* ------------------------------------------------------------------ samples */
+
+static void add_sample(struct ray_field *f, double nm, double x, double y)
+{
+    f->sample[f->n_samples++] =
+        (struct ray_sample){nm,
+                            {f->patch->middle[0] + x * f->patch->half[0],
+                             f->patch->middle[1] + y * f->patch->half[1]}};
+}
+
+void glint_ray_field_choose(struct ray_field *f, const double *nm, int n)
+{
+    const struct ray_patch *p = f->patch;
+    const int wide = (p->half[0] > 0) + 2 * (p->half[1] > 0);
+
+    f->n_nodes = n < RAY_FIELD_NODES ? n : RAY_FIELD_NODES;
+    f->n_samples = 0;
+    for (int i = 0; i < f->n_nodes; i++) {
+        const double lo = 1 / (nm[0] * nm[0]);
+        const double hi = 1 / (nm[n - 1] * nm[n - 1]);
+
+        f->node_nm[i] = n == f->n_nodes
+                            ? nm[i]
+                            : 1 / sqrt(lo + (hi - lo) * i / (f->n_nodes - 1));
+        add_sample(f, f->node_nm[i], 0, 0);
+    }
+    if (wide == 0)
+        return;
+    add_sample(f, f->node_nm[f->n_nodes / 2], -1, 0);
+    add_sample(f, f->node_nm[f->n_nodes / 2], 1, 0);
+    if (wide > 1) {
+        add_sample(f, f->node_nm[f->n_nodes / 2], 0, -1);
+        add_sample(f, f->node_nm[f->n_nodes / 2], 0, 1);
+        add_sample(f, f->node_nm[f->n_nodes / 2], 1, 1);
+    }
+    for (int k = 0; k < 2 && f->n_nodes > 2; k++) {
+        const double end = f->node_nm[k ? f->n_nodes - 1 : 0];
+
+        add_sample(f, end, 1, 0);
+        if (wide > 1)
+            add_sample(f, end, 0, 1);
+    }
+}
+
+static int rows_of(const struct ray_field *f)
+{
+    return f->pupil.mirrored ? f->n_cells / 2 + 1 : f->n_cells + 1;
+}
+
+static size_t nodes_of(const struct ray_field *f)
+{
+    return (size_t)rows_of(f) * (size_t)(f->n_cells + 1);
+}
+
+size_t glint_ray_field_bytes(const struct ray_field_config *cfg,
+                             const struct ray_field *field)
+{
+    (void)cfg;
+    return nodes_of(field) *
+           ((size_t)field->n_samples * CHANNELS * sizeof(float) + 1);
+}
+
+/* -------------------------------------------------------------------- trace */
+
+/* Fills NODE from a ray. Geometry never saturates: returns whether the channels
+ * can hold it. */
+static bool fill(const struct ray_field_config *cfg,
+                 const struct ray_field *field, const struct glint_path *path,
+                 const struct glint_ray *ray, double (*hits)[2], float *node)
+{
+    const double scale = cfg->view.width / cfg->view.sensor_width_mm;
+    const double stop_mm = cfg->setup->optics.stop_radius_mm;
+    double value[CHANNELS] = {ray->sensor_x_mm * scale,
+                              ray->sensor_y_mm * scale,
+                              ray->stop_x_mm / stop_mm,
+                              ray->stop_y_mm / stop_mm,
+                              0,
+                              0,
+                              ray->energy / field->energy_unit};
+
+    barrel_values(field, path, hits, value + BARREL_0);
+    for (int k = 0; k < CHANNELS; k++)
+        node[k] = (float)value[k];
+    return fabs(value[X]) < 0x1p19 && fabs(value[Y]) < 0x1p19 &&
+           fabs(value[STOP_X]) < 0x1p13 && fabs(value[STOP_Y]) < 0x1p13 &&
+           value[BARREL_0] < 0x1p13 && value[BARREL_1] < 0x1p13;
+}
+
+static void trace_row(const struct ray_field_config *cfg,
+                      const struct ray_field *field,
+                      const struct glint_path *path, const double d[3], int j,
+                      float *node, unsigned char *lost)
+{
+    const struct glint_pupil *p = &field->pupil;
+    const int n = field->n_cells;
+    double hits[SOME * (GLINT_MAX_EVENTS + 1)][2];
+    struct glint_ray ray[SOME];
+    enum glint_ray_status status[SOME];
+    struct glint_row rays = {0,
+                             0,
+                             (p->x1_mm - p->x0_mm) / n,
+                             p->mirrored
+                                 ? p->y1_mm * (2.0 * j - n) / n
+                                 : p->y0_mm + (p->y1_mm - p->y0_mm) * j / n,
+                             {d[0], d[1], d[2]}};
+
+    for (int i = 0; i <= n; i++) {
+        const int k = i % SOME;
+
+        if (k == 0) {
+            rays.n = n + 1 - i < SOME ? n + 1 - i : SOME;
+            rays.x0_mm = p->x0_mm + i * rays.step_mm;
+            glint_trace_row(path, &rays, ray, status, hits);
+        }
+        if (status[k] != GLINT_RAY_OK ||
+            !fill(cfg, field, path, &ray[k], hits + k * path->n_events,
+                  node + (size_t)i * CHANNELS)) {
+            lost[i] = 1;
+            memset(node + (size_t)i * CHANNELS, 0, CHANNELS * sizeof *node);
+        }
+    }
+}
+
+void glint_ray_field_trace(const struct ray_field_config *cfg,
+                           const struct ray_field *field, void *mem)
+{
+    const size_t nodes = nodes_of(field), wide = (size_t)field->n_cells + 1;
+    float *node = mem;
+    unsigned char *lost =
+        (unsigned char *)(node + (size_t)field->n_samples * nodes * CHANNELS);
+    struct glint_path path;
+
+    memset(lost, 0, nodes);
+    for (int s = 0; s < field->n_samples; s++) {
+        double d[3];
+
+        if (s == 0 || field->sample[s].nm != field->sample[s - 1].nm)
+            init_path(cfg, field, field->sample[s].nm, &path);
+        glint_ray_direction(cfg, field->sample[s].at, d);
+        for (int j = 0; j < rows_of(field); j++)
+            trace_row(cfg, field, &path, d, j,
+                      node + ((size_t)s * nodes + (size_t)j * wide) * CHANNELS,
+                      lost + (size_t)j * wide);
+    }
+}
+
+/* -------------------------------------------------------------------- place */
+
+/* Returns the weight at X of node K of three, at A, B and C. */
+static double share_of(double x, const double at[3], int k)
+{
+    const double a = at[(k + 1) % 3], b = at[(k + 2) % 3];
+
+    return (x - a) * (x - b) / ((at[k] - a) * (at[k] - b));
+}
+
+/* Adds the weights at NM of the nodes of wavelengths, times BY. */
+static void add_waves(struct ray_place *p, double nm, double by)
+{
+    const struct ray_field *f = p->field;
+    const int n = f->n_nodes;
+    double at[3];
+    int first = 0;
+
+    for (int i = 0; i < n; i++)
+        if (f->node_nm[i] == nm) {
+            p->weight[i] += (float)by;
+            return;
+        }
+    if (n < 3) {
+        p->weight[0] += (float)by;
+        return;
+    }
+    while (first + 3 < n &&
+           fabs(f->node_nm[first] - nm) > fabs(f->node_nm[first + 3] - nm))
+        first++;
+    for (int k = 0; k < 3; k++)
+        at[k] = 1 / (f->node_nm[first + k] * f->node_nm[first + k]);
+    for (int k = 0; k < 3; k++)
+        p->weight[first + k] += (float)(by * share_of(1 / (nm * nm), at, k));
+}
+
+/* Adds what directions differ by at the ends of the wavelengths from what they
+ * differ by in the middle. */
+static void add_ends(struct ray_place *p, const double t[2], double nm,
+                     int first, bool both)
+{
+    const struct ray_field *f = p->field;
+    const int mid = f->n_nodes / 2, last = f->n_nodes - 1;
+    const double node[3] = {f->node_nm[0], f->node_nm[mid], f->node_nm[last]};
+    double at[3];
+
+    for (int k = 0; k < 3; k++)
+        at[k] = 1 / (node[k] * node[k]);
+    for (int k = 0; k < 2; k++) {
+        const double w = share_of(1 / (nm * nm), at, 2 * k);
+
+        for (int axis = 0; axis < (both ? 2 : 1); axis++) {
+            const float by = (float)(w * t[axis]);
+
+            p->weight[first++] += by;
+            p->weight[k ? last : 0] -= by;
+            p->weight[f->n_nodes + (axis ? 3 : 1)] -= by;
+            p->weight[mid] += by;
+        }
+    }
+}
+
+void glint_ray_place_set(struct ray_place *p, const struct ray_field *f,
+                         const void *mem, const double at[2], double nm,
+                         double phi_deg)
+{
+    const struct ray_patch *patch = f->patch;
+    const int mid = f->n_nodes / 2, n = f->n_nodes;
+    const bool both = patch->half[1] > 0;
+    double t[2] = {0, 0}, sum = 0;
+
+    *p = (struct ray_place){.field = f,
+                            .mem = mem,
+                            .cosine = glint_cos_deg(phi_deg),
+                            .sine = glint_sin_deg(phi_deg)};
+    for (int k = 0; k < 2; k++)
+        if (patch->half[k] > 0)
+            t[k] = (at[k] - patch->middle[k]) / patch->half[k];
+    add_waves(p, nm, 1);
+    if (f->n_samples == n)
+        return;
+    {
+        const double cross = both ? t[0] * t[1] : 0;
+        const double w[5] = {
+            0.5 * t[0] * (t[0] - 1), 0.5 * t[0] * (t[0] + 1) - cross,
+            0.5 * t[1] * (t[1] - 1), 0.5 * t[1] * (t[1] + 1) - cross, cross};
+
+        for (int k = 0; k < (both ? 5 : 2); k++) {
+            p->weight[n + k] += (float)w[k];
+            sum += w[k];
+        }
+        p->weight[mid] -= (float)sum;
+    }
+    if (n > 2)
+        add_ends(p, t, nm, n + (both ? 5 : 2), both);
+}
+
+/* Sets ROW to the weighted sum of row J of all samples. */
+static void blend(const struct ray_place *p, int j, float *row)
+{
+    const struct ray_field *f = p->field;
+    const size_t nodes = nodes_of(f);
+    const int n = (f->n_cells + 1) * CHANNELS;
+    const float *from = (const float *)p->mem + (size_t)j * (size_t)n;
+
+    for (int i = 0; i < n; i++)
+        row[i] = 0;
+    for (int s = 0; s < f->n_samples; s++, from += nodes * CHANNELS) {
+        const float w = p->weight[s];
+
+        for (int i = 0; w != 0 && i < n; i++)
+            row[i] += w * from[i];
+    }
+}
+
+void glint_ray_place_row(const struct ray_field_config *cfg,
+                         const struct ray_place *p, int j,
+                         struct glint_vertex *row)
+{
+    const struct ray_field *f = p->field;
+    const int n = f->n_cells;
+    const bool mirror = f->pupil.mirrored && 2 * j > n;
+    const int from = mirror ? n - j : j;
+    const float c = (float)p->cosine, s = (float)p->sine;
+    const float half_w = 0.5f * (float)cfg->view.width;
+    const float half_h = 0.5f * (float)cfg->view.height;
+    const float nearer = 65536 * (1 - (float)f->sag[2]);
+    const unsigned char *lost =
+        (const unsigned char *)((const float *)p->mem +
+                                (size_t)f->n_samples * nodes_of(f) * CHANNELS) +
+        (size_t)from * (size_t)(n + 1);
+    float value[MOST_SIDE * CHANNELS];
+
+    blend(p, from, value);
+    for (int i = 0; i <= n; i++) {
+        const float *v = value + (size_t)i * CHANNELS;
+        const float y = mirror ? -v[Y] : v[Y];
+        const float stop_y = mirror ? -v[STOP_Y] : v[STOP_Y];
+        const float energy = v[ENERGY] < 1 ? v[ENERGY] : 1;
+
+        row[i].energy_q16 = -1;
+        if (lost[i])
+            continue;
+        row[i].x_q8 = (int32_t)lrintf(256 * (half_w + (v[X] * c - y * s)));
+        row[i].y_q8 = (int32_t)lrintf(256 * (half_h - (v[X] * s + y * c)));
+        row[i].stop_x_q16 =
+            (int32_t)lrintf(nearer * (v[STOP_X] * c - stop_y * s));
+        row[i].stop_y_q16 =
+            (int32_t)lrintf(nearer * (v[STOP_X] * s + stop_y * c));
+        row[i].barrel_q16[0] =
+            (int32_t)lrintf(65536 * (v[BARREL_0] - (float)f->sag[0]));
+        row[i].barrel_q16[1] =
+            (int32_t)lrintf(65536 * (v[BARREL_1] - (float)f->sag[1]));
+        row[i].energy_q16 = (int32_t)lrintf(65536 * (energy > 0 ? energy : 0));
+    }
+}
