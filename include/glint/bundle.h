@@ -57,6 +57,9 @@ struct glint_flare_rays {
      * WORKER has opened; rows come in this order. */
     void (*row)(void *ctx, int worker, int j, struct glint_vertex *row);
     void *ctx;
+    int coded; /* 1: the picture is in codes, which resolve faint light more
+                  coarsely */
+    int snap_codes_q8; /* as in struct glint_flare_frame */
 };
 
 #ifdef __cplusplus

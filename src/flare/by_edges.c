@@ -160,22 +160,24 @@ static void emit_bundle(struct glint_flare *f, int bundle, int worker,
     struct glint_plan_scratch *plan = f->worker[worker].plan;
     struct glint_edges_worker *w = glint_edges_worker_of(f, worker);
     struct glint_bundle_slot *slot = &f->slot[bundle];
-    struct glint_ghost_edges ghost = {.vertex = f->vertex + slot->first_vertex,
-                                      .bundle = &f->bundle[bundle],
-                                      .number = (uint32_t)bundle,
-                                      .stop = &f->cfg.stop,
-                                      .rays = f->rays,
-                                      .worker = worker,
-                                      .width = f->width,
-                                      .top = f->bins.region.y0,
-                                      .height = f->bins.region.y1,
-                                      .limit_q8 = own->limit_q8,
-                                      .steps = f->cfg.irradiance_steps,
-                                      .rows = w->rows,
-                                      .edge = own->edge + w->first_edge +
-                                              w->n_edges,
-                                      .max_edges = w->max_edges - w->n_edges,
-                                      .bins = bins};
+    struct glint_ghost_edges ghost = {
+        .vertex = f->vertex + slot->first_vertex,
+        .bundle = &f->bundle[bundle],
+        .number = (uint32_t)bundle,
+        .stop = &f->cfg.stop,
+        .rays = f->rays,
+        .worker = worker,
+        .coded = f->rays && f->rays->coded,
+        .snap_codes_q8 = f->rays ? f->rays->snap_codes_q8 : 0,
+        .width = f->width,
+        .top = f->bins.region.y0,
+        .height = f->bins.region.y1,
+        .limit_q8 = own->limit_q8,
+        .steps = f->cfg.irradiance_steps,
+        .rows = w->rows,
+        .edge = own->edge + w->first_edge + w->n_edges,
+        .max_edges = w->max_edges - w->n_edges,
+        .bins = bins};
 
     if (f->plan.frame) {
         glint_plan_transfer(&f->plan, &f->planned[bundle], &plan->transfer);

@@ -38,11 +38,15 @@ enum { PARTS = 100, LEAST_PART = 4 };
 #define LOOK_SHARE  0.4
 #define TRACE_SHARE 0.7
 
-/* A lamp, in the patch that holds its direction. */
+/* A lamp, in the patch that holds its direction, or several near each other
+ * that stand for one: those of a level are about half as many as those of the
+ * level before. Dim ghosts are drawn from fewer. */
+enum { LEVELS = 8 };
 struct point {
-    const struct glint_lamp *lamp;
+    struct glint_lamp lamp;
     double at[2];
     int patch;
+    int first, last; /* levels that it belongs to: FIRST .. LAST */
 };
 
 /* Wavelengths that stand for all light. */
@@ -74,12 +78,16 @@ struct traced {
     int n_sets;
     struct point *point;
     struct ray_patch *patch;
-    struct ray_field *field;
+    struct ray_field *looked; /* [looked]: as glint_ray_field_look() made them */
+    struct ray_field *field;  /* [fields]: those as this frame draws them */
     int *set_of; /* [fields]: index of its set; -1: no pixel shows the field */
     void **mem;  /* [fields]: its rays; NULL: they are traced when needed */
     struct ray_bundle *bundle;
     struct at_work *worker;
-    struct glint_lamp *lamp; /* [n_points]: those that fields were found for */
+    struct glint_lamp *lamp; /* [n_lamps]: those that fields were found for */
+    bool in_codes;
+    int *level; /* [fields]: level of the points that a field is drawn from */
+    int n_lamps;
     double stop_mm;
     int only_ghost;
     int n_points, n_patches, n_fields, n_bundles, n_workers;
@@ -104,10 +112,12 @@ static void forget_plan(struct traced *t)
     for (int i = 0; i < t->n_workers && t->worker; i++)
         free(t->worker[i].mem);
     free(t->set_of);
+    free(t->level);
     free(t->mem);
     free(t->bundle);
     free(t->worker);
     t->set_of = NULL;
+    t->level = NULL;
     t->mem = NULL;
     t->bundle = NULL;
     t->worker = NULL;
@@ -120,12 +130,14 @@ static void forget(struct traced *t)
     free(t->lamp);
     free(t->point);
     free(t->patch);
+    free(t->looked);
     free(t->field);
     t->lamp = NULL;
     t->point = NULL;
     t->patch = NULL;
+    t->looked = NULL;
     t->field = NULL;
-    t->n_points = t->n_patches = t->n_fields = 0;
+    t->n_lamps = t->n_points = t->n_patches = t->n_fields = 0;
 }
 
 /* Runs N jobs, in parts after each of which progress is told: FROM and TO,
@@ -249,7 +261,7 @@ static void gather_round(struct traced *t)
     int first = 0;
 
     for (int i = 0; i < t->n_points; i++) {
-        t->point[i].at[0] = t->point[i].lamp->theta_deg;
+        t->point[i].at[0] = t->point[i].lamp.theta_deg;
         t->point[i].at[1] = 0;
     }
     qsort(t->point, (size_t)t->n_points, sizeof *t->point, by_angle);
@@ -264,10 +276,10 @@ static void gather_round(struct traced *t)
 /* Sets the coordinates of P in the frame of azimuth PHI_DEG. */
 static void set_at(struct point *p, double phi_deg)
 {
-    const double sine = glint_sin_deg(p->lamp->theta_deg);
+    const double sine = glint_sin_deg(p->lamp.theta_deg);
 
-    p->at[0] = sine * glint_cos_deg(p->lamp->phi_deg - phi_deg);
-    p->at[1] = sine * glint_sin_deg(p->lamp->phi_deg - phi_deg);
+    p->at[0] = sine * glint_cos_deg(p->lamp.phi_deg - phi_deg);
+    p->at[1] = sine * glint_sin_deg(p->lamp.phi_deg - phi_deg);
 }
 
 /* Puts each point that is in no patch yet, and all those near it, into one. */
@@ -277,7 +289,7 @@ static void gather_others(struct traced *t)
     int last;
 
     for (int first = 0; first < t->n_points; first = last) {
-        const double phi_deg = t->point[first].lamp->phi_deg;
+        const double phi_deg = t->point[first].lamp.phi_deg;
         struct point *seed = &t->point[first];
 
         set_at(seed, phi_deg);
@@ -294,6 +306,115 @@ static void gather_others(struct traced *t)
         }
         close_patch(t, first, last, phi_deg);
     }
+}
+
+/* ------------------------------------------------------------------- levels */
+
+/* Sets D to the direction of LAMP times its light; returns that. */
+static double direction_of(const struct glint_lamp *lamp, double d[3])
+{
+    const double light = lamp->power * glint_largest_channel(lamp->rgb);
+    const double sine = glint_sin_deg(lamp->theta_deg);
+
+    d[0] = light * sine * glint_cos_deg(lamp->phi_deg);
+    d[1] = light * sine * glint_sin_deg(lamp->phi_deg);
+    d[2] = light * glint_cos_deg(lamp->theta_deg);
+    return light;
+}
+
+/* Sets BOTH to a lamp with the light of A and B between them. */
+static void unite(const struct traced *t, const struct point *a,
+                  const struct point *b, struct point *both)
+{
+    const double degree = GLINT_PI / 180;
+    double d[3], e[3];
+
+    *both = *a;
+    direction_of(&a->lamp, d);
+    direction_of(&b->lamp, e);
+    for (int k = 0; k < 3; k++)
+        d[k] += e[k];
+    both->lamp.theta_deg = atan2(hypot(d[0], d[1]), d[2]) / degree;
+    both->lamp.phi_deg = atan2(d[1], d[0]) / degree;
+    both->lamp.power = a->lamp.power + b->lamp.power;
+    for (int c = 0; c < 3 && both->lamp.power > 0; c++)
+        both->lamp.rgb[c] = (a->lamp.rgb[c] * a->lamp.power +
+                             b->lamp.rgb[c] * b->lamp.power) /
+                            both->lamp.power;
+    if (t->cfg.round)
+        both->at[0] = both->lamp.theta_deg;
+    else
+        set_at(both, t->patch[a->patch].phi_deg);
+}
+
+/* Returns whether P lies in its patch. */
+static bool is_inside(const struct traced *t, const struct point *p)
+{
+    const struct ray_patch *patch = &t->patch[p->patch];
+
+    return fabs(p->at[0] - patch->middle[0]) <= patch->half[0] &&
+           fabs(p->at[1] - patch->middle[1]) <= patch->half[1];
+}
+
+/* Returns the square of the sine between A and B, about. */
+static double apart2(const struct point *a, const struct point *b)
+{
+    double d[3], e[3], sum = 0;
+    const double by_a = direction_of(&a->lamp, d);
+    const double by_b = direction_of(&b->lamp, e);
+
+    if (!(by_a > 0 && by_b > 0))
+        return HUGE_VAL;
+    for (int k = 0; k < 3; k++)
+        sum += (d[k] / by_a - e[k] / by_b) * (d[k] / by_a - e[k] / by_b);
+    return sum;
+}
+
+/* Pairs points of LEVEL with their nearest ones of that level, into points of
+ * the next. Returns whether any were. */
+static bool add_level(struct traced *t, int level)
+{
+    const int n = t->n_points;
+    const double most = SPAN_DEG * GLINT_PI / 180;
+    bool any = false;
+
+    for (int i = 0; i < n; i++) {
+        struct point *a = &t->point[i], both;
+        double least = most * most;
+        int with = -1;
+
+        if (a->first > level || a->last < LEVELS)
+            continue;
+        for (int k = i + 1; k < n; k++) {
+            const struct point *b = &t->point[k];
+            const double d = b->patch == a->patch && b->first <= level &&
+                                     b->last == LEVELS
+                                 ? apart2(a, b)
+                                 : HUGE_VAL;
+
+            if (d < least) {
+                least = d;
+                with = k;
+            }
+        }
+        if (with < 0)
+            continue;
+        unite(t, a, &t->point[with], &both);
+        if (!is_inside(t, &both))
+            continue;
+        a->last = t->point[with].last = level;
+        both.first = level + 1;
+        both.last = LEVELS;
+        t->point[t->n_points++] = both;
+        any = true;
+    }
+    return any;
+}
+
+static void add_levels(struct traced *t)
+{
+    for (int level = 0; level < LEVELS && add_level(t, level); level++)
+        continue;
 }
 
 /* --------------------------------------------------------------------- plan */
@@ -334,7 +455,7 @@ static bool in_view(const struct glint_frame *f, const struct ray_field *field,
 /* Returns the azimuth by which FIELD is turned for point P. */
 static double turn_of(const struct traced *t, const struct point *p)
 {
-    return t->cfg.round ? p->lamp->phi_deg : t->patch[p->patch].phi_deg;
+    return t->cfg.round ? p->lamp.phi_deg : t->patch[p->patch].phi_deg;
 }
 
 /* Returns the light of P, largest channel, per mm^2 of the pupil's flux. */
@@ -344,8 +465,8 @@ static double light_of(const struct glint_frame *f, const struct point *p,
     const struct traced *t = state_of(f);
     const double gain = f->tints ? glint_real_value(f->tints[ghost].gain) : 1;
 
-    return p->lamp->power * glint_largest_channel(p->lamp->rgb) * gain *
-           glint_cos_deg(p->lamp->theta_deg) / t->set[0].unit_flux[0];
+    return p->lamp.power * glint_largest_channel(p->lamp.rgb) * gain *
+           glint_cos_deg(p->lamp.theta_deg) / t->set[0].unit_flux[0];
 }
 
 /* Returns the size in pixels of the box that the light of FIELD falls in. */
@@ -366,8 +487,9 @@ static double box_flux(const struct ray_field *field)
     return (p->x1_mm - p->x0_mm) * glint_pupil_height(p) * field->energy_unit;
 }
 
-/* Sets the light that all points of FIELD give, and the most that one does. */
-static void sum_light(const struct glint_frame *f, int field, double *all,
+/* Sets the light that all points of LEVEL give FIELD, and the most that one
+ * does. */
+static void sum_light(const struct glint_frame *f, int field, int level, double *all,
                       double *most)
 {
     const struct traced *t = state_of(f);
@@ -375,7 +497,8 @@ static void sum_light(const struct glint_frame *f, int field, double *all,
 
     *all = *most = 0;
     for (int i = 0; i < t->n_points; i++)
-        if (&t->patch[t->point[i].patch] == r->patch) {
+        if (&t->patch[t->point[i].patch] == r->patch &&
+            t->point[i].first <= level && t->point[i].last >= level) {
             const double light = light_of(f, &t->point[i], r->ghost);
 
             *all += light;
@@ -396,7 +519,7 @@ static bool is_looked(const struct glint_frame *f,
 {
     const struct traced *t = state_of(f);
     const struct ray_field_config *had = &t->cfg;
-    bool same = t->n_points == n && n > 0 && !f->tints &&
+    bool same = t->n_lamps == n && n > 0 && !f->tints &&
                 had->setup == cfg->setup && had->max_cells == cfg->max_cells &&
                 had->uniform == cfg->uniform &&
                 is_same_view(&had->view, &cfg->view) &&
@@ -407,7 +530,9 @@ static bool is_looked(const struct glint_frame *f,
         same = same && had->wave_nm[k] == cfg->wave_nm[k];
     for (int i = 0; i < n && same; i++)
         same = t->lamp[i].theta_deg == lamps[i].theta_deg &&
-               t->lamp[i].phi_deg == lamps[i].phi_deg;
+               t->lamp[i].phi_deg == lamps[i].phi_deg &&
+               t->lamp[i].power == lamps[i].power &&
+               memcmp(t->lamp[i].rgb, lamps[i].rgb, sizeof lamps[i].rgb) == 0;
     return same;
 }
 
@@ -418,18 +543,19 @@ static enum glint_status gather(struct traced *t,
     const size_t size = (size_t)n;
 
     t->lamp = calloc(size, sizeof *t->lamp);
-    t->point = calloc(size, sizeof *t->point);
+    t->point = calloc(2 * size, sizeof *t->point); /* with all levels */
     t->patch = calloc(size, sizeof *t->patch);
     if (!t->lamp || !t->point || !t->patch)
         return GLINT_E_MEMORY;
     memcpy(t->lamp, lamps, size * sizeof *t->lamp);
-    t->n_points = n;
+    t->n_lamps = t->n_points = n;
     for (int i = 0; i < n; i++)
-        t->point[i].lamp = &t->lamp[i];
+        t->point[i] = (struct point){.lamp = lamps[i], .last = LEVELS};
     if (t->cfg.round)
         gather_round(t);
     else
         gather_others(t);
+    add_levels(t);
     return GLINT_OK;
 }
 
@@ -450,7 +576,6 @@ static enum glint_status look(struct glint_frame *f,
 
     set_waves(t, s, &cfg);
     if (is_looked(f, &cfg, lamps, n)) {
-        memcpy(t->lamp, lamps, (size_t)n * sizeof *t->lamp);
         forget_plan(t);
         return GLINT_OK;
     }
@@ -479,6 +604,10 @@ static enum glint_status look(struct glint_frame *f,
         if (t->field[i].n_cells > 0)
             t->field[kept++] = t->field[i];
     t->n_fields = kept;
+    t->looked = malloc(((size_t)kept + 1) * sizeof *t->looked);
+    if (!t->looked)
+        return GLINT_E_MEMORY;
+    memcpy(t->looked, t->field, (size_t)kept * sizeof *t->looked);
     return GLINT_OK;
 }
 
@@ -499,7 +628,7 @@ static enum glint_status skip_faint(struct glint_frame *f, double scale,
     for (int i = 0; i < t->n_fields; i++) {
         double all, most;
 
-        sum_light(f, i, &all, &most);
+        sum_light(f, i, 0, &all, &most);
         peak[t->field[i].ghost] +=
             scale * all * t->field[i].peak_mm2 * pixel * pixel;
     }
@@ -523,6 +652,8 @@ static enum glint_status list_bundles(struct glint_frame *f)
                  w++)
                 for (int p = 0; p < t->n_points; p++) {
                     if (&t->patch[t->point[p].patch] != t->field[i].patch ||
+                        t->point[p].first > t->level[i] ||
+                        t->point[p].last < t->level[i] ||
                         !in_view(f, &t->field[i], turn_of(t, &t->point[p])))
                         continue;
                     if (pass)
@@ -558,7 +689,7 @@ static enum glint_status set_scale(struct glint_frame *frame,
     for (int i = 0; i < t->n_fields; i++) {
         double all, most;
 
-        sum_light(frame, i, &all, &most);
+        sum_light(frame, i, 0, &all, &most);
         brightest = fmax(brightest, most * t->field[i].flux /
                                         pixels_of(frame, &t->field[i]));
         together += all * box_flux(&t->field[i]) * t->set[0].n;
@@ -623,6 +754,29 @@ static enum glint_status hold_fields(struct glint_frame *f)
     return GLINT_OK;
 }
 
+/* Draws field I, whose points give LIGHT each per unit of their own in the mean,
+ * from fewer points and by a coarser grid as far as that does not show in codes:
+ * a point gives less than half of STEP, and errors of faint light shrink, in
+ * codes, by 2^(5/12) with each octave. Compare plan_cells.c. */
+static void coarsen(struct glint_frame *f, int i, double light, double step)
+{
+    struct traced *const t = state_of(f);
+    struct ray_field *r = &t->field[i];
+    double all, most, brightness;
+
+    while (t->level[i] < LEVELS) {
+        sum_light(f, i, t->level[i] + 1, &all, &most);
+        if (!(light * most < 0.5 * step))
+            break;
+        t->level[i]++;
+    }
+    sum_light(f, i, t->level[i], &all, &most);
+    brightness = light * most * (r->folds ? 16 : 1);
+    if (brightness < 1)
+        glint_ray_field_coarsen(
+            &t->cfg, r, exp2(5.0 / 24 * fmax(log2(brightness), -12)));
+}
+
 /* Plans a frame of LAMPS times SCALE for IMAGE, and traces its rays. */
 static enum glint_status plan(struct glint_frame *f,
                               const struct glint_lamp *lamps, int n,
@@ -636,24 +790,29 @@ static enum glint_status plan(struct glint_frame *f,
     if (status != GLINT_OK)
         return status;
     t->set_of = calloc((size_t)t->n_fields + 1, sizeof *t->set_of);
+    t->level = calloc((size_t)t->n_fields + 1, sizeof *t->level);
     t->mem = calloc((size_t)t->n_fields + 1, sizeof *t->mem);
-    if (!t->set_of || !t->mem)
+    if (!t->set_of || !t->mem || !t->level)
         return GLINT_E_MEMORY;
+    t->in_codes = is_in_codes(f, image);
+    memcpy(t->field, t->looked, (size_t)t->n_fields * sizeof *t->field);
     status = skip_faint(f, scale,
                         glint_frame_codes_light(f, image, f->dials.cull_codes));
     if (status != GLINT_OK)
         return status;
     for (int i = 0; i < t->n_fields; i++) {
         struct ray_field *r = &t->field[i];
-        double all, most;
+        double all, most, light;
 
         if (t->set_of[i] < 0)
             continue;
-        sum_light(f, i, &all, &most);
-        t->set_of[i] =
-            choose_set(f, r, scale * most * r->flux / pixels_of(f, r), step);
+        light = scale * r->flux / pixels_of(f, r);
+        sum_light(f, i, 0, &all, &most);
+        t->set_of[i] = choose_set(f, r, light * most, step);
         glint_ray_field_choose(r, t->set[t->set_of[i]].nm,
                                t->set[t->set_of[i]].n);
+        if (t->in_codes)
+            coarsen(f, i, light, step);
     }
     status = list_bundles(f);
     return status == GLINT_OK ? hold_fields(f) : status;
@@ -713,7 +872,7 @@ static void make_bundle(const struct glint_frame *f, const struct ray_bundle *b,
     const struct traced *t = state_of(f);
     const struct ray_field *r = &t->field[b->field];
     const struct wave_set *set = &t->set[t->set_of[b->field]];
-    const struct glint_lamp *lamp = t->point[b->point].lamp;
+    const struct glint_lamp *lamp = &t->point[b->point].lamp;
     const struct glint_pupil *p = &r->pupil;
     const double n = r->n_cells;
     const double area = (p->x1_mm - p->x0_mm) / n * (glint_pupil_height(p) / n);
@@ -758,7 +917,9 @@ static enum glint_status begin_flare(struct glint_frame *f, double scale)
         glint_flare_init(&f->memory.flare, &f->cfg, f->memory.block, bytes);
     if (status != GLINT_OK)
         return status;
-    t->rays = (struct glint_flare_rays){open_bundle, row_of, f};
+    t->rays =
+        (struct glint_flare_rays){open_bundle, row_of, f, t->in_codes,
+                                  t->in_codes ? f->dials.snap_codes_q8 : 0};
     glint_flare_begin_rays(f->memory.flare, &t->rays);
     for (int i = 0; i < t->n_bundles; i++) {
         struct glint_bundle bundle;

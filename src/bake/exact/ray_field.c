@@ -21,6 +21,8 @@ enum { SOME = 8 };
 enum { X, Y, STOP_X, STOP_Y, BARREL_0, BARREL_1, ENERGY, CHANNELS };
 enum { MOST_SIDE = GLINT_MAX_CELLS + 1 };
 
+#define MOST_SAG (1.0 / 16)
+
 void glint_ray_direction(const struct ray_field_config *cfg, const double at[2],
                          double direction[3])
 {
@@ -48,7 +50,7 @@ static void init_path(const struct ray_field_config *cfg,
  * too, the pupil is the whole front, of which the opening may be a hundredth.
  */
 static int cells_of(const struct ray_field_config *cfg,
-                    const struct glint_sampling *s)
+                    const struct glint_sampling *s, int *least_cells)
 {
     const double pixels = cfg->view.width / cfg->view.sensor_width_mm;
     const double curvature =
@@ -64,6 +66,7 @@ static int cells_of(const struct ray_field_config *cfg,
             ? fmin(4 * cfg->max_cells, CELLS_A_RADIUS * s->step)
             : GLINT_LEAST_CELLS;
 
+    *least_cells = cfg->uniform ? cfg->max_cells : (int)ceil(least);
     if (cfg->uniform)
         return cfg->max_cells;
     return glint_grid_fours((int)ceil(
@@ -321,7 +324,7 @@ static void set_sags(const struct ray_field_config *cfg,
             field->sag[2] += curved * b.step2 / b.n_steps * by * by / 12;
     }
     for (int k = 0; k < 3; k++)
-        field->sag[k] = fmin(fmax(field->sag[k], 0), 1.0 / 16);
+        field->sag[k] = fmin(fmax(field->sag[k], 0), MOST_SAG);
 }
 
 /* Sets how bright FIELD is and how far its wavelengths are apart. */
@@ -438,9 +441,24 @@ void glint_ray_field_look(const struct ray_field_config *cfg,
             add_sampling(&sampling, &more);
         }
     choose_cuts(field, &sampling);
-    field->n_cells = cells_of(cfg, &sampling);
+    field->n_cells = cells_of(cfg, &sampling, &field->least_cells);
+    field->folds = sampling.folds;
     measure(cfg, field, sampling.folds);
     add_rim(cfg, &field->pupil);
+}
+
+void glint_ray_field_coarsen(const struct ray_field_config *cfg,
+                             struct ray_field *field, double by)
+{
+    const int n = glint_grid_fours(
+        (int)ceil(fmax(field->least_cells, by * field->n_cells)));
+    const double ratio = (double)field->n_cells / n;
+
+    if (cfg->uniform || n >= field->n_cells)
+        return;
+    for (int k = 0; k < 3; k++)
+        field->sag[k] = fmin(field->sag[k] * ratio * ratio, MOST_SAG);
+    field->n_cells = n;
 }
 
 /* ------------------------------------------------------------------ samples */

@@ -57,7 +57,9 @@ struct ray_field {
     int ghost;
     const struct ray_patch *patch;
     struct glint_pupil pupil;
-    int n_cells; /* cells a side; 0: nothing of it is in the picture */
+    int n_cells;     /* cells a side; 0: nothing of it is in the picture */
+    int least_cells; /* fewest that do not step over the opening */
+    bool folds;
     int n_cuts, cut_event[RAY_FIELD_CUTS]; /* as chosen by the sampling */
     double
         energy_unit; /* ray energy that energy 65536 of a vertex stands for */
@@ -80,6 +82,10 @@ struct ray_field {
  * as many cells, by n^2 times less. */
 void glint_ray_field_look(const struct ray_field_config *cfg,
                           struct ray_field *field);
+
+/* Makes the grid BY times as fine, BY at most 1, for a faint ghost. */
+void glint_ray_field_coarsen(const struct ray_field_config *cfg,
+                             struct ray_field *field, double by);
 
 /* Chooses the samples for the wavelengths NM[N], which rise. */
 void glint_ray_field_choose(struct ray_field *field, const double *nm, int n);
