@@ -78,8 +78,9 @@ struct traced {
     int n_sets;
     struct point *point;
     struct ray_patch *patch;
-    struct ray_field *looked; /* [looked]: as glint_ray_field_look() made them */
-    struct ray_field *field;  /* [fields]: those as this frame draws them */
+    struct ray_field
+        *looked;             /* [looked]: as glint_ray_field_look() made them */
+    struct ray_field *field; /* [fields]: those as this frame draws them */
     int *set_of; /* [fields]: index of its set; -1: no pixel shows the field */
     void **mem;  /* [fields]: its rays; NULL: they are traced when needed */
     struct ray_bundle *bundle;
@@ -338,9 +339,9 @@ static void unite(const struct traced *t, const struct point *a,
     both->lamp.phi_deg = atan2(d[1], d[0]) / degree;
     both->lamp.power = a->lamp.power + b->lamp.power;
     for (int c = 0; c < 3 && both->lamp.power > 0; c++)
-        both->lamp.rgb[c] = (a->lamp.rgb[c] * a->lamp.power +
-                             b->lamp.rgb[c] * b->lamp.power) /
-                            both->lamp.power;
+        both->lamp.rgb[c] =
+            (a->lamp.rgb[c] * a->lamp.power + b->lamp.rgb[c] * b->lamp.power) /
+            both->lamp.power;
     if (t->cfg.round)
         both->at[0] = both->lamp.theta_deg;
     else
@@ -387,10 +388,10 @@ static bool add_level(struct traced *t, int level)
             continue;
         for (int k = i + 1; k < n; k++) {
             const struct point *b = &t->point[k];
-            const double d = b->patch == a->patch && b->first <= level &&
-                                     b->last == LEVELS
-                                 ? apart2(a, b)
-                                 : HUGE_VAL;
+            const double d =
+                b->patch == a->patch && b->first <= level && b->last == LEVELS
+                    ? apart2(a, b)
+                    : HUGE_VAL;
 
             if (d < least) {
                 least = d;
@@ -489,8 +490,8 @@ static double box_flux(const struct ray_field *field)
 
 /* Sets the light that all points of LEVEL give FIELD, and the most that one
  * does. */
-static void sum_light(const struct glint_frame *f, int field, int level, double *all,
-                      double *most)
+static void sum_light(const struct glint_frame *f, int field, int level,
+                      double *all, double *most)
 {
     const struct traced *t = state_of(f);
     const struct ray_field *r = &t->field[field];
@@ -754,10 +755,10 @@ static enum glint_status hold_fields(struct glint_frame *f)
     return GLINT_OK;
 }
 
-/* Draws field I, whose points give LIGHT each per unit of their own in the mean,
- * from fewer points and by a coarser grid as far as that does not show in codes:
- * a point gives less than half of STEP, and errors of faint light shrink, in
- * codes, by 2^(5/12) with each octave. Compare plan_cells.c. */
+/* Draws field I, whose points give LIGHT each per unit of their own in the
+ * mean, from fewer points and by a coarser grid as far as that does not show in
+ * codes: a point gives less than half of STEP, and errors of faint light
+ * shrink, in codes, by 2^(5/12) with each octave. Compare plan_cells.c. */
 static void coarsen(struct glint_frame *f, int i, double light, double step)
 {
     struct traced *const t = state_of(f);
@@ -773,8 +774,8 @@ static void coarsen(struct glint_frame *f, int i, double light, double step)
     sum_light(f, i, t->level[i], &all, &most);
     brightness = light * most * (r->folds ? 16 : 1);
     if (brightness < 1)
-        glint_ray_field_coarsen(
-            &t->cfg, r, exp2(5.0 / 24 * fmax(log2(brightness), -12)));
+        glint_ray_field_coarsen(&t->cfg, r,
+                                exp2(5.0 / 24 * fmax(log2(brightness), -12)));
 }
 
 /* Plans a frame of LAMPS times SCALE for IMAGE, and traces its rays. */
