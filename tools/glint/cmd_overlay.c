@@ -205,24 +205,26 @@ static void print_figures(const struct overlay *o)
             "%dx%d (find %.1f ms, flare %.1f ms), %d ghosts; flare memory %zu "
             "bytes, peak %zu\n",
             o->drawing.run.view.width, o->drawing.run.view.height,
-            o->find_ms / n, o->flare_ms / n, o->drawing.run.report.ghosts,
+            o->figures.find_ms / n, o->figures.flare_ms / n,
+            o->drawing.run.report.ghosts,
             o->drawing.run.report.arena_bytes +
                 o->drawing.run.report.star_bytes,
-            o->peak_bytes);
+            o->figures.peak_bytes);
 }
 
 static void print_json(const struct overlay *o,
                        const struct overlay_light *light)
 {
-    const double seconds = tool_seconds() - o->started;
+    const double seconds = tool_seconds() - o->figures.started;
     const int drawn = overlay_drawn(o), n = drawn ? drawn : 1;
     struct json_writer json = {.to = stdout};
 
     json_write(&json,
                "{frames: %d, ms: %.3f, fps: %.2f, find_ms: %.3f, "
                "flare_ms: %.3f, most_lights: %d, reused: %d",
-               drawn, 1e3 * seconds, drawn / seconds, o->find_ms / n,
-               o->flare_ms / n, o->most_lights, o->n_reused);
+               drawn, 1e3 * seconds, drawn / seconds, o->figures.find_ms / n,
+               o->figures.flare_ms / n, o->figures.most_lights,
+               o->figures.n_reused);
     overlay_json(&json, o, light);
     settings_json(&json, &o->drawing.run.report);
     json_write(&json, "}\n");
@@ -235,7 +237,7 @@ static void print_result(const struct tool *tool, struct overlay *o)
 
     if (!tool->quiet && !tool->verbose && isatty(STDERR_FILENO))
         fputs("\r\033[K", stderr);
-    settings_warn_lights(tool, &o->worst);
+    settings_warn_lights(tool, &o->figures.worst);
     if (tool->quiet && !json)
         return;
     light = overlay_light(o);
@@ -332,7 +334,7 @@ static int run(struct tool *tool, struct overlay *o)
         code = drawing_open(tool, &o->drawing);
     if (code != EXIT_OK)
         return code;
-    o->started = tool_seconds();
+    o->figures.started = tool_seconds();
     if (o->is_video)
         code = overlay_video(tool, o);
     else if (overlay_is_sequence(o))

@@ -448,16 +448,18 @@ void drawing_find_lamps(struct drawing *drawing,
 
 /* Adds the lamps that the scene shows to those of RUN, less what it hides. */
 static void add_scene_lamps(struct over_scene *scene, struct drawing_run *run,
-                            double focal_mm, bool is_still)
+                            const struct drawing_line *line)
 {
+    const double focal_mm = line->settings.setup.optics.focal_mm;
     const int n = run->n_lamps;
 
     run->n_lamps = glint_engine_add_scene(run->engine, scene->frame.scene,
                                           run->lamp, n, &scene->lamps_hidden);
     scene->lights = run->n_lamps - n;
-    run->n_lamps += over_scene_glints(scene, &run->view, focal_mm,
-                                      run->lamp + run->n_lamps);
-    glint_engine_apply_shares(run->lamp, run->n_lamps, is_still);
+    run->n_lamps +=
+        over_scene_glints(scene, !line->settings.options.no_tracking,
+                          &run->view, focal_mm, run->lamp + run->n_lamps);
+    glint_engine_apply_shares(run->lamp, run->n_lamps, line->is_still);
 }
 
 /* Draws the scene over IMAGE within the budget, of which the flare has what the
@@ -481,8 +483,7 @@ static enum glint_status draw_scene(struct drawing *d,
             run->engine,
             budget_ms * fmax(LEAST_SHARE, 1 - scene->ms / budget_ms));
     if (status == GLINT_OK && d->files.has_lens)
-        add_scene_lamps(scene, run, d->line.settings.setup.optics.focal_mm,
-                        d->line.is_still);
+        add_scene_lamps(scene, run, &d->line);
     return status;
 }
 
@@ -501,7 +502,6 @@ enum glint_status drawing_find(struct drawing *drawing,
         find_lamps(drawing, image, elapsed_us);
     run->find_ms = 1e3 * (tool_seconds() - start);
     scene->elapsed_us = elapsed_us;
-    scene->no_tracking = drawing->line.settings.options.no_tracking;
     return scene->is_open ? draw_scene(drawing, image) : GLINT_OK;
 }
 
@@ -567,7 +567,8 @@ enum glint_status drawing_draw(struct drawing *drawing,
 
     if (status == GLINT_OK && drawing->files.has_lens)
         status = draw_flare(drawing, image);
-    drawing_mark(drawing, image);
+    if (status == GLINT_OK)
+        drawing_mark(drawing, image);
     drawing->run.n_frames++;
     return status;
 }
@@ -603,7 +604,8 @@ void drawing_mark(const struct drawing *drawing,
         /* without memory there are no numbers */
         preview_number(run->engine, run->lamp, run->n_lamps, drawing_scale(run),
                        image);
-    over_scene_mark(&drawing->files.scene, image);
+    if (line->show_time_line)
+        over_scene_mark(&drawing->files.scene, image);
     if (!line->show_lights || !run->engine)
         return;
     for (int i = 0; i < run->n_lamps; i++)

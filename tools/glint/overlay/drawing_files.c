@@ -276,7 +276,6 @@ static void name_files(const struct drawing_line *line, struct drawing_files *f)
     f->scene.pose_file = o->pose;
     f->scene.control_file = o->control;
     f->scene.is_live = line->is_live;
-    f->scene.has_time_line = line->show_time_line;
 }
 
 int drawing_files_open(const struct tool *tool, struct drawing_line *line,

@@ -9,6 +9,94 @@
 #include "motions/time_line.h"
 #include "scenes/account.h"
 
+/* ------------------------------------------------------- lines of control
+ */
+
+/* Returns whether LINE can be obeyed, but not whether the flare can have the
+ * value. */
+static enum glint_status check_line(const struct over_scene *over,
+                                    const struct control_line *line,
+                                    const char *where,
+                                    struct glint_error *error)
+{
+    if (line->verb == CONTROL_OPTION)
+        return over->set_option
+                   ? GLINT_OK
+                   : control_fail(error, where, 1,
+                                  "that changes a flare, and --lens none has "
+                                  "none");
+    return over->is_open
+               ? steer_check(&over->steer, line, where, error)
+               : control_fail(error, where, 1,
+                              "that steers --scene, and there is none");
+}
+
+static int open_control(struct over_scene *over)
+{
+    struct glint_error error = {""};
+    enum glint_status status;
+    const struct control_line *line;
+
+    status = controls_open(&over->control, over->control_file, over->is_live,
+                           &error);
+    for (int i = 0;
+         status == GLINT_OK && (line = controls_row(&over->control, i)); i++) {
+        char where[CONTROL_WHERE];
+
+        controls_where(&over->control, i, where);
+        status = check_line(over, line, where, &error);
+    }
+    if (status != GLINT_OK)
+        return tool_fail(over->tool, status, error.text);
+    if (over->control.is_keys && !over->tool->quiet)
+        fprintf(stderr, "%s\n", keyboard_help);
+    return EXIT_OK;
+}
+
+static enum glint_status obey(struct over_scene *over,
+                              const struct control_line *line,
+                              struct glint_error *error)
+{
+    struct glint_error cause = {""};
+    char where[CONTROL_WHERE];
+    enum glint_status status;
+
+    controls_where(&over->control, -1, where);
+    if (line->verb == CONTROL_OPTION && over->set_option) {
+        status =
+            over->set_option(over->set_ctx, line->name[0], line->v[0], &cause);
+        return status == GLINT_OK ? status
+                                  : control_fail(error, where, line->column,
+                                                 "%.120s", cause.text);
+    }
+    if (line->verb == CONTROL_OPTION || !over->is_open)
+        return line->is_change ? GLINT_OK
+                               : check_line(over, line, where, error);
+    return playback_take(&over->playback, line)
+               ? GLINT_OK
+               : steer_take(&over->steer, over->frame.scene, line, where,
+                            error);
+}
+
+/* A mistake is said, one a picture at most, and ends nothing. */
+void over_scene_obey(struct over_scene *over, int frame)
+{
+    const long before = over->control.n_bad;
+    const struct control_line *line;
+
+    if (!over->control.is_open || (over->is_open && !over->is_sized))
+        return;
+    while ((line = controls_next(&over->control, frame))) {
+        struct glint_error error;
+
+        if (obey(over, line, &error) != GLINT_OK)
+            controls_refuse(&over->control, &error);
+    }
+    if (over->control.n_bad > before && !over->tool->quiet)
+        fprintf(stderr, "glint %s: %s\n", over->tool->name,
+                over->control.bad.text);
+}
+
 /* ------------------------------------------------------------------- opening
  */
 
@@ -22,7 +110,7 @@ static int n_lights(const struct over_scene *over)
     return (int)over->baked.model.header->n_lights;
 }
 
-/* Returns the place of THING in over->moved. */
+/* Returns the place of THING in over->poses.moved. */
 static int place_of(const struct over_scene *over, int thing)
 {
     return thing == POSES_CAMERA ? n_objects(over) + n_lights(over) : thing;
@@ -33,17 +121,18 @@ static int open_poses(struct over_scene *over)
     struct glint_error error = {""};
     const size_t n = (size_t)place_of(over, POSES_CAMERA) + 1;
     const enum glint_status status =
-        poses_open(&over->poses, over->pose_file, over->is_live,
+        poses_open(&over->poses.file, over->pose_file, over->is_live,
                    &over->baked.model, &error);
 
     if (status != GLINT_OK)
         return tool_fail(over->tool, status, error.text);
-    over->moved = calloc(n, sizeof *over->moved);
-    if (!over->moved)
+    over->poses.moved = calloc(n, sizeof *over->poses.moved);
+    if (!over->poses.moved)
         return tool_fail(over->tool, GLINT_E_MEMORY, NULL);
     for (int i = 0; i < n_objects(over); i++)
-        memcpy(over->moved[i].turn_q30, over->baked.model.object[i].turn_q30,
-               sizeof over->moved[i].turn_q30);
+        memcpy(over->poses.moved[i].turn_q30,
+               over->baked.model.object[i].turn_q30,
+               sizeof over->poses.moved[i].turn_q30);
     return EXIT_OK;
 }
 
@@ -59,7 +148,7 @@ int over_scene_open(struct over_scene *over, const struct tool *tool)
         return tool_usage(tool, "--pose moves the things of --scene, of which "
                                 "there is none");
     if (!over->file)
-        return over->control_file ? over_scene_open_control(over) : EXIT_OK;
+        return over->control_file ? open_control(over) : EXIT_OK;
     code = baked_scene_open(tool, over->file, &over->baked);
     if (code != EXIT_OK)
         return code;
@@ -76,8 +165,7 @@ int over_scene_open(struct over_scene *over, const struct tool *tool)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     if (over->pose_file)
         code = open_poses(over);
-    return code == EXIT_OK && over->control_file ? over_scene_open_control(over)
-                                                 : code;
+    return code == EXIT_OK && over->control_file ? open_control(over) : code;
 }
 
 bool over_scene_needs_lens(const struct over_scene *over)
@@ -96,10 +184,10 @@ void over_scene_close(struct over_scene *over)
 {
     if (over->is_sized)
         scene_frame_close(&over->frame);
-    if (over->poses.is_open)
-        poses_close(&over->poses);
-    free(over->moved);
-    over->moved = NULL;
+    if (over->poses.file.is_open)
+        poses_close(&over->poses.file);
+    free(over->poses.moved);
+    over->poses.moved = NULL;
     controls_close(&over->control);
     glints_close(&over->glints);
     if (over->is_open)
@@ -152,7 +240,7 @@ static enum glint_status move_camera(struct over_scene *over,
 static enum glint_status move(struct over_scene *over,
                               struct glint_scene *scene, int i)
 {
-    const struct scene_moved *const to = &over->moved[i];
+    const struct scene_moved *const to = &over->poses.moved[i];
 
     if (!to->is_moved)
         return GLINT_OK;
@@ -169,7 +257,7 @@ static void move_all(void *ctx, struct glint_scene *scene)
     struct over_scene *const over = ctx;
 
     glint_scene_seek(scene, (uint32_t)over->shown);
-    for (int i = 0; over->moved && i <= place_of(over, POSES_CAMERA); i++)
+    for (int i = 0; over->poses.moved && i <= place_of(over, POSES_CAMERA); i++)
         move(over, scene, i);
     steer_apply(&over->steer, scene);
 }
@@ -191,7 +279,7 @@ static void move_back(struct over_scene *over)
                            (const int32_t(*)[3])m->header->camera.axis_q30);
     steer_apply(&over->steer, scene);
     for (int i = 0; i <= place_of(over, POSES_CAMERA); i++)
-        over->moved[i].is_moved = false;
+        over->poses.moved[i].is_moved = false;
 }
 
 /* Takes the poses up to FRAME. */
@@ -199,27 +287,28 @@ static void take_poses(struct over_scene *over, int frame)
 {
     const struct pose *pose;
 
-    if (frame < over->posed && poses_rewind(&over->poses))
+    if (frame < over->poses.frame && poses_rewind(&over->poses.file))
         move_back(over);
-    over->posed = frame;
-    while ((pose = poses_next(&over->poses, frame))) {
+    over->poses.frame = frame;
+    while ((pose = poses_next(&over->poses.file, frame))) {
         const int i = place_of(over, pose->thing);
-        const struct scene_moved before = over->moved[i];
+        const struct scene_moved before = over->poses.moved[i];
 
-        over->moved[i].is_moved = true;
-        memcpy(over->moved[i].at, pose->at, sizeof pose->at);
+        over->poses.moved[i].is_moved = true;
+        memcpy(over->poses.moved[i].at, pose->at, sizeof pose->at);
         if (pose->has_turn)
-            memcpy(over->moved[i].turn_q30, pose->turn_q30,
+            memcpy(over->poses.moved[i].turn_q30, pose->turn_q30,
                    sizeof pose->turn_q30);
         if (move(over, over->frame.scene, i) != GLINT_OK) {
-            over->moved[i] = before;
-            poses_refuse(&over->poses, pose);
+            over->poses.moved[i] = before;
+            poses_refuse(&over->poses.file, pose);
         }
     }
-    if (over->poses.n_bad > 0 && !over->has_said && !over->tool->quiet)
+    if (over->poses.file.n_bad > 0 && !over->poses.has_warned &&
+        !over->tool->quiet)
         fprintf(stderr, "glint %s: %s; such lines are passed over\n",
-                over->tool->name, over->poses.bad.text);
-    over->has_said = over->poses.n_bad > 0;
+                over->tool->name, over->poses.file.bad.text);
+    over->poses.has_warned = over->poses.file.n_bad > 0;
 }
 
 /* ------------------------------------------------------------------- drawing
@@ -280,7 +369,7 @@ enum glint_status over_scene_draw(struct over_scene *over,
                       ? playback_next(&over->playback, 1e-6 * over->elapsed_us)
                       : frame;
     glint_scene_seek(over->frame.scene, (uint32_t)over->shown);
-    if (over->moved)
+    if (over->poses.moved)
         take_poses(over, over->shown);
     status = over->budget_ms > 0 && scene_budget_follow(&over->budget, over->ms,
                                                         over->budget_ms)
@@ -298,8 +387,61 @@ void over_scene_mark(const struct over_scene *over,
 {
     struct glint_motion motion = over->motion;
 
-    if (over->has_time_line && over->is_open && over->baked.model.motion)
+    if (over->is_open && over->baked.model.motion)
         time_line_draw(image, &motion, over->shown);
+}
+
+/* --------------------------------------------------------------------- layer
+ */
+
+void over_scene_layer_free(struct over_scene_layer *layer)
+{
+    free(layer->rgb);
+    free(layer->cover_q8);
+    *layer = (struct over_scene_layer){NULL, NULL};
+}
+
+/* Draws over a picture of LIGHT_Q20, n samples at LINEAR_Q20. */
+static void draw_over(struct over_scene *over, int32_t light, size_t n,
+                      int32_t *linear_q20)
+{
+    struct glint_image image = {.format = GLINT_LINEAR_Q20,
+                                .width = over->frame.cfg.width,
+                                .height = over->frame.cfg.height};
+
+    for (size_t i = 0; i < n; i++)
+        linear_q20[i] = light;
+    glint_image_place(&image, linear_q20);
+    glint_scene_draw(over->frame.scene, &image);
+}
+
+/* What a thing hides of white is what it is over black less what it is over
+ * white. */
+enum glint_status over_scene_layer(struct over_scene *over,
+                                   struct over_scene_layer *layer)
+{
+    const size_t n =
+        (size_t)over->frame.cfg.width * (size_t)over->frame.cfg.height;
+    int32_t *const linear_q20 = calloc(3 * n, sizeof *linear_q20);
+
+    layer->rgb = malloc(3 * n * sizeof *layer->rgb);
+    layer->cover_q8 = malloc(n * sizeof *layer->cover_q8);
+    if (!linear_q20 || !layer->rgb || !layer->cover_q8) {
+        free(linear_q20);
+        over_scene_layer_free(layer);
+        return GLINT_E_MEMORY;
+    }
+    draw_over(over, 0, 3 * n, linear_q20);
+    for (size_t i = 0; i < n; i++)
+        for (size_t c = 3 * i; c < 3 * i + 3; c++)
+            layer->rgb[c] = (float)linear_q20[c] * 0x1p-20F;
+    draw_over(over, 1 << 20, 3 * n, linear_q20);
+    for (size_t i = 0; i < n; i++)
+        layer->cover_q8[i] =
+            (uint16_t)lrintf(256 + 256 * layer->rgb[3 * i] -
+                             0x1p-12F * (float)linear_q20[3 * i]);
+    free(linear_q20);
+    return GLINT_OK;
 }
 
 /* --------------------------------------------------------------------- lamps
@@ -308,12 +450,13 @@ void over_scene_mark(const struct over_scene *over,
 /* From here on highlights are numbered, beyond hashes of most texts. */
 #define HIGHLIGHT_IDS UINT32_C(0x7ffe0000)
 
-int over_scene_glints(struct over_scene *over, const struct glint_view *view,
-                      double focal_mm, struct glint_engine_lamp *lamps)
+int over_scene_glints(struct over_scene *over, bool follows,
+                      const struct glint_view *view, double focal_mm,
+                      struct glint_engine_lamp *lamps)
 {
     struct glints *const g = &over->glints;
-    const int n = glints_frame(g, over->frame.scene,
-                               over->no_tracking ? 0 : over->elapsed_us);
+    const int n =
+        glints_frame(g, over->frame.scene, follows ? over->elapsed_us : 0);
 
     for (int i = 0; i < n; i++) {
         struct glint_lamp lamp = {.power = 0};
@@ -342,9 +485,9 @@ void over_scene_say(const struct over_scene *over, FILE *to)
     if (over->lamps_hidden > 0)
         fprintf(to, " hiding %d light%s", over->lamps_hidden,
                 over->lamps_hidden == 1 ? "" : "s");
-    if (over->poses.n_bad > 0)
-        fprintf(to, ", %ld line%s of poses passed over", over->poses.n_bad,
-                over->poses.n_bad == 1 ? "" : "s");
+    if (over->poses.file.n_bad > 0)
+        fprintf(to, ", %ld line%s of poses passed over", over->poses.file.n_bad,
+                over->poses.file.n_bad == 1 ? "" : "s");
 }
 
 void over_scene_json(struct json_writer *json, const struct over_scene *over)
@@ -357,5 +500,5 @@ void over_scene_json(struct json_writer *json, const struct over_scene *over)
                scene_budget_quality(&over->budget), over->lights);
     scene_highlights_json(json, &over->frame);
     json_write(json, "lamps_hidden: %d, poses_bad: %ld, control_bad: %ld}",
-               over->lamps_hidden, over->poses.n_bad, over->control.n_bad);
+               over->lamps_hidden, over->poses.file.n_bad, over->control.n_bad);
 }

@@ -24,10 +24,18 @@
 #include "scenes/scene_frame.h"
 #include "control/steer.h"
 
-/* Where a thing was moved to. */
+/* Where an object was moved to. */
 struct scene_moved {
     bool is_moved;
     int32_t at[3], turn_q30[4];
+};
+
+/* The poses of a file, and where they have moved things. */
+struct scene_poses {
+    struct poses file;
+    struct scene_moved *moved; /* objects, lights, and the camera */
+    int frame;                 /* of the poses that are shown */
+    bool has_warned;           /* of lines that were skipped */
 };
 
 struct over_scene {
@@ -46,25 +54,20 @@ struct over_scene {
     double budget_ms;   /* what drawing may take; 0: as long as it does */
     int32_t elapsed_us; /* from the last picture to the next; 0: it is one by
                            itself */
-    bool no_tracking;   /* each picture's highlights are its own */
-
-    bool has_time_line; /* of recorded motion, over pictures of 8 bits */
 
     /* Private. */
     const struct tool *tool;
     struct scene_budget budget;
     struct baked_scene baked;
-    struct poses poses;
-    struct scene_moved *moved; /* objects, lights, and the camera */
+    struct scene_poses poses;
     struct controls control;
     struct playback playback;   /* of poses and recorded motion */
     int shown;                  /* the frame of them that is drawn */
     struct glint_motion motion; /* of the scene, if it has one */
     struct steer steer;
-    int posed; /* frame of the poses that is shown */
     struct glints glints;
     struct scene_frame frame;
-    bool is_open, is_sized, has_said;
+    bool is_open, is_sized;
 
     /* Of the last frame. */
     double ms;
@@ -91,10 +94,6 @@ int over_scene_size(struct over_scene *over, const struct scene_dials *dials);
  * itself. GLINT_E_MEMORY. */
 enum glint_status over_scene_coarsen(struct over_scene *over, double quality);
 
-/* Opens the lines of control. What those of a file name has to be there.
- * Returns an exit code. */
-int over_scene_open_control(struct over_scene *over);
-
 /* Obeys the lines of control up to FRAME. Drawing it does so, but the lens has
  * to be zoomed before lamps are placed. */
 void over_scene_obey(struct over_scene *over, int frame);
@@ -103,12 +102,10 @@ void over_scene_obey(struct over_scene *over, int frame);
 enum glint_status over_scene_draw(struct over_scene *over,
                                   const struct glint_image *image, int frame);
 
-/* Draws the time line of what was drawn last, if that is wanted. */
+/* Draws the time line of the recorded motion on IMAGE, of 8 bits, if the scene
+ * has one. */
 void over_scene_mark(const struct over_scene *over,
                      const struct glint_image *image);
-
-/* Draws the scene drawn last once more, onto IMAGE. */
-void over_scene_again(struct over_scene *over, const struct glint_image *image);
 
 /* The scene by itself, for pictures that are no struct glint_image. */
 struct over_scene_layer {
@@ -126,10 +123,12 @@ void over_scene_layer_free(struct over_scene_layer *layer);
 enum { OVER_SCENE_LAMPS = GLINT_SCENE_MAX_LIGHTS + GLINTS_MAX };
 
 /* Sets LAMPS, [GLINTS_MAX], to the highlights of the scene drawn last, as a
- * lens of FOCAL_MM sees them; the picture shows them, as it does lamps. Returns
- * how many there are. */
-int over_scene_glints(struct over_scene *over, const struct glint_view *view,
-                      double focal_mm, struct glint_engine_lamp *lamps);
+ * lens of FOCAL_MM sees them; the picture shows them, as it does lamps.
+ * FOLLOWS: they are tracked from picture to picture. Returns how many there
+ * are. */
+int over_scene_glints(struct over_scene *over, bool follows,
+                      const struct glint_view *view, double focal_mm,
+                      struct glint_engine_lamp *lamps);
 
 /* Returns the memory that drawing takes. */
 size_t over_scene_bytes(const struct over_scene *over);

@@ -12,6 +12,21 @@
 
 struct overlay_y4m;
 
+/* Figures over all frames. */
+struct overlay_figures {
+    /* Of the frame of which most lights were merged, but with the most lights,
+     * lights out of the model's range, and dropped bundles and cells of all
+     * frames. */
+    struct glint_engine_report worst;
+    int most_lights;
+    int n_reused;             /* frames drawn with the edges of the last */
+    double find_ms, flare_ms; /* ms, sums */
+    double peak, mean_sum;    /* light of the flare, 1 = white: the brightest of
+                                 all frames; the sum of their means */
+    size_t peak_bytes;
+    double started, reported; /* s, of the start and the last progress */
+};
+
 struct overlay {
     struct drawing drawing;
     /* Memory for a video that is not plain 8 bits; NULL: none. */
@@ -33,19 +48,7 @@ struct overlay {
     struct layers layers;
     bool has_layers_type;
     const char *encode; /* options for ffmpeg, or NULL */
-
-    /* Figures for warnings: those of the frame of which most lights were
-     * merged, but with the most lights, lights beyond the model, and dropped
-     * bundles and cells of all frames. */
-    struct glint_engine_report worst;
-    int most_lights;
-    int n_reused; /* frames that were drawn with the edges of the last */
-    /* find_ms, flare_ms: ms in all frames; started, reported: times of the
-     * start and the last progress, seconds */
-    double find_ms, flare_ms, started, reported;
-    double peak, mean_sum; /* light of the flare, 1 = white: the brightest of
-                              all frames; the sum of their means */
-    size_t peak_bytes;
+    struct overlay_figures figures;
 };
 
 /* Puts the flare on IMAGE, the next frame, and adds up its figures. Returns an

@@ -1,10 +1,33 @@
-/* SPDX-License-Identifier: MIT */
-#include "overlay/overlay_file.h"
+/* SPDX-License-Identifier: MIT
+ *
+ * A picture file on its way through overlay: opened, lit, and written.
+ *
+ * Opaque sRGB of 8 bits is drawn on as it is, in integers. Of all other
+ * pictures the finder sees a proxy of 8 bits, the light of lamps is measured in
+ * floats where the file has them, and the flare is added in linear light to the
+ * samples that it reaches. A file on which nothing is drawn is copied if the
+ * output has the same type.
+ */
+#include "overlay/overlay.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "overlay/drawing.h"
+
+struct overlay_file {
+    /* The picture in which lamps are found. */
+    struct glint_image image;
+
+    const char *from, *to;
+    struct glint_kept kept;
+    struct glint_samples work; /* a deeper copy of the input, for floats out */
+    /* is_direct: IMAGE is the file's own samples and is drawn on; is_copied:
+     * light is added to WORK, not to the file's samples */
+    bool is_direct, is_copied;
+    double white; /* light of the proxy's white */
+    float *layer;
+};
 
 static bool is_deep(const struct glint_samples *s)
 {
@@ -59,9 +82,23 @@ static enum glint_status choose_way(struct overlay_file *f,
     return glint_samples_proxy(&f->kept.samples, &f->image, &f->white);
 }
 
-int overlay_file_open(const struct tool *tool, struct overlay_file *file,
-                      const struct drawing *drawing, const char *from,
-                      const char *to)
+static void close_file(struct overlay_file *file)
+{
+    if (!file->is_direct)
+        free(file->image.plane[0]);
+    file->image.plane[0] = NULL;
+    free(file->work.mem);
+    file->work.mem = NULL;
+    free(file->layer);
+    file->layer = NULL;
+    glint_kept_close(&file->kept);
+}
+
+/* Opens FROM, which is to be written to TO. Both strings must outlive FILE.
+ * Returns an exit code. */
+static int open_file(const struct tool *tool, struct overlay_file *file,
+                     const struct drawing *drawing, const char *from,
+                     const char *to)
 {
     struct glint_error error = {""};
     enum glint_status status;
@@ -76,20 +113,8 @@ int overlay_file_open(const struct tool *tool, struct overlay_file *file,
     status = choose_way(file, drawing);
     if (status == GLINT_OK)
         return EXIT_OK;
-    overlay_file_close(file);
+    close_file(file);
     return fail(tool, file, status);
-}
-
-void overlay_file_close(struct overlay_file *file)
-{
-    if (!file->is_direct)
-        free(file->image.plane[0]);
-    file->image.plane[0] = NULL;
-    free(file->work.mem);
-    file->work.mem = NULL;
-    free(file->layer);
-    file->layer = NULL;
-    glint_kept_close(&file->kept);
 }
 
 /* ------------------------------------------------------------------ drawing */
@@ -302,25 +327,43 @@ static void say_grey(const struct overlay_file *file,
                 tool->name, file->from);
 }
 
-enum glint_status overlay_file_draw(struct overlay_file *file,
-                                    struct drawing *drawing, int32_t elapsed_us)
+/* Draws the flare in linear light: into the file's layer, and for a composite
+ * over the samples, with the marks. */
+static enum glint_status draw_layer(struct overlay_file *file,
+                                    struct drawing *drawing, bool is_grey)
 {
-    const size_t n = 3 * (size_t)file->image.width * (size_t)file->image.height;
-    enum glint_status status;
-    bool is_grey;
+    const size_t n = (size_t)file->image.width * (size_t)file->image.height;
+    const bool is_composite =
+        drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE;
+    const bool is_lit = !adds_nothing(drawing);
+    enum glint_status status = GLINT_OK;
 
-    drawing->run.is_measured = file->kept.is_float;
-    drawing->run.white = file->white;
-    say_grey(file, drawing);
-    /* A thing has colours, where the file has room for them. */
-    is_grey =
-        drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
-        !(drawing->files.scene.is_open && drawn_on(file)->n_colours == 3) &&
-        is_monochrome(&file->image);
-    if (file->is_direct)
-        return is_grey ? draw_grey(file, drawing, elapsed_us)
-                       : drawing_draw(drawing, &file->image, elapsed_us);
-    status = drawing_find(drawing, &file->image, elapsed_us);
+    file->layer = calloc(3 * n, sizeof *file->layer);
+    if (!file->layer)
+        return GLINT_E_MEMORY;
+    if (is_lit)
+        status = drawing_layer(&drawing->run,
+                               is_deep(drawn_on(file)) || !is_composite,
+                               file->layer);
+    if (status != GLINT_OK)
+        return status;
+    if (is_grey)
+        take_colour(file->layer, n);
+    if (is_composite && is_lit)
+        glint_samples_add(drawn_on(file), file->layer);
+    return is_composite && drawing_has_marks(&drawing->line)
+               ? mark(file, drawing)
+               : GLINT_OK;
+}
+
+/* Draws on samples that are not codes of 8 bits: finds lamps on the proxy and
+ * measures them, then adds scene and flare. */
+static enum glint_status draw_deep(struct overlay_file *file,
+                                   struct drawing *drawing, bool is_grey,
+                                   int32_t elapsed_us)
+{
+    enum glint_status status = drawing_find(drawing, &file->image, elapsed_us);
+
     if (status != GLINT_OK)
         return status;
     if (file->kept.is_float)
@@ -328,35 +371,34 @@ enum glint_status overlay_file_draw(struct overlay_file *file,
     if (drawing->files.scene.is_open &&
         drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE)
         status = draw_scene(file, drawing, is_grey);
-    if (status != GLINT_OK || !drawing->files.has_lens) {
-        drawing->run.n_frames++;
-        return status;
+    if (status == GLINT_OK && drawing->files.has_lens) {
+        status = drawing_expose(drawing, &file->image);
+        if (status == GLINT_OK)
+            status = draw_layer(file, drawing, is_grey);
     }
-    status = drawing_expose(drawing, &file->image);
-    if (status != GLINT_OK)
-        return status;
-    file->layer = calloc(n, sizeof *file->layer);
-    if (!file->layer)
-        return GLINT_E_MEMORY;
-    status = adds_nothing(drawing)
-                 ? GLINT_OK
-                 : drawing_layer(&drawing->run,
-                                 is_deep(drawn_on(file)) ||
-                                     drawing->line.settings.options.layer !=
-                                         GLINT_LAYER_COMPOSITE,
-                                 file->layer);
-    if (status == GLINT_OK && is_grey)
-        take_colour(file->layer, n / 3);
-    if (status == GLINT_OK &&
-        drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
-        !adds_nothing(drawing))
-        glint_samples_add(drawn_on(file), file->layer);
-    if (status == GLINT_OK &&
-        drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
-        drawing_has_marks(&drawing->line))
-        status = mark(file, drawing);
     drawing->run.n_frames++;
     return status;
+}
+
+/* Adds the flare to the file CTX, an overlay_draw_fn. */
+static enum glint_status draw_file(void *ctx, struct drawing *drawing,
+                                   const struct glint_image *image,
+                                   int32_t elapsed_us)
+{
+    struct overlay_file *const file = ctx;
+    /* An object has colours, where the file has room for them. */
+    const bool is_grey =
+        drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
+        !(drawing->files.scene.is_open && drawn_on(file)->n_colours == 3) &&
+        is_monochrome(image);
+
+    drawing->run.is_measured = file->kept.is_float;
+    drawing->run.white = file->white;
+    say_grey(file, drawing);
+    if (!file->is_direct)
+        return draw_deep(file, drawing, is_grey, elapsed_us);
+    return is_grey ? draw_grey(file, drawing, elapsed_us)
+                   : drawing_draw(drawing, image, elapsed_us);
 }
 
 /* ------------------------------------------------------------------- saving */
@@ -426,8 +468,10 @@ static enum glint_status write(struct overlay_file *f,
     return status;
 }
 
-int overlay_file_save(const struct tool *tool, struct overlay_file *file,
-                      const struct drawing *drawing, int quality)
+/* Writes the picture to its output, with QUALITY as in glint_kept_options.
+ * Returns an exit code. */
+static int save_file(const struct tool *tool, struct overlay_file *file,
+                     const struct drawing *drawing, int quality)
 {
     struct glint_kept_options options = {.quality = quality};
     struct glint_error error = {""};
@@ -440,4 +484,30 @@ int overlay_file_save(const struct tool *tool, struct overlay_file *file,
         fprintf(stderr, "glint %s: %s: %s\n", tool->name, file->to,
                 options.said);
     return EXIT_OK;
+}
+
+/* -------------------------------------------------------------------- whole */
+
+int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
+                    const char *to)
+{
+    struct overlay_file file;
+    int code = open_file(tool, &file, &o->drawing, from, to);
+
+    if (code != EXIT_OK)
+        return code;
+    if (o->drawing.run.is_sized &&
+        (file.image.width != o->drawing.run.view.width ||
+         file.image.height != o->drawing.run.view.height)) {
+        fprintf(stderr, "glint overlay: %s: is %dx%d, those before it %dx%d\n",
+                from, file.image.width, file.image.height,
+                o->drawing.run.view.width, o->drawing.run.view.height);
+        code = EXIT_INPUT;
+    }
+    if (code == EXIT_OK)
+        code = overlay_draw_by(tool, o, &file.image, draw_file, &file);
+    if (code == EXIT_OK)
+        code = save_file(tool, &file, &o->drawing, o->quality);
+    close_file(&file);
+    return code;
 }

@@ -101,23 +101,24 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
     code = layers_write(tool, &o->layers, drawing);
     if (code != EXIT_OK)
         return code;
-    o->find_ms += drawing->run.find_ms;
-    o->flare_ms += drawing->run.flare_ms;
+    o->figures.find_ms += drawing->run.find_ms;
+    o->figures.flare_ms += drawing->run.flare_ms;
     if (drawing->run.engine) {
         const struct glint_response_light *const light =
             &glint_engine_exposed(drawing->run.engine)->light;
 
-        o->peak = fmax(o->peak, glint_largest_channel(light->peak));
-        o->mean_sum += glint_largest_channel(light->mean);
+        o->figures.peak =
+            fmax(o->figures.peak, glint_largest_channel(light->peak));
+        o->figures.mean_sum += glint_largest_channel(light->mean);
     }
-    if (drawing->run.n_lamps > o->most_lights)
-        o->most_lights = drawing->run.n_lamps;
-    o->n_reused += drawing->run.report.stats.reused;
+    if (drawing->run.n_lamps > o->figures.most_lights)
+        o->figures.most_lights = drawing->run.n_lamps;
+    o->figures.n_reused += drawing->run.report.stats.reused;
     if (drawing->run.report.peak_bytes + drawing->run.report.star_bytes >
-        o->peak_bytes)
-        o->peak_bytes =
+        o->figures.peak_bytes)
+        o->figures.peak_bytes =
             drawing->run.report.peak_bytes + drawing->run.report.star_bytes;
-    note_worst(&o->worst, &drawing->run.report);
+    note_worst(&o->figures.worst, &drawing->run.report);
     if (tool->verbose && !tool->quiet)
         say_frame(o);
     return EXIT_OK;
@@ -125,14 +126,14 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
 
 void overlay_progress(const struct tool *tool, struct overlay *o)
 {
-    const double now = tool_seconds(), spent = now - o->started;
+    const double now = tool_seconds(), spent = now - o->figures.started;
     const bool is_terminal = isatty(STDERR_FILENO);
 
     if (tool->quiet || tool->verbose)
         return;
-    if (!is_terminal && now - fmax(o->started, o->reported) < 5)
+    if (!is_terminal && now - fmax(o->figures.started, o->figures.reported) < 5)
         return;
-    o->reported = now;
+    o->figures.reported = now;
     fprintf(stderr,
             is_terminal ? "\rframe %d  %.1f fps  %d lights \033[K"
                         : "glint overlay: frame %d, %.1f fps, %d "

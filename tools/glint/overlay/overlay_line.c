@@ -58,7 +58,8 @@ struct overlay_light overlay_light(struct overlay *o)
 {
     struct drawing *drawing = &o->drawing;
     const int n = overlay_drawn(o);
-    struct overlay_light light = {true, o->peak, n ? o->mean_sum / n : 0};
+    struct overlay_light light = {true, o->figures.peak,
+                                  n ? o->figures.mean_sum / n : 0};
     struct glint_response_light drawn;
 
     if (is_part(drawing) && drawing->run.n_lamps > 0 &&
@@ -249,7 +250,7 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
                  FILE *to)
 {
     const struct drawing *drawing = &o->drawing;
-    const double seconds = tool_seconds() - o->started;
+    const double seconds = tool_seconds() - o->figures.started;
     const int n = overlay_drawn(o);
 
     fprintf(to, "%s: ", o->output);
@@ -263,20 +264,20 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
     }
     if (drawing->files.scene.is_open)
         fputs(", ", to);
-    if (o->most_lights == 0) {
+    if (o->figures.most_lights == 0) {
         overlay_say_none(drawing, to);
         return;
     }
     if (is_hidden(drawing, light)) {
-        say_hidden(drawing, o->most_lights, to);
+        say_hidden(drawing, o->figures.most_lights, to);
         return;
     }
     if (n == 1 && drawing->files.scene.lamps_hidden >= drawing->run.n_lamps) {
         fprintf(to, "%d light%s, hidden all, so no flare was drawn\n",
-                o->most_lights, o->most_lights == 1 ? "" : "s");
+                o->figures.most_lights, o->figures.most_lights == 1 ? "" : "s");
         return;
     }
-    say_lights(drawing, o->most_lights, to);
+    say_lights(drawing, o->figures.most_lights, to);
     fprintf(to, ", %s f/%.3g, ", drawing->line.settings.lens.name,
             f_number_of(&drawing->line.settings));
     say_dial(drawing, to);

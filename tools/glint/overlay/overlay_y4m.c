@@ -52,13 +52,10 @@ static enum glint_status draw(void *ctx, struct drawing *drawing,
 
     if (status == GLINT_OK)
         status = draw_scene(y, drawing);
-    if (status != GLINT_OK || !drawing->files.has_lens) {
-        drawing->run.n_frames++;
-        return status;
-    }
-    status = drawing_expose(drawing, image);
+    if (status == GLINT_OK && drawing->files.has_lens)
+        status = drawing_expose(drawing, image);
     drawing->run.n_frames++;
-    if (status != GLINT_OK)
+    if (status != GLINT_OK || !drawing->files.has_lens)
         return status;
     if (drawing->line.settings.options.layer != GLINT_LAYER_COMPOSITE)
         glint_y4m_light_blacken(&y->light, y->planes);

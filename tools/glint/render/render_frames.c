@@ -160,7 +160,7 @@ static enum glint_status draw(struct frames *f)
         memset(f->seen.plane[0], 0, n);
         status = drawing_find(f->c, &f->seen, f->elapsed_us);
         if (status == GLINT_OK)
-            over_scene_again(&f->c->files.scene, &linear);
+            glint_scene_draw(f->c->files.scene.frame.scene, &linear);
     } else {
         f->c->files.scene.elapsed_us = f->elapsed_us;
         status =
