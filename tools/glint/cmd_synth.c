@@ -17,7 +17,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "desk/sheet.h"
 #include "glint/measure.h"
 #include "formats/picture.h"
 #include "model/lens_files.h"
@@ -419,56 +418,6 @@ static int end_set(const struct tool *tool, const struct synth_set *set,
     return code;
 }
 
-/* ------------------------------------------------------------------- sheets */
-
-/* Copies the picture PATH into TO, from its column LEFT on. */
-static enum glint_status paste(const char *path, const struct glint_image *to,
-                               int left, struct glint_error *error)
-{
-    struct glint_image image = {.plane = {NULL}};
-    const enum glint_status status = glint_picture_load(path, &image, error);
-
-    for (int y = 0; status == GLINT_OK && y < image.height && y < to->height &&
-                    left + image.width <= to->width;
-         y++)
-        memcpy(to->plane[0] + y * to->stride_bytes[0] + 3 * (size_t)left,
-               image.plane[0] + y * image.stride_bytes[0],
-               3 * (size_t)image.width);
-    glint_picture_free(&image);
-    return status;
-}
-
-/* Writes to PATH a contact sheet of the first N items, which have the size of
- * SIZE. Returns an exit code. */
-static int write_sheet(const struct tool *tool, const struct synth_set *set,
-                       const struct synth_item *size, const char *path, int n)
-{
-    const int width = (int)size->width;
-    char file[SYNTH_PATH_BYTES], caption[16];
-    struct glint_error error = {""};
-    struct sheet sheet = {.columns = 0};
-    enum glint_status status;
-    int columns = 0;
-
-    while (columns < 3 && set->layout->file[columns].folder)
-        columns++;
-    status = sheet_open(&sheet, n, columns * width, (int)size->height, 1);
-    for (int k = 0; k < n && status == GLINT_OK; k++) {
-        const struct glint_image to = sheet_picture(&sheet, k);
-
-        for (int i = 0; i < columns && status == GLINT_OK; i++) {
-            file_path(file, set->folder, &set->layout->file[i], k, set->type);
-            status = paste(file, &to, i * width, &error);
-        }
-        snprintf(caption, sizeof caption, "%06d", k);
-        sheet_caption(&sheet, k, caption);
-    }
-    if (status == GLINT_OK)
-        status = glint_picture_save(path, &sheet.image, &error);
-    sheet_close(&sheet);
-    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
-}
-
 static const char help[] =
     "glint synth BACKGROUNDS... -o FOLDER [options]\n"
     "glint synth BACKGROUNDS... -o FOLDER --item LINE\n"
@@ -500,7 +449,6 @@ static const char help[] =
     "                      and names as the loaders of these look for them\n"
     "  --type T            ppm, png, jpg ... (default ppm of plain, else png)\n"
     "  --item LINE         that line of a manifest alone, the same bytes\n"
-    "  --sheet FILE        at the end, a picture of the first 40 items\n"
     "  --quality Q         0 to 1, as of glint render (default 0.5)\n";
 
 static const char help_end[] =
@@ -521,9 +469,7 @@ enum {
     OPT_LAYOUT,
     OPT_TYPE,
     OPT_ITEM,
-    OPT_SHEET,
     OPT_QUALITY_OF,
-    SHEET_ITEMS = 40,
     MAX_COUNT = 100000000
 };
 
@@ -538,7 +484,6 @@ static const struct option options[] = {
     {"layout", required_argument, NULL, OPT_LAYOUT},
     {"type", required_argument, NULL, OPT_TYPE},
     {"item", required_argument, NULL, OPT_ITEM},
-    {"sheet", required_argument, NULL, OPT_SHEET},
     {"quality", required_argument, NULL, OPT_QUALITY_OF},
     TOOL_COMMON_OPTIONS};
 
@@ -552,7 +497,7 @@ struct synth {
     char lens[SYNTH_MAX_LENSES][64];
     struct synth_item all; /* what every item has */
     struct synth_drawing drawing;
-    const char *line, *sheet;
+    const char *line;
 };
 
 /* ------------------------------------------------------------------ options */
@@ -689,9 +634,6 @@ static int take(struct tool *tool, void *ctx, int c, const char *value)
         break;
     case OPT_ITEM:
         s->line = value;
-        break;
-    case OPT_SHEET:
-        s->sheet = value;
         break;
     case OPT_QUALITY_OF:
         good = take_quality(&s->all, value);
@@ -899,10 +841,6 @@ static int run_set(const struct tool *tool, struct synth *s)
     if (code == EXIT_OK && !tool->quiet && s->set.count > 0)
         fprintf(stderr, "glint synth: %s: %s %d items\n", s->set.folder,
                 is_whole ? "all" : "this shard, not yet all, of", s->set.count);
-    if (code == EXIT_OK && s->sheet && is_whole)
-        code = write_sheet(tool, &s->set, &s->all, s->sheet,
-                           s->set.count < SHEET_ITEMS ? s->set.count
-                                                      : SHEET_ITEMS);
     return code;
 }
 

@@ -28,7 +28,7 @@ scene-table: all $(OUT)/scene_exact
 	@tests/peers/povray $(OUT) | tools/measure/write-figures scene
 # A sun behind a ball: the light of its flare by frame.
 hidden-table: all
-	@tools/measure/hidden-table tests/figures/scenes/hidden.svg | tools/measure/write-figures scenes/hidden
+	@tools/measure/hidden-table | tools/measure/write-figures scenes/hidden
 # Meshes of Debian packages; pictures of some go to build/meshes.
 mesh-table: all
 	@tools/make/deps "meshes, and the plug-in for them" libassimp-dev pkg-config \

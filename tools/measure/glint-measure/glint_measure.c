@@ -18,6 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include "measure/canvas.h"
 #include "measure/glint-measure/recipes.h"
@@ -76,7 +77,7 @@ static int run_row(const struct recipe *r, const struct recipe_row *row,
                                      row->set[i]);
     if (counted && used < sizeof line)
         snprintf(line + used, sizeof line - used, " 2>&1");
-    pipe = popen(line, "r");
+    pipe = popen(line, "r"); /* NOLINT: of our own recipes */
     if (!pipe)
         return EXIT_RUNTIME;
     bytes = fread(text, 1, TEXT - 1, pipe);
@@ -123,7 +124,7 @@ static int measure(const struct recipe *r, const struct recipe_row *row,
 
 static void first_line(const char *command, char text[128])
 {
-    FILE *const pipe = popen(command, "r");
+    FILE *const pipe = popen(command, "r"); /* NOLINT: of our own */
 
     text[0] = '\0';
     if (pipe && fgets(text, 128, pipe))
@@ -137,6 +138,7 @@ static void append_csv(const struct recipe *r, const struct recipe_row *row,
                        const char *json)
 {
     static char conditions[2][128];
+    const bool is_new = access(CSV, F_OK) != 0;
     FILE *const file = fopen(CSV, "a");
 
     if (!file)
@@ -144,7 +146,7 @@ static void append_csv(const struct recipe *r, const struct recipe_row *row,
     if (!conditions[0][0])
         first_line("git describe --always --dirty --abbrev=8", conditions[0]);
     first_line("cut -d ' ' -f 1 /proc/loadavg", conditions[1]);
-    if (fseek(file, 0, SEEK_END) == 0 && ftell(file) == 0)
+    if (is_new)
         fputs("figure,parameters,metric,value,revision,machine,load\n", file);
     for (const char *at = r->metrics; at; at = strchr(at, ',')) {
         const size_t length = strcspn(at += *at == ',', ",");
@@ -172,6 +174,7 @@ static bool write_value(const char *at, const struct recipe_row *row,
     const size_t length = strcspn(at, "%}");
     const char *value;
     char name[64], format[16];
+    int digits = 6;
     double x;
 
     snprintf(name, sizeof name, "%.*s", (int)length, at);
@@ -192,13 +195,14 @@ static bool write_value(const char *at, const struct recipe_row *row,
     x = metric_of(json, name, length);
     if (!isfinite(x))
         return false;
-    /* The format is of our own recipes. */
+    if (format[1] == '.')
+        digits = (int)strtol(format + 2, NULL, 10);
     switch (format[strlen(format) - 1]) {
     case 'f':
-        snprintf(to, bytes, "%.*f", format[1] == '.' ? atoi(format + 2) : 6, x);
+        snprintf(to, bytes, "%.*f", digits, x);
         return true;
     default:
-        snprintf(to, bytes, "%.*g", format[1] == '.' ? atoi(format + 2) : 6, x);
+        snprintf(to, bytes, "%.*g", digits, x);
         return true;
     }
 }

@@ -45,8 +45,9 @@ static struct ghost find(const struct figure_row *row, const struct places *r,
         return sum;
     cell = (p.x1_mm - p.x0_mm) * (p.y1_mm - p.y0_mm) / (RAYS * RAYS);
     for (int k = 0; k < RAYS * RAYS; k++) {
+        const int row_of = k / RAYS;
         const double u = (k % RAYS + 0.5) / RAYS;
-        const double v = ((double)(k / RAYS) + 0.5) / RAYS;
+        const double v = (row_of + 0.5) / RAYS;
         struct glint_ray ray;
 
         if (glint_trace(&path, p.x0_mm + u * (p.x1_mm - p.x0_mm),

@@ -195,7 +195,7 @@ static void compare_ray(const struct task *t, const struct parts *parts,
 {
     const double px = 1920 / t->row->table.film_width_mm;
     const double stop = t->optics.stop_radius_mm;
-    double at[GLINT_OUT_KINDS];
+    double at[GLINT_OUT_KINDS] = {0};
 
     if (!model_ray(parts, x_mm, y_mm, at)) {
         tally_add_lost(tally, light);

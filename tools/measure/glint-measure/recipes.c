@@ -14,12 +14,30 @@ struct recipe_lines {
     int n_set;
 };
 
-/* Adds the words of TEXT to ROW; texts that it makes are never freed. */
+/* Texts of the recipe that was read last. */
+static char pool[1 << 18];
+static size_t pooled;
+
+/* Returns a copy of TEXT[LENGTH] behind PREFIX in the pool; an empty text if
+ * that is full. */
+static char *keep(const char *prefix, const char *text, size_t length)
+{
+    char *const to = pool + pooled;
+    const size_t bytes = strlen(prefix) + length + 1;
+
+    if (bytes > sizeof pool - 1 - pooled)
+        return pool + sizeof pool - 1;
+    snprintf(to, bytes, "%s%.*s", prefix, (int)length, text);
+    pooled += bytes;
+    return to;
+}
+
+/* Adds the words of TEXT to ROW. */
 static void add_words(struct recipe_row *row, const char *text)
 {
-    char *copy = strdup(text), *word, *rest = copy;
+    char *word, *rest = keep("", text, strlen(text));
 
-    while (copy && (word = strtok_r(rest, " ", &rest)))
+    while ((word = strtok_r(rest, " ", &rest)))
         if (row->n < ROW_PARAMETERS)
             row->set[row->n++] = word;
 }
@@ -63,25 +81,21 @@ bool recipe_row_has(const struct recipe_row *row, const char *words)
 static void multiply(struct recipe *r, const char *vary)
 {
     const int n = r->n_rows;
-    char *copy = strdup(vary), *rest = copy, *name, *value;
+    const size_t length = strcspn(vary, " ");
 
-    name = copy ? strtok_r(rest, " ", &rest) : NULL;
-    if (!name || n == 0)
-        return;
-    for (int i = 0; i < n; i++) {
-        char *values = strdup(rest), *at = values;
+    for (int i = 0; i < n; i++)
+        for (const char *value = vary + length;
+             *value && r->n_rows < RECIPE_ROWS; value += strcspn(value, " ")) {
+            struct recipe_row *const row = &r->row[r->n_rows];
+            char name[64];
 
-        while (values && (value = strtok_r(at, " ", &at)) &&
-               r->n_rows < RECIPE_ROWS) {
-            struct recipe_row row = r->row[i];
-            char text[512];
-
-            snprintf(text, sizeof text, "%s=%s", name, value);
-            add_words(&row, text);
-            r->row[r->n_rows++] = row;
+            value += strspn(value, " ");
+            *row = r->row[i];
+            snprintf(name, sizeof name, "%.*s=", (int)length, vary);
+            if (row->n < ROW_PARAMETERS)
+                row->set[row->n++] = keep(name, value, strcspn(value, " "));
+            r->n_rows++;
         }
-        free(values);
-    }
     memmove(r->row, r->row + n, (size_t)(r->n_rows - n) * sizeof *r->row);
     r->n_rows -= n;
 }
@@ -95,13 +109,11 @@ static void label_rows(struct recipe *r, const struct recipe_lines *l)
         for (int k = 0; k < l->n_labels && r->n_rows < RECIPE_ROWS; k++) {
             const char *const colon = strchr(l->label[k], ':');
             struct recipe_row row = r->row[i];
-            char *const text = malloc(strlen(l->label[k]) + 8);
 
-            if (!colon || !text || row.n == ROW_PARAMETERS)
+            if (!colon || row.n == ROW_PARAMETERS)
                 continue;
-            sprintf(text, "label=%.*s", (int)(colon - l->label[k]),
-                    l->label[k]);
-            row.set[row.n++] = text;
+            row.set[row.n++] =
+                keep("label=", l->label[k], (size_t)(colon - l->label[k]));
             add_words(&row, colon + 1);
             r->row[r->n_rows++] = row;
         }
@@ -137,16 +149,14 @@ static void add_files(struct recipe *r, const struct recipe_lines *l,
 static void add_lenses(struct recipe *r, const struct recipe_lines *l,
                        const char *line)
 {
-    char *const copy = strdup(line);
-    char *rest = copy, *word;
+    char *rest = keep("", line, strlen(line)), *word;
     const char *set = line;
 
     for (; *set && strcspn(set, "=") >= strcspn(set, " ");
          set += strspn(set, " "))
         set += strcspn(set, " ");
-    while (copy && (word = strtok_r(rest, " ", &rest)) && !strchr(word, '='))
+    while ((word = strtok_r(rest, " ", &rest)) && !strchr(word, '='))
         add_files(r, l, word, set);
-    free(copy);
 }
 
 static void make_rows(struct recipe *r, const struct recipe_lines *l)
@@ -219,7 +229,7 @@ static void take_line(struct recipe *r, struct recipe_lines *l, char *line)
     else if (word == 5 && r->n_quick < RECIPE_LINES)
         r->quick[r->n_quick++] = rest;
     else if (word == 6)
-        r->limit_s = atoi(rest);
+        r->limit_s = (int)strtol(rest, NULL, 10);
     else
         fprintf(stderr, "glint-measure: %s: no such line: %s\n", r->name, line);
 }
@@ -231,6 +241,7 @@ char *recipe_read(struct recipe *r, char *text, const char *name)
     bool is_it = false;
 
     *r = (struct recipe){.name = NULL};
+    pooled = 0;
     while ((line = strtok_r(rest, "\n", &rest))) {
         if (*line == '#')
             continue;
