@@ -361,10 +361,47 @@ static int make_front(void)
     return check(glint_front_make(&web.front, &front, &web.error));
 }
 
+/* How bright flares of the last lenses and stops are, which takes about as long
+ * to measure as a coarse picture to draw. */
+enum { KEPT = 16, KEPT_BYTES = 4096 };
+static struct {
+    uint64_t key;
+    size_t bytes; /* 0: free */
+    unsigned char data[KEPT_BYTES];
+} kept[KEPT];
+static int next_kept;
+
+static int read_kept(void *ctx, const char *name, uint64_t key, void *data,
+                     size_t bytes)
+{
+    (void)ctx;
+    (void)name;
+    for (int i = 0; i < KEPT; i++)
+        if (kept[i].key == key && kept[i].bytes == bytes) {
+            memcpy(data, kept[i].data, bytes);
+            return 1;
+        }
+    return 0;
+}
+
+static void write_kept(void *ctx, const char *name, uint64_t key,
+                       const void *data, size_t bytes)
+{
+    (void)ctx;
+    (void)name;
+    if (bytes > KEPT_BYTES)
+        return;
+    kept[next_kept].key = key;
+    kept[next_kept].bytes = bytes;
+    memcpy(kept[next_kept].data, data, bytes);
+    next_kept = (next_kept + 1) % KEPT;
+}
+
 int web_size(int width, int height)
 {
     const struct glint_options *const o = &web.options;
     const bool exact = o->rays == GLINT_RAYS_EXACT;
+    const struct glint_engine_cache cache = {read_kept, write_kept, NULL};
     struct glint_engine_config cfg;
     double miss_deg;
 
@@ -391,6 +428,7 @@ int web_size(int width, int height)
         cfg.camera.sensor_width_mm = web.table.film_width_mm;
         cfg.camera.sensor_height_mm = web.table.film_height_mm;
     }
+    cfg.cache = &cache;
     web.width = width;
     web.height = height;
     return check(glint_engine_create(&web.engine, &cfg, &web.error));
