@@ -16,7 +16,7 @@
 #include "formats/samples.h"
 
 /* Number of this interface. A plug-in with another number is refused. */
-#define GLINT_OIIO_VERSION 4
+#define GLINT_OIIO_VERSION 5
 
 /* A picture as R G B, rows without padding, the top row first, turned upright
  * where the file says how it was held. Alpha is left out, colours weighted by
@@ -90,7 +90,11 @@ struct glint_oiio {
                               struct glint_error *error);
     void (*close)(struct glint_oiio_file *file); /* FILE may be NULL. */
 
-    /* Returns whether a file of PATH's extension is of FILE's type. */
+    /* Returns whether OpenImageIO writes files of PATH's extension. */
+    int (*can_write)(const char *path);
+
+    /* Returns whether a file of PATH's extension is of FILE's type, and can be
+     * written with the colours of FILE; HEIF cannot. */
     int (*is_same_type)(const struct glint_oiio_file *file, const char *path);
 
     /* If PIXELS is NULL, encodes FILE, whose samples may have been changed in

@@ -97,6 +97,10 @@ static const struct file_type types[] = {
     {".bmp",  false, false, ALPHA_NONE,          true,  false, false, false},
     {".tga",  false, false, ALPHA_STRAIGHT,      true,  false, false, false},
     {".webp", false, false, ALPHA_STRAIGHT,      true,  false, false, false},
+    {".heic", false, false, ALPHA_STRAIGHT,      true,  false, false, false},
+    {".heif", false, false, ALPHA_STRAIGHT,      true,  false, false, false},
+    {".avif", false, false, ALPHA_STRAIGHT,      true,  false, false, false},
+    {".jxl",  false, false, ALPHA_STRAIGHT,      true,  true,  false, false},
 };
 /* clang-format on */
 
@@ -403,7 +407,7 @@ enum glint_status glint_picture_check(const char *path,
         return glint_error_report(
             error, GLINT_E_UNSUPPORTED, path,
             "unknown extension; pictures are .ppm .png .jpg .tif .bmp .tga "
-            ".webp, linear light is .pfm .exr .hdr .tif");
+            ".webp .heic .avif .jxl, linear light is .pfm .exr .hdr .tif");
     if (kind == GLINT_PICTURE_8BIT && !type->takes_u8)
         return glint_error_report(error, GLINT_E_UNSUPPORTED, path,
                                   "%s holds linear light in floats, and this "
@@ -775,9 +779,17 @@ enum glint_status glint_kept_check(const char *path, struct glint_error *error)
         return glint_error_report(
             error, GLINT_E_UNSUPPORTED, path,
             "unknown extension; pictures are .ppm .pgm .png .jpg .tif .bmp "
-            ".tga .webp, linear light is .pfm .exr .hdr .tif");
-    if (!type->is_native && glint_oiio_load(&oiio, error))
+            ".tga .webp .heic .avif .jxl, linear light is .pfm .exr .hdr "
+            ".tif");
+    if (type->is_native)
+        return GLINT_OK;
+    if (glint_oiio_load(&oiio, error))
         return needs_plugin(path, type->extension, error);
+    if (!oiio->can_write(path))
+        return glint_error_report(error, GLINT_E_UNSUPPORTED, path,
+                                  "the installed OpenImageIO does not write "
+                                  "%s; write .png and convert that",
+                                  type->extension);
     return GLINT_OK;
 }
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "oiio/keep.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -72,8 +74,10 @@ bool is_one_of(const std::string &name, std::initializer_list<const char *> of)
  * pixels need the SAME_CODING; those about colours do not go if DROP_ICC. */
 bool goes_along(const piece &chunk, bool same_coding, bool drop_icc)
 {
-    if (!(chunk.name[0] & 0x20) || is_one_of(chunk.name, {"tRNS", "hIST"}))
-        return false;
+    if (!(chunk.name[0] & 0x20) || is_one_of(chunk.name, {"tRNS", "hIST",
+                                                         "acTL", "fcTL",
+                                                         "fdAT"}))
+        return false; /* the last three: further frames */
     if (is_one_of(chunk.name, {"sBIT", "bKGD"}))
         return same_coding;
     return !drop_icc || !is_one_of(chunk.name, {"iCCP", "gAMA", "cHRM", "sRGB",
@@ -252,6 +256,167 @@ bytes carry_png(const bytes &made, const bytes &from, bool drop_icc)
     return behind ? file : made;
 }
 
+/* ------------------------------------------------------- what XMP claims */
+
+namespace
+{
+
+const char xmp_head[] = "http://ns.adobe.com/xap/1.0/"; /* and a zero */
+
+bool is_xmp(const piece &segment)
+{
+    return is_marker(segment, 0xe1) &&
+           begins(segment, xmp_head, sizeof xmp_head);
+}
+
+/* Returns whether SEGMENT describes the gain map of a file [ISO 21496-1]. */
+bool is_gain_map(const piece &segment)
+{
+    static const char name[] = "urn:iso:std:iso:ts:21496:-1";
+
+    return is_marker(segment, 0xe2) && begins(segment, name, sizeof name);
+}
+
+std::string text_of(const piece &segment)
+{
+    return std::string(reinterpret_cast<const char *>(segment.data),
+                       segment.data_bytes);
+}
+
+/* beginnings of names of XMP's properties about the pictures and the video
+ * behind the first picture [Ultra HDR; Motion Photo format 1.0; Apple] */
+const char *const claims[] = {"hdrgm:",
+                              "HDRGainMap:",
+                              "GCamera:MotionPhoto",
+                              "Camera:MotionPhoto",
+                              "GCamera:MicroVideo",
+                              "Camera:MicroVideo",
+                              "GContainer:Directory",
+                              "Container:Directory"};
+
+size_t end_of_name(const std::string &xmp, size_t at)
+{
+    return std::min(xmp.find_first_of("= />\t\r\n", at), xmp.size());
+}
+
+/* Removes from XMP the attributes whose names begin with CLAIM. */
+void remove_attributes(std::string &xmp, const std::string &claim)
+{
+    for (size_t at = 0; (at = xmp.find(claim, at)) != std::string::npos;) {
+        const size_t equals = end_of_name(xmp, at);
+        const bool is_attribute =
+            at > 0 && std::isspace(static_cast<unsigned char>(xmp[at - 1])) &&
+            equals + 1 < xmp.size() && xmp[equals] == '=' &&
+            (xmp[equals + 1] == '"' || xmp[equals + 1] == '\'');
+        const size_t end =
+            is_attribute ? xmp.find(xmp[equals + 1], equals + 2)
+                         : std::string::npos;
+
+        if (end == std::string::npos)
+            at++;
+        else
+            xmp.erase(at - 1, end + 1 - (at - 1));
+    }
+}
+
+/* Removes from XMP the elements whose names begin with CLAIM. */
+void remove_elements(std::string &xmp, const std::string &claim)
+{
+    for (size_t at = 0; (at = xmp.find("<" + claim, at)) != std::string::npos;) {
+        const size_t close = xmp.find('>', at);
+        const std::string end_tag =
+            "</" + xmp.substr(at + 1, end_of_name(xmp, at + 1) - at - 1) + ">";
+        const bool is_alone =
+            close != std::string::npos && xmp[close - 1] == '/';
+        const size_t end = is_alone ? close : xmp.find(end_tag, at);
+
+        if (close == std::string::npos || end == std::string::npos)
+            at++;
+        else
+            xmp.erase(at, end + (is_alone ? 1 : end_tag.size()) - at);
+    }
+}
+
+/* Appends SEGMENT, XMP, without what it claims of pictures and videos that are
+ * not there any more. */
+void append_xmp(bytes &to, const piece &segment)
+{
+    std::string xmp = text_of(segment);
+
+    for (const char *claim : claims) {
+        remove_elements(xmp, claim);
+        remove_attributes(xmp, claim);
+    }
+    const size_t n = xmp.size() + 2;
+    const unsigned char head[] = {0xff, 0xe1,
+                                  static_cast<unsigned char>(n >> 8),
+                                  static_cast<unsigned char>(n)};
+    append(to, head, sizeof head);
+    append(to, reinterpret_cast<const unsigned char *>(xmp.data()), xmp.size());
+}
+
+/* Returns whether all pictures after the first that SEGMENT lists are previews
+ * of it [CIPA DC-007]. */
+bool lists_previews(const piece &segment)
+{
+    const unsigned char *const d = segment.data + 4; /* after "MPF", 0 */
+    const size_t n = segment.data_bytes - 4;
+    const bool little = n > 0 && d[0] == 'I';
+    const auto number = [&](size_t at, size_t bytes) {
+        uint32_t value = 0;
+
+        for (size_t i = 0; i < bytes && at + bytes <= n; i++)
+            value = value << 8 | d[at + (little ? bytes - 1 - i : i)];
+        return value;
+    };
+    const uint32_t first = number(4, 4), n_tags = number(first, 2);
+    bool all = false;
+
+    for (uint32_t i = 0; i < n_tags && i < 64; i++) {
+        const uint32_t tag = first + 2 + 12 * i;
+        const uint32_t place = number(tag + 8, 4), size = number(tag + 4, 4);
+
+        if (number(tag, 2) != 0xb002) /* entries of 16 bytes */
+            continue;
+        all = size > 16;
+        for (uint32_t k = 16; k + 16 <= size && place + k + 16 <= n; k += 16)
+            all = all && (number(place + k, 4) >> 16 & 0xff) == 1;
+    }
+    return all;
+}
+
+} // namespace
+
+std::string more_of_jpeg(const bytes &jpeg)
+{
+    bool map = false, video = false, more = false, previews = false;
+    std::string text;
+
+    for (const piece &segment : segments_of_jpeg(jpeg)) {
+        if (is_index(segment)) {
+            more = true;
+            previews = lists_previews(segment);
+        }
+        map = map || is_gain_map(segment);
+        if (!is_xmp(segment))
+            continue;
+        const std::string xmp = text_of(segment);
+
+        map = map || xmp.find("hdrgm:") != std::string::npos;
+        video = video || xmp.find("Camera:MotionPhoto") != std::string::npos ||
+                xmp.find("Camera:MicroVideo") != std::string::npos;
+    }
+    if (map)
+        text = "its gain map (Ultra HDR) is dropped";
+    if (video)
+        text += text.empty() ? "its video (motion photo) is dropped"
+                             : ", so is its video";
+    if (text.empty() && more)
+        text = previews ? "its embedded preview is dropped"
+                        : "only the first of its pictures is kept";
+    return text;
+}
+
 bytes carry_jpeg(const bytes &made, const bytes &from, bool drop_icc)
 {
     const std::vector<piece> ours = segments_of_jpeg(made);
@@ -261,8 +426,10 @@ bytes carry_jpeg(const bytes &made, const bytes &from, bool drop_icc)
     if (ours.empty() || theirs.empty())
         return made;
     for (const piece &segment : theirs)
-        if (is_metadata(segment) && !is_index(segment) &&
-            !(drop_icc && is_icc(segment)))
+        if (is_xmp(segment))
+            append_xmp(file, segment);
+        else if (is_metadata(segment) && !is_index(segment) &&
+                 !is_gain_map(segment) && !(drop_icc && is_icc(segment)))
             append(file, segment.whole, segment.whole_bytes);
     for (const piece &segment : ours)
         if (!is_metadata(segment))
@@ -295,6 +462,14 @@ bytes carry_webp(const bytes &made, const bytes &from, bool drop_icc)
     for (int i = 0; i < 4; i++)
         file[4 + i] = static_cast<unsigned char>((file.size() - 8) >> (8 * i));
     return file;
+}
+
+bool is_animated_webp(const bytes &webp)
+{
+    for (const piece &chunk : chunks_of_webp(webp))
+        if (chunk.name == "ANIM")
+            return true;
+    return false;
 }
 
 bool is_lossless(const bytes &webp)
@@ -358,14 +533,6 @@ bool is_of_inks(const bytes &jpeg)
              is_marker(segment, 0xc2)) &&
             segment.data_bytes > 5)
             return segment.data[5] == 4;
-    return false;
-}
-
-bool has_more_pictures(const bytes &jpeg)
-{
-    for (const piece &segment : segments_of_jpeg(jpeg))
-        if (is_index(segment))
-            return true;
     return false;
 }
 

@@ -423,13 +423,18 @@ void fill_facts(struct glint_oiio_facts &facts, struct glint_oiio_file &file,
         fill_png_facts(facts, file.whole);
     if (file.type == "jpeg") {
         facts.quality = glint::quality_of_jpeg(file.whole);
-        if (glint::has_more_pictures(file.whole))
-            say(facts, "only the first of its pictures is kept");
+        const std::string more = glint::more_of_jpeg(file.whole);
+
+        if (!more.empty())
+            say(facts, more.c_str());
         if (glint::is_of_inks(file.whole))
             say(facts, "its CMYK becomes RGB");
     }
     if (spec.get_int_attribute("oiio:Movie", 0) ||
-        spec.get_int_attribute("gif:FrameCount", 0) > 1)
+        spec.get_int_attribute("gif:FrameCount", 0) > 1 ||
+        (file.type == "png" &&
+         !glint::chunk_of_png(file.whole, "acTL").empty()) ||
+        (file.type == "webp" && glint::is_animated_webp(file.whole)))
         say(facts, "only the first of its frames is kept");
 }
 
@@ -507,9 +512,20 @@ int glint::is_same_type(const struct glint_oiio_file *file, const char *path)
     guarded(path, GLINT_E_FORMAT, &error, [&] {
         const std::unique_ptr<ImageOutput> out = ImageOutput::create(path);
 
-        is_same = out && file->type == out->format_name();
+        is_same = out && file->type == out->format_name() &&
+                  file->type != "heif";
     });
     return is_same;
+}
+
+int glint::can_write(const char *path)
+{
+    struct glint_error error;
+    bool can = false;
+
+    guarded(path, GLINT_E_OUTPUT, &error,
+            [&] { can = ImageOutput::create(path) != nullptr; });
+    return can;
 }
 
 /* ----------------------------------------------------------------- writing */
@@ -709,7 +725,7 @@ bool is_carried_from(const struct glint_oiio_file &file)
 
 /* Encodes an EXR of parts by way of a file: OpenImageIO 2.4 cannot write it
  * into memory, though it claims to. */
-bytes encode_by_file(ImageOutput &out, std::vector<ImageSpec> &specs,
+bytes encode_exr(ImageOutput &out, std::vector<ImageSpec> &specs,
                      const std::vector<kept_part> &parts)
 {
     const glint::memory_file file;
@@ -731,11 +747,15 @@ bytes encode_by_oiio(ImageOutput &out, const char *path,
     memory to(encoded);
 
     if (parts.size() > 1 && out.format_name() == std::string("openexr"))
-        return encode_by_file(out, specs, parts);
-    if (!out.supports("ioproxy") || !out.set_ioproxy(&to))
-        throw failure{GLINT_E_UNSUPPORTED, "OpenImageIO cannot write this "
-                                           "type into memory"};
-    write_parts(out, path, specs, parts);
+        return encode_exr(out, specs, parts);
+    if (!out.supports("ioproxy")) { /* HEIF */
+        const glint::memory_file file;
+
+        write_parts(out, file.name().c_str(), specs, parts);
+        encoded = file.contents();
+    } else if (out.set_ioproxy(&to)) {
+        write_parts(out, path, specs, parts);
+    }
     if (encoded.empty())
         throw failure{GLINT_E_OUTPUT, "OpenImageIO wrote nothing"};
     return encoded;
@@ -750,6 +770,15 @@ void clear_empty(ImageSpec &spec)
     for (size_t i = all.size(); i-- > 0;)
         if (all[i].type() == TypeDesc::STRING && all[i].get_string().empty())
             all.erase(all.begin() + static_cast<std::ptrdiff_t>(i));
+}
+
+/* Returns OpenImageIO's name of the coding for a file of TYPE; HEIF has that of
+ * PATH's extension. */
+std::string coding_of(const char *path, const std::string &type)
+{
+    return type != "heif"                              ? type
+           : OIIO::Strutil::iends_with(path, ".avif") ? "avif"
+                                                      : "heic";
 }
 
 bytes encode_parts(const char *path, const std::vector<kept_part> &parts,
@@ -773,9 +802,10 @@ bytes encode_parts(const char *path, const std::vector<kept_part> &parts,
             clear_empty(specs.back());
         if (drop)
             specs.back().erase_attribute("ICCProfile");
-        if (type == "jpeg")
+        if (type == "jpeg" || type == "heif" || type == "jpegxl")
             specs.back().attribute("Compression",
-                                   "jpeg:" + std::to_string(quality));
+                                   coding_of(path, type) + ":" +
+                                       std::to_string(quality));
         if (same && type == "jpeg" && glint::is_progressive(file->whole))
             specs.back().attribute("jpeg:progressive", 1);
     }

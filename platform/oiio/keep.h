@@ -44,11 +44,15 @@ bool is_progressive(const bytes &jpeg);
 /* Returns whether the pixels of JPEG are C M Y K, which become R G B. */
 bool is_of_inks(const bytes &jpeg);
 
-/* Returns whether JPEG has more pictures after the first, which are lost. */
-bool has_more_pictures(const bytes &jpeg);
+/* Returns in words what JPEG has after the first picture, which is lost; "" if
+ * nothing. */
+std::string more_of_jpeg(const bytes &jpeg);
 
 /* Returns the data of the first chunk NAME of a PNG; empty if it has none. */
 bytes chunk_of_png(const bytes &file, const char *name);
+
+/* Returns whether WEBP has several frames. */
+bool is_animated_webp(const bytes &webp);
 
 /* Returns whether WEBP is coded without loss. */
 bool is_lossless(const bytes &webp);
@@ -80,6 +84,7 @@ enum glint_status open_file(struct glint_oiio_file **file,
                             struct glint_oiio_facts *facts, const char *path,
                             struct glint_error *error);
 void close_file(struct glint_oiio_file *file);
+int can_write(const char *path);
 int is_same_type(const struct glint_oiio_file *file, const char *path);
 enum glint_status encode_file(void **data, size_t *bytes, const char *path,
                               struct glint_oiio_file *file,

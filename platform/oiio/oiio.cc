@@ -191,5 +191,5 @@ extern "C" __attribute__((visibility("default")))
 const struct glint_oiio glint_oiio_face;
 const struct glint_oiio glint_oiio_face = {
     GLINT_OIIO_VERSION, face_read,          face_encode,
-    glint::open_file,   glint::close_file,  glint::is_same_type,
-    glint::encode_file, face_encode_layers, glint::report_abort};
+    glint::open_file,   glint::close_file,  glint::can_write,
+    glint::is_same_type, glint::encode_file, face_encode_layers, glint::report_abort};
