@@ -12,7 +12,7 @@
 #include "lens_pages/search.h"
 #include "model/lens_files.h"
 #include "options/json_writer.h"
-#include "overlay/drawing.h"
+#include "model/settings.h"
 #include "model/model_cache.h"
 #include "model/table_file.h"
 #include "posix/output.h"
@@ -84,30 +84,21 @@ struct entry {
 };
 
 /* Sets SETTINGS to those that overlay, live and explain have without options,
- * or if PLAIN to those of render. Returns an exit code. */
-static int set_settings(struct settings *settings, bool plain)
+ * or if PLAIN to those of render. */
+static void set_settings(struct settings *settings, bool plain)
 {
-    struct drawing *drawing = plain ? NULL : calloc(1, sizeof *drawing);
-
-    if (plain) {
+    if (plain)
         settings_defaults(settings);
-        return EXIT_OK;
-    }
-    if (!drawing)
-        return EXIT_RUNTIME;
-    drawing_line_defaults(&drawing->line);
-    *settings = drawing->line.settings;
-    free(drawing);
-    return EXIT_OK;
+    else
+        settings_defaults_photo(settings);
 }
 
 static int set_entry(const struct tool *tool, const char *name, struct entry *e,
                      bool plain)
 {
-    int code = set_settings(&e->settings, plain);
+    int code;
 
-    if (code != EXIT_OK)
-        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    set_settings(&e->settings, plain);
     code = tool_lens(tool, name, &e->settings.lens);
     if (code != EXIT_OK)
         return code;
@@ -186,10 +177,9 @@ static void print_text(struct lenses *l, const char *name,
  * and coarse grids do for pictures that small. Returns an exit code. */
 static int set_flares(struct settings *settings, const struct entry *e)
 {
-    const int code = set_settings(settings, false);
-
-    if (code != EXIT_OK || e->is_baked)
-        return code;
+    set_settings(settings, false);
+    if (e->is_baked)
+        return EXIT_OK;
     settings->options.rays = GLINT_RAYS_EXACT;
     settings_set_quality(settings, 0.25);
     return EXIT_OK;
