@@ -53,21 +53,26 @@ void glint_engine_choose(struct glint_engine *engine, unsigned parts,
 
 /* Exposes a picture by itself, for which there is time, by drawing its flare
  * small. */
-static void expose_as_drawn(struct glint_engine *e, int n,
-                            const struct glint_image *image, double white)
+static enum glint_status expose_as_drawn(struct glint_engine *e, int n,
+                                         const struct glint_image *image,
+                                         double white)
 {
     struct glint_engine_exposing *const x = &e->expose;
     struct glint_ground *ground = NULL;
+    enum glint_status status;
 
     if (x->strength.is_physical || !(x->strength.scale > 0))
-        return;
-    if (image->format != GLINT_LINEAR_Q20)
+        return GLINT_OK;
+    if (image->format != GLINT_LINEAR_Q20) {
         ground = malloc(sizeof *ground);
-    if (ground)
+        if (!ground)
+            return GLINT_E_MEMORY;
         glint_ground_take(ground, image);
-    glint_strength_expose_still(&x->strength, &e->paint.frame, e->paint.lamp, n,
-                                ground, white);
+    }
+    status = glint_strength_expose_still(&x->strength, &e->paint.frame,
+                                         e->paint.lamp, n, ground, white);
     free(ground);
+    return status;
 }
 
 /* Returns what LAMP, which was found, has over what the picture shows of it
@@ -134,7 +139,9 @@ enum glint_status glint_engine_expose(struct glint_engine *engine,
                           &all, is_new ? 0 : elapsed_us);
     glint_engine_plain(engine, lamps, n);
     if (is_drawn)
-        expose_as_drawn(engine, n, image, white);
+        status = expose_as_drawn(engine, n, image, white);
+    if (status != GLINT_OK)
+        return status;
     set_excess(x, lamps, n, white, is_new ? 0 : elapsed_us);
     glint_engine_choose(engine, engine->paint.parts,
                         glint_strength_star(&x->strength, x->light.starburst),

@@ -249,19 +249,23 @@ void glint_strength_correct(struct glint_strength *strength,
     scale_light(s);
 }
 
-void glint_strength_expose_still(struct glint_strength *strength,
-                                 const struct glint_frame *frame,
-                                 const struct glint_lamp *lamps, int n,
-                                 const struct glint_ground *ground,
-                                 double white)
+enum glint_status glint_strength_expose_still(struct glint_strength *strength,
+                                              const struct glint_frame *frame,
+                                              const struct glint_lamp *lamps,
+                                              int n,
+                                              const struct glint_ground *ground,
+                                              double white)
 {
     struct glint_response_light drawn;
     struct glint_seen seen = {0, 0};
+    enum glint_status status;
 
-    if (strength->is_physical || !(strength->scale > 0) ||
-        glint_response_draw(frame, lamps, n, GLINT_RESPONSE_FINE, ground,
-                            &drawn, &seen) != GLINT_OK)
-        return;
+    if (strength->is_physical || !(strength->scale > 0))
+        return GLINT_OK;
+    status = glint_response_draw(frame, lamps, n, GLINT_RESPONSE_FINE, ground,
+                                 &drawn, &seen);
+    if (status != GLINT_OK)
+        return status == GLINT_E_MEMORY ? status : GLINT_OK;
     seen.few /= white;
     seen.many /= white;
     for (int c = 0; c < 3; c++) {
@@ -269,6 +273,7 @@ void glint_strength_expose_still(struct glint_strength *strength,
         drawn.mean[c] /= white;
     }
     glint_strength_correct(strength, &drawn, ground ? &seen : NULL);
+    return GLINT_OK;
 }
 
 double glint_strength_star(const struct glint_strength *s, double starburst)

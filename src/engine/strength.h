@@ -107,13 +107,14 @@ void glint_strength_correct(struct glint_strength *strength,
 
 /* Corrects the exposure of a still: draws the flare of N LAMPS behind the lens
  * of FRAME at low resolution and scale 1, and measures it. WHITE: light of the
- * picture's white. GROUND: the picture below the flare, or NULL. No-op without
- * memory. */
-void glint_strength_expose_still(struct glint_strength *strength,
-                                 const struct glint_frame *frame,
-                                 const struct glint_lamp *lamps, int n,
-                                 const struct glint_ground *ground,
-                                 double white);
+ * picture's white. GROUND: the picture below the flare, or NULL.
+ * GLINT_E_MEMORY: nothing has changed. */
+enum glint_status glint_strength_expose_still(struct glint_strength *strength,
+                                              const struct glint_frame *frame,
+                                              const struct glint_lamp *lamps,
+                                              int n,
+                                              const struct glint_ground *ground,
+                                              double white);
 
 /* Sets LIGHT to that of the flare of LAMPS by RESPONSE, at scale 1. */
 void glint_strength_light(const struct glint_response *response,

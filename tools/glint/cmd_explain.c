@@ -198,11 +198,13 @@ static enum glint_status draw_linear(struct explain_command *c)
     struct drawing *drawing = &c->drawing;
     const size_t n = (size_t)c->width * (size_t)c->height;
     struct glint_float_image light = {.width = c->width, .height = c->height};
-    enum glint_status status = GLINT_E_MEMORY;
+    enum glint_status status = drawing_find_lamps(drawing, &c->image, 0);
     struct glint_lamp *plain;
     uint8_t *codes;
 
-    drawing_find_lamps(drawing, &c->image, 0);
+    if (status != GLINT_OK)
+        return status;
+    status = GLINT_E_MEMORY;
     plain = malloc(((size_t)drawing->run.n_lamps + 1) * sizeof *plain);
     for (int i = 0; i < drawing->run.n_lamps && plain; i++)
         plain[i] = drawing->run.lamp[i].lamp;

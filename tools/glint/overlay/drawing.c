@@ -282,8 +282,9 @@ static void zoom_by_keys(struct drawing *d, int frame)
 }
 
 /* Stops the lens as KEYS say; the exposure stays that of the widest stop. */
-static void stop_by_keys(struct settings *s, const struct keys *keys, int frame,
-                         struct glint_engine *engine)
+static enum glint_status stop_by_keys(struct settings *s,
+                                      const struct keys *keys, int frame,
+                                      struct glint_engine *engine)
 {
     struct stop_option *const stop = &s->stop;
     const double f_number =
@@ -291,14 +292,17 @@ static void stop_by_keys(struct settings *s, const struct keys *keys, int frame,
     const double turn = keys_at(keys, KEYS_TURN, frame, stop->rotation_deg);
     const double round = keys_at(keys, KEYS_ROUND, frame, stop->iris.roundness);
     struct glint_error error;
+    enum glint_status status;
 
     if (f_number == s->options.f_number && turn == stop->rotation_deg &&
         round == stop->iris.roundness)
-        return;
+        return GLINT_OK;
     stop->rotation_deg = turn;
     stop->iris.roundness = round;
-    if (settings_stop(s, f_number, &error) == GLINT_OK)
+    status = settings_stop(s, f_number, &error);
+    if (status == GLINT_OK)
         glint_engine_update_stop(engine);
+    return status;
 }
 
 /* Moves the lamp of KEYS, the last of LIST. */
@@ -317,7 +321,7 @@ static void move_by_keys(struct lamp_list *list, const struct keys *keys,
 
 /* Sets lens and brightness to those of the next frame: lines of control, then
  * key frames. */
-static void steer(struct drawing *d)
+static enum glint_status steer(struct drawing *d)
 {
     struct glint_options *const o = &d->line.settings.options;
     const struct keys *const keys = &d->files.keys;
@@ -326,7 +330,7 @@ static void steer(struct drawing *d)
     d->files.scene.set_ctx = d;
     over_scene_obey(&d->files.scene, frame);
     if (!o->keys)
-        return;
+        return GLINT_OK;
     o->exposure = keys_at(keys, KEYS_EXPOSURE, frame, o->exposure);
     o->gain = keys_at(keys, KEYS_GAIN, frame, o->gain);
     o->strength = keys_at(keys, KEYS_STRENGTH, frame, o->strength);
@@ -335,8 +339,8 @@ static void steer(struct drawing *d)
         o->starburst = keys_at(keys, KEYS_STARBURST, frame, 1);
     }
     zoom_by_keys(d, frame);
-    stop_by_keys(&d->line.settings, keys, frame, d->run.engine);
     move_by_keys(&d->files.list, keys, frame);
+    return stop_by_keys(&d->line.settings, keys, frame, d->run.engine);
 }
 
 /* -------------------------------------------------------------------- lamps */
@@ -374,14 +378,19 @@ static void set_lamps(struct drawing *d, const struct glint_image *image,
 }
 
 /* Sets the lamps of IMAGE, with the light that masks and fades leave them. */
-static void find_lamps(struct drawing *d, const struct glint_image *image,
-                       int32_t elapsed_us)
+static enum glint_status find_lamps(struct drawing *d,
+                                    const struct glint_image *image,
+                                    int32_t elapsed_us)
 {
-    steer(d);
+    const enum glint_status status = steer(d);
+
+    if (status != GLINT_OK)
+        return status;
     set_lamps(d, image, elapsed_us);
     occlusion_apply(&d->files.occlusion, d->run.n_frames, &d->run.view,
                     d->line.settings.setup.optics.focal_mm, d->run.lamp,
                     d->run.n_lamps);
+    return GLINT_OK;
 }
 
 void drawing_measure(struct drawing *drawing,
@@ -433,12 +442,16 @@ static void save_lamps(struct lamp_save *save, const struct drawing_run *run,
     }
 }
 
-void drawing_find_lamps(struct drawing *drawing,
-                        const struct glint_image *image, int32_t elapsed_us)
+enum glint_status drawing_find_lamps(struct drawing *drawing,
+                                     const struct glint_image *image,
+                                     int32_t elapsed_us)
 {
-    find_lamps(drawing, image, elapsed_us);
-    save_lamps(&drawing->files.save, &drawing->run,
-               drawing->line.settings.setup.optics.focal_mm);
+    const enum glint_status status = find_lamps(drawing, image, elapsed_us);
+
+    if (status == GLINT_OK)
+        save_lamps(&drawing->files.save, &drawing->run,
+                   drawing->line.settings.setup.optics.focal_mm);
+    return status;
 }
 
 /* -------------------------------------------------------------------- scene */
@@ -498,8 +511,12 @@ enum glint_status drawing_find(struct drawing *drawing,
     const double start = tool_seconds();
 
     run->n_lamps = run->n_own = 0;
-    if (drawing->files.has_lens)
-        find_lamps(drawing, image, elapsed_us);
+    if (drawing->files.has_lens) {
+        const enum glint_status status = find_lamps(drawing, image, elapsed_us);
+
+        if (status != GLINT_OK)
+            return status;
+    }
     run->find_ms = 1e3 * (tool_seconds() - start);
     scene->elapsed_us = elapsed_us;
     return scene->is_open ? draw_scene(drawing, image) : GLINT_OK;

@@ -99,8 +99,9 @@ bool drawing_has_marks(const struct drawing_line *line);
 
 /* Sets the lamps to those of IMAGE as drawing_find() does, and saves them, but
  * draws nothing. */
-void drawing_find_lamps(struct drawing *drawing,
-                        const struct glint_image *image, int32_t elapsed_us);
+enum glint_status drawing_find_lamps(struct drawing *drawing,
+                                     const struct glint_image *image,
+                                     int32_t elapsed_us);
 
 /* Returns the factor on the light of lamps, once exposed. */
 double drawing_scale(const struct drawing_run *run);

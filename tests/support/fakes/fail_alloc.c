@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A library for LD_PRELOAD: one request for memory of a program fails, the
+ * $FAIL_AT-th; with $FAIL_ON all from there on. If $FAIL_COUNT names a file,
+ * the number of requests is written to it at exit. Made for glibc, whose own
+ * allocations it counts, too.
+ */
+#define _GNU_SOURCE
+#include <errno.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+void *__libc_malloc(size_t bytes);
+void *__libc_calloc(size_t n, size_t bytes);
+void *__libc_realloc(void *old, size_t bytes);
+void *__libc_memalign(size_t align, size_t bytes);
+
+static long n, fail_at;
+static bool fails_on;
+
+__attribute__((constructor)) static void begin(void)
+{
+    const char *const at = getenv("FAIL_AT");
+
+    fail_at = at ? strtol(at, NULL, 10) : 0;
+    fails_on = getenv("FAIL_ON") != NULL;
+    __atomic_store_n(&n, 0, __ATOMIC_SEQ_CST);
+}
+
+__attribute__((destructor)) static void end(void)
+{
+    const char *const name = getenv("FAIL_COUNT");
+    const long count = __atomic_load_n(&n, __ATOMIC_SEQ_CST);
+    FILE *const file = name ? fopen(name, "w") : NULL;
+
+    if (file) {
+        fprintf(file, "%ld\n", count);
+        fclose(file);
+    }
+}
+
+static bool fails(void)
+{
+    const long k = __atomic_add_fetch(&n, 1, __ATOMIC_SEQ_CST);
+
+    if (fail_at < 1 || !(k == fail_at || (fails_on && k > fail_at)))
+        return false;
+    errno = ENOMEM;
+    return true;
+}
+
+void *malloc(size_t bytes)
+{
+    return fails() ? NULL : __libc_malloc(bytes);
+}
+
+void *calloc(size_t count, size_t bytes)
+{
+    return fails() ? NULL : __libc_calloc(count, bytes);
+}
+
+void *realloc(void *old, size_t bytes)
+{
+    return fails() ? NULL : __libc_realloc(old, bytes);
+}
+
+int posix_memalign(void **mem, size_t align, size_t bytes)
+{
+    void *const got = fails() ? NULL : __libc_memalign(align, bytes);
+
+    if (!got)
+        return ENOMEM;
+    *mem = got;
+    return 0;
+}
