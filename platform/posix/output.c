@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#define _XOPEN_SOURCE 700 /* realpath */
-/* NOLINTNEXTLINE(bugprone-reserved-identifier): flock */
-#define _DEFAULT_SOURCE
+#define _GNU_SOURCE /* realpath, flock, fopencookie */
 #include "posix/output.h"
 
 #include <dirent.h>
@@ -580,4 +578,59 @@ enum glint_status glint_output_finish(struct glint_output *out,
 {
     return glint_output_end(out, glint_output_write(out, data, bytes, error),
                             error);
+}
+
+struct text_stream {
+    char **text;
+    size_t *bytes, room;
+};
+
+static ssize_t append_text(void *cookie, const char *data, size_t n)
+{
+    struct text_stream *const t = cookie;
+
+    if (*t->bytes + n >= t->room) {
+        const size_t room = 2 * (*t->bytes + n) + 4096;
+        char *const more = realloc(*t->text, room);
+
+        if (!more)
+            return 0;
+        *t->text = more;
+        t->room = room;
+    }
+    memcpy(*t->text + *t->bytes, data, n);
+    *t->bytes += n;
+    (*t->text)[*t->bytes] = '\0';
+    return (ssize_t)n;
+}
+
+static int free_text_stream(void *cookie)
+{
+    free(cookie);
+    return 0;
+}
+
+FILE *glint_memory_file_open(char **text, size_t *bytes)
+{
+    static const cookie_io_functions_t calls = {.write = append_text,
+                                                .close = free_text_stream};
+    struct text_stream *const t = malloc(sizeof *t);
+    FILE *file;
+
+    *text = NULL;
+    *bytes = 0;
+    if (!t)
+        return NULL;
+    *t = (struct text_stream){text, bytes, 0};
+    file = fopencookie(t, "w", calls);
+    if (!file)
+        free(t);
+    return file;
+}
+
+bool glint_memory_file_close(FILE *file)
+{
+    const bool is_whole = fflush(file) == 0 && !ferror(file);
+
+    return fclose(file) == 0 && is_whole;
 }

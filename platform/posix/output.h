@@ -28,6 +28,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include "glint/status.h"
 
@@ -90,6 +91,16 @@ enum glint_status glint_output_end(struct glint_output *out,
 enum glint_status glint_output_finish(struct glint_output *out,
                                       const void *data, size_t bytes,
                                       struct glint_error *error);
+
+/* Returns a stream that appends to *TEXT, a malloc'ed string of *BYTES bytes,
+ * or NULL without memory. Unlike open_memstream() of glibc it keeps in mind
+ * that a write failed. *TEXT is complete once the stream is closed, belongs to
+ * the caller, and is NULL if nothing was written. */
+FILE *glint_memory_file_open(char **text, size_t *bytes);
+
+/* Closes FILE of glint_memory_file_open(). Returns false if any of its text is
+ * missing. */
+bool glint_memory_file_close(FILE *file);
 
 /* Closes OUT and removes its temporary file, unless it is closed already. */
 void glint_output_abort(struct glint_output *out);

@@ -219,12 +219,12 @@ static int save(const struct tool *tool, const struct coat *c)
     enum glint_status status = GLINT_E_MEMORY;
     char *text = NULL;
     size_t bytes = 0;
-    FILE *file = open_memstream(&text, &bytes);
+    FILE *file = glint_memory_file_open(&text, &bytes);
 
     error.text[0] = 0;
     if (file) {
         write_plot(c, file);
-        if (fclose(file) == 0)
+        if (glint_memory_file_close(file))
             status =
                 glint_output_open(&out, c->output, GLINT_OUTPUT_TEXT, &error);
         if (status == GLINT_OK)

@@ -116,11 +116,11 @@ static int save(const struct tool *tool, const struct draw *o)
     char *text = NULL;
     size_t bytes = 0;
     int shown = 0;
-    FILE *file = open_memstream(&text, &bytes);
+    FILE *file = glint_memory_file_open(&text, &bytes);
 
     if (file) {
         shown = lens_drawing_write(&o->drawing, file);
-        if (fclose(file) == 0)
+        if (glint_memory_file_close(file))
             status =
                 glint_output_open(&out, o->output, GLINT_OUTPUT_TEXT, &error);
         if (status == GLINT_OK)

@@ -375,7 +375,7 @@ static int run_page(struct lenses *l)
     char *text = NULL;
     size_t bytes = 0;
 
-    l->page = open_memstream(&text, &bytes);
+    l->page = glint_memory_file_open(&text, &bytes);
     if (l->page) {
         int n;
 
@@ -384,7 +384,7 @@ static int run_page(struct lenses *l)
         n = lens_files_each(one, l);
         tool_progress_end(&l->progress);
         page_end(l->page);
-        if (fclose(l->page) == 0 && n >= 0)
+        if (glint_memory_file_close(l->page) && n >= 0)
             status = GLINT_OK;
         if (status == GLINT_OK && l->n == 0) {
             free(text);

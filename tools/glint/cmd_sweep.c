@@ -12,6 +12,7 @@
 #include "measure/report_file.h"
 #include "measure/sweep.h"
 #include "options/command_line.h"
+#include "posix/output.h"
 
 static const char help[] =
     "glint sweep [LENS]... -o FOLDER [options]\n"
@@ -118,7 +119,7 @@ static int save(const struct sweep *s, const char *folder, const struct file *f)
 {
     char *text = NULL;
     size_t bytes = 0;
-    FILE *file = open_memstream(&text, &bytes);
+    FILE *file = glint_memory_file_open(&text, &bytes);
 
     if (!file)
         return tool_fail(s->tool, GLINT_E_MEMORY, NULL);

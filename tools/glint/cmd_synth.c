@@ -23,6 +23,7 @@
 #include "options/command_line.h"
 #include "posix/input.h"
 #include "synth/draw.h"
+#include "posix/output.h"
 
 enum { SYNTH_MAX_FILES = 6, SYNTH_PATH_BYTES = 4096 };
 
@@ -688,7 +689,7 @@ static char *settings_of(const struct synth *s, int seed)
 {
     char *text = NULL;
     size_t bytes = 0;
-    struct json_writer json = {.to = open_memstream(&text, &bytes)};
+    struct json_writer json = {.to = glint_memory_file_open(&text, &bytes)};
 
     if (!json.to)
         return NULL;
@@ -705,7 +706,7 @@ static char *settings_of(const struct synth *s, int seed)
     for (int i = 0; i < s->backgrounds.n; i++)
         json_write(&json, "%s", synth_background_name(s->backgrounds.path[i]));
     json_write(&json, "]}\n");
-    if (fclose(json.to) == 0)
+    if (glint_memory_file_close(json.to))
         return text;
     free(text);
     return NULL;

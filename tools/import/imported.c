@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "import/imported.h"
+#include "posix/output.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -914,7 +915,7 @@ char *imported_finish(struct imported *lens, size_t *bytes)
                       lens->n_guesses, lens->n_guesses == 1 ? "" : "es");
         return NULL;
     }
-    file = open_memstream(&text, bytes);
+    file = glint_memory_file_open(&text, bytes);
     if (!file) {
         imported_fail(lens, 0, "out of memory");
         return NULL;
@@ -922,7 +923,7 @@ char *imported_finish(struct imported *lens, size_t *bytes)
     write_head(lens, file);
     for (int k = 0; k < lens->n; k++)
         write_surface(file, &lens->surface[k], lens->unit_mm);
-    if (fclose(file) == 0)
+    if (glint_memory_file_close(file))
         return text;
     free(text);
     imported_fail(lens, 0, "out of memory");

@@ -24,8 +24,9 @@ int report_file_save(const struct tool *tool, const char *folder,
     enum glint_status status = GLINT_E_MEMORY;
     char path[1024];
 
-    if (fclose(file) == 0 && (size_t)snprintf(path, sizeof path, "%s/%s",
-                                              folder, name) < sizeof path) {
+    if (glint_memory_file_close(file) &&
+        (size_t)snprintf(path, sizeof path, "%s/%s", folder, name) <
+            sizeof path) {
         status = glint_output_open(&out, path, GLINT_OUTPUT_TEXT, &error);
         if (status == GLINT_OK)
             status = glint_output_finish(&out, *text, *bytes, &error);

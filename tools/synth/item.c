@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "options/tool.h"
+#include "posix/output.h"
 
 #define AT(member) offsetof(struct synth_item, member)
 #define OF(member) offsetof(struct synth_light, member)
@@ -285,7 +286,7 @@ char *synth_item_print(const struct synth_item *item,
 {
     char *text = NULL;
     size_t bytes = 0;
-    struct json_writer json = {.to = open_memstream(&text, &bytes)};
+    struct json_writer json = {.to = glint_memory_file_open(&text, &bytes)};
 
     if (!json.to)
         return NULL;
@@ -301,7 +302,7 @@ char *synth_item_print(const struct synth_item *item,
     json_write(&json, "]");
     write_result(&json, item, result);
     json_write(&json, "}\n");
-    if (fclose(json.to) == 0)
+    if (glint_memory_file_close(json.to))
         return text;
     free(text);
     return NULL;

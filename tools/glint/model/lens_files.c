@@ -116,12 +116,14 @@ static bool add(struct list *l, const char *name, size_t length)
     return true;
 }
 
-/* Adds the .lens files of the folder PATH. Returns false without memory. */
+/* Adds the .lens files of the folder PATH. Returns false without memory
+ * or descriptors. */
 static bool add_folder(struct list *l, const char *path)
 {
     DIR *folder = *path ? opendir(path) : NULL;
     const struct dirent *entry;
-    bool ok = true;
+    bool ok = folder || !*path ||
+              (errno != ENOMEM && errno != EMFILE && errno != ENFILE);
 
     while (ok && folder && (entry = readdir(folder))) {
         const size_t n = strlen(entry->d_name);
