@@ -398,15 +398,30 @@ static int step(struct live *l)
     return code;
 }
 
-/* Reads configuration and lens again; devices stay open. If anything is wrong,
- * all stays as it was. */
+/* Checks that FRESH names a lens where BEFORE does: a file that is being
+ * written may end before it, and the lens by default is not what was meant. */
+static bool names_lens(const struct live *l, const struct live_options *fresh)
+{
+    if (GLINT_OPTION_GIVEN(&fresh->drawing.line.settings.options, lens) ||
+        !GLINT_OPTION_GIVEN(&l->o->drawing.line.settings.options, lens))
+        return true;
+    tool_error(l->tool, "the configuration names no lens any more: is it empty "
+                        "or half-written?");
+    return false;
+}
+
+/* Reads configuration and lens again; devices stay open, and nothing is baked.
+ * If anything is wrong, all stays as it was. */
 static void reload(struct live *l)
 {
     struct live_options *fresh = calloc(1, sizeof *fresh);
 
-    if (!fresh)
+    if (!fresh) {
+        live_log_say(&l->log, "not reloaded, without memory");
         return;
-    if (l->reread(l->ctx, l->tool, fresh) < 0 &&
+    }
+    l->tool->no_bake = true;
+    if (l->reread(l->ctx, l->tool, fresh) < 0 && names_lens(l, fresh) &&
         drawing_open(l->tool, &fresh->drawing) == EXIT_OK) {
         drawing_replace(&l->o->drawing, &fresh->drawing);
         live_adapt_init(&l->adapt);

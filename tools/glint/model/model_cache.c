@@ -153,6 +153,16 @@ static int bake(const struct tool *tool, const struct glint_prescription *lens,
     return EXIT_OK;
 }
 
+static int refuse_bake(const struct tool *tool,
+                       const struct glint_prescription *lens)
+{
+    tool_error(tool,
+               "%s is not baked, which a reload does not wait for; bake it "
+               "with glint bake, or restart",
+               lens->name);
+    return EXIT_LENS;
+}
+
 struct wait {
     const struct tool *tool;
     const char *lens;
@@ -178,9 +188,12 @@ int model_cached(const struct tool *tool, const struct glint_prescription *lens,
     if (load_installed(lens->name, key, model))
         return EXIT_OK;
     if (!model_path(path, sizeof path, lens->name, key))
-        return bake(tool, lens, options, NULL, model);
+        return tool->no_bake ? refuse_bake(tool, lens)
+                             : bake(tool, lens, options, NULL, model);
     if (load(path, key, read_ours, model))
         return EXIT_OK;
+    if (tool->no_bake)
+        return refuse_bake(tool, lens);
     /* Another process may be baking the same model. */
     lock = cache_file_lock(path, report_wait, &wait);
     if (!load(path, key, read_ours, model))

@@ -30,6 +30,8 @@ struct tool {
     const struct glint_options *defaults;
     const char *help_end; /* what comes behind the help of these, or NULL */
     bool json, quiet;
+    bool
+        no_bake; /* A lens whose model is not kept is refused: for reloading. */
     int verbose;
     int n_threads;
     int seed; /* seed of all that is random: the noise of live -d test */
