@@ -99,6 +99,9 @@ check-files:
 	@GLINT=build/glint GLINT_OIIO=build/glint-oiio.so tests/cli/files
 	@GLINT=build/glint tests/cli/video
 	@tests/install
+# Each request for memory of each command fails once; prints a table.
+check-allocations: $(OUT)/glint
+	@GLINT=$< tests/cli/allocations --all
 # Long cases and random lenses too:  make extremes SEED=1 COUNT=500
 extremes: $(extreme_bins) $(OUT)/random_lenses $(OUT)/motion
 	@tests/extremes $(SEED:%=--seed %) $(COUNT:%=--count %)
@@ -185,5 +188,5 @@ purity: $(libraries) $(board_o)
 	@tools/lint/purity --calls '$(board_calls)' $(NM) $(OBJDUMP) $(board_o) $(OUT)/libglint.a
 
 
-.PHONY: check run-check test run-test check-files check-all extremes mutants run-mutants check-valgrind run-valgrind golden-update \
+.PHONY: check run-check test run-test check-files check-allocations check-all extremes mutants run-mutants check-valgrind run-valgrind golden-update \
         fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format lint purity
