@@ -509,6 +509,75 @@ enum glint_status glint_y4m_reader_open(struct glint_y4m_reader *reader,
     return status;
 }
 
+enum glint_status
+glint_y4m_reader_open_raw(struct glint_y4m_reader *reader, const char *path,
+                          const struct glint_y4m_header *header, size_t stride,
+                          struct glint_error *error)
+{
+    enum glint_status status;
+
+    memset(reader, 0, sizeof *reader);
+    status = glint_input_open(&reader->in, path, error);
+    reader->name = reader->in.name;
+    reader->header = *header;
+    reader->is_raw = true;
+    reader->stride = stride;
+    if (status)
+        glint_y4m_reader_close(reader);
+    return status;
+}
+
+/* Sets *MORE if the stream of frames without lines goes on. */
+static enum glint_status look_ahead(struct glint_y4m_reader *r, bool *more,
+                                    struct glint_error *error)
+{
+    if (r->ahead_at == r->ahead_end) {
+        const ptrdiff_t n = read_some(r, r->ahead, sizeof r->ahead);
+
+        if (n < 0)
+            return report_io(r, error);
+        r->ahead_at = 0;
+        r->ahead_end = (size_t)n;
+    }
+    *more = r->ahead_end > r->ahead_at;
+    return GLINT_OK;
+}
+
+/* Reads a frame whose rows are padded to r->stride. Returns the bytes of pixels
+ * read, fewer than the frame has at the end of the stream, or -1. */
+static ptrdiff_t read_rows(struct glint_y4m_reader *r)
+{
+    uint8_t *to = r->planes;
+    uint8_t padding[4096];
+
+    for (int p = 0; p < 4; p++) {
+        size_t stride = r->stride;
+        int size[2];
+
+        glint_y4m_layout_size(&r->header.layout, p, r->header.width,
+                              r->header.height, size);
+        if (size[0] < r->header.width)
+            stride /= 2;
+        for (int y = 0; y < size[1]; y++) {
+            const size_t n = (size_t)size[0];
+            ptrdiff_t got = read_block(r, to, n);
+
+            to += got > 0 ? got : 0;
+            if (got < (ptrdiff_t)n)
+                return got < 0 ? -1 : to - r->planes;
+            for (size_t left = stride - n; left > 0; left -= (size_t)got) {
+                got = read_block(r, padding,
+                                 left < sizeof padding ? left : sizeof padding);
+                if (got <= 0)
+                    break;
+            }
+            if (got < 0)
+                return -1;
+        }
+    }
+    return to - r->planes;
+}
+
 /* Returns whether the codes of H do not mean what those of BT.709 do. */
 static bool is_graded(const struct glint_y4m_header *h)
 {
@@ -596,9 +665,11 @@ enum glint_status glint_y4m_reader_next(struct glint_y4m_reader *reader,
     const struct glint_y4m_header *const h = &reader->header;
     const size_t bytes =
         glint_y4m_layout_bytes(&h->layout, h->width, h->height);
-    bool more;
+    bool more = false;
     ptrdiff_t got;
-    enum glint_status status = read_frame_line(reader, &more, error);
+    enum glint_status status = reader->is_raw
+                                   ? look_ahead(reader, &more, error)
+                                   : read_frame_line(reader, &more, error);
 
     if (!status && more)
         status = place_frame(reader, error);
@@ -608,7 +679,8 @@ enum glint_status glint_y4m_reader_next(struct glint_y4m_reader *reader,
         *frame = NULL;
         return GLINT_OK;
     }
-    got = read_block(reader, reader->planes, bytes);
+    got = reader->stride ? read_rows(reader)
+                         : read_block(reader, reader->planes, bytes);
     if (got < 0)
         return report_io(reader, error);
     if ((size_t)got < bytes)

@@ -104,6 +104,8 @@ struct glint_y4m_reader {
 
     /* Private. */
     const char *name;
+    bool is_raw;   /* There are no lines between the frames. */
+    size_t stride; /* bytes from row to row of luma; 0: rows without padding */
     struct glint_input in; /* input, if source is NULL */
     glint_y4m_source_fn *source;
     void *ctx;
@@ -174,6 +176,14 @@ size_t glint_y4m_header_print(char line[GLINT_Y4M_PRINTED],
 enum glint_status glint_y4m_reader_open(struct glint_y4m_reader *reader,
                                         const char *path,
                                         struct glint_error *error);
+
+/* Opens PATH as frames of HEADER without any lines, as programs of cameras
+ * write them: planes whose rows of luma begin STRIDE bytes apart, those of
+ * narrower chroma half of that; 0: rows without padding. GLINT_E_IO. */
+enum glint_status
+glint_y4m_reader_open_raw(struct glint_y4m_reader *reader, const char *path,
+                          const struct glint_y4m_header *header, size_t stride,
+                          struct glint_error *error);
 
 /* Begins to read the stream that SOURCE delivers. NAME, SOURCE and CTX must
  * outlive READER. Errors are those of glint_y4m_reader_open(). */

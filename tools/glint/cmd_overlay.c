@@ -40,6 +40,12 @@ static const char help[] =
     "                      hlg | log100 | log316: the curve from codes to "
     "light;\n"
     "                      auto: the file's tag, else 709\n"
+    "  --format F          i420 | i422 | i444 | grey: IN, or - , is frames of "
+    "8 bits\n"
+    "                      without headers, 30 a second, of --size WxH and "
+    "rows "
+    "of\n"
+    "                      --stride N bytes (default: no padding)\n"
     "  --encode OPTIONS    of ffmpeg for the pictures it writes, in place of\n"
     "                      glint's (H.264: -crf 18): '-c:v libx265 -crf 20'\n"
     "  --start-number N    first of a sequence (default: 0 or 1, as "
@@ -86,10 +92,25 @@ static bool take_frames(struct overlay *o, const char *text)
            tool_integer(text + n + 1, o->first, INT_MAX - 1, &o->last);
 }
 
+/* Takes TEXT, "WxH". */
+static bool take_size(struct overlay *o, const char *text)
+{
+    char width[12];
+    const size_t n = strcspn(text, "x");
+
+    if (n >= sizeof width || text[n] != 'x')
+        return false;
+    memcpy(width, text, n);
+    width[n] = '\0';
+    return tool_integer(width, 1, GLINT_MAX_SIDE, &o->raw.width) &&
+           tool_integer(text + n + 1, 1, GLINT_MAX_SIDE, &o->raw.height);
+}
+
 static bool take(struct overlay *o, int option, const char *value)
 {
     static const char *const ranges[] = {"auto", "full", "limited", NULL};
     static const char *const matrices[] = {"auto", "601", "709", "2020", NULL};
+    static const char *const formats[] = {"i420", "i422", "i444", "grey", NULL};
     static const char *const types[] = {"half", "float", NULL};
     int word;
 
@@ -101,6 +122,14 @@ static bool take(struct overlay *o, int option, const char *value)
     case 'C':
         o->transfer = tool_word(value, glint_transfer_words);
         return o->transfer >= 0 || strcmp(value, "auto") == 0;
+    case 'f':
+        o->raw.format = tool_word(value, formats);
+        o->has_raw = true;
+        return o->raw.format >= 0;
+    case 's':
+        return take_size(o, value);
+    case 'S':
+        return tool_integer(value, 1, 4 * GLINT_MAX_SIDE, &o->raw.stride);
     case 'Q':
         return tool_integer(value, 1, 100, &o->quality);
     case 'L':
@@ -127,6 +156,9 @@ static const struct option own[] = {
     {"range", required_argument, NULL, 'r'},
     {"matrix", required_argument, NULL, 'x'},
     {"transfer", required_argument, NULL, 'C'},
+    {"format", required_argument, NULL, 'f'},
+    {"size", required_argument, NULL, 's'},
+    {"stride", required_argument, NULL, 'S'},
     {"start-number", required_argument, NULL, 'n'},
     {"jpeg-quality", required_argument, NULL, 'Q'},
     {"frames", required_argument, NULL, 'F'},
@@ -136,6 +168,17 @@ static const struct option own[] = {
     {"layers", required_argument, NULL, 'L'},
     {"layers-type", required_argument, NULL, 'T'},
     {NULL, 0, NULL, 0}};
+
+static int check_raw(const struct tool *tool, const struct overlay *o)
+{
+    if (o->has_raw != (o->raw.width > 0) || (o->raw.stride && !o->has_raw))
+        return tool_usage(tool, "frames without headers need --format F and "
+                                "--size WxH");
+    if (o->raw.stride && o->raw.stride < o->raw.width)
+        return tool_usage(tool, "--stride %d is less than the width",
+                          o->raw.stride);
+    return EXIT_OK;
+}
 
 static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
 {
@@ -160,7 +203,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
             o->output = optarg;
         else if (c == 'e')
             o->encode = optarg;
-        else if (strchr("rxCnQLTFWB", c)) {
+        else if (strchr("rxCfsSnQLTFWB", c)) {
             if (!take(o, c, optarg))
                 return tool_refuse(tool, options[index].name, optarg);
         } else if ((code = tool_option(tool, c, optarg)) >= 0)
@@ -182,6 +225,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
                                 "none: leave out -o and --frames");
     if (o->lists_shots)
         o->output = "-";
+    if ((code = check_raw(tool, o)) != EXIT_OK)
+        return code;
     if (o->has_layers_type && !o->layers.path)
         return tool_usage(tool, "--layers-type is for --layers OUT");
     if (o->layers.path &&
@@ -289,7 +334,7 @@ static int check_output(struct tool *tool, struct overlay *o)
     bool frames;
     const int code = overlay_check_gif(tool, o, &frames);
 
-    o->is_video = frames || overlay_is_video(o->input);
+    o->is_video = frames || o->has_raw || overlay_is_video(o->input);
     if (code != EXIT_OK)
         return code;
     if (!frames && !o->lists_shots &&
@@ -301,6 +346,11 @@ static int check_output(struct tool *tool, struct overlay *o)
                           o->lists_shots ? "list-shots" : "frames");
     if (o->lists_shots)
         return EXIT_OK;
+    if (o->is_video &&
+        o->drawing.line.settings.options.layer == GLINT_LAYER_FLARE_ALPHA)
+        return tool_usage(tool, "--layer flare-alpha is for pictures; of a "
+                                "video, --layers NAME.%%04d.exr writes the "
+                                "flare by itself");
     if (o->last < INT_MAX && (o->drawing.line.settings.options.budget > 0 ||
                               o->drawing.line.settings.dials.still_px > 0))
         return tool_usage(tool, "--frames does not go with --budget and "

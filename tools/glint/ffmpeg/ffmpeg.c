@@ -9,7 +9,9 @@
 #include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <signal.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -332,6 +334,9 @@ int child_end(struct child *child)
     if (child->fd >= 0)
         close(child->fd);
     child->fd = -1;
+    if (child->script >= 0)
+        close(child->script);
+    child->script = -1;
     if (child->pid <= 0) {
         end_hearing(child);
         return 0;
@@ -354,7 +359,7 @@ void child_kill(struct child *child)
     child_end(child);
 }
 
-enum { MAX_WORDS = 96, PROBE_BYTES = 1 << 14 };
+enum { MAX_WORDS = 96, PROBE_BYTES = 1 << 16 };
 
 static const char *extension(const char *name)
 {
@@ -412,21 +417,124 @@ static void take_word(const char *line, const char *name, char *word)
     snprintf(word, FFMPEG_WORD, "%s", line + n + 1);
 }
 
+static void take_number(const char *line, const char *name, int *number)
+{
+    char word[FFMPEG_WORD] = "";
+
+    take_word(line, name, word);
+    if (*word)
+        tool_integer(word, 1, GLINT_MAX_SIDE, number);
+}
+
+/* Takes LINE of the first stream of pictures. */
 static void take_line(struct ffmpeg_video *v, const char *line)
 {
-    char width[FFMPEG_WORD] = "", height[FFMPEG_WORD] = "";
-
+    take_word(line, "codec_name", v->codec);
+    take_word(line, "profile", v->profile);
     take_word(line, "pix_fmt", v->pixels);
+    take_word(line, "field_order", v->fields);
+    take_word(line, "r_frame_rate", v->rate);
+    take_word(line, "avg_frame_rate", v->mean_rate);
     take_word(line, "color_range", v->range);
     take_word(line, "color_space", v->space);
     take_word(line, "color_transfer", v->transfer);
     take_word(line, "color_primaries", v->primaries);
-    take_word(line, "width", width);
-    take_word(line, "height", height);
-    if (*width)
-        tool_integer(width, 1, GLINT_MAX_SIDE, &v->width);
-    if (*height)
-        tool_integer(height, 1, GLINT_MAX_SIDE, &v->height);
+    take_number(line, "width", &v->width);
+    take_number(line, "height", &v->height);
+}
+
+/* Returns the numerator of the ratio NAME of TEXT, lines of ffprobe's, in units
+ * of 1 / UNITS; -1 if it is not there. */
+static long take_ratio(const char *text, const char *name, long units)
+{
+    const char *const at = strstr(text, name);
+    char *end;
+    long n, d = 1;
+
+    if (!at)
+        return -1;
+    n = strtol(at + strlen(name), &end, 10);
+    if (*end == '/')
+        d = strtol(end + 1, NULL, 10);
+    return d > 0 ? (n * units + d / 2) / d : -1;
+}
+
+/* Takes the mastering display, the light levels and Dolby Vision from TEXT,
+ * lines on the side data of a frame or a stream. */
+static void take_side_data(struct ffmpeg_video *v, const char *text)
+{
+    static const char *const names[] = {
+        "green_x=",       "green_y=",      "blue_x=",        "blue_y=",
+        "red_x=",         "red_y=",        "white_point_x=", "white_point_y=",
+        "max_luminance=", "min_luminance="};
+    long m[10];
+    bool is_whole = true;
+
+    for (int i = 0; i < 10; i++) {
+        m[i] = take_ratio(text, names[i], i < 8 ? 50000 : 10000);
+        is_whole = is_whole && m[i] >= 0;
+    }
+    if (is_whole)
+        snprintf(v->mastering, sizeof v->mastering,
+                 "G(%ld,%ld)B(%ld,%ld)R(%ld,%ld)WP(%ld,%ld)L(%ld,%ld)", m[0],
+                 m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], m[9]);
+    if (strstr(text, "max_content="))
+        snprintf(v->light, sizeof v->light, "%ld,%ld",
+                 take_ratio(text, "max_content=", 1),
+                 take_ratio(text, "max_average=", 1));
+    v->has_dolby =
+        v->has_dolby || strstr(text, "DOVI") || strstr(text, "Dolby Vision");
+}
+
+/* Counts a stream of CODEC and of the KIND that ffprobe names. */
+static void count_stream(struct ffmpeg_video *v, const char *codec,
+                         const char *kind)
+{
+    static const char *const texts[] = {"subrip", "srt",    "ass",      "ssa",
+                                        "text",   "webvtt", "mov_text", NULL};
+
+    v->n_pictures += strcmp(kind, "video") == 0;
+    v->n_sounds += strcmp(kind, "audio") == 0;
+    v->n_data += strcmp(kind, "data") == 0;
+    v->n_files += strcmp(kind, "attachment") == 0;
+    if (strcmp(kind, "subtitle") == 0) {
+        v->n_subtitles++;
+        if (!*v->subtitle)
+            snprintf(v->subtitle, sizeof v->subtitle, "%s", codec);
+        if (!is_one_of(codec, texts))
+            v->subtitles = SUBTITLES_IMAGES;
+        else if (v->subtitles == SUBTITLES_NONE)
+            v->subtitles = SUBTITLES_TEXT;
+    }
+}
+
+/* Takes a line on all streams, chapters and tags; CODEC is that of the stream
+ * it is of. A track of time code is counted by its tag alone. */
+static void take_other(struct ffmpeg_video *v, char *line,
+                       char codec[FFMPEG_WORD])
+{
+    char kind[FFMPEG_WORD] = "";
+    const size_t n = strlen(v->tags);
+
+    if (strncmp(line, "codec_name=", 11) == 0)
+        snprintf(codec, FFMPEG_WORD, "%.31s", line + 11);
+    take_word(line, "codec_type", kind);
+    if (*kind) {
+        count_stream(v, codec, kind);
+        if (strcmp(kind, "audio") == 0 && !*v->sound)
+            snprintf(v->sound, sizeof v->sound, "%s", codec);
+        *codec = '\0';
+    }
+    if (strcmp(line, "codec_tag_string=tmcd") == 0)
+        v->n_data--;
+    take_word(line, "TAG:timecode", v->timecode);
+    take_word(line, "TAG:TIMECODE", v->timecode);
+    v->n_chapters += strncmp(line, "start_time=", 11) == 0;
+    if (strncmp(line, "TAG:", 4) != 0)
+        return;
+    line[strcspn(line, "=")] = '\0';
+    if (n + strlen(line) < sizeof v->tags - 1)
+        snprintf(v->tags + n, sizeof v->tags - n, " %s", line + 4);
 }
 
 /* Reads what CHILD prints into TEXT, as a string, up to PROBE_BYTES. */
@@ -442,31 +550,23 @@ static void read_all(struct child *child, char text[PROBE_BYTES])
     text[used] = '\0';
 }
 
-/* Sets TEXT to the lines that ffprobe prints on ENTRIES of the streams KIND of
- * URL, with OPTION unless that is NULL. Returns false if it fails; TEXT is ""
- * if it cannot be run. */
-static bool ask(const char *url, const char *kind, const char *entries,
-                const char *option, char text[PROBE_BYTES])
+/* Sets TEXT to the lines that ffprobe prints on ENTRIES of URL, with OPTIONS,
+ * up to five words that end with NULL. Returns false if it fails; TEXT is "" if
+ * it cannot be run. */
+static bool ask(const char *url, const char *const *options,
+                const char *entries, char text[PROBE_BYTES])
 {
-    const char *const argv[] = {"ffprobe",
-                                "-v",
-                                "quiet",
-                                "-select_streams",
-                                kind,
-                                "-show_entries",
-                                entries,
-                                "-of",
-                                "default=nw=1",
-                                input_limits[0],
-                                input_limits[1],
-                                input_limits[2],
-                                input_limits[3],
-                                url,
-                                option,
-                                NULL};
+    const char *argv[18] = {"ffprobe",       "-v",
+                            "quiet",         "-show_entries",
+                            entries,         "-of",
+                            "default=nw=1",  input_limits[0],
+                            input_limits[1], input_limits[2],
+                            input_limits[3], url};
     struct glint_error error;
     struct child child;
 
+    for (int i = 0; options[i]; i++)
+        argv[12 + i] = options[i];
     *text = '\0';
     if (start_child(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
         return false;
@@ -474,27 +574,44 @@ static bool ask(const char *url, const char *kind, const char *entries,
     return child_end(&child) == 0;
 }
 
+static const char *const of_pictures[] = {"-select_streams", "v:0", NULL};
+static const char *const of_all[] = {NULL};
+
 void ffmpeg_probe(struct ffmpeg_video *video, const char *name)
 {
+    static const char *const of_first[] = {"-select_streams", "v:0",
+                                           "-read_intervals", "%+#1", NULL};
     char url[FFMPEG_URL], text[PROBE_BYTES], *line, *rest = text;
+    char codec[FFMPEG_WORD] = "";
 
     *video = (struct ffmpeg_video){.width = 0};
     if (!set_url(url, name))
         return;
-    ask(url, "v:0",
-        "stream=width,height,pix_fmt,color_range,color_space,color_transfer,"
+    ask(url, of_pictures,
+        "stream=codec_name,profile,width,height,pix_fmt,field_order,"
+        "r_frame_rate,avg_frame_rate,color_range,color_space,color_transfer,"
         "color_primaries",
-        NULL, text);
+        text);
     while ((line = strtok_r(rest, "\r\n", &rest)))
         take_line(video, line);
     rest = text;
-    ask(url, "a:0", "stream=codec_name", NULL, text);
+    ask(url, of_all,
+        "stream=codec_name,codec_type,codec_tag_string:stream_tags=timecode:"
+        "chapter=start_time:chapter_tags=:format_tags",
+        text);
     while ((line = strtok_r(rest, "\r\n", &rest)))
-        take_word(line, "codec_name", video->sound);
+        take_other(video, line, codec);
+    if (strcmp(video->transfer, "smpte2084") == 0 ||
+        strcmp(video->transfer, "arib-std-b67") == 0) {
+        ask(url, of_first, "stream_side_data:frame_side_data", text);
+        take_side_data(video, text);
+    }
 }
 
 long ffmpeg_count_frames(const char *name)
 {
+    static const char *const of_counted[] = {"-select_streams", "v:0",
+                                             "-count_packets", NULL};
     char url[FFMPEG_URL], text[PROBE_BYTES], n[FFMPEG_WORD] = "";
     struct glint_error error;
     struct glint_input file;
@@ -503,7 +620,7 @@ long ffmpeg_count_frames(const char *name)
         return 0;
     glint_input_close(&file);
     if (!set_url(url, name) ||
-        !ask(url, "v:0", "stream=nb_read_packets", "-count_packets", text))
+        !ask(url, of_counted, "stream=nb_read_packets", text))
         return 0;
     text[strcspn(text, "\r\n")] = '\0';
     take_word(text, "nb_read_packets", n);
@@ -608,11 +725,159 @@ static enum glint_status too_long(const char *name, struct glint_error *error)
                               "the name is too long");
 }
 
+/* ------------------------------------------------------------------- times */
+
+/* Returns the ratio TEXT, "N/D", or 0. */
+static double ratio_of(const char *text)
+{
+    char *end;
+    const double n = strtod(text, &end);
+    const double d = *end == '/' ? strtod(end + 1, NULL) : 1;
+
+    return d > 0 ? n / d : 0;
+}
+
+bool ffmpeg_keeps_times(const char *name)
+{
+    static const char *const types[] = {"mp4", "m4v",  "mov",
+                                        "mkv", "webm", NULL};
+
+    return is_one_of(extension(name), types);
+}
+
+static int by_time(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+
+    return (x > y) - (x < y);
+}
+
+/* Reads from FROM lines "seconds,flags" of packets; those with the flag D are
+ * not shown. */
+static void read_times(FILE *from, struct ffmpeg_times *times)
+{
+    double *more;
+    char line[128], *end;
+    int room = 0;
+
+    while (fgets(line, sizeof line, from)) {
+        const double time = strtod(line, &end);
+
+        if (end == line || strchr(end, 'D'))
+            continue;
+        if (times->n == room) {
+            room = room ? 2 * room : 256;
+            more = realloc(times->at, (size_t)room * sizeof *more);
+            if (!more)
+                break;
+            times->at = more;
+        }
+        times->at[times->n++] = time;
+    }
+    if (times->n)
+        qsort(times->at, (size_t)times->n, sizeof *times->at, by_time);
+}
+
+/* Returns whether TIMES are not even steps of RATE a second: a step differs by
+ * more than a quarter and 2 ms, or all of them by half a step. */
+static bool is_variable(const struct ffmpeg_times *times, double rate)
+{
+    const double *const at = times->at;
+    const double step = rate > 0 ? 1 / rate : 0;
+
+    for (int i = 1; i < times->n; i++)
+        if (fabs(at[i] - at[i - 1] - step) > fmax(step / 4, 2e-3) ||
+            fabs(at[i] - at[0] - i * step) > fmax(step / 2, 2e-3))
+            return true;
+    return false;
+}
+
+bool ffmpeg_times_read(struct ffmpeg_times *times, const char *name,
+                       const struct ffmpeg_video *video)
+{
+    char url[FFMPEG_URL], text[PROBE_BYTES], start[FFMPEG_WORD] = "";
+    const char *const argv[] = {"ffprobe",
+                                "-v",
+                                "quiet",
+                                "-select_streams",
+                                "v:0",
+                                "-show_entries",
+                                "packet=pts_time,flags",
+                                "-of",
+                                "csv=p=0",
+                                url,
+                                NULL};
+    struct glint_error error;
+    struct child child;
+    FILE *from;
+
+    *times = (struct ffmpeg_times){NULL, 0};
+    if (!set_url(url, name) ||
+        start_child(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
+        return false;
+    from = fdopen(child.fd, "r");
+    if (from) {
+        read_times(from, times);
+        fclose(from);
+        child.fd = -1;
+    }
+    child_end(&child);
+    if (!is_variable(times, ratio_of(video->rate)))
+        return false;
+    ask(url, of_all, "format=start_time", text);
+    text[strcspn(text, "\r\n")] = '\0';
+    take_word(text, "start_time", start);
+    for (int i = 0; i < times->n; i++)
+        times->at[i] -= strtod(start, NULL);
+    return true;
+}
+
+/* Writes an expression of the frame's number N that is TIMES[N] in units of
+ * 1 / 90000 s for N from FIRST to END - 1: a tree of comparisons. */
+static void write_tree(FILE *to, const double *times, int first, int end)
+{
+    const int middle = first + (end - first) / 2;
+
+    if (end - first == 1) {
+        fprintf(to, "%.0f", times[first] * 90000);
+        return;
+    }
+    fprintf(to, "if(lt(N,%d),", middle);
+    write_tree(to, times, first, middle);
+    fputc(',', to);
+    write_tree(to, times, middle, end);
+    fputc(')', to);
+}
+
+/* Writes to a file in memory the filter that gives frames their TIMES, after
+ * FILTER unless that is NULL. NAME becomes its name. Returns its descriptor, or
+ * -1 if there is none to be had. */
+static int make_script(const struct ffmpeg_times *times, const char *filter,
+                       char name[FFMPEG_WORD + 16])
+{
+    const int fd = memfd_create("times", MFD_CLOEXEC);
+    FILE *const to = fd >= 0 ? fdopen(dup(fd), "w") : NULL;
+    bool is_whole = to != NULL;
+
+    if (to) {
+        fprintf(to, "%s%ssettb=1/90000,setpts='", filter ? filter : "",
+                filter ? "," : "");
+        write_tree(to, times->at, 0, times->n);
+        fputs("'", to);
+        is_whole = !ferror(to) && fclose(to) == 0;
+    }
+    snprintf(name, FFMPEG_WORD + 16, "/proc/%ld/fd/%d", (long)getpid(), fd);
+    if (is_whole || fd < 0)
+        return fd;
+    close(fd);
+    return -1;
+}
+
 /* ---------------------------------------------------------------- decoding */
 
 enum glint_status ffmpeg_read(struct child *child, const char *name,
                               const struct ffmpeg_video *video,
-                              struct glint_error *error)
+                              bool keeps_times, struct glint_error *error)
 {
     char url[FFMPEG_URL];
     enum glint_status status;
@@ -624,6 +889,8 @@ enum glint_status ffmpeg_read(struct child *child, const char *name,
     begin(&w);
     add_input(&w, url);
     add_two(&w, "-map", "0:v:0");
+    if (keeps_times)
+        add_two(&w, "-fps_mode", "passthrough");
     add_two(&w, "-pix_fmt", pixels_of_y4m(video->pixels));
     add_two(&w, "-strict", "-1");
     add_two(&w, "-f", "yuv4mpegpipe");
@@ -662,23 +929,56 @@ static bool takes_sound(const char *ext, const char *codec)
     return true; /* .mkv and .ts take nearly all */
 }
 
-static void add_sound(struct words *w, const struct ffmpeg_target *t,
-                      const char *codec, const char *url)
+static const char *const of_mov[] = {"mov", "mp4", "m4v", "3gp", NULL};
+static const char *const of_mkv[] = {"mkv", "mka", NULL};
+
+/* Adds the subtitles of the second input where a file of type EXT takes them:
+ * Matroska any, others text alone, in a codec of their own. */
+static void add_subtitles(struct words *w, const char *ext,
+                          const struct ffmpeg_video *v)
 {
-    if (!t->sound)
-        return;
-    add_input(w, url);
-    add_two(w, "-map", "0:v:0");
+    const bool is_mov = is_one_of(ext, of_mov);
+    const bool is_webm = strcasecmp(ext, "webm") == 0;
+
+    if (is_one_of(ext, of_mkv)) {
+        add_two(w, "-map", "1:s?");
+        if (v->n_subtitles)
+            add_two(w, "-c:s",
+                    strcmp(v->subtitle, "mov_text") == 0 ? "srt" : "copy");
+        if (v->n_files) {
+            add_two(w, "-map", "1:t?");
+            add_two(w, "-c:t", "copy");
+        }
+    } else if (v->subtitles == SUBTITLES_TEXT && (is_mov || is_webm)) {
+        add_two(w, "-map", "1:s?");
+        add_two(w, "-c:s", is_webm ? "webvtt" : "mov_text");
+    }
+}
+
+/* Adds sound, subtitles, chapters and tags of the second input; TIMECODE has
+ * room for a word. */
+static void add_rest(struct words *w, const struct ffmpeg_target *t,
+                     const struct ffmpeg_video *v, char timecode[FFMPEG_REPORT])
+{
+    const char *const ext = extension(t->name);
+
     add_two(w, "-map", "1:a?");
+    add_subtitles(w, ext, v);
     add_two(w, "-map_metadata", "1");
     add_two(w, "-map_chapters", "1");
-    if (takes_sound(extension(t->name), codec))
+    snprintf(timecode, FFMPEG_REPORT, "timecode=%s", v->timecode);
+    if (*v->timecode)
+        add_two(w, "-metadata:s:v:0", timecode);
+    /* Without this the tags of phones, as the place, are left out. */
+    if (is_one_of(ext, of_mov) && strstr(v->tags, " com."))
+        add_two(w, "-movflags", "use_metadata_tags");
+    if (takes_sound(ext, v->sound))
         add_two(w, "-c:a", "copy");
-    else if (*codec && !t->quiet)
+    else if (*v->sound && !t->quiet)
         fprintf(stderr,
                 "glint overlay: %s: sound is encoded anew, as .%s does not "
                 "take %s\n",
-                t->name, extension(t->name), codec);
+                t->name, ext, v->sound);
 }
 
 /* Adds the meaning of V's codes: range, matrix, transfer and primaries. It is
@@ -695,6 +995,20 @@ static void add_tags(struct words *w, const struct ffmpeg_target *t,
         add_two(w, "-color_trc", v->transfer);
     if (*v->primaries)
         add_two(w, "-color_primaries", v->primaries);
+}
+
+/* Returns the filter that makes odd sides even where pixels share their chroma,
+ * or NULL. */
+static const char *pad_of(const struct ffmpeg_target *t,
+                          const struct ffmpeg_video *v)
+{
+    const bool x = t->width % 2, y = t->height % 2;
+
+    if ((!x && !y) || (t->is_444 && !pixels_are_rgb(v->pixels)))
+        return NULL;
+    return x && y ? "pad=iw+1:ih+1,fillborders=right=1:bottom=1:mode=smear"
+           : x    ? "pad=iw+1:ih,fillborders=right=1:mode=smear"
+                  : "pad=iw:ih+1,fillborders=bottom=1:mode=smear";
 }
 
 /* Adds the options of files whose pictures are H.264. Odd sides grow by one
@@ -719,39 +1033,103 @@ static void add_h264(struct words *w, const struct ffmpeg_target *t,
     }
     if (pixels_are_rgb(v->pixels))
         add_two(w, "-pix_fmt", pixels_named("420", pixels_bits(v->pixels)));
-    if ((t->width % 2 == 0 && t->height % 2 == 0) ||
-        (t->is_444 && !pixels_are_rgb(v->pixels)))
-        return;
-    add_two(w, "-vf",
-            t->width % 2 && t->height % 2
-                ? "pad=iw+1:ih+1,fillborders=right=1:bottom=1:mode=smear"
-            : t->width % 2 ? "pad=iw+1:ih,fillborders=right=1:mode=smear"
-                           : "pad=iw:ih+1,fillborders=bottom=1:mode=smear");
-    if (!t->quiet)
+    if (pad_of(t, v) && !t->quiet)
         fprintf(stderr,
                 "glint overlay: %s: %dx%d, as H.264 has even sides only\n",
                 t->name, t->width + t->width % 2, t->height + t->height % 2);
 }
 
-static void add_pictures(struct words *w, const struct ffmpeg_target *t,
-                         const struct ffmpeg_video *v)
-{
-    static const char *const h264[] = {"mp4", "m4v", "mkv",  "mov", "flv",
-                                       "ts",  "mts", "m2ts", "3gp", NULL};
-    const char *ext = extension(t->name);
+/* An encoder of a family of codecs. */
+struct family {
+    const char *codec; /* of the input */
+    const char
+        *types; /* extensions of files that take it, each after a blank */
+    const char *encoder;
+    const char *options; /* words with blanks */
+    const char *alpha;   /* format with alpha, or NULL */
+};
 
-    if (strcasecmp(ext, "gif") == 0) {
-        add_two(w, "-filter_complex",
-                "[0:v]split[a][b];[a]palettegen[p];[b][p]paletteuse");
-    } else if (strcasecmp(ext, "webm") == 0) {
-        add_two(w, "-crf", "24");
-        add_two(w, "-b:v", "0");
-        add_two(w, "-row-mt", "1");
-        add_two(w, "-cpu-used", "4");
-    } else if (is_one_of(ext, h264)) {
-        add_h264(w, t, v);
-    } else
-        add_two(w, "-q:v", "2");
+static const struct family families[] = {
+    {"hevc", " mp4 m4v mov mkv ts mts m2ts", "libx265", "-crf 20", NULL},
+    {"prores", " mov mkv mxf", "prores_ks", "", "yuva444p10le"},
+    {"vp9", " webm mkv mp4", "libvpx-vp9",
+     "-crf 24 -b:v 0 -row-mt 1 -cpu-used 4", "yuva420p"},
+    {"vp8", " webm mkv", "libvpx", "-crf 10 -b:v 20M -cpu-used 4", NULL},
+    {"av1", " mp4 mkv webm", "libsvtav1", "-crf 24 -preset 8", NULL},
+    {"ffv1", " mkv avi", "ffv1", "-level 3", "yuva444p10le"},
+    {"dvvideo", " avi mov mkv", "dvvideo", "", NULL},
+    {"mpeg2video", " mpg mpeg ts mxf mkv mov", "mpeg2video", "-q:v 2", NULL},
+    {"mjpeg", " avi mov mkv", "mjpeg", "-q:v 2", NULL}};
+
+static bool is_hdr(const struct ffmpeg_video *v)
+{
+    return strcmp(v->transfer, "smpte2084") == 0 ||
+           strcmp(v->transfer, "arib-std-b67") == 0;
+}
+
+/* Returns whether the installed ffmpeg has ENCODER. */
+static bool has_encoder(const char *encoder)
+{
+    const char *const argv[] = {"ffmpeg", "-hide_banner", "-v",
+                                "error",  "-encoders",    NULL};
+    char text[PROBE_BYTES], word[FFMPEG_WORD];
+    struct glint_error error;
+    struct child child;
+
+    if (start_child(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
+        return false;
+    read_all(&child, text);
+    child_end(&child);
+    snprintf(word, sizeof word, " %s ", encoder);
+    return strstr(text, word) != NULL;
+}
+
+/* Returns the encoder of V's codec for T's type, or else of HEVC for HDR, as
+ * players expect it; NULL: that of the type. */
+static const struct family *family_of(const struct ffmpeg_target *t,
+                                      const struct ffmpeg_video *v)
+{
+    const struct family *found = NULL;
+    char type[FFMPEG_WORD];
+
+    snprintf(type, sizeof type, " %s", extension(t->name));
+    for (size_t i = sizeof families / sizeof *families; i-- > 0;) {
+        const struct family *const f = &families[i];
+        const char *const at = strcasestr(f->types, type);
+        const bool takes = at && (at[strlen(type)] == ' ' || !at[strlen(type)]);
+        const bool is_own = strcmp(f->codec, v->codec) == 0;
+
+        if (takes && (is_own || (i == 0 && is_hdr(v) && !found)))
+            found = f;
+    }
+    return found && has_encoder(found->encoder) ? found : NULL;
+}
+
+/* Returns prores_ks's word for V's profile. */
+static const char *prores_profile(const struct ffmpeg_video *v)
+{
+    static const char *const names[][2] = {
+        {"Proxy", "proxy"},   {"LT", "lt"},     {"Standard", "standard"},
+        {"HQ", "hq"},         {"4444", "4444"}, {"XQ", "4444xq"},
+        {"4444 XQ", "4444xq"}};
+
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (strcasecmp(names[i][0], v->profile) == 0)
+            return names[i][1];
+    return strcmp(pixels_chroma(v->pixels), "444") == 0 ? "4444" : "hq";
+}
+
+static bool is_interlaced(const struct ffmpeg_video *v)
+{
+    static const char *const orders[] = {"tt", "bb", "tb", "bt", NULL};
+
+    return is_one_of(v->fields, orders);
+}
+
+static void add_fields(struct words *w, const struct ffmpeg_video *v)
+{
+    if (is_interlaced(v))
+        add_two(w, "-flags", "+ildct+ilme");
 }
 
 /* Adds the words of OPTIONS, which it cuts at its blanks. */
@@ -763,13 +1141,91 @@ static void add_options(struct words *w, char *options)
         add(w, word);
 }
 
+/* Adds the options of encoder F, kept in TEXT. */
+static void add_family(struct words *w, const struct ffmpeg_target *t,
+                       const struct ffmpeg_video *v, const struct family *f,
+                       char text[FFMPEG_REPORT])
+{
+    const bool is_hevc = strcmp(f->encoder, "libx265") == 0;
+
+    add_two(w, "-c:v", f->encoder);
+    if (strcmp(f->encoder, "prores_ks") == 0)
+        add_two(w, "-profile:v", prores_profile(v));
+    if (is_hevc && is_one_of(extension(t->name), of_mov))
+        add_two(w, "-tag:v", "hvc1");
+    snprintf(text, FFMPEG_REPORT, "%s%s%s%s%s%s", f->options,
+             is_hevc ? " -x265-params log-level=error:repeat-headers=1" : "",
+             is_hevc && *v->mastering ? ":hdr10=1:master-display=" : "",
+             is_hevc ? v->mastering : "",
+             is_hevc && *v->light ? ":max-cll=" : "", is_hevc ? v->light : "");
+    add_options(w, text);
+    add_fields(w, v);
+}
+
+static void add_pictures(struct words *w, const struct ffmpeg_target *t,
+                         const struct ffmpeg_video *v, const struct family *f,
+                         char text[FFMPEG_REPORT], const char **pad)
+{
+    static const char *const h264[] = {"mp4", "m4v", "mkv",  "mov", "flv",
+                                       "ts",  "mts", "m2ts", "3gp", NULL};
+    static const char *const with_fields[] = {"mpg", "mpeg", "mxf", "avi",
+                                              NULL};
+    const char *ext = extension(t->name);
+
+    if (strcasecmp(ext, "gif") == 0) {
+        add_two(w, "-filter_complex",
+                "[0:v]split[a][b];[a]palettegen[p];[b][p]paletteuse");
+    } else if (f) {
+        add_family(w, t, v, f, text);
+        *pad = strcmp(f->encoder, "libx265") == 0 ? pad_of(t, v) : NULL;
+    } else if (strcasecmp(ext, "webm") == 0) {
+        add_two(w, "-crf", "24");
+        add_two(w, "-b:v", "0");
+        add_two(w, "-row-mt", "1");
+        add_two(w, "-cpu-used", "4");
+    } else if (is_one_of(ext, h264)) {
+        add_h264(w, t, v);
+        *pad = pad_of(t, v);
+        add_fields(w, v);
+    } else {
+        /* MPEG-1 has no fields; .ogv and .wmv neither. */
+        if (is_interlaced(v) && strncasecmp(ext, "mp", 2) == 0)
+            add_two(w, "-c:v", "mpeg2video");
+        add_two(w, "-q:v", "2");
+        if (is_one_of(ext, with_fields))
+            add_fields(w, v);
+    }
+}
+
+/* Adds a filter that gives the pictures the alpha of the second input, in
+ * FORMAT; TEXT has room for it. */
+static void add_alpha(struct words *w, const char *format,
+                      char text[FFMPEG_REPORT])
+{
+    const char *const opaque =
+        strcmp(format, "yuva420p") == 0 ? "yuv420p" : "yuv444p10le";
+
+    snprintf(text, FFMPEG_REPORT,
+             "[1:v:0]format=%s,extractplanes=a,setpts=PTS-STARTPTS[a];"
+             "[0:v]format=%s,setpts=PTS-STARTPTS[v];"
+             "[v][a]mergeplanes=0x00010210:%s[o]",
+             format, opaque, format);
+    add_two(w, "-filter_complex", text);
+    add_two(w, "-map", "[o]");
+}
+
 enum glint_status ffmpeg_write(struct child *child,
                                const struct ffmpeg_target *target,
                                const struct ffmpeg_video *video,
                                struct glint_error *error)
 {
     const struct ffmpeg_target *t = target;
+    const struct family *f;
+    const char *pad = NULL;
     char out[FFMPEG_URL], sound[FFMPEG_URL] = "", options[1024];
+    char text[FFMPEG_REPORT], alpha[FFMPEG_REPORT], timecode[FFMPEG_REPORT];
+    char script[FFMPEG_WORD + 16];
+    int script_fd = -1;
     enum glint_status status;
     struct words w;
 
@@ -782,17 +1238,39 @@ enum glint_status ffmpeg_write(struct child *child,
     add_two(&w, "-f", "yuv4mpegpipe");
     add_tags(&w, t, video);
     add_two(&w, "-i", "-");
-    add_sound(&w, t, video->sound, sound);
+    f = t->options ? NULL : family_of(t, video);
+    if (t->sound)
+        add_two(&w, "-i", sound);
+    if (t->sound && !t->times && f && f->alpha &&
+        pixels_have_alpha(video->pixels))
+        add_alpha(&w, f->alpha, alpha);
+    else if (t->sound)
+        add_two(&w, "-map", "0:v:0");
+    if (t->sound)
+        add_rest(&w, t, video, timecode);
     add_tags(&w, t, video);
     if (t->options) {
         snprintf(options, sizeof options, "%s", t->options);
         add_options(&w, options);
     } else
-        add_pictures(&w, t, video);
+        add_pictures(&w, t, video, f, text, &pad);
+    if (t->times)
+        script_fd = make_script(t->times, pad, script);
+    if (script_fd >= 0) {
+        add_two(&w, "-filter_script:v", script);
+        add_two(&w, "-fps_mode", "vfr");
+        add_two(&w, "-enc_time_base", "1/90000");
+    } else if (pad)
+        add_two(&w, "-vf", pad);
     add(&w, out);
     status = end(&w, error);
-    return status == GLINT_OK ? start_child(child, w.word, CHILD_READS, error)
-                              : status;
+    if (status == GLINT_OK)
+        status = start_child(child, w.word, CHILD_READS, error);
+    if (status == GLINT_OK)
+        child->script = script_fd;
+    else if (script_fd >= 0)
+        close(script_fd);
+    return status;
 }
 
 void ffmpeg_by_hand(const struct tool *tool, const char *in, const char *out)
@@ -917,31 +1395,105 @@ enum glint_status ffmpeg_check(const char *file, const char *name,
         has_first ? "last" : "first", cause);
 }
 
-void ffmpeg_report_losses(const char *file, const char *name,
-                          const char *pixels)
+/* The words of a report, ", no alpha, ...". */
+struct report {
+    char text[FFMPEG_TAGS];
+    size_t n;
+};
+
+__attribute__((format(printf, 2, 3))) static void note(struct report *report,
+                                                       const char *format, ...)
 {
+    const size_t room = sizeof report->text - report->n;
+    va_list args;
+    int n;
+
+    va_start(args, format);
+    n = vsnprintf(report->text + report->n, room, format, args);
+    va_end(args);
+    if (n > 0 && (size_t)n < room)
+        report->n += (size_t)n;
+}
+
+/* Notes that of FROM streams of KIND MADE are left. */
+static void note_streams(struct report *r, const char *kind, int from, int made)
+{
+    if (made < from)
+        note(r, ", %d of %d %s", made, from, kind);
+}
+
+/* Notes tags that are in FROM and not in MADE, whatever their case, except
+ * those of the type of file. */
+static void note_names(struct report *r, const char *from, const char *made)
+{
+    static const char *const own[] = {"major_brand",
+                                      "minor_version",
+                                      "compatible_brands",
+                                      "encoder",
+                                      "timecode",
+                                      "variant_version",
+                                      "vendor_id",
+                                      "duration",
+                                      "handler_name",
+                                      "software_version",
+                                      NULL};
+    char all[FFMPEG_TAGS], has[FFMPEG_TAGS + 2], name[FFMPEG_TAGS + 2];
+    char *word, *rest = all;
+
+    snprintf(all, sizeof all, "%s", from);
+    snprintf(has, sizeof has, "%s ", made);
+    while ((word = strtok_r(rest, " ", &rest))) {
+        snprintf(name, sizeof name, " %s ", word);
+        if (!is_one_of(word, own) && !strcasestr(has, name))
+            note(r, ", no tag %s", word);
+    }
+}
+
+static void note_pixels(struct report *r, const char *made, const char *from)
+{
+    if (pixels_bits(made) < pixels_bits(from))
+        note(r, ", %d bits in place of %d", pixels_bits(made),
+             pixels_bits(from));
+    if (strcmp(pixels_chroma(from), "gray") != 0 &&
+        strcmp(pixels_chroma(made), "444") != 0 &&
+        strcmp(pixels_chroma(made), pixels_chroma(from)) != 0)
+        note(r, ", chroma %s in place of %s", pixels_chroma(made),
+             pixels_are_rgb(from) ? "RGB" : pixels_chroma(from));
+    if (pixels_have_alpha(from) && !pixels_have_alpha(made))
+        note(r, ", no alpha");
+}
+
+void ffmpeg_report_losses(const char *file, const char *name,
+                          const struct ffmpeg_video *video)
+{
+    const struct ffmpeg_video *const v = video;
+    struct report r = {"", 0};
     struct ffmpeg_video made;
-    char text[160] = "";
-    size_t n = 0;
 
     ffmpeg_probe(&made, file);
-    if (!*made.pixels || !*pixels)
+    if (!*made.pixels || !*v->pixels)
         return;
-    if (pixels_bits(made.pixels) < pixels_bits(pixels))
-        n += (size_t)snprintf(text, sizeof text, ", %d bits in place of %d",
-                              pixels_bits(made.pixels), pixels_bits(pixels));
-    if (strcmp(pixels_chroma(pixels), "gray") != 0 &&
-        strcmp(pixels_chroma(made.pixels), "444") != 0 &&
-        strcmp(pixels_chroma(made.pixels), pixels_chroma(pixels)) != 0)
-        n += (size_t)snprintf(
-            text + n, sizeof text - n, ", chroma %s in place of %s",
-            pixels_chroma(made.pixels),
-            pixels_are_rgb(pixels) ? "RGB" : pixels_chroma(pixels));
-    if (pixels_have_alpha(pixels) && !pixels_have_alpha(made.pixels))
-        snprintf(text + n, sizeof text - n, ", no alpha");
-    if (*text)
+    note_pixels(&r, made.pixels, v->pixels);
+    if (is_hdr(v) && strcmp(v->transfer, made.transfer) != 0)
+        note(&r, ", no tag of its transfer %s", v->transfer);
+    if (is_interlaced(v) && !is_interlaced(&made))
+        note(&r, ", no flags of its fields (%s)", v->fields);
+    if (*v->timecode && !*made.timecode)
+        note(&r, ", no time code");
+    if (*v->mastering && !*made.mastering)
+        note(&r, ", no mastering data");
+    if (v->has_dolby)
+        note(&r, ", no Dolby Vision");
+    note_streams(&r, "streams of pictures", v->n_pictures, made.n_pictures);
+    note_streams(&r, "streams of sound", v->n_sounds, made.n_sounds);
+    note_streams(&r, "streams of subtitles", v->n_subtitles, made.n_subtitles);
+    note_streams(&r, "streams of data", v->n_data, made.n_data);
+    note_streams(&r, "attached files", v->n_files, made.n_files);
+    note_streams(&r, "chapters", v->n_chapters, made.n_chapters);
+    note_names(&r, v->tags, made.tags);
+    if (*r.text)
         fprintf(stderr,
                 "glint overlay: %s: has %s; see --encode for encoders that "
                 "keep more\n",
-                name, text + 2);
+                name, r.text + 2);
 }

@@ -10,8 +10,10 @@
  *
  * ffmpeg runs beside glint, at the other end of a pipe of y4m frames. Sound is
  * copied from the input as it is if the type of the output takes it, else it is
- * encoded anew, with a message. Frame rate, range, matrix, primaries, transfer,
- * titles and chapters are kept; subtitles and further pictures are not.
+ * encoded anew, with a message. The codec is of the input's family where the
+ * type of the output takes that. Tags, chapters, time code, subtitles, alpha,
+ * fields, colours and mastering data are kept where the output can hold them;
+ * one warning names those that are not.
  *
  * A child is a program that glint runs at the end of a pipe. No shell takes
  * part, so names need no quotes. The program shares glint's standard error, or
@@ -43,20 +45,46 @@ struct child {
     off_t told; /* bytes of SAID that were passed on */
     const char *const *listening; /* ends with NULL, not owned */
     bool heard;                   /* it has said one of those */
+    int script; /* file that it reads its filter from; -1: none */
 };
 
 /* A child that is none. */
-#define CHILD_NONE ((struct child){.fd = -1, .said = -1})
+#define CHILD_NONE ((struct child){.fd = -1, .said = -1, .script = -1})
 
-enum { FFMPEG_WORD = 32, FFMPEG_URL = 4096, FFMPEG_REPORT = 256 };
+enum {
+    FFMPEG_WORD = 32,
+    FFMPEG_URL = 4096,
+    FFMPEG_REPORT = 512,
+    FFMPEG_TAGS = 1024
+};
+
+enum ffmpeg_subtitles { SUBTITLES_NONE, SUBTITLES_TEXT, SUBTITLES_IMAGES };
 
 /* A video in words of ffmpeg's, "" if unknown. */
 struct ffmpeg_video {
-    char pixels[FFMPEG_WORD]; /* yuv420p ... */
+    char codec[FFMPEG_WORD], profile[FFMPEG_WORD]; /* hevc, Main 10 ... */
+    char pixels[FFMPEG_WORD];                      /* yuv420p ... */
+    char fields[FFMPEG_WORD]; /* progressive, tt, bb, tb, bt */
+    char rate[FFMPEG_WORD], mean_rate[FFMPEG_WORD]; /* frames a second, N/D */
+    char timecode[FFMPEG_WORD];                     /* of the first frame */
     char range[FFMPEG_WORD], space[FFMPEG_WORD], transfer[FFMPEG_WORD],
         primaries[FFMPEG_WORD];
     char sound[FFMPEG_WORD]; /* codec of the first audio stream; "": none */
     int width, height;       /* 0: not known */
+    /* streams of pictures, sound, subtitles, data and files; chapters */
+    int n_pictures, n_sounds, n_subtitles, n_data, n_files, n_chapters;
+    enum ffmpeg_subtitles subtitles;
+    char subtitle[FFMPEG_WORD]; /* codec of the first subtitles */
+    char mastering[160]; /* as x265 takes it: G(x,y)B(x,y)R(x,y)WP(x,y)L(a,b) */
+    char light[FFMPEG_WORD]; /* max-cll: "1000,400" */
+    bool has_dolby;          /* Dolby Vision */
+    char tags[FFMPEG_TAGS];  /* names of the file's tags, each after a blank */
+};
+
+/* The time of each frame in seconds from the start of the file. */
+struct ffmpeg_times {
+    double *at;
+    int n;
 };
 
 /* The output, and the facts that its encoder needs. */
@@ -67,7 +95,8 @@ struct ffmpeg_target {
     /* Options for the encoder, words with blanks, or NULL. */
     const char *options;
     int width, height;
-    bool is_444; /* each pixel has chroma of its own */
+    bool is_444;                      /* each pixel has chroma of its own */
+    const struct ffmpeg_times *times; /* times of the frames; NULL: even */
     enum glint_range range;
     bool quiet;
 };
@@ -108,12 +137,21 @@ void ffmpeg_colours(const struct ffmpeg_video *video,
                     struct glint_y4m_header *header,
                     char report[FFMPEG_REPORT]);
 
-/* Starts ffmpeg as CHILD, which writes NAME as y4m to child->fd.
+/* Reads the times of NAME's frames. Returns whether these are not even steps of
+ * VIDEO's rate. The caller frees times->at. */
+bool ffmpeg_times_read(struct ffmpeg_times *times, const char *name,
+                       const struct ffmpeg_video *video);
+
+/* Returns whether files of NAME's type have a time for each frame. */
+bool ffmpeg_keeps_times(const char *name);
+
+/* Starts ffmpeg as CHILD, which writes NAME as y4m to child->fd: each frame
+ * once if KEEPS_TIMES, else as many as the rate takes.
  * GLINT_E_UNSUPPORTED: there is no ffmpeg, or NAME has more than some 4000
  * bytes. GLINT_E_IO: the system gives no process or descriptor. */
 enum glint_status ffmpeg_read(struct child *child, const char *name,
                               const struct ffmpeg_video *video,
-                              struct glint_error *error);
+                              bool keeps_times, struct glint_error *error);
 
 /* Starts ffmpeg as CHILD, which reads y4m from child->fd and writes TARGET.
  * VIDEO is that of the input, empty where it is not known. Errors are those of
@@ -128,10 +166,11 @@ enum glint_status ffmpeg_write(struct child *child,
 enum glint_status ffmpeg_check(const char *file, const char *name,
                                struct glint_error *error);
 
-/* Prints a warning if FILE, which ffmpeg has written to become NAME, has fewer
- * bits or less chroma than PIXELS, or no alpha. */
+/* Prints a warning that names what VIDEO, the input, has and FILE, which ffmpeg
+ * has written to become NAME, has not: bits, chroma, alpha, fields, streams,
+ * tags and the like. */
 void ffmpeg_report_losses(const char *file, const char *name,
-                          const char *pixels);
+                          const struct ffmpeg_video *video);
 
 /* Prints the pipe that does by hand what glint overlay IN -o OUT would. */
 void ffmpeg_by_hand(const struct tool *tool, const char *in, const char *out);

@@ -40,13 +40,17 @@ struct overlay {
     int32_t elapsed_us; /* microseconds from frame to frame; 0: pictures by
                            themselves */
     int range, matrix;  /* 0: auto */
-    int transfer;       /* enum glint_transfer_curve; -1: auto */
-    int quality;        /* quality of JPEG and WebP; 0: the input's */
+    /* frames without headers; WIDTH 0: none */
+    struct {
+        int format, width, height, stride;
+    } raw;
+    int transfer; /* enum glint_transfer_curve; -1: auto */
+    int quality;  /* quality of JPEG and WebP; 0: the input's */
     bool is_video;
     bool lists_shots; /* Prints the frames from cut to cut, draws nothing. */
     bool is_cut;      /* Lamps and exposure began anew in the last frame. */
     struct layers layers;
-    bool has_layers_type;
+    bool has_layers_type, has_raw;
     const char *encode; /* options for ffmpeg, or NULL */
     struct overlay_figures figures;
 };

@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -29,7 +30,9 @@ struct video {
     char pipe[32];            /* name of the pipe, for OUT */
     struct glint_y4m_reader in;
     struct glint_y4m_writer out;
-    bool is_closed; /* The reader of a pipe went away. */
+    struct ffmpeg_times times;
+    bool is_variable, keeps_times; /* TIMES are not even, and stay. */
+    bool is_closed;                /* The reader of a pipe went away. */
     bool has_ended; /* The input was read to its end, not to --frames' last. */
 };
 
@@ -82,6 +85,12 @@ static ptrdiff_t read_child(void *ctx, void *dst, size_t bytes)
     return n;
 }
 
+/* Returns whether the output takes sound, tags and times of the whole input. */
+static bool takes_rest(const struct overlay *o)
+{
+    return !glint_ends_in(o->output, ".gif") && o->last == INT_MAX;
+}
+
 /* Sets the meaning of the input's codes by its tags, and prints a warning of
  * tags that are not known, or that are missing though the video is of 2020's
  * primaries. */
@@ -117,7 +126,13 @@ static int open_coded(struct video *v)
         return fail(v, status);
     glint_input_close(&file);
     ffmpeg_probe(&v->about, v->o->input);
-    status = ffmpeg_read(&v->reader, v->o->input, &v->about, &v->error);
+    v->is_variable = ffmpeg_times_read(&v->times, v->o->input, &v->about);
+    v->keeps_times = v->is_variable && v->writes && takes_rest(v->o) &&
+                     ffmpeg_keeps_times(v->o->output) &&
+                     !(v->o->encode && strstr(v->o->encode, "-vf")) &&
+                     !(v->o->encode && strstr(v->o->encode, "-filter"));
+    status = ffmpeg_read(&v->reader, v->o->input, &v->about, v->keeps_times,
+                         &v->error);
     if (status != GLINT_OK)
         return fail(v, status);
     status = glint_y4m_reader_start(&v->in, read_child, &v->reader, v->o->input,
@@ -145,6 +160,20 @@ static const char *pixels_of_layout(const struct glint_y4m_layout *layout)
                              : pixels_named(chroma, layout->bits);
 }
 
+/* Opens frames without headers, 30 a second. */
+static enum glint_status open_raw(struct video *v)
+{
+    static const enum glint_pixel_format formats[] = {GLINT_I420, GLINT_I422,
+                                                      GLINT_I444, GLINT_GREY};
+    const struct overlay *const o = v->o;
+    struct glint_y4m_header header;
+
+    glint_y4m_header_init(&header, o->raw.width, o->raw.height,
+                          formats[o->raw.format], 30, 1);
+    return glint_y4m_reader_open_raw(&v->in, o->input, &header,
+                                     (size_t)o->raw.stride, &v->error);
+}
+
 static int open_input(struct video *v)
 {
     struct glint_y4m_header *h = &v->in.header;
@@ -155,7 +184,8 @@ static int open_input(struct video *v)
         code = open_coded(v);
     } else {
         const enum glint_status status =
-            glint_y4m_reader_open(&v->in, o->input, &v->error);
+            o->raw.width ? open_raw(v)
+                         : glint_y4m_reader_open(&v->in, o->input, &v->error);
 
         if (status != GLINT_OK)
             code = fail(v, status);
@@ -176,18 +206,16 @@ static int open_input(struct video *v)
 static enum glint_status open_encoder(struct video *v)
 {
     const struct overlay *o = v->o;
-    struct ffmpeg_target target = {
-        .name = o->output,
-        .sound =
-            v->reads && !glint_ends_in(o->output, ".gif") && o->last == INT_MAX
-                ? o->input
-                : NULL,
-        .options = o->encode,
-        .width = v->in.header.width,
-        .height = v->in.header.height,
-        .is_444 = v->in.header.format == GLINT_I444,
-        .range = v->in.header.range,
-        .quiet = v->tool->quiet};
+    struct ffmpeg_target target = {.name = o->output,
+                                   .sound = v->reads && takes_rest(o) ? o->input
+                                                                      : NULL,
+                                   .options = o->encode,
+                                   .width = v->in.header.width,
+                                   .height = v->in.header.height,
+                                   .times = v->keeps_times ? &v->times : NULL,
+                                   .is_444 = v->in.header.format == GLINT_I444,
+                                   .range = v->in.header.range,
+                                   .quiet = v->tool->quiet};
     enum glint_status status =
         glint_output_open(&v->file, o->output, GLINT_OUTPUT_BINARY, &v->error);
 
@@ -296,12 +324,16 @@ static int shots(struct video *v)
     return code;
 }
 
-/* Returns the us from frame to frame; at 25 a second if the rate is unknown. */
-static int32_t frame_us(const struct glint_y4m_header *header)
+/* Returns the us from frame to frame, on average if that varies; at 25 a second
+ * if the rate is unknown. */
+static int32_t frame_us(const struct video *v)
 {
-    const double us = header->fps_num > 0
-                          ? 1e6 * header->fps_den / header->fps_num
-                          : 1e6 / 25;
+    const struct glint_y4m_header *const header = &v->in.header;
+    const struct ffmpeg_times *const t = &v->times;
+    const double us =
+        v->keeps_times        ? 1e6 * (t->at[t->n - 1] - t->at[0]) / (t->n - 1)
+        : header->fps_num > 0 ? 1e6 * header->fps_den / header->fps_num
+                              : 1e6 / 25;
 
     return (int32_t)fmin(fmax(us + 0.5, 1), 1e9);
 }
@@ -340,18 +372,30 @@ static int end_writer(struct video *v)
     if (v->writes && (status == GLINT_OK || status == GLINT_E_CLOSED)) {
         status = ffmpeg_check(v->file.tmp, v->o->output, &v->error);
         if (status == GLINT_OK && !v->o->encode && !v->tool->quiet)
-            ffmpeg_report_losses(v->file.tmp, v->o->output, v->about.pixels);
+            ffmpeg_report_losses(v->file.tmp, v->o->output, &v->about);
         if (status == GLINT_OK)
             status = glint_output_commit(&v->file, &v->error);
     }
     return status == GLINT_OK ? EXIT_OK : fail(v, status);
 }
 
+/* Prints a warning if frames of a variable rate were repeated or left out to
+ * become even. */
+static void report_rate(const struct video *v)
+{
+    if (v->is_variable && !v->keeps_times && v->has_ended && !v->tool->quiet)
+        fprintf(stderr,
+                "glint overlay: %s: %d frames of a variable rate become %d of "
+                "%d/%d a second; .mp4 .mov .mkv .webm keep each frame's time\n",
+                v->o->output, v->times.n, v->o->drawing.run.n_frames,
+                v->in.header.fps_num, v->in.header.fps_den);
+}
+
 static int run(struct video *v)
 {
     int code = open_input(v);
 
-    v->o->elapsed_us = frame_us(&v->in.header);
+    v->o->elapsed_us = frame_us(v);
     if (code == EXIT_OK && v->o->lists_shots) {
         code = shots(v);
         return code == EXIT_OK && v->reads ? end_reader(v) : code;
@@ -363,6 +407,8 @@ static int run(struct video *v)
     code = frames(v);
     if (code == EXIT_OK && v->reads && v->has_ended)
         code = end_reader(v);
+    if (code == EXIT_OK)
+        report_rate(v);
     return code == EXIT_OK ? end_writer(v) : code;
 }
 
@@ -376,11 +422,13 @@ static void close_all(struct video *v)
     if (v->writes)
         glint_output_abort(&v->file);
     glint_y4m_reader_close(&v->in);
+    free(v->times.at);
 }
 
 int overlay_video_check(const struct tool *tool, const struct overlay *o)
 {
-    if ((is_y4m(o->input) && is_y4m(o->output)) || child_exists("ffmpeg"))
+    if (((o->raw.width || is_y4m(o->input)) && is_y4m(o->output)) ||
+        child_exists("ffmpeg"))
         return EXIT_OK;
     ffmpeg_by_hand(tool, o->input, o->output);
     return EXIT_INPUT;
@@ -390,7 +438,7 @@ int overlay_video(struct tool *tool, struct overlay *o)
 {
     struct video v = {.tool = tool,
                       .o = o,
-                      .reads = !is_y4m(o->input),
+                      .reads = !o->raw.width && !is_y4m(o->input),
                       .writes = !is_y4m(o->output),
                       .reader = CHILD_NONE,
                       .writer = CHILD_NONE,
