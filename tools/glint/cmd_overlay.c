@@ -119,16 +119,16 @@ static bool take(struct overlay *o, int option, const char *value)
         return take_word(value, ranges, &o->range);
     case 'x':
         return take_word(value, matrices, &o->matrix);
-    case 'C':
+    case '4':
         o->transfer = tool_word(value, glint_transfer_words);
         return o->transfer >= 0 || strcmp(value, "auto") == 0;
-    case 'f':
+    case '1':
         o->raw.format = tool_word(value, formats);
         o->has_raw = true;
         return o->raw.format >= 0;
-    case 's':
+    case '2':
         return take_size(o, value);
-    case 'S':
+    case '3':
         return tool_integer(value, 1, 4 * GLINT_MAX_SIDE, &o->raw.stride);
     case 'Q':
         return tool_integer(value, 1, 100, &o->quality);
@@ -155,10 +155,10 @@ static const struct option own[] = {
     {"output", required_argument, NULL, 'o'},
     {"range", required_argument, NULL, 'r'},
     {"matrix", required_argument, NULL, 'x'},
-    {"transfer", required_argument, NULL, 'C'},
-    {"format", required_argument, NULL, 'f'},
-    {"size", required_argument, NULL, 's'},
-    {"stride", required_argument, NULL, 'S'},
+    {"transfer", required_argument, NULL, '4'},
+    {"format", required_argument, NULL, '1'},
+    {"size", required_argument, NULL, '2'},
+    {"stride", required_argument, NULL, '3'},
     {"start-number", required_argument, NULL, 'n'},
     {"jpeg-quality", required_argument, NULL, 'Q'},
     {"frames", required_argument, NULL, 'F'},
@@ -203,7 +203,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
             o->output = optarg;
         else if (c == 'e')
             o->encode = optarg;
-        else if (strchr("rxCfsSnQLTFWB", c)) {
+        else if (strchr("rx4123nQLTFWB", c)) {
             if (!take(o, c, optarg))
                 return tool_refuse(tool, options[index].name, optarg);
         } else if ((code = tool_option(tool, c, optarg)) >= 0)
