@@ -52,7 +52,7 @@ say := @$(if $(V),:,printf ' %s %s\n')
 include tools/make/target.mk
 
 # Rooms of the sources; every file in them is built, but for the alternatives
-# below. src/README.md says what each is for.
+# below. src/README.md states what each is for.
 CORE      := base image kernels kernels/rays kernels/ward kernels/maps lens lamps follow tile flare/edges flare star veil scene scene/ward scene/motion scene/translucent scene/highlights scene/account reuse
 ENGINE    := engine engine/options engine/frame engine/setup engine/star
 BAKE      := bake bake/table bake/scene bake/environment bake/motion bake/translucent bake/trace bake/regress bake/visible bake/fit bake/skew bake/exact
@@ -109,7 +109,7 @@ $(OUT)/libglint-tools.a: $(tools_o)
 $(OUT)/lib%.a:
 	$(say) AR $@
 	$(Q)rm -f $@; $(AR) rcs $@ $(filter %.o,$^)
-# Archives are made anew where other files are to be in them, and what knows the
+# Archives are rebuilt where other files are to be in them, and what knows the
 # prefix where that is another.
 archives := $(patsubst %,$(OUT)/libglint%.a,-tools -platform -bake -engine) $(OUT)/libglint.a
 $(archives): $(OUT)/parts

@@ -19,7 +19,7 @@ extern "C" {
 
 enum {
     GLINT_AREA_SAMPLES = 7, /* points of the brightest lamp, unless another
-                               number is asked for */
+                               number is requested */
     /* Factor on the points beyond the first that a lamp gets in a single
      * picture. */
     GLINT_AREA_STILL = 20,
@@ -70,7 +70,7 @@ int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
  * only one. */
 double glint_area_apart(const struct glint_area *area);
 
-/* Returns point I of AREA, with its share of the power, as a lamp without
+/* Returns point I of AREA, with its fraction of the power, as a lamp without
  * extent. */
 struct glint_lamp glint_area_point(const struct glint_area *area, int i);
 

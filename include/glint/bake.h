@@ -44,7 +44,7 @@ struct glint_bake_options {
     const struct glint_prescription *beside;
     int n_beside;
     struct glint_workers *workers; /* does not change the model */
-    /* NULL: silent. After each fit, an estimate: its share may fall. */
+    /* NULL: silent. After each fit, an estimate: its fraction may fall. */
     glint_progress_fn *progress;
     void *progress_ctx;
 };
@@ -59,7 +59,7 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
 /* Sets PROJECTION to that of LENS at the d line, by its chief rays at whole
  * degrees, finer ones of narrow lenses, up to the last that gets through or 85.
  * MISS_DEG receives how far the polynomial is off at them. GLINT_E_LENS: LENS
- * is not round, or hardly any light gets through, and ERROR says which;
+ * is not round, or hardly any light gets through, and ERROR states which;
  * PROJECTION is that by tangents. */
 enum glint_status glint_projection_of(struct glint_projection *projection,
                                       const struct glint_prescription *lens,
@@ -96,7 +96,7 @@ struct glint_bake_model {
 
 /* Puts N models of one lens, by rising position from 0 to 2^30, into a file as
  * in glint/model.h, *ZOOM[*BYTES], to be freed by the caller. GLINT_E_LENS:
- * they are no positions of one lens; ERROR says why. GLINT_E_MEMORY. */
+ * they are not positions of one lens; ERROR states why. GLINT_E_MEMORY. */
 enum glint_status glint_bake_zoom(const struct glint_bake_model *model, int n,
                                   unsigned char **zoom, size_t *bytes,
                                   struct glint_error *error);

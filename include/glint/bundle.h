@@ -26,8 +26,8 @@ struct glint_vertex {
      * as steep as r at r = 1, and smooth everywhere. 0 .. 2^14; 0: there is no
      * such barrel. */
     int32_t barrel_q16[2];
-    int32_t energy_q16; /* 0 .. 65536, in the bundle's unit; below 0: the ray
-                           was lost, and the other members mean nothing */
+    int32_t energy_q16; /* 0 .. 65536, in the bundle's unit; below 0: the ray is
+                           invalid, and the other members mean nothing */
 };
 
 #define GLINT_VERTEX_LIMIT_Q8 (INT32_C(1) << 28) /* 2^20 pixels */

@@ -5,7 +5,7 @@
  *     cfg.dials = glint_dials_at(1 << 14);                  the default
  *     cfg.dials = glint_dials_coarser(cfg.dials, glint_dials_at(1 << 12));
  *
- * A small struct that is copied freely. The settings that are asked for, those
+ * A small struct that is copied freely. The settings that are requested, those
  * that a budget chose and those that a measurement turns are each one of these.
  */
 #ifndef GLINT_DIALS_H

@@ -124,8 +124,8 @@ struct glint_engine_light {
      * diffract: 1, the default, is its physical brightness at strength 0.5 or
      * exposure 0; 0: there is no star. */
     double starburst;
-    /* Shares of all light that the lens, and dirt on its front, spread: veiling
-     * glare index and haze. 0, the default: none; together at most
+    /* Fractions of all light that the lens, and dirt on its front, spread:
+     * veiling glare index and haze. 0, the default: none; together at most
      * GLINT_MOST_VEIL. */
     double veil, haze;
 };
@@ -157,7 +157,7 @@ struct glint_engine_drawing {
     int only_ghost;    /* index of the only ghost drawn; -1: all are */
     int is_fresh; /* not 0: plans of the picture before are never reused, even
                      if no lamp has moved */
-    /* Pictures by themselves have more points of lamps of visible extent and
+    /* Still pictures have more points of lamps of visible extent and
      * more lights, unless these are not 0. */
     int keep_points, keep_lights;
     glint_progress_fn *progress; /* of exact rays, until the first picture is
@@ -259,7 +259,7 @@ struct glint_engine_report {
     size_t arena_bytes; /* bytes that the run-time half was given */
     size_t peak_bytes;  /* bytes of these that this frame used */
     size_t need_bytes;  /* bytes that would have drawn everything in this very
-                           picture, and with grids as fine as asked for */
+                           picture, and with grids as fine as requested */
     size_t star_bytes;  /* bytes besides that stars hold, for their tables and
                            lamps, and a veil */
     int coarsened;      /* not 0: the plan passed a limit and was made coarser
@@ -324,7 +324,7 @@ void glint_engine_set_only_ghost(struct glint_engine *engine, int ghost);
 void glint_engine_set_budget(struct glint_engine *engine, double budget_ms);
 
 /* Sets the f-number of the pictures to come, at least that which the model was
- * baked for, and, unless the exposure is by hand, measures anew how bright
+ * baked for, and, unless the exposure is by hand, measures again how bright
  * flares of the lens are. GLINT_E_ARGUMENT with ERROR: the stop stays as it is.
  * GLINT_E_MEMORY. Not for
  * an engine with a setup of the caller's. */
@@ -359,7 +359,7 @@ enum glint_status glint_engine_front(struct glint_engine *engine,
 
 /* Finds the lamps of IMAGE, in any format but GLINT_LINEAR_Q20, which comes
  * ELAPSED_US after the last picture: lamps are followed from picture to
- * picture, and rise and fade. If ELAPSED_US is 0, IMAGE is a picture by itself;
+ * picture, and rise and fade. If ELAPSED_US is 0, IMAGE is a still picture;
  * glint_engine_expose() then draws its flare small first, to see how bright it
  * is, unless there is a budget or an arena that has not all. Writes at most MAX
  * lamps, the strongest first; returns how many. */
@@ -382,12 +382,12 @@ void glint_engine_forget_lamps(struct glint_engine *engine);
 int glint_engine_doubtful(const struct glint_engine *engine,
                           struct glint_spot *spot);
 
-/* Share of a lamp that is hidden completely: not 0, so that power over share is
- * still the power of the lamp. */
+/* Fraction of a lamp that is hidden completely: not 0, so that power over share
+ * is still the power of the lamp. */
 #define GLINT_ENGINE_HIDDEN 1e-18
 
-/* Multiplies power and share of each of N LAMPS by the fraction that SCENE, as
- * drawn last, leaves visible, and appends the lights of SCENE that flare, at
+/* Multiplies power and fraction of each of N LAMPS by the fraction that SCENE,
+ * as drawn last, leaves visible, and appends the lights of SCENE that flare, at
  * most GLINT_SCENE_MAX_LIGHTS. Returns the number of lamps; *HIDDEN receives
  * how many of them are hidden completely. Only programs that call this link the
  * scene library. */
@@ -396,9 +396,9 @@ int glint_engine_add_scene(const struct glint_engine *engine,
                            const struct glint_scene *scene,
                            struct glint_engine_lamp *lamps, int n, int *hidden);
 
-/* Multiplies the level of each of N LAMPS by its share, so that the exposure
- * does not brighten what is left of hidden lamps. IS_STILL: a picture by
- * itself, where lamps that are hidden completely get power 0. */
+/* Multiplies the level of each of N LAMPS by its fraction, so that the exposure
+ * does not brighten what is left of hidden lamps. IS_STILL: a still
+ * picture, where lamps that are hidden completely get power 0. */
 void glint_engine_apply_shares(struct glint_engine_lamp *lamps, int n,
                                int is_still);
 
@@ -424,7 +424,7 @@ glint_engine_exposed(const struct glint_engine *engine);
 /* Adds the flare of N LAMPS, at most GLINT_ENGINE_MAX_LAMPS + more_lamps, or
  * more_lamps if none are looked for, to IMAGE: those found last or any others.
  * The exposure follows that of the picture before where the time since that is
- * known; else, as of ELAPSED_US 0, IMAGE is a picture by itself. N 0 leaves
+ * known; else, as of ELAPSED_US 0, IMAGE is a still picture. N 0 leaves
  * IMAGE as it is, but for a veil. GLINT_E_ARGUMENT: IMAGE has another size, or
  * N is out of range. GLINT_E_MEMORY. */
 enum glint_status glint_engine_draw(struct glint_engine *engine,

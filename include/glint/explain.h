@@ -58,10 +58,10 @@ struct glint_explain_part {
     /* all_terms is the sum over vertices of the terms of each. */
     long long vertices, edges, rows, refs, all_terms;
     int tiles, lit;     /* tiles drawn, and pixels that get light */
-    double flux, share; /* light that reaches the picture, and its share of the
-                           frame's */
+    double flux, share; /* light that reaches the picture, and its fraction of
+                           the frame's */
     double brightest;   /* brightest pixel, as the mean of R, G, B */
-    /* Estimated instructions, and their share of the frame's. */
+    /* Estimated instructions, and their fraction of the frame's. */
     double work, cost;
 };
 

@@ -153,12 +153,12 @@ int glint_lights_still(struct glint_still *still,
 /* Merges lights in place and returns how many are left, sorted from the
  * brightest to the faintest; entries after these are undefined. Lights no
  * farther apart than NEAR_Q30, the chord of the angle between them, merge
- * first, as they cannot be told apart. Then, while more than MOST (1 or more)
- * are left, those merge whose merging changes the picture least: faint lights
- * over long distances before bright ones. A merged light has the power of both
- * and a direction between theirs, weighted by their powers. Lights without
- * power or colour are left out. *N_APART receives the number of lights before
- * any merged because of MOST. The result does not depend on the order of
+ * first, as they cannot be distinguished. Then, while more than MOST (1 or
+ * more) are left, those merge whose merging changes the picture least: faint
+ * lights over long distances before bright ones. A merged light has the power
+ * of both and a direction between theirs, weighted by their powers. Lights
+ * without power or colour are left out. *N_APART receives the number of lights
+ * before any merged because of MOST. The result does not depend on the order of
  * lights. */
 int glint_lights_merge(struct glint_light *lights, int n_lights,
                        int32_t near_q30, int most, int *n_apart);
@@ -194,17 +194,17 @@ struct glint_flare_config {
     int max_bundles;
     int max_vertices;   /* of bundles that glint_flare_add() takes in */
     int max_primitives; /* primitives of a frame. Each worker gets an equal
-                           share; with half as many more than needed, few
+                           fraction; with half as many more than needed, few
                            bundles have to wait for room in another worker's
                            share. */
     int max_refs;       /* entries in the lists of all tiles */
 
     /* glint_reuse: a plan of the lights, waves and dials of the plan before,
      * whose bundles were binned, keeps these. No output changes. NULL: every
-     * frame is made anew. Only a program that names it links it. */
+     * frame is rebuilt. Only a program that names it links it. */
     const struct glint_reuse *reuse;
     int reuse_lights; /* lights that are remembered for that, 40 bytes each; a
-                         frame of more is always made anew */
+                         frame of more is always rebuilt */
     int reuse_gains;  /* 1: frames may have gain_q14, which takes 12 bytes for
                          each of max_bundles */
 };
@@ -217,7 +217,7 @@ struct glint_flare_stats {
     int need_bundles, need_vertices, need_primitives, need_refs;
     int dropped_bundles; /* left out for want of capacity */
     int dropped_cells; /* cells left out of bundles that were drawn: they have a
-                          lost ray, a vertex out of range, or no area */
+                          invalid ray, a vertex out of range, or no area */
     int reused; /* 1: edges and lists of tiles are those of the last frame */
     int held_cells; /* cells, or halves of cells, of drawn bundles whose light
                        was clamped to what one cell may give a pixel: 2048 times
@@ -328,10 +328,10 @@ struct glint_planned {
     /* Flux over the pixels that it falls on, display white. */
     struct glint_real irradiance;
     int ghost, light, wave; /* as of glint_flare_account() */
-    int inside_q8; /* share of its rays that stop and barrels let through, of
+    int inside_q8; /* fraction of its rays that stop and barrels let through, of
                       those that the plan looked at, 0 .. 255 */
-    int view_q8;   /* share of the box about its light that lies in the picture,
-                      0 .. 255 */
+    int view_q8;   /* fraction of the box about its light that lies in the
+                      picture,   0 .. 255 */
     int contrast_q4; /* log2 of its brightest cell's irradiance over the mean, 0
                         .. 254; 255: it folds, and is not known */
 };
@@ -375,7 +375,7 @@ int glint_flare_held(const struct glint_flare *flare);
 enum glint_outcome {
     GLINT_OUTCOME_DRAWN,
     GLINT_OUTCOME_EMPTY,  /* planned, but no edge of its grid changes a pixel */
-    GLINT_OUTCOME_OTHER,  /* only_ghost asks for another ghost, or a tint mutes
+    GLINT_OUTCOME_OTHER,  /* only_ghost requests another ghost, or a tint mutes
                              this one */
     GLINT_OUTCOME_BEYOND, /* the light comes from farther out than the model
                            * goes
@@ -385,7 +385,7 @@ enum glint_outcome {
     GLINT_OUTCOME_BLOCKED, /* the stop and the barrels cut every ray that the
                               plan looked at */
     GLINT_OUTCOME_DARK,    /* the light has no power in this wave */
-    GLINT_OUTCOME_OUTSIDE, /* the light lands beside the picture */
+    GLINT_OUTCOME_OUTSIDE, /* the light lands off-screen */
     GLINT_OUTCOME_FAINT, /* no pixel can show the ghost, even with the light of
                             all lamps together */
     GLINT_OUTCOME_NO_ROOM,   /* a capacity is full */

@@ -14,7 +14,7 @@
  * fades in time, and changes of flux and place are blended in when lamps merge,
  * separate or are hidden. A track that lost its lamp fades, is remembered for a
  * while, and has its number again when the lamp is back. After a cut all tracks
- * begin anew, in one picture.
+ * restart, in one picture.
  *
  * Integers only. The order of the spots changes nothing. If a spot repeats, bit
  * for bit, its track equals it after attack + 1 s or five pictures, whichever
@@ -46,7 +46,7 @@ enum glint_lamp_state {
 struct glint_lamp_track {
     uint32_t id; /* counts from 1; no two lamps have the same */
     enum glint_lamp_state state;
-    int32_t x_q8, y_q8; /* place, as in struct glint_spot; may lie outside of
+    int32_t x_q8, y_q8; /* place, as in struct glint_spot; may lie outside
                            the picture */
     int32_t size_q8;    /* RMS radius, pixels */
     int32_t level_q15; /* 1 .. 32768: how far the lamp has risen or faded; 32768
@@ -67,11 +67,11 @@ struct glint_lamp_tracker_config {
     int max_shown;  /* number of lamps that are shown, the strongest, 1 ..
                        max_tracks; the level of others fades */
     int32_t match_q15; /* farthest distance of a spot from where its track
-                          should be, as a share of the picture's width */
-    int32_t cut_q15; /* share of the flux; above 32768: there are no cuts. A cut
-                        is where at least this share of the flux vanishes and at
-                        least this share of the flux seen now is new, or where
-                        three lamps or more appear or vanish at once */
+                          should be, as a fraction of the picture's width */
+    int32_t cut_q15; /* fraction of the flux; above 32768: there are no cuts. A
+                        cut is where at least this fraction of the flux vanishes
+                        and at least this fraction of the flux seen now is new,
+                        or where three lamps or more appear or vanish at once */
     /* Milliseconds from 0 to full level, or to a greater flux. */
     int32_t attack_ms;
     int32_t release_ms; /* milliseconds from full level to 0, or to less flux */

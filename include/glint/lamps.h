@@ -17,8 +17,8 @@
  * Skies, clouds, snow, paper and flowers are as bright as lamps. So regions are
  * scored by themselves and by their surroundings: contrast, light that falls
  * off around them and in all directions alike, a compact shape, colour, how
- * much of the picture is as bright; see lamps/score.h. A region that is no lamp
- * may have one in it, and so is searched where it clips in one channel, in
+ * much of the picture is as bright; see lamps/score.h. A region that is not a
+ * lamp may have one in it, and so is searched where it clips in one channel, in
  * nearly all, and in all: the sun in a bright sky is a lamp by itself. At least
  * an eighth of a region must be at the upper threshold.
  *
@@ -26,7 +26,7 @@
  * brightest pixel, so that noise does not move a lamp. Sizes follow the
  * picture's, so that it has the same lamps at any resolution. Integers only;
  * nothing is kept from picture to picture but white, and that only if the
- * caller asks for it. */
+ * caller requests it. */
 #ifndef GLINT_LAMPS_H
 #define GLINT_LAMPS_H
 
@@ -72,10 +72,10 @@ struct glint_lamp_finder_config {
                        clip, and the picture's own white if that is darker */
     int min_area; /* least area in pixels, 1 or more; smaller regions are noise
                    */
-    int32_t max_share_q15; /* largest area as a share of the picture; larger
+    int32_t max_share_q15; /* largest area as a fraction of the picture; larger
                               regions are sky or wall */
-    int32_t merge_q15; /* share of the picture's width; lamps that are nearer to
-                          each other become one */
+    int32_t merge_q15; /* fraction of the picture's width; lamps that are nearer
+                          to each other become one */
     int32_t judge; /* 1: regions are scored by their looks and surroundings; 0:
                       all bright regions are lamps */
     int32_t keep_faint; /* 1: the lamps of the list are followed by regions
@@ -113,7 +113,7 @@ int glint_lamp_finder_find(struct glint_lamp_finder *finder,
  * taken to be at least PART (0 .. 2^15) of the white of the last picture: when
  * a lamp is hidden for a moment, its glow would else be white and so a lamp.
  * And where no region is a lamp, the best one has to be a little better to
- * count as one than in a picture by itself, as other pictures may show it, too.
+ * count as one than in a still picture, as other pictures may show it, too.
  */
 void glint_lamp_finder_keep_white(struct glint_lamp_finder *finder,
                                   int32_t part_q15);

@@ -16,7 +16,7 @@ extern "C" {
 #define GLINT_MAX_BLADES    64
 #define GLINT_MAX_WAVE_SETS 5 /* see struct glint_wave_sets, flare.h */
 
-/* The light that a stop lets through inside of its outline: a soft edge, and by
+/* The light that a stop lets through inside its outline: a soft edge, and by
  * place what dust or a mask leaves. */
 enum { GLINT_SHADE_LEAST_LOG2 = 3, GLINT_SHADE_MOST_LOG2 = 10 };
 struct glint_shade_method;
@@ -25,10 +25,10 @@ struct glint_shade {
     /* glint_shade_method; a program that does not name it does not link it. */
     const struct glint_shade_method *method;
     /* Stop radii inwards from the outline, 0 .. 2^16, over which light rises
-     * from 0 to 1: at the share x of them it is 3 x^2 - 2 x^3. */
+     * from 0 to 1: at the fraction x of them it is 3 x^2 - 2 x^3. */
     int32_t soft_q16;
     int log2; /* log2 of the number of cells a side of the finest table; 0:
-                 there are no tables, and all inside of the edge is clear */
+                 there are no tables, and all inside the edge is clear */
     /* [log2]: table k has 2^(log2 - k) + 1 nodes a side over +-1 stop radius,
      * row 0 at the lowest y. Beyond, the nearest node counts. Kept. Light: 0 ..
      * 2^15. Rough: most by which a finer table differs from this one nearer
@@ -38,8 +38,8 @@ struct glint_shade {
 };
 
 /* The opening of the aperture stop, fixed to the camera: x right, y up. Its
- * unit is the stop radius: 1 is the circle that the f-number of the frame asks
- * for. */
+ * unit is the stop radius: 1 is the circle that the f-number of the frame
+ * requests. */
 struct glint_stop {
     int n_blades; /* 0: circle; else 3 .. GLINT_MAX_BLADES */
     /* Unit normal of each side, outwards. */
@@ -70,7 +70,7 @@ struct glint_light {
     int32_t rgb_q14[3]; /* colour, linear BT.709, largest channel 1 */
     /* Tangent of the angle to its neighbours if it is one of many points that
      * stand for a lamp: a ghost that is too small to meet those of the
-     * neighbours is drawn larger. 0: the light stands by itself. */
+     * neighbours is drawn larger. 0: the light is a single one. */
     int32_t apart_q30;
 };
 

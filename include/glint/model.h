@@ -192,7 +192,7 @@ struct glint_model_output {
                              more than this, in units of the integer */
     /* Measured errors against exact rays, through the run-time arithmetic, as
      * arguments of glint_model_error_q20(): pixels of a film 1920 wide, stop
-     * radii, share of the energy (of at least a fiftieth of the most in the
+     * radii, fraction of the energy (of at least a fiftieth of the most in the
      * system), relative radius. */
     uint16_t rms, p50, p99, max;
 };
@@ -214,7 +214,7 @@ struct glint_lens {
 };
 
 /* Checks all of DATA[BYTES], aligned to 4, and points LENS into it; DATA is
- * kept and must not change. GLINT_E_LENS: *REASON, a constant text, says what
+ * kept and must not change. GLINT_E_LENS: *REASON, a constant text, states what
  * is wrong. Takes time in proportion to BYTES. */
 enum glint_status glint_lens_open(struct glint_lens *lens, const void *data,
                                   size_t bytes, const char **reason);
@@ -233,10 +233,11 @@ uint32_t glint_model_crc32(const void *data, size_t bytes);
  * each taken at the same place of the pupil, mixed in proportion. What costs
  * more is planning a frame, and drawing it as far as mixed polynomials have
  * more terms and more ghosts are there: 1.3 to 2.1 times as long. A ghost that
- * light gets through at one of the two positions alone goes on as between that
- * one and another beyond it, if that is near enough, and else fades. Ghosts
- * change at different rates: positions between the first and the last may have
- * some ghosts only, and each ghost is mixed of the nearest two that have it.
+ * light gets through at one of the two positions alone continues as between
+ * that one and another beyond it, if that is near enough, and else fades.
+ * Ghosts change at different rates: positions between the first and the last
+ * may have some ghosts only, and each ghost is mixed of the nearest two that
+ * have it.
  *
  * The file: a header, then for each position an ordinary model at a multiple of
  * 4 bytes; kept where it lies. */
@@ -293,7 +294,7 @@ struct glint_zoom_lens {
 };
 
 /* Checks all of DATA[BYTES], which is kept and must not change, and sets ZOOM
- * to its first position. GLINT_E_LENS: *REASON, a constant text, says what is
+ * to its first position. GLINT_E_LENS: *REASON, a constant text, states what is
  * wrong. */
 enum glint_status glint_zoom_open(struct glint_zoom_lens *zoom,
                                   const void *data, size_t bytes,

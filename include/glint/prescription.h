@@ -83,14 +83,15 @@ struct glint_surface {
     struct glint_shape shape;
 };
 
-/* A surface that is no centred sphere, ready to be met. */
+/* A surface that is not a centred sphere, ready to be met. */
 struct glint_form {
     double curvature, conic, term[GLINT_SHAPE_TERMS];
     int bend;      /* enum glint_bend */
     double across; /* 1 / across_mm; 0: a cylinder */
     double semi_mm;
-    /* Beyond this height, squared, there is no glass; the profile goes on with
-     * the same value, slope and curvature there, and without its powers. */
+    /* Beyond this height, squared, there is no glass; the profile continues
+     * with the same value, slope and curvature there, and without its powers.
+     */
     double end2, end_at[3];
     /* From the light's frame at the vertex to the surface's own: at = turn at +
      * shift; rows of TURN are unit vectors. */
@@ -104,7 +105,7 @@ struct glint_form {
     double steepest2; /* square of the steepest slope of the profile's glass */
 };
 
-/* Returns whether S is no sphere on the axis. */
+/* Returns whether S is not a sphere on the axis. */
 bool glint_surface_is_shaped(const struct glint_surface *s);
 
 /* Sets AT to the point of S that lies at X, Y mm of its own frame, from the
@@ -195,7 +196,8 @@ struct glint_prescription {
 
 /* Reads a lens table; lenses/README.md describes the format. TEXT need not be
  * terminated and may hold anything. FILE_NAME only names it in errors.
- * GLINT_E_LENS: ERROR says file, line, column and cause; LENS is unchanged. */
+ * GLINT_E_LENS: ERROR states file, line, column and cause; LENS is unchanged.
+ */
 enum glint_status glint_prescription_parse(struct glint_prescription *lens,
                                            const char *text, size_t bytes,
                                            const char *file_name,
@@ -245,7 +247,7 @@ int glint_coatings_mixed(struct glint_coating coatings[GLINT_MAX_COATINGS]);
 
 /* Reads coatings from TEXT, words "none", "NAME[/NM]" or
  * "NM[/INDEX[:QUARTERS]]..." as in the tables, but separated by commas.
- * GLINT_E_ARGUMENT: ERROR says what is wrong, and COATINGS is unchanged. */
+ * GLINT_E_ARGUMENT: ERROR states what is wrong, and COATINGS is unchanged. */
 enum glint_status
 glint_coatings_parse(struct glint_coating coatings[GLINT_MAX_COATINGS], int *n,
                      const char *text, struct glint_error *error);

@@ -24,7 +24,7 @@ double glint_quality_named(int name);
  * once and one that does not. */
 double glint_quality_place(double quality);
 
-/* The dials of a quality, and the settings that are no dial of a frame. */
+/* The dials of a quality, and the settings that are not dial of a frame. */
 struct glint_quality {
     struct glint_dials dials;
     double quantum;   /* percent of irradiance, from which irradiance_steps

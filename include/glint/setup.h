@@ -25,7 +25,7 @@ extern "C" {
  * wavelength i is nearly the linear BT.709 that the CIE 1931 observer [Wyman13]
  * sees of the whole spectrum, exactly if that is a polynomial of a degree below
  * both 4 and N. Each channel of RGB sums to 1, so that a flat spectrum is
- * white; single colours lie outside of BT.709 and are negative in part.
+ * white; single colours lie outside BT.709 and are negative in part.
  * SHARE[i] is the part of wavelength i in the mean over all, and sums to 1.
  * Outlines of ghosts move in proportion to 1 / wavelength^2; the wavelengths
  * make the steps between them smallest in the mean of squares over the
@@ -45,8 +45,8 @@ struct glint_iris {
     /* Stop radii, 0 .. 1, inwards from the outline, over which light rises from
      * none to all. */
     double softness;
-    /* Share of the stop's circle that specks of dust cover, 0 .. 0.5; there are
-     * scratches and smudges with them. The seed says where. */
+    /* Fraction of the stop's circle that specks of dust cover, 0 .. 0.5; there
+     * are scratches and smudges with them. The seed states where. */
     double dust;
     int dust_seed;
     /* [mask_height][mask_width]: light of a square of +-1 stop radius, 255: all
@@ -108,7 +108,7 @@ enum glint_status glint_setup_init(struct glint_setup *setup,
                                    struct glint_error *error);
 
 /* Prepares a model as glint_setup_init() does a lens table, for everything but
- * exact rays. A wavelength outside of the model's band counts as the nearest
+ * exact rays. A wavelength outside the model's band counts as the nearest
  * one inside. */
 enum glint_status glint_setup_from_model(struct glint_setup *setup,
                                          const struct glint_lens *lens,
@@ -119,18 +119,18 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
 
 /* Sets the f-number of SETUP, made from LENS and not changed since, down to a
  * 1024th of the opening that the model was baked for. GLINT_E_ARGUMENT:
- * F_NUMBER asks for less, or for more than the model's opening. */
+ * F_NUMBER requests less, or for more than the model's opening. */
 enum glint_status glint_setup_stop_down(struct glint_setup *setup,
                                         const struct glint_lens *lens,
                                         double f_number,
                                         struct glint_error *error);
 
-/* Gives SETUP, made before, the iris IRIS: its light is measured anew, and what
- * glint_setup_weigh(), glint_setup_spread() and glint_setup_balance() set has
- * to be set again. Light is counted over that which the stop lets through; one
- * that is all black counts as if it were clear. *DIRT receives what SETUP then
- * refers to, or NULL. GLINT_E_ARGUMENT with ERROR: a member is out of range.
- * GLINT_E_MEMORY. */
+/* Gives SETUP, made before, the iris IRIS: its light is measured again, and
+ * what glint_setup_weigh(), glint_setup_spread() and glint_setup_balance() set
+ * has to be set again. Light is counted over that which the stop lets through;
+ * one that is all black counts as if it were clear. *DIRT receives what SETUP
+ * then refers to, or NULL. GLINT_E_ARGUMENT with ERROR: a member is out of
+ * range. GLINT_E_MEMORY. */
 enum glint_status glint_setup_iris(struct glint_setup *setup,
                                    const struct glint_iris *iris,
                                    struct glint_dirt **dirt,
@@ -144,14 +144,14 @@ int glint_dirt_log2(const struct glint_dirt *dirt);
  */
 void glint_dirt_free(struct glint_dirt *dirt);
 
-/* Returns the share of light that DIRT lets through at (X, Y) in the stop, in
- * stop radii, x right, y up, inside of its outline. */
+/* Returns the fraction of light that DIRT lets through at (X, Y) in the stop,
+ * in stop radii, x right, y up, inside its outline. */
 double glint_dirt_light(const struct glint_dirt *dirt, double x, double y);
 
 /* Dust, scratches and smudges on the front element. All 0: there are none. */
 struct glint_front {
-    /* Share of the front element that specks of dust cover, 0 .. 0.5; there are
-     * scratches and smudges with them. The seed says where. */
+    /* Fraction of the front element that specks of dust cover, 0 .. 0.5; there
+     * are scratches and smudges with them. The seed states where. */
     double dust;
     int dust_seed;
     /* [mask_height][mask_width]: the square about the front element, up is up,

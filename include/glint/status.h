@@ -32,8 +32,8 @@ struct glint_error {
     char text[256];
 };
 
-/* Called now and then with the share of the work that is done, 0 .. 1: by the
- * calling thread or by worker 0, never by both at once. */
+/* Called now and then with the fraction of the work that is done, 0 .. 1: by
+ * the calling thread or by worker 0, never by both at once. */
 typedef void glint_progress_fn(void *ctx, double done);
 
 /* Returns a few words for STATUS, never NULL. */

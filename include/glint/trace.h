@@ -38,7 +38,7 @@ struct glint_event {
     /* Index before the surface and after it, as the ray runs. */
     double n_from, n_to;
     int n_films; /* layers of the surface's coating; 0: bare */
-    bool shaped; /* the surface is no centred sphere: see path->form */
+    bool shaped; /* the surface is not a centred sphere: see path->form */
 };
 
 /* A layer of a coating at the wavelength of a path. */
@@ -80,7 +80,7 @@ void glint_path_init_at(struct glint_path *path,
 enum glint_ray_status {
     GLINT_RAY_OK = 0,
     GLINT_RAY_MISSED = 1, /* the ray misses a surface, meets it beyond its
-                             equator, or cannot go on */
+                             equator, or cannot continue */
     GLINT_RAY_TOTAL_REFLECTION =
         2 /* the ray is reflected totally where it should be refracted */
 };
@@ -96,10 +96,10 @@ struct glint_ray {
 };
 
 /* Traces the ray that starts at (PX, PY) on the vertex plane of the first
- * surface along DIRECTION, of unit length. The ray goes on where a barrel or
+ * surface along DIRECTION, of unit length. The ray continues where a barrel or
  * the stop would have ended it. RAY is written only if GLINT_RAY_OK is
  * returned. HITS, unless NULL, receives x and y of each event, [n_events][2],
- * in mm; those of a surface that is no centred sphere are in its own frame.
+ * in mm; those of a surface that is not a centred sphere are in its own frame.
  * Energy is that of unpolarised light. [Hullin11] section 4 */
 enum glint_ray_status glint_trace(const struct glint_path *path, double px_mm,
                                   double py_mm, const double direction[3],

@@ -143,7 +143,7 @@ static const char *check_mesh(const struct aiMesh *mesh, size_t *n)
     return NULL;
 }
 
-/* Returns why SCENE is no mesh for us, or NULL. */
+/* Returns why SCENE is not a mesh for us, or NULL. */
 static const char *check(const struct aiScene *scene, unsigned max_triangles)
 {
     const char *refusal = NULL;
@@ -157,8 +157,8 @@ static const char *check(const struct aiScene *scene, unsigned max_triangles)
 }
 
 /* Reads PATH: polygons are cut, parts put where they belong, corners that are
- * alike made one. Returns NULL with the cause in REFUSAL if it is no mesh for
- * us. */
+ * alike made one. Returns NULL with the cause in REFUSAL if it is not a mesh
+ * for us. */
 static const struct aiScene *import(const char *path, unsigned max_triangles,
                                     const char **refusal)
 {

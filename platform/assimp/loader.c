@@ -88,7 +88,7 @@ static void be_the_child(const struct glint_assimp *face, int fd,
     setrlimit(RLIMIT_CORE, &core);
     setrlimit(RLIMIT_AS, &memory);
     if (null >= 0)
-        dup2(null, 2); /* what is said of an exception that nobody takes */
+        dup2(null, 2); /* what is reported of an exception that nobody takes */
     face->write(fd, path, max_triangles);
     _exit(0);
 }
@@ -129,7 +129,7 @@ static const char *end(pid_t child, int is_wanted)
     return WEXITSTATUS(status) ? "cannot be read" : NULL;
 }
 
-/* Takes the letter off DATA[BYTES] and says what it means. */
+/* Takes the letter off DATA[BYTES] and states what it means. */
 static enum glint_status judge(uint8_t *data, size_t *bytes, const char *path,
                                const char *failure, struct glint_error *error)
 {

@@ -19,7 +19,7 @@
 #define GLINT_OIIO_VERSION 5
 
 /* A picture as R G B, rows without padding, the top row first, turned upright
- * where the file says how it was held. Alpha is left out, colours weighted by
+ * where the file states how it was held. Alpha is left out, colours weighted by
  * it; grey is R = G = B. */
 struct glint_oiio_pixels {
     int width, height; /* 1 .. GLINT_MAX_SIDE */
@@ -42,7 +42,7 @@ struct glint_oiio_facts {
     int has_primaries;
     int cicp[2];    /* primaries and transfer of ITU-T H.273, or 0, 0 */
     int quality;    /* 1 .. 100, guessed from a JPEG's tables; 0: not known */
-    char note[160]; /* says what of the file cannot be kept; "" if nothing */
+    char note[160]; /* states what of the file cannot be kept; "" if nothing */
 };
 
 struct glint_oiio_options {

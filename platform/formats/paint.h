@@ -6,7 +6,7 @@
  *     paint_colour(&p, 255, 255, 0);
  *     paint_text(&p, x, y, "tile 7");
  *
- * Parts outside of the picture are left out.
+ * Parts outside the picture are left out.
  */
 #ifndef GLINT_FORMATS_PAINT_H
 #define GLINT_FORMATS_PAINT_H

@@ -44,7 +44,7 @@ struct glint_kept {
     struct glint_samples samples;
     /* The file holds floats: light above white is not clipped. */
     bool is_float;
-    char note[GLINT_KEPT_NOTES]; /* says what of the file glint cannot keep or
+    char note[GLINT_KEPT_NOTES]; /* states what of the file glint cannot keep or
                                     does not know; "" if nothing */
 
     /* Private. */
@@ -64,8 +64,8 @@ struct glint_kept_options {
     char said[GLINT_KEPT_NOTES]; /* out: what was lost, "" if nothing */
 };
 
-/* Returns the number of frames of the GIF NAME, which it reads; 0 if NAME is no
- * GIF. */
+/* Returns the number of frames of the GIF NAME, which it reads; 0 if NAME is
+ * not a GIF. */
 int glint_gif_frames(const char *name);
 
 /* Checks whether the extension of PATH is of a type that holds floats only.

@@ -11,7 +11,7 @@
  * "Upright" places are those of the picture as it is seen: its display window,
  * turned as its orientation says. The pixels themselves stay as stored. Adding
  * light keeps every bit of samples that it does not change, of other channels
- * (alpha, too) and of pixels outside of the display window.
+ * (alpha, too) and of pixels outside the display window.
  */
 #ifndef GLINT_PLATFORM_FORMATS_SAMPLES_H
 #define GLINT_PLATFORM_FORMATS_SAMPLES_H
@@ -90,9 +90,9 @@ enum glint_status glint_samples_proxy(const struct glint_samples *samples,
 void glint_samples_add(struct glint_samples *samples, const float *layer);
 
 /* Sets the upright pixel X, Y to what is seen of it over black, RGB, linear
- * light of BT.709 primaries, once the share COVER, 0 .. 1, of what is behind it
- * is hidden: alpha becomes 1 - (1 - alpha)(1 - COVER), and straight colours RGB
- * over that. Nothing where the file has no pixel. */
+ * light of BT.709 primaries, once the fraction COVER, 0 .. 1, of what is behind
+ * it is hidden: alpha becomes 1 - (1 - alpha)(1 - COVER), and straight colours
+ * RGB over that. Nothing where the file has no pixel. */
 void glint_samples_set(struct glint_samples *samples, int x, int y,
                        const double rgb[3], double cover);
 

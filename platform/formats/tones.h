@@ -36,7 +36,7 @@ struct glint_tone_curve {
     uint16_t entry[GLINT_TONE_ENTRIES];
 };
 
-/* Says what the codes of a file's three colours mean. */
+/* States what the codes of a file's three colours mean. */
 struct glint_colours {
     struct glint_tone_curve transfer[3];
     double to_bt709[3][3]; /* from light of the file's primaries to BT.709's */

@@ -34,7 +34,7 @@ struct glint_mjpeg {
     struct jpeg_error_mgr errors;
     struct jpeg_source_mgr source;
     bool in_scan; /* The header has been read. */
-    bool ended;   /* libjpeg asked for more bytes than the frame has. */
+    bool ended;   /* libjpeg requested more bytes than the frame has. */
     jmp_buf escape;
     enum glint_status status; /* failure that a jump to escape reports */
     struct glint_error *error;
@@ -121,7 +121,7 @@ static void on_error(j_common_ptr jpeg)
 }
 
 /* Leaves libjpeg at the three warnings that mean wrong samples. After other
- * warnings samples are still right; messages of LEVEL 0 and above are no
+ * warnings samples are still right; messages of LEVEL 0 and above are not
  * warnings. */
 static void on_message(j_common_ptr jpeg, int level)
 {

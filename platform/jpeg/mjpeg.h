@@ -49,7 +49,7 @@ enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
  * differ from the last one's. Its samples belong to DECODER and may be changed;
  * the next call overwrites them.
  * GLINT_E_FORMAT: the frame is empty, garbage, damaged where that can be seen,
- * or ends before its last sample; drop it and go on.
+ * or ends before its last sample; drop it and continue.
  * GLINT_E_UNSUPPORTED: it is larger than the maximum, progressive, RGB or CMYK,
  * of another subsampling, or has more than 8 bits. The next frame will be, too,
  * unless this one is damaged.

@@ -134,7 +134,7 @@ static enum glint_status lost(const struct glint_fbdev *fb, const char *what,
 
 /* -------------------------------------------------------------- when dying */
 
-/* The console goes on drawing at the offset that the panel had before glint
+/* The console continues drawing at the offset that the panel had before glint
  * panned it, so the panel is panned back when glint ends. That happens before
  * the console returns: it takes over the offset that it finds, and with another
  * one Linux 6.1 draws in a wrong place. */

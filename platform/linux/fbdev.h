@@ -67,7 +67,7 @@ struct glint_fbdev {
 /* Opens the framebuffer PATH; the string must outlive FB. NULL stands for
  * $FRAMEBUFFER, or /dev/fb0 if that is not set. On failure FB is closed.
  * GLINT_E_DEVICE: no such device, no permission, or nothing that glint can draw
- * on; ERROR says what to do. */
+ * on; ERROR states what to do. */
 enum glint_status glint_fbdev_open(struct glint_fbdev *fb, const char *path,
                                    const struct glint_fbdev_options *options,
                                    struct glint_error *error);

@@ -6,7 +6,7 @@
 #ifndef GLINT_PLATFORM_LINUX_SETS_H
 #define GLINT_PLATFORM_LINUX_SETS_H
 
-/* Returns glint_sets_here(), and NEON if the kernel says that the CPU has
+/* Returns glint_sets_here(), and NEON if the kernel states that the CPU has
  * it. */
 unsigned glint_system_sets(void);
 

@@ -84,7 +84,7 @@ static int queue_buffer(struct glint_v4l2 *v, int index)
 }
 
 /* Returns the time of B's frame by the monotonic clock: its stamp, if the
- * driver says that it is of that clock, or does not say, as v4l2loopback, and
+ * driver states that it is of that clock, or does not say, as v4l2loopback, and
  * the stamp is at most MAX_AGE_US old. Otherwise, or if the stamp lies ahead,
  * the time now. */
 static int64_t capture_time_us(const struct v4l2_buffer *b)
@@ -370,7 +370,7 @@ static const char *get_buffers(struct glint_v4l2 *v)
 #define STALL_US     2000000
 #define STALL_FRAMES 4
 #define MAX_GAP      4096 /* most frames that are lost at a time */
-/* damaged frames in a row after which the stream begins anew */
+/* damaged frames in a row after which the stream restarts */
 #define USELESS 30
 
 /* ------------------------------------------------------------------- stream */
@@ -473,8 +473,8 @@ static bool is_there(const struct glint_v4l2 *v)
     return glint_ioctl(v->device.fd, VIDIOC_QUERYCAP, &cap) == 0;
 }
 
-/* Agrees on a format anew. A device that is read by read(2) is opened again for
- * that, as it streams, and takes no other format, until it is closed. */
+/* Agrees on a format again. A device that is read by read(2) is opened again
+ * for that, as it streams, and takes no other format, until it is closed. */
 static enum glint_status agree_anew(struct glint_v4l2 *v,
                                     struct glint_error *error)
 {
@@ -760,7 +760,7 @@ static void done(struct glint_source *source, struct glint_source_frame *frame)
     struct glint_v4l2 *v = (struct glint_v4l2 *)source;
     struct glint_v4l2_buffer *b = frame->buffer;
 
-    if (b && b->lent) /* else the stream has begun anew since */
+    if (b && b->lent) /* else the stream has begun again since */
         give_back(v, (int)(b - v->buffer));
     frame->buffer = NULL;
     frame->image.plane[0] = NULL;

@@ -307,7 +307,7 @@ static bool is_count(uint32_t n)
     return n >= 1 && n <= INT32_MAX;
 }
 
-/* Asks for the rate wished for, if any, and notes the rate that the device has;
+/* Requests the rate wished for, if any, and notes the rate that the device has;
  * some inputs have one of their own. */
 static void set_rate(struct glint_v4l2_device *d)
 {

@@ -55,7 +55,7 @@ struct glint_v4l2_device {
     bool is_dv;    /* the input has timings of its own: HDMI */
     bool has_signal;
     uint32_t input;
-    bool is_loopback; /* v4l2loopback: its writer goes on writing into frames
+    bool is_loopback; /* v4l2loopback: its writer continues writing into frames
                          that were handed out */
     char card[33];
     struct glint_v4l2_config wish;
@@ -69,7 +69,7 @@ enum glint_status glint_v4l2_device_open(struct glint_v4l2_device *device,
                                          const struct glint_v4l2_config *wish,
                                          struct glint_error *error);
 
-/* Agrees on a format anew, after the source changed or the stream broke. */
+/* Agrees on a format again, after the source changed or the stream broke. */
 enum glint_status glint_v4l2_device_negotiate(struct glint_v4l2_device *device,
                                               struct glint_error *error);
 

@@ -612,7 +612,7 @@ struct tiff {
 
 } // namespace
 
-/* Says which strips or tiles the first picture lacks; "" if it has all. */
+/* States which strips or tiles the first picture lacks; "" if it has all. */
 std::string missing_of_tiff(const bytes &file)
 {
     if (file.size() < 8)

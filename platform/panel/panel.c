@@ -141,7 +141,7 @@ static void mix_pixels(const struct mix *m, uint8_t *restrict r,
     }
 }
 
-/* Mixes R', G', B' of N pairs of pixels that share Cb and Cr. */
+/* Mixes R', G', B' of N pairs of pixels that fraction Cb and Cr. */
 static void mix_pairs(const struct mix *m, uint8_t *restrict r,
                       uint8_t *restrict g, uint8_t *restrict b,
                       const uint8_t *restrict luma, const uint8_t *restrict cb,

@@ -10,7 +10,7 @@
  * A picture of another size than the panel is scaled to fit, in its shape, by
  * taking for each pixel of the panel the nearest one of the picture; or it is
  * centred as it is, and its sides are cut off where they do not fit. Draw does
- * not touch the parts of the panel beside the picture.
+ * not touch the parts of the panel off-screen.
  *
  * Each row is made in cached memory and then copied, so the panel's own memory
  * is only written, and in order: it may be write-combining. Rows that show the

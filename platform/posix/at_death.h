@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * posix/at_death.h - functions that put things right whatever ends the process.
+ * posix/at_death.h - functions that put objects right whatever ends the
+ * process.
  *
  *     glint_at_death(remove_files);       once
  *
@@ -21,7 +22,7 @@
 #include <stdbool.h>
 
 /* A function to run at death. It must be async-signal-safe and keep errno, and
- * may run more than once and while other threads go on. */
+ * may run more than once and while other threads continue. */
 typedef void glint_at_death_fn(void);
 
 /* Adds FN for the rest of the process; does nothing if it was added before.

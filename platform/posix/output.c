@@ -372,7 +372,7 @@ static enum glint_status open_beside(struct glint_output *out, mode_t mode,
 }
 
 /* Finds where OUT's name leads: sets ST to the status of the file there, or
- * IS_THERE to false, and OUT's target unless that is no regular file. Looks
+ * IS_THERE to false, and OUT's target unless that is not a regular file. Looks
  * again if somebody puts another file there meanwhile, as shards do that end
  * together. Returns 0 or an errno. */
 static int find_target(struct glint_output *out, struct stat *st,

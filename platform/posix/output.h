@@ -15,8 +15,8 @@
  * replaces. There is no fsync: files are whole when the process dies, but not
  * when the power fails.
  *
- * "-" is standard output. It and any target that exists and is no regular file
- * (a FIFO, /dev/null) are written directly; bytes written there stay.
+ * "-" is standard output. It and any target that exists and is not a regular
+ * file (a FIFO, /dev/null) are written directly; bytes written there stay.
  *
  * The first open changes how the process takes signals, as posix/at_death.h
  * says. An application that handles deadly signals itself must abort or commit

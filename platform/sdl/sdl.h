@@ -6,8 +6,8 @@
  *     window.sink.put(&window.sink, &image, &error);   the first one opens it
  *     window.sink.close(&window.sink);
  *
- * SDL2 lives in a plug-in, glint-sdl.so, which is loaded when a window is asked
- * for, from the places that posix/plugin.h lists, of which $GLINT_SDL
+ * SDL2 lives in a plug-in, glint-sdl.so, which is loaded when a window is
+ * requested, from the places that posix/plugin.h lists, of which $GLINT_SDL
  * is the first. The picture keeps its shape in a window of any size. Once the
  * user closes it or presses Escape or q, put returns GLINT_E_CLOSED.
  */

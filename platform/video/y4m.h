@@ -195,7 +195,7 @@ enum glint_status glint_y4m_reader_start(struct glint_y4m_reader *reader,
 /* Points *FRAME at the next frame, or at NULL after the last. The frame belongs
  * to READER; its samples may be changed, and the next call overwrites them.
  * GLINT_E_FORMAT: no FRAME line where one must be, or the stream ends inside a
- * frame; ERROR says in which. GLINT_E_IO, GLINT_E_MEMORY. */
+ * frame; ERROR states in which. GLINT_E_IO, GLINT_E_MEMORY. */
 enum glint_status glint_y4m_reader_next(struct glint_y4m_reader *reader,
                                         const struct glint_image **frame,
                                         struct glint_error *error);
@@ -203,8 +203,9 @@ enum glint_status glint_y4m_reader_next(struct glint_y4m_reader *reader,
 /* Closes READER, unless it is closed already. */
 void glint_y4m_reader_close(struct glint_y4m_reader *reader);
 
-/* Opens PATH ("-": standard output; posix/output.h says what happens to files),
- * which must outlive WRITER, and writes HEADER. On failure WRITER is closed. */
+/* Opens PATH ("-": standard output; posix/output.h states what happens to
+ * files), which must outlive WRITER, and writes HEADER. On failure WRITER is
+ * closed. */
 enum glint_status glint_y4m_writer_open(struct glint_y4m_writer *writer,
                                         const char *path,
                                         const struct glint_y4m_header *header,
@@ -252,7 +253,7 @@ struct glint_y4m_light {
     int width, height;
     int32_t black, most;    /* codes of Y' = 0, and the largest there is */
     int32_t y_span, c_span; /* codes of Y' = 1, and from Cb = -1/2 to 1/2 */
-    int32_t kr_q16, kg_q16, kb_q16; /* shares of R', G', B' in Y' */
+    int32_t kr_q16, kg_q16, kb_q16; /* fractions of R', G', B' in Y' */
     int64_t y_factor, c_factor;     /* factors of the spans, y4m_divide.h */
     int64_t cb_factor, cr_factor,
         /* factors of 1 - kb, 1 - kr and kg */
@@ -275,8 +276,8 @@ void glint_y4m_light_blacken(const struct glint_y4m_light *light,
 void glint_y4m_light_add(const struct glint_y4m_light *light, uint8_t *planes,
                          const float *layer);
 
-/* Does as glint_y4m_light_add() after hiding of each pixel the share COVER_Q8,
- * [height][width], 0 .. 256. */
+/* Does as glint_y4m_light_add() after hiding of each pixel the fraction
+ * COVER_Q8, [height][width], 0 .. 256. */
 void glint_y4m_light_cover(const struct glint_y4m_light *light, uint8_t *planes,
                            const float *layer, const uint16_t *cover_q8);
 

@@ -71,7 +71,8 @@ static enum glint_status quantise_ghost(struct bake_run *run, int ghost)
     return status;
 }
 
-/* Share of a bake until all ghosts are fitted, and until they are quantised. */
+/* Fraction of a bake until all ghosts are fitted, and until they are quantised.
+ */
 #define FITTED    0.96
 #define QUANTISED 0.97
 
@@ -181,8 +182,8 @@ static void measure_job(void *ctx, int ghost, int worker)
     free(visible);
 }
 
-/* One round of short jobs, a job for each ghost, and its share of the progress,
- * 0 .. 1. */
+/* One round of short jobs, a job for each ghost, and its fraction of the
+ * progress, 0 .. 1. */
 struct round {
     struct bake_run *run;
     glint_job_fn *job;

@@ -12,7 +12,7 @@ static const double typicals[] = {4, 25, 110};
 #define TRUST 3.0
 /* A ghost takes at most so many times what is expected. */
 #define MOST 10.0
-/* Share of a ghost's angles for which the mean of the others counts. */
+/* Fraction of a ghost's angles for which the mean of the others counts. */
 #define BLUR 0.1
 
 void glint_effort_init(struct glint_effort *e, int n_ghosts, int n_workers,

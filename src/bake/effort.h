@@ -9,7 +9,7 @@
  *     ... glint_effort_done(&effort) ...
  *
  * Work is counted in fits of a zone, about 40 ms. What a ghost will have taken
- * is what it took so far by the share of its angles that this was for; what
+ * is what it took so far by the fraction of its angles that this was for; what
  * ghosts take that nobody began is the mean of those that one did. Only worker
  * 0 counts; the others are taken to be as fast. Limits: ghosts differ a
  * hundredfold, so that the work left may be off by two or three times in the
@@ -30,11 +30,11 @@ struct glint_effort {
     int n_ended;     /* number of ghosts that worker 0 ended */
     double ended;    /* work of these */
     double work;     /* of the ghost that worker 0 is at */
-    double share;    /* share of its angles that are done, 0 .. 1 */
+    double share;    /* fraction of its angles that are done, 0 .. 1 */
 };
 
 /* What makes the ghosts of a lens take long: it opens wider than GLINT_WIDE, or
- * has surfaces that are no spheres. */
+ * has surfaces that are not spheres. */
 enum glint_effort_kind {
     GLINT_EFFORT_NARROW,
     GLINT_EFFORT_WIDE,
@@ -52,13 +52,13 @@ void glint_effort_expect(struct glint_effort *effort, double head,
 
 void glint_effort_begin(struct glint_effort *effort, int ghost);
 
-/* The ghost has taken WORK fits so far, for the SHARE of its angles. */
+/* The ghost has taken WORK fits so far, for the fraction of its angles. */
 void glint_effort_spend(struct glint_effort *effort, double work, double share);
 
 void glint_effort_end(struct glint_effort *effort);
 
-/* Returns the share of the work that is done, 0 .. 1: less than before where a
- * ghost turns out to take longer. */
+/* Returns the fraction of the work that is done, 0 .. 1: less than before where
+ * a ghost turns out to take longer. */
 double glint_effort_done(const struct glint_effort *effort);
 
 #endif

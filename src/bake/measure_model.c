@@ -136,7 +136,7 @@ static void try_ray(struct meter *b, double u, double v)
         b->out->intruders++;
 }
 
-/* Turns errors of energy into shares of the ray's energy, or of 1/50 of the
+/* Turns errors of energy into fractions of the ray's energy, or of 1/50 of the
  * largest energy if that is more. */
 static void divide_energy(struct meter *b)
 {

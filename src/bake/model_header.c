@@ -17,7 +17,7 @@ enum {
     REVISION = 13,
     WIDE_REVISION = 17, /* of those of lenses that open wider than GLINT_WIDE */
     SHAPED_REVISION =
-        1,             /* besides, of those with surfaces that are no spheres */
+        1, /* besides, of those with surfaces that are not spheres */
     SKEW_REVISION = 2, /* of those that are not round */
     FAR_REVISION = 3   /* and of round ones with lights beyond GLINT_FAR */
 };
@@ -187,7 +187,7 @@ static void fit_flux(const double *w, const double *flux, double scale,
 /* Returns the direct image's flux at NM through a stop of AREA times the whole
  * one's, over AREA; below 0 if memory is short. The barrels of a fast lens cut
  * the rim of its widest stop, where blades reach with their corners alone: of
- * wide stops it is taken through blades, and divided by their share of the
+ * wide stops it is taken through blades, and divided by their fraction of the
  * circle, by which a program multiplies it. Through circles f/1.4 of
  * merte-biotar came out 10 % too bright, f/2 of tronnier-double-gauss 2.6 %. */
 static double flux_of(const struct glint_setup *whole, double area, double nm)
@@ -208,7 +208,7 @@ static enum glint_status set_flux(const struct glint_bake_options *options,
                                   const struct glint_setup *whole,
                                   struct glint_model_header *h)
 {
-    /* Closed shares of the stop's area. */
+    /* Closed fractions of the stop's area. */
     static const double closed[2] = {0.5, 0.875};
     const double *band = options->band_nm;
     const double lo = 1 / (band[1] * band[1]), hi = 1 / (band[0] * band[0]);

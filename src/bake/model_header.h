@@ -10,12 +10,13 @@
 #include "glint/model.h"
 #include "glint/setup.h"
 
-/* Checks OPTIONS. GLINT_E_ARGUMENT: one is out of range, and ERROR says which.
+/* Checks OPTIONS. GLINT_E_ARGUMENT: one is out of range, and ERROR states
+ * which.
  */
 enum glint_status glint_bake_check(const struct glint_bake_options *options,
                                    struct glint_error *error);
 
-/* Returns the field that is asked for, or a tenth more than to the film's
+/* Returns the field that is requested, or a tenth more than to the film's
  * corners. */
 double glint_bake_field_mm(const struct glint_prescription *lens,
                            const struct glint_bake_options *options);

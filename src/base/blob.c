@@ -7,7 +7,7 @@ STATIC_ASSERT(sizeof(struct glint_blob_header) == 92);
 
 /* ---------------------------------------------------------------------- CRC */
 
-/* Goes on with the checksum CRC over N bytes; half a byte at a time needs a
+/* Continues with the checksum CRC over N bytes; half a byte at a time needs a
  * table of only 16 words. */
 static uint32_t crc32_more(uint32_t crc, const unsigned char *byte, size_t n)
 {

@@ -6,7 +6,7 @@
  *     fault = glint_blob_open(&blob, &kind, data, bytes);
  *     table = glint_blob_section(&blob, at, n, sizeof *table);
  *
- * The header of every kind begins with struct glint_blob_header and goes on
+ * The header of every kind begins with struct glint_blob_header and continues
  * with fields of its own. After it come the sections: tables, in any order, to
  * which the kind's fields point by bytes from the start of the file, multiples
  * of 4. The magic number tells the kind. */
@@ -26,7 +26,7 @@ struct glint_blob_header {
     uint32_t variant; /* variant of the kind; each kind gives it a meaning */
     uint32_t key[2];  /* key of the source and the options that it was baked
                          from, low word first */
-    char name[64];    /* name of the thing baked, terminated */
+    char name[64];    /* name of the object baked, terminated */
 };
 
 struct glint_blob_kind {
@@ -53,8 +53,8 @@ enum glint_blob_fault {
     GLINT_BLOB_FAULTS
 };
 
-/* What each fault is of a THING, such THINGS, that were DONE, in words; those
- * of GLINT_BLOB_OK are NULL. */
+/* What each fault is of an object, such Objects, that were DONE, in words;
+ * those of GLINT_BLOB_OK are NULL. */
 #define GLINT_BLOB_FAULT_TEXT(thing, things, done)                          \
     {                                                                       \
         [GLINT_BLOB_UNALIGNED] = "the " thing " is not aligned to 4 bytes", \
@@ -91,7 +91,7 @@ enum glint_blob_fault {
 struct glint_blob {
     const struct glint_blob_header *header;
     size_t bytes, header_bytes;
-    /* Bytes of all sections asked for, once for each request. */
+    /* Bytes of all sections requested, once for each request. */
     uint64_t referred;
 };
 

@@ -16,7 +16,7 @@
 /* Right shifts of negative numbers are arithmetic wherever glint runs. */
 STATIC_ASSERT((-3 >> 1) == -2);
 
-/* Makes the compiler forget where P points, so that it loads values there anew
+/* Makes the compiler forget where P points, so that it loads values there again
  * instead of keeping them in registers that it lacks. */
 #define FORGET(p) __asm__("" : "+r"(p))
 

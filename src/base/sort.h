@@ -2,25 +2,26 @@
  *
  * Heaps and heap sort: in place, without memory of its own, n log n at worst.
  *
- *     glint_sort(order, n, before, ctx);       indices of things, or
- *     glint_heap_sort(&heap, n);               things that swap places */
+ *     glint_sort(order, n, before, ctx);       indices of objects, or
+ *     glint_heap_sort(&heap, n);               objects that swap places */
 #ifndef GLINT_BASE_SORT_H
 #define GLINT_BASE_SORT_H
 
 #include <stdint.h>
 
 /* Returns whether thing A comes before thing B. With a total order the result
- * does not depend on the order that the things begin in. */
+ * does not depend on the order that the objects begin in. */
 typedef int glint_sort_fn(const void *ctx, int32_t a, int32_t b);
 
 void glint_sort(int32_t *order, int n, glint_sort_fn *before, const void *ctx);
 
-/* Things at places 0, 1 and so on. In a heap the thing at place i does not come
- * after the thing at place (i - 1) / 2, so that the last of all is at place 0.
+/* Objects at places 0, 1 and so on. In a heap the object at place i does not
+ * come after the object at place (i - 1) / 2, so that the last of all is at
+ * place 0.
  */
 struct glint_heap {
     int (*before)(const void *things, int a,
-                  int b); /* returns whether the thing at place A comes before
+                  int b); /* returns whether the object at place A comes before
                              the one at place B */
     void (*swap)(void *things, int a, int b);
     void *things;
@@ -29,7 +30,7 @@ struct glint_heap {
 /* Makes a heap of places 0 .. N - 1. */
 void glint_heap_make(const struct glint_heap *heap, int n);
 
-/* Restores the heap of places 0 .. N - 1 after the thing at place AT was
+/* Restores the heap of places 0 .. N - 1 after the object at place AT was
  * replaced by one that comes earlier. */
 void glint_heap_sift(const struct glint_heap *heap, int at, int n);
 

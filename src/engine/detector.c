@@ -103,7 +103,7 @@ static int32_t larger(int32_t a, int32_t b)
     return a > b ? a : b;
 }
 
-/* Returns the least semi-axis of a spot in a picture by itself. The rim of a
+/* Returns the least semi-axis of a spot in a still picture. The rim of a
  * core in its glare may hide a lamp of any smaller size; a lamp that is taken
  * for a point has ghosts as if cut out of paper, as no real lamp has. */
 static int32_t least_axis_q8(const struct glint_spot *spot)

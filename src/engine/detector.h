@@ -18,7 +18,7 @@ struct glint_lamp_detector {
     int max; /* most lamps per picture, 1 .. GLINT_LAMP_DETECTOR_MAX */
 
     /* The lamps of the last frame, as found, the strongest first; those of a
-     * picture by itself are numbered from 1. */
+     * still picture are numbered from 1. */
     struct glint_lamp_track *track;
     int n_tracks;
 
@@ -33,7 +33,7 @@ struct glint_lamp_detector {
     void *mem;
 };
 
-/* Opens DETECTOR, whose headroom_ev and max are set. CFG says what a lamp is;
+/* Opens DETECTOR, whose headroom_ev and max are set. CFG states what a lamp is;
  * its keep_faint is not used. */
 enum glint_status
 glint_lamp_detector_open(struct glint_lamp_detector *detector,
@@ -49,15 +49,15 @@ void glint_lamp_detector_close(struct glint_lamp_detector *detector);
 /* Writes the lamps of IMAGE, which comes ELAPSED_US after the last frame, to
  * LAMPS, which has room for GLINT_LAMP_DETECTOR_MAX; returns how many. They
  * rise and fade as in glint/lamp_tracker.h, so for a while there may be a few
- * more than max. ELAPSED_US 0: IMAGE is a picture by itself. */
+ * more than max. ELAPSED_US 0: IMAGE is a still picture. */
 int glint_lamp_detector_frame(struct glint_lamp_detector *detector,
                               const struct glint_image *image,
                               int32_t elapsed_us, const struct glint_view *view,
                               double focal_mm, struct glint_lamp *lamps);
 
 /* Returns the light of LAMP beyond what the picture shows of it, in white times
- * pixels: TRACK is that of LAMP, which has risen to LEVEL, SHARE of it is not
- * hidden, and WHITE is the light of the picture's white. */
+ * pixels: TRACK is that of LAMP, which has risen to LEVEL, Fraction of it is
+ * not hidden, and WHITE is the light of the picture's white. */
 double glint_lamp_excess(const struct glint_lamp *lamp,
                          const struct glint_lamp_track *track, double level,
                          double share, double white);

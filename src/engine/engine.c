@@ -36,7 +36,7 @@ void glint_engine_defaults_sized(struct glint_engine_config *cfg, size_t size,
     memcpy(cfg, &all, size < sizeof all ? size : sizeof all);
 }
 
-/* Returns a text that says what is out of range in C, or NULL. */
+/* Returns a text that states what is out of range in C, or NULL. */
 static const char *check(const struct glint_engine_config *c)
 {
     const struct glint_engine_light *l = &c->light;
@@ -183,7 +183,7 @@ static enum glint_status reserve(struct glint_engine *e,
                                e->most_lamps, drawn);
 }
 
-/* Says why an engine could not be made: with too little memory, how much it
+/* States why an engine could not be made: with too little memory, how much it
  * takes at least. */
 static void say(struct glint_engine *e, const struct glint_engine_config *c,
                 enum glint_status status, struct glint_error *error)

@@ -39,7 +39,7 @@ static struct glint_engine_drawing drawing_of(const struct glint_options *o)
     struct glint_engine_drawing d = {
         .dials = glint_options_quality(o).dials,
         .budget_ms = o->budget,
-        /* A limit of work would make the grid coarser than was asked for. */
+        /* A limit of work would make the grid coarser than was requested. */
         .most_minsn =
             has_grid && !GLINT_OPTION_GIVEN(o, work) ? 0 : 1000 * o->work,
         .apart_px = o->apart,

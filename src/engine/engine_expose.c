@@ -51,7 +51,7 @@ void glint_engine_choose(struct glint_engine *engine, unsigned parts,
     f->veil.front = veil ? engine->optics.front : NULL;
 }
 
-/* Exposes a picture by itself, for which there is time, by drawing its flare
+/* Exposes a still picture, for which there is time, by drawing its flare
  * small. */
 static enum glint_status expose_as_drawn(struct glint_engine *e, int n,
                                          const struct glint_image *image,

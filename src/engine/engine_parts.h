@@ -22,7 +22,7 @@ struct glint_engine_shape {
     int n_blades;
     double rotation_deg, f_number; /* 0: that which the model was baked for */
     struct glint_iris iris;
-    /* glint_setup_iris(), once an iris was asked for; a program that asks for
+    /* glint_setup_iris(), once an iris was requested; a program that requests
      * none does not link it. */
     glint_setup_iris_fn *set_iris;
 };
@@ -45,7 +45,7 @@ struct glint_engine_finding {
     int32_t elapsed_us; /* between the next picture and the last; 0: not known
                          */
     bool is_searched;   /* lamps were looked for in the next picture */
-    bool is_cut;        /* the next picture begins anew */
+    bool is_cut;        /* the next picture restarts */
 };
 
 /* What a lamp of the last picture had above what it showed of it. */
@@ -81,7 +81,7 @@ struct glint_engine {
 };
 
 /* Gives ENGINE, which makes its own setup, another stop; with MEASURE, measures
- * anew how bright flares are. The stop stays as it is if it cannot be had. */
+ * again how bright flares are. The stop stays as it is if it cannot be had. */
 enum glint_status glint_engine_reshape(struct glint_engine *engine,
                                        const struct glint_engine_shape *shape,
                                        bool measure, struct glint_error *error);

@@ -10,8 +10,8 @@
 /* Lights of scenes are numbered from here on. */
 #define SCENE_IDS UINT32_C(0xffffff00)
 
-/* Leaves of LAMP the share SEEN of its light; notes in HIDDEN whether that is
- * none. */
+/* Leaves of LAMP the fraction SEEN of its light; notes in HIDDEN whether that
+ * is none. */
 static void leave(struct glint_engine_lamp *lamp, double seen, int *hidden)
 {
     lamp->share = fmax(seen, GLINT_ENGINE_HIDDEN);
@@ -97,7 +97,7 @@ void glint_engine_apply_shares(struct glint_engine_lamp *lamps, int n,
     for (int i = 0; i < n; i++)
         if (lamps[i].share > GLINT_ENGINE_HIDDEN || !is_still)
             lamps[i].level *= lamps[i].share;
-        else /* the exposure of a picture by itself lifts what is left */
+        else /* the exposure of a still picture lifts what is left */
             lamps[i].lamp.power = 0;
 }
 

@@ -8,7 +8,7 @@
 #include "glint/area.h"
 #include "engine/setup/spectrum.h"
 
-/* Most pixels that find_top() is asked for. */
+/* Most pixels that find_top() is requested. */
 enum { TOP_MAX = GLINT_RESPONSE_FINE / 5000 };
 
 static const double none_log2 = -100;

@@ -4,7 +4,7 @@
  *
  * An entry is found by a key of the model, of what its brightness depends on,
  * and of the version of the library. It is some 800 bytes; one that is damaged,
- * or of another format, is measured and written anew. */
+ * or of another format, is measured and written again. */
 #include <math.h>
 #include <string.h>
 

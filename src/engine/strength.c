@@ -31,7 +31,8 @@ static const double veil_light = 0.5;
 static const double fall_per_s = 3, rise_per_s = 2, most_per_frame = 0.125;
 static const double settle_s = 0.3;
 
-/* A lamp is at most this much brighter than it would be by itself, as a share.
+/* A lamp is at most this much brighter than it would be by itself, as a
+ * fraction.
  */
 static const double overshoot = 0.5;
 
@@ -92,7 +93,7 @@ static double together(double a, double b)
     return pow(pow(a, norm) + pow(b, norm), 1 / norm);
 }
 
-/* Returns the factor that LIGHT asks for, in stops. */
+/* Returns the factor that LIGHT requests, in stops. */
 static double target_log2(const struct glint_strength *s,
                           const struct glint_response_light *light)
 {
@@ -214,8 +215,8 @@ void glint_strength_expose(struct glint_strength *strength,
 }
 
 /* Returns the stops by which the flare DRAWN is lifted so that it can be seen,
- * or lowered so that it is no veil, within the limits of its brightest part and
- * its mean. BASE: log2 of its factor at strength 0.5. */
+ * or lowered so that it is not a veil, within the limits of its brightest part
+ * and its mean. BASE: log2 of its factor at strength 0.5. */
 static double lift_log2(double base, const struct glint_response_light *drawn,
                         const struct glint_seen *seen)
 {

@@ -28,11 +28,11 @@
  * stay.
  *
  * The response knows one lamp at a time, along one line from the axis. For a
- * picture by itself there is time to draw the flare small and to take p and m
- * from that: p is then the value that 1/10000 of the pixels reach. So the few
- * small ghosts of a point, the wide ones of a candle, and lamps at which the
- * response off that line differs become as bright as others. Then the exposure
- * is corrected by how much of the flare can be seen on the picture
+ * still picture there is time to draw the flare small and to take p and m from
+ * that: p is then the value that 1/10000 of the pixels reach. So the few small
+ * ghosts of a point, the wide ones of a candle, and lamps at which the response
+ * off that line differs become as bright as others. Then the exposure is
+ * corrected by how much of the flare can be seen on the picture
  * (engine/seen.h). A flare that is hidden is lifted until 1/50 of the picture
  * shows it: at strength 0.5 up to 0.6 in its brightest part and 0.04 in the
  * mean. A flare that veils a quarter of the picture is lowered until the light
@@ -41,11 +41,11 @@
  *
  * In a video the factor follows, in stops in proportion to the time: it falls
  * by up to 3 stops a second and rises by up to 2, by no more than an eighth of
- * a stop a frame, so that no step exceeds 10 %. It starts anew after a cut, and
- * if there was no lamp before. Lamps rise and fade with their tracks (powers
- * without these levels decide on the factor). A new lamp that is too bright for
- * the factor, until that has followed, is limited to 1.5 times the exposure
- * that it would get by itself. */
+ * a stop a frame, so that no step exceeds 10 %. It starts again after a cut,
+ * and if there was no lamp before. Lamps rise and fade with their tracks
+ * (powers without these levels decide on the factor). A new lamp that is too
+ * bright for the factor, until that has followed, is limited to 1.5 times the
+ * exposure that it would get by itself. */
 #ifndef GLINT_ENGINE_STRENGTH_H
 #define GLINT_ENGINE_STRENGTH_H
 
@@ -96,7 +96,7 @@ void glint_strength_expose(struct glint_strength *strength,
                            const struct glint_strength_lamps *lamps,
                            int32_t elapsed_us);
 
-/* Corrects the exposure of a picture by itself: sets the scale and the light by
+/* Corrects the exposure of a still picture: sets the scale and the light by
  * DRAWN, the light of its flare when it was drawn small at scale 1, instead of
  * by the response; and by how much of that flare can be SEEN on the picture,
  * unless SEEN is NULL. Changes nothing if the factor is set by hand or there is

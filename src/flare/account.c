@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Gives an account of what became of a frame's bundles, and why. No other file
- * refers to this one, so a program that does not ask for it does not link it.
+ * refers to this one, so a program that does not request it does not link it.
  */
 #include "base/q.h"
 #include "flare/by_edges.h"

@@ -125,7 +125,7 @@ static int64_t flux_of(const struct glint_bundle *b)
 /* Returns the most light that one cell may give a pixel. Sums of _q36 in
  * colours up to 4 stay below 2^63 while no pixel gets more than 2^24. No cell
  * can give a pixel more than its flux; if the flux of all bundles passes 2^24,
- * each cell is limited to its share of half of that. */
+ * each cell is limited to its fraction of half of that. */
 static int32_t light_limit_q8(const struct glint_flare *f)
 {
     const int64_t most = INT64_C(1) << 24;
@@ -150,9 +150,9 @@ static int add_refs(const struct glint_flare *f, int refs, int first, int n)
     return refs;
 }
 
-/* Turns a bundle into edges in what is left of the worker's share of them. If
- * they do not fit, none is kept, and the entries that they would take in BINS
- * are counted in the slot's refs, unless BINS is NULL. */
+/* Turns a bundle into edges in what is left of the worker's fraction of them.
+ * If they do not fit, none is kept, and the entries that they would take in
+ * BINS are counted in the slot's refs, unless BINS is NULL. */
 static void emit_bundle(struct glint_flare *f, int bundle, int worker,
                         const struct glint_bins *bins)
 {
@@ -266,8 +266,8 @@ static int all_placed(const struct glint_flare *f)
     return 1;
 }
 
-/* Gives bundles that did not fit into their worker's share a place in the share
- * of any worker that has enough room. */
+/* Gives bundles that did not fit into their worker's share a place in the
+ * fraction of any worker that has enough room. */
 static void emit_leftovers(struct glint_flare *f)
 {
     const int n_workers = glint_workers_count(f->cfg.workers);
@@ -284,7 +284,7 @@ static void emit_leftovers(struct glint_flare *f)
         }
 }
 
-/* Turns all bundles into edges anew, in order and into one list, so that which
+/* Turns all bundles into edges again, in order and into one list, so that which
  * ones are left out does not depend on the workers' timing. */
 static void emit_in_order(struct glint_flare *f)
 {

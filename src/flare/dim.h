@@ -38,7 +38,7 @@ struct glint_dim_method {
      * bundle of both is planned; NULL: there is no room. */
     struct glint_light *(*gathered)(struct glint_flare *flare, int ghost,
                                     int light);
-    /* Returns the share of its light that light I, LIGHT with what it was
+    /* Returns the fraction of its light that light I, LIGHT with what it was
      * given, keeps for GHOST, 0 to GLINT_DIM_WHOLE_Q8. */
     int (*kept_q8)(const struct glint_flare_frame *frame,
                    const struct glint_light *light, int i, int ghost);
@@ -54,9 +54,9 @@ struct glint_dim_method {
 int32_t glint_dim_above_q8(const struct glint_flare_frame *frame,
                            const struct glint_light *light, int ghost);
 
-/* Returns the share of its light that each wave of ghost GHOST of LIGHT draws
- * by its own rays, 0 to GLINT_DIM_WHOLE_Q8; the rays of GLINT_DIM_WAVE draw the
- * rest. */
+/* Returns the fraction of its light that each wave of ghost GHOST of LIGHT
+ * draws by its own rays, 0 to GLINT_DIM_WHOLE_Q8; the rays of GLINT_DIM_WAVE
+ * draw the rest. */
 int glint_dim_share_q8(const struct glint_flare_frame *frame,
                        const struct glint_light *light, int ghost);
 

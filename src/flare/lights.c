@@ -10,13 +10,14 @@
  * some neighbours of the plane, so each round takes a curve through a shifted
  * plane.
  *
- * Lights that cannot be told apart merge first. Then, while there are too many,
- * the pairs of lowest cost merge: if fluxes a and b lie d apart, they move by d
- * b / (a + b) and d a / (a + b), which shifts the outlines of all their ghosts,
- * and the squared error of a shifted outline is the square of its light times
- * the shift; the sum is a b d. So faint lights merge over long distances while
- * bright ones keep their places. A round merges a part of the lights that have
- * to go, by the cheapest pairs it finds, so that costs rise slowly.
+ * Lights that cannot be distinguished merge first. Then, while there are too
+ * many, the pairs of lowest cost merge: if fluxes a and b lie d apart, they
+ * move by d b / (a + b) and d a / (a + b), which shifts the outlines of all
+ * their ghosts, and the squared error of a shifted outline is the square of its
+ * light times the shift; the sum is a b d. So faint lights merge over long
+ * distances while bright ones keep their places. A round merges a part of the
+ * lights that have to go, by the cheapest pairs it finds, so that costs rise
+ * slowly.
  *
  * In place: O(n log n) for all rounds, as each leaves fewer lights. Nothing
  * depends on the order that lights came in, as the sort compares all members of
@@ -30,10 +31,10 @@
 #include "glint/flare.h"
 
 enum {
-    CURVES =
-        3, /* curves along which lights are sought that cannot be told apart */
-    PART = 4,  /* a round merges 1 / PART of the lights that have to go */
-    BINS = 64, /* bins of the histogram of costs */
+    CURVES = 3, /* curves along which lights are sought that cannot be
+                   distinguished */
+    PART = 4,   /* a round merges 1 / PART of the lights that have to go */
+    BINS = 64,  /* bins of the histogram of costs */
     HELD = GLINT_LIGHT_HELD,
     WORDS = 10 /* 32-bit words that a light consists of */
 };

@@ -80,8 +80,8 @@ static int is_in_view(const struct glint_plan *p, struct glint_azimuth turn,
                p->height * 128 >> p->half;
 }
 
-/* Returns the share, 0 to 255, of a span about MIDDLE, WIDE to each side, that
- * lies between -HALF and HALF. */
+/* Returns the fraction, 0 to 255, of a span about MIDDLE, WIDE to each side,
+ * that lies between -HALF and HALF. */
 static int64_t span_q8(int64_t middle, int64_t wide, int64_t half)
 {
     const int64_t low = middle - wide > -half ? middle - wide : -half;
@@ -90,7 +90,7 @@ static int64_t span_q8(int64_t middle, int64_t wide, int64_t half)
     return high > low && wide > 0 ? q_divide(255 * (high - low), 2 * wide) : 0;
 }
 
-/* Returns the share of the upright box about E, turned as the ghost is, that
+/* Returns the fraction of the upright box about E, turned as the ghost is, that
  * lies in the picture. */
 static uint8_t view_q8(const struct glint_plan *p, struct glint_azimuth turn,
                        const struct reach *e)

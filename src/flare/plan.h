@@ -8,7 +8,7 @@
  *
  * Method: a few rays of each bundle go through its polynomials. Their places
  * say whether the ghost lies in the picture and how bright it can be; how much
- * they bend says how many cells it takes. A ghost below what the picture can
+ * they bend states how many cells it takes. A ghost below what the picture can
  * show is left out. Integers only. */
 #ifndef GLINT_FLARE_PLAN_H
 #define GLINT_FLARE_PLAN_H

@@ -217,7 +217,7 @@ static uint16_t sag_q16(int64_t bowl_q16, int n_cells)
 }
 
 /* A barrel's (1 + r^2) / 2 is a bowl. Once its sag is subtracted, outlines lie
- * outside of the true ones as often as inside. */
+ * outside the true ones as often as inside. */
 void glint_plan_sags(struct glint_bundle_plan *planned,
                      const struct glint_probe *probe,
                      const struct glint_transfer *transfer, int n_cells,

@@ -47,7 +47,7 @@ struct glint_probe {
     /* Kinds of outputs of this bundle, without energy: [n_kinds]. */
     uint8_t kind[GLINT_OUT_KINDS];
     int n_up, n_down; /* numbers of cells turned one way and the other */
-    /* Range of the rays inside of stop and barrels. */
+    /* Range of the rays inside stop and barrels. */
     struct glint_probe_extent seen;
     /* Range of all corners of the cells that have a ray inside, and so of the
      * light between rays, too. */
@@ -63,7 +63,7 @@ enum { GLINT_PROBE_FINE_LOG2 = 6 };
 /* Sends the rays of a grid of ACROSS x DOWN cells over half the window of T
  * towards a stop of OPENING_Q30 of the model's radius; over all of it, with
  * twice as many DOWN, where T is whole. Adds to n_rays; all
- * other members begin anew. */
+ * other members restart. */
 void glint_probe_run(struct glint_probe *probe, struct glint_transfer *t,
                      int32_t opening_q30, int across, int down);
 

@@ -26,7 +26,7 @@ struct glint_window_nodes {
     int32_t at[GLINT_OUT_KINDS][GLINT_WINDOW_DOWN][GLINT_WINDOW_ACROSS];
     int32_t bend[GLINT_WINDOW_DOWN][GLINT_WINDOW_ACROSS];
     uint32_t beyond[GLINT_WINDOW_DOWN][GLINT_WINDOW_ACROSS];
-    /* nonzero: the ray passes inside of the stop */
+    /* nonzero: the ray passes inside the stop */
     uint8_t inside[GLINT_WINDOW_DOWN][GLINT_WINDOW_ACROSS];
     int64_t radius; /* radius of the stop, in units of the stop position */
     int n_rays;     /* number of rays sent so far */

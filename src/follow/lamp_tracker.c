@@ -3,8 +3,9 @@
  * Lamps over time: spots of one picture after the other become tracks.
  *
  * In each step tracks move to where they should be by now and take the spots
- * they find there (match.h); each goes on with its spot or without (record.h);
- * spots that are left over become tracks; the strongest tracks are shown. */
+ * they find there (match.h); each continues with its spot or without
+ * (record.h); spots that are left over become tracks; the strongest tracks are
+ * shown. */
 #include "glint/lamp_tracker.h"
 
 #include "base/arena.h"

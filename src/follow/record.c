@@ -165,8 +165,8 @@ static int64_t follow_shown(const struct glint_follow *f)
     return f->value + f->offset;
 }
 
-/* Sets the value, but goes on showing SHOWN; blends then move from there to the
- * value, within their time unless more changes follow. */
+/* Sets the value, but continues showing SHOWN; blends then move from there to
+ * the value, within their time unless more changes follow. */
 static void follow_jump(struct glint_follow *f, int64_t value, int64_t shown)
 {
     f->value = value;
@@ -315,8 +315,8 @@ static void learn_velocity(struct glint_record *r,
         (now_q16 - r->velocity_q16[axis]) * part_q15 / (1 << 15);
 }
 
-/* Takes a place that belongs to a changed shape, which is no motion. Close to
- * the expected place, within half the lamp's radius, it counts as noise;
+/* Takes a place that belongs to a changed shape, which is not a motion. Close
+ * to the expected place, within half the lamp's radius, it counts as noise;
  * farther away the shown place moves on as before, and is blended to the new
  * one. */
 static void doubt_place(struct glint_record *r,
@@ -520,7 +520,7 @@ void glint_record_see(struct glint_record *r,
     r->lost_us = 0;
 }
 
-/* Returns whether the lamp is so far outside of the picture that it neither
+/* Returns whether the lamp is so far outside the picture that it neither
  * comes back nor throws a flare into it. */
 static int is_far(const struct glint_record *r)
 {

@@ -2,7 +2,7 @@
  *
  * Hides what a picture shows.
  *
- *   in   the share of each pixel that is hidden; light to add afterwards
+ *   in   the fraction of each pixel that is hidden; light to add afterwards
  *   out  the picture's own codes, changed in place
  *
  *   code = encode(decode(code) (1 - cover) + light)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Says where the samples of a picture lie, for each format. */
+ * States where the samples of a picture lie, for each format. */
 #ifndef GLINT_IMAGE_LAYOUT_H
 #define GLINT_IMAGE_LAYOUT_H
 

@@ -103,8 +103,9 @@ static void to_ycc(struct glint_mix *mix, const struct glint_ycc *ycc)
     set(mix->white, 128 * (ycc->black + q_mul(255, y_q15, 15)));
     for (int c = 0; c < 3; c++)
         set_factor(f, GLINT_MIX_LUMA + c, ratio(m_q15[0][c] * 256, 257));
-    /* Cb is PER (B' - Y'), Cr is PER (R' - Y'). Y' contains a share of B' and
-     * R', so PER is larger than the factor of B' in Cb, or R' in Cr, alone. */
+    /* Cb is PER (B' - Y'), Cr is PER (R' - Y'). Y' contains a fraction of B'
+     * and R', so PER is larger than the factor of B' in Cb, or R' in Cr, alone.
+     */
     for (int k = 0; k < 2; k++) {
         const int own = k ? 0 : 2;
         const int64_t own_q15 = m_q15[k + 1][own];

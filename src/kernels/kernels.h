@@ -10,7 +10,7 @@
  * rounded up to a multiple of GLINT_LANES, so that no variant has a tail.
  *
  * Products are rounded to nearest, ties up, as pmulhrsw and vqrdmulh do, unless
- * a comment says that they are cut. */
+ * a comment states that they are cut. */
 #ifndef GLINT_KERNELS_KERNELS_H
 #define GLINT_KERNELS_KERNELS_H
 
@@ -66,8 +66,8 @@ typedef void glint_add_packed_fn(uint8_t *pixels,
  * twice GLINT_LANES. The change by light is worked out once, for the mean of
  * the four pixels. A pixel's own change is to that of the mean as its distance
  * to white is to the mean's, so light that makes the mean white makes each
- * pixel white. Chroma moves towards its mean by the same share. Y' never falls.
- *   luma    codes of two rows; if the last row is alone, that row twice
+ * pixel white. Chroma moves towards its mean by the same fraction. Y' never
+ * falls. luma    codes of two rows; if the last row is alone, that row twice
  *   chroma  codes Cb, Cr of each pair of both rows; the same row twice if they
  *           share it
  *   light   R, G, B: _q16, one for every two pixels of a row

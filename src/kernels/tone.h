@@ -69,7 +69,7 @@ enum { /* Entries of from_ycc. */
        GLINT_MIX_GREEN_CR,
        GLINT_MIX_BLUE_CB, /* half of the factor, to fit 16 bits */
        /* Entries of to_ycc. */
-       GLINT_MIX_LUMA = 0, /* first of three: shares of R', G', B' in Y' */
+       GLINT_MIX_LUMA = 0, /* first of three: fractions of R', G', B' in Y' */
        GLINT_MIX_CB_BLUE = 3,
        GLINT_MIX_CB_LUMA,
        GLINT_MIX_CR_RED,

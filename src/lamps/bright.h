@@ -8,7 +8,8 @@
  *     glint_bright_begin(b, image);
  *     glint_bright_set_low(b, low);
  *     for each row y: if (glint_bright_scan(b, y))
- *             ... b->value where b->block says so, glint_bright_read(b, x) ...
+ *             ... b->value where b->block says so, glint_bright_read(b, x)
+ * ...
  *
  * Brightness is the largest channel, so that a lamp of any colour counts. Below
  * BRIGHT_CLIPPED it is that channel's full-range code. From there on the

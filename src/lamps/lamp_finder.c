@@ -221,8 +221,8 @@ static void cap(struct glint_lamp_finder *f, int max)
  * regions that lie within each other. A lamp is taken to be as wide as it is at
  * the thresholds, unless its clipped core looks clearly more like a lamp. A
  * region of a white that is darker than codes clip counts only if nothing in it
- * is a lamp. DARK_SHARE: share of the picture above which such regions are not
- * sought. */
+ * is a lamp. DARK_SHARE: fraction of the picture above which such regions are
+ * not sought. */
 #define COST_CLIPPED_Q8 64
 #define COST_WHITE_Q8   32
 #define COST_DARK_Q8    1024

@@ -13,7 +13,7 @@
 
 enum {
     LIGHT_CANDIDATES = 2048, /* most candidates kept, more than the 1024 lamps
-                                that find may be asked for */
+                                that find may be requested */
     LIGHT_LEVELS = 6
 };
 

@@ -338,7 +338,7 @@ static void add_moments(struct glint_profile_sums *sums, int32_t u_q16,
 /* ---------------------------------------------------------------------- rim */
 
 /* Returns the largest channel of the pixel that is X, Y from the middle; -1 if
- * it belongs to another spot or is outside of the picture. */
+ * it belongs to another spot or is outside the picture. */
 static int32_t light_at(const struct window *w, int32_t x_q8, int32_t y_q8)
 {
     const int dx = (x_q8 + 128) >> 8, dy = (y_q8 + 128) >> 8;

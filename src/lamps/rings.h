@@ -11,9 +11,9 @@
  * its rim, all pixels are read if it is small, else every s-th of every s-th
  * row; each ring is sampled half as densely as the one inside. The background
  * is the light of the outermost ring: the middle of its eight sectors in order
- * of light, so that bright or dark things beside the lamp do not count. Light u
- * is counted over the background, as a share of the difference between white
- * and background.
+ * of light, so that bright or dark objects beside the lamp do not count. Light
+ * u is counted over the background, as a fraction of the difference between
+ * white and background.
  *
  * A pixel counts to the areas by soft steps: to the area of level k by how far
  * u is from 2^-k to 2^(1-k), to the clipped area by how far its light is from
@@ -63,9 +63,9 @@ struct glint_profile_sums {
      * steps. */
     int64_t w_q16, moment_q16[2], square_q16[3]; /* xx, yy, xy */
     int step;        /* pixels between samples of the core */
-    int32_t rim_q15; /* share of white that is lost at the rim, the median over
-                        all rays; 0 for a small core, or if too few rays end in
-                        the picture */
+    int32_t rim_q15; /* fraction of white that is lost at the rim, the median
+                        over all rays; 0 for a small core, or if too few rays
+                        end in the picture */
 };
 
 struct glint_rings {

@@ -225,7 +225,7 @@ static int32_t colour_q8(const struct glint_region *sum)
     return 256 - (int32_t)(least / (largest(rim) / 256 + 1));
 }
 
-/* Returns PIXELS as a share of the picture, 2^20 for all of it. */
+/* Returns PIXELS as a fraction of the picture, 2^20 for all of it. */
 static int64_t share_q20(const struct glint_score *s, int64_t pixels)
 {
     return (pixels << 20) / ((int64_t)s->width * s->height);
@@ -233,7 +233,7 @@ static int64_t share_q20(const struct glint_score *s, int64_t pixels)
 
 /* Returns by how much less than 5 stops the picture's median is below the white
  * of LEVEL, 0 .. 5 stops; 0 if that white is where codes clip. An underexposed
- * picture by night has lamps that do not clip; a grey one has grey things. */
+ * picture by night has lamps that do not clip; a grey one has grey objects. */
 static int32_t dim_q8(const struct glint_score *s,
                       const struct glint_level *level)
 {

@@ -9,8 +9,8 @@
  *
  * Lamps are seldom alone: in a picture with SCORE_SEVERAL lamps, a region is
  * one from -SCORE_COMPANY on. In a picture without any, the best region is one
- * if its score is not far below 0, as whoever asks for a flare mostly has a
- * lamp: from -SCORE_ALONE on in a picture by itself. A region of a video has
+ * if its score is not far below 0, as whoever requests a flare mostly has a
+ * lamp: from -SCORE_ALONE on in a still picture. A region of a video has
  * another chance in each frame, whether it is a lamp or not, and so must reach
  * -SCORE_ALONE_VIDEO.
  *
@@ -38,7 +38,7 @@ enum {
     SCORE_DOUBT = 256,
     SCORE_SEVERAL = 2,
     SCORE_COMPANY = 96,
-    SCORE_ALONE = 48, /* in a picture by itself; see tests/figures/finder.md */
+    SCORE_ALONE = 48, /* in a still picture; see tests/figures/finder.md */
     SCORE_ALONE_VIDEO = 32,
     SCORE_LEVELS = 8
 };
@@ -55,7 +55,7 @@ enum glint_evidence {
     EVIDENCE_FILL, /* area over that of a disc of the same RMS radius: 256 for a
                       disc */
     EVIDENCE_BOX,  /* area over that of its box: 256 if it fills the box */
-    EVIDENCE_SIZE, /* log2 of its share of the picture, 0 or less */
+    EVIDENCE_SIZE, /* log2 of its fraction of the picture, 0 or less */
     EVIDENCE_COLOUR, /* saturation, 256 if it is one channel alone; less in a
                         large region */
     EVIDENCE_DIM, /* stops by which the picture's median is less than five below
@@ -73,7 +73,7 @@ enum glint_evidence {
     EVIDENCE_WIDE_HOT, /* 256 for a large region as bright as its level's white;
                           0 for a small or a darker one */
     /* Stops below white of the brightness that one pixel in 2, 4, 32 of the
-     * picture reaches: where nearly all is dark, bright things are lit from
+     * picture reaches: where nearly all is dark, bright objects are lit from
      * within. */
     EVIDENCE_DARK_2,
     EVIDENCE_DARK_4,

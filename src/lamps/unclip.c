@@ -73,9 +73,10 @@ static void list_moments(const struct glint_profile_sums *sums,
     }
 }
 
-/* Returns the radius of the lamp as a share of its clipped core's, 0 .. 1. The
- * glare of a small lamp far over white is clipped, too, and falls off over half
- * of the core's radius or more; a large lamp has a sharp rim, of a pixel. */
+/* Returns the radius of the lamp as a fraction of its clipped core's, 0 .. 1.
+ * The glare of a small lamp far over white is clipped, too, and falls off over
+ * half of the core's radius or more; a large lamp has a sharp rim, of a pixel.
+ */
 static int32_t lamp_share_q15(const struct glint_profile_sums *sums)
 {
     const struct glint_profile_channel *of = &sums->of[0];
@@ -94,10 +95,10 @@ static int32_t lamp_share_q15(const struct glint_profile_sums *sums)
            q_clamp_sat(q_divide(rim_q8 << 16, inner_q8), 0, 1 << 15);
 }
 
-/* Returns the radius of the lamp as a share of its core's, 0 .. 1, by the rim
- * of a large core: all of the core is the lamp's face if more light is lost at
- * the rim than a glare could lose, whatever light is around it. 0 for a small
- * core. */
+/* Returns the radius of the lamp as a fraction of its core's, 0 .. 1, by the
+ * rim of a large core: all of the core is the lamp's face if more light is lost
+ * at the rim than a glare could lose, whatever light is around it. 0 for a
+ * small core. */
 static int32_t face_share_q15(const struct glint_profile_sums *sums)
 {
     const int32_t over_q15 = sums->rim_q15 - RIM_GLARE;
@@ -292,7 +293,7 @@ static int64_t weighed_q26(const int16_t weight_q10[FEATURES + 1],
 
 /* Returns how many stops over white the core is, -6 .. 14: a perceptron with
  * one layer of rectified units beside a linear term. The units stand for
- * products of features: a halo tells one thing beside a core of three pixels
+ * products of features: a halo tells one object beside a core of three pixels
  * and another beside one of a hundred, or on an even background and among
  * windows. A unit is below 2^32 in _q16, times a weight 2^47, and there are
  * six. */

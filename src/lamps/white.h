@@ -41,7 +41,7 @@ int glint_white_code(const struct glint_bright *bright, int32_t light_q20,
  * reach. */
 int glint_white_reached_by(const struct glint_white *white, int part_log2);
 
-/* Returns the share of pixels that have VALUE or more, _q15. */
+/* Returns the fraction of pixels that have VALUE or more, _q15. */
 int32_t glint_white_share_q15(const struct glint_white *white, int value);
 
 /* Returns log2 of LIGHT in 1/256 stops over white, within 1/256 of a stop; 0 is

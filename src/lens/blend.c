@@ -28,7 +28,7 @@ enum {
     LEAST_UP = 16,      /* of units of 2^-30 or more, in which that is 2^29 */
     MOST_HEAD = 28,
     NEAR_Q24 = 1 << 23, /* half widths */
-    LATE_Q30 = 3 << 28, /* share of the way after which a barrel opens */
+    LATE_Q30 = 3 << 28, /* fraction of the way after which a barrel opens */
     MOST_MOVE = 8,      /* half widths that boxes may lie apart */
     BEYOND = 2          /* bits that going on takes, to three times the size */
 };
@@ -251,7 +251,7 @@ static void mix_energy(const struct glint_zoom_mix *blend,
     t->exponent[GLINT_OUT_ENERGY] = e;
 }
 
-/* Multiplies output KIND by SHARE. */
+/* Multiplies output KIND by fraction. */
 static void scale(struct glint_transfer *t, int kind, int32_t share_q30)
 {
     for (int b = 0; b < ROWS; b++)

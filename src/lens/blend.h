@@ -12,8 +12,8 @@ enum {
 };
 
 /* A transfer into which another position's is mixed, output by output: PART of
- * that, the rest of what it has. PART below 0, down to -1, goes on beyond this
- * position, away from the other. */
+ * that, the rest of what it has. PART below 0, down to -1, continues beyond
+ * this position, away from the other. */
 struct glint_zoom_mix {
     struct glint_transfer *to;
     int32_t part_q30;

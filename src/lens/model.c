@@ -53,7 +53,7 @@ enum {
      */
     BOX_NODES_LOG2 = 5,
     MAX_SHARED = 8 /* largest size of all tables that systems refer to, in sizes
-                      of the file; otherwise systems that share large tables
+                      of the file; otherwise systems that fraction large tables
                       would take quadratic time */
 };
 
@@ -493,8 +493,8 @@ static const char *check_ghosts(const struct check *c)
 
 /* ------------------------------------------------------------------ opening */
 
-/* Returns a text that says what is wrong with the header or with anything that
- * it points to, or NULL. */
+/* Returns a text that states what is wrong with the header or with anything
+ * that it points to, or NULL. */
 static const char *check_contents(struct check *c)
 {
     const char *reason = check_header(c);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Puts angle and wavelength into the polynomials of a bundle, which leaves
- * polynomials of the place in its box; transfer_rays.c goes on.
+ * polynomials of the place in its box; transfer_rays.c continues.
  *
  *   in   a model, a ghost, the sine of the light's angle, a wavelength
  *   out  struct glint_transfer: tables of coefficients of u^a v^b, a box
@@ -48,7 +48,7 @@ static int is_in_band(const struct glint_model_system *s,
             (wave_q24 == s->wave_hi_q24 && wave_q24 == h->wave_hi_q24));
 }
 
-/* Returns how far WAVE lies outside of the band of S. */
+/* Returns how far WAVE lies outside the band of S. */
 static int64_t off_band(const struct glint_model_system *s, int32_t wave_q24)
 {
     const int64_t below = (int64_t)s->wave_lo_q24 - wave_q24;

@@ -10,7 +10,7 @@
  * further parts of the pupil the list has as many as any model has. Where both
  * neighbours divide the pupil of a ghost alike at an angle, they are mixed;
  * where they do not, the nearer one is drawn; where one is dark, the other
- * goes on as from a model beyond it, or fades. */
+ * continues as from a model beyond it, or fades. */
 #include "glint/model.h"
 
 #include "base/blob.h"
@@ -279,7 +279,7 @@ static int of_side(struct glint_transfer *transfer,
 }
 
 /* Finds the nearest model beyond SIDE of ghost G that has it and is as far from
- * there as where the zoom goes on that side, so that nothing is drawn out to
+ * there as where the zoom continues that side, so that nothing is drawn out to
  * more than twice its length; -1: there is none. */
 static int find_beyond(const struct glint_zoom_lens *z, int g, int side)
 {
@@ -295,7 +295,7 @@ static int find_beyond(const struct glint_zoom_lens *z, int g, int side)
 }
 
 /* Sets TRANSFER to ghost G, which has light on SIDE alone and no further parts
- * there, as what it does between that and a model beyond it goes on. Returns
+ * there, as what it does between that and a model beyond it continues. Returns
  * whether it can. */
 static int draw_out(struct glint_transfer *transfer,
                     const struct glint_zoom_lens *z, int g, int side,

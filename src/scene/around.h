@@ -31,7 +31,7 @@ void glint_around_look(struct glint_around *around,
                        const struct glint_image *image,
                        struct glint_workers *workers);
 
-/* Sets RGB_Q15, 0 .. 65535, to the light at (X, Y): shares of the picture's
+/* Sets RGB_Q15, 0 .. 65535, to the light at (X, Y): fractions of the picture's
  * width from its left and of its height from its top, 0 .. 1. */
 void glint_around_at(const struct glint_around *around, int32_t x_q16,
                      int32_t y_q16, int32_t rgb_q15[3]);

@@ -81,7 +81,7 @@ static void place_planes(struct glint_scene *s)
     }
 }
 
-/* Grids of shadows are made anew where anything has moved. */
+/* Grids of shadows are rebuilt where anything has moved. */
 static void prepare_shadows(struct glint_scene *s)
 {
     s->n_planes = 0;
@@ -113,7 +113,7 @@ void glint_scene_begin(struct glint_scene *scene,
         if (z < GLINT_FAR)
             farthest = q_larger(farthest, z + 2 * scene->placed[i].reach);
     }
-    if (scene->motion) /* lines may be nearer than all things */
+    if (scene->motion) /* lines may be nearer than all objects */
         nearest = q_smaller(nearest, farthest >> 13);
     /* What is nearer than 2^-14 of the farthest shares its depth. */
     scene->nearest =
@@ -122,7 +122,7 @@ void glint_scene_begin(struct glint_scene *scene,
     glint_quick_begin(scene);
     if (scene->motion)
         scene->cfg.parts.motions->project(scene);
-    else /* shells and lines ask for true depths */
+    else /* shells and lines request true depths */
         glint_scene_flatten(scene);
     scene->has_triangles = scene->is_spread = 0;
     if (scene->bins.start)

@@ -12,7 +12,7 @@
  *
  * Directions that the camera sees then have the light of the picture there.
  * Beyond its edge, and behind the camera, nobody knows what there is: the
- * picture goes on, mirrored at its edge. */
+ * picture continues, mirrored at its edge. */
 #include "scene/parts.h"
 #include "scene/state.h"
 

@@ -89,8 +89,8 @@ enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
     return GLINT_OK;
 }
 
-/* Returns whether object P may have material MATERIAL: of a stone only one that
- * it has a map for. */
+/* Returns whether object P may have material MATERIAL: of a translucent medium
+ * only one that it has a map for. */
 static int has_map(const struct glint_scene_model *m,
                    const struct glint_placed *p, uint32_t material)
 {
@@ -139,7 +139,7 @@ enum glint_status glint_scene_set_radius(struct glint_scene *scene, int object,
 
 /* ------------------------------------------------------------- environments */
 
-/* What is lit once for several frames is to be lit anew. */
+/* What is lit once for several frames is to be lit again. */
 static enum glint_status relight(struct glint_scene *scene)
 {
     if (scene->stones)

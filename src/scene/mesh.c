@@ -346,7 +346,7 @@ static int begin(struct inside *in, struct walk *w)
     return 1;
 }
 
-/* Goes on to the next cell. Returns 0 where the grid ends, or nothing nearer
+/* Moves to the next cell. Returns 0 where the grid ends, or nothing nearer
  * than LIMIT, counted from where the walk began, can follow. */
 static int go_on(const struct inside *in, struct walk *w, int64_t limit)
 {
@@ -742,7 +742,7 @@ static struct line line_of(const struct glint_corner *a,
                          (int64_t)a->x * b->y - (int64_t)b->x * a->y};
 }
 
-/* Makes a line that a sample on it is inside of, or not, as the first of its
+/* Makes a line that a sample on it is inside, or not, as the first of its
  * numbers that is not 0 says; returns 0 if all are. */
 static int settle(struct line *l)
 {

@@ -239,7 +239,8 @@ static const char *check_object(const struct check *check,
                : "an object is too far out";
 }
 
-/* ------------------------------------------------------------------ stones */
+/* ------------------------------------------------------------------
+ * translucent media */
 
 static const char *check_stone(struct check *c,
                                const struct glint_scene_stone *s)
@@ -259,8 +260,8 @@ static const char *check_stone(struct check *c,
     return NULL;
 }
 
-/* Returns log2 of the side of the stone of SKIN, of which the header alone was
- * seen; 0: it is out of range. */
+/* Returns log2 of the side of the translucent medium of SKIN, of which the
+ * header alone was seen; 0: it is out of range. */
 static uint32_t side_log2_of(const struct glint_scene_model *m,
                              const struct glint_scene_skin *skin)
 {
@@ -332,7 +333,8 @@ static const char *check_skin(struct check *c, uint32_t i)
                                 UINT32_C(1) << log2);
 }
 
-/* Returns whether object I, if it is of a stone, has the map for that. */
+/* Returns whether object I, if it is translucent, has the map for
+ * that. */
 static int has_map(const struct glint_scene_model *m, uint32_t i)
 {
     for (uint32_t k = 0; k < m->header->n_stones; k++) {
@@ -347,8 +349,8 @@ static int has_map(const struct glint_scene_model *m, uint32_t i)
     return 1;
 }
 
-/* Checks stones and skins, but not the files of stones, which the part for them
- * opens. */
+/* Checks translucent media and skins, but not the files of translucent media,
+ * which the part for them opens. */
 static const char *check_stones(struct check *c)
 {
     const struct glint_scene_header *h = c->model.header;

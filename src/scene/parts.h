@@ -59,7 +59,7 @@ struct glint_scene_wards {
                                       struct glint_arena *arena);
     /* Opens the environment and makes the lobes of all metals. */
     enum glint_status (*open)(struct glint_scene *scene);
-    /* Makes the lobe of metal I anew. */
+    /* Makes the lobe of metal I again. */
     void (*change)(const struct glint_scene *scene, uint32_t i);
     /* Shows environment I, with its lights. */
     void (*show)(struct glint_scene *scene, uint32_t i);
@@ -76,8 +76,9 @@ struct glint_scene_wards {
     void (*lie)(const struct glint_scene *scene,
                 const struct glint_met_surface *surface,
                 struct glint_brushed *brushed);
-    /* Adds what SURFACE, of diffuse COLOUR_Q15, leaves along RAY of the light
-     * from all around, times WEIGHT_Q15. BRUSHED is NULL if it is no metal. */
+    /* Adds what SURFACE, of diffuse COLOUR_Q15, leaves along RAY of the
+     * environment light, times WEIGHT_Q15. BRUSHED is NULL if it is not a
+     * metal. */
     void (*reflect)(const struct glint_scene *scene,
                     const struct glint_scene_ray *ray,
                     const struct glint_met_surface *surface,
@@ -103,16 +104,17 @@ struct glint_scene_stones {
     /* Takes the memory of the part; NULL while it is measured. */
     struct glint_stone_state *(*carve)(const struct glint_scene *scene,
                                        struct glint_arena *arena);
-    /* Opens all stones; before that, of SCENE the model alone is there. */
+    /* Opens all translucent media; before that, of SCENE the model alone is
+     * there. */
     enum glint_status (*open)(struct glint_scene *scene);
-    /* Notes what there is of light from all around, which has changed. */
+    /* Notes what there is of environment light, which has changed. */
     void (*relight)(struct glint_scene *scene);
     /* Brings the maps up to date with the frame that was begun; returns how
      * many texels were worked out. */
     int (*update)(struct glint_scene *scene);
     /* Adds what comes out of SURFACE along RAY, times WEIGHT_Q15. Returns how
      * many times what it does straight ahead its coat mirrors there, q15, below
-     * 2^30; 0 if its material is no stone. */
+     * 2^30; 0 if its material is not a translucent medium. */
     int32_t (*add)(const struct glint_scene *scene,
                    const struct glint_scene_ray *ray,
                    const struct glint_met_surface *surface, int32_t weight_q15,

@@ -41,7 +41,7 @@ void glint_gloss_prepare(struct glint_gloss *gloss, int32_t power_q8)
             power_q8);
 }
 
-/* Returns the share of a light's rays, mirrored at the surface, that go back
+/* Returns the fraction of a light's rays, mirrored at the surface, that go back
  * along the ray: the mirrored direction is L - 2 (L.N) N. */
 static inline int32_t gloss_q15(const struct glint_gloss *gloss,
                                 const struct glint_scene_ray *ray,
@@ -94,7 +94,7 @@ static void add_shine(const struct glint_scene *s,
         add(&rgb_q15[c], shine_q15[c], share_q15);
 }
 
-/* BRUSHED is NULL if SURFACE is no metal. */
+/* BRUSHED is NULL if SURFACE is not a metal. */
 static WHOLLY_INLINE void
 add_light(const struct glint_scene *s, const struct glint_scene_ray *ray,
           const struct glint_met_surface *surface,

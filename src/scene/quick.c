@@ -27,7 +27,7 @@ void glint_quick_ray(const struct glint_scene_view *view, int32_t x_q8,
 
 /* ------------------------------------------------------------------- balls */
 
-/* Balls are met in units of their radius, from a camera outside of them and at
+/* Balls are met in units of their radius, from a camera outside them and at
  * most 2^13 radii away. */
 static void begin_ball(const struct glint_scene *s, struct glint_placed *p)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Surfaces in the middle of pixels, the quick way: 26 bits are enough to shade
- * by, and what all pixels of a thing share is done once.
+ * by, and what all pixels of an object share is done once.
  *
  * What is seen there has been decided exactly (visible.c). */
 #ifndef GLINT_SCENE_QUICK_H

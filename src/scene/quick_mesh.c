@@ -114,8 +114,8 @@ static struct glint_quick_triangle *triangle_of(struct glint_scene_worker *w,
     return t->is_there ? t : NULL;
 }
 
-/* Sets weights of the second and third corner at a place of the picture: shares
- * of its area, held inside, over their depths. */
+/* Sets weights of the second and third corner at a place of the picture:
+ * fractions of its area, held inside, over their depths. */
 static void weigh(const struct glint_quick_triangle *t, int32_t x_q8,
                   int32_t y_q8, int64_t part_q30[2])
 {

@@ -43,7 +43,7 @@ void glint_chord_end(const struct glint_chord *chord,
 
 /* ------------------------------------------------------------------- plane */
 
-/* What is farther away on a plane counts as here: a plane goes on to its
+/* What is farther away on a plane counts as here: a plane moves to its
  * horizon, and places on it stay in range. */
 #define GLINT_PLANE_END (INT32_C(1) << 28)
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The scene as a pass: a pixel is shaded once for each thing that its samples
+ * The scene as a pass: a pixel is shaded once for each object that its samples
  * see, at its middle, and at each sample of what mirrors or lets light through;
  * what of it nothing covers stays. */
 #include "scene/quick.h"
@@ -94,7 +94,7 @@ static void see_background(const struct glint_scene *s, int x, int y,
     glint_scene_behind(s, ray.toward_q30, glint_scene_pixel_q40(s), rgb_q15);
 }
 
-/* Shades what sample K of pixel (X, Y) sees; returns whether that is a thing.
+/* Shades what sample K of pixel (X, Y) sees; returns whether that is an object.
  */
 static inline int shade_id(struct glint_scene_worker *w, uint32_t id, int x,
                            int y, int k, struct glint_met_shade *shade)
@@ -133,7 +133,7 @@ static inline int is_catcher(const struct glint_scene *s, uint32_t id)
            s->placed[id >> 20].is_catcher;
 }
 
-/* Returns whether two samples may be shaded as one: they see one thing, or two
+/* Returns whether two samples may be shaded as one: they see one object, or two
  * triangles of a smooth surface that share a vertex. */
 static int is_joined(const struct glint_scene *s, uint32_t a, uint32_t b)
 {
@@ -242,8 +242,8 @@ static int is_joined_to(const struct glint_scene *s, const uint32_t *id, int n,
     return 1;
 }
 
-/* Returns whether (X, Y) is one of two by two pixels that all see one thing, or
- * triangles around one of a smooth surface. */
+/* Returns whether (X, Y) is one of two by two pixels that all see one object,
+ * or triangles around one of a smooth surface. */
 static int is_quad(const struct glint_scene_worker *w, int n, int x, int y)
 {
     const struct glint_box b = w->touched;
@@ -341,7 +341,7 @@ static void cover_wholly(const struct glint_scene *s, int y, int x0, int x1)
     }
 }
 
-/* Sets pixels X0 .. X1 - 1 of row ROW to what is seen where there is no thing.
+/* Sets pixels X0 .. X1 - 1 of row ROW to what is seen where there is no object.
  */
 static void put_background(const struct glint_scene_worker *w,
                            const struct glint_pass_rows *rows, int row, int x0,

@@ -2,7 +2,7 @@
  *
  * What throws shadows, as a sun sees it [Haines86]: a grid at right angles to
  * its rays, whose cells list all that can stand between the sun and a place in
- * them. A place outside of the grid, or in an empty cell, is lit.
+ * them. A place outside the grid, or in an empty cell, is lit.
  *
  *   in   where objects are; the directions to the points of a sun's disc
  *   out  whether a place sees such a point
@@ -11,8 +11,8 @@
  * +-2^29: vertices are turned once a frame and rounded alike in all triangles
  * that have them, so that no ray passes between two of these. Rays to other
  * points of the disc lean by less than a cell's margin: footprints are as much
- * larger as they lean between the top of a thing and the lowest place that the
- * grid answers for. */
+ * larger as they lean between the top of an object and the lowest place that
+ * the grid answers for. */
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "scene/mesh.h"
@@ -21,7 +21,7 @@
 enum {
     CELLS = 1 << GLINT_SHADOW_CELLS_LOG2,
     SLACK = 4,  /* steps, for rounding */
-    SORTED = 64 /* things of a list that is sorted, at most */
+    SORTED = 64 /* objects of a list that is sorted, at most */
 };
 
 /* Returns how far rays lean over a height, below 2^32. */
@@ -77,7 +77,7 @@ static int enclose(const struct glint_scene *s, struct glint_shadow *shadow)
 }
 
 /* Makes room for rays that lean: the grid answers for places as far below
- * things as these are large. */
+ * objects as these are large. */
 static void widen(struct glint_shadow *shadow)
 {
     const int32_t side =
@@ -99,7 +99,7 @@ static void widen(struct glint_shadow *shadow)
 
 /* ------------------------------------------------------------------- lists */
 
-/* Returns the cells of a thing. */
+/* Returns the cells of an object. */
 static struct glint_box cells_of(const struct glint_shadow_thing *t)
 {
     return glint_box_cut((struct glint_box){0, 0, CELLS, CELLS},
@@ -108,7 +108,7 @@ static struct glint_box cells_of(const struct glint_shadow_thing *t)
                                             (t->hi[1] >> 8) + 1});
 }
 
-/* Sets T to what a thing within LO .. HI can shadow. */
+/* Sets T to what an object within LO .. HI can shadow. */
 static void set_thing(const struct glint_shadow *shadow, const int32_t lo[3],
                       const int32_t hi[3], uint32_t id,
                       struct glint_shadow_thing *t)
@@ -126,7 +126,7 @@ static void set_thing(const struct glint_shadow *shadow, const int32_t lo[3],
     }
 }
 
-/* Sets the things of mesh I from T on; returns how many. */
+/* Sets the objects of mesh I from T on; returns how many. */
 static int set_triangles(const struct glint_scene *s,
                          const struct glint_shadow *shadow, uint32_t i,
                          struct glint_shadow_thing *thing)
@@ -150,7 +150,7 @@ static int set_triangles(const struct glint_scene *s,
     return (int)mesh->n_triangles;
 }
 
-/* Sets all things; returns how many entries they have in all cells. */
+/* Sets all objects; returns how many entries they have in all cells. */
 static int64_t set_things(const struct glint_scene *s,
                           struct glint_shadow *shadow)
 {
@@ -205,7 +205,7 @@ static void list(struct glint_shadow *shadow)
     glint_bins_close(&shadow->bins);
 }
 
-/* Puts the highest things of each list first, but of long lists. */
+/* Puts the highest objects of each list first, but of long lists. */
 static void sort_lists(struct glint_shadow *shadow)
 {
     for (int i = 0; i < CELLS * CELLS; i++) {
@@ -223,7 +223,7 @@ static void sort_lists(struct glint_shadow *shadow)
     }
 }
 
-/* Returns whether a list has a thing but OWN that is above LOWEST and can
+/* Returns whether a list has an object but OWN that is above LOWEST and can
  * shadow places within LO .. HI. */
 static int can_shadow(const struct glint_shadow *shadow, int cell, uint32_t own,
                       int32_t lowest, const int32_t lo_q8[2],
@@ -573,7 +573,7 @@ static int is_lit(const struct glint_scene *s,
            !is_blocked(s, shadow, below, p, place, surface);
 }
 
-/* Returns the share of 1, 4 or 16 points that REACHED of them are. */
+/* Returns the fraction of 1, 4 or 16 points that REACHED of them are. */
 static int32_t share(const struct glint_shadow *shadow, int reached)
 {
     return reached << (shadow->n_points == 1   ? 15
@@ -581,8 +581,8 @@ static int32_t share(const struct glint_shadow *shadow, int reached)
                                                : 11);
 }
 
-/* The share of a disc's points that are above SURFACE, where nothing else comes
- * before them. */
+/* The fraction of a disc's points that are above SURFACE, where nothing else
+ * comes before them. */
 static int32_t share_above(const struct glint_shadow *shadow,
                            const struct glint_met_surface *surface)
 {
@@ -593,7 +593,7 @@ static int32_t share_above(const struct glint_shadow *shadow,
     return share(shadow, above);
 }
 
-/* The share of a disc's points, each by itself. */
+/* The fraction of a disc's points, each by itself. */
 static NEVER_INLINE int32_t
 share_of_points(const struct glint_scene *s, const struct glint_shadow *shadow,
                 const struct glint_met_surface *surface,

@@ -38,7 +38,7 @@ struct glint_placed {
     uint32_t material; /* of what has none of its own */
     int is_shown;
     int is_split, is_catcher; /* as its material and itself say */
-    int skin;                 /* its map, where it is of stone; or -1 */
+    int skin;                 /* its map, where it is translucent; or -1 */
     int is_seen;              /* may be seen in this frame */
     struct glint_box box;     /* pixels that it may touch */
     uint32_t first_vertex;    /* mesh: of those of all objects */
@@ -92,8 +92,8 @@ struct glint_shadow_point {
     int32_t toward_q30[3], lean_q30[2];
 };
 
-/* The box of what a thing can shadow, as a sun sees it: across, in 256ths of a
- * cell, rounded down; how high it reaches. */
+/* The box of what an object can shadow, as a sun sees it: across, in 256ths of
+ * a cell, rounded down; how high it reaches. */
 struct glint_shadow_thing {
     uint32_t id; /* object << 20 | triangle */
     int16_t lo[2], hi[2];
@@ -113,15 +113,15 @@ struct glint_shadow {
     int32_t lean_q30; /* the most of all points */
     struct glint_shadow_point point[GLINT_SHADOW_POINTS];
     int32_t (*vertex)[3];             /* of all meshes, turned */
-    struct glint_bins bins;           /* of cells: numbers of things */
+    struct glint_bins bins;           /* of cells: numbers of objects */
     struct glint_shadow_thing *thing; /* [n_things] */
     int n_things;
-    int max_refs; /* entries; the number of things at least */
+    int max_refs; /* entries; the number of objects at least */
 };
 
 /* A light where it is in this frame. */
 struct glint_lit {
-    struct glint_shadow *shadow; /* NULL: rays ask for it */
+    struct glint_shadow *shadow; /* NULL: rays request it */
     const struct glint_scene_light *light;
     int32_t at[3];         /* lamp: place */
     int32_t toward_q30[3]; /* sun: direction */
@@ -142,7 +142,7 @@ struct glint_met_surface {
     const struct glint_scene_material *material;
     uint32_t object, triangle;
     int32_t t, place[3];
-    int32_t normal_q30[3], face_q30[3]; /* for shading; of the thing itself */
+    int32_t normal_q30[3], face_q30[3]; /* for shading; of the object itself */
     int is_inside;                      /* the ray comes from within */
     int32_t uv_q16[2];
     /* log2 of texels' area, in units of uv, per step^2; _q16 */
@@ -154,7 +154,7 @@ struct glint_brushed {
     int32_t frame_q30[3][3]; /* rows: tangent, bitangent, normal; units */
     int32_t spread_q30;      /* what the normal's turn within a pixel adds to
                                 the squares of alphas: twice its variance; -1:
-                                no light has asked for it */
+                                no light has requested it */
 };
 
 /* Light and cover of a pixel: sums over four samples. */
@@ -182,11 +182,11 @@ struct glint_scene_worker {
     int32_t *depth;
     uint32_t *id;
     struct glint_box tile;
-    struct glint_box touched; /* pixels of it that may see a thing; of others
+    struct glint_box touched; /* pixels of it that may see an object; of others
                                  there are no samples */
     const struct glint_scene *scene;
     struct glint_tile_scratch scratch;
-    /* [half a tile]: of two by two pixels that see one thing, shaded in the
+    /* [half a tile]: of two by two pixels that see one object, shaded in the
      * upper row; NULL if each is shaded. */
     struct glint_scene_sum *quad;
     struct glint_quick_triangle *quick; /* [GLINT_QUICK_TRIANGLES] */
@@ -223,7 +223,7 @@ struct glint_scene {
     struct glint_scene_ward *ward;         /* [n_wards] */
     struct glint_ward_state *wards;   /* NULL: neither environment nor metal */
     struct glint_stone_state *stones; /* NULL: nothing is translucent */
-    uint32_t moved; /* how often things or lights have moved */
+    uint32_t moved; /* how often objects or lights have moved */
     int is_spread;  /* maps are up to date with the frame that was begun */
     struct glint_highlight_state *bright; /* NULL: highlights are not wanted */
     struct glint_motion_state *motion;    /* NULL: nothing was recorded */
@@ -296,8 +296,8 @@ int glint_scene_surface(const struct glint_scene *scene,
 
 /* ------------------------------------------------------------------- shade */
 
-/* Light that goes back along a ray, and the share of the picture behind that it
- * hides. */
+/* Light that goes back along a ray, and the fraction of the picture behind that
+ * it hides. */
 struct glint_met_shade {
     int32_t rgb_q15[3]; /* 0 .. 2^30 */
     int cover_q8;       /* 0 .. 256 */
@@ -315,7 +315,7 @@ void glint_scene_shade(const struct glint_scene *scene,
                        const struct glint_met_surface *surface,
                        struct glint_met_shade *shade);
 
-/* Returns the share, 0 .. 32768, of light LIT that reaches SURFACE, as rays
+/* Returns the fraction, 0 .. 32768, of light LIT that reaches SURFACE, as rays
  * through the scene find it. */
 int32_t glint_rays_reach(const struct glint_scene *scene,
                          const struct glint_met_surface *surface,
@@ -331,7 +331,7 @@ struct glint_box glint_shadow_box(const struct glint_scene *scene,
                                   const struct glint_shadow *shadow,
                                   const struct glint_placed *p);
 
-/* Returns the share of that sun that reaches PLACE, the start of rays from
+/* Returns the fraction of that sun that reaches PLACE, the start of rays from
  * SURFACE. */
 int32_t glint_shadow_reaches(const struct glint_scene *scene,
                              const struct glint_shadow *shadow,
@@ -352,7 +352,7 @@ static inline void glint_scene_leave(const struct glint_scene *scene,
         at[k] = surface->place[k] + q_mul(surface->face_q30[k], lift, 30);
 }
 
-/* Returns the share, 0 .. 32768, of light LIT that reaches SURFACE. */
+/* Returns the fraction, 0 .. 32768, of light LIT that reaches SURFACE. */
 static inline int32_t
 glint_scene_reaches(const struct glint_scene *scene,
                     const struct glint_met_surface *surface,
@@ -390,8 +390,9 @@ int32_t glint_power_q15(int32_t x_q30, int32_t k_q8);
 void glint_scene_point(struct glint_scene_ray *ray, int32_t t, int32_t radius,
                        int i, int n);
 
-/* What is seen where there is no thing, but the picture itself: sets RGB_Q15 to
- * the light from TOWARD_Q30, in the mean of a spot of that angular variance. */
+/* What is seen where there is no object, but the picture itself: sets RGB_Q15
+ * to the light from TOWARD_Q30, in the mean of a spot of that angular variance.
+ */
 void glint_scene_behind(const struct glint_scene *scene,
                         const int32_t toward_q30[3], int64_t spread_q40,
                         int32_t rgb_q15[3]);
@@ -423,7 +424,7 @@ void glint_ball_uv(const struct glint_placed *p,
 /* Copies materials and metals of the model, and draws by these from now on. */
 void glint_scene_copy_looks(struct glint_scene *scene);
 
-/* Things have moved: grids of shadows, and maps, wait for the next frame. */
+/* Objects have moved: grids of shadows, and maps, wait for the next frame. */
 void glint_scene_forget_shadows(struct glint_scene *scene);
 
 #endif

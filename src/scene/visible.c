@@ -5,7 +5,7 @@
  *
  * A sphere whose rim is farther away from a pixel's middle than its samples are
  * gives all of them the depth of the middle. Spheres come last: one that no
- * other ball can hide in part asks for no depth where all that is there is
+ * other ball can hide in part requests no depth where all that is there is
  * farther away than its far side. */
 #include "scene/visible.h"
 #include "scene/parts.h"
@@ -258,7 +258,7 @@ static int is_before(const struct glint_scene *s, const struct glint_placed *p,
            q_magnitude(away) > (uint64_t)p->reach + 2;
 }
 
-/* Confines a catcher to pixels in which shadows may be, or things that it may
+/* Confines a catcher to pixels in which shadows may be, or objects that it may
  * hide. */
 static void confine(const struct glint_scene *s, struct glint_placed *plane)
 {
@@ -294,7 +294,7 @@ void glint_scene_confine(struct glint_scene *s)
 
 /* -------------------------------------------------------------------- tile */
 
-/* Returns the pixels of a tile that may see a thing. Those of meshes count if
+/* Returns the pixels of a tile that may see an object. Those of meshes count if
  * the tile lists triangles. */
 static struct glint_box touch(const struct glint_scene *s,
                               struct glint_box tile, int has_triangles)

@@ -74,7 +74,7 @@ int32_t glint_quick_away(const struct glint_placed *p,
 
 /* ------------------------------------------------------------------ layers */
 
-/* What is laid over the things of a picture, by the part for recorded motion.
+/* What is laid over the objects of a picture, by the part for recorded motion.
  */
 
 /* Pixels X0 .. X1 - 1 of a row that a layer may touch. */

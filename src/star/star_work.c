@@ -23,7 +23,7 @@ static int64_t square(const struct glint_star *star,
 }
 
 /* Returns the pixels of all lines of LAMP. In a zone a line is twice as long as
- * the zone is wide, and as wide as is seen; the same share of it as of the
+ * the zone is wide, and as wide as is seen; the same fraction of it as of the
  * zone's area is in the picture. */
 static int64_t lines(const struct glint_star *star,
                      const struct glint_star_lamp *lamp)

@@ -11,7 +11,7 @@
  * resolution. Rows of tiles share nothing: they may be drawn in any order, or
  * at once, each by another worker.
  *
- * Passes give light, which is added, and may give cover, the share of each
+ * Passes give light, which is added, and may give cover, the fraction of each
  * pixel in which they hide the picture and the light of the passes before them:
  * a pixel that is covered wholly is set. More than one pass, or one that
  * covers, takes glint_blend (blend.h), which a flare alone does not link. */
@@ -47,7 +47,7 @@ struct glint_pass {
     /* Begins the row of tiles ROW on worker WORKER; its return value is the
      * STATE of the calls below. */
     void *(*begin)(const void *self, struct glint_box row, int worker);
-    /* Goes on to tile TILE; returns 0 if the pass draws nothing in it: rows is
+    /* Moves to tile TILE; returns 0 if the pass draws nothing in it: rows is
      * then not called. */
     int (*tile)(void *state, struct glint_box tile);
     /* Draws rows of that tile. Rows come from top to bottom, each once, even if

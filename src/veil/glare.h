@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Veiling glare: a share of all light, spread wide, in integers.
+ * Veiling glare: a fraction of all light, spread wide, in integers.
  *
  *     bytes = glint_veil_bytes(&cfg);                         once
  *     glint_veil_init(&veil, &cfg, mem, bytes);
@@ -10,16 +10,17 @@
  *     glint_veil_draw(veil, NULL, flare, &image);   not glint_flare_draw()
  *
  * Light that lens, barrel and camera scatter falls far from where it belongs.
- * ISO 9358 measures it as veiling glare index, the share of light in the
- * picture of a small black spot amid a wide white one: V. If the share V of all
- * light in a picture is spread, what is left of a scene P is (1 - V) P + V K P,
- * with a kernel K whose integral is 1; on uniform white that is white, and V on
- * the spot. Exposed so that the direct picture stays as it is, the veil adds
+ * ISO 9358 measures it as veiling glare index, the fraction of light in the
+ * picture of a small black spot amid a wide white one: V. If the fraction V of
+ * all light in a picture is spread, what is left of a scene P is (1 - V) P + V
+ * K P, with a kernel K whose integral is 1; on uniform white that is white, and
+ * V on the spot. Exposed so that the direct picture stays as it is, the veil
+ * adds
  *
  *     V / (1 - V) K P
  *
  * which is what is drawn: nothing gets darker, lamps that clip still do, and
- * the veil has the share V of all light. P is the mean light of some 64 x 36
+ * the veil has the fraction V of all light. P is the mean light of some 64 x 36
  * cells of the picture, and what lamps have above its white. K is a sum of
  * Gaussians, mirrored at the picture's borders, so that all light stays in it.
  * The light of the cells is interpolated by quadratic splines, without steps.
@@ -48,9 +49,9 @@ enum {
 
 /* A Gaussian over cells along both axes. */
 struct glint_veil_spread {
-    /* [D]: the share that goes D cells far, of a row of n cells that its mirror
-     * images repeat every 2 n cells; D = 0 .. n. [0] + [n] + 2 times the others
-     * is 2^30. */
+    /* [D]: the fraction that goes D cells far, of a row of n cells that its
+     * mirror images repeat every 2 n cells; D = 0 .. n. [0] + [n] + 2 times the
+     * others is 2^30. */
     int32_t across_q30[GLINT_VEIL_CELLS + 1], down_q30[GLINT_VEIL_CELLS + 1];
     struct glint_real share; /* of all light, above 0 */
 };
@@ -78,7 +79,7 @@ glint_veil_front_fn glint_veil_front_row;
 struct glint_veil_front {
     glint_veil_front_fn *row; /* glint_veil_front_row */
     int n_x, n_y;             /* GLINT_VEIL_FRONT_NODES() of both sides */
-    /* [n_y][n_x]: share of what is covered at most, at the borders of every
+    /* [n_y][n_x]: fraction of what is covered at most, at the borders of every
      * fourth pixel. Kept. */
     const uint16_t *part_q16;
 };
@@ -106,7 +107,7 @@ void glint_veil_look(struct glint_veil *veil, const struct glint_image *image,
                      struct glint_real white, struct glint_workers *workers);
 
 /* Adds POWER, white times pixels, of colour RGB, 0 .. 2^14, at (X, Y), pixels
- * from the top left corner. Lamps outside of the picture are left out. */
+ * from the top left corner. Lamps outside the picture are left out. */
 void glint_veil_lamp(struct glint_veil *veil, int32_t x_q8, int32_t y_q8,
                      struct glint_real power, const int32_t rgb_q14[3]);
 

@@ -16,9 +16,9 @@ enum { GLINT_VEIL_LANES = 8 };
 struct glint_veil_axis {
     uint8_t *cell;  /* [side]: the cell of each pixel */
     int32_t *start; /* [cells + 1]: the first pixel of each cell */
-    /* [side + LANES]: shares of the cell before, the pixel's and the one after,
-     * of a spline of second order: with t = 0 .. 1 through the cell (1 - t)^2 /
-     * 2, 1 less both others, t^2 / 2. */
+    /* [side + LANES]: fractions of the cell before, the pixel's and the one
+     * after, of a spline of second order: with t = 0 .. 1 through the cell (1 -
+     * t)^2 / 2, 1 less both others, t^2 / 2. */
     uint16_t *share_q16[3];
     /* Of each cell, how many times as many pixels it has as are looked at in
      * it, so that a uniform picture is uniform. */

@@ -92,7 +92,7 @@ void glint_veil_look(struct glint_veil *veil, const struct glint_image *image,
 
 /* ------------------------------------------------------------------- lamps */
 
-/* The cell of a place and the shares of it and its neighbours. */
+/* The cell of a place and the fractions of it and its neighbours. */
 struct place {
     int cell;
     int32_t weight_q15[3];

@@ -63,7 +63,7 @@ static void make_beam(struct glint_light *b)
     int32_t sine, cosine;
     int exponent;
 
-    b->apart_q30 = 0; /* it stands by itself */
+    b->apart_q30 = 0;                                   /* it is a single one */
     circle(number(7000), &b->sine_q30, &b->cosine_q30); /* up to 24 degrees */
     circle(number(1 << 15), &sine, &cosine);
     b->sin_q30 = number(2) ? sine : -sine;

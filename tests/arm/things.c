@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * things SET N SCENE... - draws N pictures of baked scenes and prints a hash of
- * all output, which is the same on every CPU, whatever it was compiled for and
- * whatever kernels were used. SET is c, sse41, avx2, neon or best.
+ * objects SET N SCENE... - draws N pictures of baked scenes and prints a hash
+ * of all output, which is the same on every CPU, whatever it was compiled for
+ * and whatever kernels were used. SET is c, sse41, avx2, neon or best.
  *
- *     240 pictures, 236 with things, 1b3f...
+ *     240 pictures, 236 with objects, 1b3f...
  *
  * Sizes, tiles, formats, samples, poses and lights are random, by integers
  * alone, as are the order of jobs and their workers. Lights and what covers
@@ -59,7 +59,7 @@ static struct glint_scene_config make_config(struct shuffle *shuffle)
     return c;
 }
 
-/* Moves a thing and the camera, or leaves them. What is out of range is
+/* Moves an object and the camera, or leaves them. What is out of range is
  * refused, everywhere alike. */
 static void move(struct glint_scene *scene, const struct glint_scene_model *m)
 {

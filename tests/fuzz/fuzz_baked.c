@@ -3,7 +3,7 @@
  * Opens any bytes as a baked scene, after magic, version, size and checksum are
  * put right, so that the other checks are reached. What is accepted must be
  * drawn onto a small picture, from where its camera stands or, as its checksum
- * says, from elsewhere, or its things moved; sanitizers and range traps judge
+ * says, from elsewhere, or its objects moved; sanitizers and range traps judge
  * it.
  *
  *     make fuzz FUZZ=baked SECONDS=120
@@ -24,7 +24,7 @@ static void require(int condition)
         abort();
 }
 
-/* Draws as the scene stands; lights must have shares of 16. */
+/* Draws as the scene stands; lights must have fractions of 16. */
 static void draw(struct glint_scene *scene, enum glint_pixel_format format)
 {
     static uint8_t pixels[12 * SIDE * SIDE];

@@ -3,7 +3,7 @@
  * Opens any bytes as a model, or as a zoom of models if they begin as one,
  * after magic, version, size and checksum are put right, so that the other
  * checks are reached. A model that is accepted must carry rays at the ends of
- * every range of angles, between and outside of them, over the corners of the
+ * every range of angles, between and outside them, over the corners of the
  * pupil, to places near and far, and draw a whole frame; no integer may leave
  * the range that rays rely on. So must a zoom, at its positions and between.
  *

@@ -2,7 +2,7 @@
  *
  * Parses any bytes as a scene text. The mesh that it may name has what follows
  * the first zero byte as its text. A scene that is accepted must be as its
- * header says: numbers finite and in range, indices of things that are there.
+ * header says: numbers finite and in range, indices of objects that are there.
  * Baked, the run time must accept it.
  *
  *     make fuzz FUZZ=scene SECONDS=60

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Opens any bytes as a baked stone, after magic, version, size and checksum are
- * put right, and spreads light as it says; parses them as the text of one. No
- * sum may leave its range, whatever is accepted.
+ * Opens any bytes as a baked translucent medium, after magic, version, size and
+ * checksum are put right, and spreads light as it says; parses them as the text
+ * of one. No sum may leave its range, whatever is accepted.
  *
- *     make fuzz FUZZ=stone SECONDS=60
+ *     make fuzz FUZZ=translucent medium SECONDS=60
  */
 #include <math.h>
 #include <stdlib.h>
@@ -21,7 +21,7 @@ static void require(int condition)
         abort();
 }
 
-/* Spreads even light and a checked one over a small stone. */
+/* Spreads even light and a checked one over a small translucent medium. */
 static void use(const struct glint_translucent *t)
 {
     const size_t side = (size_t)1 << t->header->side_log2;

@@ -17,7 +17,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* Returns 1 if PATH was replayed, 0 if it is no regular file, -1 if it could
+/* Returns 1 if PATH was replayed, 0 if it is not a regular file, -1 if it could
  * not be read or is larger than MAX_BYTES. */
 static int replay_file(const char *path)
 {

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * occlusion [--log] - prints how the power of a lamp follows the share of it
+ * occlusion [--log] - prints how the power of a lamp follows the fraction of it
  * that can be seen, while a pole passes before it.
  *
  * A lamp is a disc 6 stops over white, whose image has the glare of a lens: a
  * narrow core and a tail that falls with the cube of the distance. The pole
  * hides the disc, not the glare. Power over its mean before the pole is
- * compared with the share of the disc's area that is in view, of that frame and
- * (lag) of the frames before that fit best. --log prints every frame.
+ * compared with the fraction of the disc's area that is in view, of that frame
+ * and (lag) of the frames before that fit best. --log prints every frame.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -55,8 +55,8 @@ static uint8_t code_of(double x)
     return (uint8_t)lrint(255 * x);
 }
 
-/* Draws the disc behind a pole between columns X0 and X1; returns the share of
- * it that is in view. */
+/* Draws the disc behind a pole between columns X0 and X1; returns the fraction
+ * of it that is in view. */
 static double draw(const struct scene *s, double x0, double x1)
 {
     const double cx = WIDTH / 2.0 + 0.3, cy = HEIGHT / 2.0 - 0.2;
@@ -129,7 +129,7 @@ static bool pass(const struct scene *s, struct passing *p)
     return true;
 }
 
-/* Returns the RMS difference of power and the share LAG frames before. */
+/* Returns the RMS difference of power and the fraction LAG frames before. */
 static double off_by(const struct passing *p, double full, int lag)
 {
     double sum = 0;

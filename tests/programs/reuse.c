@@ -4,12 +4,12 @@
  * stand still: 1920x1080 codes on black with LIGHTS lights of a night street,
  * at the default quality with three wavelengths. With SCALE, a factor on their
  * powers, it draws, by the function measured() and each on a frame that was
- * drawn before: anew; with the same lights; with lights that moved by up to
+ * drawn before: again; with the same lights; with lights that moved by up to
  * half a pixel and whose powers wavered by a fifth. Without, it prints the
  * scale at which all but a ten-thousandth of the samples are at most a quarter
  * of white; bytes of a frame without and with room for lights that stand; and
  * for 0.25, 0.5 and 1 pixel the least PSNR of three frames in which lights are
- * up to that far from where they stand, against frames drawn anew.
+ * up to that far from where they stand, against frames drawn again.
  */
 #include <math.h>
 #include <stdio.h>

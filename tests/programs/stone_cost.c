@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
  * stone_cost FILE [FRAMES [SET]] - spreads light over the whole map of a baked
- * stone, three channels, one thread, for tools/measure/scenes/stone-table,
- * which counts instructions. Prints, of each set of kernels in turn (c, sse41,
- * avx2, neon) or of SET alone, the median of processor milliseconds of FRAMES
- * maps, whose runs take turns, and a hash of the map.
+ * translucent medium, three channels, one thread, for
+ * tools/measure/scenes/stone-table, which counts instructions.
+ * Prints, of each set of kernels in turn (c, sse41, avx2, neon) or of SET
+ * alone, the median of processor milliseconds of FRAMES maps, whose runs take
+ * turns, and a hash of the map.
  */
 #include <stdio.h>
 #include <stdlib.h>

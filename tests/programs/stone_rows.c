@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * stone_rows DIR - bakes two stones, chess and veins, by all
+ * stone_rows DIR - bakes two translucent media, chess and veins, by all
  * models that a frame can draw and by numbers of bits, for
- * tools/measure/scenes/stone-table. Prints a line each: stone, model, bits of
- * codes and taps, decibels of the fit and of the integers to the light of all
- * rows, and processor seconds of the fit. Those of the first stone with 8 and
- * 12 bits are written to DIR/MODEL.glint. Stones have 128 texels,
- * kernels 29. */
+ * tools/measure/scenes/stone-table. Prints a line each:
+ * translucent medium, model, bits of codes and taps, decibels of the fit and of
+ * the integers to the light of all rows, and processor seconds of the fit.
+ * Those of the first translucent medium with 8 and 12 bits are written to
+ * DIR/MODEL.glint. Translucent media have 128 texels, kernels 29. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -59,7 +59,8 @@ static void write_stone(const char *dir, const char *name, const void *data,
         fail(path);
 }
 
-/* LIGHT[3][n] is what falls on the stone, what its rows make of that, and room.
+/* LIGHT[3][n] is what falls on the translucent medium, what its rows make of
+ * that, and room.
  */
 static void bake(const struct glint_scatter_fit *fit, const double *const light,
                  double *room, const int bits[2], const char *dir,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * translucent_table - models of scattering side by side on four stones of 48
- * texels with kernels of 21, as Markdown: the tables of [Kurt14], and its
- * figures beside ours. */
+ * translucent_table - models of scattering side by side on four translucent
+ * media of 48 texels with kernels of 21, as Markdown: the tables of [Kurt14],
+ * and its figures beside ours. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,7 +18,7 @@ enum { STONES = 4, GRID_TERMS = 5, GRID_DEGREES = 5 };
 static const char *const stone_name[STONES] = {"chess 4 x 4", "chess 8 x 8",
                                                "veins", "pale veins"};
 
-/* What is judged once for each stone, and used by many tables. */
+/* What is judged once for each translucent medium, and used by many tables. */
 enum run {
     CLUSTERED,
     FACTORED,
@@ -168,7 +168,7 @@ static void all_models(const struct table *t)
     }
 }
 
-/* RMSE of some runs by stone, and what the source has. */
+/* RMSE of some runs by translucent medium, and what the source has. */
 static void beside(const struct table *t, const char *title,
                    const enum run *runs, int n, const char *theirs)
 {

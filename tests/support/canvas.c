@@ -12,7 +12,7 @@ struct glint_image canvas_new(enum glint_pixel_format format, int width,
         .format = format, .width = width, .height = height};
     void *mem = calloc(1, glint_image_bytes(format, width, height));
 
-    if (!mem) /* Programs that are no tests draw, too, so cmocka cannot report
+    if (!mem) /* Programs that are not tests draw, too, so cmocka cannot report
                * this. */
         abort();
     glint_image_place(&image, mem);

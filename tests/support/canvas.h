@@ -31,8 +31,8 @@ int canvas_srgb_code(double light); /* 0 .. 255 for light 0 .. 1 */
 
 double canvas_linear(int code);
 
-/* Returns the share of pixel (X, Y), 0 .. 1, that the disc covers, counted at
- * 16 x 16 points. */
+/* Returns the fraction of pixel (X, Y), 0 .. 1, that the disc covers, counted
+ * at 16 x 16 points. */
 double canvas_disc_cover(int x, int y, double cx, double cy, double radius);
 
 /* Draws a disc of LIGHT (1 = white) with a smooth edge onto a grey picture. */

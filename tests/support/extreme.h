@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Returns whether GLINT_LONG asks for long cases: it is set and is not 0. */
+/* Returns whether GLINT_LONG requests long cases: it is set and is not 0. */
 static inline bool extreme_long(void)
 {
     const char *text = getenv("GLINT_LONG");

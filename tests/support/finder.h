@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * A lamp finder that is made anew for each picture.
+ * A lamp finder that is rebuilt for each picture.
  */
 #ifndef GLINT_TESTS_FINDER_H
 #define GLINT_TESTS_FINDER_H
@@ -16,7 +16,7 @@ extern struct glint_spot finder_spot[FINDER_SPOTS];
 extern uint32_t finder_seed;
 
 /* finder_find_at_most() lists at most MAX lamps of IMAGE in finder_spot and
- * returns how many. Its finder is new, in exactly the bytes that it asks for,
+ * returns how many. Its finder is new, in exactly the bytes that it requests,
  * all of one random value. *DROPPED becomes glint_lamp_finder_dropped(), which
  * must be 0 where DROPPED is NULL. */
 int finder_find_at_most(const struct glint_lamp_finder_config *cfg,

@@ -19,7 +19,7 @@ struct power_lamp {
     double radius; /* pixels; of squares half a side, of tubes half a length */
     double angle;  /* radians */
     double sigma;  /* pixels: standard deviation of the bell curve */
-    double glare;  /* share of the light that becomes glare, 0 .. 1 */
+    double glare;  /* fraction of the light that becomes glare, 0 .. 1 */
     double reach;  /* pixels: glare falls by (1 + (r / reach)^2)^(-fall / 2) */
     double fall;
     double rgb[3]; /* The luminance is 1. */

@@ -29,7 +29,7 @@ int settings_frame(const struct tool *tool, const struct settings *settings,
     frame->dials = settings->dials;
     frame->only_ghost = settings_only_ghost(settings);
     frame->tints = settings->tints;
-    /* A limit of work would make the grid coarser than was asked for. */
+    /* A limit of work would make the grid coarser than was requested. */
     frame->limits.most_minsn =
         settings_has_grid(settings) && !GLINT_OPTION_GIVEN(o, work)
             ? 0

@@ -41,7 +41,7 @@ bool stage_parse(struct stage *stage, const char *text);
  * 650, 532 and 450 nm. From now on the stage must not move in memory. */
 bool stage_prepare(struct stage *stage, int n_blades);
 
-/* Make the model for lights up to MAX_DEG degrees: stage_bake() anew,
+/* Make the model for lights up to MAX_DEG degrees: stage_bake() again,
  * stage_model() from the cache if another test baked it
  * (tools/glint/model/model_cache.h). */
 bool stage_bake(struct stage *stage, double tolerance, double max_deg);

@@ -5,7 +5,7 @@
 # boards need, a camera of 1280x720, and the panels that boot loaders set up, in
 # the sizes that are sold for boards. It shows pictures with the lamp's ghosts
 # and takes 12 MiB at most, the camera's buffers among them. The green bar may
-# be taken for a second lamp: v4l2loopback says that colours are of BT.601.
+# be taken for a second lamp: v4l2loopback states that colours are of BT.601.
 # arch: aarch64 armv7
 . "$(dirname "$0")/lib.sh"
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 #
 # test-outputs.sh - a scene with lamps -> vivid's HDMI loop -> glint live -> all
-# that is no panel: y4m, pipes, v4l2loopback, snapshots. What arrives is, byte
+# that is not a panel: y4m, pipes, v4l2loopback, snapshots. What arrives is, byte
 # for byte, what glint overlay makes of the same frame. Then what signals do.
 # arch: x86_64 aarch64
 . "$(dirname "$0")/lib.sh"
@@ -179,7 +179,7 @@ expect "v4l2: ends with 0" is node 0
 expect "panel: the overlay, byte for byte" same all/heliar.ppm heliar.ppm
 expect "snapshot: what the panel shows" same all/snapshot.ppm heliar.ppm
 expect "snapshots: numbered" says all/signals.err 'snapshot /tmp/shot-2.ppm$'
-# a report that nobody asks for comes a second after the last, or later
+# a report that nobody requests comes a second after the last, or later
 soon() {
     sed -n 's/^{"t":\([0-9.]*\).*/\1/p' "$out/all/reports.json" | head -n -1 |
         awk '{ if (NR > 1 && $1 - t < 0.99) n++; t = $1 } END { print n + 0 }'

@@ -4,7 +4,7 @@
 # test-rate.sh - frames of a moving lamp, on a clock that counts instructions.
 # Of 640x360 at 30 fps and 1 GIPS, one point and three wavelengths a lamp, none
 # of 300 is lost and none is late by two frames. At default, with more of both,
-# the quality goes down until the rate holds, and that is said; so it does with
+# the quality goes down until the rate holds, and that is reported; so it does with
 # 1280x720 at 25 fps, and with 250 MIPS, where nothing queues. Without stars, of
 # which one takes more than the ghosts here and which no quality lowers. Emulated: every
 # instruction takes the same time, and whoever feeds the camera works on the

@@ -98,7 +98,7 @@ static int draw(const struct glint_lens *lens, const struct glint_image *image,
 }
 
 /* Returns the middle of the pixel whose number is TEXT. A pixel more than
- * GLINT_MAX_SIDE outside of the largest picture counts as number 2 *
+ * GLINT_MAX_SIDE outside the largest picture counts as number 2 *
  * GLINT_MAX_SIDE. */
 static int32_t middle_q8(const char *text)
 {

@@ -33,7 +33,7 @@ static inline void *read_all(const char *path, size_t *bytes)
 }
 
 /* Opens the model in the file PATH. Returns its memory, which the caller frees,
- * or NULL after printing why it is no model. */
+ * or NULL after printing why it is not a model. */
 static inline void *model_read(const char *path, struct glint_lens *lens)
 {
     const char *reason = "cannot be read";

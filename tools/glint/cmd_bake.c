@@ -65,7 +65,7 @@ struct bake {
     struct zoom_option zoom;
     double f_number;
     int positions;     /* of a zoom; 0: one model */
-    double halfway_db; /* below 0: not asked for */
+    double halfway_db; /* below 0: not requested */
     struct glint_bake_options options;
     struct tool_progress progress;
 };
@@ -194,7 +194,7 @@ static int bake_into(struct glint_output *out, struct tool *tool,
     return code;
 }
 
-/* Says what was baked, unless that went to the standard output. */
+/* States what was baked, unless that went to the standard output. */
 static void tell_zoom(const struct tool *tool, const struct bake *b,
                       const struct zoom_baked *baked, double seconds)
 {
@@ -305,7 +305,7 @@ static int bake_lens(struct tool *tool, int argc, char **argv)
     return code;
 }
 
-/* Bakes as the first input asks for whose name is of no lens. */
+/* Bakes as the first input requests whose name is of no lens. */
 static int bake_any(struct tool *tool, int argc, char **argv)
 {
     static const struct {

@@ -250,7 +250,7 @@ static int save(struct tool *tool, const struct explain_command *c,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-/* Writes the files of single ghosts that were asked for. */
+/* Writes the files of single ghosts that were requested. */
 static int save_ghosts(struct tool *tool, const struct explain_command *c,
                        struct glint_explain *e)
 {

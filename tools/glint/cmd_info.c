@@ -221,7 +221,7 @@ static int info_of_motion(const struct tool *tool, const char *path,
     return code;
 }
 
-/* What the line asks for. */
+/* What the line requests. */
 struct asked {
     double f_number; /* 0: the table's */
     struct coating coating;
@@ -280,7 +280,7 @@ static int info_of_stone(const struct tool *tool, const char *path)
     return EXIT_OK;
 }
 
-/* Prints what PATH is if that is no lens, for which a line may STOP or coat.
+/* Prints what PATH is if that is not a lens, for which a line may STOP or coat.
  * Returns an exit code, or -1: it is one. */
 static int info_of_other(const struct tool *tool, const char *path, bool stop,
                          const char *poses)

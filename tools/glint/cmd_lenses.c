@@ -305,7 +305,7 @@ static bool print_name(struct lenses *l, const char *name)
 }
 
 /* Lists the lens NAME, or puts its models into the folder. Returns whether to
- * go on: a mistake in a table is reported and does not end the list. */
+ * continue: a mistake in a table is reported and does not end the list. */
 static bool one(void *ctx, const char *name)
 {
     struct lenses *l = ctx;
@@ -355,7 +355,7 @@ static bool stop_looking(void *ctx, const char *name)
     return false;
 }
 
-/* Says that no lens is wanted. Returns an exit code. */
+/* States that no lens is wanted. Returns an exit code. */
 static int tell_none(const struct lenses *l)
 {
     if (l->n_words)

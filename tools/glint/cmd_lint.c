@@ -107,7 +107,7 @@ static bool is_precise(double nd)
 
 /* Returns the first surface of LENS whose glass is none, or has the nd of
  * another in the table, of four decimals or more, at a Vd that is apart, -1 if
- * all are well. TEXT[BYTES] says why. */
+ * all are well. TEXT[BYTES] states why. */
 static int glass_suspect(const struct glint_prescription *lens, char *text,
                          size_t bytes)
 {
@@ -147,7 +147,7 @@ struct search {
 };
 
 /* Returns whether TEXT[BYTES] is a table without fault, which it reads into
- * LENS; else ERROR says what is wrong. */
+ * LENS; else ERROR states what is wrong. */
 static bool table_is_right(const char *text, size_t bytes, const char *file,
                            struct glint_prescription *lens,
                            struct glint_error *error)

@@ -2,7 +2,7 @@
  *
  * glint synth: data sets for flare removal.
  *
- * Any number of processes fill the folder of a set, are killed at, and go on
+ * Any number of processes fill the folder of a set, are killed at, and continue
  * with. Every file is written beside its place and moved there when it is
  * whole. The item's line, items/NUMBER.json, comes last. An item is there if
  * its line and all its pictures are. A manifest is all lines in their order,
@@ -31,13 +31,13 @@ enum { SYNTH_MAX_FILES = 6, SYNTH_PATH_BYTES = 4096 };
 struct synth_file {
     const char *folder,
         *prefix;     /* "in/put/" and what comes before the number */
-    unsigned layers; /* summed, a bit each of enum synth_layer; 0: the share
+    unsigned layers; /* summed, a bit each of enum synth_layer; 0: the fraction
                         that lights cover */
     bool is_noisy;   /* as a sensor sees it */
 };
 
 struct synth_layout {
-    const char *name, *type; /* type of file unless another is asked for */
+    const char *name, *type; /* type of file unless another is requested */
     struct synth_file file[SYNTH_MAX_FILES]; /* up to one without a folder */
 };
 
@@ -212,7 +212,7 @@ static int check_count(const struct tool *tool, const struct synth_set *set)
                       set->folder, last, set->count, last + 1);
 }
 
-/* Makes the folders of SET. SETTINGS, a line, says what all items are drawn
+/* Makes the folders of SET. SETTINGS, a line, states what all items are drawn
  * with. Returns an exit code: EXIT_USAGE if the folder was begun with others,
  * or has items beyond SET's count. */
 static int begin_set(const struct tool *tool, const struct synth_set *set,
@@ -296,7 +296,7 @@ static enum glint_status put_file(const struct synth_set *set,
     if (file->layers) {
         codes = glint_measure_encode(&light, 1);
     } else if ((codes = malloc(n))) {
-        for (size_t i = 0; i < n; i++) /* a share, not light */
+        for (size_t i = 0; i < n; i++) /* a fraction, not light */
             codes[i] = (uint8_t)(d->cover[i] * 255 + 0.5F);
     }
     if (!codes)
@@ -645,7 +645,7 @@ static int take(struct tool *tool, void *ctx, int c, const char *value)
     return good ? -1 : -2;
 }
 
-/* Takes the layout's type if none was asked for, and checks whether pictures of
+/* Takes the layout's type if none was requested, and checks whether pictures of
  * the type can be written. */
 static int take_type(const struct tool *tool, struct synth *s)
 {
@@ -779,7 +779,7 @@ static int run_line(const struct tool *tool, struct synth *s)
 }
 
 /* Opens every lens, so that what has to be baked is baked before there are
- * items, and what is no lens is said. */
+ * items, and what is not a lens is reported. */
 static int open_lenses(const struct tool *tool, struct synth *s)
 {
     int code = EXIT_OK;

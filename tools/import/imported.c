@@ -215,7 +215,7 @@ static bool same_letters(const char *a, const char *b)
 
 /* Returns the glass of the catalogue that NAME is but for hyphens, or with N-
  * before it the lead-free successor, SUCCEEDS being set; NULL if there is
- * none. One of another than MAKER is none, if that is said. */
+ * none. One of another than MAKER is none, if that is reported. */
 static const struct glint_glass *
 catalogue_glass(const char *name, const char *maker, bool *succeeds)
 {

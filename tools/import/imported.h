@@ -64,7 +64,7 @@ struct imported {
     struct imported_note note[IMPORT_NOTES];
 };
 
-/* Tables may not overlap within this share of the semi-diameters. */
+/* Tables may not overlap within this fraction of the semi-diameters. */
 #define IMPORT_FREE 0.9
 
 /* Reads TEXT[BYTES] into LENS, in the file's own units. Returns false after an
@@ -88,7 +88,7 @@ bool imported_fail(struct imported *lens, int line, const char *format, ...);
 /* Refuses a file without surfaces, which may be of another format. */
 bool imported_empty(struct imported *lens);
 
-/* Adds a note of a guess. Returns true, as reading goes on. */
+/* Adds a note of a guess. Returns true, as reading continues. */
 bool imported_note(struct imported *lens, int line, const char *format, ...);
 
 /* Adds a note of what changes nothing, which STRICT takes, too. */

@@ -203,7 +203,7 @@ static bool take_lentil_element(struct json_lens *j, json_t *element)
     return take_geometry(j, element, s);
 }
 
-/* Returns the lens that is asked for, or the only one; NULL after an error. */
+/* Returns the lens that is requested, or the only one; NULL after an error. */
 static const json_t *find_lens(struct imported *lens, json_t *root)
 {
     const char *key = lens->key ? lens->key : "";

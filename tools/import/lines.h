@@ -33,8 +33,8 @@ void lines_begin(struct lines *lines, struct imported *lens, const char *text,
  * is too long, which import_read() sees. */
 bool lines_next(struct lines *lines, char comment);
 
-/* Sets VALUE to word K. Returns false, after an error that says WHAT it is, if
- * there is none or it is no number. */
+/* Sets VALUE to word K. Returns false, after an error that states WHAT it is,
+ * if there is none or it is no number. */
 bool lines_number(const struct lines *lines, int k, const char *what,
                   double *value);
 

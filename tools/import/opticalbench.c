@@ -9,7 +9,7 @@
  * column for each position of a zoom; the angle of view is a whole one, the
  * image height a diameter. [aspherical data] has number, radius, conic and the
  * terms from h^4 on. Glasses are those of the numbers; names of glasses that
- * are like them are passed over.
+ * are like them are skipped.
  */
 #include <math.h>
 #include <string.h>
@@ -260,7 +260,7 @@ static bool take(struct optical_bench *b)
     return true;
 }
 
-/* Sets VALUE to SHARE of the variable NAME, if that is said. */
+/* Sets VALUE to SHARE of the variable NAME, if that is reported. */
 static void settle(const struct optical_bench *b, const char *name,
                    double share, double *value)
 {

@@ -2,7 +2,7 @@
  *
  * OSLO .len files: spheres, conics and even aspheres.
  *
- * "LEN NEW" begins, "NXT" goes on to the next surface, the object being the
+ * "LEN NEW" begins, "NXT" moves to the next surface, the object being the
  * first; "RD", "TH", "AP", "GLA", "AST", "CC" and "AD" to "AH" are of it.
  */
 #include <math.h>

@@ -180,7 +180,7 @@ static bool take_row(struct polyflare *p)
            take_thickness(p, s) && take_medium(p, s);
 }
 
-/* Takes a plane in the air as the stop if no iris is said. */
+/* Takes a plane in the air as the stop if no iris is reported. */
 static bool find_stop(struct imported *lens)
 {
     int at = -1;

@@ -59,7 +59,7 @@ static bool take_glass(struct seq *q, const char *word)
     return true;
 }
 
-/* Sets the radius of the surface to word K, a curvature if that is said. */
+/* Sets the radius of the surface to word K, a curvature if that is reported. */
 static bool take_radius(struct seq *q, int k, bool curvature)
 {
     return curvature ? lines_curvature(&q->lines, k, &q->s->radius)
@@ -149,8 +149,8 @@ static bool take_number(struct seq *q, bool *done)
     return true;
 }
 
-/* Takes what is said of the surface: shapes of "K", and "A" to "J" for h^4 to
- * h^20. */
+/* Takes what is reported of the surface: shapes of "K", and "A" to "J" for h^4
+ * to h^20. */
 static bool take_surface(struct seq *q)
 {
     static const char *const ignored[] = {

@@ -171,7 +171,7 @@ static bool start_surface(struct zmx *z)
     return z->s != NULL;
 }
 
-/* Takes off the last surface, the image, which ends the lens: what goes on is
+/* Takes off the last surface, the image, which ends the lens: what continues is
  * a file that has been cut off. */
 static bool take_image(struct imported *lens)
 {

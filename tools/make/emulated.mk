@@ -50,7 +50,7 @@ $(OUT)/vm/%: tests/vm/programs/%.c tests/vm/programs/device.h tests/vm/programs/
 	@mkdir -p $(@D)
 	$(say) CC $<
 	$(Q)$(CC) $(CPPFLAGS) -D_POSIX_C_SOURCE=200809L $(CFLAGS) $(LDFLAGS) $< -o $@
-# what makes scenes and says what must come of them
+# what makes scenes and states what must come of them
 $(OUT)/vm/scene: tests/support/rng.h
 VM_HOST := scene expected $(if $(filter yes,$(WITH_JPEG)),jpeg)
 $(OUT)/vm/jpeg: CPPFLAGS += $(JPEG_CPPFLAGS)

@@ -102,7 +102,7 @@ else ifeq ($(CONFIG),tsan)
 SANITIZE := -fsanitize=thread
 else ifeq ($(CONFIG),fuzz) # what make fuzz builds; clang only
 SANITIZE := -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
-# What rays, polynomials and pixels compare is no word of a file, and takes two
+# What rays, polynomials and pixels compare is not a word of a file, and takes two
 # thirds of the time to follow.
 $(filter-out %/model.o,$(call objects,src,base kernels kernels/rays kernels/ward kernels/maps \
         lens image tile flare flare/edges scene bake/trace)) $(OUT)/src/bake/table/form.o: CFLAGS += -fno-sanitize-coverage=trace-cmp

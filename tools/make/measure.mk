@@ -42,10 +42,10 @@ ward-table: all $(OUT)/ward_table
 	@tools/make/deps "pictures, and the plug-in for them" libopenimageio-dev pkg-config g++ >&2
 	@$(MAKE) --no-print-directory oiio >&2
 	@tools/measure/scenes/ward-table $(OUT)/ward_table | tools/measure/write-figures scenes/ward
-# Models of scattering side by side, on synthetic stones: three processor minutes.
+# Models of scattering side by side, on synthetic translucent media: three processor minutes.
 translucent-table: $(OUT)/translucent_table
 	@$(OUT)/translucent_table | tools/measure/write-figures scenes/translucent
-# What maps of stones cost, and how near they are.
+# What maps of translucent media cost, and how near they are.
 stone-table: all $(OUT)/stone_rows $(OUT)/stone_cost
 	@tools/make/deps "instruction counts, and those on ARM" valgrind gcc-aarch64-linux-gnu \
 	        libc6-dev-arm64-cross qemu-user debian-archive-keyring >&2

@@ -1,7 +1,7 @@
 # Shared libraries. Their objects are built once more, in a folder of their own:
 # programs of glint's own are linked with archives.
 
-# SOVERSION grows when programs have to be built anew.
+# SOVERSION grows when programs have to be rebuilt.
 SOVERSION := 0
 VERSION   := $(shell sed -n 's/^.define GLINT_VERSION "\(.*\)"/\1/p' include/glint/glint.h)
 # Each over the one before it.

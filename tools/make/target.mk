@@ -74,7 +74,7 @@ endif
 OUT  := build/$(if $(CROSS),$(TARGET)$(if $(DYNAMIC),-dynamic),$(ARCH)-$(notdir $(CC))-$(CONFIG))$(if $(PIC),-pic)
 export DEPS OUT
 
-# Libraries that glint can do without:  WITH_JPEG=yes|no  says which are used,
+# Libraries that glint can do without:  WITH_JPEG=yes|no  states which are used,
 # else it is whether a program with them can be built.
 has = $(shell printf '\043include <stdio.h>\n\043include <%s>\nint main(void) { return 0; }\n' $(1) | \
         $(CC) $(CPPFLAGS) $(2) -x c - $(LDFLAGS) $(3) -o /dev/null 2>/dev/null && echo yes || echo no)

@@ -218,7 +218,7 @@ static int open_bare(struct bench *b, struct opened *o)
 {
     const int code = baked_scene_open(b->tool, o->file, &o->bare);
 
-    if (code == EXIT_OK) /* its checksum has been asked for */
+    if (code == EXIT_OK) /* its checksum has been requested */
         ((struct glint_scene_header *)o->bare.data)->shadow = 0;
     return code;
 }

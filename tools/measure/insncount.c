@@ -9,9 +9,9 @@
  *
  * A frame begins when function F is entered after G has run. Within it, each
  * function H begins the stage NAME, and F begins stage 0, "rest". Functions not
- * listed belong to the stage that calls them; so a function that goes on after
- * calling a stage must be listed, too. The first N frames are left out, and the
- * mean of the others is printed. Only one thread may run. A block of
+ * listed belong to the stage that calls them; so a function that continues
+ * after calling a stage must be listed, too. The first N frames are left out,
+ * and the mean of the others is printed. Only one thread may run. A block of
  * instructions counts for the function that it begins in.
  *
  * QEMU ships no header for plug-ins; the part of its interface that is used is

@@ -175,7 +175,7 @@ static void light_between(const struct glint_float_image *from, double x,
     }
 }
 
-/* Takes the part of FROM that ITEM asks for: means of as many points a side of
+/* Takes the part of FROM that ITEM requests: means of as many points a side of
  * each pixel as it covers pixels of FROM. */
 static void take_part(const struct glint_float_image *from,
                       const struct synth_item *item, float *rgb)
@@ -359,7 +359,7 @@ static int set_lens(const struct tool *tool, struct synth_lens *lens,
     s->stop.iris.dust = item->dust;
     s->stop.iris.dust_seed = (int)item->dust_seed;
     result->f_number = lens->widest * exp2(item->stops_down / 2);
-    /* The model's own stop is not asked for by a number that rounding may have
+    /* The model's own stop is not requested by a number that rounding may have
      * made wider. */
     status =
         settings_stop(s, item->stops_down > 0 ? result->f_number : 0, &error);

@@ -22,8 +22,9 @@
 enum { SYNTH_MAX_LIGHTS = 4, SYNTH_NAME_BYTES = 256 };
 
 struct synth_light {
-    double x, y;   /* place, shares of the picture's sides, from the top left */
-    double radius; /* share of the picture's height */
+    double x,
+        y; /* place, fractions of the picture's sides, from the top left */
+    double radius; /* fraction of the picture's height */
     double power;  /* over that of the first light, before ghost_level */
     double kelvin; /* colour, of a black body */
 };
@@ -36,7 +37,7 @@ struct synth_item {
     char lens[64], coating[64];
     double quality;
 
-    /* The part of the background that is taken, as a share of the largest of
+    /* The part of the background that is taken, as a fraction of the largest of
      * that shape, its place, whether it is mirrored, and the mean light it is
      * brought to, 1 = white; within limits of SYNTH_LEAST_EV. */
     double crop, crop_x, crop_y, mirrored, level;
@@ -46,7 +47,7 @@ struct synth_item {
     double dust, dust_seed, front_dust, front_dust_seed, haze;
 
     /* Light that the brightest thousandth of the ghosts' pixels reach, which
-     * says how bright the lights are, unless the mean would be above
+     * states how bright the lights are, unless the mean would be above
      * SYNTH_MOST_MEAN of it; the star over what these give. */
     double ghost_level, star;
 
@@ -109,8 +110,8 @@ char *synth_item_print(const struct synth_item *item,
                        const struct synth_result *result);
 
 /* Reads LINE, as synth_item_print() writes it. GLINT_E_FORMAT with ERROR: it is
- * no JSON, or a member is missing or out of range. GLINT_E_UNSUPPORTED: glint
- * was built without jansson. */
+ * not a JSON, or a member is missing or out of range. GLINT_E_UNSUPPORTED:
+ * glint was built without jansson. */
 enum glint_status synth_item_read(struct synth_item *item, const char *line,
                                   struct glint_error *error);
 
@@ -127,7 +128,7 @@ struct synth_field {
     const char *name;
     size_t at; /* offset of the double, or of the text */
     enum synth_law law;
-    double low, high;   /* range that is drawn, unless another is asked for */
+    double low, high;   /* range that is drawn, unless another is requested */
     double least, most; /* what the member may be */
     size_t text_bytes;  /* 0: a number */
 };

@@ -55,7 +55,7 @@ void glint_scene_account(struct glint_scene *scene,
                          struct glint_scene_part *objects,
                          struct glint_scene_part *all, int16_t *seen);
 
-/* What is laid over the things of a recorded motion: how many shells, lines or
+/* What is laid over the objects of a recorded motion: how many shells, lines or
  * edges of the box are in the picture, and the pixels that these may touch, by
  * each of them. */
 struct glint_scene_layered {
@@ -64,7 +64,7 @@ struct glint_scene_layered {
 };
 
 /* Sets OF to that of the frame that was begun last, all 0 without a motion.
- * Kinds that are things have none. */
+ * Kinds that are objects have none. */
 void glint_scene_account_layers(struct glint_scene *scene,
                                 struct glint_scene_layered of[GLINT_KINDS]);
 

@@ -27,14 +27,14 @@ extern "C" {
 struct glint_scene_bake_report {
     double step;  /* of places, in units of the scene: they are off by half of
                      it at most, each way */
-    double reach; /* how far things, lamps and camera reach from the origin */
+    double reach; /* how far objects, lamps and camera reach from the origin */
     int vertices, triangles, cells, refs; /* of all meshes */
     int flat; /* triangles left out: they have no area in steps */
 };
 
 /* Bakes SCENE. NAME is kept in the file, its first 63 characters of a-z, A-Z,
- * 0-9, '-' and '_', as is KEY. *DATA is malloc'ed. GLINT_E_LENS: ERROR names a
- * thing that is too small for how far the scene reaches. GLINT_E_MEMORY. */
+ * 0-9, '-' and '_', as is KEY. *DATA is malloc'ed. GLINT_E_LENS: ERROR names an
+ * object that is too small for how far the scene reaches. GLINT_E_MEMORY. */
 enum glint_status glint_scene_bake(const struct glint_description *scene,
                                    const char *name, uint64_t key,
                                    unsigned char **data, size_t *bytes,

@@ -37,13 +37,13 @@ enum {
     GLINT_DESCRIPTION_MAX_TEXTURES = 64,
     GLINT_DESCRIPTION_MAX_STONES = 16,
     GLINT_DESCRIPTION_MAX_OBJECTS = 1024,
-    GLINT_DESCRIPTION_MAX_TRIANGLES = 1 << 20, /* of all things together */
+    GLINT_DESCRIPTION_MAX_TRIANGLES = 1 << 20, /* of all objects together */
     GLINT_DESCRIPTION_MAX_SIDE = 4096,         /* texels of a texture */
     GLINT_DESCRIPTION_MAX_RATIO = 10,          /* of alphas of brushed metal */
     GLINT_DESCRIPTION_MAX_MESH_BYTES = 1 << 27
 };
 
-/* Largest coordinate and size of things, in scene units, and the smallest
+/* Largest coordinate and size of objects, in scene units, and the smallest
  * size. */
 #define GLINT_DESCRIPTION_REACH 1e6
 #define GLINT_DESCRIPTION_LEAST 1e-6
@@ -91,8 +91,8 @@ struct glint_described_material {
     double power;                      /* exponent of the specular term */
     double colour[3];
     int texture; /* -1: none */
-    /* Shares of what a mirrored ray sees and of what is behind, which come on
-     * top; their sum is at most 1. */
+    /* Fractions of what a mirrored ray sees and of what is behind, which come
+     * on top; their sum is at most 1. */
     double reflect, pass;
     double index; /* of refraction; 1: straight on */
     /* Brushed metal: diffuse is 1, the other weights are 0. */
@@ -109,11 +109,11 @@ struct glint_described_material {
 
 /* What light does below a surface. */
 struct glint_described_stone {
-    uint8_t *data; /* a baked stone, malloc'ed */
+    uint8_t *data; /* a baked translucent medium, malloc'ed */
     size_t bytes;
 };
 
-/* Light from all around. */
+/* Environment light. */
 struct glint_described_environment {
     /* Of its file, without folder and what follows the last dot. */
     char name[GLINT_DESCRIPTION_NAME_BYTES];
@@ -124,7 +124,7 @@ struct glint_described_environment {
 };
 
 /* A recorded motion, and how it is shown. Lengths are in units of the scene,
- * which are those of the recording; 0: such things are not there. */
+ * which are those of the recording; 0: such objects are not there. */
 struct glint_described_motion {
     char name[GLINT_DESCRIPTION_NAME_BYTES];
     uint8_t *data; /* a baked motion, malloc'ed; NULL: there is none */
@@ -157,7 +157,7 @@ struct glint_described_object {
                          scene's */
     double radius;    /* sphere */
     double normal[3]; /* plane: unit vector, in its own axes */
-    double catcher;   /* plane: share of light that its shadows take from the
+    double catcher;   /* plane: fraction of light that its shadows take from the
                          picture behind it, 0: no catcher */
     int material;     /* -1: a catcher has none; of a mesh: of the triangles
                          whose file names no other */
@@ -183,7 +183,7 @@ enum glint_described_background {
 enum glint_described_flare {
     GLINT_DESCRIBED_FLARE_OFF,
     GLINT_DESCRIBED_FLARE_LIGHTS, /* lights of the scene that the camera sees */
-    GLINT_DESCRIBED_FLARE_HIGHLIGHTS /* these and what glints on things */
+    GLINT_DESCRIBED_FLARE_HIGHLIGHTS /* these and what glints on objects */
 };
 
 struct glint_description {
@@ -229,13 +229,13 @@ struct glint_description_files {
     /* As a baked motion; NULL: there are none. */
     enum glint_status (*motion)(void *ctx, const char *name, uint8_t **data,
                                 size_t *bytes, struct glint_error *error);
-    /* As a baked stone; NULL: there are none. */
+    /* As a baked translucent medium; NULL: there are none. */
     enum glint_status (*stone)(void *ctx, const char *name, uint8_t **data,
                                size_t *bytes, struct glint_error *error);
 };
 
 /* Reads a scene text. TEXT need not be terminated and may hold anything;
- * FILE_NAME only names it in errors. GLINT_E_LENS: ERROR says file, line,
+ * FILE_NAME only names it in errors. GLINT_E_LENS: ERROR states file, line,
  * column and cause; also what FILES return, and GLINT_E_MEMORY. SCENE is to be
  * freed on GLINT_OK alone. */
 enum glint_status

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/environment.h - light from all around, baked: its file, used
+ * glint/scene/environment.h - environment light, baked: its file, used
  * where it lies.
  *
  *     status = glint_environment_open(&environment, data, bytes, &reason);
@@ -104,7 +104,7 @@ struct glint_environment {
 };
 
 /* Checks DATA[BYTES], aligned to 4 bytes, and points ENVIRONMENT into it. DATA
- * is kept. GLINT_E_FORMAT: *REASON says what is wrong, in static text. */
+ * is kept. GLINT_E_FORMAT: *REASON states what is wrong, in static text. */
 enum glint_status glint_environment_open(struct glint_environment *environment,
                                          const void *data, size_t bytes,
                                          const char **reason);

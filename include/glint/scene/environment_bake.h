@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/environment_bake.h - a picture of all around becomes a baked
+ * glint/scene/environment_bake.h - a panorama becomes a baked
  * environment, in double precision.
  *
  *     glint_environment_defaults(&options);
@@ -32,10 +32,10 @@ struct glint_environment_options {
     int side_log2; /* GLINT_ENVIRONMENT_LEAST_LOG2 .. MOST_LOG2 */
     enum glint_environment_levels levels;
     int max_lights;     /* 0 .. GLINT_ENVIRONMENT_MAX_LIGHTS */
-    double light_deg;   /* rms radius above which a spot is no light, 0.1 .. 20
+    double light_deg;   /* rms radius above which a spot is not light, 0.1 .. 20
                          */
-    double light_above; /* light is told from the rest down to that many times
-                           the mean of what is below it, 2 .. 1000 */
+    double light_above; /* light is distinguished from the rest down to that
+                           many times the mean of what is below it, 2 .. 1000 */
     double turn_deg;    /* about y, to the right; -360 .. 360 */
     double scale;       /* factor of all light, 1e-6 .. 1e6 */
 };
@@ -43,7 +43,7 @@ struct glint_environment_options {
 /* What baking found and did. Luminance is of BT.709. */
 struct glint_environment_report {
     int width, height;              /* of the picture */
-    long long negative, not_finite; /* pixels that were held at 0, or at the
+    long long negative, not_finite; /* pixels that were clamped to 0, or at the
                                        largest finite value if they were +inf */
     double mean, largest;           /* luminance, over the sphere */
     double residual_largest;        /* of texels, without the lights */
@@ -68,8 +68,8 @@ glint_environment_bake(const struct glint_float_image *picture,
 #define GLINT_ENVIRONMENT_FILE_BYTES 201
 
 /* Reads DATA[BYTES], a text as tools/examples/scenes/README.md has it, into
- * SOURCE, the name of the picture, and OPTIONS. GLINT_E_LENS: ERROR says file,
- * line, column and cause. */
+ * SOURCE, the name of the picture, and OPTIONS. GLINT_E_LENS: ERROR states
+ * file, line, column and cause. */
 enum glint_status
 glint_environment_parse(struct glint_environment_options *options,
                         char source[GLINT_ENVIRONMENT_FILE_BYTES],

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/highlights.h - what glints on the things of a scene, as lamps of
+ * glint/scene/highlights.h - what glints on the objects of a scene, as lamps of
  * the picture for a lens.
  *
  *     cfg.parts.highlights = &glint_scene_highlights;            once
@@ -9,7 +9,7 @@
  *     n = glint_lamp_tracker_step(tracks, spots, n, us, ...);    so that none
  *                                                                jumps
  *
- * A pixel of a thing counts by its linear light before that saturates: wholly
+ * A pixel of an object counts by its linear light before that saturates: wholly
  * from a luminance of 2 on, in part from 1, so that nothing comes or goes at
  * once. Discs of lights are lights (glint_scene_lights()), not highlights, as
  * is the background. Light is summed with its moments in squares of 8 x 8

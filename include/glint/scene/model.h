@@ -11,7 +11,7 @@
  *
  * Lengths are in steps. One unit of the scene is 2^unit_log2 steps, and the
  * baker chooses that so that everything lies within GLINT_SCENE_SPAN steps of
- * the origin and small things have many: nothing else in the file depends on
+ * the origin and small objects have many: nothing else in the file depends on
  * it. Space is left-handed: seen by a camera that is not turned, x is right, y
  * up and z away. A right-handed scene is mirrored by the baker: z changes its
  * sign, and triangles their order.
@@ -19,7 +19,7 @@
  * Light is linear BT.709, 1 = display white. A weight of 1, white, that faces a
  * light of 1 shows 1: the light's irradiance is pi then.
  *
- * Light from all around is a baked environment (glint/scene/environment.h),
+ * Environment light is a baked environment (glint/scene/environment.h),
  * a section of the file; of its bright lights each is a sun of the scene, too.
  * There may be several, of which one at a time is shown, at first the first.
  *
@@ -52,7 +52,7 @@ enum {
     GLINT_SCENE_MAX_MATERIALS = 4096,
     GLINT_SCENE_MAX_TEXTURES = 256,
     GLINT_SCENE_MAX_MESHES = 4096,
-    GLINT_SCENE_MAX_SKINS = 64,          /* and stones */
+    GLINT_SCENE_MAX_SKINS = 64,          /* and translucent media */
     GLINT_SCENE_MAX_TRIANGLES = 1 << 20, /* of all objects together; a mesh
                                             counts once for each object */
     GLINT_SCENE_MAX_CELLS = 256,         /* of a grid, along each axis */
@@ -121,8 +121,8 @@ struct glint_scene_texture {
  *     ambient colour + sum of lights (diffuse colour (N.L) + specular (R.V)^k)
  *     light + reflect (what the mirrored ray sees) + pass (what is behind it)
  *
- * with R the light mirrored at the surface [Tutorial], [Phong75]. Light from
- * all around adds diffuse colour times what it shows a white surface. In place
+ * with R the light mirrored at the surface [Tutorial], [Phong75]. Environment
+ * light adds diffuse colour times what it shows a white surface. In place
  * of (R.V)^k brushed metal has Ward's lobe, over all of that light. */
 struct glint_scene_material {
     char name[GLINT_SCENE_NAME]; /* terminated */
@@ -147,19 +147,21 @@ struct glint_scene_ward {
     uint32_t norm;           /* enum glint_ward_norm of glint/scene/ward.h */
 };
 
-/* A translucent stone: light that gets in spreads below the surface, and what
- * comes out times the material's colour is all that it shows but for its coat,
- * which is the material's brushed metal. Diffuse, ambient and specular are 0.
+/* A translucent medium: light that gets in spreads below the
+ * surface, and what comes out times the material's colour is all that it shows
+ * but for its coat, which is the material's brushed metal. Diffuse, ambient and
+ * specular are 0.
  */
 struct glint_scene_stone {
     uint32_t material;
-    uint32_t file_at, file_bytes; /* a baked stone (glint/scene/translucent.h),
-                                     whole words */
+    uint32_t file_at, file_bytes; /* a baked translucent medium
+                                     (glint/scene/translucent.h), whole words */
     uint32_t fresnel; /* 1: the surface lets through what its index does, each
                          way; 0: all light */
 };
 
-/* The map of an object that is of stone: which place of it each texel is. */
+/* The map of an object that is translucent: which place of it each
+ * texel is. */
 struct glint_scene_skin {
     uint32_t object, stone; /* a ball or a mesh with uv, once */
     /* Mesh: uint32 [side][side], the triangle of each texel, of those around it
@@ -178,7 +180,7 @@ struct glint_scene_triangle {
     uint32_t material; /* or GLINT_SCENE_NONE: the object's */
 };
 
-/* Triangles, and a grid of cubes over them that says which of them a ray can
+/* Triangles, and a grid of cubes over them that states which of them a ray can
  * meet. */
 struct glint_scene_mesh {
     uint32_t n_vertices, n_triangles;
@@ -218,7 +220,8 @@ struct glint_scene_object {
     uint32_t mesh;  /* index; 0 if it is none */
     int32_t radius; /* sphere: 1 .. GLINT_SCENE_SPAN / 2 steps; else 0 */
     /* Plane: it only takes shadows, on the picture that is drawn onto, and
-     * hides this share of what a light does not reach, 1 .. 32768; else 0. */
+     * hides this fraction of what a light does not reach, 1 .. 32768; else 0.
+     */
     int32_t catcher_q15;
     uint32_t hidden; /* 1: it is not there */
     /* The pose at the start: a point p of the object is at at + turn p. */
@@ -252,7 +255,7 @@ struct glint_scene_motion {
                       none */
     int32_t line;  /* width of lines to sensors that see it, steps; 0: none */
     int32_t box;   /* the same of the edges of the box of all frames */
-    /* Of shells, which let their share pass; of lines and box, whose colour
+    /* Of shells, which let their fraction pass; of lines and box, whose colour
      * alone counts. */
     uint32_t shell_material, line_material, box_material;
     uint32_t detect; /* enum glint_scene_detect */
@@ -316,7 +319,7 @@ struct glint_scene_model {
 
 /* Checks DATA[BYTES], aligned to 4 bytes, and points MODEL into it. DATA is
  * kept. Takes time in proportion to BYTES and the objects' triangles.
- * GLINT_E_FORMAT: *REASON says what is wrong, in static text. */
+ * GLINT_E_FORMAT: *REASON states what is wrong, in static text. */
 enum glint_status glint_scene_open(struct glint_scene_model *model,
                                    const void *data, size_t bytes,
                                    const char **reason);

@@ -15,10 +15,10 @@
  * Lengths are in steps: one unit of the recording is 2^unit_log2 steps, 2^24
  * but for large and tiny ones.
  *
- * The file begins as every baked file does and goes on with tables, all of them
- * in blocks of GLINT_MOTION_BLOCK bytes, little-endian: as many records as fit
- * into the first GLINT_MOTION_ROOM bytes, then the number of the block and the
- * sum of glint_motion_sum(). So any frame is at hand after reading three
+ * The file begins as every baked file does and continues with tables, all of
+ * them in blocks of GLINT_MOTION_BLOCK bytes, little-endian: as many records as
+ * fit into the first GLINT_MOTION_ROOM bytes, then the number of the block and
+ * the sum of glint_motion_sum(). So any frame is at hand after reading three
  * blocks, of poses, index and intensities, and those with the events since its
  * block of poses began. */
 #ifndef GLINT_SCENE_MOTION_H
@@ -95,7 +95,7 @@ struct glint_motion_header {
     uint32_t n_events; /* n_foods at least: those of frame 0 come first */
     int32_t size;      /* of the body, steps */
     /* Half of the angle that a sensor sees: cosine, -1 .. 1, and, for cameras,
-     * tangent, held at 2^30, 64. */
+     * tangent, clamped to 2^30, 64. */
     int32_t cos_half_q30, tan_half_q24;
     int32_t low[3], high[3]; /* of the body's places and the foods, all frames;
                                 steps */
@@ -138,7 +138,7 @@ struct glint_motion_frame {
 };
 
 /* Checks DATA[BYTES], aligned to 4 bytes, all of it, and opens it where it
- * lies; it is kept. GLINT_E_FORMAT: *REASON says what is wrong, in static
+ * lies; it is kept. GLINT_E_FORMAT: *REASON states what is wrong, in static
  * text. */
 enum glint_status glint_motion_open(struct glint_motion *motion,
                                     const void *data, size_t bytes,

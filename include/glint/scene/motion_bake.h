@@ -65,7 +65,7 @@ struct glint_motion_report {
     double residual, residual_rms;
     long residual_frame, bad_frames; /* whose residual is over a thousandth of
                                         the span */
-    long held_intensities;           /* outside of 0 .. 1 */
+    long held_intensities;           /* outside 0 .. 1 */
     /* Where rv and tv say something: how far the pose that they sum up to is
      * off, in the end and at most. */
     bool has_senses;
@@ -82,7 +82,7 @@ struct glint_motion_baker *
 glint_motion_baker_open(const struct glint_motion_options *options);
 void glint_motion_baker_close(struct glint_motion_baker *baker);
 
-/* Take the body, before finish, and the next frame. GLINT_E_LENS: ERROR says
+/* Take the body, before finish, and the next frame. GLINT_E_LENS: ERROR states
  * what is wrong, but not where; GLINT_E_MEMORY. */
 enum glint_status glint_motion_baker_body(struct glint_motion_baker *baker,
                                           const struct glint_motion_body *body,
@@ -106,8 +106,8 @@ enum glint_status glint_motion_baker_finish(struct glint_motion_baker *baker,
 typedef long glint_recording_read_fn(void *ctx, char *to, size_t n);
 
 /* Reads a recording in JSON, in the words of either spelling, frame by frame,
- * and hands it to BAKER. Unknown keys are passed over, commas may trail.
- * GLINT_E_LENS: ERROR says file, line, column and cause. GLINT_E_UNSUPPORTED:
+ * and hands it to BAKER. Unknown keys are skipped, commas may trail.
+ * GLINT_E_LENS: ERROR states file, line, column and cause. GLINT_E_UNSUPPORTED:
  * glint was built without jansson; GLINT_E_IO, GLINT_E_MEMORY. */
 enum glint_status glint_recording_read(struct glint_motion_baker *baker,
                                        const char *file_name,

@@ -57,7 +57,7 @@ struct glint_scene_parts {
     const struct glint_scene_textures *textures;
     const struct glint_scene_bounces *bounces; /* reflection, passing through */
     const struct glint_scene_wards *wards;     /* environments, brushed metal */
-    const struct glint_scene_stones *stones;   /* translucent things */
+    const struct glint_scene_stones *stones;   /* translucent objects */
     /* What glints (glint/scene/highlights.h); no model needs it. */
     const struct glint_scene_highlights *highlights;
     const struct glint_scene_motions *motions; /* recorded motion */
@@ -72,7 +72,7 @@ struct glint_scene_config {
                           no output */
     int edge_samples;  /* 1, 4, 8 or 16: samples of a pixel */
     int shadow_points; /* 1, 4 or 16: points of a light that has an extent */
-    int half_shading;  /* 1: two by two pixels whose samples all see one thing
+    int half_shading;  /* 1: two by two pixels whose samples all see one object
                           are shaded once, in their middle */
     int ward_samples;  /* 1 .. 32: lookups of an environment for a place on
                           brushed metal */
@@ -114,7 +114,7 @@ const char *glint_scene_lacks(const struct glint_scene_parts *parts,
 /* Places a scene in MEM[BYTES], aligned to 64, which needs no finish. MODEL is
  * copied; what it points into is kept. GLINT_E_MEMORY: BYTES is too small.
  * GLINT_E_UNSUPPORTED: MODEL needs a part that CFG does not name.
- * GLINT_E_FORMAT: its environment or a stone is damaged, as
+ * GLINT_E_FORMAT: its environment or a translucent medium is damaged, as
  * glint_environment_open() and glint_translucent_open() say. */
 enum glint_status glint_scene_init(struct glint_scene **scene,
                                    const struct glint_scene_config *cfg,
@@ -122,7 +122,7 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
                                    void *mem, size_t bytes);
 
 /* Moves object OBJECT: point p of it to AT + TURN p. GLINT_E_ARGUMENT: the
- * object would leave +-GLINT_SCENE_SPAN, or TURN_Q30, w x y z, is no unit
+ * object would leave +-GLINT_SCENE_SPAN, or TURN_Q30, w x y z, is not a unit
  * quaternion. */
 enum glint_status glint_scene_set_pose(struct glint_scene *scene, int object,
                                        const int32_t at[3],
@@ -153,7 +153,7 @@ enum glint_status glint_scene_get_look(const struct glint_scene *scene,
                                        struct glint_scene_look *look);
 
 /* Changes how it looks, from the next frame on: nothing is baked, a metal's
- * lobe is made anew. The smaller alpha is held at a tenth of the other.
+ * lobe is rebuilt. The smaller alpha is clamped to a tenth of the other.
  * GLINT_E_ARGUMENT: out of range, or a metal's members of another material. */
 enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
                                        const struct glint_scene_look *look);
@@ -164,13 +164,13 @@ enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
 enum glint_status glint_scene_set_material(struct glint_scene *scene,
                                            int object, int material);
 
-/* Makes RADIUS, steps, that of ball OBJECT. GLINT_E_ARGUMENT: it is no ball, or
- * that is below 1 or leaves +-GLINT_SCENE_SPAN. */
+/* Makes RADIUS, steps, that of ball OBJECT. GLINT_E_ARGUMENT: it is not a ball,
+ * or that is below 1 or leaves +-GLINT_SCENE_SPAN. */
 enum glint_status glint_scene_set_radius(struct glint_scene *scene, int object,
                                          int32_t radius);
 
 /* Shows environment ENVIRONMENT of the model, turned and as bright as the model
- * has it: nothing is baked, allocated or checked, metals' lobes are made anew.
+ * has it: nothing is baked, allocated or checked, metals' lobes are rebuilt.
  * GLINT_E_ARGUMENT: there is none. */
 enum glint_status glint_scene_set_environment(struct glint_scene *scene,
                                               int environment);
@@ -254,7 +254,7 @@ int glint_scene_spread(struct glint_scene *scene);
 void glint_scene_draw(struct glint_scene *scene,
                       const struct glint_image *image);
 
-/* Returns the share, 0 .. 256, of a disc of the picture drawn last that the
+/* Returns the fraction, 0 .. 256, of a disc of the picture drawn last that the
  * scene hides, shadows on catchers not counted: (X, Y) in pixels from the top
  * left corner of the picture, to 8 x 8 pixels. */
 int glint_scene_cover(const struct glint_scene *scene, int32_t x_q8,

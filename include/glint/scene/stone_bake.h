@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/stone_bake.h - a text on a translucent stone, and a fit of how
- * that scatters, become a baked stone.
+ * glint/scene/stone_bake.h - a text on a translucent medium, and a
+ * fit of how that scatters, become a baked translucent medium.
  *
  *     glint_stone_parse(&text, data, bytes, "marble.translucent", &error);
  *     glint_scatter_compute(&text.stone, &watch, &rows, &error);
@@ -10,7 +10,7 @@
  *                      &error);
  *     glint_translucent_open(&stone, data, bytes, &reason);
  *
- * Kernels that are no sums of products of rows and columns become such sums,
+ * Kernels that are not sums of products of rows and columns become such sums,
  * those that are nearest under light that changes slowly. The same fit gives
  * the same bytes. */
 #ifndef GLINT_SCENE_STONE_BAKE_H
@@ -40,11 +40,11 @@ struct glint_stone_text {
 
 /* What baking did. */
 struct glint_stone_report {
-    double kernel_loss; /* of what kernels make of light together, the share
+    double kernel_loss; /* of what kernels make of light together, the fraction
                            that their ranks leave out, root mean square;
                            factored: 0 */
     int tap_bits;       /* that the largest tap of a column has: sums of many
-                           leave fewer than were asked for */
+                           leave fewer than were requested */
 };
 
 /* Sets TEXT to a slab of glint_stone_defaults(), clustered, of rank 3, with 8
@@ -52,7 +52,7 @@ struct glint_stone_report {
 void glint_stone_text_defaults(struct glint_stone_text *text);
 
 /* Reads DATA[BYTES], a text as tools/examples/scenes/README.md has it.
- * GLINT_E_LENS: ERROR says file, line, column and cause. */
+ * GLINT_E_LENS: ERROR states file, line, column and cause. */
 enum glint_status glint_stone_parse(struct glint_stone_text *text,
                                     const char *data, size_t bytes,
                                     const char *file_name,
@@ -61,8 +61,8 @@ enum glint_status glint_stone_parse(struct glint_stone_text *text,
 /* Bakes FIT, with texel, index and bits of TEXT. NAME is kept in the file, its
  * first 63 characters of a-z, A-Z, 0-9, '-' and '_', as is KEY. *DATA is
  * malloc'ed. GLINT_E_ARGUMENT: bits of TEXT, or the rank, are out of range.
- * GLINT_E_UNSUPPORTED: ERROR says what of FIT no baked stone can have.
- * GLINT_E_MEMORY. */
+ * GLINT_E_UNSUPPORTED: ERROR states what of FIT no baked translucent medium can
+ * have. GLINT_E_MEMORY. */
 enum glint_status glint_stone_bake(const struct glint_scatter_fit *fit,
                                    const struct glint_stone_text *text,
                                    const char *name, uint64_t key,
@@ -70,8 +70,8 @@ enum glint_status glint_stone_bake(const struct glint_scatter_fit *fit,
                                    struct glint_stone_report *report,
                                    struct glint_error *error);
 
-/* Sets RADIOSITY[side * side][3] to what the integers of STONE make of
- * IRRADIANCE, of the same shape, whose largest they take for 32767.
+/* Sets RADIOSITY[side * side][3] to what the integers of Translucent medium
+ * make of IRRADIANCE, of the same shape, whose largest they take for 32767.
  * GLINT_E_MEMORY. */
 enum glint_status glint_stone_light(const struct glint_translucent *stone,
                                     const double *irradiance,

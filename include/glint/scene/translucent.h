@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/translucent.h - how light spreads below the surface of a stone,
- * baked: its file, used where it lies.
+ * glint/scene/translucent.h - how light spreads below the surface of a
+ * translucent medium, baked: its file, used where it lies.
  *
- *     status = glint_translucent_open(&stone, data, bytes, &reason);
+ *     status = glint_translucent_open(&stone, data, bytes,
+ * &reason);
  *
- * A stone is a square of texels. Of the light E(x) that gets in at texel x,
+ * A translucent medium is a square of texels. Of the light E(x) that gets in at
+ * texel x,
  *
  *     M(y) = gain, times the sum over planes p of f_p(y), times the sum over
  *            ranks r and texels x of column_pr(v) row_pr(u) in(x) E(x),
@@ -66,7 +68,7 @@ struct glint_translucent_header {
                          reflected, begun and ended with all ones */
     uint32_t variant; /* enum glint_translucent_model */
     uint32_t key[2];  /* key of the text and what it names, low word first */
-    char name[64];    /* name of the stone, terminated */
+    char name[64];    /* name of the translucent medium, terminated */
     uint32_t side_log2; /* GLINT_TRANSLUCENT_LEAST_LOG2 .. MOST */
     uint32_t kernel;    /* texels each way, odd */
     uint32_t n_planes;  /* of each channel; of albedo 1 */
@@ -88,8 +90,8 @@ struct glint_translucent_header {
     /* uint32 [3][n_planes][rank]: rows are rounded after a shift by as many
      * bits, 0 .. 16. */
     uint32_t shift_at;
-    /* Share of light that passes the surface: uint16 q15 by cosine, COSINES + 1
-     * of them, padded to whole words; and in the mean of all directions. */
+    /* Fraction of light that passes the surface: uint16 q15 by cosine, COSINES
+     * + 1 of them, padded to whole words; and in the mean of all directions. */
     uint32_t transmit_at;
     int32_t mean_transmit_q15;
     struct glint_real gain[3]; /* M is this times the sum, 0 .. 1, or a
@@ -106,8 +108,9 @@ struct glint_translucent {
     const uint16_t *transmit_q15;
 };
 
-/* Checks DATA[BYTES], aligned to 4 bytes, and points STONE into it. DATA is
- * kept. GLINT_E_FORMAT: *REASON says what is wrong, in static text. */
+/* Checks DATA[BYTES], aligned to 4 bytes, and points Translucent medium into
+ * it. DATA is kept. GLINT_E_FORMAT: *REASON states what is wrong, in static
+ * text. */
 enum glint_status glint_translucent_open(struct glint_translucent *stone,
                                          const void *data, size_t bytes,
                                          const char **reason);

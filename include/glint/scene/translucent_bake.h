@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * glint/scene/translucent_bake.h - how light scatters below the surface of a
- * stone, computed or measured, and fitted by a few kernels, in double
- * precision.
+ * translucent medium, computed or measured, and fitted by a few kernels, in
+ * double precision.
  *
  *     glint_stone_defaults(&stone);
  *     glint_scatter_compute(&stone, &watch, &rows, &error);
@@ -13,13 +13,13 @@
  *
  *   in   two materials and where each is on a square of texels; or rows that
  *        were measured
- *   out  R_d as rows: R'(x_i, d = x_o - x_i), the share of the light that falls
- *        on texel x_i and leaves by texel x_o, for all d of a square kernel;
- *        and fits of it: clustered, factored, albedo times one kernel
+ *   out  R_d as rows: R'(x_i, d = x_o - x_i), the fraction of the light that
+ * falls on texel x_i and leaves by texel x_o, for all d of a square kernel; and
+ * fits of it: clustered, factored, albedo times one kernel
  *
  * An offset d = (u, v), each -kernel / 2 .. kernel / 2 across and down, is
  * entry (v + kernel / 2) * kernel + u + kernel / 2 of a kernel. Rows are 0
- * where x_o is outside of the square: light that gets there is lost. Channels
+ * where x_o is outside the square: light that gets there is lost. Channels
  * are R, G, B. The same input gives the same numbers. */
 #ifndef GLINT_SCENE_TRANSLUCENT_BAKE_H
 #define GLINT_SCENE_TRANSLUCENT_BAKE_H
@@ -36,13 +36,14 @@ extern "C" {
 #endif
 
 enum {
-    GLINT_SCATTER_MAX_SIDE = 256,  /* texels of a stone, each way */
+    GLINT_SCATTER_MAX_SIDE = 256, /* texels of a translucent medium, each way */
     GLINT_SCATTER_MAX_KERNEL = 63, /* texels of a kernel, each way */
     GLINT_SCATTER_MAX_TERMS = 20,  /* of a factored fit; kernels of others */
     GLINT_SCATTER_MAX_RANK = 8
 };
 
-/* ------------------------------------------------------------- the stone */
+/* ------------------------------------------------------------- the translucent
+ * medium */
 
 struct glint_stone_material {
     double scatter[3]; /* reduced scattering coefficient, 1/mm, 1e-3 .. 1e3 */
@@ -53,7 +54,7 @@ enum glint_stone_pattern {
     GLINT_STONE_EVEN,  /* material 0 alone */
     GLINT_STONE_CHESS, /* fields x fields squares, material 0 at the top left */
     GLINT_STONE_VEINS, /* material 1 in veins through material 0, by seed */
-    GLINT_STONE_MASK   /* material 0 by the share in mask */
+    GLINT_STONE_MASK   /* material 0 by the fraction in mask */
 };
 
 /* A slab, of which one face is lit and seen. */
@@ -71,8 +72,9 @@ struct glint_stone {
                            NULL */
 };
 
-/* Sets STONE to 128 texels of 0.61 mm, kernels of 29, 6 mm, index 1.5, marble
- * of [Jensen01] and a darker stone, chess of 8 x 8. */
+/* Sets Translucent medium to 128 texels of 0.61 mm, kernels of 29, 6 mm,
+ * index 1.5, marble of [Jensen01] and a darker translucent medium, chess of 8
+ * x 8. */
 void glint_stone_defaults(struct glint_stone *stone);
 
 /* -------------------------------------------------------------- its rows */
@@ -89,14 +91,14 @@ struct glint_watch {
 struct glint_scatter_rows {
     int side, kernel;
     float *r;      /* [side * side][3][kernel * kernel], row by row */
-    double *share; /* [side * side] share of material 0; NULL: measured */
+    double *share; /* [side * side] fraction of material 0; NULL: measured */
 };
 
-/* Computes ROWS of STONE by diffusion in the slab [Jensen01], each entry at
- * least 0, the sum of a row at most 1; R'(x, y - x) = R'(y, x - y). Takes 12
- * bytes an entry and about 25 MB besides; 128 texels with kernels of 29 take
- * 158 MiB. GLINT_E_ARGUMENT: ERROR names what is out of range. GLINT_E_MEMORY,
- * GLINT_E_CLOSED: ROWS is empty. */
+/* Computes ROWS of Translucent medium by diffusion in the slab [Jensen01], each
+ * entry at least 0, the sum of a row at most 1; R'(x, y - x) = R'(y, x - y).
+ * Takes 12 bytes an entry and about 25 MB besides; 128 texels with kernels of
+ * 29 take 158 MiB. GLINT_E_ARGUMENT: ERROR names what is out of range.
+ * GLINT_E_MEMORY, GLINT_E_CLOSED: ROWS is empty. */
 enum glint_status glint_scatter_compute(const struct glint_stone *stone,
                                         const struct glint_watch *watch,
                                         struct glint_scatter_rows *rows,
@@ -104,7 +106,7 @@ enum glint_status glint_scatter_compute(const struct glint_stone *stone,
 
 /* Reads measured rows: PICTURE has SIDE x SIDE tiles of KERNEL x KERNEL pixels,
  * each the row of a texel. Numbers below 0 or not finite become 0 and are
- * counted in HELD, what lies outside of the square becomes 0.
+ * counted in HELD, what lies outside the square becomes 0.
  * GLINT_E_UNSUPPORTED: PICTURE has another size. */
 enum glint_status glint_scatter_read(const struct glint_float_image *picture,
                                      int side, int kernel,

@@ -76,7 +76,7 @@ void glint_environment_irradiance(const struct glint_environment *environment,
                                   const int32_t normal[3], int32_t rgb[3]);
 
 /* Sets RGB, in units of ENVIRONMENT, 0 .. 2^28, to its light from TOWARD, of
- * any length up to 2^16, at LEVEL_Q8, held to what there is. */
+ * any length up to 2^16, at LEVEL_Q8, clamped to what there is. */
 void glint_environment_look(const struct glint_environment *environment,
                             const int32_t toward[3], int32_t level_q8,
                             int32_t rgb[3]);

@@ -2,8 +2,8 @@
  *
  * Blurs on the sphere.
  *
- * Texels lie in blocks; a block farther from where the blur is asked for than
- * four sigma, by the cone that holds it, is passed over as a whole. */
+ * Texels lie in blocks; a block farther from where the blur is requested than
+ * four sigma, by the cone that holds it, is skipped as a whole. */
 #include "bake/environment/sphere.h"
 
 #include <math.h>

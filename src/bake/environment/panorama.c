@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * A picture of all around, spread over texels of the octahedron.
+ * A panorama, spread over texels of the octahedron.
  *
  * Each pixel is cut into points no more than half a texel apart, and each point
  * gives its light to the texel that it lies in, so that texels have the mean of

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Light from all around, as texels of an unfolded octahedron
+ * Environment light, as texels of an unfolded octahedron
  * (glint/scene/environment.h), in double precision. */
 #ifndef GLINT_BAKE_ENVIRONMENT_SPHERE_H
 #define GLINT_BAKE_ENVIRONMENT_SPHERE_H
@@ -49,14 +49,14 @@ bool glint_sphere_shrink(struct glint_sphere *to, int side,
                          const struct glint_sphere *from);
 
 /* panorama.c: spreads PICTURE over SPHERE, which is open and dark, turned and
- * scaled as OPTIONS say, and holds and counts what is no light. All light
+ * scaled as OPTIONS say, and holds and counts what is not light. All light
  * stays. Returns false if PICTURE has another shape than those. */
 bool glint_sphere_project(struct glint_sphere *sphere,
                           const struct glint_float_image *picture,
                           const struct glint_environment_options *options,
                           struct glint_environment_report *report);
 
-/* A disc of light that was told from the rest. */
+/* A disc of light that was distinguished from the rest. */
 struct glint_split_light {
     double toward[3];
     double radius;        /* radians */

@@ -4,7 +4,7 @@
  *
  * A threshold falls by octaves, down to some times the mean of what is below
  * it. At each, texels that touch are a spot, and a light while they lie close
- * together; the lowest threshold at which they do says what belongs to it.
+ * together; the lowest threshold at which they do states what belongs to it.
  * Spots that run together and no longer do so stay the lights that they were.
  */
 #include "bake/environment/sphere.h"

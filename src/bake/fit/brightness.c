@@ -135,7 +135,7 @@ static double level_at(const struct task *t, const struct patch *patch, int n,
 }
 
 /* Finds the level of one angle: the least over all azimuths, as the brightest
- * ghosts may lie outside of the picture, which is then exposed for others. */
+ * ghosts may lie outside the picture, which is then exposed for others. */
 static void angle_job(void *ctx, int job, int worker)
 {
     enum { AZIMUTHS = 7 }; /* azimuths from 0 to 90 degrees */

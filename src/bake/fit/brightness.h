@@ -54,7 +54,7 @@ enum { GLINT_PART_DEPTH = 4, GLINT_SHAPED_DEPTH = 6, GLINT_MAX_AXIS_DEPTH = 8 };
  * far they may shift it on the sensor. From that follow their own tolerances:
  * STOP_LEAST to STOP, in stop radii, and 0.06 BARREL to BARREL, in radii of the
  * barrel. The lower limits are needed as the outline of a ghost that is larger
- * than the picture may lie outside of it, but moves in when the stop closes.
+ * than the picture may lie outside it, but moves in when the stop closes.
  *
  * The values are for ghosts of the level above. sRGB shows an error
  * in a ghost of v times that level by v^0.42 as much, so edges and energy

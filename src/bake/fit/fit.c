@@ -8,7 +8,7 @@
 #include "engine/setup/degrees.h"
 #include "bake/fit/next.h"
 
-/* Least share of a box that a ghost must fill: less would waste cells of the
+/* Least fraction of a box that a ghost must fill: less would waste cells of the
  * grids. */
 #define LEAST_FILL 0.33
 /* Degrees: a wider zone with more than two barrels is halved, as a vertex has
@@ -16,7 +16,7 @@
 #define CROWD_DEG 1.5
 /* Degrees: narrower zones may fill their boxes less. */
 #define FILL_DEG 0.6
-/* Share of a part: cropping goes on while it leaves less. */
+/* Fraction of a part: cropping continues while it leaves less. */
 #define WORTH_CROP 0.8
 
 enum {

@@ -21,7 +21,8 @@
 #include "glint/status.h"
 
 /* Called after each fit of a zone with how many that makes, where a thorough
- * one counts twice, and the share of the ghost's angles that are done, 0 .. 1.
+ * one counts twice, and the fraction of the ghost's angles that are done, 0
+ * .. 1.
  */
 typedef void glint_fit_told_fn(void *ctx, double work, double share);
 

@@ -9,7 +9,7 @@
 #define LEAST_DEG 0.7
 /* Zones of ghosts with less ease are bright and may be half as wide. */
 #define BRIGHT_EASE 1.5
-/* Share of the error of the whole zone: a half whose error is larger gained
+/* Fraction of the error of the whole zone: a half whose error is larger gained
  * nothing from halving. */
 #define STUCK 0.75
 /* Degrees: a narrower zone which gained nothing is not halved again, nor is a

@@ -4,7 +4,7 @@
  *
  *   in   how wide it is, and the errors of its fit in tolerances
  *   out  whether it is kept, halved, fitted thoroughly, divided by colours or
- *        into parts; up to which error a fit has to go on to tell
+ *        into parts; up to which error a fit has to move to tell
  *
  * Of shaped lenses faint zones are kept as they are where errors hide: powers
  * of surfaces leave some at every width, and halves of halves gain nothing. */

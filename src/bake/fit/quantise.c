@@ -283,7 +283,7 @@ static void narrow(const struct glint_fitted_output *o,
 
 /* Returns 1 or -1, the distance in the list of outputs from one of KIND to that
  * of the other coordinate, with which it shares an exponent so that both can be
- * turned; 0: KIND is no coordinate of a pair. */
+ * turned; 0: KIND is not a coordinate of a pair. */
 static int paired(enum glint_channel kind)
 {
     return kind == GLINT_OUT_SENSOR_X || kind == GLINT_OUT_STOP_X   ? 1

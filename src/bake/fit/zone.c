@@ -5,9 +5,9 @@
 #include "bake/regress/regress.h"
 #include "engine/setup/degrees.h"
 
-/* Share of a box: if as much of it is seen, that is enough. A fuller box would
- * need higher powers of s, and polynomials of what is seen through it would
- * have to undo them. */
+/* Fraction of a box: if as much of it is seen, that is enough. A fuller box
+ * would need higher powers of s, and polynomials of what is seen through it
+ * would have to undo them. */
 #define ENOUGH_FILL 0.6
 /* A higher degree in s is taken only if it fills the box so many times more. */
 #define FULLER 1.6

@@ -33,7 +33,7 @@ struct glint_zone {
     double y_lo, y_hi; /* range of the y component of a skew zone's directions,
                           of which lo .. hi is that of x */
     double middle_y[GLINT_BOX_TERMS]; /* mm; of a skew zone */
-    double fill; /* mean share of the box that the ghost needs */
+    double fill; /* mean fraction of the box that the ghost needs */
     int annulus; /* as in struct glint_model_system */
 };
 
@@ -58,7 +58,8 @@ void glint_zone_init(struct glint_zone *zone,
                      const struct glint_visible_profile *profile, double lo,
                      double hi, bool by_colour);
 
-/* Returns |v| at which an annular box begins, as a share of its half height. */
+/* Returns |v| at which an annular box begins, as a fraction of its half height.
+ */
 double glint_zone_rim(int annulus);
 
 /* Halves PART along v (inner and outer half) or along u. */
@@ -71,8 +72,8 @@ void glint_zone_cut(struct glint_zone *zone,
                     const struct glint_zone_part *part);
 
 /* Crops PART to what can be seen of it, with a margin; ZONE has been cut to
- * PART, and VISIBLE narrowed to its band. Returns the share that is left: 1 is
- * all, 0 nothing. */
+ * PART, and VISIBLE narrowed to its band. Returns the fraction that is left: 1
+ * is all, 0 nothing. */
 double glint_zone_crop(const struct glint_zone *zone,
                        const struct glint_visible *visible,
                        struct glint_zone_part *part);

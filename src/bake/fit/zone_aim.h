@@ -16,7 +16,7 @@ struct glint_zone_aim {
     double sensor_mm, edge_mm;
     double thin[2]; /* factors on sensor_mm along x and y */
     double stop;    /* tolerance of places in the stop, radii */
-    double energy;  /* tolerance of the energy, as a share */
+    double energy;  /* tolerance of the energy, as a fraction */
     double ease;    /* factor over the tolerances of a bright ghost */
     double share;   /* brightness over that of a bright ghost */
     double hidden;  /* error of places at which the ghost begins to show it, in

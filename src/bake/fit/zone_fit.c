@@ -17,12 +17,12 @@ STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 /* Outlines of wide stops show at the rim of a ghost, errors of places all over
  * it: a box is divided for an error of outlines so many times as large. */
 #define RIM 4.0
-/* Least tolerance of a barrel, as a share of its largest; where light grazes
+/* Least tolerance of a barrel, as a fraction of its largest; where light grazes
  * a half sphere a ghost lies within 0.003 of its rim. */
 #define LEAST     0.06
 #define LEAST_FAR 5e-4
-/* Rays that leak as a share of those that are seen, of lights beyond GLINT_FAR:
- * so many are a tolerance of outlines. */
+/* Rays that leak as a fraction of those that are seen, of lights beyond
+ * GLINT_FAR: so many are a tolerance of outlines. */
 #define LEAK 0.02
 /* Factor on the error of a fit, if it was not good anyway: a second one which
  * is worse than that is dropped. */
@@ -197,7 +197,7 @@ static bool stop_leaks(struct fit *f, const struct glint_fitted_system *system)
     return any;
 }
 
-/* Returns how many of the rays leak, as a share of those that are seen. */
+/* Returns how many of the rays leak, as a fraction of those that are seen. */
 static double leaking(const struct fit *f,
                       const struct glint_fitted_system *system)
 {
@@ -309,9 +309,9 @@ static bool is_smooth(const struct fit *f, const struct glint_zone_rays *r)
     return f->task->stacks && glint_zone_rays_spread(r) <= GLINT_STEEP;
 }
 
-/* Returns the energy below which errors count as shares of this one. Two stacks
- * of films let nearly nothing of some wavelengths into a ghost: there half of
- * the band's mean is what a colour shows. */
+/* Returns the energy below which errors count as fractions of this one. Two
+ * stacks of films let nearly nothing of some wavelengths into a ghost: there
+ * half of the band's mean is what a colour shows. */
 static double least_share(const struct fit *f, const struct glint_zone_rays *r,
                           double most)
 {
@@ -324,7 +324,7 @@ static double least_share(const struct fit *f, const struct glint_zone_rays *r,
 }
 
 /* Sets VALUE to the energy, or to its fourth root, and CHANNEL_WEIGHT so that
- * errors count as shares of the energy, or of least_share() if that is more.
+ * errors count as fractions of the energy, or of least_share() if that is more.
  * Returns the largest weight. */
 static double set_energies(struct fit *f, const struct glint_zone_rays *r,
                            double most, bool root)

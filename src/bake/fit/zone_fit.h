@@ -28,7 +28,7 @@ struct glint_zone_task {
     double hopeless; /* tolerances: the fit of a zone with a larger error is
                         given up; 0: none is */
     /* Tolerances: if an output that was fitted has a larger error, the outputs
-     * after it are left out, as the zone will be fitted anew however they come
+     * after it are left out, as the zone will be fitted again however they come
      * out. In a thorough fit only errors of places and barrels count, of a skew
      * zone as far as they show. 0: none is left out. */
     double settled;

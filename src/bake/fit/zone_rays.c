@@ -115,7 +115,7 @@ static double turn(int n, double r)
 
 /* Traces rays at one angle and wavelength. Of wide stops each has its grid in
  * another place, or polynomials could do between the rays what they like. In
- * the finest grid only every third ray is kept of those far outside of what is
+ * the finest grid only every third ray is kept of those far outside what is
  * seen. */
 static void trace_plane(const struct glint_zone *zone,
                         const struct glint_visible *visible, int sine, int wave,
@@ -406,7 +406,7 @@ static bool is_unreached(const double hit[2])
 }
 
 /* Notes that a ray misses the first surface that it has no hit at: it passes by
- * MISS at least outside of that. Returns the radius. */
+ * MISS at least outside that. Returns the radius. */
 static double note_missed(double *radius, double (*hits)[2], int n_events)
 {
     int k = 0;

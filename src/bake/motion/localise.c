@@ -67,7 +67,7 @@ static void learn(struct glint_localiser *l, int n, const double (*seen)[3],
 
 /* ------------------------------------------------------------- as published */
 
-/* [Bodonyi26]: a place has weights in four points that are no plane, which sum
+/* [Bodonyi26]: a place has weights in four points that are not plane, which sum
  * to 1 and are the same wherever these move. */
 struct base {
     enum glint_arithmetic arithmetic;

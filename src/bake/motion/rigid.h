@@ -13,7 +13,7 @@ struct glint_rigid {
     double row[3][3]; /* the same as a matrix */
 };
 
-/* The least share of its bound that a base's determinant may be. */
+/* The least fraction of its bound that a base's determinant may be. */
 #define GLINT_RIGID_LEAST 0x1p-20
 
 /* Finds the motion that takes N points FROM to TO with the least sum of squares

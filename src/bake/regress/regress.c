@@ -101,13 +101,13 @@ static WIDE_VECTORS double largest(const double *a, int n)
     return fmax(fmax(most[0], most[1]), fmax(most[2], most[3]));
 }
 
-/* Share of its first length: a shorter column is a combination of others. */
+/* Fraction of its first length: a shorter column is a combination of others. */
 #define DEPENDENT 1e-9
-/* Share of its first value: a smaller square, worked out by differences, has
+/* Fraction of its first value: a smaller square, worked out by differences, has
  * lost half of its digits. */
 #define DOUBTFUL 1e-8
 /* A candidate is represented by three numbers, was2, left2 and pull, which are
- * kept up to date by its share along each direction that is chosen. Shares
+ * kept up to date by its fraction along each direction that is chosen. Shares
  * follow from products of terms, as in a Cholesky factorisation. A candidate is
  * made orthogonal only when it is chosen itself, or when left2 has become too
  * small to be trusted. */
@@ -116,7 +116,7 @@ struct column {
     bool dead, chosen;
     int place;                  /* of the term among moments */
     double length;              /* length of AT */
-    double on[GLINT_MAX_TERMS]; /* share of AT along each chosen direction */
+    double on[GLINT_MAX_TERMS]; /* fraction of AT along each chosen direction */
     /* squared length of AT without the directions that were chosen when it was
      * last made orthogonal, and without all chosen directions */
     double was2, left2;
@@ -195,7 +195,7 @@ static void find_moments(const struct search *s, const struct column *chosen,
         *moment_of(s, chosen, missing[k]) = product[k];
 }
 
-/* Notes the shares of N columns, at most VECTORS, along the chosen
+/* Notes the fractions of N columns, at most VECTORS, along the chosen
  * direction of rank RANK. */
 static void note_shares(const struct search *s, struct column *const column[],
                         int n, int rank)
@@ -410,7 +410,7 @@ static double excess(const struct search *s, double rms, double peak)
                 largest(s->residual, s->s->n) / peak);
 }
 
-/* Works out the coefficients of the terms from the shares of orthogonal
+/* Works out the coefficients of the terms from the fractions of orthogonal
  * directions. */
 static void solve(const struct search *s, const double *y,
                   struct glint_poly *poly)

@@ -9,7 +9,7 @@
  * variable, of the terms chosen so far [Zheng17]; the one that lowers the
  * weighted residual most enters. All columns are kept orthogonal to the chosen
  * ones, so the basis grows together with its QR factors: a candidate that is
- * nearly a combination of chosen terms has no length left and is passed over,
+ * nearly a combination of chosen terms has no length left and is skipped,
  * which makes the factorisation rank revealing.
  */
 #ifndef GLINT_BAKE_REGRESS_REGRESS_H

@@ -30,7 +30,7 @@ struct glint_describer {
 bool glint_describe_motion(struct glint_describer *d);
 bool glint_describe_sensors(struct glint_describer *d);
 
-/* describe_things.c: appends a thing of KIND; the error says WHAT it is and
+/* describe_things.c: appends an object of KIND; the error states WHAT it is and
  * stands at PLACE. Returns NULL if there are too many, or one has that name. */
 struct glint_described_object *
 glint_describe_thing(struct glint_describer *d, enum glint_described_kind kind,
@@ -53,8 +53,9 @@ bool glint_describe_material(struct glint_describer *d);
 bool glint_describe_find(struct glint_describer *d,
                          const struct glint_word *word, int *index);
 
-/* Refuses the object O, defined last, if what of it is of stone has no place of
- * its own on a map; PLACE is that of its material. Warns of stretch. */
+/* Refuses the object O, defined last, if what of it is translucent
+ * has no place of its own on a map; PLACE is that of its material. Warns of
+ * stretch. */
 bool glint_describe_skin(struct glint_describer *d,
                          const struct glint_described_object *o,
                          struct glint_text_place place);

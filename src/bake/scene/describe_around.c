@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lines on light from all around: the environment, whose bright lights become
+ * Lines on environment light: the environment, whose bright lights become
  * suns of the scene. */
 #include "bake/scene/describe.h"
 

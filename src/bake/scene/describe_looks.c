@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lines on light and on how surfaces look: brushed metal and translucent stone
- * first, whose parts a material's line names. */
+ * Lines on light and on how surfaces look: brushed metal and translucent
+ * translucent medium first, whose parts a material's line names. */
 #include "bake/scene/describe.h"
 
 #include <math.h>
@@ -91,14 +91,15 @@ static bool read_metal(struct glint_describer *d,
     return read_lobe(d, m, &norm);
 }
 
-/* A texel may be as much longer or shorter than in the mean, and this share of
- * the surface more, before that is warned of. */
+/* A texel may be as much longer or shorter than in the mean, and this fraction
+ * of the surface more, before that is warned of. */
 #define MOST_STRETCH   1.5
 #define STRETCHED_AREA .02
 
-/* ------------------------------------------------------------------- stone */
+/* -------------------------------------------------------------------
+ * translucent medium */
 
-/* Reads the stone WORD names. */
+/* Reads the translucent medium WORD names. */
 static bool read_file(struct glint_describer *d, const struct glint_word *word,
                       struct glint_described_material *m)
 {
@@ -154,7 +155,7 @@ static bool read_stone(struct glint_describer *d,
                                     {0}};
     char quote[GLINT_QUOTE_BYTES];
 
-    (void)texture; /* the stone has its own pattern */
+    (void)texture; /* the translucent medium has its own pattern */
     m->is_stone = m->fresnel = true;
     glint_text_next_word(&d->text); /* translucent */
     file = glint_text_next_word(&d->text);
@@ -245,7 +246,8 @@ static void check_stretch(struct glint_describer *d,
                  o->name, worst, 100 * stretched / area);
 }
 
-/* Checks triangle T of stone; FIRST is the stone of those before, or -1. */
+/* Checks triangle T of a translucent object; FIRST is the translucent medium of
+ * those before, or -1. */
 static bool check_triangle(struct glint_describer *d,
                            const struct glint_described_triangle *t,
                            struct glint_text_place place, int *first)
@@ -305,7 +307,7 @@ bool glint_describe_skin(struct glint_describer *d,
 /* Half of the sun's angle in the sky. */
 #define SUN_DEG 0.267
 
-/* Warns of a sun whose COLOUR was taken for the light that falls on things: no
+/* Warns of a sun whose COLOUR was taken for the light that falls on objects: no
  * code of 8 bits would show it. */
 static void check_sun(struct glint_describer *d,
                       const struct glint_described_light *sun)

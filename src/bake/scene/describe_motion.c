@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lines on a recorded motion: its things become balls like any other, which the
- * run time moves; its shells, lines and box have materials alone. */
+ * Lines on a recorded motion: its objects become balls like any other, which
+ * the run time moves; its shells, lines and box have materials alone. */
 #include "bake/scene/describe.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lines on things: where they are, and of which material. */
+ * Lines on objects: where they are, and of which material. */
 #include "bake/scene/describe.h"
 
 #include <math.h>
@@ -48,7 +48,7 @@ glint_describe_thing(struct glint_describer *d, enum glint_described_kind kind,
     return o;
 }
 
-/* Begins a thing of KIND: reads its name. Returns NULL if that is wrong. */
+/* Begins an object of KIND: reads its name. Returns NULL if that is wrong. */
 static struct glint_described_object *begin(struct glint_describer *d,
                                             enum glint_described_kind kind,
                                             const char *what)

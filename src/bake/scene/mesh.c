@@ -58,7 +58,7 @@ static struct glint_word next_word(struct reader *r)
 }
 
 /* Reads an item of LIST, of which the last numbers may be missing: then they
- * are 0. Numbers behind it, weights and colours, are passed over. */
+ * are 0. Numbers behind it, weights and colours, are skipped. */
 static bool read_item(struct reader *r, struct list *list, int least,
                       const char *what)
 {

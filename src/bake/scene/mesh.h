@@ -6,8 +6,8 @@
  *   out  triangles, three corners each, and the names of their materials
  *
  * Faces of more than three corners are cut into fans from the first. Corners
- * count from 1, or back from the last if negative. All other words are passed
- * over, as groups, smoothing and libraries of materials are; a backslash at
+ * count from 1, or back from the last if negative. All other words are
+ * skipped, as groups, smoothing and libraries of materials are; a backslash at
  * the end of a line joins the next to it. Limits: those of
  * bake/scene/description.h, and 256 names. */
 #ifndef GLINT_BAKE_SCENE_MESH_H
@@ -25,8 +25,8 @@ struct glint_mesh {
     char name[GLINT_MESH_MAX_NAMES][GLINT_DESCRIPTION_NAME_BYTES];
 };
 
-/* Reads TEXT[BYTES]; the caller frees mesh->triangle. GLINT_E_LENS: ERROR says
- * file, line, column and cause. GLINT_E_MEMORY. */
+/* Reads TEXT[BYTES]; the caller frees mesh->triangle. GLINT_E_LENS: ERROR
+ * states file, line, column and cause. GLINT_E_MEMORY. */
 enum glint_status glint_mesh_read(struct glint_mesh *mesh, const char *text,
                                   size_t bytes, const char *file_name,
                                   struct glint_error *error);

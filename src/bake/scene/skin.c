@@ -9,7 +9,7 @@
 #include "glint/scene/translucent.h"
 #include "glint/view.h"
 
-/* Share of texels that two triangles may have, where charts touch. */
+/* Fraction of texels that two triangles may have, where charts touch. */
 #define MOST_SHARED .02
 
 int glint_skin_material(const struct glint_description *scene,
@@ -35,7 +35,7 @@ struct painter {
     uint32_t own;      /* material of the object */
     uint32_t material; /* that is painted */
     uint32_t *texel;   /* [side][side] */
-    uint8_t *inside;   /* [side][side] 1: wholly inside of its triangle */
+    uint8_t *inside;   /* [side][side] 1: wholly inside its triangle */
     int shared, painted;
 };
 

@@ -21,7 +21,8 @@ static uint8_t encode(double light)
 }
 
 /* Sums into DST[N][3] the part of SRC[SRC_N][3] that each of N texels covers,
- * as shares of that texel; STEP and SRC_STEP are those from texel to texel. */
+ * as fractions of that texel; STEP and SRC_STEP are those from texel to texel.
+ */
 static void resize_row(double *dst, int n, ptrdiff_t step, const double *src,
                        int src_n, ptrdiff_t src_step)
 {

@@ -292,9 +292,10 @@ static bool write_objects(struct writer *w)
     return true;
 }
 
-/* ------------------------------------------------------------------- stones */
+/* -------------------------------------------------------------------
+ * translucent media */
 
-/* Writes stones, and the maps of objects that are of them. */
+/* Writes translucent media, and the maps of objects that are of them. */
 static bool write_stones(struct writer *w)
 {
     const struct glint_description *s = w->scene;

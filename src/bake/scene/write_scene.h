@@ -39,7 +39,7 @@ void glint_steps_turn(const struct glint_steps *steps, const double turn[4],
 void glint_turn_after(const double a[4], const double b[4], double turn[4]);
 
 /* Meshes of a baked scene: vertices in steps, each kept once, and a grid over
- * the triangles that says which of them a ray can meet. Writes the tables of
+ * the triangles that states which of them a ray can meet. Writes the tables of
  * the triangles of OBJECT behind what is in DRAFT and sets MESH to where they
  * are. Adds to REPORT. Returns false without memory. */
 bool glint_grid_write(struct glint_draft *draft,

@@ -17,9 +17,10 @@
 #define LEAST_SIDE 0.04
 /* A smaller one is kept if halving gained nothing and its error is endured. */
 #define STUCK_SIDE 0.12
-/* Share of the error of the whole patch: see fit.c. */
+/* Fraction of the error of the whole patch: see fit.c. */
 #define STUCK 0.75
-/* Least share of a box that a ghost must fill, in patches wider than FILL_SIDE.
+/* Least fraction of a box that a ghost must fill, in patches wider than
+ * FILL_SIDE.
  */
 #define LEAST_FILL 0.25
 #define FILL_SIDE  0.05
@@ -33,7 +34,7 @@
  * the ghost is so faint that it hides them. */
 #define PART_LEFT   5.0
 #define MOST_HIDDEN 3.0
-/* Share of that up to which a part is kept. */
+/* Fraction of that up to which a part is kept. */
 #define PART_KEPT 0.4
 /* Multiples of that: boxes with a larger error are divided at once. */
 #define PART_HOPELESS 20.0
@@ -255,8 +256,8 @@ static double moves(const struct glint_zone *z, int first, int square)
                fmax(1e-9, z->half_y[0]);
 }
 
-/* Returns the component of the direction along which to halve P. SHARE says how
- * much that would gain. */
+/* Returns the component of the direction along which to halve P. SHARE states
+ * how much that would gain. */
 static int component(const struct glint_skew_piece *p,
                      const double share[GLINT_VARIABLES])
 {

@@ -10,7 +10,7 @@
 
 /* largest relative error of a stated focal length */
 #define STATED_TOLERANCE 1e-3
-/* share of the smaller semi-diameter, the height at which neighbours are
+/* fraction of the smaller semi-diameter, the height at which neighbours are
  * compared */
 #define CLEAR_SHARE 0.9
 #define CONTACT_MM  1e-6 /* mm of overlap that rounding may make */
@@ -18,8 +18,8 @@
 /* relative error of the stop radius that rounding may make */
 #define STOP_SLACK 1e-9
 
-/* Heights, shares of the smaller semi-diameter, at which neighbours are
- * compared if one of them is no sphere, and directions about the axis. */
+/* Heights, fractions of the smaller semi-diameter, at which neighbours are
+ * compared if one of them is not a sphere, and directions about the axis. */
 enum { HEIGHTS = 12, TURNS = 8 };
 /* Most mm that aspheric terms may add at the rim, semi-diameters. */
 #define MOST_TERMS 4.0

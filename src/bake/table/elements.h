@@ -67,7 +67,7 @@ static inline double *glint_gap_of(struct glint_prescription *lens, int e)
 double glint_image_mm(const struct glint_prescription *lens, double object_mm);
 
 /* Checks that elements do not collide and that the stop opens wide enough.
- * GLINT_E_ARGUMENT: they do, or it does not; ERROR says where. */
+ * GLINT_E_ARGUMENT: they do, or it does not; ERROR states where. */
 enum glint_status glint_prescription_fits(const struct glint_prescription *lens,
                                           struct glint_error *error);
 

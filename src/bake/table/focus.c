@@ -10,7 +10,8 @@
 
 #include "bake/table/elements.h"
 
-/* Share of the focal length that the group is moved in one step of the search.
+/* Fraction of the focal length that the group is moved in one step of the
+ * search.
  */
 #define STEP 2e-3
 enum { STEPS = 2000, HALVINGS = 60 };

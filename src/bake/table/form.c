@@ -6,9 +6,9 @@
 
 #include "engine/setup/degrees.h"
 
-/* Share of the semi-diameter up to which a profile is as the table says. */
+/* Fraction of the semi-diameter up to which a profile is as the table says. */
 #define GLASS_ENDS 1.1
-/* Share of END2 beyond it over which curvature fades. */
+/* Fraction of END2 beyond it over which curvature fades. */
 #define FADES 0.25
 
 /* Factor on the squares of slopes, for what lies between those sampled. */

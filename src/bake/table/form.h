@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Surfaces that are no centred spheres: conics, even aspheres, cylinders,
+ * Surfaces that are not centred spheres: conics, even aspheres, cylinders,
  * torics, and any of them shifted and tilted.
  *
  *   in   a surface of a table, the azimuth of the light

@@ -144,7 +144,8 @@ static bool read_group_words(struct glint_text *text, struct glint_shape *shape)
     return true;
 }
 
-/* Least change of a zoom's focal length from column to column, as a share. */
+/* Least change of a zoom's focal length from column to column, as a fraction.
+ */
 #define LEAST_ZOOM 1e-3
 
 /* Cuts what stands before the next slash off REST. */
@@ -252,8 +253,8 @@ static void put_at(struct glint_prescription *lens, int k)
     lens->check_back_mm = z->check_back_mm[k];
 }
 
-/* Checks that focal lengths only rise or only fall, and says how far along the
- * zoom each column is. */
+/* Checks that focal lengths only rise or only fall, and states how far along
+ * the zoom each column is. */
 static bool set_along(struct glint_zoom *z, const struct glint_text *text,
                       const struct glint_places *places)
 {

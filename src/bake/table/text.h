@@ -48,7 +48,7 @@ struct glint_text {
 };
 
 /* Opens DATA[BYTES], which is not copied and must outlive TEXT, as must
- * FILE_NAME and ERROR. Returns false if it is not text; ERROR says why. */
+ * FILE_NAME and ERROR. Returns false if it is not text; ERROR states why. */
 bool glint_text_open(struct glint_text *text, const char *data, size_t bytes,
                      const char *file_name, struct glint_error *error);
 

@@ -15,8 +15,9 @@
 /* Rays are traced eight at a time: a root or a division waits for the one
  * before it in its own ray, but not for those of other rays. All code is loops
  * over N lanes, and a condition of a ray is a choice between two values, so
- * that compilers can use vectors; a lost ray goes on with meaningless values.
- * The operations of a ray do not depend on N, and neither do its bits. */
+ * that compilers can use vectors; a invalid ray continues with meaningless
+ * values. The operations of a ray do not depend on N, and neither do its bits.
+ */
 enum { LANES = 8 };
 
 struct beam {
@@ -32,7 +33,7 @@ struct beam {
     double status[LANES]; /* an enum glint_ray_status, as a number */
 };
 
-/* Returns SO_FAR if the ray was lost already, else GLINT_RAY_OK if FINE, else
+/* Returns SO_FAR if the ray is invalid already, else GLINT_RAY_OK if FINE, else
  * STATUS. */
 static WHOLLY_INLINE double judge(double so_far, bool fine,
                                   enum glint_ray_status status)

@@ -190,7 +190,7 @@ static double cut_value(const struct shape *s, const struct cut *cut,
            cut->normal[1] * channel(s, cut->first + 1, uv);
 }
 
-/* Returns the share of the way from A, with value FA, to B, with value FB of
+/* Returns the fraction of the way from A, with value FA, to B, with value FB of
  * the other sign, at which the cut lies. */
 static double crossing(const struct shape *s, const struct cut *cut,
                        const double a[2], const double b[2], double fa,

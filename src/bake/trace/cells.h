@@ -64,7 +64,7 @@ void glint_cells_trace(const struct glint_cells *cells, int row);
 struct glint_piece {
     int n; /* number of corners; 0: nothing is visible */
     double xy[GLINT_MAX_PIECE][2];
-    double share;  /* share of the triangle's pupil area, 0 .. 1 */
+    double share;  /* fraction of the triangle's pupil area, 0 .. 1 */
     double energy; /* mean over the piece */
 };
 

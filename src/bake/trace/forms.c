@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rays at surfaces that are no centred spheres.
+ * Rays at surfaces that are not centred spheres.
  *
  * Round forms and cylinders on the axis are met by Newton's method from the
  * vertex plane, all lanes at once, where that is sure to find the nearest
@@ -14,7 +14,7 @@
 #include "bake/table/form.h"
 
 enum { MOST_STEPS = 10 };
-/* Share of a length: a last step below it leaves an error of its square. */
+/* Fraction of a length: a last step below it leaves an error of its square. */
 #define LAST_STEP 1e-7
 /* Terms of a short profile, up to A14. */
 #define SHORT 6

@@ -70,8 +70,8 @@ static void mark_alone(const struct probe *p, int n, int *weight)
         weight[at]++;
 }
 
-/* Returns the share of the way from IN (below 1) to OUT at which 1 is reached;
- * 2 if it is not. */
+/* Returns the fraction of the way from IN (below 1) to OUT at which 1 is
+ * reached; 2 if it is not. */
 static double crossing(double in, double out)
 {
     return out > 1 ? (1 - in) / (out - in) : 2;

@@ -17,8 +17,8 @@ enum {
 /* Of two rays, one of which is lost, others between may get through if they are
  * so many semi-diameters apart where both were last. */
 #define APART 0.25
-/* Share of a box by which a side is moved out at a time: as little as a tip is
- * shorter than what holds the rest. */
+/* Fraction of a box by which a side is moved out at a time: as little as a tip
+ * is shorter than what holds the rest. */
 #define STEP 0.125
 
 /* Neighbouring rays on the light's plane. */

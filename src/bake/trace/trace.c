@@ -185,8 +185,8 @@ static WHOLLY_INLINE void turn(struct beam *b, int k, double c, double s,
         judge(b->status[k], way * before * b->n[k] > 0.0, GLINT_RAY_MISSED);
 }
 
-/* Sets PART to the share that E, coated with FILM, reflects of rays that leave
- * it at the cosine OUT; 1 where OUT is 0. */
+/* Sets PART to the fraction that E, coated with FILM, reflects of rays that
+ * leave it at the cosine OUT; 1 where OUT is 0. */
 static WHOLLY_INLINE void reflectances(const struct beam *b, int n,
                                        const struct glint_event *e,
                                        const struct glint_film_at *film,

@@ -211,7 +211,7 @@ static void turn_kernels(struct glint_scatter_fit *fit)
     }
 }
 
-/* Share of kernel H that is inside of the square from texel X. */
+/* Fraction of kernel H that is inside the square from texel X. */
 static double share_inside(const struct glint_scatter_fit *fit, int x,
                            const double *h)
 {

@@ -16,7 +16,7 @@ enum {
 };
 
 #define SAME    1e-15 /* cosine of columns that are at right angles */
-#define NOTHING 1e-13 /* share of what was, below which nothing is left */
+#define NOTHING 1e-13 /* fraction of what was, below which nothing is left */
 #define STILL   1e-15 /* change of a sum that has come to rest */
 
 static double dot(const double *a, const double *b, int n)
@@ -300,7 +300,7 @@ static int part(struct work *w, int i, int j)
     return 1;
 }
 
-/* Of light whose correlation C falls by the same share from texel to texel,
+/* Of light whose correlation C falls by the same fraction from texel to texel,
  * C = L L', sets every STEP-th number of X[N] to L' X. */
 static void weigh(double *x, int n, int step)
 {

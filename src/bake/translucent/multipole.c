@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * A stone that is the same all over: modes, and its closed form.
+ * A translucent medium that is the same all over: modes, and its closed form.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -24,7 +24,7 @@ static double face(double index)
     const double back =
         -1.440 / (index * index) + 0.710 / index + 0.668 + 0.0636 * index;
 
-    /* The fit is no share where there is no step of the index. */
+    /* The fit is not a share where there is no step of the index. */
     return index > 1 ? (1 + back) / (1 - back) : 1;
 }
 

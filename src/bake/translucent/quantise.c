@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A fit in doubles becomes a baked stone: codes, taps, shifts and gains.
+ * A fit in doubles becomes a baked translucent medium: codes, taps, shifts and
+ * gains.
  *
  * Of a plane with the largest factor F, f = F code, and rows r and columns k of
  * one of its ranks, the integers make
@@ -280,7 +281,7 @@ static bool write_taps(struct writer *w)
 
 /* ----------------------------------------------------------------- surface */
 
-/* Returns the share of light that passes a surface of INDEX: unpolarised, as
+/* Returns the fraction of light that passes a surface of INDEX: unpolarised, as
  * Fresnel has it. */
 static double transmit(double index, double cosine)
 {

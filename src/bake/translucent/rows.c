@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rows of a stone: their memory, measured ones, what they make of light.
+ * Rows of a translucent medium: their memory, measured ones, what they make of
+ * light.
  */
 #include "bake/translucent/rows.h"
 

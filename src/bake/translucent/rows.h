@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What all that works on rows shares: places of entries, shares of work. */
+ * What all that works on rows shares: places of entries, fractions of work. */
 #ifndef GLINT_BAKE_TRANSLUCENT_ROWS_H
 #define GLINT_BAKE_TRANSLUCENT_ROWS_H
 
@@ -42,7 +42,7 @@ bool glint_scatter_open(struct glint_scatter_rows *rows, int side, int kernel,
  * light leaves then, and the other way round. */
 void glint_scatter_turn(struct glint_scatter_rows *rows);
 
-/* Returns true if the work is to end; DONE is its share, 0 .. 1. */
+/* Returns true if the work is to end; DONE is its fraction, 0 .. 1. */
 bool glint_watch_ends(const struct glint_watch *watch, double done);
 
 /* A part of the work of WATCH, from share FROM on, as long as LENGTH. */
@@ -55,7 +55,7 @@ struct glint_watch_part {
 struct glint_watch glint_watch_of(struct glint_watch_part *part);
 
 /* The fits that a run time can draw, beside albedo: least squares over the
- * entries inside of the square, as what lies outside is lost anyway, and if it
+ * entries inside the square, as what lies outside is lost anyway, and if it
  * counted, rows at the rim would be a kind of their own. Each fills the parts
  * of FIT, all 0, that are its model's, but for the energy; albedo is set. Of
  * ROWS, and of h that they set, texel x is where light leaves, and offsets lead

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rows of a stone whose texels differ.
+ * Rows of a translucent medium whose texels differ.
  *
  * The modes of a lattice tell how materials share their light. What eight modes
  * and whole texels cannot resolve, the next two or three texels, is added from
- * the closed form: how far it is from the same modes in a stone that is the
- * same all over, the mean of that of both texels. Entries are the mean of both
- * directions, which are one in a real stone.
+ * the closed form: how far it is from the same modes in a translucent medium
+ * that is the same all over, the mean of that of both texels. Entries are the
+ * mean of both directions, which are one in a real translucent medium.
  */
 #include "bake/translucent/slab.h"
 
@@ -288,8 +288,8 @@ static double smooth(double t)
     return t * t * (3 - 2 * t);
 }
 
-/* Noise of CELLS x CELLS cells over places 0 .. 1, which goes on at its edges;
- * 0 .. 1. */
+/* Noise of CELLS x CELLS cells over places 0 .. 1, which continues at its
+ * edges; 0 .. 1. */
 static double noise(uint32_t seed, int cells, double u, double v)
 {
     const int x = (int)floor(u * cells), y = (int)floor(v * cells);
@@ -303,9 +303,9 @@ static double noise(uint32_t seed, int cells, double u, double v)
     return (1 - t) * top + t * bottom;
 }
 
-/* Veins run where a wave across the stone, bent by noise, is near 0. The stone
- * goes on at its edges, since it meets itself around a ball: the wave has whole
- * numbers of halves along both. */
+/* Veins run where a wave across the translucent medium, bent by noise, is near
+ * 0. The translucent medium continues at its edges, since it meets itself
+ * around a ball: the wave has whole numbers of halves along both. */
 static double vein(uint32_t seed, double u, double v)
 {
     enum { CELLS = 3, ALONG_U = 3, ALONG_V = 2 };
@@ -345,9 +345,10 @@ void glint_stone_shares(const struct glint_stone *stone, double *share)
 }
 
 enum {
-    MARGIN = 8, /* texels by which a stone goes on, as its rim is */
-    LEVELS = 8  /* steps between the materials of which the closed form is
-                   computed */
+    MARGIN =
+        8, /* texels by which a translucent medium continues, as its rim is */
+    LEVELS = 8 /* steps between the materials of which the closed form is
+                  computed */
 };
 
 struct compute {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Diffusion in a slab of stone, in double precision.
+ * Diffusion in a translucent slab, in double precision.
  *
  * The depth z is 0 at the face that is lit and slab at the other. Fluence is 0
- * at z_b = 2 A D outside of either, so it is a sum of modes sin(k (z + z_b)), k
+ * at z_b = 2 A D outside either, so it is a sum of modes sin(k (z + z_b)), k
  * = n pi / (slab + 2 z_b). Light that falls on a texel is a source at the depth
  * 1 / (scatter + absorb) below it, and what leaves is D times the gradient
  * [Jensen01]. Each mode is diffusion in the plane,
@@ -19,7 +19,7 @@
 
 enum { GLINT_SLAB_MODES = 8 };
 
-/* One channel of a stone that is the same all over. */
+/* One channel of a translucent medium that is the same all over. */
 struct glint_slab {
     double texel, slab;     /* mm */
     double scatter, absorb; /* 1/mm */
@@ -29,8 +29,8 @@ struct glint_slab {
     double albedo;          /* of one scattering: power of the source */
 };
 
-/* Sets SLAB to channel C of a mix of the materials of STONE, SHARE of material
- * 0; z_b is that of its own D. */
+/* Sets SLAB to channel C of a mix of the materials of Translucent medium,
+ * Fraction of material 0; z_b is that of its own D. */
 void glint_slab_of(const struct glint_stone *stone, double share, int c,
                    struct glint_slab *slab);
 
@@ -40,9 +40,9 @@ double glint_slab_wave(const struct glint_slab *slab, int n); /* k, 1/mm */
 double glint_slab_source(const struct glint_slab *slab, int n);
 double glint_slab_exit(const struct glint_slab *slab, int n);
 
-/* Sets ENTRY[kernel * kernel] to the row of a stone without an end, by its
- * closed form: sources and their images at the faces, the multipole of which
- * the dipole is the first pair, over the area of both texels. */
+/* Sets ENTRY[kernel * kernel] to the row of a translucent medium without an
+ * end, by its closed form: sources and their images at the faces, the multipole
+ * of which the dipole is the first pair, over the area of both texels. */
 void glint_slab_closed(const struct glint_slab *slab, int kernel,
                        double *entry);
 
@@ -51,7 +51,7 @@ void glint_slab_closed(const struct glint_slab *slab, int kernel,
 bool glint_slab_lattice(const struct glint_slab *slab, int kernel,
                         double *entry);
 
-/* The share of material 0 by texel, [side * side]. */
+/* The fraction of material 0 by texel, [side * side]. */
 void glint_stone_shares(const struct glint_stone *stone, double *share);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads the text of a translucent stone line by line. */
+ * Reads the text of a translucent medium line by line. */
 #include <string.h>
 
 #include "bake/scene/clauses.h"
@@ -13,7 +13,7 @@ struct reader {
     struct glint_stone_text *to;
     char name[MOST_STONES][32];
     int n_stones;
-    bool is_turned; /* the pattern has its second stone first */
+    bool is_turned; /* the pattern has its second translucent medium first */
     struct glint_text_place pattern;
 };
 
@@ -72,7 +72,7 @@ static bool read_kernel(struct reader *r)
                             "kernel takes an odd number, not %d", *kernel));
 }
 
-/* Sets INDEX to the stone that WORD names. */
+/* Sets INDEX to the translucent medium that WORD names. */
 static bool find_stone(struct reader *r, const struct glint_word *word,
                        int *index)
 {
@@ -121,7 +121,7 @@ static bool read_file(struct reader *r, const char *what,
     return true;
 }
 
-/* Reads the two stones at the end of a pattern's line. */
+/* Reads the two translucent media at the end of a pattern's line. */
 static bool read_pair(struct reader *r)
 {
     int index[2] = {0, 0};

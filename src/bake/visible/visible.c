@@ -221,7 +221,7 @@ static double miss_of(const struct glint_visible *h,
 }
 
 /* Shrinks BOX to a cell and a half around the ray of a grid that misses by
- * least. Returns its miss; HUGE_VAL if all rays are lost. */
+ * least. Returns its miss; HUGE_VAL if all rays are invalid. */
 static double close_in(const struct glint_visible *h,
                        const struct glint_path *path, double sine,
                        struct glint_pupil *box)

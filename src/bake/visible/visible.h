@@ -49,10 +49,10 @@ struct glint_visible {
     bool
         wide; /* whether the lens opens wider than GLINT_WIDE: its rays come
                  near singularities, and the model serves much narrower stops */
-    bool far; /* whether lights beyond GLINT_FAR are asked for, of a round lens;
+    bool far; /* whether lights beyond GLINT_FAR are requested, of a round lens;
                  it is wide then */
     /* Whether the lens is round and opens wider than GLINT_WIDE and has
-     * surfaces that are no spheres, whose powers grow steeply: what cannot be
+     * surfaces that are not spheres, whose powers grow steeply: what cannot be
      * fitted is hidden rather than halved, as that has no end. */
     bool shaped;
     double wave_lo, wave_hi;                     /* 1 / wavelength^2, um^-2 */
@@ -77,7 +77,7 @@ void glint_visible_init(struct glint_visible *visible,
                         const struct glint_setup *setup, int ghost,
                         double field_mm, const double band_nm[2]);
 
-/* Tells VISIBLE that lights of up to MAX_DEG are asked for. */
+/* Tells VISIBLE that lights of up to MAX_DEG are requested. */
 void glint_visible_reach(struct glint_visible *visible, double max_deg);
 
 /* Sets VISIBLE for the part W0 .. W1, -1 .. 1, of the band of WHOLE; it has

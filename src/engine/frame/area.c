@@ -50,7 +50,7 @@ struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
 }
 
 /* Sets PLACE to point I of a sunflower pattern in a circle of radius 1; returns
- * its share of the power. */
+ * its fraction of the power. */
 static double at(const struct glint_area *a, int i, double place[2])
 {
     const double golden = 2.39996322972865332;

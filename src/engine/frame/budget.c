@@ -7,19 +7,19 @@
 
 /* octaves that a first frame takes longer, as it takes memory */
 #define FIRST 1
-/* share of the budget that frames are planned for */
+/* fraction of the budget that frames are planned for */
 #define ROOM 0.98
-/* share of the budget below which a finer quality is tried */
+/* fraction of the budget below which a finer quality is tried */
 #define SPARE 0.9
-/* share of the budget that a quality may be predicted to take for a trial */
+/* fraction of the budget that a quality may be predicted to take for a trial */
 #define TRY 1.15
-/* share of an error, in octaves, that one frame teaches */
+/* fraction of an error, in octaves, that one frame teaches */
 #define LEARNING 0.5
 /* largest error, in octaves, that one frame can teach */
 #define MOST_WRONG 0.8
-/* least share of an error that other qualities learn */
+/* least fraction of an error that other qualities learn */
 #define SPREAD 0.1
-/* share of what other qualities learned that is forgotten each frame */
+/* fraction of what other qualities learned that is forgotten each frame */
 #define FORGETTING 0.01
 
 /* Most plans of one frame. A plan tells little about fineness far from its own,

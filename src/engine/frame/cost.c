@@ -17,9 +17,9 @@ enum { MOST_LOG2 = 4, SAMPLES = 24 };
 
 /* By make cost-fit: least squares of the relative errors of random frames, each
  * of which callgrind counts the second time that it is drawn, so that none is
- * binned twice. tests/figures/cost/plans.md says how far they are off. Planned:
- * for the counts that glint_cost_of() expects; counted: for those that were
- * drawn.
+ * binned twice. tests/figures/cost/plans.md states how far they are off.
+ * Planned: for the counts that glint_cost_of() expects; counted: for those that
+ * were drawn.
  */
 /* clang-format off */
 const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS] = {
@@ -67,8 +67,8 @@ struct bundle {
     double cells;  /* a side */
     double light;  /* display white */
     double area;   /* pixels that its light falls on, in the picture or not */
-    double inside; /* share of its rays that get through */
-    double view;   /* share of its light's box that lies in the picture */
+    double inside; /* fraction of its rays that get through */
+    double view;   /* fraction of its light's box that lies in the picture */
     double log_bright; /* natural logarithm of how much more its edges are, as
                           light differs within it */
     double rings;      /* outlines of a soft edge */
@@ -165,8 +165,8 @@ struct cells {
     double cells;  /* of the ghost, a side */
     double light;  /* display white */
     double area;   /* pixels that its light falls on */
-    double inside; /* share of its cells within the stop */
-    double view;   /* share of these in the picture */
+    double inside; /* fraction of its cells within the stop */
+    double view;   /* fraction of these in the picture */
 };
 
 /* Returns the light of a step by which parts are told apart over LIGHT. */

@@ -182,7 +182,7 @@ static enum glint_status set_lights(struct glint_frame *f,
         f->lights.light, within, near_q30(f, f->apart_px),
         larger(room, f->dials.max_lights), &f->lights.n_apart);
     if (!f->limits.is_held) /* after a limit was met, fewer lights keep the
-                        share of all */
+                        fraction of all */
         f->limits.share =
             1 + larger(f->lights.n - 1, 0) / (double)GLINT_FRAME_PER_LIGHT;
     if (f->star.is_alone)
@@ -253,7 +253,7 @@ static enum glint_status plan(struct glint_frame *f,
     return GLINT_OK;
 }
 
-/* Returns whether dials were turned, so that the frame has to be planned anew.
+/* Returns whether dials were turned, so that the frame has to be planned again.
  */
 static bool choose(struct glint_frame *f)
 {

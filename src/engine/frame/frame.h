@@ -105,7 +105,7 @@ struct glint_frame_lights {
     struct glint_wave_sets sets;
     struct glint_light *light; /* [capacity] */
     int n, capacity;
-    int n_apart;  /* lights that can be told apart */
+    int n_apart;  /* lights that can be distinguished */
     int n_beyond; /* lights left out before that, as they are beyond the model
                    */
     int n_more;   /* lights that are further points of a lamp */
@@ -126,7 +126,7 @@ struct glint_frame_plan {
 };
 
 /* How bright ghosts are, for an opening, pixels per mm, and three waves; no
- * memory is taken before the dial asks for it. */
+ * memory is taken before the dial requests it. */
 struct glint_frame_dim {
     struct glint_dim table;
     double opening, size;
@@ -179,7 +179,7 @@ void glint_frame_init(struct glint_frame *frame,
                       const struct glint_setup *setup, struct glint_view view,
                       struct glint_workers *workers);
 
-/* Makes a frame with the options that were asked for in LIKE, without its
+/* Makes a frame with the options that were requested in LIKE, without its
  * budget. */
 void glint_frame_like(struct glint_frame *frame, const struct glint_frame *like,
                       struct glint_view view);
@@ -194,7 +194,7 @@ enum glint_status glint_frame_reserve(struct glint_frame *frame, void *mem,
                                       size_t bytes, int n_lamps, int n_drawn);
 
 /* Returns the fewest BYTES that glint_frame_reserve() takes for as many lights
- * as it was last asked for; nothing may be drawn afterwards. */
+ * as it was last requested; nothing may be drawn afterwards. */
 size_t glint_frame_least_bytes(struct glint_frame *frame);
 
 /* Draws a lamp a few times to measure the time of an instruction here, for the
@@ -219,8 +219,8 @@ bool glint_frame_is_beyond(const struct glint_frame *frame,
  * exact. */
 double glint_frame_end_deg(const struct glint_frame *frame);
 
-/* Sets the sampling of area lamps of the next frame. IS_STILL, for a picture by
- * itself: more points a lamp (if MORE_POINTS) and a larger total (if
+/* Sets the sampling of area lamps of the next frame. IS_STILL, for a still
+ * picture: more points a lamp (if MORE_POINTS) and a larger total (if
  * MORE_LIGHTS); the first other frame after it: those of frame->asked. */
 void glint_frame_set_still(struct glint_frame *frame, bool is_still,
                            bool more_points, bool more_lights);

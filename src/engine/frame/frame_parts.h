@@ -51,10 +51,10 @@ enum glint_status glint_frame_hold_ghosts(struct glint_frame *frame);
 void glint_frame_check_dim(struct glint_frame *f);
 
 /* Replaces the block by one for the present capacities, in which the flare
- * begins anew. */
+ * restarts. */
 enum glint_status glint_frame_regrow(struct glint_frame *frame);
 
-/* Gives the stop the tables of dust that the dials ask for; returns whether
+/* Gives the stop the tables of dust that the dials request; returns whether
  * these are others than before. */
 bool glint_frame_shade(struct glint_frame *frame);
 

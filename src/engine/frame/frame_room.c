@@ -17,7 +17,7 @@ enum { LEAST_FINENESS = 8 };
  * Limits count that for one worker, too, so that what they do is the same for
  * all: an estimate, and with one worker more than it would take. */
 #define UNEVEN 1.5
-/* Share of the limit of memory that a frame which has to be drawn coarser is
+/* Fraction of the limit of memory that a frame which has to be drawn coarser is
  * meant to take: grids are whole numbers of cells. */
 #define ROOM_SHARE 0.9
 /* Coarser grids that take more of the bytes than this gain too little. */
@@ -119,7 +119,7 @@ static bool fit(struct glint_frame *f, size_t bytes)
 }
 
 /* Returns the primitives that reserved memory would have to have room for, with
- * the shares of bytes_for(). */
+ * the fractions of bytes_for(). */
 static double primitives_of(const struct glint_flare_stats *s)
 {
     return fmax(s->need_primitives * UNEVEN, s->need_refs / 2.0);

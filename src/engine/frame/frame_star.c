@@ -31,9 +31,9 @@ static const double clipped_times = 32, white_share = 0.5;
  * 50, glints and lit haze 0.6 to 1.2. */
 static const double hazy = 1, glaring = 5;
 
-/* Share of a budget that stars may take. If they would take more, their
- * faintest light is left out, up to 2^BUDGET_STEPS times what cull_codes asks
- * for, and then all of it. */
+/* Fraction of a budget that stars may take. If they would take more, their
+ * faintest light is left out, up to 2^BUDGET_STEPS times what cull_codes
+ * requests, and then all of it. */
 static const double budget_share = 0.25;
 enum { BUDGET_STEPS = 8 };
 
@@ -250,7 +250,7 @@ static int by_power(const void *a, const void *b)
 }
 
 /* Sets the star of N_LIGHTS down to light FAINTEST, or to the least light with
- * which it keeps to its share of the budget. */
+ * which it keeps to its fraction of the budget. */
 static void set_within(struct glint_frame *f, int n_lights, double faintest)
 {
     struct glint_frame_star *s = &f->star;

@@ -42,7 +42,7 @@ struct glint_frame_star {
 };
 
 /* Sets the star of LAMPS times SCALE for pictures like IMAGE, and makes tables
- * if there are none for the frame's stop. Does nothing if the share is 0.
+ * if there are none for the frame's stop. Does nothing if the fraction is 0.
  * GLINT_E_MEMORY. */
 enum glint_status glint_frame_star_set(struct glint_frame *frame,
                                        const struct glint_lamp *lamps, int n,
@@ -50,7 +50,7 @@ enum glint_status glint_frame_star_set(struct glint_frame *frame,
                                        const struct glint_image *image);
 
 /* Takes memory for the stars of N lamps and makes their tables, so that frames
- * take none. Does nothing if the share is 0. GLINT_E_MEMORY. */
+ * take none. Does nothing if the fraction is 0. GLINT_E_MEMORY. */
 enum glint_status glint_frame_star_hold(struct glint_frame *frame, int n);
 
 /* Returns the bytes that the star of FRAME holds, for its tables and its lamps,

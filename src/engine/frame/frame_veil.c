@@ -9,8 +9,8 @@
 #include "engine/frame/frame_parts.h"
 
 /* Veiling glare: half of it lies evenly over the picture, as what barrel and
- * camera scatter does, the rest is wider where it is fainter. Sigmas are shares
- * of the diagonal; 0: even. */
+ * camera scatter does, the rest is wider where it is fainter. Sigmas are
+ * fractions of the diagonal; 0: even. */
 static const struct {
     double sigma, share;
 } glare[] = {{0.08, 0.25}, {0.25, 0.25}, {0, 0.5}};
@@ -135,7 +135,7 @@ static void set_table(int32_t *table_q30, int n, double sigma)
     table_q30[0] = rest; /* so that no light is lost */
 }
 
-/* Makes a spread of SIGMA pixels, 0: even, that gives SHARE of all light. */
+/* Makes a spread of SIGMA pixels, 0: even, that gives Fraction of all light. */
 static struct glint_veil_spread spread_of(const struct glint_frame *f,
                                           double sigma, double share)
 {
@@ -156,7 +156,7 @@ static struct glint_veil_spread spread_of(const struct glint_frame *f,
     return s;
 }
 
-/* Returns the share of all light that what lies on the front spreads. */
+/* Returns the fraction of all light that what lies on the front spreads. */
 static double front_share(const struct glint_frame_veil *v)
 {
     return v->front && v->table ? v->table->mean : 0;
@@ -168,7 +168,7 @@ static double over_direct(const struct glint_frame_veil *v)
     return 1 / (1 - fmin(v->glare + v->haze + front_share(v), GLINT_MOST_VEIL));
 }
 
-/* Sets SPREADS to those of haze of that SHARE; returns how many. */
+/* Sets SPREADS to those of haze of that fraction; returns how many. */
 static int set_haze(const struct glint_frame *f, double share,
                     struct glint_veil_spread spreads[N_HAZE])
 {
@@ -209,18 +209,18 @@ static void spread_front(const struct glint_frame *f)
             set_haze(f, v->table->most * over_direct(v), spreads));
 }
 
-/* Sigma that even glare is taken to have of a lamp beside the picture, shares
+/* Sigma that even glare is taken to have of a lamp off-screen, fractions
  * of the diagonal. */
 static const double even_sigma = 0.5;
 
-/* Returns the share of a Gaussian that is left FAR from its middle. */
+/* Returns the fraction of a Gaussian that is left FAR from its middle. */
 static double left_of(double far, double sigma)
 {
     return exp(-0.5 * far * far / (sigma * sigma));
 }
 
-/* Returns the share of the veil of a lamp at the border that one has FAR pixels
- * beside the picture: each part falls by its own Gaussian. */
+/* Returns the fraction of the veil of a lamp at the border that one has FAR
+ * pixels off-screen: each part falls by its own Gaussian. */
 static double beside(const struct glint_frame *f, double far)
 {
     const struct glint_frame_veil *v = &f->veil;
@@ -239,7 +239,7 @@ static double beside(const struct glint_frame *f, double far)
     return sum / fmax(v->glare + haze, 1e-9);
 }
 
-/* Share of a pixel's time that what lies on the front takes besides. */
+/* Fraction of a pixel's time that what lies on the front takes besides. */
 static const double front_pixels = 0.4;
 
 /* A pixel takes as long as SPREADING cells that give light to one. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The veil of a frame: the share of all light that lens and dirt spread. */
+ * The veil of a frame: the fraction of all light that lens and dirt spread. */
 #ifndef GLINT_ENGINE_FRAME_FRAME_VEIL_H
 #define GLINT_ENGINE_FRAME_FRAME_VEIL_H
 
@@ -14,7 +14,7 @@
 struct glint_frame;
 
 struct glint_frame_veil {
-    /* Share of all light that is veiling glare of the lens, as of ISO 9358,
+    /* Fraction of all light that is veiling glare of the lens, as of ISO 9358,
      * spread over the whole picture, and share that dirt on the front element
      * spreads by 1 to 10 degrees. 0: none. */
     double glare, haze;

@@ -10,9 +10,9 @@
  *
  *     X = e - z U,   e in the entrance pupil, z its distance from the front
  *
- * of the front, of which the share C is covered. So it gets the haze of a front
- * that is covered by C all over: the light of the lamps, spread by the grains'
- * lobe p, times
+ * of the front, of which the fraction C is covered. So it gets the haze of a
+ * front that is covered by C all over: the light of the lamps, spread by the
+ * grains' lobe p, times
  *
  *     C = mean over the stop of covered(X)
  *
@@ -71,7 +71,7 @@ struct glint_front_dirt {
     float *along;
 };
 
-/* Returns the share that is covered as a pixel at (X, Y), from the top left,
+/* Returns the fraction that is covered as a pixel at (X, Y), from the top left,
  * sees it: by sums over the stop of STEPS^2 places, for tests. */
 double glint_front_covered(const struct glint_front_dirt *dirt,
                            const struct glint_front_optics *optics,

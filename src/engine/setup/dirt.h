@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What lies in a stop, inside of its outline: in doubles, for exact pictures,
+ * What lies in a stop, inside its outline: in doubles, for exact pictures,
  * and as a table, for flares. */
 #ifndef GLINT_ENGINE_SETUP_DIRT_H
 #define GLINT_ENGINE_SETUP_DIRT_H
@@ -18,13 +18,13 @@ struct glint_dirt {
     double cos_turn, sin_turn; /* of the mask and the dust, with the blades */
     uint64_t mark;             /* differs with what lies in the stop */
     double mean;               /* mean light over the stop; 1 if it is 0 */
-    /* Returns the light that is let through at (X, Y) inside of the outline. */
+    /* Returns the light that is let through at (X, Y) inside the outline. */
     double (*through)(const struct glint_dirt *dirt, double x, double y);
     uint16_t *node_q15; /* nodes of all levels, one after the other */
     uint8_t *rough_q8;
 };
 
-/* Returns the light that the stop of SETUP lets through at (X, Y) inside of its
+/* Returns the light that the stop of SETUP lets through at (X, Y) inside its
  * outline. */
 static inline double glint_dirt_through(const struct glint_setup *setup,
                                         double x, double y)

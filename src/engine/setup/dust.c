@@ -76,7 +76,7 @@ static void set_box(struct glint_speck *s)
 
 void glint_dust_strew(struct glint_dust *dust, double amount, int seed)
 {
-    /* Shares of the circle are squares of radii. */
+    /* Fractions of the circle are squares of radii. */
     const int n_lines = (int)ceil(fmin(8, 40 * amount));
     const int n_smudges = (int)ceil(fmin(4, 20 * amount));
     struct draw d = {(uint64_t)(uint32_t)seed * UINT64_C(0x9e3779b97f4a7c15)};

@@ -19,12 +19,12 @@ struct glint_dust {
     struct glint_speck speck[GLINT_DUST_MOST];
 };
 
-/* Sets DUST to specks that together cover the share AMOUNT, 0 .. 0.5, of the
+/* Sets DUST to specks that together cover the fraction AMOUNT, 0 .. 0.5, of the
  * stop's circle, or as much as GLINT_DUST_MOST of them do, and to scratches and
  * smudges, more with more AMOUNT. The same SEED gives the same places. */
 void glint_dust_strew(struct glint_dust *dust, double amount, int seed);
 
-/* Returns the share of light that dust lets through at (X, Y). */
+/* Returns the fraction of light that dust lets through at (X, Y). */
 double glint_dust_through(const struct glint_dust *dust, double x, double y);
 
 #endif

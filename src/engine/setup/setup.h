@@ -7,7 +7,7 @@
 #include "glint/setup.h"
 
 /* Checks stop and wavelengths. GLINT_E_ARGUMENT: one is out of range, and ERROR
- * says which. */
+ * states which. */
 enum glint_status glint_setup_check(int n_blades, double rotation_deg,
                                     const double *wavelength_nm, int n,
                                     struct glint_error *error);
@@ -23,8 +23,8 @@ void glint_setup_common(struct glint_setup *setup, int n_blades,
 enum glint_status glint_setup_units(struct glint_setup *setup, const char *name,
                                     struct glint_error *error);
 
-/* Returns the share of the light through a circular stop that the stop of SETUP
- * lets through. Direct light is even over it to 1/10000. */
+/* Returns the fraction of the light through a circular stop that the stop of
+ * SETUP lets through. Direct light is even over it to 1/10000. */
 double glint_iris_share(const struct glint_setup *setup);
 
 #endif

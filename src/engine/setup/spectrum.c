@@ -23,7 +23,7 @@ enum {
     FIRST_NM = 400,
     LAST_NM = 700,
     STEP_NM = 10,
-    /* Nanometres by which cubics go on beyond the outermost wavelengths. */
+    /* Nanometres by which cubics continue beyond the outermost wavelengths. */
     BEYOND_NM = 15,
     POINTS = 4
 };
@@ -126,7 +126,8 @@ static int first_near(int n, const double *wavelength_nm, double nm)
     return i > 0 ? i : 0;
 }
 
-/* Returns the share of wavelength K in the value at NM: Lagrange's polynomial.
+/* Returns the fraction of wavelength K in the value at NM: Lagrange's
+ * polynomial.
  */
 static double share_of(int n, const double *wavelength_nm, int k, double nm)
 {

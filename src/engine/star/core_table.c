@@ -74,7 +74,7 @@ static void cell_light(const struct cells *s, int i, int k, double rgb[3])
     }
 }
 
-/* Returns the share of the light of channel C that lies farther out than R
+/* Returns the fraction of the light of channel C that lies farther out than R
  * pixels. */
 static double beyond(const struct cells *s, double r, int c)
 {

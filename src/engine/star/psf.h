@@ -106,7 +106,7 @@ void glint_psf_far(const struct glint_psf *psf, double x, double y,
 void glint_psf_light(const struct glint_psf *psf, double x, double y,
                      double rgb[3]);
 
-/* Returns the share of the light of channel C that lies farther out than R
+/* Returns the fraction of the light of channel C that lies farther out than R
  * pixels. */
 double glint_psf_beyond(const struct glint_psf *psf, double r, int c);
 

@@ -22,7 +22,7 @@ struct totals {
 
 /* ------------------------------------------------------------------ fields */
 
-/* Returns the share of a cell that lies within the outline, DEPTH inside. */
+/* Returns the fraction of a cell that lies within the outline, DEPTH inside. */
 static double inside(double depth)
 {
     return fmin(fmax(depth / cell + 0.5, 0), 1);

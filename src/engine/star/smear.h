@@ -6,7 +6,7 @@
  * With T the light that lies through the stop, the amplitude is its root g, and
  * that of the clear stop 1, o. The pattern is |G|^2 / integral of T. Most of it
  * is that of the clear stop, |O|^2 / area, times what is left of the outline's
- * own light: the share C. The rest is smooth, over angles of wavelength over
+ * own light: the fraction C. The rest is smooth, over angles of wavelength over
  * speck, and may be negative near the light:
  *
  *     D = |G|^2 / integral of T - C |O|^2 / area,  integral of D = 1 - C

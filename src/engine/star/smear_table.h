@@ -15,7 +15,7 @@ void glint_smear_light(const struct glint_smear *smear,
                        const struct glint_psf *psf, double airy_px, double x,
                        double y, double half, double rgb[3]);
 
-/* Returns the share of the light of channel C that the smear has within R
+/* Returns the fraction of the light of channel C that the smear has within R
  * pixels, and beyond. */
 double glint_smear_beyond(const struct glint_smear *smear,
                           const struct glint_psf *psf, double airy_px, double r,

@@ -11,7 +11,7 @@
 #include "glint/view.h"
 
 /* Range of 550 nm times the f-number, in pixels, for which tables are made;
- * outside of it the nearest end is used. */
+ * outside it the nearest end is used. */
 static const double least_airy_px = 1.0 / 64, most_airy_px = 16;
 
 /* Widths of a profile, or pixels if these are wider, up to which it is tabled;
@@ -229,7 +229,7 @@ static void set_sizes(struct glint_star_tables *t, const struct glint_psf *psf,
     t->inner_q8 = (int32_t)lrint(256 * fmax(2, psf->airy_px));
 }
 
-/* Least share of the clear stop's light that is told from none. */
+/* Least fraction of the clear stop's light that is distinguished from none. */
 static const double least_clear = 1e-6;
 
 /* Sets what SMEAR makes of the clear stop's pattern, and its table. */

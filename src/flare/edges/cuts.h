@@ -17,7 +17,7 @@
 #include "glint/bundle.h"
 #include "glint/light.h"
 
-/* The cuts that a node lies on or outside of: a bit for each side of the stop
+/* The cuts that a node lies on or outside: a bit for each side of the stop
  * (the lowest one for a round stop), and a bit for each barrel. */
 struct glint_outside {
     uint64_t sides;

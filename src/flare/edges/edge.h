@@ -5,7 +5,7 @@
  * An edge adds its light to all that lies to its right: to a pixel in
  * proportion to the area of the part it covers. So a sum is changed only where
  * an edge runs, by the difference of that area from one pixel to the next, and
- * one running sum along each row turns changes into light: the inside of a
+ * one running sum along each row turns changes into light: the inside a
  * ghost costs nothing.
  *
  * The edges of a closed outline cancel to the last bit: the heights by which
@@ -99,7 +99,7 @@ struct glint_edge_sums {
 
 /* Sets EDGE to the line from A to B, (x, y) _q8. LIGHT is on the right of an
  * upward line, y falling, OTHER on the other side. Returns 0 if the line is
- * level and so is no edge. */
+ * level and so is not an edge. */
 int glint_edge_set(struct glint_edge *edge, const int32_t a_q8[2],
                    const int32_t b_q8[2], int32_t light, int32_t other);
 

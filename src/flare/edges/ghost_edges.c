@@ -248,8 +248,8 @@ void glint_ghost_add_alone(struct glint_ghost_edges *g,
     }
 }
 
-/* Draws a cell that is no convex quad: as two triangles, or as the one triangle
- * whose corners are not lost. */
+/* Draws a cell that is not a convex quad: as two triangles, or as the one
+ * triangle whose corners are not lost. */
 static NEVER_INLINE void add_triangles(struct glint_ghost_edges *g,
                                        const struct glint_ghost_cell *c)
 {
@@ -377,7 +377,7 @@ static void dim(const struct glint_ghost_edges *g, struct glint_ghost_cell *c,
 
 /* Returns the light of the cell at (I, J) for the edges that it shares. Cells
  * that are drawn by themselves, or not at all, return 0. Nearly all cells lie
- * wholly outside of the visible part or wholly inside of it. */
+ * wholly outside the visible part or wholly inside it. */
 static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
 {
     const struct glint_ghost_rows *r = g->rows;

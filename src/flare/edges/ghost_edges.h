@@ -44,8 +44,8 @@ struct glint_ghost_rows {
      * one. In small grids it is computed together with row j. */
     struct glint_vertex held[GLINT_HELD_CELLS / 2][GLINT_HELD_CELLS + 1];
     uint64_t sides[2][GLINT_MAX_CELLS + 1]; /* sides of the stop that each node
-                                               lies outside of, a bit each */
-    /* Bits of the barrels that each node lies outside of, and NODE_ bits. */
+                                               lies outside, a bit each */
+    /* Bits of the barrels that each node lies outside, and NODE_ bits. */
     uint8_t barrels[2][GLINT_MAX_CELLS + 1];
     int32_t light[2][GLINT_MAX_CELLS]; /* irradiance of each cell of two rows,
                                           packed */

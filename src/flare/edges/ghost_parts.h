@@ -9,7 +9,7 @@
 #include "flare/edges/cuts.h"
 #include "flare/edges/ghost_edges.h"
 
-/* Bits of a node, next to those of the barrels: the ray is lost, or the node
+/* Bits of a node, next to those of the barrels: the ray is invalid, or the node
  * lies beyond a side of the picture. The left side has no bit, as light runs in
  * from there. */
 enum {

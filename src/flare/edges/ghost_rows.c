@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Fills rows of nodes of a grid: their vertices, and which of stop, barrels and
- * sides of the picture each node lies outside of. */
+ * sides of the picture each node lies outside. */
 #include "flare/edges/ghost_parts.h"
 
 #include <stddef.h>
@@ -36,7 +36,7 @@ static struct glint_vertex *lower(const struct glint_ghost_edges *g,
     return row;
 }
 
-/* Returns row J of the grid; it stays valid until row J + 2 is asked for. */
+/* Returns row J of the grid; it stays valid until row J + 2 is requested. */
 static const struct glint_vertex *row_of(struct glint_ghost_edges *g, int j)
 {
     const int n = g->bundle->n_cells;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Dims ghosts by what lies in the stop, inside of its outline.
+ * Dims ghosts by what lies in the stop, inside its outline.
  *
  *   in   a cell of a ghost's grid, tables of the light that the stop lets
  *        through

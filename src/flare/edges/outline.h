@@ -4,8 +4,8 @@
  *
  *   in   a triangle of a primitive's corners, the stop, two barrels
  *   out  the polygon that the stop's sides and the barrels leave, all of them
- *        linear between the corners: corners in pixels, share of the triangle,
- *        mean energy
+ *        linear between the corners: corners in pixels, fraction of the
+ * triangle, mean energy
  *
  * Method: half planes cut the triangle in barycentric coordinates u, v of its
  * second and third corner, one after the other, so that a triangle without area
@@ -74,7 +74,8 @@ enum { GLINT_OUTLINE_CORNERS = GLINT_MAX_BLADES + 8 };
 struct glint_outline {
     int n; /* number of corners; 0: nothing is seen */
     int64_t x_q16[GLINT_OUTLINE_CORNERS], y_q16[GLINT_OUTLINE_CORNERS];
-    int32_t share_q28;  /* share of the triangle that the cuts leave, 0 .. 1 */
+    int32_t
+        share_q28; /* fraction of the triangle that the cuts leave, 0 .. 1 */
     int32_t energy_q16; /* mean over the corners */
     struct glint_uv {
         int32_t u_q28, v_q28;

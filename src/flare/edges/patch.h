@@ -6,7 +6,7 @@
  * Edges give the polygon the light of a clear stop, or none; a patch adds, to
  * each pixel, how much the shade differs from that. Rays are linear over it, so
  * that six numbers tell where in the stop each pixel's come from. Pixels on a
- * side count by the share of them that is within it, which is the same as of
+ * side count by the fraction of them that is within it, which is the same as of
  * edges but where two sides meet in a pixel.
  *
  * A patch takes the places of several edges, one after the other: the first has

@@ -24,7 +24,7 @@ struct side {
     int64_t at_q24; /* at the middle of the first pixel, pixel 0 of row Y0 */
     int32_t across_q16, down_q16;
     /* The smaller part of the normal, and 1 / (2 p q) of both parts and 1 / q
-     * of the larger one: what the share of a pixel takes. */
+     * of the larger one: what the fraction of a pixel takes. */
     int32_t less_q16, square_q16, larger_q16;
     /* Column at which the distance is -1/2 in row 0, and its change by row;
      * unless the side is as good as level. */
@@ -49,8 +49,8 @@ struct draw {
                                            two */
     int nodes, shift;     /* nodes a side; log2 of their distance, _q24 */
     struct glint_box box; /* the part of the patch within the tile */
-    /* Of a row: the sides that cut pixels, and shares of the clear light, for
-     * one pixel more than it has. */
+    /* Of a row: the sides that cut pixels, and fractions of the clear light,
+     * for one pixel more than it has. */
     int n_parts;
     struct part part[GLINT_OUTLINE_CORNERS];
     int32_t area[MOST_TILE + 2 * RUN];
@@ -94,7 +94,7 @@ static void set_side(struct side *s, const struct draw *d, int i)
             : 0;
 }
 
-/* Returns the share of a pixel whose middle lies DISTANCE inside of S. */
+/* Returns the fraction of a pixel whose middle lies DISTANCE inside S. */
 static int32_t share_q16(const struct side *s, int64_t distance_q16)
 {
     const int upper = distance_q16 > 0;
@@ -112,7 +112,7 @@ static int32_t share_q16(const struct side *s, int64_t distance_q16)
     return (int32_t)(upper ? ONE_Q16 - part_q16 : part_q16);
 }
 
-/* Returns the share of pixel X of the row that lies in the patch. */
+/* Returns the fraction of pixel X of the row that lies in the patch. */
 static int32_t cover_q16(const struct draw *d, int x)
 {
     int64_t cover_q16 = ONE_Q16;

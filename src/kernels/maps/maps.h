@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The hot loop for maps of translucent things. The rules of kernels.h hold for
+ * The hot loop for maps of translucent objects. The rules of kernels.h hold for
  * it, too, but for alignment: vectors may begin anywhere. */
 #ifndef GLINT_KERNELS_MAPS_MAPS_H
 #define GLINT_KERNELS_MAPS_MAPS_H

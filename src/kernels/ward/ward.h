@@ -5,7 +5,7 @@
  *
  * With o to the eye, i = 2 (h.o) h - o to the light, n the normal, a sample
  * counts (h.o) (h.n)^3 sqrt(n.i / n.o) in the norm of 1992 and, bounded, (n.i)
- * / ((h.o) (h.n)), which is 2 - (n.o) / ((h.o) (h.n)); held to 8. */
+ * / ((h.o) (h.n)), which is 2 - (n.o) / ((h.o) (h.n)); clamped to 8. */
 #ifndef GLINT_KERNELS_WARD_WARD_H
 #define GLINT_KERNELS_WARD_WARD_H
 

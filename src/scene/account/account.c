@@ -11,8 +11,8 @@
 
 enum {
     TEXELS = 8,     /* of a place: four of each of two levels */
-    MAP_TEXELS = 4, /* of a place of stone */
-    POINTS = 16     /* of a light's disc, as it hides behind things */
+    MAP_TEXELS = 4, /* of a place on a translucent medium */
+    POINTS = 16     /* of a light's disc, as it hides behind objects */
 };
 
 struct account {
@@ -52,7 +52,7 @@ static int is_stone(const struct glint_scene *s,
 }
 
 /* Counts a place of SURFACE that is shaded: its lights, and the environment on
- * metal. Stone without a coat shows its map alone. */
+ * metal. Translucent medium without a coat shows its map alone. */
 static void count_lit(const struct glint_scene *s,
                       const struct glint_met_surface *surface,
                       struct glint_scene_part *part)
@@ -70,7 +70,7 @@ static void count_lit(const struct glint_scene *s,
         part->count[GLINT_SCENE_LOOKUPS] += s->cfg.ward_samples;
 }
 
-/* Goes on along RAY from SURFACE, and counts what is met and shaded there.
+/* Continues along RAY from SURFACE, and counts what is met and shaded there.
  * Returns 0 if there is nothing. */
 static int go_on(const struct glint_scene *s, struct glint_scene_ray *ray,
                  struct glint_met_surface *surface,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What glints on things: light over white, summed in squares of the picture
+ * What glints on objects: light over white, summed in squares of the picture
  * while that is drawn, and the squares that touch, which are one highlight.
  *
  * A square belongs to one row of tiles, which one worker draws, and all sums

@@ -22,7 +22,7 @@ enum {
 /* ---------------------------------------------------------------- projection
  */
 
-/* A plane that lines are cut at: inside of it the product is not negative. */
+/* A plane that lines are cut at: inside it the product is not negative. */
 struct side {
     int64_t by[3];
 };
@@ -32,7 +32,7 @@ static int64_t inside(const struct side *side, const int32_t v[3])
     return side->by[0] * v[0] + side->by[1] * v[1] + side->by[2] * v[2];
 }
 
-/* Cuts what of A .. B is outside of SIDE; returns 0 if nothing is left. */
+/* Cuts what of A .. B is outside SIDE; returns 0 if nothing is left. */
 static int cut(const struct side *side, int32_t a[3], int32_t b[3])
 {
     const int64_t in[2] = {inside(side, a), inside(side, b)};
@@ -54,7 +54,7 @@ static int cut(const struct side *side, int32_t a[3], int32_t b[3])
     return 1;
 }
 
-/* Sets SIDE[2] to planes along axis K of the picture, as far outside of its
+/* Sets SIDE[2] to planes along axis K of the picture, as far outside its
  * edges as the widest line reaches and two pixels more. FAR steps are below
  * 2^72, so they are cut to 30 bits, and coordinates are below 2^30. */
 static void set_sides(const struct glint_scene_view *v, int k,
@@ -378,7 +378,7 @@ static void list_spans(struct glint_scene_worker *w, int y)
     }
 }
 
-/* Returns the share of the samples of a pixel that see nothing nearer than
+/* Returns the fraction of the samples of a pixel that see nothing nearer than
  * DEPTH, q8. */
 static int seen_q8(const struct glint_scene_worker *w, int x, int y,
                    int32_t depth)
@@ -450,9 +450,9 @@ static int enter(const struct glint_scene *s, const struct glint_placed *ball,
     return 1;
 }
 
-/* Returns the share of pixels that a shell of COSINE_Q15 covers, q15: as much
- * as its material does not let pass at the rim, half of that in its middle.
- * Both factors are taken twice. */
+/* Returns the fraction of pixels that a shell of COSINE_Q15 covers, q15: as
+ * much as its material does not let pass at the rim, half of that in its
+ * middle. Both factors are taken twice. */
 static int64_t shell_q31(const struct glint_scene *s,
                          const struct glint_motion_layer *l, int32_t cosine_q15)
 {

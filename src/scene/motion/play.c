@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Moves the things of a recorded motion, and finds which sensors see which
+ * Moves the objects of a recorded motion, and finds which sensors see which
  * foods. All that is shown of a frame comes from that frame alone. */
 #include "scene/motion/play.h"
 
@@ -318,7 +318,7 @@ static void move_things(struct glint_scene *s, const int32_t turn_q30[4])
     }
 }
 
-/* Places all anew by the frame that is there. */
+/* Places all again by the frame that is there. */
 static void move(struct glint_scene *s)
 {
     struct glint_motion_state *m = s->motion;

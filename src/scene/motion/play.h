@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * A recorded motion in a scene: play, which moves things and finds what is
+ * A recorded motion in a scene: play, which moves objects and finds what is
  * seen, and layers, which draws what is about them.
  *
- * Shells and lines are no things: rays do not meet them. Once the things of a
- * pixel are shaded they are laid over it from back to front, where no sample
+ * Shells and lines are not objects: rays do not meet them. Once the objects of
+ * a pixel are shaded they are laid over it from back to front, where no sample
  * sees anything nearer. */
 #ifndef GLINT_SCENE_MOTION_PLAY_H
 #define GLINT_SCENE_MOTION_PLAY_H
@@ -39,7 +39,7 @@ struct glint_motion_state {
     int sensor;                      /* that the camera is in, or -1 */
     uint32_t shown;                  /* kinds, by bits */
     int32_t size, shell, line, edge; /* of body, shells, lines and box; steps */
-    /* Where things are, steps, and which sensors see each food. */
+    /* Where objects are, steps, and which sensors see each food. */
     struct glint_scene_turn turn;
     int32_t body[3], sensor_at[GLINT_MOTION_MAX_SENSORS][3];
     int32_t axis_q30[GLINT_MOTION_MAX_SENSORS][3];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The maps of translucent things: memory, what is to be done in a frame, and
+ * The maps of translucent objects: memory, what is to be done in a frame, and
  * what a place shows. */
 #include "base/compiler.h"
 #include "base/divide.h"
@@ -45,7 +45,7 @@ struct glint_stone_state {
     int32_t around_q15; /* no surface has more from the environment */
 };
 
-/* Returns the share of light that passes the surface at a cosine, q15. */
+/* Returns the fraction of light that passes the surface at a cosine, q15. */
 static inline int32_t glint_stone_passes(const struct glint_stone_skin *skin,
                                          int32_t cosine_q30)
 {
@@ -417,7 +417,7 @@ static void add_light(const struct glint_scene *s,
     }
 }
 
-/* Sets SURFACE to texel (X, Y); returns 0 if it is none of the thing. */
+/* Sets SURFACE to texel (X, Y); returns 0 if it is none of the object. */
 static int find_surface(const struct glint_scene *s,
                         const struct glint_stone_skin *skin, int x, int y,
                         struct glint_met_surface *surface)
@@ -474,7 +474,8 @@ static const void *table_at(const struct glint_scene *s, uint32_t at)
     return (const unsigned char *)s->model.header + at;
 }
 
-/* The header of the stone of skin I, whose sides were checked with the scene.
+/* The header of the translucent medium of skin I, whose sides were checked with
+ * the scene.
  */
 static const struct glint_translucent_header *
 header_of(const struct glint_scene *s, uint32_t i)
@@ -511,7 +512,8 @@ static void carve_skin(const struct glint_scene *s, struct glint_arena *a,
         *skin = k;
 }
 
-/* Takes scratch for the largest of all stones, whatever their models. */
+/* Takes scratch for the largest of all translucent media, whatever their
+ * models. */
 static struct glint_spread_scratch carve_scratch(const struct glint_scene *s,
                                                  struct glint_arena *a)
 {
@@ -601,7 +603,7 @@ static enum glint_status open_stones(struct glint_scene *scene)
 /* ------------------------------------------------------------------ updating
  */
 
-/* Begins anew where things have moved since the map was lit. */
+/* Restarts where objects have moved since the map was lit. */
 static void forget(const struct glint_scene *s, struct glint_stone_skin *skin)
 {
     if (skin->is_lit && skin->moved == s->moved)
@@ -613,7 +615,7 @@ static void forget(const struct glint_scene *s, struct glint_stone_skin *skin)
     expose(s, skin);
 }
 
-/* Wants block (X, Y), which may lie outside of the map, lit. */
+/* Wants block (X, Y), which may lie outside the map, lit. */
 static void want_light(struct glint_stone_skin *skin, int x, int y)
 {
     int i;

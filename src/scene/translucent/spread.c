@@ -91,8 +91,8 @@ static inline int32_t code_of(const struct codes *f, int i)
 /* ------------------------------------------------------------------- light */
 
 /* Sets VALUE to the light that gets in at columns X .. X + N - 1 of row Y, all
- * in the map, none beyond a repeat of the stone. It is below 2^15, and so are
- * its products with codes over 2^bits. */
+ * in the map, none beyond a repeat of the translucent medium. It is below 2^15,
+ * and so are its products with codes over 2^bits. */
 static void set_piece(const struct glint_spread *s, int c, int x, int y, int n,
                       int16_t *value)
 {
@@ -112,7 +112,7 @@ static void set_piece(const struct glint_spread *s, int c, int x, int y, int n,
 }
 
 /* Sets VALUE[N] to the light at columns from X on of row Y, which may both lie
- * outside of the map. Returns 0 if there is none. */
+ * outside the map. Returns 0 if there is none. */
 static int set_row(const struct glint_spread *s, int c, int x, int y, int n,
                    int16_t *value)
 {

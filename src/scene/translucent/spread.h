@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Spreads the light on a map of texels as a baked stone does
+ * Spreads the light on a map of texels as a baked translucent medium does
  * (glint/scene/translucent.h), strip by strip.
  *
- *   in   light that gets in, 0 .. 32767 of any unit; the stone
+ *   in   light that gets in, 0 .. 32767 of any unit; the translucent medium
  *   out  light that comes out, 0 .. 32767 of that unit, where it saturates
  *
  * A strip is GLINT_STRIP columns of one channel. For each plane its rows are
@@ -21,9 +21,9 @@ enum { GLINT_STRIP = 32 };
 struct glint_spread {
     const struct glint_translucent *stone;
     glint_convolve_fn *convolve;
-    /* Of the map, powers of two; the stone is repeated over it. Of a ball WIDTH
-     * is once around, and rows go on beyond the poles; else the map is dark
-     * outside. */
+    /* Of the map, powers of two; the translucent medium is repeated over it. Of
+     * a ball WIDTH is once around, and rows continue beyond the poles; else the
+     * map is dark outside. */
     int width, height;
     int is_ball;
     int16_t *light[3]; /* [height][width] */
@@ -52,7 +52,8 @@ struct glint_spread_scratch {
     int32_t *total; /* [height][GLINT_STRIP]: of all planes, by f */
 };
 
-/* Takes the scratch of one worker for STONE on maps of HEIGHT rows. */
+/* Takes the scratch of one worker for Translucent medium on maps of HEIGHT
+ * rows. */
 struct glint_spread_scratch
 glint_spread_carve(struct glint_arena *arena,
                    const struct glint_translucent *stone, int height);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks a baked stone once, so that spreading light need not check anything.
+ * Checks a baked translucent medium once, so that spreading light need not
+ * check anything.
  */
 #include "glint/scene/translucent.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Light from all around on the surfaces of a scene: what the irradiance map
+ * Environment light on the surfaces of a scene: what the irradiance map
  * shows of diffuse colour, and Ward's lobe of brushed metal. */
 #include "base/log2.h"
 #include "base/real.h"
@@ -35,8 +35,8 @@ static inline void glint_ward_turn(const struct glint_ward_state *w,
 
 /* ------------------------------------------------------------------- behind */
 
-/* An environment as it is seen itself, behind things and in mirrors: its levels
- * and the discs of its bright lights, blurred as far as a pixel sees. */
+/* An environment as it is seen itself, behind objects and in mirrors: its
+ * levels and the discs of its bright lights, blurred as far as a pixel sees. */
 enum {
     LOG2_PI_Q16 = 108232,
     LEAST_SPREAD_Q40 = 1 << 14 /* the lights that are points have a disc */
@@ -120,7 +120,7 @@ static void behind(const struct glint_scene *scene, const int32_t toward_q30[3],
  *
  *     level weight exp(-slope) / (4 ax ay (h.o) (h.n)^3)
  *
- * with the weight of ward.c, held to 8. */
+ * with the weight of ward.c, clamped to 8. */
 enum { MOST_SLOPE = 16, LOG2_E_Q16 = 94548 };
 
 /* The half vector and what it is to the surface; all q30 but slopes. */
@@ -274,7 +274,7 @@ static struct glint_ward_state *carve(const struct glint_scene *scene,
     return placed;
 }
 
-/* Makes lobe I anew. A scale is 1 .. 2, a factor of colours, times a power of
+/* Makes lobe I again. A scale is 1 .. 2, a factor of colours, times a power of
  * two. */
 static void set_lobe(const struct glint_scene *s, uint32_t i)
 {

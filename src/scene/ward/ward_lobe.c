@@ -93,8 +93,8 @@ static void settle(int n, int axis, uint32_t want_q32,
         slope_q16[k][axis] = q_mul(slope_q16[k][axis], (int32_t)by_q16, 16);
 }
 
-/* Returns b of the constant footprint F_Q16, held to 3/4 of the square of the
- * smaller alpha. */
+/* Returns b of the constant footprint F_Q16, clamped to 3/4 of the square of
+ * the smaller alpha. */
 static uint64_t blur_q48(const int32_t alpha_q24[2], int32_t f_q16)
 {
     const uint64_t smaller = (uint64_t)q_smaller(alpha_q24[0], alpha_q24[1]);

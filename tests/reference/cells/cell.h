@@ -30,7 +30,7 @@ void glint_corners_gather(struct glint_corners *corners,
                           int n);
 
 /* Returns the pixel in which the mean of CORNERS lies, as a box; empty if that
- * is outside of the picture. */
+ * is outside the picture. */
 struct glint_box glint_corners_pixel(const struct glint_corners *corners,
                                      int width, int height);
 

@@ -257,8 +257,8 @@ static int emit_one(struct glint_ghost_grid *g, const int32_t *q, int n,
     return emit_cell(g, &corners, &p, out);
 }
 
-/* Adds a cell that is no convex quad: as two triangles, or as the one triangle
- * whose corners are not lost. Returns whether light was dropped. */
+/* Adds a cell that is not a convex quad: as two triangles, or as the one
+ * triangle whose corners are not lost. Returns whether light was dropped. */
 static int emit_triangles(struct glint_ghost_grid *g, const int32_t *q,
                           struct glint_primitive *out)
 {

@@ -7,7 +7,7 @@
 enum { HALF_Q8 = 128 };
 
 /* The edges of a primitive: edge I runs from corner I to corner I + 1. A
- * triangle has a fourth edge that everything is inside of. */
+ * triangle has a fourth edge that everything is inside. */
 struct edges {
     int n;
     int64_t at[4];        /* value at the pixel, >= 0 inside */
@@ -94,7 +94,7 @@ static void corner_weights(const struct edges *e, int32_t *weight_q16)
                       (wide + 15));
 }
 
-/* Returns the share, q16, that the clips leave of a pixel, or of one of its
+/* Returns the fraction, q16, that the clips leave of a pixel, or of one of its
  * PLACES parts across. Distances in pixels become cover over half a pixel on
  * either side of the cut, or without antialiasing at once. */
 static int32_t cover_of(const struct glint_cell_raster *r,

@@ -232,7 +232,7 @@ static void trace_ray(const struct zone_trace *t, double i, double j,
 }
 
 /* Traces rays at the middles of SCALE^2 * ACROSS * DOWN cells. If SCALE is
- * above 1, most rays far outside of what is seen are left out. Returns how many
+ * above 1, most rays far outside what is seen are left out. Returns how many
  * get through. */
 static int trace_grid(const struct zone_trace *t, int scale,
                       struct glint_shared_rays *rays)

@@ -9,7 +9,7 @@
  * of 32 bits resolve 1e-5. */
 #define LARGE 100.0
 
-/* A term counts as a combination of others if less than this share of its
+/* A term counts as a combination of others if less than this fraction of its
  * length is left when they are subtracted. */
 #define DEPENDENT 1e-7
 
@@ -19,7 +19,7 @@
 #define FAR_WEIGHT  0.01
 #define NEAR_EXCESS 1.1
 
-/* Relative radius that a lost ray is fitted to if it would get through. */
+/* Relative radius that a invalid ray is fitted to if it would get through. */
 #define LOST_RADIUS 1.1
 
 /* ------------------------------------------------------------------ vectors */

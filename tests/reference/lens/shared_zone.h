@@ -62,7 +62,7 @@ struct glint_shared_zone {
      * ray, times its weight, and one for each coefficient. */
     double q[GLINT_SHARED_TERMS][GLINT_SHARED_ROWS], left[GLINT_SHARED_ROWS];
     double r[GLINT_SHARED_TERMS][GLINT_SHARED_TERMS]; /* [column][row] */
-    /* Share of the output along each row of q. */
+    /* Fraction of the output along each row of q. */
     double share[GLINT_SHARED_TERMS];
     /* For each term, the direction that no other term shares, as coordinates on
      * q, and the output's share along it. */

@@ -199,7 +199,7 @@ static double judge_row(const struct glint_scatter_rows *rows,
     return square;
 }
 
-/* Entries of all rows that are inside of the square. */
+/* Entries of all rows that are inside the square. */
 static double inside(const struct glint_scatter_rows *rows)
 {
     double n = 0;

@@ -34,7 +34,7 @@ struct sums {
     double *up, *gram, *value, *weight, *left;
 };
 
-/* Weights of row X by least squares, one after the other, held at 0. */
+/* Weights of row X by least squares, one after the other, clamped to 0. */
 static void set_weights(const struct glint_positive *p, int x,
                         const struct sums *s)
 {
@@ -77,7 +77,7 @@ static void add_row(const struct glint_positive *p, int x, const struct sums *s)
     }
 }
 
-/* h by least squares, one after the other, held at 0. */
+/* h by least squares, one after the other, clamped to 0. */
 static void set_h(const struct glint_positive *p, const struct sums *s)
 {
     const size_t m = (size_t)p->m, terms = (size_t)p->terms;

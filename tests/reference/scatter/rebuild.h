@@ -2,7 +2,7 @@
  *
  * Published models of scattering, each as the rows that it makes of rows.
  *
- * Entries outside of the square are data as any other for all of them but the
+ * Entries outside the square are data as any other for all of them but the
  * profiles of [Song09], as published: they are 0. What a model makes of them is
  * dropped. */
 #ifndef REFERENCE_SCATTER_REBUILD_H
@@ -23,7 +23,7 @@ glint_rebuild_fn glint_rebuild_svd, glint_rebuild_log_svd, glint_rebuild_tucker,
 /* The largest entry. */
 double glint_scatter_peak(const struct glint_scatter_rows *rows);
 
-/* Sets channel C of the row of texel X of REBUILT, 0 outside of the square. */
+/* Sets channel C of the row of texel X of REBUILT, 0 outside the square. */
 void glint_rebuilt_row(const struct glint_scatter_rows *rebuilt, int x, int c,
                        const double *row);
 
@@ -32,8 +32,8 @@ void glint_rebuilt_row(const struct glint_scatter_rows *rebuilt, int x, int c,
 double glint_tucker_term(float *left, int n, int k2, double *f, double *h);
 
 /* Non-negative F[terms][n] and H[terms][m] of V, n rows of m, by alternating
- * least squares, one term after the other and held at 0 [Cichocki09]; ROUNDS of
- * them, of which none raises the weighted error. */
+ * least squares, one term after the other and clamped to 0 [Cichocki09]; ROUNDS
+ * of them, of which none raises the weighted error. */
 struct glint_positive {
     int n, m, terms;
     void (*row)(const void *ctx, int i, double *value, double *weight);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The page of a stone: a table, curves and pictures of all models.
+ * The page of a translucent medium: a table, curves and pictures of all models.
  */
 #include "measure/plots/plot.h"
 #include "reference/scatter/stone_models.h"

@@ -135,7 +135,7 @@ enum glint_status glint_rebuild_subedit(const struct glint_scatter_rows *rows,
     (void)o;
     if (!(p.floor > 0)) {
         free(memory);
-        return GLINT_OK; /* a black stone is 0 */
+        return GLINT_OK; /* a black translucent medium is 0 */
     }
     if (memory) {
         p.profile = memory;

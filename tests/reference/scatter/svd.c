@@ -173,7 +173,7 @@ enum glint_status glint_rebuild_log_svd(const struct glint_scatter_rows *rows,
     enum glint_status status = GLINT_OK;
 
     if (!(peak > 0))
-        return GLINT_OK; /* a black stone is 0 */
+        return GLINT_OK; /* a black translucent medium is 0 */
     if (!(o->a > 0))
         status = search(rows, o, &early);
     p.a = o->a * peak;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Published models of scattering, on small stones: C1 and C3 to C13 of what the
- * scene half has to show (src/README.md has the sources).
+ * Published models of scattering, on small translucent media: C1 and C3 to C13
+ * of what the scene half has to show (src/README.md has the sources).
  */
 #include <math.h>
 #include <setjmp.h>
@@ -20,7 +20,7 @@
 
 enum { SIDE = 24, KERNEL = 11, K2 = KERNEL * KERNEL, TEXELS = SIDE * SIDE };
 
-/* Stones that all tests read. */
+/* Translucent media that all tests read. */
 static struct glint_scatter_rows stone[2]; /* chess, veins */
 
 static int open_stones(void **state)
@@ -221,7 +221,7 @@ static void test_c6_logarithms(void **state)
 }
 
 /* C7: what is held above 0 or fitted by logarithms is further off, or as far:
- * the decomposition spends a little on entries outside of the square. */
+ * the decomposition spends a little on entries outside the square. */
 static void test_c7_held(void **state)
 {
     (void)state;
@@ -352,8 +352,8 @@ static void test_c13_spread(void **state)
     glint_scatter_judgement_close(&j);
 }
 
-/* A black stone, one of one texel: all models, finite. What is out of range is
- * refused. */
+/* A black translucent medium, one of one texel: all models, finite. What is out
+ * of range is refused. */
 static void test_extremes(void **state)
 {
     struct glint_scatter_rows black, one;

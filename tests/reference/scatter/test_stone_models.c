@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The page of a stone's models.
+ * The page of a translucent medium's models.
  */
 #include <setjmp.h>
 #include <stdarg.h>

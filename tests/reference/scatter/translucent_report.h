@@ -60,7 +60,7 @@ double
 glint_scatter_candidate_sums(const struct glint_scatter_candidate *candidate,
                              double texels, double entries, bool kept);
 
-/* Owned: pointers are malloc'ed. Shares are of all entries inside of the
+/* Owned: pointers are malloc'ed. Shares are of all entries inside the
  * square, the largest entry of the data is 1. */
 struct glint_scatter_judgement {
     struct glint_scatter_candidate candidate; /* with what was searched for */
@@ -68,7 +68,7 @@ struct glint_scatter_judgement {
     double seconds;                           /* processor time of the fit */
     double rmse, entry_db, light_db;
     double p50, p95, largest; /* of the errors of texels in ERROR */
-    double negative;          /* share of entries below 0 */
+    double negative;          /* fraction of entries below 0 */
     double one_way;           /* rms of R'(x, y) - R'(y, x) */
     double energy;            /* largest sum of a row */
     double *error;            /* [side * side] rms of the row's error */

@@ -127,7 +127,7 @@ static void fit_term(const struct tucker *p)
 }
 
 /* Sets COEF to the polynomial in MEAN that is nearest to the row of channel C,
- * entries inside of the square. */
+ * entries inside the square. */
 static void regress(const struct tucker *p, int x, int c, int degree,
                     const double *mean, double *coef)
 {

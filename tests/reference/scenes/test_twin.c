@@ -318,8 +318,8 @@ static void test_a10_acne(void **state)
     "material w phong 1 0 0 colour .2 .4 .8\n"                \
     "sphere b at 0 0 0 radius 1 material g\n"
 
-/* A11: what is behind a ball is seen straight through it, by its share; with
- * the index 1 the same to the bit. Where there is no thing the picture is. */
+/* A11: what is behind a ball is seen straight through it, by its fraction; with
+ * the index 1 the same to the bit. Where there is no object the picture is. */
 static void test_a11_pass(void **state)
 {
     static const char plain[] = GLASS("") "sphere w at 1 0 6 radius .5 "
@@ -344,7 +344,7 @@ static void test_a11_pass(void **state)
 }
 
 /* A12: a ray half a radius off the middle of a ball of index 1.5 enters at 30
- * degrees and goes on at asin(1/3) = 19.4712; it is turned by twice the
+ * degrees and continues at asin(1/3) = 19.4712; it is turned by twice the
  * difference and crosses the axis .8949 behind the ball's rim. */
 static void test_a12_refract(void **state)
 {
@@ -492,8 +492,8 @@ static void test_catcher(void **state)
     assert_true(look(text, 3, 1, 0, 0, -1, 0).cover == 0);
 }
 
-/* Rays through a closed mesh of triangles that share edges and corners meet it
- * as those through all of its triangles do. */
+/* Rays through a closed mesh of triangles that fraction edges and corners meet
+ * it as those through all of its triangles do. */
 static void test_tree(void **state)
 {
     char text[16000] = "hand left\nmaterial m phong 1 0 0\n";

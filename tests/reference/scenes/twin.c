@@ -101,7 +101,7 @@ static double radius_of(const struct glint_described_light *light,
                : fmin(light->radius / vec_unit(off), .5);
 }
 
-/* Points of a light's disc that shadows ask for, as the run time has them. */
+/* Points of a light's disc that shadows request, as the run time has them. */
 static const double four[4][2] = {
     {.66446, .24185}, {-.24185, .66446}, {-.66446, -.24185}, {.24185, -.66446}};
 static const double sixteen[16][2] = {
@@ -139,8 +139,8 @@ static void aim(const struct glint_description *scene,
     vec_unit(toward);
 }
 
-/* Returns the share of the light, DISTANCE away, that reaches HIT. A10: what is
- * farther away than the light hides nothing. */
+/* Returns the fraction of the light, DISTANCE away, that reaches HIT. A10: what
+ * is farther away than the light hides nothing. */
 static double reaches(const struct twin *twin, const struct twin_hit *hit,
                       const struct glint_described_light *light,
                       const double toward[3], double distance)
@@ -261,7 +261,7 @@ static void mirror(const double d[3], const double n[3], double to[3])
     vec_add(d, -2 * vec_dot(d, n), n, to);
 }
 
-/* A ray on its way through things. */
+/* A ray on its way through objects. */
 struct passing {
     struct twin_ray ray;
     double weight; /* of what it meets */
@@ -296,7 +296,7 @@ static void cross_ball(const struct twin *twin, const struct twin_hit *hit,
 }
 
 /* Takes P through the surface of HIT: a ball is left where the ray leaves it
- * (A11), of other things each surface counts. */
+ * (A11), of other objects each surface counts. */
 static void go_through(const struct twin *twin, const struct twin_hit *hit,
                        struct passing *p)
 {
@@ -376,7 +376,7 @@ static void add_behind(const struct twin *twin, const struct twin_ray *ray,
 
 /* ---------------------------------------------------------- primary rays */
 
-/* Returns the share of the light at HIT, on a catcher, that things hide. */
+/* Returns the fraction of the light at HIT, on a catcher, that objects hide. */
 static double shadow_at(const struct twin *twin, const struct twin_hit *hit)
 {
     const struct glint_description *s = twin->scene;

@@ -9,15 +9,15 @@
  *     twin_close(&twin);
  *
  *   in   a description; the size of the picture
- *   out  of each pixel the light of things, and the share of what is behind
+ *   out  of each pixel the light of objects, and the fraction of what is behind
  *        that they hide
  *
  * Method: primary rays at points of each pixel; at a hit Phong's terms of all
- * lights that no thing hides, then one ray that is mirrored, and one straight
+ * lights that no object hides, then one ray that is mirrored, and one straight
  * on or refracted through eight surfaces at most. What these meet is lit
- * likewise, but mirrors nothing; twin_around.c has light from all around.
+ * likewise, but mirrors nothing; twin_around.c has environment light.
  * Triangles by [Moller97] in a tree of boxes, spheres and planes by their
- * equations. A ray skips the thing it starts from, or of a mesh the triangle.
+ * equations. A ray skips the object it starts from, or of a mesh the triangle.
  */
 #ifndef GLINT_TOOLS_SCENES_TWIN_H
 #define GLINT_TOOLS_SCENES_TWIN_H
@@ -40,7 +40,7 @@ struct twin {
     const struct glint_description *scene;
     int shadow_points; /* 1, 4 or 16 of a light's disc; twin_open() sets 1 */
     /* 1 to 32 of brushed metal's lobe, as the run time takes them; it sets 8.
-     * More: so many of the whole lobe, turned anew for each ray, from the
+     * More: so many of the whole lobe, turned again for each ray, from the
      * finest level. */
     int ward_samples;
     double pixel_tan; /* tangent of a pixel; twin_render() sets it */
@@ -62,7 +62,7 @@ struct twin_ray {
     int skip_triangle;
 };
 
-/* Where a ray meets a thing. */
+/* Where a ray meets an object. */
 struct twin_hit {
     double t;
     double place[3];
@@ -99,7 +99,7 @@ void twin_camera_ray(const struct twin *twin, const struct twin_view *view,
 bool twin_meet(const struct twin *twin, const struct twin_ray *ray, double most,
                struct twin_hit *hit);
 
-/* Returns whether RAY meets any thing but catchers before MOST. */
+/* Returns whether RAY meets any object but catchers before MOST. */
 bool twin_is_hidden(const struct twin *twin, const struct twin_ray *ray,
                     double most);
 
@@ -109,7 +109,7 @@ bool twin_meet_object(const struct twin *twin, int object,
                       struct twin_hit *hit);
 
 /* Sets what is left of a HIT of object O whose triangle is known, and whose uv
- * are the shares of its second and third corner. */
+ * are the fractions of its second and third corner. */
 void twin_finish_triangle(const struct twin *twin,
                           const struct glint_described_object *o,
                           struct twin_hit *hit);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The twin of light from all around: lookups in the baked environment, and
+ * The twin of environment light: lookups in the baked environment, and
  * Ward's lobe over it and under lights, in double precision, along the paths of
  * the run time. All that is in the axes of baked scenes, whose z runs away. */
 #include "reference/scenes/twin_around.h"
@@ -48,7 +48,7 @@ static void place_of(const double toward[3], double place[2])
 }
 
 /* Returns the index of texel (X, Y) of a square of SIDE, past whose edges it
- * goes on as the octahedron does. */
+ * continues as the octahedron does. */
 static int index_of(int x, int y, int side)
 {
     if (x < 0 || x >= side) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Where rays meet things. */
+ * Where rays meet objects. */
 #include "reference/scenes/twin.h"
 
 #include "glint/view.h"

@@ -11,8 +11,8 @@
 enum { CHANNELS = 3 };
 
 struct twin_map {
-    int material; /* -1: the object is of no stone */
-    int of;       /* which stone it is */
+    int material; /* -1: the object is of no translucent medium */
+    int of;       /* which translucent medium it is */
     bool is_ball;
     int width, height;
     struct glint_translucent stone;
@@ -157,7 +157,7 @@ void twin_close_stones(struct twin *twin)
 
 /* -------------------------------------------------------------------- light */
 
-/* Returns the share of light that passes a surface of INDEX: [Fresnel]. */
+/* Returns the fraction of light that passes a surface of INDEX: [Fresnel]. */
 static double passes(const struct glint_described_material *m,
                      const struct twin_map *map, double cosine)
 {

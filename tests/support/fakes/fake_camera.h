@@ -114,7 +114,7 @@ int fake_camera_fail_at(int n, int number, bool forever);
 /* Returns how many blocks of the heap the code under test has not freed yet. */
 int fake_camera_blocks(void);
 
-/* Returns how often the heap was asked for memory since the program began. */
+/* Returns how often the heap was requested memory since the program began. */
 int fake_camera_asked(void);
 
 /* Advances the clock by US microseconds; only sleeping advances it

@@ -189,9 +189,9 @@ static void put_pairs(struct model_image *m, enum hostile_family family,
     model_end(m, ghost, PAIRS, of, PAIRS);
 }
 
-/* Writes ghosts whose rays are lost, by NUMBER modulo 3: 0: all of them, as
+/* Writes ghosts whose rays are invalid, by NUMBER modulo 3: 0: all of them, as
  * their energy is negative; 1: stripes of them, for that reason; 2: those that
- * land far outside of the picture. */
+ * land far outside the picture. */
 static void put_lost(struct model_image *m, int number, uint32_t *seed)
 {
     enum { N = 300 };

@@ -8,7 +8,7 @@
 
 #include "support/stage.h"
 
-/* Places as shares of the picture, powers and colours: what glint finds in
+/* Places as fractions of the picture, powers and colours: what glint finds in
  * bridge_night, lights_water, esplanade_lamps and night_town of the corpus. */
 static const struct street_light {
     double x, y, power, rgb[3];

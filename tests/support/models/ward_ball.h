@@ -33,7 +33,8 @@ void ward_look(const struct glint_environment *e,
                const struct glint_ward_options *options, ward_picture to);
 
 /* Returns the PSNR of GOT, dB, with the median of WANT at 1/4 of white and all
- * held at white: of linear light, or of what a display is sent, codes of sRGB.
+ * clamped to white: of linear light, or of what a display is sent, codes of
+ * sRGB.
  */
 double ward_psnr(ward_picture want, ward_picture got);
 double ward_psnr_codes(ward_picture want, ward_picture got);

@@ -353,7 +353,7 @@ static void test_parts(void **state)
 }
 
 /* Two barrels cut this ghost within 0.0008 radii of each other: the second one
- * must be used only where a smaller error is asked for. */
+ * must be used only where a smaller error is requested. */
 static void test_near_barrels(void **state)
 {
     static const double band_nm[2] = {400, 700};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Baked scenes: that the run time accepts what is written, and that it says
+ * Baked scenes: that the run time accepts what is written, and that it states
  * what the text said, in steps. */
 #include <math.h>
 #include <setjmp.h>
@@ -363,7 +363,7 @@ static void test_margin(void **state)
 }
 
 /* The same text gives the same bytes; what is too small beside the rest is
- * said; extremes open. */
+ * reported; extremes open. */
 static void test_extremes(void **state)
 {
     static const char *const texts[] = {

@@ -418,7 +418,7 @@ static void test_mesh_texts(void **state)
     free(mesh);
 }
 
-/* A sun that no code would show, and weights that leave things dark, must be
+/* A sun that no code would show, and weights that leave objects dark, must be
  * warned of, and what is as it should be must not. */
 static void test_warnings(void **state)
 {

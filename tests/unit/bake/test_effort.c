@@ -18,8 +18,8 @@
 enum { HEAD = 32 }; /* fits before the first ghost, see effort.c */
 
 /* Bakes N ghosts of WORK[] fits each on one worker, EXPECTED if that is not 0;
- * the share told of each grows as its work does. Sets SAID to the time left
- * that is said at a quarter, half and three quarters of the time, over that
+ * the fraction told of each grows as its work does. Sets SAID to the time left
+ * that is reported at a quarter, half and three quarters of the time, over that
  * which is. */
 static void bake(const double *work, int n, bool wide, double expected,
                  double said[3])
@@ -51,7 +51,7 @@ static void bake(const double *work, int n, bool wide, double expected,
     assert_true(glint_effort_done(&e) > 0.999);
 }
 
-/* Ghosts that take alike: what is said is true within a quarter. */
+/* Ghosts that take alike: what is reported is true within a quarter. */
 static void test_alike(void **state)
 {
     double work[100], said[3];
@@ -122,8 +122,8 @@ static void test_workers(void **state)
     }
 }
 
-/* The last ghosts take nearly all, as was expected: what is said is true within
- * a factor of two from the first quarter on. */
+/* The last ghosts take nearly all, as was expected: what is reported is true
+ * within a factor of two from the first quarter on. */
 static void test_late(void **state)
 {
     double work[100], said[3];

@@ -134,7 +134,7 @@ static void load_fisheye(struct glint_path *path, int ghost, double nm)
 }
 
 /* Ghosts of a fisheye enter by spots of a twentieth of a millimetre in a front
- * of 80, about which all rays are lost. Every colour has one, beside that of
+ * of 80, about which all rays are invalid. Every colour has one, beside that of
  * the colour before. */
 static void test_spots_of_fisheye(void **state)
 {

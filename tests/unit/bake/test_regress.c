@@ -85,7 +85,7 @@ static double cubic(double u, double v)
 
 /* Of a twentieth of the range powers of u are nearly alike: what u^3 has beside
  * the lower ones, 10^-5 of its length, is lost in differences of squares, and
- * is worked out anew. */
+ * is worked out again. */
 static void test_nearly_dependent(void **state)
 {
     const double x[GLINT_VARIABLES] = {0.967, 0.4, 0, 0};

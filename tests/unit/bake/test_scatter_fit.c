@@ -180,8 +180,8 @@ static void test_near(void **state)
     glint_scatter_close(&rows);
 }
 
-/* Black stones, one texel, kernels that lead beyond the square from everywhere:
- * finite, and exact where there is nothing to lose. */
+/* Black translucent media, one texel, kernels that lead beyond the square from
+ * everywhere: finite, and exact where there is nothing to lose. */
 static void test_extremes(void **state)
 {
     static const int shape[3][2] = {{1, 9}, {3, 13}, {9, 1}};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rows of a stone: the closed form, reciprocity, energy, measured rows. Tests
- * are named by the rows of shared figures that they show: C1, C2.
+ * Rows of a translucent medium: the closed form, reciprocity, energy, measured
+ * rows. Tests are named by the rows of shared figures that they show: C1, C2.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -69,8 +69,9 @@ static double exitance(const struct glint_slab *s, double r)
     return s->albedo * sum / (4 * 3.14159265358979);
 }
 
-/* One stone, away from its rim: within 2 % of the closed form, entry by entry
- * from two texels on and in the sum; modes alone from three texels on. */
+/* One translucent medium, away from its rim: within 2 % of the closed form,
+ * entry by entry from two texels on and in the sum; modes alone from three
+ * texels on. */
 static void test_closed_form(void **state)
 {
     const struct glint_stone stone = stone_of(GLINT_STONE_EVEN);
@@ -106,8 +107,8 @@ static void test_closed_form(void **state)
     glint_scatter_close(&rows);
 }
 
-/* The whole of what leaves a stone without far face: the total of [Jensen01],
- * equation 6 of the dipole. */
+/* The whole of what leaves a translucent medium without far face: the total of
+ * [Jensen01], equation 6 of the dipole. */
 static void test_closed_total(void **state)
 {
     struct glint_stone stone = stone_of(GLINT_STONE_EVEN);
@@ -160,7 +161,7 @@ static void test_c1_reciprocal(void **state)
     }
 }
 
-/* C2: an offset leads from the texel that is lit; outside of the square it is
+/* C2: an offset leads from the texel that is lit; outside the square it is
  * 0, and measured rows come back as they were. */
 static void test_c2_places(void **state)
 {
@@ -224,7 +225,8 @@ static void test_c2_light(void **state)
 }
 
 /* Materials at the ends of their ranges, alone and beside each other, in thin
- * and thick slabs: finite, not below 0, no more than all. Dark stones are dark.
+ * and thick slabs: finite, not below 0, no more than all. Dark translucent
+ * media are dark.
  */
 static void test_extremes(void **state)
 {
@@ -324,7 +326,7 @@ static bool soon(void *ctx)
     return seen[1] > seen[2];
 }
 
-/* Work says how far it is, and ends when it is told to, with nothing left. */
+/* Work states how far it is, and ends when it is told to, with nothing left. */
 static void test_watched(void **state)
 {
     const struct glint_stone stone = stone_of(GLINT_STONE_CHESS);

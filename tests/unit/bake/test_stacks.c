@@ -19,7 +19,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Shares of light reflected and passed. */
+/* Fractions of light reflected and passed. */
 struct shares {
     double r, t;
 };

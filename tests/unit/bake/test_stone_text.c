@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Texts of stones: what they say, and where they are refused.
+ * Texts of translucent media: what they say, and where they are refused.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -155,7 +155,7 @@ static void test_refused(void **state)
 }
 
 /* Returns the mean difference of SHARE between columns, or rows, that meet:
- * within the stone, or at its edge. */
+ * within the translucent medium, or at its edge. */
 static double mean_step(const double *share, int side, bool rows, bool edge)
 {
     const int first = edge ? side - 1 : 0, end = edge ? side : side - 1;
@@ -171,7 +171,8 @@ static double mean_step(const double *share, int side, bool rows, bool edge)
     return sum / ((double)side * (end - first));
 }
 
-/* Around a ball a stone meets itself: steps there are as those within. */
+/* Around a ball a translucent medium meets itself: steps there are as those
+ * within. */
 static void test_veins_go_on_at_edges(void **state)
 {
     enum { SIDE = 64, SEEDS = 20 };

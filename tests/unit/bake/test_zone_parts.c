@@ -54,7 +54,8 @@ static void test_halves(void **state)
 }
 
 /* A zone of a ghost that hides nothing, from FROM to TO degrees, and an attempt
- * that left errors of LEFT tolerances, before 10. Of DEPTH 0 it is no part. */
+ * that left errors of LEFT tolerances, before 10. Of DEPTH 0 it is not a part.
+ */
 struct attempted {
     bool shaped, far;
     double from, to, left;
@@ -109,7 +110,7 @@ static void test_shaped(void **state)
         {true, false, 5, 8, 9, 5, 4, GLINT_PART},
         {true, false, 5, 8, 9, 6, 4, GLINT_KEEP},
         {true, false, 5, 8, 4, 5, 4, GLINT_KEEP},
-        /* at the axis by the tolerance, if that asks for more */
+        /* at the axis by the tolerance, if that requests more */
         {false, false, 0, 3, 9, 4, 5, GLINT_PART},
         {true, false, 0, 3, 9, 5, 4, GLINT_PART},
         {true, false, 0, 3, 9, 6, 4, GLINT_KEEP},

@@ -146,7 +146,7 @@ static double given(struct glint_engine *engine, const struct glint_lamp *lamp,
     return report.scale;
 }
 
-/* A given lamp must be exposed as a found one: of a picture by itself by its
+/* A given lamp must be exposed as a found one: of a still picture by its
  * flare drawn small, whatever was drawn before; of a video from picture to
  * picture, in small steps. */
 static void test_given(void **state)

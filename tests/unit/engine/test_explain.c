@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * What is said of a frame must be true: counts are those of the frame that is
- * drawn, parts add up to it, each reason occurs where it must, and the picture
- * shows the tiles that were touched.
+ * What is reported of a frame must be true: counts are those of the frame that
+ * is drawn, parts add up to it, each reason occurs where it must, and the
+ * picture shows the tiles that were touched.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -122,7 +122,7 @@ static void test_frame(void **state)
     for (int i = 0; i < N_LAMPS; i++)
         assert_int_equal(glint_frame_is_beyond(&frame, &lamps[i]), i == 2);
     /* At 12 degrees ghosts 5 and 7 let nothing through. At 8 degrees they do,
-     * but ghost 5 falls beside the picture. */
+     * but ghost 5 falls off-screen. */
     assert_int_equal(e.light[0].of[GLINT_OUTCOME_CLOSED], 2 * 3);
     assert_int_equal(e.ghost[5].of[GLINT_OUTCOME_CLOSED], 3);
     assert_int_equal(e.ghost[5].of[GLINT_OUTCOME_OUTSIDE], 3);

@@ -2,7 +2,7 @@
  *
  * A frame in reserved memory: where that is enough, its picture must be that of
  * a frame that takes memory as it needs it; else something is left out and
- * counted. It must never ask for memory.
+ * counted. It must never request memory.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -142,7 +142,7 @@ static void test_same_as_grown(void **state)
         assert_int_equal(n_asked, 0);
         make(&grown);
         draw(&grown, n_of[i], want, &other);
-        /* A frame of its own must ask for memory, else the count sees
+        /* A frame of its own must request memory, else the count sees
          * nothing. */
         assert_true(n_of[i] == 0 || n_asked > 0);
         assert_int_equal(n_different(want, got), 0);
@@ -199,8 +199,8 @@ static void test_too_little(void **state)
     glint_frame_finish(&frame);
 }
 
-/* Limits of work and of memory must make a frame coarser or leave things out of
- * it, and say so; without them the next frame must be as before. */
+/* Limits of work and of memory must make a frame coarser or leave objects out
+ * of it, and say so; without them the next frame must be as before. */
 static void test_bounds(void **state)
 {
     static uint8_t want[BYTES], got[BYTES];

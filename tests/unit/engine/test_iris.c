@@ -179,7 +179,7 @@ static void test_area_grows(void **state)
     }
 }
 
-/* A setup must refuse what is out of range, and measure its light anew. */
+/* A setup must refuse what is out of range, and measure its light again. */
 static void test_setup(void **state)
 {
     struct glint_setup s = setup_of(6, 0, 0);

@@ -60,7 +60,7 @@ static void draw_square(struct glint_image *image, int x0, int y0, int side)
         memset(image->plane[0] + y * W + x0, 255, (size_t)side);
 }
 
-/* In a video, a lamp that stands still must be as in a picture by itself, to
+/* In a video, a lamp that stands still must be as in a still picture, to
  * the last bit; a new lamp must rise; after a restart a lamp must have its full
  * power at once. */
 static void test_tracked_lamps(void **state)
@@ -101,7 +101,7 @@ static void test_tracked_lamps(void **state)
 }
 
 /* A lamp in a glare whose clipped core falls off over as much as its radius: in
- * a video it may be a point, but in a picture by itself its axes must be a
+ * a video it may be a point, but in a still picture its axes must be a
  * sixth of its size. */
 static void test_lamp_in_glare(void **state)
 {
@@ -210,8 +210,8 @@ static void test_lists(void **state)
     }
 }
 
-/* A text that is no list must be refused, with the line of its mistake. In the
- * third text power times colour is too large for a picture. */
+/* A text that is not a list must be refused, with the line of its mistake. In
+ * the third text power times colour is too large for a picture. */
 static void test_refused_lists(void **state)
 {
     static const char *const text_and_error[][2] = {

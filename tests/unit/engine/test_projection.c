@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Projections of lenses: polynomials against chief rays traced anew, there and
+ * Projections of lenses: polynomials against chief rays traced again, there and
  * back again, and what is known of each lens.
  */
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Frames that reuse what the last one binned: each must be the picture that is
- * drawn anew, bit for bit, whatever moved, stopped or changed before it, for
+ * drawn again, bit for bit, whatever moved, stopped or changed before it, for
  * all workers; and a frame of which nothing changed must be reused. Lights that
  * stand still within a tolerance must be drawn by the rays of before, with the
  * light that they have, and never farther off than that.
@@ -89,7 +89,7 @@ static void stop_down(double opening)
 
 /* -------------------------------------------------------------------- same */
 
-/* Turns one thing of both frames and of the lamps, or nothing: then the frame
+/* Turns one object of both frames and of the lamps, or nothing: then the frame
  * must be reused. */
 static bool step(int time, int *n)
 {
@@ -246,8 +246,8 @@ static void test_restricted(void **state)
     close_frames();
 }
 
-/* In reserved memory more lights than it remembers are drawn anew, and a linear
- * picture after one in codes is another frame. */
+/* In reserved memory more lights than it remembers are drawn again, and a
+ * linear picture after one in codes is another frame. */
 static void test_memory(void **state)
 {
     static int32_t linear[2][3 * W * H];
@@ -291,7 +291,7 @@ static double sum_of(const uint8_t *codes)
 }
 
 /* Draws lamps that stand still with the edges that there are, and with edges
- * made anew for the same lights and factors. Returns whether the first was
+ * rebuilt for the same lights and factors. Returns whether the first was
  * reused. */
 static bool draw_still(int n, double scale)
 {
@@ -365,8 +365,8 @@ static double apart(const struct glint_lamp *lamp)
     return least;
 }
 
-/* A lamp that goes on, ever so slowly, is traced anew before it is farther off
- * than the tolerance; so is a new one, but not where one goes out. */
+/* A lamp that continues, ever so slowly, is traced again before it is farther
+ * off than the tolerance; so is a new one, but not where one goes out. */
 static void test_moves(void **state)
 {
     int n_reused = 0;
@@ -455,7 +455,7 @@ static void test_factors(void **state)
     assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 2);
     assert_in_range(gain_q14[0][0], 22937, 22938);
     assert_in_range(gain_q14[0][1], 11468, 11469);
-    /* blue where none was planned, too bright, too far: each stands anew */
+    /* blue where none was planned, too bright, too far: each stands again */
     light[0] = light_at(5, 1000, blue);
     assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 1);
     light[0] = light_at(5, 1530, blue);

@@ -293,7 +293,7 @@ static void golden_case(FILE *file, bool update, const char *name,
 }
 
 /* Hashes must be the same on every CPU; GLINT_GOLDEN_UPDATE=1 writes them
- * anew. */
+ * again. */
 static void test_golden(void **state)
 {
     const bool update = getenv("GLINT_GOLDEN_UPDATE") != NULL;

@@ -319,7 +319,7 @@ static void test_linear_in_light(void **state)
         assert_true(abs(pixels[i] - 8 * want[i]) <= 24);
 }
 
-/* Cells without area, lost rays, and light beyond all bounds must do no
+/* Cells without area, invalid ray, and light beyond all bounds must do no
  * harm. */
 static void test_hostile_bundles(void **state)
 {

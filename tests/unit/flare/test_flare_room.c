@@ -25,7 +25,7 @@ static void same_as_want(struct glint_flare_config c)
 
 /* ---------------------------------------------------------------- capacity */
 
-/* The capacities that glint_flare_bin() asked for must do exactly; one byte of
+/* The capacities that glint_flare_bin() requested must do exactly; one byte of
  * memory less must be refused. */
 static void test_exact_capacity(void **state)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Many lights merged into few: the same for every order, no light lost, bright
- * lights where they were, and at most as many as asked for.
+ * lights where they were, and at most as many as requested.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -272,7 +272,7 @@ static void test_horizon(void **state)
 }
 
 /* The result must not depend on the order, bit for bit, for any number of
- * lights asked for. */
+ * lights requested. */
 static void test_order(void **state)
 {
     static struct glint_light want[MANY], got[MANY];

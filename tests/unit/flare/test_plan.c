@@ -150,7 +150,7 @@ static void test_what_is_seen(void **state)
     close_fixture(&f);
 }
 
-/* An annular box has no rays in its middle; these must not count as lost. */
+/* An annular box has no rays in its middle; these must not is invalid. */
 static void test_a_hole_loses_no_cells(void **state)
 {
     struct glint_model_system *system;
@@ -803,7 +803,7 @@ static void test_sag(void **state)
 }
 
 /* No light beyond the angles of the lens model may be drawn, whatever the
- * polynomials say; it must ask for no room unless another light follows. */
+ * polynomials say; it must request no room unless another light follows. */
 static void test_beyond(void **state)
 {
     const int32_t inside_q30 = 1 << 28, outside_q30 = 3 << 27;

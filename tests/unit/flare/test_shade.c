@@ -58,7 +58,7 @@ static struct glint_flare_stats draw(const struct ghost *g,
     return stats;
 }
 
-/* Checks each pixel inside of the stop against the clear ghost times the light
+/* Checks each pixel inside the stop against the clear ghost times the light
  * of IRIS; returns the root of the mean square of the difference, over the
  * clear ghost's light. */
 static double difference(const struct ghost *g, const struct glint_iris *iris)

@@ -522,8 +522,8 @@ static void test_lamps_that_pass_keep_their_numbers(void **state)
     night_close(&night);
 }
 
-/* A fast lamp leaves to the right: its track must go on outside at that speed,
- * and fade in 400 ms by steps of at most 1 / 12. */
+/* A fast lamp leaves to the right: its track must continue outside at that
+ * speed, and fade in 400 ms by steps of at most 1 / 12. */
 static void test_leaving_lamp_moves_on_and_fades(void **state)
 {
     double last_x = 0, last_power = 0;

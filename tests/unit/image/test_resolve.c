@@ -212,7 +212,7 @@ static void assert_code(double want, int got, double within)
         fail_msg("code %d where %.3f is right", got, want);
 }
 
-/* Checks the chroma sample (CX, CY) and the luma of the pixels that share
+/* Checks the chroma sample (CX, CY) and the luma of the pixels that fraction
  * it. */
 static void check_block(int cx, int cy, double within)
 {

@@ -496,8 +496,8 @@ static void check_turn(glint_turn_fn *turn, const char *name)
           turn(&t, x, y, out[1], lost[1]));
 }
 
-/* Taps and values are as large as a baked stone may have them: sums are below
- * 2^31 in any order. */
+/* Taps and values are as large as a baked translucent medium may have them:
+ * sums are below 2^31 in any order. */
 static void check_convolve(glint_convolve_fn *convolve, const char *name)
 {
     enum { TAPS = 32, VALUES = N + 2 * TAPS };

@@ -42,7 +42,7 @@ static struct settings new_settings(int width, int height, double light)
 }
 
 /* Adds a lamp at (X, Y) whose face is LIGHT and whose light falls by a factor
- * of e every FALL beyond RADIUS; all lengths are shares of the width. */
+ * of e every FALL beyond RADIUS; all lengths are fractions of the width. */
 static void add_lamp(const struct settings *s, double x, double y,
                      double radius, double fall, const double light[3])
 {
@@ -57,7 +57,7 @@ static void add_lamp(const struct settings *s, double x, double y,
         }
 }
 
-/* Fills a box, given by shares of the width, with even LIGHT. */
+/* Fills a box, given by fractions of the width, with even LIGHT. */
 static void fill_box(const struct settings *s, double x0, double y0, double x1,
                      double y1, double light)
 {

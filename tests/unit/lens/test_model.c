@@ -452,7 +452,7 @@ static void check_corpus(const char *path, struct model_image m)
 }
 
 /* Models that the fuzzer starts from must have today's layout;
- * GLINT_GOLDEN_UPDATE=1 writes them anew. */
+ * GLINT_GOLDEN_UPDATE=1 writes them again. */
 static void test_corpus(void **state)
 {
     (void)state;

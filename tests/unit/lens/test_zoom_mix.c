@@ -593,7 +593,7 @@ static void ghosts_fade(void **state)
     forget(at, 2);
 }
 
-/* Where two positions show how it goes on, it does so into the dark one. */
+/* Where two positions show how it continues, it does so into the dark one. */
 static void ghosts_go_on(void **state)
 {
     static const struct part a[] = {{0, 1, 0.5, 0}, {0, 2, 0, 0}};
@@ -643,7 +643,7 @@ static void ghosts_that_cannot_go_on(void **state)
 }
 
 /* Sums of magnitudes stay below 2^30, which vectors and heads rely on, also
- * where a ghost goes on to three times the largest that a model may have. */
+ * where a ghost moves to three times the largest that a model may have. */
 static void going_on_stays_small(void **state)
 {
     static const struct part a[] = {{0, 1, -3.9, 0}, {0, 2, 0.5, 0}};

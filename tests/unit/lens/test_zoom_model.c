@@ -122,7 +122,7 @@ static void test_positions(void **state)
 }
 
 /* How far rays of the zoom that pass the stop are off exact ones, root mean
- * squares: pixels of a film 1920 wide, and shares of their energies. */
+ * squares: pixels of a film 1920 wide, and fractions of their energies. */
 struct off {
     double pixels, energies;
 };

@@ -36,7 +36,7 @@ static double cosine_at(const struct glint_scene *s, const int32_t c[3],
     return square > 1 || along <= 0 ? -1 : sqrt(1 - square);
 }
 
-/* Returns the share of pixel (X, Y) that shell L covers. */
+/* Returns the fraction of pixel (X, Y) that shell L covers. */
 static double shell_at(const struct glint_scene *s,
                        const struct glint_motion_layer *l, int x, int y)
 {
@@ -54,7 +54,7 @@ static double shell_at(const struct glint_scene *s,
            (1 - fmax(0, cosine_at(s, c, l->ball->radius, x_q8, y_q8)) / 2);
 }
 
-/* Returns the share of pixel (X, Y) that line L covers. */
+/* Returns the fraction of pixel (X, Y) that line L covers. */
 static double line_at(const struct glint_scene *s,
                       const struct glint_motion_layer *l, int x, int y)
 {

@@ -22,7 +22,7 @@ struct errors {
     double first, last; /* rms of the first and the last tenth */
     double worst;
     double correlation; /* of the error with the mean distance of foods */
-    int n;              /* frames until it could not go on */
+    int n;              /* frames until it could not continue */
 };
 
 /* Localises a track of FRAMES frames. */

@@ -195,7 +195,7 @@ static void damage_is_found(void **state)
 
             found = glint_motion_frame(&streamed, k, &f) != GLINT_OK;
         }
-        /* but the checksum of the whole, which is not asked for */
+        /* but the checksum of the whole, which is not requested */
         assert_true(found || (at >= 12 && at < 16 && at < header));
         baked.data[at] = was;
     }

@@ -283,7 +283,7 @@ static double middle_of_foods(const struct moving *d, int *n)
 }
 
 /* A camera in a sensor sees what is ahead of it in the middle, as wide as the
- * sensor sees; outside of it all is as before. */
+ * sensor sees; outside it all is as before. */
 static void row_d9_a_camera_in_a_sensor(void **state)
 {
     /* ahead of sensor 0, 20 degrees up its side, behind it; and one more */
@@ -390,7 +390,7 @@ static void kinds_are_hidden_and_sized(void **state)
     moving_close(d);
 }
 
-/* A shell over black has the share of light that its material does not let
+/* A shell over black has the fraction of light that its material does not let
  * pass, half of that in the middle; a food in it is seen through it. */
 static void shells_let_light_pass(void **state)
 {
@@ -419,7 +419,7 @@ static void shells_let_light_pass(void **state)
     moving_close(d);
 }
 
-/* Lines that leave the widest of pictures go on until all of their width is
+/* Lines that leave the widest of pictures continue until all of their width is
  * outside: an edge of the box, 200 pixels wide, leaves it aslant. */
 static void wide_lines_leave_wide_pictures(void **state)
 {
@@ -519,7 +519,7 @@ static void a_part_that_is_absent_is_named(void **state)
     moving_close(d);
 }
 
-/* Cameras anywhere, also within shells and lines, and things from a step to a
+/* Cameras anywhere, also within shells and lines, and objects from a step to a
  * quarter of the space: nothing wraps (CONFIG=qcheck), nothing is endless. */
 static void extremes_of_places_and_sizes(void **state)
 {

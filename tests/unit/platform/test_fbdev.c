@@ -257,7 +257,8 @@ static void test_no_pages(void **state)
     fb.sink.close(&fb.sink);
 
     reset_pages();
-    fake_fb->fix.ypanstep = 4; /* The 6 lines of a page are no multiple of 4. */
+    fake_fb->fix.ypanstep =
+        4; /* The 6 lines of a page are not multiple of 4. */
     must_open(&fb, NULL);
     assert_int_equal(fb.n_pages, 1);
     fb.sink.close(&fb.sink);
@@ -348,7 +349,7 @@ static void test_mode_changes(void **state)
     must_put(&fb, grey(8, 6, 3));
     assert_int_equal(fb.n_pages, 2);
     assert_int_equal(memory()[6 * 40], 3);
-    /* The page must be mapped anew and its old map undone. */
+    /* The page must be mapped again and its old map undone. */
     assert_int_equal(fake_fb_maps, 0);
     fb.sink.close(&fb.sink);
 }

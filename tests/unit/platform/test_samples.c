@@ -226,8 +226,8 @@ static void expect_near(float is, double wanted)
     assert_true(fabs((double)is - wanted) < 1e-6);
 }
 
-/* What a thing covers becomes as opaque as it covers, straight or
- * premultiplied: half of a thing of light 0.5 over a pixel of alpha 0.25 and
+/* What an object covers becomes as opaque as it covers, straight or
+ * premultiplied: half of an object of light 0.5 over a pixel of alpha 0.25 and
  * light 0.2. */
 static void test_cover(void **state)
 {

@@ -144,7 +144,7 @@ static void test_unread_format(void **state)
     must_refuse(&wish, GLINT_E_DEVICE, "has no NV12 (gives YUYV instead)");
 }
 
-/* A camera that chooses another format than was asked for must be believed. */
+/* A camera that chooses another format than was requested must be believed. */
 static void test_believes(void **state)
 {
     struct glint_v4l2_config wish = any_camera;
@@ -566,7 +566,7 @@ static void test_sequence(void **state)
     assert_int_equal(dropped(1001), 0);
     assert_int_equal(dropped(1005), 3);
     assert_int_equal(dropped(1005), 0);
-    assert_int_equal(dropped(3), 0); /* the count began anew */
+    assert_int_equal(dropped(3), 0); /* the count restarted */
     assert_int_equal(dropped(4), 0);
     must_close();
     must_open(NULL);

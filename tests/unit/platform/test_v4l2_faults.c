@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The V4L2 source when things go wrong: what it survives, what it gives up on,
+ * The V4L2 source when objects go wrong: what it survives, what it gives up on,
  * after how long and with which message; and that nothing is left behind.
  */
 #include "support/fakes/camera_check.h"
@@ -112,8 +112,8 @@ static void must_get_wide(int width, int code)
     done();
 }
 
-/* A stream that breaks must be begun anew, at the size that another program has
- * set meanwhile. */
+/* A stream that breaks must be begun again, at the size that another program
+ * has set meanwhile. */
 static void test_broken_stream(void **state)
 {
     (void)state;
@@ -133,8 +133,8 @@ static void test_broken_stream(void **state)
     must_close();
 }
 
-/* When it is begun anew, the format may be another one that is read, and change
- * back. */
+/* When it is begun again, the format may be another one that is read, and
+ * change back. */
 static void test_other_format(void **state)
 {
     (void)state;
@@ -156,7 +156,7 @@ static void test_other_format(void **state)
     must_close();
 }
 
-/* Requests that fail while the stream is begun anew must be tried again for a
+/* Requests that fail while the stream is begun again must be tried again for a
  * while. */
 static void test_stubborn(void **state)
 {
@@ -178,7 +178,7 @@ static void test_stubborn(void **state)
     }
 }
 
-/* Where the stream cannot be begun anew, this must end with a message that
+/* Where the stream cannot be begun again, this must end with a message that
  * names the request. */
 static void test_never_again(void **state)
 {
@@ -217,7 +217,7 @@ static void test_never_again(void **state)
 }
 
 /* After each frame there must again be the whole time for trying to begin the
- * stream anew. */
+ * stream again. */
 static void test_patience(void **state)
 {
     (void)state;
@@ -305,7 +305,7 @@ static void test_all_damaged(void **state)
         damaged_to_the_end(true);
 }
 
-/* One whole frame in thirty must be enough to go on without a restart. */
+/* One whole frame in thirty must be enough to continue without a restart. */
 static void test_many_damaged(void **state)
 {
     (void)state;
@@ -529,7 +529,7 @@ static void test_endless_changes(void **state)
     must_close();
 }
 
-/* ------------------------------------------------ begun anew, other memory */
+/* ------------------------------------------------ begun again, other memory */
 
 static void check_anew(enum glint_v4l2_io io)
 {

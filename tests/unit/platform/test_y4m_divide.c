@@ -19,7 +19,8 @@ static int64_t divide(int64_t n, int64_t d)
     return n >= 0 ? (2 * n + d) / (2 * d) : -((-2 * n + d) / (2 * d));
 }
 
-/* Returns for how many K from -MOST to MOST the share K 2^UP / D is wrong. */
+/* Returns for how many K from -MOST to MOST the fraction K 2^UP / D is wrong.
+ */
 static long wrong_shares(int32_t most, int up, int32_t d)
 {
     const int64_t factor = y4m_share_factor(up, d);

@@ -242,7 +242,7 @@ static void open_scaled(double factor, double max_deg)
  * smaller or larger must throw the same picture on a film of its scale. With a
  * power of two no rounding of a double differs, and the exact picture must have
  * the same bits; with 1000 rays differ by 1e-15, and single ones may fall on
- * the other side of a threshold. Models are fitted anew and must agree to 50
+ * the other side of a threshold. Models are fitted again and must agree to 50
  * dB: less would hide a length in mm in the bake. */
 static void test_scaled(void **state)
 {

@@ -61,7 +61,7 @@ static void test_hostile_models(void **state)
             memory = fmax(memory, r.bytes / r.most_bytes);
         }
     stage_close(&stage);
-    /* Most are no damaged files: they reach what draws. */
+    /* Most are not damaged files: they reach what draws. */
     assert_true(n_of[HOSTILE_COARSER] >= 2);
     assert_true(n_of[HOSTILE_DRAWN] >= 5);
     assert_true(extreme_at_most("models: hostile ones, frames that failed",

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * How far outlines are off by --error, in pixels: ghost by ghost, where light
- * ends in pictures of the grids that it asks for, against the finest grid.
+ * ends in pictures of the grids that it requests, against the finest grid.
  */
 #include <math.h>
 #include <setjmp.h>

@@ -27,7 +27,7 @@
 /* What differs of a picture; of several the worst. */
 struct outcome {
     double db;    /* of light up to 1 where neighbours are alike */
-    double wrong; /* share of all pixels of which another thing is seen */
+    double wrong; /* fraction of all pixels of which another thing is seen */
     double share; /* largest error of light, over the light and 1/255 */
 };
 
@@ -200,7 +200,7 @@ static void test_sizes(void **state)
                                 100 * worst.wrong, 1, "%"));
 }
 
-/* A sun, whose light does not ask for places, on things up to 1e6 wide. */
+/* A sun, whose light does not request places, on objects up to 1e6 wide. */
 static void test_large(void **state)
 {
     struct outcome worst = NOTHING_YET;
@@ -222,7 +222,7 @@ static void test_large(void **state)
         "scenes: sizes 1e3 to 5e5, against the reference", worst.db, 60, "dB"));
 }
 
-/* Lamps and suns of any power: what a thing shows is that, as far as light is
+/* Lamps and suns of any power: what an object shows is that, as far as light is
  * held. */
 static void test_powers(void **state)
 {
@@ -248,7 +248,7 @@ static void test_powers(void **state)
                                 worst.share, .05, ""));
 }
 
-/* Things behind, around and across the camera. */
+/* Objects behind, around and across the camera. */
 static void test_behind(void **state)
 {
     static const char head[] =

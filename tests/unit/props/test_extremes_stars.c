@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Extremes of stars: powers from 2^-20 to 2^30 and places from a pixel's corner
- * to 1000 pixels beside the picture, of stops of 3 to 64 blades and a circle.
+ * to 1000 pixels off-screen, of stops of 3 to 64 blades and a circle.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -34,7 +34,7 @@ static int32_t linear_q20[N];
 static uint8_t codes[N], others[N];
 
 /* Returns the largest difference between what was drawn of a light of
- * 2^POWER_LOG2 at PLACE and what tables give there, as a share; a step of a
+ * 2^POWER_LOG2 at PLACE and what tables give there, as a fraction; a step of a
  * linear picture counts as nothing. */
 static double most_off(const struct glint_star_tables *t, const double at[2],
                        int power_log2)

@@ -241,7 +241,7 @@ static void test_formats(void **state)
             struct glint_around around;
             int32_t rgb_q15[3];
 
-            /* Bytes of 128 are no grey there. */
+            /* Bytes of 128 are not grey there. */
             if (format == GLINT_RGB565 || format == GLINT_LINEAR_Q20)
                 continue;
             memset(picture, 128, sizeof picture);

@@ -278,7 +278,7 @@ static void test_memory(void **state)
                     bytes + (60 << 10));
 }
 
-/* From inside of a closed mesh, wherever, no sample sees past it, although some
+/* From inside a closed mesh, wherever, no sample sees past it, although some
  * vertices are behind the camera. */
 static void test_no_leaks(void **state)
 {
@@ -481,7 +481,7 @@ static void test_poses(void **state)
 
 /* ----------------------------------------------------------------- shadows */
 
-/* A place beside the objects of make(), on the floor's side of things. */
+/* A place beside the objects of make(), on the floor's side of objects. */
 static void random_place(uint32_t *seed, struct glint_met_surface *surface)
 {
     static const int32_t at[3] = {0, 0, 6 * UNIT};
@@ -493,8 +493,8 @@ static void random_place(uint32_t *seed, struct glint_met_surface *surface)
     }
 }
 
-/* The grid of a sun's shadows says what rays say that ask all there is: also
- * far below things, beside the grid, and from points that lean. */
+/* The grid of a sun's shadows states what rays say that ask all there is: also
+ * far below objects, beside the grid, and from points that lean. */
 static void test_shadows(void **state)
 {
     uint32_t seed = 1;

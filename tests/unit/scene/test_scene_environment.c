@@ -134,7 +134,7 @@ static void test_twin(void **state)
 
 /* ------------------------------------------------------------------- texts */
 
-/* Row B7: a ratio over 10 is held to 10, with a warning. */
+/* Row B7: a ratio over 10 is clamped to 10, with a warning. */
 static void test_held(void **state)
 {
     struct glint_description *s = malloc(sizeof *s);
@@ -390,7 +390,7 @@ static void test_environment_tables(void **state)
     drawn_close(&d);
 }
 
-/* Environments that cannot be told apart, and too many. */
+/* Environments that cannot be distinguished, and too many. */
 static void test_environment_names(void **state)
 {
     char text[32 * 17 + 1] = "";

@@ -93,7 +93,7 @@ static void test_twin(void **state)
 {
     static const struct {
         const char *what, *text;
-        double off; /* share of the power */
+        double off; /* fraction of the power */
     } row[] = {{"a point", CAMERA STEEL(".002 .002") SUN BALL, .02},
                {"brushed", CAMERA STEEL(".03 .2") SUN BALL, .02},
                {"a lamp",
@@ -255,7 +255,7 @@ static int count(const char *text)
 }
 
 /* Discs of lights, backgrounds, catchers and what is no brighter than white are
- * none; a scene that asks for none has none. */
+ * none; a scene that requests none has none. */
 static void test_none(void **state)
 {
     (void)state;
@@ -278,8 +278,8 @@ static void test_none(void **state)
     assert_int_equal(count(CAMERA "material m phong 1 0 0\n" BALL), 0);
 }
 
-/* Squares that touch and middles within 12 pixels are one; more than are asked
- * for are the brightest. Two that are one stand by the light of both. */
+/* Squares that touch and middles within 12 pixels are one; more than are
+ * requested are the brightest. Two that are one stand by the light of both. */
 static void test_one(void **state)
 {
     static const char two[] = CAMERA STEEL(".01 .01") BRIGHT

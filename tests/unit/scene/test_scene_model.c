@@ -227,7 +227,7 @@ static void test_objects(void **state)
     scene_open(&file);
 }
 
-/* Whatever one word of a sealed file becomes, opening reads nothing outside of
+/* Whatever one word of a sealed file becomes, opening reads nothing outside
  * it (asan) and ends. */
 static void test_any_word(void **state)
 {

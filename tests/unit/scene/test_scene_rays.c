@@ -203,7 +203,7 @@ static int by_areas(const double v[9], const double p[3])
                 area2(v + 6, v, p)) < .005;
 }
 
-/* Returns the share of rays that the baseline takes for the other thing, of
+/* Returns the fraction of rays that the baseline takes for the other thing, of
  * those through a box of which the triangle, its height SIZE, is a fifth; ours
  * may differ within two steps of an edge. */
 static double area_errors(double size)
@@ -419,7 +419,7 @@ static void test_a15_sphere(void **state)
 }
 
 /* Of rays that pass a ball of radius 1/2 within a hundredth of its rim, the
- * share that hit or miss wrongly, DISTANCE away. */
+ * fraction that hit or miss wrongly, DISTANCE away. */
 static double rim_errors(double distance)
 {
     const double unit = exp2(floor(log2(GLINT_FAR / 4.0 / distance)));
@@ -546,8 +546,8 @@ static int naive_meets(const struct glint_scene_ray *ray, int32_t v[3][3])
            (dot_q16(e2, q) ^ sign) >= 0;
 }
 
-/* Aims RAYS from inside of a closed mesh, a third each at vertices, edges and
- * well inside of triangles, and counts those that meet no triangle, or, of the
+/* Aims RAYS from inside a closed mesh, a third each at vertices, edges and
+ * well inside triangles, and counts those that meet no triangle, or, of the
  * last, not exactly one. */
 static int misses(double size, int is_naive)
 {

@@ -414,8 +414,8 @@ static void test_a11_pass(void **state)
     assert_true(behind > 3000 && within > behind + 3000);
 }
 
-/* The baselines of a second hit: whether a ray that goes on from where it met a
- * ball of RADIUS stands outside of it, by its distance from the middle, MORE
+/* The baselines of a second hit: whether a ray that continues from where it met
+ * a ball of RADIUS stands outside it, by its distance from the middle, MORE
  * than the radius squared, in floats. It does not, as it has entered. */
 static int is_outside(const double middle[3], double radius, const double d[3],
                       double more)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Translucent things in scenes: integers against the reference in double
+ * Translucent objects in scenes: integers against the reference in double
  * precision, the same bits whoever draws, what is worked out when, extremes,
  * and what is refused. */
 #include <math.h>
@@ -208,7 +208,7 @@ static double near_to(const int32_t *a, const int32_t *b)
 }
 
 /* The pattern comes again twice round a ball, and after half of that, so that
- * where it is turned by quarters the same is seen, across a seam or inside of
+ * where it is turned by quarters the same is seen, across a seam or inside
  * the square. */
 static void test_seams(void **state)
 {
@@ -435,8 +435,8 @@ static double brightest(const int32_t *light_q20)
     return most;
 }
 
-/* Stone that absorbs all is black; what absorbs nothing shows no more than it
- * gets; light of any strength stays light. */
+/* Translucent medium that absorbs all is black; what absorbs nothing shows no
+ * more than it gets; light of any strength stays light. */
 static void test_albedo_0_and_1(void **state)
 {
     static int32_t light[3 * PIXELS];

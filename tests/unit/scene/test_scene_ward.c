@@ -268,7 +268,7 @@ static void test_twin(void **state)
 /* -------------------------------------------------------------------- rows */
 
 /* Sets TO to what directions of the whole hemisphere show, N of them, each
- * looked up in the level of its share. */
+ * looked up in the level of its fraction. */
 static void uniform(const struct glint_environment *e, const double alpha[2],
                     int n, ward_picture to)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A baked stone: its integers beside the fit in doubles, and files that are
- * refused.
+ * A baked translucent medium: its integers beside the fit in doubles, and files
+ * that are refused.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -61,7 +61,7 @@ static void test_close_to_fit(void **state)
     }
 }
 
-/* Bakes B anew, of RANK; returns how close it comes then. */
+/* Bakes B again, of RANK; returns how close it comes then. */
 static double close_of_rank(struct built_stone *b, int rank)
 {
     struct glint_error error;
@@ -100,7 +100,8 @@ static void test_ranks(void **state)
 
 /* ---------------------------------------------------------------- refusals */
 
-/* What is done to the words of a whole stone, before its checksum is set. */
+/* What is done to the words of a whole translucent medium, before its checksum
+ * is set. */
 typedef void damage_fn(struct glint_translucent_header *h, unsigned char *data);
 
 static int16_t *taps_of(const struct glint_translucent_header *h,

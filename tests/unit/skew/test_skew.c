@@ -164,7 +164,7 @@ static void compare_all(struct meter *m)
     static struct glint_vertex vertex[NODES * NODES];
     uint32_t seed = 7;
 
-    /* A part has a box of its own, and is no ghost of the table. */
+    /* A part has a box of its own, and is not a ghost of the table. */
     assert_int_equal(model.header->n_parts, 0);
     for (int k = 0; k < BUNDLES; k++) {
         const int ghost = rng_below(&seed, (int)model.header->n_ghosts);

@@ -50,8 +50,8 @@ static void draw_linear(const struct glint_star_tables *t,
 static int32_t linear_q20[N];
 static uint8_t codes[N];
 
-/* Returns the sum of channel C over all pixels as a share of a light of power
- * 2^10. */
+/* Returns the sum of channel C over all pixels as a fraction of a light of
+ * power 2^10. */
 static double sum_of(const int32_t *q20, int c)
 {
     double sum = 0;
@@ -329,8 +329,8 @@ static void test_extent(void **state)
     glint_star_tables_free(t);
 }
 
-/* Returns the largest share by which what was drawn of a light of 2^25 at PLACE
- * differs from what tables give there. */
+/* Returns the largest fraction by which what was drawn of a light of 2^25 at
+ * PLACE differs from what tables give there. */
 static double most_off(const struct glint_star_tables *t, const double place[2])
 {
     double most = 0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * The starburst in integers: the same bits whatever tiles, workers, order and
- * machine, and what it is held to at extremes. Tables are of any stop, by
+ * machine, and what it is clamped to at extremes. Tables are of any stop, by
  * integers, so that no libm has a say.
  */
 #include <setjmp.h>
@@ -171,7 +171,7 @@ static void test_powers(void **state)
     }
 }
 
-/* Lights that are no lights must be left out without a trace: without power or
+/* Lights that are not lights must be left out without a trace: without power or
  * colour, or farther away than is drawn. */
 static void test_none(void **state)
 {

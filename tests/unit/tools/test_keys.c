@@ -37,7 +37,7 @@ static void test_values(void **state)
     assert_true(keys_at(&k, KEYS_GAIN, 15, 7) == 2);
     assert_true(keys_at(&k, KEYS_GAIN, 20, 7) == 3);
     assert_true(keys_at(&k, KEYS_GAIN, 1000000, 7) == 3);
-    /* an empty field is no key: from frame 10 to 30 */
+    /* an empty field is not a key: from frame 10 to 30 */
     assert_true(keys_at(&k, KEYS_EXPOSURE, 20, 7) == 3);
     assert_true(keys_at(&k, KEYS_X, 15, 7) == 50);
     assert_true(keys_at(&k, KEYS_Y, 20, 7) == 25);

@@ -416,8 +416,8 @@ static void test_other_sizes(void **state)
 
 /* ---------------------------------------------------------------- failures */
 
-/* Whichever call fails once, frames must go on, or there must be an exit code
- * and a message. */
+/* Whichever call fails once, frames must continue, or there must be an exit
+ * code and a message. */
 static void test_every_failure(void **state)
 {
     int n = 0, n_failed = 0, n_calls;

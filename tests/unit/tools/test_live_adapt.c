@@ -164,7 +164,7 @@ static void test_forgets(void **state)
     assert_int_equal(adapt.step, 0);
 }
 
-/* Step 0 must be the dials that were asked for, and no step may be finer than
+/* Step 0 must be the dials that were requested, and no step may be finer than
  * the one before. */
 static void test_steps(void **state)
 {

@@ -159,7 +159,7 @@ static void test_json(void **state)
         "\"reused\":1}");
 }
 
-/* After a second its figures must begin anew, and those of the total go on. */
+/* After a second its figures must restart, and those of the total continue. */
 static void test_seconds(void **state)
 {
     (void)state;

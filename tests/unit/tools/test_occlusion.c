@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lamps that a mask hides, and that fade beside the picture.
+ * Lamps that a mask hides, and that fade off-screen.
  */
 #include <math.h>
 #include <setjmp.h>

@@ -27,7 +27,7 @@ static struct poses poses;
 static struct glint_error error;
 static char name[] = "/tmp/glint-test-poses-XXXXXX";
 
-/* Two things, a sun and a lamp, 16 steps a unit. */
+/* Two objects, a sun and a lamp, 16 steps a unit. */
 static void make(uint32_t hand)
 {
     header = (struct glint_scene_header){
@@ -193,7 +193,7 @@ static void test_pipe(void **state)
     unlink(name);
 }
 
-/* A writer that never stops gets no more than its share of a frame. */
+/* A writer that never stops gets no more than its fraction of a frame. */
 static void test_flood(void **state)
 {
     static char lines[1 << 18];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Marks of lights in pictures of every format: the right pixels, the right
- * colours, and nothing beside the picture.
+ * colours, and nothing off-screen.
  */
 #include <setjmp.h>
 #include <stdarg.h>

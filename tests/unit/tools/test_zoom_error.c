@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Errors of a zoom of two lenses that was baked at both ends: lights come from
- * where they are said to, an end is exact, and the middle is not. */
+ * where they are reported to, an end is exact, and the middle is not. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -97,7 +97,7 @@ static void measure(const struct glint_prescription *lens, double along,
 
 enum { EACH = 4 }; /* of the angles is measured in any case */
 
-/* Asks for the errors of ghost 0; those of the other one are 2. */
+/* Requests the errors of ghost 0; those of the other one are 2. */
 static void ask(struct zoom_error error[GHOSTS])
 {
     for (int g = 0; g < GHOSTS; g++)
@@ -127,7 +127,7 @@ static void ends_are_exact(void **state)
     }
 }
 
-/* The middle is not. The end of a share of the angles is where the next
+/* The middle is not. The end of a fraction of the angles is where the next
  * begins. */
 static void lights_are_shifted(void **state)
 {

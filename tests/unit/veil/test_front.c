@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What lies on the front element: its light is the haze of the share that a
+ * What lies on the front element: its light is the haze of the fraction that a
  * pixel looks through, as sums over the stop have it; the same bits whatever
  * tiles and workers; and nothing where nothing lies there.
  */
@@ -126,7 +126,7 @@ static void test_refuses(void **state)
 
 /* ---------------------------------------------------------------- the light */
 
-/* A table of any parts, and the spread of a share over all cells alike. */
+/* A table of any parts, and the spread of a fraction over all cells alike. */
 struct scene {
     struct bare_flare bare;
     struct glint_veil *veil;

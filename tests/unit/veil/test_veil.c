@@ -75,7 +75,7 @@ static void gaussian(int32_t *table_q30, int n, double sigma)
     table_q30[0] = rest;
 }
 
-/* Makes a spread of SIGMA pixels with SHARE of all light. */
+/* Makes a spread of SIGMA pixels with Fraction of all light. */
 static struct glint_veil_spread spread_of(const struct canvas *c, double sigma,
                                           double share)
 {
@@ -130,7 +130,7 @@ static void add_lamp(struct canvas *c, double x, double y, double power)
 /* ------------------------------------------------------------------- light */
 
 /* Whatever the size of the picture and wherever the lamp, the veil has the
- * share of its light that it is given, within a thousandth. */
+ * fraction of its light that it is given, within a thousandth. */
 static void test_energy(void **state)
 {
     static const int size[][2] = {{163, 121}, {64, 36}, {97, 3},  {1, 1},

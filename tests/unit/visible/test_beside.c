@@ -337,7 +337,7 @@ static void test_models(void **state)
         free(data[k]);
 }
 
-/* Another lens is no position of this one. */
+/* Another lens is not a position of this one. */
 static void test_refused(void **state)
 {
     struct glint_prescription other = at[1];

@@ -89,7 +89,7 @@ static void test_grazed_barrel(void **state)
 
 /* The barrel that stops most of the rays that get through the glass comes
  * first, though others stop more of all. Where a ray misses a surface it is
- * outside of that, which a barrel there can tell: four stop all. */
+ * outside that, which a barrel there can tell: four stop all. */
 static void test_first_barrel(void **state)
 {
     static struct glint_zone_rays rays;

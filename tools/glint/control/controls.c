@@ -122,7 +122,7 @@ static struct reader peek(const struct reader *r)
 
 /* ---------------------------------------------------------------- the form */
 
-/* Says what may stand in place of the word. */
+/* States what may stand in place of the word. */
 static enum glint_status fail_word(const struct reader *r, const char *before)
 {
     struct suggest suggest;

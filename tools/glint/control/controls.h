@@ -52,12 +52,12 @@ enum control_verb {
     CONTROL_ALPHA,    /* of brushed metal; one value: both */
     CONTROL_COLOUR,   /* of Phong, or specular of brushed metal */
     CONTROL_DIFFUSE,  /* of brushed metal */
-    CONTROL_MATERIAL, /* name of a thing, name of its material */
-    /* Things, or kinds of things of a motion: name. */
+    CONTROL_MATERIAL, /* name of an object, name of its material */
+    /* Objects, or kinds of objects of a motion: name. */
     CONTROL_SHOW,
     CONTROL_HIDE,
     CONTROL_SIZE, /* radius of a ball, units */
-    /* Light from all around. */
+    /* Environment light. */
     CONTROL_TURN,     /* to the right, degrees */
     CONTROL_SCALE,    /* factor of all its light */
     CONTROL_MAP,      /* another environment of the scene: name */
@@ -121,7 +121,7 @@ extern const char keyboard_help[];
 enum { CONTROL_WHERE = 200 }; /* bytes of a place with its end */
 
 struct controls {
-    long n_bad;             /* lines that were passed over */
+    long n_bad;             /* lines that were skipped */
     struct glint_error bad; /* the last of them */
 
     /* Private. */
@@ -134,8 +134,8 @@ struct controls {
     struct keyboard keys;
 };
 
-/* Sets LINE to what TEXT says. GLINT_E_FORMAT: ERROR says WHERE:COLUMN: cause,
- * and LINE is to be left alone. */
+/* Sets LINE to what TEXT says. GLINT_E_FORMAT: ERROR states WHERE:COLUMN:
+ * cause, and LINE is to be left alone. */
 enum glint_status control_parse(const char *text, const char *where,
                                 struct control_line *line,
                                 struct glint_error *error);
@@ -150,7 +150,7 @@ enum glint_status control_fail(struct glint_error *error, const char *where,
 enum glint_status keyboard_open(struct keyboard *k, int fd);
 
 /* Sets LINE to what the next key that was pressed does; returns false if there
- * is none. Other keys are passed over; q asks the process to end. */
+ * is none. Other keys are skipped; q asks the process to end. */
 bool keyboard_next(struct keyboard *k, struct control_line *line);
 
 void keyboard_close(struct keyboard *k);
@@ -176,7 +176,7 @@ const struct control_line *controls_row(const struct controls *input, int i);
  * returned last if I is below 0: FILE:LINE. */
 void controls_where(const struct controls *input, int i, char *where);
 
-/* Notes that the line returned last was not obeyed, as ERROR says. */
+/* Notes that the line returned last was not obeyed, as ERROR states. */
 void controls_refuse(struct controls *input, const struct glint_error *error);
 
 void controls_close(struct controls *input);

@@ -30,7 +30,7 @@ bool playback_take(struct playback *playback, const struct control_line *line)
         playback->fps = line->n ? line->v[0] : -1;
         return true;
     case CONTROL_PAUSE:
-        /* A second time it goes on, as the key does. */
+        /* A second time it continues, as the key does. */
         playback->is_paused = !line->is_change || !playback->is_paused;
         return true;
     case CONTROL_STOP:

@@ -483,7 +483,7 @@ static enum glint_status apply_orbit(const struct steer *s,
 }
 
 /* Has the camera go about the point ahead of it that is as far as the mean of
- * the things that have a middle; one unit if there is none ahead. */
+ * the objects that have a middle; one unit if there is none ahead. */
 static void begin_orbit(struct steer *s)
 {
     const struct glint_scene_camera *const c = &s->camera;
@@ -622,7 +622,7 @@ static enum glint_status take_look(struct steer *s, struct glint_scene *scene,
     return status;
 }
 
-/* -------------------------------------------------------------------- things
+/* -------------------------------------------------------------------- objects
  */
 
 /* Returns the first object that shows a material, or -1. */

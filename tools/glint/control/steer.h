@@ -4,7 +4,7 @@
  *
  *     steer_open(&steer, &model);
  *     steer_take(&steer, scene, &line, where, &error);    each line
- *     steer_apply(&steer, scene);               a scene that was placed anew
+ *     steer_apply(&steer, scene);               a scene that was placed again
  *     steer_close(&steer);
  *
  * Nothing is baked: what a line changes the next picture shows.
@@ -27,7 +27,7 @@ struct steer_map {
     double turn_deg, scale;
 };
 
-/* A kind of things of a motion as it was changed. */
+/* A kind of objects of a motion as it was changed. */
 struct steer_kind {
     bool is_hidden;
     int32_t steps; /* radius or width; 0: as the scene has it */
@@ -66,7 +66,7 @@ void steer_close(struct steer *steer);
 bool steer_camera(struct steer *steer, const int32_t at[3],
                   const int32_t axis_q30[3][3]);
 
-/* Checks what LINE names. GLINT_E_FORMAT: ERROR says WHERE:COLUMN: cause. */
+/* Checks what LINE names. GLINT_E_FORMAT: ERROR states WHERE:COLUMN: cause. */
 enum glint_status steer_check(const struct steer *steer,
                               const struct control_line *line,
                               const char *where, struct glint_error *error);

@@ -18,7 +18,7 @@ struct ghost_list {
     const struct glint_image *picture;
 };
 
-/* Writes to PATH all ghosts that are drawn or muted, with their share of the
+/* Writes to PATH all ghosts that are drawn or muted, with their fraction of the
  * light. GLINT_E_OUTPUT, GLINT_E_CLOSED. */
 enum glint_status ghost_list_write(const struct ghost_list *list,
                                    const char *path, struct glint_error *error);

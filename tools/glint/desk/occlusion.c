@@ -13,8 +13,8 @@
 
 enum { POINTS = 61, LEAST_PX = 2 };
 
-/* A lamp that is hidden keeps this share of its level, as lists of lamps take
- * none without. */
+/* A lamp that is hidden keeps this fraction of its level, as lists of lamps
+ * take none without. */
 static const double least_level = 1e-6;
 
 /* ------------------------------------------------------------------- reading
@@ -109,7 +109,7 @@ void occlusion_close(struct occlusion *o)
     o->is_video = false;
 }
 
-/* Goes on to the mask of FRAME; one that cannot be read ends it, with a word.
+/* Moves to the mask of FRAME; one that cannot be read ends it, with a word.
  */
 static void go_to(struct occlusion *o, int frame)
 {
@@ -147,7 +147,7 @@ static double mask_at(const struct occlusion *o, int x, int y)
 }
 
 /* Returns the mask at (X, Y) of a picture of VIEW's size, between the middles
- * of four of its pixels; 1 beside the picture. */
+ * of four of its pixels; 1 off-screen. */
 static double mask_between(const struct occlusion *o,
                            const struct glint_view *view, double x, double y)
 {
@@ -191,7 +191,7 @@ static double share_of(const struct occlusion *o, const struct glint_view *view,
     return fmin(sum, 1);
 }
 
-/* Returns the share of its light that a lamp at (X, Y) keeps, pixels of a
+/* Returns the fraction of its light that a lamp at (X, Y) keeps, pixels of a
  * picture of WIDTH x HEIGHT beyond which lamps fade within FADE_PX. */
 static double fade_outside(double x, double y, int width, int height,
                            double fade_px)

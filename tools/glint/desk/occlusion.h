@@ -8,10 +8,10 @@
  *     occlusion_close(&o);
  *
  * A mask is a picture, a pattern of numbered pictures or a video in y4m. It is
- * as large as the picture, whatever its own size. Grey lets a share of the
- * light through, evenly from code 0 to the white of the codes; beside the
- * picture it hides nothing. What a lamp gives is scaled by the mean of the mask
- * over its disc, 2 pixels of radius at least.
+ * as large as the picture, whatever its own size. Grey lets a fraction of the
+ * light through, evenly from code 0 to the white of the codes;
+ * off-screen it hides nothing. What a lamp gives is scaled by the mean of the
+ * mask over its disc, 2 pixels of radius at least.
  */
 #ifndef GLINT_TOOLS_DESK_OCCLUSION_H
 #define GLINT_TOOLS_DESK_OCCLUSION_H
@@ -22,7 +22,7 @@
 
 struct occlusion {
     const char *file; /* of the mask; NULL: none */
-    /* Pixels beside the picture at which a lamp has faded; 0: lamps do not
+    /* Pixels off-screen at which a lamp has faded; 0: lamps do not
      * fade.
      */
     double fade_px;
@@ -40,9 +40,9 @@ struct occlusion {
 enum glint_status occlusion_open(struct occlusion *o,
                                  struct glint_error *error);
 
-/* Scales powers and levels of N LAMPS by the share of each that is in view in
- * frame FRAME. Frames rise; a mask that ends earlier stays as it was last, and
- * one that cannot be read is said once. */
+/* Scales powers and levels of N LAMPS by the fraction of each that is in view
+ * in frame FRAME. Frames rise; a mask that ends earlier stays as it was last,
+ * and one that cannot be read is reported once. */
 void occlusion_apply(struct occlusion *o, int frame,
                      const struct glint_view *view, double focal_mm,
                      struct glint_engine_lamp *lamps, int n);

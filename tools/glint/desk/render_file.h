@@ -20,7 +20,7 @@ int render_file_check(const struct tool *tool, const char *path,
 int render_file_save(const struct tool *tool, const char *path, bool is_linear,
                      const struct glint_float_image *image, double exposure);
 
-/* Says that WHAT was written to PATH, in a line, unless --quiet or --json. */
+/* States that WHAT was written to PATH, in a line, unless --quiet or --json. */
 void render_file_say(const struct tool *tool, const char *path, int width,
                      int height, const char *what, double seconds);
 

@@ -97,7 +97,7 @@ static bool lit_at(const struct marking *m, int x, int y)
     const int32_t *px;
 
     if (x < 0 || y < 0 || x >= m->width || y >= m->height)
-        return true; /* The picture's sides are no outline. */
+        return true; /* The picture's sides are not outline. */
     px =
         m->explain->linear_q20 + 3 * ((size_t)y * (size_t)m->width + (size_t)x);
     return (px[0] | px[1] | px[2]) != 0;
@@ -212,7 +212,7 @@ static void put_title(const struct marking *m, const struct explain_title *t)
     paint_text(&p, 12 * p.line, y, text);
 }
 
-/* Draws entry K of the legend: the number of GHOST, its shares of light and
+/* Draws entry K of the legend: the number of GHOST, its fractions of light and
  * work. */
 static void put_entry(const struct marking *m, int k, int ghost)
 {

@@ -276,7 +276,7 @@ static void print_highlights(const struct explained_scene *s)
                found[i].word);
 }
 
-/* What is laid over the things of a recorded motion. */
+/* What is laid over the objects of a recorded motion. */
 static const struct {
     enum glint_scene_kind kind;
     const char *word;
@@ -299,7 +299,7 @@ static void print_layers(const struct explained_scene *s)
     }
 }
 
-/* Light below the surface of stones. */
+/* Light below the surface of translucent media. */
 static void print_maps(const struct explained_scene *s)
 {
     if (model_of(s)->header->n_skins > 0)

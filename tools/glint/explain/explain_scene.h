@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The scene of a frame explained: what became of its things and lights. */
+ * The scene of a frame explained: what became of its objects and lights. */
 #ifndef GLINT_TOOLS_COMMAND_EXPLAIN_SCENE_H
 #define GLINT_TOOLS_COMMAND_EXPLAIN_SCENE_H
 
@@ -27,7 +27,7 @@ void explain_scene_json(struct json_writer *json,
                         const struct explained_scene *scene);
 
 /* Sets MARKED to a new picture, whose plane[0] the caller frees: PICTURE with
- * things outlined, in colours by what a pixel of each costs, and a legend
+ * objects outlined, in colours by what a pixel of each costs, and a legend
  * below. GLINT_E_MEMORY. */
 enum glint_status explain_scene_mark(const struct explained_scene *scene,
                                      const struct glint_image *picture,

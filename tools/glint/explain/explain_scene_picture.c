@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * A scene explained by a picture: things outlined and numbered, in colours by
+ * A scene explained by a picture: objects outlined and numbered, in colours by
  * the steps of a pixel of each, a legend below. */
 #include <math.h>
 #include <stdio.h>
@@ -104,7 +104,7 @@ static void nearest(const struct heat *h, int object, const double at[2],
         }
 }
 
-/* Writes the number of each thing at the middle of the pixels that see it. */
+/* Writes the number of each object at the middle of the pixels that see it. */
 static void number(const struct heat *h)
 {
     struct paint p = {.image = h->image, .line = h->scale};

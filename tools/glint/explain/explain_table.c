@@ -85,7 +85,7 @@ static void print_price(const struct glint_explain *e,
                100 * e->stage[kind] / e->all.work, 1e-6 * e->stage[kind]);
 }
 
-/* Says which bundles are not drawn by themselves, as they are dim. */
+/* States which bundles are not drawn by themselves, as they are dim. */
 static void print_dim(const struct glint_explain *e)
 {
     const double dim = e->dim_codes;

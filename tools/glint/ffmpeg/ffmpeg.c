@@ -274,7 +274,7 @@ start_heard(struct child *child, const char *const *argv, enum child_pipe kind,
 
     *child = CHILD_NONE;
     child->listening = words;
-    /* A file, not a pipe: nobody has to read it for the child to go on. */
+    /* A file, not a pipe: nobody has to read it for the child to continue. */
     child->said = memfd_create("said", MFD_CLOEXEC);
     if (child->said >= 0)
         fcntl(child->said, F_SETFL, O_APPEND);

@@ -4,7 +4,7 @@
  * shells, which complete the fixed words among them.
  *
  * One table for all commands, in values.c: a new option with a value gets a
- * line there, or tests/cli/doors says that it has none.
+ * line there, or tests/cli/doors states that it has none.
  */
 #ifndef GLINT_TOOLS_HELP_VALUES_H
 #define GLINT_TOOLS_HELP_VALUES_H

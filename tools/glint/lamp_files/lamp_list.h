@@ -17,15 +17,15 @@ enum { LAMP_LIST_MAX_ROWS = 1 << 20 };
  * most that. */
 bool lamp_power_ok(double power, const double rgb[3]);
 
-/* One line of a list. X and Y are pixels from the top left corner, also outside
- * of the picture. */
+/* One line of a list. X and Y are pixels from the top left corner, also
+ * outside the picture. */
 struct lamp_row {
     int frame; /* -1: every frame */
     double x, y, power, rgb[3];
     double size;  /* RMS radius, pixels; 0: a point */
     double shape; /* minor axis of the lamp over its major one, 0 .. 1 */
     double turn;  /* degrees of the major axis from +x; 90 is up */
-    double level; /* share of the power that a lamp coming or going has */
+    double level; /* fraction of the power that a lamp coming or going has */
     double seen;  /* pixels: RMS radius of the lamp and of the light around it,
                      in a picture that clips it; 0: not clipped */
     uint32_t id;  /* 0: none */

@@ -184,7 +184,7 @@ static void spots_gather(struct spots *s, const struct glint_prescription *lens,
     measure(s);
 }
 
-/* Share of the film's end at which the outermost field is, so that rays end
+/* Fraction of the film's end at which the outermost field is, so that rays end
  * within it. */
 #define FIELD_ENDS 0.995
 
@@ -558,7 +558,7 @@ static void draw_one(const struct figure *f, const struct spots *s, int field,
             unit(half_mm));
 }
 
-/* Says what the colours are, to the right below the boxes. */
+/* States what the colours are, to the right below the boxes. */
 static void draw_legend(const struct figure *f)
 {
     const double y = top_px(f) + SPOT_PX + 34;

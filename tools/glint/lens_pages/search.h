@@ -11,7 +11,7 @@
 bool lens_has_words(const char *name, const struct glint_prescription *lens,
                     char **words, int n);
 
-/* Says which of N WORDS, 1 or more, no lens of the library has, and which it
+/* States which of N WORDS, 1 or more, no lens of the library has, and which it
  * may have meant, or that lenses have them, but none has all. Returns an exit
  * code. */
 int lens_words_missed(const struct tool *tool, char **words, int n);

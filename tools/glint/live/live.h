@@ -103,7 +103,7 @@ struct live_options {
     enum live_report report;
 };
 
-/* Reads OPTIONS anew, as at the start; for SIGHUP. Returns -1, or an exit code
+/* Reads OPTIONS again, as at the start; for SIGHUP. Returns -1, or an exit code
  * after reporting the failure. */
 typedef int live_reread_fn(void *ctx, struct tool *tool,
                            struct live_options *options);

@@ -5,7 +5,7 @@
 
 #include "glint/quality.h"
 
-#define TIGHT      0.9  /* busy share of a period above which quality drops */
+#define TIGHT      0.9 /* busy fraction of a period above which quality drops */
 #define SPARE      0.55 /* busy share below which it may rise, after a while */
 #define SETTLE_S   0.3  /* least seconds from a step to the next one down */
 #define HOLD_S     2.0
@@ -13,7 +13,7 @@
 #define SMOOTHING  0.2
 
 /* Quality and lights of each step. Steps go down the table of qualities from
- * its middle, and never above the quality asked for; then lights are left
+ * its middle, and never above the quality requested; then lights are left
  * out. */
 static const struct {
     double quality;

@@ -18,7 +18,7 @@
 #define LIVE_MAX_STEP 7
 
 struct live_adapt {
-    int step;       /* 0 .. LIVE_MAX_STEP; 0: as asked for */
+    int step;       /* 0 .. LIVE_MAX_STEP; 0: as requested */
     double busy_ms; /* smoothed time of a frame; -1: none since the last step */
     /* below_s: seconds for which there has been time to spare; hold_s: seconds
      * of that which a step up needs. */
@@ -35,7 +35,7 @@ void live_adapt_init(struct live_adapt *adapt);
 bool live_adapt_note(struct live_adapt *adapt, double busy_ms, double period_ms,
                      int n_missed);
 
-/* Returns the dials ASKED for, made as coarse as ADAPT's step. */
+/* Returns the dials Requested, made as coarse as ADAPT's step. */
 struct glint_dials live_adapt_dials(const struct live_adapt *adapt,
                                     struct glint_dials asked);
 

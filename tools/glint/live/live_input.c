@@ -47,8 +47,8 @@ static enum glint_status start_timer(struct glint_source *source,
 }
 
 /* Prepares TIMED for frames of FORMAT, with the rate, range and matrix of WISH
- * if it gives any. CARD says what the source is. start begins a timer and makes
- * it the source's fd. The implementation sets next and close. */
+ * if it gives any. CARD states what the source is. start begins a timer and
+ * makes it the source's fd. The implementation sets next and close. */
 static void init_timed(struct live_timed *timed,
                        const struct glint_source_format *format,
                        const struct glint_v4l2_config *wish, const char *card)

@@ -116,7 +116,7 @@ char *live_stats_line(const struct live_stats *stats, int64_t now_us,
 char *live_stats_json(const struct live_stats *stats, int64_t now_us,
                       bool total, char text[LIVE_STATS_TEXT]);
 
-/* Prepares LOG for reports as ASKED for, which may be LIVE_REPORT_AUTO. */
+/* Prepares LOG for reports as Requested, which may be LIVE_REPORT_AUTO. */
 void live_log_init(struct live_log *log, const struct tool *tool,
                    enum live_report asked, bool is_piped);
 

@@ -21,14 +21,14 @@ struct live {
     void *ctx;
 
     struct live_input in;
-    /* Format of the input when it was opened or began anew. */
+    /* Format of the input when it was opened or restarted. */
     struct glint_source_format format;
     int n_restarts; /* restarts of the input when FORMAT was read */
     struct live_output output;
     struct live_copy copy; /* copy of frames that lie in slow memory */
 
     struct live_adapt adapt;
-    struct glint_dials asked; /* dials asked for, before adapting */
+    struct glint_dials asked; /* dials requested, before adapting */
     struct live_log log;
     int n_shown, n_snapshots;
     /* why the camera could not be opened the last time */
@@ -240,7 +240,7 @@ static void note(struct live *l, const struct glint_source_frame *frame,
 /* ------------------------------------------------------------- what is lost */
 
 /* Reports the loss of a device. With --reconnect the run waits for it, and the
- * panel keeps the last picture meanwhile. Returns -1 to go on, or an exit
+ * panel keeps the last picture meanwhile. Returns -1 to continue, or an exit
  * code. */
 static int lose(struct live *l, const char *what, enum glint_status status,
                 const char *why)
@@ -271,7 +271,7 @@ static int lose_output(struct live *l, enum glint_status status,
     return lose(l, "output", status, why);
 }
 
-/* Returns -1 to go on, or an exit code. */
+/* Returns -1 to continue, or an exit code. */
 static int retry_camera(struct live *l)
 {
     struct glint_error error = {""};
@@ -304,8 +304,8 @@ static int32_t elapsed_us(struct live *l, int64_t time_us)
                                          : (int32_t)elapsed;
 }
 
-/* Draws FRAME, which was asked for at TAKEN_US, and shows it. Returns -1 to go
- * on, or an exit code. */
+/* Draws FRAME, which was requested at TAKEN_US, and shows it. Returns -1 to
+ * continue, or an exit code. */
 static int show(struct live *l, const struct glint_source_frame *frame,
                 int64_t taken_us)
 {
@@ -359,7 +359,7 @@ static void say_signal(struct live *l)
 }
 
 /* Sets up for the format that the input has agreed on again, and starts it.
- * Returns -1 to go on, or an exit code. */
+ * Returns -1 to continue, or an exit code. */
 static int restart(struct live *l)
 {
     struct glint_error error = {""};
@@ -372,7 +372,7 @@ static int restart(struct live *l)
     return status == GLINT_OK ? -1 : lose_camera(l, status, error.text);
 }
 
-/* Takes and shows a frame, if there is one. Returns -1 to go on, or an exit
+/* Takes and shows a frame, if there is one. Returns -1 to continue, or an exit
  * code. */
 static int step(struct live *l)
 {

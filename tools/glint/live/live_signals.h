@@ -19,7 +19,7 @@ enum live_signal {
 
 void live_signals_take(void);
 
-/* Returns whether WHICH was asked for since the last call; a stop stays. */
+/* Returns whether WHICH was requested since the last call; a stop stays. */
 bool live_signal(enum live_signal which);
 
 /* Waits until FD (unless -1) is readable, has an event or an error, a signal

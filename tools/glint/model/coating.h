@@ -44,7 +44,7 @@ void coating_print(FILE *file, const struct glint_coating *coating);
 void coating_apply(const struct coating *coating,
                    struct glint_prescription *lens);
 
-/* Checks that no coatings were asked for with the model PATH, which has its
+/* Checks that no coatings were requested with the model PATH, which has its
  * own. Returns EXIT_OK, or the code of a usage error. */
 int coating_of_model(const struct tool *tool, const struct coating *coating,
                      const char *path);

@@ -16,13 +16,13 @@ struct front_option {
     struct glint_front_dirt *dirt; /* NULL: there is none */
 };
 
-/* Returns whether anything was asked for. */
+/* Returns whether anything was requested. */
 static inline bool front_option_asked(const struct front_option *option)
 {
     return option->front.dust > 0 || option->mask_file;
 }
 
-/* Reads the mask and makes what was asked for. */
+/* Reads the mask and makes what was requested. */
 int front_option_open(const struct tool *tool, struct front_option *option);
 
 void front_option_close(struct front_option *option);

@@ -36,8 +36,8 @@ int tool_model(const struct tool *tool, const char *path,
                struct model_file *model);
 
 /* Sets MODEL, of a zoom, to ZOOM: mm of focal length, or 0 to 1 along its way.
- * GLINT_E_ARGUMENT: it does not go there; ERROR says how far it does, and MODEL
- * stays as it was. */
+ * GLINT_E_ARGUMENT: it does not go there; ERROR states how far it does, and
+ * MODEL stays as it was. */
 enum glint_status model_file_zoom(struct model_file *model, double zoom,
                                   struct glint_error *error);
 

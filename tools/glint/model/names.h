@@ -22,7 +22,7 @@ enum glint_status tool_find_input(const char *text, const char *name,
 /* Sets NAME to the name of the file PATH without folder and ending. */
 void tool_scene_name(const char *path, char name[64]);
 
-/* Keys of contents, FNV-1a: begins as that, and goes on with DATA[BYTES]. */
+/* Keys of contents, FNV-1a: begins as that, and continues with DATA[BYTES]. */
 #define TOOL_KEY_BEGIN UINT64_C(14695981039346656037)
 void tool_key_mix(uint64_t *key, const void *data, size_t bytes);
 

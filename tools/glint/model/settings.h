@@ -80,7 +80,7 @@ int settings_open(const struct tool *tool, struct settings *settings,
                   const char *lens);
 
 /* Says by TEXT why the f-number of S cannot be had, and which line of a file
- * asks for it. Returns an exit code. */
+ * requests it. Returns an exit code. */
 static inline int settings_refuse_stop(const struct tool *tool,
                                        const struct settings *s,
                                        const char *text)
@@ -94,11 +94,11 @@ static inline int settings_refuse_stop(const struct tool *tool,
 }
 
 /* Zooms settings whose model is that of a zoom, as model_file_zoom().
- * GLINT_E_ARGUMENT: ERROR says why not. */
+ * GLINT_E_ARGUMENT: ERROR states why not. */
 enum glint_status settings_zoom(struct settings *settings, double zoom,
                                 struct glint_error *error);
 
-/* Returns the stop of SETTINGS: where the line asks for no shape, a circle if
+/* Returns the stop of SETTINGS: where the line requests no shape, a circle if
  * the table says so. */
 struct stop_option settings_stop_shape(const struct settings *settings);
 

@@ -29,7 +29,7 @@ bool stop_option_shades(const struct stop_option *stop);
 int stop_mask_read(const struct tool *tool, const char *file, uint8_t **mask,
                    int *width, int *height);
 
-/* Reads the mask that was asked for. */
+/* Reads the mask that was requested. */
 int stop_option_open(const struct tool *tool, struct stop_option *stop);
 
 /* Gives SETUP the iris of STOP. *DIRT receives what it refers to, or NULL. */

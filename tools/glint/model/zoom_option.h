@@ -36,7 +36,7 @@ bool zoom_option_focus(struct zoom_option *option, const char *text);
 int zoom_option_apply(const struct tool *tool, const struct zoom_option *option,
                       struct glint_prescription *lens);
 
-/* Checks that neither was asked for with the model PATH. Returns EXIT_OK, or
+/* Checks that neither was requested with the model PATH. Returns EXIT_OK, or
  * the code of a usage error. */
 int zoom_option_of_model(const struct tool *tool,
                          const struct zoom_option *option, const char *path);

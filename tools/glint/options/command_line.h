@@ -44,8 +44,9 @@ const struct option *engine_getopt(struct tool *tool, unsigned groups,
 int tool_getopt(int argc, char *const *argv, const char *shorts,
                 const struct option *options, int *index);
 
-/* Takes a common option. Returns -1 to go on, else the exit code to leave with
- * (EXIT_OK after --help and its like). An unknown option is a usage error. */
+/* Takes a common option. Returns -1 to continue, else the exit code to leave
+ * with (EXIT_OK after --help and its like). An unknown option is a usage error.
+ */
 int tool_option(struct tool *tool, int option, const char *value);
 
 /* Returns the value of the last option in ARGV that getopt_long() would
@@ -55,12 +56,12 @@ const char *tool_value_of(int argc, char **argv, const char *shorts,
                           const struct option *options, int option);
 
 /* Checks that getopt_long() has left N words of ARGV. Returns -1, or after
- * saying TEXT the code of tool_usage(); of a line with fewer words it says
+ * saying TEXT the code of tool_usage(); of a line with fewer words it states
  * which one the last option took for its value. */
 int tool_inputs(const struct tool *tool, int argc, char **argv, int n,
                 const char *text);
 
-/* Takes option C of a command whose own CTX is. Returns -1 to go on, -2 if
+/* Takes option C of a command whose own CTX is. Returns -1 to continue, -2 if
  * VALUE is refused, or an exit code. */
 typedef int tool_take_fn(struct tool *tool, void *ctx, int c,
                          const char *value);

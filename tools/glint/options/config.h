@@ -31,8 +31,8 @@
 #define CONFIG_LINE 190
 
 /* Takes OPTION as from the command line; VALUE is NULL where it has none.
- * Returns -1 to go on, else an exit code, after printing why by tool_usage(),
- * which adds file and line. */
+ * Returns -1 to continue, else an exit code, after printing why by
+ * tool_usage(), which adds file and line. */
 typedef int config_take_fn(void *ctx, const struct option *option,
                            const char *value);
 

@@ -39,7 +39,7 @@ void apart_line(struct apart *files, const struct drawing_line *line)
     apart_write(files, "--save-lights", o->save_lights);
 }
 
-/* Returns whether writing OUTPUT would lose INPUT. A pattern is no file, so
+/* Returns whether writing OUTPUT would lose INPUT. A pattern is not a file, so
  * that its text has to do. */
 static bool is_lost(const char *input, const char *output)
 {

@@ -2,7 +2,7 @@
  *
  * layers.h - the parts of a flare as layers of linear light, to be added to a
  * picture one by one: flare (their sum), ghosts, starburst, and veil where one
- * is asked for.
+ * is requested.
  *
  * All in one file with a part for each, flare.exr, or a file for each where the
  * name has a %s, flare-%s.exr. A %d or %04d stands for the frame, from 0.
@@ -14,7 +14,7 @@
 #include "overlay/drawing.h"
 
 struct layers {
-    const char *path; /* NULL: no layers are asked for */
+    const char *path; /* NULL: no layers are requested */
     bool is_float;    /* else half */
 };
 

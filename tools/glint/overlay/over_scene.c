@@ -251,7 +251,7 @@ static enum glint_status move(struct over_scene *over,
     return move_camera(over, scene, to);
 }
 
-/* Moves and changes all things anew, of a scene that was just placed. */
+/* Moves and changes all objects again, of a scene that was just placed. */
 static void move_all(void *ctx, struct glint_scene *scene)
 {
     struct over_scene *const over = ctx;
@@ -262,7 +262,7 @@ static void move_all(void *ctx, struct glint_scene *scene)
     steer_apply(&over->steer, scene);
 }
 
-/* Puts all things where they were before the first pose. */
+/* Puts all objects where they were before the first pose. */
 static void move_back(struct over_scene *over)
 {
     const struct glint_scene_model *const m = &over->baked.model;

@@ -8,7 +8,7 @@
  *     over_scene_draw(&over, &image, frame);          each picture
  *     over_scene_close(&over);
  *
- * Frames of a video rise. Moving things bakes nothing.
+ * Frames of a video rise. Moving objects bakes nothing.
  */
 #ifndef GLINT_TOOLS_OVERLAY_OVER_SCENE_H
 #define GLINT_TOOLS_OVERLAY_OVER_SCENE_H
@@ -89,7 +89,7 @@ bool over_scene_keeps_lights(const struct over_scene *over);
  * Returns an exit code. */
 int over_scene_size(struct over_scene *over, const struct scene_dials *dials);
 
-/* Draws from the next picture on with the dials that were asked for, but no
+/* Draws from the next picture on with the dials that were requested, but no
  * finer than QUALITY, as of --quality; 1: as asked. A budget turns them by
  * itself. GLINT_E_MEMORY. */
 enum glint_status over_scene_coarsen(struct over_scene *over, double quality);

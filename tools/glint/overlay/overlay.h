@@ -37,8 +37,8 @@ struct overlay {
     /* Frames of a video that are drawn, from 0, and how many before these are
      * looked at. */
     int first, last, warm_up;
-    int32_t elapsed_us; /* microseconds from frame to frame; 0: pictures by
-                           themselves */
+    int32_t elapsed_us; /* microseconds from frame to frame; 0: still
+                           pictures */
     int range, matrix;  /* 0: auto */
     /* frames without headers; WIDTH 0: none */
     struct {
@@ -48,7 +48,7 @@ struct overlay {
     int quality;  /* quality of JPEG and WebP; 0: the input's */
     bool is_video;
     bool lists_shots; /* Prints the frames from cut to cut, draws nothing. */
-    bool is_cut;      /* Lamps and exposure began anew in the last frame. */
+    bool is_cut;      /* Lamps and exposure restarted in the last frame. */
     struct layers layers;
     bool has_layers_type, has_raw;
     const char *encode; /* options for ffmpeg, or NULL */

@@ -312,7 +312,8 @@ static enum glint_status draw_scene(struct overlay_file *file,
     return GLINT_OK;
 }
 
-/* Says that what is drawn has no colours, as the file has no room for them. */
+/* States that what is drawn has no colours, as the file has no room for them.
+ */
 static void say_grey(const struct overlay_file *file,
                      const struct drawing *drawing)
 {

@@ -33,7 +33,7 @@ int overlay_drawn(const struct overlay *o);
 void overlay_say(const struct overlay *o, const struct overlay_light *light,
                  FILE *to);
 
-/* Prints that no lamp was found; of a picture by itself also the brightest
+/* Prints that no lamp was found; of a still picture also the brightest
  * candidate. */
 void overlay_say_none(const struct drawing *drawing, FILE *to);
 

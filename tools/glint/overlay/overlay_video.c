@@ -293,8 +293,8 @@ static int frames(struct video *v)
     return code;
 }
 
-/* Prints the frames of each shot: from one in which lamps and exposure begin
- * anew to the next. In frames without lamps they do in each; those are one
+/* Prints the frames of each shot: from one in which lamps and exposure
+ * restart to the next. In frames without lamps they do in each; those are one
  * shot, with what comes after them. */
 static int shots(struct video *v)
 {

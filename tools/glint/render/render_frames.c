@@ -17,7 +17,7 @@
 #include "render/render_scene.h"
 #include "video/y4m.h"
 
-/* As arenas of the run time ask for. */
+/* As arenas of the run time request. */
 #define ALIGNMENT 64
 
 struct frames {

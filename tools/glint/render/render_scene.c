@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint render of scenes: draws their things, in linear light.
+ * glint render of scenes: draws their objects, in linear light.
  */
 #include <math.h>
 #include <stdlib.h>

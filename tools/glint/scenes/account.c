@@ -80,7 +80,7 @@ static size_t highlight_bytes(const struct scene_frame *frame)
     return frame->bytes - glint_scene_bytes(&without, frame->model);
 }
 
-/* Returns what of it maps of stones take. */
+/* Returns what of it maps of translucent media take. */
 static size_t map_bytes(const struct scene_frame *frame)
 {
     struct glint_scene_header header = *frame->model->header;

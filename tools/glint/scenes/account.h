@@ -23,7 +23,7 @@ enum glint_status scene_account_make(struct scene_account *account,
                                      const struct scene_frame *frame);
 void scene_account_free(struct scene_account *account);
 
-/* Returns how many pixels things hide in the frame that was drawn last, in
+/* Returns how many pixels objects hide in the frame that was drawn last, in
  * all. */
 int scene_covered_px(const struct scene_frame *frame);
 

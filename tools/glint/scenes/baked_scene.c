@@ -121,7 +121,8 @@ static void measure_mesh(const struct glint_scene_model *model,
     b[MESH] += sizeof *m;
 }
 
-/* Returns the bytes of stones, and of the maps of what is of them. */
+/* Returns the bytes of translucent media, and of the maps of what is of them.
+ */
 static size_t stone_bytes(const struct glint_scene_model *model)
 {
     const struct glint_scene_header *h = model->header;

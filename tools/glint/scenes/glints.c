@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* As the tracker's arena asks for. */
+/* As the tracker's arena requests. */
 #define ALIGNMENT 64
 
 enum glint_status glints_open(struct glints *glints, int width, int height)
@@ -16,7 +16,7 @@ enum glint_status glints_open(struct glints *glints, int width, int height)
     glint_lamp_tracker_defaults(&cfg, width, height);
     cfg.max_tracks = GLINTS_MAX;
     cfg.max_shown = GLINT_SCENE_MAX_HIGHLIGHTS;
-    /* Things that turn show several highlights at once: that is no cut. */
+    /* Objects that turn show several highlights at once: that is not a cut. */
     cfg.cut_q15 = (1 << 15) + 1;
     bytes = glint_lamp_tracker_bytes(&cfg);
     if (posix_memalign(&glints->mem, ALIGNMENT, bytes)) {
@@ -32,7 +32,7 @@ void glints_close(struct glints *glints)
     *glints = (struct glints){.n = 0};
 }
 
-/* Returns SPOT of a picture by itself as a track. */
+/* Returns SPOT of a still picture as a track. */
 static struct glint_lamp_track still(const struct glint_spot *spot, int number)
 {
     return (struct glint_lamp_track){

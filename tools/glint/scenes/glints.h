@@ -36,7 +36,7 @@ enum glint_status glints_open(struct glints *glints, int width, int height);
 void glints_close(struct glints *glints);
 
 /* Takes the highlights of the picture of SCENE drawn last, ELAPSED_US after the
- * one before; 0: a picture by itself. Returns how many lamps there are. */
+ * one before; 0: a still picture. Returns how many lamps there are. */
 int glints_frame(struct glints *glints, const struct glint_scene *scene,
                  int32_t elapsed_us);
 

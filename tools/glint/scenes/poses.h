@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * poses.h - where the things of a scene are, frame by frame.
+ * poses.h - where the objects of a scene are, frame by frame.
  *
  *     poses_open(&poses, path, is_live, &model, &error);
  *     while ((pose = poses_next(&poses, frame)))           each frame
@@ -12,7 +12,7 @@
  * object or light of the scene, or camera; frames count from 0, * is every
  * frame until a later line says otherwise. x, y, z are scene units, of a sun
  * the direction to it, in the hand of the scene's text; the quaternion turns
- * from the thing's own axes (of the camera: x right, y up, looking as one that
+ * from the object's own axes (of the camera: x right, y up, looking as one that
  * is not turned) to the scene's; without it the turn stays. A pose holds until
  * the next.
  */
@@ -38,7 +38,7 @@ struct pose {
 };
 
 struct poses {
-    long n_bad;             /* lines of a pipe that were passed over */
+    long n_bad;             /* lines of a pipe that were skipped */
     struct glint_error bad; /* the first of them */
 
     /* Private. */
@@ -65,7 +65,7 @@ const struct pose *poses_next(struct poses *poses, int frame);
 /* Goes back before the first frame; returns false of a pipe, which cannot. */
 bool poses_rewind(struct poses *poses);
 
-/* Notes that POSE, of which the scene would leave its range, was passed over.
+/* Notes that POSE, of which the scene would leave its range, was skipped.
  */
 void poses_refuse(struct poses *poses, const struct pose *pose);
 

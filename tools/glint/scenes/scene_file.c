@@ -110,7 +110,7 @@ static enum glint_status read_environment(void *ctx, const char *name,
     return pass(reading, status, file.data, file.bytes, data, bytes);
 }
 
-/* The same of a stone. */
+/* The same of a translucent medium. */
 static enum glint_status read_stone(void *ctx, const char *name, uint8_t **data,
                                     size_t *bytes, struct glint_error *error)
 {

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* As the run time's arenas ask for. */
+/* As the run time's arenas request. */
 #define ALIGNMENT 64
 
 /* ------------------------------------------------------------------- dials

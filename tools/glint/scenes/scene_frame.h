@@ -17,7 +17,7 @@ struct scene_dials {
     double focal_px;   /* focal length of a camera that has the lens's field */
     int edge_samples;  /* 1, 4, 8 or 16 */
     int shadow_points; /* 1, 4 or 16 */
-    bool half_shading; /* two by two pixels at once, within one thing */
+    bool half_shading; /* two by two pixels at once, within one object */
     int ward_samples;  /* 1 .. 32 lookups of a place on brushed metal */
     bool has_highlights;
     int highlights; /* 0 .. 8, whatever the scene says, with has_highlights */
@@ -29,7 +29,7 @@ struct scene_dials {
 void scene_dials_choose(struct scene_dials *dials,
                         const struct glint_options *options);
 
-/* Puts the things of a scene where they are. */
+/* Puts the objects of a scene where they are. */
 typedef void scene_frame_pose_fn(void *ctx, struct glint_scene *scene);
 
 struct scene_frame {
@@ -40,14 +40,14 @@ struct scene_frame {
     void *mem;
     size_t bytes;
     /* NULL, or called with POSE_CTX before the next picture of a scene that was
-     * placed anew: it begins with the poses and looks of its model. */
+     * placed again: it begins with the poses and looks of its model. */
     scene_frame_pose_fn *pose;
     void *pose_ctx;
     bool is_fresh; /* it was */
 
     /* Of the picture drawn last. */
     struct glint_scene_stats stats;
-    int map_texels; /* of translucent things, worked out for it */
+    int map_texels; /* of translucent objects, worked out for it */
     double project_ms, map_ms, draw_ms;
 };
 
@@ -58,7 +58,7 @@ int scene_frame_open(struct scene_frame *frame, const struct tool *tool,
                      const struct scene_dials *dials);
 void scene_frame_close(struct scene_frame *frame);
 
-/* Puts things where they are and prepares a frame. */
+/* Puts objects where they are and prepares a frame. */
 void scene_frame_begin(struct scene_frame *frame);
 
 /* Draws the scene onto IMAGE, of the size of the dials. Takes more memory where

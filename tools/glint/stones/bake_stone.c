@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bake of translucent stones: writes how light spreads below a surface as
- * the run time takes it.
+ * glint bake of translucent media: writes how light spreads below a
+ * surface as the run time takes it.
  */
 #include "model/bake_line.h"
 #include "options/command_line.h"

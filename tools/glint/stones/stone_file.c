@@ -12,7 +12,7 @@
 #include "model/names.h"
 
 #define MAX_FILE_BYTES ((size_t)1 << 26)
-/* Changes where the same text would give another stone. */
+/* Changes where the same text would give another translucent medium. */
 #define RECIPE UINT64_C(2)
 
 bool stone_file_is_text(const char *argument)
@@ -137,8 +137,8 @@ read_source(const struct tool *tool, const char *path,
 
 /* ------------------------------------------------------------------- baking */
 
-/* Sets *DB to how near what STONE makes of lamps, shadows and a ramp is to what
- * ROWS make of them, PSNR. GLINT_E_MEMORY. */
+/* Sets *DB to how near what Translucent medium makes of lamps, shadows and a
+ * ramp is to what ROWS make of them, PSNR. GLINT_E_MEMORY. */
 static enum glint_status near_rows(const struct glint_scatter_rows *rows,
                                    const struct glint_translucent *stone,
                                    double *db)
@@ -251,7 +251,7 @@ static enum glint_status bake(const struct tool *tool, struct source *s,
 
 /* -------------------------------------------------------------------- cache */
 
-/* Opens the kept stone; returns false if there is none. */
+/* Opens the kept translucent medium; returns false if there is none. */
 static bool load(const char *path, uint64_t key, struct stone_file *file)
 {
     struct glint_error error;

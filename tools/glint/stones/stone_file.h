@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Baked stones: from texts, and from files. What a text describes is computed
- * once and kept in the cache, as models of lenses are. */
+ * Baked translucent media: from texts, and from files. What a text describes is
+ * computed once and kept in the cache, as models of lenses are. */
 #ifndef GLINT_TOOLS_STONES_STONE_FILE_H
 #define GLINT_TOOLS_STONES_STONE_FILE_H
 
 #include "glint/scene/stone_bake.h"
 #include "options/tool.h"
 
-/* How near what a stone makes of light is to its full rows, under lamps,
- * shadows and a ramp. */
+/* How near what a translucent medium makes of light is to its full rows, under
+ * lamps, shadows and a ramp. */
 struct stone_errors {
     double fit_db, baked_db;
     double kernel_loss;
@@ -18,28 +18,28 @@ struct stone_errors {
 };
 
 struct stone_file {
-    void *data; /* malloc'ed; STONE points into it */
+    void *data; /* malloc'ed; Translucent medium points into it */
     size_t bytes;
     struct glint_translucent stone;
     bool is_baked_now;
     struct stone_errors errors; /* of what was baked now */
 };
 
-/* Returns whether ARGUMENT is the text of a stone, or a baked one by how the
- * file begins. */
+/* Returns whether ARGUMENT is the text of a translucent medium, or a baked one
+ * by how the file begins. */
 bool stone_file_is_text(const char *argument);
 bool stone_file_is_baked(const char *argument);
 
 /* Opens the text or baked file PATH, unless it, or what a text names, is the
- * file that TOOL writes. OVER, unless NULL, changes what the text says. ANEW:
- * no kept stone will do. On failure the reason is in ERROR. */
+ * file that TOOL writes. OVER, unless NULL, changes what the text says. Again:
+ * no kept translucent medium will do. On failure the reason is in ERROR. */
 enum glint_status
 stone_file_read(const struct tool *tool, const char *path,
                 void (*over)(void *ctx, struct glint_stone_text *), void *ctx,
                 bool anew, struct stone_file *file, struct glint_error *error);
 void stone_file_close(struct stone_file *file);
 
-/* Computes ROWS of the text PATH anew, or reads those that it names. */
+/* Computes ROWS of the text PATH again, or reads those that it names. */
 enum glint_status stone_file_rows(const struct tool *tool, const char *path,
                                   struct glint_scatter_rows *rows,
                                   struct glint_error *error);
@@ -47,7 +47,7 @@ enum glint_status stone_file_rows(const struct tool *tool, const char *path,
 /* Prints what is in FILE; with --json, as one object. */
 void stone_file_print(const struct tool *tool, const struct stone_file *file);
 
-/* glint bake of stones, as the commands of options/tool.h. */
+/* glint bake of translucent media, as the commands of options/tool.h. */
 int cmd_bake_stone(struct tool *tool, int argc, char **argv);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What is in a baked stone, in words and in numbers. */
+ * What is in a baked translucent medium, in words and in numbers. */
 #include "options/json_writer.h"
 #include "stones/stone_file.h"
 

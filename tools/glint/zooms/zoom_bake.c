@@ -15,9 +15,9 @@ enum {
 };
 
 /* Errors at the angles that are measured are brought to so many dB less than
- * what is asked for, as others have more. */
+ * what is requested, as others have more. */
 #define MARGIN_DB 2
-/* Share of what is asked for: a ghost whose largest error was less is not
+/* Fraction of what is requested: a ghost whose largest error was less is not
  * measured again in the halves of its step. */
 #define SMALL 1e-3
 /* Angles that are measured lie elsewhere at each place: multiples of this fill
@@ -200,7 +200,7 @@ static void note(struct run *run, const struct zoom_error *left, int n_added)
                 n_added == 1 ? "" : "s", tool_seconds() - run->start);
 }
 
-/* Asks for the errors half-way of the step from FROM to TO, but for small ones.
+/* Requests the errors half-way of the step from FROM to TO, but for small ones.
  * Returns whether any ghost has both ends. */
 static bool ask(struct run *run, int from, int to)
 {
@@ -263,7 +263,7 @@ static enum glint_status halve(struct run *run, int from)
     return bake_place(run, middle, false);
 }
 
-/* Bakes the even positions; how long all take is said at the first. */
+/* Bakes the even positions; how long all take is reported at the first. */
 static enum glint_status bake_even(struct run *run)
 {
     struct tool_progress *const p = &run->progress;

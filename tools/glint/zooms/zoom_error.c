@@ -11,7 +11,7 @@
 #include "glint/transfer.h"
 
 /* Pictures are so many pixels wide: a fourth of 1080p's, whose outlines are as
- * far off in shares of the picture. */
+ * far off in fractions of the picture. */
 enum { WIDE = 480, MOST_HIGH = 480 };
 
 /* Lights come from angles up to this times the half diagonal of what the lens
@@ -25,7 +25,8 @@ enum { WIDE = 480, MOST_HIGH = 480 };
  * middle of the visible band coatings leave too little of ghosts to tell. */
 #define WAVE_NM 450
 
-/* Share of white from which on a ghost is seen: a third of the first code. */
+/* Fraction of white from which on a ghost is seen: a third of the first code.
+ */
 #define FAINT 1e-4
 
 enum { EACH = 4 }; /* of the angles is measured at first */
@@ -193,7 +194,7 @@ static void angle_job(void *ctx, int angle, int worker)
 
 /* ------------------------------------------------------------------- angles */
 
-/* Notes at which angles the model has rays of the ghosts that are asked for. */
+/* Notes at which angles the model has rays of the ghosts that are requested. */
 static bool find_ranges(struct measuring *m)
 {
     struct glint_transfer *const transfer = malloc(sizeof *transfer);
@@ -229,7 +230,7 @@ static bool is_wanted(const unsigned char known[ZOOM_ANGLES], int angle,
            (known[angle] & ~(before | after) & IN_RANGE);
 }
 
-/* Wants each STEP-th angle of the ghosts that are asked for; of those between
+/* Wants each STEP-th angle of the ghosts that are requested; of those between
  * angles that have been measured only some. */
 static void want(struct measuring *m, int step)
 {

@@ -25,7 +25,7 @@ struct _GlintFlareElement {
     struct filter_values values;
     struct filter *filter;
     struct glint_image image; /* format, size and colours of frames */
-    gint32 frame_us;          /* nominal; 0: pictures by themselves */
+    gint32 frame_us;          /* nominal; 0: still pictures */
     GstClockTime last;        /* time of the last frame drawn */
 };
 

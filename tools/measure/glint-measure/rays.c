@@ -283,7 +283,7 @@ static void compare_all(struct figure_row *row, const struct task *t)
 {
     static struct tally all, equally;
     static struct light light[MOST_ANGLES];
-    double lost = 0; /* share of light lost at the worst angle, 0 .. 1 */
+    double lost = 0; /* fraction of light lost at the worst angle, 0 .. 1 */
     int ghosts = 0, missing = 0, angles[2] = {0, 0};
 
     for (int g = 0; g < t->n_ghosts; g++) {
