@@ -134,9 +134,9 @@ int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n);
  * [n_cells + 1][n_cells + 1], v rising, u fastest. The energy 65536 of a vertex
  * stands for 2^(exponent[GLINT_OUT_ENERGY] + 29 - energy_up); larger energies
  * are clamped. A ray with a value that does not fit a vertex is lost. For an
- * annular box N_CELLS must be even and at least 4: the middle row of rays is
- * lost, the rows next to it lie on the rim, and the box is covered by n_cells -
- * 2 rows of cells. */
+ * annular box N_CELLS must be even and at least 4: the rays of the middle row
+ * are invalid, the rows next to it lie on the rim, and the box is covered by
+ * n_cells - 2 rows of cells. */
 void glint_transfer_grid(struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells,
                          struct glint_vertex *vertices);

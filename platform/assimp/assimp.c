@@ -129,7 +129,7 @@ static const char *check_mesh(const struct aiMesh *mesh, size_t *n)
         if (!is_finite(&mesh->mVertices[k]) ||
             (mesh->mTextureCoords[0] &&
              !is_finite(&mesh->mTextureCoords[0][k])))
-            return "has places that are no finite numbers";
+            return "has coordinates that are not finite";
     for (unsigned k = 0; k < mesh->mNumFaces; k++) {
         const struct aiFace *const face = &mesh->mFaces[k];
 

@@ -512,7 +512,7 @@ static enum glint_status start_anew(struct glint_v4l2 *v, const char *why,
     }
     if (is_late && started)
         return glint_error_report(error, GLINT_E_DEVICE, v->device.path,
-                                  "%s, and starting anew does not help", why);
+                                  "%s, and restarting does not help", why);
     status = agree_anew(v, error);
     if (status == GLINT_OK)
         status = prepare(v, error);

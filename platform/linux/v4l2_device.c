@@ -465,8 +465,8 @@ bool glint_v4l2_device_retimed(struct glint_v4l2_device *d)
            !same_timings(&now.bt, &set.bt);
 }
 
-/* Sets an HDMI input to the timings it receives, as it keeps old ones until it
- * is told. Notes whether it has a signal. */
+/* Sets an HDMI input to the timings it receives, as the driver keeps the old
+ * timings until they are set. Notes whether it has a signal. */
 static enum glint_status follow_timings(struct glint_v4l2_device *d,
                                         struct glint_error *error)
 {

@@ -4,7 +4,7 @@
  *
  * With base == NULL the arena only counts. Each object has one function that
  * carves its buffers, and it runs twice: first to measure, then to place. So
- * the size that an application is told cannot differ from what init takes. */
+ * the reported size cannot differ from what init takes. */
 #ifndef GLINT_BASE_ARENA_H
 #define GLINT_BASE_ARENA_H
 

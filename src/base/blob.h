@@ -65,7 +65,7 @@ enum glint_blob_fault {
         [GLINT_BLOB_OLDER] =                                                \
             "the " thing " was " done " by an older glint: bake it again",  \
         [GLINT_BLOB_TRUNCATED] = "the " thing " is truncated",              \
-        [GLINT_BLOB_LONGER] = "the " thing " goes on after its end",        \
+        [GLINT_BLOB_LONGER] = "the " thing " continues after its end",      \
         [GLINT_BLOB_DAMAGED] =                                              \
             "the checksum is wrong: the " thing " is damaged",              \
         [GLINT_BLOB_NAME_CONTROL] = "the name has a control character",     \

@@ -57,7 +57,7 @@ static int64_t size_of(int64_t x)
 }
 
 enum follow_as {
-    FOLLOW_JUDGED,   /* noise or change is told by the errors so far */
+    FOLLOW_JUDGED,   /* the errors so far decide between noise and change */
     FOLLOW_REPEATED, /* all members of the lamp are as they were */
     FOLLOW_CHANGED
 };

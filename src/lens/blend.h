@@ -61,7 +61,7 @@ struct glint_blend_output glint_blend_of(struct glint_transfer *t, int kind);
 
 /* Returns the value, _q16, of the polynomial of O at a place of its box. A
  * barrel that is so far away that it is clamped cuts nothing or all; units
- * coarser than 2^-16, which no barrel's is, are not told apart. */
+ * coarser than 2^-16, which no barrel's is, are not distinguished. */
 int32_t glint_blend_value_q16(const struct glint_blend_output *o, int64_t u_q24,
                               int64_t v_q24);
 

@@ -57,7 +57,7 @@ enum {
                       would take quadratic time */
 };
 
-static const char outside[] = "a table lies outside of the file";
+static const char outside[] = "a table lies outside the file";
 
 struct check {
     struct glint_blob blob;
@@ -80,7 +80,7 @@ static const char *const fault_text[GLINT_BLOB_FAULTS] = {
     [GLINT_BLOB_NO_VERSION] = "no glint ever made models of this version",
     [GLINT_BLOB_OLDER] = "the model was made by an older glint: bake it again",
     [GLINT_BLOB_TRUNCATED] = "the model is truncated",
-    [GLINT_BLOB_LONGER] = "the model goes on after its end",
+    [GLINT_BLOB_LONGER] = "the model continues after its end",
     [GLINT_BLOB_DAMAGED] = "the checksum is wrong: the model is damaged",
     [GLINT_BLOB_NAME_CONTROL] = "the name has a control character",
     [GLINT_BLOB_NAME_FOREIGN] = "the name has a byte beyond ASCII",

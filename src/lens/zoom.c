@@ -426,7 +426,7 @@ static enum glint_status set_lacks(struct glint_zoom_lens *zoom,
         zoom->has[k] =
             glint_blob_section(blob, m[k].has_at, words, sizeof(uint32_t));
         *reason = end ? "a zoom's first or last position lacks ghosts"
-                      : "a list of ghosts lies outside of the file";
+                      : "a list of ghosts lies outside the file";
         if (end || !zoom->has[k])
             return GLINT_E_LENS;
     }
@@ -450,7 +450,7 @@ enum glint_status glint_zoom_open(struct glint_zoom_lens *zoom,
     if (*reason)
         return GLINT_E_LENS;
     m = glint_blob_section(&blob, h->model_at, h->n_models, sizeof *m);
-    *reason = "a table lies outside of the file";
+    *reason = "a table lies outside the file";
     if (!m)
         return GLINT_E_LENS;
     *reason = "a zoom has fewer than 2 models or too many";
@@ -460,7 +460,7 @@ enum glint_status glint_zoom_open(struct glint_zoom_lens *zoom,
         const void *const at =
             glint_blob_section(&blob, m[k].at, m[k].bytes, 1);
 
-        *reason = "a model lies outside of the file";
+        *reason = "a model lies outside the file";
         if (!at || glint_lens_open(&zoom->model[k], at, m[k].bytes, reason) !=
                        GLINT_OK)
             return GLINT_E_LENS;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What the lens is told: lights of the scene as the camera sees them, and what
- * of the picture the scene hides. */
+ * Lights of the scene as the camera sees them, for the lens, and what of the
+ * picture the scene hides. */
 #include "base/real.h"
 #include "scene/state.h"
 

@@ -23,7 +23,7 @@ struct check {
     struct glint_scene_model model;
 };
 
-#define OUTSIDE "a table lies outside of the file"
+#define OUTSIDE "a table lies outside the file"
 
 enum { SPAN = GLINT_SCENE_SPAN, UV_LIMIT = 1 << 24 };
 
@@ -49,7 +49,7 @@ static const char *check_vertices(struct check *c,
         for (int k = 0; k < 3; k++)
             off[k] = at[3 * i + (size_t)k] - m->centre[k];
         if (glint_scene_length(off) > reach)
-            return "a vertex is outside of its mesh's ball";
+            return "a vertex is outside its mesh's ball";
     }
     return NULL;
 }

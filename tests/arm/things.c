@@ -179,7 +179,7 @@ int main(int argc, char **argv)
         if (getenv("GLINT_EACH")) /* The first that differs tells which. */
             printf("%d %08lx\n", i, (unsigned long)(h >> 32));
     }
-    printf("%d pictures, %d with things, %08lx%08lx\n", n, changed,
+    printf("%d pictures, %d with objects, %08lx%08lx\n", n, changed,
            (unsigned long)(h >> 32), (unsigned long)(h & 0xffffffff));
     return 0;
 }

@@ -23,7 +23,7 @@ static const char help[] =
     "code by code. Where one of them has floats (.pfm .exr .hdr), both are\n"
     "taken as linear light, exposed so that the 99.9th percentile of the\n"
     "reference's luminance is 1, clipped, and encoded to 8-bit sRGB first.\n"
-    "Equal pictures are said to be identical; their PSNR is inf, null in "
+    "Equal pictures are reported as identical; their PSNR is inf, null in "
     "JSON.\n"
     "\n"
     "  --exposure EV   stops, of both; auto: by the reference's percentile;\n"

@@ -39,7 +39,7 @@ static const char help[] =
     "\n"
     "  -o, --output OUT    a picture: touched tiles shaded, ghosts outlined "
     "and\n"
-    "                      numbered, a legend; with --scene its things "
+    "                      numbered, a legend; with --scene its objects "
     "outlined,\n"
     "                      in colours by what a pixel of each costs\n"
     "  --save-ghosts FILE  the ghosts, for --ghosts FILE of overlay, live and "

@@ -59,7 +59,7 @@ static const char help[] =
     "of a\n"
     "                      model of 'glint bake LENS --positions N'\n"
     "  --list-shots        prints A-B of each shot of a video; no -o then\n"
-    "  --layers OUT        flare, ghosts, starburst and, where asked for, veil "
+    "  --layers OUT        flare, ghosts, starburst and, on request, veil "
     "as\n"
     "                      linear light: parts of an .exr, or with %s in its "
     "name\n"

@@ -262,7 +262,7 @@ static int check_apart(const struct tool *tool, const struct styles_command *c,
     return apart_check(tool, &files);
 }
 
-/* Checks the line before a lens is baked for it. */
+/* Checks the command line before a lens is baked. */
 static int check(struct tool *tool, struct styles_command *c)
 {
     struct drawing *const drawing = calloc(1, sizeof *drawing);

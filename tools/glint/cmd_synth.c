@@ -238,12 +238,13 @@ static int begin_set(const struct tool *tool, const struct synth_set *set,
     free(kept);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    return is_same ? check_count(tool, set)
-                   : tool_usage(tool,
-                                "%s was begun with other options or "
-                                "backgrounds (%s): go on with those, or name "
-                                "another folder",
-                                set->folder, path);
+    return is_same
+               ? check_count(tool, set)
+               : tool_usage(tool,
+                            "%s was begun with other options or "
+                            "backgrounds (%s): continue with those, or name "
+                            "another folder",
+                            set->folder, path);
 }
 
 /* Writes SETTINGS to synth.json, once nothing is wrong with them. */
@@ -429,10 +430,11 @@ static const char help[] =
     "is clipped. FOLDER gets input, gt (with the lights themselves), flare\n"
     "and mask (where lights are), and manifest.jsonl, a line an item. The\n"
     "same options give the same bytes, in one run or in shards; a run that\n"
-    "was killed is begun again and goes on.\n"
+    "was killed is begun again and continues.\n"
     "\n"
     "  -o, --output FOLDER\n"
-    "  --count N           items (default 100); more later go on, fewer are\n"
+    "  --count N           items (default 100); more later continue, fewer "
+    "are\n"
     "                      refused; 0: bakes the lenses only\n"
     "  --seed S            another set for each (default 0)\n"
     "  --shard I/N         items I, I + N, I + 2N ...; I from 0\n"

@@ -35,7 +35,7 @@ static const char help[] =
     "  --model MODEL    the same rays by a model that was baked from LENS: "
     "its\n"
     "                   integers as render and overlay use them. Status 1\n"
-    "                   outside of the box and of the angles of the ghost;\n"
+    "                   outside the box and of the angles of the ghost;\n"
     "                   rel_radius is that of the barrels that limit it, 0\n"
     "                   where none does\n" ZOOM_HELP COATING_HELP
     "  --csv            the format above; there is no other\n";
@@ -249,7 +249,7 @@ static int prepare_model(const struct tool *tool, const struct options *o,
     if (o->ghost < 0)
         return tool_usage(tool, "a model has no direct path");
     if (wave_q24 < h->wave_lo_q24 || wave_q24 > h->wave_hi_q24)
-        return tool_usage(tool, "%g nm is outside of the model's band",
+        return tool_usage(tool, "%g nm is outside the model's band",
                           o->wavelength_nm);
     tracer->trace = trace_model;
     tracer->stop_radius_mm = model_real_of(h->stop_radius_mm);

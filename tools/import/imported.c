@@ -559,7 +559,7 @@ static void settle_film(struct imported *lens, double focal_units)
         lens->film_mm[0] = 36;
         lens->film_mm[1] = 24;
         imported_note(lens, 0,
-                      "no field is said: film 36x24 mm taken (--film)");
+                      "no field is stated: film 36x24 mm taken (--film)");
         return;
     }
     lens->film_mm[0] = 2 * half * 3 / sqrt(13);

@@ -6,7 +6,7 @@
  *     text = import_read(&lens, import_format_of("x.zmx"), data, &bytes);
  *
  * Readers write down what the file says, in its own units, which is then
- * completed to a .lens table. Whatever is guessed or left out is told by a note
+ * completed to a .lens table. A note reports whatever is guessed or left out
  * with its line number; STRICT refuses at the end, so that one run tells all of
  * it.
  */
@@ -105,7 +105,7 @@ void imported_object(struct imported *lens, int line, double distance);
 bool imported_unit(struct imported *lens, int line, double mm);
 
 /* Notes that the image that LINE has is bent, if RADIUS is not 0, and moves the
- * sensor by its DEFOCUS, in the file's unit, which is told. */
+ * sensor by its DEFOCUS, in the file's unit, which is reported. */
 void imported_image(struct imported *lens, int line, double radius,
                     double defocus);
 

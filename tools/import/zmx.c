@@ -202,7 +202,7 @@ static bool check_distances(struct imported *lens)
         }
         if (!isfinite(s->thickness))
             return imported_fail(lens, s->line,
-                                 "an infinite thickness inside of the lens");
+                                 "an infinite thickness inside the lens");
     }
     return true;
 }

@@ -50,8 +50,9 @@ struct synth_lenses {
     struct synth_lens *lens[SYNTH_MAX_LENSES];
 };
 
-/* Lists the pictures of WORDS[N], files, or folders whose pictures are told by
- * their endings, sorted by name. Returns an exit code: names have to differ. */
+/* Lists the pictures of WORDS[N], files, or folders whose pictures are
+ * recognised by their endings, sorted by name. Returns an exit code: names have
+ * to differ. */
 int synth_backgrounds_open(const struct tool *tool,
                            struct synth_backgrounds *list, char **words, int n);
 

@@ -92,8 +92,8 @@ void synth_ranges_print(FILE *file, const struct synth_ranges *ranges);
 void synth_ranges_json(struct json_writer *json,
                        const struct synth_ranges *ranges);
 
-/* Draws the numbers of item NUMBER of SEED; what is no number, the size and the
- * quality stay. */
+/* Draws the numbers of item NUMBER of SEED; members that are not numbers, the
+ * size and the quality stay. */
 void synth_item_draw(struct synth_item *item, const struct synth_ranges *ranges,
                      int seed, int number);
 

@@ -30,7 +30,8 @@ enum { MAX_BUNDLES = 1 << 20 };
  * pixel. */
 #define SPAN_DEG 1.0
 
-/* Parts of the work between which progress is told, and jobs of one at least.
+/* Parts of the work between which progress is reported, and min jobs of a
+ * part.
  */
 enum { PARTS = 100, LEAST_PART = 4 };
 

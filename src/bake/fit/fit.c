@@ -39,7 +39,7 @@ struct fitter {
     struct glint_visible_profile band_profile;
     double profiled[4];      /* angles and band of band_profile */
     int n_parts;             /* number of parts of the zone so far */
-    glint_fit_told_fn *told; /* NULL: nobody is told */
+    glint_fit_told_fn *told; /* NULL: no progress reports */
     void *told_ctx;
     double work, share; /* see glint_fit_told_fn */
     double sines;       /* width of all ranges */

@@ -48,10 +48,11 @@ static struct glint_described_environment *append(struct glint_describer *d,
     set_name(file, e->name);
     for (int i = 0; i < s->n_environments; i++)
         if (strcmp(s->environment[i].name, e->name) == 0) {
-            glint_text_fail(&d->text, place,
-                            "a second environment '%s'; files are told apart "
-                            "by their names",
-                            e->name);
+            glint_text_fail(
+                &d->text, place,
+                "a second environment '%s'; files are identified by their "
+                "names",
+                e->name);
             return NULL;
         }
     s->n_environments++;

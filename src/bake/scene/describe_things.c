@@ -25,7 +25,7 @@ glint_describe_thing(struct glint_describer *d, enum glint_described_kind kind,
     struct glint_described_object *o = &s->object[s->n_objects];
 
     if (s->n_objects == GLINT_DESCRIPTION_MAX_OBJECTS) {
-        glint_text_fail(&d->text, place, "more than %d things",
+        glint_text_fail(&d->text, place, "more than %d objects",
                         GLINT_DESCRIPTION_MAX_OBJECTS);
         return NULL;
     }
@@ -36,7 +36,7 @@ glint_describe_thing(struct glint_describer *d, enum glint_described_kind kind,
     for (int i = 0; i < s->n_objects; i++)
         if (strcmp(s->object[i].name, name) == 0) {
             glint_text_fail(&d->text, place,
-                            "a thing of this name is already defined");
+                            "an object of this name is already defined");
             return NULL;
         }
     *o = (struct glint_described_object){.kind = kind,
@@ -215,11 +215,12 @@ static bool find_materials(struct glint_describer *d,
             if (strcmp(s->material[m].name, mesh->name[i]) == 0)
                 of[i] = m;
         if (of[i] < 0)
-            return glint_text_fail(&d->text, place,
-                                   "%s uses '%s', which is no material above "
-                                   "this line; 'material' of the mesh would "
-                                   "stand in",
-                                   file, mesh->name[i]);
+            return glint_text_fail(
+                &d->text, place,
+                "%s uses '%s', which is not a material above "
+                "this line; 'material' of the mesh would "
+                "stand in",
+                file, mesh->name[i]);
     }
     return true;
 }

@@ -169,7 +169,7 @@ struct cells {
     double view;   /* fraction of these in the picture */
 };
 
-/* Returns the light of a step by which parts are told apart over LIGHT. */
+/* Returns the smallest visible step of light on top of LIGHT. */
 static double step_of(const struct glint_cost_plan *p, double light)
 {
     return p->code > 0

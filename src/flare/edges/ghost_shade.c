@@ -80,9 +80,9 @@ static int level_of(const struct glint_shade *s,
     return level < 0 ? 0 : level < s->log2 ? level : s->log2 - 1;
 }
 
-/* Returns the difference by which light is told apart that is LIGHT at most: a
- * 128th of it, or half of a code. With each octave below white the light of a
- * code falls to 2/3, as far as codes are not linear. */
+/* Returns the smallest visible difference of light near LIGHT: a 128th of it,
+ * or half of a code. With each octave below white the light of a code falls to
+ * 2/3, as far as codes are not linear. */
 static int64_t tolerance_q20(const struct glint_ghost_edges *g,
                              int64_t light_q20)
 {

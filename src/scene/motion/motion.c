@@ -23,7 +23,7 @@ GLINT_BLOB_HEADER(struct glint_motion_header, variant);
 static const char *const fault_text[GLINT_BLOB_FAULTS] =
     GLINT_BLOB_FAULT_TEXT("motion", "motions", "baked");
 
-static const char outside[] = "a table lies outside of the motion";
+static const char outside[] = "a table lies outside the motion";
 
 /* ------------------------------------------------------------------ blocks */
 

@@ -17,7 +17,7 @@ GLINT_BLOB_HEADER(struct glint_translucent_header, variant);
 
 enum { CHANNELS = 3, MOST_SHIFT = 16, LEAST_GAIN = -200 };
 
-static const char outside[] = "a table lies outside of the stone";
+static const char outside[] = "a table lies outside the stone";
 
 static const char *const fault_text[GLINT_BLOB_FAULTS] =
     GLINT_BLOB_FAULT_TEXT("stone", "stones", "baked");

@@ -17,7 +17,7 @@ STATIC_ASSERT((int)GLINT_TEXELS_LEVELS == (int)GLINT_ENVIRONMENT_MAX_LEVELS);
 /* The header begins as that of every baked file does. */
 GLINT_BLOB_HEADER(struct glint_environment_header, variant);
 
-static const char outside[] = "a table lies outside of the environment";
+static const char outside[] = "a table lies outside the environment";
 
 static const char *const fault_text[GLINT_BLOB_FAULTS] =
     GLINT_BLOB_FAULT_TEXT("environment", "environments", "baked");

@@ -153,7 +153,7 @@ static void regress(const struct tucker *p, int x, int c, int degree,
 }
 
 /* Sets MEAN[k2] to the terms' row of X, turned back, over its maximum: near 0
- * .. 1, so that its powers are told apart. */
+ * .. 1, so that its powers are well separated. */
 static void mean_row(const struct tucker *p, int x, double *mean)
 {
     const float *model = line(p, p->model, x);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * The twin of environment light: lookups in the baked environment, and
- * Ward's lobe over it and under lights, in double precision, along the paths of
- * the run time. All that is in the axes of baked scenes, whose z runs away. */
+ * Reference renderer of environment light: lookups in the baked environment,
+ * and Ward's lobe over it and under lights, in double precision, along the
+ * paths of the run time. All that is in the axes of baked scenes, whose z runs
+ * away. */
 #include "reference/scenes/twin_around.h"
 
 #include <string.h>

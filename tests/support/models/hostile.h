@@ -19,7 +19,7 @@ enum hostile_family {
     /* as many ghosts that go across the frame up to nine times each way, cut by
      * barrels */
     HOSTILE_FOLDS,
-    HOSTILE_LOST,    /* rays that are lost: all, or stripes of them */
+    HOSTILE_LOST,    /* invalid rays: all, or stripes of them */
     HOSTILE_SYSTEMS, /* thousands of systems, or of knots, of one ghost */
     HOSTILE_NUMBERS, /* coefficients at the largest sums, any exponents */
     HOSTILE_POINTS,  /* boxes of no size */

@@ -26,7 +26,8 @@ void star_canvas_open(struct star_canvas *canvas, int width, int height,
 void star_canvas_close(struct star_canvas *canvas);
 
 /* Draws the stars of N lights, down to light FAINTEST, onto black: MEM is a
- * picture of FORMAT. Returns the number of pixels that were said to get light.
+ * picture of FORMAT. Returns the number of pixels that were reported to get
+ * light.
  */
 int64_t star_canvas_draw(struct star_canvas *canvas,
                          const struct glint_star_tables *tables,

@@ -291,7 +291,7 @@ static const struct mistake {
     {10, "sphere ball at 0 0 0 radius 1", "10:30: sphere needs 'material'"},
     {10, "sphere camera at 0 0 0 radius 1 material red", "10:8: 'camera' is"},
     {11, "triangle ball 0 0 0 1 0 0 0 1 0 material red",
-     "11:10: a thing of this name is already defined"},
+     "11:10: an object of this name is already defined"},
     {11, "triangle t 0 0 0 1 0 0 0 1 material red",
      "11:28: triangle 'material' is not a number"},
     {11, "triangle t 0 0 0 1 0 0 0 1 0 material oak",

@@ -56,7 +56,7 @@ static void scan(int ghost, double theta_deg, double nm, bool near, int *n_seen)
                 continue;
             ++*n_seen;
             if (!found || x < box.x0_mm || x > box.x1_mm || y > box.y1_mm)
-                fail_msg("ghost %d at %g degrees: (%g, %g) passes outside of "
+                fail_msg("ghost %d at %g degrees: (%g, %g) passes outside "
                          "the box",
                          ghost, theta_deg, x, y);
             assert_true(ray.energy <= 1.5 * box.energy);

@@ -326,7 +326,8 @@ static bool soon(void *ctx)
     return seen[1] > seen[2];
 }
 
-/* Work states how far it is, and ends when it is told to, with nothing left. */
+/* The computation reports progress and can be cancelled; it then frees
+ * everything. */
 static void test_watched(void **state)
 {
     const struct glint_stone stone = stone_of(GLINT_STONE_CHESS);

@@ -138,7 +138,7 @@ static void between_degrees(void **state)
             const double now = x;
 
             if (glint_trace(&path, x, 0, d, &ray, NULL) != GLINT_RAY_OK)
-                fail_msg("%g degrees: a ray is lost", degrees[k]);
+                fail_msg("%g degrees: a ray is invalid", degrees[k]);
             if (fabs(ray.stop_x_mm) < 1e-12)
                 break;
             x = i ? x - ray.stop_x_mm * (x - before) / (ray.stop_x_mm - stop)

@@ -199,7 +199,7 @@ static void check(const struct shape *s, const struct glint_lens *lens,
     want = look(&t, opening);
     if (!glint_window_find(&nodes, &t, (int32_t)(opening * ONE))) {
         if (want.n)
-            fail_msg("%s at %g: %d rays are lost", s->name, opening, want.n);
+            fail_msg("%s at %g: %d rays are invalid", s->name, opening, want.n);
         return;
     }
     got = window_of(&t);

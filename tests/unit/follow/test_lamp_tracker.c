@@ -496,8 +496,8 @@ static void test_a_lamp_that_comes_back(void **state)
     }
 }
 
-/* Two lamps that meet and pass must keep their numbers, as they are told apart
- * by where they go. */
+/* Two lamps that meet and pass must keep their numbers, as their motion
+ * distinguishes them. */
 static void test_lamps_that_pass_keep_their_numbers(void **state)
 {
     uint32_t id[2] = {0, 0};

@@ -72,7 +72,7 @@ static void test_truncated(void **state)
         free(copy);
     }
     assert_string_equal(reason_of(m.data, m.bytes + 4),
-                        "the model goes on after its end");
+                        "the model continues after its end");
     free(m.data);
 }
 
@@ -132,8 +132,8 @@ static void test_not_a_model(void **state)
 
 enum table { HEADER, GHOST, SYSTEM, OUTPUT, TERM, COEF, BOX, KNOT };
 
-/* Bytes that are changed, and what must then be said; NULL: nothing. Outputs
- * are those of system 0, terms and coefficients those of output 0. */
+/* Bytes that are changed, and the reason that must be reported; NULL: nothing.
+ * Outputs are those of system 0, terms and coefficients those of output 0. */
 struct rule {
     enum table table;
     size_t at, bytes;
@@ -148,7 +148,7 @@ struct rule {
 #define SYSTEM_(k, field) SYSTEM, k * 40 + FIELD_(glint_model_system, field)
 #define OUTPUT_(k, field) OUTPUT, k * 32 + FIELD_(glint_model_output, field)
 
-static const char outside[] = "a table lies outside of the file",
+static const char outside[] = "a table lies outside the file",
                   unnormal[] = "a number of the header is not normalised",
                   not_above[] = "a length or the f-number is not above 0",
                   no_band[] = "the band of wavelengths is empty or not above 0",

@@ -2,7 +2,7 @@
  *
  * A zoom of two lenses, baked at three positions: at these it is the model of
  * that position, between them its rays land where exact ones do, and files that
- * are no zooms are refused. */
+ * are not zooms are rejected. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

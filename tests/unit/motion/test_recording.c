@@ -252,7 +252,7 @@ static void both_spellings(void **state)
     free(second);
 }
 
-/* A food that moves without a reset is a residual that is told. */
+/* A food that moves without a reset is reported as a residual. */
 static void a_food_that_moves_is_told(void **state)
 {
     struct baked baked;

@@ -470,7 +470,7 @@ static void wide_lines_leave_wide_pictures(void **state)
     moving_close(d);
 }
 
-/* Lamps ride on the body: the lens is told where they are. */
+/* Lamps ride on the body: the lens gets their places. */
 static void lamps_ride_on_the_body(void **state)
 {
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Picture files are told apart by content and saved by extension. Tests of the
+ * Picture files are identified by content and saved by extension. Tests of the
  * image plug-in are skipped where $GLINT_OIIO does not name it.
  */
 #include <setjmp.h>

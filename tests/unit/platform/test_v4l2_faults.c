@@ -195,9 +195,9 @@ static void test_never_again(void **state)
         {VIDIOC_QBUF, EIO, ": VIDIOC_QBUF: Input/output error"},
         {VIDIOC_S_FMT, EBUSY, ": VIDIOC_S_FMT: Device or resource busy; "},
         {VIDIOC_DQBUF, EIO,
-         ": the stream is broken, and starting anew does "
+         ": the stream is broken, and restarting does "
          "not help"},
-        {VIDIOC_DQBUF, EPIPE, "starting anew does not help"},
+        {VIDIOC_DQBUF, EPIPE, "restarting does not help"},
     };
 
     (void)state;
@@ -291,7 +291,7 @@ static void damaged_to_the_end(bool as_jpeg)
     }
     assert_int_equal(status, GLINT_E_DEVICE);
     assert_string_equal(said.text, FAKE_PATH ": all frames are damaged, and "
-                                             "starting anew does not help");
+                                             "restarting does not help");
     assert_int_equal(n_frames, 60); /* in two seconds */
     assert_int_equal(n_corrupt, 60);
     must_close();
@@ -374,8 +374,8 @@ static void test_silence(void **state)
     assert_int_equal(follow(10000, &failed_ms), GLINT_E_DEVICE);
     /* The restart did not help. */
     assert_in_range(failed_ms, 4200, 4400);
-    assert_string_equal(said.text, FAKE_PATH ": no frames come, and starting "
-                                             "anew does not help");
+    assert_string_equal(said.text, FAKE_PATH ": no frames come, and restarting "
+                                             "does not help");
     must_close();
 }
 

@@ -98,8 +98,8 @@ static double focus_mm(void)
 
 /* With rays near the axis in focus on the sensor, the middle of the ghost is a
  * point with a halo of aberrations. 6 % are allowed: the outermost part of the
- * halo comes from next to rays that are lost to total reflection, and cells
- * that have lost two corners are not drawn. */
+ * halo comes from next to rays that vanish by total reflection, and cells that
+ * have lost two corners are not drawn. */
 static void test_focus(void **state)
 {
     double flux = 0;

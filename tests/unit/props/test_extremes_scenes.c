@@ -166,9 +166,10 @@ static void test_grazing(void **state)
     assert_true(extreme_at_least("scenes: floors and balls that graze, to "
                                  "1e-5, against the reference",
                                  worst.db, 60, "dB"));
-    assert_true(extreme_at_most("scenes: floors and balls that graze, other "
-                                "things seen",
-                                100 * worst.wrong, 1, "%"));
+    assert_true(
+        extreme_at_most("scenes: floors and balls that graze, other objects "
+                        "seen",
+                        100 * worst.wrong, 1, "%"));
 }
 
 /* The same ball and pyramid, from 1e-6 to 1e5 wide. */
@@ -196,7 +197,7 @@ static void test_sizes(void **state)
     assert_true(
         extreme_at_least("scenes: sizes 1e-6 to 1e3, against the reference",
                          worst.db, 60, "dB"));
-    assert_true(extreme_at_most("scenes: sizes 1e-6 to 1e3, other things seen",
+    assert_true(extreme_at_most("scenes: sizes 1e-6 to 1e3, other objects seen",
                                 100 * worst.wrong, 1, "%"));
 }
 
@@ -281,7 +282,7 @@ static void test_behind(void **state)
                                  "camera, against the reference",
                                  worst.db, 60, "dB"));
     assert_true(extreme_at_most("scenes: behind, around and across the camera, "
-                                "other things seen",
+                                "other objects seen",
                                 100 * worst.wrong, 1, "%"));
 }
 
@@ -304,7 +305,7 @@ static void test_pictures(void **state)
                                  "high, against the reference",
                                  worst.db, 60, "dB"));
     assert_true(extreme_at_most("scenes: one pixel to 8192 wide and 4096 high, "
-                                "other things seen",
+                                "other objects seen",
                                 100 * worst.wrong, 1, "%"));
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a scene is told to have drawn: fates of objects, what hides what, and
+ * What a scene reports to have drawn: fates of objects, what hides what, and
  * counts that are known beforehand.
  */
 #include <math.h>

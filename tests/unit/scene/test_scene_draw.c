@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Scenes on pictures: that they are the same however they are drawn, in every
- * format; that meshes do not leak; what the lens is told of lights.
+ * format; that meshes do not leak; the lights that the lens gets.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -594,8 +594,8 @@ static double value(struct glint_real x)
     return glint_real_value(x);
 }
 
-/* Places and light of what the lens is told, and both again through the same
- * pinhole, in doubles. */
+/* Places and light of the lights that the lens gets, and both again through the
+ * same pinhole, in doubles. */
 static void test_lights(void **state)
 {
     const struct glint_scene_config cfg = defaults();

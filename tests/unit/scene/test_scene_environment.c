@@ -380,9 +380,8 @@ static void test_environment_tables(void **state)
     REFUSES(e->turn_q30[0], 1 << 29, range);
     REFUSES(e->scale.mantissa, 0, range);
     REFUSES(e->scale.mantissa, -e->scale.mantissa, range);
-    REFUSES(e->file_bytes, 1 << 28, "a table lies outside of the file");
-    REFUSES(e->file_bytes, e->file_bytes - 1,
-            "a table lies outside of the file");
+    REFUSES(e->file_bytes, 1 << 28, "a table lies outside the file");
+    REFUSES(e->file_bytes, e->file_bytes - 1, "a table lies outside the file");
     memset(light[1].toward_q30, 0, sizeof light[1].toward_q30);
     light[1].radius = 0;
     REFUSES(light[1].kind, GLINT_LIGHT_LAMP,
@@ -402,7 +401,7 @@ static void test_environment_names(void **state)
         parse("environment a/9e5.hdr\nenvironment 9e5\n", &description, &error),
         GLINT_E_LENS);
     assert_string_equal(error.text, "x.scene:2:13: a second environment '9e5'; "
-                                    "files are told apart by their names");
+                                    "files are identified by their names");
     for (int i = 0; i < 17; i++)
         sprintf(text + strlen(text), "environment sky%d\n", i);
     assert_int_equal(parse(text, &description, &error), GLINT_E_LENS);

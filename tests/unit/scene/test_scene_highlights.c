@@ -254,8 +254,8 @@ static int count(const char *text)
     return n;
 }
 
-/* Discs of lights, backgrounds, catchers and what is no brighter than white are
- * none; a scene that requests none has none. */
+/* Discs of lights, backgrounds, catchers and pixels up to white are none; a
+ * scene that requests none has none. */
 static void test_none(void **state)
 {
     (void)state;

@@ -157,7 +157,7 @@ static void test_materials(void **state)
     REFUSES(header.n_environments, 17, "the scene has too many of a kind");
     REFUSES(header.n_environment_lights, 1, "the scene has too many of a kind");
     REFUSES(texture[0].width_log2, 13, "a texture is too large");
-    REFUSES(texture[0].height_log2, 12, "a table lies outside of the file");
+    REFUSES(texture[0].height_log2, 12, "a table lies outside the file");
 }
 
 /* A list of a grid that lacks a triangle, or has one twice, is refused. */
@@ -187,11 +187,11 @@ static void test_grid_lists(void **state)
 static void test_meshes(void **state)
 {
     (void)state;
-    REFUSES(mesh[0].radius, 2000, "a vertex is outside of its mesh's ball");
+    REFUSES(mesh[0].radius, 2000, "a vertex is outside its mesh's ball");
     REFUSES(mesh[0].radius, GLINT_SCENE_SPAN / 2,
             "a mesh is too large or too far out");
     REFUSES(mesh[0].n_vertices, 3, "a triangle's vertex is out of range");
-    REFUSES(mesh[0].n_vertices, 1 << 30, "a table lies outside of the file");
+    REFUSES(mesh[0].n_vertices, 1 << 30, "a table lies outside the file");
     REFUSES(mesh[0].cell_log2, 1, "a mesh's grid is out of range");
     REFUSES(mesh[0].cells[1], 0, "a mesh's grid is out of range");
     REFUSES(mesh[0].cells[1], 257, "a mesh's grid is out of range");

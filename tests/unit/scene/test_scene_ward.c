@@ -483,7 +483,7 @@ static void test_extreme_lights(void **state)
     free(m.data);
 }
 
-/* Row B7: a ratio of 200 becomes one of 10, and that is told. */
+/* Row B7: a ratio of 200 becomes one of 10, and the call reports it. */
 static void test_b7_held(void **state)
 {
     struct glint_ward_lobe held, plain;

@@ -201,7 +201,7 @@ static void test_refused(void **state)
         {raise_gain, "the stone's gain is not normalised, or not 0 .. 1"},
         {raise_planes, "the stone has too many planes or ranks"},
         {make_even, "the stone's side or kernel is out of range"},
-        {move_taps, "a table lies outside of the stone"}};
+        {move_taps, "a table lies outside the stone"}};
 
     (void)state;
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Pieces of light of lenses that are not round: halves cover what they are
- * halves of; the variable whose powers weigh most is told; parts get the least
- * number that is free.
+ * halves of; the variable whose powers weigh most is returned; parts get the
+ * least number that is free.
  */
 #include <math.h>
 #include <setjmp.h>

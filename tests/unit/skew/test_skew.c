@@ -203,7 +203,7 @@ static void check(void)
     m = (struct meter){.n = 0};
     compare_all(&m);
     assert_true(m.n > 500);
-    print_message("%d of %d exact rays are lost\n", m.lost, m.through);
+    print_message("%d of %d exact rays are invalid\n", m.lost, m.through);
     assert_true(m.through > 1000 && 1000 * m.lost < m.through);
     pixels = sqrt(m.places2 / m.n) * 1920 / 36;
     radii = sqrt(m.stops2 / m.n);

@@ -25,7 +25,7 @@
 enum { WIDTH = 97, HEIGHT = 83, N = 3 * WIDTH * HEIGHT };
 
 /* Draws N lights into LINEAR_Q20, linear light, down to FAINTEST. Returns how
- * many pixels were said to get some. */
+ * many pixels were reported to get some. */
 static double draw_down_to(const struct glint_star_tables *t,
                            const struct glint_star_light *lights, int n,
                            struct glint_real faintest, int32_t *linear_q20)
@@ -384,9 +384,9 @@ static int count_lit(void)
     return n;
 }
 
-/* The number of pixels that a star will draw is told before it is drawn. It
- * must be 0.75 to 1.2 times those that get light for a round stop, and 1 to 2
- * times for six blades, as pixels of spikes count once more. */
+/* The number of pixels that a star will draw is predicted before it is drawn.
+ * It must be 0.75 to 1.2 times those that get light for a round stop, and 1 to
+ * 2 times for six blades, as pixels of spikes count once more. */
 static void test_pixels(void **state)
 {
     static const double place[][2] = {{48, 41}, {0, 0}, {-20, 60}};

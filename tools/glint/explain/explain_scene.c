@@ -119,7 +119,8 @@ static struct light light_of(const struct explained_scene *s, int i,
     const struct glint_engine_lamp *lamp = c->run.lamp + c->run.n_own;
 
     if (!model_of(s)->header->flare) {
-        light.word = "only lights things ('flare lights' shows it to the lens)";
+        light.word =
+            "only lights objects ('flare lights' shows it to the lens)";
         return light;
     }
     for (int k = 0; k < n; k++) {
@@ -290,7 +291,8 @@ static void print_layers(const struct explained_scene *s)
 {
     if (!model_of(s)->motion)
         return;
-    printf("\n%-26s %8s %8s\n", "over the motion's things", "pixels", "number");
+    printf("\n%-26s %8s %8s\n", "over the motion's objects", "pixels",
+           "number");
     for (int i = 0; i < N_LAYERS; i++) {
         const struct glint_scene_layered *const l =
             &s->account.layer[layers[i].kind];

@@ -17,7 +17,7 @@ static const struct {
 } outcomes[GLINT_OUTCOMES] = {
     [GLINT_OUTCOME_DRAWN] = {"drawn", "drawn"},
     [GLINT_OUTCOME_EMPTY] = {"empty", "no edge of its grid changes a pixel"},
-    [GLINT_OUTCOME_OTHER] = {"other", "not asked for, or muted"},
+    [GLINT_OUTCOME_OTHER] = {"other", "not requested, or muted"},
     [GLINT_OUTCOME_BEYOND] = {"beyond", "light beyond the model's angles"},
     [GLINT_OUTCOME_CLOSED] = {"closed", "no light gets through at this angle"},
     [GLINT_OUTCOME_BLOCKED] = {"blocked", "stop and barrels take all of it"},
@@ -242,7 +242,7 @@ static void print_lost_lights(const struct glint_explain *e,
         printf("%d light%s no power\n", dark, dark == 1 ? " has" : "s have");
     n = t->n_lamps - r->beyond_lights - dark;
     if (t->n_lamps && r->apart_lights < n)
-        printf("%d lights are %d as they cannot be told apart (--apart)\n", n,
+        printf("%d lights are %d as they coincide (--apart)\n", n,
                r->apart_lights);
     if (r->stats.held_cells)
         printf("%d cells are so bright that they were cut down to what one may "

@@ -976,7 +976,7 @@ static void add_rest(struct words *w, const struct ffmpeg_target *t,
         add_two(w, "-c:a", "copy");
     else if (*v->sound && !t->quiet)
         fprintf(stderr,
-                "glint overlay: %s: sound is encoded anew, as .%s does not "
+                "glint overlay: %s: sound is encoded again, as .%s does not "
                 "take %s\n",
                 t->name, ext, v->sound);
 }

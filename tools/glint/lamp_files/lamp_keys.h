@@ -4,7 +4,7 @@
  *
  * A heading that has "id" among its names gives the columns of a CSV in any
  * order: frame,id,x,y,power. An id is any text without commas. Without ids,
- * lamps are told apart by their order within a frame. Columns "shape" (minor
+ * lamps are identified by their order within a frame. Columns "shape" (minor
  * over major axis), "turn" (degrees of the major axis) and "level" (fraction of
  * the power that a lamp coming or going has) are 1, 0 and 1 if missing; "seen"
  * (pixels, see struct lamp_row) is 0.

@@ -7,7 +7,7 @@
  *     7-3  gain 0.5  tint 1,0.8,0.6     # the ghost of surfaces 7 and 3
  *     4    mute
  *
- * A ghost is told by its number or its pair of surfaces, as of glint info and
+ * A ghost is named by its number or its pair of surfaces, as of glint info and
  * glint explain. Where one is solo, all others are mute but those that are
  * solo, too. Gains are 0 to 1000, tints R,G,B 0 to 4. The line with the lens
  * may be left out; # begins a remark.

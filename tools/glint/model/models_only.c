@@ -30,7 +30,7 @@ int settings_open_table(const struct tool *tool, struct settings *settings,
     else
         snprintf(error.text, sizeof error.text,
                  "%.120s: %s; a baked model is "
-                 "asked for (glint bake, on any machine)",
+                 "required (glint bake, on any machine)",
                  name, strerror(errno));
     return tool_fail(tool, GLINT_E_LENS, error.text);
 }

@@ -184,7 +184,7 @@ static int check_band(const struct tool *tool, const struct settings *settings)
         if (settings->wavelength_nm[i] < lo - 0.5 ||
             settings->wavelength_nm[i] > hi + 0.5)
             return tool_usage(tool,
-                              "%g nm lies outside of the %.0f to %.0f nm that "
+                              "%g nm lies outside the %.0f to %.0f nm that "
                               "the model of %s was baked for (bake --band)",
                               settings->wavelength_nm[i], lo, hi, h->name);
     return EXIT_OK;
@@ -475,7 +475,7 @@ void settings_warn_lights(const struct tool *tool,
                 tool->name, r->beyond_lights, r->lights);
     if (!tool->quiet && r->drawn_lights < r->apart_lights)
         fprintf(stderr,
-                "glint %s: %d lights that can be told apart were merged into "
+                "glint %s: %d distinct lights were merged into "
                 "%d, the faint ones first (--max-lights)\n",
                 tool->name, r->apart_lights, r->drawn_lights);
     if (r->stats.dropped_bundles > 0)

@@ -37,8 +37,8 @@ struct settings {
     double tolerance;         /* tolerance that a model is baked with */
 
     double max_deg; /* largest angle of the lamps that a model is baked for */
-    /* What is drawn on: it has to be a picture before a lens is baked for it.
-     * NULL: that is not known yet. */
+    /* The input picture: it is validated before a lens is baked. NULL: that is
+     * not known yet. */
     const char *picture;
     const char *f_number_from; /* "FILE:LINE" that sets the f-number; NULL: the
                                   command line */

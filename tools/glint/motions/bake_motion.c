@@ -8,16 +8,18 @@
 static const char help[] =
     "glint bake NAME.json -o OUT.motion [options]\n"
     "\n"
-    "Finds where a body was that recorded, frame by frame, where things "
+    "Finds where a body was that recorded, frame by frame, where objects "
     "around\n"
     "it were in its own axes, and writes its poses, its sensors and where the\n"
-    "things are, for scenes (tools/examples/scenes/README.md has the words of\n"
+    "objects are, for scenes (tools/examples/scenes/README.md has the words "
+    "of\n"
     "a recording). Frames are read one by one.\n"
     "\n"
     "  -o, --output OUT\n"
     "  --fit F             all: the rigid motion nearest to all (default)\n"
     "                      best4, first4, chain: as published, baselines\n"
-    "  --average A         life: the place of a thing is a mean over its life\n"
+    "  --average A         life: the place of an object is a mean over its "
+    "life\n"
     "                      (default); none\n";
 
 static int take(struct tool *tool, void *line, int c, const char *name)

@@ -120,7 +120,7 @@ int motion_file_open(const struct tool *tool, const char *path,
                 r->residual);
     if (r->held_intensities && !tool->quiet)
         fprintf(stderr,
-                "glint %s: %s: %ld intensities outside of 0 .. 1 were held\n",
+                "glint %s: %s: %ld intensities outside 0 .. 1 were held\n",
                 tool->name, path, r->held_intensities);
     return EXIT_OK;
 }

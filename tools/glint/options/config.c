@@ -42,8 +42,8 @@ static void set_where(struct pass *p, int line)
              p->name + (len > NAME_CHARS ? len - NAME_CHARS : 0), line);
 }
 
-/* Reports FORMAT, which has one %s for ABOUT, and ends the pass. Returns 0, by
- * which inih is told of the failure. */
+/* Reports FORMAT, which has one %s for ABOUT, and ends the pass. Returns 0,
+ * which reports the failure to inih. */
 static int fail(struct pass *p, const char *format, const char *about)
 {
     char cause[160];

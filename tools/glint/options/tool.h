@@ -115,7 +115,7 @@ struct tool_progress {
     const char *besides; /* what is not in that, said likewise; NULL: nothing */
     double from, share;  /* see tool_progress_part() */
     bool shown, is_terminal;
-    bool told;             /* how long it takes was said, or is short */
+    bool told;             /* the estimate was printed, or the work is short */
     double (*clock)(void); /* seconds; tool_seconds(), but in unit tests */
     double started, last;
     double most; /* shown: more work than was thought takes nothing back */

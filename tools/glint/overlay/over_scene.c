@@ -480,7 +480,7 @@ size_t over_scene_bytes(const struct over_scene *over)
 
 void over_scene_say(const struct over_scene *over, FILE *to)
 {
-    fprintf(to, "scene %s, %d of %d things", over->baked.model.header->name,
+    fprintf(to, "scene %s, %d of %d objects", over->baked.model.header->name,
             over->frame.stats.objects, n_objects(over));
     if (over->lamps_hidden > 0)
         fprintf(to, " hiding %d light%s", over->lamps_hidden,

@@ -71,7 +71,7 @@ struct over_scene {
 
     /* Of the last frame. */
     double ms;
-    int lights;       /* of the scene, that the lens is told of */
+    int lights;       /* of the scene, that flare in the lens */
     int lamps_hidden; /* lamps and lights of which nothing is seen */
 };
 

@@ -323,7 +323,7 @@ static void say_grey(const struct overlay_file *file,
         drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
         !tool->quiet)
         fprintf(stderr,
-                "glint %s: %s has one channel, so that things and flare are "
+                "glint %s: %s has one channel, so that objects and flare are "
                 "grey; with three they have colours\n",
                 tool->name, file->from);
 }

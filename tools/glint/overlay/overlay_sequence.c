@@ -120,7 +120,7 @@ static void say_missing(const struct tool *tool, const struct overlay *o,
             continue;
         if (runs == 0)
             fprintf(stderr,
-                    "glint overlay: %s: missing, and passed over: ", o->input);
+                    "glint overlay: %s: missing, and skipped: ", o->input);
         if (runs < RUNS_SAID)
             fprintf(stderr, "%s%d", runs ? ", " : "", first);
         if (runs < RUNS_SAID && last > first)

@@ -56,7 +56,7 @@ int overlay_check_gif(struct tool *tool, const struct overlay *o, bool *video)
     if (glint_ends_in(o->output, ".gif") && overlay_is_video(o->input))
         *video = true;
     else if (n == 1 && overlay_is_video(o->output))
-        return tool_usage(tool, "%s has one frame, which is no video",
+        return tool_usage(tool, "%s has one frame, which is not a video",
                           o->input);
     else if (n > 1 && !moves && !tool->quiet)
         fprintf(stderr,

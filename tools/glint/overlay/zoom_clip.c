@@ -95,7 +95,7 @@ int zoom_clip_open(struct tool *tool, struct zoom_clip *clip, const char *input,
     if ((n <= 0 || n > MOST_FRAMES) && !error.text[0])
         glint_error_report(&error, GLINT_E_FORMAT, input,
                            "how many frames it has, which --zoom A-B needs, "
-                           "cannot be told");
+                           "is unknown");
     if (n <= 0 || n > MOST_FRAMES)
         return tool_fail(tool, GLINT_E_FORMAT, error.text);
     clip->keys = make_keys(clip, n);

@@ -18,7 +18,7 @@
 static const char help[] =
     "glint render NAME.scene|BAKED -o OUT [options]\n"
     "\n"
-    "Draws the things of a scene (tools/examples/scenes/README.md has the\n"
+    "Draws the objects of a scene (tools/examples/scenes/README.md has the\n"
     "format) over black, by the integer run time. Values are linear: 1 is\n"
     "display white. OUT is .pfm, or with the image plug-in .exr, .hdr: linear\n"
     "as it stands. A .ppm, .png or .jpg is for the eye: sRGB, 1 and above\n"
@@ -32,7 +32,7 @@ static const char help[] =
     "  --quality Q         0 to 1, or least ... finest: sets what of these is\n"
     "                      not given, and the flare\n"
     "  --exposure EV       stops; all light times 2^EV (default 0)\n"
-    "  --pose FILE         moves things and camera, as of glint overlay\n"
+    "  --pose FILE         moves objects and camera, as of glint overlay\n"
     "  --control FILE      lines that change the scene, likewise\n"
     "  --frame N           the frame of these to draw (default 0)\n"
     "  --frames A-B        all of these; OUT is .y4m, - or has a %04d\n"

@@ -233,7 +233,7 @@ static void print_text(const struct baked_scene *scene,
 
     printf("%s, a %sscene\n\n", h->name, scene->is_text ? "" : "baked ");
     print_camera(&h->camera);
-    printf("things       %u: spheres %d, planes %d (catchers %d), meshes %d\n",
+    printf("objects      %u: spheres %d, planes %d (catchers %d), meshes %d\n",
            h->n_objects, n->spheres, n->planes, n->catchers, n->meshes);
     printf("lights       %u%s\n", h->n_lights,
            h->shadow ? ", with shadows" : "");

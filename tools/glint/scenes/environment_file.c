@@ -292,7 +292,7 @@ void environment_file_print(const struct tool *tool,
 static const char bake_help[] =
     "glint bake PICTURE|NAME.environment -o OUT.env [options]\n"
     "\n"
-    "Turns a picture of all around, .exr, .hdr, .dds (by the image plug-in) "
+    "Turns a panorama, .exr, .hdr, .dds (by the image plug-in) "
     "or\n"
     ".pfm, twice as wide as high or 3 x 2 faces of a cube, into one file for\n"
     "scenes: the light blurred to several levels, what it lights, and its\n"

@@ -299,6 +299,6 @@ void poses_refuse(struct poses *poses, const struct pose *pose)
     if (poses->n_bad++ == 0)
         glint_error_report(
             &poses->bad, GLINT_E_FORMAT, poses->lines.name,
-            "a pose of frame %d takes a thing out of the scene's range",
+            "a pose of frame %d moves an object out of the scene's range",
             pose->frame);
 }
