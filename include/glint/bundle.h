@@ -2,8 +2,8 @@
  *
  * glint/bundle.h - the rays of one ghost, one light and one wavelength.
  *
- * Bundles pass rays from the lens to the picture, whether polynomials of a
- * model or exact rays gave them. */
+ * A bundle is the interface between lens and rasteriser: its rays come from
+ * the polynomials of a model or from exact tracing. */
 #ifndef GLINT_BUNDLE_H
 #define GLINT_BUNDLE_H
 
@@ -13,21 +13,22 @@
 extern "C" {
 #endif
 
-#define GLINT_MAX_CELLS   1024 /* most cells a side of a ray grid */
-#define GLINT_LEAST_CELLS 8    /* least cells a side that a plan chooses */
+#define GLINT_MAX_CELLS   1024 /* max cells per side of a ray grid */
+#define GLINT_LEAST_CELLS 8    /* min cells per side that a plan chooses */
 
-/* The place where one ray of a grid went. */
+/* Where one ray of a grid lands, and what it passes. */
 struct glint_vertex {
     int32_t x_q8, y_q8; /* pixels from the top left corner of the picture, y
                            down; within +-GLINT_VERTEX_LIMIT_Q8 */
-    int32_t stop_x_q16, stop_y_q16; /* stop radii, within +-2^14 */
-    /* (1 + r^2) / 2 at each of two barrels that may cut, with the ray's
-     * relative radius r there: 1 at the barrel, above 1 the ray is cut. It is
-     * as steep as r at r = 1, and smooth everywhere. 0 .. 2^14; 0: there is no
-     * such barrel. */
+    int32_t stop_x_q16,
+        stop_y_q16; /* position in the stop, stop radii, within +-2^14 */
+    /* (1 + r^2) / 2 at each of two barrels that may cut, where r is the
+     * ray's distance from the axis / semi-diameter: above 1 the ray is cut.
+     * The slope at r = 1 is that of r, and the value is smooth everywhere. 0
+     * .. 2^14; 0: no such barrel. */
     int32_t barrel_q16[2];
     int32_t energy_q16; /* 0 .. 65536, in the bundle's unit; below 0: the ray is
-                           invalid, and the other members mean nothing */
+                           invalid, and the other members are undefined */
 };
 
 #define GLINT_VERTEX_LIMIT_Q8 (INT32_C(1) << 28) /* 2^20 pixels */
@@ -35,10 +36,10 @@ struct glint_vertex {
 /* The rays of one ghost, one light and one wavelength, as a square grid over
  * the ghost's part of the entrance pupil. */
 struct glint_bundle {
-    int n_cells; /* cells a side, 1 .. GLINT_MAX_CELLS: (n_cells + 1)^2
+    int n_cells; /* cells per side, 1 .. GLINT_MAX_CELLS: (n_cells + 1)^2
                     vertices, row by row */
-    /* One cell sends flux_q31 * 2^(flux_exponent - 31) through the lens at
-     * energy 1, in display white times pixels. */
+    /* Flux of a cell at energy 1, display white x pixels: flux_q31 *
+     * 2^(flux_exponent - 31). */
     int32_t flux_q31; /* 2^30 .. 2^31 - 1, or 0 */
     int flux_exponent;
     int32_t rgb_q14[3]; /* colour of the wavelength times that of the light,

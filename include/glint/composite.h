@@ -5,9 +5,9 @@
  *     glint_composite_init(&composite, &image, sets, 0, mem, bytes);  once
  *     glint_composite_add(composite, &image, &layer);       each picture
  *
- * For programs that have light of their own: glow, bloom, a lamp. It is added
- * by the tables, kernels and rounding that add flares. Integers only; pixels
- * without light keep their codes. */
+ * For programs that add their own light: glow, bloom, a lamp. Tables, kernels
+ * and rounding are those of flares. Integers only; pixels without light keep
+ * their codes. */
 #ifndef GLINT_COMPOSITE_H
 #define GLINT_COMPOSITE_H
 
@@ -33,11 +33,12 @@ struct glint_layer {
 /* Returns the bytes that init takes. */
 size_t glint_composite_bytes(void);
 
-/* Places tables in MEM[BYTES], aligned to 64, for pictures that are coded as
- * IMAGE is, whose pixels are not looked at. SETS: glint_sets_here() or fewer;
- * 0: plain C (kernels.h). DITHER: 1 adds an ordered pattern of less than a code
- * before rounding. GLINT_E_ARGUMENT: IMAGE is LINEAR_Q20, which needs no
- * tables, or MEM is not aligned. GLINT_E_MEMORY: BYTES is too small. */
+/* Places tables in MEM[BYTES], aligned to 64, for pictures with the format
+ * and coding of IMAGE, whose pixels are not read. SETS: glint_sets_here() or
+ * fewer; 0: plain C (kernels.h). DITHER: 1: adds an ordered pattern of less
+ * than a code before rounding. GLINT_E_ARGUMENT: IMAGE is LINEAR_Q20, which
+ * needs no tables, or MEM is not aligned. GLINT_E_MEMORY: BYTES is too
+ * small. */
 enum glint_status glint_composite_init(struct glint_composite **composite,
                                        const struct glint_image *image,
                                        unsigned sets, int dither, void *mem,

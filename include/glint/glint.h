@@ -2,9 +2,9 @@
  *
  * glint/glint.h - the whole API, and the conventions of all its headers.
  *
- * glint computes the ghosts that a real lens throws across a picture when a
- * lamp shines into it. Programs that draw them take glint/engine.h, all in one,
- * with doubles and malloc. Below it are two halves:
+ * glint computes the ghosts that a lamp shining into a real lens causes in a
+ * picture. Most programs need only glint/engine.h, which uses doubles and
+ * malloc. Below it are two halves:
  *
  *   offline   glint/prescription.h trace.h   double precision; lens tables,
  *             exact.h bake.h                 exact rays and pictures, models

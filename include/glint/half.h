@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/half.h - pictures drawn with half as many pixels each way.
+ * glint/half.h - flares at half resolution.
  *
- * Four pixels are lit as one: struct glint_flare_frame of glint/flare.h. A
- * program that does not name it does not link it.
+ * Four pixels are lit as one: see struct glint_flare_frame of glint/flare.h.
+ * Linked only by programs that name it.
  */
 #ifndef GLINT_HALF_H
 #define GLINT_HALF_H

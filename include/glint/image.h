@@ -12,7 +12,7 @@
 extern "C" {
 #endif
 
-#define GLINT_MAX_SIDE 32768 /* pixels, of either side of a picture */
+#define GLINT_MAX_SIDE 32768 /* max side of a picture, pixels */
 
 enum glint_pixel_format {
     GLINT_RGB24,      /* one plane, R G B bytes */
@@ -26,9 +26,9 @@ enum glint_pixel_format {
     GLINT_YUYV,       /* one plane, Y Cb Y Cr for two pixels */
     GLINT_UYVY,       /* one plane, Cb Y Cr Y */
     GLINT_BGR24,      /* one plane, B G R bytes */
-    GLINT_XRGB8888,   /* one plane, B G R X bytes; X stays */
+    GLINT_XRGB8888,   /* one plane, B G R X bytes; X is preserved */
     GLINT_RGB565,  /* one plane, 16 bits a pixel, low byte first, R highest */
-    GLINT_XBGR8888 /* one plane, R G B X bytes; X stays */
+    GLINT_XBGR8888 /* one plane, R G B X bytes; X is preserved */
 };
 
 enum glint_range { GLINT_RANGE_FULL, GLINT_RANGE_LIMITED };
@@ -54,8 +54,8 @@ struct glint_image {
 /* Returns the number of planes of FORMAT, 1 .. 3. */
 int glint_image_planes(enum glint_pixel_format format);
 
-/* Returns whether codes are of R', G' and B', in one plane; else they are luma
- * and chroma, grey or linear light. */
+/* Returns whether the codes are R', G' and B' in one plane; otherwise they
+ * are luma and chroma, grey, or linear light. */
 int glint_image_is_rgb(enum glint_pixel_format format);
 
 /* Return the bytes of a row of plane PLANE without padding, and its number of

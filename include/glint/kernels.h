@@ -2,9 +2,9 @@
  *
  * glint/kernels.h - which instruction sets the hot loops may use.
  *
- * Every set gives the same bits; they differ in speed alone. If all CPUs that
- * the library is built for have NEON, as on aarch64, the kernels for pixels
- * exist for NEON only. */
+ * Every set gives the same bits; only the speed differs. If all CPUs that the
+ * library is built for have NEON, as on aarch64, the kernels for pixels exist
+ * for NEON only. */
 #ifndef GLINT_KERNELS_H
 #define GLINT_KERNELS_H
 
@@ -18,9 +18,9 @@ enum { GLINT_SET_SSE41 = 1, GLINT_SET_AVX2 = 2, GLINT_SET_NEON = 4 };
 unsigned glint_sets_built(void);
 
 /* Returns those sets that this CPU can run, as far as that is known without
- * asking an operating system. Whether it has NEON the compiler says. Where the
- * compiler cannot, on 32-bit ARM, a program may take NEON from
- * glint_sets_built() if its system reports NEON, as platform/linux/sets.h does.
+ * an operating system. NEON is detected at compile time. Where the compiler
+ * cannot know, on 32-bit ARM, a program may add NEON from glint_sets_built()
+ * if its system reports NEON, as platform/linux/sets.h does.
  */
 unsigned glint_sets_here(void);
 

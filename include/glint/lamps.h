@@ -14,13 +14,13 @@
  * white: the code that one of 2048 of its pixels reaches, but at least code 64,
  * or noise would be lamps.
  *
- * Skies, clouds, snow, paper and flowers are as bright as lamps. So regions are
- * scored by themselves and by their surroundings: contrast, light that falls
- * off around them and in all directions alike, a compact shape, colour, how
- * much of the picture is as bright; see lamps/score.h. A region that is not a
- * lamp may have one in it, and so is searched where it clips in one channel, in
- * nearly all, and in all: the sun in a bright sky is a lamp by itself. At least
- * an eighth of a region must be at the upper threshold.
+ * Skies, clouds, snow, paper and flowers are as bright as lamps. Regions are
+ * therefore scored by their appearance and surroundings: contrast, light that
+ * falls off equally in all directions, a compact shape, colour, fraction of the
+ * picture that is as bright; see lamps/score.h. A region that is not a lamp may
+ * have one in it, and so is searched where it clips in one channel, in nearly
+ * all, and in all: the sun in a bright sky is a lamp by itself. At least an
+ * eighth of a region must be at the upper threshold.
  *
  * All results are weighted by flux in linear light, never by the single
  * brightest pixel, so that noise does not move a lamp. Sizes follow the
@@ -40,7 +40,7 @@
 extern "C" {
 #endif
 
-/* A lamp as the picture shows it. */
+/* A lamp in one picture. */
 struct glint_spot {
     int32_t x_q8, y_q8; /* flux-weighted centroid; pixels from the top left
                            corner of the picture, pixel centres at n + 1/2 */
@@ -54,8 +54,8 @@ struct glint_spot {
 
     /* glint_profile_measure (glint/profile.h) sets these members and refines
      * rgb; before, they are the flux and the radius. */
-    int64_t power_q16;  /* flux over the background, as it would be without
-                           clipping, in white pixels */
+    int64_t power_q16;  /* flux over the background, without clipping, in white
+                           pixels */
     int32_t axis_q8[2]; /* RMS semi-axes of its core, pixels, the major one
                            first */
     /* Direction of the major axis, y down; cos >= 0. */
@@ -70,18 +70,17 @@ struct glint_lamp_finder_config {
                                   threshold_high_q8: a region extends to here */
     int white_code; /* 8-bit full-range code of white, 1 .. 255; 0: where codes
                        clip, and the picture's own white if that is darker */
-    int min_area; /* least area in pixels, 1 or more; smaller regions are noise
-                   */
-    int32_t max_share_q15; /* largest area as a fraction of the picture; larger
-                              regions are sky or wall */
-    int32_t merge_q15; /* fraction of the picture's width; lamps that are nearer
-                          to each other become one */
-    int32_t judge; /* 1: regions are scored by their looks and surroundings; 0:
+    int min_area;   /* min area, pixels, 1 or more; smaller regions are noise */
+    int32_t max_share_q15; /* max area as a fraction of the picture; larger
+                              regions are sky or walls */
+    int32_t
+        merge_q15; /* merge distance, as a fraction of the picture's width */
+    int32_t judge; /* 1: regions are scored by appearance and surroundings; 0:
                       all bright regions are lamps */
-    int32_t keep_faint; /* 1: the lamps of the list are followed by regions
-                           marked faint, for glint/lamp_tracker.h: those with
-                           too few pixels at the upper threshold, with half of
-                           min_area, or with a score a little too low */
+    int32_t keep_faint; /* 1: the list also has regions marked faint, after the
+                           lamps, for glint/lamp_tracker.h: those with too few
+                           pixels at the upper threshold, with half of min_area,
+                           or with a score slightly too low */
 };
 
 struct glint_lamp_finder; /* opaque, in the caller's memory */
@@ -90,8 +89,8 @@ struct glint_lamp_finder; /* opaque, in the caller's memory */
 void glint_lamp_finder_defaults(struct glint_lamp_finder_config *cfg, int width,
                                 int height);
 
-/* Returns the exact number of bytes that init takes for CFG, or 0 if CFG is out
- * of range. */
+/* Returns the exact number of bytes that init needs for CFG, or 0 if CFG is
+ * out of range. */
 size_t glint_lamp_finder_bytes(const struct glint_lamp_finder_config *cfg);
 
 /* Places a finder in MEM[BYTES], aligned to 64. GLINT_E_MEMORY: BYTES is too
@@ -102,18 +101,18 @@ glint_lamp_finder_init(struct glint_lamp_finder **finder,
                        size_t bytes);
 
 /* Writes the lamps of IMAGE (of cfg's size, any format but LINEAR_Q20), by
- * falling flux, at most MAX (1 .. 1024). A lamp in excess of MAX joins the
- * nearest that is kept, if one is near, else it is dropped. Returns how many it
- * wrote. */
+ * falling flux, at most MAX (1 .. 1024). A lamp above MAX is merged with the
+ * nearest one in the list if that is near, else dropped. Returns their
+ * number. */
 int glint_lamp_finder_find(struct glint_lamp_finder *finder,
                            const struct glint_image *image,
                            struct glint_spot *spots, int max);
 
 /* Prepares the next find, and only that, for a picture of a video. White is
- * taken to be at least PART (0 .. 2^15) of the white of the last picture: when
- * a lamp is hidden for a moment, its glow would else be white and so a lamp.
- * And where no region is a lamp, the best one has to be a little better to
- * count as one than in a still picture, as other pictures may show it, too.
+ * then at least PART (0 .. 2^15) of the white of the last picture: otherwise
+ * the glow of a lamp that is hidden for a moment would become white and so a
+ * lamp. If no region is a lamp, the best one needs a slightly higher score
+ * than in a still picture, as other pictures may show it, too.
  */
 void glint_lamp_finder_keep_white(struct glint_lamp_finder *finder,
                                   int32_t part_q15);

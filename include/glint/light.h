@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/light.h - the stop, the lights and the wavelengths of a frame, and what
- * is made of single ghosts. */
+ * glint/light.h - inputs of a frame: stop, lights, wavelengths, and tints of
+ * single ghosts. */
 #ifndef GLINT_LIGHT_H
 #define GLINT_LIGHT_H
 
@@ -13,48 +13,47 @@
 extern "C" {
 #endif
 
-#define GLINT_MAX_BLADES    64
-#define GLINT_MAX_WAVE_SETS 5 /* see struct glint_wave_sets, flare.h */
+#define GLINT_MAX_BLADES 64
+#define GLINT_MAX_WAVE_SETS \
+    5 /* max waves, see struct glint_wave_sets, flare.h */
 
-/* The light that a stop lets through inside its outline: a soft edge, and by
- * place what dust or a mask leaves. */
+/* Transmission of a stop inside its outline: a soft edge, and by place what
+ * dust or a mask leaves. */
 enum { GLINT_SHADE_LEAST_LOG2 = 3, GLINT_SHADE_MOST_LOG2 = 10 };
 struct glint_shade_method;
 extern const struct glint_shade_method glint_shade_method;
 struct glint_shade {
-    /* glint_shade_method; a program that does not name it does not link it. */
+    /* glint_shade_method; linked only by programs that name it. */
     const struct glint_shade_method *method;
-    /* Stop radii inwards from the outline, 0 .. 2^16, over which light rises
-     * from 0 to 1: at the fraction x of them it is 3 x^2 - 2 x^3. */
+    /* Width of the soft edge, stop radii inwards from the outline, 0 ..
+     * 2^16: at the fraction x of it light is 3 x^2 - 2 x^3. */
     int32_t soft_q16;
-    int log2; /* log2 of the number of cells a side of the finest table; 0:
-                 there are no tables, and all inside the edge is clear */
-    /* [log2]: table k has 2^(log2 - k) + 1 nodes a side over +-1 stop radius,
-     * row 0 at the lowest y. Beyond, the nearest node counts. Kept. Light: 0 ..
-     * 2^15. Rough: most by which a finer table differs from this one nearer
-     * than a node and a half, in 256ths of all light. */
+    int log2; /* log2 of the number of cells per side of the finest table; 0: no
+                 tables, all inside the edge is clear */
+    /* [log2]: table k has 2^(log2 - k) + 1 nodes per side over +-1 stop
+     * radius, row 0 at the lowest y. Outside, the nearest node counts. Kept.
+     * Light: 0 .. 2^15. Rough: max difference of a finer table from this one
+     * within a node and a half, in 256ths of all light. */
     const uint16_t *level_q15[GLINT_SHADE_MOST_LOG2];
     const uint8_t *rough_q8[GLINT_SHADE_MOST_LOG2];
 };
 
 /* The opening of the aperture stop, fixed to the camera: x right, y up. Its
- * unit is the stop radius: 1 is the circle that the f-number of the frame
- * requests. */
+ * unit is the stop radius: 1 is the circle of the frame's f-number. */
 struct glint_stop {
     int n_blades; /* 0: circle; else 3 .. GLINT_MAX_BLADES */
     /* Unit normal of each side, outwards. */
     int32_t normal_q30[GLINT_MAX_BLADES][2];
     int32_t apothem_q16; /* distance from the centre to each side */
     int32_t inset_q16; /* (1 - r^2) / 2 at the outline of a circle: 0 .. 2^15 */
-    /* Sides that bulge: arcs of a circle from corner to corner. The curvature
-     * of the arcs, in 1 / stop radius, 0 .. 2^30 - 1, and the distance from the
-     * stop's centre to theirs times that, 1 .. 2^30. Both 0: sides are
-     * straight. */
+    /* Curved sides: arcs of a circle from corner to corner. Curvature of the
+     * arcs, 1 / stop radius, 0 .. 2^30 - 1, and the distance from the stop's
+     * centre to theirs times that, 1 .. 2^30. Both 0: sides are straight. */
     int32_t round_q30, off_q30;
     /* NULL: all of the opening is clear. Kept. */
     const struct glint_shade *shade;
-    /* Only for bundles of a model: the stop's radius over that of the stop that
-     * the model was baked for, 2^20 .. 2^30; 0: both are equal. */
+    /* For bundles of a model only: the stop's radius / radius of the stop
+     * that the model was baked with, 2^20 .. 2^30; 0: both are equal. */
     int32_t opening_q30;
 };
 
@@ -64,18 +63,18 @@ struct glint_light {
     int32_t sine_q30, cosine_q30;
     int32_t cos_q30, sin_q30; /* cosine and sine of the azimuth: 0 = right, 90
                                  degrees = up */
-    /* Value that the light's in-focus image would have if it were spread over
-     * one pixel; 1 = display white. */
+    /* Value of the light's in-focus image if it were spread over one pixel;
+     * 1 = display white. */
     struct glint_real power;
     int32_t rgb_q14[3]; /* colour, linear BT.709, largest channel 1 */
-    /* Tangent of the angle to its neighbours if it is one of many points that
-     * stand for a lamp: a ghost that is too small to meet those of the
-     * neighbours is drawn larger. 0: the light is a single one. */
+    /* Tangent of the angle to its neighbours if it is one of many points of
+     * a lamp: a ghost too small to touch those of the neighbours is
+     * enlarged. 0: a single light. */
     int32_t apart_q30;
 };
 
-/* Factors on the light of one ghost: by channel, -4 .. 4, and on all. A ghost
- * whose gain is {0, 0} is muted: nothing of it is planned. */
+/* Factors on the light of one ghost: per channel, -4 .. 4, and overall. A
+ * ghost with gain {0, 0} is muted: nothing of it is planned. */
 struct glint_tint {
     int32_t rgb_q14[3];
     struct glint_real gain; /* 0 or more */
@@ -89,9 +88,8 @@ double glint_tint_factor(const struct glint_tint *tint, int c);
 struct glint_wave {
     int32_t wave_q24;   /* 1 / wavelength^2, um^-2 */
     int32_t rgb_q14[3]; /* colour, linear BT.709, largest channel 1 */
-    /* Factor on rgb_q14, 1 / mm^2: the largest channel that the colour really
-     * has, over the flux, mm^2, of the direct image at angle 0 by which light
-     * is measured. */
+    /* Factor on rgb_q14, 1 / mm^2: the largest channel of the true colour /
+     * flux, mm^2, of the direct image at angle 0 that light is measured by. */
     struct glint_real weight;
 };
 

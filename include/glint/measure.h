@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/measure.h - measures how far two pictures in linear light are apart.
+ * glint/measure.h - measures the difference of two pictures in linear light.
  *
- * Both are exposed by the reference (its 99.9th percentile of luminance over
- * all pixels becomes 1) or by a given factor, clipped, sRGB-encoded and rounded
- * to 8 bits. Metrics are taken on the codes; if all codes are equal, PSNR is
- * taken on the values before rounding. Flux is compared before clipping. */
+ * Both are multiplied so that the reference's 99.9th percentile of luminance
+ * over all pixels becomes 1, or by a given factor, then clipped,
+ * sRGB-encoded and rounded to 8 bits. Metrics are computed from the codes;
+ * if all codes are equal, PSNR from the values before rounding. Flux is
+ * compared before clipping. */
 #ifndef GLINT_MEASURE_H
 #define GLINT_MEASURE_H
 
@@ -19,12 +20,12 @@ extern "C" {
 #endif
 
 struct glint_measure {
-    double psnr_db; /* over the three channels; 999 if nothing differs, even
+    double psnr_db; /* dB, over the three channels; 999 if nothing differs, even
                        before rounding */
     /* Structural similarity of luma, 8 x 8 blocks every 4 pixels. */
     double ssim;
     double p99;      /* 99th percentile of |difference|, codes */
-    double flux;     /* sum of the test's light over the reference's */
+    double flux;     /* sum of the test's light / sum of the reference's */
     double factor;   /* factor that the test was multiplied by */
     double exposure; /* factor that the reference was multiplied by */
     bool same_codes; /* true: all codes are equal; set by glint_measure_at() */
@@ -37,8 +38,8 @@ double glint_measure_exposure(const struct glint_float_image *image);
 /* Returns the sRGB code of LIGHT, 1 being white, 0 .. 255, not rounded. */
 double glint_measure_code(double light);
 
-/* Returns IMAGE times EXPOSURE as sRGB codes, [height][width][3], to be freed;
- * NULL if memory is short. */
+/* Returns IMAGE times EXPOSURE as sRGB codes, [height][width][3], which the
+ * caller frees; NULL if memory is short. */
 uint8_t *glint_measure_encode(const struct glint_float_image *image,
                               double exposure);
 
@@ -48,8 +49,8 @@ void glint_measure_codes(const uint8_t *reference, const uint8_t *test,
                          int width, int height, struct glint_measure *result);
 
 /* Compares TEST with REFERENCE, of the same size, exposed by the reference.
- * FIT: TEST is first multiplied by the factor that makes the squared difference
- * least. Returns false if memory is short. */
+ * FIT: TEST is first multiplied by the factor that minimises the squared
+ * difference. Returns false if memory is short. */
 bool glint_measure_compare(const struct glint_float_image *reference,
                            const struct glint_float_image *test, bool fit,
                            struct glint_measure *result);

@@ -7,14 +7,14 @@
  *     n = glint_lamp_finder_find(finder, &image, spots, 1024);   each picture
  *     glint_profile_measure(profile, &image, spots, n);
  *
- * Looks once at the pixels around each spot. Where channels are clipped, their
- * power is estimated from how large the clipped core is and how light falls off
- * around it, and the colour from the fringe where no channel is clipped. Where
- * none is clipped, the power is the flux over the background.
+ * Reads the pixels around each spot once. If channels are clipped, the power is
+ * estimated from the size of the clipped core and the fall-off of light around
+ * it, and the colour from the fringe where no channel is clipped. Otherwise the
+ * power is the flux over the background.
  *
  * Integers only; nothing is kept from picture to picture. All results are
- * continuous in the pixels. At most some 10000 pixels are read for a spot of
- * any size, some 300 for a small one. */
+ * continuous in the pixels. A spot of any size costs reading at most about
+ * 10000 pixels, a small one about 300. */
 #ifndef GLINT_PROFILE_H
 #define GLINT_PROFILE_H
 

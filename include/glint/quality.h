@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * glint/quality.h - one parameter for all: quality 0 to 1 along the measured
- * front of accuracy over time, as a table of levels. */
+ * Pareto front of error and time, as a table of levels. */
 #ifndef GLINT_QUALITY_H
 #define GLINT_QUALITY_H
 
@@ -24,7 +24,7 @@ double glint_quality_named(int name);
  * once and one that does not. */
 double glint_quality_place(double quality);
 
-/* The dials of a quality, and the settings that are not dial of a frame. */
+/* The dials of a quality, and its parameters that are not dials of a frame. */
 struct glint_quality {
     struct glint_dials dials;
     double quantum;   /* percent of irradiance, from which irradiance_steps
@@ -35,15 +35,15 @@ struct glint_quality {
 /* Returns the settings of QUALITY, 0 to 1; 0.5 is the default. */
 struct glint_quality glint_quality_at(double quality);
 
-/* Returns the least quality whose outlines are off by at most PX pixels in the
- * mean. */
+/* Returns the lowest quality whose outlines are off by at most PX pixels in
+ * the mean. */
 double glint_quality_for_error(double px);
 
 /* Returns the steps of irradiance an octave for a mean step of QUANTUM percent;
  * steps are equal within an octave. */
 int glint_quality_steps(double quantum);
 
-/* Returns whether DIALS draw half as many pixels each way. */
+/* Returns whether DIALS draw at half resolution. */
 static inline bool glint_dials_half(const struct glint_dials *dials)
 {
     return (dials->flags & (GLINT_DIAL_HALF | GLINT_DIAL_ALWAYS_HALF)) != 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/real.h - a number of any size as two integers.
+ * glint/real.h - floating-point numbers as two integers.
  *
  * For powers, fluxes and lengths of the integer half, which have no common
  * scale. */
