@@ -7,27 +7,27 @@
  * A model holds, for every ghost, sparse polynomials from the pupil to the
  * stop, the sensor, the barrels and the energy. It is one block of 32-bit words
  * that is used where it lies, in ROM or a mapped file: nothing is copied,
- * nothing is allocated. After glint_lens_open() has accepted it nothing can go
- * wrong; but what a frame costs is not bounded by the size of the file: ghosts
- * that fold, in their thousands, take minutes. Where models are not trusted,
- * hold memory by the capacities of glint/flare.h and time from outside, or draw
- * by glint/engine.h, which bounds both.
+ * nothing is allocated. After glint_lens_open() has accepted it, drawing cannot
+ * fail. But the cost of a frame is not bounded by the size of the file:
+ * thousands of ghosts that fold cost minutes. For untrusted models limit memory
+ * by the capacities of glint/flare.h and time from outside, or draw through
+ * glint/engine.h, which bounds both.
  *
  * Variables of a polynomial, each -1 .. 1:
  *   u, v   place in the ghost's box on the vertex plane of the first surface,
  *          u in the plane of the light, v across; everything is symmetric in v
  *   s      sine of the light's angle within the range of the system
  *   w      1 / wavelength^2 within the band of the system
- * s and w are the same for a whole bundle: init puts them in and leaves
+ * s and w are the same for a whole bundle: init substitutes them, which leaves
  * polynomials in u and v. Method after [Bodonyi25], in coordinates in which
- * ghosts are tame.
+ * ghosts vary slowly.
  *
- * A lens that is not symmetric about its axis has ghosts that depend on the
- * azimuth of the light, too. Its model keeps to the lens's own frame: u lies
- * along x, v along y, s is the x component of the light's direction and p,
- * another variable, the y component. Nothing is symmetric in v. Of a lens with
- * a plane of symmetry only lights to one side of that are in the model: for
- * others both are mirrored.
+ * The ghosts of a lens that is not symmetric about its axis also depend on the
+ * azimuth of the light. Its model uses the lens's own frame: u lies along x, v
+ * along y, s is the x component of the light's direction and p, another
+ * variable, the y component. Nothing is symmetric in v. If the lens has a plane
+ * of symmetry, the model holds only lights on one side of it; for others light
+ * and result are mirrored.
  *
  * The file: little-endian 32-bit words; offsets ("_at") are bytes from the
  * start of the file, multiples of 4. Header first, then in any order what it
@@ -78,11 +78,11 @@ struct glint_model_header {
     char name[64];   /* name of the lens, terminated */
     struct glint_real focal_mm, back_focal_mm, entrance_radius_mm,
         stop_radius_mm, f_number, film_width_mm, film_height_mm;
-    struct glint_real field_mm; /* radius about the sensor's centre beyond which
-                                   light was not asked to be right */
+    struct glint_real field_mm; /* radius about the sensor's centre within which
+                                   the model is accurate */
     struct glint_real front_mm; /* semi-diameter of the first surface */
     int32_t wave_lo_q24, wave_hi_q24; /* the band of 1 / wavelength^2, um^-2 */
-    int32_t sine_hi_q30; /* sine of the largest angle of light that was baked;
+    int32_t sine_hi_q30; /* sine of the largest angle of light in the model;
                             lights farther out are not drawn */
     /* Flux of the direct image at angle 0 for irradiance 1 through a circular
      * stop, mm^2: coefficients of powers of w over the band. */
@@ -99,7 +99,7 @@ struct glint_model_header {
 
 /* Systems of one ghost follow each other by rising angle or band, without
  * overlap; the lists of the ghosts follow each other, too. A ghost without
- * systems is never seen. */
+ * systems is invisible. */
 struct glint_model_ghost {
     uint32_t i, j; /* reflecting surfaces, i < j */
     uint32_t first_system, n_systems;
@@ -168,8 +168,8 @@ enum glint_channel {
     GLINT_OUT_KINDS
 };
 
-/* The first five kinds are in every system; sensor x and y have the same
- * exponent, and so have stop x and y. */
+/* Every system has the first five kinds; sensor x and y have the same exponent,
+ * and so have stop x and y. */
 struct glint_model_output {
     uint8_t kind, n_terms;
     uint8_t n_narrow;     /* number of coefficients at the end that are int16
@@ -209,8 +209,8 @@ struct glint_lens {
     const struct glint_model_header *header;
     const struct glint_model_ghost *ghost;
     const struct glint_model_system *system;
-    const struct glint_zoom_lens *zoom; /* what the lens is a position of; NULL:
-                                           it is a model by itself */
+    const struct glint_zoom_lens *zoom; /* the zoom that the lens is a position
+                                           of; NULL: a single model */
 };
 
 /* Checks all of DATA[BYTES], aligned to 4, and points LENS into it; DATA is
@@ -226,18 +226,17 @@ uint32_t glint_model_crc32(const void *data, size_t bytes);
  *
  *     status = glint_zoom_open(zoom, data, bytes, &reason);     once
  *     glint_zoom_set(zoom, along_q30);                          when it moves
- *     ... &zoom->lens is a lens as any other
+ *     ... &zoom->lens is an ordinary lens
  *
- * A zoom is models of one lens at several positions. Between two of them a
- * bundle's polynomials are those of both, with angle and wavelength put in,
- * each taken at the same place of the pupil, mixed in proportion. What costs
- * more is planning a frame, and drawing it as far as mixed polynomials have
- * more terms and more ghosts are there: 1.3 to 2.1 times as long. A ghost that
- * light gets through at one of the two positions alone continues as between
- * that one and another beyond it, if that is near enough, and else fades.
- * Ghosts change at different rates: positions between the first and the last
- * may have some ghosts only, and each ghost is mixed of the nearest two that
- * have it.
+ * A zoom is a set of models of one lens at several positions. Between two
+ * positions a bundle's polynomials are interpolated linearly at the same place
+ * of the pupil, after substituting angle and wavelength. Planning costs more,
+ * and drawing too, as interpolated polynomials have more terms and there are
+ * more ghosts: 1.3 to 2.1 times in total. A ghost that exists at only one of
+ * the two positions is extrapolated from that one and its other neighbour, if
+ * near enough, and otherwise fades. Ghosts change at different rates: positions
+ * between the first and the last may have only some ghosts, and each ghost is
+ * interpolated between the nearest two that have it.
  *
  * The file: a header, then for each position an ordinary model at a multiple of
  * 4 bytes; kept where it lies. */
@@ -267,8 +266,8 @@ struct glint_zoom_model {
 
 struct glint_transfer;
 struct glint_zoom_lens {
-    /* Does as glint_transfer_init() between positions, and is linked by who
-     * zooms alone. */
+    /* glint_transfer_init() between positions; linked only by programs that
+     * zoom. */
     int (*transfer)(struct glint_transfer *transfer,
                     const struct glint_zoom_lens *zoom, int ghost,
                     int32_t sine_q30, int32_t wave_q24);
@@ -281,7 +280,7 @@ struct glint_zoom_lens {
     int below; /* the model there or before; the next is above */
     /* Of each ghost, the nearest two models that have it. */
     uint8_t side[2][GLINT_MAX_ZOOM_GHOSTS];
-    /* What LENS points to. */
+    /* Storage that LENS points to. */
     struct glint_model_header header;
     struct glint_model_ghost ghost[GLINT_MAX_ZOOM_GHOSTS];
     /* Of each ghost and part: the ghost that it is of, its number among that

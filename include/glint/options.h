@@ -56,7 +56,7 @@ enum glint_option_group {
     GLINT_OPTION_GROUPS
 };
 
-/* When an option takes effect: as an engine is created, as the size of its
+/* When an option takes effect: when an engine is created, when the size of its
  * pictures changes, or with the next frame. */
 enum glint_option_change {
     GLINT_OPTION_CREATE,

@@ -6,8 +6,8 @@
  *     glint_optics_of(&lens, &optics);                   focal length, ...
  *     n = glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
  *
- * The offline half is double precision and may take its time. Lengths are in
- * millimetres, wavelengths in nanometres, angles in degrees.
+ * The offline half computes in double precision. Lengths are in millimetres,
+ * wavelengths in nanometres, angles in degrees.
  *
  * Axes: z runs from the front vertex (0) to the sensor, x to the right and y
  * up as the picture is seen. A light at (THETA, PHI) sends parallel rays along
@@ -54,9 +54,9 @@ enum glint_bend {
     GLINT_BEND_Y      /* in the y-z plane */
 };
 
-/* What makes a surface other than a centred sphere; all 0 where nothing does.
- * The profile at the height h is c h^2 / (1 + sqrt(1 - (1 + conic) c^2 h^2)) +
- * A4 h^4 + A6 h^6 + ..., c = 1 / radius_mm. A cylinder or toric sweeps it along
+/* The form of a surface that is not a centred sphere; all 0 for a sphere. The
+ * profile at the height h is c h^2 / (1 + sqrt(1 - (1 + conic) c^2 h^2)) + A4
+ * h^4 + A6 h^6 + ..., c = 1 / radius_mm. A cylinder or toric sweeps it along
  * circles of the radius across_mm about a line parallel to its own plane. */
 struct glint_shape {
     double conic;                   /* 0: sphere, -1: paraboloid */
@@ -83,7 +83,7 @@ struct glint_surface {
     struct glint_shape shape;
 };
 
-/* A surface that is not a centred sphere, ready to be met. */
+/* A surface that is not a centred sphere, prepared for intersections. */
 struct glint_form {
     double curvature, conic, term[GLINT_SHAPE_TERMS];
     int bend;      /* enum glint_bend */
@@ -136,10 +136,10 @@ double glint_surface_index(const struct glint_surface *s, double wavelength_nm);
 #define GLINT_MAX_POSITIONS 8  /* columns of a zoom's table */
 #define GLINT_MAX_MOVES     12 /* gaps of a zoom that change */
 
-/* What a zoom lens has for each of its positions, by rising or falling focal
- * length; between them it is what monotone cubics through the columns say, of
- * how far along it is: 0 at the first, 1 at the last column, in equal steps
- * where focal lengths rise by equal factors. */
+/* The values of a zoom lens at each of its positions, by rising or falling
+ * focal length. Between positions monotone cubics interpolate them over the
+ * zoom parameter: 0 at the first, 1 at the last column, in equal steps where
+ * focal lengths rise by equal factors. */
 struct glint_zoom {
     int n_positions;           /* columns; 0: the lens does not zoom */
     int n_moves;               /* gaps that change */
@@ -150,7 +150,7 @@ struct glint_zoom {
     /* Values that the table states of a column; 0: not stated. */
     double check_focal_mm[GLINT_MAX_POSITIONS];
     double check_back_mm[GLINT_MAX_POSITIONS];
-    /* What the columns amount to. */
+    /* Derived from the columns. */
     double focal_mm[GLINT_MAX_POSITIONS], back_mm[GLINT_MAX_POSITIONS];
     double last_gap_mm[GLINT_MAX_POSITIONS]; /* to the sensor */
     double along[GLINT_MAX_POSITIONS];       /* 0 .. 1 */
@@ -168,7 +168,7 @@ bool glint_prescription_is_round(const struct glint_prescription *lens);
 struct glint_prescription {
     char name[GLINT_NAME_BYTES];
     char source[256];    /* patent or book, for people */
-    char character[256]; /* what its flare is like, for people */
+    char character[256]; /* description of its flare, for people */
     double f_number;
     double film_width_mm, film_height_mm;
     int n_surfaces; /* without the stop, 1 .. GLINT_MAX_SURFACES */
@@ -181,16 +181,16 @@ struct glint_prescription {
     bool stop_is_circle;      /* at every opening; else it has blades */
     double check_focal_mm;    /* values that the table states; 0: not stated */
     double check_back_mm;
-    /* Coatings of the lens that the table took from its look, not from
-     * measurements. Surfaces have them only after glint_prescription_coat(). */
+    /* The mixed coatings of the table, chosen for appearance, not measured.
+     * Surfaces have them only after glint_prescription_coat(). */
     struct glint_coating mixed[GLINT_MAX_COATINGS];
     int n_mixed;            /* 0: the table lists none */
     struct glint_zoom zoom; /* the lens as read is at its first position */
-    /* Surfaces that move together along the axis to focus; none: all do, which
-     * is as if the sensor moved. */
+    /* Surfaces that move together along the axis to focus; none: the whole lens
+     * moves. */
     int focus_first, n_focus;
-    /* Where the lens is: 0 .. 1, and the distance of what is in focus from the
-     * sensor, 0 for infinity. */
+    /* Current zoom position, 0 .. 1, and distance of the focused object from
+     * the sensor, m, 0 for infinity. */
     double zoom_along, focus_m;
 };
 
@@ -214,9 +214,9 @@ glint_prescription_set_f_number(struct glint_prescription *lens,
 double glint_prescription_widest(const struct glint_prescription *lens);
 
 /* Zooms LENS, which has not been focused, to ALONG, 0 .. 1. Between columns the
- * last gap follows the focus: it differs from the back focal length by as much
- * as in the columns. GLINT_E_ARGUMENT: LENS does not zoom, ALONG is out of
- * range, or elements would collide or the stop be too small there. */
+ * last gap keeps the image in focus: its difference from the back focal length
+ * is interpolated. GLINT_E_ARGUMENT: LENS does not zoom, ALONG is out of range,
+ * or elements would collide or the stop be too small there. */
 enum glint_status glint_prescription_zoom(struct glint_prescription *lens,
                                           double along,
                                           struct glint_error *error);
@@ -229,8 +229,8 @@ glint_prescription_zoom_to(const struct glint_prescription *lens,
                            struct glint_error *error);
 
 /* Focuses LENS, which is at infinity, at METRES from the sensor: paraxial rays
- * from there meet where those from infinity met. What moves is the lens's
- * focusing group, or all of it. GLINT_E_ARGUMENT: it cannot focus as near. */
+ * from there meet where those from infinity did. The lens's focusing group
+ * moves, or all of it. GLINT_E_ARGUMENT: it cannot focus so near. */
 enum glint_status glint_prescription_focus(struct glint_prescription *lens,
                                            double metres,
                                            struct glint_error *error);
@@ -266,13 +266,12 @@ struct glint_optics {
     double stop_radius_mm;     /* radius of the aperture stop at the f-number */
     double length_mm; /* from the front vertex to the sensor, even if the stop
                          lies before it */
-    /* Focal length in the y-z plane, which is focal_mm, over that in the x-z
-     * plane: how much wider than on the sensor an anamorphic lens's picture is
-     * shown. 1 for all round lenses. */
+    /* Squeeze of an anamorphic lens: focal length in the y-z plane (focal_mm) /
+     * that in the x-z plane. 1 for round lenses. */
     double squeeze;
-    /* How far from the middle of the sensor, over the tangent of its angle, the
-     * middle of a light's disc lies: the focal length of a lens at infinity.
-     * How much it changes with focus is the lens's breathing. */
+    /* Image scale: distance of a light's image from the middle of the sensor /
+     * tangent of its angle. The focal length of a lens focused at infinity; its
+     * change with focus is the lens's breathing. */
     double scale_mm;
 };
 

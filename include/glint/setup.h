@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/setup.h - a lens made ready for drawing: its colours and its stop.
+ * glint/setup.h - a lens prepared for drawing: its colours and its stop.
  */
 #ifndef GLINT_SETUP_H
 #define GLINT_SETUP_H
@@ -36,8 +36,7 @@ void glint_spectrum(int n, double *wavelength_nm, double (*rgb)[3],
 /* Returns the largest of three channels. */
 double glint_largest_channel(const double rgb[3]);
 
-/* What makes an aperture stop differ from clean, straight blades. All 0:
- * nothing does. */
+/* Deviations of an aperture stop from clean, straight blades. All 0: none. */
 struct glint_iris {
     /* Curvature of the blades' edges between the corners, 1 / stop radius: 0
      * straight .. 1 a circle. */
@@ -63,8 +62,8 @@ struct glint_set_wave {
     double direct_flux, unit_flux; /* fluxes as in struct glint_setup, mm^2 */
 };
 
-/* A lens made ready for drawing: everything that no light and no frame
- * changes. */
+/* A lens prepared for drawing: everything that does not depend on light or
+ * frame. */
 struct glint_setup {
     /* kept; NULL: the setup is made from a model. */
     const struct glint_prescription *lens;
@@ -172,8 +171,8 @@ enum glint_status glint_front_make(struct glint_front_dirt **dirt,
 /* Frees DIRT, which may be NULL, after all that draws with it. */
 void glint_front_free(struct glint_front_dirt *dirt);
 
-/* Gives SETUP the colours of glint_spectrum(), if its N wavelengths are those
- * of that. */
+/* Gives SETUP the colours of glint_spectrum(), if its N wavelengths came from
+ * there. */
 void glint_setup_weigh(struct glint_setup *setup);
 
 /* Gives SETUP, made from LENS, the sets of wavelengths from which each ghost
@@ -182,9 +181,9 @@ void glint_setup_weigh(struct glint_setup *setup);
 void glint_setup_spread(struct glint_setup *setup,
                         const struct glint_lens *lens);
 
-/* Measures each wavelength by its own direct image, as a camera does that is
- * balanced to white behind this lens. Otherwise the lens's own tint shows in
- * the ghosts, as it does in everything else. */
+/* Normalises each wavelength by its own direct image, like a camera that is
+ * white-balanced behind this lens. Otherwise the ghosts have the lens's own
+ * tint, like the rest of the picture. */
 void glint_setup_balance(struct glint_setup *setup);
 
 /* Sets STOP to the stop of SETUP, in the form that a flare takes. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/status.h - what a glint function returns when it can fail.
+ * glint/status.h - return values of functions that can fail.
  *
  * Loading and initialising validate everything and return a status; drawing a
  * frame cannot fail and counts what it left out; the offline half returns a
@@ -17,7 +17,7 @@ enum glint_status {
     GLINT_OK = 0,
     GLINT_E_ARGUMENT,    /* a parameter is outside its documented range */
     GLINT_E_MEMORY,      /* not enough memory, or a block too small */
-    GLINT_E_FORMAT,      /* a picture or stream is not what it says it is */
+    GLINT_E_FORMAT,      /* a picture or stream is malformed */
     GLINT_E_UNSUPPORTED, /* well formed, but not something glint handles */
     GLINT_E_LENS,        /* a lens table or model is wrong */
     GLINT_E_IO,          /* reading failed */
@@ -32,8 +32,8 @@ struct glint_error {
     char text[256];
 };
 
-/* Called now and then with the fraction of the work that is done, 0 .. 1: by
- * the calling thread or by worker 0, never by both at once. */
+/* Progress report: receives the fraction of the work that is done, 0 .. 1, from
+ * the calling thread or worker 0, never from both at once. */
 typedef void glint_progress_fn(void *ctx, double done);
 
 /* Returns a few words for STATUS, never NULL. */

@@ -97,7 +97,7 @@ struct glint_ray {
 
 /* Traces the ray that starts at (PX, PY) on the vertex plane of the first
  * surface along DIRECTION, of unit length. The ray continues where a barrel or
- * the stop would have ended it. RAY is written only if GLINT_RAY_OK is
+ * the stop would have blocked it. RAY is written only if GLINT_RAY_OK is
  * returned. HITS, unless NULL, receives x and y of each event, [n_events][2],
  * in mm; those of a surface that is not a centred sphere are in its own frame.
  * Energy is that of unpolarised light. [Hullin11] section 4 */

@@ -6,8 +6,8 @@
  *     glint_transfer_ray(&transfer, u_q30, v_q30, &out);        or
  *     glint_transfer_grid(&transfer, &place, n_cells, vertices);
  *
- * All rays of a bundle have the same angle and wavelength: init puts these into
- * the polynomials, which leaves polynomials in u and v. */
+ * All rays of a bundle have the same angle and wavelength: init substitutes
+ * these into the polynomials, which leaves polynomials in u and v. */
 #ifndef GLINT_TRANSFER_H
 #define GLINT_TRANSFER_H
 

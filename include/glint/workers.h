@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/workers.h - the parallel-for that an application hands to glint.
+ * glint/workers.h - the parallel-for that an application passes to glint.
  *
  * glint has no threads of its own. Where a header takes a struct
  * glint_workers, NULL means that the calling thread does all the work. No

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/account.h - what became of each object of a frame, and what
- * there was to do for it.
+ * glint/scene/account.h - statistics of a scene's frame: what became of each
+ * object, and its work.
  *
  *     glint_scene_begin(scene, &stats);
  *     glint_scene_account(scene, objects, &all, seen);
  *
- * Finds again what the samples see, and the surfaces of that, which takes
- * about as long as half of a frame; nothing is drawn. A program that does not
- * name it does not link it. */
+ * Computes visibility and surfaces again, at about half the cost of a frame;
+ * nothing is drawn. Linked only by programs that name it. */
 #ifndef GLINT_SCENE_ACCOUNT_H
 #define GLINT_SCENE_ACCOUNT_H
 
@@ -28,7 +27,7 @@ enum glint_scene_fate {
     GLINT_SCENE_FATES
 };
 
-/* What there is to do for a frame. */
+/* Work of a frame. */
 enum glint_scene_item {
     GLINT_SCENE_TRIANGLES, /* entries in the lists of tiles */
     GLINT_SCENE_SAMPLED,   /* samples of pixels that see it */
@@ -47,17 +46,17 @@ struct glint_scene_part {
     int64_t count[GLINT_SCENE_ITEMS];
 };
 
-/* Sets OBJECTS, [n_objects], to what becomes of each of the frame that was
- * begun last, ALL to their sums (by: -1; covering: pixels that see anything),
- * and SEEN, [height][width] or NULL, to the object that the first sample of
- * each pixel sees, or -1. Rays that are bent are followed straight on. */
+/* Sets OBJECTS, [n_objects], to the statistics of each object in the frame that
+ * was begun last, ALL to their sums (by: -1; covering: pixels that see
+ * anything), and SEEN, [height][width] or NULL, to the object that the first
+ * sample of each pixel sees, or -1. Rays that are bent are followed straight
+ * on. */
 void glint_scene_account(struct glint_scene *scene,
                          struct glint_scene_part *objects,
                          struct glint_scene_part *all, int16_t *seen);
 
-/* What is laid over the objects of a recorded motion: how many shells, lines or
- * edges of the box are in the picture, and the pixels that these may touch, by
- * each of them. */
+/* Overlays of a recorded motion: number of shells, lines or box edges in the
+ * picture, and pixels that each of them may touch. */
 struct glint_scene_layered {
     int n;
     int64_t pixels;

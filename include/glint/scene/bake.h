@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/bake.h - a description becomes a baked scene.
+ * glint/scene/bake.h - bakes the description of a scene.
  *
  *     glint_description_parse(&scene, ...);
  *     glint_scene_bake(&scene, "shop", key, &data, &bytes, &report, &error);
  *     glint_scene_open(&model, data, bytes, &reason);
  *
- * Places become whole steps, 2^unit_log2 of them a unit of the scene, so that
- * everything there is lies within a quarter of what the run time reaches, and
- * if there is a plane, a 64th: poses and planes have the rest. The same
- * description gives the same bytes. */
+ * Positions become integers: a unit of the scene is 2^unit_log2 steps, chosen
+ * so that everything lies within a quarter of the run time's range (with a
+ * plane, a 64th); the rest is for poses and planes. The same description gives
+ * the same bytes. */
 #ifndef GLINT_SCENE_BAKE_H
 #define GLINT_SCENE_BAKE_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/description.h - a scene as its text describes it, in double
+ * glint/scene/description.h - a scene as described by its text, in double
  * precision.
  *
  *     glint_description_parse(&scene, text, bytes, "shop.scene", &files,
@@ -52,14 +52,14 @@ enum glint_described_field {
     GLINT_DESCRIBED_FIELD,   /* fov_deg across the picture */
     GLINT_DESCRIBED_CORNERS, /* of row A6: 16 x 9 at a distance of 10, samples
                              at the corners of pixels */
-    GLINT_DESCRIBED_LENS     /* as wide as the flare lens and its sensor see */
+    GLINT_DESCRIBED_LENS /* field of view of the flare lens and its sensor */
 };
 
 struct glint_described_camera {
     enum glint_described_field field;
     double fov_deg;
     double at[3];
-    /* Unit vectors at right angles. The hand of the scene is in RIGHT alone. */
+    /* Orthogonal unit vectors. Handedness affects only RIGHT. */
     double right[3], up[3], forward[3];
 };
 
@@ -212,8 +212,8 @@ struct glint_description {
     char warning[256]; /* a line on what is odd but allowed; may be empty */
 };
 
-/* How the files that a text names are read; NAME is as the text has it. What
- * they hand out is malloc'ed. On failure they write a line to ERROR. */
+/* Readers of the files that a text names; NAME is as in the text. Their results
+ * are malloc'ed. On failure they write a line to ERROR. */
 struct glint_description_files {
     void *ctx;
     enum glint_status (*read)(void *ctx, const char *name, uint8_t **data,

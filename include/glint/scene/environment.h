@@ -6,16 +6,16 @@
  *     status = glint_environment_open(&environment, data, bytes, &reason);
  *
  * Directions are those of scenes (glint/scene/model.h): x right, y up, z away.
- * They lie on a square as the octahedron |x| + |y| + |z| = 1 does that is
- * unfolded from +y, its middle: with p, q = -1 .. 1 across and down the square
- * it is x = p, z = q, y = 1 - |p| - |q| where that is not negative; elsewhere
- * (p, q) is ((1 - |z|) sign x, (1 - |x|) sign z). The middle of texel (i, j) of
- * a side of n is at p = (2 i + 1) / n - 1, q = (2 j + 1) / n - 1.
+ * They map to a square by the octahedron |x| + |y| + |z| = 1, unfolded around
+ * +y: with p, q = -1 .. 1 across and down the square it is x = p, z = q, y = 1
+ * - |p| - |q| where that is not negative; elsewhere (p, q) is ((1 - |z|) sign
+ * x, (1 - |x|) sign z). The middle of texel (i, j) of a side of n is at p = (2
+ * i + 1) / n - 1, q = (2 j + 1) / n - 1.
  *
  * Level l of the Gaussian ones is the light blurred on the sphere by
  * exp((cos - 1) / sigma^2), sigma = 2^l / 2 texels of sqrt(4 pi) / side
  * radians, and has twice the side that a mip of that blur has. Bright lights
- * are no part of the levels, but of a list, each a disc.
+ * are not in the levels but in a list, each a disc.
  *
  * Light is linear BT.709, 1 = display white, in units of 2^unit_log2.
  *

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/highlights.h - what glints on the objects of a scene, as lamps of
- * the picture for a lens.
+ * glint/scene/highlights.h - highlights on the objects of a scene, as lamps for
+ * the flare.
  *
  *     cfg.parts.highlights = &glint_scene_highlights;            once
  *     glint_scene_draw(scene, &image);                           each frame
@@ -9,13 +9,13 @@
  *     n = glint_lamp_tracker_step(tracks, spots, n, us, ...);    so that none
  *                                                                jumps
  *
- * A pixel of an object counts by its linear light before that saturates: wholly
- * from a luminance of 2 on, in part from 1, so that nothing comes or goes at
- * once. Discs of lights are lights (glint_scene_lights()), not highlights, as
- * is the background. Light is summed with its moments in squares of 8 x 8
- * pixels; squares with light that touch are one highlight, and highlights whose
- * middles are within 12 pixels are. No result depends on the number of workers,
- * the order of jobs or the tile size. */
+ * A pixel of an object counts with its linear light before saturation: fully
+ * above a luminance of 2, in part above 1, so that highlights appear and vanish
+ * gradually. Discs of lights (see glint_scene_lights()) and the background are
+ * not highlights. Light is summed with its moments in squares of 8 x 8 pixels;
+ * squares with light that touch are one highlight, and highlights whose middles
+ * are within 12 pixels are. No result depends on the number of workers, the
+ * order of jobs or the tile size. */
 #ifndef GLINT_SCENE_HIGHLIGHTS_H
 #define GLINT_SCENE_HIGHLIGHTS_H
 

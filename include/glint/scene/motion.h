@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/motion.h - a recorded motion, localised: its file, read by blocks
- * of 4 KiB.
+ * glint/scene/motion.h - a recorded motion with reconstructed poses: its file,
+ * read in blocks of 4 KiB.
  *
  *     status = glint_motion_open(&motion, data, bytes, &reason);     in memory
  *     status = glint_motion_over(&motion, &blocks, buffer, &reason); elsewhere
  *     status = glint_motion_frame(&motion, k, &frame);               any frame
  *
- * A body with sensors moves among foods. Each frame of the file has where the
- * body is, how it is turned, and where each food is; that of frame 0 is at the
- * origin and not turned, so that places are what it saw then. Axes are those
- * of the recording, right-handed.
+ * A body with sensors moves among foods. Each frame of the file has position
+ * and rotation of the body and the position of each food. In frame 0 the body
+ * is at the origin and not rotated, so positions are relative to that pose.
+ * Axes are those of the recording, right-handed.
  *
  * Lengths are in steps: one unit of the recording is 2^unit_log2 steps, 2^24
  * but for large and tiny ones.

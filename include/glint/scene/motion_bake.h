@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/motion_bake.h - a recording of what a body saw becomes a motion,
- * in double precision.
+ * glint/scene/motion_bake.h - reconstructs the motion of a body from its
+ * recording, in double precision.
  *
  *     baker = glint_motion_baker_open(&options);
  *     glint_recording_read(baker, "run.json", read, ctx, &error);
@@ -46,9 +46,9 @@ struct glint_motion_body {
 /* What one frame saw. */
 struct glint_motion_sight {
     long long number; /* of the frame, as it is written; -1: it is not */
-    /* What the body's own senses say: by how much it moved and turned since the
-     * frame before, in the axes that it had then; rv is an axis times an angle
-     * in radians. */
+    /* The body's own odometry: translation and rotation since the previous
+     * frame, in its axes at that frame; rv is an axis times an angle in
+     * radians. */
     double tv[3], rv[3];
     int n_foods;
     double food[GLINT_MOTION_MAX_FOODS][3];
@@ -66,8 +66,8 @@ struct glint_motion_report {
     long residual_frame, bad_frames; /* whose residual is over a thousandth of
                                         the span */
     long held_intensities;           /* outside 0 .. 1 */
-    /* Where rv and tv say something: how far the pose that they sum up to is
-     * off, in the end and at most. */
+    /* If rv and tv are given: error of the pose integrated from them, at the
+     * end and max. */
     bool has_senses;
     double senses_off, senses_most;
 };

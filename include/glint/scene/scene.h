@@ -11,14 +11,14 @@
  *     glint_scene_draw(scene, &image);
  *     n = glint_scene_lights(scene, lights);                 for the flare
  *
- * What covers a pixel sets it, and its rim is blended in linear light. All
- * memory is the caller's, taken at init; drawing never allocates and cannot
+ * Objects replace the pixels they cover; rims are blended in linear light. All
+ * memory is the caller's, passed to init; drawing never allocates and cannot
  * fail. Triangles for which a capacity is too small are left out with their
  * whole object and counted. No result depends on the number of workers, the
  * order of jobs or the tile size.
  *
- * Spheres, planes, Phong and shadows are always there. What else there is is
- * named in glint_scene_parts: what a program does not name it does not link. */
+ * Spheres, planes, Phong and shadows are built in. All other parts are listed
+ * in glint_scene_parts and linked only by programs that name them. */
 #ifndef GLINT_SCENE_SCENE_H
 #define GLINT_SCENE_SCENE_H
 
@@ -50,15 +50,14 @@ extern const struct glint_scene_stones glint_scene_stones;
 extern const struct glint_scene_highlights glint_scene_highlights;
 extern const struct glint_scene_motions glint_scene_motions;
 
-/* Parts of the run time; NULL: it is not there, and models that need it are
- * refused. */
+/* Parts of the run time; NULL: absent; models that need it are rejected. */
 struct glint_scene_parts {
     const struct glint_scene_meshes *meshes;
     const struct glint_scene_textures *textures;
     const struct glint_scene_bounces *bounces; /* reflection, passing through */
     const struct glint_scene_wards *wards;     /* environments, brushed metal */
     const struct glint_scene_stones *stones;   /* translucent objects */
-    /* What glints (glint/scene/highlights.h); no model needs it. */
+    /* highlights (glint/scene/highlights.h); no model needs them */
     const struct glint_scene_highlights *highlights;
     const struct glint_scene_motions *motions; /* recorded motion */
 };
@@ -72,8 +71,8 @@ struct glint_scene_config {
                           no output */
     int edge_samples;  /* 1, 4, 8 or 16: samples of a pixel */
     int shadow_points; /* 1, 4 or 16: points of a light that has an extent */
-    int half_shading;  /* 1: two by two pixels whose samples all see one object
-                          are shaded once, in their middle */
+    int half_shading;  /* 1: blocks of 2 x 2 pixels whose samples all see one
+                          object are shaded once, in their middle */
     int ward_samples;  /* 1 .. 32: lookups of an environment for a place on
                           brushed metal */
     int highlights;    /* 0 .. 8: that are found at most; -1: as many as the
@@ -139,21 +138,21 @@ enum glint_status glint_scene_set_camera(struct glint_scene *scene,
 enum glint_status glint_scene_set_light(struct glint_scene *scene, int light,
                                         const int32_t at[3]);
 
-/* What of a material changes from one frame to the next. */
+/* Parameters of a material that may change between frames. */
 struct glint_scene_look {
     int32_t rgb_q15[3]; /* ambient and diffuse colour, 0 .. 32768 */
     /* Of brushed metal, as struct glint_scene_ward; of others 0. */
     int32_t specular_q15[3], alpha_q24[2];
 };
 
-/* Sets LOOK to how material MATERIAL looks now, by its index; GLINT_E_ARGUMENT:
- * there is none. */
+/* Sets LOOK to the current appearance of material MATERIAL, by its index;
+ * GLINT_E_ARGUMENT: there is none. */
 enum glint_status glint_scene_get_look(const struct glint_scene *scene,
                                        int material,
                                        struct glint_scene_look *look);
 
-/* Changes how it looks, from the next frame on: nothing is baked, a metal's
- * lobe is rebuilt. The smaller alpha is clamped to a tenth of the other.
+/* Changes the appearance, from the next frame on, without a bake; a metal's
+ * lobe is rebuilt. The smaller alpha is raised to a tenth of the other.
  * GLINT_E_ARGUMENT: out of range, or a metal's members of another material. */
 enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
                                        const struct glint_scene_look *look);
@@ -186,11 +185,11 @@ enum glint_status glint_scene_scale_environment(struct glint_scene *scene,
 enum glint_status glint_scene_turn_environment(struct glint_scene *scene,
                                                const int32_t turn_q30[2]);
 
-/* Keeps IMAGE, of the size of the configuration, small, as what mirrors and
- * glass of scenes on the camera's picture show where their rays meet nothing:
- * ahead as it is, elsewhere repeated. NULL: they show black, as at first. Costs
- * nothing if nothing mirrors or bends rays, or nothing may be seen. To be
- * called between begin and draw, which changes IMAGE. */
+/* Keeps a reduced copy of IMAGE, of the size of the configuration, as the
+ * background of rays from mirrors and glass that meet nothing: as it is ahead,
+ * repeated elsewhere. NULL: black, the default. Costs nothing if no visible
+ * material reflects or transmits. Must be called between begin and draw, which
+ * changes IMAGE. */
 void glint_scene_look_around(struct glint_scene *scene,
                              const struct glint_image *image);
 
@@ -213,9 +212,9 @@ enum glint_scene_kind {
 /* Returns how many frames the motion of SCENE has; 0: there is none. */
 uint32_t glint_scene_frames(const struct glint_scene *scene);
 
-/* Moves body, sensors, foods, lamps that ride, and a camera in a sensor to
- * frame FRAME, or to the last if that is beyond: the same whatever was shown
- * before. A scene begins at frame 0. */
+/* Moves body, sensors, foods, attached lamps, and a camera in a sensor to frame
+ * FRAME, or to the last frame: the result does not depend on earlier frames. A
+ * scene begins at frame 0. */
 void glint_scene_seek(struct glint_scene *scene, uint32_t frame);
 
 /* Puts the camera into sensor SENSOR, with its field of view; -1: back to where
@@ -239,18 +238,18 @@ uint32_t glint_scene_seen_by(const struct glint_scene *scene, uint32_t food);
 
 /* ------------------------------------------------------------------- frame */
 
-/* Prepares a frame: what may be seen, and in which tiles. Everything before
- * draw and lights; may be called again. */
+/* Prepares a frame: visible objects, and their tiles. Must precede draw and
+ * lights; may be called again. */
 void glint_scene_begin(struct glint_scene *scene,
                        struct glint_scene_stats *stats);
 
-/* Works out the light that spreads below what is translucent, where it may be
- * seen and has changed; returns of how many texels. Draw does it by itself
- * where this was not called since begin. */
+/* Computes the light below translucent surfaces where it may be visible and has
+ * changed; returns the number of texels. Draw calls it if the program did not
+ * since begin. */
 int glint_scene_spread(struct glint_scene *scene);
 
 /* Draws the scene onto IMAGE, which has the size of the configuration, and
- * keeps what is covered for glint_scene_cover(). May be called again. */
+ * stores the cover for glint_scene_cover(). May be called again. */
 void glint_scene_draw(struct glint_scene *scene,
                       const struct glint_image *image);
 

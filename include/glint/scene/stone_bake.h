@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/stone_bake.h - a text on a translucent medium, and a
- * fit of how that scatters, become a baked translucent medium.
+ * glint/scene/stone_bake.h - bakes a translucent medium from its text and a fit
+ * of its scattering.
  *
  *     glint_stone_parse(&text, data, bytes, "marble.translucent", &error);
  *     glint_scatter_compute(&text.stone, &watch, &rows, &error);
@@ -10,9 +10,9 @@
  *                      &error);
  *     glint_translucent_open(&stone, data, bytes, &reason);
  *
- * Kernels that are not sums of products of rows and columns become such sums,
- * those that are nearest under light that changes slowly. The same fit gives
- * the same bytes. */
+ * Kernels that are not sums of products of rows and columns are approximated by
+ * such sums, optimal under slowly varying light. The same fit gives the same
+ * bytes. */
 #ifndef GLINT_SCENE_STONE_BAKE_H
 #define GLINT_SCENE_STONE_BAKE_H
 

@@ -1,21 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/translucent.h - how light spreads below the surface of a
- * translucent medium, baked: its file, used where it lies.
+ * glint/scene/translucent.h - a baked translucent medium, which spreads light
+ * below its surface: its file, used where it lies.
  *
  *     status = glint_translucent_open(&stone, data, bytes,
  * &reason);
  *
- * A translucent medium is a square of texels. Of the light E(x) that gets in at
- * texel x,
+ * The medium is a square of texels. Of the light E(x) that enters at texel x,
  *
  *     M(y) = gain, times the sum over planes p of f_p(y), times the sum over
  *            ranks r and texels x of column_pr(v) row_pr(u) in(x) E(x),
  *            (u, v) = y - x
  *
- * comes out at y, for each of R, G, B; below 0 it is 0, and that only here. A
- * plane is a term of a factored fit; the texels of a cluster; or all texels,
- * where one kernel is scaled by the albedo [Kurt14], [Song09].
+ * leaves at y, for each of R, G, B, clamped to 0 at this point only. A plane is
+ * a term of a factored fit; the texels of a cluster; or all texels, where one
+ * kernel is scaled by the albedo [Kurt14], [Song09].
  *
  * Light is 15 bits, f and in are codes of 4 to 16 bits, taps of 6 to 16 bits:
  * rows are rounded to 15 bits again after a shift that the sum of their taps

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/translucent_bake.h - how light scatters below the surface of a
+ * glint/scene/translucent_bake.h - scattering below the surface of a
  * translucent medium, computed or measured, and fitted by a few kernels, in
  * double precision.
  *
@@ -79,7 +79,7 @@ void glint_stone_defaults(struct glint_stone *stone);
 
 /* -------------------------------------------------------------- its rows */
 
-/* How long work is watched and ended. All may be NULL; so may the struct. */
+/* Progress and cancellation. All members may be NULL; so may the struct. */
 struct glint_watch {
     glint_progress_fn *progress;
     bool (*stop)(void *ctx); /* asked as often; true: ends with

@@ -5,11 +5,10 @@
  *     glint_ward_prepare(&lobe, &environment, &material, &options);
  *     glint_ward_light(&lobe, &environment, frame_q14, view_q14, rgb_q15);
  *
- * The light of an environment's levels that Ward's anisotropic lobe sends to
- * the eye: half vectors, stratified, each looked up in the level that is as
- * wide as the light it stands for. Materials may change from one frame to the
- * next: a lobe is made in some thousand instructions. [Ward92], [Krivanek08],
- * [Toral14] */
+ * Light of an environment that Ward's anisotropic lobe reflects to the eye:
+ * stratified half vectors, each looked up in the level as wide as the solid
+ * angle it represents. Materials may change in every frame: a lobe costs a few
+ * thousand instructions. [Ward92], [Krivanek08], [Toral14] */
 #ifndef GLINT_SCENE_WARD_H
 #define GLINT_SCENE_WARD_H
 
