@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define GLINT_ALIGN 64 /* bytes; of base and of every block handed out */
+#define GLINT_ALIGN 64 /* alignment of base and of every block, bytes */
 
 struct glint_arena {
     uint8_t *base; /* GLINT_ALIGN-aligned, or NULL to measure */
@@ -25,9 +25,8 @@ struct glint_arena glint_arena_measure(void);
 /* Returns an arena over MEM[BYTES], aligned to GLINT_ALIGN. */
 struct glint_arena glint_arena_over(void *mem, size_t bytes);
 
-/* Returns room for COUNT items of BYTES each, uninitialised; NULL while
- * measuring, or if the arena is full. A product that overflows leaves the arena
- * full for good. */
+/* Allocates COUNT items of BYTES each, uninitialised; NULL while measuring, or
+ * if the arena is full. A product that overflows leaves the arena full. */
 void *glint_arena_take(struct glint_arena *arena, size_t count, size_t bytes);
 
 #endif

@@ -41,7 +41,7 @@ enum glint_blob_fault {
                             */
     GLINT_BLOB_FOREIGN,    /* it has no magic number of this kind */
     GLINT_BLOB_NEWER,      /* a later version */
-    GLINT_BLOB_NO_VERSION, /* version 0, which never was */
+    GLINT_BLOB_NO_VERSION, /* version 0, which never existed */
     GLINT_BLOB_OLDER,      /* an earlier version */
     GLINT_BLOB_TRUNCATED,  /* bytes are missing */
     GLINT_BLOB_LONGER,     /* there are more bytes than the header says */
@@ -53,8 +53,8 @@ enum glint_blob_fault {
     GLINT_BLOB_FAULTS
 };
 
-/* What each fault is of an object, such Objects, that were DONE, in words;
- * those of GLINT_BLOB_OK are NULL. */
+/* Texts of the faults: THING is the type of file, such THINGS its plural, DONE
+ * what was done to it. GLINT_BLOB_OK has NULL. */
 #define GLINT_BLOB_FAULT_TEXT(thing, things, done)                          \
     {                                                                       \
         [GLINT_BLOB_UNALIGNED] = "the " thing " is not aligned to 4 bytes", \
@@ -95,14 +95,14 @@ struct glint_blob {
     uint64_t referred;
 };
 
-/* Checks that DATA[BYTES] is whole and of KIND, in time proportional to BYTES,
- * and points BLOB into it. Header fields from the variant on are not looked at.
- * BLOB is set only if nothing is wrong. */
+/* Checks that DATA[BYTES] is complete and of KIND, in time proportional to
+ * BYTES, and points BLOB into it. Header fields from the variant on are not
+ * checked. BLOB is set only without a fault. */
 enum glint_blob_fault glint_blob_open(struct glint_blob *blob,
                                       const struct glint_blob_kind *kind,
                                       const void *data, size_t bytes);
 
-/* Checks that the name can do no harm on a terminal. */
+/* Checks that the name is safe to print on a terminal. */
 enum glint_blob_fault glint_blob_check_name(const struct glint_blob *blob);
 
 /* Returns the section of COUNT items of ITEM_BYTES each at AT; NULL if it does

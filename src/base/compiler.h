@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What glint needs from compilers beyond C99. */
+ * Compiler extensions that glint uses besides C99. */
 #ifndef GLINT_BASE_COMPILER_H
 #define GLINT_BASE_COMPILER_H
 

@@ -9,7 +9,7 @@
 
 #include <stdint.h>
 
-/* Returns whether thing A comes before thing B. With a total order the result
+/* Returns whether item A comes before item B. With a total order the result
  * does not depend on the order that the objects begin in. */
 typedef int glint_sort_fn(const void *ctx, int32_t a, int32_t b);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Finds lamps in pictures of one size, and follows them if these are a video.
- * All memory is taken by open. */
+ * All memory is allocated by open. */
 #ifndef GLINT_ENGINE_DETECTOR_H
 #define GLINT_ENGINE_DETECTOR_H
 
@@ -13,8 +13,8 @@
 enum { GLINT_LAMP_DETECTOR_MAX = 1024 }; /* as many as GLINT_ENGINE_MAX_LAMPS */
 
 struct glint_lamp_detector {
-    double headroom_ev; /* stops by which clipped pixels really exceed white;
-                           below 0: taken from the profile of each lamp */
+    double headroom_ev; /* stops by which clipped pixels exceed white; below 0:
+                           estimated from the profile of each lamp */
     int max; /* most lamps per picture, 1 .. GLINT_LAMP_DETECTOR_MAX */
 
     /* The lamps of the last frame, as found, the strongest first; those of a
@@ -28,7 +28,7 @@ struct glint_lamp_detector {
     struct glint_profile *profile;
     double scale;            /* factor on the powers of tracks */
     struct glint_spot *spot; /* [GLINT_LAMP_DETECTOR_MAX] */
-    int n_spots; /* spots of the last frame, lamps and doubtful ones */
+    int n_spots;             /* spots of the last frame, lamps and candidates */
     int max_tracks;
     void *mem;
 };
@@ -55,9 +55,9 @@ int glint_lamp_detector_frame(struct glint_lamp_detector *detector,
                               int32_t elapsed_us, const struct glint_view *view,
                               double focal_mm, struct glint_lamp *lamps);
 
-/* Returns the light of LAMP beyond what the picture shows of it, in white times
- * pixels: TRACK is that of LAMP, which has risen to LEVEL, Fraction of it is
- * not hidden, and WHITE is the light of the picture's white. */
+/* Returns the light of LAMP in excess of what the picture shows, in white x
+ * pixels: TRACK is the lamp's, LEVEL how far it has risen, SHARE its visible
+ * fraction, and WHITE the light of the picture's white. */
 double glint_lamp_excess(const struct glint_lamp *lamp,
                          const struct glint_lamp_track *track, double level,
                          double share, double white);
@@ -68,7 +68,7 @@ double glint_lamp_excess(const struct glint_lamp *lamp,
 const struct glint_spot *
 glint_lamp_detector_doubtful(const struct glint_lamp_detector *detector);
 
-/* Tells that the next frame has nothing to do with the last: another camera, a
+/* Declares that the next frame is unrelated to the last one: another camera, a
  * jump. */
 void glint_lamp_detector_restart(struct glint_lamp_detector *detector);
 

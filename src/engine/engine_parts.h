@@ -20,7 +20,7 @@ typedef enum glint_status glint_setup_iris_fn(struct glint_setup *setup,
 /* The stop that pictures are drawn through. */
 struct glint_engine_shape {
     int n_blades;
-    double rotation_deg, f_number; /* 0: that which the model was baked for */
+    double rotation_deg, f_number; /* 0: that of the model */
     struct glint_iris iris;
     /* glint_setup_iris(), once an iris was requested; a program that requests
      * none does not link it. */
@@ -32,7 +32,7 @@ struct glint_engine_optics {
     struct glint_setup own;
     struct glint_engine_shape shape; /* what OWN was made for */
     struct glint_dirt *dirt;         /* that of OWN, or NULL */
-    /* What lies on the front element: OWN_FRONT, or the caller's; or NULL. */
+    /* Dirt on the front element: OWN_FRONT, or the caller's; or NULL. */
     const struct glint_front_dirt *front;
     struct glint_front_dirt *own_front;
     /* Frees OWN_FRONT; a program that sets none does not link it. */
@@ -48,7 +48,7 @@ struct glint_engine_finding {
     bool is_cut;        /* the next picture restarts */
 };
 
-/* What a lamp of the last picture had above what it showed of it. */
+/* Light of the lamps of the last picture in excess of what it showed. */
 struct glint_engine_before {
     uint32_t id;
     double excess;
@@ -59,7 +59,8 @@ struct glint_engine_exposing {
     struct glint_response response;
     struct glint_strength strength;
     struct glint_engine_exposure last;
-    bool by_drawing; /* stills are exposed by their flare drawn small */
+    bool by_drawing; /* the exposure of stills is measured in a small drawing of
+                        their flare */
     bool is_done;    /* the next picture is exposed */
     struct glint_engine_before *before;
     int n_before;
@@ -80,14 +81,15 @@ struct glint_engine {
     int most_lamps; /* that a picture may have */
 };
 
-/* Gives ENGINE, which makes its own setup, another stop; with MEASURE, measures
- * again how bright flares are. The stop stays as it is if it cannot be had. */
+/* Sets another stop of ENGINE, which makes its own setup; with MEASURE,
+ * measures the brightness of flares again. The stop stays as it is after an
+ * error. */
 enum glint_status glint_engine_reshape(struct glint_engine *engine,
                                        const struct glint_engine_shape *shape,
                                        bool measure, struct glint_error *error);
 
-/* Turns PARTS of the flare on, of the light that is set and with VEIL, and all
- * others off. */
+/* Enables PARTS of the flare, for the light that is set and with VEIL, and
+ * disables all others. */
 void glint_engine_choose(struct glint_engine *engine, unsigned parts,
                          double star, bool veil);
 

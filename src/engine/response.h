@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * Measures how bright the flare of a lens is, by the angle of the lamp.
+ * Measures the brightness of a lens's flare by the angle of the lamp.
  *
  *     glint_response_measure(&frame, bytes, &response);         once
  *     glint_response_at(&response, theta_deg, &light);          each lamp
  *
  * Small pictures of the flare of one white lamp, at angles from the axis to the
  * corner of the view, are drawn in linear light and measured. Between the
- * angles the logarithms are interpolated, so that the result is a gentle
+ * angles the logarithms are interpolated, so that the result is a smooth
  * function of the angle. Lamps of visible extent, whose ghosts are softer, are
  * drawn at one angle only, and assumed to lose as much at all angles. Doubles;
  * the integer engine draws, but does not use it.
@@ -46,7 +46,7 @@ struct glint_response {
 /* Sets LIGHT to that of N lamps behind the lens of LIKE, drawn in a small
  * picture of about PIXELS. Powers are those in the view of LIKE. The peak is
  * the value that 1/10000 of the pixels reach: smaller specks do not count. Sets
- * SEEN to how much can be seen on GROUND, unless both are NULL. GLINT_E_MEMORY.
+ * SEEN to its visibility on GROUND, unless both are NULL. GLINT_E_MEMORY.
  */
 enum glint_status glint_response_draw(const struct glint_frame *like,
                                       const struct glint_lamp *lamps, int n,
@@ -62,21 +62,21 @@ enum glint_status glint_response_measure(const struct glint_frame *like,
                                          size_t bytes,
                                          struct glint_response *response);
 
-/* Does as glint_response_measure(), but reads from CACHE what it has, and
- * writes there what it has not. CACHE may be NULL. What a lens without a model
- * does is not kept. */
+/* glint_response_measure() with a cache: reads entries from CACHE and writes
+ * new ones. CACHE may be NULL. Responses of lenses without a model are not
+ * cached. */
 enum glint_status glint_response_obtain(const struct glint_frame *like,
                                         size_t bytes,
                                         const struct glint_engine_cache *cache,
                                         struct glint_response *response);
 
-/* Returns the brightest part of the flare of LAMP over that of a point: at most
- * 1, as its ghosts spread over themselves. */
+/* Returns the brightest part of the flare of LAMP / that of a point: at most 1,
+ * as its ghosts are blurred. */
 double glint_response_softening(const struct glint_response *response,
                                 const struct glint_lamp *lamp);
 
-/* Sets LIGHT to that of a point THETA_DEG off the axis. Beyond the corner of
- * the view it is that at the corner: there the lens itself makes lamps fade. */
+/* Sets LIGHT to that of a point THETA_DEG off the axis. Outside the view it is
+ * that at the corner: there the lens itself dims lamps. */
 void glint_response_at(const struct glint_response *response, double theta_deg,
                        struct glint_response_light *light);
 

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * How much of a flare can be seen on the picture under it.
+ * Visibility of a flare on the picture under it.
  *
  *   in   a picture of codes; the flare on it, small, in linear light
- *   out  the light, at scale 1, over the least light that can be seen
+ *   out the light, at scale 1 / the least visible light
  *
- * A flare shows on a night sky but not on a lit wall: light that is added to a
- * pixel of light b can be seen if it lifts its code of 8 bits by
- * GLINT_SEEN_CODES. That takes more light the brighter b is, and is impossible
- * on what a clipped lamp covers. A flare of which few pixels can be seen counts
- * as invisible, one of which a quarter can as a veil. */
+ * A flare is visible on a night sky but not on a lit wall: light that is added
+ * to a pixel of light b is visible if it raises its 8-bit code by
+ * GLINT_SEEN_CODES. That needs more light for brighter b, and is impossible on
+ * clipped pixels. A flare with few visible pixels counts as invisible, one with
+ * a quarter as a veil. */
 #ifndef GLINT_ENGINE_SEEN_H
 #define GLINT_ENGINE_SEEN_H
 

@@ -27,17 +27,16 @@
  * stop either way. All lamps get the same factor, so the ratios between them
  * stay.
  *
- * The response knows one lamp at a time, along one line from the axis. For a
- * still picture there is time to draw the flare small and to take p and m from
- * that: p is then the value that 1/10000 of the pixels reach. So the few small
- * ghosts of a point, the wide ones of a candle, and lamps at which the response
- * off that line differs become as bright as others. Then the exposure is
- * corrected by how much of the flare can be seen on the picture
- * (engine/seen.h). A flare that is hidden is lifted until 1/50 of the picture
- * shows it: at strength 0.5 up to 0.6 in its brightest part and 0.04 in the
- * mean. A flare that veils a quarter of the picture is lowered until the light
- * there is half of the least that can be seen, but not below 0.1 in its
- * brightest part.
+ * The response is that of one lamp along one line from the axis. A still
+ * picture is drawn at reduced size first, and p and m are measured in that: p
+ * is then the value that 1/10000 of the pixels reach. So the few small ghosts
+ * of a point, the wide ones of a candle, and lamps at which the response off
+ * that line differs become as bright as others. Then the exposure is corrected
+ * by the visibility of the flare on the picture (engine/seen.h). An invisible
+ * flare is brightened until it is visible in 1/50 of the picture: at strength
+ * 0.5 up to 0.6 in its brightest part and 0.04 in the mean. A flare that veils
+ * a quarter of the picture is lowered until the light there is half of the
+ * least that can be seen, but not below 0.1 in its brightest part.
  *
  * In a video the factor follows, in stops in proportion to the time: it falls
  * by up to 3 stops a second and rises by up to 2, by no more than an eighth of
@@ -45,7 +44,7 @@
  * and if there was no lamp before. Lamps rise and fade with their tracks
  * (powers without these levels decide on the factor). A new lamp that is too
  * bright for the factor, until that has followed, is limited to 1.5 times the
- * exposure that it would get by itself. */
+ * exposure that it would get alone. */
 #ifndef GLINT_ENGINE_STRENGTH_H
 #define GLINT_ENGINE_STRENGTH_H
 
@@ -82,23 +81,23 @@ struct glint_strength {
 /* Sets strength 0.5 and gain 1. */
 void glint_strength_defaults(struct glint_strength *strength);
 
-/* Returns the factor on a starburst beyond the scale of the flare. STARBURST is
- * its brightness over the physical one; it does not depend on what ghosts need
- * to be seen. */
+/* Returns the factor on a starburst, in addition to the scale of the flare.
+ * STARBURST is its brightness / the physical one; the result does not depend on
+ * the exposure of ghosts. */
 double glint_strength_star(const struct glint_strength *strength,
                            double starburst);
 
 /* Sets the scale and the light for LAMPS, ELAPSED_US after the last frame, or 0
- * if this frame has nothing to do with that one. Lowers the powers of lamps
- * that are still too bright. */
+ * if this frame is unrelated to that one. Lowers the powers of lamps that are
+ * still too bright. */
 void glint_strength_expose(struct glint_strength *strength,
                            const struct glint_response *response,
                            const struct glint_strength_lamps *lamps,
                            int32_t elapsed_us);
 
-/* Corrects the exposure of a still picture: sets the scale and the light by
- * DRAWN, the light of its flare when it was drawn small at scale 1, instead of
- * by the response; and by how much of that flare can be SEEN on the picture,
+/* Corrects the exposure of a still picture: sets the scale and the light from
+ * DRAWN, the light of its flare drawn at reduced size and scale 1, instead of
+ * the response; and from SEEN, the visibility of that flare on the picture,
  * unless SEEN is NULL. Changes nothing if the factor is set by hand or there is
  * no light. */
 void glint_strength_correct(struct glint_strength *strength,

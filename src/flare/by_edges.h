@@ -9,9 +9,9 @@
 
 struct glint_by_edges {
     struct glint_edge *edge;
-    int32_t *order; /* indices of bundles, then of rows of tiles, in the order
-                       in which they are worked on */
-    /* Display white: most light that one cell may give a pixel. */
+    int32_t *order; /* indices of bundles, then of rows of tiles, in order of
+                       processing */
+    /* Display white: max light that one cell may give a pixel. */
     int32_t limit_q8;
     int linear; /* 1: the picture that is drawn onto is in linear light */
 };
@@ -42,7 +42,7 @@ glint_edges_worker_of(const struct glint_flare *f, int i)
     return f->worker[i].edges;
 }
 
-/* Most bundles of a frame. */
+/* Max bundles of a frame. */
 enum { GLINT_EDGES_MAX_BUNDLES = 1 << 20 };
 
 /* Carve the memory for edges of a flare and of a worker; return NULL while A
@@ -56,8 +56,8 @@ glint_edges_carve_worker(struct glint_arena *a,
 /* Sets all sums of all workers to 0, as they must be between tiles. */
 void glint_edges_begin(struct glint_flare *f);
 
-/* Sorts the bundles taken in into tiles: sets n_drawn, what drawing needs, and
- * all statistics but the numbers of bundles and vertices. */
+/* Sorts the bundles into tiles: sets n_drawn, the state for drawing, and all
+ * statistics except the numbers of bundles and vertices. */
 void glint_edges_bin(struct glint_flare *flare);
 
 /* Draws over the first N_BELOW passes of PASS, which has room for one more. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * How bright the ghosts of a lens are, by wave and by the angle of the light:
- * where one is too dim for its colours to be seen apart, the rays of one wave
- * stand for those of all three. nodes.c fills the table. */
+ * Brightness of the ghosts of a lens, by wave and angle of the light: if a
+ * ghost is too dim for its coloured outlines to be distinguished, the rays of
+ * one wave represent all three. nodes.c fills the table. */
 #ifndef GLINT_FLARE_DIM_H
 #define GLINT_FLARE_DIM_H
 
@@ -12,34 +12,33 @@
 #include "glint/flare.h"
 
 enum {
-    GLINT_DIM_WAVE = 1,  /* the wave whose rays stand for all */
+    GLINT_DIM_WAVE = 1,  /* the wave whose rays represent all */
     GLINT_DIM_WAVES = 3, /* with any other number no ghost is dim */
     GLINT_DIM_WHOLE_Q8 = 256,
     GLINT_DIM_LAST = GLINT_DIM_NODES - 1,
     GLINT_DIM_DARK = INT16_MIN, /* value where a wave does not get through */
-    GLINT_LIGHT_HELD = 14 /* fraction bits that colours have more while lights
-                             merge */
+    GLINT_LIGHT_HELD =
+        14 /* extra fraction bits of colours while lights merge */
 };
 
 struct glint_flare;
 
-/* What a plan asks of the table. */
+/* The functions of the table that a plan calls. */
 struct glint_dim_method {
     /* Fills those nodes, which are angles, that lie next to the angles of the
      * plan's first N_LIGHTS lights and are not filled yet. */
     void (*fill)(struct glint_flare *flare, int n_lights);
     /* Lets dim ghosts of the plan's first N_LIGHTS lights share rays: for each
-     * ghost, a light gives its light to the nearest light before it where the
-     * ghost is so dim that it may move that far, and both are drawn as one,
-     * between them. All changes are gradual: a ghost that becomes brighter
-     * gives less and less away. */
+     * ghost, a light is merged into the nearest light before it if the ghost is
+     * so dim that it may move that far; both are drawn as one, between them.
+     * The merged fraction falls gradually as a ghost becomes brighter. */
     void (*gather)(struct glint_flare *flare, int n_lights);
-    /* Returns what light LIGHT is then drawn as for GHOST, until the first
-     * bundle of both is planned; NULL: there is no room. */
+    /* Returns the merged light that LIGHT is drawn as for GHOST, until the
+     * first bundle of both is planned; NULL: no capacity. */
     struct glint_light *(*gathered)(struct glint_flare *flare, int ghost,
                                     int light);
-    /* Returns the fraction of its light that light I, LIGHT with what it was
-     * given, keeps for GHOST, 0 to GLINT_DIM_WHOLE_Q8. */
+    /* Returns the fraction of its light that light I, LIGHT after merging,
+     * keeps for GHOST, 0 to GLINT_DIM_WHOLE_Q8. */
     int (*kept_q8)(const struct glint_flare_frame *frame,
                    const struct glint_light *light, int i, int ghost);
     /* glint_dim_share_q8() and glint_dim_ratio_q16() */

@@ -14,9 +14,9 @@ struct glint_flare_under {
     struct glint_blend_rows *rows; /* one for each worker of the flare */
 };
 
-/* Draws as glint_flare_draw() does, but over the passes of UNDER. These see the
- * flare's tiles: at half resolution, tiles of pixels of twice the size; by
- * cells in two levels, rows of tiles that end at the side of each large tile.
+/* glint_flare_draw() over the passes of UNDER. These see the flare's tiles: at
+ * half resolution, tiles of pixels of twice the size; by cells in two levels,
+ * rows of tiles that end at the side of each large tile.
  */
 void glint_flare_draw_over(struct glint_flare *flare,
                            const struct glint_image *image,

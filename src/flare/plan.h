@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Plans what a frame has to draw of a lens: which ghosts, lights and
- * wavelengths, each with how fine a grid.
+ * Plans a frame: which ghosts, lights and wavelengths are visible, and the
+ * fineness of their grids.
  *
  *   in   a baked lens, lights, waves, the picture's size
  *   out  a bundle for each ghost, light and wave that can be seen in it
  *
  * Method: a few rays of each bundle go through its polynomials. Their places
- * say whether the ghost lies in the picture and how bright it can be; how much
- * they bend states how many cells it takes. A ghost below what the picture can
- * show is left out. Integers only. */
+ * determine whether the ghost is in the picture and its max brightness; their
+ * bend determines the number of cells. A ghost too faint for the picture is
+ * left out. Integers only. */
 #ifndef GLINT_FLARE_PLAN_H
 #define GLINT_FLARE_PLAN_H
 
@@ -44,8 +44,8 @@ struct glint_bundle_plan {
     int32_t wider_q16, centre_q8[2];
     /* Flux over the pixels that it falls on, display white. */
     struct glint_real irradiance;
-    int64_t peak_q20; /* most light that a pixel gets, clamped to 2^20; 1 is the
-                         least that can be seen */
+    int64_t peak_q20; /* max light of a pixel, clamped to 2^20; 1 is the least
+                         visible light */
 };
 
 struct glint_plan {
@@ -69,7 +69,7 @@ struct glint_plan_scratch {
     struct glint_transfer transfer;
     struct glint_probe probe;
     struct glint_window_nodes window;
-    int64_t n_rays; /* rays looked at since the plan began */
+    int64_t n_rays; /* rays probed since the plan began */
 };
 
 /* Returns whether LIGHT comes from beyond the largest angle that the model was

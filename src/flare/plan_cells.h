@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Chooses how fine the grid of a bundle has to be, from how much its rays bend.
+ * Chooses the fineness of a bundle's grid from the bend of its rays.
  *
  *   in   a probe of the bundle, its irradiance
  *   out  cells a side; how far straight lines between rays lie off outlines */

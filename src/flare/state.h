@@ -56,7 +56,7 @@ struct glint_flare {
     struct glint_vertex *vertex;
     struct glint_by_edges *edges;
     void *reuse;                  /* state of cfg.reuse; NULL: there is none */
-    enum glint_reusable reusable; /* stays NOT without cfg.reuse */
+    enum glint_reusable reusable; /* always NOT without cfg.reuse */
     struct glint_bins bins;
     struct glint_flare_worker *worker;
     /* Tables for the picture that is being drawn. */
@@ -67,9 +67,9 @@ struct glint_flare {
 struct glint_reuse {
     /* Carves its state; returns NULL while A only measures. */
     void *(*carve)(struct glint_arena *a, const struct glint_flare_config *c);
-    /* Returns whether a plan of these would be the last one, which is still
-     * binned, and takes that as if it had just been made; else notes what the
-     * next plan is made from. */
+    /* Returns whether a plan of these inputs would equal the last one, which is
+     * still binned, and then reuses that; otherwise records the inputs of the
+     * next plan. */
     int (*take)(struct glint_flare *f, const struct glint_flare_frame *frame,
                 const struct glint_light *lights, int n_lights);
     /* Gives the bundles that are binned the factors of the frame. */

@@ -10,9 +10,9 @@
  * stop and barrels. A cell is left out if all four corners lie beyond the same
  * side of an octagon around the stop, or beyond the same barrel, by more than
  * the outputs bend between rays. The window shrinks to the cells that are left,
- * again and again, until it hardly gets smaller. Where cells are fine, its
- * sides lie where the stop's circle crosses the lines of the grid, so that they
- * move with the stop's radius without steps. */
+ * repeatedly, until it barely gets smaller. Where cells are fine, its sides lie
+ * where the stop's circle crosses the lines of the grid, so that they move with
+ * the stop's radius without steps. */
 #ifndef GLINT_FLARE_WINDOW_H
 #define GLINT_FLARE_WINDOW_H
 

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds which spot of a picture is which lamp of the last one.
+ * Assigns the spots of a picture to the lamps of the last one.
  *
- *   in   spots in any order; where each lamp should be by now
+ *   in spots in any order; the predicted place of each lamp
  *   out  for each lamp its spot, or none; no spot twice
  *
- * Method: of all pairs within reach the nearest is taken, then the nearest of
- * those left, and so on. A faint spot counts as twice as far, and so does a
- * lost lamp. Each lamp looks only at its NEAREST_SPOTS nearest spots, which it
- * finds among spots sorted by x, so that 1024 spots cost no more than a look at
- * those in reach; a lamp that finds all of these taken gets no spot. */
+ * Method: greedy, the nearest pair within reach first. The distance of a faint
+ * spot counts double, and so does that of a lost lamp. Each lamp considers only
+ * its NEAREST_SPOTS nearest spots, found among spots sorted by x, so that of
+ * 1024 spots only those in reach cost time; a lamp whose candidates are all
+ * assigned gets no spot. */
 #ifndef GLINT_FOLLOW_MATCH_H
 #define GLINT_FOLLOW_MATCH_H
 

@@ -60,7 +60,7 @@ struct glint_record {
     int n_same; /* number of pictures in a row, after the first, that showed the
                    same spot */
     int64_t velocity_q16[2]; /* pixels a second */
-    int64_t ahead_q16[2];    /* pixels: place where the lamp should be by now */
+    int64_t ahead_q16[2];    /* pixels: predicted place of the lamp */
     int32_t level_q30;
     int32_t lost_us; /* time since it was last seen; 0: it is seen now */
     int is_shown; /* set by the caller: the level rises while the lamp is seen
@@ -84,7 +84,7 @@ int64_t glint_record_power_q16(const struct glint_spot *spot);
 void glint_record_begin(struct glint_record *r, uint32_t id,
                         const struct glint_spot *spot);
 
-/* Sets the place where the lamp should be by now. */
+/* Predicts the place of the lamp. */
 void glint_record_look_ahead(struct glint_record *r,
                              const struct glint_record_step *step);
 
@@ -92,8 +92,8 @@ void glint_record_see(struct glint_record *r,
                       const struct glint_record_step *step,
                       const struct glint_spot *spot);
 
-/* Continues a record without a spot: the lamp moves on, and is forgotten in
- * time. */
+/* Continues a record without a spot: the lamp moves on, and is forgotten after
+ * a while. */
 void glint_record_miss(struct glint_record *r,
                        const struct glint_record_step *step);
 

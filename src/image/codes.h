@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A stretch of one or two rows of a picture, with one byte a sample as the
- * kernels want it, for every format. */
+ * A stretch of one or two rows of a picture, with one byte per sample as the
+ * kernels require, for every format. */
 #ifndef GLINT_IMAGE_CODES_H
 #define GLINT_IMAGE_CODES_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Hides what a picture shows.
+ * Hides the background before light is added.
  *
  *   in   the fraction of each pixel that is hidden; light to add afterwards
  *   out  the picture's own codes, changed in place

@@ -36,7 +36,7 @@ typedef void glint_resolve_quads_fn(const struct glint_resolve *resolve,
                                     struct glint_quads_rows *rows);
 glint_resolve_quads_fn glint_resolve_quads;
 
-/* Half resolution as an object, so that only a program that names it links it.
+/* Half resolution as an object, linked only by programs that name it.
  */
 struct glint_half {
     glint_resolve_quads_fn *resolve;

@@ -32,8 +32,8 @@ struct glint_arena;
 
 enum {
     BRIGHT_BLOCK = 32,    /* pixels */
-    BRIGHT_CLIPPED = 250, /* a channel that is this or more is clipped and says
-                             nothing of colour */
+    BRIGHT_CLIPPED = 250, /* a channel that is this or more is clipped and has
+                             no colour information */
     /* brightness of clipped pixels whose luma is 237 .. 251 */
     BRIGHT_WHITE = 254,
     BRIGHT_HOT = 255 /* brightness of clipped pixels of luma 252 or more */
@@ -60,11 +60,11 @@ struct glint_bright {
     /* codes of the row: Y Cb Cr, R G B, or two bytes */
     struct glint_bright_code code[3];
     int n_codes;  /* number of codes in use; the others repeat the first */
-    int low;      /* least brightness of a bright pixel, 1 .. 255 */
-    int low_code; /* the least byte, of grey or of R, G or B, of a bright pixel;
-                     256 if no code is bright */
-    int32_t low_sum_q16; /* the least largest channel, from Y, Cb, Cr, of a
-                            bright pixel, less one code for rounding */
+    int low;      /* min brightness of a bright pixel, 1 .. 255 */
+    int low_code; /* min byte, of grey or of R, G or B, of a bright pixel; 256
+                     if no code is bright */
+    int32_t low_sum_q16; /* min of the largest channel, from Y, Cb, Cr, of a
+                            bright pixel, minus one code for rounding */
     struct glint_curve *curve;
     int curve_tone; /* transfer function of curve; -1: curve is not set yet */
     struct glint_ycc ycc;
@@ -82,8 +82,8 @@ void glint_bright_init(struct glint_bright *b, int width);
 void glint_bright_begin(struct glint_bright *b,
                         const struct glint_image *image);
 
-/* Sets the least brightness of bright pixels, LOW, 1 .. 255; to be called
- * before the first scan. */
+/* Sets the min brightness of bright pixels, LOW, 1 .. 255; to be called before
+ * the first scan. */
 void glint_bright_set_low(struct glint_bright *b, int low);
 
 /* Sets block and value for row Y. Returns the greatest brightness, or 0 if all

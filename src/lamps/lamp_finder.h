@@ -12,8 +12,8 @@
 #include "glint/lamps.h"
 
 enum {
-    LIGHT_CANDIDATES = 2048, /* most candidates kept, more than the 1024 lamps
-                                that find may be requested */
+    LIGHT_CANDIDATES =
+        2048, /* max candidates, more than the max of 1024 lamps per find */
     LIGHT_LEVELS = 6
 };
 
@@ -23,7 +23,7 @@ struct glint_lamp_finder {
     int64_t merge2_q16; /* squared merge distance, pixels^2 */
     struct glint_bright bright;
     struct glint_white *white;
-    int32_t least_white_q20; /* least white of the next picture, linear light */
+    int32_t least_white_q20; /* min white of the next picture, linear light */
     int32_t alone_q8; /* alone_q8 of struct glint_score for the next picture */
     struct glint_row_light row;
     struct glint_regions regions[LIGHT_LEVELS];

@@ -19,10 +19,10 @@
  * u is from 2^-k to 2^(1-k), to the clipped area by how far its light is from
  * CLIP_FIRST to CLIP_LAST. So no sum jumps.
  *
- * The rim of a large core is also looked at along rays from the middle: how
- * much of white is lost from where the core ends to an eighth of its radius
- * further out. A glare that falls off as 1 / r^3 loses three tenths there; the
- * face of a lamp ends at once, however bright its surroundings are.
+ * The rim of a large core is also sampled along rays from the middle: the drop,
+ * as a fraction of white, from the end of the core to an eighth of its radius
+ * further out. A glare that falls off as 1 / r^3 drops by three tenths there;
+ * the face of a lamp ends abruptly, however bright its surroundings are.
  *
  * Limits: weights of samples sum to 2^30 at most, the pixels of the largest
  * picture; u_q16 is 2^16 at most; offsets from the centre are below 2^15. */
@@ -63,9 +63,9 @@ struct glint_profile_sums {
      * steps. */
     int64_t w_q16, moment_q16[2], square_q16[3]; /* xx, yy, xy */
     int step;        /* pixels between samples of the core */
-    int32_t rim_q15; /* fraction of white that is lost at the rim, the median
-                        over all rays; 0 for a small core, or if too few rays
-                        end in the picture */
+    int32_t rim_q15; /* drop at the rim as a fraction of white, the median over
+                        all rays; 0 for a small core, or if too few rays end in
+                        the picture */
 };
 
 struct glint_rings {

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * Scores how much a bright region looks like a lamp.
+ * Scores whether a bright region is a lamp.
  *
  *   in   the bright regions of a picture, at each of the levels of brightness
  *        that they were sought at, and the picture around them
  *   out  a score of each: from 0 on a region is a lamp; 64 are a factor e of
- *        its odds; below -SCORE_DOUBT it is none, even if it was one before
+ *        its odds; below -SCORE_DOUBT it is not one, even if it was before
  *
- * Lamps are seldom alone: in a picture with SCORE_SEVERAL lamps, a region is
- * one from -SCORE_COMPANY on. In a picture without any, the best region is one
- * if its score is not far below 0, as whoever requests a flare mostly has a
- * lamp: from -SCORE_ALONE on in a still picture. A region of a video has
- * another chance in each frame, whether it is a lamp or not, and so must reach
+ * Lamps are seldom alone: in a picture with SCORE_SEVERAL lamps, the threshold
+ * is -SCORE_COMPANY. In a picture without any, the best region is accepted if
+ * its score is not far below 0, since a picture for a flare usually has a lamp:
+ * from -SCORE_ALONE in a still picture. A region of a video has another chance
+ * in each frame, whether it is a lamp or not, and so must reach
  * -SCORE_ALONE_VIDEO.
  *
  * The score is a sum of terms, each a measure clamped to a range and weighted,
@@ -24,7 +24,7 @@
  * scene in more pixels has the same score.
  *
  * Limits: each term is below 2^13 * 2^10, so that the sum of some 20 fits 32
- * bits; areas and boxes are reckoned in 64. */
+ * bits; areas and boxes are computed in 64. */
 #ifndef GLINT_LAMPS_SCORE_H
 #define GLINT_LAMPS_SCORE_H
 
@@ -48,7 +48,7 @@ enum glint_evidence {
     EVIDENCE_AROUND, /* lower quartile of the contrast at the middle distance,
                         stops */
     EVIDENCE_HALO, /* stops by which contrast is larger at the farthest ellipse
-                      than at the nearest: light falls off */
+                      than at the nearest: fall-off of light */
     EVIDENCE_SPREAD, /* stops between the quartiles of the contrast close
                         around: large where light does not fall off alike in all
                         directions */
@@ -105,8 +105,8 @@ struct glint_candidate {
     int16_t level; /* index of its level; 0 is the darkest */
     int32_t rank_q8;
     uint8_t faint;
-    uint8_t gone; /* 1: merged into another region, or one of higher rank stands
-                     for it */
+    uint8_t gone; /* 1: merged into another region, or replaced by one of higher
+                     rank */
     int32_t evidence_q8[EVIDENCES];
 };
 
@@ -136,7 +136,7 @@ void glint_score_all(const struct glint_score *score,
                      struct glint_candidate *candidate, const int32_t *order,
                      int n);
 
-/* Returns the least score of a lamp: 0, or -SCORE_COMPANY in a picture of
+/* Returns the min score of a lamp: 0, or -SCORE_COMPANY in a picture of
  * SCORE_SEVERAL lamps, or the best score if none reaches 0 and that is not
  * below -alone_q8. Changes the order of ORDER. */
 int32_t glint_score_least(const struct glint_score *score,

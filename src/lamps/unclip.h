@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * Estimates from the sums of a profile how a lamp would be without clipping. */
+ * Estimates power, colour and extent of a lamp without clipping from the sums
+ * of a profile. */
 #ifndef GLINT_LAMPS_UNCLIP_H
 #define GLINT_LAMPS_UNCLIP_H
 
 #include "lamps/rings.h"
 
-/* The features that tell the power of a clipped core, as logarithms: its area;
- * how much smaller the area is in the channel that clips least; how much larger
- * the area of each level is; spread and light of the background; the brightest
- * channel at luminance 1; the minor semi-axis of the lamp in its glare, by the
- * areas alone. The major one is left out: where two lamps become one spot it is
- * their distance. */
+/* The features that predict the power of a clipped core, as logarithms: its
+ * area; how much smaller the area is in the channel that clips least; how much
+ * larger the area of each level is; spread and light of the background; the
+ * brightest channel at luminance 1; the minor semi-axis of the lamp in its
+ * glare, by the areas alone. The major one is left out: where two lamps become
+ * one spot it is their distance. */
 enum { GLINT_UNCLIP_FEATURES = 6 + GLINT_PROFILE_LEVELS };
 
 /* Sets FEATURE to the features of SPOT, whose colour must be set. */

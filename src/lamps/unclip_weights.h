@@ -10,7 +10,7 @@
 
 enum { GLINT_UNCLIP_UNITS = 6 };
 
-/* Least and most of each feature. */
+/* Min and max of each feature. */
 static const int16_t range_q8[GLINT_UNCLIP_FEATURES][2] = {
     {357, 3138},   {1, 2968},  {-24, 585}, {7, 849},    {20, 1043},
     {34, 1364},    {47, 1717}, {67, 1903}, {102, 2030}, {-2551, -55},

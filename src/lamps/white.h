@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Measures how bright a picture is as a whole, and its white.
+ * Measures the brightness distribution of a picture, and its white.
  *
  *   in   a picture that bright has begun with
- *   out  how many of a grid of its pixels reach each brightness; codes
+ *   out number of pixels of a grid that reach each brightness; codes
  *
  * In an underexposed picture a lamp may be far darker than full white. So white
  * is where codes clip if one pixel in 2^WHITE_PART_LOG2 does. Else it is the
@@ -15,14 +15,14 @@
 #include "lamps/bright.h"
 
 enum {
-    WHITE_GRID_X = 160, /* most columns of the grid */
+    WHITE_GRID_X = 160, /* max columns of the grid */
     WHITE_GRID_Y = 96,
     WHITE_PART_LOG2 = 11,
     WHITE_LEAST = 64
 };
 
 struct glint_white {
-    int n;                 /* pixels looked at */
+    int n;                 /* pixels read */
     int32_t at_least[257]; /* [i]: number of those pixels with brightness i or
                               more */
     int32_t light_q20;     /* linear light of white */
@@ -37,8 +37,8 @@ void glint_white_measure(struct glint_white *white, struct glint_bright *bright,
 int glint_white_code(const struct glint_bright *bright, int32_t light_q20,
                      int32_t ev_q8);
 
-/* Returns the least brightness that at most 1 / 2^PART_LOG2 of the pixels
- * reach. */
+/* Returns the min brightness that at most 1 / 2^PART_LOG2 of the pixels reach.
+ * */
 int glint_white_reached_by(const struct glint_white *white, int part_log2);
 
 /* Returns the fraction of pixels that have VALUE or more, _q15. */

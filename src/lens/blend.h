@@ -11,9 +11,9 @@ enum {
     GLINT_BLEND_PLACES = 6
 };
 
-/* A transfer into which another position's is mixed, output by output: PART of
- * that, the rest of what it has. PART below 0, down to -1, continues beyond
- * this position, away from the other. */
+/* A transfer that is interpolated with another position's, output by output:
+ * PART of that, 1 - PART of its own. PART below 0, down to -1, extrapolates
+ * away from the other. */
 struct glint_zoom_mix {
     struct glint_transfer *to;
     int32_t part_q30;
@@ -42,7 +42,7 @@ struct glint_zoom_mix {
     uint32_t taken;
 };
 
-/* An output of the other position, with angle and wavelength put in. */
+/* An output of the other position, after substituting angle and wavelength. */
 struct glint_blend_output {
     uint8_t kind, head;
     int32_t exponent;
@@ -65,14 +65,14 @@ struct glint_blend_output glint_blend_of(struct glint_transfer *t, int kind);
 int32_t glint_blend_value_q16(const struct glint_blend_output *o, int64_t u_q24,
                               int64_t v_q24);
 
-/* Looks at O, if it is a barrel; they come by rising kind. */
+/* Registers O, if it is a barrel; outputs come by rising kind. */
 void glint_blend_look(struct glint_zoom_mix *blend,
                       const struct glint_blend_output *o);
 
-/* Finds the partner of each barrel that was looked at. */
+/* Finds the partner of each registered barrel. */
 void glint_blend_pair(struct glint_zoom_mix *blend);
 
-/* Gives T the barrel O in a place that is free. Returns its number, or -1. */
+/* Adds barrel O to T in a free place. Returns its number, or -1. */
 int glint_blend_put(struct glint_transfer *t,
                     const struct glint_blend_output *o);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * How many cells a side a grid of rays takes, for models and exact rays alike.
+ * Number of cells per side of a ray grid, for models and exact rays.
  *
  * At a fineness of 64, straight lines between rays lie within 0.01 pixel of
  * where light bends, and outlines within 0.1: light piles up along folds, but
@@ -12,8 +12,8 @@
 
 #include "glint/bundle.h"
 
-/* Returns the most cells a side; twice as many if the ghost's light FOLDS over
- * itself. */
+/* Returns the max number of cells per side; twice as many if the ghost's light
+ * FOLDS over itself. */
 static inline int glint_grid_most(int fineness, int folds)
 {
     return (folds ? 4 : 2) * fineness;

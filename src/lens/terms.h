@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Shared by the two halves of the transfer: transfer.c, which puts angle and
- * wavelength into polynomials, and transfer_rays.c, which puts rays in. */
+ * Shared by the two halves of the transfer: transfer.c, which substitutes angle
+ * and wavelength into polynomials, and transfer_rays.c, which evaluates rays.
+ * */
 #ifndef GLINT_LENS_TERMS_H
 #define GLINT_LENS_TERMS_H
 

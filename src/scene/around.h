@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The camera's picture as the surroundings of a scene: what mirrors and glass
- * show where their rays meet nothing.
+ * The camera's picture as the background of rays from mirrors and glass.
  *
  * It is kept as means of cells of 2^n x 2^n pixels, 320 on its longer side at
  * most, and is straight between their middles. */
@@ -22,11 +21,11 @@ struct glint_around {
     uint16_t *light_q15; /* [n_y][n_x][3], display white = 32768 */
 };
 
-/* Takes the memory for pictures of WIDTH x HEIGHT; there is no picture yet. */
+/* Allocates memory for pictures of WIDTH x HEIGHT; there is no picture yet. */
 void glint_around_carve(struct glint_around *around, struct glint_arena *arena,
                         int width, int height);
 
-/* Keeps IMAGE, of that size; NULL: there is no picture again. */
+/* Stores a reduced copy of IMAGE, of that size; NULL: no picture. */
 void glint_around_look(struct glint_around *around,
                        const struct glint_image *image,
                        struct glint_workers *workers);

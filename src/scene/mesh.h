@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The tables of meshes in a baked scene, and the parts of the part for them. */
+ * The tables of meshes in a baked scene, and the functions of their module. */
 #ifndef GLINT_SCENE_MESH_H
 #define GLINT_SCENE_MESH_H
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Parts of a scene that are named by address (glint/scene/scene.h): what the
- * rest calls of each. */
+ * Optional modules of a scene, linked by address (glint/scene/scene.h): the
+ * functions that the rest calls. */
 #ifndef GLINT_SCENE_PARTS_H
 #define GLINT_SCENE_PARTS_H
 
@@ -43,18 +43,18 @@ struct glint_scene_textures {
 };
 
 struct glint_scene_bounces {
-    /* Adds what SURFACE mirrors and lets through. */
+    /* Adds reflected and transmitted light of SURFACE. */
     void (*follow)(const struct glint_scene *scene,
                    const struct glint_scene_ray *ray,
                    const struct glint_met_surface *surface,
                    struct glint_met_shade *shade);
-    /* Take the memory of the picture all around, and keep IMAGE there. */
+    /* Allocate memory for the background picture, and store IMAGE there. */
     void (*carve)(struct glint_scene *scene, struct glint_arena *arena);
     void (*look)(struct glint_scene *scene, const struct glint_image *image);
 };
 
 struct glint_scene_wards {
-    /* Takes the memory of the part; NULL while it is measured. */
+    /* Allocates the memory of the module; NULL while it is measured. */
     struct glint_ward_state *(*carve)(const struct glint_scene *scene,
                                       struct glint_arena *arena);
     /* Opens the environment and makes the lobes of all metals. */
@@ -72,7 +72,7 @@ struct glint_scene_wards {
     int32_t (*spread)(const struct glint_scene *scene,
                       const struct glint_scene_ray *ray,
                       const struct glint_met_surface *surface);
-    /* Finds how the metal of SURFACE lies; its spread is not known then. */
+    /* Finds the tangent frame of the metal of SURFACE, without its spread. */
     void (*lie)(const struct glint_scene *scene,
                 const struct glint_met_surface *surface,
                 struct glint_brushed *brushed);
@@ -101,7 +101,7 @@ struct glint_scene_wards {
 };
 
 struct glint_scene_stones {
-    /* Takes the memory of the part; NULL while it is measured. */
+    /* Allocates the memory of the module; NULL while it is measured. */
     struct glint_stone_state *(*carve)(const struct glint_scene *scene,
                                        struct glint_arena *arena);
     /* Opens all translucent media; before that, of SCENE the model alone is
@@ -109,8 +109,8 @@ struct glint_scene_stones {
     enum glint_status (*open)(struct glint_scene *scene);
     /* Notes what there is of environment light, which has changed. */
     void (*relight)(struct glint_scene *scene);
-    /* Brings the maps up to date with the frame that was begun; returns how
-     * many texels were worked out. */
+    /* Updates the maps for the frame that was begun; returns the number of
+     * texels computed. */
     int (*update)(struct glint_scene *scene);
     /* Adds what comes out of SURFACE along RAY, times WEIGHT_Q15. Returns how
      * many times what it does straight ahead its coat mirrors there, q15, below
@@ -124,7 +124,7 @@ struct glint_scene_stones {
 struct glint_highlight_state;
 
 struct glint_scene_highlights {
-    /* Takes the memory of the part; NULL while it is measured. */
+    /* Allocates the memory of the module; NULL while it is measured. */
     struct glint_highlight_state *(*carve)(const struct glint_scene *scene,
                                            struct glint_arena *arena);
     /* Begins a picture. */

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Surfaces in the middle of pixels, the quick way: 26 bits are enough to shade
- * by, and what all pixels of an object share is done once.
+ * Fast path for surfaces in the middle of pixels: 26 bits suffice for shading,
+ * and work that all pixels of an object share is done once.
  *
- * What is seen there has been decided exactly (visible.c). */
+ * Visibility there has been decided exactly (visible.c). */
 #ifndef GLINT_SCENE_QUICK_H
 #define GLINT_SCENE_QUICK_H
 

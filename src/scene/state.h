@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * State of a scene, and what its parts tell each other.
+ * State of a scene, and the interfaces between its modules.
  *
- * visible -> surface -> shade: which object is seen at a sample; where a ray
- * meets it, with what normal; what light goes back along the ray. */
+ * visible -> surface -> shade: the object visible at a sample; the point and
+ * normal where a ray meets it; the light that it sends back along the ray. */
 #ifndef GLINT_SCENE_STATE_H
 #define GLINT_SCENE_STATE_H
 
@@ -92,15 +92,15 @@ struct glint_shadow_point {
     int32_t toward_q30[3], lean_q30[2];
 };
 
-/* The box of what an object can shadow, as a sun sees it: across, in 256ths of
- * a cell, rounded down; how high it reaches. */
+/* The box that an object can shadow, from the direction of a sun: across, in
+ * 256ths of a cell, rounded down; how high it reaches. */
 struct glint_shadow_thing {
     uint32_t id; /* object << 20 | triangle */
     int16_t lo[2], hi[2];
     int32_t top;
 };
 
-/* What throws shadows, as a sun sees it (shadow.c). */
+/* Objects that cast shadows, from the direction of a sun (shadow.c). */
 struct glint_shadow {
     int light;                    /* its index */
     int is_ready;                 /* nothing has moved since */
@@ -128,7 +128,7 @@ struct glint_lit {
     int32_t rgb_q15[3];    /* sun: 0 .. 2^30 */
 };
 
-/* What a ray meets. */
+/* Intersection of a ray. */
 struct glint_met {
     uint32_t object, triangle;
     int32_t t;
@@ -149,7 +149,7 @@ struct glint_met_surface {
     int32_t uv_log2_q16;
 };
 
-/* How brushed metal lies at a place. */
+/* Tangent frame of brushed metal at a place. */
 struct glint_brushed {
     int32_t frame_q30[3][3]; /* rows: tangent, bitangent, normal; units */
     int32_t spread_q30;      /* what the normal's turn within a pixel adds to
@@ -217,7 +217,8 @@ struct glint_scene {
     struct glint_resolve *resolve;
     struct glint_curve *curve; /* of textures; NULL: there are none */
     struct glint_gloss *gloss; /* [n_materials] */
-    /* What mirrors and glass show; has no memory where none is seen in them. */
+    /* Background of mirrors and glass; not allocated if no material shows it.
+     * */
     struct glint_around around;
     struct glint_scene_material *material; /* [n_materials], as they look now */
     struct glint_scene_ward *ward;         /* [n_wards] */
@@ -241,7 +242,7 @@ static inline uint32_t glint_id(uint32_t object, uint32_t triangle)
 /* Returns where N samples of a pixel lie, 1, 4, 8 or 16, q8 from its middle. */
 const int8_t (*glint_scene_samples(int n))[2];
 
-/* Finds balls for which one depth is enough, once all are placed. */
+/* Finds balls for which one depth suffices, once all are placed. */
 void glint_scene_flatten(struct glint_scene *scene);
 
 /* Confines catchers to where shadows may be, once grids of shadows are made. */
@@ -253,7 +254,7 @@ int glint_scene_span(const struct glint_scene *scene,
                      const struct glint_placed *p, int y, int32_t *x0,
                      int32_t *x1);
 
-/* Finds what is seen in TILE; returns 0 if nothing is. */
+/* Finds the visible objects in TILE; returns 0 if there are none. */
 int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile);
 
 /* Sets MET to what is nearest on RAY, but OBJECT and, in meshes, TRIANGLE of
@@ -296,14 +297,15 @@ int glint_scene_surface(const struct glint_scene *scene,
 
 /* ------------------------------------------------------------------- shade */
 
-/* Light that goes back along a ray, and the fraction of the picture behind that
- * it hides. */
+/* Light sent back along a ray, and the fraction of the background that it
+ * hides. */
 struct glint_met_shade {
     int32_t rgb_q15[3]; /* 0 .. 2^30 */
     int cover_q8;       /* 0 .. 256 */
 };
 
-/* Adds to RGB_Q15 what lights leave of SURFACE along RAY, times WEIGHT_Q15. */
+/* Adds to RGB_Q15 the light of all lights that SURFACE reflects along RAY,
+ * times WEIGHT_Q15. */
 void glint_scene_phong(const struct glint_scene *scene,
                        const struct glint_scene_ray *ray,
                        const struct glint_met_surface *surface,
@@ -390,8 +392,8 @@ int32_t glint_power_q15(int32_t x_q30, int32_t k_q8);
 void glint_scene_point(struct glint_scene_ray *ray, int32_t t, int32_t radius,
                        int i, int n);
 
-/* What is seen where there is no object, but the picture itself: sets RGB_Q15
- * to the light from TOWARD_Q30, in the mean of a spot of that angular variance.
+/* Background other than the picture: sets RGB_Q15 to the light from TOWARD_Q30,
+ * in the mean of a spot of that angular variance.
  */
 void glint_scene_behind(const struct glint_scene *scene,
                         const int32_t toward_q30[3], int64_t spread_q40,

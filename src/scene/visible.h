@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The samples of a tile. Whatever is drawn there first: the nearest stays, and
- * of two as near that of the lower number. */
+ * The samples of a tile: each keeps the nearest object, and of two equally near
+ * the one with the lower index, in any order of drawing. */
 #ifndef GLINT_SCENE_VISIBLE_H
 #define GLINT_SCENE_VISIBLE_H
 
@@ -74,7 +74,7 @@ int32_t glint_quick_away(const struct glint_placed *p,
 
 /* ------------------------------------------------------------------ layers */
 
-/* What is laid over the objects of a picture, by the part for recorded motion.
+/* Overlays of a recorded motion.
  */
 
 /* Pixels X0 .. X1 - 1 of a row that a layer may touch. */

@@ -29,9 +29,9 @@ struct glint_star_lamp {
      * one. */
     const glint_star_halo_row *halo, *next_halo;
     int halo_part_q15;
-    int reach, halo_reach; /* distances in pixels beyond which no line, and no
-                              halo, can be seen */
-    int smear_reach;       /* the same of what lies in the stop */
+    int reach, halo_reach; /* distances in pixels at which lines, and the halo,
+                              become invisible */
+    int smear_reach;       /* the same for dirt in the stop */
     int n_zones;
     /* Zone i is from start[i] to start[i + 1], pixels along x or y, whichever
      * is more. Within it, steps of a profile below seen[i] can be seen. */

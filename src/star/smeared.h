@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * The light that dust, scratches, smudges and masks in the stop throw about a
- * lamp: a table in squares about it, each twice as wide as the one before, in
- * as many steps. A program that does not name glint_star_smear_part does not
- * link what draws it. */
+ * The light that dust, scratches, smudges and masks in the stop diffract around
+ * a lamp: a table in squares around it, each twice as wide as the one before,
+ * with the same number of steps. Its drawing code is linked only by programs
+ * that name glint_star_smear_part. */
 #ifndef GLINT_STAR_SMEARED_H
 #define GLINT_STAR_SMEARED_H
 

@@ -20,8 +20,8 @@
  *           finer than pixels; not drawn for lamps whose own core the picture
  *           shows
  *
- * Time is spent only where a fraction of a code can be seen. All memory is the
- * caller's; drawing cannot fail, and gives the same bits for any number of
+ * Only pixels where a fraction of a code is visible cost time. All memory is
+ * the caller's; drawing cannot fail, and gives the same bits for any number of
  * workers and any tile size. */
 #ifndef GLINT_STAR_STARBURST_H
 #define GLINT_STAR_STARBURST_H

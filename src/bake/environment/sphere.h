@@ -39,7 +39,7 @@ size_t glint_sphere_index(int side, int x, int y);
 
 double glint_luminance(const double rgb[3]);
 
-/* Makes SPHERE dark; returns false without memory. */
+/* Makes SPHERE black; returns false without memory. */
 bool glint_sphere_open(struct glint_sphere *sphere, int side);
 void glint_sphere_close(struct glint_sphere *sphere);
 
@@ -48,23 +48,23 @@ void glint_sphere_close(struct glint_sphere *sphere);
 bool glint_sphere_shrink(struct glint_sphere *to, int side,
                          const struct glint_sphere *from);
 
-/* panorama.c: spreads PICTURE over SPHERE, which is open and dark, turned and
- * scaled as OPTIONS say, and holds and counts what is not light. All light
- * stays. Returns false if PICTURE has another shape than those. */
+/* panorama.c: projects PICTURE onto SPHERE, which is open and black, rotated
+ * and scaled by OPTIONS; clamps and counts invalid pixels. Preserves the
+ * energy. Returns false if PICTURE has another shape than those. */
 bool glint_sphere_project(struct glint_sphere *sphere,
                           const struct glint_float_image *picture,
                           const struct glint_environment_options *options,
                           struct glint_environment_report *report);
 
-/* A disc of light that was distinguished from the rest. */
+/* A bright light that was separated from the levels: a disc. */
 struct glint_split_light {
     double toward[3];
     double radius;        /* radians */
     double irradiance[3]; /* of a surface that faces it */
 };
 
-/* split.c: takes from SPHERE up to options->max_lights lights, the strongest,
- * and fills their places with what lies around. Returns their number, or -1
+/* split.c: removes up to options->max_lights lights from SPHERE, the strongest,
+ * and fills their places from their surroundings. Returns their number, or -1
  * without memory. */
 int glint_sphere_split(struct glint_sphere *sphere,
                        const struct glint_environment_options *options,
@@ -76,7 +76,8 @@ int glint_sphere_split(struct glint_sphere *sphere,
 bool glint_sphere_blur(const struct glint_sphere *from, double sigma,
                        int side_log2, double (*light)[3]);
 
-/* Sets LIGHT[4^SIDE_LOG2][3] to what FROM shows a white surface, by its normal.
+/* Sets LIGHT[4^SIDE_LOG2][3] to the irradiance of a white surface under FROM,
+ * by its normal.
  */
 void glint_sphere_irradiance(const struct glint_sphere *from, int side_log2,
                              double (*light)[3]);

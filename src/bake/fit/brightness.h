@@ -4,11 +4,11 @@
  *
  *   in   a lens, the field, the band
  *   out  for a few angles: the irradiance that 1/1000 of the picture reaches or
- *        exceeds, at the azimuth at which it is least: the level that an
- *        exposure goes by
+ *        exceeds, at the azimuth where it is lowest: the level that determines
+ *        the exposure
  *
- * A ghost far below that level may be off by more before anybody sees it.
- * Ghosts count one by one, not summed where they overlap, which is near enough.
+ * A ghost far below that level may have larger errors before they are visible.
+ * Overlapping ghosts are not summed, which is accurate enough.
  */
 #ifndef GLINT_BAKE_FIT_BRIGHTNESS_H
 #define GLINT_BAKE_FIT_BRIGHTNESS_H
@@ -25,7 +25,7 @@ struct glint_brightness {
     double level[GLINT_BRIGHTNESS_ANGLES];
 };
 
-/* Sets the angles; returns how many of them angles up to MAX_DEG need. */
+/* Sets the angles; returns the number needed for lights up to MAX_DEG. */
 int glint_brightness_angles(struct glint_brightness *brightness,
                             double max_deg);
 
@@ -45,20 +45,20 @@ enum glint_status glint_brightness_find(struct glint_brightness *brightness,
 double glint_brightness_at(const struct glint_brightness *brightness,
                            double sine);
 
-/* Most times that a zone's box may be halved: in general, of shaped lenses, and
- * at the axis for fine tolerances. */
+/* Max number of times that a zone's box may be halved: in general, in lenses
+ * with shaped surfaces, and at the axis for fine tolerances. */
 enum { GLINT_PART_DEPTH = 4, GLINT_SHAPED_DEPTH = 6, GLINT_MAX_AXIS_DEPTH = 8 };
 
-/* Root mean squares that are aimed at; single rays may be off by five times as
- * much. Positions in the stop and at barrels draw the outline: EDGE_MM is how
- * far they may shift it on the sensor. From that follow their own tolerances:
+/* Tolerances, root mean square; single rays may be off by five times as much.
+ * Positions in the stop and at barrels draw the outline: EDGE_MM is how far
+ * they may shift it on the sensor. From that follow their own tolerances:
  * STOP_LEAST to STOP, in stop radii, and 0.06 BARREL to BARREL, in radii of the
  * barrel. The lower limits are needed as the outline of a ghost that is larger
  * than the picture may lie outside it, but moves in when the stop closes.
  *
- * The values are for ghosts of the level above. sRGB shows an error
- * in a ghost of v times that level by v^0.42 as much, so edges and energy
- * of fainter ghosts may be off by more, up to EASE times. */
+ * The values are for ghosts of the level above. In sRGB an error in a ghost of
+ * v times that level is v^0.42 times as visible, so edges and energy of fainter
+ * ghosts have larger tolerances, up to EASE times. */
 struct glint_tolerance {
     double sensor_mm, edge_mm, stop, stop_least, barrel, energy;
     double faint_sensor_mm; /* mm; sensor_mm of fainter ghosts is eased up to

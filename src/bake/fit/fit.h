@@ -6,11 +6,12 @@
  *   out  systems whose outputs are sparse polynomials in u, v, s and w
  *
  * A zone that its terms cannot describe well enough, or that the box cannot
- * follow, is halved, until halving no longer helps. If its error would then
- * still show, its band is halved, if the box moves with the colour, and its box
- * is divided into parts. The barrels that cut each get a polynomial of their
- * own, (1 + r^2) / 2, which is as smooth as the positions are; the maximum of
- * all relative radii is not. Limits: rays that are not seen have little weight.
+ * follow, is halved, until halving no longer helps. If its error is then still
+ * visible, its band is halved, if the box moves with the wavelength, and its
+ * box is divided into parts. The barrels that cut each get a polynomial of
+ * their own, (1 + r^2) / 2, which is as smooth as the positions are; the
+ * maximum of all relative radii is not. Limits: invisible rays have little
+ * weight.
  */
 #ifndef GLINT_BAKE_FIT_FIT_H
 #define GLINT_BAKE_FIT_FIT_H

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * What is done with a zone, or a part of one, after an attempt at it.
+ * Decides what to do with a zone, or a part of one, after an attempt to fit it.
  *
  *   in   how wide it is, and the errors of its fit in tolerances
- *   out  whether it is kept, halved, fitted thoroughly, divided by colours or
- *        into parts; up to which error a fit has to move to tell
+ *   out whether to accept, halve, fit thoroughly, or divide it by wavelength or
+ *   into parts; and the error at which a fit may stop early
  *
- * Of shaped lenses faint zones are kept as they are where errors hide: powers
- * of surfaces leave some at every width, and halves of halves gain nothing. */
+ * In lenses with shaped surfaces, faint zones are accepted with larger errors:
+ * aspheric powers leave errors at every width, and halving gains nothing. */
 #ifndef GLINT_BAKE_FIT_NEXT_H
 #define GLINT_BAKE_FIT_NEXT_H
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Turns the doubles of a fit into the integers of a model, with proof.
+ * Converts the doubles of a fit into the integers of a model, and proves that
+ * they cannot overflow.
  *
  *   in   a fitted system
  *   out  integer coefficients and exponents; for each output a proven bound on

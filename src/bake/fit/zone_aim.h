@@ -17,19 +17,18 @@ struct glint_zone_aim {
     double thin[2]; /* factors on sensor_mm along x and y */
     double stop;    /* tolerance of places in the stop, radii */
     double energy;  /* tolerance of the energy, as a fraction */
-    double ease;    /* factor over the tolerances of a bright ghost */
-    double share;   /* brightness over that of a bright ghost */
-    double hidden;  /* error of places at which the ghost begins to show it, in
-                       units of sensor_mm */
+    double ease;    /* tolerance / that of a bright ghost */
+    double share;   /* brightness / that of a bright ghost */
+    double hidden;  /* smallest visible position error, in units of sensor_mm */
 };
 
 struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
                                         const struct glint_zone *zone,
                                         const struct glint_zone_rays *rays);
 
-/* Sets LIGHT[N] to how bright the ghost is at the place of each of RAYS, over
- * AIM->share, 1 at most: where rays are spread wide, errors of places show as
- * little as their light does. */
+/* Sets LIGHT[N] to the brightness of the ghost at each of RAYS / AIM->share, at
+ * most 1: where rays are spread wide, position errors are as invisible as the
+ * light. */
 void glint_zone_aim_light(const struct glint_tolerance *tolerance,
                           const struct glint_zone *zone,
                           const struct glint_zone_aim *aim,

@@ -9,9 +9,9 @@
  *     aim = glint_zone_aim_of(tolerance, &zone, &buffers->rays);
  *     status = glint_zone_fit(&task, &aim, buffers, &system, &errors);
  *
- * Errors count where they show: past the edge of what is seen, and past the
- * field, a ray only has to stay out. Rays that the polynomials let pass though
- * the lens stops them by far get more weight in a second fit. */
+ * Errors count where they are visible: a ray outside the visible part or the
+ * field only has to stay outside. Rays that the polynomials transmit although
+ * the lens clearly blocks them get more weight in a second fit. */
 #ifndef GLINT_BAKE_FIT_ZONE_FIT_H
 #define GLINT_BAKE_FIT_ZONE_FIT_H
 
@@ -26,11 +26,11 @@ struct glint_zone_task {
     bool thorough;   /* true allows a root of the energy, and more terms */
     bool stacks;     /* the ghost is reflected by coatings of several films */
     double hopeless; /* tolerances: the fit of a zone with a larger error is
-                        given up; 0: none is */
-    /* Tolerances: if an output that was fitted has a larger error, the outputs
-     * after it are left out, as the zone will be fitted again however they come
-     * out. In a thorough fit only errors of places and barrels count, of a skew
-     * zone as far as they show. 0: none is left out. */
+                        abandoned; 0: never */
+    /* Tolerances: if an output has a larger error, the remaining outputs are
+     * skipped, as the zone will be fitted again in any case. In a thorough fit
+     * only errors of places and barrels count, of a skew zone as far as they
+     * show. 0: none is left out. */
     double settled;
 };
 

@@ -68,7 +68,7 @@ static inline bool glint_zone_rays_alike(const struct glint_zone_rays *r, int i,
 /* Returns whether none of the rays is seen. */
 bool glint_zone_rays_dark(const struct glint_zone_rays *rays);
 
-/* Returns the largest ratio of most to least energy of seen rays at one angle
+/* Returns the largest ratio of max to min energy of visible rays at one angle
  * and wavelength, which films do not affect; above GLINT_STEEP it is large. */
 double glint_zone_rays_spread(const struct glint_zone_rays *rays);
 #define GLINT_STEEP 8
@@ -91,8 +91,8 @@ void glint_zone_trace(const struct glint_zone *zone,
                       struct glint_zone_rays *rays,
                       struct glint_zone_rays *energies);
 
-/* Returns whether errors of rays of ZONE weigh as much as their light, which
- * neighbours tell. */
+/* Returns whether errors of rays of ZONE are weighted by their local
+ * brightness, which needs neighbouring rays. */
 static inline bool glint_zone_by_light(const struct glint_zone *zone,
                                        const struct glint_visible *visible)
 {

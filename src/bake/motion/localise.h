@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Where a body is that sees foods stand still around it, frame by frame.
+ * Reconstructs the pose of a body, frame by frame, from the positions of static
+ * foods in its axes.
  *
  *     glint_localiser_init(&localiser, fit, average, GLINT_DOUBLE);
  *     glint_localise(&localiser, n, seen, is_new, &located);        each frame
  *
  * Frame 0 is at the origin and not turned. A pose is found from the foods whose
  * places are known; then new foods get theirs by it. With an average each place
- * is the mean, over all frames of a food's life so far, of where the others say
- * that it is: what one frame is off by is not handed on from food to food. */
+ * is the mean, over all frames of a food's life so far, of its place as
+ * computed from the others: the error of a single frame is not passed on from
+ * food to food. */
 #ifndef GLINT_BAKE_MOTION_LOCALISE_H
 #define GLINT_BAKE_MOTION_LOCALISE_H
 

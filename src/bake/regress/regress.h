@@ -3,7 +3,7 @@
  * Sparse polynomial regression in up to five variables.
  *
  *   in   samples of the variables (each within -1 .. 1), a value and a weight
- *   out  the few monomials that describe the value well enough
+ *   out few monomials that fit the value within a tolerance
  *
  * Method: greedy growth. Candidates are the neighbours, one power up in one
  * variable, of the terms chosen so far [Zheng17]; the one that lowers the

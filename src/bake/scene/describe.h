@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What the readers of a scene's lines share. Each reads one kind of line from
- * behind its first word, and returns false if it has written an error. */
+ * Shared by the readers of a scene's lines. Each reads one type of line after
+ * its keyword, and returns false if it has written an error. */
 #ifndef GLINT_BAKE_SCENE_DESCRIBE_H
 #define GLINT_BAKE_SCENE_DESCRIBE_H
 
@@ -15,7 +15,7 @@ struct glint_describer {
     struct glint_error *error;
     enum glint_status status; /* of a failure that is not the text's */
     int room;                 /* triangles that there is memory for */
-    /* The camera's line, which is worked out when the hand is known. */
+    /* The camera's line, which is evaluated when the handedness is known. */
     struct glint_text_place camera;
     struct glint_text_place background; /* of its word */
     double toward[3], up[3], orbit[3], distance, yaw_deg, pitch_deg;
@@ -42,7 +42,7 @@ bool glint_describe_camera(struct glint_describer *d);
 bool glint_describe_background(struct glint_describer *d);
 bool glint_describe_shadow(struct glint_describer *d);
 bool glint_describe_flare(struct glint_describer *d);
-/* Works out where the camera stands and looks, when all lines are read. */
+/* Computes position and direction of the camera, when all lines are read. */
 bool glint_describe_axes(struct glint_describer *d);
 
 /* describe_looks.c: light, texture, material. */

@@ -9,9 +9,9 @@
 #include "glint/scene/description.h"
 #include "glint/scene/model.h"
 
-/* From the description's axes and doubles to those of a baked scene:
- * left-handed steps and units in _q30. Of right-handed scenes z changes its
- * sign. */
+/* Conversion from the description's axes and doubles to those of a baked scene:
+ * left-handed steps and units in _q30. Right-handed scenes change the sign of
+ * z. */
 struct glint_steps {
     int unit_log2;
     double scale; /* 2^unit_log2 */

@@ -6,10 +6,10 @@
  *   in   a piece, the polynomials that were fitted to it
  *   out  in which variable to halve it, and its halves
  *
- * Where rays fold, polynomials in u and v have no end, and halves of the box
- * need far fewer terms; elsewhere boxes move, and halves of the directions do.
- * Powers tell: a variable in whose high powers most of a polynomial lies is the
- * one in which its error falls fastest. */
+ * Where rays fold, polynomials in u and v need many terms, and those of half a
+ * box far fewer; elsewhere boxes move, and halving directions helps. High
+ * powers decide: halving reduces the error most in the variable whose high
+ * powers hold most of the polynomial. */
 #ifndef GLINT_BAKE_SKEW_PIECES_H
 #define GLINT_BAKE_SKEW_PIECES_H
 
@@ -34,9 +34,9 @@ void glint_piece_halve(const struct glint_skew_piece *p, int variable,
 void glint_piece_crop(struct glint_skew_piece *p,
                       const struct glint_visible *visible);
 
-/* Sets SHARE to how much of the high powers of SYSTEM's polynomials, of those
- * that missed their tolerance if any did, halving each variable would take
- * away. */
+/* Sets SHARE to the fraction of the high powers of SYSTEM's polynomials (those
+ * that missed their tolerance, if any did) that halving each variable would
+ * remove. */
 void glint_piece_shares(const struct glint_fitted_system *system,
                         double share[GLINT_VARIABLES]);
 

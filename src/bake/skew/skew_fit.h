@@ -14,14 +14,14 @@
 
 #include "bake/fit/fit.h"
 
-/* Sets how much work a bake will be, in fits: HEAD before any ghost, TYPICAL a
- * ghost, by the area of directions and the number of surfaces. Limits: what
- * folds takes ten times as long as what does not. */
+/* Estimates the work of a bake, in fits: HEAD before any ghost, TYPICAL per
+ * ghost, by the area of directions and the number of surfaces. Limits: ghosts
+ * that fold cost ten times as much as others. */
 void glint_skew_work(const struct glint_prescription *lens, int n_ghosts,
                      double max_deg, double tolerance, double *head,
                      double *typical);
 
-/* Does for a lens that is not round what glint_fit_ghost() does for others. */
+/* glint_fit_ghost() for a lens that is not round. */
 enum glint_status glint_skew_fit(const struct glint_visible *visible,
                                  double max_deg,
                                  const struct glint_tolerance *tolerance,

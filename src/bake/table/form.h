@@ -9,9 +9,10 @@
  * A ray meets a form where z less the sag changes sign. Steps that grow walk
  * from the vertex plane towards it until they have passed it; Newton's method
  * between the last two, with halving where it would leave them, finds it to the
- * last bits. Of several places that is the nearest but for two within one step,
- * as where a ray grazes a ripple. Limits: a cylinder or toric is missed by rays
- * that cross its vertex plane farther from the axis than its circles reach. */
+ * last bits. Of several intersections it finds the nearest, except for two
+ * within one step, as where a ray grazes a ripple. Limits: a cylinder or toric
+ * is missed by rays that cross its vertex plane farther from the axis than its
+ * circles reach. */
 #ifndef GLINT_BAKE_TABLE_FORM_H
 #define GLINT_BAKE_TABLE_FORM_H
 

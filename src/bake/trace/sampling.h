@@ -5,9 +5,9 @@
  *   in   a path, a light in the x-z plane, the part of the pupil that counts
  *   out  the barrels that cut, how much the light bends, whether it folds
  *
- * Most surfaces are wider than the light that the stop lets through: of dozens,
- * none, one or two really cut. A barrel cuts if it is met first between a ray
- * that passes and one that does not, with a margin for what lies between rays.
+ * Most surfaces are wider than the beam through the stop: of dozens, none, one
+ * or two vignette it. A barrel cuts if it is the first obstacle between a ray
+ * that passes and one that does not, with a margin for the gaps between rays.
  */
 #ifndef GLINT_BAKE_TRACE_SAMPLING_H
 #define GLINT_BAKE_TRACE_SAMPLING_H

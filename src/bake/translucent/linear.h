@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The little linear algebra that fits need, in double precision: the leading
- * terms of a singular value decomposition of a tall matrix, all of a small one,
- * small symmetric systems.
+ * Linear algebra of the fits, in double precision: the leading terms of a
+ * singular value decomposition of a tall matrix, all of a small one, small
+ * symmetric systems.
  *
  * Method: subspace iteration on the Gram matrix of the columns finds the space;
  * the rows projected on it are decomposed by one-sided Jacobi rotations, which
@@ -43,10 +43,11 @@ void glint_jacobi(double *a, int rows, int n, double *turn, int m);
  * determine becomes 0. Changes A. */
 void glint_solve(double *a, int n, double *b);
 
-/* A kernel as a sum of products of a column and a row, so that what both make
- * of light differs least. Light on a surface changes slowly, so that errors of
- * entries beside each other add up: rows and columns are weighted by how light
- * is correlated, and the products are the largest singular values of that. */
+/* A kernel as a sum of products of a column and a row that minimises the
+ * difference of the resulting light. Light on a surface changes slowly, so that
+ * errors of entries beside each other add up: rows and columns are weighted by
+ * how light is correlated, and the products are the largest singular values of
+ * that. */
 struct glint_separated {
     double *column, *row; /* [rank][n]; product r is column[r][v] row[r][u] */
     double all, lost;     /* squares of all weighted entries, and of what the

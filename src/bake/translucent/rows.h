@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What all that works on rows shares: places of entries, fractions of work. */
+ * Shared by all that work on rows: places of entries, progress. */
 #ifndef GLINT_BAKE_TRANSLUCENT_ROWS_H
 #define GLINT_BAKE_TRANSLUCENT_ROWS_H
 

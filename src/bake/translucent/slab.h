@@ -19,7 +19,7 @@
 
 enum { GLINT_SLAB_MODES = 8 };
 
-/* One channel of a translucent medium that is the same all over. */
+/* One channel of a homogeneous translucent medium. */
 struct glint_slab {
     double texel, slab;     /* mm */
     double scatter, absorb; /* 1/mm */
@@ -29,8 +29,8 @@ struct glint_slab {
     double albedo;          /* of one scattering: power of the source */
 };
 
-/* Sets SLAB to channel C of a mix of the materials of Translucent medium,
- * Fraction of material 0; z_b is that of its own D. */
+/* Sets SLAB to channel C of a mix of the materials of STONE, with the fraction
+ * SHARE of material 0; z_b is that of its own D. */
 void glint_slab_of(const struct glint_stone *stone, double share, int c,
                    struct glint_slab *slab);
 

@@ -6,11 +6,11 @@
  *   in   a ghost of a lens, the band of wavelengths, the field that counts
  *   out  ranges of angles, and boxes on the pupil at many angles of a range
  *
- * A ghost may appear, vanish and come back. Limits: a range can be missed that
- * is narrower than the step of the scan, or has no light at the middle of the
- * band. A visible part can be missed that is smaller than a thirtieth of its
- * own box (unless the field is so small that the search closes in on it), or
- * that is there for less than four angles and apart from the one that is
+ * A ghost may appear, vanish and appear again. Limits: a range can be missed
+ * that is narrower than the step of the scan, or has no light at the middle of
+ * the band. A visible part can be missed that is smaller than a thirtieth of
+ * its own box (unless the field is so small that the search closes in on it),
+ * or that is there for less than four angles and apart from the one that is
  * followed. Beside other positions of a zoom, angles at which a ghost gets
  * through at other wavelengths than the middle and the ends of the band alone
  * are missed. */
@@ -32,8 +32,8 @@ enum {
 /* Numbers of the wavelengths in the middle and at the ends of the band. */
 extern const int glint_visible_colour[GLINT_VISIBLE_COLOURS];
 
-/* F-number of stops that all fits were tuned for; those of wider ones sample
- * and weigh rays in other ways, too. */
+/* The f-number that fits were tuned for; lenses that open wider use additional
+ * sampling and weights. */
 #define GLINT_WIDE 10
 
 /* Degrees: of lights further off the axis, of fisheyes, rays of any stop come
@@ -46,22 +46,24 @@ struct glint_visible {
     int ghost;
     double field_mm; /* radius about the sensor's centre beyond which light does
                         not count */
-    bool
-        wide; /* whether the lens opens wider than GLINT_WIDE: its rays come
-                 near singularities, and the model serves much narrower stops */
+    bool wide; /* whether the lens opens wider than GLINT_WIDE: its rays come
+                  near singularities, and the model is used with much narrower
+                  stops */
     bool far; /* whether lights beyond GLINT_FAR are requested, of a round lens;
                  it is wide then */
-    /* Whether the lens is round and opens wider than GLINT_WIDE and has
-     * surfaces that are not spheres, whose powers grow steeply: what cannot be
-     * fitted is hidden rather than halved, as that has no end. */
+    /* Whether the lens is round, opens wider than GLINT_WIDE and has surfaces
+     * that are not spheres, whose powers grow steeply: zones that cannot be
+     * fitted are accepted where errors are invisible instead of being halved
+     * without end. */
     bool shaped;
     double wave_lo, wave_hi;                     /* 1 / wavelength^2, um^-2 */
     struct glint_path path[GLINT_VISIBLE_WAVES]; /* paths at wavelengths from
                                                     wave_lo to wave_hi */
     struct glint_path position_path[GLINT_VISIBLE_WAVES]; /* those paths, for
                                                              positions only */
-    /* The ghost of the same lens at nearby positions of a zoom: what is seen or
-     * cut there counts as if it were so here, that models can be mixed. */
+    /* The ghost of the same lens at nearby positions of a zoom: light that is
+     * visible or cut there counts here too, so that models can be interpolated.
+     * */
     int n_beside;
     struct glint_visible *beside; /* [n_beside], with none of their own */
 };
@@ -77,7 +79,7 @@ void glint_visible_init(struct glint_visible *visible,
                         const struct glint_setup *setup, int ghost,
                         double field_mm, const double band_nm[2]);
 
-/* Tells VISIBLE that lights of up to MAX_DEG are requested. */
+/* Sets the max angle of lights, MAX_DEG. */
 void glint_visible_reach(struct glint_visible *visible, double max_deg);
 
 /* Sets VISIBLE for the part W0 .. W1, -1 .. 1, of the band of WHOLE; it has

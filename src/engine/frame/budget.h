@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Keeps frames to a time: chooses the best quality of the table whose frame, as
- * its plan predicts, will not take longer.
+ * Holds a frame time: chooses the best quality of the table whose frame is
+ * predicted, from its plan, to fit.
  *
  *     glint_budget_init(&frame.budget, 5.0);
  *     glint_frame_calibrate(&frame);              once, draws some frames
@@ -17,19 +17,20 @@
 enum { GLINT_BUDGET_STEPS = 64 }; /* number of steps of quality */
 
 struct glint_budget {
-    double ms; /* milliseconds that a frame may take; 0: there is no budget */
+    double ms;               /* milliseconds per frame; 0: no budget */
     double calibrated_minsn; /* millions of instructions of the frame by which
                                 speed was measured; 0: it was not */
-    double ms_per_minsn;     /* milliseconds that a million instructions take on
-                                this machine with this lens */
+    double ms_per_minsn;     /* milliseconds per million instructions on this
+                                machine with this lens */
     double octaves[GLINT_QUALITY_LEVELS]; /* log2 of measured over predicted
                                              time, as learned, by quality */
     struct glint_dials asked;             /* of this frame */
     int step;     /* quality of the last frame, 0 .. GLINT_BUDGET_STEPS */
-    int cut;      /* how much of its parts was turned down, 0: nothing */
+    int cut;      /* steps by which other dials were reduced, 0: none */
     int n_tries;  /* number of plans tried for this frame */
     int n_frames; /* number of frames begun, at most 2 */
-    int n_trials; /* number of frames drawn though predicted to take too long */
+    int n_trials; /* number of frames drawn although predicted to exceed the
+                     budget */
     double predicted_ms; /* milliseconds predicted by the last plan of the last
                             frame */
 };
@@ -40,8 +41,8 @@ void glint_budget_init(struct glint_budget *budget, double ms);
 void glint_budget_begin(struct glint_budget *budget,
                         const struct glint_dials *asked);
 
-/* Turns DIALS, with which PLAN was made, if that misses the budget or leaves
- * much of it; returns whether it did, so that a new plan is needed. */
+/* Adjusts DIALS, with which PLAN was made, if the plan misses the budget or
+ * leaves much of it; returns whether it did, so that a new plan is needed. */
 bool glint_budget_choose(struct glint_budget *budget,
                          const struct glint_cost_plan *plan,
                          struct glint_dials *dials);

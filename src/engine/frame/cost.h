@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Predicts the cost of a frame from its plan: counts that the plan knows or
- * finds cheaply, times the cost of each. */
+ * Predicts the cost of a frame from its plan: counts that the plan has or
+ * computes cheaply, times the cost of each. */
 #ifndef GLINT_ENGINE_FRAME_COST_H
 #define GLINT_ENGINE_FRAME_COST_H
 
@@ -19,8 +19,8 @@ struct glint_cost {
 struct glint_cost_plan {
     const struct glint_flare *flare;
     int width, height;  /* size of the picture */
-    double n_looked_at; /* rays that the plan looked at */
-    int every; /* bundles of which one stands for all; 0, 1: each for itself */
+    double n_looked_at; /* rays that the plan probed */
+    int every;     /* only one of so many bundles is evaluated; 0, 1: all are */
     bool can_half; /* true: the picture is in codes */
     bool can_dim;  /* true: three waves, so that ghosts may be dim */
     double code;   /* light of a code near black; 0: linear */

@@ -76,12 +76,12 @@ struct glint_frame_picture {
     bool is_still;  /* true: glint_frame_set_still() raised the points */
     bool uniform;   /* true: all ghosts get the same grid */
     double code_light; /* light of one of its codes near black; 0: linear */
-    int point_room; /* most lights that points of wide lamps may become, if that
+    int point_room; /* max number of lights from points of wide lamps, if that
                        is more than max_lights and there are no more lamps than
                        max_lights */
 };
 
-/* What a frame may take. */
+/* Limits of a frame's memory and work. */
 struct glint_frame_limits {
     bool reserved;       /* true: memory must not grow */
     bool is_full;        /* true: the block has reached its limit */
@@ -93,9 +93,9 @@ struct glint_frame_limits {
                             reserved; 0: there is none */
     double most_minsn;   /* limit of a plan for one light; 0: there is none */
     double share;        /* factor on the limits of one light for all lights */
-    double tight; /* what grids of the last frame would have taken that were
-                     made coarser so that it does not, in bytes, or reserved in
-                     primitives; 0: none */
+    double tight; /* memory that the last frame's grids would have needed before
+                     they were made coarser, in bytes, or if reserved in
+                     primitives; 0: they were not */
     size_t tight_bytes; /* bytes that would have drawn these as they were */
 };
 
@@ -106,8 +106,7 @@ struct glint_frame_lights {
     struct glint_light *light; /* [capacity] */
     int n, capacity;
     int n_apart;  /* lights that can be distinguished */
-    int n_beyond; /* lights left out before that, as they are beyond the model
-                   */
+    int n_beyond; /* lights left out before that, outside the model's range */
     int n_more;   /* lights that are further points of a lamp */
     /* Factors on the lights; NULL: none. */
     const int32_t (*gain_q14)[3];
@@ -125,8 +124,8 @@ struct glint_frame_plan {
     long long n_looked;
 };
 
-/* How bright ghosts are, for an opening, pixels per mm, and three waves; no
- * memory is taken before the dial requests it. */
+/* Brightness of ghosts, for an opening, pixels per mm, and three waves;
+ * allocated when the dial first requests it. */
 struct glint_frame_dim {
     struct glint_dim table;
     double opening, size;
@@ -152,22 +151,21 @@ struct glint_frame {
     struct glint_view view;
     struct glint_flare_config cfg; /* sizes, tiles, stop, reuse; the frame sets
                                       the capacities itself */
-    struct glint_dials dials;      /* may be turned between frames */
-    struct glint_dials asked;      /* the dials before a budget turned them */
-    double apart_px; /* pixels: lights whose images are nearer are merged */
-    int only_ghost;  /* index of the only ghost drawn; -1: all are */
+    struct glint_dials dials;      /* may be changed between frames */
+    struct glint_dials asked;      /* the dials before a budget changed them */
+    double apart_px; /* merge distance of lights' images, pixels */
+    int only_ghost;  /* index of the only ghost drawn; -1: all ghosts */
     /* As in struct glint_flare_frame; the caller's. The exposure is chosen as
      * if there were none. */
     const struct glint_tint *tints;
-    /* What is known of the lamps that are drawn; NULL: nothing but what they
-     * are themselves. */
+    /* Further knowledge of the lamps that are drawn; NULL: none. */
     const struct glint_engine_lamp *known;
     struct glint_shade shade; /* the stop's, without its finest tables */
     struct glint_frame_picture picture;
     struct glint_frame_star star;
     struct glint_frame_veil veil;
     struct glint_still still;   /* only for models that are reused */
-    struct glint_budget budget; /* turns the dials; only for models */
+    struct glint_budget budget; /* adjusts the dials; only for models */
     struct glint_frame_limits limits;
     struct glint_frame_lights lights;
     struct glint_frame_plan plan;
@@ -179,26 +177,24 @@ void glint_frame_init(struct glint_frame *frame,
                       const struct glint_setup *setup, struct glint_view view,
                       struct glint_workers *workers);
 
-/* Makes a frame with the options that were requested in LIKE, without its
- * budget. */
+/* Makes a frame with the requested options of LIKE, without its budget. */
 void glint_frame_like(struct glint_frame *frame, const struct glint_frame *like,
                       struct glint_view view);
 
-/* Takes BYTES for all frames to come, of up to N_LAMPS lamps each, of which
- * N_DRAWN are drawn and more merge: nothing is allocated while drawing. What
- * does not fit is drawn by coarser grids, as where memory grows; what no grid
- * is coarse enough for is left out and counted. MEM: the caller's own BYTES,
- * aligned to 64, or NULL. GLINT_E_MEMORY: memory is short, or BYTES are too few
- * for one light. */
+/* Reserves BYTES for all following frames, of up to N_LAMPS lamps each, merged
+ * to N_DRAWN: nothing is allocated while drawing. If a frame does not fit, its
+ * grids become coarser; what does not fit even then is left out and counted.
+ * MEM: the caller's own BYTES, aligned to 64, or NULL. GLINT_E_MEMORY: memory
+ * is short, or BYTES are too few for one light. */
 enum glint_status glint_frame_reserve(struct glint_frame *frame, void *mem,
                                       size_t bytes, int n_lamps, int n_drawn);
 
-/* Returns the fewest BYTES that glint_frame_reserve() takes for as many lights
- * as it was last requested; nothing may be drawn afterwards. */
+/* Returns the min BYTES that glint_frame_reserve() accepts for the number of
+ * lights of its last call; nothing may be drawn afterwards. */
 size_t glint_frame_least_bytes(struct glint_frame *frame);
 
-/* Draws a lamp a few times to measure the time of an instruction here, for the
- * budget. GLINT_E_MEMORY. */
+/* Draws a lamp a few times to measure the time per instruction on this machine,
+ * for the budget. GLINT_E_MEMORY. */
 enum glint_status glint_frame_calibrate(struct glint_frame *frame);
 
 /* Adds the flare of LAMPS, times SCALE, to IMAGE. GLINT_E_MEMORY. */
@@ -225,14 +221,14 @@ double glint_frame_end_deg(const struct glint_frame *frame);
 void glint_frame_set_still(struct glint_frame *frame, bool is_still,
                            bool more_points, bool more_lights);
 
-/* Applies changes of cfg since memory was taken; takes no more memory. */
+/* Applies changes of cfg since memory was allocated; allocates nothing. */
 void glint_frame_retune(struct glint_frame *frame);
 
 /* Draws the flare of LAMPS alone, times GAIN, into RGB, [height][width][3],
- * linear light. Inside, the scale is a power of two that leaves faint light as
- * many steps as the brightest pixel allows. If that pixel turns out two octaves
- * fainter than it may be, or is clamped, the frame is drawn again with another
- * scale, up to four times in all. GLINT_E_MEMORY. */
+ * linear light. Internally, light is scaled by a power of two that gives faint
+ * light as many steps as the brightest pixel allows. If that pixel is two
+ * octaves fainter than the limit, or clamped, the frame is drawn again with
+ * another scale, at most four times in total. GLINT_E_MEMORY. */
 enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
                                          const struct glint_lamp *lamps,
                                          int n_lamps, double gain, float *rgb,

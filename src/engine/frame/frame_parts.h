@@ -31,7 +31,7 @@ static inline bool is_in_codes(const struct glint_frame *f,
     return image->format != GLINT_LINEAR_Q20 || f->picture.for_codes;
 }
 
-/* frame_units.c: returns the pixels that a tangent of 1 takes on the axis. */
+/* frame_units.c: returns pixels per unit tangent on the axis. */
 double glint_frame_pixels_per_tangent(const struct glint_frame *frame);
 
 /* Returns whether ghosts choose among the setup's sets of wavelengths. */
@@ -43,10 +43,10 @@ enum glint_status glint_frame_hold_lights(struct glint_frame *frame, int n);
 /* Takes memory for the table of dim ghosts. GLINT_E_MEMORY. */
 enum glint_status glint_frame_hold_dim(struct glint_frame *frame);
 
-/* Makes room for what is kept of each ghost. GLINT_E_MEMORY. */
+/* Allocates the data of each ghost. GLINT_E_MEMORY. */
 enum glint_status glint_frame_hold_ghosts(struct glint_frame *frame);
 
-/* Empties the table of dim ghosts if what it holds for has changed: the
+/* Clears the table of dim ghosts if what it depends on has changed: the
  * opening, the waves that are set, the size of a pixel. */
 void glint_frame_check_dim(struct glint_frame *f);
 
@@ -54,17 +54,17 @@ void glint_frame_check_dim(struct glint_frame *f);
  * restarts. */
 enum glint_status glint_frame_regrow(struct glint_frame *frame);
 
-/* Gives the stop the tables of dust that the dials request; returns whether
- * these are others than before. */
+/* Selects the tables of dust that the dials request for the stop; returns
+ * whether they changed. */
 bool glint_frame_shade(struct glint_frame *frame);
 
 /* Makes room for all bundles that the frame's lights may have, unless memory is
  * reserved. GLINT_E_MEMORY. */
 enum glint_status glint_frame_make_room(struct glint_frame *frame);
 
-/* Has lights that stood before, within NEAR_Q30, stand for the frame's, with
- * factors, if the dials have a tolerance for them, frames are reused, and
- * memory that is reserved has room. GLINT_E_MEMORY. */
+/* Represents the frame's lights by the static ones within NEAR_Q30, with
+ * factors, if the dials have a static tolerance, frames are reused, and
+ * reserved memory has capacity. GLINT_E_MEMORY. */
 enum glint_status glint_frame_still(struct glint_frame *frame,
                                     int32_t near_q30);
 
@@ -72,7 +72,7 @@ enum glint_status glint_frame_still(struct glint_frame *frame,
 int glint_frame_count_ghosts(struct glint_frame *frame, int n);
 
 /* Returns whether everything fitted; if not, raises the capacities, or makes
- * grids coarser that would take more memory than a frame may. */
+ * grids coarser if they would exceed the frame's memory. */
 bool glint_frame_is_served(struct glint_frame *frame,
                            const struct glint_flare_stats *stats);
 
@@ -103,14 +103,14 @@ bool glint_frame_is_ghost(const struct glint_setup *setup, int ghost,
 /* Returns the number of the ghost that GHOST of SETUP is, or is a part of. */
 int glint_frame_number(const struct glint_setup *setup, int ghost);
 
-/* Takes lights away until looking at all bundles of all lights cannot take more
- * than half of the frame's limit. Returns whether it did, so that lights have
- * to be merged again. */
+/* Removes lights until probing all bundles of all lights cannot cost more than
+ * half of the frame's limit. Returns whether it did, so that lights have to be
+ * merged again. */
 bool glint_frame_hold_looking(struct glint_frame *f);
 
-/* Turns the dials down if the plan would take more than is left of the frame's
- * limit: grids first, then wavelengths, then lights. Returns whether it did, so
- * that the frame has to be planned again, at most a dozen times. */
+/* Reduces the dials if the plan would exceed the rest of the frame's limit:
+ * grids first, then wavelengths, then lights. Returns whether it did, so that
+ * the frame has to be planned again, at most a dozen times. */
 bool glint_frame_hold_work(struct glint_frame *f);
 
 #endif

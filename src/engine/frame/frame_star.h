@@ -27,7 +27,7 @@ struct glint_frame_star {
     /* Private. */
     struct glint_star_optics optics; /* optics for which the tables were made */
     struct glint_star_tables *tables;
-    /* What lies in the stop, if anything, and the mark of that. */
+    /* Dirt in the stop, if any, and its version. */
     struct glint_smear smear;
     uint64_t smear_mark;
     struct glint_star *star; /* NULL: there is none yet */
@@ -37,7 +37,7 @@ struct glint_frame_star {
     void *mem;
     size_t bytes;             /* of MEM */
     int max_lights, n_lights; /* room for lights, and those of this frame */
-    double pixels;            /* pixels that its parts give light to */
+    double pixels;            /* pixels that its parts light */
     bool is_set;              /* true: the star is set for this frame */
 };
 
@@ -49,8 +49,8 @@ enum glint_status glint_frame_star_set(struct glint_frame *frame,
                                        double scale,
                                        const struct glint_image *image);
 
-/* Takes memory for the stars of N lamps and makes their tables, so that frames
- * take none. Does nothing if the fraction is 0. GLINT_E_MEMORY. */
+/* Allocates the stars of N lamps and makes their tables, so that frames
+ * allocate nothing. Does nothing if the fraction is 0. GLINT_E_MEMORY. */
 enum glint_status glint_frame_star_hold(struct glint_frame *frame, int n);
 
 /* Returns the bytes that the star of FRAME holds, for its tables and its lamps,

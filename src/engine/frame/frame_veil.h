@@ -18,8 +18,8 @@ struct glint_frame_veil {
      * spread over the whole picture, and share that dirt on the front element
      * spreads by 1 to 10 degrees. 0: none. */
     double glare, haze;
-    /* What lies on the front element, which spreads light as haze is, but in
-     * discs; the caller's. NULL: nothing. */
+    /* Dirt on the front element, which scatters light like haze, but in discs;
+     * the caller's. NULL: none. */
     const struct glint_front_dirt *front;
     /* Factor on the veil where it is drawn alone, rather than that on the
      * flare; 0: the same. */
@@ -34,21 +34,21 @@ struct glint_frame_veil {
     struct glint_front_table *table;
     const struct glint_front_dirt *table_of;
     struct glint_front_optics table_for;
-    bool has_look; /* true: the picture has been looked at for this frame */
+    bool has_look; /* true: the picture has been read for this frame */
     bool is_set;   /* true: the veil is set for this frame */
 };
 
 /* Returns whether FRAME has a veil. */
 bool glint_frame_has_veil(const struct glint_frame *frame);
 
-/* Takes memory for the veil, and makes the table of what lies on the front
- * element unless it is there for the frame's stop. Does nothing if there is no
- * veil. GLINT_E_MEMORY. */
+/* Allocates the veil, and makes the table of dirt on the front element unless
+ * there is one for the frame's stop. Does nothing if there is no veil.
+ * GLINT_E_MEMORY. */
 enum glint_status glint_frame_veil_hold(struct glint_frame *frame);
 
-/* Takes the light of IMAGE, whose white is WHITE, for the next frame that is
- * drawn, if that is drawn onto another picture; else drawing does so. Does
- * nothing without a veil. GLINT_E_MEMORY. */
+/* Reads the light of IMAGE, whose white is WHITE, for the next frame, if that
+ * is drawn onto another picture; otherwise drawing reads it. Does nothing
+ * without a veil. GLINT_E_MEMORY. */
 enum glint_status glint_frame_veil_look(struct glint_frame *frame,
                                         const struct glint_image *image,
                                         double white);
@@ -72,7 +72,7 @@ enum glint_status glint_frame_veil_alone(struct glint_frame *frame,
 
 void glint_frame_veil_finish(struct glint_frame_veil *veil);
 
-/* Returns what the veil of FRAME costs, as a number of pixels under it. */
+/* Returns the cost of the veil of FRAME, as an equivalent number of pixels. */
 double glint_frame_veil_pixels(const struct glint_frame *frame);
 
 #endif

@@ -4,14 +4,14 @@
  *
  * A grain throws as much light about its shadow as it takes from the beam
  * [vandeHulst57, 8.2: an efficiency of 2, half of it diffraction], whatever it
- * is made of, and so spreads a lamp's light over some degrees: haze. Far out of
- * focus as it is, it is seen as a disc of the shape of the stop. A pixel whose
- * light comes at the tangents U looks through the part
+ * is made of, and so spreads a lamp's light over some degrees: haze. Since it
+ * is far out of focus, it appears as a disc with the shape of the stop. A pixel
+ * whose light comes at the tangents U looks through the part
  *
  *     X = e - z U,   e in the entrance pupil, z its distance from the front
  *
  * of the front, of which the fraction C is covered. So it gets the haze of a
- * front that is covered by C all over: the light of the lamps, spread by the
+ * front that is uniformly covered by C: the light of the lamps, spread by the
  * grains' lobe p, times
  *
  *     C = mean over the stop of covered(X)
@@ -19,8 +19,8 @@
  * Light of one angle leaves towards one pixel, so that p is taken at the pixel;
  * C is a table of the picture that stays where it is as lamps move. It is sharp
  * where the stop is small and the lens wide, and even at a wide stop of a long
- * lens, as on photographs. What the covered share takes from the picture is put
- * down to the exposure, and streaks of single scratches are left out. */
+ * lens, as on photographs. The light that dirt blocks counts as a change of
+ * exposure, and streaks of single scratches are left out. */
 #ifndef GLINT_ENGINE_FRAME_FRONT_H
 #define GLINT_ENGINE_FRAME_FRONT_H
 

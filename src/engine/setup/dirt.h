@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What lies in a stop, inside its outline: in doubles, for exact pictures,
+ * Dust and masks inside the outline of a stop: in doubles, for exact pictures,
  * and as a table, for flares. */
 #ifndef GLINT_ENGINE_SETUP_DIRT_H
 #define GLINT_ENGINE_SETUP_DIRT_H

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What lies in a stop by a seed: specks of dust, scratches and smudges. */
+ * Dirt in a stop, generated from a seed: specks of dust, scratches and smudges.
+ * */
 #ifndef GLINT_ENGINE_SETUP_DUST_H
 #define GLINT_ENGINE_SETUP_DUST_H
 

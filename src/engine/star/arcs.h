@@ -6,10 +6,10 @@
  *
  *     F(q) = 1 / (2 pi |q|^2) integral of (q n) exp(-2 pi i q s) ds
  *
- * An arc throws its light where its normal points: a fan, as wide as the arc
- * turns, of light that falls with r^-3, rather than the line of a straight
- * edge. Far out an arc is a Fresnel integral: with w the sine of half the angle
- * to the direction of q the phase is 4 pi |q| w^2 / curvature, and what varies
+ * An arc diffracts light along its normals: into a fan, as wide as the angle of
+ * the arc, whose light falls with r^-3, instead of the line of a straight edge.
+ * Far out an arc is a Fresnel integral: with w the sine of half the angle to
+ * the direction of q the phase is 4 pi |q| w^2 / curvature, and what varies
  * slowly beside it is taken at w = 0 and, for the rest, at both ends
  * [Bleistein66]. */
 #ifndef GLINT_ENGINE_STAR_ARCS_H

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * What dust, scratches, smudges and masks do to the pattern of a stop, in
- * doubles.
+ * Change of a stop's diffraction pattern by dust, scratches, smudges and masks,
+ * in doubles.
  *
  * With T the light that lies through the stop, the amplitude is its root g, and
  * that of the clear stop 1, o. The pattern is |G|^2 / integral of T. Most of it
- * is that of the clear stop, |O|^2 / area, times what is left of the outline's
- * own light: the fraction C. The rest is smooth, over angles of wavelength over
- * speck, and may be negative near the light:
+ * is that of the clear stop, |O|^2 / area, times the fraction C of the
+ * outline's own light that remains. The rest is smooth, over angles of
+ * wavelength over speck, and may be negative near the light:
  *
  *     D = |G|^2 / integral of T - C |O|^2 / area,  integral of D = 1 - C
  *

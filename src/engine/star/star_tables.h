@@ -13,11 +13,11 @@ struct glint_star_optics {
     double rotation_deg, f_number;
     double round, soft; /* as in struct glint_iris */
     double pixel_um;    /* side of a pixel on the sensor, um */
-    /* What lies in the stop; NULL: nothing. */
+    /* Dirt in the stop; NULL: none. */
     const struct glint_smear *smear;
 };
 
-/* Returns the pixels that a wavelength of 550 nm times the f-number takes. */
+/* Returns 550 nm times the f-number, in pixels. */
 static inline double glint_star_airy_px(const struct glint_star_optics *o)
 {
     return 0.55 * o->f_number / o->pixel_um;

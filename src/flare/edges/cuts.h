@@ -3,7 +3,7 @@
  * Finds where the stop's sides and the barrels cut the edges of a grid.
  *
  *   in   the rays at the ends of an edge, or at the corners of a cell
- *   out  the part of the edge that is seen; where two cuts cross in a cell
+ *   out the visible part of the edge; where two cuts cross in a cell
  *
  * Every cut is linear along an edge, between its two ends; in a cell it is
  * taken for the plane that fits its values at the corners best. A part follows

@@ -5,7 +5,7 @@
  * An edge adds its light to all that lies to its right: to a pixel in
  * proportion to the area of the part it covers. So a sum is changed only where
  * an edge runs, by the difference of that area from one pixel to the next, and
- * one running sum along each row turns changes into light: the inside a
+ * one running sum along each row turns changes into light: the interior of a
  * ghost costs nothing.
  *
  * The edges of a closed outline cancel to the last bit: the heights by which
@@ -80,8 +80,8 @@ struct glint_edge_sums {
     int fine;   /* 1: light of _q20 for pictures in codes, too */
     int lit; /* light runs in from the left; set by the code that draws rows of
                 tiles */
-    /* Of patches, patch.h: what draws them, the shade of the stop, and memory
-     * to work in, of GLINT_PATCH_SCRATCH bytes. */
+    /* For patches (patch.h): their method, the shade of the stop, and scratch
+     * memory of GLINT_PATCH_SCRATCH bytes. */
     glint_patch_fn *patch;
     const struct glint_shade *shade;
     void *scratch;
@@ -110,9 +110,9 @@ static inline int64_t edge_x_at_q40(const struct glint_edge *e, int32_t y_q8)
     return e->x_q8 * (INT64_C(1) << 32) + e->slope_q40 * (y_q8 - e->y_q8);
 }
 
-/* Makes the light of EDGE begin at the nearest whole pixel in each row: a
- * fraction of the work, for changes that hardly show. Closed outlines still
- * cancel, as heights are unchanged. */
+/* Snaps the light of EDGE to the nearest whole pixel in each row: a fraction of
+ * the cost, for changes that are barely visible. Closed outlines still cancel,
+ * as heights are unchanged. */
 void glint_edge_make_snapped(struct glint_edge *edge);
 
 /* Put EDGE, number INDEX, into the tiles that it crosses, or count it there and

@@ -14,11 +14,11 @@
  * closes the cell. Every part of an edge follows from its two ends alone, so
  * that neighbours agree to the bit and outlines close.
  *
- * Cells that are folded, have lost a corner, are thinner than a sixteenth of a
- * pixel, or are crossed by more than two sides are drawn by themselves, closed:
- * outline.h. A round stop cuts like a barrel, lowered by its sag. If vertices
- * are given instead of polynomials, its sag is unknown, and cells that it
- * crosses are drawn by themselves. */
+ * Cells that are folded, have an invalid corner, are thinner than a sixteenth
+ * of a pixel, or are crossed by more than two sides are drawn separately as
+ * closed outlines: outline.h. A round stop cuts like a barrel, lowered by its
+ * sag. If vertices are given instead of polynomials, its sag is unknown, and
+ * cells that it crosses are drawn separately. */
 #ifndef GLINT_FLARE_GHOST_EDGES_H
 #define GLINT_FLARE_GHOST_EDGES_H
 
@@ -51,8 +51,8 @@ struct glint_ghost_rows {
                                           packed */
     /* Steps of irradiance in each octave. */
     uint16_t steps[GLINT_LIGHT_OCTAVES];
-    int32_t weak_q20[GLINT_LIGHT_OCTAVES]; /* changes of light below this are
-                                              drawn on whole pixels; by the
+    int32_t weak_q20[GLINT_LIGHT_OCTAVES]; /* edges with smaller changes of
+                                              light are pixel-snapped; by the
                                               octave of the light */
 };
 
@@ -93,7 +93,7 @@ struct glint_ghost_edges {
     /* Results. */
     int n_edges; /* number of all edges; only the first max_edges are written */
     int more_refs; /* entries in the bins that edges without room would take */
-    int n_dropped; /* cells that lost light because a corner is lost */
+    int n_dropped; /* cells left out because a corner is invalid */
     int n_held;    /* cells, or halves of cells, whose light was clamped to
                       limit_q8 */
 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Dims ghosts by what lies in the stop, inside its outline.
+ * Dims ghosts by the shade of the stop: its soft edge, dust and masks.
  *
  *   in   a cell of a ghost's grid, tables of the light that the stop lets
  *        through
@@ -10,16 +10,16 @@
  *
  * The tables come in levels, each half as fine as the one before. A cell is as
  * wide as the nodes of one of them, and takes the light of that. Where finer
- * levels differ from it by what is seen, the cell is drawn in parts, down to a
- * pixel: as edges of how much each differs from the cell's clearest corner, so
- * that what is clear takes no edges. No rays are computed for that, as between
- * the rays of a grid all is linear. */
+ * levels differ visibly from it, the cell is drawn in parts, down to a pixel:
+ * as edges of each part's difference from the cell's clearest corner, so that
+ * clear parts need no edges. No rays are computed for that, as between the rays
+ * of a grid all is linear. */
 #ifndef GLINT_FLARE_GHOST_SHADE_H
 #define GLINT_FLARE_GHOST_SHADE_H
 
 #include "flare/edges/ghost_parts.h"
 
-enum { GLINT_SOFT_RINGS = 16 }; /* most outlines of a soft edge */
+enum { GLINT_SOFT_RINGS = 16 }; /* max outlines of a soft edge */
 
 struct glint_shade_method {
     /* Turns a bundle into edges, for glint_ghost_edges_emit(). */

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * What lies in the stop, over a part of a ghost: a convex polygon in which each
- * pixel has the light of the shade where its rays cross the stop.
+ * Dust and masks over a part of a ghost: a convex polygon in which each pixel
+ * has the light of the shade where its rays cross the stop.
  *
  * Edges give the polygon the light of a clear stop, or none; a patch adds, to
  * each pixel, how much the shade differs from that. Rays are linear over it, so
- * that six numbers tell where in the stop each pixel's come from. Pixels on a
- * side count by the fraction of them that is within it, which is the same as of
- * edges but where two sides meet in a pixel.
+ * that six numbers give each pixel's place in the stop. Pixels on a side count
+ * by the fraction of them that is within it, which is the same as of edges but
+ * where two sides meet in a pixel.
  *
  * A patch takes the places of several edges, one after the other: the first has
  * the box of its pixels, by which it is sorted into tiles, the others carry

@@ -7,8 +7,8 @@
 #include "base/q.h"
 #include "glint/scene/lobe.h"
 
-/* Codes of four texels, or of four of each of two levels, and what each counts:
- * weights sum to 2^22. */
+/* Codes of four texels, or of four of each of two levels, and their weights,
+ * which sum to 2^22. */
 struct glint_reads {
     uint32_t at[8], weight_q22[8];
 };

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * A recorded motion in a scene: play, which moves objects and finds what is
- * seen, and layers, which draws what is about them.
+ * A recorded motion in a scene: play, which moves objects and finds visible
+ * foods, and layers, which draws overlays.
  *
- * Shells and lines are not objects: rays do not meet them. Once the objects of
- * a pixel are shaded they are laid over it from back to front, where no sample
- * sees anything nearer. */
+ * Shells and lines are not objects: rays do not meet them. After the objects of
+ * a pixel are shaded they are composited over it from back to front, where no
+ * sample sees a nearer object. */
 #ifndef GLINT_SCENE_MOTION_PLAY_H
 #define GLINT_SCENE_MOTION_PLAY_H
 

@@ -3,11 +3,11 @@
  * Spreads the light on a map of texels as a baked translucent medium does
  * (glint/scene/translucent.h), strip by strip.
  *
- *   in   light that gets in, 0 .. 32767 of any unit; the translucent medium
- *   out  light that comes out, 0 .. 32767 of that unit, where it saturates
+ *   in light that enters, 0 .. 32767 of any unit; the translucent medium
+ *   out light that leaves, 0 .. 32767 of that unit, saturates
  *
  * A strip is GLINT_STRIP columns of one channel. For each plane its rows are
- * convolved, two at a time, and then its columns; what lies between stays in
+ * convolved, two at a time, and then its columns; intermediate values stay in
  * the cache. */
 #ifndef GLINT_SCENE_TRANSLUCENT_SPREAD_H
 #define GLINT_SCENE_TRANSLUCENT_SPREAD_H
@@ -52,8 +52,7 @@ struct glint_spread_scratch {
     int32_t *total; /* [height][GLINT_STRIP]: of all planes, by f */
 };
 
-/* Takes the scratch of one worker for Translucent medium on maps of HEIGHT
- * rows. */
+/* Allocates the scratch of one worker for STONE on maps of HEIGHT rows. */
 struct glint_spread_scratch
 glint_spread_carve(struct glint_arena *arena,
                    const struct glint_translucent *stone, int height);
