@@ -384,8 +384,7 @@ static void sum_up(const struct bake_run *run, struct glint_bake_report *r)
     }
 }
 
-/* Sets up what lies beside LENS, which has to be the same lens at other
- * positions. */
+/* Sets up the neighbouring positions of LENS, which must be the same lens. */
 static enum glint_status set_up_beside(struct bake_run *run,
                                        const double rgb_nm[3])
 {

@@ -70,8 +70,8 @@ static void mix(uint64_t *key, double value)
         *key = (*key ^ byte[i]) * UINT64_C(0x100000001b3);
 }
 
-/* Mixes in what makes COATING differ; a single quarter wave as ever, so that
- * models that are kept stay good. */
+/* Adds COATING to the hash; a single quarter wave keeps its original form, so
+ * that cached models stay valid. */
 static void mix_coating(uint64_t *key, const struct glint_coating *coating)
 {
     mix(key, coating->nm);
@@ -184,11 +184,11 @@ static void fit_flux(const double *w, const double *flux, double scale,
         coef[poly.power[i][3]] = glint_real_of(poly.coef[i]);
 }
 
-/* Returns the direct image's flux at NM through a stop of AREA times the whole
- * one's, over AREA; below 0 if memory is short. The barrels of a fast lens cut
- * the rim of its widest stop, where blades reach with their corners alone: of
- * wide stops it is taken through blades, and divided by their fraction of the
- * circle, by which a program multiplies it. Through circles f/1.4 of
+/* Returns the direct image's flux at NM through a stop of AREA times the full
+ * area, divided by AREA; below 0 if memory is short. The barrels of a fast lens
+ * cut the rim of its widest stop, where blades reach with their corners alone:
+ * of wide stops it is taken through blades, and divided by their fraction of
+ * the circle, by which a program multiplies it. Through circles f/1.4 of
  * merte-biotar came out 10 % too bright, f/2 of tronnier-double-gauss 2.6 %. */
 static double flux_of(const struct glint_setup *whole, double area, double nm)
 {

@@ -103,9 +103,9 @@ static int32_t larger(int32_t a, int32_t b)
     return a > b ? a : b;
 }
 
-/* Returns the least semi-axis of a spot in a still picture. The rim of a
- * core in its glare may hide a lamp of any smaller size; a lamp that is taken
- * for a point has ghosts as if cut out of paper, as no real lamp has. */
+/* Returns the min semi-axis of a spot in a still picture. The glare around a
+ * core may hide a lamp of any smaller size; a lamp drawn as a point has ghosts
+ * with unrealistically sharp outlines. */
 static int32_t least_axis_q8(const struct glint_spot *spot)
 {
     return spot->size_q8 / 6;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * What the table of options says of an engine. */
+ * Configures an engine from the table of options. */
 #include "glint/engine.h"
 #include "glint/options.h"
 
-/* Lamps that are looked for: most pictures have many that hardly show. */
+/* Max lamps of a search: most pictures have many barely visible ones. */
 enum { FOUND = 16 };
 
 static unsigned parts_of(int only)

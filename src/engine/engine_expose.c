@@ -75,9 +75,9 @@ static enum glint_status expose_as_drawn(struct glint_engine *e, int n,
     return status;
 }
 
-/* Returns what LAMP, which was found, has over what the picture shows of it
- * where nothing hides it, of a video followed from the last picture by a third
- * of a second: what is estimated of a lamp that clips may jump for a picture.
+/* Returns the light of LAMP, which was found, in excess of what the picture
+ * shows, ignoring occlusion. In a video it is smoothed over a third of a
+ * second, as the estimate for a clipped lamp may jump in a single picture.
  */
 static double excess_found(const struct glint_engine_exposing *x,
                            const struct glint_engine_lamp *lamp, double white,

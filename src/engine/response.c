@@ -18,8 +18,8 @@ static const double none_log2 = -100;
 enum { EXACT_ANGLES = 4, EXACT_GRID = 6, GRID = 12 };
 
 /* The brightest pixels are brought to 2^AIM_LOG2 times display white, within a
- * factor of 2^AIM_SPAN: far from where samples saturate, and with as much room
- * for faint light. */
+ * factor of 2^AIM_SPAN: far below saturation, and equally far above the
+ * smallest step. */
 enum { AIM_LOG2 = 4, AIM_SPAN = 6 };
 
 /* ----------------------------------------------------------------- looking */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Responses of lenses that are kept from one run to the next.
+ * Cache of lens responses between runs.
  *
  * An entry is found by a key of the model, of what its brightness depends on,
  * and of the version of the library. It is some 800 bytes; one that is damaged,

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stddef.h>
 
-/* Bins of light over the least that can be seen, an eighth of a stop each,
- * around 1. */
+/* Bins of light / the least visible light, an eighth of a stop each, around 1.
+ * */
 enum { STEPS = 8, OCTAVES = 40, BINS = 2 * OCTAVES * STEPS };
 
 void glint_ground_take(struct glint_ground *ground,
@@ -22,8 +22,8 @@ static double decode(int code)
     return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
 }
 
-/* Sets SLOPE[code] to 1 / the light that must be added to be seen; 0 if no
- * light can be seen. */
+/* Sets SLOPE[code] to 1 / the light that must be added to be visible; 0 if no
+ * light is. */
 static void list_slopes(double slope[256])
 {
     for (int code = 0; code < 256; code++)

@@ -22,8 +22,8 @@ static const double compression = 0.15;
  * which a veil is lowered. */
 static const double seen_peak = 0.6, seen_mean = 0.04, veil_peak = 0.1;
 
-/* Light that a veil leaves on a quarter of the picture, over the least that can
- * be seen. */
+/* Light that a veil leaves on a quarter of the picture / the least visible
+ * light. */
 static const double veil_light = 0.5;
 
 /* How the factor follows: stops a second, most stops a frame, and the time
@@ -31,8 +31,7 @@ static const double veil_light = 0.5;
 static const double fall_per_s = 3, rise_per_s = 2, most_per_frame = 0.125;
 static const double settle_s = 0.3;
 
-/* A lamp is at most this much brighter than it would be by itself, as a
- * fraction.
+/* A lamp is at most this much brighter than it would be alone, as a fraction.
  */
 static const double overshoot = 0.5;
 

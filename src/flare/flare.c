@@ -211,8 +211,8 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
 
 /* -------------------------------------------------------------------- plan */
 
-/* Returns N without the last lights that are beyond the lens, so that a frame
- * with no other lights takes no time. */
+/* Returns N without trailing lights outside the model's range, so that a frame
+ * with no other lights costs nothing. */
 static int n_within(const struct glint_lens *lens,
                     const struct glint_light *lights, int n)
 {
@@ -248,10 +248,10 @@ static void plan_job(void *ctx, int job, int worker)
     }
 }
 
-/* Leaves out ghosts that no pixel shows. The light of all lights is summed, for
- * each ghost and wave: together they may be seen though none is by itself. A
- * ghost is left out, in a wave, for all lights at once. Sums are integers, so
- * their order does not matter. */
+/* Leaves out invisible ghosts. The light of all lights is summed, for each
+ * ghost and wave: together they may be visible although none is alone. A ghost
+ * is left out, in a wave, for all lights at once. Sums are integers, so their
+ * order does not matter. */
 static void leave_out_faint(struct glint_flare *f, int n)
 {
     const struct glint_flare_frame *r = f->plan.frame;

@@ -204,8 +204,8 @@ struct gather {
     int n_lights;
 };
 
-/* From the last light to the first, so that what one gives continues with what
- * it was given. */
+/* From the last light to the first, so that light merged into one is merged
+ * onwards with it. */
 static void gather_job(void *ctx, int ghost, int worker)
 {
     const struct gather *g = ctx;

@@ -227,7 +227,7 @@ static int64_t peak_q20(const struct glint_plan *p, struct glint_real brightest)
     return real_integer(real_over(brightest, p->frame->faintest), 20, most);
 }
 
-/* Sets what glint_planned() says of a bundle beyond its light. */
+/* Sets the members that glint_planned() returns besides the light. */
 static void set_shape(const struct glint_probe *s, struct glint_real brightest,
                       struct glint_bundle_plan *planned)
 {
@@ -333,12 +333,12 @@ static int64_t far_from(int64_t x, int64_t y)
     return q_root((uint64_t)(x * x + y * y));
 }
 
-/* Sets by how much the ghost is drawn larger, WIDEST_Q16 at most. A small ghost
- * of a point would lie apart from those of the lamp's neighbouring points, and
- * the lamp's ghost would be a pattern of dots; so it is made two and a half
- * times as wide as they are apart. The ghost moves with the light in proportion
- * to its distance from the middle. For a light on the axis nothing is set. Its
- * centre may lie aside only where it is not turned, but mirrored. */
+/* Sets the magnification of the ghost, at most WIDEST_Q16. A small ghost of a
+ * point would be separate from those of the lamp's neighbouring points, and the
+ * lamp's ghost would be a pattern of dots; so it is enlarged to two and a half
+ * times their distance. The ghost moves with the light in proportion to its
+ * distance from the middle. For a light on the axis nothing is set. Its centre
+ * may lie aside only where it is not turned, but mirrored. */
 static void set_wider(const struct glint_plan *p, const struct glint_light *b,
                       struct glint_bundle_plan *planned,
                       const struct glint_transfer *t,
@@ -412,7 +412,7 @@ static struct glint_real area_of(const struct glint_plan *p,
     return real_times(real_of(wide_q8, -7), real_of(high_q8, -7));
 }
 
-/* Returns by what the outputs of T, for light at AZIMUTH, are turned. */
+/* Returns the rotation of the outputs of T, for light at AZIMUTH. */
 static struct glint_azimuth turn_of(const struct glint_transfer *t,
                                     struct glint_azimuth azimuth)
 {

@@ -199,8 +199,8 @@ static int64_t near2_q16(const struct glint_lamp_tracker *t, int n)
     return n > FEW_SPOTS ? reach2_q16 * FEW_SPOTS / n : reach2_q16;
 }
 
-/* Returns how much flux spot NOW shares with BEFORE, which the lamp was last
- * seen as; 0 if NOW is too far from where S says it should be. */
+/* Returns the flux that spot NOW has in common with BEFORE, the lamp's last
+ * spot; 0 if NOW is too far from the place that S predicts. */
 static int64_t kept_of(const struct glint_seeker *s,
                        const struct glint_spot *before,
                        const struct glint_spot *now, int64_t limit2_q16)
@@ -223,7 +223,7 @@ struct side {
 };
 
 /* Returns whether most of A is not in B. If A has no flux, several lamps in B
- * speak for a cut: they all came, or went, at once. */
+ * indicate a cut: all of them appeared, or vanished, at once. */
 static int is_apart(const struct glint_lamp_tracker *t, const struct side *a,
                     const struct side *b)
 {

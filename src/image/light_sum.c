@@ -66,7 +66,7 @@ static inline struct chroma chroma_of(const struct glint_ycc *ycc, int cb,
 }
 
 /* Sums stay below 2^27, as no more than a stretch is added at once. What Cb and
- * Cr give is taken once for all the pixels that fraction them. */
+ * Cr give is taken once for all the pixels that share them. */
 static void add_ycc(const struct glint_light_sum *s,
                     const struct glint_codes *codes, int row, int from, int to,
                     int64_t rgb_q20[3])

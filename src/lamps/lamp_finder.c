@@ -550,8 +550,8 @@ glint_lamp_finder_init(struct glint_lamp_finder **finder,
 
 /* -------------------------------------------------------------------- score */
 
-/* Keeps candidates that score as lamps, and with keep_faint, marked faint,
- * those that score a little less. */
+/* Keeps candidates with the score of a lamp, and with keep_faint those with a
+ * slightly lower score, marked faint. */
 static void judge(struct glint_lamp_finder *f)
 {
     const struct glint_score score = {&f->bright,    f->white, f->cfg.width,

@@ -352,9 +352,9 @@ static int32_t light_at(const struct window *w, int32_t x_q8, int32_t y_q8)
     return q_larger(q_larger(rgb_q20[0], rgb_q20[1]), rgb_q20[2]);
 }
 
-/* Returns how much of white is lost along ray I at the rim of a core of RADIUS;
- * -1 if that cannot be seen. A rim near the middle counts as 0: such a core is
- * a ring. */
+/* Returns the drop along ray I at the rim of a core of RADIUS, as a fraction of
+ * white; -1 if it cannot be measured. A rim near the middle counts as 0: such a
+ * core is a ring. */
 static int32_t lost_along(const struct window *w, int i, int32_t radius_q8)
 {
     static const int16_t sine_q14[RAYS + RAYS / 4] = {

@@ -156,9 +156,9 @@ static int32_t log_of_q8(int64_t area_q8)
            8 * ONE_Q16;
 }
 
-/* Returns how much of level K counts: all of levels 1 and 2; of others, all if
- * the background's spread is half of the level's least light or less, none if
- * it is as much. */
+/* Returns the weight of level K: 1 for levels 1 and 2; for others from 1 if the
+ * background's spread is at most half of the level's min light, down to 0 if it
+ * equals that. */
 static int32_t weight_q16(const struct glint_profile_channel *of, int k)
 {
     const int32_t spread_q16 =
@@ -291,12 +291,11 @@ static int64_t weighed_q26(const int16_t weight_q10[FEATURES + 1],
     return sum_q26;
 }
 
-/* Returns how many stops over white the core is, -6 .. 14: a perceptron with
- * one layer of rectified units beside a linear term. The units stand for
- * products of features: a halo tells one object beside a core of three pixels
- * and another beside one of a hundred, or on an even background and among
- * windows. A unit is below 2^32 in _q16, times a weight 2^47, and there are
- * six. */
+/* Returns the stops of the core over white, -6 .. 14: a perceptron with one
+ * layer of rectified units beside a linear term. The units stand for products
+ * of features: a halo tells one object beside a core of three pixels and
+ * another beside one of a hundred, or on an even background and among windows.
+ * A unit is below 2^32 in _q16, times a weight 2^47, and there are six. */
 static int32_t stops_q16(const int32_t feature_q16[FEATURES])
 {
     int64_t sum_q26 = weighed_q26(linear_q10, feature_q16);

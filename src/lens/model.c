@@ -53,7 +53,7 @@ enum {
      */
     BOX_NODES_LOG2 = 5,
     MAX_SHARED = 8 /* largest size of all tables that systems refer to, in sizes
-                      of the file; otherwise systems that fraction large tables
+                      of the file; otherwise systems that share large tables
                       would take quadratic time */
 };
 

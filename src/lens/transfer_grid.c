@@ -2,7 +2,7 @@
  *
  * Turns grids of rays into vertices of the picture: values of the polynomials
  * become pixels, stop radii and energies of fixed formats, turned by the
- * azimuth of the light. Rays with values that do not fit are lost. */
+ * azimuth of the light. Rays with values that do not fit are invalid. */
 #include "glint/transfer.h"
 
 #include <stddef.h>
@@ -244,7 +244,7 @@ static void set_row_pair(struct glint_transfer *t,
     }
 }
 
-/* Returns whether each row has to be computed by itself. */
+/* Returns whether each row must be computed separately. */
 static int is_alone(const struct glint_transfer *t)
 {
     return t->basis == GLINT_BASIS_SPARSE || t->whole;

@@ -196,7 +196,7 @@ static int same(struct glint_real a, struct glint_real b)
     return a.mantissa == b.mantissa && a.exponent == b.exponent;
 }
 
-/* Returns what keeps B from being another position of A, or NULL. */
+/* Returns why B is not another position of A, or NULL. */
 static const char *check_pair(const struct glint_lens *a,
                               const struct glint_lens *b)
 {
@@ -279,8 +279,8 @@ static int of_side(struct glint_transfer *transfer,
 }
 
 /* Finds the nearest model beyond SIDE of ghost G that has it and is as far from
- * there as where the zoom continues that side, so that nothing is drawn out to
- * more than twice its length; -1: there is none. */
+ * there as where the zoom continues that side, so that nothing is extrapolated
+ * to more than twice its length; -1: there is none. */
 static int find_beyond(const struct glint_zoom_lens *z, int g, int side)
 {
     const int from = z->side[side][g], step = side ? 1 : -1;

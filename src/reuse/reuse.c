@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tells whether a frame is planned from what the frame before was planned from:
- * then its bundles, edges and lists of tiles are still there, and are drawn
- * again without a ray. Lights and dials are compared one by one; waves and
- * tints, of which there can be thousands, by a digest of 64 bits. */
+ * Detects frames with the same inputs as the previous one, whose bundles, edges
+ * and lists of tiles are drawn again without a ray. Lights and dials are
+ * compared one by one; waves and tints, of which there can be thousands, by a
+ * digest of 64 bits. */
 #include "base/q.h"
 #include "flare/state.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lights that stand still: those of a frame are distinguished from where those
- * stood that were planned, and what has changed of their light goes into
- * factors on the colours of their bundles. */
+ * Static lights: the lights of a frame are matched with those that were
+ * planned, and changes of their light become factors on the colours of their
+ * bundles. */
 #include "flare/dim.h"
 #include "flare/state.h"
 

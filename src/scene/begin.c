@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A frame is prepared: where objects are, what of them may be seen, and what
- * lights need to know. */
+ * Prepares a frame: positions of objects, those that may be visible, and data
+ * of lights. */
 #include "scene/quick.h"
 #include "scene/visible.h"
 #include "scene/parts.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What mirrors and lets light through: one reflection, and up to eight
- * surfaces on the way through.
+ * Reflection and transmission: one reflection, and up to eight surfaces of
+ * transmission.
  *
  * A sphere that is entered is left at the other end of the ray's chord, at the
  * angle at which it was entered: only light from within a ball can be mirrored
@@ -11,8 +11,8 @@
  * camera's picture all around.
  *
  * Directions that the camera sees then have the light of the picture there.
- * Beyond its edge, and behind the camera, nobody knows what there is: the
- * picture continues, mirrored at its edge. */
+ * Outside the picture, and behind the camera, it continues, mirrored at its
+ * edge. */
 #include "scene/parts.h"
 #include "scene/state.h"
 
@@ -73,8 +73,8 @@ static void look_around(const struct glint_scene *s, const struct passing *p,
                     (1 << 15) + (y < 0 ? -half_q15[1] : half_q15[1]), rgb_q15);
 }
 
-/* Adds what P comes to: the background's colour, its environment, or the
- * picture that is all around. */
+/* Adds the background in the direction of P: its colour, environment, or the
+ * camera's picture. */
 static void add_background(const struct glint_scene *s, const struct passing *p,
                            int32_t rgb_q15[3])
 {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * A scene's memory, and its frame: where objects are, what of them may be seen,
- * and the order of the work. */
+ * Memory of a scene, and the order of a frame's work. */
 #include "scene/visible.h"
 
 #include "base/compiler.h"

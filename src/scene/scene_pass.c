@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The scene as a pass: a pixel is shaded once for each object that its samples
- * see, at its middle, and at each sample of what mirrors or lets light through;
- * what of it nothing covers stays. */
+ * The scene as a pass: a pixel is shaded once per object that its samples see,
+ * at its middle, and per sample for reflecting or transparent objects; its
+ * uncovered part stays. */
 #include "scene/quick.h"
 #include "scene/visible.h"
 #include "scene/parts.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Where rays meet objects. Few objects, or meshes with grids: all of them are
- * asked in turn. */
+ * Where rays meet objects. Few objects, or meshes with grids: all are tested in
+ * turn. */
 #include "scene/parts.h"
 #include "scene/state.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What is seen at the samples of a tile: spheres by the ray of each sample,
+ * Visibility at the samples of a tile: spheres by the ray of each sample,
  * planes by 1 / z, triangles by the part for meshes.
  *
  * A sphere whose rim is farther away from a pixel's middle than its samples are

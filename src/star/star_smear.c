@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws what lies in the stop throws about a lamp, from squares of steps; see
- * smeared.h. A lamp's disc blurs it: no finer square than one of steps half as
- * wide as the disc's radius is taken. */
+ * Draws the light that dirt in the stop diffracts around a lamp, from a table
+ * of squares; see smeared.h. A lamp's disc blurs it: no finer square than one
+ * of steps half as wide as the disc's radius is taken. */
 #include "base/compiler.h"
 #include "base/q.h"
 #include "star/parts.h"

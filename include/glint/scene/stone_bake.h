@@ -70,7 +70,7 @@ enum glint_status glint_stone_bake(const struct glint_scatter_fit *fit,
                                    struct glint_stone_report *report,
                                    struct glint_error *error);
 
-/* Sets RADIOSITY[side * side][3] to what the integers of Translucent medium
+/* Sets RADIOSITY[side * side][3] to what the integers of STONE
  * make of IRRADIANCE, of the same shape, whose largest they take for 32767.
  * GLINT_E_MEMORY. */
 enum glint_status glint_stone_light(const struct glint_translucent *stone,

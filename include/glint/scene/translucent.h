@@ -107,7 +107,7 @@ struct glint_translucent {
     const uint16_t *transmit_q15;
 };
 
-/* Checks DATA[BYTES], aligned to 4 bytes, and points Translucent medium into
+/* Checks DATA[BYTES], aligned to 4 bytes, and points STONE into
  * it. DATA is kept. GLINT_E_FORMAT: *REASON states what is wrong, in static
  * text. */
 enum glint_status glint_translucent_open(struct glint_translucent *stone,

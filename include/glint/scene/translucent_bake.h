@@ -72,7 +72,7 @@ struct glint_stone {
                            NULL */
 };
 
-/* Sets Translucent medium to 128 texels of 0.61 mm, kernels of 29, 6 mm,
+/* Sets STONE to 128 texels of 0.61 mm, kernels of 29, 6 mm,
  * index 1.5, marble of [Jensen01] and a darker translucent medium, chess of 8
  * x 8. */
 void glint_stone_defaults(struct glint_stone *stone);
@@ -94,7 +94,7 @@ struct glint_scatter_rows {
     double *share; /* [side * side] fraction of material 0; NULL: measured */
 };
 
-/* Computes ROWS of Translucent medium by diffusion in the slab [Jensen01], each
+/* Computes ROWS of STONE by diffusion in the slab [Jensen01], each
  * entry at least 0, the sum of a row at most 1; R'(x, y - x) = R'(y, x - y).
  * Takes 12 bytes an entry and about 25 MB besides; 128 texels with kernels of
  * 29 take 158 MiB. GLINT_E_ARGUMENT: ERROR names what is out of range.

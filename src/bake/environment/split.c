@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tells bright lights from the rest of an environment.
+ * Separates bright lights from the rest of an environment.
  *
  * A threshold falls by octaves, down to some times the mean of what is below
  * it. At each, texels that touch are a spot, and a light while they lie close
- * together; the lowest threshold at which they do states what belongs to it.
- * Spots that run together and no longer do so stay the lights that they were.
+ * together; the lowest threshold at which they do determines its extent. Spots
+ * that merge at a lower threshold stay separate lights.
  */
 #include "bake/environment/sphere.h"
 
@@ -19,7 +19,7 @@
 
 enum {
     MAX_SPOTS = 4096,
-    RING = 2, /* texels around a light whose mean is taken for what is behind */
+    RING = 2, /* texels around a light whose mean replaces it */
     NOBODY = -1
 };
 

@@ -19,7 +19,7 @@
 #include "bake/trace/cells.h"
 
 enum { BAND = 32 }; /* pixel rows of a job; the last job may have fewer */
-/* Most products of ghosts, lamps and wavelengths: more would take years. */
+/* Max product of ghosts, lamps and wavelengths: more would take years. */
 enum { MAX_BUNDLES = 1 << 24 };
 
 /* One ghost, lamp and wavelength. */

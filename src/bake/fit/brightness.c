@@ -163,9 +163,9 @@ static void angle_job(void *ctx, int job, int worker)
 
 /* --------------------------------------------------------------- not round */
 
-/* A lens that is not round has no picture that only turns with the light: light
- * comes from several azimuths, and what lies across less than a pixel counts as
- * spread over one. A streak is bright by that, not by how thin it is. */
+/* The picture of a lens that is not round does not just rotate with the light:
+ * light comes from several azimuths, and is spread over at least a pixel, so
+ * that a thin streak does not count as bright. */
 static bool is_in_picture(const struct task *t, const struct glint_ray *ray)
 {
     return passes(t, ray) && fabs(ray->sensor_x_mm) <= t->half_mm[0] &&

@@ -137,8 +137,8 @@ double glint_next_settled(const struct glint_next_rules *f,
         return p->depth < most_depth(f, p) ? bearable(aim) : 0;
     if (width >= least * stuck_deg(f) && endured(f, aim) > 0)
         return fmax(endured(f, aim), kept);
-    /* The lower half is the narrower one in degrees. If even that is too wide
-     * to be stuck, glint_next() does not ask what halving gained. */
+    /* The lower half is the narrower one in degrees. If even that is still
+     * wide, glint_next() ignores the gain of halving. */
     if (glint_next_degrees(p->lo, 0.5 * (p->lo + p->hi)) >= stuck_deg(f) ||
         width < least * LEAST_DEG)
         return kept;

@@ -5,9 +5,9 @@
 #include "bake/regress/regress.h"
 #include "engine/setup/degrees.h"
 
-/* Fraction of a box: if as much of it is seen, that is enough. A fuller box
- * would need higher powers of s, and polynomials of what is seen through it
- * would have to undo them. */
+/* Fraction of a box: if as much of it is visible, it is full enough. A fuller
+ * box would need higher powers of s, which the polynomials in it would have to
+ * undo. */
 #define ENOUGH_FILL 0.6
 /* A higher degree in s is taken only if it fills the box so many times more. */
 #define FULLER 1.6
@@ -120,8 +120,9 @@ static void follow(const struct seen *seen, const double *value, int degree,
                              : fit.power[k][2]] = fit.coef[k];
 }
 
-/* Returns minus the least value of the polynomial HALF over the zone, sampled:
- * what its constant lacks for 0 or more; negative if it has more than that. */
+/* Returns minus the min value of the polynomial HALF over the zone, sampled:
+ * the increase of its constant that makes it 0 or more; negative if it is
+ * already. */
 static double lacks(const double half[GLINT_BOX_TERMS])
 {
     double lowest = HUGE_VAL;

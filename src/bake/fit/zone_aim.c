@@ -8,9 +8,9 @@
 /* Least factor on the tolerances of places of skew zones that are brighter than
  * white: at their outlines a shift shows as many times as much. */
 #define CLIPPED 0.4
-/* Least factor on the tolerance of places across a streak that is thinner than
- * a pixel: where it passes from one row of pixels to the next its whole light
- * does. */
+/* Min factor on the position tolerance across a streak that is thinner than a
+ * pixel: where it crosses from one pixel row to the next all of its light does.
+ * */
 #define THIN 0.1
 
 /* The rays of one angle and wavelength: how many are seen, and where they land.

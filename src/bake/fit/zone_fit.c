@@ -11,7 +11,7 @@ STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 
 /* A single ray may be off by so many times the root mean square aimed at. */
 #define PEAK 5.0
-/* Ratio of most to least energy above which a root of it is fitted. */
+/* Ratio of max to min energy above which a root of it is fitted. */
 #define WIDE_ENERGY 60
 
 /* Outlines of wide stops show at the rim of a ghost, errors of places all over
@@ -21,8 +21,8 @@ STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
  * a half sphere a ghost lies within 0.003 of its rim. */
 #define LEAST     0.06
 #define LEAST_FAR 5e-4
-/* Rays that leak as a fraction of those that are seen, of lights beyond
- * GLINT_FAR: so many are a tolerance of outlines. */
+/* For lights beyond GLINT_FAR: leaking rays / visible rays that count as one
+ * tolerance of outlines. */
 #define LEAK 0.02
 /* Factor on the error of a fit, if it was not good anyway: a second one which
  * is worse than that is dropped. */
@@ -197,7 +197,7 @@ static bool stop_leaks(struct fit *f, const struct glint_fitted_system *system)
     return any;
 }
 
-/* Returns how many of the rays leak, as a fraction of those that are seen. */
+/* Returns the number of leaking rays / visible rays. */
 static double leaking(const struct fit *f,
                       const struct glint_fitted_system *system)
 {
@@ -510,8 +510,8 @@ static void check_zone(struct fit *f, const struct glint_fitted_system *system)
 
 /* --------------------------------------------------------------------- all */
 
-/* Fits SYSTEM again with new weights. Of wide stops, what was fitted before is
- * kept if leaks cannot be stopped without harm to what is seen. */
+/* Fits SYSTEM again with new weights. With wide stops, the previous fit is kept
+ * if leaks cannot be removed without larger visible errors. */
 static enum glint_status fit_again(struct fit *f,
                                    struct glint_fitted_system *system)
 {

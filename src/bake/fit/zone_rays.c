@@ -113,10 +113,9 @@ static double turn(int n, double r)
     return fmod(n * r, 1);
 }
 
-/* Traces rays at one angle and wavelength. Of wide stops each has its grid in
- * another place, or polynomials could do between the rays what they like. In
- * the finest grid only every third ray is kept of those far outside what is
- * seen. */
+/* Traces rays at one angle and wavelength. With wide stops each gets a shifted
+ * grid; otherwise polynomials could oscillate between the rays. In the finest
+ * grid only every third ray far outside the visible part is kept. */
 static void trace_plane(const struct glint_zone *zone,
                         const struct glint_visible *visible, int sine, int wave,
                         int stride, struct glint_zone_rays *rays)

@@ -392,7 +392,7 @@ static const char *check(const struct glint_motion_baker *b,
     return NULL;
 }
 
-/* Adds what the body's own senses say to what they said. */
+/* Integrates the body's own odometry. */
 static void add_senses(struct glint_motion_baker *b,
                        const struct glint_motion_sight *s,
                        const struct glint_rigid *pose)
@@ -463,7 +463,7 @@ static void keep(struct glint_motion_baker *b,
                 .frame = b->n_frames, .slot = (uint32_t)i};
             b->report.n_resets += b->n_frames > 0;
         }
-        /* the last frame of its life says the most */
+        /* the last frame of its life is the most accurate */
         memcpy(b->event[b->lives[i]].at, b->localiser.place[i],
                sizeof b->event->at);
     }

@@ -161,8 +161,8 @@ static bool four_map(enum glint_arithmetic arithmetic,
     return true;
 }
 
-/* Sets FOUR to the foods, of those that are not new, that FIT takes; returns
- * false if there are fewer. */
+/* Sets FOUR to the known foods that FIT uses; returns false if there are fewer.
+ * */
 static bool choose(const struct glint_localiser *l, int n,
                    const double (*seen)[3], const bool *is_new, int four[4])
 {

@@ -70,8 +70,8 @@ static void set_rows(struct glint_rigid *r)
     memcpy(r->row, row, sizeof row);
 }
 
-/* Sets the turn that makes the most of S, the sum of products of what is
- * turned, by rows, and what it is turned to, by columns. */
+/* Sets the rotation that maximises S, the sum of products of the rotated
+ * vectors (rows) and their targets (columns). */
 static void turn_of(const double s[3][3], struct glint_rigid *r)
 {
     double n[4][4] = {

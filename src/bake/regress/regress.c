@@ -173,8 +173,7 @@ static double *moment_of(const struct search *s, const struct column *a,
     return &s->moment[a->place + b->place];
 }
 
-/* Works out what is not known yet of the products of CHOSEN and N columns, at
- * most VECTORS. */
+/* Computes the missing products of CHOSEN and N columns, at most VECTORS. */
 static void find_moments(const struct search *s, const struct column *chosen,
                          struct column *const column[], int n)
 {
@@ -239,9 +238,9 @@ static void subtract_all(const struct search *s, double *a, int first, int m,
         subtract(a + first, share[k], direction(s, k) + first, m);
 }
 
-/* Sets the direction that is next to be chosen to what COLUMN has beside all
- * chosen ones, not of length 1 yet. It is made orthogonal twice, against
- * rounding, to all of them at once each time. */
+/* Sets the next direction to the component of COLUMN orthogonal to all chosen
+ * ones, not normalised yet. Orthogonalised twice, against rounding, to all of
+ * them at once. */
 static void make_orthogonal(const struct search *s, struct column *column)
 {
     const int n = s->s->n;

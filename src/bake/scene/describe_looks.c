@@ -49,7 +49,7 @@ static void hold_ratio(struct glint_describer *d,
     m->alpha[smaller] = least;
 }
 
-/* Reads what NORM says of metal, and holds the ratio of its alphas. */
+/* Reads the NORM of metal, and limits the ratio of its alphas. */
 static bool read_lobe(struct glint_describer *d,
                       struct glint_described_material *m,
                       const struct glint_word *norm)

@@ -134,7 +134,7 @@ static bool put_things(struct glint_describer *d, struct glint_motion *motion,
     return true;
 }
 
-/* Reads the file and what it says. */
+/* Reads the file and its header. */
 static bool open_motion(struct glint_describer *d,
                         const struct glint_word *file, bool has_size)
 {

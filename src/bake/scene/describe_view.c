@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lines on what is looked at, from where, and what is done with it. */
+ * Lines for handedness, camera, background, shadow and flare. */
 #include "bake/scene/describe.h"
 
 #include <math.h>

@@ -136,8 +136,8 @@ static void spill(struct painter *p, const uint32_t *before, int x, int y)
     }
 }
 
-/* Beyond the edges of charts, as far as kernels reach, texels have the light of
- * the nearest place: what leaves a chart there comes in from the next one.
+/* Outside the edges of charts, within the reach of kernels, texels have the
+ * light of the nearest place, so that light crosses from one chart to the next.
  * Returns false without memory. */
 static bool spill_over(struct painter *p, int rings)
 {

@@ -5,9 +5,9 @@
 
 #include "glint/scene/model.h"
 
-/* log2 of how often the run time reaches as far as what there is: the rest is
- * for poses, and for planes, which end there: a plane then begins a pixel below
- * its horizon. */
+/* log2 of the run time's range / the extent of the scene: the rest is for
+ * poses, and for planes, which end there: a plane then begins a pixel below its
+ * horizon. */
 #define SHARE_LOG2       2
 #define PLANE_SHARE_LOG2 6
 

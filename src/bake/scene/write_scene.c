@@ -130,7 +130,8 @@ static int32_t to_q15(double x)
     return (int32_t)lrint(x * ONE_Q15);
 }
 
-/* Takes from the largest of WEIGHT_Q15[N] what rounding has put over 1. */
+/* Reduces the largest of WEIGHT_Q15[N] so that their rounded sum is at most 1.
+ * */
 static void hold_sum(int32_t *const weight_q15[], int n)
 {
     int32_t sum = 0;
@@ -185,7 +186,7 @@ ward_of(const struct glint_described_material *from)
 
 static void write_materials(struct writer *w)
 {
-    /* What stands for the material of catchers where there is none. */
+    /* Default material of catchers. */
     const struct glint_scene_material none = {.name = "none",
                                               .power_q8 = 256,
                                               .index_q16 = 1 << 16,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rows as few kernels, times what a texel takes in and what it lets out.
+ * Rows as few kernels, times factors where light enters and leaves.
  *
  * Alternating least squares: kernels, in and out scales in turn, then each
  * texel goes to the kernel that leaves the least of its row. Clusters begin by

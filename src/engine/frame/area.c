@@ -106,11 +106,11 @@ int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
     return n;
 }
 
-/* Each point stands for an equal part of the ellipse, and part and ellipse have
- * one shape: the distance is the length of such a part. For a tube it is at
- * most twice that of a circle of the tube's area: ghosts of seven points shall
- * not be as wide as the tube is long. From one to four points the distance sets
- * in gradually, as the spread does, so that nothing steps. */
+/* Each point represents an equal part of the ellipse, with the same shape: the
+ * distance is the length of such a part. For a tube it is at most twice that of
+ * a circle of the tube's area: so that ghosts of seven points are not as wide
+ * as the tube is long. From one to four points the distance sets in gradually,
+ * as the spread does, so that nothing steps. */
 double glint_area_apart(const struct glint_area *area)
 {
     const double major = 2 * area->lamp.axis[0];

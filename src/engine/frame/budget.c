@@ -5,7 +5,7 @@
 
 #include "glint/light.h"
 
-/* octaves that a first frame takes longer, as it takes memory */
+/* octaves by which a first frame takes longer, as it allocates memory */
 #define FIRST 1
 /* fraction of the budget that frames are planned for */
 #define ROOM 0.98
@@ -22,11 +22,11 @@
 /* fraction of what other qualities learned that is forgotten each frame */
 #define FORGETTING 0.01
 
-/* Most plans of one frame. A plan tells little about fineness far from its own,
- * so that one more may be needed. */
+/* Max plans of one frame. A plan predicts poorly for a fineness far from its
+ * own, so that one more may be needed. */
 enum { MAX_TRIES = 3 };
 
-/* most frames drawn at a quality that is predicted to take too long */
+/* max frames drawn at a quality that is predicted to be too slow */
 enum { TRIALS = 4 };
 
 void glint_budget_init(struct glint_budget *b, double ms)
@@ -47,9 +47,9 @@ void glint_budget_begin(struct glint_budget *b, const struct glint_dials *asked)
     b->n_frames += b->n_frames < 2;
 }
 
-/* What is turned down beside the quality, each in addition to those before it,
- * in the order of what is seen of it. LOSS: PSNR against a frame without any of
- * it, dB; estimates, as no sweep has measured dust and veil yet. */
+/* Reductions besides the quality, each in addition to those before it, ordered
+ * by visibility. LOSS: PSNR against a frame without any of it, dB; estimates,
+ * as no sweep has measured dust and veil yet. */
 static const struct cut {
     double dim;    /* least dim_codes */
     int dust_log2; /* largest */
@@ -161,8 +161,8 @@ static double error_at(const struct glint_budget *b,
     return square_of(db) + square_of(cuts[cut].loss) + (over > 1 ? over : 0);
 }
 
-/* Returns whether CUT turns down anything that PLAN has, beyond the cut before
- * it. */
+/* Returns whether CUT reduces anything in PLAN that the cut before it does not.
+ * */
 static bool is_of_use(const struct glint_cost_plan *plan, int cut)
 {
     const struct cut *c = &cuts[cut];

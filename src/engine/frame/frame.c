@@ -156,7 +156,7 @@ static int room_for(const struct glint_frame *f, int n)
     return n <= most ? larger(most, f->picture.point_room) : most;
 }
 
-/* Makes F's lights of LAMPS; merges those that are too near or too many. */
+/* Converts LAMPS to F's lights; merges those that are too near or too many. */
 static enum glint_status set_lights(struct glint_frame *f,
                                     const struct glint_lamp *lamps, int n,
                                     double scale)
@@ -253,7 +253,7 @@ static enum glint_status plan(struct glint_frame *f,
     return GLINT_OK;
 }
 
-/* Returns whether dials were turned, so that the frame has to be planned again.
+/* Returns whether dials changed, so that the frame must be planned again.
  */
 static bool choose(struct glint_frame *f)
 {
@@ -389,8 +389,7 @@ static int n_drawn(const struct glint_frame *f,
     return f->lens ? r->stats.bundles : f->trace->n_bundles(f);
 }
 
-/* Sets what REPORT says of lights, plans and memory of the frame that was
- * drawn.
+/* Sets the members of REPORT on lights, plans and memory of the drawn frame.
  */
 static void report_on(struct glint_frame *frame,
                       struct glint_engine_report *report)

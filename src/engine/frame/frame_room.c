@@ -205,7 +205,7 @@ enum glint_status glint_frame_regrow(struct glint_frame *f)
     return glint_flare_init(&f->memory.flare, &f->cfg, f->memory.block, bytes);
 }
 
-/* Takes room for N lights that stand still. */
+/* Allocates N static lights. */
 static enum glint_status hold_still(struct glint_frame *f, int n)
 {
     struct glint_still *s = &f->still;
@@ -281,7 +281,7 @@ enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
 
     f->dials.max_lights =
         smaller(f->dials.max_lights, smaller(n_drawn, n_lamps));
-    /* Not all ghosts are seen, and few take the largest set. */
+    /* Not all ghosts are visible, and few use the largest set. */
     f->cfg.max_bundles = bundles_within((glint_frame_has_sets(f) ? 2. : 1) *
                                         count_bundles(f, f->dials.max_lights));
     if (f->cfg.reuse)

@@ -17,8 +17,9 @@ static const struct {
 
 /* Haze: a quarter of the light in each octave of angle, so that it falls with
  * the square of the angle as glare of the eye does from 1 to 30 degrees [Vos,
- * Disability glare, CIE Journal 3(2), 1984]. Hazy plastics are measured by
- * what goes more than 2.5 degrees astray (ASTM D1003): 0.7 of this is. */
+ * Disability glare, CIE Journal 3(2), 1984]. Hazy plastics are measured by the
+ * light scattered by more than 2.5 degrees (ASTM D1003): 0.7 of this light is.
+ * */
 static const double haze_deg[] = {1.25, 2.5, 5, 10};
 
 /* A narrower Gaussian would show the cells, whose units these are. */
@@ -135,7 +136,7 @@ static void set_table(int32_t *table_q30, int n, double sigma)
     table_q30[0] = rest; /* so that no light is lost */
 }
 
-/* Makes a spread of SIGMA pixels, 0: even, that gives Fraction of all light. */
+/* Makes a spread of SIGMA pixels, 0: even, that gives SHARE of all light. */
 static struct glint_veil_spread spread_of(const struct glint_frame *f,
                                           double sigma, double share)
 {
@@ -197,7 +198,7 @@ static int set_spreads(const struct glint_frame *f,
     return n;
 }
 
-/* Spreads what lies on the front, where it is covered most by that much. */
+/* Scatters the light of dirt on the front, scaled by its max cover. */
 static void spread_front(const struct glint_frame *f)
 {
     const struct glint_frame_veil *v = &f->veil;
@@ -239,7 +240,7 @@ static double beside(const struct glint_frame *f, double far)
     return sum / fmax(v->glare + haze, 1e-9);
 }
 
-/* Fraction of a pixel's time that what lies on the front takes besides. */
+/* Additional cost of dirt on the front, as a fraction of a pixel's time. */
 static const double front_pixels = 0.4;
 
 /* A pixel takes as long as SPREADING cells that give light to one. */

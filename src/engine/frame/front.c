@@ -225,7 +225,7 @@ static void set_covered(double *covered, int n_x, int n_y,
                 mean_about(dirt, &chords, o->radius,
                            seen_at(o, GLINT_VEIL_FRONT_PX * i, o->width),
                            -seen_at(o, GLINT_VEIL_FRONT_PX * j, o->height));
-    /* what lies beyond the last of them is as that is */
+    /* outside, the last one continues */
     for (int j = 0; j < n_y; j += step)
         for (int i = 0; i < n_x; i++) {
             const int from = i - i % step;

@@ -55,7 +55,7 @@ typedef double complex_number[2]; /* real, imaginary */
 
 enum glint_status glint_fourier(double (*at)[2], int n, int used)
 {
-    enum { ABREAST = 8 }; /* columns that fraction lines of the cache */
+    enum { ABREAST = 8 }; /* columns that share lines of the cache */
     complex_number *const root = malloc((size_t)n * sizeof *root);
     complex_number *const column = malloc((size_t)n * ABREAST * sizeof *column);
     const enum glint_status status = root && column ? GLINT_OK : GLINT_E_MEMORY;

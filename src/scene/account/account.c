@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What becomes of each object of a frame, and how much there is to do for it:
- * what its samples see is found as it is when it is drawn, and surfaces are
- * found, but not shaded. */
+ * Statistics of each object of a frame: visibility is computed as for drawing,
+ * and surfaces are found, but not shaded. */
 #include "glint/scene/account.h"
 
 #include "scene/mesh.h"

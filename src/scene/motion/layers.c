@@ -74,7 +74,7 @@ static void set_sides(const struct glint_scene_view *v, int k,
     }
 }
 
-/* Cuts A .. B, camera coordinates, to what is well ahead and near the picture.
+/* Clips A .. B, camera coordinates, to the region ahead and near the picture.
  */
 static int cut_all(const struct glint_scene_view *v, int32_t near, int32_t a[3],
                    int32_t b[3])
@@ -462,7 +462,7 @@ static int64_t shell_q31(const struct glint_scene *s,
     return (int64_t)share_q15 * (2 * GLINT_SCENE_ONE_Q15 - cosine_q15);
 }
 
-/* Returns what of pixel (X, Y) a shell covers, q8, near its rim, or with the
+/* Returns the cover of pixel (X, Y) by a shell, q8, near its rim, or with the
  * camera in it. */
 static NEVER_INLINE int rim_q8(const struct glint_scene_worker *w,
                                const struct glint_motion_layer *l, int x, int y)

@@ -10,8 +10,8 @@
 
 /* ------------------------------------------------------------------ opening */
 
-/* Sets N_FOODS and N_SENSORS to what the file says, which is only checked when
- * it is opened: here it is held. */
+/* Sets N_FOODS and N_SENSORS from the file, which is only checked when it is
+ * opened: here they are clamped. */
 static void count(const struct glint_scene_motion *how, uint32_t *n_foods,
                   uint32_t *n_sensors)
 {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The maps of translucent objects: memory, what is to be done in a frame, and
- * what a place shows. */
+ * The maps of translucent objects: memory, updates per frame, and lookups. */
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "scene/mesh.h"

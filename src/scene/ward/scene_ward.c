@@ -35,8 +35,8 @@ static inline void glint_ward_turn(const struct glint_ward_state *w,
 
 /* ------------------------------------------------------------------- behind */
 
-/* An environment as it is seen itself, behind objects and in mirrors: its
- * levels and the discs of its bright lights, blurred as far as a pixel sees. */
+/* An environment as background, behind objects and in mirrors: its levels and
+ * the discs of its bright lights, blurred as far as a pixel sees. */
 enum {
     LOG2_PI_Q16 = 108232,
     LEAST_SPREAD_Q40 = 1 << 14 /* the lights that are points have a disc */
@@ -110,7 +110,7 @@ static void behind(const struct glint_scene *scene, const int32_t toward_q30[3],
 
 /* ------------------------------------------------------------------ shining */
 
-/* What brushed metal shows of one light: Ward's lobe, as wide as the metal is
+/* Highlight of one light on brushed metal: Ward's lobe, as wide as the metal is
  * rough, the light's disc large and the surface bent within a pixel. Without
  * the last the highlight of a small ball would come and go between its pixels.
  *

@@ -492,7 +492,7 @@ static void test_catcher(void **state)
     assert_true(look(text, 3, 1, 0, 0, -1, 0).cover == 0);
 }
 
-/* Rays through a closed mesh of triangles that fraction edges and corners meet
+/* Rays through a closed mesh of triangles that share edges and corners meet
  * it as those through all of its triangles do. */
 static void test_tree(void **state)
 {

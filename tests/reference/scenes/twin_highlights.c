@@ -35,7 +35,7 @@ static void add_sums(struct sums *to, const struct sums *from)
         to->rgb[c] += from->rgb[c];
 }
 
-/* Adds what RAY, of share Fraction of pixel (X, Y), sees of objects. */
+/* Adds what RAY, of share SHARE of pixel (X, Y), sees of objects. */
 static void add_ray(const struct twin *twin, const struct twin_ray *ray, int x,
                     int y, double share, struct sums *to)
 {

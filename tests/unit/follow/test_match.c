@@ -212,7 +212,7 @@ static void scatter_alike(int n)
     }
 }
 
-/* Mixes the first N of Objects, BYTES each. */
+/* Mixes the first N of THINGS, BYTES each. */
 static void mix(void *things, int n, size_t bytes)
 {
     uint8_t *const at = things, kept[sizeof(struct glint_spot)];

@@ -75,7 +75,7 @@ static void gaussian(int32_t *table_q30, int n, double sigma)
     table_q30[0] = rest;
 }
 
-/* Makes a spread of SIGMA pixels with Fraction of all light. */
+/* Makes a spread of SIGMA pixels with SHARE of all light. */
 static struct glint_veil_spread spread_of(const struct canvas *c, double sigma,
                                           double share)
 {

@@ -76,7 +76,7 @@ static const double share[ANGLES] = {0.25, 0.5, 0.8};
  * fill the picture. */
 #define BRIGHTER 40.0
 
-/* Returns the angle at Fraction of the half diagonal, by f tan T, which places
+/* Returns the angle at SHARE of the half diagonal, by f tan T, which places
  * lamps in pictures. */
 static double angle_deg(const struct settings *s, double at)
 {

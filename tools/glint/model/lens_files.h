@@ -5,7 +5,7 @@
  *
  * First comes $GLINT_LENSES, a folder of tables; then lenses/ and models/ above
  * the program, or the plug-in of a host, that contains this code, as in a
- * source tree, and in fraction/glint above it, as where glint is installed;
+ * source tree, and in share/glint above it, as where glint is installed;
  * last the folder given to make install.
  */
 #ifndef GLINT_TOOLS_MODEL_LENS_FILES_H

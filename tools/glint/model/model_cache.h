@@ -2,7 +2,7 @@
  *
  * Models of lens tables, baked when first needed and kept.
  *
- * They lie in fraction/glint/models, where glint was installed with them, or in
+ * They lie in share/glint/models, where glint was installed with them, or in
  * $XDG_CACHE_HOME/glint, or ~/.cache/glint, under the lens's name and a key of
  * its contents and the options, so that a change of either finds no old model.
  * Where no file can be written, no model is kept.

@@ -124,7 +124,7 @@ struct tool_progress {
 void tool_progress_start(struct tool_progress *p, const struct tool *tool,
                          const char *what);
 /* DONE is from now on of the part of the work that begins at FROM and is
- * Fraction of it; at first of all: 0 and 1. */
+ * SHARE of it; at first of all: 0 and 1. */
 void tool_progress_part(struct tool_progress *p, double from, double share);
 void tool_progress_show(void *progress, double done);
 void tool_progress_end(struct tool_progress *p);

@@ -137,7 +137,7 @@ read_source(const struct tool *tool, const char *path,
 
 /* ------------------------------------------------------------------- baking */
 
-/* Sets *DB to how near what Translucent medium makes of lamps, shadows and a
+/* Sets *DB to how near what STONE makes of lamps, shadows and a
  * ramp is to what ROWS make of them, PSNR. GLINT_E_MEMORY. */
 static enum glint_status near_rows(const struct glint_scatter_rows *rows,
                                    const struct glint_translucent *stone,

@@ -18,7 +18,7 @@ struct stone_errors {
 };
 
 struct stone_file {
-    void *data; /* malloc'ed; Translucent medium points into it */
+    void *data; /* malloc'ed; STONE points into it */
     size_t bytes;
     struct glint_translucent stone;
     bool is_baked_now;
@@ -31,7 +31,7 @@ bool stone_file_is_text(const char *argument);
 bool stone_file_is_baked(const char *argument);
 
 /* Opens the text or baked file PATH, unless it, or what a text names, is the
- * file that TOOL writes. OVER, unless NULL, changes what the text says. Again:
+ * file that TOOL writes. OVER, unless NULL, replaces values of the text. AGAIN:
  * no kept translucent medium will do. On failure the reason is in ERROR. */
 enum glint_status
 stone_file_read(const struct tool *tool, const char *path,
