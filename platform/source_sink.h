@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * source_sink.h - where live frames come from and where they go.
+ * source_sink.h - interfaces of sources and sinks of live frames.
  *
  * A source or sink is a struct of functions, the first member of the struct
- * that implements it (linux/v4l2.h, linux/fbdev.h ...). All memory is taken
- * when it is opened or its format changes; a frame costs none.
+ * that implements it (linux/v4l2.h, linux/fbdev.h ...). All memory is allocated
+ * when it is opened or its format changes; frames allocate nothing.
  *
  * Errors are GLINT_E_DEVICE for a device that failed or went away and
  * GLINT_E_OUTPUT for a file that cannot be written, with one line that names
@@ -57,9 +57,9 @@ struct glint_source {
      * would be lost. GLINT_E_DEVICE: close SOURCE. */
     enum glint_status (*start)(struct glint_source *source,
                                struct glint_error *error);
-    /* Sets FRAME to the newest frame and gives back older ones; never waits.
-     * GLINT_E_DEVICE: the device is lost; close SOURCE. GLINT_E_CLOSED: there
-     * are no more frames. */
+    /* Sets FRAME to the newest frame and returns older ones to the device;
+     * never waits. GLINT_E_DEVICE: the device is lost; close SOURCE.
+     * GLINT_E_CLOSED: there are no more frames. */
     enum glint_status (*next)(struct glint_source *source,
                               struct glint_source_frame *frame,
                               struct glint_error *error);

@@ -129,7 +129,7 @@ static const char *end(pid_t child, int is_wanted)
     return WEXITSTATUS(status) ? "cannot be read" : NULL;
 }
 
-/* Takes the letter off DATA[BYTES] and states what it means. */
+/* Removes the status letter from DATA[BYTES] and translates it. */
 static enum glint_status judge(uint8_t *data, size_t *bytes, const char *path,
                                const char *failure, struct glint_error *error)
 {

@@ -42,7 +42,8 @@ struct glint_oiio_facts {
     int has_primaries;
     int cicp[2];    /* primaries and transfer of ITU-T H.273, or 0, 0 */
     int quality;    /* 1 .. 100, guessed from a JPEG's tables; 0: not known */
-    char note[160]; /* states what of the file cannot be kept; "" if nothing */
+    char note[160]; /* states what of the file cannot be preserved; "" if
+                       nothing */
 };
 
 struct glint_oiio_options {

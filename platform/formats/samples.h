@@ -89,10 +89,10 @@ enum glint_status glint_samples_proxy(const struct glint_samples *samples,
  * is seen. Codes are clipped at the maximum. */
 void glint_samples_add(struct glint_samples *samples, const float *layer);
 
-/* Sets the upright pixel X, Y to what is seen of it over black, RGB, linear
- * light of BT.709 primaries, once the fraction COVER, 0 .. 1, of what is behind
- * it is hidden: alpha becomes 1 - (1 - alpha)(1 - COVER), and straight colours
- * RGB over that. Nothing where the file has no pixel. */
+/* Sets the upright pixel X, Y to its appearance over black, RGB, linear light
+ * of BT.709 primaries, once the fraction COVER, 0 .. 1, of what is behind it is
+ * hidden: alpha becomes 1 - (1 - alpha)(1 - COVER), and straight colours RGB
+ * over that. Nothing where the file has no pixel. */
 void glint_samples_set(struct glint_samples *samples, int x, int y,
                        const double rgb[3], double cover);
 

@@ -369,7 +369,7 @@ static const char *get_buffers(struct glint_v4l2 *v)
 /* us of silence, beyond STALL_FRAMES frames, that are a stall and no pause */
 #define STALL_US     2000000
 #define STALL_FRAMES 4
-#define MAX_GAP      4096 /* most frames that are lost at a time */
+#define MAX_GAP      4096 /* max frames dropped at a time */
 /* damaged frames in a row after which the stream restarts */
 #define USELESS 30
 
@@ -597,8 +597,8 @@ static int gap(struct glint_v4l2 *v, uint32_t sequence)
     return counts ? (int)missing : 0;
 }
 
-/* Takes the newest whole frame that waits; gives back the others and counts
- * them in FRAME as late or corrupt, and lost ones as dropped. */
+/* Dequeues the newest complete frame; requeues the others and counts them in
+ * FRAME as late or corrupt, and missing ones as dropped. */
 static enum glint_v4l2_outcome take_newest(struct glint_v4l2 *v,
                                            struct glint_v4l2_taken *newest,
                                            struct glint_source_frame *frame)

@@ -265,8 +265,8 @@ static enum glint_status take_format(struct glint_v4l2_device *d,
     return GLINT_OK;
 }
 
-/* Sets the format wished for and takes over the one that the device answers.
- * Errors are those of glint_v4l2_device_open(). */
+/* Requests a format and adopts the one that the device answers with. Errors are
+ * those of glint_v4l2_device_open(). */
 static enum glint_status set_format(struct glint_v4l2_device *d,
                                     struct glint_error *error)
 {

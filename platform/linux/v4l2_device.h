@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * linux/v4l2_device.h - a camera before it streams: what it is, what it offers,
- * and the format that is agreed on.
+ * linux/v4l2_device.h - a camera before it streams: identity, capabilities, and
+ * the negotiated format.
  *
- * A configuration is a wish: the device answers with what it can do, and glint
- * takes that, strides and sizes included.
+ * A configuration is a request: the device answers with what it supports, and
+ * glint uses that, including strides and sizes.
  */
 #ifndef GLINT_PLATFORM_LINUX_V4L2_DEVICE_H
 #define GLINT_PLATFORM_LINUX_V4L2_DEVICE_H

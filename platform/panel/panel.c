@@ -279,7 +279,7 @@ size_t glint_row_rgb_bytes(int width)
 
 void glint_row_rgb_init(struct glint_row_rgb *row, void *mem, int width)
 {
-    const ptrdiff_t each = (ptrdiff_t)width + 1; /* room for whole pairs */
+    const ptrdiff_t each = (ptrdiff_t)width + 1; /* capacity for whole pairs */
     uint8_t *const at = mem;
 
     for (int i = 0; i < 3; i++)

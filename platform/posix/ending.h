@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * posix/ending.h - what kind of file a name says.
+ * posix/ending.h - the type of a file by the ending of its name.
  */
 #ifndef GLINT_PLATFORM_POSIX_ENDING_H
 #define GLINT_PLATFORM_POSIX_ENDING_H

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Takes any bytes as lines of control, and as keys. What is accepted must be in
- * the ranges of its form and say the same when it is written again; what is
- * refused must name its place; frames of a playback must exist.
+ * Parses any bytes as control lines, and as keys. Accepted lines must be in
+ * range and equal themselves when written and read again; rejected ones must
+ * name their place; frames of a playback must exist.
  *
  *     make fuzz FUZZ=control SECONDS=60
  */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * motion_table FRAMES - prints by how much localised places miss the true ones,
- * by method and motion.
+ * motion_table FRAMES - prints the errors of localised positions, by method and
+ * motion.
  *
  * Methods take turns at chunks of frames, so that their times are of one run.
  */

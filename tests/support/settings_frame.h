@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A frame by itself, as commands set it up, for tests of what engines are made
- * of.
+ * A single frame, set up like that of a command, for tests of the parts of an
+ * engine.
  */
 #ifndef GLINT_TESTS_SUPPORT_SETTINGS_FRAME_H
 #define GLINT_TESTS_SUPPORT_SETTINGS_FRAME_H

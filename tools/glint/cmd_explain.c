@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint explain: tells what one frame models, what it leaves out and why, and
- * what each part of it costs and gives.
+ * glint explain: reports what one frame draws, what it leaves out and why, and
+ * cost and light of each part.
  */
 #include <math.h>
 #include <stdlib.h>

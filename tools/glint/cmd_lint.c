@@ -24,9 +24,9 @@ struct mend {
 
 enum { MENDS = 8, LENS_TEXT = 1 << 16 };
 
-/* Ends of the map of glasses: the least and the largest Vd at an nd. Makers'
- * maps from fluorite and fluor crowns over the lanthanum crowns to the densest,
- * and down the flints, with lead and without; two widths of a label beyond. */
+/* Limits of the map of glasses: min and max Vd at an nd. Makers' maps from
+ * fluorite and fluor crowns over the lanthanum crowns to the densest, and down
+ * the flints, with lead and without; two widths of a label beyond. */
 static const struct {
     double nd, least, most;
 } ends[] = {{1.42, 60.0, 97.5}, {1.45, 56.0, 96.0}, {1.50, 48.0, 84.0},
@@ -48,8 +48,8 @@ static bool is_plastic(double nd, double vd)
            vd <= fmax(least + 6.5, 35);
 }
 
-/* Returns whether there is, or has been, a glass like that: not beyond the
- * crowns and fluorides, nor beyond the flints; if MOULDED, also a plastic. */
+/* Returns whether a glass with these values exists or existed: between crowns
+ * with fluorides and flints; if MOULDED, also a plastic. */
 static bool is_known_glass(double nd, double vd, bool moulded)
 {
     int k = 0;

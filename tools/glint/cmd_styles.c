@@ -76,8 +76,8 @@ static int parse(struct tool *tool, struct styles_command *c,
     return optind + 1 < c->argc ? tool_usage(tool, "takes one picture") : -1;
 }
 
-/* Loads the photograph that comes with glint, the small one if the other takes
- * the image plug-in and there is none. GLINT_E_ARGUMENT: neither is there. */
+/* Loads the photograph that comes with glint, the small one if the other needs
+ * a missing image plug-in. GLINT_E_ARGUMENT: neither is there. */
 static enum glint_status load_photograph(struct glint_image *image,
                                          struct glint_error *error)
 {

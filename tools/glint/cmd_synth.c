@@ -2,11 +2,11 @@
  *
  * glint synth: data sets for flare removal.
  *
- * Any number of processes fill the folder of a set, are killed at, and continue
- * with. Every file is written beside its place and moved there when it is
- * whole. The item's line, items/NUMBER.json, comes last. An item is there if
- * its line and all its pictures are. A manifest is all lines in their order,
- * and is there once all items are.
+ * Any number of processes can fill the folder of a set, be killed, and
+ * continue. Every file is written beside its place and renamed when it is
+ * complete, the item's line, items/NUMBER.json, last. An item exists if its
+ * line and all its pictures do. The manifest has all lines in order, and is
+ * written when all items exist.
  */
 #include <dirent.h>
 #include <errno.h>
@@ -184,8 +184,8 @@ static int check_apart(const struct tool *tool, const struct synth_set *set)
                       set->folder, path);
 }
 
-/* Refuses a count below the items that SET has: a set is never made smaller,
- * and its manifest would no longer say what is there. */
+/* Rejects a count below the number of items in SET: a set never shrinks, or its
+ * manifest would be wrong. */
 static int check_count(const struct tool *tool, const struct synth_set *set)
 {
     char path[SYNTH_PATH_BYTES];
@@ -780,8 +780,8 @@ static int run_line(const struct tool *tool, struct synth *s)
     return code == EXIT_OK ? make(tool, s, &item) : code;
 }
 
-/* Opens every lens, so that what has to be baked is baked before there are
- * items, and what is not a lens is reported. */
+/* Opens every lens, so that lenses are baked before the first item, and names
+ * that are not lenses are reported. */
 static int open_lenses(const struct tool *tool, struct synth *s)
 {
     int code = EXIT_OK;

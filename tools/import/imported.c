@@ -512,8 +512,8 @@ static bool free_stop(struct imported *lens)
     return does_nothing(lens, at) || stop_beside(lens, at);
 }
 
-/* Finds the stop, and frees it. One whose opening is not said waits until that
- * is, as what it has to clear is the surface at its rim. */
+/* Finds the stop and separates it from its surface. If its opening is not
+ * stated, that is deferred, as the rim of the surface must be known. */
 static bool settle_stop(struct imported *lens)
 {
     int at = -1;
@@ -572,8 +572,8 @@ static void settle_film(struct imported *lens, double focal_units)
 
 /* ------------------------------------------------------------- openings */
 
-/* Sets what is missing of f-number and pupil; the stop's semi-diameter says it
- * where the file does not. */
+/* Completes f-number and pupil, from the stop's semi-diameter if the file does
+ * not state them. */
 static bool settle_pupil(struct imported *lens, double focal_units)
 {
     const int stop = stop_of(lens);

@@ -26,11 +26,11 @@ struct lines {
 void lines_begin(struct lines *lines, struct imported *lens, const char *text,
                  size_t bytes);
 
-/* Takes the next line that has words, divided at blanks and tabs. Words in
- * quotes are one; a quote begins a word and ends on its line, so that
- * apostrophes and inches are none. What follows COMMENT is left out; '\0':
- * there are none. Returns false at the end, or after the error of a line that
- * is too long, which import_read() sees. */
+/* Takes the next line that has words, divided at blanks and tabs. Quoted words
+ * count as one; a quote begins a word and ends on its line, so that apostrophes
+ * and inches are not quotes. What follows COMMENT is left out; '\0': there are
+ * none. Returns false at the end, or after the error of a line that is too
+ * long, which import_read() sees. */
 bool lines_next(struct lines *lines, char comment);
 
 /* Sets VALUE to word K. Returns false, after an error that states WHAT it is,

@@ -41,8 +41,8 @@ static bool take_glass(struct oslo *o)
     return true;
 }
 
-/* Takes a word that this reader has no place for: refuses those that make
- * another lens of it, notes all others. */
+/* Handles an unsupported keyword: rejects those that change the lens, notes all
+ * others. */
 static bool take_other(struct oslo *o)
 {
     static const char *const shaping[] = {"TLA", "TLB", "TLC", "DCX", "DCY",

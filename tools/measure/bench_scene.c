@@ -33,8 +33,8 @@ static const char help[] =
     "  --format F          yuyv (default) | i420 | nv12 | rgb24 | xrgb8888 |\n"
     "                      rgb565\n";
 
-/* SHADOWS is a part of DRAW: what a scene without them does not take. WHOLE is
- * the sum of the others. */
+/* SHADOWS is included in DRAW: the additional time of a scene with shadows.
+ * WHOLE is the sum of the others. */
 enum { PREPARE, AROUND, DRAW, SHADOWS, LIGHTS, WHOLE };
 
 struct opened {

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * draw.h - the layers of an item, in linear light, and what a sensor makes of
- * them.
+ * draw.h - the layers of an item, in linear light, and the picture that a
+ * sensor records of them.
  *
- * The ghosts are exposed: ghost_level states what the brightest of them come
- * to, and with that how bright the lights are. Their own light, the star and
- * the haze follow by physics, but for the star's factor.
+ * ghost_level sets the brightness of the ghosts, and thereby the power of the
+ * lights. Their own light, the star and the haze follow physically, except for
+ * the star's factor.
  */
 #ifndef GLINT_TOOLS_SYNTH_DRAW_H
 #define GLINT_TOOLS_SYNTH_DRAW_H
@@ -76,8 +76,8 @@ int synth_lens_open(const struct tool *tool, struct synth_lenses *lenses,
 
 void synth_lenses_close(struct synth_lenses *lenses);
 
-/* Draws the layers of ITEM into D, of its size, and states what came out.
- * Returns an exit code. */
+/* Draws the layers of ITEM into D, of its size, and stores the results. Returns
+ * an exit code. */
 int synth_draw(const struct tool *tool, struct synth_lenses *lenses,
                const struct synth_backgrounds *backgrounds,
                const struct synth_item *item, struct synth_drawing *d,

@@ -59,7 +59,7 @@ struct synth_item {
 
 enum { SYNTH_LEAST_EV = -7, SYNTH_MOST_EV = 1 };
 
-/* What came out, for those who read a manifest; it draws nothing. */
+/* Results, for readers of a manifest; not an input. */
 struct synth_result {
     double background_ev, f_number, focal_mm, sensor_width_mm;
     /* Of each light: display white times pixels, its own light over white, its

@@ -60,7 +60,7 @@ candidate_of(enum glint_scatter_candidate_kind kind, int terms)
     return o;
 }
 
-/* What JUDGEMENT has to say of ROWS but for its maps. */
+/* Prints JUDGEMENT of ROWS but for its maps. */
 static struct glint_scatter_judgement
 judged(struct glint_scatter_rows *rows, const struct glint_scatter_candidate *o)
 {

@@ -73,7 +73,7 @@ struct twin_hit {
     bool inside;                    /* of a sphere or mesh: the ray leaves it */
 };
 
-/* What a pixel shows: rgb + (1 - cover) times what is behind it. */
+/* A pixel: rgb + (1 - cover) * background. */
 struct twin_pixel {
     float rgb[3], cover;
 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Models with valid checksums whose contents would take too much work or
+ * Models with valid checksums whose contents would cost too much work or
  * memory, or overflow. Each is drawn at random from its family; those that
  * glint_lens_open() accepts must be drawn within bounds of work and memory.
  *

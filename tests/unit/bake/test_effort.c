@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a bake says of the work that is done, as bakes of ghosts of known work
- * on a clock of their own.
+ * Progress reports of a bake, tested with ghosts of known work and a simulated
+ * clock.
  */
 #include <math.h>
 #include <setjmp.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Texts of translucent media: what they say, and where they are refused.
+ * Texts of translucent media: values, defaults, and errors with their places.
  */
 #include <math.h>
 #include <setjmp.h>

@@ -23,8 +23,8 @@ static const struct glint_lamp lamps[] = {{12, 33, 3e5, {1, 1, 1}, {0, 0}, 0},
                                           {7, 200, 3e5, {1, 1, 1}, {0, 0}, 0},
                                           {4, 80, 3e5, {1, 1, 1}, {0, 0}, 0}};
 
-/* A simulated machine: the dials of a frame decide what it takes, in ms. The
- * clock is read at the ends of three intervals a frame. */
+/* A simulated machine: the time of a frame, in ms, is a function of its dials.
+ * The clock is read at the ends of three intervals a frame. */
 static struct machine {
     const struct glint_frame *frame;
     double base_ms, cells_ms, power, steps_ms;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * What is reported of a frame must be true: counts are those of the frame that
- * is drawn, parts add up to it, each reason occurs where it must, and the
- * picture shows the tiles that were touched.
+ * Reports on a frame must be true: counts are those of the drawn frame, parts
+ * add up to it, each reason occurs where it must, and the picture shows the
+ * touched tiles.
  */
 #include <math.h>
 #include <setjmp.h>

@@ -235,8 +235,8 @@ static void test_bounds(void **state)
     glint_frame_finish(&frame);
 }
 
-/* What would take too much memory must be drawn by coarser grids, all of it,
- * say so, and come out the same again, in the same memory. */
+/* A frame that needs too much memory must be drawn completely with coarser
+ * grids, report it, and be the same again in the same memory. */
 static void test_tight(void **state)
 {
     static uint8_t want[BYTES], got[BYTES], coarse[BYTES];

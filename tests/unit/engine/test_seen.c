@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What of a flare is seen on the picture under it, and how the exposure takes
- * account of that.
+ * Visibility of a flare on the picture under it, and the exposure that follows.
  */
 #include <math.h>
 #include <setjmp.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What became of a frame's bundles: each outcome occurs for a cause of its own,
+ * Statistics of a frame's bundles: each outcome occurs for its own cause,
  * counts are those of the frame that is drawn, and pictures of parts add up to
  * the whole.
  */

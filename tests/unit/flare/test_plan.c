@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a frame has to draw: ghosts that are seen must be planned and no others,
- * and rows of rays that are computed one by one must give the picture of a
- * stored grid.
+ * Plans: visible ghosts must be planned and no others, and rows of rays that
+ * are computed one by one must give the picture of a stored grid.
  */
 #include <math.h>
 #include <setjmp.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Light of a program's own must do what its definition in linear light says, in
- * every format and size alike, and change nothing beside it.
+ * Light of a program must be added as defined in linear light, in every format
+ * and size, and change nothing else.
  */
 #include <math.h>
 #include <setjmp.h>

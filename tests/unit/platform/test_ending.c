@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What kind of file a name says.
+ * File types by the ending of a name.
  */
 #include <setjmp.h>
 #include <stdarg.h>

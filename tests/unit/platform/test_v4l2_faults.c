@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The V4L2 source when objects go wrong: what it survives, what it gives up on,
- * after how long and with which message; and that nothing is left behind.
+ * Faults of the V4L2 source: which it survives, which end it, after what time
+ * and with which message; and that no resource leaks.
  */
 #include "support/fakes/camera_check.h"
 #include "support/scratch.h"

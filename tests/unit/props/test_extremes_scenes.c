@@ -93,7 +93,8 @@ static int is_inside(const struct twin_pixel *p, int width, int height, int x,
     return 1;
 }
 
-/* Draws TEXT, WIDTH x HEIGHT, both ways; WORST takes what is worse. */
+/* Draws TEXT, WIDTH x HEIGHT, with both renderers; WORST keeps the larger
+ * errors. */
 static void compare(const char *text, int width, int height,
                     struct outcome *worst)
 {

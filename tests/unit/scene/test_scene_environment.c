@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Environments and brushed metal in scenes: integers against the reference in
- * double precision, what a scene says of them, and what a highlight sums to. */
+ * double precision, their lines in a scene text, and the light of a highlight.
+ * */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

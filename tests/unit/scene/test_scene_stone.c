@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Translucent objects in scenes: integers against the reference in double
- * precision, the same bits whoever draws, what is worked out when, extremes,
- * and what is refused. */
+ * precision, the same bits for all workers and tiles, updates of maps,
+ * extremes, and errors. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -337,8 +337,8 @@ static void look_from(struct drawn *d, double angle, int32_t *light_q20)
     draw(d, light_q20);
 }
 
-/* Texels are worked out as they come into view, once, and all pictures are
- * those of scenes that were just opened; nothing is done for nothing. */
+/* Texels are computed when they become visible, once, and all pictures equal
+ * those of newly opened scenes; no work is wasted. */
 static void test_updates(void **state)
 {
     static int32_t turned[3 * PIXELS], fresh[3 * PIXELS];
@@ -435,8 +435,8 @@ static double brightest(const int32_t *light_q20)
     return most;
 }
 
-/* Translucent medium that absorbs all is black; what absorbs nothing shows no
- * more than it gets; light of any strength stays light. */
+/* A medium that absorbs everything is black; one that absorbs nothing returns
+ * at most the light it receives, at any strength. */
 static void test_albedo_0_and_1(void **state)
 {
     static int32_t light[3 * PIXELS];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lines of control: what they say, what is wrong with them and where; keys;
- * frames that a playback shows; files and pipes. */
+ * Control lines: values, errors and their places; keys; frames of a playback;
+ * files and pipes. */
 #define _GNU_SOURCE /* mkstemp, posix_openpt */
 #include <fcntl.h>
 #include <setjmp.h>

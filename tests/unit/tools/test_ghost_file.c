@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Files of single ghosts: what they set, and what they are refused for.
+ * Files of single ghosts: values and errors.
  */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint live from its command line to its exit code, with a camera that the
- * test answers for: what it leaves behind, what a frame takes, and what signals
- * and lost cameras do.
+ * glint live from its command line to its exit code, with a fake camera:
+ * resources, cost of a frame, signals and lost cameras.
  */
 #include <setjmp.h>
 #include <stdarg.h>

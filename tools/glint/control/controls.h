@@ -62,7 +62,7 @@ enum control_verb {
     CONTROL_SCALE,    /* factor of all its light */
     CONTROL_MAP,      /* another environment of the scene: name */
     CONTROL_NEXT_MAP, /* the one after that */
-    /* Time of what moves by itself. */
+    /* Time of poses and recorded motions. */
     CONTROL_STEP, /* frames, 1 if not given; may be negative */
     CONTROL_JUMP, /* to a frame */
     CONTROL_PLAY, /* frames a second; none given: one a picture */
@@ -74,7 +74,7 @@ enum control_verb {
     CONTROL_VERBS
 };
 
-/* What a command takes. */
+/* Arguments of a command. */
 struct control_form {
     enum control_verb verb;
     const char *word;   /* with which it begins */

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * playback.h - which frame of what moves by itself a picture shows.
+ * playback.h - which frame of poses or a recorded motion a picture shows.
  *
  *     playback_init(&playback);
  *     playback_take(&playback, &line);              step, jump, play ...
  *     frame = playback_next(&playback, elapsed_s);  each picture
  *
- * Seconds, not pictures, count while it plays at a rate: what is shown of
- * frame k is the same whatever was shown before.
+ * At a rate, playback follows seconds, not pictures: frame k looks the same
+ * whatever was shown before.
  */
 #ifndef GLINT_TOOLS_CONTROL_PLAYBACK_H
 #define GLINT_TOOLS_CONTROL_PLAYBACK_H

@@ -581,7 +581,7 @@ static void change_look(const struct steer *s, const struct control_line *line,
     }
 }
 
-/* Returns whether LOOK of material I sends back no more light than comes. */
+/* Returns whether LOOK of material I reflects at most the light it receives. */
 static bool is_darker(const struct steer *s, int i,
                       const struct glint_scene_look *look)
 {

@@ -101,7 +101,8 @@ static int rising(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Returns the factor by which LIGHT[N] is shown; ROOM has room for as many. */
+/* Returns the factor by which LIGHT[N] is displayed; ROOM is scratch of the
+ * same size. */
 static double exposure_of(const float *light, size_t n, float *room)
 {
     size_t lit = 0;

@@ -13,8 +13,8 @@
 
 enum { POINTS = 61, LEAST_PX = 2 };
 
-/* A lamp that is hidden keeps this fraction of its level, as lists of lamps
- * take none without. */
+/* A hidden lamp keeps this fraction of its level, as lists of lamps do not
+ * accept 0. */
 static const double least_level = 1e-6;
 
 /* ------------------------------------------------------------------- reading

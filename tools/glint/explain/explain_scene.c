@@ -109,8 +109,8 @@ static const char *word_of(const struct explained_scene *s,
                : explain_reason((enum glint_outcome)most);
 }
 
-/* Sets LIGHT to what becomes of light I; N are ahead, SEEN. LAMPS of the
- * scene are those that have any light, in this order. */
+/* Sets LIGHT to the outcome of light I; SEEN[N] are those ahead of the camera.
+ * LAMPS of the scene are those that have any light, in this order. */
 static struct light light_of(const struct explained_scene *s, int i,
                              const struct glint_scene_lamp *seen, int n)
 {

@@ -55,8 +55,8 @@ static int seen_at(const struct heat *h, int x, int y)
                           : h->scene->account.seen[(ptrdiff_t)y * h->width + x];
 }
 
-/* Returns whether OBJECT, or -1, only takes shadows: the picture is seen
- * through it, and stays to be seen. */
+/* Returns whether OBJECT, or -1, only receives shadows, so that the picture
+ * stays visible through it. */
 static bool is_catcher(const struct heat *h, int object)
 {
     return object >= 0 &&

@@ -76,7 +76,7 @@ static void print_head(const char *what)
            "edges", "rows", "lit px", "tiles", "light%", "brightest", "work%");
 }
 
-/* Prints what a kind takes that few frames have. */
+/* Prints the cost of a kind that few frames have. */
 static void print_price(const struct glint_explain *e,
                         enum glint_cost_kind kind)
 {

@@ -123,7 +123,7 @@ void help_screen(const struct help *help)
 
 /* ------------------------------------------------------------------ options */
 
-/* Prints the first line of what TEXT says of the option NAME. */
+/* Prints the first line of the help on option NAME in TEXT. */
 static bool print_about(const char *text, const char *name)
 {
     char at[NAME_CHARS];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * help.h - the help of a command, whole or what fits on a screen, and its
- * options as lines for shells and manual pages.
+ * help.h - the help of a command, complete or as much as fits on a screen, and
+ * its options as lines for shells and manual pages.
  */
 #ifndef GLINT_TOOLS_HELP_HELP_H
 #define GLINT_TOOLS_HELP_HELP_H
@@ -20,8 +20,8 @@ struct help {
     const char *part[HELP_PARTS];
 };
 
-/* Print HELP: all of it, or if it is longer than a screen what the command is
- * and the options that most people turn. */
+/* Print HELP: all of it, or if it is longer than a screen the synopsis and the
+ * most common options. */
 void help_all(const struct help *help);
 void help_screen(const struct help *help);
 

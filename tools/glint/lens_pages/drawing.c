@@ -754,7 +754,7 @@ static void open_svg(const struct figure *f)
             f->height_px);
 }
 
-/* Draws the rays, or those of the ghost; PATH receives what of the latter. */
+/* Draws the rays, or those of the ghost, whose path PATH receives. */
 static void draw_light(struct figure *f, char *path, size_t bytes)
 {
     const struct lens_drawing *d = f->drawing;

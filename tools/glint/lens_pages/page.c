@@ -71,9 +71,9 @@ enum { ANGLES = 3, WIDE = 168, MOST_HIGH = 168 };
 
 static const double share[ANGLES] = {0.25, 0.5, 0.8};
 
-/* Ghosts are exposed as pictures of them alone are, but no more than so many
- * times what would show the star beside them: where ghosts are faint it would
- * fill the picture. */
+/* Ghosts are exposed like pictures of ghosts alone, but at most so many times
+ * the exposure of the star: with faint ghosts the star would fill the picture.
+ * */
 #define BRIGHTER 40.0
 
 /* Returns the angle at SHARE of the half diagonal, by f tan T, which places

@@ -36,8 +36,8 @@ bool lens_has_words(const char *name, const struct glint_prescription *lens,
     return true;
 }
 
-/* Where words are, the more telling first: of two that are as near, that of a
- * name is meant rather than one of a sentence. */
+/* Fields that are searched, by priority: of two equally near words that of a
+ * name is preferred to one of a sentence. */
 enum { OF_NAME, OF_SOURCE, OF_CHARACTER, N_PLACES };
 
 struct search {

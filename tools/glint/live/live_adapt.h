@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Holds a frame rate by giving up accuracy, a step at a time.
+ * Holds the frame rate by reducing quality, a step at a time.
  *
  * It goes a step down at once when frames are missed or hardly any time is
  * left, or several steps if a frame takes several periods. It goes a step up

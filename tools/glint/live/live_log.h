@@ -128,8 +128,8 @@ int live_log_fail(const struct live_log *log, enum glint_status status,
 /* Prints TEXT on a line of its own, unless -q is given. */
 void live_log_say(const struct live_log *log, const char *text);
 
-/* Counts a frame of which something did not fit into memory, as OF tells, and
- * reports the first such frame. */
+/* Counts a frame that did not completely fit into memory, by OF, and reports
+ * the first such frame. */
 void live_log_short(struct live_log *log, const struct glint_flare_stats *of);
 
 /* Prints the statistics of the second and begins the next one, if it is over or

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The commands "glint bake INPUT -o OUT" of what scenes take: their options,
+ * The commands "glint bake INPUT -o OUT" for files of scenes: their options,
  * and the file that they write.
  *
  *     code = bake_line_begin(&tool, argc, argv, options, take, &line, "one");
@@ -39,7 +39,7 @@ int bake_line_begin(struct tool *tool, const char *help, int argc, char **argv,
 /* Writes DATA to TOOL->written, all or nothing. Returns an exit code. */
 int bake_line_write(const struct tool *tool, const void *data, size_t bytes);
 
-/* Returns whether standard output is free to say what was baked. */
+/* Returns whether standard output is free for a report. */
 bool bake_line_tells(const struct tool *tool);
 
 #endif

@@ -40,7 +40,7 @@ int coating_take(const struct tool *tool, struct coating *coating,
 /* Prints COATING: "none", "550 nm, index 1.38" or that and its layers. */
 void coating_print(FILE *file, const struct glint_coating *coating);
 
-/* Gives the surfaces of LENS what COATING says. */
+/* Coats the surfaces of LENS with COATING. */
 void coating_apply(const struct coating *coating,
                    struct glint_prescription *lens);
 

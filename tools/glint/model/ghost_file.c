@@ -137,7 +137,8 @@ static const char *take_line(void *ctx, struct text_lines *lines, char *line)
         word, r->n - 1);
 }
 
-/* Mutes what is not to be seen, and gives parts the tints of their ghosts. */
+/* Mutes the ghosts that are not solo, if any is, and gives parts the tints of
+ * their ghosts. */
 static void finish(struct reading *r)
 {
     bool any_solo = false;

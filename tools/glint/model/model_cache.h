@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * Models of lens tables, baked when first needed and kept.
+ * Cache of the models of lens tables, which are baked when first needed.
  *
  * They lie in share/glint/models, where glint was installed with them, or in
  * $XDG_CACHE_HOME/glint, or ~/.cache/glint, under the lens's name and a key of
- * its contents and the options, so that a change of either finds no old model.
- * Where no file can be written, no model is kept.
+ * its contents and the options, so that a change of either never finds an old
+ * model. If no file can be written, nothing is cached.
  */
 #ifndef GLINT_TOOLS_MODEL_MODEL_CACHE_H
 #define GLINT_TOOLS_MODEL_MODEL_CACHE_H
 
 #include "model/model_file.h"
 
-/* Opens as MODEL the model of LENS by OPTIONS: the installed one, the kept one,
- * or a new one, which it bakes and keeps. It sets workers and progress of
+/* Opens as MODEL the model of LENS by OPTIONS: the installed one, the cached
+ * one, or a new one, which it bakes and caches. It sets workers and progress of
  * OPTIONS. Returns an exit code, after printing the reason on failure. */
 int model_cached(const struct tool *tool, const struct glint_prescription *lens,
                  struct glint_bake_options options, struct model_file *model);

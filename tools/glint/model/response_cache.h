@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Where an engine keeps what it measures of lenses: files beside the baked
- * models. Where no file can be written, nothing is kept.
+ * Cache of lens responses: files beside the baked models. If no file can be
+ * written, nothing is cached.
  */
 #ifndef GLINT_TOOLS_MODEL_RESPONSE_CACHE_H
 #define GLINT_TOOLS_MODEL_RESPONSE_CACHE_H

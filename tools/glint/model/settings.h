@@ -79,7 +79,7 @@ int settings_option(const struct tool *tool, struct settings *settings,
 int settings_open(const struct tool *tool, struct settings *settings,
                   const char *lens);
 
-/* Says by TEXT why the f-number of S cannot be had, and which line of a file
+/* Prints why the f-number of S is not possible, TEXT, and which line of a file
  * requests it. Returns an exit code. */
 static inline int settings_refuse_stop(const struct tool *tool,
                                        const struct settings *s,
@@ -116,8 +116,8 @@ void settings_close(struct settings *settings);
 struct glint_view settings_view(const struct settings *settings, int width,
                                 int height);
 
-/* Sets CFG to what SETTINGS, which are open, say of an engine for pictures of
- * WIDTH x HEIGHT. */
+/* Sets CFG to the configuration of an engine for pictures of WIDTH x HEIGHT
+ * from SETTINGS, which are open. */
 void settings_engine(const struct tool *tool, const struct settings *settings,
                      int width, int height, struct glint_engine_config *cfg);
 

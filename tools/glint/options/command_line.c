@@ -158,7 +158,7 @@ int tool_option(struct tool *tool, int option, const char *value)
         if (tool_integer(value, 0, INT_MAX, &tool->seed))
             return -1;
         return tool_usage(tool, "--seed takes a whole number, not '%s'", value);
-    default: /* getopt_long has said what is wrong */
+    default: /* getopt_long has printed the error */
         suggest_option(tool);
         return EXIT_USAGE;
     }

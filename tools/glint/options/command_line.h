@@ -66,8 +66,8 @@ int tool_inputs(const struct tool *tool, int argc, char **argv, int n,
 typedef int tool_take_fn(struct tool *tool, void *ctx, int c,
                          const char *value);
 
-/* Takes the options of a line, SHORTS beside the common ones. Returns -1, or an
- * exit code after printing why. */
+/* Parses the options of a line, SHORTS besides the common ones. Returns -1, or
+ * an exit code after printing why. */
 int tool_take(struct tool *tool, int argc, char **argv, const char *shorts,
               const struct option *options, tool_take_fn *take, void *ctx);
 

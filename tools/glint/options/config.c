@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * This file cuts lines and hands them to inih one by one. By itself, inih would
- * break long lines in two and take an indented line as more of the last value.
+ * This file splits the text and passes lines to inih one by one. Otherwise inih
+ * would break long lines in two and treat an indented line as a continuation of
+ * the last value.
  */
 #include "options/config.h"
 

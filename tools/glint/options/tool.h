@@ -67,8 +67,8 @@ int tool_usage(const struct tool *tool, const char *format, ...);
 int tool_fail(const struct tool *tool, enum glint_status status,
               const char *text);
 
-/* Prints that OPTION does not take VALUE, and what it takes. Returns the code
- * of tool_usage(). */
+/* Prints that OPTION does not accept VALUE, and what it accepts. Returns the
+ * code of tool_usage(). */
 int tool_refuse(const struct tool *tool, const char *option, const char *value);
 
 /* ------------------------------------------------------------------ numbers */
@@ -110,9 +110,10 @@ int tool_check_ending(struct tool *tool, const char *path, const char *ending,
  * PROGRESS below is such a struct, and DONE is 0 .. 1. */
 struct tool_progress {
     const char *what;
-    const char *less; /* what makes it take less, said where it takes minutes;
-                         NULL: nothing */
-    const char *besides; /* what is not in that, said likewise; NULL: nothing */
+    const char *less;    /* how to make it faster, printed if it takes minutes;
+                            NULL: nothing */
+    const char *besides; /* what the estimate does not include, printed
+                            likewise; NULL: nothing */
     double from, share;  /* see tool_progress_part() */
     bool shown, is_terminal;
     bool told;             /* the estimate was printed, or the work is short */

@@ -339,7 +339,7 @@ int over_scene_size(struct over_scene *over, const struct scene_dials *dials)
     return size(over, dials);
 }
 
-/* Turns the dials to those of LEVEL. */
+/* Sets the dials to those of LEVEL. */
 static enum glint_status turn(struct over_scene *over, int level)
 {
     const struct scene_dials dials = scene_budget_dials(&over->budget, level);

@@ -89,9 +89,9 @@ bool over_scene_keeps_lights(const struct over_scene *over);
  * Returns an exit code. */
 int over_scene_size(struct over_scene *over, const struct scene_dials *dials);
 
-/* Draws from the next picture on with the dials that were requested, but no
- * finer than QUALITY, as of --quality; 1: as asked. A budget turns them by
- * itself. GLINT_E_MEMORY. */
+/* Draws the following pictures with the requested dials, but no finer than
+ * QUALITY, as of --quality; 1: as requested. A budget changes them
+ * automatically. GLINT_E_MEMORY. */
 enum glint_status over_scene_coarsen(struct over_scene *over, double quality);
 
 /* Obeys the lines of control up to FRAME. Drawing it does so, but the lens has

@@ -312,7 +312,7 @@ static enum glint_status draw_scene(struct overlay_file *file,
     return GLINT_OK;
 }
 
-/* States that what is drawn has no colours, as the file has no room for them.
+/* Warns that the result is grey, as the file has one channel.
  */
 static void say_grey(const struct overlay_file *file,
                      const struct drawing *drawing)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * One picture or frame of a run of overlay: drawn, or looked at alone; and what
- * the result says of all. */
+ * One picture or frame of overlay: drawn, or only searched for lamps; and the
+ * report on all. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -126,8 +126,8 @@ static void close_frames(struct frames *f)
 
 /* ------------------------------------------------------------------ drawing */
 
-/* Adds what the lens makes of the lights, with those that the scene over black
- * hides, to the picture. */
+/* Adds the flare of the lights, reduced by occlusion in the scene over black,
+ * to the picture. */
 static enum glint_status add_flare(struct frames *f)
 {
     struct drawing *const c = f->c;

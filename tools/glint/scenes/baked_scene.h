@@ -27,7 +27,7 @@ int baked_scene_open(const struct tool *tool, const char *path,
 
 void baked_scene_close(struct baked_scene *scene);
 
-/* Prints what is in SCENE, and its bytes by what they hold; with --json, as one
+/* Prints the contents of SCENE, and its bytes by section; with --json, as one
  * object. */
 void baked_scene_print(const struct tool *tool,
                        const struct baked_scene *scene);

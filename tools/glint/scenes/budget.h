@@ -37,8 +37,8 @@ bool scene_budget_follow(struct scene_budget *budget, double ms,
  * took FLARE_MS at QUALITY, as of --quality. Both are 0 before the first. */
 double scene_budget_limit(double all_ms, double flare_ms, double quality);
 
-/* Turns those of DIALS that are 0 to QUALITY, as of --quality; at 0.5 they stay
- * so. */
+/* Sets those of DIALS that are 0 by QUALITY, as of --quality; at 0.5 they stay
+ * 0. */
 void scene_dials_be(struct scene_dials *dials, double quality);
 
 /* Returns the quality, as of --quality, than which the dials of budget->level

@@ -8,8 +8,8 @@
 #include "glint/scene/stone_bake.h"
 #include "options/tool.h"
 
-/* How near what a translucent medium makes of light is to its full rows, under
- * lamps, shadows and a ramp. */
+/* Errors of a translucent medium against its full rows, under lamps, shadows
+ * and a ramp. */
 struct stone_errors {
     double fit_db, baked_db;
     double kernel_loss;

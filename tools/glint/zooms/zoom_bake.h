@@ -30,8 +30,8 @@ struct zoom_baked {
     size_t bytes;
     int n_models; /* number of positions of any ghost */
     int n_bakes;  /* number of ghosts that were baked, over all positions */
-    /* PSNR of pictures half-way, the least, and at which focal length, mm; 0 if
-     * none was looked at. */
+    /* Min PSNR of pictures half-way, and its focal length, mm; 0 if none was
+     * measured. */
     double least_db, least_mm;
 };
 
