@@ -402,18 +402,18 @@ static void pack_halves(const struct glint_row_pack *p, uint16_t *restrict dst,
                         const uint8_t *threshold, int n)
 {
     const struct glint_pixel_layout *const l = &p->layout;
-    const uint16_t most_r = (uint16_t)((1 << l->red.length) - 1),
-                   most_g = (uint16_t)((1 << l->green.length) - 1),
-                   most_b = (uint16_t)((1 << l->blue.length) - 1);
+    const uint16_t max_r = (uint16_t)((1 << l->red.length) - 1),
+                   max_g = (uint16_t)((1 << l->green.length) - 1),
+                   max_b = (uint16_t)((1 << l->blue.length) - 1);
     const int to_r = l->red.offset, to_g = l->green.offset,
               to_b = l->blue.offset;
     const uint16_t opaque = (uint16_t)p->opaque;
 
     for (int i = 0; i < n; i++)
         dst[i] = (uint16_t)(opaque |
-                            shifted(fewer(r[i], most_r, threshold[i]), to_r) |
-                            shifted(fewer(g[i], most_g, threshold[i]), to_g) |
-                            shifted(fewer(b[i], most_b, threshold[i]), to_b));
+                            shifted(fewer(r[i], max_r, threshold[i]), to_r) |
+                            shifted(fewer(g[i], max_g, threshold[i]), to_g) |
+                            shifted(fewer(b[i], max_b, threshold[i]), to_b));
 }
 
 static void pack_tables(const struct glint_row_pack *p, uint8_t *dst,

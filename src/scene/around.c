@@ -34,9 +34,9 @@ struct look {
  * 2^WHOLE_LOG2 pixels; only those at the picture's edge take a division. */
 static uint16_t mean(int64_t sum_q20, int n, int whole_log2)
 {
-    const int64_t most_q20 = (int64_t)n << 21;
+    const int64_t max_q20 = (int64_t)n << 21;
     const uint32_t sum_q15 =
-        (uint32_t)q_shift(sum_q20 < most_q20 ? sum_q20 : most_q20, 5);
+        (uint32_t)q_shift(sum_q20 < max_q20 ? sum_q20 : max_q20, 5);
     const uint32_t rounded = sum_q15 + ((uint32_t)n >> 1);
     const uint32_t mean_q15 =
         n == 1 << whole_log2 ? rounded >> whole_log2 : rounded / (uint32_t)n;
@@ -113,7 +113,8 @@ struct between {
     int32_t part_q15; /* of the next one */
 };
 
-static struct between find(int32_t share_q16, int side, int n, int cell_log2)
+static struct between find_cells(int32_t share_q16, int side, int n,
+                                 int cell_log2)
 {
     /* Cells from the middle of the first one on. */
     const int64_t at_q15 =
@@ -128,9 +129,9 @@ void glint_around_at(const struct glint_around *around, int32_t x_q16,
                      int32_t y_q16, int32_t rgb_q15[3])
 {
     const struct between x =
-        find(x_q16, around->width, around->n_x, around->cell_log2);
+        find_cells(x_q16, around->width, around->n_x, around->cell_log2);
     const struct between y =
-        find(y_q16, around->height, around->n_y, around->cell_log2);
+        find_cells(y_q16, around->height, around->n_y, around->cell_log2);
     const uint16_t *upper_q15 =
         around->light_q15 + (ptrdiff_t)3 * around->n_x * y.cell;
     const uint16_t *lower_q15 =

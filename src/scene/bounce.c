@@ -224,9 +224,11 @@ static void carve(struct glint_scene *scene, struct glint_arena *arena)
                        scene->cfg.height);
 }
 
-static void look(struct glint_scene *scene, const struct glint_image *image)
+static void store_background(struct glint_scene *scene,
+                             const struct glint_image *image)
 {
     glint_around_look(&scene->around, image, scene->cfg.workers);
 }
 
-const struct glint_scene_bounces glint_scene_bounces = {follow, carve, look};
+const struct glint_scene_bounces glint_scene_bounces = {follow, carve,
+                                                        store_background};

@@ -50,8 +50,9 @@ static void set_power(const struct glint_scene *s, const struct glint_lit *lit,
 }
 
 /* Sets LAMP to light LIT; returns 0 if it is not ahead of the camera. */
-static int see(const struct glint_scene *s, const struct glint_lit *lit,
-               struct glint_scene_lamp *lamp)
+static int project_light(const struct glint_scene *s,
+                         const struct glint_lit *lit,
+                         struct glint_scene_lamp *lamp)
 {
     struct glint_scene_ray ray = {.at = {0}};
     int32_t level_q15[3], seen_q30[3], t;
@@ -90,7 +91,7 @@ int glint_scene_lights(const struct glint_scene *scene,
 
     for (uint32_t i = 0; h->flare && i < scene->n_lit; i++) {
         lamps[n].light = (int)i;
-        n += see(scene, &scene->lit[i], &lamps[n]);
+        n += project_light(scene, &scene->lit[i], &lamps[n]);
     }
     return n;
 }

@@ -73,11 +73,11 @@ static int is_nearer(const struct glint_scene_worker *w, struct glint_box b,
 
     for (int y = b.y0; y < b.y1; y++) {
         const int32_t *at_q30 = w->depth + glint_sample_index(w, b.x0, y, 0);
-        int32_t least_q30 = at_q30[0];
+        int32_t min_q30 = at_q30[0];
 
         for (int i = 1; i < n; i++)
-            least_q30 = q_smaller(least_q30, at_q30[i]);
-        if (least_q30 <= depth_q30)
+            min_q30 = q_smaller(min_q30, at_q30[i]);
+        if (min_q30 <= depth_q30)
             return 0;
     }
     return 1;
@@ -584,7 +584,7 @@ static void move_vertices(struct glint_scene *s, uint32_t object)
 }
 
 /* Returns how far samples lie from the middle of their pixel at most. */
-static int32_t most_off_q8(const struct glint_scene *s)
+static int32_t max_off_q8(const struct glint_scene *s)
 {
     return s->cfg.edge_samples > 4 ? 120 : 96;
 }
@@ -613,7 +613,7 @@ static struct glint_box box_of(const struct glint_scene *s, uint32_t object,
 {
     const struct glint_box all = {0, 0, s->view.width, s->view.height};
     int32_t lo[2] = {INT32_MAX, INT32_MAX}, hi[2] = {INT32_MIN, INT32_MIN};
-    const int32_t off_q8 = most_off_q8(s);
+    const int32_t off_q8 = max_off_q8(s);
     int n_near = 0, n_behind = 0;
 
     for (int k = 0; k < 3; k++) {

@@ -641,7 +641,8 @@ static int is_same(const char *a, const char *b)
 
 /* Returns which of N names, STRIDE bytes apart from NAMES on, is NAME, or -1.
  */
-static int find(const char *names, size_t stride, uint32_t n, const char *name)
+static int find_name(const char *names, size_t stride, uint32_t n,
+                     const char *name)
 {
     for (uint32_t k = 0; k < n; k++, names += stride)
         if (is_same(names, name))
@@ -651,20 +652,20 @@ static int find(const char *names, size_t stride, uint32_t n, const char *name)
 
 int glint_scene_find(const struct glint_scene_model *model, const char *name)
 {
-    return find(model->object->name, sizeof *model->object,
-                model->header->n_objects, name);
+    return find_name(model->object->name, sizeof *model->object,
+                     model->header->n_objects, name);
 }
 
 int glint_scene_find_material(const struct glint_scene_model *model,
                               const char *name)
 {
-    return find(model->material->name, sizeof *model->material,
-                model->header->n_materials, name);
+    return find_name(model->material->name, sizeof *model->material,
+                     model->header->n_materials, name);
 }
 
 int glint_scene_find_environment(const struct glint_scene_model *model,
                                  const char *name)
 {
-    return find(model->environment->name, sizeof *model->environment,
-                model->header->n_environments, name);
+    return find_name(model->environment->name, sizeof *model->environment,
+                     model->header->n_environments, name);
 }

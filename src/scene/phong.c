@@ -7,7 +7,8 @@
 #include "scene/parts.h"
 #include "scene/state.h"
 
-static inline void add(int32_t *to_q15, int64_t light_q15, int32_t weight_q15)
+static inline void add_weighted(int32_t *to_q15, int64_t light_q15,
+                                int32_t weight_q15)
 {
     int64_t sum_q15 = light_q15 < GLINT_SCENE_MOST_LIGHT
                           ? light_q15
@@ -91,7 +92,7 @@ static void add_shine(const struct glint_scene *s,
                                    level_q15, radius_q30, shine_q15))
         return;
     for (int c = 0; c < 3; c++)
-        add(&rgb_q15[c], shine_q15[c], share_q15);
+        add_weighted(&rgb_q15[c], shine_q15[c], share_q15);
 }
 
 /* BRUSHED is NULL if SURFACE is not a metal. */
@@ -134,8 +135,8 @@ add_light(const struct glint_scene *s, const struct glint_scene_ray *ray,
         const int64_t white_q30 =
             ((int64_t)cosine_q30 * colour_q15[c] >> 15) + gloss;
 
-        add(&rgb_q15[c], (level_q15[c] * white_q30 + (1 << 29)) >> 30,
-            share_q15);
+        add_weighted(&rgb_q15[c], (level_q15[c] * white_q30 + (1 << 29)) >> 30,
+                     share_q15);
     }
 }
 
@@ -165,7 +166,8 @@ static WHOLLY_INLINE void phong(const struct glint_scene *scene,
     if (m->texture != GLINT_SCENE_NONE)
         scene->cfg.parts.textures->colour(scene, ray, surface, colour_q15);
     for (int c = 0; c < 3; c++)
-        add(&rgb_q15[c], q_mul(m->ambient_q15, colour_q15[c], 15), weight_q15);
+        add_weighted(&rgb_q15[c], q_mul(m->ambient_q15, colour_q15[c], 15),
+                     weight_q15);
     if (is_metal)
         wards->lie(scene, surface, &brushed);
     if (scene->wards)

@@ -32,7 +32,7 @@ static inline int is_split(const struct glint_scene *s, uint32_t id)
     return s->has_split && id != GLINT_NOTHING && s->placed[id >> 20].is_split;
 }
 
-enum { MIDDLE = -1, QUAD = -2 /* in place of a sample: see find() */ };
+enum { MIDDLE = -1, QUAD = -2 /* in place of a sample: see find_surface() */ };
 
 /* Returns where sample K lies from a pixel's middle; QUAD: where it meets its
  * right and lower neighbours. */
@@ -58,7 +58,7 @@ static NEVER_INLINE int find_at_length(struct glint_scene_worker *w,
         const int32_t x_q8 = glint_place(s, x, 0) + off_of(s, at, 0);
         const int32_t y_q8 = glint_place(s, y, 1) + off_of(s, at, 1);
 
-        /* in the middle find() has tried */
+        /* in the middle find_surface() has tried */
         if (i > 0 && glint_quick_find(w, id, x_q8, y_q8, ray, surface))
             return 1;
         glint_view_ray(&s->view, x_q8, y_q8, ray, seen_q30);
@@ -68,10 +68,10 @@ static NEVER_INLINE int find_at_length(struct glint_scene_worker *w,
     return 0;
 }
 
-/* The same; what most pixels take. */
-static inline int find(struct glint_scene_worker *w, uint32_t id, int x, int y,
-                       int k, struct glint_scene_ray *ray,
-                       struct glint_met_surface *surface)
+/* Finds the surface that sample K sees; most pixels take the fast path. */
+static inline int find_surface(struct glint_scene_worker *w, uint32_t id, int x,
+                               int y, int k, struct glint_scene_ray *ray,
+                               struct glint_met_surface *surface)
 {
     const struct glint_scene *s = w->scene;
 
@@ -105,7 +105,7 @@ static inline int shade_id(struct glint_scene_worker *w, uint32_t id, int x,
     struct glint_met_surface surface;
 
     *shade = (struct glint_met_shade){{0, 0, 0}, 0};
-    if (id != GLINT_NOTHING && find(w, id, x, y, k, &ray, &surface)) {
+    if (id != GLINT_NOTHING && find_surface(w, id, x, y, k, &ray, &surface)) {
         glint_scene_shade(s, &ray, &surface, shade);
         return 1;
     }
@@ -179,9 +179,9 @@ static inline void note(const struct glint_scene *s, uint32_t id,
 }
 
 /* Adds TIMES samples, of N, of ID and SHADE. */
-static inline void add(const struct glint_scene *s, uint32_t id,
-                       const struct glint_met_shade *shade, int times,
-                       struct glint_scene_sum *sum)
+static inline void add_samples(const struct glint_scene *s, uint32_t id,
+                               const struct glint_met_shade *shade, int times,
+                               struct glint_scene_sum *sum)
 {
     sum->cover_q10 += times * shade->cover_q8;
     if (is_catcher(s, id))
@@ -209,7 +209,7 @@ static NEVER_INLINE void shade_samples(struct glint_scene_worker *w,
         if (shade_id(w, id[k], x, y, k, &shade))
             note(s, id[k], &shade, x, y, 128,
                  times[k] << (4 - glint_samples_log2(n)));
-        add(s, id[k], &shade, times[k], sum);
+        add_samples(s, id[k], &shade, times[k], sum);
     }
     for (int c = 0; c < 3; c++)
         sum->rgb_q17[c] =
@@ -278,7 +278,7 @@ static inline void shade_pixel(struct glint_scene_worker *w, const uint32_t *id,
     if (quad || n == 1 || (is_one(id, n, id[0]) && !is_split(s, id[0]))) {
         if (shade_id(w, id[0], x, y, quad ? QUAD : 0, &shade))
             note(s, id[0], &shade, x, y, quad ? 256 : 128, quad ? 64 : 16);
-        add(s, id[0], &shade, SUMMED, sum);
+        add_samples(s, id[0], &shade, SUMMED, sum);
     } else {
         shade_samples(w, id, n, x, y, sum);
     }
@@ -286,9 +286,9 @@ static inline void shade_pixel(struct glint_scene_worker *w, const uint32_t *id,
         *kept = *sum;
 }
 
-static inline void put(const struct glint_scene_worker *w,
-                       const struct glint_pass_rows *rows, int i, int row,
-                       const int64_t sum_q17[3], int cover_q10)
+static inline void write_pixel(const struct glint_scene_worker *w,
+                               const struct glint_pass_rows *rows, int i,
+                               int row, const int64_t sum_q17[3], int cover_q10)
 {
     rows->cover->cover_q8[row][i] = (uint16_t)((cover_q10 + 2) >> 2);
     for (int c = 0; c < 3; c++)
@@ -382,7 +382,7 @@ static inline int draw_pixel(struct glint_scene_worker *w,
     shade_pixel(w, id, n, x, y, &sum);
     if (w->n_over)
         s->cfg.parts.motions->over(w, x, y, &sum);
-    put(w, rows, x - w->tile.x0, row, sum.rgb_q17, sum.cover_q10);
+    write_pixel(w, rows, x - w->tile.x0, row, sum.rgb_q17, sum.cover_q10);
     *cover = (uint16_t)(*cover + ((sum.cover_q10 - sum.shadow_q10 + 2) >> 2));
     return sum.cover_q10 || sum.rgb_q17[0] || sum.rgb_q17[1] || sum.rgb_q17[2];
 }

@@ -533,8 +533,9 @@ is_blocked(const struct glint_scene *s, const struct glint_shadow *shadow,
 }
 
 /* Finds PLACE below the sun. */
-static WHOLLY_INLINE void find(const struct glint_shadow *shadow,
-                               const int32_t place[3], struct below *below)
+static WHOLLY_INLINE void project_place(const struct glint_shadow *shadow,
+                                        const int32_t place[3],
+                                        struct below *below)
 {
     int32_t *at = below->at;
     int64_t lean = 0;
@@ -635,7 +636,7 @@ int32_t glint_shadow_reaches(const struct glint_scene *s,
     if (s->placed[surface->object].open_to >> shadow->light & 1)
         below.cell = NONE;
     else
-        find(shadow, place, &below);
+        project_place(shadow, place, &below);
     if (below.cell == BEYOND || glint_scene_other_planes(s, surface->object))
         return share_of_points(s, shadow, surface, &below, place);
     if (below.cell == NONE)

@@ -16,7 +16,7 @@ int glint_view_init(struct glint_scene_view *view,
                     const struct glint_scene_camera *camera, int width,
                     int height, int64_t focal_q16)
 {
-    const int64_t most_q56 = INT64_C(1) << 62;
+    const int64_t max_q56 = INT64_C(1) << 62;
 
     for (int k = 0; k < 3; k++) {
         view->at[k] = camera->at[k];
@@ -38,8 +38,8 @@ int glint_view_init(struct glint_scene_view *view,
             (int64_t)((uint64_t)q_divide(INT64_MAX, focal_q16) * 2);
         view->step_q56[1] = view->step_q56[0];
     }
-    if (view->step_q56[0] >> 1 > q_divide(most_q56, 256 * width) ||
-        view->step_q56[1] >> 1 > q_divide(most_q56, 256 * height))
+    if (view->step_q56[0] >> 1 > q_divide(max_q56, 256 * width) ||
+        view->step_q56[1] >> 1 > q_divide(max_q56, 256 * height))
         return 0;
     /* 128 sides of steps, the tangent, is below 2^(57 + wide) */
     view->per_tan_q8 = (int64_t)q_divide(INT64_C(1) << 56, view->step_q56[0]);

@@ -110,14 +110,14 @@ static int distance(int32_t log2_of_q16)
 
 /* Returns the number of steps of profiles up to the last that exceeds 2^LEAST.
  */
-static int seen_to(const struct glint_star_tables *t, int32_t least_log2_q16)
+static int seen_to(const struct glint_star_tables *t, int32_t min_log2_q16)
 {
     const int64_t least =
-        q_exp2_q16(q_clamp_sat(least_log2_q16, -65536, 17 * 65536)) >> 16;
+        q_exp2_q16(q_clamp_sat(min_log2_q16, -65536, 17 * 65536)) >> 16;
 
     int i = GLINT_STAR_PROFILE;
 
-    while (i > 0 && t->line_most[i - 1] <= least)
+    while (i > 0 && t->line_max[i - 1] <= least)
         i--;
     return i;
 }
@@ -148,14 +148,14 @@ static void set_zones(struct glint_star_lamp *lamp,
 /* Returns up to how many pixels from a light of POWER its halo is above LEAST,
  * both as log2; 0 if nowhere. */
 static int halo_reach(const struct glint_star_tables *t, int32_t power_log2_q16,
-                      int32_t least_log2_q16)
+                      int32_t min_log2_q16)
 {
     int row = GLINT_STAR_HALO_ROWS - 1;
 
     for (; row >= 0; row--) {
         const int32_t light_log2_q16 =
-            t->halo_log2_q16 + t->halo_most[row] * 32 + power_log2_q16;
-        const int32_t r2_log2_q16 = light_log2_q16 - least_log2_q16;
+            t->halo_log2_q16 + t->halo_max[row] * 32 + power_log2_q16;
+        const int32_t r2_log2_q16 = light_log2_q16 - min_log2_q16;
 
         /* rows are half octaves of r^2 from 2^4 on; the last row holds for all
          * larger r^2 */
@@ -170,12 +170,12 @@ static int halo_reach(const struct glint_star_tables *t, int32_t power_log2_q16,
 /* Returns up to how many pixels from a light of POWER its smear is above LEAST,
  * both as log2. */
 static int smear_reach(const struct glint_star_smear *s, int32_t power_log2_q16,
-                       int32_t least_log2_q16)
+                       int32_t min_log2_q16)
 {
     int k = s ? GLINT_STAR_SMEAR_RINGS : 0;
 
     while (k > 0 && log2_q16(s->step[k - 1]) + 16 * 65536 + power_log2_q16 <
-                        least_log2_q16)
+                        min_log2_q16)
         k--;
     return k > 0 ? GLINT_STAR_SMEAR_PX << (k - 1) : 0;
 }
@@ -234,7 +234,7 @@ static int set_lamp(struct glint_star_lamp *lamp,
     const int64_t wide_q8 = wider_q8(t, l->radius_q8);
     const struct glint_real line =
         real_over(real_times(power, t->step), real_of(wide_q8, -8));
-    const int32_t least_log2_q16 = q_larger(log2_q16(faintest), -21 * 65536);
+    const int32_t min_log2_q16 = q_larger(log2_q16(faintest), -21 * 65536);
     const int32_t radius_q8 =
         q_larger(q_clamp_sat(l->radius_q8, 0, 1 << 22), t->inner_q8);
     int32_t most = 0;
@@ -262,11 +262,11 @@ static int set_lamp(struct glint_star_lamp *lamp,
                 : INT32_MIN / 2;
     lamp->reach =
         t->n_lines && line.mantissa > 0
-            ? distance((log2_q16(line) + 16 * 65536 - least_log2_q16) / 2)
+            ? distance((log2_q16(line) + 16 * 65536 - min_log2_q16) / 2)
             : 0;
-    set_zones(lamp, t, log2_q16(line) - least_log2_q16);
-    lamp->halo_reach = halo_reach(t, log2_q16(power), least_log2_q16);
-    lamp->smear_reach = smear_reach(t->smear, log2_q16(power), least_log2_q16);
+    set_zones(lamp, t, log2_q16(line) - min_log2_q16);
+    lamp->halo_reach = halo_reach(t, log2_q16(power), min_log2_q16);
+    lamp->smear_reach = smear_reach(t->smear, log2_q16(power), min_log2_q16);
     return lamp->smear_reach > 1 || lamp->is_bare || lamp->reach > 1 ||
            lamp->halo_reach > 1;
 }

@@ -103,7 +103,7 @@ static void add_between(const struct span *s, const struct node *a,
     }
 }
 
-static int64_t least_size(int64_t a, int64_t b)
+static int64_t min_size(int64_t a, int64_t b)
 {
     const int64_t p = a < 0 ? -a : a, q = b < 0 ? -b : b;
 
@@ -117,9 +117,9 @@ static int is_straight(const struct span *s, const struct node *a,
                        const struct node *b)
 {
     const int64_t far_q8 = (int64_t)(b->x - a->x) << 8;
-    const int64_t dx_q8 = least_size(a->dx_q8, b->dx_q8);
+    const int64_t dx_q8 = min_size(a->dx_q8, b->dx_q8);
 
-    return least_size(a->v_q8, b->v_q8) >= 6 * far_q8 &&
+    return min_size(a->v_q8, b->v_q8) >= 6 * far_q8 &&
            dx_q8 * dx_q8 + s->dy_q8 * s->dy_q8 >= 144 * far_q8 * far_q8;
 }
 

@@ -190,10 +190,10 @@ int glint_star_lines_reach(const struct glint_star *star,
     for (int k = 0; k < star->tables->n_lines && seen; k++) {
         const struct glint_star_line *l = &star->tables->line[k];
         const int64_t v_q8 = (y_q8 * l->cos_q30 - x_q8 * l->sin_q30) >> 30;
-        const int64_t most_q8 =
+        const int64_t max_q8 =
             half_q8 + ((int64_t)seen * lamp->pixels_q16 >> 8) + 256;
 
-        if (v_q8 < most_q8 && v_q8 > -most_q8)
+        if (v_q8 < max_q8 && v_q8 > -max_q8)
             return 1;
     }
     return 0;

@@ -71,7 +71,7 @@ struct glint_star_tables {
     int first; /* line of the sector that begins at angle 0: the last, or 0 */
     /* light that the value 1 stands for in all profiles */
     struct glint_real step;
-    uint16_t line_most[GLINT_STAR_PROFILE]; /* largest value of all profiles */
+    uint16_t line_max[GLINT_STAR_PROFILE]; /* largest value of all profiles */
     int32_t reach_q8;           /* reach of a profile, 1 .. 2^14 pixels */
     int32_t reach_log2_q16;     /* log2 of reach_q8 */
     int32_t per_pixel_q16;      /* steps of a profile per pixel, at most 128 */
@@ -85,7 +85,7 @@ struct glint_star_tables {
      * largest of each row. */
     int32_t halo_log2_q16;
     uint16_t halo[GLINT_STAR_HALO_ROWS][GLINT_STAR_HALO_COLUMNS][3];
-    uint16_t halo_most[GLINT_STAR_HALO_ROWS];
+    uint16_t halo_max[GLINT_STAR_HALO_ROWS];
     /* [GLINT_STAR_WIDE][GLINT_STAR_HALO_ROWS]: the halo as lamps of radius
      * 2^(i - 1) pixels blur it; NULL: the stop throws no fans, and lamps do not
      * blur its halo. */

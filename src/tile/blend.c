@@ -57,10 +57,10 @@ static void add_cover(struct glint_blend_rows *s, int row, int n_x, int covered)
     }
 }
 
-static enum glint_given add(const struct glint_pass *pass, void *state,
-                            const struct glint_pass_rows *rows,
-                            enum glint_given given, int n_x,
-                            struct glint_blend_rows *scratch)
+static enum glint_given add_pass(const struct glint_pass *pass, void *state,
+                                 const struct glint_pass_rows *rows,
+                                 enum glint_given given, int n_x,
+                                 struct glint_blend_rows *scratch)
 {
     struct glint_pass_rows next = {
         rows->y, rows->n, &scratch->light, {0}, &scratch->next};
@@ -119,4 +119,4 @@ static void hide(const struct glint_tiles *tiles, struct glint_box tile, int y,
     }
 }
 
-const struct glint_blend glint_blend = {add, glint_cover_stretch, hide};
+const struct glint_blend glint_blend = {add_pass, glint_cover_stretch, hide};

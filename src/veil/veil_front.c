@@ -11,16 +11,16 @@ void glint_veil_front(struct glint_veil *veil,
                       const struct glint_veil_front *front,
                       const struct glint_veil_spread *spreads, int n)
 {
-    int32_t most_q20 = 0;
+    int32_t max_q20 = 0;
 
     veil->front = front;
     veil->any_front = front && veil->front_q20 &&
                       glint_veil_spread_to(veil, spreads, n, veil->front_q20);
     for (int i = 0; i < 3 * veil->n_x * veil->n_y && veil->any_front; i++)
-        most_q20 = q_larger(most_q20, veil->front_q20[i]);
+        max_q20 = q_larger(max_q20, veil->front_q20[i]);
     /* so that the brightest cell has 16 bits in codes */
     veil->front_down = 4;
-    while (most_q20 >> veil->front_down > 65534)
+    while (max_q20 >> veil->front_down > 65534)
         veil->front_down++;
 }
 

@@ -105,8 +105,8 @@ static void set_lines(struct glint_star_tables *t, struct glint_star_line *line,
             for (int c = 0; c < 3; c++) {
                 line[i].profile[k][c] =
                     (uint16_t)lrint(fmin(rgb[c] / peak, 1) * 65535);
-                if (line[i].profile[k][c] > t->line_most[k])
-                    t->line_most[k] = line[i].profile[k][c];
+                if (line[i].profile[k][c] > t->line_max[k])
+                    t->line_max[k] = line[i].profile[k][c];
             }
         }
     }
@@ -196,8 +196,8 @@ static void set_halo(struct glint_star_tables *t, const struct glint_psf *psf,
         }
     t->halo_log2_q16 = (int32_t)lrint((top - 31.99) * 65536);
     for (int i = 0; i < GLINT_STAR_HALO_ROWS; i++) {
-        t->halo_most[i] = 0;
-        set_halo_row(t, psf, window, 0, i, t->halo[i], &t->halo_most[i]);
+        t->halo_max[i] = 0;
+        set_halo_row(t, psf, window, 0, i, t->halo[i], &t->halo_max[i]);
     }
 }
 
@@ -208,7 +208,7 @@ static void set_wide(struct glint_star_tables *t, const struct glint_psf *psf,
     for (int k = 0; k < GLINT_STAR_WIDE; k++)
         for (int i = 0; i < GLINT_STAR_HALO_ROWS; i++)
             set_halo_row(t, psf, window, exp2(k - 1), i,
-                         wide[k * GLINT_STAR_HALO_ROWS + i], &t->halo_most[i]);
+                         wide[k * GLINT_STAR_HALO_ROWS + i], &t->halo_max[i]);
     t->wide = (const glint_star_halo_row *)wide;
 }
 

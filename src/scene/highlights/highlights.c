@@ -356,22 +356,22 @@ static void set_spot(const struct glint_highlight_state *b,
 {
     struct glint_spot *spot = &found->spot;
     const struct spread spread = spread_of(b, g);
-    const int64_t most_q16 = INT64_C(1) << 42;
+    const int64_t max_q16 = INT64_C(1) << 42;
 
     *spot = (struct glint_spot){.x_q8 = g->at_q8[0],
                                 .y_q8 = g->at_q8[1],
                                 .area = g->n << 2 * SIDE_LOG2};
     spot->flux_q16 = q_shift(g->flux_q19, 3);
-    if (spot->flux_q16 > most_q16)
-        spot->flux_q16 = most_q16;
+    if (spot->flux_q16 > max_q16)
+        spot->flux_q16 = max_q16;
     spot->power_q16 = spot->flux_q16;
     set_extent(&spread, spot);
     set_colour(g, spot);
     found->object = (int)g->object;
 }
 
-static int find(const struct glint_scene *scene,
-                struct glint_scene_highlight *found)
+static int find_highlights(const struct glint_scene *scene,
+                           struct glint_scene_highlight *found)
 {
     struct glint_highlight_state *b = scene->bright;
     struct gathered *const kept = b->kept;
@@ -402,5 +402,5 @@ const struct glint_scene_highlights glint_scene_highlights = {carve, begin,
 int glint_scene_find_highlights(const struct glint_scene *scene,
                                 struct glint_scene_highlight *found)
 {
-    return scene->bright ? find(scene, found) : 0;
+    return scene->bright ? find_highlights(scene, found) : 0;
 }

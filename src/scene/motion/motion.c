@@ -60,8 +60,9 @@ static enum glint_status fetch(struct glint_motion *m, uint32_t block,
 }
 
 /* Sets RECORD to record I, of BYTES, of the table that begins with BLOCK. */
-static enum glint_status find(struct glint_motion *m, uint32_t block,
-                              uint32_t i, size_t bytes, const void **record)
+static enum glint_status read_record(struct glint_motion *m, uint32_t block,
+                                     uint32_t i, size_t bytes,
+                                     const void **record)
 {
     const uint32_t each = glint_motion_per_block(bytes);
     const uint8_t *at = NULL;
@@ -172,7 +173,7 @@ static enum glint_status event_of(struct glint_motion *m, uint32_t i,
 {
     const void *record = NULL;
     const enum glint_status status =
-        find(m, m->header.event_block, i, sizeof **event, &record);
+        read_record(m, m->header.event_block, i, sizeof **event, &record);
 
     *event = record;
     if (status != GLINT_OK)
@@ -201,7 +202,7 @@ enum glint_status glint_motion_index(struct glint_motion *motion, uint32_t i,
     enum glint_status status = GLINT_E_ARGUMENT;
 
     if (i < n_index(h))
-        status = find(motion, h->index_block, i, sizeof *index, &record);
+        status = read_record(motion, h->index_block, i, sizeof *index, &record);
     if (status != GLINT_OK)
         return status;
     *index = *(const struct glint_motion_index *)record;
@@ -253,7 +254,7 @@ static enum glint_status set_intensities(struct glint_motion *m, uint32_t k,
     enum glint_status status = GLINT_OK;
 
     if (h->intensities)
-        status = find(m, h->intensity_block, k, h->intensities, &record);
+        status = read_record(m, h->intensity_block, k, h->intensities, &record);
     from = record;
     for (uint32_t f = 0; status == GLINT_OK && f < h->n_foods; f++)
         for (uint32_t s = 0; s < h->n_sensors; s++)
@@ -272,7 +273,7 @@ enum glint_status glint_motion_frame(struct glint_motion *motion, uint32_t k,
 
     if (k >= h->n_frames)
         return GLINT_E_ARGUMENT;
-    status = find(motion, h->pose_block, k, sizeof frame->pose, &record);
+    status = read_record(motion, h->pose_block, k, sizeof frame->pose, &record);
     if (status == GLINT_OK) {
         frame->pose = *(const struct glint_motion_pose *)record;
         status = is_pose(h, &frame->pose) ? GLINT_OK : GLINT_E_FORMAT;
@@ -290,8 +291,8 @@ static const char *take_sensors(struct glint_motion *m)
     for (uint32_t i = 0; i < m->header.n_sensors; i++) {
         const void *record = NULL;
 
-        if (find(m, m->header.sensor_block, i, sizeof *m->sensor, &record) !=
-            GLINT_OK)
+        if (read_record(m, m->header.sensor_block, i, sizeof *m->sensor,
+                        &record) != GLINT_OK)
             return "the motion's sensors cannot be read";
         m->sensor[i] = *(const struct glint_motion_sensor *)record;
         if (!glint_scene_is_unit(m->sensor[i].axis_q30, 3))
@@ -305,8 +306,8 @@ static const char *check_poses(struct glint_motion *m)
     for (uint32_t i = 0; i < m->header.n_frames; i++) {
         const void *pose = NULL;
 
-        if (find(m, m->header.pose_block, i, sizeof(struct glint_motion_pose),
-                 &pose) != GLINT_OK ||
+        if (read_record(m, m->header.pose_block, i,
+                        sizeof(struct glint_motion_pose), &pose) != GLINT_OK ||
             !is_pose(&m->header, pose))
             return "a pose is out of range";
     }

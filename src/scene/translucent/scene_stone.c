@@ -23,7 +23,7 @@ struct glint_stone_skin {
     const struct glint_scene_skin *of;
     uint32_t material;
     int fresnel;
-    int32_t most_coat_q15; /* of what its coat mirrors straight ahead, where it
+    int32_t max_coat_q15; /* of what its coat mirrors straight ahead, where it
                               mirrors all; 0: there is no coat */
     struct glint_translucent stone;
     struct glint_spread spread;
@@ -220,7 +220,8 @@ static void see_mesh(const struct glint_scene *s, const struct glint_placed *p,
 
 /* Marks the blocks of SKIN that may be seen: more of them cost time, fewer
  * would show as black. */
-static void see(const struct glint_scene *scene, struct glint_stone_skin *skin)
+static void mark_visible(const struct glint_scene *scene,
+                         struct glint_stone_skin *skin)
 {
     const struct glint_placed *p = &scene->placed[skin->of->object];
 
@@ -255,7 +256,7 @@ static void add_around(const struct glint_scene *s, const int32_t normal_q30[3],
 
 /* Normals over the faces of a cube; between them irradiance is below an eighth
  * more. */
-static int32_t most_around(const struct glint_scene *scene)
+static int32_t max_around(const struct glint_scene *scene)
 {
     enum { STEPS = 8 };
     int32_t most = 0;
@@ -282,8 +283,8 @@ static int32_t most_around(const struct glint_scene *scene)
 
 /* Returns the most that LIT makes of a white surface on object P: of a lamp at
  * the nearest place, but a sixteenth of the object's size away at least. */
-static int32_t most_of(const struct glint_scene *s, const struct glint_lit *lit,
-                       const struct glint_placed *p)
+static int32_t max_of(const struct glint_scene *s, const struct glint_lit *lit,
+                      const struct glint_placed *p)
 {
     int32_t toward_q30[3] = {0}, level_q15[3] = {0}, place[3], off[3];
     int64_t away;
@@ -306,7 +307,7 @@ static void expose(const struct glint_scene *scene,
     int64_t most = scene->stones->around_q15;
 
     for (uint32_t i = 0; i < scene->n_lit; i++)
-        most += most_of(scene, &scene->lit[i], p);
+        most += max_of(scene, &scene->lit[i], p);
     skin->shift = 0;
     while (most >> skin->shift > MOST_VALUE && skin->shift < 15)
         skin->shift++;
@@ -587,7 +588,7 @@ static enum glint_status open_skin(const struct glint_scene *s,
 
 static void relight(struct glint_scene *scene)
 {
-    scene->stones->around_q15 = most_around(scene);
+    scene->stones->around_q15 = max_around(scene);
 }
 
 static enum glint_status open_stones(struct glint_scene *scene)
@@ -711,17 +712,17 @@ static void note(struct glint_stone_skin *skin)
 
 /* Returns how many times what it does straight ahead the coat of SKIN mirrors
  * where it mirrors all, q15; 0: it has none. */
-static int32_t most_coat_q15(const struct glint_scene *scene,
-                             const struct glint_stone_skin *skin)
+static int32_t max_coat_q15(const struct glint_scene *scene,
+                            const struct glint_stone_skin *skin)
 {
     const uint32_t ward = scene->model.material[skin->material].ward;
-    int32_t most_q15 = 1;
+    int32_t max_q15 = 1;
 
     if (ward == GLINT_SCENE_NONE)
         return 0;
     for (int k = 0; k < 3; k++)
-        most_q15 = q_larger(most_q15, scene->model.ward[ward].specular_q15[k]);
-    return glint_ratio(UINT64_C(1) << 30, (uint64_t)most_q15);
+        max_q15 = q_larger(max_q15, scene->model.ward[ward].specular_q15[k]);
+    return glint_ratio(UINT64_C(1) << 30, (uint64_t)max_q15);
 }
 
 static int update(struct glint_scene *scene)
@@ -733,11 +734,11 @@ static int update(struct glint_scene *scene)
         const struct glint_placed *p = &scene->placed[u.skin->of->object];
         int blocks;
 
-        u.skin->most_coat_q15 = most_coat_q15(scene, u.skin);
+        u.skin->max_coat_q15 = max_coat_q15(scene, u.skin);
         if (!p->is_shown || (!p->is_seen && !scene->has_split))
             continue;
         forget(scene, u.skin);
-        see(scene, u.skin);
+        mark_visible(scene, u.skin);
         blocks = list_blocks(u.skin);
         if (blocks == 0)
             continue;
@@ -759,7 +760,7 @@ struct between {
     int32_t part_q16; /* of the second */
 };
 
-static struct between find(int32_t uv_q16, int side_log2, int goes_round)
+static struct between find_texels(int32_t uv_q16, int side_log2, int goes_round)
 {
     const int side = 1 << side_log2;
     const int64_t at_q16 = ((int64_t)uv_q16 << side_log2) - (1 << 15);
@@ -799,17 +800,17 @@ static int32_t coat_q15(const struct glint_stone_skin *skin, int32_t passes_q15)
     const uint16_t *at_q15 = skin->stone.transmit_q15;
     const int32_t ahead_q15 = ONE_Q15 - at_q15[GLINT_TRANSLUCENT_COSINES];
 
-    if (!skin->fresnel || ahead_q15 <= 0 || !skin->most_coat_q15)
+    if (!skin->fresnel || ahead_q15 <= 0 || !skin->max_coat_q15)
         return ONE_Q15;
     return q_smaller(glint_ratio((uint64_t)(ONE_Q15 - passes_q15) << 15,
                                  (uint64_t)ahead_q15),
-                     skin->most_coat_q15);
+                     skin->max_coat_q15);
 }
 
-static int32_t add(const struct glint_scene *scene,
-                   const struct glint_scene_ray *ray,
-                   const struct glint_met_surface *surface, int32_t weight_q15,
-                   int32_t rgb_q15[3])
+static int32_t add_scattered(const struct glint_scene *scene,
+                             const struct glint_scene_ray *ray,
+                             const struct glint_met_surface *surface,
+                             int32_t weight_q15, int32_t rgb_q15[3])
 {
     const struct glint_placed *p = &scene->placed[surface->object];
     const struct glint_stone_skin *skin = &scene->stones->skin[p->skin];
@@ -822,8 +823,9 @@ static int32_t add(const struct glint_scene *scene,
         return 0;
     if (skin->spread.is_ball)
         glint_ball_uv(p, surface, uv_q16);
-    x = find(uv_q16[0], log2 + skin->spread.is_ball, skin->spread.is_ball);
-    y = find(uv_q16[1], log2, 0);
+    x = find_texels(uv_q16[0], log2 + skin->spread.is_ball,
+                    skin->spread.is_ball);
+    y = find_texels(uv_q16[1], log2, 0);
     passes_q15 = glint_stone_passes(
         skin, -v3_cosine_q30(ray->toward_q30, surface->normal_q30));
     coat = coat_q15(skin, passes_q15);
@@ -841,5 +843,5 @@ static int32_t add(const struct glint_scene *scene,
     return coat;
 }
 
-const struct glint_scene_stones glint_scene_stones = {carve, open_stones,
-                                                      relight, update, add};
+const struct glint_scene_stones glint_scene_stones = {
+    carve, open_stones, relight, update, add_scattered};

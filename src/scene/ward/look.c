@@ -27,7 +27,7 @@ static void place(const int32_t toward[3], int32_t *u_q17, int32_t *v_q17)
     *v_q17 = 65536 + (toward[2] < 0 ? -q_q16 : q_q16);
 }
 
-static void take(const struct glint_found *found, int32_t rgb[3])
+static void set_light(const struct glint_found *found, int32_t rgb[3])
 {
     for (int j = 0; j < 3; j++)
         rgb[j] = (int32_t)(found->rgb[j] >> (34 - found->log2));
@@ -45,7 +45,7 @@ void glint_environment_irradiance(const struct glint_environment *environment,
     place(normal, &u_q17, &v_q17);
     glint_reads_of(&level, u_q17, v_q17, 256, reads.at, reads.weight_q22);
     glint_find_light(environment->irradiance, &reads, 4, &found);
-    take(&found, rgb);
+    set_light(&found, rgb);
 }
 
 /* Returns what the next level, of four times the variance, counts so that both
@@ -76,5 +76,5 @@ void glint_environment_look(const struct glint_environment *environment,
         glint_reads_of(level + 1, u_q17, v_q17, share_q8, reads.at + 4,
                        reads.weight_q22 + 4);
     glint_find_light(texels->code, &reads, share_q8 ? 8 : 4, &found);
-    take(&found, rgb);
+    set_light(&found, rgb);
 }

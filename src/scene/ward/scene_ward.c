@@ -137,10 +137,10 @@ static int is_beyond(uint32_t along_q30, int32_t hn_q30, int64_t alpha_q40)
 {
     const uint64_t along_q28 = along_q30 >> 2;
     const uint64_t hn_q28 = ((uint64_t)hn_q30 >> 2) + 1;
-    const uint64_t most_q56 = ((hn_q28 * hn_q28 >> 24) + 1) *
-                              (((uint64_t)alpha_q40 * MOST_SLOPE >> 16) + 1);
+    const uint64_t max_q56 = ((hn_q28 * hn_q28 >> 24) + 1) *
+                             (((uint64_t)alpha_q40 * MOST_SLOPE >> 16) + 1);
 
-    return along_q28 * along_q28 > most_q56 + (most_q56 >> 9);
+    return along_q28 * along_q28 > max_q56 + (max_q56 >> 9);
 }
 
 /* Returns 0 if the light or the eye is behind the surface, or the lobe of
@@ -533,7 +533,7 @@ static void lie(const struct glint_scene *scene,
 /* ---------------------------------------------------------------- reflecting
  */
 
-static void add(int32_t *to_q15, int64_t light_q15, int32_t weight_q15)
+static void add_weighted(int32_t *to_q15, int64_t light_q15, int32_t weight_q15)
 {
     const int64_t sum_q15 =
         *to_q15 + ((light_q15 * weight_q15 + (1 << 14)) >> 15);
@@ -564,7 +564,8 @@ static void add_diffuse(const struct glint_ward_state *w,
     turn_q14(w, surface->normal_q30, normal_q14);
     glint_environment_irradiance(&w->environment, normal_q14, light);
     for (int c = 0; c < 3; c++)
-        add(&rgb_q15[c],
+        add_weighted(
+            &rgb_q15[c],
             real_integer(real_times(real_of(light[c], 0), w->unit), 15,
                          GLINT_SCENE_MOST_LIGHT),
             q_mul(q_mul(diffuse_q15, colour_q15[c], 15), weight_q15, 15));
@@ -595,7 +596,7 @@ static void reflect(const struct glint_scene *scene,
     }
     glint_ward_send(&w->lobe[m->ward], &w->environment, &place, light);
     for (int c = 0; c < 3; c++)
-        add(&rgb_q15[c], light[c], weight_q15);
+        add_weighted(&rgb_q15[c], light[c], weight_q15);
 }
 
 const struct glint_scene_wards glint_scene_wards = {

@@ -98,11 +98,11 @@ static void settle(int n, int axis, uint32_t want_q32,
 static uint64_t blur_q48(const int32_t alpha_q24[2], int32_t f_q16)
 {
     const uint64_t smaller = (uint64_t)q_smaller(alpha_q24[0], alpha_q24[1]);
-    const uint64_t most_q48 = smaller * smaller / 4 * 3;
+    const uint64_t max_q48 = smaller * smaller / 4 * 3;
     const uint64_t even_q48 = (uint64_t)alpha_q24[0] * (uint64_t)alpha_q24[1];
     const uint64_t b_q48 = (even_q48 >> 16) * (uint64_t)f_q16;
 
-    return b_q48 < most_q48 ? b_q48 : most_q48;
+    return b_q48 < max_q48 ? b_q48 : max_q48;
 }
 
 /* Returns twice the variance of slopes of alpha 1. */

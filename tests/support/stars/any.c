@@ -64,8 +64,8 @@ static void set_lines(struct star_any *to, uint32_t *seed)
                                   (GLINT_STAR_PROFILE - i) / GLINT_STAR_PROFILE;
 
                 l->profile[i][ch] = (uint16_t)steps;
-                if (steps > to->tables.line_most[i])
-                    to->tables.line_most[i] = (uint16_t)steps;
+                if (steps > to->tables.line_max[i])
+                    to->tables.line_max[i] = (uint16_t)steps;
             }
         c = (c * step_q30[n - 1][0] - s * step_q30[n - 1][1]) >> 30;
         s = (s * step_q30[n - 1][0] + last * step_q30[n - 1][1]) >> 30;
@@ -80,8 +80,8 @@ static void set_halo(struct glint_star_tables *t, uint32_t *seed)
                 const int steps = 65000 - 300 * i - 900 * k;
 
                 t->halo[i][k][c] = (uint16_t)(steps - rng_below(seed, 400));
-                if (t->halo[i][k][c] > t->halo_most[i])
-                    t->halo_most[i] = t->halo[i][k][c];
+                if (t->halo[i][k][c] > t->halo_max[i])
+                    t->halo_max[i] = t->halo[i][k][c];
             }
 }
 

@@ -372,14 +372,14 @@ static void test_extremes(void **state)
 /* As bright as the sums of a square have room for: its colour is white. */
 static void test_brightest(void **state)
 {
-    static const int32_t most_q15[3] = {1 << 30, 1 << 30, 1 << 30};
+    static const int32_t max_q15[3] = {1 << 30, 1 << 30, 1 << 30};
 
     (void)state;
     open_text(CAMERA STEEL(".05 .05") SUN BALL, &dials);
     draw();
     glint_scene_highlights.begin(frame.scene->bright);
     for (int i = 0; i < 2; i++)
-        glint_scene_highlights.note(frame.scene->bright, 0, 0, 0, most_q15,
+        glint_scene_highlights.note(frame.scene->bright, 0, 0, 0, max_q15,
                                     1 << 28);
     assert_int_equal(glint_scene_find_highlights(frame.scene, found), 1);
     for (int c = 0; c < 3; c++)
