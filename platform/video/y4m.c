@@ -527,7 +527,7 @@ glint_y4m_reader_open_raw(struct glint_y4m_reader *reader, const char *path,
     return status;
 }
 
-/* Sets *MORE if the stream of frames without lines goes on. */
+/* Sets *MORE if the stream of frames without lines continues. */
 static enum glint_status look_ahead(struct glint_y4m_reader *r, bool *more,
                                     struct glint_error *error)
 {

@@ -3,7 +3,6 @@
 
 #include "base/q.h"
 #include "base/sort.h"
-#include "lamps/forest.h"
 
 enum {
     FLOOR_Q20 = 1 << 12, /* added to light, or noise in the dark is contrast */
@@ -31,19 +30,19 @@ struct term {
  * should have: tests/corpus/fit prints them. 64 are a factor e of the odds. The
  * last is set by hand: no lamp of the corpus is drawn, and a bright box in the
  * dark still is one. */
-enum { BIAS_Q8 = -1209 };
+enum { BIAS_Q8 = -1438 };
 
 static const struct term terms[] = {
-    {EVIDENCE_AROUND, 0, 448, 29},     {EVIDENCE_AROUND, 448, 1200, 22},
-    {EVIDENCE_HALO, -256, 512, 20},    {EVIDENCE_SPREAD, 0, 512, -38},
-    {EVIDENCE_FILL, 64, 160, 188},     {EVIDENCE_FILL, 160, 224, 415},
-    {EVIDENCE_BOX, 96, 200, 112},      {EVIDENCE_SIZE, -4400, -3400, 94},
-    {EVIDENCE_SIZE, -3400, -2000, 26}, {EVIDENCE_COLOUR, 0, 256, 178},
-    {EVIDENCE_DIM, 0, 1280, -33},      {EVIDENCE_CLOSE, 0, 300, 153},
-    {EVIDENCE_WHITE, -512, 0, 54},     {EVIDENCE_CROWD, 0, 2620, -19},
-    {EVIDENCE_HIGH, 0, 160, 63},       {EVIDENCE_WIDE_HALO, 0, 512, 92},
-    {EVIDENCE_WIDE_HOT, 0, 256, 71},   {EVIDENCE_DARK_2, 0, 700, 51},
-    {EVIDENCE_DARK_4, 0, 500, 83},     {EVIDENCE_DARK_32, 400, 1600, 54},
+    {EVIDENCE_AROUND, 0, 448, 59},     {EVIDENCE_AROUND, 448, 1200, 34},
+    {EVIDENCE_HALO, -256, 512, 24},    {EVIDENCE_SPREAD, 0, 512, -47},
+    {EVIDENCE_FILL, 64, 160, 288},     {EVIDENCE_FILL, 160, 224, 422},
+    {EVIDENCE_BOX, 96, 200, 145},      {EVIDENCE_SIZE, -4400, -3400, 119},
+    {EVIDENCE_SIZE, -3400, -2000, 18}, {EVIDENCE_COLOUR, 0, 256, 217},
+    {EVIDENCE_DIM, 0, 1280, -24},      {EVIDENCE_CLOSE, 0, 300, 132},
+    {EVIDENCE_WHITE, -512, 0, 71},     {EVIDENCE_CROWD, 0, 2620, -21},
+    {EVIDENCE_HIGH, 0, 160, 121},      {EVIDENCE_WIDE_HALO, 0, 512, 128},
+    {EVIDENCE_WIDE_HOT, 0, 256, 145},  {EVIDENCE_DARK_2, 0, 700, 19},
+    {EVIDENCE_DARK_4, 0, 500, 132},    {EVIDENCE_DARK_32, 400, 1600, 75},
     {EVIDENCE_DRAWN, 0, 256, -512}};
 
 /* ----------------------------------------------------------------- contrast */
@@ -272,28 +271,6 @@ static void look_at_dark(struct dark *dark, const struct glint_score *s)
         dark->part_q8[i] = below_white_q8(s, part_log2[i]);
 }
 
-/* Returns EVIDENCE_LONG of SUM. */
-static int32_t long_q8(const struct glint_region *sum)
-{
-    const int32_t across_q8 =
-        glint_stops_q8((int64_t)(sum->x1 - sum->x0) << 20);
-    const int32_t down_q8 = glint_stops_q8((int64_t)(sum->y1 - sum->y0) << 20);
-
-    return across_q8 > down_q8 ? across_q8 - down_q8 : down_q8 - across_q8;
-}
-
-/* Returns EVIDENCE_FRAME of SUM. */
-static int32_t frame_q8(const struct glint_score *s,
-                        const struct glint_region *sum)
-{
-    const int32_t side = s->width < s->height ? s->width : s->height;
-    int32_t away = sum->x0 < sum->y0 ? sum->x0 : sum->y0;
-
-    away = away < s->width - sum->x1 ? away : s->width - sum->x1;
-    away = away < s->height - sum->y1 ? away : s->height - sum->y1;
-    return away * 256 / side;
-}
-
 static void look_at_shape(struct glint_candidate *c,
                           const struct glint_score *s)
 {
@@ -320,17 +297,9 @@ static void look_at_shape(struct glint_candidate *c,
     e_q8[EVIDENCE_WIDE_HOT] = wide_q8(c, e_q8[EVIDENCE_WHITE] >= -2 ? 256 : 0);
     glint_region_centroid(sum, &x_q8, &y_q8);
     e_q8[EVIDENCE_HIGH] = 256 - y_q8 / s->height;
-    e_q8[EVIDENCE_LONG] = long_q8(sum);
-    e_q8[EVIDENCE_CLIPPED] =
-        (int32_t)(((int64_t)sum->n_clipped << 8) / sum->area);
-    e_q8[EVIDENCE_FRAME] = frame_q8(s, sum);
 }
 
 /* -------------------------------------------------------------------- score */
-
-/* Boosted trees correct the sum of terms of a region whose sum is at least
- * -FOREST_FROM. Below it a region is not a lamp, and no tree is read. */
-enum { FOREST_FROM = 400 };
 
 static int32_t score_of(const int32_t evidence_q8[EVIDENCES])
 {
@@ -344,26 +313,6 @@ static int32_t score_of(const int32_t evidence_q8[EVIDENCES])
         sum_q16 += (v_q8 - t->least_q8) * t->weight_q8;
     }
     return sum_q16 >> 8;
-}
-
-/* Returns the output of the boosted trees, score units. Each tree has
- * FOREST_LEAVES - 1 inner nodes, its root first. */
-static int32_t forest_of(const int32_t evidence_q8[EVIDENCES])
-{
-    int32_t sum = 0;
-
-    for (int i = 0; i < FOREST_TREES; i++) {
-        const struct forest_node *node = forest[i].node;
-        int at = 0;
-
-        do
-            at = evidence_q8[node[at].measure] <= node[at].limit_q8
-                     ? node[at].below
-                     : node[at].above;
-        while (at > 0);
-        sum += forest[i].leaf[-at];
-    }
-    return sum / FOREST_PARTS;
 }
 
 /* Returns the first ring that MEASURE depends on, or SCORE_RINGS if none. */
@@ -431,32 +380,28 @@ static void learn_of_ring(struct glint_candidate *c, const struct ring *ring,
 }
 
 /* Returns the score of C. If is_brief is set, its rings are looked at only as
- * long as they may lift its sum to -FOREST_FROM. MOST[I]: the most that ring I
- * and later ones can add. */
+ * long as they may lift it to -SCORE_DOUBT. MOST[I]: the most that ring I and
+ * later ones can add. */
 static int32_t score_by_rings(struct glint_candidate *c,
                               const struct glint_score *s,
                               const int32_t most_q8[SCORE_RINGS])
 {
     struct ring ring[SCORE_RINGS] = {{0, 0, 0}};
-    int32_t in_q8[2], sum_q8;
+    int32_t in_q8[2];
 
     hope_for_rings(c);
     mean_stops(&c->sum, in_q8);
     for (int i = 0; i < SCORE_RINGS; i++) {
         const int32_t hoped_q8 = score_of(c->evidence_q8) + most_q8[i];
 
-        if (s->is_brief && hoped_q8 < -FOREST_FROM)
+        if (s->is_brief && hoped_q8 < -SCORE_DOUBT)
             return hoped_q8;
         if (i > 0)
             ring[i] = ring[i - 1];
         look_at_ring(&ring[i], s, &c->sum, distance_of(s, &c->sum, i), in_q8);
-        c->evidence_q8[EVIDENCE_RINGS + 3 * i] = ring[i].lower_q8;
-        c->evidence_q8[EVIDENCE_RINGS + 3 * i + 1] = ring[i].mean_q8;
-        c->evidence_q8[EVIDENCE_RINGS + 3 * i + 2] = ring[i].upper_q8;
         learn_of_ring(c, ring, i);
     }
-    sum_q8 = score_of(c->evidence_q8);
-    return sum_q8 < -FOREST_FROM ? sum_q8 : sum_q8 + forest_of(c->evidence_q8);
+    return score_of(c->evidence_q8);
 }
 
 static void count_crowd(struct glint_candidate *candidate, const int32_t *order,
@@ -474,38 +419,6 @@ static void count_crowd(struct glint_candidate *candidate, const int32_t *order,
     }
 }
 
-enum { SIZES = 26 }; /* classes of area, octaves */
-
-static int size_class(const struct glint_candidate *c)
-{
-    const int size = (int)(glint_stops_q8((int64_t)c->sum.area << 20) >> 8);
-
-    return size < SIZES ? size : SIZES - 1;
-}
-
-/* Sets EVIDENCE_ALIKE and EVIDENCE_LARGER. */
-static void count_sizes(struct glint_candidate *candidate, const int32_t *order,
-                        int n)
-{
-    int32_t n_of[SCORE_LEVELS][SIZES + 2] = {{0}};
-
-    for (int i = 0; i < n; i++)
-        n_of[candidate[order[i]].level][size_class(&candidate[order[i]])]++;
-    for (int i = 0; i < n; i++) {
-        struct glint_candidate *c = &candidate[order[i]];
-        const int size = size_class(c);
-        int32_t larger = 1;
-
-        for (int j = size + 2; j < SIZES; j++)
-            larger += n_of[c->level][j];
-        c->evidence_q8[EVIDENCE_ALIKE] = glint_stops_q8(
-            (int64_t)(n_of[c->level][size] + n_of[c->level][size + 1] +
-                      (size > 0 ? n_of[c->level][size - 1] : 0))
-            << 20);
-        c->evidence_q8[EVIDENCE_LARGER] = glint_stops_q8((int64_t)larger << 20);
-    }
-}
-
 void glint_score_all(const struct glint_score *score,
                      struct glint_candidate *candidate, const int32_t *order,
                      int n)
@@ -516,7 +429,6 @@ void glint_score_all(const struct glint_score *score,
     for (int i = 0; i < SCORE_RINGS; i++)
         most_q8[i] = most_of_rings(i);
     count_crowd(candidate, order, n);
-    count_sizes(candidate, order, n);
     look_at_dark(&dark, score);
     for (int i = 0; i < n; i++) {
         struct glint_candidate *c = &candidate[order[i]];

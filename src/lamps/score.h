@@ -82,18 +82,6 @@ enum glint_evidence {
      * 250/256 of the box, 256 from 254/256 on. Bars, cursors and windows of a
      * screen fill theirs. */
     EVIDENCE_DRAWN,
-    /* Of the ring at each of the three distances: lower quartile, mean and
-     * upper quartile of the contrast, stops. */
-    EVIDENCE_RINGS,
-    EVIDENCE_LONG = EVIDENCE_RINGS + 3 * SCORE_RINGS, /* log2 of the longer side
-                       of its box divided by the shorter side */
-    EVIDENCE_CLIPPED, /* fraction of its pixels that clip, 256 for all */
-    EVIDENCE_FRAME, /* distance of its box from the nearest edge of the picture,
-                       256 for the shorter side */
-    EVIDENCE_ALIKE, /* log2 of the number of regions of its level that are of
-                       about its size */
-    EVIDENCE_LARGER, /* log2 of 1 + the number of regions of its level that are
-                        clearly larger */
     EVIDENCES
 };
 

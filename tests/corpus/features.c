@@ -62,8 +62,7 @@ int main(int argc, char **argv)
 
     puts("file,width,height,level,cost,x0,y0,x1,y1,x,y,area,around,halo,spread,"
          "fill,box,size,colour,dim,close,white,crowd,high,wide_halo,"
-         "wide_hot,dark_2,dark_4,dark_32,drawn,low_0,mean_0,high_0,low_1,"
-         "mean_1,high_1,low_2,mean_2,high_2,long,clipped,frame,alike,larger,"
+         "wide_hot,dark_2,dark_4,dark_32,drawn,"
          "score");
     for (int i = 1; i < argc && code == 0; i++) {
         code = ppm_read(argv[i], &image);

@@ -325,7 +325,7 @@ static int tell(struct tool *tool, struct explain_command *c, bool linear)
     if (code == EXIT_OK && tool->json && drawing->files.scene.is_open)
         printf("}\n");
     if (status == GLINT_OK && drawing->run.n_lamps == 0 && !tool->quiet) {
-        fflush(stdout); /* It comes after what was told. */
+        fflush(stdout); /* This follows the text above. */
         overlay_say_none(drawing, stderr);
     }
     if (code == EXIT_OK && c->output && !drawing->files.scene.is_open)

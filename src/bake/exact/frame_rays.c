@@ -142,8 +142,8 @@ static void forget(struct traced *t)
     t->n_lamps = t->n_points = t->n_patches = t->n_fields = 0;
 }
 
-/* Runs N jobs, in parts after each of which progress is told: FROM and TO,
- * shares of the frame's work. */
+/* Runs N jobs, in parts, and reports progress after each: FROM and TO,
+ * fractions of the frame's work. */
 static void run(struct glint_frame *f, int n, glint_job_fn *each, double from,
                 double to)
 {

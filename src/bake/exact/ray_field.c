@@ -143,7 +143,7 @@ static bool corner_of(const struct ray_field_config *cfg,
 }
 
 /* Grows the pupil by a pixel on each side: a pixel whose centre lies just
- * outside of the ghost still gets the light on its inner half. */
+ * outside the ghost still gets the light on its inner half. */
 static void add_rim(const struct ray_field_config *cfg, struct glint_pupil *p)
 {
     double *s = p->sensor_mm;

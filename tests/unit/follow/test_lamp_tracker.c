@@ -286,8 +286,8 @@ static void test_hysteresis(void **state)
         const int code = frame == 0 ? 255 : 246 + rng_below(&night.seed, 4);
 
         memset(night.image.plane[0], 5, 320 * 200);
-        for (int y = 0; y < 5; y++)
-            memset(night.image.plane[0] + 320 * (100 + y) + 150, code, 5);
+        for (int y = 0; y < 6; y++)
+            memset(night.image.plane[0] + 320 * (100 + y) + 150, code, 6);
         night_track(&night, FPS30);
         n_faint += night.spot[0].faint;
         assert_int_equal(only_track()->state, GLINT_LAMP_STEADY);

@@ -233,7 +233,7 @@ static void print_title(const struct explained_scene *s)
 {
     const struct glint_scene_header *const h = model_of(s)->header;
 
-    printf("scene %s, %dx%d: %u things, drawn %d", h->name,
+    printf("scene %s, %dx%d: %u objects, drawn %d", h->name,
            s->drawing->files.scene.frame.cfg.width,
            s->drawing->files.scene.frame.cfg.height, h->n_objects,
            count_of(s, GLINT_SCENE_DRAWN));

@@ -10,7 +10,7 @@
  *
  * ffmpeg runs beside glint, at the other end of a pipe of y4m frames. Sound is
  * copied from the input as it is if the type of the output takes it, else it is
- * encoded anew, with a message. The codec is of the input's family where the
+ * encoded again, with a message. The codec is of the input's family where the
  * type of the output takes that. Tags, chapters, time code, subtitles, alpha,
  * fields, colours and mastering data are kept where the output can hold them;
  * one warning names those that are not.

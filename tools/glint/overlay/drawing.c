@@ -192,7 +192,7 @@ static void watch(const struct tool *tool, struct drawing *d,
     if (!tool->quiet)
         fprintf(stderr,
                 "glint %s: exact rays: first how bright flares of %s are, "
-                "a minute or more for a zoom, then each frame anew\n",
+                "a minute or more for a zoom, then each frame again\n",
                 tool->name, d->line.settings.lens.name);
     tool_progress_start(&d->run.progress, tool, "exact rays");
     d->run.is_progressing = true;

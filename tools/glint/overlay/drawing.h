@@ -92,7 +92,7 @@ enum glint_status drawing_layer(struct drawing_run *run, bool is_deep,
 void drawing_mark(const struct drawing *drawing,
                   const struct glint_image *image);
 
-/* Returns whether the line asks for marks. */
+/* Returns whether the line requests marks. */
 bool drawing_has_marks(const struct drawing_line *line);
 
 /* ------------------------------------------------------------------ results */

@@ -29,7 +29,7 @@ int layers_check_apart(const struct tool *tool, const struct layers *layers,
                        const struct apart *files);
 
 /* Draws the layers of DRAWING's frame, whose lamps and exposure are set, and
- * writes them. Does nothing if none are asked for. Returns an exit code. */
+ * writes them. Does nothing if none are requested. Returns an exit code. */
 int layers_write(const struct tool *tool, const struct layers *layers,
                  struct drawing *drawing);
 

@@ -78,7 +78,7 @@ static enum glint_status obey(struct over_scene *over,
                             error);
 }
 
-/* A mistake is said, one a picture at most, and ends nothing. */
+/* Reports a mistake, at most one per picture; none ends the run. */
 void over_scene_obey(struct over_scene *over, int frame)
 {
     const long before = over->control.n_bad;
@@ -306,7 +306,7 @@ static void take_poses(struct over_scene *over, int frame)
     }
     if (over->poses.file.n_bad > 0 && !over->poses.has_warned &&
         !over->tool->quiet)
-        fprintf(stderr, "glint %s: %s; such lines are passed over\n",
+        fprintf(stderr, "glint %s: %s; such lines are skipped\n",
                 over->tool->name, over->poses.file.bad.text);
     over->poses.has_warned = over->poses.file.n_bad > 0;
 }
@@ -415,7 +415,7 @@ static void draw_over(struct over_scene *over, int32_t light, size_t n,
     glint_scene_draw(over->frame.scene, &image);
 }
 
-/* What a thing hides of white is what it is over black less what it is over
+/* What an object hides of white is what it is over black less what it is over
  * white. */
 enum glint_status over_scene_layer(struct over_scene *over,
                                    struct over_scene_layer *layer)
@@ -486,7 +486,7 @@ void over_scene_say(const struct over_scene *over, FILE *to)
         fprintf(to, " hiding %d light%s", over->lamps_hidden,
                 over->lamps_hidden == 1 ? "" : "s");
     if (over->poses.file.n_bad > 0)
-        fprintf(to, ", %ld line%s of poses passed over", over->poses.file.n_bad,
+        fprintf(to, ", %ld line%s of poses skipped", over->poses.file.n_bad,
                 over->poses.file.n_bad == 1 ? "" : "s");
 }
 

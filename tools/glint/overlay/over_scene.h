@@ -30,7 +30,7 @@ struct scene_moved {
     int32_t at[3], turn_q30[4];
 };
 
-/* The poses of a file, and where they have moved things. */
+/* The poses of a file, and where they have moved objects. */
 struct scene_poses {
     struct poses file;
     struct scene_moved *moved; /* objects, lights, and the camera */
@@ -107,7 +107,7 @@ enum glint_status over_scene_draw(struct over_scene *over,
 void over_scene_mark(const struct over_scene *over,
                      const struct glint_image *image);
 
-/* The scene by itself, for pictures that are no struct glint_image. */
+/* The scene alone, for pictures that are not a struct glint_image. */
 struct over_scene_layer {
     float *rgb;         /* [height][width][3], linear light, 1 = white */
     uint16_t *cover_q8; /* [height][width], what is hidden, 0 .. 256 */

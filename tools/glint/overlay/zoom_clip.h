@@ -23,7 +23,7 @@ struct zoom_clip {
 bool zoom_clip_take(struct zoom_clip *clip, const char *text);
 
 /* Gives LINE, which is not open yet, key frames over all frames of the
- * video INPUT, if that was asked for; NULL: it is no video. Returns an exit
+ * video INPUT, if that was requested; NULL: it is no video. Returns an exit
  * code. */
 int zoom_clip_open(struct tool *tool, struct zoom_clip *clip, const char *input,
                    struct drawing_line *line);

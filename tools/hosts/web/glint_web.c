@@ -187,7 +187,7 @@ static int move_groups(void)
 }
 
 /* Returns what the model is baked with, as glint overlay chooses it; a model
- * that was asked for by itself has the defaults of glint bake. */
+ * that was requested separately has the defaults of glint bake. */
 static struct glint_bake_options bake_options(void)
 {
     const struct glint_options *const o = &web.options;
