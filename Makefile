@@ -75,7 +75,7 @@ absent += tools/import/$(if $(filter yes,$(WITH_EXPAT)),openlensflare_absent,ope
 absent += tools/glint/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
 # A static program has no plug-ins.
 absent += platform/posix/$(if $(CROSS),plugin,plugin_absent).c platform/assimp/assimp.c platform/sdl/sdl.c
-absent += tools/glint/glint.c tools/glint/live/glint_live.c tools/glint/model/models_only.c tools/glint/scenes/scenes_only.c
+absent += tools/glint/glint.c tools/glint/live/glint_live.c tools/glint/model/models_only.c tools/glint/scenes/scenes_only.c tools/measure/insncount.c
 
 core_o      := $(call objects,src,$(CORE))
 engine_o    := $(call objects,src,$(ENGINE))

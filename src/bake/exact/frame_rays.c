@@ -534,7 +534,9 @@ static bool is_looked(const struct glint_frame *f,
         same = t->lamp[i].theta_deg == lamps[i].theta_deg &&
                t->lamp[i].phi_deg == lamps[i].phi_deg &&
                t->lamp[i].power == lamps[i].power &&
-               memcmp(t->lamp[i].rgb, lamps[i].rgb, sizeof lamps[i].rgb) == 0;
+               t->lamp[i].rgb[0] == lamps[i].rgb[0] &&
+               t->lamp[i].rgb[1] == lamps[i].rgb[1] &&
+               t->lamp[i].rgb[2] == lamps[i].rgb[2];
     return same;
 }
 

@@ -712,8 +712,7 @@ static void blend(const struct ray_place *p, int j, float *row)
     const int n = (f->n_cells + 1) * CHANNELS;
     const float *from = (const float *)p->mem + (size_t)j * (size_t)n;
 
-    for (int i = 0; i < n; i++)
-        row[i] = 0;
+    memset(row, 0, (size_t)n * sizeof *row);
     for (int s = 0; s < f->n_samples; s++, from += nodes * CHANNELS) {
         const float w = p->weight[s];
 

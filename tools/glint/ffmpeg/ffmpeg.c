@@ -397,7 +397,7 @@ static bool set_url(char url[FFMPEG_URL], const char *name)
  * opened for them. */
 #define CONTAINERS                                                  \
     "mov,matroska,avi,mpeg,mpegvideo,mpegts,m4v,h264,hevc,asf,flv," \
-    "ogg,mxf,mxf_opatom"
+    "ogg,mxf,mxf_opatom,gif"
 static const char *const input_limits[] = {"-format_whitelist", CONTAINERS,
                                            "-protocol_whitelist", "file", NULL};
 
