@@ -395,10 +395,10 @@ static bool set_url(char url[FFMPEG_URL], const char *name)
 /* The containers that an input may have, whatever its name. They refer to no
  * other file, unlike playlists (HLS, concat, DASH), and nothing but files is
  * opened for them. */
-#define CONTAINERS                                                  \
-    "mov,matroska,avi,mpeg,mpegvideo,mpegts,m4v,h264,hevc,asf,flv," \
-    "ogg,mxf,mxf_opatom,gif"
-static const char *const input_limits[] = {"-format_whitelist", CONTAINERS,
+static const char containers[] =
+    "mov,matroska,avi,mpeg,mpegvideo,mpegts,m4v,h264,hevc,asf,flv,"
+    "ogg,mxf,mxf_opatom,gif";
+static const char *const input_limits[] = {"-format_whitelist", containers,
                                            "-protocol_whitelist", "file", NULL};
 
 /* -------------------------------------------------------------------- probe */

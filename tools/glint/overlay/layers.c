@@ -187,13 +187,14 @@ static enum glint_status save_all(const struct layers *layers,
 }
 
 int layers_write(const struct tool *tool, const struct layers *layers,
-                 struct drawing *c)
+                 struct drawing *drawing)
 {
-    const struct settings *const s = &c->line.settings;
-    const size_t n = 3 * (size_t)c->run.view.width * (size_t)c->run.view.height;
+    const struct settings *const s = &drawing->line.settings;
+    const size_t n =
+        3 * (size_t)drawing->run.view.width * (size_t)drawing->run.view.height;
     struct glint_oiio_layer layer[LAYERS];
-    struct glint_oiio_layers all = {.width = c->run.view.width,
-                                    .height = c->run.view.height,
+    struct glint_oiio_layers all = {.width = drawing->run.view.width,
+                                    .height = drawing->run.view.height,
                                     .n = settings_has_veil(s) ? LAYERS : VEIL,
                                     .is_half = !layers->is_float,
                                     .layer = layer};
@@ -207,9 +208,9 @@ int layers_write(const struct tool *tool, const struct layers *layers,
     for (int k = 0; k < all.n && rgb; k++)
         layer[k] = (struct glint_oiio_layer){names[k], rgb + (size_t)k * n};
     if (rgb)
-        status = draw_all(c, all.n, n, rgb);
+        status = draw_all(drawing, all.n, n, rgb);
     if (status == GLINT_OK)
-        status = save_all(layers, &all, c->run.n_frames - 1, &error);
+        status = save_all(layers, &all, drawing->run.n_frames - 1, &error);
     free(rgb);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
