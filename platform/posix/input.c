@@ -46,7 +46,9 @@ static const char *not_a_file(const char *path, const struct stat *st)
     struct stat null;
 
     if (S_ISFIFO(st->st_mode))
-        return strncmp(path, "/dev/", 5) == 0 || strncmp(path, "/proc/", 6) == 0
+        return strncmp(path, "/dev/fd/", 8) == 0 ||
+                       strcmp(path, "/dev/stdin") == 0 ||
+                       strncmp(path, "/proc/", 6) == 0
                    ? NULL
                    : "is a FIFO, not a file";
     if (!S_ISCHR(st->st_mode) && !S_ISBLK(st->st_mode))

@@ -617,11 +617,13 @@ FILE *glint_memory_file_open(char **text, size_t *bytes)
     struct text_stream *const t = malloc(sizeof *t);
     FILE *file;
 
-    *text = NULL;
+    *text = calloc(1, 1); /* an empty text, if nothing is written */
     *bytes = 0;
-    if (!t)
+    if (!t || !*text) {
+        free(t);
         return NULL;
-    *t = (struct text_stream){text, bytes, 0};
+    }
+    *t = (struct text_stream){text, bytes, 1};
     file = fopencookie(t, "w", calls);
     if (!file)
         free(t);

@@ -157,6 +157,8 @@ static int64_t log2_q32(uint64_t n, uint64_t d)
         d >>= 1;
     }
     m_q31 = (n << 31) / d;
+    if (m_q31 >= 2 * ONE_Q31) /* d was odd */
+        m_q31 = 2 * ONE_Q31 - 1;
     for (int i = 0; i < 32; i++) {
         m_q31 = (m_q31 * m_q31) >> 31;
         bits = 2 * bits + (m_q31 >= 2 * ONE_Q31);

@@ -183,8 +183,8 @@ static enum glint_status reserve(struct glint_engine *e,
                                e->most_lamps, drawn);
 }
 
-/* Writes why an engine could not be made; with too little memory, the min that
- * it needs. */
+/* Writes why an engine could not be made; with too little memory, the minimum
+ * that it needs. */
 static void say(struct glint_engine *e, const struct glint_engine_config *c,
                 enum glint_status status, struct glint_error *error)
 {

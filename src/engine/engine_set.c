@@ -55,7 +55,7 @@ static enum glint_status set(struct glint_engine *engine, const char *name,
                   : glint_options_set(&o, name, value, error);
     if (status == GLINT_OK)
         return apply(engine, option, &o, error);
-    if (option) {
+    if (option && status == GLINT_E_ARGUMENT) {
         glint_option_accepts(option, accepts, sizeof accepts);
         snprintf(error->text, sizeof error->text, "%s is %s", name, accepts);
     }

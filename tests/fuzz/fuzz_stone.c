@@ -4,7 +4,7 @@
  * checksum are put right, and spreads light as it says; parses them as the text
  * of one. No sum may leave its range, whatever is accepted.
  *
- *     make fuzz FUZZ=translucent medium SECONDS=60
+ *     make fuzz FUZZ=stone SECONDS=60
  */
 #include <math.h>
 #include <stdlib.h>

@@ -99,7 +99,7 @@ static bool read_metal(struct glint_describer *d,
 /* -------------------------------------------------------------------
  * translucent medium */
 
-/* Reads the translucent medium WORD names. */
+/* Reads the translucent medium that WORD names. */
 static bool read_file(struct glint_describer *d, const struct glint_word *word,
                       struct glint_described_material *m)
 {

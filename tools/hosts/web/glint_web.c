@@ -540,8 +540,8 @@ int web_draw(uint8_t *pixels, int n, int quick)
 
     if (!web.engine)
         return fail("there is no engine");
-    if (n > GLINT_ENGINE_MAX_LAMPS)
-        return fail("more than 1024 lamps");
+    if (n < WEB_FOUND || n > GLINT_ENGINE_MAX_LAMPS)
+        return fail("not 0 to 1024 lamps");
     web.error.text[0] = '\0';
     image = image_of(pixels);
     if (n == WEB_FOUND) {
