@@ -415,8 +415,10 @@ static bool add_level(struct traced *t, int level)
 
 static void add_levels(struct traced *t)
 {
-    for (int level = 0; level < LEVELS && add_level(t, level); level++)
-        continue;
+    int level = 0;
+
+    while (level < LEVELS && add_level(t, level))
+        level++;
 }
 
 /* --------------------------------------------------------------------- plan */
