@@ -381,7 +381,7 @@ static void test_files(void **state)
     expect_said("glint live: /nowhere/x.ini: No such file or directory\n");
     listen_to_stderr();
     assert_int_equal(config_read(&config, "/dev/zero"), EXIT_INPUT);
-    expect_said("glint live: /dev/zero: larger than 1048576 bytes\n");
+    expect_said("glint live: /dev/zero: is a device, not a file\n");
     assert_null(config.values);
 }
 
