@@ -591,6 +591,8 @@ static enum glint_status look(struct glint_frame *f,
     t->stop_mm = s->optics.stop_radius_mm;
     if (n == 0)
         return GLINT_OK;
+    if ((int64_t)n * s->n_ghosts * s->n_wavelengths > INT_MAX)
+        return GLINT_E_MEMORY;
     status = gather(t, lamps, n);
     if (status != GLINT_OK)
         return status;
