@@ -803,7 +803,8 @@ static enum glint_status plan(struct glint_frame *f,
     if (!t->set_of || !t->mem || !t->level)
         return GLINT_E_MEMORY;
     t->in_codes = is_in_codes(f, image);
-    memcpy(t->field, t->looked, (size_t)t->n_fields * sizeof *t->field);
+    if (t->n_fields) /* without lamps there are no fields */
+        memcpy(t->field, t->looked, (size_t)t->n_fields * sizeof *t->field);
     status = skip_faint(f, scale,
                         glint_frame_codes_light(f, image, f->dials.cull_codes));
     if (status != GLINT_OK)
