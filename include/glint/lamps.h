@@ -19,7 +19,7 @@
  * falls off equally in all directions, a compact shape, colour, fraction of the
  * picture that is as bright; see lamps/score.h. A region that is not a lamp may
  * have one in it, and so is searched where it clips in one channel, in nearly
- * all, and in all: the sun in a bright sky is a lamp by itself. At least an
+ * all, and in all: the sun in a bright sky is a separate lamp. At least an
  * eighth of a region must be at the upper threshold.
  *
  * All results are weighted by flux in linear light, never by the single

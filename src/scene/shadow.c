@@ -594,7 +594,7 @@ static int32_t share_above(const struct glint_shadow *shadow,
     return share(shadow, above);
 }
 
-/* The fraction of a disc's points, each by itself. */
+/* The fraction of a disc's points, one by one. */
 static NEVER_INLINE int32_t
 share_of_points(const struct glint_scene *s, const struct glint_shadow *shadow,
                 const struct glint_met_surface *surface,

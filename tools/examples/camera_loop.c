@@ -19,7 +19,7 @@ enum { WIDTH = 640, HEIGHT = 480, BYTES = 2 * WIDTH * HEIGHT, US = 33333 };
 
 static unsigned char frame[BYTES], model[8 << 20];
 
-/* Asks CAMERA for YUYV; what is not a camera is taken as it is. */
+/* Requests YUYV from CAMERA; other sources keep their format. */
 static int is_ready(int camera)
 {
     struct v4l2_capability can;

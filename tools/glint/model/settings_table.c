@@ -56,7 +56,7 @@ static enum glint_status set_projection(struct settings *settings,
     return GLINT_OK;
 }
 
-/* Refuses what is not a picture while that costs no bake. */
+/* Rejects inputs that are not pictures before anything is baked. */
 static int check_picture(const struct tool *tool,
                          const struct settings *settings)
 {
