@@ -169,7 +169,7 @@ format:
 libraries := $(OUT)/libglint.a
 all_o := $(core_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o)
 lint: $(libraries) $(OUT)/libglint-engine.a $(OUT)/libglint-bake.a $(all_o)
-	@tools/lint/layers && tools/lint/cycles $(NM) $(OUT) $(all_o) && tools/lint/tags && tools/lint/q && tools/lint/length && tools/lint/links && tools/lint/prose && tools/measure/write-figures --check
+	@tools/lint/layers && tools/lint/cycles $(NM) $(OUT) $(all_o) && tools/lint/tags && tools/lint/q && tools/lint/length && tools/lint/links && tools/lint/prose && tests/mutants/run --check && tools/measure/write-figures --check
 	@tools/lint/symbols $(NM) $(filter %.a,$^)
 	@[ $(CONFIG) != release ] || \
 	        $(MAKE) -s --no-print-directory purity
