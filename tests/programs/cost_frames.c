@@ -37,7 +37,7 @@ struct shape {
 
 struct stage {
     struct tool tool;
-    struct settings settings;
+    struct opened opened;
     struct glint_frame frame;
     struct canvas canvas;
     struct glint_lamp lamp[LAMPS];
@@ -109,10 +109,10 @@ static void fail(const char *what)
 
 static void open_stage(struct stage *s, const struct shape *shape)
 {
-    set(&s->settings, shape);
-    if (settings_open(&s->tool, &s->settings, shape->lens) != EXIT_OK ||
-        settings_frame(&s->tool, &s->settings,
-                       settings_view(&s->settings, shape->width, shape->height),
+    set(&s->opened.settings, shape);
+    if (opened_lens_open(&s->tool, &s->opened.lens, &s->opened.settings,
+                         shape->lens) != EXIT_OK ||
+        settings_frame(&s->tool, &s->opened, shape->width, shape->height,
                        &s->frame) != EXIT_OK ||
         canvas_init(&s->canvas, GLINT_RGB24, shape->width, shape->height) !=
             GLINT_OK)
@@ -124,7 +124,7 @@ static void close_stage(struct stage *s)
 {
     canvas_finish(&s->canvas);
     glint_frame_finish(&s->frame);
-    settings_close(&s->settings);
+    opened_lens_close(&s->opened.lens);
 }
 
 /* Calls glint_frame_draw(), as a function of its own, whose instructions

@@ -284,9 +284,8 @@ static void note_truth(struct steady *s, const struct night *night,
         struct glint_lamp one = {.rgb = {1, 1, 1}};
 
         one.power = seen_of(night, &lamp[i], at);
-        glint_view_to_angles(&c->run.view,
-                             c->line.settings.setup.optics.focal_mm, at[0],
-                             at[1], &one);
+        glint_view_to_angles(&c->run.view, c->files.lens.setup.optics.focal_mm,
+                             at[0], at[1], &one);
         all[i] = glint_engine_lamp_of(&one, 1);
     }
     glint_strength_light(&c->run.engine->expose.response, &lamps, &light);

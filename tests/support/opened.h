@@ -11,22 +11,22 @@
 #include "support/settings_frame.h"
 #include "options/tool.h"
 
-static struct settings settings;
+static struct opened opened;
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 
 static inline int opened_heliar(void **state)
 {
     (void)state;
-    settings_defaults(&settings);
+    settings_defaults(&opened.settings);
     return tool_start(&tool) != EXIT_OK ||
-           settings_open(&tool, &settings, "lenses/heliar-tronnier.lens") !=
-               EXIT_OK;
+           opened_lens_open(&tool, &opened.lens, &opened.settings,
+                            "lenses/heliar-tronnier.lens") != EXIT_OK;
 }
 
 static inline int opened_close(void **state)
 {
     (void)state;
-    settings_close(&settings);
+    opened_lens_close(&opened.lens);
     tool_finish(&tool);
     return 0;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/settings_frame.h"
 
-#include "model/settings_table.h"
+#include "model/opened_table.h"
 
 static double settings_starburst(const struct settings *settings)
 {
@@ -16,19 +16,23 @@ static double settings_starburst(const struct settings *settings)
     return GLINT_OPTION_GIVEN(o, ghost) ? 0 : o->starburst;
 }
 
-int settings_frame(const struct tool *tool, const struct settings *settings,
-                   struct glint_view view, struct glint_frame *frame)
+int settings_frame(const struct tool *tool, const struct opened *opened,
+                   int width, int height, struct glint_frame *frame)
 {
+    const struct settings *const settings = &opened->settings;
+    const struct opened_lens *const lens = &opened->lens;
     const struct glint_options *const o = &settings->options;
 
-    glint_frame_init(frame, &settings->setup, view, tool->workers);
+    glint_frame_init(frame, &lens->setup,
+                     opened_lens_view(lens, settings, width, height),
+                     tool->workers);
     frame->cfg.sets = tool_sets(tool);
-    frame->lens = settings->model.data ? &settings->model.lens : NULL;
-    frame->trace = settings_table_rays();
+    frame->lens = lens->model.data ? &lens->model.lens : NULL;
+    frame->trace = opened_table_rays();
     frame->clock = tool_seconds;
     frame->dials = settings->dials;
     frame->only_ghost = settings_only_ghost(settings);
-    frame->tints = settings->tints;
+    frame->tints = lens->tints;
     /* A limit of work would make the grid coarser than was requested. */
     frame->limits.most_minsn =
         settings_has_grid(settings) && !GLINT_OPTION_GIVEN(o, work)
@@ -54,7 +58,7 @@ int settings_frame(const struct tool *tool, const struct settings *settings,
     if (o->only == GLINT_ONLY_VEIL || o->only == GLINT_ONLY_ALL) {
         frame->veil.glare = o->veil;
         frame->veil.haze = o->haze;
-        frame->veil.front = settings->front.dirt;
+        frame->veil.front = lens->front;
     }
     return EXIT_OK;
 }

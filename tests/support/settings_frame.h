@@ -7,10 +7,16 @@
 #define GLINT_TESTS_SUPPORT_SETTINGS_FRAME_H
 
 #include "engine/frame/frame.h"
-#include "model/settings.h"
+#include "model/opened_lens.h"
 
-/* Makes FRAME as the options say. Returns an exit code. */
-int settings_frame(const struct tool *tool, const struct settings *settings,
-                   struct glint_view view, struct glint_frame *frame);
+/* Settings and the lens opened for them. */
+struct opened {
+    struct settings settings;
+    struct opened_lens lens;
+};
+
+/* Makes FRAME of WIDTH x HEIGHT as the options say. Returns an exit code. */
+int settings_frame(const struct tool *tool, const struct opened *opened,
+                   int width, int height, struct glint_frame *frame);
 
 #endif

@@ -257,7 +257,7 @@ static int save_ghosts(struct tool *tool, const struct explain_command *c,
     struct glint_error error = {""};
     int ghosts[GLINT_MAX_GHOSTS];
     const struct ghost_list list = {.explain = e,
-                                    .lens = c->drawing.line.settings.lens.name,
+                                    .lens = c->drawing.files.lens.table.name,
                                     .ghosts = ghosts,
                                     .top = c->top,
                                     .picture = &c->image};
@@ -300,14 +300,14 @@ static int tell_scene(struct tool *tool, const struct explain_command *c,
 static int tell(struct tool *tool, struct explain_command *c, bool linear)
 {
     struct drawing *drawing = &c->drawing;
-    const struct explain_title title = {
-        .lens = drawing->line.settings.lens.name,
-        .lamp = drawing->run.lamp,
-        .n_lamps = drawing->run.n_lamps,
-        .linear = linear,
-        .order = (enum glint_explain_order)c->order,
-        .top = c->top,
-        .report = &drawing->run.report};
+    const struct explain_title title = {.lens = drawing->files.lens.table.name,
+                                        .lamp = drawing->run.lamp,
+                                        .n_lamps = drawing->run.n_lamps,
+                                        .linear = linear,
+                                        .order =
+                                            (enum glint_explain_order)c->order,
+                                        .top = c->top,
+                                        .report = &drawing->run.report};
     struct glint_explain e;
     const enum glint_status status = glint_explain_open(
         &e, drawing->run.engine,

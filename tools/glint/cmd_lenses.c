@@ -16,7 +16,7 @@
 #include "model/model_cache.h"
 #include "model/table_file.h"
 #include "posix/output.h"
-#include "model/settings_table.h"
+#include "model/opened_table.h"
 #include "options/command_line.h"
 
 static const char help[] =
@@ -75,6 +75,7 @@ struct lenses {
 };
 
 struct entry {
+    struct glint_prescription table;
     struct settings settings; /* settings of a run without options */
     struct glint_optics optics;
     struct glint_ghost ghost[GLINT_MAX_GHOSTS];
@@ -99,15 +100,14 @@ static int set_entry(const struct tool *tool, const char *name, struct entry *e,
     int code;
 
     set_settings(&e->settings, plain);
-    code = tool_lens(tool, name, &e->settings.lens);
+    code = tool_lens(tool, name, &e->table);
     if (code != EXIT_OK)
         return code;
-    coating_apply(&e->settings.coating, &e->settings.lens);
-    glint_optics_of(&e->settings.lens, &e->optics);
-    e->n_ghosts =
-        glint_ghost_list(&e->settings.lens, e->ghost, GLINT_MAX_GHOSTS);
-    e->options = settings_bake_options(&e->settings);
-    e->is_baked = model_is_cached(&e->settings.lens, &e->options);
+    coating_apply(&e->settings.coating, &e->table);
+    glint_optics_of(&e->table, &e->optics);
+    e->n_ghosts = glint_ghost_list(&e->table, e->ghost, GLINT_MAX_GHOSTS);
+    e->options = opened_table_bake(&e->table, &e->settings);
+    e->is_baked = model_is_cached(&e->table, &e->options);
     return EXIT_OK;
 }
 
@@ -121,7 +121,7 @@ static int set_entry(const struct tool *tool, const char *name, struct entry *e,
 
 static double corner_deg(const struct entry *e)
 {
-    const struct glint_prescription *l = &e->settings.lens;
+    const struct glint_prescription *l = &e->table;
     const double rho =
         0.5 * hypot(l->film_width_mm, l->film_height_mm) / e->optics.focal_mm;
     const double deg = 45 / atan(1) * atan(rho);
@@ -144,10 +144,10 @@ static void print_json(struct lenses *l, const char *name,
                "\n {name: %s, source: %s, character: %s, "
                "focal_length_mm: %.3f, squeeze: %.6g, f_number: %g, "
                "film_mm: [%g, %g], corner_deg: %.2f, ghosts: %d, baked: %c}",
-               name, e->settings.lens.source, e->settings.lens.character,
-               e->optics.focal_mm, e->optics.squeeze, e->settings.lens.f_number,
-               e->settings.lens.film_width_mm, e->settings.lens.film_height_mm,
-               corner_deg(e), e->n_ghosts, e->is_baked);
+               name, e->table.source, e->table.character, e->optics.focal_mm,
+               e->optics.squeeze, e->table.f_number, e->table.film_width_mm,
+               e->table.film_height_mm, corner_deg(e), e->n_ghosts,
+               e->is_baked);
 }
 
 static void print_text(struct lenses *l, const char *name,
@@ -159,16 +159,15 @@ static void print_text(struct lenses *l, const char *name,
     if (l->n++ == 0)
         printf("%-24s %9s %7s %6s  %-9s %6s  %s\n", "lens", "focal mm",
                "corner", "f/", "film mm", "ghosts", "model");
-    snprintf(film, sizeof film, "%.4gx%.4g", e->settings.lens.film_width_mm,
-             e->settings.lens.film_height_mm);
+    snprintf(film, sizeof film, "%.4gx%.4g", e->table.film_width_mm,
+             e->table.film_height_mm);
     printf("%-24s %9.1f %4.0f%cdeg %5.3g  %-9s %6d  %s\n", name,
            e->optics.focal_mm, corner, corner < WIDEST_DEG ? ' ' : '+',
-           e->settings.lens.f_number, film, e->n_ghosts,
+           e->table.f_number, film, e->n_ghosts,
            e->is_baked ? "baked" : "not yet");
     if (l->tool->verbose || l->n_words)
-        printf("    %s%s%s\n", e->settings.lens.source,
-               *e->settings.lens.character ? "\n    " : "",
-               e->settings.lens.character);
+        printf("    %s%s%s\n", e->table.source,
+               *e->table.character ? "\n    " : "", e->table.character);
 }
 
 /* ------------------------------------------------------------------ a page */
@@ -234,7 +233,7 @@ static void print_html(struct lenses *l, const char *name,
                        const struct entry *e)
 {
     const struct page_card card = {.name = name,
-                                   .lens = &e->settings.lens,
+                                   .lens = &e->table,
                                    .focal_mm = e->optics.focal_mm,
                                    .squeeze = e->optics.squeeze,
                                    .corner_deg = corner_deg(e),
@@ -267,18 +266,18 @@ static int save_model(const struct tool *tool, const char *path,
  * from where models are kept, or baked. */
 static int put_model(const struct lenses *l, const struct entry *e)
 {
-    const uint64_t key = glint_bake_key(&e->settings.lens, &e->options);
+    const uint64_t key = glint_bake_key(&e->table, &e->options);
     struct model_file model = {.data = NULL};
     char path[1024];
     struct stat st;
     int code;
 
     if ((size_t)snprintf(path, sizeof path, "%s", l->folder) >= sizeof path ||
-        !model_cache_name(path, sizeof path, e->settings.lens.name, key))
+        !model_cache_name(path, sizeof path, e->table.name, key))
         return tool_usage(l->tool, "%s: the name is too long", l->folder);
     if (stat(path, &st) == 0)
         return EXIT_OK;
-    code = model_cached(l->tool, &e->settings.lens, e->options, &model);
+    code = model_cached(l->tool, &e->table, e->options, &model);
     if (code == EXIT_OK)
         code = save_model(l->tool, path, &model);
     if (code == EXIT_OK && !l->tool->quiet)
@@ -325,7 +324,7 @@ static bool one(void *ctx, const char *name)
     }
     code = set_entry(l->tool, name, e, false);
     if (code == EXIT_OK &&
-        !lens_has_words(name, &e->settings.lens, l->words, l->n_words)) {
+        !lens_has_words(name, &e->table, l->words, l->n_words)) {
         free(e);
         return true;
     }

@@ -46,6 +46,7 @@ static const char help[] =
 
 struct render {
     struct settings settings;
+    struct opened_lens lens;
     const char *output;
     struct json_writer json;
     bool linear; /* the output takes floats */
@@ -142,9 +143,9 @@ static int parse(struct tool *tool, int argc, char **argv, struct render *r)
 static struct glint_lamp *points_of(const struct render *r, int *n)
 {
     const struct glint_view view =
-        settings_view(&r->settings, r->width, r->height);
-    const double pixels = fabs(r->settings.setup.optics.focal_mm) * view.width /
-                          view.sensor_width_mm;
+        opened_lens_view(&r->lens, &r->settings, r->width, r->height);
+    const double pixels =
+        fabs(r->lens.setup.optics.focal_mm) * view.width / view.sensor_width_mm;
     struct glint_lamp *points;
     struct glint_area area;
     int total;
@@ -172,20 +173,20 @@ static int render_exact(struct tool *tool, struct render *r)
     int n_points = 0;
     struct glint_lamp *points = points_of(r, &n_points);
     struct glint_exact_config cfg = {
-        .setup = &r->settings.setup,
-        .view = settings_view(&r->settings, r->width, r->height),
+        .setup = &r->lens.setup,
+        .view = opened_lens_view(&r->lens, &r->settings, r->width, r->height),
         .lamps = points,
         .n_lamps = n_points,
         .grid = settings_has_grid(&r->settings)
                     ? (r->settings.dials.fineness + 1) / 2 * 2
                     : 512,
         .only_ghost = settings_only_ghost(&r->settings),
-        .tints = r->settings.tints,
+        .tints = r->lens.tints,
         .workers = tool->workers,
         .progress = tool_progress_show,
         .progress_ctx = &progress};
     const int n_ghosts =
-        settings_only_ghost(&r->settings) < 0 ? r->settings.setup.n_ghosts : 1;
+        settings_only_ghost(&r->settings) < 0 ? r->lens.setup.n_ghosts : 1;
     double *rgb = malloc(n * sizeof *rgb);
     enum glint_status status = GLINT_E_MEMORY;
 
@@ -231,7 +232,7 @@ static int render_model(struct tool *tool, struct render *r)
     struct glint_error error = {""};
     enum glint_status status;
 
-    settings_engine(tool, &r->settings, r->width, r->height, &cfg);
+    opened_lens_engine(tool, &r->lens, &r->settings, r->width, r->height, &cfg);
     cfg.light.by_hand = 1;
     cfg.search.max_found = 0;
     cfg.drawing.is_fresh = 1;
@@ -257,7 +258,7 @@ static int render_model(struct tool *tool, struct render *r)
 static int read_lamps(struct tool *tool, struct render *r)
 {
     const struct glint_view view =
-        settings_view(&r->settings, r->width, r->height);
+        opened_lens_view(&r->lens, &r->settings, r->width, r->height);
     struct glint_error error = {""};
     struct lamp_list list;
     const enum glint_status status =
@@ -274,7 +275,7 @@ static int read_lamps(struct tool *tool, struct render *r)
     read = malloc(((size_t)list.n + 1) * sizeof *read);
     if (all && read) {
         const int n = lamp_list_frame(
-            &list, 0, &view, r->settings.setup.optics.focal_mm, read, list.n);
+            &list, 0, &view, r->lens.setup.optics.focal_mm, read, list.n);
 
         for (int i = 0; i < n; i++)
             r->lamp[r->n_lamps++] = read[i].lamp;
@@ -307,7 +308,7 @@ static int run(struct tool *tool, struct render *r, const char *lens)
     if (code == EXIT_OK)
         code = render_file_check(tool, r->output, &r->linear);
     if (code == EXIT_OK)
-        code = settings_open(tool, &r->settings, lens);
+        code = opened_lens_open(tool, &r->lens, &r->settings, lens);
     if (code == EXIT_OK && r->lights_file)
         code = read_lamps(tool, r);
     if (code != EXIT_OK)
@@ -328,7 +329,7 @@ static int run(struct tool *tool, struct render *r, const char *lens)
         json_write(&r->json, "ms: %.3f}\n", 1e3 * (tool_seconds() - start));
     if (code == EXIT_OK)
         render_file_say(tool, r->output, r->width, r->height,
-                        r->settings.lens.name, tool_seconds() - start);
+                        r->lens.table.name, tool_seconds() - start);
     free(r->image.rgb);
     return code;
 }
@@ -358,7 +359,7 @@ int cmd_render(int argc, char **argv)
             code = run(&tool, r, argv[optind]);
         tool_finish(&tool);
     }
-    settings_close(&r->settings);
+    opened_lens_close(&r->lens);
     free(r->lamp);
     free(r);
     return code;

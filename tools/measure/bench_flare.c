@@ -47,13 +47,12 @@ static const char *const default_lenses[] = {
 enum { PLAN, TRANSFER, BIN, DRAW, WHOLE };
 
 struct lenses {
-    struct settings settings[BENCH_LENSES];
+    struct opened_lens lens[BENCH_LENSES];
     int n;
 };
 
 struct flare_case {
     struct bench_case base;
-    const struct settings *settings;
     struct glint_engine *engine;
     struct glint_lamp *lamp;
     int n_lamps;
@@ -105,21 +104,20 @@ static enum glint_status expose(struct flare_case *t,
     return status;
 }
 
-/* Adds the case V of SETTINGS. Returns an exit code. */
-static int add(struct bench *b, const struct settings *settings,
+/* Adds the case V of LENS. Returns an exit code. */
+static int add(struct bench *b, const struct opened_lens *lens,
                const struct bench_variation *v)
 {
     struct flare_case *const t =
-        (struct flare_case *)bench_add(b, settings->lens.name, v);
+        (struct flare_case *)bench_add(b, lens->table.name, v);
     struct glint_engine_config cfg;
     struct glint_error error = {""};
     enum glint_status status;
 
     if (!t || !(t->lamp = calloc((size_t)v->lights + 1, sizeof *t->lamp)))
         return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
-    t->settings = settings;
     t->n_lamps = v->lights;
-    canvas_engine(b->tool, settings, settings, t->base.canvas->image.width,
+    canvas_engine(b->tool, lens, &b->base, t->base.canvas->image.width,
                   t->base.canvas->image.height, &cfg);
     cfg.workers = t->base.workers;
     if (v->kernels)
@@ -137,14 +135,14 @@ static int add(struct bench *b, const struct settings *settings,
 }
 
 /* Adds those of V[N] that are possible here. */
-static int add_list(struct bench *b, const struct settings *settings,
+static int add_list(struct bench *b, const struct opened_lens *lens,
                     const struct bench_variation *v, size_t n)
 {
     int code = EXIT_OK;
 
     for (size_t i = 0; i < n && code == EXIT_OK; i++)
         if (bench_is_possible(&v[i]))
-            code = add(b, settings, &v[i]);
+            code = add(b, lens, &v[i]);
     return code;
 }
 
@@ -174,18 +172,18 @@ enum glint_status bench_run(struct bench *b, struct bench_case *c, int round)
 
 /* ----------------------------------------------------------------- opening */
 
-static int add_cases(struct bench *b, const struct settings *s)
+static int add_cases(struct bench *b, const struct opened_lens *lens)
 {
-    return b->all ? add_list(b, s, all, sizeof all / sizeof *all)
-                  : add(b, s, &plain);
+    return b->all ? add_list(b, lens, all, sizeof all / sizeof *all)
+                  : add(b, lens, &plain);
 }
 
 static int open_lens(struct bench *b, struct lenses *lenses, const char *name)
 {
     if (lenses->n == BENCH_LENSES)
         return tool_usage(b->tool, "takes %d lenses at most", BENCH_LENSES);
-    lenses->settings[lenses->n] = b->base;
-    return settings_open(b->tool, &lenses->settings[lenses->n++], name);
+    return opened_lens_open(b->tool, &lenses->lens[lenses->n++], &b->base,
+                            name);
 }
 
 static int open_flares(struct bench *b, int n, const char *const *name)
@@ -205,7 +203,7 @@ static int open_flares(struct bench *b, int n, const char *const *name)
     for (int i = 0; i < n && code == EXIT_OK; i++)
         code = open_lens(b, lenses, name[i]);
     for (int i = 0; i < n && code == EXIT_OK; i++)
-        code = add_cases(b, &lenses->settings[i]);
+        code = add_cases(b, &lenses->lens[i]);
     return code;
 }
 
@@ -222,7 +220,7 @@ static void close_flares(struct bench *b)
     struct lenses *const lenses = b->opened;
 
     for (int i = 0; lenses && i < lenses->n; i++)
-        settings_close(&lenses->settings[i]);
+        opened_lens_close(&lenses->lens[i]);
     free(lenses);
 }
 
@@ -264,7 +262,7 @@ static void json(struct json_writer *to, const struct bench *b,
                "lights: %d, threads: %d, raster: %s, kernels: %s, "
                "quality: %.3f",
                t->n_lamps, c->threads, raster_of(t), c->kernels,
-               r->quality >= 0 ? r->quality : t->settings->options.quality);
+               r->quality >= 0 ? r->quality : b->base.options.quality);
     bench_json_times(to, b, c);
     json_write(to,
                "drawn_lights: %d, ghosts: %d, bundles: %d, primitives: %d, "

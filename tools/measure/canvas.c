@@ -99,14 +99,11 @@ void canvas_lamps(struct glint_lamp *lamp, int n, double angle)
 
 /* ---------------------------------------------------------------- pictures */
 
-void canvas_engine(const struct tool *tool, const struct settings *open,
+void canvas_engine(const struct tool *tool, const struct opened_lens *lens,
                    const struct settings *asked, int width, int height,
                    struct glint_engine_config *cfg)
 {
-    settings_engine(tool, asked, width, height, cfg);
-    cfg->camera.setup = &open->setup;
-    if (cfg->model)
-        cfg->model = &open->model.lens;
+    opened_lens_engine(tool, lens, asked, width, height, cfg);
     cfg->light.by_hand = 1;
     cfg->search.max_found = 0;
     cfg->drawing.is_fresh = 1;
@@ -133,19 +130,20 @@ enum glint_status canvas_exposure(struct glint_engine *engine,
 }
 
 static enum glint_status draw_exact(const struct tool *tool,
+                                    const struct opened_lens *lens,
                                     const struct settings *s,
                                     const struct glint_lamp *lamp, int n_lamps,
                                     int grid, struct glint_float_image *to)
 {
     const size_t n = 3 * (size_t)to->width * (size_t)to->height;
     struct glint_setup *setup = malloc(sizeof *setup);
-    const struct stop_option stop = settings_stop_shape(s);
+    const struct stop_option stop = opened_lens_shape(lens, s);
     struct glint_dirt *dirt = NULL;
     double *rgb = malloc(n * sizeof *rgb);
     struct tool_progress progress;
     struct glint_exact_config cfg = {
         .setup = setup,
-        .view = settings_view(s, to->width, to->height),
+        .view = opened_lens_view(lens, s, to->width, to->height),
         .lamps = lamp,
         .n_lamps = n_lamps,
         .grid = grid,
@@ -158,9 +156,9 @@ static enum glint_status draw_exact(const struct tool *tool,
 
     tool_progress_start(&progress, tool, "exact");
     if (setup && rgb)
-        status =
-            glint_setup_init(setup, &s->lens, stop.n_blades, stop.rotation_deg,
-                             s->wavelength_nm, s->n_wavelengths, &error);
+        status = glint_setup_init(setup, &lens->table, stop.n_blades,
+                                  stop.rotation_deg, s->wavelength_nm,
+                                  s->n_wavelengths, &error);
     if (status == GLINT_OK)
         status = stop_option_set(&stop, setup, &dirt, &error);
     if (status == GLINT_OK && s->options.balance)
@@ -187,18 +185,19 @@ static uint64_t mix(uint64_t hash, const void *data, size_t bytes)
 
 /* Returns a key of all that the picture depends on, but for the tracer
  * itself. */
-static uint64_t key_of(const struct settings *s, const struct glint_lamp *lamp,
-                       int n_lamps, int grid,
+static uint64_t key_of(const struct opened_lens *lens, const struct settings *s,
+                       const struct glint_lamp *lamp, int n_lamps, int grid,
                        const struct glint_float_image *to)
 {
     const int only_ghost = settings_only_ghost(s);
-    const struct glint_view view = settings_view(s, to->width, to->height);
-    const struct stop_option stop = settings_stop_shape(s);
+    const struct glint_view view =
+        opened_lens_view(lens, s, to->width, to->height);
+    const struct stop_option stop = opened_lens_shape(lens, s);
     struct glint_bake_options options;
     uint64_t hash;
 
     glint_bake_defaults(&options);
-    hash = glint_bake_key(&s->lens, &options);
+    hash = glint_bake_key(&lens->table, &options);
     hash = mix(hash, &to->width, sizeof to->width);
     hash = mix(hash, &to->height, sizeof to->height);
     hash = mix(hash, &view.sensor_width_mm, sizeof view.sensor_width_mm);
@@ -240,11 +239,12 @@ static bool load(const char *path, struct glint_float_image *to)
 }
 
 enum glint_status canvas_exact(const struct tool *tool,
+                               const struct opened_lens *lens,
                                const struct settings *settings,
                                const struct glint_lamp *lamp, int n_lamps,
                                int grid, struct glint_float_image *to)
 {
-    const uint64_t key = key_of(settings, lamp, n_lamps, grid, to);
+    const uint64_t key = key_of(lens, settings, lamp, n_lamps, grid, to);
     struct glint_error error = {""};
     char file[64], path[1024];
     enum glint_status status;
@@ -255,7 +255,7 @@ enum glint_status canvas_exact(const struct tool *tool,
     kept = model_cache_path(path, sizeof path, file);
     if (kept && load(path, to))
         return GLINT_OK;
-    status = draw_exact(tool, settings, lamp, n_lamps, grid, to);
+    status = draw_exact(tool, lens, settings, lamp, n_lamps, grid, to);
     if (status == GLINT_OK && kept &&
         glint_picture_save_float(path, to, &error) != GLINT_OK && !tool->quiet)
         fprintf(stderr, "glint %s: the exact picture is not kept: %s\n",

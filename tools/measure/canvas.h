@@ -7,7 +7,7 @@
 #define GLINT_TOOLS_LAB_CANVAS_H
 
 #include "formats/pnm.h"
-#include "model/settings.h"
+#include "model/opened_lens.h"
 
 enum { CANVAS_MAX = 1000 }; /* largest number of rounds, and of medians */
 
@@ -36,9 +36,9 @@ void canvas_time_floor(struct canvas *canvas, int round);
 void canvas_lamps(struct glint_lamp *lamp, int n, double angle);
 
 /* Sets CFG to what an engine of WIDTH x HEIGHT takes that draws lamps by
- * glint_engine_draw_at() and looks for none, as ASKED says: a copy of OPEN,
- * which the engine keeps, with options set. */
-void canvas_engine(const struct tool *tool, const struct settings *open,
+ * glint_engine_draw_at() and looks for none, as ASKED says, through LENS,
+ * which must outlive the engine. */
+void canvas_engine(const struct tool *tool, const struct opened_lens *lens,
                    const struct settings *asked, int width, int height,
                    struct glint_engine_config *cfg);
 
@@ -53,6 +53,7 @@ enum glint_status canvas_exposure(struct glint_engine *engine,
  * memory the caller has taken; or loads it where a picture drawn before is
  * cached. GLINT_E_MEMORY. */
 enum glint_status canvas_exact(const struct tool *tool,
+                               const struct opened_lens *lens,
                                const struct settings *settings,
                                const struct glint_lamp *lamp, int n_lamps,
                                int grid, struct glint_float_image *to);

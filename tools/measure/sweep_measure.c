@@ -13,10 +13,16 @@
 
 enum { MAX_OPEN = 12, PICTURE_WIDTH = 320 };
 
+/* A lens that is opened for settings. */
+struct sweep_lens {
+    struct settings settings;
+    struct opened_lens lens;
+};
+
 /* A point being measured. */
 struct run {
     struct sweep_point *point;
-    const struct settings *settings;
+    const struct sweep_lens *open;
     struct glint_engine *engine;
     struct glint_engine_report report;
     double ms[SWEEP_ROUNDS];
@@ -28,7 +34,7 @@ struct run {
 struct bay {
     struct sweep *s;
     const struct sweep_case *c;
-    struct settings open[MAX_OPEN];
+    struct sweep_lens open[MAX_OPEN];
     int n_open;
     struct run *run;
     struct canvas canvas;
@@ -44,26 +50,28 @@ static bool is_same(const struct settings *a, const struct settings *b)
     return a->tolerance == b->tolerance && a->n_wavelengths == b->n_wavelengths;
 }
 
-/* Returns settings that are opened for SET, and shared by all sets that need
- * the same to be opened. Returns NULL after reporting a failure, with its exit
- * code in *CODE. */
-static const struct settings *
-settings_for(struct bay *b, const struct sweep_setting *set, int *code)
+/* Returns the lens opened for SET, shared by all sets that need the same to be
+ * opened. Returns NULL after reporting a failure, with its exit code in
+ * *CODE. */
+static const struct sweep_lens *
+opened_for(struct bay *b, const struct sweep_setting *set, int *code)
 {
     struct settings asked = b->s->base;
+    struct sweep_lens *open;
 
     sweep_set(&asked, set, true);
     for (int i = 0; i < b->n_open; i++)
-        if (is_same(&b->open[i], &asked))
+        if (is_same(&b->open[i].settings, &asked))
             return &b->open[i];
     if (b->n_open == MAX_OPEN) {
         *code = tool_usage(b->s->tool, "more than %d scenes", MAX_OPEN);
         return NULL;
     }
-    b->open[b->n_open] = asked;
-    *code = settings_open(b->s->tool, &b->open[b->n_open++],
-                          b->s->lens[b->c->lens]);
-    return *code == EXIT_OK ? &b->open[b->n_open - 1] : NULL;
+    open = &b->open[b->n_open++];
+    open->settings = asked;
+    *code = opened_lens_open(b->s->tool, &open->lens, &open->settings,
+                             b->s->lens[b->c->lens]);
+    return *code == EXIT_OK ? open : NULL;
 }
 
 static int make_run(struct bay *b, struct run *r)
@@ -74,16 +82,16 @@ static int make_run(struct bay *b, struct run *r)
     enum glint_status status;
     int code = EXIT_OK;
 
-    r->settings = settings_for(b, &r->point->set, &code);
-    if (!r->settings)
+    r->open = opened_for(b, &r->point->set, &code);
+    if (!r->open)
         return code;
-    asked = *r->settings;
+    asked = r->open->settings;
     sweep_set(&asked, &r->point->set, false);
-    canvas_engine(b->s->tool, r->settings, &asked, b->c->width, b->c->height,
+    canvas_engine(b->s->tool, &r->open->lens, &asked, b->c->width, b->c->height,
                   &cfg);
     cfg.workers = b->s->tool->n_threads ? b->s->tool->workers : b->s->one;
     status = glint_engine_create(&r->engine, &cfg, &error);
-    r->point->metric[SWEEP_MODEL_BYTES] = (double)r->settings->model.bytes;
+    r->point->metric[SWEEP_MODEL_BYTES] = (double)r->open->lens.model.bytes;
     return status == GLINT_OK ? EXIT_OK
                               : tool_fail(b->s->tool, status, error.text);
 }
@@ -116,7 +124,7 @@ static void free_bay(struct bay *b)
     for (int i = 0; b->run && i < b->c->n; i++)
         glint_engine_destroy(b->run[i].engine);
     for (int i = 0; i < b->n_open; i++)
-        settings_close(&b->open[i]);
+        opened_lens_close(&b->open[i].lens);
     canvas_finish(&b->canvas);
     free(b->run);
     free(b->lamp);
@@ -289,8 +297,9 @@ static enum glint_status measure_all(struct bay *b,
 
     b->exact.rgb = malloc(n * sizeof(float));
     if (b->exact.rgb && codes)
-        status = canvas_exact(b->s->tool, &b->open[0], b->lamp, b->c->n_lamps,
-                              b->s->grid, &b->exact);
+        status =
+            canvas_exact(b->s->tool, &b->open[0].lens, &b->open[0].settings,
+                         b->lamp, b->c->n_lamps, b->s->grid, &b->exact);
     if (status == GLINT_OK) {
         const double exposure = glint_measure_exposure(&b->exact);
 

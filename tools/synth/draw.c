@@ -295,7 +295,7 @@ static int open_lens(const struct tool *tool, struct synth_lens *lens,
                      const struct synth_item *item)
 {
     struct settings *const s = &lens->settings;
-    const struct glint_optics *const optics = &s->setup.optics;
+    const struct glint_optics *const optics = &lens->opened.setup.optics;
     const char *end;
     char quality[40];
     int code;
@@ -309,7 +309,7 @@ static int open_lens(const struct tool *tool, struct synth_lens *lens,
     s->waves = GLINT_WAVES_AUTO;
     code = coating_take(tool, &s->coating, item->coating);
     if (code < 0)
-        code = settings_open(tool, s, item->lens);
+        code = opened_lens_open(tool, &lens->opened, s, item->lens);
     if (code == EXIT_OK)
         lens->widest =
             fabs(optics->focal_mm) / (2 * optics->entrance_radius_mm);
@@ -338,7 +338,7 @@ int synth_lens_open(const struct tool *tool, struct synth_lenses *lenses,
 void synth_lenses_close(struct synth_lenses *lenses)
 {
     for (int i = 0; i < lenses->n; i++) {
-        settings_close(&lenses->lens[i]->settings);
+        opened_lens_close(&lenses->lens[i]->opened);
         free(lenses->lens[i]);
     }
 }
@@ -361,15 +361,15 @@ static int set_lens(const struct tool *tool, struct synth_lens *lens,
     result->f_number = lens->widest * exp2(item->stops_down / 2);
     /* The model's own stop is not requested by a number that rounding may have
      * made wider. */
-    status =
-        settings_stop(s, item->stops_down > 0 ? result->f_number : 0, &error);
+    s->options.f_number = item->stops_down > 0 ? result->f_number : 0;
+    status = opened_lens_stop(&lens->opened, s, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    result->focal_mm = s->setup.optics.focal_mm;
-    front_option_close(&s->front);
+    result->focal_mm = lens->opened.setup.optics.focal_mm;
     s->front.front.dust = item->front_dust;
     s->front.front.dust_seed = (int)item->front_dust_seed;
-    return front_option_open(tool, &s->front);
+    glint_front_free(lens->opened.front);
+    return front_option_open(tool, &s->front, &lens->opened.front);
 }
 
 /* ------------------------------------------------------------------- lights */
@@ -398,12 +398,13 @@ static void black_body(double kelvin, double rgb[3])
 }
 
 /* Sets LAMP to the lights of ITEM, of their relative powers. */
-static void set_lamps(const struct synth_item *item, const struct settings *s,
-                      struct glint_lamp *lamp, struct synth_result *result)
+static void set_lamps(const struct synth_item *item,
+                      const struct synth_lens *lens, struct glint_lamp *lamp,
+                      struct synth_result *result)
 {
-    const struct glint_view view =
-        settings_view(s, (int)item->width, (int)item->height);
-    const double focal = s->setup.optics.focal_mm;
+    const struct glint_view view = opened_lens_view(
+        &lens->opened, &lens->settings, (int)item->width, (int)item->height);
+    const double focal = lens->opened.setup.optics.focal_mm;
 
     result->sensor_width_mm = view.sensor_width_mm;
     for (int i = 0; i < (int)item->n_lights; i++) {
@@ -463,7 +464,7 @@ static void draw_sources(const struct synth_item *item,
 /* ------------------------------------------------------------------- flares */
 
 /* Draws a part of the flare, of enum glint_engine_part. */
-static int draw_part(const struct tool *tool, struct settings *s,
+static int draw_part(const struct tool *tool, const struct synth_lens *lens,
                      const struct synth_item *item,
                      const struct glint_lamp *lamp, unsigned part, float *rgb)
 {
@@ -473,7 +474,8 @@ static int draw_part(const struct tool *tool, struct settings *s,
     struct glint_error error = {""};
     enum glint_status status;
 
-    settings_engine(tool, s, (int)item->width, (int)item->height, &cfg);
+    opened_lens_engine(tool, &lens->opened, &lens->settings, (int)item->width,
+                       (int)item->height, &cfg);
     cfg.drawing.parts = part;
     cfg.light.haze = item->haze;
     cfg.light.starburst = 1;
@@ -510,7 +512,7 @@ static void times(float *rgb, size_t n, double factor)
         rgb[i] = (float)((double)rgb[i] * factor);
 }
 
-static int draw_flare(const struct tool *tool, struct settings *s,
+static int draw_flare(const struct tool *tool, const struct synth_lens *lens,
                       const struct synth_item *item, struct synth_drawing *d,
                       struct synth_result *result)
 {
@@ -523,8 +525,8 @@ static int draw_flare(const struct tool *tool, struct settings *s,
     double power;
     int code;
 
-    set_lamps(item, s, lamp, result);
-    code = draw_part(tool, s, item, lamp, GLINT_ENGINE_GHOSTS, ghosts);
+    set_lamps(item, lens, lamp, result);
+    code = draw_part(tool, lens, item, lamp, GLINT_ENGINE_GHOSTS, ghosts);
     if (code != EXIT_OK)
         return code;
     power = power_of(&image, item->ghost_level);
@@ -535,10 +537,10 @@ static int draw_flare(const struct tool *tool, struct settings *s,
         lamp[i].power *= power;
     memset(glare, 0, n * sizeof *glare);
     if (item->star > 0)
-        code = draw_part(tool, s, item, lamp, GLINT_ENGINE_STAR, glare);
+        code = draw_part(tool, lens, item, lamp, GLINT_ENGINE_STAR, glare);
     times(glare, n, item->star);
     if (code == EXIT_OK && (item->haze > 0 || item->front_dust > 0)) {
-        code = draw_part(tool, s, item, lamp, GLINT_ENGINE_VEIL, spare);
+        code = draw_part(tool, lens, item, lamp, GLINT_ENGINE_VEIL, spare);
         for (size_t i = 0; i < n && code == EXIT_OK; i++)
             glare[i] += spare[i];
     }
@@ -563,7 +565,7 @@ int synth_draw(const struct tool *tool, struct synth_lenses *lenses,
         return code;
     code = set_lens(tool, lens, item, result);
     if (code == EXIT_OK)
-        code = draw_flare(tool, &lens->settings, item, d, result);
+        code = draw_flare(tool, lens, item, d, result);
     if (code != EXIT_OK)
         return code;
     status = load_background(backgrounds, item, d->layer[SYNTH_BASE],

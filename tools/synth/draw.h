@@ -10,7 +10,7 @@
 #ifndef GLINT_TOOLS_SYNTH_DRAW_H
 #define GLINT_TOOLS_SYNTH_DRAW_H
 
-#include "model/settings.h"
+#include "model/opened_lens.h"
 #include "synth/item.h"
 
 struct synth_backgrounds {
@@ -39,6 +39,7 @@ enum { SYNTH_MAX_LENSES = 64 };
 
 struct synth_lens {
     struct settings settings;
+    struct opened_lens opened;
     char name[64], coating[64];
     double quality;
     double widest; /* f-number of its model */

@@ -72,9 +72,7 @@ static struct glint_engine_report run(struct glint_frame *frame,
 
 static void make(struct glint_frame *frame)
 {
-    assert_int_equal(settings_frame(&tool, &settings,
-                                    settings_view(&settings, WIDTH, HEIGHT),
-                                    frame),
+    assert_int_equal(settings_frame(&tool, &opened, WIDTH, HEIGHT, frame),
                      EXIT_OK);
 }
 
@@ -267,7 +265,7 @@ static void test_counts(void **state)
     /* The last bundles may turn out to have no edges. */
     assert_true(coarse.count[GLINT_COST_BUNDLES] >= report.stats.bundles);
     assert_true(coarse.count[GLINT_COST_BUNDLES] <=
-                settings.setup.n_ghosts * settings.setup.n_wavelengths);
+                opened.lens.setup.n_ghosts * opened.lens.setup.n_wavelengths);
     assert_true(coarse.count[GLINT_COST_LIT] <= WIDTH * HEIGHT);
     then = plan.dials;
     then.irradiance_steps = 0;

@@ -41,7 +41,7 @@ static struct glint_engine *make(void *arena, size_t bytes)
     struct glint_error error;
 
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
-    cfg.model = &settings.model.lens;
+    cfg.model = &opened.lens.model.lens;
     cfg.arena = arena;
     cfg.arena_bytes = bytes;
     assert_int_equal(glint_engine_create(&engine, &cfg, &error), GLINT_OK);
@@ -191,7 +191,7 @@ static void test_given(void **state)
 static void test_stop(void **state)
 {
     static uint8_t open[BYTES], set[BYTES], made[BYTES];
-    const double f = glint_real_value(settings.model.lens.header->f_number);
+    const double f = glint_real_value(opened.lens.model.lens.header->f_number);
     struct glint_engine *engine = make(NULL, 0);
     struct glint_engine_report report;
     struct glint_engine_config cfg;
@@ -208,7 +208,7 @@ static void test_stop(void **state)
     glint_engine_destroy(engine);
     assert_memory_not_equal(set, open, BYTES);
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
-    cfg.model = &settings.model.lens;
+    cfg.model = &opened.lens.model.lens;
     cfg.camera.f_number = 3 * f;
     assert_int_equal(glint_engine_create(&engine, &cfg, &error), GLINT_OK);
     run(engine, 0, made, &report);
@@ -267,7 +267,7 @@ static void test_layers(void **state)
 
     (void)state;
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
-    cfg.model = &settings.model.lens;
+    cfg.model = &opened.lens.model.lens;
     cfg.search.max_found = 0;
     cfg.search.more_lamps = 1;
     assert_int_equal(glint_engine_create(&engine, &cfg, &error), GLINT_OK);
@@ -323,7 +323,7 @@ static void test_refuses(void **state)
     glint_engine_destroy(NULL);
     for (int k = 0; k < 12; k++) {
         glint_engine_defaults(&cfg, k == 0 ? 0 : WIDTH, HEIGHT);
-        cfg.model = k == 1 ? NULL : &settings.model.lens;
+        cfg.model = k == 1 ? NULL : &opened.lens.model.lens;
         cfg.search.max_found = k == 2 ? 1025 : cfg.search.max_found;
         cfg.light.strength = k == 3 ? -1 : cfg.light.strength;
         cfg.search.threshold_ev[1] = k == 4 ? 0 : cfg.search.threshold_ev[1];
@@ -354,7 +354,7 @@ static void test_older_program(void **state)
     memset(&cfg, 0x55, sizeof cfg);
     glint_engine_defaults_sized(&cfg, bytes, WIDTH, HEIGHT);
     assert_int_equal(((unsigned char *)&cfg)[bytes], 0x55);
-    cfg.model = &settings.model.lens;
+    cfg.model = &opened.lens.model.lens;
     assert_int_equal(glint_engine_create(&engine, &cfg, &error), GLINT_OK);
     glint_engine_destroy(engine);
 }
@@ -382,7 +382,7 @@ static void test_set_by_name(void **state)
     run(engine, 0, set, &report);
     glint_engine_destroy(engine);
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
-    cfg.model = &settings.model.lens;
+    cfg.model = &opened.lens.model.lens;
     cfg.light.by_hand = 1;
     cfg.light.exposure_ev = 3;
     cfg.light.gain = 2;

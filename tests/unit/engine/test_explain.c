@@ -35,9 +35,8 @@ enum { N_LAMPS = (int)(sizeof lamps / sizeof *lamps) };
 
 static void make(struct glint_frame *frame)
 {
-    const struct glint_view view = settings_view(&settings, WIDTH, HEIGHT);
-
-    assert_int_equal(settings_frame(&tool, &settings, view, frame), EXIT_OK);
+    assert_int_equal(settings_frame(&tool, &opened, WIDTH, HEIGHT, frame),
+                     EXIT_OK);
     frame->cfg.tile_log2 = 4;
 }
 

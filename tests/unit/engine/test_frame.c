@@ -22,7 +22,7 @@
 
 enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 
-static struct settings settings, exact_scene;
+static struct opened opened, exact_scene;
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 static int n_asked; /* requests for memory since this was set to 0 */
 static int fail_at; /* number of the request that is refused, from 1; 0: none */
@@ -70,17 +70,15 @@ static const struct glint_lamp lamps[] = {
 
 enum { N_LAMPS = (int)(sizeof lamps / sizeof *lamps) };
 
-static void make_of(const struct settings *of, struct glint_frame *frame)
+static void make_of(const struct opened *of, struct glint_frame *frame)
 {
-    const struct glint_view view = settings_view(of, WIDTH, HEIGHT);
-
-    assert_int_equal(settings_frame(&tool, of, view, frame), EXIT_OK);
+    assert_int_equal(settings_frame(&tool, of, WIDTH, HEIGHT, frame), EXIT_OK);
     frame->dials.fineness = 16;
 }
 
 static void make(struct glint_frame *frame)
 {
-    make_of(&settings, frame);
+    make_of(&opened, frame);
 }
 
 static void make_even(struct glint_frame *frame, int fineness)
@@ -421,7 +419,7 @@ static void test_no_memory(void **state)
         for (int nth = 0; nth < 100; nth++) {
             enum glint_status status;
 
-            make_of(exact ? &exact_scene : &settings, &frame);
+            make_of(exact ? &exact_scene : &opened, &frame);
             frame.only_ghost = 0;
             frame.dials.max_lights = 2; /* Some of three lamps must merge. */
             n_asked = 0;
@@ -458,7 +456,7 @@ static void test_too_many_feeds(void **state)
         many[i] = (struct glint_lamp){i % 100 / 2., i / 100 / 2., 1,
                                       {1, 1, 1},    {0, 0},       0};
     make_of(&exact_scene, &frame);
-    crowd = exact_scene.setup; /* 66577 x 2016 x 32 is 2^32 + 48128 */
+    crowd = exact_scene.lens.setup; /* 66577 x 2016 x 32 is 2^32 + 48128 */
     crowd.n_ghosts = 2016;
     crowd.n_wavelengths = 32;
     frame.setup = &crowd;
@@ -512,21 +510,23 @@ static void test_room_for_points(void **state)
 static int enter(void **state)
 {
     (void)state;
-    settings_defaults(&settings);
-    settings.max_deg = 15;
-    settings_defaults(&exact_scene);
-    exact_scene.options.rays = GLINT_RAYS_EXACT;
+    settings_defaults(&opened.settings);
+    opened.settings.max_deg = 15;
+    settings_defaults(&exact_scene.settings);
+    exact_scene.settings.options.rays = GLINT_RAYS_EXACT;
     if (tool_start(&tool) != EXIT_OK ||
-        settings_open(&tool, &exact_scene, "lenses/heliar-tronnier.lens"))
+        opened_lens_open(&tool, &exact_scene.lens, &exact_scene.settings,
+                         "lenses/heliar-tronnier.lens"))
         return 1;
-    return settings_open(&tool, &settings, "lenses/heliar-tronnier.lens");
+    return opened_lens_open(&tool, &opened.lens, &opened.settings,
+                            "lenses/heliar-tronnier.lens");
 }
 
 static int leave(void **state)
 {
     (void)state;
-    settings_close(&settings);
-    settings_close(&exact_scene);
+    opened_lens_close(&opened.lens);
+    opened_lens_close(&exact_scene.lens);
     tool_finish(&tool);
     return 0;
 }

@@ -20,7 +20,7 @@
 enum { WIDTH = 160, HEIGHT = 120 }; /* 200 pixels of diagonal */
 
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
-static struct settings settings;
+static struct opened opened;
 static struct glint_frame frame;
 static uint8_t rgb[3 * WIDTH * HEIGHT];
 static struct glint_image image = {.format = GLINT_RGB24,
@@ -31,14 +31,12 @@ static struct glint_image image = {.format = GLINT_RGB24,
 static int open_frame(void **state)
 {
     (void)state;
-    settings_defaults(&settings);
-    settings.options.starburst = 1;
-    assert_int_equal(
-        settings_open(&tool, &settings, "lenses/heliar-tronnier.lens"),
-        EXIT_OK);
-    assert_int_equal(settings_frame(&tool, &settings,
-                                    settings_view(&settings, WIDTH, HEIGHT),
-                                    &frame),
+    settings_defaults(&opened.settings);
+    opened.settings.options.starburst = 1;
+    assert_int_equal(opened_lens_open(&tool, &opened.lens, &opened.settings,
+                                      "lenses/heliar-tronnier.lens"),
+                     EXIT_OK);
+    assert_int_equal(settings_frame(&tool, &opened, WIDTH, HEIGHT, &frame),
                      EXIT_OK);
     glint_image_place(&image, rgb);
     return 0;
@@ -48,7 +46,7 @@ static int close_frame(void **state)
 {
     (void)state;
     glint_frame_finish(&frame);
-    settings_close(&settings);
+    opened_lens_close(&opened.lens);
     return 0;
 }
 

@@ -376,15 +376,14 @@ static void test_begins_anew(void **state)
  * LENS must hold for every angle and power. */
 static void check_lens(const char *lens, double corner_deg)
 {
-    struct settings settings;
+    struct opened opened = {.lens = {.tints = NULL}};
     struct glint_response r;
     struct glint_frame frame;
 
-    settings_defaults(&settings);
-    assert_int_equal(settings_open(&tool, &settings, lens), EXIT_OK);
-    assert_int_equal(settings_frame(&tool, &settings,
-                                    settings_view(&settings, 640, 360), &frame),
-                     EXIT_OK);
+    settings_defaults(&opened.settings);
+    assert_int_equal(
+        opened_lens_open(&tool, &opened.lens, &opened.settings, lens), EXIT_OK);
+    assert_int_equal(settings_frame(&tool, &opened, 640, 360, &frame), EXIT_OK);
     assert_int_equal(glint_response_measure(&frame, 0, &r), GLINT_OK);
     assert_true(r.n == GLINT_RESPONSE_ANGLES);
     for (int i = 0; i < 6; i++) {
@@ -408,7 +407,7 @@ static void check_lens(const char *lens, double corner_deg)
         assert_true(s.scale * glint_largest_channel(drawn.mean) < 0.1);
     }
     glint_frame_finish(&frame);
-    settings_close(&settings);
+    opened_lens_close(&opened.lens);
 }
 
 static void test_lenses(void **state)
@@ -422,25 +421,23 @@ static void test_lenses(void **state)
 /* The response must be the same within the limits of memory that live has. */
 static void test_little_memory(void **state)
 {
-    struct settings settings;
+    struct opened opened = {.lens = {.tints = NULL}};
     struct glint_response r, free;
     struct glint_frame frame;
 
     (void)state;
-    settings_defaults(&settings);
-    assert_int_equal(
-        settings_open(&tool, &settings, "lenses/heliar-tronnier.lens"),
-        EXIT_OK);
-    assert_int_equal(settings_frame(&tool, &settings,
-                                    settings_view(&settings, 640, 360), &frame),
+    settings_defaults(&opened.settings);
+    assert_int_equal(opened_lens_open(&tool, &opened.lens, &opened.settings,
+                                      "lenses/heliar-tronnier.lens"),
                      EXIT_OK);
+    assert_int_equal(settings_frame(&tool, &opened, 640, 360, &frame), EXIT_OK);
     assert_int_equal(glint_response_measure(&frame, 2 << 20, &r), GLINT_OK);
     assert_int_equal(glint_response_measure(&frame, 0, &free), GLINT_OK);
     glint_frame_finish(&frame);
     for (int i = 0; i < r.n; i++)
         assert_memory_equal(&r.log2_of[i], &free.log2_of[i],
                             sizeof r.log2_of[i]);
-    settings_close(&settings);
+    opened_lens_close(&opened.lens);
 }
 
 static void test_interpolates(void **state)

@@ -20,13 +20,13 @@
 enum { WIDTH = 640, HEIGHT = 360, SAMPLES = 3 * WIDTH * HEIGHT };
 
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 2};
-static struct settings chosen, three, all;
+static struct opened chosen, three, all;
 static const struct glint_lamp lamp = {
     .theta_deg = 12, .phi_deg = 33, .power = 3e6, .rgb = {1, 1, 1}};
 
 static struct glint_engine_report drawn(struct glint_frame *frame,
-                                        const struct settings *settings,
-                                        int width, double power, uint8_t *rgb)
+                                        const struct opened *opened, int width,
+                                        double power, uint8_t *rgb)
 {
     struct glint_lamp light = lamp;
     struct glint_image image = {.format = GLINT_RGB24,
@@ -37,9 +37,7 @@ static struct glint_engine_report drawn(struct glint_frame *frame,
 
     light.power *= power;
     assert_int_equal(
-        settings_frame(&tool, settings,
-                       settings_view(settings, width, width * 9 / 16), frame),
-        EXIT_OK);
+        settings_frame(&tool, opened, width, width * 9 / 16, frame), EXIT_OK);
     memset(rgb, 0, (size_t)width * (size_t)(width * 9 / 16) * 3);
     glint_image_place(&image, rgb);
     assert_int_equal(glint_frame_draw(frame, &light, 1, 1, &image, &report),
@@ -127,14 +125,14 @@ static void test_large_picture(void **state)
 static void test_dial(void **state)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], least, bundles, before = 0;
-    struct settings settings = chosen;
+    struct opened set = chosen;
     struct glint_frame frame;
 
     (void)state;
-    settings.setup.lens = &chosen.lens;
+    set.lens.setup.lens = &chosen.lens.table;
     for (double px = 8; px > 0.1; px /= 2) {
-        settings.dials.dispersion_q8 = (int)(px * 256);
-        drawn(&frame, &settings, WIDTH, 100, picture);
+        set.settings.dials.dispersion_q8 = (int)(px * 256);
+        drawn(&frame, &set, WIDTH, 100, picture);
         count(&frame, ghosts, &bundles);
         assert_true(bundles >= before);
         least = before ? least : bundles;
@@ -147,12 +145,12 @@ static void test_dial(void **state)
 /* A dispersion of 0 must give the three default wavelengths, bit for bit. */
 static void test_off(void **state)
 {
-    struct settings settings = chosen;
+    struct opened set = chosen;
     struct glint_frame frame;
 
     (void)state;
-    settings.dials.dispersion_q8 = 0;
-    drawn(&frame, &settings, WIDTH, 1, picture);
+    set.settings.dials.dispersion_q8 = 0;
+    drawn(&frame, &set, WIDTH, 1, picture);
     glint_frame_finish(&frame);
     drawn(&frame, &three, WIDTH, 1, other);
     glint_frame_finish(&frame);
@@ -162,23 +160,22 @@ static void test_off(void **state)
 /* A single set must give the picture of the list of its wavelengths. */
 static void test_one_set(void **state)
 {
-    struct settings settings = chosen, list = three;
+    struct opened set = chosen, list = three;
     struct glint_frame frame;
 
     (void)state;
-    settings.setup.n_sets = 1;
-    assert_true(settings_set(&list, "wavelengths", "4"));
-    settings.dials.cull_codes = list.dials.cull_codes = 0;
-    settings_choose_waves(&list);
-    assert_int_equal(list.n_wavelengths, 4);
-    list.setup.n_wavelengths = 4;
+    set.lens.setup.n_sets = 1;
+    assert_true(settings_set(&list.settings, "wavelengths", "4"));
+    set.settings.dials.cull_codes = list.settings.dials.cull_codes = 0;
+    assert_int_equal(list.settings.n_wavelengths, 4);
+    list.lens.setup.n_wavelengths = 4;
     for (int i = 0; i < 4; i++) {
-        list.setup.wavelength_nm[i] = list.wavelength_nm[i];
-        memcpy(list.setup.rgb[i], settings.setup.set_wave[i].rgb,
-               sizeof list.setup.rgb[i]);
-        list.setup.unit_flux[i] = settings.setup.set_wave[i].unit_flux;
+        list.lens.setup.wavelength_nm[i] = list.settings.wavelength_nm[i];
+        memcpy(list.lens.setup.rgb[i], set.lens.setup.set_wave[i].rgb,
+               sizeof list.lens.setup.rgb[i]);
+        list.lens.setup.unit_flux[i] = set.lens.setup.set_wave[i].unit_flux;
     }
-    drawn(&frame, &settings, WIDTH, 10, picture);
+    drawn(&frame, &set, WIDTH, 10, picture);
     glint_frame_finish(&frame);
     drawn(&frame, &list, WIDTH, 10, other);
     glint_frame_finish(&frame);
@@ -191,14 +188,14 @@ static void test_little_room(void **state)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles, most = 0;
     struct glint_flare_stats stats;
-    struct settings settings = chosen;
+    struct opened set = chosen;
     struct glint_frame frame;
     size_t bytes;
     void *mem;
 
     (void)state;
-    settings.dials.dispersion_q8 = 64;
-    drawn(&frame, &settings, WIDTH, 100, picture);
+    set.settings.dials.dispersion_q8 = 64;
+    drawn(&frame, &set, WIDTH, 100, picture);
     most = frame.cfg.max_bundles;
     frame.cfg.max_bundles = 4 * frame.setup->n_ghosts;
     /* Drawing had raised the limit above 4 bundles a ghost. */
@@ -244,9 +241,7 @@ static void test_same_bits(void **state)
         struct glint_frame frame;
 
         tool.workers = i ? NULL : pool;
-        assert_int_equal(settings_frame(&tool, &chosen,
-                                        settings_view(&chosen, WIDTH, HEIGHT),
-                                        &frame),
+        assert_int_equal(settings_frame(&tool, &chosen, WIDTH, HEIGHT, &frame),
                          EXIT_OK);
         memset(rgb[i], 0, SAMPLES);
         glint_image_place(&image, rgb[i]);
@@ -339,7 +334,6 @@ static void test_words(void **state)
                 s.waves == GLINT_WAVES_AUTO);
     assert_true(settings_set(&s, "wavelengths", "9") &&
                 s.waves == GLINT_WAVES_COUNT && s.n_wavelengths == 9);
-    settings_choose_waves(&s);
     assert_true(s.wavelength_nm[0] > 400 && s.wavelength_nm[8] < 700);
     assert_true(settings_set(&s, "wavelengths", "532") &&
                 s.waves == GLINT_WAVES_LIST && s.n_wavelengths == 1 &&
@@ -354,7 +348,6 @@ static void test_words(void **state)
     assert_false(settings_set(&s, "wavelengths", "9,17"));
     s.waves = GLINT_WAVES_AUTO;
     s.options.rays = GLINT_RAYS_EXACT; /* ghosts choose, as of a model */
-    settings_choose_waves(&s);
     assert_true(s.waves == GLINT_WAVES_AUTO);
 }
 
@@ -362,20 +355,19 @@ static void test_words(void **state)
 static void test_white(void **state)
 {
     static float rgb[SAMPLES];
-    static struct settings bare;
+    static struct opened bare;
     double sum[3] = {0, 0, 0};
     struct glint_engine_report report;
     struct glint_frame frame;
 
     (void)state;
-    settings_defaults(&bare);
-    bare.waves = GLINT_WAVES_AUTO;
-    assert_int_equal(coating_take(&tool, &bare.coating, "none"), -1);
-    assert_int_equal(settings_open(&tool, &bare, "lenses/heliar-tronnier.lens"),
+    settings_defaults(&bare.settings);
+    bare.settings.waves = GLINT_WAVES_AUTO;
+    assert_int_equal(coating_take(&tool, &bare.settings.coating, "none"), -1);
+    assert_int_equal(opened_lens_open(&tool, &bare.lens, &bare.settings,
+                                      "lenses/heliar-tronnier.lens"),
                      EXIT_OK);
-    assert_int_equal(settings_frame(&tool, &bare,
-                                    settings_view(&bare, WIDTH, HEIGHT),
-                                    &frame),
+    assert_int_equal(settings_frame(&tool, &bare, WIDTH, HEIGHT, &frame),
                      EXIT_OK);
     assert_int_equal(glint_frame_draw_alone(&frame, &lamp, 1, 1, rgb, &report),
                      GLINT_OK);
@@ -385,37 +377,38 @@ static void test_white(void **state)
     assert_true(fabs(sum[0] / sum[1] - 1) < 0.06);
     assert_true(fabs(sum[2] / sum[1] - 1) < 0.06);
     glint_frame_finish(&frame);
-    settings_close(&bare);
+    opened_lens_close(&bare.lens);
 }
 
-static int open_settings(struct settings *settings, const char *waves)
+static int open_lens(struct opened *opened, const char *waves)
 {
-    settings_defaults(settings);
-    return settings_set(settings, "wavelengths", waves)
-               ? settings_open(&tool, settings, "lenses/heliar-tronnier.lens")
+    settings_defaults(&opened->settings);
+    return settings_set(&opened->settings, "wavelengths", waves)
+               ? opened_lens_open(&tool, &opened->lens, &opened->settings,
+                                  "lenses/heliar-tronnier.lens")
                : 1;
 }
 
 static int enter(void **state)
 {
     (void)state;
-    if (tool_start(&tool) != EXIT_OK || open_settings(&chosen, "auto") ||
-        open_settings(&three, "650,532,450") ||
-        open_settings(&all,
-                      "400,410,420,430,440,450,460,470,480,490,500,510,520,530,"
-                      "540,550,560,570,580,590,600,610,620,630,640,650,660,670,"
-                      "680,690,700"))
+    if (tool_start(&tool) != EXIT_OK || open_lens(&chosen, "auto") ||
+        open_lens(&three, "650,532,450") ||
+        open_lens(&all,
+                  "400,410,420,430,440,450,460,470,480,490,500,510,520,530,"
+                  "540,550,560,570,580,590,600,610,620,630,640,650,660,670,"
+                  "680,690,700"))
         return 1;
-    all.dials.cull_codes = 0;
+    all.settings.dials.cull_codes = 0;
     return 0;
 }
 
 static int leave(void **state)
 {
     (void)state;
-    settings_close(&chosen);
-    settings_close(&three);
-    settings_close(&all);
+    opened_lens_close(&chosen.lens);
+    opened_lens_close(&three.lens);
+    opened_lens_close(&all.lens);
     tool_finish(&tool);
     return 0;
 }

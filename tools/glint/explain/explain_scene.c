@@ -60,7 +60,7 @@ struct light {
 static int drawn_for(const struct explained_scene *s,
                      const struct glint_lamp *lamp)
 {
-    const double focal = s->drawing->line.settings.setup.optics.focal_mm;
+    const double focal = s->drawing->files.lens.setup.optics.focal_mm;
     const double px = glint_view_pixel_tangent(&s->drawing->run.view, focal);
     double best = px + 2 * lamp->axis[0];
     int found = -1;

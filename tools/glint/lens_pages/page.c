@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "lens_pages/page.h"
 
+#include "model/opened_lens.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -78,12 +80,12 @@ static const double share[ANGLES] = {0.25, 0.5, 0.8};
 
 /* Returns the angle at SHARE of the half diagonal, by f tan T, which places
  * lamps in pictures. */
-static double angle_deg(const struct settings *s, double at)
+static double angle_deg(const struct opened_lens *lens, double at)
 {
     const double half =
-        0.5 * hypot(s->lens.film_width_mm, s->lens.film_height_mm);
+        0.5 * hypot(lens->table.film_width_mm, lens->table.film_height_mm);
 
-    return atan(at * half / s->setup.optics.focal_mm) * 180 / GLINT_PI;
+    return atan(at * half / lens->setup.optics.focal_mm) * 180 / GLINT_PI;
 }
 
 static enum glint_status draw(struct glint_engine *engine, double theta_deg,
@@ -121,10 +123,11 @@ static enum glint_status draw(struct glint_engine *engine, double theta_deg,
     return GLINT_OK;
 }
 
-static int draw_all(const struct tool *tool, struct settings *s, FILE *file)
+static int draw_all(const struct tool *tool, const struct opened_lens *lens,
+                    const struct settings *s, FILE *file)
 {
     const double tall =
-        ceil(WIDE * s->lens.film_height_mm / s->lens.film_width_mm);
+        ceil(WIDE * lens->table.film_height_mm / lens->table.film_width_mm);
     struct glint_float_image image = {
         .width = WIDE, .height = (int)fmin(fmax(tall, 8), MOST_HIGH)};
     const size_t n = 3 * (size_t)image.width * (size_t)image.height;
@@ -135,7 +138,7 @@ static int draw_all(const struct tool *tool, struct settings *s, FILE *file)
     float *star = calloc(n, sizeof *star);
 
     image.rgb = calloc(n, sizeof *image.rgb);
-    settings_engine(tool, s, image.width, image.height, &cfg);
+    opened_lens_engine(tool, lens, s, image.width, image.height, &cfg);
     cfg.light.by_hand = 1;
     cfg.light.starburst = 1;
     cfg.search.max_found = 0;
@@ -143,22 +146,26 @@ static int draw_all(const struct tool *tool, struct settings *s, FILE *file)
     if (image.rgb && star)
         status = glint_engine_create(&engine, &cfg, &error);
     for (int i = 0; i < ANGLES && status == GLINT_OK; i++)
-        status = draw(engine, angle_deg(s, share[i]), &image, star, file);
+        status = draw(engine, angle_deg(lens, share[i]), &image, star, file);
     glint_engine_destroy(engine);
     free(star);
     free(image.rgb);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-int thumbnails_write(const struct tool *tool, struct settings *settings,
+int thumbnails_write(const struct tool *tool, const struct settings *settings,
                      const char *name, FILE *file, size_t *model_bytes)
 {
-    int code = settings_open(tool, settings, name);
+    struct opened_lens *const lens = calloc(1, sizeof *lens);
+    int code = lens ? opened_lens_open(tool, lens, settings, name)
+                    : tool_fail(tool, GLINT_E_MEMORY, NULL);
 
-    *model_bytes = settings->model.bytes;
+    *model_bytes = lens ? lens->model.bytes : 0;
     if (code == EXIT_OK)
-        code = draw_all(tool, settings, file);
-    settings_close(settings);
+        code = draw_all(tool, lens, settings, file);
+    if (lens)
+        opened_lens_close(lens);
+    free(lens);
     return code;
 }
 

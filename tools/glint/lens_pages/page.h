@@ -33,7 +33,7 @@ bool measured_find(const char *name, struct measured *measured);
  * NAME is the lens; its model should be baked, or rays are exact. MODEL_BYTES
  * receives how large that is, 0 if there is none. Returns an exit code, after
  * printing the reason on failure. */
-int thumbnails_write(const struct tool *tool, struct settings *settings,
+int thumbnails_write(const struct tool *tool, const struct settings *settings,
                      const char *name, FILE *file, size_t *model_bytes);
 
 void page_begin(FILE *file);

@@ -12,8 +12,7 @@
 
 struct front_option {
     struct glint_front front;
-    const char *mask_file;         /* NULL: none */
-    struct glint_front_dirt *dirt; /* NULL: there is none */
+    const char *mask_file; /* NULL: none */
 };
 
 /* Returns whether anything was requested. */
@@ -22,9 +21,10 @@ static inline bool front_option_asked(const struct front_option *option)
     return option->front.dust > 0 || option->mask_file;
 }
 
-/* Reads the mask and makes what was requested. */
-int front_option_open(const struct tool *tool, struct front_option *option);
-
-void front_option_close(struct front_option *option);
+/* Sets *DIRT to what was requested, with the mask of its file; the caller frees
+ * it. NULL: nothing was. Returns an exit code. */
+int front_option_open(const struct tool *tool,
+                      const struct front_option *option,
+                      struct glint_front_dirt **dirt);
 
 #endif

@@ -1,22 +1,21 @@
 /* SPDX-License-Identifier: MIT
  *
- * Replaces settings_table.c, table_file.c and stop_mask.c in programs without
+ * Replaces opened_table.c, table_file.c and stop_mask.c in programs without
  * the offline half, which read baked models only.
  */
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "model/stop_option.h"
 #include "model/table_file.h"
-#include "model/settings_table.h"
+#include "model/opened_table.h"
 
-int settings_open_table(const struct tool *tool, struct settings *settings,
-                        const char *name)
+int tool_lens(const struct tool *tool, const char *name,
+              struct glint_prescription *lens)
 {
     struct glint_error error;
 
-    (void)settings;
+    (void)lens;
     if (!tool_is_file_name(name))
         snprintf(error.text, sizeof error.text,
                  "%.120s names no file: that of a model has a slash or ends in "
@@ -35,39 +34,33 @@ int settings_open_table(const struct tool *tool, struct settings *settings,
     return tool_fail(tool, GLINT_E_LENS, error.text);
 }
 
-int tool_lens(const struct tool *tool, const char *argument,
-              struct glint_prescription *lens)
+int opened_table(const struct tool *tool, struct opened_lens *lens,
+                 const struct settings *settings, const char *name)
 {
-    (void)lens;
-    return settings_open_table(tool, NULL, argument);
+    (void)settings;
+    return tool_lens(tool, name, &lens->table);
 }
 
-int stop_mask_read(const struct tool *tool, const char *file, uint8_t **mask,
-                   int *width, int *height)
+int stop_mask_read(const struct tool *tool, const char *file,
+                   struct stop_mask *mask)
 {
-    (void)width, (void)height;
-    *mask = NULL;
+    (void)mask;
     return tool_usage(tool, "%s is a picture; this program reads none", file);
 }
 
-int stop_option_open(const struct tool *tool, struct stop_option *stop)
-{
-    return stop_mask_read(tool, stop->mask_file, &stop->mask,
-                          &stop->iris.mask_width, &stop->iris.mask_height);
-}
-
-/* Reports that there is no model. It is not reached, as all settings that were
+/* Reports that there is no model. It is not reached, as all lenses that were
  * opened have one. */
-enum glint_status settings_table_setup(struct settings *settings,
-                                       const struct stop_option *stop,
-                                       struct glint_error *error)
+enum glint_status opened_table_setup(struct opened_lens *lens,
+                                     const struct settings *settings,
+                                     const struct stop_option *stop,
+                                     struct glint_error *error)
 {
-    (void)settings, (void)stop;
+    (void)lens, (void)settings, (void)stop;
     snprintf(error->text, sizeof error->text, "there is no model");
     return GLINT_E_LENS;
 }
 
-const struct glint_frame_rays *settings_table_rays(void)
+const struct glint_frame_rays *opened_table_rays(void)
 {
     return NULL;
 }

@@ -2,19 +2,14 @@
 #include "model/settings.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-#include "model/ghost_file.h"
-#include "posix/error.h"
-#include "model/stop_option.h"
-#include "model/settings_table.h"
 
 /* ------------------------------------------------------------------ options */
 
 static void resolve_waves(struct settings *s)
 {
     struct glint_waves waves = {GLINT_WAVES_AUTO, 0, {0}};
+    double rgb[GLINT_MAX_WAVELENGTHS][3], share[GLINT_MAX_WAVELENGTHS];
 
     glint_option_waves(s->options.wavelengths, &waves);
     s->waves = waves.kind;
@@ -23,6 +18,8 @@ static void resolve_waves(struct settings *s)
     s->n_wavelengths = waves.n;
     if (waves.kind == GLINT_WAVES_LIST)
         memcpy(s->wavelength_nm, waves.nm, sizeof waves.nm);
+    else
+        glint_spectrum(waves.n, s->wavelength_nm, rgb, share);
 }
 
 static void resolve_stop(struct settings *s)
@@ -136,262 +133,15 @@ bool settings_has_grid(const struct settings *settings)
            GLINT_OPTION_GIVEN(o, error);
 }
 
-struct stop_option settings_stop_shape(const struct settings *settings)
+int settings_refuse_stop(const struct tool *tool, const struct settings *s,
+                         const char *text)
 {
-    struct stop_option stop = settings->stop;
+    struct tool there = *tool;
 
-    if (!stop.is_asked && settings->lens.stop_is_circle) {
-        stop.n_blades = 0;
-        stop.iris.roundness = 0;
-    }
-    return stop;
-}
-
-/* -------------------------------------------------------------- wavelengths */
-
-void settings_choose_waves(struct settings *s)
-{
-    double rgb[GLINT_MAX_WAVELENGTHS][3], share[GLINT_MAX_WAVELENGTHS];
-
-    if (s->waves == GLINT_WAVES_COUNT)
-        glint_spectrum(s->n_wavelengths, s->wavelength_nm, rgb, share);
-}
-
-/* Sets the colours of the setup, once it is made: weighs the wavelengths if
- * only their number was given; for "auto" makes the sets of wavelengths that
- * ghosts choose from. A list stays as it is. */
-static void weigh(struct settings *s)
-{
-    if (s->waves == GLINT_WAVES_COUNT)
-        glint_setup_weigh(&s->setup);
-    /* A model of the sparse basis holds its three wavelengths and no others. */
-    else if (s->waves == GLINT_WAVES_AUTO && !s->model.data)
-        glint_setup_spread(&s->setup, NULL);
-    else if (s->waves == GLINT_WAVES_AUTO &&
-             s->model.lens.header->basis != GLINT_BASIS_SPARSE)
-        glint_setup_spread(&s->setup, &s->model.lens);
-}
-
-/* ------------------------------------------------------------------ opening */
-
-static int check_band(const struct tool *tool, const struct settings *settings)
-{
-    const struct glint_model_header *h = settings->model.lens.header;
-    const double lo = 1e3 / sqrt(h->wave_hi_q24 * 0x1p-24);
-    const double hi = 1e3 / sqrt(h->wave_lo_q24 * 0x1p-24);
-
-    for (int i = 0; i < settings->n_wavelengths; i++)
-        if (settings->wavelength_nm[i] < lo - 0.5 ||
-            settings->wavelength_nm[i] > hi + 0.5)
-            return tool_usage(tool,
-                              "%g nm lies outside the %.0f to %.0f nm that "
-                              "the model of %s was baked for (bake --band)",
-                              settings->wavelength_nm[i], lo, hi, h->name);
-    return EXIT_OK;
-}
-
-/* Warns if the picture is larger than the field that the model was baked
- * for. */
-static void warn_field(const struct tool *tool, const struct settings *settings)
-{
-    const double field = model_real_of(settings->model.lens.header->field_mm);
-    const double *mm = settings->sensor_mm;
-
-    if (!tool->quiet && 0.5 * hypot(mm[0], mm[1]) > field)
-        fprintf(stderr,
-                "glint %s: the model was baked for a field of %.1f mm around "
-                "the middle; corners beyond are left to chance (bake --field)"
-                "\n",
-                tool->name, field);
-}
-
-/* Zooms the model of PATH to where the line says. */
-static int zoom_model(const struct tool *tool, struct settings *settings,
-                      const char *path)
-{
-    const struct zoom_option *const o = &settings->zoom;
-    struct glint_error error = {""};
-
-    if (!settings->model.zoom || o->is_focused)
-        return zoom_option_of_model(tool, o, path);
-    return !o->is_zoomed || model_file_zoom(&settings->model, o->zoom,
-                                            &error) == GLINT_OK
-               ? EXIT_OK
-               : tool_usage(tool, "%s: %s", path, error.text);
-}
-
-static int open_model(const struct tool *tool, struct settings *settings,
-                      const char *path)
-{
-    const struct glint_model_header *h;
-    int code;
-
-    if (settings->options.rays == GLINT_RAYS_EXACT)
-        return tool_usage(tool, "%s is a model: exact rays need the lens table",
-                          path);
-    code = coating_of_model(tool, &settings->coating, path);
-    if (code == EXIT_OK)
-        code = tool_model(tool, path, &settings->model);
-    if (code == EXIT_OK)
-        code = zoom_model(tool, settings, path);
-    if (code != EXIT_OK)
-        return code;
-    h = settings->model.lens.header;
-    snprintf(settings->lens.name, sizeof settings->lens.name, "%s", h->name);
-    settings->lens.film_width_mm = model_real_of(h->film_width_mm);
-    settings->lens.film_height_mm = model_real_of(h->film_height_mm);
-    settings->lens.stop_is_circle = false; /* models do not say */
-    warn_field(tool, settings);
-    return EXIT_OK;
-}
-
-/* Makes the setup of S for its f-number. */
-static enum glint_status make_setup(struct settings *s,
-                                    struct glint_error *error)
-{
-    const struct stop_option stop = settings_stop_shape(s);
-    struct glint_dirt *const before = s->stop.dirt;
-    enum glint_status status =
-        s->model.data
-            ? glint_setup_from_model(&s->setup, &s->model.lens, stop.n_blades,
-                                     stop.rotation_deg, s->wavelength_nm,
-                                     s->n_wavelengths, error)
-            : settings_table_setup(s, &stop, error);
-
-    if (status == GLINT_OK && s->model.data && s->options.f_number > 0)
-        status = glint_setup_stop_down(&s->setup, &s->model.lens,
-                                       s->options.f_number, error);
-    if (status == GLINT_OK)
-        status = stop_option_set(&stop, &s->setup, &s->stop.dirt, error);
-    if (status != GLINT_OK)
-        return status;
-    glint_dirt_free(before);
-    weigh(s);
-    if (s->options.balance)
-        glint_setup_balance(&s->setup);
-    return GLINT_OK;
-}
-
-enum glint_status settings_stop(struct settings *settings, double f_number,
-                                struct glint_error *error)
-{
-    settings->options.f_number = f_number;
-    return make_setup(settings, error);
-}
-
-enum glint_status settings_zoom(struct settings *settings, double zoom,
-                                struct glint_error *error)
-{
-    enum glint_status status;
-
-    if (!settings->model.zoom)
-        return glint_error_report(
-            error, GLINT_E_ARGUMENT, settings->lens.name,
-            settings->options.rays == GLINT_RAYS_EXACT
-                ? "exact rays do not zoom from frame to frame"
-            : settings->lens.zoom.n_positions
-                ? "a table is baked for one position: zoom a model that "
-                  "'glint bake LENS --positions N' made"
-            : settings->lens.n_surfaces
-                ? "does not zoom: its table has one position"
-                : "does not zoom: its model is of one position");
-    status = model_file_zoom(&settings->model, zoom, error);
-    return status == GLINT_OK ? make_setup(settings, error) : status;
-}
-
-static int set_up(const struct tool *tool, struct settings *s)
-{
-    struct glint_error error = {""};
-    enum glint_status status = make_setup(s, &error);
-
-    if (status == GLINT_E_ARGUMENT && s->options.f_number > 0)
-        return settings_refuse_stop(tool, s, error.text);
-    if (status == GLINT_OK && s->options.ghosts)
-        status = ghost_file_read(&s->tints, s->options.ghosts, &s->setup,
-                                 s->lens.name, &error);
-    if (status != GLINT_OK)
-        return tool_fail(tool, status, error.text);
-    if (settings_only_ghost(s) >= s->setup.n_ghosts - s->setup.n_parts)
-        return tool_usage(tool, "%s has %d ghosts, there is no %d",
-                          s->lens.name, s->setup.n_ghosts - s->setup.n_parts,
-                          s->options.ghost);
-    return EXIT_OK;
-}
-
-int settings_open(const struct tool *tool, struct settings *settings,
-                  const char *lens)
-{
-    int code = EXIT_OK;
-
-    if ((settings->dials.flags & GLINT_DIAL_ALWAYS_HALF) &&
-        settings->options.rays == GLINT_RAYS_EXACT)
-        return tool_usage(tool, "--half is not for exact rays");
-    if (settings->options.only == GLINT_ONLY_VEIL &&
-        !settings_has_veil(settings))
-        code = tool_usage(tool, "--only veil needs a --veil, --haze or "
-                                "--front-dust to draw");
-    if (code == EXIT_OK)
-        code = settings->stop.mask_file
-                   ? stop_option_open(tool, &settings->stop)
-                   : EXIT_OK;
-    if (code == EXIT_OK)
-        code = front_option_open(tool, &settings->front);
-    if (code != EXIT_OK)
-        return code;
-    if (settings->options.projection == GLINT_PROJECTION_LENS &&
-        tool_is_model(lens))
-        return tool_usage(tool, "--projection lens needs a lens table: a "
-                                "baked model has no chief rays");
-    settings_choose_waves(settings);
-    code = tool_is_model(lens) ? open_model(tool, settings, lens)
-                               : settings_open_table(tool, settings, lens);
-
-    if (code == EXIT_OK && settings->model.data &&
-        settings->waves == GLINT_WAVES_LIST)
-        code = check_band(tool, settings);
-    return code == EXIT_OK ? set_up(tool, settings) : code;
-}
-
-void settings_close(struct settings *settings)
-{
-    model_file_close(&settings->model);
-    free(settings->tints);
-    settings->tints = NULL;
-    stop_option_close(&settings->stop);
-    front_option_close(&settings->front);
-}
-
-struct glint_view settings_view(const struct settings *settings, int width,
-                                int height)
-{
-    const double *mm = settings->sensor_mm;
-
-    struct glint_view view = glint_view_fit(
-        width, height, mm[0] > 0 ? mm[0] : settings->lens.film_width_mm,
-        mm[0] > 0 ? mm[1] : settings->lens.film_height_mm);
-
-    view.projection = settings->projection;
-    return view;
-}
-
-void settings_engine(const struct tool *tool, const struct settings *settings,
-                     int width, int height, struct glint_engine_config *cfg)
-{
-    glint_engine_defaults(cfg, width, height);
-    glint_engine_configure(cfg, &settings->options);
-    cfg->model = settings->model.data ? &settings->model.lens : NULL;
-    cfg->workers = tool->workers;
-    cfg->sets = tool_sets(tool);
-    cfg->clock = tool_seconds;
-    cfg->camera.setup = &settings->setup;
-    cfg->camera.rays = settings_table_rays();
-    cfg->camera.tints = settings->tints;
-    cfg->camera.front = settings->front.dirt;
-    cfg->camera.projection = &settings->projection;
-    if (cfg->camera.sensor_width_mm > 0)
-        return;
-    cfg->camera.sensor_width_mm = settings->lens.film_width_mm;
-    cfg->camera.sensor_height_mm = settings->lens.film_height_mm;
+    if (!s->f_number_from)
+        return tool_fail(tool, GLINT_E_ARGUMENT, text);
+    there.where = s->f_number_from;
+    return tool_usage(&there, "%s", text);
 }
 
 bool settings_has_veil(const struct settings *settings)

@@ -11,7 +11,6 @@
 #include "model/coating.h"
 #include "glint/engine.h"
 #include "glint/quality.h"
-#include "model/model_file.h"
 #include "model/zoom_option.h"
 #include "options/json_writer.h"
 #include "options/tool.h"
@@ -42,13 +41,6 @@ struct settings {
     const char *picture;
     const char *f_number_from; /* "FILE:LINE" that sets the f-number; NULL: the
                                   command line */
-
-    /* What settings_open() opens. */
-    struct glint_prescription lens; /* of a model only its name and film */
-    struct model_file model;        /* closed for exact rays */
-    struct glint_setup setup;
-    struct glint_projection projection; /* of --projection lens; else zeros */
-    struct glint_tint *tints;           /* by --ghosts */
 };
 
 #define COMMON_HELP                                                           \
@@ -74,52 +66,10 @@ void settings_defaults_photo(struct settings *settings);
 int settings_option(const struct tool *tool, struct settings *settings,
                     int option, const char *value);
 
-/* Reads LENS, a table or a model, and prepares it. The model of a table is
- * baked if there is none yet, unless rays are exact. Returns an exit code. */
-int settings_open(const struct tool *tool, struct settings *settings,
-                  const char *lens);
-
 /* Prints why the f-number of S is not possible, TEXT, and which line of a file
  * requests it. Returns an exit code. */
-static inline int settings_refuse_stop(const struct tool *tool,
-                                       const struct settings *s,
-                                       const char *text)
-{
-    struct tool there = *tool;
-
-    if (!s->f_number_from)
-        return tool_fail(tool, GLINT_E_ARGUMENT, text);
-    there.where = s->f_number_from;
-    return tool_usage(&there, "%s", text);
-}
-
-/* Zooms settings whose model is that of a zoom, as model_file_zoom().
- * GLINT_E_ARGUMENT: ERROR states why not. */
-enum glint_status settings_zoom(struct settings *settings, double zoom,
-                                struct glint_error *error);
-
-/* Returns the stop of SETTINGS: where the line requests no shape, a circle if
- * the table says so. */
-struct stop_option settings_stop_shape(const struct settings *settings);
-
-/* Stops the lens of SETTINGS, which are open and have a model, to F_NUMBER.
- * GLINT_E_ARGUMENT with ERROR: the model was not baked for so wide a stop. */
-enum glint_status settings_stop(struct settings *settings, double f_number,
-                                struct glint_error *error);
-
-/* Chooses the wavelengths that a setup is made for, before the lens of SETTINGS
- * is opened. */
-void settings_choose_waves(struct settings *settings);
-
-void settings_close(struct settings *settings);
-
-struct glint_view settings_view(const struct settings *settings, int width,
-                                int height);
-
-/* Sets CFG to the configuration of an engine for pictures of WIDTH x HEIGHT
- * from SETTINGS, which are open. */
-void settings_engine(const struct tool *tool, const struct settings *settings,
-                     int width, int height, struct glint_engine_config *cfg);
+int settings_refuse_stop(const struct tool *tool, const struct settings *s,
+                         const char *text);
 
 /* Set the option NAME. Return false, and change nothing, if it does not accept
  * TEXT, or VALUE: a number, the index of a word, or 0 or 1. */

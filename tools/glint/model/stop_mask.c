@@ -19,31 +19,19 @@ static void to_luma(const struct glint_image *image, uint8_t *to)
         }
 }
 
-int stop_mask_read(const struct tool *tool, const char *file, uint8_t **mask,
-                   int *width, int *height)
+int stop_mask_read(const struct tool *tool, const char *file,
+                   struct stop_mask *mask)
 {
     struct glint_error error = {""};
     struct glint_image image = {0};
     const enum glint_status status = glint_picture_load(file, &image, &error);
 
-    *mask = NULL;
+    *mask = (struct stop_mask){NULL, image.width, image.height};
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    *mask = malloc((size_t)image.width * (size_t)image.height);
-    if (*mask)
-        to_luma(&image, *mask);
-    *width = image.width;
-    *height = image.height;
+    mask->luma = malloc((size_t)image.width * (size_t)image.height);
+    if (mask->luma)
+        to_luma(&image, mask->luma);
     glint_picture_free(&image);
-    return *mask ? EXIT_OK : tool_fail(tool, GLINT_E_MEMORY, NULL);
-}
-
-int stop_option_open(const struct tool *tool, struct stop_option *stop)
-{
-    const int code =
-        stop_mask_read(tool, stop->mask_file, &stop->mask,
-                       &stop->iris.mask_width, &stop->iris.mask_height);
-
-    stop->iris.mask = stop->mask;
-    return code;
+    return mask->luma ? EXIT_OK : tool_fail(tool, GLINT_E_MEMORY, NULL);
 }

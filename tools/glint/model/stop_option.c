@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "model/stop_option.h"
 
-#include <stdlib.h>
-
 bool stop_option_shades(const struct stop_option *stop)
 {
     return stop->iris.softness > 0 || stop->iris.dust > 0 || stop->mask_file;
@@ -17,10 +15,4 @@ enum glint_status stop_option_set(const struct stop_option *stop,
     return stop->iris.roundness > 0 || stop_option_shades(stop)
                ? glint_setup_iris(setup, &stop->iris, dirt, error)
                : GLINT_OK;
-}
-
-void stop_option_close(struct stop_option *stop)
-{
-    glint_dirt_free(stop->dirt);
-    free(stop->mask);
 }

@@ -15,6 +15,12 @@
 /* Quality of a preview, as of draft. */
 static const double preview_quality = 0.25;
 
+/* Returns the focal length of the lens, mm. */
+static double focal_of(const struct drawing *d)
+{
+    return d->files.lens.setup.optics.focal_mm;
+}
+
 /* ------------------------------------------------------------------ opening */
 
 /* Lowers the quality of a preview unless one was chosen; the model stays the
@@ -38,7 +44,8 @@ static enum glint_status zoom_to(struct drawing *d, double zoom,
                                  struct glint_error *error)
 {
     struct settings *const s = &d->line.settings;
-    const enum glint_status status = settings_zoom(s, zoom, error);
+    const enum glint_status status =
+        opened_lens_zoom(&d->files.lens, s, zoom, error);
 
     if (status != GLINT_OK)
         return status;
@@ -56,6 +63,7 @@ static enum glint_status set_option(void *ctx, const char *name, double value,
     struct settings *const s = &d->line.settings;
     const int column = keys_column(name);
     const double before = s->options.f_number;
+    struct opened_lens *const lens = &d->files.lens;
     struct glint_error unused;
     enum glint_status status;
 
@@ -72,10 +80,12 @@ static enum glint_status set_option(void *ctx, const char *name, double value,
                  "a stop that changes needs a model, not --rays exact");
         return GLINT_E_ARGUMENT;
     }
-    status = settings_stop(s, value, error);
-    if (status != GLINT_OK)
-        settings_stop(s, before, &unused);
-    else if (d->run.engine)
+    s->options.f_number = value;
+    status = opened_lens_stop(lens, s, error);
+    if (status != GLINT_OK) {
+        s->options.f_number = before;
+        opened_lens_stop(lens, s, &unused);
+    } else if (d->run.engine)
         glint_engine_update_stop(d->run.engine);
     return status;
 }
@@ -126,14 +136,12 @@ void drawing_close(struct drawing *drawing)
     lamp_list_free(&drawing->line.at);
     free(drawing->run.lamp);
     drawing->run.lamp = NULL;
-    settings_close(&drawing->line.settings);
 }
 
 void drawing_replace(struct drawing *drawing, const struct drawing *fresh)
 {
     const struct lamp_save save = drawing->files.save;
     const int n_frames = drawing->run.n_frames;
-    struct settings *const s = &drawing->line.settings;
 
     /* drawing_close() leaves the file of saved lamps open, which SAVE has */
     drawing->files.save.is_open = false;
@@ -144,9 +152,7 @@ void drawing_replace(struct drawing *drawing, const struct drawing *fresh)
         drawing->files.save = save;
         drawing->run.n_frames = n_frames;
     }
-    /* A setup from a table points to the lens, which has moved. */
-    if (s->setup.lens)
-        s->setup.lens = &s->lens;
+    opened_lens_moved(&drawing->files.lens);
 }
 
 int drawing_finish(const struct tool *tool, struct drawing *drawing)
@@ -165,8 +171,7 @@ enum { STILL_POINTS = 16, VIDEO_POINTS = 4 };
 
 static int size_scene(struct drawing *d, int width, int height)
 {
-    const struct settings *const s = &d->line.settings;
-    const struct glint_options *const o = &s->options;
+    const struct glint_options *const o = &d->line.settings.options;
     struct scene_dials dials = d->line.scene_dials;
 
     if (GLINT_OPTION_GIVEN(o, quality) || o->preview)
@@ -176,8 +181,8 @@ static int size_scene(struct drawing *d, int width, int height)
     dials.width = width;
     dials.height = height;
     if (d->files.has_lens)
-        dials.focal_px = 1 / glint_view_pixel_tangent(&d->run.view,
-                                                      s->setup.optics.focal_mm);
+        dials.focal_px =
+            1 / glint_view_pixel_tangent(&d->run.view, focal_of(d));
     if (!dials.shadow_points)
         dials.shadow_points = d->line.is_still ? STILL_POINTS : VIDEO_POINTS;
     dials.tile_log2 = 3 + o->tile;
@@ -193,7 +198,7 @@ static void watch(const struct tool *tool, struct drawing *d,
         fprintf(stderr,
                 "glint %s: exact rays: first how bright flares of %s are, "
                 "a minute or more for a zoom, then each frame again\n",
-                tool->name, d->line.settings.lens.name);
+                tool->name, d->files.lens.table.name);
     tool_progress_start(&d->run.progress, tool, "exact rays");
     d->run.is_progressing = true;
     cfg->drawing.progress = tool_progress_show;
@@ -228,8 +233,8 @@ static int size_engine(const struct tool *tool, struct drawing *d)
     struct glint_error error = {""};
     enum glint_status status;
 
-    settings_engine(tool, &line->settings, run->view.width, run->view.height,
-                    &cfg);
+    opened_lens_engine(tool, &d->files.lens, &line->settings, run->view.width,
+                       run->view.height, &cfg);
     cfg.search.more_lamps = more_lamps(d);
     /* what the scene leaves */
     if (line->reserve_bytes)
@@ -258,7 +263,8 @@ int drawing_size(const struct tool *tool, struct drawing *drawing, int width,
 
     unsize(run);
     run->view = drawing->files.has_lens
-                    ? settings_view(&drawing->line.settings, width, height)
+                    ? opened_lens_view(&drawing->files.lens,
+                                       &drawing->line.settings, width, height)
                     : (struct glint_view){width, height, 1, {0, {0}}};
     code = size_scene(drawing, width, height);
     if (code == EXIT_OK && drawing->files.has_lens)
@@ -282,10 +288,10 @@ static void zoom_by_keys(struct drawing *d, int frame)
 }
 
 /* Stops the lens as KEYS say; the exposure stays that of the widest stop. */
-static enum glint_status stop_by_keys(struct settings *s,
-                                      const struct keys *keys, int frame,
-                                      struct glint_engine *engine)
+static enum glint_status stop_by_keys(struct drawing *d, int frame)
 {
+    const struct keys *const keys = &d->files.keys;
+    struct settings *const s = &d->line.settings;
     struct stop_option *const stop = &s->stop;
     const double f_number =
         keys_at(keys, KEYS_F_NUMBER, frame, s->options.f_number);
@@ -299,9 +305,10 @@ static enum glint_status stop_by_keys(struct settings *s,
         return GLINT_OK;
     stop->rotation_deg = turn;
     stop->iris.roundness = round;
-    status = settings_stop(s, f_number, &error);
+    s->options.f_number = f_number;
+    status = opened_lens_stop(&d->files.lens, s, &error);
     if (status == GLINT_OK)
-        glint_engine_update_stop(engine);
+        glint_engine_update_stop(d->run.engine);
     return status;
 }
 
@@ -340,7 +347,7 @@ static enum glint_status steer(struct drawing *d)
     }
     zoom_by_keys(d, frame);
     move_by_keys(&d->files.list, keys, frame);
-    return stop_by_keys(&d->line.settings, keys, frame, d->run.engine);
+    return stop_by_keys(d, frame);
 }
 
 /* -------------------------------------------------------------------- lamps */
@@ -361,9 +368,8 @@ static void set_lamps(struct drawing *d, const struct glint_image *image,
         lamp[i] = glint_engine_lamp_of(
             &line->hand[i], (is_listed ? LAMP_ID_TEXT : 1) + (uint32_t)i);
     if (is_listed)
-        n += lamp_list_frame(list, run->n_frames, &run->view,
-                             line->settings.setup.optics.focal_mm, lamp + n,
-                             list->n);
+        n += lamp_list_frame(list, run->n_frames, &run->view, focal_of(d),
+                             lamp + n, list->n);
     run->is_followed = elapsed_us > 0 && follows;
     if (!is_listed && n == 0)
         n = glint_engine_find(run->engine, image, follows ? elapsed_us : 0,
@@ -388,8 +394,7 @@ static enum glint_status find_lamps(struct drawing *d,
         return status;
     set_lamps(d, image, elapsed_us);
     occlusion_apply(&d->files.occlusion, d->run.n_frames, &d->run.view,
-                    d->line.settings.setup.optics.focal_mm, d->run.lamp,
-                    d->run.n_lamps);
+                    focal_of(d), d->run.lamp, d->run.n_lamps);
     return GLINT_OK;
 }
 
@@ -400,7 +405,7 @@ void drawing_measure(struct drawing *drawing,
 
     if (!drawing->files.is_listed && !drawing->line.n_hand)
         add_lamp_excess(run->lamp, run->n_own, samples, run->white, &run->view,
-                        drawing->line.settings.setup.optics.focal_mm);
+                        focal_of(drawing));
 }
 
 /* Returns the row that lamp I is saved as: where it was found, or where a list
@@ -449,8 +454,7 @@ enum glint_status drawing_find_lamps(struct drawing *drawing,
     const enum glint_status status = find_lamps(drawing, image, elapsed_us);
 
     if (status == GLINT_OK)
-        save_lamps(&drawing->files.save, &drawing->run,
-                   drawing->line.settings.setup.optics.focal_mm);
+        save_lamps(&drawing->files.save, &drawing->run, focal_of(drawing));
     return status;
 }
 
@@ -460,19 +464,19 @@ enum glint_status drawing_find_lamps(struct drawing *drawing,
 #define LEAST_SHARE 0.1
 
 /* Adds the lamps that the scene shows to those of RUN, less what it hides. */
-static void add_scene_lamps(struct over_scene *scene, struct drawing_run *run,
-                            const struct drawing_line *line)
+static void add_scene_lamps(struct drawing *d)
 {
-    const double focal_mm = line->settings.setup.optics.focal_mm;
+    struct over_scene *const scene = &d->files.scene;
+    struct drawing_run *const run = &d->run;
     const int n = run->n_lamps;
 
     run->n_lamps = glint_engine_add_scene(run->engine, scene->frame.scene,
                                           run->lamp, n, &scene->lamps_hidden);
     scene->lights = run->n_lamps - n;
     run->n_lamps +=
-        over_scene_glints(scene, !line->settings.options.no_tracking,
-                          &run->view, focal_mm, run->lamp + run->n_lamps);
-    glint_engine_apply_shares(run->lamp, run->n_lamps, line->is_still);
+        over_scene_glints(scene, !d->line.settings.options.no_tracking,
+                          &run->view, focal_of(d), run->lamp + run->n_lamps);
+    glint_engine_apply_shares(run->lamp, run->n_lamps, d->line.is_still);
 }
 
 /* Draws the scene over IMAGE within the budget, of which the flare has what the
@@ -496,7 +500,7 @@ static enum glint_status draw_scene(struct drawing *d,
             run->engine,
             budget_ms * fmax(LEAST_SHARE, 1 - scene->ms / budget_ms));
     if (status == GLINT_OK && d->files.has_lens)
-        add_scene_lamps(scene, run, &d->line);
+        add_scene_lamps(d);
     return status;
 }
 
@@ -525,12 +529,11 @@ enum glint_status drawing_find(struct drawing *drawing,
 enum glint_status drawing_expose(struct drawing *drawing,
                                  const struct glint_image *image)
 {
-    const struct settings *const s = &drawing->line.settings;
     struct drawing_run *const run = &drawing->run;
     struct glint_engine_config cfg;
 
-    save_lamps(&drawing->files.save, run, s->setup.optics.focal_mm);
-    glint_engine_configure(&cfg, &s->options);
+    save_lamps(&drawing->files.save, run, focal_of(drawing));
+    glint_engine_configure(&cfg, &drawing->line.settings.options);
     glint_engine_set_light(run->engine, &cfg.light);
     return glint_engine_expose(run->engine, run->lamp, run->n_lamps, image,
                                run->white);
@@ -626,7 +629,7 @@ void drawing_mark(const struct drawing *drawing,
     if (!line->show_lights || !run->engine)
         return;
     for (int i = 0; i < run->n_lamps; i++)
-        mark_lamp(run, line->settings.setup.optics.focal_mm, i, image);
+        mark_lamp(run, focal_of(drawing), i, image);
     show_legend(image, is_found && run->is_followed);
 }
 

@@ -78,10 +78,11 @@ static int check_narrowest(const struct tool *tool, struct settings *s,
     if (!keys_has(&f->keys, KEYS_F_NUMBER))
         return EXIT_OK;
     request_stop(s, f, -1);
-    if (settings_stop(s, s->options.f_number, &error) != GLINT_OK)
+    if (opened_lens_stop(&f->lens, s, &error) != GLINT_OK)
         code = settings_refuse_stop(tool, s, error.text);
-    else
-        settings_stop(s, widest, &error);
+    s->options.f_number = widest;
+    if (code == EXIT_OK)
+        opened_lens_stop(&f->lens, s, &error);
     s->f_number_from = NULL;
     return code;
 }
@@ -110,8 +111,9 @@ static int refuse_line(const struct tool *tool, const struct over_scene *scene,
 /* Checks that the lens can do what the lines of control say, and leaves it as
  * it was. */
 static int check_control(const struct tool *tool, struct settings *s,
-                         const struct over_scene *scene)
+                         struct drawing_files *f)
 {
+    const struct over_scene *const scene = &f->scene;
     const double zoom = s->zoom.zoom, f_number = s->options.f_number;
     const struct control_line *line;
     struct glint_error error = {""};
@@ -126,11 +128,13 @@ static int check_control(const struct tool *tool, struct settings *s,
                               &error) != GLINT_OK)
             code = refuse_line(tool, scene, i, error.text);
     }
-    if (s->model.zoom)
-        settings_zoom(s, zoom, &error);
+    if (f->lens.model.zoom)
+        opened_lens_zoom(&f->lens, s, zoom, &error);
     s->zoom.zoom = zoom;
-    if (s->options.f_number != f_number)
-        settings_stop(s, f_number, &error);
+    if (s->options.f_number != f_number) {
+        s->options.f_number = f_number;
+        opened_lens_stop(&f->lens, s, &error);
+    }
     return code;
 }
 
@@ -154,14 +158,14 @@ static int refuse_zoom_lines(const struct tool *tool, const struct settings *s,
 /* Checks that the lens zooms as far as the key frames say, and leaves it at the
  * first of them. A text that glint wrote has no line to name. */
 static int check_zoom_keys(const struct tool *tool, struct drawing_line *line,
-                           const struct keys *keys)
+                           struct drawing_files *f)
 {
     struct settings *const s = &line->settings;
-    const struct key_value *const key = keys->key[KEYS_ZOOM];
+    const struct key_value *const key = f->keys.key[KEYS_ZOOM];
     struct glint_error error = {""};
 
-    for (int i = keys->n[KEYS_ZOOM] - 1; i >= 0; i--) {
-        if (settings_zoom(s, key[i].value, &error) != GLINT_OK)
+    for (int i = f->keys.n[KEYS_ZOOM] - 1; i >= 0; i--) {
+        if (opened_lens_zoom(&f->lens, s, key[i].value, &error) != GLINT_OK)
             return line->keys_text
                        ? tool_usage(tool, "%.200s: %s", s->options.keys,
                                     error.text)
@@ -185,8 +189,8 @@ static int prepare_zoom(const struct tool *tool, struct drawing_line *line,
     if (!keys_has(&f->keys, KEYS_ZOOM) || !f->has_lens ||
         tool_is_model(s->options.lens))
         return EXIT_OK;
-    code = tool_lens(tool, s->options.lens, &s->lens);
-    return code == EXIT_OK ? check_zoom_keys(tool, line, &f->keys) : code;
+    code = tool_lens(tool, s->options.lens, &f->lens.table);
+    return code == EXIT_OK ? check_zoom_keys(tool, line, f) : code;
 }
 
 /* -------------------------------------------------------------------- lamps */
@@ -295,15 +299,15 @@ int drawing_files_open(const struct tool *tool, struct drawing_line *line,
     if (code == EXIT_OK && files->has_lens)
         code = refuse_zoom_lines(tool, s, &files->scene);
     if (code == EXIT_OK && files->has_lens)
-        code = settings_open(tool, s, s->options.lens);
+        code = opened_lens_open(tool, &files->lens, s, s->options.lens);
     if (code != EXIT_OK || !files->has_lens)
         return code;
     status = open_lamps(line, files, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    code = check_control(tool, s, &files->scene);
+    code = check_control(tool, s, files);
     if (code == EXIT_OK)
-        code = check_zoom_keys(tool, line, &files->keys);
+        code = check_zoom_keys(tool, line, files);
     return code == EXIT_OK ? check_narrowest(tool, s, files) : code;
 }
 
@@ -314,4 +318,5 @@ void drawing_files_close(struct drawing_files *files)
     over_scene_close(&files->scene);
     lamp_save_abort(&files->save);
     lamp_list_free(&files->list);
+    opened_lens_close(&files->lens);
 }

@@ -10,11 +10,13 @@
 #include "desk/occlusion.h"
 #include "lamp_files/lamp_list.h"
 #include "lamp_files/lamp_save.h"
+#include "model/opened_lens.h"
 #include "overlay/drawing_line.h"
 #include "overlay/over_scene.h"
 
 struct drawing_files {
-    bool has_lens;         /* false: there is only a scene */
+    bool has_lens; /* false: there is only a scene */
+    struct opened_lens lens;
     bool is_listed;        /* lamps come from LIST, none is found */
     struct lamp_list list; /* lamps of --lights, by pixel and of key frames */
     struct keys keys;

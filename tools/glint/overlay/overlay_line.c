@@ -91,11 +91,11 @@ static double stops_of(const struct glint_engine_lamp *lamp)
     return log2(fmax(lamp->lamp.power, 1e-30));
 }
 
-static double f_number_of(const struct settings *s)
+static double f_number_of(const struct opened_lens *lens)
 {
-    return s->model.data ? model_real_of(s->model.lens.header->f_number) /
-                               s->setup.opening
-                         : s->lens.f_number;
+    return lens->model.data ? model_real_of(lens->model.lens.header->f_number) /
+                                  lens->setup.opening
+                            : lens->table.f_number;
 }
 
 /* ---------------------------------------------------------------- the line */
@@ -128,8 +128,8 @@ static void say_lights(const struct drawing *drawing, int most, FILE *to)
         return;
     lamp = brightest_of(drawing);
     glint_view_to_pixel(&drawing->run.view,
-                        drawing->line.settings.setup.optics.focal_mm,
-                        &lamp->lamp, &x, &y);
+                        drawing->files.lens.setup.optics.focal_mm, &lamp->lamp,
+                        &x, &y);
     fprintf(to, " (%s%.0f stops over a white pixel, at %.0f,%.0f)",
             most == 1 ? "" : "the brightest ", stops_of(lamp), whole(x),
             whole(y));
@@ -278,8 +278,8 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
         return;
     }
     say_lights(drawing, o->figures.most_lights, to);
-    fprintf(to, ", %s f/%.3g, ", drawing->line.settings.lens.name,
-            f_number_of(&drawing->line.settings));
+    fprintf(to, ", %s f/%.3g, ", drawing->files.lens.table.name,
+            f_number_of(&drawing->files.lens));
     say_dial(drawing, to);
     if (light->is_known)
         fprintf(to, ": %s at %.*g %% of white, %.2g %% on average",
@@ -300,7 +300,7 @@ void overlay_json(struct json_writer *json, const struct overlay *o,
                   const struct overlay_light *light)
 {
     const struct drawing *drawing = &o->drawing;
-    const double focal = drawing->line.settings.setup.optics.focal_mm;
+    const double focal = drawing->files.lens.setup.optics.focal_mm;
 
     over_scene_json(json, &drawing->files.scene);
     if (!drawing->files.has_lens) {
@@ -310,8 +310,8 @@ void overlay_json(struct json_writer *json, const struct overlay *o,
     json_write(json,
                "lens: %s, f_number: %g, strength: %g, scale_ev: %.3f, "
                "peak: %.6g, mean: %.6g, found: [",
-               drawing->line.settings.lens.name,
-               f_number_of(&drawing->line.settings),
+               drawing->files.lens.table.name,
+               f_number_of(&drawing->files.lens),
                GLINT_OPTION_GIVEN(&drawing->line.settings.options, exposure)
                    ? (double)NAN
                    : drawing->line.settings.options.strength,

@@ -238,7 +238,7 @@ static void say(const struct frames *f, double ms)
                r->last - r->first + 1);
     over_scene_json(&json, &f->c->files.scene);
     json_write(&json, "lens: %s",
-               f->c->files.has_lens ? f->c->line.settings.lens.name : NULL);
+               f->c->files.has_lens ? f->c->files.lens.table.name : NULL);
     if (f->c->files.has_lens)
         settings_json(&json, &f->c->run.report);
     json_write(&json, "ms: %.3f}\n", ms);

@@ -50,7 +50,7 @@ static int measure_row(int n, char **assignments)
         code = tool_start(&tool);
     if (code == EXIT_OK)
         code = row_measure(&row);
-    settings_close(&row.settings);
+    opened_lens_close(&row.opened);
     tool_finish(&tool);
     return code;
 }

@@ -350,7 +350,7 @@ int row_rays(struct figure_row *row)
     if (!t)
         return tool_fail(row->tool, GLINT_E_MEMORY, NULL);
     t->row = row;
-    t->model = &row->settings.model.lens;
+    t->model = &row->opened.model.lens;
     h = t->header = t->model->header;
     t->n_ghosts = glint_ghost_list(&row->table, t->ghost, GLINT_MAX_GHOSTS);
     if (strcmp(h->name, row->table.name) != 0 ||

@@ -168,11 +168,11 @@ int row_open(struct figure_row *row, struct tool *tool, int n,
  * seconds. */
 static int bake(struct figure_row *r)
 {
-    struct settings *const s = &r->settings;
     struct glint_bake_options options;
     struct glint_bake_report report;
     struct glint_error error = {""};
     unsigned char *model = NULL;
+    size_t bytes = 0;
     enum glint_status status = GLINT_OK;
     const double from = cpu_seconds();
     char path[1024];
@@ -184,8 +184,8 @@ static int bake(struct figure_row *r)
     glint_bake_defaults(&options);
     options.workers = r->tool->workers;
     if (status == GLINT_OK)
-        status = glint_bake(&r->table, &options, &model, &s->model.bytes,
-                            &report, &error);
+        status =
+            glint_bake(&r->table, &options, &model, &bytes, &report, &error);
     if (status != GLINT_OK)
         return tool_fail(r->tool, status, error.text);
     json_write(&r->json, "bake_s: %.3f", cpu_seconds() - from);
@@ -194,13 +194,11 @@ static int bake(struct figure_row *r)
         free(model);
         return tool_fail(r->tool, GLINT_E_IO, "no cache for a model");
     }
-    status = fwrite(model, 1, s->model.bytes, file) == s->model.bytes
-                 ? GLINT_OK
-                 : GLINT_E_IO;
+    status = fwrite(model, 1, bytes, file) == bytes ? GLINT_OK : GLINT_E_IO;
     free(model);
     if (fclose(file) != 0 || status != GLINT_OK)
         return tool_fail(r->tool, GLINT_E_IO, path);
-    return settings_open(r->tool, s, path);
+    return opened_lens_open(r->tool, &r->opened, &r->settings, path);
 }
 
 static int open_lens(struct figure_row *r)
@@ -216,16 +214,16 @@ static int open_lens(struct figure_row *r)
         return bake(r);
     if (!row_wants(r, ROW_BAKE "," ROW_PICTURE "," ROW_FRAME "," ROW_RAYS))
         return EXIT_OK;
-    return settings_open(r->tool, &r->settings, r->lens);
+    return opened_lens_open(r->tool, &r->opened, &r->settings, r->lens);
 }
 
 static void write_model(struct figure_row *r)
 {
-    const struct model_file *const model = &r->settings.model;
+    const struct model_file *const model = &r->opened.model;
     struct model_summary sum;
 
     json_write(&r->json, "f_number: %g, focal_mm: %.2f", r->table.f_number,
-               r->settings.setup.optics.focal_mm);
+               r->opened.setup.optics.focal_mm);
     if (!model->data)
         return;
     sum = model_summary_of(&model->lens, model_span_of_all(&model->lens));
@@ -267,8 +265,7 @@ static enum glint_status make_engine(struct figure_row *r, struct frame *f,
 {
     struct glint_engine_config cfg;
 
-    canvas_engine(r->tool, &r->settings, &r->settings, r->width, r->height,
-                  &cfg);
+    canvas_engine(r->tool, &r->opened, &r->settings, r->width, r->height, &cfg);
     cfg.workers = f->one;
     if (r->settings.options.starburst > 0)
         cfg.drawing.parts |= GLINT_ENGINE_CORES;
@@ -385,7 +382,7 @@ static enum glint_status draw_reference(struct figure_row *r, struct frame *f)
     }
     free_frame(&g);
     if (other)
-        settings_close(&other->settings);
+        opened_lens_close(&other->opened);
     free(other);
     free(copy);
     return status;
@@ -405,8 +402,8 @@ static enum glint_status expose(struct figure_row *r, struct frame *f)
         return status;
     if (r->reference)
         return draw_reference(r, f);
-    status = canvas_exact(r->tool, &r->settings, f->lamp, r->n_lights, r->grid,
-                          &f->exact);
+    status = canvas_exact(r->tool, &r->opened, &r->settings, f->lamp,
+                          r->n_lights, r->grid, &f->exact);
     if (status != GLINT_OK || is_linear(r))
         return status;
     f->exposure = glint_measure_exposure(&f->exact);

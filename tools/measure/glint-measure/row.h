@@ -7,7 +7,7 @@
 #define GLINT_TOOLS_MEASURE_ROW_H
 
 #include "glint/bake.h"
-#include "model/settings.h"
+#include "model/opened_lens.h"
 
 struct figure_row {
     struct tool *tool;
@@ -17,6 +17,7 @@ struct figure_row {
     const char *metrics; /* names with commas: what to measure */
     const char *lens;    /* table or model */
     struct settings settings;
+    struct opened_lens opened;
     struct glint_prescription table; /* of the lens; of a model only its name */
     int width, height, n_lights;
     double theta, phi; /* direction of the first light, degrees */

@@ -1,0 +1,275 @@
+/* SPDX-License-Identifier: MIT */
+#include "model/opened_lens.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/ghost_file.h"
+#include "model/opened_table.h"
+#include "posix/error.h"
+
+/* ---------------------------------------------------------------- the setup */
+
+struct stop_option opened_lens_shape(const struct opened_lens *lens,
+                                     const struct settings *settings)
+{
+    struct stop_option stop = settings->stop;
+
+    if (!stop.is_asked && lens->table.stop_is_circle) {
+        stop.n_blades = 0;
+        stop.iris.roundness = 0;
+    }
+    stop.iris.mask = lens->mask.luma;
+    stop.iris.mask_width = lens->mask.width;
+    stop.iris.mask_height = lens->mask.height;
+    return stop;
+}
+
+/* Sets the colours of the setup, once it is made: weighs the wavelengths if
+ * only their number was given; for "auto" makes the sets of wavelengths that
+ * ghosts choose from. A list stays as it is. */
+static void weigh(struct opened_lens *lens, enum glint_waves_kind waves)
+{
+    if (waves == GLINT_WAVES_COUNT)
+        glint_setup_weigh(&lens->setup);
+    /* A model of the sparse basis holds its three wavelengths and no others. */
+    else if (waves == GLINT_WAVES_AUTO && !lens->model.data)
+        glint_setup_spread(&lens->setup, NULL);
+    else if (waves == GLINT_WAVES_AUTO &&
+             lens->model.lens.header->basis != GLINT_BASIS_SPARSE)
+        glint_setup_spread(&lens->setup, &lens->model.lens);
+}
+
+enum glint_status opened_lens_stop(struct opened_lens *lens,
+                                   const struct settings *s,
+                                   struct glint_error *error)
+{
+    const struct stop_option stop = opened_lens_shape(lens, s);
+    struct glint_dirt *dirt = NULL;
+    enum glint_status status =
+        lens->model.data
+            ? glint_setup_from_model(&lens->setup, &lens->model.lens,
+                                     stop.n_blades, stop.rotation_deg,
+                                     s->wavelength_nm, s->n_wavelengths, error)
+            : opened_table_setup(lens, s, &stop, error);
+
+    if (status == GLINT_OK && lens->model.data && s->options.f_number > 0)
+        status = glint_setup_stop_down(&lens->setup, &lens->model.lens,
+                                       s->options.f_number, error);
+    if (status == GLINT_OK)
+        status = stop_option_set(&stop, &lens->setup, &dirt, error);
+    if (status != GLINT_OK)
+        return status;
+    glint_dirt_free(lens->dirt);
+    lens->dirt = dirt;
+    weigh(lens, s->waves);
+    if (s->options.balance)
+        glint_setup_balance(&lens->setup);
+    return GLINT_OK;
+}
+
+enum glint_status opened_lens_zoom(struct opened_lens *lens,
+                                   const struct settings *settings, double zoom,
+                                   struct glint_error *error)
+{
+    enum glint_status status;
+
+    if (!lens->model.zoom)
+        return glint_error_report(
+            error, GLINT_E_ARGUMENT, lens->table.name,
+            settings->options.rays == GLINT_RAYS_EXACT
+                ? "exact rays do not zoom from frame to frame"
+            : lens->table.zoom.n_positions
+                ? "a table is baked for one position: zoom a model that "
+                  "'glint bake LENS --positions N' made"
+            : lens->table.n_surfaces
+                ? "does not zoom: its table has one position"
+                : "does not zoom: its model is of one position");
+    status = model_file_zoom(&lens->model, zoom, error);
+    return status == GLINT_OK ? opened_lens_stop(lens, settings, error)
+                              : status;
+}
+
+/* ------------------------------------------------------------------ opening */
+
+static int check_band(const struct tool *tool, const struct opened_lens *lens,
+                      const struct settings *settings)
+{
+    const struct glint_model_header *h = lens->model.lens.header;
+    const double lo = 1e3 / sqrt(h->wave_hi_q24 * 0x1p-24);
+    const double hi = 1e3 / sqrt(h->wave_lo_q24 * 0x1p-24);
+
+    for (int i = 0; i < settings->n_wavelengths; i++)
+        if (settings->wavelength_nm[i] < lo - 0.5 ||
+            settings->wavelength_nm[i] > hi + 0.5)
+            return tool_usage(tool,
+                              "%g nm lies outside the %.0f to %.0f nm that "
+                              "the model of %s was baked for (bake --band)",
+                              settings->wavelength_nm[i], lo, hi, h->name);
+    return EXIT_OK;
+}
+
+/* Warns if the picture is larger than the field that the model was baked
+ * for. */
+static void warn_field(const struct tool *tool, const struct opened_lens *lens,
+                       const double mm[2])
+{
+    const double field = model_real_of(lens->model.lens.header->field_mm);
+
+    if (!tool->quiet && 0.5 * hypot(mm[0], mm[1]) > field)
+        fprintf(stderr,
+                "glint %s: the model was baked for a field of %.1f mm around "
+                "the middle; corners beyond are left to chance (bake --field)"
+                "\n",
+                tool->name, field);
+}
+
+/* Zooms the model of PATH to where the line says. */
+static int zoom_model(const struct tool *tool, struct model_file *model,
+                      const struct zoom_option *o, const char *path)
+{
+    struct glint_error error = {""};
+
+    if (!model->zoom || o->is_focused)
+        return zoom_option_of_model(tool, o, path);
+    return !o->is_zoomed || model_file_zoom(model, o->zoom, &error) == GLINT_OK
+               ? EXIT_OK
+               : tool_usage(tool, "%s: %s", path, error.text);
+}
+
+static int open_model(const struct tool *tool, struct opened_lens *lens,
+                      const struct settings *settings, const char *path)
+{
+    const struct glint_model_header *h;
+    int code;
+
+    if (settings->options.rays == GLINT_RAYS_EXACT)
+        return tool_usage(tool, "%s is a model: exact rays need the lens table",
+                          path);
+    code = coating_of_model(tool, &settings->coating, path);
+    if (code == EXIT_OK)
+        code = tool_model(tool, path, &lens->model);
+    if (code == EXIT_OK)
+        code = zoom_model(tool, &lens->model, &settings->zoom, path);
+    if (code != EXIT_OK)
+        return code;
+    h = lens->model.lens.header;
+    snprintf(lens->table.name, sizeof lens->table.name, "%s", h->name);
+    lens->table.film_width_mm = model_real_of(h->film_width_mm);
+    lens->table.film_height_mm = model_real_of(h->film_height_mm);
+    lens->table.stop_is_circle = false; /* models do not say */
+    warn_field(tool, lens, settings->sensor_mm);
+    return EXIT_OK;
+}
+
+static int set_up(const struct tool *tool, struct opened_lens *lens,
+                  const struct settings *s)
+{
+    struct glint_error error = {""};
+    enum glint_status status = opened_lens_stop(lens, s, &error);
+
+    if (status == GLINT_E_ARGUMENT && s->options.f_number > 0)
+        return settings_refuse_stop(tool, s, error.text);
+    if (status == GLINT_OK && s->options.ghosts)
+        status = ghost_file_read(&lens->tints, s->options.ghosts, &lens->setup,
+                                 lens->table.name, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    if (settings_only_ghost(s) >= lens->setup.n_ghosts - lens->setup.n_parts)
+        return tool_usage(
+            tool, "%s has %d ghosts, there is no %d", lens->table.name,
+            lens->setup.n_ghosts - lens->setup.n_parts, s->options.ghost);
+    return EXIT_OK;
+}
+
+int opened_lens_front(const struct tool *tool, struct opened_lens *lens,
+                      const struct settings *settings)
+{
+    return lens->front
+               ? EXIT_OK
+               : front_option_open(tool, &settings->front, &lens->front);
+}
+
+int opened_lens_open(const struct tool *tool, struct opened_lens *lens,
+                     const struct settings *settings, const char *name)
+{
+    int code = EXIT_OK;
+
+    if ((settings->dials.flags & GLINT_DIAL_ALWAYS_HALF) &&
+        settings->options.rays == GLINT_RAYS_EXACT)
+        return tool_usage(tool, "--half is not for exact rays");
+    if (settings->options.only == GLINT_ONLY_VEIL &&
+        !settings_has_veil(settings))
+        code = tool_usage(tool, "--only veil needs a --veil, --haze or "
+                                "--front-dust to draw");
+    if (code == EXIT_OK && settings->stop.mask_file)
+        code = stop_mask_read(tool, settings->stop.mask_file, &lens->mask);
+    if (code == EXIT_OK)
+        code = opened_lens_front(tool, lens, settings);
+    if (code != EXIT_OK)
+        return code;
+    if (settings->options.projection == GLINT_PROJECTION_LENS &&
+        tool_is_model(name))
+        return tool_usage(tool, "--projection lens needs a lens table: a "
+                                "baked model has no chief rays");
+    code = tool_is_model(name) ? open_model(tool, lens, settings, name)
+                               : opened_table(tool, lens, settings, name);
+
+    if (code == EXIT_OK && lens->model.data &&
+        settings->waves == GLINT_WAVES_LIST)
+        code = check_band(tool, lens, settings);
+    return code == EXIT_OK ? set_up(tool, lens, settings) : code;
+}
+
+void opened_lens_close(struct opened_lens *lens)
+{
+    model_file_close(&lens->model);
+    free(lens->tints);
+    glint_dirt_free(lens->dirt);
+    free(lens->mask.luma);
+    glint_front_free(lens->front);
+    *lens = (struct opened_lens){.tints = NULL};
+}
+
+void opened_lens_moved(struct opened_lens *lens)
+{
+    if (lens->setup.lens)
+        lens->setup.lens = &lens->table;
+}
+
+/* ------------------------------------------------------------------ drawing */
+
+struct glint_view opened_lens_view(const struct opened_lens *lens,
+                                   const struct settings *settings, int width,
+                                   int height)
+{
+    const double *mm = settings->sensor_mm;
+    struct glint_view view = glint_view_fit(
+        width, height, mm[0] > 0 ? mm[0] : lens->table.film_width_mm,
+        mm[0] > 0 ? mm[1] : lens->table.film_height_mm);
+
+    view.projection = lens->projection;
+    return view;
+}
+
+void opened_lens_engine(const struct tool *tool, const struct opened_lens *lens,
+                        const struct settings *settings, int width, int height,
+                        struct glint_engine_config *cfg)
+{
+    glint_engine_defaults(cfg, width, height);
+    glint_engine_configure(cfg, &settings->options);
+    cfg->model = lens->model.data ? &lens->model.lens : NULL;
+    cfg->workers = tool->workers;
+    cfg->sets = tool_sets(tool);
+    cfg->clock = tool_seconds;
+    cfg->camera.setup = &lens->setup;
+    cfg->camera.rays = opened_table_rays();
+    cfg->camera.tints = lens->tints;
+    cfg->camera.front = lens->front;
+    cfg->camera.projection = &lens->projection;
+    if (cfg->camera.sensor_width_mm > 0)
+        return;
+    cfg->camera.sensor_width_mm = lens->table.film_width_mm;
+    cfg->camera.sensor_height_mm = lens->table.film_height_mm;
+}

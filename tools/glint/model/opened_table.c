@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A lens opened from its table, whose model is baked, or found in the cache.
+ */
+#include <math.h>
+
+#include "formats/picture.h"
+#include "model/model_cache.h"
+#include "model/table_file.h"
+#include "model/opened_table.h"
+
+struct glint_bake_options opened_table_bake(const struct glint_prescription *l,
+                                            const struct settings *settings)
+{
+    const double film = hypot(l->film_width_mm, l->film_height_mm);
+    const double sensor = hypot(settings->sensor_mm[0], settings->sensor_mm[1]);
+    struct glint_bake_options o;
+
+    glint_bake_defaults(&o);
+    o.tolerance = settings->tolerance;
+    for (int i = 0; i < settings->n_wavelengths; i++) {
+        const double nm = settings->wavelength_nm[i];
+
+        o.band_nm[0] = fmin(o.band_nm[0], fmax(300, 10 * floor(nm / 10)));
+        o.band_nm[1] = fmax(o.band_nm[1], fmin(1100, 10 * ceil(nm / 10)));
+    }
+    if (sensor > film)
+        o.field_mm = 0.55 * sensor;
+    if (settings->max_deg > o.max_deg)
+        o.max_deg = 89;
+    return o;
+}
+
+/* Sets how the lens images angles, and *DEG to the largest angle of the
+ * picture. */
+static enum glint_status set_projection(struct opened_lens *lens,
+                                        const double mm[2], double *deg,
+                                        struct glint_error *error)
+{
+    const struct glint_prescription *l = &lens->table;
+    struct glint_optics optics;
+    double miss_deg;
+    const enum glint_status status =
+        glint_projection_of(&lens->projection, l, &miss_deg, error);
+
+    if (status != GLINT_OK)
+        return status;
+    glint_optics_of(l, &optics);
+    *deg = glint_projection_deg(
+        &lens->projection,
+        0.5 *
+            (mm[0] > 0 ? hypot(mm[0], mm[1])
+                       : hypot(l->film_width_mm, l->film_height_mm)) /
+            fabs(optics.focal_mm));
+    return GLINT_OK;
+}
+
+/* Rejects inputs that are not pictures before anything is baked. */
+static int check_picture(const struct tool *tool, const char *picture)
+{
+    struct glint_error error = {""};
+    struct glint_kept kept;
+    const enum glint_status status = glint_kept_open(&kept, picture, &error);
+
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    glint_kept_close(&kept);
+    return EXIT_OK;
+}
+
+/* Finds or bakes the model of LENS, for a picture up to DEG off the axis. */
+static int find_model(const struct tool *tool, struct opened_lens *lens,
+                      const struct settings *settings, double deg)
+{
+    struct glint_bake_options options =
+        opened_table_bake(&lens->table, settings);
+    int code = EXIT_OK;
+
+    if (deg > options.max_deg)
+        options.max_deg = 89;
+    if (settings->picture && !model_is_cached(&lens->table, &options))
+        code = check_picture(tool, settings->picture);
+    return code == EXIT_OK
+               ? model_cached(tool, &lens->table, options, &lens->model)
+               : code;
+}
+
+int opened_table(const struct tool *tool, struct opened_lens *lens,
+                 const struct settings *settings, const char *name)
+{
+    const struct glint_options *const o = &settings->options;
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_OK;
+    double deg = 0;
+    int code = tool_lens(tool, name, &lens->table);
+
+    if (code == EXIT_OK)
+        code = zoom_option_apply(tool, &settings->zoom, &lens->table);
+    if (code != EXIT_OK)
+        return code;
+    coating_apply(&settings->coating, &lens->table);
+    /* A model serves all stops narrower than its own. */
+    if (o->f_number > 0 &&
+        (o->rays == GLINT_RAYS_EXACT || o->f_number < lens->table.f_number))
+        status =
+            glint_prescription_set_f_number(&lens->table, o->f_number, &error);
+    if (status != GLINT_OK)
+        return settings_refuse_stop(tool, settings, error.text);
+    if (o->projection == GLINT_PROJECTION_LENS)
+        status = set_projection(lens, settings->sensor_mm, &deg, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    return o->rays == GLINT_RAYS_EXACT ? EXIT_OK
+                                       : find_model(tool, lens, settings, deg);
+}
+
+const struct glint_frame_rays *opened_table_rays(void)
+{
+    return &glint_frame_traces;
+}
+
+enum glint_status opened_table_setup(struct opened_lens *lens,
+                                     const struct settings *s,
+                                     const struct stop_option *stop,
+                                     struct glint_error *error)
+{
+    return glint_setup_init(&lens->setup, &lens->table, stop->n_blades,
+                            stop->rotation_deg, s->wavelength_nm,
+                            s->n_wavelengths, error);
+}

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A lens that is opened from its table, which needs the offline half. Programs
+ * that take baked models only have models_only.c instead.
+ */
+#ifndef GLINT_TOOLS_MODEL_OPENED_TABLE_H
+#define GLINT_TOOLS_MODEL_OPENED_TABLE_H
+
+#include "model/opened_lens.h"
+
+/* Reads the table NAME and finds or bakes its model, unless rays are exact.
+ * Returns an exit code, after printing the reason on failure. */
+int opened_table(const struct tool *tool, struct opened_lens *lens,
+                 const struct settings *settings, const char *name);
+
+/* Returns the options to bake a model of LENS with for SETTINGS. */
+struct glint_bake_options
+opened_table_bake(const struct glint_prescription *lens,
+                  const struct settings *settings);
+
+/* Makes the setup of LENS, which has no model, for STOP. */
+enum glint_status opened_table_setup(struct opened_lens *lens,
+                                     const struct settings *settings,
+                                     const struct stop_option *stop,
+                                     struct glint_error *error);
+
+/* Returns the functions that trace the rays of a frame without a model. */
+const struct glint_frame_rays *opened_table_rays(void);
+
+#endif
