@@ -101,22 +101,23 @@ static void print_title(const struct glint_explain *e,
 {
     const struct glint_explain_part *all = &e->all;
 
-    printf("%s, %dx%d, %s\n", t->lens, e->view->width, e->view->height,
-           t->linear ? "linear light" : "codes");
+    printf("%s, %dx%d, in %s\n", t->lens, e->view->width, e->view->height,
+           t->linear ? "linear light" : "8-bit codes");
     /* A lamp of visible extent is drawn as several points. */
-    printf(e->n_lights > t->n_lamps ? "drawn: %d points of %d lights"
-                                    : "drawn: lights %d of %d",
-           e->n_lights, t->n_lamps);
-    printf(", ghosts %d of %d, bundles %d of %d, tiles %d of %d\n",
-           ghosts_drawn(e), e->n_ghosts, glint_explain_drawn(all),
-           glint_explain_bundles(all), all->tiles, e->n_tiles);
-    printf("barrels that cut: ");
+    printf(e->n_lights > t->n_lamps ? "%d points of %d light%s drawn"
+                                    : "%d of %d light%s drawn",
+           e->n_lights, t->n_lamps, t->n_lamps == 1 ? "" : "s");
+    printf("; %d of %d ghosts change a pixel, on %d of %d tiles\n",
+           ghosts_drawn(e), e->n_ghosts, all->tiles, e->n_tiles);
+    printf("%d of %d bundles drawn, each the rays of one ghost, point and "
+           "wavelength\nbundles by barrels that cut them:",
+           glint_explain_drawn(all), glint_explain_bundles(all));
     for (int k = 0, some = 0; k < GLINT_EXPLAIN_BARRELS; k++)
         if (e->barrels[k])
-            printf("%s%d in %d bundles", some++ ? ", " : "", k, e->barrels[k]);
-    printf("\nterms of a ray: %.1f in the mean\n",
+            printf("%s %d by %d", some++ ? "," : "", e->barrels[k], k);
+    printf("\npolynomial terms of a ray: %.1f on average\n",
            all->vertices ? (double)all->all_terms / (double)all->vertices : 0);
-    printf("work: about %.1f M instructions, of these %%\n     ",
+    printf("work: about %.1f million instructions, in percent\n     ",
            1e-6 * all->work);
     for (int i = 0; i < GLINT_COST_KINDS && all->work > 0; i++)
         if (i < GLINT_COST_PARTS || i == GLINT_COST_LIT || i == GLINT_COST_STAR)

@@ -150,6 +150,7 @@ static void say_faint(const struct overlay *o,
                       const struct overlay_light *light, FILE *to)
 {
     const struct drawing *drawing = &o->drawing;
+    const struct glint_engine_report *const report = &drawing->run.report;
     const bool is_held =
         drawing->line.settings.options.gain <= 0 ||
         (!GLINT_OPTION_GIVEN(&drawing->line.settings.options, exposure) &&
@@ -163,6 +164,12 @@ static void say_faint(const struct overlay *o,
         fprintf(to,
                 "%s: no light gets through this lens and its --stop-mask into "
                 "the picture; white in a mask lets light through\n",
+                o->output);
+    else if (light->peak <= 0 && report->beyond_lights > 0 &&
+             report->beyond_lights == report->lights)
+        fprintf(to,
+                "%s: no flare was drawn: the lens has no model of light from "
+                "so far outside the picture; move the lamp nearer\n",
                 o->output);
     else if (light->peak <= 0)
         fprintf(to,
