@@ -19,7 +19,8 @@ struct overlay_figures {
      * frames. */
     struct glint_engine_report worst;
     int most_lights;
-    int n_reused;             /* frames drawn with the edges of the last */
+    double dial[2]; /* least and largest --strength or --exposure, by frame */
+    int n_reused;   /* frames drawn with the edges of the last */
     double find_ms, flare_ms; /* ms, sums */
     double peak, mean_sum;    /* light of the flare, 1 = white: the brightest of
                                  all frames; the sum of their means */

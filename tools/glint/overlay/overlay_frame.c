@@ -82,6 +82,18 @@ int overlay_look(struct tool *tool, struct overlay *o,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
 
+/* Returns what sets the brightness of the frame: stops, or a strength. */
+static double dial_of(const struct glint_options *o)
+{
+    return GLINT_OPTION_GIVEN(o, exposure) ? o->exposure : o->strength;
+}
+
+static void note_dial(double range[2], double dial, bool is_first)
+{
+    range[0] = is_first ? dial : fmin(range[0], dial);
+    range[1] = is_first ? dial : fmax(range[1], dial);
+}
+
 int overlay_draw_by(struct tool *tool, struct overlay *o,
                     const struct glint_image *image, overlay_draw_fn *draw,
                     void *ctx)
@@ -101,6 +113,8 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
     code = layers_write(tool, &o->layers, drawing);
     if (code != EXIT_OK)
         return code;
+    note_dial(o->figures.dial, dial_of(&drawing->line.settings.options),
+              overlay_drawn(o) <= 1);
     o->figures.find_ms += drawing->run.find_ms;
     o->figures.flare_ms += drawing->run.flare_ms;
     if (drawing->run.engine) {

@@ -135,14 +135,19 @@ static void say_lights(const struct drawing *drawing, int most, FILE *to)
             whole(y));
 }
 
-static void say_dial(const struct drawing *drawing, FILE *to)
+/* Prints DIAL, the least and largest brightness of all frames. */
+static void say_dial(const struct glint_options *o, const double dial[2],
+                     FILE *to)
 {
-    if (GLINT_OPTION_GIVEN(&drawing->line.settings.options, exposure))
-        fprintf(to, "exposure %+g EV", drawing->line.settings.options.exposure);
-    else
-        fprintf(to, "strength %g", drawing->line.settings.options.strength);
-    if (drawing->line.settings.options.gain != 1)
-        fprintf(to, ", gain %g", drawing->line.settings.options.gain);
+    const bool is_exposure = GLINT_OPTION_GIVEN(o, exposure);
+
+    fprintf(to, is_exposure ? "exposure %+g" : "strength %g", dial[0]);
+    if (dial[1] > dial[0])
+        fprintf(to, is_exposure ? " to %+g" : " to %g", dial[1]);
+    if (is_exposure)
+        fputs(" EV", to);
+    if (o->gain != 1)
+        fprintf(to, ", gain %g", o->gain);
 }
 
 /* Prints which option would show a flare that is as faint as LIGHT. */
@@ -287,7 +292,7 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
     say_lights(drawing, o->figures.most_lights, to);
     fprintf(to, ", %s f/%.3g, ", drawing->files.lens.table.name,
             f_number_of(&drawing->files.lens));
-    say_dial(drawing, to);
+    say_dial(&drawing->line.settings.options, o->figures.dial, to);
     if (light->is_known)
         fprintf(to, ": %s at %.*g %% of white, %.2g %% on average",
                 drawing->line.settings.options.only == GLINT_ONLY_STARBURST
