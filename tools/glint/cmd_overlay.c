@@ -30,7 +30,7 @@ static const char help[] =
     "                    more through the installed ffmpeg: sound is copied,\n"
     "                    rate and colours are preserved\n"
     "\n"
-    "  -o, --output OUT\n"
+    "  -o, --output OUT    or, for one or more inputs IN..., FOLDER/\n"
     "  --range R           auto | full | limited codes of a video\n"
     "  --matrix M          auto | 601 | 709 | 2020\n"
     "  --transfer T        auto | 709 | srgb | linear | gamma22 | gamma28 | "
@@ -178,7 +178,69 @@ static int check_raw(const struct tool *tool, const struct overlay *o)
     return EXIT_OK;
 }
 
-static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
+/* Refuses what goes with one input only where a line has N. */
+static int check_inputs(const struct tool *tool, const struct overlay *o, int n)
+{
+    if (n > 1 && (o->layers.path || o->lists_shots ||
+                  o->drawing.line.settings.options.save_lights))
+        return tool_usage(tool, "--%s is of one input, not of %d",
+                          o->layers.path   ? "layers"
+                          : o->lists_shots ? "list-shots"
+                                           : "save-lights",
+                          n);
+    return EXIT_OK;
+}
+
+/* Returns whether PATH names a folder: it is one, or ends in a slash. */
+static bool is_folder(const char *path)
+{
+    const size_t n = strlen(path);
+    struct stat file;
+
+    return (n > 0 && path[n - 1] == '/') ||
+           (stat(path, &file) == 0 && S_ISDIR(file.st_mode));
+}
+
+/* Checks what a line of one input says. Returns -1 or an exit code. */
+static int check_line(const struct tool *tool, int argc, char **argv,
+                      struct overlay *o)
+{
+    int code;
+
+    if (optind + 1 != argc)
+        return tool_usage(tool,
+                          o->output ? "takes one input for one output, not "
+                                      "'%s' too; several go into a folder, -o "
+                                      "FOLDER/"
+                                    : "takes one input; where that goes "
+                                      "follows -o: -o '%s'",
+                          argv[argc - 1]);
+    if (!o->output && !o->lists_shots)
+        return tool_usage(tool, "needs -o OUT");
+    if (o->lists_shots && (o->output || o->last < INT_MAX))
+        return tool_usage(tool, "--list-shots is of a whole video, and writes "
+                                "none: leave out -o and --frames");
+    if (o->lists_shots)
+        o->output = "-";
+    if ((code = check_raw(tool, o)) != EXIT_OK)
+        return code;
+    if (o->has_layers_type && !o->layers.path)
+        return tool_usage(tool, "--layers-type is for --layers OUT");
+    if (o->layers.path &&
+        strcmp(o->drawing.line.settings.options.lens, "none") == 0)
+        return tool_usage(tool, "--layers are those of the flare of a lens, "
+                                "not of --lens none");
+    o->input = argv[optind];
+    if (o->drawing.line.reserve_bytes &&
+        o->drawing.line.settings.options.rays == GLINT_RAYS_EXACT)
+        return tool_usage(tool, "--memory is for models, not for exact rays");
+    return -1;
+}
+
+/* Parses a line, and moves its inputs to ARGV[optind] on. OUTPUT: where the
+ * picture goes; NULL: as -o says, and if that is a folder it is *FOLDER. */
+static int parse(struct tool *tool, int argc, char **argv, struct overlay *o,
+                 const char *output, const char **folder)
 {
     const struct option *const options =
         engine_getopt(tool, ENGINE_ALL, &o->drawing.line.settings.options, own);
@@ -210,32 +272,14 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
     if (optind == argc)
         return tool_inputs(tool, argc, argv, 1,
                            "needs a picture, a sequence or a video");
-    if (optind + 1 != argc)
-        return tool_usage(tool,
-                          o->output ? "takes one input; '%s' is too much"
-                                    : "takes one input; where that goes "
-                                      "follows -o: -o '%s'",
-                          argv[argc - 1]);
-    if (!o->output && !o->lists_shots)
-        return tool_usage(tool, "needs -o OUT");
-    if (o->lists_shots && (o->output || o->last < INT_MAX))
-        return tool_usage(tool, "--list-shots is of a whole video, and writes "
-                                "none: leave out -o and --frames");
-    if (o->lists_shots)
-        o->output = "-";
-    if ((code = check_raw(tool, o)) != EXIT_OK)
-        return code;
-    if (o->has_layers_type && !o->layers.path)
-        return tool_usage(tool, "--layers-type is for --layers OUT");
-    if (o->layers.path &&
-        strcmp(o->drawing.line.settings.options.lens, "none") == 0)
-        return tool_usage(tool, "--layers are those of the flare of a lens, "
-                                "not of --lens none");
-    o->input = argv[optind];
-    if (o->drawing.line.reserve_bytes &&
-        o->drawing.line.settings.options.rays == GLINT_RAYS_EXACT)
-        return tool_usage(tool, "--memory is for models, not for exact rays");
-    return -1;
+    if (!output && o->output && is_folder(o->output)) {
+        *folder = o->output;
+        code = check_inputs(tool, o, argc - optind);
+        return code == EXIT_OK ? -1 : code;
+    }
+    if (output)
+        o->output = output;
+    return check_line(tool, argc, argv, o);
 }
 
 /* ------------------------------------------------------------------- result */
@@ -396,11 +440,83 @@ static int run(struct tool *tool, struct overlay *o)
     return code;
 }
 
-int cmd_overlay(int argc, char **argv)
+/* ------------------------------------------------------------------ folders */
+
+/* Adds a flare to the input of a line, as overlay_folder() to several. OUTPUT:
+ * see parse(). */
+static int overlay_line(int argc, char **argv, const char *output);
+
+static const char *name_of(const char *path)
+{
+    const char *const slash = strrchr(path, '/');
+
+    return slash ? slash + 1 : path;
+}
+
+/* Makes FOLDER, and refuses inputs that would have no file of their own in
+ * it. */
+static int make_folder(const struct tool *tool, const char *folder,
+                       char **input, int n)
+{
+    struct glint_error error = {""};
+
+    for (int i = 0; i < n; i++) {
+        if (strcmp(input[i], "-") == 0)
+            return tool_usage(tool, "standard input has no name in a folder");
+        for (int k = 0; k < i; k++)
+            if (strcmp(name_of(input[k]), name_of(input[i])) == 0)
+                return tool_usage(tool, "%s and %s would be one file", input[k],
+                                  input[i]);
+    }
+    if (mkdir(folder, 0777) == 0 || errno == EEXIST)
+        return EXIT_OK;
+    glint_error_report(&error, GLINT_E_OUTPUT, folder, "%s", strerror(errno));
+    tool_fail(tool, GLINT_E_OUTPUT, error.text);
+    return EXIT_OUTPUT;
+}
+
+/* Adds flares to the N inputs ARGV[FIRST] on, each into a file of its name in
+ * FOLDER. One that fails does not stop the others. Returns the largest exit
+ * code. */
+static int overlay_folder(const struct tool *tool, char **argv, int first,
+                          int n, const char *folder)
+{
+    const size_t slash = strlen(folder) - 1;
+    char **const line = calloc((size_t)first + 2, sizeof *line);
+    int code = line ? make_folder(tool, folder, argv + first, n)
+                    : tool_fail(tool, GLINT_E_MEMORY, NULL);
+    int done = 0;
+    char path[4096];
+
+    for (int i = 0; i < n && (code == EXIT_OK || i > 0); i++) {
+        int one = EXIT_OUTPUT;
+
+        memcpy(line, argv, (size_t)first * sizeof *line);
+        line[first] = argv[first + i];
+        optind = 0;
+        if ((size_t)snprintf(path, sizeof path, "%s%s%s", folder,
+                             folder[slash] == '/' ? "" : "/",
+                             name_of(argv[first + i])) < sizeof path)
+            one = overlay_line(first + 1, line, path);
+        else
+            tool_usage(tool, "%s: the name is too long", folder);
+        done += one == EXIT_OK;
+        code = one > code ? one : code;
+    }
+    free(line);
+    if (done > 0 && done < n && !tool->quiet)
+        fprintf(stderr,
+                "glint overlay: %d of %d inputs failed, the others are in %s\n",
+                n - done, n, folder);
+    return code;
+}
+
+static int overlay_line(int argc, char **argv, const char *output)
 {
     struct tool tool = {
         .name = "overlay", .help = help, .help_end = COMMON_HELP};
     struct overlay *o = calloc(1, sizeof *o);
+    const char *folder = NULL;
     int code;
 
     if (!o)
@@ -408,8 +524,10 @@ int cmd_overlay(int argc, char **argv)
     drawing_line_defaults(&o->drawing.line);
     o->start_number = o->transfer = -1;
     o->last = o->warm_up = INT_MAX;
-    code = parse(&tool, argc, argv, o);
-    if (code < 0) {
+    code = parse(&tool, argc, argv, o, output, &folder);
+    if (code < 0 && folder)
+        code = overlay_folder(&tool, argv, optind, argc - optind, folder);
+    else if (code < 0) {
         code = tool_start(&tool);
         if (code == EXIT_OK)
             code = run(&tool, o);
@@ -420,4 +538,9 @@ int cmd_overlay(int argc, char **argv)
     zoom_clip_close(&o->zoom);
     free(o);
     return code;
+}
+
+int cmd_overlay(int argc, char **argv)
+{
+    return overlay_line(argc, argv, NULL);
 }
