@@ -406,10 +406,23 @@ static int check_output(struct tool *tool, struct overlay *o)
     return EXIT_OUTPUT;
 }
 
+/* Sets OPTIONS where nothing is drawn: no model is baked, and nothing exposed,
+ * unless key frames or lines of control may need that. */
+static void draw_nothing(struct glint_options *options)
+{
+    if (options->keys || options->control)
+        return;
+    if (!tool_is_model(options->lens))
+        options->rays = GLINT_RAYS_EXACT;
+    GLINT_OPTION_GIVEN(options, exposure) = true;
+}
+
 static int run(struct tool *tool, struct overlay *o)
 {
     int code = check_output(tool, o);
 
+    if (o->lists_shots)
+        draw_nothing(&o->drawing.line.settings.options);
     if (code == EXIT_OK && o->is_video)
         code = overlay_video_check(tool, o);
     if (code == EXIT_OK)

@@ -194,7 +194,8 @@ static int size_scene(struct drawing *d, int width, int height)
 static void watch(const struct tool *tool, struct drawing *d,
                   struct glint_engine_config *cfg)
 {
-    if (!tool->quiet)
+    if (!tool->quiet &&
+        !GLINT_OPTION_GIVEN(&d->line.settings.options, exposure))
         fprintf(stderr,
                 "glint %s: exact rays: first how bright flares of %s are, "
                 "a minute or more for a zoom, then each frame again\n",
