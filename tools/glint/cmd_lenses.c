@@ -173,15 +173,14 @@ static void print_text(struct lenses *l, const char *name,
 /* ------------------------------------------------------------------ a page */
 
 /* Sets SETTINGS to those by which thumbnails of E are drawn. Three wavelengths
- * and coarse grids do for pictures that small. Returns an exit code. */
-static int set_flares(struct settings *settings, const struct entry *e)
+ * and coarse grids do for pictures that small. */
+static void set_flares(struct settings *settings, const struct entry *e)
 {
     set_settings(settings, false);
     if (e->is_baked)
-        return EXIT_OK;
+        return;
     settings->options.rays = GLINT_RAYS_EXACT;
     settings_set_quality(settings, 0.25);
-    return EXIT_OK;
 }
 
 /* Writes thumbnails of the flare, if there is a model to draw them by, or rays
@@ -196,7 +195,10 @@ static void print_flares(struct lenses *l, const char *name,
         fputs("<p class=\"less\">no model yet: one is baked when the lens is "
               "first drawn</p>",
               l->page);
-    else if (settings && set_flares(settings, e) == EXIT_OK) {
+    else if (!settings)
+        l->code = tool_fail(l->tool, GLINT_E_MEMORY, NULL);
+    else {
+        set_flares(settings, e);
         fputs("<p>", l->page);
         if (thumbnails_write(l->tool, settings, name, l->page, &bytes) !=
             EXIT_OK)
