@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "overlay/folder.h"
 #include "overlay/overlay_line.h"
 #include "overlay/overlay_y4m.h"
 #include "options/command_line.h"
@@ -18,7 +19,7 @@
 #include "video/transfer.h"
 
 static const char help[] =
-    "glint overlay IN -o OUT [options]\n"
+    "glint overlay IN... -o OUT [options]\n"
     "\n"
     "Adds the flare of a lens to IN, in linear light:\n"
     "  a picture         .ppm; with the image plug-in .png .jpg and more\n"
@@ -30,7 +31,7 @@ static const char help[] =
     "                    more through the installed ffmpeg: sound is copied,\n"
     "                    rate and colours are preserved\n"
     "\n"
-    "  -o, --output OUT    or, for one or more inputs IN..., FOLDER/\n"
+    "  -o, --output OUT    a file, or FOLDER/ where each IN keeps its name\n"
     "  --range R           auto | full | limited codes of a video\n"
     "  --matrix M          auto | 601 | 709 | 2020\n"
     "  --transfer T        auto | 709 | srgb | linear | gamma22 | gamma28 | "
@@ -178,27 +179,21 @@ static int check_raw(const struct tool *tool, const struct overlay *o)
     return EXIT_OK;
 }
 
-/* Refuses what goes with one input only where a line has N. */
-static int check_inputs(const struct tool *tool, const struct overlay *o, int n)
+/* Rejects options of N inputs that write one file, and files without headers,
+ * whose names do not say what to write. */
+static int check_folder(const struct tool *tool, const struct overlay *o, int n)
 {
-    if (n > 1 && (o->layers.path || o->lists_shots ||
-                  o->drawing.line.settings.options.save_lights))
-        return tool_usage(tool, "--%s is of one input, not of %d",
-                          o->layers.path   ? "layers"
-                          : o->lists_shots ? "list-shots"
-                                           : "save-lights",
-                          n);
+    if (o->has_raw)
+        return tool_usage(tool, "--format has no folder: a file there keeps "
+                                "the name of its input, raw frames become "
+                                "another");
+    if (o->lists_shots)
+        return tool_usage(tool, "--list-shots writes no file: leave out -o");
+    if (n > 1 &&
+        (o->layers.path || o->drawing.line.settings.options.save_lights))
+        return tool_usage(tool, "--%s accepts one input, not %d",
+                          o->layers.path ? "layers" : "save-lights", n);
     return EXIT_OK;
-}
-
-/* Returns whether PATH names a folder: it is one, or ends in a slash. */
-static bool is_folder(const char *path)
-{
-    const size_t n = strlen(path);
-    struct stat file;
-
-    return (n > 0 && path[n - 1] == '/') ||
-           (stat(path, &file) == 0 && S_ISDIR(file.st_mode));
 }
 
 /* Checks what a line of one input says. Returns -1 or an exit code. */
@@ -272,9 +267,9 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o,
     if (optind == argc)
         return tool_inputs(tool, argc, argv, 1,
                            "needs a picture, a sequence or a video");
-    if (!output && o->output && is_folder(o->output)) {
+    if (!output && o->output && folder_is(o->output)) {
         *folder = o->output;
-        code = check_inputs(tool, o, argc - optind);
+        code = check_folder(tool, o, argc - optind);
         return code == EXIT_OK ? -1 : code;
     }
     if (output)
@@ -307,11 +302,12 @@ static void print_json(const struct overlay *o,
     struct json_writer json = {.to = stdout};
 
     json_write(&json,
-               "{frames: %d, ms: %.3f, fps: %.2f, find_ms: %.3f, "
+               "{input: %s, output: %s, frames: %d, ms: %.3f, fps: %.2f, "
+               "find_ms: %.3f, "
                "flare_ms: %.3f, most_lights: %d, reused: %d",
-               drawn, 1e3 * seconds, drawn / seconds, o->figures.find_ms / n,
-               o->figures.flare_ms / n, o->figures.most_lights,
-               o->figures.n_reused);
+               o->input, o->output, drawn, 1e3 * seconds, drawn / seconds,
+               o->figures.find_ms / n, o->figures.flare_ms / n,
+               o->figures.most_lights, o->figures.n_reused);
     overlay_json(&json, o, light);
     settings_json(&json, &o->drawing.run.report);
     json_write(&json, "}\n");
@@ -406,15 +402,18 @@ static int check_output(struct tool *tool, struct overlay *o)
     return EXIT_OUTPUT;
 }
 
-/* Sets OPTIONS where nothing is drawn: no model is baked, and nothing exposed,
- * unless key frames or lines of control may need that. */
-static void draw_nothing(struct glint_options *options)
+/* Sets S where nothing is drawn: glint bakes no model and measures no
+ * brightness, unless key frames, lines of control or a zoom may need them. */
+static void draw_nothing(struct settings *s, bool is_zoomed)
 {
-    if (options->keys || options->control)
+    struct glint_options *const o = &s->options;
+
+    if (o->keys || o->control || is_zoomed)
         return;
-    if (!tool_is_model(options->lens))
-        options->rays = GLINT_RAYS_EXACT;
-    GLINT_OPTION_GIVEN(options, exposure) = true;
+    if (!tool_is_model(o->lens))
+        o->rays = GLINT_RAYS_EXACT;
+    s->dials.flags &= ~(unsigned)GLINT_DIAL_ALWAYS_HALF;
+    GLINT_OPTION_GIVEN(o, exposure) = true;
 }
 
 static int run(struct tool *tool, struct overlay *o)
@@ -422,7 +421,7 @@ static int run(struct tool *tool, struct overlay *o)
     int code = check_output(tool, o);
 
     if (o->lists_shots)
-        draw_nothing(&o->drawing.line.settings.options);
+        draw_nothing(&o->drawing.line.settings, o->zoom.is_asked);
     if (code == EXIT_OK && o->is_video)
         code = overlay_video_check(tool, o);
     if (code == EXIT_OK)
@@ -459,68 +458,44 @@ static int run(struct tool *tool, struct overlay *o)
  * see parse(). */
 static int overlay_line(int argc, char **argv, const char *output);
 
-static const char *name_of(const char *path)
-{
-    const char *const slash = strrchr(path, '/');
-
-    return slash ? slash + 1 : path;
-}
-
-/* Makes FOLDER, and refuses inputs that would have no file of their own in
- * it. */
-static int make_folder(const struct tool *tool, const char *folder,
-                       char **input, int n)
-{
-    struct glint_error error = {""};
-
-    for (int i = 0; i < n; i++) {
-        if (strcmp(input[i], "-") == 0)
-            return tool_usage(tool, "standard input has no name in a folder");
-        for (int k = 0; k < i; k++)
-            if (strcmp(name_of(input[k]), name_of(input[i])) == 0)
-                return tool_usage(tool, "%s and %s would be one file", input[k],
-                                  input[i]);
-    }
-    if (mkdir(folder, 0777) == 0 || errno == EEXIST)
-        return EXIT_OK;
-    glint_error_report(&error, GLINT_E_OUTPUT, folder, "%s", strerror(errno));
-    tool_fail(tool, GLINT_E_OUTPUT, error.text);
-    return EXIT_OUTPUT;
-}
-
 /* Adds flares to the N inputs ARGV[FIRST] on, each into a file of its name in
- * FOLDER. One that fails does not stop the others. Returns the largest exit
- * code. */
+ * FOLDER. One that fails does not stop the others, unless the line or the lens
+ * is wrong. Returns the largest exit code. */
 static int overlay_folder(const struct tool *tool, char **argv, int first,
-                          int n, const char *folder)
+                          int n, const char *folder,
+                          const struct glint_options *options)
 {
-    const size_t slash = strlen(folder) - 1;
     char **const line = calloc((size_t)first + 2, sizeof *line);
-    int code = line ? make_folder(tool, folder, argv + first, n)
-                    : tool_fail(tool, GLINT_E_MEMORY, NULL);
-    int done = 0;
-    char path[4096];
+    bool is_new = false, is_wrong = false;
+    int code =
+        line ? folder_open(tool, folder, argv + first, n, options, &is_new)
+             : tool_fail(tool, GLINT_E_MEMORY, NULL);
+    int done = 0, failed = code == EXIT_OK ? 0 : n;
+    char path[FOLDER_PATH];
 
-    for (int i = 0; i < n && (code == EXIT_OK || i > 0); i++) {
+    for (int i = 0; failed < n && done + failed < n && !is_wrong; i++) {
         int one = EXIT_OUTPUT;
 
         memcpy(line, argv, (size_t)first * sizeof *line);
         line[first] = argv[first + i];
         optind = 0;
-        if ((size_t)snprintf(path, sizeof path, "%s%s%s", folder,
-                             folder[slash] == '/' ? "" : "/",
-                             name_of(argv[first + i])) < sizeof path)
+        if (folder_path(path, folder, argv[first + i]))
             one = overlay_line(first + 1, line, path);
         else
-            tool_usage(tool, "%s: the name is too long", folder);
+            tool_error(tool, "%s: the name is too long", argv[first + i]);
         done += one == EXIT_OK;
+        failed += one != EXIT_OK;
         code = one > code ? one : code;
+        is_wrong = one == EXIT_USAGE || one == EXIT_LENS;
     }
     free(line);
-    if (done > 0 && done < n && !tool->quiet)
+    if (done > 0 && failed > 0 && !tool->quiet)
         fprintf(stderr,
-                "glint overlay: %d of %d inputs failed, the others are in %s\n",
+                "glint overlay: %d of %d inputs failed, the others are "
+                "in %s\n",
                 n - done, n, folder);
+    if (done == 0 && is_new)
+        rmdir(folder); /* it stays if there is something in it */
     return code;
 }
 
@@ -539,7 +514,8 @@ static int overlay_line(int argc, char **argv, const char *output)
     o->last = o->warm_up = INT_MAX;
     code = parse(&tool, argc, argv, o, output, &folder);
     if (code < 0 && folder)
-        code = overlay_folder(&tool, argv, optind, argc - optind, folder);
+        code = overlay_folder(&tool, argv, optind, argc - optind, folder,
+                              &o->drawing.line.settings.options);
     else if (code < 0) {
         code = tool_start(&tool);
         if (code == EXIT_OK)

@@ -13,14 +13,20 @@
 struct overlay_y4m;
 
 /* Figures over all frames. */
+/* The range of N values. */
+struct overlay_span {
+    double min, max;
+    int n;
+};
+
 struct overlay_figures {
     /* Of the frame of which most lights were merged, but with the most lights,
      * lights out of the model's range, and dropped bundles and cells of all
      * frames. */
     struct glint_engine_report worst;
     int most_lights;
-    double dial[2]; /* least and largest --strength or --exposure, by frame */
-    int n_reused;   /* frames drawn with the edges of the last */
+    struct overlay_span strength, exposure, gain; /* by frame */
+    int n_reused;             /* frames drawn with the edges of the last */
     double find_ms, flare_ms; /* ms, sums */
     double peak, mean_sum;    /* light of the flare, 1 = white: the brightest of
                                  all frames; the sum of their means */

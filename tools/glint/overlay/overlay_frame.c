@@ -82,16 +82,22 @@ int overlay_look(struct tool *tool, struct overlay *o,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
 
-/* Returns what sets the brightness of the frame: stops, or a strength. */
-static double dial_of(const struct glint_options *o)
+static void span(struct overlay_span *of, double x)
 {
-    return GLINT_OPTION_GIVEN(o, exposure) ? o->exposure : o->strength;
+    of->min = of->n ? fmin(of->min, x) : x;
+    of->max = of->n ? fmax(of->max, x) : x;
+    of->n++;
 }
 
-static void note_dial(double range[2], double dial, bool is_first)
+/* Notes what sets the brightness of a frame. */
+static void note_brightness(struct overlay_figures *f,
+                            const struct glint_options *o)
 {
-    range[0] = is_first ? dial : fmin(range[0], dial);
-    range[1] = is_first ? dial : fmax(range[1], dial);
+    if (GLINT_OPTION_GIVEN(o, exposure))
+        span(&f->exposure, o->exposure);
+    else
+        span(&f->strength, o->strength);
+    span(&f->gain, o->gain);
 }
 
 int overlay_draw_by(struct tool *tool, struct overlay *o,
@@ -113,8 +119,7 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
     code = layers_write(tool, &o->layers, drawing);
     if (code != EXIT_OK)
         return code;
-    note_dial(o->figures.dial, dial_of(&drawing->line.settings.options),
-              overlay_drawn(o) <= 1);
+    note_brightness(&o->figures, &drawing->line.settings.options);
     o->figures.find_ms += drawing->run.find_ms;
     o->figures.flare_ms += drawing->run.flare_ms;
     if (drawing->run.engine) {

@@ -135,19 +135,27 @@ static void say_lights(const struct drawing *drawing, int most, FILE *to)
             whole(y));
 }
 
-/* Prints DIAL, the least and largest brightness of all frames. */
-static void say_dial(const struct glint_options *o, const double dial[2],
-                     FILE *to)
+/* Prints NAME and the range of its values, with their signs if HAS_SIGN. */
+static void say_span(const struct overlay_span *of, const char *name,
+                     bool has_sign, FILE *to)
 {
-    const bool is_exposure = GLINT_OPTION_GIVEN(o, exposure);
+    fprintf(to, has_sign ? "%s %+g" : "%s %g", name, of->min);
+    if (of->max > of->min)
+        fprintf(to, has_sign ? " to %+g" : " to %g", of->max);
+}
 
-    fprintf(to, is_exposure ? "exposure %+g" : "strength %g", dial[0]);
-    if (dial[1] > dial[0])
-        fprintf(to, is_exposure ? " to %+g" : " to %g", dial[1]);
-    if (is_exposure)
+/* Prints what set the brightness of all frames. */
+static void say_brightness(const struct overlay_figures *f, FILE *to)
+{
+    if (f->strength.n > 0)
+        say_span(&f->strength, "strength", false, to);
+    if (f->exposure.n > 0) {
+        say_span(&f->exposure,
+                 f->strength.n > 0 ? ", then exposure" : "exposure", true, to);
         fputs(" EV", to);
-    if (o->gain != 1)
-        fprintf(to, ", gain %g", o->gain);
+    }
+    if (f->gain.min != 1 || f->gain.max != 1)
+        say_span(&f->gain, ", gain", false, to);
 }
 
 /* Prints which option would show a flare that is as faint as LIGHT. */
@@ -165,16 +173,17 @@ static void say_faint(const struct overlay *o,
         fprintf(to, "%s: %s draws nothing, as it says\n", o->output,
                 drawing->line.settings.options.gain <= 0 ? "--gain 0"
                                                          : "--strength 0");
+    else if (light->peak <= 0 && report->beyond_lights > 0 &&
+             report->beyond_lights == report->lights)
+        fprintf(
+            to,
+            "%s: no flare was drawn: the lamp lies beyond the angles of the "
+            "model; move it nearer, or bake with a larger --max-angle\n",
+            o->output);
     else if (light->peak <= 0 && drawing->line.settings.stop.mask_file)
         fprintf(to,
                 "%s: no light gets through this lens and its --stop-mask into "
                 "the picture; white in a mask lets light through\n",
-                o->output);
-    else if (light->peak <= 0 && report->beyond_lights > 0 &&
-             report->beyond_lights == report->lights)
-        fprintf(to,
-                "%s: no flare was drawn: the lens has no model of light from "
-                "so far outside the picture; move the lamp nearer\n",
                 o->output);
     else if (light->peak <= 0)
         fprintf(to,
@@ -292,7 +301,7 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
     say_lights(drawing, o->figures.most_lights, to);
     fprintf(to, ", %s f/%.3g, ", drawing->files.lens.table.name,
             f_number_of(&drawing->files.lens));
-    say_dial(&drawing->line.settings.options, o->figures.dial, to);
+    say_brightness(&o->figures, to);
     if (light->is_known)
         fprintf(to, ": %s at %.*g %% of white, %.2g %% on average",
                 drawing->line.settings.options.only == GLINT_ONLY_STARBURST
