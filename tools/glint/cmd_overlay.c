@@ -467,13 +467,14 @@ static int overlay_folder(const struct tool *tool, char **argv, int first,
 {
     char **const line = calloc((size_t)first + 2, sizeof *line);
     bool is_new = false, is_wrong = false;
-    int code =
-        line ? folder_open(tool, folder, argv + first, n, options, &is_new)
-             : tool_fail(tool, GLINT_E_MEMORY, NULL);
-    int done = 0, failed = code == EXIT_OK ? 0 : n;
+    int code, done = 0, failed = 0;
     char path[FOLDER_PATH];
 
-    for (int i = 0; failed < n && done + failed < n && !is_wrong; i++) {
+    if (!line)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    code = folder_open(tool, folder, argv + first, n, options, &is_new);
+    is_wrong = code != EXIT_OK;
+    for (int i = 0; i < n && !is_wrong; i++) {
         int one = EXIT_OUTPUT;
 
         memcpy(line, argv, (size_t)first * sizeof *line);

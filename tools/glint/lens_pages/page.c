@@ -157,14 +157,16 @@ int thumbnails_write(const struct tool *tool, const struct settings *settings,
                      const char *name, FILE *file, size_t *model_bytes)
 {
     struct opened_lens *const lens = calloc(1, sizeof *lens);
-    int code = lens ? opened_lens_open(tool, lens, settings, name)
-                    : tool_fail(tool, GLINT_E_MEMORY, NULL);
+    int code;
 
-    *model_bytes = lens ? lens->model.bytes : 0;
+    *model_bytes = 0;
+    if (!lens)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    code = opened_lens_open(tool, lens, settings, name);
+    *model_bytes = lens->model.bytes;
     if (code == EXIT_OK)
         code = draw_all(tool, lens, settings, file);
-    if (lens)
-        opened_lens_close(lens);
+    opened_lens_close(lens);
     free(lens);
     return code;
 }

@@ -10,27 +10,27 @@
 #include "model/table_file.h"
 #include "model/opened_table.h"
 
-int tool_lens(const struct tool *tool, const char *name,
+int tool_lens(const struct tool *tool, const char *argument,
               struct glint_prescription *lens)
 {
     struct glint_error error;
 
     (void)lens;
-    if (!tool_is_file_name(name))
+    if (!tool_is_file_name(argument))
         snprintf(error.text, sizeof error.text,
                  "%.120s names no file: that of a model has a slash or ends in "
                  ".glint",
-                 name);
-    else if (access(name, R_OK) == 0)
+                 argument);
+    else if (access(argument, R_OK) == 0)
         snprintf(error.text, sizeof error.text,
                  "%.120s is no model; this program takes baked ones only "
                  "(glint bake, on any machine)",
-                 name);
+                 argument);
     else
         snprintf(error.text, sizeof error.text,
                  "%.120s: %s; a baked model is "
                  "required (glint bake, on any machine)",
-                 name, strerror(errno));
+                 argument, strerror(errno));
     return tool_fail(tool, GLINT_E_LENS, error.text);
 }
 

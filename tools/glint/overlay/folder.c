@@ -102,9 +102,11 @@ int folder_open(const struct tool *tool, const char *folder, char **input,
 {
     struct stat *const file = malloc((size_t)n * sizeof *file);
     struct glint_error error = {""};
-    int code = file ? check_inputs(tool, input, n)
-                    : tool_fail(tool, GLINT_E_MEMORY, NULL);
+    int code;
 
+    if (!file)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    code = check_inputs(tool, input, n);
     if (code == EXIT_OK && n > 1)
         code = check_streams(tool, options);
     if (code == EXIT_OK)
