@@ -89,7 +89,7 @@ run-test: $(test_bin) $(replay_bin) $(if $(test_script),$(OUT)/glint $(OUT)/glin
 check-all:
 	@set -e; for how in "" CC=clang CONFIG=asan CONFIG=tsan CONFIG=qcheck; do \
 	        $(MAKE) --no-print-directory check $$how; done; \
-	for what in demo analyze check-valgrind check-arm check-vm check-commands check-files check-obs check-debian mutants; do \
+	for what in demo analyze check-valgrind check-arm check-vm check-commands check-files check-web check-allocations check-obs check-debian mutants; do \
 	        $(MAKE) --no-print-directory $$what; done
 # What other programs find in files that overlay has written.
 check-files:
